@@ -1,0 +1,17 @@
+//! The bend field: grass as a 2-D continuum (Chen & Johan, Real-Time Continuum Grass, sections 4 and 5).
+//!
+//! A cell holds one cluster of grass: its bending angle θ (rad; 0 upright) and its bending velocity ω = (ωx, ωz)
+//! (rad/s), whose direction is the direction in which the cluster leans. Contact sets both ([`Patch::press`]); the
+//! damped wave equations (2)–(6) carry them on and let them rise again ([`verlet`]).
+//!
+//! A [`Field`] is made of patches with one ring of ghost cells. The ghosts are refreshed before every sub-step, so a field
+//! of many patches equals one big grid bit for bit. A patch that sleeps holds no memory and counts as at rest.
+
+mod field;
+mod params;
+mod patch;
+pub mod verlet;
+
+pub use field::Field;
+pub use params::{Coefficients, WaveParams};
+pub use patch::{Bend, Patch};

@@ -1,0 +1,79 @@
+//! A scene: everything that a scene file (TOML) can say, each constant with its meaning, unit, default and range.
+//!
+//! A scene file needs only what differs from the defaults; the shortest one names its maps. Parsing and the checks of
+//! ranges are the first thing done with a file; the world is made from a checked [`Scene`] alone.
+
+mod grass;
+mod objects;
+mod patches;
+mod picture;
+mod plants;
+mod terrain;
+mod wind;
+
+pub use grass::Grass;
+pub use objects::{Objects, VehicleKind};
+pub use patches::Patches;
+pub use picture::{CameraStart, Light};
+pub use plants::Plants;
+pub use terrain::TerrainMaps;
+pub use wind::{Wind, WindBoundary};
+
+use serde::{Deserialize, Serialize};
+
+/// A whole scene, as a scene file describes it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// One line that says what the scene shows; `prairie scenes` prints it.
+    pub summary: String,
+    /// Seed of everything random in the scene: placing of plants, sources of the wind. Default 1.
+    #[serde(default = "default_seed")]
+    pub seed: u64,
+    /// Fixed steps of the world per second (Hz). Default 60, allowed 10..=240.
+    #[serde(default = "default_tick_hz")]
+    pub tick_hz: f32,
+    /// The extent of the world, in patches of cells of the bend field.
+    #[serde(default)]
+    pub patches: Patches,
+    /// Height map and covering map with their scales.
+    pub terrain: TerrainMaps,
+    /// The wind solver's box, boundaries and sources.
+    #[serde(default)]
+    pub wind: Wind,
+    /// How the grass bends and rises: the constants of the bend field.
+    #[serde(default)]
+    pub grass: Grass,
+    /// What grows: size and number of blades, flowers, trees and stones.
+    #[serde(default)]
+    pub plants: Plants,
+    /// Cars, monsters and helicopters: how many, and their models.
+    #[serde(default)]
+    pub objects: Objects,
+    /// Where a visitor's camera starts.
+    #[serde(default)]
+    pub camera: CameraStart,
+    /// Sun, sky and haze.
+    #[serde(default)]
+    pub light: Light,
+}
+
+fn default_seed() -> u64 {
+    1
+}
+
+fn default_tick_hz() -> f32 {
+    60.0
+}
+
+impl Scene {
+    /// Duration of one fixed step (s).
+    pub fn dt_secs(&self) -> f32 {
+        1.0 / self.tick_hz
+    }
+
+    /// Extent of the world along X and Z (m).
+    pub fn extent_m(&self) -> [f32; 2] {
+        self.patches.extent_m()
+    }
+}

@@ -1,0 +1,46 @@
+//! What grows in a scene.
+
+use serde::{Deserialize, Serialize};
+
+/// Size, number and colour of what the covering map places.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Plants {
+    /// Side of a grass grid (m), the unit of level of detail (000 §3.1.2). Default 8, allowed 1..=64.
+    pub grid_m: f32,
+    /// Plants along one side of a grass grid that the levels of detail count with, n of 000 Eq. (9). Default 32, allowed 2..=256.
+    pub plants_per_side: u32,
+    /// Mean height of a blade (m). Default 0.8, allowed 0.02..=5.
+    pub height_m: f32,
+    /// Random share of the height, plus or minus. Default 0.35, allowed 0..=0.9.
+    pub height_variation: f32,
+    /// Width of a blade at its root (m). Default 0.02, allowed 0.001..=0.5.
+    pub width_m: f32,
+    /// Flowers per square metre of grass. Default 0.6, allowed 0..=50.
+    pub flowers_per_m2: f32,
+    /// Colour of grass at the root and at the tip, linear RGB 0..=1.
+    pub root_rgb: [f32; 3],
+    /// Colour of grass at the tip, linear RGB 0..=1.
+    pub tip_rgb: [f32; 3],
+    /// Height of a tree (m). Default 7, allowed 0.5..=60.
+    pub tree_m: f32,
+    /// Size of a stone (m). Default 0.8, allowed 0.05..=20.
+    pub stone_m: f32,
+}
+
+impl Default for Plants {
+    fn default() -> Self {
+        Self {
+            grid_m: 8.0,
+            plants_per_side: 32,
+            height_m: 0.8,
+            height_variation: 0.35,
+            width_m: 0.02,
+            flowers_per_m2: 0.6,
+            root_rgb: [0.03, 0.07, 0.015],
+            tip_rgb: [0.30, 0.40, 0.09],
+            tree_m: 7.0,
+            stone_m: 0.8,
+        }
+    }
+}

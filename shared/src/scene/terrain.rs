@@ -1,0 +1,23 @@
+//! The maps of a scene's land.
+
+use serde::{Deserialize, Serialize};
+
+/// Height map and covering map, with their scales (000 §5.5).
+///
+/// Both are grey PNG files whose row 0 is the northern edge; pixel centres lie `pixel_m` apart, the first at the
+/// world's corner. Between pixels the height is bilinear; outside the map the edge value holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TerrainMaps {
+    /// PNG of 8 or 16 bits, grey, no alpha; path relative to the scene file.
+    pub height_map: String,
+    /// 8-bit grey PNG of covering IDs (000 Table 2): 0 gap, 253 tree, 254 stone, 255 grass; path relative to the scene file.
+    pub covering_map: String,
+    /// Distance between pixel centres of the height map along X and Z (m), allowed 0.01..=1000.
+    pub pixel_m: [f32; 2],
+    /// Metres per grey level of the height map, allowed 0..=1000.
+    pub level_m: f32,
+    /// Elevation of grey level 0 (m). Default 0.
+    #[serde(default)]
+    pub base_m: f32,
+}

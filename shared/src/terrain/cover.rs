@@ -1,0 +1,81 @@
+//! The covering map: what stands where (000 §5.5.2, Table 2).
+
+use super::{MapError, decode_grey};
+
+/// What covers a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cover {
+    /// Bare ground (ID 0).
+    Gap,
+    /// A tree (ID 253).
+    Tree,
+    /// A stone (ID 254).
+    Stone,
+    /// Grass (ID 255).
+    Grass,
+    /// Any other ID, free for further models; bare ground until one is named.
+    Free(u8),
+}
+
+impl From<u8> for Cover {
+    fn from(id: u8) -> Self {
+        match id {
+            0 => Self::Gap,
+            253 => Self::Tree,
+            254 => Self::Stone,
+            255 => Self::Grass,
+            free => Self::Free(free),
+        }
+    }
+}
+
+/// Covering IDs over the whole world; the map is stretched to the world's extent, nearest pixel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CoverMap {
+    width_px: u32,
+    depth_px: u32,
+    ids: Vec<u8>,
+}
+
+impl CoverMap {
+    /// Reads an 8-bit grey PNG.
+    ///
+    /// # Errors
+    /// [`MapError`] when the bytes are no PNG of that kind or its sides are out of range.
+    pub fn from_png(png_bytes: &[u8]) -> Result<Self, MapError> {
+        let image = decode_grey(png_bytes, false)?;
+        let ids = image.levels.iter().map(|&level| level as u8).collect();
+        Ok(Self { width_px: image.width, depth_px: image.height, ids })
+    }
+
+    /// Pixels along X and Z.
+    pub fn size_px(&self) -> [u32; 2] {
+        [self.width_px, self.depth_px]
+    }
+
+    /// IDs row by row from the north.
+    pub fn ids(&self) -> &[u8] {
+        &self.ids
+    }
+
+    /// What covers the point `(x_m, z_m)` of a world of `extent_m`; gap outside the world.
+    pub fn at(&self, x_m: f32, z_m: f32, extent_m: [f32; 2]) -> Cover {
+        let px = (x_m / extent_m[0] * self.width_px as f32).floor();
+        let pz = (z_m / extent_m[1] * self.depth_px as f32).floor();
+        if px < 0.0 || pz < 0.0 || px >= self.width_px as f32 || pz >= self.depth_px as f32 {
+            return Cover::Gap;
+        }
+        Cover::from(self.ids[pz as usize * self.width_px as usize + px as usize])
+    }
+
+    /// Pixels that hold `cover`, as the world coordinates of their centres (m).
+    pub fn places_m(&self, cover: Cover, extent_m: [f32; 2]) -> impl Iterator<Item = [f32; 2]> + '_ {
+        let pixel_m = [extent_m[0] / self.width_px as f32, extent_m[1] / self.depth_px as f32];
+        let width = self.width_px as usize;
+        self.ids
+            .iter()
+            .enumerate()
+            .filter(move |&(_, &id)| Cover::from(id) == cover)
+            .map(move |(i, _)| [((i % width) as f32 + 0.5) * pixel_m[0], ((i / width) as f32 + 0.5) * pixel_m[1]])
+    }
+}

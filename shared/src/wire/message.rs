@@ -1,0 +1,255 @@
+//! The messages, and how they become bytes.
+
+use super::PROTOCOL;
+use crate::grid::PatchIndex;
+use crate::scene::{Scene, VehicleKind};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use thiserror::Error;
+
+/// Number of an object, unique within a run.
+pub type ObjectId = u32;
+
+/// What a driver's hands do, each −1..=1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Drive {
+    /// Forward (+) or backward (−).
+    pub throttle: f32,
+    /// Right (+) or left (−).
+    pub steer: f32,
+    /// Up (+) or down (−); helicopters only.
+    pub lift: f32,
+    /// Brake, 0..=1.
+    pub brake: f32,
+}
+
+impl Drive {
+    /// Whether every value is finite and within its range.
+    pub fn is_valid(&self) -> bool {
+        let signed = [self.throttle, self.steer, self.lift].iter().all(|v| (-1.0..=1.0).contains(v));
+        signed && (0.0..=1.0).contains(&self.brake)
+    }
+}
+
+/// What a client says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ClientMessage {
+    /// First message of a connection.
+    Hello {
+        /// Name to show to others; at most 32 characters, control characters are dropped.
+        name: String,
+    },
+    /// Where the camera is; decides which patches are streamed.
+    View {
+        /// Camera position (m).
+        eye_m: [f32; 3],
+        /// Distance up to which the bend field is wanted (m), 0..=512.
+        radius_m: f32,
+    },
+    /// Take a vehicle (the one held before is given up), or none.
+    Choose {
+        /// The vehicle to drive.
+        vehicle: Option<VehicleKind>,
+    },
+    /// Hands on the controls of one's own vehicle.
+    Drive(Drive),
+    /// The newest frame that has arrived whole.
+    Ack {
+        /// Number from [`ServerMessage::FrameEnd`].
+        frame: u32,
+    },
+    /// Asks for a [`ServerMessage::Pong`].
+    Ping {
+        /// Comes back unchanged.
+        nonce: u32,
+    },
+}
+
+/// What a server says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ServerMessage {
+    /// Answer to a valid hello.
+    Welcome {
+        /// The client's own number in [`ServerMessage::Roster`].
+        client: u32,
+        /// Version of the server's package.
+        server_version: String,
+    },
+    /// Everything that stays as it is for the run.
+    Scene {
+        /// The scene, checked.
+        scene: Box<Scene>,
+        /// Height map, the PNG file's bytes.
+        #[serde(with = "serde_bytes")]
+        height_png: Vec<u8>,
+        /// Covering map, the PNG file's bytes.
+        #[serde(with = "serde_bytes")]
+        covering_png: Vec<u8>,
+        /// Models read from glTF files; kinds that are missing are drawn with the built-in one.
+        models: Vec<(VehicleKind, Mesh)>,
+    },
+    /// Poses of all objects, newest state.
+    Poses {
+        /// Step of the world.
+        tick: u64,
+        /// Every object; one that is missing has left.
+        objects: Vec<ObjectPose>,
+    },
+    /// Wind at the cells' centres: three planes (u, v, w), each `nx × (ny·nz)`, x fastest, then y, then z.
+    Wind {
+        /// Step of the world.
+        tick: u64,
+        /// Number of this wind frame; a delta applies to the frame one less.
+        seq: u32,
+        /// Whether the payload is coded against zero.
+        key: bool,
+        /// [`codec`](super::codec) payload.
+        #[serde(with = "serde_bytes")]
+        payload: Vec<u8>,
+    },
+    /// Bend field of one patch: three planes (θ, ωx, ωz) of `cells × cells`.
+    Patch {
+        /// Which patch.
+        patch: PatchIndex,
+        /// Number of this frame of the patch; a delta applies to the frame one less.
+        seq: u32,
+        /// Whether the payload is coded against zero.
+        key: bool,
+        /// [`codec`](super::codec) payload; empty: the patch is at rest.
+        #[serde(with = "serde_bytes")]
+        payload: Vec<u8>,
+    },
+    /// Who is here.
+    Roster {
+        /// Every client.
+        peers: Vec<Peer>,
+    },
+    /// All of a frame has been sent; to be acknowledged.
+    FrameEnd {
+        /// Number of the frame, per client, from 1.
+        frame: u32,
+        /// Step of the world that the frame shows.
+        tick: u64,
+        /// Simulated time (s).
+        time_secs: f64,
+    },
+    /// A request was not carried out, or the connection is about to be closed.
+    Refused {
+        /// Why, for the program.
+        refusal: Refusal,
+        /// Why, for the person.
+        reason: String,
+    },
+    /// Answer to a ping.
+    Pong {
+        /// The ping's.
+        nonce: u32,
+    },
+}
+
+/// Kinds of refusal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Refusal {
+    /// The scene's limit of objects is reached; the connection stays.
+    ObjectLimit,
+    /// The server is full; the connection is closed.
+    ServerFull,
+    /// A message was malformed, too large or out of range; the connection is closed.
+    BadMessage,
+    /// Too many messages; the connection is closed.
+    RateLimit,
+    /// The server is stopping; the connection is closed.
+    Stopping,
+}
+
+/// Someone who is here.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Peer {
+    /// The client's number.
+    pub client: u32,
+    /// The name given.
+    pub name: String,
+    /// The object driven, if any.
+    pub object: Option<ObjectId>,
+}
+
+/// Where an object is and what it does.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ObjectPose {
+    /// Number of the object.
+    pub id: ObjectId,
+    /// What it is.
+    pub kind: VehicleKind,
+    /// Centre of the body's box (m).
+    pub position_m: [f32; 3],
+    /// Orientation as a unit quaternion (x, y, z, w); the body's own axes are right +X, up +Y, forward −Z.
+    pub rotation: [f32; 4],
+    /// Velocity (m/s).
+    pub velocity_m_per_s: [f32; 3],
+    /// Steering of the front wheels (rad, + right), or the rotor's or the walk's phase (rad).
+    pub part_rad: f32,
+}
+
+/// A triangle mesh with a colour at each vertex; at most 65 536 vertices.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Mesh {
+    /// Positions (m) in the body's axes, origin at the centre of its box.
+    pub positions_m: Vec<[f32; 3]>,
+    /// Unit normals.
+    pub normals: Vec<[f32; 3]>,
+    /// Linear RGB, 0..=255.
+    pub rgb: Vec<[u8; 3]>,
+    /// Three indices a triangle, anticlockwise seen from outside.
+    pub indices: Vec<u32>,
+}
+
+/// Why bytes are no message.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum WireError {
+    /// No bytes at all.
+    #[error("the message is empty")]
+    Empty,
+    /// The other side speaks another version.
+    #[error("protocol version {found}; this side speaks {PROTOCOL}")]
+    Version {
+        /// The version found.
+        found: u8,
+    },
+    /// Larger than allowed.
+    #[error("the message has {found} bytes; at most {limit} are allowed")]
+    TooLarge {
+        /// Bytes found.
+        found: usize,
+        /// Bytes allowed.
+        limit: usize,
+    },
+    /// The bytes after the version make no message.
+    #[error("the message is malformed: {0}")]
+    Malformed(String),
+    /// Bytes are left over after the message.
+    #[error("{0} bytes follow the message")]
+    Trailing(usize),
+}
+
+/// Encodes a message with its version byte.
+///
+/// # Panics
+/// Never: the messages hold nothing that postcard cannot write.
+pub fn encode<M: Serialize>(message: &M) -> Vec<u8> {
+    postcard::to_extend(message, vec![PROTOCOL]).expect("messages hold only what postcard can write")
+}
+
+/// Decodes a message of at most `limit` bytes; the length is checked before anything is parsed.
+///
+/// # Errors
+/// [`WireError`] when the bytes are not one whole message of this version.
+pub fn decode<M: DeserializeOwned>(bytes: &[u8], limit: usize) -> Result<M, WireError> {
+    if bytes.len() > limit {
+        return Err(WireError::TooLarge { found: bytes.len(), limit });
+    }
+    let (&version, body) = bytes.split_first().ok_or(WireError::Empty)?;
+    if version != PROTOCOL {
+        return Err(WireError::Version { found: version });
+    }
+    let (message, rest) = postcard::take_from_bytes(body).map_err(|error| WireError::Malformed(error.to_string()))?;
+    if rest.is_empty() { Ok(message) } else { Err(WireError::Trailing(rest.len())) }
+}

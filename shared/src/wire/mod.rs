@@ -1,0 +1,21 @@
+//! What goes over the socket: versioned messages ([`message`]), quantised fields ([`quantise`]) and their codec ([`codec`]).
+//!
+//! Every binary WebSocket message is one byte of protocol version, [`PROTOCOL`], and a postcard-encoded
+//! [`ClientMessage`] or [`ServerMessage`]. Fields travel as 8-bit grids, coded against the frame before (delta) or against zero
+//! (key).
+
+pub mod codec;
+mod message;
+pub mod quantise;
+
+pub use codec::CodecError;
+pub use message::{ClientMessage, Drive, Mesh, ObjectId, ObjectPose, Peer, Refusal, ServerMessage, WireError, decode, encode};
+
+/// Version of the protocol; both sides must agree.
+pub const PROTOCOL: u8 = 1;
+
+/// Largest message a client may send (bytes).
+pub const CLIENT_MESSAGE_LIMIT: usize = 4096;
+
+/// Largest message a server may send (bytes): a scene with two maps and two models.
+pub const SERVER_MESSAGE_LIMIT: usize = 64 << 20;

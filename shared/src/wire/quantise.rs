@@ -1,0 +1,56 @@
+//! Fields as 8-bit values, with their error bounds.
+//!
+//! θ is linear; ω is companded by a square root, so that weak bends keep their direction; wind is linear.
+
+/// θ at code ±127 (rad): a right angle.
+pub const THETA_FULL_RAD: f32 = std::f32::consts::FRAC_PI_2;
+
+/// |ω| of a component at code ±127 (rad/s); larger values saturate.
+pub const OMEGA_FULL_RAD_PER_S: f32 = 80.0;
+
+/// Wind component at code ±127 (m/s); larger values saturate.
+pub const WIND_FULL_M_PER_S: f32 = 31.75;
+
+/// Code of a bending angle; error at most `THETA_FULL_RAD / 254` (0.0062 rad) within ±[`THETA_FULL_RAD`].
+pub fn theta_code(theta_rad: f32) -> i8 {
+    linear_code(theta_rad, THETA_FULL_RAD)
+}
+
+/// Bending angle of a code (rad).
+pub fn theta_rad(code: i8) -> f32 {
+    linear_value(code, THETA_FULL_RAD)
+}
+
+/// Code of a component of the bending velocity: `127·√(|ω|/full)`, rounded, with its sign. The error of `√(|ω|/full)` is at most
+/// 1/254, so that of ω at most `full·(|code| + ¼)/127²` within ±[`OMEGA_FULL_RAD_PER_S`].
+pub fn omega_code(omega_rad_per_s: f32) -> i8 {
+    let share = (omega_rad_per_s.abs() / OMEGA_FULL_RAD_PER_S).sqrt();
+    let code = (share * 127.0 + 0.5).min(127.0) as i8;
+    if omega_rad_per_s < 0.0 { -code } else { code }
+}
+
+/// Component of the bending velocity of a code (rad/s).
+pub fn omega_rad_per_s(code: i8) -> f32 {
+    let share = f32::from(code) / 127.0;
+    share * share.abs() * OMEGA_FULL_RAD_PER_S
+}
+
+/// Code of a wind component; error at most 0.125 m/s within ±[`WIND_FULL_M_PER_S`].
+pub fn wind_code(m_per_s: f32) -> i8 {
+    linear_code(m_per_s, WIND_FULL_M_PER_S)
+}
+
+/// Wind component of a code (m/s).
+pub fn wind_m_per_s(code: i8) -> f32 {
+    linear_value(code, WIND_FULL_M_PER_S)
+}
+
+fn linear_code(value: f32, full: f32) -> i8 {
+    let scaled = value / full * 127.0;
+    let rounded = if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 };
+    rounded.clamp(-127.0, 127.0) as i8
+}
+
+fn linear_value(code: i8, full: f32) -> f32 {
+    f32::from(code) / 127.0 * full
+}
