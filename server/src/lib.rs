@@ -1,1 +1,4 @@
-//! placeholder
+//! The Prairie server.
+
+pub mod inspect;
+pub mod snapshot;
