@@ -57,34 +57,10 @@ pub struct Health {
     pub bend_energy: f64,
     /// Patches that are awake.
     pub awake_patches: u32,
+    /// Patches let go since the start because the limit of awake ones was reached.
+    pub evicted_patches: u64,
     /// Sub-steps of the bend field in the newest step.
     pub substeps: u32,
     /// Largest Courant number of a sub-step of the bend field.
     pub courant: f32,
-}
-
-/// A grid of codes in three planes of rows of [`width`](Grid::width).
-pub trait Grid {
-    /// Codes in one row.
-    fn width(&self) -> usize;
-    /// The planes, one after the other.
-    fn codes(&self) -> &[i8];
-}
-
-impl Grid for WindFrame {
-    fn width(&self) -> usize {
-        self.cells[0] as usize
-    }
-    fn codes(&self) -> &[i8] {
-        &self.codes
-    }
-}
-
-impl Grid for PatchCodes {
-    fn width(&self) -> usize {
-        (self.codes.len() / shared::wire::codec::PLANES).isqrt()
-    }
-    fn codes(&self) -> &[i8] {
-        &self.codes
-    }
 }

@@ -19,4 +19,4 @@ pub use encoder::{DEAD_BAND, Encoder, SLOW_HZ, WIND_HZ};
 pub use interest::{PATCH_LIMIT, interest};
 pub use pace::{Common, Pace, SendLimits};
 pub use streamer::{Counters, Streamer, start};
-pub use track::{Numbering, Pacing, Track};
+pub use track::{Grid, Numbering, Pacing, Track};

@@ -1,9 +1,35 @@
 //! One streamed grid: its numbered frames, each encoded at most once, whoever wants it.
 
-use crate::snapshot::Grid;
+use crate::snapshot::{PatchCodes, WindFrame};
 use bytes::Bytes;
 use shared::wire::codec;
 use std::sync::Arc;
+
+/// A grid of codes in three planes of rows of [`width`](Grid::width).
+pub trait Grid {
+    /// Codes in one row.
+    fn width(&self) -> usize;
+    /// The planes, one after the other.
+    fn codes(&self) -> &[i8];
+}
+
+impl Grid for WindFrame {
+    fn width(&self) -> usize {
+        self.cells[0] as usize
+    }
+    fn codes(&self) -> &[i8] {
+        &self.codes
+    }
+}
+
+impl Grid for PatchCodes {
+    fn width(&self) -> usize {
+        (self.codes.len() / codec::PLANES).isqrt()
+    }
+    fn codes(&self) -> &[i8] {
+        &self.codes
+    }
+}
 
 /// When a grid that has changed is given a new frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
