@@ -1,1 +1,4 @@
-//! placeholder
+//! The Prairie server's library.
+
+pub mod objects;
+pub mod snapshot;
