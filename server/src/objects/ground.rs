@@ -6,6 +6,7 @@ use rapier3d::prelude::*;
 use shared::scene::Plants;
 use shared::terrain::{Cover, HeightMap};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Members of the collision group of the land; whoever follows the land by itself leaves it out.
 pub(super) const LAND: Group = Group::GROUP_2;
@@ -34,7 +35,7 @@ pub(super) struct Thing {
 
 /// Terrain, trunks and stones.
 pub(super) struct Ground {
-    height: HeightMap,
+    height: Arc<HeightMap>,
     spacing_m: [f32; 2],
     tile_m: [f32; 2],
     things: BTreeMap<Tile, Vec<Thing>>,

@@ -1,13 +1,14 @@
 //! Where the objects live.
 
 use shared::terrain::{CoverMap, HeightMap};
+use std::sync::Arc;
 
 /// The world as objects know it: its land, what stands on it, its extent.
 pub struct Place {
     /// Heights of the land.
-    pub height: HeightMap,
+    pub height: Arc<HeightMap>,
     /// What covers it.
-    pub cover: CoverMap,
+    pub cover: Arc<CoverMap>,
     /// Extent along X and Z (m).
     pub extent_m: [f32; 2],
 }
