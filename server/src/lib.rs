@@ -4,13 +4,17 @@
 //! the newest [`snapshot`]; the [`stream`] thread encodes what changed, once for all clients; the sessions in [`net`] write it
 //! out as fast as each client takes it.
 
+pub mod bend;
 pub mod bucket;
 mod config;
 pub mod net;
+pub mod objects;
 pub mod runner;
 pub mod scenes;
 pub mod snapshot;
 pub mod stream;
+pub mod weather;
+pub mod wind;
 pub mod world;
 
 pub use config::{Config, Limits, RerunSink};
@@ -25,6 +29,7 @@ use stream::{Clients, Streamer};
 use thiserror::Error;
 use tokio::net::TcpListener;
 use tokio::sync::{Semaphore, watch};
+use world::{Maps, World, WorldError};
 
 /// Time that sessions are given to say goodbye when the server stops.
 const GOODBYE: Duration = Duration::from_secs(2);
@@ -35,6 +40,9 @@ pub enum RunError {
     /// The system gives no threads.
     #[error("cannot start the threads of the simulation: {0}")]
     Threads(#[from] std::io::Error),
+    /// The scene's constants make no world together.
+    #[error(transparent)]
+    World(#[from] WorldError),
     /// The world's thread ended by itself, which is a fault of the program.
     #[error("the simulation has stopped unexpectedly; the log says where")]
     WorldStopped,
@@ -45,7 +53,9 @@ pub enum RunError {
 /// # Errors
 /// [`RunError`] when the world cannot be made or its thread fails.
 pub async fn run(config: Config, listener: TcpListener, shutdown: impl Future<Output = ()>) -> Result<(), RunError> {
-    let world = world::World::new(&config.scene.scene);
+    let loaded = &config.scene;
+    let maps = Maps { height: loaded.height.clone(), cover: loaded.cover.clone() };
+    let world = World::new(&loaded.scene, maps)?;
     run_simulation(world, config, listener, shutdown).await
 }
 

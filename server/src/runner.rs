@@ -1,7 +1,7 @@
 //! The thread that owns the world: keeps time, feeds it commands, publishes the newest snapshot. It waits for nobody.
 
 use crate::snapshot::Snapshot;
-use crate::world::Command;
+use crate::world::{Command, World};
 use shared::wire::ObjectId;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -27,6 +27,20 @@ pub trait Simulation: Send + 'static {
     fn snapshot(&mut self) -> Snapshot;
     /// The object that a client drives.
     fn object_of(&self, client: u32) -> Option<ObjectId>;
+}
+
+impl Simulation for World {
+    fn step(&mut self, commands: &[Command]) {
+        Self::step(self, commands);
+    }
+
+    fn snapshot(&mut self) -> Snapshot {
+        Self::snapshot(self)
+    }
+
+    fn object_of(&self, client: u32) -> Option<ObjectId> {
+        Self::object_of(self, client)
+    }
 }
 
 /// The newest state, with what the runner adds.

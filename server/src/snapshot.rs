@@ -49,7 +49,7 @@ pub struct Health {
     pub step_secs: f32,
     /// Longest of those steps (s).
     pub step_max_secs: f32,
-    /// Root mean square of the wind's divergence after the projection (1/s).
+    /// Root mean square of the wind's divergence after the projection, over that of `|u|/h`.
     pub divergence_rms: f32,
     /// Mean kinetic energy of the wind (J/kg).
     pub wind_energy: f64,
