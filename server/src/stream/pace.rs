@@ -101,7 +101,9 @@ impl Pace {
         messages.extend(wind.iter().map(|(_, message)| message.clone()));
         let number = self.frame + 1;
         let end = ServerMessage::FrameEnd { frame: number, tick: snapshot.tick, time_secs: snapshot.time_secs };
-        messages.push(wire::encode(&end).into());
+        let end: Bytes = wire::encode(&end).into();
+        self.budget.charge(end.len() as f64);
+        messages.push(end);
         if !client.hand_out(Frame { number, messages }) {
             return false;
         }
