@@ -76,6 +76,13 @@ pub(super) fn allowed_at(path: &str) -> Allowed {
     FIELDS.iter().find(|(known, _)| *known == path).map_or(Text, |&(_, allowed)| allowed)
 }
 
+impl Allowed {
+    /// Whether a number is in the range; never for what is no range.
+    pub(super) fn contains(self, value: f64) -> bool {
+        matches!(self, Range(low, high) if (low..=high).contains(&value))
+    }
+}
+
 impl fmt::Display for Allowed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

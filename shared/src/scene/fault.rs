@@ -16,14 +16,14 @@ pub struct SceneFault {
     pub length: usize,
     /// Path of the field, such as `wind.cells[1]`; empty where the text is no TOML.
     pub path: String,
-    /// What is wrong, with the value and what is allowed.
+    /// What is wrong, with the value and what is allowed; reads on after the path.
     pub message: String,
 }
 
 impl fmt::Display for SceneFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.path.is_empty() {
-            write!(f, "`{}`: ", self.path)?;
+            write!(f, "`{}` ", self.path)?;
         }
         f.write_str(&self.message)
     }
@@ -33,16 +33,8 @@ impl SceneFault {
     /// A fault of the field at `path` of a scene file's `text`; points to the nearest enclosing section where the file
     /// does not name the field itself, or to the start of the file.
     pub fn at(text: &str, path: &str, message: impl Into<String>) -> Self {
-        Self::at_first(text, &[path], message)
-    }
-
-    /// A fault of the first of `paths` that the text names itself, or else of the first.
-    pub(super) fn at_first(text: &str, paths: &[&str], message: impl Into<String>) -> Self {
         let root = DeTable::parse(text).unwrap_or_else(|_| Spanned::new(0..0, DeTable::new()));
-        let places = || paths.iter().map(|path| (path, place_of(root.get_ref(), path)));
-        let named = places().find(|(_, place)| place.named).or_else(|| places().next());
-        let (path, span) = named.map_or(("", 0..0), |(path, place)| (*path, place.span));
-        Self::spanning(text, span, path, message)
+        Self::spanning(text, span_of(root.get_ref(), path), path, message)
     }
 
     /// A fault of the bytes `span` of `text`.
@@ -65,32 +57,23 @@ fn floor_char(text: &str, at: usize) -> usize {
     (0..=at.min(text.len())).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0)
 }
 
-/// Where a field is in the text.
-struct Place {
-    /// Bytes of its value, or of the nearest section around it.
-    span: Range<usize>,
-    /// Whether the text names the field itself.
-    named: bool,
-}
-
-fn place_of(root: &DeTable<'_>, path: &str) -> Place {
-    let mut table = Some(root);
-    let mut place = Place { span: 0..0, named: false };
+/// Bytes of the value at `path`, or of the nearest section around it.
+fn span_of(root: &DeTable<'_>, path: &str) -> Range<usize> {
+    let mut table = root;
+    let mut span = 0..0;
     for key in path.split('.') {
         let (key, index) = match key.split_once('[') {
-            Some((key, index)) => (key, index.trim_end_matches(']').parse::<usize>().ok()),
+            Some((key, index)) => (key, index.trim_end_matches(']').parse().ok()),
             None => (key, None),
         };
-        let Some((_, value)) = table.and_then(|table| table.iter().find(|(name, _)| name.get_ref() == key)) else {
-            return Place { named: false, ..place };
-        };
-        place = Place { span: element(value, index).span(), named: true };
-        table = match value.get_ref() {
-            DeValue::Table(inner) => Some(inner),
-            _ => None,
-        };
+        let Some((_, value)) = table.iter().find(|(name, _)| name.get_ref() == key) else { break };
+        span = element(value, index).span();
+        match value.get_ref() {
+            DeValue::Table(inner) => table = inner,
+            _ => break,
+        }
     }
-    place
+    span
 }
 
 fn element<'a, 'i>(value: &'a Spanned<DeValue<'i>>, index: Option<usize>) -> &'a Spanned<DeValue<'i>> {

@@ -27,7 +27,6 @@ pub use plants::Plants;
 pub use terrain::TerrainMaps;
 pub use wind::{Wind, WindBoundary};
 
-use check::cross_checks;
 use serde::{Deserialize, Serialize};
 
 /// A whole scene, as a scene file describes it.

@@ -1,7 +1,8 @@
 //! From the text of a scene file to a checked [`Scene`], or to everything that is wrong with it.
 
 use super::allowed::{Allowed, FIELDS, REQUIRED, allowed_at};
-use super::{Scene, SceneFault, TerrainMaps, cross_checks};
+use super::check::{Misfit, cross_checks};
+use super::{Scene, SceneFault, TerrainMaps};
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Value;
@@ -17,28 +18,19 @@ pub fn parse(text: &str) -> Result<Scene, Vec<SceneFault>> {
     if !errors.is_empty() {
         return Err(syntax_faults(text, &errors));
     }
+    let mut values = template();
     let mut walk = Walk { text, faults: Vec::new() };
-    walk.table(&template(), root.get_ref(), root.span(), "");
+    walk.table(&mut values, root.get_ref(), root.span(), "");
 
-    match Scene::deserialize(toml::de::Deserializer::from(root)) {
-        Ok(scene) => {
-            for (paths, message) in cross_checks(&scene) {
-                let known = walk.faults.iter().any(|fault| paths.iter().any(|path| fault.path.starts_with(path)));
-                if !known {
-                    walk.faults.push(SceneFault::at_first(text, paths, message));
-                }
-            }
-            if walk.faults.is_empty() {
-                return Ok(scene);
-            }
+    let scene = Scene::deserialize(values).map_err(|error| vec![SceneFault::spanning(text, 0..0, "", error.message())])?;
+    for Misfit { fields, message } in cross_checks(&scene) {
+        let already_faulty = walk.faults.iter().any(|fault| fields.contains(&field_of(&fault.path)));
+        if !already_faulty {
+            walk.faults.push(SceneFault::at(text, fields[0], message));
         }
-        Err(error) if walk.faults.is_empty() => {
-            walk.faults.push(SceneFault::spanning(text, error.span().unwrap_or(0..0), "", error.message()));
-        }
-        Err(_) => {}
     }
     walk.faults.sort_by_key(|fault| (fault.line, fault.column));
-    Err(walk.faults)
+    if walk.faults.is_empty() { Ok(scene) } else { Err(walk.faults) }
 }
 
 /// The first error of each line; what follows on the same line is seldom more than its echo.
@@ -70,7 +62,7 @@ fn template() -> toml::Table {
     toml::Table::try_from(scene).unwrap_or_default()
 }
 
-/// Compares a file's values with the template and with [`FIELDS`].
+/// Puts a file's values in the place of the template's, and keeps what does not agree with it or with [`FIELDS`].
 struct Walk<'t> {
     text: &'t str,
     faults: Vec<SceneFault>,
@@ -81,56 +73,57 @@ impl Walk<'_> {
         self.faults.push(SceneFault::spanning(self.text, span, path, message));
     }
 
-    fn table(&mut self, template: &toml::Table, found: &DeTable<'_>, span: Range<usize>, path: &str) {
+    fn table(&mut self, values: &mut toml::Table, found: &DeTable<'_>, span: Range<usize>, path: &str) {
         for (key, value) in found {
             let path = join(path, key.get_ref());
-            match template.get(key.get_ref().as_ref()) {
-                Some(expected) => self.value(expected, value.get_ref(), value.span(), &path),
-                None => self.fault(key.span(), &path, unknown_field(key.get_ref(), &path, template)),
+            match values.get_mut(key.get_ref().as_ref()) {
+                Some(place) => self.value(place, value.get_ref(), value.span(), &path),
+                None => self.fault(key.span(), &path, unknown_field(key.get_ref(), &path, values)),
             }
         }
-        for key in template.keys().filter(|key| !found.contains_key(key.as_str())) {
+        for key in values.keys().filter(|key| !found.contains_key(key.as_str())) {
             let path = join(path, key);
             if REQUIRED.contains(&path.as_str()) {
-                self.fault(span.clone(), &path, format!("is missing and has no default; expected {}", expectation(&template[key], &path)));
+                self.fault(span.clone(), &path, format!("is missing and has no default; expected {}", expectation(&values[key], &path)));
             }
         }
     }
 
-    fn value(&mut self, expected: &Value, found: &DeValue<'_>, span: Range<usize>, path: &str) {
-        let field = path.split('[').next().unwrap_or(path);
-        match (expected, found) {
-            (Value::Table(template), DeValue::Table(table)) => self.table(template, table, span, path),
-            (Value::Array(template), DeValue::Array(items)) if template.len() == items.len() => {
-                for (i, (expected, item)) in template.iter().zip(items.iter()).enumerate() {
-                    self.value(expected, item.get_ref(), item.span(), &format!("{path}[{i}]"));
+    fn value(&mut self, place: &mut Value, found: &DeValue<'_>, span: Range<usize>, path: &str) {
+        let allowed = allowed_at(field_of(path));
+        match (place, found) {
+            (Value::Table(values), DeValue::Table(table)) => self.table(values, table, span, path),
+            (Value::Array(values), DeValue::Array(items)) if values.len() == items.len() => {
+                for (i, (place, item)) in values.iter_mut().zip(items.iter()).enumerate() {
+                    self.value(place, item.get_ref(), item.span(), &format!("{path}[{i}]"));
                 }
             }
-            (Value::String(_), DeValue::String(word)) => {
-                if let Allowed::OneOf(words) = allowed_at(field)
-                    && !words.contains(&word.as_ref())
-                {
-                    self.fault(span, path, format!("is \"{word}\"; allowed: {}", allowed_at(field)));
+            (Value::String(place), DeValue::String(word)) => match allowed {
+                Allowed::OneOf(words) if !words.contains(&word.as_ref()) => {
+                    self.fault(span, path, format!("is \"{word}\"; allowed: {allowed}"));
+                }
+                _ => *place = word.to_string(),
+            },
+            (place @ (Value::Integer(_) | Value::Float(_)), DeValue::Integer(number)) => {
+                let value = i64::from_str_radix(number.as_str(), number.radix()).ok();
+                match value.filter(|&value| allowed.contains(value as f64)) {
+                    Some(value) if place.is_integer() => *place = Value::Integer(value),
+                    Some(value) => *place = Value::Float(value as f64),
+                    None => self.fault(span, path, format!("is {number}; allowed: {allowed}")),
                 }
             }
-            (Value::Integer(_) | Value::Float(_), DeValue::Integer(number)) => {
-                let value = i64::from_str_radix(number.as_str(), number.radix()).map_or(f64::INFINITY, |n| n as f64);
-                self.number(value, &number.to_string(), span, path, field);
-            }
-            (Value::Float(_), DeValue::Float(number)) => {
-                self.number(number.as_str().parse().unwrap_or(f64::NAN), number.as_str(), span, path, field);
-            }
-            _ => self.fault(span, path, format!("is {}; expected {}", kind_of(found), expectation(expected, field))),
+            (Value::Float(place), DeValue::Float(number)) => match number.as_str().parse().ok().filter(|&value| allowed.contains(value)) {
+                Some(value) => *place = value,
+                None => self.fault(span, path, format!("is {number}; allowed: {allowed}")),
+            },
+            (place, _) => self.fault(span, path, format!("is {}; expected {}", kind_of(found), expectation(place, field_of(path)))),
         }
     }
+}
 
-    fn number(&mut self, value: f64, written: &str, span: Range<usize>, path: &str, field: &str) {
-        if let allowed @ Allowed::Range(low, high) = allowed_at(field)
-            && !(low..=high).contains(&value)
-        {
-            self.fault(span, path, format!("is {written}; allowed: {allowed}"));
-        }
-    }
+/// The path of the field that an element such as `wind.cells[1]` belongs to.
+fn field_of(path: &str) -> &str {
+    path.split('[').next().unwrap_or(path)
 }
 
 fn join(path: &str, key: &str) -> String {
@@ -142,21 +135,21 @@ fn unknown_field(key: &str, path: &str, template: &toml::Table) -> String {
     let like = |known: &&str| strsim::jaro_winkler(key, known);
     let nearest = template.keys().map(String::as_str).filter(|known| like(known) > 0.8).max_by(|a, b| like(a).total_cmp(&like(b)));
     if let Some(known) = nearest {
-        return format!("no such field; did you mean `{known}`?");
+        return format!("is no field of a scene; did you mean `{known}`?");
     }
     let elsewhere = FIELDS.iter().map(|(known, _)| *known).find(|known| known.rsplit('.').next() == Some(key) && *known != path);
     if let Some(known) = elsewhere {
-        return format!("no such field here; did you mean `{known}`?");
+        return format!("is no field of a scene; did you mean `{known}`?");
     }
     let known: Vec<_> = template.keys().map(|known| format!("`{known}`")).collect();
-    format!("no such field; known here: {}", known.join(", "))
+    format!("is no field of a scene; known here: {}", known.join(", "))
 }
 
 fn kind_of(found: &DeValue<'_>) -> String {
     match found {
         DeValue::String(_) => "text".to_owned(),
-        DeValue::Integer(_) => "a whole number".to_owned(),
-        DeValue::Float(number) => format!("{} (not a whole number)", number.as_str()),
+        DeValue::Integer(number) => format!("the number {number}"),
+        DeValue::Float(number) => format!("the number {number}"),
         DeValue::Boolean(truth) => truth.to_string(),
         DeValue::Datetime(_) => "a date or time".to_owned(),
         DeValue::Array(items) => format!("a list of {}", items.len()),
@@ -201,12 +194,12 @@ mod tests {
             "[wind]\ncells = [32, 8]\nsides = \"wal\"\nviscosity_m2_per_s = nan\nsorces = 3\ntree_m = 4\n[objects]\nlimit = 2.5\n",
         );
         let expected = [
-            (8, 9, "`wind.cells`: is a list of 2; expected a list of 3 numbers, each 2 to 256"),
-            (9, 9, "`wind.sides`: is \"wal\"; allowed: \"wrap\" or \"wall\""),
-            (10, 22, "`wind.viscosity_m2_per_s`: is nan; allowed: 0 to 100"),
-            (11, 1, "`wind.sorces`: no such field; did you mean `sources`?"),
-            (12, 1, "`wind.tree_m`: no such field here; did you mean `plants.tree_m`?"),
-            (14, 9, "`objects.limit`: is 2.5 (not a whole number); expected a whole number, 0 to 1024"),
+            (8, 9, "`wind.cells` is a list of 2; expected a list of 3 numbers, each 2 to 256"),
+            (9, 9, "`wind.sides` is \"wal\"; allowed: \"wrap\" or \"wall\""),
+            (10, 22, "`wind.viscosity_m2_per_s` is nan; allowed: 0 to 100"),
+            (11, 1, "`wind.sorces` is no field of a scene; did you mean `sources`?"),
+            (12, 1, "`wind.tree_m` is no field of a scene; did you mean `plants.tree_m`?"),
+            (14, 9, "`objects.limit` is the number 2.5; expected a whole number, 0 to 1024"),
         ];
         assert_eq!(faults, expected.map(|(line, column, text)| (line, column, text.to_owned())));
     }
@@ -222,10 +215,10 @@ mod tests {
         assert!(only("[patches]\ncount = [2048, 1]\ncell_m = 1.0\n").contains("131072 m"));
         assert!(only("[patches]\ncells = 256\nawake_limit = 4096\n").contains("33554432"));
         assert!(only("[wind]\ncells = [256, 256, 256]\n").contains("2097152"));
-        assert!(only("[wind]\ncells = [2, 2, 2]\n").starts_with("`wind.cells`: are 12"));
+        assert!(only("[wind]\ncells = [2, 2, 2]\n").starts_with("`wind.sources` is 12"));
         assert!(only("[wind]\nmean_m_per_s = [30, 30]\n").contains("42.4"));
         assert!(only("[wind]\nsides = \"wall\"\ncells = [31, 8, 32]\n").contains("covers the world"));
-        assert_eq!(only("[objects]\nself_driving = 65\n"), "`objects.self_driving`: is 65; allowed: up to `objects.limit`, 64");
+        assert_eq!(only("[objects]\nself_driving = 65\n"), "`objects.self_driving` is 65; allowed: up to `objects.limit`, 64");
     }
 
     #[test]
