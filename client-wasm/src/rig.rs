@@ -1,8 +1,8 @@
 //! Where the visitor's eye is: free over the land, or behind what one drives.
 
+use crate::camera::{Camera, PITCH_LIMIT_RAD};
 use crate::controls::Controls;
 use crate::damped::{Damped, wrap_angle};
-use crate::link::{PITCH_LIMIT_RAD, View};
 use glam::{Quat, Vec3};
 use shared::scene::VehicleKind;
 use shared::wire::ObjectPose;
@@ -48,7 +48,7 @@ fn seat(kind: VehicleKind) -> Seat {
 /// The eye and what moves it. All motion is critically damped, and the same at any frame rate.
 #[derive(Clone, Debug)]
 pub struct Rig {
-    view: View,
+    camera: Camera,
     /// The free camera's speed forward and to the right (m/s), and of its turn to the right (rad/s).
     glide: [Damped; 3],
     height: Damped,
@@ -72,11 +72,11 @@ struct Chase {
 }
 
 impl Rig {
-    /// A free camera with this view over land of the height `ground_m` below it.
-    pub fn new(view: View, ground_m: f32) -> Self {
-        let height_m = (view.eye_m.y - ground_m).clamp(HEIGHT_RANGE_M[0], HEIGHT_RANGE_M[1]);
+    /// A free camera that starts as `camera`, over land of the height `ground_m` below it.
+    pub fn new(camera: Camera, ground_m: f32) -> Self {
+        let height_m = (camera.eye_m.y - ground_m).clamp(HEIGHT_RANGE_M[0], HEIGHT_RANGE_M[1]);
         Self {
-            view,
+            camera,
             glide: Default::default(),
             height: Damped::at(height_m),
             height_goal_m: height_m,
@@ -86,8 +86,8 @@ impl Rig {
     }
 
     /// What the visitor sees.
-    pub fn view(&self) -> View {
-        self.view
+    pub fn camera(&self) -> Camera {
+        self.camera
     }
 
     /// Turns the view by a drag of the mouse, a thumb or a stick (rad, right and up).
@@ -98,8 +98,8 @@ impl Rig {
                 chase.up_rad = (chase.up_rad + up_rad).clamp(-1.0, 0.9);
             }
             None => {
-                self.view.heading_rad = wrap_angle(self.view.heading_rad + right_rad);
-                self.view.pitch_rad = (self.view.pitch_rad + up_rad).clamp(-PITCH_LIMIT_RAD, PITCH_LIMIT_RAD);
+                self.camera.heading_rad = wrap_angle(self.camera.heading_rad + right_rad);
+                self.camera.pitch_rad = (self.camera.pitch_rad + up_rad).clamp(-PITCH_LIMIT_RAD, PITCH_LIMIT_RAD);
             }
         }
     }
@@ -129,11 +129,11 @@ impl Rig {
     pub fn advance(&mut self, controls: Controls, vehicle: Option<&ObjectPose>, ground_m: impl Fn(f32, f32) -> f32, dt_secs: f32) {
         let Some(pose) = vehicle else {
             if self.chase.is_some() {
-                *self = Self::new(self.view, ground_m(self.view.eye_m.x, self.view.eye_m.z));
+                *self = Self::new(self.camera, ground_m(self.camera.eye_m.x, self.camera.eye_m.z));
             }
             return self.advance_freely(controls, ground_m, dt_secs);
         };
-        let before = self.view;
+        let before = self.camera;
         let taken = self.chase.as_ref().is_none_or(|chase| chase.kind != pose.kind);
         let goal = self.behind(pose, &ground_m, dt_secs);
         if taken {
@@ -144,10 +144,11 @@ impl Rig {
         let [x, y, z, right, up] = self.change.each_mut().map(|left| left.follow(0.0, CHANGE_SECS, dt_secs));
         let mut eye_m = goal.eye_m + Vec3::new(x, y, z);
         eye_m.y = eye_m.y.max(ground_m(eye_m.x, eye_m.z) + CLEARANCE_M);
-        self.view = View {
+        self.camera = Camera {
             eye_m,
             heading_rad: wrap_angle(goal.heading_rad + right),
             pitch_rad: (goal.pitch_rad + up).clamp(-PITCH_LIMIT_RAD, PITCH_LIMIT_RAD),
+            ..self.camera
         };
     }
 
@@ -160,13 +161,13 @@ impl Rig {
         self.set_height(self.height_goal_m * (controls.rise * 1.2 * dt_secs).exp());
         self.height.follow(self.height_goal_m, 0.18, dt_secs);
 
-        let (sin, cos) = self.view.heading_rad.sin_cos();
-        let eye_m = &mut self.view.eye_m;
+        let (sin, cos) = self.camera.heading_rad.sin_cos();
+        let eye_m = &mut self.camera.eye_m;
         *eye_m += Vec3::new(sin, 0.0, -cos) * forward + Vec3::new(cos, 0.0, sin) * right;
         eye_m.y = ground_m(eye_m.x, eye_m.z) + self.height.value;
     }
 
-    fn behind(&mut self, pose: &ObjectPose, ground_m: &impl Fn(f32, f32) -> f32, dt_secs: f32) -> View {
+    fn behind(&mut self, pose: &ObjectPose, ground_m: &impl Fn(f32, f32) -> f32, dt_secs: f32) -> Camera {
         let place = Vec3::from(pose.position_m);
         let facing_rad = heading_of(pose);
         let chase = match &mut self.chase {
@@ -203,7 +204,7 @@ impl Rig {
         eye_m.y = eye_m.y.max(ground_m(eye_m.x, eye_m.z) + CLEARANCE_M);
 
         let sight = center + Vec3::Y * (0.1 * arm_m) - eye_m;
-        View { eye_m, heading_rad, pitch_rad: sight.y.atan2(sight.x.hypot(sight.z)) }
+        Camera { eye_m, heading_rad, pitch_rad: sight.y.atan2(sight.x.hypot(sight.z)), ..self.camera }
     }
 }
 
@@ -240,58 +241,58 @@ mod tests {
 
     #[test]
     fn the_eye_settles_behind_the_car_and_looks_where_it_heads() {
-        let mut rig = Rig::new(View { eye_m: Vec3::new(50.0, 2.0, 50.0), ..View::default() }, 0.0);
+        let mut rig = Rig::new(Camera { eye_m: Vec3::new(50.0, 2.0, 50.0), ..Camera::default() }, 0.0);
         let east = car(10.0, 20.0, std::f32::consts::FRAC_PI_2);
         settle(&mut rig, Some(&east));
-        let view = rig.view();
-        assert!((view.eye_m - Vec3::new(2.0, 3.5, 20.0)).length() < 0.01, "{:?}", view.eye_m);
-        let to_car = (Vec3::from(east.position_m) - view.eye_m).normalize();
-        assert!(view.direction().dot(to_car) > 0.99);
+        let camera = rig.camera();
+        assert!((camera.eye_m - Vec3::new(2.0, 3.5, 20.0)).length() < 0.01, "{:?}", camera.eye_m);
+        let to_car = (Vec3::from(east.position_m) - camera.eye_m).normalize();
+        assert!(camera.forward().dot(to_car) > 0.99);
     }
 
     #[test]
     fn taking_and_leaving_a_car_makes_no_jump() {
-        let mut rig = Rig::new(View { eye_m: Vec3::new(30.0, 2.0, 20.0), heading_rad: 1.0, pitch_rad: -0.1 }, 0.0);
+        let mut rig = Rig::new(Camera { eye_m: Vec3::new(30.0, 2.0, 20.0), heading_rad: 1.0, pitch_rad: -0.1, ..Camera::default() }, 0.0);
         let parked = car(10.0, 20.0, 0.4);
-        let mut before = rig.view();
+        let mut before = rig.camera();
         for step in 0..400 {
             rig.advance(Controls::default(), (step < 200).then_some(&parked), flat, 0.01);
-            let moved = rig.view().eye_m.distance(before.eye_m);
-            let turned = wrap_angle(rig.view().heading_rad - before.heading_rad).abs();
+            let moved = rig.camera().eye_m.distance(before.eye_m);
+            let turned = wrap_angle(rig.camera().heading_rad - before.heading_rad).abs();
             assert!(moved < 0.4 && turned < 0.1, "step {step}: {moved} m, {turned} rad");
-            before = rig.view();
+            before = rig.camera();
         }
     }
 
     #[test]
     fn the_presets_are_heights_above_the_land() {
-        let mut rig = Rig::new(View { eye_m: Vec3::new(5.0, 13.0, 5.0), ..View::default() }, 11.0);
+        let mut rig = Rig::new(Camera { eye_m: Vec3::new(5.0, 13.0, 5.0), ..Camera::default() }, 11.0);
         for height_m in [1.0, 5.0, 10.0, 20.0] {
             rig.set_height(height_m);
             for _ in 0..300 {
                 rig.advance(Controls::default(), None, |_, _| 11.0, 0.02);
             }
-            assert!((rig.view().eye_m.y - 11.0 - height_m).abs() < 0.01);
+            assert!((rig.camera().eye_m.y - 11.0 - height_m).abs() < 0.01);
         }
     }
 
     #[test]
     fn the_free_camera_walks_where_it_looks_and_stays_above_the_land() {
-        let mut rig = Rig::new(View { eye_m: Vec3::new(0.0, 2.0, 0.0), ..View::default() }, 0.0);
+        let mut rig = Rig::new(Camera { eye_m: Vec3::new(0.0, 2.0, 0.0), ..Camera::default() }, 0.0);
         let hill = |_: f32, z: f32| -0.5 * z;
         for _ in 0..100 {
             rig.advance(Controls { forward: 1.0, ..Default::default() }, None, hill, 0.02);
         }
-        let eye = rig.view().eye_m;
+        let eye = rig.camera().eye_m;
         assert!(eye.z < -5.0 && eye.x.abs() < 1e-3, "{eye}");
         assert!((eye.y - hill(eye.x, eye.z) - 2.0).abs() < 0.01);
     }
 
     #[test]
     fn a_view_that_is_set_stays_exactly() {
-        let view = View { eye_m: Vec3::new(3.0, 7.5, 4.0), heading_rad: 0.3, pitch_rad: -0.6 };
-        let mut rig = Rig::new(view, 5.0);
+        let camera = Camera { eye_m: Vec3::new(3.0, 7.5, 4.0), heading_rad: 0.3, pitch_rad: -0.6, ..Camera::default() };
+        let mut rig = Rig::new(camera, 5.0);
         settle(&mut rig, None);
-        assert!((rig.view().eye_m - view.eye_m).length() < 1e-4 && rig.view().heading_rad == view.heading_rad);
+        assert!((rig.camera().eye_m - camera.eye_m).length() < 1e-4 && rig.camera().heading_rad == camera.heading_rad);
     }
 }

@@ -10,7 +10,7 @@ pub struct Bend {
 }
 
 /// Number of channels: θ, ωx, ωz.
-pub const CHANNELS: usize = 3;
+pub(super) const CHANNELS: usize = 3;
 
 /// A square patch of `side × side` cells inside a ring of ghosts; row-major from the north-west, `(side + 2)²` values a
 /// channel.

@@ -28,3 +28,21 @@ pub fn billboards_per_side(plants: u32, grids_away: u32) -> u32 {
 pub fn fade(border_distance_m: f32, radius_m: f32) -> f32 {
     (1.0 - border_distance_m / radius_m).clamp(0.0, 1.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_of_000_section_5_2() {
+        let table = [(1, 3, 16), (2, 5, 8), (3, 5, 8), (4, 9, 4), (7, 9, 4), (8, 17, 2), (15, 17, 2), (16, 33, 1)];
+        for (grids_away, plants, per_side) in table {
+            assert_eq!((billboard_plants(grids_away), billboards_per_side(32, grids_away)), (plants, per_side));
+        }
+    }
+
+    #[test]
+    fn the_fade_runs_from_the_sphere_to_the_border() {
+        assert_eq!((fade(4.0, 4.0), fade(1.0, 4.0), fade(0.0, 4.0), fade(9.0, 4.0)), (0.0, 0.75, 1.0, 0.0));
+    }
+}

@@ -253,3 +253,52 @@ pub fn decode<M: DeserializeOwned>(bytes: &[u8], limit: usize) -> Result<M, Wire
     let (message, rest) = postcard::take_from_bytes(body).map_err(|error| WireError::Malformed(error.to_string()))?;
     if rest.is_empty() { Ok(message) } else { Err(WireError::Trailing(rest.len())) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::CLIENT_MESSAGE_LIMIT;
+    use proptest::prelude::*;
+
+    fn decode_client(bytes: &[u8]) -> Result<ClientMessage, WireError> {
+        decode(bytes, CLIENT_MESSAGE_LIMIT)
+    }
+
+    #[test]
+    fn a_message_comes_back() {
+        let message = ClientMessage::View { eye_m: [1.0, -2.5, 1e6], radius_m: 96.0 };
+        assert_eq!(decode_client(&encode(&message)), Ok(message));
+    }
+
+    #[test]
+    fn each_damage_has_its_own_error() {
+        let whole = encode(&ClientMessage::Ack { frame: 70_000 });
+        assert_eq!(decode_client(&[]), Err(WireError::Empty));
+        let mut other_version = whole.clone();
+        other_version[0] = PROTOCOL + 1;
+        assert_eq!(decode_client(&other_version), Err(WireError::Version { found: PROTOCOL + 1 }));
+        assert!(matches!(decode_client(&whole[..whole.len() - 1]), Err(WireError::Malformed(_))));
+        let longer = [whole.as_slice(), &[0, 0]].concat();
+        assert_eq!(decode_client(&longer), Err(WireError::Trailing(2)));
+        let huge = vec![PROTOCOL; CLIENT_MESSAGE_LIMIT + 1];
+        let limit = CLIENT_MESSAGE_LIMIT;
+        assert_eq!(decode_client(&huge), Err(WireError::TooLarge { found: limit + 1, limit }));
+    }
+
+    #[test]
+    fn a_drive_out_of_range_is_not_valid() {
+        assert!(Drive { throttle: 1.0, steer: -1.0, lift: 0.5, brake: 0.0 }.is_valid());
+        for value in [f32::NAN, f32::INFINITY, 1.01, -1.01] {
+            assert!(!Drive { throttle: value, ..Drive::default() }.is_valid());
+            assert!(!Drive { brake: value, ..Drive::default() }.is_valid());
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_are_a_message_or_an_error(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+            let _ = decode_client(&bytes);
+            let _ = decode::<ServerMessage>(&[&[PROTOCOL], bytes.as_slice()].concat(), 4096);
+        }
+    }
+}

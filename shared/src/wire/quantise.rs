@@ -54,3 +54,38 @@ fn linear_code(value: f32, full: f32) -> i8 {
 fn linear_value(code: i8, full: f32) -> f32 {
     f32::from(code) / 127.0 * full
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn theta_stays_within_its_bound(theta in -THETA_FULL_RAD..=THETA_FULL_RAD) {
+            prop_assert!((theta_rad(theta_code(theta)) - theta).abs() <= THETA_FULL_RAD / 254.0 * 1.0001);
+        }
+
+        #[test]
+        fn omega_stays_within_its_bound(share in -1.0_f32..=1.0) {
+            let omega = share * share.abs() * OMEGA_FULL_RAD_PER_S;
+            let code = omega_code(omega);
+            let bound = OMEGA_FULL_RAD_PER_S * (f32::from(code).abs() + 0.25) / (127.0 * 127.0);
+            prop_assert!((omega_rad_per_s(code) - omega).abs() <= bound * 1.001, "{omega} -> {code}");
+        }
+
+        #[test]
+        fn wind_stays_within_its_bound(wind in -WIND_FULL_M_PER_S..=WIND_FULL_M_PER_S) {
+            prop_assert!((wind_m_per_s(wind_code(wind)) - wind).abs() <= 0.125 * 1.0001);
+        }
+    }
+
+    #[test]
+    fn the_bounds_are_reached() {
+        let half_step = THETA_FULL_RAD / 254.0;
+        assert!((theta_rad(theta_code(0.999 * half_step)) - 0.999 * half_step).abs() > 0.99 * half_step);
+        assert_eq!(theta_code(10.0), 127);
+        assert_eq!(omega_code(-1e9), -127);
+        assert_eq!(wind_code(f32::NAN), 0);
+    }
+}

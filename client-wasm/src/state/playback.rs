@@ -1,12 +1,13 @@
 //! Poses between the server's snapshots: drawn a little late, so that there is always a next one to move towards.
 
+use super::{MirrorError, range};
 use crate::damped::wrap_angle;
 use glam::{Quat, Vec3};
 use shared::wire::ObjectPose;
 use std::collections::VecDeque;
 
 /// How far behind the newest snapshot objects are drawn (s); two lost or late snapshots of a 30 Hz stream pass unseen.
-pub const DELAY_SECS: f64 = 0.1;
+const DELAY_SECS: f64 = 0.1;
 
 /// Longest time (s) for which objects keep moving by their own velocity when no snapshot comes.
 const COAST_SECS: f64 = 0.15;
@@ -22,44 +23,70 @@ const TELEPORT_M: f32 = 4.0;
 
 const KEPT_SNAPSHOTS: usize = 32;
 
-#[derive(Clone, Debug)]
+/// Most objects of a pose frame.
+pub const OBJECT_LIMIT: usize = 1024;
+
+#[derive(Debug)]
 struct Snapshot {
     time_secs: f64,
     objects: Vec<ObjectPose>,
 }
 
 /// The last snapshots and the clock that plays them.
-#[derive(Clone, Debug, Default)]
-pub struct Playback {
+#[derive(Debug, Default)]
+pub(super) struct Playback {
     snapshots: VecDeque<Snapshot>,
+    clock_secs: f64,
     /// Our clock minus the server's (s).
     clock_ahead_secs: Option<f64>,
 }
 
 impl Playback {
-    /// Takes the poses of simulated time `time_secs`, which arrived when our clock showed `now_secs`. A time that lies before the
-    /// newest one is another run's: the snapshots kept are dropped.
-    pub fn push(&mut self, time_secs: f64, objects: &[ObjectPose], now_secs: f64) {
-        if self.snapshots.back().is_some_and(|newest| time_secs <= newest.time_secs) {
-            self.snapshots.clear();
+    /// Takes the poses of simulated time `time_secs`. A time before the newest one is another run's: the snapshots kept are
+    /// dropped.
+    pub(super) fn push(&mut self, time_secs: f64, objects: Vec<ObjectPose>) -> Result<(), MirrorError> {
+        if objects.len() > OBJECT_LIMIT {
+            return Err(range("number of objects", objects.len(), format!("at most {OBJECT_LIMIT}")));
         }
-        let measured = now_secs - time_secs;
+        if let Some(pose) = objects.iter().find(|pose| !is_sound(pose)) {
+            return Err(range("pose", format!("{pose:?}"), "finite numbers within 1e6 and a unit quaternion"));
+        }
+        match self.snapshots.back_mut() {
+            Some(newest) if time_secs == newest.time_secs => {
+                newest.objects = objects;
+                return Ok(());
+            }
+            Some(newest) if time_secs < newest.time_secs => self.snapshots.clear(),
+            _ => {}
+        }
+        let measured = self.clock_secs - time_secs;
         self.clock_ahead_secs = Some(match self.clock_ahead_secs {
             Some(ahead) if (measured - ahead).abs() < CLOCK_JUMP_SECS => ahead + CLOCK_SHARE * (measured - ahead),
             _ => measured,
         });
-        self.snapshots.push_back(Snapshot { time_secs, objects: objects.to_vec() });
+        self.snapshots.push_back(Snapshot { time_secs, objects });
         if self.snapshots.len() > KEPT_SNAPSHOTS {
             self.snapshots.pop_front();
         }
+        Ok(())
     }
 
-    /// The objects as they are drawn when our clock shows `now_secs`: on a cubic through places and velocities, turned evenly.
-    pub fn at(&self, now_secs: f64) -> Vec<ObjectPose> {
+    /// Lets our clock run for `dt_secs`.
+    pub(super) fn advance(&mut self, dt_secs: f64) {
+        self.clock_secs += dt_secs;
+    }
+
+    /// The newest poses.
+    pub(super) fn newest(&self) -> &[ObjectPose] {
+        self.snapshots.back().map_or(&[], |newest| &newest.objects)
+    }
+
+    /// The objects as they are drawn now: on a cubic through places and velocities, turned evenly.
+    pub(super) fn shown(&self) -> Vec<ObjectPose> {
         let (Some(ahead), Some(newest), Some(oldest)) = (self.clock_ahead_secs, self.snapshots.back(), self.snapshots.front()) else {
             return Vec::new();
         };
-        let time_secs = now_secs - ahead - DELAY_SECS;
+        let time_secs = self.clock_secs - ahead - DELAY_SECS;
         if time_secs <= oldest.time_secs {
             return oldest.objects.clone();
         }
@@ -70,6 +97,12 @@ impl Playback {
             None => coast(newest, (time_secs - newest.time_secs).min(COAST_SECS) as f32),
         }
     }
+}
+
+fn is_sound(pose: &ObjectPose) -> bool {
+    let numbers = pose.position_m.iter().chain(&pose.velocity_m_per_s).chain([&pose.part_rad]);
+    let unit = Quat::from_array(pose.rotation).length_squared();
+    numbers.into_iter().all(|value| value.abs() <= 1e6) && (0.9..=1.1).contains(&unit)
 }
 
 fn coast(snapshot: &Snapshot, secs: f32) -> Vec<ObjectPose> {
@@ -101,7 +134,7 @@ fn blend(from: &ObjectPose, to: &ObjectPose, share: f32, span_secs: f32) -> Obje
     let velocity = Vec3::from(from.velocity_m_per_s).lerp(Vec3::from(to.velocity_m_per_s), s);
     ObjectPose {
         position_m: place.into(),
-        rotation: Quat::from_array(from.rotation).slerp(Quat::from_array(to.rotation), s).to_array(),
+        rotation: Quat::from_array(from.rotation).slerp(Quat::from_array(to.rotation), s).normalize().to_array(),
         velocity_m_per_s: velocity.into(),
         part_rad: from.part_rad + wrap_angle(to.part_rad - from.part_rad) * s,
         ..*to
@@ -124,49 +157,61 @@ mod tests {
         }
     }
 
+    impl Playback {
+        fn shown_at(&mut self, clock_secs: f64) -> Vec<ObjectPose> {
+            self.clock_secs = clock_secs;
+            self.shown()
+        }
+
+        fn push_at(&mut self, clock_secs: f64, time_secs: f64, pose: ObjectPose) {
+            self.clock_secs = clock_secs;
+            self.push(time_secs, vec![pose]).expect("a sound pose");
+        }
+    }
+
     /// Snapshots at 20 Hz of a car that accelerates at 3 m/s², arriving without delay.
     fn accelerating() -> (Playback, impl Fn(f64) -> f64) {
         let place = |t: f64| 1.5 * t * t;
         let mut playback = Playback::default();
         for i in 0..20 {
             let t = f64::from(i) * 0.05;
-            playback.push(t, &[pose(place(t) as f32, 3.0 * t as f32)], t);
+            playback.push_at(t, t, pose(place(t) as f32, 3.0 * t as f32));
         }
         (playback, place)
     }
 
     #[test]
     fn a_constant_acceleration_is_followed_exactly() {
-        let (playback, place) = accelerating();
+        let (mut playback, place) = accelerating();
         for i in 0..80 {
-            let now = 0.12 + f64::from(i) * 0.011;
-            let drawn = playback.at(now)[0].position_m[0];
-            assert!((f64::from(drawn) - place(now - DELAY_SECS)).abs() < 1e-5, "at {now}");
+            let clock = 0.12 + f64::from(i) * 0.011;
+            let shown = playback.shown_at(clock)[0].position_m[0];
+            assert!((f64::from(shown) - place(clock - DELAY_SECS)).abs() < 1e-5, "at {clock}");
         }
     }
 
     #[test]
     fn without_snapshots_an_object_coasts_and_then_waits() {
-        let (playback, place) = accelerating();
+        let (mut playback, place) = accelerating();
         let newest = 0.95;
-        let coasted = playback.at(newest + DELAY_SECS + 0.1)[0].position_m[0];
+        let coasted = playback.shown_at(newest + DELAY_SECS + 0.1)[0].position_m[0];
         assert!((f64::from(coasted) - (place(newest) + 3.0 * newest * 0.1)).abs() < 1e-5);
-        assert_eq!(playback.at(50.0), playback.at(60.0));
+        assert_eq!(playback.shown_at(50.0), playback.shown_at(60.0));
     }
 
     #[test]
     fn an_object_that_is_put_elsewhere_does_not_fly_there() {
         let mut playback = Playback::default();
-        playback.push(0.0, &[pose(0.0, 1.0)], 0.0);
-        playback.push(0.1, &[pose(50.0, 1.0)], 0.1);
-        assert_eq!(playback.at(0.15)[0].position_m[0], 50.0);
+        playback.push_at(0.0, 0.0, pose(0.0, 1.0));
+        playback.push_at(0.1, 0.1, pose(50.0, 1.0));
+        assert_eq!(playback.shown_at(0.15)[0].position_m[0], 50.0);
     }
 
     #[test]
     fn another_run_starts_afresh() {
         let (mut playback, _) = accelerating();
-        playback.push(0.0, &[pose(-4.0, 0.0)], 9.0);
-        assert_eq!(playback.at(9.0)[0].position_m[0], -4.0);
+        playback.push_at(9.0, 0.0, pose(-4.0, 0.0));
+        assert_eq!(playback.shown_at(9.0)[0].position_m[0], -4.0);
     }
 
     #[test]
@@ -176,13 +221,23 @@ mod tests {
         for i in 0..200_u32 {
             let t = f64::from(i) * 0.05;
             let late = if i % 3 == 0 { 0.03 } else { 0.0 };
-            playback.push(t, &[pose(10.0 * t as f32, 10.0)], t + late);
-            let drawn = playback.at(t + 0.04)[0].position_m[0];
-            if let (Some(before), true) = (last.replace(drawn), i > 60) {
-                slowest = slowest.min(drawn - before);
-                fastest = fastest.max(drawn - before);
+            playback.push_at(t + late, t, pose(10.0 * t as f32, 10.0));
+            let shown = playback.shown_at(t + 0.04)[0].position_m[0];
+            if let (Some(before), true) = (last.replace(shown), i > 60) {
+                slowest = slowest.min(shown - before);
+                fastest = fastest.max(shown - before);
             }
         }
         assert!(slowest > 0.45 && fastest < 0.55, "{slowest} to {fastest} m a snapshot instead of 0.5");
+    }
+
+    #[test]
+    fn unsound_poses_are_refused() {
+        let mut playback = Playback::default();
+        for unsound in [pose(f32::NAN, 0.0), pose(2e6, 0.0), ObjectPose { rotation: [0.0; 4], ..pose(0.0, 0.0) }] {
+            assert!(playback.push(0.0, vec![unsound]).is_err(), "{unsound:?}");
+        }
+        assert!(playback.push(0.0, vec![pose(0.0, 0.0); OBJECT_LIMIT + 1]).is_err());
+        assert!(playback.newest().is_empty());
     }
 }

@@ -1,0 +1,3 @@
+//! The network side of the server.
+
+pub mod assets;

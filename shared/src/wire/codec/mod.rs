@@ -1,0 +1,222 @@
+//! Lossless codec of the streamed fields: adaptive binary arithmetic coding of small 8-bit grids.
+//!
+//! A grid has [`PLANES`] planes of rows of `width` codes. It is coded against a base of the same shape (delta) or against
+//! zero (key), so one path serves both. Per tile of 8 × 8 cells and plane:
+//!
+//! 1. One bit says whether anything differs from the base; a tile at rest costs a small fraction of a bit.
+//! 2. One bit chooses how the differences `d` are predicted: not at all (noise of one code), or by the median edge
+//!    detector of the three neighbours already coded (smooth motion, key frames), as in JPEG-LS (Weinberger, Seroussi & Sapiro 2000).
+//! 3. The residual goes as zero flag, sign and exp-Golomb magnitude, each binary decision with its own adaptive
+//!    probability, chosen by the size of the neighbours' residuals.
+//!
+//! Everything is integer arithmetic, hence the same on every machine. Decoding does a bounded amount of work for any bytes.
+
+mod arithmetic;
+mod model;
+
+use model::{Coder, Model};
+use thiserror::Error;
+
+/// Planes of a grid: θ, ωx, ωz of a patch or u, v, w of the wind.
+pub const PLANES: usize = 3;
+
+/// Side of a tile (cells).
+const TILE: usize = 8;
+
+/// Why a payload is no grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum CodecError {
+    /// The payload ends before the grid is whole, or holds more than the grid.
+    #[error("the payload's length does not fit its grid")]
+    Length,
+    /// A value leaves −127..=127.
+    #[error("the payload holds a value outside -127..=127")]
+    Range,
+}
+
+/// Codes `codes` (three planes of rows of `width`) against `base` of the same shape, or against zero.
+///
+/// # Panics
+/// When the shapes do not fit: `codes.len()` must be a multiple of `3 · width` and equal to the base's length.
+pub fn encode(width: usize, codes: &[i8], base: Option<&[i8]>) -> Vec<u8> {
+    assert!(width > 0 && codes.len().is_multiple_of(PLANES * width), "three planes of whole rows");
+    assert!(base.is_none_or(|base| base.len() == codes.len()), "the base has the grid's shape");
+    let differences: Vec<i16> = match base {
+        Some(base) => codes.iter().zip(base).map(|(&code, &base)| i16::from(code) - i16::from(base)).collect(),
+        None => codes.iter().map(|&code| i16::from(code)).collect(),
+    };
+    let mut encoder = arithmetic::Encoder::default();
+    let mut model = Model::default();
+    for (plane, differences) in differences.chunks_exact(codes.len() / PLANES).enumerate() {
+        let mut residuals = vec![0; differences.len()];
+        for tile in tiles(width, differences.len() / width) {
+            let changed = tile.cells(width).any(|at| differences[at] != 0);
+            let context = model.tile_context(plane, &tile, width, &residuals);
+            encoder.code(model.changed(context), Some(changed));
+            if !changed {
+                continue;
+            }
+            let predicted = predicts_better(&tile, width, differences);
+            encoder.code(model.predicted(plane), Some(predicted));
+            for at in tile.cells(width) {
+                let prediction = if predicted { median_edge(differences, width, at) } else { 0 };
+                let residual = differences[at] - prediction;
+                model.code_residual(&mut encoder, plane, predicted, width, at, &mut residuals, Some(residual));
+            }
+        }
+    }
+    encoder.finish()
+}
+
+/// Decodes a payload in place: `codes` holds the base (all zero for a key) and becomes the grid.
+///
+/// # Errors
+/// [`CodecError`] when the payload is damaged; `codes` is then unspecified.
+///
+/// # Panics
+/// When `codes.len()` is not a multiple of `3 · width`.
+pub fn decode(width: usize, payload: &[u8], codes: &mut [i8]) -> Result<(), CodecError> {
+    assert!(width > 0 && codes.len().is_multiple_of(PLANES * width), "three planes of whole rows");
+    let plane_len = codes.len() / PLANES;
+    let mut decoder = arithmetic::Decoder::new(payload);
+    let mut model = Model::default();
+    let mut differences = vec![0_i16; plane_len];
+    let mut residuals = vec![0_i16; plane_len];
+    for (plane, codes) in codes.chunks_exact_mut(plane_len).enumerate() {
+        differences.fill(0);
+        residuals.fill(0);
+        for tile in tiles(width, plane_len / width) {
+            let context = model.tile_context(plane, &tile, width, &residuals);
+            if !decoder.code(model.changed(context), None) {
+                continue;
+            }
+            let predicted = decoder.code(model.predicted(plane), None);
+            for at in tile.cells(width) {
+                let prediction = if predicted { median_edge(&differences, width, at) } else { 0 };
+                let residual = model.code_residual(&mut decoder, plane, predicted, width, at, &mut residuals, None);
+                let difference = prediction + residual;
+                let code = i16::from(codes[at]) + difference;
+                if !(-127..=127).contains(&code) {
+                    return Err(CodecError::Range);
+                }
+                differences[at] = difference;
+                codes[at] = code as i8;
+            }
+        }
+    }
+    if decoder.is_exhausted_exactly() { Ok(()) } else { Err(CodecError::Length) }
+}
+
+/// A rectangle of cells, clipped to the grid.
+struct Tile {
+    x: std::ops::Range<usize>,
+    y: std::ops::Range<usize>,
+}
+
+impl Tile {
+    fn cells(&self, width: usize) -> impl Iterator<Item = usize> + use<> {
+        let columns = self.x.clone();
+        self.y.clone().flat_map(move |y| columns.clone().map(move |x| y * width + x))
+    }
+}
+
+fn tiles(width: usize, rows: usize) -> impl Iterator<Item = Tile> {
+    (0..rows)
+        .step_by(TILE)
+        .flat_map(move |y| (0..width).step_by(TILE).map(move |x| Tile { x: x..(x + TILE).min(width), y: y..(y + TILE).min(rows) }))
+}
+
+/// Values to the left, above, and above left of a cell; zero outside the plane.
+fn neighbours(values: &[i16], width: usize, at: usize) -> [i16; 3] {
+    let left_inside = !at.is_multiple_of(width);
+    let left = if left_inside { values[at - 1] } else { 0 };
+    let above = if at >= width { values[at - width] } else { 0 };
+    let above_left = if left_inside && at >= width { values[at - width - 1] } else { 0 };
+    [left, above, above_left]
+}
+
+fn median_edge(values: &[i16], width: usize, at: usize) -> i16 {
+    let [left, above, above_left] = neighbours(values, width, at);
+    let (low, high) = if left < above { (left, above) } else { (above, left) };
+    if above_left >= high {
+        low
+    } else if above_left <= low {
+        high
+    } else {
+        left + above - above_left
+    }
+}
+
+fn predicts_better(tile: &Tile, width: usize, differences: &[i16]) -> bool {
+    let (mut plain, mut predicted) = (0_i32, 0_i32);
+    for at in tile.cells(width) {
+        plain += i32::from(differences[at].abs());
+        predicted += i32::from((differences[at] - median_edge(differences, width, at)).abs());
+    }
+    predicted < plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn grid(width: usize, rows: usize) -> impl Strategy<Value = Vec<i8>> {
+        proptest::collection::vec(prop_oneof![4 => Just(0_i8), 2 => -3_i8..=3, 1 => -127_i8..=127], PLANES * width * rows)
+    }
+
+    proptest! {
+        #[test]
+        fn key_and_delta_come_back(
+            (width, base, codes) in (1_usize..20, 1_usize..20).prop_flat_map(|(w, rows)| (Just(w), grid(w, rows), grid(w, rows)))
+        ) {
+            let mut decoded = vec![0; codes.len()];
+            decode(width, &encode(width, &codes, None), &mut decoded).unwrap();
+            prop_assert_eq!(&decoded, &codes);
+            let mut decoded = base.clone();
+            decode(width, &encode(width, &codes, Some(&base)), &mut decoded).unwrap();
+            prop_assert_eq!(&decoded, &codes);
+        }
+
+        #[test]
+        fn any_bytes_are_a_grid_or_an_error(bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
+            let mut codes = vec![0; PLANES * 16 * 16];
+            if decode(16, &bytes, &mut codes).is_ok() {
+                prop_assert!(codes.iter().all(|&code| code != i8::MIN));
+            }
+        }
+    }
+
+    #[test]
+    fn longer_and_shorter_payloads_are_refused() {
+        let codes: Vec<i8> = (0..PLANES * 64 * 64).map(|i| ((i * 7919) % 255) as u8 as i8).map(|c| c.max(-127)).collect();
+        let whole = encode(64, &codes, None);
+        for length in [0, whole.len() / 2, whole.len() + 1, whole.len() + 3] {
+            let mut payload = whole.clone();
+            payload.resize(length, 0);
+            assert!(decode(64, &payload, &mut vec![0; codes.len()]).is_err(), "{length} of {} bytes", whole.len());
+        }
+    }
+
+    #[test]
+    fn an_unchanged_patch_costs_a_few_bytes() {
+        let codes = vec![17; PLANES * 64 * 64];
+        let payload = encode(64, &codes, Some(&codes));
+        assert!(payload.len() <= 16, "{} bytes", payload.len());
+    }
+
+    #[test]
+    fn smooth_motion_costs_under_a_bit_and_a_half_per_value() {
+        let wave = |phase: f32| -> Vec<i8> {
+            (0..PLANES * 64 * 64)
+                .map(|i| {
+                    let (x, y) = ((i % 64) as f32, (i / 64 % 64) as f32);
+                    (40.0 * ((x * 0.11 + phase).sin() * (y * 0.07).cos())) as i8
+                })
+                .collect()
+        };
+        let payload = encode(64, &wave(0.1), Some(&wave(0.0)));
+        let bits_per_value = payload.len() as f32 * 8.0 / (PLANES * 64 * 64) as f32;
+        assert!(bits_per_value < 1.5, "{bits_per_value} bits");
+    }
+}

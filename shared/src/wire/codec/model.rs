@@ -1,0 +1,101 @@
+//! The adaptive probabilities and the contexts that choose among them.
+
+use super::arithmetic::Probability;
+use super::{Tile, neighbours};
+
+/// One side of the arithmetic coder: an encoder writes the bit it is given, a decoder finds it.
+pub(super) trait Coder {
+    /// Codes one bit with its adaptive probability.
+    fn code(&mut self, probability: &mut Probability, bit: Option<bool>) -> bool;
+}
+
+/// θ has statistics of its own; ωx and ωz share theirs.
+const KINDS: usize = 2;
+/// Sizes of the neighbours' residuals told apart.
+const SIZES: usize = 6;
+/// Longest exp-Golomb prefix: magnitudes up to 2¹⁰ − 1.
+const PREFIX: usize = 10;
+
+#[derive(Default)]
+pub(super) struct Model {
+    changed: [[Probability; 3]; KINDS],
+    predicted: [Probability; KINDS],
+    zero: [[[Probability; SIZES]; 2]; KINDS],
+    sign: [[Probability; 3]; 2],
+    prefix: [[[Probability; PREFIX]; SIZES]; KINDS],
+    suffix: [[Probability; PREFIX]; PREFIX],
+}
+
+fn kind(plane: usize) -> usize {
+    usize::from(plane > 0)
+}
+
+impl Model {
+    /// Context of a tile's change: how many of the tiles to the left and above have residuals at their shared border.
+    pub(super) fn tile_context(&self, plane: usize, tile: &Tile, width: usize, residuals: &[i16]) -> (usize, usize) {
+        let left = tile.x.start > 0 && tile.y.clone().any(|y| residuals[y * width + tile.x.start - 1] != 0);
+        let above = tile.y.start > 0 && tile.x.clone().any(|x| residuals[(tile.y.start - 1) * width + x] != 0);
+        (kind(plane), usize::from(left) + usize::from(above))
+    }
+
+    pub(super) fn changed(&mut self, (kind, borders): (usize, usize)) -> &mut Probability {
+        &mut self.changed[kind][borders]
+    }
+
+    pub(super) fn predicted(&mut self, plane: usize) -> &mut Probability {
+        &mut self.predicted[kind(plane)]
+    }
+
+    /// Codes the residual of cell `at`, keeps it in `residuals` and returns it.
+    #[allow(clippy::too_many_arguments, reason = "a cell's context is the tile's mode and its place")]
+    pub(super) fn code_residual(
+        &mut self,
+        coder: &mut impl Coder,
+        plane: usize,
+        predicted: bool,
+        width: usize,
+        at: usize,
+        residuals: &mut [i16],
+        residual: Option<i16>,
+    ) -> i16 {
+        let [left, above, above_left] = neighbours(residuals, width, at);
+        let size = size_class(2 * (left.abs() + above.abs()) + above_left.abs());
+        let kind = kind(plane);
+        if coder.code(&mut self.zero[kind][usize::from(predicted)][size], residual.map(|r| r == 0)) {
+            residuals[at] = 0;
+            return 0;
+        }
+        let lean = ((left + above).signum() + 1) as usize;
+        let negative = coder.code(&mut self.sign[usize::from(predicted)][lean], residual.map(|r| r < 0));
+        let magnitude = self.code_magnitude(coder, kind, size, residual.map(|r| r.unsigned_abs()));
+        let residual = if negative { -magnitude } else { magnitude };
+        residuals[at] = residual;
+        residual
+    }
+
+    /// Exp-Golomb code of a magnitude of at least 1: the place of its top bit in unary, then the bits below it.
+    fn code_magnitude(&mut self, coder: &mut impl Coder, kind: usize, size: usize, magnitude: Option<u16>) -> i16 {
+        let top = magnitude.map(|m| m.ilog2() as usize);
+        let mut length = 0;
+        while length + 1 < PREFIX && coder.code(&mut self.prefix[kind][size][length], top.map(|top| length < top)) {
+            length += 1;
+        }
+        let mut value = 1_u16;
+        for place in (0..length).rev() {
+            let bit = coder.code(&mut self.suffix[length][place], magnitude.map(|m| m >> place & 1 == 1));
+            value = value << 1 | u16::from(bit);
+        }
+        value as i16
+    }
+}
+
+fn size_class(sum: i16) -> usize {
+    match sum {
+        0 => 0,
+        1..=2 => 1,
+        3..=4 => 2,
+        5..=9 => 3,
+        10..=24 => 4,
+        _ => 5,
+    }
+}
