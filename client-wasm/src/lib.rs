@@ -1,1 +1,9 @@
-//! placeholder
+//! The Prairie client: a wgpu renderer for the browser, and natively without a window.
+//!
+//! - [`state`]: the mirror of the server that messages are applied to.
+//! - [`camera`]: where the picture is taken from.
+//! - [`render`]: the passes that make the picture.
+
+pub mod camera;
+
+pub mod state;
