@@ -1,6 +1,5 @@
 //! The camera: where it is, what it sees, and how an address names it.
 
-use glam::camera::rh::view::look_to_mat4;
 use glam::{Mat4, Vec3, Vec4};
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -45,7 +44,7 @@ impl Camera {
 
     /// World to view: the view looks along −Z, Y up.
     pub fn view_from_world(&self) -> Mat4 {
-        look_to_mat4(self.eye_m, self.forward(), Vec3::Y)
+        glam::camera::rh::view::look_to_mat4(self.eye_m, self.forward(), Vec3::Y)
     }
 
     /// View to clip space with reversed depth: 1 at [`NEAR_M`], 0 infinitely far.
@@ -83,7 +82,12 @@ impl Camera {
         let eye_m = Vec3::new(next(1e6)?, next(1e6)?, next(1e6)?);
         let (heading, pitch) = (next(1e4)?, next(90.0)?);
         let pitch_rad = pitch.to_radians().clamp(-PITCH_LIMIT_RAD, PITCH_LIMIT_RAD);
-        numbers.next().is_none().then_some(Self { eye_m, heading_rad: heading.to_radians().rem_euclid(TAU), pitch_rad, ..Self::default() })
+        numbers.next().is_none().then_some(Self {
+            eye_m,
+            heading_rad: heading.to_radians().rem_euclid(TAU),
+            pitch_rad,
+            ..Self::default()
+        })
     }
 
     /// The view at which a scene starts, over land of height `ground_m`.
@@ -126,7 +130,8 @@ mod tests {
 
     #[test]
     fn a_hash_names_its_view_again() {
-        let camera = Camera { eye_m: Vec3::new(12.25, 3.5, 99.75), heading_rad: 1.0, pitch_rad: -0.2, ..Camera::default() };
+        let camera =
+            Camera { eye_m: Vec3::new(12.25, 3.5, 99.75), heading_rad: 1.0, pitch_rad: -0.2, ..Camera::default() };
         let again = Camera::from_hash(&format!("#{}", camera.to_hash())).expect("a hash");
         assert!((again.eye_m - camera.eye_m).length() < 0.01);
         assert!((again.heading_rad - camera.heading_rad).abs() < 1e-3 && (again.pitch_rad - camera.pitch_rad).abs() < 1e-3);

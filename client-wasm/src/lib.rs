@@ -3,7 +3,8 @@
 //! - [`state`]: the mirror of the server that messages are applied to.
 //! - [`camera`]: where the picture is taken from; [`rig`]: what moves it.
 //! - [`controls`]: what hands ask for; [`damped`]: motion that never swings past its goal.
-//! - `browser`, in a page only: socket, input, frame loop, and what the page's script calls.
+//! - [`render`]: the passes that make the picture.
+//! - `browser`, in a page only: socket, hands, frame loop, and what the page's script calls.
 
 #[cfg(target_arch = "wasm32")]
 pub mod browser;

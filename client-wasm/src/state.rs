@@ -169,13 +169,13 @@ impl Mirror {
     }
 
     /// Every object as it is drawn now: about 0.1 s late, on a smooth path between the server's poses.
-    pub fn objects(&self) -> Vec<ObjectPose> {
-        self.poses.shown()
+    pub fn objects(&self) -> impl Iterator<Item = ObjectPose> + use<> {
+        self.poses.shown().into_iter()
     }
 
     /// One object as it is drawn now.
     pub fn object(&self, id: ObjectId) -> Option<ObjectPose> {
-        self.objects().into_iter().find(|pose| pose.id == id)
+        self.objects().find(|pose| pose.id == id)
     }
 
     /// Every object at its newest pose.

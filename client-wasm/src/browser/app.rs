@@ -130,7 +130,7 @@ impl App {
         rig.zoom(self.input.take_zoom());
         let mirror = &self.mirror;
         rig.advance(self.input.controls(), vehicle.as_ref(), |x_m, z_m| mirror.ground_m(x_m, z_m), dt_secs);
-        let drawn = stage.draw(&mut self.mirror, &rig.camera(), self.quality, time_secs);
+        let drawn = stage.draw(&mut self.mirror, &rig.camera(), time_secs, dt_secs);
         if drawn {
             self.meter.drew(now_secs);
         }

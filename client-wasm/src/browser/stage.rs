@@ -45,7 +45,7 @@ impl Stage {
         gpu.device.set_device_lost_callback(move |_, reason| {
             told.get_or_init(|| reason);
         });
-        let renderer = Renderer::new(&gpu, config.format, quality);
+        let renderer = Renderer::new(&gpu, config.format, [width, height], quality);
         Ok(Self { canvas, surface, config, gpu, renderer, in_flight: Arc::default(), lost })
     }
 
@@ -59,8 +59,11 @@ impl Stage {
         self.in_flight.load(Relaxed) >= IN_FLIGHT
     }
 
+    /// Draws with another quality from now on.
     pub(super) fn set_quality(&mut self, quality: Quality) {
-        self.renderer.set_quality(&self.gpu, quality);
+        if quality != self.renderer.quality() {
+            self.renderer = Renderer::new(&self.gpu, self.config.format, self.size_px(), quality);
+        }
     }
 
     /// Size of the picture (px).
@@ -68,12 +71,13 @@ impl Stage {
         [self.config.width, self.config.height]
     }
 
-    /// Draws the mirror's world as `camera` sees it; returns whether there is a picture.
-    pub(super) fn draw(&mut self, mirror: &mut Mirror, camera: &Camera, quality: Quality, time_secs: f64) -> bool {
-        let [width, height] = size_px(&self.canvas, quality);
-        if (self.config.width, self.config.height) != (width, height) {
-            (self.config.width, self.config.height) = (width, height);
+    /// Draws the mirror's world as `camera` sees it, `dt_secs` after the picture before; returns whether there is a picture.
+    pub(super) fn draw(&mut self, mirror: &mut Mirror, camera: &Camera, time_secs: f64, dt_secs: f32) -> bool {
+        let size_px = size_px(&self.canvas, self.renderer.quality());
+        if self.size_px() != size_px {
+            [self.config.width, self.config.height] = size_px;
             self.surface.configure(&self.gpu.device, &self.config);
+            self.renderer.resize(size_px);
         }
         let frame = match self.surface.get_current_texture() {
             wgpu::CurrentSurfaceTexture::Success(frame) | wgpu::CurrentSurfaceTexture::Suboptimal(frame) => frame,
@@ -83,7 +87,7 @@ impl Stage {
             }
         };
         let view = frame.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        self.renderer.draw(&self.gpu, mirror, camera, &view, [width, height], time_secs);
+        self.renderer.draw(mirror, camera, time_secs, dt_secs, &view);
         self.gpu.queue.present(frame);
         self.in_flight.fetch_add(1, Relaxed);
         let in_flight = self.in_flight.clone();
