@@ -35,7 +35,10 @@ const MESSAGES = {
     ],
     button: RELOAD,
   },
+  loading: { tone: "wait", title: "The prairie is waking up", text: "Loading the client…" },
   connecting: { tone: "wait", title: "The prairie is waking up", text: "Connecting to the server…" },
+  preparing: { tone: "wait", title: "The prairie is waking up", text: "Nearly there." },
+  full: { tone: "wait", title: "The prairie is full", text: "Every place on this server is taken. This page tries again by itself." },
   "server-gone": { tone: "strip", title: "The server is gone", text: "Trying again until it is back…" },
   version: {
     tone: "stop",
@@ -44,13 +47,14 @@ const MESSAGES = {
     button: RELOAD,
   },
   refused: { tone: "stop", title: "The server closed this connection", text: "It gave the reason below.", button: RELOAD },
+  "device-back": { tone: "strip", title: "The graphics device was lost", text: "Starting it again…" },
   "device-lost": {
     tone: "stop",
-    title: "The graphics device was lost",
-    text: "The driver was reset, or the browser took the device away. The server still keeps your place.",
+    title: "The graphics device is gone",
+    text: "It was lost several times within a minute: the driver was reset, or the browser took it away.",
     button: RELOAD,
   },
-  failed: { tone: "stop", title: "The client stopped", text: "This should not happen. The line below says where.", button: RELOAD },
+  failed: { tone: "stop", title: "The client stopped", text: "It cannot go on; the line below says why.", button: RELOAD },
 };
 
 const place = document.getElementById("message");
