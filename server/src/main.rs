@@ -1,9 +1,11 @@
 //! The command line.
 
+use anyhow::Context as _;
 use clap::{Args, Parser, Subcommand};
 use server::net::{Tls, TlsChoice, bind};
 use server::{Config, Limits, RerunSink, scenes};
 use std::net::{IpAddr, SocketAddr};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// A living grassland: wind, grass and vehicles, simulated here and shown in any browser with WebGPU.
@@ -40,6 +42,12 @@ enum Action {
         /// Scene file (TOML); its maps and models are checked too
         #[arg(value_name = "FILE")]
         scene: String,
+    },
+    /// Make the built-in scenes' maps anew, the same to the last pixel
+    Maps {
+        /// Folder to write the PNG files to; it is made if it is missing
+        #[arg(long, value_name = "FOLDER")]
+        out: PathBuf,
     },
 }
 
@@ -99,7 +107,8 @@ fn main() -> ExitCode {
             }
             Ok(())
         }
-        Action::Check { scene } => scenes::load(&scene).map(|_| println!("{scene}: sound")).map_err(Into::into),
+        Action::Check { scene } => scenes::check(&scene).map(|report| println!("{report}")).map_err(Into::into),
+        Action::Maps { out } => make_maps(&out),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -108,6 +117,14 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+fn make_maps(folder: &Path) -> anyhow::Result<()> {
+    let written = scenes::maps::write(folder).with_context(|| format!("cannot write maps to {}", folder.display()))?;
+    for path in written {
+        println!("{}", path.display());
+    }
+    Ok(())
 }
 
 fn serve(arguments: Serve) -> anyhow::Result<()> {
