@@ -5,5 +5,6 @@
 //! - [`render`]: the passes that make the picture.
 
 pub mod camera;
+pub mod render;
 
 pub mod state;
