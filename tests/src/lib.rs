@@ -1,1 +1,3 @@
-//! placeholder
+//! Tests, charts, pictures and benchmarks of Prairie.
+
+pub mod synthetic;
