@@ -150,7 +150,7 @@ impl World {
 
     /// What the world shows of itself.
     pub fn snapshot(&mut self) -> Snapshot {
-        let bend_energy = self.show_patches();
+        self.show_patches();
         let (wind, bend) = (self.weather.report(), self.meadow.report());
         Snapshot {
             tick: self.tick,
@@ -161,7 +161,7 @@ impl World {
             health: Health {
                 divergence_rms: wind.divergence_rms_rel as f32,
                 wind_energy: wind.kinetic_energy_m2_per_s2,
-                bend_energy,
+                bend_energy: self.meadow.activity(),
                 awake_patches: self.meadow.field().awake_count() as u32,
                 evicted_patches: self.meadow.evicted(),
                 substeps: bend.substeps,
@@ -227,16 +227,14 @@ impl World {
             .unwrap_or(self.extent_m.map(|extent| 0.5 * extent))
     }
 
-    /// Quantises the patches that changed. Returns the bend field's sum of θ² + ω².
-    fn show_patches(&mut self) -> f64 {
+    /// Quantises the patches that changed.
+    fn show_patches(&mut self) {
         let field = self.meadow.field();
         let awake: Vec<_> = field.awake().collect();
-        let codes: Vec<_> = awake.into_par_iter().map(|(index, patch)| (index, codes_of(patch), patch.activity())).collect();
+        let codes: Vec<_> = awake.into_par_iter().map(|(index, patch)| (index, codes_of(patch))).collect();
         let mut slept = std::mem::take(&mut self.shown);
         self.shown = vec![None; slept.len()];
-        let mut energy = 0.0;
-        for (index, codes, activity) in codes {
-            energy += activity;
+        for (index, codes) in codes {
             let before = slept[index as usize].take();
             self.shown[index as usize] = match before {
                 Some(before) if before.codes == codes => Some(before),
@@ -244,22 +242,21 @@ impl World {
                 _ => Some(Arc::new(PatchCodes { tick: self.tick, codes })),
             };
         }
-        energy
     }
 }
 
 /// Three planes of codes: θ, ωx, ωz.
 fn codes_of(patch: &Patch) -> Vec<i8> {
     let side = patch.side();
-    let mut codes = Vec::with_capacity(3 * side * side);
-    for (channel, values) in patch.channels().into_iter().enumerate() {
-        for row in values.chunks_exact(patch.stride()).skip(1).take(side) {
-            let row = &row[1..=side];
-            match channel {
-                0 => codes.extend(row.iter().map(|&theta| quantise::theta_code(theta))),
-                _ => codes.extend(row.iter().map(|&omega| quantise::omega_code(omega))),
-            }
-        }
+    let mut codes = vec![0; 3 * side * side];
+    let [theta, x, z] = patch.channels();
+    let rows = |channel| <[f32]>::chunks_exact(channel, side + 2).skip(1).map(|row| &row[1..=side]);
+    let mut codes_rows = codes.chunks_exact_mut(side);
+    for (codes, row) in codes_rows.by_ref().zip(rows(theta).take(side)) {
+        codes.iter_mut().zip(row).for_each(|(code, &theta)| *code = quantise::theta_code(theta));
+    }
+    for (codes, row) in codes_rows.zip(rows(x).take(side).chain(rows(z).take(side))) {
+        codes.iter_mut().zip(row).for_each(|(code, &omega)| *code = quantise::omega_code(omega));
     }
     codes
 }

@@ -5,3 +5,4 @@ pub mod chromedriver;
 pub mod pages;
 pub mod picture;
 pub mod synthetic;
+pub mod worlds;

@@ -72,6 +72,11 @@ impl Meadow {
         self.report
     }
 
+    /// Sum of θ² + ω² over all cells (mixed units).
+    pub fn activity(&self) -> f64 {
+        self.traces.iter().map(|trace| f64::from(trace.extremes.activity)).sum()
+    }
+
     /// Patches let go so far because too many were awake.
     pub fn evicted(&self) -> u64 {
         self.regions.evicted()

@@ -80,7 +80,7 @@ impl Regions {
         // What is no longer a number cannot be mended.
         let broken = |patch: &PatchIndex| {
             let at = traces.binary_search_by_key(patch, |trace| trace.patch);
-            at.is_ok_and(|at| !(traces[at].extremes.theta_rad.is_finite() && traces[at].extremes.omega_rad_per_s.is_finite()))
+            at.is_ok_and(|at| !traces[at].extremes.activity.is_finite())
         };
         keep.retain(|patch| !broken(patch));
         if keep.len() > self.limit {

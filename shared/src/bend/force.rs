@@ -25,17 +25,18 @@ impl Force {
         Self { per_side, nodes: std::array::from_fn(|_| vec![0.0; per_side * per_side]) }
     }
 
-    /// Values of one channel at the cells of row `j`.
-    #[inline(always)]
-    pub fn row(&self, channel: usize, j: usize, out: &mut [f32]) {
-        let (north, share) = (j / NODE_CELLS, SHARES[j % NODE_CELLS]);
-        let (north, south) = self.nodes[channel][north * self.per_side..][..2 * self.per_side].split_at(self.per_side);
+    /// Adds one channel's values at the cells of row `j` to them.
+    #[inline(never)]
+    pub(super) fn add_row(&self, channel: usize, j: usize, row: &mut [f32]) {
+        let share = SHARES[j % NODE_CELLS];
+        let (north, south) = self.nodes[channel][j / NODE_CELLS * self.per_side..][..2 * self.per_side].split_at(self.per_side);
         let at = |i: usize| north[i] + (south[i] - north[i]) * share;
         let mut west = at(0);
-        for (i, cells) in out.as_chunks_mut::<NODE_CELLS>().0.iter_mut().enumerate() {
+        for (i, cells) in row.as_chunks_mut::<NODE_CELLS>().0.iter_mut().enumerate() {
             let east = at(i + 1);
-            for (cell, share) in cells.iter_mut().zip(SHARES) {
-                *cell = west + (east - west) * share;
+            let slope = east - west;
+            for i in 0..NODE_CELLS {
+                cells[i] += west + slope * SHARES[i];
             }
             west = east;
         }

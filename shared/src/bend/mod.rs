@@ -8,13 +8,15 @@
 //! of many patches equals one big grid bit for bit. A patch that sleeps holds no memory and counts as at rest. A smooth
 //! [`Force`] holds the grass away from upright; the wind does.
 
+mod extremes;
 mod field;
 mod force;
 mod params;
 mod patch;
 pub mod verlet;
 
+pub use extremes::Extremes;
 pub use field::{Field, Lane};
 pub use force::{Force, NODE_CELLS};
 pub use params::{Coefficients, WaveParams};
-pub use patch::{Bend, CHANNELS, Extremes, Patch};
+pub use patch::{Bend, CHANNELS, Patch};

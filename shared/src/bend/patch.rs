@@ -1,5 +1,8 @@
 //! One patch of the field: three channels at two times, with a ring of ghost cells.
 
+use super::Extremes;
+use super::extremes::LargestOf;
+
 /// State of one cluster of grass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bend {
@@ -81,70 +84,14 @@ impl Patch {
         std::array::from_fn(|channel| self.before[channel].as_slice())
     }
 
-    /// Largest |θ| and |ω| of the patch's own cells.
+    /// Extremes of the patch's own cells.
     pub fn extremes(&self) -> Extremes {
-        let stride = self.stride();
         let mut largest = LargestOf::default();
-        for j in 1..=self.side {
-            let row = j * stride + 1..j * stride + 1 + self.side;
-            largest.add(&self.now[0][row.clone()], &self.now[1][row.clone()], &self.now[2][row]);
+        for j in 0..self.side {
+            let row = self.at(0, j)..self.at(0, j) + self.side;
+            let [theta, x, z] = &self.now;
+            largest.add(&theta[row.clone()], &x[row.clone()], &z[row]);
         }
         largest.extremes()
-    }
-
-    /// Sum of θ² + ω² over the patch's cells (mixed units; a measure of how far from rest it is).
-    pub fn activity(&self) -> f64 {
-        let stride = self.stride();
-        let mut sum = 0.0;
-        for channel in &self.now {
-            for j in 1..=self.side {
-                let row = &channel[j * stride + 1..j * stride + 1 + self.side];
-                sum += f64::from(row.iter().map(|v| v * v).sum::<f32>());
-            }
-        }
-        sum
-    }
-}
-
-/// The largest values of a patch; infinite where a value is infinite or not a number.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Extremes {
-    /// Largest |θ| (rad).
-    pub theta_rad: f32,
-    /// Largest |ω| (rad/s).
-    pub omega_rad_per_s: f32,
-}
-
-/// Lanes that keep their own maxima, so that the loop over a row has no chain of comparisons.
-const LANES: usize = 8;
-
-/// Gathers [`Extremes`] row by row. The maxima are kept as bits: those of values that are not negative sort as the values do,
-/// with infinity and then not-a-number above them.
-#[derive(Default)]
-pub(super) struct LargestOf {
-    theta: [i32; LANES],
-    omega2: [i32; LANES],
-}
-
-impl LargestOf {
-    /// Takes a row of each channel in; its length is a multiple of [`LANES`].
-    #[inline(always)]
-    pub(super) fn add(&mut self, theta: &[f32], omega_x: &[f32], omega_z: &[f32]) {
-        let rows = theta.as_chunks::<LANES>().0.iter().zip(omega_x.as_chunks::<LANES>().0).zip(omega_z.as_chunks::<LANES>().0);
-        for ((theta, x), z) in rows {
-            for lane in 0..LANES {
-                let omega2 = x[lane] * x[lane] + z[lane] * z[lane];
-                self.theta[lane] = self.theta[lane].max(theta[lane].abs().to_bits() as i32);
-                self.omega2[lane] = self.omega2[lane].max(omega2.abs().to_bits() as i32);
-            }
-        }
-    }
-
-    pub(super) fn extremes(&self) -> Extremes {
-        let largest = |lanes: [i32; LANES]| {
-            let largest = f32::from_bits(lanes.into_iter().fold(0, i32::max) as u32);
-            if largest.is_nan() { f32::INFINITY } else { largest }
-        };
-        Extremes { theta_rad: largest(self.theta), omega_rad_per_s: largest(self.omega2).sqrt() }
     }
 }

@@ -3,8 +3,8 @@
 //! With λ = 1 − exp(−k·dt) and r = c·dt/h a cell becomes
 //! `θ⁺ = (2 − λ)·θ − (1 − λ)·θ⁻ + r²·(Σ neighbours − 4θ) − κ·dt²·θ`, likewise for both components of ω.
 
-use super::patch::LargestOf;
-use super::{CHANNELS, Coefficients, Extremes, Force, Patch, WaveParams};
+use super::extremes::LargestOf;
+use super::{Coefficients, Extremes, Force, Patch, WaveParams};
 
 /// Largest Courant number `c·dt/h` for damping λ and restoring term `κ·dt²`: `r ≤ √((4 − 2λ − κ·dt²)/8)`.
 ///
@@ -48,73 +48,59 @@ pub fn stable_dt(params: &WaveParams, cell_m: f32, dt_secs: f32, omega_max_rad_p
 /// Advances one patch by a sub-step; its ghosts must hold the neighbours' newest values. Returns the extremes of the new
 /// state.
 pub fn step(patch: &mut Patch, k: &Coefficients) -> Extremes {
-    let mut largest = LargestOf::default();
-    for j in 0..patch.side() {
-        advance_row(patch, k, j, &mut largest, |_| ());
-    }
-    std::mem::swap(&mut patch.now, &mut patch.before);
-    largest.extremes()
+    advance(patch, k, |_, _, _| ())
 }
 
 /// [`step`] with a force, whose values are added to the new state.
 pub fn step_forced(patch: &mut Patch, k: &Coefficients, force: &Force) -> Extremes {
-    let mut forces = vec![0.0; patch.side()];
+    advance(patch, k, |channel, j, next| force.add_row(channel, j, next))
+}
+
+/// Advances row by row, in place over the state before; `then` may change the next values of a channel's row.
+#[inline(always)]
+fn advance(patch: &mut Patch, k: &Coefficients, then: impl Fn(usize, usize, &mut [f32])) -> Extremes {
+    let (side, stride) = (patch.side(), patch.stride());
     let mut largest = LargestOf::default();
-    for j in 0..patch.side() {
-        advance_row(patch, k, j, &mut largest, |next| {
-            for (channel, next) in next.iter_mut().enumerate() {
-                force.row(channel, j, &mut forces);
-                next.iter_mut().zip(&forces).for_each(|(next, force)| *next += force);
-            }
-        });
+    for j in 0..side {
+        let row = patch.at(0, j);
+        let [theta, x, z] = &patch.now;
+        let [theta_next, x_next, z_next] = &mut patch.before;
+        let theta_next = &mut theta_next[row..row + side];
+        let (x_next, z_next) = (&mut x_next[row..row + side], &mut z_next[row..row + side]);
+        advance_theta(theta, &x[row..row + side], &z[row..row + side], theta_next, row, stride, k);
+        advance_omega(x, x_next, row, stride, k);
+        advance_omega(z, z_next, row, stride, k);
+        then(0, j, theta_next);
+        then(1, j, x_next);
+        then(2, j, z_next);
+        largest.add(theta_next, x_next, z_next);
     }
     std::mem::swap(&mut patch.now, &mut patch.before);
     largest.extremes()
 }
 
-/// Writes the next values of row `j` over the values before it, and lets `then` change them.
-#[inline(always)]
-fn advance_row(patch: &mut Patch, k: &Coefficients, j: usize, largest: &mut LargestOf, mut then: impl FnMut(&mut [&mut [f32]; CHANNELS])) {
-    let (side, row) = (patch.side(), patch.at(0, j));
-    let [theta, omega_x, omega_z] = patch.now.each_ref().map(|now| Stencil::new(now, row, side));
-    let mut next = patch.before.each_mut().map(|before| &mut before[row..row + side]);
-    let (x, z) = (omega_x.center, omega_z.center);
-    let r2 = |i: usize| {
+#[inline(never)]
+fn advance_theta(now: &[f32], x: &[f32], z: &[f32], next: &mut [f32], row: usize, stride: usize, k: &Coefficients) {
+    let side = next.len();
+    let (keep, memory) = (2.0 - k.lambda_theta - k.restoring, 1.0 - k.lambda_theta);
+    let (center, west, east) = (&now[row..row + side], &now[row - 1..row - 1 + side], &now[row + 1..row + 1 + side]);
+    let (north, south) = (&now[row - stride..row - stride + side], &now[row + stride..row + stride + side]);
+    let (x, z) = (&x[..side], &z[..side]);
+    for i in 0..side {
         let r = k.r0 + k.r_mu * (x[i] * x[i] + z[i] * z[i]).sqrt();
-        r * r
-    };
-    theta.advance(next[0], k.lambda_theta, k.restoring, r2);
-    omega_x.advance(next[1], k.lambda_omega, k.restoring, |_| k.r2_omega);
-    omega_z.advance(next[2], k.lambda_omega, k.restoring, |_| k.r2_omega);
-    then(&mut next);
-    largest.add(next[0], next[1], next[2]);
-}
-
-/// A row of cells with the rows around it.
-struct Stencil<'a> {
-    center: &'a [f32],
-    west: &'a [f32],
-    east: &'a [f32],
-    north: &'a [f32],
-    south: &'a [f32],
-}
-
-impl<'a> Stencil<'a> {
-    fn new(now: &'a [f32], row: usize, side: usize) -> Self {
-        let stride = side + 2;
-        let at = |start: usize| &now[start..start + side];
-        Self { center: at(row), west: at(row - 1), east: at(row + 1), north: at(row - stride), south: at(row + stride) }
+        let laplacian = (west[i] + east[i]) + (north[i] + south[i]) - 4.0 * center[i];
+        next[i] = keep * center[i] - memory * next[i] + r * r * laplacian;
     }
+}
 
-    /// Turns the values before into the next ones.
-    #[inline(always)]
-    fn advance(&self, before: &mut [f32], lambda: f32, restoring: f32, r2: impl Fn(usize) -> f32) {
-        let side = before.len();
-        let (keep, memory) = (2.0 - lambda - restoring, 1.0 - lambda);
-        let [center, west, east, north, south] = [self.center, self.west, self.east, self.north, self.south].map(|row| &row[..side]);
-        for i in 0..side {
-            let laplacian = (west[i] + east[i]) + (north[i] + south[i]) - 4.0 * center[i];
-            before[i] = keep * center[i] - memory * before[i] + r2(i) * laplacian;
-        }
+#[inline(never)]
+fn advance_omega(now: &[f32], next: &mut [f32], row: usize, stride: usize, k: &Coefficients) {
+    let side = next.len();
+    let (keep, memory, r2) = (2.0 - k.lambda_omega - k.restoring, 1.0 - k.lambda_omega, k.r2_omega);
+    let (center, west, east) = (&now[row..row + side], &now[row - 1..row - 1 + side], &now[row + 1..row + 1 + side]);
+    let (north, south) = (&now[row - stride..row - stride + side], &now[row + stride..row + stride + side]);
+    for i in 0..side {
+        let laplacian = (west[i] + east[i]) + (north[i] + south[i]) - 4.0 * center[i];
+        next[i] = keep * center[i] - memory * next[i] + r2 * laplacian;
     }
 }
