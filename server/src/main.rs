@@ -3,7 +3,8 @@
 use anyhow::Context as _;
 use clap::{Args, Parser, Subcommand};
 use server::net::{Tls, TlsChoice, bind};
-use server::{Config, Limits, RerunSink, scenes};
+use server::inspect::Target;
+use server::{Config, Limits, scenes};
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -80,7 +81,7 @@ struct Serve {
     tls: Option<TlsChoice>,
     /// Log the fields for the rerun viewer: serve them to viewers, save a recording, or connect to a viewer
     #[arg(long, value_name = "serve|save=FILE.rrd|connect=URL")]
-    rerun: Option<RerunSink>,
+    rerun: Option<Target>,
     /// Threads of the simulation [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
