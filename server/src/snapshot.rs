@@ -49,7 +49,7 @@ pub struct Health {
     pub step_secs: f32,
     /// Longest of those steps (s).
     pub step_max_secs: f32,
-    /// Root mean square of the wind's divergence after the projection (1/s).
+    /// Root mean square of the wind's divergence after the projection, over that of `|u|/h`.
     pub divergence_rms: f32,
     /// Mean kinetic energy of the wind (J/kg).
     pub wind_energy: f64,
@@ -57,34 +57,10 @@ pub struct Health {
     pub bend_energy: f64,
     /// Patches that are awake.
     pub awake_patches: u32,
+    /// Patches let go since the start because the limit of awake ones was reached.
+    pub evicted_patches: u64,
     /// Sub-steps of the bend field in the newest step.
     pub substeps: u32,
     /// Largest Courant number of a sub-step of the bend field.
     pub courant: f32,
-}
-
-/// A grid of codes in three planes of rows of [`width`](Grid::width).
-pub trait Grid {
-    /// Codes in one row.
-    fn width(&self) -> usize;
-    /// The planes, one after the other.
-    fn codes(&self) -> &[i8];
-}
-
-impl Grid for WindFrame {
-    fn width(&self) -> usize {
-        self.cells[0] as usize
-    }
-    fn codes(&self) -> &[i8] {
-        &self.codes
-    }
-}
-
-impl Grid for PatchCodes {
-    fn width(&self) -> usize {
-        (self.codes.len() / shared::wire::codec::PLANES).isqrt()
-    }
-    fn codes(&self) -> &[i8] {
-        &self.codes
-    }
 }

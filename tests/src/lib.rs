@@ -1,1 +1,8 @@
-//! placeholder
+//! What the tests, charts and pictures of Prairie share.
+
+pub mod browser;
+pub mod chromedriver;
+pub mod pages;
+pub mod picture;
+pub mod synthetic;
+pub mod worlds;

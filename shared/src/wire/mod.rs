@@ -4,10 +4,12 @@
 //! [`ClientMessage`] or [`ServerMessage`]. Fields travel as 8-bit grids, coded against the frame before (delta) or against zero
 //! (key).
 
+mod close;
 pub mod codec;
 mod message;
 pub mod quantise;
 
+pub use close::Close;
 pub use codec::CodecError;
 pub use message::{ClientMessage, Drive, Mesh, ObjectId, ObjectPose, Peer, Refusal, ServerMessage, WireError, decode, encode};
 

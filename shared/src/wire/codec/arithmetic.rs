@@ -2,34 +2,49 @@
 
 use super::model::Coder;
 
-/// Probability that a bit is set: the mean of a quick and a slow estimate, 16 bits each.
+/// Probability that a bit is set, in 1/65536, learnt as the running mean of the bits seen, from [`SETTLED`] bits on as their
+/// moving mean. Payloads are short, so the first bits must count.
 #[derive(Clone, Copy)]
 pub(super) struct Probability {
-    quick: u16,
-    slow: u16,
+    set: u16,
+    seen: u8,
 }
+
+/// Number of bits after which a probability forgets as fast as it learns.
+const SETTLED: usize = 48;
+
+/// Share by which the n-th bit moves the estimate, in 1/65536: 1/(n + 1.6).
+const RATE: [u32; SETTLED] = {
+    let mut rate = [0; SETTLED];
+    let mut seen = 0;
+    while seen < SETTLED {
+        rate[seen] = 655_360 / (10 * seen as u32 + 16);
+        seen += 1;
+    }
+    rate
+};
 
 impl Default for Probability {
     fn default() -> Self {
-        Self { quick: 1 << 15, slow: 1 << 15 }
+        Self { set: 1 << 15, seen: 0 }
     }
 }
 
 impl Probability {
     /// Where to split an interval of `range`: the lower part stands for a set bit. At least 1, less than `range`.
     fn split(self, range: u32) -> u32 {
-        let set = ((u32::from(self.quick) + u32::from(self.slow)) >> 1).clamp(32, (1 << 16) - 32);
+        let set = u32::from(self.set).clamp(48, (1 << 16) - 48);
         ((u64::from(range) * u64::from(set)) >> 16) as u32
     }
 
     fn update(&mut self, bit: bool) {
+        let rate = RATE[usize::from(self.seen)];
         if bit {
-            self.quick += (u16::MAX - self.quick) >> 4;
-            self.slow += (u16::MAX - self.slow) >> 7;
+            self.set += (u32::from(u16::MAX - self.set) * rate >> 16) as u16;
         } else {
-            self.quick -= self.quick >> 4;
-            self.slow -= self.slow >> 7;
+            self.set -= (u32::from(self.set) * rate >> 16) as u16;
         }
+        self.seen = (self.seen + 1).min(SETTLED as u8 - 1);
     }
 }
 

@@ -1,0 +1,353 @@
+//! One page's client: what arrives is mirrored, what hands do is sent, and each frame shows where things stand.
+
+use super::connection::{Connection, Standing};
+use super::input::{Input, Wish};
+use super::meter::Meter;
+use super::socket::SocketEvent;
+use super::stage::Stage;
+use super::{page, with_app};
+use crate::camera::Camera;
+use crate::render::Quality;
+use crate::rig::Rig;
+use crate::state::{Event, Mirror};
+use glam::Vec3;
+use serde::Deserialize;
+use shared::scene::VehicleKind;
+use shared::wire::{self, Close, ObjectPose, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, WireError};
+use wasm_bindgen::prelude::*;
+use web_sys::{HtmlCanvasElement, Window};
+
+/// Longest time that one frame moves the camera by (s); what lies beyond was a pause, not a frame.
+const LONGEST_FRAME_SECS: f64 = 0.25;
+
+/// Time between two changes of the address (s).
+const LINK_SECS: f64 = 0.5;
+
+/// How long a refusal stays in sight (s).
+const NOTICE_SECS: f64 = 6.0;
+
+/// Losses of the device within a minute that are mended without a word.
+const LOSSES: usize = 3;
+
+/// What the page starts its client with.
+#[derive(Debug, Deserialize)]
+pub(super) struct Options {
+    /// The visitor's name.
+    name: String,
+    /// How fine the picture is.
+    quality: String,
+    /// Draw only when asked to.
+    paused: bool,
+    /// What the browser says of its graphics adapter.
+    pub(super) adapter: String,
+}
+
+/// Everything behind a page.
+pub(super) struct App {
+    pub(super) options: Options,
+    pub(super) quality: Quality,
+    pub(super) mirror: Mirror,
+    pub(super) connection: Connection,
+    pub(super) rig: Option<Rig>,
+    pub(super) meter: Meter,
+    pub(super) failure: Option<String>,
+    window: Window,
+    canvas: HtmlCanvasElement,
+    input: Input,
+    stage: Option<Stage>,
+    losses_secs: Vec<f64>,
+    wanted: Option<VehicleKind>,
+    clock_secs: f64,
+    drawn_secs: f64,
+    link: (String, f64),
+    notice: Option<(String, f64)>,
+    welcomed_once: bool,
+    told: Option<(&'static str, String)>,
+}
+
+impl App {
+    pub(super) fn new(window: Window, canvas: HtmlCanvasElement, options: Options) -> Result<Self, String> {
+        let quality = Quality::from_name(&options.quality)
+            .ok_or_else(|| format!("quality `{}`: allowed are {}", options.quality, Quality::ALL.map(Quality::name).join(", ")))?;
+        let input = Input::new(&window, &canvas);
+        let connection = Connection::new(page::socket_url(&window)?, options.name.clone(), hear);
+        Ok(Self {
+            options,
+            quality,
+            mirror: Mirror::default(),
+            connection,
+            rig: None,
+            meter: Meter::default(),
+            failure: None,
+            window,
+            canvas,
+            input,
+            stage: None,
+            losses_secs: Vec::new(),
+            wanted: None,
+            clock_secs: 0.0,
+            drawn_secs: 0.0,
+            link: (String::new(), 0.0),
+            notice: None,
+            welcomed_once: false,
+            told: None,
+        })
+    }
+
+    /// Does what is due many times a second, whether or not a picture is drawn: reads the hands, speaks to the server, tells the page.
+    pub(super) fn tick(&mut self, now_secs: f64) {
+        self.input.poll();
+        for wish in self.input.take_wishes() {
+            match wish {
+                Wish::Take(vehicle) => self.take(vehicle),
+                Wish::Height(height_m) => self.set_height(height_m),
+            }
+        }
+        self.connection.tick(now_secs);
+        if let Some(kind) = self.own_object().map(|pose| pose.kind) {
+            self.connection.drive(self.input.controls().drive(kind), now_secs);
+        }
+        if let Some(camera) = self.rig.as_ref().map(Rig::camera) {
+            self.connection.look_from(camera.eye_m, view_radius_m(self.quality), now_secs);
+            self.keep_link(camera, now_secs);
+        }
+        self.mend_stage(now_secs);
+        self.tell();
+    }
+
+    /// Moves the eye and draws; returns whether it did: not while there is nothing to draw, or the device is behind.
+    pub(super) fn frame(&mut self, now_secs: f64, time_secs: f64) -> bool {
+        self.run_clock(now_secs);
+        let dt_secs = (now_secs - self.drawn_secs).clamp(0.0, LONGEST_FRAME_SECS) as f32;
+        let vehicle = self.shown_own_object();
+        let (Some(rig), Some(stage)) = (&mut self.rig, &mut self.stage) else { return false };
+        if stage.is_busy() {
+            return false;
+        }
+        self.drawn_secs = now_secs;
+        let [right_rad, up_rad] = self.input.take_look(dt_secs);
+        rig.look(right_rad, up_rad);
+        rig.zoom(self.input.take_zoom());
+        let mirror = &self.mirror;
+        rig.advance(self.input.controls(), vehicle.as_ref(), |x_m, z_m| mirror.ground_m(x_m, z_m), dt_secs);
+        let drawn = stage.draw(&mut self.mirror, &rig.camera(), time_secs, dt_secs);
+        if drawn {
+            self.meter.drew(now_secs);
+        }
+        drawn
+    }
+
+    pub(super) fn is_paused(&self) -> bool {
+        self.options.paused
+    }
+
+    /// What one drives, at its newest pose.
+    pub(super) fn own_object(&self) -> Option<&ObjectPose> {
+        let own = self.mirror.object_of(self.connection.client()?)?;
+        self.mirror.newest_objects().iter().find(|pose| pose.id == own)
+    }
+
+    fn shown_own_object(&self) -> Option<ObjectPose> {
+        self.mirror.object(self.mirror.object_of(self.connection.client()?)?)
+    }
+
+    /// Takes a vehicle, or gives up the one held.
+    pub(super) fn take(&mut self, vehicle: Option<VehicleKind>) {
+        self.wanted = vehicle;
+        self.connection.choose(vehicle);
+    }
+
+    pub(super) fn wanted(&self) -> Option<VehicleKind> {
+        self.wanted
+    }
+
+    pub(super) fn set_height(&mut self, height_m: f32) {
+        if let Some(rig) = &mut self.rig {
+            rig.set_height(height_m);
+        }
+    }
+
+    pub(super) fn hold_rise(&mut self, rise: f32) {
+        self.input.hold_rise(rise);
+    }
+
+    pub(super) fn set_quality(&mut self, quality: Quality) {
+        self.quality = quality;
+        if let Some(stage) = &mut self.stage {
+            stage.set_quality(quality);
+        }
+    }
+
+    /// Puts the free camera somewhere.
+    pub(super) fn look(&mut self, camera: Camera) {
+        let ground_m = self.mirror.ground_m(camera.eye_m.x, camera.eye_m.z);
+        self.rig = Some(Rig::new(camera, ground_m));
+    }
+
+    /// What the visitor should read beside the panel for a while.
+    pub(super) fn notice(&self) -> Option<&str> {
+        self.notice.as_ref().filter(|(_, until_secs)| page::now_secs(&self.window) < *until_secs).map(|(text, _)| text.as_str())
+    }
+
+    pub(super) fn picture_px(&self) -> [u32; 2] {
+        self.stage.as_ref().map_or([0, 0], Stage::size_px)
+    }
+
+    fn hear(&mut self, event: SocketEvent) {
+        let now_secs = page::now_secs(&self.window);
+        match event {
+            SocketEvent::Open => self.connection.opened(),
+            SocketEvent::Closed(code) => self.connection.closed(code, now_secs),
+            SocketEvent::Message(bytes) => {
+                self.connection.received(bytes.len());
+                match wire::decode::<ServerMessage>(&bytes, SERVER_MESSAGE_LIMIT) {
+                    Ok(message) => self.receive(message, now_secs),
+                    Err(WireError::Version { .. }) => self.connection.end(Close::Version),
+                    Err(error) => self.fail(format!("The server sent what this page cannot read: {error}.")),
+                }
+            }
+        }
+    }
+
+    fn receive(&mut self, message: ServerMessage, now_secs: f64) {
+        self.run_clock(now_secs);
+        match self.mirror.apply(message) {
+            Ok(Some(Event::Welcome { client, .. })) => {
+                self.connection.welcomed(client);
+                self.welcomed_once = true;
+                if self.wanted.is_some() {
+                    self.connection.choose(self.wanted);
+                }
+            }
+            Ok(Some(Event::Scene)) => self.settle(),
+            Ok(Some(Event::FrameEnd { frame })) => self.connection.acknowledge(frame),
+            Ok(Some(Event::Pong { nonce })) => self.connection.ponged(nonce, now_secs),
+            Ok(Some(Event::Refused { refusal, reason })) => {
+                if refusal == Refusal::ObjectLimit {
+                    self.wanted = None;
+                }
+                self.notice = Some((reason, now_secs + NOTICE_SECS));
+            }
+            Ok(Some(Event::Roster) | None) => {}
+            Err(error) => self.fail(format!("The server sent what this page cannot use: {error}.")),
+        }
+    }
+
+    /// Finds a place for the eye in a land that has just come: that of the link, or the scene's own.
+    fn settle(&mut self) {
+        let Some(land) = self.mirror.land().filter(|_| self.rig.is_none()) else { return };
+        let linked = self.window.location().hash().ok().and_then(|hash| Camera::from_hash(&hash));
+        let ground_m = |x_m: f32, z_m: f32| land.heights().height_m(x_m, z_m);
+        let camera = linked.unwrap_or_else(|| Camera::start(&land.scene().camera, land.scene().extent_m(), ground_m));
+        self.look(camera);
+    }
+
+    fn run_clock(&mut self, now_secs: f64) {
+        self.mirror.advance((now_secs - self.clock_secs).max(0.0));
+        self.clock_secs = now_secs;
+    }
+
+    fn fail(&mut self, reason: String) {
+        self.failure.get_or_insert(reason);
+        self.connection.end(Close::BadMessage);
+    }
+
+    fn keep_link(&mut self, camera: Camera, now_secs: f64) {
+        let (link, at_secs) = &self.link;
+        let hash = camera.to_hash();
+        if now_secs - at_secs >= LINK_SECS && *link != hash {
+            page::set_hash(&self.window, &hash);
+            self.link = (hash, now_secs);
+        }
+    }
+
+    /// Replaces a lost device, unless it is lost again and again.
+    fn mend_stage(&mut self, now_secs: f64) {
+        let Some(reason) = self.stage.as_ref().and_then(Stage::lost).map(str::to_owned) else { return };
+        self.stage = None;
+        self.losses_secs.retain(|at_secs| now_secs - at_secs < 60.0);
+        self.losses_secs.push(now_secs);
+        if self.losses_secs.len() > LOSSES {
+            self.failure = Some(reason);
+        } else {
+            self.build_stage();
+        }
+    }
+
+    /// Takes a device in the background.
+    pub(super) fn build_stage(&self) {
+        let (canvas, quality) = (self.canvas.clone(), self.quality);
+        wasm_bindgen_futures::spawn_local(async move {
+            let stage = Stage::new(canvas, quality).await;
+            with_app(|app| match stage {
+                Ok(mut stage) => {
+                    stage.set_quality(app.quality);
+                    app.stage = Some(stage);
+                }
+                Err(error) => app.failure = Some(error.to_string()),
+            });
+        });
+    }
+
+    /// Shows the page's message for where things stand, when that has changed.
+    fn tell(&mut self) {
+        let now = self.message();
+        if self.told != now {
+            match &now {
+                Some((kind, detail)) => page::message(kind, detail),
+                None => page::clear(),
+            }
+            self.told = now;
+        }
+    }
+
+    fn message(&self) -> Option<(&'static str, String)> {
+        let words = |kind, detail: &str| Some((kind, detail.to_owned()));
+        if let Some(failure) = &self.failure {
+            return words(if self.losses_secs.len() > LOSSES { "device-lost" } else { "failed" }, failure);
+        }
+        match self.connection.standing() {
+            Standing::Over(Close::Version) => return words("version", ""),
+            Standing::Over(_) => return words("refused", self.notice.as_ref().map_or("", |(reason, _)| reason)),
+            Standing::Away { why: Some(Close::ServerFull), .. } => return words("full", ""),
+            Standing::Away { attempts: 1.., .. } if self.welcomed_once => return words("server-gone", ""),
+            Standing::Away { attempts: 1.., .. } => return words("connecting", "The server does not answer yet; trying again…"),
+            Standing::Away { .. } if !self.welcomed_once => return words("connecting", ""),
+            _ => {}
+        }
+        match (&self.stage, self.mirror.land()) {
+            (None, _) if !self.losses_secs.is_empty() => words("device-back", ""),
+            (None, _) => words("preparing", "Asking for the graphics device…"),
+            (_, None) => words("preparing", "The land is on its way…"),
+            _ if self.meter.frames() == 0 && !self.options.paused => words("preparing", "Drawing the first picture…"),
+            _ => None,
+        }
+    }
+}
+
+/// Distance up to which the bend field is asked for (m).
+fn view_radius_m(quality: Quality) -> f32 {
+    match quality {
+        Quality::Low => 96.0,
+        Quality::Medium => 128.0,
+        Quality::High => 192.0,
+        Quality::Ultra => 256.0,
+    }
+}
+
+fn hear(event: SocketEvent) {
+    with_app(|app| app.hear(event));
+}
+
+/// Parses what the page starts its client with.
+pub(super) fn options(json: &str) -> Result<Options, JsError> {
+    serde_json::from_str(json).map_err(|error| JsError::new(&format!("the client's options: {error}")))
+}
+
+/// A view given by a script; none unless all its numbers are finite.
+pub(super) fn camera(eye_m: &[f32], heading_rad: f32, pitch_rad: f32) -> Option<Camera> {
+    let eye_m = Vec3::from(<[f32; 3]>::try_from(eye_m).ok()?);
+    let limit = crate::camera::PITCH_LIMIT_RAD;
+    let camera = Camera { eye_m, heading_rad, pitch_rad: pitch_rad.clamp(-limit, limit), ..Camera::default() };
+    (eye_m.is_finite() && heading_rad.is_finite() && pitch_rad.is_finite()).then_some(camera)
+}

@@ -1,0 +1,27 @@
+//! An event listener that goes with its owner.
+
+use wasm_bindgen::prelude::*;
+use web_sys::{Event, EventTarget};
+
+/// Listens from its making until it is dropped.
+pub(super) struct Listener {
+    target: EventTarget,
+    kind: &'static str,
+    closure: Closure<dyn FnMut(Event)>,
+}
+
+impl Listener {
+    /// Calls `hear` with each event of this kind, such as `keydown`.
+    pub(super) fn new<E: JsCast>(target: &EventTarget, kind: &'static str, mut hear: impl FnMut(&E) + 'static) -> Self {
+        let closure = Closure::<dyn FnMut(Event)>::new(move |event: Event| hear(event.unchecked_ref()));
+        // Fails only for a name or a function that is null.
+        let _ = target.add_event_listener_with_callback(kind, closure.as_ref().unchecked_ref());
+        Self { target: target.clone(), kind, closure }
+    }
+}
+
+impl Drop for Listener {
+    fn drop(&mut self) {
+        let _ = self.target.remove_event_listener_with_callback(self.kind, self.closure.as_ref().unchecked_ref());
+    }
+}

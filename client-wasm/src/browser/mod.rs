@@ -1,0 +1,152 @@
+//! The client in a page: what the page's script calls.
+//!
+//! There is one client a page. Every function does nothing, or gives nothing, before [`start`].
+
+mod app;
+mod connection;
+mod gamepad;
+mod input;
+mod listener;
+mod meter;
+mod page;
+mod pointer;
+mod report;
+mod socket;
+mod stage;
+
+use crate::render::Quality;
+use app::App;
+use glam::Vec3;
+use shared::scene::VehicleKind;
+use std::cell::{OnceCell, RefCell};
+use std::rc::Rc;
+use wasm_bindgen::prelude::*;
+use web_sys::Window;
+
+/// Time between two ticks (ms): that of the fastest message to the server.
+const TICK_MS: i32 = 33;
+
+thread_local! {
+    static APP: RefCell<Option<App>> = const { RefCell::new(None) };
+}
+
+/// Gives the page's client to `act`; nothing when there is none.
+fn with_app<T>(act: impl FnOnce(&mut App) -> T) -> Option<T> {
+    APP.with_borrow_mut(|app| app.as_mut().map(act))
+}
+
+/// Starts the client on the canvas with this id. `options` is a JSON object: `name`, `quality` (`low`, `medium`, `high`, `ultra`),
+/// `paused` (draw only when [`draw`] asks) and `adapter` (what the browser says of its graphics).
+///
+/// # Errors
+/// When the page has no such canvas, or the options are none of these.
+#[wasm_bindgen]
+pub fn start(canvas_id: &str, options: &str) -> Result<(), JsError> {
+    console_error_panic_hook::set_once();
+    let window = web_sys::window().ok_or_else(|| JsError::new("the client runs in a page"))?;
+    let canvas = page::canvas(&window, canvas_id)?;
+    let app = App::new(window.clone(), canvas, app::options(options)?).map_err(|error| JsError::new(&error))?;
+    app.build_stage();
+    APP.set(Some(app));
+
+    let ticking = window.clone();
+    let tick = Closure::<dyn Fn()>::new(move || {
+        with_app(|app| app.tick(page::now_secs(&ticking)));
+    });
+    let scheduled = window.set_interval_with_callback_and_timeout_and_arguments_0(tick.into_js_value().unchecked_ref(), TICK_MS);
+    scheduled.map_err(|_| JsError::new("the page keeps no time"))?;
+    draw_on(window);
+    Ok(())
+}
+
+/// Called with the time (ms) of the picture that the screen shows next.
+type OnFrame = Rc<OnceCell<Closure<dyn Fn(f64)>>>;
+
+/// Draws with every picture that the screen shows; not at all while the page is hidden.
+fn draw_on(window: Window) {
+    let on_frame = OnFrame::default();
+    let (asking, own) = (window.clone(), on_frame.clone());
+    on_frame.get_or_init(|| {
+        Closure::new(move |time_ms: f64| {
+            with_app(|app| {
+                if !app.is_paused() {
+                    app.frame(page::now_secs(&asking), time_ms / 1e3);
+                }
+            });
+            ask_for_frame(&asking, &own);
+        })
+    });
+    ask_for_frame(&window, &on_frame);
+}
+
+fn ask_for_frame(window: &Window, on_frame: &OnFrame) {
+    if let Some(closure) = on_frame.get() {
+        // Fails only for a function that is null.
+        let _ = window.request_animation_frame(closure.as_ref().unchecked_ref());
+    }
+}
+
+/// Draws one picture, with `time_secs` as the time of whatever moves by itself. False when there is nothing to draw yet, or the device
+/// is behind.
+#[wasm_bindgen]
+pub fn draw(time_secs: f64) -> bool {
+    let now_secs = web_sys::window().map_or(0.0, |window| page::now_secs(&window));
+    with_app(|app| app.frame(now_secs, time_secs)).unwrap_or(false)
+}
+
+/// The client's own account of itself, as JSON; `null` before it has started.
+#[wasm_bindgen]
+pub fn state() -> String {
+    with_app(|app| app.report().to_string()).unwrap_or_else(|| "null".into())
+}
+
+/// Bending angle of the grass at `(x_m, z_m)` in the client's mirror (rad).
+#[wasm_bindgen]
+pub fn theta(x_m: f32, z_m: f32) -> f32 {
+    with_app(|app| app.mirror.theta_at(x_m, z_m)).unwrap_or(0.0)
+}
+
+/// Wind at a place in the client's mirror (m/s).
+#[wasm_bindgen]
+pub fn wind(x_m: f32, y_m: f32, z_m: f32) -> Vec<f32> {
+    with_app(|app| app.mirror.wind_at(Vec3::new(x_m, y_m, z_m)).to_array().to_vec()).unwrap_or_default()
+}
+
+/// Puts the free camera at `eye_m` (three numbers); gives up the chase only while nothing is driven. False when a number is not finite.
+#[wasm_bindgen]
+pub fn look(eye_m: &[f32], heading_rad: f32, pitch_rad: f32) -> bool {
+    app::camera(eye_m, heading_rad, pitch_rad).is_some_and(|camera| with_app(|app| app.look(camera)).is_some())
+}
+
+/// Takes a vehicle by its name, or with any other word gives up the one held.
+#[wasm_bindgen]
+pub fn choose(vehicle: &str) {
+    let kind = VehicleKind::ALL.into_iter().find(|kind| kind.name() == vehicle);
+    with_app(|app| app.take(kind));
+}
+
+/// Takes the eye to a height (m) above the land, or above what one drives.
+#[wasm_bindgen]
+pub fn set_height(height_m: f32) {
+    with_app(|app| app.set_height(height_m));
+}
+
+/// Changes how fine the picture is; an unknown name changes nothing.
+#[wasm_bindgen]
+pub fn set_quality(name: &str) {
+    if let Some(quality) = Quality::from_name(name) {
+        with_app(|app| app.set_quality(quality));
+    }
+}
+
+/// Takes another name.
+#[wasm_bindgen]
+pub fn set_name(name: String) {
+    with_app(|app| app.connection.rename(name));
+}
+
+/// Holds a button that lifts (1), sinks (−1), or lets it go (0).
+#[wasm_bindgen]
+pub fn hold_rise(rise: f32) {
+    with_app(|app| app.hold_rise(rise));
+}

@@ -1,0 +1,41 @@
+//! What the client asks of its page and its window.
+
+use wasm_bindgen::prelude::*;
+use web_sys::{HtmlCanvasElement, Window};
+
+#[wasm_bindgen(js_namespace = ["window", "prairie"])]
+extern "C" {
+    /// Shows a message of `messages.js`, with a detail of the moment.
+    pub(super) fn message(kind: &str, detail: &str);
+    /// Takes the page's message away.
+    pub(super) fn clear();
+}
+
+/// The canvas with this id.
+pub(super) fn canvas(window: &Window, id: &str) -> Result<HtmlCanvasElement, JsError> {
+    let element = window.document().and_then(|document| document.get_element_by_id(id));
+    let canvas = element.and_then(|element| element.dyn_into().ok());
+    canvas.ok_or_else(|| JsError::new(&format!("the page has no canvas with the id {id}")))
+}
+
+/// Where the page's own server takes sockets.
+pub(super) fn socket_url(window: &Window) -> Result<String, String> {
+    let location = window.location();
+    let (Ok(protocol), Ok(host)) = (location.protocol(), location.host()) else {
+        return Err("the page has no address".into());
+    };
+    Ok(format!("{}//{host}/ws", if protocol == "https:" { "wss:" } else { "ws:" }))
+}
+
+/// Time since the page was opened (s).
+pub(super) fn now_secs(window: &Window) -> f64 {
+    window.performance().map_or(0.0, |performance| performance.now() / 1000.0)
+}
+
+/// Names the view in the page's address, without a step in its history. A browser that finds this too often says no; the next
+/// one will do.
+pub(super) fn set_hash(window: &Window, hash: &str) {
+    if let Ok(history) = window.history() {
+        let _ = history.replace_state_with_url(&JsValue::NULL, "", Some(&format!("#{hash}")));
+    }
+}

@@ -1,0 +1,141 @@
+//! Mouse, pen and thumbs on the canvas: a drag looks around, the left thumb is a stick, the wheel zooms.
+
+use super::listener::Listener;
+use crate::controls::{Controls, without_slack};
+use std::cell::RefCell;
+use std::rc::Rc;
+use web_sys::{Element, HtmlCanvasElement, PointerEvent, WheelEvent};
+
+/// Turn of the view for each pixel of a drag (rad): a mouse's, a thumb's.
+const LOOK_RAD: [f32; 2] = [0.0035, 0.006];
+
+/// Share of the canvas's width, from the left, where a thumb is the stick.
+const STICK_SIDE: f32 = 0.45;
+
+/// Way of the stick's thumb that counts as full (px), and the share of it that counts as nothing.
+const STICK_PX: f32 = 64.0;
+const STICK_SLACK: f32 = 0.12;
+
+/// Pixels of a wheel that make a notch.
+const NOTCH_PX: f32 = 100.0;
+
+/// What all pointers have done.
+pub(super) struct Pointers {
+    state: Rc<RefCell<State>>,
+    _listeners: [Listener; 5],
+}
+
+#[derive(Default)]
+struct State {
+    drags: Vec<Drag>,
+    look_rad: [f32; 2],
+    notches: f32,
+}
+
+/// A pointer that is down.
+struct Drag {
+    id: i32,
+    origin_px: [f32; 2],
+    at_px: [f32; 2],
+    /// Turn for each pixel (rad); none for the stick.
+    look_rad: Option<f32>,
+}
+
+impl Pointers {
+    pub(super) fn new(canvas: &HtmlCanvasElement) -> Self {
+        let state = Rc::new(RefCell::new(State::default()));
+        let [pressed, moved, up, cancelled, rolled] = std::array::from_fn(|_| state.clone());
+        let own = canvas.clone();
+        let listeners = [
+            Listener::new(canvas, "pointerdown", move |event: &PointerEvent| pressed.borrow_mut().press(event, &own)),
+            Listener::new(canvas, "pointermove", move |event: &PointerEvent| moved.borrow_mut().follow(event)),
+            Listener::new(canvas, "pointerup", move |event: &PointerEvent| up.borrow_mut().release(event)),
+            Listener::new(canvas, "pointercancel", move |event: &PointerEvent| cancelled.borrow_mut().release(event)),
+            Listener::new(canvas, "wheel", move |event: &WheelEvent| {
+                event.prevent_default();
+                let notch_px = if event.delta_mode() == WheelEvent::DOM_DELTA_LINE { NOTCH_PX / 3.0 } else { 1.0 };
+                rolled.borrow_mut().notches += event.delta_y() as f32 * notch_px / NOTCH_PX;
+            }),
+        ];
+        Self { state, _listeners: listeners }
+    }
+
+    /// Deflection of the stick under the left thumb.
+    pub(super) fn stick(&self) -> Controls {
+        let state = self.state.borrow();
+        let Some(drag) = state.drags.iter().find(|drag| drag.look_rad.is_none()) else { return Controls::default() };
+        let share = |axis: usize| without_slack((drag.at_px[axis] - drag.origin_px[axis]) / STICK_PX, STICK_SLACK);
+        Controls { forward: -share(1), turn: share(0), ..Default::default() }
+    }
+
+    /// Turn of the view since the last call (rad, right and up).
+    pub(super) fn take_look(&mut self) -> [f32; 2] {
+        std::mem::take(&mut self.state.borrow_mut().look_rad)
+    }
+
+    /// Notches of the wheel since the last call.
+    pub(super) fn take_zoom(&mut self) -> f32 {
+        std::mem::take(&mut self.state.borrow_mut().notches)
+    }
+}
+
+impl State {
+    fn press(&mut self, event: &PointerEvent, canvas: &HtmlCanvasElement) {
+        // The pointer may have gone in the meantime; then there is nothing to capture, nor to follow.
+        if canvas.set_pointer_capture(event.pointer_id()).is_err() {
+            return;
+        }
+        let touch = event.pointer_type() == "touch";
+        let left = (event.client_x() as f32) < STICK_SIDE * canvas.client_width() as f32;
+        let stick_is_free = self.drags.iter().all(|drag| drag.look_rad.is_some());
+        let look_rad = (!(touch && left && stick_is_free)).then_some(LOOK_RAD[usize::from(touch)]);
+        let at_px = place_px(event);
+        let drag = Drag { id: event.pointer_id(), origin_px: at_px, at_px, look_rad };
+        show_stick(&drag);
+        self.drags.retain(|other| other.id != drag.id);
+        self.drags.push(drag);
+    }
+
+    fn follow(&mut self, event: &PointerEvent) {
+        let Some(drag) = self.drags.iter_mut().find(|drag| drag.id == event.pointer_id()) else { return };
+        let from_px = std::mem::replace(&mut drag.at_px, place_px(event));
+        if let Some(look_rad) = drag.look_rad {
+            self.look_rad[0] += (drag.at_px[0] - from_px[0]) * look_rad;
+            self.look_rad[1] -= (drag.at_px[1] - from_px[1]) * look_rad;
+        } else {
+            show_stick(drag);
+        }
+    }
+
+    fn release(&mut self, event: &PointerEvent) {
+        let gone = self.drags.extract_if(.., |drag| drag.id == event.pointer_id());
+        if gone.filter(|drag| drag.look_rad.is_none()).count() > 0 {
+            set_stick("hidden", "");
+        }
+    }
+}
+
+fn place_px(event: &PointerEvent) -> [f32; 2] {
+    [event.client_x() as f32, event.client_y() as f32]
+}
+
+/// Shows the stick where the thumb came down, with its knob under the thumb.
+fn show_stick(drag: &Drag) {
+    if drag.look_rad.is_none() {
+        let [x, y] = drag.origin_px;
+        let [dx, dy] = [0, 1].map(|axis| (drag.at_px[axis] - drag.origin_px[axis]).clamp(-STICK_PX, STICK_PX));
+        set_stick("style", &format!("left:{x}px;top:{y}px;--x:{dx}px;--y:{dy}px"));
+    }
+}
+
+/// The stick is the page's element `#stick`; without one there is nothing to show.
+fn set_stick(attribute: &str, value: &str) {
+    let stick: Option<Element> = web_sys::window().and_then(|window| window.document()?.get_element_by_id("stick"));
+    if let Some(stick) = stick {
+        // Fails only for a name that is no attribute's.
+        let _ = stick.set_attribute(attribute, value);
+        if attribute != "hidden" {
+            let _ = stick.remove_attribute("hidden");
+        }
+    }
+}

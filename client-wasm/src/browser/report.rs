@@ -1,0 +1,54 @@
+//! The client's own account of itself.
+
+use super::app::App;
+use super::connection::Standing;
+use crate::rig::Rig;
+use serde_json::{Value, json};
+
+impl App {
+    /// Everything that the panel shows and a test may ask for. Places in m, angles in rad, times in s unless the name says ms.
+    pub(super) fn report(&self) -> Value {
+        let camera = self.rig.as_ref().map(Rig::camera);
+        let own = self.own_object();
+        let client = self.connection.client();
+        let kind_of = |object| self.mirror.newest_objects().iter().find(|pose| Some(pose.id) == object).map(|pose| pose.kind.name());
+        let peers = self.mirror.peers().iter().map(
+            |peer| json!({ "client": peer.client, "name": peer.name, "vehicle": kind_of(peer.object), "me": Some(peer.client) == client }),
+        );
+        let frame_secs = self.meter.frame_secs();
+        json!({
+            "connected": client.is_some(),
+            "attempts": match self.connection.standing() { Standing::Away { attempts, .. } => attempts, _ => 0 },
+            "client": client,
+            "peers": peers.collect::<Vec<_>>(),
+            "tick": self.mirror.tick(),
+            "time_secs": self.mirror.time_secs(),
+            "scene": self.mirror.land().map(|land| land.scene().summary.as_str()),
+            "extent_m": self.mirror.land().map(|land| land.scene().extent_m()),
+            "wanted": self.wanted().map(|kind| kind.name()),
+            "object": own.map(|pose| pose.id),
+            "vehicle": own.map(|pose| pose.kind.name()),
+            "position": own.map(|pose| pose.position_m),
+            "velocity": own.map(|pose| pose.velocity_m_per_s),
+            "rotation": own.map(|pose| pose.rotation),
+            "objects": self.mirror.newest_objects().len(),
+            "eye": camera.map(|camera| camera.eye_m.to_array()),
+            "heading": camera.map(|camera| camera.heading_rad),
+            "pitch": camera.map(|camera| camera.pitch_rad),
+            "height": camera.map(|camera| camera.eye_m.y - self.mirror.ground_m(camera.eye_m.x, camera.eye_m.z)),
+            "frames": self.meter.frames(),
+            "frame_ms": frame_secs.map(|secs| secs * 1e3),
+            "fps": frame_secs.map(|secs| 1.0 / secs),
+            "bytes_per_s": self.connection.bytes_per_s(),
+            "bytes": self.connection.received_bytes(),
+            "latency_ms": self.connection.latency_secs().map(|secs| secs * 1e3),
+            "patches_bent": self.mirror.bent_patches().count(),
+            "quality": self.quality.name(),
+            "picture_px": self.picture_px(),
+            "adapter": self.options.adapter,
+            "paused": self.is_paused(),
+            "notice": self.notice(),
+            "error": self.failure,
+        })
+    }
+}

@@ -1,0 +1,129 @@
+// The panel: what the visitor chooses, who is here, and how fast things go. It reads the client's own state a few times a second.
+
+const byId = (id) => document.getElementById(id);
+const UPDATE_MS = 250;
+const HINT_MS = 14_000;
+
+export class Panel {
+  // `client` is the started client; `remember(key, value)` keeps a choice for the next visit.
+  constructor(client, { name, quality }, remember) {
+    this.client = client;
+    this.remember = remember;
+    byId("name").value = name;
+    byId("quality").value = quality;
+    this.listen();
+    setInterval(() => this.update(JSON.parse(client.state())), UPDATE_MS);
+  }
+
+  // Shows or hides the panel; hidden, a small button brings it back.
+  show(shown) {
+    byId("panel").hidden = !shown;
+    byId("open").hidden = shown;
+  }
+
+  // Says once how to begin, until the visitor does.
+  hint() {
+    const touch = matchMedia("(pointer: coarse)").matches;
+    const hint = byId("hint");
+    hint.innerHTML = touch
+      ? "Left thumb walks, right thumb looks. The menu has a car."
+      : "Drag to look, <kbd>W</kbd> <kbd>A</kbd> <kbd>S</kbd> <kbd>D</kbd> to walk, <kbd>C</kbd> for a car, <kbd>?</kbd> for all keys.";
+    hint.hidden = false;
+    const gone = () => { hint.hidden = true };
+    setTimeout(gone, HINT_MS);
+    for (const kind of ["keydown", "pointerdown"]) addEventListener(kind, () => setTimeout(gone, 1500), { once: true });
+  }
+
+  toggle(shown = byId("panel").hidden) {
+    this.show(shown);
+    this.remember("panel", shown ? "1" : "0");
+  }
+
+  help() {
+    const help = byId("help");
+    if (help.open) help.close();
+    else help.showModal();
+  }
+
+  listen() {
+    byId("open").addEventListener("click", () => this.toggle(true));
+    byId("close").addEventListener("click", () => this.toggle(false));
+    byId("ask").addEventListener("click", () => this.help());
+    byId("help").addEventListener("click", (event) => event.target === event.currentTarget && event.currentTarget.close());
+    byId("vehicles").addEventListener("click", (event) => this.pressed(event, "vehicle", (name) => this.client.choose(name)));
+    byId("heights").addEventListener("click", (event) => this.pressed(event, "height", (metres) => this.client.set_height(Number(metres))));
+    byId("quality").addEventListener("change", ({ target }) => {
+      this.client.set_quality(target.value);
+      this.remember("quality", target.value);
+      byId("view").focus();
+    });
+    byId("name").addEventListener("change", ({ target }) => {
+      this.client.set_name(target.value.trim());
+      this.remember("name", target.value.trim());
+    });
+    byId("name").addEventListener("keydown", ({ key }) => key === "Enter" && byId("view").focus());
+    for (const button of document.querySelectorAll("[data-rise]")) {
+      button.addEventListener("pointerdown", () => this.client.hold_rise(Number(button.dataset.rise)));
+      for (const end of ["pointerup", "pointercancel", "pointerleave"]) button.addEventListener(end, () => this.client.hold_rise(0));
+    }
+    addEventListener("keydown", (event) => this.key(event));
+  }
+
+  pressed(event, key, act) {
+    const button = event.target.closest("button");
+    if (!button) return;
+    act(button.dataset[key]);
+    // A click gives the keys back to the prairie; whoever walks the panel by keyboard stays in it.
+    if (event.detail > 0) byId("view").focus();
+    if (matchMedia("(max-width: 640px)").matches) this.show(false);
+  }
+
+  key(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("input, select")) return;
+    if (event.key === "?" || event.key === "F1") this.help();
+    else if (event.key.toLowerCase() === "p" && !event.repeat) this.toggle();
+    else return;
+    event.preventDefault();
+  }
+
+  update(state) {
+    if (!state) return;
+    const driven = state.vehicle ?? state.wanted ?? "";
+    for (const button of byId("vehicles").children) button.setAttribute("aria-pressed", String(button.dataset.vehicle === driven));
+    byId("lift").hidden = !driven;
+    write("scene", state.scene ?? "");
+    write("count", state.peers.length > 1 ? String(state.peers.length) : "");
+    write("frame", state.frame_ms ? `${state.frame_ms.toFixed(state.frame_ms < 100 ? 1 : 0)} ms · ${state.fps.toFixed(state.fps < 10 ? 1 : 0)}/s` : "–");
+    write("stream", `${rate(state.bytes_per_s)}`);
+    write("latency", state.latency_ms === null ? "–" : `${state.latency_ms.toFixed(state.latency_ms < 10 ? 1 : 0)} ms`);
+    this.people(state.peers);
+    byId("notice").hidden = !state.notice;
+    write("notice", state.notice ?? "");
+  }
+
+  people(peers) {
+    const now = JSON.stringify(peers);
+    if (now === this.peersShown) return;
+    this.peersShown = now;
+    byId("peers").replaceChildren(...peers.map(({ client, name, vehicle, me }) => {
+      const item = document.createElement("li");
+      item.style.setProperty("--hue", (client * 137.5) % 360);
+      item.append(me ? `${name} (you)` : name);
+      const doing = document.createElement("span");
+      doing.textContent = vehicle ?? "looking";
+      item.append(doing);
+      return item;
+    }));
+  }
+}
+
+function write(id, text) {
+  const node = byId(id);
+  if (node.textContent !== text) node.textContent = text;
+}
+
+function rate(bytesPerSecond) {
+  if (bytesPerSecond < 1000) return `${Math.round(bytesPerSecond)} B/s`;
+  if (bytesPerSecond < 1e6) return `${(bytesPerSecond / 1000).toFixed(bytesPerSecond < 1e5 ? 1 : 0)} kB/s`;
+  return `${(bytesPerSecond / 1e6).toFixed(2)} MB/s`;
+}

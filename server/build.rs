@@ -1,0 +1,73 @@
+//! Builds the browser client and embeds it, so that `cargo run` is the only command there is.
+//!
+//! The pages of `client-wasm/web`, the compiled client and its JavaScript bindings land in `OUT_DIR/client`; `OUT_DIR/client.rs`
+//! holds the table of them that `src/net/assets.rs` includes. `PRAIRIE_CLIENT=skip` builds no client and embeds a page that says so.
+
+#[path = "build/compile.rs"]
+mod compile;
+#[path = "build/embed.rs"]
+mod embed;
+
+use std::path::{Path, PathBuf};
+use std::{env, fs, process};
+
+type Result<T> = std::result::Result<T, String>;
+
+fn main() {
+    println!("cargo::rerun-if-env-changed=PRAIRIE_CLIENT");
+    if let Err(error) = build() {
+        for line in error.lines() {
+            println!("cargo::error={line}");
+        }
+        process::exit(1);
+    }
+}
+
+fn build() -> Result<()> {
+    let server = PathBuf::from(variable("CARGO_MANIFEST_DIR")?);
+    let out = PathBuf::from(variable("OUT_DIR")?);
+    let client = out.join("client");
+    clear(&client)?;
+
+    match env::var("PRAIRIE_CLIENT").unwrap_or_default().as_str() {
+        "skip" => copy(&server.join("build/without_client.html"), &client.join("index.html"))?,
+        "" => {
+            let workspace = server.parent().ok_or("the server crate lies outside its workspace")?;
+            watch(workspace);
+            compile::client(workspace, &compile::target_dir(&out), &client)?;
+            copy_pages(&workspace.join("client-wasm/web"), &client)?;
+        }
+        other => return Err(format!("PRAIRIE_CLIENT={other}: the only value is `skip`; leave it unset to build the client")),
+    }
+    embed::write_table(&client, &out.join("client.rs"))
+}
+
+/// Everything that the client is made of.
+fn watch(workspace: &Path) {
+    for source in ["client-wasm", "shared/src", "shared/Cargo.toml", "Cargo.toml", "Cargo.lock", "server/build"] {
+        println!("cargo::rerun-if-changed={}", workspace.join(source).display());
+    }
+}
+
+fn copy_pages(web: &Path, client: &Path) -> Result<()> {
+    for entry in fs::read_dir(web).map_err(|e| format!("{}: {e}", web.display()))? {
+        let page = entry.map_err(|e| format!("{}: {e}", web.display()))?;
+        copy(&page.path(), &client.join(page.file_name()))?;
+    }
+    Ok(())
+}
+
+fn clear(dir: &Path) -> Result<()> {
+    if dir.exists() {
+        fs::remove_dir_all(dir).map_err(|e| format!("{}: {e}", dir.display()))?;
+    }
+    fs::create_dir_all(dir).map_err(|e| format!("{}: {e}", dir.display()))
+}
+
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    fs::copy(from, to).map(drop).map_err(|e| format!("copying {} to {}: {e}", from.display(), to.display()))
+}
+
+fn variable(name: &str) -> Result<String> {
+    env::var(name).map_err(|e| format!("{name}: {e}"))
+}

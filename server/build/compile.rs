@@ -1,0 +1,86 @@
+//! The client, compiled for the browser by a nested cargo.
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use wasm_bindgen_cli_support::Bindgen;
+
+use crate::{Result, variable};
+
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// Cargo's own profile for the client, in the workspace's Cargo.toml.
+const PROFILE: &str = "wasm";
+
+/// What the outer cargo tells this script about the server's build; none of it holds for the client's.
+const OF_THE_SERVER: [&str; 8] = [
+    "CARGO_BUILD_",
+    "CARGO_CFG_",
+    "CARGO_ENCODED_RUSTFLAGS",
+    "CARGO_FEATURE_",
+    "CARGO_PROFILE_",
+    "CARGO_TARGET_",
+    "RUSTC_WORKSPACE_WRAPPER",
+    "RUSTFLAGS",
+];
+
+/// Compiles the crate `client-wasm` and writes `client_wasm.js` and `client_wasm_bg.wasm` to `out`.
+///
+/// # Errors
+/// Says what to install when the target is missing; otherwise what cargo or wasm-bindgen said.
+pub(crate) fn client(workspace: &Path, target_dir: &Path, out: &Path) -> Result<()> {
+    ensure_target()?;
+    let mut cargo = Command::new(variable("CARGO")?);
+    for (name, _) in env::vars_os() {
+        if name.to_str().is_some_and(|name| OF_THE_SERVER.iter().any(|prefix| name.starts_with(prefix))) {
+            cargo.env_remove(name);
+        }
+    }
+    cargo
+        .current_dir(workspace)
+        .env("CARGO_ENCODED_RUSTFLAGS", "-Ctarget-feature=+simd128")
+        .args(["build", "--package", "client-wasm", "--lib", "--profile", PROFILE, "--target", TARGET])
+        .arg("--target-dir")
+        .arg(target_dir);
+    let status = cargo.status().map_err(|e| format!("cargo did not start: {e}"))?;
+    if !status.success() {
+        return Err(
+            "the browser client did not compile (cargo's own words are above); `PRAIRIE_CLIENT=skip` builds the server without it".into()
+        );
+    }
+    bind(&target_dir.join(TARGET).join(PROFILE).join("client_wasm.wasm"), out)
+}
+
+/// A target directory for the client beside the server's artifacts. Every variant of the server (with and without rerun, checked,
+/// tested, linted) shares it, and no cargo waits for the lock of the outer one.
+pub(crate) fn target_dir(out: &Path) -> PathBuf {
+    let profile_dir = out.ancestors().find(|dir| dir.ends_with("build")).and_then(Path::parent);
+    profile_dir.unwrap_or(out).join("client")
+}
+
+fn bind(wasm: &Path, out: &Path) -> Result<()> {
+    let bound = Bindgen::new().input_path(wasm).web(true).and_then(|bindgen| bindgen.typescript(false).generate(out));
+    bound.map_err(|e| format!("wasm-bindgen on {}: {e:#}", wasm.display()))
+}
+
+fn ensure_target() -> Result<()> {
+    if target_installed()? || (rustup_adds_target() && target_installed()?) {
+        return Ok(());
+    }
+    Err(format!(
+        "The browser client needs Rust's target {TARGET}, and this toolchain lacks it. Install it with\n    rustup target add {TARGET}\n\
+         or, without rustup, from where this Rust came. `PRAIRIE_CLIENT=skip` builds the server without the page."
+    ))
+}
+
+fn target_installed() -> Result<bool> {
+    let rustc = variable("RUSTC")?;
+    let printed = Command::new(&rustc).args(["--print", "target-libdir", "--target", TARGET]).output();
+    let printed = printed.map_err(|e| format!("{rustc} did not start: {e}"))?;
+    Ok(printed.status.success() && Path::new(String::from_utf8_lossy(&printed.stdout).trim()).is_dir())
+}
+
+fn rustup_adds_target() -> bool {
+    Command::new("rustup").args(["target", "add", TARGET]).status().is_ok_and(|status| status.success())
+}

@@ -1,0 +1,82 @@
+//! Encoding and decoding one patch of 64 × 64 cells, beside deflate on the same differences.
+//!
+//! The patch is a real one: a disc is driven across a bend field that propagates and rises, and the frames are 50 ms apart.
+//! Payload sizes are printed first, since speed means nothing without them.
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use shared::bend::{Bend, Field, WaveParams};
+use shared::grid::PatchLayout;
+use shared::scene::Grass;
+use shared::wire::{codec, quantise};
+use std::hint::black_box;
+
+const SIDE: usize = 64;
+const LAYOUT: PatchLayout = PatchLayout { count: [1, 1], cells: SIDE as u32, cell_m: 0.25 };
+const DT_SECS: f32 = 1.0 / 60.0;
+const STEPS_PER_FRAME: usize = 3;
+
+/// Codes of consecutive frames while a disc of 1 m radius crosses the patch at 8 m/s.
+fn frames() -> Vec<Vec<i8>> {
+    let params = WaveParams::from(&Grass::default());
+    let mut field = Field::new(LAYOUT);
+    let mut frames = Vec::new();
+    for step in 0..120 {
+        let x_m = 1.0 + 8.0 * step as f32 * DT_SECS;
+        let patch = field.wake(0);
+        for j in 0..SIDE {
+            for i in 0..SIDE {
+                let (dx, dz) = ((i as f32 + 0.5) * LAYOUT.cell_m - x_m, (j as f32 + 0.5) * LAYOUT.cell_m - 8.0);
+                if dx * dx + dz * dz < 1.0 {
+                    let theta = (patch.bend(i, j).theta + 26.0 * DT_SECS).min(1.4);
+                    patch.press(i, j, Bend { theta, omega: [24.0, 10.0 * dz] });
+                }
+            }
+        }
+        field.step(&params, DT_SECS);
+        if step % STEPS_PER_FRAME == 0 {
+            let [theta, omega_x, omega_z] = field.patch(0).expect("awake").channels();
+            let own = |values: &[f32], code: fn(f32) -> i8| -> Vec<i8> {
+                values.chunks_exact(SIDE + 2).skip(1).take(SIDE).flat_map(|row| row[1..=SIDE].iter().map(|&v| code(v))).collect()
+            };
+            let planes = [own(theta, quantise::theta_code), own(omega_x, quantise::omega_code), own(omega_z, quantise::omega_code)];
+            frames.push(planes.concat());
+        }
+    }
+    frames
+}
+
+fn deflate_delta(codes: &[i8], base: &[i8]) -> Vec<u8> {
+    let delta: Vec<u8> = codes.iter().zip(base).map(|(code, base)| code.wrapping_sub(*base) as u8).collect();
+    miniz_oxide::deflate::compress_to_vec(&delta, 6)
+}
+
+fn bench(criterion: &mut Criterion) {
+    let frames = frames();
+    let pairs: Vec<_> = frames.windows(2).collect();
+    let mean = |size: &dyn Fn(&[Vec<i8>]) -> usize| pairs.iter().map(|pair| size(pair)).sum::<usize>() / pairs.len();
+    let ours = mean(&|pair| codec::encode(SIDE, &pair[1], Some(&pair[0])).len());
+    let key = mean(&|pair| codec::encode(SIDE, &pair[1], None).len());
+    let deflate = mean(&|pair| deflate_delta(&pair[1], &pair[0]).len());
+    println!("mean bytes of a patch: raw {}, key {key}, delta {ours}, deflate of the delta {deflate}", frames[0].len());
+
+    let (base, codes) = (&pairs[pairs.len() / 2][0], &pairs[pairs.len() / 2][1]);
+    let delta = codec::encode(SIDE, codes, Some(base));
+    let deflated = deflate_delta(codes, base);
+    let mut group = criterion.benchmark_group("patch");
+    group.throughput(Throughput::Elements(codes.len() as u64));
+    group.bench_function("encode delta", |b| b.iter(|| codec::encode(SIDE, black_box(codes), Some(base))));
+    group.bench_function("encode key", |b| b.iter(|| codec::encode(SIDE, black_box(codes), None)));
+    group.bench_function("encode unchanged", |b| b.iter(|| codec::encode(SIDE, black_box(base), Some(base))));
+    group.bench_function("encode delta by deflate", |b| b.iter(|| deflate_delta(black_box(codes), base)));
+    group.bench_function("decode delta", |b| {
+        b.iter(|| {
+            let mut grid = base.clone();
+            codec::decode(SIDE, black_box(&delta), &mut grid).map(|()| grid)
+        });
+    });
+    group.bench_function("decode delta by deflate", |b| b.iter(|| miniz_oxide::inflate::decompress_to_vec(black_box(&deflated))));
+    group.finish();
+}
+
+criterion_group!(benches, bench);
+criterion_main!(benches);

@@ -1,0 +1,110 @@
+//! A chromedriver and the Chromium it starts, ended together.
+
+use std::env;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use std::time::Duration;
+
+use anyhow::{Context as _, Result, bail};
+use rustix::process::{Pid, Signal, kill_process_group};
+use tempfile::TempDir;
+use tokio::process::{Child, Command};
+use tokio::time::{Instant, sleep};
+
+const INSTALL: &str = "The browser tests drive a real Chromium through WebDriver. Install both programs: \
+    on Debian `apt-get install chromium chromium-driver`, on Ubuntu `snap install chromium`, elsewhere Chrome or Chromium with the \
+    chromedriver of the same version, both on the PATH.";
+
+const START_LIMIT: Duration = Duration::from_secs(60);
+
+/// A running chromedriver in a process group of its own. Dropping it ends the whole group, browsers included, and removes its files.
+#[derive(Debug)]
+pub struct Chromedriver {
+    process: Child,
+    group: Pid,
+    files: TempDir,
+    /// Where it listens, as in `http://127.0.0.1:34765`.
+    pub url: String,
+}
+
+impl Chromedriver {
+    /// Starts chromedriver on a free port.
+    ///
+    /// # Errors
+    /// When chromedriver is not installed (the message says what to install), or names no port within a minute.
+    pub async fn start() -> Result<Self> {
+        let files = tempfile::Builder::new().prefix("prairie-browser-").tempdir().context("no directory for the browser's profile")?;
+        let log = File::create(files.path().join(LOG))?;
+        let program = on_path(&["chromedriver"]).context(INSTALL)?;
+        let mut process = Command::new(&program)
+            .args(["--port=0", "--enable-chrome-logs"])
+            .env("TMPDIR", files.path())
+            .stdin(Stdio::null())
+            .stdout(log.try_clone()?)
+            .stderr(log)
+            .process_group(0)
+            .spawn()
+            .with_context(|| format!("{} did not start", program.display()))?;
+        let group = process.id().and_then(|id| Pid::from_raw(id.cast_signed())).context("chromedriver ended at once")?;
+        let port = port_from(&mut process, &files.path().join(LOG)).await?;
+        Ok(Self { process, group, files, url: format!("http://127.0.0.1:{port}") })
+    }
+
+    /// The directory for the browser's profile.
+    #[must_use]
+    pub fn profile(&self) -> PathBuf {
+        self.files.path().join("profile")
+    }
+
+    /// What chromedriver and Chromium have printed so far, the lines of the page's console among them.
+    #[must_use]
+    pub fn log(&self) -> String {
+        read_log(&self.files.path().join(LOG))
+    }
+}
+
+impl Drop for Chromedriver {
+    fn drop(&mut self) {
+        // An empty group is all that can fail here, and that is what is wanted.
+        let _ = kill_process_group(self.group, Signal::KILL);
+        let _ = self.process.try_wait();
+    }
+}
+
+/// The Chromium or Chrome to drive.
+///
+/// # Errors
+/// When none is on the `PATH`; the message says what to install.
+pub fn chromium() -> Result<PathBuf> {
+    on_path(&["chromium", "chromium-browser", "google-chrome", "chrome"]).context(INSTALL)
+}
+
+const LOG: &str = "log";
+
+fn on_path(names: &[&str]) -> Option<PathBuf> {
+    let path = env::var_os("PATH")?;
+    let dirs: Vec<PathBuf> = env::split_paths(&path).collect();
+    names.iter().flat_map(|name| dirs.iter().map(move |dir| dir.join(name))).find(|program| program.is_file())
+}
+
+async fn port_from(process: &mut Child, log: &Path) -> Result<u16> {
+    let deadline = Instant::now() + START_LIMIT;
+    while Instant::now() < deadline {
+        let printed = read_log(log);
+        if let Some((_, rest)) = printed.split_once("started successfully on port ")
+            && let Some((port, _)) = rest.split_once('.')
+        {
+            return port.parse().with_context(|| format!("chromedriver named the port {port:?}"));
+        }
+        if let Some(status) = process.try_wait()? {
+            bail!("chromedriver ended with {status}:\n{printed}");
+        }
+        sleep(Duration::from_millis(20)).await;
+    }
+    bail!("chromedriver named no port within {START_LIMIT:?}:\n{}", read_log(log))
+}
+
+fn read_log(log: &Path) -> String {
+    fs::read(log).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default()
+}
