@@ -1,1 +1,3 @@
-//! placeholder
+//! The Prairie server.
+
+pub mod wind;

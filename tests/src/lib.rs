@@ -1,1 +1,4 @@
-//! placeholder
+//! Tests, charts, pictures and benchmarks of Prairie.
+
+pub mod norms;
+pub mod problems;
