@@ -1,3 +1,122 @@
-//! placeholder
+//! The Prairie server: an authoritative world of wind, grass and vehicles, streamed over WebSocket.
+//!
+//! A run has three parts that never wait for each other: the world's thread ([`runner`]) steps at a fixed rate and publishes
+//! the newest [`snapshot`]; the [`stream`] thread encodes what changed, once for all clients; the sessions in [`net`] write it
+//! out as fast as each client takes it.
 
+pub mod bend;
+pub mod bucket;
+mod config;
 pub mod net;
+pub mod objects;
+pub mod runner;
+pub mod scenes;
+pub mod snapshot;
+pub mod stream;
+pub mod weather;
+pub mod wind;
+pub mod world;
+
+pub use config::{Config, Limits, RerunSink};
+
+use net::App;
+use runner::{Runner, Simulation, Timing};
+use shared::grid::PatchLayout;
+use shared::wire::{self, ServerMessage};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use stream::{Clients, Streamer};
+use thiserror::Error;
+use tokio::net::TcpListener;
+use tokio::sync::{Semaphore, watch};
+use world::{Maps, World, WorldError};
+
+/// Time that sessions are given to say goodbye when the server stops.
+const GOODBYE: Duration = Duration::from_secs(2);
+
+/// Why a run did not start or did not go on.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The system gives no threads.
+    #[error("cannot start the threads of the simulation: {0}")]
+    Threads(#[from] std::io::Error),
+    /// The scene's constants make no world together.
+    #[error(transparent)]
+    World(#[from] WorldError),
+    /// The world's thread ended by itself, which is a fault of the program.
+    #[error("the simulation has stopped unexpectedly; the log says where")]
+    WorldStopped,
+}
+
+/// Serves the scene on `listener` until `shutdown` completes; then says goodbye to the clients and ends every thread.
+///
+/// # Errors
+/// [`RunError`] when the world cannot be made or its thread fails.
+pub async fn run(config: Config, listener: TcpListener, shutdown: impl Future<Output = ()>) -> Result<(), RunError> {
+    let loaded = &config.scene;
+    let maps = Maps { height: loaded.height.clone(), cover: loaded.cover.clone() };
+    let world = World::new(&loaded.scene, maps)?;
+    run_simulation(world, config, listener, shutdown).await
+}
+
+/// [`run`] with another simulation in the world's place.
+///
+/// # Errors
+/// As [`run`].
+pub async fn run_simulation(
+    simulation: impl Simulation,
+    config: Config,
+    listener: TcpListener,
+    shutdown: impl Future<Output = ()>,
+) -> Result<(), RunError> {
+    let scene = &config.scene.scene;
+    let layout = PatchLayout::from(&scene.patches);
+    let timing = Timing { tick_hz: scene.tick_hz, publish_hz: config.publish_hz, threads: config.threads };
+    let runner = Runner::start(simulation, timing)?;
+    let mut published = runner.published();
+    let clients = Arc::new(Clients::default());
+    let streamer = Streamer::new(layout, config.limits.send, timing.published_hz());
+    let counters = streamer.counters();
+    let stream = stream::start(streamer, runner.published(), clients.clone(), runner.commands())?;
+    let (stop, stopping) = watch::channel(false);
+    let app = Arc::new(App {
+        clients: clients.clone(),
+        counters,
+        published: runner.published(),
+        commands: runner.commands(),
+        scene: scene_message(&config),
+        limits: config.limits,
+        seats: Arc::new(Semaphore::new(config.limits.clients)),
+        porch: Arc::new(Semaphore::new(config.limits.connections)),
+        stopping,
+        started: Instant::now(),
+    });
+    let world_stopped = async { while published.changed().await.is_ok() {} };
+    let outcome = tokio::select! {
+        () = net::serve(listener, config.tls.clone(), net::router(app), config.limits) => Ok(()),
+        () = world_stopped => Err(RunError::WorldStopped),
+        () = shutdown => Ok(()),
+    };
+    stop.send_replace(true);
+    let deadline = Instant::now() + GOODBYE;
+    while clients.count() > 0 && Instant::now() < deadline {
+        tokio::time::sleep(Duration::from_millis(10)).await;
+    }
+    tokio::task::spawn_blocking(move || {
+        let sound = runner.stop();
+        sound && stream.join().is_ok()
+    })
+    .await
+    .map_or(Err(RunError::WorldStopped), |sound| if sound { outcome } else { Err(RunError::WorldStopped) })
+}
+
+fn scene_message(config: &Config) -> bytes::Bytes {
+    let loaded = &config.scene;
+    let message = ServerMessage::Scene {
+        scene: Box::new(loaded.scene.clone()),
+        height_png: loaded.height_png.clone(),
+        covering_png: loaded.covering_png.clone(),
+        models: loaded.models.clone(),
+    };
+    wire::encode(&message).into()
+}

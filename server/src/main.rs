@@ -1,2 +1,193 @@
-//! placeholder
-fn main() {}
+//! The command line.
+
+use anyhow::Context as _;
+use clap::{Args, Parser, Subcommand};
+use server::net::{Tls, TlsChoice, bind};
+use server::{Config, Limits, RerunSink, scenes};
+use std::net::{IpAddr, SocketAddr};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// A living grassland: wind, grass and vehicles, simulated here and shown in any browser with WebGPU.
+#[derive(Debug, Parser)]
+#[command(version, args_conflicts_with_subcommands = true, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    action: Option<Action>,
+    #[command(flatten)]
+    serve: Serve,
+}
+
+const EXAMPLES: &str = "\
+Without a command, `prairie` means `prairie serve`.
+
+Examples:
+  prairie                                    the scene `meadow` on http://127.0.0.1:8080
+  prairie --open                             the same, and opens the page
+  prairie serve --scene my/hills.toml        a scene of your own
+  prairie serve --addr 0.0.0.0:8443 --tls self
+                                             for friends on other machines
+  prairie check my/hills.toml                what is wrong with it, with line and column";
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Simulate a scene and serve it to browsers
+    #[command(after_help = SERVE_EXAMPLES)]
+    Serve(Serve),
+    /// List the built-in scenes
+    Scenes,
+    /// Say what is wrong with a scene file, with line and column
+    #[command(after_help = "Example:\n  prairie check my/hills.toml\n\nThe exit status is 0 if the scene can be served, otherwise 1.")]
+    Check {
+        /// Scene file (TOML); its maps and models are checked too
+        #[arg(value_name = "FILE")]
+        scene: String,
+    },
+    /// Make the built-in scenes' maps anew, the same to the last pixel
+    Maps {
+        /// Folder to write the PNG files to; it is made if it is missing
+        #[arg(long, value_name = "FOLDER")]
+        out: PathBuf,
+    },
+}
+
+const SERVE_EXAMPLES: &str = "\
+Examples:
+  prairie serve                              the scene `meadow` on http://127.0.0.1:8080
+  prairie serve --addr 127.0.0.1:0           on any free port; the address is printed
+  prairie serve --addr 0.0.0.0:8443 --tls self
+                                             on all addresses of this machine; the browser asks whether to trust the
+                                             certificate: compare the fingerprint that is printed
+  prairie serve --tls cert.pem,key.pem       with a certificate of your own
+  prairie serve --rerun save=run.rrd         records wind and grass for the rerun viewer
+
+Browsers give WebGPU only to pages from this machine or over https, so other machines need --tls.
+The log goes to stderr; RUST_LOG=server=debug makes it talk more.";
+
+#[derive(Debug, Args)]
+struct Serve {
+    /// Scene to serve: a built-in one by name (`prairie scenes` lists them), or a file
+    #[arg(long, value_name = "NAME|FILE", default_value = "meadow")]
+    scene: String,
+    /// Address to listen on; port 0 takes any free one
+    #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:8080")]
+    addr: String,
+    /// Open the page in the browser
+    #[arg(long)]
+    open: bool,
+    /// Serve https, with a certificate made on the spot (`self`) or with two PEM files
+    #[arg(long, value_name = "self|CERT,KEY")]
+    tls: Option<TlsChoice>,
+    /// Log the fields for the rerun viewer: serve them to viewers, save a recording, or connect to a viewer
+    #[arg(long, value_name = "serve|save=FILE.rrd|connect=URL")]
+    rerun: Option<RerunSink>,
+    /// Threads of the simulation [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Frames per second sent to browsers, 1 to 60
+    #[arg(long, value_name = "HZ", default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..=60))]
+    publish_hz: u16,
+    /// Most that one browser is sent (kbit/s); what is near its camera goes first
+    #[arg(long, value_name = "KBIT", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(64..=1_000_000))]
+    client_kbit: u32,
+    /// Most browsers at once
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u16).range(1..=4096))]
+    max_clients: u16,
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let filter = tracing_subscriber::EnvFilter::try_from_default_env().unwrap_or_else(|_| "warn,server=info,prairie=info".into());
+    tracing_subscriber::fmt().with_env_filter(filter).with_target(false).with_writer(std::io::stderr).init();
+    let outcome = match cli.action.unwrap_or(Action::Serve(cli.serve)) {
+        Action::Serve(arguments) => serve(arguments),
+        Action::Scenes => {
+            for (name, summary) in scenes::list() {
+                println!("{name:12} {summary}");
+            }
+            Ok(())
+        }
+        Action::Check { scene } => scenes::check(&scene).map(|report| println!("{report}")).map_err(Into::into),
+        Action::Maps { out } => make_maps(&out),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn make_maps(folder: &Path) -> anyhow::Result<()> {
+    let written = scenes::maps::write(folder).with_context(|| format!("cannot write maps to {}", folder.display()))?;
+    for path in written {
+        println!("{}", path.display());
+    }
+    Ok(())
+}
+
+fn serve(arguments: Serve) -> anyhow::Result<()> {
+    anyhow::ensure!(
+        arguments.rerun.is_none() || cfg!(feature = "rerun"),
+        "--rerun: this binary was built without rerun; build it with `--features rerun`"
+    );
+    let scene = scenes::load(&arguments.scene)?;
+    tokio::runtime::Builder::new_multi_thread().enable_all().build()?.block_on(async {
+        let listener = bind(&arguments.addr).await?;
+        let address = listener.local_addr()?;
+        let tls = arguments.tls.as_ref().map(|choice| Tls::new(choice, address)).transpose()?;
+        announce(address, tls.as_ref(), arguments.open);
+        let mut limits = Limits { clients: usize::from(arguments.max_clients), ..Limits::default() };
+        limits.send.bytes_per_sec = f64::from(arguments.client_kbit) * 1000.0 / 8.0;
+        let config = Config {
+            tls,
+            rerun: arguments.rerun,
+            threads: arguments.threads.map(usize::from),
+            publish_hz: f32::from(arguments.publish_hz),
+            limits,
+            ..Config::new(scene)
+        };
+        Ok(server::run(config, listener, asked_to_stop()).await?)
+    })
+}
+
+/// Prints where the page is, and what a visitor has to know.
+fn announce(address: SocketAddr, tls: Option<&Tls>, open: bool) {
+    let scheme = if tls.is_some() { "https" } else { "http" };
+    let local = match address.ip() {
+        ip if !ip.is_unspecified() => address,
+        IpAddr::V4(_) => SocketAddr::new(IpAddr::from([127, 0, 0, 1]), address.port()),
+        IpAddr::V6(_) => SocketAddr::new(IpAddr::from([0, 0, 0, 0, 0, 0, 0, 1]), address.port()),
+    };
+    let page = format!("{scheme}://{local}");
+    println!("Prairie is at {page}");
+    if let Some(ip) = server::net::reachable_ip(address).filter(|ip| !ip.is_loopback()) {
+        println!("  from other machines: {scheme}://{}", SocketAddr::new(ip, address.port()));
+        if tls.is_none() {
+            tracing::warn!("browsers give WebGPU only to https pages or to this machine's own; for other machines add --tls self");
+        }
+    }
+    if let Some(tls) = tls {
+        println!("  certificate SHA-256: {}", tls.fingerprint());
+    }
+    if open && let Err(error) = open::that_detached(&page) {
+        tracing::warn!(%error, "cannot open a browser");
+    }
+}
+
+/// Completes when the user or the system asks the program to stop.
+async fn asked_to_stop() {
+    let interrupt = tokio::signal::ctrl_c();
+    #[cfg(unix)]
+    {
+        let mut terminate =
+            tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate()).expect("a handler of SIGTERM can be set");
+        tokio::select! {
+            _ = interrupt => {}
+            _ = terminate.recv() => {}
+        }
+    }
+    #[cfg(not(unix))]
+    let _ = interrupt.await;
+}

@@ -4,3 +4,5 @@ pub mod browser;
 pub mod chromedriver;
 pub mod pages;
 pub mod picture;
+pub mod synthetic;
+pub mod worlds;

@@ -3,16 +3,24 @@
 //! A scene file needs only what differs from the defaults; the shortest one names its maps. Parsing and the checks of
 //! ranges are the first thing done with a file; the world is made from a checked [`Scene`] alone.
 
+mod allowed;
+mod check;
+mod fault;
 mod grass;
 mod objects;
+mod parse;
 mod patches;
 mod picture;
 mod plants;
 mod terrain;
 mod wind;
 
+pub use allowed::{Allowed, FIELDS, REQUIRED};
+pub use check::{AWAKE_CELLS_LIMIT, EXTENT_LIMIT_M, WIND_CELLS_LIMIT};
+pub use fault::SceneFault;
 pub use grass::Grass;
 pub use objects::{Objects, VehicleKind};
+pub use parse::parse;
 pub use patches::Patches;
 pub use picture::{CameraStart, Light};
 pub use plants::Plants;
@@ -25,9 +33,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// One line that says what the scene shows; `prairie scenes` prints it.
+    /// One line that says what the scene shows; `prairie scenes` prints it. Required.
     pub summary: String,
-    /// Seed of everything random in the scene: placing of plants, sources of the wind. Default 1.
+    /// Seed of everything random in the scene: placing of plants, sources of the wind. Default 1, allowed
+    /// 0..=9223372036854775807.
     #[serde(default = "default_seed")]
     pub seed: u64,
     /// Fixed steps of the world per second (Hz). Default 60, allowed 10..=240.

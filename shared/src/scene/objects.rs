@@ -61,11 +61,12 @@ impl VehicleKind {
 pub struct Objects {
     /// Most objects at once. Default 64, allowed 0..=1024.
     pub limit: u32,
-    /// glTF file (`.glb` or `.gltf`) drawn for a car, relative to the scene file; empty for the built-in model.
+    /// glTF file (`.glb` or `.gltf`) drawn for a car, relative to the scene file; empty for the built-in model. Default "".
     pub car_model: String,
-    /// glTF file drawn for a monster, relative to the scene file; empty for the built-in model.
+    /// glTF file drawn for a monster, relative to the scene file; empty for the built-in model. Default "".
     pub monster_model: String,
-    /// Cars that drive by themselves in circles, so that an empty prairie shows tracks. Default 0, allowed 0..=limit.
+    /// Cars that drive by themselves in circles, so that an empty prairie shows tracks. Default 0, allowed
+    /// 0..=1024 and at most `limit`.
     pub self_driving: u32,
 }
 

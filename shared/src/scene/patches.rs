@@ -8,14 +8,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Patches {
-    /// Patches along X and Z. Default 16 × 16 (000 §5.1), allowed 1..=2048 each.
+    /// Patches along X and Z. Default 16 × 16 (000 §5.1), allowed 1..=2048 each, and a world of at most
+    /// 100 km a side.
     pub count: [u32; 2],
     /// Cells along one side of a patch. Default 64, allowed 8..=256, a multiple of 8.
     pub cells: u32,
     /// Side of a cell (m). Default 0.25, allowed 0.05..=10.
     pub cell_m: f32,
     /// Most patches that hold field memory at once; the one farthest from any camera is let go first. Default 400,
-    /// allowed 9..=4096.
+    /// allowed 9..=4096, and awake_limit × cells² at most 33554432 (about 1 GB).
     pub awake_limit: u32,
 }
 

@@ -6,13 +6,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CameraStart {
-    /// Place over the ground as a share of the world's extent along X and Z, 0..=1. Default (0.5, 0.62).
+    /// Place over the ground as a share of the world's extent along X and Z. Default (0.5, 0.62), allowed
+    /// 0..=1 each.
     pub at: [f32; 2],
     /// Height above the ground (m). Default 2.2, allowed 0.02..=2000.
     pub height_m: f32,
-    /// Heading (rad) from north towards east. Default 0.35.
+    /// Heading (rad) from north towards east. Default 0.35, allowed −6.3..=6.3.
     pub heading_rad: f32,
-    /// Pitch (rad), negative looks down, allowed −1.5..=1.5. Default −0.08.
+    /// Pitch (rad), negative looks down. Default −0.08, allowed −1.5..=1.5.
     pub pitch_rad: f32,
 }
 
@@ -26,11 +27,11 @@ impl Default for CameraStart {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Light {
-    /// Heading of the sun (rad), from north towards east. Default 0.9.
+    /// Heading of the sun (rad), from north towards east. Default 0.9, allowed −6.3..=6.3.
     pub sun_heading_rad: f32,
-    /// Elevation of the sun above the horizon (rad), allowed 0.02..=1.57. Default 0.55.
+    /// Elevation of the sun above the horizon (rad). Default 0.55, allowed 0.02..=1.57.
     pub sun_elevation_rad: f32,
-    /// Distance at which haze has taken 63 % of a colour (m), allowed 10..=100000. Default 900.
+    /// Distance at which haze has taken 63 % of a colour (m). Default 900, allowed 10..=100000.
     pub haze_m: f32,
 }
 

@@ -18,9 +18,9 @@ pub struct Plants {
     pub width_m: f32,
     /// Flowers per square metre of grass. Default 0.6, allowed 0..=50.
     pub flowers_per_m2: f32,
-    /// Colour of grass at the root and at the tip, linear RGB 0..=1.
+    /// Colour of grass at the root, linear RGB. Default (0.03, 0.07, 0.015), allowed 0..=1 each.
     pub root_rgb: [f32; 3],
-    /// Colour of grass at the tip, linear RGB 0..=1.
+    /// Colour of grass at the tip, linear RGB. Default (0.3, 0.4, 0.09), allowed 0..=1 each.
     pub tip_rgb: [f32; 3],
     /// Height of a tree (m). Default 7, allowed 0.5..=60.
     pub tree_m: f32,

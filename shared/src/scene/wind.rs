@@ -17,17 +17,20 @@ pub enum WindBoundary {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Wind {
-    /// Cells along X, Y and Z. Default 32 × 8 × 32, allowed 2..=256 each.
+    /// Cells along X, Y and Z. Default 32 × 8 × 32, allowed 2..=256 each and 2097152 in all.
     pub cells: [u32; 3],
     /// Side of a cell along X, Y and Z (m). Default 8 × 2 × 8, allowed 0.1..=1000.
     pub spacing_m: [f32; 3],
-    /// Boundary along X and Z. Default `wrap`. Along Y the box has a floor and a lid (`wall`).
+    /// Boundary along X and Z, `wrap` or `wall`; walls must stand outside the world. Default `wrap`. Along Y the box has a
+    /// floor and a lid.
     pub sides: WindBoundary,
-    /// Prevailing wind along X and Z at the height of the lowest cells' tops ×5 (m/s). Default (4, 2.5), allowed length 0..=40.
+    /// Prevailing wind along X and Z at the height of the lowest cells' tops ×5 (m/s). Default (4, 2.5), allowed
+    /// −40..=40 each and a length of at most 40.
     pub mean_m_per_s: [f32; 2],
     /// Kinematic (eddy) viscosity ν (m²/s). Default 0.2, allowed 0..=100.
     pub viscosity_m2_per_s: f32,
-    /// Number of random source cells that blow at any moment (000 §2.3.1). Default 12, allowed 0..=1000.
+    /// Number of random source cells that blow at any moment (000 §2.3.1). Default 12, allowed 0..=1000 and
+    /// at most the box's cells.
     pub sources: u32,
     /// Typical speed that a source adds (m/s). Default 5, allowed 0..=40.
     pub source_m_per_s: f32,

@@ -1,0 +1,284 @@
+//! The thread that owns the world: keeps time, feeds it commands, publishes the newest snapshot. It waits for nobody.
+
+use crate::snapshot::Snapshot;
+use crate::world::{Command, World};
+use shared::wire::ObjectId;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+use tokio::sync::{mpsc, watch};
+
+/// Commands that may wait for the next step.
+const COMMAND_CAPACITY: usize = 1024;
+
+/// Most steps that are caught up at once; time beyond them is dropped.
+pub const CATCH_UP_STEPS: u64 = 6;
+
+/// Least time between two log lines about dropped time.
+const LAG_LOG_EVERY: Duration = Duration::from_secs(10);
+
+/// What the runner runs: the world, or a test's stand-in.
+pub trait Simulation: Send + 'static {
+    /// Advances by one fixed step after carrying out `commands` in order.
+    fn step(&mut self, commands: &[Command]);
+    /// The state after the newest step.
+    fn snapshot(&mut self) -> Snapshot;
+    /// The object that a client drives.
+    fn object_of(&self, client: u32) -> Option<ObjectId>;
+}
+
+impl Simulation for World {
+    fn step(&mut self, commands: &[Command]) {
+        Self::step(self, commands);
+    }
+
+    fn snapshot(&mut self) -> Snapshot {
+        Self::snapshot(self)
+    }
+
+    fn object_of(&self, client: u32) -> Option<ObjectId> {
+        Self::object_of(self, client)
+    }
+}
+
+/// The newest state, with what the runner adds.
+#[derive(Clone, Debug, Default)]
+pub struct Published {
+    /// The world's state.
+    pub snapshot: Snapshot,
+    /// What became of each client's newest wish for a vehicle.
+    pub requests: BTreeMap<u32, Request>,
+    /// Simulated time that was left out because the machine was too slow (s).
+    pub dropped_secs: f64,
+}
+
+/// A client's wish for a vehicle, carried out or refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Request {
+    /// Step after which it was decided.
+    pub tick: u64,
+    /// The object; none: refused.
+    pub object: Option<ObjectId>,
+}
+
+/// How the runner keeps time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Timing {
+    /// Fixed steps per second (Hz).
+    pub tick_hz: f32,
+    /// Snapshots per second (Hz); every `tick_hz / publish_hz` steps, rounded, at least each step.
+    pub publish_hz: f32,
+    /// Threads of the world, its own included; none: one for each core.
+    pub threads: Option<usize>,
+}
+
+impl Timing {
+    /// Steps from one snapshot to the next.
+    pub fn steps_per_publish(&self) -> u64 {
+        (self.tick_hz / self.publish_hz).round().max(1.0) as u64
+    }
+
+    /// Snapshots per second that result (Hz).
+    pub fn published_hz(&self) -> f32 {
+        self.tick_hz / self.steps_per_publish() as f32
+    }
+}
+
+/// A running world.
+#[derive(Debug)]
+pub struct Runner {
+    commands: mpsc::Sender<Command>,
+    published: watch::Receiver<Arc<Published>>,
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Runner {
+    /// Starts the thread; the state before the first step is published at once.
+    ///
+    /// # Errors
+    /// When the system gives no threads.
+    pub fn start(mut simulation: impl Simulation, timing: Timing) -> std::io::Result<Self> {
+        let (commands, inbox) = mpsc::channel(COMMAND_CAPACITY);
+        let (sender, published) = watch::channel(Arc::new(Published { snapshot: simulation.snapshot(), ..Published::default() }));
+        let stop = Arc::new(AtomicBool::new(false));
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(timing.threads.unwrap_or(0))
+            .thread_name(|index| format!("world-{index}"))
+            .build()
+            .map_err(std::io::Error::other)?;
+        let stopped = stop.clone();
+        let thread = std::thread::Builder::new().name("world".to_owned()).spawn(move || {
+            pool.install(|| Loop::new(simulation, timing, inbox, sender).run(&stopped));
+        })?;
+        Ok(Self { commands, published, stop, thread: Some(thread) })
+    }
+
+    /// Where commands go; bounded, so use `try_send` for what may be lost.
+    pub fn commands(&self) -> mpsc::Sender<Command> {
+        self.commands.clone()
+    }
+
+    /// Where the newest state comes from; it closes when the thread ends.
+    pub fn published(&self) -> watch::Receiver<Arc<Published>> {
+        self.published.clone()
+    }
+
+    /// Stops after the step under way and waits for the thread. False if it had panicked.
+    pub fn stop(mut self) -> bool {
+        self.stop.store(true, Relaxed);
+        self.thread.take().is_none_or(|thread| thread.join().is_ok())
+    }
+}
+
+impl Drop for Runner {
+    fn drop(&mut self) {
+        self.stop.store(true, Relaxed);
+    }
+}
+
+struct Loop<S> {
+    simulation: S,
+    inbox: mpsc::Receiver<Command>,
+    sender: watch::Sender<Arc<Published>>,
+    clock: Clock,
+    steps_per_publish: u64,
+    tick: u64,
+    requests: BTreeMap<u32, Request>,
+    step_times: Vec<Duration>,
+}
+
+impl<S: Simulation> Loop<S> {
+    fn new(simulation: S, timing: Timing, inbox: mpsc::Receiver<Command>, sender: watch::Sender<Arc<Published>>) -> Self {
+        Self {
+            simulation,
+            inbox,
+            sender,
+            clock: Clock::new(f64::from(timing.tick_hz)),
+            steps_per_publish: timing.steps_per_publish(),
+            tick: 0,
+            requests: BTreeMap::new(),
+            step_times: Vec::new(),
+        }
+    }
+
+    fn run(mut self, stop: &AtomicBool) {
+        let start = Instant::now();
+        let mut logged: Option<(Instant, u64)> = None;
+        while !stop.load(Relaxed) {
+            for _ in 0..self.clock.due(start.elapsed()) {
+                self.step();
+            }
+            let (logged_at, logged_steps) = logged.map_or((None, 0), |(at, steps)| (Some(at), steps));
+            if self.clock.dropped > logged_steps && logged_at.is_none_or(|at| at.elapsed() > LAG_LOG_EVERY) {
+                tracing::warn!(dropped_secs = self.clock.dropped_secs(), "the world is slower than real time; simulated time is left out");
+                logged = Some((Instant::now(), self.clock.dropped));
+            }
+            std::thread::sleep(self.clock.until_next(start.elapsed()));
+        }
+    }
+
+    fn step(&mut self) {
+        let commands: Vec<Command> = std::iter::from_fn(|| self.inbox.try_recv().ok()).collect();
+        let begun = Instant::now();
+        self.simulation.step(&commands);
+        self.step_times.push(begun.elapsed());
+        self.tick += 1;
+        self.settle(&commands);
+        if self.tick.is_multiple_of(self.steps_per_publish) {
+            self.publish();
+        }
+    }
+
+    /// Notes what became of the wishes for vehicles.
+    fn settle(&mut self, commands: &[Command]) {
+        for command in commands {
+            match *command {
+                Command::Spawn { client, .. } => {
+                    let object = self.simulation.object_of(client);
+                    self.requests.insert(client, Request { tick: self.tick, object });
+                }
+                Command::Remove { client } => {
+                    self.requests.remove(&client);
+                }
+                Command::Drive { .. } | Command::Views(_) => {}
+            }
+        }
+    }
+
+    fn publish(&mut self) {
+        let mut snapshot = self.simulation.snapshot();
+        let total: Duration = self.step_times.iter().sum();
+        snapshot.health.step_secs = total.as_secs_f32() / self.step_times.len() as f32;
+        snapshot.health.step_max_secs = self.step_times.iter().max().map_or(0.0, Duration::as_secs_f32);
+        self.step_times.clear();
+        let published = Published { snapshot, requests: self.requests.clone(), dropped_secs: self.clock.dropped_secs() };
+        self.sender.send_replace(Arc::new(published));
+    }
+}
+
+/// Counts the fixed steps that have fallen due.
+struct Clock {
+    tick_hz: f64,
+    /// Steps done or dropped.
+    accounted: u64,
+    /// Steps dropped.
+    dropped: u64,
+}
+
+impl Clock {
+    fn new(tick_hz: f64) -> Self {
+        Self { tick_hz, accounted: 0, dropped: 0 }
+    }
+
+    /// Steps to do now, at most [`CATCH_UP_STEPS`]; more than that are dropped.
+    fn due(&mut self, elapsed: Duration) -> u64 {
+        let fallen_due = (elapsed.as_secs_f64() * self.tick_hz) as u64 - self.accounted;
+        let steps = fallen_due.min(CATCH_UP_STEPS);
+        self.dropped += fallen_due - steps;
+        self.accounted += fallen_due;
+        steps
+    }
+
+    fn until_next(&self, elapsed: Duration) -> Duration {
+        let next_secs = (self.accounted + 1) as f64 / self.tick_hz;
+        Duration::from_secs_f64((next_secs - elapsed.as_secs_f64()).max(0.0))
+    }
+
+    fn dropped_secs(&self) -> f64 {
+        self.dropped as f64 / self.tick_hz
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_on_time_clock_drops_nothing() {
+        let mut clock = Clock::new(60.0);
+        let steps: u64 = (1..=1000).map(|ms| clock.due(Duration::from_millis(ms * 10))).sum();
+        assert_eq!((steps, clock.dropped), (600, 0));
+        let wait = clock.until_next(Duration::from_secs(10));
+        assert!(wait <= Duration::from_secs_f64(1.0 / 60.0) && wait > Duration::from_millis(16));
+    }
+
+    #[test]
+    fn a_long_pause_is_dropped_not_caught_up() {
+        let mut clock = Clock::new(60.0);
+        assert_eq!(clock.due(Duration::from_secs(10)), CATCH_UP_STEPS);
+        assert_eq!(clock.dropped, 600 - CATCH_UP_STEPS);
+        assert_eq!(clock.due(Duration::from_secs(10)), 0);
+        assert_eq!(clock.due(Duration::from_secs(11)) + clock.due(Duration::from_secs_f64(11.017)), CATCH_UP_STEPS + 1);
+    }
+
+    #[test]
+    fn publish_rates_divide_the_step_rate() {
+        let timing = |tick_hz, publish_hz| Timing { tick_hz, publish_hz, threads: None };
+        assert_eq!(timing(60.0, 20.0).steps_per_publish(), 3);
+        assert_eq!(timing(60.0, 25.0).published_hz(), 30.0);
+        assert_eq!(timing(10.0, 60.0).steps_per_publish(), 1);
+    }
+}

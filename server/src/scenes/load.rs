@@ -1,0 +1,164 @@
+//! From a scene's name or file to everything that the world needs.
+
+use super::builtin::{BUILT_IN, BuiltIn};
+use super::error::{FaultyScene, SceneError};
+use super::models;
+use shared::scene::{Scene, SceneFault, VehicleKind, parse};
+use shared::terrain::{CoverMap, HeightMap, MapError};
+use shared::wire::Mesh;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Largest scene file (bytes).
+const SCENE_LIMIT: u64 = 1 << 20;
+
+/// Largest file of a map (bytes); two of them and two models fit into a message.
+const MAP_LIMIT: u64 = 24 << 20;
+
+/// Lowest and highest land (m).
+const LAND_RANGE_M: [f32; 2] = [-20_000.0, 20_000.0];
+
+/// A checked scene with its maps and models, as the world, the server and its clients need it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadedScene {
+    /// The scene, without paths: what a client is told.
+    pub scene: Scene,
+    /// Height map, the PNG file's bytes.
+    pub height_png: Vec<u8>,
+    /// Covering map, the PNG file's bytes.
+    pub covering_png: Vec<u8>,
+    /// Heights of the land.
+    pub height: HeightMap,
+    /// What covers the land.
+    pub cover: CoverMap,
+    /// Models read from glTF files; kinds that are missing are drawn with the built-in one.
+    pub models: Vec<(VehicleKind, Mesh)>,
+}
+
+/// Loads a built-in scene by name, or a scene file by path, with its maps and models.
+///
+/// # Errors
+/// [`SceneError`]: the name is unknown, the file cannot be read, or something in it or in the files that it names is wrong;
+/// then every fault at once, with its place.
+pub fn load(name_or_path: &str) -> Result<LoadedScene, SceneError> {
+    if let Some(built_in) = BuiltIn::find(name_or_path) {
+        return load_text(built_in.name, built_in.text, &Source::BuiltIn(built_in));
+    }
+    let path = Path::new(name_or_path);
+    let looks_like_a_file = path.extension().is_some() || path.components().count() > 1 || path.exists();
+    if !looks_like_a_file {
+        return Err(unknown(name_or_path));
+    }
+    let unreadable = |reason: String| SceneError::Unreadable { path: path.to_owned(), reason };
+    let bytes = read_file(path, SCENE_LIMIT).map_err(unreadable)?;
+    let text = String::from_utf8(bytes).map_err(|error| unreadable(format!("is not UTF-8 text: {error}")))?;
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    load_text(name_or_path, &text, &Source::Folder(folder))
+}
+
+fn unknown(name: &str) -> SceneError {
+    let known: Vec<_> = BUILT_IN.iter().map(|scene| scene.name).collect();
+    let like = |scene: &&str| strsim::jaro_winkler(scene, name);
+    let nearest = known.iter().copied().filter(|scene| like(scene) > 0.7).max_by(|a, b| like(a).total_cmp(&like(b)));
+    SceneError::Unknown { name: name.to_owned(), nearest, known }
+}
+
+/// Where the files that a scene names are.
+enum Source {
+    BuiltIn(&'static BuiltIn),
+    Folder(PathBuf),
+}
+
+impl Source {
+    fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, String> {
+        match self {
+            Self::BuiltIn(scene) => scene.file(name).map(<[u8]>::to_vec).ok_or_else(|| "does not ship with the program".to_owned()),
+            Self::Folder(folder) => read_file(&folder.join(name), limit),
+        }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        match self {
+            Self::BuiltIn(_) => PathBuf::from(name),
+            Self::Folder(folder) => folder.join(name),
+        }
+    }
+}
+
+fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
+    let is_file = std::fs::metadata(path).map_err(|error| error.to_string())?.is_file();
+    if !is_file {
+        return Err("is not a file".to_owned());
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    if bytes.len() as u64 > limit {
+        return Err(format!("is larger than {} MiB", limit >> 20));
+    }
+    Ok(bytes)
+}
+
+fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, SceneError> {
+    let faulty = |mut faults: Vec<SceneFault>| {
+        faults.sort_by_key(|fault| (fault.line, fault.column));
+        SceneError::Faulty(FaultyScene { file: file.to_owned(), text: text.to_owned(), faults })
+    };
+    let mut scene = parse(text).map_err(faulty)?;
+    let mut faults = Vec::new();
+    let mut note = |path: &str, message: String| faults.push(SceneFault::at(text, path, message));
+
+    let height = height_map(&scene, source).map_err(|message| note("terrain.height_map", message)).ok();
+    let cover = covering_map(&scene, source).map_err(|message| note("terrain.covering_map", message)).ok();
+    let mut loaded_models = Vec::new();
+    for (kind, field) in [(VehicleKind::Car, &scene.objects.car_model), (VehicleKind::Monster, &scene.objects.monster_model)] {
+        if field.is_empty() {
+            continue;
+        }
+        match models::load(&source.path(field), kind) {
+            Ok(mesh) => loaded_models.push((kind, mesh)),
+            Err(reason) => note(&format!("objects.{}_model", kind.name()), format!("names `{field}`, which {reason}")),
+        }
+    }
+    let (Some((height_png, height)), Some((covering_png, cover))) = (height, cover) else { return Err(faulty(faults)) };
+    if !faults.is_empty() {
+        return Err(faulty(faults));
+    }
+    for path in
+        [&mut scene.terrain.height_map, &mut scene.terrain.covering_map, &mut scene.objects.car_model, &mut scene.objects.monster_model]
+    {
+        path.clear();
+    }
+    Ok(LoadedScene { scene, height_png, covering_png, height, cover, models: loaded_models })
+}
+
+fn height_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, HeightMap), String> {
+    let name = &scene.terrain.height_map;
+    let told = |error: &dyn std::fmt::Display| format!("names `{name}`, which {error}");
+    let png = source.read(name, MAP_LIMIT).map_err(|reason| told(&format!("cannot be read: {reason}")))?;
+    let map = HeightMap::from_png(&png, &scene.terrain).map_err(|error: MapError| told(&error))?;
+
+    let [columns, rows] = map.size_px();
+    let reach_m = [columns as f32 * scene.terrain.pixel_m[0], rows as f32 * scene.terrain.pixel_m[1]];
+    let world_m = scene.extent_m();
+    if reach_m[0] < world_m[0] || reach_m[1] < world_m[1] {
+        return Err(told(&format!(
+            "reaches over {} m × {} m ({columns} × {rows} pixels × pixel_m); the world is {} m × {} m (patches: count × cells × cell_m)",
+            reach_m[0], reach_m[1], world_m[0], world_m[1]
+        )));
+    }
+    let [low, high] = map.range_m();
+    if low < LAND_RANGE_M[0] || high > LAND_RANGE_M[1] {
+        return Err(told(&format!("gives heights of {low} m to {high} m; allowed: {} to {} m", LAND_RANGE_M[0], LAND_RANGE_M[1])));
+    }
+    Ok((png, map))
+}
+
+fn covering_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, CoverMap), String> {
+    let name = &scene.terrain.covering_map;
+    let told = |error: &dyn std::fmt::Display| format!("names `{name}`, which {error}");
+    let png = source.read(name, MAP_LIMIT).map_err(|reason| told(&format!("cannot be read: {reason}")))?;
+    let map = CoverMap::from_png(&png).map_err(|error: MapError| told(&error))?;
+    Ok((png, map))
+}

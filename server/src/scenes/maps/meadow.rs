@@ -1,0 +1,129 @@
+//! The meadow: a broad valley between knolls, with a trail, and ridges along the edges.
+
+use super::GreyMap;
+use super::dice::Dice;
+use super::land::{Noise, Path, Point, bump, distance, scatter, smooth_step};
+
+const EXTENT_M: Point = [256.0, 256.0];
+
+/// Height map: pixels a side, metres between them, metres per grey level, elevation of level 0.
+const HEIGHT_PX: u32 = 129;
+const PIXEL_M: f64 = 2.0;
+const LEVEL_M: f64 = 0.1;
+const BASE_M: f64 = -5.0;
+
+/// Covering map: pixels a side, one for each place of a plant (000 §5.5.1).
+const COVER_PX: u32 = 512;
+
+const TREES: usize = 250;
+const STONES: usize = 200;
+
+/// Knolls: centre (m), radius (m), height (m).
+const KNOLLS: [(Point, f64, f64); 7] = [
+    ([62.0, 96.0], 20.0, 5.5),
+    ([88.0, 70.0], 15.0, 3.5),
+    ([196.0, 84.0], 24.0, 6.5),
+    ([172.0, 116.0], 12.0, 2.2),
+    ([206.0, 186.0], 18.0, 4.5),
+    ([66.0, 192.0], 22.0, 5.0),
+    ([118.0, 214.0], 14.0, 2.4),
+];
+
+/// The valley's bed, from the southern edge to a gap in the northern ridge.
+const BED: [Point; 6] = [[96.0, 262.0], [104.0, 212.0], [134.0, 168.0], [120.0, 118.0], [136.0, 66.0], [150.0, -6.0]];
+
+/// The trail, from the western edge across the valley to the northern gap.
+const TRAIL: [Point; 8] =
+    [[-6.0, 146.0], [40.0, 150.0], [84.0, 140.0], [118.0, 150.0], [148.0, 132.0], [144.0, 96.0], [158.0, 52.0], [146.0, -6.0]];
+
+/// Height map and covering map.
+pub(super) fn maps() -> [GreyMap; 2] {
+    let land = Land::new();
+    let levels = pixels(HEIGHT_PX, PIXEL_M, 0.0).map(|at| ((land.height_m(at) - BASE_M) / LEVEL_M).round().clamp(0.0, 255.0) as u8);
+    let height = GreyMap { name: "meadow-height.png", size_px: [HEIGHT_PX; 2], levels: levels.collect() };
+    [height, land.covering()]
+}
+
+/// Points of a square map's pixels, row by row; `offset` is that of the first in pixels.
+fn pixels(side_px: u32, pixel_m: f64, offset: f64) -> impl Iterator<Item = Point> {
+    (0..side_px).flat_map(move |row| (0..side_px).map(move |column| [column, row].map(|i| (f64::from(i) + offset) * pixel_m)))
+}
+
+struct Land {
+    bed: Path,
+    trail: Path,
+    swell: Noise,
+    rough: Noise,
+    groves: Noise,
+    wear: Noise,
+}
+
+impl Land {
+    fn new() -> Self {
+        Self {
+            bed: Path::through(&BED),
+            trail: Path::through(&TRAIL),
+            swell: Noise::new(11, 90.0, 2, 0.45),
+            rough: Noise::new(12, 34.0, 3, 0.5),
+            groves: Noise::new(13, 46.0, 2, 0.5),
+            wear: Noise::new(14, 7.0, 3, 0.6),
+        }
+    }
+
+    fn height_m(&self, at: Point) -> f64 {
+        let from_bed = self.bed.distance(at);
+        let valley = -2.6 * (1.0 - smooth_step(4.0, 48.0, from_bed));
+        let knolls: f64 = KNOLLS.iter().map(|&(centre, radius, height)| height * bump(at, centre, radius)).sum();
+        let open = smooth_step(10.0, 60.0, from_bed);
+        let swell = 2.2 * self.swell.at(at) + (0.35 + 0.65 * open) * self.rough.at(at);
+        valley + knolls + swell + self.ridge_m(at, from_bed)
+    }
+
+    /// Hills that close the view: along the edges, uneven, with gaps where the valley leaves.
+    fn ridge_m(&self, at: Point, from_bed: f64) -> f64 {
+        let shift = 9.0 * self.swell.at([at[0] + 300.0, at[1]]);
+        let open = |axis: usize| smooth_step(2.0, 52.0, at[axis].min(EXTENT_M[axis] - at[axis]) + shift);
+        let rise = 1.0 - open(0) * open(1);
+        let gap = smooth_step(6.0, 40.0, from_bed);
+        (10.5 + 5.0 * self.swell.at([at[0], at[1] + 500.0])) * rise * (0.12 + 0.88 * gap)
+    }
+
+    fn covering(&self) -> GreyMap {
+        let pixel_m = EXTENT_M[0] / f64::from(COVER_PX);
+        let mut levels: Vec<u8> = pixels(COVER_PX, pixel_m, 0.5).map(|at| if self.is_bare(at) { 0 } else { 255 }).collect();
+        let mut put = |id: u8, places: Vec<Point>| {
+            for [x, z] in places {
+                levels[(z / pixel_m) as usize * COVER_PX as usize + (x / pixel_m) as usize] = id;
+            }
+        };
+        let mut dice = Dice(2013);
+        put(253, scatter(&mut dice, EXTENT_M, TREES, 3.4, |at| self.tree_chance(at)));
+        put(254, scatter(&mut dice, EXTENT_M, STONES, 1.6, |at| self.stone_chance(at)));
+        GreyMap { name: "meadow-covering.png", size_px: [COVER_PX; 2], levels }
+    }
+
+    /// The trail's two ruts with grass between them, and worn patches beside it.
+    fn is_bare(&self, at: Point) -> bool {
+        let wear = self.wear.at(at);
+        let from_trail = self.trail.distance(at);
+        let rut = (from_trail - 0.85).abs() < 0.42 + 0.18 * wear;
+        let patch = wear > 0.25 + 0.004 * from_trail.min(20.0) && from_trail > 1.5;
+        rut || patch
+    }
+
+    /// Groves on the hills; the middle of the valley and the trail stay open.
+    fn tree_chance(&self, at: Point) -> f64 {
+        let open = smooth_step(38.0, 66.0, distance(at, [128.0, 140.0])) * smooth_step(4.0, 8.0, self.trail.distance(at));
+        let margin = (0..2).all(|axis| (2.0..EXTENT_M[axis] - 2.0).contains(&at[axis]));
+        let grove = smooth_step(0.12, 0.42, self.groves.at(at));
+        let lone = 0.006;
+        if margin { open * (grove + lone) } else { 0.0 }
+    }
+
+    /// Outcrops on the knolls, strewn thinly elsewhere; none in the ruts.
+    fn stone_chance(&self, at: Point) -> f64 {
+        let knoll = KNOLLS.iter().map(|&(centre, radius, _)| bump(at, centre, 0.7 * radius)).fold(0.0, f64::max);
+        let clear = smooth_step(2.0, 3.0, self.trail.distance(at)) * smooth_step(8.0, 30.0, distance(at, [128.0, 150.0]));
+        clear * (0.006 + knoll * smooth_step(0.1, 0.4, self.wear.at(at)))
+    }
+}

@@ -1,0 +1,63 @@
+//! Scenes: the built-in ones, scene files, and the maps that the built-in ones are made of.
+
+mod builtin;
+mod error;
+mod load;
+pub mod maps;
+mod models;
+mod report;
+
+pub use error::{FaultyScene, SceneError};
+pub use load::{LoadedScene, load};
+pub use report::{Report, check};
+
+/// Names and summaries of the built-in scenes, the default first.
+pub fn list() -> impl Iterator<Item = (&'static str, String)> {
+    builtin::BUILT_IN.iter().map(|built_in| (built_in.name, built_in.scene().summary))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::terrain::Cover;
+
+    #[test]
+    fn built_in_scenes_are_sound_and_tell_clients_no_paths() {
+        for (name, summary) in list() {
+            let loaded = load(name).unwrap_or_else(|error| panic!("{error}"));
+            assert!(!summary.is_empty() && loaded.scene.summary == summary);
+            assert!(loaded.scene.terrain.height_map.is_empty() && loaded.scene.terrain.covering_map.is_empty());
+            assert!(check(name).unwrap().to_string().starts_with(&format!("{name}: sound\n")));
+        }
+        assert_eq!(list().next().unwrap().0, "meadow");
+    }
+
+    #[test]
+    fn stored_maps_are_what_the_generator_makes() {
+        for map in maps::generate() {
+            let stored = std::fs::read(format!("{}/scenes/{}", env!("CARGO_MANIFEST_DIR"), map.name)).unwrap();
+            let mut reader = png::Decoder::new(std::io::Cursor::new(stored)).read_info().unwrap();
+            assert_eq!([reader.info().width, reader.info().height], map.size_px, "{}", map.name);
+            let mut levels = vec![0; map.levels.len()];
+            reader.next_frame(&mut levels).unwrap();
+            assert!(levels == map.levels, "{} differs; run `prairie maps --out server/scenes`", map.name);
+        }
+    }
+
+    #[test]
+    fn the_meadow_has_an_open_middle_and_hills_around() {
+        let meadow = load("meadow").unwrap();
+        let extent_m = meadow.scene.extent_m();
+        for cover in [Cover::Tree, Cover::Stone] {
+            let places: Vec<_> = meadow.cover.places_m(cover, extent_m).collect();
+            assert!((150..=260).contains(&places.len()), "{} of {cover:?}", places.len());
+        }
+        let from_middle = |[x, z]: [f32; 2]| (x - 128.0).hypot(z - 140.0);
+        assert!(meadow.cover.places_m(Cover::Tree, extent_m).all(|at| from_middle(at) > 35.0));
+        let height = |x, z| meadow.height.height_m(x, z);
+        let [low, high] = meadow.height.range_m();
+        assert!((10.0..=25.0).contains(&(high - low)), "{low} to {high}");
+        let corners = [height(4.0, 4.0), height(252.0, 4.0), height(4.0, 252.0), height(252.0, 252.0)];
+        assert!(corners.iter().all(|&corner| corner > height(128.0, 140.0) + 4.0), "{corners:?}");
+    }
+}

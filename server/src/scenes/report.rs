@@ -1,0 +1,46 @@
+//! What a sound scene holds, in a few lines.
+
+use super::SceneError;
+use super::load::{LoadedScene, load};
+use shared::scene::VehicleKind;
+use shared::terrain::Cover;
+use std::fmt;
+
+/// The figures of a sound scene; displayed as a few lines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    name: String,
+    loaded: LoadedScene,
+}
+
+/// Loads a scene and reports what it holds.
+///
+/// # Errors
+/// As [`load`].
+pub fn check(name_or_path: &str) -> Result<Report, SceneError> {
+    Ok(Report { name: name_or_path.to_owned(), loaded: load(name_or_path)? })
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let LoadedScene { scene, height, cover, models, .. } = &self.loaded;
+        let [width_m, depth_m] = scene.extent_m();
+        let [nx, nz] = scene.patches.count;
+        let [low, high] = height.range_m();
+        let [height_x, height_z] = height.size_px();
+        let [cover_x, cover_z] = cover.size_px();
+        let count = |cover_id| cover.ids().iter().filter(|&&id| Cover::from(id) == cover_id).count();
+        let grass = 100.0 * count(Cover::Grass) as f64 / cover.ids().len() as f64;
+
+        writeln!(f, "{}: sound", self.name)?;
+        writeln!(f, "  {}", scene.summary)?;
+        writeln!(f, "  world     {width_m} m × {depth_m} m, {nx} × {nz} patches of {0} × {0} cells", scene.patches.cells)?;
+        writeln!(f, "  heights   {low:.1} m to {high:.1} m, {height_x} × {height_z} pixels")?;
+        write!(f, "  covering  {cover_x} × {cover_z} pixels, {grass:.0} % grass")?;
+        writeln!(f, ", {} trees, {} stones", count(Cover::Tree), count(Cover::Stone))?;
+        let models: Vec<_> = models.iter().map(|(kind, mesh)| format!("{} ({} triangles)", kind.name(), mesh.indices.len() / 3)).collect();
+        let built_in: Vec<_> = VehicleKind::ALL.iter().map(|kind| kind.name()).collect();
+        let models = if models.is_empty() { format!("built-in {}", built_in.join(", ")) } else { models.join(", ") };
+        write!(f, "  models    {models}")
+    }
+}

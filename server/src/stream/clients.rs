@@ -1,0 +1,148 @@
+//! Who is connected: what sessions and the streamer tell each other about a client.
+
+use bytes::Bytes;
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, PoisonError};
+use tokio::sync::mpsc;
+
+/// One publish as one client gets it.
+#[derive(Clone, Debug, Default)]
+pub struct Frame {
+    /// Number of the frame, per client, from 1.
+    pub number: u32,
+    /// Messages in order; the last one ends the frame.
+    pub messages: Vec<Bytes>,
+}
+
+impl Frame {
+    /// Sum of the messages' sizes (bytes).
+    pub fn len_bytes(&self) -> usize {
+        self.messages.iter().map(Bytes::len).sum()
+    }
+}
+
+/// Where a client looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gaze {
+    /// Camera position (m).
+    pub eye_m: [f32; 3],
+    /// Distance up to which the bend field is wanted (m).
+    pub radius_m: f32,
+}
+
+/// A client that has said hello.
+#[derive(Debug)]
+pub struct Client {
+    /// Number of the client, unique within a run.
+    pub id: u32,
+    /// Name to show to others.
+    pub name: String,
+    outbox: mpsc::Sender<Frame>,
+    gaze: Mutex<Option<Gaze>>,
+    handed_out: AtomicU32,
+    acknowledged: AtomicU32,
+    sent_bytes: AtomicU64,
+}
+
+impl Client {
+    /// Tells where the client looks.
+    pub fn look(&self, gaze: Gaze) {
+        *self.gaze.lock().unwrap_or_else(PoisonError::into_inner) = Some(gaze);
+    }
+
+    /// Where the client looks; none until it has said so.
+    pub fn gaze(&self) -> Option<Gaze> {
+        *self.gaze.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Notes an acknowledgement; false if that frame was never sent.
+    pub fn acknowledge(&self, frame: u32) -> bool {
+        let possible = frame <= self.handed_out.load(Relaxed);
+        if possible {
+            self.acknowledged.fetch_max(frame, Relaxed);
+        }
+        possible
+    }
+
+    /// Newest frame handed to the session, and newest frame acknowledged.
+    pub fn progress(&self) -> (u32, u32) {
+        (self.handed_out.load(Relaxed), self.acknowledged.load(Relaxed))
+    }
+
+    /// Frames that are on their way: handed to the session and not acknowledged.
+    pub fn in_flight(&self) -> u32 {
+        let (handed_out, acknowledged) = self.progress();
+        handed_out.saturating_sub(acknowledged)
+    }
+
+    /// Hands a frame to the session; false if it takes none, being full or gone.
+    pub fn hand_out(&self, frame: Frame) -> bool {
+        let number = frame.number;
+        self.handed_out.store(number, Relaxed);
+        let taken = self.outbox.try_send(frame).is_ok();
+        if !taken {
+            self.handed_out.store(number - 1, Relaxed);
+        }
+        taken
+    }
+
+    /// Counts bytes written to the client's socket.
+    pub fn count_sent(&self, bytes: usize) {
+        self.sent_bytes.fetch_add(bytes as u64, Relaxed);
+    }
+
+    /// Bytes written to the client's socket so far.
+    pub fn sent_bytes(&self) -> u64 {
+        self.sent_bytes.load(Relaxed)
+    }
+}
+
+/// All clients, by number.
+#[derive(Debug, Default)]
+pub struct Clients {
+    table: Mutex<BTreeMap<u32, Arc<Client>>>,
+    newest_id: AtomicU32,
+}
+
+impl Clients {
+    /// A number that no client has had.
+    pub fn next_id(&self) -> u32 {
+        self.newest_id.fetch_add(1, Relaxed) + 1
+    }
+
+    /// Adds a client, which from now on gets frames: at most `outbox_frames` wait for the session at once.
+    pub fn join(&self, id: u32, name: String, outbox_frames: usize) -> (Arc<Client>, mpsc::Receiver<Frame>) {
+        let (outbox, frames) = mpsc::channel(outbox_frames);
+        let client = Arc::new(Client {
+            id,
+            name,
+            outbox,
+            gaze: Mutex::default(),
+            handed_out: AtomicU32::default(),
+            acknowledged: AtomicU32::default(),
+            sent_bytes: AtomicU64::default(),
+        });
+        self.lock().insert(id, client.clone());
+        (client, frames)
+    }
+
+    /// Removes a client.
+    pub fn leave(&self, id: u32) {
+        self.lock().remove(&id);
+    }
+
+    /// Everyone who is here, in the order of coming.
+    pub fn all(&self) -> Vec<Arc<Client>> {
+        self.lock().values().cloned().collect()
+    }
+
+    /// Number of clients.
+    pub fn count(&self) -> usize {
+        self.lock().len()
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, BTreeMap<u32, Arc<Client>>> {
+        self.table.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

@@ -1,0 +1,54 @@
+//! What the tests of the server share: a client's picture of the world, kept as a real client keeps it.
+#![allow(dead_code, missing_docs, unreachable_pub, reason = "each test file uses its own part")]
+
+use shared::grid::PatchIndex;
+use shared::wire::{SERVER_MESSAGE_LIMIT, ServerMessage, codec, decode};
+use std::collections::BTreeMap;
+
+/// Codes and number of the newest frame of each grid, applied strictly: a delta must follow the frame that is held.
+#[derive(Debug, Default, PartialEq)]
+pub struct Picture {
+    pub patches: BTreeMap<PatchIndex, (u32, Vec<i8>)>,
+    pub wind: (u32, Vec<i8>),
+    pub tick: u64,
+    pub frame: u32,
+    pub bytes: usize,
+}
+
+impl Picture {
+    /// Applies a message; `patch_cells` and `wind_cells` give the shapes.
+    pub fn apply(&mut self, bytes: &[u8], patch_cells: usize, wind_cells: [u32; 3]) -> ServerMessage {
+        let message: ServerMessage = decode(bytes, SERVER_MESSAGE_LIMIT).expect("the server sends sound messages");
+        self.bytes += bytes.len();
+        match &message {
+            ServerMessage::Patch { patch, seq, key, payload } => {
+                let rest = || (0, vec![0; codec::PLANES * patch_cells * patch_cells]);
+                let held = self.patches.entry(*patch).or_insert_with(rest);
+                update(held, patch_cells, *seq, *key, payload);
+            }
+            ServerMessage::Wind { seq, key, payload, .. } => {
+                self.wind.1.resize(codec::PLANES * wind_cells.iter().product::<u32>() as usize, 0);
+                update(&mut self.wind, wind_cells[0] as usize, *seq, *key, payload);
+            }
+            ServerMessage::FrameEnd { frame, tick, .. } => {
+                assert_eq!(*frame, self.frame + 1, "frames are numbered without gaps");
+                assert!(*tick >= self.tick, "time runs forwards");
+                (self.frame, self.tick) = (*frame, *tick);
+            }
+            _ => {}
+        }
+        message
+    }
+}
+
+fn update(held: &mut (u32, Vec<i8>), width: usize, seq: u32, key: bool, payload: &[u8]) {
+    if key {
+        held.1.fill(0);
+    } else {
+        assert_eq!(held.0 + 1, seq, "a delta applies to the frame one less");
+    }
+    if !payload.is_empty() {
+        codec::decode(width, payload, &mut held.1).expect("the payload is a grid");
+    }
+    held.0 = seq;
+}

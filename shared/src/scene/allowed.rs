@@ -1,0 +1,99 @@
+//! What each field of a scene file may hold: the one table that parsing, the reference in the README and its tests share.
+
+use std::fmt;
+
+/// Values that a field may hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Allowed {
+    /// Any text.
+    Text,
+    /// A number from the first to the second, both included; in an array, each element.
+    Range(f64, f64),
+    /// One of these words.
+    OneOf(&'static [&'static str]),
+}
+
+use Allowed::{OneOf, Range, Text};
+
+/// Every field by its path, in the order of the structs.
+pub const FIELDS: [(&str, Allowed); 49] = [
+    ("summary", Text),
+    ("seed", Range(0.0, i64::MAX as f64)),
+    ("tick_hz", Range(10.0, 240.0)),
+    ("patches.count", Range(1.0, 2048.0)),
+    ("patches.cells", Range(8.0, 256.0)),
+    ("patches.cell_m", Range(0.05, 10.0)),
+    ("patches.awake_limit", Range(9.0, 4096.0)),
+    ("terrain.height_map", Text),
+    ("terrain.covering_map", Text),
+    ("terrain.pixel_m", Range(0.01, 1000.0)),
+    ("terrain.level_m", Range(0.0, 1000.0)),
+    ("terrain.base_m", Range(-12000.0, 12000.0)),
+    ("wind.cells", Range(2.0, 256.0)),
+    ("wind.spacing_m", Range(0.1, 1000.0)),
+    ("wind.sides", OneOf(&["wrap", "wall"])),
+    ("wind.mean_m_per_s", Range(-40.0, 40.0)),
+    ("wind.viscosity_m2_per_s", Range(0.0, 100.0)),
+    ("wind.sources", Range(0.0, 1000.0)),
+    ("wind.source_m_per_s", Range(0.0, 40.0)),
+    ("wind.mean_rate_per_s", Range(0.0, 10.0)),
+    ("grass.c0_m_per_s", Range(0.0, 50.0)),
+    ("grass.mu_m_per_rad", Range(0.0, 10.0)),
+    ("grass.c_omega_m_per_s", Range(0.0, 50.0)),
+    ("grass.theta_damping_per_s", Range(0.0, 200.0)),
+    ("grass.omega_damping_per_s", Range(0.0, 200.0)),
+    ("grass.stiffness_per_s2", Range(0.0, 10000.0)),
+    ("grass.theta_max_rad", Range(0.1, 1.57)),
+    ("grass.wind_bend_rad", Range(0.0, 1.5)),
+    ("plants.grid_m", Range(1.0, 64.0)),
+    ("plants.plants_per_side", Range(2.0, 256.0)),
+    ("plants.height_m", Range(0.02, 5.0)),
+    ("plants.height_variation", Range(0.0, 0.9)),
+    ("plants.width_m", Range(0.001, 0.5)),
+    ("plants.flowers_per_m2", Range(0.0, 50.0)),
+    ("plants.root_rgb", Range(0.0, 1.0)),
+    ("plants.tip_rgb", Range(0.0, 1.0)),
+    ("plants.tree_m", Range(0.5, 60.0)),
+    ("plants.stone_m", Range(0.05, 20.0)),
+    ("objects.limit", Range(0.0, 1024.0)),
+    ("objects.car_model", Text),
+    ("objects.monster_model", Text),
+    ("objects.self_driving", Range(0.0, 1024.0)),
+    ("camera.at", Range(0.0, 1.0)),
+    ("camera.height_m", Range(0.02, 2000.0)),
+    ("camera.heading_rad", Range(-6.3, 6.3)),
+    ("camera.pitch_rad", Range(-1.5, 1.5)),
+    ("light.sun_heading_rad", Range(-6.3, 6.3)),
+    ("light.sun_elevation_rad", Range(0.02, 1.57)),
+    ("light.haze_m", Range(10.0, 100_000.0)),
+];
+
+/// Fields that a scene file must give.
+pub const REQUIRED: [&str; 6] = ["summary", "terrain", "terrain.height_map", "terrain.covering_map", "terrain.pixel_m", "terrain.level_m"];
+
+/// What the field at `path` may hold; text for a path that is not in the table.
+pub(super) fn allowed_at(path: &str) -> Allowed {
+    FIELDS.iter().find(|(known, _)| *known == path).map_or(Text, |&(_, allowed)| allowed)
+}
+
+impl Allowed {
+    /// Whether a number is in the range; never for what is no range.
+    pub(super) fn contains(self, value: f64) -> bool {
+        matches!(self, Range(low, high) if (low..=high).contains(&value))
+    }
+}
+
+impl fmt::Display for Allowed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Text => f.write_str("text in quotes"),
+            Range(low, high) => write!(f, "{low} to {high}"),
+            OneOf(words) => {
+                for (i, word) in words.iter().enumerate() {
+                    write!(f, "{}\"{word}\"", if i == 0 { "" } else { " or " })?;
+                }
+                Ok(())
+            }
+        }
+    }
+}

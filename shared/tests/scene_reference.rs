@@ -1,0 +1,203 @@
+//! The doc comments of the scene's structs, the table of allowed values, the defaults and the README say the same.
+
+use shared::scene::{Allowed, FIELDS, REQUIRED, parse};
+use std::fmt::Write;
+use std::path::Path;
+
+/// A documented field of a scene file.
+struct Field {
+    path: String,
+    doc: String,
+}
+
+/// Source files and, for each struct in them, the section that it describes.
+const SOURCES: [(&str, &[(&str, &str)]); 8] = [
+    ("mod.rs", &[("Scene", "")]),
+    ("patches.rs", &[("Patches", "patches")]),
+    ("terrain.rs", &[("TerrainMaps", "terrain")]),
+    ("wind.rs", &[("Wind", "wind")]),
+    ("grass.rs", &[("Grass", "grass")]),
+    ("plants.rs", &[("Plants", "plants")]),
+    ("objects.rs", &[("Objects", "objects")]),
+    ("picture.rs", &[("CameraStart", "camera"), ("Light", "light")]),
+];
+
+const SECTIONS: [&str; 8] = ["patches", "terrain", "wind", "grass", "plants", "objects", "camera", "light"];
+
+fn documented() -> Vec<Field> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scene");
+    let mut fields = Vec::new();
+    for (file, structs) in SOURCES {
+        let source = std::fs::read_to_string(folder.join(file)).unwrap();
+        for (name, section) in structs {
+            let start = source.find(&format!("pub struct {name} {{")).unwrap();
+            let body = &source[start..start + source[start..].find("\n}").unwrap()];
+            let mut doc = Vec::new();
+            for line in body.lines().map(str::trim) {
+                if let Some(text) = line.strip_prefix("///") {
+                    doc.push(text.trim());
+                } else if let Some((key, _)) = line.strip_prefix("pub ").and_then(|line| line.split_once(": ")) {
+                    let path = if section.is_empty() { key.to_owned() } else { format!("{section}.{key}") };
+                    fields.push(Field { path, doc: std::mem::take(&mut doc).join(" ") });
+                }
+            }
+        }
+    }
+    fields.retain(|field| !SECTIONS.contains(&field.path.as_str()));
+    fields
+}
+
+/// The numbers in `text`, in order.
+fn numbers(text: &str) -> Vec<f64> {
+    let text = text.replace('−', "-").replace("..=", " ");
+    let words = text.split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-'));
+    words.filter_map(|word| word.trim_end_matches('.').parse().ok()).collect()
+}
+
+fn after<'a>(doc: &'a str, word: &str) -> Option<&'a str> {
+    doc.find(word).map(|at| &doc[at + word.len()..])
+}
+
+fn minimal() -> toml::Table {
+    toml::from_str(
+        "summary = ''\n[terrain]\nheight_map = 'h.png'\ncovering_map = 'c.png'\npixel_m = [0.5, 0.5]\nlevel_m = 0.1\nbase_m = 0.0\n",
+    )
+    .unwrap()
+}
+
+/// A scene with every field written out.
+fn complete() -> toml::Table {
+    toml::Table::try_from(parse(&minimal().to_string()).unwrap()).unwrap()
+}
+
+fn value_at<'t>(table: &'t mut toml::Table, path: &str) -> &'t mut toml::Value {
+    match path.split_once('.') {
+        Some((section, key)) => &mut table[section][key],
+        None => &mut table[path],
+    }
+}
+
+/// `value` with every number replaced.
+fn with_number(value: &toml::Value, number: &toml::Value) -> toml::Value {
+    match value {
+        toml::Value::Array(items) => items.iter().map(|_| number.clone()).collect::<Vec<_>>().into(),
+        _ => number.clone(),
+    }
+}
+
+#[test]
+fn every_field_is_in_the_table_once_and_in_order() {
+    let documented: Vec<_> = documented().into_iter().map(|field| field.path).collect();
+    assert_eq!(documented, FIELDS.map(|(path, _)| path.to_owned()));
+    let scene = complete();
+    let mut serialised = 0;
+    for (key, value) in &scene {
+        serialised += value.as_table().map_or(1, toml::Table::len);
+        assert_eq!(value.is_table(), SECTIONS.contains(&key.as_str()));
+    }
+    assert_eq!(serialised, FIELDS.len());
+}
+
+#[test]
+fn doc_comments_give_the_checked_range_and_the_true_default() {
+    let mut scene = complete();
+    for (field, (path, allowed)) in documented().iter().zip(FIELDS) {
+        if let Allowed::Range(low, high) = allowed {
+            let stated = numbers(after(&field.doc, "allowed ").unwrap_or_else(|| panic!("{path} states no range")));
+            assert_eq!(stated[..2], [low, high], "{path}: {}", field.doc);
+        }
+        if REQUIRED.contains(&path) {
+            assert!(field.doc.contains("Required"), "{path} does not say that it is required");
+            continue;
+        }
+        let stated = after(&field.doc, "Default ").unwrap_or_else(|| panic!("{path} states no default"));
+        let values = match value_at(&mut scene, path).clone() {
+            toml::Value::Array(items) => items,
+            value => vec![value],
+        };
+        for (i, value) in values.iter().enumerate() {
+            match value {
+                toml::Value::String(word) => assert!(stated.contains(word.as_str()), "{path}: {}", field.doc),
+                _ => {
+                    let value = value.as_float().unwrap_or_else(|| value.as_integer().unwrap() as f64);
+                    assert!((numbers(stated)[i] - value).abs() < 1e-6, "{path} is {value}: {}", field.doc);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_number_is_checked() {
+    for (path, allowed) in FIELDS {
+        let Allowed::Range(low, high) = allowed else { continue };
+        let mut absurd =
+            vec![f64::NAN.into(), f64::INFINITY.into(), f64::NEG_INFINITY.into(), (high * 2.0 + 1e6).into(), (low - 1e6).into()];
+        absurd.push(toml::Value::Integer(i64::MIN));
+        absurd.push(toml::Value::String("many".to_owned()));
+        absurd.push(toml::Value::Boolean(true));
+        for number in absurd {
+            let mut scene = complete();
+            let value = value_at(&mut scene, path);
+            *value = with_number(value, &number);
+            let faults = parse(&scene.to_string()).expect_err(&format!("{path} may be {number}"));
+            assert!(faults.iter().all(|fault| fault.path.starts_with(path)), "{path} = {number}: {faults:?}");
+            assert!(faults.iter().all(|fault| fault.line > 0 && fault.message.contains("allowed") || fault.message.contains("expected")));
+        }
+    }
+}
+
+#[test]
+fn the_ends_of_every_range_pass_the_check_of_that_range() {
+    for (path, allowed) in FIELDS {
+        let Allowed::Range(low, high) = allowed else { continue };
+        for end in [low, high] {
+            let mut scene = complete();
+            let value = value_at(&mut scene, path);
+            let whole = value.is_integer() || value.as_array().is_some_and(|items| items[0].is_integer());
+            let number = if whole { toml::Value::Integer(end as i64) } else { end.into() };
+            *value = with_number(value, &number);
+            let ranges = parse(&scene.to_string()).err().unwrap_or_default();
+            let out_of_range = format!("allowed: {allowed}");
+            assert!(ranges.iter().all(|fault| !fault.message.ends_with(&out_of_range)), "{path} = {end}: {ranges:?}");
+        }
+    }
+}
+
+#[test]
+fn exactly_the_required_fields_are_required() {
+    for path in FIELDS.iter().map(|(path, _)| *path).chain(SECTIONS) {
+        let mut scene = complete();
+        match path.split_once('.') {
+            Some((section, key)) => scene[section].as_table_mut().unwrap().remove(key),
+            None => scene.remove(path),
+        };
+        let missing = parse(&scene.to_string()).err().map(|faults| faults[0].path.clone());
+        assert_eq!(missing.as_deref(), REQUIRED.contains(&path).then_some(path));
+    }
+}
+
+#[test]
+fn the_readme_shows_every_field() {
+    let mut tables = String::new();
+    let mut section = None;
+    for field in documented() {
+        let (name, key) = field.path.split_once('.').unwrap_or(("", &field.path));
+        if section.as_deref() != Some(name) {
+            let title = if name.is_empty() { "At the top".to_owned() } else { format!("`[{name}]`") };
+            write!(tables, "\n{title}\n\n| Field | Meaning |\n|---|---|\n").unwrap();
+            section = Some(name.to_owned());
+        }
+        writeln!(tables, "| `{key}` | {} |", field.doc).unwrap();
+    }
+
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    let readme = std::fs::read_to_string(&path).unwrap();
+    let (head, rest) = readme.split_once("<!-- fields -->\n").unwrap();
+    let (found, tail) = rest.split_once("<!-- /fields -->").unwrap();
+    if std::env::var_os("PRAIRIE_UPDATE").is_some() {
+        std::fs::write(&path, format!("{head}<!-- fields -->\n{tables}<!-- /fields -->{tail}")).unwrap();
+    } else {
+        assert!(found == tables, "the README's tables are old; run again with PRAIRIE_UPDATE=1");
+    }
+}
