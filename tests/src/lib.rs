@@ -6,5 +6,6 @@ pub mod norms;
 pub mod pages;
 pub mod picture;
 pub mod problems;
+pub mod stage;
 pub mod synthetic;
 pub mod worlds;
