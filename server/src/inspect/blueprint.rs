@@ -33,7 +33,6 @@ pub(super) fn first_view(scene: &Scene, heights: &HeightMap) -> RecordingStreamR
     stream.set_time_sequence("blueprint", 0);
     let mut layout = Layout { stream, next: 1 };
 
-    let hidden = rerun::components::Visible::from(false);
     let land = layout.view(
         "3D",
         "Wind and grass",
@@ -41,8 +40,8 @@ pub(super) fn first_view(scene: &Scene, heights: &HeightMap) -> RecordingStreamR
         &["$origin/**"],
         &[
             ("EyeControls3D", &eye(scene, heights)),
-            ("Background", &Background::new(BackgroundKind::GradientDark)),
-            ("LineGrid3D", &LineGrid3D::new().with_visible(hidden)),
+            ("Background", &Background::new(BackgroundKind::SolidColor).with_color([27, 34, 46])),
+            ("LineGrid3D", &LineGrid3D::new().with_visible(false)),
         ],
     )?;
     let map = layout.view("2D", "Bending angle, from above", "map", &["$origin/**"], &[])?;
@@ -53,14 +52,15 @@ pub(super) fn first_view(scene: &Scene, heights: &HeightMap) -> RecordingStreamR
         ("Energy of the bend field", "health/bend/energy"),
         ("Awake patches", "health/bend/awake_patches"),
         ("Sub-steps, Courant number", "health/steps/**"),
-        ("Clients, objects, dropped log frames", "/health/net/** /health/log/**"),
-        ("Sent to clients (kB/s)", "health/sent/**"),
+        ("Clients, objects, dropped log frames", "health/net/** health/log/**"),
+        ("Sent to clients (kB/s)", "health/sent/kbyte_per_s"),
     ];
-    let legend = PlotLegend::new().with_corner(Corner2D::LeftTop);
     let mut plot_views = Vec::new();
     for (name, entities) in plots {
-        let contents: Vec<String> = entities.split(' ').map(|entity| format!("+ /{}", entity.trim_start_matches('/'))).collect();
+        let contents: Vec<String> = entities.split(' ').map(|entity| format!("+ /{entity}")).collect();
         let contents: Vec<&str> = contents.iter().map(String::as_str).collect();
+        let several = entities.contains('*');
+        let legend = PlotLegend::new().with_corner(Corner2D::LeftTop).with_visible(several);
         plot_views.push(layout.view("TimeSeries", name, "health", &contents, &[("PlotLegend", &legend)])?);
     }
 

@@ -5,7 +5,7 @@
 //! | `world/ground` | the land (static), with the bending angles laid on it as a texture |
 //! | `world/wind` | wind arrows: length the way of the air in 1.2 s, colour the speed |
 //! | `world/objects`, `world/trails` | boxes with poses and labels; the ways they came |
-//! | `map/bend`, `map/objects` | the bending angles from above, one class a code; the objects' places |
+//! | `map/bend`, `map/objects`, `map/scale` | the bending angles from above, one class a code; the objects' places; the colours |
 //! | `health/…` | scalars |
 
 use super::arrows::WindArrows;
@@ -18,8 +18,8 @@ use rerun::components::ImageFormat;
 use rerun::datatypes::ChannelDatatype;
 use rerun::external::re_uri::ProxyUri;
 use rerun::{
-    AnnotationContext, Arrows3D, AsComponents, Boxes3D, LineStrips3D, MemoryLimit, Mesh3D, Points2D, Quaternion, Radius, RecordingStream,
-    RecordingStreamBuilder, Rgba32, Scalars, SegmentationImage, SeriesLines, ServerOptions, ViewCoordinates,
+    AnnotationContext, Arrows3D, AsComponents, Boxes3D, LineStrips2D, LineStrips3D, MemoryLimit, Mesh3D, Points2D, Quaternion, Radius,
+    RecordingStream, RecordingStreamBuilder, Rgba32, Scalars, SegmentationImage, SeriesLines, ServerOptions, ViewCoordinates,
 };
 use shared::grid::PatchLayout;
 use shared::scene::Scene;
@@ -35,8 +35,14 @@ pub(super) const APPLICATION: &str = "prairie";
 /// History that is kept for viewers that connect later (bytes).
 const HISTORY_LIMIT_BYTES: u64 = 256 << 20;
 
+/// Radius of a wind arrow's shaft (m).
+const ARROW_RADIUS_M: f32 = 0.12;
+
 /// How long a viewer may take to answer at the start, and to take the last frames at the end.
 const VIEWER_LIMIT: Duration = Duration::from_secs(2);
+
+/// Steps of the bar that explains the colours of angles.
+const SCALE_STEPS: usize = 9;
 
 /// Scalars: entity, name in the plots, colour, and how to read it.
 #[expect(clippy::type_complexity, reason = "a table reads best as one literal")]
@@ -102,10 +108,24 @@ impl Recording {
         let names: Vec<_> =
             (0..=127).map(|code| (u16::from(code), format!("{:.0}°", degrees(code)), Rgba32::from(bend_rgb(degrees(code))))).collect();
         keep("map", &AnnotationContext::new(names.iter().map(|(code, name, rgb)| (*code, name.as_str(), *rgb))))?;
+        keep("map/scale", &self.scale())?;
         for (entity, name, rgba, _) in SCALARS {
             keep(entity, &SeriesLines::new().with_names([name]).with_colors([rgba]).with_widths([1.5]))?;
         }
         Ok(())
+    }
+
+    /// The colours of the angles as a bar below the map.
+    fn scale(&self) -> LineStrips2D {
+        let [width_px, depth_px] = self.map.size_px().map(|n| n as f32);
+        let (height_px, step_px) = (0.04 * width_px, width_px / SCALE_STEPS as f32);
+        let y = depth_px + 1.5 * height_px;
+        let bars = (0..SCALE_STEPS).map(|i| [[i as f32 * step_px, y], [(i + 1) as f32 * step_px, y]]);
+        let middle_degrees: Vec<_> = (0..SCALE_STEPS).map(|i| 90.0 * (i as f32 + 0.5) / SCALE_STEPS as f32).collect();
+        LineStrips2D::new(bars)
+            .with_colors(middle_degrees.iter().map(|&at| Rgba32::from(bend_rgb(at))))
+            .with_labels(middle_degrees.iter().map(|at| format!("{at:.0}°")))
+            .with_radii([0.5 * height_px])
     }
 
     fn log(&self, entity: &str, what: &dyn AsComponents) -> Result<(), InspectError> {
@@ -153,7 +173,7 @@ impl Sink for Recording {
         if self.wind_tick.replace(snapshot.wind.tick) != Some(snapshot.wind.tick) {
             let (origins_m, vectors_m, colours) = self.arrows.of(&snapshot.wind);
             let arrows = Arrows3D::from_vectors(vectors_m).with_origins(origins_m);
-            self.log("world/wind", &arrows.with_colors(colours.into_iter().map(Rgba32::from)).with_radii([Radius::new_ui_points(1.0)]))?;
+            self.log("world/wind", &arrows.with_colors(colours.into_iter().map(Rgba32::from)).with_radii([ARROW_RADIUS_M]))?;
         }
         self.write_objects(snapshot)?;
         SCALARS.iter().try_for_each(|(entity, _, _, read)| self.log(entity, &Scalars::single(read(frame))))
@@ -395,9 +415,9 @@ mod tests {
                 }
             }
             let health = crate::snapshot::Health {
-                step_secs: 0.003,
+                step_secs: 0.003 + 0.0003 * (t * 3.0).sin() as f32,
                 step_max_secs: 0.005 + (step % 7) as f32 * 1e-4,
-                divergence_rms: 1e-6,
+                divergence_rms: 1e-6 * (1.5 + (t * 2.0).sin() as f32),
                 wind_energy: 14.0 + (t).sin(),
                 bend_energy: 3000.0 + 10.0 * t,
                 awake_patches: 120 + (step / 9) as u32,
