@@ -213,6 +213,11 @@ impl Mirror {
         self.patches.bent()
     }
 
+    /// Number of patches heard of, bent or at rest.
+    pub fn known_patches(&self) -> usize {
+        self.patches.known()
+    }
+
     /// Patches that have changed since the last call.
     pub fn take_dirty_patches(&mut self) -> Vec<PatchIndex> {
         self.patches.take_dirty()

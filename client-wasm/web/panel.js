@@ -90,7 +90,6 @@ export class Panel {
     if (!state) return;
     const driven = state.vehicle ?? state.wanted ?? "";
     for (const button of byId("vehicles").children) button.setAttribute("aria-pressed", String(button.dataset.vehicle === driven));
-    byId("lift").hidden = !driven;
     write("scene", state.scene ?? "");
     write("count", state.peers.length > 1 ? String(state.peers.length) : "");
     write("frame", state.frame_ms ? `${state.frame_ms.toFixed(state.frame_ms < 100 ? 1 : 0)} ms · ${state.fps.toFixed(state.fps < 10 ? 1 : 0)}/s` : "–");

@@ -57,12 +57,12 @@ Examples:
   prairie serve                              the scene `meadow` on http://127.0.0.1:8080
   prairie serve --addr 127.0.0.1:0           on any free port; the address is printed
   prairie serve --addr 0.0.0.0:8443 --tls self
-                                             on all addresses of this machine; the browser asks whether to trust the
-                                             certificate: compare the fingerprint that is printed
+                                             on all addresses of this machine
   prairie serve --tls cert.pem,key.pem       with a certificate of your own
   prairie serve --rerun save=run.rrd         records wind and grass for the rerun viewer
 
 Browsers give WebGPU only to pages from this machine or over https, so other machines need --tls.
+With `--tls self` the browser warns first: compare the fingerprint with the one printed here.
 The log goes to stderr; RUST_LOG=server=debug makes it talk more.";
 
 #[derive(Debug, Args)]

@@ -115,16 +115,16 @@ impl App {
         self.tell();
     }
 
-    /// Moves the eye and draws; returns whether it did: not while there is nothing to draw, or the device is behind.
+    /// Moves the eye on to `time_secs` and draws; returns whether it did: not while there is nothing to draw, or the device is behind.
     pub(super) fn frame(&mut self, now_secs: f64, time_secs: f64) -> bool {
         self.run_clock(now_secs);
-        let dt_secs = (now_secs - self.drawn_secs).clamp(0.0, LONGEST_FRAME_SECS) as f32;
+        let dt_secs = (time_secs - self.drawn_secs).clamp(0.0, LONGEST_FRAME_SECS) as f32;
         let vehicle = self.shown_own_object();
         let (Some(rig), Some(stage)) = (&mut self.rig, &mut self.stage) else { return false };
         if stage.is_busy() {
             return false;
         }
-        self.drawn_secs = now_secs;
+        self.drawn_secs = time_secs;
         let [right_rad, up_rad] = self.input.take_look(dt_secs);
         rig.look(right_rad, up_rad);
         rig.zoom(self.input.take_zoom());

@@ -21,7 +21,7 @@ pub(super) enum Wish {
 }
 
 /// Heights of the eye on the keys 1 to 4 (m); 000 figure 23.
-const HEIGHTS_M: [(&str, f32); 4] = [("1", 1.0), ("2", 5.0), ("3", 10.0), ("4", 20.0)];
+const HEIGHTS_M: [(&str, f32); 4] = [("Digit1", 1.0), ("Digit2", 5.0), ("Digit3", 10.0), ("Digit4", 20.0)];
 
 /// Presses that wait to be granted; more are not kept.
 const WISHES: usize = 16;
@@ -101,7 +101,7 @@ impl Keys {
             self.down.insert(code);
         }
         if !event.repeat() && self.wishes.len() < WISHES {
-            self.wishes.extend(wish(&event.key()));
+            self.wishes.extend(wish(&event.key(), &event.code()));
         }
     }
 
@@ -130,14 +130,14 @@ const MOVES: [(&str, Controls); 13] = [
     ("ShiftRight", Controls { rise: -1.0, ..STILL }),
 ];
 
-/// What a key asks for, by its letter.
-fn wish(key: &str) -> Option<Wish> {
+/// What a key asks for: a vehicle by its letter, a height by the key's place, since some layouts have digits only with shift.
+fn wish(key: &str, code: &str) -> Option<Wish> {
     let vehicle = match key.to_lowercase().as_str() {
         "c" => Some(VehicleKind::Car),
         "m" => Some(VehicleKind::Monster),
         "h" => Some(VehicleKind::Helicopter),
         "f" | "escape" => None,
-        digit => return HEIGHTS_M.iter().find(|(known, _)| *known == digit).map(|&(_, height_m)| Wish::Height(height_m)),
+        _ => return HEIGHTS_M.iter().find(|(known, _)| *known == code).map(|&(_, height_m)| Wish::Height(height_m)),
     };
     Some(Wish::Take(vehicle))
 }

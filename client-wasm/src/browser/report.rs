@@ -42,6 +42,7 @@ impl App {
             "bytes_per_s": self.connection.bytes_per_s(),
             "bytes": self.connection.received_bytes(),
             "latency_ms": self.connection.latency_secs().map(|secs| secs * 1e3),
+            "patches_known": self.mirror.known_patches(),
             "patches_bent": self.mirror.bent_patches().count(),
             "quality": self.quality.name(),
             "picture_px": self.picture_px(),

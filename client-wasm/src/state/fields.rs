@@ -81,6 +81,10 @@ impl Patches {
         self.entries.get(&patch)?.codes.as_ref()
     }
 
+    pub(super) fn known(&self) -> usize {
+        self.entries.len()
+    }
+
     pub(super) fn bent(&self) -> impl Iterator<Item = PatchIndex> + '_ {
         self.entries.iter().filter(|(_, entry)| entry.codes.is_some()).map(|(&index, _)| index)
     }
