@@ -115,7 +115,7 @@ pub async fn run_simulation(
     tokio::task::spawn_blocking(move || {
         let sound = runner.stop();
         if let Some(inspector) = inspector
-            && let Err(error) = finish(inspector)
+            && let Err(error) = inspector.finish()
         {
             tracing::warn!(%error, "the recording is incomplete");
         }
@@ -137,17 +137,6 @@ async fn record(inspector: Arc<Inspector>, mut published: watch::Receiver<Arc<Pu
         }
         let newest = Arc::clone(&published.borrow_and_update());
         inspector.observe(&newest.snapshot);
-    }
-}
-
-/// Closes the recording once [`record`] has let go of it.
-fn finish(mut inspector: Arc<Inspector>) -> Result<(), InspectError> {
-    loop {
-        match Arc::try_unwrap(inspector) {
-            Ok(inspector) => return inspector.finish(),
-            Err(shared) => inspector = shared,
-        }
-        std::thread::sleep(Duration::from_millis(5));
     }
 }
 
