@@ -84,7 +84,7 @@ fn eye(scene: &Scene, heights: &HeightMap) -> EyeControls3D {
     let [x, z] = [0, 1].map(|axis| scene.camera.at[axis] * extent_m[axis]);
     let target = Vec3::new(x, heights.height_m(x, z), z);
     let (sin, cos) = scene.camera.heading_rad.sin_cos();
-    let distance_m = (0.35 * extent_m[0].min(extent_m[1])).clamp(20.0, 150.0);
+    let distance_m = (0.28 * extent_m[0].min(extent_m[1])).clamp(20.0, 150.0);
     let eye = target + distance_m * Vec3::new(-sin, 0.55, cos);
     EyeControls3D::new().with_position(eye.to_array()).with_look_target(target.to_array()).with_eye_up([0.0, 1.0, 0.0])
 }

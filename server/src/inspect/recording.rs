@@ -150,7 +150,7 @@ impl Recording {
             .with_fill_mode(FillMode::TransparentFillMajorWireframe);
         self.log(
             "world/objects",
-            &boxes.with_colors(colours()).with_labels(objects.iter().map(label)).with_radii([Radius::new_ui_points(2.0)]),
+            &boxes.with_colors(colours()).with_labels(objects.iter().map(label)).with_radii([Radius::new_ui_points(1.0)]),
         )?;
 
         self.trails.update(objects);
@@ -167,7 +167,8 @@ impl Recording {
 impl Sink for Recording {
     fn write(&mut self, frame: &Frame) -> Result<(), InspectError> {
         let snapshot = &frame.snapshot;
-        self.stream.set_duration_secs("sim_time", snapshot.time_secs);
+        let readable_secs = (snapshot.time_secs * 1e4).round() / 1e4;
+        self.stream.set_duration_secs("sim_time", readable_secs);
         self.stream.set_time_sequence("tick", i64::try_from(snapshot.tick).unwrap_or(i64::MAX));
         if self.map.update(&snapshot.patches) {
             self.write_bends()?;
@@ -249,7 +250,7 @@ mod tests {
     use rerun::external::re_log_encoding::DecoderApp;
     use rerun::log::{Chunk, LogMsg};
     use shared::scene::VehicleKind;
-    use shared::wire::quantise::{theta_code, wind_code};
+    use shared::wire::quantise::wind_code;
     use std::collections::BTreeMap;
     use std::fs::File;
     use std::io::BufReader;
@@ -337,107 +338,5 @@ mod tests {
         assert!(matches!(absent.err(), Some(InspectError::NoViewer { .. })));
         let nowhere = open(&Target::Save("/no/such/folder/a.rrd".into()));
         assert!(matches!(nowhere.err(), Some(InspectError::File { .. })));
-    }
-
-    #[test]
-    fn demo() {
-        let Ok(out) = std::env::var("DEMO_RRD") else { return };
-        let scene = scene();
-        let h: Vec<f32> = (0..129 * 129)
-            .map(|n| {
-                let (x, z) = ((n % 129) as f32, (n / 129) as f32);
-                6.0 * (x * 0.07).sin() * (z * 0.05).cos() + 3.0 * (x * 0.15 + z * 0.1).sin() + 9.0
-            })
-            .collect();
-        let heights = HeightMap::from_heights(129, 129, [2.0, 2.0], h);
-        let inspector = super::super::Inspector::start(&out.parse().unwrap(), &scene, &heights).unwrap();
-        let cells = 1024usize;
-        let mut theta = vec![0f32; cells * cells];
-        for step in 0..200u64 {
-            let t = step as f64 * 0.1;
-            let mut objects = Vec::new();
-            for (id, kind, r, w) in [
-                (1, VehicleKind::Car, 38.0f32, 0.35f32),
-                (2, VehicleKind::Car, 22.0, -0.5),
-                (3, VehicleKind::Helicopter, 55.0, 0.2),
-                (4, VehicleKind::Monster, 10.0, 0.15),
-            ] {
-                let a = w * t as f32 + id as f32;
-                let (x, z) = (128.0 + r * a.cos(), 150.0 + r * a.sin());
-                let up = if kind == VehicleKind::Helicopter { 12.0 } else { 0.9 };
-                let q = glam::Quat::from_rotation_y(-a + if w > 0.0 { std::f32::consts::PI } else { 0.0 });
-                objects.push(ObjectPose {
-                    id,
-                    kind,
-                    position_m: [x, heights.height_m(x, z) + up, z],
-                    rotation: q.to_array(),
-                    velocity_m_per_s: [r * w, 0.0, 0.0],
-                    part_rad: 0.0,
-                });
-                let rr = if kind == VehicleKind::Helicopter { 9.0 } else { 1.2 };
-                for dz in -40i32..=40 {
-                    for dx in -40i32..=40 {
-                        let d = ((dx * dx + dz * dz) as f32).sqrt() * 0.25;
-                        if d < rr {
-                            let c = ((z * 4.0) as i32 + dz) as usize * cells + ((x * 4.0) as i32 + dx) as usize;
-                            theta[c] = theta[c].max(if rr > 5.0 { 0.8 * (1.0 - d / rr) } else { 1.3 });
-                        }
-                    }
-                }
-            }
-            for v in &mut theta {
-                *v *= 0.985;
-            }
-            let patches = (0..256usize)
-                .map(|p| {
-                    let (px, pz) = (p % 16 * 64, p / 16 * 64);
-                    let mut codes: Vec<i8> = (0..4096)
-                        .map(|n| {
-                            theta_code(
-                                theta[(pz + n / 64) * cells + px + n % 64]
-                                    + 0.12 * (1.0 + ((px + n % 64) as f32 * 0.03 - 2.0 * t as f32 + (pz + n / 64) as f32 * 0.017).sin()),
-                            )
-                        })
-                        .collect();
-                    codes.resize(3 * 4096, 0);
-                    Some(Arc::new(PatchCodes { tick: step, codes }))
-                })
-                .collect();
-            let mut codes = Vec::new();
-            for axis in 0..3 {
-                for n in 0..8192usize {
-                    let (i, j, k) = (n % 32, n / 32 % 8, n / 256);
-                    let g = ((i as f32 * 0.4 - t as f32).sin() + (k as f32 * 0.3 + t as f32 * 0.7).cos()) * 1.6;
-                    let p = (1.0 + j as f32).ln() * 0.4 + 0.3;
-                    codes.push(wind_code(match axis {
-                        0 => (4.0 + g) * p,
-                        1 => 0.3 * g,
-                        _ => (2.5 - g) * p,
-                    }));
-                }
-            }
-            let health = crate::snapshot::Health {
-                step_secs: 0.003 + 0.0003 * (t * 3.0).sin() as f32,
-                step_max_secs: 0.005 + (step % 7) as f32 * 1e-4,
-                divergence_rms: 1e-6 * (1.5 + (t * 2.0).sin() as f32),
-                wind_energy: 14.0 + (t).sin(),
-                bend_energy: 3000.0 + 10.0 * t,
-                awake_patches: 120 + (step / 9) as u32,
-                substeps: 2 + (step / 40 % 3) as u32,
-                courant: 0.4,
-            };
-            inspector.observe_traffic(2, 80_000.0);
-            inspector.observe(&Snapshot {
-                tick: step * 6,
-                time_secs: t,
-                objects,
-                wind: Arc::new(WindFrame { tick: step * 6, cells: [32, 8, 32], codes }),
-                patches,
-                health,
-            });
-            std::thread::sleep(Duration::from_millis(20));
-        }
-        println!("dropped {}", inspector.dropped());
-        inspector.finish().unwrap();
     }
 }
