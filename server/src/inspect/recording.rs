@@ -156,7 +156,7 @@ impl Recording {
         self.trails.update(objects);
         let (strips, trail_colours) = self.trails.strips();
         let trails = LineStrips3D::new(strips).with_colors(trail_colours.into_iter().map(Rgba32::from));
-        self.log("world/trails", &trails.with_radii([Radius::new_ui_points(1.5)]))?;
+        self.log("world/trails", &trails.with_radii([Radius::new_ui_points(1.0)]))?;
 
         let pixel_m = self.map.pixel_m();
         let places = objects.iter().map(|object| [object.position_m[0] / pixel_m, object.position_m[2] / pixel_m]);

@@ -5,8 +5,8 @@ use shared::scene::VehicleKind;
 use shared::wire::{ObjectId, ObjectPose};
 use std::collections::{BTreeMap, VecDeque};
 
-/// Points that a trail keeps: 20 s of a file, 25 s live.
-const TRAIL_LIMIT: usize = 200;
+/// Points that a trail keeps: 6 s of a file, 9 s live.
+const TRAIL_LIMIT: usize = 60;
 
 /// Least distance between points of a trail (m).
 const TRAIL_STEP_M: f32 = 0.2;
