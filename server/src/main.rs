@@ -2,8 +2,8 @@
 
 use anyhow::Context as _;
 use clap::{Args, Parser, Subcommand};
-use server::net::{Tls, TlsChoice, bind};
 use server::inspect::Target;
+use server::net::{Tls, TlsChoice, bind};
 use server::{Config, Limits, scenes};
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
