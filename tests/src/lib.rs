@@ -2,5 +2,8 @@
 
 pub mod browser;
 pub mod chromedriver;
+pub mod gauss_seidel;
+pub mod norms;
 pub mod pages;
 pub mod picture;
+pub mod problems;
