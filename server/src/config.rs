@@ -1,10 +1,9 @@
 //! What a run of the server can be told.
 
+use crate::inspect::Target;
 use crate::net::Tls;
 use crate::scenes::LoadedScene;
 use crate::stream::SendLimits;
-use std::path::PathBuf;
-use std::str::FromStr;
 use std::time::Duration;
 
 /// Everything that a run needs but the socket it listens on.
@@ -15,7 +14,7 @@ pub struct Config {
     /// Certificate and key for https; none: plain http.
     pub tls: Option<Tls>,
     /// Where the fields are logged for the rerun viewer.
-    pub rerun: Option<RerunSink>,
+    pub rerun: Option<Target>,
     /// Threads of the simulation; none: one for each core.
     pub threads: Option<usize>,
     /// Snapshots per second (Hz). Default 20.
@@ -57,45 +56,6 @@ impl Default for Limits {
             stall: Duration::from_secs(15),
             messages_per_sec: 200.0,
             send: SendLimits::default(),
-        }
-    }
-}
-
-/// Where the fields are logged for the rerun viewer.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum RerunSink {
-    /// Serve to viewers that connect.
-    Serve,
-    /// Write a recording.
-    Save(PathBuf),
-    /// Connect to a viewer at this URL.
-    Connect(String),
-}
-
-impl FromStr for RerunSink {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.split_once('=') {
-            None if text == "serve" => Ok(Self::Serve),
-            Some(("save", file)) if !file.is_empty() => Ok(Self::Save(file.into())),
-            Some(("connect", url)) if !url.is_empty() => Ok(Self::Connect(url.to_owned())),
-            _ => Err("expected `serve`, `save=FILE.rrd` or `connect=URL`".to_owned()),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rerun_sinks_are_read() {
-        assert_eq!("serve".parse(), Ok(RerunSink::Serve));
-        assert_eq!("save=a=b.rrd".parse(), Ok(RerunSink::Save("a=b.rrd".into())));
-        assert_eq!("connect=rerun+http://127.0.0.1:9876/proxy".parse(), Ok(RerunSink::Connect("rerun+http://127.0.0.1:9876/proxy".into())));
-        for wrong in ["", "serve=", "save", "save=", "connect=", "view"] {
-            assert!(wrong.parse::<RerunSink>().is_err(), "{wrong}");
         }
     }
 }

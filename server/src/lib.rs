@@ -7,6 +7,7 @@
 pub mod bend;
 pub mod bucket;
 mod config;
+pub mod inspect;
 pub mod net;
 pub mod objects;
 pub mod runner;
@@ -17,10 +18,11 @@ pub mod weather;
 pub mod wind;
 pub mod world;
 
-pub use config::{Config, Limits, RerunSink};
+pub use config::{Config, Limits};
 
+use inspect::{InspectError, Inspector};
 use net::App;
-use runner::{Runner, Simulation, Timing};
+use runner::{Published, Runner, Simulation, Timing};
 use shared::grid::PatchLayout;
 use shared::wire::{self, ServerMessage};
 use std::sync::Arc;
@@ -43,6 +45,9 @@ pub enum RunError {
     /// The scene's constants make no world together.
     #[error(transparent)]
     World(#[from] WorldError),
+    /// The run cannot be recorded as asked.
+    #[error(transparent)]
+    Inspect(#[from] InspectError),
     /// The world's thread ended by itself, which is a fault of the program.
     #[error("the simulation has stopped unexpectedly; the log says where")]
     WorldStopped,
@@ -72,6 +77,7 @@ pub async fn run_simulation(
     let scene = &config.scene.scene;
     let layout = PatchLayout::from(&scene.patches);
     let timing = Timing { tick_hz: scene.tick_hz, publish_hz: config.publish_hz, threads: config.threads };
+    let inspector = config.rerun.as_ref().map(|target| Inspector::start(target, scene, &config.scene.height)).transpose()?.map(Arc::new);
     let runner = Runner::start(simulation, timing)?;
     let mut published = runner.published();
     let clients = Arc::new(Clients::default());
@@ -91,6 +97,10 @@ pub async fn run_simulation(
         stopping,
         started: Instant::now(),
     });
+    if let Some(inspector) = &inspector {
+        tracing::info!(target = inspector.target(), "recording for the rerun viewer");
+        tokio::spawn(record(Arc::clone(inspector), runner.published(), clients.clone()));
+    }
     let world_stopped = async { while published.changed().await.is_ok() {} };
     let outcome = tokio::select! {
         () = net::serve(listener, config.tls.clone(), net::router(app), config.limits) => Ok(()),
@@ -104,10 +114,41 @@ pub async fn run_simulation(
     }
     tokio::task::spawn_blocking(move || {
         let sound = runner.stop();
+        if let Some(inspector) = inspector
+            && let Err(error) = finish(inspector)
+        {
+            tracing::warn!(%error, "the recording is incomplete");
+        }
         sound && stream.join().is_ok()
     })
     .await
     .map_or(Err(RunError::WorldStopped), |sound| if sound { outcome } else { Err(RunError::WorldStopped) })
+}
+
+/// Shows every published snapshot to the inspector, with what is sent to the clients; ends when the runner does.
+async fn record(inspector: Arc<Inspector>, mut published: watch::Receiver<Arc<Published>>, clients: Arc<Clients>) {
+    let (mut since, mut sent_before) = (Instant::now(), 0);
+    while published.changed().await.is_ok() {
+        if since.elapsed() >= Duration::from_secs(1) {
+            let sent: u64 = clients.all().iter().map(|client| client.sent_bytes()).sum();
+            let bytes_per_sec = sent.saturating_sub(sent_before) as f64 / since.elapsed().as_secs_f64();
+            inspector.observe_traffic(clients.count() as u32, bytes_per_sec);
+            (since, sent_before) = (Instant::now(), sent);
+        }
+        let newest = Arc::clone(&published.borrow_and_update());
+        inspector.observe(&newest.snapshot);
+    }
+}
+
+/// Closes the recording once [`record`] has let go of it.
+fn finish(mut inspector: Arc<Inspector>) -> Result<(), InspectError> {
+    loop {
+        match Arc::try_unwrap(inspector) {
+            Ok(inspector) => return inspector.finish(),
+            Err(shared) => inspector = shared,
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
 }
 
 fn scene_message(config: &Config) -> bytes::Bytes {

@@ -3,7 +3,8 @@
 use anyhow::Context as _;
 use clap::{Args, Parser, Subcommand};
 use server::net::{Tls, TlsChoice, bind};
-use server::{Config, Limits, RerunSink, scenes};
+use server::inspect::Target;
+use server::{Config, Limits, scenes};
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -56,12 +57,12 @@ Examples:
   prairie serve                              the scene `meadow` on http://127.0.0.1:8080
   prairie serve --addr 127.0.0.1:0           on any free port; the address is printed
   prairie serve --addr 0.0.0.0:8443 --tls self
-                                             on all addresses of this machine; the browser asks whether to trust the
-                                             certificate: compare the fingerprint that is printed
+                                             on all addresses of this machine
   prairie serve --tls cert.pem,key.pem       with a certificate of your own
   prairie serve --rerun save=run.rrd         records wind and grass for the rerun viewer
 
 Browsers give WebGPU only to pages from this machine or over https, so other machines need --tls.
+With `--tls self` the browser warns first: compare the fingerprint with the one printed here.
 The log goes to stderr; RUST_LOG=server=debug makes it talk more.";
 
 #[derive(Debug, Args)]
@@ -80,7 +81,7 @@ struct Serve {
     tls: Option<TlsChoice>,
     /// Log the fields for the rerun viewer: serve them to viewers, save a recording, or connect to a viewer
     #[arg(long, value_name = "serve|save=FILE.rrd|connect=URL")]
-    rerun: Option<RerunSink>,
+    rerun: Option<Target>,
     /// Threads of the simulation [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,

@@ -9,9 +9,11 @@ use server::runner::Simulation;
 use server::scenes::LoadedScene;
 use server::snapshot::{PatchCodes, Snapshot, WindFrame};
 use server::world::Command;
-use server::{Config, Limits, RunError, run_simulation};
-use shared::scene::{Patches, Scene, TerrainMaps, VehicleKind};
+use server::{Config, Limits, RunError, run, run_simulation, scenes};
+use shared::grid::PatchLayout;
+use shared::scene::{Patches, Scene, TerrainMaps, VehicleKind, Wind};
 use shared::terrain::{CoverMap, HeightMap};
+use shared::wire::quantise::theta_code;
 use shared::wire::{ClientMessage, Close, Drive, ObjectId, ObjectPose, PROTOCOL, Refusal, ServerMessage, encode};
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -97,13 +99,14 @@ fn pose(client: u32, kind: VehicleKind) -> ObjectPose {
 fn scene() -> LoadedScene {
     let terrain = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [1.0, 1.0], level_m: 0.1, base_m: 0.0 };
     let patches = Patches { count: [3, 3], cells: CELLS as u32, cell_m: 1.0, ..Patches::default() };
-    let scene: Scene = Scene {
+    let wind = Wind { cells: WIND_CELLS, ..Wind::default() };
+    let scene = Scene {
         summary: "a test".to_owned(),
         seed: 1,
         tick_hz: 120.0,
         patches,
         terrain,
-        wind: Default::default(),
+        wind,
         grass: Default::default(),
         plants: Default::default(),
         objects: Default::default(),
@@ -144,6 +147,15 @@ impl Server {
         let shutdown = async { drop(stopped.await) };
         let outcome = tokio::spawn(run_simulation(world, config, listener, shutdown));
         (Self { address, stop, outcome }, tls)
+    }
+
+    /// The real thing: the default scene.
+    async fn start_meadow() -> Self {
+        let listener = bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        let (stop, stopped) = oneshot::channel();
+        let config = Config::new(scenes::load("meadow").unwrap());
+        Self { address, stop, outcome: tokio::spawn(run(config, listener, async { drop(stopped.await) })) }
     }
 
     async fn stop(self) {
@@ -221,7 +233,7 @@ impl<S: AsyncRead + AsyncWrite + Unpin> Visitor<S> {
         loop {
             match within(self.socket.next()).await {
                 Some(Ok(Message::Binary(bytes))) => {
-                    let message = self.picture.apply(&bytes, CELLS, WIND_CELLS);
+                    let message = self.picture.apply(&bytes);
                     match &message {
                         ServerMessage::Roster { peers } => {
                             self.peers = peers.iter().map(|peer| (peer.client, peer.name.clone(), peer.object)).collect();
@@ -301,6 +313,26 @@ async fn two_visitors_see_the_same_world() {
     bob.frames_until(|bob| bob.objects.is_empty()).await;
     drop(ada);
     bob.frames_until(|bob| bob.peers.len() == 1).await;
+    server.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn the_track_of_a_car_shows_at_another_visitor() {
+    let server = Server::start_meadow().await;
+    let layout = PatchLayout::from(&scenes::load("meadow").unwrap().scene.patches);
+    let (mut driver, mut watcher) = (Plain::join(&server, "driver").await, Plain::join(&server, "watcher").await);
+    driver.say(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
+    driver.say(&ClientMessage::Drive(Drive { throttle: 0.5, ..Drive::default() })).await;
+    watcher.frames_until(|watcher| !watcher.objects.is_empty()).await;
+    let start = watcher.objects[0].position_m;
+    watcher.say(&ClientMessage::View { eye_m: start, radius_m: 64.0 }).await;
+    let patch = layout.patch_at(start[0], start[2]).expect("a car stands in the world");
+    let bent = |visitor: &Plain| {
+        let (_, codes) = visitor.picture.patches.get(&patch)?;
+        codes[..visitor.picture.patch_cells.pow(2)].iter().max().copied()
+    };
+    let pressed = theta_code(1.0);
+    tokio::join!(driver.frames_until(|driver| driver.picture.frame > 40), watcher.frames_until(|watcher| bent(watcher) >= Some(pressed)));
     server.stop().await;
 }
 

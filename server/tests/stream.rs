@@ -60,8 +60,7 @@ impl Visitor {
     fn join(clients: &Clients, limits: SendLimits, radius_m: f32) -> Self {
         let (client, frames) = clients.join(clients.next_id(), "visitor".to_owned(), limits.in_flight as usize);
         client.look(Gaze { eye_m: [12.0, 2.0, 12.0], radius_m });
-        let picture = Picture { wind: (0, vec![0; 3 * 32]), ..Picture::default() };
-        Self { client, frames, picture }
+        Self { client, frames, picture: Picture::new(LAYOUT.cells as usize, WIND_CELLS) }
     }
 
     /// Takes every frame that waits; acknowledges the newest.
@@ -69,7 +68,7 @@ impl Visitor {
         let frames: Vec<_> = std::iter::from_fn(|| self.frames.try_recv().ok()).collect();
         for frame in &frames {
             for message in &frame.messages {
-                self.picture.apply(message, LAYOUT.cells as usize, WIND_CELLS);
+                self.picture.apply(message);
             }
             assert!(self.client.acknowledge(frame.number));
         }
@@ -277,7 +276,7 @@ fn a_refused_vehicle_is_said_once() {
         streamer.publish(&prairie.publish(), &clients.all(), now);
         for frame in std::iter::from_fn(|| visitor.frames.try_recv().ok()) {
             for message in &frame.messages {
-                let message = visitor.picture.apply(message, 8, WIND_CELLS);
+                let message = visitor.picture.apply(message);
                 refusals += usize::from(matches!(message, ServerMessage::Refused { refusal: Refusal::ObjectLimit, .. }));
             }
         }

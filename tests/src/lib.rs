@@ -2,7 +2,10 @@
 
 pub mod browser;
 pub mod chromedriver;
+pub mod norms;
 pub mod pages;
 pub mod picture;
+pub mod problems;
+pub mod stage;
 pub mod synthetic;
 pub mod worlds;

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 use thiserror::Error;
 use tokio_rustls::TlsAcceptor;
-use tokio_rustls::rustls::pki_types::pem::PemObject;
+use tokio_rustls::rustls::pki_types::pem::{self, PemObject};
 use tokio_rustls::rustls::pki_types::{CertificateDer, PrivateKeyDer, PrivatePkcs8KeyDer};
 use tokio_rustls::rustls::{self, ServerConfig};
 
@@ -41,22 +41,12 @@ impl FromStr for TlsChoice {
 /// Why there is no TLS.
 #[derive(Debug, Error)]
 pub enum TlsError {
-    /// A file is missing, unreadable or holds something else.
-    #[error("{}: holds no {what}: {reason}", file.display())]
+    /// A file is missing, unreadable or holds something else, or certificate and key do not go together.
+    #[error("{} {reason}", file.display())]
     File {
         /// The file.
         file: PathBuf,
-        /// What was looked for.
-        what: &'static str,
-        /// Why it was not found.
-        reason: String,
-    },
-    /// Certificate and key are sound but do not go together, or the library wants others.
-    #[error("{}: {reason}", file.display())]
-    Unusable {
-        /// The certificate's file.
-        file: PathBuf,
-        /// Why.
+        /// Why it is of no use.
         reason: String,
     },
     /// A certificate could not be made.
@@ -116,15 +106,23 @@ fn self_signed(listening: SocketAddr) -> Result<Tls, TlsError> {
 }
 
 fn from_files(certificate: &Path, key: &Path) -> Result<Tls, TlsError> {
-    let file = |file: &Path, what, reason: String| TlsError::File { file: file.to_owned(), what, reason };
-    let in_certificate = |error: rustls::pki_types::pem::Error| file(certificate, "PEM certificate", error.to_string());
-    let chain: Vec<_> =
-        CertificateDer::pem_file_iter(certificate).map_err(in_certificate)?.collect::<Result<_, _>>().map_err(in_certificate)?;
+    let unusable = |file: &Path, reason: String| TlsError::File { file: file.to_owned(), reason };
+    let in_chain = |error| unusable(certificate, fault("certificate", &error));
+    let chain: Vec<_> = CertificateDer::pem_file_iter(certificate).map_err(in_chain)?.collect::<Result<_, _>>().map_err(in_chain)?;
     if chain.is_empty() {
-        return Err(file(certificate, "PEM certificate", "no `BEGIN CERTIFICATE` section".to_owned()));
+        return Err(in_chain(pem::Error::NoItemsFound));
     }
-    let key = PrivateKeyDer::from_pem_file(key).map_err(|error| file(key, "PEM private key", error.to_string()))?;
-    Tls::from_parts(chain, key).map_err(|error| TlsError::Unusable { file: certificate.to_owned(), reason: error.to_string() })
+    let key = PrivateKeyDer::from_pem_file(key).map_err(|error| unusable(key, fault("private key", &error)))?;
+    Tls::from_parts(chain, key).map_err(|error| unusable(certificate, format!("cannot be served with that key: {error}")))
+}
+
+/// What is wrong with a file that should hold `what`.
+fn fault(what: &str, error: &pem::Error) -> String {
+    match error {
+        pem::Error::Io(error) => format!("cannot be read: {error}"),
+        pem::Error::NoItemsFound => format!("holds no {what} in PEM form (`-----BEGIN …`)"),
+        damaged => format!("holds a damaged {what}: {damaged}"),
+    }
 }
 
 /// The address at which other machines reach a listener, if they can: its own, or, if it listens on all, that of the

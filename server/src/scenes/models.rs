@@ -6,6 +6,6 @@ use std::path::Path;
 
 /// Reads the model of a vehicle from a glTF file.
 pub(super) fn load(path: &Path, _kind: VehicleKind) -> Result<Mesh, String> {
-    let (_document, _buffers, _images) = gltf::import(path).map_err(|error| format!("is not a readable glTF: {error}"))?;
+    let (_document, _buffers, _images) = gltf::import(path).map_err(|error| format!("cannot be read as glTF: {error}"))?;
     Err("is not drawn yet".to_owned())
 }

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 pub const DEAD_BAND: u8 = 2;
 
 /// Frames per second of a patch that moves within the dead band (Hz).
-pub const SLOW_HZ: f32 = 5.0;
+pub const SLOW_HZ: f32 = 10.0;
 
 /// Frames per second of the wind (Hz).
 pub const WIND_HZ: f32 = 6.0;

@@ -56,7 +56,7 @@ fn mac_cormack<R: Real>(grid: &Grid<R>, paths: &Paths<R>, field: &Field<R>, targ
         for_each_departure(grid, field, &paths.back, k, |at, stencils| {
             let corners = sample::corners(&field.data, field.shape, &stencils);
             carried[at] = sample::mix(corners, &stencils);
-            bounds[at] = [corners.into_iter().fold(corners[0], min), corners.into_iter().fold(corners[0], max)];
+            bounds[at] = [extreme(corners, min), extreme(corners, max)];
         });
     });
     let (carried, bounds, half) = (&*carried, &*bounds, R::of(0.5));
@@ -79,6 +79,13 @@ fn min<R: Real>(a: R, b: R) -> R {
 #[inline(always)]
 fn max<R: Real>(a: R, b: R) -> R {
     if a > b { a } else { b }
+}
+
+/// The value that `pick` prefers among eight, pair by pair.
+#[inline(always)]
+fn extreme<R: Real>(v: [R; 8], pick: impl Fn(R, R) -> R) -> R {
+    let four: [R; 4] = std::array::from_fn(|c| pick(v[c], v[c + 4]));
+    pick(pick(four[0], four[2]), pick(four[1], four[3]))
 }
 
 /// `x` or the bound it is beyond; NaN stays NaN.

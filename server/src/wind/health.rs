@@ -40,15 +40,15 @@ pub fn measure<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, dt_secs: R, cent
             let (mut row_divergence, mut row_speed) = (R::zero(), R::zero());
             for (i, centre) in row.iter_mut().enumerate() {
                 let faces = [[along_x[i], along_x[grid.far_face(0, i)]], [down[i], up[i]], [south[i], north[i]]];
-                let mut divergence = R::zero();
-                for axis in 0..3 {
-                    let [near, far] = faces[axis];
-                    centre[axis] = half * (near + far);
-                    divergence = divergence + (far - near) * per_m[axis];
-                    fastest[axis] = fastest[axis].max(centre[axis].abs());
-                    row_speed = row_speed + centre[axis] * centre[axis];
+                let outflow: [R; 3] = std::array::from_fn(|axis| (faces[axis][1] - faces[axis][0]) * per_m[axis]);
+                let [x, y, z] = faces.map(|[near, far]| half * (near + far));
+                *centre = [x, y, z, R::zero()];
+                for (fastest, speed) in fastest.iter_mut().zip([x, y, z]) {
+                    *fastest = if speed.abs() > *fastest { speed.abs() } else { *fastest };
                 }
+                let divergence = outflow[0] + outflow[1] + outflow[2];
                 row_divergence = row_divergence + divergence * divergence;
+                row_speed = row_speed + (x * x + y * y + z * z);
             }
             divergence_squares += row_divergence.wide();
             speed_squares += row_speed.wide();

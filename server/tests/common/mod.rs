@@ -8,6 +8,9 @@ use std::collections::BTreeMap;
 /// Codes and number of the newest frame of each grid, applied strictly: a delta must follow the frame that is held.
 #[derive(Debug, Default, PartialEq)]
 pub struct Picture {
+    /// Cells along a side of a patch and along the wind's axes; a scene message sets them.
+    pub patch_cells: usize,
+    pub wind_cells: [u32; 3],
     pub patches: BTreeMap<PatchIndex, (u32, Vec<i8>)>,
     pub wind: (u32, Vec<i8>),
     pub tick: u64,
@@ -16,20 +19,29 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Applies a message; `patch_cells` and `wind_cells` give the shapes.
-    pub fn apply(&mut self, bytes: &[u8], patch_cells: usize, wind_cells: [u32; 3]) -> ServerMessage {
+    pub fn new(patch_cells: usize, wind_cells: [u32; 3]) -> Self {
+        let mut picture = Self::default();
+        picture.shape(patch_cells, wind_cells);
+        picture
+    }
+
+    fn shape(&mut self, patch_cells: usize, wind_cells: [u32; 3]) {
+        (self.patch_cells, self.wind_cells) = (patch_cells, wind_cells);
+        self.wind = (0, vec![0; codec::PLANES * wind_cells.iter().product::<u32>() as usize]);
+    }
+
+    /// Applies a message.
+    pub fn apply(&mut self, bytes: &[u8]) -> ServerMessage {
         let message: ServerMessage = decode(bytes, SERVER_MESSAGE_LIMIT).expect("the server sends sound messages");
         self.bytes += bytes.len();
         match &message {
             ServerMessage::Patch { patch, seq, key, payload } => {
-                let rest = || (0, vec![0; codec::PLANES * patch_cells * patch_cells]);
+                let rest = || (0, vec![0; codec::PLANES * self.patch_cells.pow(2)]);
                 let held = self.patches.entry(*patch).or_insert_with(rest);
-                update(held, patch_cells, *seq, *key, payload);
+                update(held, self.patch_cells, *seq, *key, payload);
             }
-            ServerMessage::Wind { seq, key, payload, .. } => {
-                self.wind.1.resize(codec::PLANES * wind_cells.iter().product::<u32>() as usize, 0);
-                update(&mut self.wind, wind_cells[0] as usize, *seq, *key, payload);
-            }
+            ServerMessage::Wind { seq, key, payload, .. } => update(&mut self.wind, self.wind_cells[0] as usize, *seq, *key, payload),
+            ServerMessage::Scene { scene, .. } => self.shape(scene.patches.cells as usize, scene.wind.cells),
             ServerMessage::FrameEnd { frame, tick, .. } => {
                 assert_eq!(*frame, self.frame + 1, "frames are numbered without gaps");
                 assert!(*tick >= self.tick, "time runs forwards");

@@ -1,67 +1,83 @@
-//! Draws pictures of a synthetic prairie without a window.
+//! Draws pictures of a scene without a window: the same world and the same renderer as in the browser.
 
-use anyhow::{Context, Result};
+use anyhow::{Context as _, Result};
 use clap::Parser;
 use client_wasm::camera::Camera;
-use client_wasm::render::{Gpu, Picture, Quality};
-use std::path::{Path, PathBuf};
+use client_wasm::render::{Gpu, Quality};
+use std::path::PathBuf;
 use std::time::Instant;
+use tests::picture::Picture;
+use tests::stage::{Act, Stage, play};
 
-/// Draws a prairie to a PNG file, and says how long frames take.
+/// Draws a scene to a PNG file, and says how long a frame takes.
 #[derive(Parser)]
 struct Arguments {
-    /// View as in the page's address: x,y,z,heading,pitch (m, degrees).
-    #[arg(long, default_value = "128,14,158,20,-5", allow_hyphen_values = true)]
-    view: String,
-    /// Metres above the ground in place of the view's y.
-    #[arg(long)]
-    above: Option<f32>,
-    /// Pixels along X and Y.
-    #[arg(long, default_value = "960x540")]
+    /// Built-in scene by name, or scene file
+    #[arg(long, default_value = "meadow")]
+    scene: String,
+    /// What happens before the picture is taken
+    #[arg(long, value_enum, default_value = "wind")]
+    act: Act,
+    /// View as in the page's address: x,y,z,heading,pitch; default: where the scene's visitors start
+    #[arg(long, allow_hyphen_values = true)]
+    camera: Option<String>,
+    /// Look at the act's vehicle instead, from AWAY metres behind, ABOVE metres above and ASIDE metres right of it
+    #[arg(long, value_name = "AWAY,ABOVE,ASIDE", allow_hyphen_values = true)]
+    chase: Option<String>,
+    /// Width and height (px)
+    #[arg(long, default_value = "1280x720")]
     size: String,
-    /// low, medium, high or ultra.
+    /// low, medium, high or ultra
     #[arg(long, default_value = "high")]
     quality: String,
-    /// Simulated seconds before the picture is taken.
-    #[arg(long, default_value_t = 3.0)]
-    time: f64,
-    /// Frames per simulated second on the way there.
-    #[arg(long, default_value_t = 20.0)]
-    fps: f64,
-    /// File to write.
+    /// Frames drawn, 1/30 s apart, so that the blades have found their motion; the last one is kept
+    #[arg(long, default_value_t = 45)]
+    frames: u32,
+    /// File to write
     #[arg(long)]
     out: PathBuf,
 }
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
-    let (width, height) = arguments.size.split_once('x').context("--size must be WIDTHxHEIGHT")?;
-    let size_px = [width.parse()?, height.parse()?];
-    let quality = Quality::from_name(&arguments.quality).context("--quality must be low, medium, high or ultra")?;
-    let mut mirror = tests::synthetic::mirror();
-    let mut camera = Camera::from_hash(&arguments.view).context("--view must be x,y,z,heading,pitch")?;
-    if let (Some(above), Some(land)) = (arguments.above, mirror.land()) {
-        camera.eye_m.y = land.heights().height_m(camera.eye_m.x, camera.eye_m.z) + above;
+    let (width, height) = arguments.size.split_once('x').context("--size: WIDTHxHEIGHT is allowed, such as 1280x720")?;
+    let size_px: [u32; 2] = [width.parse().context("--size: width")?, height.parse().context("--size: height")?];
+    let quality = Quality::from_name(&arguments.quality).context("--quality: low, medium, high or ultra are allowed")?;
+    let mut stage = Stage::load(&arguments.scene)?;
+    let scene = stage.scene();
+    let mut camera = match &arguments.camera {
+        Some(hash) => Camera::from_hash(hash).context("--camera: five numbers are allowed: x,y,z,heading,pitch")?,
+        None => Camera::start(&scene.camera, scene.extent_m(), |x, z| stage.ground_m(x, z)),
+    };
+    let pose = play(&mut stage, arguments.act, camera.eye_m.to_array())?;
+    if let Some(chase) = &arguments.chase {
+        let pose = pose.context("--chase needs an act with a vehicle")?;
+        let parts: Vec<f32> = chase.split(',').map(str::parse).collect::<Result<_, _>>().context("--chase: AWAY,ABOVE,ASIDE")?;
+        let &[away, above, aside] = parts.as_slice() else { anyhow::bail!("--chase: three numbers are allowed: AWAY,ABOVE,ASIDE") };
+        let rotation = glam::Quat::from_array(pose.rotation);
+        let level = |axis: glam::Vec3| (rotation * axis).with_y(0.0).normalize_or(axis);
+        let target = glam::Vec3::from(pose.position_m);
+        let mut eye = target + level(glam::Vec3::Z) * away + level(glam::Vec3::X) * aside;
+        eye.y = (target.y + above).max(stage.ground_m(eye.x, eye.z) + 0.3);
+        let towards = target - eye;
+        camera.eye_m = eye;
+        camera.heading_rad = towards.x.atan2(-towards.z);
+        camera.pitch_rad = (towards.y / towards.length()).asin();
     }
-    let gpu = Gpu::headless()?;
-    let mut picture = Picture::new(&gpu, size_px, quality);
-    let frames = (arguments.time * arguments.fps) as u32;
-    let dt_secs = 1.0 / arguments.fps;
-    picture.draw(&mut mirror, &camera, 0.0, dt_secs as f32);
-    let start = Instant::now();
-    let mut stats = Default::default();
-    for frame in 1..=frames {
-        stats = picture.draw(&mut mirror, &camera, f64::from(frame) * dt_secs, dt_secs as f32);
-    }
-    let frame_ms = start.elapsed().as_secs_f64() * 1e3 / f64::from(frames.max(1));
-    println!("{}: {frame_ms:.1} ms a frame, {stats:?}", gpu.adapter_name);
-    write_png(&arguments.out, size_px, &picture.rgba())
-}
 
-fn write_png(path: &Path, [width, height]: [u32; 2], rgba: &[u8]) -> Result<()> {
-    let file = std::fs::File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), width, height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.write_header()?.write_image_data(rgba)?;
-    Ok(())
+    let gpu = Gpu::headless()?;
+    let mut picture = client_wasm::render::Picture::new(&gpu, size_px, quality);
+    const DT_SECS: f32 = 1.0 / 30.0;
+    let mut stats = Default::default();
+    let mut drawing_secs = 0.0;
+    for frame in 0..arguments.frames.max(1) {
+        stage.run(DT_SECS);
+        stage.show()?;
+        let start = Instant::now();
+        stats = picture.draw(&mut stage.mirror, &camera, f64::from(frame) * f64::from(DT_SECS), DT_SECS);
+        drawing_secs += start.elapsed().as_secs_f64();
+    }
+    println!("{}: {:.1} ms a frame, {stats:?}", gpu.adapter_name, drawing_secs * 1e3 / f64::from(arguments.frames.max(1)));
+    println!("camera {}", camera.to_hash());
+    Picture { width: size_px[0], height: size_px[1], rgba: picture.rgba() }.save(&arguments.out)
 }

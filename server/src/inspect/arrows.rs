@@ -1,0 +1,114 @@
+//! The wind as arrows at their places above the ground.
+
+use super::palette::{Rgb, wind_rgb};
+use crate::snapshot::WindFrame;
+use glam::Vec3;
+use shared::scene::{Wind, WindBoundary};
+use shared::terrain::HeightMap;
+use shared::wire::quantise::wind_m_per_s;
+
+/// Most arrows at once.
+const ARROW_LIMIT: u32 = 1500;
+
+/// Length of an arrow for each metre per second (s): the way that the air goes in this time.
+const ARROW_SECS: f32 = 1.2;
+
+/// A cell of the wind's box, and where its arrow starts.
+struct Site {
+    cell: usize,
+    origin_m: Vec3,
+}
+
+/// The places of the arrows; the same for the whole run.
+pub(super) struct WindArrows {
+    cells: [u32; 3],
+    sites: Vec<Site>,
+}
+
+impl WindArrows {
+    /// Every n-th cell along each axis, n as small as the limit of 1500 arrows allows. A box that wraps is repeated
+    /// over the world, as the world sees it.
+    pub(super) fn new(wind: &Wind, extent_m: [f32; 2], heights: &HeightMap) -> Self {
+        let [nx, ny, nz] = wind.cells;
+        let across = |axis: usize, cells: u32| {
+            let whole = (extent_m[axis / 2] / wind.spacing_m[axis]).floor().max(1.0) as u32;
+            if wind.sides == WindBoundary::Wrap { whole } else { whole.min(cells) }
+        };
+        let span = [across(0, nx), ny, across(2, nz)];
+        let count = |step: u32| span.iter().map(|n| n.div_ceil(step) as u64).product::<u64>();
+        let step = (1..).find(|&step| count(step) <= u64::from(ARROW_LIMIT)).expect("one arrow is left at the largest step");
+
+        let mut sites = Vec::new();
+        for k in (step / 2..span[2]).step_by(step as usize) {
+            for j in (0..span[1]).step_by(step as usize) {
+                for i in (step / 2..span[0]).step_by(step as usize) {
+                    let [x, above, z] = [(0, i), (1, j), (2, k)].map(|(axis, n)| (n as f32 + 0.5) * wind.spacing_m[axis]);
+                    let cell = ((k % nz * ny + j) * nx + i % nx) as usize;
+                    sites.push(Site { cell, origin_m: Vec3::new(x, heights.height_m(x, z) + above, z) });
+                }
+            }
+        }
+        Self { cells: wind.cells, sites }
+    }
+
+    /// Origins (m), vectors (m) and colours of the arrows of a frame; nothing for a frame of another shape.
+    pub(super) fn of(&self, frame: &WindFrame) -> (Vec<[f32; 3]>, Vec<[f32; 3]>, Vec<Rgb>) {
+        let volume = self.cells.iter().product::<u32>() as usize;
+        if frame.cells != self.cells || frame.codes.len() != 3 * volume {
+            return Default::default();
+        }
+        let arrow = |site: &Site| {
+            let velocity = Vec3::from_array(std::array::from_fn(|axis| wind_m_per_s(frame.codes[axis * volume + site.cell])));
+            (site.origin_m.to_array(), (velocity * ARROW_SECS).to_array(), wind_rgb(velocity.length()))
+        };
+        let (mut origins_m, mut vectors_m, mut colours) = (Vec::new(), Vec::new(), Vec::new());
+        for (origin_m, vector_m, colour) in self.sites.iter().map(arrow) {
+            origins_m.push(origin_m);
+            vectors_m.push(vector_m);
+            colours.push(colour);
+        }
+        (origins_m, vectors_m, colours)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::wire::quantise::wind_code;
+
+    fn flat(height_m: f32) -> HeightMap {
+        HeightMap::from_heights(2, 2, [100.0, 100.0], vec![height_m; 4])
+    }
+
+    #[test]
+    fn an_arrow_stands_at_its_cell_and_shows_its_wind() {
+        let wind = Wind { cells: [3, 2, 3], spacing_m: [4.0, 2.0, 5.0], sides: WindBoundary::Wall, ..Wind::default() };
+        let arrows = WindArrows::new(&wind, [12.0, 15.0], &flat(7.0));
+        let mut codes = vec![0; 3 * 18];
+        let cell = (1 * 2 + 1) * 3 + 2;
+        codes[18 + cell] = wind_code(-5.0);
+        let (origins_m, vectors_m, colours) = arrows.of(&WindFrame { tick: 0, cells: [3, 2, 3], codes });
+        assert_eq!((origins_m.len(), vectors_m.len(), colours.len()), (18, 18, 18));
+        let at = origins_m.iter().position(|o| *o == [10.0, 10.0, 7.5]).unwrap();
+        assert!((vectors_m[at][1] + 5.0 * ARROW_SECS).abs() < 0.2, "{:?}", vectors_m[at]);
+        assert!(vectors_m.iter().enumerate().all(|(i, v)| i == at || *v == [0.0; 3]));
+    }
+
+    #[test]
+    fn a_box_that_wraps_covers_the_world_within_the_limit() {
+        let wind = Wind { cells: [4, 2, 4], spacing_m: [8.0, 2.0, 8.0], sides: WindBoundary::Wrap, ..Wind::default() };
+        for extent_m in [32.0, 256.0, 40_000.0] {
+            let arrows = WindArrows::new(&wind, [extent_m; 2], &flat(0.0));
+            assert!(arrows.sites.len() <= ARROW_LIMIT as usize && arrows.sites.iter().all(|site| site.cell < 32));
+            let east = arrows.sites.iter().map(|site| site.origin_m.x).fold(0.0, f32::max);
+            assert!(east > 0.85 * extent_m && east < extent_m);
+        }
+    }
+
+    #[test]
+    fn a_frame_of_another_shape_shows_nothing() {
+        let arrows = WindArrows::new(&Wind::default(), [256.0, 256.0], &flat(0.0));
+        assert!(!arrows.sites.is_empty());
+        assert!(arrows.of(&WindFrame::default()).0.is_empty());
+    }
+}

@@ -1,0 +1,441 @@
+//! What is logged, and under which names.
+//!
+//! | entity | what |
+//! | --- | --- |
+//! | `world/ground` | the land (static), with the bending angles laid on it as a texture |
+//! | `world/wind` | wind arrows: length the way of the air in 1.2 s, colour the speed |
+//! | `world/objects`, `world/trails` | boxes with poses and labels; the ways they came |
+//! | `map/bend`, `map/objects`, `map/scale` | the bending angles from above, one class a code; the objects' places; the colours |
+//! | `health/…` | scalars |
+
+use super::arrows::WindArrows;
+use super::ground::{BendMap, GroundMesh, degrees};
+use super::palette::bend_rgb;
+use super::trails::{Trails, kind_rgb};
+use super::{Frame, InspectError, Sink, Target, blueprint};
+use crate::snapshot::Snapshot;
+use rerun::components::ImageFormat;
+use rerun::datatypes::ChannelDatatype;
+use rerun::external::re_uri::ProxyUri;
+use rerun::{
+    AnnotationContext, Arrows3D, AsComponents, Boxes3D, LineStrips2D, LineStrips3D, MemoryLimit, Mesh3D, Points2D, Quaternion, Radius,
+    RecordingStream, RecordingStreamBuilder, Rgba32, Scalars, SegmentationImage, SeriesLines, ServerOptions, ViewCoordinates,
+};
+use shared::grid::PatchLayout;
+use shared::scene::Scene;
+use shared::terrain::HeightMap;
+use shared::wire::ObjectPose;
+use std::fmt::Display;
+use std::net::{TcpListener, TcpStream, ToSocketAddrs};
+use std::time::Duration;
+
+/// Name of the program in the viewer's list of recordings.
+pub(super) const APPLICATION: &str = "prairie";
+
+/// History that is kept for viewers that connect later (bytes).
+const HISTORY_LIMIT_BYTES: u64 = 256 << 20;
+
+/// Radius of a wind arrow's shaft (m).
+const ARROW_RADIUS_M: f32 = 0.12;
+
+/// How long a viewer may take to answer at the start, and to take the last frames at the end.
+const VIEWER_LIMIT: Duration = Duration::from_secs(2);
+
+/// Steps of the bar that explains the colours of angles.
+const SCALE_STEPS: usize = 9;
+
+/// Scalars: entity, name in the plots, colour, and how to read it.
+#[expect(clippy::type_complexity, reason = "a table reads best as one literal")]
+const SCALARS: [(&str, &str, u32, fn(&Frame) -> f64); 12] = [
+    ("health/step/mean_ms", "mean", 0x4CAF_50FF, |frame| f64::from(frame.snapshot.health.step_secs) * 1e3),
+    ("health/step/longest_ms", "longest", 0xFF70_43FF, |frame| f64::from(frame.snapshot.health.step_max_secs) * 1e3),
+    ("health/wind/divergence", "rms divergence", 0x29B6_F6FF, |frame| f64::from(frame.snapshot.health.divergence_rms)),
+    ("health/wind/energy", "wind", 0x29B6_F6FF, |frame| frame.snapshot.health.wind_energy),
+    ("health/bend/energy", "bend", 0xFFCA_28FF, |frame| frame.snapshot.health.bend_energy),
+    ("health/bend/awake_patches", "awake patches", 0xFFCA_28FF, |frame| f64::from(frame.snapshot.health.awake_patches)),
+    ("health/steps/substeps", "sub-steps", 0xAB47_BCFF, |frame| f64::from(frame.snapshot.health.substeps)),
+    ("health/steps/courant", "Courant number", 0xEC40_7AFF, |frame| f64::from(frame.snapshot.health.courant)),
+    ("health/net/clients", "clients", 0x26A6_9AFF, |frame| f64::from(frame.traffic.clients)),
+    ("health/net/objects", "objects", 0xFF70_43FF, |frame| frame.snapshot.objects.len() as f64),
+    ("health/sent/kbyte_per_s", "sent", 0x26A6_9AFF, |frame| frame.traffic.bytes_per_s / 1e3),
+    ("health/log/dropped_frames", "dropped log frames", 0xBDBD_BDFF, |frame| frame.dropped as f64),
+];
+
+/// One recording, open.
+pub(super) struct Recording {
+    stream: RecordingStream,
+    address: String,
+    to_file: bool,
+    map: BendMap,
+    arrows: WindArrows,
+    wind_tick: Option<u64>,
+    trails: Trails,
+}
+
+impl Recording {
+    /// Opens the target and logs what stays as it is.
+    pub(super) fn open(target: &Target, scene: &Scene, heights: &HeightMap) -> Result<Self, InspectError> {
+        let (stream, address) = open_stream(target)?;
+        blueprint::first_view(scene, heights).map_err(sdk)?.send(&stream);
+        let layout = PatchLayout::from(&scene.patches);
+        let recording = Self {
+            stream,
+            address,
+            to_file: matches!(target, Target::Save(_)),
+            map: BendMap::new(layout),
+            arrows: WindArrows::new(&scene.wind, scene.extent_m(), heights),
+            wind_tick: None,
+            trails: Trails::default(),
+        };
+        recording.write_static(&GroundMesh::new(&layout, heights, &scene.light))?;
+        Ok(recording)
+    }
+
+    /// Where it goes; for a served one, what a viewer connects to.
+    pub(super) fn address(&self) -> String {
+        self.address.clone()
+    }
+
+    fn write_static(&self, mesh: &GroundMesh) -> Result<(), InspectError> {
+        let keep = |entity: &str, what: &dyn AsComponents| self.stream.log_static(entity, what).map_err(sdk);
+        keep("world", &ViewCoordinates::RIGHT_HAND_Y_UP())?;
+        let ground = Mesh3D::new(&mesh.positions_m)
+            .with_triangle_indices(&mesh.triangles)
+            .with_vertex_colors(mesh.shades.iter().copied().map(Rgba32::from))
+            .with_vertex_texcoords(&mesh.texcoords)
+            .with_albedo_texture_format(ImageFormat::rgb8(self.map.size_px()));
+        keep("world/ground", &ground)?;
+        let names: Vec<_> =
+            (0..=127).map(|code| (u16::from(code), format!("{:.0}°", degrees(code)), Rgba32::from(bend_rgb(degrees(code))))).collect();
+        keep("map", &AnnotationContext::new(names.iter().map(|(code, name, rgb)| (*code, name.as_str(), *rgb))))?;
+        keep("map/scale", &self.scale())?;
+        for (entity, name, rgba, _) in SCALARS {
+            keep(entity, &SeriesLines::new().with_names([name]).with_colors([rgba]).with_widths([1.5]))?;
+        }
+        Ok(())
+    }
+
+    /// The colours of the angles as a bar below the map.
+    fn scale(&self) -> LineStrips2D {
+        let [width_px, depth_px] = self.map.size_px().map(|n| n as f32);
+        let (height_px, step_px) = (0.04 * width_px, width_px / SCALE_STEPS as f32);
+        let y = depth_px + 1.5 * height_px;
+        let bars = (0..SCALE_STEPS).map(|i| [[i as f32 * step_px, y], [(i + 1) as f32 * step_px, y]]);
+        let middle_degrees: Vec<_> = (0..SCALE_STEPS).map(|i| 90.0 * (i as f32 + 0.5) / SCALE_STEPS as f32).collect();
+        LineStrips2D::new(bars)
+            .with_colors(middle_degrees.iter().map(|&at| Rgba32::from(bend_rgb(at))))
+            .with_labels(middle_degrees.iter().map(|at| format!("{at:.0}°")))
+            .with_radii([0.5 * height_px])
+    }
+
+    fn log(&self, entity: &str, what: &dyn AsComponents) -> Result<(), InspectError> {
+        self.stream.log(entity, what).map_err(sdk)
+    }
+
+    fn write_bends(&self) -> Result<(), InspectError> {
+        self.log("world/ground", &Mesh3D::update_fields().with_albedo_texture_buffer(self.map.rgb()))?;
+        let format = ImageFormat::segmentation(self.map.size_px(), ChannelDatatype::U8);
+        self.log("map/bend", &SegmentationImage::new(self.map.codes().to_vec(), format).with_opacity(1.0))
+    }
+
+    fn write_objects(&mut self, snapshot: &Snapshot) -> Result<(), InspectError> {
+        let objects = &snapshot.objects;
+        let colours = || objects.iter().map(|object| Rgba32::from(kind_rgb(object.kind)));
+        let boxes = Boxes3D::from_centers_and_half_sizes(
+            objects.iter().map(|object| object.position_m),
+            objects.iter().map(|object| object.kind.half_extents_m()),
+        );
+        let boxes = boxes.with_quaternions(objects.iter().map(|object| Quaternion::from_xyzw(object.rotation)));
+        self.log(
+            "world/objects",
+            &boxes.with_colors(colours()).with_labels(objects.iter().map(label)).with_radii([Radius::new_ui_points(2.0)]),
+        )?;
+
+        self.trails.update(objects);
+        let (strips, trail_colours) = self.trails.strips();
+        let trails = LineStrips3D::new(strips).with_colors(trail_colours.into_iter().map(Rgba32::from));
+        self.log("world/trails", &trails.with_radii([Radius::new_ui_points(1.5)]))?;
+
+        let pixel_m = self.map.pixel_m();
+        let places = objects.iter().map(|object| [object.position_m[0] / pixel_m, object.position_m[2] / pixel_m]);
+        self.log("map/objects", &Points2D::new(places).with_colors(colours()).with_radii([Radius::new_ui_points(4.0)]))
+    }
+}
+
+impl Sink for Recording {
+    fn write(&mut self, frame: &Frame) -> Result<(), InspectError> {
+        let snapshot = &frame.snapshot;
+        self.stream.set_duration_secs("sim_time", snapshot.time_secs);
+        self.stream.set_time_sequence("tick", i64::try_from(snapshot.tick).unwrap_or(i64::MAX));
+        if self.map.update(&snapshot.patches) {
+            self.write_bends()?;
+        }
+        if self.wind_tick.replace(snapshot.wind.tick) != Some(snapshot.wind.tick) {
+            let (origins_m, vectors_m, colours) = self.arrows.of(&snapshot.wind);
+            let arrows = Arrows3D::from_vectors(vectors_m).with_origins(origins_m);
+            self.log("world/wind", &arrows.with_colors(colours.into_iter().map(Rgba32::from)).with_radii([ARROW_RADIUS_M]))?;
+        }
+        self.write_objects(snapshot)?;
+        SCALARS.iter().try_for_each(|(entity, _, _, read)| self.log(entity, &Scalars::single(read(frame))))
+    }
+
+    /// A file is written to its footer, without which it does not verify; a viewer gets a moment to take what is left.
+    fn finish(self) -> Result<(), InspectError> {
+        if self.to_file {
+            self.stream.flush_blocking().map_err(sdk)?;
+            self.stream.disconnect();
+            return Ok(());
+        }
+        self.stream.flush_with_timeout(VIEWER_LIMIT).map_err(sdk)
+    }
+}
+
+/// "car 3, 14 m/s".
+fn label(object: &ObjectPose) -> String {
+    let speed_m_per_s = object.velocity_m_per_s.iter().map(|v| v * v).sum::<f32>().sqrt();
+    format!("{} {}, {speed_m_per_s:.0} m/s", object.kind.name(), object.id)
+}
+
+fn sdk(error: impl Display) -> InspectError {
+    InspectError::Sdk(error.to_string())
+}
+
+/// Opens the stream, and says where it goes. The SDK itself tells of a taken port or an absent viewer only late, if at all, so
+/// both are tried first.
+fn open_stream(target: &Target) -> Result<(RecordingStream, String), InspectError> {
+    let builder = RecordingStreamBuilder::new(APPLICATION);
+    let (stream, address) = match target {
+        Target::Serve(addr) => {
+            let taken = |reason| InspectError::Address { addr: *addr, reason };
+            let free = TcpListener::bind(addr).and_then(|listener| listener.local_addr()).map_err(taken)?;
+            let options = ServerOptions { memory_limit: MemoryLimit::from_bytes(HISTORY_LIMIT_BYTES), ..ServerOptions::default() };
+            let ip = if free.is_ipv6() { format!("[{}]", free.ip()) } else { free.ip().to_string() };
+            (builder.serve_grpc_opts(ip, free.port(), options), format!("rerun+http://{free}/proxy"))
+        }
+        Target::Save(path) => {
+            std::fs::File::create(path).map_err(|reason| InspectError::File { path: path.clone(), reason })?;
+            (builder.save(path), path.display().to_string())
+        }
+        Target::Connect(url) => {
+            let uri: ProxyUri = url.parse().map_err(sdk)?;
+            knock(&uri).map_err(|reason| InspectError::NoViewer { url: url.clone(), reason })?;
+            (builder.connect_grpc_opts(url.as_str()), url.clone())
+        }
+    };
+    let stream = stream.map_err(sdk)?;
+    stream.set_log_time_enabled(false);
+    Ok((stream, address))
+}
+
+/// Whether anything listens at the address of a viewer.
+fn knock(uri: &ProxyUri) -> std::io::Result<()> {
+    let mut last = std::io::Error::other("the name has no address");
+    for addr in (uri.origin.host.to_string(), uri.origin.port).to_socket_addrs()? {
+        match TcpStream::connect_timeout(&addr, VIEWER_LIMIT) {
+            Ok(_) => return Ok(()),
+            Err(error) => last = error,
+        }
+    }
+    Err(last)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inspect::Inspector;
+    use crate::snapshot::{PatchCodes, WindFrame};
+    use rerun::external::re_log_encoding::DecoderApp;
+    use rerun::log::{Chunk, LogMsg};
+    use shared::scene::VehicleKind;
+    use shared::wire::quantise::{theta_code, wind_code};
+    use std::collections::BTreeMap;
+    use std::fs::File;
+    use std::io::BufReader;
+    use std::sync::Arc;
+
+    fn scene() -> Scene {
+        toml::from_str("summary = 'x'\n[terrain]\nheight_map = 'a'\ncovering_map = 'b'\npixel_m = [2.0, 2.0]\nlevel_m = 0.1\n").unwrap()
+    }
+
+    fn flat() -> HeightMap {
+        HeightMap::from_heights(2, 2, [256.0, 256.0], vec![3.0; 4])
+    }
+
+    fn open(target: &Target) -> Result<Inspector, InspectError> {
+        Inspector::start(target, &scene(), &flat())
+    }
+
+    fn driven(tick: u64) -> Snapshot {
+        let car = ObjectPose {
+            id: 7,
+            kind: VehicleKind::Car,
+            position_m: [40.0 + tick as f32, 4.0, 50.0],
+            rotation: [0.0, 0.0, 0.0, 1.0],
+            velocity_m_per_s: [60.0, 0.0, 0.0],
+            part_rad: 0.0,
+        };
+        let mut patches = vec![None; 256];
+        patches[tick as usize % 256] = Some(Arc::new(PatchCodes { tick, codes: vec![50; 3 * 64 * 64] }));
+        let wind = Arc::new(WindFrame { tick, cells: [32, 8, 32], codes: vec![wind_code(3.0); 3 * 32 * 8 * 32] });
+        Snapshot { tick, time_secs: tick as f64 / 60.0, objects: vec![car], wind, patches, ..Snapshot::default() }
+    }
+
+    #[test]
+    fn a_file_is_whole_and_holds_every_entity() {
+        let path = std::env::temp_dir().join(format!("prairie-{}.rrd", std::process::id()));
+        let inspector = open(&Target::Save(path.clone())).unwrap();
+        for frame in 0..5 {
+            inspector.observe(&driven(6 * frame));
+        }
+        let kept = 5 - inspector.dropped();
+        inspector.finish().unwrap();
+
+        let mut messages = DecoderApp::decode_eager(BufReader::new(File::open(&path).unwrap())).unwrap();
+        let mut rows: BTreeMap<String, u64> = BTreeMap::new();
+        for message in messages.by_ref() {
+            if let LogMsg::ArrowMsg(store, arrow) = message.unwrap()
+                && store.is_recording()
+            {
+                let chunk = Chunk::from_arrow_msg(&arrow).unwrap();
+                if !chunk.is_static() {
+                    *rows.entry(chunk.entity_path().to_string()).or_default() += chunk.num_rows() as u64;
+                }
+            }
+        }
+        assert_eq!(messages.rrd_manifests().unwrap().len(), 2, "the footer lists the blueprint and the recording");
+        let in_each_frame = ["/world/ground", "/world/wind", "/world/objects", "/world/trails", "/map/bend", "/map/objects"];
+        for entity in in_each_frame.into_iter().map(str::to_owned).chain(SCALARS.map(|(entity, ..)| format!("/{entity}"))) {
+            assert_eq!(rows.get(&entity), Some(&kept), "{entity} in {rows:?}");
+        }
+        std::fs::remove_file(path).unwrap();
+    }
+
+    #[test]
+    fn a_taken_port_is_an_error() {
+        let taken = TcpListener::bind("127.0.0.1:0").unwrap();
+        let addr = taken.local_addr().unwrap();
+        let error = open(&Target::Serve(addr)).err().unwrap();
+        assert!(matches!(error, InspectError::Address { .. }));
+        assert!(error.to_string().contains(&addr.to_string()), "{error}");
+    }
+
+    #[test]
+    fn a_served_recording_says_where_it_is() {
+        let inspector = open(&"serve=0".parse().unwrap()).unwrap();
+        let addr = inspector.target().strip_prefix("rerun+http://").and_then(|rest| rest.strip_suffix("/proxy")).unwrap();
+        assert!(addr.starts_with("127.0.0.1:") && !addr.ends_with(":0"), "{addr}");
+        inspector.observe(&driven(0));
+        inspector.finish().unwrap();
+    }
+
+    #[test]
+    fn an_absent_viewer_and_a_bad_path_are_errors() {
+        let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+        let absent = open(&format!("connect=rerun+http://{free}/proxy").parse().unwrap());
+        assert!(matches!(absent.err(), Some(InspectError::NoViewer { .. })));
+        let nowhere = open(&Target::Save("/no/such/folder/a.rrd".into()));
+        assert!(matches!(nowhere.err(), Some(InspectError::File { .. })));
+    }
+
+    #[test]
+    fn demo() {
+        let Ok(out) = std::env::var("DEMO_RRD") else { return };
+        let scene = scene();
+        let h: Vec<f32> = (0..129 * 129)
+            .map(|n| {
+                let (x, z) = ((n % 129) as f32, (n / 129) as f32);
+                6.0 * (x * 0.07).sin() * (z * 0.05).cos() + 3.0 * (x * 0.15 + z * 0.1).sin() + 9.0
+            })
+            .collect();
+        let heights = HeightMap::from_heights(129, 129, [2.0, 2.0], h);
+        let inspector = super::super::Inspector::start(&out.parse().unwrap(), &scene, &heights).unwrap();
+        let cells = 1024usize;
+        let mut theta = vec![0f32; cells * cells];
+        for step in 0..200u64 {
+            let t = step as f64 * 0.1;
+            let mut objects = Vec::new();
+            for (id, kind, r, w) in [
+                (1, VehicleKind::Car, 38.0f32, 0.35f32),
+                (2, VehicleKind::Car, 22.0, -0.5),
+                (3, VehicleKind::Helicopter, 55.0, 0.2),
+                (4, VehicleKind::Monster, 10.0, 0.15),
+            ] {
+                let a = w * t as f32 + id as f32;
+                let (x, z) = (128.0 + r * a.cos(), 150.0 + r * a.sin());
+                let up = if kind == VehicleKind::Helicopter { 12.0 } else { 0.9 };
+                let q = glam::Quat::from_rotation_y(-a + if w > 0.0 { std::f32::consts::PI } else { 0.0 });
+                objects.push(ObjectPose {
+                    id,
+                    kind,
+                    position_m: [x, heights.height_m(x, z) + up, z],
+                    rotation: q.to_array(),
+                    velocity_m_per_s: [r * w, 0.0, 0.0],
+                    part_rad: 0.0,
+                });
+                let rr = if kind == VehicleKind::Helicopter { 9.0 } else { 1.2 };
+                for dz in -40i32..=40 {
+                    for dx in -40i32..=40 {
+                        let d = ((dx * dx + dz * dz) as f32).sqrt() * 0.25;
+                        if d < rr {
+                            let c = ((z * 4.0) as i32 + dz) as usize * cells + ((x * 4.0) as i32 + dx) as usize;
+                            theta[c] = theta[c].max(if rr > 5.0 { 0.8 * (1.0 - d / rr) } else { 1.3 });
+                        }
+                    }
+                }
+            }
+            for v in &mut theta {
+                *v *= 0.985;
+            }
+            let patches = (0..256usize)
+                .map(|p| {
+                    let (px, pz) = (p % 16 * 64, p / 16 * 64);
+                    let mut codes: Vec<i8> = (0..4096)
+                        .map(|n| {
+                            theta_code(
+                                theta[(pz + n / 64) * cells + px + n % 64]
+                                    + 0.12 * (1.0 + ((px + n % 64) as f32 * 0.03 - 2.0 * t as f32 + (pz + n / 64) as f32 * 0.017).sin()),
+                            )
+                        })
+                        .collect();
+                    codes.resize(3 * 4096, 0);
+                    Some(Arc::new(PatchCodes { tick: step, codes }))
+                })
+                .collect();
+            let mut codes = Vec::new();
+            for axis in 0..3 {
+                for n in 0..8192usize {
+                    let (i, j, k) = (n % 32, n / 32 % 8, n / 256);
+                    let g = ((i as f32 * 0.4 - t as f32).sin() + (k as f32 * 0.3 + t as f32 * 0.7).cos()) * 1.6;
+                    let p = (1.0 + j as f32).ln() * 0.4 + 0.3;
+                    codes.push(wind_code(match axis {
+                        0 => (4.0 + g) * p,
+                        1 => 0.3 * g,
+                        _ => (2.5 - g) * p,
+                    }));
+                }
+            }
+            let health = crate::snapshot::Health {
+                step_secs: 0.003 + 0.0003 * (t * 3.0).sin() as f32,
+                step_max_secs: 0.005 + (step % 7) as f32 * 1e-4,
+                divergence_rms: 1e-6 * (1.5 + (t * 2.0).sin() as f32),
+                wind_energy: 14.0 + (t).sin(),
+                bend_energy: 3000.0 + 10.0 * t,
+                awake_patches: 120 + (step / 9) as u32,
+                substeps: 2 + (step / 40 % 3) as u32,
+                courant: 0.4,
+            };
+            inspector.observe_traffic(2, 80_000.0);
+            inspector.observe(&Snapshot {
+                tick: step * 6,
+                time_secs: t,
+                objects,
+                wind: Arc::new(WindFrame { tick: step * 6, cells: [32, 8, 32], codes }),
+                patches,
+                health,
+            });
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        println!("dropped {}", inspector.dropped());
+        inspector.finish().unwrap();
+    }
+}
