@@ -40,16 +40,14 @@ impl Billboards {
     pub(super) fn new(maker: &Maker<'_>) -> Self {
         let gpu = maker.gpu;
         let layout = maker.layout("billboards", &[storage(0), uniform(1), texture(2)]);
-        let draw =
-            Draw { label: "billboards", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None };
+        let draw = Draw { label: "billboards", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None };
         let pipeline = maker.draw(&gpu.shader("billboards", shaders::BILLBOARDS), Some(&layout), &draw);
         let size = (CLUMP_LIMIT * size_of::<Clump>()) as u64;
         let clumps = gpu.empty_buffer("clumps", size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
         let list = gpu.empty_buffer("clump list", 16, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let tufts = gpu.texture("tufts", wgpu::TextureFormat::Rgba8Unorm, paint::TUFT_PX, &paint::tufts());
         let tufts = tufts.create_view(&Default::default());
-        let resources =
-            [clumps.as_entire_binding(), list.as_entire_binding(), wgpu::BindingResource::TextureView(&tufts)];
+        let resources = [clumps.as_entire_binding(), list.as_entire_binding(), wgpu::BindingResource::TextureView(&tufts)];
         let group = bind(gpu, "billboards", &layout, &resources);
         let rectangles = (0..CHUNK as u16 * 6).map(|i| i * 4);
         let indices: Vec<u16> = rectangles.flat_map(|a| [a, a + 1, a + 2, a + 2, a + 1, a + 3]).collect();
