@@ -1,0 +1,236 @@
+// Bindings and the frame's uniform block, shared by all passes; the block's twin is `uniforms.rs`.
+
+struct Frame {
+    projection_from_world: mat4x4<f32>,
+    world_from_projection: mat4x4<f32>,
+    shadow_from_world: mat4x4<f32>,
+    eye: vec4<f32>,
+    sun: vec4<f32>,
+    sun_color: vec4<f32>,
+    world: vec4<f32>,
+    maps: vec4<f32>,
+    wind_box: vec4<f32>,
+    gust: vec4<f32>,
+    blade: vec4<f32>,
+    root_rgb: vec4<f32>,
+    tip_rgb: vec4<f32>,
+    screen: vec4<f32>,
+    reach: vec4<f32>,
+    clouds: vec4<f32>,
+    spheres: array<vec4<f32>, 16>,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var heights: texture_2d<f32>;
+@group(0) @binding(2) var normals: texture_2d<f32>;
+@group(0) @binding(3) var cover: texture_2d<f32>;
+@group(0) @binding(4) var bends: texture_2d<f32>;
+@group(0) @binding(5) var winds: texture_3d<f32>;
+@group(0) @binding(6) var noises: texture_2d<f32>;
+@group(0) @binding(7) var repeated: sampler;
+@group(0) @binding(8) var clamped: sampler;
+@group(0) @binding(9) var shadows: texture_depth_2d;
+@group(0) @binding(10) var shadow_sampler: sampler_comparison;
+
+const TAU: f32 = 6.2831853;
+const THETA_FULL_RAD: f32 = 1.5707964;
+const WIND_FULL_M_PER_S: f32 = 31.75;
+
+// Integer hash (pcg3d's mixing) of a place and a number.
+fn hash3(v_in: vec3<u32>) -> vec3<u32> {
+    var v = v_in * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v ^= v >> vec3<u32>(16u);
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    return v;
+}
+
+// Three random numbers in 0..1 for a place and a number.
+fn random3(place: vec2<i32>, number: u32) -> vec3<f32> {
+    let h = hash3(vec3<u32>(bitcast<u32>(place.x), bitcast<u32>(place.y), number));
+    return vec3<f32>(h >> vec3<u32>(8u)) / 16777216.0;
+}
+
+fn noise(uv: vec2<f32>) -> vec4<f32> {
+    return textureSampleLevel(noises, repeated, uv, 0.0);
+}
+
+// --- land -----------------------------------------------------------------------------------------------------------
+
+fn metres_outside(p: vec2<f32>) -> f32 {
+    return length(max(max(-p, p - frame.world.xy), vec2<f32>(0.0)));
+}
+
+// Rolling land beyond the world's edge, so that the horizon is no table.
+fn far_hills(p: vec2<f32>, outside_m: f32) -> f32 {
+    let n = noise(p / 2600.0).r * 0.7 + noise(p / 790.0).g * 0.3;
+    let rise = smoothstep(0.0, 900.0, outside_m);
+    return rise * ((n - 0.42) * 150.0 + outside_m * 0.006);
+}
+
+fn ground_height(p: vec2<f32>) -> f32 {
+    let size = frame.maps.xy;
+    let at = clamp(p / frame.world.zw, vec2<f32>(0.0), size - 1.001);
+    let low = floor(at);
+    let share = at - low;
+    let i = vec2<i32>(low);
+    let nw = textureLoad(heights, i, 0).r;
+    let ne = textureLoad(heights, i + vec2<i32>(1, 0), 0).r;
+    let sw = textureLoad(heights, i + vec2<i32>(0, 1), 0).r;
+    let se = textureLoad(heights, i + vec2<i32>(1, 1), 0).r;
+    let height = mix(mix(nw, ne, share.x), mix(sw, se, share.x), share.y);
+    let outside_m = metres_outside(p);
+    if outside_m > 0.0 {
+        return height + far_hills(p, outside_m);
+    }
+    return height;
+}
+
+fn ground_normal(p: vec2<f32>) -> vec3<f32> {
+    let outside_m = metres_outside(p);
+    if outside_m > 20.0 {
+        let east = far_hills(p + vec2<f32>(20.0, 0.0), outside_m) - far_hills(p - vec2<f32>(20.0, 0.0), outside_m);
+        let south = far_hills(p + vec2<f32>(0.0, 20.0), outside_m) - far_hills(p - vec2<f32>(0.0, 20.0), outside_m);
+        return normalize(vec3<f32>(-east, 40.0, -south));
+    }
+    let uv = (p / frame.world.zw + 0.5) / frame.maps.xy;
+    return normalize(textureSampleLevel(normals, clamped, uv, 0.0).xyz);
+}
+
+// Share of grass at a place: 0 on bare ground, stones and at trunks, with a ragged border.
+fn grass_share(p: vec2<f32>) -> f32 {
+    let soft = textureSampleLevel(cover, clamped, p / frame.world.xy, 0.0).r;
+    let ragged = noise(p / 7.0).b * 0.3 + noise(p / 2.1).g * 0.3 - 0.3;
+    return smoothstep(0.35, 0.65, soft + ragged * (1.0 - abs(2.0 * soft - 1.0)));
+}
+
+// --- wind and bend --------------------------------------------------------------------------------------------------
+
+fn wind_at(p: vec3<f32>, above_m: f32) -> vec3<f32> {
+    let cells = vec3<f32>(textureDimensions(winds));
+    var uvw = vec3<f32>(p.x, above_m, p.z) / frame.wind_box.xyz;
+    let edge = 0.5 / cells;
+    if frame.wind_box.w < 0.5 {
+        uvw = clamp(uvw, edge, 1.0 - edge);
+    }
+    uvw.y = clamp(uvw.y, edge.y, 1.0 - edge.y);
+    return textureSampleLevel(winds, repeated, uvw, 0.0).xyz * WIND_FULL_M_PER_S;
+}
+
+// Fine structure of the wind below the solver's cells: fronts that travel with the mean wind, as a factor about 1.
+fn gust_at(p: vec2<f32>) -> f32 {
+    let along = dot(p, frame.gust.xy) - frame.gust.w;
+    let across = dot(p, vec2<f32>(-frame.gust.y, frame.gust.x));
+    let broad = noise(vec2<f32>(along / 60.0, across / 120.0)).r;
+    let fine = noise(vec2<f32>(along / 23.0, across / 60.0)).g;
+    return 0.45 + 1.35 * smoothstep(0.28, 0.74, broad * 0.62 + fine * 0.38);
+}
+
+// Lean (rad, as a vector on the ground) that a steady wind sustains: grows with the square of the speed, then levels off.
+fn lean_of_wind(wind: vec2<f32>) -> vec2<f32> {
+    let speed = length(wind);
+    let s = speed * 0.1;
+    return wind / max(speed, 1e-3) * (frame.blade.w * 1.35 * s * s / (1.0 + 0.35 * s * s));
+}
+
+// Lean (rad) of the streamed bend field, at a mip level of the atlas.
+fn lean_of_field(p: vec2<f32>, level: f32) -> vec2<f32> {
+    let from_eye = abs(p - frame.eye.xz);
+    let shown = 1.0 - smoothstep(0.8, 1.0, max(from_eye.x, from_eye.y) / frame.maps.w);
+    if shown <= 0.0 {
+        return vec2<f32>(0.0);
+    }
+    let code = textureSampleLevel(bends, repeated, p / frame.maps.z, level).xyz;
+    let omega = code.yz * abs(code.yz);
+    let speed = length(omega);
+    let direction = select(frame.gust.xy, omega / max(speed, 1e-12), speed > 1e-9);
+    return direction * (code.x * THETA_FULL_RAD * shown);
+}
+
+fn field_level(distance_m: f32) -> f32 {
+    return clamp(log2(distance_m * frame.screen.z * 4.0 * 6.0), 0.0, 3.0);
+}
+
+// --- light ----------------------------------------------------------------------------------------------------------
+
+fn sky_color(direction: vec3<f32>) -> vec3<f32> {
+    let up = clamp(direction.y, 0.0, 1.0);
+    let toward_sun = max(dot(direction, frame.sun.xyz), 0.0);
+    let low_sun = 1.0 - smoothstep(0.1, 0.75, frame.sun.y);
+    let zenith = mix(vec3<f32>(0.10, 0.27, 0.62), vec3<f32>(0.11, 0.22, 0.48), low_sun);
+    let horizon = mix(vec3<f32>(0.60, 0.76, 0.92), vec3<f32>(0.80, 0.72, 0.62), low_sun);
+    var color = mix(horizon, zenith, pow(up, 0.48));
+    let glow = frame.sun_color.rgb * (0.10 * pow(toward_sun, 5.0) + 0.16 * pow(toward_sun, 40.0));
+    color += glow * (1.0 - 0.5 * up);
+    return color;
+}
+
+fn hazed(color: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
+    let to = p - frame.eye.xyz;
+    let distance_m = length(to);
+    let direction = to / max(distance_m, 1e-3);
+    let share = 1.0 - exp(-distance_m / frame.sun_color.w);
+    let air = sky_color(normalize(vec3<f32>(direction.x, max(direction.y, 0.0) + 0.03, direction.z)));
+    return mix(color, air * 0.93, share);
+}
+
+// Light that clouds let through, as soft shadows that drift over the land.
+fn cloud_light(p: vec2<f32>) -> f32 {
+    let at = (p + frame.clouds.xy * 0.5) / 620.0;
+    let n = noise(at).r * 0.65 + noise(at * 2.7).a * 0.35;
+    return 1.0 - 0.62 * smoothstep(0.47, 0.66, n);
+}
+
+fn sun_visible(p: vec3<f32>) -> f32 {
+    let clip = frame.shadow_from_world * vec4<f32>(p, 1.0);
+    let uv = clip.xy * vec2<f32>(0.5, -0.5) + 0.5;
+    let inside = all(uv > vec2<f32>(0.01)) && all(uv < vec2<f32>(0.99)) && clip.z < 1.0 && clip.z > 0.0;
+    if !inside {
+        return 1.0;
+    }
+    var light = 0.0;
+    let texel = frame.sun.w;
+    for (var i = 0; i < 4; i++) {
+        let offset = vec2<f32>(f32(i & 1) - 0.5, f32(i >> 1) - 0.5) * texel * 1.7;
+        light += textureSampleCompareLevel(shadows, shadow_sampler, uv + offset, clip.z - 0.0015);
+    }
+    return light * 0.25;
+}
+
+fn ambient(normal: vec3<f32>) -> vec3<f32> {
+    let sky = mix(vec3<f32>(0.42, 0.50, 0.62), vec3<f32>(0.36, 0.52, 0.86), clamp(normal.y, 0.0, 1.0));
+    let bounce = vec3<f32>(0.20, 0.21, 0.10);
+    return mix(bounce, sky, 0.5 + 0.5 * normal.y) * 0.62;
+}
+
+// Light on something thin and green: wrapped diffuse, light through it against the sun, a sheen along the blade
+// (Kajiya-Kay). `view` runs from the eye to the point; `occlusion` 0..1 darkens what stands deep in the grass.
+fn grass_light(
+    albedo: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>, sun_light: f32, occlusion: f32,
+) -> vec3<f32> {
+    let sun = frame.sun.xyz;
+    let facing = dot(normal, sun);
+    let diffuse = clamp((facing + 0.35) / 1.35, 0.0, 1.0);
+    let against = max(dot(view, sun), 0.0);
+    let through = (0.22 + 0.9 * against * against * against) * clamp(0.55 - 0.45 * facing, 0.0, 1.0);
+    let half_way = normalize(sun - view);
+    let along = dot(tangent, half_way);
+    let sheen = pow(max(1.0 - along * along, 0.0), 18.0) * 0.10;
+    let glow = albedo * vec3<f32>(1.25, 1.2, 0.45);
+    let direct = frame.sun_color.rgb * sun_light * (albedo * diffuse + glow * through + vec3<f32>(0.9, 1.0, 0.8) * sheen * diffuse);
+    return direct * mix(0.25, 1.0, occlusion) + albedo * ambient(normal) * occlusion;
+}
+
+// Drift of colour over the land: lush, dry and reddish places, as a factor on the grass's colours.
+fn grass_tint(p: vec2<f32>) -> vec3<f32> {
+    let broad = noise(p / 97.0).r;
+    let middle = noise(p / 31.0).a;
+    let fine = noise(p / 6.3).g;
+    let dry = smoothstep(0.40, 0.72, broad * 0.5 + middle * 0.35 + fine * 0.15);
+    let lush = mix(vec3<f32>(0.74, 0.98, 0.62), vec3<f32>(0.92, 1.04, 0.74), fine);
+    return mix(lush, vec3<f32>(1.38, 1.10, 0.80), dry * 0.85);
+}

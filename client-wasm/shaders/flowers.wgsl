@@ -1,0 +1,109 @@
+// Flower heads of six kinds: a ring of petals about a disc. One instance is 16 heads as one indexed list.
+
+struct Blade {
+    root: vec4<f32>,
+    points: array<vec4<f32>, 3>,
+}
+
+struct List {
+    range: vec4<u32>,
+}
+
+@group(1) @binding(0) var<storage, read> blades: array<Blade>;
+@group(1) @binding(1) var<storage, read> drawn: array<u32>;
+@group(1) @binding(2) var<uniform> list: List;
+
+// Petals 0..12 of five vertices, then the disc: a centre and six on its rim.
+const PETALS: u32 = 12u;
+const PETAL_VERTICES: u32 = 5u;
+const VERTICES: u32 = 67u;
+
+struct Kind {
+    // Petals, length (m), width as a share of the length, how far they rise (rad).
+    shape: vec4<f32>,
+    base: vec3<f32>,
+    tip: vec3<f32>,
+    // Disc's colour and radius (m).
+    disc: vec4<f32>,
+}
+
+fn kind_of(share: f32) -> Kind {
+    switch u32(share * 6.0) {
+        case 0u: { return Kind(vec4<f32>(12.0, 0.026, 0.34, 0.18), vec3<f32>(0.80, 0.80, 0.76), vec3<f32>(0.95, 0.95, 0.93), vec4<f32>(0.85, 0.52, 0.03, 0.010)); }
+        case 1u: { return Kind(vec4<f32>(5.0, 0.030, 1.05, 0.75), vec3<f32>(0.28, 0.015, 0.01), vec3<f32>(0.86, 0.075, 0.02), vec4<f32>(0.03, 0.02, 0.02, 0.008)); }
+        case 2u: { return Kind(vec4<f32>(9.0, 0.024, 0.50, 0.45), vec3<f32>(0.09, 0.08, 0.42), vec3<f32>(0.16, 0.25, 0.88), vec4<f32>(0.18, 0.05, 0.30, 0.009)); }
+        case 3u: { return Kind(vec4<f32>(5.0, 0.018, 0.95, 0.55), vec3<f32>(0.90, 0.58, 0.02), vec3<f32>(0.98, 0.80, 0.06), vec4<f32>(0.75, 0.55, 0.05, 0.007)); }
+        case 4u: { return Kind(vec4<f32>(12.0, 0.022, 0.30, 1.05), vec3<f32>(0.62, 0.20, 0.46), vec3<f32>(0.84, 0.46, 0.72), vec4<f32>(0.66, 0.30, 0.50, 0.012)); }
+        default: { return Kind(vec4<f32>(6.0, 0.026, 0.55, 0.30), vec3<f32>(0.46, 0.28, 0.72), vec3<f32>(0.70, 0.56, 0.92), vec4<f32>(0.85, 0.70, 0.20, 0.006)); }
+    }
+}
+
+struct Petal {
+    @builtin(position) position: vec4<f32>,
+    @location(0) color: vec3<f32>,
+}
+
+@vertex
+fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Petal {
+    let number = instance * 64u + index / VERTICES;
+    let local = index % VERTICES;
+    var out: Petal;
+    if number >= min(drawn[list.range.w], list.range.y) {
+        out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+        return out;
+    }
+    let stem = blades[list.range.x + number];
+    let head = stem.root.xyz + stem.points[2].xyz;
+    let distance_m = distance(head, frame.eye.xyz);
+    let kind = kind_of(clamp(stem.points[1].w, 0.0, 0.999));
+    let tangent = normalize(stem.points[2].xyz - stem.points[1].xyz);
+    // Heads look up along their stem and a little towards the sun.
+    let axis = normalize(tangent + frame.sun.xyz * 0.45 + vec3<f32>(0.0, 0.35, 0.0));
+    let right = normalize(cross(axis, vec3<f32>(0.31, 0.17, 0.93)));
+    let ahead = cross(right, axis);
+    let size = max(1.0, distance_m * frame.screen.z * 2.2 / kind.shape.y) * 1.25;
+
+    var p: vec3<f32>;
+    var normal = axis;
+    var albedo: vec3<f32>;
+    if local < PETALS * PETAL_VERTICES {
+        let petal = local / PETAL_VERTICES;
+        let corner = local % PETAL_VERTICES;
+        let petals = kind.shape.x;
+        let is_there = f32(petal) < petals;
+        let angle = (f32(petal) + stem.points[0].w) / petals * TAU;
+        let out_dir = right * cos(angle) + ahead * sin(angle);
+        let across = cross(axis, out_dir);
+        let rise = kind.shape.w;
+        // Root, two at the middle, two at the end.
+        let t = array<f32, 5>(0.0, 0.55, 0.55, 1.0, 1.0)[corner];
+        let w = array<f32, 5>(0.0, -0.5, 0.5, -0.28, 0.28)[corner];
+        let curl = rise * (1.0 - 0.45 * t);
+        let along = out_dir * cos(curl) + axis * sin(curl);
+        let reach = select(0.0, kind.shape.y * size, is_there);
+        p = head + along * (reach * t) + across * (reach * w * kind.shape.z);
+        normal = normalize(axis * cos(curl) - out_dir * sin(curl) + across * w * 0.6);
+        albedo = mix(kind.base, kind.tip, t);
+    } else {
+        let rim = local - PETALS * PETAL_VERTICES;
+        let radius = select(kind.disc.w * size, 0.0, rim == 0u);
+        let angle = f32(rim) / 6.0 * TAU;
+        p = head + axis * (0.004 * size + select(0.0, kind.disc.w * 0.5 * size, rim == 0u));
+        p += (right * cos(angle) + ahead * sin(angle)) * radius;
+        albedo = kind.disc.rgb;
+    }
+    let view = normalize(p - frame.eye.xyz);
+    let light = stem.points[2].w;
+    let facing = dot(normal, frame.sun.xyz);
+    let diffuse = clamp((facing + 0.3) / 1.3, 0.0, 1.0);
+    let through = 0.35 * max(dot(view, frame.sun.xyz), 0.0) * clamp(0.5 - facing, 0.0, 1.0);
+    let color = albedo * (frame.sun_color.rgb * light * (diffuse + through) * 0.85 + ambient(normal));
+    out.color = hazed(color, p);
+    out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
+    return out;
+}
+
+@fragment
+fn fs(petal: Petal) -> @location(0) vec4<f32> {
+    return vec4<f32>(petal.color, 1.0);
+}

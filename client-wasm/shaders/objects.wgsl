@@ -1,0 +1,108 @@
+// Meshes made of triangles: vehicles, trees and stones; also as seen by the sun, for the shadow map.
+
+struct Instance {
+    world_from_model: mat4x4<f32>,
+    // Colour factor; sway of a tree (rad per rad of lean).
+    tint: vec4<f32>,
+}
+
+@group(1) @binding(0) var<storage, read> instances: array<Instance>;
+@group(1) @binding(1) var leaves: texture_2d<f32>;
+
+struct Vertex {
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec4<f32>,
+    // Linear colour; gloss.
+    @location(2) color: vec4<f32>,
+    // Place in the leaf texture; (0, 0) is solid.
+    @location(3) leaf: vec2<f32>,
+}
+
+struct Surface {
+    @builtin(position) position: vec4<f32>,
+    @location(0) p: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) color: vec4<f32>,
+    @location(3) leaf: vec2<f32>,
+}
+
+fn placed(vertex: Vertex, instance: Instance) -> vec3<f32> {
+    var p = (instance.world_from_model * vec4<f32>(vertex.position, 1.0)).xyz;
+    let sway = instance.tint.a;
+    if sway > 0.0 {
+        let foot = instance.world_from_model[3].xyz;
+        let up = max(p.y - foot.y, 0.0);
+        let lean = lean_of_wind(wind_at(foot, 6.0).xz * gust_at(foot.xz));
+        let phase = frame.eye.w * 1.7 + foot.x * 0.7 + foot.z * 1.3;
+        let swing = lean * (0.7 + 0.3 * sin(phase)) * sway * up * up * 0.02;
+        p += vec3<f32>(swing.x, 0.0, swing.y);
+        if vertex.leaf.x > 0.0 {
+            let flutter = sin(frame.eye.w * 5.3 + dot(vertex.position, vec3<f32>(5.1, 7.7, 3.9))) * 0.035 * (0.4 + 3.0 * length(lean));
+            p += vec3<f32>(flutter, flutter * 0.6, -flutter);
+        }
+    }
+    return p;
+}
+
+@vertex
+fn vs(vertex: Vertex, @builtin(instance_index) index: u32) -> Surface {
+    let instance = instances[index];
+    var out: Surface;
+    out.p = placed(vertex, instance);
+    out.normal = (instance.world_from_model * vec4<f32>(vertex.normal.xyz, 0.0)).xyz;
+    out.color = vec4<f32>(vertex.color.rgb * instance.tint.rgb, vertex.color.a);
+    out.leaf = vertex.leaf;
+    out.position = frame.projection_from_world * vec4<f32>(out.p, 1.0);
+    return out;
+}
+
+@fragment
+fn fs(surface: Surface) -> @location(0) vec4<f32> {
+    let leaf = textureSample(leaves, clamped, surface.leaf);
+    let is_leaf = surface.leaf.x > 0.0;
+    if is_leaf && leaf.a < 0.5 {
+        discard;
+    }
+    let view = normalize(surface.p - frame.eye.xyz);
+    let normal = normalize(surface.normal);
+    let light = cloud_light(surface.p.xz) * sun_visible(surface.p + normal * 0.06);
+    let facing = dot(normal, frame.sun.xyz);
+    var color: vec3<f32>;
+    if is_leaf {
+        let albedo = surface.color.rgb * (0.55 + 0.9 * leaf.r);
+        color = grass_light(albedo, normal, vec3<f32>(0.0, 1.0, 0.0), view, light, surface.color.a);
+    } else {
+        let albedo = surface.color.rgb;
+        let gloss = surface.color.a;
+        let diffuse = max(facing, 0.0);
+        color = albedo * (frame.sun_color.rgb * light * diffuse + ambient(normal));
+        let half_way = normalize(frame.sun.xyz - view);
+        let fresnel = pow(1.0 - max(dot(normal, -view), 0.0), 4.0);
+        let mirrored = reflect(view, normal);
+        let above = max(mirrored.y, 0.0);
+        let reflected = mix(vec3<f32>(0.10, 0.12, 0.05), sky_color(vec3<f32>(mirrored.x, above, mirrored.z)), smoothstep(-0.1, 0.15, mirrored.y));
+        let sharp = pow(max(dot(normal, half_way), 0.0), mix(12.0, 160.0, gloss));
+        color += gloss * (reflected * (0.06 + 0.75 * fresnel) + frame.sun_color.rgb * light * sharp * 1.6);
+    }
+    return vec4<f32>(hazed(color, surface.p), 1.0);
+}
+
+struct Shade {
+    @builtin(position) position: vec4<f32>,
+    @location(0) leaf: vec2<f32>,
+}
+
+@vertex
+fn vs_shadow(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
+    var out: Shade;
+    out.position = frame.shadow_from_world * vec4<f32>(placed(vertex, instances[index]), 1.0);
+    out.leaf = vertex.leaf;
+    return out;
+}
+
+@fragment
+fn fs_shadow(shade: Shade) {
+    if shade.leaf.x > 0.0 && textureSample(leaves, clamped, shade.leaf).a < 0.5 {
+        discard;
+    }
+}

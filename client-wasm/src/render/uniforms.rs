@@ -1,0 +1,62 @@
+//! The uniform block that all passes share; its twin is `Frame` in `common.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+
+/// Most interaction spheres in a frame; those nearest to the camera are kept.
+pub const SPHERE_LIMIT: usize = 16;
+
+/// Declares a uniform block with the names and offsets of its members, for the comparison with its WGSL twin.
+macro_rules! uniform_block {
+    ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty,)* }) => {
+        $(#[$doc])*
+        #[repr(C)]
+        #[derive(Clone, Copy, Debug, Pod, Zeroable)]
+        pub struct $name { $($(#[$field_doc])* pub $field: $type,)* }
+
+        impl $name {
+            /// Names and byte offsets of the members.
+            pub const LAYOUT: &'static [(&'static str, usize)] =
+                &[$((stringify!($field), std::mem::offset_of!($name, $field)),)*];
+        }
+    };
+}
+
+uniform_block! {
+    /// What every pass knows of a frame.
+    Frame {
+        /// World to clip space, reversed depth.
+        projection_from_world: [f32; 16],
+        /// Clip space to directions in the world; the sky's rays.
+        world_from_projection: [f32; 16],
+        /// World to the shadow map's clip space.
+        shadow_from_world: [f32; 16],
+        /// Camera position (m); time (s).
+        eye: [f32; 4],
+        /// Unit vector towards the sun; 1 / size of the shadow map (1/px).
+        sun: [f32; 4],
+        /// Colour of sunlight; haze distance (m).
+        sun_color: [f32; 4],
+        /// Extent of the world along X and Z (m); distance between pixels of the height map (m).
+        world: [f32; 4],
+        /// Pixels of the height map along X and Z; side of the bend window (m); distance at which it ends (m).
+        maps: [f32; 4],
+        /// Extent of the wind's box (m); 1 where it wraps.
+        wind_box: [f32; 4],
+        /// Unit vector of the mean wind (x, z); its speed (m/s); distance the gusts have travelled (m).
+        gust: [f32; 4],
+        /// Mean height of a blade (m), its variation, width (m), bend by a wind of 10 m/s (rad).
+        blade: [f32; 4],
+        /// Root colour; flowers per square metre.
+        root_rgb: [f32; 4],
+        /// Tip colour; 1 / pixels of the covering map along X.
+        tip_rgb: [f32; 4],
+        /// Pixels of the picture along X and Y; angle of a pixel (rad); frame's duration (s).
+        screen: [f32; 4],
+        /// Near blades fade out from (m), to (m); billboards end from (m), to (m).
+        reach: [f32; 4],
+        /// Offset of the clouds (m, x and z); share of cloud; number of interaction spheres.
+        clouds: [f32; 4],
+        /// Interaction spheres: centre and radius (m).
+        spheres: [[f32; 4]; SPHERE_LIMIT],
+    }
+}

@@ -1,0 +1,217 @@
+//! The client's mirror of the server: every [`ServerMessage`] goes in, the renderer reads it out.
+//!
+//! The bytes behind the messages are hostile: lengths, indices and numbers are checked before anything is kept, and what is
+//! kept is bounded by [`PATCH_LIMIT`], [`OBJECT_LIMIT`] and [`PEER_LIMIT`].
+
+mod fields;
+mod land;
+mod poses;
+
+pub use fields::{PATCH_LIMIT, PatchCodes, WindCodes};
+pub use land::Land;
+pub use poses::OBJECT_LIMIT;
+
+use fields::{Patches, WindFrames};
+use poses::PoseFrames;
+use shared::grid::PatchIndex;
+use shared::terrain::MapError;
+use shared::wire::{CodecError, ObjectId, ObjectPose, Peer, Refusal, ServerMessage};
+use thiserror::Error;
+
+/// Most peers that are kept.
+pub const PEER_LIMIT: usize = 4096;
+
+/// Why a message was not taken in. The mirror is then as it was before.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum MirrorError {
+    /// A map of the scene could not be read.
+    #[error("the {map} {error}")]
+    Map {
+        /// Which map.
+        map: &'static str,
+        /// What is wrong with it.
+        error: MapError,
+    },
+    /// A field came before the scene that gives its shape.
+    #[error("a {0} came before the scene")]
+    BeforeScene(&'static str),
+    /// A payload is no grid.
+    #[error("the {field} frame is damaged: {error}")]
+    Field {
+        /// `patch` or `wind`.
+        field: &'static str,
+        /// What is wrong with it.
+        error: CodecError,
+    },
+    /// A value leaves what it may be.
+    #[error("{what} is {found}; allowed: {allowed}")]
+    Range {
+        /// Which value.
+        what: &'static str,
+        /// The value found.
+        found: String,
+        /// What is allowed.
+        allowed: String,
+    },
+}
+
+/// What the page wants to know of a message.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Event {
+    /// The server took the client in, under this number.
+    Welcome {
+        /// The client's own number.
+        client: u32,
+        /// Version of the server's package.
+        server_version: String,
+    },
+    /// A new scene; the renderer must load it.
+    Scene,
+    /// A frame is whole and is to be acknowledged.
+    FrameEnd {
+        /// Number of the frame.
+        frame: u32,
+    },
+    /// The list of peers has changed.
+    Roster,
+    /// A request was refused, or the connection is about to close.
+    Refused {
+        /// Why, for the program.
+        refusal: Refusal,
+        /// Why, for the person.
+        reason: String,
+    },
+    /// Answer to a ping.
+    Pong {
+        /// The ping's.
+        nonce: u32,
+    },
+}
+
+/// All that the client knows of the server's world.
+#[derive(Debug, Default)]
+pub struct Mirror {
+    land: Option<Land>,
+    scene_number: u32,
+    patches: Patches,
+    wind: WindFrames,
+    poses: PoseFrames,
+    peers: Vec<Peer>,
+    time_secs: f64,
+}
+
+impl Mirror {
+    /// Takes a message in. A delta that does not follow its base is dropped until the next key; that is no error.
+    ///
+    /// # Errors
+    /// [`MirrorError`] when the message cannot be part of a sound stream.
+    pub fn apply(&mut self, message: ServerMessage) -> Result<Option<Event>, MirrorError> {
+        Ok(match message {
+            ServerMessage::Welcome { client, server_version } => Some(Event::Welcome { client, server_version }),
+            ServerMessage::Scene { scene, height_png, covering_png, models } => {
+                self.land = Some(Land::new(*scene, &height_png, &covering_png, models)?);
+                self.scene_number = self.scene_number.wrapping_add(1);
+                self.patches = Patches::default();
+                self.wind = WindFrames::default();
+                self.poses = PoseFrames::default();
+                Some(Event::Scene)
+            }
+            ServerMessage::Poses { tick, objects } => {
+                self.poses.push(tick, objects)?;
+                None
+            }
+            ServerMessage::Wind { seq, key, payload, .. } => {
+                let land = self.land.as_ref().ok_or(MirrorError::BeforeScene("wind frame"))?;
+                self.wind.apply(&land.scene().wind, seq, key, &payload)?;
+                None
+            }
+            ServerMessage::Patch { patch, seq, key, payload } => {
+                let land = self.land.as_ref().ok_or(MirrorError::BeforeScene("patch frame"))?;
+                self.patches.apply(land.layout(), patch, seq, key, &payload)?;
+                None
+            }
+            ServerMessage::Roster { mut peers } => {
+                peers.truncate(PEER_LIMIT);
+                self.peers = peers;
+                Some(Event::Roster)
+            }
+            ServerMessage::FrameEnd { frame, time_secs, .. } => {
+                if !time_secs.is_finite() {
+                    return Err(range("time_secs", time_secs, "a finite number"));
+                }
+                self.time_secs = time_secs;
+                Some(Event::FrameEnd { frame })
+            }
+            ServerMessage::Refused { refusal, reason } => Some(Event::Refused { refusal, reason }),
+            ServerMessage::Pong { nonce } => Some(Event::Pong { nonce }),
+        })
+    }
+
+    /// Moves the shown time of the objects by `dt_secs`, at most up to the newest poses.
+    pub fn advance(&mut self, dt_secs: f32) {
+        let tick_hz = self.land.as_ref().map_or(60.0, |land| land.scene().tick_hz);
+        self.poses.advance(f64::from(dt_secs) * f64::from(tick_hz));
+    }
+
+    /// The scene and its maps, once they have come.
+    pub fn land(&self) -> Option<&Land> {
+        self.land.as_ref()
+    }
+
+    /// Counts the scenes that have come; a change means that the renderer must load the scene anew.
+    pub fn scene_number(&self) -> u32 {
+        self.scene_number
+    }
+
+    /// Every object at the shown time, interpolated between the two newest poses.
+    pub fn objects(&self) -> impl Iterator<Item = ObjectPose> + '_ {
+        self.poses.shown()
+    }
+
+    /// One object at the shown time.
+    pub fn object(&self, id: ObjectId) -> Option<ObjectPose> {
+        self.objects().find(|pose| pose.id == id)
+    }
+
+    /// Who is here.
+    pub fn peers(&self) -> &[Peer] {
+        &self.peers
+    }
+
+    /// The object that a client drives.
+    pub fn object_of(&self, client: u32) -> Option<ObjectId> {
+        self.peers.iter().find(|peer| peer.client == client)?.object
+    }
+
+    /// Simulated time of the newest whole frame (s).
+    pub fn time_secs(&self) -> f64 {
+        self.time_secs
+    }
+
+    /// Codes of a patch, or none when it is at rest or unknown.
+    pub fn patch(&self, patch: PatchIndex) -> Option<&PatchCodes> {
+        self.patches.codes(patch)
+    }
+
+    /// Patches whose codes are not all zero.
+    pub fn bent_patches(&self) -> impl Iterator<Item = PatchIndex> + '_ {
+        self.patches.bent()
+    }
+
+    /// Patches that have changed since the last call.
+    pub fn take_dirty_patches(&mut self) -> Vec<PatchIndex> {
+        self.patches.take_dirty()
+    }
+
+    /// The newest wind.
+    pub fn wind(&self) -> Option<&WindCodes> {
+        self.wind.codes()
+    }
+}
+
+fn range(what: &'static str, found: impl ToString, allowed: impl ToString) -> MirrorError {
+    MirrorError::Range { what, found: found.to_string(), allowed: allowed.to_string() }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,143 @@
+//! The streamed fields: 8-bit codes of patches and of the wind, kept in step with the server by key and sequence number.
+
+use super::{MirrorError, range};
+use shared::grid::{PatchIndex, PatchLayout};
+use shared::scene::Wind;
+use shared::wire::codec;
+use std::collections::{BTreeSet, HashMap};
+
+/// Most patches that are kept; the one not heard of for longest goes first. 4096 patches of 64² cells take 50 MB.
+pub const PATCH_LIMIT: usize = 4096;
+
+/// Codes of one patch: three planes (θ, ωx, ωz) of `cells × cells`, or none at rest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PatchCodes {
+    planes: Vec<i8>,
+}
+
+impl PatchCodes {
+    /// Planes θ, ωx, ωz, each row by row from the north.
+    pub fn planes(&self) -> [&[i8]; 3] {
+        let plane = self.planes.len() / 3;
+        std::array::from_fn(|i| &self.planes[i * plane..(i + 1) * plane])
+    }
+}
+
+#[derive(Debug)]
+struct Entry {
+    seq: u32,
+    heard: u64,
+    codes: Option<PatchCodes>,
+}
+
+/// All patches that have been heard of.
+#[derive(Debug, Default)]
+pub(super) struct Patches {
+    entries: HashMap<PatchIndex, Entry>,
+    dirty: BTreeSet<PatchIndex>,
+    clock: u64,
+}
+
+impl Patches {
+    pub(super) fn apply(
+        &mut self,
+        layout: &PatchLayout,
+        patch: PatchIndex,
+        seq: u32,
+        key: bool,
+        payload: &[u8],
+    ) -> Result<(), MirrorError> {
+        if patch as usize >= layout.patches() {
+            return Err(range("patch index", patch, format!("0..{}", layout.patches())));
+        }
+        let at_rest = payload.is_empty();
+        let base = self.entries.get(&patch).filter(|entry| entry.seq.wrapping_add(1) == seq);
+        if base.is_none() && !key && !at_rest {
+            return Ok(());
+        }
+        let codes = if at_rest {
+            None
+        } else {
+            let cells = layout.cells as usize;
+            let start = if key { None } else { base.and_then(|entry| entry.codes.as_ref()) };
+            let mut planes = start.map_or_else(|| vec![0; cells * cells * 3], |codes| codes.planes.clone());
+            codec::decode(cells, payload, &mut planes).map_err(|error| MirrorError::Field { field: "patch", error })?;
+            Some(PatchCodes { planes })
+        };
+        self.clock += 1;
+        self.entries.insert(patch, Entry { seq, heard: self.clock, codes });
+        self.dirty.insert(patch);
+        if self.entries.len() > PATCH_LIMIT {
+            let oldest = self.entries.iter().min_by_key(|(_, entry)| entry.heard).map(|(&index, _)| index);
+            if let Some(oldest) = oldest {
+                self.entries.remove(&oldest);
+                self.dirty.insert(oldest);
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn codes(&self, patch: PatchIndex) -> Option<&PatchCodes> {
+        self.entries.get(&patch)?.codes.as_ref()
+    }
+
+    pub(super) fn bent(&self) -> impl Iterator<Item = PatchIndex> + '_ {
+        self.entries.iter().filter(|(_, entry)| entry.codes.is_some()).map(|(&index, _)| index)
+    }
+
+    pub(super) fn take_dirty(&mut self) -> Vec<PatchIndex> {
+        std::mem::take(&mut self.dirty).into_iter().collect()
+    }
+}
+
+/// Codes of the wind: three planes (u, v, w), x fastest, then y, then z.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WindCodes {
+    cells: [u32; 3],
+    seq: u32,
+    planes: Vec<i8>,
+}
+
+impl WindCodes {
+    /// Cells along X, Y and Z.
+    pub fn cells(&self) -> [u32; 3] {
+        self.cells
+    }
+
+    /// Number of this frame.
+    pub fn seq(&self) -> u32 {
+        self.seq
+    }
+
+    /// Planes u, v, w.
+    pub fn planes(&self) -> [&[i8]; 3] {
+        let plane = self.planes.len() / 3;
+        std::array::from_fn(|i| &self.planes[i * plane..(i + 1) * plane])
+    }
+}
+
+/// The newest wind.
+#[derive(Debug, Default)]
+pub(super) struct WindFrames {
+    newest: Option<WindCodes>,
+}
+
+impl WindFrames {
+    pub(super) fn apply(&mut self, wind: &Wind, seq: u32, key: bool, payload: &[u8]) -> Result<(), MirrorError> {
+        let cells = wind.cells;
+        let count = cells.iter().map(|&n| n as usize).product::<usize>() * 3;
+        let planes = match &self.newest {
+            _ if key => vec![0; count],
+            Some(base) if base.seq.wrapping_add(1) == seq => base.planes.clone(),
+            _ => return Ok(()),
+        };
+        let mut planes = planes;
+        codec::decode(cells[0] as usize, payload, &mut planes).map_err(|error| MirrorError::Field { field: "wind", error })?;
+        self.newest = Some(WindCodes { cells, seq, planes });
+        Ok(())
+    }
+
+    pub(super) fn codes(&self) -> Option<&WindCodes> {
+        self.newest.as_ref()
+    }
+}

@@ -1,0 +1,130 @@
+//! What stays as it is for a run: the scene, its decoded maps and models.
+
+use super::{MirrorError, range};
+use shared::grid::PatchLayout;
+use shared::scene::{Scene, VehicleKind};
+use shared::terrain::{Cover, CoverMap, HeightMap};
+use shared::wire::Mesh;
+
+/// A scene with its decoded maps.
+#[derive(Clone, Debug)]
+pub struct Land {
+    scene: Scene,
+    layout: PatchLayout,
+    heights: HeightMap,
+    cover: CoverMap,
+    models: Vec<(VehicleKind, Mesh)>,
+}
+
+impl Land {
+    /// Decodes the maps and checks what the client relies on.
+    ///
+    /// # Errors
+    /// [`MirrorError`] when a map is unreadable, or the scene leaves what a client can hold.
+    pub fn new(
+        scene: Scene,
+        height_png: &[u8],
+        covering_png: &[u8],
+        models: Vec<(VehicleKind, Mesh)>,
+    ) -> Result<Self, MirrorError> {
+        check(&scene)?;
+        let heights = HeightMap::from_png(height_png, &scene.terrain);
+        let heights = heights.map_err(|error| MirrorError::Map { map: "height map", error })?;
+        let cover = CoverMap::from_png(covering_png).map_err(|error| MirrorError::Map { map: "covering map", error })?;
+        for (_, mesh) in &models {
+            check_mesh(mesh)?;
+        }
+        let layout = PatchLayout::from(&scene.patches);
+        Ok(Self { scene, layout, heights, cover, models })
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The grid of patches.
+    pub fn layout(&self) -> &PatchLayout {
+        &self.layout
+    }
+
+    /// The height map.
+    pub fn heights(&self) -> &HeightMap {
+        &self.heights
+    }
+
+    /// The covering map.
+    pub fn cover(&self) -> &CoverMap {
+        &self.cover
+    }
+
+    /// What covers the point `(x_m, z_m)`.
+    pub fn cover_at(&self, x_m: f32, z_m: f32) -> Cover {
+        self.cover.at(x_m, z_m, self.scene.extent_m())
+    }
+
+    /// Models that replace built-in ones.
+    pub fn models(&self) -> &[(VehicleKind, Mesh)] {
+        &self.models
+    }
+}
+
+fn check(scene: &Scene) -> Result<(), MirrorError> {
+    let within = |what, value: f32, low: f32, high: f32| {
+        if (low..=high).contains(&value) { Ok(()) } else { Err(range(what, value, format!("{low}..={high}"))) }
+    };
+    let cells = scene.patches.cells;
+    if !(8..=256).contains(&cells) || !cells.is_multiple_of(8) {
+        return Err(range("patches.cells", cells, "8..=256, a multiple of 8"));
+    }
+    for count in scene.patches.count {
+        within("patches.count", count as f32, 1.0, 2048.0)?;
+    }
+    for cells in scene.wind.cells {
+        within("wind.cells", cells as f32, 2.0, 256.0)?;
+    }
+    for spacing in scene.wind.spacing_m {
+        within("wind.spacing_m", spacing, 0.1, 1000.0)?;
+    }
+    for pixel in scene.terrain.pixel_m {
+        within("terrain.pixel_m", pixel, 0.01, 1000.0)?;
+    }
+    let plants = &scene.plants;
+    within("tick_hz", scene.tick_hz, 10.0, 240.0)?;
+    within("patches.cell_m", scene.patches.cell_m, 0.05, 10.0)?;
+    within("terrain.level_m", scene.terrain.level_m, 0.0, 1000.0)?;
+    within("terrain.base_m", scene.terrain.base_m, -20_000.0, 20_000.0)?;
+    within("plants.grid_m", plants.grid_m, 1.0, 64.0)?;
+    within("plants.plants_per_side", plants.plants_per_side as f32, 2.0, 256.0)?;
+    within("plants.height_m", plants.height_m, 0.02, 5.0)?;
+    within("plants.height_variation", plants.height_variation, 0.0, 0.9)?;
+    within("plants.width_m", plants.width_m, 0.001, 0.5)?;
+    within("plants.flowers_per_m2", plants.flowers_per_m2, 0.0, 50.0)?;
+    within("plants.tree_m", plants.tree_m, 0.5, 60.0)?;
+    within("plants.stone_m", plants.stone_m, 0.05, 20.0)?;
+    within("light.sun_elevation_rad", scene.light.sun_elevation_rad, 0.02, 1.58)?;
+    within("light.sun_heading_rad", scene.light.sun_heading_rad, -100.0, 100.0)?;
+    within("light.haze_m", scene.light.haze_m, 10.0, 100_000.0)?;
+    within("grass.wind_bend_rad", scene.grass.wind_bend_rad, 0.0, 1.5)?;
+    for channel in plants.root_rgb.into_iter().chain(plants.tip_rgb) {
+        within("plants.*_rgb", channel, 0.0, 1.0)?;
+    }
+    for mean in scene.wind.mean_m_per_s {
+        within("wind.mean_m_per_s", mean, -40.0, 40.0)?;
+    }
+    Ok(())
+}
+
+fn check_mesh(mesh: &Mesh) -> Result<(), MirrorError> {
+    let vertices = mesh.positions_m.len();
+    if vertices > 65_536 || mesh.normals.len() != vertices || mesh.rgb.len() != vertices {
+        return Err(range("vertices of a model", vertices, "at most 65536, each with a normal and a colour"));
+    }
+    if mesh.indices.len() > 1 << 20 || !mesh.indices.len().is_multiple_of(3) {
+        return Err(range("indices of a model", mesh.indices.len(), "at most 1048576, a multiple of 3"));
+    }
+    match mesh.indices.iter().find(|&&index| index as usize >= vertices) {
+        Some(index) => Err(range("index of a model", index, format!("0..{vertices}"))),
+        None => Ok(()),
+    }
+}

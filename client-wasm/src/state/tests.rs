@@ -1,0 +1,181 @@
+use super::*;
+use proptest::prelude::*;
+use shared::scene::{Patches, Scene, TerrainMaps, VehicleKind, Wind};
+use shared::wire::{codec, decode};
+
+fn grey_png(side: u32) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, side, side);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.write_header().unwrap().write_image_data(&vec![255; (side * side) as usize]).unwrap();
+    bytes
+}
+
+fn scene() -> Scene {
+    Scene {
+        summary: String::new(),
+        seed: 1,
+        tick_hz: 60.0,
+        patches: Patches { count: [3, 2], cells: 8, ..Patches::default() },
+        terrain: TerrainMaps {
+            height_map: String::new(),
+            covering_map: String::new(),
+            pixel_m: [1.0, 1.0],
+            level_m: 0.1,
+            base_m: 0.0,
+        },
+        wind: Wind { cells: [4, 2, 4], ..Wind::default() },
+        grass: Default::default(),
+        plants: Default::default(),
+        objects: Default::default(),
+        camera: Default::default(),
+        light: Default::default(),
+    }
+}
+
+fn scene_message(scene: Scene) -> ServerMessage {
+    ServerMessage::Scene { scene: Box::new(scene), height_png: grey_png(4), covering_png: grey_png(4), models: Vec::new() }
+}
+
+fn loaded() -> Mirror {
+    let mut mirror = Mirror::default();
+    assert_eq!(mirror.apply(scene_message(scene())), Ok(Some(Event::Scene)));
+    mirror
+}
+
+fn patch(seq: u32, key: bool, base: Option<&[i8]>, codes: &[i8]) -> ServerMessage {
+    ServerMessage::Patch { patch: 1, seq, key, payload: codec::encode(8, codes, base) }
+}
+
+fn theta(mirror: &Mirror) -> Option<i8> {
+    mirror.patch(1).map(|codes| codes.planes()[0][0])
+}
+
+#[test]
+fn fields_before_the_scene_are_refused() {
+    let mut mirror = Mirror::default();
+    assert!(matches!(mirror.apply(patch(1, true, None, &[1; 192])), Err(MirrorError::BeforeScene(_))));
+}
+
+#[test]
+fn a_delta_before_its_key_is_dropped() {
+    let mut mirror = loaded();
+    let (first, second) = ([5; 192], [9; 192]);
+    mirror.apply(patch(2, false, Some(&first), &second)).unwrap();
+    assert_eq!(theta(&mirror), None);
+    mirror.apply(patch(7, true, None, &first)).unwrap();
+    mirror.apply(patch(9, false, Some(&first), &second)).unwrap();
+    assert_eq!(theta(&mirror), Some(5), "a delta that skips a frame is dropped");
+    mirror.apply(patch(8, false, Some(&first), &second)).unwrap();
+    assert_eq!(theta(&mirror), Some(9));
+    assert_eq!(mirror.take_dirty_patches(), [1]);
+    assert_eq!(mirror.take_dirty_patches(), []);
+}
+
+#[test]
+fn an_empty_payload_lays_a_patch_to_rest_and_is_the_base_of_the_next_delta() {
+    let mut mirror = loaded();
+    mirror.apply(patch(1, true, None, &[5; 192])).unwrap();
+    mirror.apply(ServerMessage::Patch { patch: 1, seq: 2, key: true, payload: Vec::new() }).unwrap();
+    assert_eq!(theta(&mirror), None);
+    mirror.apply(patch(3, false, Some(&[0; 192]), &[3; 192])).unwrap();
+    assert_eq!(theta(&mirror), Some(3));
+}
+
+#[test]
+fn a_damaged_frame_leaves_the_mirror_as_it_was() {
+    let mut mirror = loaded();
+    mirror.apply(patch(1, true, None, &[5; 192])).unwrap();
+    let damaged = ServerMessage::Patch { patch: 1, seq: 2, key: false, payload: vec![1, 2, 3] };
+    assert!(matches!(mirror.apply(damaged), Err(MirrorError::Field { field: "patch", .. })));
+    let beyond = ServerMessage::Patch { patch: 6, seq: 2, key: true, payload: Vec::new() };
+    assert!(matches!(mirror.apply(beyond), Err(MirrorError::Range { .. })));
+    mirror.apply(patch(2, false, Some(&[5; 192]), &[6; 192])).unwrap();
+    assert_eq!(theta(&mirror), Some(6));
+}
+
+#[test]
+fn wind_deltas_follow_their_key() {
+    let mut mirror = loaded();
+    let (first, second) = (vec![3; 96], vec![-4; 96]);
+    let delta =
+        |seq| ServerMessage::Wind { tick: 0, seq, key: false, payload: codec::encode(4, &second, Some(first.as_slice())) };
+    mirror.apply(delta(5)).unwrap();
+    assert!(mirror.wind().is_none());
+    mirror.apply(ServerMessage::Wind { tick: 0, seq: 4, key: true, payload: codec::encode(4, &first, None) }).unwrap();
+    mirror.apply(delta(6)).unwrap();
+    assert_eq!(mirror.wind().unwrap().planes()[2][31], 3);
+    mirror.apply(delta(5)).unwrap();
+    assert_eq!(mirror.wind().unwrap().planes()[2][31], -4);
+}
+
+fn pose(id: u32, x_m: f32) -> ObjectPose {
+    ObjectPose {
+        id,
+        kind: VehicleKind::Car,
+        position_m: [x_m, 0.0, 0.0],
+        rotation: [0.0, 0.0, 0.0, 1.0],
+        velocity_m_per_s: [0.0; 3],
+        part_rad: 0.0,
+    }
+}
+
+#[test]
+fn poses_run_from_the_older_to_the_newer_frame() {
+    let mut mirror = loaded();
+    mirror.apply(ServerMessage::Poses { tick: 60, objects: vec![pose(1, 0.0)] }).unwrap();
+    mirror.apply(ServerMessage::Poses { tick: 66, objects: vec![pose(1, 6.0), pose(2, 1.0)] }).unwrap();
+    assert_eq!(mirror.object(1).unwrap().position_m[0], 0.0);
+    mirror.advance(0.05);
+    assert!((mirror.object(1).unwrap().position_m[0] - 3.0).abs() < 1e-4);
+    mirror.advance(10.0);
+    assert_eq!(mirror.object(1).unwrap().position_m[0], 6.0);
+    mirror.apply(ServerMessage::Poses { tick: 72, objects: vec![pose(2, 1.0)] }).unwrap();
+    assert_eq!(mirror.object(1), None, "an object that is missing has left");
+}
+
+#[test]
+fn unsound_poses_are_refused() {
+    let mut mirror = loaded();
+    for bad in [
+        ObjectPose { position_m: [f32::NAN, 0.0, 0.0], ..pose(1, 0.0) },
+        ObjectPose { rotation: [0.0; 4], ..pose(1, 0.0) },
+    ] {
+        assert!(matches!(
+            mirror.apply(ServerMessage::Poses { tick: 1, objects: vec![bad] }),
+            Err(MirrorError::Range { what: "pose", .. })
+        ));
+    }
+}
+
+#[test]
+fn scenes_out_of_range_are_refused() {
+    let mut bad = scene();
+    bad.plants.grid_m = f32::NAN;
+    assert!(matches!(Mirror::default().apply(scene_message(bad)), Err(MirrorError::Range { what: "plants.grid_m", .. })));
+    let mut bad = scene();
+    bad.patches.cells = 12;
+    assert!(matches!(Mirror::default().apply(scene_message(bad)), Err(MirrorError::Range { what: "patches.cells", .. })));
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_make_the_mirror_panic(kind in 0_u8..10, bytes in proptest::collection::vec(any::<u8>(), 0..600)) {
+        let mut mirror = loaded();
+        let mut message = vec![shared::wire::PROTOCOL, kind];
+        message.extend(bytes);
+        if let Ok(message) = decode::<ServerMessage>(&message, 1 << 20) {
+            let _ = mirror.apply(message);
+            mirror.advance(0.1);
+            prop_assert!(mirror.objects().all(|pose| pose.position_m.iter().all(|m| m.is_finite())));
+        }
+    }
+
+    #[test]
+    fn no_payload_makes_the_mirror_panic(patch in 0_u32..9, seq in any::<u32>(), key: bool, payload in proptest::collection::vec(any::<u8>(), 0..400)) {
+        let mut mirror = loaded();
+        let _ = mirror.apply(ServerMessage::Patch { patch, seq, key, payload: payload.clone() });
+        let _ = mirror.apply(ServerMessage::Patch { patch, seq: seq.wrapping_add(1), key: false, payload: payload.clone() });
+        let _ = mirror.apply(ServerMessage::Wind { tick: 0, seq, key, payload });
+    }
+}
