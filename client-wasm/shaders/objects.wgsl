@@ -12,7 +12,7 @@ struct Instance {
 struct Vertex {
     @location(0) position: vec3<f32>,
     @location(1) normal: vec4<f32>,
-    // Linear colour; gloss.
+    // Square root of the linear colour; gloss, or openness of a leaf.
     @location(2) color: vec4<f32>,
     // Place in the leaf texture; (0, 0) is solid.
     @location(3) leaf: vec2<f32>,
@@ -50,7 +50,7 @@ fn vs(vertex: Vertex, @builtin(instance_index) index: u32) -> Surface {
     var out: Surface;
     out.p = placed(vertex, instance);
     out.normal = (instance.world_from_model * vec4<f32>(vertex.normal.xyz, 0.0)).xyz;
-    out.color = vec4<f32>(vertex.color.rgb * instance.tint.rgb, vertex.color.a);
+    out.color = vec4<f32>(vertex.color.rgb * vertex.color.rgb * instance.tint.rgb, vertex.color.a);
     out.leaf = vertex.leaf;
     out.position = frame.projection_from_world * vec4<f32>(out.p, 1.0);
     return out;
@@ -102,7 +102,7 @@ fn vs_shadow(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
 
 @fragment
 fn fs_shadow(shade: Shade) {
-    if shade.leaf.x > 0.0 && textureSample(leaves, clamped, shade.leaf).a < 0.5 {
+    if shade.leaf.x > 0.0 && textureSampleLevel(leaves, clamped, shade.leaf, 0.0).a < 0.5 {
         discard;
     }
 }

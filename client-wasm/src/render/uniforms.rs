@@ -60,3 +60,17 @@ uniform_block! {
         spheres: [[f32; 4]; SPHERE_LIMIT],
     }
 }
+
+uniform_block! {
+    /// What the compute passes know of the single plants; its twin is in `bend.wgsl`.
+    Plants {
+        /// Grid (x, z) in each of the nine slots; third: 1 when it has just moved in.
+        slots: [[i32; 4]; 9],
+        /// Plants of a near grid, flowers among them, grids farther away, their plants.
+        counts: [u32; 4],
+        /// Capacities of the lists of fine blades, coarse blades and flowers.
+        capacities: [u32; 4],
+        /// Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), sub-steps.
+        shape: [f32; 4],
+    }
+}

@@ -1,0 +1,176 @@
+//! What all passes sample: heights, normals, cover, bend atlas, wind, noise, shadow map, and the frame's uniform block.
+
+use super::atlas::Atlas;
+use super::gpu::Gpu;
+use super::paint;
+use super::pipeline::{DEPTH, bind, sampled, sampler, texture, uniform};
+use super::uniforms::Frame;
+use super::wind::WindTexture;
+use crate::state::Land;
+use shared::terrain::{Cover, CoverMap, HeightMap};
+use wgpu::{TextureFormat, TextureSampleType, TextureViewDimension};
+
+/// Layout of bind group 0 and what outlives a scene.
+pub(super) struct FrameGroup {
+    pub(super) layout: wgpu::BindGroupLayout,
+    uniforms: wgpu::Buffer,
+    noise: wgpu::TextureView,
+    repeated: wgpu::Sampler,
+    clamped: wgpu::Sampler,
+    shadow_sampler: wgpu::Sampler,
+    shadows: wgpu::TextureView,
+    no_shadows: wgpu::TextureView,
+}
+
+/// A scene's own textures, and the bind groups made of all.
+pub(super) struct LandTextures {
+    pub(super) atlas: Atlas,
+    pub(super) wind: WindTexture,
+    /// For all passes.
+    pub(super) group: wgpu::BindGroup,
+    /// The same without the shadow map, for the pass that draws it.
+    pub(super) shadow_group: wgpu::BindGroup,
+}
+
+impl FrameGroup {
+    pub(super) fn new(gpu: &Gpu, shadow_px: u32) -> Self {
+        let entries = [
+            uniform(0),
+            sampled(1, TextureSampleType::Float { filterable: false }, TextureViewDimension::D2),
+            texture(2),
+            texture(3),
+            texture(4),
+            sampled(5, TextureSampleType::Float { filterable: true }, TextureViewDimension::D3),
+            texture(6),
+            sampler(7, wgpu::SamplerBindingType::Filtering),
+            sampler(8, wgpu::SamplerBindingType::Filtering),
+            sampled(9, TextureSampleType::Depth, TextureViewDimension::D2),
+            sampler(10, wgpu::SamplerBindingType::Comparison),
+        ];
+        let layout =
+            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries: &entries });
+        let linear = |mode, compare| {
+            gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+                address_mode_u: mode,
+                address_mode_v: mode,
+                address_mode_w: mode,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                compare,
+                ..Default::default()
+            })
+        };
+        let noise = gpu.texture("noise", TextureFormat::Rgba8Unorm, [paint::NOISE_PX; 2], &paint::noise());
+        Self {
+            layout,
+            uniforms: gpu.empty_buffer(
+                "frame",
+                size_of::<Frame>() as u64,
+                wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            ),
+            noise: view(&noise),
+            repeated: linear(wgpu::AddressMode::Repeat, None),
+            clamped: linear(wgpu::AddressMode::ClampToEdge, None),
+            shadow_sampler: linear(wgpu::AddressMode::ClampToEdge, Some(wgpu::CompareFunction::LessEqual)),
+            shadows: depth_texture(gpu, shadow_px),
+            no_shadows: depth_texture(gpu, 1),
+        }
+    }
+
+    pub(super) fn write(&self, gpu: &Gpu, frame: &Frame) {
+        gpu.queue.write_buffer(&self.uniforms, 0, bytemuck::bytes_of(frame));
+    }
+
+    pub(super) fn shadow_map(&self) -> &wgpu::TextureView {
+        &self.shadows
+    }
+}
+
+fn depth_texture(gpu: &Gpu, side_px: u32) -> wgpu::TextureView {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("shadows"),
+        size: wgpu::Extent3d { width: side_px, height: side_px, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: DEPTH,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    view(&texture)
+}
+
+fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&Default::default())
+}
+
+impl LandTextures {
+    pub(super) fn new(gpu: &Gpu, frame: &FrameGroup, land: &Land) -> Self {
+        let heights = land.heights();
+        let height_texture = gpu.texture(
+            "heights",
+            TextureFormat::R32Float,
+            heights.size_px(),
+            &[bytemuck::cast_slice(heights.heights_m()).to_vec()],
+        );
+        let normal_texture = gpu.texture("normals", TextureFormat::Rgba8Snorm, heights.size_px(), &[normals(heights)]);
+        let cover = land.cover();
+        let cover_texture = gpu.texture("cover", TextureFormat::R8Unorm, cover.size_px(), &[grass(cover)]);
+        let atlas = Atlas::new(gpu, *land.layout());
+        let wind = WindTexture::new(gpu, &land.scene().wind);
+        let group = |label, shadows| {
+            use wgpu::BindingResource::{Sampler, TextureView};
+            let views = [&height_texture, &normal_texture, &cover_texture, &atlas.texture, &wind.texture].map(view);
+            let [heights, normals, cover, bends, winds] = &views;
+            let resources = [
+                frame.uniforms.as_entire_binding(),
+                TextureView(heights),
+                TextureView(normals),
+                TextureView(cover),
+                TextureView(bends),
+                TextureView(winds),
+                TextureView(&frame.noise),
+                Sampler(&frame.repeated),
+                Sampler(&frame.clamped),
+                TextureView(shadows),
+                Sampler(&frame.shadow_sampler),
+            ];
+            bind(gpu, label, &frame.layout, &resources)
+        };
+        let (all, shadow) = (group("frame", &frame.shadows), group("frame without shadows", &frame.no_shadows));
+        Self { group: all, shadow_group: shadow, atlas, wind }
+    }
+}
+
+/// Normals at the pixels by central differences, as signed bytes.
+fn normals(heights: &HeightMap) -> Vec<u8> {
+    let [width, depth] = heights.size_px().map(|n| n as usize);
+    let [pixel_x, pixel_z] = heights.pixel_m();
+    let h = heights.heights_m();
+    let mut texels = Vec::with_capacity(width * depth * 4);
+    for z in 0..depth {
+        for x in 0..width {
+            let at = |x: usize, z: usize| h[z * width + x];
+            let (west, east) = (x.saturating_sub(1), (x + 1).min(width - 1));
+            let (north, south) = (z.saturating_sub(1), (z + 1).min(depth - 1));
+            let slope_x = (at(east, z) - at(west, z)) / ((east - west) as f32 * pixel_x);
+            let slope_z = (at(x, south) - at(x, north)) / ((south - north) as f32 * pixel_z);
+            let normal = glam::Vec3::new(-slope_x, 1.0, -slope_z).normalize();
+            texels.extend(normal.to_array().map(|v| (v * 127.0).round() as i8 as u8));
+            texels.push(0);
+        }
+    }
+    texels
+}
+
+/// Share of grass at the pixels; grass grows up to a tree's trunk.
+fn grass(cover: &CoverMap) -> Vec<u8> {
+    let share = |id: u8| match Cover::from(id) {
+        Cover::Grass => 255,
+        Cover::Tree => 190,
+        Cover::Stone => 110,
+        Cover::Gap | Cover::Free(_) => 0,
+    };
+    cover.ids().iter().map(|&id| share(id)).collect()
+}

@@ -1,0 +1,234 @@
+//! Everything made of meshes: vehicles, trees and stones; drawn for the eye and for the sun.
+
+use super::cull::Frustum;
+use super::flora::{self, STONE_SHAPES, Standing, TREE_SHAPES};
+use super::gpu::Gpu;
+use super::mesh::{Paint, Solid, VERTEX_ATTRIBUTES, Vertex};
+use super::paint;
+use super::pipeline::{Draw, Maker, bind, storage, texture};
+use super::shaders;
+use super::vehicles::{self, Part};
+use crate::state::{Land, OBJECT_LIMIT};
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Quat, Vec2, Vec3};
+use shared::wire::{Mesh, ObjectId, ObjectPose};
+use std::collections::HashMap;
+use std::ops::Range;
+use wgpu::BufferUsages;
+
+/// Most instances in a frame.
+const INSTANCE_LIMIT: usize = 12_288;
+/// Distance beyond which trees are coarse, in their heights.
+const FINE_TREE_HEIGHTS: f32 = 7.0;
+/// Distance up to which things cast shadows (m).
+const SHADOW_REACH_M: f32 = 90.0;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Instance {
+    world_from_model: [f32; 16],
+    tint: [f32; 4],
+}
+
+/// Where a mesh lies in the shared buffers.
+#[derive(Clone, Debug)]
+struct MeshRange {
+    indices: Range<u32>,
+    base_vertex: i32,
+}
+
+pub(super) struct Objects {
+    pipeline: wgpu::RenderPipeline,
+    shadow_pipeline: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    instances: wgpu::Buffer,
+    meshes: Vec<MeshRange>,
+    standing: Vec<Standing>,
+    rolled_m: HashMap<ObjectId, f32>,
+    /// Mesh and instances of each draw, for the eye and for the sun.
+    seen: Vec<(usize, Range<u32>)>,
+    lit: Vec<(usize, Range<u32>)>,
+}
+
+/// Order of the meshes: parts, fine trees, coarse trees, stones.
+fn tree_mesh(shape: u32, is_coarse: bool) -> usize {
+    Part::ALL.len() + (shape + if is_coarse { TREE_SHAPES } else { 0 }) as usize
+}
+
+fn stone_mesh(shape: u32) -> usize {
+    Part::ALL.len() + (2 * TREE_SHAPES + shape) as usize
+}
+
+fn part_mesh(part: Part) -> usize {
+    Part::ALL.iter().position(|&other| other == part).expect("every part is in the list of all")
+}
+
+impl Objects {
+    pub(super) fn new(maker: &Maker<'_>, land: &Land) -> Self {
+        let gpu = maker.gpu;
+        let mut solids: Vec<Solid> = Part::ALL.iter().map(|&part| part_solid(land, part)).collect();
+        solids.extend((0..TREE_SHAPES).map(|shape| flora::tree(shape, false)));
+        solids.extend((0..TREE_SHAPES).map(|shape| flora::tree(shape, true)));
+        solids.extend((0..STONE_SHAPES).map(flora::stone));
+        let (mut vertices, mut indices, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
+        for solid in &solids {
+            let first = indices.len() as u32;
+            meshes.push(MeshRange { base_vertex: vertices.len() as i32, indices: first..first + solid.indices.len() as u32 });
+            vertices.extend_from_slice(&solid.vertices);
+            indices.extend_from_slice(&solid.indices);
+        }
+
+        let module = gpu.shader("objects", shaders::OBJECTS);
+        let layout = maker.layout("objects", &[storage(0), texture(1)]);
+        let buffer = wgpu::VertexBufferLayout {
+            array_stride: size_of::<Vertex>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &VERTEX_ATTRIBUTES,
+        };
+        let buffers = [Some(buffer)];
+        let draw = Draw {
+            label: "objects",
+            vertex: "vs",
+            fragment: Some("fs"),
+            buffers: &buffers,
+            depth_write: true,
+            cull: None,
+        };
+        let pipeline = maker.draw(&module, Some(&layout), &draw);
+        let shadow = Draw { label: "shadows", vertex: "vs_shadow", fragment: Some("fs_shadow"), ..draw };
+        let shadow_pipeline = maker.draw(&module, Some(&layout), &shadow);
+        let size = (INSTANCE_LIMIT * size_of::<Instance>()) as u64;
+        let instances = gpu.empty_buffer("instances", size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
+        let leaves =
+            gpu.texture("leaves", wgpu::TextureFormat::Rgba8Unorm, [paint::LEAF_PX; 2], &paint::leaves());
+        let leaves = leaves.create_view(&Default::default());
+        let resources = [instances.as_entire_binding(), wgpu::BindingResource::TextureView(&leaves)];
+        Self {
+            pipeline,
+            shadow_pipeline,
+            group: bind(gpu, "objects", &layout, &resources),
+            vertices: gpu.buffer("meshes", bytemuck::cast_slice(&vertices), BufferUsages::VERTEX),
+            indices: gpu.buffer("mesh indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
+            instances,
+            meshes,
+            standing: flora::standing(land),
+            rolled_m: HashMap::new(),
+            seen: Vec::new(),
+            lit: Vec::new(),
+        }
+    }
+
+    /// Lists what is in view, and what throws shadows into the view.
+    #[allow(clippy::too_many_arguments, reason = "the frame's own numbers")]
+    pub(super) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        poses: &[ObjectPose],
+        eye_m: Vec3,
+        frustum: &Frustum,
+        time_secs: f32,
+        dt_secs: f32,
+        tree_reach_m: f32,
+    ) {
+        let mut by_mesh: Vec<Vec<Instance>> = vec![Vec::new(); self.meshes.len()];
+        let mut by_mesh_lit = by_mesh.clone();
+        self.rolled_m.retain(|id, _| poses.iter().any(|pose| pose.id == *id));
+        for pose in poses.iter().take(OBJECT_LIMIT) {
+            let rotation = Quat::from_array(pose.rotation);
+            let forward = rotation * Vec3::NEG_Z;
+            let rolled = self.rolled_m.entry(pose.id).or_default();
+            *rolled = (*rolled + Vec3::from(pose.velocity_m_per_s).dot(forward) * dt_secs) % 1000.0;
+            let body = glam::Affine3A::from_rotation_translation(rotation, Vec3::from(pose.position_m));
+            for (part, place) in vehicles::parts(pose, *rolled, time_secs) {
+                let world_from_model = Mat4::from(body * place).to_cols_array();
+                let instance = Instance { world_from_model, tint: [1.0, 1.0, 1.0, 0.0] };
+                by_mesh[part_mesh(part)].push(instance);
+                by_mesh_lit[part_mesh(part)].push(instance);
+            }
+        }
+        let mut near: Vec<(f32, &Standing)> = self
+            .standing
+            .iter()
+            .map(|standing| (standing.position_m.distance(eye_m), standing))
+            .filter(|(distance_m, standing)| *distance_m < tree_reach_m * if standing.is_tree { 1.0 } else { 0.4 })
+            .collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let room = INSTANCE_LIMIT - 12 * OBJECT_LIMIT.min(poses.len());
+        for (distance_m, standing) in near.into_iter().take(room / 2) {
+            let half = Vec3::new(0.6, 1.1, 0.6) * standing.size_m;
+            let is_coarse = distance_m > FINE_TREE_HEIGHTS * standing.size_m;
+            let mesh = |is_coarse| match standing.is_tree {
+                true => tree_mesh(standing.shape, is_coarse),
+                false => stone_mesh(standing.shape),
+            };
+            let instance =
+                Instance { world_from_model: standing.world_from_model.to_cols_array(), tint: standing.tint };
+            if frustum.sees_box(standing.position_m - half, standing.position_m + half) {
+                by_mesh[mesh(is_coarse)].push(instance);
+            }
+            if distance_m < SHADOW_REACH_M {
+                by_mesh_lit[mesh(true)].push(instance);
+            }
+        }
+        let mut all = Vec::new();
+        for (lists, draws) in [(&by_mesh, &mut self.seen), (&by_mesh_lit, &mut self.lit)] {
+            draws.clear();
+            for (mesh, list) in lists.iter().enumerate().filter(|(_, list)| !list.is_empty()) {
+                let first = all.len() as u32;
+                all.extend_from_slice(&list[..list.len().min(INSTANCE_LIMIT - all.len())]);
+                draws.push((mesh, first..all.len() as u32));
+            }
+        }
+        gpu.queue.write_buffer(&self.instances, 0, bytemuck::cast_slice(&all));
+    }
+
+    /// Triangles that [`draw`](Self::draw) feeds in.
+    pub(super) fn triangles(&self) -> u64 {
+        self.seen.iter().map(|(mesh, range)| u64::from((self.meshes[*mesh].indices.len() / 3) as u32) * range.len() as u64).sum()
+    }
+
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        self.draw_list(pass, &self.seen);
+    }
+
+    pub(super) fn draw_shadows(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.shadow_pipeline);
+        self.draw_list(pass, &self.lit);
+    }
+
+    fn draw_list(&self, pass: &mut wgpu::RenderPass<'_>, list: &[(usize, Range<u32>)]) {
+        pass.set_bind_group(1, &self.group, &[]);
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        for (mesh, instances) in list {
+            let range = &self.meshes[*mesh];
+            pass.draw_indexed(range.indices.clone(), range.base_vertex, instances.clone());
+        }
+    }
+}
+
+/// The built-in part, or the scene's own model in its place; the other parts of a replaced vehicle are empty.
+fn part_solid(land: &Land, part: Part) -> Solid {
+    for (kind, mesh) in land.models() {
+        if part == Part::body(*kind) {
+            return model(mesh);
+        }
+        if part.kind() == *kind {
+            return Solid::default();
+        }
+    }
+    part.solid()
+}
+
+fn model(mesh: &Mesh) -> Solid {
+    let mut solid = Solid::default();
+    for ((position, normal), rgb) in mesh.positions_m.iter().zip(&mesh.normals).zip(&mesh.rgb) {
+        let [r, g, b] = rgb.map(|v| f32::from(v) / 255.0);
+        solid.vertex(Vec3::from(*position), Vec3::from(*normal), Paint::new(r, g, b, 0.15), Vec2::ZERO);
+    }
+    solid.indices.clone_from(&mesh.indices);
+    solid
+}

@@ -1,0 +1,76 @@
+//! Pictures without a window.
+
+use super::{FrameStats, Gpu, Quality, Renderer};
+use crate::camera::Camera;
+use crate::state::Mirror;
+
+/// Bytes to which WebGPU aligns the rows of a copy.
+const ROW_ALIGN: u32 = 256;
+
+/// A target whose pixels can be read.
+pub struct Picture {
+    gpu: Gpu,
+    renderer: Renderer,
+    texture: wgpu::Texture,
+    buffer: wgpu::Buffer,
+}
+
+impl Picture {
+    /// A picture of `size_px`, 8 bits a channel, sRGB.
+    pub fn new(gpu: &Gpu, size_px: [u32; 2], quality: Quality) -> Self {
+        let format = wgpu::TextureFormat::Rgba8UnormSrgb;
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("target"),
+            size: wgpu::Extent3d { width: size_px[0], height: size_px[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let size = u64::from(row_bytes(size_px[0])) * u64::from(size_px[1]);
+        let buffer = gpu.empty_buffer("pixels", size, wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
+        Self { renderer: Renderer::new(gpu, format, size_px, quality), gpu: gpu.clone(), texture, buffer }
+    }
+
+    /// Draws a frame and waits until it is done. See [`Renderer::draw`].
+    pub fn draw(&mut self, mirror: &mut Mirror, camera: &Camera, time_secs: f64, dt_secs: f32) -> FrameStats {
+        let view = self.texture.create_view(&Default::default());
+        let stats = self.renderer.draw(mirror, camera, time_secs, dt_secs, &view);
+        self.wait();
+        stats
+    }
+
+    /// Pixels of the newest frame: RGBA, row by row from the top.
+    pub fn rgba(&self) -> Vec<u8> {
+        let [width, height] = self.renderer.size_px();
+        let row = row_bytes(width);
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_texture_to_buffer(
+            self.texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &self.buffer,
+                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: Some(height) },
+            },
+            self.texture.size(),
+        );
+        self.gpu.queue.submit([encoder.finish()]);
+        self.buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+        self.wait();
+        let pixels = self.buffer.slice(..).get_mapped_range().map(|bytes| {
+            bytes.chunks_exact(row as usize).flat_map(|line| &line[..width as usize * 4]).copied().collect()
+        });
+        self.buffer.unmap();
+        pixels.unwrap_or_default()
+    }
+
+    fn wait(&self) {
+        // A lost device shows as an empty picture.
+        let _ = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+    }
+}
+
+fn row_bytes(width_px: u32) -> u32 {
+    (width_px * 4).next_multiple_of(ROW_ALIGN)
+}

@@ -1,0 +1,88 @@
+//! How finely the picture is drawn.
+
+/// Level of detail of the whole picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quality {
+    /// 10 thousand simulated plants, one sample a pixel: for software rendering.
+    Low,
+    /// 37 thousand, four samples.
+    #[default]
+    Medium,
+    /// 100 thousand.
+    High,
+    /// 230 thousand.
+    Ultra,
+}
+
+impl Quality {
+    /// All levels, coarsest first.
+    pub const ALL: [Self; 4] = [Self::Low, Self::Medium, Self::High, Self::Ultra];
+
+    /// Name as an address and the page write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Low => "low",
+            Self::Medium => "medium",
+            Self::High => "high",
+            Self::Ultra => "ultra",
+        }
+    }
+
+    /// The level of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|quality| quality.name() == name)
+    }
+
+    /// Plants along one side of a near grid of 8 m; nine such grids are simulated.
+    pub fn blades_per_side(self) -> u32 {
+        match self {
+            Self::Low => 33,
+            Self::Medium => 64,
+            Self::High => 105,
+            Self::Ultra => 160,
+        }
+    }
+
+    /// Rings of grids beyond the nine whose plants are drawn singly.
+    pub(super) fn rings(self) -> i32 {
+        match self {
+            Self::Low => 1,
+            Self::Medium => 2,
+            Self::High => 4,
+            Self::Ultra => 6,
+        }
+    }
+
+    /// Samples a pixel.
+    pub(super) fn samples(self) -> u32 {
+        if self == Self::Low { 1 } else { 4 }
+    }
+
+    /// Side of the shadow map (px).
+    pub(super) fn shadow_px(self) -> u32 {
+        match self {
+            Self::Low => 512,
+            Self::Medium => 1024,
+            Self::High | Self::Ultra => 2048,
+        }
+    }
+
+    /// Distance at which billboards have melted into the ground (m).
+    pub(super) fn billboard_reach_m(self) -> f32 {
+        match self {
+            Self::Low => 60.0,
+            Self::Medium => 100.0,
+            Self::High => 150.0,
+            Self::Ultra => 220.0,
+        }
+    }
+
+    /// Distance up to which trees are drawn (m).
+    pub(super) fn tree_reach_m(self) -> f32 {
+        match self {
+            Self::Low => 400.0,
+            Self::Medium => 800.0,
+            Self::High | Self::Ultra => 2000.0,
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! Sky, drawn last where nothing else is.
+
+use super::pipeline::{Draw, Maker};
+use super::shaders;
+
+pub(super) struct Sky {
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl Sky {
+    pub(super) fn new(maker: &Maker<'_>) -> Self {
+        let module = maker.gpu.shader("sky", shaders::SKY);
+        let draw = Draw { label: "sky", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: false, cull: None };
+        Self { pipeline: maker.draw(&module, None, &draw) }
+    }
+
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.draw(0..3, 0..1);
+    }
+}

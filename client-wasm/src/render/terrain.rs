@@ -1,0 +1,162 @@
+//! Ground: a quadtree of tiles that are finer near the camera, each the same small mesh.
+
+use super::cull::Frustum;
+use super::gpu::Gpu;
+use super::pipeline::{Draw, Maker, bind, storage};
+use super::shaders;
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec2, Vec3};
+
+/// Cells along one side of a tile; twin of `TILE_CELLS` in `terrain.wgsl`.
+const TILE_CELLS: u32 = 16;
+/// Most tiles in a frame.
+const TILE_LIMIT: usize = 1024;
+/// A tile gives way to a coarser one at this many times its side.
+const RANGE_SIDES: f32 = 2.6;
+
+/// One tile: corner (m), side (m), distance at which the next coarser grid takes over (m).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(super) struct Tile {
+    corner_m: [f32; 2],
+    side_m: f32,
+    range_m: f32,
+}
+
+/// The square that the quadtree covers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Ground {
+    corner_m: Vec2,
+    side_m: f32,
+    finest_m: f32,
+    height_m: [f32; 2],
+}
+
+impl Ground {
+    /// Land of `extent_m` with pixels of `pixel_m` and heights within `height_m`, and what is seen beyond its edge.
+    pub(super) fn new(extent_m: [f32; 2], pixel_m: [f32; 2], height_m: [f32; 2], haze_m: f32) -> Self {
+        let pixel = pixel_m[0].min(pixel_m[1]).clamp(1.0, 16.0);
+        let finest_m = TILE_CELLS as f32 * pixel.log2().round().exp2();
+        let beyond_m = (4.0 * haze_m).clamp(500.0, 8_000.0);
+        let wanted = extent_m[0].max(extent_m[1]) + 2.0 * beyond_m;
+        let mut side_m = finest_m;
+        while side_m < wanted {
+            side_m *= 2.0;
+        }
+        let corner_m = 0.5 * (Vec2::from(extent_m) - Vec2::splat(side_m));
+        // On the grid of the finest tiles, so that the world's own corner is a vertex.
+        let corner_m = (corner_m / finest_m).floor() * finest_m;
+        Self { corner_m, side_m, finest_m, height_m: [height_m[0] - 90.0, height_m[1] + 160.0] }
+    }
+
+    /// Tiles that the view needs, nearest first.
+    pub(super) fn tiles(&self, eye_m: Vec3, frustum: &Frustum) -> Vec<Tile> {
+        let mut tiles = Vec::new();
+        self.collect(self.corner_m, self.side_m, eye_m, frustum, &mut tiles);
+        let distance = |tile: &Tile| {
+            (Vec2::from(tile.corner_m) + 0.5 * tile.side_m - Vec2::new(eye_m.x, eye_m.z)).length() - 0.7 * tile.side_m
+        };
+        tiles.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        tiles.truncate(TILE_LIMIT);
+        tiles
+    }
+
+    fn collect(&self, corner: Vec2, side: f32, eye: Vec3, frustum: &Frustum, tiles: &mut Vec<Tile>) {
+        let low = Vec3::new(corner.x, self.height_m[0], corner.y);
+        let high = Vec3::new(corner.x + side, self.height_m[1], corner.y + side);
+        if !frustum.sees_box(low, high) {
+            return;
+        }
+        let nearest = eye.clamp(low, high);
+        let finer_side = 0.5 * side;
+        if side > self.finest_m && eye.distance(nearest) < RANGE_SIDES * finer_side {
+            for (x, z) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+                self.collect(corner + finer_side * Vec2::new(x, z), finer_side, eye, frustum, tiles);
+            }
+        } else {
+            tiles.push(Tile { corner_m: corner.into(), side_m: side, range_m: RANGE_SIDES * side });
+        }
+    }
+}
+
+pub(super) struct Terrain {
+    pipeline: wgpu::RenderPipeline,
+    indices: wgpu::Buffer,
+    index_count: u32,
+    tiles: wgpu::Buffer,
+    tile_count: u32,
+    group: wgpu::BindGroup,
+}
+
+impl Terrain {
+    pub(super) fn new(maker: &Maker<'_>) -> Self {
+        let module = maker.gpu.shader("terrain", shaders::TERRAIN);
+        let layout = maker.layout("terrain", &[storage(0)]);
+        let draw = Draw {
+            label: "terrain",
+            vertex: "vs",
+            fragment: Some("fs"),
+            buffers: &[],
+            depth_write: true,
+            cull: Some(wgpu::Face::Back),
+        };
+        let pipeline = maker.draw(&module, Some(&layout), &draw);
+        let indices = tile_indices();
+        let size = (TILE_LIMIT * size_of::<Tile>()) as u64;
+        let tiles =
+            maker.gpu.empty_buffer("tiles", size, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST);
+        let group = bind(maker.gpu, "terrain", &layout, &[tiles.as_entire_binding()]);
+        let index_buffer = maker.gpu.buffer("tile", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
+        Self { pipeline, indices: index_buffer, index_count: indices.len() as u32, tiles, tile_count: 0, group }
+    }
+
+    pub(super) fn prepare(&mut self, gpu: &Gpu, tiles: &[Tile]) {
+        gpu.queue.write_buffer(&self.tiles, 0, bytemuck::cast_slice(tiles));
+        self.tile_count = tiles.len() as u32;
+    }
+
+    /// Vertices that [`draw`](Self::draw) feeds in.
+    pub(super) fn vertices(&self) -> u64 {
+        u64::from(self.tile_count * (TILE_CELLS + 1).pow(2))
+    }
+
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(1, &self.group, &[]);
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
+        pass.draw_indexed(0..self.index_count, 0, 0..self.tile_count);
+    }
+}
+
+/// Two triangles a cell, anticlockwise seen from above.
+fn tile_indices() -> Vec<u16> {
+    let row = TILE_CELLS as u16 + 1;
+    let cells = (0..TILE_CELLS as u16).flat_map(|z| (0..TILE_CELLS as u16).map(move |x| z * row + x));
+    cells.flat_map(|nw| [nw, nw + row, nw + 1, nw + 1, nw + row, nw + row + 1]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Camera;
+
+    #[test]
+    fn tiles_in_view_cover_what_is_in_view_once() {
+        for (extent, pixel) in [([256.0, 256.0], [1.0, 1.0]), ([30_000.0, 22_000.0], [74.0, 92.0])] {
+            let ground = Ground::new(extent, pixel, [0.0, 40.0], 900.0);
+            let eye_m = Vec3::new(extent[0] * 0.4, 20.0, extent[1] * 0.6);
+            let camera = Camera { eye_m, heading_rad: 0.8, ..Camera::default() };
+            let matrix = camera.projection_from_world(1.7);
+            let tiles = ground.tiles(eye_m, &Frustum::new(&matrix));
+            assert!(tiles.len() < 300, "{} tiles", tiles.len());
+            for share in [0.01, 0.05, 0.2, 0.7] {
+                let p = eye_m + camera.forward() * extent[0] * share;
+                let holds = |tile: &&Tile| {
+                    let [x, z] = tile.corner_m;
+                    (x..x + tile.side_m).contains(&p.x) && (z..z + tile.side_m).contains(&p.z)
+                };
+                assert_eq!(tiles.iter().filter(holds).count(), 1, "{p}");
+            }
+        }
+    }
+}

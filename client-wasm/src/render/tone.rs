@@ -1,0 +1,73 @@
+//! Last pass: from light to the target's colours.
+
+use super::gpu::Gpu;
+use super::pipeline::{Maker, bind, texture, uniform};
+use super::shaders;
+
+/// Exposure before the tone curve.
+const EXPOSURE: f32 = 1.0;
+
+pub(super) struct Tone {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    settings: wgpu::Buffer,
+    group: wgpu::BindGroup,
+}
+
+impl Tone {
+    pub(super) fn new(maker: &Maker<'_>, target: wgpu::TextureFormat, picture: &wgpu::TextureView) -> Self {
+        let device = &maker.gpu.device;
+        let module = maker.gpu.shader("tone", shaders::TONE);
+        let layout = maker.layout("tone", &[texture(0), uniform(1)]);
+        let encodes = if target.is_srgb() { 1.0 } else { 0.0_f32 };
+        let contents: [f32; 4] = [encodes, EXPOSURE, 0.0, 0.0];
+        let settings = maker.gpu.buffer("tone", bytemuck::bytes_of(&contents), wgpu::BufferUsages::UNIFORM);
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("tone"),
+            bind_group_layouts: &[Some(maker.frame_layout), Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("tone"),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vs"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fs"),
+                compilation_options: Default::default(),
+                targets: &[Some(target.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let group = group(maker.gpu, &layout, picture, &settings);
+        Self { pipeline, layout, settings, group }
+    }
+
+    pub(super) fn set_picture(&mut self, gpu: &Gpu, picture: &wgpu::TextureView) {
+        self.group = group(gpu, &self.layout, picture, &self.settings);
+    }
+
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(1, &self.group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+fn group(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    picture: &wgpu::TextureView,
+    settings: &wgpu::Buffer,
+) -> wgpu::BindGroup {
+    bind(gpu, "tone", layout, &[wgpu::BindingResource::TextureView(picture), settings.as_entire_binding()])
+}

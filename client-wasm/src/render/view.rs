@@ -1,0 +1,137 @@
+//! What a frame's uniform block says of the camera, the light and the scene.
+
+use super::Quality;
+use super::atlas::Atlas;
+use super::blades;
+use super::uniforms::{Frame, SPHERE_LIMIT};
+use crate::camera::Camera;
+use crate::state::Land;
+use glam::{Mat4, Vec3, Vec4};
+use shared::scene::WindBoundary;
+use shared::wire::ObjectPose;
+
+/// Distance after which all patterns of `gust_at` in `common.wgsl` repeat (m): 60 × 23.
+const GUST_PERIOD_M: f64 = 1380.0;
+/// Speed of the gusts' fronts over that of the mean wind.
+const GUST_SPEED: f64 = 1.3;
+/// Speed of the clouds over that of the mean wind near the ground.
+const CLOUD_SPEED: f64 = 1.6;
+/// Half the side of the square that the shadow map covers (m), and half its depth.
+const SHADOW_HALF_M: f32 = 52.0;
+const SHADOW_DEPTH_M: f32 = 160.0;
+
+pub(super) struct View<'a> {
+    camera: &'a Camera,
+    size_px: [u32; 2],
+    quality: Quality,
+    time_secs: f64,
+    dt_secs: f32,
+    pub(super) projection_from_world: Mat4,
+}
+
+impl<'a> View<'a> {
+    pub(super) fn new(camera: &'a Camera, size_px: [u32; 2], quality: Quality, time_secs: f64, dt_secs: f32) -> Self {
+        let aspect = size_px[0] as f32 / size_px[1] as f32;
+        let projection_from_world = camera.projection_from_world(aspect);
+        Self { camera, size_px, quality, time_secs, dt_secs, projection_from_world }
+    }
+
+    pub(super) fn frame(&self, land: &Land, atlas: &Atlas, blade_reach_m: f32, poses: &[ObjectPose]) -> Frame {
+        let scene = land.scene();
+        let [extent_x, extent_z] = scene.extent_m();
+        let [pixel_x, pixel_z] = land.heights().pixel_m();
+        let [width, depth] = land.heights().size_px().map(|px| px as f32);
+        let eye = self.camera.eye_m;
+        let sun = sun_direction(scene.light.sun_heading_rad, scene.light.sun_elevation_rad);
+        let sun_rgb = sun_color(sun.y);
+        let box_m: [f32; 3] = std::array::from_fn(|i| scene.wind.cells[i] as f32 * scene.wind.spacing_m[i]);
+        let wraps = if scene.wind.sides == WindBoundary::Wrap { 1.0 } else { 0.0 };
+        let [mean_x, mean_z] = scene.wind.mean_m_per_s;
+        let mean = mean_x.hypot(mean_z);
+        let [dir_x, dir_z] = if mean > 1e-3 { [mean_x / mean, mean_z / mean] } else { [1.0, 0.0] };
+        let travelled = (self.time_secs * f64::from(mean) * GUST_SPEED).rem_euclid(GUST_PERIOD_M) as f32;
+        let drift = -(self.time_secs * CLOUD_SPEED) as f32;
+        let plants = &scene.plants;
+        let [root, tip] = [plants.root_rgb, plants.tip_rgb];
+        let billboards_to = self.quality.billboard_reach_m();
+        let pixel_rad = self.camera.fov_rad / self.size_px[1] as f32;
+        let spheres = spheres(poses, eye);
+        let rays = Mat4::from_mat3(glam::Mat3::from_mat4(glam::camera::rh::view::look_to_mat4(
+            Vec3::ZERO,
+            self.camera.forward(),
+            Vec3::Y,
+        )));
+        let aspect = self.size_px[0] as f32 / self.size_px[1] as f32;
+        let world_from_projection = (self.camera.projection_from_view(aspect) * rays).inverse();
+        Frame {
+            projection_from_world: self.projection_from_world.to_cols_array(),
+            world_from_projection: world_from_projection.to_cols_array(),
+            shadow_from_world: self.shadow_from_world(sun).to_cols_array(),
+            eye: [eye.x, eye.y, eye.z, (self.time_secs % 10_000.0) as f32],
+            sun: [sun.x, sun.y, sun.z, 1.0 / self.quality.shadow_px() as f32],
+            sun_color: [sun_rgb.x, sun_rgb.y, sun_rgb.z, scene.light.haze_m],
+            world: [extent_x, extent_z, pixel_x, pixel_z],
+            maps: [width, depth, atlas.window_m(), atlas.reach_m()],
+            wind_box: [box_m[0], box_m[1], box_m[2], wraps],
+            gust: [dir_x, dir_z, mean, travelled],
+            blade: [plants.height_m, plants.height_variation, plants.width_m, scene.grass.wind_bend_rad],
+            root_rgb: [root[0], root[1], root[2], plants.flowers_per_m2],
+            tip_rgb: [tip[0], tip[1], tip[2], 0.0],
+            screen: [
+                self.size_px[0] as f32,
+                self.size_px[1] as f32,
+                pixel_rad,
+                blades::simulated_secs(self.dt_secs),
+            ],
+            reach: [blade_reach_m * 0.72, blade_reach_m, billboards_to * 0.6, billboards_to],
+            clouds: [drift * dir_x * mean, drift * dir_z * mean, 0.5, spheres.len() as f32],
+            spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_default()),
+        }
+    }
+
+    /// A square about what lies ahead, as the sun sees it; moves in whole texels, so that shadows do not crawl.
+    fn shadow_from_world(&self, sun: Vec3) -> Mat4 {
+        let ahead = Vec3::new(self.camera.heading_rad.sin(), 0.0, -self.camera.heading_rad.cos());
+        let centre = self.camera.eye_m + ahead * (SHADOW_HALF_M * 0.6);
+        let light_from_world = glam::camera::rh::view::look_to_mat4(Vec3::ZERO, -sun, if sun.y > 0.99 { Vec3::X } else { Vec3::Y });
+        let texel = 2.0 * SHADOW_HALF_M / self.quality.shadow_px() as f32;
+        let at = light_from_world.transform_point3(centre);
+        let snapped = Vec3::new((at.x / texel).round() * texel, (at.y / texel).round() * texel, at.z);
+        let scale = Vec3::new(1.0 / SHADOW_HALF_M, 1.0 / SHADOW_HALF_M, -0.5 / SHADOW_DEPTH_M);
+        let clip_from_light = Mat4::from_cols(
+            Vec4::new(scale.x, 0.0, 0.0, 0.0),
+            Vec4::new(0.0, scale.y, 0.0, 0.0),
+            Vec4::new(0.0, 0.0, scale.z, 0.0),
+            Vec4::new(-snapped.x * scale.x, -snapped.y * scale.y, 0.5 - snapped.z * scale.z, 1.0),
+        );
+        clip_from_light * light_from_world
+    }
+}
+
+/// Interaction spheres at the objects' feet (000 section 6.2), nearest first: centre and radius.
+fn spheres(poses: &[ObjectPose], eye: Vec3) -> Vec<[f32; 4]> {
+    let mut spheres: Vec<(f32, [f32; 4])> = poses
+        .iter()
+        .map(|pose| {
+            let [x, y, z] = pose.position_m;
+            let [_, half_y, _] = pose.kind.half_extents_m();
+            let radius = pose.kind.interaction_radius_m();
+            (Vec3::from(pose.position_m).distance(eye), [x, y - half_y + 0.35 * radius, z, radius])
+        })
+        .collect();
+    spheres.sort_by(|a, b| a.0.total_cmp(&b.0));
+    spheres.truncate(SPHERE_LIMIT);
+    spheres.into_iter().map(|(_, sphere)| sphere).collect()
+}
+
+fn sun_direction(heading_rad: f32, elevation_rad: f32) -> Vec3 {
+    let level = elevation_rad.cos();
+    Vec3::new(heading_rad.sin() * level, elevation_rad.sin(), -heading_rad.cos() * level)
+}
+
+/// Sunlight after its way through the air: redder and weaker when the sun is low.
+fn sun_color(up: f32) -> Vec3 {
+    let air_mass = 1.0 / (up + 0.15 * (1.0 - up).powi(3)).max(0.06);
+    let depth = Vec3::new(0.055, 0.115, 0.235);
+    Vec3::splat(3.9) * (-depth * air_mass).exp()
+}
