@@ -4,3 +4,4 @@ pub mod browser;
 pub mod chromedriver;
 pub mod pages;
 pub mod picture;
+pub mod synthetic;
