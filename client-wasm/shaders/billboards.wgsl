@@ -46,8 +46,10 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let fade_out = 1.0 - smoothstep(frame.reach.z, frame.reach.w, distance_m);
     var stand: Stand;
     let light = cloud_light(root) * sun_visible(ground + vec3<f32>(0.0, height * 0.6, 0.0));
-    stand.pose = vec4<f32>(lean, light, fade_in * fade_out * step(0.1, share));
-    stand.tint = vec4<f32>(grass_tint(root), height);
+    // Clumps rise and sink rather than dissolve.
+    let risen = fade_in * mix(0.35, 1.0, fade_out);
+    stand.pose = vec4<f32>(lean, light, min(fade_out * 4.0, 1.0) * step(0.1, share) * step(0.05, fade_in));
+    stand.tint = vec4<f32>(grass_tint(root), height * risen);
     stand.normal = vec4<f32>(ground_normal(root), 0.0);
     placed[id.x] = stand;
 }

@@ -229,7 +229,7 @@ fn grass_light(
 
 // Grass that lies shows its pale undersides: a factor on its colour for a bend (rad).
 fn trodden(tilt: f32) -> vec3<f32> {
-    return mix(vec3<f32>(1.0), vec3<f32>(1.55, 1.45, 1.75), smoothstep(0.65, 1.25, tilt));
+    return mix(vec3<f32>(1.0), vec3<f32>(1.85, 1.70, 2.1), smoothstep(0.60, 1.20, tilt));
 }
 
 // Drift of colour over the land: lush, dry and reddish places, as a factor on the grass's colours.

@@ -49,7 +49,7 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let bare = litter * (frame.sun_color.rgb * sun_light * max(dot(normal, frame.sun.xyz), 0.0) + ambient(normal));
 
     // The grass as seen from afar: the colour of its upper half, leaning as the blades do.
-    let near = 1.0 - smoothstep(frame.reach.x, frame.reach.w, distance_m);
+    let near = 1.0 - smoothstep(frame.reach.x * 0.5, frame.reach.y * 1.6, distance_m);
     let wind = wind_at(ground.p, 1.0).xz * gust_at(p);
     let lean = lean_of_wind(wind) + lean_of_field(p, field_level(distance_m));
     let tilt = length(lean);

@@ -45,8 +45,7 @@ impl Billboards {
         let gpu = maker.gpu;
         let layout = maker.layout("billboards", &[storage(0), uniform(1), texture(2), storage(3)]);
         let place_layout = maker.layout("billboard places", &[storage(0), uniform(1), storage_rw(4)]);
-        let draw =
-            Draw { label: "billboards", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None };
+        let draw = Draw { label: "billboards", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None };
         let module = gpu.shader("billboards", shaders::BILLBOARDS);
         let pipeline = maker.draw(&module, Some(&layout), &draw);
         let place = maker.compute("place", &module, "place", &place_layout);
@@ -59,8 +58,8 @@ impl Billboards {
         let texture = wgpu::BindingResource::TextureView(&tufts);
         let [clump_list, count, placed] = [&clumps, &list, &stands].map(|buffer| buffer.as_entire_binding());
         let group = bind(gpu, "billboards", &layout, &[clump_list.clone(), count.clone(), texture, placed.clone()]);
-        let place_entries = [(0, clump_list), (1, count), (4, placed)]
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource });
+        let place_entries =
+            [(0, clump_list), (1, count), (4, placed)].map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource });
         let place_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("billboard places"),
             layout: &place_layout,

@@ -56,8 +56,7 @@ impl Gpu {
     /// [`GpuError::NoDevice`] when the adapter has none left.
     pub async fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let descriptor = wgpu::DeviceDescriptor { label: Some("prairie"), ..Default::default() };
-        let (device, queue) =
-            adapter.request_device(&descriptor).await.map_err(|error| GpuError::NoDevice(error.to_string()))?;
+        let (device, queue) = adapter.request_device(&descriptor).await.map_err(|error| GpuError::NoDevice(error.to_string()))?;
         Ok(Self { device, queue, adapter_name: adapter.get_info().name })
     }
 
@@ -107,9 +106,6 @@ impl Gpu {
     /// A shader module of the shared pieces followed by one pass's own text.
     pub(super) fn shader(&self, label: &str, source: &str) -> wgpu::ShaderModule {
         let text = super::shaders::whole(source);
-        self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(label),
-            source: wgpu::ShaderSource::Wgsl(text.into()),
-        })
+        self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source: wgpu::ShaderSource::Wgsl(text.into()) })
     }
 }

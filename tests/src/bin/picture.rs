@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use clap::Parser;
 use client_wasm::camera::Camera;
 use client_wasm::render::{Gpu, Picture, Quality};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Draws a prairie to a PNG file, and says how long frames take.
@@ -55,13 +55,6 @@ fn main() -> Result<()> {
     }
     let frame_ms = start.elapsed().as_secs_f64() * 1e3 / f64::from(frames.max(1));
     println!("{}: {frame_ms:.1} ms a frame, {stats:?}", gpu.adapter_name);
-    write_png(&arguments.out, size_px, &picture.rgba())
-}
-
-fn write_png(path: &Path, [width, height]: [u32; 2], rgba: &[u8]) -> Result<()> {
-    let file = std::fs::File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), width, height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.write_header()?.write_image_data(rgba)?;
-    Ok(())
+    let [width, height] = size_px;
+    tests::picture::Picture { width, height, rgba: picture.rgba() }.save(&arguments.out)
 }
