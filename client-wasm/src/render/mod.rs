@@ -206,6 +206,7 @@ impl Renderer {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes: None });
             pass.set_bind_group(0, &scene.textures.group, &[]);
             scene.blades.bend(&mut pass);
+            self.billboards.bend(&mut pass);
         }
         {
             let mut pass = main_pass(&mut encoder, &self.targets);

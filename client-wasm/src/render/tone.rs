@@ -5,7 +5,7 @@ use super::pipeline::{Maker, bind, texture, uniform};
 use super::shaders;
 
 /// Exposure before the tone curve.
-const EXPOSURE: f32 = 1.0;
+const EXPOSURE: f32 = 1.15;
 
 pub(super) struct Tone {
     pipeline: wgpu::RenderPipeline,
