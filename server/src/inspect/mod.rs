@@ -23,7 +23,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, channel, sync_channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use thiserror::Error;
 
@@ -111,13 +111,19 @@ trait Sink: Send + 'static {
 /// Dropping it ends the recording without waiting for it; [`finish`](Self::finish) waits.
 pub struct Inspector {
     target: String,
-    queue: SyncSender<Frame>,
-    finished: Receiver<Result<(), InspectError>>,
+    intake: Mutex<Intake>,
+    finished: Mutex<Receiver<Result<(), InspectError>>>,
     finish_limit: Duration,
     period_secs: f64,
-    last_secs: Mutex<Option<f64>>,
-    traffic: Mutex<Traffic>,
     dropped: AtomicU64,
+}
+
+/// What decides on the next frame.
+struct Intake {
+    /// None once the recording is being finished.
+    queue: Option<SyncSender<Frame>>,
+    last_secs: Option<f64>,
+    traffic: Traffic,
 }
 
 impl Inspector {
@@ -151,12 +157,10 @@ impl Inspector {
         });
         Self {
             target,
-            queue,
-            finished,
+            intake: Mutex::new(Intake { queue: Some(queue), last_secs: None, traffic: Traffic::default() }),
+            finished: Mutex::new(finished),
             finish_limit,
             period_secs,
-            last_secs: Mutex::default(),
-            traffic: Mutex::default(),
             dropped: AtomicU64::new(0),
         }
     }
@@ -169,17 +173,14 @@ impl Inspector {
     /// Takes a snapshot into the recording if the last one taken is old enough. Never waits: when the logger is behind, the
     /// snapshot is dropped and counted.
     pub fn observe(&self, snapshot: &Snapshot) {
-        {
-            let mut last_secs = self.last_secs.lock().unwrap_or_else(PoisonError::into_inner);
-            let age_secs = last_secs.map_or(f64::INFINITY, |last| (snapshot.time_secs - last).abs());
-            if age_secs < self.period_secs - 1e-6 {
-                return;
-            }
-            *last_secs = Some(snapshot.time_secs);
+        let mut intake = self.intake();
+        let age_secs = intake.last_secs.map_or(f64::INFINITY, |last| (snapshot.time_secs - last).abs());
+        if age_secs < self.period_secs - 1e-6 {
+            return;
         }
-        let traffic = *self.traffic.lock().unwrap_or_else(PoisonError::into_inner);
-        let frame = Frame { snapshot: snapshot.clone(), traffic, dropped: self.dropped() };
-        if self.queue.try_send(frame).is_err() {
+        intake.last_secs = Some(snapshot.time_secs);
+        let frame = Frame { snapshot: snapshot.clone(), traffic: intake.traffic, dropped: self.dropped() };
+        if intake.queue.as_ref().is_none_or(|queue| queue.try_send(frame).is_err()) {
             self.dropped.fetch_add(1, Ordering::Relaxed);
         }
     }
@@ -187,7 +188,7 @@ impl Inspector {
     /// Takes what travels to the clients into the frames that follow: their number, and the bytes sent to all of them in a
     /// second.
     pub fn observe_traffic(&self, clients: u32, bytes_per_s: f64) {
-        *self.traffic.lock().unwrap_or_else(PoisonError::into_inner) = Traffic { clients, bytes_per_s };
+        self.intake().traffic = Traffic { clients, bytes_per_s };
     }
 
     /// Frames dropped so far because the logger was behind or had ended.
@@ -195,17 +196,23 @@ impl Inspector {
         self.dropped.load(Ordering::Relaxed)
     }
 
-    /// Writes what is queued and closes the recording; waits 3 s for a viewer, 10 s for a file, and not longer.
+    /// Writes what is queued and closes the recording; waits 3 s for a viewer, 10 s for a file, and not longer. Snapshots
+    /// observed afterwards are dropped.
     ///
     /// # Errors
     /// What the logger failed with, or [`InspectError::Unfinished`] when it is still busy.
-    pub fn finish(self) -> Result<(), InspectError> {
-        drop(self.queue);
-        match self.finished.recv_timeout(self.finish_limit) {
+    pub fn finish(&self) -> Result<(), InspectError> {
+        self.intake().queue = None;
+        let finished = self.finished.lock().unwrap_or_else(PoisonError::into_inner);
+        match finished.recv_timeout(self.finish_limit) {
             Ok(result) => result,
-            Err(RecvTimeoutError::Timeout) => Err(InspectError::Unfinished { target: self.target, waited: self.finish_limit }),
-            Err(RecvTimeoutError::Disconnected) => Err(InspectError::Sdk("the logger thread has panicked".to_owned())),
+            Err(RecvTimeoutError::Timeout) => Err(InspectError::Unfinished { target: self.target.clone(), waited: self.finish_limit }),
+            Err(RecvTimeoutError::Disconnected) => Err(InspectError::Sdk("the logger thread has ended before".to_owned())),
         }
+    }
+
+    fn intake(&self) -> MutexGuard<'_, Intake> {
+        self.intake.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -282,6 +289,7 @@ mod tests {
         }
         drop(opener);
         inspector.finish().unwrap();
+        drop(inspector);
         assert_eq!(writes.iter().map(|(tick, ..)| tick).collect::<Vec<_>>(), [0, 6, 12, 3]);
     }
 

@@ -14,7 +14,7 @@ use super::palette::bend_rgb;
 use super::trails::{Trails, kind_rgb};
 use super::{Frame, InspectError, Sink, Target, blueprint};
 use crate::snapshot::Snapshot;
-use rerun::components::ImageFormat;
+use rerun::components::{FillMode, ImageFormat};
 use rerun::datatypes::ChannelDatatype;
 use rerun::external::re_uri::ProxyUri;
 use rerun::{
@@ -36,7 +36,7 @@ pub(super) const APPLICATION: &str = "prairie";
 const HISTORY_LIMIT_BYTES: u64 = 256 << 20;
 
 /// Radius of a wind arrow's shaft (m).
-const ARROW_RADIUS_M: f32 = 0.12;
+const ARROW_RADIUS_M: f32 = 0.16;
 
 /// How long a viewer may take to answer at the start, and to take the last frames at the end.
 const VIEWER_LIMIT: Duration = Duration::from_secs(2);
@@ -115,11 +115,11 @@ impl Recording {
         Ok(())
     }
 
-    /// The colours of the angles as a bar below the map.
+    /// The colours of the angles as a bar above the map.
     fn scale(&self) -> LineStrips2D {
-        let [width_px, depth_px] = self.map.size_px().map(|n| n as f32);
-        let (height_px, step_px) = (0.04 * width_px, width_px / SCALE_STEPS as f32);
-        let y = depth_px + 1.5 * height_px;
+        let width_px = self.map.size_px()[0] as f32;
+        let (height_px, step_px) = (0.03 * width_px, width_px / SCALE_STEPS as f32);
+        let y = -height_px;
         let bars = (0..SCALE_STEPS).map(|i| [[i as f32 * step_px, y], [(i + 1) as f32 * step_px, y]]);
         let middle_degrees: Vec<_> = (0..SCALE_STEPS).map(|i| 90.0 * (i as f32 + 0.5) / SCALE_STEPS as f32).collect();
         LineStrips2D::new(bars)
@@ -145,7 +145,9 @@ impl Recording {
             objects.iter().map(|object| object.position_m),
             objects.iter().map(|object| object.kind.half_extents_m()),
         );
-        let boxes = boxes.with_quaternions(objects.iter().map(|object| Quaternion::from_xyzw(object.rotation)));
+        let boxes = boxes
+            .with_quaternions(objects.iter().map(|object| Quaternion::from_xyzw(object.rotation)))
+            .with_fill_mode(FillMode::TransparentFillMajorWireframe);
         self.log(
             "world/objects",
             &boxes.with_colors(colours()).with_labels(objects.iter().map(label)).with_radii([Radius::new_ui_points(2.0)]),
