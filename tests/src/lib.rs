@@ -2,5 +2,7 @@
 
 pub mod browser;
 pub mod chromedriver;
+pub mod norms;
 pub mod pages;
 pub mod picture;
+pub mod worlds;

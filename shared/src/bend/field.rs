@@ -1,20 +1,36 @@
-//! The whole field: patches, their ghosts, and the step.
+//! The whole field: the awake patches, what they tell their neighbours, and the step.
 
-use super::{Bend, Coefficients, Patch, WaveParams, verlet};
+use super::patch::CHANNELS;
+use super::{Bend, Coefficients, Extremes, Patch, WaveParams, verlet};
 use crate::grid::{PatchIndex, PatchLayout};
 
-/// The bend field of a world: one optional patch for each place of the layout. A patch that is none sleeps: it is at rest
-/// and holds no memory. Beyond the world's edge the grass is at rest.
-#[derive(Clone, Debug, PartialEq)]
+/// The bend field of a world. A patch that is not awake is at rest and holds no memory, however large the world. Beyond
+/// the world's edge the grass is at rest.
+///
+/// Each awake patch publishes its outermost cells; its neighbours read them into their ghosts before they step, so that
+/// all patches can step at once ([`lanes`](Self::lanes)).
+#[derive(Clone, Debug)]
 pub struct Field {
     layout: PatchLayout,
-    patches: Vec<Option<Box<Patch>>>,
+    /// Awake patches, ascending; the vectors below run alongside.
+    indices: Vec<PatchIndex>,
+    patches: Vec<Box<Patch>>,
+    borders: Vec<Border>,
+    next_borders: Vec<Border>,
+    /// Patches changed since they published.
+    stale: Vec<bool>,
+}
+
+impl PartialEq for Field {
+    fn eq(&self, other: &Self) -> bool {
+        self.layout == other.layout && self.indices == other.indices && self.patches == other.patches
+    }
 }
 
 impl Field {
     /// A field at rest, all patches asleep.
     pub fn new(layout: PatchLayout) -> Self {
-        Self { layout, patches: (0..layout.patches()).map(|_| None).collect() }
+        Self { layout, indices: vec![], patches: vec![], borders: vec![], next_borders: vec![], stale: vec![] }
     }
 
     /// Shape and spacing.
@@ -22,35 +38,62 @@ impl Field {
         &self.layout
     }
 
-    /// The patch, if it is awake.
-    pub fn patch(&self, patch: PatchIndex) -> Option<&Patch> {
-        self.patches[patch as usize].as_deref()
+    /// Number of awake patches.
+    pub fn awake_count(&self) -> usize {
+        self.indices.len()
     }
 
-    /// The patch, woken if it slept.
+    /// Indices of the awake patches, ascending.
+    pub fn awake_indices(&self) -> &[PatchIndex] {
+        &self.indices
+    }
+
+    /// The patch, if it is awake.
+    pub fn patch(&self, patch: PatchIndex) -> Option<&Patch> {
+        self.indices.binary_search(&patch).ok().map(|slot| self.patches[slot].as_ref())
+    }
+
+    /// The patch to be changed, if it is awake.
+    pub fn patch_mut(&mut self, patch: PatchIndex) -> Option<&mut Patch> {
+        let slot = self.indices.binary_search(&patch).ok()?;
+        self.stale[slot] = true;
+        Some(&mut self.patches[slot])
+    }
+
+    /// The patch to be changed, woken if it slept.
     pub fn wake(&mut self, patch: PatchIndex) -> &mut Patch {
-        let side = self.layout.cells as usize;
-        self.patches[patch as usize].get_or_insert_with(|| Box::new(Patch::new(side)))
+        let slot = self.indices.binary_search(&patch).unwrap_or_else(|slot| {
+            let side = self.layout.cells as usize;
+            self.indices.insert(slot, patch);
+            self.patches.insert(slot, Box::new(Patch::new(side)));
+            self.borders.insert(slot, Border::new(side));
+            self.next_borders.insert(slot, Border::new(side));
+            self.stale.insert(slot, false);
+            slot
+        });
+        self.stale[slot] = true;
+        &mut self.patches[slot]
     }
 
     /// Lets a patch go; it is at rest from now on.
     pub fn sleep(&mut self, patch: PatchIndex) {
-        self.patches[patch as usize] = None;
+        if let Ok(slot) = self.indices.binary_search(&patch) {
+            self.indices.remove(slot);
+            self.patches.remove(slot);
+            self.borders.remove(slot);
+            self.next_borders.remove(slot);
+            self.stale.remove(slot);
+        }
     }
 
     /// Awake patches in index order.
     pub fn awake(&self) -> impl Iterator<Item = (PatchIndex, &Patch)> {
-        self.patches.iter().enumerate().filter_map(|(index, patch)| Some((index as PatchIndex, patch.as_deref()?)))
-    }
-
-    /// Awake patches in index order, to be changed; each on its own, so that threads can share them out.
-    pub fn awake_mut(&mut self) -> impl Iterator<Item = (PatchIndex, &mut Patch)> {
-        self.patches.iter_mut().enumerate().filter_map(|(index, patch)| Some((index as PatchIndex, patch.as_deref_mut()?)))
+        self.indices.iter().copied().zip(self.patches.iter().map(Box::as_ref))
     }
 
     /// Largest bending speed of any cell (rad/s).
     pub fn omega_max_rad_per_s(&self) -> f32 {
-        self.awake().map(|(_, patch)| patch.extremes().1).fold(0.0, f32::max)
+        self.awake().map(|(_, patch)| patch.extremes().omega_rad_per_s).fold(0.0, f32::max)
     }
 
     /// State at `(x_m, z_m)`: that of the nearest cell; at rest where the patch sleeps and outside the world.
@@ -62,28 +105,32 @@ impl Field {
         patch.bend(cell(x_m - corner_x), cell(z_m - corner_z))
     }
 
-    /// Copies the border cells of every awake patch into its neighbours' ghosts; ghosts towards sleepers become zero.
-    pub fn refresh_ghosts(&mut self) {
-        let [count_x, count_z] = self.layout.count.map(|n| n as usize);
-        for z in 0..count_z {
-            for x in 0..count_x {
-                let index = x + z * count_x;
-                let east = (x + 1 < count_x).then_some(index + 1);
-                let south = (z + 1 < count_z).then_some(index + count_x);
-                self.join(index, east, Axis::East);
-                self.join(index, south, Axis::South);
-                if x == 0
-                    && let Some(patch) = &mut self.patches[index]
-                {
-                    clear_ghosts(patch, Side::West);
-                }
-                if z == 0
-                    && let Some(patch) = &mut self.patches[index]
-                {
-                    clear_ghosts(patch, Side::North);
-                }
+    /// One lane for each awake patch, in index order. Step every lane once, in any order or at once, then call
+    /// [`turn`](Self::turn).
+    pub fn lanes(&mut self) -> Vec<Lane<'_>> {
+        for ((patch, border), stale) in self.patches.iter().zip(&mut self.borders).zip(&mut self.stale) {
+            if std::mem::take(stale) {
+                border.publish(patch);
             }
         }
+        let (layout, indices, borders) = (&self.layout, &self.indices, &self.borders);
+        let border = |x: i64, z: i64| {
+            let slot = indices.binary_search(&layout.index(x, z)?).ok()?;
+            Some(&borders[slot])
+        };
+        let lanes = indices.iter().zip(&mut self.patches).zip(&mut self.next_borders);
+        lanes
+            .map(|((&index, patch), publishes)| {
+                let [x, z] = layout.place(index).map(i64::from);
+                let neighbours = [border(x - 1, z), border(x + 1, z), border(x, z - 1), border(x, z + 1)];
+                Lane { index, patch, neighbours, publishes }
+            })
+            .collect()
+    }
+
+    /// Makes what the lanes published visible to their neighbours.
+    pub fn turn(&mut self) {
+        std::mem::swap(&mut self.borders, &mut self.next_borders);
     }
 
     /// Advances the field by `dt_secs` with Verlet sub-steps chosen from the stability bound, on one thread. Returns the
@@ -92,42 +139,76 @@ impl Field {
         let count = verlet::substeps(params, self.layout.cell_m, dt_secs, self.omega_max_rad_per_s());
         let k = Coefficients::new(params, self.layout.cell_m, dt_secs / count as f32);
         for _ in 0..count {
-            self.refresh_ghosts();
-            for (_, patch) in self.awake_mut() {
-                verlet::step(patch, &k);
+            for mut lane in self.lanes() {
+                lane.step(|patch| verlet::step(patch, &k));
             }
+            self.turn();
         }
         count
     }
+}
 
-    fn join(&mut self, first: usize, second: Option<usize>, axis: Axis) {
-        let (first_side, second_side) = match axis {
-            Axis::East => (Side::East, Side::West),
-            Axis::South => (Side::South, Side::North),
-        };
-        let Some(second) = second else {
-            if let Some(patch) = &mut self.patches[first] {
-                clear_ghosts(patch, first_side);
-            }
-            return;
-        };
-        let [a, b] = self.patches.get_disjoint_mut([first, second]).expect("neighbours are two patches");
-        match (a, b) {
-            (Some(a), Some(b)) => {
-                copy_border(a, b, first_side, second_side);
-                copy_border(b, a, second_side, first_side);
-            }
-            (Some(a), None) => clear_ghosts(a, first_side),
-            (None, Some(b)) => clear_ghosts(b, second_side),
-            (None, None) => {}
+/// An awake patch with what its neighbours published.
+pub struct Lane<'a> {
+    /// Which patch.
+    pub index: PatchIndex,
+    patch: &'a mut Patch,
+    /// Borders of the neighbours to the west, east, north and south; none asleep.
+    neighbours: [Option<&'a Border>; 4],
+    publishes: &'a mut Border,
+}
+
+impl Lane<'_> {
+    /// Fills the ghosts from the neighbours, lets `scheme` advance the patch, and publishes its new border.
+    pub fn step(&mut self, scheme: impl FnOnce(&mut Patch) -> Extremes) -> Extremes {
+        for (side, neighbour) in Side::ALL.into_iter().zip(self.neighbours) {
+            fill_ghosts(self.patch, side, neighbour);
         }
+        let extremes = scheme(self.patch);
+        self.publishes.publish(self.patch);
+        extremes
+    }
+
+    /// For the sides west, east, north and south: the largest |θ| (rad) or |ω| component (rad/s) published there, and whether
+    /// a neighbour is awake beyond.
+    pub fn rims(&self) -> [(f32, bool); 4] {
+        std::array::from_fn(|side| (self.publishes.largest(side), self.neighbours[side].is_some()))
     }
 }
 
-#[derive(Clone, Copy)]
-enum Axis {
-    East,
-    South,
+/// The outermost cells of a patch: for each side, for each channel, a line of cells.
+#[derive(Clone, Debug)]
+struct Border {
+    side: usize,
+    values: Vec<f32>,
+}
+
+impl Border {
+    fn new(side: usize) -> Self {
+        Self { side, values: vec![0.0; Side::ALL.len() * CHANNELS * side] }
+    }
+
+    fn line(&self, side: Side, channel: usize) -> &[f32] {
+        &self.values[(side as usize * CHANNELS + channel) * self.side..][..self.side]
+    }
+
+    fn publish(&mut self, patch: &Patch) {
+        let mut lines = self.values.chunks_exact_mut(self.side);
+        for side in Side::ALL {
+            let (start, stride) = side.line(patch, 0);
+            for channel in &patch.now {
+                let line = lines.next().expect("a line for each side and channel");
+                for (i, value) in line.iter_mut().enumerate() {
+                    *value = channel[start + i * stride];
+                }
+            }
+        }
+    }
+
+    fn largest(&self, side: usize) -> f32 {
+        let lines = &self.values[side * CHANNELS * self.side..][..CHANNELS * self.side];
+        lines.iter().fold(0.0, |largest, value| value.abs().max(largest))
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -138,34 +219,41 @@ enum Side {
     South,
 }
 
-/// Start and stride of the line of cells along a side: the outermost own cells, or the ghosts beyond them.
-fn line(patch: &Patch, side: Side, ghosts: bool) -> (usize, usize) {
-    let (n, stride) = (patch.side(), patch.stride());
-    let outward = usize::from(ghosts);
-    match side {
-        Side::West => (stride + 1 - outward, stride),
-        Side::East => (stride + n + outward, stride),
-        Side::North => ((1 - outward) * stride + 1, 1),
-        Side::South => ((n + outward) * stride + 1, 1),
-    }
-}
+impl Side {
+    const ALL: [Self; 4] = [Self::West, Self::East, Self::North, Self::South];
 
-fn copy_border(from: &Patch, to: &mut Patch, from_side: Side, to_side: Side) {
-    let (source, source_stride) = line(from, from_side, false);
-    let (target, target_stride) = line(to, to_side, true);
-    for (from, to) in from.now.iter().zip(&mut to.now) {
-        for i in 0..to.len().isqrt() - 2 {
-            to[target + i * target_stride] = from[source + i * source_stride];
+    fn opposite(self) -> Self {
+        match self {
+            Self::West => Self::East,
+            Self::East => Self::West,
+            Self::North => Self::South,
+            Self::South => Self::North,
+        }
+    }
+
+    /// Start and stride of the line of cells along this side, `outward` cells beyond the outermost own ones.
+    fn line(self, patch: &Patch, outward: usize) -> (usize, usize) {
+        let (n, stride) = (patch.side(), patch.stride());
+        match self {
+            Self::West => (stride + 1 - outward, stride),
+            Self::East => (stride + n + outward, stride),
+            Self::North => ((1 - outward) * stride + 1, 1),
+            Self::South => ((n + outward) * stride + 1, 1),
         }
     }
 }
 
-fn clear_ghosts(patch: &mut Patch, side: Side) {
-    let (start, stride) = line(patch, side, true);
+fn fill_ghosts(patch: &mut Patch, side: Side, neighbour: Option<&Border>) {
+    let (start, stride) = side.line(patch, 1);
     let count = patch.side();
-    for channel in &mut patch.now {
-        for i in 0..count {
-            channel[start + i * stride] = 0.0;
+    for (channel, values) in patch.now.iter_mut().enumerate() {
+        match neighbour {
+            Some(border) => {
+                for (i, &value) in border.line(side.opposite(), channel).iter().enumerate() {
+                    values[start + i * stride] = value;
+                }
+            }
+            None => (0..count).for_each(|i| values[start + i * stride] = 0.0),
         }
     }
 }

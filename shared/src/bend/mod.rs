@@ -5,13 +5,18 @@
 //! damped wave equations (2)–(6) carry them on and let them rise again ([`verlet`]).
 //!
 //! A [`Field`] is made of patches with one ring of ghost cells. The ghosts are refreshed before every sub-step, so a field
-//! of many patches equals one big grid bit for bit. A patch that sleeps holds no memory and counts as at rest.
+//! of many patches equals one big grid bit for bit. A patch that sleeps holds no memory and counts as at rest. A smooth
+//! [`Force`] holds the grass away from upright; the wind does.
 
+mod extremes;
 mod field;
+mod force;
 mod params;
 mod patch;
 pub mod verlet;
 
-pub use field::Field;
+pub use extremes::Extremes;
+pub use field::{Field, Lane};
+pub use force::{Force, NODE_CELLS};
 pub use params::{Coefficients, WaveParams};
-pub use patch::{Bend, Patch};
+pub use patch::{Bend, CHANNELS, Patch};

@@ -1,5 +1,8 @@
 //! One patch of the field: three channels at two times, with a ring of ghost cells.
 
+use super::Extremes;
+use super::extremes::LargestOf;
+
 /// State of one cluster of grass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bend {
@@ -12,7 +15,7 @@ pub struct Bend {
 /// Number of channels: θ, ωx, ωz.
 pub(super) const CHANNELS: usize = 3;
 
-/// A square patch of `side × side` cells inside a ring of ghosts; row-major from the north-west, `(side + 2)²` values a
+/// A square patch of `side × side` cells (a multiple of 8) inside a ring of ghosts; row-major from the north-west, `(side + 2)²` values a
 /// channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Patch {
@@ -62,6 +65,19 @@ impl Patch {
         }
     }
 
+    /// Sets the newest state of cell `(i, j)` alone; with [`remember`](Self::remember) this gives a patch any motion.
+    pub fn set(&mut self, i: usize, j: usize, bend: Bend) {
+        let at = self.at(i, j);
+        for (channel, value) in [bend.theta, bend.omega[0], bend.omega[1]].into_iter().enumerate() {
+            self.now[channel][at] = value;
+        }
+    }
+
+    /// Takes the newest state as that of one sub-step earlier, too.
+    pub fn remember(&mut self) {
+        self.before.clone_from(&self.now);
+    }
+
     /// Adds to the state of cell `(i, j)` at both times, as [`press`](Self::press) does.
     pub fn nudge(&mut self, i: usize, j: usize, by: Bend) {
         let at = self.at(i, j);
@@ -81,36 +97,14 @@ impl Patch {
         std::array::from_fn(|channel| self.before[channel].as_slice())
     }
 
-    /// Largest |θ| (rad) and largest |ω| (rad/s) of the patch's own cells; infinite or NaN values come through as such.
-    pub fn extremes(&self) -> (f32, f32) {
-        let stride = self.stride();
-        let (mut theta, mut omega2) = (0.0_f32, 0.0_f32);
-        for j in 1..=self.side {
-            let row = j * stride + 1..j * stride + 1 + self.side;
-            for &value in &self.now[0][row.clone()] {
-                theta = nan_max(theta, value.abs());
-            }
-            for (x, z) in self.now[1][row.clone()].iter().zip(&self.now[2][row]) {
-                omega2 = nan_max(omega2, x * x + z * z);
-            }
+    /// Extremes of the patch's own cells.
+    pub fn extremes(&self) -> Extremes {
+        let mut largest = LargestOf::default();
+        for j in 0..self.side {
+            let row = self.at(0, j)..self.at(0, j) + self.side;
+            let [theta, x, z] = &self.now;
+            largest.add(&theta[row.clone()], &x[row.clone()], &z[row]);
         }
-        (theta, omega2.sqrt())
+        largest.extremes()
     }
-
-    /// Sum of θ² + ω² over the patch's cells (mixed units; a measure of how far from rest it is).
-    pub fn activity(&self) -> f64 {
-        let stride = self.stride();
-        let mut sum = 0.0;
-        for channel in &self.now {
-            for j in 1..=self.side {
-                let row = &channel[j * stride + 1..j * stride + 1 + self.side];
-                sum += f64::from(row.iter().map(|v| v * v).sum::<f32>());
-            }
-        }
-        sum
-    }
-}
-
-fn nan_max(a: f32, b: f32) -> f32 {
-    if b > a || b.is_nan() { b } else { a }
 }

@@ -3,7 +3,8 @@
 //! With λ = 1 − exp(−k·dt) and r = c·dt/h a cell becomes
 //! `θ⁺ = (2 − λ)·θ − (1 − λ)·θ⁻ + r²·(Σ neighbours − 4θ) − κ·dt²·θ`, likewise for both components of ω.
 
-use super::{Coefficients, Patch, WaveParams};
+use super::extremes::LargestOf;
+use super::{Coefficients, Extremes, Force, Patch, WaveParams};
 
 /// Largest Courant number `c·dt/h` for damping λ and restoring term `κ·dt²`: `r ≤ √((4 − 2λ − κ·dt²)/8)`.
 ///
@@ -44,47 +45,62 @@ pub fn stable_dt(params: &WaveParams, cell_m: f32, dt_secs: f32, omega_max_rad_p
     dt_secs / substeps(params, cell_m, dt_secs, omega_max_rad_per_s) as f32
 }
 
-/// Advances one patch by a sub-step; its ghosts must hold the neighbours' newest values.
-pub fn step(patch: &mut Patch, k: &Coefficients) {
-    let (side, stride) = (patch.side(), patch.stride());
-    let [theta, omega_x, omega_z] = &patch.now;
-    let [theta_before, x_before, z_before] = &mut patch.before;
-    for j in 1..=side {
-        let row = j * stride + 1;
-        let r2 = |i: usize| {
-            let (x, z) = (omega_x[row + i], omega_z[row + i]);
-            let r = k.r0 + k.r_mu * (x * x + z * z).sqrt();
-            r * r
-        };
-        advance_row(theta, theta_before, row, stride, side, k.lambda_theta, k.restoring, r2);
-        advance_row(omega_x, x_before, row, stride, side, k.lambda_omega, k.restoring, |_| k.r2_omega);
-        advance_row(omega_z, z_before, row, stride, side, k.lambda_omega, k.restoring, |_| k.r2_omega);
-    }
-    std::mem::swap(&mut patch.now, &mut patch.before);
+/// Advances one patch by a sub-step; its ghosts must hold the neighbours' newest values. Returns the extremes of the new
+/// state.
+pub fn step(patch: &mut Patch, k: &Coefficients) -> Extremes {
+    advance(patch, k, |_, _, _| ())
 }
 
-/// Writes the next values of one row over the values before it.
-#[allow(clippy::too_many_arguments, reason = "one row of one channel: its data and its four numbers")]
+/// [`step`] with a force, whose values are added to the new state.
+pub fn step_forced(patch: &mut Patch, k: &Coefficients, force: &Force) -> Extremes {
+    advance(patch, k, |channel, j, next| force.add_row(channel, j, next))
+}
+
+/// Advances row by row, in place over the state before; `then` may change the next values of a channel's row.
 #[inline(always)]
-fn advance_row(
-    now: &[f32],
-    before: &mut [f32],
-    row: usize,
-    stride: usize,
-    side: usize,
-    lambda: f32,
-    restoring: f32,
-    r2: impl Fn(usize) -> f32,
-) {
-    let (keep, memory) = (2.0 - lambda - restoring, 1.0 - lambda);
-    let before = &mut before[row..row + side];
-    let center = &now[row..row + side];
-    let west = &now[row - 1..row - 1 + side];
-    let east = &now[row + 1..row + 1 + side];
-    let north = &now[row - stride..row - stride + side];
-    let south = &now[row + stride..row + stride + side];
+fn advance(patch: &mut Patch, k: &Coefficients, then: impl Fn(usize, usize, &mut [f32])) -> Extremes {
+    let (side, stride) = (patch.side(), patch.stride());
+    let mut largest = LargestOf::default();
+    for j in 0..side {
+        let row = patch.at(0, j);
+        let [theta, x, z] = &patch.now;
+        let [theta_next, x_next, z_next] = &mut patch.before;
+        let theta_next = &mut theta_next[row..row + side];
+        let (x_next, z_next) = (&mut x_next[row..row + side], &mut z_next[row..row + side]);
+        advance_theta(theta, &x[row..row + side], &z[row..row + side], theta_next, row, stride, k);
+        advance_omega(x, x_next, row, stride, k);
+        advance_omega(z, z_next, row, stride, k);
+        then(0, j, theta_next);
+        then(1, j, x_next);
+        then(2, j, z_next);
+        largest.add(theta_next, x_next, z_next);
+    }
+    std::mem::swap(&mut patch.now, &mut patch.before);
+    largest.extremes()
+}
+
+#[inline(never)]
+fn advance_theta(now: &[f32], x: &[f32], z: &[f32], next: &mut [f32], row: usize, stride: usize, k: &Coefficients) {
+    let side = next.len();
+    let (keep, memory) = (2.0 - k.lambda_theta - k.restoring, 1.0 - k.lambda_theta);
+    let (center, west, east) = (&now[row..row + side], &now[row - 1..row - 1 + side], &now[row + 1..row + 1 + side]);
+    let (north, south) = (&now[row - stride..row - stride + side], &now[row + stride..row + stride + side]);
+    let (x, z) = (&x[..side], &z[..side]);
+    for i in 0..side {
+        let r = k.r0 + k.r_mu * (x[i] * x[i] + z[i] * z[i]).sqrt();
+        let laplacian = (west[i] + east[i]) + (north[i] + south[i]) - 4.0 * center[i];
+        next[i] = keep * center[i] - memory * next[i] + r * r * laplacian;
+    }
+}
+
+#[inline(never)]
+fn advance_omega(now: &[f32], next: &mut [f32], row: usize, stride: usize, k: &Coefficients) {
+    let side = next.len();
+    let (keep, memory, r2) = (2.0 - k.lambda_omega - k.restoring, 1.0 - k.lambda_omega, k.r2_omega);
+    let (center, west, east) = (&now[row..row + side], &now[row - 1..row - 1 + side], &now[row + 1..row + 1 + side]);
+    let (north, south) = (&now[row - stride..row - stride + side], &now[row + stride..row + stride + side]);
     for i in 0..side {
         let laplacian = (west[i] + east[i]) + (north[i] + south[i]) - 4.0 * center[i];
-        before[i] = keep * center[i] - memory * before[i] + r2(i) * laplacian;
+        next[i] = keep * center[i] - memory * next[i] + r2 * laplacian;
     }
 }

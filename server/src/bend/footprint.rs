@@ -1,0 +1,226 @@
+//! Footprints: the area that a convex part of an object sweeps over in one step (001 §5.1), in cells.
+
+use crate::objects::{Motion, Stand};
+use shared::grid::PatchLayout;
+use shared::scene::VehicleKind;
+
+/// A convex part of an object; concave objects are several (001 §6).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// Centre in the body's axes (m).
+    pub center_m: [f32; 3],
+    /// Half extents of its box (m).
+    pub half_m: [f32; 3],
+    /// Whether it is as round as a disc within the box, seen from above.
+    pub round: bool,
+    /// Whether it parts the grass sideways (001 Eq. 10), or only rolls it down.
+    pub parts_grass: bool,
+}
+
+/// The parts of a kind that can touch grass.
+pub fn parts(kind: VehicleKind) -> &'static [Part] {
+    const fn wheels(x: f32) -> Part {
+        Part { center_m: [x, -0.45, 0.0], half_m: [0.13, 0.25, 1.6], round: false, parts_grass: false }
+    }
+    const CAR: [Part; 3] =
+        [wheels(-0.8), wheels(0.8), Part { center_m: [0.0, 0.1, 0.0], half_m: [0.95, 0.5, 2.2], round: false, parts_grass: true }];
+    const MONSTER: [Part; 1] = [Part { center_m: [0.0; 3], half_m: [0.6, 0.9, 0.6], round: true, parts_grass: true }];
+    const HELICOPTER: [Part; 3] = [
+        Part { center_m: [-0.95, -1.2, 0.0], half_m: [0.15, 0.1, 1.8], round: false, parts_grass: false },
+        Part { center_m: [0.95, -1.2, 0.0], half_m: [0.15, 0.1, 1.8], round: false, parts_grass: false },
+        Part { center_m: [0.0, -0.35, 0.0], half_m: [0.9, 0.65, 2.6], round: false, parts_grass: true },
+    ];
+    match kind {
+        VehicleKind::Car => &CAR,
+        VehicleKind::Monster => &MONSTER,
+        VehicleKind::Helicopter => &HELICOPTER,
+    }
+}
+
+impl Part {
+    /// The part's lowest point (m) where the body stands at `stand`.
+    pub fn lowest_m(&self, stand: &Stand) -> f32 {
+        self.corners(stand, 0.0).map(|corner| corner[1]).fold(f32::INFINITY, f32::min)
+    }
+
+    /// The convex hull of the part at both ends of a step. A part narrower than a cell counts as one cell wide, so that no track
+    /// has holes.
+    pub fn swept(&self, motion: &Motion, cell_m: f32) -> Footprint {
+        let ends = [&motion.from, &motion.to];
+        Footprint::around(ends.into_iter().flat_map(|stand| self.corners(stand, 0.5 * cell_m)).map(|[x, _, z]| [x, z]).collect())
+    }
+
+    fn corners(&self, stand: &Stand, least_m: f32) -> impl Iterator<Item = [f32; 3]> + use<> {
+        const HALF: f32 = std::f32::consts::FRAC_1_SQRT_2;
+        const RING: [[f32; 2]; 8] =
+            [[1.0, 0.0], [HALF, HALF], [0.0, 1.0], [-HALF, HALF], [-1.0, 0.0], [-HALF, -HALF], [0.0, -1.0], [HALF, -HALF]];
+        const SQUARE: [[f32; 2]; 4] = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+        let ring: &[[f32; 2]] = if self.round { &RING } else { &SQUARE };
+        let (center, half, stand) = (self.center_m, self.half_m, *stand);
+        let wide = [half[0].max(least_m), half[2].max(least_m)];
+        ring.iter().flat_map(move |[x, z]| {
+            [-half[1], half[1]]
+                .map(|y| stand.point_m([center[0] + x * wide[0], center[1] + y, center[2] + z * wide[1]]).to_array())
+        })
+    }
+}
+
+/// A convex polygon on the ground, corners in order (m).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Footprint {
+    corners_m: Vec<[f32; 2]>,
+}
+
+/// Cells of one row of the world's grid of cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// Row along Z.
+    pub row: i64,
+    /// First cell along X.
+    pub from: i64,
+    /// One past the last.
+    pub to: i64,
+}
+
+impl Footprint {
+    /// The convex hull of points (Andrew's monotone chain).
+    pub fn around(mut points_m: Vec<[f32; 2]>) -> Self {
+        points_m.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        let half = |points: &mut dyn Iterator<Item = [f32; 2]>| {
+            let mut chain: Vec<[f32; 2]> = vec![];
+            for point in points {
+                while let [.., a, b] = chain[..]
+                    && cross(a, b, point) <= 0.0
+                {
+                    chain.pop();
+                }
+                chain.push(point);
+            }
+            chain.pop();
+            chain
+        };
+        let mut corners_m = half(&mut points_m.iter().copied());
+        corners_m.extend(half(&mut points_m.iter().rev().copied()));
+        Self { corners_m }
+    }
+
+    /// Corners in order, turning from +X towards +Z (m).
+    pub fn corners_m(&self) -> &[[f32; 2]] {
+        &self.corners_m
+    }
+
+    /// Lowest and highest coordinates (m).
+    pub fn bounds_m(&self) -> [[f32; 2]; 2] {
+        self.corners_m.iter().fold([[f32::INFINITY; 2], [f32::NEG_INFINITY; 2]], |[low, high], corner| {
+            [std::array::from_fn(|axis| low[axis].min(corner[axis])), std::array::from_fn(|axis| high[axis].max(corner[axis]))]
+        })
+    }
+
+    /// Mean of the corners (m).
+    pub fn middle_m(&self) -> [f32; 2] {
+        let count = self.corners_m.len().max(1) as f32;
+        std::array::from_fn(|axis| self.corners_m.iter().map(|corner| corner[axis]).sum::<f32>() / count)
+    }
+
+    /// The cells whose centres lie within, row by row, inside the world.
+    pub fn runs(&self, layout: &PatchLayout) -> Vec<Run> {
+        let cells = layout.count.map(|n| i64::from(n) * i64::from(layout.cells));
+        let [low, high] = self.bounds_m();
+        // A centre at (i + ½)·h lies at or beyond `m` from cell ⌈m/h − ½⌉ on.
+        let first = |m: f32| (m / layout.cell_m - 0.5).ceil() as i64;
+        let rows = first(low[1]).max(0)..first(high[1]).min(cells[1]);
+        rows.filter_map(|row| {
+            let [from_m, to_m] = self.span_m((row as f32 + 0.5) * layout.cell_m)?;
+            let (from, to) = (first(from_m).max(0), first(to_m).min(cells[0]));
+            (from < to).then_some(Run { row, from, to })
+        })
+        .collect()
+    }
+
+    /// Where the line of constant `z_m` crosses the polygon (m).
+    fn span_m(&self, z_m: f32) -> Option<[f32; 2]> {
+        let mut span = [f32::INFINITY, f32::NEG_INFINITY];
+        for (a, b) in self.edges() {
+            if (a[1] <= z_m) != (b[1] <= z_m) {
+                let x = a[0] + (b[0] - a[0]) * ((z_m - a[1]) / (b[1] - a[1]));
+                span = [span[0].min(x), span[1].max(x)];
+            }
+        }
+        (span[0] < span[1]).then_some(span)
+    }
+
+    /// The polygon's edges as outward normals with their offsets.
+    pub fn sides(&self) -> Vec<Edge> {
+        self.edges()
+            .filter_map(|(a, b)| {
+                let [x, z] = [b[0] - a[0], b[1] - a[1]];
+                let length = (x * x + z * z).sqrt();
+                let normal = [z / length, -x / length];
+                (length > 0.0).then_some(Edge { normal, offset_m: normal[0] * a[0] + normal[1] * a[1] })
+            })
+            .collect()
+    }
+
+    fn edges(&self) -> impl Iterator<Item = ([f32; 2], [f32; 2])> {
+        let next = self.corners_m.iter().cycle().skip(1);
+        self.corners_m.iter().copied().zip(next.copied())
+    }
+}
+
+/// A side of a footprint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// Unit normal, outward.
+    pub normal: [f32; 2],
+    /// Where the side lies along its normal (m).
+    pub offset_m: f32,
+}
+
+impl Edge {
+    /// How far inside the side a point lies (m).
+    pub fn depth_m(&self, [x, z]: [f32; 2]) -> f32 {
+        self.offset_m - (self.normal[0] * x + self.normal[1] * z)
+    }
+}
+
+fn cross(a: [f32; 2], b: [f32; 2], c: [f32; 2]) -> f32 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAYOUT: PatchLayout = PatchLayout { count: [2, 2], cells: 8, cell_m: 0.5 };
+
+    #[test]
+    fn the_hull_drops_inner_points_and_its_normals_point_outward() {
+        let hull = Footprint::around(vec![[0.0, 0.0], [2.0, 0.0], [1.0, 0.5], [2.0, 1.0], [0.0, 1.0], [1.0, 0.0]]);
+        assert_eq!(hull.corners_m().len(), 4);
+        for edge in hull.sides() {
+            assert!((edge.depth_m([1.0, 0.5]) - if edge.normal[0] == 0.0 { 0.5 } else { 1.0 }).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn runs_are_the_cells_whose_centres_lie_within() {
+        let hull = Footprint::around(vec![[1.1, 0.9], [6.2, 2.0], [3.3, 6.6], [0.4, 3.0]]);
+        let runs = hull.runs(&LAYOUT);
+        for row in 0..16 {
+            for cell in 0..16 {
+                let center = [(cell as f32 + 0.5) * 0.5, (row as f32 + 0.5) * 0.5];
+                let inside = hull.sides().iter().all(|edge| edge.depth_m(center) > 0.0);
+                let covered = runs.iter().any(|run| run.row == row && (run.from..run.to).contains(&cell));
+                assert_eq!(inside, covered, "cell {cell}, row {row}");
+            }
+        }
+    }
+
+    #[test]
+    fn runs_stay_inside_the_world() {
+        let hull = Footprint::around(vec![[-50.0, -50.0], [50.0, -50.0], [50.0, 50.0], [-50.0, 50.0]]);
+        let runs = hull.runs(&LAYOUT);
+        assert_eq!(runs.len(), 16);
+        assert!(runs.iter().all(|run| (run.from, run.to) == (0, 16)));
+    }
+}

@@ -1,0 +1,242 @@
+//! Cars, monsters and helicopters: bodies, driving, and where they may be.
+//!
+//! Bodies are rapier's, on one thread and in the order of their numbers, so that the same commands give the same bits.
+
+mod car;
+mod circling;
+mod ground;
+mod helicopter;
+pub mod model;
+mod monster;
+mod motion;
+mod place;
+mod spawn;
+
+pub use motion::{Motion, Stand};
+pub use place::Place;
+
+use car::Car;
+use circling::Circling;
+use ground::Ground;
+use helicopter::Helicopter;
+use monster::Monster;
+use rapier3d::prelude::*;
+use shared::scene::{Scene, VehicleKind};
+use shared::wire::{Drive, ObjectId, ObjectPose};
+use spawn::Disc;
+
+/// Fastest that any object moves (m/s); a body thrown faster is slowed to it.
+pub const SPEED_LIMIT_M_PER_S: f32 = 90.0;
+/// Gap between the boxes of a new object and the ground (m).
+const DROP_M: f32 = 0.05;
+
+/// Everything that moves by itself.
+pub struct Objects {
+    place: Place,
+    ground: Ground,
+    physics: PhysicsWorld,
+    vehicles: Vec<Vehicle>,
+    limit: usize,
+    next_id: ObjectId,
+}
+
+struct Vehicle {
+    id: ObjectId,
+    kind: VehicleKind,
+    driver: Driver,
+    body: RigidBodyHandle,
+    controls: Controls,
+    stood: Stand,
+}
+
+enum Driver {
+    Client { client: u32, drive: Drive },
+    Circling(Circling),
+}
+
+enum Controls {
+    Car(Car),
+    Monster(Monster),
+    Helicopter(Helicopter),
+}
+
+impl Objects {
+    /// The scene's own cars in their places; nothing else yet.
+    pub fn new(scene: &Scene, place: Place) -> Self {
+        let ground = Ground::new(&place, &scene.plants);
+        let mut physics = PhysicsWorld::new();
+        physics.integration_parameters.dt = scene.dt_secs();
+        let mut objects = Self { place, ground, physics, vehicles: vec![], limit: scene.objects.limit as usize, next_id: 1 };
+        let middle = objects.place.extent_m.map(|extent| 0.5 * extent);
+        for n in 0..scene.objects.self_driving {
+            objects.add(VehicleKind::Car, Driver::Circling(Circling::new(n)), middle);
+        }
+        objects
+    }
+
+    /// Gives `client` a vehicle near `middle_m`; the one driven before goes. None when the limit is reached or nowhere is free.
+    pub fn spawn(&mut self, client: u32, kind: VehicleKind, middle_m: [f32; 2]) -> Option<ObjectId> {
+        self.remove(client);
+        self.add(kind, Driver::Client { client, drive: Drive::default() }, middle_m)
+    }
+
+    /// Takes the vehicle of `client` out of the world.
+    pub fn remove(&mut self, client: u32) {
+        if let Some(slot) = self.slot_of(client) {
+            let vehicle = self.vehicles.remove(slot);
+            self.physics.remove_body(vehicle.body);
+        }
+    }
+
+    /// Puts hands on the controls of the vehicle of `client`; held until the next call. What is no valid [`Drive`] is ignored.
+    pub fn drive(&mut self, client: u32, hands: Drive) {
+        if let Some(slot) = self.slot_of(client)
+            && let Driver::Client { drive, .. } = &mut self.vehicles[slot].driver
+            && hands.is_valid()
+        {
+            *drive = hands;
+        }
+    }
+
+    /// The vehicle of `client`.
+    pub fn object_of(&self, client: u32) -> Option<ObjectId> {
+        self.slot_of(client).map(|slot| self.vehicles[slot].id)
+    }
+
+    /// Moves everything by `dt_secs`.
+    pub fn step(&mut self, dt_secs: f32) {
+        let at: Vec<_> = self.vehicles.iter().map(|vehicle| stand(&self.physics.bodies[vehicle.body]).xz()).collect();
+        self.ground.follow(&at, &mut self.physics);
+        for vehicle in &mut self.vehicles {
+            vehicle.stood = stand(&self.physics.bodies[vehicle.body]);
+            let drive = vehicle.hands(dt_secs, &self.physics);
+            match &mut vehicle.controls {
+                Controls::Car(car) => car.control(drive, dt_secs, &mut self.physics),
+                Controls::Monster(monster) => monster.control(drive, dt_secs, &mut self.physics, &self.ground),
+                Controls::Helicopter(helicopter) => helicopter.control(drive, dt_secs, &mut self.physics, &self.ground),
+            }
+        }
+        self.physics.step();
+        for vehicle in &self.vehicles {
+            confine(vehicle, &mut self.physics.bodies[vehicle.body], &self.place, &self.ground);
+        }
+    }
+
+    /// Where everything is, ascending by number.
+    pub fn poses(&self) -> Vec<ObjectPose> {
+        let pose = |vehicle: &Vehicle| {
+            let body = &self.physics.bodies[vehicle.body];
+            let Stand { position_m, rotation } = stand(body);
+            let velocity_m_per_s = body.linvel().to_array();
+            let part_rad = match &vehicle.controls {
+                Controls::Car(car) => car.steering_rad(),
+                Controls::Monster(monster) => monster.phase_rad(),
+                Controls::Helicopter(helicopter) => helicopter.rotor_rad(),
+            };
+            ObjectPose { id: vehicle.id, kind: vehicle.kind, position_m, rotation, velocity_m_per_s, part_rad }
+        };
+        self.vehicles.iter().map(pose).collect()
+    }
+
+    /// What everything did in the newest step.
+    pub fn motions(&self) -> Vec<Motion> {
+        let motion = |vehicle: &Vehicle| {
+            let body = &self.physics.bodies[vehicle.body];
+            Motion { kind: vehicle.kind, from: vehicle.stood, to: stand(body), velocity_m_per_s: body.linvel().to_array() }
+        };
+        self.vehicles.iter().map(motion).collect()
+    }
+
+    fn slot_of(&self, client: u32) -> Option<usize> {
+        self.vehicles.iter().position(|vehicle| matches!(vehicle.driver, Driver::Client { client: other, .. } if other == client))
+    }
+
+    fn add(&mut self, kind: VehicleKind, driver: Driver, middle_m: [f32; 2]) -> Option<ObjectId> {
+        if self.vehicles.len() >= self.limit {
+            return None;
+        }
+        let taken: Vec<_> = self
+            .vehicles
+            .iter()
+            .map(|other| Disc { at_m: stand(&self.physics.bodies[other.body]).xz(), radius_m: radius_m(other.kind) })
+            .collect();
+        let at_m = spawn::find(middle_m, radius_m(kind), &taken, &self.ground, &self.place)?;
+        let heading_rad = (at_m[0] - middle_m[0]).atan2(middle_m[1] - at_m[1]);
+        let (body, collider) = match kind {
+            VehicleKind::Car => car::body(),
+            VehicleKind::Monster => monster::body(),
+            VehicleKind::Helicopter => helicopter::body(),
+        };
+        let center = Vector::new(at_m[0], self.highest_under(at_m, kind) + kind.half_extents_m()[1] + DROP_M, at_m[1]);
+        let body = body.pose(Pose::from_parts(center, Rotation::from_rotation_y(-heading_rad)));
+        let (body, _) = self.physics.insert(body, collider);
+        let controls = match kind {
+            VehicleKind::Car => Controls::Car(Car::new(body)),
+            VehicleKind::Monster => Controls::Monster(Monster::new(body, heading_rad)),
+            VehicleKind::Helicopter => Controls::Helicopter(Helicopter::new(body)),
+        };
+        let id = self.next_id;
+        self.next_id += 1;
+        let stood = stand(&self.physics.bodies[body]);
+        self.vehicles.push(Vehicle { id, kind, driver, body, controls, stood });
+        Some(id)
+    }
+
+    /// Height of the land under the box of `kind` (m), wherever it is highest.
+    fn highest_under(&self, [x, z]: [f32; 2], kind: VehicleKind) -> f32 {
+        let reach = if kind == VehicleKind::Monster { 0.0 } else { 0.7 * radius_m(kind) };
+        let around = [[x, z], [x - reach, z - reach], [x + reach, z - reach], [x - reach, z + reach], [x + reach, z + reach]];
+        around.into_iter().map(|at| self.ground.height_m(at)).fold(f32::NEG_INFINITY, f32::max)
+    }
+}
+
+impl Vehicle {
+    fn hands(&mut self, dt_secs: f32, physics: &PhysicsWorld) -> Drive {
+        match &mut self.driver {
+            Driver::Client { drive, .. } => *drive,
+            Driver::Circling(circling) => circling.hands(physics.bodies[self.body].linvel().length(), dt_secs),
+        }
+    }
+}
+
+/// Radius of the circle around the box of `kind`, seen from above (m).
+fn radius_m(kind: VehicleKind) -> f32 {
+    let [x, _, z] = kind.half_extents_m();
+    x.hypot(z)
+}
+
+fn stand(body: &RigidBody) -> Stand {
+    Stand { position_m: body.translation().to_array(), rotation: body.rotation().to_array() }
+}
+
+/// Keeps a body within the world's edge and above its land, no faster than [`SPEED_LIMIT_M_PER_S`]. What is no longer a number
+/// goes back to where it stood.
+fn confine(vehicle: &Vehicle, body: &mut RigidBody, place: &Place, ground: &Ground) {
+    let (at, velocity) = (body.translation(), body.linvel());
+    if !(at.is_finite() && velocity.is_finite() && body.rotation().is_finite() && body.angvel().is_finite()) {
+        body.set_enabled(true);
+        body.set_translation(Vector::from_array(vehicle.stood.position_m), true);
+        body.set_rotation(Rotation::from_array(vehicle.stood.rotation), true);
+        body.set_linvel(Vector::ZERO, true);
+        body.set_angvel(Vector::ZERO, true);
+        return;
+    }
+    let (mut inside, mut slowed) = (at, velocity.clamp_length_max(SPEED_LIMIT_M_PER_S));
+    for (axis, [low, high]) in [0, 2].into_iter().zip(place.bounds_m()) {
+        inside[axis] = at[axis].clamp(low, high);
+        if inside[axis] != at[axis] {
+            slowed[axis] = 0.0;
+        }
+    }
+    let land_m = ground.height_m([inside.x, inside.z]);
+    if inside.y < land_m {
+        inside.y = land_m + vehicle.kind.half_extents_m()[1];
+        slowed.y = slowed.y.max(0.0);
+    }
+    if inside != at {
+        body.set_translation(inside, true);
+    }
+    if slowed != velocity {
+        body.set_linvel(slowed, true);
+    }
+}

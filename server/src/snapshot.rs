@@ -1,0 +1,66 @@
+//! What the world shows of itself after a step, already quantised for the wire (`shared::wire::quantise`).
+//!
+//! A snapshot is cheap to hold and to share: whatever did not change since the one before is the same `Arc`.
+
+use shared::wire::ObjectPose;
+use std::sync::Arc;
+
+/// The state of the world after a step.
+#[derive(Clone, Debug, Default)]
+pub struct Snapshot {
+    /// Number of the step, from 0 before the first.
+    pub tick: u64,
+    /// Simulated time (s).
+    pub time_secs: f64,
+    /// Every object.
+    pub objects: Vec<ObjectPose>,
+    /// The wind.
+    pub wind: Arc<WindFrame>,
+    /// The bend field, by patch index; none: the patch is at rest.
+    pub patches: Vec<Option<Arc<PatchCodes>>>,
+    /// The scalars that tell how the world fares.
+    pub health: Health,
+}
+
+/// The wind at the cells' centres.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WindFrame {
+    /// Step that it belongs to.
+    pub tick: u64,
+    /// Cells along X, Y and Z.
+    pub cells: [u32; 3],
+    /// Three planes (u, v, w) of wind codes, x fastest, then y, then z.
+    pub codes: Vec<i8>,
+}
+
+/// The bend field of one patch.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PatchCodes {
+    /// Step at which the codes last changed.
+    pub tick: u64,
+    /// Three planes (θ, ωx, ωz) of `cells × cells` codes, row by row from the north-west.
+    pub codes: Vec<i8>,
+}
+
+/// How the world fares.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Health {
+    /// Mean duration of the steps since the snapshot before (s), by the wall clock; filled in by the runner.
+    pub step_secs: f32,
+    /// Longest of those steps (s).
+    pub step_max_secs: f32,
+    /// Root mean square of the wind's divergence after the projection, over that of `|u|/h`.
+    pub divergence_rms: f32,
+    /// Mean kinetic energy of the wind (J/kg).
+    pub wind_energy: f64,
+    /// Sum of θ² + ω² over the bend field (mixed units).
+    pub bend_energy: f64,
+    /// Patches that are awake.
+    pub awake_patches: u32,
+    /// Patches let go since the start because the limit of awake ones was reached.
+    pub evicted_patches: u64,
+    /// Sub-steps of the bend field in the newest step.
+    pub substeps: u32,
+    /// Largest Courant number of a sub-step of the bend field.
+    pub courant: f32,
+}

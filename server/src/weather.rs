@@ -1,0 +1,169 @@
+//! The wind of a scene: the solver, its rhythm, and what the rest of the world sees of it.
+
+use crate::bend::air::{self, GroundWind};
+use crate::objects::Motion;
+use crate::snapshot::WindFrame;
+use crate::wind::{Boundary, Config, ConfigError, Gusts, Jet, Profile, StepError, StepReport, WindSolver};
+use glam::Vec3;
+use shared::scene::{Scene, VehicleKind, WindBoundary};
+use shared::terrain::HeightMap;
+use shared::wire::quantise::wind_code;
+use std::sync::Arc;
+
+/// The solver takes the least number of ticks a step that is not shorter than this (s).
+const STEP_SECS: f32 = 0.05;
+/// Roughness length of grass (m), for the logarithmic profile.
+const ROUGHNESS_M: f32 = 0.05;
+/// Cell steps that the wind blows before the world starts, so that there are gusts from the beginning.
+const WARM_UP_CELL_STEPS: usize = 1 << 20;
+const WARM_UP_STEPS: usize = 120;
+/// Speed (m/s), radius (m) and rate (1/s) of the jet below a helicopter.
+const DOWNWASH_M_PER_S: f32 = 10.0;
+const DOWNWASH_RADIUS_M: f32 = 9.0;
+const DOWNWASH_PER_S: f32 = 2.0;
+/// Slowest object that drags air along (m/s), and radius (m) and rate (1/s) of that wake.
+const WAKE_FROM_M_PER_S: f32 = 4.0;
+const WAKE_RADIUS_M: f32 = 4.0;
+const WAKE_PER_S: f32 = 1.0;
+
+/// The wind of a scene.
+pub struct Weather {
+    solver: WindSolver,
+    config: Config,
+    ticks_per_step: u64,
+    step_secs: f32,
+    bend_rad: f32,
+    report: StepReport,
+    ground: GroundWind,
+    frame: Arc<WindFrame>,
+}
+
+/// Why a scene's wind cannot blow.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WeatherError {
+    /// A setting out of range, or at odds with another.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// The settings do not fit the step.
+    #[error(transparent)]
+    Step(#[from] StepError),
+}
+
+impl Weather {
+    /// The wind of `scene`, which has blown for a while.
+    ///
+    /// # Errors
+    /// [`WeatherError`] when the solver refuses the scene's settings.
+    pub fn new(scene: &Scene) -> Result<Self, WeatherError> {
+        let config = config(scene);
+        let mut solver = WindSolver::new(&config)?;
+        let ticks_per_step = (STEP_SECS * scene.tick_hz).ceil().max(1.0);
+        let step_secs = ticks_per_step * scene.dt_secs();
+        let cells: usize = config.cells.iter().product();
+        let mut report = solver.step(step_secs, &[])?;
+        for _ in 1..(WARM_UP_CELL_STEPS / cells).clamp(1, WARM_UP_STEPS) {
+            report = solver.step(step_secs, &[])?;
+        }
+        let [nx, _, nz] = config.cells;
+        let [dx, _, dz] = config.spacing_m;
+        let wraps = scene.wind.sides == WindBoundary::Wrap;
+        let ground = GroundWind { nodes: [nx, nz], spacing_m: [dx, dz], wraps, sustained: vec![] };
+        let frame = Arc::new(WindFrame::default());
+        let bend_rad = scene.grass.wind_bend_rad;
+        let mut weather =
+            Self { solver, config, ticks_per_step: ticks_per_step as u64, step_secs, bend_rad, report, ground, frame };
+        weather.observe(0);
+        Ok(weather)
+    }
+
+    /// Blows on, every so many ticks, by as much time.
+    pub fn step(&mut self, tick: u64, motions: &[Motion], height: &HeightMap) {
+        if !tick.is_multiple_of(self.ticks_per_step) {
+            return;
+        }
+        let jets: Vec<_> = motions.iter().filter_map(|motion| jet(motion, height)).collect();
+        match self.solver.step(self.step_secs, &jets) {
+            Ok(report) => self.report = report,
+            // The state is lost: the air starts anew from the mean wind.
+            Err(_) => self.solver = WindSolver::new(&self.config).expect("the same settings were accepted before"),
+        }
+        self.observe(tick);
+    }
+
+    /// What the wind near the ground does to grass.
+    pub fn ground(&self) -> &GroundWind {
+        &self.ground
+    }
+
+    /// The newest wind, quantised.
+    pub fn frame(&self) -> &Arc<WindFrame> {
+        &self.frame
+    }
+
+    /// What the newest step did.
+    pub fn report(&self) -> StepReport {
+        self.report
+    }
+
+    /// Velocities at the cells' centres (m/s).
+    pub fn velocities(&self) -> impl ExactSizeIterator<Item = Vec3> + '_ {
+        self.solver.cell_velocities()
+    }
+
+    fn observe(&mut self, tick: u64) {
+        let [nx, ny, nz] = self.config.cells;
+        let cells = nx * ny * nz;
+        let mut codes = vec![0; 3 * cells];
+        self.ground.sustained.clear();
+        for (at, velocity) in self.solver.cell_velocities().enumerate() {
+            for (plane, component) in velocity.to_array().into_iter().enumerate() {
+                codes[plane * cells + at] = wind_code(component);
+            }
+            if at / nx % ny == 0 {
+                self.ground.sustained.push(air::sustained([velocity.x, velocity.z], self.bend_rad));
+            }
+        }
+        self.frame = Arc::new(WindFrame { tick, cells: [nx, ny, nz].map(|n| n as u32), codes });
+    }
+}
+
+fn config(scene: &Scene) -> Config {
+    let wind = &scene.wind;
+    let side = match wind.sides {
+        WindBoundary::Wrap => Boundary::Wrap,
+        WindBoundary::Wall => Boundary::Wall,
+    };
+    let [hx, hy, hz] = wind.spacing_m;
+    Config {
+        cells: wind.cells.map(|n| n as usize),
+        spacing_m: wind.spacing_m,
+        boundary: [side, Boundary::Wall, side],
+        viscosity_m2_per_s: wind.viscosity_m2_per_s,
+        mean_wind_m_per_s: [wind.mean_m_per_s[0], 0.0, wind.mean_m_per_s[1]],
+        profile: Profile::Log { roughness_m: ROUGHNESS_M, reference_m: 5.0 * hy },
+        relaxation_per_sec: wind.mean_rate_per_s,
+        gusts: Gusts {
+            number: wind.sources as usize,
+            strength_m_per_s: wind.source_m_per_s,
+            radius_m: [1.75 * hx, 2.5 * hy, 1.75 * hz],
+            ..Gusts::default()
+        },
+        seed: scene.seed,
+        ..Config::default()
+    }
+}
+
+/// The air that an object moves.
+fn jet(motion: &Motion, height: &HeightMap) -> Option<Jet> {
+    let [x, y, z] = motion.to.position_m;
+    let above_m = (y - height.height_m(x, z)).max(0.0);
+    let velocity = Vec3::from_array(motion.velocity_m_per_s);
+    if motion.kind == VehicleKind::Helicopter {
+        let down = velocity - Vec3::Y * DOWNWASH_M_PER_S;
+        let below = Vec3::new(x, (above_m - 0.5 * DOWNWASH_RADIUS_M).max(0.5), z);
+        return Some(Jet { position_m: below, radius_m: DOWNWASH_RADIUS_M, velocity_m_per_s: down, rate_per_sec: DOWNWASH_PER_S });
+    }
+    let wake =
+        Jet { position_m: Vec3::new(x, above_m, z), radius_m: WAKE_RADIUS_M, velocity_m_per_s: velocity, rate_per_sec: WAKE_PER_S };
+    (velocity.length() > WAKE_FROM_M_PER_S).then_some(wake)
+}

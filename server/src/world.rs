@@ -1,0 +1,289 @@
+//! The world: one fixed step after the other. No clock, no input or output; the same commands give the same bits.
+
+use crate::bend::Meadow;
+pub use crate::bend::View;
+use crate::objects::{Objects, Place, SPEED_LIMIT_M_PER_S};
+use crate::snapshot::{Health, PatchCodes, Snapshot};
+use crate::weather::{Weather, WeatherError};
+use rayon::prelude::*;
+use shared::bend::{Patch, WaveParams, verlet};
+use shared::scene::{Scene, VehicleKind};
+use shared::terrain::{CoverMap, HeightMap};
+use shared::wire::quantise;
+use shared::wire::{Drive, ObjectId};
+use std::sync::Arc;
+use thiserror::Error;
+
+/// Most sub-steps that the grass of a scene may need when an object strikes it at its fastest.
+const SUBSTEP_LIMIT: u32 = 64;
+
+/// What the world is told between two steps.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Give a client a vehicle; the one held before is given up.
+    Spawn {
+        /// Whose.
+        client: u32,
+        /// Which kind.
+        kind: VehicleKind,
+    },
+    /// Take a client's vehicle away.
+    Remove {
+        /// Whose.
+        client: u32,
+    },
+    /// Hands on the controls; held until the next.
+    Drive {
+        /// Whose.
+        client: u32,
+        /// What they do.
+        drive: Drive,
+    },
+    /// All cameras there are.
+    Views(Vec<View>),
+}
+
+/// What the world has to say about a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// A client has a vehicle.
+    Spawned {
+        /// Whose.
+        client: u32,
+        /// Its number.
+        object: ObjectId,
+    },
+    /// The limit of objects is reached, or nowhere is room.
+    SpawnRefused {
+        /// Who asked.
+        client: u32,
+    },
+}
+
+/// The maps of a scene.
+#[derive(Clone, Debug)]
+pub struct Maps {
+    /// Heights of the land.
+    pub height: HeightMap,
+    /// What covers it.
+    pub cover: CoverMap,
+}
+
+/// Why a scene makes no world.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum WorldError {
+    /// The wind solver refuses the settings of `wind`.
+    #[error(transparent)]
+    Wind(#[from] WeatherError),
+    /// Grass that carries bends too fast for its cells.
+    #[error(
+        "grass: c0_m_per_s = {c0_m_per_s}, mu_m_per_rad = {mu_m_per_rad}, c_omega_m_per_s = {c_omega_m_per_s}, stiffness_per_s2 = {stiffness_per_s2} need {needed} sub-steps of 1/{tick_hz} s on cells of {cell_m} m when an object strikes at {SPEED_LIMIT_M_PER_S} m/s; allowed: {SUBSTEP_LIMIT}. Take smaller values, larger cells or a higher tick_hz"
+    )]
+    Stiff {
+        /// As in the scene.
+        c0_m_per_s: f32,
+        /// As in the scene.
+        mu_m_per_rad: f32,
+        /// As in the scene.
+        c_omega_m_per_s: f32,
+        /// As in the scene.
+        stiffness_per_s2: f32,
+        /// As in the scene.
+        tick_hz: f32,
+        /// As in the scene.
+        cell_m: f32,
+        /// Sub-steps it would take.
+        needed: u32,
+    },
+}
+
+/// Objects, wind and grass.
+pub struct World {
+    dt_secs: f32,
+    tick: u64,
+    height: Arc<HeightMap>,
+    extent_m: [f32; 2],
+    objects: Objects,
+    weather: Weather,
+    meadow: Meadow,
+    views: Vec<View>,
+    events: Vec<Event>,
+    shown: Vec<Option<Arc<PatchCodes>>>,
+}
+
+impl World {
+    /// The world of a checked scene, at rest but for the wind.
+    ///
+    /// # Errors
+    /// [`WorldError`] when constants that are each in range make no world together.
+    pub fn new(scene: &Scene, maps: Maps) -> Result<Self, WorldError> {
+        check_stiffness(scene)?;
+        let weather = Weather::new(scene)?;
+        let height = Arc::new(maps.height);
+        let place = Place { height: Arc::clone(&height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
+        let meadow = Meadow::new(scene, Arc::clone(&height));
+        Ok(Self {
+            dt_secs: scene.dt_secs(),
+            tick: 0,
+            height,
+            extent_m: scene.extent_m(),
+            objects: Objects::new(scene, place),
+            weather,
+            shown: vec![None; meadow.field().layout().patches()],
+            meadow,
+            views: vec![],
+            events: vec![],
+        })
+    }
+
+    /// One fixed step: commands, objects, wind, bend field.
+    pub fn step(&mut self, commands: &[Command]) {
+        for command in commands {
+            self.obey(command);
+        }
+        self.tick += 1;
+        self.objects.step(self.dt_secs);
+        let motions = self.objects.motions();
+        self.weather.step(self.tick, &motions, &self.height);
+        self.meadow.step(self.dt_secs, &motions, &self.views, self.weather.ground());
+    }
+
+    /// What the world shows of itself.
+    pub fn snapshot(&mut self) -> Snapshot {
+        self.show_patches();
+        let (wind, bend) = (self.weather.report(), self.meadow.report());
+        Snapshot {
+            tick: self.tick,
+            time_secs: self.tick as f64 * f64::from(self.dt_secs),
+            objects: self.objects.poses(),
+            wind: Arc::clone(self.weather.frame()),
+            patches: self.shown.clone(),
+            health: Health {
+                divergence_rms: wind.divergence_rms_rel as f32,
+                wind_energy: wind.kinetic_energy_m2_per_s2,
+                bend_energy: self.meadow.activity(),
+                awake_patches: self.meadow.field().awake_count() as u32,
+                evicted_patches: self.meadow.evicted(),
+                substeps: bend.substeps,
+                courant: bend.courant,
+                ..Health::default()
+            },
+        }
+    }
+
+    /// The vehicle of a client.
+    pub fn object_of(&self, client: u32) -> Option<ObjectId> {
+        self.objects.object_of(client)
+    }
+
+    /// What there is to say since the last call.
+    pub fn events(&mut self) -> Vec<Event> {
+        std::mem::take(&mut self.events)
+    }
+
+    /// The bend field and what drives it.
+    pub fn meadow(&self) -> &Meadow {
+        &self.meadow
+    }
+
+    /// A number that differs when any bit of the objects', the wind's or the bend field's state does (FNV-1a).
+    pub fn checksum(&self) -> u64 {
+        let mut sum = Checksum::default();
+        for pose in self.objects.poses() {
+            sum.add([pose.id]);
+            sum.add(pose.position_m.iter().chain(&pose.rotation).chain(&pose.velocity_m_per_s).map(|v| v.to_bits()));
+        }
+        sum.add(self.weather.velocities().flat_map(|velocity| velocity.to_array().map(f32::to_bits)));
+        for (index, patch) in self.meadow.field().awake() {
+            sum.add([index]);
+            for channel in patch.channels().into_iter().chain(patch.channels_before()) {
+                for row in channel.chunks_exact(patch.stride()).skip(1).take(patch.side()) {
+                    sum.add(row[1..=patch.side()].iter().map(|v| v.to_bits()));
+                }
+            }
+        }
+        sum.0
+    }
+
+    fn obey(&mut self, command: &Command) {
+        match command {
+            Command::Spawn { client, kind } => {
+                let spawned = self.objects.spawn(*client, *kind, self.middle_for(*client));
+                self.events.push(match spawned {
+                    Some(object) => Event::Spawned { client: *client, object },
+                    None => Event::SpawnRefused { client: *client },
+                });
+            }
+            Command::Remove { client } => self.objects.remove(*client),
+            Command::Drive { client, drive } => self.objects.drive(*client, *drive),
+            Command::Views(views) => self.views.clone_from(views),
+        }
+    }
+
+    /// Where a client's objects appear: below its camera, or in the middle of the world.
+    fn middle_for(&self, client: u32) -> [f32; 2] {
+        let eye = self.views.iter().find(|view| view.client == client).map(|view| [view.eye_m[0], view.eye_m[2]]);
+        eye.filter(|eye| (0..2).all(|axis| (0.0..=self.extent_m[axis]).contains(&eye[axis])))
+            .unwrap_or(self.extent_m.map(|extent| 0.5 * extent))
+    }
+
+    /// Quantises the patches that changed.
+    fn show_patches(&mut self) {
+        let field = self.meadow.field();
+        let awake: Vec<_> = field.awake().collect();
+        let codes: Vec<_> = awake.into_par_iter().map(|(index, patch)| (index, codes_of(patch))).collect();
+        let mut slept = std::mem::take(&mut self.shown);
+        self.shown = vec![None; slept.len()];
+        for (index, codes) in codes {
+            let before = slept[index as usize].take();
+            self.shown[index as usize] = match before {
+                Some(before) if before.codes == codes => Some(before),
+                _ if codes.iter().all(|&code| code == 0) => None,
+                _ => Some(Arc::new(PatchCodes { tick: self.tick, codes })),
+            };
+        }
+    }
+}
+
+/// Three planes of codes: θ, ωx, ωz.
+fn codes_of(patch: &Patch) -> Vec<i8> {
+    let side = patch.side();
+    let mut codes = vec![0; 3 * side * side];
+    let [theta, x, z] = patch.channels();
+    let rows = |channel| <[f32]>::chunks_exact(channel, side + 2).skip(1).map(|row| &row[1..=side]);
+    let mut codes_rows = codes.chunks_exact_mut(side);
+    for (codes, row) in codes_rows.by_ref().zip(rows(theta).take(side)) {
+        codes.iter_mut().zip(row).for_each(|(code, &theta)| *code = quantise::theta_code(theta));
+    }
+    for (codes, row) in codes_rows.zip(rows(x).take(side).chain(rows(z).take(side))) {
+        codes.iter_mut().zip(row).for_each(|(code, &omega)| *code = quantise::omega_code(omega));
+    }
+    codes
+}
+
+fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
+    let (params, cell_m) = (WaveParams::from(&scene.grass), scene.patches.cell_m);
+    let strike_m = VehicleKind::ALL.map(VehicleKind::strike_height_m).into_iter().fold(f32::INFINITY, f32::min);
+    let needed = verlet::substeps(&params, cell_m, scene.dt_secs(), SPEED_LIMIT_M_PER_S / strike_m);
+    if needed <= SUBSTEP_LIMIT {
+        return Ok(());
+    }
+    let WaveParams { c0_m_per_s, mu_m_per_rad, c_omega_m_per_s, stiffness_per_s2, .. } = params;
+    Err(WorldError::Stiff { c0_m_per_s, mu_m_per_rad, c_omega_m_per_s, stiffness_per_s2, tick_hz: scene.tick_hz, cell_m, needed })
+}
+
+struct Checksum(u64);
+
+impl Default for Checksum {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Checksum {
+    fn add(&mut self, words: impl IntoIterator<Item = u32>) {
+        for word in words {
+            self.0 = (self.0 ^ u64::from(word)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Small worlds to test with, made without files.
+
+use server::world::{Maps, World};
+use shared::scene::Scene;
+use shared::terrain::{CoverMap, HeightMap};
+
+/// A scene of `count × count` patches with the defaults of everything else.
+pub fn scene(count: u32) -> Scene {
+    let mut scene = Scene {
+        summary: "A world made by a test".to_owned(),
+        seed: 1,
+        tick_hz: 60.0,
+        patches: Default::default(),
+        terrain: shared::scene::TerrainMaps {
+            height_map: String::new(),
+            covering_map: String::new(),
+            pixel_m: [2.0; 2],
+            level_m: 0.1,
+            base_m: 0.0,
+        },
+        wind: Default::default(),
+        grass: Default::default(),
+        plants: Default::default(),
+        objects: Default::default(),
+        camera: Default::default(),
+        light: Default::default(),
+    };
+    scene.patches.count = [count; 2];
+    scene
+}
+
+/// Land whose height is `height_m` of (x, z) in metres, known every 2 m, and whose covering ID is `cover` of the same.
+pub fn maps(scene: &Scene, height_m: impl Fn(f32, f32) -> f32, cover: impl Fn(f32, f32) -> u8) -> Maps {
+    let [width, depth] = scene.extent_m().map(|extent| (extent / 2.0) as u32 + 1);
+    let at = |i: u32| ((i % width) as f32 * 2.0, (i / width) as f32 * 2.0);
+    let heights = (0..width * depth).map(|i| height_m(at(i).0, at(i).1)).collect();
+    let ids: Vec<u8> = (0..width * depth).map(|i| cover(at(i).0, at(i).1)).collect();
+    let height = HeightMap::from_heights(width, depth, [2.0; 2], heights);
+    Maps { height, cover: CoverMap::from_png(&grey_png(width, depth, &ids)).expect("a grey PNG of eight bits") }
+}
+
+/// Flat land, all grass.
+pub fn flat(scene: &Scene) -> World {
+    World::new(scene, maps(scene, |_, _| 0.0, |_, _| 255)).expect("the default constants make a world")
+}
+
+/// Rolling hills, 3 m up and down over some 50 m, with a tree or a stone here and there.
+pub fn hills(scene: &Scene) -> World {
+    let height = |x: f32, z: f32| 3.0 * (x * 0.11).sin() * (z * 0.13).cos() + 0.6 * (x * 0.31 + z * 0.27).sin();
+    let cover = |x: f32, z: f32| match (x as u32 * 7919 + z as u32 * 104_729) % 997 {
+        0..4 => 253,
+        4..8 => 254,
+        _ => 255,
+    };
+    World::new(scene, maps(scene, height, cover)).expect("the default constants make a world")
+}
+
+/// A grey PNG of 8 bits a pixel.
+pub fn grey_png(width: u32, depth: u32, levels: &[u8]) -> Vec<u8> {
+    let mut bytes = vec![];
+    let mut encoder = png::Encoder::new(&mut bytes, width, depth);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header().expect("a header fits into memory");
+    writer.write_image_data(levels).expect("one level a pixel");
+    writer.finish().expect("an image fits into memory");
+    bytes
+}
