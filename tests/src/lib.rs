@@ -5,4 +5,5 @@ pub mod chromedriver;
 pub mod norms;
 pub mod pages;
 pub mod picture;
+pub mod problems;
 pub mod worlds;

@@ -1,0 +1,33 @@
+//! Loops over chunks of an array, on all threads where that pays.
+//!
+//! Every chunk is computed from inputs that no other chunk writes, and sums are taken chunk by chunk and added in order, so results have the same
+//! bits on any number of threads.
+
+use rayon::prelude::*;
+
+/// Below this many values a loop takes less time than waking a second thread.
+const WORTH_SHARING: usize = 32_768;
+
+/// Calls `f(number, chunk)` for each `len` values of `data`; the last chunk may be shorter.
+pub fn for_each_chunk<T: Send>(data: &mut [T], len: usize, f: impl Fn(usize, &mut [T]) + Sync + Send) {
+    if data.len() < WORTH_SHARING {
+        data.chunks_mut(len).enumerate().for_each(|(n, chunk)| f(n, chunk));
+    } else {
+        data.par_chunks_mut(len).enumerate().for_each(|(n, chunk)| f(n, chunk));
+    }
+}
+
+/// Calls `f(number, chunk, other)` for each `len` values of `data` beside each `other_len` of `other`, which has as many chunks.
+pub fn for_each_chunk_pair<T: Send, U: Send>(
+    data: &mut [T],
+    len: usize,
+    other: &mut [U],
+    other_len: usize,
+    f: impl Fn(usize, &mut [T], &mut [U]) + Sync + Send,
+) {
+    if data.len() < WORTH_SHARING {
+        data.chunks_mut(len).zip(other.chunks_mut(other_len)).enumerate().for_each(|(n, (chunk, other))| f(n, chunk, other));
+    } else {
+        data.par_chunks_mut(len).zip(other.par_chunks_mut(other_len)).enumerate().for_each(|(n, (chunk, other))| f(n, chunk, other));
+    }
+}

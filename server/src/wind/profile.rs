@@ -1,0 +1,104 @@
+//! The mean wind, and the pull of every layer of air towards it.
+
+use super::config::{Config, Profile};
+use super::{Boundary, Field, Grid, Real, Velocity};
+
+/// Mean wind as a function of height.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeanWind {
+    velocity_m_per_s: [f64; 3],
+    profile: Profile,
+}
+
+impl MeanWind {
+    /// The mean wind of these settings.
+    pub fn new(config: &Config) -> Self {
+        let [x, _, z] = config.mean_wind_m_per_s.map(f64::from);
+        Self { velocity_m_per_s: [x, 0.0, z], profile: config.profile }
+    }
+
+    /// Velocity (m/s) at a height above the ground (m).
+    pub fn at(&self, height_m: f64) -> [f64; 3] {
+        let share = self.profile.share_at(height_m);
+        self.velocity_m_per_s.map(|speed| speed * share)
+    }
+}
+
+/// The pull towards the mean wind, with what it needs from step to step.
+#[derive(Clone, Debug)]
+pub struct Relaxation<R> {
+    /// Target of the x and z velocity (m/s) of each layer.
+    targets: [Vec<f64>; 2],
+    sums: Vec<f64>,
+    gains: Vec<R>,
+}
+
+impl<R: Real> Relaxation<R> {
+    /// Tabulates the mean wind at the heights of the layers of `grid`.
+    pub fn new(grid: &Grid<R>, mean: &MeanWind) -> Self {
+        let layers = grid.cells[1];
+        let height = |j: usize| (j as f64 + 0.5) * grid.spacing_m[1].wide();
+        let targets = [0, 2].map(|axis| (0..layers).map(|j| mean.at(height(j))[axis]).collect());
+        Self { targets, sums: vec![0.0; layers], gains: vec![R::zero(); layers] }
+    }
+
+    /// Shifts each layer as a whole towards the mean wind, by the share `rate·dt / (1 + rate·dt)` of what is missing (backward Euler: stable at any step).
+    ///
+    /// A shift of a whole layer has no divergence. Across walls the mean is 0 and no layer is shifted.
+    pub fn apply(&mut self, grid: &Grid<R>, rate_per_sec: f64, dt_secs: f64, velocity: &mut Velocity<R>) {
+        let share = rate_per_sec * dt_secs / (1.0 + rate_per_sec * dt_secs);
+        for (axis, targets) in [0, 2].into_iter().zip(&self.targets) {
+            if grid.boundary[axis] == Boundary::Wall || share == 0.0 {
+                continue;
+            }
+            let field = &mut velocity.0[axis];
+            layer_sums(field, &mut self.sums);
+            let per_layer = (field.shape[0] * field.shape[2]) as f64;
+            for ((gain, &target), &sum) in self.gains.iter_mut().zip(targets).zip(&self.sums) {
+                *gain = R::of(share * (target - sum / per_layer));
+            }
+            for (row, &gain) in field.data.chunks_mut(field.shape[0]).zip(self.gains.iter().cycle()) {
+                row.iter_mut().for_each(|speed| *speed = *speed + gain);
+            }
+        }
+    }
+}
+
+fn layer_sums<R: Real>(field: &Field<R>, sums: &mut [f64]) {
+    sums.fill(0.0);
+    for plane in field.data.chunks(field.plane_len()) {
+        for (sum, row) in sums.iter_mut().zip(plane.chunks(field.shape[0])) {
+            *sum += row.iter().fold(R::zero(), |sum, &speed| sum + speed).wide();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layers_reach_the_profile_and_gusts_stay() {
+        let config = Config::default();
+        let grid = config.grid::<f32>();
+        let mean = MeanWind::new(&config);
+        let mut relaxation = Relaxation::new(&grid, &mean);
+        let mut velocity = Velocity::zeros(&grid);
+        let at = velocity.0[0].index([3, 0, 5]);
+        velocity.0[0].data[at] = 4.0;
+        for _ in 0..2000 {
+            relaxation.apply(&grid, 0.2, 0.1, &mut velocity);
+        }
+        let u = &velocity.0[0];
+        let surplus = u.data[at] - u.data[at + 1];
+        assert!((surplus - 4.0).abs() < 1e-4, "{surplus}");
+        let mut sums = vec![0.0; 8];
+        layer_sums(u, &mut sums);
+        for (j, sum) in sums.into_iter().enumerate() {
+            let height = 2.0 * j as f64 + 1.0;
+            assert!((sum / 1024.0 - mean.at(height)[0]).abs() < 1e-3);
+        }
+        assert!((mean.at(10.0)[0] - 5.0).abs() < 1e-12);
+        assert!(mean.at(1.0)[0] < 0.65 * mean.at(10.0)[0]);
+    }
+}

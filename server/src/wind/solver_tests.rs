@@ -1,0 +1,206 @@
+use glam::Vec3;
+
+use super::super::{Advection, Boundary, Gusts, Profile};
+use super::*;
+
+const DT_SECS: f32 = 1.0 / 60.0;
+
+fn dusty() -> Config {
+    Config { dust: Some(Dust::default()), ..Config::default() }
+}
+
+fn helicopter() -> Jet {
+    Jet { position_m: Vec3::new(100.0, 6.0, 120.0), radius_m: 12.0, velocity_m_per_s: Vec3::new(0.0, -10.0, 0.0), rate_per_sec: 2.0 }
+}
+
+fn run(config: &Config, threads: usize, steps: usize) -> State<f32> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| {
+        let mut wind = WindSolver::new(config).unwrap();
+        for _ in 0..steps {
+            wind.step(DT_SECS, &[helicopter()]).unwrap();
+        }
+        wind.state()
+    })
+}
+
+fn bits(state: &State<f32>) -> Vec<u32> {
+    state.velocity.iter().chain([&state.dust]).flatten().map(|x| x.to_bits()).collect()
+}
+
+#[test]
+fn same_seed_same_bits_on_one_and_two_threads() {
+    // Larger than the threshold for sharing work.
+    let large = Config { cells: [48, 16, 56], ..dusty() };
+    for config in [dusty(), large] {
+        let one = run(&config, 1, 20);
+        assert_eq!(bits(&one), bits(&run(&config, 1, 20)));
+        assert_eq!(bits(&one), bits(&run(&config, 2, 20)));
+        assert_ne!(bits(&one), bits(&run(&Config { seed: 2, ..config.clone() }, 2, 20)));
+    }
+}
+
+#[test]
+fn a_restored_state_goes_on_with_the_same_bits() {
+    let mut wind = WindSolver::new(&dusty()).unwrap();
+    for _ in 0..30 {
+        wind.step(DT_SECS, &[]).unwrap();
+    }
+    let state = wind.state();
+    let mut other = WindSolver::new(&dusty()).unwrap();
+    other.restore(&state).unwrap();
+    for _ in 0..30 {
+        assert_eq!(wind.step(DT_SECS, &[]), other.step(DT_SECS, &[]));
+    }
+    assert_eq!(bits(&wind.state()), bits(&other.state()));
+
+    let short = State { dust: Vec::new(), ..state };
+    assert_eq!(other.restore(&short), Err(StateError { what: "dust", found: 0, expected: 8192 }));
+}
+
+/// Speed (m/s) of the default wind at 1 m, mean over time and place, and its standard deviation over both.
+#[test]
+fn the_wind_stays_lively() {
+    let mut wind = WindSolver::new(&Config::default()).unwrap();
+    let dt_secs = 0.05;
+    for minute in 0..10 {
+        let (mut sum, mut squares, mut n) = (0.0, 0.0, 0.0);
+        for step in 0..1200 {
+            let report = wind.step(dt_secs, &[]).unwrap();
+            assert!(report.divergence_rms_rel < 1e-5, "{report:?}");
+            assert!(report.courant < 1.0, "{report:?}");
+            if step % 40 == 0 {
+                for (at, velocity) in wind.cell_velocities().enumerate() {
+                    if at / 32 % 8 == 0 {
+                        let speed = f64::from((velocity.x * velocity.x + velocity.z * velocity.z).sqrt());
+                        sum += speed;
+                        squares += speed * speed;
+                        n += 1.0;
+                    }
+                }
+            }
+        }
+        let mean = sum / n;
+        let deviation = (squares / n - mean * mean).sqrt();
+        println!("minute {minute}: speed at 1 m {mean:.2} m/s ± {deviation:.2} ({:.0} %)", 100.0 * deviation / mean);
+        assert!((2.0..5.0).contains(&mean), "minute {minute}: mean speed {mean}");
+        assert!((0.25..0.45).contains(&(deviation / mean)), "minute {minute}: deviation {deviation} of mean {mean}");
+    }
+}
+
+/// Correlation of the speed 1 m above the ground now with that `secs` later and `cells` further along x.
+fn correlation(wind: &mut WindSolver, secs: f32, cells: usize) -> f64 {
+    let along = |wind: &WindSolver| -> Vec<f64> {
+        let layer = wind.cell_velocities().enumerate().filter(|(at, _)| at / 32 % 8 == 0).map(|(_, velocity)| f64::from(velocity.x));
+        let layer: Vec<f64> = layer.collect();
+        let mean = layer.iter().sum::<f64>() / layer.len() as f64;
+        layer.into_iter().map(|x| x - mean).collect()
+    };
+    let before = along(wind);
+    for _ in 0..(secs / 0.05) as usize {
+        wind.step(0.05, &[]).unwrap();
+    }
+    let after = along(wind);
+    let dot = |a: &[f64], b: &[f64], shift: usize| -> f64 { (0..a.len()).map(|at| a[at] * b[at / 32 * 32 + (at + shift) % 32]).sum() };
+    dot(&before, &after, cells) / (dot(&before, &before, 0) * dot(&after, &after, 0)).sqrt()
+}
+
+#[test]
+fn gusts_travel_with_the_wind() {
+    let config = Config { mean_wind_m_per_s: [5.0, 0.0, 0.0], ..Config::default() };
+    let mut wind = WindSolver::new(&config).unwrap();
+    (0..1200).for_each(|_| assert!(wind.step(0.05, &[]).is_ok()));
+    for cells in 0..5 {
+        println!("now {cells} cells on: {:.2}", correlation(&mut wind, 0.0, cells));
+    }
+    let mean = |wind: &mut WindSolver, cells| (0..10).map(|_| correlation(wind, 4.0, cells)).sum::<f64>() / 10.0;
+    let along: Vec<f64> = (0..5).map(|cells| mean(&mut wind, cells)).collect();
+    println!("4 s later: {along:.2?}");
+    assert!(along[2] > 0.35 && along[2] > along[0] + 0.1, "{along:?}");
+}
+
+#[test]
+fn without_gusts_the_mean_wind_blows_on() {
+    for advection in [Advection::SemiLagrangian, Advection::MacCormack] {
+        let config = Config { gusts: Gusts { number: 0, ..Gusts::default() }, advection, viscosity_m2_per_s: 0.0, ..Config::default() };
+        let mut wind = WindSolver::new(&config).unwrap();
+        let start = wind.velocity_at(Vec3::new(1.0, 3.0, 2.0));
+        for _ in 0..100 {
+            wind.step(DT_SECS, &[]).unwrap();
+        }
+        let end = wind.velocity_at(Vec3::new(1.0, 3.0, 2.0));
+        assert!((end - start).length() < 1e-4, "{start} became {end}");
+    }
+}
+
+#[test]
+fn a_downwash_blows_down_and_outwards_along_the_ground() {
+    let config = Config {
+        mean_wind_m_per_s: [0.0; 3],
+        gusts: Gusts { number: 0, ..Gusts::default() },
+        spacing_m: [4.0, 2.0, 4.0],
+        ..Config::default()
+    };
+    let mut wind = WindSolver::new(&config).unwrap();
+    let jet = Jet { position_m: Vec3::new(64.0, 8.0, 64.0), ..helicopter() };
+    for _ in 0..180 {
+        wind.step(DT_SECS, &[jet]).unwrap();
+    }
+    assert!(wind.velocity_at(Vec3::new(64.0, 8.0, 64.0)).y < -3.0);
+    assert_eq!(wind.velocity_at(Vec3::new(64.0, 0.0, 64.0)).y, 0.0);
+    for out in [Vec3::X, -Vec3::X, Vec3::Z, -Vec3::Z] {
+        let speed = wind.velocity_at(Vec3::new(64.0, 1.0, 64.0) + 12.0 * out).dot(out);
+        assert!(speed > 1.0, "outflow along {out}: {speed}");
+    }
+}
+
+#[test]
+fn a_closed_box_and_a_wrapped_one_run() {
+    for boundary in [[Boundary::Wall; 3], [Boundary::Wrap; 3]] {
+        let config = Config { boundary, mean_wind_m_per_s: [0.0; 3], profile: Profile::Uniform, cells: [9, 6, 10], ..dusty() };
+        let mut wind = WindSolver::new(&config).unwrap();
+        for _ in 0..600 {
+            let report = wind.step(0.1, &[]).unwrap();
+            assert!(report.divergence_rms_rel < 1e-5 && report.kinetic_energy_m2_per_s2 < 100.0, "{report:?}");
+        }
+        let dust = &wind.dust().unwrap().data;
+        assert!(dust.iter().all(|&density| density >= 0.0) && dust.iter().any(|&density| density > 0.1));
+    }
+}
+
+#[test]
+fn absurd_courant_numbers_are_survived() {
+    for advection in [Advection::SemiLagrangian, Advection::MacCormack] {
+        let mut wind = WindSolver::new(&Config { advection, cells: [16, 8, 16], viscosity_m2_per_s: 0.0, ..dusty() }).unwrap();
+        for _ in 0..200 {
+            let report = wind.step(100.0, &[]).unwrap();
+            assert!(report.kinetic_energy_m2_per_s2 < 1e6, "{report:?}");
+        }
+    }
+}
+
+#[test]
+fn bad_steps_are_refused_and_change_nothing() {
+    let mut wind = WindSolver::new(&Config { viscosity_m2_per_s: 1000.0, ..Config::default() }).unwrap();
+    let before = wind.state();
+    for dt_secs in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        assert!(matches!(wind.step(dt_secs, &[]), Err(StepError::BadTimeStep { .. })));
+    }
+    let jet = Jet { radius_m: f32::NAN, ..helicopter() };
+    assert!(matches!(wind.step(DT_SECS, &[helicopter(), jet]), Err(StepError::BadJet { index: 1, .. })));
+    let error = wind.step(10.0, &[]).unwrap_err();
+    assert!(matches!(error, StepError::TooViscous { what: "viscosity_m2_per_s", .. }), "{error}");
+    assert_eq!(wind.state(), before);
+    assert!(wind.step(DT_SECS, &[]).unwrap().substeps > 1);
+}
+
+#[test]
+fn a_nan_is_caught_in_its_step_with_the_cell() {
+    let mut wind = WindSolver::new(&Config { gusts: Gusts { number: 0, ..Gusts::default() }, ..Config::default() }).unwrap();
+    let mut state = wind.state();
+    state.velocity[1][5 + 32 * (4 + 9 * 7)] = f32::NAN;
+    wind.restore(&state).unwrap();
+    let error = wind.step(DT_SECS, &[]).unwrap_err();
+    assert!(matches!(error, StepError::NotFinite { time_secs: 0.0, .. }), "{error}");
+    assert!(error.to_string().contains("cell ["), "{error}");
+}

@@ -1,0 +1,167 @@
+//! Random source cells (000 §2.3.1): gusts.
+//!
+//! What a source does at any moment is a function of the settings and the time alone, so nothing about sources needs to be saved. Source `n` lives again
+//! and again, each time elsewhere; all of them are out of step.
+
+use super::config::{Config, Gusts};
+use super::footprint::Footprint;
+use super::profile::MeanWind;
+use super::{Field, Grid, Real, Velocity};
+
+/// A source at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Source {
+    /// Its centre (m), not wrapped.
+    pub position_m: [f64; 3],
+    /// The acceleration of the air at its centre (m/s²).
+    pub push_m_per_s2: [f64; 3],
+    /// How hard it pushes, as a share of its hardest.
+    pub level: f64,
+}
+
+/// Shape of a gust over its life, from 0 over 1 at `attack` to 0: a steep straight rise and a gentle parabolic fall (003 §3.2).
+pub fn envelope(age: f64, attack: f64) -> f64 {
+    if age < attack {
+        age / attack
+    } else {
+        let left = (1.0 - age) / (1.0 - attack);
+        left * left
+    }
+}
+
+/// Integral of [`envelope`] over a life of 1.
+pub fn envelope_area(attack: f64) -> f64 {
+    attack / 2.0 + (1.0 - attack) / 3.0
+}
+
+/// The sources alive at a time (s) since the start.
+pub fn sources_at<R: Real>(config: &Config, grid: &Grid<R>, mean: &MeanWind, time_secs: f64) -> impl Iterator<Item = Source> {
+    let Gusts { number, strength_m_per_s, life_secs, attack, .. } = config.gusts;
+    let (life, attack) = (f64::from(life_secs), f64::from(attack));
+    let peak = f64::from(strength_m_per_s) / (life * envelope_area(attack));
+    (0..number).map(move |n| {
+        let lives = time_secs / life + Dice::new([config.seed, n as u64, u64::MAX]).unit();
+        let age = lives.fract();
+        let mut dice = Dice::new([config.seed, n as u64, lives as u64]);
+        let birth: [f64; 3] = std::array::from_fn(|axis| dice.unit() * grid.extent_m(axis).wide());
+        let drift = mean.at(birth[1]).map(|speed| speed * age * life);
+        let level = envelope(age, attack);
+        let [x, z] = dice.in_disc();
+        Source {
+            position_m: [birth[0] + drift[0], birth[1], birth[2] + drift[2]],
+            push_m_per_s2: [x * peak * level, 0.0, z * peak * level],
+            level,
+        }
+    })
+}
+
+/// Lets a source push the air for a step.
+pub fn push<R: Real>(
+    grid: &Grid<R>,
+    gusts: &Gusts,
+    source: &Source,
+    dt_secs: f64,
+    velocity: &mut Velocity<R>,
+    footprint: &mut Footprint<R>,
+) {
+    for (axis, field) in velocity.0.iter_mut().enumerate() {
+        let gain = R::of(source.push_m_per_s2[axis] * dt_secs);
+        if gain != R::zero() {
+            footprint.put(grid, field.place, source.position_m.map(R::of), gusts.radius_m.map(|r| R::of(r.into())));
+            footprint.for_each(field, |speed, weight| *speed = *speed + weight * gain);
+        }
+    }
+}
+
+/// Lets a source release dust for a step, `release_per_sec` at its hardest.
+pub fn release<R: Real>(
+    grid: &Grid<R>,
+    gusts: &Gusts,
+    source: &Source,
+    release_per_sec: f64,
+    dt_secs: f64,
+    dust: &mut Field<R>,
+    footprint: &mut Footprint<R>,
+) {
+    let gain = R::of(source.level * release_per_sec * dt_secs);
+    footprint.put(grid, dust.place, source.position_m.map(R::of), gusts.radius_m.map(|r| R::of(r.into())));
+    footprint.for_each(dust, |density, weight| *density = *density + weight * gain);
+}
+
+/// Random numbers from a key (SplitMix64, Steele, Lea & Flood 2014).
+struct Dice(u64);
+
+impl Dice {
+    fn new(key: [u64; 3]) -> Self {
+        key.into_iter().fold(Self(0), |dice, part| Self(Self(dice.0 ^ part).next()))
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Uniform in [0, 1).
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Uniform in the disc of radius 1.
+    fn in_disc(&mut self) -> [f64; 2] {
+        loop {
+            let point = [2.0 * self.unit() - 1.0, 2.0 * self.unit() - 1.0];
+            if point[0] * point[0] + point[1] * point[1] <= 1.0 {
+                return point;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_envelope_rises_steeply_and_has_the_stated_area() {
+        let attack = 0.15;
+        let n = 100_000;
+        let area: f64 = (0..n).map(|i| envelope((i as f64 + 0.5) / n as f64, attack)).sum::<f64>() / n as f64;
+        assert!((area - envelope_area(attack)).abs() < 1e-6);
+        assert_eq!(envelope(attack, attack), 1.0);
+        assert!(envelope(attack / 2.0, attack) >= 0.5 && envelope(0.9, attack) < 0.02);
+    }
+
+    #[test]
+    fn sources_depend_on_seed_and_time_only() {
+        let config = Config::default();
+        let (grid, mean) = (config.grid::<f32>(), MeanWind::new(&config));
+        let at = |config: &Config, time| sources_at(config, &grid, &mean, time).collect::<Vec<_>>();
+        assert_eq!(at(&config, 12.5), at(&config, 12.5));
+        assert_ne!(at(&config, 12.5), at(&Config { seed: 2, ..config.clone() }, 12.5));
+        assert_eq!(at(&config, 0.0).len(), config.gusts.number);
+    }
+
+    #[test]
+    fn a_source_gives_its_strength_over_its_life() {
+        let config = Config { gusts: Gusts { number: 1, ..Gusts::default() }, ..Config::default() };
+        let (grid, mean) = (config.grid::<f32>(), MeanWind::new(&config));
+        let life = f64::from(config.gusts.life_secs);
+        let start = life * (1.0 - Dice::new([config.seed, 0, u64::MAX]).unit());
+        let n = 10_000;
+        let dt = life / n as f64;
+        let gained = (0..n).fold([0.0; 2], |sum: [f64; 2], i| {
+            let source = sources_at(&config, &grid, &mean, start + (i as f64 + 0.5) * dt).next().unwrap();
+            [sum[0] + source.push_m_per_s2[0] * dt, sum[1] + source.push_m_per_s2[2] * dt]
+        });
+        let speed = (gained[0] * gained[0] + gained[1] * gained[1]).sqrt();
+        let mut dice = Dice::new([config.seed, 0, 1]);
+        for _ in 0..3 {
+            dice.unit();
+        }
+        let [x, z] = dice.in_disc();
+        assert!((speed - f64::from(config.gusts.strength_m_per_s) * (x * x + z * z).sqrt()).abs() < 1e-3, "{speed}");
+    }
+}
