@@ -70,8 +70,7 @@ impl Weather {
         let ground = GroundWind { nodes: [nx, nz], spacing_m: [dx, dz], wraps, sustained: vec![] };
         let frame = Arc::new(WindFrame::default());
         let bend_rad = scene.grass.wind_bend_rad;
-        let mut weather =
-            Self { solver, config, ticks_per_step: ticks_per_step as u64, step_secs, bend_rad, report, ground, frame };
+        let mut weather = Self { solver, config, ticks_per_step: ticks_per_step as u64, step_secs, bend_rad, report, ground, frame };
         weather.observe(0);
         Ok(weather)
     }
@@ -163,7 +162,6 @@ fn jet(motion: &Motion, height: &HeightMap) -> Option<Jet> {
         let below = Vec3::new(x, (above_m - 0.5 * DOWNWASH_RADIUS_M).max(0.5), z);
         return Some(Jet { position_m: below, radius_m: DOWNWASH_RADIUS_M, velocity_m_per_s: down, rate_per_sec: DOWNWASH_PER_S });
     }
-    let wake =
-        Jet { position_m: Vec3::new(x, above_m, z), radius_m: WAKE_RADIUS_M, velocity_m_per_s: velocity, rate_per_sec: WAKE_PER_S };
+    let wake = Jet { position_m: Vec3::new(x, above_m, z), radius_m: WAKE_RADIUS_M, velocity_m_per_s: velocity, rate_per_sec: WAKE_PER_S };
     (velocity.length() > WAKE_FROM_M_PER_S).then_some(wake)
 }

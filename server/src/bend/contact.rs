@@ -45,9 +45,7 @@ pub fn bending_speed_rad_per_s(speed_m_per_s: f32, theta_rad: f32, height_m: f32
 pub fn direction(moves: [f32; 2], at_m: [f32; 2], sides: &[Edge], rim_m: f32) -> [f32; 2] {
     let nearest = sides.iter().map(|side| (side.depth_m(at_m), side.normal)).min_by(|a, b| a.0.total_cmp(&b.0));
     match nearest {
-        Some((depth, [x, z])) if depth < rim_m && x * moves[0] + z * moves[1] >= 0.0 => {
-            unit([x + moves[0], z + moves[1]]).unwrap_or(moves)
-        }
+        Some((depth, [x, z])) if depth < rim_m && x * moves[0] + z * moves[1] >= 0.0 => unit([x + moves[0], z + moves[1]]).unwrap_or(moves),
         _ => moves,
     }
 }

@@ -59,8 +59,7 @@ impl Part {
         let (center, half, stand) = (self.center_m, self.half_m, *stand);
         let wide = [half[0].max(least_m), half[2].max(least_m)];
         ring.iter().flat_map(move |[x, z]| {
-            [-half[1], half[1]]
-                .map(|y| stand.point_m([center[0] + x * wide[0], center[1] + y, center[2] + z * wide[1]]).to_array())
+            [-half[1], half[1]].map(|y| stand.point_m([center[0] + x * wide[0], center[1] + y, center[2] + z * wide[1]]).to_array())
         })
     }
 }

@@ -100,8 +100,7 @@ impl Meadow {
         self.aim_sways(&seen, wind);
         let mut sways = self.sways.iter_mut().peekable();
         let awake = self.field.awake_indices().to_vec();
-        let mut alongside: Vec<_> =
-            awake.iter().map(|patch| sways.next_if(|(index, _)| *index == patch).map(|(_, sway)| sway)).collect();
+        let mut alongside: Vec<_> = awake.iter().map(|patch| sways.next_if(|(index, _)| *index == patch).map(|(_, sway)| sway)).collect();
         (self.report, self.traces) = step::propagate(&mut self.field, &mut alongside, &self.params, dt_secs, omega_max);
     }
 

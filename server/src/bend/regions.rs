@@ -86,7 +86,8 @@ impl Regions {
         if keep.len() > self.limit {
             let before = keep.clone();
             self.keep_nearest(&mut keep, &layout, views);
-            self.evicted += before.iter().filter(|patch| field.patch(**patch).is_some() && keep.binary_search(patch).is_err()).count() as u64;
+            self.evicted +=
+                before.iter().filter(|patch| field.patch(**patch).is_some() && keep.binary_search(patch).is_err()).count() as u64;
         }
         for patch in field.awake_indices().to_vec() {
             if keep.binary_search(&patch).is_err() {

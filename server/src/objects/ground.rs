@@ -150,11 +150,7 @@ impl Ground {
 /// Distance between the heights of a tile: a part or a multiple of the map's pixels, so that the land's creases stay.
 fn spacing_m(pixel_m: f32) -> f32 {
     let [fine, coarse] = SPACING_M;
-    if pixel_m >= coarse {
-        pixel_m / (pixel_m / coarse).ceil()
-    } else {
-        pixel_m * (fine / pixel_m).ceil()
-    }
+    if pixel_m >= coarse { pixel_m / (pixel_m / coarse).ceil() } else { pixel_m * (fine / pixel_m).ceil() }
 }
 
 fn squared_distance(a: [f32; 2], b: [f32; 2]) -> f32 {

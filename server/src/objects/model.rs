@@ -152,7 +152,8 @@ mod tests {
 
     /// A quarter of a box's floor: one triangle of 2 × 1 m, red, as a text glTF with its buffer inside.
     fn triangle(indices: [u16; 3]) -> String {
-        let mut bytes: Vec<u8> = [[0.0_f32, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]].iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
+        let mut bytes: Vec<u8> =
+            [[0.0_f32, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]].iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
         bytes.extend(indices.iter().flat_map(|i| i.to_le_bytes()));
         let data = base64(&bytes);
         format!(

@@ -13,7 +13,7 @@ pub struct Bend {
 }
 
 /// Number of channels: θ, ωx, ωz.
-pub(super) const CHANNELS: usize = 3;
+pub const CHANNELS: usize = 3;
 
 /// A square patch of `side × side` cells (a multiple of 8) inside a ring of ghosts; row-major from the north-west, `(side + 2)²` values a
 /// channel.
