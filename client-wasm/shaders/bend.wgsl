@@ -87,7 +87,7 @@ fn plant_at(grid: vec2<i32>, index: u32, place: vec2<f32>, is_flower: bool) -> P
     plant.is_flower = is_flower;
     if is_flower {
         // Petals stand at 0.65 of the tallest blades' height (000 section 3.3).
-        plant.height = frame.blade.x * (1.0 + frame.blade.y) * mix(0.65, 0.82, r.y) * grown;
+        plant.height = frame.blade.x * (1.0 + frame.blade.y) * mix(0.65, 0.90, r.y) * max(grown, 0.9);
         plant.width = frame.blade.z * 0.45;
         plant.droop = leaning * 0.35;
     }

@@ -75,7 +75,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     // Pale ends, as of flowering grass.
     albedo = mix(albedo, albedo * vec3<f32>(1.35, 1.12, 0.95), smoothstep(0.72, 1.0, t) * smoothstep(0.3, 0.9, hue));
     let tilt = length(lean) / max(length(c), 1e-3);
-    albedo *= 0.90 + 0.42 * smoothstep(0.15, 0.6, tilt) * t;
+    albedo *= (0.90 + 0.42 * smoothstep(0.15, 0.6, tilt) * t) * trodden(asin(min(tilt, 1.0)));
     let height = offset.y / frame.blade.x;
     let occlusion = mix(0.16, 1.0, smoothstep(0.0, 0.85, max(height, t * 0.75)));
     let light = blade.points[2].w * mix(0.30, 1.0, smoothstep(0.05, 0.75, max(height, t * 0.7)));

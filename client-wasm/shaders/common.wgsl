@@ -161,8 +161,8 @@ fn sky_color(direction: vec3<f32>) -> vec3<f32> {
     let up = clamp(direction.y, 0.0, 1.0);
     let toward_sun = max(dot(direction, frame.sun.xyz), 0.0);
     let low_sun = 1.0 - smoothstep(0.1, 0.75, frame.sun.y);
-    let zenith = mix(vec3<f32>(0.10, 0.27, 0.62), vec3<f32>(0.11, 0.22, 0.48), low_sun);
-    let horizon = mix(vec3<f32>(0.60, 0.76, 0.92), vec3<f32>(0.80, 0.72, 0.62), low_sun);
+    let zenith = mix(vec3<f32>(0.075, 0.24, 0.66), vec3<f32>(0.10, 0.22, 0.52), low_sun);
+    let horizon = mix(vec3<f32>(0.60, 0.76, 0.92), vec3<f32>(0.86, 0.76, 0.64), low_sun);
     var color = mix(horizon, zenith, pow(up, 0.48));
     let glow = frame.sun_color.rgb * (0.10 * pow(toward_sun, 5.0) + 0.16 * pow(toward_sun, 40.0));
     color += glow * (1.0 - 0.5 * up);
@@ -216,13 +216,20 @@ fn grass_light(
     let facing = dot(normal, sun);
     let diffuse = clamp((facing + 0.35) / 1.35, 0.0, 1.0);
     let against = max(dot(view, sun), 0.0);
-    let through = (0.22 + 0.9 * against * against * against) * clamp(0.55 - 0.45 * facing, 0.0, 1.0);
+    let through = (0.16 + 0.75 * against * against * against) * clamp(0.55 - 0.45 * facing, 0.0, 1.0);
     let half_way = normalize(sun - view);
     let along = dot(tangent, half_way);
     let sheen = pow(max(1.0 - along * along, 0.0), 18.0) * 0.10;
-    let glow = albedo * vec3<f32>(1.25, 1.2, 0.45);
+    let glow = albedo * vec3<f32>(1.12, 1.06, 0.60);
     let direct = frame.sun_color.rgb * sun_light * (albedo * diffuse + glow * through + vec3<f32>(0.9, 1.0, 0.8) * sheen * diffuse);
-    return direct * mix(0.25, 1.0, occlusion) + albedo * ambient(normal) * occlusion;
+    // A little of the sky is mirrored by the waxy skin.
+    let mirrored = vec3<f32>(0.030, 0.036, 0.046) * (0.4 + 0.6 * sun_light);
+    return direct * mix(0.25, 1.0, occlusion) + (albedo * ambient(normal) + mirrored) * occlusion;
+}
+
+// Grass that lies shows its pale undersides: a factor on its colour for a bend (rad).
+fn trodden(tilt: f32) -> vec3<f32> {
+    return mix(vec3<f32>(1.0), vec3<f32>(1.85, 1.70, 2.1), smoothstep(0.60, 1.20, tilt));
 }
 
 // Drift of colour over the land: lush, dry and reddish places, as a factor on the grass's colours.
@@ -231,6 +238,6 @@ fn grass_tint(p: vec2<f32>) -> vec3<f32> {
     let middle = noise(p / 31.0).a;
     let fine = noise(p / 6.3).g;
     let dry = smoothstep(0.40, 0.72, broad * 0.5 + middle * 0.35 + fine * 0.15);
-    let lush = mix(vec3<f32>(0.74, 0.98, 0.62), vec3<f32>(0.92, 1.04, 0.74), fine);
-    return mix(lush, vec3<f32>(1.38, 1.10, 0.80), dry * 0.85);
+    let lush = mix(vec3<f32>(0.66, 0.84, 0.72), vec3<f32>(0.84, 0.93, 0.84), fine);
+    return mix(lush, vec3<f32>(1.28, 1.04, 1.12), dry * 0.85);
 }

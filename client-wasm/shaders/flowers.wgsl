@@ -61,7 +61,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let axis = normalize(tangent + frame.sun.xyz * 0.45 + vec3<f32>(0.0, 0.35, 0.0));
     let right = normalize(cross(axis, vec3<f32>(0.31, 0.17, 0.93)));
     let ahead = cross(right, axis);
-    let size = max(1.0, distance_m * frame.screen.z * 2.2 / kind.shape.y) * 1.25;
+    let size = max(1.0, distance_m * frame.screen.z * 2.6 / kind.shape.y) * 1.7;
 
     var p: vec3<f32>;
     var normal = axis;

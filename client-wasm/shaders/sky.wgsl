@@ -20,7 +20,7 @@ fn cloud_density(at: vec2<f32>) -> f32 {
     n += noise(at / 1700.0 + 0.37).a * 0.27;
     n += noise(at / 610.0).g * 0.12;
     n += noise(at / 190.0).r * 0.06;
-    return smoothstep(0.50 - 0.12 * frame.clouds.z, 0.74, n);
+    return smoothstep(0.56 - 0.08 * frame.clouds.z, 0.80, n);
 }
 
 @fragment
@@ -35,8 +35,8 @@ fn fs(ray: Ray) -> @location(0) vec4<f32> {
         if density > 0.003 {
             let lit = cloud_density(at + frame.sun.xz * 260.0);
             let edge = pow(toward_sun, 12.0);
-            let bright = frame.sun_color.rgb * (0.42 + 0.5 * edge) + vec3<f32>(0.22, 0.26, 0.32);
-            let shade = vec3<f32>(0.50, 0.56, 0.66);
+            let bright = frame.sun_color.rgb * (0.50 + 0.5 * edge) + vec3<f32>(0.26, 0.29, 0.34);
+            let shade = vec3<f32>(0.58, 0.64, 0.74);
             let cloud = mix(bright, shade, clamp(lit * 0.85 + density * 0.15, 0.0, 1.0) * (1.0 - 0.5 * edge));
             let fade = smoothstep(0.015, 0.16, direction.y);
             color = mix(color, cloud, density * 0.9 * fade);

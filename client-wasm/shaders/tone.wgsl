@@ -1,4 +1,4 @@
-// Last pass: exposure, tone curve (Hable-like filmic shoulder with a soft toe), a little saturation, dither, encoding.
+// Last pass: exposure, tone curve (Hable-like filmic shoulder with a soft toe), a little less saturation, dither, encoding.
 
 @group(1) @binding(0) var picture: texture_2d<f32>;
 @group(1) @binding(1) var<uniform> tone: Tone;
@@ -34,7 +34,7 @@ fn fs(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     color *= tone.target_encodes.y * (1.0 - 0.35 * dot(from_centre, from_centre));
     color = curve(color);
     let grey = dot(color, vec3<f32>(0.2126, 0.7152, 0.0722));
-    color = clamp(mix(vec3<f32>(grey), color, 1.08), vec3<f32>(0.0), vec3<f32>(1.0));
+    color = clamp(mix(vec3<f32>(grey), color, 0.97), vec3<f32>(0.0), vec3<f32>(1.0));
     let dither = (random3(vec2<i32>(position.xy), 7u).x - 0.5) / 255.0;
     let shown = select(encode(color), color, tone.target_encodes.x > 0.5);
     return vec4<f32>(shown + dither, 1.0);

@@ -82,12 +82,7 @@ impl Camera {
         let eye_m = Vec3::new(next(1e6)?, next(1e6)?, next(1e6)?);
         let (heading, pitch) = (next(1e4)?, next(90.0)?);
         let pitch_rad = pitch.to_radians().clamp(-PITCH_LIMIT_RAD, PITCH_LIMIT_RAD);
-        numbers.next().is_none().then_some(Self {
-            eye_m,
-            heading_rad: heading.to_radians().rem_euclid(TAU),
-            pitch_rad,
-            ..Self::default()
-        })
+        numbers.next().is_none().then_some(Self { eye_m, heading_rad: heading.to_radians().rem_euclid(TAU), pitch_rad, ..Self::default() })
     }
 
     /// The view at which a scene starts, over land of height `ground_m`.
@@ -130,8 +125,7 @@ mod tests {
 
     #[test]
     fn a_hash_names_its_view_again() {
-        let camera =
-            Camera { eye_m: Vec3::new(12.25, 3.5, 99.75), heading_rad: 1.0, pitch_rad: -0.2, ..Camera::default() };
+        let camera = Camera { eye_m: Vec3::new(12.25, 3.5, 99.75), heading_rad: 1.0, pitch_rad: -0.2, ..Camera::default() };
         let again = Camera::from_hash(&format!("#{}", camera.to_hash())).expect("a hash");
         assert!((again.eye_m - camera.eye_m).length() < 0.01);
         assert!((again.heading_rad - camera.heading_rad).abs() < 1e-3 && (again.pitch_rad - camera.pitch_rad).abs() < 1e-3);

@@ -8,7 +8,7 @@
 //   look([x, y, z], heading, pitch)  puts the free camera somewhere (m, rad)
 //   choose(vehicle)                  takes "car", "monster" or "helicopter"; "" gives it up
 //   draw(time)                       draws one picture for this time (s); settles when it is on the screen
-// The address may say ?quality=low|medium|high|ultra, ?name=…, ?panel=0, ?paused=1 (draws only when draw() asks).
+// The address may say ?quality=low|medium|high|ultra, ?name=…, ?panel=0 (nothing above the picture; P brings it), ?paused=1 (draws only when draw() asks).
 
 import { hide, show } from "./messages.js";
 import { Panel } from "./panel.js";
@@ -87,7 +87,8 @@ async function begin() {
   client.start("view", JSON.stringify(options));
   const panel = new Panel(client, options, remember);
   panel.show((asked.get("panel") ?? remembered("panel") ?? (innerWidth < 640 ? "0" : "1")) !== "0");
-  if (!asked.has("panel")) panel.hint();
+  if (asked.get("panel") === "0") document.getElementById("open").hidden = true;
+  else panel.hint();
 }
 
 begin().catch((error) => show("failed", String(error?.message ?? error)));

@@ -77,7 +77,7 @@ pub async fn run_simulation(
     let scene = &config.scene.scene;
     let layout = PatchLayout::from(&scene.patches);
     let timing = Timing { tick_hz: scene.tick_hz, publish_hz: config.publish_hz, threads: config.threads };
-    let inspector = config.rerun.as_ref().map(|target| Inspector::start(target, scene, &config.scene.height)).transpose()?.map(Arc::new);
+    let inspector = config.rerun.as_ref().map(|target| Inspector::start(target, scene, &config.scene.height)).transpose()?;
     let runner = Runner::start(simulation, timing)?;
     let mut published = runner.published();
     let clients = Arc::new(Clients::default());
@@ -97,10 +97,7 @@ pub async fn run_simulation(
         stopping,
         started: Instant::now(),
     });
-    if let Some(inspector) = &inspector {
-        tracing::info!(target = inspector.target(), "recording for the rerun viewer");
-        tokio::spawn(record(Arc::clone(inspector), runner.published(), clients.clone()));
-    }
+    let recording = inspector.map(|inspector| tokio::spawn(record(inspector, runner.published(), clients.clone())));
     let world_stopped = async { while published.changed().await.is_ok() {} };
     let outcome = tokio::select! {
         () = net::serve(listener, config.tls.clone(), net::router(app), config.limits) => Ok(()),
@@ -112,21 +109,18 @@ pub async fn run_simulation(
     while clients.count() > 0 && Instant::now() < deadline {
         tokio::time::sleep(Duration::from_millis(10)).await;
     }
-    tokio::task::spawn_blocking(move || {
-        let sound = runner.stop();
-        if let Some(inspector) = inspector
-            && let Err(error) = inspector.finish()
-        {
-            tracing::warn!(%error, "the recording is incomplete");
-        }
-        sound && stream.join().is_ok()
-    })
-    .await
-    .map_or(Err(RunError::WorldStopped), |sound| if sound { outcome } else { Err(RunError::WorldStopped) })
+    let ended = tokio::task::spawn_blocking(move || runner.stop() && stream.join().is_ok()).await;
+    if let Some(recording) = recording
+        && let Ok(Err(error)) = recording.await
+    {
+        tracing::warn!(%error, "the recording is incomplete");
+    }
+    if ended.unwrap_or(false) { outcome } else { Err(RunError::WorldStopped) }
 }
 
-/// Shows every published snapshot to the inspector, with what is sent to the clients; ends when the runner does.
-async fn record(inspector: Arc<Inspector>, mut published: watch::Receiver<Arc<Published>>, clients: Arc<Clients>) {
+/// Shows every published snapshot to the inspector, with what is sent to the clients; closes the recording when the runner ends.
+async fn record(inspector: Inspector, mut published: watch::Receiver<Arc<Published>>, clients: Arc<Clients>) -> Result<(), InspectError> {
+    tracing::info!(target = inspector.target(), "recording for the rerun viewer");
     let (mut since, mut sent_before) = (Instant::now(), 0);
     while published.changed().await.is_ok() {
         if since.elapsed() >= Duration::from_secs(1) {
@@ -138,6 +132,7 @@ async fn record(inspector: Arc<Inspector>, mut published: watch::Receiver<Arc<Pu
         let newest = Arc::clone(&published.borrow_and_update());
         inspector.observe(&newest.snapshot);
     }
+    tokio::task::spawn_blocking(move || inspector.finish()).await.unwrap_or_else(|panic| Err(InspectError::Sdk(panic.to_string())))
 }
 
 fn scene_message(config: &Config) -> bytes::Bytes {

@@ -43,23 +43,6 @@ pub enum Command {
     Views(Vec<View>),
 }
 
-/// What the world has to say about a command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Event {
-    /// A client has a vehicle.
-    Spawned {
-        /// Whose.
-        client: u32,
-        /// Its number.
-        object: ObjectId,
-    },
-    /// The limit of objects is reached, or nowhere is room.
-    SpawnRefused {
-        /// Who asked.
-        client: u32,
-    },
-}
-
 /// The maps of a scene.
 #[derive(Clone, Debug)]
 pub struct Maps {
@@ -107,7 +90,6 @@ pub struct World {
     weather: Weather,
     meadow: Meadow,
     views: Vec<View>,
-    events: Vec<Event>,
     shown: Vec<Option<Arc<PatchCodes>>>,
 }
 
@@ -132,7 +114,6 @@ impl World {
             shown: vec![None; meadow.field().layout().patches()],
             meadow,
             views: vec![],
-            events: vec![],
         })
     }
 
@@ -176,11 +157,6 @@ impl World {
         self.objects.object_of(client)
     }
 
-    /// What there is to say since the last call.
-    pub fn events(&mut self) -> Vec<Event> {
-        std::mem::take(&mut self.events)
-    }
-
     /// The bend field and what drives it.
     pub fn meadow(&self) -> &Meadow {
         &self.meadow
@@ -208,11 +184,8 @@ impl World {
     fn obey(&mut self, command: &Command) {
         match command {
             Command::Spawn { client, kind } => {
-                let spawned = self.objects.spawn(*client, *kind, self.middle_for(*client));
-                self.events.push(match spawned {
-                    Some(object) => Event::Spawned { client: *client, object },
-                    None => Event::SpawnRefused { client: *client },
-                });
+                // A refusal shows in `object_of`.
+                self.objects.spawn(*client, *kind, self.middle_for(*client));
             }
             Command::Remove { client } => self.objects.remove(*client),
             Command::Drive { client, drive } => self.objects.drive(*client, *drive),

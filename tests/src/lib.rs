@@ -2,6 +2,7 @@
 
 pub mod browser;
 pub mod chromedriver;
+pub mod gauss_seidel;
 pub mod norms;
 pub mod pages;
 pub mod picture;

@@ -37,9 +37,8 @@ pub const MONSTER: [f32; 2] = [136.0, 141.0];
 
 fn messages() -> Vec<ServerMessage> {
     let scene = scene();
-    let levels: Vec<u16> = (0..MAP_PX * MAP_PX)
-        .map(|i| (height_m((i % MAP_PX) as f32 * PIXEL_M, (i / MAP_PX) as f32 * PIXEL_M) / LEVEL_M) as u16)
-        .collect();
+    let levels: Vec<u16> =
+        (0..MAP_PX * MAP_PX).map(|i| (height_m((i % MAP_PX) as f32 * PIXEL_M, (i / MAP_PX) as f32 * PIXEL_M) / LEVEL_M) as u16).collect();
     let height_bytes: Vec<u8> = levels.iter().flat_map(|level| level.to_be_bytes()).collect();
     let height_png = grey_png(MAP_PX, png::BitDepth::Sixteen, &height_bytes);
     let covering_png = grey_png(256, png::BitDepth::Eight, &covering());

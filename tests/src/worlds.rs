@@ -44,15 +44,19 @@ pub fn flat(scene: &Scene) -> World {
     World::new(scene, maps(scene, |_, _| 0.0, |_, _| 255)).expect("the default constants make a world")
 }
 
-/// Rolling hills, 3 m up and down over some 50 m, with a tree or a stone here and there.
+/// Height of rolling hills, 3 m up and down over some 50 m (m).
+pub fn hills_m(x: f32, z: f32) -> f32 {
+    3.0 * (x * 0.11).sin() * (z * 0.13).cos() + 0.6 * (x * 0.31 + z * 0.27).sin()
+}
+
+/// Rolling hills with a tree or a stone here and there.
 pub fn hills(scene: &Scene) -> World {
-    let height = |x: f32, z: f32| 3.0 * (x * 0.11).sin() * (z * 0.13).cos() + 0.6 * (x * 0.31 + z * 0.27).sin();
     let cover = |x: f32, z: f32| match (x as u32 * 7919 + z as u32 * 104_729) % 997 {
         0..4 => 253,
         4..8 => 254,
         _ => 255,
     };
-    World::new(scene, maps(scene, height, cover)).expect("the default constants make a world")
+    World::new(scene, maps(scene, hills_m, cover)).expect("the default constants make a world")
 }
 
 /// A grey PNG of 8 bits a pixel.

@@ -4,7 +4,7 @@ use super::blades::grid_is_seen;
 use super::cull::Frustum;
 use super::gpu::Gpu;
 use super::paint;
-use super::pipeline::{Draw, Maker, bind, storage, texture, uniform};
+use super::pipeline::{Draw, Maker, bind, storage, storage_rw, texture, uniform};
 use super::shaders;
 use crate::state::Land;
 use bytemuck::{Pod, Zeroable};
@@ -16,6 +16,8 @@ use wgpu::BufferUsages;
 const CHUNK: u32 = 32;
 /// Most clumps in a frame.
 const CLUMP_LIMIT: usize = 32_768;
+/// Bytes of a clump's pose, `Stand` in `billboards.wgsl`.
+const STAND_BYTES: u64 = 48;
 /// Grids up to this many away get the clumps of the nearest ring, as plants thin out there.
 const DENSE_GRIDS: u32 = 2;
 
@@ -29,6 +31,8 @@ struct Clump {
 
 pub(super) struct Billboards {
     pipeline: wgpu::RenderPipeline,
+    place: wgpu::ComputePipeline,
+    place_group: wgpu::BindGroup,
     clumps: wgpu::Buffer,
     list: wgpu::Buffer,
     group: wgpu::BindGroup,
@@ -39,22 +43,32 @@ pub(super) struct Billboards {
 impl Billboards {
     pub(super) fn new(maker: &Maker<'_>) -> Self {
         let gpu = maker.gpu;
-        let layout = maker.layout("billboards", &[storage(0), uniform(1), texture(2)]);
-        let draw =
-            Draw { label: "billboards", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None };
-        let pipeline = maker.draw(&gpu.shader("billboards", shaders::BILLBOARDS), Some(&layout), &draw);
+        let layout = maker.layout("billboards", &[storage(0), uniform(1), texture(2), storage(3)]);
+        let place_layout = maker.layout("billboard places", &[storage(0), uniform(1), storage_rw(4)]);
+        let draw = Draw { label: "billboards", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None };
+        let module = gpu.shader("billboards", shaders::BILLBOARDS);
+        let pipeline = maker.draw(&module, Some(&layout), &draw);
+        let place = maker.compute("place", &module, "place", &place_layout);
         let size = (CLUMP_LIMIT * size_of::<Clump>()) as u64;
         let clumps = gpu.empty_buffer("clumps", size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
         let list = gpu.empty_buffer("clump list", 16, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let tufts = gpu.texture("tufts", wgpu::TextureFormat::Rgba8Unorm, paint::TUFT_PX, &paint::tufts());
         let tufts = tufts.create_view(&Default::default());
-        let resources =
-            [clumps.as_entire_binding(), list.as_entire_binding(), wgpu::BindingResource::TextureView(&tufts)];
-        let group = bind(gpu, "billboards", &layout, &resources);
+        let stands = gpu.empty_buffer("stands", (CLUMP_LIMIT as u64) * STAND_BYTES, BufferUsages::STORAGE);
+        let texture = wgpu::BindingResource::TextureView(&tufts);
+        let [clump_list, count, placed] = [&clumps, &list, &stands].map(|buffer| buffer.as_entire_binding());
+        let group = bind(gpu, "billboards", &layout, &[clump_list.clone(), count.clone(), texture, placed.clone()]);
+        let place_entries =
+            [(0, clump_list), (1, count), (4, placed)].map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource });
+        let place_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("billboard places"),
+            layout: &place_layout,
+            entries: &place_entries,
+        });
         let rectangles = (0..CHUNK as u16 * 6).map(|i| i * 4);
         let indices: Vec<u16> = rectangles.flat_map(|a| [a, a + 1, a + 2, a + 2, a + 1, a + 3]).collect();
         let indices = gpu.buffer("clump", bytemuck::cast_slice(&indices), BufferUsages::INDEX);
-        Self { pipeline, clumps, list, group, indices, count: 0 }
+        Self { pipeline, place, place_group, clumps, list, group, indices, count: 0 }
     }
 
     /// Lists the clumps in view between `from_m` and `to_m`, nearest grids first.
@@ -100,6 +114,15 @@ impl Billboards {
     /// Clumps in the frame.
     pub(super) fn count(&self) -> u32 {
         self.count
+    }
+
+    /// Finds how each listed clump stands.
+    pub(super) fn bend(&self, pass: &mut wgpu::ComputePass<'_>) {
+        if self.count > 0 {
+            pass.set_pipeline(&self.place);
+            pass.set_bind_group(1, &self.place_group, &[]);
+            pass.dispatch_workgroups(self.count.div_ceil(64), 1, 1);
+        }
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {

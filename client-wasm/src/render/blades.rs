@@ -74,10 +74,8 @@ impl Blades {
         let draws = gpu.buffer("plant draws", bytemuck::cast_slice(&draw_args), storage_usage | BufferUsages::INDIRECT);
 
         let bend = gpu.shader("bend", shaders::BEND);
-        let compute_layout = maker.layout(
-            "bend",
-            &[uniform(0), storage_rw(1), storage_rw(2), storage_rw(3), storage_compute(4), storage_rw(5)],
-        );
+        let compute_layout =
+            maker.layout("bend", &[uniform(0), storage_rw(1), storage_rw(2), storage_rw(3), storage_compute(4), storage_rw(5)]);
         let buffers = [&plants, &postures, &drawn, &counters, &far_grids, &draws];
         let compute_group = bind(gpu, "bend", &compute_layout, &buffers.map(|buffer| buffer.as_entire_binding()));
 

@@ -4,20 +4,20 @@ use glam::{Mat4, Vec3, Vec4, Vec4Swizzles};
 
 /// The four sides of the view and the plane through the eye; there is no far plane.
 #[derive(Clone, Copy, Debug)]
-pub struct Frustum {
+pub(super) struct Frustum {
     planes: [Vec4; 5],
 }
 
 impl Frustum {
     /// Frustum of a projection with reversed or ordinary depth; depth itself is not used.
-    pub fn new(projection_from_world: &Mat4) -> Self {
+    pub(super) fn new(projection_from_world: &Mat4) -> Self {
         let rows = projection_from_world.transpose();
         let [x, y, w] = [rows.x_axis, rows.y_axis, rows.w_axis];
         Self { planes: [w + x, w - x, w + y, w - y, w] }
     }
 
     /// Whether any part of a box may be seen; never false for one that is.
-    pub fn sees_box(&self, low_m: Vec3, high_m: Vec3) -> bool {
+    pub(super) fn sees_box(&self, low_m: Vec3, high_m: Vec3) -> bool {
         self.planes.iter().all(|plane| {
             let farthest = Vec3::select(plane.xyz().cmpge(Vec3::ZERO), high_m, low_m);
             plane.xyz().dot(farthest) + plane.w >= 0.0

@@ -126,7 +126,8 @@ pub(super) fn tree(shape: u32, is_coarse: bool) -> Solid {
             let up = face.cross(right);
             // Deep in the crown and below it is darker.
             let depth = ((centre - middle) / half).length().min(1.0);
-            let open = (0.30 + 0.70 * depth.powf(1.5)) * (0.72 + 0.28 * ((centre.y - crown_low) / (crown_high - crown_low)).clamp(0.0, 1.0));
+            let open =
+                (0.30 + 0.70 * depth.powf(1.5)) * (0.72 + 0.28 * ((centre.y - crown_low) / (crown_high - crown_low)).clamp(0.0, 1.0));
             let hue = random.between(0.85, 1.2);
             let paint = Paint { rgb: [leaf[0] * hue, leaf[1], leaf[2] * (2.0 - hue)], gloss: open };
             let mut corner = |x: f32, y: f32| {

@@ -47,8 +47,7 @@ impl FrameGroup {
             sampled(9, TextureSampleType::Depth, TextureViewDimension::D2),
             sampler(10, wgpu::SamplerBindingType::Comparison),
         ];
-        let layout =
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries: &entries });
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries: &entries });
         let linear = |mode, compare| {
             gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 address_mode_u: mode,
@@ -64,11 +63,7 @@ impl FrameGroup {
         let noise = gpu.texture("noise", TextureFormat::Rgba8Unorm, [paint::NOISE_PX; 2], &paint::noise());
         Self {
             layout,
-            uniforms: gpu.empty_buffer(
-                "frame",
-                size_of::<Frame>() as u64,
-                wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            ),
+            uniforms: gpu.empty_buffer("frame", size_of::<Frame>() as u64, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST),
             noise: view(&noise),
             repeated: linear(wgpu::AddressMode::Repeat, None),
             clamped: linear(wgpu::AddressMode::ClampToEdge, None),
@@ -108,12 +103,8 @@ fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
 impl LandTextures {
     pub(super) fn new(gpu: &Gpu, frame: &FrameGroup, land: &Land) -> Self {
         let heights = land.heights();
-        let height_texture = gpu.texture(
-            "heights",
-            TextureFormat::R32Float,
-            heights.size_px(),
-            &[bytemuck::cast_slice(heights.heights_m()).to_vec()],
-        );
+        let height_texture =
+            gpu.texture("heights", TextureFormat::R32Float, heights.size_px(), &[bytemuck::cast_slice(heights.heights_m()).to_vec()]);
         let normal_texture = gpu.texture("normals", TextureFormat::Rgba8Snorm, heights.size_px(), &[normals(heights)]);
         let cover = land.cover();
         let cover_texture = gpu.texture("cover", TextureFormat::R8Unorm, cover.size_px(), &[grass(cover)]);

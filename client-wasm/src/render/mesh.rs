@@ -149,26 +149,14 @@ impl Solid {
 
     /// A box with bevelled edges.
     pub(super) fn block(&mut self, centre: Vec3, half: Vec3, bevel: f32, paint: Paint) {
-        let profile: Vec<Vec2> = vec![
-            Vec2::new(half.z, -half.y),
-            Vec2::new(half.z, half.y),
-            Vec2::new(-half.z, half.y),
-            Vec2::new(-half.z, -half.y),
-        ];
+        let profile: Vec<Vec2> =
+            vec![Vec2::new(half.z, -half.y), Vec2::new(half.z, half.y), Vec2::new(-half.z, half.y), Vec2::new(-half.z, -half.y)];
         self.extrude(&profile, centre, half.x, half.x, bevel, paint);
     }
 
     /// A convex profile of (back, up) corners in the Y–Z plane, anticlockwise seen from the left (−X), drawn out to
     /// ±`half_low` at its lowest and ±`half_high` at its highest corner, with bevelled rims.
-    pub(super) fn extrude(
-        &mut self,
-        profile: &[Vec2],
-        centre: Vec3,
-        half_low: f32,
-        half_high: f32,
-        bevel: f32,
-        paint: Paint,
-    ) {
+    pub(super) fn extrude(&mut self, profile: &[Vec2], centre: Vec3, half_low: f32, half_high: f32, bevel: f32, paint: Paint) {
         let n = profile.len();
         let low = profile.iter().map(|p| p.y).fold(f32::MAX, f32::min);
         let high = profile.iter().map(|p| p.y).fold(f32::MIN, f32::max);
@@ -201,8 +189,7 @@ impl Solid {
         }
         for i in 0..count {
             let j = (i + 1) % count;
-            let corners =
-                [point(rim[j], -1.0, bevel), point(rim[i], -1.0, bevel), point(rim[i], 1.0, bevel), point(rim[j], 1.0, bevel)];
+            let corners = [point(rim[j], -1.0, bevel), point(rim[i], -1.0, bevel), point(rim[i], 1.0, bevel), point(rim[j], 1.0, bevel)];
             self.polygon(&corners, paint);
         }
     }

@@ -174,14 +174,7 @@ impl Renderer {
 
     /// Draws a frame to `target`: `time_secs` runs the clouds, gusts and flutter, `dt_secs` is the time since the frame before.
     /// Without a scene the target stays as it is.
-    pub fn draw(
-        &mut self,
-        mirror: &mut Mirror,
-        camera: &Camera,
-        time_secs: f64,
-        dt_secs: f32,
-        target: &wgpu::TextureView,
-    ) -> FrameStats {
+    pub fn draw(&mut self, mirror: &mut Mirror, camera: &Camera, time_secs: f64, dt_secs: f32, target: &wgpu::TextureView) -> FrameStats {
         if self.scene.as_ref().is_none_or(|scene| scene.number != mirror.scene_number()) {
             self.load_scene(mirror);
         }
@@ -213,6 +206,7 @@ impl Renderer {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes: None });
             pass.set_bind_group(0, &scene.textures.group, &[]);
             scene.blades.bend(&mut pass);
+            self.billboards.bend(&mut pass);
         }
         {
             let mut pass = main_pass(&mut encoder, &self.targets);

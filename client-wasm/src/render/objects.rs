@@ -88,21 +88,13 @@ impl Objects {
             attributes: &VERTEX_ATTRIBUTES,
         };
         let buffers = [Some(buffer)];
-        let draw = Draw {
-            label: "objects",
-            vertex: "vs",
-            fragment: Some("fs"),
-            buffers: &buffers,
-            depth_write: true,
-            cull: None,
-        };
+        let draw = Draw { label: "objects", vertex: "vs", fragment: Some("fs"), buffers: &buffers, depth_write: true, cull: None };
         let pipeline = maker.draw(&module, Some(&layout), &draw);
         let shadow = Draw { label: "shadows", vertex: "vs_shadow", fragment: Some("fs_shadow"), ..draw };
         let shadow_pipeline = maker.draw(&module, Some(&layout), &shadow);
         let size = (INSTANCE_LIMIT * size_of::<Instance>()) as u64;
         let instances = gpu.empty_buffer("instances", size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
-        let leaves =
-            gpu.texture("leaves", wgpu::TextureFormat::Rgba8Unorm, [paint::LEAF_PX; 2], &paint::leaves());
+        let leaves = gpu.texture("leaves", wgpu::TextureFormat::Rgba8Unorm, [paint::LEAF_PX; 2], &paint::leaves());
         let leaves = leaves.create_view(&Default::default());
         let resources = [instances.as_entire_binding(), wgpu::BindingResource::TextureView(&leaves)];
         Self {
@@ -163,8 +155,7 @@ impl Objects {
                 true => tree_mesh(standing.shape, is_coarse),
                 false => stone_mesh(standing.shape),
             };
-            let instance =
-                Instance { world_from_model: standing.world_from_model.to_cols_array(), tint: standing.tint };
+            let instance = Instance { world_from_model: standing.world_from_model.to_cols_array(), tint: standing.tint };
             if frustum.sees_box(standing.position_m - half, standing.position_m + half) {
                 by_mesh[mesh(is_coarse)].push(instance);
             }

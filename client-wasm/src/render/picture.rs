@@ -58,9 +58,11 @@ impl Picture {
         self.gpu.queue.submit([encoder.finish()]);
         self.buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
         self.wait();
-        let pixels = self.buffer.slice(..).get_mapped_range().map(|bytes| {
-            bytes.chunks_exact(row as usize).flat_map(|line| &line[..width as usize * 4]).copied().collect()
-        });
+        let pixels = self
+            .buffer
+            .slice(..)
+            .get_mapped_range()
+            .map(|bytes| bytes.chunks_exact(row as usize).flat_map(|line| &line[..width as usize * 4]).copied().collect());
         self.buffer.unmap();
         pixels.unwrap_or_default()
     }

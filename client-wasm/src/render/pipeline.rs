@@ -29,9 +29,7 @@ pub(super) const ALL_STAGES: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRA
 
 impl Maker<'_> {
     pub(super) fn layout(&self, label: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
-        self.gpu
-            .device
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+        self.gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
     }
 
     fn pipeline_layout(&self, label: &str, own: Option<&wgpu::BindGroupLayout>) -> wgpu::PipelineLayout {
@@ -59,19 +57,10 @@ impl Maker<'_> {
         })
     }
 
-    pub(super) fn draw(
-        &self,
-        module: &wgpu::ShaderModule,
-        own: Option<&wgpu::BindGroupLayout>,
-        draw: &Draw<'_>,
-    ) -> wgpu::RenderPipeline {
+    pub(super) fn draw(&self, module: &wgpu::ShaderModule, own: Option<&wgpu::BindGroupLayout>, draw: &Draw<'_>) -> wgpu::RenderPipeline {
         let to_shadow = draw.vertex == "vs_shadow";
         let compare = if to_shadow { wgpu::CompareFunction::Less } else { wgpu::CompareFunction::GreaterEqual };
-        let targets = [Some(wgpu::ColorTargetState {
-            format: COLOR,
-            blend: None,
-            write_mask: wgpu::ColorWrites::ALL,
-        })];
+        let targets = [Some(wgpu::ColorTargetState { format: COLOR, blend: None, write_mask: wgpu::ColorWrites::ALL })];
         self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(draw.label),
             layout: Some(&self.pipeline_layout(draw.label, own)),
@@ -137,12 +126,7 @@ fn buffer(binding: u32, visibility: wgpu::ShaderStages, ty: wgpu::BufferBindingT
 }
 
 /// A bind group of `resources`, numbered from 0.
-pub(super) fn bind(
-    gpu: &Gpu,
-    label: &str,
-    layout: &wgpu::BindGroupLayout,
-    resources: &[wgpu::BindingResource<'_>],
-) -> wgpu::BindGroup {
+pub(super) fn bind(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
     let entries: Vec<_> = resources
         .iter()
         .enumerate()

@@ -53,9 +53,8 @@ impl Ground {
     pub(super) fn tiles(&self, eye_m: Vec3, frustum: &Frustum) -> Vec<Tile> {
         let mut tiles = Vec::new();
         self.collect(self.corner_m, self.side_m, eye_m, frustum, &mut tiles);
-        let distance = |tile: &Tile| {
-            (Vec2::from(tile.corner_m) + 0.5 * tile.side_m - Vec2::new(eye_m.x, eye_m.z)).length() - 0.7 * tile.side_m
-        };
+        let distance =
+            |tile: &Tile| (Vec2::from(tile.corner_m) + 0.5 * tile.side_m - Vec2::new(eye_m.x, eye_m.z)).length() - 0.7 * tile.side_m;
         tiles.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         tiles.truncate(TILE_LIMIT);
         tiles
@@ -92,19 +91,12 @@ impl Terrain {
     pub(super) fn new(maker: &Maker<'_>) -> Self {
         let module = maker.gpu.shader("terrain", shaders::TERRAIN);
         let layout = maker.layout("terrain", &[storage(0)]);
-        let draw = Draw {
-            label: "terrain",
-            vertex: "vs",
-            fragment: Some("fs"),
-            buffers: &[],
-            depth_write: true,
-            cull: Some(wgpu::Face::Back),
-        };
+        let draw =
+            Draw { label: "terrain", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: Some(wgpu::Face::Back) };
         let pipeline = maker.draw(&module, Some(&layout), &draw);
         let indices = tile_indices();
         let size = (TILE_LIMIT * size_of::<Tile>()) as u64;
-        let tiles =
-            maker.gpu.empty_buffer("tiles", size, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST);
+        let tiles = maker.gpu.empty_buffer("tiles", size, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST);
         let group = bind(maker.gpu, "terrain", &layout, &[tiles.as_entire_binding()]);
         let index_buffer = maker.gpu.buffer("tile", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
         Self { pipeline, indices: index_buffer, index_count: indices.len() as u32, tiles, tile_count: 0, group }

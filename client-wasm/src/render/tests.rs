@@ -5,8 +5,7 @@ use wgpu::naga;
 fn module(source: &str) -> naga::Module {
     let text = shaders::whole(source);
     let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
-    let mut validator =
-        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+    let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
     if let Err(error) = validator.validate(&module) {
         panic!("{}", error.emit_to_string(&text));
     }
@@ -32,8 +31,7 @@ fn every_shader_is_valid_wgsl_without_extensions() {
 fn assert_twins(module: &naga::Module, name: &str, layout: &[(&str, usize)], size: usize) {
     let (_, twin) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("the twin is there");
     let naga::TypeInner::Struct { members, span } = &twin.inner else { panic!("{name} is no struct") };
-    let found: Vec<_> =
-        members.iter().map(|member| (member.name.as_deref().unwrap_or_default(), member.offset as usize)).collect();
+    let found: Vec<_> = members.iter().map(|member| (member.name.as_deref().unwrap_or_default(), member.offset as usize)).collect();
     assert_eq!(found, layout, "{name}");
     assert_eq!(*span as usize, size, "{name}");
 }

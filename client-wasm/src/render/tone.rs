@@ -5,7 +5,7 @@ use super::pipeline::{Maker, bind, texture, uniform};
 use super::shaders;
 
 /// Exposure before the tone curve.
-const EXPOSURE: f32 = 1.0;
+const EXPOSURE: f32 = 1.15;
 
 pub(super) struct Tone {
     pipeline: wgpu::RenderPipeline,
@@ -30,12 +30,7 @@ impl Tone {
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("tone"),
             layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vs"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
+            vertex: wgpu::VertexState { module: &module, entry_point: Some("vs"), compilation_options: Default::default(), buffers: &[] },
             primitive: Default::default(),
             depth_stencil: None,
             multisample: Default::default(),
@@ -63,11 +58,6 @@ impl Tone {
     }
 }
 
-fn group(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    picture: &wgpu::TextureView,
-    settings: &wgpu::Buffer,
-) -> wgpu::BindGroup {
+fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, picture: &wgpu::TextureView, settings: &wgpu::Buffer) -> wgpu::BindGroup {
     bind(gpu, "tone", layout, &[wgpu::BindingResource::TextureView(picture), settings.as_entire_binding()])
 }

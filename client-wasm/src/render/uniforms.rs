@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 /// Most interaction spheres in a frame; those nearest to the camera are kept.
-pub const SPHERE_LIMIT: usize = 16;
+pub(super) const SPHERE_LIMIT: usize = 16;
 
 /// Declares a uniform block with the names and offsets of its members, for the comparison with its WGSL twin.
 macro_rules! uniform_block {
@@ -11,11 +11,12 @@ macro_rules! uniform_block {
         $(#[$doc])*
         #[repr(C)]
         #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-        pub struct $name { $($(#[$field_doc])* pub $field: $type,)* }
+        pub(super) struct $name { $($(#[$field_doc])* pub(super) $field: $type,)* }
 
         impl $name {
             /// Names and byte offsets of the members.
-            pub const LAYOUT: &'static [(&'static str, usize)] =
+            #[cfg(test)]
+            pub(super) const LAYOUT: &'static [(&'static str, usize)] =
                 &[$((stringify!($field), std::mem::offset_of!($name, $field)),)*];
         }
     };

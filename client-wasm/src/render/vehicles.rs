@@ -99,11 +99,7 @@ pub(super) fn parts(pose: &ObjectPose, rolled_m: f32, time_secs: f32) -> Vec<(Pa
             vec![
                 place(Part::HelicopterBody, Vec3::ZERO, Quat::IDENTITY),
                 place(Part::Rotor, Vec3::new(0.0, 1.28, -0.75), Quat::from_rotation_y(phase)),
-                place(
-                    Part::TailRotor,
-                    Vec3::new(0.20, 0.62, 3.95),
-                    Quat::from_rotation_z(-FRAC_PI_2) * Quat::from_rotation_y(phase * 1.7),
-                ),
+                place(Part::TailRotor, Vec3::new(0.20, 0.62, 3.95), Quat::from_rotation_z(-FRAC_PI_2) * Quat::from_rotation_y(phase * 1.7)),
             ]
         }
     }
@@ -127,14 +123,7 @@ fn car_body() -> Solid {
     let mut car = Solid::default();
     let hull = [v(2.12, -0.34), v(2.16, 0.10), v(2.05, 0.22), v(-2.02, 0.17), v(-2.18, 0.02), v(-2.16, -0.34)];
     car.extrude(&hull, Vec3::ZERO, 0.86, 0.90, 0.05, body);
-    car.extrude(
-        &[v(-0.75, 0.17), v(-0.70, 0.25), v(-2.00, 0.22), v(-2.08, 0.14)],
-        Vec3::ZERO,
-        0.78,
-        0.74,
-        0.03,
-        body,
-    );
+    car.extrude(&[v(-0.75, 0.17), v(-0.70, 0.25), v(-2.00, 0.22), v(-2.08, 0.14)], Vec3::ZERO, 0.78, 0.74, 0.03, body);
     let cabin = [v(1.98, 0.20), v(1.78, 0.66), v(-0.28, 0.66), v(-0.88, 0.20)];
     car.extrude(&cabin, Vec3::ZERO, 0.84, 0.68, 0.03, GLASS);
     let top = [v(1.84, 0.62), v(1.78, 0.70), v(-0.28, 0.70), v(-0.38, 0.62)];
@@ -170,9 +159,7 @@ fn arch(car: &mut Solid, centre: Vec3, side: f32) {
     let count = 9;
     for i in 0..count {
         let angle = |i: usize| PI * i as f32 / count as f32;
-        let at = |angle: f32, radius: f32, x: f32| {
-            centre + Vec3::new(x, radius * angle.sin(), radius * angle.cos()) - Vec3::X * (side * 0.0)
-        };
+        let at = |angle: f32, radius: f32, x: f32| centre + Vec3::new(x, radius * angle.sin(), radius * angle.cos());
         let (a, b) = (angle(i), angle(i + 1));
         let mut rim = [at(a, 0.43, side * 0.065), at(b, 0.43, side * 0.065), at(b, 0.50, side * 0.045), at(a, 0.50, side * 0.045)];
         let mut skirt = [at(a, 0.50, side * 0.045), at(b, 0.50, side * 0.045), at(b, 0.50, side * -0.05), at(a, 0.50, side * -0.05)];
@@ -273,11 +260,7 @@ fn helicopter_body() -> Solid {
     craft.ellipsoid(Vec3::new(0.0, -0.52, -1.15), Vec3::new(0.80, 0.46, 1.55), body);
     craft.ellipsoid(Vec3::new(0.0, 0.66, -0.45), Vec3::new(0.48, 0.36, 0.95), dark);
     for x in [-0.30, 0.30] {
-        let bar = [
-            (Vec3::new(x * 0.9, -0.30, -2.55), 0.035),
-            (Vec3::new(x, 0.42, -2.32), 0.035),
-            (Vec3::new(x * 1.2, 0.80, -1.55), 0.035),
-        ];
+        let bar = [(Vec3::new(x * 0.9, -0.30, -2.55), 0.035), (Vec3::new(x, 0.42, -2.32), 0.035), (Vec3::new(x * 1.2, 0.80, -1.55), 0.035)];
         craft.tube(&bar, 6, body);
     }
     let boom = [

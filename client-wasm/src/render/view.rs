@@ -56,11 +56,7 @@ impl<'a> View<'a> {
         let billboards_to = self.quality.billboard_reach_m();
         let pixel_rad = self.camera.fov_rad / self.size_px[1] as f32;
         let spheres = spheres(poses, eye);
-        let rays = Mat4::from_mat3(glam::Mat3::from_mat4(glam::camera::rh::view::look_to_mat4(
-            Vec3::ZERO,
-            self.camera.forward(),
-            Vec3::Y,
-        )));
+        let rays = Mat4::from_mat3(glam::Mat3::from_mat4(glam::camera::rh::view::look_to_mat4(Vec3::ZERO, self.camera.forward(), Vec3::Y)));
         let aspect = self.size_px[0] as f32 / self.size_px[1] as f32;
         let world_from_projection = (self.camera.projection_from_view(aspect) * rays).inverse();
         Frame {
@@ -77,12 +73,7 @@ impl<'a> View<'a> {
             blade: [plants.height_m, plants.height_variation, plants.width_m, scene.grass.wind_bend_rad],
             root_rgb: [root[0], root[1], root[2], plants.flowers_per_m2],
             tip_rgb: [tip[0], tip[1], tip[2], 0.0],
-            screen: [
-                self.size_px[0] as f32,
-                self.size_px[1] as f32,
-                pixel_rad,
-                blades::simulated_secs(self.dt_secs),
-            ],
+            screen: [self.size_px[0] as f32, self.size_px[1] as f32, pixel_rad, blades::simulated_secs(self.dt_secs)],
             reach: [blade_reach_m * 0.72, blade_reach_m, billboards_to * 0.6, billboards_to],
             clouds: [drift * dir_x * mean, drift * dir_z * mean, 0.5, spheres.len() as f32],
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_default()),

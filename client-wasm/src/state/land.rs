@@ -21,12 +21,7 @@ impl Land {
     ///
     /// # Errors
     /// [`MirrorError`] when a map is unreadable, or the scene leaves what a client can hold.
-    pub fn new(
-        scene: Scene,
-        height_png: &[u8],
-        covering_png: &[u8],
-        models: Vec<(VehicleKind, Mesh)>,
-    ) -> Result<Self, MirrorError> {
+    pub fn new(scene: Scene, height_png: &[u8], covering_png: &[u8], models: Vec<(VehicleKind, Mesh)>) -> Result<Self, MirrorError> {
         check(&scene)?;
         let heights = HeightMap::from_png(height_png, &scene.terrain);
         let heights = heights.map_err(|error| MirrorError::Map { map: "height map", error })?;

@@ -17,13 +17,7 @@ fn scene() -> Scene {
         seed: 1,
         tick_hz: 60.0,
         patches: Patches { count: [3, 2], cells: 8, ..Patches::default() },
-        terrain: TerrainMaps {
-            height_map: String::new(),
-            covering_map: String::new(),
-            pixel_m: [1.0, 1.0],
-            level_m: 0.1,
-            base_m: 0.0,
-        },
+        terrain: TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [1.0, 1.0], level_m: 0.1, base_m: 0.0 },
         wind: Wind { cells: [4, 2, 4], ..Wind::default() },
         grass: Default::default(),
         plants: Default::default(),
@@ -98,8 +92,7 @@ fn a_damaged_frame_leaves_the_mirror_as_it_was() {
 fn wind_deltas_follow_their_key() {
     let mut mirror = loaded();
     let (first, second) = (vec![3; 96], vec![-4; 96]);
-    let delta =
-        |seq| ServerMessage::Wind { tick: 0, seq, key: false, payload: codec::encode(4, &second, Some(first.as_slice())) };
+    let delta = |seq| ServerMessage::Wind { tick: 0, seq, key: false, payload: codec::encode(4, &second, Some(first.as_slice())) };
     mirror.apply(delta(5)).unwrap();
     assert!(mirror.wind().is_none());
     mirror.apply(ServerMessage::Wind { tick: 0, seq: 4, key: true, payload: codec::encode(4, &first, None) }).unwrap();
@@ -134,14 +127,8 @@ fn an_object_that_is_missing_has_left() {
 #[test]
 fn unsound_poses_are_refused() {
     let mut mirror = loaded();
-    for bad in [
-        ObjectPose { position_m: [f32::NAN, 0.0, 0.0], ..pose(1, 0.0) },
-        ObjectPose { rotation: [0.0; 4], ..pose(1, 0.0) },
-    ] {
-        assert!(matches!(
-            mirror.apply(ServerMessage::Poses { tick: 1, objects: vec![bad] }),
-            Err(MirrorError::Range { what: "pose", .. })
-        ));
+    for bad in [ObjectPose { position_m: [f32::NAN, 0.0, 0.0], ..pose(1, 0.0) }, ObjectPose { rotation: [0.0; 4], ..pose(1, 0.0) }] {
+        assert!(matches!(mirror.apply(ServerMessage::Poses { tick: 1, objects: vec![bad] }), Err(MirrorError::Range { what: "pose", .. })));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::builtin::{BUILT_IN, BuiltIn};
 use super::error::{FaultyScene, SceneError};
-use super::models;
+use crate::objects::model;
 use shared::scene::{Scene, SceneFault, VehicleKind, parse};
 use shared::terrain::{CoverMap, HeightMap, MapError};
 use shared::wire::Mesh;
@@ -116,7 +116,7 @@ fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, Sce
         if field.is_empty() {
             continue;
         }
-        match models::load(&source.path(field), kind) {
+        match model::read(&source.path(field), kind).map_err(|error| error.reason.to_string()) {
             Ok(mesh) => loaded_models.push((kind, mesh)),
             Err(reason) => note(&format!("objects.{}_model", kind.name()), format!("names `{field}`, which {reason}")),
         }

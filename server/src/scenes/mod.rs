@@ -4,7 +4,6 @@ mod builtin;
 mod error;
 mod load;
 pub mod maps;
-mod models;
 mod report;
 
 pub use error::{FaultyScene, SceneError};

@@ -74,7 +74,7 @@ pub enum Profile {
 pub struct Gusts {
     /// Sources alive at any time. Default 24; 0 for still air, at most 4096.
     pub number: usize,
-    /// Speed (m/s) a source of greatest strength gives the air at its centre over its life, if none of it were carried away. Default 12; 0 or more.
+    /// Speed (m/s) a source of greatest strength gives the air at its centre over its life, if none of it were carried away. Default 14; 0 or more.
     pub strength_m_per_s: f32,
     /// Life of a source (s). Default 6; above 0.
     pub life_secs: f32,
@@ -115,7 +115,7 @@ impl Default for Config {
 
 impl Default for Gusts {
     fn default() -> Self {
-        Self { number: 24, strength_m_per_s: 12.0, life_secs: 6.0, attack: 0.15, radius_m: [14.0, 5.0, 14.0] }
+        Self { number: 24, strength_m_per_s: 14.0, life_secs: 6.0, attack: 0.15, radius_m: [14.0, 5.0, 14.0] }
     }
 }
 

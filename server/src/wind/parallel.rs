@@ -9,7 +9,7 @@ use rayon::prelude::*;
 const WORTH_SHARING: usize = 32_768;
 
 /// Calls `f(number, chunk)` for each `len` values of `data`; the last chunk may be shorter.
-pub fn for_each_chunk<T: Send>(data: &mut [T], len: usize, f: impl Fn(usize, &mut [T]) + Sync + Send) {
+pub(super) fn for_each_chunk<T: Send>(data: &mut [T], len: usize, f: impl Fn(usize, &mut [T]) + Sync + Send) {
     if data.len() < WORTH_SHARING {
         data.chunks_mut(len).enumerate().for_each(|(n, chunk)| f(n, chunk));
     } else {
@@ -18,7 +18,7 @@ pub fn for_each_chunk<T: Send>(data: &mut [T], len: usize, f: impl Fn(usize, &mu
 }
 
 /// Calls `f(number, chunk, other)` for each `len` values of `data` beside each `other_len` of `other`, which has as many chunks.
-pub fn for_each_chunk_pair<T: Send, U: Send>(
+pub(super) fn for_each_chunk_pair<T: Send, U: Send>(
     data: &mut [T],
     len: usize,
     other: &mut [U],

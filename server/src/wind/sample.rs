@@ -61,9 +61,19 @@ impl<R: Real> Blend<R> for [R; 4] {
 /// The eight values at the corners of the stencils, near before far, x fastest.
 #[inline(always)]
 pub fn corners<R: Real, V: Copy>(data: &[V], [nx, ny, _]: [usize; 3], [x, y, z]: &[Stencil<R>; 3]) -> [V; 8] {
-    let row = |j: usize, k: usize| &data[nx * (j + ny * k)..][..nx];
-    let [a, b, c, d] = [row(y.near, z.near), row(y.far, z.near), row(y.near, z.far), row(y.far, z.far)];
-    [a[x.near], a[x.far], b[x.near], b[x.far], c[x.near], c[x.far], d[x.near], d[x.far]]
+    let plane = nx * ny;
+    let [(south, north), (down, up)] = [(plane * z.near, plane * z.far), (nx * y.near, nx * y.far)];
+    let [a, b, c, d] = [south + down, south + up, north + down, north + up];
+    [
+        data[a + x.near],
+        data[a + x.far],
+        data[b + x.near],
+        data[b + x.far],
+        data[c + x.near],
+        data[c + x.far],
+        data[d + x.near],
+        data[d + x.far],
+    ]
 }
 
 /// The trilinear mean of eight corner values.

@@ -84,7 +84,9 @@ fn the_wind_stays_lively() {
         let deviation = (squares / n - mean * mean).sqrt();
         println!("minute {minute}: speed at 1 m {mean:.2} m/s ± {deviation:.2} ({:.0} %)", 100.0 * deviation / mean);
         assert!((2.0..5.0).contains(&mean), "minute {minute}: mean speed {mean}");
-        assert!((0.25..0.45).contains(&(deviation / mean)), "minute {minute}: deviation {deviation} of mean {mean}");
+        // Gusts need the first minute to build up.
+        let least = if minute == 0 { 0.2 } else { 0.28 };
+        assert!((least..0.48).contains(&(deviation / mean)), "minute {minute}: deviation {deviation} of mean {mean}");
     }
 }
 

@@ -65,6 +65,19 @@ impl Patch {
         }
     }
 
+    /// Sets the newest state of cell `(i, j)` alone; with [`remember`](Self::remember) this gives a patch any motion.
+    pub fn set(&mut self, i: usize, j: usize, bend: Bend) {
+        let at = self.at(i, j);
+        for (channel, value) in [bend.theta, bend.omega[0], bend.omega[1]].into_iter().enumerate() {
+            self.now[channel][at] = value;
+        }
+    }
+
+    /// Takes the newest state as that of one sub-step earlier, too.
+    pub fn remember(&mut self) {
+        self.before.clone_from(&self.now);
+    }
+
     /// Adds to the state of cell `(i, j)` at both times, as [`press`](Self::press) does.
     pub fn nudge(&mut self, i: usize, j: usize, by: Bend) {
         let at = self.at(i, j);

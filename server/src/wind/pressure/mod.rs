@@ -46,10 +46,11 @@ pub fn divergence<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, divergence: &
                     + (up[i] - down[i]).wide() * per_m[1]
                     + (north[i] - south[i]).wide() * per_m[2]
             };
-            for i in 0..nx - 1 {
-                out[i] = net(i, i + 1);
+            let (last, inner) = out.split_last_mut().expect("a row has a cell");
+            for (i, out) in inner.iter_mut().enumerate() {
+                *out = net(i, i + 1);
             }
-            out[nx - 1] = net(nx - 1, grid.far_face(0, nx - 1));
+            *last = net(nx - 1, grid.far_face(0, nx - 1));
         }
     });
 }

@@ -1,0 +1,111 @@
+//! The device: a headless one natively, the canvas's in a browser.
+
+use thiserror::Error;
+use wgpu::util::DeviceExt;
+
+/// Why there is no device.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum GpuError {
+    /// No adapter can draw.
+    #[error("no graphics adapter: {0}")]
+    NoAdapter(String),
+    /// The adapter gives no device.
+    #[error("the graphics adapter gives no device: {0}")]
+    NoDevice(String),
+}
+
+/// A device and its queue.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    /// Makes resources.
+    pub device: wgpu::Device,
+    /// Takes commands.
+    pub queue: wgpu::Queue,
+    /// Name of the adapter, for people.
+    pub adapter_name: String,
+}
+
+impl Gpu {
+    /// A device without a window, from any Vulkan adapter; software adapters count.
+    ///
+    /// # Errors
+    /// [`GpuError`] when there is none.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn headless() -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        pollster::block_on(Self::request(&instance, None))
+    }
+
+    /// A device that can draw to `surface`, or to textures only.
+    ///
+    /// # Errors
+    /// [`GpuError`] when there is none.
+    pub async fn request(instance: &wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Self, GpuError> {
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            compatible_surface: surface,
+            ..Default::default()
+        };
+        let adapter = instance.request_adapter(&options).await.map_err(|error| GpuError::NoAdapter(error.to_string()))?;
+        Self::from_adapter(&adapter).await
+    }
+
+    /// A device of `adapter` with the limits that every WebGPU implementation guarantees.
+    ///
+    /// # Errors
+    /// [`GpuError::NoDevice`] when the adapter has none left.
+    pub async fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+        let descriptor = wgpu::DeviceDescriptor { label: Some("prairie"), ..Default::default() };
+        let (device, queue) = adapter.request_device(&descriptor).await.map_err(|error| GpuError::NoDevice(error.to_string()))?;
+        Ok(Self { device, queue, adapter_name: adapter.get_info().name })
+    }
+
+    pub(super) fn buffer(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+    }
+
+    pub(super) fn empty_buffer(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+    }
+
+    /// A 2-D texture with its mip levels, finest first; each level is rows of texels of `format`.
+    pub(super) fn texture(&self, label: &str, format: wgpu::TextureFormat, size_px: [u32; 2], levels: &[Vec<u8>]) -> wgpu::Texture {
+        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: size_px[0], height: size_px[1], depth_or_array_layers: 1 },
+            mip_level_count: levels.len() as u32,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        for (level, texels) in levels.iter().enumerate() {
+            let size = size_px.map(|side| (side >> level).max(1));
+            self.write_level(&texture, level as u32, [0, 0], size, texels);
+        }
+        texture
+    }
+
+    /// Writes a rectangle of one mip level.
+    pub(super) fn write_level(&self, texture: &wgpu::Texture, level: u32, origin: [u32; 2], size_px: [u32; 2], texels: &[u8]) {
+        let row_bytes = texels.len() as u32 / size_px[1];
+        self.queue.write_texture(
+            wgpu::TexelCopyTextureInfo {
+                texture,
+                mip_level: level,
+                origin: wgpu::Origin3d { x: origin[0], y: origin[1], z: 0 },
+                aspect: wgpu::TextureAspect::All,
+            },
+            texels,
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: Some(size_px[1]) },
+            wgpu::Extent3d { width: size_px[0], height: size_px[1], depth_or_array_layers: 1 },
+        );
+    }
+
+    /// A shader module of the shared pieces followed by one pass's own text.
+    pub(super) fn shader(&self, label: &str, source: &str) -> wgpu::ShaderModule {
+        let text = super::shaders::whole(source);
+        self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source: wgpu::ShaderSource::Wgsl(text.into()) })
+    }
+}

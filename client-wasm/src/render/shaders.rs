@@ -1,0 +1,26 @@
+//! The WGSL texts, one a pass, each after the shared pieces of `common.wgsl`.
+
+/// Shared bindings, the frame's uniform block, and what several passes compute.
+const COMMON: &str = include_str!("../../shaders/common.wgsl");
+
+/// Compute passes that bend single plants.
+pub(super) const BEND: &str = include_str!("../../shaders/bend.wgsl");
+/// Blades as tapered strips.
+pub(super) const BLADES: &str = include_str!("../../shaders/blades.wgsl");
+/// Flower heads.
+pub(super) const FLOWERS: &str = include_str!("../../shaders/flowers.wgsl");
+/// Clumps of far plants.
+pub(super) const BILLBOARDS: &str = include_str!("../../shaders/billboards.wgsl");
+/// Ground.
+pub(super) const TERRAIN: &str = include_str!("../../shaders/terrain.wgsl");
+/// Objects, trees and stones.
+pub(super) const OBJECTS: &str = include_str!("../../shaders/objects.wgsl");
+/// Sky.
+pub(super) const SKY: &str = include_str!("../../shaders/sky.wgsl");
+/// Tone mapping.
+pub(super) const TONE: &str = include_str!("../../shaders/tone.wgsl");
+
+/// A pass's whole module.
+pub(super) fn whole(source: &str) -> String {
+    format!("{COMMON}\n{source}")
+}

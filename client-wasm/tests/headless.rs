@@ -1,0 +1,98 @@
+//! A frame is drawn without a window on whatever Vulkan adapter there is, and its picture shows a prairie: sky above, grass
+//! below, and a track where the field is bent.
+
+use client_wasm::camera::Camera;
+use client_wasm::render::{Gpu, Picture, Quality};
+use client_wasm::state::Mirror;
+use glam::Vec3;
+use shared::scene::{Patches, Scene, TerrainMaps};
+use shared::wire::quantise::{omega_code, theta_code};
+use shared::wire::{ServerMessage, codec};
+
+const SIZE_PX: [u32; 2] = [192, 108];
+
+fn grey_png(side: u32, level: u8) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, side, side);
+    encoder.set_color(png::ColorType::Grayscale);
+    let mut writer = encoder.write_header().expect("a header");
+    writer.write_image_data(&vec![level; (side * side) as usize]).expect("the pixels");
+    writer.finish().expect("an end");
+    bytes
+}
+
+/// A flat meadow of 64 m, covered with `cover`.
+fn meadow(cover: u8) -> Mirror {
+    let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 0.0, base_m: 0.0 };
+    let scene = Scene {
+        summary: String::new(),
+        seed: 1,
+        tick_hz: 60.0,
+        patches: Patches { count: [4, 4], ..Patches::default() },
+        terrain: maps,
+        wind: Default::default(),
+        grass: Default::default(),
+        plants: Default::default(),
+        objects: Default::default(),
+        camera: Default::default(),
+        light: Default::default(),
+    };
+    let mut mirror = Mirror::default();
+    let scene =
+        ServerMessage::Scene { scene: Box::new(scene), height_png: grey_png(17, 0), covering_png: grey_png(16, cover), models: Vec::new() };
+    mirror.apply(scene).expect("a sound scene");
+    mirror
+}
+
+fn camera() -> Camera {
+    Camera { eye_m: Vec3::new(32.0, 2.2, 40.0), pitch_rad: -0.15, ..Camera::default() }
+}
+
+fn draw(gpu: &Gpu, mirror: &mut Mirror) -> Vec<u8> {
+    let mut picture = Picture::new(gpu, SIZE_PX, Quality::Low);
+    for frame in 0..3 {
+        let stats = picture.draw(mirror, &camera(), f64::from(frame) / 30.0, 1.0 / 30.0);
+        assert_eq!(stats.blades, 9801);
+        assert!(stats.clumps > 0 && stats.ground_vertices > 0, "{stats:?}");
+    }
+    picture.rgba()
+}
+
+/// Mean RGB of the rows `from..to`.
+fn mean(rgba: &[u8], from: u32, to: u32) -> [f32; 3] {
+    let row = SIZE_PX[0] as usize * 4;
+    let rows = &rgba[from as usize * row..to as usize * row];
+    let count = (rows.len() / 4) as f32;
+    std::array::from_fn(|channel| rows.chunks_exact(4).map(|pixel| f32::from(pixel[channel])).sum::<f32>() / count)
+}
+
+fn difference(a: &[u8], b: &[u8]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| f32::from(a.abs_diff(*b))).sum::<f32>() / a.len() as f32
+}
+
+#[test]
+fn a_frame_shows_sky_grass_and_track() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter; mesa-vulkan-drivers brings one in software");
+    let grass = draw(&gpu, &mut meadow(255));
+    let [sky_red, _, sky_blue] = mean(&grass, 0, 15);
+    assert!(sky_blue > sky_red + 5.0 && sky_blue > 120.0, "sky {sky_red} {sky_blue}");
+    let [red, green, blue] = mean(&grass, 60, 108);
+    assert!(green > red && green > blue + 20.0 && green > 30.0, "grass {red} {green} {blue}");
+
+    let bare = draw(&gpu, &mut meadow(0));
+    let [red, green, _] = mean(&bare, 60, 108);
+    assert!(red > green, "bare soil {red} {green}");
+
+    let again = draw(&gpu, &mut meadow(255));
+    assert!(difference(&grass, &again) < 0.5, "the same frames give the same picture");
+
+    let mut trodden = meadow(255);
+    let plane = |code: i8| std::iter::repeat_n(code, 64 * 64);
+    let codes: Vec<i8> = plane(theta_code(1.4)).chain(plane(omega_code(30.0))).chain(plane(omega_code(0.0))).collect();
+    for patch in 0..16 {
+        let payload = codec::encode(64, &codes, None);
+        trodden.apply(ServerMessage::Patch { patch, seq: 1, key: true, payload }).expect("a sound patch");
+    }
+    let trodden = draw(&gpu, &mut trodden);
+    assert!(difference(&grass, &trodden) > 6.0, "trodden grass looks different: {}", difference(&grass, &trodden));
+}

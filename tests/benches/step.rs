@@ -1,0 +1,56 @@
+//! One step of the world, and its snapshot, with every patch awake: 16 × 16 patches of 64 × 64 cells in view, on one thread.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use server::world::{Command, View, World};
+use shared::scene::VehicleKind;
+use shared::wire::Drive;
+use tests::worlds;
+
+/// A world in full swing: `objects` vehicles that have driven about for 2 s.
+fn busy(objects: u32) -> World {
+    let mut world = worlds::hills(&worlds::scene(16));
+    let view = View { client: 0, eye_m: [128.0, 2.0, 128.0], radius_m: 400.0 };
+    let mut commands = vec![Command::Views(vec![view])];
+    commands.extend((0..objects).map(|client| Command::Spawn { client, kind: VehicleKind::ALL[client as usize % 8 / 5] }));
+    world.step(&commands);
+    for tick in 0..120 {
+        world.step(&drives(objects, tick));
+    }
+    world
+}
+
+fn drives(objects: u32, tick: u32) -> Vec<Command> {
+    let steer = |client: u32| ((tick / 60 + client * 37) % 100) as f32 / 50.0 - 1.0;
+    let drive = |client| Drive { throttle: 1.0, steer: steer(client), lift: 0.1, brake: 0.0 };
+    (0..objects).filter(|client| (tick + client).is_multiple_of(60)).map(|client| Command::Drive { client, drive: drive(client) }).collect()
+}
+
+fn step(criterion: &mut Criterion) {
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
+    one_thread.install(|| {
+        for objects in [1, 64] {
+            let mut world = busy(objects);
+            let mut tick = 120;
+            criterion.bench_function(&format!("step with {objects} objects, 1 M cells awake"), |bench| {
+                bench.iter(|| {
+                    world.step(&drives(objects, tick));
+                    tick += 1;
+                });
+            });
+            criterion.bench_function(&format!("step and snapshot with {objects} objects"), |bench| {
+                bench.iter(|| {
+                    world.step(&drives(objects, tick));
+                    tick += 1;
+                    world.snapshot()
+                });
+            });
+        }
+    });
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(50);
+    targets = step
+}
+criterion_main!(benches);

@@ -1,0 +1,154 @@
+//! The Verlet scheme against exact standing modes: its orders, its stability bound; and patches against one grid.
+//!
+//! The scheme takes the damping from the step before (001 Eqs 5–6), so it is of second order in space, and in time of second order
+//! without damping, of first with it.
+
+use proptest::prelude::*;
+use shared::bend::{Bend, Coefficients, Field, Patch, WaveParams, verlet};
+use shared::grid::PatchLayout;
+use std::f64::consts::PI;
+use tests::norms::{Norms, fitted_order};
+
+const SIDE_M: f64 = 16.0;
+const END_SECS: f64 = 2.0;
+
+const WAVE: WaveParams = WaveParams {
+    c0_m_per_s: 2.0,
+    mu_m_per_rad: 0.0,
+    c_omega_m_per_s: 3.0,
+    theta_damping_per_s: 0.8,
+    omega_damping_per_s: 0.0,
+    stiffness_per_s2: 1.5,
+};
+
+/// Amplitude of the standing mode (1, 1) on a square whose edge is at rest: `e^(−kt/2)·cos(ωt)` with `ω² = c²·2(π/L)² + κ − k²/4`.
+fn amplitude(c: f64, k: f64, t: f64) -> f64 {
+    let omega2 = 2.0 * (c * PI / SIDE_M).powi(2) + f64::from(WAVE.stiffness_per_s2) - 0.25 * k * k;
+    (-0.5 * k * t).exp() * (omega2.sqrt() * t).cos()
+}
+
+/// Errors after 2 s on a grid of `side` cells in steps of about `dt_secs(h)`: of θ, which is damped, and of ω, which is not. The ghosts
+/// are at rest one cell beyond the outermost centres, so the square is `side + 1` cells wide.
+fn errors(side: usize, dt_secs: fn(f64) -> f64) -> (f64, [Norms; 2]) {
+    let h = SIDE_M / (side as f64 + 1.0);
+    let steps = (END_SECS / dt_secs(h)).round();
+    let dt = END_SECS / steps;
+    let shape = |n: usize| (PI * (n as f64 + 1.0) * h / SIDE_M).sin();
+    let speeds = [f64::from(WAVE.c0_m_per_s), f64::from(WAVE.c_omega_m_per_s)];
+    let rates = [f64::from(WAVE.theta_damping_per_s), f64::from(WAVE.omega_damping_per_s)];
+    let exact = |channel: usize, t: f64, i: usize, j: usize| amplitude(speeds[channel], rates[channel], t) * shape(i) * shape(j);
+    let cells = || (0..side * side).map(|n| (n % side, n / side));
+    let set = |patch: &mut Patch, t: f64| {
+        cells().for_each(|(i, j)| patch.set(i, j, Bend { theta: exact(0, t, i, j) as f32, omega: [exact(1, t, i, j) as f32; 2] }));
+    };
+    let mut patch = Patch::new(side);
+    set(&mut patch, -dt);
+    patch.remember();
+    set(&mut patch, 0.0);
+    let k = Coefficients::new(&WAVE, h as f32, dt as f32);
+    for _ in 0..steps as u32 {
+        verlet::step(&mut patch, &k);
+    }
+    let found = |channel: usize, i, j| if channel == 0 { patch.bend(i, j).theta } else { patch.bend(i, j).omega[0] };
+    (h, [0, 1].map(|channel| Norms::of(cells().map(|(i, j)| (f64::from(found(channel, i, j)), exact(channel, END_SECS, i, j))))))
+}
+
+fn assert_order(what: &str, channel: usize, dt_secs: fn(f64) -> f64, expected: f64) {
+    let errors = [8, 16, 32, 64].map(|side| errors(side, dt_secs));
+    for norm in [|n: &Norms| n.l1, |n: &Norms| n.l2, |n: &Norms| n.linf] {
+        let points = errors.each_ref().map(|(h, norms)| (*h, norm(&norms[channel])));
+        let order = fitted_order(&points);
+        println!("{what}: order {order:.3}, (h, error) {points:?}");
+        assert!((order - expected).abs() < 0.2, "{what}: order {order:.2} from {points:?}");
+    }
+}
+
+#[test]
+fn undamped_modes_converge_at_second_order() {
+    assert_order("ω, dt in proportion to h", 1, |h| h / 16.0, 2.0);
+}
+
+#[test]
+fn damped_modes_converge_at_second_order_in_space_and_first_in_time() {
+    assert_order("θ, dt in proportion to h²", 0, |h| h * h / 24.0, 2.0);
+    assert_order("θ, dt in proportion to h", 0, |h| h / 16.0, 1.0);
+}
+
+/// Whether a checkerboard, the first mode to fail, stays bounded for 4000 steps at Courant number `r`.
+fn is_bounded(r: f32, damping_per_s: f32, stiffness_per_s2: f32) -> bool {
+    const DT_SECS: f32 = 0.01;
+    let params = WaveParams {
+        c0_m_per_s: r / DT_SECS,
+        mu_m_per_rad: 0.0,
+        c_omega_m_per_s: 0.0,
+        theta_damping_per_s: damping_per_s,
+        omega_damping_per_s: 0.0,
+        stiffness_per_s2,
+    };
+    let k = Coefficients::new(&params, 1.0, DT_SECS);
+    let side = 64;
+    let mut patch = Patch::new(side);
+    for (i, j) in (0..side * side).map(|n| (n % side, n / side)) {
+        patch.press(i, j, Bend { theta: if (i + j) % 2 == 0 { 1e-3 } else { -1e-3 }, omega: [0.0; 2] });
+    }
+    (0..4000).all(|_| verlet::step(&mut patch, &k).theta_rad < 1e3)
+}
+
+#[test]
+fn the_stability_bound_is_where_the_scheme_fails() {
+    for (damping, stiffness) in [(0.0, 0.0), (20.0, 0.0), (200.0, 0.0), (50.0, 5000.0), (6.0, 1.2)] {
+        let (mut bounded, mut fails) = (0.0_f32, 1.0);
+        for _ in 0..10 {
+            let middle = 0.5 * (bounded + fails);
+            if is_bounded(middle, damping, stiffness) { bounded = middle } else { fails = middle }
+        }
+        let lambda = 1.0 - (-damping * 0.01_f32).exp();
+        let bound = verlet::courant_limit(lambda, stiffness * 1e-4);
+        println!("k = {damping}, κ = {stiffness}: fails at {bounded:.4}, bound {bound:.4}");
+        assert!((bounded / bound - 1.0).abs() < 0.02, "k = {damping}, κ = {stiffness}: fails at {bounded}, bound {bound}");
+    }
+}
+
+/// Presses a few cells near `(x, z)`, wherever they lie.
+fn press(field: &mut Field, [x, z]: [usize; 2], [theta, u, w]: [f32; 3]) {
+    let layout = *field.layout();
+    let cells = layout.cells as usize;
+    for (dx, dz) in [(0, 0), (1, 0), (0, 1), (2, 3)] {
+        let (x, z) = (x + dx, z + dz);
+        if let Some(index) = layout.index((x / cells) as i64, (z / cells) as i64) {
+            field.wake(index).press(x % cells, z % cells, Bend { theta, omega: [u, w] });
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    #[test]
+    fn many_patches_equal_one_grid_bit_for_bit(
+        bumps in prop::collection::vec(([0..24_usize, 0..24], [0.1..1.4_f32, -70.0..70.0, -70.0..70.0]), 1..6),
+        steps in 1..40_usize,
+    ) {
+        let params = WaveParams { mu_m_per_rad: 0.05, omega_damping_per_s: 3.0, ..WAVE };
+        let mut many = Field::new(PatchLayout { count: [3, 3], cells: 8, cell_m: 0.3 });
+        let mut one = Field::new(PatchLayout { count: [1, 1], cells: 24, cell_m: 0.3 });
+        (0..9).for_each(|index| { many.wake(index); });
+        one.wake(0);
+        for (at, bend) in bumps {
+            press(&mut many, at, bend);
+            press(&mut one, at, bend);
+        }
+        for _ in 0..steps {
+            prop_assert_eq!(many.step(&params, 1.0 / 60.0), one.step(&params, 1.0 / 60.0));
+        }
+        let whole = one.patch(0).expect("it is awake");
+        for (index, patch) in many.awake() {
+            let [px, pz] = many.layout().place(index).map(|n| n as usize * 8);
+            for (i, j) in (0..64).map(|n| (n % 8, n / 8)) {
+                let (part, whole) = (patch.bend(i, j), whole.bend(px + i, pz + j));
+                prop_assert_eq!(part.theta.to_bits(), whole.theta.to_bits());
+                prop_assert_eq!(part.omega.map(f32::to_bits), whole.omega.map(f32::to_bits));
+            }
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! Objects stay on the land, in the world and apart, and do as they are told.
+
+use server::world::{Command, View, World};
+use shared::scene::VehicleKind::{Car, Helicopter, Monster};
+use shared::scene::{Scene, VehicleKind};
+use shared::wire::{Drive, ObjectPose};
+use tests::worlds;
+
+fn spawn(world: &mut World, client: u32, kind: VehicleKind) {
+    world.step(&[Command::Spawn { client, kind }]);
+    assert!(world.object_of(client).is_some(), "no room for a {}", kind.name());
+}
+
+fn drive(world: &mut World, client: u32, drive: Drive, ticks: u32) -> ObjectPose {
+    world.step(&[Command::Drive { client, drive }]);
+    (1..ticks).for_each(|_| world.step(&[]));
+    pose(world, client)
+}
+
+fn pose(world: &mut World, client: u32) -> ObjectPose {
+    let id = world.object_of(client).expect("the client has a vehicle");
+    *world.snapshot().objects.iter().find(|pose| pose.id == id).expect("a vehicle has a pose")
+}
+
+fn speed(pose: &ObjectPose) -> f32 {
+    let [x, _, z] = pose.velocity_m_per_s;
+    x.hypot(z)
+}
+
+const AHEAD: Drive = Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 };
+
+#[test]
+fn a_car_stands_speeds_up_steers_and_brakes() {
+    let mut world = worlds::flat(&worlds::scene(30));
+    spawn(&mut world, 1, Car);
+    let standing = drive(&mut world, 1, Drive::default(), 120);
+    assert!(speed(&standing) < 0.05 && (standing.position_m[1] - 0.7).abs() < 0.08, "{standing:?}");
+    let fast = drive(&mut world, 1, AHEAD, 360);
+    assert!(speed(&fast) > 20.0, "after 6 s: {} m/s", speed(&fast));
+    let turning = drive(&mut world, 1, Drive { steer: 1.0, throttle: 0.3, ..AHEAD }, 60);
+    let turned = fast.velocity_m_per_s[0] * turning.velocity_m_per_s[2] - fast.velocity_m_per_s[2] * turning.velocity_m_per_s[0];
+    assert!(turned > 0.0 && turning.part_rad > 0.0, "right is from −Z to +X: {turned}");
+    let stopped = drive(&mut world, 1, Drive { brake: 1.0, ..Drive::default() }, 300);
+    assert!(speed(&stopped) < 0.3, "after 5 s of braking: {} m/s", speed(&stopped));
+}
+
+#[test]
+fn a_car_climbs_a_hill() {
+    let scene = worlds::scene(12);
+    let maps = worlds::maps(&scene, |_, z| (0.25 * (90.0 - z)).clamp(0.0, 15.0), |_, _| 255);
+    let mut world = World::new(&scene, maps).expect("a sound scene");
+    let view = View { client: 1, eye_m: [96.0, 2.0, 120.0], radius_m: 30.0 };
+    world.step(&[Command::Views(vec![view])]);
+    spawn(&mut world, 1, Car);
+    // Turn until it heads north, then climb.
+    for _ in 0..1200 {
+        let [_, y, _, w] = pose(&mut world, 1).rotation;
+        let heading = -2.0 * y.atan2(w);
+        let heading = (heading + std::f32::consts::PI).rem_euclid(std::f32::consts::TAU) - std::f32::consts::PI;
+        drive(&mut world, 1, Drive { throttle: 0.6, steer: (-2.0 * heading).clamp(-1.0, 1.0), ..AHEAD }, 1);
+    }
+    let top = pose(&mut world, 1);
+    assert!(top.position_m[1] > 12.0, "{top:?}");
+}
+
+#[test]
+fn a_minute_of_wild_driving_stays_on_the_land_and_in_the_world() {
+    for seed in 1..=3_u32 {
+        let scene = Scene { seed: seed.into(), ..worlds::scene(10) };
+        let mut world = worlds::hills(&scene);
+        let mut random = seed.wrapping_mul(2_654_435_769);
+        let mut next = || {
+            random ^= random << 13;
+            random ^= random >> 17;
+            random ^= random << 5;
+            (random >> 8) as f32 / 8_388_608.0 - 1.0
+        };
+        let kinds = [Car, Monster, Helicopter, Car];
+        for (client, kind) in (0..).zip(kinds) {
+            spawn(&mut world, client, kind);
+        }
+        let land = worlds::hills_m;
+        for tick in 0..3600 {
+            let commands: Vec<_> = (0..4)
+                .filter(|_| tick % 45 == 0)
+                .map(|client| Command::Drive {
+                    client,
+                    drive: Drive { throttle: next(), steer: next(), lift: next(), brake: next().max(0.0) * 0.2 },
+                })
+                .collect();
+            world.step(&commands);
+            if tick % 10 == 0 {
+                for pose in world.snapshot().objects {
+                    let [x, y, z] = pose.position_m;
+                    assert!([x, y, z].iter().chain(&pose.rotation).all(|v| v.is_finite()), "{pose:?}");
+                    assert!((0.0..=160.0).contains(&x) && (0.0..=160.0).contains(&z), "outside: {pose:?}");
+                    assert!(y > land(x, z) - 0.1, "below the land ({}) at tick {tick}: {pose:?}", land(x, z));
+                    assert!(pose.kind == Helicopter || y < land(x, z) + 15.0, "in the sky at tick {tick}: {pose:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn an_overturned_car_comes_back_onto_its_wheels() {
+    // A steep dam to fall off sideways.
+    let scene = worlds::scene(8);
+    let maps = worlds::maps(&scene, |x, _| if (60.0..68.0).contains(&x) { 5.0 } else { 0.0 }, |_, _| 255);
+    let mut world = World::new(&scene, maps).expect("a sound scene");
+    for client in 0..4 {
+        spawn(&mut world, client, Car);
+    }
+    for client in 0..4 {
+        drive(&mut world, client, Drive { throttle: 1.0, steer: if client % 2 == 0 { 1.0 } else { -0.7 }, ..AHEAD }, 300);
+    }
+    for client in 0..4 {
+        let pose = drive(&mut world, client, Drive { brake: 1.0, ..Drive::default() }, 900);
+        let [x, _, z, _] = pose.rotation;
+        assert!(1.0 - 2.0 * (x * x + z * z) > 0.4, "up axis of {pose:?}");
+    }
+}
+
+#[test]
+fn a_monster_walks_on_the_land() {
+    let scene = worlds::scene(10);
+    let mut world = worlds::hills(&scene);
+    spawn(&mut world, 1, Monster);
+    for _ in 0..20 {
+        let pose = drive(&mut world, 1, Drive { steer: 0.2, ..AHEAD }, 30);
+        let [x, y, z] = pose.position_m;
+        assert!((y - 0.9 - worlds::hills_m(x, z)).abs() < 0.3, "feet at {}, land at {}", y - 0.9, worlds::hills_m(x, z));
+    }
+}
+
+#[test]
+fn a_helicopter_climbs_hovers_flies_and_lands() {
+    let mut world = worlds::flat(&worlds::scene(30));
+    spawn(&mut world, 1, Helicopter);
+    let up = drive(&mut world, 1, Drive { lift: 1.0, ..Drive::default() }, 240);
+    assert!(up.position_m[1] > 15.0, "{up:?}");
+    let settled = drive(&mut world, 1, Drive::default(), 180);
+    let hovering = drive(&mut world, 1, Drive::default(), 600);
+    let drift: f32 = (0..3).map(|axis| (hovering.position_m[axis] - settled.position_m[axis]).powi(2)).sum::<f32>().sqrt();
+    assert!(drift < 0.3, "drifted {drift} m in 10 s");
+    assert!(speed(&drive(&mut world, 1, AHEAD, 480)) > 20.0);
+    drive(&mut world, 1, Drive::default(), 300);
+    let landed = drive(&mut world, 1, Drive { lift: -1.0, ..Drive::default() }, 900);
+    assert!((landed.position_m[1] - 1.3).abs() < 0.1 && speed(&landed) < 0.05, "{landed:?}");
+}
+
+#[test]
+fn objects_start_apart_and_never_exceed_the_limit() {
+    let mut scene = worlds::scene(16);
+    scene.objects.limit = 40;
+    let mut world = worlds::hills(&scene);
+    let view = View { client: 7, eye_m: [100.0, 2.0, 60.0], radius_m: 10.0 };
+    let mut commands = vec![Command::Views(vec![view])];
+    commands.extend((0..50).map(|client| Command::Spawn { client, kind: VehicleKind::ALL[client as usize % 3] }));
+    world.step(&commands);
+    assert_eq!((0..50).filter(|&client| world.object_of(client).is_none()).count(), 10);
+    let objects = world.snapshot().objects;
+    assert_eq!(objects.len(), 40);
+    for (n, a) in objects.iter().enumerate() {
+        for b in &objects[..n] {
+            let reach: f32 = [a, b].map(|pose| pose.kind.half_extents_m()).iter().map(|[x, _, z]| x.max(*z)).sum();
+            let [x, z] = [a.position_m[0] - b.position_m[0], a.position_m[2] - b.position_m[2]];
+            assert!(x.hypot(z) > reach, "{a:?} in {b:?}");
+        }
+    }
+    let near = pose(&mut world, 7).position_m;
+    assert!((near[0] - 100.0).hypot(near[2] - 60.0) < 40.0, "appears near the camera: {near:?}");
+    world.step(&[Command::Remove { client: 7 }]);
+    assert_eq!(world.object_of(7), None);
+    world.step(&[Command::Spawn { client: 7, kind: Car }, Command::Spawn { client: 7, kind: Monster }]);
+    assert_eq!(world.snapshot().objects.len(), 40, "choosing again gives the first up");
+}
+
+#[test]
+fn absurd_land_and_constants_give_numbers() {
+    let mut scene = worlds::scene(4);
+    scene.grass.c0_m_per_s = 50.0;
+    scene.grass.theta_damping_per_s = 200.0;
+    scene.grass.stiffness_per_s2 = 10_000.0;
+    scene.objects.self_driving = 4;
+    let spikes = |x: f32, z: f32| if ((x + z) / 2.0) as i32 % 2 == 0 { 40.0 } else { 0.0 };
+    let mut world = World::new(&scene, worlds::maps(&scene, spikes, |_, _| 253)).expect("a sound scene");
+    for (client, kind) in (0..).zip(VehicleKind::ALL) {
+        world.step(&[Command::Spawn { client, kind }, Command::Drive { client, drive: AHEAD }]);
+    }
+    for _ in 0..600 {
+        world.step(&[]);
+    }
+    let snapshot = world.snapshot();
+    assert!(snapshot.health.bend_energy.is_finite() && snapshot.health.wind_energy.is_finite());
+    for pose in snapshot.objects {
+        assert!(pose.position_m.iter().chain(&pose.rotation).chain(&pose.velocity_m_per_s).all(|v| v.is_finite()), "{pose:?}");
+    }
+    scene.grass.mu_m_per_rad = 10.0;
+    let maps = worlds::maps(&scene, spikes, |_, _| 255);
+    let refused = World::new(&scene, maps).err().expect("too many sub-steps").to_string();
+    assert!(refused.contains("mu_m_per_rad = 10") && refused.contains("allowed: 64"), "{refused}");
+}
