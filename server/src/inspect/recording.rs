@@ -118,14 +118,15 @@ impl Recording {
     /// The colours of the angles as a bar above the map.
     fn scale(&self) -> LineStrips2D {
         let width_px = self.map.size_px()[0] as f32;
-        let (height_px, step_px) = (0.03 * width_px, width_px / SCALE_STEPS as f32);
-        let y = -height_px;
-        let bars = (0..SCALE_STEPS).map(|i| [[i as f32 * step_px, y], [(i + 1) as f32 * step_px, y]]);
+        let radius_px = 0.015 * width_px;
+        let step_px = (width_px - 2.0 * radius_px) / SCALE_STEPS as f32;
+        let place = |i: usize| [radius_px + i as f32 * step_px, -2.0 * radius_px];
+        let bars = (0..SCALE_STEPS).map(|i| [place(i), place(i + 1)]);
         let middle_degrees: Vec<_> = (0..SCALE_STEPS).map(|i| 90.0 * (i as f32 + 0.5) / SCALE_STEPS as f32).collect();
         LineStrips2D::new(bars)
             .with_colors(middle_degrees.iter().map(|&at| Rgba32::from(bend_rgb(at))))
             .with_labels(middle_degrees.iter().map(|at| format!("{at:.0}°")))
-            .with_radii([0.5 * height_px])
+            .with_radii([radius_px])
     }
 
     fn log(&self, entity: &str, what: &dyn AsComponents) -> Result<(), InspectError> {
