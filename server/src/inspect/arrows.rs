@@ -85,7 +85,8 @@ mod tests {
         let wind = Wind { cells: [3, 2, 3], spacing_m: [4.0, 2.0, 5.0], sides: WindBoundary::Wall, ..Wind::default() };
         let arrows = WindArrows::new(&wind, [12.0, 15.0], &flat(7.0));
         let mut codes = vec![0; 3 * 18];
-        let cell = (1 * 2 + 1) * 3 + 2;
+        let [i, j, k] = [2, 1, 1];
+        let cell = (k * 2 + j) * 3 + i;
         codes[18 + cell] = wind_code(-5.0);
         let (origins_m, vectors_m, colours) = arrows.of(&WindFrame { tick: 0, cells: [3, 2, 3], codes });
         assert_eq!((origins_m.len(), vectors_m.len(), colours.len()), (18, 18, 18));
