@@ -159,8 +159,7 @@ fn arch(car: &mut Solid, centre: Vec3, side: f32) {
     let count = 9;
     for i in 0..count {
         let angle = |i: usize| PI * i as f32 / count as f32;
-        let at =
-            |angle: f32, radius: f32, x: f32| centre + Vec3::new(x, radius * angle.sin(), radius * angle.cos()) - Vec3::X * (side * 0.0);
+        let at = |angle: f32, radius: f32, x: f32| centre + Vec3::new(x, radius * angle.sin(), radius * angle.cos());
         let (a, b) = (angle(i), angle(i + 1));
         let mut rim = [at(a, 0.43, side * 0.065), at(b, 0.43, side * 0.065), at(b, 0.50, side * 0.045), at(a, 0.50, side * 0.045)];
         let mut skirt = [at(a, 0.50, side * 0.045), at(b, 0.50, side * 0.045), at(b, 0.50, side * -0.05), at(a, 0.50, side * -0.05)];
