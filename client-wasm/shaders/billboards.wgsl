@@ -48,8 +48,8 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let light = cloud_light(root) * sun_visible(ground + vec3<f32>(0.0, height * 0.6, 0.0));
     // Clumps rise and sink rather than dissolve.
     // From above, sparse clumps would show as stars; the ground's own colour serves there.
-    let down = smoothstep(0.08, 0.24, (frame.eye.y - ground.y) / max(distance_m, 1e-3));
-    let flat_share = down * smoothstep(frame.reach.y * 1.1, frame.reach.y * 2.2, distance_m);
+    let down = smoothstep(0.09, 0.22, dot(frame.eye.xyz - ground, ground_normal(root)) / max(distance_m, 1e-3));
+    let flat_share = down * smoothstep(frame.reach.y * 0.9, frame.reach.y * 1.6, distance_m);
     let risen = fade_in * mix(0.35, 1.0, fade_out) * (1.0 - flat_share);
     stand.pose = vec4<f32>(lean, light, min(fade_out * 4.0, 1.0) * step(0.1, share) * step(0.05, risen));
     stand.tint = vec4<f32>(grass_tint(root), height * risen);

@@ -35,9 +35,9 @@ impl Damped {
     }
 }
 
-/// The same angle within −π..=π (rad).
+/// The same angle within −π..=π (rad); one that lies there already comes back bit for bit.
 pub fn wrap_angle(angle_rad: f32) -> f32 {
-    (angle_rad + PI).rem_euclid(TAU) - PI
+    if angle_rad.abs() <= PI { angle_rad } else { (angle_rad + PI).rem_euclid(TAU) - PI }
 }
 
 #[cfg(test)]

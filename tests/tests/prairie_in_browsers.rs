@@ -98,10 +98,7 @@ async fn two_visitors_see_one_track_open_and_rise() -> Result<()> {
     driver.until("window.prairie.state().vehicle === 'car' && window.prairie.state().position").await?;
     let start = numbers(&driver, "window.prairie.state().position").await?;
     driver.press('w').await?;
-    let far = format!(
-        "(p => Math.hypot(p[0] - ({}), p[2] - ({})) > 12)(window.prairie.state().position)",
-        start[0], start[2]
-    );
+    let far = format!("(p => Math.hypot(p[0] - ({}), p[2] - ({})) > 12)(window.prairie.state().position)", start[0], start[2]);
     driver.until(&far).await?;
     driver.release('w').await?;
     let end = numbers(&driver, "window.prairie.state().position").await?;
@@ -117,9 +114,8 @@ async fn two_visitors_see_one_track_open_and_rise() -> Result<()> {
     driver.release('f').await?;
     let open = tokio::try_join!(look_down(&driver, x, ground_m, z), look_down(&watcher, x, ground_m, z))?;
 
-    let risen = format!(
-        "Math.max(...Array.from({{length: 17}}, (_, i) => Math.abs(window.prairie.theta({x} + 0.25 * (i - 8), {z})))) < 0.35"
-    );
+    let risen =
+        format!("Math.max(...Array.from({{length: 17}}, (_, i) => Math.abs(window.prairie.theta({x} + 0.25 * (i - 8), {z})))) < 0.35");
     tokio::try_join!(driver.until(&risen), watcher.until(&risen))?;
     sleep(Duration::from_secs(1)).await;
     let closed = (driver.canvas().await?, watcher.canvas().await?);

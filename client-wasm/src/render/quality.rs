@@ -43,6 +43,11 @@ impl Quality {
         }
     }
 
+    /// Factor on the width of blades, so that fewer still close the sward.
+    pub(super) fn width_factor(self) -> f32 {
+        (Self::High.blades_per_side() as f32 / self.blades_per_side() as f32).max(1.0).powf(0.9)
+    }
+
     /// Rings of grids beyond the nine whose plants are drawn singly.
     pub(super) fn rings(self) -> i32 {
         match self {

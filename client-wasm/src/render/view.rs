@@ -52,6 +52,7 @@ impl<'a> View<'a> {
         let travelled = (self.time_secs * f64::from(mean) * GUST_SPEED).rem_euclid(GUST_PERIOD_M) as f32;
         let drift = -(self.time_secs * CLOUD_SPEED) as f32;
         let plants = &scene.plants;
+        let width_m = plants.width_m * self.quality.width_factor();
         let [root, tip] = [plants.root_rgb, plants.tip_rgb];
         let billboards_to = self.quality.billboard_reach_m();
         let pixel_rad = self.camera.fov_rad / self.size_px[1] as f32;
@@ -70,7 +71,7 @@ impl<'a> View<'a> {
             maps: [width, depth, atlas.window_m(), atlas.reach_m()],
             wind_box: [box_m[0], box_m[1], box_m[2], wraps],
             gust: [dir_x, dir_z, mean, travelled],
-            blade: [plants.height_m, plants.height_variation, plants.width_m, scene.grass.wind_bend_rad],
+            blade: [plants.height_m, plants.height_variation, width_m, scene.grass.wind_bend_rad],
             root_rgb: [root[0], root[1], root[2], plants.flowers_per_m2],
             tip_rgb: [tip[0], tip[1], tip[2], 0.0],
             screen: [self.size_px[0] as f32, self.size_px[1] as f32, pixel_rad, blades::simulated_secs(self.dt_secs)],

@@ -215,7 +215,7 @@ mod tests {
         assert!(only("[patches]\ncount = [2048, 1]\ncell_m = 1.0\n").contains("131072 m"));
         assert!(only("[patches]\ncells = 256\nawake_limit = 4096\n").contains("33554432"));
         assert!(only("[wind]\ncells = [256, 256, 256]\n").contains("2097152"));
-        assert!(only("[wind]\ncells = [2, 2, 2]\n").starts_with("`wind.sources` is 12"));
+        assert!(only("[wind]\ncells = [2, 2, 2]\n").starts_with("`wind.sources` is 24"));
         assert!(only("[wind]\nmean_m_per_s = [30, 30]\n").contains("42.4"));
         assert!(only("[wind]\nsides = \"wall\"\ncells = [31, 8, 32]\n").contains("covers the world"));
         assert_eq!(only("[objects]\nself_driving = 65\n"), "`objects.self_driving` is 65; allowed: up to `objects.limit`, 64");

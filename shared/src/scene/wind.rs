@@ -29,12 +29,12 @@ pub struct Wind {
     pub mean_m_per_s: [f32; 2],
     /// Kinematic (eddy) viscosity ν (m²/s). Default 0.2, allowed 0..=100.
     pub viscosity_m2_per_s: f32,
-    /// Number of random source cells that blow at any moment (000 §2.3.1). Default 12, allowed 0..=1000 and
+    /// Number of random source cells that blow at any moment (000 §2.3.1). Default 24, allowed 0..=1000 and
     /// at most the box's cells.
     pub sources: u32,
-    /// Typical speed that a source adds (m/s). Default 5, allowed 0..=40.
+    /// Greatest speed that a source gives over its life (m/s). Default 14, allowed 0..=40.
     pub source_m_per_s: f32,
-    /// Rate at which the mean flow returns to the prevailing wind (1/s). Default 0.05, allowed 0..=10.
+    /// Rate at which the mean flow returns to the prevailing wind (1/s). Default 0.2, allowed 0..=10.
     pub mean_rate_per_s: f32,
 }
 
@@ -46,9 +46,9 @@ impl Default for Wind {
             sides: WindBoundary::Wrap,
             mean_m_per_s: [4.0, 2.5],
             viscosity_m2_per_s: 0.2,
-            sources: 12,
-            source_m_per_s: 5.0,
-            mean_rate_per_s: 0.05,
+            sources: 24,
+            source_m_per_s: 14.0,
+            mean_rate_per_s: 0.2,
         }
     }
 }

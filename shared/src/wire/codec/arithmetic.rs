@@ -40,9 +40,9 @@ impl Probability {
     fn update(&mut self, bit: bool) {
         let rate = RATE[usize::from(self.seen)];
         if bit {
-            self.set += (u32::from(u16::MAX - self.set) * rate >> 16) as u16;
+            self.set += ((u32::from(u16::MAX - self.set) * rate) >> 16) as u16;
         } else {
-            self.set -= (u32::from(self.set) * rate >> 16) as u16;
+            self.set -= ((u32::from(self.set) * rate) >> 16) as u16;
         }
         self.seen = (self.seen + 1).min(SETTLED as u8 - 1);
     }
@@ -95,7 +95,7 @@ impl Coder for Encoder {
         while (self.low ^ self.high) >> 24 == 0 {
             self.bytes.push((self.high >> 24) as u8);
             self.low <<= 8;
-            self.high = self.high << 8 | 0xff;
+            self.high = (self.high << 8) | 0xff;
         }
         bit
     }
@@ -121,7 +121,7 @@ impl<'a> Decoder<'a> {
 
     fn take_byte(&mut self) {
         let byte = self.payload.get(self.taken).copied().unwrap_or(0);
-        self.value = self.value << 8 | u32::from(byte);
+        self.value = (self.value << 8) | u32::from(byte);
         self.taken += 1;
     }
 
@@ -144,7 +144,7 @@ impl Coder for Decoder<'_> {
         probability.update(bit);
         while (self.low ^ self.high) >> 24 == 0 {
             self.low <<= 8;
-            self.high = self.high << 8 | 0xff;
+            self.high = (self.high << 8) | 0xff;
             self.take_byte();
         }
         bit

@@ -82,8 +82,8 @@ impl Model {
         }
         let mut value = 1_u16;
         for place in (0..length).rev() {
-            let bit = coder.code(&mut self.suffix[length][place], magnitude.map(|m| m >> place & 1 == 1));
-            value = value << 1 | u16::from(bit);
+            let bit = coder.code(&mut self.suffix[length][place], magnitude.map(|m| (m >> place) & 1 == 1));
+            value = (value << 1) | u16::from(bit);
         }
         value as i16
     }
