@@ -3,7 +3,7 @@
 use super::air::Sway;
 use super::regions::Trace;
 use rayon::prelude::*;
-use shared::bend::{Coefficients, Extremes, Field, WaveParams, verlet};
+use shared::bend::{Coefficients, Field, WaveParams, verlet};
 
 /// What the propagation took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -35,10 +35,8 @@ pub fn propagate(
             .par_iter_mut()
             .zip(sways.par_iter_mut())
             .map(|(lane, sway)| {
-                let extremes: Extremes = lane.step(|patch| match sway {
-                    Some(sway) => verlet::step_forced(patch, &k, sway.advance(&k, dt_secs)),
-                    None => verlet::step(patch, &k),
-                });
+                let force = sway.as_mut().map(|sway| sway.advance(&k, dt_secs));
+                let extremes = lane.step(&k, force);
                 Trace { patch: lane.index, extremes, rims: lane.rims() }
             })
             .collect();

@@ -54,6 +54,7 @@ impl Helicopter {
         let body = &mut physics.bodies[self.body];
         let (at, velocity, rotation) = (body.translation(), body.linvel(), *body.rotation());
         let clearance = at.y - VehicleKind::Helicopter.half_extents_m()[1] - ground.height_m([at.x, at.z]);
+        body.reset_forces(false);
         if clearance < LANDED_M && drive.lift <= 0.0 {
             return;
         }
@@ -67,7 +68,7 @@ impl Helicopter {
 
         let up = rotation * Vector::Y;
         let collective = thrust.dot(up).max(0.0);
-        body.apply_impulse(up * (collective * MASS_KG * dt_secs), true);
+        body.add_force(up * (collective * MASS_KG), true);
         let turning = up.cross(thrust.normalize_or(Vector::Y)) * ATTITUDE_PER_S - Vector::Y * (drive.steer * TURN_RAD_PER_S);
         let turned = body.angvel() + (turning - body.angvel()) * (TURNING_PER_S * dt_secs).min(1.0);
         body.set_angvel(turned, true);

@@ -24,7 +24,7 @@ pub(super) struct LargestOf {
 
 impl LargestOf {
     /// Takes in a row of each channel.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn add(&mut self, theta: &[f32], x: &[f32], z: &[f32]) {
         let (mut theta2_max, mut omega2_max, mut activity) = (self.theta2, self.omega2, self.activity);
         let blocks = theta.as_chunks::<LANES>().0.iter().zip(x.as_chunks::<LANES>().0).zip(z.as_chunks::<LANES>().0);

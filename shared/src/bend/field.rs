@@ -1,7 +1,7 @@
 //! The whole field: the awake patches, what they tell their neighbours, and the step.
 
 use super::patch::CHANNELS;
-use super::{Bend, Coefficients, Extremes, Patch, WaveParams, verlet};
+use super::{Bend, Coefficients, Extremes, Force, Patch, WaveParams, verlet};
 use crate::grid::{PatchIndex, PatchLayout};
 
 /// The bend field of a world. A patch that is not awake is at rest and holds no memory, however large the world. Beyond
@@ -140,7 +140,7 @@ impl Field {
         let k = Coefficients::new(params, self.layout.cell_m, dt_secs / count as f32);
         for _ in 0..count {
             for mut lane in self.lanes() {
-                lane.step(|patch| verlet::step(patch, &k));
+                lane.step(&k, None);
             }
             self.turn();
         }
@@ -159,13 +159,15 @@ pub struct Lane<'a> {
 }
 
 impl Lane<'_> {
-    /// Fills the ghosts from the neighbours, lets `scheme` advance the patch, and publishes its new border.
-    pub fn step(&mut self, scheme: impl FnOnce(&mut Patch) -> Extremes) -> Extremes {
-        for (side, neighbour) in Side::ALL.into_iter().zip(self.neighbours) {
-            fill_ghosts(self.patch, side, neighbour);
-        }
-        let extremes = scheme(self.patch);
-        self.publishes.publish(self.patch);
+    /// Advances the patch by a Verlet sub-step, between what its neighbours published, and publishes its own new border. The values of
+    /// `force` are added to the new state.
+    pub fn step(&mut self, k: &Coefficients, force: Option<&Force>) -> Extremes {
+        let [west, east, north, south] = self.neighbours;
+        fill_row(self.patch, Side::North, north);
+        fill_row(self.patch, Side::South, south);
+        let extremes = verlet::advance(self.patch, k, force, &mut Seam { west, east, publishes: self.publishes });
+        self.publishes.publish_row(self.patch, Side::North);
+        self.publishes.publish_row(self.patch, Side::South);
         extremes
     }
 
@@ -192,16 +194,26 @@ impl Border {
         &self.values[(side as usize * CHANNELS + channel) * self.side..][..self.side]
     }
 
+    fn line_mut(&mut self, side: Side, channel: usize) -> &mut [f32] {
+        &mut self.values[(side as usize * CHANNELS + channel) * self.side..][..self.side]
+    }
+
     fn publish(&mut self, patch: &Patch) {
-        let mut lines = self.values.chunks_exact_mut(self.side);
-        for side in Side::ALL {
-            let (start, stride) = side.line(patch, 0);
-            for channel in &patch.now {
-                let line = lines.next().expect("a line for each side and channel");
-                for (i, value) in line.iter_mut().enumerate() {
-                    *value = channel[start + i * stride];
-                }
+        for j in 0..self.side {
+            let row = patch.at(0, j);
+            for (channel, values) in patch.now.iter().enumerate() {
+                self.line_mut(Side::West, channel)[j] = values[row];
+                self.line_mut(Side::East, channel)[j] = values[row + patch.side() - 1];
             }
+        }
+        self.publish_row(patch, Side::North);
+        self.publish_row(patch, Side::South);
+    }
+
+    fn publish_row(&mut self, patch: &Patch, side: Side) {
+        let row = patch.at(0, if matches!(side, Side::North) { 0 } else { patch.side() - 1 });
+        for (channel, values) in patch.now.iter().enumerate() {
+            self.line_mut(side, channel).copy_from_slice(&values[row..row + patch.side()]);
         }
     }
 
@@ -221,39 +233,45 @@ enum Side {
 
 impl Side {
     const ALL: [Self; 4] = [Self::West, Self::East, Self::North, Self::South];
+}
 
-    fn opposite(self) -> Self {
-        match self {
-            Self::West => Self::East,
-            Self::East => Self::West,
-            Self::North => Self::South,
-            Self::South => Self::North,
+/// The western and eastern ends of a patch's rows.
+struct Seam<'a> {
+    west: Option<&'a Border>,
+    east: Option<&'a Border>,
+    publishes: &'a mut Border,
+}
+
+impl verlet::Seams for Seam<'_> {
+    #[inline(always)]
+    fn fill(&mut self, j: usize, row: usize, now: &mut [Vec<f32>; CHANNELS]) {
+        for (channel, values) in now.iter_mut().enumerate() {
+            values[row - 1] = self.west.map_or(0.0, |border| border.line(Side::East, channel)[j]);
+            values[row + self.publishes.side] = self.east.map_or(0.0, |border| border.line(Side::West, channel)[j]);
         }
     }
 
-    /// Start and stride of the line of cells along this side, `outward` cells beyond the outermost own ones.
-    fn line(self, patch: &Patch, outward: usize) -> (usize, usize) {
-        let (n, stride) = (patch.side(), patch.stride());
-        match self {
-            Self::West => (stride + 1 - outward, stride),
-            Self::East => (stride + n + outward, stride),
-            Self::North => ((1 - outward) * stride + 1, 1),
-            Self::South => ((n + outward) * stride + 1, 1),
+    #[inline(always)]
+    fn publish(&mut self, j: usize, next: [&[f32]; CHANNELS]) {
+        for (channel, values) in next.into_iter().enumerate() {
+            self.publishes.line_mut(Side::West, channel)[j] = values[0];
+            self.publishes.line_mut(Side::East, channel)[j] = values[values.len() - 1];
         }
     }
 }
 
-fn fill_ghosts(patch: &mut Patch, side: Side, neighbour: Option<&Border>) {
-    let (start, stride) = side.line(patch, 1);
-    let count = patch.side();
+/// Fills the ghosts beyond the northern or southern side; at rest where no neighbour is awake.
+fn fill_row(patch: &mut Patch, side: Side, neighbour: Option<&Border>) {
+    let (count, stride) = (patch.side(), patch.stride());
+    let (start, facing) = match side {
+        Side::North => (1, Side::South),
+        _ => ((count + 1) * stride + 1, Side::North),
+    };
     for (channel, values) in patch.now.iter_mut().enumerate() {
+        let ghosts = &mut values[start..start + count];
         match neighbour {
-            Some(border) => {
-                for (i, &value) in border.line(side.opposite(), channel).iter().enumerate() {
-                    values[start + i * stride] = value;
-                }
-            }
-            None => (0..count).for_each(|i| values[start + i * stride] = 0.0),
+            Some(border) => ghosts.copy_from_slice(border.line(facing, channel)),
+            None => ghosts.fill(0.0),
         }
     }
 }

@@ -24,21 +24,48 @@ impl Force {
         let per_side = side / NODE_CELLS + 1;
         Self { per_side, nodes: std::array::from_fn(|_| vec![0.0; per_side * per_side]) }
     }
+}
 
-    /// Adds one channel's values at the cells of row `j` to them.
-    #[inline(never)]
-    pub(super) fn add_row(&self, channel: usize, j: usize, row: &mut [f32]) {
-        let share = SHARES[j % NODE_CELLS];
-        let (north, south) = self.nodes[channel][j / NODE_CELLS * self.per_side..][..2 * self.per_side].split_at(self.per_side);
-        let at = |i: usize| north[i] + (south[i] - north[i]) * share;
-        let mut west = at(0);
-        for (i, cells) in row.as_chunks_mut::<NODE_CELLS>().0.iter_mut().enumerate() {
-            let east = at(i + 1);
-            let slope = east - west;
-            for i in 0..NODE_CELLS {
-                cells[i] += west + slope * SHARES[i];
+/// A force at the cells of the rows between two rows of nodes: `north + rise · share(j)` in row `j`.
+pub(super) struct Band {
+    north: [Vec<f32>; CHANNELS],
+    rise: [Vec<f32>; CHANNELS],
+}
+
+impl Band {
+    /// No force on rows of `side` cells.
+    pub(super) fn zero(side: usize) -> Self {
+        let zeros = || std::array::from_fn(|_| vec![0.0; side]);
+        Self { north: zeros(), rise: zeros() }
+    }
+
+    /// Takes on the force around row `j`, the first below a row of nodes.
+    pub(super) fn enter(&mut self, force: &Force, j: usize) {
+        let first = j / NODE_CELLS * force.per_side;
+        for channel in 0..CHANNELS {
+            let (north, south) = force.nodes[channel][first..][..2 * force.per_side].split_at(force.per_side);
+            let rows =
+                self.north[channel].as_chunks_mut::<NODE_CELLS>().0.iter_mut().zip(self.rise[channel].as_chunks_mut::<NODE_CELLS>().0);
+            for ((cells, rise), (north, south)) in rows.zip(north.windows(2).zip(south.windows(2))) {
+                for (i, share) in SHARES.into_iter().enumerate() {
+                    cells[i] = north[0] + (north[1] - north[0]) * share;
+                    rise[i] = south[0] + (south[1] - south[0]) * share - cells[i];
+                }
             }
-            west = east;
         }
     }
+
+    /// One channel in row `j`.
+    #[inline(always)]
+    pub(super) fn row(&self, channel: usize, j: usize) -> Added<'_> {
+        Added { north: &self.north[channel], rise: &self.rise[channel], share: SHARES[j % NODE_CELLS] }
+    }
+}
+
+/// What is added to the cells of a row: `north + rise · share`.
+#[derive(Clone, Copy)]
+pub(super) struct Added<'a> {
+    pub(super) north: &'a [f32],
+    pub(super) rise: &'a [f32],
+    pub(super) share: f32,
 }

@@ -4,7 +4,8 @@
 //! `θ⁺ = (2 − λ)·θ − (1 − λ)·θ⁻ + r²·(Σ neighbours − 4θ) − κ·dt²·θ`, likewise for both components of ω.
 
 use super::extremes::LargestOf;
-use super::{Coefficients, Extremes, Force, Patch, WaveParams};
+use super::force::{Added, Band, NODE_CELLS};
+use super::{CHANNELS, Coefficients, Extremes, Force, Patch, WaveParams};
 
 /// Largest Courant number `c·dt/h` for damping λ and restoring term `κ·dt²`: `r ≤ √((4 − 2λ − κ·dt²)/8)`.
 ///
@@ -48,59 +49,100 @@ pub fn stable_dt(params: &WaveParams, cell_m: f32, dt_secs: f32, omega_max_rad_p
 /// Advances one patch by a sub-step; its ghosts must hold the neighbours' newest values. Returns the extremes of the new
 /// state.
 pub fn step(patch: &mut Patch, k: &Coefficients) -> Extremes {
-    advance(patch, k, |_, _, _| ())
+    advance(patch, k, None, &mut Alone)
 }
 
-/// [`step`] with a force, whose values are added to the new state.
-pub fn step_forced(patch: &mut Patch, k: &Coefficients, force: &Force) -> Extremes {
-    advance(patch, k, |channel, j, next| force.add_row(channel, j, next))
+/// What happens at a patch's western and eastern ends while its rows advance one by one. Done row by row, it finds the cells in the
+/// cache.
+pub(super) trait Seams {
+    /// Before row `j` advances: its first own cell lies at `row`.
+    fn fill(&mut self, j: usize, row: usize, now: &mut [Vec<f32>; CHANNELS]);
+    /// After it: the new values.
+    fn publish(&mut self, j: usize, next: [&[f32]; CHANNELS]);
 }
 
-/// Advances row by row, in place over the state before; `then` may change the next values of a channel's row.
+/// A patch whose ghosts are filled already and whom nobody reads.
+struct Alone;
+
+impl Seams for Alone {
+    fn fill(&mut self, _: usize, _: usize, _: &mut [Vec<f32>; CHANNELS]) {}
+    fn publish(&mut self, _: usize, _: [&[f32]; CHANNELS]) {}
+}
+
+/// Advances row by row, in place over the state before; the values of `force` are added to the new state.
 #[inline(always)]
-fn advance(patch: &mut Patch, k: &Coefficients, then: impl Fn(usize, usize, &mut [f32])) -> Extremes {
-    let (side, stride) = (patch.side(), patch.stride());
-    let mut largest = LargestOf::default();
+pub(super) fn advance(patch: &mut Patch, k: &Coefficients, force: Option<&Force>, seams: &mut impl Seams) -> Extremes {
+    let side = patch.side();
+    let (mut largest, mut band) = (LargestOf::default(), Band::zero(side));
     for j in 0..side {
+        if let Some(force) = force
+            && j % NODE_CELLS == 0
+        {
+            band.enter(force, j);
+        }
         let row = patch.at(0, j);
+        seams.fill(j, row, &mut patch.now);
         let [theta, x, z] = &patch.now;
         let [theta_next, x_next, z_next] = &mut patch.before;
         let theta_next = &mut theta_next[row..row + side];
         let (x_next, z_next) = (&mut x_next[row..row + side], &mut z_next[row..row + side]);
-        advance_theta(theta, &x[row..row + side], &z[row..row + side], theta_next, row, stride, k);
-        advance_omega(x, x_next, row, stride, k);
-        advance_omega(z, z_next, row, stride, k);
-        then(0, j, theta_next);
-        then(1, j, x_next);
-        then(2, j, z_next);
+        advance_theta(Stencil::new(theta, row, side), &x[row..row + side], &z[row..row + side], band.row(0, j), theta_next, k);
+        advance_omega(Stencil::new(x, row, side), band.row(1, j), x_next, k);
+        advance_omega(Stencil::new(z, row, side), band.row(2, j), z_next, k);
         largest.add(theta_next, x_next, z_next);
+        seams.publish(j, [theta_next, x_next, z_next]);
     }
     std::mem::swap(&mut patch.now, &mut patch.before);
     largest.extremes()
 }
 
+/// A row of a channel with the cells around it.
+struct Stencil<'a> {
+    center: &'a [f32],
+    west: &'a [f32],
+    east: &'a [f32],
+    north: &'a [f32],
+    south: &'a [f32],
+}
+
+impl<'a> Stencil<'a> {
+    #[inline(always)]
+    fn new(now: &'a [f32], row: usize, side: usize) -> Self {
+        let (north, south) = (row - (side + 2), row + (side + 2));
+        Self {
+            center: &now[row..row + side],
+            west: &now[row - 1..row - 1 + side],
+            east: &now[row + 1..row + 1 + side],
+            north: &now[north..north + side],
+            south: &now[south..south + side],
+        }
+    }
+}
+
+// Kept apart from the loop over rows: inlined into it, the compiler loses sight of which slices cannot overlap.
 #[inline(never)]
-fn advance_theta(now: &[f32], x: &[f32], z: &[f32], next: &mut [f32], row: usize, stride: usize, k: &Coefficients) {
+fn advance_theta(now: Stencil<'_>, x: &[f32], z: &[f32], added: Added<'_>, next: &mut [f32], k: &Coefficients) {
     let side = next.len();
     let (keep, memory) = (2.0 - k.lambda_theta - k.restoring, 1.0 - k.lambda_theta);
-    let (center, west, east) = (&now[row..row + side], &now[row - 1..row - 1 + side], &now[row + 1..row + 1 + side]);
-    let (north, south) = (&now[row - stride..row - stride + side], &now[row + stride..row + stride + side]);
-    let (x, z) = (&x[..side], &z[..side]);
+    let (center, west, east) = (&now.center[..side], &now.west[..side], &now.east[..side]);
+    let (north, south, x, z) = (&now.north[..side], &now.south[..side], &x[..side], &z[..side]);
+    let (force, rise, share) = (&added.north[..side], &added.rise[..side], added.share);
     for i in 0..side {
         let r = k.r0 + k.r_mu * (x[i] * x[i] + z[i] * z[i]).sqrt();
         let laplacian = (west[i] + east[i]) + (north[i] + south[i]) - 4.0 * center[i];
-        next[i] = keep * center[i] - memory * next[i] + r * r * laplacian;
+        next[i] = keep * center[i] - memory * next[i] + r * r * laplacian + (force[i] + rise[i] * share);
     }
 }
 
 #[inline(never)]
-fn advance_omega(now: &[f32], next: &mut [f32], row: usize, stride: usize, k: &Coefficients) {
+fn advance_omega(now: Stencil<'_>, added: Added<'_>, next: &mut [f32], k: &Coefficients) {
     let side = next.len();
     let (keep, memory, r2) = (2.0 - k.lambda_omega - k.restoring, 1.0 - k.lambda_omega, k.r2_omega);
-    let (center, west, east) = (&now[row..row + side], &now[row - 1..row - 1 + side], &now[row + 1..row + 1 + side]);
-    let (north, south) = (&now[row - stride..row - stride + side], &now[row + stride..row + stride + side]);
+    let (center, west, east) = (&now.center[..side], &now.west[..side], &now.east[..side]);
+    let (north, south) = (&now.north[..side], &now.south[..side]);
+    let (force, rise, share) = (&added.north[..side], &added.rise[..side], added.share);
     for i in 0..side {
         let laplacian = (west[i] + east[i]) + (north[i] + south[i]) - 4.0 * center[i];
-        next[i] = keep * center[i] - memory * next[i] + r2 * laplacian;
+        next[i] = keep * center[i] - memory * next[i] + r2 * laplacian + (force[i] + rise[i] * share);
     }
 }
