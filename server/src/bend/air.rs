@@ -1,6 +1,6 @@
 //! Air as it bends grass: the wash below a helicopter, taken as an object (001 §5.3), and the natural wind.
 
-use super::contact::{bending_speed_rad_per_s, for_each_cell, unit};
+use super::contact::{HELD_RAD_PER_S, bending_speed_rad_per_s, for_each_cell, unit};
 use super::footprint::Footprint;
 use shared::bend::{Bend, CHANNELS, Coefficients, Field, Force, NODE_CELLS};
 use shared::grid::{PatchIndex, PatchLayout};
@@ -12,8 +12,6 @@ const WASH_RADIUS_M: f32 = 10.0;
 const WASH_M_PER_S: f32 = 12.0;
 const WASH_BEND_RAD: f32 = 1.2;
 const WASH_STRIKE_M: f32 = 0.5;
-/// Least bending speed below the wash (rad/s); see [`super::contact`].
-const HELD_RAD_PER_S: f32 = 0.5;
 
 /// The wash below a helicopter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +28,7 @@ impl Wash {
     /// The wash of a helicopter at `height_m` above the ground: weaker and smaller as it climbs. None above [`WASH_CEILING_M`].
     pub fn below(center_m: [f32; 2], height_m: f32) -> Option<Self> {
         let nearness = 1.0 - height_m.max(0.0) / WASH_CEILING_M;
-        (nearness > 0.0).then(|| Self { center_m, radius_m: WASH_RADIUS_M * (0.4 + 0.6 * nearness), strength: nearness * nearness })
+        (nearness > 0.0).then_some(Self { center_m, radius_m: WASH_RADIUS_M * (0.4 + 0.6 * nearness), strength: nearness * nearness })
     }
 
     /// Bends the grass of awake patches outward (001 Fig. 9a): most halfway to the rim, not at all in the middle and at the rim. Returns

@@ -10,7 +10,7 @@ const STANDING_M_PER_S: f32 = 0.05;
 /// Speed at which grass gives way below the weight of a standing object (m/s).
 const SETTLING_M_PER_S: f32 = 0.3;
 /// Least bending speed of pressed grass (rad/s): its direction is that of the bend, and must outlast the motion.
-const HELD_RAD_PER_S: f32 = 0.5;
+pub(super) const HELD_RAD_PER_S: f32 = 0.5;
 
 /// What touches the grass.
 pub struct Contact {

@@ -68,7 +68,7 @@ impl Regions {
         seen
     }
 
-    /// Wakes the `touched` and the `seen` (both ascending) and those that energy flows into; lets quiet ones sleep; lets those farthest
+    /// Wakes the `touched`, the `seen` and those that energy flows into; lets quiet ones sleep; lets those farthest
     /// from any camera go (from the world's middle where there is none) that exceed the limit.
     pub fn update(&mut self, field: &mut Field, touched: &[PatchIndex], seen: &[PatchIndex], traces: &[Trace], views: &[View]) {
         let layout = *field.layout();
