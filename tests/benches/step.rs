@@ -27,25 +27,25 @@ fn drives(objects: u32, tick: u32) -> Vec<Command> {
 
 fn step(criterion: &mut Criterion) {
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
-    one_thread.install(|| {
-        for objects in [1, 64] {
-            let mut world = busy(objects);
-            let mut tick = 120;
-            criterion.bench_function(&format!("step with {objects} objects, 1 M cells awake"), |bench| {
-                bench.iter(|| {
-                    world.step(&drives(objects, tick));
-                    tick += 1;
-                });
+    for objects in [1, 64] {
+        let mut world = one_thread.install(|| busy(objects));
+        let mut tick = 120;
+        criterion.bench_function(&format!("step with {objects} objects, 1 M cells awake"), |bench| {
+            bench.iter(|| {
+                one_thread.install(|| world.step(&drives(objects, tick)));
+                tick += 1;
             });
-            criterion.bench_function(&format!("step and snapshot with {objects} objects"), |bench| {
-                bench.iter(|| {
+        });
+        criterion.bench_function(&format!("step and snapshot with {objects} objects"), |bench| {
+            bench.iter(|| {
+                tick += 1;
+                one_thread.install(|| {
                     world.step(&drives(objects, tick));
-                    tick += 1;
                     world.snapshot()
-                });
+                })
             });
-        }
-    });
+        });
+    }
 }
 
 criterion_group! {

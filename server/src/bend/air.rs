@@ -30,7 +30,7 @@ impl Wash {
     /// The wash of a helicopter at `height_m` above the ground: weaker and smaller as it climbs. None above [`WASH_CEILING_M`].
     pub fn below(center_m: [f32; 2], height_m: f32) -> Option<Self> {
         let nearness = 1.0 - height_m.max(0.0) / WASH_CEILING_M;
-        (nearness > 0.0).then(|| Self { center_m, radius_m: WASH_RADIUS_M * (0.4 + 0.6 * nearness), strength: nearness * nearness })
+        (nearness > 0.0).then_some(Self { center_m, radius_m: WASH_RADIUS_M * (0.4 + 0.6 * nearness), strength: nearness * nearness })
     }
 
     /// Bends the grass of awake patches outward (001 Fig. 9a): most halfway to the rim, not at all in the middle and at the rim. Returns

@@ -14,7 +14,7 @@ pub struct Field {
     layout: PatchLayout,
     /// Awake patches, ascending; the vectors below run alongside.
     indices: Vec<PatchIndex>,
-    patches: Vec<Box<Patch>>,
+    patches: Vec<Patch>,
     borders: Vec<Border>,
     next_borders: Vec<Border>,
     /// Patches changed since they published.
@@ -50,7 +50,7 @@ impl Field {
 
     /// The patch, if it is awake.
     pub fn patch(&self, patch: PatchIndex) -> Option<&Patch> {
-        self.indices.binary_search(&patch).ok().map(|slot| self.patches[slot].as_ref())
+        self.indices.binary_search(&patch).ok().map(|slot| &self.patches[slot])
     }
 
     /// The patch to be changed, if it is awake.
@@ -65,7 +65,7 @@ impl Field {
         let slot = self.indices.binary_search(&patch).unwrap_or_else(|slot| {
             let side = self.layout.cells as usize;
             self.indices.insert(slot, patch);
-            self.patches.insert(slot, Box::new(Patch::new(side)));
+            self.patches.insert(slot, Patch::new(side));
             self.borders.insert(slot, Border::new(side));
             self.next_borders.insert(slot, Border::new(side));
             self.stale.insert(slot, false);
@@ -88,7 +88,7 @@ impl Field {
 
     /// Awake patches in index order.
     pub fn awake(&self) -> impl Iterator<Item = (PatchIndex, &Patch)> {
-        self.indices.iter().copied().zip(self.patches.iter().map(Box::as_ref))
+        self.indices.iter().copied().zip(&self.patches)
     }
 
     /// Largest bending speed of any cell (rad/s).
