@@ -26,19 +26,23 @@ fn drives(objects: u32, tick: u32) -> Vec<Command> {
 }
 
 fn step(criterion: &mut Criterion) {
-    rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("no other pool was asked for before");
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     for objects in [1, 64] {
-        let mut world = busy(objects);
+        let mut world = one_thread.install(|| busy(objects));
         let mut tick = 120;
-        let mut next = move |world: &mut World| {
-            world.step(&drives(objects, tick));
-            tick += 1;
-        };
-        criterion.bench_function(&format!("step with {objects} objects, 1 M cells awake"), |bench| bench.iter(|| next(&mut world)));
+        criterion.bench_function(&format!("step with {objects} objects, 1 M cells awake"), |bench| {
+            bench.iter(|| {
+                one_thread.install(|| world.step(&drives(objects, tick)));
+                tick += 1;
+            });
+        });
         criterion.bench_function(&format!("step and snapshot with {objects} objects"), |bench| {
             bench.iter(|| {
-                next(&mut world);
-                world.snapshot()
+                tick += 1;
+                one_thread.install(|| {
+                    world.step(&drives(objects, tick));
+                    world.snapshot()
+                })
             });
         });
     }

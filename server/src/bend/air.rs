@@ -121,7 +121,7 @@ impl GroundWind {
 
 /// How the natural wind holds one patch: the bend that its grass would have from wind alone, at nodes.
 ///
-/// The grass follows what the wind sustains within [`FOLLOWS_SECS`]. The force is what the Verlet scheme needs to carry exactly this
+/// The grass follows what the wind sustains within 0.4 s. The force is what the Verlet scheme needs to carry exactly this
 /// bend: `F = (W⁺ − W) − (1 − λ)·(W − W⁻) + κ·dt²·W`. The scheme being linear in θ and ω, tracks and gusts add up: a gust passes over a
 /// track without wiping it out, and grass that rises again rises to where the wind holds it.
 #[derive(Clone, Debug)]

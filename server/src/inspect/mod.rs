@@ -4,6 +4,8 @@
 //! own empties it. When a viewer is slow or frozen the SDK's calls block that thread, the queue fills, and frames are
 //! dropped; how many is itself logged. This folder alone knows rerun, and only with the cargo feature `rerun`.
 
+#![cfg_attr(not(feature = "rerun"), allow(dead_code, reason = "only rerun draws what is gathered here"))]
+
 mod arrows;
 #[cfg(feature = "rerun")]
 mod blueprint;

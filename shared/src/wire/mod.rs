@@ -1,4 +1,4 @@
-//! What goes over the socket: versioned messages ([`message`]), quantised fields ([`quantise`]) and their codec ([`codec`]).
+//! What goes over the socket: versioned messages ([`ClientMessage`], [`ServerMessage`]), quantised fields ([`quantise`]) and their codec ([`codec`]).
 //!
 //! Every binary WebSocket message is one byte of protocol version, [`PROTOCOL`], and a postcard-encoded
 //! [`ClientMessage`] or [`ServerMessage`]. Fields travel as 8-bit grids, coded against the frame before (delta) or against zero
