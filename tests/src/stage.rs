@@ -144,7 +144,7 @@ pub fn play(stage: &mut Stage, act: Act, eye_m: [f32; 3]) -> Result<Option<Objec
             (1.2, Drive { throttle: 0.6, steer: -0.3, lift: 0.0, brake: 0.0 }),
         ],
         Act::Wash => &[
-            (1.6, Drive { throttle: 0.0, steer: 0.0, lift: 0.7, brake: 0.0 }),
+            (0.8, Drive { throttle: 0.0, steer: 0.0, lift: 0.5, brake: 0.0 }),
             (3.5, Drive { throttle: 0.0, steer: 0.0, lift: 0.0, brake: 0.0 }),
         ],
         Act::Walk => &[(4.0, Drive { throttle: 0.7, steer: 0.1, lift: 0.0, brake: 0.0 })],

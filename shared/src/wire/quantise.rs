@@ -97,6 +97,7 @@ mod tests {
         assert!((theta_rad(theta_code(0.999 * half_step)) - 0.999 * half_step).abs() > 0.99 * half_step);
         assert_eq!(theta_code(10.0), 127);
         assert_eq!(omega_code(-1e9), -127);
-        assert_eq!(wind_code(f32::NAN), 0);
+        assert_eq!(wind_code(f32::INFINITY), 127);
+        assert_eq!(wind_code(f32::NAN), -127);
     }
 }
