@@ -4,6 +4,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use server::world::{Command, View, World};
 use shared::scene::VehicleKind;
 use shared::wire::Drive;
+use std::time::Instant;
 use tests::worlds;
 
 /// A world in full swing: `objects` vehicles that have driven about for 2 s.
@@ -48,9 +49,38 @@ fn step(criterion: &mut Criterion) {
     }
 }
 
+/// Steps that the percentiles are taken of: a minute of simulated time.
+const TIMED_STEPS: usize = 3600;
+
+/// What a mean hides: the wind steps on every third tick only, and a tick that is late is seen.
+fn percentiles(_: &mut Criterion) {
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
+    for objects in [1, 64] {
+        let mut times_ms = one_thread.install(|| {
+            let mut world = busy(objects);
+            let timed = (120..).take(TIMED_STEPS).map(|tick| {
+                let commands = drives(objects, tick);
+                let begun = Instant::now();
+                world.step(&commands);
+                begun.elapsed().as_secs_f64() * 1e3
+            });
+            timed.collect::<Vec<_>>()
+        });
+        times_ms.sort_by(f64::total_cmp);
+        let at = |share: f64| times_ms[(share * (TIMED_STEPS - 1) as f64) as usize];
+        println!(
+            "step with {objects} objects: median {:.2} ms, 90 % {:.2} ms, 99 % {:.2} ms, longest {:.2} ms of {TIMED_STEPS}",
+            at(0.5),
+            at(0.9),
+            at(0.99),
+            at(1.0)
+        );
+    }
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(50);
-    targets = step
+    targets = percentiles, step
 }
 criterion_main!(benches);

@@ -1,0 +1,130 @@
+//! Visitors who break the rules are closed with a reason, and the others notice nothing.
+
+use crate::running::{Server, within};
+use crate::visitor::Plain;
+use futures_util::SinkExt;
+use server::Limits;
+use shared::wire::{ClientMessage, Close, Drive, PROTOCOL, Refusal, ServerMessage, encode};
+use std::time::Duration;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
+use tokio_tungstenite::tungstenite::Message;
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn bad_messages_close_their_sender_and_nobody_else() {
+    let server = Server::start(Limits::default()).await;
+    let mut witness = Plain::join(&server, "witness").await;
+    let drive = |drive: Drive| encode(&ClientMessage::Drive(drive));
+    let view = |eye_m, radius_m| encode(&ClientMessage::View { eye_m, radius_m });
+    let hello = encode(&ClientMessage::Hello { name: "again".to_owned() });
+    let huge_name = encode(&ClientMessage::Hello { name: "x".repeat(5000) });
+    let mut other_version = hello.clone();
+    other_version[0] = PROTOCOL + 1;
+    let bad = Close::BadMessage;
+    let cases: [(&str, Vec<u8>, Close); 13] = [
+        ("nothing", vec![], bad),
+        ("garbage", vec![PROTOCOL, 0xff, 0xff, 0xff, 0xff, 0xff], bad),
+        ("an oversized message", huge_name, bad),
+        ("a very much oversized message", vec![PROTOCOL; 1 << 20], bad),
+        ("a truncated message", view([1.0; 3], 9.0)[..9].to_vec(), bad),
+        ("a message with more after it", [view([1.0; 3], 9.0), vec![0]].concat(), bad),
+        ("another version", other_version, Close::Version),
+        ("a second hello", hello, bad),
+        ("a throttle of NaN", drive(Drive { throttle: f32::NAN, ..Drive::default() }), bad),
+        ("a steer of 2", drive(Drive { steer: 2.0, ..Drive::default() }), bad),
+        ("an eye at infinity", view([0.0, f32::INFINITY, 0.0], 9.0), bad),
+        ("a radius of 513 m", view([0.0; 3], 513.0), bad),
+        ("an acknowledgement of what was never sent", encode(&ClientMessage::Ack { frame: 1_000_000 }), bad),
+    ];
+    for (what, bytes, close) in cases {
+        let mut visitor = Plain::join(&server, "vandal").await;
+        visitor.send(Message::Binary(bytes.into())).await;
+        let (code, reason) = visitor.closed().await;
+        assert_eq!(Close::from_code(code), Some(close), "{what}: {code} {reason}");
+        assert!(!reason.is_empty(), "{what}");
+        assert_eq!(visitor.refusals.contains(&Refusal::BadMessage), close == bad, "{what}");
+        witness.frames_until(|witness| witness.peers.len() == 1).await;
+    }
+    let mut visitor = Plain::join(&server, "vandal").await;
+    visitor.send(Message::Text("hello".into())).await;
+    assert_eq!(visitor.closed().await.0, Close::BadMessage.code());
+    for (bytes, close) in [(vec![0; 3], Close::Version), (view([0.0; 3], 1.0), bad), (vec![PROTOCOL, 99], bad)] {
+        let mut visitor = Plain::connect(&server).await;
+        visitor.send(Message::Binary(bytes.into())).await;
+        assert_eq!(visitor.closed().await.0, close.code(), "in place of the hello");
+    }
+    witness.frame().await;
+    server.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn silence_at_the_door_is_closed() {
+    let limits = Limits { greeting: Duration::from_millis(200), ..Limits::default() };
+    let server = Server::start(limits).await;
+    let mut witness = Plain::join(&server, "witness").await;
+    assert_eq!(Plain::connect(&server).await.closed().await.0, Close::NoHello.code());
+    let mut mute = TcpStream::connect(server.address).await.unwrap();
+    mute.write_all(b"GET / HTTP/1.1\r\nhost:").await.unwrap();
+    let mut answer = Vec::new();
+    within(mute.read_to_end(&mut answer)).await.unwrap();
+    assert!(!String::from_utf8_lossy(&answer).contains("200 OK"), "half a request gets no page");
+    witness.frame().await;
+    server.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_flood_is_closed() {
+    let limits = Limits { messages_per_sec: 50.0, ..Limits::default() };
+    let server = Server::start(limits).await;
+    let mut witness = Plain::join(&server, "witness").await;
+    let mut visitor = Plain::join(&server, "flood").await;
+    for nonce in 0..500 {
+        let ping = encode(&ClientMessage::Ping { nonce });
+        if visitor.socket.feed(Message::Binary(ping.into())).await.is_err() {
+            break;
+        }
+    }
+    let _ = visitor.socket.flush().await;
+    assert_eq!(visitor.closed().await.0, Close::RateLimit.code());
+    assert!(visitor.refusals.contains(&Refusal::RateLimit));
+    witness.frames_until(|witness| witness.peers.len() == 1).await;
+    server.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_client_that_never_reads_or_acknowledges_is_closed() {
+    let limits = Limits { stall: Duration::from_millis(400), ..Limits::default() };
+    let server = Server::start(limits).await;
+    let mut witness = Plain::join(&server, "witness").await;
+    let mut deaf = Plain::join(&server, "deaf").await;
+    let lazy = Plain::join(&server, "lazy").await;
+    witness.frames_until(|witness| witness.peers.len() == 3).await;
+    witness.frames_until(|witness| witness.peers.len() == 1).await;
+    assert_eq!(deaf.closed().await.0, Close::Stalled.code());
+    assert!(deaf.picture.frame <= limits.send.in_flight, "{} frames without an acknowledgement", deaf.picture.frame);
+    drop(lazy);
+    server.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_full_server_says_so_and_has_room_again_later() {
+    let server = Server::start(Limits { clients: 1, ..Limits::default() }).await;
+    let mut first = Plain::join(&server, "first").await;
+    let mut second = Plain::connect(&server).await;
+    second.say(&ClientMessage::Hello { name: "second".to_owned() }).await;
+    assert_eq!(second.closed().await.0, Close::ServerFull.code());
+    assert_eq!(second.refusals, [Refusal::ServerFull]);
+    first.frame().await;
+    first.socket.close(None).await.unwrap();
+    within(async {
+        loop {
+            let mut third = Plain::connect(&server).await;
+            third.say(&ClientMessage::Hello { name: "third".to_owned() }).await;
+            if third.hear().await.is_ok_and(|message| matches!(message, ServerMessage::Welcome { .. })) {
+                break;
+            }
+        }
+    })
+    .await;
+    server.stop().await;
+}

@@ -1,0 +1,12 @@
+//! The server as its visitors meet it, on a free port: what good ones get, and that bad ones are closed with a reason and disturb nobody.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bad_visitors;
+mod encrypted;
+mod pages;
+mod running;
+mod sharing;
+mod small_world;
+mod visitor;

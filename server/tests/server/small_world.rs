@@ -1,0 +1,105 @@
+//! A world small enough to know by heart.
+
+use server::runner::Simulation;
+use server::scenes::LoadedScene;
+use server::snapshot::{PatchCodes, Snapshot, WindFrame};
+use server::world::Command;
+use shared::scene::{Patches, Scene, TerrainMaps, VehicleKind, Wind};
+use shared::terrain::{CoverMap, HeightMap};
+use shared::wire::{ObjectId, ObjectPose};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+const CELLS: usize = 8;
+const PATCHES: usize = 9;
+const WIND_CELLS: [u32; 3] = [4, 2, 4];
+pub(crate) const OBJECT_LIMIT: usize = 3;
+
+/// A small world that is never still: one patch after the other changes, and objects move as they are driven.
+#[derive(Default)]
+pub(crate) struct Meadow {
+    tick: u64,
+    objects: BTreeMap<u32, ObjectPose>,
+    throttle: BTreeMap<u32, f32>,
+    pub(crate) fails_at: Option<u64>,
+}
+
+impl Simulation for Meadow {
+    fn step(&mut self, commands: &[Command]) {
+        self.tick += 1;
+        assert_ne!(Some(self.tick), self.fails_at, "told to fail");
+        for command in commands {
+            match *command {
+                Command::Spawn { client, kind } if self.objects.len() < OBJECT_LIMIT => {
+                    self.objects.insert(client, pose(client, kind));
+                }
+                Command::Remove { client } => {
+                    self.objects.remove(&client);
+                }
+                Command::Drive { client, drive } => {
+                    self.throttle.insert(client, drive.throttle);
+                }
+                Command::Spawn { .. } | Command::Views(_) => {}
+            }
+        }
+        for (client, object) in &mut self.objects {
+            object.position_m[2] -= self.throttle.get(client).copied().unwrap_or(0.0);
+        }
+    }
+
+    fn snapshot(&mut self) -> Snapshot {
+        let patch = |index: usize| {
+            let tick = self.tick / PATCHES as u64 * PATCHES as u64 + index as u64;
+            let codes = (0..3 * CELLS * CELLS).map(|i| ((tick as usize + i * index) % 200) as i8 / 2).collect();
+            Some(Arc::new(PatchCodes { tick, codes }))
+        };
+        let wind = WindFrame { tick: self.tick, cells: WIND_CELLS, codes: vec![(self.tick % 100) as i8; 96] };
+        Snapshot {
+            tick: self.tick,
+            time_secs: self.tick as f64 / 60.0,
+            objects: self.objects.values().copied().collect(),
+            wind: Arc::new(wind),
+            patches: (0..PATCHES).map(patch).collect(),
+            ..Snapshot::default()
+        }
+    }
+
+    fn object_of(&self, client: u32) -> Option<ObjectId> {
+        self.objects.get(&client).map(|pose| pose.id)
+    }
+}
+
+fn pose(client: u32, kind: VehicleKind) -> ObjectPose {
+    ObjectPose { id: 100 + client, kind, position_m: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0], velocity_m_per_s: [0.0; 3], part_rad: 0.0 }
+}
+
+pub(crate) fn scene() -> LoadedScene {
+    let terrain = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [1.0, 1.0], level_m: 0.1, base_m: 0.0 };
+    let patches = Patches { count: [3, 3], cells: CELLS as u32, cell_m: 1.0, ..Patches::default() };
+    let wind = Wind { cells: WIND_CELLS, ..Wind::default() };
+    let scene = Scene {
+        summary: "a test".to_owned(),
+        seed: 1,
+        tick_hz: 120.0,
+        patches,
+        terrain,
+        wind,
+        grass: Default::default(),
+        plants: Default::default(),
+        objects: Default::default(),
+        camera: Default::default(),
+        light: Default::default(),
+    };
+    let mut png_bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png_bytes, 2, 2);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.write_header().unwrap().write_image_data(&[255; 4]).unwrap();
+    LoadedScene {
+        height: HeightMap::from_png(&png_bytes, &scene.terrain).unwrap(),
+        cover: CoverMap::from_png(&png_bytes).unwrap(),
+        height_png: png_bytes.clone(),
+        covering_png: png_bytes,
+        scene,
+        models: Vec::new(),
+    }
+}
