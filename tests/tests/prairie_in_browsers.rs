@@ -41,7 +41,7 @@ impl Prairie {
     async fn visitor(&self, name: &str) -> Result<Browser> {
         let url = format!("http://{}/?quality=low&panel=0&paused=1&name={name}", self.addr);
         let browser = Browser::open(&url).await?;
-        browser.until("(s => s && s.connected && s.time_secs > 0 && s.patches_known > 0)(window.prairie.state())").await?;
+        browser.until("(s => s && s.connected && s.time_secs > 0)(window.prairie.state())").await?;
         picture(&browser, 0.0).await?;
         Ok(browser)
     }

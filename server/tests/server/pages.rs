@@ -22,7 +22,7 @@ async fn everybody_is_told_when_the_server_stops() {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_fault_in_the_world_ends_the_run_with_an_error() {
-    let world = Meadow { fails_at: Some(20), ..Meadow::default() };
+    let world = Meadow::failing_at(20);
     let (server, _) = Server::start_with(world, Limits::default(), None).await;
     assert!(matches!(within(server.outcome).await.unwrap(), Err(RunError::WorldStopped)));
 }

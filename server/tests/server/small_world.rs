@@ -21,7 +21,14 @@ pub(crate) struct Meadow {
     tick: u64,
     objects: BTreeMap<u32, ObjectPose>,
     throttle: BTreeMap<u32, f32>,
-    pub(crate) fails_at: Option<u64>,
+    fails_at: Option<u64>,
+}
+
+impl Meadow {
+    /// A world that panics at step `tick`.
+    pub(crate) fn failing_at(tick: u64) -> Self {
+        Self { fails_at: Some(tick), ..Self::default() }
+    }
 }
 
 impl Simulation for Meadow {
