@@ -67,7 +67,7 @@ impl Weather {
         let [nx, _, nz] = config.cells;
         let [dx, _, dz] = config.spacing_m;
         let wraps = scene.wind.sides == WindBoundary::Wrap;
-        let ground = GroundWind { nodes: [nx, nz], spacing_m: [dx, dz], wraps, sustained: vec![] };
+        let ground = GroundWind { nodes: [nx, nz], spacing_m: [dx, dz], wraps, tick: 0, sustained: vec![] };
         let frame = Arc::new(WindFrame::default());
         let bend_rad = scene.grass.wind_bend_rad;
         let mut weather = Self { solver, config, ticks_per_step: ticks_per_step as u64, step_secs, bend_rad, report, ground, frame };
@@ -75,13 +75,21 @@ impl Weather {
         Ok(weather)
     }
 
-    /// Blows on, every so many ticks, by as much time.
+    /// Blows on, every so many ticks, by as much time. The thirds of the solver's step are spread over those ticks, so that no tick is
+    /// much longer than another.
     pub fn step(&mut self, tick: u64, motions: &[Motion], height: &HeightMap) {
-        if !tick.is_multiple_of(self.ticks_per_step) {
+        let (ticks, phase) = (self.ticks_per_step, (tick - 1) % self.ticks_per_step + 1);
+        let is_due = |third: u64| phase == (third * ticks).div_ceil(3);
+        // What `begin` refuses, `finish` refuses too.
+        let begun = if is_due(1) { self.solver.begin(self.step_secs) } else { Ok(()) };
+        if is_due(2) {
+            self.solver.carry_on();
+        }
+        if !is_due(3) {
             return;
         }
         let jets: Vec<_> = motions.iter().filter_map(|motion| jet(motion, height)).collect();
-        match self.solver.step(self.step_secs, &jets) {
+        match begun.and_then(|()| self.solver.finish(self.step_secs, &jets)) {
             Ok(report) => self.report = report,
             // The state is lost: the air starts anew from the mean wind.
             Err(_) => self.solver = WindSolver::new(&self.config).expect("the same settings were accepted before"),
@@ -113,6 +121,7 @@ impl Weather {
         let [nx, ny, nz] = self.config.cells;
         let cells = nx * ny * nz;
         let mut codes = vec![0; 3 * cells];
+        self.ground.tick = tick;
         self.ground.sustained.clear();
         for (at, velocity) in self.solver.cell_velocities().enumerate() {
             for (plane, component) in velocity.to_array().into_iter().enumerate() {

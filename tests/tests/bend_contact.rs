@@ -16,7 +16,7 @@ use tests::worlds;
 const DT_SECS: f32 = 1.0 / 60.0;
 
 fn still_air() -> GroundWind {
-    GroundWind { nodes: [1, 1], spacing_m: [8.0; 2], wraps: true, sustained: vec![[0.0; 3]] }
+    GroundWind { nodes: [1, 1], spacing_m: [8.0; 2], wraps: true, tick: 0, sustained: vec![[0.0; 3]] }
 }
 
 fn meadow(scene: &Scene) -> Meadow {
@@ -150,7 +150,7 @@ fn grass_in_view_leans_with_the_wind_and_keeps_its_tracks() {
     let mut meadow = meadow(&scene);
     let sustained = server::bend::air::sustained([6.0, 0.0], scene.grass.wind_bend_rad);
     assert!((sustained[0] - 0.18).abs() < 1e-6, "half a radian times 0.6²");
-    let wind = GroundWind { sustained: vec![sustained], ..still_air() };
+    let wind = GroundWind { tick: 1, sustained: vec![sustained], ..still_air() };
     let view = View { client: 0, eye_m: [32.0, 2.0, 32.0], radius_m: 200.0 };
     for _ in 0..600 {
         meadow.step(DT_SECS, &[], &[view], &wind);

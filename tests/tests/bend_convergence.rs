@@ -127,6 +127,32 @@ fn the_stability_bound_is_where_the_scheme_fails() {
     }
 }
 
+/// A strike elsewhere makes all grass take shorter sub-steps for a tick; grass that rises meanwhile must not notice.
+#[test]
+fn a_changing_sub_step_leaves_the_motion_as_it_was() {
+    const TICK_SECS: f32 = 1.0 / 60.0;
+    let params = WaveParams { c0_m_per_s: 0.0, theta_damping_per_s: 2.0, stiffness_per_s2: 9.0, ..WAVE };
+    let risen = |substeps: &dyn Fn(u32) -> u32| {
+        let mut patch = Patch::new(8);
+        patch.press(3, 3, Bend { theta: 1.0, omega: [0.0; 2] });
+        for tick in 0..45 {
+            let count = substeps(tick);
+            let k = Coefficients::new(&params, 0.25, TICK_SECS / count as f32);
+            for _ in 0..count {
+                verlet::step(&mut patch, &k);
+            }
+        }
+        f64::from(patch.bend(3, 3).theta)
+    };
+    // θ'' = −κθ − kθ' from rest.
+    let (t, beta, omega) = (0.75, 1.0, 8.0_f64.sqrt());
+    let exact = f64::exp(-beta * t) * ((omega * t).cos() + beta / omega * (omega * t).sin());
+    let steady = risen(&|_| 1) - exact;
+    let struck = risen(&|tick| if tick % 3 == 0 { 7 } else { 1 }) - exact;
+    println!("error with one sub-step a tick {steady:.4}, with seven now and then {struck:.4}");
+    assert!(struck.abs() < 1.5 * steady.abs().max(5e-3), "{struck} against {steady}");
+}
+
 /// Presses a few cells near `(x, z)`, wherever they lie.
 fn press(field: &mut Field, [x, z]: [usize; 2], [theta, u, w]: [f32; 3]) {
     let layout = *field.layout();

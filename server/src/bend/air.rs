@@ -73,6 +73,8 @@ pub struct GroundWind {
     pub spacing_m: [f32; 2],
     /// Whether the grid repeats; else the nearest node holds beyond it.
     pub wraps: bool,
+    /// Step of the world that it belongs to.
+    pub tick: u64,
     /// Bend (rad) and bending velocity (rad/s) at the nodes, x fastest.
     pub sustained: Vec<[f32; CHANNELS]>,
 }
@@ -130,17 +132,26 @@ pub struct Sway {
     before: Force,
     target: Force,
     force: Force,
+    /// Step of the wind that the target is of; none: still air.
+    aimed_at: Option<u64>,
+    /// Sub-step (s) between the two states; none before the first.
+    dt_secs: Option<f32>,
 }
 
 impl Sway {
     /// Grass upright in still air, on a patch of `side × side` cells.
     pub fn new(side: usize) -> Self {
         let zero = Force::zero(side);
-        Self { now: zero.clone(), before: zero.clone(), target: zero.clone(), force: zero }
+        Self { now: zero.clone(), before: zero.clone(), target: zero.clone(), force: zero, aimed_at: None, dt_secs: None }
     }
 
     /// Takes the wind on; none: still air.
     pub fn aim(&mut self, wind: Option<&GroundWind>, layout: &PatchLayout, patch: PatchIndex) {
+        let aimed_at = wind.map(|wind| wind.tick);
+        if aimed_at == self.aimed_at {
+            return;
+        }
+        self.aimed_at = aimed_at;
         match wind {
             Some(wind) => wind.sample(layout, patch, &mut self.target),
             None => self.target.nodes.iter_mut().for_each(|nodes| nodes.fill(0.0)),
@@ -152,16 +163,18 @@ impl Sway {
         self.now.nodes.iter().flatten().fold(0.0, |largest, value| value.abs().max(largest))
     }
 
-    /// Follows the wind for a sub-step of `dt_secs` and returns the force that carries the grass along.
-    pub fn advance(&mut self, k: &Coefficients, dt_secs: f32) -> &Force {
+    /// Follows the wind for a sub-step and returns the force that carries the grass along.
+    pub fn advance(&mut self, k: &Coefficients) -> &Force {
+        let dt_secs = k.dt_secs;
         let share = dt_secs / (FOLLOWS_SECS + dt_secs);
+        let ratio = self.dt_secs.replace(dt_secs).map_or(1.0, |last| dt_secs / last);
         for channel in 0..CHANNELS {
             let memory = 1.0 - if channel == 0 { k.lambda_theta } else { k.lambda_omega };
             let targets = self.target.nodes[channel].iter();
             let states = self.now.nodes[channel].iter_mut().zip(&mut self.before.nodes[channel]);
             for ((target, (now, before)), force) in targets.zip(states).zip(&mut self.force.nodes[channel]) {
                 let next = *now + (target - *now) * share;
-                *force = (next - *now) - memory * (*now - *before) + k.restoring * *now;
+                *force = (next - *now) - memory * ratio * (*now - *before) + k.restoring * *now;
                 *before = *now;
                 *now = next;
             }

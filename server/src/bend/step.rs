@@ -35,7 +35,7 @@ pub fn propagate(
             .par_iter_mut()
             .zip(sways.par_iter_mut())
             .map(|(lane, sway)| {
-                let force = sway.as_mut().map(|sway| sway.advance(&k, dt_secs));
+                let force = sway.as_mut().map(|sway| sway.advance(&k));
                 let extremes = lane.step(&k, force);
                 Trace { patch: lane.index, extremes, rims: lane.rims() }
             })

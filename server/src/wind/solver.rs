@@ -1,6 +1,7 @@
 //! The solver: the state of the air, and one step of it.
 
 use glam::Vec3;
+use std::ops::RangeBounds;
 
 use super::config::{Config, ConfigError, Dust};
 use super::footprint::Footprint;
@@ -171,8 +172,36 @@ impl<R: Real> Solver<R> {
     /// # Errors
     /// See [`StepError`].
     pub fn step(&mut self, dt_secs: f32, jets: &[Jet]) -> Result<StepReport, StepError> {
+        self.check(dt_secs, jets)?;
+        self.begin(dt_secs)?;
+        self.carry_on();
+        self.finish(dt_secs, jets)
+    }
+
+    /// The first third of [`Solver::step`], for a caller who has no time for a whole step at once: `begin`, [`carry_on`](Self::carry_on)
+    /// and [`finish`](Self::finish) in this order are a step, with the same bits. What is read of the air's velocity at the centres of
+    /// cells meanwhile is that of the step before.
+    ///
+    /// # Errors
+    /// See [`StepError`]; nothing was changed.
+    pub fn begin(&mut self, dt_secs: f32) -> Result<(), StepError> {
+        self.check(dt_secs, &[])?;
+        trace::trace(&self.grid, &self.centres, R::of(dt_secs.into()), &mut self.paths);
+        self.carry(..1);
+        Ok(())
+    }
+
+    /// The second third of [`Solver::step`].
+    pub fn carry_on(&mut self) {
+        self.carry(1..);
+    }
+
+    /// The last third of [`Solver::step`].
+    ///
+    /// # Errors
+    /// See [`StepError`].
+    pub fn finish(&mut self, dt_secs: f32, jets: &[Jet]) -> Result<StepReport, StepError> {
         let substeps = self.check(dt_secs, jets)?;
-        self.advect(dt_secs);
         self.push(dt_secs, jets);
         boundary::close_walls(&self.grid, &mut self.velocity);
         self.diffuse(dt_secs, substeps);
@@ -208,12 +237,12 @@ impl<R: Real> Solver<R> {
         })
     }
 
-    fn advect(&mut self, dt_secs: f32) {
-        let (grid, scheme) = (&self.grid, self.config.advection);
-        trace::trace(grid, &self.centres, R::of(dt_secs.into()), &mut self.paths);
-        for (field, next) in self.velocity.0.iter_mut().zip(&mut self.next_velocity.0).chain(self.dust.iter_mut().zip(&mut self.next_dust))
-        {
-            advect::advect(scheme, grid, &self.paths, field, next, &mut self.advection);
+    /// Carries some of the fields, u, v, w and dust, along the paths.
+    fn carry(&mut self, which: impl RangeBounds<usize>) {
+        let velocities = self.velocity.0.iter_mut().zip(&mut self.next_velocity.0);
+        let fields = velocities.chain(self.dust.iter_mut().zip(&mut self.next_dust)).enumerate();
+        for (_, (field, next)) in fields.filter(|(index, _)| which.contains(index)) {
+            advect::advect(self.config.advection, &self.grid, &self.paths, field, next, &mut self.advection);
             std::mem::swap(field, next);
         }
     }

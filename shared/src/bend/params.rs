@@ -35,6 +35,8 @@ impl From<&Grass> for WaveParams {
 /// What a sub-step of `dt` seconds multiplies with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
+    /// Length of the sub-step (s).
+    pub dt_secs: f32,
     /// λ_θ = 1 − exp(−k_θ·dt).
     pub lambda_theta: f32,
     /// λ_ω = 1 − exp(−k_ω·dt).
@@ -54,6 +56,7 @@ impl Coefficients {
     pub fn new(params: &WaveParams, cell_m: f32, dt_secs: f32) -> Self {
         let r_omega = params.c_omega_m_per_s * dt_secs / cell_m;
         Self {
+            dt_secs,
             lambda_theta: damping(params.theta_damping_per_s, dt_secs),
             lambda_omega: damping(params.omega_damping_per_s, dt_secs),
             r0: params.c0_m_per_s * dt_secs / cell_m,

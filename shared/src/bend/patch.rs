@@ -24,13 +24,15 @@ pub struct Patch {
     pub(super) now: [Vec<f32>; CHANNELS],
     /// Channels one sub-step earlier; ghosts are unused.
     pub(super) before: [Vec<f32>; CHANNELS],
+    /// Sub-step (s) between the two times; none before the first.
+    dt_secs: Option<f32>,
 }
 
 impl Patch {
     /// A patch at rest.
     pub fn new(side: usize) -> Self {
         let zeros = || vec![0.0; (side + 2) * (side + 2)];
-        Self { side, now: std::array::from_fn(|_| zeros()), before: std::array::from_fn(|_| zeros()) }
+        Self { side, now: std::array::from_fn(|_| zeros()), before: std::array::from_fn(|_| zeros()), dt_secs: None }
     }
 
     /// Cells along one side.
@@ -70,6 +72,15 @@ impl Patch {
         let at = self.at(i, j);
         for (channel, value) in [bend.theta, bend.omega[0], bend.omega[1]].into_iter().enumerate() {
             self.now[channel][at] = value;
+        }
+    }
+
+    /// Takes up a sub-step of another length: the earlier state moves along the line through both, so that every rate of change stays.
+    pub(super) fn retime(&mut self, dt_secs: f32) {
+        let ratio = self.dt_secs.replace(dt_secs).map_or(1.0, |last| dt_secs / last);
+        if ratio != 1.0 {
+            let pairs = self.now.iter().flatten().zip(self.before.iter_mut().flatten());
+            pairs.for_each(|(now, before)| *before = now - (now - *before) * ratio);
         }
     }
 

@@ -1,7 +1,8 @@
 //! Explicit Verlet propagation (001 Eqs 2–6) with its stability bound.
 //!
 //! With λ = 1 − exp(−k·dt) and r = c·dt/h a cell becomes
-//! `θ⁺ = (2 − λ)·θ − (1 − λ)·θ⁻ + r²·(Σ neighbours − 4θ) − κ·dt²·θ`, likewise for both components of ω.
+//! `θ⁺ = (2 − λ)·θ − (1 − λ)·θ⁻ + r²·(Σ neighbours − 4θ) − κ·dt²·θ`, likewise for both components of ω. When dt changes,
+//! θ⁻ is moved first, to keep (θ − θ⁻)/dt.
 
 use super::extremes::LargestOf;
 use super::force::{Added, Band, NODE_CELLS};
@@ -41,11 +42,6 @@ pub fn substeps(params: &WaveParams, cell_m: f32, dt_secs: f32, omega_max_rad_pe
     enough
 }
 
-/// Largest stable step (s): `dt_secs` over [`substeps`].
-pub fn stable_dt(params: &WaveParams, cell_m: f32, dt_secs: f32, omega_max_rad_per_s: f32) -> f32 {
-    dt_secs / substeps(params, cell_m, dt_secs, omega_max_rad_per_s) as f32
-}
-
 /// Advances one patch by a sub-step; its ghosts must hold the neighbours' newest values. Returns the extremes of the new
 /// state.
 pub fn step(patch: &mut Patch, k: &Coefficients) -> Extremes {
@@ -72,6 +68,7 @@ impl Seams for Alone {
 /// Advances row by row, in place over the state before; the values of `force` are added to the new state.
 #[inline(always)]
 pub(super) fn advance(patch: &mut Patch, k: &Coefficients, force: Option<&Force>, seams: &mut impl Seams) -> Extremes {
+    patch.retime(k.dt_secs);
     let side = patch.side();
     let (mut largest, mut band) = (LargestOf::default(), Band::zero(side));
     for j in 0..side {
