@@ -15,13 +15,6 @@ pub struct Frame {
     pub messages: Vec<Bytes>,
 }
 
-impl Frame {
-    /// Sum of the messages' sizes (bytes).
-    pub fn len_bytes(&self) -> usize {
-        self.messages.iter().map(Bytes::len).sum()
-    }
-}
-
 /// Where a client looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gaze {

@@ -89,15 +89,6 @@ impl Patch {
         self.before.clone_from(&self.now);
     }
 
-    /// Adds to the state of cell `(i, j)` at both times, as [`press`](Self::press) does.
-    pub fn nudge(&mut self, i: usize, j: usize, by: Bend) {
-        let at = self.at(i, j);
-        for (channel, value) in [by.theta, by.omega[0], by.omega[1]].into_iter().enumerate() {
-            self.now[channel][at] += value;
-            self.before[channel][at] += value;
-        }
-    }
-
     /// Channels θ, ωx, ωz with their ghosts.
     pub fn channels(&self) -> [&[f32]; CHANNELS] {
         std::array::from_fn(|channel| self.now[channel].as_slice())

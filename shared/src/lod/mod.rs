@@ -23,12 +23,6 @@ pub fn billboards_per_side(plants: u32, grids_away: u32) -> u32 {
     (plants.max(2) - 1).div_ceil(billboard_plants(grids_away) - 1)
 }
 
-/// Share of a grid that is drawn as single plants, the rest as billboards, while the camera's transition sphere touches
-/// the grid's border (000 §6.1): 0 when the border is `radius_m` away or more, 1 when it is reached.
-pub fn fade(border_distance_m: f32, radius_m: f32) -> f32 {
-    (1.0 - border_distance_m / radius_m).clamp(0.0, 1.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -39,10 +33,5 @@ mod tests {
         for (grids_away, plants, per_side) in table {
             assert_eq!((billboard_plants(grids_away), billboards_per_side(32, grids_away)), (plants, per_side));
         }
-    }
-
-    #[test]
-    fn the_fade_runs_from_the_sphere_to_the_border() {
-        assert_eq!((fade(4.0, 4.0), fade(1.0, 4.0), fade(0.0, 4.0), fade(9.0, 4.0)), (0.0, 0.75, 1.0, 0.0));
     }
 }
