@@ -3,6 +3,7 @@
 pub mod browser;
 pub mod chromedriver;
 pub mod gauss_seidel;
+pub mod maps;
 pub mod norms;
 pub mod pages;
 pub mod picture;

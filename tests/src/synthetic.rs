@@ -1,6 +1,7 @@
 //! A small world without a server: hills, a covering map, gusts, a bent track, a helicopter's wash, some objects. It comes as
 //! the messages that a server would send, so that the whole path of the client is taken.
 
+use crate::maps;
 use client_wasm::state::Mirror;
 use glam::{Quat, Vec2, Vec3};
 use shared::grid::PatchLayout;
@@ -40,8 +41,8 @@ fn messages() -> Vec<ServerMessage> {
     let levels: Vec<u16> =
         (0..MAP_PX * MAP_PX).map(|i| (height_m((i % MAP_PX) as f32 * PIXEL_M, (i / MAP_PX) as f32 * PIXEL_M) / LEVEL_M) as u16).collect();
     let height_bytes: Vec<u8> = levels.iter().flat_map(|level| level.to_be_bytes()).collect();
-    let height_png = grey_png(MAP_PX, png::BitDepth::Sixteen, &height_bytes);
-    let covering_png = grey_png(256, png::BitDepth::Eight, &covering());
+    let height_png = maps::png(png::ColorType::Grayscale, png::BitDepth::Sixteen, [MAP_PX; 2], &height_bytes);
+    let covering_png = maps::grey_png([256; 2], &covering());
     let heights = HeightMap::from_png(&height_png, &scene.terrain).expect("a height map");
     let layout = PatchLayout::from(&scene.patches);
     let mut messages = vec![
@@ -99,17 +100,6 @@ fn covering() -> Vec<u8> {
             }
         })
         .collect()
-}
-
-fn grey_png(side: u32, depth: png::BitDepth, bytes: &[u8]) -> Vec<u8> {
-    let mut out = Vec::new();
-    let mut encoder = png::Encoder::new(&mut out, side, side);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.set_depth(depth);
-    let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(bytes).expect("the pixels");
-    writer.finish().expect("an end");
-    out
 }
 
 fn wind(scene: &Scene) -> ServerMessage {

@@ -1,5 +1,6 @@
 //! Small worlds to test with, made without files.
 
+use crate::maps::grey_png;
 use server::world::{Maps, World};
 use shared::scene::Scene;
 use shared::terrain::{CoverMap, HeightMap};
@@ -36,7 +37,7 @@ pub fn maps(scene: &Scene, height_m: impl Fn(f32, f32) -> f32, cover: impl Fn(f3
     let heights = (0..width * depth).map(|i| height_m(at(i).0, at(i).1)).collect();
     let ids: Vec<u8> = (0..width * depth).map(|i| cover(at(i).0, at(i).1)).collect();
     let height = HeightMap::from_heights(width, depth, [2.0; 2], heights);
-    Maps { height, cover: CoverMap::from_png(&grey_png(width, depth, &ids)).expect("a grey PNG of eight bits") }
+    Maps { height, cover: CoverMap::from_png(&grey_png([width, depth], &ids)).expect("a grey PNG of eight bits") }
 }
 
 /// Flat land, all grass.
@@ -57,16 +58,4 @@ pub fn hills(scene: &Scene) -> World {
         _ => 255,
     };
     World::new(scene, maps(scene, hills_m, cover)).expect("the default constants make a world")
-}
-
-/// A grey PNG of 8 bits a pixel.
-pub fn grey_png(width: u32, depth: u32, levels: &[u8]) -> Vec<u8> {
-    let mut bytes = vec![];
-    let mut encoder = png::Encoder::new(&mut bytes, width, depth);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.set_depth(png::BitDepth::Eight);
-    let mut writer = encoder.write_header().expect("a header fits into memory");
-    writer.write_image_data(levels).expect("one level a pixel");
-    writer.finish().expect("an image fits into memory");
-    bytes
 }
