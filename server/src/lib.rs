@@ -7,6 +7,7 @@
 pub mod bend;
 pub mod bucket;
 mod config;
+mod file;
 pub mod inspect;
 pub mod net;
 pub mod objects;
@@ -54,6 +55,9 @@ pub enum RunError {
 }
 
 /// Serves the scene on `listener` until `shutdown` completes; then says goodbye to the clients and ends every thread.
+///
+/// `shutdown` is first polled once the world is made, the recording open and every thread started, so it may begin by telling
+/// where the page is.
 ///
 /// # Errors
 /// [`RunError`] when the world cannot be made or its thread fails.

@@ -53,6 +53,8 @@ pub struct Health {
     pub divergence_rms: f32,
     /// Mean kinetic energy of the wind (J/kg).
     pub wind_energy: f64,
+    /// Times since the start that the wind was lost and began anew from its mean.
+    pub wind_resets: u64,
     /// Sum of θ² + ω² over the bend field (mixed units).
     pub bend_energy: f64,
     /// Patches that are awake.

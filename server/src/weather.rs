@@ -34,6 +34,7 @@ pub struct Weather {
     step_secs: f32,
     bend_rad: f32,
     report: StepReport,
+    resets: u64,
     ground: GroundWind,
     frame: Arc<WindFrame>,
 }
@@ -49,6 +50,17 @@ pub enum WeatherError {
     Step(#[from] StepError),
 }
 
+/// Whether a solver takes the settings of `scene`, asked without making one.
+///
+/// # Errors
+/// As [`Weather::new`], but for a wind that is lost while it warms up.
+pub fn check(scene: &Scene) -> Result<(), WeatherError> {
+    let config = config(scene);
+    config.validate()?;
+    let (_, step_secs) = rhythm(scene);
+    Ok(WindSolver::check_step(&config, step_secs)?)
+}
+
 impl Weather {
     /// The wind of `scene`, which has blown for a while.
     ///
@@ -57,8 +69,7 @@ impl Weather {
     pub fn new(scene: &Scene) -> Result<Self, WeatherError> {
         let config = config(scene);
         let mut solver = WindSolver::new(&config)?;
-        let ticks_per_step = (STEP_SECS * scene.tick_hz).ceil().max(1.0);
-        let step_secs = ticks_per_step * scene.dt_secs();
+        let (ticks_per_step, step_secs) = rhythm(scene);
         let cells: usize = config.cells.iter().product();
         let mut report = solver.step(step_secs, &[])?;
         for _ in 1..(WARM_UP_CELL_STEPS / cells).clamp(1, WARM_UP_STEPS) {
@@ -70,7 +81,7 @@ impl Weather {
         let ground = GroundWind { nodes: [nx, nz], spacing_m: [dx, dz], wraps, tick: 0, sustained: vec![] };
         let frame = Arc::new(WindFrame::default());
         let bend_rad = scene.grass.wind_bend_rad;
-        let mut weather = Self { solver, config, ticks_per_step: ticks_per_step as u64, step_secs, bend_rad, report, ground, frame };
+        let mut weather = Self { solver, config, ticks_per_step, step_secs, bend_rad, report, resets: 0, ground, frame };
         weather.observe(0);
         Ok(weather)
     }
@@ -92,7 +103,10 @@ impl Weather {
         match begun.and_then(|()| self.solver.finish(self.step_secs, &jets)) {
             Ok(report) => self.report = report,
             // The state is lost: the air starts anew from the mean wind.
-            Err(_) => self.solver = WindSolver::new(&self.config).expect("the same settings were accepted before"),
+            Err(_) => {
+                self.solver = WindSolver::new(&self.config).expect("the same settings were accepted before");
+                self.resets += 1;
+            }
         }
         self.observe(tick);
     }
@@ -110,6 +124,11 @@ impl Weather {
     /// What the newest step did.
     pub fn report(&self) -> StepReport {
         self.report
+    }
+
+    /// Times that a step failed and the wind began anew from its mean.
+    pub fn resets(&self) -> u64 {
+        self.resets
     }
 
     /// Velocities at the cells' centres (m/s).
@@ -133,6 +152,12 @@ impl Weather {
         }
         self.frame = Arc::new(WindFrame { tick, cells: [nx, ny, nz].map(|n| n as u32), codes });
     }
+}
+
+/// Ticks from one step of the solver to the next, and the time that they take (s).
+fn rhythm(scene: &Scene) -> (u64, f32) {
+    let ticks = (STEP_SECS * scene.tick_hz).ceil().max(1.0);
+    (ticks as u64, ticks * scene.dt_secs())
 }
 
 fn config(scene: &Scene) -> Config {
@@ -173,4 +198,27 @@ fn jet(motion: &Motion, height: &HeightMap) -> Option<Jet> {
     }
     let wake = Jet { position_m: Vec3::new(x, above_m, z), radius_m: WAKE_RADIUS_M, velocity_m_per_s: velocity, rate_per_sec: WAKE_PER_S };
     (velocity.length() > WAKE_FROM_M_PER_S).then_some(wake)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::objects::Stand;
+
+    #[test]
+    fn a_wind_that_is_lost_begins_anew_and_is_counted() {
+        let scene = crate::scenes::load("meadow").unwrap().scene;
+        let height = HeightMap::from_heights(2, 2, [256.0; 2], vec![0.0; 4]);
+        let mut weather = Weather::new(&scene).unwrap();
+        let stand = Stand { position_m: [64.0, 5.0, 64.0], rotation: [0.0, 0.0, 0.0, 1.0] };
+        let thrown = Motion { kind: VehicleKind::Helicopter, from: stand, to: stand, velocity_m_per_s: [f32::MAX; 3] };
+        let mut blow = |motions: &[Motion]| {
+            let ticks = weather.ticks_per_step;
+            (1..=ticks).for_each(|tick| weather.step(tick, motions, &height));
+            (weather.resets(), weather.velocities().all(Vec3::is_finite))
+        };
+        assert_eq!(blow(&[]), (0, true));
+        assert_eq!(blow(&[thrown]), (1, true));
+        assert_eq!(blow(&[]), (1, true));
+    }
 }

@@ -4,10 +4,12 @@ use crate::bend::Meadow;
 pub use crate::bend::View;
 use crate::objects::{Objects, Place, SPEED_LIMIT_M_PER_S};
 use crate::snapshot::{Health, PatchCodes, Snapshot};
-use crate::weather::{Weather, WeatherError};
+use crate::weather::{self, Weather, WeatherError};
+use crate::wind::StepError;
+use crate::wind::solver::MAX_SUBSTEPS;
 use rayon::prelude::*;
 use shared::bend::{Patch, WaveParams, verlet};
-use shared::scene::{Scene, VehicleKind};
+use shared::scene::{Grass, Patches, Scene, VehicleKind};
 use shared::terrain::{CoverMap, HeightMap};
 use shared::wire::quantise;
 use shared::wire::{Drive, ObjectId};
@@ -52,32 +54,20 @@ pub struct Maps {
     pub cover: CoverMap,
 }
 
-/// Why a scene makes no world.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum WorldError {
-    /// The wind solver refuses the settings of `wind`.
-    #[error(transparent)]
-    Wind(#[from] WeatherError),
-    /// Grass that carries bends too fast for its cells.
-    #[error(
-        "grass: c0_m_per_s = {c0_m_per_s}, mu_m_per_rad = {mu_m_per_rad}, c_omega_m_per_s = {c_omega_m_per_s}, stiffness_per_s2 = {stiffness_per_s2} need {needed} sub-steps of 1/{tick_hz} s on cells of {cell_m} m when an object strikes at {SPEED_LIMIT_M_PER_S} m/s; allowed: {SUBSTEP_LIMIT}. Take smaller values, larger cells or a higher tick_hz"
-    )]
-    Stiff {
-        /// As in the scene.
-        c0_m_per_s: f32,
-        /// As in the scene.
-        mu_m_per_rad: f32,
-        /// As in the scene.
-        c_omega_m_per_s: f32,
-        /// As in the scene.
-        stiffness_per_s2: f32,
-        /// As in the scene.
-        tick_hz: f32,
-        /// As in the scene.
-        cell_m: f32,
-        /// Sub-steps it would take.
-        needed: u32,
-    },
+/// Constants of a scene that are each in range and make no world together.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("`{field}` {message}")]
+pub struct WorldError {
+    /// Path of the scene's field that is to be mended first, such as `grass.mu_m_per_rad`.
+    pub field: &'static str,
+    /// What is wrong, with the values and what is allowed; reads on after the path.
+    pub message: String,
+}
+
+/// What keeps `scene` from being a world, without making one.
+pub fn misfits(scene: &Scene) -> Vec<WorldError> {
+    let calm = weather::check(scene).map_err(|error| no_wind(scene, error));
+    check_stiffness(scene).err().into_iter().chain(calm.err()).collect()
 }
 
 /// Objects, wind and grass.
@@ -100,7 +90,7 @@ impl World {
     /// [`WorldError`] when constants that are each in range make no world together.
     pub fn new(scene: &Scene, maps: Maps) -> Result<Self, WorldError> {
         check_stiffness(scene)?;
-        let weather = Weather::new(scene)?;
+        let weather = Weather::new(scene).map_err(|error| no_wind(scene, error))?;
         let height = Arc::new(maps.height);
         let place = Place { height: Arc::clone(&height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
         let meadow = Meadow::new(scene, Arc::clone(&height));
@@ -145,6 +135,7 @@ impl World {
                 bend_energy: self.meadow.activity(),
                 awake_patches: self.meadow.field().awake_count() as u32,
                 evicted_patches: self.meadow.evicted(),
+                wind_resets: self.weather.resets(),
                 substeps: bend.substeps,
                 courant: bend.courant,
                 ..Health::default()
@@ -235,14 +226,54 @@ fn codes_of(patch: &Patch) -> Vec<i8> {
 }
 
 fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
-    let (params, cell_m) = (WaveParams::from(&scene.grass), scene.patches.cell_m);
-    let strike_m = VehicleKind::ALL.map(VehicleKind::strike_height_m).into_iter().fold(f32::INFINITY, f32::min);
-    let needed = verlet::substeps(&params, cell_m, scene.dt_secs(), SPEED_LIMIT_M_PER_S / strike_m);
+    let needed = substeps_when_struck(scene);
     if needed <= SUBSTEP_LIMIT {
         return Ok(());
     }
-    let WaveParams { c0_m_per_s, mu_m_per_rad, c_omega_m_per_s, stiffness_per_s2, .. } = params;
-    Err(WorldError::Stiff { c0_m_per_s, mu_m_per_rad, c_omega_m_per_s, stiffness_per_s2, tick_hz: scene.tick_hz, cell_m, needed })
+    type Mend = fn(&mut Scene);
+    let usual: [(&str, Mend); 6] = [
+        ("grass.mu_m_per_rad", |scene| scene.grass.mu_m_per_rad = Grass::default().mu_m_per_rad),
+        ("grass.c0_m_per_s", |scene| scene.grass.c0_m_per_s = Grass::default().c0_m_per_s),
+        ("grass.c_omega_m_per_s", |scene| scene.grass.c_omega_m_per_s = Grass::default().c_omega_m_per_s),
+        ("grass.stiffness_per_s2", |scene| scene.grass.stiffness_per_s2 = Grass::default().stiffness_per_s2),
+        ("patches.cell_m", |scene| scene.patches.cell_m = Patches::default().cell_m),
+        ("tick_hz", |scene| scene.tick_hz = 60.0),
+    ];
+    let needed_with = |mend: Mend| {
+        let mut mended = scene.clone();
+        mend(&mut mended);
+        substeps_when_struck(&mended)
+    };
+    // To blame is the field whose usual value would help most.
+    let (field, _) = usual.into_iter().min_by_key(|&(_, mend)| needed_with(mend)).expect("the list is not empty");
+    let Grass { c0_m_per_s, mu_m_per_rad, c_omega_m_per_s, stiffness_per_s2, .. } = scene.grass;
+    let message = format!(
+        "makes the grass too stiff: it needs {needed} sub-steps in a step when an object strikes it at {SPEED_LIMIT_M_PER_S} m/s; allowed: \
+         {SUBSTEP_LIMIT}. It has mu_m_per_rad = {mu_m_per_rad}, c0_m_per_s = {c0_m_per_s}, c_omega_m_per_s = {c_omega_m_per_s}, \
+         stiffness_per_s2 = {stiffness_per_s2} on cells of {} m at {} Hz; smaller ones, a larger cell_m or a higher tick_hz need fewer",
+        scene.patches.cell_m, scene.tick_hz
+    );
+    Err(WorldError { field, message })
+}
+
+/// Sub-steps of the grass when an object strikes it at its fastest.
+fn substeps_when_struck(scene: &Scene) -> u32 {
+    let strike_m = VehicleKind::ALL.map(VehicleKind::strike_height_m).into_iter().fold(f32::INFINITY, f32::min);
+    verlet::substeps(&WaveParams::from(&scene.grass), scene.patches.cell_m, scene.dt_secs(), SPEED_LIMIT_M_PER_S / strike_m)
+}
+
+fn no_wind(scene: &Scene, error: WeatherError) -> WorldError {
+    match error {
+        WeatherError::Step(StepError::TooViscous { dt_secs, needed, .. }) => {
+            let (viscosity, [x, y, z]) = (scene.wind.viscosity_m2_per_s, scene.wind.spacing_m);
+            let message = format!(
+                "is {viscosity}, which needs {needed:.0} sub-steps of diffusion in the wind's step of {dt_secs:.3} s on cells of {x} × {y} × {z} m; \
+                 allowed: {MAX_SUBSTEPS}. Take a smaller value or a larger `wind.spacing_m`"
+            );
+            WorldError { field: "wind.viscosity_m2_per_s", message }
+        }
+        other => WorldError { field: "wind", message: format!("makes no wind: {other}") },
+    }
 }
 
 struct Checksum(u64);

@@ -1,9 +1,11 @@
 //! Every broken scene is told apart, with everything that is wrong in it and where.
 
+use png::{BitDepth, ColorType};
 use server::scenes::{SceneError, load};
 use std::path::Path;
+use tests::maps;
 
-const BROKEN: [&str; 5] = ["unknown-field", "syntax", "out-of-range", "wrong-maps", "unreadable-model"];
+const BROKEN: [&str; 7] = ["unknown-field", "syntax", "out-of-range", "no-world", "wrong-maps", "unreadable-model", "endless-model"];
 
 /// The message for a broken scene equals the stored text beside it; `PRAIRIE_UPDATE=1` stores it anew.
 #[test]
@@ -24,18 +26,14 @@ fn names_and_files_that_are_not_there_are_told() {
     assert_eq!(told("medow"), "no built-in scene and no file is called `medow`; did you mean `meadow`? Built-in scenes: meadow, jacksboro");
     assert_eq!(told("xyzzy"), "no built-in scene and no file is called `xyzzy`. Built-in scenes: meadow, jacksboro");
     assert!(told("scenes/none.toml").starts_with("scene file `scenes/none.toml` cannot be read: No such file"));
-    assert_eq!(told("scenes/broken"), "scene file `scenes/broken` cannot be read: is not a file");
+    assert_eq!(told("scenes/broken"), "scene file `scenes/broken` cannot be read: it is not a file");
     assert!(told("scenes/broken/no-model.glb").contains("not TOML"));
 }
 
-fn grey(bits: png::BitDepth, colour: png::ColorType, [width, height]: [u32; 2], level: u8) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(colour);
-    encoder.set_depth(bits);
+/// A PNG file of one level all over.
+fn even(bits: BitDepth, colour: ColorType, [width, height]: [u32; 2], level: u8) -> Vec<u8> {
     let row_bytes = (width as usize * colour.samples() * bits as usize).div_ceil(8);
-    encoder.write_header().unwrap().write_image_data(&vec![level; row_bytes * height as usize]).unwrap();
-    bytes
+    maps::png(colour, bits, [width, height], &vec![level; row_bytes * height as usize])
 }
 
 /// What is said of a scene whose height map is `height_png`.
@@ -43,7 +41,7 @@ fn told_of_height_map(folder: &Path, height_png: &[u8]) -> Result<(), String> {
     let text = "summary = \"s\"\n[terrain]\nheight_map = \"h.png\"\ncovering_map = \"c.png\"\npixel_m = [2, 2]\nlevel_m = 1\n";
     std::fs::write(folder.join("s.toml"), text).unwrap();
     std::fs::write(folder.join("h.png"), height_png).unwrap();
-    std::fs::write(folder.join("c.png"), grey(png::BitDepth::Eight, png::ColorType::Grayscale, [2, 2], 255)).unwrap();
+    std::fs::write(folder.join("c.png"), maps::grey_png([2, 2], &[255; 4])).unwrap();
     match load(folder.join("s.toml").to_str().unwrap()) {
         Ok(_) => Ok(()),
         Err(SceneError::Faulty(faulty)) => {
@@ -57,12 +55,11 @@ fn told_of_height_map(folder: &Path, height_png: &[u8]) -> Result<(), String> {
 
 #[test]
 fn height_maps_of_other_kinds_and_sizes_are_refused() {
-    use png::{BitDepth, ColorType};
     let folder = tempfile::tempdir().unwrap();
     let told = |png: &[u8]| told_of_height_map(folder.path(), png);
-    let good = grey(BitDepth::Eight, ColorType::Grayscale, [128, 128], 0);
+    let good = even(BitDepth::Eight, ColorType::Grayscale, [128, 128], 0);
     assert_eq!(told(&good), Ok(()));
-    assert_eq!(told(&grey(BitDepth::Sixteen, ColorType::Grayscale, [129, 128], 0)), Ok(()));
+    assert_eq!(told(&even(BitDepth::Sixteen, ColorType::Grayscale, [129, 128], 0)), Ok(()));
 
     let kinds = [
         (BitDepth::Eight, ColorType::Rgba, "Rgba 8 bits"),
@@ -73,12 +70,12 @@ fn height_maps_of_other_kinds_and_sizes_are_refused() {
     for (bits, colour, name) in kinds {
         let expected =
             format!("`terrain.height_map` names `h.png`, which is a PNG of kind {name}; allowed: grey without alpha, 8 or 16 bits");
-        assert_eq!(told(&grey(bits, colour, [128, 128], 0)), Err(expected));
+        assert_eq!(told(&even(bits, colour, [128, 128], 0)), Err(expected));
     }
     let message = |png: &[u8]| told(png).unwrap_err();
-    assert!(message(&grey(BitDepth::Eight, ColorType::Grayscale, [1, 128], 0)).contains("is 1 × 128 pixels; allowed: 2 × 2 to"));
-    assert!(message(&grey(BitDepth::Eight, ColorType::Grayscale, [127, 128], 0)).contains("reaches over 254 m × 256 m"));
-    assert!(message(&grey(BitDepth::Sixteen, ColorType::Grayscale, [128, 128], 255)).contains("heights of 65535 m"));
+    assert!(message(&even(BitDepth::Eight, ColorType::Grayscale, [1, 128], 0)).contains("is 1 × 128 pixels; allowed: 2 × 2 to"));
+    assert!(message(&even(BitDepth::Eight, ColorType::Grayscale, [127, 128], 0)).contains("reaches over 254 m × 256 m"));
+    assert!(message(&even(BitDepth::Sixteen, ColorType::Grayscale, [128, 128], 255)).contains("heights of 65535 m"));
     assert!(message(&good[..good.len() / 2]).contains("is not a readable PNG"));
     assert!(message(b"").contains("is not a readable PNG"));
 }

@@ -112,10 +112,10 @@ fn check(scene: &Scene) -> Result<(), MirrorError> {
 
 fn check_mesh(mesh: &Mesh) -> Result<(), MirrorError> {
     let vertices = mesh.positions_m.len();
-    if vertices > 65_536 || mesh.normals.len() != vertices || mesh.rgb.len() != vertices {
+    if vertices > Mesh::VERTEX_LIMIT || mesh.normals.len() != vertices || mesh.rgb.len() != vertices {
         return Err(range("vertices of a model", vertices, "at most 65536, each with a normal and a colour"));
     }
-    if mesh.indices.len() > 1 << 20 || !mesh.indices.len().is_multiple_of(3) {
+    if mesh.indices.len() > Mesh::INDEX_LIMIT || !mesh.indices.len().is_multiple_of(3) {
         return Err(range("indices of a model", mesh.indices.len(), "at most 1048576, a multiple of 3"));
     }
     match mesh.indices.iter().find(|&&index| index as usize >= vertices) {

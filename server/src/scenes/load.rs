@@ -2,19 +2,19 @@
 
 use super::builtin::{BUILT_IN, BuiltIn};
 use super::error::{FaultyScene, SceneError};
+use crate::file;
 use crate::objects::model;
+use crate::world::{self, WorldError};
 use shared::scene::{Scene, SceneFault, VehicleKind, parse};
 use shared::terrain::{CoverMap, HeightMap, MapError};
 use shared::wire::Mesh;
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Largest scene file (bytes).
 const SCENE_LIMIT: u64 = 1 << 20;
 
 /// Largest file of a map (bytes); two of them and two models fit into a message.
-const MAP_LIMIT: u64 = 24 << 20;
+pub(crate) const MAP_LIMIT: u64 = 24 << 20;
 
 /// Lowest and highest land (m).
 const LAND_RANGE_M: [f32; 2] = [-20_000.0, 20_000.0];
@@ -51,7 +51,7 @@ pub fn load(name_or_path: &str) -> Result<LoadedScene, SceneError> {
         return Err(unknown(name_or_path));
     }
     let unreadable = |reason: String| SceneError::Unreadable { path: path.to_owned(), reason };
-    let bytes = read_file(path, SCENE_LIMIT).map_err(unreadable)?;
+    let bytes = file::read(path, SCENE_LIMIT).map_err(unreadable)?;
     let text = String::from_utf8(bytes).map_err(|error| unreadable(format!("is not UTF-8 text: {error}")))?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     load_text(name_or_path, &text, &Source::Folder(folder))
@@ -74,7 +74,7 @@ impl Source {
     fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, String> {
         match self {
             Self::BuiltIn(scene) => scene.file(name).map(<[u8]>::to_vec).ok_or_else(|| "does not ship with the program".to_owned()),
-            Self::Folder(folder) => read_file(&folder.join(name), limit),
+            Self::Folder(folder) => file::read(&folder.join(name), limit),
         }
     }
 
@@ -86,20 +86,6 @@ impl Source {
     }
 }
 
-fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
-    let is_file = std::fs::metadata(path).map_err(|error| error.to_string())?.is_file();
-    if !is_file {
-        return Err("is not a file".to_owned());
-    }
-    let mut bytes = Vec::new();
-    let file = File::open(path).map_err(|error| error.to_string())?;
-    file.take(limit + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
-    if bytes.len() as u64 > limit {
-        return Err(format!("is larger than {} MiB", limit >> 20));
-    }
-    Ok(bytes)
-}
-
 fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, SceneError> {
     let faulty = |mut faults: Vec<SceneFault>| {
         faults.sort_by_key(|fault| (fault.line, fault.column));
@@ -109,6 +95,9 @@ fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, Sce
     let mut faults = Vec::new();
     let mut note = |path: &str, message: String| faults.push(SceneFault::at(text, path, message));
 
+    for WorldError { field, message } in world::misfits(&scene) {
+        note(field, message);
+    }
     let height = height_map(&scene, source).map_err(|message| note("terrain.height_map", message)).ok();
     let cover = covering_map(&scene, source).map_err(|message| note("terrain.covering_map", message)).ok();
     let mut loaded_models = Vec::new();
@@ -144,7 +133,8 @@ fn height_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, HeightMap), St
     let world_m = scene.extent_m();
     if reach_m[0] < world_m[0] || reach_m[1] < world_m[1] {
         return Err(told(&format!(
-            "reaches over {} m × {} m ({columns} × {rows} pixels × pixel_m); the world is {} m × {} m (patches: count × cells × cell_m)",
+            "reaches over {} m × {} m ({columns} × {rows} pixels × pixel_m); allowed: at least over the world, {} m × {} m \
+             (patches: count × cells × cell_m). Take more pixels, a larger pixel_m or a smaller world",
             reach_m[0], reach_m[1], world_m[0], world_m[1]
         )));
     }

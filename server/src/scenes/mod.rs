@@ -7,6 +7,8 @@ pub mod maps;
 mod report;
 
 pub use error::{FaultyScene, SceneError};
+#[cfg(test)]
+pub(crate) use load::MAP_LIMIT;
 pub use load::{LoadedScene, load};
 pub use report::{Report, check};
 

@@ -38,7 +38,8 @@ impl fmt::Display for Report {
         writeln!(f, "  heights   {low:.1} m to {high:.1} m, {height_x} × {height_z} pixels")?;
         write!(f, "  covering  {cover_x} × {cover_z} pixels, {grass:.0} % grass")?;
         writeln!(f, ", {} trees, {} stones", count(Cover::Tree), count(Cover::Stone))?;
-        let models: Vec<_> = models.iter().map(|(kind, mesh)| format!("{} ({} triangles)", kind.name(), mesh.indices.len() / 3)).collect();
+        let triangles = |count: usize| if count == 1 { "1 triangle".to_owned() } else { format!("{count} triangles") };
+        let models: Vec<_> = models.iter().map(|(kind, mesh)| format!("{} ({})", kind.name(), triangles(mesh.indices.len() / 3))).collect();
         let built_in: Vec<_> = VehicleKind::ALL.iter().map(|kind| kind.name()).collect();
         let models = if models.is_empty() { format!("built-in {}", built_in.join(", ")) } else { models.join(", ") };
         write!(f, "  models    {models}")

@@ -216,25 +216,20 @@ impl<R: Real> Solver<R> {
         Ok(StepReport { courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps: substeps.velocity })
     }
 
+    /// Whether a solver with `config` could take steps of `dt_secs` (s), asked without making one.
+    ///
+    /// # Errors
+    /// [`StepError::BadTimeStep`] or [`StepError::TooViscous`].
+    pub fn check_step(config: &Config, dt_secs: f32) -> Result<(), StepError> {
+        Substeps::new(config, &config.grid::<R>(), dt_secs).map(|_| ())
+    }
+
     fn check(&self, dt_secs: f32, jets: &[Jet]) -> Result<Substeps, StepError> {
-        if !(dt_secs > 0.0 && dt_secs.is_finite()) {
-            return Err(StepError::BadTimeStep { dt_secs });
+        let substeps = Substeps::new(&self.config, &self.grid, dt_secs)?;
+        match jets.iter().position(|jet| !jet.is_valid()) {
+            Some(index) => Err(StepError::BadJet { index, jet: jets[index] }),
+            None => Ok(substeps),
         }
-        if let Some(index) = jets.iter().position(|jet| !jet.is_valid()) {
-            return Err(StepError::BadJet { index, jet: jets[index] });
-        }
-        let count = |what, diffusivity: f32| {
-            let stable_dt_secs = diffuse::stable_dt_secs(&self.grid, R::of(diffusivity.into())).wide();
-            let needed = (f64::from(dt_secs) / stable_dt_secs).ceil();
-            if needed > f64::from(MAX_SUBSTEPS) {
-                return Err(StepError::TooViscous { what, dt_secs, needed, stable_dt_secs });
-            }
-            Ok(needed as u32)
-        };
-        Ok(Substeps {
-            velocity: count("viscosity_m2_per_s", self.config.viscosity_m2_per_s)?,
-            dust: self.config.dust.map_or(Ok(0), |dust| count("dust.diffusivity_m2_per_s", dust.diffusivity_m2_per_s))?,
-        })
     }
 
     /// Carries some of the fields, u, v, w and dust, along the paths.
@@ -372,6 +367,26 @@ fn same_len(what: &'static str, found: usize, expected: usize) -> Result<(), Sta
 struct Substeps {
     velocity: u32,
     dust: u32,
+}
+
+impl Substeps {
+    fn new<R: Real>(config: &Config, grid: &Grid<R>, dt_secs: f32) -> Result<Self, StepError> {
+        if !(dt_secs > 0.0 && dt_secs.is_finite()) {
+            return Err(StepError::BadTimeStep { dt_secs });
+        }
+        let count = |what, diffusivity: f32| {
+            let stable_dt_secs = diffuse::stable_dt_secs(grid, R::of(diffusivity.into())).wide();
+            let needed = (f64::from(dt_secs) / stable_dt_secs).ceil();
+            if needed > f64::from(MAX_SUBSTEPS) {
+                return Err(StepError::TooViscous { what, dt_secs, needed, stable_dt_secs });
+            }
+            Ok(needed as u32)
+        };
+        Ok(Self {
+            velocity: count("viscosity_m2_per_s", config.viscosity_m2_per_s)?,
+            dust: config.dust.map_or(Ok(0), |dust| count("dust.diffusivity_m2_per_s", dust.diffusivity_m2_per_s))?,
+        })
+    }
 }
 
 #[cfg(test)]

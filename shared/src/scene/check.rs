@@ -65,6 +65,14 @@ pub(super) fn cross_checks(scene: &Scene) -> Vec<Misfit> {
         note(&["wind.sides", "wind.cells", "wind.spacing_m", "patches.count", "patches.cells", "patches.cell_m"], message);
     }
 
+    if wind.sides == WindBoundary::Wall && wind.mean_m_per_s != [0.0; 2] {
+        let message = format!(
+            "is {:?}; allowed with walls: [0, 0], since nothing blows through a wall. Or use `sides = \"wrap\"`",
+            wind.mean_m_per_s
+        );
+        note(&["wind.mean_m_per_s", "wind.sides"], message);
+    }
+
     if objects.self_driving > objects.limit {
         let message = format!("is {}; allowed: up to `objects.limit`, {}", objects.self_driving, objects.limit);
         note(&["objects.self_driving", "objects.limit"], message);

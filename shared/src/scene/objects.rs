@@ -61,7 +61,8 @@ impl VehicleKind {
 pub struct Objects {
     /// Most objects at once. Default 64, allowed 0..=1024.
     pub limit: u32,
-    /// glTF file (`.glb` or `.gltf`) drawn for a car, relative to the scene file; empty for the built-in model. Default "".
+    /// glTF file (`.glb` or `.gltf`; at most 32 MiB, 65536 vertices and 1048576 indices) drawn for a car, relative to the scene
+    /// file; empty for the built-in model. Default "".
     pub car_model: String,
     /// glTF file drawn for a monster, relative to the scene file; empty for the built-in model. Default "".
     pub monster_model: String,

@@ -217,7 +217,8 @@ mod tests {
         assert!(only("[wind]\ncells = [256, 256, 256]\n").contains("2097152"));
         assert!(only("[wind]\ncells = [2, 2, 2]\n").starts_with("`wind.sources` is 24"));
         assert!(only("[wind]\nmean_m_per_s = [30, 30]\n").contains("42.4"));
-        assert!(only("[wind]\nsides = \"wall\"\ncells = [31, 8, 32]\n").contains("covers the world"));
+        assert!(only("[wind]\nsides = \"wall\"\ncells = [31, 8, 32]\nmean_m_per_s = [0, 0]\n").contains("covers the world"));
+        assert!(only("[wind]\nsides = \"wall\"\n").starts_with("`wind.mean_m_per_s` is [4.0, 2.5]; allowed with walls: [0, 0]"));
         assert_eq!(only("[objects]\nself_driving = 65\n"), "`objects.self_driving` is 65; allowed: up to `objects.limit`, 64");
     }
 

@@ -25,7 +25,7 @@ pub struct Wind {
     /// floor and a lid.
     pub sides: WindBoundary,
     /// Prevailing wind along X and Z at the height of the lowest cells' tops ×5 (m/s). Default (4, 2.5), allowed
-    /// −40..=40 each and a length of at most 40.
+    /// −40..=40 each and a length of at most 40; with walls (0, 0).
     pub mean_m_per_s: [f32; 2],
     /// Kinematic (eddy) viscosity ν (m²/s). Default 0.2, allowed 0..=100.
     pub viscosity_m2_per_s: f32,

@@ -189,7 +189,7 @@ pub struct ObjectPose {
     pub part_rad: f32,
 }
 
-/// A triangle mesh with a colour at each vertex; at most 65 536 vertices.
+/// A triangle mesh with a colour at each vertex; at most [`Mesh::VERTEX_LIMIT`] vertices and [`Mesh::INDEX_LIMIT`] indices.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Mesh {
     /// Positions (m) in the body's axes, origin at the centre of its box.
@@ -200,6 +200,13 @@ pub struct Mesh {
     pub rgb: Vec<[u8; 3]>,
     /// Three indices a triangle, anticlockwise seen from outside.
     pub indices: Vec<u32>,
+}
+
+impl Mesh {
+    /// Most vertices: as many as 16 bits can number.
+    pub const VERTEX_LIMIT: usize = 1 << 16;
+    /// Most indices; two such meshes and two maps of 24 MiB fit into [`SERVER_MESSAGE_LIMIT`](super::SERVER_MESSAGE_LIMIT).
+    pub const INDEX_LIMIT: usize = 1 << 20;
 }
 
 /// Why bytes are no message.
