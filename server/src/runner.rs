@@ -214,6 +214,10 @@ impl<S: Simulation> Loop<S> {
         snapshot.health.step_secs = total.as_secs_f32() / self.step_times.len() as f32;
         snapshot.health.step_max_secs = self.step_times.iter().max().map_or(0.0, Duration::as_secs_f32);
         self.step_times.clear();
+        let resets = snapshot.health.wind_resets;
+        if resets > self.sender.borrow().snapshot.health.wind_resets {
+            tracing::warn!(resets, "the wind was lost and has begun anew from its mean");
+        }
         let published = Published { snapshot, requests: self.requests.clone(), dropped_secs: self.clock.dropped_secs() };
         self.sender.send_replace(Arc::new(published));
     }

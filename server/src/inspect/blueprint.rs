@@ -52,7 +52,8 @@ pub(super) fn first_view(scene: &Scene, heights: &HeightMap) -> RecordingStreamR
         ("Energy of the bend field", "health/bend/energy"),
         ("Awake patches", "health/bend/awake_patches"),
         ("Sub-steps, Courant number", "health/steps/**"),
-        ("Clients, objects, dropped log frames", "health/net/** health/log/**"),
+        ("Clients, objects", "health/net/**"),
+        ("Lost: log frames, patches, winds", "health/lost/**"),
         ("Sent to clients (kB/s)", "health/sent/kbyte_per_s"),
     ];
     let mut plot_views = Vec::new();

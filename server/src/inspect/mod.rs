@@ -155,6 +155,9 @@ impl Inspector {
         let (finishing, finished) = channel();
         std::thread::spawn(move || {
             let written = frames.iter().try_for_each(|frame| sink.write(&frame));
+            if let Err(error) = &written {
+                tracing::warn!(%error, "the recording ends here; the run goes on without it");
+            }
             let _ = finishing.send(written.and_then(|()| sink.finish()));
         });
         Self {
@@ -295,8 +298,23 @@ mod tests {
         assert_eq!(writes.iter().map(|(tick, ..)| tick).collect::<Vec<_>>(), [0, 6, 12, 3]);
     }
 
+    /// What is logged while the test runs.
+    #[derive(Clone, Default)]
+    struct Log(std::sync::Arc<Mutex<Vec<u8>>>);
+
+    impl std::io::Write for Log {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            self.0.lock().unwrap().extend_from_slice(bytes);
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+
     #[test]
-    fn a_logger_that_has_failed_is_no_harm() {
+    fn a_logger_that_has_failed_is_told_of_and_is_no_harm() {
         struct Broken;
         impl Sink for Broken {
             fn write(&mut self, _: &Frame) -> Result<(), InspectError> {
@@ -306,10 +324,15 @@ mod tests {
                 Ok(())
             }
         }
+        let log = Log::default();
+        let writer = log.clone();
+        tracing_subscriber::fmt().with_writer(move || writer.clone()).init();
         let inspector = Inspector::with_sink("broken".to_owned(), Broken, 0.0, Duration::from_secs(60));
         while inspector.dropped() == 0 {
             inspector.observe(&snapshot(0));
         }
         assert_eq!(inspector.finish().unwrap_err().to_string(), "rerun: gone");
+        let told = String::from_utf8(log.0.lock().unwrap().clone()).unwrap();
+        assert!(told.contains("WARN") && told.contains("the recording ends here") && told.contains("gone"), "{told}");
     }
 }
