@@ -138,18 +138,21 @@ fn serve(arguments: Serve) -> anyhow::Result<()> {
         let listener = bind(&arguments.addr).await?;
         let address = listener.local_addr()?;
         let tls = arguments.tls.as_ref().map(|choice| Tls::new(choice, address)).transpose()?;
-        announce(address, tls.as_ref(), arguments.open);
         let mut limits = Limits { clients: usize::from(arguments.max_clients), ..Limits::default() };
         limits.send.bytes_per_sec = f64::from(arguments.client_kbit) * 1000.0 / 8.0;
         let config = Config {
-            tls,
+            tls: tls.clone(),
             rerun: arguments.rerun,
             threads: arguments.threads.map(usize::from),
             publish_hz: f32::from(arguments.publish_hz),
             limits,
             ..Config::new(scene)
         };
-        Ok(server::run(config, listener, asked_to_stop()).await?)
+        let run_until_asked = async {
+            announce(address, tls.as_ref(), arguments.open);
+            asked_to_stop().await;
+        };
+        Ok(server::run(config, listener, run_until_asked).await?)
     })
 }
 

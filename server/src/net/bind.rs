@@ -9,12 +9,12 @@ use tokio::net::{TcpListener, lookup_host};
 #[derive(Debug, Error)]
 pub enum BindError {
     /// Not of the form `HOST:PORT`, or an unknown host.
-    #[error("`{address}` is no address to listen on ({source}); give HOST:PORT, such as 127.0.0.1:8080 or 0.0.0.0:8080")]
+    #[error("`{address}` is no address to listen on ({reason}); give HOST:PORT, such as 127.0.0.1:8080 or 0.0.0.0:8080")]
     Address {
         /// The address given.
         address: String,
         /// What the resolver says.
-        source: io::Error,
+        reason: io::Error,
     },
     /// Another program listens there.
     #[error(
@@ -30,12 +30,12 @@ pub enum BindError {
         next: u16,
     },
     /// The system refuses.
-    #[error("cannot listen on {address}: {source}; ports below 1024 need privileges, and the host must be an address of this machine")]
+    #[error("cannot listen on {address}: {reason}; ports below 1024 need privileges, and the host must be an address of this machine")]
     Refused {
         /// The address given.
         address: String,
         /// What the system says.
-        source: io::Error,
+        reason: io::Error,
     },
 }
 
@@ -44,14 +44,14 @@ pub enum BindError {
 /// # Errors
 /// [`BindError`], fit to be shown to whoever gave the address.
 pub async fn bind(address: &str) -> Result<TcpListener, BindError> {
-    let unknown = |source| BindError::Address { address: address.to_owned(), source };
+    let unknown = |reason| BindError::Address { address: address.to_owned(), reason };
     let candidates: Vec<SocketAddr> = lookup_host(address).await.map_err(unknown)?.collect();
-    TcpListener::bind(candidates.as_slice()).await.map_err(|source| {
+    TcpListener::bind(candidates.as_slice()).await.map_err(|reason| {
         let port = candidates.first().map_or(0, SocketAddr::port);
         let host = address.rsplit_once(':').map_or(address, |(host, _)| host).to_owned();
-        match source.kind() {
+        match reason.kind() {
             io::ErrorKind::AddrInUse => BindError::InUse { address: address.to_owned(), host, next: port.checked_add(1).unwrap_or(8080) },
-            _ => BindError::Refused { address: address.to_owned(), source },
+            _ => BindError::Refused { address: address.to_owned(), reason },
         }
     })
 }

@@ -4,6 +4,7 @@
 mod common;
 
 mod bad_visitors;
+mod command_line;
 mod encrypted;
 mod pages;
 mod running;
