@@ -39,9 +39,12 @@ pub struct Limits {
     pub connections: usize,
     /// Time for a TLS handshake, for the headers of a request and for the hello. Default 5 s.
     pub greeting: Duration,
+    /// Time after which a connection is closed that has not become a client's: long enough to fetch the page over a slow line. Default 30 s.
+    pub page: Duration,
     /// Time that a client may take to read or acknowledge a frame. Default 15 s.
     pub stall: Duration,
-    /// Messages per second that a client may send for long; twice as many may come at once. Default 200.
+    /// Messages per second that a client may send for long, hello, pings and pongs of the WebSocket included; twice as many may come at
+    /// once. Default 200.
     pub messages_per_sec: f64,
     /// What is sent to one client.
     pub send: SendLimits,
@@ -53,6 +56,7 @@ impl Default for Limits {
             clients: 64,
             connections: 256,
             greeting: Duration::from_secs(5),
+            page: Duration::from_secs(30),
             stall: Duration::from_secs(15),
             messages_per_sec: 200.0,
             send: SendLimits::default(),

@@ -32,6 +32,7 @@ use stream::{Clients, Streamer};
 use thiserror::Error;
 use tokio::net::TcpListener;
 use tokio::sync::{Semaphore, watch};
+use tokio::time::timeout;
 use world::{Maps, World, WorldError};
 
 /// Time that sessions are given to say goodbye when the server stops.
@@ -52,6 +53,9 @@ pub enum RunError {
     /// The world's thread ended by itself, which is a fault of the program.
     #[error("the simulation has stopped unexpectedly; the log says where")]
     WorldStopped,
+    /// The thread that serves the clients ended by itself, which is a fault of the program.
+    #[error("the stream to the clients has stopped unexpectedly; the log says where")]
+    StreamStopped,
 }
 
 /// Serves the scene on `listener` until `shutdown` completes; then says goodbye to the clients and ends every thread.
@@ -60,7 +64,7 @@ pub enum RunError {
 /// where the page is.
 ///
 /// # Errors
-/// [`RunError`] when the world cannot be made or its thread fails.
+/// [`RunError`] when the world cannot be made, or one of the threads fails.
 pub async fn run(config: Config, listener: TcpListener, shutdown: impl Future<Output = ()>) -> Result<(), RunError> {
     let loaded = &config.scene;
     let maps = Maps { height: loaded.height.clone(), cover: loaded.cover.clone() };
@@ -87,8 +91,10 @@ pub async fn run_simulation(
     let clients = Arc::new(Clients::default());
     let streamer = Streamer::new(layout, config.limits.send, timing.published_hz());
     let counters = streamer.counters();
-    let stream = stream::start(streamer, runner.published(), clients.clone(), runner.commands())?;
+    let mut stream = stream::start(streamer, runner.published(), clients.clone(), runner.commands())?;
     let (stop, stopping) = watch::channel(false);
+    let Limits { clients: seat_count, connections, .. } = config.limits;
+    let (seats, porch) = (Arc::new(Semaphore::new(seat_count)), Arc::new(Semaphore::new(connections)));
     let app = Arc::new(App {
         clients: clients.clone(),
         counters,
@@ -96,8 +102,8 @@ pub async fn run_simulation(
         commands: runner.commands(),
         scene: scene_message(&config),
         limits: config.limits,
-        seats: Arc::new(Semaphore::new(config.limits.clients)),
-        porch: Arc::new(Semaphore::new(config.limits.connections)),
+        seats: seats.clone(),
+        porch: porch.clone(),
         stopping,
         started: Instant::now(),
     });
@@ -106,20 +112,26 @@ pub async fn run_simulation(
     let outcome = tokio::select! {
         () = net::serve(listener, config.tls.clone(), net::router(app), config.limits) => Ok(()),
         () = world_stopped => Err(RunError::WorldStopped),
+        () = stream.ended() => Err(RunError::StreamStopped),
         () = shutdown => Ok(()),
     };
     stop.send_replace(true);
-    let deadline = Instant::now() + GOODBYE;
-    while clients.count() > 0 && Instant::now() < deadline {
-        tokio::time::sleep(Duration::from_millis(10)).await;
+    // Every session holds a permit until its very end.
+    let farewells = async { (seats.acquire_many(seat_count as u32).await, porch.acquire_many(connections as u32).await) };
+    if timeout(GOODBYE, farewells).await.is_err() {
+        tracing::warn!("some clients are left without a goodbye");
     }
-    let ended = tokio::task::spawn_blocking(move || runner.stop() && stream.join().is_ok()).await;
+    let joined = tokio::task::spawn_blocking(move || (runner.stop(), stream.join())).await;
     if let Some(recording) = recording
         && let Ok(Err(error)) = recording.await
     {
         tracing::warn!(%error, "the recording is incomplete");
     }
-    if ended.unwrap_or(false) { outcome } else { Err(RunError::WorldStopped) }
+    match joined {
+        Ok((true, true)) => outcome,
+        Ok((true, false)) => Err(RunError::StreamStopped),
+        _ => Err(RunError::WorldStopped),
+    }
 }
 
 /// Shows every published snapshot to the inspector, with what is sent to the clients; closes the recording when the runner ends.
@@ -128,8 +140,8 @@ async fn record(inspector: Inspector, mut published: watch::Receiver<Arc<Publish
     let (mut since, mut sent_before) = (Instant::now(), 0);
     while published.changed().await.is_ok() {
         if since.elapsed() >= Duration::from_secs(1) {
-            let sent: u64 = clients.all().iter().map(|client| client.sent_bytes()).sum();
-            let bytes_per_sec = sent.saturating_sub(sent_before) as f64 / since.elapsed().as_secs_f64();
+            let sent = clients.sent_bytes();
+            let bytes_per_sec = (sent - sent_before) as f64 / since.elapsed().as_secs_f64();
             inspector.observe_traffic(clients.count() as u32, bytes_per_sec);
             (since, sent_before) = (Instant::now(), sent);
         }

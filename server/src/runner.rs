@@ -203,7 +203,7 @@ impl<S: Simulation> Loop<S> {
                 Command::Remove { client } => {
                     self.requests.remove(&client);
                 }
-                Command::Drive { .. } | Command::Views(_) => {}
+                Command::Drive { .. } | Command::Views(_) | Command::View(_) => {}
             }
         }
     }

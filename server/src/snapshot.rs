@@ -2,8 +2,13 @@
 //!
 //! A snapshot is cheap to hold and to share: whatever did not change since the one before is the same `Arc`.
 
+use shared::grid::PatchIndex;
 use shared::wire::ObjectPose;
+use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// The bend field by patch; one that is missing is at rest.
+pub type BentPatches = BTreeMap<PatchIndex, Arc<PatchCodes>>;
 
 /// The state of the world after a step.
 #[derive(Clone, Debug, Default)]
@@ -16,8 +21,8 @@ pub struct Snapshot {
     pub objects: Vec<ObjectPose>,
     /// The wind.
     pub wind: Arc<WindFrame>,
-    /// The bend field, by patch index; none: the patch is at rest.
-    pub patches: Vec<Option<Arc<PatchCodes>>>,
+    /// The bend field.
+    pub patches: Arc<BentPatches>,
     /// The scalars that tell how the world fares.
     pub health: Health,
 }

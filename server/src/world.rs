@@ -3,7 +3,7 @@
 use crate::bend::Meadow;
 pub use crate::bend::View;
 use crate::objects::{Objects, Place, SPEED_LIMIT_M_PER_S};
-use crate::snapshot::{Health, PatchCodes, Snapshot};
+use crate::snapshot::{BentPatches, Health, PatchCodes, Snapshot};
 use crate::weather::{self, Weather, WeatherError};
 use crate::wind::StepError;
 use crate::wind::solver::MAX_SUBSTEPS;
@@ -43,6 +43,8 @@ pub enum Command {
     },
     /// All cameras there are.
     Views(Vec<View>),
+    /// One client's camera, ahead of the next [`Views`](Self::Views).
+    View(View),
 }
 
 /// The maps of a scene.
@@ -80,7 +82,7 @@ pub struct World {
     weather: Weather,
     meadow: Meadow,
     views: Vec<View>,
-    shown: Vec<Option<Arc<PatchCodes>>>,
+    shown: Arc<BentPatches>,
 }
 
 impl World {
@@ -101,7 +103,7 @@ impl World {
             extent_m: scene.extent_m(),
             objects: Objects::new(scene, place),
             weather,
-            shown: vec![None; meadow.field().layout().patches()],
+            shown: Arc::default(),
             meadow,
             views: vec![],
         })
@@ -128,7 +130,7 @@ impl World {
             time_secs: self.tick as f64 * f64::from(self.dt_secs),
             objects: self.objects.poses(),
             wind: Arc::clone(self.weather.frame()),
-            patches: self.shown.clone(),
+            patches: Arc::clone(&self.shown),
             health: Health {
                 divergence_rms: wind.divergence_rms_rel as f32,
                 wind_energy: wind.kinetic_energy_m2_per_s2,
@@ -181,6 +183,10 @@ impl World {
             Command::Remove { client } => self.objects.remove(*client),
             Command::Drive { client, drive } => self.objects.drive(*client, *drive),
             Command::Views(views) => self.views.clone_from(views),
+            Command::View(view) => {
+                self.views.retain(|other| other.client != view.client);
+                self.views.push(*view);
+            }
         }
     }
 
@@ -193,19 +199,17 @@ impl World {
 
     /// Quantises the patches that changed.
     fn show_patches(&mut self) {
-        let field = self.meadow.field();
-        let awake: Vec<_> = field.awake().collect();
-        let codes: Vec<_> = awake.into_par_iter().map(|(index, patch)| (index, codes_of(patch))).collect();
-        let mut slept = std::mem::take(&mut self.shown);
-        self.shown = vec![None; slept.len()];
-        for (index, codes) in codes {
-            let before = slept[index as usize].take();
-            self.shown[index as usize] = match before {
-                Some(before) if before.codes == codes => Some(before),
+        let (tick, before) = (self.tick, &self.shown);
+        let show = |(index, patch)| {
+            let codes = codes_of(patch);
+            match before.get(&index) {
+                Some(before) if before.codes == codes => Some((index, Arc::clone(before))),
                 _ if codes.iter().all(|&code| code == 0) => None,
-                _ => Some(Arc::new(PatchCodes { tick: self.tick, codes })),
-            };
-        }
+                _ => Some((index, Arc::new(PatchCodes { tick, codes }))),
+            }
+        };
+        let awake: Vec<_> = self.meadow.field().awake().collect();
+        self.shown = Arc::new(awake.into_par_iter().filter_map(show).collect());
     }
 }
 

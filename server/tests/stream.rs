@@ -5,11 +5,12 @@ mod common;
 use common::Picture;
 use proptest::prelude::*;
 use server::runner::{Published, Request};
-use server::snapshot::{PatchCodes, Snapshot, WindFrame};
-use server::stream::{Client, Clients, DEAD_BAND, Frame, Gaze, SendLimits, Streamer};
+use server::snapshot::{BentPatches, PatchCodes, Snapshot, WindFrame};
+use server::stream::{Client, Clients, DEAD_BAND, Frame, Gaze, SendLimits, Streamer, interest};
 use shared::grid::PatchLayout;
-use shared::wire::{Refusal, ServerMessage};
+use shared::wire::{PATCH_MEMORY, Refusal, ServerMessage};
 use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};
 use tokio::sync::mpsc::Receiver;
 
@@ -29,18 +30,23 @@ struct Prairie {
 impl Prairie {
     fn at_rest() -> Self {
         let wind = Arc::new(WindFrame { tick: 0, cells: WIND_CELLS, codes: vec![0; 3 * 32] });
-        let snapshot = Snapshot { wind, patches: vec![None; LAYOUT.patches()], ..Snapshot::default() };
+        let snapshot = Snapshot { wind, ..Snapshot::default() };
         Self { snapshot, requests: Default::default() }
+    }
+
+    fn patches(&mut self) -> &mut BentPatches {
+        Arc::make_mut(&mut self.snapshot.patches)
     }
 
     fn change_patch(&mut self, patch: usize, change: impl FnOnce(&mut [i8])) {
         let mut codes = self.codes(patch);
         change(&mut codes);
-        self.snapshot.patches[patch] = Some(Arc::new(PatchCodes { tick: self.snapshot.tick, codes }));
+        let tick = self.snapshot.tick;
+        self.patches().insert(patch as u32, Arc::new(PatchCodes { tick, codes }));
     }
 
     fn codes(&self, patch: usize) -> Vec<i8> {
-        self.snapshot.patches[patch].as_ref().map_or_else(|| vec![0; GRID], |patch| patch.codes.clone())
+        self.snapshot.patches.get(&(patch as u32)).map_or_else(|| vec![0; GRID], |patch| patch.codes.clone())
     }
 
     fn publish(&mut self) -> Published {
@@ -76,11 +82,15 @@ impl Visitor {
     }
 
     fn error_against(&self, prairie: &Prairie) -> u8 {
-        let patch_error = |patch: usize| {
-            let held = self.picture.patches.get(&(patch as u32)).map_or_else(|| vec![0; GRID], |(_, codes)| codes.clone());
-            held.iter().zip(prairie.codes(patch)).map(|(held, code)| held.abs_diff(code)).max().unwrap()
+        self.error_over(0..LAYOUT.patches() as u32, prairie)
+    }
+
+    fn error_over(&self, patches: impl IntoIterator<Item = u32>, prairie: &Prairie) -> u8 {
+        let patch_error = |patch: u32| {
+            let held = self.picture.patches.get(&patch).map_or_else(|| vec![0; GRID], |(_, codes)| codes.clone());
+            held.iter().zip(prairie.codes(patch as usize)).map(|(held, code)| held.abs_diff(code)).max().unwrap()
         };
-        (0..LAYOUT.patches()).map(patch_error).max().unwrap()
+        patches.into_iter().map(patch_error).max().unwrap()
     }
 }
 
@@ -128,7 +138,7 @@ proptest! {
                         *code = code.saturating_add(by).max(-127);
                     }
                 }),
-                Event::Rest { patch } => prairie.snapshot.patches[patch] = None,
+                Event::Rest { patch } => drop(prairie.patches().remove(&(patch as u32))),
                 Event::Wind { by } => {
                     let mut wind = (*prairie.snapshot.wind).clone();
                     wind.codes.iter_mut().for_each(|code| *code = code.saturating_add(by).max(-127));
@@ -168,7 +178,7 @@ fn busy_run(visitors: usize, publishes: i32) -> (u64, Vec<Vec<Frame>>) {
         streamer.publish(&prairie.publish(), &clients.all(), now);
         last = visitors.iter_mut().map(Visitor::read).collect();
     }
-    let encodings = streamer.counters().encodings.load(std::sync::atomic::Ordering::Relaxed);
+    let encodings = streamer.counters().encodings.load(Relaxed);
     (encodings, last)
 }
 
@@ -262,6 +272,53 @@ fn a_small_change_waits_within_the_dead_band() {
         visitor.read();
     }
     assert_eq!(visitor.error_against(&prairie), 0);
+}
+
+#[test]
+fn what_is_remembered_does_not_grow_with_the_way_flown() {
+    const STRIP: PatchLayout = PatchLayout { count: [400, 12], cells: 8, cell_m: 1.0 };
+    const RADIUS_M: f32 = 60.0;
+    let limits = SendLimits { bytes_per_sec: 1e9, ..SendLimits::default() };
+    let (clients, mut prairie, mut now) = (Clients::default(), Prairie::at_rest(), Instant::now());
+    let mut streamer = Streamer::new(STRIP, limits, PUBLISH_HZ);
+    let mut visitor = Visitor::join(&clients, limits, RADIUS_M);
+    for patch in 0..STRIP.patches() {
+        prairie.change_patch(patch, |codes| codes.fill(10 + (patch % 50) as i8));
+    }
+    let column = |x: u32| (0..STRIP.count[1]).map(move |z| (z * STRIP.count[0] + x) as usize);
+    for x in (0..STRIP.count[0]).chain((0..STRIP.count[0]).rev()) {
+        // On the far side of the world some grass comes to rest and some bends the other way.
+        for patch in column((x + STRIP.count[0] / 2) % STRIP.count[0]) {
+            if patch.is_multiple_of(3) {
+                prairie.patches().remove(&(patch as u32));
+            } else {
+                prairie.change_patch(patch, |codes| codes.iter_mut().for_each(|code| *code = -*code));
+            }
+        }
+        let eye_m = [(x as f32 + 0.5) * STRIP.patch_m(), 2.0, 48.0];
+        visitor.client.look(Gaze { eye_m, radius_m: RADIUS_M });
+        now += Duration::from_millis(50);
+        streamer.publish(&prairie.publish(), &clients.all(), now);
+        visitor.read();
+        let near = interest(&STRIP, [eye_m[0], eye_m[2]], RADIUS_M);
+        assert_eq!(visitor.error_over(near, &prairie), 0, "at column {x}");
+        let counters = streamer.counters();
+        let (held, tracks) = (counters.held.load(Relaxed), counters.tracks.load(Relaxed));
+        assert!(held <= PATCH_MEMORY as u64, "{held} patches that a client holds");
+        assert!(tracks <= STRIP.patches() as u64 / 3, "{tracks} patches whose frames are kept");
+    }
+}
+
+#[test]
+fn what_was_sent_to_those_who_left_stays_counted() {
+    let clients = Clients::default();
+    for bytes in [100, 20] {
+        let visitor = Visitor::join(&clients, SendLimits::default(), 1.0);
+        visitor.client.count_sent(bytes);
+        assert_eq!(visitor.client.sent_bytes(), bytes as u64);
+        clients.leave(visitor.client.id);
+    }
+    assert_eq!((clients.count(), clients.sent_bytes()), (0, 120));
 }
 
 #[test]

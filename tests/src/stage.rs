@@ -8,7 +8,7 @@ use server::world::{Command, Maps, View, World};
 use shared::scene::{Scene, VehicleKind};
 use shared::terrain::HeightMap;
 use shared::wire::{Drive, ObjectPose, ServerMessage, codec};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// A world, stepped by hand, and the mirror that its snapshots are brought to as messages.
@@ -89,8 +89,9 @@ impl Stage {
         let width = snapshot.wind.cells[0] as usize;
         let payload = codec::encode(width, &snapshot.wind.codes, None);
         self.mirror.apply(ServerMessage::Wind { tick: snapshot.tick, seq: self.frame, key: true, payload })?;
-        for (patch, codes) in (0..).zip(&snapshot.patches) {
-            self.show_patch(patch, codes.as_ref())?;
+        let shown: BTreeSet<u32> = self.sent.keys().chain(snapshot.patches.keys()).copied().collect();
+        for patch in shown {
+            self.show_patch(patch, snapshot.patches.get(&patch))?;
         }
         let secs = snapshot.time_secs - self.time_secs;
         self.time_secs = snapshot.time_secs;

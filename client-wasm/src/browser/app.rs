@@ -108,7 +108,7 @@ impl App {
             self.connection.drive(self.input.controls().drive(kind), now_secs);
         }
         if let Some(camera) = self.rig.as_ref().map(Rig::camera) {
-            self.connection.look_from(camera.eye_m, view_radius_m(self.quality), now_secs);
+            self.look_from(camera, now_secs);
             self.keep_link(camera, now_secs);
         }
         self.mend_stage(now_secs);
@@ -215,11 +215,11 @@ impl App {
             Ok(Some(Event::Welcome { client, .. })) => {
                 self.connection.welcomed(client);
                 self.welcomed_once = true;
-                if self.wanted.is_some() {
-                    self.connection.choose(self.wanted);
-                }
             }
-            Ok(Some(Event::Scene)) => self.settle(),
+            Ok(Some(Event::Scene)) => {
+                self.settle();
+                self.come_back(now_secs);
+            }
             Ok(Some(Event::FrameEnd { frame })) => self.connection.acknowledge(frame),
             Ok(Some(Event::Pong { nonce })) => self.connection.ponged(nonce, now_secs),
             Ok(Some(Event::Refused { refusal, reason })) => {
@@ -240,6 +240,20 @@ impl App {
         let ground_m = |x_m: f32, z_m: f32| land.heights().height_m(x_m, z_m);
         let camera = linked.unwrap_or_else(|| Camera::start(&land.scene().camera, land.scene().extent_m(), ground_m));
         self.look(camera);
+    }
+
+    /// Takes again what was driven when the connection broke: where the eye is, which the server has to know first.
+    fn come_back(&mut self, now_secs: f64) {
+        if let Some(camera) = self.rig.as_ref().map(Rig::camera) {
+            self.look_from(camera, now_secs);
+        }
+        if self.wanted.is_some() {
+            self.connection.choose(self.wanted);
+        }
+    }
+
+    fn look_from(&mut self, camera: Camera, now_secs: f64) {
+        self.connection.look_from(camera.eye_m, view_radius_m(self.quality), now_secs);
     }
 
     fn run_clock(&mut self, now_secs: f64) {

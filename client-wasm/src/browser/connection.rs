@@ -13,6 +13,8 @@ const VIEW_STEP_M: f32 = 0.5;
 const DRIVE_SECS: f64 = 1.0 / 30.0;
 /// Time between two pings (s).
 const PING_SECS: f64 = 2.0;
+/// Bytes waiting to be sent from which on nothing is added that a later message makes up for: a line that stalls would let it all go at once.
+const CLOGGED_BYTES: u32 = 512;
 /// First and longest wait before the socket is opened again (s).
 const RETRY_SECS: [f64; 2] = [0.5, 8.0];
 /// Time over which the rate of arriving bytes is measured (s).
@@ -119,7 +121,7 @@ impl Connection {
             self.socket = Socket::open(&self.url, self.hear).ok();
             self.retry_at_secs = now_secs + RETRY_SECS[1];
         }
-        if self.client().is_some() && now_secs >= self.ping_at_secs {
+        if self.is_open() && now_secs >= self.ping_at_secs {
             let nonce = self.ping.map_or(1, |(nonce, _)| nonce.wrapping_add(1));
             self.ping = Some((nonce, now_secs));
             self.ping_at_secs = now_secs + PING_SECS;
@@ -146,6 +148,7 @@ impl Connection {
     pub(super) fn welcomed(&mut self, client: u32) {
         self.standing = Standing::Here { client };
         self.last_view = None;
+        self.view_at_secs = f64::NEG_INFINITY;
         self.last_drive = Drive::default();
         self.ping_at_secs = 0.0;
     }
@@ -157,11 +160,14 @@ impl Connection {
             _ => 1,
         };
         self.standing = match Close::from_code(code) {
-            Some(close @ (Close::Version | Close::BadMessage | Close::RateLimit)) => Standing::Over(close),
+            Some(close @ (Close::Version | Close::BadMessage)) => Standing::Over(close),
             why => Standing::Away { attempts, why },
         };
         let [first_secs, longest_secs] = RETRY_SECS;
-        let wait_secs = (first_secs * f64::from(1 << (attempts - 1).min(8))).min(longest_secs);
+        let wait_secs = match Close::from_code(code) {
+            Some(Close::RateLimit) => longest_secs,
+            _ => (first_secs * f64::from(1 << (attempts - 1).min(8))).min(longest_secs),
+        };
         // Pages that lost the same server come back one after the other.
         self.retry_at_secs = now_secs + wait_secs * (0.75 + 0.5 * js_sys::Math::random());
         self.socket = None;
@@ -174,13 +180,11 @@ impl Connection {
         self.socket = None;
     }
 
-    /// Takes another name; the server learns it by a new hello.
+    /// Takes another name; a server that is away learns it by the next hello.
     pub(super) fn rename(&mut self, name: String) {
         if self.name != name {
-            self.name = name;
-            self.socket = None;
-            self.standing = Standing::Away { attempts: 0, why: None };
-            self.retry_at_secs = 0.0;
+            self.name.clone_from(&name);
+            self.send(&ClientMessage::Rename { name });
         }
     }
 
@@ -205,7 +209,7 @@ impl Connection {
     /// Tells where the camera is, when it has moved and not too often.
     pub(super) fn look_from(&mut self, eye_m: Vec3, radius_m: f32, now_secs: f64) {
         let moved = self.last_view.is_none_or(|(eye, radius)| eye.distance(eye_m) > VIEW_STEP_M || radius != radius_m);
-        if self.client().is_some() && moved && now_secs - self.view_at_secs >= VIEW_SECS {
+        if self.is_open() && moved && now_secs - self.view_at_secs >= VIEW_SECS {
             self.last_view = Some((eye_m, radius_m));
             self.view_at_secs = now_secs;
             self.send(&ClientMessage::View { eye_m: eye_m.into(), radius_m });
@@ -214,11 +218,16 @@ impl Connection {
 
     /// Tells what the hands do, when it has changed and not too often.
     pub(super) fn drive(&mut self, drive: Drive, now_secs: f64) {
-        if self.client().is_some() && drive != self.last_drive && now_secs - self.drive_at_secs >= DRIVE_SECS {
+        if self.is_open() && drive != self.last_drive && now_secs - self.drive_at_secs >= DRIVE_SECS {
             self.last_drive = drive;
             self.drive_at_secs = now_secs;
             self.send(&ClientMessage::Drive(drive));
         }
+    }
+
+    /// Whether the server is there and the line takes more.
+    fn is_open(&self) -> bool {
+        self.client().is_some() && self.socket.as_ref().is_some_and(|socket| socket.waiting_bytes() < CLOGGED_BYTES)
     }
 
     fn send(&self, message: &ClientMessage) {

@@ -37,6 +37,11 @@ impl Socket {
         Ok(Self { socket, _listeners: listeners })
     }
 
+    /// Bytes that wait to be sent.
+    pub(super) fn waiting_bytes(&self) -> u32 {
+        self.socket.buffered_amount()
+    }
+
     /// Sends one message; what a closed socket cannot send is dropped, its end is told by [`SocketEvent::Closed`].
     pub(super) fn send(&self, bytes: &[u8]) {
         if self.socket.ready_state() == WebSocket::OPEN {

@@ -3,11 +3,12 @@
 use super::{MirrorError, range};
 use shared::grid::{PatchIndex, PatchLayout};
 use shared::scene::Wind;
-use shared::wire::codec;
+use shared::wire::{PATCH_MEMORY, codec};
 use std::collections::{BTreeSet, HashMap};
 
 /// Most patches that are kept; the one not heard of for longest goes first. 4096 patches of 64² cells take 50 MB.
 pub const PATCH_LIMIT: usize = 4096;
+const _: () = assert!(PATCH_LIMIT >= PATCH_MEMORY, "the server counts on these");
 
 /// Codes of one patch: three planes (θ, ωx, ωz) of `cells × cells`, or none at rest.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,7 +1,7 @@
 //! The ground: a mesh of the land, and the map of bends that is laid on it.
 
 use super::palette::{Rgb, bend_rgb};
-use crate::snapshot::PatchCodes;
+use crate::snapshot::BentPatches;
 use glam::Vec3;
 use shared::grid::PatchLayout;
 use shared::scene::Light;
@@ -71,7 +71,7 @@ pub(super) struct BendMap {
     /// |θ| as a code of `shared::wire::quantise`, 0..=127.
     codes: Vec<u8>,
     /// The patches that it shows; none: nothing has been drawn.
-    shown: Option<Vec<Option<Arc<PatchCodes>>>>,
+    shown: Option<Arc<BentPatches>>,
 }
 
 impl BendMap {
@@ -108,17 +108,15 @@ impl BendMap {
     }
 
     /// Takes over the patches of a snapshot; false when they are those that it shows already.
-    pub(super) fn update(&mut self, patches: &[Option<Arc<PatchCodes>>]) -> bool {
+    pub(super) fn update(&mut self, patches: &Arc<BentPatches>) -> bool {
         if self.shown.as_ref().is_some_and(|shown| same(shown, patches)) {
             return false;
         }
         self.codes.fill(0);
-        for (index, patch) in patches.iter().take(self.layout.patches()).enumerate() {
-            if let Some(patch) = patch {
-                self.draw(index as u32, &patch.codes);
-            }
+        for (&index, patch) in patches.range(..self.layout.patches() as u32) {
+            self.draw(index, &patch.codes);
         }
-        self.shown = Some(patches.to_vec());
+        self.shown = Some(Arc::clone(patches));
         true
     }
 
@@ -140,44 +138,38 @@ pub(super) fn degrees(code: u8) -> f32 {
     theta_rad(code.min(127) as i8).to_degrees()
 }
 
-fn same(a: &[Option<Arc<PatchCodes>>], b: &[Option<Arc<PatchCodes>>]) -> bool {
-    a.len() == b.len()
-        && a.iter().zip(b).all(|pair| match pair {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (None, None) => true,
-            _ => false,
-        })
+fn same(a: &BentPatches, b: &BentPatches) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|((i, a), (j, b))| i == j && Arc::ptr_eq(a, b))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::snapshot::PatchCodes;
 
-    fn patch(cells: usize, theta: impl Fn(usize, usize) -> i8) -> Option<Arc<PatchCodes>> {
+    fn bent(index: u32, cells: usize, theta: impl Fn(usize, usize) -> i8) -> Arc<BentPatches> {
         let mut codes: Vec<i8> = (0..cells * cells).map(|at| theta(at % cells, at / cells)).collect();
         codes.resize(3 * cells * cells, 99);
-        Some(Arc::new(PatchCodes { tick: 1, codes }))
+        Arc::new(BentPatches::from([(index, Arc::new(PatchCodes { tick: 1, codes }))]))
     }
 
     #[test]
     fn a_cell_lands_on_its_own_pixel() {
         let mut map = BendMap::new(PatchLayout { count: [2, 2], cells: 8, cell_m: 0.5 });
         assert_eq!((map.size_px(), map.pixel_m()), ([16, 16], 0.5));
-        let patches = [None, None, None, patch(8, |i, j| if (i, j) == (5, 2) { -40 } else { 0 })];
+        let patches = bent(3, 8, |i, j| if (i, j) == (5, 2) { -40 } else { 0 });
         assert!(map.update(&patches));
         let marked: Vec<_> = (0..256).filter(|&at| map.codes()[at] != 0).collect();
         assert_eq!((marked.as_slice(), map.codes()[marked[0]]), ([(8 + 2) * 16 + 8 + 5].as_slice(), 40));
         assert!(!map.update(&patches));
-        assert!(map.update(&[None, None, None, None]) && map.codes().iter().all(|&code| code == 0));
+        assert!(map.update(&Arc::default()) && map.codes().iter().all(|&code| code == 0));
     }
 
     #[test]
     fn a_large_world_keeps_its_narrow_tracks() {
         let mut map = BendMap::new(PatchLayout { count: [16, 3], cells: 64, cell_m: 0.25 });
         assert_eq!((map.size_px(), map.pixel_m()), ([512, 96], 0.5));
-        let mut patches = vec![None; 48];
-        patches[17] = patch(64, |i, _| if i == 9 { 127 } else { -3 });
-        map.update(&patches);
+        map.update(&bent(17, 64, |i, _| if i == 9 { 127 } else { -3 }));
         assert!((32..64).all(|row| map.codes()[row * 512 + 32 + 4] == 127 && map.codes()[row * 512 + 32 + 5] == 3));
         assert_eq!(map.rgb().len(), 3 * 512 * 96);
         let huge = BendMap::new(PatchLayout { count: [2048, 1], cells: 256, cell_m: 1.0 });

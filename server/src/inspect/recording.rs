@@ -280,8 +280,7 @@ mod tests {
             velocity_m_per_s: [60.0, 0.0, 0.0],
             part_rad: 0.0,
         };
-        let mut patches = vec![None; 256];
-        patches[tick as usize % 256] = Some(Arc::new(PatchCodes { tick, codes: vec![50; 3 * 64 * 64] }));
+        let patches = Arc::new([(tick as u32 % 256, Arc::new(PatchCodes { tick, codes: vec![50; 3 * 64 * 64] }))].into());
         let wind = Arc::new(WindFrame { tick, cells: [32, 8, 32], codes: vec![wind_code(3.0); 3 * 32 * 8 * 32] });
         Snapshot { tick, time_secs: tick as f64 / 60.0, objects: vec![car], wind, patches, ..Snapshot::default() }
     }

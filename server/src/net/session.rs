@@ -2,14 +2,13 @@
 
 use super::routes::App;
 use crate::bucket::Bucket;
-use crate::config::Limits;
 use crate::stream::{Client, Frame, Gaze};
 use crate::world::Command;
 use axum::extract::ws::{CloseFrame, Message, WebSocket};
 use bytes::Bytes;
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
-use shared::wire::{self, CLIENT_MESSAGE_LIMIT, ClientMessage, Close, Refusal, ServerMessage, WireError};
+use shared::wire::{self, CLIENT_MESSAGE_LIMIT, ClientMessage, Close, Drive, Refusal, ServerMessage, WireError};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tokio::sync::{OwnedSemaphorePermit, mpsc};
@@ -31,6 +30,34 @@ const NAME_LIMIT: usize = 32;
 const EYE_LIMIT_M: f32 = 1e6;
 const RADIUS_LIMIT_M: f32 = 512.0;
 
+/// The client's words, taken in no faster than the limit allows.
+struct Ear {
+    source: Source,
+    allowance: Bucket,
+    messages_per_sec: f64,
+}
+
+impl Ear {
+    fn new(source: Source, messages_per_sec: f64) -> Self {
+        Self { source, allowance: Bucket::new(2.0 * messages_per_sec, messages_per_sec, Instant::now()), messages_per_sec }
+    }
+
+    /// The next message. Those that the WebSocket layer answers itself are passed over, but count. May be given up while it waits; nothing is
+    /// lost.
+    async fn hear(&mut self) -> Result<ClientMessage, End> {
+        loop {
+            let message = receive(&mut self.source).await?;
+            self.allowance.fill(Instant::now());
+            if !self.allowance.try_take(1.0) {
+                return Err(End::Closed(Close::RateLimit, format!("more than {} messages a second", self.messages_per_sec)));
+            }
+            if let Some(message) = message {
+                return Ok(message);
+            }
+        }
+    }
+}
+
 /// Why a session is over.
 #[derive(Debug)]
 enum End {
@@ -46,55 +73,65 @@ fn bad(reason: impl std::fmt::Display) -> End {
     End::Closed(Close::BadMessage, reason.to_string())
 }
 
-/// Runs a session; `place` is its permit to be here without a hello.
-pub(super) async fn run(socket: WebSocket, app: Arc<App>, place: OwnedSemaphorePermit) {
-    let (mut sink, mut source) = socket.split();
-    let end = match timeout(app.limits.greeting, hello(&mut source)).await {
-        Ok(Ok(name)) => match app.seats.clone().try_acquire_owned() {
+/// Runs a session; `place` is its permit to be here without a hello. It holds that, or a client's seat, until its last word is said.
+pub(super) async fn run(socket: WebSocket, app: Arc<App>, mut place: OwnedSemaphorePermit) {
+    let (mut sink, source) = socket.split();
+    let mut ear = Ear::new(source, app.limits.messages_per_sec);
+    let end = match hello(&mut ear, &app).await {
+        Ok(name) => match app.seats.clone().try_acquire_owned() {
             Ok(seat) => {
-                drop(place);
-                let end = visit(&mut sink, &mut source, &app, name).await;
-                drop(seat);
-                end
+                place = seat;
+                visit(&mut sink, &mut ear, &app, &name).await
             }
             Err(_) => End::Closed(Close::ServerFull, format!("all {} places are taken; try again later", app.limits.clients)),
         },
-        Ok(Err(end)) => end,
-        Err(_) => End::Closed(Close::NoHello, format!("no hello within {} s", app.limits.greeting.as_secs_f32())),
+        Err(end) => end,
     };
     if let End::Closed(close, reason) = end {
         tracing::info!(code = close.code(), reason, "closed a connection");
-        farewell(sink, source, close, reason).await;
+        farewell(sink, ear.source, close, reason).await;
+    }
+    drop(place);
+}
+
+/// Waits for the hello; returns the name in it.
+async fn hello(ear: &mut Ear, app: &App) -> Result<String, End> {
+    let greeting = app.limits.greeting;
+    let first = tokio::select! {
+        first = timeout(greeting, ear.hear()) => first,
+        end = stopping(app) => return Err(end),
+    };
+    match first {
+        Ok(Ok(ClientMessage::Hello { name })) => Ok(name),
+        Ok(Ok(_)) => Err(bad("the first message must be a hello")),
+        Ok(Err(end)) => Err(end),
+        Err(_) => Err(End::Closed(Close::NoHello, format!("no hello within {} s", greeting.as_secs_f32()))),
     }
 }
 
-/// Waits for the hello; returns the name in it, cleaned.
-async fn hello(source: &mut Source) -> Result<String, End> {
-    match receive(source).await? {
-        Some(ClientMessage::Hello { name }) => Ok(clean_name(&name)),
-        Some(_) => Err(bad("the first message must be a hello")),
-        None => Box::pin(hello(source)).await,
-    }
+/// Completes when the server stops.
+async fn stopping(app: &App) -> End {
+    // A server that is gone has stopped.
+    let _ = app.stopping.clone().wait_for(|stopping| *stopping).await;
+    End::Closed(Close::Stopping, "the server is stopping".to_owned())
 }
 
 /// A joined client's time, from welcome to end; leaves no trace of it.
-async fn visit(sink: &mut Sink, source: &mut Source, app: &App, name: String) -> End {
+async fn visit(sink: &mut Sink, ear: &mut Ear, app: &App, name: &str) -> End {
     let id = app.clients.next_id();
-    let name = if name.is_empty() { format!("visitor {id}") } else { name };
     let welcome = ServerMessage::Welcome { client: id, server_version: env!("CARGO_PKG_VERSION").to_owned() };
     let greeting = [wire::encode(&welcome).into(), app.scene.clone()];
     if let Err(end) = write(sink, greeting, app.limits.stall).await {
         return end;
     }
-    let (client, mut frames) = app.clients.join(id, name, app.limits.send.in_flight as usize);
-    tracing::info!(client = id, name = client.name, "joined");
+    let (client, mut frames) = app.clients.join(id, name_for(id, name), app.limits.send.in_flight as usize);
+    tracing::info!(client = id, name = client.name(), "joined");
     let (replies, mut answers) = mpsc::channel(REPLY_CAPACITY);
-    let mut stopping = app.stopping.clone();
     let end = tokio::select! {
-        end = listen(source, app, &client, &replies) => end,
+        end = listen(ear, app, &client, &replies) => end,
         end = speak(sink, &mut frames, &mut answers, app.limits.stall, &client) => end,
         end = watch_progress(&client, app.limits.stall) => end,
-        _ = stopping.wait_for(|stopping| *stopping) => End::Closed(Close::Stopping, "the server is stopping".to_owned()),
+        end = stopping(app) => end,
     };
     app.clients.leave(id);
     // The world is gone only when the server stops; then nothing is left to remove.
@@ -104,26 +141,36 @@ async fn visit(sink: &mut Sink, source: &mut Source, app: &App, name: String) ->
 }
 
 /// Reads and carries out what the client says, until it breaks a rule or leaves.
-async fn listen(source: &mut Source, app: &App, client: &Client, replies: &mpsc::Sender<Bytes>) -> End {
-    let Limits { messages_per_sec, .. } = app.limits;
-    let mut allowance = Bucket::new(2.0 * messages_per_sec, messages_per_sec, Instant::now());
+async fn listen(ear: &mut Ear, app: &App, client: &Client, replies: &mpsc::Sender<Bytes>) -> End {
+    // The newest that the world has not taken yet; a world that lags misses those in between.
+    let mut drive = None;
     loop {
-        let message = match receive(source).await {
-            Ok(message) => message,
-            Err(end) => return end,
+        let message = tokio::select! {
+            message = ear.hear() => message,
+            Ok(room) = app.commands.reserve(), if drive.is_some() => {
+                if let Some(drive) = drive.take() {
+                    room.send(Command::Drive { client: client.id, drive });
+                }
+                continue;
+            }
         };
-        allowance.fill(Instant::now());
-        if !allowance.try_take(1.0) {
-            return End::Closed(Close::RateLimit, format!("more than {messages_per_sec} messages a second"));
-        }
-        let Some(message) = message else { continue };
-        if let Err(end) = carry_out(message, app, client, replies).await {
+        let done = match message {
+            Ok(message) => carry_out(message, app, client, &mut drive, replies).await,
+            Err(end) => Err(end),
+        };
+        if let Err(end) = done {
             return end;
         }
     }
 }
 
-async fn carry_out(message: ClientMessage, app: &App, client: &Client, replies: &mpsc::Sender<Bytes>) -> Result<(), End> {
+async fn carry_out(
+    message: ClientMessage,
+    app: &App,
+    client: &Client,
+    newest_drive: &mut Option<Drive>,
+    replies: &mpsc::Sender<Bytes>,
+) -> Result<(), End> {
     let id = client.id;
     match message {
         ClientMessage::Hello { .. } => return Err(bad("a second hello")),
@@ -137,19 +184,23 @@ async fn carry_out(message: ClientMessage, app: &App, client: &Client, replies: 
             client.look(Gaze { eye_m, radius_m });
         }
         ClientMessage::Choose { vehicle } => {
-            let command = match vehicle {
+            // What the hands did was meant for the vehicle before.
+            *newest_drive = None;
+            let view = vehicle.and(client.view()).map(Command::View);
+            let choice = match vehicle {
                 Some(kind) => Command::Spawn { client: id, kind },
                 None => Command::Remove { client: id },
             };
             // Must not be lost; a world that lags slows this client's own input only.
-            let _ = app.commands.send(command).await;
+            for command in view.into_iter().chain([choice]) {
+                let _ = app.commands.send(command).await;
+            }
         }
         ClientMessage::Drive(drive) => {
             if !drive.is_valid() {
                 return Err(bad(format!("drive: {drive:?}; throttle, steer and lift must be -1..=1, brake 0..=1")));
             }
-            // May be lost when the world lags; the next input follows soon.
-            let _ = app.commands.try_send(Command::Drive { client: id, drive });
+            *newest_drive = Some(drive);
         }
         ClientMessage::Ack { frame } => {
             if !client.acknowledge(frame) {
@@ -159,6 +210,7 @@ async fn carry_out(message: ClientMessage, app: &App, client: &Client, replies: 
         ClientMessage::Ping { nonce } => {
             let _ = replies.try_send(wire::encode(&ServerMessage::Pong { nonce }).into());
         }
+        ClientMessage::Rename { name } => client.rename(name_for(id, &name)),
     }
     Ok(())
 }
@@ -270,6 +322,11 @@ fn close_reason(reason: &str) -> String {
     reason[..reason.floor_char_boundary(123)].to_owned()
 }
 
+/// The name to show of a client that calls itself `name`.
+fn name_for(id: u32, name: &str) -> String {
+    Some(clean_name(name)).filter(|name| !name.is_empty()).unwrap_or_else(|| format!("visitor {id}"))
+}
+
 /// A name without control characters and surrounding space, at most [`NAME_LIMIT`] characters long.
 fn clean_name(name: &str) -> String {
     let printable: String = name.chars().filter(|c| !c.is_control()).collect();
@@ -284,7 +341,7 @@ mod tests {
     fn names_are_cleaned_and_cut() {
         assert_eq!(clean_name("  Ada\u{7}\n "), "Ada");
         assert_eq!(clean_name(&"ü".repeat(500)).chars().count(), NAME_LIMIT);
-        assert_eq!(clean_name("\u{1b}\u{0}"), "");
+        assert_eq!(name_for(7, "\u{1b}\u{0}"), "visitor 7");
     }
 
     #[test]

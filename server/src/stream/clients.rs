@@ -1,5 +1,6 @@
 //! Who is connected: what sessions and the streamer tell each other about a client.
 
+use crate::world::View;
 use bytes::Bytes;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
@@ -29,16 +30,26 @@ pub struct Gaze {
 pub struct Client {
     /// Number of the client, unique within a run.
     pub id: u32,
-    /// Name to show to others.
-    pub name: String,
+    name: Mutex<String>,
     outbox: mpsc::Sender<Frame>,
     gaze: Mutex<Option<Gaze>>,
     handed_out: AtomicU32,
     acknowledged: AtomicU32,
     sent_bytes: AtomicU64,
+    sent_bytes_to_all: Arc<AtomicU64>,
 }
 
 impl Client {
+    /// Name to show to others.
+    pub fn name(&self) -> String {
+        self.name.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Gives the client another name.
+    pub fn rename(&self, name: String) {
+        *self.name.lock().unwrap_or_else(PoisonError::into_inner) = name;
+    }
+
     /// Tells where the client looks.
     pub fn look(&self, gaze: Gaze) {
         *self.gaze.lock().unwrap_or_else(PoisonError::into_inner) = Some(gaze);
@@ -47,6 +58,11 @@ impl Client {
     /// Where the client looks; none until it has said so.
     pub fn gaze(&self) -> Option<Gaze> {
         *self.gaze.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Its camera, as the world is told of it.
+    pub fn view(&self) -> Option<View> {
+        self.gaze().map(|gaze| View { client: self.id, eye_m: gaze.eye_m, radius_m: gaze.radius_m })
     }
 
     /// Notes an acknowledgement; false if that frame was never sent.
@@ -83,6 +99,7 @@ impl Client {
     /// Counts bytes written to the client's socket.
     pub fn count_sent(&self, bytes: usize) {
         self.sent_bytes.fetch_add(bytes as u64, Relaxed);
+        self.sent_bytes_to_all.fetch_add(bytes as u64, Relaxed);
     }
 
     /// Bytes written to the client's socket so far.
@@ -96,6 +113,7 @@ impl Client {
 pub struct Clients {
     table: Mutex<BTreeMap<u32, Arc<Client>>>,
     newest_id: AtomicU32,
+    sent_bytes: Arc<AtomicU64>,
 }
 
 impl Clients {
@@ -109,12 +127,13 @@ impl Clients {
         let (outbox, frames) = mpsc::channel(outbox_frames);
         let client = Arc::new(Client {
             id,
-            name,
+            name: Mutex::new(name),
             outbox,
             gaze: Mutex::default(),
             handed_out: AtomicU32::default(),
             acknowledged: AtomicU32::default(),
             sent_bytes: AtomicU64::default(),
+            sent_bytes_to_all: self.sent_bytes.clone(),
         });
         self.lock().insert(id, client.clone());
         (client, frames)
@@ -128,6 +147,11 @@ impl Clients {
     /// Everyone who is here, in the order of coming.
     pub fn all(&self) -> Vec<Arc<Client>> {
         self.lock().values().cloned().collect()
+    }
+
+    /// Bytes written so far to the sockets of all clients, those that have left included.
+    pub fn sent_bytes(&self) -> u64 {
+        self.sent_bytes.load(Relaxed)
     }
 
     /// Number of clients.

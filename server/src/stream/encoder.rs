@@ -16,14 +16,18 @@ pub const SLOW_HZ: f32 = 10.0;
 /// Frames per second of the wind (Hz).
 pub const WIND_HZ: f32 = 6.0;
 
+/// Time for which the frames of a patch are kept that nobody asks for (s), and half of the longest.
+const KEPT_SECS: f32 = 2.0;
+
 /// Encodes what changed since the publish before. Patches that nobody asks for cost nothing.
 #[derive(Debug)]
 pub struct Encoder {
     publish: u64,
+    kept_publishes: u64,
     patch_pacing: Pacing,
     wind_pacing: Pacing,
     patches: HashMap<PatchIndex, Track<PatchCodes>>,
-    wind: Track<WindFrame>,
+    wind: Option<Track<WindFrame>>,
     encodings: u64,
 }
 
@@ -33,22 +37,31 @@ impl Encoder {
         let every = |hz: f32| (publish_hz / hz).round().max(1.0) as u64;
         Self {
             publish: 0,
+            kept_publishes: (publish_hz * KEPT_SECS).ceil().max(1.0) as u64,
             patch_pacing: Pacing { dead_band: DEAD_BAND, slow_every: every(SLOW_HZ) },
             wind_pacing: Pacing { dead_band: u8::MAX, slow_every: every(WIND_HZ) },
             patches: HashMap::new(),
-            wind: Track::new(0),
+            wind: None,
             encodings: 0,
         }
     }
 
-    /// Starts a publish; every grid may get a new frame.
+    /// Starts a publish; every grid may get a new frame. Now and then forgets the patches that nobody has asked for of late.
     pub fn begin(&mut self) {
         self.publish += 1;
+        if self.publish.is_multiple_of(self.kept_publishes) {
+            self.patches.retain(|_, track| track.offered_at() + self.kept_publishes >= self.publish);
+        }
     }
 
     /// Grids encoded so far; does not depend on the number of clients.
     pub fn encodings(&self) -> u64 {
         self.encodings
+    }
+
+    /// Patches whose frames are kept.
+    pub fn tracks(&self) -> usize {
+        self.patches.len()
     }
 
     /// The poses of a snapshot.
@@ -57,20 +70,22 @@ impl Encoder {
     }
 
     /// The message that brings the wind of a client from frame `held` to the newest, and that frame's number.
-    pub fn wind(&mut self, snapshot: &Snapshot, held: u32) -> Option<(u32, Bytes)> {
-        self.wind.offer(self.publish, Some(&snapshot.wind), self.wind_pacing);
-        self.wind.message(held, |Numbering { seq, key }, payload| {
+    pub fn wind(&mut self, snapshot: &Snapshot, held: Option<u32>) -> Option<(u32, Bytes)> {
+        let (publish, newest) = (self.publish, Some(&snapshot.wind));
+        let track = self.wind.get_or_insert_with(|| Track::new(publish, newest, publish + self.wind_pacing.slow_every));
+        track.offer(publish, newest, self.wind_pacing);
+        track.message(held, |Numbering { seq, key }, payload| {
             self.encodings += 1;
             wire::encode(&ServerMessage::Wind { tick: snapshot.wind.tick, seq, key, payload }).into()
         })
     }
 
     /// The message that brings a client's patch from frame `held` to the newest, and that frame's number.
-    pub fn patch(&mut self, snapshot: &Snapshot, patch: PatchIndex, held: u32) -> Option<(u32, Bytes)> {
-        let newest = snapshot.patches.get(patch as usize)?.as_ref();
-        let slow_at = self.publish + u64::from(patch) % self.patch_pacing.slow_every;
-        let track = self.patches.entry(patch).or_insert_with(|| Track::new(slow_at));
-        track.offer(self.publish, newest, self.patch_pacing);
+    pub fn patch(&mut self, snapshot: &Snapshot, patch: PatchIndex, held: Option<u32>) -> Option<(u32, Bytes)> {
+        let (publish, newest) = (self.publish, snapshot.patches.get(&patch));
+        let slow_at = publish + 1 + u64::from(patch) % self.patch_pacing.slow_every;
+        let track = self.patches.entry(patch).or_insert_with(|| Track::new(publish, newest, slow_at));
+        track.offer(publish, newest, self.patch_pacing);
         track.message(held, |Numbering { seq, key }, payload| {
             self.encodings += 1;
             wire::encode(&ServerMessage::Patch { patch, seq, key, payload }).into()

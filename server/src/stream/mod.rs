@@ -4,6 +4,9 @@
 //! delta and as a key, when the first client needs it; all clients share the bytes. A client that holds the frame before gets the delta,
 //! any other the key, so a frame that a slow client misses costs it a key later and nobody else anything.
 //!
+//! What nobody looks at costs nothing: the frames of a patch that no client has asked for of late are dropped, and of a client the streamer
+//! remembers only the patches that it was sent last, no more than any client keeps. Any other patch it is sent as a key.
+//!
 //! A client has at most a few frames on their way ([`SendLimits`]); while they are not acknowledged it is skipped, and
 //! then gets the newest state: nothing queues.
 
@@ -18,5 +21,5 @@ pub use clients::{Client, Clients, Frame, Gaze};
 pub use encoder::{DEAD_BAND, Encoder, SLOW_HZ, WIND_HZ};
 pub use interest::{PATCH_LIMIT, interest};
 pub use pace::{Common, Pace, SendLimits};
-pub use streamer::{Counters, Streamer, start};
+pub use streamer::{Counters, Stream, Streamer, start};
 pub use track::{Grid, Numbering, Pacing, Track};

@@ -2,12 +2,12 @@
 
 use super::clients::{Client, Frame, Gaze};
 use super::encoder::Encoder;
-use super::interest::interest;
+use super::interest::{PATCH_LIMIT, interest};
 use crate::bucket::Bucket;
 use crate::snapshot::Snapshot;
 use bytes::Bytes;
 use shared::grid::{PatchIndex, PatchLayout};
-use shared::wire::{self, ServerMessage};
+use shared::wire::{self, PATCH_MEMORY, ServerMessage};
 use std::collections::HashMap;
 use std::time::Instant;
 
@@ -44,14 +44,26 @@ pub struct Common<'a> {
     pub roster: Bytes,
 }
 
+const _: () = assert!(PATCH_LIMIT <= PATCH_MEMORY, "a client holds at least all that it wants");
+
+/// What a client holds of a patch.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    seq: u32,
+    /// Number of the message that brought it, per client.
+    message: u64,
+}
+
 /// The streamer's memory of one client.
 #[derive(Debug)]
 pub struct Pace {
     limits: SendLimits,
     budget: Bucket,
     frame: u32,
-    held: HashMap<PatchIndex, u32>,
-    held_wind: u32,
+    /// The patches that it was sent last, at most [`PATCH_MEMORY`]: these it holds for certain.
+    held: HashMap<PatchIndex, Held>,
+    patch_messages: u64,
+    held_wind: Option<u32>,
     held_roster: u64,
     gaze: Option<Gaze>,
     wanted: Vec<PatchIndex>,
@@ -65,7 +77,8 @@ impl Pace {
             budget: Bucket::new(limits.bytes_per_sec, limits.bytes_per_sec, now),
             frame: 0,
             held: HashMap::new(),
-            held_wind: 0,
+            patch_messages: 0,
+            held_wind: None,
             held_roster: 0,
             gaze: None,
             wanted: Vec::new(),
@@ -90,7 +103,7 @@ impl Pace {
         let wind = encoder.wind(snapshot, self.held_wind).filter(|(_, message)| self.budget.try_overdraw(message.len() as f64));
         let mut patches = Vec::new();
         for &patch in &self.wanted {
-            let held = self.held.get(&patch).copied().unwrap_or(0);
+            let held = self.held.get(&patch).map(|held| held.seq);
             let Some((seq, message)) = encoder.patch(snapshot, patch, held) else { continue };
             if !self.budget.try_overdraw(message.len() as f64) {
                 break;
@@ -109,9 +122,26 @@ impl Pace {
         }
         self.frame = number;
         self.held_roster = common.roster_version;
-        self.held_wind = wind.map_or(self.held_wind, |(seq, _)| seq);
-        self.held.extend(patches);
+        self.held_wind = wind.map(|(seq, _)| seq).or(self.held_wind);
+        self.hold(patches);
         true
+    }
+
+    /// Patches that the client is known to hold.
+    pub fn held_patches(&self) -> usize {
+        self.held.len()
+    }
+
+    fn hold(&mut self, sent: Vec<(PatchIndex, u32)>) {
+        for (patch, seq) in sent {
+            self.patch_messages += 1;
+            self.held.insert(patch, Held { seq, message: self.patch_messages });
+        }
+        if let Some(surplus) = self.held.len().checked_sub(PATCH_MEMORY + 1) {
+            let mut messages: Vec<u64> = self.held.values().map(|held| held.message).collect();
+            let newest_forgotten = *messages.select_nth_unstable(surplus).1;
+            self.held.retain(|_, held| held.message > newest_forgotten);
+        }
     }
 
     fn want(&mut self, gaze: Option<Gaze>, layout: &PatchLayout) {

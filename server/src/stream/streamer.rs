@@ -13,13 +13,17 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::thread::JoinHandle;
 use std::time::Instant;
-use tokio::sync::{mpsc, watch};
+use tokio::sync::{mpsc, oneshot, watch};
 
 /// What the streamer counts, for `/healthz`.
 #[derive(Debug, Default)]
 pub struct Counters {
     /// Grids encoded.
     pub encodings: AtomicU64,
+    /// Patches whose frames are kept.
+    pub tracks: AtomicU64,
+    /// Patches that the clients are known to hold, summed over them.
+    pub held: AtomicU64,
     /// Frames handed to sessions.
     pub frames: AtomicU64,
     /// Frames not made because as much as allowed was on its way to the client.
@@ -87,8 +91,9 @@ impl Streamer {
             }
         }
         self.counters.encodings.store(self.encoder.encodings(), Relaxed);
-        let view = |client: &Arc<Client>| client.gaze().map(|gaze| View { client: client.id, eye_m: gaze.eye_m, radius_m: gaze.radius_m });
-        clients.iter().filter_map(view).collect()
+        self.counters.tracks.store(self.encoder.tracks() as u64, Relaxed);
+        self.counters.held.store(self.paces.values().map(Pace::held_patches).sum::<usize>() as u64, Relaxed);
+        clients.iter().filter_map(|client| client.view()).collect()
     }
 
     fn forget_absent(&mut self, clients: &[Arc<Client>]) {
@@ -100,7 +105,7 @@ impl Streamer {
     fn call_the_roll(&mut self, published: &Published, clients: &[Arc<Client>]) {
         let object = |id| published.requests.get(&id).and_then(|request| request.object);
         let peers: Vec<Peer> =
-            clients.iter().map(|client| Peer { client: client.id, name: client.name.clone(), object: object(client.id) }).collect();
+            clients.iter().map(|client| Peer { client: client.id, name: client.name(), object: object(client.id) }).collect();
         if peers != self.peers {
             self.roster_version += 1;
             self.roster = wire::encode(&ServerMessage::Roster { peers: peers.clone() }).into();
@@ -120,6 +125,26 @@ fn object_limit() -> Bytes {
     wire::encode(&ServerMessage::Refused { refusal: Refusal::ObjectLimit, reason }).into()
 }
 
+/// The running thread.
+#[derive(Debug)]
+pub struct Stream {
+    thread: JoinHandle<()>,
+    /// Closes with the thread, however that ends.
+    life: oneshot::Receiver<()>,
+}
+
+impl Stream {
+    /// Completes when the thread has ended, or is about to.
+    pub async fn ended(&mut self) {
+        let _ = (&mut self.life).await;
+    }
+
+    /// Waits for the thread. False if it had panicked.
+    pub fn join(self) -> bool {
+        self.thread.join().is_ok()
+    }
+}
+
 /// Starts the thread. It ends when the world's thread does.
 ///
 /// # Errors
@@ -129,14 +154,17 @@ pub fn start(
     mut published: watch::Receiver<Arc<Published>>,
     clients: Arc<Clients>,
     commands: mpsc::Sender<Command>,
-) -> std::io::Result<JoinHandle<()>> {
+) -> std::io::Result<Stream> {
     let runtime = tokio::runtime::Handle::current();
-    std::thread::Builder::new().name("stream".to_owned()).spawn(move || {
+    let (alive, life) = oneshot::channel();
+    let thread = std::thread::Builder::new().name("stream".to_owned()).spawn(move || {
+        let _alive: oneshot::Sender<()> = alive;
         while runtime.block_on(published.changed()).is_ok() {
             let newest = published.borrow_and_update().clone();
             let views = streamer.publish(&newest, &clients.all(), Instant::now());
             // A full channel means that the world lags; the next publish brings newer views.
             let _ = commands.try_send(Command::Views(views));
         }
-    })
+    })?;
+    Ok(Stream { thread, life })
 }

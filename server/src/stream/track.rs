@@ -49,7 +49,8 @@ pub struct Numbering {
     pub key: bool,
 }
 
-/// The frames of one grid. Frame 0 is the grid at rest, all codes zero; every client starts there.
+/// The frames of one grid, numbered upwards from the publish at which the track was begun. There is at most one frame a publish, so a track
+/// that is dropped and begun anew never gives a number twice.
 #[derive(Debug)]
 pub struct Track<G> {
     seq: u32,
@@ -62,10 +63,15 @@ pub struct Track<G> {
 }
 
 impl<G: Grid> Track<G> {
-    /// A track at frame 0. Its first slow frame is due at publish `slow_at`; spread these, lest the slow frames of many
-    /// tracks fall together.
-    pub fn new(slow_at: u64) -> Self {
-        Self { seq: 0, now: None, before: None, offered_at: u64::MAX, slow_at, delta: None, key: None }
+    /// A track whose first frame is the newest grid (none: at rest). Its first slow frame is due at publish `slow_at`; spread these, lest the
+    /// slow frames of many tracks fall together.
+    pub fn new(publish: u64, newest: Option<&Arc<G>>, slow_at: u64) -> Self {
+        Self { seq: publish as u32, now: newest.cloned(), before: None, offered_at: publish, slow_at, delta: None, key: None }
+    }
+
+    /// Publish at which a grid was offered last.
+    pub fn offered_at(&self) -> u64 {
+        self.offered_at
     }
 
     /// Takes the newest grid of this publish (none: at rest); decides once a publish whether it becomes the next frame.
@@ -86,13 +92,14 @@ impl<G: Grid> Track<G> {
         }
     }
 
-    /// The message that brings a client from frame `held` to the newest one, and the newest one's number; none when it holds that.
+    /// The message that brings a client from frame `held` (none: it is not known to hold any) to the newest one, and the newest one's
+    /// number; none when it holds that.
     /// `write` makes the message of a payload and counts as one encoding; it is called only if nobody asked before.
-    pub fn message(&mut self, held: u32, write: impl FnOnce(Numbering, Vec<u8>) -> Bytes) -> Option<(u32, Bytes)> {
-        if held == self.seq {
+    pub fn message(&mut self, held: Option<u32>, write: impl FnOnce(Numbering, Vec<u8>) -> Bytes) -> Option<(u32, Bytes)> {
+        if held == Some(self.seq) {
             return None;
         }
-        let follows = held.wrapping_add(1) == self.seq;
+        let follows = held.is_some_and(|held| held.wrapping_add(1) == self.seq);
         let base = self.before.as_ref().filter(|_| follows && self.now.is_some());
         let slot = if base.is_some() { &mut self.delta } else { &mut self.key };
         let numbering = Numbering { seq: self.seq, key: base.is_none() };

@@ -2,16 +2,19 @@
 #![allow(dead_code, missing_docs, unreachable_pub, reason = "each test file uses its own part")]
 
 use shared::grid::PatchIndex;
-use shared::wire::{SERVER_MESSAGE_LIMIT, ServerMessage, codec, decode};
+use shared::wire::{PATCH_MEMORY, SERVER_MESSAGE_LIMIT, ServerMessage, codec, decode};
 use std::collections::BTreeMap;
 
-/// Codes and number of the newest frame of each grid, applied strictly: a delta must follow the frame that is held.
+/// Codes and number of the newest frame of each grid, applied strictly: a delta must follow the frame that is held. Keeps no more patches than
+/// a client must.
 #[derive(Debug, Default, PartialEq)]
 pub struct Picture {
     /// Cells along a side of a patch and along the wind's axes; a scene message sets them.
     pub patch_cells: usize,
     pub wind_cells: [u32; 3],
     pub patches: BTreeMap<PatchIndex, (u32, Vec<i8>)>,
+    /// The patches, the one not heard of for longest first.
+    pub heard: Vec<PatchIndex>,
     pub wind: (u32, Vec<i8>),
     pub tick: u64,
     pub frame: u32,
@@ -39,6 +42,11 @@ impl Picture {
                 let rest = || (0, vec![0; codec::PLANES * self.patch_cells.pow(2)]);
                 let held = self.patches.entry(*patch).or_insert_with(rest);
                 update(held, self.patch_cells, *seq, *key, payload);
+                self.heard.retain(|heard| heard != patch);
+                self.heard.push(*patch);
+                if self.heard.len() > PATCH_MEMORY {
+                    self.patches.remove(&self.heard.remove(0));
+                }
             }
             ServerMessage::Wind { seq, key, payload, .. } => update(&mut self.wind, self.wind_cells[0] as usize, *seq, *key, payload),
             ServerMessage::Scene { scene, .. } => self.shape(scene.patches.cells as usize, scene.wind.cells),

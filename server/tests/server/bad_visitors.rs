@@ -73,6 +73,44 @@ async fn silence_at_the_door_is_closed() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn pings_before_the_hello_are_answered_but_count() {
+    let limits = Limits { messages_per_sec: 50.0, ..Limits::default() };
+    let server = Server::start(limits).await;
+    let mut polite = Plain::connect(&server).await;
+    for _ in 0..10 {
+        polite.send(Message::Ping(Vec::new().into())).await;
+    }
+    polite.greet("polite").await;
+    let mut visitor = Plain::connect(&server).await;
+    for _ in 0..1000 {
+        if visitor.socket.feed(Message::Ping(Vec::new().into())).await.is_err() {
+            break;
+        }
+    }
+    let _ = visitor.socket.flush().await;
+    assert_eq!(visitor.closed().await.0, Close::RateLimit.code());
+    polite.frame().await;
+    server.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn pages_that_are_asked_for_and_never_read_keep_nobody_out() {
+    let limits = Limits { connections: 2, page: Duration::from_secs(2), ..Limits::default() };
+    let server = Server::start(limits).await;
+    let mut deaf = Vec::new();
+    for _ in 0..limits.connections {
+        let mut stream = TcpStream::connect(server.address).await.unwrap();
+        let ask = async move { while stream.write_all(b"GET / HTTP/1.1\r\nhost: prairie\r\n\r\n").await.is_ok() {} };
+        deaf.push(tokio::spawn(ask));
+    }
+    assert!(server.http("GET / HTTP/1.1").await.starts_with(b"HTTP/1.1 200"));
+    for asked in deaf {
+        within(asked).await.unwrap();
+    }
+    server.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_flood_is_closed() {
     let limits = Limits { messages_per_sec: 50.0, ..Limits::default() };
     let server = Server::start(limits).await;

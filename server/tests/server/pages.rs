@@ -4,7 +4,8 @@ use crate::running::{Server, within};
 use crate::small_world::Meadow;
 use crate::visitor::Plain;
 use server::{Limits, RunError};
-use shared::wire::{Close, Refusal};
+use shared::wire::{ClientMessage, Close, Refusal, ServerMessage};
+use std::io::Read as _;
 use std::time::Duration;
 use tokio::net::TcpStream;
 use tokio_tungstenite::tungstenite;
@@ -18,6 +19,35 @@ async fn everybody_is_told_when_the_server_stops() {
     server.stop().await;
     assert_eq!(visitor.closed().await.0, Close::Stopping.code());
     assert_eq!(visitor.refusals, [Refusal::Stopping]);
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_run_is_over_when_all_goodbyes_are_said() {
+    let server = Server::start(Limits::default()).await;
+    let silent = Plain::connect(&server).await;
+    let mut visitor = Plain::join(&server, "visitor").await;
+    visitor.frame().await;
+    server.stop().await;
+    for visitor in [silent, visitor] {
+        // Neither hangs up: the server has, after its last words.
+        let mut stream = visitor.socket.into_inner().into_std().unwrap();
+        let mut last_words = Vec::new();
+        stream.read_to_end(&mut last_words).expect("nothing is left open");
+        let code = Close::Stopping.code().to_be_bytes();
+        assert!(last_words.windows(2).any(|pair| pair == code), "{last_words:?}");
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_fault_in_the_stream_ends_the_run_with_an_error() {
+    let (server, _) = Server::start_with(Meadow::misshapen_at(40), Limits::default(), None).await;
+    let mut visitor = Plain::join(&server, "visitor").await;
+    while let Ok(message) = visitor.hear().await {
+        if let ServerMessage::FrameEnd { frame, .. } = message {
+            visitor.say(&ClientMessage::Ack { frame }).await;
+        }
+    }
+    assert!(matches!(within(server.outcome).await.unwrap(), Err(RunError::StreamStopped)));
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]

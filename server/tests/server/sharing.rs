@@ -1,7 +1,7 @@
 //! What visitors see of one another.
 
 use crate::running::Server;
-use crate::small_world::OBJECT_LIMIT;
+use crate::small_world::{Meadow, OBJECT_LIMIT};
 use crate::visitor::Plain;
 use server::{Limits, scenes};
 use shared::grid::PatchLayout;
@@ -9,6 +9,8 @@ use shared::scene::VehicleKind;
 use shared::wire::quantise::theta_code;
 use shared::wire::{ClientMessage, Drive, Refusal, ServerMessage};
 use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// What a visitor sees at each of the next `frames` frames, by step.
 async fn watch(visitor: &mut Plain, frames: usize) -> BTreeMap<u64, impl PartialEq + std::fmt::Debug + use<>> {
@@ -43,6 +45,54 @@ async fn two_visitors_see_the_same_world() {
     bob.frames_until(|bob| bob.objects.is_empty()).await;
     drop(ada);
     bob.frames_until(|bob| bob.peers.len() == 1).await;
+    server.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_new_name_changes_nothing_else() {
+    let server = Server::start(Limits::default()).await;
+    let (mut ada, mut bob) = (Plain::join(&server, "Ada").await, Plain::join(&server, "Bob").await);
+    ada.say(&ClientMessage::Choose { vehicle: Some(VehicleKind::Monster) }).await;
+    let object = Some(100 + ada.client);
+    for (said, shown) in [(" Countess\u{7} ", "Countess".to_owned()), ("\n", format!("visitor {}", ada.client))] {
+        ada.say(&ClientMessage::Rename { name: said.to_owned() }).await;
+        let peer = (ada.client, shown, object);
+        tokio::join!(ada.frames_until(|ada| ada.peers.contains(&peer)), bob.frames_until(|bob| bob.peers.contains(&peer)));
+    }
+    server.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_vehicle_appears_below_the_camera_told_of_just_before() {
+    let server = Server::start_meadow().await;
+    let mut visitor = Plain::join(&server, "visitor").await;
+    let eye_m = [40.0, 5.0, 216.0];
+    visitor.say(&ClientMessage::View { eye_m, radius_m: 32.0 }).await;
+    visitor.say(&ClientMessage::Choose { vehicle: Some(VehicleKind::Monster) }).await;
+    visitor.frames_until(|visitor| !visitor.objects.is_empty()).await;
+    let [x, _, z] = visitor.objects[0].position_m;
+    assert!((x - eye_m[0]).hypot(z - eye_m[2]) < 40.0, "at {x}, {z}");
+    server.stop().await;
+}
+
+/// More input than a world that lags takes in: the newest is not lost.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn the_last_word_of_a_driver_is_heard_however_late_the_world_is() {
+    let halted = Arc::new(AtomicBool::new(false));
+    let limits = Limits { messages_per_sec: 1e6, ..Limits::default() };
+    let (server, _) = Server::start_with(Meadow::halting(halted.clone()), limits, None).await;
+    let mut driver = Plain::join(&server, "driver").await;
+    driver.say(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
+    driver.frames_until(|driver| !driver.objects.is_empty()).await;
+    halted.store(true, Relaxed);
+    for _ in 0..5000 {
+        driver.say(&ClientMessage::Drive(Drive::default())).await;
+    }
+    driver.say(&ClientMessage::Drive(Drive { throttle: 1.0, ..Drive::default() })).await;
+    driver.say(&ClientMessage::Ping { nonce: 1 }).await;
+    while driver.hear().await != Ok(ServerMessage::Pong { nonce: 1 }) {}
+    halted.store(false, Relaxed);
+    driver.frames_until(|driver| driver.objects[0].position_m[2] < 0.0).await;
     server.stop().await;
 }
 

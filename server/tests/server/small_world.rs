@@ -9,6 +9,9 @@ use shared::terrain::{CoverMap, HeightMap};
 use shared::wire::{ObjectId, ObjectPose};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread::sleep;
+use std::time::Duration;
 
 const CELLS: usize = 8;
 const PATCHES: usize = 9;
@@ -22,6 +25,8 @@ pub(crate) struct Meadow {
     objects: BTreeMap<u32, ObjectPose>,
     throttle: BTreeMap<u32, f32>,
     fails_at: Option<u64>,
+    misshapen_at: Option<u64>,
+    halted: Arc<AtomicBool>,
 }
 
 impl Meadow {
@@ -29,10 +34,23 @@ impl Meadow {
     pub(crate) fn failing_at(tick: u64) -> Self {
         Self { fails_at: Some(tick), ..Self::default() }
     }
+
+    /// A world that from step `tick` on shows patches of no possible shape.
+    pub(crate) fn misshapen_at(tick: u64) -> Self {
+        Self { misshapen_at: Some(tick), ..Self::default() }
+    }
+
+    /// A world that stands still while `halted`.
+    pub(crate) fn halting(halted: Arc<AtomicBool>) -> Self {
+        Self { halted, ..Self::default() }
+    }
 }
 
 impl Simulation for Meadow {
     fn step(&mut self, commands: &[Command]) {
+        while self.halted.load(Relaxed) {
+            sleep(Duration::from_millis(1));
+        }
         self.tick += 1;
         assert_ne!(Some(self.tick), self.fails_at, "told to fail");
         for command in commands {
@@ -46,7 +64,7 @@ impl Simulation for Meadow {
                 Command::Drive { client, drive } => {
                     self.throttle.insert(client, drive.throttle);
                 }
-                Command::Spawn { .. } | Command::Views(_) => {}
+                Command::Spawn { .. } | Command::Views(_) | Command::View(_) => {}
             }
         }
         for (client, object) in &mut self.objects {
@@ -55,10 +73,11 @@ impl Simulation for Meadow {
     }
 
     fn snapshot(&mut self) -> Snapshot {
+        let len = 3 * CELLS * CELLS - usize::from(self.misshapen_at.is_some_and(|tick| self.tick >= tick));
         let patch = |index: usize| {
             let tick = self.tick / PATCHES as u64 * PATCHES as u64 + index as u64;
-            let codes = (0..3 * CELLS * CELLS).map(|i| ((tick as usize + i * index) % 200) as i8 / 2).collect();
-            Some(Arc::new(PatchCodes { tick, codes }))
+            let codes = (0..len).map(|i| ((tick as usize + i * index) % 200) as i8 / 2).collect();
+            (index as u32, Arc::new(PatchCodes { tick, codes }))
         };
         let wind = WindFrame { tick: self.tick, cells: WIND_CELLS, codes: vec![(self.tick % 100) as i8; 96] };
         Snapshot {
@@ -66,7 +85,7 @@ impl Simulation for Meadow {
             time_secs: self.tick as f64 / 60.0,
             objects: self.objects.values().copied().collect(),
             wind: Arc::new(wind),
-            patches: (0..PATCHES).map(patch).collect(),
+            patches: Arc::new((0..PATCHES).map(patch).collect()),
             ..Snapshot::default()
         }
     }

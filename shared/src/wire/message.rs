@@ -62,6 +62,11 @@ pub enum ClientMessage {
         /// Comes back unchanged.
         nonce: u32,
     },
+    /// Takes another name.
+    Rename {
+        /// As in [`Hello`](Self::Hello).
+        name: String,
+    },
 }
 
 /// What a server says.
@@ -106,7 +111,8 @@ pub enum ServerMessage {
         #[serde(with = "serde_bytes")]
         payload: Vec<u8>,
     },
-    /// Bend field of one patch: three planes (θ, ωx, ωz) of `cells × cells`.
+    /// Bend field of one patch: three planes (θ, ωx, ωz) of `cells × cells`. A client keeps at least the [`PATCH_MEMORY`](super::PATCH_MEMORY)
+    /// patches that came last.
     Patch {
         /// Which patch.
         patch: PatchIndex,

@@ -14,10 +14,13 @@ pub use codec::CodecError;
 pub use message::{ClientMessage, Drive, Mesh, ObjectId, ObjectPose, Peer, Refusal, ServerMessage, WireError, decode, encode};
 
 /// Version of the protocol; both sides must agree.
-pub const PROTOCOL: u8 = 1;
+pub const PROTOCOL: u8 = 2;
 
 /// Largest message a client may send (bytes).
 pub const CLIENT_MESSAGE_LIMIT: usize = 4096;
+
+/// Patches that a client keeps at least: those that it was told of last. A server sends deltas only to these.
+pub const PATCH_MEMORY: usize = 2048;
 
 /// Largest message a server may send (bytes): a scene with two maps and two models.
 pub const SERVER_MESSAGE_LIMIT: usize = 64 << 20;
