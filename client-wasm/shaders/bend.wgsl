@@ -1,7 +1,7 @@
 // Single plants: how each blade and flower stem stands in this frame, and which of them are seen.
 //
 // Near plants (nine grids about the camera) keep their control points from frame to frame and obey drag, stiffness and the
-// length of the blade (000 section 3.2); those farther away stand as the steady wind and the bend field would have them.
+// length of the blade (000 section 3.2); those farther away stand as the bend field and the wind of the moment would have them.
 
 struct Plants {
     // Grid (x, z) that lives in each of the nine slots; 1 in z when it has just moved in.
@@ -10,7 +10,8 @@ struct Plants {
     counts: vec4<u32>,
     // Capacities of the drawn lists: fine blades, coarse blades, flowers.
     capacities: vec4<u32>,
-    // Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), sub-steps.
+    // Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), sub-steps due: the
+    // whole ones are done in this frame.
     shape: vec4<f32>,
 }
 
@@ -18,14 +19,6 @@ struct Plants {
 struct Posture {
     now: array<vec4<f32>, 3>,
     before: array<vec4<f32>, 3>,
-}
-
-// A plant to be drawn.
-struct Blade {
-    // Root (m), width at the root (m).
-    root: vec4<f32>,
-    // Offsets of the control points from the root (m); w: angle of the side, hue 0..1, light 0..1.
-    points: array<vec4<f32>, 3>,
 }
 
 struct Counters {
@@ -38,6 +31,9 @@ struct Counters {
 @group(1) @binding(3) var<storage, read_write> counters: Counters;
 @group(1) @binding(4) var<storage, read> far_grids: array<vec4<i32>>;
 @group(1) @binding(5) var<storage, read_write> draws: array<u32>;
+
+// Length of a sub-step (s); twin of the constant in `blades.rs`.
+const STEP_SECS: f32 = 1.0 / 120.0;
 
 const FINE: u32 = 0u;
 const COARSE: u32 = 1u;
@@ -186,15 +182,16 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let is_flower = index % max(count / max(plants.counts.y, 1u), 1u) == 0u && plants.counts.y > 0u;
     let plant = plant_at(grid, index, place, is_flower);
-    let field = lean_of_field(plant.root.xz, 0.0);
-    let rest = posture_of(plant, field);
+    // Where the field and the wind hold the plant: drag in a steady wind balances stiffness there.
+    let gust = gust_at(plant.root.xz) * (0.9 + 0.2 * random3(grid, index + 47u).y);
+    let held = posture_of(plant, lean_at(plant.root, 0.0, gust));
     let at = id.y * count + index;
 
     var now: array<vec3<f32>, 3>;
     var before: array<vec3<f32>, 3>;
     if slot.z != 0 {
-        now = posture_of(plant, field + lean_of_wind(wind_at(plant.root, 1.0).xz * gust_at(plant.root.xz)));
-        before = now;
+        now = held;
+        before = held;
     } else {
         for (var i = 0; i < 3; i++) {
             now[i] = postures[at].now[i].xyz;
@@ -202,35 +199,27 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
         }
     }
 
-    // Stiffness per mass falls with the height; drag per mass is such that 10 m/s sustain the scene's bend.
+    // Stiffness per mass falls with the height. The drag of air that passes at |u - v|^2 is taken as linear in v about the wind
+    // u: it damps the plant's own motion the more, the farther that wind bends it.
     let mass = select(1.0, 2.2, plant.is_flower);
     let stiff = 95.0 * sqrt(0.8 / plant.height) / mass;
-    let drag = stiff * plant.height * frame.blade.w / 100.0 * 0.75;
-    let gust = gust_at(plant.root.xz) * (0.9 + 0.2 * random3(grid, index + 47u).y);
-    let steps = i32(plants.shape.w);
-    let dt = frame.screen.w / max(plants.shape.w, 1.0);
-    var wind: array<vec3<f32>, 3>;
-    for (var i = 0; i < 3; i++) {
-        let p = plant.root + now[i];
-        wind[i] = wind_at(p, now[i].y + 0.3) * gust * (0.55 + 0.25 * f32(i));
-    }
-    for (var step = 0; step < steps; step++) {
+    let wind = wind_at(plant.root, 1.0).xz * gust;
+    let drag = 2.0 * plant.height * sin(length(lean_of_wind(wind))) / max(length(wind), 1e-3);
+    for (var step = 0; step < i32(plants.shape.w); step++) {
         for (var i = 0; i < 3; i++) {
-            let v = (now[i] - before[i]) / dt;
-            let u = wind[i] - v;
             let share_of_height = (f32(i) + 1.0) / 3.0;
             let k = stiff * mix(2.2, 1.0, share_of_height);
-            let pull = (rest[i] - now[i]) * k - v * (2.0 * 0.10 * sqrt(k));
-            let push = u * (drag * length(u) * share_of_height);
-            let next = now[i] + (now[i] - before[i]) + (pull + push) * (dt * dt);
+            let v = (now[i] - before[i]) / STEP_SECS;
+            let pull = (held[i] - now[i]) * k - v * (0.20 * sqrt(k) + drag * share_of_height * k);
+            let next = now[i] + v * STEP_SECS + pull * (STEP_SECS * STEP_SECS);
             before[i] = now[i];
             now[i] = next;
         }
         keep_length(&now, plant);
     }
     if !all(abs(now[2]) < vec3<f32>(100.0)) {
-        now = rest;
-        before = rest;
+        now = held;
+        before = held;
     }
     for (var i = 0; i < 3; i++) {
         postures[at].now[i] = vec4<f32>(now[i], 0.0);
@@ -241,7 +230,11 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     if grown <= 0.01 || !is_seen(plant.root + vec3<f32>(0.0, plant.height * 0.5, 0.0), plant.height * 0.75) {
         return;
     }
-    var shown = now;
+    // Between the last two sub-steps, as far as the next is due.
+    var shown: array<vec3<f32>, 3>;
+    for (var i = 0; i < 3; i++) {
+        shown[i] = mix(before[i], now[i], fract(plants.shape.w));
+    }
     push_aside(&shown, plant);
     show(plant, shown, grown, distance(plant.root, frame.eye.xyz), random3(grid, index + 61u).z);
 }
@@ -308,10 +301,8 @@ fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let r = random3(grid, index + 47u);
-    let wind = wind_at(plant.root, 1.0).xz * gust_at(plant.root.xz) * (0.9 + 0.2 * r.y);
-    let flutter = 1.0 + 0.13 * sin(frame.eye.w * mix(6.0, 9.0, r.x) + r.z * TAU);
-    let stiff = select(1.0, 0.6, plant.is_flower);
-    let lean = lean_of_field(plant.root.xz, 0.0) + lean_of_wind(wind) * flutter * stiff;
+    let flutter = 1.0 + 0.065 * sin(frame.eye.w * mix(6.0, 9.0, r.x) + r.z * TAU);
+    let lean = lean_at(plant.root, 0.0, gust_at(plant.root.xz) * (0.9 + 0.2 * r.y) * flutter);
     show(plant, posture_of(plant, lean), grown, distance(plant.root, frame.eye.xyz), random3(grid, index + 61u).z);
 }
 

@@ -7,12 +7,12 @@ struct Clump {
 
 // What is the same for all vertices of a clump.
 struct Stand {
-    // Lean (rad), light 0..1, share of the clump that is shown.
+    // Lean (rad), height of the plants (m), share of the clump that is shown.
     pose: vec4<f32>,
-    // Colour factor, height of the plants (m).
-    tint: vec4<f32>,
-    // Normal of the ground.
-    normal: vec4<f32>,
+    // Lit colours of the plants' roots and tips; petals' light.
+    root_color: vec4<f32>,
+    tip_color: vec4<f32>,
+    petal_light: vec4<f32>,
 }
 
 struct List {
@@ -41,7 +41,7 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let height = frame.blade.x * PATTERN_HEIGHT * mix(0.80, 1.18, noise(root / 14.0).a) * sqrt(share);
     let ground = vec3<f32>(root.x, ground_height(root), root.y);
     let distance_m = distance(ground, frame.eye.xyz);
-    let lean = lean_of_wind(wind_at(ground, 1.0).xz * gust_at(root)) + lean_of_field(root, field_level(distance_m));
+    let lean = lean_at(ground, field_level(distance_m), gust_at(root));
     let fade_in = smoothstep(frame.reach.x * 0.72, frame.reach.y, distance_m + (clump.w - 0.5) * 2.0);
     let fade_out = 1.0 - smoothstep(frame.reach.z, frame.reach.w, distance_m);
     var stand: Stand;
@@ -51,16 +51,28 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let down = smoothstep(0.09, 0.22, dot(frame.eye.xyz - ground, ground_normal(root)) / max(distance_m, 1e-3));
     let flat_share = down * smoothstep(frame.reach.y * 0.9, frame.reach.y * 1.6, distance_m);
     let risen = fade_in * mix(0.35, 1.0, fade_out) * (1.0 - flat_share);
-    stand.pose = vec4<f32>(lean, light, min(fade_out * 4.0, 1.0) * step(0.1, share) * step(0.05, risen));
-    stand.tint = vec4<f32>(grass_tint(root), height * risen);
-    stand.normal = vec4<f32>(ground_normal(root), 0.0);
+    stand.pose = vec4<f32>(lean, height * risen, min(fade_out * 4.0, 1.0) * step(0.1, share) * step(0.05, risen));
+    let p = ground + vec3<f32>(0.0, height * risen * 0.5, 0.0);
+    let view = normalize(p - frame.eye.xyz);
+    let normal = normalize(ground_normal(root) - view * 0.45 + vec3<f32>(lean.x, 0.0, lean.y) * 0.7);
+    let tangent = normalize(vec3<f32>(lean.x, 1.0, lean.y));
+    let tilt = min(length(lean), 1.45);
+    let tint = grass_tint(root);
+    let tip = frame.tip_rgb.rgb * tint * (0.90 + 0.42 * smoothstep(0.05, 0.45, tilt));
+    // Seen from above a clump shows its upper parts.
+    let above = smoothstep(0.10, 0.50, -view.y);
+    let base = mix(frame.root_rgb.rgb * tint, tip * 0.8, above * 0.75);
+    let root_lit = grass_light(base, normal, tangent, view, light * mix(0.4, 0.9, above), mix(0.3, 0.8, above));
+    stand.root_color = vec4<f32>(hazed(root_lit, p), 0.0);
+    stand.tip_color = vec4<f32>(hazed(grass_light(tip * trodden(tilt), normal, tangent, view, light, 1.0), p), 0.0);
+    stand.petal_light = vec4<f32>(frame.sun_color.rgb * light * 0.6 + ambient(normal), 0.0);
     placed[id.x] = stand;
 }
 
 struct Rectangle {
     @builtin(position) position: vec4<f32>,
     @location(0) uv: vec2<f32>,
-    // Lit colours of the plants' roots and tips; petals' light; share that is shown.
+    // As in `Stand`; share that is shown.
     @location(1) root_color: vec3<f32>,
     @location(2) tip_color: vec3<f32>,
     @location(3) petal_light: vec3<f32>,
@@ -90,18 +102,11 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let lean = stand.pose.xy;
     let tilt = min(length(lean), 1.45);
     let aside = lean / max(length(lean), 1e-4) * sin(tilt);
-    let top = vec3<f32>(aside.x, cos(tilt), aside.y) * stand.tint.w;
+    let top = vec3<f32>(aside.x, cos(tilt), aside.y) * stand.pose.z;
     let p = ground + top * upward + vec3<f32>(0.0, -0.03, 0.0);
-    let view = normalize(p - frame.eye.xyz);
-    let normal = normalize(stand.normal.xyz - view * 0.45 + vec3<f32>(lean.x, 0.0, lean.y) * 0.7);
-    let tangent = normalize(vec3<f32>(lean.x, 1.0, lean.y));
-    let tip = frame.tip_rgb.rgb * stand.tint.rgb * (0.90 + 0.42 * smoothstep(0.05, 0.45, tilt));
-    // Seen from above a clump shows its upper parts.
-    let down = smoothstep(0.10, 0.50, -view.y);
-    let base = mix(frame.root_rgb.rgb * stand.tint.rgb, tip * 0.8, down * 0.75);
-    out.tip_color = hazed(grass_light(tip * trodden(tilt), normal, tangent, view, stand.pose.z, 1.0), p);
-    out.root_color = hazed(grass_light(base, normal, tangent, view, stand.pose.z * mix(0.4, 0.9, down), mix(0.3, 0.8, down)), p);
-    out.petal_light = frame.sun_color.rgb * stand.pose.z * 0.6 + ambient(normal);
+    out.root_color = stand.root_color.rgb;
+    out.tip_color = stand.tip_color.rgb;
+    out.petal_light = stand.petal_light.rgb;
     out.shown = stand.pose.w;
     out.uv = vec2<f32>(
         place.w * 7.0 + f32(side) * 0.37 + outward * place.z / (PATTERN_WIDTH * frame.blade.x),
@@ -121,8 +126,7 @@ fn fs(r: Rectangle) -> @location(0) vec4<f32> {
     }
     let up = 1.0 - r.uv.y;
     let t = texel.r * smoothstep(-0.15, 0.75, up);
-    var color = mix(r.root_color, r.tip_color, t * 0.85 + t * t * 0.15);
-    color *= mix(vec3<f32>(0.82, 0.98, 0.80), vec3<f32>(1.16, 1.04, 0.86), texel.g);
+    let color = plant_color(r.root_color, r.tip_color, t, texel.g);
     let petal = select(vec3<f32>(0.85, 0.80, 0.72), vec3<f32>(0.80, 0.58, 0.06), texel.g > 0.5);
     let flowers = texel.b * step(0.01, frame.root_rgb.w);
     return vec4<f32>(mix(color, petal * r.petal_light, flowers), 1.0);

@@ -1,10 +1,5 @@
 // Blades: cubic Bezier backbones, widened to tapered strips. One instance is 64 blades as one indexed list.
 
-struct Blade {
-    root: vec4<f32>,
-    points: array<vec4<f32>, 3>,
-}
-
 struct List {
     // First blade of the list, capacity, rows of two vertices below the tip, number of the list.
     range: vec4<u32>,
@@ -68,8 +63,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
 
     let hue = blade.points[1].w;
     let tint = grass_tint(blade.root.xz);
-    var albedo = mix(frame.root_rgb.rgb, frame.tip_rgb.rgb, t * 0.85 + t * t * 0.15);
-    albedo *= tint * mix(vec3<f32>(0.82, 0.98, 0.80), vec3<f32>(1.16, 1.04, 0.86), hue);
+    var albedo = tint * plant_color(frame.root_rgb.rgb, frame.tip_rgb.rgb, t, hue);
     let straw = smoothstep(0.86, 0.99, hue) * 0.75;
     albedo = mix(albedo, vec3<f32>(0.38, 0.30, 0.13) * (0.35 + 0.65 * t), straw);
     // Pale ends, as of flowering grass.

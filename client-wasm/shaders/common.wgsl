@@ -32,6 +32,14 @@ struct Frame {
 @group(0) @binding(9) var shadows: texture_depth_2d;
 @group(0) @binding(10) var shadow_sampler: sampler_comparison;
 
+// A plant to be drawn.
+struct Blade {
+    // Root (m), width at the root (m).
+    root: vec4<f32>,
+    // Offsets of the control points from the root (m); w: angle of the side, hue 0..1, light 0..1.
+    points: array<vec4<f32>, 3>,
+}
+
 const TAU: f32 = 6.2831853;
 const THETA_FULL_RAD: f32 = 1.5707964;
 const WIND_FULL_M_PER_S: f32 = 31.75;
@@ -130,25 +138,35 @@ fn gust_at(p: vec2<f32>) -> f32 {
     return 0.45 + 1.35 * smoothstep(0.28, 0.74, broad * 0.62 + fine * 0.38);
 }
 
-// Lean (rad, as a vector on the ground) that a steady wind sustains: grows with the square of the speed, then levels off.
+// Lean (rad, as a vector on the ground) that a steady wind sustains: with the square of its speed up to 10 m/s, as the bend
+// field has it.
 fn lean_of_wind(wind: vec2<f32>) -> vec2<f32> {
     let speed = length(wind);
-    let s = speed * 0.1;
-    return wind / max(speed, 1e-3) * (frame.blade.w * 1.35 * s * s / (1.0 + 0.35 * s * s));
+    let share = min(speed, 10.0) * 0.1;
+    return wind / max(speed, 1e-3) * (frame.blade.w * share * share);
 }
 
-// Lean (rad) of the streamed bend field, at a mip level of the atlas.
-fn lean_of_field(p: vec2<f32>, level: f32) -> vec2<f32> {
+// Lean (rad) of the streamed bend field, at a mip level of the atlas; z: share of the wind's lean that is in it, 0 where
+// nothing is streamed.
+fn lean_of_field(p: vec2<f32>, level: f32) -> vec3<f32> {
     let from_eye = abs(p - frame.eye.xz);
     let shown = 1.0 - smoothstep(0.8, 1.0, max(from_eye.x, from_eye.y) / frame.maps.w);
     if shown <= 0.0 {
-        return vec2<f32>(0.0);
+        return vec3<f32>(0.0);
     }
-    let code = textureSampleLevel(bends, repeated, p / frame.maps.z, level).xyz;
+    let code = textureSampleLevel(bends, repeated, p / frame.maps.z, level);
     let omega = code.yz * abs(code.yz);
     let speed = length(omega);
     let direction = select(frame.gust.xy, omega / max(speed, 1e-12), speed > 1e-9);
-    return direction * (code.x * THETA_FULL_RAD * shown);
+    return vec3<f32>(direction * (code.x * THETA_FULL_RAD), code.w) * shown;
+}
+
+// Lean (rad) of what grows at a place on the ground, in its wind times a factor. The field already leans with the mean wind;
+// to that comes what the gusts make of it, and all of the wind where the field is not streamed.
+fn lean_at(ground: vec3<f32>, level: f32, gust: f32) -> vec2<f32> {
+    let wind = wind_at(ground, 1.0).xz;
+    let field = lean_of_field(ground.xz, level);
+    return field.xy + lean_of_wind(wind * gust) - lean_of_wind(wind) * field.z;
 }
 
 fn field_level(distance_m: f32) -> f32 {
@@ -230,6 +248,13 @@ fn grass_light(
 // Grass that lies shows its pale undersides: a factor on its colour for a bend (rad).
 fn trodden(tilt: f32) -> vec3<f32> {
     return mix(vec3<f32>(1.0), vec3<f32>(1.85, 1.70, 2.1), smoothstep(0.60, 1.20, tilt));
+}
+
+// Colour of a plant a share `up` of its height above the root, between its colours there and at the tip; hue 0..1 runs from
+// fresh to dry.
+fn plant_color(root_rgb: vec3<f32>, tip_rgb: vec3<f32>, up: f32, hue: f32) -> vec3<f32> {
+    let own = mix(vec3<f32>(0.82, 0.98, 0.80), vec3<f32>(1.16, 1.04, 0.86), hue);
+    return mix(root_rgb, tip_rgb, up * 0.85 + up * up * 0.15) * own;
 }
 
 // Drift of colour over the land: lush, dry and reddish places, as a factor on the grass's colours.

@@ -1,10 +1,5 @@
 // Flower heads of six kinds: a ring of petals about a disc. One instance is 16 heads as one indexed list.
 
-struct Blade {
-    root: vec4<f32>,
-    points: array<vec4<f32>, 3>,
-}
-
 struct List {
     range: vec4<u32>,
 }

@@ -50,8 +50,7 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
 
     // The grass as seen from afar: the colour of its upper half, leaning as the blades do.
     let near = 1.0 - smoothstep(frame.reach.x * 0.5, frame.reach.y * 1.6, distance_m);
-    let wind = wind_at(ground.p, 1.0).xz * gust_at(p);
-    let lean = lean_of_wind(wind) + lean_of_field(p, field_level(distance_m));
+    let lean = lean_at(ground.p, field_level(distance_m), gust_at(p));
     let tilt = length(lean);
     let tint = grass_tint(p);
     let mottle = 0.80 + 0.5 * (noise(p / 2.9).g * 0.6 + noise(p / 0.83).r * 0.4);

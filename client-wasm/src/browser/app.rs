@@ -7,7 +7,7 @@ use super::socket::SocketEvent;
 use super::stage::Stage;
 use super::{page, with_app};
 use crate::camera::Camera;
-use crate::render::Quality;
+use crate::render::{Quality, bend_reach_m};
 use crate::rig::Rig;
 use crate::state::{Event, Mirror};
 use glam::Vec3;
@@ -189,6 +189,12 @@ impl App {
         self.notice.as_ref().filter(|(_, until_secs)| page::now_secs(&self.window) < *until_secs).map(|(text, _)| text.as_str())
     }
 
+    /// Distance up to which the bend field is asked for (m): no farther than it can be shown.
+    fn view_radius_m(&self) -> f32 {
+        let shown_m = self.mirror.land().map_or(f32::INFINITY, |land| bend_reach_m(land.layout()));
+        self.quality.bend_radius_m().min(shown_m)
+    }
+
     pub(super) fn picture_px(&self) -> [u32; 2] {
         self.stage.as_ref().map_or([0, 0], Stage::size_px)
     }
@@ -253,7 +259,7 @@ impl App {
     }
 
     fn look_from(&mut self, camera: Camera, now_secs: f64) {
-        self.connection.look_from(camera.eye_m, view_radius_m(self.quality), now_secs);
+        self.connection.look_from(camera.eye_m, self.view_radius_m(), now_secs);
     }
 
     fn run_clock(&mut self, now_secs: f64) {
@@ -336,16 +342,6 @@ impl App {
             _ if self.meter.frames() == 0 && !self.options.paused => words("preparing", "Drawing the first picture…"),
             _ => None,
         }
-    }
-}
-
-/// Distance up to which the bend field is asked for (m).
-fn view_radius_m(quality: Quality) -> f32 {
-    match quality {
-        Quality::Low => 96.0,
-        Quality::Medium => 128.0,
-        Quality::High => 192.0,
-        Quality::Ultra => 256.0,
     }
 }
 

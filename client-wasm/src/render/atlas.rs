@@ -1,5 +1,5 @@
 //! The bend field about the camera as one texture: patch `(x, z)` lives in slot `(x mod n, z mod n)`, so that a camera that
-//! moves changes only the patches that enter the window.
+//! moves changes only the patches that enter the window. Texels: θ, ωx, ωz, and 1 where the field is streamed.
 
 use super::gpu::Gpu;
 use crate::state::{Mirror, PatchCodes};
@@ -10,6 +10,16 @@ use std::collections::HashSet;
 const SIDE_LIMIT: u32 = 1024;
 /// Mip levels; a patch's side is a multiple of 8 cells, so that none mixes two patches.
 const LEVELS: u32 = 4;
+
+/// Patches along one side of the window.
+fn side(layout: &PatchLayout) -> u32 {
+    (SIDE_LIMIT / layout.cells).max(2)
+}
+
+/// Distance from the camera along X or Z up to which the bend field can be shown (m).
+pub fn reach_m(layout: &PatchLayout) -> f32 {
+    (0.5 * side(layout) as f32 - 1.0) * layout.patch_m()
+}
 
 /// What a slot holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +38,7 @@ pub(super) struct Atlas {
 
 impl Atlas {
     pub(super) fn new(gpu: &Gpu, layout: PatchLayout) -> Self {
-        let side = (SIDE_LIMIT / layout.cells).max(2);
+        let side = side(&layout);
         let size_px = side * layout.cells;
         let levels: Vec<_> = (0..LEVELS).map(|level| vec![0; ((size_px >> level).pow(2) * 4) as usize]).collect();
         let texture = gpu.texture("bend atlas", wgpu::TextureFormat::Rgba8Snorm, [size_px; 2], &levels);
@@ -42,7 +52,7 @@ impl Atlas {
 
     /// Distance from the camera along X or Z up to which the atlas holds (m).
     pub(super) fn reach_m(&self) -> f32 {
-        0.5 * self.window_m() - self.layout.patch_m()
+        reach_m(&self.layout)
     }
 
     /// Brings the window about the camera up to date; returns the number of patches written.
@@ -74,6 +84,7 @@ impl Atlas {
         let mut side = self.layout.cells as usize;
         let mut texels = vec![0_i8; side * side * 4];
         if let Some(codes) = codes {
+            texels.iter_mut().skip(3).step_by(4).for_each(|streamed| *streamed = i8::MAX);
             for (channel, plane) in codes.planes().into_iter().enumerate() {
                 for (i, &code) in plane.iter().enumerate() {
                     texels[i * 4 + channel] = code;

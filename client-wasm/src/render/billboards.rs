@@ -17,7 +17,7 @@ const CHUNK: u32 = 32;
 /// Most clumps in a frame.
 const CLUMP_LIMIT: usize = 32_768;
 /// Bytes of a clump's pose, `Stand` in `billboards.wgsl`.
-const STAND_BYTES: u64 = 48;
+const STAND_BYTES: u64 = 64;
 /// Grids up to this many away get the clumps of the nearest ring, as plants thin out there.
 const DENSE_GRIDS: u32 = 2;
 

@@ -20,10 +20,11 @@ const FLOWER_VERTICES: u32 = 67;
 /// Bytes of a drawn blade and of a posture, as in `bend.wgsl`.
 const BLADE_BYTES: u64 = 64;
 const POSTURE_BYTES: u64 = 96;
-/// Longest sub-step of the blades (s); two thirds of the limit 2/√k of the stiffest control point.
-const STEP_SECS: f32 = 1.0 / 60.0;
+/// Length of each sub-step of the blades (s), far below the limit 2/√k of the stiffest control point; twin of the constant in
+/// `bend.wgsl`. Verlet's scheme needs it the same from step to step.
+const STEP_SECS: f32 = 1.0 / 120.0;
 /// Most sub-steps in a frame; below 15 frames a second the blades move in slow motion.
-const STEP_LIMIT: f32 = 4.0;
+const STEP_LIMIT: f32 = 8.0;
 
 pub(super) struct Blades {
     near: wgpu::ComputePipeline,
@@ -32,6 +33,8 @@ pub(super) struct Blades {
     strips: wgpu::RenderPipeline,
     heads: wgpu::RenderPipeline,
     plants: wgpu::Buffer,
+    #[cfg(test)]
+    pub(super) postures: wgpu::Buffer,
     counters: wgpu::Buffer,
     far_grids: wgpu::Buffer,
     draws: wgpu::Buffer,
@@ -46,6 +49,7 @@ pub(super) struct Blades {
     capacities: [u32; 3],
     slots: [Option<[i32; 2]>; 9],
     far_count: u32,
+    sub_steps: SubSteps,
 }
 
 impl Blades {
@@ -63,7 +67,7 @@ impl Blades {
 
         let storage_usage = BufferUsages::STORAGE;
         let plants = gpu.empty_buffer("plants", size_of::<Plants>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
-        let postures = gpu.empty_buffer("postures", u64::from(near_blades) * 9 * POSTURE_BYTES, storage_usage);
+        let postures = gpu.empty_buffer("postures", u64::from(near_blades) * 9 * POSTURE_BYTES, storage_usage | BufferUsages::COPY_SRC);
         let drawn_count = capacities.iter().sum::<u32>();
         let drawn = gpu.empty_buffer("drawn plants", u64::from(drawn_count) * BLADE_BYTES, storage_usage);
         let counters = gpu.empty_buffer("counters", 16, storage_usage | BufferUsages::COPY_DST);
@@ -100,6 +104,8 @@ impl Blades {
             strips,
             heads,
             plants,
+            #[cfg(test)]
+            postures,
             counters,
             far_grids,
             draws,
@@ -114,6 +120,7 @@ impl Blades {
             capacities,
             slots: [None; 9],
             far_count: 0,
+            sub_steps: SubSteps::default(),
         }
     }
 
@@ -150,12 +157,12 @@ impl Blades {
             }
         }
         self.far_count = far.len() as u32;
-        let steps = (dt_secs / STEP_SECS).ceil().clamp(0.0, STEP_LIMIT);
+        let due = self.sub_steps.after(dt_secs);
         let plants = Plants {
             slots,
             counts: [self.near_blades, self.flowers, self.far_count, self.far_blades],
             capacities: [self.capacities[0], self.capacities[1], self.capacities[2], 0],
-            shape: [self.grid_m, full_density_m(quality), fine_m(quality), steps],
+            shape: [self.grid_m, full_density_m(quality), fine_m(quality), due],
         };
         gpu.queue.write_buffer(&self.plants, 0, bytemuck::bytes_of(&plants));
         gpu.queue.write_buffer(&self.counters, 0, &[0; 16]);
@@ -184,9 +191,20 @@ impl Blades {
     }
 }
 
-/// Time that the blades' motion covers of a frame (s).
-pub(super) fn simulated_secs(dt_secs: f32) -> f32 {
-    dt_secs.clamp(0.0, STEP_LIMIT * STEP_SECS)
+/// Shares out frames of any length into sub-steps of one length.
+#[derive(Debug, Default)]
+struct SubSteps {
+    /// Time passed since the last sub-step, in sub-steps.
+    begun: f32,
+}
+
+impl SubSteps {
+    /// Sub-steps due after a frame of `dt_secs`, at most [`STEP_LIMIT`]: the whole ones are to be done, what is left counts in the next frame.
+    fn after(&mut self, dt_secs: f32) -> f32 {
+        let due = (self.begun + dt_secs.max(0.0) / STEP_SECS).min(STEP_LIMIT);
+        self.begun = due.fract();
+        due
+    }
 }
 
 /// Whether any plant of a grid may be in view.
@@ -260,6 +278,27 @@ fn flower_indices() -> Vec<u16> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn frames_of_a_coarse_clock_lose_no_time() {
+        let mut sub_steps = SubSteps::default();
+        // 60 Hz as a clock of 0.1 ms tells it.
+        let frames_secs = [0.0166, 0.0167, 0.0167].repeat(400);
+        let passed_secs: f32 = frames_secs.iter().sum();
+        let dues: Vec<f32> = frames_secs.iter().map(|&dt_secs| sub_steps.after(dt_secs)).collect();
+        let done: f32 = dues.iter().map(|due| due.trunc()).sum();
+        assert!((done * STEP_SECS - passed_secs).abs() <= 1.01 * STEP_SECS, "{done} sub-steps in {passed_secs} s");
+        assert!(dues.iter().all(|due| (1.0..4.0).contains(due)), "{dues:?}");
+    }
+
+    #[test]
+    fn short_frames_add_up_and_pauses_are_cut() {
+        let mut sub_steps = SubSteps::default();
+        let dues = [0.5, 0.25, 0.5, 0.0].map(|steps| sub_steps.after(steps * STEP_SECS));
+        assert_eq!(dues, [0.5, 0.75, 1.25, 0.25]);
+        assert_eq!(sub_steps.after(10.0), STEP_LIMIT);
+        assert_eq!(sub_steps.after(-1.0), 0.0);
+    }
 
     #[test]
     fn indices_stay_within_their_chunk() {

@@ -26,6 +26,7 @@ mod vehicles;
 mod view;
 mod wind;
 
+pub use atlas::reach_m as bend_reach_m;
 pub use gpu::{Gpu, GpuError};
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::Picture;
@@ -185,7 +186,7 @@ impl Renderer {
         scene.textures.wind.follow(gpu, mirror.wind(), dt_secs);
         let Some(land) = mirror.land() else { return FrameStats::default() };
 
-        let view = View::new(camera, self.size_px, self.quality, time_secs, dt_secs);
+        let view = View::new(camera, self.size_px, self.quality, time_secs);
         let frame = view.frame(land, &scene.textures.atlas, scene.blades.reach_m(), &poses);
         self.frame.write(gpu, &frame);
         let frustum = Frustum::new(&view.projection_from_world);

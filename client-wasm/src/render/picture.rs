@@ -10,7 +10,7 @@ const ROW_ALIGN: u32 = 256;
 /// A target whose pixels can be read.
 pub struct Picture {
     gpu: Gpu,
-    renderer: Renderer,
+    pub(super) renderer: Renderer,
     texture: wgpu::Texture,
     buffer: wgpu::Buffer,
 }

@@ -82,6 +82,16 @@ impl Quality {
         }
     }
 
+    /// Distance up to which the bend field is wanted (m).
+    pub fn bend_radius_m(self) -> f32 {
+        match self {
+            Self::Low => 96.0,
+            Self::Medium => 128.0,
+            Self::High => 192.0,
+            Self::Ultra => 256.0,
+        }
+    }
+
     /// Distance up to which trees are drawn (m).
     pub(super) fn tree_reach_m(self) -> f32 {
         match self {

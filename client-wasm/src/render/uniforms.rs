@@ -51,7 +51,7 @@ uniform_block! {
         root_rgb: [f32; 4],
         /// Tip colour; 1 / pixels of the covering map along X.
         tip_rgb: [f32; 4],
-        /// Pixels of the picture along X and Y; angle of a pixel (rad); frame's duration (s).
+        /// Pixels of the picture along X and Y; angle of a pixel (rad); unused.
         screen: [f32; 4],
         /// Near blades fade out from (m), to (m); billboards end from (m), to (m).
         reach: [f32; 4],
@@ -71,7 +71,7 @@ uniform_block! {
         counts: [u32; 4],
         /// Capacities of the lists of fine blades, coarse blades and flowers.
         capacities: [u32; 4],
-        /// Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), sub-steps.
+        /// Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), sub-steps due.
         shape: [f32; 4],
     }
 }

@@ -2,7 +2,6 @@
 
 use super::Quality;
 use super::atlas::Atlas;
-use super::blades;
 use super::uniforms::{Frame, SPHERE_LIMIT};
 use crate::camera::Camera;
 use crate::state::Land;
@@ -25,15 +24,14 @@ pub(super) struct View<'a> {
     size_px: [u32; 2],
     quality: Quality,
     time_secs: f64,
-    dt_secs: f32,
     pub(super) projection_from_world: Mat4,
 }
 
 impl<'a> View<'a> {
-    pub(super) fn new(camera: &'a Camera, size_px: [u32; 2], quality: Quality, time_secs: f64, dt_secs: f32) -> Self {
+    pub(super) fn new(camera: &'a Camera, size_px: [u32; 2], quality: Quality, time_secs: f64) -> Self {
         let aspect = size_px[0] as f32 / size_px[1] as f32;
         let projection_from_world = camera.projection_from_world(aspect);
-        Self { camera, size_px, quality, time_secs, dt_secs, projection_from_world }
+        Self { camera, size_px, quality, time_secs, projection_from_world }
     }
 
     pub(super) fn frame(&self, land: &Land, atlas: &Atlas, blade_reach_m: f32, poses: &[ObjectPose]) -> Frame {
@@ -74,7 +72,7 @@ impl<'a> View<'a> {
             blade: [plants.height_m, plants.height_variation, width_m, scene.grass.wind_bend_rad],
             root_rgb: [root[0], root[1], root[2], plants.flowers_per_m2],
             tip_rgb: [tip[0], tip[1], tip[2], 0.0],
-            screen: [self.size_px[0] as f32, self.size_px[1] as f32, pixel_rad, blades::simulated_secs(self.dt_secs)],
+            screen: [self.size_px[0] as f32, self.size_px[1] as f32, pixel_rad, 0.0],
             reach: [blade_reach_m * 0.72, blade_reach_m, billboards_to * 0.6, billboards_to],
             clouds: [drift * dir_x * mean, drift * dir_z * mean, 0.5, spheres.len() as f32],
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_default()),
