@@ -66,7 +66,7 @@ pub(super) fn first_view(scene: &Scene, heights: &HeightMap) -> RecordingStreamR
     }
 
     let (_, top) = layout.container(ContainerKind::Horizontal, [land, map], |top| top.with_col_shares([1.9, 1.0]))?;
-    let (_, bottom) = layout.container(ContainerKind::Grid, plot_views, |grid| grid.with_grid_columns(4))?;
+    let (_, bottom) = layout.container(ContainerKind::Grid, plot_views, |grid| grid.with_grid_columns(5))?;
     let (root, _) = layout.container(ContainerKind::Vertical, [top, bottom], |root| root.with_row_shares([2.2, 1.0]))?;
 
     let viewport = ViewportBlueprint::new().with_root_container(root).with_auto_layout(false).with_auto_views(false);
