@@ -91,9 +91,11 @@ async fn numbers(browser: &Browser, expression: &str) -> Result<Vec<f64>> {
     Ok(list.iter().filter_map(Value::as_f64).collect())
 }
 
-/// Bend angles (rad) of a client's mirror along a line around `(x, z)`, 0.25 m apart.
-async fn bends(browser: &Browser, x: f64, z: f64) -> Result<Vec<f64>> {
-    numbers(browser, &format!("Array.from({{length: 17}}, (_, i) => window.prairie.theta({x} + 0.25 * (i - 8), {z}))")).await
+/// Bend angles (rad) of a client's mirror at 8 × 8 places around `(x, z)`, 8 m apart.
+async fn bends_around(browser: &Browser, x: f64, z: f64) -> Result<Vec<f64>> {
+    let at = |middle: f64, step: &str| format!("{middle} + 8 * ({step} - 3.5)");
+    let theta = format!("window.prairie.theta({}, {})", at(x, "i % 8"), at(z, "Math.floor(i / 8)"));
+    numbers(browser, &format!("Array.from({{length: 64}}, (_, i) => {theta})")).await
 }
 
 fn strongest(bends: &[f64]) -> f64 {
@@ -197,10 +199,10 @@ async fn the_wind_moves_the_grass_in_the_mirror_and_in_the_pixels() -> Result<()
     let (x, z) = (eye[0], eye[2]);
 
     let probe = format!("[0,1,2,3,4,5].map(i => Array.from(window.prairie.wind({x} + 6 * i, {} , {z} - 5 * i))).flat()", eye[1]);
-    let (wind, bend, before) = (numbers(&visitor, &probe).await?, bends(&visitor, x, z - 4.0).await?, picture(&visitor, 1.0).await?);
+    let (wind, bend, before) = (numbers(&visitor, &probe).await?, bends_around(&visitor, x, z).await?, picture(&visitor, 1.0).await?);
     sleep(Duration::from_secs(6)).await;
     let (later_wind, later_bend, after) =
-        (numbers(&visitor, &probe).await?, bends(&visitor, x, z - 4.0).await?, picture(&visitor, 7.0).await?);
+        (numbers(&visitor, &probe).await?, bends_around(&visitor, x, z).await?, picture(&visitor, 7.0).await?);
 
     let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     ensure!(change(&wind, &later_wind) > 0.25, "the wind stood still: {wind:?} then {later_wind:?}");
