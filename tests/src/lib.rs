@@ -7,6 +7,7 @@ pub mod maps;
 pub mod norms;
 pub mod pages;
 pub mod picture;
+pub mod prairie;
 pub mod problems;
 pub mod stage;
 pub mod synthetic;

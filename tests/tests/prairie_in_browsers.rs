@@ -8,16 +8,12 @@ use server::runner::Simulation;
 use server::scenes::{self, LoadedScene};
 use server::snapshot::Snapshot;
 use server::world::{Command, Maps, World};
-use server::{Config, run_simulation};
 use shared::wire::ObjectId;
-use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use tests::browser::Browser;
 use tests::picture::Picture;
-use tokio::net::TcpListener;
-use tokio::sync::oneshot;
 use tokio::time::sleep;
 
 /// Bend (rad) above which a place counts as track, and below which it counts as risen.
@@ -48,25 +44,18 @@ impl Simulation for Held {
     }
 }
 
-/// A server in this process, on a free port; it stops when dropped.
+/// A server whose world can be held still.
 struct Prairie {
-    addr: SocketAddr,
+    server: tests::prairie::Prairie,
     held: Arc<AtomicBool>,
-    _stop: oneshot::Sender<()>,
 }
 
 impl Prairie {
     async fn serve(scene: LoadedScene) -> Result<Self> {
-        let listener = TcpListener::bind("127.0.0.1:0").await?;
-        let addr = listener.local_addr()?;
         let maps = Maps { height: scene.height.clone(), cover: scene.cover.clone() };
         let held = Arc::new(AtomicBool::new(false));
         let world = Held { world: World::new(&scene.scene, maps)?, held: Arc::clone(&held), waiting: vec![] };
-        let (stop, stopped) = oneshot::channel::<()>();
-        tokio::spawn(run_simulation(world, Config::new(scene), listener, async {
-            let _ = stopped.await;
-        }));
-        Ok(Self { addr, held, _stop: stop })
+        Ok(Self { server: tests::prairie::Prairie::serve(scene, world).await?, held })
     }
 
     /// Holds the world, or lets it go on.
@@ -74,12 +63,9 @@ impl Prairie {
         self.held.store(held, Ordering::Relaxed);
     }
 
-    /// A browser that has the scene, the first frames and its first picture. It draws only when asked: software rendering would
-    /// take all of a small machine.
+    /// A visitor who has drawn a first picture.
     async fn visitor(&self, name: &str) -> Result<Browser> {
-        let url = format!("http://{}/?quality=low&panel=0&paused=1&name={name}", self.addr);
-        let browser = Browser::open(&url).await?;
-        browser.until("(s => s && s.connected && s.time_secs > 0)(window.prairie.state())").await?;
+        let browser = self.server.visitor(name).await?;
         picture(&browser, 0.0).await?;
         Ok(browser)
     }

@@ -1,0 +1,78 @@
+//! What can go wrong beneath a running page, in a real browser: it says so, and goes on where it can.
+
+use anyhow::{Result, ensure};
+use server::scenes;
+use server::world::{Maps, World};
+use tests::browser::Browser;
+use tests::prairie::Prairie;
+
+async fn visited_meadow() -> Result<(Prairie, Browser)> {
+    let meadow = scenes::load("meadow")?;
+    let maps = Maps { height: meadow.height.clone(), cover: meadow.cover.clone() };
+    let world = World::new(&meadow.scene, maps)?;
+    let prairie = Prairie::serve(meadow, world).await?;
+    let browser = prairie.visitor("Ada").await?;
+    Ok((prairie, browser))
+}
+
+fn message_is(kind: &str) -> String {
+    format!("document.getElementById('message').dataset.kind === '{kind}'")
+}
+
+/// Keeps the device that draws as `window.device`.
+const KEEP_DEVICE: &str = "(() => {
+    const begin = GPUDevice.prototype.createCommandEncoder;
+    GPUDevice.prototype.createCommandEncoder = function (...rest) {
+        window.device = this;
+        return begin.apply(this, rest);
+    };
+})()";
+
+/// Draws until there is a picture.
+async fn draws(browser: &Browser, time_secs: f64) -> Result<()> {
+    browser.until(&format!("window.prairie.draw({time_secs})")).await?;
+    Ok(())
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_lost_device_is_replaced_until_it_is_lost_too_often() -> Result<()> {
+    let (_prairie, browser) = visited_meadow().await?;
+    browser.evaluate(KEEP_DEVICE).await?;
+    draws(&browser, 1.0).await?;
+    let before = browser.canvas().await?;
+    for loss in 1..=3 {
+        browser.evaluate("(window.lost = window.device, window.device.destroy())").await?;
+        browser.until("window.prairie.state().picture_px[0] === 0 || (window.prairie.draw(1), window.device !== window.lost)").await?;
+        draws(&browser, 1.0 + f64::from(loss)).await?;
+        browser.until("document.getElementById('message').hidden").await?;
+    }
+    let difference = before.difference(&browser.canvas().await?)?;
+    ensure!(difference.changed < 0.9, "after three losses the canvas shows something else: {difference:?}");
+
+    browser.evaluate("window.device.destroy()").await?;
+    browser.until(&message_is("device-lost")).await?;
+    Ok(())
+}
+
+/// From now on the page speaks another version of the protocol, and has to say hello again.
+const SPEAK_ANOTHER_VERSION: &str = "(() => {
+    const send = WebSocket.prototype.send;
+    let first;
+    WebSocket.prototype.send = function (bytes) {
+        first ??= this;
+        if (this === first) return this.close();
+        const changed = Uint8Array.from(bytes);
+        changed[0] += 1;
+        send.call(this, changed);
+    };
+})()";
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_page_of_another_version_asks_to_be_reloaded() -> Result<()> {
+    let (_prairie, browser) = visited_meadow().await?;
+    browser.evaluate(SPEAK_ANOTHER_VERSION).await?;
+    browser.until(&message_is("version")).await?;
+    let title = browser.evaluate("document.querySelector('#message h1').innerText").await?;
+    ensure!(title == "The server has moved on", "the page says {title}");
+    Ok(())
+}
