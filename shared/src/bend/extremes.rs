@@ -1,5 +1,7 @@
 //! What stands out in a patch.
 
+use multiversion::multiversion;
+
 /// Lanes that gather on their own, so that the loop over a row has no chain of comparisons; a patch's side is a multiple.
 const LANES: usize = 8;
 
@@ -24,19 +26,8 @@ pub(super) struct LargestOf {
 
 impl LargestOf {
     /// Takes in a row of each channel.
-    #[inline(never)]
     pub(super) fn add(&mut self, theta: &[f32], x: &[f32], z: &[f32]) {
-        let (mut theta2_max, mut omega2_max, mut activity) = (self.theta2, self.omega2, self.activity);
-        let blocks = theta.as_chunks::<LANES>().0.iter().zip(x.as_chunks::<LANES>().0).zip(z.as_chunks::<LANES>().0);
-        for ((theta, x), z) in blocks {
-            for i in 0..LANES {
-                let (theta2, omega2) = (theta[i] * theta[i], x[i] * x[i] + z[i] * z[i]);
-                theta2_max[i] = larger(theta2, theta2_max[i]);
-                omega2_max[i] = larger(omega2, omega2_max[i]);
-                activity[i] += theta2 + omega2;
-            }
-        }
-        *self = Self { theta2: theta2_max, omega2: omega2_max, activity };
+        gather(self, theta, x, z);
     }
 
     pub(super) fn extremes(&self) -> Extremes {
@@ -47,6 +38,21 @@ impl LargestOf {
             activity: self.activity.iter().sum(),
         }
     }
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn gather(largest: &mut LargestOf, theta: &[f32], x: &[f32], z: &[f32]) {
+    let LargestOf { theta2: mut theta2_max, omega2: mut omega2_max, mut activity } = *largest;
+    let blocks = theta.as_chunks::<LANES>().0.iter().zip(x.as_chunks::<LANES>().0).zip(z.as_chunks::<LANES>().0);
+    for ((theta, x), z) in blocks {
+        for i in 0..LANES {
+            let (theta2, omega2) = (theta[i] * theta[i], x[i] * x[i] + z[i] * z[i]);
+            theta2_max[i] = larger(theta2, theta2_max[i]);
+            omega2_max[i] = larger(omega2, omega2_max[i]);
+            activity[i] += theta2 + omega2;
+        }
+    }
+    *largest = LargestOf { theta2: theta2_max, omega2: omega2_max, activity };
 }
 
 #[inline(always)]

@@ -7,6 +7,7 @@
 use super::extremes::LargestOf;
 use super::force::{Added, Band, NODE_CELLS};
 use super::{CHANNELS, Coefficients, Extremes, Force, Patch, WaveParams};
+use multiversion::multiversion;
 
 /// Largest Courant number `c·dt/h` for damping λ and restoring term `κ·dt²`: `r ≤ √((4 − 2λ − κ·dt²)/8)`.
 ///
@@ -83,9 +84,9 @@ pub(super) fn advance(patch: &mut Patch, k: &Coefficients, force: Option<&Force>
         let [theta_next, x_next, z_next] = &mut patch.before;
         let theta_next = &mut theta_next[row..row + side];
         let (x_next, z_next) = (&mut x_next[row..row + side], &mut z_next[row..row + side]);
-        advance_theta(Stencil::new(theta, row, side), &x[row..row + side], &z[row..row + side], band.row(0, j), theta_next, k);
-        advance_omega(Stencil::new(x, row, side), band.row(1, j), x_next, k);
-        advance_omega(Stencil::new(z, row, side), band.row(2, j), z_next, k);
+        advance_theta(&Stencil::new(theta, row, side), &x[row..row + side], &z[row..row + side], band.row(0, j), theta_next, k);
+        advance_omega(&Stencil::new(x, row, side), band.row(1, j), x_next, k);
+        advance_omega(&Stencil::new(z, row, side), band.row(2, j), z_next, k);
         largest.add(theta_next, x_next, z_next);
         seams.publish(j, [theta_next, x_next, z_next]);
     }
@@ -117,8 +118,8 @@ impl<'a> Stencil<'a> {
 }
 
 // Kept apart from the loop over rows: inlined into it, the compiler loses sight of which slices cannot overlap.
-#[inline(never)]
-fn advance_theta(now: Stencil<'_>, x: &[f32], z: &[f32], added: Added<'_>, next: &mut [f32], k: &Coefficients) {
+#[multiversion(targets("x86_64+avx2"))]
+fn advance_theta(now: &Stencil, x: &[f32], z: &[f32], added: Added, next: &mut [f32], k: &Coefficients) {
     let side = next.len();
     let (keep, memory) = (2.0 - k.lambda_theta - k.restoring, 1.0 - k.lambda_theta);
     let (center, west, east) = (&now.center[..side], &now.west[..side], &now.east[..side]);
@@ -131,8 +132,8 @@ fn advance_theta(now: Stencil<'_>, x: &[f32], z: &[f32], added: Added<'_>, next:
     }
 }
 
-#[inline(never)]
-fn advance_omega(now: Stencil<'_>, added: Added<'_>, next: &mut [f32], k: &Coefficients) {
+#[multiversion(targets("x86_64+avx2"))]
+fn advance_omega(now: &Stencil, added: Added, next: &mut [f32], k: &Coefficients) {
     let side = next.len();
     let (keep, memory, r2) = (2.0 - k.lambda_omega - k.restoring, 1.0 - k.lambda_omega, k.r2_omega);
     let (center, west, east) = (&now.center[..side], &now.west[..side], &now.east[..side]);
