@@ -138,35 +138,30 @@ fn gust_at(p: vec2<f32>) -> f32 {
     return 0.45 + 1.35 * smoothstep(0.28, 0.74, broad * 0.62 + fine * 0.38);
 }
 
-// Lean (rad, as a vector on the ground) that a steady wind sustains: with the square of its speed up to 10 m/s, as the bend
-// field has it.
+// Lean (rad, as a vector on the ground) that a steady wind sustains; twin of `wind_lean_rad` in shared/src/bend/wind.rs.
 fn lean_of_wind(wind: vec2<f32>) -> vec2<f32> {
     let speed = length(wind);
     let share = min(speed, 10.0) * 0.1;
     return wind / max(speed, 1e-3) * (frame.blade.w * share * share);
 }
 
-// Lean (rad) of the streamed bend field, at a mip level of the atlas; z: share of the wind's lean that is in it, 0 where
-// nothing is streamed.
-fn lean_of_field(p: vec2<f32>, level: f32) -> vec3<f32> {
+// Lean (rad) of the streamed bend field, at a mip level of the atlas: how the grass departs from where the wind alone holds it.
+fn lean_of_field(p: vec2<f32>, level: f32) -> vec2<f32> {
     let from_eye = abs(p - frame.eye.xz);
     let shown = 1.0 - smoothstep(0.8, 1.0, max(from_eye.x, from_eye.y) / frame.maps.w);
     if shown <= 0.0 {
-        return vec3<f32>(0.0);
+        return vec2<f32>(0.0);
     }
     let code = textureSampleLevel(bends, repeated, p / frame.maps.z, level);
     let omega = code.yz * abs(code.yz);
     let speed = length(omega);
     let direction = select(frame.gust.xy, omega / max(speed, 1e-12), speed > 1e-9);
-    return vec3<f32>(direction * (code.x * THETA_FULL_RAD), code.w) * shown;
+    return direction * (code.x * THETA_FULL_RAD * shown);
 }
 
-// Lean (rad) of what grows at a place on the ground, in its wind times a factor. The field already leans with the mean wind;
-// to that comes what the gusts make of it, and all of the wind where the field is not streamed.
+// Lean (rad) of what grows at a place on the ground, in its wind times a factor.
 fn lean_at(ground: vec3<f32>, level: f32, gust: f32) -> vec2<f32> {
-    let wind = wind_at(ground, 1.0).xz;
-    let field = lean_of_field(ground.xz, level);
-    return field.xy + lean_of_wind(wind * gust) - lean_of_wind(wind) * field.z;
+    return lean_of_field(ground.xz, level) + lean_of_wind(wind_at(ground, 1.0).xz * gust);
 }
 
 fn field_level(distance_m: f32) -> f32 {

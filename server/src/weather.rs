@@ -1,6 +1,6 @@
 //! The wind of a scene: the solver, its rhythm, and what the rest of the world sees of it.
 
-use crate::bend::air::{self, GroundWind};
+use crate::bend::air::GroundWind;
 use crate::objects::Motion;
 use crate::snapshot::WindFrame;
 use crate::wind::{Boundary, Config, ConfigError, Gusts, Jet, Profile, StepError, StepReport, WindSolver};
@@ -32,7 +32,6 @@ pub struct Weather {
     config: Config,
     ticks_per_step: u64,
     step_secs: f32,
-    bend_rad: f32,
     report: StepReport,
     resets: u64,
     ground: GroundWind,
@@ -75,13 +74,9 @@ impl Weather {
         for _ in 1..(WARM_UP_CELL_STEPS / cells).clamp(1, WARM_UP_STEPS) {
             report = solver.step(step_secs, &[])?;
         }
-        let [nx, _, nz] = config.cells;
-        let [dx, _, dz] = config.spacing_m;
-        let wraps = scene.wind.sides == WindBoundary::Wrap;
-        let ground = GroundWind { nodes: [nx, nz], spacing_m: [dx, dz], wraps, tick: 0, sustained: vec![] };
+        let ground = GroundWind::still(scene);
         let frame = Arc::new(WindFrame::default());
-        let bend_rad = scene.grass.wind_bend_rad;
-        let mut weather = Self { solver, config, ticks_per_step, step_secs, bend_rad, report, resets: 0, ground, frame };
+        let mut weather = Self { solver, config, ticks_per_step, step_secs, report, resets: 0, ground, frame };
         weather.observe(0);
         Ok(weather)
     }
@@ -140,16 +135,13 @@ impl Weather {
         let [nx, ny, nz] = self.config.cells;
         let cells = nx * ny * nz;
         let mut codes = vec![0; 3 * cells];
-        self.ground.tick = tick;
-        self.ground.sustained.clear();
         for (at, velocity) in self.solver.cell_velocities().enumerate() {
             for (plane, component) in velocity.to_array().into_iter().enumerate() {
                 codes[plane * cells + at] = wind_code(component);
             }
-            if at / nx % ny == 0 {
-                self.ground.sustained.push(air::sustained([velocity.x, velocity.z], self.bend_rad));
-            }
         }
+        let lowest = self.solver.cell_velocities().enumerate().filter(|(at, _)| at / nx % ny == 0);
+        self.ground.blow(lowest.map(|(_, velocity)| [velocity.x, velocity.z]));
         self.frame = Arc::new(WindFrame { tick, cells: [nx, ny, nz].map(|n| n as u32), codes });
     }
 }

@@ -1,8 +1,11 @@
-//! One step of the world, and its snapshot, with every patch awake: 16 × 16 patches of 64 × 64 cells in view, on one thread.
+//! One step of the world, and its snapshot: 16 × 16 patches of 64 × 64 cells, on one thread. And the bend field alone, every patch
+//! awake, which is the worst that objects can make of it.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use server::world::{Command, View, World};
-use shared::scene::VehicleKind;
+use shared::bend::{Bend, Field, WaveParams};
+use shared::grid::PatchLayout;
+use shared::scene::{Grass, Patches, VehicleKind};
 use shared::wire::Drive;
 use std::time::Instant;
 use tests::worlds;
@@ -10,8 +13,7 @@ use tests::worlds;
 /// A world in full swing: `objects` vehicles that have driven about for 2 s.
 fn busy(objects: u32) -> World {
     let mut world = worlds::hills(&worlds::scene(16));
-    let view = View { client: 0, eye_m: [128.0, 2.0, 128.0], radius_m: 400.0 };
-    let mut commands = vec![Command::Views(vec![view])];
+    let mut commands = vec![Command::Views(vec![View { client: 0, eye_m: [128.0, 2.0, 128.0] }])];
     commands.extend((0..objects).map(|client| Command::Spawn { client, kind: VehicleKind::ALL[client as usize % 8 / 5] }));
     world.step(&commands);
     for tick in 0..120 {
@@ -31,7 +33,7 @@ fn step(criterion: &mut Criterion) {
     for objects in [1, 64] {
         let mut world = one_thread.install(|| busy(objects));
         let mut tick = 120;
-        criterion.bench_function(&format!("step with {objects} objects, 1 M cells awake"), |bench| {
+        criterion.bench_function(&format!("step with {objects} objects"), |bench| {
             bench.iter(|| {
                 one_thread.install(|| world.step(&drives(objects, tick)));
                 tick += 1;
@@ -51,6 +53,26 @@ fn step(criterion: &mut Criterion) {
 
 /// Steps that the percentiles are taken of: a minute of simulated time.
 const TIMED_STEPS: usize = 3600;
+
+/// A field of a million cells, all bent.
+fn awake_field() -> Field {
+    let mut field = Field::new(PatchLayout::from(&Patches::default()));
+    let layout = *field.layout();
+    for index in 0..layout.patches() as u32 {
+        let patch = field.wake(index);
+        let side = patch.side();
+        for (i, j) in (0..side).flat_map(|j| (0..side).map(move |i| (i, j))) {
+            patch.press(i, j, Bend { theta: 0.01 * (i * j % 97) as f32, omega: [0.02 * i as f32, -0.01 * j as f32] });
+        }
+    }
+    field
+}
+
+fn bend(criterion: &mut Criterion) {
+    let params = WaveParams::from(&Grass::default());
+    let mut field = awake_field();
+    criterion.bench_function("bend field, 1 M cells awake", |bench| bench.iter(|| field.step(&params, 1.0 / 60.0)));
+}
 
 /// What a mean hides: the wind steps on every third tick only, and a tick that is late is seen.
 fn percentiles(_: &mut Criterion) {
@@ -81,6 +103,6 @@ fn percentiles(_: &mut Criterion) {
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(50);
-    targets = percentiles, step
+    targets = percentiles, step, bend
 }
 criterion_main!(benches);

@@ -54,7 +54,7 @@ impl Stage {
 
     /// Says where client 1 looks from, so that the wind bends the grass there.
     pub fn look_from(&mut self, eye_m: [f32; 3]) {
-        self.tell(&[Command::Views(vec![View { client: 1, eye_m, radius_m: 128.0 }])]);
+        self.tell(&[Command::Views(vec![View { client: 1, eye_m }])]);
     }
 
     /// Gives `client` a vehicle, near its camera.

@@ -16,7 +16,7 @@ fn commands(tick: u32) -> Vec<Command> {
     }
     if tick.is_multiple_of(30) {
         let eye_m = [40.0 + 0.05 * tick as f32, 2.0, 60.0];
-        commands.push(Command::Views(vec![View { client: 0, eye_m, radius_m: 30.0 }]));
+        commands.push(Command::Views(vec![View { client: 0, eye_m }]));
         let swing = |client: u32| ((tick / 30 * 7 + client * 3) % 11) as f32 / 5.0 - 1.0;
         commands.extend((0..CLIENTS).map(|client| {
             let drive = Drive { throttle: 1.0, steer: swing(client), lift: swing(client + 1), brake: 0.0 };

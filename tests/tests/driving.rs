@@ -49,7 +49,7 @@ fn a_car_climbs_a_hill() {
     let scene = worlds::scene(12);
     let maps = worlds::maps(&scene, |_, z| (0.25 * (90.0 - z)).clamp(0.0, 15.0), |_, _| 255);
     let mut world = World::new(&scene, maps).expect("a sound scene");
-    let view = View { client: 1, eye_m: [96.0, 2.0, 120.0], radius_m: 30.0 };
+    let view = View { client: 1, eye_m: [96.0, 2.0, 120.0] };
     world.step(&[Command::Views(vec![view])]);
     spawn(&mut world, 1, Car);
     // Turn until it heads north, then climb.
@@ -154,7 +154,7 @@ fn objects_start_apart_and_never_exceed_the_limit() {
     let mut scene = worlds::scene(16);
     scene.objects.limit = 40;
     let mut world = worlds::hills(&scene);
-    let view = View { client: 7, eye_m: [100.0, 2.0, 60.0], radius_m: 10.0 };
+    let view = View { client: 7, eye_m: [100.0, 2.0, 60.0] };
     let mut commands = vec![Command::Views(vec![view])];
     commands.extend((0..50).map(|client| Command::Spawn { client, kind: VehicleKind::ALL[client as usize % 3] }));
     world.step(&commands);

@@ -77,7 +77,7 @@ async fn numbers(browser: &Browser, expression: &str) -> Result<Vec<f64>> {
     Ok(list.iter().filter_map(Value::as_f64).collect())
 }
 
-/// Bend angles (rad) of a client's mirror at 8 × 8 places around `(x, z)`, 8 m apart.
+/// Bend angles (rad), of wind and bend field together, in a client's mirror at 8 × 8 places around `(x, z)`, 8 m apart.
 async fn bends_around(browser: &Browser, x: f64, z: f64) -> Result<Vec<f64>> {
     let at = |middle: f64, step: &str| format!("{middle} + 8 * ({step} - 3.5)");
     let theta = format!("window.prairie.theta({}, {})", at(x, "i % 8"), at(z, "Math.floor(i / 8)"));
@@ -192,7 +192,7 @@ async fn the_wind_moves_the_grass_in_the_mirror_and_in_the_pixels() -> Result<()
 
     let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     ensure!(change(&wind, &later_wind) > 0.25, "the wind stood still: {wind:?} then {later_wind:?}");
-    ensure!(change(&bend, &later_bend) > 0.01, "the bend field stood still: {bend:?} then {later_bend:?}");
+    ensure!(change(&bend, &later_bend) > 0.01, "the grass stood still: {bend:?} then {later_bend:?}");
     let difference = before.difference(&after)?;
     ensure!(difference.changed > 0.01, "the picture stood still: {difference:?}");
     Ok(())

@@ -1,5 +1,5 @@
 //! The bend field about the camera as one texture: patch `(x, z)` lives in slot `(x mod n, z mod n)`, so that a camera that
-//! moves changes only the patches that enter the window. Texels: θ, ωx, ωz, and 1 where the field is streamed.
+//! moves changes only the patches that enter the window. Texels: θ, ωx, ωz.
 
 use super::gpu::Gpu;
 use crate::state::{Mirror, PatchCodes};
@@ -84,7 +84,6 @@ impl Atlas {
         let mut side = self.layout.cells as usize;
         let mut texels = vec![0_i8; side * side * 4];
         if let Some(codes) = codes {
-            texels.iter_mut().skip(3).step_by(4).for_each(|streamed| *streamed = i8::MAX);
             for (channel, plane) in codes.planes().into_iter().enumerate() {
                 for (i, &code) in plane.iter().enumerate() {
                     texels[i * 4 + channel] = code;

@@ -2,8 +2,8 @@
 
 use super::contact::{HELD_RAD_PER_S, bending_speed_rad_per_s, for_each_cell, unit};
 use super::footprint::Footprint;
-use shared::bend::{Bend, CHANNELS, Coefficients, Field, Force, NODE_CELLS};
-use shared::grid::{PatchIndex, PatchLayout};
+use shared::bend::{Bend, Field, wind_lean_rad};
+use shared::scene::{Scene, WindBoundary};
 
 /// Height of a rotor above the ground from which its wash reaches no grass (m).
 pub const WASH_CEILING_M: f32 = 30.0;
@@ -31,11 +31,11 @@ impl Wash {
         (nearness > 0.0).then_some(Self { center_m, radius_m: WASH_RADIUS_M * (0.4 + 0.6 * nearness), strength: nearness * nearness })
     }
 
-    /// Bends the grass of awake patches outward (001 Fig. 9a): most halfway to the rim, not at all in the middle and at the rim. Returns
-    /// the largest bending speed (rad/s).
-    pub fn press(&self, field: &mut Field, dt_secs: f32) -> f32 {
+    /// Bends the grass of awake patches outward (001 Fig. 9a), against the wind where it must: most halfway to the rim, not at all in the
+    /// middle and at the rim. Returns the largest bending speed (rad/s).
+    pub fn press(&self, field: &mut Field, wind: &GroundWind, dt_secs: f32) -> f32 {
         let mut largest = 0.0_f32;
-        for_each_cell(field, &self.footprint(), |at_m, bend| {
+        for_each_cell(field, &self.footprint(), wind.lean_rad(self.center_m), |at_m, bend| {
             let out = [at_m[0] - self.center_m[0], at_m[1] - self.center_m[1]];
             let share = ((out[0] * out[0] + out[1] * out[1]).sqrt() / self.radius_m).min(1.0);
             let strength = self.strength * 4.0 * share * (1.0 - share);
@@ -59,55 +59,39 @@ impl Wash {
     }
 }
 
-/// Time in which grass follows the wind (s).
-const FOLLOWS_SECS: f32 = 0.4;
-/// Wind from which on grass bends no further (m/s).
-const SATURATES_M_PER_S: f32 = 10.0;
-
-/// What the wind near the ground sustains, on a grid over the world.
+/// Where the wind near the ground alone holds the grass, on the wind's grid over the world.
 #[derive(Clone, Debug)]
 pub struct GroundWind {
-    /// Nodes along X and Z.
-    pub nodes: [usize; 2],
-    /// Distance between nodes (m); the first lies half of it from the origin.
-    pub spacing_m: [f32; 2],
-    /// Whether the grid repeats; else the nearest node holds beyond it.
-    pub wraps: bool,
-    /// Step of the world that it belongs to.
-    pub tick: u64,
-    /// Bend (rad) and bending velocity (rad/s) at the nodes, x fastest.
-    pub sustained: Vec<[f32; CHANNELS]>,
-}
-
-/// Bend (rad) and bending velocity (rad/s) that a wind sustains: `θ = bend_rad·(min(|u|, 10)/10)²` leaning with the wind, at the speed
-/// at which it got there.
-pub fn sustained(wind_m_per_s: [f32; 2], bend_rad: f32) -> [f32; CHANNELS] {
-    let [u, w] = wind_m_per_s;
-    let speed = (u * u + w * w).sqrt();
-    let share = speed.min(SATURATES_M_PER_S) / SATURATES_M_PER_S;
-    let theta = bend_rad * share * share;
-    let [x, z] = unit(wind_m_per_s).unwrap_or_default();
-    [theta, x * theta / FOLLOWS_SECS, z * theta / FOLLOWS_SECS]
+    nodes: [usize; 2],
+    spacing_m: [f32; 2],
+    wraps: bool,
+    bend_rad: f32,
+    /// Leans at the cells' centres (rad, as vectors along X and Z), x fastest.
+    leans_rad: Vec<[f32; 2]>,
 }
 
 impl GroundWind {
-    /// Writes what the wind sustains at the nodes of a patch into `out`.
-    fn sample(&self, layout: &PatchLayout, patch: PatchIndex, out: &mut Force) {
-        let [corner_x, corner_z] = layout.corner_m(patch);
-        let step_m = NODE_CELLS as f32 * layout.cell_m;
-        let columns: Vec<_> = (0..out.per_side).map(|i| self.between(0, corner_x + i as f32 * step_m)).collect();
-        for j in 0..out.per_side {
-            let (north, south, share_z) = self.between(1, corner_z + j as f32 * step_m);
-            let (north, south) = (&self.sustained[north * self.nodes[0]..], &self.sustained[south * self.nodes[0]..]);
-            for (i, &(west, east, share_x)) in columns.iter().enumerate() {
-                let [nw, ne, sw, se] = [north[west], north[east], south[west], south[east]];
-                for channel in 0..CHANNELS {
-                    let n = nw[channel] + (ne[channel] - nw[channel]) * share_x;
-                    let s = sw[channel] + (se[channel] - sw[channel]) * share_x;
-                    out.nodes[channel][j * out.per_side + i] = n + (s - n) * share_z;
-                }
-            }
+    /// Still air over `scene`.
+    pub fn still(scene: &Scene) -> Self {
+        let ([nx, _, nz], [dx, _, dz]) = (scene.wind.cells.map(|n| n as usize), scene.wind.spacing_m);
+        let wraps = scene.wind.sides == WindBoundary::Wrap;
+        let bend_rad = scene.grass.wind_bend_rad;
+        Self { nodes: [nx, nz], spacing_m: [dx, dz], wraps, bend_rad, leans_rad: vec![[0.0; 2]; nx * nz] }
+    }
+
+    /// Takes on the wind (m/s along X and Z) in the lowest cells, x fastest.
+    pub fn blow(&mut self, lowest_m_per_s: impl Iterator<Item = [f32; 2]>) {
+        for (lean, wind) in self.leans_rad.iter_mut().zip(lowest_m_per_s) {
+            *lean = wind_lean_rad(wind, self.bend_rad);
         }
+    }
+
+    /// Lean at a place (rad, as a vector along X and Z), bilinear between cells. Beyond a grid that does not repeat the nearest holds.
+    pub fn lean_rad(&self, at_m: [f32; 2]) -> [f32; 2] {
+        let [(west, east, share_x), (north, south, share_z)] = [0, 1].map(|axis| self.between(axis, at_m[axis]));
+        let node = |x: usize, z: usize| self.leans_rad[x + z * self.nodes[0]];
+        let along = |a: [f32; 2], b: [f32; 2], share: f32| [0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * share);
+        along(along(node(west, north), node(east, north), share_x), along(node(west, south), node(east, south), share_x), share_z)
     }
 
     /// The nodes on either side of a coordinate, and how far it is from the first to the second.
@@ -115,70 +99,24 @@ impl GroundWind {
         let count = self.nodes[axis] as i64;
         let at = at_m / self.spacing_m[axis] - 0.5;
         let low = at.floor();
-        let share = at - low;
         let node = |n: i64| (if self.wraps { n.rem_euclid(count) } else { n.clamp(0, count - 1) }) as usize;
-        (node(low as i64), node(low as i64 + 1), share)
+        (node(low as i64), node(low as i64 + 1), at - low)
     }
 }
 
-/// How the natural wind holds one patch: the bend that its grass would have from wind alone, at nodes.
-///
-/// The grass follows what the wind sustains within 0.4 s. The force is what the Verlet scheme needs to carry exactly this
-/// bend: `F = (W⁺ − W) − (1 − λ)·(W − W⁻) + κ·dt²·W`. The scheme being linear in θ and ω, tracks and gusts add up: a gust passes over a
-/// track without wiping it out, and grass that rises again rises to where the wind holds it.
-#[derive(Clone, Debug)]
-pub struct Sway {
-    now: Force,
-    before: Force,
-    target: Force,
-    force: Force,
-    /// Step of the wind that the target is of; none: still air.
-    aimed_at: Option<u64>,
-    /// Sub-step (s) between the two states; none before the first.
-    dt_secs: Option<f32>,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-impl Sway {
-    /// Grass upright in still air, on a patch of `side × side` cells.
-    pub fn new(side: usize) -> Self {
-        let zero = Force::zero(side);
-        Self { now: zero.clone(), before: zero.clone(), target: zero.clone(), force: zero, aimed_at: None, dt_secs: None }
-    }
-
-    /// Takes the wind on; none: still air.
-    pub fn aim(&mut self, wind: Option<&GroundWind>, layout: &PatchLayout, patch: PatchIndex) {
-        let aimed_at = wind.map(|wind| wind.tick);
-        if aimed_at == self.aimed_at {
-            return;
-        }
-        self.aimed_at = aimed_at;
-        match wind {
-            Some(wind) => wind.sample(layout, patch, &mut self.target),
-            None => self.target.nodes.iter_mut().for_each(|nodes| nodes.fill(0.0)),
-        }
-    }
-
-    /// Largest bend (rad) or bending velocity (rad/s) of any node.
-    pub fn largest(&self) -> f32 {
-        self.now.nodes.iter().flatten().fold(0.0, |largest, value| value.abs().max(largest))
-    }
-
-    /// Follows the wind for a sub-step and returns the force that carries the grass along.
-    pub fn advance(&mut self, k: &Coefficients) -> &Force {
-        let dt_secs = k.dt_secs;
-        let share = dt_secs / (FOLLOWS_SECS + dt_secs);
-        let ratio = self.dt_secs.replace(dt_secs).map_or(1.0, |last| dt_secs / last);
-        for channel in 0..CHANNELS {
-            let memory = 1.0 - if channel == 0 { k.lambda_theta } else { k.lambda_omega };
-            let targets = self.target.nodes[channel].iter();
-            let states = self.now.nodes[channel].iter_mut().zip(&mut self.before.nodes[channel]);
-            for ((target, (now, before)), force) in targets.zip(states).zip(&mut self.force.nodes[channel]) {
-                let next = *now + (target - *now) * share;
-                *force = (next - *now) - memory * ratio * (*now - *before) + k.restoring * *now;
-                *before = *now;
-                *now = next;
-            }
-        }
-        &self.force
+    #[test]
+    fn leans_are_bilinear_and_wrap_or_hold() {
+        let leans_rad = vec![[0.0, 0.0], [0.4, 0.0], [0.0, 0.2], [0.4, 0.2]];
+        let wind = GroundWind { nodes: [2, 2], spacing_m: [8.0, 4.0], wraps: true, bend_rad: 0.0, leans_rad };
+        let close = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]).abs() < 1e-6 && (a[1] - b[1]).abs() < 1e-6;
+        assert!(close(wind.lean_rad([4.0, 2.0]), [0.0, 0.0]));
+        assert!(close(wind.lean_rad([6.0, 5.0]), [0.1, 0.15]));
+        assert!(close(wind.lean_rad([16.0, 2.0]), [0.2, 0.0]));
+        let held = GroundWind { wraps: false, ..wind };
+        assert!(close(held.lean_rad([16.0, 100.0]), [0.4, 0.2]));
     }
 }

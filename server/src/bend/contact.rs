@@ -1,5 +1,6 @@
 //! How grass gives way to what touches it: direction (001 Eqs 10–11), speed (Eq. 12), bend (Eq. 1), and the terrain's limit.
 
+use super::air::GroundWind;
 use super::footprint::{Edge, Footprint};
 use shared::bend::{Bend, Field};
 use shared::terrain::HeightMap;
@@ -50,14 +51,14 @@ pub fn direction(moves: [f32; 2], at_m: [f32; 2], sides: &[Edge], rim_m: f32) ->
     }
 }
 
-/// Presses the grass of awake patches for a step of `dt_secs`. Returns the largest bending speed (rad/s).
-pub fn press(field: &mut Field, contact: &Contact, height: &HeightMap, theta_max_rad: f32, dt_secs: f32) -> f32 {
+/// Presses the grass of awake patches, which the wind bends too, for a step of `dt_secs`. Returns the largest bending speed (rad/s).
+pub fn press(field: &mut Field, contact: &Contact, wind: &GroundWind, height: &HeightMap, theta_max_rad: f32, dt_secs: f32) -> f32 {
     let cell_m = field.layout().cell_m;
     let speed = length(contact.velocity_m_per_s);
     let moves = if speed > STANDING_M_PER_S { unit(contact.velocity_m_per_s) } else { None };
     let (sides, middle) = (if contact.parts_grass { contact.footprint.sides() } else { vec![] }, contact.footprint.middle_m());
     let mut largest = 0.0_f32;
-    for_each_cell(field, &contact.footprint, |at_m, bend| {
+    for_each_cell(field, &contact.footprint, wind.lean_rad(middle), |at_m, bend| {
         let direction = match moves {
             Some(moves) => direction(moves, at_m, &sides, cell_m),
             None => unit(bend.omega).or_else(|| unit([at_m[0] - middle[0], at_m[1] - middle[1]])).unwrap_or([1.0, 0.0]),
@@ -75,10 +76,12 @@ pub fn press(field: &mut Field, contact: &Contact, height: &HeightMap, theta_max
     largest
 }
 
-/// Lets `change` set the state of each cell of awake patches within `footprint`, given the cell's centre (m) and state.
-pub fn for_each_cell(field: &mut Field, footprint: &Footprint, mut change: impl FnMut([f32; 2], Bend) -> Option<Bend>) {
+/// Lets `change` set the bend of each cell of awake patches within `footprint`, given the cell's centre (m) and the bend that it has
+/// together with the wind's lean (rad); what the field then holds is the rest.
+pub fn for_each_cell(field: &mut Field, footprint: &Footprint, wind_rad: [f32; 2], mut change: impl FnMut([f32; 2], Bend) -> Option<Bend>) {
     let layout = *field.layout();
     let cells = i64::from(layout.cells);
+    let against_rad = wind_rad.map(|lean| -lean);
     for run in footprint.runs(&layout) {
         let (patch_z, j) = (run.row / cells, (run.row % cells) as usize);
         let z_m = (run.row as f32 + 0.5) * layout.cell_m;
@@ -88,11 +91,21 @@ pub fn for_each_cell(field: &mut Field, footprint: &Footprint, mut change: impl 
             for i in run.from.max(first)..run.to.min(first + cells) {
                 let at_m = [(i as f32 + 0.5) * layout.cell_m, z_m];
                 let i = (i - first) as usize;
-                if let Some(bend) = change(at_m, patch.bend(i, j)) {
-                    patch.press(i, j, bend);
+                if let Some(bend) = change(at_m, leaning(patch.bend(i, j), wind_rad)) {
+                    patch.press(i, j, leaning(bend, against_rad));
                 }
             }
         }
+    }
+}
+
+/// A bend with a lean (rad) added to it as a vector on the ground; its bending speed stays, and turns with it.
+fn leaning(bend: Bend, lean_rad: [f32; 2]) -> Bend {
+    let along = unit(bend.omega).unwrap_or_default();
+    let lean = [0, 1].map(|axis| along[axis] * bend.theta + lean_rad[axis]);
+    match unit(lean) {
+        Some(along) => Bend { theta: length(lean), omega: along.map(|d| d * length(bend.omega)) },
+        None => Bend { theta: 0.0, omega: bend.omega },
     }
 }
 

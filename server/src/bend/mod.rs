@@ -7,14 +7,13 @@ pub mod regions;
 pub mod step;
 
 use crate::objects::Motion;
-use air::{GroundWind, Sway, Wash};
+use air::{GroundWind, Wash};
 use contact::Contact;
 use regions::{Regions, Trace};
 use shared::bend::{Field, WaveParams};
 use shared::grid::{PatchIndex, PatchLayout};
 use shared::scene::{Scene, VehicleKind};
 use shared::terrain::HeightMap;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A camera.
@@ -24,12 +23,8 @@ pub struct View {
     pub client: u32,
     /// Where (m).
     pub eye_m: [f32; 3],
-    /// How far the bend field is wanted (m).
-    pub radius_m: f32,
 }
 
-/// Bend that the wind gives up holding when a patch leaves all cameras (rad, rad/s).
-const CALM: f32 = 1e-3;
 /// Margin around what touches the grass within which patches are woken (m).
 const MARGIN_M: f32 = 1.0;
 
@@ -41,7 +36,6 @@ pub struct Meadow {
     blade_m: f32,
     theta_max_rad: f32,
     regions: Regions,
-    sways: BTreeMap<PatchIndex, Sway>,
     traces: Vec<Trace>,
     report: step::Report,
 }
@@ -56,7 +50,6 @@ impl Meadow {
             blade_m: scene.plants.height_m,
             theta_max_rad: scene.grass.theta_max_rad,
             regions: Regions::new(scene.patches.awake_limit as usize),
-            sways: BTreeMap::new(),
             traces: vec![],
             report: step::Report::default(),
         }
@@ -74,7 +67,7 @@ impl Meadow {
 
     /// Sum of θ² + ω² over all cells (mixed units).
     pub fn activity(&self) -> f64 {
-        self.traces.iter().map(|trace| f64::from(trace.extremes.activity)).sum()
+        self.traces.iter().fold(0.0, |sum, trace| sum + f64::from(trace.extremes.activity))
     }
 
     /// Patches let go so far because too many were awake.
@@ -82,26 +75,20 @@ impl Meadow {
         self.regions.evicted()
     }
 
-    /// One step: regions, contact and wash (which bend directly), propagation under the natural wind.
+    /// One step: regions, contact and wash (which bend directly), propagation.
     pub fn step(&mut self, dt_secs: f32, motions: &[Motion], views: &[View], wind: &GroundWind) {
         let contacts: Vec<_> = motions.iter().flat_map(|motion| self.contacts(motion)).collect();
         let washes: Vec<_> = motions.iter().filter_map(|motion| self.wash(motion)).collect();
-        let seen = self.regions.seen(self.field.layout(), views);
         let touched = self.touched(&contacts, &washes);
-        self.regions.update(&mut self.field, &touched, &seen, &self.traces, views);
+        self.regions.update(&mut self.field, &touched, &self.traces, views);
 
         let carried = self.traces.iter().map(|trace| trace.extremes.omega_rad_per_s).fold(0.0, f32::max);
         let omega_max = contacts
             .iter()
-            .map(|contact| contact::press(&mut self.field, contact, &self.height, self.theta_max_rad, dt_secs))
+            .map(|contact| contact::press(&mut self.field, contact, wind, &self.height, self.theta_max_rad, dt_secs))
             .fold(carried, f32::max);
-        let omega_max = washes.iter().map(|wash| wash.press(&mut self.field, dt_secs)).fold(omega_max, f32::max);
-
-        self.aim_sways(&seen, wind);
-        let mut sways = self.sways.iter_mut().peekable();
-        let awake = self.field.awake_indices().to_vec();
-        let mut alongside: Vec<_> = awake.iter().map(|patch| sways.next_if(|(index, _)| *index == patch).map(|(_, sway)| sway)).collect();
-        (self.report, self.traces) = step::propagate(&mut self.field, &mut alongside, &self.params, dt_secs, omega_max);
+        let omega_max = washes.iter().map(|wash| wash.press(&mut self.field, wind, dt_secs)).fold(omega_max, f32::max);
+        (self.report, self.traces) = step::propagate(&mut self.field, &self.params, dt_secs, omega_max);
     }
 
     /// Where a motion touches grass: parts that are lower than the grass is high.
@@ -134,21 +121,5 @@ impl Meadow {
         let around = |[low, high]: [[f32; 2]; 2]| layout.patches_touching(low.map(|m| m - MARGIN_M), high.map(|m| m + MARGIN_M));
         let bodies = contacts.iter().flat_map(|contact| around(contact.footprint.bounds_m()));
         bodies.chain(washes.iter().flat_map(|wash| around(wash.footprint().bounds_m()))).collect()
-    }
-
-    /// Lets the wind take hold of the patches that are seen, and let go of the others.
-    fn aim_sways(&mut self, seen: &[PatchIndex], wind: &GroundWind) {
-        let layout = *self.field.layout();
-        for &patch in seen {
-            if self.field.patch(patch).is_some() {
-                self.sways.entry(patch).or_insert_with(|| Sway::new(layout.cells as usize));
-            }
-        }
-        let field = &self.field;
-        self.sways.retain(|&patch, sway| {
-            let is_seen = seen.binary_search(&patch).is_ok();
-            sway.aim(is_seen.then_some(wind), &layout, patch);
-            field.patch(patch).is_some() && (is_seen || sway.largest() > CALM)
-        });
     }
 }

@@ -1,4 +1,4 @@
-//! Which patches are awake (001 §4.2): near objects, near cameras, and where energy arrives; the rest sleep.
+//! Which patches are awake (001 §4.2): near objects, and where energy arrives; the rest sleep.
 
 use super::View;
 use shared::bend::{Extremes, Field};
@@ -52,27 +52,11 @@ impl Regions {
         self.evicted
     }
 
-    /// Patches whose centre a camera sees within its radius, ascending. Of a radius that would hold more than the limit, the inner
-    /// part counts.
-    pub fn seen(&self, layout: &PatchLayout, views: &[View]) -> Vec<PatchIndex> {
-        let side = layout.patch_m();
-        let mut seen = vec![];
-        for view in views {
-            let [x, _, z] = view.eye_m;
-            let reach = view.radius_m.min(side * (self.limit as f32 / std::f32::consts::PI).sqrt() + side);
-            let near = layout.patches_touching([x - reach, z - reach], [x + reach, z + reach]);
-            seen.extend(near.filter(|&patch| squared_distance(layout.center_m(patch), [x, z]) <= reach * reach));
-        }
-        seen.sort_unstable();
-        seen.dedup();
-        seen
-    }
-
-    /// Wakes the `touched`, the `seen` and those that energy flows into; lets quiet ones sleep; lets those farthest
+    /// Wakes the `touched` and those that energy flows into; lets quiet ones sleep; lets those farthest
     /// from any camera go (from the world's middle where there is none) that exceed the limit.
-    pub fn update(&mut self, field: &mut Field, touched: &[PatchIndex], seen: &[PatchIndex], traces: &[Trace], views: &[View]) {
+    pub fn update(&mut self, field: &mut Field, touched: &[PatchIndex], traces: &[Trace], views: &[View]) {
         let layout = *field.layout();
-        let mut keep: Vec<PatchIndex> = touched.iter().chain(seen).copied().collect();
+        let mut keep: Vec<PatchIndex> = touched.to_vec();
         keep.extend(traces.iter().flat_map(|trace| trace.spills(layout)));
         keep.extend(traces.iter().filter(|trace| !trace.is_quiet()).map(|trace| trace.patch));
         keep.sort_unstable();

@@ -1,6 +1,5 @@
 //! The propagation of the bend field on all threads (001 §4.4).
 
-use super::air::Sway;
 use super::regions::Trace;
 use rayon::prelude::*;
 use shared::bend::{Coefficients, Field, WaveParams, verlet};
@@ -15,15 +14,9 @@ pub struct Report {
 }
 
 /// Advances the field by `dt_secs` in as many equal sub-steps as its stability bound asks for when no bending speed exceeds
-/// `omega_max_rad_per_s`. `sways` has an entry for each awake patch. The patches are shared out among threads; each sub-step writes
-/// nothing that another patch reads, so the bits are the same on any number of threads.
-pub fn propagate(
-    field: &mut Field,
-    sways: &mut [Option<&mut Sway>],
-    params: &WaveParams,
-    dt_secs: f32,
-    omega_max_rad_per_s: f32,
-) -> (Report, Vec<Trace>) {
+/// `omega_max_rad_per_s`. The patches are shared out among threads; each sub-step writes nothing that another patch reads, so the bits
+/// are the same on any number of threads.
+pub fn propagate(field: &mut Field, params: &WaveParams, dt_secs: f32, omega_max_rad_per_s: f32) -> (Report, Vec<Trace>) {
     let cell_m = field.layout().cell_m;
     let substeps = verlet::substeps(params, cell_m, dt_secs, omega_max_rad_per_s);
     let dt_secs = dt_secs / substeps as f32;
@@ -33,10 +26,8 @@ pub fn propagate(
         let mut lanes = field.lanes();
         traces = lanes
             .par_iter_mut()
-            .zip(sways.par_iter_mut())
-            .map(|(lane, sway)| {
-                let force = sway.as_mut().map(|sway| sway.advance(&k));
-                let extremes = lane.step(&k, force);
+            .map(|lane| {
+                let extremes = lane.step(&k);
                 Trace { patch: lane.index, extremes, rims: lane.rims() }
             })
             .collect();

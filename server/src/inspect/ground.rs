@@ -1,12 +1,13 @@
 //! The ground: a mesh of the land, and the map of bends that is laid on it.
 
 use super::palette::{Rgb, bend_rgb};
-use crate::snapshot::BentPatches;
+use crate::bend::air::GroundWind;
+use crate::snapshot::{BentPatches, WindFrame};
 use glam::Vec3;
 use shared::grid::PatchLayout;
 use shared::scene::Light;
 use shared::terrain::HeightMap;
-use shared::wire::quantise::theta_rad;
+use shared::wire::quantise::{omega_rad_per_s, theta_code, theta_rad, wind_m_per_s};
 use std::sync::Arc;
 
 /// Most vertices along one side of the mesh.
@@ -60,9 +61,9 @@ impl GroundMesh {
     }
 }
 
-/// Bending angles of the whole world as one image of at most 512 × 512 pixels, the north-west corner first.
+/// Bending angles of the whole world, the wind's lean included, as one image of at most 512 × 512 pixels, the north-west corner first.
 ///
-/// A pixel is the largest |θ| of the cells that it covers, so that a narrow track stays visible however small the map is.
+/// A pixel is the largest angle of the cells that it covers, so that a narrow track stays visible however small the map is.
 pub(super) struct BendMap {
     layout: PatchLayout,
     /// log₂ of the cells along one side of a pixel.
@@ -70,20 +71,21 @@ pub(super) struct BendMap {
     size_px: [u32; 2],
     /// |θ| as a code of `shared::wire::quantise`, 0..=127.
     codes: Vec<u8>,
-    /// The patches that it shows; none: nothing has been drawn.
-    shown: Option<Arc<BentPatches>>,
+    wind: GroundWind,
+    /// Step of the wind and patches that it shows; none: nothing has been drawn.
+    shown: Option<(u64, Arc<BentPatches>)>,
 }
 
 impl BendMap {
-    /// A map of grass at rest.
-    pub(super) fn new(layout: PatchLayout) -> Self {
+    /// A map of grass at rest, whose wind is yet to blow.
+    pub(super) fn new(layout: PatchLayout, wind: GroundWind) -> Self {
         let cells = layout.count.map(|patches| patches * layout.cells);
         let mut shift = 0;
         while (cells[0].max(cells[1]) - 1) >> shift >= MAP_LIMIT_PX {
             shift += 1;
         }
         let size_px = cells.map(|n| ((n - 1) >> shift) + 1);
-        Self { layout, shift, size_px, codes: vec![0; (size_px[0] * size_px[1]) as usize], shown: None }
+        Self { layout, shift, size_px, codes: vec![0; (size_px[0] * size_px[1]) as usize], wind, shown: None }
     }
 
     /// Pixels along X and Z.
@@ -107,30 +109,54 @@ impl BendMap {
         self.codes.iter().flat_map(|&code| colours[usize::from(code.min(127))]).collect()
     }
 
-    /// Takes over the patches of a snapshot; false when they are those that it shows already.
-    pub(super) fn update(&mut self, patches: &Arc<BentPatches>) -> bool {
-        if self.shown.as_ref().is_some_and(|shown| same(shown, patches)) {
+    /// Takes over the wind and the patches of a snapshot; false when they are those that it shows already.
+    pub(super) fn update(&mut self, wind: &WindFrame, patches: &Arc<BentPatches>) -> bool {
+        if self.shown.as_ref().is_some_and(|(tick, shown)| *tick == wind.tick && same(shown, patches)) {
             return false;
         }
-        self.codes.fill(0);
-        for (&index, patch) in patches.range(..self.layout.patches() as u32) {
-            self.draw(index, &patch.codes);
+        let [nx, ny, _] = wind.cells.map(|n| n as usize);
+        let plane = wind.codes.len() / 3;
+        let component = |axis: usize, at: usize| wind_m_per_s(wind.codes[axis * plane + at]);
+        let lowest = (0..plane).filter(|at| at / nx % ny == 0);
+        self.wind.blow(lowest.map(|at| [component(0, at), component(2, at)]));
+
+        let leans_rad: Vec<_> = (0..self.codes.len() as u32).map(|pixel| self.wind.lean_rad(self.middle_m(pixel))).collect();
+        for (code, lean_rad) in self.codes.iter_mut().zip(&leans_rad) {
+            *code = code_of(*lean_rad);
         }
-        self.shown = Some(Arc::clone(patches));
+        for (&index, patch) in patches.range(..self.layout.patches() as u32) {
+            self.draw(index, &patch.codes, &leans_rad);
+        }
+        self.shown = Some((wind.tick, Arc::clone(patches)));
         true
     }
 
-    fn draw(&mut self, patch: u32, codes: &[i8]) {
+    fn middle_m(&self, pixel: u32) -> [f32; 2] {
+        [pixel % self.size_px[0], pixel / self.size_px[0]].map(|n| (n as f32 + 0.5) * self.pixel_m())
+    }
+
+    fn draw(&mut self, patch: u32, codes: &[i8], wind_rad: &[[f32; 2]]) {
         let cells = self.layout.cells;
+        let plane = (cells * cells) as usize;
         let [x0, z0] = self.layout.place(patch).map(|n| n * cells);
-        for (row, z) in codes.chunks_exact(cells as usize).take(cells as usize).zip(z0..) {
-            let first = (z >> self.shift) * self.size_px[0];
-            for (code, x) in row.iter().zip(x0..) {
-                let pixel = &mut self.codes[(first + (x >> self.shift)) as usize];
-                *pixel = (*pixel).max(code.unsigned_abs().min(127));
-            }
+        let within = (1 << self.shift) - 1;
+        for (at, &theta) in codes[..plane].iter().enumerate() {
+            let [x, z] = [x0 + at as u32 % cells, z0 + at as u32 / cells];
+            let pixel = ((z >> self.shift) * self.size_px[0] + (x >> self.shift)) as usize;
+            let omega = [1, 2].map(|channel| omega_rad_per_s(codes[channel * plane + at]));
+            let speed = (omega[0] * omega[0] + omega[1] * omega[1]).sqrt();
+            let per_speed = if speed > 0.0 { theta_rad(theta) / speed } else { 0.0 };
+            let code = code_of([0, 1].map(|axis| wind_rad[pixel][axis] + omega[axis] * per_speed));
+            // The first cell takes the place of the wind's lean alone.
+            let is_first = x & within == 0 && z & within == 0;
+            self.codes[pixel] = if is_first { code } else { code.max(self.codes[pixel]) };
         }
     }
+}
+
+/// Code of the angle of a lean (rad), 0..=127.
+fn code_of([x, z]: [f32; 2]) -> u8 {
+    theta_code((x * x + z * z).sqrt()).unsigned_abs()
 }
 
 /// Angle of a code of |θ| (degrees).
@@ -146,33 +172,65 @@ fn same(a: &BentPatches, b: &BentPatches) -> bool {
 mod tests {
     use super::*;
     use crate::snapshot::PatchCodes;
+    use shared::wire::quantise::wind_code;
 
-    fn bent(index: u32, cells: usize, theta: impl Fn(usize, usize) -> i8) -> Arc<BentPatches> {
-        let mut codes: Vec<i8> = (0..cells * cells).map(|at| theta(at % cells, at / cells)).collect();
-        codes.resize(3 * cells * cells, 99);
+    const CELLS: usize = 8;
+
+    /// A map of 2 × 2 patches, where a wind of `m_per_s` blows east and holds the grass at no more than 0.5 rad.
+    fn map(cell_m: f32, count: [u32; 2]) -> BendMap {
+        let mut scene = crate::scenes::load("meadow").unwrap().scene;
+        scene.grass.wind_bend_rad = 0.5;
+        BendMap::new(PatchLayout { count, cells: CELLS as u32, cell_m }, GroundWind::still(&scene))
+    }
+
+    fn wind(tick: u64, east_m_per_s: f32) -> WindFrame {
+        let cells = [32, 8, 32];
+        let codes = [east_m_per_s, 0.0, 0.0].into_iter().flat_map(|v| std::iter::repeat_n(wind_code(v), 32 * 8 * 32));
+        WindFrame { tick, cells, codes: codes.collect() }
+    }
+
+    /// One patch whose cells lean east by a code, or west where it is negative.
+    fn bent(index: u32, lean: impl Fn(usize, usize) -> i8) -> Arc<BentPatches> {
+        let leans: Vec<i8> = (0..CELLS * CELLS).map(|at| lean(at % CELLS, at / CELLS)).collect();
+        let thetas = leans.iter().map(|lean| lean.abs());
+        let omegas = leans.iter().map(|lean| 60 * lean.signum());
+        let codes = thetas.chain(omegas).chain(std::iter::repeat_n(0, CELLS * CELLS)).collect();
         Arc::new(BentPatches::from([(index, Arc::new(PatchCodes { tick: 1, codes }))]))
     }
 
     #[test]
     fn a_cell_lands_on_its_own_pixel() {
-        let mut map = BendMap::new(PatchLayout { count: [2, 2], cells: 8, cell_m: 0.5 });
+        let mut map = map(0.5, [2, 2]);
         assert_eq!((map.size_px(), map.pixel_m()), ([16, 16], 0.5));
-        let patches = bent(3, 8, |i, j| if (i, j) == (5, 2) { -40 } else { 0 });
-        assert!(map.update(&patches));
+        let patches = bent(3, |i, j| if (i, j) == (5, 2) { -40 } else { 0 });
+        assert!(map.update(&wind(1, 0.0), &patches));
         let marked: Vec<_> = (0..256).filter(|&at| map.codes()[at] != 0).collect();
         assert_eq!((marked.as_slice(), map.codes()[marked[0]]), ([(8 + 2) * 16 + 8 + 5].as_slice(), 40));
-        assert!(!map.update(&patches));
-        assert!(map.update(&Arc::default()) && map.codes().iter().all(|&code| code == 0));
+        assert!(!map.update(&wind(1, 0.0), &patches));
+        assert!(map.update(&wind(1, 0.0), &Arc::default()) && map.codes().iter().all(|&code| code == 0));
+    }
+
+    #[test]
+    fn the_lean_of_the_wind_and_that_of_a_track_add_up() {
+        let mut map = map(0.5, [2, 2]);
+        let held = i16::from(theta_code(0.5));
+        let patches = bent(0, |i, _| [30, -30][i % 2]);
+        assert!(map.update(&wind(1, 20.0), &patches));
+        let code = |at: usize| i16::from(map.codes()[at]);
+        assert!((code(255) - held).abs() <= 1, "wind alone: {}", code(255));
+        assert!((code(0) - held - 30).abs() <= 1, "with the wind: {}", code(0));
+        assert!((code(1) - held + 30).abs() <= 1, "against it: {}", code(1));
+        assert!(map.update(&wind(2, 0.0), &patches), "another wind is another map");
     }
 
     #[test]
     fn a_large_world_keeps_its_narrow_tracks() {
-        let mut map = BendMap::new(PatchLayout { count: [16, 3], cells: 64, cell_m: 0.25 });
+        let mut map = map(0.25, [128, 24]);
         assert_eq!((map.size_px(), map.pixel_m()), ([512, 96], 0.5));
-        map.update(&bent(17, 64, |i, _| if i == 9 { 127 } else { -3 }));
-        assert!((32..64).all(|row| map.codes()[row * 512 + 32 + 4] == 127 && map.codes()[row * 512 + 32 + 5] == 3));
+        map.update(&wind(1, 0.0), &bent(130, |i, _| if i == 5 { 127 } else { -3 }));
+        assert!((4..8).all(|row| map.codes()[row * 512 + 8 + 2] == 127 && map.codes()[row * 512 + 8 + 3] == 3));
         assert_eq!(map.rgb().len(), 3 * 512 * 96);
-        let huge = BendMap::new(PatchLayout { count: [2048, 1], cells: 256, cell_m: 1.0 });
+        let huge = self::map(1.0, [65536, 1]);
         assert_eq!(huge.size_px(), [512, 1]);
     }
 

@@ -13,6 +13,7 @@ use super::ground::{BendMap, GroundMesh, degrees};
 use super::palette::bend_rgb;
 use super::trails::{Trails, kind_rgb};
 use super::{Frame, InspectError, Sink, Target, blueprint};
+use crate::bend::air::GroundWind;
 use crate::snapshot::Snapshot;
 use rerun::components::{FillMode, ImageFormat};
 use rerun::datatypes::ChannelDatatype;
@@ -84,7 +85,7 @@ impl Recording {
             stream,
             address,
             to_file: matches!(target, Target::Save(_)),
-            map: BendMap::new(layout),
+            map: BendMap::new(layout, GroundWind::still(scene)),
             arrows: WindArrows::new(&scene.wind, scene.extent_m(), heights),
             wind_tick: None,
             trails: Trails::default(),
@@ -173,7 +174,7 @@ impl Sink for Recording {
         let readable_secs = (snapshot.time_secs * 1e4).round() / 1e4;
         self.stream.set_duration_secs("sim_time", readable_secs);
         self.stream.set_time_sequence("tick", i64::try_from(snapshot.tick).unwrap_or(i64::MAX));
-        if self.map.update(&snapshot.patches) {
+        if self.map.update(&snapshot.wind, &snapshot.patches) {
             self.write_bends()?;
         }
         if self.wind_tick.replace(snapshot.wind.tick) != Some(snapshot.wind.tick) {

@@ -62,7 +62,7 @@ impl Client {
 
     /// Its camera, as the world is told of it.
     pub fn view(&self) -> Option<View> {
-        self.gaze().map(|gaze| View { client: self.id, eye_m: gaze.eye_m, radius_m: gaze.radius_m })
+        self.gaze().map(|gaze| View { client: self.id, eye_m: gaze.eye_m })
     }
 
     /// Notes an acknowledgement; false if that frame was never sent.

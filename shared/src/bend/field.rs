@@ -1,7 +1,7 @@
 //! The whole field: the awake patches, what they tell their neighbours, and the step.
 
 use super::patch::CHANNELS;
-use super::{Bend, Coefficients, Extremes, Force, Patch, WaveParams, verlet};
+use super::{Bend, Coefficients, Extremes, Patch, WaveParams, verlet};
 use crate::grid::{PatchIndex, PatchLayout};
 
 /// The bend field of a world. A patch that is not awake is at rest and holds no memory, however large the world. Beyond
@@ -140,7 +140,7 @@ impl Field {
         let k = Coefficients::new(params, self.layout.cell_m, dt_secs / count as f32);
         for _ in 0..count {
             for mut lane in self.lanes() {
-                lane.step(&k, None);
+                lane.step(&k);
             }
             self.turn();
         }
@@ -159,13 +159,12 @@ pub struct Lane<'a> {
 }
 
 impl Lane<'_> {
-    /// Advances the patch by a Verlet sub-step, between what its neighbours published, and publishes its own new border. The values of
-    /// `force` are added to the new state.
-    pub fn step(&mut self, k: &Coefficients, force: Option<&Force>) -> Extremes {
+    /// Advances the patch by a Verlet sub-step, between what its neighbours published, and publishes its own new border.
+    pub fn step(&mut self, k: &Coefficients) -> Extremes {
         let [west, east, north, south] = self.neighbours;
         fill_row(self.patch, Side::North, north);
         fill_row(self.patch, Side::South, south);
-        let extremes = verlet::advance(self.patch, k, force, &mut Seam { west, east, publishes: self.publishes });
+        let extremes = verlet::advance(self.patch, k, &mut Seam { west, east, publishes: self.publishes });
         self.publishes.publish_row(self.patch, Side::North);
         self.publishes.publish_row(self.patch, Side::South);
         extremes

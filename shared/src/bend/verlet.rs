@@ -5,8 +5,7 @@
 //! θ⁻ is moved first, to keep (θ − θ⁻)/dt.
 
 use super::extremes::LargestOf;
-use super::force::{Added, Band, NODE_CELLS};
-use super::{CHANNELS, Coefficients, Extremes, Force, Patch, WaveParams};
+use super::{CHANNELS, Coefficients, Extremes, Patch, WaveParams};
 use multiversion::multiversion;
 
 /// Largest Courant number `c·dt/h` for damping λ and restoring term `κ·dt²`: `r ≤ √((4 − 2λ − κ·dt²)/8)`.
@@ -46,7 +45,7 @@ pub fn substeps(params: &WaveParams, cell_m: f32, dt_secs: f32, omega_max_rad_pe
 /// Advances one patch by a sub-step; its ghosts must hold the neighbours' newest values. Returns the extremes of the new
 /// state.
 pub fn step(patch: &mut Patch, k: &Coefficients) -> Extremes {
-    advance(patch, k, None, &mut Alone)
+    advance(patch, k, &mut Alone)
 }
 
 /// What happens at a patch's western and eastern ends while its rows advance one by one. Done row by row, it finds the cells in the
@@ -66,27 +65,22 @@ impl Seams for Alone {
     fn publish(&mut self, _: usize, _: [&[f32]; CHANNELS]) {}
 }
 
-/// Advances row by row, in place over the state before; the values of `force` are added to the new state.
+/// Advances row by row, in place over the state before.
 #[inline(always)]
-pub(super) fn advance(patch: &mut Patch, k: &Coefficients, force: Option<&Force>, seams: &mut impl Seams) -> Extremes {
+pub(super) fn advance(patch: &mut Patch, k: &Coefficients, seams: &mut impl Seams) -> Extremes {
     patch.retime(k.dt_secs);
     let side = patch.side();
-    let (mut largest, mut band) = (LargestOf::default(), Band::zero(side));
+    let mut largest = LargestOf::default();
     for j in 0..side {
-        if let Some(force) = force
-            && j % NODE_CELLS == 0
-        {
-            band.enter(force, j);
-        }
         let row = patch.at(0, j);
         seams.fill(j, row, &mut patch.now);
         let [theta, x, z] = &patch.now;
         let [theta_next, x_next, z_next] = &mut patch.before;
         let theta_next = &mut theta_next[row..row + side];
         let (x_next, z_next) = (&mut x_next[row..row + side], &mut z_next[row..row + side]);
-        advance_theta(&Stencil::new(theta, row, side), &x[row..row + side], &z[row..row + side], band.row(0, j), theta_next, k);
-        advance_omega(&Stencil::new(x, row, side), band.row(1, j), x_next, k);
-        advance_omega(&Stencil::new(z, row, side), band.row(2, j), z_next, k);
+        advance_theta(&Stencil::new(theta, row, side), &x[row..row + side], &z[row..row + side], theta_next, k);
+        advance_omega(&Stencil::new(x, row, side), x_next, k);
+        advance_omega(&Stencil::new(z, row, side), z_next, k);
         largest.add(theta_next, x_next, z_next);
         seams.publish(j, [theta_next, x_next, z_next]);
     }
@@ -119,28 +113,26 @@ impl<'a> Stencil<'a> {
 
 // Kept apart from the loop over rows: inlined into it, the compiler loses sight of which slices cannot overlap.
 #[multiversion(targets("x86_64+avx2"))]
-fn advance_theta(now: &Stencil, x: &[f32], z: &[f32], added: Added, next: &mut [f32], k: &Coefficients) {
+fn advance_theta(now: &Stencil, x: &[f32], z: &[f32], next: &mut [f32], k: &Coefficients) {
     let side = next.len();
     let (keep, memory) = (2.0 - k.lambda_theta - k.restoring, 1.0 - k.lambda_theta);
     let (center, west, east) = (&now.center[..side], &now.west[..side], &now.east[..side]);
     let (north, south, x, z) = (&now.north[..side], &now.south[..side], &x[..side], &z[..side]);
-    let (force, rise, share) = (&added.north[..side], &added.rise[..side], added.share);
     for i in 0..side {
         let r = k.r0 + k.r_mu * (x[i] * x[i] + z[i] * z[i]).sqrt();
         let laplacian = (west[i] + east[i]) + (north[i] + south[i]) - 4.0 * center[i];
-        next[i] = keep * center[i] - memory * next[i] + r * r * laplacian + (force[i] + rise[i] * share);
+        next[i] = keep * center[i] - memory * next[i] + r * r * laplacian;
     }
 }
 
 #[multiversion(targets("x86_64+avx2"))]
-fn advance_omega(now: &Stencil, added: Added, next: &mut [f32], k: &Coefficients) {
+fn advance_omega(now: &Stencil, next: &mut [f32], k: &Coefficients) {
     let side = next.len();
     let (keep, memory, r2) = (2.0 - k.lambda_omega - k.restoring, 1.0 - k.lambda_omega, k.r2_omega);
     let (center, west, east) = (&now.center[..side], &now.west[..side], &now.east[..side]);
     let (north, south) = (&now.north[..side], &now.south[..side]);
-    let (force, rise, share) = (&added.north[..side], &added.rise[..side], added.share);
     for i in 0..side {
         let laplacian = (west[i] + east[i]) + (north[i] + south[i]) - 4.0 * center[i];
-        next[i] = keep * center[i] - memory * next[i] + r2 * laplacian + (force[i] + rise[i] * share);
+        next[i] = keep * center[i] - memory * next[i] + r2 * laplacian;
     }
 }

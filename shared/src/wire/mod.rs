@@ -14,7 +14,7 @@ pub use codec::CodecError;
 pub use message::{ClientMessage, Drive, Mesh, ObjectId, ObjectPose, Peer, Refusal, ServerMessage, WireError, decode, encode};
 
 /// Version of the protocol; both sides must agree.
-pub const PROTOCOL: u8 = 2;
+pub const PROTOCOL: u8 = 3;
 
 /// Largest message a client may send (bytes).
 pub const CLIENT_MESSAGE_LIMIT: usize = 4096;
