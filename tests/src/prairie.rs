@@ -32,7 +32,7 @@ impl Prairie {
         Ok(Self { addr, _stop: stop })
     }
 
-    /// A browser that has the scene and the first frames. It draws only when asked: software rendering would take all of a small machine.
+    /// A browser that has the scene, the first frames and a device to draw with. It draws only when asked: software rendering would take all of a small machine.
     ///
     /// # Errors
     /// When no browser can be started, or the page does not get that far.
@@ -40,6 +40,7 @@ impl Prairie {
         let url = format!("http://{}/?quality=low&panel=0&paused=1&name={name}", self.addr);
         let browser = Browser::open(&url).await?;
         browser.until("(s => s && s.connected && s.time_secs > 0)(window.prairie.state())").await?;
+        browser.until("document.getElementById('message').hidden").await?;
         Ok(browser)
     }
 }
