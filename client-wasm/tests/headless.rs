@@ -6,20 +6,11 @@ use client_wasm::render::{Gpu, Picture, Quality};
 use client_wasm::state::Mirror;
 use glam::Vec3;
 use shared::scene::{Patches, Scene, TerrainMaps};
+use shared::terrain::grey_png;
 use shared::wire::quantise::{omega_code, theta_code};
 use shared::wire::{ServerMessage, codec};
 
 const SIZE_PX: [u32; 2] = [192, 108];
-
-fn grey_png(side: u32, level: u8) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, side, side);
-    encoder.set_color(png::ColorType::Grayscale);
-    let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(&vec![level; (side * side) as usize]).expect("the pixels");
-    writer.finish().expect("an end");
-    bytes
-}
 
 /// A flat meadow of 64 m, covered with `cover`.
 fn meadow(cover: u8) -> Mirror {
@@ -39,7 +30,7 @@ fn meadow(cover: u8) -> Mirror {
     };
     let mut mirror = Mirror::default();
     let scene =
-        ServerMessage::Scene { scene: Box::new(scene), height_png: grey_png(17, 0), covering_png: grey_png(16, cover), models: Vec::new() };
+        ServerMessage::Scene { scene: Box::new(scene), height_png: grey_png([17; 2], &[0; 17 * 17]), covering_png: grey_png([16; 2], &[cover; 16 * 16]), models: Vec::new() };
     mirror.apply(scene).expect("a sound scene");
     mirror
 }

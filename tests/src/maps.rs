@@ -1,4 +1,4 @@
-//! Maps as the PNG files that they come in.
+//! PNG files of every kind, sound maps or not.
 
 use png::{BitDepth, ColorType, Encoder};
 
@@ -15,12 +15,4 @@ pub fn png(color: ColorType, depth: BitDepth, size_px: [u32; 2], bytes: &[u8]) -
     writer.write_image_data(bytes).expect("as many bytes as the picture holds");
     writer.finish().expect("a picture fits into memory");
     file
-}
-
-/// A grey PNG file of 8 bits a pixel.
-///
-/// # Panics
-/// When there is not one level for each pixel.
-pub fn grey_png(size_px: [u32; 2], levels: &[u8]) -> Vec<u8> {
-    png(ColorType::Grayscale, BitDepth::Eight, size_px, levels)
 }

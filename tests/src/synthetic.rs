@@ -6,7 +6,7 @@ use client_wasm::state::Mirror;
 use glam::{Quat, Vec2, Vec3};
 use shared::grid::PatchLayout;
 use shared::scene::{Patches, Scene, TerrainMaps, VehicleKind};
-use shared::terrain::HeightMap;
+use shared::terrain::{HeightMap, grey_png};
 use shared::wire::quantise::{omega_code, theta_code, wind_code};
 use shared::wire::{ObjectPose, ServerMessage, codec};
 
@@ -42,7 +42,7 @@ fn messages() -> Vec<ServerMessage> {
         (0..MAP_PX * MAP_PX).map(|i| (height_m((i % MAP_PX) as f32 * PIXEL_M, (i / MAP_PX) as f32 * PIXEL_M) / LEVEL_M) as u16).collect();
     let height_bytes: Vec<u8> = levels.iter().flat_map(|level| level.to_be_bytes()).collect();
     let height_png = maps::png(png::ColorType::Grayscale, png::BitDepth::Sixteen, [MAP_PX; 2], &height_bytes);
-    let covering_png = maps::grey_png([256; 2], &covering());
+    let covering_png = grey_png([256; 2], &covering());
     let heights = HeightMap::from_png(&height_png, &scene.terrain).expect("a height map");
     let layout = PatchLayout::from(&scene.patches);
     let mut messages = vec![

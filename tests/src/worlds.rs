@@ -1,9 +1,8 @@
 //! Small worlds to test with, made without files.
 
-use crate::maps::grey_png;
 use server::world::{Maps, World};
 use shared::scene::Scene;
-use shared::terrain::{CoverMap, HeightMap};
+use shared::terrain::{CoverMap, HeightMap, grey_png};
 
 /// A scene of `count × count` patches with the defaults of everything else.
 pub fn scene(count: u32) -> Scene {

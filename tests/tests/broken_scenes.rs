@@ -2,6 +2,7 @@
 
 use png::{BitDepth, ColorType};
 use server::scenes::{SceneError, load};
+use shared::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
@@ -41,7 +42,7 @@ fn told_of_height_map(folder: &Path, height_png: &[u8]) -> Result<(), String> {
     let text = "summary = \"s\"\n[terrain]\nheight_map = \"h.png\"\ncovering_map = \"c.png\"\npixel_m = [2, 2]\nlevel_m = 1\n";
     std::fs::write(folder.join("s.toml"), text).unwrap();
     std::fs::write(folder.join("h.png"), height_png).unwrap();
-    std::fs::write(folder.join("c.png"), maps::grey_png([2, 2], &[255; 4])).unwrap();
+    std::fs::write(folder.join("c.png"), grey_png([2, 2], &[255; 4])).unwrap();
     match load(folder.join("s.toml").to_str().unwrap()) {
         Ok(_) => Ok(()),
         Err(SceneError::Faulty(faulty)) => {

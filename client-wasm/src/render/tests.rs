@@ -5,6 +5,7 @@ use crate::camera::Camera;
 use crate::state::Mirror;
 use glam::Vec3;
 use shared::scene::{Grass, Patches, Scene, TerrainMaps, Wind};
+use shared::terrain::grey_png;
 use shared::wire::quantise::{omega_code, theta_code};
 use shared::wire::{ServerMessage, codec};
 use wgpu::naga;
@@ -50,16 +51,6 @@ fn uniform_blocks_lie_as_their_twins() {
     assert_twins(&module, "Plants", Plants::LAYOUT, size_of::<Plants>());
 }
 
-fn grey_png(side: u32, level: u8) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, side, side);
-    encoder.set_color(png::ColorType::Grayscale);
-    let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(&vec![level; (side * side) as usize]).expect("the pixels");
-    writer.finish().expect("an end");
-    bytes
-}
-
 /// A flat meadow of 64 m in a wind towards the east.
 fn meadow(wind_m_per_s: f32) -> Mirror {
     let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 0.0, base_m: 0.0 };
@@ -78,7 +69,7 @@ fn meadow(wind_m_per_s: f32) -> Mirror {
     };
     let mut mirror = Mirror::default();
     let scene =
-        ServerMessage::Scene { scene: Box::new(scene), height_png: grey_png(17, 0), covering_png: grey_png(16, 255), models: Vec::new() };
+        ServerMessage::Scene { scene: Box::new(scene), height_png: grey_png([17; 2], &[0; 17 * 17]), covering_png: grey_png([16; 2], &[255; 16 * 16]), models: Vec::new() };
     mirror.apply(scene).expect("a sound scene");
     mirror
 }

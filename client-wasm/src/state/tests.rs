@@ -1,15 +1,8 @@
 use super::*;
 use proptest::prelude::*;
 use shared::scene::{Patches, Scene, TerrainMaps, VehicleKind, Wind};
+use shared::terrain::grey_png;
 use shared::wire::{codec, decode};
-
-fn grey_png(side: u32) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, side, side);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.write_header().unwrap().write_image_data(&vec![255; (side * side) as usize]).unwrap();
-    bytes
-}
 
 fn scene() -> Scene {
     Scene {
@@ -28,7 +21,8 @@ fn scene() -> Scene {
 }
 
 fn scene_message(scene: Scene) -> ServerMessage {
-    ServerMessage::Scene { scene: Box::new(scene), height_png: grey_png(4), covering_png: grey_png(4), models: Vec::new() }
+    let map = grey_png([4; 2], &[255; 16]);
+    ServerMessage::Scene { scene: Box::new(scene), height_png: map.clone(), covering_png: map, models: Vec::new() }
 }
 
 fn loaded() -> Mirror {

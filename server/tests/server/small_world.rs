@@ -5,7 +5,7 @@ use server::scenes::LoadedScene;
 use server::snapshot::{PatchCodes, Snapshot, WindFrame};
 use server::world::Command;
 use shared::scene::{Patches, Scene, TerrainMaps, VehicleKind, Wind};
-use shared::terrain::{CoverMap, HeightMap};
+use shared::terrain::{CoverMap, HeightMap, grey_png};
 use shared::wire::{ObjectId, ObjectPose};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -116,10 +116,7 @@ pub(crate) fn scene() -> LoadedScene {
         camera: Default::default(),
         light: Default::default(),
     };
-    let mut png_bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut png_bytes, 2, 2);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.write_header().unwrap().write_image_data(&[255; 4]).unwrap();
+    let png_bytes = grey_png([2; 2], &[255; 4]);
     LoadedScene {
         height: HeightMap::from_png(&png_bytes, &scene.terrain).unwrap(),
         cover: CoverMap::from_png(&png_bytes).unwrap(),

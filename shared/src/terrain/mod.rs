@@ -37,6 +37,22 @@ pub enum MapError {
 /// Largest side of a map in pixels; the smallest limit on textures that WebGPU guarantees.
 pub const MAP_LIMIT_PX: u32 = 8192;
 
+/// A grey PNG file of 8 bits a pixel; `levels` row by row from the top left. The same levels give the same bytes.
+///
+/// # Panics
+/// When there is not one level for each pixel, or no pixel.
+pub fn grey_png([width, height]: [u32; 2], levels: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
+    let mut writer = encoder.write_header().expect("the picture has a pixel");
+    writer.write_image_data(levels).expect("as many levels as pixels");
+    writer.finish().expect("memory takes what is written");
+    bytes
+}
+
 /// A decoded grey PNG.
 struct GreyImage {
     width: u32,

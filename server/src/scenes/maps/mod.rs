@@ -7,6 +7,7 @@ mod jacksboro;
 mod land;
 mod meadow;
 
+use shared::terrain::grey_png;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -23,17 +24,8 @@ pub struct GreyMap {
 
 impl GreyMap {
     /// The image as a PNG file.
-    ///
-    /// # Errors
-    /// When the encoder refuses the image.
-    pub fn to_png(&self) -> Result<Vec<u8>, png::EncodingError> {
-        let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, self.size_px[0], self.size_px[1]);
-        encoder.set_color(png::ColorType::Grayscale);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_compression(png::Compression::High);
-        encoder.write_header()?.write_image_data(&self.levels)?;
-        Ok(bytes)
+    pub fn to_png(&self) -> Vec<u8> {
+        grey_png(self.size_px, &self.levels)
     }
 }
 
@@ -51,7 +43,7 @@ pub fn write(folder: &Path) -> io::Result<Vec<PathBuf>> {
     std::fs::create_dir_all(folder)?;
     let file = |map: GreyMap| {
         let path = folder.join(map.name);
-        std::fs::write(&path, map.to_png().map_err(io::Error::other)?)?;
+        std::fs::write(&path, map.to_png())?;
         Ok(path)
     };
     generate().into_iter().map(file).collect()
