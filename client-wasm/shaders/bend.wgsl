@@ -203,7 +203,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     // u: it damps the plant's own motion the more, the farther that wind bends it.
     let mass = select(1.0, 2.2, plant.is_flower);
     let stiff = 95.0 * sqrt(0.8 / plant.height) / mass;
-    let wind = wind_at(plant.root, 1.0).xz * gust;
+    let wind = wind_at(plant.root, 0.0).xz * gust;
     let drag = 2.0 * plant.height * sin(length(lean_of_wind(wind))) / max(length(wind), 1e-3);
     for (var step = 0; step < i32(plants.shape.w); step++) {
         for (var i = 0; i < 3; i++) {

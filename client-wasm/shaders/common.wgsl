@@ -41,7 +41,7 @@ struct Blade {
 }
 
 const TAU: f32 = 6.2831853;
-const THETA_FULL_RAD: f32 = 1.5707964;
+const THETA_FULL_RAD: f32 = 3.1415927;
 const WIND_FULL_M_PER_S: f32 = 31.75;
 
 // Integer hash (pcg3d's mixing) of a place and a number.
@@ -155,13 +155,12 @@ fn lean_of_field(p: vec2<f32>, level: f32) -> vec2<f32> {
     let code = textureSampleLevel(bends, repeated, p / frame.maps.z, level);
     let omega = code.yz * abs(code.yz);
     let speed = length(omega);
-    let direction = select(frame.gust.xy, omega / max(speed, 1e-12), speed > 1e-9);
-    return direction * (code.x * THETA_FULL_RAD * shown);
+    return omega / max(speed, 1e-12) * (code.x * THETA_FULL_RAD * shown);
 }
 
 // Lean (rad) of what grows at a place on the ground, in its wind times a factor.
 fn lean_at(ground: vec3<f32>, level: f32, gust: f32) -> vec2<f32> {
-    return lean_of_field(ground.xz, level) + lean_of_wind(wind_at(ground, 1.0).xz * gust);
+    return lean_of_field(ground.xz, level) + lean_of_wind(wind_at(ground, 0.0).xz * gust);
 }
 
 fn field_level(distance_m: f32) -> f32 {

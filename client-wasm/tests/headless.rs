@@ -29,8 +29,12 @@ fn meadow(cover: u8) -> Mirror {
         light: Default::default(),
     };
     let mut mirror = Mirror::default();
-    let scene =
-        ServerMessage::Scene { scene: Box::new(scene), height_png: grey_png([17; 2], &[0; 17 * 17]), covering_png: grey_png([16; 2], &[cover; 16 * 16]), models: Vec::new() };
+    let scene = ServerMessage::Scene {
+        scene: Box::new(scene),
+        height_png: grey_png([17; 2], &[0; 17 * 17]),
+        covering_png: grey_png([16; 2], &[cover; 16 * 16]),
+        models: Vec::new(),
+    };
     mirror.apply(scene).expect("a sound scene");
     mirror
 }

@@ -140,8 +140,7 @@ impl Weather {
                 codes[plane * cells + at] = wind_code(component);
             }
         }
-        let lowest = self.solver.cell_velocities().enumerate().filter(|(at, _)| at / nx % ny == 0);
-        self.ground.blow(lowest.map(|(_, velocity)| [velocity.x, velocity.z]));
+        self.ground.blow(ny, self.solver.cell_velocities().map(|velocity| [velocity.x, velocity.z]));
         self.frame = Arc::new(WindFrame { tick, cells: [nx, ny, nz].map(|n| n as u32), codes });
     }
 }

@@ -52,7 +52,7 @@ impl Stage {
         self.height.height_m(x_m, z_m)
     }
 
-    /// Says where client 1 looks from, so that the wind bends the grass there.
+    /// Says where client 1 looks from: its vehicle appears there.
     pub fn look_from(&mut self, eye_m: [f32; 3]) {
         self.tell(&[Command::Views(vec![View { client: 1, eye_m }])]);
     }

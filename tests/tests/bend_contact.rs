@@ -10,6 +10,7 @@ use shared::bend::Field;
 use shared::grid::PatchLayout;
 use shared::scene::{Scene, VehicleKind};
 use shared::terrain::HeightMap;
+use shared::wire::quantise::{THETA_FULL_RAD, theta_code, theta_rad};
 use std::sync::Arc;
 use tests::worlds;
 
@@ -22,7 +23,7 @@ fn still_air() -> GroundWind {
 /// Wind that blows east everywhere.
 fn wind(scene: &Scene, m_per_s: f32) -> GroundWind {
     let mut wind = GroundWind::still(scene);
-    wind.blow(std::iter::repeat([m_per_s, 0.0]));
+    wind.blow(1, std::iter::repeat([m_per_s, 0.0]));
     wind
 }
 
@@ -195,4 +196,21 @@ fn no_more_patches_are_awake_than_allowed_and_the_farthest_go_first() {
     }
     assert!(meadow.evicted() > 0);
     assert!(meadow.field().bend_at(20.5, 20.0).theta > 0.0, "the start of the track, near the camera, is kept");
+}
+
+#[test]
+fn the_wire_has_room_for_grass_that_lies_against_the_strongest_wind() {
+    let mut scene = worlds::scene(4);
+    scene.grass.wind_bend_rad = 1.5;
+    let mut meadow = meadow(&scene);
+    let (wind, mut at) = (wind(&scene, 20.0), [50.0, 32.0]);
+    for _ in 0..60 {
+        let motion = drive(at, -std::f32::consts::FRAC_PI_2, 15.0);
+        meadow.step(DT_SECS, &[motion], &[], &wind);
+        at = motion.to.xz();
+    }
+    let largest_rad = meadow.field().awake().map(|(_, patch)| patch.extremes().theta_rad).fold(0.0, f32::max);
+    assert!(largest_rad > 2.5, "grass pressed westward departs by {largest_rad} rad from where the wind holds it");
+    let error_rad = (theta_rad(theta_code(largest_rad)) - largest_rad).abs();
+    assert!(error_rad <= THETA_FULL_RAD / 254.0 * 1.0001, "{largest_rad} rad come back {error_rad} rad off");
 }

@@ -68,8 +68,12 @@ fn meadow(wind_m_per_s: f32) -> Mirror {
         light: Default::default(),
     };
     let mut mirror = Mirror::default();
-    let scene =
-        ServerMessage::Scene { scene: Box::new(scene), height_png: grey_png([17; 2], &[0; 17 * 17]), covering_png: grey_png([16; 2], &[255; 16 * 16]), models: Vec::new() };
+    let scene = ServerMessage::Scene {
+        scene: Box::new(scene),
+        height_png: grey_png([17; 2], &[0; 17 * 17]),
+        covering_png: grey_png([16; 2], &[255; 16 * 16]),
+        models: Vec::new(),
+    };
     mirror.apply(scene).expect("a sound scene");
     mirror
 }
@@ -123,4 +127,12 @@ fn near_blades_lean_by_what_the_wind_and_the_field_hold_together() {
         let lean_rad = leans(wind_m_per_s, streamed_rad) - still_rad;
         assert!((lean_rad - held_rad).abs() < 0.1 * held_rad, "{lean_rad} rad where {held_rad} rad are held");
     }
+}
+
+#[test]
+fn near_blades_lean_with_the_square_of_a_weak_wind() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let leans = [0.0, 2.0, 4.0].map(|wind_m_per_s| lean_rad(&tips(&gpu, wind_m_per_s, None)));
+    let ratio = (leans[2] - leans[0]) / (leans[1] - leans[0]);
+    assert!((ratio - 4.0).abs() < 0.5, "twice the wind leans {ratio} times as far: {leans:?}");
 }

@@ -2,6 +2,7 @@ use super::*;
 use proptest::prelude::*;
 use shared::scene::{Patches, Scene, TerrainMaps, VehicleKind, Wind};
 use shared::terrain::grey_png;
+use shared::wire::quantise::{theta_code, wind_code};
 use shared::wire::{codec, decode};
 
 fn scene() -> Scene {
@@ -155,5 +156,26 @@ proptest! {
         let _ = mirror.apply(ServerMessage::Patch { patch, seq, key, payload: payload.clone() });
         let _ = mirror.apply(ServerMessage::Patch { patch, seq: seq.wrapping_add(1), key: false, payload: payload.clone() });
         let _ = mirror.apply(ServerMessage::Wind { tick: 0, seq, key, payload });
+    }
+}
+
+#[test]
+fn the_angle_of_grass_is_that_of_its_two_leans_together() {
+    let mut scene = scene();
+    scene.wind = Wind { cells: [2, 2, 2], ..Wind::default() };
+    scene.grass.wind_bend_rad = 0.6;
+    let mut mirror = Mirror::default();
+    mirror.apply(scene_message(scene)).unwrap();
+    // 20 m/s eastward hold the grass at 0.6 rad.
+    let codes: Vec<i8> = [wind_code(20.0), 0, 0].into_iter().flat_map(|code| [code; 8]).collect();
+    let payload = codec::encode(2, &codes, None);
+    mirror.apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, payload }).unwrap();
+    assert!((mirror.theta_at(3.0, 1.0) - 0.6).abs() < 1e-3, "{}", mirror.theta_at(3.0, 1.0));
+    for (seq, omega, together_rad) in [(1, [40, 0], 1.4), (2, [-40, 0], 0.2), (3, [0, 40], 1.0)] {
+        let planes = [theta_code(0.8), omega[0], omega[1]];
+        let codes: Vec<i8> = planes.into_iter().flat_map(|code| [code; 64]).collect();
+        mirror.apply(patch(seq, true, None, &codes)).unwrap();
+        let found_rad = mirror.theta_at(3.0, 1.0);
+        assert!((found_rad - together_rad).abs() < 0.015, "{found_rad} instead of {together_rad} where ω is {omega:?}");
     }
 }

@@ -35,7 +35,7 @@ impl Wash {
     /// middle and at the rim. Returns the largest bending speed (rad/s).
     pub fn press(&self, field: &mut Field, wind: &GroundWind, dt_secs: f32) -> f32 {
         let mut largest = 0.0_f32;
-        for_each_cell(field, &self.footprint(), wind.lean_rad(self.center_m), |at_m, bend| {
+        for_each_cell(field, &self.footprint(), wind, |at_m, bend| {
             let out = [at_m[0] - self.center_m[0], at_m[1] - self.center_m[1]];
             let share = ((out[0] * out[0] + out[1] * out[1]).sqrt() / self.radius_m).min(1.0);
             let strength = self.strength * 4.0 * share * (1.0 - share);
@@ -79,19 +79,29 @@ impl GroundWind {
         Self { nodes: [nx, nz], spacing_m: [dx, dz], wraps, bend_rad, leans_rad: vec![[0.0; 2]; nx * nz] }
     }
 
-    /// Takes on the wind (m/s along X and Z) in the lowest cells, x fastest.
-    pub fn blow(&mut self, lowest_m_per_s: impl Iterator<Item = [f32; 2]>) {
-        for (lean, wind) in self.leans_rad.iter_mut().zip(lowest_m_per_s) {
+    /// Takes on the wind (m/s along X and Z) of all cells, x fastest, then y, of which there are so many `layers`; the lowest layer counts.
+    pub fn blow(&mut self, layers: usize, wind_m_per_s: impl Iterator<Item = [f32; 2]>) {
+        let row = self.nodes[0];
+        let lowest = wind_m_per_s.enumerate().filter(|(at, _)| (at / row).is_multiple_of(layers));
+        for (lean, (_, wind)) in self.leans_rad.iter_mut().zip(lowest) {
             *lean = wind_lean_rad(wind, self.bend_rad);
         }
     }
 
     /// Lean at a place (rad, as a vector along X and Z), bilinear between cells. Beyond a grid that does not repeat the nearest holds.
-    pub fn lean_rad(&self, at_m: [f32; 2]) -> [f32; 2] {
-        let [(west, east, share_x), (north, south, share_z)] = [0, 1].map(|axis| self.between(axis, at_m[axis]));
-        let node = |x: usize, z: usize| self.leans_rad[x + z * self.nodes[0]];
-        let along = |a: [f32; 2], b: [f32; 2], share: f32| [0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * share);
-        along(along(node(west, north), node(east, north), share_x), along(node(west, south), node(east, south), share_x), share_z)
+    pub fn lean_rad(&self, [x_m, z_m]: [f32; 2]) -> [f32; 2] {
+        self.row(z_m)(x_m)
+    }
+
+    /// [`lean_rad`](Self::lean_rad) along X at one Z.
+    pub fn row(&self, z_m: f32) -> impl Fn(f32) -> [f32; 2] {
+        let (north, south, share_z) = self.between(1, z_m);
+        let [north, south] = [north, south].map(|z| &self.leans_rad[z * self.nodes[0]..][..self.nodes[0]]);
+        let mix = |a: [f32; 2], b: [f32; 2], share: f32| [0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * share);
+        move |x_m| {
+            let (west, east, share_x) = self.between(0, x_m);
+            mix(mix(north[west], north[east], share_x), mix(south[west], south[east], share_x), share_z)
+        }
     }
 
     /// The nodes on either side of a coordinate, and how far it is from the first to the second.

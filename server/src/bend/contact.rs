@@ -58,7 +58,7 @@ pub fn press(field: &mut Field, contact: &Contact, wind: &GroundWind, height: &H
     let moves = if speed > STANDING_M_PER_S { unit(contact.velocity_m_per_s) } else { None };
     let (sides, middle) = (if contact.parts_grass { contact.footprint.sides() } else { vec![] }, contact.footprint.middle_m());
     let mut largest = 0.0_f32;
-    for_each_cell(field, &contact.footprint, wind.lean_rad(middle), |at_m, bend| {
+    for_each_cell(field, &contact.footprint, wind, |at_m, bend| {
         let direction = match moves {
             Some(moves) => direction(moves, at_m, &sides, cell_m),
             None => unit(bend.omega).or_else(|| unit([at_m[0] - middle[0], at_m[1] - middle[1]])).unwrap_or([1.0, 0.0]),
@@ -77,34 +77,38 @@ pub fn press(field: &mut Field, contact: &Contact, wind: &GroundWind, height: &H
 }
 
 /// Lets `change` set the bend of each cell of awake patches within `footprint`, given the cell's centre (m) and the bend that it has
-/// together with the wind's lean (rad); what the field then holds is the rest.
-pub fn for_each_cell(field: &mut Field, footprint: &Footprint, wind_rad: [f32; 2], mut change: impl FnMut([f32; 2], Bend) -> Option<Bend>) {
+/// together with the wind's lean; what the field then holds is the rest.
+pub fn for_each_cell(field: &mut Field, footprint: &Footprint, wind: &GroundWind, mut change: impl FnMut([f32; 2], Bend) -> Option<Bend>) {
     let layout = *field.layout();
     let cells = i64::from(layout.cells);
-    let against_rad = wind_rad.map(|lean| -lean);
     for run in footprint.runs(&layout) {
         let (patch_z, j) = (run.row / cells, (run.row % cells) as usize);
         let z_m = (run.row as f32 + 0.5) * layout.cell_m;
+        let wind_rad = wind.row(z_m);
         for patch_x in run.from / cells..=(run.to - 1) / cells {
             let Some(patch) = layout.index(patch_x, patch_z).and_then(|index| field.patch_mut(index)) else { continue };
             let first = patch_x * cells;
             for i in run.from.max(first)..run.to.min(first + cells) {
                 let at_m = [(i as f32 + 0.5) * layout.cell_m, z_m];
                 let i = (i - first) as usize;
+                let wind_rad = wind_rad(at_m[0]);
                 if let Some(bend) = change(at_m, leaning(patch.bend(i, j), wind_rad)) {
-                    patch.press(i, j, leaning(bend, against_rad));
+                    patch.press(i, j, leaning(bend, wind_rad.map(|lean| -lean)));
                 }
             }
         }
     }
 }
 
+/// Least bending speed (rad/s) of grass that leans: ω tells the direction of the lean.
+const TELLING_RAD_PER_S: f32 = 1e-3;
+
 /// A bend with a lean (rad) added to it as a vector on the ground; its bending speed stays, and turns with it.
 fn leaning(bend: Bend, lean_rad: [f32; 2]) -> Bend {
     let along = unit(bend.omega).unwrap_or_default();
     let lean = [0, 1].map(|axis| along[axis] * bend.theta + lean_rad[axis]);
     match unit(lean) {
-        Some(along) => Bend { theta: length(lean), omega: along.map(|d| d * length(bend.omega)) },
+        Some(along) => Bend { theta: length(lean), omega: along.map(|d| d * length(bend.omega).max(TELLING_RAD_PER_S)) },
         None => Bend { theta: 0.0, omega: bend.omega },
     }
 }
@@ -117,4 +121,24 @@ pub(super) fn length([x, z]: [f32; 2]) -> f32 {
 pub(super) fn unit(v: [f32; 2]) -> Option<[f32; 2]> {
     let length = length(v);
     (length > 1e-6).then(|| v.map(|c| c / length))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn leans_add_up_as_vectors_and_the_speed_turns_with_them() {
+        let close = |a: Bend, theta: f32, omega: [f32; 2]| {
+            (a.theta - theta).abs() < 1e-5 && (a.omega[0] - omega[0]).abs() < 1e-5 && (a.omega[1] - omega[1]).abs() < 1e-5
+        };
+        let east = Bend { theta: 0.4, omega: [2.0, 0.0] };
+        assert!(close(leaning(east, [0.3, 0.0]), 0.7, [2.0, 0.0]), "along");
+        assert!(close(leaning(east, [-0.9, 0.0]), 0.5, [-2.0, 0.0]), "against");
+        assert!(close(leaning(east, [0.0, 0.3]), 0.5, [1.6, 1.2]), "across");
+        assert!(close(leaning(Bend { theta: -0.4, ..east }, [0.0, 0.0]), 0.4, [-2.0, 0.0]), "a negative angle leans the other way");
+        let still = leaning(Bend::default(), [0.0, -0.2]);
+        assert!(still.theta == 0.2 && still.omega[0] == 0.0 && still.omega[1] < 0.0, "the wind alone gives a direction: {still:?}");
+        assert!(leaning(leaning(Bend::default(), [0.2, 0.1]), [-0.2, -0.1]).theta < 1e-6);
+    }
 }

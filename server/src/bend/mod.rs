@@ -67,6 +67,7 @@ impl Meadow {
 
     /// Sum of θ² + ω² over all cells (mixed units).
     pub fn activity(&self) -> f64 {
+        // The sum of nothing would be −0.
         self.traces.iter().fold(0.0, |sum, trace| sum + f64::from(trace.extremes.activity))
     }
 

@@ -1,13 +1,13 @@
 //! Which patches are awake (001 §4.2): near objects, and where energy arrives; the rest sleep.
 
 use super::View;
-use shared::bend::{Extremes, Field};
+use shared::bend::{Extremes, Field, Rim};
 use shared::grid::{PatchIndex, PatchLayout};
 
-/// A patch whose bends (rad) and bending speeds (rad/s) are all below these sleeps. Both are below what the wire can tell from rest by
-/// more than a few codes: half a code of θ is 0.006 rad.
-const QUIET_THETA_RAD: f32 = 0.003;
-const QUIET_OMEGA_RAD_PER_S: f32 = 0.02;
+/// A patch whose bends (rad) and bending speeds (rad/s) are all below these sleeps. The bends are then none on the wire, where half a
+/// code is 0.012 rad; the speeds, which tell but the direction of a bend, add at most a hundredth to the wave speed by 001 Eq. (4).
+const QUIET_THETA_RAD: f32 = 0.01;
+const QUIET_OMEGA_RAD_PER_S: f32 = 0.2;
 
 /// What a step left behind in a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,8 +16,8 @@ pub struct Trace {
     pub patch: PatchIndex,
     /// Its extremes.
     pub extremes: Extremes,
-    /// For west, east, north and south: the largest value at that border, and whether the neighbour is awake.
-    pub rims: [(f32, bool); 4],
+    /// Extremes of the outermost cells in the west, east, north and south.
+    pub rims: [Rim; 4],
 }
 
 impl Trace {
@@ -30,7 +30,8 @@ impl Trace {
         let [x, z] = layout.place(self.patch).map(i64::from);
         let around = [[x - 1, z], [x + 1, z], [x, z - 1], [x, z + 1]];
         let rims = self.rims;
-        around.into_iter().zip(rims).filter(|(_, (rim, _))| *rim >= QUIET_OMEGA_RAD_PER_S).filter_map(move |([x, z], _)| layout.index(x, z))
+        let loud = |rim: &Rim| rim.theta_rad >= QUIET_THETA_RAD || rim.omega_rad_per_s >= QUIET_OMEGA_RAD_PER_S;
+        around.into_iter().zip(rims).filter(move |(_, rim)| loud(rim)).filter_map(move |([x, z], _)| layout.index(x, z))
     }
 }
 

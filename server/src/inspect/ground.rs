@@ -7,7 +7,8 @@ use glam::Vec3;
 use shared::grid::PatchLayout;
 use shared::scene::Light;
 use shared::terrain::HeightMap;
-use shared::wire::quantise::{omega_rad_per_s, theta_code, theta_rad, wind_m_per_s};
+use shared::wire::quantise::{omega_rad_per_s, theta_rad, wind_m_per_s};
+use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 /// Most vertices along one side of the mesh.
@@ -63,29 +64,32 @@ impl GroundMesh {
 
 /// Bending angles of the whole world, the wind's lean included, as one image of at most 512 × 512 pixels, the north-west corner first.
 ///
-/// A pixel is the largest angle of the cells that it covers, so that a narrow track stays visible however small the map is.
+/// A pixel is the largest angle of the cells that it covers, so that a narrow track stays visible however small the map is; the wind's
+/// share in it is that of the pixel's middle.
 pub(super) struct BendMap {
     layout: PatchLayout,
     /// log₂ of the cells along one side of a pixel.
     shift: u32,
     size_px: [u32; 2],
-    /// |θ| as a code of `shared::wire::quantise`, 0..=127.
+    /// Angles, 127 a right angle.
     codes: Vec<u8>,
     wind: GroundWind,
+    /// Steps after which another wind alone is worth another map.
+    wind_ticks: u64,
     /// Step of the wind and patches that it shows; none: nothing has been drawn.
     shown: Option<(u64, Arc<BentPatches>)>,
 }
 
 impl BendMap {
     /// A map of grass at rest, whose wind is yet to blow.
-    pub(super) fn new(layout: PatchLayout, wind: GroundWind) -> Self {
+    pub(super) fn new(layout: PatchLayout, wind: GroundWind, wind_ticks: u64) -> Self {
         let cells = layout.count.map(|patches| patches * layout.cells);
         let mut shift = 0;
         while (cells[0].max(cells[1]) - 1) >> shift >= MAP_LIMIT_PX {
             shift += 1;
         }
         let size_px = cells.map(|n| ((n - 1) >> shift) + 1);
-        Self { layout, shift, size_px, codes: vec![0; (size_px[0] * size_px[1]) as usize], wind, shown: None }
+        Self { layout, shift, size_px, codes: vec![0; (size_px[0] * size_px[1]) as usize], wind, wind_ticks, shown: None }
     }
 
     /// Pixels along X and Z.
@@ -98,7 +102,7 @@ impl BendMap {
         (1_u32 << self.shift) as f32 * self.layout.cell_m
     }
 
-    /// Codes of |θ|, 0..=127, row by row.
+    /// Codes of the angles, 0..=127, row by row.
     pub(super) fn codes(&self) -> &[u8] {
         &self.codes
     }
@@ -109,16 +113,16 @@ impl BendMap {
         self.codes.iter().flat_map(|&code| colours[usize::from(code.min(127))]).collect()
     }
 
-    /// Takes over the wind and the patches of a snapshot; false when they are those that it shows already.
+    /// Takes over the wind and the patches of a snapshot; false when the patches are those that it shows already, under a wind that is
+    /// hardly older.
     pub(super) fn update(&mut self, wind: &WindFrame, patches: &Arc<BentPatches>) -> bool {
-        if self.shown.as_ref().is_some_and(|(tick, shown)| *tick == wind.tick && same(shown, patches)) {
+        let is_fresh = |tick: u64| wind.tick.saturating_sub(tick) < self.wind_ticks;
+        if self.shown.as_ref().is_some_and(|(tick, shown)| is_fresh(*tick) && same(shown, patches)) {
             return false;
         }
-        let [nx, ny, _] = wind.cells.map(|n| n as usize);
         let plane = wind.codes.len() / 3;
         let component = |axis: usize, at: usize| wind_m_per_s(wind.codes[axis * plane + at]);
-        let lowest = (0..plane).filter(|at| at / nx % ny == 0);
-        self.wind.blow(lowest.map(|at| [component(0, at), component(2, at)]));
+        self.wind.blow(wind.cells[1] as usize, (0..plane).map(|at| [component(0, at), component(2, at)]));
 
         let leans_rad: Vec<_> = (0..self.codes.len() as u32).map(|pixel| self.wind.lean_rad(self.middle_m(pixel))).collect();
         for (code, lean_rad) in self.codes.iter_mut().zip(&leans_rad) {
@@ -154,14 +158,14 @@ impl BendMap {
     }
 }
 
-/// Code of the angle of a lean (rad), 0..=127.
+/// Code of the angle of a lean (rad): 127 for a right angle and more.
 fn code_of([x, z]: [f32; 2]) -> u8 {
-    theta_code((x * x + z * z).sqrt()).unsigned_abs()
+    ((x * x + z * z).sqrt() * (127.0 / FRAC_PI_2)).round().min(127.0) as u8
 }
 
-/// Angle of a code of |θ| (degrees).
+/// Angle of a code (degrees).
 pub(super) fn degrees(code: u8) -> f32 {
-    theta_rad(code.min(127) as i8).to_degrees()
+    f32::from(code.min(127)) * (90.0 / 127.0)
 }
 
 fn same(a: &BentPatches, b: &BentPatches) -> bool {
@@ -172,7 +176,7 @@ fn same(a: &BentPatches, b: &BentPatches) -> bool {
 mod tests {
     use super::*;
     use crate::snapshot::PatchCodes;
-    use shared::wire::quantise::wind_code;
+    use shared::wire::quantise::{theta_code, wind_code};
 
     const CELLS: usize = 8;
 
@@ -180,7 +184,7 @@ mod tests {
     fn map(cell_m: f32, count: [u32; 2]) -> BendMap {
         let mut scene = crate::scenes::load("meadow").unwrap().scene;
         scene.grass.wind_bend_rad = 0.5;
-        BendMap::new(PatchLayout { count, cells: CELLS as u32, cell_m }, GroundWind::still(&scene))
+        BendMap::new(PatchLayout { count, cells: CELLS as u32, cell_m }, GroundWind::still(&scene), 60)
     }
 
     fn wind(tick: u64, east_m_per_s: f32) -> WindFrame {
@@ -189,11 +193,11 @@ mod tests {
         WindFrame { tick, cells, codes: codes.collect() }
     }
 
-    /// One patch whose cells lean east by a code, or west where it is negative.
-    fn bent(index: u32, lean: impl Fn(usize, usize) -> i8) -> Arc<BentPatches> {
-        let leans: Vec<i8> = (0..CELLS * CELLS).map(|at| lean(at % CELLS, at / CELLS)).collect();
-        let thetas = leans.iter().map(|lean| lean.abs());
-        let omegas = leans.iter().map(|lean| 60 * lean.signum());
+    /// One patch whose cells lean east by so many degrees, or west where it is negative.
+    fn bent(index: u32, lean_degrees: impl Fn(usize, usize) -> f32) -> Arc<BentPatches> {
+        let leans: Vec<f32> = (0..CELLS * CELLS).map(|at| lean_degrees(at % CELLS, at / CELLS).to_radians()).collect();
+        let thetas = leans.iter().map(|lean| theta_code(lean.abs()));
+        let omegas = leans.iter().map(|lean| if *lean == 0.0 { 0 } else { 60 * lean.signum() as i8 });
         let codes = thetas.chain(omegas).chain(std::iter::repeat_n(0, CELLS * CELLS)).collect();
         Arc::new(BentPatches::from([(index, Arc::new(PatchCodes { tick: 1, codes }))]))
     }
@@ -202,10 +206,11 @@ mod tests {
     fn a_cell_lands_on_its_own_pixel() {
         let mut map = map(0.5, [2, 2]);
         assert_eq!((map.size_px(), map.pixel_m()), ([16, 16], 0.5));
-        let patches = bent(3, |i, j| if (i, j) == (5, 2) { -40 } else { 0 });
+        let patches = bent(3, |i, j| if (i, j) == (5, 2) { -40.0 } else { 0.0 });
         assert!(map.update(&wind(1, 0.0), &patches));
         let marked: Vec<_> = (0..256).filter(|&at| map.codes()[at] != 0).collect();
-        assert_eq!((marked.as_slice(), map.codes()[marked[0]]), ([(8 + 2) * 16 + 8 + 5].as_slice(), 40));
+        assert_eq!(marked, [(8 + 2) * 16 + 8 + 5]);
+        assert!((degrees(map.codes()[marked[0]]) - 40.0).abs() < 1.1);
         assert!(!map.update(&wind(1, 0.0), &patches));
         assert!(map.update(&wind(1, 0.0), &Arc::default()) && map.codes().iter().all(|&code| code == 0));
     }
@@ -213,22 +218,23 @@ mod tests {
     #[test]
     fn the_lean_of_the_wind_and_that_of_a_track_add_up() {
         let mut map = map(0.5, [2, 2]);
-        let held = i16::from(theta_code(0.5));
-        let patches = bent(0, |i, _| [30, -30][i % 2]);
+        let held = 0.5_f32.to_degrees();
+        let patches = bent(0, |i, _| [30.0, -100.0][i % 2]);
         assert!(map.update(&wind(1, 20.0), &patches));
-        let code = |at: usize| i16::from(map.codes()[at]);
-        assert!((code(255) - held).abs() <= 1, "wind alone: {}", code(255));
-        assert!((code(0) - held - 30).abs() <= 1, "with the wind: {}", code(0));
-        assert!((code(1) - held + 30).abs() <= 1, "against it: {}", code(1));
-        assert!(map.update(&wind(2, 0.0), &patches), "another wind is another map");
+        for (at, wanted, what) in [(255, held, "wind alone"), (0, held + 30.0, "with the wind"), (1, 100.0 - held, "against it")] {
+            let found = degrees(map.codes()[at]);
+            assert!((found - wanted).abs() < 1.2, "{what}: {found}° instead of {wanted}°");
+        }
+        assert!(!map.update(&wind(60, 0.0), &patches), "a wind that is hardly older is no other map");
+        assert!(map.update(&wind(61, 0.0), &patches));
     }
 
     #[test]
     fn a_large_world_keeps_its_narrow_tracks() {
         let mut map = map(0.25, [128, 24]);
         assert_eq!((map.size_px(), map.pixel_m()), ([512, 96], 0.5));
-        map.update(&wind(1, 0.0), &bent(130, |i, _| if i == 5 { 127 } else { -3 }));
-        assert!((4..8).all(|row| map.codes()[row * 512 + 8 + 2] == 127 && map.codes()[row * 512 + 8 + 3] == 3));
+        map.update(&wind(1, 0.0), &bent(130, |i, _| if i == 5 { 90.0 } else { -3.0 }));
+        assert!((4..8).all(|row| map.codes()[row * 512 + 8 + 2] >= 126 && (3..6).contains(&map.codes()[row * 512 + 8 + 3])));
         assert_eq!(map.rgb().len(), 3 * 512 * 96);
         let huge = self::map(1.0, [65536, 1]);
         assert_eq!(huge.size_px(), [512, 1]);

@@ -85,7 +85,7 @@ impl Recording {
             stream,
             address,
             to_file: matches!(target, Target::Save(_)),
-            map: BendMap::new(layout, GroundWind::still(scene)),
+            map: BendMap::new(layout, GroundWind::still(scene), scene.tick_hz as u64),
             arrows: WindArrows::new(&scene.wind, scene.extent_m(), heights),
             wind_tick: None,
             trails: Trails::default(),

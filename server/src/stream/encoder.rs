@@ -7,7 +7,7 @@ use shared::grid::PatchIndex;
 use shared::wire::{self, ServerMessage};
 use std::collections::HashMap;
 
-/// Largest change of a patch (codes) that waits for a slow frame. Two codes are 0.025 rad of θ.
+/// Largest change of a patch (codes) that waits for a slow frame. Two codes are 0.05 rad of θ.
 pub const DEAD_BAND: u8 = 2;
 
 /// Frames per second of a patch that moves within the dead band (Hz).

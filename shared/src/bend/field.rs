@@ -170,11 +170,19 @@ impl Lane<'_> {
         extremes
     }
 
-    /// For the sides west, east, north and south: the largest |θ| (rad) or |ω| component (rad/s) published there, and whether
-    /// a neighbour is awake beyond.
-    pub fn rims(&self) -> [(f32, bool); 4] {
-        std::array::from_fn(|side| (self.publishes.largest(side), self.neighbours[side].is_some()))
+    /// What was published in the west, east, north and south.
+    pub fn rims(&self) -> [Rim; 4] {
+        Side::ALL.map(|side| self.publishes.rim(side))
     }
+}
+
+/// Extremes of the outermost cells on one side of a patch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rim {
+    /// Largest |θ| (rad).
+    pub theta_rad: f32,
+    /// Largest component of ω (rad/s).
+    pub omega_rad_per_s: f32,
 }
 
 /// The outermost cells of a patch: for each side, for each channel, a line of cells.
@@ -216,9 +224,9 @@ impl Border {
         }
     }
 
-    fn largest(&self, side: usize) -> f32 {
-        let lines = &self.values[side * CHANNELS * self.side..][..CHANNELS * self.side];
-        lines.iter().fold(0.0, |largest, value| value.abs().max(largest))
+    fn rim(&self, side: Side) -> Rim {
+        let largest = |channel| self.line(side, channel).iter().fold(0.0_f32, |largest, value| value.abs().max(largest));
+        Rim { theta_rad: largest(0), omega_rad_per_s: largest(1).max(largest(2)) }
     }
 }
 

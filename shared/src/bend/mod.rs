@@ -1,6 +1,6 @@
 //! The bend field: grass as a 2-D continuum (Chen & Johan, Real-Time Continuum Grass, sections 4 and 5).
 //!
-//! A cell holds one cluster of grass: its bending angle θ (rad; 0 upright) and its bending velocity ω = (ωx, ωz)
+//! A cell holds one cluster of grass: its bending angle θ (rad; 0 at rest) and its bending velocity ω = (ωx, ωz)
 //! (rad/s), whose direction is the direction in which the cluster leans. Contact sets both ([`Patch::press`]); the
 //! damped wave equations (2)–(6) carry them on and let them rise again ([`verlet`]).
 //!
@@ -19,7 +19,7 @@ pub mod verlet;
 mod wind;
 
 pub use extremes::Extremes;
-pub use field::{Field, Lane};
+pub use field::{Field, Lane, Rim};
 pub use params::{Coefficients, WaveParams};
 pub use patch::{Bend, CHANNELS, Patch};
-pub use wind::{WIND_SATURATES_M_PER_S, wind_lean_rad};
+pub use wind::wind_lean_rad;

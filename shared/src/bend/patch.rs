@@ -6,7 +6,7 @@ use super::extremes::LargestOf;
 /// State of one cluster of grass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bend {
-    /// Bending angle (rad), 0 upright.
+    /// Bending angle (rad), 0 where the wind alone would hold the grass.
     pub theta: f32,
     /// Bending velocity along X and Z (rad/s); its direction is the direction of the bend.
     pub omega: [f32; 2],

@@ -1,7 +1,7 @@
 //! Where a steady wind alone holds grass.
 
 /// Speed of the wind from which on grass bends no further (m/s): it streamlines, and the drag no longer grows.
-pub const WIND_SATURATES_M_PER_S: f32 = 10.0;
+const SATURATES_M_PER_S: f32 = 10.0;
 
 /// Lean (rad, as a vector along X and Z) that a steady wind sustains: `bend_rad·(min(|u|, 10)/10)²` along the wind. Drag grows with the
 /// square of the speed, and balances the grass's stiffness.
@@ -10,7 +10,7 @@ pub const WIND_SATURATES_M_PER_S: f32 = 10.0;
 pub fn wind_lean_rad(wind_m_per_s: [f32; 2], bend_rad: f32) -> [f32; 2] {
     let [u, w] = wind_m_per_s;
     let speed = (u * u + w * w).sqrt();
-    let share = speed.min(WIND_SATURATES_M_PER_S) / WIND_SATURATES_M_PER_S;
+    let share = speed.min(SATURATES_M_PER_S) / SATURATES_M_PER_S;
     let per_speed = bend_rad * share * share / speed.max(1e-3);
     [u * per_speed, w * per_speed]
 }

@@ -111,7 +111,8 @@ pub enum ServerMessage {
         #[serde(with = "serde_bytes")]
         payload: Vec<u8>,
     },
-    /// Bend field of one patch: three planes (θ, ωx, ωz) of `cells × cells`. A client keeps at least the [`PATCH_MEMORY`](super::PATCH_MEMORY)
+    /// Bend field of one patch: three planes (θ, ωx, ωz) of `cells × cells`, of how the grass departs from
+    /// [where the wind holds it](crate::bend::wind_lean_rad). A client keeps at least the [`PATCH_MEMORY`](super::PATCH_MEMORY)
     /// patches that came last.
     Patch {
         /// Which patch.

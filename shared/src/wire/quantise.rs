@@ -2,8 +2,9 @@
 //!
 //! θ is linear; ω is companded by a square root, so that weak bends keep their direction; wind is linear.
 
-/// θ at code ±127 (rad): a right angle.
-pub const THETA_FULL_RAD: f32 = std::f32::consts::FRAC_PI_2;
+/// θ at code ±127 (rad). The field holds a bend less the wind's lean: grass that lies one way where the wind would hold it the other way
+/// departs by up to a right angle and [`wind_bend_rad`](crate::scene::Grass::wind_bend_rad), 3.07 rad.
+pub const THETA_FULL_RAD: f32 = std::f32::consts::PI;
 
 /// |ω| of a component at code ±127 (rad/s); larger values saturate.
 pub const OMEGA_FULL_RAD_PER_S: f32 = 80.0;
@@ -11,7 +12,7 @@ pub const OMEGA_FULL_RAD_PER_S: f32 = 80.0;
 /// Wind component at code ±127 (m/s); larger values saturate.
 pub const WIND_FULL_M_PER_S: f32 = 31.75;
 
-/// Code of a bending angle; error at most `THETA_FULL_RAD / 254` (0.0062 rad) within ±[`THETA_FULL_RAD`].
+/// Code of a bending angle; error at most `THETA_FULL_RAD / 254` (0.0124 rad) within ±[`THETA_FULL_RAD`].
 #[inline]
 pub fn theta_code(theta_rad: f32) -> i8 {
     linear_code(theta_rad, THETA_FULL_RAD)
