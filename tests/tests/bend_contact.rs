@@ -186,16 +186,17 @@ fn no_more_patches_are_awake_than_allowed_and_the_farthest_go_first() {
     let mut scene = worlds::scene(12);
     scene.patches.awake_limit = 9;
     let mut meadow = meadow(&scene);
-    let view = View { client: 0, eye_m: [20.0, 2.0, 20.0] };
     let mut at = [20.0, 20.0];
     for _ in 0..400 {
         let motion = drive(at, 2.0, 25.0);
+        let view = View { client: 0, eye_m: [at[0], 2.0, at[1]] };
         meadow.step(DT_SECS, &[motion], &[view], &still_air());
         assert!(meadow.field().awake_count() <= 9);
         at = motion.to.xz();
     }
     assert!(meadow.evicted() > 0);
-    assert!(meadow.field().bend_at(20.5, 20.0).theta > 0.0, "the start of the track, near the camera, is kept");
+    assert_eq!(meadow.field().bend_at(20.5, 20.0).theta, 0.0, "the start of the track, far from the camera, is let go");
+    assert!(meadow.field().bend_at(at[0], at[1]).theta > 0.0, "its end is kept");
 }
 
 #[test]
