@@ -121,10 +121,13 @@ fn a_track_rises_again_within_its_time_constant() {
     let slow_per_s = 0.5 * (k - (k * k - 4.0 * kappa).sqrt());
     let expected = std::f32::consts::LN_10 / slow_per_s;
     assert!((secs / expected - 1.0).abs() < 0.05, "rose to a tenth in {secs} s, expected {expected} s");
+    let mut last_rad = 0.0;
     for _ in 0..3600 {
+        last_rad = meadow.field().awake().map(|(_, patch)| patch.extremes().theta_rad).reduce(f32::max).unwrap_or(last_rad);
         meadow.step(DT_SECS, &[], &[], &still_air());
     }
     assert_eq!(meadow.field().awake_count(), 0, "grass at rest sleeps");
+    assert_eq!(theta_code(last_rad), 0, "the last patch that fell asleep was bent by {last_rad} rad, which is seen");
 }
 
 #[test]

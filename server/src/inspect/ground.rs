@@ -180,7 +180,7 @@ mod tests {
 
     const CELLS: usize = 8;
 
-    /// A map of 2 × 2 patches, where a wind of `m_per_s` blows east and holds the grass at no more than 0.5 rad.
+    /// A map of patches of 8 × 8 cells, where no wind holds the grass at more than 0.5 rad.
     fn map(cell_m: f32, count: [u32; 2]) -> BendMap {
         let mut scene = crate::scenes::load("meadow").unwrap().scene;
         scene.grass.wind_bend_rad = 0.5;
