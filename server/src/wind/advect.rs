@@ -1,29 +1,29 @@
-//! Carrying a field along with the air.
+//! Carrying a field along the paths of the air: the semi-Lagrangian family.
 
 use super::parallel::{for_each_chunk, for_each_chunk_pair};
-use super::sample::{self, Stencil};
+use super::sample::{self, Ends, Stencil};
 use super::trace::Paths;
-use super::{Advection, Field, Grid, Place, Real};
+use super::{Advection, Field, GHOST, Grid, Place, Real};
 
 /// What advection needs beside its input and output, kept from step to step.
 #[derive(Clone, Debug)]
 pub struct Scratch<R> {
-    carried: Vec<R>,
+    carried: Field<R>,
     bounds: Vec<[R; 2]>,
 }
 
 impl<R: Real> Scratch<R> {
-    /// Room for the largest field of `grid`.
+    /// Room for one field of `grid`.
     pub fn new(grid: &Grid<R>) -> Self {
-        let len = (0..3).map(|axis| grid.shape(Place::Face(axis)).iter().product()).max().unwrap_or(0);
-        Self { carried: vec![R::zero(); len], bounds: vec![[R::zero(); 2]; len] }
+        Self { carried: Field::zeros(grid, Place::Centre), bounds: vec![[R::zero(); 2]; grid.padded_len()] }
     }
 }
 
-/// Advances `field` by one step along `paths`, into `target`. Faces on walls, which air does not leave, become 0.
+/// Advances `field`, its ghosts filled, by one step along `paths`, into the values of `target` that the flow decides. `close` fills in the rest of a field.
+/// `scheme` is one of the semi-Lagrangian family.
 ///
-/// Stable at any step: semi-Lagrangian values are means of old ones, and MacCormack's, whose unbounded amplification is `|G| ≤ 1 − (1 − |Â|)²/2` for a
-/// symbol `Â` of the linear step, are moreover kept within the eight values about the departure point.
+/// Stable at any step: semi-Lagrangian values are means of old ones, and those of MacCormack and BFECC, whose unbounded amplification is
+/// `|G| ≤ 1 − (1 − |Â|)²/2` for a symbol `Â` of the linear step, are moreover kept within the eight values about the departure point.
 pub fn advect<R: Real>(
     scheme: Advection,
     grid: &Grid<R>,
@@ -31,41 +31,51 @@ pub fn advect<R: Real>(
     field: &Field<R>,
     target: &mut Field<R>,
     scratch: &mut Scratch<R>,
+    close: impl Fn(&mut Field<R>),
 ) {
+    let Scratch { carried, bounds } = scratch;
+    carried.place = field.place;
+    carried.shape = field.shape;
     match scheme {
-        Advection::SemiLagrangian => semi_lagrangian(grid, &paths.back, field, target),
-        Advection::MacCormack => mac_cormack(grid, paths, field, target, scratch),
+        Advection::MacCormack => {
+            first_guess(grid, &paths.back, field, carried, bounds);
+            close(carried);
+            let half = R::of(0.5);
+            pull(grid, &paths.ahead, carried, target, |at, returned| {
+                within(carried.data[at] + half * (field.data[at] - returned), bounds[at])
+            });
+        }
+        Advection::Bfecc => {
+            first_guess(grid, &paths.back, field, carried, bounds);
+            close(carried);
+            let half = R::of(0.5);
+            pull(grid, &paths.ahead, carried, target, |at, returned| field.data[at] + half * (field.data[at] - returned));
+            close(target);
+            std::mem::swap(&mut carried.data, &mut target.data);
+            pull(grid, &paths.back, carried, target, |at, value| within(value, bounds[at]));
+        }
+        Advection::SemiLagrangian | Advection::Conservative => pull(grid, &paths.back, field, target, |_, value| value),
     }
 }
 
-fn semi_lagrangian<R: Real>(grid: &Grid<R>, back: &[[R; 4]], field: &Field<R>, target: &mut Field<R>) {
-    for_each_chunk(&mut target.data, field.plane_len(), |k, plane| {
-        plane.fill(R::zero());
-        for_each_departure(grid, field, back, k, |at, stencils| {
-            plane[at] = sample::trilinear(&field.data, field.shape, &stencils);
+/// Sets each value of `target` to `f` of its index in memory and of what `source` holds where the air at it is displaced to.
+fn pull<R: Real>(grid: &Grid<R>, displacement: &[[R; 4]], source: &Field<R>, target: &mut Field<R>, f: impl Fn(usize, R) -> R + Sync + Send) {
+    let plane_len = grid.strides()[2];
+    for_each_chunk(&mut target.data, plane_len, |plane, out| {
+        for_each_departure(grid, source, displacement, plane, |at, stencils| {
+            out[at - plane * plane_len] = f(at, sample::trilinear(&source.data, grid.strides(), &stencils));
         });
     });
 }
 
-fn mac_cormack<R: Real>(grid: &Grid<R>, paths: &Paths<R>, field: &Field<R>, target: &mut Field<R>, scratch: &mut Scratch<R>) {
-    let plane_len = field.plane_len();
-    let carried = &mut scratch.carried[..field.data.len()];
-    let bounds = &mut scratch.bounds[..field.data.len()];
-    for_each_chunk_pair(carried, plane_len, bounds, plane_len, |k, carried, bounds| {
-        carried.fill(R::zero());
-        for_each_departure(grid, field, &paths.back, k, |at, stencils| {
-            let corners = sample::corners(&field.data, field.shape, &stencils);
-            carried[at] = sample::mix(corners, &stencils);
-            bounds[at] = [extreme(corners, min), extreme(corners, max)];
-        });
-    });
-    let (carried, bounds, half) = (&*carried, &*bounds, R::of(0.5));
-    for_each_chunk(&mut target.data, plane_len, |k, plane| {
-        let (old, first, bounds) = (&field.data[k * plane_len..], &carried[k * plane_len..], &bounds[k * plane_len..]);
-        plane.fill(R::zero());
-        for_each_departure(grid, field, &paths.ahead, k, |at, stencils| {
-            let returned = sample::trilinear(carried, field.shape, &stencils);
-            plane[at] = within(first[at] + half * (old[at] - returned), bounds[at]);
+/// The semi-Lagrangian values, and the range of the eight each is made of.
+fn first_guess<R: Real>(grid: &Grid<R>, displacement: &[[R; 4]], source: &Field<R>, target: &mut Field<R>, bounds: &mut [[R; 2]]) {
+    let plane_len = grid.strides()[2];
+    for_each_chunk_pair(&mut target.data, plane_len, bounds, plane_len, |plane, out, bounds| {
+        for_each_departure(grid, source, displacement, plane, |at, stencils| {
+            let corners = sample::corners(&source.data, grid.strides(), &stencils);
+            out[at - plane * plane_len] = sample::mix(corners, &stencils);
+            bounds[at - plane * plane_len] = [extreme(corners, min), extreme(corners, max)];
         });
     });
 }
@@ -100,38 +110,38 @@ fn within<R: Real>(x: R, [low, high]: [R; 2]) -> R {
     }
 }
 
-/// Calls `f(index in the plane, stencils)` for each value of plane `k` of `field` that is not on a wall, with the stencils of the point its air is
+/// Calls `f(index in memory, stencils)` for each value of `field` in a plane of memory that the flow decides, with the stencils of the point its air is
 /// displaced to.
 #[inline(always)]
 fn for_each_departure<R: Real>(
     grid: &Grid<R>,
     field: &Field<R>,
     displacement: &[[R; 4]],
-    k: usize,
+    plane: usize,
     mut f: impl FnMut(usize, [Stencil<R>; 3]),
 ) {
-    let [nx, ny, nz] = field.shape;
-    let wraps = [0, 1, 2].map(|axis| grid.wraps(axis));
-    let half = R::of(0.5);
-    let inner = |axis: usize| {
-        let walls = usize::from(field.place == Place::Face(axis) && !wraps[axis]);
-        walls..field.shape[axis] - walls
-    };
-    let below = |axis: usize, i: usize| if field.place == Place::Face(axis) { grid.below(axis, i) } else { i };
-    if !inner(2).contains(&k) {
+    let place = field.place;
+    if plane < GHOST || !grid.free(place, 2).contains(&(plane - GHOST)) {
         return;
     }
-    for j in inner(1) {
-        let row = |j: usize, k: usize| &displacement[grid.cells[0] * (j + grid.cells[1] * k)..][..grid.cells[0]];
-        let (here, there) = (row(j, k), row(below(1, j), below(2, k)));
-        for i in inner(0) {
-            let (a, b) = (here[i], there[below(0, i)]);
+    let k = plane - GHOST;
+    let back = match place {
+        Place::Centre => 0,
+        Place::Face(axis) => grid.strides()[axis],
+    };
+    let ends: [Ends<R>; 3] = std::array::from_fn(|axis| Ends::of(grid, place, axis));
+    let half = R::of(0.5);
+    for j in grid.free(place, 1) {
+        for i in grid.free(place, 0) {
+            let at = grid.at([i, j, k]);
+            let (a, b) = (displacement[at], displacement[at - back]);
+            let shift = |axis: usize| half * (a[axis] + b[axis]);
             let stencils = [
-                Stencil::new(i, half * (a[0] + b[0]), nx, wraps[0]),
-                Stencil::new(j, half * (a[1] + b[1]), ny, wraps[1]),
-                Stencil::new(k, half * (a[2] + b[2]), nz, wraps[2]),
+                Stencil::new(i, shift(0), ends[0]),
+                Stencil::new(j, shift(1), ends[1]),
+                Stencil::new(k, shift(2), ends[2]),
             ];
-            f(i + nx * j, stencils);
+            f(at, stencils);
         }
     }
 }

@@ -1,49 +1,105 @@
 //! Everything a wind solver can be told, and what is allowed.
 
-use super::{Boundary, Grid, Real};
+use super::pressure::Pressure;
+use super::primitive::Primitive;
+use super::{Boundary, Canopy, Grid, Real};
 
 /// Most cells along one axis.
 pub const MAX_CELLS_PER_AXIS: usize = 512;
 /// Most cells in all (16 Mi: about 1.3 GB of fields).
 pub const MAX_CELLS: usize = 1 << 24;
 
-/// Settings of a [`WindSolver`](super::WindSolver). [`Config::default`] is the wind of the default scene: 256 m × 16 m × 256 m of gusty air.
+/// Settings of a [`Solver`](super::Solver). [`Config::default`] is the wind of the default scene: 256 m × 16 m × 256 m of gusty air.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
     /// Number of cells along x, y and z. Default `[32, 8, 32]`; each 1 to [`MAX_CELLS_PER_AXIS`], at most [`MAX_CELLS`] in all.
     pub cells: [usize; 3],
     /// Size of a cell (m). Default `[8, 2, 8]`; each 0.01 to 10 000.
     pub spacing_m: [f32; 3],
-    /// What the faces across x, y and z do. Default wrap, wall, wrap.
-    pub boundary: [Boundary; 3],
-    /// How velocity and dust are carried along. Default [`Advection::MacCormack`].
+    /// What the faces towards smaller and larger coordinates across x, y and z do. Default: x and z wrap, free slip below and above. Both faces across an
+    /// axis wrap, or neither.
+    pub boundary: [[Boundary; 2]; 3],
+    /// How velocity is carried along. Default [`Advection::Conservative`].
     pub advection: Advection,
+    /// Share, 0 to 1, of the damping of a third-order upwind scheme in conservative advection of velocity. Default 1; 0 conserves kinetic energy, and
+    /// leaves waves of two cells undamped.
+    pub damping: f32,
+    /// How the parts of a step are put together. Default [`TimeScheme::RungeKutta3`].
+    pub time: TimeScheme,
+    /// How friction spreads velocity. Default [`Diffusion::Explicit`].
+    pub diffusion: Diffusion,
+    /// How the divergence is taken out. Default [`Pressure::Direct`].
+    pub pressure: Pressure,
     /// Eddy viscosity of the air (m²/s), default 0.2; 0 or more. Molecular viscosity is 1.5e-5; what a grid of metres needs stands for the eddies
     /// smaller than a cell.
     pub viscosity_m2_per_s: f32,
-    /// Mean wind (m/s) at the reference height of the profile, default `[5, 0, 1.5]`. The y component is ignored; components across walls must be 0.
+    /// Mean wind (m/s) at the reference height of the profile, default `[5, 0, 1.5]`. The y component is ignored; components across closed faces must be 0.
     pub mean_wind_m_per_s: [f32; 3],
     /// How the mean wind grows with height. Default [`Profile::Log`] over grass; over a box that wraps in y only [`Profile::Uniform`].
     pub profile: Profile,
     /// Rate (1/s) at which the mean of each layer of cells returns to the profile, default 0.2; 0 or more. It stands for the pressure gradient that
-    /// drives the wind and the friction that holds it; gusts, which are departures from a layer's mean, are left alone.
+    /// drives the wind and the friction that holds it; gusts, which are departures from a layer's mean, are left alone. Only across faces that wrap.
     pub relaxation_per_sec: f32,
+    /// Acceleration (m/s²) of all air, such as a mean pressure gradient gives. Default 0; −100 to 100.
+    pub body_force_m_per_s2: [f32; 3],
     /// The random sources that keep the air stirred.
     pub gusts: Gusts,
+    /// Winds of simple shape, superposed; at most [`MAX_PRIMITIVES`]. Default none.
+    pub primitives: Vec<Primitive>,
+    /// Grass that takes momentum out of the wind; `None` (default) for bare ground.
+    pub canopy: Option<Canopy>,
     /// Dust carried by the wind; `None` (default) for clear air.
     pub dust: Option<Dust>,
     /// Seed of everything random. Default 1.
     pub seed: u64,
 }
 
+/// Most primitives.
+pub const MAX_PRIMITIVES: usize = 64;
+
 /// How a field is carried along by the wind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Advection {
-    /// The value at the departure point, interpolated linearly (Stam, Stable Fluids, SIGGRAPH 1999; 000 §2.3.3). First order in space: at small
-    /// Courant numbers it spreads a field like a diffusivity of |u|·h/2.
+    /// The value at the departure point, interpolated linearly (Stam, Stable Fluids, SIGGRAPH 1999; 000 §2.3.3). First order at a given Courant number: it
+    /// spreads a field like a diffusivity of |u|·h/2 at small ones. Stable at any step.
     SemiLagrangian,
-    /// Semi-Lagrangian forth and back, corrected by half the error of the round trip (Selle et al., J. Sci. Comput. 35, 2008). Second order.
+    /// Semi-Lagrangian forth and back, corrected by half the error of the round trip (Selle et al., J. Sci. Comput. 35, 2008). Second order; stable at any step.
     MacCormack,
+    /// Back and forth error compensation and correction (Dupont & Liu, J. Comput. Phys. 190, 2003): the error of the round trip is taken off before the
+    /// semi-Lagrangian step. Second order; stable at any step.
+    Bfecc,
+    /// Fluxes through faces: central with an upwind share for velocity, limited for dust, by Runge–Kutta 3 (see [`transport`](super::transport)).
+    /// Second order; a step is cut into parts where its Courant number is too large.
+    Conservative,
+}
+
+/// How advection, forces, friction and pressure make a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TimeScheme {
+    /// One after the other (000 §2.3.5): first order in dt. With the semi-Lagrangian family.
+    Split,
+    /// Two half steps of advection through the velocity at mid-step with a reflection of the pressure's work between them (Narain, Zehnder & Thomaszewski,
+    /// SIGGRAPH 2019), forces and friction in halves before and after: second order in dt, three projections. With the semi-Lagrangian family.
+    Reflection,
+    /// Runge–Kutta 3 with the pressure gradient of the step before, corrected by one projection at the end (Van Kan, SIAM J. Sci. Stat. Comput. 7, 1986):
+    /// second order in dt. With conservative advection.
+    RungeKutta3,
+}
+
+/// How friction spreads velocity, and dust is spread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Diffusion {
+    /// Explicit, cut into parts where the step is beyond its limit (`ν·dt/h² = 1/6` on cubes).
+    Explicit,
+    /// Backward Euler by so many Gauss–Seidel sweeps (000 §2.3.2). First order in dt, stable at any step.
+    GaussSeidel {
+        /// Sweeps, at least 1; 20 in 000.
+        sweeps: u32,
+    },
+    /// Backward Euler, solved exactly by transforms. First order in dt, stable at any step; for boxes without solid cells.
+    Implicit,
+    /// Half a step explicit, half implicit: second order in dt, stable at any step; for boxes without solid cells.
+    CrankNicolson,
 }
 
 /// Mean wind against height above the ground.
@@ -87,6 +143,8 @@ pub struct Gusts {
 /// Dust or seed, as a concentration (1 = as thick as a source makes it in one second).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dust {
+    /// How dust is carried along. Default [`Advection::Conservative`], which keeps its amount.
+    pub advection: Advection,
     /// Diffusivity (m²/s). Default 0.2; 0 or more.
     pub diffusivity_m2_per_s: f32,
     /// Concentration a gust source adds at its centre (1/s) at the height of its push. Default 1; 0 or more.
@@ -100,13 +158,20 @@ impl Default for Config {
         Self {
             cells: [32, 8, 32],
             spacing_m: [8.0, 2.0, 8.0],
-            boundary: [Boundary::Wrap, Boundary::Wall, Boundary::Wrap],
-            advection: Advection::MacCormack,
+            boundary: [[Boundary::Wrap; 2], [Boundary::FreeSlip; 2], [Boundary::Wrap; 2]],
+            advection: Advection::Conservative,
+            damping: 1.0,
+            time: TimeScheme::RungeKutta3,
+            diffusion: Diffusion::Explicit,
+            pressure: Pressure::Direct,
             viscosity_m2_per_s: 0.2,
             mean_wind_m_per_s: [5.0, 0.0, 1.5],
             profile: Profile::Log { roughness_m: 0.05, reference_m: 10.0 },
             relaxation_per_sec: 0.2,
+            body_force_m_per_s2: [0.0; 3],
             gusts: Gusts::default(),
+            primitives: Vec::new(),
+            canopy: None,
             dust: None,
             seed: 1,
         }
@@ -121,7 +186,7 @@ impl Default for Gusts {
 
 impl Default for Dust {
     fn default() -> Self {
-        Self { diffusivity_m2_per_s: 0.2, release_per_sec: 1.0, settling_per_sec: 0.1 }
+        Self { advection: Advection::Conservative, diffusivity_m2_per_s: 0.2, release_per_sec: 1.0, settling_per_sec: 0.1 }
     }
 }
 
@@ -137,15 +202,15 @@ pub struct ConfigError {
     pub allowed: &'static str,
 }
 
-fn check(ok: bool, field: impl Into<String>, value: impl std::fmt::Display, allowed: &'static str) -> Result<(), ConfigError> {
+pub(super) fn check(ok: bool, field: impl Into<String>, value: impl std::fmt::Display, allowed: &'static str) -> Result<(), ConfigError> {
     if ok { Ok(()) } else { Err(ConfigError { field: field.into(), value: value.to_string(), allowed }) }
 }
 
-fn at_least_zero(field: &str, value: f32) -> Result<(), ConfigError> {
+pub(super) fn at_least_zero(field: &str, value: f32) -> Result<(), ConfigError> {
     check((0.0..=1.0e6).contains(&value), field, value, "0 to 1e6")
 }
 
-fn above_zero(field: &str, value: f32) -> Result<(), ConfigError> {
+pub(super) fn above_zero(field: &str, value: f32) -> Result<(), ConfigError> {
     check(value > 0.0 && value <= 1.0e6, field, value, "above 0, at most 1e6")
 }
 
@@ -160,22 +225,63 @@ impl Config {
             check((1..=MAX_CELLS_PER_AXIS).contains(&cells), format!("cells[{axis}]"), cells, "1 to 512")?;
             let spacing = self.spacing_m[axis];
             check((0.01..=1.0e4).contains(&spacing), format!("spacing_m[{axis}]"), spacing, "0.01 to 10000")?;
+            self.validate_faces(axis)?;
             let mean = self.mean_wind_m_per_s[axis];
             check(mean.abs() <= 200.0, format!("mean_wind_m_per_s[{axis}]"), mean, "-200 to 200")?;
-            let blocked = axis != 1 && mean != 0.0 && self.boundary[axis] == Boundary::Wall;
-            check(!blocked, format!("mean_wind_m_per_s[{axis}]"), mean, "0, since the box has walls across this axis")?;
+            let blocked = axis != 1 && mean != 0.0 && self.boundary[axis].iter().any(|face| face.is_closed());
+            check(!blocked, format!("mean_wind_m_per_s[{axis}]"), mean, "0, since a face across this axis is closed")?;
+            let force = self.body_force_m_per_s2[axis];
+            check(force.abs() <= 100.0, format!("body_force_m_per_s2[{axis}]"), force, "-100 to 100")?;
             above_zero(&format!("gusts.radius_m[{axis}]"), self.gusts.radius_m[axis])?;
         }
         let total: usize = self.cells.iter().product();
         check(total <= MAX_CELLS, "cells", format!("{total} in all"), "at most 16777216 in all")?;
+        self.validate_schemes()?;
         at_least_zero("viscosity_m2_per_s", self.viscosity_m2_per_s)?;
         at_least_zero("relaxation_per_sec", self.relaxation_per_sec)?;
-        self.profile.validate(self.boundary[1])?;
+        self.profile.validate(self.boundary[1][0])?;
         self.gusts.validate()?;
+        check(self.primitives.len() <= MAX_PRIMITIVES, "primitives", format!("a list of {}", self.primitives.len()), "at most 64")?;
+        for (index, primitive) in self.primitives.iter().enumerate() {
+            primitive.validate(&format!("primitives[{index}]"))?;
+        }
+        if let Some(canopy) = &self.canopy {
+            canopy.validate()?;
+        }
         if let Some(dust) = &self.dust {
             at_least_zero("dust.diffusivity_m2_per_s", dust.diffusivity_m2_per_s)?;
             at_least_zero("dust.release_per_sec", dust.release_per_sec)?;
             at_least_zero("dust.settling_per_sec", dust.settling_per_sec)?;
+        }
+        Ok(())
+    }
+
+    fn validate_faces(&self, axis: usize) -> Result<(), ConfigError> {
+        let faces = self.boundary[axis];
+        let wrapped = faces.map(|face| face == Boundary::Wrap);
+        check(wrapped[0] == wrapped[1], format!("boundary[{axis}]"), format!("{faces:?}"), "Wrap on both sides, or on neither")?;
+        for face in faces {
+            let Boundary::Lid { velocity_m_per_s: lid } = face else { continue };
+            let slides = lid[axis] == 0.0 && lid.iter().all(|speed| speed.abs() <= 200.0);
+            check(slides, format!("boundary[{axis}]"), format!("{face:?}"), "a lid that moves along itself, at -200 to 200 m/s along each axis")?;
+        }
+        Ok(())
+    }
+
+    fn validate_schemes(&self) -> Result<(), ConfigError> {
+        check((0.0..=1.0).contains(&self.damping), "damping", self.damping, "0 to 1")?;
+        let (time, conservative) = (format!("{:?}", self.time), self.advection == Advection::Conservative);
+        if self.time == TimeScheme::RungeKutta3 {
+            check(conservative, "time", time, "Split or Reflection, with advection of the semi-Lagrangian family")?;
+        } else {
+            check(!conservative, "time", time, "RungeKutta3, with conservative advection")?;
+        }
+        if let Diffusion::GaussSeidel { sweeps } = self.diffusion {
+            check((1..=100_000).contains(&sweeps), "diffusion", format!("{:?}", self.diffusion), "1 to 100000 sweeps")?;
+        }
+        if let Pressure::Iterative(_, effort) = self.pressure {
+            let possible = effort.tolerance > 0.0 && effort.tolerance < 1.0 && (1..=100_000).contains(&effort.sweeps);
+            check(possible, "pressure", format!("{:?}", self.pressure), "a tolerance above 0, below 1, and 1 to 100000 sweeps")?;
         }
         Ok(())
     }
@@ -199,7 +305,7 @@ impl Profile {
                 above_zero("profile.reference_m", reference_m)?;
             }
         }
-        check(vertical == Boundary::Wall, "profile", format!("{self:?}"), "Uniform, since the box wraps in y and so has no ground")
+        check(vertical != Boundary::Wrap, "profile", format!("{self:?}"), "Uniform, since the box wraps in y and so has no ground")
     }
 
     /// Share of the mean wind that blows at a height above the ground (m).
@@ -226,6 +332,7 @@ impl Gusts {
 
 #[cfg(test)]
 mod tests {
+    use super::super::pressure::{Effort, Method};
     use super::*;
 
     #[test]
@@ -236,15 +343,24 @@ mod tests {
     #[test]
     fn each_bad_setting_is_named() {
         type Spoil = fn(&mut Config);
-        let cases: [(&str, Spoil); 15] = [
+        let cases: [(&str, Spoil); 24] = [
             ("cells[1]", |c| c.cells[1] = 0),
             ("cells", |c| c.cells = [512; 3]),
             ("spacing_m[2]", |c| c.spacing_m[2] = f32::NAN),
             ("viscosity_m2_per_s", |c| c.viscosity_m2_per_s = -1.0),
             ("relaxation_per_sec", |c| c.relaxation_per_sec = f32::INFINITY),
-            ("mean_wind_m_per_s[0]", |c| c.boundary[0] = Boundary::Wall),
+            ("mean_wind_m_per_s[0]", |c| c.boundary[0] = [Boundary::FreeSlip; 2]),
+            ("boundary[2]", |c| c.boundary[2] = [Boundary::Wrap, Boundary::NoSlip]),
+            ("boundary[1]", |c| c.boundary[1][1] = Boundary::Lid { velocity_m_per_s: [0.0, 1.0, 0.0] }),
+            ("damping", |c| c.damping = 1.5),
+            ("time", |c| c.time = TimeScheme::Reflection),
+            ("time", |c| c.advection = Advection::Bfecc),
+            ("diffusion", |c| c.diffusion = Diffusion::GaussSeidel { sweeps: 0 }),
+            ("pressure", |c| c.pressure = Pressure::Iterative(Method::Sor, Effort { tolerance: 0.0, sweeps: 9 })),
+            ("body_force_m_per_s2[1]", |c| c.body_force_m_per_s2[1] = f32::NAN),
+            ("canopy.height_m", |c| c.canopy = Some(Canopy { height_m: 0.0, ..Canopy::default() })),
             ("mean_wind_m_per_s[2]", |c| c.mean_wind_m_per_s[2] = f32::NAN),
-            ("profile", |c| c.boundary[1] = Boundary::Wrap),
+            ("profile", |c| c.boundary[1] = [Boundary::Wrap; 2]),
             ("profile.roughness_m", |c| c.profile = Profile::Log { roughness_m: 0.0, reference_m: 10.0 }),
             ("profile.exponent", |c| c.profile = Profile::Power { exponent: 2.0, reference_m: 10.0 }),
             ("gusts.number", |c| c.gusts.number = 5000),

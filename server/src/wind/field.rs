@@ -1,56 +1,96 @@
 //! A scalar field on the grid, and the three that make a velocity.
 
 use super::sample::{self, Stencil};
-use super::{Grid, Place, Real};
+use super::{GHOST, Grid, Place, Real};
 
-/// One number per cell or per face of a [`Grid`].
+/// One number per cell or per face of a [`Grid`], with its ghosts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field<R> {
     /// Where on a cell the values live.
     pub place: Place,
-    /// Number of values along x, y and z.
+    /// Number of values along x, y and z, without ghosts.
     pub shape: [usize; 3],
-    /// The values, x fastest, then y, then z.
+    /// The values in memory order, ghosts included: value (i, j, k) is at [`Grid::at`].
     pub data: Vec<R>,
 }
 
 impl<R: Real> Field<R> {
     /// A field of zeros at `place`.
     pub fn zeros(grid: &Grid<R>, place: Place) -> Self {
-        let shape = grid.shape(place);
-        Self { place, shape, data: vec![R::zero(); shape.iter().product()] }
+        Self { place, shape: grid.shape(place), data: vec![R::zero(); grid.padded_len()] }
     }
 
-    /// Where value (i, j, k) lies in [`Field::data`].
-    #[inline(always)]
-    pub fn index(&self, [i, j, k]: [usize; 3]) -> usize {
-        i + self.shape[0] * (j + self.shape[1] * k)
+    /// Index in [`Field::data`] of the first value of every row along x, rows in memory order, ghosts left out.
+    pub fn rows(&self, grid: &Grid<R>) -> impl Iterator<Item = usize> + use<R> {
+        let (grid, [_, ny, nz]) = (*grid, self.shape);
+        (0..nz).flat_map(move |k| (0..ny).map(move |j| grid.at([0, j, k])))
     }
 
-    /// Number of values with the same k.
-    #[inline(always)]
-    pub fn plane_len(&self) -> usize {
-        self.shape[0] * self.shape[1]
+    /// The values without ghosts, x fastest, then y, then z.
+    pub fn values(&self, grid: &Grid<R>) -> impl Iterator<Item = R> + '_ {
+        self.rows(grid).flat_map(|row| self.data[row..][..self.shape[0]].iter().copied())
     }
 
-    /// Sets every value to `f` of its position (m).
-    pub fn fill(&mut self, grid: &Grid<R>, f: impl Fn([R; 3]) -> R) {
-        let [nx, ny, _] = self.shape;
-        for (at, value) in self.data.iter_mut().enumerate() {
-            *value = f(grid.position_m(self.place, [at % nx, at / nx % ny, at / (nx * ny)]));
+    /// Sets the values without ghosts from as many others in the order of [`Field::values`].
+    pub fn set_values(&mut self, grid: &Grid<R>, values: &[R]) {
+        for (row, values) in self.rows(grid).zip(values.chunks(self.shape[0])) {
+            self.data[row..][..self.shape[0]].copy_from_slice(values);
         }
     }
 
-    /// Trilinear value at a position (m). Wrapped axes repeat; beyond the outermost values of a walled axis the nearest one holds.
+    /// Number of values without ghosts.
+    pub fn len(&self) -> usize {
+        self.shape.iter().product()
+    }
+
+    /// True for a field without values.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Values with their positions (m), in the order of [`Field::values`].
+    pub fn samples(&self, grid: &Grid<R>) -> impl Iterator<Item = ([R; 3], R)> + '_ {
+        let (grid, [nx, ny, _]) = (*grid, self.shape);
+        self.values(&grid)
+            .enumerate()
+            .map(move |(n, value)| (grid.position_m(self.place, [n % nx, n / nx % ny, n / (nx * ny)]), value))
+            .collect::<Vec<_>>()
+            .into_iter()
+    }
+
+    /// Sets every value to `f` of its position (m); ghosts are left to the boundary.
+    pub fn fill(&mut self, grid: &Grid<R>, f: impl Fn([R; 3]) -> R) {
+        for k in 0..self.shape[2] {
+            for j in 0..self.shape[1] {
+                for i in 0..self.shape[0] {
+                    self.data[grid.at([i, j, k])] = f(grid.position_m(self.place, [i, j, k]));
+                }
+            }
+        }
+    }
+
+    /// Trilinear value at a position (m). Wrapped axes repeat; beyond other faces the value on the face holds. Ghosts must be filled.
     ///
     /// Exact for fields linear in each coordinate; otherwise within `Σ h²·max|∂²f|/8`.
     pub fn at(&self, grid: &Grid<R>, position_m: [R; 3]) -> R {
         let stencils: [Stencil<R>; 3] = std::array::from_fn(|axis| {
             let along = position_m[axis] / grid.spacing_m[axis] - grid.offset(self.place, axis);
-            Stencil::new(0, along, self.shape[axis], grid.wraps(axis))
+            Stencil::new(0, along, sample::Ends::of(grid, self.place, axis))
         });
-        sample::trilinear(&self.data, self.shape, &stencils)
+        sample::trilinear(&self.data, grid.strides(), &stencils)
     }
+}
+
+/// Calls `f(k, plane)` for each plane of padded values whose k is in `planes`, on all threads where that pays.
+pub(super) fn for_each_plane<R: Real, T: Send>(
+    grid: &Grid<R>,
+    planes: std::ops::Range<usize>,
+    data: &mut [T],
+    f: impl Fn(usize, &mut [T]) + Sync + Send,
+) {
+    let plane_len = grid.strides()[2];
+    let inner = &mut data[plane_len * (planes.start + GHOST)..plane_len * (planes.end + GHOST)];
+    super::parallel::for_each_chunk(inner, plane_len, |n, plane| f(planes.start + n, plane));
 }
 
 /// A staggered velocity (m/s): component `a` lives on the faces across axis `a`.

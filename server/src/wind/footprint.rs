@@ -7,7 +7,8 @@ use super::{Field, Grid, Place, Real};
 /// A radius below the spacing is widened to it and the weights lowered in proportion, so that a narrow force keeps its momentum.
 #[derive(Clone, Debug, Default)]
 pub struct Footprint<R> {
-    along: [Vec<(usize, R)>; 3],
+    /// Index, weight and offset from the centre (m) along each axis.
+    along: [Vec<(usize, R, R)>; 3],
 }
 
 impl<R: Real> Footprint<R> {
@@ -28,21 +29,31 @@ impl<R: Real> Footprint<R> {
                 let reach = distance / radius;
                 if reach.abs() < R::one() {
                     let fall = R::one() - reach * reach;
-                    self.along[axis].push((i, height * fall * fall));
+                    self.along[axis].push((i, height * fall * fall, distance));
                 }
             }
         }
     }
 
-    /// Calls `f(value, weight)` for every value under the footprint.
-    pub fn for_each(&self, field: &mut Field<R>, mut f: impl FnMut(&mut R, R)) {
+    /// Calls `f(value, weight, offset from the centre in m)` for every value under the footprint.
+    pub fn for_each(&self, grid: &Grid<R>, field: &mut Field<R>, mut f: impl FnMut(&mut R, R, [R; 3])) {
         let [along_x, along_y, along_z] = &self.along;
-        for &(k, z) in along_z {
-            for &(j, y) in along_y {
-                let row = field.index([0, j, k]);
-                for &(i, x) in along_x {
-                    f(&mut field.data[row + i], x * y * z);
+        for &(k, z, dz) in along_z {
+            for &(j, y, dy) in along_y {
+                let row = grid.at([0, j, k]);
+                for &(i, x, dx) in along_x {
+                    f(&mut field.data[row + i], x * y * z, [dx, dy, dz]);
                 }
+            }
+        }
+    }
+
+    /// Calls `f(index, weight)` for every value under the footprint.
+    pub fn for_each_index(&self, mut f: impl FnMut([usize; 3], R)) {
+        let [along_x, along_y, along_z] = &self.along;
+        for &(k, z, _) in along_z {
+            for &(j, y, _) in along_y {
+                along_x.iter().for_each(|&(i, x, _)| f([i, j, k], x * y * z));
             }
         }
     }
@@ -54,13 +65,13 @@ mod tests {
     use super::*;
 
     fn total(radius_m: f64, centre_x: f64) -> f64 {
-        let grid = Grid { cells: [16, 1, 1], spacing_m: [2.0, 1.0, 1.0], boundary: [Wrap, Wall, Wrap] };
+        let grid = Grid { cells: [16, 1, 1], spacing_m: [2.0, 1.0, 1.0], boundary: [[Wrap; 2], [FreeSlip; 2], [Wrap; 2]] };
         let mut field = Field::zeros(&grid, Place::Centre);
         let mut footprint = Footprint::default();
         footprint.put(&grid, Place::Centre, [centre_x, 0.5, 0.5], [radius_m, 1.0, 1.0]);
-        footprint.for_each(&mut field, |_, weight| assert!((0.0..=1.0).contains(&weight)));
-        footprint.for_each(&mut field, |value, weight| *value += weight);
-        field.data.iter().sum()
+        footprint.for_each(&grid, &mut field, |_, weight, _| assert!((0.0..=1.0).contains(&weight)));
+        footprint.for_each(&grid, &mut field, |value, weight, _| *value += weight);
+        field.values(&grid).sum()
     }
 
     #[test]

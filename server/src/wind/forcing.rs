@@ -27,14 +27,14 @@ impl Jet {
 }
 
 /// Drives the air in a jet for a step of backward Euler, which never overshoots: `u += w·(v − u)·rate·dt / (1 + rate·dt)`, with w the weight of the footprint.
-pub fn drive<R: Real>(grid: &Grid<R>, jet: &Jet, dt_secs: R, velocity: &mut Velocity<R>, footprint: &mut Footprint<R>) {
-    let reach = R::of(jet.rate_per_sec.into()) * dt_secs;
-    let share = reach / (R::one() + reach);
+pub fn drive<R: Real>(grid: &Grid<R>, jet: &Jet, dt_secs: f64, velocity: &mut Velocity<R>, footprint: &mut Footprint<R>) {
+    let reach = f64::from(jet.rate_per_sec) * dt_secs;
+    let share = R::of(reach / (1.0 + reach));
     let centre = jet.position_m.to_array().map(|x| R::of(x.into()));
     let radius = [R::of(jet.radius_m.into()); 3];
     for (field, target) in velocity.0.iter_mut().zip(jet.velocity_m_per_s.to_array()) {
         let target = R::of(target.into());
         footprint.put(grid, field.place, centre, radius);
-        footprint.for_each(field, |speed, weight| *speed = *speed + weight * share * (target - *speed));
+        footprint.for_each(grid, field, |speed, weight, _| *speed = *speed + weight * share * (target - *speed));
     }
 }

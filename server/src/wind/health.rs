@@ -1,13 +1,16 @@
 //! What a step must know about itself: speed, energy, divergence, and that every number is one.
 
-use super::parallel::for_each_chunk_pair;
-use super::{Grid, Real, Velocity};
+use super::parallel::for_each_chunk;
+use super::{GHOST, Grid, Real, Velocity};
+
+/// Partial sums of a row.
+const LANES: usize = 8;
 
 /// The state of the flow after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Health {
-    /// Largest `|u|·dt/h` of any cell and axis.
-    pub courant: f64,
+    /// Largest speed (m/s) along each axis.
+    pub fastest_m_per_s: [f64; 3],
     /// Root mean square of the divergence over that of `|u|/h`, h the smallest spacing; 0 for air at rest.
     pub divergence_rms_rel: f64,
     /// Mean of `|u|²/2` (m²/s²): kinetic energy per mass of air.
@@ -17,62 +20,84 @@ pub struct Health {
 /// Sums over one plane of cells.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlaneSums {
-    courant: f64,
+    fastest_m_per_s: [f64; 3],
     divergence_squares: f64,
     speed_squares: f64,
 }
 
-/// Fills `centres` with the velocity (m/s) at every cell's centre (mean of its faces, second order; the fourth number is 0) and measures the flow on the way.
-/// `planes` has one entry per plane of cells along z.
-pub fn measure<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, dt_secs: R, centres: &mut [[R; 4]], planes: &mut [PlaneSums]) -> Health {
-    let [nx, ny, _] = grid.cells;
-    let [u, v, w] = &velocity.0;
+/// Fills `centres` with the velocity (m/s) at the centre of every cell and of the first ghosts beyond (mean of its faces, second order; the fourth number
+/// is 0), in memory order. The velocity's ghosts must be filled.
+pub fn to_centres<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, centres: &mut [[R; 4]]) {
+    let strides = grid.strides();
+    let [nx, ny, nz] = grid.cells;
     let half = R::of(0.5);
+    let planes = strides[2] * (GHOST - 1)..strides[2] * (nz + GHOST + 1);
+    for_each_chunk(&mut centres[planes], strides[2], |plane, centres| {
+        for j in GHOST - 1..ny + GHOST + 1 {
+            let row = GHOST - 1 + strides[1] * j;
+            let at = row + strides[2] * (plane + GHOST - 1);
+            let [u, v, w] = [0, 1, 2].map(|axis| {
+                let data = &velocity.0[axis].data;
+                [&data[at..][..nx + 2], &data[at + strides[axis]..][..nx + 2]]
+            });
+            for (i, centre) in centres[row..][..nx + 2].iter_mut().enumerate() {
+                *centre = [half * (u[0][i] + u[1][i]), half * (v[0][i] + v[1][i]), half * (w[0][i] + w[1][i]), R::zero()];
+            }
+        }
+    });
+}
+
+/// Measures the flow. `planes` has one entry per plane of cells along z.
+pub fn measure<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, planes: &mut [PlaneSums]) -> Health {
+    let [nx, ny, nz] = grid.cells;
+    let strides = grid.strides();
     let per_m = grid.spacing_m.map(R::recip);
-    for_each_chunk_pair(centres, nx * ny, planes, 1, |k, centres, sums| {
+    let half = R::of(0.5);
+    for_each_chunk(&mut planes[..nz], 1, |k, sums| {
         let (mut fastest, mut divergence_squares, mut speed_squares) = ([R::zero(); 3], 0.0, 0.0);
-        let k_far = grid.far_face(2, k);
-        for (j, row) in centres.chunks_mut(nx).enumerate() {
-            let j_far = grid.far_face(1, j);
-            let along_x = &u.data[u.index([0, j, k])..][..u.shape[0]];
-            let [down, up] = [j, j_far].map(|j| &v.data[v.index([0, j, k])..][..nx]);
-            let [south, north] = [k, k_far].map(|k| &w.data[w.index([0, j, k])..][..nx]);
-            let (mut row_divergence, mut row_speed) = (R::zero(), R::zero());
-            for (i, centre) in row.iter_mut().enumerate() {
-                let faces = [[along_x[i], along_x[grid.far_face(0, i)]], [down[i], up[i]], [south[i], north[i]]];
-                let outflow: [R; 3] = std::array::from_fn(|axis| (faces[axis][1] - faces[axis][0]) * per_m[axis]);
-                let [x, y, z] = faces.map(|[near, far]| half * (near + far));
-                *centre = [x, y, z, R::zero()];
-                for (fastest, speed) in fastest.iter_mut().zip([x, y, z]) {
+        for j in 0..ny {
+            let at = grid.at([0, j, k]);
+            let faces = [0, 1, 2].map(|axis| {
+                let data = &velocity.0[axis].data;
+                [&data[at..][..nx], &data[at + strides[axis]..][..nx]]
+            });
+            // Partial sums side by side, so that they can be taken in vectors; added in order.
+            let (mut divergences, mut speeds) = ([R::zero(); LANES], [R::zero(); LANES]);
+            for i in 0..nx {
+                let lane = i % LANES;
+                let [[u0, u1], [v0, v1], [w0, w1]] = faces.map(|[low, high]| [low[i], high[i]]);
+                let divergence = (u1 - u0) * per_m[0] + (v1 - v0) * per_m[1] + (w1 - w0) * per_m[2];
+                let centre = [half * (u0 + u1), half * (v0 + v1), half * (w0 + w1)];
+                for (fastest, speed) in fastest.iter_mut().zip(centre) {
                     *fastest = if speed.abs() > *fastest { speed.abs() } else { *fastest };
                 }
-                let divergence = outflow[0] + outflow[1] + outflow[2];
-                row_divergence = row_divergence + divergence * divergence;
-                row_speed = row_speed + (x * x + y * y + z * z);
+                divergences[lane] = divergences[lane] + divergence * divergence;
+                speeds[lane] = speeds[lane] + (centre[0] * centre[0] + centre[1] * centre[1] + centre[2] * centre[2]);
             }
-            divergence_squares += row_divergence.wide();
-            speed_squares += row_speed.wide();
+            divergence_squares += divergences.into_iter().map(R::wide).sum::<f64>();
+            speed_squares += speeds.into_iter().map(R::wide).sum::<f64>();
         }
-        let courant = (0..3).map(|axis| (fastest[axis] * dt_secs * per_m[axis]).wide()).fold(0.0, f64::max);
-        sums[0] = PlaneSums { courant, divergence_squares, speed_squares };
+        sums[0] = PlaneSums { fastest_m_per_s: fastest.map(R::wide), divergence_squares, speed_squares };
     });
     let total = planes.iter().fold(PlaneSums::default(), |a, b| PlaneSums {
-        courant: a.courant.max(b.courant),
+        fastest_m_per_s: [0, 1, 2].map(|axis| a.fastest_m_per_s[axis].max(b.fastest_m_per_s[axis])),
         divergence_squares: a.divergence_squares + b.divergence_squares,
         speed_squares: a.speed_squares + b.speed_squares,
     });
-    let smallest_m = grid.spacing_m.iter().fold(R::infinity(), |a, &h| a.min(h)).wide();
+    let spacing_m = grid.spacing_m.map(R::wide);
+    let smallest_m = spacing_m.into_iter().fold(f64::INFINITY, f64::min);
     let at_rest = total.speed_squares == 0.0;
     Health {
-        courant: total.courant,
+        fastest_m_per_s: total.fastest_m_per_s,
         divergence_rms_rel: if at_rest { 0.0 } else { (total.divergence_squares / total.speed_squares).sqrt() * smallest_m },
         kinetic_energy_m2_per_s2: 0.5 * total.speed_squares / grid.len() as f64,
     }
 }
 
-/// The first cell whose velocity is not a finite number.
-pub fn first_bad_cell<R: Real>(grid: &Grid<R>, centres: &[[R; 4]]) -> Option<[usize; 3]> {
-    let [nx, ny, _] = grid.cells;
-    let at = centres.iter().position(|velocity| velocity.iter().any(|x| !x.is_finite()))?;
-    Some([at % nx, at / nx % ny, at / (nx * ny)])
+/// The first cell, along x, then y, then z, with a velocity that is not a finite number.
+pub fn first_bad_cell<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>) -> Option<[usize; 3]> {
+    let [nx, ny, nz] = grid.cells;
+    let strides = grid.strides();
+    let is_bad = |at: usize| (0..3).any(|axis| [0, strides[axis]].iter().any(|step| !velocity.0[axis].data[at + step].is_finite()));
+    (0..nz).flat_map(|k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k]))).find(|&cell| is_bad(grid.at(cell)))
 }

@@ -1,7 +1,7 @@
 //! The mean wind, and the pull of every layer of air towards it.
 
 use super::config::{Config, Profile};
-use super::{Boundary, Field, Grid, Real, Velocity};
+use super::{Field, Grid, Real, Velocity};
 
 /// Mean wind as a function of height.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,32 +44,31 @@ impl<R: Real> Relaxation<R> {
 
     /// Shifts each layer as a whole towards the mean wind, by the share `rate·dt / (1 + rate·dt)` of what is missing (backward Euler: stable at any step).
     ///
-    /// A shift of a whole layer has no divergence. Across walls the mean is 0 and no layer is shifted.
+    /// A shift of a whole layer has no divergence. Across axes that do not wrap no layer is shifted.
     pub fn apply(&mut self, grid: &Grid<R>, rate_per_sec: f64, dt_secs: f64, velocity: &mut Velocity<R>) {
         let share = rate_per_sec * dt_secs / (1.0 + rate_per_sec * dt_secs);
         for (axis, targets) in [0, 2].into_iter().zip(&self.targets) {
-            if grid.boundary[axis] == Boundary::Wall || share == 0.0 {
+            if !grid.wraps(axis) || share == 0.0 {
                 continue;
             }
             let field = &mut velocity.0[axis];
-            layer_sums(field, &mut self.sums);
+            layer_sums(grid, field, &mut self.sums);
             let per_layer = (field.shape[0] * field.shape[2]) as f64;
             for ((gain, &target), &sum) in self.gains.iter_mut().zip(targets).zip(&self.sums) {
                 *gain = R::of(share * (target - sum / per_layer));
             }
-            for (row, &gain) in field.data.chunks_mut(field.shape[0]).zip(self.gains.iter().cycle()) {
-                row.iter_mut().for_each(|speed| *speed = *speed + gain);
+            for (row, &gain) in field.rows(grid).zip(self.gains.iter().cycle()) {
+                field.data[row..][..field.shape[0]].iter_mut().for_each(|speed| *speed = *speed + gain);
             }
         }
     }
 }
 
-fn layer_sums<R: Real>(field: &Field<R>, sums: &mut [f64]) {
+fn layer_sums<R: Real>(grid: &Grid<R>, field: &Field<R>, sums: &mut [f64]) {
     sums.fill(0.0);
-    for plane in field.data.chunks(field.plane_len()) {
-        for (sum, row) in sums.iter_mut().zip(plane.chunks(field.shape[0])) {
-            *sum += row.iter().fold(R::zero(), |sum, &speed| sum + speed).wide();
-        }
+    let layers = sums.len();
+    for (n, row) in field.rows(grid).enumerate() {
+        sums[n % layers] += field.data[row..][..field.shape[0]].iter().fold(R::zero(), |sum, &speed| sum + speed).wide();
     }
 }
 
@@ -84,7 +83,7 @@ mod tests {
         let mean = MeanWind::new(&config);
         let mut relaxation = Relaxation::new(&grid, &mean);
         let mut velocity = Velocity::zeros(&grid);
-        let at = velocity.0[0].index([3, 0, 5]);
+        let at = grid.at([3, 0, 5]);
         velocity.0[0].data[at] = 4.0;
         for _ in 0..2000 {
             relaxation.apply(&grid, 0.2, 0.1, &mut velocity);
@@ -93,7 +92,7 @@ mod tests {
         let surplus = u.data[at] - u.data[at + 1];
         assert!((surplus - 4.0).abs() < 1e-4, "{surplus}");
         let mut sums = vec![0.0; 8];
-        layer_sums(u, &mut sums);
+        layer_sums(&grid, u, &mut sums);
         for (j, sum) in sums.into_iter().enumerate() {
             let height = 2.0 * j as f64 + 1.0;
             assert!((sum / 1024.0 - mean.at(height)[0]).abs() < 1e-3);

@@ -1,41 +1,60 @@
 //! Trilinear interpolation.
 
-use super::Real;
+use super::{GHOST, Grid, Place, Real};
 
-/// The two values about a point along one axis and the point's fraction of the way from the first to the second.
+/// How far an axis of values reaches.
+#[derive(Clone, Copy, Debug)]
+pub struct Ends<R> {
+    n: isize,
+    wraps: bool,
+    /// Coordinates (cells) between which a point is held on an axis that does not wrap: the faces of the box.
+    held: [R; 2],
+}
+
+impl<R: Real> Ends<R> {
+    /// The ends along `axis` of a field at `place`.
+    #[inline(always)]
+    pub fn of(grid: &Grid<R>, place: Place, axis: usize) -> Self {
+        let n = grid.cells[axis];
+        let offset = grid.offset(place, axis);
+        Self { n: n as isize, wraps: grid.wraps(axis), held: [-offset, R::of(n as f64) - offset] }
+    }
+}
+
+/// The value below a point along one axis, and the point's fraction of the way from there to the next.
 #[derive(Clone, Copy, Debug)]
 pub struct Stencil<R> {
-    /// Index of the first.
+    /// Index of the first in memory along the axis, ghosts counted.
     pub near: usize,
-    /// Index of the second, next to it on either side.
-    pub far: usize,
-    /// 0 at `near`, 1 at `far`.
+    /// 0 at `near`, 1 at the next.
     pub fraction: R,
 }
 
 impl<R: Real> Stencil<R> {
-    /// The stencil of the point `shift` cells from index `i` on an axis of `n` values, however far: wrapped round, or held at the ends.
+    /// The stencil of the point `shift` cells from index `i` on an axis, however far: wrapped round, or held at the faces of the box.
     #[inline(always)]
-    pub fn new(i: usize, shift: R, n: usize, wraps: bool) -> Self {
-        let distance = shift.abs();
-        if distance < R::one() {
-            let (before_first, after_last) = if wraps { (n - 1, 0) } else { (0, n - 1) };
-            let below = if i == 0 { before_first } else { i - 1 };
-            let above = if i + 1 == n { after_last } else { i + 1 };
-            Self { near: i, far: if shift < R::zero() { below } else { above }, fraction: distance }
-        } else {
-            let (floor, fraction) = shift.split();
-            let (near, far) = distant(i as isize + floor, n as isize, wraps);
-            Self { near, far, fraction }
+    pub fn new(i: usize, shift: R, ends: Ends<R>) -> Self {
+        let (floor, fraction) = shift.split();
+        let near = (i as isize).saturating_add(floor);
+        if near >= 0 && near < ends.n - 1 {
+            return Self { near: near as usize + GHOST, fraction };
         }
+        Self::at_the_end(near, fraction, ends)
     }
-}
 
-/// Where values `at` and `at + 1` of an axis of `n` are found.
-#[cold]
-fn distant(at: isize, n: isize, wraps: bool) -> (usize, usize) {
-    let index = |at: isize| if wraps { at.rem_euclid(n) } else { at.clamp(0, n - 1) };
-    (index(at) as usize, index(at + 1) as usize)
+    #[cold]
+    fn at_the_end(near: isize, fraction: R, ends: Ends<R>) -> Self {
+        if ends.wraps {
+            return Self { near: near.rem_euclid(ends.n) as usize + GHOST, fraction };
+        }
+        let [low, high] = ends.held;
+        let coordinate = R::of(near as f64) + fraction;
+        if coordinate > low && coordinate < high {
+            return Self { near: (near + GHOST as isize) as usize, fraction };
+        }
+        let (floor, fraction) = if coordinate <= low { low } else { high }.split();
+        Self { near: (floor + GHOST as isize) as usize, fraction }
+    }
 }
 
 /// A value that can be mixed with another of its kind.
@@ -60,20 +79,10 @@ impl<R: Real> Blend<R> for [R; 4] {
 
 /// The eight values at the corners of the stencils, near before far, x fastest.
 #[inline(always)]
-pub fn corners<R: Real, V: Copy>(data: &[V], [nx, ny, _]: [usize; 3], [x, y, z]: &[Stencil<R>; 3]) -> [V; 8] {
-    let plane = nx * ny;
-    let [(south, north), (down, up)] = [(plane * z.near, plane * z.far), (nx * y.near, nx * y.far)];
-    let [a, b, c, d] = [south + down, south + up, north + down, north + up];
-    [
-        data[a + x.near],
-        data[a + x.far],
-        data[b + x.near],
-        data[b + x.far],
-        data[c + x.near],
-        data[c + x.far],
-        data[d + x.near],
-        data[d + x.far],
-    ]
+pub fn corners<R: Real, V: Copy>(data: &[V], [_, sy, sz]: [usize; 3], [x, y, z]: &[Stencil<R>; 3]) -> [V; 8] {
+    let at = x.near + sy * y.near + sz * z.near;
+    let block = &data[at..at + sz + sy + 2];
+    [block[0], block[1], block[sy], block[sy + 1], block[sz], block[sz + 1], block[sz + sy], block[sz + sy + 1]]
 }
 
 /// The trilinear mean of eight corner values.
@@ -84,8 +93,8 @@ pub fn mix<R: Real, V: Blend<R>>(v: [V; 8], [x, y, z]: &[Stencil<R>; 3]) -> V {
     near.blend(far, z.fraction)
 }
 
-/// The trilinear value of `data`, an array of `shape` with x fastest, at the point of the stencils.
+/// The trilinear value of padded `data` at the point of the stencils.
 #[inline(always)]
-pub fn trilinear<R: Real, V: Blend<R>>(data: &[V], shape: [usize; 3], stencils: &[Stencil<R>; 3]) -> V {
-    mix(corners(data, shape, stencils), stencils)
+pub fn trilinear<R: Real, V: Blend<R>>(data: &[V], strides: [usize; 3], stencils: &[Stencil<R>; 3]) -> V {
+    mix(corners(data, strides, stencils), stencils)
 }

@@ -1,139 +1,82 @@
-//! The solver: the state of the air, and one step of it.
+//! The solver: the state of the air, and what can be asked of it. The order of a step is in [`step`](super::step).
 
 use glam::Vec3;
-use std::ops::RangeBounds;
 
-use super::config::{Config, ConfigError, Dust};
+use super::config::{Config, ConfigError};
+use super::diffuse::Implicit;
 use super::footprint::Footprint;
 use super::health::{self, Health, PlaneSums};
-use super::pressure::Projection;
+use super::pressure::{Pressure, Projection};
 use super::profile::{MeanWind, Relaxation};
-use super::trace::{self, Paths};
-use super::{Field, Grid, Jet, Place, Real, Velocity, advect, boundary, diffuse, forcing, sources};
-
-/// Most parts a step's diffusion is cut into; see [`StepError::TooViscous`].
-pub const MAX_SUBSTEPS: u32 = 256;
+use super::state::{SolidError, State, StateError};
+use super::trace::Paths;
+use super::{Diffusion, Field, Grid, Place, Real, Velocity, advect, transport};
+use super::boundary::Walls;
 
 /// The solver in the precision the simulation runs in.
 pub type WindSolver = Solver<f32>;
 
 /// Incompressible air in a box: velocity on a staggered grid, and dust where asked for.
 ///
-/// ```
-/// use glam::Vec3;
-/// use server::wind::{Boundary, Config, Gusts, Profile, WindSolver};
+/// A lid that drags air round a square box (the lid-driven cavity), to half a minute:
 ///
+/// ```
+/// use server::wind::{Boundary, Config, Gusts, Profile, Solver};
+///
+/// let lid = Boundary::Lid { velocity_m_per_s: [1.0, 0.0, 0.0] };
 /// let config = Config {
-///     cells: [16, 1, 16],
-///     spacing_m: [1.0; 3],
-///     boundary: [Boundary::Wrap; 3],
+///     cells: [16, 16, 1],
+///     spacing_m: [1.0 / 16.0; 3],
+///     boundary: [[Boundary::NoSlip; 2], [Boundary::NoSlip, lid], [Boundary::Wrap; 2]],
+///     viscosity_m2_per_s: 0.01,
 ///     mean_wind_m_per_s: [0.0; 3],
 ///     profile: Profile::Uniform,
 ///     gusts: Gusts { number: 0, ..Gusts::default() },
 ///     ..Config::default()
 /// };
-/// let mut wind = WindSolver::new(&config)?;
-/// let k = std::f32::consts::TAU / 16.0;
-/// wind.set_velocity(|[x, _, z]| [(k * z).sin(), 0.0, (k * x).sin()]);
-/// let report = wind.step(0.1, &[])?;
-/// assert!(report.divergence_rms_rel < 1e-6);
-/// assert!(wind.velocity_at(Vec3::new(0.0, 0.5, 4.0)).x > 0.9);
+/// let mut air = Solver::<f64>::new(&config)?;
+/// air.set_velocity(|[_x, _y, _z]| [0.0; 3]);
+/// while air.time_secs() < 30.0 {
+///     let report = air.step(0.02, &[])?;
+///     assert!(report.divergence_rms_rel < 1e-10);
+/// }
+/// let [u, v, w] = air.velocity_at([0.5, 0.1, 0.03]);
+/// assert!(u < -0.05 && v.abs() < 0.1 && w == 0.0, "below the middle air flows back: {u}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// Other methods are chosen in [`Config`]: `advection: Advection::MacCormack, time: TimeScheme::Reflection`, for example. [`Solver::set_solid`] puts
+/// obstacles in the box, [`Solver::prescribe`] says what blows through faces of [`Inflow`](super::Boundary::Inflow), [`Solver::samples`] gives every value
+/// with its place.
 pub struct Solver<R: Real> {
-    config: Config,
-    grid: Grid<R>,
-    time_secs: f64,
-    velocity: Velocity<R>,
-    dust: Option<Field<R>>,
+    pub(super) config: Config,
+    pub(super) grid: Grid<R>,
+    pub(super) time_secs: f64,
+    pub(super) velocity: Velocity<R>,
+    /// Gradient of the pressure over density (m/s²) of the step before, for schemes that use it.
+    pub(super) pull: Velocity<R>,
+    pub(super) dust: Option<Field<R>>,
+    /// Velocity at the start of a step, where there is dust to carry through the mean of old and new.
+    pub(super) old: Option<Velocity<R>>,
+    pub(super) cover: Vec<R>,
+    solid: Option<Vec<bool>>,
 
-    centres: Vec<[R; 4]>,
-    paths: Paths<R>,
-    next_velocity: Velocity<R>,
-    next_dust: Option<Field<R>>,
-    advection: advect::Scratch<R>,
-    projection: Projection,
-    mean: MeanWind,
-    relaxation: Relaxation<R>,
-    footprint: Footprint<R>,
-    planes: Vec<PlaneSums>,
-}
-
-/// What a step did.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepReport {
-    /// Largest `|u|·dt/h` of any cell and axis after the step. Above 1 is stable, but blurs in time.
-    pub courant: f64,
-    /// Root mean square divergence over that of `|u|/h`; rounding keeps it near 1e-7 in f32.
-    pub divergence_rms_rel: f64,
-    /// Mean of `|u|²/2` (m²/s²).
-    pub kinetic_energy_m2_per_s2: f64,
-    /// Parts the diffusion of velocity was cut into; 0 without viscosity.
-    pub substeps: u32,
-}
-
-/// Why a step could not be taken.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum StepError {
-    /// The step is no positive, finite time. Nothing was changed.
-    #[error("wind: dt_secs is {dt_secs}; allowed: above 0, finite")]
-    BadTimeStep {
-        /// The step asked for.
-        dt_secs: f32,
-    },
-    /// A jet with a number out of range. Nothing was changed.
-    #[error("wind: jets[{index}] is {jet:?}; allowed: finite numbers, radius_m above 0, rate_per_sec 0 or more")]
-    BadJet {
-        /// Its place in the list.
-        index: usize,
-        /// The jet.
-        jet: Jet,
-    },
-    /// The step is too long for explicit diffusion. Nothing was changed.
-    #[error(
-        "wind: {what} over dt_secs = {dt_secs} needs {needed:.0} diffusion substeps of at most {stable_dt_secs} s; allowed: {MAX_SUBSTEPS}. Take a shorter step, larger cells or a smaller value"
-    )]
-    TooViscous {
-        /// The setting that asks for it.
-        what: &'static str,
-        /// The step asked for.
-        dt_secs: f32,
-        /// Substeps it would take.
-        needed: f64,
-        /// Longest stable substep.
-        stable_dt_secs: f64,
-    },
-    /// The velocity stopped being a number. The state is lost: [`Solver::restore`] an earlier one.
-    #[error("wind: velocity is not finite after the step at {time_secs} s, first in cell {cell:?}")]
-    NotFinite {
-        /// The first such cell along x, then y, then z.
-        cell: [usize; 3],
-        /// Time (s) before the step.
-        time_secs: f64,
-    },
-}
-
-/// All that a solver with the same settings needs to go on with the same bits.
-#[derive(Clone, Debug, PartialEq)]
-pub struct State<R> {
-    /// Time since the start (s).
-    pub time_secs: f64,
-    /// Velocity components on their faces (m/s).
-    pub velocity: [Vec<R>; 3],
-    /// Dust at the centres of cells; empty without dust.
-    pub dust: Vec<R>,
-}
-
-/// A state that does not fit the solver's grid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("wind: state has {found} values of {what}; this grid has {expected}")]
-pub struct StateError {
-    /// The field in question.
-    pub what: &'static str,
-    /// Values in the state.
-    pub found: usize,
-    /// Values in the solver.
-    pub expected: usize,
+    pub(super) walls: Walls<R>,
+    pub(super) stages: [Velocity<R>; 2],
+    pub(super) dust_stages: [Field<R>; 2],
+    pub(super) centres: Vec<[R; 4]>,
+    pub(super) paths: Paths<R>,
+    pub(super) advection: advect::Scratch<R>,
+    pub(super) transport: transport::Scratch<R>,
+    pub(super) projection: Projection,
+    pub(super) implicit: Option<Implicit>,
+    pub(super) mean: MeanWind,
+    pub(super) relaxation: Relaxation<R>,
+    pub(super) footprint: Footprint<R>,
+    /// What sources blow out of each cell (1/s); empty without any.
+    pub(super) inflow: Vec<f64>,
+    pub(super) planes: Vec<PlaneSums>,
+    pub(super) health: Health,
 }
 
 impl<R: Real> Solver<R> {
@@ -145,166 +88,141 @@ impl<R: Real> Solver<R> {
         config.validate()?;
         let grid = config.grid::<R>();
         let mean = MeanWind::new(config);
-        let dust = config.dust.map(|_| Field::zeros(&grid, Place::Centre));
+        let still = Velocity::zeros(&grid);
+        let dust = Field::zeros(&grid, Place::Centre);
+        let is_implicit = matches!(config.diffusion, Diffusion::Implicit | Diffusion::CrankNicolson);
+        let has_sources = config.primitives.iter().any(|primitive| primitive.is_source());
         let mut solver = Self {
             time_secs: 0.0,
-            velocity: Velocity::zeros(&grid),
-            centres: vec![[R::zero(); 4]; grid.len()],
+            velocity: still.clone(),
+            pull: still.clone(),
+            dust: config.dust.map(|_| dust.clone()),
+            old: config.dust.map(|_| still.clone()),
+            cover: vec![R::one(); grid.cells[0] * grid.cells[2]],
+            solid: None,
+            walls: Walls::new(&grid, Box::new(move |[_, y, _], _| mean.at(y.max(0.0)))),
+            stages: [still.clone(), still],
+            dust_stages: [dust.clone(), dust],
+            centres: vec![[R::zero(); 4]; grid.padded_len()],
             paths: Paths::zeros(&grid),
-            next_velocity: Velocity::zeros(&grid),
-            next_dust: dust.clone(),
             advection: advect::Scratch::new(&grid),
-            projection: Projection::new(&grid),
+            transport: transport::Scratch::new(&grid),
+            projection: Projection::new(&grid, config.pressure, None),
+            implicit: is_implicit.then(|| Implicit::new(&grid)),
             relaxation: Relaxation::new(&grid, &mean),
             footprint: Footprint::default(),
+            inflow: if has_sources { vec![0.0; grid.len()] } else { Vec::new() },
             planes: vec![PlaneSums::default(); grid.cells[2]],
+            health: Health::default(),
             config: config.clone(),
             grid,
-            dust,
             mean,
         };
         solver.set_velocity(|[_, y, _]| mean.at(y.wide()).map(R::of));
         Ok(solver)
     }
 
-    /// Advances the air by `dt_secs` (s), driven by the mean wind, the random sources and `jets`.
-    ///
-    /// # Errors
-    /// See [`StepError`].
-    pub fn step(&mut self, dt_secs: f32, jets: &[Jet]) -> Result<StepReport, StepError> {
-        self.check(dt_secs, jets)?;
-        self.begin(dt_secs)?;
-        self.carry_on();
-        self.finish(dt_secs, jets)
-    }
-
-    /// The first third of [`Solver::step`], for a caller who has no time for a whole step at once: `begin`, [`carry_on`](Self::carry_on)
-    /// and [`finish`](Self::finish) in this order are a step, with the same bits. What is read of the air's velocity at the centres of
-    /// cells meanwhile is that of the step before.
-    ///
-    /// # Errors
-    /// See [`StepError`]; nothing was changed.
-    pub fn begin(&mut self, dt_secs: f32) -> Result<(), StepError> {
-        self.check(dt_secs, &[])?;
-        trace::trace(&self.grid, &self.centres, R::of(dt_secs.into()), &mut self.paths);
-        self.carry(..1);
-        Ok(())
-    }
-
-    /// The second third of [`Solver::step`].
-    pub fn carry_on(&mut self) {
-        self.carry(1..);
-    }
-
-    /// The last third of [`Solver::step`].
-    ///
-    /// # Errors
-    /// See [`StepError`].
-    pub fn finish(&mut self, dt_secs: f32, jets: &[Jet]) -> Result<StepReport, StepError> {
-        let substeps = self.check(dt_secs, jets)?;
-        self.push(dt_secs, jets);
-        boundary::close_walls(&self.grid, &mut self.velocity);
-        self.diffuse(dt_secs, substeps);
-        self.projection.project(&self.grid, &mut self.velocity);
-        let health = self.measure(dt_secs);
-        if !health.kinetic_energy_m2_per_s2.is_finite() {
-            let cell = health::first_bad_cell(&self.grid, &self.centres).unwrap_or_default();
-            return Err(StepError::NotFinite { cell, time_secs: self.time_secs });
-        }
-        self.time_secs += f64::from(dt_secs);
-        let Health { courant, divergence_rms_rel, kinetic_energy_m2_per_s2 } = health;
-        Ok(StepReport { courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps: substeps.velocity })
-    }
-
-    /// Whether a solver with `config` could take steps of `dt_secs` (s), asked without making one.
-    ///
-    /// # Errors
-    /// [`StepError::BadTimeStep`] or [`StepError::TooViscous`].
-    pub fn check_step(config: &Config, dt_secs: f32) -> Result<(), StepError> {
-        Substeps::new(config, &config.grid::<R>(), dt_secs).map(|_| ())
-    }
-
-    fn check(&self, dt_secs: f32, jets: &[Jet]) -> Result<Substeps, StepError> {
-        let substeps = Substeps::new(&self.config, &self.grid, dt_secs)?;
-        match jets.iter().position(|jet| !jet.is_valid()) {
-            Some(index) => Err(StepError::BadJet { index, jet: jets[index] }),
-            None => Ok(substeps),
-        }
-    }
-
-    /// Carries some of the fields, u, v, w and dust, along the paths.
-    fn carry(&mut self, which: impl RangeBounds<usize>) {
-        let velocities = self.velocity.0.iter_mut().zip(&mut self.next_velocity.0);
-        let fields = velocities.chain(self.dust.iter_mut().zip(&mut self.next_dust)).enumerate();
-        for (_, (field, next)) in fields.filter(|(index, _)| which.contains(index)) {
-            advect::advect(self.config.advection, &self.grid, &self.paths, field, next, &mut self.advection);
-            std::mem::swap(field, next);
-        }
-    }
-
-    fn push(&mut self, dt_secs: f32, jets: &[Jet]) {
-        let (grid, gusts, dt) = (&self.grid, &self.config.gusts, f64::from(dt_secs));
-        for source in sources::sources_at(&self.config, grid, &self.mean, self.time_secs + 0.5 * dt) {
-            sources::push(grid, gusts, &source, dt, &mut self.velocity, &mut self.footprint);
-            if let (Some(dust), Some(Dust { release_per_sec, .. })) = (&mut self.dust, self.config.dust) {
-                sources::release(grid, gusts, &source, release_per_sec.into(), dt, dust, &mut self.footprint);
-            }
-        }
-        for jet in jets {
-            forcing::drive(grid, jet, R::of(dt), &mut self.velocity, &mut self.footprint);
-        }
-        self.relaxation.apply(grid, self.config.relaxation_per_sec.into(), dt, &mut self.velocity);
-        if let (Some(field), Some(Dust { settling_per_sec, .. })) = (&mut self.dust, self.config.dust) {
-            let left = R::of(1.0 / (1.0 + f64::from(settling_per_sec) * dt));
-            field.data.iter_mut().for_each(|density| *density = *density * left);
-        }
-    }
-
-    fn diffuse(&mut self, dt_secs: f32, substeps: Substeps) {
-        let grid = &self.grid;
-        let spread = |field: &mut Field<R>, next: &mut Field<R>, diffusivity: f32, parts: u32| {
-            let dt = R::of(f64::from(dt_secs) / f64::from(parts));
-            for _ in 0..parts {
-                diffuse::diffuse(grid, R::of(diffusivity.into()), dt, field, next);
-                std::mem::swap(field, next);
-            }
-        };
-        for (field, next) in self.velocity.0.iter_mut().zip(&mut self.next_velocity.0) {
-            spread(field, next, self.config.viscosity_m2_per_s, substeps.velocity);
-        }
-        if let (Some(field), Some(next), Some(dust)) = (&mut self.dust, &mut self.next_dust, self.config.dust) {
-            spread(field, next, dust.diffusivity_m2_per_s, substeps.dust);
-        }
-    }
-
-    fn measure(&mut self, dt_secs: f32) -> Health {
-        health::measure(&self.grid, &self.velocity, R::of(dt_secs.into()), &mut self.centres, &mut self.planes)
-    }
-
-    /// Sets the velocity (m/s) from a function of position (m), and takes the divergence out of it.
+    /// Sets the velocity (m/s) from a function of position (m), and takes the divergence out of it. What is known of the pressure is forgotten.
     pub fn set_velocity(&mut self, f: impl Fn([R; 3]) -> [R; 3]) {
         for (axis, field) in self.velocity.0.iter_mut().enumerate() {
             field.fill(&self.grid, |position| f(position)[axis]);
         }
-        boundary::close_walls(&self.grid, &mut self.velocity);
-        self.projection.project(&self.grid, &mut self.velocity);
-        self.measure(0.0);
+        self.pull.0.iter_mut().for_each(|field| field.data.fill(R::zero()));
+        self.walls.blow(self.time_secs);
+        self.walls.close(&mut self.velocity);
+        self.projection.project(&self.grid, &mut self.velocity, &[], None);
+        self.walls.close(&mut self.velocity);
+        self.observe();
     }
 
-    /// Velocity (m/s) at a position (m) in the box, trilinear between faces. Wrapped axes repeat; beyond walls the velocity at the wall holds.
-    pub fn velocity_at(&self, position_m: Vec3) -> Vec3 {
-        let position = position_m.to_array().map(|x| R::of(x.into()));
-        Vec3::from_array(std::array::from_fn(|axis| self.velocity.0[axis].at(&self.grid, position).wide() as f32))
+    /// Makes solid the cells whose centre (m) `f` says are: obstacles through which no air flows and to which it sticks, in steps of a cell. Air
+    /// starts anew from what it was outside of them.
+    ///
+    /// # Errors
+    /// If the pressure is solved directly or friction by transforms, which both need a box without solid cells, or if no cell is left to the air; nothing is
+    /// changed then.
+    pub fn set_solid(&mut self, f: impl Fn([R; 3]) -> bool) -> Result<(), SolidError> {
+        let [nx, ny, nz] = self.grid.cells;
+        let centre = |n: usize| self.grid.position_m(Place::Centre, [n % nx, n / nx % ny, n / (nx * ny)]);
+        let solid: Vec<bool> = (0..nx * ny * nz).map(|n| f(centre(n))).collect();
+        if self.config.pressure == Pressure::Direct {
+            return Err(SolidError::Pressure);
+        }
+        if self.implicit.is_some() {
+            return Err(SolidError::Diffusion);
+        }
+        if solid.iter().all(|&solid| solid) {
+            return Err(SolidError::Full);
+        }
+        self.walls.set_solid(&solid);
+        self.projection = Projection::new(&self.grid, self.config.pressure, Some(&solid));
+        self.solid = Some(solid);
+        self.pull.0.iter_mut().for_each(|field| field.data.fill(R::zero()));
+        self.walls.close(&mut self.velocity);
+        self.projection.project(&self.grid, &mut self.velocity, &[], None);
+        self.walls.close(&mut self.velocity);
+        self.observe();
+        Ok(())
+    }
+
+    /// Whether each cell is solid, x fastest; `None` where all is air.
+    pub fn solid(&self) -> Option<&[bool]> {
+        self.solid.as_deref()
+    }
+
+    /// Says what blows through faces of [`Inflow`](super::Boundary::Inflow): a velocity (m/s) as a function of position (m) and time (s). Where the box has no outflow, what
+    /// comes in and what goes out are made to balance.
+    pub fn prescribe(&mut self, f: impl Fn([f64; 3], f64) -> [f64; 3] + Send + Sync + 'static) {
+        self.walls.prescribe(Box::new(f));
+        self.walls.blow(self.time_secs);
+    }
+
+    /// Says which share, 0 to 1, of the canopy stands in each column of cells, x fastest. All of it does at first.
+    pub fn set_cover(&mut self, cover: impl Iterator<Item = f32>) {
+        self.cover.iter_mut().zip(cover).for_each(|(cover, share)| *cover = R::of(share.clamp(0.0, 1.0).into()));
+    }
+
+    /// Takes in the new velocity: what cells and measures are made of.
+    pub(super) fn observe(&mut self) {
+        health::to_centres(&self.grid, &self.velocity, &mut self.centres);
+        self.health = health::measure(&self.grid, &self.velocity, &mut self.planes);
+    }
+
+    /// Velocity (m/s) at a position (m) in the box, trilinear between faces: second order in the spacing. Wrapped axes repeat; beyond other faces the
+    /// velocity on the face holds.
+    pub fn velocity_at(&self, position_m: [R; 3]) -> [R; 3] {
+        self.velocity.0.each_ref().map(|field| field.at(&self.grid, position_m))
+    }
+
+    /// Every value of the velocity component along `axis` (m/s) with its position (m).
+    pub fn samples(&self, axis: usize) -> impl Iterator<Item = ([R; 3], R)> + '_ {
+        self.velocity.0[axis].samples(&self.grid)
     }
 
     /// Velocities (m/s) at the centres of cells, x fastest, then y, then z: cell (i, j, k) is item `i + nx·(j + ny·k)`.
-    pub fn cell_velocities(&self) -> impl ExactSizeIterator<Item = Vec3> + '_ {
-        self.centres.iter().map(|&[x, y, z, _]| Vec3::new(x.wide() as f32, y.wide() as f32, z.wide() as f32))
+    pub fn cell_velocities(&self) -> impl Iterator<Item = Vec3> + '_ {
+        let [nx, ny, nz] = self.grid.cells;
+        (0..ny * nz).flat_map(move |row| {
+            let at = self.grid.at([0, row % ny, row / ny]);
+            self.centres[at..at + nx].iter().map(|&[x, y, z, _]| Vec3::new(x.wide() as f32, y.wide() as f32, z.wide() as f32))
+        })
     }
 
     /// Concentration of dust at the centres of cells, in the order of [`Solver::cell_velocities`]; `None` in clear air.
-    pub fn dust(&self) -> Option<&Field<R>> {
-        self.dust.as_ref()
+    pub fn dust(&self) -> Option<impl Iterator<Item = f32> + '_> {
+        self.dust.as_ref().map(|dust| dust.values(&self.grid).map(|density| density.wide() as f32))
+    }
+
+    /// Every concentration of dust with its position (m); none in clear air.
+    pub fn dust_samples(&self) -> impl Iterator<Item = ([R; 3], R)> + '_ {
+        self.dust.iter().flat_map(|dust| dust.samples(&self.grid))
+    }
+
+    /// Sets the dust from a function of position (m). Clear air stays clear.
+    pub fn set_dust(&mut self, f: impl Fn([R; 3]) -> R) {
+        if let Some(dust) = &mut self.dust {
+            dust.fill(&self.grid, f);
+        }
     }
 
     /// The velocity on its faces.
@@ -329,63 +247,38 @@ impl<R: Real> Solver<R> {
 
     /// A copy of the state, for a checkpoint.
     pub fn state(&self) -> State<R> {
+        let values = |velocity: &Velocity<R>| velocity.0.each_ref().map(|field| field.values(&self.grid).collect());
         State {
             time_secs: self.time_secs,
-            velocity: [0, 1, 2].map(|axis| self.velocity.0[axis].data.clone()),
-            dust: self.dust.as_ref().map_or_else(Vec::new, |dust| dust.data.clone()),
+            velocity: values(&self.velocity),
+            pull: values(&self.pull),
+            dust: self.dust.iter().flat_map(|dust| dust.values(&self.grid)).collect(),
         }
     }
 
-    /// Takes up a state of a solver with the same settings; steps then have the same bits as if it had never stopped.
+    /// Takes up a state of a solver with the same settings; steps then have the same bits as if it had never stopped. With an iterative pressure, whose first
+    /// guess is the potential of the step before, they agree to its tolerance.
     ///
     /// # Errors
     /// A field of the wrong size; the solver is then as it was.
     pub fn restore(&mut self, state: &State<R>) -> Result<(), StateError> {
-        let fields = ["velocity.x", "velocity.y", "velocity.z"].into_iter().zip(&state.velocity).zip(&self.velocity.0);
-        for ((what, found), expected) in fields {
-            same_len(what, found.len(), expected.data.len())?;
+        for (axis, field) in self.velocity.0.iter().enumerate() {
+            StateError::check(["velocity.x", "velocity.y", "velocity.z"][axis], state.velocity[axis].len(), field.len())?;
+            StateError::check(["pull.x", "pull.y", "pull.z"][axis], state.pull[axis].len(), field.len())?;
         }
-        same_len("dust", state.dust.len(), self.dust.as_ref().map_or(0, |dust| dust.data.len()))?;
-        for (field, values) in self.velocity.0.iter_mut().zip(&state.velocity) {
-            field.data.copy_from_slice(values);
+        StateError::check("dust", state.dust.len(), self.dust.as_ref().map_or(0, Field::len))?;
+        for axis in 0..3 {
+            self.velocity.0[axis].set_values(&self.grid, &state.velocity[axis]);
+            self.pull.0[axis].set_values(&self.grid, &state.pull[axis]);
         }
         if let Some(dust) = &mut self.dust {
-            dust.data.copy_from_slice(&state.dust);
+            dust.set_values(&self.grid, &state.dust);
         }
         self.time_secs = state.time_secs;
-        self.measure(0.0);
+        self.walls.blow(self.time_secs);
+        self.walls.close(&mut self.velocity);
+        self.observe();
         Ok(())
-    }
-}
-
-fn same_len(what: &'static str, found: usize, expected: usize) -> Result<(), StateError> {
-    if found == expected { Ok(()) } else { Err(StateError { what, found, expected }) }
-}
-
-/// Parts the diffusion of each field is cut into.
-#[derive(Clone, Copy)]
-struct Substeps {
-    velocity: u32,
-    dust: u32,
-}
-
-impl Substeps {
-    fn new<R: Real>(config: &Config, grid: &Grid<R>, dt_secs: f32) -> Result<Self, StepError> {
-        if !(dt_secs > 0.0 && dt_secs.is_finite()) {
-            return Err(StepError::BadTimeStep { dt_secs });
-        }
-        let count = |what, diffusivity: f32| {
-            let stable_dt_secs = diffuse::stable_dt_secs(grid, R::of(diffusivity.into())).wide();
-            let needed = (f64::from(dt_secs) / stable_dt_secs).ceil();
-            if needed > f64::from(MAX_SUBSTEPS) {
-                return Err(StepError::TooViscous { what, dt_secs, needed, stable_dt_secs });
-            }
-            Ok(needed as u32)
-        };
-        Ok(Self {
-            velocity: count("viscosity_m2_per_s", config.viscosity_m2_per_s)?,
-            dust: config.dust.map_or(Ok(0), |dust| count("dust.diffusivity_m2_per_s", dust.diffusivity_m2_per_s))?,
-        })
     }
 }
 

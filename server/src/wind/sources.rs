@@ -68,7 +68,7 @@ pub fn push<R: Real>(
         let gain = R::of(source.push_m_per_s2[axis] * dt_secs);
         if gain != R::zero() {
             footprint.put(grid, field.place, source.position_m.map(R::of), gusts.radius_m.map(|r| R::of(r.into())));
-            footprint.for_each(field, |speed, weight| *speed = *speed + weight * gain);
+            footprint.for_each(grid, field, |speed, weight, _| *speed = *speed + weight * gain);
         }
     }
 }
@@ -85,7 +85,7 @@ pub fn release<R: Real>(
 ) {
     let gain = R::of(source.level * release_per_sec * dt_secs);
     footprint.put(grid, dust.place, source.position_m.map(R::of), gusts.radius_m.map(|r| R::of(r.into())));
-    footprint.for_each(dust, |density, weight| *density = *density + weight * gain);
+    footprint.for_each(grid, dust, |density, weight, _| *density = *density + weight * gain);
 }
 
 /// Random numbers from a key (SplitMix64, Steele, Lea & Flood 2014).

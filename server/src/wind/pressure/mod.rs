@@ -1,91 +1,163 @@
 //! Taking the divergence out of a velocity.
 
-mod transform;
+mod coloured;
+mod conjugate;
+mod iterative;
+mod kernels;
+mod multigrid;
+mod operator;
+mod regions;
+mod relax;
+mod system;
+#[cfg(test)]
+mod tests;
+mod transfer;
 
-pub use transform::Poisson;
+pub use iterative::{Convergence, Effort, Iterative, Method};
+pub use system::{System, SystemError};
 
 use super::parallel::for_each_chunk;
-use super::{Grid, Real, Velocity};
+use super::separable::{Basis, Edge, Separable};
+use super::{Boundary, Grid, Place, Real, Velocity};
 
-/// Removes the gradient part of a velocity (Helmholtz–Hodge; 000 §2.3.6), exactly: what is left has no divergence beyond rounding.
+/// How the Poisson equation of the projection is solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Pressure {
+    /// By transforms along the axes: exact but for rounding, the fastest, and for boxes without solid cells only.
+    #[default]
+    Direct,
+    /// By iteration, up to a residual or a number of sweeps.
+    Iterative(Method, Effort),
+}
+
+/// Removes the gradient part of a velocity (Helmholtz–Hodge; 000 §2.3.6): what is left has no divergence beyond rounding, or the tolerance of an
+/// iterative method.
 pub struct Projection {
-    poisson: Poisson,
+    solver: Solver,
     potential: Vec<f64>,
+    divergence: Vec<f64>,
+}
+
+enum Solver {
+    Direct(Separable),
+    Iterative(Box<Iterative>, Effort),
 }
 
 impl Projection {
-    /// Plans the transforms of `grid` and allocates all that projecting needs.
-    pub fn new<R: Real>(grid: &Grid<R>) -> Self {
-        Self { poisson: Poisson::new(grid), potential: vec![0.0; grid.len()] }
+    /// Plans the solution on `grid` with these solid cells (one entry per cell, x fastest), and allocates all that projecting needs.
+    pub fn new<R: Real>(grid: &Grid<R>, pressure: Pressure, solid: Option<&[bool]>) -> Self {
+        let spacing_m = grid.spacing_m.map(R::wide);
+        let edges = |axis: usize| {
+            let edge = |face| if face == Boundary::Outflow { Edge::Dirichlet } else { Edge::Neumann };
+            (!grid.wraps(axis)).then(|| grid.boundary[axis].map(edge))
+        };
+        let edges = [0, 1, 2].map(edges);
+        let solver = match pressure {
+            Pressure::Direct => {
+                let bases = edges.map(|edges| edges.map_or(Basis::Wrap, Basis::Centres));
+                Solver::Direct(Separable::new(grid.cells, spacing_m, bases))
+            }
+            Pressure::Iterative(method, effort) => {
+                let system = System::new(grid.cells, spacing_m, edges, solid).expect("a grid and its solid cells fit");
+                Solver::Iterative(Box::new(Iterative::new(system, method)), effort)
+            }
+        };
+        Self { solver, potential: vec![0.0; grid.len()], divergence: vec![0.0; grid.len()] }
     }
 
-    /// Makes `velocity` free of divergence. Velocities through walls must be 0, and stay so; on wrapped axes momentum is kept to rounding.
+    /// Makes `velocity`, whose boundary values are filled in, free of divergence, or gives it the divergence `inflow` (1/s, one per cell, or
+    /// empty). Adds the gradient taken out, times `per_secs`, to `pull`. On wrapped axes momentum is kept to rounding.
     ///
-    /// In f32 at most 1e-6 of the rms divergence is left on boxes of up to 64 cells a side.
-    pub fn project<R: Real>(&mut self, grid: &Grid<R>, velocity: &mut Velocity<R>) {
-        divergence(grid, velocity, &mut self.potential);
-        self.poisson.solve(&mut self.potential);
-        subtract_gradient(grid, &self.potential, velocity);
+    /// Direct in f32, at most 1e-6 of the rms divergence is left on boxes of up to 128 cells a side.
+    pub fn project<R: Real>(
+        &mut self,
+        grid: &Grid<R>,
+        velocity: &mut Velocity<R>,
+        inflow: &[f64],
+        pull: Option<(&mut Velocity<R>, f64)>,
+    ) -> Convergence {
+        let Self { solver, potential, divergence: source } = self;
+        let sign = if matches!(solver, Solver::Direct(_)) { -1.0 } else { 1.0 };
+        divergence(grid, velocity, sign, source);
+        source.iter_mut().zip(inflow).for_each(|(source, &inflow)| *source -= sign * inflow);
+        let (potential, convergence) = match solver {
+            Solver::Direct(separable) => {
+                separable.solve(0.0, source);
+                (&*source, Convergence { residual: 0.0, sweeps: 0, tolerance: 0.0 })
+            }
+            Solver::Iterative(iterative, effort) => {
+                let convergence = iterative.solve(source, potential, *effort);
+                (&*potential, convergence)
+            }
+        };
+        let (mut pull, per_secs) = match pull {
+            Some((pull, per_secs)) => (Some(pull), R::of(per_secs)),
+            None => (None, R::zero()),
+        };
+        for (axis, field) in velocity.0.iter_mut().enumerate() {
+            subtract_gradient(grid, potential, axis, R::one(), &mut field.data);
+            if let Some(pull) = &mut pull {
+                subtract_gradient(grid, potential, axis, -per_secs, &mut pull.0[axis].data);
+            }
+        }
+        convergence
     }
 }
 
-/// Divergence (1/s) of each cell: net outflow through its faces per volume.
-pub fn divergence<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, divergence: &mut [f64]) {
+/// Divergence (1/s) of each cell, times `sign`: net outflow through its faces per volume.
+pub fn divergence<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, sign: f64, divergence: &mut [f64]) {
     let [nx, ny, _] = grid.cells;
-    let [u, v, w] = &velocity.0;
-    let per_m = grid.spacing_m.map(|h| h.wide().recip());
+    let strides = grid.strides();
+    let per_m = grid.spacing_m.map(|h| sign / h.wide());
     for_each_chunk(divergence, nx * ny, |k, plane| {
-        let k_far = grid.far_face(2, k);
         for (j, out) in plane.chunks_mut(nx).enumerate() {
-            let j_far = grid.far_face(1, j);
-            let along_x = &u.data[u.index([0, j, k])..][..u.shape[0]];
-            let [down, up] = [j, j_far].map(|j| &v.data[v.index([0, j, k])..][..nx]);
-            let [south, north] = [k, k_far].map(|k| &w.data[w.index([0, j, k])..][..nx]);
-            let net = |i: usize, far: usize| {
-                (along_x[far] - along_x[i]).wide() * per_m[0]
-                    + (up[i] - down[i]).wide() * per_m[1]
-                    + (north[i] - south[i]).wide() * per_m[2]
-            };
-            let (last, inner) = out.split_last_mut().expect("a row has a cell");
-            for (i, out) in inner.iter_mut().enumerate() {
-                *out = net(i, i + 1);
+            let at = grid.at([0, j, k]);
+            let [[u0, u1], [v0, v1], [w0, w1]] = [0, 1, 2].map(|axis| {
+                let data = &velocity.0[axis].data;
+                [&data[at..][..nx], &data[at + strides[axis]..][..nx]]
+            });
+            for (i, out) in out.iter_mut().enumerate() {
+                *out = (u1[i] - u0[i]).wide() * per_m[0] + (v1[i] - v0[i]).wide() * per_m[1] + (w1[i] - w0[i]).wide() * per_m[2];
             }
-            *last = net(nx - 1, grid.far_face(0, nx - 1));
         }
     });
 }
 
-/// Subtracts the gradient of a cell-centred potential (m²/s) from the faces between cells. Faces on walls are left alone.
-pub fn subtract_gradient<R: Real>(grid: &Grid<R>, potential: &[f64], velocity: &mut Velocity<R>) {
-    let [nx, ny, nz] = grid.cells;
-    for (axis, field) in velocity.0.iter_mut().enumerate() {
-        let per_m = grid.spacing_m[axis].wide().recip();
-        let shape = field.shape;
-        let between = |axis_of_index: usize, i: usize| axis_of_index != axis || grid.wraps(axis) || (i > 0 && i < grid.cells[axis]);
-        let below = |axis_of_index: usize, i: usize| if axis_of_index == axis { grid.below(axis, i) } else { i };
-        for_each_chunk(&mut field.data, shape[0] * shape[1], |k, plane| {
-            for (j, row) in plane.chunks_mut(shape[0]).enumerate() {
-                if !between(1, j) || !between(2, k) {
-                    continue;
+/// Subtracts `share` of the gradient along `axis` of a cell-centred potential (m²/s; no ghosts) from the faces the flow decides. On faces of outflow the potential is 0.
+fn subtract_gradient<R: Real>(grid: &Grid<R>, potential: &[f64], axis: usize, share: R, data: &mut [R]) {
+    let [nx, ny, _] = grid.cells;
+    let n = grid.cells[axis];
+    let per_m = share.wide() / grid.spacing_m[axis].wide();
+    let place = Place::Face(axis);
+    let (xs, ys) = (grid.free(place, 0), grid.free(place, 1));
+    let row = |j: usize, k: usize| &potential[nx * (j + ny * k)..][..nx];
+    // The cells before and behind face i along the axis, and the sign with which each counts: beyond an outflow the mirror image of the opposite sign.
+    let before = |i: usize| if i > 0 { (i - 1, 1.0) } else if grid.wraps(axis) { (n - 1, 1.0) } else { (0, -1.0) };
+    let behind = |i: usize| if i < n { (i, 1.0) } else { (n - 1, -1.0) };
+    super::field::for_each_plane(grid, grid.free(place, 2), data, |k, plane| {
+        for j in ys.clone() {
+            let start = grid.at([0, j, k]) % plane.len();
+            if axis == 0 {
+                let p = row(j, k);
+                let out = &mut plane[start..][..nx + 1];
+                for i in xs.clone().filter(|&i| i == 0 || i == nx) {
+                    let ((a, sign_a), (b, sign_b)) = (before(i), behind(i));
+                    out[i] = out[i] - R::of((sign_b * p[b] - sign_a * p[a]) * per_m);
                 }
-                let cells = |j: usize, k: usize| &potential[nx * (j + ny * k)..][..nx];
-                let (here, there) = (cells(j, k), cells(below(1, j), below(2, k)));
-                if axis == 0 {
-                    for i in 1..nx {
-                        row[i] = row[i] - R::of((here[i] - here[i - 1]) * per_m);
-                    }
-                    if grid.wraps(0) {
-                        row[0] = row[0] - R::of((here[0] - here[nx - 1]) * per_m);
-                    }
-                } else {
-                    for ((u, &p), &q) in row.iter_mut().zip(here).zip(there) {
-                        *u = *u - R::of((p - q) * per_m);
-                    }
+                for (u, pair) in out[1..nx].iter_mut().zip(p.windows(2)) {
+                    *u = *u - R::of((pair[1] - pair[0]) * per_m);
+                }
+            } else {
+                let index = if axis == 1 { j } else { k };
+                let ((a, sign_a), (b, sign_b)) = (before(index), behind(index));
+                let cells = |index: usize| if axis == 1 { row(index, k) } else { row(j, index) };
+                let out = &mut plane[start..][..nx];
+                for ((u, &p), &q) in out.iter_mut().zip(cells(a)).zip(cells(b)) {
+                    *u = *u - R::of((sign_b * q - sign_a * p) * per_m);
                 }
             }
-        });
-    }
-    debug_assert_eq!(potential.len(), nx * ny * nz);
+        }
+    });
 }
 
 #[cfg(test)]
