@@ -185,6 +185,21 @@ fn every_number_is_checked() {
 }
 
 #[test]
+fn every_word_is_known_and_no_other() {
+    for (path, allowed) in FIELDS {
+        let Allowed::OneOf(words) = allowed else { continue };
+        for word in words.iter().copied().chain(["wel", ""]) {
+            let mut scene = complete();
+            *value_at(&mut scene, path) = word.into();
+            let faults = parse(&scene.to_string()).err().unwrap_or_default();
+            let refused =
+                faults.iter().any(|fault| field_of(&fault.path) == path && fault.message.ends_with(&format!("allowed: {allowed}")));
+            assert_eq!(refused, !words.contains(&word), "{path} = {word:?}: {faults:?}");
+        }
+    }
+}
+
+#[test]
 fn the_ends_of_every_range_pass_the_check_of_that_range() {
     for (path, allowed) in FIELDS {
         let Allowed::Range(low, high) = allowed else { continue };

@@ -105,7 +105,7 @@ impl Walk<'_> {
     /// Puts a section in `places` for each of `items`.
     fn sections(&mut self, places: &mut Vec<Value>, items: &DeArray<'_>, limit: usize, span: Range<usize>, path: &str) {
         if items.len() > limit {
-            return self.fault(span, path, format!("has {} sections; allowed: {limit}", items.len()));
+            return self.fault(span, path, format!("has {} sections; allowed: at most {limit}", items.len()));
         }
         places.resize(items.len(), section_template());
         for (i, (place, item)) in places.iter_mut().zip(items.iter()).enumerate() {

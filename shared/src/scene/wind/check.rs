@@ -171,17 +171,16 @@ fn extent(scene: &Scene, misfits: &mut Misfits) {
 
 /// Schemes of the staggered method that go with each other and with the terrain.
 fn schemes(wind: &Wind, misfits: &mut Misfits) {
-    let fits = match wind.advection {
-        WindAdvection::Conservative => [WindTime::Split, WindTime::RungeKutta3],
-        _ => [WindTime::Split, WindTime::Reflection],
+    let (fits, why) = match wind.advection {
+        WindAdvection::Conservative => ([WindTime::Split, WindTime::RungeKutta3], "reflection is for what traces the air back"),
+        _ => ([WindTime::Split, WindTime::Reflection], "Runge–Kutta stages need fluxes, and this way traces the air back"),
     };
     if !fits.contains(&wind.time) {
+        let [first, second] = fits.map(WindTime::word);
         let message = format!(
-            "is \"{}\"; allowed with `advection = \"{}\"`: \"{}\" or \"{}\"",
+            "is \"{}\"; allowed with `advection = \"{}\"`: \"{first}\" or \"{second}\", since {why}",
             wind.time.word(),
-            wind.advection.word(),
-            fits[0].word(),
-            fits[1].word()
+            wind.advection.word()
         );
         misfits.note(&["wind.time", "wind.advection"], message);
     }
@@ -226,13 +225,14 @@ fn stable_fluids(wind: &Wind, misfits: &mut Misfits) {
             misfits.note(&[path, "wind.method"], message);
         }
     }
-    for (face, path) in wind.faces.pairs().into_iter().flatten().zip(FACES.into_iter().flatten()) {
-        if !matches!(face, Wrap | FreeSlip | Reflect) {
-            let message = format!(
-                "is \"{}\"; allowed with `method = \"stable-fluids\"`: \"wrap\", \"free-slip\" or \"reflect\", the only ones that method has",
-                face.word()
-            );
-            misfits.note(&[path, "wind.method"], message);
+    for (axis, pair) in wind.faces.pairs().into_iter().enumerate() {
+        let known = if axis == 1 { "\"free-slip\" or \"reflect\"" } else { "\"wrap\", \"free-slip\" or \"reflect\"" };
+        for (face, path) in pair.into_iter().zip(FACES[axis]) {
+            if !matches!(face, Wrap | FreeSlip | Reflect) {
+                let word = face.word();
+                let message = format!("is \"{word}\"; allowed with `method = \"stable-fluids\"`: {known}, the only ones that method has");
+                misfits.note(&[path, "wind.method"], message);
+            }
         }
     }
     if wind.canopy_drag_per_m != 0.0 {
