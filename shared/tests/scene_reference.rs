@@ -11,18 +11,22 @@ struct Field {
 }
 
 /// Source files and, for each struct in them, the section that it describes.
-const SOURCES: [(&str, &[(&str, &str)]); 8] = [
+const SOURCES: [(&str, &[(&str, &str)]); 11] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
     ("terrain.rs", &[("TerrainMaps", "terrain")]),
-    ("wind.rs", &[("Wind", "wind")]),
+    ("wind/mod.rs", &[("Wind", "wind")]),
+    ("wind/faces.rs", &[("WindFaces", "wind.faces")]),
+    ("wind/dust.rs", &[("WindDust", "wind.dust")]),
+    ("wind/primitive.rs", &[("Primitive", "wind.primitives")]),
     ("grass.rs", &[("Grass", "grass")]),
     ("plants.rs", &[("Plants", "plants")]),
     ("objects.rs", &[("Objects", "objects")]),
     ("picture.rs", &[("CameraStart", "camera"), ("Light", "light")]),
 ];
 
-const SECTIONS: [&str; 8] = ["patches", "terrain", "wind", "grass", "plants", "objects", "camera", "light"];
+/// Sections that may stand once.
+const SECTIONS: [&str; 10] = ["patches", "terrain", "wind", "wind.faces", "wind.dust", "grass", "plants", "objects", "camera", "light"];
 
 fn documented() -> Vec<Field> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scene");
@@ -50,7 +54,7 @@ fn documented() -> Vec<Field> {
 /// The numbers in `text`, in order.
 fn numbers(text: &str) -> Vec<f64> {
     let text = text.replace('−', "-").replace("..=", " ");
-    let words = text.split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-'));
+    let words = text.split(|c: char| !(c.is_ascii_digit() || ['.', '-', 'e'].contains(&c)));
     words.filter_map(|word| word.trim_end_matches('.').parse().ok()).collect()
 }
 
@@ -65,16 +69,44 @@ fn minimal() -> toml::Table {
     .unwrap()
 }
 
-/// A scene with every field written out.
+/// A scene with every field written out, and one section in each list of sections.
 fn complete() -> toml::Table {
-    toml::Table::try_from(parse(&minimal().to_string()).unwrap()).unwrap()
+    let text = minimal().to_string() + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n";
+    toml::Table::try_from(parse(&text).unwrap()).unwrap()
+}
+
+/// The section around the field at `path`, and the field's own name.
+fn section_of<'t, 'p>(table: &'t mut toml::Table, path: &'p str) -> (&'t mut toml::Table, &'p str) {
+    let Some((section, key)) = path.rsplit_once('.') else { return (table, path) };
+    let section = match value_at(table, section) {
+        toml::Value::Array(sections) => &mut sections[0],
+        section => section,
+    };
+    (section.as_table_mut().unwrap(), key)
 }
 
 fn value_at<'t>(table: &'t mut toml::Table, path: &str) -> &'t mut toml::Value {
-    match path.split_once('.') {
-        Some((section, key)) => &mut table[section][key],
-        None => &mut table[path],
+    let (section, key) = section_of(table, path);
+    &mut section[key]
+}
+
+/// Paths of all that is no section, those of a list of sections without places in it.
+fn paths_in(table: &toml::Table, section: &str) -> Vec<String> {
+    let mut paths = Vec::new();
+    for (key, value) in table {
+        let path = format!("{section}{key}");
+        let inner = value.as_table().or_else(|| value.as_array()?.first()?.as_table());
+        paths.extend(inner.into_iter().flat_map(|table| paths_in(table, &format!("{path}."))));
+        if !value.is_table() {
+            paths.push(path);
+        }
     }
+    paths
+}
+
+/// A path as the table of fields has it, without places in lists.
+fn field_of(path: &str) -> String {
+    path.split('[').map(|part| part.split_once(']').map_or(part, |(_, rest)| rest)).collect()
 }
 
 /// `value` with every number replaced.
@@ -89,13 +121,11 @@ fn with_number(value: &toml::Value, number: &toml::Value) -> toml::Value {
 fn every_field_is_in_the_table_once_and_in_order() {
     let documented: Vec<_> = documented().into_iter().map(|field| field.path).collect();
     assert_eq!(documented, FIELDS.map(|(path, _)| path.to_owned()));
-    let scene = complete();
-    let mut serialised = 0;
-    for (key, value) in &scene {
-        serialised += value.as_table().map_or(1, toml::Table::len);
-        assert_eq!(value.is_table(), SECTIONS.contains(&key.as_str()));
-    }
-    assert_eq!(serialised, FIELDS.len());
+    let mut serialised = paths_in(&complete(), "");
+    let mut fields = documented;
+    serialised.sort();
+    fields.sort();
+    assert_eq!(serialised, fields);
 }
 
 #[test]
@@ -105,6 +135,12 @@ fn doc_comments_give_the_checked_range_and_the_true_default() {
         if let Allowed::Range(low, high) = allowed {
             let stated = numbers(after(&field.doc, "allowed ").unwrap_or_else(|| panic!("{path} states no range")));
             assert_eq!(stated[..2], [low, high], "{path}: {}", field.doc);
+        }
+        if let Allowed::Sections(limit) = allowed {
+            assert_eq!(numbers(after(&field.doc, "allowed ").unwrap()), [limit as f64], "{path}: {}", field.doc);
+        }
+        if let Allowed::OneOf(words) = allowed {
+            assert!(words.iter().all(|word| field.doc.contains(&format!("`{word}`"))), "{path}: {}", field.doc);
         }
         if REQUIRED.contains(&path) {
             assert!(field.doc.contains("Required"), "{path} does not say that it is required");
@@ -117,10 +153,11 @@ fn doc_comments_give_the_checked_range_and_the_true_default() {
         };
         for (i, value) in values.iter().enumerate() {
             match value {
+                toml::Value::Table(_) => assert!(stated.starts_with("none"), "{path}: {}", field.doc),
                 toml::Value::String(word) => assert!(stated.contains(word.as_str()), "{path}: {}", field.doc),
                 _ => {
                     let value = value.as_float().unwrap_or_else(|| value.as_integer().unwrap() as f64);
-                    assert!((numbers(stated)[i] - value).abs() < 1e-6, "{path} is {value}: {}", field.doc);
+                    assert!((numbers(stated)[i] - value).abs() <= 1e-6 * value.abs(), "{path} is {value}: {}", field.doc);
                 }
             }
         }
@@ -141,8 +178,23 @@ fn every_number_is_checked() {
             let value = value_at(&mut scene, path);
             *value = with_number(value, &number);
             let faults = parse(&scene.to_string()).expect_err(&format!("{path} may be {number}"));
-            assert!(faults.iter().all(|fault| fault.path.starts_with(path)), "{path} = {number}: {faults:?}");
+            assert!(faults.iter().all(|fault| field_of(&fault.path) == path), "{path} = {number}: {faults:?}");
             assert!(faults.iter().all(|fault| fault.line > 0 && fault.message.contains("allowed") || fault.message.contains("expected")));
+        }
+    }
+}
+
+#[test]
+fn every_word_is_known_and_no_other() {
+    for (path, allowed) in FIELDS {
+        let Allowed::OneOf(words) = allowed else { continue };
+        for word in words.iter().copied().chain(["wel", ""]) {
+            let mut scene = complete();
+            *value_at(&mut scene, path) = word.into();
+            let faults = parse(&scene.to_string()).err().unwrap_or_default();
+            let refused =
+                faults.iter().any(|fault| field_of(&fault.path) == path && fault.message.ends_with(&format!("allowed: {allowed}")));
+            assert_eq!(refused, !words.contains(&word), "{path} = {word:?}: {faults:?}");
         }
     }
 }
@@ -168,11 +220,9 @@ fn the_ends_of_every_range_pass_the_check_of_that_range() {
 fn exactly_the_required_fields_are_required() {
     for path in FIELDS.iter().map(|(path, _)| *path).chain(SECTIONS) {
         let mut scene = complete();
-        match path.split_once('.') {
-            Some((section, key)) => scene[section].as_table_mut().unwrap().remove(key),
-            None => scene.remove(path),
-        };
-        let missing = parse(&scene.to_string()).err().map(|faults| faults[0].path.clone());
+        let (section, key) = section_of(&mut scene, path);
+        section.remove(key);
+        let missing = parse(&scene.to_string()).err().map(|faults| field_of(&faults[0].path));
         assert_eq!(missing.as_deref(), REQUIRED.contains(&path).then_some(path));
     }
 }
@@ -182,9 +232,14 @@ fn the_readme_shows_every_field() {
     let mut tables = String::new();
     let mut section = None;
     for field in documented() {
-        let (name, key) = field.path.split_once('.').unwrap_or(("", &field.path));
+        let (name, key) = field.path.rsplit_once('.').unwrap_or(("", &field.path));
         if section.as_deref() != Some(name) {
-            let title = if name.is_empty() { "At the top".to_owned() } else { format!("`[{name}]`") };
+            let is_list = FIELDS.iter().any(|(path, allowed)| *path == name && matches!(allowed, Allowed::Sections(_)));
+            let title = match name {
+                "" => "At the top".to_owned(),
+                _ if is_list => format!("`[[{name}]]`"),
+                _ => format!("`[{name}]`"),
+            };
             write!(tables, "\n{title}\n\n| Field | Meaning |\n|---|---|\n").unwrap();
             section = Some(name.to_owned());
         }

@@ -6,7 +6,25 @@ use shared::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
-const BROKEN: [&str; 7] = ["unknown-field", "syntax", "out-of-range", "no-world", "wrong-maps", "unreadable-model", "endless-model"];
+const BROKEN: [&str; 17] = [
+    "unknown-field",
+    "syntax",
+    "out-of-range",
+    "no-world",
+    "wrong-maps",
+    "unreadable-model",
+    "endless-model",
+    "wind-faces",
+    "wind-through-faces",
+    "wind-patch",
+    "wind-follow",
+    "wind-obstacle",
+    "wind-time",
+    "wind-reflection",
+    "wind-stable-fluids",
+    "wind-primitives",
+    "wind-one-primitive",
+];
 
 /// The message for a broken scene equals the stored text beside it; `PRAIRIE_UPDATE=1` stores it anew.
 #[test]

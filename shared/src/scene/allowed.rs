@@ -1,5 +1,6 @@
 //! What each field of a scene file may hold: the one table that parsing, the reference in the README and its tests share.
 
+use super::{PrimitiveKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime};
 use std::fmt;
 
 /// Values that a field may hold.
@@ -11,12 +12,14 @@ pub enum Allowed {
     Range(f64, f64),
     /// One of these words.
     OneOf(&'static [&'static str]),
+    /// A list of sections, up to so many.
+    Sections(usize),
 }
 
-use Allowed::{OneOf, Range, Text};
+use Allowed::{OneOf, Range, Sections, Text};
 
-/// Every field by its path, in the order of the structs.
-pub const FIELDS: [(&str, Allowed); 49] = [
+/// Every field by its path, in the order of the structs; in a list of sections, those of one section.
+pub const FIELDS: [(&str, Allowed); 79] = [
     ("summary", Text),
     ("seed", Range(0.0, i64::MAX as f64)),
     ("tick_hz", Range(10.0, 240.0)),
@@ -31,12 +34,42 @@ pub const FIELDS: [(&str, Allowed); 49] = [
     ("terrain.base_m", Range(-12000.0, 12000.0)),
     ("wind.cells", Range(2.0, 256.0)),
     ("wind.spacing_m", Range(0.1, 1000.0)),
-    ("wind.sides", OneOf(&["wrap", "wall"])),
+    ("wind.tiling", OneOf(WindTiling::WORDS)),
+    ("wind.terrain", OneOf(WindTerrain::WORDS)),
     ("wind.mean_m_per_s", Range(-40.0, 40.0)),
+    ("wind.mean_rate_per_s", Range(0.0, 10.0)),
     ("wind.viscosity_m2_per_s", Range(0.0, 100.0)),
+    ("wind.canopy_drag_per_m", Range(0.0, 10.0)),
+    ("wind.body_force_m_per_s2", Range(-1.0, 1.0)),
     ("wind.sources", Range(0.0, 1000.0)),
     ("wind.source_m_per_s", Range(0.0, 40.0)),
-    ("wind.mean_rate_per_s", Range(0.0, 10.0)),
+    ("wind.method", OneOf(WindMethod::WORDS)),
+    ("wind.advection", OneOf(WindAdvection::WORDS)),
+    ("wind.time", OneOf(WindTime::WORDS)),
+    ("wind.diffusion", OneOf(WindDiffusion::WORDS)),
+    ("wind.diffusion_sweeps", Range(1.0, 1000.0)),
+    ("wind.pressure", OneOf(WindPressure::WORDS)),
+    ("wind.pressure_tolerance", Range(1e-12, 0.1)),
+    ("wind.pressure_sweeps", Range(1.0, 100_000.0)),
+    ("wind.primitives", Sections(64)),
+    ("wind.faces.west", OneOf(WindBoundary::WORDS)),
+    ("wind.faces.east", OneOf(WindBoundary::WORDS)),
+    ("wind.faces.bottom", OneOf(WindBoundary::WORDS)),
+    ("wind.faces.top", OneOf(WindBoundary::WORDS)),
+    ("wind.faces.north", OneOf(WindBoundary::WORDS)),
+    ("wind.faces.south", OneOf(WindBoundary::WORDS)),
+    ("wind.faces.lid_m_per_s", Range(-40.0, 40.0)),
+    ("wind.dust.release_per_s", Range(0.0, 100.0)),
+    ("wind.dust.settling_per_s", Range(0.0, 100.0)),
+    ("wind.dust.diffusivity_m2_per_s", Range(0.0, 100.0)),
+    ("wind.dust.advection", OneOf(WindAdvection::WORDS)),
+    ("wind.primitives.kind", OneOf(PrimitiveKind::WORDS)),
+    ("wind.primitives.at_m", Range(0.0, 100_000.0)),
+    ("wind.primitives.radius_m", Range(0.1, 100_000.0)),
+    ("wind.primitives.speed_m_per_s", Range(0.0, 40.0)),
+    ("wind.primitives.heading_rad", Range(-6.3, 6.3)),
+    ("wind.primitives.drift_m_per_s", Range(-40.0, 40.0)),
+    ("wind.primitives.dust", Range(0.0, 1.0)),
     ("grass.c0_m_per_s", Range(0.0, 50.0)),
     ("grass.mu_m_per_rad", Range(0.0, 10.0)),
     ("grass.c_omega_m_per_s", Range(0.0, 50.0)),
@@ -68,8 +101,17 @@ pub const FIELDS: [(&str, Allowed); 49] = [
     ("light.haze_m", Range(10.0, 100_000.0)),
 ];
 
-/// Fields that a scene file must give.
-pub const REQUIRED: [&str; 6] = ["summary", "terrain", "terrain.height_map", "terrain.covering_map", "terrain.pixel_m", "terrain.level_m"];
+/// Fields that a scene file must give; in a list of sections, each section of it.
+pub const REQUIRED: [&str; 8] = [
+    "summary",
+    "terrain",
+    "terrain.height_map",
+    "terrain.covering_map",
+    "terrain.pixel_m",
+    "terrain.level_m",
+    "wind.primitives.kind",
+    "wind.primitives.at_m",
+];
 
 /// What the field at `path` may hold; text for a path that is not in the table.
 pub(super) fn allowed_at(path: &str) -> Allowed {
@@ -90,10 +132,12 @@ impl fmt::Display for Allowed {
             Range(low, high) => write!(f, "{low} to {high}"),
             OneOf(words) => {
                 for (i, word) in words.iter().enumerate() {
-                    write!(f, "{}\"{word}\"", if i == 0 { "" } else { " or " })?;
+                    let joint = [", ", " or "][usize::from(i + 1 == words.len())];
+                    write!(f, "{}\"{word}\"", if i == 0 { "" } else { joint })?;
                 }
                 Ok(())
             }
+            Sections(limit) => write!(f, "at most {limit} sections"),
         }
     }
 }

@@ -67,7 +67,8 @@ fn span_of(root: &DeTable<'_>, path: &str) -> Range<usize> {
             None => (key, None),
         };
         let Some((_, value)) = table.iter().find(|(name, _)| name.get_ref() == key) else { break };
-        span = element(value, index).span();
+        let value = element(value, index);
+        span = value.span();
         match value.get_ref() {
             DeValue::Table(inner) => table = inner,
             _ => break,
@@ -100,6 +101,18 @@ mod tests {
         assert_eq!(place("wind.cells[2]"), (3, 18, 3));
         assert_eq!(place("wind.sources"), (2, 1, 6));
         assert_eq!(place("grass.c0_m_per_s"), (1, 1, 1));
+    }
+
+    #[test]
+    fn points_into_a_list_of_sections() {
+        let text = "[[wind.primitives]]\nkind = 1\n[[wind.primitives]]\nat_m = [1, 22]\n";
+        let place = |path| {
+            let fault = SceneFault::at(text, path, "");
+            (fault.line, fault.column, fault.length)
+        };
+        assert_eq!(place("wind.primitives[0].kind"), (2, 8, 1));
+        assert_eq!(place("wind.primitives[1].at_m[1]"), (4, 12, 2));
+        assert_eq!(place("wind.primitives[1].kind"), (3, 1, 19));
     }
 
     #[test]

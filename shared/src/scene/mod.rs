@@ -25,7 +25,10 @@ pub use patches::Patches;
 pub use picture::{CameraStart, Light};
 pub use plants::Plants;
 pub use terrain::TerrainMaps;
-pub use wind::{Wind, WindBoundary};
+pub use wind::{
+    Primitive, PrimitiveKind, Wind, WindAdvection, WindBoundary, WindDiffusion, WindDust, WindFaces, WindMethod, WindPressure, WindTerrain,
+    WindTiling, WindTime,
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -47,7 +50,7 @@ pub struct Scene {
     pub patches: Patches,
     /// Height map and covering map with their scales.
     pub terrain: TerrainMaps,
-    /// The wind solver's box, boundaries and sources.
+    /// The wind: its box, what drives it, and how it is solved.
     #[serde(default)]
     pub wind: Wind,
     /// How the grass bends and rises: the constants of the bend field.

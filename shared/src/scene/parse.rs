@@ -2,11 +2,11 @@
 
 use super::allowed::{Allowed, FIELDS, REQUIRED, allowed_at};
 use super::check::{Misfit, cross_checks};
-use super::{Scene, SceneFault, TerrainMaps};
+use super::{Primitive, PrimitiveKind, Scene, SceneFault, TerrainMaps, Wind, WindMethod};
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Value;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 /// Reads a scene file's text and checks every value.
 ///
@@ -18,15 +18,16 @@ pub fn parse(text: &str) -> Result<Scene, Vec<SceneFault>> {
     if !errors.is_empty() {
         return Err(syntax_faults(text, &errors));
     }
-    let mut values = template();
+    let mut values = template(wind_method(root.get_ref()));
     let mut walk = Walk { text, faults: Vec::new() };
     walk.table(&mut values, root.get_ref(), root.span(), "");
 
     let scene = Scene::deserialize(values).map_err(|error| vec![SceneFault::spanning(text, 0..0, "", error.message())])?;
+    let unsound = walk.faults.len();
     for Misfit { fields, message } in cross_checks(&scene) {
-        let already_faulty = walk.faults.iter().any(|fault| fields.contains(&field_of(&fault.path)));
+        let already_faulty = walk.faults[..unsound].iter().any(|fault| fields.iter().any(|field| overlap(&fault.path, field)));
         if !already_faulty {
-            walk.faults.push(SceneFault::at(text, fields[0], message));
+            walk.faults.push(SceneFault::at(text, &fields[0], message));
         }
     }
     walk.faults.sort_by_key(|fault| (fault.line, fault.column));
@@ -44,15 +45,22 @@ fn syntax_faults(text: &str, errors: &[toml::de::Error]) -> Vec<SceneFault> {
     faults
 }
 
+/// The wind's method that a file names; what the file leaves unsaid follows from it.
+fn wind_method(root: &DeTable<'_>) -> WindMethod {
+    let wind = root.get("wind").and_then(|wind| wind.get_ref().as_table());
+    let word = wind.and_then(|wind| wind.get("method")).and_then(|method| method.get_ref().as_str());
+    word.and_then(|word| Value::from(word).try_into().ok()).unwrap_or(WindMethod::Staggered)
+}
+
 /// A scene with all its fields, so that their names and kinds need no second list.
-fn template() -> toml::Table {
+fn template(method: WindMethod) -> toml::Table {
     let scene = Scene {
         summary: String::new(),
         seed: 1,
         tick_hz: 60.0,
         patches: Default::default(),
         terrain: TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [1.0; 2], level_m: 0.1, base_m: 0.0 },
-        wind: Default::default(),
+        wind: Wind::of(method),
         grass: Default::default(),
         plants: Default::default(),
         objects: Default::default(),
@@ -60,6 +68,11 @@ fn template() -> toml::Table {
         light: Default::default(),
     };
     toml::Table::try_from(scene).unwrap_or_default()
+}
+
+/// One section of the only list of sections, with all its fields.
+fn section_template() -> Value {
+    Value::try_from(Primitive::new(PrimitiveKind::Uniform, [0.0; 3])).unwrap_or_else(|_| toml::Table::new().into())
 }
 
 /// Puts a file's values in the place of the template's, and keeps what does not agree with it or with [`FIELDS`].
@@ -83,16 +96,30 @@ impl Walk<'_> {
         }
         for key in values.keys().filter(|key| !found.contains_key(key.as_str())) {
             let path = join(path, key);
-            if REQUIRED.contains(&path.as_str()) {
+            if REQUIRED.contains(&field_of(&path).as_str()) {
                 self.fault(span.clone(), &path, format!("is missing and has no default; expected {}", expectation(&values[key], &path)));
             }
         }
     }
 
+    /// Puts a section in `places` for each of `items`.
+    fn sections(&mut self, places: &mut Vec<Value>, items: &DeArray<'_>, limit: usize, span: Range<usize>, path: &str) {
+        if items.len() > limit {
+            return self.fault(span, path, format!("has {} sections; allowed: at most {limit}", items.len()));
+        }
+        places.resize(items.len(), section_template());
+        for (i, (place, item)) in places.iter_mut().zip(items.iter()).enumerate() {
+            self.value(place, item.get_ref(), item.span(), &format!("{path}[{i}]"));
+        }
+    }
+
     fn value(&mut self, place: &mut Value, found: &DeValue<'_>, span: Range<usize>, path: &str) {
-        let allowed = allowed_at(field_of(path));
+        let allowed = allowed_at(&field_of(path));
         match (place, found) {
             (Value::Table(values), DeValue::Table(table)) => self.table(values, table, span, path),
+            (Value::Array(places), DeValue::Array(items)) if let Allowed::Sections(limit) = allowed => {
+                self.sections(places, items, limit, span, path)
+            }
             (Value::Array(values), DeValue::Array(items)) if values.len() == items.len() => {
                 for (i, (place, item)) in values.iter_mut().zip(items.iter()).enumerate() {
                     self.value(place, item.get_ref(), item.span(), &format!("{path}[{i}]"));
@@ -116,14 +143,20 @@ impl Walk<'_> {
                 Some(value) => *place = value,
                 None => self.fault(span, path, format!("is {number}; allowed: {allowed}")),
             },
-            (place, _) => self.fault(span, path, format!("is {}; expected {}", kind_of(found), expectation(place, field_of(path)))),
+            (place, _) => self.fault(span, path, format!("is {}; expected {}", kind_of(found), expectation(place, path))),
         }
     }
 }
 
-/// The path of the field that an element such as `wind.cells[1]` belongs to.
-fn field_of(path: &str) -> &str {
-    path.split('[').next().unwrap_or(path)
+/// The path of a field without places in lists: `wind.primitives.at_m` of `wind.primitives[2].at_m[0]`.
+fn field_of(path: &str) -> String {
+    path.split('[').map(|part| part.split_once(']').map_or(part, |(_, rest)| rest)).collect()
+}
+
+/// Whether one of two paths is the other or leads into it.
+fn overlap(one: &str, other: &str) -> bool {
+    let leads = |short: &str, long: &str| long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
+    leads(one, other) || leads(other, one)
 }
 
 fn join(path: &str, key: &str) -> String {
@@ -137,7 +170,8 @@ fn unknown_field(key: &str, path: &str, template: &toml::Table) -> String {
     if let Some(known) = nearest {
         return format!("is no field of a scene; did you mean `{known}`?");
     }
-    let elsewhere = FIELDS.iter().map(|(known, _)| *known).find(|known| known.rsplit('.').next() == Some(key) && *known != path);
+    let field = field_of(path);
+    let elsewhere = FIELDS.iter().map(|(known, _)| *known).find(|known| known.rsplit('.').next() == Some(key) && *known != field);
     if let Some(known) = elsewhere {
         return format!("is no field of a scene; did you mean `{known}`?");
     }
@@ -157,13 +191,16 @@ fn kind_of(found: &DeValue<'_>) -> String {
     }
 }
 
-fn expectation(expected: &Value, field: &str) -> String {
+fn expectation(expected: &Value, path: &str) -> String {
+    let field = field_of(path);
+    let allowed = allowed_at(&field);
     match expected {
-        Value::Array(items) => format!("a list of {} numbers, each {}", items.len(), allowed_at(field)),
-        Value::Integer(_) => format!("a whole number, {}", allowed_at(field)),
-        Value::Float(_) => format!("a number, {}", allowed_at(field)),
+        _ if matches!(allowed, Allowed::Sections(_)) => format!("{allowed} `[[{field}]]`"),
+        Value::Array(items) => format!("a list of {} numbers, each {allowed}", items.len()),
+        Value::Integer(_) => format!("a whole number, {allowed}"),
+        Value::Float(_) => format!("a number, {allowed}"),
         Value::Table(_) => format!("a section `[{field}]`"),
-        _ => allowed_at(field).to_string(),
+        _ => allowed.to_string(),
     }
 }
 
@@ -191,11 +228,11 @@ mod tests {
     #[test]
     fn all_faults_are_told_at_once_in_the_order_of_the_lines() {
         let faults = faults_of(
-            "[wind]\ncells = [32, 8]\nsides = \"wal\"\nviscosity_m2_per_s = nan\nsorces = 3\ntree_m = 4\n[objects]\nlimit = 2.5\n",
+            "[wind]\ncells = [32, 8]\ntiling = \"bix\"\nviscosity_m2_per_s = nan\nsorces = 3\ntree_m = 4\n[objects]\nlimit = 2.5\n",
         );
         let expected = [
             (8, 9, "`wind.cells` is a list of 2; expected a list of 3 numbers, each 2 to 256"),
-            (9, 9, "`wind.sides` is \"wal\"; allowed: \"wrap\" or \"wall\""),
+            (9, 10, "`wind.tiling` is \"bix\"; allowed: \"box\", \"patch\" or \"follow\""),
             (10, 22, "`wind.viscosity_m2_per_s` is nan; allowed: 0 to 100"),
             (11, 1, "`wind.sorces` is no field of a scene; did you mean `sources`?"),
             (12, 1, "`wind.tree_m` is no field of a scene; did you mean `plants.tree_m`?"),
@@ -217,8 +254,6 @@ mod tests {
         assert!(only("[wind]\ncells = [256, 256, 256]\n").contains("2097152"));
         assert!(only("[wind]\ncells = [2, 2, 2]\n").starts_with("`wind.sources` is 24"));
         assert!(only("[wind]\nmean_m_per_s = [30, 30]\n").contains("42.4"));
-        assert!(only("[wind]\nsides = \"wall\"\ncells = [31, 8, 32]\nmean_m_per_s = [0, 0]\n").contains("covers the world"));
-        assert!(only("[wind]\nsides = \"wall\"\n").starts_with("`wind.mean_m_per_s` is [4.0, 2.5]; allowed with walls: [0, 0]"));
         assert_eq!(only("[objects]\nself_driving = 65\n"), "`objects.self_driving` is 65; allowed: up to `objects.limit`, 64");
     }
 

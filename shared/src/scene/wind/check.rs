@@ -1,0 +1,268 @@
+//! What does not fit together in a scene's wind.
+
+use super::{Wind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime};
+use crate::scene::Scene;
+use crate::scene::check::{Misfits, WIND_CELLS_LIMIT};
+use WindBoundary::{FreeSlip, Inflow, Lid, NoSlip, Outflow, Reflect, Wrap};
+
+/// Paths of the faces across X, Y and Z, in the order of [`WindFaces::pairs`](super::WindFaces::pairs).
+const FACES: [[&str; 2]; 3] =
+    [["wind.faces.west", "wind.faces.east"], ["wind.faces.bottom", "wind.faces.top"], ["wind.faces.north", "wind.faces.south"]];
+
+/// The level axes: place among the box's three, place among the world's two, name, path of the mean wind along it.
+const LEVEL: [(usize, usize, &str, &str); 2] = [(0, 0, "X", "wind.mean_m_per_s[0]"), (2, 1, "Z", "wind.mean_m_per_s[1]")];
+
+/// Notes what does not fit together in the wind of `scene`.
+pub(in crate::scene) fn check(scene: &Scene, misfits: &mut Misfits) {
+    let wind = &scene.wind;
+    numbers(wind, misfits);
+    ground_and_sky(wind, misfits);
+    sides(wind, misfits);
+    mean_wind(wind, misfits);
+    lids(wind, misfits);
+    extent(scene, misfits);
+    match wind.method {
+        WindMethod::Staggered => schemes(wind, misfits),
+        WindMethod::StableFluids => stable_fluids(wind, misfits),
+    }
+    primitives(scene, misfits);
+}
+
+fn numbers(wind: &Wind, misfits: &mut Misfits) {
+    let cells = wind.cells.map(u64::from).iter().product();
+    if cells > WIND_CELLS_LIMIT {
+        misfits.note(&["wind.cells"], format!("has {cells} cells in all; allowed: {WIND_CELLS_LIMIT}"));
+    }
+    if u64::from(wind.sources) > cells {
+        misfits.note(&["wind.sources", "wind.cells"], format!("is {}, more than the {cells} cells of the wind's box", wind.sources));
+    }
+    let [east, south] = wind.mean_m_per_s.map(f64::from);
+    let speed = (east * east + south * south).sqrt();
+    if speed > 40.0 {
+        misfits.note(&["wind.mean_m_per_s"], format!("has a length of {speed:.1} m/s; allowed: up to 40"));
+    }
+}
+
+fn ground_and_sky(wind: &Wind, misfits: &mut Misfits) {
+    let why = match wind.faces.bottom {
+        Wrap | Inflow | Outflow => Some("since the ground is there"),
+        _ => None,
+    };
+    if let Some(why) = why {
+        let message = format!("is \"{}\"; allowed: \"free-slip\", \"reflect\", \"no-slip\" or \"lid\", {why}", wind.faces.bottom.word());
+        misfits.note(&["wind.faces.bottom"], message);
+    }
+    let why = match wind.faces.top {
+        Wrap => Some("since the ground is opposite"),
+        Inflow => Some("since the mean wind is level and enters by the sides"),
+        _ => None,
+    };
+    if let Some(why) = why {
+        let message =
+            format!("is \"{}\"; allowed: \"free-slip\", \"reflect\", \"no-slip\", \"lid\" or \"outflow\", {why}", wind.faces.top.word());
+        misfits.note(&["wind.faces.top"], message);
+    }
+}
+
+/// Faces and what they ask of the face opposite.
+fn sides(wind: &Wind, misfits: &mut Misfits) {
+    let pairs = wind.faces.pairs();
+    for (axis, ..) in LEVEL {
+        for side in [0, 1] {
+            let [(face, path), (opposite, opposite_path)] = [side, 1 - side].map(|side| (pairs[axis][side], FACES[axis][side]));
+            let word = face.word();
+            if opposite == Wrap && face != Wrap {
+                let message = format!(
+                    "is \"{word}\", and `{opposite_path}` opposite is \"wrap\"; allowed: \"wrap\" on both or on neither, since what leaves \
+                     through one enters through the other"
+                );
+                misfits.note(&[path, opposite_path], message);
+            }
+            if face == Inflow && is_closed(opposite) {
+                let message = format!(
+                    "is \"inflow\", and `{opposite_path}` opposite is \"{}\"; allowed there: \"inflow\" or \"outflow\", since what enters \
+                     must leave",
+                    opposite.word()
+                );
+                misfits.note(&[path, opposite_path], message);
+            }
+        }
+    }
+}
+
+/// The prevailing wind blows through no closed face, and in through no outflow.
+fn mean_wind(wind: &Wind, misfits: &mut Misfits) {
+    let pairs = wind.faces.pairs();
+    for (axis, level_axis, _, path) in LEVEL {
+        let mean = wind.mean_m_per_s[level_axis];
+        let [low, high] = pairs[axis];
+        // What is wrong with the faces themselves is told by `sides`.
+        if mean == 0.0 || low == Wrap || high == Wrap || is_closed(low) && high == Inflow || is_closed(high) && low == Inflow {
+            continue;
+        }
+        let windward = usize::from(mean < 0.0);
+        if let Some(side) = [0, 1].into_iter().find(|&side| is_closed(pairs[axis][side])) {
+            let (word, face) = (pairs[axis][side].word(), FACES[axis][side]);
+            let message = format!("is {mean}, and `{face}` is \"{word}\"; allowed: 0, since nothing blows through such a face");
+            misfits.note(&[path, face], message);
+        } else if pairs[axis][windward] == Outflow {
+            let (sign, face) = (["at most", "at least"][windward], FACES[axis][windward]);
+            let message = format!(
+                "is {mean}, which enters at `{face}`, an \"outflow\"; allowed: {sign} 0, or \"inflow\" there, since an outflow does not know what enters"
+            );
+            misfits.note(&[path, face], message);
+        }
+    }
+}
+
+fn lids(wind: &Wind, misfits: &mut Misfits) {
+    const LID: [&str; 3] = ["wind.faces.lid_m_per_s[0]", "wind.faces.lid_m_per_s[1]", "wind.faces.lid_m_per_s[2]"];
+    for (axis, pair) in wind.faces.pairs().into_iter().enumerate() {
+        let across = wind.faces.lid_m_per_s[axis];
+        let Some(side) = pair.into_iter().position(|face| face == Lid) else { continue };
+        if across != 0.0 {
+            let face = FACES[axis][side];
+            let message =
+                format!("is {across}, and `{face}` is \"lid\"; allowed: 0, since a lid slides along itself and lets nothing through");
+            misfits.note(&[LID[axis], face], message);
+        }
+    }
+}
+
+/// The box has room for the world, or for its patches.
+fn extent(scene: &Scene, misfits: &mut Misfits) {
+    let (wind, patch_m) = (&scene.wind, scene.patches.patch_m());
+    let pairs = wind.faces.pairs();
+    for (axis, level_axis, name, _) in LEVEL {
+        let (box_m, world_m) = (wind.box_m()[axis], scene.extent_m()[level_axis]);
+        let [low, high] = FACES[axis];
+        if pairs[axis] == [Wrap; 2] {
+            let patches = box_m / patch_m;
+            let is_whole = patches > 0.5 && (patches - patches.round()).abs() <= 1e-4 * patches;
+            if wind.tiling == WindTiling::Patch && !is_whole {
+                let message = format!(
+                    "is \"patch\", and cells × spacing_m is {box_m} m along {name}; allowed: a whole number of patches of {patch_m} m, since one \
+                     box serves every patch"
+                );
+                misfits.note(&["wind.tiling", "wind.cells", "wind.spacing_m", "patches.cells", "patches.cell_m"], message);
+            }
+        } else if pairs[axis].contains(&Wrap) {
+            // A face that wraps alone is told by `sides`.
+        } else if wind.tiling != WindTiling::Box {
+            let message = format!(
+                "is \"{}\", and `{low}` is \"{}\"; allowed: \"wrap\" on all four sides, since the box repeats over the world",
+                wind.tiling.word(),
+                pairs[axis][0].word()
+            );
+            misfits.note(&["wind.tiling", low, high], message);
+        } else if box_m < world_m {
+            let message = format!(
+                "is \"{}\", which needs a box that covers the world: {world_m} m along {name}, and cells × spacing_m is {box_m} m; make it larger or \
+                 use \"wrap\"",
+                pairs[axis][0].word()
+            );
+            misfits.note(
+                &[low, high, "wind.tiling", "wind.cells", "wind.spacing_m", "patches.count", "patches.cells", "patches.cell_m"],
+                message,
+            );
+        }
+    }
+}
+
+/// Schemes of the staggered method that go with each other and with the terrain.
+fn schemes(wind: &Wind, misfits: &mut Misfits) {
+    let (fits, why) = match wind.advection {
+        WindAdvection::Conservative => ([WindTime::Split, WindTime::RungeKutta3], "reflection is for what traces the air back"),
+        _ => ([WindTime::Split, WindTime::Reflection], "Runge–Kutta stages need fluxes, and this way traces the air back"),
+    };
+    if !fits.contains(&wind.time) {
+        let [first, second] = fits.map(WindTime::word);
+        let message = format!(
+            "is \"{}\"; allowed with `advection = \"{}\"`: \"{first}\" or \"{second}\", since {why}",
+            wind.time.word(),
+            wind.advection.word()
+        );
+        misfits.note(&["wind.time", "wind.advection"], message);
+    }
+    if wind.terrain != WindTerrain::Obstacle {
+        return;
+    }
+    if wind.pressure == WindPressure::Direct {
+        let message = "is \"direct\"; allowed with `terrain = \"obstacle\"`: \"multigrid\", \"conjugate-gradients\", \"sor\", \"gauss-seidel\" or \
+                       \"jacobi\", since transforms know no solid cells";
+        misfits.note(&["wind.pressure", "wind.terrain"], message.to_owned());
+    }
+    if matches!(wind.diffusion, WindDiffusion::Implicit | WindDiffusion::CrankNicolson) {
+        let message = format!(
+            "is \"{}\"; allowed with `terrain = \"obstacle\"`: \"explicit\" or \"gauss-seidel\", since transforms know no solid cells",
+            wind.diffusion.word()
+        );
+        misfits.note(&["wind.diffusion", "wind.terrain"], message);
+    }
+    if wind.tiling != WindTiling::Box {
+        let message = format!(
+            "is \"{}\"; allowed with `terrain = \"obstacle\"`: \"box\", since the land differs from place to place",
+            wind.tiling.word()
+        );
+        misfits.note(&["wind.tiling", "wind.terrain"], message);
+    }
+}
+
+/// The method of 000 has one scheme for each part. What a file leaves unsaid follows the method, so what differs was given.
+fn stable_fluids(wind: &Wind, misfits: &mut Misfits) {
+    let own = Wind::of(WindMethod::StableFluids);
+    let words = [
+        ("wind.advection", wind.advection.word(), own.advection.word()),
+        ("wind.time", wind.time.word(), own.time.word()),
+        ("wind.diffusion", wind.diffusion.word(), own.diffusion.word()),
+        ("wind.pressure", wind.pressure.word(), own.pressure.word()),
+        ("wind.terrain", wind.terrain.word(), own.terrain.word()),
+        ("wind.dust.advection", wind.dust.advection.word(), own.dust.advection.word()),
+    ];
+    for (path, word, own) in words {
+        if word != own {
+            let message = format!("is \"{word}\"; allowed with `method = \"stable-fluids\"`: \"{own}\", the only one that method has");
+            misfits.note(&[path, "wind.method"], message);
+        }
+    }
+    for (axis, pair) in wind.faces.pairs().into_iter().enumerate() {
+        let known = if axis == 1 { "\"free-slip\" or \"reflect\"" } else { "\"wrap\", \"free-slip\" or \"reflect\"" };
+        for (face, path) in pair.into_iter().zip(FACES[axis]) {
+            if !matches!(face, Wrap | FreeSlip | Reflect) {
+                let word = face.word();
+                let message = format!("is \"{word}\"; allowed with `method = \"stable-fluids\"`: {known}, the only ones that method has");
+                misfits.note(&[path, "wind.method"], message);
+            }
+        }
+    }
+    if wind.canopy_drag_per_m != 0.0 {
+        let message =
+            format!("is {}; allowed with `method = \"stable-fluids\"`: 0, since that method has no canopy", wind.canopy_drag_per_m);
+        misfits.note(&["wind.canopy_drag_per_m", "wind.method"], message);
+    }
+}
+
+/// Primitives stand in the world and within the height of the box.
+fn primitives(scene: &Scene, misfits: &mut Misfits) {
+    let [width_m, depth_m] = scene.extent_m();
+    let (world, air) = (["patches.count", "patches.cells", "patches.cell_m"], ["wind.cells", "wind.spacing_m"]);
+    let limits = [
+        (width_m, "the world's extent along X", &world[..]),
+        (scene.wind.box_m()[1], "the height of the wind's box", &air[..]),
+        (depth_m, "the world's extent along Z", &world[..]),
+    ];
+    for (i, primitive) in scene.wind.primitives.iter().enumerate() {
+        for (axis, (limit_m, what, set_by)) in limits.into_iter().enumerate() {
+            let at_m = primitive.at_m[axis];
+            if at_m > limit_m {
+                let path = format!("wind.primitives[{i}].at_m[{axis}]");
+                misfits.note(&[&[path.as_str()], set_by].concat(), format!("is {at_m}; allowed: 0 to {limit_m}, {what}"));
+            }
+        }
+    }
+}
+
+/// Whether no air passes through a face.
+fn is_closed(face: WindBoundary) -> bool {
+    matches!(face, FreeSlip | Reflect | NoSlip | Lid)
+}

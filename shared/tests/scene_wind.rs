@@ -1,0 +1,129 @@
+//! What a scene file says of its wind: what is left unsaid follows from the method, what goes together is taken, what does not is told.
+
+use shared::scene::{Primitive, PrimitiveKind, Scene, Wind, WindAdvection, WindBoundary, WindDust, WindMethod, WindPressure, parse};
+
+fn scene(more: &str) -> Result<Scene, Vec<String>> {
+    let maps = "summary = 's'\n[terrain]\nheight_map = 'h.png'\ncovering_map = 'c.png'\npixel_m = [2, 2]\nlevel_m = 0.1\n";
+    parse(&format!("{maps}{more}")).map_err(|faults| faults.iter().map(ToString::to_string).collect())
+}
+
+fn wind(more: &str) -> Wind {
+    scene(more).unwrap_or_else(|faults| panic!("{more}: {faults:?}")).wind
+}
+
+/// The only fault of a scene.
+fn fault(more: &str) -> String {
+    let mut faults = scene(more).expect_err(more);
+    assert_eq!(faults.len(), 1, "{more}: {faults:?}");
+    faults.remove(0)
+}
+
+#[test]
+fn what_is_left_unsaid_follows_from_the_method() {
+    assert_eq!(wind(""), Wind::default());
+    assert_eq!(wind("[wind]\nmethod = 'staggered'\n"), Wind::of(WindMethod::Staggered));
+    let of_000 = wind("[wind]\nmethod = 'stable-fluids'\n");
+    assert_eq!(of_000, Wind::of(WindMethod::StableFluids));
+    assert_eq!((of_000.advection, of_000.pressure), (WindAdvection::SemiLagrangian, WindPressure::GaussSeidel));
+    assert_eq!((of_000.pressure_sweeps, of_000.diffusion_sweeps, of_000.canopy_drag_per_m), (20, 20, 0.0));
+    assert_eq!(of_000.dust, WindDust { advection: WindAdvection::SemiLagrangian, ..WindDust::default() });
+}
+
+#[test]
+fn the_method_of_000_may_be_given_its_own_words() {
+    let own = "[wind]\nmethod = 'stable-fluids'\nadvection = 'semi-lagrangian'\ntime = 'split'\ndiffusion = 'gauss-seidel'\n\
+               pressure = 'gauss-seidel'\nterrain = 'follow'\ncanopy_drag_per_m = 0\n[wind.faces]\ntop = 'reflect'\n\
+               [wind.dust]\nadvection = 'semi-lagrangian'\n";
+    assert_eq!(wind(own).faces.top, WindBoundary::Reflect);
+    assert_eq!(wind("[wind]\nmethod = 'stable-fluids'\npressure_sweeps = 5\ntiling = 'patch'\n").pressure_sweeps, 5);
+}
+
+#[test]
+fn a_method_that_is_none_is_told_alone() {
+    let unknown = "[wind]\nmethod = 'stable fluids'\nadvection = 'semi-lagrangian'\ntime = 'split'\n";
+    assert_eq!(fault(unknown), "`wind.method` is \"stable fluids\"; allowed: \"staggered\" or \"stable-fluids\"");
+}
+
+#[test]
+fn faces_that_fit_are_taken() {
+    for more in [
+        "[wind.faces]\nwest = 'inflow'\neast = 'outflow'\nnorth = 'inflow'\nsouth = 'inflow'\ntop = 'outflow'\n",
+        "[wind]\nmean_m_per_s = [-4, 0]\n[wind.faces]\nwest = 'outflow'\neast = 'inflow'\nnorth = 'no-slip'\nsouth = 'free-slip'\n",
+        "[wind]\nmean_m_per_s = [0, 2.5]\n[wind.faces]\nwest = 'outflow'\neast = 'outflow'\n",
+        "[wind]\ncells = [16, 8, 32]\n[wind.faces]\ntop = 'lid'\nbottom = 'no-slip'\nlid_m_per_s = [3, 0, -3]\n",
+        "[wind]\nmean_m_per_s = [0, 0]\n[wind.faces]\nwest = 'lid'\neast = 'reflect'\nlid_m_per_s = [0, 1, 1]\n",
+        "[wind]\ndiffusion = 'implicit'\n[wind.faces]\nwest = 'inflow'\neast = 'outflow'\n",
+    ] {
+        wind(more);
+    }
+    assert_eq!(wind("[wind.faces]\nwest = 'inflow'\neast = 'outflow'\n").faces.wraps(), [false, false, true]);
+}
+
+#[test]
+fn faces_that_do_not_fit_are_told() {
+    let alone = fault("[wind.faces]\nsouth = 'outflow'\n");
+    assert!(alone.starts_with("`wind.faces.south` is \"outflow\", and `wind.faces.north` opposite is \"wrap\""), "{alone}");
+    let blocked = fault("[wind.faces]\nwest = 'inflow'\neast = 'free-slip'\n");
+    assert!(blocked.starts_with("`wind.faces.west` is \"inflow\", and `wind.faces.east` opposite is \"free-slip\""), "{blocked}");
+    let sky = fault("[wind.faces]\ntop = 'wrap'\n");
+    assert!(sky.starts_with("`wind.faces.top` is \"wrap\"; allowed: \"free-slip\""), "{sky}");
+    let backwards = fault("[wind]\nmean_m_per_s = [-1, 0]\n[wind.faces]\nwest = 'inflow'\neast = 'outflow'\n");
+    assert!(backwards.starts_with("`wind.mean_m_per_s[0]` is -1, which enters at `wind.faces.east`"), "{backwards}");
+    assert!(backwards.contains("allowed: at least 0"), "{backwards}");
+    let half_closed = fault("[wind]\nmean_m_per_s = [0, 2]\n[wind.faces]\nnorth = 'no-slip'\nsouth = 'outflow'\n");
+    assert!(half_closed.starts_with("`wind.mean_m_per_s[1]` is 2, and `wind.faces.north` is \"no-slip\"; allowed: 0"), "{half_closed}");
+    let small = fault("[wind]\ncells = [32, 8, 31]\n[wind.faces]\nnorth = 'inflow'\nsouth = 'outflow'\n");
+    assert!(small.starts_with("`wind.faces.north` is \"inflow\", which needs a box that covers the world: 256 m along Z"), "{small}");
+}
+
+#[test]
+fn tiling_and_terrain_that_fit_are_taken() {
+    for more in [
+        "[wind]\ntiling = 'patch'\ncells = [8, 8, 16]\nspacing_m = [2, 2, 3]\n",
+        "[wind]\ntiling = 'patch'\ncells = [160, 8, 160]\nspacing_m = [0.1, 1, 0.1]\n",
+        "[wind]\ntiling = 'follow'\ncells = [8, 8, 8]\n",
+        "[wind]\nterrain = 'obstacle'\npressure = 'multigrid'\n",
+        "[wind]\nterrain = 'obstacle'\npressure = 'jacobi'\ndiffusion = 'gauss-seidel'\n",
+        "[wind]\nadvection = 'bfecc'\ntime = 'reflection'\n",
+        "[wind]\nadvection = 'semi-lagrangian'\ntime = 'split'\n[wind.dust]\nadvection = 'mac-cormack'\n",
+    ] {
+        wind(more);
+    }
+    let small = fault("[wind]\ntiling = 'patch'\ncells = [4, 8, 4]\nspacing_m = [0.1, 1, 4]\n");
+    assert!(small.contains("0.4 m along X; allowed: a whole number of patches of 16 m"), "{small}");
+    let ground = fault("[wind]\nterrain = 'obstacle'\ntiling = 'follow'\npressure = 'sor'\n");
+    assert!(ground.starts_with("`wind.tiling` is \"follow\"; allowed with `terrain = \"obstacle\"`: \"box\""), "{ground}");
+}
+
+#[test]
+fn primitives_are_read_in_order() {
+    let list = "[[wind.primitives]]\nkind = 'vortex'\nat_m = [1, 2, 3]\n\
+                [[wind.primitives]]\nkind = 'uniform'\nat_m = [256, 16, 256]\nheading_rad = 1\ndrift_m_per_s = [-1, 0.5]\ndust = 1\n";
+    let vortex = Primitive::new(PrimitiveKind::Vortex, [1.0, 2.0, 3.0]);
+    let uniform = Primitive {
+        heading_rad: 1.0,
+        drift_m_per_s: [-1.0, 0.5],
+        dust: 1.0,
+        ..Primitive::new(PrimitiveKind::Uniform, [256.0, 16.0, 256.0])
+    };
+    assert_eq!(wind(list).primitives, [vortex, uniform]);
+    assert_eq!(wind("[wind]\nprimitives = [{ kind = 'vortex', at_m = [1, 2, 3] }]\n").primitives, [vortex]);
+    assert_eq!(wind("[wind]\nprimitives = []\n").primitives, []);
+    let written = toml::to_string(&scene(list).unwrap()).unwrap();
+    assert_eq!(parse(&written).unwrap(), scene(list).unwrap());
+    let sent = postcard::to_stdvec(&scene(list).unwrap()).unwrap();
+    assert_eq!(postcard::from_bytes::<Scene>(&sent).unwrap(), scene(list).unwrap());
+}
+
+#[test]
+fn primitives_have_a_limit_and_are_sections() {
+    let many = |n| "[[wind.primitives]]\nkind = 'sink'\nat_m = [1, 2, 3]\n".repeat(n);
+    assert_eq!(wind(&many(64)).primitives.len(), 64);
+    assert_eq!(fault(&many(65)), "`wind.primitives` has 65 sections; allowed: at most 64");
+    let number = fault("[wind]\nprimitives = [3]\n");
+    assert_eq!(number, "`wind.primitives[0]` is the number 3; expected at most 64 sections `[[wind.primitives]]`");
+    let text = fault("[wind]\nprimitives = 'vortex'\n");
+    assert_eq!(text, "`wind.primitives` is text; expected at most 64 sections `[[wind.primitives]]`");
+    let outside = fault("[[wind.primitives]]\nkind = 'sink'\nat_m = [1, 2, 256.5]\n");
+    assert_eq!(outside, "`wind.primitives[0].at_m[2]` is 256.5; allowed: 0 to 256, the world's extent along Z");
+}
