@@ -76,7 +76,7 @@ pub enum Advection {
 /// How advection, forces, friction and pressure make a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeScheme {
-    /// One after the other (000 §2.3.5): first order in dt. With the semi-Lagrangian family.
+    /// One after the other (000 §2.3.5): first order in dt. With any advection.
     Split,
     /// Two half steps of advection through the velocity at mid-step with a reflection of the pressure's work between them (Narain, Zehnder & Thomaszewski,
     /// SIGGRAPH 2019), forces and friction in halves before and after: second order in dt, three projections. With the semi-Lagrangian family.
@@ -271,10 +271,10 @@ impl Config {
     fn validate_schemes(&self) -> Result<(), ConfigError> {
         check((0.0..=1.0).contains(&self.damping), "damping", self.damping, "0 to 1")?;
         let (time, conservative) = (format!("{:?}", self.time), self.advection == Advection::Conservative);
-        if self.time == TimeScheme::RungeKutta3 {
-            check(conservative, "time", time, "Split or Reflection, with advection of the semi-Lagrangian family")?;
-        } else {
-            check(!conservative, "time", time, "RungeKutta3, with conservative advection")?;
+        match self.time {
+            TimeScheme::RungeKutta3 => check(conservative, "time", time, "Split or Reflection, with advection of the semi-Lagrangian family")?,
+            TimeScheme::Reflection => check(!conservative, "time", time, "Split or RungeKutta3, with conservative advection")?,
+            TimeScheme::Split => {}
         }
         if let Diffusion::GaussSeidel { sweeps } = self.diffusion {
             check((1..=100_000).contains(&sweeps), "diffusion", format!("{:?}", self.diffusion), "1 to 100000 sweeps")?;

@@ -92,15 +92,15 @@ impl<R: Real> Solver<R> {
 
     /// Advection, forces, friction, projection, one after the other.
     fn split(&mut self, dt_secs: f64, jets: &[Jet]) -> Convergence {
-        self.trace(dt_secs);
-        self.walls.blow(self.time_secs + dt_secs);
-        for axis in 0..3 {
-            let (field, target) = (&self.velocity.0[axis], &mut self.stages[0].0[axis]);
-            let close = |field: &mut _| self.walls.close_component(field);
-            advect::advect(self.config.advection, &self.grid, &self.paths, field, target, &mut self.advection, close);
+        if self.config.advection == Advection::Conservative {
+            // The pressure's pull, which only Runge–Kutta 3 keeps, is 0.
+            self.transport(dt_secs, 0.0);
+        } else {
+            self.trace(dt_secs);
+            self.walls.blow(self.time_secs + dt_secs);
+            self.along_paths(0);
+            std::mem::swap(&mut self.velocity, &mut self.stages[0]);
         }
-        std::mem::swap(&mut self.velocity, &mut self.stages[0]);
-        self.walls.close(&mut self.velocity);
         self.force(dt_secs, self.time_secs + 0.5 * dt_secs, jets);
         self.spread(Portion::Whole, dt_secs);
         self.project(None)
@@ -149,6 +149,16 @@ impl<R: Real> Solver<R> {
         if !explicit {
             self.spread(Portion::First, dt_secs);
         }
+        self.transport(dt_secs, if explicit { self.config.viscosity_m2_per_s.into() } else { 0.0 });
+        if !explicit {
+            self.spread(Portion::Second, dt_secs);
+        }
+        self.force(0.5 * dt_secs, middle_secs, jets);
+        self.project(Some(dt_secs))
+    }
+
+    /// Carries the velocity by fluxes through faces, under the pressure of the step before.
+    fn transport(&mut self, dt_secs: f64, viscosity_m2_per_s: f64) {
         for (number, shares) in STAGES.into_iter().enumerate() {
             let [even, odd] = &mut self.stages;
             let (air, target) = match number {
@@ -165,7 +175,7 @@ impl<R: Real> Solver<R> {
                     pull: Some(&self.pull.0[axis]),
                     dt_secs,
                     shares,
-                    diffusivity_m2_per_s: if explicit { self.config.viscosity_m2_per_s.into() } else { 0.0 },
+                    diffusivity_m2_per_s: viscosity_m2_per_s,
                     damping: self.config.damping.into(),
                 };
                 stage.run(&mut target.0[axis], &mut self.transport);
@@ -174,11 +184,6 @@ impl<R: Real> Solver<R> {
             self.walls.close(target);
         }
         std::mem::swap(&mut self.velocity, &mut self.stages[0]);
-        if !explicit {
-            self.spread(Portion::Second, dt_secs);
-        }
-        self.force(0.5 * dt_secs, middle_secs, jets);
-        self.project(Some(dt_secs))
     }
 
     /// Traces the air of the step's beginning.
@@ -315,7 +320,7 @@ fn parts<R: Real>(config: &Config, grid: &Grid<R>, fastest_m_per_s: [f64; 3], dt
     };
     let explicit = config.diffusion == Diffusion::Explicit;
     let viscosity = if explicit { f64::from(config.viscosity_m2_per_s) } else { 0.0 };
-    let parts = if config.time == TimeScheme::RungeKutta3 {
+    let parts = if config.advection == Advection::Conservative {
         count("viscosity_m2_per_s", SAFETY * transport::stable_dt_secs(grid, [0.0; 3], viscosity), most)?;
         count("the Courant number of conservative advection", SAFETY * transport::stable_dt_secs(grid, fastest_m_per_s, viscosity), most)?
     } else {
