@@ -9,8 +9,10 @@
 //! | [`plot`], [`ticks`] | a log–log chart as SVG |
 //! | [`summary`] | which method wins where, on one screen |
 //! | [`table`] | Markdown tables, and putting them into a document |
+//! | [`files`] | all files of a model, and the table of orders |
 //! | [`machine`] | what the figures were measured on |
 
+pub mod files;
 pub mod line;
 pub mod machine;
 pub mod plot;

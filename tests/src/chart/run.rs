@@ -44,10 +44,10 @@ pub struct Repeats {
 }
 
 impl Repeats {
-    /// For figures that are kept: 3 to 20 times, until a second has passed.
-    pub const THOROUGH: Self = Self { least: 3, most: 20, enough: Duration::from_secs(1) };
-    /// For a look: 2 to 5 times, until a fifth of a second has passed.
-    pub const QUICK: Self = Self { least: 2, most: 5, enough: Duration::from_millis(200) };
+    /// For figures that are kept: 3 to 200 times, until a second has passed.
+    pub const THOROUGH: Self = Self { least: 3, most: 200, enough: Duration::from_secs(1) };
+    /// For a look: 2 to 20 times, until a fifth of a second has passed.
+    pub const QUICK: Self = Self { least: 2, most: 20, enough: Duration::from_millis(200) };
 }
 
 /// Runs and times: a row for each norm.

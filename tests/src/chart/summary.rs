@@ -30,7 +30,7 @@ pub fn summary(rows: &[Row], norm: &str) -> String {
 fn at_level(lines: &[Line], error: f64, method_width: usize) -> String {
     let mut times: Vec<(f64, &str)> = lines.iter().filter_map(|line| Some((line.seconds_at(error)?, line.method))).collect();
     times.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let [(seconds, method), rest @ ..] = times.as_slice() else { return format!("{error:<10.0e}nobody") };
+    let [(seconds, method), rest @ ..] = times.as_slice() else { return format!("≤ {error:<8.0e}no method gets there") };
     let next = match rest.first() {
         Some((slower, next)) => format!("{next}, {:.1}× as long", slower / seconds),
         None => "no other gets there".into(),
