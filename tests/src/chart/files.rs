@@ -11,8 +11,8 @@ use super::row::{csv, json};
 use super::table::markdown;
 use crate::norms::fitted_order;
 
-/// Writes `MODEL.csv`, `MODEL.json`, `MODEL-orders.md` and `MODEL-PROBLEM.svg` for each problem into a folder, which is made where it is missing. Charts and orders are of the
-/// root mean square error; `error` says of what and in which unit, `machine` on what it was measured.
+/// Writes `MODEL.csv`, `MODEL.json`, `MODEL-orders.md` and `MODEL-PROBLEM.svg` for each problem into a folder, which is made where it is missing.
+/// Charts and orders are of the root mean square error; `error` says of what and in which unit, `machine` on what it was measured.
 ///
 /// # Errors
 /// When the folder or a file cannot be written.

@@ -29,8 +29,8 @@ impl Cavity {
 
 /// Ghia, Ghia & Shin (J. Comput. Phys. 48, 1982), tables I and II, Re = 100.
 ///
-/// The table's own error: a second-order stream-function solution on 257 × 257 nodes, extrapolated, is 0.24 % (u) and 0.48 % (v) of the lid speed away in root mean square.
-/// u(0.0703) = −0.04775 looks like a misprint: that solution has −0.0466, and agrees with the places beside it to 5e-5.
+/// The table's own error: a second-order stream-function solution, extrapolated from 129 × 129 and 257 × 257 nodes, is 0.24 % (u) and 0.48 % (v) of the lid
+/// speed away in root mean square. u(0.0703) = −0.04775 looks like a misprint: that solution has −0.0466, and agrees with the places beside it to 1e-4.
 #[rustfmt::skip]
 pub const GHIA_RE_100: Cavity = Cavity {
     reynolds: 100.0,
@@ -48,8 +48,9 @@ pub const GHIA_RE_100: Cavity = Cavity {
 
 /// Ghia, Ghia & Shin (J. Comput. Phys. 48, 1982), tables I and II, Re = 1000.
 ///
-/// Some copies have −0.31996 for v(0.8047); the table, and [`BOTELLA_PEYRET_RE_1000`], say −0.31966. The table's own error is as large as 1.9 % of the lid speed near the right wall:
-/// 0.35 % (u) and 0.94 % (v) in root mean square beside the spectral solution, which is what a perfect solver differs by.
+/// Some copies have −0.31996 for v(0.8047); most have −0.31966, as here, which lies beside the −0.32021 of [`BOTELLA_PEYRET_RE_1000`]. The table's own error
+/// is as large as 1.85 % of the lid speed near the right wall: 0.35 % (u) and 0.94 % (v) in root mean square beside the spectral solution, which is what a
+/// perfect solver differs by.
 #[rustfmt::skip]
 pub const GHIA_RE_1000: Cavity = Cavity {
     reynolds: 1000.0,
@@ -65,8 +66,8 @@ pub const GHIA_RE_1000: Cavity = Cavity {
     ],
 };
 
-/// Botella & Peyret (Computers & Fluids 27, 1998), tables 9 and 10, Re = 1000: a spectral solution, with the corner singularities subtracted, to seven digits. Their lid moves towards
-/// negative x; mirrored here.
+/// Botella & Peyret (Computers & Fluids 27, 1998), tables 9 and 10, Re = 1000: a spectral solution, with the corner singularities subtracted, to seven
+/// digits. Their lid moves towards negative x; mirrored here.
 #[rustfmt::skip]
 pub const BOTELLA_PEYRET_RE_1000: Cavity = Cavity {
     reynolds: 1000.0,

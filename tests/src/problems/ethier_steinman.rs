@@ -2,11 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-/// The decaying Beltrami flow of Ethier & Steinman (Int. J. Numer. Methods Fluids 19, 1994, equations 15 and 16), with their a = π/4 and d = π/2: its vorticity is
-/// along its velocity, so that advection balances the pressure and viscosity alone makes it decay.
+/// The decaying Beltrami flow of Ethier & Steinman (Int. J. Numer. Methods Fluids 19, 1994), with their a = π/4 and d = π/2: its vorticity is along its
+/// velocity, so that the pressure balances advection and viscosity alone makes it decay.
 ///
-/// The paper's cube [−1, 1]³ becomes the box [0, side]³: positions are shifted by, and measured in, half the side, which keeps the solution exact at any scale. The flow
-/// does not vanish on the faces: they need [`EthierSteinman::velocity`] prescribed.
+/// The paper's cube [−1, 1]³ becomes the box [0, side]³: positions are shifted by, and measured in, half the side, which keeps the solution exact at any
+/// scale. The flow does not vanish on the faces: they need [`EthierSteinman::velocity`] prescribed.
 #[derive(Clone, Copy, Debug)]
 pub struct EthierSteinman {
     /// Side of the box (m). The paper's cube has 2.

@@ -1,7 +1,7 @@
 //! Problems with exact solutions, and published tables: what a solver's answer is compared with.
 //!
-//! Positions are metres from the lower corner of a box, y up; flows in a plane lie in x–z where gravity plays no part. Velocities are m/s, pressures those over the
-//! density (m²/s²), both up to a constant.
+//! Positions are metres from the lower corner of a box, y up; what lies in a plane lies in x–z, save for the cavity, whose lid is on top. Velocities are
+//! m/s; pressures are those over the density (m²/s²), up to a constant.
 //!
 //! | problem | what it tries |
 //! |---|---|

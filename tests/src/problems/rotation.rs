@@ -28,8 +28,8 @@ impl Rotation {
     }
 }
 
-/// The slotted disc of Zalesak (J. Comput. Phys. 31, 1979): on a square of 100, a disc of radius 15 about (50, 75) with a slot 5 wide and 25 long from its lower rim; density
-/// 1 inside, 0 outside. Zalesak turns it once, in 628 steps at unit spacing.
+/// The slotted disc of Zalesak (J. Comput. Phys. 31, 1979): on a square of 100, a disc of radius 15 about (50, 75) with a slot 5 wide and 25 long from its
+/// lower rim; density 1 inside, 0 outside. It is turned once, in 628 steps at unit spacing.
 #[derive(Clone, Copy, Debug)]
 pub struct SlottedDisc(pub Rotation);
 
@@ -42,8 +42,8 @@ impl SlottedDisc {
         if in_disc && !in_slot { 1.0 } else { 0.0 }
     }
 
-    /// Mean density over a cell about a position (m) of `cell_m` along x and z, from `samples` × `samples` points: what a scheme that conserves should start from and end with.
-    /// Its error is about the share of samples on the rim, 1 / `samples` of what one sample per cell gives.
+    /// Mean density over a cell about a position (m) of `cell_m` along x and z, from `samples` × `samples` points in it: what a scheme that conserves
+    /// should start from and end with.
     pub fn mean_density(&self, [x, y, z]: [f64; 3], cell_m: [f64; 2], samples: usize, time_secs: f64) -> f64 {
         let offset = |n: usize, size: f64| ((n as f64 + 0.5) / samples as f64 - 0.5) * size;
         let points = (0..samples * samples).map(|n| [x + offset(n % samples, cell_m[0]), y, z + offset(n / samples, cell_m[1])]);
@@ -51,7 +51,8 @@ impl SlottedDisc {
     }
 }
 
-/// A Gaussian hill of height 1 a quarter of the side from the centre of a turning square. Nothing diffuses: it keeps its shape, and its error is that of advection alone.
+/// A Gaussian hill of height 1 a quarter of the side from the centre of a turning square. Nothing diffuses: it keeps its shape, and its error is that of
+/// advection alone.
 #[derive(Clone, Copy, Debug)]
 pub struct RotatingGaussian {
     /// What turns it.
