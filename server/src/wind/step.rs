@@ -295,7 +295,6 @@ impl<R: Real> Solver<R> {
             advect::advect(settings.advection, &grid, &self.paths, dust, even, &mut self.advection, close);
             std::mem::swap(dust, even);
             close(dust);
-            health::to_centres(&grid, &self.velocity, &mut self.centres);
         }
         if spread_apart {
             spread(self.config.diffusion, Portion::Whole, &grid, diffusivity, dt_secs, dust, [even, odd], self.implicit.as_mut(), close);
