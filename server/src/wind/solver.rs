@@ -59,6 +59,7 @@ pub struct Solver<R: Real> {
     /// Velocity at the start of a step, where there is dust to carry through the mean of old and new.
     pub(super) old: Option<Velocity<R>>,
     pub(super) cover: Vec<R>,
+    pub(super) seam_m: Option<[f64; 2]>,
     solid: Option<Vec<bool>>,
 
     pub(super) walls: Walls<R>,
@@ -99,6 +100,7 @@ impl<R: Real> Solver<R> {
             dust: config.dust.map(|_| dust.clone()),
             old: config.dust.map(|_| still.clone()),
             cover: vec![R::one(); grid.cells[0] * grid.cells[2]],
+            seam_m: None,
             solid: None,
             walls: Walls::new(&grid, Box::new(move |[_, y, _], _| mean.at(y.max(0.0)))),
             stages: [still.clone(), still],
@@ -180,6 +182,12 @@ impl<R: Real> Solver<R> {
     /// Says which share, 0 to 1, of the canopy stands in each column of cells, x fastest. All of it does at first.
     pub fn set_cover(&mut self, cover: impl Iterator<Item = f32>) {
         self.cover.iter_mut().zip(cover).for_each(|(cover, share)| *cover = R::of(share.clamp(0.0, 1.0).into()));
+    }
+
+    /// Cuts a box that wraps along x and z at these places (m): the air next to the cuts is brought back to the mean wind, so that what leaves there does not
+    /// come in again. `None`, at first, for no cut.
+    pub fn set_seam(&mut self, seam_m: Option<[f64; 2]>) {
+        self.seam_m = seam_m.filter(|_| self.grid.wraps(0) && self.grid.wraps(2));
     }
 
     /// Measures the new velocity.
