@@ -24,8 +24,10 @@ pub struct Labels<'a> {
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Plane<'a> = DrawingArea<SVGBackend<'a>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
-const SIZE_PX: (u32, u32) = (1120, 680);
-const LEGEND_PX: i32 = 330;
+const PLOT_PX: u32 = 790;
+const HEIGHT_PX: u32 = 680;
+/// Room for a letter of the legend, on average.
+const LETTER_PX: usize = 8;
 const FONT: &str = "Helvetica, Arial, sans-serif";
 const INK: RGBColor = RGBColor(32, 36, 42);
 const FAINT_INK: RGBColor = RGBColor(96, 102, 110);
@@ -66,14 +68,16 @@ pub fn svg(lines: &[Line], methods: &[&str], labels: Labels) -> Result<String> {
     let errors = range(points().map(|row| row.error)).context("no point to draw")?;
     let times = range(points().map(|row| row.seconds)).context("no point to draw")?;
 
+    let longest = lines.iter().map(|line| line.method.chars().count()).fold(24, usize::max);
+    let size_px = (PLOT_PX + 80 + (LETTER_PX * longest) as u32, HEIGHT_PX);
     let mut text = String::new();
-    let root = SVGBackend::with_string(&mut text, SIZE_PX).into_drawing_area();
+    let root = SVGBackend::with_string(&mut text, size_px).into_drawing_area();
     root.fill(&WHITE)?;
     write(&root, labels.title, (24, 32), 28, INK, HPos::Left)?;
     write(&root, "left: more accurate · down: faster", (24, 60), 17, FAINT_INK, HPos::Left)?;
-    write(&root, labels.caption, (24, SIZE_PX.1 as i32 - 18), 15, FAINT_INK, HPos::Left)?;
+    write(&root, labels.caption, (24, HEIGHT_PX as i32 - 18), 15, FAINT_INK, HPos::Left)?;
 
-    let (left, legend) = root.margin(80, 36, 0, 0).split_horizontally(SIZE_PX.0 as i32 - LEGEND_PX);
+    let (left, legend) = root.margin(80, 36, 0, 0).split_horizontally(PLOT_PX);
     let chart = ChartBuilder::on(&left)
         .x_label_area_size(64)
         .y_label_area_size(96)

@@ -7,6 +7,8 @@ use super::line::{Line, distinct, front, lines};
 
 /// Error levels shown for a problem.
 const LEVELS: usize = 4;
+/// Longest line (characters) that a list is broken into.
+const WIDTH: usize = 120;
 
 /// For each problem: the fastest method at a few levels of error, by how much the next one is slower, and the Pareto front.
 pub fn summary(rows: &[Row], norm: &str) -> String {
@@ -17,11 +19,11 @@ pub fn summary(rows: &[Row], norm: &str) -> String {
         let front = front(&lines);
         let (Some(coarsest), Some(finest)) = (front.first(), front.last()) else { continue };
         let header = format!("{:<10}{:<method_width$}  {:>12}   next", "error", "fastest", "wall time");
-        writeln!(text, "{problem} ({norm})\n  {header}").expect("a string takes all");
+        writeln!(text, "{problem}\n  {header}").expect("a string takes all");
         for error in levels(finest.error, coarsest.error) {
             writeln!(text, "  {}", at_level(&lines, error, method_width)).expect("a string takes all");
         }
-        writeln!(text, "  front, coarse to fine: {}\n", stretches(&front)).expect("a string takes all");
+        writeln!(text, "{}\n", wrapped(&format!("Pareto front: {}", front_text(&front)))).expect("a string takes all");
     }
     text
 }
@@ -61,17 +63,30 @@ fn levels(finest: f64, coarsest: f64) -> Vec<f64> {
     (0..LEVELS).map(|n| round[n * (round.len() - 1) / (LEVELS - 1)]).collect()
 }
 
-/// The front in words: methods in turn, each with the cells along the longest axis that it is there with.
-fn stretches(front: &[&Row]) -> String {
-    let stretch = |rows: &[&Row]| {
-        let cells = |row: &Row| row.cells.into_iter().max().unwrap_or(0);
-        match rows {
-            [] => String::new(),
-            [only] => format!("{} ({})", only.method, cells(only)),
-            [first, .., last] => format!("{} ({} to {})", first.method, cells(first), cells(last)),
-        }
+/// The front in words: its methods, from the one with the coarsest run on, each with the cells along the longest axis of its runs there.
+fn front_text(front: &[&Row]) -> String {
+    let of_method = |method: &str| {
+        let cells = front.iter().filter(|row| row.method == method).map(|row| row.cells.into_iter().max().unwrap_or(0).to_string());
+        format!("{method} ({})", cells.collect::<Vec<_>>().join(", "))
     };
-    front.chunk_by(|a, b| a.method == b.method).map(stretch).collect::<Vec<_>>().join("; ")
+    let methods = distinct(front.iter().copied(), |row| &row.method);
+    methods.into_iter().map(of_method).collect::<Vec<_>>().join("; ")
+}
+
+/// Words set in by two, in lines of at most [`WIDTH`] characters; all lines but the first are set in further.
+fn wrapped(text: &str) -> String {
+    let (mut wrapped, mut column) = (String::from(" "), 1);
+    for word in text.split_whitespace() {
+        let length = word.chars().count();
+        if column + 1 + length > WIDTH {
+            wrapped.push_str("\n     ");
+            column = 5;
+        }
+        wrapped.push(' ');
+        wrapped.push_str(word);
+        column += 1 + length;
+    }
+    wrapped
 }
 
 #[cfg(test)]
@@ -84,6 +99,14 @@ mod tests {
         assert_eq!(levels(0.9e-3, 0.11), [0.1, 0.02, 5e-3, 1e-3]);
         assert_eq!(levels(0.015, 0.06), [0.05, 0.02]);
         assert_eq!(levels(0.03, 0.04), [0.0; 0]);
+    }
+
+    #[test]
+    fn long_lists_are_broken() {
+        let text = wrapped(&"twelve chars ".repeat(20));
+        assert!(text.lines().count() == 3 && text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
+        assert!(text.lines().skip(1).all(|line| line.starts_with("      ")), "{text}");
+        assert_eq!(text.split_whitespace().count(), 40);
     }
 
     #[test]
@@ -105,6 +128,6 @@ mod tests {
             text.lines().filter_map(|line| line.trim().strip_prefix("≤ ")).filter_map(|line| line.split_whitespace().nth(1)).collect();
         assert_eq!(winners, ["cheap", "fine", "fine", "fine"], "{text}");
         assert!(text.contains("no other gets there"), "{text}");
-        assert!(text.contains("front, coarse to fine: cheap (8); fine (8 to 16)"), "{text}");
+        assert!(text.contains("  Pareto front: cheap (8); fine (8, 16)\n"), "{text}");
     }
 }
