@@ -163,7 +163,7 @@ impl<R: Real> Solver<R> {
 
     /// Carries the velocity by fluxes through faces, under the pressure of the step before.
     fn transport(&mut self, dt_secs: f64, viscosity_m2_per_s: f64) {
-        for (number, shares) in STAGES.into_iter().enumerate() {
+        for (number, share) in STAGES.into_iter().enumerate() {
             let [even, odd] = &mut self.stages;
             let (air, target) = match number {
                 0 => (&self.velocity, even),
@@ -178,7 +178,7 @@ impl<R: Real> Solver<R> {
                     start: &self.velocity.0[axis],
                     pull: Some(&self.pull.0[axis]),
                     dt_secs,
-                    shares,
+                    share,
                     diffusivity_m2_per_s: viscosity_m2_per_s,
                     damping: self.config.damping.into(),
                 };
@@ -284,13 +284,13 @@ impl<R: Real> Solver<R> {
             let parts = (dt_secs / dust_dt_secs(&grid, self.health.fastest_m_per_s, in_flux)).ceil().max(1.0);
             let part_secs = dt_secs / parts;
             for _ in 0..parts as u32 {
-                for (number, shares) in STAGES.into_iter().enumerate() {
+                for (number, share) in STAGES.into_iter().enumerate() {
                     let (carried, target) = match number {
                         0 => (&*dust, &mut *even),
                         1 => (&*even, &mut *odd),
                         _ => (&*odd, &mut *even),
                     };
-                    let stage = Stage { grid: &grid, air, carried, start: dust, pull: None, dt_secs: part_secs, shares, diffusivity_m2_per_s: in_flux, damping: 0.0 };
+                    let stage = Stage { grid: &grid, air, carried, start: dust, pull: None, dt_secs: part_secs, share, diffusivity_m2_per_s: in_flux, damping: 0.0 };
                     stage.run(target, &mut self.transport);
                     close(target);
                 }
