@@ -2,7 +2,9 @@
 //!
 //! Over and in a uniform canopy, driven by an acceleration G and slowed by an eddy viscosity ν, the steady profile is known: above, `ν·U″ = −G`; inside,
 //! `ν·U″ = C_d·a·U² − G`. Deep in the canopy `U = U_b = √(G / C_d·a)`; one integration gives
-//! `ν/2·U′² = C_d·a/3·(U − U_b)²·(U + 2U_b)` (where G does not count: `ν·U″ = C_d·a·U²`, and a shear length `U/U′ = √(3ν / (2·C_d·a·U))`), another `U = U_b·(3·coth²θ − 2)`, with θ linear in depth.
+//! `ν/2·U′² = C_d·a/3·(U − U_b)²·(U + 2U_b)`, another `U = U_b·(3·coth²θ − 2)`, with θ linear in depth.
+//!
+//! The shear layer at canopy height has the length `U/U′`. Where U is far above U_b, so that G does not count, it is `√(3ν / (2·C_d·a·U))`.
 
 use server::wind::{Boundary, Canopy, Config, Solver};
 use tests::air::still_air;
