@@ -2,7 +2,7 @@
 
 use std::fmt::{Debug, Display};
 
-use rustfft::num_traits::Float;
+use num_traits::Float;
 
 /// A floating-point number the kernels run in: `f32` for the simulation, `f64` for reference runs.
 pub trait Real: Float + Default + Debug + Display + Send + Sync + 'static {
