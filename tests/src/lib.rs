@@ -2,7 +2,6 @@
 
 pub mod browser;
 pub mod chromedriver;
-pub mod gauss_seidel;
 pub mod maps;
 pub mod norms;
 pub mod pages;
