@@ -3,7 +3,6 @@
 pub mod browser;
 pub mod chart;
 pub mod chromedriver;
-pub mod gauss_seidel;
 pub mod maps;
 pub mod norms;
 pub mod pages;
