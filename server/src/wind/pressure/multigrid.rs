@@ -75,6 +75,7 @@ fn cycle(levels: &mut [Level]) {
         operator.residual(0, p, b, r);
         // The black equations have just been solved, but for those that meet black cells.
         if *seams {
+            operator.layout.wrap(0, p);
             operator.residual(1, p, b, r);
         }
         transfer.restrict(r, &mut next.b);
