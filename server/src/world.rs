@@ -6,7 +6,7 @@ use crate::objects::{Objects, Place, SPEED_LIMIT_M_PER_S};
 use crate::snapshot::{BentPatches, Health, PatchCodes, Snapshot};
 use crate::weather::{self, Weather, WeatherError};
 use crate::wind::StepError;
-use crate::wind::solver::MAX_SUBSTEPS;
+use crate::wind::state::MAX_SUBSTEPS;
 use rayon::prelude::*;
 use shared::bend::{Patch, WaveParams, verlet};
 use shared::scene::{Grass, Patches, Scene, VehicleKind};
@@ -92,7 +92,7 @@ impl World {
     /// [`WorldError`] when constants that are each in range make no world together.
     pub fn new(scene: &Scene, maps: Maps) -> Result<Self, WorldError> {
         check_stiffness(scene)?;
-        let weather = Weather::new(scene).map_err(|error| no_wind(scene, error))?;
+        let weather = Weather::new(scene, &maps).map_err(|error| no_wind(scene, error))?;
         let height = Arc::new(maps.height);
         let place = Place { height: Arc::clone(&height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
         let meadow = Meadow::new(scene, Arc::clone(&height));
@@ -117,7 +117,7 @@ impl World {
         self.tick += 1;
         self.objects.step(self.dt_secs);
         let motions = self.objects.motions();
-        self.weather.step(self.tick, &motions, &self.height);
+        self.weather.step(self.tick, &motions, &self.height, self.meadow.field());
         self.meadow.step(self.dt_secs, &motions, &self.views, self.weather.ground());
     }
 
@@ -162,7 +162,7 @@ impl World {
             sum.add([pose.id]);
             sum.add(pose.position_m.iter().chain(&pose.rotation).chain(&pose.velocity_m_per_s).map(|v| v.to_bits()));
         }
-        sum.add(self.weather.velocities().flat_map(|velocity| velocity.to_array().map(f32::to_bits)));
+        sum.add(self.weather.velocities().iter().flat_map(|velocity| velocity.to_array().map(f32::to_bits)));
         for (index, patch) in self.meadow.field().awake() {
             sum.add([index]);
             for channel in patch.channels().into_iter().chain(patch.channels_before()) {
@@ -268,7 +268,7 @@ fn substeps_when_struck(scene: &Scene) -> u32 {
 
 fn no_wind(scene: &Scene, error: WeatherError) -> WorldError {
     match error {
-        WeatherError::Step(StepError::TooViscous { dt_secs, needed, .. }) => {
+        WeatherError::Step(StepError::TooLong { what: "viscosity_m2_per_s", dt_secs, needed, .. }) => {
             let (viscosity, [x, y, z]) = (scene.wind.viscosity_m2_per_s, scene.wind.spacing_m);
             let message = format!(
                 "is {viscosity}, which needs {needed:.0} sub-steps of diffusion in the wind's step of {dt_secs:.3} s on cells of {x} × {y} × {z} m; \

@@ -1,6 +1,7 @@
 //! What the tests, charts and pictures of Prairie share.
 
 pub mod browser;
+pub mod chart;
 pub mod chromedriver;
 pub mod gauss_seidel;
 pub mod maps;

@@ -126,6 +126,35 @@ impl<R: Real> Walls<R> {
         for field in &mut velocity.0 {
             self.close_component(field);
         }
+        for axis in 0..3 {
+            for side in [0, 1] {
+                if self.grid.boundary[axis][side] == Boundary::Outflow {
+                    self.still_the_outside(velocity, axis, side);
+                }
+            }
+        }
+    }
+
+    /// Lets air that comes in through a face of outflow come from rest: taking on what is inside it would gain energy from nowhere and blow up.
+    fn still_the_outside(&self, velocity: &mut Velocity<R>, axis: usize, side: usize) {
+        let (grid, strides) = (&self.grid, self.grid.strides());
+        let [a, b] = [(axis + 1) % 3, (axis + 2) % 3];
+        let n = grid.cells[axis];
+        let (node, outside) = if side == 0 { (GHOST, [GHOST - 1, GHOST - 2]) } else { (GHOST + n, [GHOST + n, GHOST + n + 1]) };
+        for m in GHOST..GHOST + grid.cells[a] + 1 {
+            for l in GHOST..GHOST + grid.cells[b] + 1 {
+                let at = |index: usize| index * strides[axis] + m * strides[a] + l * strides[b];
+                let through = velocity.0[axis].data[at(node)];
+                let comes_in = if side == 0 { through > R::zero() } else { through < R::zero() };
+                if comes_in {
+                    for component in [a, b] {
+                        outside.iter().for_each(|&index| velocity.0[component].data[at(index)] = R::zero());
+                    }
+                    let beyond = if side == 0 { outside } else { outside.map(|index| index + 1) };
+                    beyond.iter().for_each(|&index| velocity.0[axis].data[at(index)] = R::zero());
+                }
+            }
+        }
     }
 
     /// [`Walls::close`] for one component.
@@ -177,38 +206,86 @@ impl<R: Real> Walls<R> {
     }
 
     fn fill(&self, field: &mut Field<R>, axis: usize, rules: [Rule<'_, R>; 2]) {
-        let (n, stride) = (self.grid.cells[axis], self.grid.strides()[axis]);
-        let span = stride * self.grid.padded()[axis];
+        let (grid, n, stride) = (&self.grid, self.grid.cells[axis], self.grid.strides()[axis]);
         let on_faces = field.place == Place::Face(axis);
-        let half = R::of(0.5);
-        for (block_number, block) in field.data.chunks_mut(span).enumerate() {
-            let doubled_at = |doubled: &[R], inner: usize| doubled[block_number * stride + inner];
-            if on_faces {
-                for (side, rule) in rules.into_iter().enumerate() {
-                    let node = stride * (GHOST + side * n);
-                    let closed = self.grid.boundary[axis][side].is_closed();
-                    for (inner, value) in block[node..node + stride].iter_mut().enumerate() {
-                        match rule {
-                            Rule::MirrorPlane { doubled, .. } => *value = half * doubled_at(doubled, inner),
-                            Rule::Mirror { .. } if closed => *value = R::zero(),
-                            Rule::Mirror { .. } | Rule::Wrap => {}
-                        }
+        let (zero, half) = (R::zero(), R::of(0.5));
+        let mut images = [Image::default(); 2 + 2 * GHOST];
+        let mut used = 0;
+        let mut add = |image| {
+            images[used] = image;
+            used += 1;
+        };
+        for (side, rule) in rules.into_iter().enumerate().filter(|_| on_faces) {
+            let node = GHOST + side * n;
+            match rule {
+                Rule::MirrorPlane { .. } => add(Image { to: node, from: node, sign: zero, doubled: zero, plane: Some(side), share: half }),
+                Rule::Mirror { .. } if grid.boundary[axis][side].is_closed() => add(Image { to: node, from: node, ..Image::default() }),
+                Rule::Mirror { .. } | Rule::Wrap => {}
+            }
+        }
+        for (side, rule) in rules.into_iter().enumerate() {
+            for m in 1..=GHOST {
+                let (to, from) = ghost(n, side, m, on_faces, matches!(rule, Rule::Wrap));
+                add(match rule {
+                    Rule::Wrap => Image { to, from, sign: R::one(), ..Image::default() },
+                    Rule::Mirror { sign, doubled } => Image { to, from, sign, doubled, ..Image::default() },
+                    Rule::MirrorPlane { sign, .. } => Image { to, from, sign, plane: Some(side), share: R::one(), ..Image::default() },
+                });
+            }
+        }
+        let images = &images[..used];
+        let planes = rules.map(|rule| if let Rule::MirrorPlane { doubled, .. } = rule { doubled } else { &[] });
+
+        // Lines whose ghosts along later axes are not filled yet are left out: those ghosts are made from whole lines.
+        let [sy, sz] = [grid.strides()[1], grid.strides()[2]];
+        let inner = |axis: usize| GHOST..GHOST + grid.cells[axis] + 1;
+        match axis {
+            0 => {
+                for k in inner(2) {
+                    for j in inner(1) {
+                        let row = j * sy + k * sz;
+                        apply(images, planes, &mut field.data[row..row + sy], 1, row / sy);
                     }
                 }
             }
-            for (side, rule) in rules.into_iter().enumerate() {
-                for m in 1..=GHOST {
-                    let (to, from) = ghost(n, side, m, on_faces, matches!(rule, Rule::Wrap));
-                    for inner in 0..stride {
-                        let image = block[from * stride + inner];
-                        block[to * stride + inner] = match rule {
-                            Rule::Wrap => image,
-                            Rule::Mirror { sign, doubled } => sign * image + doubled,
-                            Rule::MirrorPlane { sign, doubled } => sign * image + doubled_at(doubled, inner),
-                        };
-                    }
-                }
+            1 => inner(2).for_each(|k| apply(images, planes, &mut field.data[k * sz..(k + 1) * sz], stride, k * sy)),
+            _ => apply(images, planes, &mut field.data, stride, 0),
+        }
+    }
+}
+
+/// One line of values along an axis set from another: `sign·(value from) + doubled`, with the share of a plane's value where there is one.
+#[derive(Clone, Copy, Default)]
+struct Image<R> {
+    to: usize,
+    from: usize,
+    sign: R,
+    doubled: R,
+    plane: Option<usize>,
+    share: R,
+}
+
+/// Sets lines of `block`, each of `stride` values, from others; the block's first value is number `first` of the planes.
+#[inline(always)]
+fn apply<R: Real>(images: &[Image<R>], planes: [&[R]; 2], block: &mut [R], stride: usize, first: usize) {
+    for &Image { to, from, sign, doubled, plane, share } in images {
+        let [to, from] = [to * stride, from * stride];
+        if let Some(side) = plane {
+            for inner in 0..stride {
+                block[to + inner] = sign * block[from + inner] + share * planes[side][first + inner];
             }
+        } else if sign == R::zero() {
+            block[to..to + stride].fill(doubled);
+        } else if stride == 1 {
+            block[to] = sign * block[from] + doubled;
+        } else {
+            let (low, high) = block.split_at_mut(to.max(from));
+            let (target, source) = if to < from {
+                (&mut low[to..to + stride], &high[..stride])
+            } else {
+                (&mut high[..stride], &low[from..from + stride])
+            };
+            target.iter_mut().zip(source).for_each(|(target, &source)| *target = sign * source + doubled);
         }
     }
 }

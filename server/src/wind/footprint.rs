@@ -17,19 +17,25 @@ impl<R: Real> Footprint<R> {
         let shape = grid.shape(place);
         for axis in 0..3 {
             let spacing = grid.spacing_m[axis];
-            let extent = grid.extent_m(axis);
             let radius = radius_m[axis].max(spacing);
             let height = radius_m[axis].min(spacing) / spacing;
             self.along[axis].clear();
-            for i in 0..shape[axis] {
-                let mut distance = (R::of(i as f64) + grid.offset(place, axis)) * spacing - centre_m[axis];
-                if grid.wraps(axis) {
-                    distance = distance - (distance / extent).round() * extent;
-                }
+            let offset = grid.offset(place, axis);
+            let n = shape[axis] as i64;
+            let index_of = |position: R| (position / spacing - offset).wide();
+            let (mut first, mut last) = (index_of(centre_m[axis] - radius).ceil() as i64, index_of(centre_m[axis] + radius).floor() as i64);
+            if !grid.wraps(axis) {
+                (first, last) = (first.max(0), last.min(n - 1));
+            } else if last - first >= n {
+                first = (index_of(centre_m[axis]) - 0.5 * n as f64).ceil() as i64;
+                last = first + n - 1;
+            }
+            for i in first..=last {
+                let distance = (R::of(i as f64) + offset) * spacing - centre_m[axis];
                 let reach = distance / radius;
                 if reach.abs() < R::one() {
                     let fall = R::one() - reach * reach;
-                    self.along[axis].push((i, height * fall * fall, distance));
+                    self.along[axis].push((i.rem_euclid(n) as usize, height * fall * fall, distance));
                 }
             }
         }

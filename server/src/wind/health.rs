@@ -1,5 +1,7 @@
 //! What a step must know about itself: speed, energy, divergence, and that every number is one.
 
+use multiversion::multiversion;
+
 use super::parallel::for_each_chunk;
 use super::{GHOST, Grid, Real, Velocity};
 
@@ -49,36 +51,7 @@ pub fn to_centres<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, centres: &mut
 
 /// Measures the flow. `planes` has one entry per plane of cells along z.
 pub fn measure<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, planes: &mut [PlaneSums]) -> Health {
-    let [nx, ny, nz] = grid.cells;
-    let strides = grid.strides();
-    let per_m = grid.spacing_m.map(R::recip);
-    let half = R::of(0.5);
-    for_each_chunk(&mut planes[..nz], 1, |k, sums| {
-        let (mut fastest, mut divergence_squares, mut speed_squares) = ([R::zero(); 3], 0.0, 0.0);
-        for j in 0..ny {
-            let at = grid.at([0, j, k]);
-            let faces = [0, 1, 2].map(|axis| {
-                let data = &velocity.0[axis].data;
-                [&data[at..][..nx], &data[at + strides[axis]..][..nx]]
-            });
-            // Partial sums side by side, so that they can be taken in vectors; added in order.
-            let (mut divergences, mut speeds) = ([R::zero(); LANES], [R::zero(); LANES]);
-            for i in 0..nx {
-                let lane = i % LANES;
-                let [[u0, u1], [v0, v1], [w0, w1]] = faces.map(|[low, high]| [low[i], high[i]]);
-                let divergence = (u1 - u0) * per_m[0] + (v1 - v0) * per_m[1] + (w1 - w0) * per_m[2];
-                let centre = [half * (u0 + u1), half * (v0 + v1), half * (w0 + w1)];
-                for (fastest, speed) in fastest.iter_mut().zip(centre) {
-                    *fastest = if speed.abs() > *fastest { speed.abs() } else { *fastest };
-                }
-                divergences[lane] = divergences[lane] + divergence * divergence;
-                speeds[lane] = speeds[lane] + (centre[0] * centre[0] + centre[1] * centre[1] + centre[2] * centre[2]);
-            }
-            divergence_squares += divergences.into_iter().map(R::wide).sum::<f64>();
-            speed_squares += speeds.into_iter().map(R::wide).sum::<f64>();
-        }
-        sums[0] = PlaneSums { fastest_m_per_s: fastest.map(R::wide), divergence_squares, speed_squares };
-    });
+    for_each_chunk(planes, 1, |k, sums| sums[0] = measure_plane(grid, velocity, k));
     let total = planes.iter().fold(PlaneSums::default(), |a, b| PlaneSums {
         fastest_m_per_s: [0, 1, 2].map(|axis| a.fastest_m_per_s[axis].max(b.fastest_m_per_s[axis])),
         divergence_squares: a.divergence_squares + b.divergence_squares,
@@ -109,6 +82,44 @@ pub fn fastest_to_be<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, pull: &Vel
         });
         rows.fold(R::zero(), faster).wide()
     })
+}
+
+/// Partial sums and extremes side by side, so that they can be taken in vectors; they are added up in order.
+#[multiversion(targets("x86_64+avx2"))]
+fn measure_plane<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, k: usize) -> PlaneSums {
+    let [nx, ny, _] = grid.cells;
+    let strides = grid.strides();
+    let per_m = grid.spacing_m.map(R::recip);
+    let half = R::of(0.5);
+    let mut fastest = [[R::zero(); LANES]; 3];
+    let (mut divergence_squares, mut speed_squares) = (0.0, 0.0);
+    for j in 0..ny {
+        let at = grid.at([0, j, k]);
+        let faces = [0, 1, 2].map(|axis| {
+            let data = &velocity.0[axis].data;
+            [&data[at..][..nx], &data[at + strides[axis]..][..nx]]
+        });
+        let (mut divergences, mut speeds) = ([R::zero(); LANES], [R::zero(); LANES]);
+        for start in (0..nx).step_by(LANES) {
+            let lanes = LANES.min(nx - start);
+            let faces = faces.map(|pair| pair.map(|row| &row[start..start + lanes]));
+            for lane in 0..lanes {
+                let [[u0, u1], [v0, v1], [w0, w1]] = faces.map(|[low, high]| [low[lane], high[lane]]);
+                let divergence = (u1 - u0) * per_m[0] + (v1 - v0) * per_m[1] + (w1 - w0) * per_m[2];
+                let centre = [half * (u0 + u1), half * (v0 + v1), half * (w0 + w1)];
+                for (fastest, speed) in fastest.iter_mut().zip(centre) {
+                    let speed = speed.abs();
+                    fastest[lane] = if speed > fastest[lane] { speed } else { fastest[lane] };
+                }
+                divergences[lane] = divergences[lane] + divergence * divergence;
+                speeds[lane] = speeds[lane] + (centre[0] * centre[0] + centre[1] * centre[1] + centre[2] * centre[2]);
+            }
+        }
+        divergence_squares += divergences.into_iter().map(R::wide).sum::<f64>();
+        speed_squares += speeds.into_iter().map(R::wide).sum::<f64>();
+    }
+    let fastest_m_per_s = fastest.map(|lanes| lanes.into_iter().map(R::wide).fold(0.0, f64::max));
+    PlaneSums { fastest_m_per_s, divergence_squares, speed_squares }
 }
 
 /// The first cell, along x, then y, then z, with a velocity that is not a finite number.

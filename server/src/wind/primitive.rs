@@ -94,15 +94,26 @@ impl Primitive {
         }
     }
 
+    /// Share of its volume that a cell at the centre of a source blows out in a second.
+    fn divergence_per_sec(&self) -> f64 {
+        f64::from(self.speed_m_per_s) / (SPEED_OF_SOURCE * f64::from(self.radius_m))
+    }
+
     /// Drives the air for a step of backward Euler, which never overshoots, about the place it has at `time_secs`.
     pub fn drive<R: Real>(&self, grid: &Grid<R>, time_secs: f64, dt_secs: f64, velocity: &mut Velocity<R>, footprint: &mut Footprint<R>) {
-        if self.is_source() {
+        if self.shape == Shape::Source {
             return;
         }
         let share = R::of(RATE_PER_SEC * dt_secs / (1.0 + RATE_PER_SEC * dt_secs));
+        let gone = R::of(self.divergence_per_sec() * dt_secs);
         for (axis, field) in velocity.0.iter_mut().enumerate() {
             footprint.put(grid, field.place, self.centre_m(time_secs), [R::of(self.radius_m.into()); 3]);
             footprint.for_each(grid, field, |speed, weight, offset_m| {
+                if self.shape == Shape::Sink {
+                    // Air that goes takes its momentum with it.
+                    *speed = *speed / (R::one() + weight * gone);
+                    return;
+                }
                 let target = R::of(self.target(offset_m.map(R::wide))[axis]);
                 *speed = *speed + weight * share * (target - *speed);
             });
@@ -116,7 +127,7 @@ impl Primitive {
             Shape::Sink => -1.0,
             _ => return,
         };
-        let divergence = sign * f64::from(self.speed_m_per_s) / (SPEED_OF_SOURCE * f64::from(self.radius_m));
+        let divergence = sign * self.divergence_per_sec();
         footprint.put(grid, super::Place::Centre, self.centre_m(time_secs), [R::of(self.radius_m.into()); 3]);
         footprint.for_each_index(|[i, j, k], weight| inflow[i + grid.cells[0] * (j + grid.cells[1] * k)] += weight.wide() * divergence);
     }

@@ -3,6 +3,9 @@
 use super::config::{Config, Profile};
 use super::{Field, Grid, Real, Velocity};
 
+/// Rate (1/s) at which air at the cut of a box takes on the mean wind.
+const CALM_PER_SEC: f64 = 2.0;
+
 /// Mean wind as a function of height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeanWind {
@@ -64,17 +67,62 @@ impl<R: Real> Relaxation<R> {
     }
 }
 
+/// Brings the air in the cells next to a cut across x at `seam_m[0]` and one across z at `seam_m[1]` (m) back to the mean wind, for a step of backward Euler.
+///
+/// A box that wraps and follows the action is cut where it ends, on the far side of the action: what leaves there should not come in again.
+pub fn calm<R: Real>(grid: &Grid<R>, mean: &MeanWind, seam_m: [f64; 2], dt_secs: f64, velocity: &mut Velocity<R>) {
+    let share = R::of(CALM_PER_SEC * dt_secs / (1.0 + CALM_PER_SEC * dt_secs));
+    for (axis, field) in velocity.0.iter_mut().enumerate() {
+        for (across, seam_m) in [(0, seam_m[0]), (2, seam_m[1])] {
+            let n = grid.cells[across] as i64;
+            let middle = (seam_m / grid.spacing_m[across].wide() - grid.offset(field.place, across).wide()).round() as i64;
+            for index in (middle - 1..=middle + 1).map(|index| index.rem_euclid(n) as usize).take(field.shape[across]) {
+                let other = 2 - across;
+                for j in 0..field.shape[1] {
+                    let height_m = (j as f64 + grid.offset(field.place, 1).wide()) * grid.spacing_m[1].wide();
+                    let target = R::of(mean.at(height_m)[axis]);
+                    for along in 0..field.shape[other] {
+                        let mut cell = [0, j, 0];
+                        (cell[across], cell[other]) = (index, along);
+                        let speed = &mut field.data[grid.at(cell)];
+                        *speed = *speed + share * (target - *speed);
+                    }
+                }
+            }
+        }
+    }
+}
+
 fn layer_sums<R: Real>(grid: &Grid<R>, field: &Field<R>, sums: &mut [f64]) {
     sums.fill(0.0);
     let layers = sums.len();
     for (n, row) in field.rows(grid).enumerate() {
-        sums[n % layers] += field.data[row..][..field.shape[0]].iter().fold(R::zero(), |sum, &speed| sum + speed).wide();
+        // Side by side, so that the sums can be taken in vectors.
+        let mut lanes = [R::zero(); 8];
+        for chunk in field.data[row..][..field.shape[0]].chunks(8) {
+            lanes.iter_mut().zip(chunk).for_each(|(lane, &speed)| *lane = *lane + speed);
+        }
+        sums[n % layers] += lanes.into_iter().map(R::wide).sum::<f64>();
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn air_at_the_cut_takes_on_the_mean_wind_and_the_rest_does_not() {
+        let config = Config::default();
+        let grid = config.grid::<f32>();
+        let mean = MeanWind::new(&config);
+        let mut velocity = Velocity::zeros(&grid);
+        (0..100).for_each(|_| calm(&grid, &mean, [250.0, 128.0], 0.1, &mut velocity));
+        let u = |i: usize, k: usize| f64::from(velocity.0[0].data[grid.at([i, 4, k])]);
+        for (i, k) in [(31, 3), (0, 3), (5, 15), (5, 16)] {
+            assert!((u(i, k) - mean.at(9.0)[0]).abs() < 1e-3, "{i}, {k}: {}", u(i, k));
+        }
+        assert_eq!([u(5, 3), u(20, 20)], [0.0; 2]);
+    }
 
     #[test]
     fn layers_reach_the_profile_and_gusts_stay() {

@@ -2,7 +2,7 @@
 //!
 //! There the seven-point Laplacian is a sum of one second difference per axis, and each of these is diagonal in a basis of waves of its own. A solve
 //! transforms every plane along x and y, solves a tridiagonal system along z for each pair of waves, and transforms back (Swarztrauber, "The methods of
-//! cyclic reduction, Fourier analysis and the FACR algorithm", SIAM Review 19 (1977), §4). The field passes three times through memory; the rest happens in
+//! cyclic reduction, Fourier analysis and the FACR algorithm", SIAM Review 19 (1977)). The field passes three times through memory; the rest happens in
 //! cache, eight lines at a time.
 //!
 //! Fused multiply-add is never used and lines do not see each other's tasks: bits depend neither on the processor's vectors nor on the number of threads.
@@ -48,12 +48,11 @@ pub enum Basis {
 
 /// A planned solver of `(shift − ∇²)·φ = f` with the seven-point Laplacian.
 ///
-/// Takes time proportional to the number of unknowns and to the prime factors of the two lengths it transforms along, x and y: cells in multiples of 4, 3
-/// and 5 are best (for [`Basis::Nodes`], one cell less). Lengths along z all cost the same.
+/// Takes time proportional to the number of unknowns and to the sum of the prime factors of the two lengths it transforms along, x and y: products of 2, 3
+/// and 5 are best (for [`Basis::Nodes`], one less than these). Lengths along z all cost the same.
 ///
 /// ```
-/// # use h6 as wind;
-/// use wind::separable::{Basis, Edge, Separable};
+/// use server::wind::separable::{Basis, Edge, Separable};
 ///
 /// // Implicit diffusion of a spike between walls that keep it in: ν·dt = 0.5 m².
 /// let walls = Basis::Centres([Edge::Neumann; 2]);
@@ -90,7 +89,11 @@ struct Scratch {
 
 impl Separable {
     /// Plans solves on `cells` unknowns (each ≥ 1) `spacing_m` (m, > 0) apart, and allocates all that they need: 8 bytes per unknown, and a little.
+    ///
+    /// # Panics
+    /// If an axis has no unknowns.
     pub fn new(cells: [usize; 3], spacing_m: [f64; 3], axes: [Basis; 3]) -> Self {
+        assert!(cells.iter().all(|&n| n > 0), "an axis without unknowns");
         // An axis of one unknown can stand anywhere; at the end it leaves two longer ones in a plane.
         let mut order = [0, 1, 2];
         order.sort_by_key(|&axis| cells[axis] == 1);
@@ -99,14 +102,12 @@ impl Separable {
         let [x, y] = from_fn(|axis| Line::new(axes[axis], cells[axis], spacing_m[axis]));
 
         let bands = y.eigenvalues.chunks(LINES);
-        let of_plane = bands.flat_map(|band| x.eigenvalues.iter().flat_map(move |along_x| band.iter().map(move |along_y| along_x + along_y)));
+        let of_plane =
+            bands.flat_map(|band| x.eigenvalues.iter().flat_map(move |along_x| band.iter().map(move |along_y| along_x + along_y)));
         let mut eigenvalues = vec![[0.0; WIDTH]; (nx * ny).div_ceil(WIDTH)];
         eigenvalues.as_flattened_mut().iter_mut().zip(of_plane).for_each(|(slot, eigenvalue)| *slot = eigenvalue);
 
-        let scratch = Scratch {
-            lines: Lines::new(&x, &y),
-            columns: vec![[0.0; WIDTH]; 2 * nz],
-        };
+        let scratch = Scratch { lines: Lines::new(&x, &y), columns: vec![[0.0; WIDTH]; 2 * nz] };
         Self {
             cells,
             blocks: vec![0.0; eigenvalues.len() * nz * WIDTH],

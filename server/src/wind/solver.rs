@@ -61,6 +61,7 @@ pub struct Solver<R: Real> {
     /// The pull at the same time, where it may have to be taken back: with dust, which is carried last.
     pub(super) old_pull: Option<Velocity<R>>,
     pub(super) cover: Vec<R>,
+    pub(super) seam_m: Option<[f64; 2]>,
     solid: Option<Vec<bool>>,
 
     pub(super) walls: Walls<R>,
@@ -103,6 +104,7 @@ impl<R: Real> Solver<R> {
             old: (config.dust.is_some() || is_conservative).then(|| still.clone()),
             old_pull: (config.dust.is_some() && is_conservative).then(|| still.clone()),
             cover: vec![R::one(); grid.cells[0] * grid.cells[2]],
+            seam_m: None,
             solid: None,
             walls: Walls::new(&grid, Box::new(move |[_, y, _], _| mean.at(y.max(0.0)))),
             stages: [still.clone(), still],
@@ -186,9 +188,14 @@ impl<R: Real> Solver<R> {
         self.cover.iter_mut().zip(cover).for_each(|(cover, share)| *cover = R::of(share.clamp(0.0, 1.0).into()));
     }
 
-    /// Takes in the new velocity: what cells and measures are made of.
+    /// Cuts a box that wraps along x and z at these places (m): the air next to the cuts is brought back to the mean wind, so that what leaves there does not
+    /// come in again. `None`, at first, for no cut.
+    pub fn set_seam(&mut self, seam_m: Option<[f64; 2]>) {
+        self.seam_m = seam_m.filter(|_| self.grid.wraps(0) && self.grid.wraps(2));
+    }
+
+    /// Measures the new velocity.
     pub(super) fn observe(&mut self) {
-        health::to_centres(&self.grid, &self.velocity, &mut self.centres);
         self.health = health::measure(&self.grid, &self.velocity, &mut self.planes);
     }
 
@@ -205,10 +212,14 @@ impl<R: Real> Solver<R> {
 
     /// Velocities (m/s) at the centres of cells, x fastest, then y, then z: cell (i, j, k) is item `i + nx·(j + ny·k)`.
     pub fn cell_velocities(&self) -> impl Iterator<Item = Vec3> + '_ {
-        let [nx, ny, nz] = self.grid.cells;
+        let ([nx, ny, nz], strides) = (self.grid.cells, self.grid.strides());
         (0..ny * nz).flat_map(move |row| {
-            let at = self.grid.at([0, row % ny, row / ny]);
-            self.centres[at..at + nx].iter().map(|&[x, y, z, _]| Vec3::new(x.wide() as f32, y.wide() as f32, z.wide() as f32))
+            let start = self.grid.at([0, row % ny, row / ny]);
+            let mean = move |axis: usize, at: usize| {
+                let data = &self.velocity.0[axis].data;
+                0.5 * (data[at].wide() + data[at + strides[axis]].wide()) as f32
+            };
+            (start..start + nx).map(move |at| Vec3::new(mean(0, at), mean(1, at), mean(2, at)))
         })
     }
 

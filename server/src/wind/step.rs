@@ -4,7 +4,7 @@ use super::diffuse::{Portion, spread};
 use super::pressure::Convergence;
 use super::state::{MAX_SUBSTEPS, StepError, StepReport};
 use super::transport::{self, STAGE_ENDS, STAGES, Stage};
-use super::{Advection, Config, Diffusion, Dust, Grid, Jet, Real, Solver, TimeScheme, advect, canopy, diffuse, forcing, health, sources, trace};
+use super::{Advection, Config, Diffusion, Dust, Grid, Jet, Real, Solver, TimeScheme, advect, canopy, diffuse, forcing, health, profile, sources, trace};
 
 /// Share of the longest stable step that a substep takes, since air may be faster at its end than at its beginning.
 const SAFETY: f64 = 0.8;
@@ -260,6 +260,9 @@ impl<R: Real> Solver<R> {
             forcing::drive(grid, jet, dt_secs, &mut self.velocity, &mut self.footprint);
         }
         self.relaxation.apply(grid, self.config.relaxation_per_sec.into(), dt_secs, &mut self.velocity);
+        if let Some(seam_m) = self.seam_m {
+            profile::calm(grid, &self.mean, seam_m, dt_secs, &mut self.velocity);
+        }
         for (field, &force) in self.velocity.0.iter_mut().zip(&self.config.body_force_m_per_s2) {
             let gain = R::of(f64::from(force) * dt_secs);
             if gain != R::zero() {
@@ -337,7 +340,6 @@ impl<R: Real> Solver<R> {
             advect::advect(settings.advection, &grid, &self.paths, dust, even, &mut self.advection, close);
             std::mem::swap(dust, even);
             close(dust);
-            health::to_centres(&grid, &self.velocity, &mut self.centres);
         }
         if spread_apart {
             spread(self.config.diffusion, Portion::Whole, &grid, diffusivity, dt_secs, dust, [even, odd], self.implicit.as_mut(), close);

@@ -59,8 +59,7 @@ impl Conjugate {
                     let z = &self.z[colour];
                     layout.for_each_plane(colour, &mut self.direction[colour], |start, d| kernels::scale_add(d, &z[start..], beta));
                 }
-                // After both: across a seam of an odd number of cells the ghosts of one colour repeat cells of the other.
-                (0..2).for_each(|colour| layout.wrap(colour, &mut self.direction));
+                layout.wrap(&mut self.direction);
                 let curvature = operator.apply_sum(&self.direction, &mut self.product, partial);
                 if !(curvature > 0.0 && rz > 0.0) {
                     // Nothing left but rounding.
@@ -78,7 +77,7 @@ impl Conjugate {
                         kernels::dot(r, r)
                     });
                 }
-                (0..2).for_each(|colour| layout.wrap(colour, p));
+                layout.wrap(p);
                 r_norm = sum.sqrt();
                 sweeps += 1;
                 if r_norm / b_norm <= effort.tolerance || sweeps >= limit {

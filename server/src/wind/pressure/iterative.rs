@@ -11,17 +11,31 @@ use super::system::System;
 const SWEEPS_PER_CHECK: u32 = 4;
 
 /// How the equation is solved.
+///
+/// Work and memory traffic of a sweep, for each cell, in double precision:
+///
+/// | method | operations | bytes |
+/// |---|---|---|
+/// | Jacobi, Gauss–Seidel, SOR | 15 | 64 |
+/// | a look at the residual, every 4 sweeps | 16 | 64 |
+/// | conjugate gradients | 28 | 160 |
+/// | multigrid | 28, and 60 in single precision on the finest grid | 160 + 112 |
+///
+/// Multigrid's coarser grids add a seventh to its single-precision part where all axes are coarsened, as much again where one is; among solids it relaxes
+/// twice, for 40 operations and 80 bytes more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Every cell from the last iterate. Takes about `n²` sweeps for `n` cells along the longest axis.
+    /// Every cell from the last iterate. The error falls by `cos(π/n)` a sweep for `n` cells along each axis: about `n²` sweeps. In air without an open
+    /// edge damped just enough for the checkerboard not to swing for ever.
     Jacobi,
     /// Cell after cell, x fastest, from the newest values (000 §2.3.6): half the sweeps of Jacobi, on one thread.
     GaussSeidel,
-    /// Red–black successive over-relaxation with the box's optimal factor: about `n` sweeps.
+    /// Red–black successive over-relaxation with the box's best factor: about `2 n` sweeps. Solids are not reckoned with in that factor.
     Sor,
-    /// Conjugate gradients, preconditioned by the diagonal: about `n` sweeps, fewer from a good guess; needs no constant and bears any solids.
+    /// Conjugate gradients, preconditioned by the diagonal: about `2 n` sweeps, whatever the solids.
     ConjugateGradients,
-    /// Conjugate gradients preconditioned by one symmetric V-cycle (Tatebe, 1993): a number of cycles that hardly depends on `n`.
+    /// Conjugate gradients preconditioned by one symmetric V-cycle (Tatebe, The multigrid preconditioned conjugate gradient method, 1993): a number of
+    /// cycles that hardly depends on `n`.
     Multigrid,
 }
 
@@ -82,9 +96,7 @@ impl Iterative {
             Method::GaussSeidel => Solver::Relaxation(Relaxation::gauss_seidel(&system)),
             Method::Sor => Solver::Relaxation(Relaxation::successive_over_relaxation(&system)),
             Method::ConjugateGradients => Solver::Conjugate(Conjugate::new(&system, Preconditioner::Jacobi)),
-            Method::Multigrid => {
-                Solver::Conjugate(Conjugate::new(&system, Preconditioner::Multigrid(Box::new(Multigrid::new(&system)))))
-            }
+            Method::Multigrid => Solver::Conjugate(Conjugate::new(&system, Preconditioner::Multigrid(Box::new(Multigrid::new(&system))))),
         };
         let layout = system.operator.layout;
         let (b, p, r) = (layout.zeros(), layout.zeros(), layout.zeros());
@@ -119,7 +131,7 @@ impl Iterative {
         system.regions.remove_means(natural, sums);
         let b_norm = kernels::dot(natural, natural).sqrt();
         // All that is left of a constant is rounding.
-        if b_norm <= 8.0 * f64::EPSILON * given {
+        if given.is_finite() && b_norm <= 8.0 * f64::EPSILON * given {
             p.fill(0.0);
             return Convergence { residual: 0.0, sweeps: 0, tolerance: effort.tolerance };
         }
@@ -127,7 +139,7 @@ impl Iterative {
         system.mask(p);
         system.regions.remove_means(p, sums);
         layout.load(p, coloured, |v| v);
-        (0..2).for_each(|colour| layout.wrap(colour, coloured));
+        layout.wrap(coloured);
         // The best multiple of the guess: one no better than zeros would put energy into the air if few sweeps follow.
         let curvature = system.operator.apply_sum(coloured, r, partial);
         if curvature > 0.0 {
@@ -146,8 +158,6 @@ impl Iterative {
                         break Convergence { residual, sweeps, tolerance: effort.tolerance };
                     }
                     (0..left.min(SWEEPS_PER_CHECK)).for_each(|_| relaxation.sweep(system, coloured, b));
-                    // The second colour's cells that ghosts of the first repeat were swept after it.
-                    layout.wrap(0, coloured);
                     sweeps += left.min(SWEEPS_PER_CHECK);
                 }
             }

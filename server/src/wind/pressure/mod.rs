@@ -9,16 +9,14 @@ mod operator;
 mod regions;
 mod relax;
 mod system;
-#[cfg(test)]
-mod tests;
 mod transfer;
 
 pub use iterative::{Convergence, Effort, Iterative, Method};
 pub use system::{System, SystemError};
 
-use super::parallel::for_each_chunk;
+use super::parallel::{for_each_chunk, for_each_chunk_pair};
 use super::separable::{Basis, Edge, Separable};
-use super::{Boundary, Grid, Place, Real, Velocity};
+use super::{Boundary, GHOST, Grid, Place, Real, Velocity};
 
 /// How the Poisson equation of the projection is solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -95,10 +93,8 @@ impl Projection {
             None => (None, R::zero()),
         };
         for (axis, field) in velocity.0.iter_mut().enumerate() {
-            subtract_gradient(grid, potential, axis, R::one(), &mut field.data);
-            if let Some(pull) = &mut pull {
-                subtract_gradient(grid, potential, axis, -per_secs, &mut pull.0[axis].data);
-            }
+            let pull = pull.as_mut().map(|pull| &mut pull.0[axis].data[..]);
+            subtract_gradient(grid, potential, axis, &mut field.data, pull, per_secs);
         }
         convergence
     }
@@ -123,145 +119,59 @@ pub fn divergence<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, sign: f64, di
     });
 }
 
-/// Subtracts `share` of the gradient along `axis` of a cell-centred potential (m²/s; no ghosts) from the faces the flow decides. On faces of outflow the potential is 0.
-fn subtract_gradient<R: Real>(grid: &Grid<R>, potential: &[f64], axis: usize, share: R, data: &mut [R]) {
-    let [nx, ny, _] = grid.cells;
-    let n = grid.cells[axis];
-    let per_m = share.wide() / grid.spacing_m[axis].wide();
+/// Subtracts the gradient along `axis` of a cell-centred potential (m²/s; no ghosts) from the faces the flow decides, and adds it, times `per_secs`, to the pull.
+/// On faces of outflow the potential is 0.
+fn subtract_gradient<R: Real>(grid: &Grid<R>, potential: &[f64], axis: usize, data: &mut [R], pull: Option<&mut [R]>, per_secs: R) {
+    let (place, plane) = (Place::Face(axis), grid.strides()[2]);
+    let planes = grid.free(place, 2);
+    let memory = plane * (planes.start + GHOST)..plane * (planes.end + GHOST);
+    let data = &mut data[memory.clone()];
+    match pull {
+        Some(pull) => for_each_chunk_pair(data, plane, &mut pull[memory], plane, |n, data, pull| {
+            gradient_of_plane(grid, potential, axis, planes.start + n, |at, slope| {
+                let slope = R::of(slope);
+                data[at] = data[at] - slope;
+                pull[at] = pull[at] + per_secs * slope;
+            });
+        }),
+        None => for_each_chunk(data, plane, |n, data| {
+            gradient_of_plane(grid, potential, axis, planes.start + n, |at, slope| data[at] = data[at] - R::of(slope));
+        }),
+    }
+}
+
+/// Calls `f(index in the plane's memory, gradient)` for the faces of plane `k` the flow decides.
+#[inline(always)]
+fn gradient_of_plane<R: Real>(grid: &Grid<R>, potential: &[f64], axis: usize, k: usize, mut f: impl FnMut(usize, f64)) {
+    let ([nx, ny, _], n) = (grid.cells, grid.cells[axis]);
+    let per_m = grid.spacing_m[axis].wide().recip();
     let place = Place::Face(axis);
-    let (xs, ys) = (grid.free(place, 0), grid.free(place, 1));
     let row = |j: usize, k: usize| &potential[nx * (j + ny * k)..][..nx];
     // The cells before and behind face i along the axis, and the sign with which each counts: beyond an outflow the mirror image of the opposite sign.
-    let before = |i: usize| if i > 0 { (i - 1, 1.0) } else if grid.wraps(axis) { (n - 1, 1.0) } else { (0, -1.0) };
-    let behind = |i: usize| if i < n { (i, 1.0) } else { (n - 1, -1.0) };
-    super::field::for_each_plane(grid, grid.free(place, 2), data, |k, plane| {
-        for j in ys.clone() {
-            let start = grid.at([0, j, k]) % plane.len();
-            if axis == 0 {
-                let p = row(j, k);
-                let out = &mut plane[start..][..nx + 1];
-                for i in xs.clone().filter(|&i| i == 0 || i == nx) {
-                    let ((a, sign_a), (b, sign_b)) = (before(i), behind(i));
-                    out[i] = out[i] - R::of((sign_b * p[b] - sign_a * p[a]) * per_m);
-                }
-                for (u, pair) in out[1..nx].iter_mut().zip(p.windows(2)) {
-                    *u = *u - R::of((pair[1] - pair[0]) * per_m);
-                }
-            } else {
-                let index = if axis == 1 { j } else { k };
-                let ((a, sign_a), (b, sign_b)) = (before(index), behind(index));
-                let cells = |index: usize| if axis == 1 { row(index, k) } else { row(j, index) };
-                let out = &mut plane[start..][..nx];
-                for ((u, &p), &q) in out.iter_mut().zip(cells(a)).zip(cells(b)) {
-                    *u = *u - R::of((sign_b * q - sign_a * p) * per_m);
-                }
+    let before = |i: usize| if i > 0 { (i - 1, per_m) } else if grid.wraps(axis) { (n - 1, per_m) } else { (0, -per_m) };
+    let behind = |i: usize| if i < n { (i, per_m) } else { (n - 1, -per_m) };
+    for j in grid.free(place, 1) {
+        let start = grid.at([0, j, 0]) % grid.strides()[2];
+        if axis == 0 {
+            let p = row(j, k);
+            for i in grid.free(place, 0).filter(|&i| i == 0 || i == nx) {
+                let ((a, weight_a), (b, weight_b)) = (before(i), behind(i));
+                f(start + i, weight_b * p[b] - weight_a * p[a]);
+            }
+            for (i, pair) in (1..nx).zip(p.windows(2)) {
+                f(start + i, (pair[1] - pair[0]) * per_m);
+            }
+        } else {
+            let index = if axis == 1 { j } else { k };
+            let ((a, weight_a), (b, weight_b)) = (before(index), behind(index));
+            let cells = |index: usize| if axis == 1 { row(index, k) } else { row(j, index) };
+            for (i, (&p, &q)) in cells(a).iter().zip(cells(b)).enumerate() {
+                f(start + i, weight_b * q - weight_a * p);
             }
         }
-    });
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::Boundary::{self, *};
-    use super::super::{Place, boundary::close_walls};
-    use super::*;
-
-    fn rms(values: &[f64]) -> f64 {
-        (values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64).sqrt()
-    }
-
-    /// A velocity with divergence at every scale: smooth waves as long as the box, and noise.
-    fn divergent(grid: &Grid<f32>, noise: f32) -> Velocity<f32> {
-        let mut velocity = Velocity::zeros(grid);
-        let mut seed = 1u32;
-        for (axis, field) in velocity.0.iter_mut().enumerate() {
-            let extent = grid.extent_m(axis);
-            field.fill(grid, |position| (std::f32::consts::TAU * position[axis] / extent).sin() * extent);
-            for value in &mut field.data {
-                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                *value += noise * (seed as f32 / u32::MAX as f32 - 0.5);
-            }
-        }
-        close_walls(grid, &mut velocity);
-        velocity
-    }
-
-    fn left_over(cells: [usize; 3], spacing_m: [f32; 3], boundary: [Boundary; 3], noise: f32) -> f64 {
-        let grid = Grid { cells, spacing_m, boundary };
-        let mut velocity = divergent(&grid, noise);
-        let (mut before, mut after) = (vec![0.0; grid.len()], vec![0.0; grid.len()]);
-        divergence(&grid, &velocity, &mut before);
-        Projection::new(&grid).project(&grid, &mut velocity);
-        divergence(&grid, &velocity, &mut after);
-        rms(&after) / rms(&before)
-    }
-
-    #[test]
-    fn projection_leaves_no_divergence() {
-        let shapes = [
-            ([8, 8, 8], [1.0; 3]),
-            ([16, 16, 16], [0.5; 3]),
-            ([32, 32, 32], [1.0; 3]),
-            ([64, 64, 64], [1.0; 3]),
-            ([32, 8, 32], [8.0, 2.0, 8.0]),
-            ([64, 32, 64], [4.0, 1.0, 2.0]),
-            ([12, 7, 30], [1.0, 3.0, 0.7]),
-            ([1, 5, 9], [1.0; 3]),
-        ];
-        for (cells, spacing) in shapes {
-            for boundary in [[Wrap; 3], [Wall; 3], [Wrap, Wall, Wrap], [Wall, Wrap, Wall]] {
-                for noise in [0.0, 100.0] {
-                    let left = left_over(cells, spacing, boundary, noise);
-                    println!("{cells:?} {boundary:?} noise {noise}: {left:.1e}");
-                    assert!(left <= 1e-6, "{cells:?} {boundary:?} noise {noise}: {left:e} of the divergence is left");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn projection_keeps_momentum_across_wraps() {
-        let grid = Grid { cells: [16, 12, 20], spacing_m: [1.0, 2.0, 0.5], boundary: [Wrap; 3] };
-        let mut velocity = divergent(&grid, 10.0);
-        let momentum = |velocity: &Velocity<f32>| velocity.0.each_ref().map(|field| field.data.iter().map(|&x| f64::from(x)).sum::<f64>());
-        let before = momentum(&velocity);
-        Projection::new(&grid).project(&grid, &mut velocity);
-        let size: f64 = velocity.0.iter().flat_map(|field| &field.data).map(|&x| f64::from(x.abs())).sum();
-        for (before, after) in before.into_iter().zip(momentum(&velocity)) {
-            assert!((after - before).abs() <= 1e-7 * size, "{before} became {after}, of {size}");
-        }
-    }
-
-    #[test]
-    fn projecting_twice_changes_nothing_more() {
-        let grid = Grid { cells: [12, 6, 10], spacing_m: [1.0, 2.0, 0.5], boundary: [Wrap, Wall, Wall] };
-        let (mut once, mut projection) = (Velocity::zeros(&grid), Projection::new(&grid));
-        for (axis, field) in once.0.iter_mut().enumerate() {
-            field.fill(&grid, |[x, y, z]| (x * 1.3 + axis as f64).sin() + y * z);
-        }
-        close_walls(&grid, &mut once);
-        projection.project(&grid, &mut once);
-        let mut twice = once.clone();
-        projection.project(&grid, &mut twice);
-        for (a, b) in once.0.iter().zip(&twice.0) {
-            assert!(a.data.iter().zip(&b.data).all(|(a, b)| (a - b).abs() < 1e-12));
-        }
-    }
-
-    #[test]
-    fn poisson_solves_the_discrete_equation() {
-        let grid = Grid { cells: [10, 4, 9], spacing_m: [0.5, 1.0, 2.0], boundary: [Wrap, Wall, Wall] };
-        let exact: Vec<f64> = (0..grid.len()).map(|i| (i as f64 * 0.7).sin()).collect();
-        let mean = exact.iter().sum::<f64>() / exact.len() as f64;
-        // Minus the gradient of a potential has minus its Laplacian as divergence.
-        let mut velocity = Velocity::zeros(&grid);
-        subtract_gradient(&grid, &exact, &mut velocity);
-        let mut solution = vec![0.0; grid.len()];
-        divergence(&grid, &velocity, &mut solution);
-        Poisson::new(&grid).solve(&mut solution);
-        for (found, exact) in solution.iter().zip(&exact) {
-            assert!((found + exact - mean).abs() < 1e-12);
-        }
-        assert_eq!(velocity.0[1].place, Place::Face(1));
-    }
-}
+#[path = "projection_tests.rs"]
+mod projection_tests;

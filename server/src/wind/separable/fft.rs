@@ -2,7 +2,7 @@
 //!
 //! Stockham's self-sorting form, decimating in frequency (Van Loan, "Computational Frameworks for the FFT", 1992, §1.7): each stage reads one buffer and
 //! writes the other, and no stage permutes. Radices 4 and 2, then every odd prime by its definition, halved by symmetry: a length costs the sum of its
-//! prime factors per value. Planned at run time; the library's own transforms work on one line at a time, which would mean gathering every line.
+//! prime factors per value. Transforms of one line at a time would need every line gathered first.
 
 use std::f64::consts::FRAC_PI_2;
 

@@ -82,6 +82,13 @@ impl Pair {
         Self { re: self.re + other.im, im: self.im - other.re }
     }
 
+    /// Twice the cosine and the sine amplitudes, at one frequency, of the real lines whose complex transform is `self` there and `mirrored` at the opposite
+    /// frequency.
+    #[inline(always)]
+    pub(super) fn apart(self, mirrored: Self) -> (Self, Self) {
+        (self + mirrored, Self { re: self.im - mirrored.im, im: mirrored.re - self.re })
+    }
+
     /// This times the complex number `[re, im]`.
     #[inline(always)]
     pub(super) fn turned(self, [re, im]: [f64; 2]) -> Self {

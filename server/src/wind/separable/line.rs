@@ -2,7 +2,7 @@
 //!
 //! Every basis costs one complex Fourier transform of two real lines: they are permuted on the way in, and told apart by symmetry on the way out. Cosines:
 //! Makhoul, "A fast cosine transform in one and two dimensions", IEEE Trans. ASSP 28 (1980); the quarter-wave ones follow in the same way from
-//! frequencies shifted by one half; sines between nodes: Press et al., "Numerical Recipes", §12.4.
+//! frequencies shifted by one half; sines between nodes: Press et al., "Numerical Recipes", 3rd ed., §12.4.
 
 use std::f64::consts::PI;
 
@@ -36,23 +36,23 @@ enum Kind {
     Fourier,
     /// DCT-II, or DST-II where odd entries change sign.
     Half { turns: Vec<[f64; 2]>, odd_sign: f64 },
-    /// DCT-IV, or DST-IV where `flipped`.
+    /// DCT-IV, or DST-IV where `flipped`, with the turns that shift frequencies by one half.
     Quarter { shifts: Vec<[f64; 2]>, turns: Vec<[f64; 2]>, flipped: bool },
-    /// DST-I.
-    Nodes { half_sines: Vec<f64> },
+    /// DST-I, with sin(πj/(len + 1)).
+    Nodes { sines: Vec<f64> },
 }
 
 impl Line {
     pub(super) fn new(basis: Basis, len: usize, spacing_m: f64) -> Self {
-        // Halved, because `apart` gives twice the amplitudes.
+        // Halved, because [`Pair::apart`] gives twice the amplitudes.
         let half_root = |k: usize, n: usize| root(k, n).map(|part| 0.5 * part);
         let n = len as f64;
         let (kind, gain, fft_len) = match basis {
             _ if len == 1 => (Kind::Single, 1.0, 1),
             Basis::Wrap => (Kind::Fourier, 2.0 * n, len),
             Basis::Nodes => {
-                let half_sines = (0..=len).map(|j| (PI * j as f64 / (n + 1.0)).sin()).collect();
-                (Kind::Nodes { half_sines }, 2.0 * (n + 1.0), len + 1)
+                let sines = (0..=len).map(|j| (PI * j as f64 / (n + 1.0)).sin()).collect();
+                (Kind::Nodes { sines }, 2.0 * (n + 1.0), len + 1)
             }
             Basis::Centres([first, last]) if first == last => {
                 let odd_sign = if first == Edge::Neumann { 1.0 } else { -1.0 };
@@ -94,50 +94,12 @@ fn eigenvalues(basis: Basis, len: usize, spacing_m: f64) -> Vec<f64> {
 /// Transforms [`LINES`] lines in place: entry j of line l is `slab[j·stride + l]`.
 #[multiversion(targets("x86_64+avx2"))]
 pub(super) fn transform(line: &Line, way: Way, slab: &mut [f64], stride: usize, scratch: &mut [Pair]) {
-    let n = line.len;
     match &line.kind {
         Kind::Single => {}
         Kind::Fourier => fourier(line, way, slab, stride, scratch),
         Kind::Half { turns, odd_sign } => half(line, way, turns, *odd_sign, slab, stride, scratch),
-        Kind::Quarter { shifts, turns, flipped } => {
-            let (values, spare) = buffers(scratch, n);
-            for m in 0..n / 2 {
-                values[m] = load(slab, stride, 2 * m).turned(shifts[m]);
-                values[n - 1 - m] = load(slab, stride, 2 * m + 1).turned(shifts[n - 1 - m]);
-            }
-            if n % 2 == 1 {
-                values[n / 2] = load(slab, stride, n - 1).turned(shifts[n / 2]);
-            }
-            let (values, _) = line.fft.transform(values, spare);
-            for (k, &[cos, minus_sin]) in turns.iter().enumerate() {
-                let (even, odd) = apart(values[k], values[n - 1 - k]);
-                let (a, b) = (even * cos - odd * minus_sin, even * -minus_sin - odd * cos);
-                let (a, b) = if *flipped { (b, a) } else { (a, b) };
-                store(slab, stride, k, a);
-                store(slab, stride, n - 1 - k, b);
-            }
-        }
-        Kind::Nodes { half_sines } => {
-            let (values, spare) = buffers(scratch, n + 1);
-            values[0] = Pair::default();
-            for j in 1..=n.div_ceil(2) {
-                let (a, b) = (load(slab, stride, j - 1), load(slab, stride, n - j));
-                let (even, odd) = ((a + b) * half_sines[j], (a - b) * 0.5);
-                values[j] = even + odd;
-                values[n + 1 - j] = even - odd;
-            }
-            let (values, _) = line.fft.transform(values, spare);
-            let mut sum = values[0];
-            store(slab, stride, 0, sum);
-            for k in 1..=n / 2 {
-                let (even, odd) = apart(values[k], values[n + 1 - k]);
-                store(slab, stride, 2 * k - 1, odd * -1.0);
-                sum = sum + even;
-                if 2 * k < n {
-                    store(slab, stride, 2 * k, sum);
-                }
-            }
-        }
+        Kind::Quarter { shifts, turns, flipped } => quarter(line, shifts, turns, *flipped, slab, stride, scratch),
+        Kind::Nodes { sines } => nodes(line, sines, slab, stride, scratch),
     }
 }
 
@@ -151,11 +113,11 @@ fn fourier(line: &Line, way: Way, slab: &mut [f64], stride: usize, scratch: &mut
             let (values, _) = line.fft.transform(values, spare);
             store(slab, stride, 0, values[0] * 2.0);
             for k in 1..n.div_ceil(2) {
-                let (even, odd) = apart(values[k], values[n - k]);
+                let (even, odd) = values[k].apart(values[n - k]);
                 store(slab, stride, k, even);
                 store(slab, stride, n - k, odd);
             }
-            if n % 2 == 0 {
+            if n.is_multiple_of(2) {
                 store(slab, stride, n / 2, values[n / 2] * 2.0);
             }
         }
@@ -166,7 +128,7 @@ fn fourier(line: &Line, way: Way, slab: &mut [f64], stride: usize, scratch: &mut
                 values[k] = even.plus_i(odd).swapped();
                 values[n - k] = even.minus_i(odd).swapped();
             }
-            if n % 2 == 0 {
+            if n.is_multiple_of(2) {
                 values[n / 2] = load(slab, stride, n / 2).swapped();
             }
             let (values, _) = line.fft.transform(values, spare);
@@ -192,7 +154,7 @@ fn half(line: &Line, way: Way, turns: &[[f64; 2]], odd_sign: f64, slab: &mut [f6
             store(slab, stride, 0, values[0]);
             for k in 1..=n / 2 {
                 let [cos, minus_sin] = turns[k];
-                let (even, odd) = apart(values[k], values[n - k]);
+                let (even, odd) = values[k].apart(values[n - k]);
                 store(slab, stride, n - k, even * -minus_sin - odd * cos);
                 store(slab, stride, k, even * cos - odd * minus_sin);
             }
@@ -218,10 +180,51 @@ fn half(line: &Line, way: Way, turns: &[[f64; 2]], odd_sign: f64, slab: &mut [f6
     }
 }
 
-/// Twice the cosine and the sine amplitudes of the real lines whose transform is `z` at one frequency and `mirrored` at the opposite one.
+/// Its own inverse.
 #[inline(always)]
-fn apart(z: Pair, mirrored: Pair) -> (Pair, Pair) {
-    (z + mirrored, Pair::default().minus_i(z - mirrored))
+fn quarter(line: &Line, shifts: &[[f64; 2]], turns: &[[f64; 2]], flipped: bool, slab: &mut [f64], stride: usize, scratch: &mut [Pair]) {
+    let n = line.len;
+    let (values, spare) = buffers(scratch, n);
+    for m in 0..n / 2 {
+        values[m] = load(slab, stride, 2 * m).turned(shifts[m]);
+        values[n - 1 - m] = load(slab, stride, 2 * m + 1).turned(shifts[n - 1 - m]);
+    }
+    if n % 2 == 1 {
+        values[n / 2] = load(slab, stride, n - 1).turned(shifts[n / 2]);
+    }
+    let (values, _) = line.fft.transform(values, spare);
+    for (k, &[cos, minus_sin]) in turns.iter().enumerate() {
+        let (even, odd) = values[k].apart(values[n - 1 - k]);
+        let (a, b) = (even * cos - odd * minus_sin, even * -minus_sin - odd * cos);
+        let (a, b) = if flipped { (b, a) } else { (a, b) };
+        store(slab, stride, k, a);
+        store(slab, stride, n - 1 - k, b);
+    }
+}
+
+/// Its own inverse. Even modes come from the sines of the transform, odd ones from sums of its cosines.
+#[inline(always)]
+fn nodes(line: &Line, sines: &[f64], slab: &mut [f64], stride: usize, scratch: &mut [Pair]) {
+    let n = line.len;
+    let (values, spare) = buffers(scratch, n + 1);
+    values[0] = Pair::default();
+    for j in 1..=n.div_ceil(2) {
+        let (a, b) = (load(slab, stride, j - 1), load(slab, stride, n - j));
+        let (even, odd) = ((a + b) * sines[j], (a - b) * 0.5);
+        values[j] = even + odd;
+        values[n + 1 - j] = even - odd;
+    }
+    let (values, _) = line.fft.transform(values, spare);
+    let mut sum = values[0];
+    store(slab, stride, 0, sum);
+    for k in 1..=n / 2 {
+        let (even, odd) = values[k].apart(values[n + 1 - k]);
+        store(slab, stride, 2 * k - 1, odd * -1.0);
+        if 2 * k < n {
+            sum = sum + even;
+            store(slab, stride, 2 * k, sum);
+        }
+    }
 }
 
 #[inline(always)]

@@ -95,7 +95,7 @@ fn every_combination_of_bases_and_lengths_solves_its_equation() {
     for (n, cells) in LENGTHS.into_iter().enumerate() {
         for combination in 0..BASES.len().pow(3) {
             let axes = from_fn(|axis| BASES[combination / BASES.len().pow(axis as u32) % BASES.len()]);
-            for shift in [0.0, 0.7, 1e-13] {
+            for shift in [0.0, 0.7, 1e3] {
                 let residual = residual_of_random(cells, [0.5, 1.0, 1.7], axes, shift, n as u64);
                 assert!(residual <= 1e-12, "{cells:?} {axes:?} shift {shift}: residual {residual:e}");
                 worst = worst.max(residual);
@@ -106,9 +106,9 @@ fn every_combination_of_bases_and_lengths_solves_its_equation() {
 }
 
 #[test]
-fn every_length_up_to_70_solves_in_every_basis() {
+fn lengths_with_and_without_large_factors_solve_in_every_basis() {
     for basis in BASES {
-        for n in 1..=70 {
+        for n in (1..=36).chain([60, 63, 64, 97, 127, 128, 210]) {
             for cells in [[n, 3, 2], [3, n, 2], [2, 3, n]] {
                 let residual = residual_of_random(cells, [1.0, 0.8, 1.1], [basis; 3], 0.0, n as u64);
                 assert!(residual <= 1e-12, "{cells:?} {basis:?}: residual {residual:e}");

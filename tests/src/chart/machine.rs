@@ -1,0 +1,51 @@
+//! What figures were measured on.
+
+use std::process::Command;
+
+/// Machine and versions in a line, for a caption: model and number of cores of the processor, system, compiler, package.
+///
+/// The compiler is the one found now, which is the one that built this under `cargo run`.
+pub fn machine() -> String {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let system = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
+    let rustc = rustc_version().unwrap_or_else(|| "rustc of unknown version".into());
+    let plural = if cores == 1 { "" } else { "s" };
+    format!("{}, {cores} core{plural}, {system} · {rustc} · prairie {}", processor(), env!("CARGO_PKG_VERSION"))
+}
+
+/// The processor's name; on systems without `/proc/cpuinfo` its architecture.
+fn processor() -> String {
+    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    model_name(&info).unwrap_or(std::env::consts::ARCH).to_owned()
+}
+
+fn model_name(cpuinfo: &str) -> Option<&str> {
+    let line = cpuinfo.lines().find(|line| line.starts_with("model name"))?;
+    line.split_once(':').map(|(_, name)| name.trim())
+}
+
+/// `rustc 1.95.0`, without commit and date.
+fn rustc_version() -> Option<String> {
+    let output = Command::new("rustc").arg("--version").output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    let words: Vec<&str> = text.split_whitespace().take(2).collect();
+    (words.len() == 2).then(|| words.join(" "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_processor_has_a_name() {
+        let cpuinfo = "processor\t: 0\nvendor_id\t: Made\nmodel name\t: Made-up 9000 @ 1 GHz\nstepping\t: 1\n";
+        assert_eq!(model_name(cpuinfo), Some("Made-up 9000 @ 1 GHz"));
+        assert_eq!(model_name("processor\t: 0\n"), None);
+    }
+
+    #[test]
+    fn the_caption_names_cores_and_versions() {
+        let caption = machine();
+        assert!(caption.contains(" core") && caption.contains("rustc ") && caption.contains("prairie "), "{caption}");
+    }
+}

@@ -1,0 +1,27 @@
+//! Speed against accuracy: runs of methods on problems, timed, and written so that one sees which method wins where.
+//!
+//! | module | what it does |
+//! |---|---|
+//! | [`row`] | one measured figure; CSV and JSON |
+//! | [`run`] | what is run, and its timing |
+//! | [`wind`] | the runs of the wind |
+//! | [`line`](mod@line) | one line per method, and reading between its points |
+//! | [`plot`], [`ticks`] | a log–log chart as SVG |
+//! | [`summary`] | which method wins where, on one screen |
+//! | [`table`] | Markdown tables, and putting them into a document |
+//! | [`files`] | all files of a model, and the table of orders |
+//! | [`machine`] | what the figures were measured on |
+
+pub mod files;
+pub mod line;
+pub mod machine;
+pub mod plot;
+pub mod row;
+pub mod run;
+pub mod summary;
+pub mod table;
+pub mod ticks;
+pub mod wind;
+
+pub use row::Row;
+pub use run::{Outcome, Run};

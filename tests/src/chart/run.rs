@@ -1,0 +1,122 @@
+//! What is run, and its timing.
+
+use std::time::{Duration, Instant};
+
+use anyhow::{Result, ensure};
+
+use super::Row;
+use crate::norms::Norms;
+
+/// One method on one problem at one resolution.
+pub struct Run {
+    /// The problem, as in [`Row::problem`].
+    pub problem: &'static str,
+    /// The method, as in [`Row::method`].
+    pub method: String,
+    /// Cells along x, y and z.
+    pub cells: [usize; 3],
+    /// Time step (s).
+    pub dt_secs: f64,
+    /// Solves the problem from its start. The same every time, save for the time it takes.
+    pub solve: Box<dyn Fn() -> Result<Outcome>>,
+}
+
+/// What came of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Outcome {
+    /// Error at the end.
+    pub error: Norms,
+    /// Time simulated (s).
+    pub simulated_secs: f64,
+    /// Time the steps took; setting up and comparing are not counted.
+    pub wall: Duration,
+}
+
+/// How often a run is repeated. The least time counts: all that disturbs a run makes it longer.
+#[derive(Clone, Copy, Debug)]
+pub struct Repeats {
+    /// At least so often; 1 or more.
+    pub least: u32,
+    /// At most so often.
+    pub most: u32,
+    /// No further once all repeats together took this long.
+    pub enough: Duration,
+}
+
+impl Repeats {
+    /// For figures that are kept: 3 to 200 times, until a second has passed.
+    pub const THOROUGH: Self = Self { least: 3, most: 200, enough: Duration::from_secs(1) };
+    /// For a look: 2 to 20 times, until a fifth of a second has passed.
+    pub const QUICK: Self = Self { least: 2, most: 20, enough: Duration::from_millis(200) };
+}
+
+/// Runs and times: a row for each norm.
+///
+/// # Errors
+/// When the run fails, ends in an error that is not finite, or differs from one repeat to the next.
+pub fn measure(model: &str, run: &Run, repeats: Repeats) -> Result<Vec<Row>> {
+    let start = Instant::now();
+    let first = (run.solve)()?;
+    let Norms { l1, l2, linf } = first.error;
+    ensure!(linf.is_finite() && l2.is_finite(), "the error is not finite");
+    let mut wall = first.wall;
+    for repeat in 1..repeats.most {
+        if repeat >= repeats.least && start.elapsed() >= repeats.enough {
+            break;
+        }
+        let next = (run.solve)()?;
+        ensure!(next.error == first.error, "two repeats differ: {:?} and {:?}", first.error, next.error);
+        wall = wall.min(next.wall);
+    }
+    let row = |(norm, error): (&str, f64)| Row {
+        model: model.to_owned(),
+        problem: run.problem.to_owned(),
+        method: run.method.clone(),
+        cells: run.cells,
+        dt_secs: run.dt_secs,
+        norm: norm.to_owned(),
+        error,
+        seconds: wall.as_secs_f64() / first.simulated_secs,
+    };
+    Ok([("l1", l1), ("l2", l2), ("linf", linf)].map(row).to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    fn run(solve: impl Fn() -> Result<Outcome> + 'static) -> Run {
+        Run { problem: "made-up", method: "none".into(), cells: [8, 1, 8], dt_secs: 0.5, solve: Box::new(solve) }
+    }
+
+    fn outcome(linf: f64, wall_secs: f64) -> Outcome {
+        let error = Norms { l1: 1.0, l2: 2.0, linf };
+        Outcome { error, simulated_secs: 4.0, wall: Duration::from_secs_f64(wall_secs) }
+    }
+
+    #[test]
+    fn the_least_time_per_simulated_second_counts() {
+        let times = Cell::new(vec![5.0, 2.0, 3.0]);
+        let made_up = run(move || {
+            let mut left = times.take();
+            let time = left.remove(0);
+            times.set(left);
+            Ok(outcome(3.0, time))
+        });
+        let rows = measure("wind", &made_up, Repeats { least: 3, most: 3, enough: Duration::ZERO }).unwrap();
+        let figures: Vec<(&str, f64, f64)> = rows.iter().map(|row| (row.norm.as_str(), row.error, row.seconds)).collect();
+        assert_eq!(figures, [("l1", 1.0, 0.5), ("l2", 2.0, 0.5), ("linf", 3.0, 0.5)]);
+    }
+
+    #[test]
+    fn what_is_not_finite_or_not_repeatable_is_refused() {
+        assert!(measure("wind", &run(|| Ok(outcome(f64::NAN, 1.0))), Repeats::QUICK).is_err());
+        let calls = Cell::new(0.0);
+        let restless = run(move || {
+            calls.set(calls.get() + 1.0);
+            Ok(outcome(calls.get(), 1.0))
+        });
+        assert!(measure("wind", &restless, Repeats::QUICK).unwrap_err().to_string().contains("differ"));
+    }
+}

@@ -1,0 +1,28 @@
+//! Problems with exact solutions, and published tables: what a solver's answer is compared with.
+//!
+//! Positions are metres from the lower corner of a box, y up; what lies in a plane lies in x–z, save for the cavity, whose lid is on top. Velocities are
+//! m/s; pressures are those over the density (m²/s²), up to a constant.
+//!
+//! | problem | what it tries |
+//! |---|---|
+//! | [`TaylorGreen`] | the whole solver in two dimensions, on a box that wraps |
+//! | [`EthierSteinman`] | the whole solver in three dimensions, with prescribed velocity on every face |
+//! | [`Cavity`] | no-slip walls and a moving lid, against three published tables |
+//! | [`SlottedDisc`], [`RotatingGaussian`], [`drifting_hill`] | advection alone: sharp edges, a smooth hill on curved and on straight paths |
+//! | [`HeatKernel`] | diffusion alone, in one to three dimensions |
+
+mod cavity;
+#[cfg(test)]
+mod differences;
+mod ethier_steinman;
+mod heat;
+mod hill;
+mod rotation;
+mod taylor_green;
+
+pub use cavity::{BOTELLA_PEYRET_RE_1000, Cavity, Centreline, GHIA_RE_100, GHIA_RE_1000};
+pub use ethier_steinman::EthierSteinman;
+pub use heat::HeatKernel;
+pub use hill::drifting_hill;
+pub use rotation::{RotatingGaussian, Rotation, SlottedDisc};
+pub use taylor_green::TaylorGreen;
