@@ -100,21 +100,22 @@ fn measure_plane<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, k: usize) -> P
             [&data[at..][..nx], &data[at + strides[axis]..][..nx]]
         });
         let (mut divergences, mut speeds) = ([R::zero(); LANES], [R::zero(); LANES]);
-        for start in (0..nx).step_by(LANES) {
-            let lanes = LANES.min(nx - start);
-            let faces = faces.map(|pair| pair.map(|row| &row[start..start + lanes]));
-            for lane in 0..lanes {
-                let [[u0, u1], [v0, v1], [w0, w1]] = faces.map(|[low, high]| [low[lane], high[lane]]);
-                let divergence = (u1 - u0) * per_m[0] + (v1 - v0) * per_m[1] + (w1 - w0) * per_m[2];
-                let centre = [half * (u0 + u1), half * (v0 + v1), half * (w0 + w1)];
-                for (fastest, speed) in fastest.iter_mut().zip(centre) {
-                    let speed = speed.abs();
-                    fastest[lane] = if speed > fastest[lane] { speed } else { fastest[lane] };
-                }
-                divergences[lane] = divergences[lane] + divergence * divergence;
-                speeds[lane] = speeds[lane] + (centre[0] * centre[0] + centre[1] * centre[1] + centre[2] * centre[2]);
+        let mut add = |i: usize, lane: usize| {
+            let [[u0, u1], [v0, v1], [w0, w1]] = faces.map(|[low, high]| [low[i], high[i]]);
+            let divergence = (u1 - u0) * per_m[0] + (v1 - v0) * per_m[1] + (w1 - w0) * per_m[2];
+            let centre = [half * (u0 + u1), half * (v0 + v1), half * (w0 + w1)];
+            for (fastest, speed) in fastest.iter_mut().zip(centre) {
+                let speed = speed.abs();
+                fastest[lane] = if speed > fastest[lane] { speed } else { fastest[lane] };
             }
+            divergences[lane] = divergences[lane] + divergence * divergence;
+            speeds[lane] = speeds[lane] + (centre[0] * centre[0] + centre[1] * centre[1] + centre[2] * centre[2]);
+        };
+        let whole = nx - nx % LANES;
+        for start in (0..whole).step_by(LANES) {
+            (0..LANES).for_each(|lane| add(start + lane, lane));
         }
+        (whole..nx).for_each(|i| add(i, i - whole));
         divergence_squares += divergences.into_iter().map(R::wide).sum::<f64>();
         speed_squares += speeds.into_iter().map(R::wide).sum::<f64>();
     }

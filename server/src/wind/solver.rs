@@ -8,6 +8,7 @@ use super::footprint::Footprint;
 use super::health::{self, Health, PlaneSums};
 use super::pressure::{Pressure, Projection};
 use super::profile::{MeanWind, Relaxation};
+use super::sources::Pushes;
 use super::state::{SolidError, State, StateError};
 use super::trace::Paths;
 use super::{Advection, Diffusion, Field, Grid, Place, Real, Velocity, advect, transport};
@@ -76,6 +77,7 @@ pub struct Solver<R: Real> {
     pub(super) mean: MeanWind,
     pub(super) relaxation: Relaxation<R>,
     pub(super) footprint: Footprint<R>,
+    pub(super) pushes: Pushes<R>,
     /// What sources blow out of each cell (1/s); empty without any.
     pub(super) inflow: Vec<f64>,
     pub(super) planes: Vec<PlaneSums>,
@@ -117,6 +119,7 @@ impl<R: Real> Solver<R> {
             implicit: is_implicit.then(|| Implicit::new(&grid)),
             relaxation: Relaxation::new(&grid, &mean),
             footprint: Footprint::default(),
+            pushes: Pushes::default(),
             inflow: if has_sources { vec![0.0; grid.len()] } else { Vec::new() },
             planes: vec![PlaneSums::default(); grid.cells[2]],
             health: Health::default(),

@@ -87,6 +87,8 @@ impl<R: Real> Solver<R> {
         if let Some(old_pull) = &mut self.old_pull {
             old_pull.clone_from(&self.pull);
         }
+        let gusts = sources::sources_at(&self.config, &self.grid, &self.mean, self.time_secs + 0.5 * dt_secs);
+        self.pushes.set(&self.grid, &self.config.gusts, gusts, &self.velocity, &mut self.footprint);
         let convergence = match self.config.time {
             TimeScheme::Split => self.split(dt_secs, jets)?,
             TimeScheme::Reflection => self.reflection(dt_secs, jets),
@@ -200,6 +202,7 @@ impl<R: Real> Solver<R> {
             self.go_back();
             return Err(error);
         }
+        let looks_around = self.config.canopy.is_some() || self.config.diffusion != Diffusion::Explicit || self.config.time == TimeScheme::Split;
         for (number, shares) in STAGES.into_iter().enumerate() {
             let [even, odd] = &mut self.stages;
             let (air, target) = match number {
@@ -222,7 +225,10 @@ impl<R: Real> Solver<R> {
                 stage.run(&mut target.0[axis], &mut self.transport);
             }
             self.walls.blow(self.time_secs + STAGE_ENDS[number] * dt_secs);
-            self.walls.close(target);
+            // After the last stage come forces, which close the walls again: only friction and grass look at ghosts before.
+            if number < 2 || looks_around {
+                self.walls.close(target);
+            }
         }
         std::mem::swap(&mut self.velocity, &mut self.stages[0]);
         Ok(())
@@ -250,9 +256,7 @@ impl<R: Real> Solver<R> {
         if let Some(canopy) = &self.config.canopy {
             canopy::drag(grid, canopy, &self.cover, dt_secs, &mut self.velocity, &mut self.stages[0]);
         }
-        for source in sources::sources_at(&self.config, grid, &self.mean, time_secs) {
-            sources::push(grid, &self.config.gusts, &source, dt_secs, &mut self.velocity, &mut self.footprint);
-        }
+        self.pushes.apply(dt_secs, &mut self.velocity);
         for primitive in &self.config.primitives {
             primitive.drive(grid, time_secs, dt_secs, &mut self.velocity, &mut self.footprint);
         }
