@@ -47,6 +47,17 @@ macro_rules! either {
 }
 
 impl<R: Real> Air<R> {
+    /// Checks that `method` can do what the settings ask for.
+    ///
+    /// # Errors
+    /// The first setting outside of its range, or that the method cannot do.
+    pub fn check(method: Method, config: &Config) -> Result<(), ConfigError> {
+        match method {
+            Method::Staggered => config.validate(),
+            Method::StableFluids => StableFluids::<R>::check(config),
+        }
+    }
+
     /// Air that already moves with the mean wind, without gusts.
     ///
     /// # Errors
@@ -112,6 +123,18 @@ impl<R: Real> Air<R> {
             Self::Staggered(air) => air.set_solid(f),
             Self::StableFluids(_) => Err(SolidError::Method),
         }
+    }
+
+    /// Says which share of the canopy stands in each column; see [`Solver::set_cover`]. The method of 000 has no canopy.
+    pub fn set_cover(&mut self, cover: impl Iterator<Item = f32>) {
+        if let Self::Staggered(air) = self {
+            air.set_cover(cover);
+        }
+    }
+
+    /// Cuts a box that wraps along x and z at these places (m); see [`Solver::set_seam`].
+    pub fn set_seam(&mut self, seam_m: Option<[f64; 2]>) {
+        either!(self, air => air.set_seam(seam_m))
     }
 
     /// Velocity (m/s) at a position (m) in the box, trilinear between values. Wrapped axes repeat; beyond other faces the velocity on the face holds.

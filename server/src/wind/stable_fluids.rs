@@ -10,9 +10,10 @@ use glam::Vec3;
 use super::config::{Config, ConfigError, check};
 use super::footprint::Footprint;
 use super::health::Health;
-use super::profile::{MeanWind, Relaxation};
+use super::profile::{self, MeanWind, Relaxation};
+use super::sources::{self, Pushes};
 use super::state::{StepError, StepReport};
-use super::{Boundary, Field, Grid, Jet, Place, Real, Velocity, forcing, sources};
+use super::{Boundary, Field, Grid, Jet, Place, Real, Velocity, forcing};
 use listing::{Kind, SWEEPS};
 
 /// Incompressible air in a box as 000 has it: velocity and dust at the centres of cells within a wall of cells, diffusion and pressure by [`SWEEPS`]
@@ -44,24 +45,33 @@ pub struct StableFluids<R: Real> {
     mean: MeanWind,
     relaxation: Relaxation<R>,
     footprint: Footprint<R>,
+    pushes: Pushes<R>,
+    seam_m: Option<[f64; 2]>,
     /// What sources blow out of each cell (1/s); empty without any.
     inflow: Vec<f64>,
 }
 
 impl<R: Real> StableFluids<R> {
-    /// Air that already moves with the mean wind, without gusts.
+    /// Checks that this method can do what the settings ask for.
     ///
     /// # Errors
     /// The first setting outside of its range, a face that neither wraps, slips nor reflects, or a canopy.
-    pub fn new(config: &Config) -> Result<Self, ConfigError> {
+    pub fn check(config: &Config) -> Result<(), ConfigError> {
         config.validate()?;
         for (axis, faces) in config.boundary.iter().enumerate() {
             let possible = faces.iter().all(|face| matches!(face, Boundary::Wrap | Boundary::FreeSlip | Boundary::Reflect));
             check(possible, format!("boundary[{axis}]"), format!("{faces:?}"), "Wrap, FreeSlip or Reflect with the method StableFluids")?;
         }
         let canopy = format!("{:?}", config.canopy);
-        check(config.canopy.is_none(), "canopy", canopy, "None with the method StableFluids")?;
+        check(config.canopy.is_none(), "canopy", canopy, "None with the method StableFluids")
+    }
 
+    /// Air that already moves with the mean wind, without gusts.
+    ///
+    /// # Errors
+    /// As [`StableFluids::check`].
+    pub fn new(config: &Config) -> Result<Self, ConfigError> {
+        Self::check(config)?;
         let grid = config.grid::<R>();
         let mean = MeanWind::new(config);
         let zeros = Field::zeros(&grid, Place::Centre);
@@ -76,6 +86,8 @@ impl<R: Real> StableFluids<R> {
             div: zeros,
             relaxation: Relaxation::new(&grid, &mean),
             footprint: Footprint::default(),
+            pushes: Pushes::default(),
+            seam_m: None,
             inflow: if has_sources { vec![0.0; grid.len()] } else { Vec::new() },
             config: config.clone(),
             grid,
@@ -186,9 +198,9 @@ impl<R: Real> StableFluids<R> {
     fn add_sources(&mut self, dt_secs: f64, jets: &[Jet]) {
         let (grid, velocity, footprint) = (&self.grid, &mut self.velocity, &mut self.footprint);
         let middle_secs = self.time_secs + 0.5 * dt_secs;
-        for source in sources::sources_at(&self.config, grid, &self.mean, middle_secs) {
-            sources::push(grid, &self.config.gusts, &source, dt_secs, velocity, footprint);
-        }
+        let gusts = sources::sources_at(&self.config, grid, &self.mean, middle_secs);
+        self.pushes.set(grid, &self.config.gusts, gusts, velocity, footprint);
+        self.pushes.apply(dt_secs, velocity);
         self.inflow.fill(0.0);
         for primitive in &self.config.primitives {
             primitive.drive(grid, middle_secs, dt_secs, velocity, footprint);
@@ -198,11 +210,19 @@ impl<R: Real> StableFluids<R> {
             forcing::drive(grid, jet, dt_secs, velocity, footprint);
         }
         self.relaxation.apply(grid, self.config.relaxation_per_sec.into(), dt_secs, velocity);
+        if let Some(seam_m) = self.seam_m {
+            profile::calm(grid, &self.mean, seam_m, dt_secs, velocity);
+        }
         for (axis, field) in velocity.0.iter_mut().enumerate() {
             let gain = R::of(f64::from(self.config.body_force_m_per_s2[axis]) * dt_secs);
             field.data.iter_mut().for_each(|speed| *speed = *speed + gain);
             listing::set_bound(grid, Kind::Component(axis), field);
         }
+    }
+
+    /// Cuts a box that wraps along x and z at these places (m); see [`Solver::set_seam`](super::Solver::set_seam).
+    pub fn set_seam(&mut self, seam_m: Option<[f64; 2]>) {
+        self.seam_m = seam_m.filter(|_| self.grid.wraps(0) && self.grid.wraps(2));
     }
 
     /// The state of the flow now; its divergence is that of central differences.
