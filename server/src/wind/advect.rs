@@ -1,5 +1,6 @@
 //! Carrying a field along the paths of the air: the semi-Lagrangian family.
 
+use super::boundary::Beyond;
 use super::parallel::{for_each_chunk, for_each_chunk_pair};
 use super::sample::{self, Ends, Stencil};
 use super::trace::Paths;
@@ -19,7 +20,8 @@ impl<R: Real> Scratch<R> {
     }
 }
 
-/// Advances `field`, its ghosts filled, by one step along `paths`, into the values of `target` that the flow decides. `close` fills in the rest of a field.
+/// Advances `field`, its ghosts filled, by one step along `paths`, into the values of `target` that the flow decides. `close` fills in the rest of a field, with
+/// what it is told on faces of inflow.
 /// `scheme` is one of the semi-Lagrangian family.
 ///
 /// Stable at any step: semi-Lagrangian values are means of old ones, and those of MacCormack and BFECC, whose unbounded amplification is
@@ -31,7 +33,7 @@ pub fn advect<R: Real>(
     field: &Field<R>,
     target: &mut Field<R>,
     scratch: &mut Scratch<R>,
-    close: impl Fn(&mut Field<R>),
+    close: impl Fn(&mut Field<R>, Beyond),
 ) {
     let Scratch { carried, bounds } = scratch;
     carried.place = field.place;
@@ -39,7 +41,7 @@ pub fn advect<R: Real>(
     match scheme {
         Advection::MacCormack => {
             first_guess(grid, &paths.back, field, carried, bounds);
-            close(carried);
+            close(carried, Beyond::Extended);
             let half = R::of(0.5);
             pull(grid, &paths.ahead, carried, target, |at, returned, _| {
                 let guess = carried.data[at];
@@ -48,10 +50,12 @@ pub fn advect<R: Real>(
         }
         Advection::Bfecc => {
             first_guess(grid, &paths.back, field, carried, bounds);
-            close(carried);
+            close(carried, Beyond::Extended);
             let half = R::of(0.5);
+            // Corrected, it still is the field of the beginning, with what blew in then.
+            target.data.copy_from_slice(&field.data);
             pull(grid, &paths.ahead, carried, target, |at, returned, _| field.data[at] + half * (field.data[at] - returned));
-            close(target);
+            close(target, Beyond::Kept);
             std::mem::swap(&mut carried.data, &mut target.data);
             pull(grid, &paths.back, carried, target, |at, value, guess| within(value, bounds[at], guess));
         }

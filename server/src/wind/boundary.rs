@@ -24,10 +24,23 @@ struct Inflow<R> {
     doubled: [Vec<R>; 3],
 }
 
+/// What the values on and beyond faces of inflow are made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beyond {
+    /// The velocity prescribed there: for air whose divergence is out.
+    Prescribed,
+    /// The straight line through the two values inside: for air on its way, which the pressure has yet to push. Prescribed values, which it has pushed, would be
+    /// off by `dt·∇p`.
+    Extended,
+    /// Themselves.
+    Kept,
+}
+
 /// How the values at and beyond one face follow from the ones before it: `sign·(mirror image) + doubled`.
 #[derive(Clone, Copy)]
 enum Rule<'a, R> {
     Wrap,
+    Keep,
     Mirror { sign: R, doubled: R },
     MirrorPlane { sign: R, doubled: &'a [R] },
 }
@@ -123,8 +136,13 @@ impl<R: Real> Walls<R> {
 
     /// Fills in everything of a staggered velocity that the flow does not decide.
     pub fn close(&self, velocity: &mut Velocity<R>) {
+        self.close_with(velocity, Beyond::Prescribed);
+    }
+
+    /// [`Walls::close`] with other values on faces of inflow.
+    pub fn close_with(&self, velocity: &mut Velocity<R>, beyond: Beyond) {
         for field in &mut velocity.0 {
-            self.close_component(field);
+            self.close_component_with(field, beyond);
         }
         for axis in 0..3 {
             for side in [0, 1] {
@@ -159,14 +177,40 @@ impl<R: Real> Walls<R> {
 
     /// [`Walls::close`] for one component.
     pub fn close_component(&self, field: &mut Field<R>) {
+        self.close_component_with(field, Beyond::Prescribed);
+    }
+
+    /// [`Walls::close_with`] for one component.
+    pub fn close_component_with(&self, field: &mut Field<R>, beyond: Beyond) {
         let Place::Face(component) = field.place else { unreachable!("velocity components live on faces") };
         // Before, so that what wraps is the image of closed faces; after, for those on the box's own.
         self.shut(field, component);
         for axis in 0..3 {
-            let rules = [0, 1].map(|side| self.rule(component, axis, side));
+            let is_inflow = [0, 1].map(|side| self.grid.boundary[axis][side] == Boundary::Inflow);
+            let own = |side: usize| is_inflow[side] && beyond != Beyond::Prescribed;
+            let rules = [0, 1].map(|side| if own(side) { Rule::Keep } else { self.rule(component, axis, side) });
             self.fill(field, axis, rules);
+            (0..2).filter(|&side| own(side) && beyond == Beyond::Extended).for_each(|side| self.extend(field, axis, side));
         }
         self.shut(field, component);
+    }
+
+    /// Continues the straight line through the two values nearest to a face on and beyond it; of a box too thin for two, the one.
+    fn extend(&self, field: &mut Field<R>, axis: usize, side: usize) {
+        let (grid, n, stride) = (&self.grid, self.grid.cells[axis], self.grid.strides()[axis]);
+        let free = grid.free(field.place, axis);
+        let Some(last) = free.clone().last() else { return };
+        let [near, next] = if side == 0 { [free.start, (free.start + 1).min(last)] } else { [last, last.saturating_sub(1).max(free.start)] };
+        let outside = if side == 0 { 0..near + GHOST } else { near + GHOST + 1..n + 2 * GHOST + 1 };
+        for line in field.data.chunks_mut(stride * grid.padded()[axis]) {
+            for inner in 0..stride {
+                let at = |index: usize| index * stride + inner;
+                let (here, slope) = (line[at(near + GHOST)], line[at(near + GHOST)] - line[at(next + GHOST)]);
+                for index in outside.clone() {
+                    line[at(index)] = here + R::of(index.abs_diff(near + GHOST) as f64) * slope;
+                }
+            }
+        }
     }
 
     fn shut(&self, field: &mut Field<R>, component: usize) {
@@ -220,13 +264,14 @@ impl<R: Real> Walls<R> {
             match rule {
                 Rule::MirrorPlane { .. } => add(Image { to: node, from: node, sign: zero, doubled: zero, plane: Some(side), share: half }),
                 Rule::Mirror { .. } if grid.boundary[axis][side].is_closed() => add(Image { to: node, from: node, ..Image::default() }),
-                Rule::Mirror { .. } | Rule::Wrap => {}
+                Rule::Mirror { .. } | Rule::Wrap | Rule::Keep => {}
             }
         }
         for (side, rule) in rules.into_iter().enumerate() {
             for m in 1..=GHOST {
                 let (to, from) = ghost(n, side, m, on_faces, matches!(rule, Rule::Wrap));
                 add(match rule {
+                    Rule::Keep => continue,
                     Rule::Wrap => Image { to, from, sign: R::one(), ..Image::default() },
                     Rule::Mirror { sign, doubled } => Image { to, from, sign, doubled, ..Image::default() },
                     Rule::MirrorPlane { sign, .. } => Image { to, from, sign, plane: Some(side), share: R::one(), ..Image::default() },
@@ -344,6 +389,22 @@ mod tests {
         assert_eq!(closed(FreeSlip, NoSlip, 1, still())[..8], [2.5, 1.5, 1.5, 2.5, 3.5, 4.5, -4.5, -3.5]);
         assert_eq!(closed(lid, Outflow, 1, still())[..8], [11.5, 12.5, 1.5, 2.5, 3.5, 4.5, 4.5, 3.5]);
         assert_eq!(closed(Inflow, FreeSlip, 1, inflow)[..8], [1.5, 2.5, 1.5, 2.5, 3.5, 4.5, 4.5, 3.5]);
+    }
+
+    #[test]
+    fn air_on_its_way_is_continued_beyond_faces_of_inflow() {
+        let grid = Grid { cells: [4, 1, 1], spacing_m: [1.0f64; 3], boundary: [[Inflow; 2], [Wrap; 2], [Wrap; 2]] };
+        for place in [0, 1] {
+            let mut field = Field::zeros(&grid, Place::Face(place));
+            field.fill(&grid, |[x, ..]| if (1.0..4.0).contains(&x) || place == 1 { 3.0 * x } else { 50.0 });
+            let walls = Walls::new(&grid, still());
+            walls.close_component_with(&mut field, Beyond::Extended);
+            let extended = row(&grid, &field);
+            let offset = if place == 0 { 0.0 } else { 0.5 };
+            assert!((0..extended.len()).all(|i| extended[i] == 3.0 * (i as f64 - 2.0 + offset)), "{extended:?}");
+            walls.close_component_with(&mut field, Beyond::Kept);
+            assert_eq!(row(&grid, &field), extended);
+        }
     }
 
     #[test]

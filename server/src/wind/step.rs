@@ -1,5 +1,6 @@
 //! One step of the air, as each time scheme lists it.
 
+use super::boundary::Beyond;
 use super::diffuse::{Portion, spread};
 use super::pressure::Convergence;
 use super::state::{MAX_SUBSTEPS, StepError, StepReport};
@@ -160,14 +161,17 @@ impl<R: Real> Solver<R> {
         self.along_paths(0);
         let [even, odd] = &mut self.stages;
         odd.clone_from(even);
+        // What blows in is reflected too.
+        self.walls.close_with(odd, Beyond::Extended);
         self.projection.project(&self.grid, &mut self.stages[0], &self.inflow, None);
+        self.walls.close(&mut self.stages[0]);
         let two = R::of(2.0);
         for axis in 0..3 {
             let (free, bound) = (&self.stages[0].0[axis].data, &self.stages[1].0[axis].data);
             let reflected = self.velocity.0[axis].data.iter_mut().zip(free).zip(bound);
             reflected.for_each(|((reflected, &free), &bound)| *reflected = two * free - bound);
         }
-        self.walls.close(&mut self.velocity);
+        self.walls.close_with(&mut self.velocity, Beyond::Kept);
         self.walls.blow(self.time_secs + dt_secs);
         self.along_paths(0);
         std::mem::swap(&mut self.velocity, &mut self.stages[0]);
@@ -244,7 +248,7 @@ impl<R: Real> Solver<R> {
     fn along_paths(&mut self, stage: usize) {
         for axis in 0..3 {
             let (field, target) = (&self.velocity.0[axis], &mut self.stages[stage].0[axis]);
-            let close = |field: &mut _| self.walls.close_component(field);
+            let close = |field: &mut _, beyond| self.walls.close_component_with(field, beyond);
             advect::advect(self.config.advection, &self.grid, &self.paths, field, target, &mut self.advection, close);
         }
         self.walls.close(&mut self.stages[stage]);
@@ -341,7 +345,7 @@ impl<R: Real> Solver<R> {
         } else {
             health::to_centres(&grid, air, &mut self.centres);
             trace::trace(&grid, &self.centres, dt_secs, &mut self.paths);
-            advect::advect(settings.advection, &grid, &self.paths, dust, even, &mut self.advection, close);
+            advect::advect(settings.advection, &grid, &self.paths, dust, even, &mut self.advection, |field, _| close(field));
             std::mem::swap(dust, even);
             close(dust);
         }
