@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 
 use super::parallel::for_each_chunk;
-use super::{GHOST, Grid, Real, Velocity};
+use super::{Field, GHOST, Grid, Real, Velocity};
 
 /// Partial sums of a row.
 const LANES: usize = 8;
@@ -69,19 +69,26 @@ pub fn measure<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, planes: &mut [Pl
 
 /// Largest speed (m/s) along each axis that any face has, or gets if `pull` (m/s²) acts on it for `dt_secs` (s) either way.
 pub fn fastest_to_be<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, pull: &Velocity<R>, dt_secs: f64) -> [f64; 3] {
-    let dt = R::of(dt_secs);
-    [0, 1, 2].map(|axis| {
-        let (speeds, pulls, nx) = (&velocity.0[axis], &pull.0[axis].data, velocity.0[axis].shape[0]);
-        let faster = |fastest: R, speed: R| if speed > fastest { speed } else { fastest };
-        let rows = speeds.rows(grid).map(|at| {
-            let mut fastest = [R::zero(); LANES];
-            for (i, (speed, pull)) in speeds.data[at..][..nx].iter().zip(&pulls[at..][..nx]).enumerate() {
-                fastest[i % LANES] = faster(fastest[i % LANES], speed.abs() + dt * pull.abs());
-            }
-            fastest.into_iter().fold(R::zero(), faster)
-        });
-        rows.fold(R::zero(), faster).wide()
-    })
+    [0, 1, 2].map(|axis| fastest_component(grid, &velocity.0[axis], &pull.0[axis].data, R::of(dt_secs)).wide())
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn fastest_component<R: Real>(grid: &Grid<R>, speeds: &Field<R>, pull: &[R], dt: R) -> R {
+    let n = speeds.shape[0];
+    let mut fastest = [R::zero(); LANES];
+    for at in speeds.rows(grid) {
+        let (speeds, pull) = (&speeds.data[at..][..n], &pull[at..][..n]);
+        let mut take = |i: usize, lane: usize| {
+            let speed = speeds[i].abs() + dt * pull[i].abs();
+            fastest[lane] = if speed > fastest[lane] { speed } else { fastest[lane] };
+        };
+        let whole = n - n % LANES;
+        for start in (0..whole).step_by(LANES) {
+            (0..LANES).for_each(|lane| take(start + lane, lane));
+        }
+        (whole..n).for_each(|i| take(i, i - whole));
+    }
+    fastest.into_iter().fold(R::zero(), |a, b| if b > a { b } else { a })
 }
 
 /// Partial sums and extremes side by side, so that they can be taken in vectors; they are added up in order.

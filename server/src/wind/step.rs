@@ -61,7 +61,7 @@ impl<R: Real> Solver<R> {
     pub fn step_dust(&mut self, dt_secs: f64) -> Result<(), StepError> {
         parts(&self.config, &self.grid, self.health.fastest_m_per_s, dt_secs, MAX_SUBSTEPS)?;
         if let Some(dust) = self.config.dust {
-            self.stages[0].clone_from(&self.velocity);
+            self.stages[0].copy_from(&self.velocity);
             self.carry_dust(&dust, dt_secs)?;
         }
         Ok(())
@@ -83,10 +83,10 @@ impl<R: Real> Solver<R> {
     /// Takes one part of a step. If it proves too long, the state is as before.
     fn substep(&mut self, dt_secs: f64, jets: &[Jet]) -> Result<Convergence, StepError> {
         if let Some(old) = &mut self.old {
-            old.clone_from(&self.velocity);
+            old.copy_from(&self.velocity);
         }
         if let Some(old_pull) = &mut self.old_pull {
-            old_pull.clone_from(&self.pull);
+            old_pull.copy_from(&self.pull);
         }
         let gusts = sources::sources_at(&self.config, &self.grid, &self.mean, self.time_secs + 0.5 * dt_secs);
         self.pushes.set(&self.grid, &self.config.gusts, gusts, &self.velocity, &mut self.footprint);
@@ -119,10 +119,10 @@ impl<R: Real> Solver<R> {
     /// Takes back what a part of a step did to the air.
     fn go_back(&mut self) {
         if let Some(old) = &self.old {
-            self.velocity.clone_from(old);
+            self.velocity.copy_from(old);
         }
         if let Some(old_pull) = &self.old_pull {
-            self.pull.clone_from(old_pull);
+            self.pull.copy_from(old_pull);
         }
         self.walls.blow(self.time_secs);
         self.observe();
@@ -160,7 +160,7 @@ impl<R: Real> Solver<R> {
 
         self.along_paths(0);
         let [even, odd] = &mut self.stages;
-        odd.clone_from(even);
+        odd.copy_from(even);
         // What blows in is reflected too.
         self.walls.close_with(odd, Beyond::Extended);
         self.projection.project(&self.grid, &mut self.stages[0], &self.inflow, None);
