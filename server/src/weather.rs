@@ -3,11 +3,12 @@
 use crate::bend::air::GroundWind;
 use crate::objects::Motion;
 use crate::snapshot::WindFrame;
-use crate::wind::{Boundary, Config, ConfigError, Gusts, Jet, Profile, StepError, StepReport, WindSolver};
+use crate::wind::{Boundary, Config, ConfigError, Dust, Gusts, Jet, Profile, StepError, StepReport, WindSolver};
 use glam::Vec3;
-use shared::scene::{Scene, VehicleKind, WindBoundary};
+use shared::scene::{Scene, VehicleKind, WindTiling};
 use shared::terrain::HeightMap;
-use shared::wire::quantise::wind_code;
+use shared::wire::Shape;
+use shared::wire::quantise::{dust_code, wind_code};
 use std::sync::Arc;
 
 /// The solver takes the least number of ticks a step that is not shorter than this (s).
@@ -34,6 +35,8 @@ pub struct Weather {
     step_secs: f32,
     report: StepReport,
     resets: u64,
+    /// Whether each patch of the world shows the same box.
+    is_shared: bool,
     ground: GroundWind,
     frame: Arc<WindFrame>,
 }
@@ -76,7 +79,17 @@ impl Weather {
         }
         let ground = GroundWind::still(scene);
         let frame = Arc::new(WindFrame::default());
-        let mut weather = Self { solver, config, ticks_per_step, step_secs, report, resets: 0, ground, frame };
+        let mut weather = Self {
+            solver,
+            config,
+            ticks_per_step,
+            step_secs,
+            report,
+            resets: 0,
+            is_shared: scene.wind.tiling == WindTiling::Patch,
+            ground,
+            frame,
+        };
         weather.observe(0);
         Ok(weather)
     }
@@ -94,6 +107,8 @@ impl Weather {
         if !is_due(3) {
             return;
         }
+        // What an object does to a box that every patch shows would blow in all of them.
+        let motions = if self.is_shared { &[] } else { motions };
         let jets: Vec<_> = motions.iter().filter_map(|motion| jet(motion, height)).collect();
         match begun.and_then(|()| self.solver.finish(self.step_secs, &jets)) {
             Ok(report) => self.report = report,
@@ -134,12 +149,14 @@ impl Weather {
     fn observe(&mut self, tick: u64) {
         let [nx, ny, nz] = self.config.cells;
         let cells = nx * ny * nz;
-        let mut codes = vec![0; 3 * cells];
+        let mut codes = vec![0; Shape::wind(nx, self.solver.dust().is_some()).planes * cells];
         for (at, velocity) in self.solver.cell_velocities().enumerate() {
             for (plane, component) in velocity.to_array().into_iter().enumerate() {
                 codes[plane * cells + at] = wind_code(component);
             }
         }
+        let densities = self.solver.dust().into_iter().flat_map(|dust| &dust.data);
+        codes[3 * cells..].iter_mut().zip(densities).for_each(|(code, &density)| *code = dust_code(density));
         self.ground.blow(ny, self.solver.cell_velocities().map(|velocity| [velocity.x, velocity.z]));
         self.frame = Arc::new(WindFrame { tick, cells: [nx, ny, nz].map(|n| n as u32), codes });
     }
@@ -153,15 +170,12 @@ fn rhythm(scene: &Scene) -> (u64, f32) {
 
 fn config(scene: &Scene) -> Config {
     let wind = &scene.wind;
-    let side = match wind.sides {
-        WindBoundary::Wrap => Boundary::Wrap,
-        WindBoundary::Wall => Boundary::Wall,
-    };
+    let [x, _, z] = wind.faces.wraps().map(|wraps| if wraps { Boundary::Wrap } else { Boundary::Wall });
     let [hx, hy, hz] = wind.spacing_m;
     Config {
         cells: wind.cells.map(|n| n as usize),
         spacing_m: wind.spacing_m,
-        boundary: [side, Boundary::Wall, side],
+        boundary: [x, Boundary::Wall, z],
         viscosity_m2_per_s: wind.viscosity_m2_per_s,
         mean_wind_m_per_s: [wind.mean_m_per_s[0], 0.0, wind.mean_m_per_s[1]],
         profile: Profile::Log { roughness_m: ROUGHNESS_M, reference_m: 5.0 * hy },
@@ -172,6 +186,11 @@ fn config(scene: &Scene) -> Config {
             radius_m: [1.75 * hx, 2.5 * hy, 1.75 * hz],
             ..Gusts::default()
         },
+        dust: wind.has_dust().then_some(Dust {
+            diffusivity_m2_per_s: wind.dust.diffusivity_m2_per_s,
+            release_per_sec: wind.dust.release_per_s,
+            settling_per_sec: wind.dust.settling_per_s,
+        }),
         seed: scene.seed,
         ..Config::default()
     }
@@ -195,6 +214,34 @@ fn jet(motion: &Motion, height: &HeightMap) -> Option<Jet> {
 mod tests {
     use super::*;
     use crate::objects::Stand;
+
+    #[test]
+    fn dust_is_shown_where_the_scene_asks_for_it() {
+        let mut scene = crate::scenes::load("meadow").unwrap().scene;
+        assert!(!Weather::new(&scene).unwrap().frame().has_dust(), "no byte more for clear air");
+        scene.wind.dust.release_per_s = 2.0;
+        let frame = Arc::clone(Weather::new(&scene).unwrap().frame());
+        let dust = &frame.codes[3 * frame.volume()..];
+        assert_eq!(dust.len(), frame.volume());
+        assert!(dust.iter().all(|&code| code >= 0) && dust.iter().any(|&code| code > 20) && dust.contains(&0), "clouds in clear air");
+    }
+
+    #[test]
+    fn an_object_blows_in_no_box_that_serves_every_patch() {
+        let mut scene = crate::scenes::load("meadow").unwrap().scene;
+        (scene.wind.cells, scene.wind.spacing_m, scene.wind.sources) = ([8; 3], [2.0; 3], 0);
+        let height = HeightMap::from_heights(2, 2, [256.0; 2], vec![0.0; 4]);
+        let stand = Stand { position_m: [64.0, 5.0, 64.0], rotation: [0.0, 0.0, 0.0, 1.0] };
+        let hovering = Motion { kind: VehicleKind::Helicopter, from: stand, to: stand, velocity_m_per_s: [0.0; 3] };
+        let mut strongest_updraught = |tiling| {
+            scene.wind.tiling = tiling;
+            let mut weather = Weather::new(&scene).unwrap();
+            (1..=20).for_each(|tick| weather.step(tick, &[hovering], &height));
+            weather.velocities().map(|velocity| velocity.y.abs()).fold(0.0, f32::max)
+        };
+        assert!(strongest_updraught(WindTiling::Box) > 0.5);
+        assert!(strongest_updraught(WindTiling::Patch) < 1e-3);
+    }
 
     #[test]
     fn a_wind_that_is_lost_begins_anew_and_is_counted() {
