@@ -10,6 +10,7 @@ struct Frame {
     world: vec4<f32>,
     maps: vec4<f32>,
     wind_box: vec4<f32>,
+    tiling: vec4<u32>,
     gust: vec4<f32>,
     blade: vec4<f32>,
     root_rgb: vec4<f32>,
@@ -43,8 +44,9 @@ struct Blade {
 const TAU: f32 = 6.2831853;
 const THETA_FULL_RAD: f32 = 3.1415927;
 const WIND_FULL_M_PER_S: f32 = 31.75;
+const DUST_FULL: f32 = 16.0;
 
-// Integer hash (pcg3d's mixing) of a place and a number.
+// Integer hash (pcg3d) of a place and a number; twin of `hash3` in shared/src/hash.rs.
 fn hash3(v_in: vec3<u32>) -> vec3<u32> {
     var v = v_in * 1664525u + 1013904223u;
     v.x += v.y * v.z;
@@ -118,15 +120,51 @@ fn grass_share(p: vec2<f32>) -> f32 {
 
 // --- wind and bend --------------------------------------------------------------------------------------------------
 
-fn wind_at(p: vec3<f32>, above_m: f32) -> vec3<f32> {
-    let cells = vec3<f32>(textureDimensions(winds));
-    var uvw = vec3<f32>(p.x, above_m, p.z) / frame.wind_box.xyz;
-    let edge = 0.5 / cells;
-    if frame.wind_box.w < 0.5 {
-        uvw = clamp(uvw, edge, 1.0 - edge);
+// Wind (m/s), and the root of the dust's concentration over `DUST_FULL`, at a place in the wind's box.
+fn air_in_box(place_m: vec3<f32>) -> vec4<f32> {
+    let edge = 0.5 / vec3<f32>(textureDimensions(winds));
+    let uvw = place_m / frame.wind_box.xyz;
+    let held = clamp(uvw, edge, 1.0 - edge);
+    let at = select(held, uvw, vec3<bool>(frame.tiling.y != 0u, false, frame.tiling.z != 0u));
+    return textureSampleLevel(winds, repeated, at, 0.0) * vec4<f32>(vec3<f32>(WIND_FULL_M_PER_S), 1.0);
+}
+
+// Cells along X and Z by which a patch shows the wind's box moved; twin of `offset_cells` in shared/src/wind/tiling.rs.
+fn offset_cells(patch_place: vec2<i32>, cells: vec2<u32>) -> vec2<u32> {
+    let hash = hash3(vec3<u32>(bitcast<u32>(patch_place.x), bitcast<u32>(patch_place.y), frame.tiling.x));
+    return (hash.xy >> vec2<u32>(8u)) % cells;
+}
+
+// The air so high above the ground at `p`, as the box covers the world; twin of `Tiles::taps` in shared/src/wind/tiling.rs.
+fn air_at(p: vec2<f32>, above_m: f32) -> vec4<f32> {
+    let patch_m = frame.wind_box.w;
+    if patch_m <= 0.0 {
+        return air_in_box(vec3<f32>(p.x, above_m, p.y));
     }
-    uvw.y = clamp(uvw.y, edge.y, 1.0 - edge.y);
-    return textureSampleLevel(winds, repeated, uvw, 0.0).xyz * WIND_FULL_M_PER_S;
+    let cells = textureDimensions(winds).xz;
+    let spacing_m = frame.wind_box.xz / vec2<f32>(cells);
+    let at = p / patch_m - 0.5;
+    let low = floor(at);
+    let far = clamp((at - low - 0.5) * patch_m / spacing_m + 0.5, vec2<f32>(0.0), vec2<f32>(1.0));
+    var air = vec4<f32>(0.0);
+    for (var i = 0; i < 4; i++) {
+        let corner = vec2<i32>(i & 1, i >> 1u);
+        let shares = select(1.0 - far, far, corner == vec2<i32>(1));
+        if shares.x * shares.y > 0.0 {
+            let moved = p + vec2<f32>(offset_cells(vec2<i32>(low) + corner, cells)) * spacing_m;
+            air += air_in_box(vec3<f32>(moved.x, above_m, moved.y)) * (shares.x * shares.y);
+        }
+    }
+    return air;
+}
+
+fn wind_at(p: vec3<f32>, above_m: f32) -> vec3<f32> {
+    return air_at(p.xz, above_m).xyz;
+}
+
+// Concentration of dust where `air_at` gave this.
+fn dust_of(air: vec4<f32>) -> f32 {
+    return air.w * air.w * DUST_FULL;
 }
 
 // Fine structure of the wind below the solver's cells: fronts that travel with the mean wind, as a factor about 1.

@@ -5,6 +5,7 @@
 //   state()                          the client's own account of itself as an object, null before it has started
 //   theta(x, z)                      bending angle of the grass there, in the client's mirror (rad)
 //   wind(x, y, z)                    wind there, in the client's mirror (m/s)
+//   dust(x, y, z)                    concentration of dust there
 //   look([x, y, z], heading, pitch)  puts the free camera somewhere (m, rad)
 //   choose(vehicle)                  takes "car", "monster" or "helicopter"; "" gives it up
 //   draw(time)                       draws one picture for this time (s); settles when it is on the screen
@@ -76,6 +77,7 @@ async function begin() {
     state: () => JSON.parse(client.state()),
     theta: client.theta,
     wind: (x, y, z) => Array.from(client.wind(x, y, z)),
+    dust: (x, y, z) => client.dust(x, y, z),
     look: (eye, heading, pitch) => client.look(Float32Array.from(eye), heading, pitch),
     choose: client.choose,
     draw: async (time) => {

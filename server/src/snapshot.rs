@@ -34,8 +34,20 @@ pub struct WindFrame {
     pub tick: u64,
     /// Cells along X, Y and Z.
     pub cells: [u32; 3],
-    /// Three planes (u, v, w) of wind codes, x fastest, then y, then z.
+    /// Three planes (u, v, w) of wind codes, x fastest, then y, then z; a fourth of dust codes in a scene with dust.
     pub codes: Vec<i8>,
+}
+
+impl WindFrame {
+    /// Number of cells, and so of codes in a plane.
+    pub fn volume(&self) -> usize {
+        self.cells.iter().map(|&n| n as usize).product()
+    }
+
+    /// Whether there is a plane of dust.
+    pub fn has_dust(&self) -> bool {
+        self.codes.len() > 3 * self.volume()
+    }
 }
 
 /// The bend field of one patch.

@@ -29,7 +29,11 @@ struct Prairie {
 
 impl Prairie {
     fn at_rest() -> Self {
-        let wind = Arc::new(WindFrame { tick: 0, cells: WIND_CELLS, codes: vec![0; 3 * 32] });
+        Self::in_a_wind_of(3)
+    }
+
+    fn in_a_wind_of(planes: usize) -> Self {
+        let wind = Arc::new(WindFrame { tick: 0, cells: WIND_CELLS, codes: vec![0; planes * 32] });
         let snapshot = Snapshot { wind, ..Snapshot::default() };
         Self { snapshot, requests: Default::default() }
     }
@@ -66,7 +70,7 @@ impl Visitor {
     fn join(clients: &Clients, limits: SendLimits, radius_m: f32) -> Self {
         let (client, frames) = clients.join(clients.next_id(), "visitor".to_owned(), limits.in_flight as usize);
         client.look(Gaze { eye_m: [12.0, 2.0, 12.0], radius_m });
-        Self { client, frames, picture: Picture::new(LAYOUT.cells as usize, WIND_CELLS) }
+        Self { client, frames, picture: Picture::new(LAYOUT.cells as usize, WIND_CELLS, false) }
     }
 
     /// Takes every frame that waits; acknowledges the newest.
@@ -126,11 +130,16 @@ proptest! {
     fn every_history_ends_with_equal_grids(
         events in prop::collection::vec(event(), 0..120),
         bytes_per_sec in prop_oneof![Just(250_000.0), 200.0..2_000.0],
+        has_dust: bool,
     ) {
         let limits = SendLimits { in_flight: 2, bytes_per_sec };
-        let (clients, mut prairie, mut now) = (Clients::default(), Prairie::at_rest(), Instant::now());
+        let planes = if has_dust { 4 } else { 3 };
+        let (clients, mut prairie, mut now) = (Clients::default(), Prairie::in_a_wind_of(planes), Instant::now());
         let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
         let mut visitors: Vec<_> = (0..3).map(|_| Visitor::join(&clients, limits, 100.0)).collect();
+        for visitor in &mut visitors {
+            visitor.picture = Picture::new(LAYOUT.cells as usize, WIND_CELLS, has_dust);
+        }
         for event in events {
             match event {
                 Event::Change { patch, at, count, by } => prairie.change_patch(patch, |codes| {

@@ -10,6 +10,8 @@
 //! - [`terrain`]: height map, covering map, normals.
 //! - [`grid`]: shapes, spacing, index and world coordinates, fields with a halo.
 //! - [`bend`]: the bend field of the grass, a 2-D continuum (Chen & Johan).
+//! - [`wind`]: which place of the wind's box blows where.
+//! - [`hash`]: random numbers by place.
 //! - [`lod`]: which grass grid is drawn how.
 //! - [`wire`]: the messages between server and client, and the codec of the fields.
 //!
@@ -17,7 +19,9 @@
 
 pub mod bend;
 pub mod grid;
+pub mod hash;
 pub mod lod;
 pub mod scene;
 pub mod terrain;
+pub mod wind;
 pub mod wire;

@@ -7,10 +7,11 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use shared::bend::{Bend, Field, WaveParams};
 use shared::grid::PatchLayout;
 use shared::scene::Grass;
-use shared::wire::{codec, quantise};
+use shared::wire::{Shape, codec, quantise};
 use std::hint::black_box;
 
 const SIDE: usize = 64;
+const SHAPE: Shape = Shape::patch(SIDE);
 const LAYOUT: PatchLayout = PatchLayout { count: [1, 1], cells: SIDE as u32, cell_m: 0.25 };
 const DT_SECS: f32 = 1.0 / 60.0;
 const STEPS_PER_FRAME: usize = 3;
@@ -54,24 +55,24 @@ fn bench(criterion: &mut Criterion) {
     let frames = frames();
     let pairs: Vec<_> = frames.windows(2).collect();
     let mean = |size: &dyn Fn(&[Vec<i8>]) -> usize| pairs.iter().map(|pair| size(pair)).sum::<usize>() / pairs.len();
-    let ours = mean(&|pair| codec::encode(SIDE, &pair[1], Some(&pair[0])).len());
-    let key = mean(&|pair| codec::encode(SIDE, &pair[1], None).len());
+    let ours = mean(&|pair| codec::encode(SHAPE, &pair[1], Some(&pair[0])).len());
+    let key = mean(&|pair| codec::encode(SHAPE, &pair[1], None).len());
     let deflate = mean(&|pair| deflate_delta(&pair[1], &pair[0]).len());
     println!("mean bytes of a patch: raw {}, key {key}, delta {ours}, deflate of the delta {deflate}", frames[0].len());
 
     let (base, codes) = (&pairs[pairs.len() / 2][0], &pairs[pairs.len() / 2][1]);
-    let delta = codec::encode(SIDE, codes, Some(base));
+    let delta = codec::encode(SHAPE, codes, Some(base));
     let deflated = deflate_delta(codes, base);
     let mut group = criterion.benchmark_group("patch");
     group.throughput(Throughput::Elements(codes.len() as u64));
-    group.bench_function("encode delta", |b| b.iter(|| codec::encode(SIDE, black_box(codes), Some(base))));
-    group.bench_function("encode key", |b| b.iter(|| codec::encode(SIDE, black_box(codes), None)));
-    group.bench_function("encode unchanged", |b| b.iter(|| codec::encode(SIDE, black_box(base), Some(base))));
+    group.bench_function("encode delta", |b| b.iter(|| codec::encode(SHAPE, black_box(codes), Some(base))));
+    group.bench_function("encode key", |b| b.iter(|| codec::encode(SHAPE, black_box(codes), None)));
+    group.bench_function("encode unchanged", |b| b.iter(|| codec::encode(SHAPE, black_box(base), Some(base))));
     group.bench_function("encode delta by deflate", |b| b.iter(|| deflate_delta(black_box(codes), base)));
     group.bench_function("decode delta", |b| {
         b.iter(|| {
             let mut grid = base.clone();
-            codec::decode(SIDE, black_box(&delta), &mut grid).map(|()| grid)
+            codec::decode(SHAPE, black_box(&delta), &mut grid).map(|()| grid)
         });
     });
     group.bench_function("decode delta by deflate", |b| b.iter(|| miniz_oxide::inflate::decompress_to_vec(black_box(&deflated))));

@@ -1,56 +1,224 @@
-//! Time of a step of the wind, and of its projection beside the one of 000.
+//! Time of a step of the wind by each method, and of each projection beside the one of 000.
 //!
-//! Printed beside the times: what the sweeps of 000 leave of the divergence.
+//! Printed beside the times: the bandwidth of the machine's memory, the share of it that each step takes, and what each projection leaves of the divergence.
 
+use std::f32::consts::PI;
 use std::hint::black_box;
+use std::time::{Duration, Instant};
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use server::wind::pressure::Projection;
-use server::wind::{Advection, Boundary, Config, Grid, Velocity, WindSolver};
-use tests::gauss_seidel::GaussSeidelProjection;
+use criterion::{BatchSize, BenchmarkGroup, BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use server::wind::pressure::{self, Effort, Method as Iteration, Projection};
+use server::wind::stable_fluids::listing::SWEEPS;
+use server::wind::{Advection, Air, Boundary, Config, Grid, Gusts, Method, Place, Pressure, Profile, StableFluids, TimeScheme, Velocity};
+
+const DT_SECS: f64 = 1.0 / 60.0;
+/// Steps before the first that is timed, so that gusts blow.
+const STEPS_BEFORE: usize = 5;
+/// Values in each array of the triad: 64 MiB, beyond any cache.
+const TRIAD_LEN: usize = 1 << 24;
+const TRIAD_RUNS: usize = 10;
+
+/// A method of the benchmark, and how many bytes its step must move for each cell.
+struct Candidate {
+    name: &'static str,
+    method: Method,
+    advection: Advection,
+    time: TimeScheme,
+    /// Each pass over the box reads every array it uses once and writes every result once; neighbours come from the cache. f32 but for the f64 of a direct
+    /// pressure. Default settings: explicit friction, no dust, no canopy, a mean wind that is kept along x and z.
+    bytes_per_cell: usize,
+}
+
+/// Divergence 12 + 8, three passes of the transforms 3·16, gradient 3·(8 + 8).
+const DIRECT_PROJECTION: usize = 20 + 48 + 48;
+/// The mean wind of two components: sum 4, shift 8.
+const MEAN_WIND: usize = 2 * 12;
+/// Velocity to centres, four numbers each: 12 + 16; measures 12.
+const OBSERVATION: usize = 28 + 12;
+/// Velocity to centres 28, path back and ahead 16 + 2·16.
+const TRACE: usize = 28 + 48;
+/// Three components, there with their bounds 16 + 4 + 4 + 8, and back 16 + 4 + 4 + 8 + 4.
+const MACCORMACK: usize = 3 * (32 + 36);
+
+const CANDIDATES: [Candidate; 4] = [
+    Candidate {
+        name: "conservative, Runge-Kutta 3",
+        method: Method::Staggered,
+        advection: Advection::Conservative,
+        time: TimeScheme::RungeKutta3,
+        // Stages of three components, each with all of the velocity, the pull and the result, the later two with the start; the pull's gradient.
+        bytes_per_cell: 2 * MEAN_WIND + 3 * (20 + 24 + 24) + DIRECT_PROJECTION + 48 + OBSERVATION,
+    },
+    Candidate {
+        name: "semi-Lagrangian, split",
+        method: Method::Staggered,
+        advection: Advection::SemiLagrangian,
+        time: TimeScheme::Split,
+        // Three components along the path 16 + 4 + 4, friction 3·8.
+        bytes_per_cell: TRACE + 3 * 24 + MEAN_WIND + 24 + DIRECT_PROJECTION + OBSERVATION,
+    },
+    Candidate {
+        name: "MacCormack, reflection",
+        method: Method::Staggered,
+        advection: Advection::MacCormack,
+        time: TimeScheme::Reflection,
+        // Friction twice by midpoint 3·(8 + 12), a copy 3·8, the reflection 3·12.
+        bytes_per_cell: 2 * (MEAN_WIND + 60 + TRACE) + 3 * (MACCORMACK + DIRECT_PROJECTION) + 24 + 36 + OBSERVATION,
+    },
+    Candidate {
+        name: "stable fluids",
+        method: Method::StableFluids,
+        advection: Advection::SemiLagrangian,
+        time: TimeScheme::Split,
+        // The body force 3·8; diffusion of three components, a copy and 20 sweeps of 12; two projections, with divergence 16, an empty guess 4, 20 sweeps and
+        // the gradient 3·12; advection of three components 16; measures 12 + 8.
+        bytes_per_cell: MEAN_WIND + 24 + 3 * (8 + 20 * 12) + 2 * (16 + 4 + 20 * 12 + 36) + 3 * 16 + 20,
+    },
+];
+
+fn threads(number: usize) -> ThreadPool {
+    ThreadPoolBuilder::new().num_threads(number).build().expect("threads can be started")
+}
+
+/// Bandwidth (bytes/s) of `a = b + s·c`, counted as two reads and a write, in the fastest of some runs.
+fn triad_bytes_per_sec(pool: &ThreadPool) -> f64 {
+    let (mut a, b, c) = (vec![0.0f32; TRIAD_LEN], vec![1.0f32; TRIAD_LEN], vec![2.0f32; TRIAD_LEN]);
+    let chunk = TRIAD_LEN / 16;
+    let mut run = || {
+        let begun = Instant::now();
+        pool.install(|| {
+            a.par_chunks_mut(chunk).zip(b.par_chunks(chunk)).zip(c.par_chunks(chunk)).for_each(|((a, b), c)| {
+                for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
+                    *a = b + 3.0 * c;
+                }
+            });
+        });
+        black_box(&mut a);
+        begun.elapsed()
+    };
+    let fastest = (0..TRIAD_RUNS).map(|_| run()).min().expect("there are runs");
+    (3 * size_of::<f32>() * TRIAD_LEN) as f64 / fastest.as_secs_f64()
+}
+
+fn brief(group: &mut BenchmarkGroup<'_, criterion::measurement::WallTime>) {
+    group.sample_size(10).sampling_mode(SamplingMode::Flat).nresamples(1000);
+    group.warm_up_time(Duration::from_millis(100)).measurement_time(Duration::from_millis(300));
+}
 
 fn step(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("wind step");
-    for cells in [[8, 8, 8], [32, 8, 32], [64, 32, 64]] {
-        let [nx, ny, nz] = cells;
-        group.throughput(Throughput::Elements((nx * ny * nz) as u64));
-        for advection in [Advection::SemiLagrangian, Advection::MacCormack] {
-            let mut wind = WindSolver::new(&Config { cells, advection, ..Config::default() }).unwrap();
-            group.bench_function(BenchmarkId::new(format!("{advection:?}"), format!("{nx}x{ny}x{nz}")), |bencher| {
-                bencher.iter(|| black_box(wind.step(1.0 / 60.0, &[]).unwrap()));
-            });
+    brief(&mut group);
+    for number in [1, 2] {
+        let pool = threads(number);
+        let triad = triad_bytes_per_sec(&pool);
+        println!("triad on {number} threads: {:.1} GB/s", triad / 1e9);
+        for cells in [[8, 8, 8], [16, 16, 16], [32, 32, 32], [64, 64, 64], [128, 32, 128]] {
+            let [nx, ny, nz] = cells;
+            group.throughput(Throughput::Elements((nx * ny * nz) as u64));
+            // 000 knows one thread only.
+            for candidate in CANDIDATES.iter().filter(|candidate| number == 1 || candidate.method == Method::Staggered) {
+                let config = Config { cells, advection: candidate.advection, time: candidate.time, ..Config::default() };
+                let mut air = Air::<f32>::new(candidate.method, &config).expect("allowed settings");
+                let mut fastest = Duration::MAX;
+                let id = BenchmarkId::new(format!("{}, {number} threads", candidate.name), format!("{nx}x{ny}x{nz}"));
+                group.bench_function(id, |bencher| {
+                    pool.install(|| {
+                        for _ in 0..STEPS_BEFORE {
+                            air.step(DT_SECS, &[]).expect("a step within the limits");
+                        }
+                        bencher.iter(|| {
+                            let begun = Instant::now();
+                            black_box(air.step(DT_SECS, &[]).expect("a step within the limits"));
+                            fastest = fastest.min(begun.elapsed());
+                        });
+                    });
+                });
+                if fastest < Duration::MAX {
+                    let bytes_per_sec = (candidate.bytes_per_cell * nx * ny * nz) as f64 / fastest.as_secs_f64();
+                    let share = 100.0 * bytes_per_sec / triad;
+                    println!("{}: {} bytes per cell, {share:.0} % of the triad's bandwidth", candidate.name, candidate.bytes_per_cell);
+                }
+            }
         }
     }
     group.finish();
 }
 
+/// A smooth gradient, none of which a projection should leave.
+fn smooth([x, y, z]: [f32; 3], n: usize) -> [f32; 3] {
+    let k = PI / n as f32;
+    [(k * x).sin() * (k * y).cos(), (k * x).cos() * (k * y).sin() + (2.0 * k * y).sin(), (3.0 * k * z).sin()]
+}
+
+/// What a projection of `velocity` leaves of the divergence, root mean square.
+fn share_left(grid: &Grid<f32>, velocity: &Velocity<f32>, projection: &mut Projection) -> f64 {
+    let rms = |velocity: &Velocity<f32>| {
+        let mut divergence = vec![0.0; grid.len()];
+        pressure::divergence(grid, velocity, 1.0, &mut divergence);
+        divergence.iter().map(|rate| rate * rate).sum::<f64>().sqrt()
+    };
+    let mut projected = velocity.clone();
+    projection.project(grid, &mut projected, &[], None);
+    rms(&projected) / rms(velocity)
+}
+
 fn projection(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("wind projection");
+    brief(&mut group);
+    let pool = threads(1);
+    let effort = Effort { tolerance: 1e-5, sweeps: 100_000 };
+    let methods = [Iteration::Multigrid, Iteration::ConjugateGradients, Iteration::Sor, Iteration::GaussSeidel, Iteration::Jacobi];
     for n in [8, 16, 32, 64] {
         group.throughput(Throughput::Elements((n * n * n) as u64));
-        let grid = Grid { cells: [n; 3], spacing_m: [1.0f32; 3], boundary: [Boundary::Wall; 3] };
+        let grid = Grid { cells: [n; 3], spacing_m: [1.0f32; 3], boundary: [[Boundary::FreeSlip; 2]; 3] };
+        // Zero on every face of the box, as the walls have it.
         let mut velocity = Velocity::zeros(&grid);
-        let smooth = |x: f32| (std::f32::consts::PI * x / n as f32).sin();
-        velocity.0[0].fill(&grid, |[x, ..]| smooth(x));
-        let mut direct = Projection::new(&grid);
-        group.bench_function(BenchmarkId::new("direct", n), |bencher| bencher.iter(|| direct.project(&grid, black_box(&mut velocity))));
-
-        let mut sweeps = GaussSeidelProjection::new(n);
-        let still = vec![0.0; (n + 2usize).pow(3)];
-        let mut collocated = [still.clone(), still.clone(), still];
-        for k in 1..=n {
-            for j in 1..=n {
-                for i in 1..=n {
-                    collocated[0][sweeps.index(i, j, k)] = smooth(i as f32 - 0.5);
-                }
-            }
+        for (axis, field) in velocity.0.iter_mut().enumerate() {
+            field.fill(&grid, |position| smooth(position, n)[axis]);
+            debug_assert_eq!(field.place, Place::Face(axis));
         }
-        let before = sweeps.divergence_rms(&collocated);
-        let mut projected = collocated.clone();
-        sweeps.project(&mut projected);
-        println!("20 Gauss-Seidel sweeps at {n}^3 leave {:.0} % of the divergence", 100.0 * sweeps.divergence_rms(&projected) / before);
-        group.bench_function(BenchmarkId::new("20 Gauss-Seidel sweeps", n), |bencher| {
-            bencher.iter(|| sweeps.project(black_box(&mut collocated)));
+        // Methods that take n² sweeps take seconds at 32³.
+        let slow = |method: &Iteration| matches!(method, Iteration::GaussSeidel | Iteration::Jacobi);
+        let iterative = methods.into_iter().filter(|method| n <= 16 || !slow(method)).map(|method| Pressure::Iterative(method, effort));
+        for pressure in std::iter::once(Pressure::Direct).chain(iterative) {
+            let name = match pressure {
+                Pressure::Direct => "Direct".to_owned(),
+                Pressure::Iterative(method, _) => format!("{method:?} to 1e-5"),
+            };
+            let left = share_left(&grid, &velocity, &mut Projection::new(&grid, pressure, None));
+            println!("{name} at {n}³ leaves {left:.1e} of the divergence");
+            // Each time anew: an iteration begins with the potential of the one before.
+            let fresh = || (Projection::new(&grid, pressure, None), velocity.clone());
+            group.bench_function(BenchmarkId::new(name, n), |bencher| {
+                pool.install(|| {
+                    let project = |(projection, velocity): &mut (Projection, _)| projection.project(&grid, velocity, &[], None);
+                    bencher.iter_batched_ref(fresh, project, BatchSize::PerIteration);
+                });
+            });
+        }
+
+        let config = Config {
+            cells: [n; 3],
+            spacing_m: [1.0; 3],
+            boundary: [[Boundary::Reflect; 2]; 3],
+            mean_wind_m_per_s: [0.0; 3],
+            profile: Profile::Uniform,
+            gusts: Gusts { number: 0, ..Gusts::default() },
+            ..Config::default()
+        };
+        let mut air = StableFluids::<f32>::new(&config).expect("allowed settings");
+        air.set_velocity(|position| smooth(position, n));
+        let rms = |air: &StableFluids<f32>| {
+            let health = air.health();
+            health.divergence_rms_rel * health.kinetic_energy_m2_per_s2.sqrt()
+        };
+        let before = rms(&air);
+        air.project(SWEEPS);
+        println!("{SWEEPS} Gauss-Seidel sweeps at {n}³ leave {:.1e} of the divergence", rms(&air) / before);
+        group.bench_function(BenchmarkId::new("20 Gauss-Seidel sweeps of 000", n), |bencher| {
+            bencher.iter(|| air.project(black_box(SWEEPS)))
         });
     }
     group.finish();

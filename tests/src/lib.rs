@@ -4,7 +4,6 @@ pub mod air;
 pub mod browser;
 pub mod chart;
 pub mod chromedriver;
-pub mod gauss_seidel;
 pub mod maps;
 pub mod norms;
 pub mod orders;

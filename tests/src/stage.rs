@@ -7,7 +7,7 @@ use server::snapshot::PatchCodes;
 use server::world::{Command, Maps, View, World};
 use shared::scene::{Scene, VehicleKind};
 use shared::terrain::HeightMap;
-use shared::wire::{Drive, ObjectPose, ServerMessage, codec};
+use shared::wire::{Drive, ObjectPose, ServerMessage, Shape, codec};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -86,8 +86,8 @@ impl Stage {
         let snapshot = self.world.snapshot();
         self.mirror.apply(ServerMessage::Poses { tick: snapshot.tick, objects: snapshot.objects.clone() })?;
         self.frame += 1;
-        let width = snapshot.wind.cells[0] as usize;
-        let payload = codec::encode(width, &snapshot.wind.codes, None);
+        let wind = &snapshot.wind;
+        let payload = codec::encode(Shape::wind(wind.cells[0] as usize, wind.has_dust()), &wind.codes, None);
         self.mirror.apply(ServerMessage::Wind { tick: snapshot.tick, seq: self.frame, key: true, payload })?;
         let shown: BTreeSet<u32> = self.sent.keys().chain(snapshot.patches.keys()).copied().collect();
         for patch in shown {
@@ -107,7 +107,8 @@ impl Stage {
             None if codes.is_none() => return Ok(()),
             None => 1,
         };
-        let payload = codes.map_or_else(Vec::new, |codes| codec::encode(self.scene.patches.cells as usize, &codes.codes, None));
+        let payload =
+            codes.map_or_else(Vec::new, |codes| codec::encode(Shape::patch(self.scene.patches.cells as usize), &codes.codes, None));
         self.mirror.apply(ServerMessage::Patch { patch, seq, key: true, payload })?;
         match codes {
             Some(codes) => self.sent.insert(patch, (seq, Arc::clone(codes))),

@@ -8,7 +8,7 @@ use shared::grid::PatchLayout;
 use shared::scene::{Patches, Scene, TerrainMaps, VehicleKind};
 use shared::terrain::{HeightMap, grey_png};
 use shared::wire::quantise::{omega_code, theta_code, wind_code};
-use shared::wire::{ObjectPose, ServerMessage, codec};
+use shared::wire::{ObjectPose, ServerMessage, Shape, codec};
 
 /// Pixels of both maps along X and Z, and the distance between those of the height map (m).
 const MAP_PX: u32 = 257;
@@ -114,7 +114,7 @@ fn wind(scene: &Scene) -> ServerMessage {
         codes[i] = wind_code(4.2 * strength);
         codes[2 * count + i] = wind_code(2.6 * strength + 0.8 * (2.0 * fx).sin());
     }
-    ServerMessage::Wind { tick: 1, seq: 1, key: true, payload: codec::encode(nx, &codes, None) }
+    ServerMessage::Wind { tick: 1, seq: 1, key: true, payload: codec::encode(Shape::wind(nx, false), &codes, None) }
 }
 
 fn patch_message(layout: &PatchLayout, patch: u32) -> Option<ServerMessage> {
@@ -132,7 +132,7 @@ fn patch_message(layout: &PatchLayout, patch: u32) -> Option<ServerMessage> {
         }
     }
     let is_bent = codes.iter().any(|&code| code != 0);
-    is_bent.then(|| ServerMessage::Patch { patch, seq: 1, key: true, payload: codec::encode(cells, &codes, None) })
+    is_bent.then(|| ServerMessage::Patch { patch, seq: 1, key: true, payload: codec::encode(Shape::patch(cells), &codes, None) })
 }
 
 /// Bend and its direction: two wheel tracks that rise with their age, and a wash that blows outward.

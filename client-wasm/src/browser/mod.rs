@@ -112,6 +112,12 @@ pub fn wind(x_m: f32, y_m: f32, z_m: f32) -> Vec<f32> {
     with_app(|app| app.mirror.wind_at(Vec3::new(x_m, y_m, z_m)).to_array().to_vec()).unwrap_or_default()
 }
 
+/// Concentration of dust at a place in the client's mirror.
+#[wasm_bindgen]
+pub fn dust(x_m: f32, y_m: f32, z_m: f32) -> f32 {
+    with_app(|app| app.mirror.dust_at(Vec3::new(x_m, y_m, z_m))).unwrap_or(0.0)
+}
+
 /// Puts the free camera at `eye_m` (three numbers); gives up the chase only while nothing is driven. False when a number is not finite.
 #[wasm_bindgen]
 pub fn look(eye_m: &[f32], heading_rad: f32, pitch_rad: f32) -> bool {

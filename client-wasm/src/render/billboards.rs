@@ -9,6 +9,7 @@ use super::shaders;
 use crate::state::Land;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
+use shared::hash::hash3;
 use shared::lod::{billboard_plants, billboards_per_side};
 use wgpu::BufferUsages;
 
@@ -45,7 +46,8 @@ impl Billboards {
         let gpu = maker.gpu;
         let layout = maker.layout("billboards", &[storage(0), uniform(1), texture(2), storage(3)]);
         let place_layout = maker.layout("billboard places", &[storage(0), uniform(1), storage_rw(4)]);
-        let draw = Draw { label: "billboards", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None };
+        let draw =
+            Draw { label: "billboards", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None };
         let module = gpu.shader("billboards", shaders::BILLBOARDS);
         let pipeline = maker.draw(&module, Some(&layout), &draw);
         let place = maker.compute("place", &module, "place", &place_layout);
@@ -143,19 +145,7 @@ fn ring_of(ring: i32) -> impl Iterator<Item = [i32; 2]> {
 
 /// Three random numbers in 0..1 for a grid and a number; twin of `random3` in `common.wgsl`.
 pub(super) fn random3(place: [i32; 2], number: u32) -> [f32; 3] {
-    let scramble = |v: u32| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-    let [mut x, mut y, mut z] = [scramble(place[0] as u32), scramble(place[1] as u32), scramble(number)];
-    let mut mix = || {
-        x = x.wrapping_add(y.wrapping_mul(z));
-        y = y.wrapping_add(z.wrapping_mul(x));
-        z = z.wrapping_add(x.wrapping_mul(y));
-        [x, y, z] = [x ^ (x >> 16), y ^ (y >> 16), z ^ (z >> 16)];
-    };
-    mix();
-    x = x.wrapping_add(y.wrapping_mul(z));
-    y = y.wrapping_add(z.wrapping_mul(x));
-    z = z.wrapping_add(x.wrapping_mul(y));
-    [x, y, z].map(|v| (v >> 8) as f32 / 16_777_216.0)
+    hash3([place[0] as u32, place[1] as u32, number]).map(|v| (v >> 8) as f32 / 16_777_216.0)
 }
 
 #[cfg(test)]

@@ -93,7 +93,7 @@ impl Blades {
             let resources = [&drawn, &counters, &range].map(|buffer| buffer.as_entire_binding());
             bind(gpu, "plant list", &list_layout, &resources)
         });
-        let draw = |label| Draw { label, vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None };
+        let draw = |label| Draw { label, vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None };
         let strips = maker.draw(&gpu.shader("blades", shaders::BLADES), Some(&list_layout), &draw("blades"));
         let heads = maker.draw(&gpu.shader("flowers", shaders::FLOWERS), Some(&list_layout), &draw("flowers"));
         let compute = |entry| maker.compute(entry, &bend, entry, &compute_layout);

@@ -1,12 +1,13 @@
 //! The picture: one pass a file, over one uniform block and one set of textures.
 //!
 //! A frame: compute passes bend the single plants and list those in view; the sun's shadow map; then objects, blades, flowers,
-//! billboards, ground and sky, near to far, into a picture of linear light; tone mapping brings it to the target.
+//! billboards, ground and sky, near to far, and dust over them, into a picture of linear light; tone mapping brings it to the target.
 
 mod atlas;
 mod billboards;
 mod blades;
 mod cull;
+mod dust;
 mod flora;
 mod gpu;
 mod land;
@@ -37,6 +38,7 @@ use crate::state::Mirror;
 use billboards::Billboards;
 use blades::Blades;
 use cull::Frustum;
+use dust::Dust;
 use land::{FrameGroup, LandTextures};
 use objects::Objects;
 use pipeline::{COLOR, DEPTH, Maker};
@@ -82,6 +84,7 @@ struct SceneParts {
     ground: Ground,
     blades: Blades,
     objects: Objects,
+    dust: Option<Dust>,
 }
 
 /// The pictures that the passes draw to.
@@ -169,6 +172,7 @@ impl Renderer {
                 ground: Ground::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), scene.light.haze_m),
                 blades: Blades::new(&maker, self.quality, land),
                 objects: Objects::new(&maker, land),
+                dust: Dust::new(&maker, self.quality, land),
             }
         });
     }
@@ -194,6 +198,9 @@ impl Renderer {
         self.terrain.prepare(gpu, &tiles);
         scene.blades.prepare(gpu, self.quality, land, camera.eye_m, &frustum, dt_secs);
         self.billboards.prepare(gpu, land, camera.eye_m, &frustum, 0.72 * frame.reach[0], frame.reach[3]);
+        if let Some(dust) = &scene.dust {
+            dust.prepare(gpu, dt_secs);
+        }
         let reach_m = self.quality.tree_reach_m();
         scene.objects.prepare(gpu, &poses, camera.eye_m, &frustum, time_secs as f32, dt_secs, reach_m);
 
@@ -208,6 +215,9 @@ impl Renderer {
             pass.set_bind_group(0, &scene.textures.group, &[]);
             scene.blades.bend(&mut pass);
             self.billboards.bend(&mut pass);
+            if let Some(dust) = &scene.dust {
+                dust.blow(&mut pass);
+            }
         }
         {
             let mut pass = main_pass(&mut encoder, &self.targets);
@@ -217,6 +227,9 @@ impl Renderer {
             self.billboards.draw(&mut pass);
             self.terrain.draw(&mut pass);
             self.sky.draw(&mut pass);
+            if let Some(dust) = &scene.dust {
+                dust.draw(&mut pass);
+            }
         }
         {
             let mut pass = tone_pass(&mut encoder, target);

@@ -88,7 +88,8 @@ impl Objects {
             attributes: &VERTEX_ATTRIBUTES,
         };
         let buffers = [Some(buffer)];
-        let draw = Draw { label: "objects", vertex: "vs", fragment: Some("fs"), buffers: &buffers, depth_write: true, cull: None };
+        let draw =
+            Draw { label: "objects", vertex: "vs", fragment: Some("fs"), buffers: &buffers, depth_write: true, cull: None, blend: None };
         let pipeline = maker.draw(&module, Some(&layout), &draw);
         let shadow = Draw { label: "shadows", vertex: "vs_shadow", fragment: Some("fs_shadow"), ..draw };
         let shadow_pipeline = maker.draw(&module, Some(&layout), &shadow);

@@ -23,6 +23,8 @@ pub(super) struct Draw<'a> {
     pub(super) buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub(super) depth_write: bool,
     pub(super) cull: Option<wgpu::Face>,
+    /// How it is laid over what is there; none replaces that.
+    pub(super) blend: Option<wgpu::BlendState>,
 }
 
 pub(super) const ALL_STAGES: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT.union(wgpu::ShaderStages::COMPUTE);
@@ -60,7 +62,7 @@ impl Maker<'_> {
     pub(super) fn draw(&self, module: &wgpu::ShaderModule, own: Option<&wgpu::BindGroupLayout>, draw: &Draw<'_>) -> wgpu::RenderPipeline {
         let to_shadow = draw.vertex == "vs_shadow";
         let compare = if to_shadow { wgpu::CompareFunction::Less } else { wgpu::CompareFunction::GreaterEqual };
-        let targets = [Some(wgpu::ColorTargetState { format: COLOR, blend: None, write_mask: wgpu::ColorWrites::ALL })];
+        let targets = [Some(wgpu::ColorTargetState { format: COLOR, blend: draw.blend, write_mask: wgpu::ColorWrites::ALL })];
         self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(draw.label),
             layout: Some(&self.pipeline_layout(draw.label, own)),

@@ -82,6 +82,26 @@ impl Quality {
         }
     }
 
+    /// Motes that drift about the camera in a scene with dust.
+    pub(super) fn motes(self) -> u32 {
+        match self {
+            Self::Low => 3000,
+            Self::Medium => 6000,
+            Self::High => 14_000,
+            Self::Ultra => 28_000,
+        }
+    }
+
+    /// Puffs of haze there, and the side of the square that they are in (m).
+    pub(super) fn puffs(self) -> (u32, f32) {
+        match self {
+            Self::Low => (1024, 130.0),
+            Self::Medium => (3072, 200.0),
+            Self::High => (4096, 220.0),
+            Self::Ultra => (8192, 280.0),
+        }
+    }
+
     /// Distance up to which the bend field is wanted (m).
     pub fn bend_radius_m(self) -> f32 {
         match self {

@@ -11,6 +11,8 @@ pub(super) const BLADES: &str = include_str!("../../shaders/blades.wgsl");
 pub(super) const FLOWERS: &str = include_str!("../../shaders/flowers.wgsl");
 /// Clumps of far plants.
 pub(super) const BILLBOARDS: &str = include_str!("../../shaders/billboards.wgsl");
+/// Motes and puffs of dust.
+pub(super) const DUST: &str = include_str!("../../shaders/dust.wgsl");
 /// Ground.
 pub(super) const TERRAIN: &str = include_str!("../../shaders/terrain.wgsl");
 /// Objects, trees and stones.

@@ -1,13 +1,14 @@
+use super::pipeline::{Maker, bind, storage_rw};
 use super::shaders;
-use super::uniforms::{Frame, Plants};
+use super::uniforms::{Drift, Frame, Plants};
 use super::{Gpu, Picture, Quality};
 use crate::camera::Camera;
 use crate::state::Mirror;
 use glam::Vec3;
-use shared::scene::{Grass, Patches, Scene, TerrainMaps, Wind};
+use shared::scene::{Grass, Patches, Scene, TerrainMaps, Wind, WindDust, WindTiling};
 use shared::terrain::grey_png;
-use shared::wire::quantise::{omega_code, theta_code};
-use shared::wire::{ServerMessage, codec};
+use shared::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, theta_code};
+use shared::wire::{ServerMessage, Shape, codec};
 use wgpu::naga;
 
 fn module(source: &str) -> naga::Module {
@@ -27,6 +28,7 @@ fn every_shader_is_valid_wgsl_without_extensions() {
         shaders::BLADES,
         shaders::FLOWERS,
         shaders::BILLBOARDS,
+        shaders::DUST,
         shaders::TERRAIN,
         shaders::OBJECTS,
         shaders::SKY,
@@ -49,10 +51,15 @@ fn uniform_blocks_lie_as_their_twins() {
     let module = module(shaders::BEND);
     assert_twins(&module, "Frame", Frame::LAYOUT, size_of::<Frame>());
     assert_twins(&module, "Plants", Plants::LAYOUT, size_of::<Plants>());
+    assert_twins(&self::module(shaders::DUST), "Drift", Drift::LAYOUT, size_of::<Drift>());
 }
 
 /// A flat meadow of 64 m in a wind towards the east.
 fn meadow(wind_m_per_s: f32) -> Mirror {
+    meadow_in(Wind { mean_m_per_s: [wind_m_per_s, 0.0], ..Wind::default() })
+}
+
+fn meadow_in(wind: Wind) -> Mirror {
     let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 0.0, base_m: 0.0 };
     let scene = Scene {
         summary: String::new(),
@@ -60,7 +67,7 @@ fn meadow(wind_m_per_s: f32) -> Mirror {
         tick_hz: 60.0,
         patches: Patches { count: [4, 4], ..Patches::default() },
         terrain: maps,
-        wind: Wind { mean_m_per_s: [wind_m_per_s, 0.0], ..Wind::default() },
+        wind,
         grass: Default::default(),
         plants: Default::default(),
         objects: Default::default(),
@@ -83,7 +90,7 @@ fn stream_lean(mirror: &mut Mirror, theta_rad: f32) {
     let plane = |code: i8| std::iter::repeat_n(code, 64 * 64);
     let codes: Vec<i8> = plane(theta_code(theta_rad)).chain(plane(omega_code(2.5 * theta_rad))).chain(plane(0)).collect();
     for patch in 0..16 {
-        let payload = codec::encode(64, &codes, None);
+        let payload = codec::encode(Shape::patch(64), &codes, None);
         mirror.apply(ServerMessage::Patch { patch, seq: 1, key: true, payload }).expect("a sound patch");
     }
 }
@@ -100,15 +107,20 @@ fn tips(gpu: &Gpu, wind_m_per_s: f32, streamed_rad: Option<f32>) -> Vec<Vec3> {
         picture.draw(&mut mirror, &camera, 0.0, 1.0 / 30.0);
     }
     let postures = &picture.renderer.scene.as_ref().expect("a scene").blades.postures;
-    let read = gpu.empty_buffer("read", postures.size(), wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+    let bytes = read(gpu, postures);
+    let points: &[[[f32; 4]; 6]] = bytemuck::cast_slice(&bytes);
+    points.iter().map(|[_, _, tip, ..]| Vec3::new(tip[0], tip[1], tip[2])).collect()
+}
+
+/// Bytes of a buffer on the GPU.
+fn read(gpu: &Gpu, buffer: &wgpu::Buffer) -> Vec<u8> {
+    let read = gpu.empty_buffer("read", buffer.size(), wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(postures, 0, &read, 0, postures.size());
+    encoder.copy_buffer_to_buffer(buffer, 0, &read, 0, buffer.size());
     gpu.queue.submit([encoder.finish()]);
     read.slice(..).map_async(wgpu::MapMode::Read, |_| {});
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device is there");
-    let bytes = read.slice(..).get_mapped_range().expect("the buffer is mapped");
-    let points: &[[[f32; 4]; 6]] = bytemuck::cast_slice(&bytes);
-    points.iter().map(|[_, _, tip, ..]| Vec3::new(tip[0], tip[1], tip[2])).collect()
+    read.slice(..).get_mapped_range().expect("the buffer is mapped").to_vec()
 }
 
 /// Mean angle of the tips eastward from upright (rad).
@@ -135,4 +147,76 @@ fn near_blades_lean_with_the_square_of_a_weak_wind() {
     let leans = [0.0, 2.0, 4.0].map(|wind_m_per_s| lean_rad(&tips(&gpu, wind_m_per_s, None)));
     let ratio = (leans[2] - leans[0]) / (leans[1] - leans[0]);
     assert!((ratio - 4.0).abs() < 0.5, "twice the wind leans {ratio} times as far: {leans:?}");
+}
+
+/// What the shaders find in the air at places: X, height above the ground and Z (m).
+fn air(gpu: &Gpu, picture: &Picture, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    const PROBE: &str = "@group(1) @binding(0) var<storage, read_write> probes: array<vec4<f32>>;
+        @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
+            let place = probes[id.x];
+            let air = air_at(place.xz, place.y);
+            probes[id.x] = vec4<f32>(air.xyz, dust_of(air));
+        }";
+    let renderer = &picture.renderer;
+    let maker = Maker { gpu, frame_layout: &renderer.frame.layout, samples: 1 };
+    let layout = maker.layout("probes", &[storage_rw(0)]);
+    let pipeline = maker.compute("probe", &gpu.shader("probe", PROBE), "probe", &layout);
+    let probes = gpu.buffer("probes", bytemuck::cast_slice(places), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+    let group = bind(gpu, "probes", &layout, &[probes.as_entire_binding()]);
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &renderer.scene.as_ref().expect("a scene").textures.group, &[]);
+        pass.set_bind_group(1, &group, &[]);
+        pass.dispatch_workgroups(places.len() as u32, 1, 1);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    bytemuck::cast_slice(&read(gpu, &probes)).to_vec()
+}
+
+#[test]
+fn patches_show_the_box_where_the_server_has_it() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let dust = WindDust { release_per_s: 1.0, ..WindDust::default() };
+    let mut mirror = meadow_in(Wind { cells: [8, 2, 4], spacing_m: [2.0, 2.0, 4.0], tiling: WindTiling::Patch, dust, ..Wind::default() });
+    // Codes that tell each cell along X, Z and in height from all others.
+    let plane = |code: fn(usize) -> usize| (0..64).map(move |at| code(at) as i8);
+    let codes: Vec<i8> =
+        plane(|at| 10 * (at % 8)).chain(plane(|at| at / 8 % 2 * 50)).chain(plane(|at| at / 16 * 30)).chain(plane(|at| at)).collect();
+    let payload = codec::encode(Shape::wind(8, true), &codes, None);
+    mirror.apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, payload }).expect("a sound wind");
+    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
+    // The middles of all cells of 6 × 6 patches, some beyond the world, and places where patches meet.
+    let middles = (0..48 * 24).map(|n| [(n % 48) as f32 * 2.0 - 15.0, 1.0, (n / 48) as f32 * 4.0 - 14.0, 0.0]);
+    let seams = (0..40).map(|n| [16.0 * (n % 4) as f32, 3.0, 7.0 + 0.37 * n as f32, 0.0]);
+    let places: Vec<_> = middles.chain(seams).collect();
+    let land = mirror.land().expect("a scene");
+    for (place, found) in places.iter().zip(air(&gpu, &picture, &places)) {
+        let wanted = land.tiles().blend([place[0], place[2]], |at_m| trilinear(&codes, [at_m[0], place[1], at_m[1]]));
+        let [u, v, w, root] = wanted.map(|code| code / 127.0);
+        let wanted = [u * WIND_FULL_M_PER_S, v * WIND_FULL_M_PER_S, w * WIND_FULL_M_PER_S, root * root * DUST_FULL];
+        // Filtering has 8 bits of fraction.
+        assert!(wanted.iter().zip(found).all(|(a, b)| (a - b).abs() < 0.15), "{found:?} instead of {wanted:?} at {place:?}");
+    }
+}
+
+/// Codes (u, v, w, dust) of 8 × 2 × 4 cells of 2 × 2 × 4 m at a place, as a sampler mixes them.
+fn trilinear(codes: &[i8], place_m: [f32; 3]) -> [f32; 4] {
+    let at: [f32; 3] = std::array::from_fn(|axis| place_m[axis] / [2.0, 2.0, 4.0][axis] - 0.5);
+    let mut sum = [0.0; 4];
+    for corner in 0..8 {
+        let (mut cell, mut share) = ([0; 3], 1.0);
+        for axis in 0..3 {
+            let (far, count) = (corner >> axis & 1, [8, 2, 4][axis]);
+            let part = at[axis] - at[axis].floor();
+            share *= if far == 1 { part } else { 1.0 - part };
+            let index = at[axis].floor() as i32 + far;
+            cell[axis] = if axis == 1 { index.clamp(0, 1) } else { index.rem_euclid(count) };
+        }
+        let index = (cell[0] + 8 * (cell[1] + 2 * cell[2])) as usize;
+        sum.iter_mut().enumerate().for_each(|(plane, sum)| *sum += f32::from(codes[64 * plane + index]) * share);
+    }
+    sum
 }

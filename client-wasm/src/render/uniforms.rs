@@ -41,8 +41,10 @@ uniform_block! {
         world: [f32; 4],
         /// Pixels of the height map along X and Z; side of the bend window (m); distance at which it ends (m).
         maps: [f32; 4],
-        /// Extent of the wind's box (m); 1 where it wraps.
+        /// Extent of the wind's box (m); side of a patch (m) where each shows the box in its own place, else 0.
         wind_box: [f32; 4],
+        /// Seed of the patches' places in the wind's box; 1 where the box repeats along X; along Z; unused.
+        tiling: [u32; 4],
         /// Unit vector of the mean wind (x, z); its speed (m/s); distance the gusts have travelled (m).
         gust: [f32; 4],
         /// Mean height of a blade (m), its variation, width (m), bend by a wind of 10 m/s (rad).
@@ -59,6 +61,17 @@ uniform_block! {
         clouds: [f32; 4],
         /// Interaction spheres: centre and radius (m).
         spheres: [[f32; 4]; SPHERE_LIMIT],
+    }
+}
+
+uniform_block! {
+    /// What the dust's passes know of its sprites; its twin is in `dust.wgsl`.
+    Drift {
+        /// Puffs, motes, unused.
+        counts: [u32; 4],
+        /// Side of the square about the camera that the puffs are in (m), and the motes; height up to which both are (m); time
+        /// since the frame before (s).
+        shape: [f32; 4],
     }
 }
 

@@ -6,7 +6,6 @@ use super::uniforms::{Frame, SPHERE_LIMIT};
 use crate::camera::Camera;
 use crate::state::Land;
 use glam::{Mat4, Vec3, Vec4};
-use shared::scene::WindBoundary;
 use shared::wire::ObjectPose;
 
 /// Distance after which all patterns of `gust_at` in `common.wgsl` repeat (m): 60 × 23.
@@ -42,8 +41,9 @@ impl<'a> View<'a> {
         let eye = self.camera.eye_m;
         let sun = sun_direction(scene.light.sun_heading_rad, scene.light.sun_elevation_rad);
         let sun_rgb = sun_color(sun.y);
-        let box_m: [f32; 3] = std::array::from_fn(|i| scene.wind.cells[i] as f32 * scene.wind.spacing_m[i]);
-        let wraps = if scene.wind.sides == WindBoundary::Wrap { 1.0 } else { 0.0 };
+        let box_m = scene.wind.box_m();
+        let patch_m = if land.tiles().by_patch() { land.layout().patch_m() } else { 0.0 };
+        let [wraps_x, _, wraps_z] = scene.wind.faces.wraps().map(u32::from);
         let [mean_x, mean_z] = scene.wind.mean_m_per_s;
         let mean = mean_x.hypot(mean_z);
         let [dir_x, dir_z] = if mean > 1e-3 { [mean_x / mean, mean_z / mean] } else { [1.0, 0.0] };
@@ -67,7 +67,8 @@ impl<'a> View<'a> {
             sun_color: [sun_rgb.x, sun_rgb.y, sun_rgb.z, scene.light.haze_m],
             world: [extent_x, extent_z, pixel_x, pixel_z],
             maps: [width, depth, atlas.window_m(), atlas.reach_m()],
-            wind_box: [box_m[0], box_m[1], box_m[2], wraps],
+            wind_box: [box_m[0], box_m[1], box_m[2], patch_m],
+            tiling: [land.tiles().seed(), wraps_x, wraps_z, 0],
             gust: [dir_x, dir_z, mean, travelled],
             blade: [plants.height_m, plants.height_variation, width_m, scene.grass.wind_bend_rad],
             root_rgb: [root[0], root[1], root[2], plants.flowers_per_m2],

@@ -1,8 +1,9 @@
-//! The streamed wind as a 3-D texture that follows the newest frame smoothly.
+//! The streamed wind as a 3-D texture, dust in its fourth channel, that follows the newest frame smoothly.
 
 use super::gpu::Gpu;
 use crate::state::WindCodes;
 use shared::scene::Wind;
+use shared::wire::Shape;
 
 /// Time in which the shown wind takes up 63 % of a change (s).
 const FOLLOW_SECS: f32 = 0.12;
@@ -31,7 +32,8 @@ impl WindTexture {
         });
         let count = cells.iter().map(|&n| n as usize).product::<usize>();
         let [x, z] = wind.mean_m_per_s.map(|v| f32::from(shared::wire::quantise::wind_code(v)));
-        let shown = [x, 0.0, z].into_iter().flat_map(|v| std::iter::repeat_n(v, count)).collect();
+        let still = [x, 0.0, z, 0.0].into_iter().take(Shape::wind(1, wind.has_dust()).planes);
+        let shown = still.flat_map(|v| std::iter::repeat_n(v, count)).collect();
         let new = Self { texture, cells, shown, seq: None, settled: false };
         new.write(gpu);
         new
@@ -45,7 +47,7 @@ impl WindTexture {
         }
         let share = if self.seq.is_none() { 1.0 } else { 1.0 - (-dt_secs / FOLLOW_SECS).exp() };
         let mut rest = 0.0_f32;
-        for (shown, &code) in self.shown.iter_mut().zip(newest.planes().into_iter().flatten()) {
+        for (shown, &code) in self.shown.iter_mut().zip(newest.planes().into_iter().chain(newest.dust()).flatten()) {
             *shown += (f32::from(code) - *shown) * share;
             rest = rest.max((f32::from(code) - *shown).abs());
         }
@@ -56,7 +58,7 @@ impl WindTexture {
 
     fn write(&self, gpu: &Gpu) {
         let [nx, ny, nz] = self.cells;
-        let count = self.shown.len() / 3;
+        let count = (nx * ny * nz) as usize;
         let mut texels = vec![0_u8; count * 4];
         for (channel, plane) in self.shown.chunks_exact(count).enumerate() {
             for (i, value) in plane.iter().enumerate() {

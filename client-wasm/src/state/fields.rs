@@ -3,7 +3,7 @@
 use super::{MirrorError, range};
 use shared::grid::{PatchIndex, PatchLayout};
 use shared::scene::Wind;
-use shared::wire::{PATCH_MEMORY, codec};
+use shared::wire::{PATCH_MEMORY, Shape, codec};
 use std::collections::{BTreeSet, HashMap};
 
 /// Most patches that are kept; the one not heard of for longest goes first. 4096 patches of 64² cells take 50 MB.
@@ -62,7 +62,7 @@ impl Patches {
             let cells = layout.cells as usize;
             let start = if key { None } else { base.and_then(|entry| entry.codes.as_ref()) };
             let mut planes = start.map_or_else(|| vec![0; cells * cells * 3], |codes| codes.planes.clone());
-            codec::decode(cells, payload, &mut planes).map_err(|error| MirrorError::Field { field: "patch", error })?;
+            codec::decode(Shape::patch(cells), payload, &mut planes).map_err(|error| MirrorError::Field { field: "patch", error })?;
             Some(PatchCodes { planes })
         };
         self.clock += 1;
@@ -95,7 +95,7 @@ impl Patches {
     }
 }
 
-/// Codes of the wind: three planes (u, v, w), x fastest, then y, then z.
+/// Codes of the wind: three planes (u, v, w), x fastest, then y, then z; in a scene with dust a fourth that tells how much.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WindCodes {
     cells: [u32; 3],
@@ -114,11 +114,24 @@ impl WindCodes {
         self.seq
     }
 
+    fn plane(&self, index: usize) -> &[i8] {
+        let volume = volume(self.cells);
+        &self.planes[index * volume..][..volume]
+    }
+
     /// Planes u, v, w.
     pub fn planes(&self) -> [&[i8]; 3] {
-        let plane = self.planes.len() / 3;
-        std::array::from_fn(|i| &self.planes[i * plane..(i + 1) * plane])
+        [0, 1, 2].map(|index| self.plane(index))
     }
+
+    /// The plane of dust, in a scene that has any.
+    pub fn dust(&self) -> Option<&[i8]> {
+        (self.planes.len() > 3 * volume(self.cells)).then(|| self.plane(3))
+    }
+}
+
+fn volume(cells: [u32; 3]) -> usize {
+    cells.iter().map(|&n| n as usize).product()
 }
 
 /// The newest wind.
@@ -130,14 +143,15 @@ pub(super) struct WindFrames {
 impl WindFrames {
     pub(super) fn apply(&mut self, wind: &Wind, seq: u32, key: bool, payload: &[u8]) -> Result<(), MirrorError> {
         let cells = wind.cells;
-        let count = cells.iter().map(|&n| n as usize).product::<usize>() * 3;
+        let shape = Shape::wind(cells[0] as usize, wind.has_dust());
+        let count = shape.planes * volume(cells);
         let planes = match &self.newest {
             _ if key => vec![0; count],
             Some(base) if base.seq.wrapping_add(1) == seq => base.planes.clone(),
             _ => return Ok(()),
         };
         let mut planes = planes;
-        codec::decode(cells[0] as usize, payload, &mut planes).map_err(|error| MirrorError::Field { field: "wind", error })?;
+        codec::decode(shape, payload, &mut planes).map_err(|error| MirrorError::Field { field: "wind", error })?;
         self.newest = Some(WindCodes { cells, seq, planes });
         Ok(())
     }

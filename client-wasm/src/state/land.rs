@@ -2,8 +2,9 @@
 
 use super::{MirrorError, range};
 use shared::grid::PatchLayout;
-use shared::scene::{Scene, VehicleKind};
+use shared::scene::{Scene, VehicleKind, WIND_CELLS_LIMIT};
 use shared::terrain::{Cover, CoverMap, HeightMap};
+use shared::wind::Tiles;
 use shared::wire::Mesh;
 
 /// A scene with its decoded maps.
@@ -14,6 +15,7 @@ pub struct Land {
     heights: HeightMap,
     cover: CoverMap,
     models: Vec<(VehicleKind, Mesh)>,
+    tiles: Tiles,
 }
 
 impl Land {
@@ -30,7 +32,8 @@ impl Land {
             check_mesh(mesh)?;
         }
         let layout = PatchLayout::from(&scene.patches);
-        Ok(Self { scene, layout, heights, cover, models })
+        let tiles = Tiles::new(&scene);
+        Ok(Self { scene, layout, heights, cover, models, tiles })
     }
 
     /// The scene.
@@ -41,6 +44,11 @@ impl Land {
     /// The grid of patches.
     pub fn layout(&self) -> &PatchLayout {
         &self.layout
+    }
+
+    /// How the wind's box covers the world.
+    pub fn tiles(&self) -> &Tiles {
+        &self.tiles
     }
 
     /// The height map.
@@ -77,6 +85,10 @@ fn check(scene: &Scene) -> Result<(), MirrorError> {
     }
     for cells in scene.wind.cells {
         within("wind.cells", cells as f32, 2.0, 256.0)?;
+    }
+    let wind_cells = scene.wind.cells.iter().map(|&n| u64::from(n)).product::<u64>();
+    if wind_cells > WIND_CELLS_LIMIT {
+        return Err(range("cells of the wind in all", wind_cells, format!("0..={WIND_CELLS_LIMIT}")));
     }
     for spacing in scene.wind.spacing_m {
         within("wind.spacing_m", spacing, 0.1, 1000.0)?;

@@ -1,9 +1,9 @@
 //! The mirrored fields at a place.
 
-use super::Mirror;
+use super::{Mirror, WindCodes};
 use glam::Vec3;
 use shared::bend::wind_lean_rad;
-use shared::wire::quantise::{omega_rad_per_s, theta_rad, wind_m_per_s};
+use shared::wire::quantise::{dust, omega_rad_per_s, theta_rad, wind_m_per_s};
 
 impl Mirror {
     /// Height of the land at `(x_m, z_m)` (m); 0 before the scene has come.
@@ -37,21 +37,26 @@ impl Mirror {
         sample().unwrap_or_default()
     }
 
-    /// Wind of the cell at `place_m` (m/s), whose height counts from the land; the box of cells repeats along X and Z. Zero before
-    /// the first wind has come.
+    /// Wind of the cell at `place_m` (m/s), a height over the sea; the box of cells repeats along X and Z, or is another's for each patch.
+    /// Zero before the first wind has come.
     pub fn wind_at(&self, place_m: Vec3) -> Vec3 {
-        let sample = || {
-            let spacing_m = self.land()?.scene().wind.spacing_m;
-            let wind = self.wind()?;
-            let cells = wind.cells();
-            let height_m = place_m.y - self.ground_m(place_m.x, place_m.z);
-            let across = |m: f32, axis: usize| ((m / spacing_m[axis]).floor() as i64).rem_euclid(i64::from(cells[axis])) as usize;
-            let layer = ((height_m / spacing_m[1]).max(0.0) as usize).min(cells[1] as usize - 1);
-            let [width, layers] = [cells[0], cells[1]].map(|count| count as usize);
-            let index = across(place_m.x, 0) + width * (layer + layers * across(place_m.z, 2));
-            let [u, v, w] = wind.planes().map(|plane| plane.get(index).map_or(0.0, |&code| wind_m_per_s(code)));
-            Some(Vec3::new(u, v, w))
-        };
-        sample().unwrap_or(Vec3::ZERO)
+        Vec3::from_array(self.at_cells(place_m, |wind, index| wind.planes().map(|plane| wind_m_per_s(plane[index]))))
+    }
+
+    /// Concentration of dust of the cell at `place_m`, a height over the sea, as [`wind_at`](Self::wind_at).
+    pub fn dust_at(&self, place_m: Vec3) -> f32 {
+        let [concentration] = self.at_cells(place_m, |wind, index| [wind.dust().map_or(0.0, |codes| dust(codes[index]))]);
+        concentration
+    }
+
+    /// What `value` says of the wind in the cell at `place_m`, by the cell's index; 0 before the first wind has come.
+    fn at_cells<const N: usize>(&self, place_m: Vec3, value: impl Fn(&WindCodes, usize) -> [f32; N]) -> [f32; N] {
+        let (Some(land), Some(wind)) = (self.land(), self.wind()) else { return [0.0; N] };
+        let (spacing_m, cells) = (land.scene().wind.spacing_m, wind.cells());
+        let height_m = place_m.y - self.ground_m(place_m.x, place_m.z);
+        let across = |m: f32, axis: usize| ((m / spacing_m[axis]).floor() as i64).rem_euclid(i64::from(cells[axis])) as usize;
+        let layer = ((height_m / spacing_m[1]).max(0.0) as usize).min(cells[1] as usize - 1);
+        let [width, layers] = [cells[0], cells[1]].map(|count| count as usize);
+        land.tiles().blend([place_m.x, place_m.z], |[x_m, z_m]| value(wind, across(x_m, 0) + width * (layer + layers * across(z_m, 2))))
     }
 }

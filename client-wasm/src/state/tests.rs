@@ -1,9 +1,10 @@
 use super::*;
+use glam::Vec3;
 use proptest::prelude::*;
 use shared::scene::{Patches, Scene, TerrainMaps, VehicleKind, Wind};
 use shared::terrain::grey_png;
-use shared::wire::quantise::{theta_code, wind_code};
-use shared::wire::{codec, decode};
+use shared::wire::quantise::{dust_code, theta_code, wind_code};
+use shared::wire::{Shape, codec, decode};
 
 fn scene() -> Scene {
     Scene {
@@ -33,7 +34,7 @@ fn loaded() -> Mirror {
 }
 
 fn patch(seq: u32, key: bool, base: Option<&[i8]>, codes: &[i8]) -> ServerMessage {
-    ServerMessage::Patch { patch: 1, seq, key, payload: codec::encode(8, codes, base) }
+    ServerMessage::Patch { patch: 1, seq, key, payload: codec::encode(Shape::patch(8), codes, base) }
 }
 
 fn theta(mirror: &Mirror) -> Option<i8> {
@@ -87,14 +88,42 @@ fn a_damaged_frame_leaves_the_mirror_as_it_was() {
 fn wind_deltas_follow_their_key() {
     let mut mirror = loaded();
     let (first, second) = (vec![3; 96], vec![-4; 96]);
-    let delta = |seq| ServerMessage::Wind { tick: 0, seq, key: false, payload: codec::encode(4, &second, Some(first.as_slice())) };
+    let delta = |seq| ServerMessage::Wind {
+        tick: 0,
+        seq,
+        key: false,
+        payload: codec::encode(Shape::wind(4, false), &second, Some(first.as_slice())),
+    };
     mirror.apply(delta(5)).unwrap();
     assert!(mirror.wind().is_none());
-    mirror.apply(ServerMessage::Wind { tick: 0, seq: 4, key: true, payload: codec::encode(4, &first, None) }).unwrap();
+    mirror.apply(ServerMessage::Wind { tick: 0, seq: 4, key: true, payload: codec::encode(Shape::wind(4, false), &first, None) }).unwrap();
     mirror.apply(delta(6)).unwrap();
     assert_eq!(mirror.wind().unwrap().planes()[2][31], 3);
     mirror.apply(delta(5)).unwrap();
     assert_eq!(mirror.wind().unwrap().planes()[2][31], -4);
+}
+
+#[test]
+fn dust_comes_as_the_fourth_plane_of_a_wind_that_has_any() {
+    let mut dusty = scene();
+    dusty.wind.dust.release_per_s = 1.0;
+    let mut mirror = Mirror::default();
+    mirror.apply(scene_message(dusty)).unwrap();
+    let codes: Vec<i8> = [0, 0, 0, dust_code(2.0)].into_iter().flat_map(|code| [code; 32]).collect();
+    let payload = codec::encode(Shape::wind(4, true), &codes, None);
+    mirror.apply(ServerMessage::Wind { tick: 0, seq: 1, key: true, payload: payload.clone() }).unwrap();
+    assert!((mirror.dust_at(Vec3::new(1.0, 1.0, 1.0)) - 2.0).abs() < 0.05);
+    let clear = codec::encode(Shape::wind(4, true), &[0; 128], Some(codes.as_slice()));
+    mirror.apply(ServerMessage::Wind { tick: 0, seq: 2, key: false, payload: clear }).unwrap();
+    assert_eq!(mirror.wind().unwrap().dust(), Some([0; 32].as_slice()));
+    assert!(loaded().apply(ServerMessage::Wind { tick: 0, seq: 1, key: true, payload }).is_err(), "four planes in clear air");
+}
+
+#[test]
+fn a_wind_of_too_many_cells_is_refused() {
+    let mut bad = scene();
+    bad.wind.cells = [256; 3];
+    assert!(matches!(Mirror::default().apply(scene_message(bad)), Err(MirrorError::Range { what: "cells of the wind in all", .. })));
 }
 
 fn pose(id: u32, x_m: f32) -> ObjectPose {
@@ -151,8 +180,11 @@ proptest! {
     }
 
     #[test]
-    fn no_payload_makes_the_mirror_panic(patch in 0_u32..9, seq in any::<u32>(), key: bool, payload in proptest::collection::vec(any::<u8>(), 0..400)) {
-        let mut mirror = loaded();
+    fn no_payload_makes_the_mirror_panic(patch in 0_u32..9, seq in any::<u32>(), key: bool, has_dust: bool, payload in proptest::collection::vec(any::<u8>(), 0..400)) {
+        let mut mirror = Mirror::default();
+        let mut scene = scene();
+        scene.wind.dust.release_per_s = if has_dust { 1.0 } else { 0.0 };
+        mirror.apply(scene_message(scene)).unwrap();
         let _ = mirror.apply(ServerMessage::Patch { patch, seq, key, payload: payload.clone() });
         let _ = mirror.apply(ServerMessage::Patch { patch, seq: seq.wrapping_add(1), key: false, payload: payload.clone() });
         let _ = mirror.apply(ServerMessage::Wind { tick: 0, seq, key, payload });
@@ -168,7 +200,7 @@ fn the_angle_of_grass_is_that_of_its_two_leans_together() {
     mirror.apply(scene_message(scene)).unwrap();
     // 20 m/s eastward hold the grass at 0.6 rad.
     let codes: Vec<i8> = [wind_code(20.0), 0, 0].into_iter().flat_map(|code| [code; 8]).collect();
-    let payload = codec::encode(2, &codes, None);
+    let payload = codec::encode(Shape::wind(2, false), &codes, None);
     mirror.apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, payload }).unwrap();
     assert!((mirror.theta_at(3.0, 1.0) - 0.6).abs() < 1e-3, "{}", mirror.theta_at(3.0, 1.0));
     for (seq, omega, together_rad) in [(1, [40, 0], 1.4), (2, [-40, 0], 0.2), (3, [0, 40], 1.0)] {

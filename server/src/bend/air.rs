@@ -3,7 +3,8 @@
 use super::contact::{HELD_RAD_PER_S, bending_speed_rad_per_s, for_each_cell, unit};
 use super::footprint::Footprint;
 use shared::bend::{Bend, Field, wind_lean_rad};
-use shared::scene::{Scene, WindBoundary};
+use shared::scene::Scene;
+use shared::wind::Tiles;
 
 /// Height of a rotor above the ground from which its wash reaches no grass (m).
 pub const WASH_CEILING_M: f32 = 30.0;
@@ -62,9 +63,10 @@ impl Wash {
 /// Where the wind near the ground alone holds the grass, on the wind's grid over the world.
 #[derive(Clone, Debug)]
 pub struct GroundWind {
+    tiles: Tiles,
     nodes: [usize; 2],
     spacing_m: [f32; 2],
-    wraps: bool,
+    wraps: [bool; 2],
     bend_rad: f32,
     /// Leans at the cells' centres (rad, as vectors along X and Z), x fastest.
     leans_rad: Vec<[f32; 2]>,
@@ -74,9 +76,9 @@ impl GroundWind {
     /// Still air over `scene`.
     pub fn still(scene: &Scene) -> Self {
         let ([nx, _, nz], [dx, _, dz]) = (scene.wind.cells.map(|n| n as usize), scene.wind.spacing_m);
-        let wraps = scene.wind.sides == WindBoundary::Wrap;
-        let bend_rad = scene.grass.wind_bend_rad;
-        Self { nodes: [nx, nz], spacing_m: [dx, dz], wraps, bend_rad, leans_rad: vec![[0.0; 2]; nx * nz] }
+        let [wraps_x, _, wraps_z] = scene.wind.faces.wraps();
+        let (tiles, bend_rad) = (Tiles::new(scene), scene.grass.wind_bend_rad);
+        Self { tiles, nodes: [nx, nz], spacing_m: [dx, dz], wraps: [wraps_x, wraps_z], bend_rad, leans_rad: vec![[0.0; 2]; nx * nz] }
     }
 
     /// Takes on the wind (m/s along X and Z) of all cells, x fastest, then y, of which there are so many `layers`; the lowest layer counts.
@@ -95,6 +97,14 @@ impl GroundWind {
 
     /// [`lean_rad`](Self::lean_rad) along X at one Z.
     pub fn row(&self, z_m: f32) -> impl Fn(f32) -> [f32; 2] {
+        let along = self.box_row(z_m);
+        move |x_m| {
+            if self.tiles.by_patch() { self.tiles.blend([x_m, z_m], |[x_m, z_m]| self.box_row(z_m)(x_m)) } else { along(x_m) }
+        }
+    }
+
+    /// Leans in the box along X at one Z.
+    fn box_row(&self, z_m: f32) -> impl Fn(f32) -> [f32; 2] {
         let (north, south, share_z) = self.between(1, z_m);
         let [north, south] = [north, south].map(|z| &self.leans_rad[z * self.nodes[0]..][..self.nodes[0]]);
         let mix = |a: [f32; 2], b: [f32; 2], share: f32| [0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * share);
@@ -109,7 +119,7 @@ impl GroundWind {
         let count = self.nodes[axis] as i64;
         let at = at_m / self.spacing_m[axis] - 0.5;
         let low = at.floor();
-        let node = |n: i64| (if self.wraps { n.rem_euclid(count) } else { n.clamp(0, count - 1) }) as usize;
+        let node = |n: i64| (if self.wraps[axis] { n.rem_euclid(count) } else { n.clamp(0, count - 1) }) as usize;
         (node(low as i64), node(low as i64 + 1), at - low)
     }
 }
@@ -117,16 +127,35 @@ impl GroundWind {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use shared::scene::WindTiling;
+    use shared::wind::offset_cells;
 
     #[test]
     fn leans_are_bilinear_and_wrap_or_hold() {
         let leans_rad = vec![[0.0, 0.0], [0.4, 0.0], [0.0, 0.2], [0.4, 0.2]];
-        let wind = GroundWind { nodes: [2, 2], spacing_m: [8.0, 4.0], wraps: true, bend_rad: 0.0, leans_rad };
+        let tiles = Tiles::new(&crate::scenes::load("meadow").unwrap().scene);
+        let wind = GroundWind { tiles, nodes: [2, 2], spacing_m: [8.0, 4.0], wraps: [true; 2], bend_rad: 0.0, leans_rad };
         let close = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]).abs() < 1e-6 && (a[1] - b[1]).abs() < 1e-6;
         assert!(close(wind.lean_rad([4.0, 2.0]), [0.0, 0.0]));
         assert!(close(wind.lean_rad([6.0, 5.0]), [0.1, 0.15]));
         assert!(close(wind.lean_rad([16.0, 2.0]), [0.2, 0.0]));
-        let held = GroundWind { wraps: false, ..wind };
-        assert!(close(held.lean_rad([16.0, 100.0]), [0.4, 0.2]));
+        let held = GroundWind { wraps: [false, true], ..wind };
+        assert!(close(held.lean_rad([16.0, 6.0 + 8.0 * 8.0]), [0.4, 0.2]));
+    }
+
+    #[test]
+    fn one_box_serves_each_patch_in_its_own_place() {
+        let mut scene = crate::scenes::load("meadow").unwrap().scene;
+        (scene.wind.tiling, scene.wind.cells, scene.wind.spacing_m) = (WindTiling::Patch, [8, 8, 8], [2.0; 3]);
+        let mut wind = GroundWind::still(&scene);
+        wind.blow(8, (0..512).map(|at| [(at % 8) as f32, (at / 64) as f32]));
+        // The middles of the same cell of all patches.
+        let leans: Vec<_> = (0..16).map(|n| wind.lean_rad([n as f32 * 16.0 + 9.0, 25.0])).collect();
+        for (n, lean) in leans.iter().enumerate() {
+            let [x, z] = offset_cells(scene.seed as u32, [n as i32, 1], [8, 8]);
+            let found = wind.leans_rad[(((z + 12) % 8) * 8 + (x + 4) % 8) as usize];
+            assert_eq!(*lean, found, "patch {n}");
+        }
+        assert!(leans.windows(2).any(|pair| pair[0] != pair[1]));
     }
 }

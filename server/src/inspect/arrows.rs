@@ -3,8 +3,9 @@
 use super::palette::{Rgb, wind_rgb};
 use crate::snapshot::WindFrame;
 use glam::Vec3;
-use shared::scene::{Wind, WindBoundary};
+use shared::scene::Scene;
 use shared::terrain::HeightMap;
+use shared::wind::Tiles;
 use shared::wire::quantise::wind_m_per_s;
 
 /// Most arrows at once.
@@ -27,12 +28,14 @@ pub(super) struct WindArrows {
 
 impl WindArrows {
     /// Every n-th cell along each axis, n as small as the limit of 1500 arrows allows. A box that wraps is repeated
-    /// over the world, as the world sees it.
-    pub(super) fn new(wind: &Wind, extent_m: [f32; 2], heights: &HeightMap) -> Self {
+    /// over the world, as the world sees it; where it blends two places of the box, the one that counts for more is shown.
+    pub(super) fn new(scene: &Scene, heights: &HeightMap) -> Self {
+        let (wind, extent_m, tiles) = (&scene.wind, scene.extent_m(), Tiles::new(scene));
         let [nx, ny, nz] = wind.cells;
+        let wraps = wind.faces.wraps();
         let across = |axis: usize, cells: u32| {
             let whole = (extent_m[axis / 2] / wind.spacing_m[axis]).floor().max(1.0) as u32;
-            if wind.sides == WindBoundary::Wrap { whole } else { whole.min(cells) }
+            if wraps[axis] { whole } else { whole.min(cells) }
         };
         let span = [across(0, nx), ny, across(2, nz)];
         let count = |step: u32| span.iter().map(|n| n.div_ceil(step) as u64).product::<u64>();
@@ -43,7 +46,10 @@ impl WindArrows {
             for j in (0..span[1]).step_by(step as usize) {
                 for i in (step / 2..span[0]).step_by(step as usize) {
                     let [x, above, z] = [(0, i), (1, j), (2, k)].map(|(axis, n)| (n as f32 + 0.5) * wind.spacing_m[axis]);
-                    let cell = ((k % nz * ny + j) * nx + i % nx) as usize;
+                    let [tap, others @ ..] = tiles.taps([x, z]);
+                    let [in_x, in_z] = others.into_iter().fold(tap, |most, tap| if tap.share > most.share { tap } else { most }).at_m;
+                    let [i, k] = [(in_x, 0, nx), (in_z, 2, nz)].map(|(m, axis, n)| (m / wind.spacing_m[axis]) as u32 % n);
+                    let cell = ((k * ny + j) * nx + i) as usize;
                     sites.push(Site { cell, origin_m: Vec3::new(x, heights.height_m(x, z) + above, z) });
                 }
             }
@@ -54,7 +60,7 @@ impl WindArrows {
     /// Origins (m), vectors (m) and colours of the arrows of a frame; nothing for a frame of another shape.
     pub(super) fn of(&self, frame: &WindFrame) -> (Vec<[f32; 3]>, Vec<[f32; 3]>, Vec<Rgb>) {
         let volume = self.cells.iter().product::<u32>() as usize;
-        if frame.cells != self.cells || frame.codes.len() != 3 * volume {
+        if frame.cells != self.cells || frame.codes.len() < 3 * volume {
             return Default::default();
         }
         let arrow = |site: &Site| {
@@ -74,7 +80,15 @@ impl WindArrows {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use shared::scene::{Wind, WindBoundary, WindTiling};
     use shared::wire::quantise::wind_code;
+
+    /// A world of `count × count` patches of 16 m.
+    fn scene(wind: Wind, count: u32) -> Scene {
+        let mut scene = crate::scenes::load("meadow").unwrap().scene;
+        (scene.wind, scene.patches.count) = (wind, [count; 2]);
+        scene
+    }
 
     fn flat(height_m: f32) -> HeightMap {
         HeightMap::from_heights(2, 2, [100.0, 100.0], vec![height_m; 4])
@@ -82,8 +96,9 @@ mod tests {
 
     #[test]
     fn an_arrow_stands_at_its_cell_and_shows_its_wind() {
-        let wind = Wind { cells: [3, 2, 3], spacing_m: [4.0, 2.0, 5.0], sides: WindBoundary::Wall, ..Wind::default() };
-        let arrows = WindArrows::new(&wind, [12.0, 15.0], &flat(7.0));
+        let mut wind = Wind { cells: [3, 2, 3], spacing_m: [4.0, 2.0, 5.0], ..Wind::default() };
+        (wind.faces.west, wind.faces.north) = (WindBoundary::NoSlip, WindBoundary::NoSlip);
+        let arrows = WindArrows::new(&scene(wind, 1), &flat(7.0));
         let mut codes = vec![0; 3 * 18];
         let [i, j, k] = [2, 1, 1];
         let cell = (k * 2 + j) * 3 + i;
@@ -97,9 +112,10 @@ mod tests {
 
     #[test]
     fn a_box_that_wraps_covers_the_world_within_the_limit() {
-        let wind = Wind { cells: [4, 2, 4], spacing_m: [8.0, 2.0, 8.0], sides: WindBoundary::Wrap, ..Wind::default() };
-        for extent_m in [32.0, 256.0, 40_000.0] {
-            let arrows = WindArrows::new(&wind, [extent_m; 2], &flat(0.0));
+        let wind = Wind { cells: [4, 2, 4], spacing_m: [8.0, 2.0, 8.0], ..Wind::default() };
+        for count in [2, 16, 2500] {
+            let extent_m = count as f32 * 16.0;
+            let arrows = WindArrows::new(&scene(wind.clone(), count), &flat(0.0));
             assert!(arrows.sites.len() <= ARROW_LIMIT as usize && arrows.sites.iter().all(|site| site.cell < 32));
             let east = arrows.sites.iter().map(|site| site.origin_m.x).fold(0.0, f32::max);
             assert!(east > 0.85 * extent_m && east < extent_m);
@@ -107,8 +123,23 @@ mod tests {
     }
 
     #[test]
+    fn a_box_that_serves_every_patch_shows_each_its_own_cells() {
+        let wind = Wind { cells: [4, 2, 4], spacing_m: [4.0; 3], tiling: WindTiling::Patch, ..Wind::default() };
+        let scene = scene(wind, 4);
+        let arrows = WindArrows::new(&scene, &flat(0.0));
+        let shown: Vec<_> = (0..4)
+            .map(|patch| arrows.sites.iter().find(|site| site.origin_m == Vec3::new(patch as f32 * 16.0 + 6.0, 2.0, 6.0)).unwrap().cell)
+            .collect();
+        let moved = [0, 1, 2, 3].map(|patch| {
+            let [x, z] = shared::wind::offset_cells(scene.seed as u32, [patch, 0], [4, 4]);
+            ((1 + x) % 4 + (1 + z) % 4 * 8) as usize
+        });
+        assert_eq!(shown, moved);
+    }
+
+    #[test]
     fn a_frame_of_another_shape_shows_nothing() {
-        let arrows = WindArrows::new(&Wind::default(), [256.0, 256.0], &flat(0.0));
+        let arrows = WindArrows::new(&scene(Wind::default(), 16), &flat(0.0));
         assert!(!arrows.sites.is_empty());
         assert!(arrows.of(&WindFrame::default()).0.is_empty());
     }

@@ -120,7 +120,7 @@ impl BendMap {
         if self.shown.as_ref().is_some_and(|(tick, shown)| is_fresh(*tick) && same(shown, patches)) {
             return false;
         }
-        let plane = wind.codes.len() / 3;
+        let plane = wind.volume();
         let component = |axis: usize, at: usize| wind_m_per_s(wind.codes[axis * plane + at]);
         self.wind.blow(wind.cells[1] as usize, (0..plane).map(|at| [component(0, at), component(2, at)]));
 

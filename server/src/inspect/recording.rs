@@ -86,7 +86,7 @@ impl Recording {
             address,
             to_file: matches!(target, Target::Save(_)),
             map: BendMap::new(layout, GroundWind::still(scene), scene.tick_hz as u64),
-            arrows: WindArrows::new(&scene.wind, scene.extent_m(), heights),
+            arrows: WindArrows::new(scene, heights),
             wind_tick: None,
             trails: Trails::default(),
         };

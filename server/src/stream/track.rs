@@ -2,20 +2,20 @@
 
 use crate::snapshot::{PatchCodes, WindFrame};
 use bytes::Bytes;
-use shared::wire::codec;
+use shared::wire::codec::{self, Shape};
 use std::sync::Arc;
 
-/// A grid of codes in three planes of rows of [`width`](Grid::width).
+/// A grid of codes.
 pub trait Grid {
-    /// Codes in one row.
-    fn width(&self) -> usize;
-    /// The planes, one after the other.
+    /// How they lie.
+    fn shape(&self) -> Shape;
+    /// The codes, plane after plane.
     fn codes(&self) -> &[i8];
 }
 
 impl Grid for WindFrame {
-    fn width(&self) -> usize {
-        self.cells[0] as usize
+    fn shape(&self) -> Shape {
+        Shape::wind(self.cells[0] as usize, self.has_dust())
     }
     fn codes(&self) -> &[i8] {
         &self.codes
@@ -23,8 +23,8 @@ impl Grid for WindFrame {
 }
 
 impl Grid for PatchCodes {
-    fn width(&self) -> usize {
-        (self.codes.len() / codec::PLANES).isqrt()
+    fn shape(&self) -> Shape {
+        Shape::patch((self.codes.len() / 3).isqrt())
     }
     fn codes(&self) -> &[i8] {
         &self.codes
@@ -104,7 +104,7 @@ impl<G: Grid> Track<G> {
         let slot = if base.is_some() { &mut self.delta } else { &mut self.key };
         let numbering = Numbering { seq: self.seq, key: base.is_none() };
         let message = slot.get_or_insert_with(|| {
-            let payload = self.now.as_ref().map(|now| codec::encode(now.width(), now.codes(), base.map(|base| base.codes())));
+            let payload = self.now.as_ref().map(|now| codec::encode(now.shape(), now.codes(), base.map(|base| base.codes())));
             write(numbering, payload.unwrap_or_default())
         });
         Some((self.seq, message.clone()))

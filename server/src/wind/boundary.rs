@@ -286,10 +286,17 @@ impl<R: Real> Walls<R> {
         let inner = |axis: usize| GHOST..GHOST + grid.cells[axis] + 1;
         match axis {
             0 => {
+                let given = images.iter().any(|image| image.plane.is_some());
                 for k in inner(2) {
-                    for j in inner(1) {
-                        let row = j * sy + k * sz;
-                        apply(images, planes, &mut field.data[row..row + sy], 1, row / sy);
+                    let first = inner(1).start * sy + k * sz;
+                    let rows = &mut field.data[first..first + inner(1).len() * sy];
+                    if given {
+                        rows.chunks_exact_mut(sy).enumerate().for_each(|(n, row)| apply(images, planes, row, 1, first / sy + n));
+                    } else {
+                        // The common case: rows are many and short.
+                        for row in rows.chunks_exact_mut(sy) {
+                            images.iter().for_each(|image| row[image.to] = image.sign * row[image.from] + image.doubled);
+                        }
                     }
                 }
             }
@@ -321,8 +328,6 @@ fn apply<R: Real>(images: &[Image<R>], planes: [&[R]; 2], block: &mut [R], strid
             }
         } else if sign == R::zero() {
             block[to..to + stride].fill(doubled);
-        } else if stride == 1 {
-            block[to] = sign * block[from] + doubled;
         } else {
             let (low, high) = block.split_at_mut(to.max(from));
             let (target, source) = if to < from {

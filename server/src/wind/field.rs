@@ -102,4 +102,11 @@ impl<R: Real> Velocity<R> {
     pub fn zeros(grid: &Grid<R>) -> Self {
         Self(std::array::from_fn(|axis| Field::zeros(grid, Place::Face(axis))))
     }
+
+    /// Takes on the values of another velocity of the same grid, ghosts and all.
+    pub fn copy_from(&mut self, other: &Self) {
+        for (field, other) in self.0.iter_mut().zip(&other.0) {
+            field.data.copy_from_slice(&other.data);
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 
 use super::parallel::for_each_chunk;
-use super::{GHOST, Grid, Real, Velocity};
+use super::{Field, GHOST, Grid, Real, Velocity};
 
 /// Partial sums of a row.
 const LANES: usize = 8;
@@ -67,6 +67,30 @@ pub fn measure<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, planes: &mut [Pl
     }
 }
 
+/// Largest speed (m/s) along each axis that any face has, or gets if `pull` (m/s²) acts on it for `dt_secs` (s) either way.
+pub fn fastest_to_be<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, pull: &Velocity<R>, dt_secs: f64) -> [f64; 3] {
+    [0, 1, 2].map(|axis| fastest_component(grid, &velocity.0[axis], &pull.0[axis].data, R::of(dt_secs)).wide())
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn fastest_component<R: Real>(grid: &Grid<R>, speeds: &Field<R>, pull: &[R], dt: R) -> R {
+    let n = speeds.shape[0];
+    let mut fastest = [R::zero(); LANES];
+    for at in speeds.rows(grid) {
+        let (speeds, pull) = (&speeds.data[at..][..n], &pull[at..][..n]);
+        let mut take = |i: usize, lane: usize| {
+            let speed = speeds[i].abs() + dt * pull[i].abs();
+            fastest[lane] = if speed > fastest[lane] { speed } else { fastest[lane] };
+        };
+        let whole = n - n % LANES;
+        for start in (0..whole).step_by(LANES) {
+            (0..LANES).for_each(|lane| take(start + lane, lane));
+        }
+        (whole..n).for_each(|i| take(i, i - whole));
+    }
+    fastest.into_iter().fold(R::zero(), |a, b| if b > a { b } else { a })
+}
+
 /// Partial sums and extremes side by side, so that they can be taken in vectors; they are added up in order.
 #[multiversion(targets("x86_64+avx2"))]
 fn measure_plane<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, k: usize) -> PlaneSums {
@@ -83,21 +107,22 @@ fn measure_plane<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, k: usize) -> P
             [&data[at..][..nx], &data[at + strides[axis]..][..nx]]
         });
         let (mut divergences, mut speeds) = ([R::zero(); LANES], [R::zero(); LANES]);
-        for start in (0..nx).step_by(LANES) {
-            let lanes = LANES.min(nx - start);
-            let faces = faces.map(|pair| pair.map(|row| &row[start..start + lanes]));
-            for lane in 0..lanes {
-                let [[u0, u1], [v0, v1], [w0, w1]] = faces.map(|[low, high]| [low[lane], high[lane]]);
-                let divergence = (u1 - u0) * per_m[0] + (v1 - v0) * per_m[1] + (w1 - w0) * per_m[2];
-                let centre = [half * (u0 + u1), half * (v0 + v1), half * (w0 + w1)];
-                for (fastest, speed) in fastest.iter_mut().zip(centre) {
-                    let speed = speed.abs();
-                    fastest[lane] = if speed > fastest[lane] { speed } else { fastest[lane] };
-                }
-                divergences[lane] = divergences[lane] + divergence * divergence;
-                speeds[lane] = speeds[lane] + (centre[0] * centre[0] + centre[1] * centre[1] + centre[2] * centre[2]);
+        let mut add = |i: usize, lane: usize| {
+            let [[u0, u1], [v0, v1], [w0, w1]] = faces.map(|[low, high]| [low[i], high[i]]);
+            let divergence = (u1 - u0) * per_m[0] + (v1 - v0) * per_m[1] + (w1 - w0) * per_m[2];
+            let centre = [half * (u0 + u1), half * (v0 + v1), half * (w0 + w1)];
+            for (fastest, speed) in fastest.iter_mut().zip(centre) {
+                let speed = speed.abs();
+                fastest[lane] = if speed > fastest[lane] { speed } else { fastest[lane] };
             }
+            divergences[lane] = divergences[lane] + divergence * divergence;
+            speeds[lane] = speeds[lane] + (centre[0] * centre[0] + centre[1] * centre[1] + centre[2] * centre[2]);
+        };
+        let whole = nx - nx % LANES;
+        for start in (0..whole).step_by(LANES) {
+            (0..LANES).for_each(|lane| add(start + lane, lane));
         }
+        (whole..nx).for_each(|i| add(i, i - whole));
         divergence_squares += divergences.into_iter().map(R::wide).sum::<f64>();
         speed_squares += speeds.into_iter().map(R::wide).sum::<f64>();
     }

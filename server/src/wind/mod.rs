@@ -6,6 +6,8 @@
 //! | module | what it does |
 //! |---|---|
 //! | [`config`] | settings, their defaults and ranges |
+//! | [`air`] | one face for both methods |
+//! | [`stable_fluids`] | the method of 000 on a collocated grid, the baseline |
 //! | [`solver`], [`step`], [`state`] | the state, the order of a step in each time scheme, saving and failing |
 //! | [`grid`], [`field`], [`sample`], [`boundary`] | where values live, how they are read between, what faces and solid cells make of them |
 //! | [`transport`] | conservative fluxes by Runge–Kutta 3 |
@@ -19,6 +21,7 @@
 //! threads.
 
 pub mod advect;
+pub mod air;
 pub mod boundary;
 pub mod canopy;
 pub mod config;
@@ -37,11 +40,13 @@ pub mod sample;
 pub mod separable;
 pub mod solver;
 pub mod sources;
+pub mod stable_fluids;
 pub mod state;
 pub mod step;
 pub mod trace;
 pub mod transport;
 
+pub use air::{Air, Method};
 pub use canopy::Canopy;
 pub use config::{Advection, Config, ConfigError, Diffusion, Dust, Gusts, Profile, TimeScheme};
 pub use field::{Field, Velocity};
@@ -51,4 +56,5 @@ pub use pressure::Pressure;
 pub use primitive::{Primitive, Shape};
 pub use real::Real;
 pub use solver::{Solver, WindSolver};
+pub use stable_fluids::StableFluids;
 pub use state::{SolidError, State, StateError, StepError, StepReport};

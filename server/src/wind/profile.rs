@@ -99,9 +99,11 @@ fn layer_sums<R: Real>(grid: &Grid<R>, field: &Field<R>, sums: &mut [f64]) {
     for (n, row) in field.rows(grid).enumerate() {
         // Side by side, so that the sums can be taken in vectors.
         let mut lanes = [R::zero(); 8];
-        for chunk in field.data[row..][..field.shape[0]].chunks(8) {
-            lanes.iter_mut().zip(chunk).for_each(|(lane, &speed)| *lane = *lane + speed);
+        let mut chunks = field.data[row..][..field.shape[0]].chunks_exact(8);
+        for chunk in &mut chunks {
+            (0..8).for_each(|lane| lanes[lane] = lanes[lane] + chunk[lane]);
         }
+        lanes.iter_mut().zip(chunks.remainder()).for_each(|(lane, &speed)| *lane = *lane + speed);
         sums[n % layers] += lanes.into_iter().map(R::wide).sum::<f64>();
     }
 }

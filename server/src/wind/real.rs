@@ -2,7 +2,7 @@
 
 use std::fmt::{Debug, Display};
 
-use rustfft::num_traits::Float;
+use num_traits::Float;
 
 /// A floating-point number the kernels run in: `f32` for the simulation, `f64` for reference runs.
 pub trait Real: Float + Default + Debug + Display + Send + Sync + 'static {
@@ -17,11 +17,12 @@ pub trait Real: Float + Default + Debug + Display + Send + Sync + 'static {
     /// This value in double precision; exact.
     fn wide(self) -> f64;
 
-    /// Splits `self` into its floor, saturated to 32 bits, and the fraction in `[0, 1)` above it. NaN gives `(0, NaN)`.
+    /// Splits `self` into its floor and the fraction in `[0, 1)` above it; beyond 32 bits into the nearest integer there is, and 0. NaN gives `(0, NaN)`.
     ///
     /// ```
     /// use server::wind::Real;
     /// assert_eq!((-1.25f32).split(), (-2, 0.75));
+    /// assert_eq!(1e30f32.split().1, 0.0);
     /// ```
     fn split(self) -> (isize, Self);
 }
@@ -43,7 +44,10 @@ macro_rules! real {
             #[inline(always)]
             fn split(self) -> (isize, Self) {
                 let truncated = self as i32;
-                let floor = truncated.saturating_sub(i32::from(self < truncated as $type));
+                if truncated == i32::MAX || truncated == i32::MIN {
+                    return (truncated as isize, 0.0);
+                }
+                let floor = truncated - i32::from(self < truncated as $type);
                 (floor as isize, self - floor as $type)
             }
         }

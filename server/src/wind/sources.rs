@@ -55,20 +55,40 @@ pub fn sources_at<R: Real>(config: &Config, grid: &Grid<R>, mean: &MeanWind, tim
     })
 }
 
-/// Lets a source push the air for a step.
-pub fn push<R: Real>(
-    grid: &Grid<R>,
-    gusts: &Gusts,
-    source: &Source,
-    dt_secs: f64,
-    velocity: &mut Velocity<R>,
-    footprint: &mut Footprint<R>,
-) {
-    for (axis, field) in velocity.0.iter_mut().enumerate() {
-        let gain = R::of(source.push_m_per_s2[axis] * dt_secs);
-        if gain != R::zero() {
-            footprint.put(grid, field.place, source.position_m.map(R::of), gusts.radius_m.map(|r| R::of(r.into())));
-            footprint.for_each(grid, field, |speed, weight, _| *speed = *speed + weight * gain);
+/// The accelerations (m/s²) of single faces that a number of sources make together, found once and used for both halves of a step.
+#[derive(Clone, Debug, Default)]
+pub struct Pushes<R> {
+    /// Where in memory, and how much, for each component; a face may appear more than once.
+    on: [Vec<(usize, R)>; 3],
+}
+
+impl<R: Real> Pushes<R> {
+    /// Takes on the pushes of these sources.
+    pub fn set(
+        &mut self,
+        grid: &Grid<R>,
+        gusts: &Gusts,
+        sources: impl Iterator<Item = Source>,
+        velocity: &Velocity<R>,
+        footprint: &mut Footprint<R>,
+    ) {
+        self.on.iter_mut().for_each(Vec::clear);
+        for source in sources {
+            for (axis, on) in self.on.iter_mut().enumerate() {
+                let push = R::of(source.push_m_per_s2[axis]);
+                if push != R::zero() {
+                    footprint.put(grid, velocity.0[axis].place, source.position_m.map(R::of), gusts.radius_m.map(|r| R::of(r.into())));
+                    footprint.for_each_index(|index, weight| on.push((grid.at(index), weight * push)));
+                }
+            }
+        }
+    }
+
+    /// Pushes the air for `dt_secs` (s).
+    pub fn apply(&self, dt_secs: f64, velocity: &mut Velocity<R>) {
+        let dt = R::of(dt_secs);
+        for (field, on) in velocity.0.iter_mut().zip(&self.on) {
+            on.iter().for_each(|&(at, push)| field.data[at] = field.data[at] + dt * push);
         }
     }
 }

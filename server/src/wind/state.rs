@@ -97,6 +97,9 @@ impl StateError {
 /// Why cells cannot be made solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SolidError {
+    /// The method of 000 knows no solid cells.
+    #[error("wind: the method is StableFluids; allowed with solid cells: Staggered")]
+    Method,
     /// The pressure is solved by transforms.
     #[error("wind: pressure is Direct; allowed with solid cells: Multigrid, ConjugateGradients, Sor, GaussSeidel or Jacobi")]
     Pressure,

@@ -2,7 +2,7 @@
 #![allow(dead_code, missing_docs, unreachable_pub, reason = "each test file uses its own part")]
 
 use shared::grid::PatchIndex;
-use shared::wire::{PATCH_MEMORY, SERVER_MESSAGE_LIMIT, ServerMessage, codec, decode};
+use shared::wire::{PATCH_MEMORY, SERVER_MESSAGE_LIMIT, ServerMessage, Shape, codec, decode};
 use std::collections::BTreeMap;
 
 /// Codes and number of the newest frame of each grid, applied strictly: a delta must follow the frame that is held. Keeps no more patches than
@@ -12,6 +12,7 @@ pub struct Picture {
     /// Cells along a side of a patch and along the wind's axes; a scene message sets them.
     pub patch_cells: usize,
     pub wind_cells: [u32; 3],
+    pub has_dust: bool,
     pub patches: BTreeMap<PatchIndex, (u32, Vec<i8>)>,
     /// The patches, the one not heard of for longest first.
     pub heard: Vec<PatchIndex>,
@@ -22,15 +23,19 @@ pub struct Picture {
 }
 
 impl Picture {
-    pub fn new(patch_cells: usize, wind_cells: [u32; 3]) -> Self {
+    pub fn new(patch_cells: usize, wind_cells: [u32; 3], has_dust: bool) -> Self {
         let mut picture = Self::default();
-        picture.shape(patch_cells, wind_cells);
+        picture.shape(patch_cells, wind_cells, has_dust);
         picture
     }
 
-    fn shape(&mut self, patch_cells: usize, wind_cells: [u32; 3]) {
-        (self.patch_cells, self.wind_cells) = (patch_cells, wind_cells);
-        self.wind = (0, vec![0; codec::PLANES * wind_cells.iter().product::<u32>() as usize]);
+    fn shape(&mut self, patch_cells: usize, wind_cells: [u32; 3], has_dust: bool) {
+        (self.patch_cells, self.wind_cells, self.has_dust) = (patch_cells, wind_cells, has_dust);
+        self.wind = (0, vec![0; self.wind_shape().planes * wind_cells.iter().product::<u32>() as usize]);
+    }
+
+    fn wind_shape(&self) -> Shape {
+        Shape::wind(self.wind_cells[0] as usize, self.has_dust)
     }
 
     /// Applies a message.
@@ -39,17 +44,20 @@ impl Picture {
         self.bytes += bytes.len();
         match &message {
             ServerMessage::Patch { patch, seq, key, payload } => {
-                let rest = || (0, vec![0; codec::PLANES * self.patch_cells.pow(2)]);
+                let rest = || (0, vec![0; 3 * self.patch_cells.pow(2)]);
                 let held = self.patches.entry(*patch).or_insert_with(rest);
-                update(held, self.patch_cells, *seq, *key, payload);
+                update(held, Shape::patch(self.patch_cells), *seq, *key, payload);
                 self.heard.retain(|heard| heard != patch);
                 self.heard.push(*patch);
                 if self.heard.len() > PATCH_MEMORY {
                     self.patches.remove(&self.heard.remove(0));
                 }
             }
-            ServerMessage::Wind { seq, key, payload, .. } => update(&mut self.wind, self.wind_cells[0] as usize, *seq, *key, payload),
-            ServerMessage::Scene { scene, .. } => self.shape(scene.patches.cells as usize, scene.wind.cells),
+            ServerMessage::Wind { seq, key, payload, .. } => {
+                let shape = self.wind_shape();
+                update(&mut self.wind, shape, *seq, *key, payload);
+            }
+            ServerMessage::Scene { scene, .. } => self.shape(scene.patches.cells as usize, scene.wind.cells, scene.wind.has_dust()),
             ServerMessage::FrameEnd { frame, tick, .. } => {
                 assert_eq!(*frame, self.frame + 1, "frames are numbered without gaps");
                 assert!(*tick >= self.tick, "time runs forwards");
@@ -61,14 +69,14 @@ impl Picture {
     }
 }
 
-fn update(held: &mut (u32, Vec<i8>), width: usize, seq: u32, key: bool, payload: &[u8]) {
+fn update(held: &mut (u32, Vec<i8>), shape: Shape, seq: u32, key: bool, payload: &[u8]) {
     if key {
         held.1.fill(0);
     } else {
         assert_eq!(held.0 + 1, seq, "a delta applies to the frame one less");
     }
     if !payload.is_empty() {
-        codec::decode(width, payload, &mut held.1).expect("the payload is a grid");
+        codec::decode(shape, payload, &mut held.1).expect("the payload is a grid");
     }
     held.0 = seq;
 }

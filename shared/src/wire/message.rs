@@ -99,7 +99,8 @@ pub enum ServerMessage {
         /// Every object; one that is missing has left.
         objects: Vec<ObjectPose>,
     },
-    /// Wind at the cells' centres: three planes (u, v, w), each `nx × (ny·nz)`, x fastest, then y, then z.
+    /// Wind at the cells' centres: three planes (u, v, w), each `nx × (ny·nz)`, x fastest, then y, then z. In a scene with dust a fourth
+    /// holds how much of it there is.
     Wind {
         /// Step of the world.
         tick: u64,

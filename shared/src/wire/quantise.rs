@@ -1,6 +1,6 @@
 //! Fields as 8-bit values, with their error bounds.
 //!
-//! θ is linear; ω is companded by a square root, so that weak bends keep their direction; wind is linear.
+//! θ is linear; ω and dust are companded by a square root, so that weak bends keep their direction and thin dust stays; wind is linear.
 
 /// θ at code ±127 (rad). The field holds a bend less the wind's lean: grass that lies one way where the wind would hold it the other way
 /// departs by up to a right angle and [`wind_bend_rad`](crate::scene::Grass::wind_bend_rad), 3.07 rad.
@@ -48,6 +48,22 @@ pub fn wind_m_per_s(code: i8) -> f32 {
     linear_value(code, WIND_FULL_M_PER_S)
 }
 
+/// Concentration of dust at code 127; more saturates, less than none is none. A gust that releases 1/s leaves about 2 where it is thickest.
+pub const DUST_FULL: f32 = 16.0;
+
+/// Code of a concentration of dust, 0..=127: `127·√(c/full)`, rounded. The error of c is at most `full·(code + ¼)/127²` within
+/// 0..=[`DUST_FULL`]: 0.03 at a concentration of 1.
+#[inline]
+pub fn dust_code(concentration: f32) -> i8 {
+    rounded((concentration.max(0.0) * (127.0 * 127.0 / DUST_FULL)).sqrt())
+}
+
+/// Concentration of dust of a code; none below 0.
+pub fn dust(code: i8) -> f32 {
+    let share = f32::from(code.max(0)) / 127.0;
+    share * share * DUST_FULL
+}
+
 #[inline(always)]
 fn linear_code(value: f32, full: f32) -> i8 {
     rounded(value * (127.0 / full))
@@ -90,6 +106,14 @@ mod tests {
         fn wind_stays_within_its_bound(wind in -WIND_FULL_M_PER_S..=WIND_FULL_M_PER_S) {
             prop_assert!((wind_m_per_s(wind_code(wind)) - wind).abs() <= 0.125 * 1.0001);
         }
+
+        #[test]
+        fn dust_stays_within_its_bound(share in 0.0_f32..=1.0) {
+            let concentration = share * share * DUST_FULL;
+            let code = dust_code(concentration);
+            let bound = DUST_FULL * (f32::from(code) + 0.25) / (127.0 * 127.0);
+            prop_assert!((dust(code) - concentration).abs() <= bound * 1.001, "{concentration} -> {code}");
+        }
     }
 
     #[test]
@@ -100,5 +124,9 @@ mod tests {
         assert_eq!(omega_code(-1e9), -127);
         assert_eq!(wind_code(f32::INFINITY), 127);
         assert_eq!(wind_code(f32::NAN), -127);
+        let between = DUST_FULL * (20.499 / 127.0_f32).powi(2);
+        assert!((dust(dust_code(between)) - between).abs() > 0.99 * DUST_FULL * 20.25 / (127.0 * 127.0));
+        assert_eq!([-3.0, 0.0, DUST_FULL, 1e9].map(dust_code), [0, 0, 127, 127]);
+        assert_eq!(dust(-5), 0.0);
     }
 }

@@ -96,10 +96,13 @@ impl Layout {
     ) -> f64 {
         for_each_chunk_pair(data, self.chunk_len(), partial, 1, |chunk, values, sum| {
             let start = chunk * self.chunk_len();
-            sum[0] = self.planes(chunk).map(|z| {
-                let plane = self.plane(colour, z);
-                f(plane.start, &mut values[plane.start - start..plane.end - start])
-            }).sum();
+            sum[0] = self
+                .planes(chunk)
+                .map(|z| {
+                    let plane = self.plane(colour, z);
+                    f(plane.start, &mut values[plane.start - start..plane.end - start])
+                })
+                .sum();
         });
         partial.iter().sum()
     }
@@ -110,8 +113,26 @@ impl Layout {
         [self.stride[axis].div_ceil(2) - colour, self.stride[axis] / 2 + colour]
     }
 
+    /// True where an odd number of cells wraps, so that two cells of a colour meet.
+    pub(super) fn seams(&self) -> bool {
+        (0..3).any(|axis| self.wraps[axis] && self.cells[axis] % 2 == 1)
+    }
+
+    /// Refreshes the ghosts of all axes that wrap, after a change of cells of both colours.
+    pub(super) fn wrap<R: Copy>(&self, field: &mut Coloured<R>) {
+        (0..2).for_each(|colour| self.wrap_ghosts(colour, field));
+    }
+
+    /// Refreshes the ghosts that repeat cells of `colour`, after a change of these: ghosts of the same colour, and at seams of the other.
+    pub(super) fn wrap_after<R: Copy>(&self, colour: usize, field: &mut Coloured<R>) {
+        self.wrap_ghosts(colour, field);
+        if self.seams() {
+            self.wrap_ghosts(1 - colour, field);
+        }
+    }
+
     /// Copies the cells at each end of the axes that wrap to the ghosts of `colour` at the other end.
-    pub(super) fn wrap<R: Copy>(&self, colour: usize, field: &mut Coloured<R>) {
+    fn wrap_ghosts<R: Copy>(&self, colour: usize, field: &mut Coloured<R>) {
         let [nx, ny, nz] = self.cells;
         for (axis, shift) in [nx, ny * self.stride[1], nz * self.stride[2]].into_iter().enumerate().filter(|&(axis, _)| self.wraps[axis]) {
             // Runs of contiguous ghosts: single cells, rows, planes.
@@ -206,7 +227,7 @@ mod tests {
             let natural: Vec<f64> = (1..=cells.iter().product()).map(|i| i as f64).collect();
             let mut field = layout.zeros();
             layout.load(&natural, &mut field, |v| v);
-            (0..2).for_each(|colour| layout.wrap(colour, &mut field));
+            layout.wrap(&mut field);
             for axis in 0..3 {
                 for mut cell in layout.coordinates().filter(|cell| cell[axis] == 1) {
                     let (first, beyond) = (layout.linear(cell), layout.linear(cell) - layout.stride[axis]);

@@ -58,8 +58,8 @@ impl Conjugate {
                 for colour in 0..2 {
                     let z = &self.z[colour];
                     layout.for_each_plane(colour, &mut self.direction[colour], |start, d| kernels::scale_add(d, &z[start..], beta));
-                    layout.wrap(colour, &mut self.direction);
                 }
+                layout.wrap(&mut self.direction);
                 let curvature = operator.apply_sum(&self.direction, &mut self.product, partial);
                 if !(curvature > 0.0 && rz > 0.0) {
                     // Nothing left but rounding.
@@ -72,12 +72,12 @@ impl Conjugate {
                 for colour in 0..2 {
                     let (d, q) = (&self.direction[colour], &self.product[colour]);
                     layout.for_each_plane(colour, &mut p[colour], |start, p| kernels::add_scaled(p, &d[start..], alpha));
-                    layout.wrap(colour, p);
                     sum += layout.sum_planes(colour, &mut r[colour], partial, |start, r| {
                         kernels::add_scaled(r, &q[start..], -alpha);
                         kernels::dot(r, r)
                     });
                 }
+                layout.wrap(p);
                 r_norm = sum.sqrt();
                 sweeps += 1;
                 if r_norm / b_norm <= effort.tolerance || sweeps >= limit {

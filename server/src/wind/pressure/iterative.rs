@@ -11,17 +11,31 @@ use super::system::System;
 const SWEEPS_PER_CHECK: u32 = 4;
 
 /// How the equation is solved.
+///
+/// Work and memory traffic of a sweep, for each cell, in double precision:
+///
+/// | method | operations | bytes |
+/// |---|---|---|
+/// | Jacobi, Gauss–Seidel, SOR | 15 | 64 |
+/// | a look at the residual, every 4 sweeps | 16 | 64 |
+/// | conjugate gradients | 28 | 160 |
+/// | multigrid | 28, and 60 in single precision on the finest grid | 160 + 112 |
+///
+/// Multigrid's coarser grids add a seventh to its single-precision part where all axes are coarsened, as much again where one is; among solids it relaxes
+/// twice, for 40 operations and 80 bytes more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Every cell from the last iterate. Takes about `n²` sweeps for `n` cells along the longest axis.
+    /// Every cell from the last iterate. The error falls by `cos(π/n)` a sweep for `n` cells along each axis: about `n²` sweeps. In air without an open
+    /// edge damped just enough for the checkerboard not to swing for ever.
     Jacobi,
     /// Cell after cell, x fastest, from the newest values (000 §2.3.6): half the sweeps of Jacobi, on one thread.
     GaussSeidel,
-    /// Red–black successive over-relaxation with the box's optimal factor: about `n` sweeps.
+    /// Red–black successive over-relaxation with the box's best factor: about `2 n` sweeps. Solids are not reckoned with in that factor.
     Sor,
-    /// Conjugate gradients, preconditioned by the diagonal: about `n` sweeps, fewer from a good guess; needs no constant and bears any solids.
+    /// Conjugate gradients, preconditioned by the diagonal: about `2 n` sweeps, whatever the solids.
     ConjugateGradients,
-    /// Conjugate gradients preconditioned by one symmetric V-cycle (Tatebe, 1993): a number of cycles that hardly depends on `n`.
+    /// Conjugate gradients preconditioned by one symmetric V-cycle (Tatebe, The multigrid preconditioned conjugate gradient method, 1993): a number of
+    /// cycles that hardly depends on `n`.
     Multigrid,
 }
 
@@ -82,9 +96,7 @@ impl Iterative {
             Method::GaussSeidel => Solver::Relaxation(Relaxation::gauss_seidel(&system)),
             Method::Sor => Solver::Relaxation(Relaxation::successive_over_relaxation(&system)),
             Method::ConjugateGradients => Solver::Conjugate(Conjugate::new(&system, Preconditioner::Jacobi)),
-            Method::Multigrid => {
-                Solver::Conjugate(Conjugate::new(&system, Preconditioner::Multigrid(Box::new(Multigrid::new(&system)))))
-            }
+            Method::Multigrid => Solver::Conjugate(Conjugate::new(&system, Preconditioner::Multigrid(Box::new(Multigrid::new(&system))))),
         };
         let layout = system.operator.layout;
         let (b, p, r) = (layout.zeros(), layout.zeros(), layout.zeros());
@@ -98,7 +110,8 @@ impl Iterative {
         &self.system
     }
 
-    /// Solves `∇²p = f`, both one value a cell, x fastest. `p` comes with a first guess, zeros if there is none; values in solid cells are ignored and
+    /// Solves `∇²p = f`, both one value a cell, x fastest. `p` comes with a first guess, zeros if there is none, of which the best
+    /// multiple is taken: so the energy norm of the error is never above that of zeros, since no method's sweeps raise it. Values in solid cells are ignored and
     /// become 0.
     ///
     /// Gives the same bits on any number of threads and allocates nothing. Values that are not finite end in a residual that is not, and never
@@ -118,7 +131,7 @@ impl Iterative {
         system.regions.remove_means(natural, sums);
         let b_norm = kernels::dot(natural, natural).sqrt();
         // All that is left of a constant is rounding.
-        if b_norm <= 8.0 * f64::EPSILON * given {
+        if given.is_finite() && b_norm <= 8.0 * f64::EPSILON * given {
             p.fill(0.0);
             return Convergence { residual: 0.0, sweeps: 0, tolerance: effort.tolerance };
         }
@@ -126,7 +139,13 @@ impl Iterative {
         system.mask(p);
         system.regions.remove_means(p, sums);
         layout.load(p, coloured, |v| v);
-        (0..2).for_each(|colour| layout.wrap(colour, coloured));
+        layout.wrap(coloured);
+        // The best multiple of the guess: one no better than zeros would put energy into the air if few sweeps follow.
+        let curvature = system.operator.apply_sum(coloured, r, partial);
+        if curvature > 0.0 {
+            let scale = kernels::dot(natural, p) / curvature;
+            coloured.iter_mut().flatten().for_each(|p| *p *= scale);
+        }
 
         let convergence = match solver {
             Solver::Conjugate(conjugate) => conjugate.solve(system, [coloured, r], b, b_norm, partial, effort),

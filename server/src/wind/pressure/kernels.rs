@@ -28,11 +28,16 @@ impl<'a, R: Real> Around<'a, R> {
         Self { below: cut(self.below), above: cut(self.above), lower: cut(self.lower), upper: cut(self.upper) }
     }
 
-    /// Couplings times values, summed over the neighbours of cell `i`.
+    /// Couplings times values of the two neighbours of cell `i` along an axis.
+    #[inline(always)]
+    fn along(&self, axis: usize, i: usize) -> R {
+        self.lower[axis][i] * self.below[axis][i] + self.upper[axis][i] * self.above[axis][i]
+    }
+
+    /// The same of all six.
     #[inline(always)]
     fn sum(&self, i: usize) -> R {
-        let along = |axis: usize| self.lower[axis][i] * self.below[axis][i] + self.upper[axis][i] * self.above[axis][i];
-        along(0) + along(1) + along(2)
+        self.along(0, i) + self.along(1, i) + self.along(2, i)
     }
 }
 
@@ -53,6 +58,16 @@ pub(super) fn over_relax<R: Real>(p: &mut [R], b: &[R], [keep, gain]: [&[R]; 2],
     let (b, keep, gain, around) = (&b[..len], &keep[..len], &gain[..len], around.of_len(len));
     for i in 0..len {
         p[i] = keep[i] * p[i] + gain[i] * (b[i] + around.sum(i));
+    }
+}
+
+/// The part of [`relax`] that does not wait for the lower neighbour along x.
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn relax_but_for_lower_x<R: Real>(t: &mut [R], b: &[R], inverse: &[R], around: Around<R>) {
+    let len = t.len();
+    let (b, inverse, around) = (&b[..len], &inverse[..len], around.of_len(len));
+    for i in 0..len {
+        t[i] = (b[i] + around.upper[0][i] * around.above[0][i] + around.along(1, i) + around.along(2, i)) * inverse[i];
     }
 }
 

@@ -1,7 +1,9 @@
 //! Taking the divergence out of a velocity.
 
+mod coarsen;
 mod coloured;
 mod conjugate;
+mod islands;
 mod iterative;
 mod kernels;
 mod multigrid;
@@ -9,10 +11,14 @@ mod operator;
 mod regions;
 mod relax;
 mod system;
+#[cfg(test)]
+mod tests;
 mod transfer;
 
 pub use iterative::{Convergence, Effort, Iterative, Method};
 pub use system::{System, SystemError};
+
+use multiversion::multiversion;
 
 use super::parallel::{for_each_chunk, for_each_chunk_pair};
 use super::separable::{Basis, Edge, Separable};
@@ -128,46 +134,46 @@ fn subtract_gradient<R: Real>(grid: &Grid<R>, potential: &[f64], axis: usize, da
     let data = &mut data[memory.clone()];
     match pull {
         Some(pull) => for_each_chunk_pair(data, plane, &mut pull[memory], plane, |n, data, pull| {
-            gradient_of_plane(grid, potential, axis, planes.start + n, |at, slope| {
-                let slope = R::of(slope);
-                data[at] = data[at] - slope;
-                pull[at] = pull[at] + per_secs * slope;
-            });
+            gradient_of_plane(grid, potential, axis, planes.start + n, data, pull, per_secs);
         }),
-        None => for_each_chunk(data, plane, |n, data| {
-            gradient_of_plane(grid, potential, axis, planes.start + n, |at, slope| data[at] = data[at] - R::of(slope));
-        }),
+        None => for_each_chunk(data, plane, |n, data| gradient_of_plane(grid, potential, axis, planes.start + n, data, &mut [], per_secs)),
     }
 }
 
-/// Calls `f(index in the plane's memory, gradient)` for the faces of plane `k` the flow decides.
-#[inline(always)]
-fn gradient_of_plane<R: Real>(grid: &Grid<R>, potential: &[f64], axis: usize, k: usize, mut f: impl FnMut(usize, f64)) {
+/// [`subtract_gradient`] for plane `k`; without pull an empty one.
+#[multiversion(targets("x86_64+avx2"))]
+fn gradient_of_plane<R: Real>(grid: &Grid<R>, potential: &[f64], axis: usize, k: usize, data: &mut [R], pull: &mut [R], per_secs: R) {
     let ([nx, ny, _], n) = (grid.cells, grid.cells[axis]);
     let per_m = grid.spacing_m[axis].wide().recip();
     let place = Place::Face(axis);
     let row = |j: usize, k: usize| &potential[nx * (j + ny * k)..][..nx];
-    // The cells before and behind face i along the axis, and the sign with which each counts: beyond an outflow the mirror image of the opposite sign.
+    // The cells before and behind face i along the axis, and the weight of each: beyond an outflow the mirror image of the opposite sign.
     let before = |i: usize| if i > 0 { (i - 1, per_m) } else if grid.wraps(axis) { (n - 1, per_m) } else { (0, -per_m) };
     let behind = |i: usize| if i < n { (i, per_m) } else { (n - 1, -per_m) };
+    let mut take = |at: usize, p: &[f64], q: &[f64], [weight_p, weight_q]: [f64; 2]| {
+        let len = p.len();
+        let (data, q) = (&mut data[at..][..len], &q[..len]);
+        let slope = |i: usize| R::of(weight_q * q[i] - weight_p * p[i]);
+        (0..len).for_each(|i| data[i] = data[i] - slope(i));
+        if !pull.is_empty() {
+            let pull = &mut pull[at..][..len];
+            (0..len).for_each(|i| pull[i] = pull[i] + per_secs * slope(i));
+        }
+    };
     for j in grid.free(place, 1) {
         let start = grid.at([0, j, 0]) % grid.strides()[2];
         if axis == 0 {
             let p = row(j, k);
             for i in grid.free(place, 0).filter(|&i| i == 0 || i == nx) {
                 let ((a, weight_a), (b, weight_b)) = (before(i), behind(i));
-                f(start + i, weight_b * p[b] - weight_a * p[a]);
+                take(start + i, &p[a..=a], &p[b..=b], [weight_a, weight_b]);
             }
-            for (i, pair) in (1..nx).zip(p.windows(2)) {
-                f(start + i, (pair[1] - pair[0]) * per_m);
-            }
+            take(start + 1, &p[..nx - 1], &p[1..], [per_m; 2]);
         } else {
             let index = if axis == 1 { j } else { k };
             let ((a, weight_a), (b, weight_b)) = (before(index), behind(index));
             let cells = |index: usize| if axis == 1 { row(index, k) } else { row(j, index) };
-            for (i, (&p, &q)) in cells(a).iter().zip(cells(b)).enumerate() {
-                f(start + i, weight_b * q - weight_a * p);
-            }
+            take(start, cells(a), cells(b), [weight_a, weight_b]);
         }
     }
 }

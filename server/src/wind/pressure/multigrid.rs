@@ -1,13 +1,15 @@
 //! One V-cycle of geometric multigrid, as a preconditioner.
 
-use super::coloured::{Coloured, Layout, at, set};
+use super::coarsen::Grid;
+use super::coloured::Coloured;
+use super::islands::Islands;
 use super::kernels;
 use super::operator::Operator;
-use super::system::{System, below};
-use super::transfer::{Lean, Transfer};
+use super::system::System;
+use super::transfer::Transfer;
 
-/// Axes whose cells are no wider than this many times the narrowest are coarsened, so that coupling is about the same along all of them before long.
-const COARSENED_WITHIN: f64 = std::f64::consts::SQRT_2;
+/// Sweeps before and after the coarser grid, in a box without solids and among solids, where a coarse cell stands for many shapes.
+const SWEEPS: [usize; 2] = [1, 2];
 
 /// A hierarchy of grids down to a single cell, in single precision: half the memory to move, and the iteration around it corrects the rounding.
 ///
@@ -18,6 +20,7 @@ const COARSENED_WITHIN: f64 = std::f64::consts::SQRT_2;
 pub(super) struct Multigrid {
     /// Finest first.
     levels: Vec<Level>,
+    sweeps: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -26,10 +29,10 @@ struct Level {
     p: Coloured<f32>,
     b: Coloured<f32>,
     r: Coloured<f32>,
+    /// What neither relaxation nor the coarser level moves.
+    islands: Islands,
     /// To the next coarser level; none on the last.
     transfer: Option<Transfer<f32>>,
-    /// Two cells of a colour meet where an odd number of cells wraps.
-    seams: bool,
 }
 
 impl Multigrid {
@@ -37,12 +40,11 @@ impl Multigrid {
         let mut grid = Grid::finest(system);
         let mut levels = vec![];
         loop {
-            let coarser = grid.coarsen();
-            let (transfer, next) = coarser.unzip();
-            levels.push(Level::new(&grid.operator, transfer));
+            let (transfer, next) = grid.coarsen().unzip();
+            levels.push(Level::new(&grid, transfer));
             match next {
                 Some(next) => grid = next,
-                None => return Self { levels },
+                None => return Self { levels, sweeps: SWEEPS[usize::from(system.has_solids())] },
             }
         }
     }
@@ -51,10 +53,10 @@ impl Multigrid {
     pub(super) fn cycle(&mut self, r: &Coloured<f64>, scale: f64) {
         let finest = &mut self.levels[0];
         let layout = finest.operator.layout;
-        for colour in 0..2 {
-            layout.for_each_plane(colour, &mut finest.b[colour], |start, b| kernels::narrow(b, &r[colour][start..], scale));
+        for (colour, (b, r)) in finest.b.iter_mut().zip(r).enumerate() {
+            layout.for_each_plane(colour, b, |start, b| kernels::narrow(b, &r[start..], scale));
         }
-        cycle(&mut self.levels);
+        cycle(&mut self.levels, self.sweeps);
     }
 
     /// What the last cycle came to.
@@ -63,139 +65,49 @@ impl Multigrid {
     }
 }
 
-fn cycle(levels: &mut [Level]) {
+fn cycle(levels: &mut [Level], sweeps: usize) {
     let Some((level, coarser)) = levels.split_first_mut() else { return };
-    let Level { operator, p, b, r, transfer, seams } = level;
-    if *seams {
-        p[1].fill(0.0);
+    let Level { operator, p, b, r, islands, transfer } = level;
+    let seams = operator.layout.seams();
+    if seams {
+        p.iter_mut().for_each(|p| p.fill(0.0));
     }
     operator.relax_from_zero(0, p, b);
     operator.relax(1, p, b);
+    for _ in 1..sweeps {
+        operator.relax(0, p, b);
+        operator.relax(1, p, b);
+    }
     if let (Some(transfer), Some(next)) = (transfer, coarser.first_mut()) {
+        shift(islands, operator, p, b, true);
         operator.residual(0, p, b, r);
-        // The black equations have just been solved, but for those that meet black cells.
-        if *seams {
+        // The black equations have just been solved, unless black cells meet or were shifted.
+        if seams || !islands.is_empty() {
             operator.residual(1, p, b, r);
         }
         transfer.restrict(r, &mut next.b);
-        cycle(coarser);
+        cycle(coarser, sweeps);
         transfer.prolong(&coarser[0].p, p);
-        (0..2).for_each(|colour| operator.layout.wrap(colour, p));
+        operator.layout.wrap(p);
+        shift(islands, operator, p, b, false);
     }
-    operator.relax(1, p, b);
-    operator.relax(0, p, b);
+    for _ in 0..sweeps {
+        operator.relax(1, p, b);
+        operator.relax(0, p, b);
+    }
+}
+
+fn shift(islands: &Islands, operator: &Operator<f32>, p: &mut Coloured<f32>, b: &Coloured<f32>, forth: bool) {
+    if !islands.is_empty() {
+        islands.shift(p, b, forth);
+        operator.layout.wrap(p);
+    }
 }
 
 impl Level {
-    fn new(operator: &Operator<f64>, transfer: Option<Transfer<f32>>) -> Self {
-        let layout = operator.layout;
-        let seams = (0..3).any(|axis| layout.wraps[axis] && layout.cells[axis] % 2 == 1);
-        Self { operator: operator.cast(), p: layout.zeros(), b: layout.zeros(), r: layout.zeros(), transfer, seams }
-    }
-}
-
-/// A level while it is built.
-struct Grid {
-    operator: Operator<f64>,
-    /// Couplings to the open edges across each axis.
-    outlets: [Coloured<f64>; 3],
-    /// Width (m) of the cells along each axis by padded coordinate; the last may be narrower than the others.
-    widths_m: [Vec<f64>; 3],
-    /// Spacing (m) a regular grid would have.
-    spacing_m: [f64; 3],
-    /// Volume (m³) of a cell of the finest grid, which couplings are per.
-    unit_m3: f64,
-}
-
-impl Grid {
-    fn finest(system: &System) -> Self {
-        let spacing_m = system.spacing_m;
-        let widths_m = [0, 1, 2].map(|axis| vec![spacing_m[axis]; system.cells()[axis] + 2]);
-        let unit_m3 = spacing_m.iter().product();
-        Self { operator: system.operator.clone(), outlets: system.outlets.clone(), widths_m, spacing_m, unit_m3 }
-    }
-
-    /// Distance (m) of the centre of cell `i` from that below, or from the edge of the box.
-    fn reach_below_m(&self, axis: usize, i: usize) -> f64 {
-        let (widths_m, layout) = (&self.widths_m[axis], &self.operator.layout);
-        let below = if i > 1 { widths_m[i - 1] } else if layout.wraps[axis] { widths_m[layout.cells[axis]] } else { 0.0 };
-        0.5 * (widths_m[i] + below)
-    }
-
-    /// Distance (m) of the centre of cell `i` from that above, or from the edge of the box.
-    fn reach_above_m(&self, axis: usize, i: usize) -> f64 {
-        let (n, wraps) = (self.operator.layout.cells[axis], self.operator.layout.wraps[axis]);
-        if i < n {
-            self.reach_below_m(axis, i + 1)
-        } else if wraps {
-            self.reach_below_m(axis, 1)
-        } else {
-            0.5 * self.widths_m[axis][i]
-        }
-    }
-
-    /// The next coarser grid and the way there, unless there is but one cell.
-    fn coarsen(&self) -> Option<(Transfer<f32>, Self)> {
-        let fine = self.operator.layout;
-        let long = |axis: &usize| fine.cells[*axis] > 1;
-        let narrowest = (0..3).filter(long).map(|axis| self.spacing_m[axis]).reduce(f64::min)?;
-        let factor = [0, 1, 2].map(|axis| if long(&axis) && self.spacing_m[axis] <= COARSENED_WITHIN * narrowest { 2 } else { 1 });
-        let coarse = Layout::new([0, 1, 2].map(|axis| fine.cells[axis].div_ceil(factor[axis])), fine.wraps);
-        let spacing_m = [0, 1, 2].map(|axis| self.spacing_m[axis] * factor[axis] as f64);
-        let parent = |cell: [usize; 3]| [0, 1, 2].map(|axis| cell[axis].div_ceil(factor[axis]));
-        let widths_m = [0, 1, 2].map(|axis| {
-            let mut widths_m = vec![0.0; coarse.cells[axis] + 2];
-            (1..=fine.cells[axis]).for_each(|i| widths_m[i.div_ceil(factor[axis])] += self.widths_m[axis][i]);
-            widths_m
-        });
-        let mut next = Self { operator: self.operator.clone(), outlets: self.outlets.clone(), widths_m, spacing_m, unit_m3: self.unit_m3 };
-        next.operator.layout = coarse;
-
-        // Open areas add up; distances grow.
-        let mut lower = [0, 1, 2].map(|_| coarse.zeros());
-        let mut outlets = [0, 1, 2].map(|_| coarse.zeros());
-        for cell in fine.coordinates() {
-            let (from, to) = (fine.linear(cell), parent(cell));
-            let l = coarse.linear(to);
-            for axis in 0..3 {
-                let first = factor[axis] == 1 || cell[axis] % 2 == 1;
-                if first && below(to, axis, coarse.cells, fine.wraps[axis]).is_some_and(|below| below != to) {
-                    let stretch = self.reach_below_m(axis, cell[axis]) / next.reach_below_m(axis, to[axis]);
-                    let sum = at(&lower[axis], l) + at(&self.operator.lower[axis], from) * stretch;
-                    set(&mut lower[axis], l, sum);
-                }
-                let stretch = self.widths_m[axis][cell[axis]] / next.widths_m[axis][to[axis]];
-                let sum = at(&outlets[axis], l) + at(&self.outlets[axis], from) * stretch;
-                set(&mut outlets[axis], l, sum);
-            }
-        }
-        next.operator = Operator::new(coarse, lower, &outlets);
-        next.outlets = outlets;
-        let leans = (0..3).filter(|&axis| factor[axis] == 2).map(|axis| self.lean(&next, axis)).collect();
-        Some((Transfer::new(fine, coarse, leans), next))
-    }
-
-    /// Weights of linear interpolation from `coarse` to this grid along one axis.
-    fn lean(&self, coarse: &Self, axis: usize) -> Lean<f32> {
-        let layout = coarse.operator.layout;
-        let mut share = [0, 1].map(|_| vec![0.0; layout.padded_len()]);
-        for cell in layout.coordinates() {
-            let (l, i) = (layout.linear(cell), cell[axis]);
-            let area_m2: f64 = (0..3).filter(|&other| other != axis).map(|other| coarse.widths_m[other][cell[other]]).product();
-            // Coupling through a face that is open all over.
-            let open = |reach_m: f64| area_m2 / reach_m / self.unit_m3;
-            let (below_m, above_m) = (coarse.reach_below_m(axis, i), coarse.reach_above_m(axis, i));
-            let outlet = at(&coarse.outlets[axis], l);
-            let [mut lower, mut upper] = [l, l + layout.stride[axis]].map(|l| at(&coarse.operator.lower[axis], l));
-            if !layout.wraps[axis] {
-                // A cell between two open edges cannot tell them apart.
-                lower += if i == 1 { outlet } else { 0.0 };
-                upper += if i == layout.cells[axis] { outlet } else { 0.0 };
-            }
-            let children_m = [2 * i - 1, 2 * i].map(|child| if child <= self.operator.layout.cells[axis] { self.widths_m[axis][child] } else { 0.0 });
-            share[0][l] = (0.5 * children_m[1] / below_m * (lower / open(below_m)).min(1.0)) as f32;
-            share[1][l] = (0.5 * children_m[0] / above_m * (upper / open(above_m)).min(1.0)) as f32;
-        }
-        Lean { axis, share }
+    fn new(grid: &Grid, transfer: Option<Transfer<f32>>) -> Self {
+        let islands = Islands::new(&grid.operator, &grid.outlets);
+        let layout = grid.operator.layout;
+        Self { operator: grid.operator.cast(), p: layout.zeros(), b: layout.zeros(), r: layout.zeros(), islands, transfer }
     }
 }

@@ -21,7 +21,7 @@ impl Operator<f64> {
     /// Takes couplings to lower neighbours (ghosts of axes that wrap are filled in) and to the open edges across each axis.
     pub(super) fn new(layout: Layout, mut lower: [Coloured<f64>; 3], outlets: &[Coloured<f64>; 3]) -> Self {
         for field in &mut lower {
-            (0..2).for_each(|colour| layout.wrap(colour, field));
+            layout.wrap(field);
         }
         let (mut diagonal, mut inverse) = (layout.zeros(), layout.zeros());
         for cell in layout.coordinates() {
@@ -61,7 +61,7 @@ impl<R: Real> Operator<R> {
             let around = self.around(colour, start, p.len(), other);
             kernels::relax(p, &b[colour][start..], &self.inverse[colour][start..], around);
         });
-        self.layout.wrap(colour, p);
+        self.layout.wrap_after(colour, p);
     }
 
     /// [`relax`](Self::relax) where the other colour is 0.
@@ -69,7 +69,7 @@ impl<R: Real> Operator<R> {
         self.layout.for_each_plane(colour, &mut p[colour], |start, p| {
             kernels::multiply(p, &b[colour][start..], &self.inverse[colour][start..]);
         });
-        self.layout.wrap(colour, p);
+        self.layout.wrap_after(colour, p);
     }
 
     /// `r = b − A p` in the cells of `colour`.

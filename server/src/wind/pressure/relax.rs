@@ -21,8 +21,8 @@ pub(super) struct Relaxation {
     order: Order,
     keep: Coloured<f64>,
     gain: Coloured<f64>,
-    /// Red values before the sweep.
-    old: Vec<f64>,
+    /// Red values before a simultaneous sweep; the rows a lexicographic one is at.
+    scratch: Coloured<f64>,
 }
 
 impl Relaxation {
@@ -71,28 +71,32 @@ impl Relaxation {
                 set(&mut gain, l, omega(cell) * inverse);
             }
         }
-        let old = if order == Order::Simultaneous { keep[0].clone() } else { vec![] };
-        Self { order, keep, gain, old }
+        let scratch = match order {
+            Order::Simultaneous => [keep[0].clone(), vec![]],
+            Order::Lexicographic => [vec![0.0; layout.stride[1]], vec![0.0; layout.stride[1]]],
+            Order::RedBlack => [vec![], vec![]],
+        };
+        Self { order, keep, gain, scratch }
     }
 
     /// One sweep over all cells.
     pub(super) fn sweep(&mut self, system: &System, p: &mut Coloured<f64>, b: &Coloured<f64>) {
         match self.order {
             Order::Simultaneous => {
-                self.old.copy_from_slice(&p[0]);
+                self.scratch[0].copy_from_slice(&p[0]);
                 let (red, black) = apart(p, 0);
                 self.half(system, 0, red, black, b);
-                self.half(system, 1, &mut p[1], &self.old, b);
-                (0..2).for_each(|colour| system.operator.layout.wrap(colour, p));
+                self.half(system, 1, &mut p[1], &self.scratch[0], b);
+                system.operator.layout.wrap(p);
             }
             Order::RedBlack => {
                 for colour in 0..2 {
                     let (own, other) = apart(p, colour);
                     self.half(system, colour, own, other, b);
-                    system.operator.layout.wrap(colour, p);
+                    system.operator.layout.wrap_after(colour, p);
                 }
             }
-            Order::Lexicographic => lexicographic(system, p, b),
+            Order::Lexicographic => lexicographic(system, p, b, &mut self.scratch),
         }
     }
 
@@ -108,23 +112,39 @@ impl Relaxation {
 /// Share of the largest stable relaxation that cells at an odd seam get.
 const SEAM_MARGIN: f64 = 0.95;
 
-/// One cell after the other; ghosts are refreshed after the sweep.
-fn lexicographic(system: &System, p: &mut Coloured<f64>, b: &Coloured<f64>) {
+/// One cell after the other, row by row: first what a row takes from the rows around it, all at once, then cell by cell what each takes from the one before
+/// it. `scratch` has room for a row of each colour. Ghosts above the box are refreshed on the way, so that the last cells of axes that wrap see the new first
+/// ones.
+fn lexicographic(system: &System, p: &mut Coloured<f64>, b: &Coloured<f64>, scratch: &mut Coloured<f64>) {
     let operator = &system.operator;
     let layout = operator.layout;
     let [nx, ny, nz] = layout.cells;
-    for z in 1..=nz {
-        for y in 1..=ny {
-            let start = layout.linear([1, y, z]);
-            for l in start..start + nx {
-                let along = |axis: usize| {
-                    let (below, above) = (l - layout.stride[axis], l + layout.stride[axis]);
-                    at(&operator.lower[axis], l) * at(p, below) + at(&operator.lower[axis], above) * at(p, above)
-                };
-                let value = (at(b, l) + along(0) + along(1) + along(2)) * at(&operator.inverse, l);
-                set(p, l, value);
+    for (z, y) in (1..=nz).flat_map(|z| (1..=ny).map(move |y| (z, y))) {
+        let first = layout.linear([1, y, z]);
+        for (colour, scratch) in scratch.iter_mut().enumerate() {
+            let (start, end) = ((first + 1 - colour) / 2, (first + nx + 1 - colour) / 2);
+            let (inverse, around) = (&operator.inverse[colour][start..], operator.around(colour, start, end - start, &p[1 - colour]));
+            kernels::relax_but_for_lower_x(&mut scratch[..end - start], &b[colour][start..], inverse, around);
+        }
+        let offsets = [first.div_ceil(2), first / 2];
+        let mut before = at(p, first - 1);
+        for l in first..first + nx {
+            let mut value = scratch[l % 2][l / 2 - offsets[l % 2]];
+            if l == first + nx - 1 && layout.wraps[0] {
+                // The first cell of the row was still the old one above.
+                let change = at(p, first) - at(p, l + 1);
+                value += at(&operator.inverse, l) * at(&operator.lower[0], l + 1) * change;
+            }
+            value += at(&operator.inverse, l) * at(&operator.lower[0], l) * before;
+            set(p, l, value);
+            before = value;
+        }
+        for (axis, _) in [(1, y), (2, z)].into_iter().filter(|&(axis, at)| layout.wraps[axis] && at == 1) {
+            for l in first..first + nx {
+                let value = at(p, l);
+                set(p, l + layout.stride[axis] * layout.cells[axis], value);
             }
         }
     }
-    (0..2).for_each(|colour| layout.wrap(colour, p));
+    layout.wrap(p);
 }

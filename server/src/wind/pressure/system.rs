@@ -26,7 +26,7 @@ pub struct System {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SystemError {
     /// An axis has no cell, or all have more than fit into memory.
-    #[error("cells are {0:?}; allowed: at least 1 along each axis, at most 2³¹ in all")]
+    #[error("cells are {0:?}; allowed: at least 1 along each axis, at most 2²⁷ in all")]
     Cells([usize; 3]),
     /// A spacing is not a length.
     #[error("spacing is {0:?} m; allowed: 1e-6 to 1e6")]
@@ -48,7 +48,7 @@ impl System {
     /// # Errors
     /// An axis without cells, a spacing outside 1e-6 to 1e6 m, a mask of another length.
     pub fn new(cells: [usize; 3], spacing_m: [f64; 3], edges: [Option<[Edge; 2]>; 3], solid: Option<&[bool]>) -> Result<Self, SystemError> {
-        let len = cells.iter().try_fold(1usize, |len, &n| len.checked_mul(n)).filter(|len| (1..=1 << 31).contains(len));
+        let len = cells.iter().try_fold(1usize, |len, &n| len.checked_mul(n)).filter(|len| (1..=1 << 27).contains(len));
         let len = len.ok_or(SystemError::Cells(cells))?;
         if !spacing_m.iter().all(|h| (1e-6..=1e6).contains(h)) {
             return Err(SystemError::Spacing(spacing_m));
@@ -86,7 +86,12 @@ impl System {
                 open.then(|| natural(cell))
             })
         };
-        let regions = Regions::label(len, neighbours, |i| outlets.iter().any(|outlet| at(outlet, layout.linear(coordinates(i))) > 0.0), |i| air(coordinates(i)));
+        let regions = Regions::label(
+            len,
+            neighbours,
+            |i| outlets.iter().any(|outlet| at(outlet, layout.linear(coordinates(i))) > 0.0),
+            |i| air(coordinates(i)),
+        );
         let slowest = slowest_mode(cells, spacing_m, edges);
         Ok(Self { operator, outlets, regions, solid: solid.map(<[bool]>::to_vec), spacing_m, slowest })
     }
@@ -94,6 +99,11 @@ impl System {
     /// Number of cells along x, y and z.
     pub fn cells(&self) -> [usize; 3] {
         self.operator.layout.cells
+    }
+
+    /// True if any cell is solid.
+    pub(super) fn has_solids(&self) -> bool {
+        self.solid.as_ref().is_some_and(|solid| solid.contains(&true))
     }
 
     /// Sets solid cells to 0.
@@ -113,12 +123,7 @@ impl System {
 }
 
 /// Couplings of cells to the open edges across each axis.
-fn outlets(
-    layout: &Layout,
-    spacing_m: [f64; 3],
-    edges: [Option<[Edge; 2]>; 3],
-    air: impl Fn([usize; 3]) -> bool,
-) -> [Coloured<f64>; 3] {
+fn outlets(layout: &Layout, spacing_m: [f64; 3], edges: [Option<[Edge; 2]>; 3], air: impl Fn([usize; 3]) -> bool) -> [Coloured<f64>; 3] {
     [0, 1, 2].map(|axis| {
         let mut outlet = layout.zeros();
         for (edge, end) in edges[axis].into_iter().flatten().zip([1, layout.cells[axis]]) {
@@ -180,11 +185,8 @@ fn slowest_mode(cells: [usize; 3], spacing_m: [f64; 3], edges: [Option<[Edge; 2]
         modes.iter().map(|mode| mode.eigenvalue).sum::<f64>() / modes.iter().map(|mode| mode.diagonal).sum::<f64>()
     };
     let open = edges.iter().flatten().flatten().any(|&edge| edge == Edge::Dirichlet);
-    let slowest = if open {
-        quotient(None)
-    } else {
-        (0..3).filter(|&axis| cells[axis] > 1).map(|axis| quotient(Some(axis))).fold(2.0, f64::min)
-    };
+    let slowest =
+        if open { quotient(None) } else { (0..3).filter(|&axis| cells[axis] > 1).map(|axis| quotient(Some(axis))).fold(2.0, f64::min) };
     slowest.clamp(0.0, 2.0)
 }
 

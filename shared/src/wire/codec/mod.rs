@@ -1,6 +1,6 @@
 //! Lossless codec of the streamed fields: adaptive binary arithmetic coding of small 8-bit grids.
 //!
-//! A grid has [`PLANES`] planes of rows of `width` codes. It is coded against a base of the same shape (delta) or against
+//! A grid has a few planes of rows of codes ([`Shape`]). It is coded against a base of the same shape (delta) or against
 //! zero (key), so one path serves both. Per tile of 8 × 8 cells and plane:
 //!
 //! 1. One bit says whether anything differs from the base; a tile at rest costs a small fraction of a bit.
@@ -17,8 +17,31 @@ mod model;
 use model::{Coder, Model};
 use thiserror::Error;
 
-/// Planes of a grid: θ, ωx, ωz of a patch or u, v, w of the wind.
-pub const PLANES: usize = 3;
+/// How the codes of a grid lie: some planes, one after the other, of rows of `width` codes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    /// Codes in one row.
+    pub width: usize,
+    /// Planes: what each stands for is the message's affair. The first has statistics of its own, so has the fourth; others share theirs.
+    pub planes: usize,
+}
+
+impl Shape {
+    /// Planes θ, ωx, ωz of a patch of `cells × cells`.
+    pub const fn patch(cells: usize) -> Self {
+        Self { width: cells, planes: 3 }
+    }
+
+    /// Planes u, v, w, and the dust where there is any, of a wind of `width` cells along X.
+    pub const fn wind(width: usize, has_dust: bool) -> Self {
+        Self { width, planes: if has_dust { 4 } else { 3 } }
+    }
+
+    fn assert_fits(self, codes: &[i8]) {
+        let Self { width, planes } = self;
+        assert!(width > 0 && planes > 0 && codes.len().is_multiple_of(planes * width), "{planes} planes of rows of {width}");
+    }
+}
 
 /// Side of a tile (cells).
 const TILE: usize = 8;
@@ -34,12 +57,13 @@ pub enum CodecError {
     Range,
 }
 
-/// Codes `codes` (three planes of rows of `width`) against `base` of the same shape, or against zero.
+/// Codes `codes` against `base` of the same shape, or against zero.
 ///
 /// # Panics
-/// When the shapes do not fit: `codes.len()` must be a multiple of `3 · width` and equal to the base's length.
-pub fn encode(width: usize, codes: &[i8], base: Option<&[i8]>) -> Vec<u8> {
-    assert!(width > 0 && codes.len().is_multiple_of(PLANES * width), "three planes of whole rows");
+/// When the shapes do not fit: `codes.len()` must be a multiple of `planes · width` and equal to the base's length.
+pub fn encode(shape: Shape, codes: &[i8], base: Option<&[i8]>) -> Vec<u8> {
+    shape.assert_fits(codes);
+    let Shape { width, planes } = shape;
     assert!(base.is_none_or(|base| base.len() == codes.len()), "the base has the grid's shape");
     let differences: Vec<i16> = match base {
         Some(base) => codes.iter().zip(base).map(|(&code, &base)| i16::from(code) - i16::from(base)).collect(),
@@ -47,7 +71,7 @@ pub fn encode(width: usize, codes: &[i8], base: Option<&[i8]>) -> Vec<u8> {
     };
     let mut encoder = arithmetic::Encoder::default();
     let mut model = Model::default();
-    for (plane, differences) in differences.chunks_exact(codes.len() / PLANES).enumerate() {
+    for (plane, differences) in differences.chunks_exact(codes.len() / planes).enumerate() {
         let mut residuals = vec![0; differences.len()];
         for tile in tiles(width, differences.len() / width) {
             let changed = tile.cells(width).any(|at| differences[at] != 0);
@@ -74,10 +98,11 @@ pub fn encode(width: usize, codes: &[i8], base: Option<&[i8]>) -> Vec<u8> {
 /// [`CodecError`] when the payload is damaged; `codes` is then unspecified.
 ///
 /// # Panics
-/// When `codes.len()` is not a multiple of `3 · width`.
-pub fn decode(width: usize, payload: &[u8], codes: &mut [i8]) -> Result<(), CodecError> {
-    assert!(width > 0 && codes.len().is_multiple_of(PLANES * width), "three planes of whole rows");
-    let plane_len = codes.len() / PLANES;
+/// When `codes.len()` is not a multiple of `planes · width`.
+pub fn decode(shape: Shape, payload: &[u8], codes: &mut [i8]) -> Result<(), CodecError> {
+    shape.assert_fits(codes);
+    let Shape { width, planes } = shape;
+    let plane_len = codes.len() / planes;
     let mut decoder = arithmetic::Decoder::new(payload);
     let mut model = Model::default();
     let mut differences = vec![0_i16; plane_len];
@@ -161,62 +186,79 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn grid(width: usize, rows: usize) -> impl Strategy<Value = Vec<i8>> {
-        proptest::collection::vec(prop_oneof![4 => Just(0_i8), 2 => -3_i8..=3, 1 => -127_i8..=127], PLANES * width * rows)
+    const PATCH: Shape = Shape::patch(64);
+    const PATCH_LEN: usize = 3 * 64 * 64;
+
+    fn grid(shape: Shape, rows: usize) -> impl Strategy<Value = Vec<i8>> {
+        proptest::collection::vec(prop_oneof![4 => Just(0_i8), 2 => -3_i8..=3, 1 => -127_i8..=127], shape.planes * shape.width * rows)
+    }
+
+    fn shapes() -> impl Strategy<Value = Shape> {
+        (1_usize..20, any::<bool>()).prop_map(|(width, has_dust)| Shape::wind(width, has_dust))
     }
 
     proptest! {
         #[test]
         fn key_and_delta_come_back(
-            (width, base, codes) in (1_usize..20, 1_usize..20).prop_flat_map(|(w, rows)| (Just(w), grid(w, rows), grid(w, rows)))
+            (shape, base, codes) in (shapes(), 1_usize..20).prop_flat_map(|(shape, rows)| (Just(shape), grid(shape, rows), grid(shape, rows)))
         ) {
             let mut decoded = vec![0; codes.len()];
-            decode(width, &encode(width, &codes, None), &mut decoded).unwrap();
+            decode(shape, &encode(shape, &codes, None), &mut decoded).unwrap();
             prop_assert_eq!(&decoded, &codes);
             let mut decoded = base.clone();
-            decode(width, &encode(width, &codes, Some(&base)), &mut decoded).unwrap();
+            decode(shape, &encode(shape, &codes, Some(&base)), &mut decoded).unwrap();
             prop_assert_eq!(&decoded, &codes);
         }
 
         #[test]
         fn any_bytes_are_a_grid_or_an_error(bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
-            let mut codes = vec![0; PLANES * 16 * 16];
-            if decode(16, &bytes, &mut codes).is_ok() {
-                prop_assert!(codes.iter().all(|&code| code != i8::MIN));
+            for shape in [Shape::patch(16), Shape::wind(16, true)] {
+                let mut codes = vec![0; shape.planes * 16 * 16];
+                if decode(shape, &bytes, &mut codes).is_ok() {
+                    prop_assert!(codes.iter().all(|&code| code != i8::MIN));
+                }
             }
         }
     }
 
     #[test]
     fn longer_and_shorter_payloads_are_refused() {
-        let codes: Vec<i8> = (0..PLANES * 64 * 64).map(|i| ((i * 7919) % 255) as u8 as i8).map(|c| c.max(-127)).collect();
-        let whole = encode(64, &codes, None);
+        let codes: Vec<i8> = (0..PATCH_LEN).map(|i| ((i * 7919) % 255) as u8 as i8).map(|c| c.max(-127)).collect();
+        let whole = encode(PATCH, &codes, None);
         for length in [0, whole.len() / 2, whole.len() + 1, whole.len() + 3] {
             let mut payload = whole.clone();
             payload.resize(length, 0);
-            assert!(decode(64, &payload, &mut vec![0; codes.len()]).is_err(), "{length} of {} bytes", whole.len());
+            assert!(decode(PATCH, &payload, &mut vec![0; codes.len()]).is_err(), "{length} of {} bytes", whole.len());
         }
     }
 
     #[test]
     fn an_unchanged_patch_costs_a_few_bytes() {
-        let codes = vec![17; PLANES * 64 * 64];
-        let payload = encode(64, &codes, Some(&codes));
+        let codes = vec![17; PATCH_LEN];
+        let payload = encode(PATCH, &codes, Some(&codes));
         assert!(payload.len() <= 16, "{} bytes", payload.len());
     }
 
     #[test]
     fn smooth_motion_costs_under_a_bit_and_a_half_per_value() {
         let wave = |phase: f32| -> Vec<i8> {
-            (0..PLANES * 64 * 64)
+            (0..PATCH_LEN)
                 .map(|i| {
                     let (x, y) = ((i % 64) as f32, (i / 64 % 64) as f32);
                     (40.0 * ((x * 0.11 + phase).sin() * (y * 0.07).cos())) as i8
                 })
                 .collect()
         };
-        let payload = encode(64, &wave(0.1), Some(&wave(0.0)));
-        let bits_per_value = payload.len() as f32 * 8.0 / (PLANES * 64 * 64) as f32;
+        let payload = encode(PATCH, &wave(0.1), Some(&wave(0.0)));
+        let bits_per_value = payload.len() as f32 * 8.0 / (PATCH_LEN) as f32;
         assert!(bits_per_value < 1.5, "{bits_per_value} bits");
+    }
+
+    #[test]
+    fn a_plane_more_leaves_the_others_as_cheap() {
+        let three: Vec<i8> = (0..PATCH_LEN).map(|i| ((i % 64) as i8 - 32) / 5).collect();
+        let four = [three.as_slice(), &[0; 64 * 64]].concat();
+        let [without, with] = [encode(PATCH, &three, None).len(), encode(Shape::wind(64, true), &four, None).len()];
+        assert!(with <= without + 4, "clear air costs {} bytes", with - without);
     }
 }

@@ -9,8 +9,8 @@ pub(super) trait Coder {
     fn code(&mut self, probability: &mut Probability, bit: Option<bool>) -> bool;
 }
 
-/// θ has statistics of its own; ωx and ωz share theirs.
-const KINDS: usize = 2;
+/// θ or u has statistics of its own, so has dust; ωx and ωz, or v and w, share theirs.
+const KINDS: usize = 3;
 /// Sizes of the neighbours' residuals told apart.
 const SIZES: usize = 6;
 /// Longest exp-Golomb prefix: magnitudes up to 2¹⁰ − 1.
@@ -27,7 +27,7 @@ pub(super) struct Model {
 }
 
 fn kind(plane: usize) -> usize {
-    usize::from(plane > 0)
+    [0, 1, 1, 2][plane.min(3)]
 }
 
 impl Model {

@@ -1,0 +1,192 @@
+use super::*;
+use crate::objects::Stand;
+use shared::bend::Bend;
+use shared::grid::PatchLayout;
+use shared::scene::{VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTime};
+use shared::scene::{Primitive, PrimitiveKind};
+
+fn meadow() -> (Scene, Maps) {
+    let loaded = crate::scenes::load("meadow").unwrap();
+    (loaded.scene, Maps { height: loaded.height, cover: loaded.cover })
+}
+
+fn flat() -> HeightMap {
+    HeightMap::from_heights(2, 2, [256.0; 2], vec![0.0; 4])
+}
+
+fn grass(scene: &Scene) -> Field {
+    Field::new(PatchLayout::from(&scene.patches))
+}
+
+fn hovering(velocity_m_per_s: [f32; 3]) -> Motion {
+    let stand = Stand { position_m: [64.0, 5.0, 64.0], rotation: [0.0, 0.0, 0.0, 1.0] };
+    Motion { kind: VehicleKind::Helicopter, from: stand, to: stand, velocity_m_per_s }
+}
+
+/// A small wind with dust, after so many ticks.
+fn blown(change: impl FnOnce(&mut Scene), ticks: u64) -> Result<Weather, WeatherError> {
+    let (mut scene, maps) = meadow();
+    (scene.wind.cells, scene.wind.spacing_m) = ([16, 8, 16], [16.0, 2.0, 16.0]);
+    scene.wind.dust.release_per_s = 1.0;
+    change(&mut scene);
+    check(&scene)?;
+    let mut weather = Weather::new(&scene, &maps)?;
+    let grass = grass(&scene);
+    (1..=ticks).for_each(|tick| weather.step(tick, &[hovering([0.0; 3])], &maps.height, &grass));
+    Ok(weather)
+}
+
+fn is_alive(weather: &Weather) -> bool {
+    let fastest = weather.velocities().iter().map(|velocity| velocity.length()).fold(0.0, f32::max);
+    weather.resets() == 0 && (1.0..60.0).contains(&fastest) && weather.frame().codes.iter().any(|&code| code != 0)
+}
+
+#[test]
+fn every_word_of_a_scene_blows() {
+    use WindAdvection::{Bfecc, Conservative, MacCormack, SemiLagrangian};
+    use WindTime::{Reflection, RungeKutta3, Split};
+    for (advection, time) in [(SemiLagrangian, Split), (MacCormack, Reflection), (Bfecc, Reflection), (Conservative, Split), (Conservative, RungeKutta3)] {
+        let weather = blown(|scene| (scene.wind.advection, scene.wind.time, scene.wind.dust.advection) = (advection, time, advection), 12);
+        assert!(is_alive(&weather.unwrap()), "{advection:?} {time:?}");
+    }
+    for diffusion in [WindDiffusion::Explicit, WindDiffusion::GaussSeidel, WindDiffusion::Implicit, WindDiffusion::CrankNicolson] {
+        assert!(is_alive(&blown(|scene| scene.wind.diffusion = diffusion, 12).unwrap()), "{diffusion:?}");
+    }
+    use WindPressure::{ConjugateGradients, Direct, GaussSeidel, Jacobi, Multigrid, Sor};
+    for pressure in [Direct, Jacobi, GaussSeidel, Sor, ConjugateGradients, Multigrid] {
+        let weather = blown(|scene| (scene.wind.pressure, scene.wind.pressure_sweeps) = (pressure, 20), 12).unwrap();
+        assert!(is_alive(&weather), "{pressure:?}");
+        assert_eq!(weather.report().pressure_sweeps == 0, pressure == Direct, "{pressure:?}");
+    }
+    for tiling in [WindTiling::Box, WindTiling::Patch, WindTiling::Follow] {
+        assert!(is_alive(&blown(|scene| scene.wind.tiling = tiling, 12).unwrap()), "{tiling:?}");
+    }
+    for kind in [PrimitiveKind::Uniform, PrimitiveKind::Source, PrimitiveKind::Sink, PrimitiveKind::Vortex, PrimitiveKind::Cyclone] {
+        let weather = blown(|scene| scene.wind.primitives.push(Primitive { dust: 1.0, ..Primitive::new(kind, [128.0, 4.0, 128.0]) }), 12);
+        assert!(is_alive(&weather.unwrap()), "{kind:?}");
+    }
+    let stable_fluids = blown(|scene| scene.wind = shared::scene::Wind { cells: [16, 8, 16], ..shared::scene::Wind::of(WindMethod::StableFluids) }, 12);
+    assert!(is_alive(&stable_fluids.unwrap()));
+}
+
+#[test]
+fn every_face_of_a_scene_blows() {
+    let faces = [
+        [WindBoundary::Inflow, WindBoundary::Outflow, WindBoundary::FreeSlip, WindBoundary::Outflow, WindBoundary::NoSlip, WindBoundary::Reflect],
+        [WindBoundary::Wrap, WindBoundary::Wrap, WindBoundary::NoSlip, WindBoundary::Lid, WindBoundary::Wrap, WindBoundary::Wrap],
+    ];
+    for [west, east, bottom, top, north, south] in faces {
+        let weather = blown(
+            |scene| {
+                let lid_m_per_s = [6.0, 0.0, 0.0];
+                scene.wind.faces = shared::scene::WindFaces { west, east, bottom, top, north, south, lid_m_per_s };
+                scene.wind.mean_m_per_s = [4.0, 0.0];
+            },
+            30,
+        );
+        assert!(is_alive(&weather.unwrap()), "{west:?} {top:?}");
+    }
+}
+
+#[test]
+fn what_fits_no_solver_is_refused() {
+    let error = blown(|scene| scene.wind.time = WindTime::Reflection, 1).err().expect("conservative advection has no reflection");
+    assert!(error.to_string().contains("time"), "{error}");
+    let error = blown(|scene| scene.wind.method = WindMethod::StableFluids, 1).err().expect("that method has no canopy");
+    assert!(error.to_string().contains("canopy"), "{error}");
+}
+
+#[test]
+fn wind_over_solid_land_is_told_above_the_ground_and_fastest_on_the_hill() {
+    let ridge = |x: f32| 8.0 * (1.0 - ((x - 128.0) / 48.0).powi(2)).max(0.0);
+    let heights = (0..33 * 33).map(|n| ridge((n % 33) as f32 * 8.0)).collect();
+    let (mut scene, maps) = meadow();
+    let maps = Maps { height: HeightMap::from_heights(33, 33, [8.0; 2], heights), ..maps };
+    (scene.wind.cells, scene.wind.spacing_m) = ([32, 12, 8], [8.0, 2.0, 32.0]);
+    (scene.wind.terrain, scene.wind.pressure) = (WindTerrain::Obstacle, WindPressure::Multigrid);
+    (scene.wind.sources, scene.wind.mean_m_per_s, scene.wind.canopy_drag_per_m) = (0, [5.0, 0.0], 0.0);
+    let mut weather = Weather::new(&scene, &maps).unwrap();
+    let grass = grass(&scene);
+    (1..=120).for_each(|tick| weather.step(tick, &[], &maps.height, &grass));
+    let [crest, foot] = [16, 4].map(|i| weather.velocities()[i + 32 * (2 + 12 * 4)].x);
+    assert!(crest > 1.3 * foot && foot > 1.0, "5 m above the crest {crest}, above the plain {foot}");
+    assert!(weather.report().pressure_residual <= 1e-5 && weather.resets() == 0);
+}
+
+#[test]
+fn grass_that_lies_lets_the_wind_pass() {
+    let (mut scene, maps) = meadow();
+    (scene.wind.sources, scene.wind.canopy_drag_per_m, scene.wind.mean_rate_per_s, scene.plants.height_m) = (0, 1.0, 0.0, 2.0);
+    let near_ground = |grass: &Field| {
+        let mut weather = Weather::new(&scene, &maps).unwrap();
+        (1..=30).for_each(|tick| weather.step(tick, &[], &maps.height, grass));
+        let [standing, lying] = [20, 4].map(|i| weather.velocities()[i + 32 * 8 * 16]);
+        [standing, lying].map(|velocity| velocity.length())
+    };
+    let mut grass = grass(&scene);
+    let [same, there] = near_ground(&grass);
+    // The covering map makes columns differ, so each is compared with itself.
+    for index in 0..grass.layout().patches() as u32 {
+        if grass.layout().corner_m(index)[0] < 64.0 {
+            let patch = grass.wake(index);
+            (0..64).for_each(|j| (0..64).for_each(|i| patch.set(i, j, Bend { theta: 1.4, ..Bend::default() })));
+        }
+    }
+    let [still_same, faster] = near_ground(&grass);
+    assert!(faster > 1.1 * there, "over lying grass {faster} m/s, over the same standing {there}");
+    assert!((still_same / same - 1.0).abs() < 0.1, "elsewhere {still_same}, before {same}");
+}
+
+#[test]
+fn a_box_that_follows_lets_no_wake_come_round() {
+    let updraught_behind = |tiling| {
+        let weather = blown(|scene| (scene.wind.tiling, scene.wind.sources, scene.wind.mean_m_per_s) = (tiling, 0, [12.0, 0.0]), 1200).unwrap();
+        // The helicopter hovers at x = 64 of 256 m: its wash, carried east, comes round past the cut at x = 192.
+        let west = (0..16).flat_map(|k| (0..3).map(move |i| i + 16 * (2 + 8 * k)));
+        west.map(|at| (weather.velocities()[at].x - 12.0 * 0.75).abs() + weather.velocities()[at].y.abs()).fold(0.0, f32::max)
+    };
+    let [repeated, cut] = [WindTiling::Box, WindTiling::Follow].map(updraught_behind);
+    println!("disturbance that comes round: {repeated:.2} m/s repeated, {cut:.2} m/s cut");
+    assert!(cut < 0.8 * repeated, "{cut} with the cut, {repeated} without");
+}
+
+#[test]
+fn dust_is_shown_where_the_scene_asks_for_it() {
+    let (mut scene, maps) = meadow();
+    assert!(!Weather::new(&scene, &maps).unwrap().frame().has_dust(), "no byte more for clear air");
+    scene.wind.dust.release_per_s = 2.0;
+    let frame = Arc::clone(Weather::new(&scene, &maps).unwrap().frame());
+    let dust = &frame.codes[3 * frame.volume()..];
+    assert_eq!(dust.len(), frame.volume());
+    assert!(dust.iter().all(|&code| code >= 0) && dust.iter().any(|&code| code > 20) && dust.contains(&0), "clouds in clear air");
+}
+
+#[test]
+fn an_object_blows_in_no_box_that_serves_every_patch() {
+    let (mut scene, maps) = meadow();
+    (scene.wind.cells, scene.wind.spacing_m, scene.wind.sources, scene.wind.canopy_drag_per_m) = ([8; 3], [2.0; 3], 0, 0.0);
+    let grass = grass(&scene);
+    let mut strongest_updraught = |tiling| {
+        scene.wind.tiling = tiling;
+        let mut weather = Weather::new(&scene, &maps).unwrap();
+        (1..=20).for_each(|tick| weather.step(tick, &[hovering([0.0; 3])], &flat(), &grass));
+        weather.velocities().iter().map(|velocity| velocity.y.abs()).fold(0.0, f32::max)
+    };
+    assert!(strongest_updraught(WindTiling::Box) > 0.5);
+    assert!(strongest_updraught(WindTiling::Patch) < 1e-3);
+}
+
+#[test]
+fn a_wind_that_is_lost_begins_anew_and_is_counted() {
+    let (scene, maps) = meadow();
+    let grass = grass(&scene);
+    let mut weather = Weather::new(&scene, &maps).unwrap();
+    let mut blow = |motions: &[Motion]| {
+        let ticks = weather.ticks_per_step;
+        (1..=ticks).for_each(|tick| weather.step(tick, motions, &flat(), &grass));
+        (weather.resets(), weather.velocities().iter().all(|velocity| velocity.is_finite()))
+    };
+    assert_eq!(blow(&[]), (0, true));
+    assert_eq!(blow(&[hovering([f32::MAX; 3])]), (1, true));
+    assert_eq!(blow(&[]), (1, true));
+}

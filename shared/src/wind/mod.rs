@@ -1,0 +1,14 @@
+//! The wind as both sides read it: which place of the solver's box blows where, and whether there is dust in it.
+
+mod tiling;
+
+pub use tiling::{Tap, Tiles, offset_cells};
+
+use crate::scene::Wind;
+
+impl Wind {
+    /// Whether anything releases dust, so that the wind carries it over the wire too.
+    pub fn has_dust(&self) -> bool {
+        self.dust.release_per_s > 0.0
+    }
+}
