@@ -1,0 +1,65 @@
+//! Fitted orders of accuracy of the wind, beside the orders theory gives.
+//!
+//! Each function runs its problem and returns a row per scheme; the tests assert the rows, and a document can show the same rows as a table.
+
+mod dust;
+mod ethier_steinman;
+mod taylor_green;
+
+pub use dust::{heat_space, heat_time, rotating_gaussian};
+pub use ethier_steinman::beltrami;
+pub use taylor_green::{advection_and_time, space, time};
+
+use std::fmt;
+
+use crate::norms::fitted_order;
+
+/// How far a fitted order may be from the formal one.
+pub const TOLERANCE: f64 = 0.1;
+
+/// The order at which the error of one scheme shrinks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Order {
+    /// What was solved, such as `Taylor–Green`.
+    pub problem: &'static str,
+    /// The scheme.
+    pub scheme: String,
+    /// What was refined, and the norm of the error.
+    pub quantity: &'static str,
+    /// What theory gives.
+    pub formal: f64,
+    /// Slope of the least-squares line through the logarithms of `errors`.
+    pub fitted: f64,
+    /// What was refined (m or s), and the error that was left, coarse to fine.
+    pub errors: Vec<(f64, f64)>,
+}
+
+impl Order {
+    /// Fits the order to errors.
+    pub fn fit(problem: &'static str, scheme: impl Into<String>, quantity: &'static str, formal: f64, errors: Vec<(f64, f64)>) -> Self {
+        Self { problem, scheme: scheme.into(), quantity, formal, fitted: fitted_order(&errors), errors }
+    }
+
+    /// True where the fitted order is the formal one, to [`TOLERANCE`].
+    pub fn is_formal(&self) -> bool {
+        (self.fitted - self.formal).abs() <= TOLERANCE
+    }
+}
+
+impl fmt::Display for Order {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { problem, scheme, quantity, formal, fitted, errors } = self;
+        write!(f, "{problem:<14} {scheme:<44} {quantity:<14} formal {formal}, fitted {fitted:.3}:")?;
+        errors.iter().try_for_each(|(_, error)| write!(f, " {error:.2e}"))
+    }
+}
+
+/// Prints all rows, and asserts that each fitted order is the formal one.
+///
+/// # Panics
+/// If one is not.
+pub fn assert_formal(rows: &[Order]) {
+    rows.iter().for_each(|row| println!("{row}"));
+    let off: Vec<&Order> = rows.iter().filter(|row| !row.is_formal()).collect();
+    assert!(off.is_empty(), "fitted orders that are not the formal ones: {off:#?}");
+}

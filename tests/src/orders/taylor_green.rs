@@ -1,0 +1,100 @@
+//! Orders on the decaying Taylor–Green vortex.
+
+use server::wind::Advection::{Bfecc, Conservative, MacCormack, SemiLagrangian};
+use server::wind::TimeScheme::{Reflection, RungeKutta3, Split};
+use server::wind::{Advection, Boundary, Config, Diffusion, Solver, TimeScheme};
+
+use super::Order;
+use crate::air::{run, still_air, velocity_difference, velocity_error};
+use crate::problems::TaylorGreen;
+
+/// Its side is one that the numbers of cells tried divide without rounding.
+const PROBLEM: TaylorGreen = TaylorGreen { side_m: 48.0, speed_m_per_s: 1.0, drift_m_per_s: [0.5, 0.25], viscosity_m2_per_s: 0.1875 };
+/// A viscosity (m²/s) at which the error of friction in time shows.
+const THICK_M2_PER_S: f64 = 3.0;
+const NAME: &str = "Taylor–Green";
+const SECS: f64 = 6.0;
+/// Largest sum of the speeds along both axes (m/s).
+const FASTEST_M_PER_S: f64 = 1.75;
+
+/// Every advection with every time scheme it is allowed with, and its formal order.
+const SCHEMES: [(Advection, TimeScheme, f64); 8] = [
+    (SemiLagrangian, Split, 1.0),
+    (MacCormack, Split, 1.0),
+    (Bfecc, Split, 1.0),
+    (Conservative, Split, 1.0),
+    (SemiLagrangian, Reflection, 1.0),
+    (MacCormack, Reflection, 2.0),
+    (Bfecc, Reflection, 2.0),
+    (Conservative, RungeKutta3, 2.0),
+];
+
+fn config(cells: usize) -> Config {
+    let spacing_m = PROBLEM.side_m / cells as f64;
+    Config {
+        viscosity_m2_per_s: PROBLEM.viscosity_m2_per_s as f32,
+        ..still_air([cells, 1, cells], [spacing_m; 3], [[Boundary::Wrap; 2]; 3])
+    }
+}
+
+fn vortex(config: &Config, steps: usize) -> Solver<f64> {
+    let mut air = Solver::new(config).expect("settings are allowed");
+    air.set_velocity(|position| PROBLEM.velocity(position, 0.0));
+    run(&mut air, SECS, steps);
+    air
+}
+
+/// Steps to the end at a Courant number.
+fn steps(cells: usize, courant: f64) -> usize {
+    (SECS * FASTEST_M_PER_S * cells as f64 / (PROBLEM.side_m * courant)).round() as usize
+}
+
+fn error_l2(config: &Config, steps: usize) -> f64 {
+    velocity_error(&vortex(config, steps), |position| PROBLEM.velocity(position, SECS)).l2
+}
+
+/// Every advection with every time scheme, time step in proportion to the spacing.
+pub fn advection_and_time(courant: f64, cells: &[usize]) -> Vec<Order> {
+    let mut rows = Vec::new();
+    for (advection, time, formal) in SCHEMES {
+        let dampings: &[f32] = if advection == Conservative { &[1.0, 0.0] } else { &[1.0] };
+        for &damping in dampings {
+            let errors = cells.iter().map(|&n| (PROBLEM.side_m / n as f64, error_l2(&Config { advection, time, damping, ..config(n) }, steps(n, courant))));
+            let note = if advection == Conservative { format!(", damping {damping}") } else { String::new() };
+            rows.push(Order::fit(NAME, format!("{advection:?} {time:?}{note}"), "dt ∝ h, L2", formal, errors.collect()));
+        }
+    }
+    rows
+}
+
+/// Conservative advection, time step in proportion to the square of the spacing.
+pub fn space(cells: &[usize]) -> Vec<Order> {
+    let row = |damping: f32| {
+        let steps = |n: usize| steps(n, 0.25 * cells[0] as f64 / n as f64);
+        let errors = cells.iter().map(|&n| (PROBLEM.side_m / n as f64, error_l2(&Config { damping, ..config(n) }, steps(n))));
+        Order::fit(NAME, format!("Conservative RungeKutta3, damping {damping}"), "h, L2", 2.0, errors.collect())
+    };
+    vec![row(1.0), row(0.0)]
+}
+
+/// Conservative advection on one grid, against itself at a much smaller time step.
+pub fn time(cells: usize) -> Vec<Order> {
+    let schemes = [
+        (Split, Diffusion::Explicit, 1.0),
+        (RungeKutta3, Diffusion::Explicit, 2.0),
+        (RungeKutta3, Diffusion::CrankNicolson, 2.0),
+        (RungeKutta3, Diffusion::Implicit, 1.0),
+        (RungeKutta3, Diffusion::GaussSeidel { sweeps: 100 }, 1.0),
+    ];
+    let coarsest = steps(cells, 0.35);
+    let row = |(time, diffusion, formal): (TimeScheme, Diffusion, f64)| {
+        let config = Config { time, diffusion, viscosity_m2_per_s: THICK_M2_PER_S as f32, ..config(cells) };
+        let reference = vortex(&config, 128 * coarsest);
+        let errors = [1, 2, 4, 8].map(|finer| {
+            let air = vortex(&config, finer * coarsest);
+            (SECS / (finer * coarsest) as f64, velocity_difference(&air, &reference).l2)
+        });
+        Order::fit(NAME, format!("Conservative {time:?} {diffusion:?}"), "dt, L2", formal, errors.to_vec())
+    };
+    schemes.map(row).to_vec()
+}
