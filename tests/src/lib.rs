@@ -1,15 +1,18 @@
 //! What the tests, charts and pictures of Prairie share.
 
+pub mod air;
 pub mod browser;
 pub mod chart;
 pub mod chromedriver;
 pub mod gauss_seidel;
 pub mod maps;
 pub mod norms;
+pub mod orders;
 pub mod pages;
 pub mod picture;
 pub mod prairie;
 pub mod problems;
 pub mod stage;
 pub mod synthetic;
+pub mod turntable;
 pub mod worlds;
