@@ -96,8 +96,9 @@ pub enum Portion {
 /// Spreads `field`, whose ghosts are filled, by a portion of a step of `dt_secs` (s); its ghosts are filled again after. `close` fills in the boundary's share
 /// of a field, `scratch` is room for two.
 ///
-/// Halves of the explicit scheme are midpoint steps (Runge–Kutta 2), each cut into parts of its limit; those of Crank–Nicolson an explicit and an implicit
-/// half. The first-order schemes do all in the second half.
+/// Halves of the explicit scheme are midpoint steps (Runge–Kutta 2), each cut into parts of its limit; those of Crank–Nicolson are Crank–Nicolson steps of
+/// half the length, with a solve each: an explicit half before the rest of a step and an implicit one after would cancel only if nothing came between them. The
+/// first-order schemes do all in the second half.
 #[allow(clippy::too_many_arguments, reason = "a kernel: numbers, a field and its scratch")]
 pub fn spread<R: Real>(
     scheme: Diffusion,
@@ -136,11 +137,12 @@ pub fn spread<R: Real>(
             }
         }
         (Diffusion::CrankNicolson, portion) => {
-            if portion != Portion::Second {
-                euler(field, 0.5 * dt_secs);
-            }
-            if let (Some(implicit), true) = (implicit, portion != Portion::First) {
-                implicit.step(grid, diffusivity_m2_per_s, 0.5 * dt_secs, field);
+            let secs = if portion == Portion::Whole { dt_secs } else { 0.5 * dt_secs };
+            if let Some(implicit) = implicit {
+                even.data.copy_from_slice(&field.data);
+                implicit.step(grid, diffusivity_m2_per_s, 0.5 * secs, field);
+                // The implicit half leads to the middle of the step, which the explicit half goes on from as far again.
+                field.data.iter_mut().zip(&even.data).for_each(|(value, &start)| *value = *value + *value - start);
                 close(field);
             }
         }

@@ -67,6 +67,23 @@ pub fn measure<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, planes: &mut [Pl
     }
 }
 
+/// Largest speed (m/s) along each axis that any face has, or gets if `pull` (m/s²) acts on it for `dt_secs` (s) either way.
+pub fn fastest_to_be<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, pull: &Velocity<R>, dt_secs: f64) -> [f64; 3] {
+    let dt = R::of(dt_secs);
+    [0, 1, 2].map(|axis| {
+        let (speeds, pulls, nx) = (&velocity.0[axis], &pull.0[axis].data, velocity.0[axis].shape[0]);
+        let faster = |fastest: R, speed: R| if speed > fastest { speed } else { fastest };
+        let rows = speeds.rows(grid).map(|at| {
+            let mut fastest = [R::zero(); LANES];
+            for (i, (speed, pull)) in speeds.data[at..][..nx].iter().zip(&pulls[at..][..nx]).enumerate() {
+                fastest[i % LANES] = faster(fastest[i % LANES], speed.abs() + dt * pull.abs());
+            }
+            fastest.into_iter().fold(R::zero(), faster)
+        });
+        rows.fold(R::zero(), faster).wide()
+    })
+}
+
 /// Partial sums and extremes side by side, so that they can be taken in vectors; they are added up in order.
 #[multiversion(targets("x86_64+avx2"))]
 fn measure_plane<R: Real>(grid: &Grid<R>, velocity: &Velocity<R>, k: usize) -> PlaneSums {

@@ -11,7 +11,7 @@ use super::profile::{MeanWind, Relaxation};
 use super::sources::Pushes;
 use super::state::{SolidError, State, StateError};
 use super::trace::Paths;
-use super::{Diffusion, Field, Grid, Place, Real, Velocity, advect, transport};
+use super::{Advection, Diffusion, Field, Grid, Place, Real, Velocity, advect, transport};
 use super::boundary::Walls;
 
 /// The solver in the precision the simulation runs in.
@@ -57,8 +57,10 @@ pub struct Solver<R: Real> {
     /// Gradient of the pressure over density (m/s²) of the step before, for schemes that use it.
     pub(super) pull: Velocity<R>,
     pub(super) dust: Option<Field<R>>,
-    /// Velocity at the start of a step, where there is dust to carry through the mean of old and new.
+    /// Velocity at the start of a part of a step, where dust is carried through the mean of old and new, or the part may prove too long.
     pub(super) old: Option<Velocity<R>>,
+    /// The pull at the same time, where it may have to be taken back: with dust, which is carried last.
+    pub(super) old_pull: Option<Velocity<R>>,
     pub(super) cover: Vec<R>,
     pub(super) seam_m: Option<[f64; 2]>,
     solid: Option<Vec<bool>>,
@@ -94,13 +96,15 @@ impl<R: Real> Solver<R> {
         let still = Velocity::zeros(&grid);
         let dust = Field::zeros(&grid, Place::Centre);
         let is_implicit = matches!(config.diffusion, Diffusion::Implicit | Diffusion::CrankNicolson);
+        let is_conservative = config.advection == Advection::Conservative;
         let has_sources = config.primitives.iter().any(|primitive| primitive.is_source());
         let mut solver = Self {
             time_secs: 0.0,
             velocity: still.clone(),
             pull: still.clone(),
             dust: config.dust.map(|_| dust.clone()),
-            old: config.dust.map(|_| still.clone()),
+            old: (config.dust.is_some() || is_conservative).then(|| still.clone()),
+            old_pull: (config.dust.is_some() && is_conservative).then(|| still.clone()),
             cover: vec![R::one(); grid.cells[0] * grid.cells[2]],
             seam_m: None,
             solid: None,

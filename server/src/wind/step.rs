@@ -8,6 +8,9 @@ use super::{Advection, Config, Diffusion, Dust, Grid, Jet, Real, Solver, TimeSch
 
 /// Share of the longest stable step that a substep takes, since air may be faster at its end than at its beginning.
 const SAFETY: f64 = 0.8;
+/// What a step that is too long for its air is said to break.
+const COURANT: &str = "the Courant number of conservative advection";
+const DUST_COURANT_NAME: &str = "the Courant number of conservative dust.advection";
 /// Sum of Courant numbers up to which limited transport of dust makes no new extrema.
 const DUST_COURANT: f64 = 0.5;
 
@@ -22,14 +25,14 @@ impl<R: Real> Solver<R> {
         }
         let (mut left_secs, mut substeps) = (dt_secs, 0);
         let convergence = loop {
-            let parts = parts(&self.config, &self.grid, self.health.fastest_m_per_s, left_secs, MAX_SUBSTEPS - substeps)?;
-            let part_secs = left_secs / f64::from(parts);
-            let convergence = self.substep(part_secs, jets)?;
+            let most = MAX_SUBSTEPS - substeps;
+            let parts = parts(&self.config, &self.grid, self.health.fastest_m_per_s, left_secs, most)?;
+            let (convergence, parts) = self.first_part(left_secs, parts, most, jets)?;
             substeps += 1;
             if parts == 1 {
                 break convergence;
             }
-            left_secs -= part_secs;
+            left_secs -= left_secs / f64::from(parts);
         };
         let spacing_m = self.grid.spacing_m.map(R::wide);
         Ok(StepReport {
@@ -58,21 +61,38 @@ impl<R: Real> Solver<R> {
         parts(&self.config, &self.grid, self.health.fastest_m_per_s, dt_secs, MAX_SUBSTEPS)?;
         if let Some(dust) = self.config.dust {
             self.stages[0].clone_from(&self.velocity);
-            self.carry_dust(&dust, dt_secs);
+            self.carry_dust(&dust, dt_secs)?;
         }
         Ok(())
     }
 
+    /// Takes the first of `parts` parts of what is left of a step, or of twice as many, again and again up to `most`, where the air gets too fast on the way.
+    fn first_part(&mut self, left_secs: f64, mut parts: u32, most: u32, jets: &[Jet]) -> Result<(Convergence, u32), StepError> {
+        loop {
+            match self.substep(left_secs / f64::from(parts), jets) {
+                Err(StepError::TooLong { .. }) if 2 * parts <= most => parts *= 2,
+                Err(StepError::TooLong { what, needed, stable_dt_secs, .. }) => {
+                    return Err(StepError::TooLong { what, dt_secs: left_secs, needed: needed * f64::from(parts), stable_dt_secs });
+                }
+                done => return Ok((done?, parts)),
+            }
+        }
+    }
+
+    /// Takes one part of a step. If it proves too long, the state is as before.
     fn substep(&mut self, dt_secs: f64, jets: &[Jet]) -> Result<Convergence, StepError> {
         if let Some(old) = &mut self.old {
             old.clone_from(&self.velocity);
         }
+        if let Some(old_pull) = &mut self.old_pull {
+            old_pull.clone_from(&self.pull);
+        }
         let gusts = sources::sources_at(&self.config, &self.grid, &self.mean, self.time_secs + 0.5 * dt_secs);
         self.pushes.set(&self.grid, &self.config.gusts, gusts, &self.velocity, &mut self.footprint);
         let convergence = match self.config.time {
-            TimeScheme::Split => self.split(dt_secs, jets),
+            TimeScheme::Split => self.split(dt_secs, jets)?,
             TimeScheme::Reflection => self.reflection(dt_secs, jets),
-            TimeScheme::RungeKutta3 => self.runge_kutta(dt_secs, jets),
+            TimeScheme::RungeKutta3 => self.runge_kutta(dt_secs, jets)?,
         };
         self.observe();
         if !self.health.kinetic_energy_m2_per_s2.is_finite() {
@@ -86,17 +106,32 @@ impl<R: Real> Solver<R> {
                 let mean = self.stages[0].0[axis].data.iter_mut().zip(old).zip(new);
                 mean.for_each(|((mean, &old), &new)| *mean = half * (old + new));
             }
-            self.carry_dust(&dust, dt_secs);
+            if let Err(error) = self.carry_dust(&dust, dt_secs) {
+                self.go_back();
+                return Err(error);
+            }
         }
         self.time_secs += dt_secs;
         Ok(convergence)
     }
 
+    /// Takes back what a part of a step did to the air.
+    fn go_back(&mut self) {
+        if let Some(old) = &self.old {
+            self.velocity.clone_from(old);
+        }
+        if let Some(old_pull) = &self.old_pull {
+            self.pull.clone_from(old_pull);
+        }
+        self.walls.blow(self.time_secs);
+        self.observe();
+    }
+
     /// Advection, forces, friction, projection, one after the other.
-    fn split(&mut self, dt_secs: f64, jets: &[Jet]) -> Convergence {
+    fn split(&mut self, dt_secs: f64, jets: &[Jet]) -> Result<Convergence, StepError> {
         if self.config.advection == Advection::Conservative {
             // The pressure's pull, which only Runge–Kutta 3 keeps, is 0.
-            self.transport(dt_secs, 0.0);
+            self.transport(dt_secs, 0.0)?;
         } else {
             self.trace(dt_secs);
             self.walls.blow(self.time_secs + dt_secs);
@@ -105,7 +140,7 @@ impl<R: Real> Solver<R> {
         }
         self.force(dt_secs, self.time_secs + 0.5 * dt_secs, jets);
         self.spread(Portion::Whole, dt_secs);
-        self.project(None)
+        Ok(self.project(None))
     }
 
     /// Half the forces and friction; the air of mid-step; half a step along its paths, reflection, half a step; half the friction and forces.
@@ -144,23 +179,29 @@ impl<R: Real> Solver<R> {
 
     /// Half the forces and friction; three stages of conservative transport under the old pressure; half the friction and forces; the correction of
     /// the pressure.
-    fn runge_kutta(&mut self, dt_secs: f64, jets: &[Jet]) -> Convergence {
+    fn runge_kutta(&mut self, dt_secs: f64, jets: &[Jet]) -> Result<Convergence, StepError> {
         let middle_secs = self.time_secs + 0.5 * dt_secs;
         let explicit = self.config.diffusion == Diffusion::Explicit;
         self.force(0.5 * dt_secs, middle_secs, jets);
         if !explicit {
             self.spread(Portion::First, dt_secs);
         }
-        self.transport(dt_secs, if explicit { self.config.viscosity_m2_per_s.into() } else { 0.0 });
+        self.transport(dt_secs, if explicit { self.config.viscosity_m2_per_s.into() } else { 0.0 })?;
         if !explicit {
             self.spread(Portion::Second, dt_secs);
         }
         self.force(0.5 * dt_secs, middle_secs, jets);
-        self.project(Some(dt_secs))
+        Ok(self.project(Some(dt_secs)))
     }
 
-    /// Carries the velocity by fluxes through faces, under the pressure of the step before.
-    fn transport(&mut self, dt_secs: f64, viscosity_m2_per_s: f64) {
+    /// Carries the velocity by fluxes through faces, under the pressure of the step before. Goes back if forces and pressure make the air too fast for that.
+    fn transport(&mut self, dt_secs: f64, viscosity_m2_per_s: f64) -> Result<(), StepError> {
+        let fastest_m_per_s = health::fastest_to_be(&self.grid, &self.velocity, &self.pull, dt_secs);
+        let stable_dt_secs = transport::stable_dt_secs(&self.grid, fastest_m_per_s, viscosity_m2_per_s);
+        if let Err(error) = count(COURANT, dt_secs, stable_dt_secs, 1) {
+            self.go_back();
+            return Err(error);
+        }
         let looks_around = self.config.canopy.is_some() || self.config.diffusion != Diffusion::Explicit || self.config.time == TimeScheme::Split;
         for (number, shares) in STAGES.into_iter().enumerate() {
             let [even, odd] = &mut self.stages;
@@ -190,6 +231,7 @@ impl<R: Real> Solver<R> {
             }
         }
         std::mem::swap(&mut self.velocity, &mut self.stages[0]);
+        Ok(())
     }
 
     /// Traces the air of the step's beginning.
@@ -257,10 +299,11 @@ impl<R: Real> Solver<R> {
         convergence
     }
 
-    /// Releases, settles and carries the dust through the air in the first stage.
-    fn carry_dust(&mut self, settings: &Dust, dt_secs: f64) {
+    /// Releases, settles and carries the dust through the air in the first stage. Changes nothing where that is too fast.
+    fn carry_dust(&mut self, settings: &Dust, dt_secs: f64) -> Result<(), StepError> {
         let (grid, air) = (self.grid, &self.stages[0]);
-        let Some(dust) = &mut self.dust else { return };
+        let parts = dust_parts(&self.config, settings, &grid, health::fastest_to_be(&grid, air, &self.pull, 0.0), dt_secs)?;
+        let Some(dust) = &mut self.dust else { return Ok(()) };
         let middle_secs = self.time_secs + 0.5 * dt_secs;
         let release = f64::from(settings.release_per_sec);
         for source in sources::sources_at(&self.config, &grid, &self.mean, middle_secs) {
@@ -281,9 +324,8 @@ impl<R: Real> Solver<R> {
         if settings.advection == Advection::Conservative {
             spread_apart = self.config.diffusion != Diffusion::Explicit;
             let in_flux = if spread_apart { 0.0 } else { diffusivity };
-            let parts = (dt_secs / dust_dt_secs(&grid, self.health.fastest_m_per_s, in_flux)).ceil().max(1.0);
-            let part_secs = dt_secs / parts;
-            for _ in 0..parts as u32 {
+            let part_secs = dt_secs / f64::from(parts);
+            for _ in 0..parts {
                 for (number, shares) in STAGES.into_iter().enumerate() {
                     let (carried, target) = match number {
                         0 => (&*dust, &mut *even),
@@ -306,13 +348,25 @@ impl<R: Real> Solver<R> {
         if spread_apart {
             spread(self.config.diffusion, Portion::Whole, &grid, diffusivity, dt_secs, dust, [even, odd], self.implicit.as_mut(), close);
         }
+        Ok(())
     }
 }
 
-/// Longest part (s) of a step in which limited transport of dust keeps within its bounds.
-fn dust_dt_secs<R: Real>(grid: &Grid<R>, fastest_m_per_s: [f64; 3], diffusivity_m2_per_s: f64) -> f64 {
+/// Parts, at least 1, to cut a part of a step into so that limited transport keeps dust within its bounds, in air of these speeds.
+fn dust_parts<R: Real>(config: &Config, dust: &Dust, grid: &Grid<R>, fastest_m_per_s: [f64; 3], dt_secs: f64) -> Result<u32, StepError> {
+    if dust.advection != Advection::Conservative {
+        return Ok(1);
+    }
+    let diffusivity = if config.diffusion == Diffusion::Explicit { f64::from(dust.diffusivity_m2_per_s) } else { 0.0 };
     let courant_per_sec: f64 = (0..3).map(|axis| fastest_m_per_s[axis] / grid.spacing_m[axis].wide()).sum();
-    (courant_per_sec / DUST_COURANT + diffuse::stable_dt_secs(grid, diffusivity_m2_per_s).recip()).recip()
+    let stable_dt_secs = (courant_per_sec / DUST_COURANT + diffuse::stable_dt_secs(grid, diffusivity).recip()).recip();
+    count(DUST_COURANT_NAME, dt_secs, stable_dt_secs, MAX_SUBSTEPS)
+}
+
+/// Parts, at least 1, of at most `stable_dt_secs` that make `dt_secs`, if they are no more than `most`.
+fn count(what: &'static str, dt_secs: f64, stable_dt_secs: f64, most: u32) -> Result<u32, StepError> {
+    let needed = (dt_secs / stable_dt_secs).ceil().max(1.0);
+    if needed <= f64::from(most) { Ok(needed as u32) } else { Err(StepError::TooLong { what, dt_secs, needed, stable_dt_secs }) }
 }
 
 /// Parts to cut a step into, at least 1, so that each is within the limits of the methods in air of these speeds.
@@ -320,26 +374,20 @@ fn parts<R: Real>(config: &Config, grid: &Grid<R>, fastest_m_per_s: [f64; 3], dt
     if !(dt_secs > 0.0 && dt_secs.is_finite()) {
         return Err(StepError::BadTimeStep { dt_secs });
     }
-    let count = |what, stable_dt_secs: f64, most: u32| {
-        let needed = (dt_secs / stable_dt_secs).ceil().max(1.0);
-        if needed <= f64::from(most) { Ok(needed as u32) } else { Err(StepError::TooLong { what, dt_secs, needed, stable_dt_secs }) }
-    };
     let explicit = config.diffusion == Diffusion::Explicit;
     let viscosity = if explicit { f64::from(config.viscosity_m2_per_s) } else { 0.0 };
     let parts = if config.advection == Advection::Conservative {
-        count("viscosity_m2_per_s", SAFETY * transport::stable_dt_secs(grid, [0.0; 3], viscosity), most)?;
-        count("the Courant number of conservative advection", SAFETY * transport::stable_dt_secs(grid, fastest_m_per_s, viscosity), most)?
+        count("viscosity_m2_per_s", dt_secs, SAFETY * transport::stable_dt_secs(grid, [0.0; 3], viscosity), most)?;
+        count(COURANT, dt_secs, SAFETY * transport::stable_dt_secs(grid, fastest_m_per_s, viscosity), most)?
     } else {
         // Explicit friction is cut into parts of its own.
-        count("viscosity_m2_per_s", diffuse::stable_dt_secs(grid, viscosity), most)?;
+        count("viscosity_m2_per_s", dt_secs, diffuse::stable_dt_secs(grid, viscosity), most)?;
         1
     };
     if let Some(dust) = config.dust {
         let diffusivity = if explicit { f64::from(dust.diffusivity_m2_per_s) } else { 0.0 };
-        count("dust.diffusivity_m2_per_s", diffuse::stable_dt_secs(grid, diffusivity), most)?;
-        if dust.advection == Advection::Conservative {
-            count("the Courant number of conservative dust.advection", dust_dt_secs(grid, fastest_m_per_s, diffusivity), most * MAX_SUBSTEPS)?;
-        }
+        count("dust.diffusivity_m2_per_s", dt_secs, diffuse::stable_dt_secs(grid, diffusivity), most)?;
+        dust_parts(config, &dust, grid, fastest_m_per_s, dt_secs / f64::from(parts))?;
     }
     Ok(parts)
 }

@@ -5,8 +5,8 @@ use crate::wind::{Boundary, Field, Grid, Place, Real};
 
 /// Solves `(1 − ν·dt·∇²)·u = start` exactly, one field at a time, by transforms along the axes of the box.
 ///
-/// Unconditionally stable; first order in dt, second in h. Preceded by an explicit step of the same length it makes the Crank–Nicolson scheme of twice the
-/// step, second order in both. On faces of outflow the velocity through them is held for the step.
+/// Unconditionally stable; first order in dt, second in h. Continued in a straight line to twice the step it is the Crank–Nicolson scheme, second order in
+/// both. On faces of outflow the velocity through them is held for the step.
 pub struct Implicit {
     /// One per place: the three faces, and the centre.
     solvers: [Option<Separable>; 4],
