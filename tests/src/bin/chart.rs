@@ -10,7 +10,7 @@ use tests::chart::machine::machine;
 use tests::chart::row::cells_text;
 use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
-use tests::chart::tables::{Size, with_tables};
+use tests::chart::tables::with_tables;
 use tests::chart::{Problem, wind};
 
 /// Measures methods on problems whose answer is known: how long each takes for how small an error.
@@ -72,7 +72,7 @@ fn main() -> Result<()> {
 
 fn write_tables(document: &Path) -> Result<()> {
     let text = std::fs::read_to_string(document).with_context(|| format!("{} cannot be read", document.display()))?;
-    let text = with_tables(&text, Size::Shown).with_context(|| document.display().to_string())?;
+    let text = with_tables(&text).with_context(|| document.display().to_string())?;
     std::fs::write(document, text).with_context(|| format!("{} cannot be written", document.display()))
 }
 
@@ -103,7 +103,9 @@ fn chart(model: &str, mut problems: Vec<Problem>, options: &Options) -> Result<(
     bar.finish_and_clear();
     println!("{model}: the fastest method for an error\n{machine}\n");
     println!("{}", summary(&problems, &rows, "l2"));
-    println!("Wall time is per simulated second; of a projection it is the whole. Next best is the best of another family, and how much longer it takes.");
+    println!(
+        "Wall time is per simulated second; of a projection it is the whole. Next best is the best of another family, and how much longer it takes."
+    );
     failures.iter().for_each(|failure| println!("failed: {failure}"));
     println!("{} files in {}", files.len(), options.out.display());
     Ok(())

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result};
 
-use super::{Problem, Row};
 use super::line::lines;
 use super::plot::{Labels, svg};
 use super::row::{csv, json};
+use super::{Problem, Row};
 
 /// Writes `MODEL.csv`, `MODEL.json` and `MODEL-PROBLEM.svg` for each problem that has rows into a folder, which is made where it is
 /// missing. Charts are of the root mean square error; `machine` says on what it was measured.
@@ -22,7 +22,8 @@ pub fn write_all(model: &str, problems: &[Problem], rows: &[Row], machine: &str,
         if lines.is_empty() {
             continue;
         }
-        let labels = Labels { title: &format!("{name}: what accuracy costs"), error, time: &format!("wall time per {per} (s)"), caption: machine };
+        let labels =
+            Labels { title: &format!("{name}: what accuracy costs"), error, time: &format!("wall time per {per} (s)"), caption: machine };
         files.push((format!("{model}-{}.svg", file_name(name)), svg(&lines, labels)?));
     }
     let write = |(name, text): (String, String)| {

@@ -218,7 +218,11 @@ mod tests {
     fn a_family_has_one_colour_and_its_later_members_hollow_markers() {
         let rows = ["a, Courant 1", "a, Courant 2", "b"].map(|method| row("p", method, 8, 0.1, 1e-3));
         let text = svg(&lines(&rows, "p", "l2"), LABELS).unwrap();
-        let fills: Vec<&str> = text.lines().filter(|line| line.contains("<polygon")).filter_map(|line| line.split("fill=\"").nth(1)?.split('"').next()).collect();
+        let fills: Vec<&str> = text
+            .lines()
+            .filter(|line| line.contains("<polygon"))
+            .filter_map(|line| line.split("fill=\"").nth(1)?.split('"').next())
+            .collect();
         // On the plane and in the legend.
         assert_eq!(fills, ["#0072B2", "#0072B2", "#FFFFFF", "#FFFFFF", "#D55E00", "#D55E00"]);
     }

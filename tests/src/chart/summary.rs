@@ -102,7 +102,8 @@ mod tests {
         ];
         let problem = |name| Problem { name, error: "error", per: "turn", runs: Vec::new() };
         let text = summary(&[problem("vortex"), problem("not run")], &rows, "l2");
-        let words: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split("  ").map(str::trim).filter(|word| !word.is_empty()).collect()).collect();
+        let words: Vec<Vec<&str>> =
+            text.lines().skip(1).map(|line| line.split("  ").map(str::trim).filter(|word| !word.is_empty()).collect()).collect();
         assert_eq!(
             words,
             [

@@ -45,8 +45,8 @@ const COURANT: [f64; 2] = [0.5, 2.0];
 pub fn problems(quick: bool) -> Vec<Problem> {
     let upto = |cells: &'static [usize], finest: usize| &cells[..if quick { finest } else { cells.len() }];
     let mut problems = vec![
-        flows::taylor_green(upto(&[16, 32, 64, 128, 256], 3)),
-        flows::ethier_steinman(upto(&[8, 16, 32, 64], 2)),
+        flows::taylor_green(upto(&[16, 32, 64, 128, 192], 3)),
+        flows::ethier_steinman(upto(&[8, 16, 32, 48], 2)),
         cavity::cavity("Cavity, Re = 100", &GHIA_RE_100, upto(&[16, 32, 64], 1)),
         cavity::cavity("Cavity, Re = 1000", &BOTELLA_PEYRET_RE_1000, upto(&[16, 32, 64], 1)),
         dust::slotted_disc(upto(&[50, 100, 200], 1)),

@@ -48,7 +48,9 @@ fn octaves(n: usize, position: [f64; 3]) -> [f64; 3] {
     let octaves = std::iter::successors(Some(1.0), |k| Some(2.0 * k)).take_while(|k| *k <= n as f64 / 4.0);
     octaves.fold([0.0; 3], |sum, k| {
         let phase = |axis: usize| k * TAU * position[axis] / n as f64 + k;
-        std::array::from_fn(|axis| sum[axis] + k.powf(-1.0 / 3.0) * phase(axis).sin() * (phase((axis + 1) % 3) + phase((axis + 2) % 3)).cos())
+        std::array::from_fn(|axis| {
+            sum[axis] + k.powf(-1.0 / 3.0) * phase(axis).sin() * (phase((axis + 1) % 3) + phase((axis + 2) % 3)).cos()
+        })
     })
 }
 
