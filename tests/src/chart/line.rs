@@ -36,8 +36,13 @@ pub fn lines<'a>(rows: &'a [Row], problem: &str, norm: &str) -> Vec<Line<'a>> {
     distinct(rows.iter().copied(), |row| &row.method).into_iter().map(line).collect()
 }
 
+/// The methods that differ only in what follows their last comma, such as `, Courant 2`, by what comes before.
+pub fn family(method: &str) -> &str {
+    method.rsplit_once(", ").map_or(method, |(family, _)| family)
+}
+
 impl Line<'_> {
-    /// Wall time (s per simulated second) in which the method gets to `error` or below: the cheapest of its runs that do, or less where its line, straight in the
+    /// Wall time (s, as in [`Row::seconds`]) in which the method gets to `error` or below: the cheapest of its runs that do, or less where its line, straight in the
     /// logarithms of both, crosses `error` between two runs. `None` where no run gets there: lines are not extended.
     pub fn seconds_at(&self, error: f64) -> Option<f64> {
         let reached = self.rows.iter().filter(|row| row.error <= error).map(|row| row.seconds);
@@ -84,6 +89,11 @@ mod tests {
         let rows = [row("p", "a", 16, 1e-2, 1.0), row("p", "a", 32, 1e-3, 50.0), row("p", "a", 64, 1e-4, 2.0)];
         let [line] = lines(&rows, "p", "l2").try_into().unwrap();
         assert_eq!(line.seconds_at(1e-3), Some(2.0));
+    }
+
+    #[test]
+    fn a_family_is_what_comes_before_the_last_comma() {
+        assert_eq!(["conservative, damping 0, Courant 2", "Direct"].map(family), ["conservative, damping 0", "Direct"]);
     }
 
     #[test]
