@@ -14,9 +14,15 @@ pub struct Scratch<R> {
 }
 
 impl<R: Real> Scratch<R> {
-    /// Room for one field of `grid`.
-    pub fn new(grid: &Grid<R>) -> Self {
-        Self { carried: Field::zeros(grid, Place::Centre), bounds: vec![[R::zero(); 2]; grid.padded_len()] }
+    /// Room for one field of `grid` of `len` values in memory; 0 where nothing will be carried.
+    pub fn new(grid: &Grid<R>, len: usize) -> Self {
+        let carried = Field { place: Place::Centre, shape: grid.cells, data: vec![R::zero(); len] };
+        Self { carried, bounds: vec![[R::zero(); 2]; len] }
+    }
+
+    /// Numbers held.
+    pub(super) fn values(&self) -> usize {
+        self.carried.data.len() + 2 * self.bounds.len()
     }
 }
 
