@@ -266,6 +266,7 @@ fn an_unfinished_projection_takes_energy_only() {
         solver.set_velocity(|[x, y, _]| [(0.7 * x).sin(), (1.1 * y).cos(), 0.0]);
         solver.set_velocity(|[x, _, z]| [0.0, (0.9 * x).sin() * 1e-2, (0.4 * z).cos() * 1e-2]);
         let start = energy(&solver);
+        assert!(start <= 2.0 * 216.0 * 1e-4, "{method:?}: more than it was set to, {start}");
         for _ in 0..20 {
             solver.step(0.01, &[]).expect("a short step");
             assert!(energy(&solver) <= start * 1.001, "{method:?}: {} of {start}", energy(&solver));
