@@ -18,10 +18,8 @@ pub fn turntable<R: Real>(rotation: Rotation, advection: Advection, cells: usize
     let spacing_m = rotation.side_m / cells as f64;
     let dust = Dust { advection, diffusivity_m2_per_s: 0.0, release_per_sec: 0.0, settling_per_sec: 0.0 };
     let closed = [Boundary::FreeSlip; 2];
-    let config = Config {
-        dust: Some(dust),
-        ..still_air([cells, 1, cells], [spacing_m, 1.0, spacing_m], [closed, [Boundary::Wrap; 2], closed])
-    };
+    let config =
+        Config { dust: Some(dust), ..still_air([cells, 1, cells], [spacing_m, 1.0, spacing_m], [closed, [Boundary::Wrap; 2], closed]) };
     let mut air = Solver::new(&config).expect("settings are allowed");
     let half_m = 0.5 * spacing_m;
     air.set_velocity(|position| {

@@ -2,7 +2,7 @@
 //!
 //! Over and in a uniform canopy, driven by an acceleration G and slowed by an eddy viscosity ν, the steady profile is known: above, `ν·U″ = −G`; inside,
 //! `ν·U″ = C_d·a·U² − G`. Deep in the canopy `U = U_b = √(G / C_d·a)`; one integration gives
-//! `ν/2·U′² = C_d·a/3·(U − U_b)²·(U + 2U_b)`, another `U = U_b·(3·coth²θ − 2)`, with θ linear in depth.
+//! `ν/2·U′² = C_d·a/3·(U − U_b)²·(U + 2U_b)` (where G does not count: `ν·U″ = C_d·a·U²`, and a shear length `U/U′ = √(3ν / (2·C_d·a·U))`), another `U = U_b·(3·coth²θ − 2)`, with θ linear in depth.
 
 use server::wind::{Boundary, Canopy, Config, Solver};
 use tests::air::still_air;
@@ -28,7 +28,9 @@ impl Profile {
         let deep_m_per_s = (FORCE_M_PER_S2 / DRAG_PER_M).sqrt();
         // The slope at canopy height carries all of the force on the air above.
         let slope_per_sec = FORCE_M_PER_S2 * (TOP_M - canopy_m) / VISCOSITY_M2_PER_S;
-        let cubic = |u: f64| DRAG_PER_M / 3.0 * (u - deep_m_per_s).powi(2) * (u + 2.0 * deep_m_per_s) - 0.5 * VISCOSITY_M2_PER_S * slope_per_sec.powi(2);
+        let cubic = |u: f64| {
+            DRAG_PER_M / 3.0 * (u - deep_m_per_s).powi(2) * (u + 2.0 * deep_m_per_s) - 0.5 * VISCOSITY_M2_PER_S * slope_per_sec.powi(2)
+        };
         let [mut low, mut high] = [deep_m_per_s, 1000.0];
         for _ in 0..100 {
             let middle = 0.5 * (low + high);
@@ -83,17 +85,39 @@ fn profile(canopy_m: f64, layers: usize) -> Vec<(f64, f64)> {
     }
     panic!("the wind does not settle");
 }
+const CANOPIES_M: [f64; 3] = [4.0, 6.0, 8.0];
+
 #[test]
-fn a() {
-    let t = std::time::Instant::now();
-    for canopy_m in [4.0, 6.0, 8.0] {
+fn the_profile_is_the_exact_one_to_second_order() {
+    let row = |canopy_m: f64| {
         let exact = Profile::new(canopy_m);
-        let errors = [16, 32, 64].map(|n| {
-            let found = profile(canopy_m, n);
-            (TOP_M / n as f64, Norms::of(found.iter().map(|&(y, u)| (u, exact.at(y)))).l2)
+        let errors = [16, 32, 64].map(|layers| {
+            let found = profile(canopy_m, layers);
+            (TOP_M / layers as f64, Norms::of(found.iter().map(|&(height_m, u)| (u, exact.at(height_m)))).l2)
         });
-        println!("{}", Order::fit("Canopy", format!("{canopy_m} m"), "h, L2", 2.0, errors.to_vec()));
-        println!("top {} deep {} Ls {} at ground {}", exact.top_m_per_s, exact.deep_m_per_s, exact.shear_length_m(), exact.at(0.0));
+        Order::fit("Canopy", format!("{canopy_m} m high"), "h, L2", 2.0, errors.to_vec())
+    };
+    assert_formal(&CANOPIES_M.map(row));
+}
+
+#[test]
+fn the_inflection_is_at_canopy_height_and_the_shear_layer_as_thick_as_theory_gives() {
+    for canopy_m in CANOPIES_M {
+        let spacing_m = TOP_M / 32.0;
+        let found = profile(canopy_m, 32);
+        let curvature = |three: &[(f64, f64)]| three[0].1 - 2.0 * three[1].1 + three[2].1;
+        // Below the inflection the profile curves forwards, above it backwards.
+        let turns: Vec<f64> = found
+            .windows(4)
+            .filter(|four| curvature(&four[..3]) > 0.0 && curvature(&four[1..]) <= 0.0)
+            .map(|four| 0.5 * (four[1].0 + four[2].0))
+            .collect();
+        let above = found.iter().position(|&(height_m, _)| height_m > canopy_m).expect("air above");
+        let [(_, below), (_, above)] = [found[above - 1], found[above]];
+        let length_m = 0.5 * (below + above) / ((above - below) / spacing_m);
+        let exact_m = Profile::new(canopy_m).shear_length_m();
+        println!("canopy of {canopy_m} m: inflection at {turns:.2?} m, U/U′ there {length_m:.3} m, in theory {exact_m:.3} m");
+        assert!(turns.len() == 1 && (turns[0] - canopy_m).abs() <= 0.5 * spacing_m, "{turns:?}");
+        assert!((length_m / exact_m - 1.0).abs() < 0.03, "{length_m} {exact_m}");
     }
-    println!("{:?}", t.elapsed());
 }

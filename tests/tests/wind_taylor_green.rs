@@ -1,6 +1,18 @@
-use tests::orders;
+//! On the decaying Taylor–Green vortex, drifting through a box that wraps, every scheme has its formal order.
+
+use tests::orders::{self, assert_formal};
+
 #[test]
-fn a() { let t = std::time::Instant::now();
- for c in [0.25,0.4] { for r in orders::advection_and_time(c, &[24, 48, 96]) { println!("{c} {r}"); }; println!("{:?}", t.elapsed()); } }
+fn every_advection_with_every_time_scheme_has_its_order() {
+    assert_formal(&orders::advection_and_time());
+}
+
 #[test]
-fn c() { let t = std::time::Instant::now();for r in orders::time(16) {println!("{r}"); } ; println!("{:?}", t.elapsed()); }
+fn conservative_advection_is_second_order_in_space() {
+    assert_formal(&orders::space());
+}
+
+#[test]
+fn time_schemes_and_diffusion_have_their_order_in_time() {
+    assert_formal(&orders::time());
+}

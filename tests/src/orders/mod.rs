@@ -14,6 +14,11 @@ use std::fmt;
 
 use crate::norms::fitted_order;
 
+/// Every row; takes a minute or two.
+pub fn all() -> Vec<Order> {
+    [advection_and_time, space, time, beltrami, rotating_gaussian, heat_space, heat_time].into_iter().flat_map(|rows| rows()).collect()
+}
+
 /// How far a fitted order may be from the formal one.
 pub const TOLERANCE: f64 = 0.1;
 
