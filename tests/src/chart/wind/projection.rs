@@ -24,7 +24,7 @@ const MOST_SWEEPS: u32 = 100_000;
 const CLOSED: [[Boundary; 2]; 3] = [[Boundary::FreeSlip; 2]; 3];
 
 /// Air with waves of every octave in a closed cube of `n`³ cells, projected once from a first guess of 0.
-pub fn projection(name: &'static str, n: usize) -> Problem {
+pub(super) fn projection(name: &'static str, n: usize) -> Problem {
     let upto = |method| TOLERANCES.map(|tolerance| Pressure::Iterative(method, Effort { tolerance, sweeps: MOST_SWEEPS }));
     let swept = |method| SWEEPS.map(|sweeps| Pressure::Iterative(method, Effort { tolerance: 0.0, sweeps }));
     let mut runs = vec![run("direct", n, move || staggered(n, Pressure::Direct))];
