@@ -15,7 +15,7 @@ use crate::norms::Norms;
 /// Relative residuals at which the methods that get there stop.
 const TOLERANCES: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
 /// Numbers of sweeps of those that only get there after thousands.
-const SWEEPS: [u32; 5] = [10, 30, 100, 300, 1000];
+const SWEEPS: [u32; 4] = [10, 30, 100, 300];
 /// Sweeps in 000's listings.
 const SWEEPS_OF_000: u32 = 20;
 /// More than any method needs for a tolerance.
