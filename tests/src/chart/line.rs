@@ -2,12 +2,12 @@
 
 use super::Row;
 
-/// The runs of one method on one problem, from the coarsest error to the finest.
+/// The runs of one method on one problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line<'a> {
     /// The method.
     pub method: &'a str,
-    /// Its rows, by falling error.
+    /// Its rows, in the order of the runs: from coarse to fine, whether the error falls or not.
     pub rows: Vec<&'a Row>,
 }
 
@@ -28,11 +28,7 @@ pub fn lines<'a>(rows: &'a [Row], problem: &str, norm: &str) -> Vec<Line<'a>> {
     let positive = |x: f64| x > 0.0 && x.is_finite();
     let fits = |row: &&Row| row.problem == problem && row.norm == norm && positive(row.error) && positive(row.seconds);
     let rows: Vec<&Row> = rows.iter().filter(fits).collect();
-    let line = |method| {
-        let mut rows: Vec<&Row> = rows.iter().copied().filter(|row| row.method == method).collect();
-        rows.sort_by(|a, b| b.error.total_cmp(&a.error));
-        Line { method, rows }
-    };
+    let line = |method| Line { method, rows: rows.iter().copied().filter(|row| row.method == method).collect() };
     distinct(rows.iter().copied(), |row| &row.method).into_iter().map(line).collect()
 }
 
@@ -86,9 +82,11 @@ mod tests {
 
     #[test]
     fn a_line_that_turns_back_counts_its_cheapest_way() {
-        let rows = [row("p", "a", 16, 1e-2, 1.0), row("p", "a", 32, 1e-3, 50.0), row("p", "a", 64, 1e-4, 2.0)];
+        let rows =
+            [row("p", "a", 16, 1e-2, 1.0), row("p", "a", 32, 1e-3, 50.0), row("p", "a", 64, 1e-4, 2.0), row("p", "a", 128, 1e-1, 9.0)];
         let [line] = lines(&rows, "p", "l2").try_into().unwrap();
         assert_eq!(line.seconds_at(1e-3), Some(2.0));
+        assert_eq!(line.rows.iter().map(|row| row.cells[0]).collect::<Vec<_>>(), [16, 32, 64, 128]);
     }
 
     #[test]

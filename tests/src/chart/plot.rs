@@ -87,7 +87,7 @@ pub fn svg(lines: &[Line], labels: Labels) -> Result<String> {
 
     let pixels = |rows: &[&super::Row]| rows.iter().map(|row| plane.map_coordinate(&(row.error, row.seconds))).collect::<Vec<_>>();
     let best = pixels(&front(lines));
-    best.iter().try_for_each(|&at| root.draw(&Circle::new(at, 7, FRONT.filled())))?;
+    best.iter().try_for_each(|&at| root.draw(&Circle::new(at, 11, FRONT.filled())))?;
     root.draw(&PathElement::new(best, FRONT.stroke_width(14)))?;
     let mut families: Vec<&str> = Vec::new();
     let step = (560 / (lines.len() as i32 + 1)).min(26);

@@ -17,7 +17,7 @@ const STEADY_M_PER_S: f64 = 2e-4;
 const LONGEST_SECS: f64 = 60.0;
 
 /// The flow in a square of 1 m under a lid of 1 m/s, once it is steady, against a table on both centrelines. Errors below those of the table mean nothing.
-pub fn cavity(name: &'static str, table: &'static Cavity, cells: &[usize]) -> Problem {
+pub(super) fn cavity(name: &'static str, table: &'static Cavity, cells: &[usize]) -> Problem {
     let mut runs = Vec::new();
     for choice in METHODS {
         for courant in COURANT {

@@ -17,14 +17,14 @@ const ADVECTIONS: [(&str, Advection); 4] = [
 const ROTATION: Rotation = Rotation { side_m: 100.0, period_secs: 628.0 };
 
 /// Zalesak's disc, turned once.
-pub fn slotted_disc(cells: &[usize]) -> Problem {
+pub(super) fn slotted_disc(cells: &[usize]) -> Problem {
     let disc = SlottedDisc(ROTATION);
     let mean = move |position, spacing_m| disc.mean_density(position, [spacing_m; 2], 8, 0.0);
     Problem { name: "Slotted disc", error: "rms error of density", per: "simulated second", runs: turned_once(cells, mean) }
 }
 
 /// A smooth hill, turned once.
-pub fn rotating_gaussian(cells: &[usize]) -> Problem {
+pub(super) fn rotating_gaussian(cells: &[usize]) -> Problem {
     let hill = RotatingGaussian { rotation: ROTATION, width: 0.04 };
     let density = move |position, _| hill.density(position, 0.0);
     Problem { name: "Rotating Gaussian", error: "rms error of density", per: "simulated second", runs: turned_once(cells, density) }

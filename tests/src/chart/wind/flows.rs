@@ -15,7 +15,7 @@ const BELTRAMI: EthierSteinman = EthierSteinman { side_m: 2.0, speed_m_per_s: 1.
 const BELTRAMI_FASTEST_M_PER_S: f64 = 3.5;
 
 /// A drifting vortex in a box that wraps, over 2 s; by the method of 000 too.
-pub fn taylor_green(cells: &[usize]) -> Problem {
+pub(super) fn taylor_green(cells: &[usize]) -> Problem {
     let staggered = METHODS.map(|choice| (Method::Staggered, choice));
     let as_in_000: (Method, Choice) = (Method::StableFluids, ("method of 000", |_| ()));
     let mut runs = Vec::new();
@@ -45,7 +45,7 @@ fn vortex(method: Method, name: &str, choose: fn(&mut Config), n: usize, courant
 }
 
 /// A flow in three dimensions through all faces of a box, over half a second.
-pub fn ethier_steinman(cells: &[usize]) -> Problem {
+pub(super) fn ethier_steinman(cells: &[usize]) -> Problem {
     let mut runs = Vec::new();
     for choice in METHODS {
         for courant in COURANT {

@@ -28,7 +28,7 @@ const SCHEMES: [Scheme; 5] = [
 ];
 
 /// Heat that spreads in a square that wraps, for two seconds. Explicit steps beyond their limit are cut into parts.
-pub fn heat_kernel(cells: &[usize]) -> Problem {
+pub(super) fn heat_kernel(cells: &[usize]) -> Problem {
     let mut runs = Vec::new();
     for scheme in SCHEMES {
         for number in NUMBERS {
