@@ -14,7 +14,7 @@ use crate::problems::Cavity;
 /// Largest change of a velocity in a second (m/s; the lid's is 1) at which the flow counts as steady.
 const STEADY_M_PER_S: f64 = 2e-4;
 /// Longest time (s) that a flow gets to become steady: some of the methods never do.
-const LONGEST_SECS: f64 = 60.0;
+const LONGEST_SECS: f64 = 40.0;
 
 /// The flow in a square of 1 m under a lid of 1 m/s, once it is steady, against a table on both centrelines. Errors below those of the table mean nothing.
 pub(super) fn cavity(name: &'static str, table: &'static Cavity, cells: &[usize]) -> Problem {

@@ -47,8 +47,8 @@ pub fn problems(quick: bool) -> Vec<Problem> {
     let mut problems = vec![
         flows::taylor_green(upto(&[16, 32, 64, 128, 192], 3)),
         flows::ethier_steinman(upto(&[8, 16, 32, 48], 2)),
-        cavity::cavity("Cavity, Re = 100", &GHIA_RE_100, upto(&[16, 32, 64], 1)),
-        cavity::cavity("Cavity, Re = 1000", &BOTELLA_PEYRET_RE_1000, upto(&[16, 32, 64], 1)),
+        cavity::cavity("Cavity, Re = 100", &GHIA_RE_100, upto(&[8, 16, 32], 2)),
+        cavity::cavity("Cavity, Re = 1000", &BOTELLA_PEYRET_RE_1000, upto(&[16, 32, 48], 1)),
         dust::slotted_disc(upto(&[50, 100, 200], 1)),
         dust::rotating_gaussian(upto(&[50, 100, 200], 1)),
         heat::heat_kernel(upto(&[16, 32, 64, 128], 3)),
