@@ -97,6 +97,9 @@ impl<R: Real> Solver<R> {
         let dust = Field::zeros(&grid, Place::Centre);
         let is_implicit = matches!(config.diffusion, Diffusion::Implicit | Diffusion::CrankNicolson);
         let is_conservative = config.advection == Advection::Conservative;
+        let traces_paths = !is_conservative || config.dust.is_some_and(|dust| dust.advection != Advection::Conservative);
+        let path_len = if traces_paths { grid.padded_len() } else { 0 };
+        let dust_stage = if config.dust.is_some() { dust.clone() } else { Field { data: Vec::new(), ..dust.clone() } };
         let has_sources = config.primitives.iter().any(|primitive| primitive.is_source());
         let mut solver = Self {
             time_secs: 0.0,
@@ -110,10 +113,10 @@ impl<R: Real> Solver<R> {
             solid: None,
             walls: Walls::new(&grid, Box::new(move |[_, y, _], _| mean.at(y.max(0.0)))),
             stages: [still.clone(), still],
-            dust_stages: [dust.clone(), dust],
-            centres: vec![[R::zero(); 4]; grid.padded_len()],
-            paths: Paths::zeros(&grid),
-            advection: advect::Scratch::new(&grid),
+            dust_stages: [dust_stage.clone(), dust_stage],
+            centres: vec![[R::zero(); 4]; path_len],
+            paths: Paths::at_rest(path_len),
+            advection: advect::Scratch::new(&grid, path_len),
             transport: transport::Scratch::new(&grid),
             projection: Projection::new(&grid, config.pressure, None),
             implicit: is_implicit.then(|| Implicit::new(&grid)),
@@ -241,6 +244,17 @@ impl<R: Real> Solver<R> {
         if let Some(dust) = &mut self.dust {
             dust.fill(&self.grid, f);
         }
+    }
+
+    /// Memory (bytes) of the fields and of what is kept for them from step to step, but for what an iterative pressure or an implicit diffusion needs beside
+    /// its unknowns.
+    pub fn memory_bytes(&self) -> usize {
+        let velocities = [&self.velocity, &self.pull, &self.stages[0], &self.stages[1]].into_iter().chain(&self.old).chain(&self.old_pull);
+        let fields = velocities.flat_map(|velocity| &velocity.0).chain(&self.dust).chain(&self.dust_stages);
+        let values: usize = fields.map(|field| field.data.len()).sum();
+        let traced = 4 * (self.centres.len() + self.paths.back.len() + self.paths.ahead.len());
+        let scratch = self.advection.values() + self.transport.values() + self.cover.len();
+        size_of::<R>() * (values + traced + scratch) + size_of::<f64>() * (3 * self.grid.len() + self.inflow.len())
     }
 
     /// The velocity on its faces.

@@ -304,3 +304,18 @@ fn primitives_blow_as_their_names_say() {
         assert!((4.0..7.0).contains(&speed), "{shape:?}: {speed}");
     }
 }
+
+/// Server documentation states these figures.
+#[test]
+fn memory_is_what_is_stated() {
+    let memory = |config: &Config| WindSolver::new(config).unwrap().memory_bytes();
+    let default = Config::default();
+    let dusty = Config { dust: Some(Dust::default()), ..Config::default() };
+    let traced = Config { advection: Advection::Bfecc, time: TimeScheme::Reflection, ..Config::default() };
+    let large = Config { cells: [64, 32, 64], ..Config::default() };
+    println!("{} {} {} {}", memory(&default), memory(&dusty), memory(&traced), memory(&large));
+    assert!((1_200_000..1_500_000).contains(&memory(&default)));
+    assert!((1_400_000..1_900_000).contains(&memory(&dusty)));
+    assert!((1_900_000..2_500_000).contains(&memory(&traced)));
+    assert!((13_000_000..15_000_000).contains(&memory(&large)));
+}

@@ -14,9 +14,9 @@ pub struct Paths<R> {
 }
 
 impl<R: Real> Paths<R> {
-    /// Paths of air at rest.
-    pub fn zeros(grid: &Grid<R>) -> Self {
-        let rest = vec![[R::zero(); 4]; grid.padded_len()];
+    /// Paths of air at rest, as many as a field has values in memory.
+    pub fn at_rest(len: usize) -> Self {
+        let rest = vec![[R::zero(); 4]; len];
         Self { back: rest.clone(), ahead: rest }
     }
 }

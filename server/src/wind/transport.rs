@@ -56,6 +56,11 @@ impl<R: Real> Scratch<R> {
         let tasks = (grid.cells[2] + 1).div_ceil(TASK_PLANES);
         Self { fluxes: vec![R::zero(); per_task * tasks], per_task }
     }
+
+    /// Numbers held.
+    pub(super) fn values(&self) -> usize {
+        self.fluxes.len()
+    }
 }
 
 /// One stage of a Runge–Kutta step of one field.

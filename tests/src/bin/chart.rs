@@ -1,8 +1,8 @@
-//! Measures methods: wall time against error, as files and as a summary on the screen.
+//! Measures methods: wall time against error, as files and as a summary on the screen; and the tables of the documents.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Result, ensure};
+use anyhow::{Context as _, Result, ensure};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use tests::chart::files::write_all;
@@ -10,7 +10,8 @@ use tests::chart::machine::machine;
 use tests::chart::row::cells_text;
 use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
-use tests::chart::{Row, Run, wind};
+use tests::chart::tables::with_tables;
+use tests::chart::{Problem, wind};
 
 /// Measures methods on problems whose answer is known: how long each takes for how small an error.
 ///
@@ -26,7 +27,8 @@ struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   cargo run --release -p tests --bin chart -- wind
-  cargo run --release -p tests --bin chart -- wind --quick --only MacCormack --out /tmp/charts";
+  cargo run --release -p tests --bin chart -- wind --quick --only cavity --out /tmp/charts
+  cargo run --release -p tests --bin chart -- wind --tables tests/README.md";
 
 #[derive(Subcommand)]
 enum Model {
@@ -36,65 +38,75 @@ enum Model {
 }
 
 const FILES: &str = "\
-Files in DIR:
+Files in DIR, written anew as each problem is done:
   wind-PROBLEM.svg   error across, time up, both logarithmic; one line per method, further left
                      and down is better; the Pareto front, which nothing beats, is highlighted
   wind.csv, .json    every figure: model, problem, method, cells, dt_secs, norm (l1, l2 = root mean
-                     square, linf), error (m/s), seconds (wall time per simulated second)
-  wind-orders.md     order in which each method's error falls as grid and time step are refined
+                     square, linf), error, seconds (wall time per simulated second or projection)
 
 On the screen, for each problem and a few errors: the method that gets there in the least time, read
-from its line between two runs, and by how much the next one takes longer.";
+from its line between two runs, and by how much the best of another family takes longer.";
 
 #[derive(Args)]
 struct Options {
     /// Folder the files are written to
     #[arg(long, value_name = "DIR", default_value = "target/charts")]
     out: PathBuf,
-    /// Coarse grids and few repeats: seconds instead of minutes, for a look
+    /// Coarse grids and few repeats: less than a minute, for a look
     #[arg(long)]
     quick: bool,
     /// Only problems and methods with this word in their name
     #[arg(long, value_name = "WORD")]
     only: Option<String>,
+    /// No charts: write the tables of fitted orders and limits in this document anew
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["out", "quick", "only"])]
+    tables: Option<PathBuf>,
 }
 
 fn main() -> Result<()> {
     match Arguments::parse().model {
-        Model::Wind(options) => chart("wind", "rms error of velocity (m/s)", wind::runs(options.quick), &options),
+        Model::Wind(Options { tables: Some(document), .. }) => write_tables(&document),
+        Model::Wind(options) => chart("wind", wind::problems(options.quick), &options),
     }
 }
 
-fn chart(model: &str, error: &str, mut runs: Vec<Run>, options: &Options) -> Result<()> {
+fn write_tables(document: &Path) -> Result<()> {
+    let text = std::fs::read_to_string(document).with_context(|| format!("{} cannot be read", document.display()))?;
+    let text = with_tables(&text).with_context(|| document.display().to_string())?;
+    std::fs::write(document, text).with_context(|| format!("{} cannot be written", document.display()))
+}
+
+/// Measures, and writes the files after each problem, so that what is cut short keeps what it has.
+fn chart(model: &str, mut problems: Vec<Problem>, options: &Options) -> Result<()> {
     if let Some(word) = &options.only {
         let has = |name: &str| name.to_lowercase().contains(&word.to_lowercase());
-        runs.retain(|run| has(run.problem) || has(&run.method));
-        ensure!(!runs.is_empty(), "--only {word}: no problem or method has this in its name");
+        problems.iter_mut().filter(|problem| !has(problem.name)).for_each(|problem| problem.runs.retain(|run| has(&run.method)));
+        problems.retain(|problem| !problem.runs.is_empty());
+        ensure!(!problems.is_empty(), "--only {word}: no problem or method has this in its name");
     }
-    let machine = machine();
-    let (rows, failures) = measure_all(model, &runs, if options.quick { Repeats::QUICK } else { Repeats::THOROUGH });
-    let files = write_all(model, &rows, error, &machine, &options.out)?;
-    println!("{model}: wall time per simulated second against {error}\n{machine}\n");
-    print!("{}", summary(&rows, "l2"));
+    let (machine, repeats) = (machine(), if options.quick { Repeats::QUICK } else { Repeats::THOROUGH });
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {wide_msg}").expect("the template is well formed");
+    let bar = ProgressBar::new(problems.iter().map(|problem| problem.runs.len() as u64).sum()).with_style(style);
+    let (mut rows, mut failures, mut files) = (Vec::new(), Vec::new(), Vec::new());
+    for problem in &problems {
+        for run in &problem.runs {
+            let name = format!("{}, {}, {}", problem.name, run.method, cells_text(run.cells));
+            bar.set_message(name.clone());
+            match measure(model, problem.name, run, repeats) {
+                Ok(measured) => rows.extend(measured),
+                Err(error) => failures.push(format!("{name}: {error:#}")),
+            }
+            bar.inc(1);
+        }
+        files = write_all(model, &problems, &rows, &machine, &options.out)?;
+    }
+    bar.finish_and_clear();
+    println!("{model}: the fastest method for an error\n{machine}\n");
+    println!("{}", summary(&problems, &rows, "l2"));
+    println!(
+        "Wall time is per simulated second; of a projection it is the whole. Next best is the best of another family, and how much longer it takes."
+    );
     failures.iter().for_each(|failure| println!("failed: {failure}"));
     println!("{} files in {}", files.len(), options.out.display());
     Ok(())
-}
-
-/// Rows of all runs, and why some gave none.
-fn measure_all(model: &str, runs: &[Run], repeats: Repeats) -> (Vec<Row>, Vec<String>) {
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {wide_msg}").expect("the template is well formed");
-    let bar = ProgressBar::new(runs.len() as u64).with_style(style);
-    let (mut rows, mut failures) = (Vec::new(), Vec::new());
-    for run in runs {
-        let name = format!("{}, {}, {}", run.problem, run.method, cells_text(run.cells));
-        bar.set_message(name.clone());
-        match measure(model, run, repeats) {
-            Ok(measured) => rows.extend(measured),
-            Err(error) => failures.push(format!("{name}: {error:#}")),
-        }
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    (rows, failures)
 }

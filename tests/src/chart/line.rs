@@ -2,12 +2,12 @@
 
 use super::Row;
 
-/// The runs of one method on one problem, from the coarsest error to the finest.
+/// The runs of one method on one problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line<'a> {
     /// The method.
     pub method: &'a str,
-    /// Its rows, by falling error.
+    /// Its rows, in the order of the runs: from coarse to fine, whether the error falls or not.
     pub rows: Vec<&'a Row>,
 }
 
@@ -28,16 +28,17 @@ pub fn lines<'a>(rows: &'a [Row], problem: &str, norm: &str) -> Vec<Line<'a>> {
     let positive = |x: f64| x > 0.0 && x.is_finite();
     let fits = |row: &&Row| row.problem == problem && row.norm == norm && positive(row.error) && positive(row.seconds);
     let rows: Vec<&Row> = rows.iter().filter(fits).collect();
-    let line = |method| {
-        let mut rows: Vec<&Row> = rows.iter().copied().filter(|row| row.method == method).collect();
-        rows.sort_by(|a, b| b.error.total_cmp(&a.error));
-        Line { method, rows }
-    };
+    let line = |method| Line { method, rows: rows.iter().copied().filter(|row| row.method == method).collect() };
     distinct(rows.iter().copied(), |row| &row.method).into_iter().map(line).collect()
 }
 
+/// The methods that differ only in what follows their last comma, such as `, Courant 2`, by what comes before.
+pub fn family(method: &str) -> &str {
+    method.rsplit_once(", ").map_or(method, |(family, _)| family)
+}
+
 impl Line<'_> {
-    /// Wall time (s per simulated second) in which the method gets to `error` or below: the cheapest of its runs that do, or less where its line, straight in the
+    /// Wall time (s, as in [`Row::seconds`]) in which the method gets to `error` or below: the cheapest of its runs that do, or less where its line, straight in the
     /// logarithms of both, crosses `error` between two runs. `None` where no run gets there: lines are not extended.
     pub fn seconds_at(&self, error: f64) -> Option<f64> {
         let reached = self.rows.iter().filter(|row| row.error <= error).map(|row| row.seconds);
@@ -81,9 +82,16 @@ mod tests {
 
     #[test]
     fn a_line_that_turns_back_counts_its_cheapest_way() {
-        let rows = [row("p", "a", 16, 1e-2, 1.0), row("p", "a", 32, 1e-3, 50.0), row("p", "a", 64, 1e-4, 2.0)];
+        let rows =
+            [row("p", "a", 16, 1e-2, 1.0), row("p", "a", 32, 1e-3, 50.0), row("p", "a", 64, 1e-4, 2.0), row("p", "a", 128, 1e-1, 9.0)];
         let [line] = lines(&rows, "p", "l2").try_into().unwrap();
         assert_eq!(line.seconds_at(1e-3), Some(2.0));
+        assert_eq!(line.rows.iter().map(|row| row.cells[0]).collect::<Vec<_>>(), [16, 32, 64, 128]);
+    }
+
+    #[test]
+    fn a_family_is_what_comes_before_the_last_comma() {
+        assert_eq!(["conservative, damping 0, Courant 2", "Direct"].map(family), ["conservative, damping 0", "Direct"]);
     }
 
     #[test]

@@ -9,7 +9,8 @@
 //! | [`plot`], [`ticks`] | a log–log chart as SVG |
 //! | [`summary`] | which method wins where, on one screen |
 //! | [`table`] | Markdown tables, and putting them into a document |
-//! | [`files`] | all files of a model, and the table of orders |
+//! | [`tables`] | the tables of the documents: orders and limits |
+//! | [`files`] | all files of a model |
 //! | [`machine`] | what the figures were measured on |
 
 pub mod files;
@@ -20,8 +21,9 @@ pub mod row;
 pub mod run;
 pub mod summary;
 pub mod table;
+pub mod tables;
 pub mod ticks;
 pub mod wind;
 
 pub use row::Row;
-pub use run::{Outcome, Run};
+pub use run::{Outcome, Problem, Run};

@@ -5,7 +5,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::line::{Line, front};
+use super::line::{Line, family, front};
 use super::ticks::ticks;
 
 /// What is written around the lines.
@@ -58,12 +58,12 @@ const MARKERS: [&[(i32, i32)]; 6] = [
     &[(-2, -6), (2, -6), (2, -2), (6, -2), (6, 2), (2, 2), (2, 6), (-2, 6), (-2, 2), (-6, 2), (-6, -2), (-2, -2)],
 ];
 
-/// Draws error on x and time on y, a line with markers for each method, the Pareto front behind them and a legend beside. A method looks the same in every chart
-/// drawn with the same `methods`: its place in that list is its colour and marker.
+/// Draws error on x and time on y, a line with markers for each method, the Pareto front behind them and a legend beside. Methods of one [`family`] share
+/// colour and marker, given out in the order of the lines; markers are full in the first of them, hollow in the others.
 ///
 /// # Errors
-/// When no line has a point, or a line's method is not in `methods`.
-pub fn svg(lines: &[Line], methods: &[&str], labels: Labels) -> Result<String> {
+/// When no line has a point.
+pub fn svg(lines: &[Line], labels: Labels) -> Result<String> {
     let points = || lines.iter().flat_map(|line| &line.rows);
     let errors = range(points().map(|row| row.error)).context("no point to draw")?;
     let times = range(points().map(|row| row.seconds)).context("no point to draw")?;
@@ -86,17 +86,25 @@ pub fn svg(lines: &[Line], methods: &[&str], labels: Labels) -> Result<String> {
     draw_axes(&root, plane, errors, times, labels)?;
 
     let pixels = |rows: &[&super::Row]| rows.iter().map(|row| plane.map_coordinate(&(row.error, row.seconds))).collect::<Vec<_>>();
-    root.draw(&PathElement::new(pixels(&front(lines)), FRONT.stroke_width(14)))?;
+    let best = pixels(&front(lines));
+    best.iter().try_for_each(|&at| root.draw(&Circle::new(at, 11, FRONT.filled())))?;
+    root.draw(&PathElement::new(best, FRONT.stroke_width(14)))?;
+    let mut families: Vec<&str> = Vec::new();
     let step = (560 / (lines.len() as i32 + 1)).min(26);
     for (line, n) in lines.iter().zip(0..) {
-        let y = 14 + step * n;
-        let style = methods.iter().position(|method| *method == line.method);
-        let (colour, marker) = look(style.with_context(|| format!("{} is no method of this chart", line.method))?);
+        let (y, family) = (14 + step * n, family(line.method));
+        let known = families.iter().position(|other| *other == family);
+        let place = known.unwrap_or(families.len());
+        if known.is_none() {
+            families.push(family);
+        }
+        let (colour, corners) = look(place);
+        let marker = Marker { corners, colour, hollow: known.is_some() };
         let points = pixels(&line.rows);
         root.draw(&PathElement::new(points.clone(), colour.stroke_width(2)))?;
-        points.into_iter().try_for_each(|at| draw_marker(&root, at, marker, colour))?;
+        points.into_iter().try_for_each(|at| marker.draw(&root, at))?;
         draw_key(&legend, y, line.method, colour.stroke_width(2))?;
-        draw_marker(&legend, (34, y), marker, colour)?;
+        marker.draw(&legend, (34, y))?;
     }
     draw_key(&legend, 14 + step * lines.len() as i32, "Pareto front", FRONT.stroke_width(14))?;
     root.present()?;
@@ -134,10 +142,19 @@ fn draw_key(legend: &Area, y: i32, name: &str, stroke: ShapeStyle) -> Result<()>
     write(legend, name, (64, y), 17, INK, HPos::Left)
 }
 
-fn draw_marker(area: &Area, at: (i32, i32), corners: &[(i32, i32)], colour: RGBColor) -> Result<()> {
-    let placed: Vec<(i32, i32)> = corners.iter().map(|corner| (at.0 + corner.0, at.1 + corner.1)).collect();
-    area.draw(&Polygon::new(placed, colour.filled()))?;
-    Ok(())
+struct Marker {
+    corners: &'static [(i32, i32)],
+    colour: RGBColor,
+    hollow: bool,
+}
+
+impl Marker {
+    fn draw(&self, area: &Area, at: (i32, i32)) -> Result<()> {
+        let placed: Vec<(i32, i32)> = self.corners.iter().map(|corner| (at.0 + corner.0, at.1 + corner.1)).collect();
+        area.draw(&Polygon::new(placed.clone(), if self.hollow { WHITE } else { self.colour }.filled()))?;
+        area.draw(&PathElement::new([placed.clone(), vec![placed[0]]].concat(), self.colour.stroke_width(2)))?;
+        Ok(())
+    }
 }
 
 fn text_style<'a>(size_px: u32, colour: RGBColor, horizontal: HPos) -> TextStyle<'a> {
@@ -152,7 +169,7 @@ fn write(area: &Area, text: &str, at: (i32, i32), size_px: u32, colour: RGBColor
     Ok(())
 }
 
-/// Colour and marker of the method at a place in the list: each pair once in the first 66.
+/// Colour and marker of the family at a place in the list: each pair once in the first 66.
 fn look(style: usize) -> (RGBColor, &'static [(i32, i32)]) {
     let (round, place) = (style / COLOURS.len(), style % COLOURS.len());
     (COLOURS[place], MARKERS[(place + round) % MARKERS.len()])
@@ -177,7 +194,7 @@ mod tests {
         let methods: Vec<String> = (0..20).map(|n| format!("method {n}")).collect();
         let names: Vec<&str> = methods.iter().map(String::as_str).collect();
         let rows: Vec<_> = names.iter().flat_map(|name| [row("p", name, 8, 0.1, 1e-3), row("p", name, 16, 0.01, 1e-2)]).collect();
-        let text = svg(&lines(&rows, "p", "l2"), &names, LABELS).unwrap();
+        let text = svg(&lines(&rows, "p", "l2"), LABELS).unwrap();
         assert!(text.starts_with("<svg") && text.trim_end().ends_with("</svg>"));
         for label in names.iter().chain(&["Made-up", "error (m/s)", "time (s/s)", "made-up machine", "Pareto front"]) {
             assert!(text.contains(label), "{label} is missing");
@@ -189,7 +206,7 @@ mod tests {
     #[test]
     fn finer_is_left_and_slower_is_up() {
         let rows = [row("p", "a", 8, 0.1, 1e-3), row("p", "a", 16, 0.01, 1e-2)];
-        let text = svg(&lines(&rows, "p", "l2"), &["a"], LABELS).unwrap();
+        let text = svg(&lines(&rows, "p", "l2"), LABELS).unwrap();
         let path = text.lines().find(|line| line.contains("<polyline") && line.contains("stroke-width=\"2\"")).unwrap();
         let numbers: Vec<i32> =
             path.split("points=\"").nth(1).unwrap().split(['"', ' ', ',']).map_while(|word| word.parse().ok()).collect();
@@ -198,9 +215,20 @@ mod tests {
     }
 
     #[test]
-    fn without_a_point_or_with_an_unknown_method_there_is_no_chart() {
-        assert!(svg(&[], &[], LABELS).is_err());
-        let rows = [row("p", "a", 8, 0.1, 1e-3)];
-        assert!(svg(&lines(&rows, "p", "l2"), &["b"], LABELS).is_err());
+    fn a_family_has_one_colour_and_its_later_members_hollow_markers() {
+        let rows = ["a, Courant 1", "a, Courant 2", "b"].map(|method| row("p", method, 8, 0.1, 1e-3));
+        let text = svg(&lines(&rows, "p", "l2"), LABELS).unwrap();
+        let fills: Vec<&str> = text
+            .lines()
+            .filter(|line| line.contains("<polygon"))
+            .filter_map(|line| line.split("fill=\"").nth(1)?.split('"').next())
+            .collect();
+        // On the plane and in the legend.
+        assert_eq!(fills, ["#0072B2", "#0072B2", "#FFFFFF", "#FFFFFF", "#D55E00", "#D55E00"]);
+    }
+
+    #[test]
+    fn without_a_point_there_is_no_chart() {
+        assert!(svg(&[], LABELS).is_err());
     }
 }

@@ -15,13 +15,13 @@ pub struct Row {
     pub method: String,
     /// Cells along x, y and z.
     pub cells: [usize; 3],
-    /// Time step (s).
+    /// Time step (s); 0 where nothing steps.
     pub dt_secs: f64,
     /// Norm of the error: `l1`, `l2` (root mean square) or `linf`.
     pub norm: String,
     /// The error, in the unit of what was solved for.
     pub error: f64,
-    /// Wall time (s) per simulated second; the least of repeated runs.
+    /// Wall time (s) per simulated second, or of what is done once; the least of repeated runs.
     pub seconds: f64,
 }
 

@@ -7,15 +7,25 @@ use anyhow::{Result, ensure};
 use super::Row;
 use crate::norms::Norms;
 
-/// One method on one problem at one resolution.
+/// A problem whose answer is known, and all that solves it.
+pub struct Problem {
+    /// Its name, as in [`Row::problem`].
+    pub name: &'static str,
+    /// What is wrong by how much, with its unit, for an axis.
+    pub error: &'static str,
+    /// What wall time is counted per: a simulated second, or what is done once.
+    pub per: &'static str,
+    /// The methods, each from coarse to fine.
+    pub runs: Vec<Run>,
+}
+
+/// One method at one resolution.
 pub struct Run {
-    /// The problem, as in [`Row::problem`].
-    pub problem: &'static str,
     /// The method, as in [`Row::method`].
     pub method: String,
     /// Cells along x, y and z.
     pub cells: [usize; 3],
-    /// Time step (s).
+    /// Time step (s); 0 where nothing steps.
     pub dt_secs: f64,
     /// Solves the problem from its start. The same every time, save for the time it takes.
     pub solve: Box<dyn Fn() -> Result<Outcome>>,
@@ -26,7 +36,7 @@ pub struct Run {
 pub struct Outcome {
     /// Error at the end.
     pub error: Norms,
-    /// Time simulated (s).
+    /// Time simulated (s); 1 where what is timed is done once.
     pub simulated_secs: f64,
     /// Time the steps took; setting up and comparing are not counted.
     pub wall: Duration,
@@ -44,17 +54,17 @@ pub struct Repeats {
 }
 
 impl Repeats {
-    /// For figures that are kept: 3 to 200 times, until a second has passed.
-    pub const THOROUGH: Self = Self { least: 3, most: 200, enough: Duration::from_secs(1) };
-    /// For a look: 2 to 20 times, until a fifth of a second has passed.
-    pub const QUICK: Self = Self { least: 2, most: 20, enough: Duration::from_millis(200) };
+    /// For figures that are kept: 2 to 200 times, until half a second has passed.
+    pub const THOROUGH: Self = Self { least: 2, most: 200, enough: Duration::from_millis(500) };
+    /// For a look: 2 to 5 times, until a twentieth of a second has passed.
+    pub const QUICK: Self = Self { least: 2, most: 5, enough: Duration::from_millis(50) };
 }
 
 /// Runs and times: a row for each norm.
 ///
 /// # Errors
 /// When the run fails, ends in an error that is not finite, or differs from one repeat to the next.
-pub fn measure(model: &str, run: &Run, repeats: Repeats) -> Result<Vec<Row>> {
+pub fn measure(model: &str, problem: &str, run: &Run, repeats: Repeats) -> Result<Vec<Row>> {
     let start = Instant::now();
     let first = (run.solve)()?;
     let Norms { l1, l2, linf } = first.error;
@@ -70,7 +80,7 @@ pub fn measure(model: &str, run: &Run, repeats: Repeats) -> Result<Vec<Row>> {
     }
     let row = |(norm, error): (&str, f64)| Row {
         model: model.to_owned(),
-        problem: run.problem.to_owned(),
+        problem: problem.to_owned(),
         method: run.method.clone(),
         cells: run.cells,
         dt_secs: run.dt_secs,
@@ -87,7 +97,7 @@ mod tests {
     use std::cell::Cell;
 
     fn run(solve: impl Fn() -> Result<Outcome> + 'static) -> Run {
-        Run { problem: "made-up", method: "none".into(), cells: [8, 1, 8], dt_secs: 0.5, solve: Box::new(solve) }
+        Run { method: "none".into(), cells: [8, 1, 8], dt_secs: 0.5, solve: Box::new(solve) }
     }
 
     fn outcome(linf: f64, wall_secs: f64) -> Outcome {
@@ -104,19 +114,19 @@ mod tests {
             times.set(left);
             Ok(outcome(3.0, time))
         });
-        let rows = measure("wind", &made_up, Repeats { least: 3, most: 3, enough: Duration::ZERO }).unwrap();
+        let rows = measure("wind", "made-up", &made_up, Repeats { least: 3, most: 3, enough: Duration::ZERO }).unwrap();
         let figures: Vec<(&str, f64, f64)> = rows.iter().map(|row| (row.norm.as_str(), row.error, row.seconds)).collect();
         assert_eq!(figures, [("l1", 1.0, 0.5), ("l2", 2.0, 0.5), ("linf", 3.0, 0.5)]);
     }
 
     #[test]
     fn what_is_not_finite_or_not_repeatable_is_refused() {
-        assert!(measure("wind", &run(|| Ok(outcome(f64::NAN, 1.0))), Repeats::QUICK).is_err());
+        assert!(measure("wind", "made-up", &run(|| Ok(outcome(f64::NAN, 1.0))), Repeats::QUICK).is_err());
         let calls = Cell::new(0.0);
         let restless = run(move || {
             calls.set(calls.get() + 1.0);
             Ok(outcome(calls.get(), 1.0))
         });
-        assert!(measure("wind", &restless, Repeats::QUICK).unwrap_err().to_string().contains("differ"));
+        assert!(measure("wind", "made-up", &restless, Repeats::QUICK).unwrap_err().to_string().contains("differ"));
     }
 }

@@ -9,7 +9,8 @@ pub struct Tick {
     pub label: Option<String>,
 }
 
-/// Multiples of the powers of ten in a range. On long axes the powers alone are labelled, on shorter ones 2 and 5 times them too, on the shortest every multiple.
+/// Multiples of the powers of ten in a range; on the longest axes the powers alone. On long axes only these are labelled, on shorter ones 2 and 5 times them too,
+/// on the shortest every multiple.
 pub fn ticks((least, most): (f64, f64)) -> Vec<Tick> {
     let decades = (most / least).log10();
     let labelled: &[i32] = match decades {
@@ -19,7 +20,7 @@ pub fn ticks((least, most): (f64, f64)) -> Vec<Tick> {
     };
     let powers = least.log10().floor() as i32..=most.log10().floor() as i32;
     let all = powers.flat_map(|power| {
-        (1..10).map(move |digit| {
+        (1..if decades > 8.0 { 2 } else { 10 }).map(move |digit| {
             // Parsed, so that each is the number nearest to what is printed.
             let value = format!("{digit}e{power}").parse().expect("a number");
             Tick { value, label: labelled.contains(&digit).then(|| label(digit, power)) }
@@ -60,6 +61,12 @@ mod tests {
         assert_eq!(labels((4e-3, 0.11)), ["0.005", "0.01", "0.02", "0.05", "0.1"]);
         assert_eq!(labels((1.5e-5, 3e-4)), ["2·10⁻⁵", "5·10⁻⁵", "10⁻⁴", "2·10⁻⁴"]);
         assert_eq!(labels((250.0, 1100.0)), ["300", "400", "500", "600", "700", "800", "900", "10³"]);
+    }
+
+    #[test]
+    fn the_longest_axes_have_lines_at_powers_alone() {
+        let values: Vec<f64> = ticks((0.5e-9, 2.0)).into_iter().map(|tick| tick.value).collect();
+        assert_eq!(values, [1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0]);
     }
 
     #[test]

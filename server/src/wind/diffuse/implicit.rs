@@ -48,12 +48,11 @@ impl Implicit {
         }
         // What faces with a given velocity add: the ghost is 2w − u, of which −u is in the transform.
         let mut add = |index: [usize; 3], axis: usize, outside: f64| values[index[0] + nx * (index[1] + ny * index[2])] += outside * per_m2[axis];
-        for axis in 0..3 {
+        for (axis, &step) in strides.iter().enumerate() {
             let Basis::Centres(edges) = basis(grid, place, axis) else {
                 if place == Place::Face(axis) && !grid.wraps(axis) {
                     for_each_of_ends([nx, ny, nz], axis, |index, side| {
                         let node = at(index[1], index[2]) + index[0];
-                        let step = strides[axis];
                         let beyond = if side == 0 { node - step } else { node + step };
                         add(index, axis, field.data[beyond].wide());
                     });
@@ -63,7 +62,6 @@ impl Implicit {
             for_each_of_ends([nx, ny, nz], axis, |index, side| {
                 if edges[side] == Edge::Dirichlet {
                     let inner = at(index[1], index[2]) + index[0];
-                    let step = strides[axis];
                     let ghost = if side == 0 { inner - step } else { inner + step };
                     add(index, axis, (field.data[ghost] + field.data[inner]).wide());
                 }

@@ -110,8 +110,8 @@ impl Iterative {
         &self.system
     }
 
-    /// Solves `∇²p = f`, both one value a cell, x fastest. `p` comes with a first guess, zeros if there is none, of which the best
-    /// multiple is taken: so the energy norm of the error is never above that of zeros, since no method's sweeps raise it. Values in solid cells are ignored and
+    /// Solves `∇²p = f`, both one value a cell, x fastest. `p` comes with a first guess, zeros if there is none; if it is worse
+    /// than zeros, its best multiple is taken, so that the energy norm of the error never is above that of zeros: no method's sweeps raise it. Values in solid cells are ignored and
     /// become 0.
     ///
     /// Gives the same bits on any number of threads and allocates nothing. Values that are not finite end in a residual that is not, and never
@@ -140,10 +140,10 @@ impl Iterative {
         system.regions.remove_means(p, sums);
         layout.load(p, coloured, |v| v);
         layout.wrap(coloured);
-        // The best multiple of the guess: one no better than zeros would put energy into the air if few sweeps follow.
+        // Of a guess worse than zeros the best multiple: if few sweeps follow, it would put energy into the air.
         let curvature = system.operator.apply_sum(coloured, r, partial);
-        if curvature > 0.0 {
-            let scale = kernels::dot(natural, p) / curvature;
+        let scale = kernels::dot(natural, p) / curvature;
+        if curvature > 0.0 && scale < 0.5 {
             coloured.iter_mut().flatten().for_each(|p| *p *= scale);
         }
 

@@ -43,7 +43,7 @@ pub struct Projection {
 }
 
 enum Solver {
-    Direct(Separable),
+    Direct(Box<Separable>),
     Iterative(Box<Iterative>, Effort),
 }
 
@@ -59,7 +59,7 @@ impl Projection {
         let solver = match pressure {
             Pressure::Direct => {
                 let bases = edges.map(|edges| edges.map_or(Basis::Wrap, Basis::Centres));
-                Solver::Direct(Separable::new(grid.cells, spacing_m, bases))
+                Solver::Direct(Box::new(Separable::new(grid.cells, spacing_m, bases)))
             }
             Pressure::Iterative(method, effort) => {
                 let system = System::new(grid.cells, spacing_m, edges, solid).expect("a grid and its solid cells fit");

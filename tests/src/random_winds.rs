@@ -1,0 +1,261 @@
+//! Winds drawn at random from all that a solver can legally be told, the absurd included.
+
+use server::wind::pressure::{Effort, Method};
+use server::wind::{
+    Advection, Boundary, Canopy, Config, Diffusion, Dust, Gusts, Jet, Pressure, Primitive, Profile, Real, Shape, Solver, TimeScheme,
+};
+
+/// Random numbers from a seed (SplitMix64, Steele, Lea & Flood, OOPSLA 2014).
+pub struct Dice(u64);
+
+impl Dice {
+    /// Dice that always fall the same way for one seed.
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// The next 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Uniform in [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Uniform between two numbers.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// Between two positive numbers, each order of magnitude as likely as the next.
+    pub fn scale(&mut self, low: f64, high: f64) -> f64 {
+        self.between(low.ln(), high.ln()).exp()
+    }
+
+    /// True once in `n` throws.
+    pub fn one_in(&mut self, n: u64) -> bool {
+        self.bits().is_multiple_of(n)
+    }
+
+    /// One of these.
+    pub fn of<T: Copy>(&mut self, choices: &[T]) -> T {
+        choices[(self.bits() % choices.len() as u64) as usize]
+    }
+}
+
+/// A run: the solver's settings, what it starts from, and how it is stepped.
+#[derive(Clone, Debug)]
+pub struct RandomWind {
+    /// Settings, which [`Config::validate`] allows.
+    pub config: Config,
+    /// Largest speed (m/s) of the random air at the start, each component of each face by itself.
+    pub speed_m_per_s: f64,
+    /// Share of the cells that is solid; 0 where the methods do not allow any.
+    pub solid: f64,
+    /// Amplitude (m/s) of the waves that blow through faces of inflow; `None` for the mean wind.
+    pub inflow_m_per_s: Option<f64>,
+    /// Jets of every step.
+    pub jets: Vec<Jet>,
+    /// The step (s).
+    pub dt_secs: f64,
+    /// Seed of the air at the start and of the solid cells.
+    pub seed: u64,
+}
+
+impl RandomWind {
+    /// The wind of a seed. Half of them are driven by nothing but what they start from.
+    pub fn new(seed: u64) -> Self {
+        let mut dice = Dice::new(seed);
+        let driven = dice.one_in(2);
+        let cells = cells(&mut dice);
+        let finest_m = dice.scale(0.01, 100.0);
+        let spacing_m = [0; 3].map(|_| (finest_m * dice.of(&[1.0, 1.0, 2.0, 10.0])) as f32);
+        let boundary = [0, 1, 2].map(|axis| faces(&mut dice, axis, driven));
+        let (advection, time) = dice.of(&SCHEMES);
+        let config = Config {
+            cells,
+            spacing_m,
+            boundary,
+            advection,
+            damping: dice.of(&[0.0, 0.5, 1.0]),
+            time,
+            diffusion: diffusion(&mut dice),
+            pressure: pressure(&mut dice),
+            viscosity_m2_per_s: if dice.one_in(4) { 0.0 } else { dice.scale(1e-5, 1e4) as f32 },
+            relaxation_per_sec: 0.0,
+            mean_wind_m_per_s: [0.0; 3],
+            profile: Profile::Uniform,
+            gusts: Gusts { number: 0, ..Gusts::default() },
+            canopy: dice.one_in(3).then(|| Canopy { height_m: dice.scale(0.01, 100.0) as f32, drag_per_m: dice.scale(1e-3, 1e3) as f32 }),
+            dust: dice.one_in(2).then(|| dust(&mut dice)),
+            seed: dice.bits(),
+            ..Config::default()
+        };
+        let may_be_solid =
+            config.pressure != Pressure::Direct && matches!(config.diffusion, Diffusion::Explicit | Diffusion::GaussSeidel { .. });
+        let mut wind = Self {
+            speed_m_per_s: if dice.one_in(4) { 0.0 } else { dice.scale(1e-3, 100.0) },
+            solid: if may_be_solid { dice.of(&[0.0, 0.0, 0.1, 0.6]) } else { 0.0 },
+            inflow_m_per_s: None,
+            jets: Vec::new(),
+            dt_secs: dice.scale(1e-3, 100.0),
+            seed: dice.bits(),
+            config,
+        };
+        if driven {
+            wind.drive(&mut dice);
+        }
+        wind
+    }
+
+    fn drive(&mut self, dice: &mut Dice) {
+        let extent_m: [f64; 3] = std::array::from_fn(|axis| self.config.cells[axis] as f64 * f64::from(self.config.spacing_m[axis]));
+        let largest_m = extent_m.into_iter().fold(0.0, f64::max);
+        let somewhere = |dice: &mut Dice| extent_m.map(|extent| (dice.between(-0.5, 1.5) * extent) as f32);
+        let radius_m = |dice: &mut Dice| dice.scale(1e-3, 3.0 * largest_m.max(1e-2)) as f32;
+        let config = &mut self.config;
+        config.relaxation_per_sec = dice.of(&[0.0, 0.2, 1e4]);
+        for axis in [0, 2] {
+            if !config.boundary[axis].iter().any(|face| face.is_closed()) {
+                config.mean_wind_m_per_s[axis] = dice.between(-40.0, 40.0) as f32;
+            }
+        }
+        if config.boundary[1][0] != Boundary::Wrap {
+            let reference_m = dice.scale(0.1, 100.0) as f32;
+            config.profile = dice.of(&[
+                Profile::Uniform,
+                Profile::Log { roughness_m: 0.05, reference_m },
+                Profile::Power { exponent: 1.0 / 7.0, reference_m },
+            ]);
+        }
+        if dice.one_in(4) {
+            config.body_force_m_per_s2 = [0; 3].map(|_| dice.between(-100.0, 100.0) as f32);
+        }
+        config.gusts = Gusts {
+            number: dice.of(&[0, 1, 24]),
+            strength_m_per_s: dice.scale(0.1, 1e3) as f32,
+            life_secs: dice.scale(1e-2, 100.0) as f32,
+            attack: dice.between(0.01, 0.99) as f32,
+            radius_m: [0; 3].map(|_| radius_m(dice)),
+        };
+        let number = dice.of(&[0, 0, 1, 3]);
+        config.primitives = (0..number)
+            .map(|_| {
+                let angle = dice.between(0.0, std::f64::consts::TAU);
+                Primitive {
+                    shape: dice.of(&[Shape::Uniform, Shape::Source, Shape::Sink, Shape::Vortex, Shape::Cyclone]),
+                    position_m: somewhere(dice),
+                    drift_m_per_s: [0; 2].map(|_| dice.between(-200.0, 200.0) as f32),
+                    radius_m: radius_m(dice),
+                    speed_m_per_s: dice.scale(0.1, 200.0) as f32,
+                    direction: [angle.cos() as f32, angle.sin() as f32],
+                    dust: dice.unit() as f32,
+                }
+            })
+            .collect();
+        self.inflow_m_per_s = dice.one_in(2).then(|| dice.scale(0.1, 100.0));
+        if dice.one_in(4) {
+            let velocity = [0; 3].map(|_| dice.between(-100.0, 100.0) as f32);
+            self.jets = vec![Jet {
+                position_m: somewhere(dice).into(),
+                radius_m: radius_m(dice),
+                velocity_m_per_s: velocity.into(),
+                rate_per_sec: dice.scale(0.1, 1e3) as f32,
+            }];
+        }
+    }
+
+    /// True where something may add energy to the air after the start.
+    pub fn is_driven(&self) -> bool {
+        let c = &self.config;
+        let moving = |face: &Boundary| matches!(face, Boundary::Lid { .. } | Boundary::Inflow);
+        let pushed = c.gusts.number > 0 || !c.primitives.is_empty() || c.relaxation_per_sec > 0.0 || c.body_force_m_per_s2 != [0.0; 3];
+        pushed || !self.jets.is_empty() || c.boundary.iter().flatten().any(moving)
+    }
+
+    /// A solver at the start of the run.
+    ///
+    /// # Errors
+    /// What [`Solver::new`] and [`Solver::set_solid`] refuse.
+    pub fn solver<R: Real>(&self) -> anyhow::Result<Solver<R>> {
+        let mut solver = Solver::new(&self.config)?;
+        let at = |position: [R; 3], salt: u64| {
+            let key = position.into_iter().fold(self.seed ^ salt, |key, x| Dice::new(key ^ x.wide().to_bits()).bits());
+            Dice::new(key).unit()
+        };
+        if let Some(speed) = self.inflow_m_per_s {
+            solver.prescribe(move |[x, y, z], t| [speed * (x + t).sin(), speed * (y - t).cos(), speed * (z + t).sin()]);
+        }
+        if self.speed_m_per_s > 0.0 {
+            solver.set_velocity(|position| [1, 2, 3].map(|salt| R::of(self.speed_m_per_s * (2.0 * at(position, salt) - 1.0))));
+        }
+        if self.solid > 0.0 {
+            solver.set_solid(|position| at(position, 4) < self.solid)?;
+        }
+        solver.set_dust(|position| R::of(at(position, 5)));
+        Ok(solver)
+    }
+}
+
+const SCHEMES: [(Advection, TimeScheme); 8] = [
+    (Advection::SemiLagrangian, TimeScheme::Split),
+    (Advection::SemiLagrangian, TimeScheme::Reflection),
+    (Advection::MacCormack, TimeScheme::Split),
+    (Advection::MacCormack, TimeScheme::Reflection),
+    (Advection::Bfecc, TimeScheme::Split),
+    (Advection::Bfecc, TimeScheme::Reflection),
+    (Advection::Conservative, TimeScheme::Split),
+    (Advection::Conservative, TimeScheme::RungeKutta3),
+];
+
+/// Mostly some hundred cells, now and then thousands; flat and narrow boxes too.
+fn cells(dice: &mut Dice) -> [usize; 3] {
+    let most = if dice.one_in(40) { 16_000 } else { 500 };
+    loop {
+        let cells = [0; 3].map(|_| if dice.one_in(4) { 1 } else { dice.scale(1.0, 41.0) as usize });
+        if cells.iter().product::<usize>() <= most {
+            return cells;
+        }
+    }
+}
+
+fn faces(dice: &mut Dice, axis: usize, driven: bool) -> [Boundary; 2] {
+    if dice.one_in(3) {
+        return [Boundary::Wrap; 2];
+    }
+    [0, 1].map(|_| {
+        let mut lid = [0; 3].map(|_| dice.between(-40.0, 40.0) as f32);
+        lid[axis] = 0.0;
+        let still = [Boundary::FreeSlip, Boundary::Reflect, Boundary::NoSlip, Boundary::Outflow];
+        let moving = [Boundary::Lid { velocity_m_per_s: lid }, Boundary::Inflow];
+        if driven && dice.one_in(2) { dice.of(&moving) } else { dice.of(&still) }
+    })
+}
+
+fn diffusion(dice: &mut Dice) -> Diffusion {
+    let sweeps = dice.scale(1.0, 30.0) as u32;
+    dice.of(&[Diffusion::Explicit, Diffusion::GaussSeidel { sweeps }, Diffusion::Implicit, Diffusion::CrankNicolson])
+}
+
+fn pressure(dice: &mut Dice) -> Pressure {
+    let methods = [Method::Jacobi, Method::GaussSeidel, Method::Sor, Method::ConjugateGradients, Method::Multigrid];
+    if dice.one_in(3) {
+        return Pressure::Direct;
+    }
+    Pressure::Iterative(dice.of(&methods), Effort { tolerance: dice.scale(1e-10, 0.1), sweeps: dice.scale(1.0, 60.0) as u32 })
+}
+
+fn dust(dice: &mut Dice) -> Dust {
+    Dust {
+        advection: dice.of(&[Advection::SemiLagrangian, Advection::MacCormack, Advection::Bfecc, Advection::Conservative]),
+        diffusivity_m2_per_s: dice.of(&[0.0, 0.2, 100.0]),
+        release_per_sec: dice.of(&[0.0, 1.0, 1e6]),
+        settling_per_sec: dice.of(&[0.0, 0.1, 1e6]),
+    }
+}

@@ -1,0 +1,285 @@
+//! The wind's methods fail where theory says they do, and those that should never fail do not.
+
+use server::wind::diffuse::{Implicit, Portion, spread};
+use server::wind::pressure::{Effort, Method};
+use server::wind::{
+    Advection, Boundary, Config, Diffusion, Dust, Field, Grid, Gusts, Place, Pressure, Profile, Solver, StepError, TimeScheme,
+};
+use tests::limits::{Limit, Transport, dust_bounds, explicit_diffusion};
+use tests::random_winds::Dice;
+
+fn report(limit: &Limit) {
+    println!(
+        "{:50} {:16} theory {:8.5} measured {:8.5} ratio {:.4}",
+        limit.scheme,
+        limit.number,
+        limit.theory,
+        limit.measured,
+        limit.ratio()
+    );
+}
+
+#[test]
+fn explicit_diffusion_fails_where_the_checkerboard_grows() {
+    let boxes = [
+        ("cubes", [8, 8, 8], [1.0; 3]),
+        ("flat cells", [8, 8, 8], [4.0, 1.0, 2.0]),
+        ("squares", [8, 8, 1], [1.0; 3]),
+        ("a line", [8, 1, 1], [1.0; 3]),
+    ];
+    for (name, cells, spacing_m) in boxes {
+        for midpoint in [false, true] {
+            let limit = explicit_diffusion(name, cells, spacing_m, midpoint);
+            report(&limit);
+            assert!((limit.ratio() - 1.0).abs() <= 0.03, "{limit:?}");
+        }
+    }
+}
+
+fn transports() -> Vec<(&'static str, Transport)> {
+    let line = Transport { cells: [16, 1, 1], spacing_m: [1.0; 3], air_m_per_s: [1.0, 0.0, 0.0], diffusivity_m2_per_s: 0.0, damping: 0.0 };
+    let square = Transport { cells: [16, 16, 1], spacing_m: [1.0, 0.5, 1.0], air_m_per_s: [1.0, -0.7, 0.0], ..line };
+    let cube = Transport { cells: [8, 8, 8], spacing_m: [1.0, 0.5, 2.0], air_m_per_s: [1.0, -0.7, 0.5], ..line };
+    let still = [0.0; 3];
+    vec![
+        ("advection, line", line),
+        ("advection, square", square),
+        ("advection, cube", cube),
+        ("diffusion, line", Transport { air_m_per_s: still, diffusivity_m2_per_s: 1.0, ..line }),
+        ("diffusion, cube", Transport { air_m_per_s: still, diffusivity_m2_per_s: 1.0, ..cube }),
+        ("advection, full damping, line", Transport { damping: 1.0, ..line }),
+        ("advection, full damping, square", Transport { damping: 1.0, ..square }),
+        ("advection, full damping, cube", Transport { damping: 1.0, ..cube }),
+        ("advection, half damping, square", Transport { damping: 0.5, ..square }),
+        ("both, little diffusion, square", Transport { diffusivity_m2_per_s: 0.02, ..square }),
+        ("both, square", Transport { diffusivity_m2_per_s: 0.2, ..square }),
+        ("both, much diffusion, cube", Transport { diffusivity_m2_per_s: 1.0, ..cube }),
+        ("both, full damping, square", Transport { diffusivity_m2_per_s: 0.1, damping: 1.0, ..square }),
+        ("both, full damping, cube", Transport { diffusivity_m2_per_s: 0.1, damping: 1.0, ..cube }),
+    ]
+}
+
+#[test]
+fn transport_fails_where_its_amplification_passes_1() {
+    for (name, transport) in transports() {
+        let limit = transport.limit(name);
+        report(&limit);
+        assert!((limit.ratio() - 1.0).abs() <= 0.03, "{limit:?}");
+    }
+    let [line, _, cube] = [0, 1, 2].map(|n| transports()[n].1);
+    assert!((line.limit("").measured / 3.0f64.sqrt() - 1.0).abs() < 0.03);
+    let courant_per_sec: f64 = (0..3).map(|axis| cube.air_m_per_s[axis].abs() / cube.spacing_m[axis]).sum();
+    assert!((cube.limit("").measured * courant_per_sec / 3.0f64.sqrt() - 1.0).abs() < 0.03);
+}
+
+/// What `transport::stable_dt_secs` allows is never beyond the true limit, over all wave numbers and mixtures; `left` is how far it stays below.
+#[test]
+fn the_stable_step_of_transport_is_safe() {
+    let mut left = [f64::INFINITY, 0.0];
+    let mut dice = Dice::new(5);
+    for _ in 0..300 {
+        let transport = Transport {
+            cells: [16, 16, 1],
+            spacing_m: [0; 3].map(|_| dice.scale(0.1, 10.0)),
+            air_m_per_s: [0; 3].map(|_| dice.of(&[0.0, 1.0, -1.0]) * dice.scale(0.01, 10.0)),
+            diffusivity_m2_per_s: dice.of(&[0.0, 1.0]) * dice.scale(1e-3, 1e2),
+            damping: dice.of(&[0.0, 0.5, 1.0]),
+        };
+        let air = [transport.air_m_per_s[0], transport.air_m_per_s[1], 0.0];
+        let transport = Transport { air_m_per_s: air, ..transport };
+        // A single cell along z, made so wide that it counts for nothing.
+        let spacing_m = [transport.spacing_m[0], transport.spacing_m[1], 1e9];
+        let grid = Grid { cells: transport.cells, spacing_m, boundary: [[Boundary::Wrap; 2]; 3] };
+        let allowed = server::wind::transport::stable_dt_secs(&grid, air.map(f64::abs), transport.diffusivity_m2_per_s);
+        if allowed.is_finite() {
+            let amplification = transport.amplification(allowed, 64);
+            assert!(amplification <= 1.0 + 1e-9, "{transport:?}: {amplification} at {allowed} s");
+            let mut longest = 1.0;
+            while transport.amplification(longest * allowed, 64) <= 1.0 + 1e-9 {
+                longest += 0.01;
+            }
+            left = [left[0].min(longest), left[1].max(longest)];
+        }
+    }
+    println!("the true limit is {:.2} to {:.2} times what is allowed", left[0], left[1]);
+    assert!(left[1] < 2.0);
+}
+
+/// The theory's 1/2 is enough for any air without divergence; what is found may lie above, since no noise need be the worst case.
+#[test]
+fn limited_dust_keeps_its_bounds_up_to_half_a_cell() {
+    for (name, cells, uniform) in [
+        ("uniform air, line", [64, 1, 1], true),
+        ("uniform air, square", [24, 24, 1], true),
+        ("uniform air, cube", [12, 12, 12], true),
+        ("turbulent air, square", [24, 24, 1], false),
+        ("turbulent air, cube", [12, 12, 12], false),
+    ] {
+        let limit = dust_bounds(name, cells, uniform);
+        report(&limit);
+        assert!(limit.ratio() >= 1.0, "{limit:?}");
+    }
+}
+
+/// Largest growth of the norm of noise after a step to that before, over steps of friction.
+fn growth(scheme: Diffusion, portion: Portion, number: f64) -> f64 {
+    let grid = Grid { cells: [8; 3], spacing_m: [1.0; 3], boundary: [[Boundary::NoSlip; 2]; 3] };
+    let walls = server::wind::boundary::Walls::new(&grid, Box::new(|_, _| [0.0; 3]));
+    let mut field = Field::<f64>::zeros(&grid, Place::Face(0));
+    let mut dice = Dice::new(3);
+    field.data.iter_mut().for_each(|value| *value = dice.between(-1.0, 1.0));
+    walls.close_component(&mut field);
+    let (mut even, mut odd, mut implicit) = (field.clone(), field.clone(), Implicit::new(&grid));
+    let norm = |field: &Field<f64>| field.values(&grid).map(|value| value * value).sum::<f64>();
+    let mut largest = 0.0f64;
+    for _ in 0..50 {
+        let before = norm(&field);
+        spread(scheme, portion, &grid, 1.0, number, &mut field, [&mut even, &mut odd], Some(&mut implicit), |field| {
+            walls.close_component(field)
+        });
+        let after = norm(&field);
+        if before > 1e-200 {
+            largest = largest.max((after / before).sqrt());
+        }
+    }
+    largest
+}
+
+#[test]
+fn implicit_friction_never_grows() {
+    let schemes =
+        [Diffusion::Implicit, Diffusion::CrankNicolson, Diffusion::GaussSeidel { sweeps: 1 }, Diffusion::GaussSeidel { sweeps: 20 }];
+    for scheme in schemes {
+        for portion in [Portion::Whole, Portion::First, Portion::Second] {
+            for number in [0.1, 1.0, 1e2, 1e4, 1e6] {
+                let growth = growth(scheme, portion, number);
+                assert!(growth <= 1.0 + 1e-9, "{scheme:?} {portion:?} at nu dt/h^2 = {number}: {growth}");
+            }
+        }
+    }
+    for portion in [Portion::Whole, Portion::First] {
+        let growth = growth(Diffusion::Explicit, portion, 100.0);
+        assert!(growth <= 1.0 + 1e-9, "explicit, cut into parts, {portion:?}: {growth}");
+    }
+}
+
+/// Turbulent air over a uniform wind of 1 m/s in a box of 6³ cells of 1 m.
+fn turbulent(config: Config) -> Solver<f32> {
+    let config = Config {
+        cells: [6; 3],
+        spacing_m: [1.0; 3],
+        mean_wind_m_per_s: [0.0; 3],
+        relaxation_per_sec: 0.0,
+        profile: Profile::Uniform,
+        gusts: Gusts { number: 0, ..Gusts::default() },
+        ..config
+    };
+    let mut solver = Solver::new(&config).expect("a legal box");
+    solver.set_velocity(|position: [f32; 3]| {
+        let mut dice = Dice::new(position.iter().fold(9, |seed, x| Dice::new(seed ^ u64::from(x.to_bits())).bits()));
+        [1.0 + dice.between(-1.0, 1.0) as f32, dice.between(-1.0, 1.0) as f32, 1.0 + dice.between(-1.0, 1.0) as f32]
+    });
+    solver
+}
+
+fn energy(solver: &Solver<f32>) -> f64 {
+    solver.velocity().0.iter().flat_map(|field| field.values(solver.grid())).map(|speed| f64::from(speed) * f64::from(speed)).sum()
+}
+
+/// 1 000 steps; 10 000 with `PRAIRIE_LARGE` set. The steps do not shrink with the air's speed, so that a uniform wind of 1 m/s keeps the Courant number.
+#[test]
+fn methods_without_a_limit_hold_at_any_courant_number() {
+    let steps = if std::env::var_os("PRAIRIE_LARGE").is_some() { 10_000 } else { 1_000 };
+    for advection in [Advection::SemiLagrangian, Advection::MacCormack, Advection::Bfecc] {
+        for time in [TimeScheme::Split, TimeScheme::Reflection] {
+            let mut growth = [0.0f64; 4];
+            for diffusion in [Diffusion::Implicit, Diffusion::CrankNicolson, Diffusion::GaussSeidel { sweeps: 5 }] {
+                for (growth, courant) in growth.iter_mut().zip([1.0, 10.0, 100.0, 1000.0]) {
+                    let mut solver = turbulent(Config { advection, time, diffusion, viscosity_m2_per_s: 1e-3, ..Config::default() });
+                    let start = energy(&solver);
+                    for _ in 0..steps {
+                        let report = solver.step(courant, &[]).expect("no limit");
+                        assert_eq!(report.substeps, 1);
+                        *growth = growth.max(energy(&solver) / start);
+                    }
+                    assert!(energy(&solver).is_finite());
+                }
+            }
+            println!("{advection:?} {time:?}: largest energy over the start's at Courant 1, 10, 100, 1000: {growth:.4?}");
+            assert!(growth.iter().all(|&growth| growth <= 1.0), "{advection:?} {time:?}: {growth:?}");
+        }
+    }
+}
+
+#[test]
+fn a_step_too_long_is_cut_or_refused_and_never_clamped() {
+    let explicit = |viscosity_m2_per_s| Config { viscosity_m2_per_s, ..Config::default() };
+    let mut solver = turbulent(explicit(0.2));
+    let report = solver.step(10.0, &[]).expect("some parts");
+    assert!(report.substeps > 10 && (solver.time_secs() - 10.0).abs() < 1e-12, "{report:?}");
+
+    let before = solver.state();
+    let refused = solver.step(1e4, &[]);
+    let Err(StepError::TooLong { what, needed, .. }) = &refused else { panic!("{refused:?}") };
+    assert!(what.contains("viscosity") && *needed > 256.0, "{refused:?}");
+    assert!(refused.as_ref().err().is_some_and(|error| error.to_string().contains("allowed: 256")));
+    assert!(solver.state() == before);
+
+    let mut solver = turbulent(explicit(0.0));
+    let before = solver.state();
+    let refused = solver.step(1e4, &[]);
+    assert!(matches!(&refused, Err(StepError::TooLong { what, .. }) if what.contains("Courant")), "{refused:?}");
+    assert!(solver.state() == before);
+
+    let config = Config { advection: Advection::MacCormack, time: TimeScheme::Split, dust: Some(Dust::default()), ..explicit(0.0) };
+    let mut solver = turbulent(config);
+    let before = solver.state();
+    let refused = solver.step(1e3, &[]);
+    assert!(matches!(&refused, Err(StepError::TooLong { what, .. }) if what.contains("dust")), "{refused:?}");
+    assert!(solver.state() == before);
+}
+
+/// Forces that would throw the air out of its Courant limit within a step cut it, or have it refused, before they do.
+#[test]
+fn strong_forces_cut_the_step() {
+    let still = |force: f32| {
+        let config = Config { body_force_m_per_s2: [force, 0.0, 0.0], viscosity_m2_per_s: 0.0, ..Config::default() };
+        let mut solver = turbulent(config);
+        solver.set_velocity(|_| [0.0; 3]);
+        solver
+    };
+    let mut solver = still(10.0);
+    let report = solver.step(2.0, &[]).expect("some parts");
+    assert!(report.substeps > 4, "{report:?}");
+    assert!((energy(&solver) / 216.0 - 400.0).abs() < 1e-2, "a uniform force of 10 m/s2 gives 20 m/s: {}", energy(&solver));
+    let mut solver = still(100.0);
+    assert!(matches!(solver.step(100.0, &[]), Err(StepError::TooLong { .. })));
+    assert!(energy(&solver).is_finite());
+}
+
+/// Few sweeps from the potential of another flow put no energy into the air, and boxes that wrap an odd number of cells converge.
+#[test]
+fn an_unfinished_projection_takes_energy_only() {
+    for method in [Method::Jacobi, Method::GaussSeidel, Method::Sor, Method::ConjugateGradients, Method::Multigrid] {
+        let pressure = Pressure::Iterative(method, Effort { tolerance: 1e-12, sweeps: 1 });
+        let mut solver = turbulent(Config { pressure, damping: 0.0, viscosity_m2_per_s: 0.0, ..Config::default() });
+        solver.set_velocity(|[x, y, _]| [(0.7 * x).sin(), (1.1 * y).cos(), 0.0]);
+        solver.set_velocity(|[x, _, z]| [0.0, (0.9 * x).sin() * 1e-2, (0.4 * z).cos() * 1e-2]);
+        let start = energy(&solver);
+        assert!(start <= 2.0 * 216.0 * 1e-4, "{method:?}: more than it was set to, {start}");
+        for _ in 0..20 {
+            solver.step(0.01, &[]).expect("a short step");
+            assert!(energy(&solver) <= start * 1.001, "{method:?}: {} of {start}", energy(&solver));
+        }
+    }
+    for cells in [[3, 18, 1], [1, 9, 28], [5, 5, 5], [3, 3, 3], [2, 12, 13]] {
+        for method in [Method::ConjugateGradients, Method::Multigrid, Method::Sor] {
+            let pressure = Pressure::Iterative(method, Effort { tolerance: 1e-9, sweeps: 500 });
+            let config = Config { pressure, boundary: [[Boundary::Wrap; 2]; 3], profile: Profile::Uniform, ..Config::default() };
+            let mut solver = Solver::<f64>::new(&Config { cells, spacing_m: [1.0; 3], ..config }).expect("a legal box");
+            solver.set_velocity(|[x, y, z]| [(x * x + y).sin(), (3.0 * z + x).cos(), (y * y - z).sin()]);
+            let report = solver.step(0.01, &[]).expect("a short step");
+            assert!(report.pressure_residual <= 1e-9, "{cells:?} {method:?}: {report:?}");
+        }
+    }
+}
