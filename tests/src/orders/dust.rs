@@ -16,7 +16,7 @@ const HILL_SECS: f64 = 4.0;
 ///
 /// Where the hill is flat on top, limiters cut it: the mean error still is second order.
 pub fn rotating_gaussian() -> Vec<Order> {
-    let (courant, cells) = (0.2, [32, 64, 128]);
+    let (courant, cells) = (0.2, [64, 96, 128]);
     let schemes = [(SemiLagrangian, 1.0), (MacCormack, 2.0), (Bfecc, 2.0), (Conservative, 2.0)];
     let row = |(advection, formal): (Advection, f64)| {
         let side_m = HILL.rotation.side_m;

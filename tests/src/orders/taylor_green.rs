@@ -6,6 +6,7 @@ use server::wind::{Advection, Boundary, Config, Diffusion, Solver, TimeScheme};
 
 use super::Order;
 use crate::air::{run, still_air, velocity_difference, velocity_error};
+use crate::norms::Norms;
 use crate::problems::TaylorGreen;
 
 /// Its side is one that the numbers of cells tried divide without rounding.
@@ -49,25 +50,26 @@ fn steps(cells: usize, courant: f64) -> usize {
     (SECS * FASTEST_M_PER_S * cells as f64 / (PROBLEM.side_m * courant)).round() as usize
 }
 
-fn error_l2(config: &Config, steps: usize) -> f64 {
-    velocity_error(&vortex(config, steps), |position| PROBLEM.velocity(position, SECS)).l2
+fn error_at_end(config: &Config, steps: usize) -> Norms {
+    velocity_error(&vortex(config, steps), |position| PROBLEM.velocity(position, SECS))
 }
 
 /// Every advection with every time scheme, time step in proportion to the spacing.
 ///
 /// The error of the semi-Lagrangian family mixes powers of the spacing and the step, `h²/dt` among them, so that it has an order only along such a line. Split
-/// schemes run at a Courant number of 0.4, at which their first-order error shows on coarse grids, others at 0.25.
+/// schemes run at a Courant number of 0.4, at which their first-order error shows on coarse grids, others at 0.25. MacCormack and BFECC of second order fall back
+/// to first next to extrema: the error of that is of higher order in the mean, but stands in the way on coarse grids.
 pub fn advection_and_time() -> Vec<Order> {
-    let cells = [48, 64, 96];
     let mut rows = Vec::new();
     for (advection, time, formal) in SCHEMES {
         let courant = if time == Split { 0.4 } else { 0.25 };
+        let cells = if time == Reflection && formal == 2.0 { [96, 128, 192] } else { [48, 64, 96] };
         let dampings: &[f32] = if advection == Conservative { &[1.0, 0.0] } else { &[1.0] };
         for &damping in dampings {
-            let error = |n: usize| error_l2(&Config { advection, time, damping, ..config(n) }, steps(n, courant));
+            let error = |n: usize| error_at_end(&Config { advection, time, damping, ..config(n) }, steps(n, courant)).l1;
             let errors = cells.map(|n| (PROBLEM.side_m / n as f64, error(n)));
             let note = if advection == Conservative { format!(", damping {damping}") } else { String::new() };
-            rows.push(Order::fit(NAME, format!("{advection:?} {time:?}{note}"), "dt ∝ h, L2", formal, errors.to_vec()));
+            rows.push(Order::fit(NAME, format!("{advection:?} {time:?}{note}"), "dt ∝ h, L1", formal, errors.to_vec()));
         }
     }
     rows
@@ -77,7 +79,7 @@ pub fn advection_and_time() -> Vec<Order> {
 pub fn space() -> Vec<Order> {
     let cells = [16, 32, 64];
     let row = |damping: f32| {
-        let error = |n: usize| error_l2(&Config { damping, ..config(n) }, steps(n, 0.25 * cells[0] as f64 / n as f64));
+        let error = |n: usize| error_at_end(&Config { damping, ..config(n) }, steps(n, 0.25 * cells[0] as f64 / n as f64)).l2;
         let errors = cells.map(|n| (PROBLEM.side_m / n as f64, error(n)));
         Order::fit(NAME, format!("Conservative RungeKutta3, damping {damping}"), "h, L2", 2.0, errors.to_vec())
     };
