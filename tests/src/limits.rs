@@ -182,13 +182,13 @@ fn run(
     diffusivity_m2_per_s: f64,
     damping: f64,
 ) {
-    for (number, shares) in STAGES.into_iter().enumerate() {
+    for (number, share) in STAGES.into_iter().enumerate() {
         let (carried, target) = match number {
             0 => (&*field, &mut *even),
             1 => (&*even, &mut *odd),
             _ => (&*odd, &mut *even),
         };
-        Stage { grid, air, carried, start: field, pull: None, dt_secs, shares, diffusivity_m2_per_s, damping }.run(target, scratch);
+        Stage { grid, air, carried, start: field, pull: None, dt_secs, share, diffusivity_m2_per_s, damping }.run(target, scratch);
         wrap(grid, target);
     }
     std::mem::swap(field, even);

@@ -29,7 +29,7 @@ const WARM_UP_STEPS: usize = 120;
 
 /// The wind of a scene.
 pub struct Weather {
-    air: Air,
+    air: Air<f32>,
     method: Method,
     config: Config,
     tiling: WindTiling,
@@ -66,8 +66,8 @@ pub enum WeatherError {
 pub fn check(scene: &Scene) -> Result<(), WeatherError> {
     let (method, config) = settings(scene);
     let (_, step_secs) = rhythm(scene);
-    Air::check(method, &config)?;
-    Ok(Air::check_step(method, &config, step_secs)?)
+    Air::<f32>::check(method, &config)?;
+    Ok(Air::<f32>::check_step(method, &config, step_secs)?)
 }
 
 impl Weather {
@@ -191,7 +191,7 @@ impl Weather {
 }
 
 /// The air at its beginning, round the land where that is solid.
-fn begin(method: Method, config: &Config, land: &Land) -> Result<Air, WeatherError> {
+fn begin(method: Method, config: &Config, land: &Land) -> Result<Air<f32>, WeatherError> {
     let mut air = Air::new(method, config)?;
     if land.is_solid() {
         air.set_solid(|position_m| land.holds(position_m, config.spacing_m))?;

@@ -2,9 +2,7 @@
 
 use crate::wind::pressure::{Effort, Method as Iteration};
 use crate::wind::{Advection, Boundary, Canopy, Config, Diffusion, Dust, Gusts, Method, Pressure, Primitive, Profile, Shape, TimeScheme};
-use shared::scene::{
-    PrimitiveKind, Scene, Wind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTime,
-};
+use shared::scene::{PrimitiveKind, Scene, Wind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTime};
 
 /// Roughness length of grass (m), for the logarithmic profile.
 const ROUGHNESS_M: f32 = 0.05;
@@ -42,8 +40,7 @@ pub(super) fn settings(scene: &Scene) -> (Method, Config) {
             ..Gusts::default()
         },
         primitives: wind.primitives.iter().map(primitive).collect(),
-        canopy: (wind.canopy_drag_per_m > 0.0)
-            .then_some(Canopy { height_m: scene.plants.height_m, drag_per_m: wind.canopy_drag_per_m }),
+        canopy: (wind.canopy_drag_per_m > 0.0).then_some(Canopy { height_m: scene.plants.height_m, drag_per_m: wind.canopy_drag_per_m }),
         dust: wind.has_dust().then_some(Dust {
             advection: advection(wind.dust.advection),
             diffusivity_m2_per_s: wind.dust.diffusivity_m2_per_s,

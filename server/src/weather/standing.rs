@@ -33,12 +33,7 @@ impl Standing {
             });
             grass.count() as f32 / (LOOKS * LOOKS) as f32
         });
-        Self {
-            columns: [nx, nz],
-            spacing_m: [hx, hz],
-            covered: covered.collect(),
-            upright: vec![(0.0, 0.0); nx * nz],
-        }
+        Self { columns: [nx, nz], spacing_m: [hx, hz], covered: covered.collect(), upright: vec![(0.0, 0.0); nx * nz] }
     }
 
     /// The share of each column that stands, x fastest: less where objects have laid the grass over. What leans with the wind counts as standing.

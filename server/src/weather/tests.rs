@@ -2,8 +2,8 @@ use super::*;
 use crate::objects::Stand;
 use shared::bend::Bend;
 use shared::grid::PatchLayout;
-use shared::scene::{VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTime};
 use shared::scene::{Primitive, PrimitiveKind};
+use shared::scene::{VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTime};
 
 fn meadow() -> (Scene, Maps) {
     let loaded = crate::scenes::load("meadow").unwrap();
@@ -45,7 +45,9 @@ fn is_alive(weather: &Weather) -> bool {
 fn every_word_of_a_scene_blows() {
     use WindAdvection::{Bfecc, Conservative, MacCormack, SemiLagrangian};
     use WindTime::{Reflection, RungeKutta3, Split};
-    for (advection, time) in [(SemiLagrangian, Split), (MacCormack, Reflection), (Bfecc, Reflection), (Conservative, Split), (Conservative, RungeKutta3)] {
+    for (advection, time) in
+        [(SemiLagrangian, Split), (MacCormack, Reflection), (Bfecc, Reflection), (Conservative, Split), (Conservative, RungeKutta3)]
+    {
         let weather = blown(|scene| (scene.wind.advection, scene.wind.time, scene.wind.dust.advection) = (advection, time, advection), 12);
         assert!(is_alive(&weather.unwrap()), "{advection:?} {time:?}");
     }
@@ -65,14 +67,22 @@ fn every_word_of_a_scene_blows() {
         let weather = blown(|scene| scene.wind.primitives.push(Primitive { dust: 1.0, ..Primitive::new(kind, [128.0, 4.0, 128.0]) }), 12);
         assert!(is_alive(&weather.unwrap()), "{kind:?}");
     }
-    let stable_fluids = blown(|scene| scene.wind = shared::scene::Wind { cells: [16, 8, 16], ..shared::scene::Wind::of(WindMethod::StableFluids) }, 12);
+    let stable_fluids =
+        blown(|scene| scene.wind = shared::scene::Wind { cells: [16, 8, 16], ..shared::scene::Wind::of(WindMethod::StableFluids) }, 12);
     assert!(is_alive(&stable_fluids.unwrap()));
 }
 
 #[test]
 fn every_face_of_a_scene_blows() {
     let faces = [
-        [WindBoundary::Inflow, WindBoundary::Outflow, WindBoundary::FreeSlip, WindBoundary::Outflow, WindBoundary::NoSlip, WindBoundary::Reflect],
+        [
+            WindBoundary::Inflow,
+            WindBoundary::Outflow,
+            WindBoundary::FreeSlip,
+            WindBoundary::Outflow,
+            WindBoundary::NoSlip,
+            WindBoundary::Reflect,
+        ],
         [WindBoundary::Wrap, WindBoundary::Wrap, WindBoundary::NoSlip, WindBoundary::Lid, WindBoundary::Wrap, WindBoundary::Wrap],
     ];
     for [west, east, bottom, top, north, south] in faces {
@@ -140,7 +150,8 @@ fn grass_that_lies_lets_the_wind_pass() {
 #[test]
 fn a_box_that_follows_lets_no_wake_come_round() {
     let updraught_behind = |tiling| {
-        let weather = blown(|scene| (scene.wind.tiling, scene.wind.sources, scene.wind.mean_m_per_s) = (tiling, 0, [12.0, 0.0]), 1200).unwrap();
+        let weather =
+            blown(|scene| (scene.wind.tiling, scene.wind.sources, scene.wind.mean_m_per_s) = (tiling, 0, [12.0, 0.0]), 1200).unwrap();
         // The helicopter hovers at x = 64 of 256 m: its wash, carried east, comes round past the cut at x = 192.
         let west = (0..16).flat_map(|k| (0..3).map(move |i| i + 16 * (2 + 8 * k)));
         west.map(|at| (weather.velocities()[at].x - 12.0 * 0.75).abs() + weather.velocities()[at].y.abs()).fold(0.0, f32::max)

@@ -71,7 +71,13 @@ pub fn advect<R: Real>(
 }
 
 /// Sets each value of `target` to `f` of its index in memory, of what `source` holds where the air at it is displaced to, and of what it was.
-fn pull<R: Real>(grid: &Grid<R>, displacement: &[[R; 4]], source: &Field<R>, target: &mut Field<R>, f: impl Fn(usize, R, R) -> R + Sync + Send) {
+fn pull<R: Real>(
+    grid: &Grid<R>,
+    displacement: &[[R; 4]],
+    source: &Field<R>,
+    target: &mut Field<R>,
+    f: impl Fn(usize, R, R) -> R + Sync + Send,
+) {
     let plane_len = grid.strides()[2];
     for_each_chunk(&mut target.data, plane_len, |plane, out| {
         for_each_departure(grid, source, displacement, plane, |at, stencils| {
@@ -143,11 +149,7 @@ fn for_each_departure<R: Real>(
             let at = grid.at([i, j, k]);
             let (a, b) = (displacement[at], displacement[at - back]);
             let shift = |axis: usize| half * (a[axis] + b[axis]);
-            let stencils = [
-                Stencil::new(i, shift(0), ends[0]),
-                Stencil::new(j, shift(1), ends[1]),
-                Stencil::new(k, shift(2), ends[2]),
-            ];
+            let stencils = [Stencil::new(i, shift(0), ends[0]), Stencil::new(j, shift(1), ends[1]), Stencil::new(k, shift(2), ends[2])];
             f(at, stencils);
         }
     }

@@ -200,7 +200,8 @@ impl<R: Real> Walls<R> {
         let (grid, n, stride) = (&self.grid, self.grid.cells[axis], self.grid.strides()[axis]);
         let free = grid.free(field.place, axis);
         let Some(last) = free.clone().last() else { return };
-        let [near, next] = if side == 0 { [free.start, (free.start + 1).min(last)] } else { [last, last.saturating_sub(1).max(free.start)] };
+        let [near, next] =
+            if side == 0 { [free.start, (free.start + 1).min(last)] } else { [last, last.saturating_sub(1).max(free.start)] };
         let outside = if side == 0 { 0..near + GHOST } else { near + GHOST + 1..n + 2 * GHOST + 1 };
         for line in field.data.chunks_mut(stride * grid.padded()[axis]) {
             for inner in 0..stride {
@@ -330,11 +331,8 @@ fn apply<R: Real>(images: &[Image<R>], planes: [&[R]; 2], block: &mut [R], strid
             block[to..to + stride].fill(doubled);
         } else {
             let (low, high) = block.split_at_mut(to.max(from));
-            let (target, source) = if to < from {
-                (&mut low[to..to + stride], &high[..stride])
-            } else {
-                (&mut high[..stride], &low[from..from + stride])
-            };
+            let (target, source) =
+                if to < from { (&mut low[to..to + stride], &high[..stride]) } else { (&mut high[..stride], &low[from..from + stride]) };
             target.iter_mut().zip(source).for_each(|(target, &source)| *target = sign * source + doubled);
         }
     }

@@ -75,7 +75,10 @@ pub fn drag<R: Real>(grid: &Grid<R>, canopy: &Canopy, cover: &[R], dt_secs: f64,
         let place = Place::Face(axis);
         let offset = grid.offset(place, 1).wide();
         let (from, to) = (&slowed.0[axis], &mut velocity.0[axis]);
-        for j in grid.free(place, 1).take_while(|&j| canopy.share(((j as f64 + offset - 0.5) * layer_m).max(0.0), (j as f64 + offset + 0.5) * layer_m) > 0.0) {
+        for j in grid
+            .free(place, 1)
+            .take_while(|&j| canopy.share(((j as f64 + offset - 0.5) * layer_m).max(0.0), (j as f64 + offset + 0.5) * layer_m) > 0.0)
+        {
             for k in grid.free(place, 2) {
                 let xs = grid.free(place, 0);
                 let row = grid.at([xs.start, j, k]);

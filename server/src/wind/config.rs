@@ -263,7 +263,12 @@ impl Config {
         for face in faces {
             let Boundary::Lid { velocity_m_per_s: lid } = face else { continue };
             let slides = lid[axis] == 0.0 && lid.iter().all(|speed| speed.abs() <= 200.0);
-            check(slides, format!("boundary[{axis}]"), format!("{face:?}"), "a lid that moves along itself, at -200 to 200 m/s along each axis")?;
+            check(
+                slides,
+                format!("boundary[{axis}]"),
+                format!("{face:?}"),
+                "a lid that moves along itself, at -200 to 200 m/s along each axis",
+            )?;
         }
         Ok(())
     }
@@ -272,7 +277,9 @@ impl Config {
         check((0.0..=1.0).contains(&self.damping), "damping", self.damping, "0 to 1")?;
         let (time, conservative) = (format!("{:?}", self.time), self.advection == Advection::Conservative);
         match self.time {
-            TimeScheme::RungeKutta3 => check(conservative, "time", time, "Split or Reflection, with advection of the semi-Lagrangian family")?,
+            TimeScheme::RungeKutta3 => {
+                check(conservative, "time", time, "Split or Reflection, with advection of the semi-Lagrangian family")?
+            }
             TimeScheme::Reflection => check(!conservative, "time", time, "Split or RungeKutta3, with conservative advection")?,
             TimeScheme::Split => {}
         }

@@ -21,7 +21,14 @@ pub fn stable_dt_secs<R: Real>(grid: &Grid<R>, diffusivity_m2_per_s: f64) -> f64
 /// Writes `start + ν·dt·∇²field` (central differences, second order in h) into the values of `target` that the flow decides. The ghosts of `field` must be filled.
 ///
 /// With `start` the field itself this is the explicit step: forward Euler, first order in dt.
-pub fn explicit<R: Real>(grid: &Grid<R>, diffusivity_m2_per_s: f64, dt_secs: f64, start: &Field<R>, field: &Field<R>, target: &mut Field<R>) {
+pub fn explicit<R: Real>(
+    grid: &Grid<R>,
+    diffusivity_m2_per_s: f64,
+    dt_secs: f64,
+    start: &Field<R>,
+    field: &Field<R>,
+    target: &mut Field<R>,
+) {
     let strides = grid.strides();
     let weight = grid.spacing_m.map(|h| R::of(diffusivity_m2_per_s * dt_secs) / (h * h));
     let place = field.place;
@@ -70,7 +77,8 @@ pub fn gauss_seidel<R: Real>(
                 for i in grid.free(place, 0) {
                     let at = grid.at([i, j, k]);
                     let data = &field.data;
-                    let around = (0..3).fold(R::zero(), |sum, axis| sum + weight[axis] * (data[at - strides[axis]] + data[at + strides[axis]]));
+                    let around =
+                        (0..3).fold(R::zero(), |sum, axis| sum + weight[axis] * (data[at - strides[axis]] + data[at + strides[axis]]));
                     let value = (start.data[at] + around) * per;
                     change = change.max((value - field.data[at]).abs());
                     field.data[at] = value;

@@ -133,7 +133,15 @@ impl Primitive {
     }
 
     /// Releases dust for a step, `release_per_sec` at the centre.
-    pub fn release<R: Real>(&self, grid: &Grid<R>, time_secs: f64, release_per_sec: f64, dt_secs: f64, dust: &mut Field<R>, footprint: &mut Footprint<R>) {
+    pub fn release<R: Real>(
+        &self,
+        grid: &Grid<R>,
+        time_secs: f64,
+        release_per_sec: f64,
+        dt_secs: f64,
+        dust: &mut Field<R>,
+        footprint: &mut Footprint<R>,
+    ) {
         let gain = R::of(f64::from(self.dust) * release_per_sec * dt_secs);
         if gain > R::zero() {
             footprint.put(grid, dust.place, self.centre_m(time_secs), [R::of(self.radius_m.into()); 3]);

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::boundary::Walls;
 use super::config::{Config, ConfigError};
 use super::diffuse::Implicit;
 use super::footprint::Footprint;
@@ -12,7 +13,6 @@ use super::sources::Pushes;
 use super::state::{SolidError, State, StateError};
 use super::trace::Paths;
 use super::{Advection, Diffusion, Field, Grid, Place, Real, Velocity, advect, transport};
-use super::boundary::Walls;
 
 /// The solver in the precision the simulation runs in.
 pub type WindSolver = Solver<f32>;

@@ -136,7 +136,8 @@ fn gusts_travel_with_the_wind() {
 #[test]
 fn without_gusts_the_mean_wind_blows_on() {
     for (advection, time) in METHODS {
-        let config = Config { gusts: Gusts { number: 0, ..Gusts::default() }, advection, time, viscosity_m2_per_s: 0.0, ..Config::default() };
+        let config =
+            Config { gusts: Gusts { number: 0, ..Gusts::default() }, advection, time, viscosity_m2_per_s: 0.0, ..Config::default() };
         let mut wind = WindSolver::new(&config).unwrap();
         let start = Vec3::from(wind.velocity_at([1.0, 3.0, 2.0]));
         for _ in 0..100 {
@@ -186,7 +187,8 @@ fn a_closed_box_and_a_wrapped_one_run() {
 fn absurd_courant_numbers_are_survived() {
     let dust = Some(Dust { advection: Advection::MacCormack, diffusivity_m2_per_s: 0.0, ..Dust::default() });
     for (advection, time) in METHODS.into_iter().filter(|(advection, _)| *advection != Advection::Conservative) {
-        let mut wind = WindSolver::new(&Config { advection, time, cells: [16, 8, 16], viscosity_m2_per_s: 0.0, dust, ..Config::default() }).unwrap();
+        let mut wind =
+            WindSolver::new(&Config { advection, time, cells: [16, 8, 16], viscosity_m2_per_s: 0.0, dust, ..Config::default() }).unwrap();
         for _ in 0..200 {
             let report = wind.step(100.0, &[]).unwrap();
             assert!(report.kinetic_energy_m2_per_s2 < 1e6, "{report:?}");

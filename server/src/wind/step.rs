@@ -5,7 +5,10 @@ use super::diffuse::{Portion, spread};
 use super::pressure::Convergence;
 use super::state::{MAX_SUBSTEPS, StepError, StepReport};
 use super::transport::{self, STAGE_ENDS, STAGES, Stage};
-use super::{Advection, Config, Diffusion, Dust, Grid, Jet, Real, Solver, TimeScheme, advect, canopy, diffuse, forcing, health, profile, sources, trace};
+use super::{
+    Advection, Config, Diffusion, Dust, Grid, Jet, Real, Solver, TimeScheme, advect, canopy, diffuse, forcing, health, profile, sources,
+    trace,
+};
 
 /// Share of the longest stable step that a substep takes, since air may be faster at its end than at its beginning.
 const SAFETY: f64 = 0.8;
@@ -206,7 +209,8 @@ impl<R: Real> Solver<R> {
             self.go_back();
             return Err(error);
         }
-        let looks_around = self.config.canopy.is_some() || self.config.diffusion != Diffusion::Explicit || self.config.time == TimeScheme::Split;
+        let looks_around =
+            self.config.canopy.is_some() || self.config.diffusion != Diffusion::Explicit || self.config.time == TimeScheme::Split;
         for (number, share) in STAGES.into_iter().enumerate() {
             let [even, odd] = &mut self.stages;
             let (air, target) = match number {
@@ -336,7 +340,17 @@ impl<R: Real> Solver<R> {
                         1 => (&*even, &mut *odd),
                         _ => (&*odd, &mut *even),
                     };
-                    let stage = Stage { grid: &grid, air, carried, start: dust, pull: None, dt_secs: part_secs, share, diffusivity_m2_per_s: in_flux, damping: 0.0 };
+                    let stage = Stage {
+                        grid: &grid,
+                        air,
+                        carried,
+                        start: dust,
+                        pull: None,
+                        dt_secs: part_secs,
+                        share,
+                        diffusivity_m2_per_s: in_flux,
+                        damping: 0.0,
+                    };
                     stage.run(target, &mut self.transport);
                     close(target);
                 }

@@ -47,7 +47,8 @@ impl Implicit {
             }
         }
         // What faces with a given velocity add: the ghost is 2w − u, of which −u is in the transform.
-        let mut add = |index: [usize; 3], axis: usize, outside: f64| values[index[0] + nx * (index[1] + ny * index[2])] += outside * per_m2[axis];
+        let mut add =
+            |index: [usize; 3], axis: usize, outside: f64| values[index[0] + nx * (index[1] + ny * index[2])] += outside * per_m2[axis];
         for (axis, &step) in strides.iter().enumerate() {
             let Basis::Centres(edges) = basis(grid, place, axis) else {
                 if place == Place::Face(axis) && !grid.wraps(axis) {

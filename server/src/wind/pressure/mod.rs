@@ -148,7 +148,15 @@ fn gradient_of_plane<R: Real>(grid: &Grid<R>, potential: &[f64], axis: usize, k:
     let place = Place::Face(axis);
     let row = |j: usize, k: usize| &potential[nx * (j + ny * k)..][..nx];
     // The cells before and behind face i along the axis, and the weight of each: beyond an outflow the mirror image of the opposite sign.
-    let before = |i: usize| if i > 0 { (i - 1, per_m) } else if grid.wraps(axis) { (n - 1, per_m) } else { (0, -per_m) };
+    let before = |i: usize| {
+        if i > 0 {
+            (i - 1, per_m)
+        } else if grid.wraps(axis) {
+            (n - 1, per_m)
+        } else {
+            (0, -per_m)
+        }
+    };
     let behind = |i: usize| if i < n { (i, per_m) } else { (n - 1, -per_m) };
     let mut take = |at: usize, p: &[f64], q: &[f64], [weight_p, weight_q]: [f64; 2]| {
         let len = p.len();
