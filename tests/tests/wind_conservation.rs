@@ -88,7 +88,8 @@ fn momentum_change<R: Real>(choose: impl Fn(&mut Config)) -> f64 {
 
 #[test]
 fn a_box_that_wraps_keeps_its_momentum_to_rounding() {
-    let schemes: [(&str, fn(&mut Config)); 4] = [
+    type Choose = fn(&mut Config);
+    let schemes: [(&str, Choose); 4] = [
         ("Runge–Kutta 3", |_| {}),
         ("Runge–Kutta 3, no damping", |config| config.damping = 0.0),
         ("Runge–Kutta 3, Crank–Nicolson", |config| config.diffusion = Diffusion::CrankNicolson),
