@@ -8,9 +8,14 @@ use rayon::prelude::*;
 /// Below this many values a loop takes less time than waking a second thread.
 const WORTH_SHARING: usize = 32_768;
 
+/// Whether loops over so many values are shared.
+pub(super) fn is_worth_sharing(len: usize) -> bool {
+    len >= WORTH_SHARING
+}
+
 /// Calls `f(number, chunk)` for each `len` values of `data`; the last chunk may be shorter.
 pub(super) fn for_each_chunk<T: Send>(data: &mut [T], len: usize, f: impl Fn(usize, &mut [T]) + Sync + Send) {
-    if data.len() < WORTH_SHARING {
+    if !is_worth_sharing(data.len()) {
         data.chunks_mut(len).enumerate().for_each(|(n, chunk)| f(n, chunk));
     } else {
         data.par_chunks_mut(len).enumerate().for_each(|(n, chunk)| f(n, chunk));
@@ -25,7 +30,7 @@ pub(super) fn for_each_chunk_pair<T: Send, U: Send>(
     other_len: usize,
     f: impl Fn(usize, &mut [T], &mut [U]) + Sync + Send,
 ) {
-    if data.len() < WORTH_SHARING {
+    if !is_worth_sharing(data.len()) {
         data.chunks_mut(len).zip(other.chunks_mut(other_len)).enumerate().for_each(|(n, (chunk, other))| f(n, chunk, other));
     } else {
         data.par_chunks_mut(len).zip(other.par_chunks_mut(other_len)).enumerate().for_each(|(n, (chunk, other))| f(n, chunk, other));

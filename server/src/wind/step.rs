@@ -6,8 +6,8 @@ use super::pressure::Convergence;
 use super::state::{MAX_SUBSTEPS, StepError, StepReport};
 use super::transport::{self, STAGE_ENDS, STAGES, Stage};
 use super::{
-    Advection, Config, Diffusion, Dust, Grid, Jet, Real, Solver, TimeScheme, advect, canopy, diffuse, forcing, health, profile, sources,
-    trace,
+    Advection, Config, Diffusion, Dust, Grid, Jet, Real, Solver, TimeScheme, advect, canopy, diffuse, forcing, health, parallel, profile,
+    sources, trace,
 };
 
 /// Share of the longest stable step that a substep takes, since air may be faster at its end than at its beginning.
@@ -24,6 +24,15 @@ impl<R: Real> Solver<R> {
     /// # Errors
     /// See [`StepError`].
     pub fn step(&mut self, dt_secs: f64, jets: &[Jet]) -> Result<StepReport, StepError> {
+        if parallel::is_worth_sharing(self.grid.padded_len()) {
+            // Once on the threads that share the loops, no loop has to be handed over to them.
+            rayon::scope(|_| self.take_step(dt_secs, jets))
+        } else {
+            self.take_step(dt_secs, jets)
+        }
+    }
+
+    fn take_step(&mut self, dt_secs: f64, jets: &[Jet]) -> Result<StepReport, StepError> {
         if let Some(index) = jets.iter().position(|jet| !jet.is_valid()) {
             return Err(StepError::BadJet { index, jet: jets[index] });
         }
