@@ -282,7 +282,7 @@ fn multigrid_takes_few_cycles_whatever_the_box() {
 }
 
 #[test]
-#[ignore = "takes a minute"]
+#[ignore = "takes a minute; cargo nextest run --release --workspace --run-ignored only -E 'test(large_boxes)'"]
 fn multigrid_takes_few_cycles_in_large_boxes() {
     assert_few_cycles(
         &[[64; 3], [128, 32, 128], [33, 17, 65]],
