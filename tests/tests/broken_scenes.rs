@@ -6,7 +6,7 @@ use shared::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
-const BROKEN: [&str; 17] = [
+const BROKEN: [&str; 18] = [
     "unknown-field",
     "syntax",
     "out-of-range",
@@ -14,6 +14,7 @@ const BROKEN: [&str; 17] = [
     "wrong-maps",
     "unreadable-model",
     "endless-model",
+    "wind-out-of-range",
     "wind-faces",
     "wind-through-faces",
     "wind-patch",
