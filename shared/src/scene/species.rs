@@ -102,6 +102,11 @@ impl Scene {
         std::iter::once(self.plants).chain(species).collect()
     }
 
+    /// Height of the tallest kind of grass (m).
+    pub fn tallest_m(&self) -> f32 {
+        self.species.iter().map(|species| species.height_m).fold(self.plants.height_m, f32::max)
+    }
+
     /// Index in [`kinds`](Self::kinds) of what has the ID `id` in the covering map; 0 where no species has it.
     pub fn kind_of_cover(&self, id: u8) -> u8 {
         let species = self.species.iter().position(|species| species.cover == id);
