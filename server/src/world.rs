@@ -8,7 +8,7 @@ use crate::weather::{self, Weather, WeatherError};
 use crate::wind::StepError;
 use crate::wind::state::MAX_SUBSTEPS;
 use rayon::prelude::*;
-use shared::bend::{Patch, WaveParams, verlet};
+use shared::bend::{Damping, Patch, Scheme, WaveParams, limits};
 use shared::scene::{Grass, Patches, Scene, VehicleKind};
 use shared::terrain::{CoverMap, HeightMap};
 use shared::wire::quantise;
@@ -95,7 +95,7 @@ impl World {
         let weather = Weather::new(scene, &maps).map_err(|error| no_wind(scene, error))?;
         let height = Arc::new(maps.height);
         let place = Place { height: Arc::clone(&height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
-        let meadow = Meadow::new(scene, Arc::clone(&height));
+        let meadow = Meadow::new(scene, Arc::clone(&height), &place.cover);
         Ok(Self {
             dt_secs: scene.dt_secs(),
             tick: 0,
@@ -139,7 +139,7 @@ impl World {
                 evicted_patches: self.meadow.evicted(),
                 wind_resets: self.weather.resets(),
                 substeps: bend.substeps,
-                courant: bend.courant,
+                courant: bend.courant_share,
                 ..Health::default()
             },
         }
@@ -163,12 +163,10 @@ impl World {
             sum.add(pose.position_m.iter().chain(&pose.rotation).chain(&pose.velocity_m_per_s).map(|v| v.to_bits()));
         }
         sum.add(self.weather.velocities().iter().flat_map(|velocity| velocity.to_array().map(f32::to_bits)));
-        for (index, patch) in self.meadow.field().awake() {
-            sum.add([index]);
-            for channel in patch.channels().into_iter().chain(patch.channels_before()) {
-                for row in channel.chunks_exact(patch.stride()).skip(1).take(patch.side()) {
-                    sum.add(row[1..=patch.side()].iter().map(|v| v.to_bits()));
-                }
+        for patch in self.meadow.field().awake() {
+            sum.add([patch.index()]);
+            for row in patch.rows().chain(patch.rows_before()) {
+                sum.add(row.into_iter().flatten().map(|v| v.to_bits()));
             }
         }
         sum.0
@@ -200,8 +198,8 @@ impl World {
     /// Quantises the patches that changed.
     fn show_patches(&mut self) {
         let (tick, before) = (self.tick, &self.shown);
-        let show = |(index, patch)| {
-            let codes = codes_of(patch);
+        let show = |patch: &Patch| {
+            let (index, codes) = (patch.index(), codes_of(patch));
             match before.get(&index) {
                 Some(before) if before.codes == codes => Some((index, Arc::clone(before))),
                 _ if codes.iter().all(|&code| code == 0) => None,
@@ -217,29 +215,34 @@ impl World {
 fn codes_of(patch: &Patch) -> Vec<i8> {
     let side = patch.side();
     let mut codes = vec![0; 3 * side * side];
-    let [theta, x, z] = patch.channels();
-    let rows = |channel| <[f32]>::chunks_exact(channel, side + 2).skip(1).map(|row| &row[1..=side]);
-    let mut codes_rows = codes.chunks_exact_mut(side);
-    for (codes, row) in codes_rows.by_ref().zip(rows(theta).take(side)) {
-        codes.iter_mut().zip(row).for_each(|(code, &theta)| *code = quantise::theta_code(theta));
-    }
-    for (codes, row) in codes_rows.zip(rows(x).take(side).chain(rows(z).take(side))) {
-        codes.iter_mut().zip(row).for_each(|(code, &omega)| *code = quantise::omega_code(omega));
+    let (theta_codes, omega_codes) = codes.split_at_mut(side * side);
+    let (x_codes, z_codes) = omega_codes.split_at_mut(side * side);
+    let rows = theta_codes.chunks_exact_mut(side).zip(x_codes.chunks_exact_mut(side)).zip(z_codes.chunks_exact_mut(side));
+    for (((theta_codes, x_codes), z_codes), [theta, x, z]) in rows.zip(patch.rows()) {
+        theta_codes.iter_mut().zip(theta).for_each(|(code, &theta)| *code = quantise::theta_code(theta));
+        x_codes.iter_mut().zip(x).for_each(|(code, &omega)| *code = quantise::omega_code(omega));
+        z_codes.iter_mut().zip(z).for_each(|(code, &omega)| *code = quantise::omega_code(omega));
     }
     codes
 }
 
 fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
+    let allowed = match scene.bend.scheme {
+        Scheme::Verlet => 1,
+        Scheme::Substepped => SUBSTEP_LIMIT,
+        Scheme::Implicit | Scheme::Modal => return Ok(()),
+    };
     let needed = substeps_when_struck(scene);
-    if needed <= SUBSTEP_LIMIT {
+    if needed <= allowed {
         return Ok(());
     }
     type Mend = fn(&mut Scene);
-    let usual: [(&str, Mend); 6] = [
+    let usual: [(&str, Mend); 7] = [
         ("grass.mu_m_per_rad", |scene| scene.grass.mu_m_per_rad = Grass::default().mu_m_per_rad),
         ("grass.c0_m_per_s", |scene| scene.grass.c0_m_per_s = Grass::default().c0_m_per_s),
         ("grass.c_omega_m_per_s", |scene| scene.grass.c_omega_m_per_s = Grass::default().c_omega_m_per_s),
         ("grass.stiffness_per_s2", |scene| scene.grass.stiffness_per_s2 = Grass::default().stiffness_per_s2),
+        ("species", |scene| scene.species.clear()),
         ("patches.cell_m", |scene| scene.patches.cell_m = Patches::default().cell_m),
         ("tick_hz", |scene| scene.tick_hz = 60.0),
     ];
@@ -250,20 +253,31 @@ fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
     };
     // To blame is the field whose usual value would help most.
     let (field, _) = usual.into_iter().min_by_key(|&(_, mend)| needed_with(mend)).expect("the list is not empty");
-    let Grass { c0_m_per_s, mu_m_per_rad, c_omega_m_per_s, stiffness_per_s2, .. } = scene.grass;
+    let stiffest = scene.kinds().into_iter().max_by_key(|grass| substeps_of(scene, &[WaveParams::from(grass)])).unwrap_or(scene.grass);
+    let Grass { c0_m_per_s, mu_m_per_rad, c_omega_m_per_s, stiffness_per_s2, .. } = stiffest;
     let message = format!(
-        "makes the grass too stiff: it needs {needed} sub-steps in a step when an object strikes it at {SPEED_LIMIT_M_PER_S} m/s; allowed: \
-         {SUBSTEP_LIMIT}. It has mu_m_per_rad = {mu_m_per_rad}, c0_m_per_s = {c0_m_per_s}, c_omega_m_per_s = {c_omega_m_per_s}, \
-         stiffness_per_s2 = {stiffness_per_s2} on cells of {} m at {} Hz; smaller ones, a larger cell_m or a higher tick_hz need fewer",
-        scene.patches.cell_m, scene.tick_hz
+        "makes the grass too stiff: with `bend.scheme` = \"{}\" it needs {needed} sub-steps in a step when an object strikes it at \
+         {SPEED_LIMIT_M_PER_S} m/s; allowed: {allowed}. It has mu_m_per_rad = {mu_m_per_rad}, c0_m_per_s = {c0_m_per_s}, \
+         c_omega_m_per_s = {c_omega_m_per_s}, stiffness_per_s2 = {stiffness_per_s2} on cells of {} m at {} Hz; smaller ones, a larger cell_m or a \
+         higher tick_hz need fewer",
+        scene.bend.scheme.word(),
+        scene.patches.cell_m,
+        scene.tick_hz
     );
     Err(WorldError { field, message })
 }
 
 /// Sub-steps of the grass when an object strikes it at its fastest.
 fn substeps_when_struck(scene: &Scene) -> u32 {
+    let waves: Vec<_> = scene.kinds().iter().map(WaveParams::from).collect();
+    substeps_of(scene, &waves)
+}
+
+fn substeps_of(scene: &Scene, waves: &[WaveParams]) -> u32 {
     let strike_m = VehicleKind::ALL.map(VehicleKind::strike_height_m).into_iter().fold(f32::INFINITY, f32::min);
-    verlet::substeps(&WaveParams::from(&scene.grass), scene.patches.cell_m, scene.dt_secs(), SPEED_LIMIT_M_PER_S / strike_m)
+    let damping = if scene.bend.scheme == Scheme::Verlet { Damping::Plain } else { Damping::Exact };
+    let needed = limits::substeps(waves, scene.patches.cell_m, scene.dt_secs(), SPEED_LIMIT_M_PER_S / strike_m, damping);
+    needed.unwrap_or(limits::SUBSTEPS_LIMIT)
 }
 
 fn no_wind(scene: &Scene, error: WeatherError) -> WorldError {

@@ -9,11 +9,11 @@ pub mod step;
 use crate::objects::Motion;
 use air::{GroundWind, Wash};
 use contact::Contact;
-use regions::{Regions, Trace};
-use shared::bend::{Field, WaveParams};
+use regions::Regions;
+use shared::bend::{Field, Kinds, Patch, Report, Scheme, StepError};
 use shared::grid::{PatchIndex, PatchLayout};
 use shared::scene::{Scene, VehicleKind};
-use shared::terrain::HeightMap;
+use shared::terrain::{CoverMap, HeightMap};
 use std::sync::Arc;
 
 /// A camera.
@@ -31,27 +31,34 @@ const MARGIN_M: f32 = 1.0;
 /// The bend field and everything that drives it.
 pub struct Meadow {
     field: Field,
-    params: WaveParams,
+    scheme: Scheme,
     height: Arc<HeightMap>,
     blade_m: f32,
     theta_max_rad: f32,
     regions: Regions,
-    traces: Vec<Trace>,
-    report: step::Report,
+    report: Report,
 }
 
 impl Meadow {
     /// A meadow at rest.
-    pub fn new(scene: &Scene, height: Arc<HeightMap>) -> Self {
+    pub fn new(scene: &Scene, height: Arc<HeightMap>, cover: &CoverMap) -> Self {
+        let (settings, limit) = (scene.bend, scene.patches.awake_limit as usize);
+        let mut field = Field::new(PatchLayout::from(&scene.patches), Kinds::of(scene, cover))
+            .with_edges(settings.edges)
+            .with_seams(settings.seams)
+            .with_rest(settings.rest())
+            .with_awake_limit(limit);
+        if settings.scheme == Scheme::Modal {
+            field.wake_all();
+        }
         Self {
-            field: Field::new(PatchLayout::from(&scene.patches)),
-            params: WaveParams::from(&scene.grass),
+            field,
+            scheme: settings.scheme,
             height,
             blade_m: scene.plants.height_m,
             theta_max_rad: scene.grass.theta_max_rad,
-            regions: Regions::new(scene.patches.awake_limit as usize),
-            traces: vec![],
-            report: step::Report::default(),
+            regions: Regions::new(limit),
+            report: Report::default(),
         }
     }
 
@@ -61,14 +68,14 @@ impl Meadow {
     }
 
     /// What the newest step took.
-    pub fn report(&self) -> step::Report {
+    pub fn report(&self) -> Report {
         self.report
     }
 
     /// Sum of θ² + ω² over all cells (mixed units).
     pub fn activity(&self) -> f64 {
         // The sum of nothing would be −0.
-        self.traces.iter().fold(0.0, |sum, trace| sum + f64::from(trace.extremes.activity))
+        self.field.awake().map(Patch::activity).fold(0.0, |sum, activity| sum + activity)
     }
 
     /// Patches let go so far because too many were awake.
@@ -80,16 +87,35 @@ impl Meadow {
     pub fn step(&mut self, dt_secs: f32, motions: &[Motion], views: &[View], wind: &GroundWind) {
         let contacts: Vec<_> = motions.iter().flat_map(|motion| self.contacts(motion)).collect();
         let washes: Vec<_> = motions.iter().filter_map(|motion| self.wash(motion)).collect();
-        let touched = self.touched(&contacts, &washes);
-        self.regions.update(&mut self.field, &touched, &self.traces, views);
+        if self.scheme != Scheme::Modal {
+            let touched = self.touched(&contacts, &washes);
+            self.regions.update(&mut self.field, &touched, views);
+        }
+        for contact in &contacts {
+            contact::press(&mut self.field, contact, wind, &self.height, self.theta_max_rad, dt_secs);
+        }
+        for wash in &washes {
+            wash.press(&mut self.field, wind, dt_secs);
+        }
+        self.report = self.propagate(dt_secs);
+    }
 
-        let carried = self.traces.iter().map(|trace| trace.extremes.omega_rad_per_s).fold(0.0, f32::max);
-        let omega_max = contacts
-            .iter()
-            .map(|contact| contact::press(&mut self.field, contact, wind, &self.height, self.theta_max_rad, dt_secs))
-            .fold(carried, f32::max);
-        let omega_max = washes.iter().map(|wash| wash.press(&mut self.field, wind, dt_secs)).fold(omega_max, f32::max);
-        (self.report, self.traces) = step::propagate(&mut self.field, &self.params, dt_secs, omega_max);
+    /// Carries the waves on. Grass that bends too fast for any number of sub-steps allowed is put to rest and counts as broken.
+    fn propagate(&mut self, dt_secs: f32) -> Report {
+        let mut broken = 0;
+        loop {
+            match self.field.step(self.scheme, dt_secs, &step::Pool) {
+                Ok(report) => return Report { broken: report.broken + broken, ..report },
+                Err(StepError::TooFast { omega_rad_per_s, .. }) => {
+                    let fastest: Vec<_> =
+                        self.field.awake().filter(|patch| patch.omega_max_rad_per_s() >= omega_rad_per_s).map(Patch::index).collect();
+                    broken += fastest.len() as u32;
+                    fastest.into_iter().for_each(|patch| self.field.sleep(patch));
+                }
+                // A checked scene gives a step of some length, and the modal scheme only what it can carry.
+                Err(_) => return Report { broken, ..Report::default() },
+            }
+        }
     }
 
     /// Where a motion touches grass: parts that are lower than the grass is high.

@@ -44,14 +44,13 @@ impl Standing {
     pub(super) fn shares(&mut self, field: &Field) -> impl Iterator<Item = f32> + '_ {
         let (layout, cell_m) = (field.layout(), field.layout().cell_m);
         self.upright.fill((0.0, 0.0));
-        for (index, patch) in field.awake() {
-            let corner_m = layout.corner_m(index);
-            let theta = patch.channels()[0];
+        for patch in field.awake() {
+            let corner_m = layout.corner_m(patch.index());
             for j in (STRIDE / 2..patch.side()).step_by(STRIDE) {
                 for i in (STRIDE / 2..patch.side()).step_by(STRIDE) {
                     let at_m = [corner_m[0] + i as f32 * cell_m, corner_m[1] + j as f32 * cell_m];
                     let [x, z] = [0, 1].map(|axis| (at_m[axis] / self.spacing_m[axis]) as usize % self.columns[axis]);
-                    let theta = theta[patch.at(i, j)];
+                    let theta = patch.bend(i, j).theta;
                     let (sum, count) = &mut self.upright[x + self.columns[0] * z];
                     *sum += (1.0 - 0.5 * theta * theta).max(0.0);
                     *count += 1.0;

@@ -3,40 +3,33 @@
 use super::patch::{HALO, Patch};
 use super::tiles::TILE;
 use crate::grid::{PatchIndex, PatchLayout};
+use crate::scene::words;
 use serde::{Deserialize, Serialize};
 
-/// What lies beyond the edge of the world.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Edges {
-    /// Grass at rest: waves are thrown back with their sign turned, as by a fixed end.
-    #[default]
-    Rest,
-    /// A mirror: waves are thrown back as by a free end.
-    Free,
-    /// The opposite edge.
-    Wrapped,
+words! {
+    /// What lies beyond the edge of the world.
+    #[derive(Default)]
+    Edges {
+        /// Grass at rest: waves are thrown back with their sign turned, as by a fixed end.
+        #[default]
+        Rest = "rest",
+        /// A mirror: waves are thrown back as by a free end.
+        Free = "free",
+        /// The opposite edge.
+        Wrapped = "wrapped",
+    }
 }
 
-/// How patches meet.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Seams {
-    /// Ghost cells are exchanged: a field of many patches equals one big grid, bit for bit.
-    #[default]
-    Exact,
-    /// As 001 §4.2: each patch simulates 4 cells more on every side, the last of them at rest, and hears nothing of its neighbours;
-    /// contact alone presses both.
-    Overlap,
-}
-
-impl Seams {
-    /// Name, as a scene file writes it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Exact => "exact",
-            Self::Overlap => "overlap",
-        }
+words! {
+    /// How patches meet.
+    #[derive(Default)]
+    Seams {
+        /// Ghost cells are exchanged: a field of many patches equals one big grid, bit for bit.
+        #[default]
+        Exact = "exact",
+        /// As 001 §4.2: each patch simulates 4 cells more on every side, the last of them at rest, and hears nothing of its neighbours;
+        /// contact alone presses both.
+        Overlap = "overlap",
     }
 }
 

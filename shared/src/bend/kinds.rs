@@ -3,17 +3,17 @@
 use super::WaveParams;
 use crate::grid::PatchLayout;
 use crate::scene::Scene;
-use crate::terrain::CoverMap;
+use crate::terrain::{CoverMap, KindMap};
 
 /// The wave constants of each kind of grass, and where each grows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kinds {
     waves: Vec<WaveParams>,
-    map: Option<KindMap>,
+    map: Option<Pixels>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-struct KindMap {
+struct Pixels {
     size_px: [usize; 2],
     /// Kind at each pixel, row by row from the north.
     kinds: Vec<u8>,
@@ -31,17 +31,17 @@ impl Kinds {
     /// When a pixel names a kind that is not there, or the number of pixels is not that of the size.
     pub fn mapped(waves: Vec<WaveParams>, size_px: [usize; 2], kinds: Vec<u8>) -> Self {
         assert!(size_px[0] * size_px[1] == kinds.len() && kinds.iter().all(|&kind| usize::from(kind) < waves.len()));
-        Self { waves, map: Some(KindMap { size_px, kinds }) }
+        Self { waves, map: Some(Pixels { size_px, kinds }) }
     }
 
     /// The kinds of a scene, over its covering map.
     pub fn of(scene: &Scene, cover: &CoverMap) -> Self {
-        let waves: Vec<_> = vec![scene.grass].iter().map(WaveParams::from).collect();
+        let waves: Vec<_> = scene.kinds().iter().map(WaveParams::from).collect();
         if waves.len() == 1 {
             return Self::one(waves[0]);
         }
-        let kinds = cover.ids().iter().map(|&id| { let _ = id; 0 }).collect();
-        Self::mapped(waves, cover.size_px().map(|n| n as usize), kinds)
+        let map = KindMap::new(scene, cover);
+        Self::mapped(waves, map.size_px().map(|n| n as usize), map.kinds().to_vec())
     }
 
     /// Constants of all kinds.

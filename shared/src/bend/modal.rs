@@ -42,7 +42,7 @@ pub(super) fn step(field: &mut Field, dt_secs: f32) -> Result<Report, StepError>
     }
     let (awake, patches) = (field.awake_count(), field.layout.patches());
     if awake < patches || field.seams == Seams::Overlap {
-        return Err(StepError::NotWhole { awake, patches, seams: field.seams.name() });
+        return Err(StepError::NotWhole { awake, patches, seams: field.seams.word() });
     }
     let ratio = field.dt_secs.replace(dt_secs).map_or(1.0, |last| dt_secs / last);
     let WaveParams { c0_m_per_s, c_omega_m_per_s, theta_damping_per_s, omega_damping_per_s, stiffness_per_s2, .. } = waves[0];

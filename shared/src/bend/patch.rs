@@ -141,8 +141,14 @@ impl Patch {
 
     /// Sum of θ² + ω² over the cells (mixed units): how far from rest the patch is.
     pub fn activity(&self) -> f64 {
-        let squares = |row: [&[f32]; CHANNELS]| row.into_iter().flatten().map(|v| f64::from(*v) * f64::from(*v)).sum::<f64>();
-        if self.tiles.is_still() { 0.0 } else { self.rows().map(squares).sum() }
+        let squares = |cells: &[f32]| cells.iter().map(|v| f64::from(*v) * f64::from(*v)).sum::<f64>();
+        let tile = |x: usize, z: usize| {
+            let row = move |row: usize| self.at((x * TILE) as i64, (z * TILE + row) as i64);
+            (0..TILE).map(row).map(|at| self.now.iter().map(|plane| squares(&plane[at..at + TILE])).sum::<f64>()).sum::<f64>()
+        };
+        let tiles = (0..self.tiles.count()).flat_map(|z| (0..self.tiles.count()).map(move |x| (x, z)));
+        // The sum of nothing would be −0.
+        tiles.filter(|&(x, z)| self.tiles.holds(x, z)).fold(0.0, |sum, (x, z)| sum + tile(x, z))
     }
 
     /// Tiles of 8 × 8 cells that have changed since they were last taken, row by row.

@@ -1,39 +1,31 @@
 //! The schemes that carry the waves on, and what a step reports.
 
+use crate::scene::words;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// How the waves (001 Eqs 2–3) are carried on in time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Scheme {
-    /// 001 Eqs (5)–(6), one step however long: explicit, first order in time where damped, and beyond
-    /// [`courant_limit`](super::courant_limit) it blows up.
-    Verlet,
-    /// The same in as many equal sub-steps as the limit asks for, the damping integrated exactly: second order.
-    #[default]
-    Substepped,
-    /// Newmark's average acceleration (β = ¼) by alternating directions (Lees 1962): one step however long, second order, stable for any
-    /// step where the speed is constant.
-    Implicit,
-    /// Each mode of the whole grid by its exact solution (in time; in space the same differences as the others). Needs one constant speed
-    /// (μ = 0, one kind of grass) and every patch awake.
-    Modal,
+words! {
+    /// How the waves (001 Eqs 2–3) are carried on in time.
+    #[derive(Default)]
+    Scheme {
+        /// 001 Eqs (5)–(6), one step however long: explicit, first order in time where damped, and beyond
+        /// [`courant_limit`](super::limits::courant_limit) it blows up.
+        Verlet = "verlet",
+        /// The same in as many equal sub-steps as the limit asks for, the damping integrated exactly: second order.
+        #[default]
+        Substepped = "substepped",
+        /// Newmark's average acceleration (β = ¼) by alternating directions (Lees 1962): one step however long, second order, stable for any
+        /// step where the speed is constant.
+        Implicit = "implicit",
+        /// Each mode of the whole grid by its exact solution (in time; in space the same differences as the others). Needs one constant speed
+        /// (μ = 0, one kind of grass) and every patch awake.
+        Modal = "modal",
+    }
 }
 
 impl Scheme {
     /// All schemes.
     pub const ALL: [Self; 4] = [Self::Verlet, Self::Substepped, Self::Implicit, Self::Modal];
-
-    /// Name, as a scene file writes it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Verlet => "verlet",
-            Self::Substepped => "substepped",
-            Self::Implicit => "implicit",
-            Self::Modal => "modal",
-        }
-    }
 }
 
 /// What a step took.

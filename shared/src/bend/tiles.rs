@@ -16,21 +16,15 @@ pub const TILE: usize = 8;
 /// τ a cell; with damping these errors decay as the waves do. In all tested fields θ then departs by less than 4·τ from that of a field with no tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
-    /// Largest |θ| at rest (rad). Default 0.005: less than half a code on the wire.
+    /// Largest |θ| at rest (rad).
     pub theta_rad: f32,
-    /// Largest |ω| at rest (rad/s). Default 0.1.
+    /// Largest |ω| at rest (rad/s).
     pub omega_rad_per_s: f32,
 }
 
 impl Rest {
     /// Nothing but zero is at rest.
     pub const EXACT: Self = Self { theta_rad: 0.0, omega_rad_per_s: 0.0 };
-}
-
-impl Default for Rest {
-    fn default() -> Self {
-        Self { theta_rad: 0.005, omega_rad_per_s: 0.1 }
-    }
 }
 
 /// Of each tile: how far from rest it is, whether it steps, whether it has changed.

@@ -3,6 +3,7 @@
 use super::{
     LagWay, PrimitiveKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
+use crate::bend::{Edges, Scheme, Seams};
 use std::fmt;
 
 /// Values that a field may hold.
@@ -21,7 +22,7 @@ pub enum Allowed {
 use Allowed::{OneOf, Range, Sections, Text};
 
 /// Every field by its path, in the order of the structs; in a list of sections, those of one section.
-pub const FIELDS: [(&str, Allowed); 100] = [
+pub const FIELDS: [(&str, Allowed); 105] = [
     ("summary", Text),
     ("seed", Range(0.0, i64::MAX as f64)),
     ("tick_hz", Range(10.0, 240.0)),
@@ -73,6 +74,11 @@ pub const FIELDS: [(&str, Allowed); 100] = [
     ("wind.primitives.heading_rad", Range(-6.3, 6.3)),
     ("wind.primitives.drift_m_per_s", Range(-40.0, 40.0)),
     ("wind.primitives.dust", Range(0.0, 1.0)),
+    ("bend.scheme", OneOf(Scheme::WORDS)),
+    ("bend.seams", OneOf(Seams::WORDS)),
+    ("bend.edges", OneOf(Edges::WORDS)),
+    ("bend.rest_theta_rad", Range(0.0, 0.1)),
+    ("bend.rest_omega_rad_per_s", Range(0.0, 2.0)),
     ("grass.c0_m_per_s", Range(0.0, 50.0)),
     ("grass.mu_m_per_rad", Range(0.0, 10.0)),
     ("grass.c_omega_m_per_s", Range(0.0, 50.0)),

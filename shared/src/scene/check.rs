@@ -1,6 +1,7 @@
 //! Checks of values against each other; the range of each single value is in [`FIELDS`](super::FIELDS).
 
 use super::{Scene, wind};
+use crate::bend::{Scheme, Seams};
 
 /// Largest side of the world (m): up to here a coordinate in single precision resolves 1 cm.
 pub const EXTENT_LIMIT_M: f32 = 100_000.0;
@@ -51,6 +52,7 @@ pub(super) fn cross_checks(scene: &Scene) -> Vec<Misfit> {
         );
         misfits.note(&["patches.awake_limit", "patches.cells"], message);
     }
+    check_bend(scene, &mut misfits);
     wind::check::check(scene, &mut misfits);
     for (i, later) in species.iter().enumerate() {
         let earlier = || species[..i].iter().enumerate();
@@ -71,4 +73,32 @@ pub(super) fn cross_checks(scene: &Scene) -> Vec<Misfit> {
         misfits.note(&["objects.self_driving", "objects.limit"], message);
     }
     misfits.0
+}
+
+/// What the modal scheme asks for.
+fn check_bend(scene: &Scene, misfits: &mut Misfits) {
+    let Scene { bend, grass, patches, species, .. } = scene;
+    if bend.scheme != Scheme::Modal {
+        return;
+    }
+    let scheme = "`bend.scheme` = \"modal\"";
+    if grass.mu_m_per_rad != 0.0 {
+        let message = format!("is {}; allowed with {scheme}: 0, for its speed is one constant", grass.mu_m_per_rad);
+        misfits.note(&["grass.mu_m_per_rad", "bend.scheme"], message);
+    }
+    if !species.is_empty() {
+        let message = format!("names {} species; allowed with {scheme}: none, for its speed is one constant", species.len());
+        misfits.note(&["species", "bend.scheme"], message);
+    }
+    if bend.seams != Seams::Exact {
+        misfits.note(&["bend.seams", "bend.scheme"], format!("is \"{}\"; allowed with {scheme}: \"exact\"", bend.seams.word()));
+    }
+    let count = u64::from(patches.count[0]) * u64::from(patches.count[1]);
+    if count > u64::from(patches.awake_limit) {
+        let message = format!(
+            "is {}; allowed with {scheme}: at least as many as there are patches, {count}, for it carries all of them at once",
+            patches.awake_limit
+        );
+        misfits.note(&["patches.awake_limit", "patches.count", "bend.scheme"], message);
+    }
 }

@@ -4,6 +4,7 @@
 //! ranges are the first thing done with a file; the world is made from a checked [`Scene`] alone.
 
 mod allowed;
+mod bend;
 mod check;
 mod fault;
 mod grass;
@@ -16,6 +17,7 @@ mod species;
 mod terrain;
 mod wind;
 
+pub use bend::BendField;
 pub use allowed::{Allowed, FIELDS, REQUIRED};
 pub use check::{AWAKE_CELLS_LIMIT, EXTENT_LIMIT_M, WIND_CELLS_LIMIT};
 pub use fault::SceneFault;
@@ -27,6 +29,7 @@ pub use picture::{CameraStart, Light};
 pub use plants::{LagWay, Plants};
 pub use species::Species;
 pub use terrain::TerrainMaps;
+pub(crate) use wind::words;
 pub use wind::{
     Primitive, PrimitiveKind, Wind, WindAdvection, WindBoundary, WindDiffusion, WindDust, WindFaces, WindMethod, WindPressure, WindTerrain,
     WindTiling, WindTime,
@@ -55,6 +58,9 @@ pub struct Scene {
     /// The wind: its box, what drives it, and how it is solved.
     #[serde(default)]
     pub wind: Wind,
+    /// How the bend field is solved.
+    #[serde(default)]
+    pub bend: BendField,
     /// How the grass bends and rises: the constants of the bend field.
     #[serde(default)]
     pub grass: Grass,

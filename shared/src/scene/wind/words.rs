@@ -24,7 +24,7 @@ macro_rules! words {
         }
     };
 }
-pub(in crate::scene) use words;
+pub(crate) use words;
 
 words! {
     /// Which solver computes the wind.
