@@ -29,6 +29,7 @@ fn meadow_in(cover: u8, wind: Wind) -> Mirror {
         grass: Default::default(),
         plants: Default::default(),
         species: Vec::new(),
+        bend: Default::default(),
         objects: Default::default(),
         camera: Default::default(),
         light: Default::default(),

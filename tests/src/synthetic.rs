@@ -73,6 +73,7 @@ fn scene() -> Scene {
         grass: Default::default(),
         plants: Default::default(),
         species: Vec::new(),
+        bend: Default::default(),
         objects: Default::default(),
         camera: Default::default(),
         light: Default::default(),

@@ -22,6 +22,7 @@ pub fn scene(count: u32) -> Scene {
         grass: Default::default(),
         plants: Default::default(),
         species: Vec::new(),
+        bend: Default::default(),
         objects: Default::default(),
         camera: Default::default(),
         light: Default::default(),

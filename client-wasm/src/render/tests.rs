@@ -71,6 +71,7 @@ fn meadow_in(wind: Wind) -> Mirror {
         grass: Default::default(),
         plants: Default::default(),
         species: Vec::new(),
+        bend: Default::default(),
         objects: Default::default(),
         camera: Default::default(),
         light: Default::default(),

@@ -113,6 +113,7 @@ pub(crate) fn scene() -> LoadedScene {
         grass: Default::default(),
         plants: Default::default(),
         species: Vec::new(),
+        bend: Default::default(),
         objects: Default::default(),
         camera: Default::default(),
         light: Default::default(),

@@ -64,6 +64,7 @@ fn template(method: WindMethod) -> toml::Table {
         grass: Default::default(),
         plants: Default::default(),
         species: Vec::new(),
+        bend: Default::default(),
         objects: Default::default(),
         camera: Default::default(),
         light: Default::default(),
