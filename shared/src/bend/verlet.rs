@@ -169,7 +169,7 @@ fn advance_run(patch: &mut Patch, kinds: &[Coefficients], run: Run, mut peaks: O
 }
 
 /// Splits cells `first..last` of the planes into runs of one kind.
-fn for_each_kind(ground: &Ground, first: usize, last: usize, mut act: impl FnMut(u8, usize, usize)) {
+pub(super) fn for_each_kind(ground: &Ground, first: usize, last: usize, mut act: impl FnMut(u8, usize, usize)) {
     match ground {
         Ground::One(kind) => act(*kind, first, last),
         Ground::Map(kinds) => {
