@@ -72,8 +72,10 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let tilt = length(lean) / max(length(c), 1e-3);
     albedo *= (0.90 + 0.42 * smoothstep(0.15, 0.6, tilt) * t) * trodden(asin(min(tilt, 1.0)));
     let height = offset.y / kind.root.w;
-    let occlusion = mix(0.16, 1.0, smoothstep(0.0, 0.85, max(height, t * 0.75)));
-    let light = blade.points[2].w * mix(0.30, 1.0, smoothstep(0.05, 0.75, max(height, t * 0.7)));
+    // Little light is lost on the way down into short grass.
+    let deep = smoothstep(0.0, 0.60, kind.root.w);
+    let occlusion = mix(mix(0.60, 0.16, deep), 1.0, smoothstep(0.0, 0.85, max(height, t * 0.75)));
+    let light = blade.points[2].w * mix(mix(0.75, 0.30, deep), 1.0, smoothstep(0.05, 0.75, max(height, t * 0.7)));
     out.color = hazed(grass_light(albedo, soft, tangent, view, light, occlusion), p);
     out.across = across;
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);

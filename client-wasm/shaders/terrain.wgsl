@@ -66,7 +66,9 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let down = smoothstep(0.10, 0.50, -view.y);
     let under = mix(kind.root.rgb * 0.9, soil * 0.35, 0.35)
         * (frame.sun_color.rgb * sun_light * 0.35 + ambient(normal) * 0.55);
-    grass = mix(grass, under, near * mix(0.9, mix(0.45, 0.9, 1.0 - smoothstep(frame.reach.y, frame.reach.y * 2.0, distance_m)), down));
+    // Short grass hides little of the ground's light.
+    let deep = smoothstep(-0.25, 0.60, kind.root.w);
+    grass = mix(grass, under, near * deep * mix(0.9, mix(0.45, 0.9, 1.0 - smoothstep(frame.reach.y, frame.reach.y * 2.0, distance_m)), down));
     let color = mix(bare, grass, share);
     return vec4<f32>(hazed(color, ground.p), 1.0);
 }

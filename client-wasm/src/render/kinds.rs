@@ -21,7 +21,7 @@ fn kind(scene: &Scene, grass: &Grass, plants: &Plants) -> Kind {
     // The sub-steps of the blades hold for so many times the stiffness.
     let swing = stiffness.sqrt().clamp(0.35, 3.0);
     let droop = stiffness.powf(-0.25).clamp(0.5, 1.6);
-    let width = (plants.height_m / scene.plants.height_m).sqrt().clamp(0.6, 1.5);
+    let width = (plants.height_m / scene.plants.height_m).sqrt().clamp(0.8, 1.5);
     Kind {
         root: [root[0], root[1], root[2], plants.height_m],
         tip: [tip[0], tip[1], tip[2], grass.wind_bend_rad],
