@@ -145,7 +145,8 @@ impl GroundWind {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::scene::WindTiling;
+    use shared::scene::{Species, WindTiling};
+    use shared::terrain::{CoverMap, grey_png};
     use shared::wind::offset_cells;
 
     #[test]
@@ -160,6 +161,20 @@ mod tests {
         assert!(close(wind.lean_rad([16.0, 2.0]), [0.2, 0.0]));
         let held = GroundWind { wraps: [false, true], ..wind };
         assert!(close(held.lean_rad([16.0, 6.0 + 8.0 * 8.0]), [0.4, 0.2]));
+    }
+
+    #[test]
+    fn each_kind_of_grass_leans_by_its_own_bend() {
+        let mut scene = crate::scenes::load("meadow").unwrap().scene;
+        let stiff = Species::new("stiff", 1, &scene.grass, &scene.plants);
+        scene.species = vec![Species { wind_bend_rad: 0.1, ..stiff }];
+        // Over a world of 256 m the eastern half is stiff.
+        let cover = CoverMap::from_png(&grey_png([2; 2], &[255, 1, 255, 1])).unwrap();
+        let mut wind = GroundWind::still(&scene).over(KindMap::new(&scene, &cover));
+        let cells: u32 = scene.wind.cells.iter().product();
+        wind.blow(scene.wind.cells[1] as usize, (0..cells).map(|_| [12.0, 0.0]));
+        let [[soft, _], [stiff, _]] = [[60.0, 9.0], [190.0, 9.0]].map(|at_m| wind.lean_rad(at_m));
+        assert!((soft - scene.grass.wind_bend_rad).abs() < 1e-6 && (stiff - 0.1).abs() < 1e-6, "{soft} and {stiff}");
     }
 
     #[test]
