@@ -28,6 +28,7 @@ fn meadow_in(cover: u8, wind: Wind) -> Mirror {
         wind,
         grass: Default::default(),
         plants: Default::default(),
+        species: Vec::new(),
         objects: Default::default(),
         camera: Default::default(),
         light: Default::default(),

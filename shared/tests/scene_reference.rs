@@ -11,7 +11,7 @@ struct Field {
 }
 
 /// Source files and, for each struct in them, the section that it describes.
-const SOURCES: [(&str, &[(&str, &str)]); 11] = [
+const SOURCES: [(&str, &[(&str, &str)]); 12] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
     ("terrain.rs", &[("TerrainMaps", "terrain")]),
@@ -21,6 +21,7 @@ const SOURCES: [(&str, &[(&str, &str)]); 11] = [
     ("wind/primitive.rs", &[("Primitive", "wind.primitives")]),
     ("grass.rs", &[("Grass", "grass")]),
     ("plants.rs", &[("Plants", "plants")]),
+    ("species.rs", &[("Species", "species")]),
     ("objects.rs", &[("Objects", "objects")]),
     ("picture.rs", &[("CameraStart", "camera"), ("Light", "light")]),
 ];
@@ -71,7 +72,7 @@ fn minimal() -> toml::Table {
 
 /// A scene with every field written out, and one section in each list of sections.
 fn complete() -> toml::Table {
-    let text = minimal().to_string() + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n";
+    let text = minimal().to_string() + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n[[species]]\nname = ''\ncover = 1\n";
     toml::Table::try_from(parse(&text).unwrap()).unwrap()
 }
 

@@ -72,6 +72,7 @@ fn scene() -> Scene {
         wind: Default::default(),
         grass: Default::default(),
         plants: Default::default(),
+        species: Vec::new(),
         objects: Default::default(),
         camera: Default::default(),
         light: Default::default(),

@@ -22,6 +22,7 @@ pub fn scene(count: u32) -> Scene {
         wind: Default::default(),
         grass: Default::default(),
         plants: Default::default(),
+        species: Vec::new(),
         objects: Default::default(),
         camera: Default::default(),
         light: Default::default(),

@@ -70,6 +70,7 @@ fn meadow_in(wind: Wind) -> Mirror {
         wind,
         grass: Default::default(),
         plants: Default::default(),
+        species: Vec::new(),
         objects: Default::default(),
         camera: Default::default(),
         light: Default::default(),

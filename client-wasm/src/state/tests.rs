@@ -16,6 +16,7 @@ fn scene() -> Scene {
         wind: Wind { cells: [4, 2, 4], ..Wind::default() },
         grass: Default::default(),
         plants: Default::default(),
+        species: Vec::new(),
         objects: Default::default(),
         camera: Default::default(),
         light: Default::default(),

@@ -2,14 +2,14 @@
 
 use shared::bend::Field;
 use shared::scene::Scene;
-use shared::terrain::{Cover, CoverMap};
+use shared::terrain::{CoverMap, KindMap};
 
 /// Places along each side of a column of the wind's cells at which the covering map is looked up.
 const LOOKS: usize = 8;
 /// Cells of the bend field from one that is read to the next, along x and z.
 const STRIDE: usize = 4;
 
-/// The share of each column of the wind's cells that grass covers, and stands in.
+/// The share of each column of the wind's cells that grass covers, and stands in; grass that is half as high as the highest counts half.
 pub(super) struct Standing {
     columns: [usize; 2],
     spacing_m: [f32; 2],
@@ -20,18 +20,20 @@ pub(super) struct Standing {
 }
 
 impl Standing {
-    pub(super) fn new(scene: &Scene, cover: &CoverMap) -> Self {
+    /// Of grass whose tallest kind is `tallest_m` high.
+    pub(super) fn new(scene: &Scene, cover: &CoverMap, tallest_m: f32) -> Self {
         let ([nx, _, nz], [hx, _, hz]) = (scene.wind.cells.map(|n| n as usize), scene.wind.spacing_m);
-        let extent_m = scene.extent_m();
+        let (extent_m, plants, kinds) = (scene.extent_m(), scene.kinds_of_plants(), KindMap::new(scene, cover));
         let covered = (0..nx * nz).map(|column| {
             let [x, z] = [(column % nx) as f32 * hx, (column / nx) as f32 * hz];
             let looks = (0..LOOKS * LOOKS).map(|n| [(n % LOOKS) as f32, (n / LOOKS) as f32].map(|at| (at + 0.5) / LOOKS as f32));
             // A box smaller than the world stands for all of it: its own part is as good as any other.
-            let grass = looks.filter(|[u, v]| {
+            let heights = looks.map(|[u, v]| {
                 let [x, z] = [(x + u * hx) % extent_m[0], (z + v * hz) % extent_m[1]];
-                cover.at(x, z, extent_m) == Cover::Grass
+                let is_grass = scene.is_grass(cover.at(x, z, extent_m));
+                if is_grass { plants[usize::from(kinds.at(x, z))].height_m / tallest_m } else { 0.0 }
             });
-            grass.count() as f32 / (LOOKS * LOOKS) as f32
+            heights.sum::<f32>() / (LOOKS * LOOKS) as f32
         });
         Self { columns: [nx, nz], spacing_m: [hx, hz], covered: covered.collect(), upright: vec![(0.0, 0.0); nx * nz] }
     }

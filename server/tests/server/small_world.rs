@@ -112,6 +112,7 @@ pub(crate) fn scene() -> LoadedScene {
         wind,
         grass: Default::default(),
         plants: Default::default(),
+        species: Vec::new(),
         objects: Default::default(),
         camera: Default::default(),
         light: Default::default(),

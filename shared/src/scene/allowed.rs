@@ -1,6 +1,8 @@
 //! What each field of a scene file may hold: the one table that parsing, the reference in the README and its tests share.
 
-use super::{PrimitiveKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime};
+use super::{
+    LagWay, PrimitiveKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+};
 use std::fmt;
 
 /// Values that a field may hold.
@@ -19,10 +21,11 @@ pub enum Allowed {
 use Allowed::{OneOf, Range, Sections, Text};
 
 /// Every field by its path, in the order of the structs; in a list of sections, those of one section.
-pub const FIELDS: [(&str, Allowed); 81] = [
+pub const FIELDS: [(&str, Allowed); 102] = [
     ("summary", Text),
     ("seed", Range(0.0, i64::MAX as f64)),
     ("tick_hz", Range(10.0, 240.0)),
+    ("species", Sections(16)),
     ("patches.count", Range(1.0, 2048.0)),
     ("patches.cells", Range(8.0, 256.0)),
     ("patches.cell_m", Range(0.05, 10.0)),
@@ -78,6 +81,9 @@ pub const FIELDS: [(&str, Allowed); 81] = [
     ("grass.stiffness_per_s2", Range(0.0, 10000.0)),
     ("grass.theta_max_rad", Range(0.1, 1.57)),
     ("grass.wind_bend_rad", Range(0.0, 1.5)),
+    ("grass.lag_secs", Range(0.0, 1.0)),
+    ("grass.recovery_lag_share", Range(0.0, 1.0)),
+    ("grass.segments", Range(1.0, 6.0)),
     ("plants.grid_m", Range(1.0, 64.0)),
     ("plants.plants_per_side", Range(2.0, 256.0)),
     ("plants.height_m", Range(0.02, 5.0)),
@@ -88,6 +94,23 @@ pub const FIELDS: [(&str, Allowed); 81] = [
     ("plants.tip_rgb", Range(0.0, 1.0)),
     ("plants.tree_m", Range(0.5, 60.0)),
     ("plants.stone_m", Range(0.05, 20.0)),
+    ("plants.lag", OneOf(LagWay::WORDS)),
+    ("species.name", Text),
+    ("species.cover", Range(1.0, 252.0)),
+    ("species.height_m", Range(0.02, 5.0)),
+    ("species.root_rgb", Range(0.0, 1.0)),
+    ("species.tip_rgb", Range(0.0, 1.0)),
+    ("species.c0_m_per_s", Range(0.0, 50.0)),
+    ("species.mu_m_per_rad", Range(0.0, 10.0)),
+    ("species.c_omega_m_per_s", Range(0.0, 50.0)),
+    ("species.theta_damping_per_s", Range(0.0, 200.0)),
+    ("species.omega_damping_per_s", Range(0.0, 200.0)),
+    ("species.stiffness_per_s2", Range(0.0, 10000.0)),
+    ("species.theta_max_rad", Range(0.1, 1.57)),
+    ("species.wind_bend_rad", Range(0.0, 1.5)),
+    ("species.lag_secs", Range(0.0, 1.0)),
+    ("species.recovery_lag_share", Range(0.0, 1.0)),
+    ("species.segments", Range(1.0, 6.0)),
     ("objects.limit", Range(0.0, 1024.0)),
     ("objects.car_model", Text),
     ("objects.monster_model", Text),
@@ -104,7 +127,7 @@ pub const FIELDS: [(&str, Allowed); 81] = [
 ];
 
 /// Fields that a scene file must give; in a list of sections, each section of it.
-pub const REQUIRED: [&str; 8] = [
+pub const REQUIRED: [&str; 10] = [
     "summary",
     "terrain",
     "terrain.height_map",
@@ -113,6 +136,8 @@ pub const REQUIRED: [&str; 8] = [
     "terrain.level_m",
     "wind.primitives.kind",
     "wind.primitives.at_m",
+    "species.name",
+    "species.cover",
 ];
 
 /// What the field at `path` may hold; text for a path that is not in the table.

@@ -33,7 +33,7 @@ impl Misfits {
 /// What does not fit together in `scene`.
 pub(super) fn cross_checks(scene: &Scene) -> Vec<Misfit> {
     let mut misfits = Misfits::default();
-    let Scene { patches, objects, .. } = scene;
+    let Scene { patches, objects, species, .. } = scene;
 
     if !patches.cells.is_multiple_of(8) {
         misfits.note(&["patches.cells"], format!("is {}; allowed: a multiple of 8", patches.cells));
@@ -52,6 +52,20 @@ pub(super) fn cross_checks(scene: &Scene) -> Vec<Misfit> {
         misfits.note(&["patches.awake_limit", "patches.cells"], message);
     }
     wind::check::check(scene, &mut misfits);
+    for (i, later) in species.iter().enumerate() {
+        let earlier = || species[..i].iter().enumerate();
+        if let Some((j, _)) = earlier().find(|(_, earlier)| earlier.name == later.name) {
+            let fields = [format!("species[{i}].name"), format!("species[{j}].name")];
+            misfits
+                .note(&[&fields[0], &fields[1]], format!("is \"{}\", as that of `species[{j}]`; allowed: a name of its own", later.name));
+        }
+        if let Some((j, _)) = earlier().find(|(_, earlier)| earlier.cover == later.cover) {
+            let fields = [format!("species[{i}].cover"), format!("species[{j}].cover")];
+            let message =
+                format!("is {}, as that of `species[{j}]`, \"{}\"; allowed: an ID of its own, 1 to 252", later.cover, species[j].name);
+            misfits.note(&[&fields[0], &fields[1]], message);
+        }
+    }
     if objects.self_driving > objects.limit {
         let message = format!("is {}; allowed: up to `objects.limit`, {}", objects.self_driving, objects.limit);
         misfits.note(&["objects.self_driving", "objects.limit"], message);

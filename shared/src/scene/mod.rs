@@ -12,6 +12,7 @@ mod parse;
 mod patches;
 mod picture;
 mod plants;
+mod species;
 mod terrain;
 mod wind;
 
@@ -23,7 +24,8 @@ pub use objects::{Objects, VehicleKind};
 pub use parse::parse;
 pub use patches::Patches;
 pub use picture::{CameraStart, Light};
-pub use plants::Plants;
+pub use plants::{LagWay, Plants};
+pub use species::Species;
 pub use terrain::TerrainMaps;
 pub use wind::{
     Primitive, PrimitiveKind, Wind, WindAdvection, WindBoundary, WindDiffusion, WindDust, WindFaces, WindMethod, WindPressure, WindTerrain,
@@ -59,6 +61,10 @@ pub struct Scene {
     /// What grows: size and number of blades, flowers, trees and stones.
     #[serde(default)]
     pub plants: Plants,
+    /// Kinds of grass beside that of `[grass]` and `[plants]`, each a section `[[species]]`; with any, every ID of the covering map is that of a
+    /// species, or 0, 253, 254 or 255. Default none, allowed at most 16.
+    #[serde(default)]
+    pub species: Vec<Species>,
     /// Cars, monsters and helicopters: how many, and their models.
     #[serde(default)]
     pub objects: Objects,

@@ -2,9 +2,11 @@
 
 mod cover;
 mod height;
+mod kinds;
 
 pub use cover::{Cover, CoverMap};
 pub use height::HeightMap;
+pub use kinds::KindMap;
 
 use thiserror::Error;
 
