@@ -34,7 +34,7 @@ struct Frame {
 @group(0) @binding(11) var kind_map: texture_2d<u32>;
 @group(0) @binding(12) var<uniform> kinds: Kinds;
 
-// One kind of grass; its twin is in `kinds.rs`.
+// One kind of grass; its twin is in `uniforms.rs`.
 struct Kind {
     root: vec4<f32>,
     tip: vec4<f32>,
@@ -171,7 +171,7 @@ fn kinds_about(p: vec2<f32>) -> KindsAbout {
 
 // Number of the kind that grows at a place: the one that counts most there.
 fn kind_at(p: vec2<f32>) -> u32 {
-    let about = kinds_about(p);
+    var about = kinds_about(p);
     var found = 0u;
     var most = 0.0;
     for (var i = 0; i < 4; i++) {
@@ -187,7 +187,7 @@ fn kind_at(p: vec2<f32>) -> u32 {
 
 // The kinds at a place blended: what is seen of them from afar.
 fn kinds_blended(p: vec2<f32>) -> Kind {
-    let about = kinds_about(p);
+    var about = kinds_about(p);
     var blend = Kind(vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0));
     for (var i = 0; i < 4; i++) {
         let kind = kinds.list[about.kinds[i]];
@@ -302,7 +302,7 @@ fn earlier_lean(p: vec2<f32>, level: f32, now: vec3<f32>, kind: Kind, secs: f32)
 // Lean of a segment that trails the lowest by `secs`; less where the grass rises. Twin of `Lag::lean_rad` in shared/src/lod/lag.rs.
 fn trailing_lean(p: vec2<f32>, level: f32, now: vec3<f32>, kind: Kind, secs: f32) -> vec2<f32> {
     let lean = lean_of_bend(now);
-    if secs <= 0.0 || now.x == 0.0 && frame.past.w < 0.0 {
+    if secs <= 0.0 {
         return lean;
     }
     let then = earlier_lean(p, level, now, kind, secs);
