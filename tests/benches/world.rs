@@ -119,8 +119,10 @@ fn table(costs: &[Cost]) {
     }
 }
 
-/// The whole server in real time, without a car: without a visitor, then with one whose camera stands still.
+/// Ticks without a car; then the whole server in real time, without a visitor and with one whose camera stands still.
 fn at_rest() {
+    println!("at rest, {THREADS} threads:");
+    on_two_threads(|| table(&Timed::new(0, 200.0, 225).ticks(sampled(60.0))));
     let runtime = tokio::runtime::Runtime::new().expect("a runtime can be started");
     runtime.block_on(async {
         let mut loaded = scenes::load("continuum").expect("a built-in scene is sound");
