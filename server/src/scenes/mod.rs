@@ -50,6 +50,23 @@ mod tests {
     }
 
     #[test]
+    fn the_continuum_is_rolling_land_under_drifts_of_all_its_grasses() {
+        let LoadedScene { scene, height, cover, .. } = load("continuum").unwrap();
+        let [side_m, _] = scene.extent_m();
+        assert!((side_m - 4828.032).abs() < 0.01 && scene.patches.awake_limit == 225);
+        let [low, high] = height.range_m();
+        assert!(low > 0.0 && (40.0..90.0).contains(&(high - low)), "{low} to {high}");
+        let places = (0..200).flat_map(|row| (0..200).map(move |column| [column, row].map(|n| (n as f32 + 0.5) / 200.0 * side_m)));
+        let steepest = places.map(|[x, z]| height.slope(x, z)).map(|[east, south]| east.hypot(south)).fold(0.0, f32::max);
+        assert!(steepest < 0.3, "{steepest}");
+        for (id, least, most) in [(1, 0.15, 0.4), (2, 0.2, 0.5), (3, 0.003, 0.03), (255, 0.25, 0.5)] {
+            let share = cover.ids().iter().filter(|&&found| found == id).count() as f32 / cover.ids().len() as f32;
+            assert!((least..most).contains(&share), "{share} of ID {id}");
+        }
+        assert_eq!(scene.species.iter().map(|species| species.cover).collect::<Vec<_>>(), [1, 2, 3]);
+    }
+
+    #[test]
     fn the_meadow_has_an_open_middle_and_hills_around() {
         let meadow = load("meadow").unwrap();
         let extent_m = meadow.scene.extent_m();
