@@ -2,6 +2,8 @@
 
 use shared::wire::Drive;
 
+/// Excess of speed from which on a driver brakes, as downhill (m/s).
+const BRAKE_BEYOND_M_PER_S: f32 = 0.5;
 /// A car slower than this for [`STUCK_SECS`] backs off for [`BACK_SECS`] (m/s, s, s).
 const STUCK_M_PER_S: f32 = 0.7;
 const STUCK_SECS: f32 = 2.0;
@@ -34,7 +36,9 @@ impl Circling {
         if self.stuck_secs > STUCK_SECS {
             (self.stuck_secs, self.back_secs) = (0.0, BACK_SECS);
         }
-        let throttle = (0.5 * (self.speed_m_per_s - speed_m_per_s)).clamp(0.05, 1.0);
-        Drive { throttle, steer: self.steer, ..Drive::default() }
+        let excess_m_per_s = speed_m_per_s - self.speed_m_per_s;
+        let throttle = (-0.5 * excess_m_per_s).clamp(0.0, 1.0);
+        let brake = (0.2 * (excess_m_per_s - BRAKE_BEYOND_M_PER_S)).clamp(0.0, 1.0);
+        Drive { throttle, brake, steer: self.steer, ..Drive::default() }
     }
 }
