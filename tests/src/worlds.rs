@@ -1,5 +1,6 @@
-//! Small worlds to test with, made without files.
+//! Worlds to test with: small ones, made without files, and the largest that ships.
 
+use server::scenes::{self, LoadedScene};
 use server::world::{Maps, World};
 use shared::scene::Scene;
 use shared::terrain::{CoverMap, HeightMap, grey_png};
@@ -59,4 +60,14 @@ pub fn hills(scene: &Scene) -> World {
         _ => 255,
     };
     World::new(scene, maps(scene, hills_m, cover)).expect("the default constants make a world")
+}
+
+/// The built-in scene `continuum` with `cars` that drive themselves at 20 m/s and start about `apart_m` from each other, and its maps.
+pub fn continuum(cars: u32, apart_m: f32) -> (Scene, Maps) {
+    let LoadedScene { mut scene, height, cover, .. } = scenes::load("continuum").expect("a built-in scene is sound");
+    scene.objects.limit = scene.objects.limit.max(cars);
+    scene.objects.self_driving = cars;
+    scene.objects.self_driving_m_per_s = 20.0;
+    scene.objects.self_driving_apart_m = apart_m;
+    (scene, Maps { height, cover })
 }

@@ -22,7 +22,7 @@ pub enum Allowed {
 use Allowed::{OneOf, Range, Sections, Text};
 
 /// Every field by its path, in the order of the structs; in a list of sections, those of one section.
-pub const FIELDS: [(&str, Allowed); 105] = [
+pub const FIELDS: [(&str, Allowed); 107] = [
     ("summary", Text),
     ("seed", Range(0.0, i64::MAX as f64)),
     ("tick_hz", Range(10.0, 240.0)),
@@ -121,6 +121,8 @@ pub const FIELDS: [(&str, Allowed); 105] = [
     ("objects.car_model", Text),
     ("objects.monster_model", Text),
     ("objects.self_driving", Range(0.0, 1024.0)),
+    ("objects.self_driving_m_per_s", Range(1.0, 60.0)),
+    ("objects.self_driving_apart_m", Range(1.0, 1000.0)),
     ("camera.at", Range(0.0, 1.0)),
     ("camera.height_m", Range(0.02, 2000.0)),
     ("camera.heading_rad", Range(-6.3, 6.3)),
