@@ -1,6 +1,6 @@
 //! Checks of values against each other; the range of each single value is in [`FIELDS`](super::FIELDS).
 
-use super::{Scene, wind};
+use super::{Scene, drawn_wind, objects, wind};
 
 /// Largest side of the world (m): up to here a coordinate in single precision resolves 1 cm.
 pub const EXTENT_LIMIT_M: f32 = 100_000.0;
@@ -33,7 +33,7 @@ impl Misfits {
 /// What does not fit together in `scene`.
 pub(super) fn cross_checks(scene: &Scene) -> Vec<Misfit> {
     let mut misfits = Misfits::default();
-    let Scene { patches, objects, .. } = scene;
+    let patches = &scene.patches;
 
     if !patches.cells.is_multiple_of(8) {
         misfits.note(&["patches.cells"], format!("is {}; allowed: a multiple of 8", patches.cells));
@@ -52,9 +52,7 @@ pub(super) fn cross_checks(scene: &Scene) -> Vec<Misfit> {
         misfits.note(&["patches.awake_limit", "patches.cells"], message);
     }
     wind::check::check(scene, &mut misfits);
-    if objects.self_driving > objects.limit {
-        let message = format!("is {}; allowed: up to `objects.limit`, {}", objects.self_driving, objects.limit);
-        misfits.note(&["objects.self_driving", "objects.limit"], message);
-    }
+    objects::check(&scene.objects, &mut misfits);
+    drawn_wind::check(scene, &mut misfits);
     misfits.0
 }

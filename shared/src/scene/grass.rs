@@ -24,6 +24,8 @@ pub struct Grass {
     pub theta_max_rad: f32,
     /// Bend that a wind of 10 m/s sustains (rad); grows with the square of the speed below it. Default 0.5, allowed 0..=1.5.
     pub wind_bend_rad: f32,
+    /// Time in which grass that an object's weight has laid rises to 1/e of its lean (s). Default 60, allowed 0.5..=86400.
+    pub laid_recovery_secs: f32,
 }
 
 impl Default for Grass {
@@ -37,6 +39,7 @@ impl Default for Grass {
             stiffness_per_s2: 1.2,
             theta_max_rad: 1.45,
             wind_bend_rad: 0.5,
+            laid_recovery_secs: 60.0,
         }
     }
 }

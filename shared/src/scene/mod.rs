@@ -5,6 +5,7 @@
 
 mod allowed;
 mod check;
+mod drawn_wind;
 mod fault;
 mod grass;
 mod objects;
@@ -17,9 +18,10 @@ mod wind;
 
 pub use allowed::{Allowed, FIELDS, REQUIRED};
 pub use check::{AWAKE_CELLS_LIMIT, EXTENT_LIMIT_M, WIND_CELLS_LIMIT};
+pub use drawn_wind::{DrawnWind, WindShape};
 pub use fault::SceneFault;
 pub use grass::Grass;
-pub use objects::{Objects, VehicleKind};
+pub use objects::{CarTread, HelicopterTread, MonsterTread, Objects, SledTread, Tread, VehicleKind};
 pub use parse::parse;
 pub use patches::Patches;
 pub use picture::{CameraStart, Light};
@@ -59,9 +61,13 @@ pub struct Scene {
     /// What grows: size and number of blades, flowers, trees and stones.
     #[serde(default)]
     pub plants: Plants,
-    /// Cars, monsters and helicopters: how many, and their models.
+    /// Cars, monsters, helicopters and sleds: how many, their models, and how they meet the grass.
     #[serde(default)]
     pub objects: Objects,
+    /// Winds that press the grass as objects do, such as cyclones (001 §5.3), each a section
+    /// `[[drawn_winds]]`. Default none, allowed at most 16.
+    #[serde(default)]
+    pub drawn_winds: Vec<DrawnWind>,
     /// Where a visitor's camera starts.
     #[serde(default)]
     pub camera: CameraStart,
