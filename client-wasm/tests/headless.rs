@@ -29,6 +29,7 @@ fn meadow_in(cover: u8, wind: Wind) -> Mirror {
         grass: Default::default(),
         plants: Default::default(),
         objects: Default::default(),
+        drawn_winds: vec![],
         camera: Default::default(),
         light: Default::default(),
     };

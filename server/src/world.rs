@@ -1,18 +1,21 @@
 //! The world: one fixed step after the other. No clock, no input or output; the same commands give the same bits.
 
-use crate::bend::Meadow;
 pub use crate::bend::View;
+use crate::bend::drawing::Drawings;
+use crate::bend::laid::Laid;
+use crate::bend::{Meadow, sward};
 use crate::objects::{Objects, Place, SPEED_LIMIT_M_PER_S};
 use crate::snapshot::{BentPatches, Health, PatchCodes, Snapshot};
 use crate::weather::{self, Weather, WeatherError};
 use crate::wind::StepError;
 use crate::wind::state::MAX_SUBSTEPS;
 use rayon::prelude::*;
-use shared::bend::{Patch, WaveParams, verlet};
-use shared::scene::{Grass, Patches, Scene, VehicleKind};
+use shared::bend::{Bend, Patch, WaveParams, verlet};
+use shared::grid::PatchIndex;
+use shared::scene::{CarTread, Grass, HelicopterTread, MonsterTread, Patches, Scene, SledTread, VehicleKind, WindShape};
 use shared::terrain::{CoverMap, HeightMap};
 use shared::wire::quantise;
-use shared::wire::{Drive, ObjectId};
+use shared::wire::{Drive, ObjectId, VIEW_RADIUS_LIMIT_M};
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -54,6 +57,8 @@ pub struct Maps {
     pub height: HeightMap,
     /// What covers it.
     pub cover: CoverMap,
+    /// The drawings that the scene's winds name.
+    pub drawings: Drawings,
 }
 
 /// Constants of a scene that are each in range and make no world together.
@@ -92,10 +97,11 @@ impl World {
     /// [`WorldError`] when constants that are each in range make no world together.
     pub fn new(scene: &Scene, maps: Maps) -> Result<Self, WorldError> {
         check_stiffness(scene)?;
+        check_drawings(scene, &maps.drawings)?;
         let weather = Weather::new(scene, &maps).map_err(|error| no_wind(scene, error))?;
         let height = Arc::new(maps.height);
         let place = Place { height: Arc::clone(&height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
-        let meadow = Meadow::new(scene, Arc::clone(&height));
+        let meadow = Meadow::with_drawings(scene, Arc::clone(&height), &maps.drawings);
         Ok(Self {
             dt_secs: scene.dt_secs(),
             tick: 0,
@@ -129,6 +135,7 @@ impl World {
             tick: self.tick,
             time_secs: self.tick as f64 * f64::from(self.dt_secs),
             objects: self.objects.poses(),
+            object_limit: self.objects.limit(),
             wind: Arc::clone(self.weather.frame()),
             patches: Arc::clone(&self.shown),
             health: Health {
@@ -137,6 +144,9 @@ impl World {
                 bend_energy: self.meadow.activity(),
                 awake_patches: self.meadow.field().awake_count() as u32,
                 evicted_patches: self.meadow.evicted(),
+                laid_tiles: self.meadow.laid().tiles() as u32,
+                dropped_tracks: self.meadow.laid().dropped(),
+                refused_motions: self.meadow.refused_count(),
                 wind_resets: self.weather.resets(),
                 substeps: bend.substeps,
                 courant: bend.courant,
@@ -171,6 +181,7 @@ impl World {
                 }
             }
         }
+        sum.add(self.meadow.laid().words());
         sum.0
     }
 
@@ -197,19 +208,53 @@ impl World {
             .unwrap_or(self.extent_m.map(|extent| 0.5 * extent))
     }
 
-    /// Quantises the patches that changed.
+    /// Quantises the patches that changed: those that are awake, and near the cameras those that are only laid.
     fn show_patches(&mut self) {
-        let (tick, before) = (self.tick, &self.shown);
-        let show = |(index, patch)| {
-            let codes = codes_of(patch);
+        let (tick, before, field, laid) = (self.tick, &self.shown, self.meadow.field(), self.meadow.laid());
+        let side = field.layout().cells as usize;
+        let show = |(index, patch): (PatchIndex, Option<&Patch>)| {
+            let mut codes = patch.map_or_else(|| vec![0; 3 * side * side], codes_of);
+            add_laid(&mut codes, side, index, patch, laid);
             match before.get(&index) {
                 Some(before) if before.codes == codes => Some((index, Arc::clone(before))),
                 _ if codes.iter().all(|&code| code == 0) => None,
                 _ => Some((index, Arc::new(PatchCodes { tick, codes }))),
             }
         };
-        let awake: Vec<_> = self.meadow.field().awake().collect();
-        self.shown = Arc::new(awake.into_par_iter().filter_map(show).collect());
+        let mut shown = BentPatches::new();
+        let mut changed: Vec<_> = field.awake().map(|(index, patch)| (index, Some(patch))).collect();
+        for (index, has_changed) in laid.patches() {
+            if field.patch(index).is_some() || !self.is_in_sight(index) {
+                continue;
+            }
+            match before.get(&index) {
+                Some(before) if !has_changed => _ = shown.insert(index, Arc::clone(before)),
+                _ => changed.push((index, None)),
+            }
+        }
+        shown.extend(changed.into_par_iter().filter_map(show).collect::<Vec<_>>());
+        self.shown = Arc::new(shown);
+        self.meadow.laid_was_shown();
+    }
+
+    /// Whether a patch may be within any camera's reach.
+    fn is_in_sight(&self, patch: PatchIndex) -> bool {
+        let layout = self.meadow.field().layout();
+        let center_m = layout.center_m(patch);
+        let reach_m = VIEW_RADIUS_LIMIT_M + layout.patch_m();
+        self.views.iter().any(|view| (center_m[0] - view.eye_m[0]).hypot(center_m[1] - view.eye_m[2]) < reach_m)
+    }
+}
+
+/// Adds what is laid in a patch to its three planes of codes.
+fn add_laid(codes: &mut [i8], side: usize, index: PatchIndex, patch: Option<&Patch>, laid: &Laid) {
+    let plane = side * side;
+    for ([i, j], lean_rad) in laid.cells(index) {
+        let bend = sward::shown(patch.map_or_else(Bend::default, |patch| patch.bend(i, j)), lean_rad);
+        let at = j * side + i;
+        codes[at] = quantise::theta_code(bend.theta);
+        codes[plane + at] = quantise::omega_code(bend.omega[0]);
+        codes[2 * plane + at] = quantise::omega_code(bend.omega[1]);
     }
 }
 
@@ -229,19 +274,37 @@ fn codes_of(patch: &Patch) -> Vec<i8> {
     codes
 }
 
+/// All drawings that the winds of `scene` name are there.
+fn check_drawings(scene: &Scene, drawings: &Drawings) -> Result<(), WorldError> {
+    let winds = scene.drawn_winds.iter().map(|wind| ("drawn_winds", &wind.shape));
+    let named = winds.chain([("objects.helicopter.wash_shape", &scene.objects.helicopter.wash_shape)]);
+    let mut missing = named.filter_map(|(field, shape)| match shape {
+        WindShape::Drawn(name) if !drawings.contains_key(name) => Some((field, name)),
+        _ => None,
+    });
+    match missing.next() {
+        Some((field, name)) => Err(WorldError { field, message: format!("names the drawing `{name}`, which is not among the maps") }),
+        None => Ok(()),
+    }
+}
+
 fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
     let needed = substeps_when_struck(scene);
     if needed <= SUBSTEP_LIMIT {
         return Ok(());
     }
     type Mend = fn(&mut Scene);
-    let usual: [(&str, Mend); 6] = [
+    let usual: [(&str, Mend); 10] = [
         ("grass.mu_m_per_rad", |scene| scene.grass.mu_m_per_rad = Grass::default().mu_m_per_rad),
         ("grass.c0_m_per_s", |scene| scene.grass.c0_m_per_s = Grass::default().c0_m_per_s),
         ("grass.c_omega_m_per_s", |scene| scene.grass.c_omega_m_per_s = Grass::default().c_omega_m_per_s),
         ("grass.stiffness_per_s2", |scene| scene.grass.stiffness_per_s2 = Grass::default().stiffness_per_s2),
         ("patches.cell_m", |scene| scene.patches.cell_m = Patches::default().cell_m),
         ("tick_hz", |scene| scene.tick_hz = 60.0),
+        ("objects.car.strike_height_m", |scene| scene.objects.car = CarTread::default()),
+        ("objects.monster.strike_height_m", |scene| scene.objects.monster = MonsterTread::default()),
+        ("objects.helicopter.strike_height_m", |scene| scene.objects.helicopter = HelicopterTread::default()),
+        ("objects.sled.strike_height_m", |scene| scene.objects.sled = SledTread::default()),
     ];
     let needed_with = |mend: Mend| {
         let mut mended = scene.clone();
@@ -262,7 +325,7 @@ fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
 
 /// Sub-steps of the grass when an object strikes it at its fastest.
 fn substeps_when_struck(scene: &Scene) -> u32 {
-    let strike_m = VehicleKind::ALL.map(VehicleKind::strike_height_m).into_iter().fold(f32::INFINITY, f32::min);
+    let strike_m = VehicleKind::ALL.map(|kind| scene.objects.tread(kind).strike_height_m).into_iter().fold(f32::INFINITY, f32::min);
     verlet::substeps(&WaveParams::from(&scene.grass), scene.patches.cell_m, scene.dt_secs(), SPEED_LIMIT_M_PER_S / strike_m)
 }
 

@@ -25,7 +25,9 @@ pub enum OutlineFault {
         z_m: f32,
     },
     /// Two edges that meet elsewhere than in a common corner.
-    #[error("has edges that cross or touch, from corner {first} and from corner {second}; allowed: edges that meet at their common corners only")]
+    #[error(
+        "has edges that cross or touch, from corner {first} and from corner {second}; allowed: edges that meet at their common corners only"
+    )]
     Crossing {
         /// Corner that the one edge starts from, from 1.
         first: usize,
@@ -176,7 +178,8 @@ fn folds(a: [f32; 2], b: [f32; 2], c: [f32; 2]) -> bool {
 
 /// Whether two segments have a point in common.
 fn touch([a, b]: [[f32; 2]; 2], [c, d]: [[f32; 2]; 2]) -> bool {
-    let between = |p: [f32; 2], q: [f32; 2], r: [f32; 2]| (0..2).all(|axis| (p[axis].min(q[axis])..=p[axis].max(q[axis])).contains(&r[axis]));
+    let between =
+        |p: [f32; 2], q: [f32; 2], r: [f32; 2]| (0..2).all(|axis| (p[axis].min(q[axis])..=p[axis].max(q[axis])).contains(&r[axis]));
     let sides = [turn(a, b, c), turn(a, b, d), turn(c, d, a), turn(c, d, b)];
     let on = [between(a, b, c), between(a, b, d), between(c, d, a), between(c, d, b)];
     let crosses = sides[0] * sides[1] < 0.0 && sides[2] * sides[3] < 0.0;
@@ -192,9 +195,13 @@ mod tests {
 
     fn contains(corners: &[[f32; 2]], p: [f32; 2]) -> bool {
         let next = corners.iter().cycle().skip(1);
-        corners.iter().zip(next).filter(|(a, b)| (a[1] <= p[1]) != (b[1] <= p[1]) && {
-            a[0] + (b[0] - a[0]) * ((p[1] - a[1]) / (b[1] - a[1])) > p[0]
-        }).count() % 2 == 1
+        corners
+            .iter()
+            .zip(next)
+            .filter(|(a, b)| (a[1] <= p[1]) != (b[1] <= p[1]) && { a[0] + (b[0] - a[0]) * ((p[1] - a[1]) / (b[1] - a[1])) > p[0] })
+            .count()
+            % 2
+            == 1
     }
 
     fn assert_made_of(corners: &[[f32; 2]], parts: &[ConvexPart]) {

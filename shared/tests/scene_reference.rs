@@ -96,7 +96,8 @@ fn minimal() -> toml::Table {
 
 /// A scene with every field written out, and one section in each list of sections.
 fn complete() -> toml::Table {
-    let text = minimal().to_string() + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n"
+    let text = minimal().to_string()
+        + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n"
         + "[[drawn_winds]]\nshape = 'swirl'\npath_m = [[1.0, 2.0]]\n";
     toml::Table::try_from(parse(&text).unwrap()).unwrap()
 }

@@ -22,6 +22,7 @@ pub fn scene(count: u32) -> Scene {
         grass: Default::default(),
         plants: Default::default(),
         objects: Default::default(),
+        drawn_winds: vec![],
         camera: Default::default(),
         light: Default::default(),
     };
@@ -36,7 +37,8 @@ pub fn maps(scene: &Scene, height_m: impl Fn(f32, f32) -> f32, cover: impl Fn(f3
     let heights = (0..width * depth).map(|i| height_m(at(i).0, at(i).1)).collect();
     let ids: Vec<u8> = (0..width * depth).map(|i| cover(at(i).0, at(i).1)).collect();
     let height = HeightMap::from_heights(width, depth, [2.0; 2], heights);
-    Maps { height, cover: CoverMap::from_png(&grey_png([width, depth], &ids)).expect("a grey PNG of eight bits") }
+    let cover = CoverMap::from_png(&grey_png([width, depth], &ids)).expect("a grey PNG of eight bits");
+    Maps { height, cover, drawings: Default::default() }
 }
 
 /// Flat land, all grass.

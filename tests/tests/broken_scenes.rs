@@ -6,7 +6,7 @@ use shared::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
-const BROKEN: [&str; 18] = [
+const BROKEN: [&str; 24] = [
     "unknown-field",
     "syntax",
     "out-of-range",
@@ -25,6 +25,12 @@ const BROKEN: [&str; 18] = [
     "wind-stable-fluids",
     "wind-primitives",
     "wind-one-primitive",
+    "objects",
+    "sled-outline",
+    "sled-without-footprint",
+    "sled-of-no-area",
+    "drawn-winds",
+    "drawn-winds-out-of-range",
 ];
 
 /// The message for a broken scene equals the stored text beside it; `PRAIRIE_UPDATE=1` stores it anew.

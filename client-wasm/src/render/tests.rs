@@ -71,6 +71,7 @@ fn meadow_in(wind: Wind) -> Mirror {
         grass: Default::default(),
         plants: Default::default(),
         objects: Default::default(),
+        drawn_winds: vec![],
         camera: Default::default(),
         light: Default::default(),
     };

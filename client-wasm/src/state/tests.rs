@@ -17,6 +17,7 @@ fn scene() -> Scene {
         grass: Default::default(),
         plants: Default::default(),
         objects: Default::default(),
+        drawn_winds: vec![],
         camera: Default::default(),
         light: Default::default(),
     }

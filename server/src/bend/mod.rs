@@ -2,19 +2,30 @@
 
 pub mod air;
 pub mod contact;
+pub mod drawing;
+pub mod drawn;
 pub mod footprint;
+pub mod laid;
+pub mod parts;
 pub mod regions;
 pub mod step;
+pub mod sward;
+pub mod swath;
 
-use crate::objects::Motion;
-use air::{GroundWind, Wash};
+use crate::objects::{Motion, MotionError};
+use air::GroundWind;
 use contact::Contact;
+use drawing::Drawings;
+use drawn::{Blow, Blows};
+use laid::Laid;
+use parts::Bodies;
 use regions::{Regions, Trace};
 use shared::bend::{Field, WaveParams};
 use shared::grid::{PatchIndex, PatchLayout};
-use shared::scene::{Scene, VehicleKind};
+use shared::scene::Scene;
 use shared::terrain::HeightMap;
 use std::sync::Arc;
+use sward::Sward;
 
 /// A camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,22 +44,38 @@ pub struct Meadow {
     field: Field,
     params: WaveParams,
     height: Arc<HeightMap>,
-    blade_m: f32,
     theta_max_rad: f32,
+    bodies: Bodies,
+    blows: Blows,
+    laid: Laid,
+    refused: Vec<MotionError>,
+    refused_count: u64,
     regions: Regions,
     traces: Vec<Trace>,
     report: step::Report,
 }
 
 impl Meadow {
-    /// A meadow at rest.
+    /// A meadow at rest, without drawings for its winds.
     pub fn new(scene: &Scene, height: Arc<HeightMap>) -> Self {
+        Self::with_drawings(scene, height, &Drawings::new())
+    }
+
+    /// A meadow at rest; a wind whose drawing is not among `drawings` blows nothing.
+    pub fn with_drawings(scene: &Scene, height: Arc<HeightMap>, drawings: &Drawings) -> Self {
+        let layout = PatchLayout::from(&scene.patches);
+        // As much as the awake patches could hold.
+        let tile_limit = scene.patches.awake_limit as usize * (layout.cells as usize / laid::TILE).pow(2);
         Self {
-            field: Field::new(PatchLayout::from(&scene.patches)),
+            field: Field::new(layout),
             params: WaveParams::from(&scene.grass),
             height,
-            blade_m: scene.plants.height_m,
             theta_max_rad: scene.grass.theta_max_rad,
+            bodies: Bodies::new(&scene.objects, scene.plants.height_m),
+            blows: Blows::new(scene, drawings),
+            laid: Laid::new(layout, scene.grass.laid_recovery_secs, tile_limit),
+            refused: vec![],
+            refused_count: 0,
             regions: Regions::new(scene.patches.awake_limit as usize),
             traces: vec![],
             report: step::Report::default(),
@@ -76,51 +103,56 @@ impl Meadow {
         self.regions.evicted()
     }
 
-    /// One step: regions, contact and wash (which bend directly), propagation.
+    /// What stays bent below the weight of objects.
+    pub fn laid(&self) -> &Laid {
+        &self.laid
+    }
+
+    /// Takes note that the laid grass was shown as it is; patches that are awake are shown anew each time.
+    pub fn laid_was_shown(&mut self) {
+        let field = &self.field;
+        self.laid.shown(|patch| field.patch(patch).is_some());
+    }
+
+    /// Motions that the newest step refused, and why; the grass did not feel them.
+    pub fn refused(&self) -> &[MotionError] {
+        &self.refused
+    }
+
+    /// Motions refused so far.
+    pub fn refused_count(&self) -> u64 {
+        self.refused_count
+    }
+
+    /// One step: regions, contact and blowing air (which bend directly), propagation. Motions that are none are [refused](Self::refused).
     pub fn step(&mut self, dt_secs: f32, motions: &[Motion], views: &[View], wind: &GroundWind) {
-        let contacts: Vec<_> = motions.iter().flat_map(|motion| self.contacts(motion)).collect();
-        let washes: Vec<_> = motions.iter().filter_map(|motion| self.wash(motion)).collect();
-        let touched = self.touched(&contacts, &washes);
+        let motions = self.sound(motions);
+        let cell_m = self.field.layout().cell_m;
+        let contacts: Vec<_> = motions.iter().flat_map(|motion| self.bodies.contacts(motion, &self.height, cell_m)).collect();
+        let blows = self.blows.step(&motions, &self.height, dt_secs);
+        let touched = self.touched(&contacts, &blows);
         self.regions.update(&mut self.field, &touched, &self.traces, views);
 
         let carried = self.traces.iter().map(|trace| trace.extremes.omega_rad_per_s).fold(0.0, f32::max);
-        let omega_max = contacts
-            .iter()
-            .map(|contact| contact::press(&mut self.field, contact, wind, &self.height, self.theta_max_rad, dt_secs))
-            .fold(carried, f32::max);
-        let omega_max = washes.iter().map(|wash| wash.press(&mut self.field, wind, dt_secs)).fold(omega_max, f32::max);
+        let (height, theta_max_rad) = (&*self.height, self.theta_max_rad);
+        let mut sward = Sward { field: &mut self.field, laid: &mut self.laid, wind, height, theta_max_rad };
+        let pressed = contacts.iter().map(|contact| contact::press(&mut sward, contact, dt_secs)).fold(carried, f32::max);
+        let omega_max = blows.iter().map(|blow| blow.press(&mut sward)).fold(pressed, f32::max);
+        self.laid.step(dt_secs, views);
         (self.report, self.traces) = step::propagate(&mut self.field, &self.params, dt_secs, omega_max);
     }
 
-    /// Where a motion touches grass: parts that are lower than the grass is high.
-    fn contacts(&self, motion: &Motion) -> Vec<Contact> {
-        let cell_m = self.field.layout().cell_m;
-        let [x, z] = motion.to.xz();
-        let land_m = self.height.height_m(x, z);
-        let [u, _, w] = motion.velocity_m_per_s;
-        let touching = footprint::parts(motion.kind).iter().filter_map(|part| {
-            let clearance = (part.lowest_m(&motion.to) - land_m).max(0.0) / self.blade_m;
-            (clearance < 1.0).then(|| Contact {
-                footprint: part.swept(motion, cell_m),
-                velocity_m_per_s: [u, w],
-                strike_height_m: motion.kind.strike_height_m(),
-                slips_rad: clearance.acos(),
-                parts_grass: part.parts_grass,
-            })
-        });
-        touching.collect()
+    /// The motions that are some; the others are kept as refused.
+    fn sound(&mut self, motions: &[Motion]) -> Vec<Motion> {
+        self.refused = motions.iter().filter_map(|motion| motion.check().err()).collect();
+        self.refused_count += self.refused.len() as u64;
+        motions.iter().filter(|motion| motion.check().is_ok()).copied().collect()
     }
 
-    fn wash(&self, motion: &Motion) -> Option<Wash> {
-        let at = motion.to.xz();
-        let skids_m = motion.to.position_m[1] - motion.kind.half_extents_m()[1];
-        (motion.kind == VehicleKind::Helicopter).then(|| Wash::below(at, skids_m - self.height.height_m(at[0], at[1])))?
-    }
-
-    fn touched(&self, contacts: &[Contact], washes: &[Wash]) -> Vec<PatchIndex> {
+    fn touched(&self, contacts: &[Contact], blows: &[Blow]) -> Vec<PatchIndex> {
         let layout = self.field.layout();
         let around = |[low, high]: [[f32; 2]; 2]| layout.patches_touching(low.map(|m| m - MARGIN_M), high.map(|m| m + MARGIN_M));
-        let bodies = contacts.iter().flat_map(|contact| around(contact.footprint.bounds_m()));
-        bodies.chain(washes.iter().flat_map(|wash| around(wash.footprint().bounds_m()))).collect()
+        let bodies = contacts.iter().flat_map(|contact| around(contact.swath.bounds_m()));
+        bodies.chain(blows.iter().flat_map(|blow| around(blow.footprint().bounds_m()))).collect()
     }
 }

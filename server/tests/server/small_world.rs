@@ -113,6 +113,7 @@ pub(crate) fn scene() -> LoadedScene {
         grass: Default::default(),
         plants: Default::default(),
         objects: Default::default(),
+        drawn_winds: vec![],
         camera: Default::default(),
         light: Default::default(),
     };

@@ -1,6 +1,8 @@
 //! What each field of a scene file may hold: the one table that parsing, the reference in the README and its tests share.
 
-use super::{PrimitiveKind, VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime};
+use super::{
+    PrimitiveKind, VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+};
 use std::fmt;
 
 /// Values that a field may hold.
