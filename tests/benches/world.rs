@@ -59,7 +59,7 @@ impl Timed {
     fn new(cars: u32, apart_m: f32, awake_limit: u32) -> Self {
         let (mut scene, maps) = worlds::continuum(cars, apart_m);
         scene.patches.awake_limit = awake_limit;
-        let Maps { height, cover } = maps.clone();
+        let Maps { height, cover, .. } = maps.clone();
         let (height, cover) = (Arc::new(height), Arc::new(cover));
         let place = Place { height: height.clone(), cover, extent_m: scene.extent_m() };
         let objects = Objects::new(&scene, place);
@@ -127,8 +127,7 @@ fn at_rest() {
     runtime.block_on(async {
         let mut loaded = scenes::load("continuum").expect("a built-in scene is sound");
         loaded.scene.objects.self_driving = 0;
-        let LoadedScene { scene, height, cover, .. } = &loaded;
-        let world = World::new(scene, Maps { height: height.clone(), cover: cover.clone() }).expect("a built-in scene is sound");
+        let world = World::new(&loaded.scene, loaded.maps()).expect("a built-in scene is sound");
         let prairie = Prairie::serve(loaded, world).await.expect("a port is free");
         share_of_a_core("at rest, no visitor").await;
         let visit = tokio::spawn(visit(prairie.addr.to_string()));

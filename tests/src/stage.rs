@@ -4,7 +4,7 @@ use anyhow::{Context as _, Result};
 use client_wasm::state::Mirror;
 use server::scenes;
 use server::snapshot::PatchCodes;
-use server::world::{Command, Maps, View, World};
+use server::world::{Command, View, World};
 use shared::scene::{Scene, VehicleKind};
 use shared::terrain::HeightMap;
 use shared::wire::{Drive, ObjectPose, ServerMessage, Shape, codec};
@@ -31,6 +31,7 @@ impl Stage {
     /// When the scene is faulty.
     pub fn load(name_or_path: &str) -> Result<Self> {
         let loaded = scenes::load(name_or_path)?;
+        let world = World::new(&loaded.scene, loaded.maps())?;
         let mut mirror = Mirror::default();
         mirror.apply(ServerMessage::Scene {
             scene: Box::new(loaded.scene.clone()),
@@ -38,7 +39,6 @@ impl Stage {
             covering_png: loaded.covering_png,
             models: loaded.models,
         })?;
-        let world = World::new(&loaded.scene, Maps { height: loaded.height.clone(), cover: loaded.cover })?;
         Ok(Self { world, mirror, scene: loaded.scene, height: loaded.height, sent: BTreeMap::new(), frame: 0, time_secs: 0.0 })
     }
 

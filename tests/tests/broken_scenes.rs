@@ -6,7 +6,7 @@ use shared::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
-const BROKEN: [&str; 20] = [
+const BROKEN: [&str; 26] = [
     "unknown-field",
     "syntax",
     "out-of-range",
@@ -27,6 +27,12 @@ const BROKEN: [&str; 20] = [
     "wind-one-primitive",
     "species",
     "species-hole",
+    "objects",
+    "sled-outline",
+    "sled-without-footprint",
+    "sled-of-no-area",
+    "drawn-winds",
+    "drawn-winds-out-of-range",
 ];
 
 /// The message for a broken scene equals the stored text beside it; `PRAIRIE_UPDATE=1` stores it anew.

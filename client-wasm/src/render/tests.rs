@@ -80,7 +80,9 @@ fn meadow_of(change: impl FnOnce(&mut Scene), covering: &[u8]) -> Mirror {
         plants: Default::default(),
         species: Vec::new(),
         bend: Default::default(),
+        natural_wind: Default::default(),
         objects: Default::default(),
+        drawn_winds: vec![],
         camera: Default::default(),
         light: Default::default(),
     };

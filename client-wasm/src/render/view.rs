@@ -101,6 +101,7 @@ impl<'a> View<'a> {
 fn spheres(poses: &[ObjectPose], eye: Vec3) -> Vec<[f32; 4]> {
     let mut spheres: Vec<(f32, [f32; 4])> = poses
         .iter()
+        .filter(|pose| pose.kind.interaction_radius_m() > 0.0)
         .map(|pose| {
             let [x, y, z] = pose.position_m;
             let [_, half_y, _] = pose.kind.half_extents_m();

@@ -7,7 +7,8 @@ use shared::scene::{VehicleKind, WindAdvection, WindBoundary, WindDiffusion, Win
 
 fn meadow() -> (Scene, Maps) {
     let loaded = crate::scenes::load("meadow").unwrap();
-    (loaded.scene, Maps { height: loaded.height, cover: loaded.cover })
+    let maps = loaded.maps();
+    (loaded.scene, maps)
 }
 
 fn flat() -> HeightMap {
