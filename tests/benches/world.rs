@@ -4,7 +4,7 @@
 
 use futures_util::{SinkExt, StreamExt};
 use server::objects::{Objects, Place};
-use server::scenes::{self, LoadedScene};
+use server::scenes;
 use server::weather::Weather;
 use server::world::{Maps, World};
 use shared::scene::Scene;
