@@ -85,6 +85,7 @@ impl Simulation for Meadow {
             time_secs: self.tick as f64 / 60.0,
             objects: self.objects.values().copied().collect(),
             wind: Arc::new(wind),
+            object_limit: OBJECT_LIMIT as u32,
             patches: Arc::new((0..PATCHES).map(patch).collect()),
             ..Snapshot::default()
         }
