@@ -125,6 +125,7 @@ pub(crate) fn scene() -> LoadedScene {
         height_png: png_bytes.clone(),
         covering_png: png_bytes,
         scene,
+        drawings: Default::default(),
         models: Vec::new(),
     }
 }
