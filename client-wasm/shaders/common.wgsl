@@ -12,9 +12,8 @@ struct Frame {
     wind_box: vec4<f32>,
     tiling: vec4<u32>,
     gust: vec4<f32>,
+    past: vec4<f32>,
     blade: vec4<f32>,
-    root_rgb: vec4<f32>,
-    tip_rgb: vec4<f32>,
     screen: vec4<f32>,
     reach: vec4<f32>,
     clouds: vec4<f32>,
@@ -25,24 +24,40 @@ struct Frame {
 @group(0) @binding(1) var heights: texture_2d<f32>;
 @group(0) @binding(2) var normals: texture_2d<f32>;
 @group(0) @binding(3) var cover: texture_2d<f32>;
-@group(0) @binding(4) var bends: texture_2d<f32>;
+@group(0) @binding(4) var bends: texture_2d_array<f32>;
 @group(0) @binding(5) var winds: texture_3d<f32>;
 @group(0) @binding(6) var noises: texture_2d<f32>;
 @group(0) @binding(7) var repeated: sampler;
 @group(0) @binding(8) var clamped: sampler;
 @group(0) @binding(9) var shadows: texture_depth_2d;
 @group(0) @binding(10) var shadow_sampler: sampler_comparison;
+@group(0) @binding(11) var kind_map: texture_2d<u32>;
+@group(0) @binding(12) var<uniform> kinds: Kinds;
+
+// One kind of grass; its twin is in `uniforms.rs`.
+struct Kind {
+    root: vec4<f32>,
+    tip: vec4<f32>,
+    lag: vec4<f32>,
+    shape: vec4<f32>,
+}
+
+struct Kinds {
+    list: array<Kind, 17>,
+}
 
 // A plant to be drawn.
 struct Blade {
     // Root (m), width at the root (m).
     root: vec4<f32>,
-    // Offsets of the control points from the root (m); w: angle of the side, hue 0..1, light 0..1.
+    // Offsets of the control points from the root (m); w: angle of the side; number of its kind and hue 0..1 as a fraction, or of a
+    // flower the kind of its petals 0..1; light 0..1.
     points: array<vec4<f32>, 3>,
 }
 
 const TAU: f32 = 6.2831853;
 const THETA_FULL_RAD: f32 = 3.1415927;
+const OMEGA_FULL_RAD_PER_S: f32 = 80.0;
 const WIND_FULL_M_PER_S: f32 = 31.75;
 const DUST_FULL: f32 = 16.0;
 
@@ -118,6 +133,79 @@ fn grass_share(p: vec2<f32>) -> f32 {
     return smoothstep(0.35, 0.65, soft + ragged * (1.0 - abs(2.0 * soft - 1.0)));
 }
 
+// --- kinds of grass ---------------------------------------------------------------------------------------------------
+
+// The four pixels of the map of kinds about a place, and how much each of them counts there.
+struct KindsAbout {
+    kinds: vec4<u32>,
+    shares: vec4<f32>,
+}
+
+// A pixel inside of a map that is mirrored at its edges over and over.
+fn mirrored(pixel: vec2<i32>, size: vec2<i32>) -> vec2<i32> {
+    let at = ((pixel % (2 * size)) + 2 * size) % (2 * size);
+    return min(at, 2 * size - 1 - at);
+}
+
+fn kinds_about(p: vec2<f32>) -> KindsAbout {
+    let size = textureDimensions(kind_map);
+    if size.x < 2u {
+        return KindsAbout(vec4<u32>(0u), vec4<f32>(1.0, 0.0, 0.0, 0.0));
+    }
+    let px_m = frame.world.xy / vec2<f32>(size);
+    // Ragged borders: a place is taken for one beside it, and the farther beyond the world's edge, the farther away.
+    let broad = vec2<f32>(noise(p / 13.0).r, noise(p / 13.0 + 0.37).r) - 0.5;
+    let fine = vec2<f32>(noise(p / 3.7).g, noise(p / 3.7 + 0.61).g) - 0.5;
+    let hilly = vec2<f32>(noise(p / 830.0).r, noise(p / 830.0 + 0.43).r) - 0.5;
+    let beside_m = (broad * 1.7 + fine * 0.8) * clamp(px_m, vec2<f32>(1.0), vec2<f32>(5.0)) + hilly * metres_outside(p);
+    let at = (p + beside_m) / px_m - 0.5;
+    let low = floor(at);
+    let share = at - low;
+    let nw = mirrored(vec2<i32>(low), vec2<i32>(size));
+    let se = mirrored(vec2<i32>(low) + 1, vec2<i32>(size));
+    var about: KindsAbout;
+    about.kinds = vec4<u32>(
+        textureLoad(kind_map, nw, 0).r,
+        textureLoad(kind_map, vec2<i32>(se.x, nw.y), 0).r,
+        textureLoad(kind_map, vec2<i32>(nw.x, se.y), 0).r,
+        textureLoad(kind_map, se, 0).r,
+    );
+    let west = 1.0 - share.x;
+    let north = 1.0 - share.y;
+    about.shares = vec4<f32>(west * north, share.x * north, west * share.y, share.x * share.y);
+    return about;
+}
+
+// Number of the kind that grows at a place: the one that counts most there.
+fn kind_at(p: vec2<f32>) -> u32 {
+    var about = kinds_about(p);
+    var found = 0u;
+    var most = 0.0;
+    for (var i = 0; i < 4; i++) {
+        let same = select(vec4<f32>(0.0), about.shares, about.kinds == vec4<u32>(about.kinds[i]));
+        let counts = dot(same, vec4<f32>(1.0));
+        if counts > most {
+            most = counts;
+            found = about.kinds[i];
+        }
+    }
+    return found;
+}
+
+// The kinds at a place blended: what is seen of them from afar.
+fn kinds_blended(p: vec2<f32>) -> Kind {
+    var about = kinds_about(p);
+    var blend = Kind(vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0));
+    for (var i = 0; i < 4; i++) {
+        let kind = kinds.list[about.kinds[i]];
+        blend.root += kind.root * about.shares[i];
+        blend.tip += kind.tip * about.shares[i];
+        blend.lag += kind.lag * about.shares[i];
+        blend.shape += kind.shape * about.shares[i];
+    }
+    return blend;
+}
+
 // --- wind and bend --------------------------------------------------------------------------------------------------
 
 // Wind (m/s), and the root of the dust's concentration over `DUST_FULL`, at a place in the wind's box.
@@ -176,29 +264,79 @@ fn gust_at(p: vec2<f32>) -> f32 {
     return 0.45 + 1.35 * smoothstep(0.28, 0.74, broad * 0.62 + fine * 0.38);
 }
 
-// Lean (rad, as a vector on the ground) that a steady wind sustains; twin of `wind_lean_rad` in shared/src/bend/wind.rs.
-fn lean_of_wind(wind: vec2<f32>) -> vec2<f32> {
+// Lean (rad, as a vector on the ground) that a steady wind sustains in what one of 10 m/s bends by `bend_rad`; twin of
+// `wind_lean_rad` in shared/src/bend/wind.rs.
+fn lean_of_wind(wind: vec2<f32>, bend_rad: f32) -> vec2<f32> {
     let speed = length(wind);
     let share = min(speed, 10.0) * 0.1;
-    return wind / max(speed, 1e-3) * (frame.blade.w * share * share);
+    return wind / max(speed, 1e-3) * (bend_rad * share * share);
 }
 
-// Lean (rad) of the streamed bend field, at a mip level of the atlas: how the grass departs from where the wind alone holds it.
-fn lean_of_field(p: vec2<f32>, level: f32) -> vec2<f32> {
+// The streamed bend field at a place, at a mip level and in a layer of the atlas: θ (rad), ω (rad/s). Layer 0 is the newest.
+fn bend_at(p: vec2<f32>, level: f32, layer: i32) -> vec3<f32> {
+    let code = textureSampleLevel(bends, repeated, p / frame.maps.z, layer, level);
+    return vec3<f32>(code.x * THETA_FULL_RAD, code.yz * abs(code.yz) * OMEGA_FULL_RAD_PER_S);
+}
+
+// Lean (rad, as a vector on the ground) of a state of the bend field.
+fn lean_of_bend(bend: vec3<f32>) -> vec2<f32> {
+    return bend.yz * (bend.x / max(length(bend.yz), 1e-10));
+}
+
+// Lean that the field had at a place so many seconds ago, where its newest state is `now`.
+fn earlier_lean(p: vec2<f32>, level: f32, now: vec3<f32>, kind: Kind, secs: f32) -> vec2<f32> {
+    if frame.past.w < 0.0 {
+        let speed = length(now.yz);
+        if speed < 1e-6 {
+            return vec2<f32>(0.0);
+        }
+        let direction = now.yz / speed;
+        let reached_m = (kind.lag.x + kind.lag.y * speed) * min(secs, 0.25 * TAU / speed);
+        return direction * bend_at(p + direction * reached_m, level, 0).x;
+    }
+    // Earlier pictures of the field: the youngest is in layer `past.w`, each older one in the next below, round about.
+    var lean = lean_of_bend(now);
+    var younger_secs = 0.0;
+    for (var i = 0; i < 3 && younger_secs < secs; i++) {
+        let age_secs = frame.past[i];
+        let older = lean_of_bend(bend_at(p, level, 1 + (i32(frame.past.w) + 2 - i) % 3));
+        lean = mix(lean, older, clamp((secs - younger_secs) / max(age_secs - younger_secs, 1e-6), 0.0, 1.0));
+        younger_secs = age_secs;
+    }
+    return lean;
+}
+
+// Lean of a segment that trails the lowest by `secs`; less where the grass rises. Twin of `Lag::lean_rad` in shared/src/lod/lag.rs.
+fn trailing_lean(p: vec2<f32>, level: f32, now: vec3<f32>, kind: Kind, secs: f32) -> vec2<f32> {
+    let lean = lean_of_bend(now);
+    if secs <= 0.0 {
+        return lean;
+    }
+    let then = earlier_lean(p, level, now, kind, secs);
+    if dot(then, then) <= dot(lean, lean) {
+        return then;
+    }
+    return earlier_lean(p, level, now, kind, secs * kind.lag.w);
+}
+
+// How much of the streamed field is shown at a place: none where the atlas ends.
+fn field_share(p: vec2<f32>) -> f32 {
     let from_eye = abs(p - frame.eye.xz);
-    let shown = 1.0 - smoothstep(0.8, 1.0, max(from_eye.x, from_eye.y) / frame.maps.w);
-    if shown <= 0.0 {
+    return 1.0 - smoothstep(0.8, 1.0, max(from_eye.x, from_eye.y) / frame.maps.w);
+}
+
+// Lean (rad) of the streamed bend field at a place: how the grass departs from where the wind alone holds it.
+fn lean_of_field(p: vec2<f32>, level: f32) -> vec2<f32> {
+    let share = field_share(p);
+    if share <= 0.0 {
         return vec2<f32>(0.0);
     }
-    let code = textureSampleLevel(bends, repeated, p / frame.maps.z, level);
-    let omega = code.yz * abs(code.yz);
-    let speed = length(omega);
-    return omega / max(speed, 1e-12) * (code.x * THETA_FULL_RAD * shown);
+    return lean_of_bend(bend_at(p, level, 0)) * share;
 }
 
-// Lean (rad) of what grows at a place on the ground, in its wind times a factor.
-fn lean_at(ground: vec3<f32>, level: f32, gust: f32) -> vec2<f32> {
-    return lean_of_field(ground.xz, level) + lean_of_wind(wind_at(ground, 0.0).xz * gust);
+// Lean (rad) of what grows at a place on the ground, in its wind times a factor, where one of 10 m/s bends it by `bend_rad`.
+fn lean_at(ground: vec3<f32>, level: f32, gust: f32, bend_rad: f32) -> vec2<f32> {
+    return lean_of_field(ground.xz, level) + lean_of_wind(wind_at(ground, 0.0).xz * gust, bend_rad);
 }
 
 fn field_level(distance_m: f32) -> f32 {

@@ -13,6 +13,7 @@ pub mod net;
 pub mod objects;
 pub mod runner;
 pub mod scenes;
+mod shown;
 pub mod snapshot;
 pub mod stream;
 pub mod weather;
@@ -84,7 +85,8 @@ pub async fn run_simulation(
     let scene = &config.scene.scene;
     let layout = PatchLayout::from(&scene.patches);
     let timing = Timing { tick_hz: scene.tick_hz, publish_hz: config.publish_hz, threads: config.threads };
-    let inspector = config.rerun.as_ref().map(|target| Inspector::start(target, scene, &config.scene.height)).transpose()?;
+    let inspector =
+        config.rerun.as_ref().map(|target| Inspector::start(target, scene, &config.scene.height, &config.scene.cover)).transpose()?;
     let runner = Runner::start(simulation, timing)?;
     let mut published = runner.published();
     let clients = Arc::new(Clients::default());

@@ -2,19 +2,17 @@
 
 pub use crate::bend::View;
 use crate::bend::drawing::Drawings;
-use crate::bend::laid::Laid;
-use crate::bend::{Meadow, sward};
+use crate::bend::Meadow;
 use crate::objects::{Objects, Place, SPEED_LIMIT_M_PER_S};
-use crate::snapshot::{BentPatches, Health, PatchCodes, Snapshot};
+use crate::shown::Shown;
+use crate::snapshot::{Health, Snapshot};
 use crate::weather::{self, Weather, WeatherError};
 use crate::wind::StepError;
 use crate::wind::state::MAX_SUBSTEPS;
-use rayon::prelude::*;
-use shared::bend::{Bend, Patch, WaveParams, verlet};
-use shared::grid::PatchIndex;
+use shared::bend::{Damping, Scheme, WaveParams, limits};
+use shared::grid::{PatchIndex, PatchLayout};
 use shared::scene::{CarTread, Grass, HelicopterTread, MonsterTread, Patches, Scene, SledTread, VehicleKind, WindShape};
 use shared::terrain::{CoverMap, HeightMap};
-use shared::wire::quantise;
 use shared::wire::{Drive, ObjectId, VIEW_RADIUS_LIMIT_M};
 use std::sync::Arc;
 use thiserror::Error;
@@ -87,7 +85,7 @@ pub struct World {
     weather: Weather,
     meadow: Meadow,
     views: Vec<View>,
-    shown: Arc<BentPatches>,
+    shown: Shown,
 }
 
 impl World {
@@ -101,7 +99,7 @@ impl World {
         let weather = Weather::new(scene, &maps).map_err(|error| no_wind(scene, error))?;
         let height = Arc::new(maps.height);
         let place = Place { height: Arc::clone(&height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
-        let meadow = Meadow::with_drawings(scene, Arc::clone(&height), &maps.drawings);
+        let meadow = Meadow::with_drawings(scene, Arc::clone(&height), &place.cover, &maps.drawings);
         Ok(Self {
             dt_secs: scene.dt_secs(),
             tick: 0,
@@ -109,7 +107,7 @@ impl World {
             extent_m: scene.extent_m(),
             objects: Objects::new(scene, place),
             weather,
-            shown: Arc::default(),
+            shown: Shown::default(),
             meadow,
             views: vec![],
         })
@@ -137,7 +135,7 @@ impl World {
             objects: self.objects.poses(),
             object_limit: self.objects.limit(),
             wind: Arc::clone(self.weather.frame()),
-            patches: Arc::clone(&self.shown),
+            patches: Arc::clone(self.shown.patches()),
             health: Health {
                 divergence_rms: wind.divergence_rms_rel as f32,
                 wind_energy: wind.kinetic_energy_m2_per_s2,
@@ -149,7 +147,7 @@ impl World {
                 refused_motions: self.meadow.refused_count(),
                 wind_resets: self.weather.resets(),
                 substeps: bend.substeps,
-                courant: bend.courant,
+                courant: bend.courant_share,
                 ..Health::default()
             },
         }
@@ -173,12 +171,10 @@ impl World {
             sum.add(pose.position_m.iter().chain(&pose.rotation).chain(&pose.velocity_m_per_s).map(|v| v.to_bits()));
         }
         sum.add(self.weather.velocities().iter().flat_map(|velocity| velocity.to_array().map(f32::to_bits)));
-        for (index, patch) in self.meadow.field().awake() {
-            sum.add([index]);
-            for channel in patch.channels().into_iter().chain(patch.channels_before()) {
-                for row in channel.chunks_exact(patch.stride()).skip(1).take(patch.side()) {
-                    sum.add(row[1..=patch.side()].iter().map(|v| v.to_bits()));
-                }
+        for patch in self.meadow.field().awake() {
+            sum.add([patch.index()]);
+            for row in patch.rows().chain(patch.rows_before()) {
+                sum.add(row.into_iter().flatten().map(|v| v.to_bits()));
             }
         }
         sum.add(self.meadow.laid().words());
@@ -210,68 +206,16 @@ impl World {
 
     /// Quantises the patches that changed: those that are awake, and near the cameras those that are only laid.
     fn show_patches(&mut self) {
-        let (tick, before, field, laid) = (self.tick, &self.shown, self.meadow.field(), self.meadow.laid());
-        let side = field.layout().cells as usize;
-        let show = |(index, patch): (PatchIndex, Option<&Patch>)| {
-            let mut codes = patch.map_or_else(|| vec![0; 3 * side * side], codes_of);
-            add_laid(&mut codes, side, index, patch, laid);
-            match before.get(&index) {
-                Some(before) if before.codes == codes => Some((index, Arc::clone(before))),
-                _ if codes.iter().all(|&code| code == 0) => None,
-                _ => Some((index, Arc::new(PatchCodes { tick, codes }))),
-            }
-        };
-        let mut shown = BentPatches::new();
-        let mut changed: Vec<_> = field.awake().map(|(index, patch)| (index, Some(patch))).collect();
-        for (index, has_changed) in laid.patches() {
-            if field.patch(index).is_some() || !self.is_in_sight(index) {
-                continue;
-            }
-            match before.get(&index) {
-                Some(before) if !has_changed => _ = shown.insert(index, Arc::clone(before)),
-                _ => changed.push((index, None)),
-            }
-        }
-        shown.extend(changed.into_par_iter().filter_map(show).collect::<Vec<_>>());
-        self.shown = Arc::new(shown);
-        self.meadow.laid_was_shown();
-    }
-
-    /// Whether a patch may be within any camera's reach.
-    fn is_in_sight(&self, patch: PatchIndex) -> bool {
-        let layout = self.meadow.field().layout();
-        let center_m = layout.center_m(patch);
-        let reach_m = VIEW_RADIUS_LIMIT_M + layout.patch_m();
-        self.views.iter().any(|view| (center_m[0] - view.eye_m[0]).hypot(center_m[1] - view.eye_m[2]) < reach_m)
+        let (layout, views) = (*self.meadow.field().layout(), &self.views);
+        self.shown.renew(self.tick, &mut self.meadow, |patch| is_in_sight(&layout, views, patch));
     }
 }
 
-/// Adds what is laid in a patch to its three planes of codes.
-fn add_laid(codes: &mut [i8], side: usize, index: PatchIndex, patch: Option<&Patch>, laid: &Laid) {
-    let plane = side * side;
-    for ([i, j], lean_rad) in laid.cells(index) {
-        let bend = sward::shown(patch.map_or_else(Bend::default, |patch| patch.bend(i, j)), lean_rad);
-        let at = j * side + i;
-        codes[at] = quantise::theta_code(bend.theta);
-        codes[plane + at] = quantise::omega_code(bend.omega[0]);
-        codes[2 * plane + at] = quantise::omega_code(bend.omega[1]);
-    }
-}
-
-/// Three planes of codes: θ, ωx, ωz.
-fn codes_of(patch: &Patch) -> Vec<i8> {
-    let side = patch.side();
-    let mut codes = vec![0; 3 * side * side];
-    let [theta, x, z] = patch.channels();
-    let rows = |channel| <[f32]>::chunks_exact(channel, side + 2).skip(1).map(|row| &row[1..=side]);
-    let mut codes_rows = codes.chunks_exact_mut(side);
-    for (codes, row) in codes_rows.by_ref().zip(rows(theta).take(side)) {
-        codes.iter_mut().zip(row).for_each(|(code, &theta)| *code = quantise::theta_code(theta));
-    }
-    for (codes, row) in codes_rows.zip(rows(x).take(side).chain(rows(z).take(side))) {
-        codes.iter_mut().zip(row).for_each(|(code, &omega)| *code = quantise::omega_code(omega));
-    }
-    codes
+/// Whether a patch may be within any camera's reach.
+fn is_in_sight(layout: &PatchLayout, views: &[View], patch: PatchIndex) -> bool {
+    let center_m = layout.center_m(patch);
+    let reach_m = VIEW_RADIUS_LIMIT_M + layout.patch_m();
+    views.iter().any(|view| (center_m[0] - view.eye_m[0]).hypot(center_m[1] - view.eye_m[2]) < reach_m)
 }
 
 /// All drawings that the winds of `scene` name are there.
@@ -289,16 +233,22 @@ fn check_drawings(scene: &Scene, drawings: &Drawings) -> Result<(), WorldError> 
 }
 
 fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
+    let allowed = match scene.bend.scheme {
+        Scheme::Verlet => 1,
+        Scheme::Substepped => SUBSTEP_LIMIT,
+        Scheme::Implicit | Scheme::Modal => return Ok(()),
+    };
     let needed = substeps_when_struck(scene);
-    if needed <= SUBSTEP_LIMIT {
+    if needed <= allowed {
         return Ok(());
     }
     type Mend = fn(&mut Scene);
-    let usual: [(&str, Mend); 10] = [
+    let usual: [(&str, Mend); 11] = [
         ("grass.mu_m_per_rad", |scene| scene.grass.mu_m_per_rad = Grass::default().mu_m_per_rad),
         ("grass.c0_m_per_s", |scene| scene.grass.c0_m_per_s = Grass::default().c0_m_per_s),
         ("grass.c_omega_m_per_s", |scene| scene.grass.c_omega_m_per_s = Grass::default().c_omega_m_per_s),
         ("grass.stiffness_per_s2", |scene| scene.grass.stiffness_per_s2 = Grass::default().stiffness_per_s2),
+        ("species", |scene| scene.species.clear()),
         ("patches.cell_m", |scene| scene.patches.cell_m = Patches::default().cell_m),
         ("tick_hz", |scene| scene.tick_hz = 60.0),
         ("objects.car.strike_height_m", |scene| scene.objects.car = CarTread::default()),
@@ -313,20 +263,31 @@ fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
     };
     // To blame is the field whose usual value would help most.
     let (field, _) = usual.into_iter().min_by_key(|&(_, mend)| needed_with(mend)).expect("the list is not empty");
-    let Grass { c0_m_per_s, mu_m_per_rad, c_omega_m_per_s, stiffness_per_s2, .. } = scene.grass;
+    let stiffest = scene.kinds().into_iter().max_by_key(|grass| substeps_of(scene, &[WaveParams::from(grass)])).unwrap_or(scene.grass);
+    let Grass { c0_m_per_s, mu_m_per_rad, c_omega_m_per_s, stiffness_per_s2, .. } = stiffest;
     let message = format!(
-        "makes the grass too stiff: it needs {needed} sub-steps in a step when an object strikes it at {SPEED_LIMIT_M_PER_S} m/s; allowed: \
-         {SUBSTEP_LIMIT}. It has mu_m_per_rad = {mu_m_per_rad}, c0_m_per_s = {c0_m_per_s}, c_omega_m_per_s = {c_omega_m_per_s}, \
-         stiffness_per_s2 = {stiffness_per_s2} on cells of {} m at {} Hz; smaller ones, a larger cell_m or a higher tick_hz need fewer",
-        scene.patches.cell_m, scene.tick_hz
+        "makes the grass too stiff: with `bend.scheme` = \"{}\" it needs {needed} sub-steps in a step when an object strikes it at \
+         {SPEED_LIMIT_M_PER_S} m/s; allowed: {allowed}. It has mu_m_per_rad = {mu_m_per_rad}, c0_m_per_s = {c0_m_per_s}, \
+         c_omega_m_per_s = {c_omega_m_per_s}, stiffness_per_s2 = {stiffness_per_s2} on cells of {} m at {} Hz; smaller ones, a larger cell_m or a \
+         higher tick_hz need fewer",
+        scene.bend.scheme.word(),
+        scene.patches.cell_m,
+        scene.tick_hz
     );
     Err(WorldError { field, message })
 }
 
 /// Sub-steps of the grass when an object strikes it at its fastest.
 fn substeps_when_struck(scene: &Scene) -> u32 {
+    let waves: Vec<_> = scene.kinds().iter().map(WaveParams::from).collect();
+    substeps_of(scene, &waves)
+}
+
+fn substeps_of(scene: &Scene, waves: &[WaveParams]) -> u32 {
     let strike_m = VehicleKind::ALL.map(|kind| scene.objects.tread(kind).strike_height_m).into_iter().fold(f32::INFINITY, f32::min);
-    verlet::substeps(&WaveParams::from(&scene.grass), scene.patches.cell_m, scene.dt_secs(), SPEED_LIMIT_M_PER_S / strike_m)
+    let damping = if scene.bend.scheme == Scheme::Verlet { Damping::Plain } else { Damping::Exact };
+    let needed = limits::substeps(waves, scene.patches.cell_m, scene.dt_secs(), SPEED_LIMIT_M_PER_S / strike_m, damping);
+    needed.unwrap_or(limits::SUBSTEPS_LIMIT)
 }
 
 fn no_wind(scene: &Scene, error: WeatherError) -> WorldError {

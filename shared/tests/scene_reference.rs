@@ -21,6 +21,7 @@ const SOURCES: [(&str, &[(&str, &str)]); 12] = [
     ("wind/primitive.rs", &[("Primitive", "wind.primitives")]),
     ("grass.rs", &[("Grass", "grass")]),
     ("plants.rs", &[("Plants", "plants")]),
+    ("species.rs", &[("Species", "species")]),
     (
         "objects.rs",
         &[
@@ -97,7 +98,7 @@ fn minimal() -> toml::Table {
 /// A scene with every field written out, and one section in each list of sections.
 fn complete() -> toml::Table {
     let text = minimal().to_string()
-        + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n"
+        + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n[[species]]\nname = ''\ncover = 1\n"
         + "[[drawn_winds]]\nshape = 'swirl'\npath_m = [[1.0, 2.0]]\n";
     toml::Table::try_from(parse(&text).unwrap()).unwrap()
 }

@@ -1,5 +1,6 @@
-//! Small worlds to test with, made without files.
+//! Worlds to test with: small ones, made without files, and the largest that ships.
 
+use server::scenes;
 use server::world::{Maps, World};
 use shared::scene::Scene;
 use shared::terrain::{CoverMap, HeightMap, grey_png};
@@ -21,6 +22,9 @@ pub fn scene(count: u32) -> Scene {
         wind: Default::default(),
         grass: Default::default(),
         plants: Default::default(),
+        species: Vec::new(),
+        bend: Default::default(),
+        natural_wind: Default::default(),
         objects: Default::default(),
         drawn_winds: vec![],
         camera: Default::default(),
@@ -59,4 +63,15 @@ pub fn hills(scene: &Scene) -> World {
         _ => 255,
     };
     World::new(scene, maps(scene, hills_m, cover)).expect("the default constants make a world")
+}
+
+/// The built-in scene `continuum` with `cars` that drive themselves at 20 m/s and start about `apart_m` from each other, and its maps.
+pub fn continuum(cars: u32, apart_m: f32) -> (Scene, Maps) {
+    let loaded = scenes::load("continuum").expect("a built-in scene is sound");
+    let (maps, mut scene) = (loaded.maps(), loaded.scene);
+    scene.objects.limit = scene.objects.limit.max(cars);
+    scene.objects.self_driving = cars;
+    scene.objects.self_driving_m_per_s = 20.0;
+    scene.objects.self_driving_apart_m = apart_m;
+    (scene, maps)
 }

@@ -6,9 +6,9 @@ use server::bend::contact::{bend_after_rad, bending_speed_rad_per_s, direction, 
 use server::bend::footprint::Footprint;
 use server::bend::{Meadow, View};
 use server::objects::{Motion, MotionError, Stand};
-use shared::bend::Bend;
+use shared::bend::{Bend, Patch};
 use shared::scene::{Scene, VehicleKind};
-use shared::terrain::HeightMap;
+use shared::terrain::{CoverMap, HeightMap, grey_png};
 use shared::wire::quantise::{THETA_FULL_RAD, theta_code, theta_rad};
 use std::sync::Arc;
 use tests::worlds;
@@ -28,7 +28,8 @@ fn wind(scene: &Scene, m_per_s: f32) -> GroundWind {
 
 fn meadow(scene: &Scene) -> Meadow {
     let flat = HeightMap::from_heights(2, 2, [1000.0; 2], vec![0.0; 4]);
-    Meadow::new(scene, Arc::new(flat))
+    let grass = CoverMap::from_png(&grey_png([2; 2], &[255; 4])).expect("a grey PNG");
+    Meadow::new(scene, Arc::new(flat), &grass)
 }
 
 /// A scene in which nothing stays bent but what the field holds.
@@ -152,7 +153,7 @@ fn a_track_rises_again_within_its_time_constant() {
     assert!((secs / expected - 1.0).abs() < 0.05, "rose to a tenth in {secs} s, expected {expected} s");
     let mut last_rad = 0.0;
     for _ in 0..3600 {
-        last_rad = meadow.field().awake().map(|(_, patch)| patch.extremes().theta_rad).reduce(f32::max).unwrap_or(last_rad);
+        last_rad = meadow.field().awake().map(Patch::theta_max_rad).reduce(f32::max).unwrap_or(last_rad);
         meadow.step(DT_SECS, &[], &[], &still_air());
     }
     assert_eq!(meadow.field().awake_count(), 0, "grass at rest sleeps");
@@ -313,7 +314,7 @@ fn the_wire_has_room_for_grass_that_lies_against_the_strongest_wind() {
         meadow.step(DT_SECS, &[motion], &[], &wind);
         at = motion.to.xz();
     }
-    let largest_rad = meadow.field().awake().map(|(_, patch)| patch.extremes().theta_rad).fold(0.0, f32::max);
+    let largest_rad = meadow.field().awake().map(Patch::theta_max_rad).fold(0.0, f32::max);
     assert!(largest_rad > 2.5, "grass pressed westward departs by {largest_rad} rad from where the wind holds it");
     let error_rad = (theta_rad(theta_code(largest_rad)) - largest_rad).abs();
     assert!(error_rad <= THETA_FULL_RAD / 254.0 * 1.0001, "{largest_rad} rad come back {error_rad} rad off");

@@ -5,13 +5,13 @@ use server::bend::air::GroundWind;
 use server::bend::drawing::Drawing;
 use server::bend::drawn::{Blow, Pattern};
 use server::bend::laid::Laid;
-use server::bend::sward::Sward;
+use server::bend::sward::{Growth, Sward};
 use server::scenes;
 use server::world::World;
-use shared::bend::{Bend, Field};
+use shared::bend::{Bend, Field, Kinds, Patch, WaveParams};
 use shared::grid::PatchLayout;
-use shared::scene::{DrawnWind, WindShape};
-use shared::terrain::{HeightMap, grey_png};
+use shared::scene::{DrawnWind, Grass, WindShape};
+use shared::terrain::{CoverMap, HeightMap, grey_png};
 use std::sync::Arc;
 use tests::{maps, worlds};
 
@@ -20,14 +20,16 @@ const LAYOUT: PatchLayout = PatchLayout { count: [2, 2], cells: 64, cell_m: 0.25
 
 /// A field of 32 m after two seconds of a blow.
 fn blown(blow: &Blow) -> Field {
-    let mut field = Field::new(LAYOUT);
+    let mut field = Field::new(LAYOUT, Kinds::one(WaveParams::from(&Grass::default())));
     (0..4).for_each(|index| {
         field.wake(index);
     });
     let mut laid = Laid::new(LAYOUT, 60.0, 0);
     let flat = HeightMap::from_heights(2, 2, [1000.0; 2], vec![0.0; 4]);
     let wind = GroundWind::still(&worlds::scene(1));
-    let mut sward = Sward { field: &mut field, laid: &mut laid, wind: &wind, height: &flat, theta_max_rad: 1.45 };
+    let grass = CoverMap::from_png(&grey_png([2; 2], &[255; 4])).expect("a grey PNG");
+    let growth = Growth::new(&worlds::scene(1), &grass);
+    let mut sward = Sward { field: &mut field, laid: &mut laid, wind: &wind, height: &flat, growth: &growth };
     for _ in 0..120 {
         blow.press(&mut sward);
     }
@@ -51,8 +53,8 @@ fn close(found: [[f32; 2]; 4], expected: [[f32; 2]; 4]) -> bool {
 fn the_higher_the_source_the_weaker_and_smaller_what_it_does() {
     let bent = |height_m: f32| {
         let field = Blow::wash(Pattern::Outward, [16.0, 16.0], height_m, DT_SECS).map(|blow| blown(&blow))?;
-        let cells = field.awake().map(|(_, patch)| patch.channels()[0].iter().filter(|theta| **theta > 0.02).count()).sum::<usize>();
-        Some((cells, field.awake().map(|(_, patch)| patch.extremes().theta_rad).fold(0.0, f32::max)))
+        let cells = field.awake().flat_map(Patch::rows).flat_map(|[theta, _, _]| theta).filter(|theta| **theta > 0.02).count();
+        Some((cells, field.awake().map(Patch::theta_max_rad).fold(0.0, f32::max)))
     };
     let steps = [0.0, 5.0, 12.0, 20.0].map(|height_m| bent(height_m).expect("it reaches the ground"));
     for pair in steps.windows(2) {

@@ -1,9 +1,11 @@
 //! Objects stay on the land, in the world and apart, and do as they are told.
 
+use server::objects::{Objects, Place};
 use server::world::{Command, View, World};
 use shared::scene::VehicleKind::{Car, Helicopter, Monster, Sled};
 use shared::scene::{Scene, VehicleKind};
 use shared::wire::{Drive, ObjectPose};
+use std::sync::Arc;
 use tests::worlds;
 
 fn spawn(world: &mut World, client: u32, kind: VehicleKind) {
@@ -234,4 +236,44 @@ fn absurd_land_and_constants_give_numbers() {
     let maps = worlds::maps(&scene, spikes, |_, _| 255);
     let refused = World::new(&scene, maps).err().expect("too many sub-steps").to_string();
     assert!(refused.contains("mu_m_per_rad = 10") && refused.contains("allowed: 64"), "{refused}");
+}
+
+/// Objects of the scene `continuum`: nothing but these cars, which drive themselves at 20 m/s.
+fn self_driving(cars: u32, apart_m: f32) -> (Scene, Objects) {
+    let (scene, maps) = worlds::continuum(cars, apart_m);
+    let place = Place { height: Arc::new(maps.height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
+    let objects = Objects::new(&scene, place);
+    assert_eq!(objects.poses().len(), cars as usize);
+    (scene, objects)
+}
+
+#[test]
+fn cars_that_drive_themselves_start_as_far_apart_as_asked() {
+    for (cars, apart_m) in [(64, 200.0), (256, 140.0)] {
+        let (scene, objects) = self_driving(cars, apart_m);
+        let poses = objects.poses();
+        for (n, a) in poses.iter().enumerate() {
+            assert!([0, 2].iter().all(|&axis| (0.0..scene.extent_m()[0]).contains(&a.position_m[axis])), "{a:?}");
+            for b in &poses[..n] {
+                let [x, z] = [0, 2].map(|axis| a.position_m[axis] - b.position_m[axis]);
+                assert!(x.hypot(z) > apart_m, "{cars} cars: {} and {} start {} m apart", a.id, b.id, x.hypot(z));
+            }
+        }
+    }
+}
+
+#[test]
+fn cars_that_drive_themselves_hold_their_speed_on_wide_circles() {
+    let (scene, mut objects) = self_driving(64, 200.0);
+    let starts = objects.poses();
+    for tick in 1..=2400 {
+        objects.step(scene.dt_secs());
+        for (pose, start) in objects.poses().iter().zip(&starts) {
+            let [x, z] = [0, 2].map(|axis| pose.position_m[axis] - start.position_m[axis]);
+            assert!(x.hypot(z) < 300.0, "tick {tick}: car {} has gone {} m from where it started", pose.id, x.hypot(z));
+            if tick > 600 {
+                assert!((speed(pose) - 20.0).abs() < 2.5, "tick {tick}: car {} goes {} m/s", pose.id, speed(pose));
+            }
+        }
+    }
 }

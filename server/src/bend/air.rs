@@ -2,7 +2,9 @@
 
 use shared::bend::wind_lean_rad;
 use shared::scene::Scene;
+use shared::terrain::KindMap;
 use shared::wind::Tiles;
+use std::sync::Arc;
 
 /// Where the wind near the ground alone holds the grass, on the wind's grid over the world.
 #[derive(Clone, Debug)]
@@ -11,18 +13,32 @@ pub struct GroundWind {
     nodes: [usize; 2],
     spacing_m: [f32; 2],
     wraps: [bool; 2],
-    bend_rad: f32,
-    /// Leans at the cells' centres (rad, as vectors along X and Z), x fastest.
+    /// Bend of each kind of grass in a wind of 10 m/s (rad).
+    bends_rad: Vec<f32>,
+    kinds: Arc<KindMap>,
+    /// Leans at the cells' centres of grass that a wind of 10 m/s bends by 1 rad (rad, as vectors along X and Z), x fastest.
     leans_rad: Vec<[f32; 2]>,
 }
 
 impl GroundWind {
-    /// Still air over `scene`.
+    /// Still air over `scene`, where the kind of `[grass]` grows everywhere until it is told [otherwise](Self::over).
     pub fn still(scene: &Scene) -> Self {
         let ([nx, _, nz], [dx, _, dz]) = (scene.wind.cells.map(|n| n as usize), scene.wind.spacing_m);
         let [wraps_x, _, wraps_z] = scene.wind.faces.wraps();
-        let (tiles, bend_rad) = (Tiles::new(scene), scene.grass.wind_bend_rad);
-        Self { tiles, nodes: [nx, nz], spacing_m: [dx, dz], wraps: [wraps_x, wraps_z], bend_rad, leans_rad: vec![[0.0; 2]; nx * nz] }
+        Self {
+            tiles: Tiles::new(scene),
+            nodes: [nx, nz],
+            spacing_m: [dx, dz],
+            wraps: [wraps_x, wraps_z],
+            bends_rad: scene.kinds().iter().map(|grass| grass.wind_bend_rad).collect(),
+            kinds: Arc::new(KindMap::uniform()),
+            leans_rad: vec![[0.0; 2]; nx * nz],
+        }
+    }
+
+    /// The same over grass of these kinds.
+    pub fn over(self, kinds: KindMap) -> Self {
+        Self { kinds: Arc::new(kinds), ..self }
     }
 
     /// Takes on the wind (m/s along X and Z) of all cells, x fastest, then y, of which there are so many `layers`; the lowest layer counts.
@@ -30,11 +46,11 @@ impl GroundWind {
         let row = self.nodes[0];
         let lowest = wind_m_per_s.enumerate().filter(|(at, _)| (at / row).is_multiple_of(layers));
         for (lean, (_, wind)) in self.leans_rad.iter_mut().zip(lowest) {
-            *lean = wind_lean_rad(wind, self.bend_rad);
+            *lean = wind_lean_rad(wind, 1.0);
         }
     }
 
-    /// Lean at a place (rad, as a vector along X and Z), bilinear between cells. Beyond a grid that does not repeat the nearest holds.
+    /// Lean at a place (rad, as a vector along X and Z), of the kind of grass there, bilinear between cells. Beyond a grid that does not repeat the nearest holds.
     pub fn lean_rad(&self, [x_m, z_m]: [f32; 2]) -> [f32; 2] {
         self.row(z_m)(x_m)
     }
@@ -43,7 +59,9 @@ impl GroundWind {
     pub fn row(&self, z_m: f32) -> impl Fn(f32) -> [f32; 2] {
         let along = self.box_row(z_m);
         move |x_m| {
-            if self.tiles.by_patch() { self.tiles.blend([x_m, z_m], |[x_m, z_m]| self.box_row(z_m)(x_m)) } else { along(x_m) }
+            let lean = if self.tiles.by_patch() { self.tiles.blend([x_m, z_m], |[x_m, z_m]| self.box_row(z_m)(x_m)) } else { along(x_m) };
+            let bend_rad = self.bends_rad[usize::from(self.kinds.at(x_m, z_m))];
+            lean.map(|lean| lean * bend_rad)
         }
     }
 
@@ -71,20 +89,36 @@ impl GroundWind {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::scene::WindTiling;
+    use shared::scene::{Species, WindTiling};
+    use shared::terrain::{CoverMap, grey_png};
     use shared::wind::offset_cells;
 
     #[test]
     fn leans_are_bilinear_and_wrap_or_hold() {
         let leans_rad = vec![[0.0, 0.0], [0.4, 0.0], [0.0, 0.2], [0.4, 0.2]];
         let tiles = Tiles::new(&crate::scenes::load("meadow").unwrap().scene);
-        let wind = GroundWind { tiles, nodes: [2, 2], spacing_m: [8.0, 4.0], wraps: [true; 2], bend_rad: 0.0, leans_rad };
+        let kinds = Arc::new(KindMap::uniform());
+        let wind = GroundWind { tiles, nodes: [2, 2], spacing_m: [8.0, 4.0], wraps: [true; 2], bends_rad: vec![1.0], kinds, leans_rad };
         let close = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]).abs() < 1e-6 && (a[1] - b[1]).abs() < 1e-6;
         assert!(close(wind.lean_rad([4.0, 2.0]), [0.0, 0.0]));
         assert!(close(wind.lean_rad([6.0, 5.0]), [0.1, 0.15]));
         assert!(close(wind.lean_rad([16.0, 2.0]), [0.2, 0.0]));
         let held = GroundWind { wraps: [false, true], ..wind };
         assert!(close(held.lean_rad([16.0, 6.0 + 8.0 * 8.0]), [0.4, 0.2]));
+    }
+
+    #[test]
+    fn each_kind_of_grass_leans_by_its_own_bend() {
+        let mut scene = crate::scenes::load("meadow").unwrap().scene;
+        let stiff = Species::new("stiff", 1, &scene.grass, &scene.plants);
+        scene.species = vec![Species { wind_bend_rad: 0.1, ..stiff }];
+        // Over a world of 256 m the eastern half is stiff.
+        let cover = CoverMap::from_png(&grey_png([2; 2], &[255, 1, 255, 1])).unwrap();
+        let mut wind = GroundWind::still(&scene).over(KindMap::new(&scene, &cover));
+        let cells: u32 = scene.wind.cells.iter().product();
+        wind.blow(scene.wind.cells[1] as usize, (0..cells).map(|_| [12.0, 0.0]));
+        let [[soft, _], [stiff, _]] = [[60.0, 9.0], [190.0, 9.0]].map(|at_m| wind.lean_rad(at_m));
+        assert!((soft - scene.grass.wind_bend_rad).abs() < 1e-6 && (stiff - 0.1).abs() < 1e-6, "{soft} and {stiff}");
     }
 
     #[test]
@@ -98,7 +132,7 @@ mod tests {
         for (n, lean) in leans.iter().enumerate() {
             let [x, z] = offset_cells(scene.seed as u32, [n as i32, 1], [8, 8]);
             let found = wind.leans_rad[(((z + 12) % 8) * 8 + (x + 4) % 8) as usize];
-            assert_eq!(*lean, found, "patch {n}");
+            assert_eq!(*lean, found.map(|lean| lean * scene.grass.wind_bend_rad), "patch {n}");
         }
         assert!(leans.windows(2).any(|pair| pair[0] != pair[1]));
     }

@@ -77,7 +77,7 @@ impl Laid {
         self.dropped
     }
 
-    /// Patches with laid grass, ascending, and whether each looks other than when it was [shown](Self::shown) last.
+    /// Patches with laid grass, ascending, and whether each looks other than when it was [shown](Self::was_shown) last.
     pub fn patches(&self) -> impl Iterator<Item = (PatchIndex, bool)> {
         self.patches.iter().map(|(&index, patch)| (index, patch.changed))
     }
@@ -143,9 +143,9 @@ impl Laid {
         }
     }
 
-    /// Takes note that all patches were shown; those for which `again` holds count as changed all the same.
-    pub fn shown(&mut self, again: impl Fn(PatchIndex) -> bool) {
-        self.patches.iter_mut().for_each(|(&index, patch)| patch.changed = again(index));
+    /// Takes note that all patches were shown.
+    pub fn was_shown(&mut self) {
+        self.patches.values_mut().for_each(|patch| patch.changed = false);
     }
 
     /// Everything that tells how the grass lies: place, age bits and leans of each tile.

@@ -1,6 +1,7 @@
 //! What drives the bend field (001 sections 4 and 5): regions, contact, air, propagation.
 
 pub mod air;
+mod breeze;
 pub mod contact;
 pub mod drawing;
 pub mod drawn;
@@ -14,18 +15,19 @@ pub mod swath;
 
 use crate::objects::{Motion, MotionError};
 use air::GroundWind;
+use breeze::Breeze;
 use contact::Contact;
 use drawing::Drawings;
 use drawn::{Blow, Blows};
 use laid::Laid;
 use parts::Bodies;
-use regions::{Regions, Trace};
-use shared::bend::{Field, WaveParams};
+use regions::Regions;
+use shared::bend::{Field, Kinds, Patch, Report, Scheme, StepError};
 use shared::grid::{PatchIndex, PatchLayout};
 use shared::scene::Scene;
-use shared::terrain::HeightMap;
+use shared::terrain::{CoverMap, HeightMap};
 use std::sync::Arc;
-use sward::Sward;
+use sward::{Growth, Sward};
 
 /// A camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,43 +44,51 @@ const MARGIN_M: f32 = 1.0;
 /// The bend field and everything that drives it.
 pub struct Meadow {
     field: Field,
-    params: WaveParams,
+    scheme: Scheme,
     height: Arc<HeightMap>,
-    theta_max_rad: f32,
+    growth: Growth,
+    breeze: Option<Breeze>,
     bodies: Bodies,
     blows: Blows,
     laid: Laid,
     refused: Vec<MotionError>,
     refused_count: u64,
     regions: Regions,
-    traces: Vec<Trace>,
-    report: step::Report,
+    report: Report,
 }
 
 impl Meadow {
     /// A meadow at rest, without drawings for its winds.
-    pub fn new(scene: &Scene, height: Arc<HeightMap>) -> Self {
-        Self::with_drawings(scene, height, &Drawings::new())
+    pub fn new(scene: &Scene, height: Arc<HeightMap>, cover: &CoverMap) -> Self {
+        Self::with_drawings(scene, height, cover, &Drawings::new())
     }
 
     /// A meadow at rest; a wind whose drawing is not among `drawings` blows nothing.
-    pub fn with_drawings(scene: &Scene, height: Arc<HeightMap>, drawings: &Drawings) -> Self {
-        let layout = PatchLayout::from(&scene.patches);
+    pub fn with_drawings(scene: &Scene, height: Arc<HeightMap>, cover: &CoverMap, drawings: &Drawings) -> Self {
+        let (layout, settings, limit) = (PatchLayout::from(&scene.patches), scene.bend, scene.patches.awake_limit as usize);
+        let mut field = Field::new(layout, Kinds::of(scene, cover))
+            .with_edges(settings.edges)
+            .with_seams(settings.seams)
+            .with_rest(settings.rest())
+            .with_awake_limit(limit);
+        if settings.scheme == Scheme::Modal {
+            field.wake_all();
+        }
         // As much as the awake patches could hold.
-        let tile_limit = scene.patches.awake_limit as usize * (layout.cells as usize / laid::TILE).pow(2);
+        let tile_limit = limit * (layout.cells as usize / laid::TILE).pow(2);
         Self {
-            field: Field::new(layout),
-            params: WaveParams::from(&scene.grass),
+            field,
+            scheme: settings.scheme,
             height,
-            theta_max_rad: scene.grass.theta_max_rad,
-            bodies: Bodies::new(&scene.objects, scene.plants.height_m),
+            growth: Growth::new(scene, cover),
+            breeze: Breeze::new(scene),
+            bodies: Bodies::new(&scene.objects),
             blows: Blows::new(scene, drawings),
             laid: Laid::new(layout, scene.grass.laid_recovery_secs, tile_limit),
             refused: vec![],
             refused_count: 0,
-            regions: Regions::new(scene.patches.awake_limit as usize),
-            traces: vec![],
-            report: step::Report::default(),
+            regions: Regions::new(limit),
+            report: Report::default(),
         }
     }
 
@@ -88,14 +98,14 @@ impl Meadow {
     }
 
     /// What the newest step took.
-    pub fn report(&self) -> step::Report {
+    pub fn report(&self) -> Report {
         self.report
     }
 
     /// Sum of θ² + ω² over all cells (mixed units).
     pub fn activity(&self) -> f64 {
         // The sum of nothing would be −0.
-        self.traces.iter().fold(0.0, |sum, trace| sum + f64::from(trace.extremes.activity))
+        self.field.awake().map(Patch::activity).fold(0.0, |sum, activity| sum + activity)
     }
 
     /// Patches let go so far because too many were awake.
@@ -108,10 +118,10 @@ impl Meadow {
         &self.laid
     }
 
-    /// Takes note that the laid grass was shown as it is; patches that are awake are shown anew each time.
-    pub fn laid_was_shown(&mut self) {
-        let field = &self.field;
-        self.laid.shown(|patch| field.patch(patch).is_some());
+    /// Takes note that everything was shown as it is.
+    pub fn was_shown(&mut self) {
+        self.laid.was_shown();
+        self.field.awake_mut().for_each(Patch::forget_changes);
     }
 
     /// Motions that the newest step refused, and why; the grass did not feel them.
@@ -128,18 +138,44 @@ impl Meadow {
     pub fn step(&mut self, dt_secs: f32, motions: &[Motion], views: &[View], wind: &GroundWind) {
         let motions = self.sound(motions);
         let cell_m = self.field.layout().cell_m;
-        let contacts: Vec<_> = motions.iter().flat_map(|motion| self.bodies.contacts(motion, &self.height, cell_m)).collect();
+        let (bodies, height, growth) = (&self.bodies, &*self.height, &self.growth);
+        let contacts: Vec<_> = motions.iter().flat_map(|motion| bodies.contacts(motion, height, growth, cell_m)).collect();
         let blows = self.blows.step(&motions, &self.height, dt_secs);
-        let touched = self.touched(&contacts, &blows);
-        self.regions.update(&mut self.field, &touched, &self.traces, views);
-
-        let carried = self.traces.iter().map(|trace| trace.extremes.omega_rad_per_s).fold(0.0, f32::max);
-        let (height, theta_max_rad) = (&*self.height, self.theta_max_rad);
-        let mut sward = Sward { field: &mut self.field, laid: &mut self.laid, wind, height, theta_max_rad };
-        let pressed = contacts.iter().map(|contact| contact::press(&mut sward, contact, dt_secs)).fold(carried, f32::max);
-        let omega_max = blows.iter().map(|blow| blow.press(&mut sward)).fold(pressed, f32::max);
+        let breezy = self.breeze.as_ref().map(|breeze| breeze.patches(self.field.layout(), views)).unwrap_or_default();
+        if self.scheme != Scheme::Modal {
+            let touched = [self.touched(&contacts, &blows), breezy.clone()].concat();
+            self.regions.update(&mut self.field, &touched, views);
+        }
+        let mut sward = Sward { field: &mut self.field, laid: &mut self.laid, wind, height: &self.height, growth: &self.growth };
+        for contact in &contacts {
+            contact::press(&mut sward, contact, dt_secs);
+        }
+        for blow in &blows {
+            blow.press(&mut sward);
+        }
+        if let Some(breeze) = &mut self.breeze {
+            breeze.blow(&mut self.field, &breezy, dt_secs);
+        }
         self.laid.step(dt_secs, views);
-        (self.report, self.traces) = step::propagate(&mut self.field, &self.params, dt_secs, omega_max);
+        self.report = self.propagate(dt_secs);
+    }
+
+    /// Carries the waves on. Grass that bends too fast for as many sub-steps as allowed is put to rest and counts as broken.
+    fn propagate(&mut self, dt_secs: f32) -> Report {
+        let mut broken = 0;
+        loop {
+            match self.field.step(self.scheme, dt_secs, &step::Pool) {
+                Ok(report) => return Report { broken: report.broken + broken, ..report },
+                Err(StepError::TooFast { omega_rad_per_s, .. }) => {
+                    let is_fastest = |patch: &&Patch| patch.omega_max_rad_per_s() >= omega_rad_per_s;
+                    let fastest: Vec<_> = self.field.awake().filter(is_fastest).map(Patch::index).collect();
+                    broken += fastest.len() as u32;
+                    fastest.into_iter().for_each(|patch| self.field.sleep(patch));
+                }
+                // A checked scene gives a step of some length, and the modal scheme only what it can carry.
+                Err(_) => return Report { broken, ..Report::default() },
+            }
+        }
     }
 
     /// The motions that are some; the others are kept as refused.

@@ -1,6 +1,7 @@
 //! The convex parts of objects, and where they touch the grass.
 
 use super::contact::Contact;
+use super::sward::Growth;
 use super::swath::Swath;
 use crate::objects::{Motion, Stand};
 use shared::outline::convex_parts;
@@ -92,21 +93,26 @@ pub fn parts(kind: VehicleKind, objects: &Objects) -> Vec<Part> {
 #[derive(Clone, Debug)]
 pub struct Bodies {
     kinds: Vec<(Vec<Part>, Tread)>,
-    blade_m: f32,
 }
 
 impl Bodies {
-    /// The bodies of a scene's objects in grass of the height `blade_m`.
-    pub fn new(objects: &Objects, blade_m: f32) -> Self {
-        Self { kinds: VehicleKind::ALL.map(|kind| (parts(kind, objects), objects.tread(kind))).to_vec(), blade_m }
+    /// The bodies of a scene's objects.
+    pub fn new(objects: &Objects) -> Self {
+        Self { kinds: VehicleKind::ALL.map(|kind| (parts(kind, objects), objects.tread(kind))).to_vec() }
     }
 
     /// Where a motion touches grass: parts that are lower than the grass is high.
-    pub fn contacts<'a>(&'a self, motion: &'a Motion, height: &'a HeightMap, cell_m: f32) -> impl Iterator<Item = Contact> + 'a {
+    pub fn contacts<'a>(
+        &'a self,
+        motion: &'a Motion,
+        height: &'a HeightMap,
+        growth: &'a Growth,
+        cell_m: f32,
+    ) -> impl Iterator<Item = Contact> + 'a {
         let (parts, tread) = &self.kinds[motion.kind as usize];
         parts.iter().filter_map(move |part| {
             let [x, z] = part.foot_m(&motion.to);
-            let clearance = (part.lowest_m(&motion.to) - height.height_m(x, z)).max(0.0) / self.blade_m;
+            let clearance = (part.lowest_m(&motion.to) - height.height_m(x, z)).max(0.0) / growth.blade_m([x, z]);
             (clearance < 1.0).then(|| Contact {
                 swath: Swath::new(part, motion, cell_m),
                 strike_height_m: tread.strike_height_m,

@@ -1,39 +1,8 @@
 //! Which patches are awake (001 §4.2): near objects, and where energy arrives; the rest sleep.
 
 use super::View;
-use shared::bend::{Extremes, Field, Rim};
+use shared::bend::{Field, Patch};
 use shared::grid::{PatchIndex, PatchLayout};
-
-/// A patch whose bends (rad) and bending speeds (rad/s) are all below these sleeps. The bends are then none on the wire, where half a
-/// code is 0.012 rad; the speeds, which tell but the direction of a bend, add at most a hundredth to the wave speed by 001 Eq. (4).
-const QUIET_THETA_RAD: f32 = 0.01;
-const QUIET_OMEGA_RAD_PER_S: f32 = 0.2;
-
-/// What a step left behind in a patch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Trace {
-    /// Which patch.
-    pub patch: PatchIndex,
-    /// Its extremes.
-    pub extremes: Extremes,
-    /// Extremes of the outermost cells in the west, east, north and south.
-    pub rims: [Rim; 4],
-}
-
-impl Trace {
-    fn is_quiet(&self) -> bool {
-        self.extremes.theta_rad < QUIET_THETA_RAD && self.extremes.omega_rad_per_s < QUIET_OMEGA_RAD_PER_S
-    }
-
-    /// Neighbours that energy flows into.
-    fn spills(&self, layout: PatchLayout) -> impl Iterator<Item = PatchIndex> + use<> {
-        let [x, z] = layout.place(self.patch).map(i64::from);
-        let around = [[x - 1, z], [x + 1, z], [x, z - 1], [x, z + 1]];
-        let rims = self.rims;
-        let loud = |rim: &Rim| rim.theta_rad >= QUIET_THETA_RAD || rim.omega_rad_per_s >= QUIET_OMEGA_RAD_PER_S;
-        around.into_iter().zip(rims).filter(move |(_, rim)| loud(rim)).filter_map(move |([x, z], _)| layout.index(x, z))
-    }
-}
 
 /// Decides who is awake.
 #[derive(Clone, Debug)]
@@ -53,37 +22,36 @@ impl Regions {
         self.evicted
     }
 
-    /// Wakes the `touched` and those that energy flows into; lets quiet ones sleep; lets those farthest
-    /// from any camera go (from the world's middle where there is none) that exceed the limit.
-    pub fn update(&mut self, field: &mut Field, touched: &[PatchIndex], traces: &[Trace], views: &[View]) {
+    /// Lets quiet patches sleep and wakes the `touched`. Where that makes more than the limit, those farthest from any camera go (from the
+    /// world's middle where there is none).
+    pub fn update(&mut self, field: &mut Field, touched: &[PatchIndex], views: &[View]) {
+        let mut touched = touched.to_vec();
+        touched.sort_unstable();
+        touched.dedup();
+        field.sleep_quiet(|patch| touched.binary_search(&patch).is_ok());
+        let asleep = touched.iter().filter(|patch| field.patch(**patch).is_none()).count();
+        if field.awake_count() + asleep > self.limit {
+            self.evict(field, &mut touched, views);
+        }
+        for patch in touched {
+            field.wake(patch);
+        }
+    }
+
+    fn evict(&mut self, field: &mut Field, touched: &mut Vec<PatchIndex>, views: &[View]) {
         let layout = *field.layout();
-        let mut keep: Vec<PatchIndex> = touched.to_vec();
-        keep.extend(traces.iter().flat_map(|trace| trace.spills(layout)));
-        keep.extend(traces.iter().filter(|trace| !trace.is_quiet()).map(|trace| trace.patch));
+        let awake: Vec<PatchIndex> = field.awake().map(Patch::index).collect();
+        let mut keep = [awake.as_slice(), touched].concat();
         keep.sort_unstable();
         keep.dedup();
-        // What is no longer a number cannot be mended.
-        let broken = |patch: &PatchIndex| {
-            let at = traces.binary_search_by_key(patch, |trace| trace.patch);
-            at.is_ok_and(|at| !traces[at].extremes.activity.is_finite())
-        };
-        keep.retain(|patch| !broken(patch));
-        if keep.len() > self.limit {
-            let before = keep.clone();
-            self.keep_nearest(&mut keep, &layout, views);
-            self.evicted +=
-                before.iter().filter(|patch| field.patch(**patch).is_some() && keep.binary_search(patch).is_err()).count() as u64;
-        }
-        for patch in field.awake_indices().to_vec() {
+        self.keep_nearest(&mut keep, &layout, views);
+        for patch in awake {
             if keep.binary_search(&patch).is_err() {
                 field.sleep(patch);
+                self.evicted += 1;
             }
         }
-        for patch in keep {
-            if field.patch(patch).is_none() {
-                field.wake(patch);
-            }
-        }
+        touched.retain(|patch| keep.binary_search(patch).is_ok());
     }
 
     fn keep_nearest(&self, keep: &mut Vec<PatchIndex>, layout: &PatchLayout, views: &[View]) {

@@ -7,7 +7,8 @@ use super::contact::{HELD_RAD_PER_S, length, terrain_limit_rad, unit};
 use super::footprint::Footprint;
 use super::laid::Laid;
 use shared::bend::{Bend, Field};
-use shared::terrain::HeightMap;
+use shared::scene::Scene;
+use shared::terrain::{CoverMap, HeightMap, KindMap};
 
 /// What decides how the grass stands.
 pub struct Sward<'a> {
@@ -19,8 +20,38 @@ pub struct Sward<'a> {
     pub wind: &'a GroundWind,
     /// The land.
     pub height: &'a HeightMap,
-    /// Largest bend on flat land (rad).
-    pub theta_max_rad: f32,
+    /// What grows where.
+    pub growth: &'a Growth,
+}
+
+/// What contact asks of the grass at a place.
+#[derive(Clone, Debug)]
+pub struct Growth {
+    kinds: KindMap,
+    /// Largest bend on flat land (rad) and mean height (m) of each kind.
+    limits: Vec<(f32, f32)>,
+}
+
+impl Growth {
+    /// The kinds of grass of a scene over its covering map.
+    pub fn new(scene: &Scene, cover: &CoverMap) -> Self {
+        let limits = scene.kinds().into_iter().zip(scene.kinds_of_plants()).map(|(grass, plants)| (grass.theta_max_rad, plants.height_m));
+        Self { kinds: KindMap::new(scene, cover), limits: limits.collect() }
+    }
+
+    fn at(&self, [x_m, z_m]: [f32; 2]) -> (f32, f32) {
+        self.limits[usize::from(self.kinds.at(x_m, z_m))]
+    }
+
+    /// Largest bend on flat land (rad) of what grows at a place.
+    pub fn theta_max_rad(&self, at_m: [f32; 2]) -> f32 {
+        self.at(at_m).0
+    }
+
+    /// Mean height (m) of what grows at a place.
+    pub fn blade_m(&self, at_m: [f32; 2]) -> f32 {
+        self.at(at_m).1
+    }
 }
 
 /// How pressed grass stands.
@@ -48,14 +79,17 @@ impl Sward<'_> {
             let wind_rad = self.wind.row(z_m);
             for patch_x in run.from / cells..=(run.to - 1) / cells {
                 let Some(index) = layout.index(patch_x, patch_z) else { continue };
-                let Some(patch) = self.field.patch_mut(index) else { continue };
+                if self.field.patch(index).is_none() {
+                    continue;
+                }
                 let first = patch_x * cells;
                 for i in run.from.max(first)..run.to.min(first + cells) {
                     let at_m = [(i as f32 + 0.5) * layout.cell_m, z_m];
+                    let cell = [i, run.row];
                     let i = (i - first) as usize;
                     let (wind_rad, laid_rad) = (wind_rad(at_m[0]), self.laid.lean_rad(index, i, j));
-                    let bend = leaning(patch.bend(i, j), sum(wind_rad, laid_rad), TELLING_RAD_PER_S);
-                    let limit_rad = |direction| terrain_limit_rad(self.theta_max_rad, self.height.slope(at_m[0], at_m[1]), direction);
+                    let bend = leaning(self.field.cell(cell), sum(wind_rad, laid_rad), TELLING_RAD_PER_S);
+                    let limit_rad = |direction| terrain_limit_rad(self.growth.theta_max_rad(at_m), self.height.slope(at_m[0], at_m[1]), direction);
                     let Some(Pressed { bend, lays_share }) = change(at_m, bend, &limit_rad) else { continue };
                     let laid_rad = match unit(bend.omega).filter(|_| lays_share > 0.0) {
                         Some(along) => {
@@ -65,7 +99,7 @@ impl Sward<'_> {
                         None => laid_rad,
                     };
                     let held_elsewhere = sum(wind_rad, laid_rad).map(|lean| -lean);
-                    patch.press(i, j, leaning(bend, held_elsewhere, TELLING_RAD_PER_S));
+                    self.field.press(cell, leaning(bend, held_elsewhere, TELLING_RAD_PER_S));
                 }
             }
         }

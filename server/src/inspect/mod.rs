@@ -20,7 +20,7 @@ pub use target::{Target, TargetError};
 
 use crate::snapshot::Snapshot;
 use shared::scene::Scene;
-use shared::terrain::HeightMap;
+use shared::terrain::{CoverMap, HeightMap};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -133,19 +133,19 @@ impl Inspector {
     ///
     /// # Errors
     /// [`InspectError`] when the address is taken, the file can't be made, or no viewer answers.
-    pub fn start(target: &Target, scene: &Scene, heights: &HeightMap) -> Result<Self, InspectError> {
+    pub fn start(target: &Target, scene: &Scene, heights: &HeightMap, cover: &CoverMap) -> Result<Self, InspectError> {
         let (period_secs, finish_limit) = match target {
             Target::Save(_) => (FILE_PERIOD_SECS, FILE_FINISH),
             Target::Serve(_) | Target::Connect(_) => (LIVE_PERIOD_SECS, LIVE_FINISH),
         };
         #[cfg(feature = "rerun")]
         {
-            let recording = recording::Recording::open(target, scene, heights)?;
+            let recording = recording::Recording::open(target, scene, heights, cover)?;
             Ok(Self::with_sink(recording.address(), recording, period_secs, finish_limit))
         }
         #[cfg(not(feature = "rerun"))]
         {
-            let _ = (scene, heights, period_secs, finish_limit);
+            let _ = (scene, heights, cover, period_secs, finish_limit);
             Err(InspectError::NotBuilt)
         }
     }

@@ -24,7 +24,7 @@ use rerun::{
 };
 use shared::grid::PatchLayout;
 use shared::scene::Scene;
-use shared::terrain::HeightMap;
+use shared::terrain::{CoverMap, HeightMap, KindMap};
 use shared::wire::ObjectPose;
 use std::fmt::Display;
 use std::net::{TcpListener, TcpStream, ToSocketAddrs};
@@ -80,7 +80,7 @@ pub(super) struct Recording {
 
 impl Recording {
     /// Opens the target and logs what stays as it is.
-    pub(super) fn open(target: &Target, scene: &Scene, heights: &HeightMap) -> Result<Self, InspectError> {
+    pub(super) fn open(target: &Target, scene: &Scene, heights: &HeightMap, cover: &CoverMap) -> Result<Self, InspectError> {
         let (stream, address) = open_stream(target)?;
         blueprint::first_view(scene, heights).map_err(sdk)?.send(&stream);
         let layout = PatchLayout::from(&scene.patches);
@@ -88,7 +88,7 @@ impl Recording {
             stream,
             address,
             to_file: matches!(target, Target::Save(_)),
-            map: BendMap::new(layout, GroundWind::still(scene), scene.tick_hz as u64),
+            map: BendMap::new(layout, GroundWind::still(scene).over(KindMap::new(scene, cover)), scene.tick_hz as u64),
             arrows: WindArrows::new(scene, heights),
             wind_tick: None,
             trails: Trails::default(),
@@ -257,6 +257,7 @@ mod tests {
     use rerun::external::re_log_encoding::DecoderApp;
     use rerun::log::{Chunk, LogMsg};
     use shared::scene::VehicleKind;
+    use shared::terrain::grey_png;
     use shared::wire::quantise::wind_code;
     use std::collections::BTreeMap;
     use std::fs::File;
@@ -271,8 +272,12 @@ mod tests {
         HeightMap::from_heights(2, 2, [256.0, 256.0], vec![3.0; 4])
     }
 
+    fn grass() -> CoverMap {
+        CoverMap::from_png(&grey_png([2; 2], &[255; 4])).unwrap()
+    }
+
     fn open(target: &Target) -> Result<Inspector, InspectError> {
-        Inspector::start(target, &scene(), &flat())
+        Inspector::start(target, &scene(), &flat(), &grass())
     }
 
     fn driven(tick: u64) -> Snapshot {

@@ -75,8 +75,9 @@ impl Objects {
         physics.integration_parameters.dt = scene.dt_secs();
         let mut objects = Self { place, ground, physics, vehicles: vec![], settings: scene.objects.clone(), next_id: 1 };
         let middle = objects.place.extent_m.map(|extent| 0.5 * extent);
-        for n in 0..scene.objects.self_driving {
-            objects.add(scene.objects.self_driving_kind, Driver::Circling(Circling::new(n)), middle);
+        let shared::scene::Objects { self_driving, self_driving_m_per_s, self_driving_apart_m, self_driving_kind, .. } = scene.objects;
+        for n in 0..self_driving {
+            objects.add(self_driving_kind, Driver::Circling(Circling::new(n, self_driving_m_per_s)), middle, self_driving_apart_m);
         }
         objects
     }
@@ -84,7 +85,7 @@ impl Objects {
     /// Gives `client` a vehicle near `middle_m`; the one driven before goes. None when the limit is reached or nowhere is free.
     pub fn spawn(&mut self, client: u32, kind: VehicleKind, middle_m: [f32; 2]) -> Option<ObjectId> {
         self.remove(client);
-        self.add(kind, Driver::Client { client, drive: Drive::default() }, middle_m)
+        self.add(kind, Driver::Client { client, drive: Drive::default() }, middle_m, spawn::NEAR_M)
     }
 
     /// Takes the vehicle of `client` out of the world.
@@ -165,7 +166,7 @@ impl Objects {
         self.vehicles.iter().position(|vehicle| matches!(vehicle.driver, Driver::Client { client: other, .. } if other == client))
     }
 
-    fn add(&mut self, kind: VehicleKind, driver: Driver, middle_m: [f32; 2]) -> Option<ObjectId> {
+    fn add(&mut self, kind: VehicleKind, driver: Driver, middle_m: [f32; 2], apart_m: f32) -> Option<ObjectId> {
         if self.vehicles.len() >= self.settings.limit as usize {
             return None;
         }
@@ -175,7 +176,7 @@ impl Objects {
             .map(|other| Disc { at_m: stand(&self.physics.bodies[other.body]).xz(), radius_m: radius_m(other.half_extents_m) })
             .collect();
         let half_extents_m = self.settings.half_extents_m(kind);
-        let at_m = spawn::find(middle_m, radius_m(half_extents_m), &taken, &self.ground, &self.place)?;
+        let at_m = spawn::find(middle_m, apart_m, radius_m(half_extents_m), &taken, &self.ground, &self.place)?;
         let heading_rad = (at_m[0] - middle_m[0]).atan2(middle_m[1] - at_m[1]);
         let (body, collider) = match kind {
             VehicleKind::Car => car::body(),

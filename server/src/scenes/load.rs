@@ -7,7 +7,7 @@ use crate::file;
 use crate::objects::model;
 use crate::world::{self, Maps, WorldError};
 use shared::scene::{Scene, SceneFault, VehicleKind, WindShape, parse};
-use shared::terrain::{CoverMap, HeightMap, MapError};
+use shared::terrain::{Cover, CoverMap, HeightMap, MapError};
 use shared::wire::Mesh;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -188,5 +188,19 @@ fn covering_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, CoverMap), S
     let told = |error: &dyn std::fmt::Display| format!("names `{name}`, which {error}");
     let png = source.read(name, MAP_LIMIT).map_err(|reason| told(&format!("cannot be read: {reason}")))?;
     let map = CoverMap::from_png(&png).map_err(|error: MapError| told(&error))?;
+    if let Some(([column, row], id)) = map.find(|id| !scene.species.is_empty() && is_unknown(scene, id)) {
+        let species: Vec<_> = scene.species.iter().map(|species| format!("{} ({})", species.cover, species.name)).collect();
+        return Err(told(&format!(
+            "has the ID {id} at column {column} of row {row}, a hole in the species table; allowed: 0 (gap), 253 (tree), 254 (stone), 255 (grass) or that of a \
+             species, {}",
+            species.join(", ")
+        )));
+    }
     Ok((png, map))
+}
+
+/// Whether nothing that a scene knows has this ID in its covering map.
+fn is_unknown(scene: &Scene, id: u8) -> bool {
+    let cover = Cover::from(id);
+    matches!(cover, Cover::Free(_)) && !scene.is_grass(cover)
 }

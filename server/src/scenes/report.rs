@@ -30,7 +30,8 @@ impl fmt::Display for Report {
         let [height_x, height_z] = height.size_px();
         let [cover_x, cover_z] = cover.size_px();
         let count = |cover_id| cover.ids().iter().filter(|&&id| Cover::from(id) == cover_id).count();
-        let grass = 100.0 * count(Cover::Grass) as f64 / cover.ids().len() as f64;
+        let percent = |count: usize| 100.0 * count as f64 / cover.ids().len() as f64;
+        let grass = percent(cover.ids().iter().filter(|&&id| scene.is_grass(Cover::from(id))).count());
 
         writeln!(f, "{}: sound", self.name)?;
         writeln!(f, "  {}", scene.summary)?;
@@ -38,6 +39,11 @@ impl fmt::Display for Report {
         writeln!(f, "  heights   {low:.1} m to {high:.1} m, {height_x} × {height_z} pixels")?;
         write!(f, "  covering  {cover_x} × {cover_z} pixels, {grass:.0} % grass")?;
         writeln!(f, ", {} trees, {} stones", count(Cover::Tree), count(Cover::Stone))?;
+        if !scene.species.is_empty() {
+            let species =
+                scene.species.iter().map(|species| format!("{} ({:.0} %)", species.name, percent(count(Cover::from(species.cover)))));
+            writeln!(f, "  species   {}", species.collect::<Vec<_>>().join(", "))?;
+        }
         let triangles = |count: usize| if count == 1 { "1 triangle".to_owned() } else { format!("{count} triangles") };
         let models: Vec<_> = models.iter().map(|(kind, mesh)| format!("{} ({})", kind.name(), triangles(mesh.indices.len() / 3))).collect();
         let built_in: Vec<_> = VehicleKind::ALL.iter().map(|kind| kind.name()).collect();

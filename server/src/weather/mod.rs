@@ -15,7 +15,7 @@ use land::Land;
 use settings::settings;
 use shared::bend::Field;
 use shared::scene::{Scene, WindTiling};
-use shared::terrain::HeightMap;
+use shared::terrain::{HeightMap, KindMap};
 use shared::wire::Shape;
 use shared::wire::quantise::{dust_code, wind_code};
 use standing::Standing;
@@ -86,9 +86,9 @@ impl Weather {
             report = air.step(step_secs, &[])?;
         }
         let mut weather = Self {
-            standing: config.canopy.map(|_| Standing::new(scene, &maps.cover)),
+            standing: config.canopy.map(|canopy| Standing::new(scene, &maps.cover, canopy.height_m)),
             tiling: scene.wind.tiling,
-            ground: GroundWind::still(scene),
+            ground: GroundWind::still(scene).over(KindMap::new(scene, &maps.cover)),
             frame: Arc::default(),
             velocities: Vec::new(),
             resets: 0,

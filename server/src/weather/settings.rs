@@ -40,7 +40,7 @@ pub(super) fn settings(scene: &Scene) -> (Method, Config) {
             ..Gusts::default()
         },
         primitives: wind.primitives.iter().map(primitive).collect(),
-        canopy: (wind.canopy_drag_per_m > 0.0).then_some(Canopy { height_m: scene.plants.height_m, drag_per_m: wind.canopy_drag_per_m }),
+        canopy: (wind.canopy_drag_per_m > 0.0).then_some(Canopy { height_m: scene.tallest_m(), drag_per_m: wind.canopy_drag_per_m }),
         dust: wind.has_dust().then_some(Dust {
             advection: advection(wind.dust.advection),
             diffusivity_m2_per_s: wind.dust.diffusivity_m2_per_s,

@@ -140,7 +140,7 @@ fn grass_that_lies_lets_the_wind_pass() {
     for index in 0..grass.layout().patches() as u32 {
         if grass.layout().corner_m(index)[0] < 64.0 {
             let patch = grass.wake(index);
-            (0..64).for_each(|j| (0..64).for_each(|i| patch.set(i, j, Bend { theta: 1.4, ..Bend::default() })));
+            (0..64).for_each(|j| (0..64).for_each(|i| patch.press(i, j, Bend { theta: 1.4, ..Bend::default() })));
         }
     }
     let [still_same, faster] = near_ground(&grass);

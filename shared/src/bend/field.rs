@@ -1,36 +1,68 @@
-//! The whole field: the awake patches, what they tell their neighbours, and the step.
+//! The whole field: the awake patches, and the step.
 
-use super::patch::CHANNELS;
-use super::{Bend, Coefficients, Extremes, Patch, WaveParams, verlet};
+use super::halo::{AROUND, Edges, Neighbour, Seams, TileRun, fetch, neighbour, quell, ring};
+use super::limits::{SUBSTEPS_LIMIT, courant_share, substeps};
+use super::tiles::{Rest, TILE};
+use super::verlet::{self, Pass, SIDE_LIMIT};
+use super::{Bend, Coefficients, Crew, Damping, HALO, Kinds, Patch, Report, Scheme, StepError, implicit, modal};
 use crate::grid::{PatchIndex, PatchLayout};
 
-/// The bend field of a world. A patch that is not awake is at rest and holds no memory, however large the world. Beyond
-/// the world's edge the grass is at rest.
+/// The bend field of a world. A patch that is not awake is at rest and holds no memory, however large the world.
 ///
-/// Each awake patch publishes its outermost cells; its neighbours read them into their ghosts before they step, so that
-/// all patches can step at once ([`lanes`](Self::lanes)).
-#[derive(Clone, Debug)]
+/// Energy that reaches the border of a patch wakes its neighbour, up to [`awake_limit`](Self::with_awake_limit). With [`Seams::Exact`] and
+/// [`Rest::EXACT`] the field equals one big grid bit for bit, in whatever order its patches wake.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    layout: PatchLayout,
-    /// Awake patches, ascending; the vectors below run alongside.
-    indices: Vec<PatchIndex>,
-    patches: Vec<Patch>,
-    borders: Vec<Border>,
-    next_borders: Vec<Border>,
-    /// Patches changed since they published.
-    stale: Vec<bool>,
-}
-
-impl PartialEq for Field {
-    fn eq(&self, other: &Self) -> bool {
-        self.layout == other.layout && self.indices == other.indices && self.patches == other.patches
-    }
+    pub(super) layout: PatchLayout,
+    pub(super) kinds: Kinds,
+    pub(super) edges: Edges,
+    pub(super) seams: Seams,
+    rest: Rest,
+    awake_limit: usize,
+    /// Awake patches, ascending by index.
+    pub(super) patches: Vec<Patch>,
+    /// Time between the two states that every patch holds (s); none before the first step.
+    pub(super) dt_secs: Option<f32>,
 }
 
 impl Field {
-    /// A field at rest, all patches asleep.
-    pub fn new(layout: PatchLayout) -> Self {
-        Self { layout, indices: vec![], patches: vec![], borders: vec![], next_borders: vec![], stale: vec![] }
+    /// A field at rest, all patches asleep; at its edges grass at rest, seams exact, only zero at rest, any number of patches awake.
+    ///
+    /// # Panics
+    /// When the cells along the side of a patch are no multiple of 8 from 8 to 256.
+    pub fn new(layout: PatchLayout, kinds: Kinds) -> Self {
+        let cells = layout.cells as usize;
+        assert!(cells.is_multiple_of(TILE) && (TILE..=SIDE_LIMIT).contains(&cells), "{cells} cells along a side");
+        Self {
+            layout,
+            kinds,
+            edges: Edges::default(),
+            seams: Seams::default(),
+            rest: Rest::EXACT,
+            awake_limit: usize::MAX,
+            patches: vec![],
+            dt_secs: None,
+        }
+    }
+
+    /// The same with other edges.
+    pub fn with_edges(self, edges: Edges) -> Self {
+        Self { edges, ..self }
+    }
+
+    /// The same with other seams.
+    pub fn with_seams(self, seams: Seams) -> Self {
+        Self { seams, ..self }
+    }
+
+    /// The same with another tolerance.
+    pub fn with_rest(self, rest: Rest) -> Self {
+        Self { rest, ..self }
+    }
+
+    /// The same with a bound on the patches that are awake: no energy wakes more.
+    pub fn with_awake_limit(self, awake_limit: usize) -> Self {
+        Self { awake_limit, ..self }
     }
 
     /// Shape and spacing.
@@ -38,247 +70,342 @@ impl Field {
         &self.layout
     }
 
-    /// Number of awake patches.
-    pub fn awake_count(&self) -> usize {
-        self.indices.len()
+    /// What grows where.
+    pub fn kinds(&self) -> &Kinds {
+        &self.kinds
     }
 
-    /// Indices of the awake patches, ascending.
-    pub fn awake_indices(&self) -> &[PatchIndex] {
-        &self.indices
+    /// Number of awake patches.
+    pub fn awake_count(&self) -> usize {
+        self.patches.len()
+    }
+
+    /// Awake patches, ascending by index.
+    pub fn awake(&self) -> impl Iterator<Item = &Patch> {
+        self.patches.iter()
+    }
+
+    /// Awake patches, to be changed.
+    pub fn awake_mut(&mut self) -> impl Iterator<Item = &mut Patch> {
+        self.patches.iter_mut()
+    }
+
+    pub(super) fn slot(&self, patch: PatchIndex) -> Option<usize> {
+        self.patches.binary_search_by_key(&patch, Patch::index).ok()
     }
 
     /// The patch, if it is awake.
     pub fn patch(&self, patch: PatchIndex) -> Option<&Patch> {
-        self.indices.binary_search(&patch).ok().map(|slot| &self.patches[slot])
+        self.slot(patch).map(|slot| &self.patches[slot])
     }
 
     /// The patch to be changed, if it is awake.
     pub fn patch_mut(&mut self, patch: PatchIndex) -> Option<&mut Patch> {
-        let slot = self.indices.binary_search(&patch).ok()?;
-        self.stale[slot] = true;
-        Some(&mut self.patches[slot])
+        self.slot(patch).map(|slot| &mut self.patches[slot])
     }
 
     /// The patch to be changed, woken if it slept.
+    ///
+    /// # Panics
+    /// When the world has no such patch.
     pub fn wake(&mut self, patch: PatchIndex) -> &mut Patch {
-        let slot = self.indices.binary_search(&patch).unwrap_or_else(|slot| {
-            let side = self.layout.cells as usize;
-            self.indices.insert(slot, patch);
-            self.patches.insert(slot, Patch::new(side));
-            self.borders.insert(slot, Border::new(side));
-            self.next_borders.insert(slot, Border::new(side));
-            self.stale.insert(slot, false);
+        let slot = self.patches.binary_search_by_key(&patch, Patch::index).unwrap_or_else(|slot| {
+            assert!((patch as usize) < self.layout.patches(), "patch {patch} of {}", self.layout.patches());
+            let (layout, kinds, cells) = (&self.layout, &self.kinds, i64::from(self.layout.cells));
+            let corner = layout.place(patch).map(|n| i64::from(n) * cells);
+            let kind = |[i, j]: [i64; 2]| kinds.kind(layout, [corner[0] + i, corner[1] + j]);
+            self.patches.insert(slot, Patch::new(patch, cells as usize, kind));
             slot
         });
-        self.stale[slot] = true;
         &mut self.patches[slot]
+    }
+
+    /// Wakes every patch of the world.
+    pub fn wake_all(&mut self) {
+        (0..self.layout.patches() as PatchIndex).for_each(|patch| {
+            self.wake(patch);
+        });
     }
 
     /// Lets a patch go; it is at rest from now on.
     pub fn sleep(&mut self, patch: PatchIndex) {
-        if let Ok(slot) = self.indices.binary_search(&patch) {
-            self.indices.remove(slot);
+        if let Some(slot) = self.slot(patch) {
             self.patches.remove(slot);
-            self.borders.remove(slot);
-            self.next_borders.remove(slot);
-            self.stale.remove(slot);
         }
     }
 
-    /// Awake patches in index order.
-    pub fn awake(&self) -> impl Iterator<Item = (PatchIndex, &Patch)> {
-        self.indices.iter().copied().zip(&self.patches)
+    /// Lets every patch go in which all cells are at rest to within the tolerance and that no loud neighbour touches, but for those to be
+    /// kept.
+    pub fn sleep_quiet(&mut self, keep: impl Fn(PatchIndex) -> bool) {
+        self.patches.retain(|patch| !patch.tiles.is_still() || patch.tiles.hears_any() || keep(patch.index()));
+    }
+
+    /// The patch that holds cell `(x, z)` of the world, and the cell's place in it.
+    pub fn locate(&self, cell: [i64; 2]) -> Option<(PatchIndex, [usize; 2])> {
+        let cells = i64::from(self.layout.cells);
+        let patch = self.layout.index(cell[0].div_euclid(cells), cell[1].div_euclid(cells))?;
+        Some((patch, cell.map(|n| n.rem_euclid(cells) as usize)))
+    }
+
+    /// State of cell `(x, z)` of the world; at rest where its patch sleeps and outside the world.
+    pub fn cell(&self, cell: [i64; 2]) -> Bend {
+        let state = |(patch, [i, j]): (PatchIndex, [usize; 2])| self.patch(patch).map(|patch| patch.bend(i, j));
+        self.locate(cell).and_then(state).unwrap_or_default()
+    }
+
+    /// State at `(x_m, z_m)`: that of the cell there; at rest where the patch sleeps and outside the world.
+    pub fn bend_at(&self, x_m: f32, z_m: f32) -> Bend {
+        self.cell([x_m, z_m].map(|m| (m / self.layout.cell_m).floor() as i64))
+    }
+
+    /// Sets a cell of an awake patch as contact does, in the overlaps of its neighbours, too, where patches overlap.
+    pub fn press(&mut self, cell: [i64; 2], bend: Bend) {
+        let Some((patch, [i, j])) = self.locate(cell) else { return };
+        if let Some(patch) = self.patch_mut(patch) {
+            patch.press(i, j, bend);
+        }
+        if self.seams == Seams::Exact {
+            return;
+        }
+        let (side, halo) = (i64::from(self.layout.cells), HALO as i64);
+        for toward in AROUND {
+            let beyond = [i as i64 - toward[0] * side, j as i64 - toward[1] * side];
+            // The outermost ring of an overlap stays at rest.
+            let overlaps = beyond.iter().all(|n| (1 - halo..side + halo - 1).contains(n));
+            let slot = neighbour(&self.layout, Edges::Rest, patch, toward).and_then(|neighbour| self.slot(neighbour.index));
+            if let (true, Some(slot)) = (overlaps, slot) {
+                self.patches[slot].set_ghost(beyond[0], beyond[1], bend, bend);
+            }
+        }
+    }
+
+    /// Sets all cells of the world, waking every patch: for the centre of each cell (m) its state now and `dt_secs` ago. A wave that is to
+    /// move starts with both; steps of the same length keep its motion exactly.
+    pub fn start(&mut self, dt_secs: f32, state: impl Fn([f32; 2]) -> [Bend; 2]) {
+        self.wake_all();
+        let layout = self.layout;
+        for patch in &mut self.patches {
+            let (corner_m, side) = (layout.corner_m(patch.index()), patch.side());
+            for (i, j) in (0..side).flat_map(|j| (0..side).map(move |i| (i, j))) {
+                let at_m = [(i as f32 + 0.5) * layout.cell_m + corner_m[0], (j as f32 + 0.5) * layout.cell_m + corner_m[1]];
+                let [now, before] = state(at_m);
+                patch.set(i, j, now, before);
+            }
+        }
+        self.dt_secs = Some(dt_secs);
     }
 
     /// Largest bending speed of any cell (rad/s).
     pub fn omega_max_rad_per_s(&self) -> f32 {
-        self.awake().map(|(_, patch)| patch.extremes().omega_rad_per_s).fold(0.0, f32::max)
+        self.patches.iter().map(Patch::omega_max_rad_per_s).fold(0.0, f32::max)
     }
 
-    /// State at `(x_m, z_m)`: that of the nearest cell; at rest where the patch sleeps and outside the world.
-    pub fn bend_at(&self, x_m: f32, z_m: f32) -> Bend {
-        let Some(index) = self.layout.patch_at(x_m, z_m) else { return Bend::default() };
-        let Some(patch) = self.patch(index) else { return Bend::default() };
-        let [corner_x, corner_z] = self.layout.corner_m(index);
-        let cell = |m: f32| ((m / self.layout.cell_m).max(0.0) as usize).min(patch.side() - 1);
-        patch.bend(cell(x_m - corner_x), cell(z_m - corner_z))
+    /// Bytes of memory that the awake patches hold.
+    pub fn memory_bytes(&self) -> usize {
+        self.patches.iter().map(|patch| size_of::<Patch>() + patch.memory_bytes()).sum()
     }
 
-    /// One lane for each awake patch, in index order. Step every lane once, in any order or at once, then call
-    /// [`turn`](Self::turn).
-    pub fn lanes(&mut self) -> Vec<Lane<'_>> {
-        for ((patch, border), stale) in self.patches.iter().zip(&mut self.borders).zip(&mut self.stale) {
-            if std::mem::take(stale) {
-                border.publish(patch);
-            }
-        }
-        let (layout, indices, borders) = (&self.layout, &self.indices, &self.borders);
-        let border = |x: i64, z: i64| {
-            let slot = indices.binary_search(&layout.index(x, z)?).ok()?;
-            Some(&borders[slot])
+    /// Length of step (s) up to which an explicit scheme keeps every mode bounded, at the present bending speeds: of [`Scheme::Verlet`] as it
+    /// stands, of the others with damping taken exactly.
+    pub fn stable_dt_secs(&self, scheme: Scheme) -> f32 {
+        let omega_max = self.omega_max_rad_per_s();
+        let damping = if scheme == Scheme::Verlet { Damping::Plain } else { Damping::Exact };
+        let share = |dt_secs: f32| {
+            let k = |waves| courant_share(&Coefficients::new(waves, self.layout.cell_m, dt_secs, damping), omega_max);
+            self.kinds.waves().iter().map(k).fold(0.0, f32::max)
         };
-        let lanes = indices.iter().zip(&mut self.patches).zip(&mut self.next_borders);
-        lanes
-            .map(|((&index, patch), publishes)| {
-                let [x, z] = layout.place(index).map(i64::from);
-                let neighbours = [border(x - 1, z), border(x + 1, z), border(x, z - 1), border(x, z + 1)];
-                Lane { index, patch, neighbours, publishes }
+        let (mut stable, mut unstable) = (0.0, 1.0);
+        while share(unstable) <= 1.0 && unstable < 1e6 {
+            (stable, unstable) = (unstable, 2.0 * unstable);
+        }
+        for _ in 0..24 {
+            let middle = 0.5 * (stable + unstable);
+            if share(middle) <= 1.0 { stable = middle } else { unstable = middle }
+        }
+        stable
+    }
+
+    /// Advances the field by `dt_secs`.
+    ///
+    /// # Errors
+    /// [`StepError`] when the scheme cannot be used here or would need too many sub-steps; the field is as it was, but for patches in which
+    /// a value was no number: these go to rest first.
+    pub fn step(&mut self, scheme: Scheme, dt_secs: f32, crew: &impl Crew) -> Result<Report, StepError> {
+        if !(dt_secs.is_finite() && dt_secs > 0.0) {
+            return Err(StepError::NoStep { dt_secs });
+        }
+        let awake = self.patches.len();
+        self.patches.retain(|patch| patch.theta_max_rad().is_finite() && patch.omega_max_rad_per_s().is_finite());
+        let broken = (awake - self.patches.len()) as u32;
+        let report = match scheme {
+            Scheme::Verlet => self.explicit(1, Damping::Plain, dt_secs, crew),
+            Scheme::Substepped => self.explicit(self.substeps(dt_secs)?, Damping::Exact, dt_secs, crew),
+            Scheme::Implicit => implicit::step(self, dt_secs, crew),
+            Scheme::Modal => modal::step(self, dt_secs)?,
+        };
+        Ok(Report { broken, ..report })
+    }
+
+    /// Sub-steps that [`Scheme::Substepped`] takes in `dt_secs` at the present bending speeds.
+    fn substeps(&self, dt_secs: f32) -> Result<u32, StepError> {
+        let omega_max = self.omega_max_rad_per_s();
+        substeps(self.kinds.waves(), self.layout.cell_m, dt_secs, omega_max, Damping::Exact).ok_or(StepError::TooFast {
+            omega_rad_per_s: omega_max,
+            allowed: SUBSTEPS_LIMIT,
+            dt_secs,
+        })
+    }
+
+    fn explicit(&mut self, count: u32, damping: Damping, dt_secs: f32, crew: &impl Crew) -> Report {
+        let substep_secs = dt_secs / count as f32;
+        let coefficients = |waves| Coefficients::new(waves, self.layout.cell_m, substep_secs, damping);
+        let kinds: Vec<_> = self.kinds.waves().iter().map(coefficients).collect();
+        let omega_max = self.omega_max_rad_per_s();
+        let mut report = Report {
+            substeps: count,
+            courant_share: kinds.iter().map(|k| courant_share(k, omega_max)).fold(0.0, f32::max),
+            ..Report::default()
+        };
+        let mut ratio = self.dt_secs.replace(substep_secs).map_or(1.0, |last| substep_secs / last);
+        let mut left = count as usize;
+        while left > 0 {
+            let substeps = left.min(HALO);
+            report.refused += self.meet(substeps);
+            let rings = (self.seams == Seams::Overlap).then_some(HALO - 1);
+            let pass = Pass { kinds: &kinds, substeps, ratio, rings };
+            report.cell_steps += self.advance(crew, |patch| verlet::advance(patch, &pass));
+            (left, ratio) = (left - substeps, 1.0);
+        }
+        report
+    }
+
+    /// Lets `act` change every patch of which a tile steps; returns the sum of what it counts.
+    pub(super) fn advance(&mut self, crew: &impl Crew, act: impl Fn(&mut Patch) -> u64 + Send + Sync) -> u64 {
+        let mut counts = vec![0; self.patches.len()];
+        let tasks: Vec<_> = self.patches.iter_mut().zip(&mut counts).filter(|(patch, _)| patch.tiles.hears_any()).collect();
+        crew.for_each(tasks, |(patch, count)| *count = act(patch));
+        counts.iter().sum()
+    }
+
+    /// Before up to `substeps` sub-steps: wakes patches that energy reaches, chooses the tiles that step, fills the ghosts. Returns how many
+    /// patches stayed asleep for the limit.
+    pub(super) fn meet(&mut self, substeps: usize) -> u32 {
+        self.patches.iter_mut().for_each(|patch| patch.tiles.listen(self.rest));
+        let refused = if self.seams == Seams::Exact { self.wake_reached() } else { 0 };
+        let around = self.neighbours();
+        if self.seams == Seams::Exact {
+            self.hear_neighbours(&around);
+        }
+        self.patches.iter_mut().for_each(choose_tiles);
+        for own in 0..self.patches.len() {
+            for (toward, met) in AROUND.into_iter().zip(around[own]) {
+                self.meet_neighbour(own, toward, met, substeps);
+            }
+        }
+        refused
+    }
+
+    /// Neighbours of each awake patch that are awake, too, with their places.
+    fn neighbours(&self) -> Vec<[Option<(usize, Neighbour)>; 8]> {
+        let met = |patch: &Patch| {
+            AROUND.map(|toward| {
+                let neighbour = neighbour(&self.layout, self.edges, patch.index(), toward)?;
+                Some((self.slot(neighbour.index)?, neighbour))
             })
-            .collect()
+        };
+        self.patches.iter().map(met).collect()
     }
 
-    /// Makes what the lanes published visible to their neighbours.
-    pub fn turn(&mut self) {
-        std::mem::swap(&mut self.borders, &mut self.next_borders);
-    }
-
-    /// Advances the field by `dt_secs` with Verlet sub-steps chosen from the stability bound, on one thread. Returns the
-    /// number of sub-steps.
-    pub fn step(&mut self, params: &WaveParams, dt_secs: f32) -> u32 {
-        let count = verlet::substeps(params, self.layout.cell_m, dt_secs, self.omega_max_rad_per_s());
-        let k = Coefficients::new(params, self.layout.cell_m, dt_secs / count as f32);
-        for _ in 0..count {
-            for mut lane in self.lanes() {
-                lane.step(&k);
+    /// Wakes the neighbours that loud tiles touch, ascending by index, as far as the limit goes.
+    fn wake_reached(&mut self) -> u32 {
+        let mut reached = vec![];
+        for patch in &self.patches {
+            if !patch.tiles.hears_any() {
+                continue;
             }
-            self.turn();
-        }
-        count
-    }
-}
-
-/// An awake patch with what its neighbours published.
-pub struct Lane<'a> {
-    /// Which patch.
-    pub index: PatchIndex,
-    patch: &'a mut Patch,
-    /// Borders of the neighbours to the west, east, north and south; none asleep.
-    neighbours: [Option<&'a Border>; 4],
-    publishes: &'a mut Border,
-}
-
-impl Lane<'_> {
-    /// Advances the patch by a Verlet sub-step, between what its neighbours published, and publishes its own new border.
-    pub fn step(&mut self, k: &Coefficients) -> Extremes {
-        let [west, east, north, south] = self.neighbours;
-        fill_row(self.patch, Side::North, north);
-        fill_row(self.patch, Side::South, south);
-        let extremes = verlet::advance(self.patch, k, &mut Seam { west, east, publishes: self.publishes });
-        self.publishes.publish_row(self.patch, Side::North);
-        self.publishes.publish_row(self.patch, Side::South);
-        extremes
-    }
-
-    /// What was published in the west, east, north and south.
-    pub fn rims(&self) -> [Rim; 4] {
-        Side::ALL.map(|side| self.publishes.rim(side))
-    }
-}
-
-/// Extremes of the outermost cells on one side of a patch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rim {
-    /// Largest |θ| (rad).
-    pub theta_rad: f32,
-    /// Largest component of ω (rad/s).
-    pub omega_rad_per_s: f32,
-}
-
-/// The outermost cells of a patch: for each side, for each channel, a line of cells.
-#[derive(Clone, Debug)]
-struct Border {
-    side: usize,
-    values: Vec<f32>,
-}
-
-impl Border {
-    fn new(side: usize) -> Self {
-        Self { side, values: vec![0.0; Side::ALL.len() * CHANNELS * side] }
-    }
-
-    fn line(&self, side: Side, channel: usize) -> &[f32] {
-        &self.values[(side as usize * CHANNELS + channel) * self.side..][..self.side]
-    }
-
-    fn line_mut(&mut self, side: Side, channel: usize) -> &mut [f32] {
-        &mut self.values[(side as usize * CHANNELS + channel) * self.side..][..self.side]
-    }
-
-    fn publish(&mut self, patch: &Patch) {
-        for j in 0..self.side {
-            let row = patch.at(0, j);
-            for (channel, values) in patch.now.iter().enumerate() {
-                self.line_mut(Side::West, channel)[j] = values[row];
-                self.line_mut(Side::East, channel)[j] = values[row + patch.side() - 1];
+            let last = patch.tiles.count() as i64 - 1;
+            for toward in AROUND {
+                let border = toward.map(|toward| match toward {
+                    -1 => 0..=0,
+                    0 => 0..=last,
+                    _ => last..=last,
+                });
+                let [columns, rows] = border;
+                let is_loud = rows.into_iter().any(|z| columns.clone().any(|x| patch.tiles.is_loud(x, z)));
+                if let (true, Some(neighbour)) = (is_loud, neighbour(&self.layout, self.edges, patch.index(), toward)) {
+                    reached.push(neighbour.index);
+                }
             }
         }
-        self.publish_row(patch, Side::North);
-        self.publish_row(patch, Side::South);
+        reached.sort_unstable();
+        reached.dedup();
+        reached.retain(|&patch| self.slot(patch).is_none());
+        let free = self.awake_limit.saturating_sub(self.patches.len());
+        reached.iter().take(free).for_each(|&patch| {
+            self.wake(patch);
+        });
+        reached.len().saturating_sub(free) as u32
     }
 
-    fn publish_row(&mut self, patch: &Patch, side: Side) {
-        let row = patch.at(0, if matches!(side, Side::North) { 0 } else { patch.side() - 1 });
-        for (channel, values) in patch.now.iter().enumerate() {
-            self.line_mut(side, channel).copy_from_slice(&values[row..row + patch.side()]);
+    /// Tells each patch which tiles are loud beyond its border.
+    fn hear_neighbours(&mut self, around: &[[Option<(usize, Neighbour)>; 8]]) {
+        for own in 0..self.patches.len() {
+            for (toward, met) in AROUND.into_iter().zip(around[own]) {
+                let Some((from, neighbour)) = met else { continue };
+                let count = self.patches[own].tiles.count();
+                for [x, z] in ring(count, toward) {
+                    let [their_x, their_z] = neighbour.place([x, z], toward, count as i64);
+                    let loud = self.patches[from].tiles.is_loud(their_x, their_z);
+                    self.patches[own].tiles.set_loud(x, z, loud);
+                }
+            }
         }
     }
 
-    fn rim(&self, side: Side) -> Rim {
-        let largest = |channel| self.line(side, channel).iter().fold(0.0_f32, |largest, value| value.abs().max(largest));
-        Rim { theta_rad: largest(0), omega_rad_per_s: largest(1).max(largest(2)) }
-    }
-}
-
-#[derive(Clone, Copy)]
-enum Side {
-    West,
-    East,
-    North,
-    South,
-}
-
-impl Side {
-    const ALL: [Self; 4] = [Self::West, Self::East, Self::North, Self::South];
-}
-
-/// The western and eastern ends of a patch's rows.
-struct Seam<'a> {
-    west: Option<&'a Border>,
-    east: Option<&'a Border>,
-    publishes: &'a mut Border,
-}
-
-impl verlet::Seams for Seam<'_> {
-    #[inline(always)]
-    fn fill(&mut self, j: usize, row: usize, now: &mut [Vec<f32>; CHANNELS]) {
-        for (channel, values) in now.iter_mut().enumerate() {
-            values[row - 1] = self.west.map_or(0.0, |border| border.line(Side::East, channel)[j]);
-            values[row + self.publishes.side] = self.east.map_or(0.0, |border| border.line(Side::West, channel)[j]);
+    /// Fills the ghosts toward one neighbour where its tiles step, and puts those to rest that stepped before.
+    fn meet_neighbour(&mut self, own: usize, toward: [i64; 2], met: Option<(usize, Neighbour)>, rings: usize) {
+        let count = self.patches[own].tiles.count() as i64;
+        let steps_beyond = |patches: &[Patch], [x, z]: [i64; 2]| match (self.seams, met) {
+            (Seams::Overlap, _) => patches[own].tiles.steps(x.clamp(0, count - 1), z.clamp(0, count - 1)),
+            (Seams::Exact, None) => false,
+            (Seams::Exact, Some((from, neighbour))) => {
+                let [x, z] = neighbour.place([x, z], toward, count);
+                patches[from].tiles.steps(x, z)
+            }
+        };
+        let mut runs: Vec<(bool, TileRun)> = vec![];
+        for [x, z] in ring(count as usize, toward) {
+            let steps = steps_beyond(&self.patches, [x, z]);
+            let stepped = self.patches[own].tiles.steps(x, z);
+            self.patches[own].tiles.set_steps(x, z, steps);
+            if !steps && !stepped {
+                continue;
+            }
+            match runs.last_mut() {
+                Some((last, tiles)) if *last == steps && tiles[0].end == x && tiles[1].start == z => tiles[0].end += 1,
+                Some((last, tiles)) if *last == steps && tiles[1].end == z && tiles[0].start == x => tiles[1].end += 1,
+                _ => runs.push((steps, [x..x + 1, z..z + 1])),
+            }
         }
-    }
-
-    #[inline(always)]
-    fn publish(&mut self, j: usize, next: [&[f32]; CHANNELS]) {
-        for (channel, values) in next.into_iter().enumerate() {
-            self.publishes.line_mut(Side::West, channel)[j] = values[0];
-            self.publishes.line_mut(Side::East, channel)[j] = values[values.len() - 1];
+        for (steps, tiles) in runs {
+            match (steps, met, self.seams) {
+                (true, Some((from, neighbour)), Seams::Exact) => fetch(&mut self.patches, own, from, toward, &tiles, neighbour, rings),
+                (true, ..) => {}
+                (false, ..) => quell(&mut self.patches[own], toward, &tiles),
+            }
         }
     }
 }
 
-/// Fills the ghosts beyond the northern or southern side; at rest where no neighbour is awake.
-fn fill_row(patch: &mut Patch, side: Side, neighbour: Option<&Border>) {
-    let (count, stride) = (patch.side(), patch.stride());
-    let (start, facing) = match side {
-        Side::North => (1, Side::South),
-        _ => ((count + 1) * stride + 1, Side::North),
-    };
-    for (channel, values) in patch.now.iter_mut().enumerate() {
-        let ghosts = &mut values[start..start + count];
-        match neighbour {
-            Some(border) => ghosts.copy_from_slice(border.line(facing, channel)),
-            None => ghosts.fill(0.0),
+/// Lets loud tiles and those around them step; puts the others to rest.
+fn choose_tiles(patch: &mut Patch) {
+    let count = patch.tiles.count();
+    for (x, z) in (0..count).flat_map(|z| (0..count).map(move |x| (x, z))) {
+        let steps = patch.tiles.hears(x, z);
+        patch.tiles.set_steps(x as i64, z as i64, steps);
+        if !steps && patch.tiles.holds(x, z) {
+            patch.quell([x, z].map(|n| (n * TILE) as i64), [TILE; 2]);
+            patch.tiles.set_peaks(x, z, [0; 2]);
         }
     }
 }

@@ -1,25 +1,75 @@
 //! The bend field: grass as a 2-D continuum (Chen & Johan, Real-Time Continuum Grass, sections 4 and 5).
 //!
 //! A cell holds one cluster of grass: its bending angle θ (rad; 0 at rest) and its bending velocity ω = (ωx, ωz)
-//! (rad/s), whose direction is the direction in which the cluster leans. Contact sets both ([`Patch::press`]); the
-//! damped wave equations (2)–(6) carry them on and let them rise again ([`verlet`]).
+//! (rad/s), whose direction is the direction in which the cluster leans. Contact sets both ([`Field::press`]); the
+//! damped wave equations (2)–(6), with a restoring rate κ, carry them on and let them rise again: with the Laplacian L,
+//! `θ'' + k_θ·θ' + κ·θ = (c₀ + μ·|ω|)²·Lθ` and `ω'' + k_ω·ω' + κ·ω = c_ω²·Lω`. A [`Scheme`] says how.
 //!
-//! A [`Field`] is made of patches with one ring of ghost cells. The ghosts are refreshed before every sub-step, so a field
-//! of many patches equals one big grid bit for bit. A patch that sleeps holds no memory and counts as at rest.
+//! A [`Field`] is made of patches with a halo of ghost cells. The ghosts are filled before they are needed, so a field
+//! of many patches equals one big grid bit for bit. A patch that sleeps holds no memory and counts as at rest; in one that is awake only
+//! the 8 × 8 tiles are stepped in or beside which something moves.
 //!
 //! The field holds how grass departs from where the wind alone would hold it, [`wind_lean_rad`]: both leans add up as vectors on the
 //! ground. So the wind, which is known at the nodes of a coarse grid, wakes no patch and crosses no wire twice; a gust passes over a
 //! track without wiping it out, and grass that rises again rises to where the wind holds it.
+//!
+//! # Example
+//!
+//! A standing wave between free edges, over 2 × 2 patches, is back after one period:
+//!
+//! ```
+//! use shared::bend::{Alone, Bend, Edges, Field, Kinds, Scheme, WaveParams};
+//! use shared::grid::PatchLayout;
+//! use std::f32::consts::PI;
+//!
+//! let layout = PatchLayout { count: [2, 2], cells: 32, cell_m: 0.25 };
+//! let waves = WaveParams {
+//!     c0_m_per_s: 2.0,
+//!     mu_m_per_rad: 0.0,
+//!     c_omega_m_per_s: 2.0,
+//!     theta_damping_per_s: 0.0,
+//!     omega_damping_per_s: 0.0,
+//!     stiffness_per_s2: 0.0,
+//! };
+//! let mut field = Field::new(layout, Kinds::one(waves)).with_edges(Edges::Free);
+//! let (steps, width_m) = (800, 16.0);
+//! let period_secs = 2.0 * width_m / 2.0;
+//! let dt_secs = period_secs / steps as f32;
+//! let wave = |x_m: f32, secs: f32| (PI * x_m / width_m).cos() * (2.0 * PI * secs / period_secs).cos();
+//! field.start(dt_secs, |[x_m, _]| [0.0, -dt_secs].map(|secs| Bend { theta: 0.5 * wave(x_m, secs), omega: [0.0; 2] }));
+//! assert!(dt_secs < field.stable_dt_secs(Scheme::Substepped));
+//! for _ in 0..steps {
+//!     field.step(Scheme::Substepped, dt_secs, &Alone)?;
+//! }
+//! for x_m in [0.1, 3.0, 12.0] {
+//!     let Bend { theta, omega } = field.bend_at(x_m, 5.0);
+//!     let cell_m = ((x_m / 0.25_f32).floor() + 0.5) * 0.25;
+//!     assert!((theta - 0.5 * wave(cell_m, 0.0)).abs() < 1e-3 && omega == [0.0; 2]);
+//! }
+//! # Ok::<(), shared::bend::StepError>(())
+//! ```
 
-mod extremes;
+mod crew;
 mod field;
+mod halo;
+mod implicit;
+mod kinds;
+pub mod limits;
+mod modal;
 mod params;
 mod patch;
-pub mod verlet;
+mod scheme;
+mod tiles;
+mod tridiagonal;
+mod verlet;
 mod wind;
 
-pub use extremes::Extremes;
-pub use field::{Field, Lane, Rim};
-pub use params::{Coefficients, WaveParams};
-pub use patch::{Bend, CHANNELS, Patch};
+pub use crew::{Alone, Crew};
+pub use field::Field;
+pub use halo::{Edges, Seams};
+pub use kinds::Kinds;
+pub use params::{Coefficients, Damping, WaveParams};
+pub use patch::{Bend, CHANNELS, HALO, Patch};
+pub use scheme::{Report, Scheme, StepError};
+pub use tiles::{Rest, TILE};
 pub use wind::wind_lean_rad;

@@ -32,42 +32,64 @@ impl From<&Grass> for WaveParams {
     }
 }
 
-/// What a sub-step of `dt` seconds multiplies with.
+/// How a sub-step takes the damping rate k.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Damping {
+    /// 001 Eqs (5)–(6) as they stand, with λ = 1 − exp(−k·dt): the force counts in full. First order in time.
+    Plain,
+    /// The velocity decays by 1 − λ and gains the force times (1 − exp(−k·dt))/k, as it would exactly under a steady force.
+    /// Second order in time.
+    Exact,
+}
+
+/// What a sub-step of `dt` seconds multiplies with. Speeds and stiffness hold the root or the whole of the share φ in which the force
+/// counts: 1 for [`Damping::Plain`], λ/(k·dt) for [`Damping::Exact`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
-    /// Length of the sub-step (s).
-    pub dt_secs: f32,
     /// λ_θ = 1 − exp(−k_θ·dt).
     pub lambda_theta: f32,
     /// λ_ω = 1 − exp(−k_ω·dt).
     pub lambda_omega: f32,
-    /// c₀·dt/h: Courant number of θ at rest.
+    /// √φ·c₀·dt/h: Courant number of θ at rest.
     pub r0: f32,
-    /// μ·dt/h (s/rad): Courant number added for each rad/s of bending speed.
+    /// √φ·μ·dt/h (s/rad): Courant number added for each rad/s of bending speed.
     pub r_mu: f32,
-    /// (c_ω·dt/h)².
+    /// φ·(c_ω·dt/h)².
     pub r2_omega: f32,
-    /// κ·dt².
-    pub restoring: f32,
+    /// φ·κ·dt², of θ and of ω.
+    pub restoring: [f32; 2],
 }
 
 impl Coefficients {
     /// Coefficients of a sub-step of `dt_secs` on cells of side `cell_m`.
-    pub fn new(params: &WaveParams, cell_m: f32, dt_secs: f32) -> Self {
-        let r_omega = params.c_omega_m_per_s * dt_secs / cell_m;
+    pub fn new(params: &WaveParams, cell_m: f32, dt_secs: f32, damping: Damping) -> Self {
+        let theta = Decay::new(params.theta_damping_per_s, dt_secs, damping);
+        let omega = Decay::new(params.omega_damping_per_s, dt_secs, damping);
+        let courant = |speed: f32, decay: &Decay| (decay.share.sqrt() * f64::from(speed) * f64::from(dt_secs) / f64::from(cell_m)) as f32;
+        let r_omega = courant(params.c_omega_m_per_s, &omega);
+        let restoring = |decay: &Decay| (decay.share * f64::from(params.stiffness_per_s2) * f64::from(dt_secs).powi(2)) as f32;
         Self {
-            dt_secs,
-            lambda_theta: damping(params.theta_damping_per_s, dt_secs),
-            lambda_omega: damping(params.omega_damping_per_s, dt_secs),
-            r0: params.c0_m_per_s * dt_secs / cell_m,
-            r_mu: params.mu_m_per_rad * dt_secs / cell_m,
+            lambda_theta: theta.lambda as f32,
+            lambda_omega: omega.lambda as f32,
+            r0: courant(params.c0_m_per_s, &theta),
+            r_mu: courant(params.mu_m_per_rad, &theta),
             r2_omega: r_omega * r_omega,
-            restoring: params.stiffness_per_s2 * dt_secs * dt_secs,
+            restoring: [restoring(&theta), restoring(&omega)],
         }
     }
 }
 
-/// λ = 1 − exp(−k·dt), in f64 so that small rates keep their digits.
-fn damping(rate_per_s: f32, dt_secs: f32) -> f32 {
-    (-f64::exp_m1(-f64::from(rate_per_s) * f64::from(dt_secs))) as f32
+/// λ and φ, in f64 so that small rates keep their digits.
+struct Decay {
+    lambda: f64,
+    share: f64,
+}
+
+impl Decay {
+    fn new(rate_per_s: f32, dt_secs: f32, damping: Damping) -> Self {
+        let exponent = f64::from(rate_per_s) * f64::from(dt_secs);
+        let lambda = -f64::exp_m1(-exponent);
+        let share = if damping == Damping::Plain || exponent == 0.0 { 1.0 } else { lambda / exponent };
+        Self { lambda, share }
+    }
 }

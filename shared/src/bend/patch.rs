@@ -1,7 +1,7 @@
-//! One patch of the field: three channels at two times, with a ring of ghost cells.
+//! One patch of the field: three channels at two times, with a halo of ghost cells.
 
-use super::Extremes;
-use super::extremes::LargestOf;
+use super::tiles::{TILE, Tiles, size_bits};
+use crate::grid::PatchIndex;
 
 /// State of one cluster of grass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -15,24 +15,55 @@ pub struct Bend {
 /// Number of channels: θ, ωx, ωz.
 pub const CHANNELS: usize = 3;
 
-/// A square patch of `side × side` cells (a multiple of 8) inside a ring of ghosts; row-major from the north-west, `(side + 2)²` values a
-/// channel.
+/// Width of the ghosts around a patch (cells), that of 001's overlaps; also the most sub-steps between two exchanges.
+pub const HALO: usize = 4;
+
+pub(super) type Planes = [Vec<f32>; CHANNELS];
+
+/// A square patch of `side × side` cells (a multiple of 8) inside a halo; row-major from the north-west, `(side + 8)²` values a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Patch {
+    index: PatchIndex,
     side: usize,
     /// Channels at the newest time.
-    pub(super) now: [Vec<f32>; CHANNELS],
-    /// Channels one sub-step earlier; ghosts are unused.
-    pub(super) before: [Vec<f32>; CHANNELS],
-    /// Sub-step (s) between the two times; none before the first.
-    dt_secs: Option<f32>,
+    pub(super) now: Planes,
+    /// Channels one sub-step earlier.
+    pub(super) before: Planes,
+    pub(super) tiles: Tiles,
+    pub(super) ground: Ground,
+}
+
+/// What grows in a patch and its halo.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Ground {
+    /// One kind.
+    One(u8),
+    /// The kind of each cell.
+    Map(Vec<u8>),
 }
 
 impl Patch {
-    /// A patch at rest.
-    pub fn new(side: usize) -> Self {
-        let zeros = || vec![0.0; (side + 2) * (side + 2)];
-        Self { side, now: std::array::from_fn(|_| zeros()), before: std::array::from_fn(|_| zeros()), dt_secs: None }
+    /// A patch at rest, with the kinds that grow in it and its halo, row by row.
+    pub(super) fn new(index: PatchIndex, side: usize, kind: impl Fn([i64; 2]) -> u8) -> Self {
+        let stride = side + 2 * HALO;
+        let zeros = || vec![0.0; stride * stride];
+        let halo = HALO as i64;
+        let cells = (0..stride * stride).map(|at| [(at % stride) as i64 - halo, (at / stride) as i64 - halo]);
+        let kinds: Vec<u8> = cells.map(kind).collect();
+        let ground = if kinds.iter().all(|kind| *kind == kinds[0]) { Ground::One(kinds[0]) } else { Ground::Map(kinds) };
+        Self {
+            index,
+            side,
+            now: std::array::from_fn(|_| zeros()),
+            before: std::array::from_fn(|_| zeros()),
+            tiles: Tiles::new(side),
+            ground,
+        }
+    }
+
+    /// Which patch.
+    pub fn index(&self) -> PatchIndex {
+        self.index
     }
 
     /// Cells along one side.
@@ -40,73 +71,143 @@ impl Patch {
         self.side
     }
 
-    /// Distance between rows in the channel slices: `side + 2`.
-    pub fn stride(&self) -> usize {
-        self.side + 2
+    /// Distance between rows in the planes.
+    pub(super) fn stride(&self) -> usize {
+        self.side + 2 * HALO
     }
 
-    /// Index of cell `(i, j)` in the channel slices.
-    pub fn at(&self, i: usize, j: usize) -> usize {
-        debug_assert!(i < self.side && j < self.side);
-        (j + 1) * self.stride() + i + 1
+    /// Place in the planes of cell `(i, j)`, ghosts included.
+    pub(super) fn at(&self, i: i64, j: i64) -> usize {
+        let halo = HALO as i64;
+        debug_assert!([i, j].into_iter().all(|n| (-halo..self.side as i64 + halo).contains(&n)));
+        (j + halo) as usize * self.stride() + (i + halo) as usize
     }
 
     /// State of cell `(i, j)`.
     pub fn bend(&self, i: usize, j: usize) -> Bend {
-        let at = self.at(i, j);
-        Bend { theta: self.now[0][at], omega: [self.now[1][at], self.now[2][at]] }
+        read(&self.now, self.at(i as i64, j as i64))
+    }
+
+    /// State of cell `(i, j)` one sub-step earlier.
+    pub fn bend_before(&self, i: usize, j: usize) -> Bend {
+        read(&self.before, self.at(i as i64, j as i64))
     }
 
     /// Sets the state of cell `(i, j)` as contact does (001 Eqs 1 and 12): the values at both times move together, so that
     /// the object, not the integrator's memory, decides how fast the cluster moves while it is touched.
     pub fn press(&mut self, i: usize, j: usize, bend: Bend) {
+        self.set(i, j, bend, bend);
+    }
+
+    /// Sets the state of cell `(i, j)` at both times, and so any motion.
+    pub fn set(&mut self, i: usize, j: usize, now: Bend, before: Bend) {
+        assert!(i < self.side && j < self.side, "cell ({i}, {j}) of a patch of {} × {}", self.side, self.side);
+        self.set_ghost(i as i64, j as i64, now, before);
+    }
+
+    /// [`set`](Self::set) for any cell, ghosts included; a ghost makes the nearest own tile step.
+    pub(super) fn set_ghost(&mut self, i: i64, j: i64, now: Bend, before: Bend) {
         let at = self.at(i, j);
-        for (channel, value) in [bend.theta, bend.omega[0], bend.omega[1]].into_iter().enumerate() {
-            self.now[channel][at] = value;
-            self.before[channel][at] = value;
+        write(&mut self.now, at, now);
+        write(&mut self.before, at, before);
+        let [i, j] = [i, j].map(|n| n.clamp(0, self.side as i64 - 1) as usize);
+        self.tiles.touch(i, j, [now, before]);
+    }
+
+    /// Rows of θ, ωx and ωz from the north.
+    pub fn rows(&self) -> impl Iterator<Item = [&[f32]; CHANNELS]> {
+        self.rows_of(&self.now)
+    }
+
+    /// Rows one sub-step earlier; with [`rows`](Self::rows) the whole state of a patch.
+    pub fn rows_before(&self) -> impl Iterator<Item = [&[f32]; CHANNELS]> {
+        self.rows_of(&self.before)
+    }
+
+    fn rows_of<'a>(&self, planes: &'a Planes) -> impl Iterator<Item = [&'a [f32]; CHANNELS]> + use<'a> {
+        let (side, stride) = (self.side, self.stride());
+        (0..side).map(move |j| planes.each_ref().map(|plane| &plane[(j + HALO) * stride + HALO..][..side]))
+    }
+
+    /// Largest |θ| (rad) of the newest two times.
+    pub fn theta_max_rad(&self) -> f32 {
+        self.tiles.theta_max_rad()
+    }
+
+    /// Largest |ω| (rad/s) of the newest two times.
+    pub fn omega_max_rad_per_s(&self) -> f32 {
+        self.tiles.omega_max_rad_per_s()
+    }
+
+    /// Sum of θ² + ω² over the cells (mixed units): how far from rest the patch is.
+    pub fn activity(&self) -> f64 {
+        let squares = |cells: &[f32]| cells.iter().map(|v| f64::from(*v) * f64::from(*v)).sum::<f64>();
+        let tile = |x: usize, z: usize| {
+            let row = move |row: usize| self.at((x * TILE) as i64, (z * TILE + row) as i64);
+            (0..TILE).map(row).map(|at| self.now.iter().map(|plane| squares(&plane[at..at + TILE])).sum::<f64>()).sum::<f64>()
+        };
+        let tiles = (0..self.tiles.count()).flat_map(|z| (0..self.tiles.count()).map(move |x| (x, z)));
+        // The sum of nothing would be −0.
+        tiles.filter(|&(x, z)| self.tiles.holds(x, z)).fold(0.0, |sum, (x, z)| sum + tile(x, z))
+    }
+
+    /// Tiles of 8 × 8 cells that have changed since they were last taken, row by row.
+    pub fn changed_tiles(&self) -> &[bool] {
+        self.tiles.changed()
+    }
+
+    /// Takes the tiles that have changed as seen.
+    pub fn forget_changes(&mut self) {
+        self.tiles.forget_changes();
+    }
+
+    /// Bytes of memory that the patch holds.
+    pub fn memory_bytes(&self) -> usize {
+        let kinds = match &self.ground {
+            Ground::One(_) => 0,
+            Ground::Map(kinds) => kinds.len(),
+        };
+        self.now.iter().chain(&self.before).map(|plane| plane.len() * size_of::<f32>()).sum::<usize>() + kinds + self.tiles.memory_bytes()
+    }
+
+    /// Finds anew how far each tile is from rest.
+    pub(super) fn measure(&mut self) {
+        let count = self.tiles.count();
+        for (x, z) in (0..count).flat_map(|z| (0..count).map(move |x| (x, z))) {
+            let mut peaks = [0; 2];
+            for row in 0..TILE {
+                let at = self.at((x * TILE) as i64, (z * TILE + row) as i64);
+                for planes in [&self.now, &self.before] {
+                    let [theta, u, w] = planes.each_ref().map(|plane| &plane[at..at + TILE]);
+                    for i in 0..TILE {
+                        peaks[0] = peaks[0].max(size_bits(theta[i]));
+                        peaks[1] = peaks[1].max(size_bits(u[i] * u[i] + w[i] * w[i]));
+                    }
+                }
+            }
+            self.tiles.set_peaks(x, z, peaks);
         }
     }
 
-    /// Sets the newest state of cell `(i, j)` alone; with [`remember`](Self::remember) this gives a patch any motion.
-    pub fn set(&mut self, i: usize, j: usize, bend: Bend) {
-        let at = self.at(i, j);
-        for (channel, value) in [bend.theta, bend.omega[0], bend.omega[1]].into_iter().enumerate() {
-            self.now[channel][at] = value;
+    /// Planes of the newest state, and of the earlier one if there are to be two `states`.
+    pub(super) fn planes_mut(&mut self, states: usize) -> impl Iterator<Item = &mut [f32]> {
+        self.now.iter_mut().chain(&mut self.before).take(states * CHANNELS).map(Vec::as_mut_slice)
+    }
+
+    /// Puts `width × depth` cells from `(i, j)` on, ghosts included, to rest.
+    pub(super) fn quell(&mut self, [i, j]: [i64; 2], [width, depth]: [usize; 2]) {
+        for row in 0..depth as i64 {
+            let at = self.at(i, j + row);
+            self.planes_mut(2).for_each(|plane| plane[at..at + width].fill(0.0));
         }
     }
+}
 
-    /// Takes up a sub-step of another length: the earlier state moves along the line through both, so that every rate of change stays.
-    pub(super) fn retime(&mut self, dt_secs: f32) {
-        let ratio = self.dt_secs.replace(dt_secs).map_or(1.0, |last| dt_secs / last);
-        if ratio != 1.0 {
-            let pairs = self.now.iter().flatten().zip(self.before.iter_mut().flatten());
-            pairs.for_each(|(now, before)| *before = now - (now - *before) * ratio);
-        }
-    }
+fn read(planes: &Planes, at: usize) -> Bend {
+    Bend { theta: planes[0][at], omega: [planes[1][at], planes[2][at]] }
+}
 
-    /// Takes the newest state as that of one sub-step earlier, too.
-    pub fn remember(&mut self) {
-        self.before.clone_from(&self.now);
-    }
-
-    /// Channels θ, ωx, ωz with their ghosts.
-    pub fn channels(&self) -> [&[f32]; CHANNELS] {
-        std::array::from_fn(|channel| self.now[channel].as_slice())
-    }
-
-    /// Channels one sub-step earlier; with [`channels`](Self::channels) the whole state of a patch.
-    pub fn channels_before(&self) -> [&[f32]; CHANNELS] {
-        std::array::from_fn(|channel| self.before[channel].as_slice())
-    }
-
-    /// Extremes of the patch's own cells.
-    pub fn extremes(&self) -> Extremes {
-        let mut largest = LargestOf::default();
-        for j in 0..self.side {
-            let row = self.at(0, j)..self.at(0, j) + self.side;
-            let [theta, x, z] = &self.now;
-            largest.add(&theta[row.clone()], &x[row.clone()], &z[row]);
-        }
-        largest.extremes()
-    }
+fn write(planes: &mut Planes, at: usize, bend: Bend) {
+    let values = [bend.theta, bend.omega[0], bend.omega[1]];
+    planes.iter_mut().zip(values).for_each(|(plane, value)| plane[at] = value);
 }

@@ -1,138 +1,271 @@
-//! Explicit Verlet propagation (001 Eqs 2–6) with its stability bound.
+//! Explicit Verlet propagation (001 Eqs 2–6).
 //!
 //! With λ = 1 − exp(−k·dt) and r = c·dt/h a cell becomes
 //! `θ⁺ = (2 − λ)·θ − (1 − λ)·θ⁻ + r²·(Σ neighbours − 4θ) − κ·dt²·θ`, likewise for both components of ω. When dt changes,
 //! θ⁻ is moved first, to keep (θ − θ⁻)/dt.
+//!
+//! A patch does up to [`HALO`] sub-steps while it lies in the cache: its halo then holds as many rings of its neighbours' cells, of which each
+//! sub-step uses up one. Its neighbours compute these cells, too, with the same bits.
 
-use super::extremes::LargestOf;
-use super::{CHANNELS, Coefficients, Extremes, Patch, WaveParams};
+use super::patch::{CHANNELS, Ground, HALO, Patch, Planes};
+use super::tiles::{TILE, size_bits};
+use super::Coefficients;
 use multiversion::multiversion;
 
-/// Largest Courant number `c·dt/h` for damping λ and restoring term `κ·dt²`: `r ≤ √((4 − 2λ − κ·dt²)/8)`.
-///
-/// Derived from the checkerboard mode, the first to fail: its step has the polynomial `g² − (2 − λ − 8r² − κdt²)·g + (1 − λ)`,
-/// whose roots stay within the unit circle iff `8r² + κdt² ≤ 4 − 2λ`. For κ = 0 this is `√((2 − λ)/4)`: 0.707 undamped, 0.5 at
-/// λ = 1; more damping makes the scheme less stable. Zero when no step of this length is stable.
-pub fn courant_limit(lambda: f32, restoring: f32) -> f32 {
-    ((4.0 - 2.0 * lambda - restoring) / 8.0).max(0.0).sqrt()
+/// What a patch does between two exchanges.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pass<'a> {
+    /// Coefficients of each kind of grass.
+    pub(super) kinds: &'a [Coefficients],
+    /// Sub-steps, at most [`HALO`].
+    pub(super) substeps: usize,
+    /// Length of a sub-step over that of the last one.
+    pub(super) ratio: f32,
+    /// Rings of the halo that each sub-step advances; none for as many as the later ones need.
+    pub(super) rings: Option<usize>,
 }
 
-/// Share of the Courant limit that [`substeps`] uses; the rest covers the growth of |ω| within a step.
-const SAFETY: f32 = 0.95;
+/// A run of cells in a row.
+#[derive(Clone, Copy)]
+struct Run {
+    row: i64,
+    from: i64,
+    to: i64,
+}
 
-/// Least number of equal sub-steps of `dt_secs` that keeps every cell within [`courant_limit`], when no bending speed
-/// exceeds `omega_max_rad_per_s`.
-pub fn substeps(params: &WaveParams, cell_m: f32, dt_secs: f32, omega_max_rad_per_s: f32) -> u32 {
-    let fits = |count: u32| {
-        let k = Coefficients::new(params, cell_m, dt_secs / count as f32);
-        let r_theta = k.r0 + k.r_mu * omega_max_rad_per_s;
-        r_theta <= SAFETY * courant_limit(k.lambda_theta, k.restoring)
-            && k.r2_omega.sqrt() <= SAFETY * courant_limit(k.lambda_omega, k.restoring)
-    };
-    // λ and κ·dt² both shrink with the step, so doubling then bisecting finds the least count.
-    let mut enough = 1;
-    while !fits(enough) {
-        enough *= 2;
+/// Advances the tiles of a patch that step. Returns the number of cells stepped.
+pub(super) fn advance(patch: &mut Patch, pass: &Pass<'_>) -> u64 {
+    let bands = -1..=patch.tiles.count() as i64;
+    let (mut cells, mut spans) = (0, vec![]);
+    if pass.ratio != 1.0 {
+        for band in bands.clone() {
+            find_spans(patch, band, HALO as i64, Join::Ghosts, &mut spans);
+            for_each_run(patch, band, HALO as i64, &spans, |patch, run| retime(patch, run, pass.ratio));
+        }
     }
-    let mut too_few = enough / 2;
-    while enough - too_few > 1 {
-        let middle = (enough + too_few) / 2;
-        if fits(middle) { enough = middle } else { too_few = middle }
+    for substep in 1..=pass.substeps {
+        let rings = pass.rings.unwrap_or(pass.substeps - substep) as i64;
+        let is_last = substep == pass.substeps;
+        for band in bands.clone() {
+            find_spans(patch, band, rings, if is_last { Join::Own } else { Join::Ghosts }, &mut spans);
+            if spans.is_empty() {
+                continue;
+            }
+            let mut peaks = is_last.then(Peaks::default);
+            for_each_run(patch, band, rings, &spans, |patch, run| {
+                cells += (run.to - run.from) as u64;
+                advance_run(patch, pass.kinds, run, peaks.as_mut());
+            });
+            if let Some(peaks) = peaks {
+                peaks.tell(patch, band);
+            }
+        }
+        std::mem::swap(&mut patch.now, &mut patch.before);
     }
-    enough
+    cells
 }
 
-/// Advances one patch by a sub-step; its ghosts must hold the neighbours' newest values. Returns the extremes of the new
-/// state.
-pub fn step(patch: &mut Patch, k: &Coefficients) -> Extremes {
-    advance(patch, k, &mut Alone)
+/// Whether cells of the patch and ghosts go into one span.
+#[derive(Clone, Copy, PartialEq)]
+enum Join {
+    /// Yes.
+    Ghosts,
+    /// No: only the patch's own are measured.
+    Own,
 }
 
-/// What happens at a patch's western and eastern ends while its rows advance one by one. Done row by row, it finds the cells in the
-/// cache.
-pub(super) trait Seams {
-    /// Before row `j` advances: its first own cell lies at `row`.
-    fn fill(&mut self, j: usize, row: usize, now: &mut [Vec<f32>; CHANNELS]);
-    /// After it: the new values.
-    fn publish(&mut self, j: usize, next: [&[f32]; CHANNELS]);
-}
-
-/// A patch whose ghosts are filled already and whom nobody reads.
-struct Alone;
-
-impl Seams for Alone {
-    fn fill(&mut self, _: usize, _: usize, _: &mut [Vec<f32>; CHANNELS]) {}
-    fn publish(&mut self, _: usize, _: [&[f32]; CHANNELS]) {}
-}
-
-/// Advances row by row, in place over the state before.
-#[inline(always)]
-pub(super) fn advance(patch: &mut Patch, k: &Coefficients, seams: &mut impl Seams) -> Extremes {
-    patch.retime(k.dt_secs);
-    let side = patch.side();
-    let mut largest = LargestOf::default();
-    for j in 0..side {
-        let row = patch.at(0, j);
-        seams.fill(j, row, &mut patch.now);
-        let [theta, x, z] = &patch.now;
-        let [theta_next, x_next, z_next] = &mut patch.before;
-        let theta_next = &mut theta_next[row..row + side];
-        let (x_next, z_next) = (&mut x_next[row..row + side], &mut z_next[row..row + side]);
-        advance_theta(&Stencil::new(theta, row, side), &x[row..row + side], &z[row..row + side], theta_next, k);
-        advance_omega(&Stencil::new(x, row, side), x_next, k);
-        advance_omega(&Stencil::new(z, row, side), z_next, k);
-        largest.add(theta_next, x_next, z_next);
-        seams.publish(j, [theta_next, x_next, z_next]);
+/// Cells of a tile along one axis, with so many `rings` of the halo.
+fn extent(patch: &Patch, tile: i64, rings: i64) -> [i64; 2] {
+    match tile {
+        -1 => [-rings, 0],
+        tile if tile == patch.tiles.count() as i64 => [patch.side() as i64, patch.side() as i64 + rings],
+        tile => [tile * TILE as i64, (tile + 1) * TILE as i64],
     }
-    std::mem::swap(&mut patch.now, &mut patch.before);
-    largest.extremes()
 }
 
-/// A row of a channel with the cells around it.
-struct Stencil<'a> {
-    center: &'a [f32],
-    west: &'a [f32],
-    east: &'a [f32],
-    north: &'a [f32],
-    south: &'a [f32],
-}
-
-impl<'a> Stencil<'a> {
-    #[inline(always)]
-    fn new(now: &'a [f32], row: usize, side: usize) -> Self {
-        let (north, south) = (row - (side + 2), row + (side + 2));
-        Self {
-            center: &now[row..row + side],
-            west: &now[row - 1..row - 1 + side],
-            east: &now[row + 1..row + 1 + side],
-            north: &now[north..north + side],
-            south: &now[south..south + side],
+/// Spans of columns of the tiles that step in a band of tiles; bands −1 and `count` lie in the halo.
+fn find_spans(patch: &Patch, band: i64, rings: i64, join: Join, spans: &mut Vec<[i64; 2]>) {
+    let count = patch.tiles.count() as i64;
+    spans.clear();
+    if rings == 0 && !(0..count).contains(&band) {
+        return;
+    }
+    for tile in (-1..=count).filter(|&tile| patch.tiles.steps(tile, band)) {
+        let [from, to] = extent(patch, tile, rings);
+        let joins = join == Join::Ghosts || (1..count).contains(&tile);
+        match spans.last_mut() {
+            Some(last) if last[1] == from && joins => last[1] = to,
+            _ if from < to => spans.push([from, to]),
+            _ => {}
         }
     }
 }
 
-// Kept apart from the loop over rows: inlined into it, the compiler loses sight of which slices cannot overlap.
-#[multiversion(targets("x86_64+avx2"))]
-fn advance_theta(now: &Stencil, x: &[f32], z: &[f32], next: &mut [f32], k: &Coefficients) {
-    let side = next.len();
-    let (keep, memory) = (2.0 - k.lambda_theta - k.restoring, 1.0 - k.lambda_theta);
-    let (center, west, east) = (&now.center[..side], &now.west[..side], &now.east[..side]);
-    let (north, south, x, z) = (&now.north[..side], &now.south[..side], &x[..side], &z[..side]);
-    for i in 0..side {
-        let r = k.r0 + k.r_mu * (x[i] * x[i] + z[i] * z[i]).sqrt();
-        let laplacian = (west[i] + east[i]) + (north[i] + south[i]) - 4.0 * center[i];
-        next[i] = keep * center[i] - memory * next[i] + r * r * laplacian;
+fn for_each_run(patch: &mut Patch, band: i64, rings: i64, spans: &[[i64; 2]], mut act: impl FnMut(&mut Patch, Run)) {
+    let [first, last] = extent(patch, band, rings);
+    for row in first..last {
+        for &[from, to] in spans {
+            act(patch, Run { row, from, to });
+        }
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
-fn advance_omega(now: &Stencil, next: &mut [f32], k: &Coefficients) {
-    let side = next.len();
-    let (keep, memory, r2) = (2.0 - k.lambda_omega - k.restoring, 1.0 - k.lambda_omega, k.r2_omega);
-    let (center, west, east) = (&now.center[..side], &now.west[..side], &now.east[..side]);
-    let (north, south) = (&now.north[..side], &now.south[..side]);
-    for i in 0..side {
-        let laplacian = (west[i] + east[i]) + (north[i] + south[i]) - 4.0 * center[i];
-        next[i] = keep * center[i] - memory * next[i] + r2 * laplacian;
+/// Moves the earlier state along the line through both, so that every rate of change stays.
+fn retime(patch: &mut Patch, run: Run, ratio: f32) {
+    let (from, to) = (patch.at(run.from, run.row), patch.at(run.to - 1, run.row) + 1);
+    for (now, before) in patch.now.iter().zip(&mut patch.before) {
+        let pairs = now[from..to].iter().zip(&mut before[from..to]);
+        pairs.for_each(|(now, before)| *before = now - (now - *before) * ratio);
+    }
+}
+
+/// Largest |θ| and |ω|² in each column of a band, as bits.
+struct Peaks {
+    theta: [u32; SIDE_LIMIT],
+    omega2: [u32; SIDE_LIMIT],
+}
+
+/// Most cells along a side.
+pub(super) const SIDE_LIMIT: usize = 256;
+
+impl Default for Peaks {
+    fn default() -> Self {
+        Self { theta: [0; SIDE_LIMIT], omega2: [0; SIDE_LIMIT] }
+    }
+}
+
+impl Peaks {
+    fn tell(&self, patch: &mut Patch, band: i64) {
+        let count = patch.tiles.count();
+        if !(0..count as i64).contains(&band) {
+            return;
+        }
+        for tile in (0..count).filter(|&tile| patch.tiles.steps(tile as i64, band)).collect::<Vec<_>>() {
+            let largest = |columns: &[u32]| columns[tile * TILE..][..TILE].iter().copied().max().unwrap_or_default();
+            patch.tiles.set_peaks(tile, band as usize, [largest(&self.theta), largest(&self.omega2)]);
+        }
+    }
+}
+
+fn advance_run(patch: &mut Patch, kinds: &[Coefficients], run: Run, mut peaks: Option<&mut Peaks>) {
+    let (side, stride) = (patch.side(), patch.stride());
+    let (first, last) = (patch.at(run.from, run.row), patch.at(run.to - 1, run.row) + 1);
+    let start = first as i64 - run.from;
+    let (now, before, ground) = (&patch.now, &mut patch.before, &patch.ground);
+    for_each_kind(ground, first, last, |kind, from, to| {
+        let k = &kinds[usize::from(kind)];
+        let row = stencils(now, from, to, stride);
+        let [theta, x, z] = before.each_mut().map(|plane| &mut plane[from..to]);
+        let own = [from, to].map(|at| (at as i64 - start).clamp(0, side as i64) as usize);
+        match peaks.as_deref_mut() {
+            // Ghosts have no peaks: their own patch tells them.
+            Some(peaks) if own[1] - own[0] == to - from => {
+                let (theta_peaks, omega_peaks) = (&mut peaks.theta[own[0]..own[1]], &mut peaks.omega2[own[0]..own[1]]);
+                advance_and_measure(&row, theta, x, z, k, theta_peaks, omega_peaks);
+            }
+            _ => advance_row(&row, theta, x, z, k),
+        }
+    });
+}
+
+/// Splits cells `first..last` of the planes into runs of one kind.
+pub(super) fn for_each_kind(ground: &Ground, first: usize, last: usize, mut act: impl FnMut(u8, usize, usize)) {
+    match ground {
+        Ground::One(kind) => act(*kind, first, last),
+        Ground::Map(kinds) => {
+            let mut from = first;
+            for run in kinds[first..last].chunk_by(|a, b| a == b) {
+                act(run[0], from, from + run.len());
+                from += run.len();
+            }
+        }
+    }
+}
+
+/// Cells of a channel with those around them.
+#[derive(Clone, Copy)]
+struct Stencil<'a> {
+    /// From the western neighbour of the first to the eastern one of the last.
+    middle: &'a [f32],
+    north: &'a [f32],
+    south: &'a [f32],
+}
+
+type Row<'a> = [Stencil<'a>; CHANNELS];
+
+#[inline(always)]
+fn stencils(now: &Planes, from: usize, to: usize, stride: usize) -> Row<'_> {
+    now.each_ref().map(|plane| Stencil {
+        middle: &plane[from - 1..to + 1],
+        north: &plane[from - stride..to - stride],
+        south: &plane[from + stride..to + stride],
+    })
+}
+
+impl<'a> Stencil<'a> {
+    #[inline(always)]
+    fn cut(&self, count: usize) -> Self {
+        Self { middle: &self.middle[..count + 2], north: &self.north[..count], south: &self.south[..count] }
+    }
+
+    #[inline(always)]
+    fn center(&self, i: usize) -> f32 {
+        self.middle[i + 1]
+    }
+
+    #[inline(always)]
+    fn laplacian(&self, i: usize) -> f32 {
+        (self.middle[i] + self.middle[i + 2]) + (self.north[i] + self.south[i]) - 4.0 * self.middle[i + 1]
+    }
+}
+
+/// What a cell of θ, ωx, ωz becomes, and |ω|² before.
+#[inline(always)]
+fn next_cell(row: &[Stencil; CHANNELS], i: usize, before: [f32; CHANNELS], k: &Coefficients) -> ([f32; CHANNELS], f32) {
+    let [theta, x, z] = row;
+    let omega2 = x.center(i) * x.center(i) + z.center(i) * z.center(i);
+    let r = k.r0 + k.r_mu * omega2.sqrt();
+    let theta_keep = 2.0 - k.lambda_theta - k.restoring[0];
+    let (keep, memory) = (2.0 - k.lambda_omega - k.restoring[1], 1.0 - k.lambda_omega);
+    let next = [
+        theta_keep * theta.center(i) - (1.0 - k.lambda_theta) * before[0] + r * r * theta.laplacian(i),
+        keep * x.center(i) - memory * before[1] + k.r2_omega * x.laplacian(i),
+        keep * z.center(i) - memory * before[2] + k.r2_omega * z.laplacian(i),
+    ];
+    (next, omega2)
+}
+
+// Kept apart from the loops over rows: inlined into them, the compiler loses sight of which slices cannot overlap.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn advance_row(row: &[Stencil; CHANNELS], theta: &mut [f32], x: &mut [f32], z: &mut [f32], k: &Coefficients) {
+    let count = theta.len();
+    let row = row.map(|stencil| stencil.cut(count));
+    let (x, z, k) = (&mut x[..count], &mut z[..count], *k);
+    for i in 0..count {
+        let (next, _) = next_cell(&row, i, [theta[i], x[i], z[i]], &k);
+        [theta[i], x[i], z[i]] = next;
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn advance_and_measure(
+    row: &[Stencil; CHANNELS],
+    theta: &mut [f32],
+    x: &mut [f32],
+    z: &mut [f32],
+    k: &Coefficients,
+    theta_peaks: &mut [u32],
+    omega2_peaks: &mut [u32],
+) {
+    let count = theta.len();
+    let row = row.map(|stencil| stencil.cut(count));
+    let (x, z, k) = (&mut x[..count], &mut z[..count], *k);
+    let (theta_peaks, omega2_peaks) = (&mut theta_peaks[..count], &mut omega2_peaks[..count]);
+    for i in 0..count {
+        let (next, omega2) = next_cell(&row, i, [theta[i], x[i], z[i]], &k);
+        [theta[i], x[i], z[i]] = next;
+        let omega2_next = next[1] * next[1] + next[2] * next[2];
+        theta_peaks[i] = theta_peaks[i].max(size_bits(next[0])).max(size_bits(row[0].center(i)));
+        omega2_peaks[i] = omega2_peaks[i].max(size_bits(omega2)).max(size_bits(omega2_next));
     }
 }

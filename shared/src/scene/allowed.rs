@@ -1,8 +1,9 @@
 //! What each field of a scene file may hold: the one table that parsing, the reference in the README and its tests share.
 
 use super::{
-    PrimitiveKind, VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    LagWay, PrimitiveKind, VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
+use crate::bend::{Edges, Scheme, Seams};
 use std::fmt;
 
 /// Values that a field may hold.
@@ -23,10 +24,11 @@ pub enum Allowed {
 use Allowed::{OneOf, Places, Range, Sections, Text};
 
 /// Every field by its path, in the order of the structs; in a list of sections, those of one section.
-pub const FIELDS: [(&str, Allowed); 101] = [
+pub const FIELDS: [(&str, Allowed); 133] = [
     ("summary", Text),
     ("seed", Range(0.0, i64::MAX as f64)),
     ("tick_hz", Range(10.0, 240.0)),
+    ("species", Sections(16)),
     ("drawn_winds", Sections(16)),
     ("patches.count", Range(1.0, 2048.0)),
     ("patches.cells", Range(8.0, 256.0)),
@@ -75,6 +77,15 @@ pub const FIELDS: [(&str, Allowed); 101] = [
     ("wind.primitives.heading_rad", Range(-6.3, 6.3)),
     ("wind.primitives.drift_m_per_s", Range(-40.0, 40.0)),
     ("wind.primitives.dust", Range(0.0, 1.0)),
+    ("natural_wind.strength_rad_per_s2", Range(0.0, 20.0)),
+    ("natural_wind.scale_m", Range(8.0, 1000.0)),
+    ("natural_wind.drift_m_per_s", Range(-40.0, 40.0)),
+    ("natural_wind.reach_m", Range(0.0, 500.0)),
+    ("bend.scheme", OneOf(Scheme::WORDS)),
+    ("bend.seams", OneOf(Seams::WORDS)),
+    ("bend.edges", OneOf(Edges::WORDS)),
+    ("bend.rest_theta_rad", Range(0.0, 0.1)),
+    ("bend.rest_omega_rad_per_s", Range(0.0, 2.0)),
     ("grass.c0_m_per_s", Range(0.0, 50.0)),
     ("grass.mu_m_per_rad", Range(0.0, 10.0)),
     ("grass.c_omega_m_per_s", Range(0.0, 50.0)),
@@ -83,6 +94,9 @@ pub const FIELDS: [(&str, Allowed); 101] = [
     ("grass.stiffness_per_s2", Range(0.0, 10000.0)),
     ("grass.theta_max_rad", Range(0.1, 1.57)),
     ("grass.wind_bend_rad", Range(0.0, 1.5)),
+    ("grass.lag_secs", Range(0.0, 1.0)),
+    ("grass.recovery_lag_share", Range(0.0, 1.0)),
+    ("grass.segments", Range(1.0, 6.0)),
     ("grass.laid_recovery_secs", Range(0.5, 86_400.0)),
     ("plants.grid_m", Range(1.0, 64.0)),
     ("plants.plants_per_side", Range(2.0, 256.0)),
@@ -94,10 +108,29 @@ pub const FIELDS: [(&str, Allowed); 101] = [
     ("plants.tip_rgb", Range(0.0, 1.0)),
     ("plants.tree_m", Range(0.5, 60.0)),
     ("plants.stone_m", Range(0.05, 20.0)),
+    ("plants.lag", OneOf(LagWay::WORDS)),
+    ("species.name", Text),
+    ("species.cover", Range(1.0, 252.0)),
+    ("species.height_m", Range(0.02, 5.0)),
+    ("species.root_rgb", Range(0.0, 1.0)),
+    ("species.tip_rgb", Range(0.0, 1.0)),
+    ("species.c0_m_per_s", Range(0.0, 50.0)),
+    ("species.mu_m_per_rad", Range(0.0, 10.0)),
+    ("species.c_omega_m_per_s", Range(0.0, 50.0)),
+    ("species.theta_damping_per_s", Range(0.0, 200.0)),
+    ("species.omega_damping_per_s", Range(0.0, 200.0)),
+    ("species.stiffness_per_s2", Range(0.0, 10000.0)),
+    ("species.theta_max_rad", Range(0.1, 1.57)),
+    ("species.wind_bend_rad", Range(0.0, 1.5)),
+    ("species.lag_secs", Range(0.0, 1.0)),
+    ("species.recovery_lag_share", Range(0.0, 1.0)),
+    ("species.segments", Range(1.0, 6.0)),
     ("objects.limit", Range(0.0, 1024.0)),
     ("objects.car_model", Text),
     ("objects.monster_model", Text),
     ("objects.self_driving", Range(0.0, 1024.0)),
+    ("objects.self_driving_m_per_s", Range(1.0, 60.0)),
+    ("objects.self_driving_apart_m", Range(1.0, 1000.0)),
     ("objects.self_driving_kind", OneOf(VehicleKind::WORDS)),
     ("objects.sled_outline_m", Places(3, 64, -20.0, 20.0)),
     ("objects.car.strike_height_m", Range(0.05, 5.0)),
@@ -128,7 +161,7 @@ pub const FIELDS: [(&str, Allowed); 101] = [
 ];
 
 /// Fields that a scene file must give; in a list of sections, each section of it.
-pub const REQUIRED: [&str; 10] = [
+pub const REQUIRED: [&str; 12] = [
     "summary",
     "terrain",
     "terrain.height_map",
@@ -137,6 +170,8 @@ pub const REQUIRED: [&str; 10] = [
     "terrain.level_m",
     "wind.primitives.kind",
     "wind.primitives.at_m",
+    "species.name",
+    "species.cover",
     "drawn_winds.shape",
     "drawn_winds.path_m",
 ];

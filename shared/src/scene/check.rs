@@ -1,6 +1,7 @@
 //! Checks of values against each other; the range of each single value is in [`FIELDS`](super::FIELDS).
 
 use super::{Scene, drawn_wind, objects, wind};
+use crate::bend::{Scheme, Seams};
 
 /// Largest side of the world (m): up to here a coordinate in single precision resolves 1 cm.
 pub const EXTENT_LIMIT_M: f32 = 100_000.0;
@@ -33,7 +34,7 @@ impl Misfits {
 /// What does not fit together in `scene`.
 pub(super) fn cross_checks(scene: &Scene) -> Vec<Misfit> {
     let mut misfits = Misfits::default();
-    let patches = &scene.patches;
+    let Scene { patches, species, .. } = scene;
 
     if !patches.cells.is_multiple_of(8) {
         misfits.note(&["patches.cells"], format!("is {}; allowed: a multiple of 8", patches.cells));
@@ -51,8 +52,51 @@ pub(super) fn cross_checks(scene: &Scene) -> Vec<Misfit> {
         );
         misfits.note(&["patches.awake_limit", "patches.cells"], message);
     }
+    check_bend(scene, &mut misfits);
     wind::check::check(scene, &mut misfits);
+    for (i, later) in species.iter().enumerate() {
+        let earlier = || species[..i].iter().enumerate();
+        if let Some((j, _)) = earlier().find(|(_, earlier)| earlier.name == later.name) {
+            let fields = [format!("species[{i}].name"), format!("species[{j}].name")];
+            misfits
+                .note(&[&fields[0], &fields[1]], format!("is \"{}\", as that of `species[{j}]`; allowed: a name of its own", later.name));
+        }
+        if let Some((j, _)) = earlier().find(|(_, earlier)| earlier.cover == later.cover) {
+            let fields = [format!("species[{i}].cover"), format!("species[{j}].cover")];
+            let message =
+                format!("is {}, as that of `species[{j}]`, \"{}\"; allowed: an ID of its own, 1 to 252", later.cover, species[j].name);
+            misfits.note(&[&fields[0], &fields[1]], message);
+        }
+    }
     objects::check(&scene.objects, &mut misfits);
     drawn_wind::check(scene, &mut misfits);
     misfits.0
+}
+
+/// What the modal scheme asks for.
+fn check_bend(scene: &Scene, misfits: &mut Misfits) {
+    let Scene { bend, grass, patches, species, .. } = scene;
+    if bend.scheme != Scheme::Modal {
+        return;
+    }
+    let scheme = "`bend.scheme` = \"modal\"";
+    if grass.mu_m_per_rad != 0.0 {
+        let message = format!("is {}; allowed with {scheme}: 0, for its speed is one constant", grass.mu_m_per_rad);
+        misfits.note(&["grass.mu_m_per_rad", "bend.scheme"], message);
+    }
+    if !species.is_empty() {
+        let message = format!("names {} species; allowed with {scheme}: none, for its speed is one constant", species.len());
+        misfits.note(&["species", "bend.scheme"], message);
+    }
+    if bend.seams != Seams::Exact {
+        misfits.note(&["bend.seams", "bend.scheme"], format!("is \"{}\"; allowed with {scheme}: \"exact\"", bend.seams.word()));
+    }
+    let count = u64::from(patches.count[0]) * u64::from(patches.count[1]);
+    if count > u64::from(patches.awake_limit) {
+        let message = format!(
+            "is {}; allowed with {scheme}: at least as many as there are patches, {count}, for it carries all of them at once",
+            patches.awake_limit
+        );
+        misfits.note(&["patches.awake_limit", "patches.count", "bend.scheme"], message);
+    }
 }

@@ -24,6 +24,13 @@ pub struct Grass {
     pub theta_max_rad: f32,
     /// Bend that a wind of 10 m/s sustains (rad); grows with the square of the speed below it. Default 0.5, allowed 0..=1.5.
     pub wind_bend_rad: f32,
+    /// How long the tip's bend comes after the root's (s): γ of the topmost segment, 001 Eq. (7); those between share it evenly. Default 0.12, allowed
+    /// 0..=1.
+    pub lag_secs: f32,
+    /// Share of that lag while the grass rises again, when its upper parts trail less (001 §4.5). Default 0.4, allowed 0..=1.
+    pub recovery_lag_share: f32,
+    /// Segments that bend one after the other, from the root up; 1 is stiff, short grass, which bends as a whole. Default 3, allowed 1..=6.
+    pub segments: u32,
     /// Time in which grass that an object's weight has laid rises to 1/e of its lean (s). Default 60, allowed 0.5..=86400.
     pub laid_recovery_secs: f32,
 }
@@ -39,6 +46,9 @@ impl Default for Grass {
             stiffness_per_s2: 1.2,
             theta_max_rad: 1.45,
             wind_bend_rad: 0.5,
+            lag_secs: 0.12,
+            recovery_lag_share: 0.4,
+            segments: 3,
             laid_recovery_secs: 60.0,
         }
     }

@@ -4,8 +4,10 @@
 //! ranges are the first thing done with a file; the world is made from a checked [`Scene`] alone.
 
 mod allowed;
+mod bend;
 mod check;
 mod drawn_wind;
+mod natural_wind;
 mod fault;
 mod grass;
 mod objects;
@@ -13,20 +15,25 @@ mod parse;
 mod patches;
 mod picture;
 mod plants;
+mod species;
 mod terrain;
 mod wind;
 
+pub use bend::BendField;
 pub use allowed::{Allowed, FIELDS, REQUIRED};
 pub use check::{AWAKE_CELLS_LIMIT, EXTENT_LIMIT_M, WIND_CELLS_LIMIT};
 pub use drawn_wind::{DrawnWind, WindShape};
 pub use fault::SceneFault;
 pub use grass::Grass;
+pub use natural_wind::NaturalWind;
 pub use objects::{CarTread, HelicopterTread, MonsterTread, Objects, SledTread, Tread, VehicleKind};
 pub use parse::parse;
 pub use patches::Patches;
 pub use picture::{CameraStart, Light};
-pub use plants::Plants;
+pub use plants::{LagWay, Plants};
+pub use species::Species;
 pub use terrain::TerrainMaps;
+pub(crate) use wind::words;
 pub use wind::{
     Primitive, PrimitiveKind, Wind, WindAdvection, WindBoundary, WindDiffusion, WindDust, WindFaces, WindMethod, WindPressure, WindTerrain,
     WindTiling, WindTime,
@@ -55,12 +62,22 @@ pub struct Scene {
     /// The wind: its box, what drives it, and how it is solved.
     #[serde(default)]
     pub wind: Wind,
+    /// Gusts of noise that push the grass near cameras (001 §5.3).
+    #[serde(default)]
+    pub natural_wind: NaturalWind,
+    /// How the bend field is solved.
+    #[serde(default)]
+    pub bend: BendField,
     /// How the grass bends and rises: the constants of the bend field.
     #[serde(default)]
     pub grass: Grass,
     /// What grows: size and number of blades, flowers, trees and stones.
     #[serde(default)]
     pub plants: Plants,
+    /// Kinds of grass beside that of `[grass]` and `[plants]`, each a section `[[species]]`; with any, every ID of the covering map is that of a
+    /// species, or 0, 253, 254 or 255. Default none, allowed at most 16.
+    #[serde(default)]
+    pub species: Vec<Species>,
     /// Cars, monsters, helicopters and sleds: how many, their models, and how they meet the grass.
     #[serde(default)]
     pub objects: Objects,

@@ -78,6 +78,12 @@ pub struct Objects {
     /// Vehicles that drive by themselves in circles, so that an empty prairie shows tracks. Default 0, allowed
     /// 0..=1024 and at most `limit`.
     pub self_driving: u32,
+    /// Speed that these cars keep (m/s); they circle as narrowly as their grip lets them, some 50 m wide at the default and 180 m at 20. Default
+    /// 11, allowed 1..=60; no car goes faster than 32.
+    pub self_driving_m_per_s: f32,
+    /// Distance at which they start from each other, about (m): the n-th stands √n times as far from the middle of the world. Default 4, allowed
+    /// 1..=1000.
+    pub self_driving_apart_m: f32,
     /// What those are: `car`, `monster`, `helicopter` or `sled`. Default `car`.
     pub self_driving_kind: VehicleKind,
     /// Outline of a sled seen from above: corners [x, z] in order, x to the right and z to the back of its middle (m). It may be
@@ -101,6 +107,8 @@ impl Default for Objects {
             car_model: String::new(),
             monster_model: String::new(),
             self_driving: 0,
+            self_driving_m_per_s: 11.0,
+            self_driving_apart_m: 4.0,
             self_driving_kind: VehicleKind::Car,
             sled_outline_m: vec![[-2.0, -2.5], [-1.2, -2.5], [-1.2, 1.7], [1.2, 1.7], [1.2, -2.5], [2.0, -2.5], [2.0, 2.5], [-2.0, 2.5]],
             car: CarTread::default(),

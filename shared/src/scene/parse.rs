@@ -2,7 +2,7 @@
 
 use super::allowed::{Allowed, FIELDS, REQUIRED, allowed_at};
 use super::check::{Misfit, cross_checks};
-use super::{DrawnWind, Primitive, PrimitiveKind, Scene, SceneFault, TerrainMaps, Wind, WindMethod, WindShape};
+use super::{DrawnWind, Grass, Plants, Primitive, PrimitiveKind, Scene, SceneFault, Species, TerrainMaps, Wind, WindMethod, WindShape};
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Value;
@@ -19,7 +19,7 @@ pub fn parse(text: &str) -> Result<Scene, Vec<SceneFault>> {
         return Err(syntax_faults(text, &errors));
     }
     let mut values = template(wind_method(root.get_ref()));
-    let mut walk = Walk { text, faults: Vec::new() };
+    let mut walk = Walk { text, faults: Vec::new(), species: species_template(text, &values, root.get_ref()) };
     walk.table(&mut values, root.get_ref(), root.span(), "");
 
     let scene = Scene::deserialize(values).map_err(|error| vec![SceneFault::spanning(text, 0..0, "", error.message())])?;
@@ -63,6 +63,9 @@ fn template(method: WindMethod) -> toml::Table {
         wind: Wind::of(method),
         grass: Default::default(),
         plants: Default::default(),
+        species: Vec::new(),
+        bend: Default::default(),
+        natural_wind: Default::default(),
         objects: Default::default(),
         drawn_winds: Vec::new(),
         camera: Default::default(),
@@ -80,10 +83,28 @@ fn section_template(path: &str) -> Value {
     section.unwrap_or_else(|_| toml::Table::new().into())
 }
 
+/// One section `[[species]]` with all its fields: what it leaves unsaid is as in a file's own `[grass]` and `[plants]`.
+fn species_template(text: &str, values: &toml::Table, root: &DeTable<'_>) -> Value {
+    // Faults in those two sections are told when the file itself is walked through.
+    let mut walk = Walk { text, faults: Vec::new(), species: toml::Table::new().into() };
+    let mut section = |name: &str| {
+        let mut section = values[name].clone();
+        if let Some(found) = root.get(name) {
+            walk.value(&mut section, found.get_ref(), found.span(), name);
+        }
+        section
+    };
+    let grass = Grass::deserialize(section("grass")).unwrap_or_default();
+    let plants = Plants::deserialize(section("plants")).unwrap_or_default();
+    Value::try_from(Species::new("", 1, &grass, &plants)).unwrap_or_else(|_| toml::Table::new().into())
+}
+
 /// Puts a file's values in the place of the template's, and keeps what does not agree with it or with [`FIELDS`].
 struct Walk<'t> {
     text: &'t str,
     faults: Vec<SceneFault>,
+    /// A section `[[species]]` that says nothing.
+    species: Value,
 }
 
 impl Walk<'_> {
@@ -112,7 +133,7 @@ impl Walk<'_> {
         if items.len() > limit {
             return self.fault(span, path, format!("has {} sections; allowed: at most {limit}", items.len()));
         }
-        places.resize(items.len(), section_template(path));
+        places.resize(items.len(), if path == "species" { self.species.clone() } else { section_template(path) });
         for (i, (place, item)) in places.iter_mut().zip(items.iter()).enumerate() {
             self.value(place, item.get_ref(), item.span(), &format!("{path}[{i}]"));
         }

@@ -1,6 +1,17 @@
 //! What grows in a scene.
 
+use super::wind::words;
 use serde::{Deserialize, Serialize};
+
+words! {
+    /// How upper segments find the bend that the root had a while ago.
+    LagWay {
+        /// From the place that the bend has reached since, 001 Eqs (8)–(9).
+        Upwind = "upwind",
+        /// From what was streamed then, 001 Eq. (7).
+        History = "history",
+    }
+}
 
 /// Size, number and colour of what the covering map places.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,6 +37,9 @@ pub struct Plants {
     pub tree_m: f32,
     /// Size of a stone (m). Default 0.8, allowed 0.05..=20.
     pub stone_m: f32,
+    /// Where upper segments of plants find the bend that the root had `grass.lag_secs` ago: `upwind`, at the place that the bend has reached since (001 Eqs
+    /// 8–9); `history`, in earlier pictures of the field, which are kept for it (Eq. 7). Default `upwind`.
+    pub lag: LagWay,
 }
 
 impl Default for Plants {
@@ -41,6 +55,7 @@ impl Default for Plants {
             tip_rgb: [0.30, 0.40, 0.09],
             tree_m: 7.0,
             stone_m: 0.8,
+            lag: LagWay::Upwind,
         }
     }
 }

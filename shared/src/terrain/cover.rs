@@ -13,7 +13,7 @@ pub enum Cover {
     Stone,
     /// Grass (ID 255).
     Grass,
-    /// Any other ID, free for further models; bare ground until one is named.
+    /// Any other ID: a species of grass where the scene [names it](crate::scene::Scene::is_grass), else bare ground.
     Free(u8),
 }
 
@@ -66,6 +66,13 @@ impl CoverMap {
             return Cover::Gap;
         }
         Cover::from(self.ids[pz as usize * self.width_px as usize + px as usize])
+    }
+
+    /// The first pixel, row by row from the north-west, whose ID `is_meant` says: its column and row, and the ID.
+    pub fn find(&self, is_meant: impl Fn(u8) -> bool) -> Option<([u32; 2], u8)> {
+        let index = self.ids.iter().position(|&id| is_meant(id))?;
+        let width = self.width_px as usize;
+        Some(([(index % width) as u32, (index / width) as u32], self.ids[index]))
     }
 
     /// Pixels that hold `cover`, as the world coordinates of their centres (m).

@@ -9,6 +9,7 @@ mod words;
 pub use dust::WindDust;
 pub use faces::{WindBoundary, WindFaces};
 pub use primitive::{Primitive, PrimitiveKind};
+pub(crate) use words::words;
 pub use words::{WindAdvection, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime};
 
 use serde::{Deserialize, Serialize};

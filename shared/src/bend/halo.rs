@@ -1,0 +1,144 @@
+//! What patches tell each other: which tiles are loud, which step, and the cells along their borders.
+
+use super::patch::{HALO, Patch};
+use super::tiles::TILE;
+use crate::grid::{PatchIndex, PatchLayout};
+use crate::scene::words;
+use serde::{Deserialize, Serialize};
+
+words! {
+    /// What lies beyond the edge of the world.
+    #[derive(Default)]
+    Edges {
+        /// Grass at rest: waves are thrown back with their sign turned, as by a fixed end.
+        #[default]
+        Rest = "rest",
+        /// A mirror: waves are thrown back as by a free end.
+        Free = "free",
+        /// The opposite edge.
+        Wrapped = "wrapped",
+    }
+}
+
+words! {
+    /// How patches meet.
+    #[derive(Default)]
+    Seams {
+        /// Ghost cells are exchanged: a field of many patches equals one big grid, bit for bit.
+        #[default]
+        Exact = "exact",
+        /// As 001 §4.2: each patch simulates 4 cells more on every side, the last of them at rest, and hears nothing of its neighbours;
+        /// contact alone presses both.
+        Overlap = "overlap",
+    }
+}
+
+/// The eight directions in which a patch has neighbours.
+pub(super) const AROUND: [[i64; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
+
+/// Who lies beside a patch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Neighbour {
+    pub(super) index: PatchIndex,
+    /// Along which axes it is the mirror of itself.
+    mirrored: [bool; 2],
+}
+
+impl Neighbour {
+    /// Its own tile for one of ours toward it; `count` tiles a side.
+    pub(super) fn place(&self, tile: [i64; 2], toward: [i64; 2], count: i64) -> [i64; 2] {
+        [0, 1].map(|axis| theirs(tile[axis], toward[axis], count, self.mirrored[axis]))
+    }
+}
+
+/// The neighbour in a direction, if the world has one there.
+pub(super) fn neighbour(layout: &PatchLayout, edges: Edges, patch: PatchIndex, toward: [i64; 2]) -> Option<Neighbour> {
+    let place = layout.place(patch).map(i64::from);
+    let count = layout.count.map(i64::from);
+    let mut to = [place[0] + toward[0], place[1] + toward[1]];
+    let mut mirrored = [false; 2];
+    for axis in 0..2 {
+        if !(0..count[axis]).contains(&to[axis]) {
+            match edges {
+                Edges::Rest => return None,
+                Edges::Wrapped => to[axis] = to[axis].rem_euclid(count[axis]),
+                Edges::Free => (to[axis], mirrored[axis]) = (place[axis], true),
+            }
+        }
+    }
+    layout.index(to[0], to[1]).map(|index| Neighbour { index, mirrored })
+}
+
+/// Along one axis: the places from −`width` to `count + width` that lie toward −1, 0 or 1.
+fn ghosts(toward: i64, count: i64, width: i64) -> std::ops::Range<i64> {
+    match toward {
+        -1 => -width..0,
+        0 => 0..count,
+        _ => count..count + width,
+    }
+}
+
+/// The neighbour's own place for one of ours beyond the border.
+fn theirs(at: i64, toward: i64, count: i64, mirrored: bool) -> i64 {
+    match (toward, mirrored) {
+        (0, _) => at,
+        (-1, true) => -1 - at,
+        (_, true) => 2 * count - 1 - at,
+        _ => at - toward * count,
+    }
+}
+
+/// Tiles of our ring toward a neighbour.
+pub(super) fn ring(count: usize, toward: [i64; 2]) -> impl Iterator<Item = [i64; 2]> {
+    let range = move |axis: usize| ghosts(toward[axis], count as i64, 1);
+    range(1).flat_map(move |z| range(0).map(move |x| [x, z]))
+}
+
+/// Tiles of the ring toward a neighbour, from the first to one past the last, along both axes.
+pub(super) type TileRun = [std::ops::Range<i64>; 2];
+
+/// Ghost cells of tiles of the ring, `rings` wide: our columns and rows.
+fn cells(tiles: &TileRun, toward: [i64; 2], side: i64, rings: usize) -> [std::ops::Range<i64>; 2] {
+    [0, 1].map(|axis| match toward[axis] {
+        0 => tiles[axis].start * TILE as i64..tiles[axis].end * TILE as i64,
+        toward => ghosts(toward, side, rings as i64),
+    })
+}
+
+/// Fills the ghosts of tiles of the ring from the neighbour `from`: `rings` of the newest state and, where more than one, of the earlier.
+pub(super) fn fetch(patches: &mut [Patch], own: usize, from: usize, toward: [i64; 2], tiles: &TileRun, neighbour: Neighbour, rings: usize) {
+    let side = patches[own].side() as i64;
+    let [columns, rows] = cells(tiles, toward, side, rings);
+    let width = (columns.end - columns.start) as usize;
+    let reversed = toward[0] != 0 && neighbour.mirrored[0];
+    let their_column = |at| theirs(at, toward[0], side, neighbour.mirrored[0]);
+    let first_column = if reversed { their_column(columns.end - 1) } else { their_column(columns.start) };
+    for row in rows {
+        let source = patches[own].at(first_column, theirs(row, toward[1], side, neighbour.mirrored[1]));
+        let target = patches[own].at(columns.start, row);
+        let states = if rings > 1 { 2 } else { 1 };
+        if own == from {
+            for plane in patches[own].planes_mut(states) {
+                plane.copy_within(source..source + width, target);
+                if reversed {
+                    plane[target..target + width].reverse();
+                }
+            }
+            continue;
+        }
+        let Ok([own, from]) = patches.get_disjoint_mut([own, from]) else { unreachable!("two patches of one field") };
+        for (to, from) in own.planes_mut(states).zip(from.planes_mut(states)) {
+            to[target..target + width].copy_from_slice(&from[source..source + width]);
+            if reversed {
+                to[target..target + width].reverse();
+            }
+        }
+    }
+}
+
+/// Puts the ghosts of tiles of the ring to rest.
+pub(super) fn quell(patch: &mut Patch, toward: [i64; 2], tiles: &TileRun) {
+    let [columns, rows] = cells(tiles, toward, patch.side() as i64, HALO);
+    let size = [&columns, &rows].map(|range| (range.end - range.start) as usize);
+    patch.quell([columns.start, rows.start], size);
+}

@@ -1,0 +1,67 @@
+//! Which grass grows where: constants of the waves for each species, and the map of species.
+
+use super::WaveParams;
+use crate::grid::PatchLayout;
+use crate::scene::Scene;
+use crate::terrain::{CoverMap, KindMap};
+
+/// The wave constants of each kind of grass, and where each grows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kinds {
+    waves: Vec<WaveParams>,
+    map: Option<Pixels>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Pixels {
+    size_px: [usize; 2],
+    /// Kind at each pixel, row by row from the north.
+    kinds: Vec<u8>,
+}
+
+impl Kinds {
+    /// One kind everywhere.
+    pub fn one(waves: WaveParams) -> Self {
+        Self { waves: vec![waves], map: None }
+    }
+
+    /// Several kinds and a map of `size_px` pixels that is stretched over the world, row by row from the north; each names its kind by place.
+    ///
+    /// # Panics
+    /// When a pixel names a kind that is not there, or the number of pixels is not that of the size.
+    pub fn mapped(waves: Vec<WaveParams>, size_px: [usize; 2], kinds: Vec<u8>) -> Self {
+        assert!(size_px[0] * size_px[1] == kinds.len() && kinds.iter().all(|&kind| usize::from(kind) < waves.len()));
+        Self { waves, map: Some(Pixels { size_px, kinds }) }
+    }
+
+    /// The kinds of a scene, over its covering map.
+    pub fn of(scene: &Scene, cover: &CoverMap) -> Self {
+        let waves: Vec<_> = scene.kinds().iter().map(WaveParams::from).collect();
+        if waves.len() == 1 {
+            return Self::one(waves[0]);
+        }
+        let map = KindMap::new(scene, cover);
+        Self::mapped(waves, map.size_px().map(|n| n as usize), map.kinds().to_vec())
+    }
+
+    /// Constants of all kinds.
+    pub fn waves(&self) -> &[WaveParams] {
+        &self.waves
+    }
+
+    /// Kind of a cell of the world; outside of it, that of the nearest.
+    pub fn kind(&self, layout: &PatchLayout, cell: [i64; 2]) -> u8 {
+        let Some(map) = &self.map else { return 0 };
+        let pixel = |axis: usize| {
+            let cells = i64::from(layout.count[axis]) * i64::from(layout.cells);
+            // In whole numbers, so that every machine finds the same pixel.
+            (cell[axis].clamp(0, cells - 1) * 2 + 1) as usize * map.size_px[axis] / (2 * cells as usize)
+        };
+        map.kinds[pixel(1) * map.size_px[0] + pixel(0)]
+    }
+
+    /// Whether one kind grows everywhere.
+    pub fn is_one(&self) -> bool {
+        self.map.is_none()
+    }
+}
