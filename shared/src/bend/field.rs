@@ -1,6 +1,6 @@
 //! The whole field: the awake patches, and the step.
 
-use super::halo::{AROUND, Edges, Neighbour, Seams, TileRun, fetch, neighbour, quell, ring};
+use super::halo::{AROUND, Edges, Neighbour, Seams, TileRun, fetch, neighbour, quell, ring, source};
 use super::limits::{SUBSTEPS_LIMIT, courant_share, substeps};
 use super::tiles::{Rest, TILE};
 use super::verlet::{self, Pass, SIDE_LIMIT};
@@ -111,9 +111,11 @@ impl Field {
     pub fn wake(&mut self, patch: PatchIndex) -> &mut Patch {
         let slot = self.patches.binary_search_by_key(&patch, Patch::index).unwrap_or_else(|slot| {
             assert!((patch as usize) < self.layout.patches(), "patch {patch} of {}", self.layout.patches());
-            let (layout, kinds, cells) = (&self.layout, &self.kinds, i64::from(self.layout.cells));
+            let (layout, kinds, edges, cells) = (&self.layout, &self.kinds, self.edges, i64::from(self.layout.cells));
             let corner = layout.place(patch).map(|n| i64::from(n) * cells);
-            let kind = |[i, j]: [i64; 2]| kinds.kind(layout, [corner[0] + i, corner[1] + j]);
+            let along = |axis: usize, at: i64| source(edges, corner[axis] + at, i64::from(layout.count[axis]) * cells);
+            // Ghosts advance as the cells that they stand for, also beyond the edge of the world.
+            let kind = |[i, j]: [i64; 2]| kinds.kind(layout, [along(0, i), along(1, j)]);
             self.patches.insert(slot, Patch::new(patch, cells as usize, kind));
             slot
         });

@@ -69,6 +69,17 @@ pub(super) fn neighbour(layout: &PatchLayout, edges: Edges, patch: PatchIndex, t
     layout.index(to[0], to[1]).map(|index| Neighbour { index, mirrored })
 }
 
+/// The cell of the world that one beyond its edge stands for, along one axis of `count` cells; beyond edges at rest the outermost.
+pub(super) fn source(edges: Edges, at: i64, count: i64) -> i64 {
+    match edges {
+        Edges::Rest => at.clamp(0, count - 1),
+        Edges::Wrapped => at.rem_euclid(count),
+        Edges::Free if at < 0 => -1 - at,
+        Edges::Free if at >= count => 2 * count - 1 - at,
+        Edges::Free => at,
+    }
+}
+
 /// Along one axis: the places from −`width` to `count + width` that lie toward −1, 0 or 1.
 fn ghosts(toward: i64, count: i64, width: i64) -> std::ops::Range<i64> {
     match toward {

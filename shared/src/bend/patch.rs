@@ -1,6 +1,6 @@
 //! One patch of the field: three channels at two times, with a halo of ghost cells.
 
-use super::tiles::{TILE, Tiles, size_bits};
+use super::tiles::{TILE, Tiles, size_bits, square_bits};
 use crate::grid::PatchIndex;
 
 /// State of one cluster of grass.
@@ -181,7 +181,7 @@ impl Patch {
                     let [theta, u, w] = planes.each_ref().map(|plane| &plane[at..at + TILE]);
                     for i in 0..TILE {
                         peaks[0] = peaks[0].max(size_bits(theta[i]));
-                        peaks[1] = peaks[1].max(size_bits(u[i] * u[i] + w[i] * w[i]));
+                        peaks[1] = peaks[1].max(square_bits(u[i], w[i]));
                     }
                 }
             }

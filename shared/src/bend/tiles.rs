@@ -33,7 +33,7 @@ pub(super) struct Tiles {
     /// Tiles along one side.
     count: usize,
     /// Largest |θ| and |ω|² at the newest two times, as bits: those of numbers that are not negative sort as the numbers do, and what is
-    /// no number sorts above all.
+    /// no number sorts above all. |ω|² is at least 1 bit where ω is not zero.
     peaks: Vec<[u32; 2]>,
     /// Which tiles step, with a ring of those of the neighbours: `(count + 2)²`.
     steps: Vec<bool>,
@@ -48,6 +48,12 @@ const SIGN: u32 = 1 << 31;
 #[inline(always)]
 pub(super) fn size_bits(value: f32) -> u32 {
     value.to_bits() & !SIGN
+}
+
+/// |ω|² as bits that sort as values do; zero only where ω is, while the square of a small number vanishes.
+#[inline(always)]
+pub(super) fn square_bits(x: f32, z: f32) -> u32 {
+    size_bits(x * x + z * z).max((size_bits(x) | size_bits(z)).min(1))
 }
 
 impl Tiles {
@@ -116,7 +122,7 @@ impl Tiles {
         for Bend { theta, omega: [x, z] } in states {
             let [theta_bits, omega2_bits] = &mut self.peaks[tile];
             *theta_bits = (*theta_bits).max(size_bits(theta));
-            *omega2_bits = (*omega2_bits).max(size_bits(x * x + z * z));
+            *omega2_bits = (*omega2_bits).max(square_bits(x, z));
         }
         self.changed[tile] = true;
     }

@@ -8,7 +8,7 @@
 //! sub-step uses up one. Its neighbours compute these cells, too, with the same bits.
 
 use super::patch::{CHANNELS, Ground, HALO, Patch, Planes};
-use super::tiles::{TILE, size_bits};
+use super::tiles::{TILE, size_bits, square_bits};
 use super::Coefficients;
 use multiversion::multiversion;
 
@@ -219,20 +219,19 @@ impl<'a> Stencil<'a> {
     }
 }
 
-/// What a cell of θ, ωx, ωz becomes, and |ω|² before.
+/// What a cell of θ, ωx, ωz becomes.
 #[inline(always)]
-fn next_cell(row: &[Stencil; CHANNELS], i: usize, before: [f32; CHANNELS], k: &Coefficients) -> ([f32; CHANNELS], f32) {
+fn next_cell(row: &[Stencil; CHANNELS], i: usize, before: [f32; CHANNELS], k: &Coefficients) -> [f32; CHANNELS] {
     let [theta, x, z] = row;
     let omega2 = x.center(i) * x.center(i) + z.center(i) * z.center(i);
     let r = k.r0 + k.r_mu * omega2.sqrt();
     let theta_keep = 2.0 - k.lambda_theta - k.restoring[0];
     let (keep, memory) = (2.0 - k.lambda_omega - k.restoring[1], 1.0 - k.lambda_omega);
-    let next = [
+    [
         theta_keep * theta.center(i) - (1.0 - k.lambda_theta) * before[0] + r * r * theta.laplacian(i),
         keep * x.center(i) - memory * before[1] + k.r2_omega * x.laplacian(i),
         keep * z.center(i) - memory * before[2] + k.r2_omega * z.laplacian(i),
-    ];
-    (next, omega2)
+    ]
 }
 
 // Kept apart from the loops over rows: inlined into them, the compiler loses sight of which slices cannot overlap.
@@ -242,8 +241,7 @@ fn advance_row(row: &[Stencil; CHANNELS], theta: &mut [f32], x: &mut [f32], z: &
     let row = row.map(|stencil| stencil.cut(count));
     let (x, z, k) = (&mut x[..count], &mut z[..count], *k);
     for i in 0..count {
-        let (next, _) = next_cell(&row, i, [theta[i], x[i], z[i]], &k);
-        [theta[i], x[i], z[i]] = next;
+        [theta[i], x[i], z[i]] = next_cell(&row, i, [theta[i], x[i], z[i]], &k);
     }
 }
 
@@ -262,10 +260,10 @@ fn advance_and_measure(
     let (x, z, k) = (&mut x[..count], &mut z[..count], *k);
     let (theta_peaks, omega2_peaks) = (&mut theta_peaks[..count], &mut omega2_peaks[..count]);
     for i in 0..count {
-        let (next, omega2) = next_cell(&row, i, [theta[i], x[i], z[i]], &k);
+        let next = next_cell(&row, i, [theta[i], x[i], z[i]], &k);
         [theta[i], x[i], z[i]] = next;
-        let omega2_next = next[1] * next[1] + next[2] * next[2];
         theta_peaks[i] = theta_peaks[i].max(size_bits(next[0])).max(size_bits(row[0].center(i)));
-        omega2_peaks[i] = omega2_peaks[i].max(size_bits(omega2)).max(size_bits(omega2_next));
+        let omega2 = square_bits(row[1].center(i), row[2].center(i));
+        omega2_peaks[i] = omega2_peaks[i].max(omega2).max(square_bits(next[1], next[2]));
     }
 }
