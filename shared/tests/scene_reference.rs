@@ -11,7 +11,7 @@ struct Field {
 }
 
 /// Source files and, for each struct in them, the section that it describes.
-const SOURCES: [(&str, &[(&str, &str)]); 12] = [
+const SOURCES: [(&str, &[(&str, &str)]); 15] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
     ("terrain.rs", &[("TerrainMaps", "terrain")]),
@@ -19,6 +19,8 @@ const SOURCES: [(&str, &[(&str, &str)]); 12] = [
     ("wind/faces.rs", &[("WindFaces", "wind.faces")]),
     ("wind/dust.rs", &[("WindDust", "wind.dust")]),
     ("wind/primitive.rs", &[("Primitive", "wind.primitives")]),
+    ("natural_wind.rs", &[("NaturalWind", "natural_wind")]),
+    ("bend.rs", &[("BendField", "bend")]),
     ("grass.rs", &[("Grass", "grass")]),
     ("plants.rs", &[("Plants", "plants")]),
     ("species.rs", &[("Species", "species")]),
@@ -37,12 +39,14 @@ const SOURCES: [(&str, &[(&str, &str)]); 12] = [
 ];
 
 /// Sections that may stand once.
-const SECTIONS: [&str; 14] = [
+const SECTIONS: [&str; 16] = [
     "patches",
     "terrain",
     "wind",
     "wind.faces",
     "wind.dust",
+    "natural_wind",
+    "bend",
     "grass",
     "plants",
     "objects",

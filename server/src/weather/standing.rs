@@ -69,6 +69,7 @@ impl Standing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use shared::bend::{Kinds, WaveParams};
     use shared::grid::PatchLayout;
     use shared::scene::Species;
     use shared::terrain::grey_png;
@@ -81,7 +82,7 @@ mod tests {
         scene.species = vec![Species { height_m: 2.0, ..tall }];
         let cover = CoverMap::from_png(&grey_png([2; 2], &[255, 1, 0, 7])).unwrap();
         let mut standing = Standing::new(&scene, &cover, scene.tallest_m());
-        let still = Field::new(PatchLayout::from(&scene.patches));
+        let still = Field::new(PatchLayout::from(&scene.patches), Kinds::one(WaveParams::from(&scene.grass)));
         assert_eq!(standing.shares(&still).collect::<Vec<_>>(), [0.25, 1.0, 0.0, 0.0]);
     }
 }
