@@ -6,7 +6,7 @@
 //!
 //! Where the bend slows down, so does the wave (Eq. 4), from c⁻ to c: its motion θ − θ⁻ then is kept by c/c⁻ only. A wave's energy is
 //! `(θ'/c)² + |∇θ|²`: were the motion kept whole, each fall of c would add to it, and |ω|, which swings, would drive θ up without end, however short
-//! the steps (Hill's equation; 250 000 rad in one of 5000 random draws).
+//! the steps (Hill's equation; 250 000 rad in one of 5000 random draws). [`Damping::Plain`](super::Damping) keeps it whole, as 001 does.
 //!
 //! A patch does up to [`HALO`] sub-steps while it lies in the cache: its halo then holds as many rings of its neighbours' cells, of which each
 //! sub-step uses up one. Its neighbours compute these cells, too, with the same bits.
@@ -231,7 +231,7 @@ fn next_cell(row: &[Stencil; CHANNELS], i: usize, before: [f32; CHANNELS], k: &C
     let r = k.r0 + k.r_mu * omega2.sqrt();
     let r_before = k.r0 + k.r_mu * (before[1] * before[1] + before[2] * before[2]).sqrt();
     // `min` drops what is no number: nothing over nothing is 1.
-    let theta_memory = (1.0 - k.lambda_theta) * (r / r_before).min(1.0);
+    let theta_memory = (1.0 - k.lambda_theta) * (r / r_before).min(1.0).max(k.kept_at_least);
     let theta_keep = 1.0 + theta_memory - k.restoring[0];
     let (keep, memory) = (2.0 - k.lambda_omega - k.restoring[1], 1.0 - k.lambda_omega);
     [
