@@ -165,9 +165,11 @@ fn advance_run(patch: &mut Patch, kinds: &[Coefficients], run: Run, mut peaks: O
             // Ghosts have no peaks: their own patch tells them.
             Some(peaks) if own[1] - own[0] == to - from => {
                 let (theta_peaks, omega_peaks) = (&mut peaks.theta[own[0]..own[1]], &mut peaks.omega2[own[0]..own[1]]);
-                advance_and_measure(&row, theta, x, z, k, theta_peaks, omega_peaks);
+                let advance = if k.r_mu == 0.0 { advance_and_measure::<false> } else { advance_and_measure::<true> };
+                advance(&row, theta, x, z, k, theta_peaks, omega_peaks);
             }
-            _ => advance_row(&row, theta, x, z, k),
+            _ if k.r_mu == 0.0 => advance_row::<false>(&row, theta, x, z, k),
+            _ => advance_row::<true>(&row, theta, x, z, k),
         }
     });
 }
@@ -223,15 +225,17 @@ impl<'a> Stencil<'a> {
     }
 }
 
-/// What a cell of θ, ωx, ωz becomes.
+/// What a cell of θ, ωx, ωz becomes, where the speed of θ `VARIES` with the bend or not.
 #[inline(always)]
-fn next_cell(row: &[Stencil; CHANNELS], i: usize, before: [f32; CHANNELS], k: &Coefficients) -> [f32; CHANNELS] {
+fn next_cell<const VARIES: bool>(row: &[Stencil; CHANNELS], i: usize, before: [f32; CHANNELS], k: &Coefficients) -> [f32; CHANNELS] {
     let [theta, x, z] = row;
-    let omega2 = x.center(i) * x.center(i) + z.center(i) * z.center(i);
-    let r = k.r0 + k.r_mu * omega2.sqrt();
-    let r_before = k.r0 + k.r_mu * (before[1] * before[1] + before[2] * before[2]).sqrt();
-    // `min` drops what is no number: nothing over nothing is 1.
-    let theta_memory = (1.0 - k.lambda_theta) * (r / r_before).min(1.0).max(k.kept_at_least);
+    let (mut r, mut theta_memory) = (k.r0, 1.0 - k.lambda_theta);
+    if VARIES {
+        let courant = |x: f32, z: f32| k.r0 + k.r_mu * (x * x + z * z).sqrt();
+        r = courant(x.center(i), z.center(i));
+        // `min` drops what is no number: nothing over nothing is 1.
+        theta_memory *= (r / courant(before[1], before[2])).min(1.0).max(k.kept_at_least);
+    }
     let theta_keep = 1.0 + theta_memory - k.restoring[0];
     let (keep, memory) = (2.0 - k.lambda_omega - k.restoring[1], 1.0 - k.lambda_omega);
     [
@@ -243,17 +247,17 @@ fn next_cell(row: &[Stencil; CHANNELS], i: usize, before: [f32; CHANNELS], k: &C
 
 // Kept apart from the loops over rows: inlined into them, the compiler loses sight of which slices cannot overlap.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn advance_row(row: &[Stencil; CHANNELS], theta: &mut [f32], x: &mut [f32], z: &mut [f32], k: &Coefficients) {
+fn advance_row<const VARIES: bool>(row: &[Stencil; CHANNELS], theta: &mut [f32], x: &mut [f32], z: &mut [f32], k: &Coefficients) {
     let count = theta.len();
     let row = row.map(|stencil| stencil.cut(count));
     let (x, z, k) = (&mut x[..count], &mut z[..count], *k);
     for i in 0..count {
-        [theta[i], x[i], z[i]] = next_cell(&row, i, [theta[i], x[i], z[i]], &k);
+        [theta[i], x[i], z[i]] = next_cell::<VARIES>(&row, i, [theta[i], x[i], z[i]], &k);
     }
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn advance_and_measure(
+fn advance_and_measure<const VARIES: bool>(
     row: &[Stencil; CHANNELS],
     theta: &mut [f32],
     x: &mut [f32],
@@ -267,7 +271,7 @@ fn advance_and_measure(
     let (x, z, k) = (&mut x[..count], &mut z[..count], *k);
     let (theta_peaks, omega2_peaks) = (&mut theta_peaks[..count], &mut omega2_peaks[..count]);
     for i in 0..count {
-        let next = next_cell(&row, i, [theta[i], x[i], z[i]], &k);
+        let next = next_cell::<VARIES>(&row, i, [theta[i], x[i], z[i]], &k);
         [theta[i], x[i], z[i]] = next;
         theta_peaks[i] = theta_peaks[i].max(size_bits(next[0])).max(size_bits(row[0].center(i)));
         let omega2 = square_bits(row[1].center(i), row[2].center(i));
