@@ -149,9 +149,6 @@ fn mirrored(pixel: vec2<i32>, size: vec2<i32>) -> vec2<i32> {
 
 fn kinds_about(p: vec2<f32>) -> KindsAbout {
     let size = textureDimensions(kind_map);
-    if size.x < 2u {
-        return KindsAbout(vec4<u32>(0u), vec4<f32>(1.0, 0.0, 0.0, 0.0));
-    }
     let px_m = frame.world.xy / vec2<f32>(size);
     // Ragged borders: a place is taken for one beside it, and the farther beyond the world's edge, the farther away.
     let broad = vec2<f32>(noise(p / 13.0).r, noise(p / 13.0 + 0.37).r) - 0.5;
@@ -176,8 +173,16 @@ fn kinds_about(p: vec2<f32>) -> KindsAbout {
     return about;
 }
 
+// A scene of one kind has a map of one pixel.
+fn has_one_kind() -> bool {
+    return textureDimensions(kind_map).x < 2u;
+}
+
 // Number of the kind that grows at a place: the one that counts most there.
 fn kind_at(p: vec2<f32>) -> u32 {
+    if has_one_kind() {
+        return 0u;
+    }
     var about = kinds_about(p);
     var found = 0u;
     var most = 0.0;
@@ -194,6 +199,9 @@ fn kind_at(p: vec2<f32>) -> u32 {
 
 // The kinds at a place blended: what is seen of them from afar.
 fn kinds_blended(p: vec2<f32>) -> Kind {
+    if has_one_kind() {
+        return kinds.list[0];
+    }
     var about = kinds_about(p);
     var blend = Kind(vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0));
     for (var i = 0; i < 4; i++) {

@@ -21,6 +21,8 @@ const CLUMP_LIMIT: usize = 32_768;
 const STAND_BYTES: u64 = 160;
 /// Most segments of a plant.
 const SEGMENT_LIMIT: usize = 6;
+/// A clump fades in this much nearer or farther than others; twin of the spread in `billboards.wgsl`.
+const FADE_SPREAD_M: f32 = 1.0;
 /// Grids up to this many away get the clumps of the nearest ring, as plants thin out there.
 const DENSE_GRIDS: u32 = 2;
 
@@ -121,11 +123,11 @@ impl Billboards {
                     for i in 0..per_side {
                         let random = random3(grid, i + j * 256);
                         let place = |n: i32, k: u32, r: f32| n as f32 * grid_m + (k as f32 + 0.15 + 0.7 * r) * spacing_m;
-                        clumps.push(Clump {
-                            axis_m: [place(grid[0], i, random[0]), place(grid[1], j, random[1])],
-                            length_m: spacing_m * 0.5 * overlap,
-                            random: random[2],
-                        });
+                        let axis_m = [place(grid[0], i, random[0]), place(grid[1], j, random[1])];
+                        if is_nearer(land, axis_m, eye_m, within.from_m - FADE_SPREAD_M) {
+                            continue;
+                        }
+                        clumps.push(Clump { axis_m, length_m: spacing_m * 0.5 * overlap, random: random[2] });
                         if clumps.len() == CLUMP_LIMIT {
                             break 'rings;
                         }
@@ -167,6 +169,12 @@ impl Billboards {
             pass.draw_indexed(0..CHUNK * 36 * rows as u32, 0, range);
         }
     }
+}
+
+/// Whether a place on the land is nearer to the eye than `limit_m`.
+fn is_nearer(land: &Land, [x, z]: [f32; 2], eye_m: Vec3, limit_m: f32) -> bool {
+    let is_near = |y: f32| eye_m.distance_squared(Vec3::new(x, y, z)) < limit_m * limit_m;
+    limit_m > 0.0 && is_near(eye_m.y) && is_near(land.heights().height_m(x, z))
 }
 
 /// Triangles of an instance's clumps, six rectangles each, of so many rows.

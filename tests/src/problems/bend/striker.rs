@@ -1,0 +1,80 @@
+//! Round objects that strike the grass (001 Eqs 1 and 10–12).
+
+use std::f32::consts::FRAC_PI_2;
+
+use shared::bend::{Bend, Field};
+
+/// A round object that moves straight on for a step. Places are metres from the centre of the world.
+///
+/// Every sum is of two terms, so that turning the world by a quarter only exchanges and negates what is computed: no bit of a result changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Striker {
+    /// Where its centre is at the end of the step (m).
+    pub at_m: [f32; 2],
+    /// Velocity (m/s).
+    pub velocity_m_per_s: [f32; 2],
+    /// Radius (m).
+    pub radius_m: f32,
+    /// Height at which it strikes, h (m).
+    pub strike_height_m: f32,
+}
+
+impl Striker {
+    /// The same, turned by so many quarters about the world's centre.
+    pub fn turned(self, quarters: usize) -> Self {
+        let turn = |vector: [f32; 2]| (0..quarters).fold(vector, |[x, z], _| [-z, x]);
+        Self { at_m: turn(self.at_m), velocity_m_per_s: turn(self.velocity_m_per_s), ..self }
+    }
+
+    /// What contact makes of a cell at `center_m` (m from the world's centre): none where it does not touch. Eq. (1), with θ at most π/2, and Eq. (12) in
+    /// the direction of Eq. (11).
+    pub fn strike(&self, center_m: [f32; 2], theta_rad: f32, dt_secs: f32) -> Option<Bend> {
+        let [u, w] = self.velocity_m_per_s;
+        let speed = (u * u + w * w).sqrt();
+        // Where along the way of this step, counted back from its end, the object comes closest.
+        let behind = [self.at_m[0] - center_m[0], self.at_m[1] - center_m[1]];
+        let along = if speed > 0.0 { (behind[0] * u + behind[1] * w) / (speed * speed) } else { 0.0 };
+        let back_secs = along.clamp(0.0, dt_secs);
+        let away = [0, 1].map(|axis| back_secs * self.velocity_m_per_s[axis] - behind[axis]);
+        let distance = (away[0] * away[0] + away[1] * away[1]).sqrt();
+        if distance > self.radius_m {
+            return None;
+        }
+        let faces_ahead = away[0] * u + away[1] * w >= 0.0;
+        let is_border = distance > 0.6 * self.radius_m;
+        let toward = |axis: usize| {
+            let moving = if speed > 0.0 { self.velocity_m_per_s[axis] / speed } else { 0.0 };
+            moving + if faces_ahead && is_border { away[axis] / distance } else { 0.0 }
+        };
+        let toward = [toward(0), toward(1)];
+        let length = (toward[0] * toward[0] + toward[1] * toward[1]).sqrt();
+        let direction = toward.map(|part| if length > 0.0 { part / length } else { 0.0 });
+        let push = direction[0] * u + direction[1] * w;
+        let omega = push * theta_rad.cos().powi(2) / self.strike_height_m;
+        let theta = (theta_rad + omega * dt_secs).min(FRAC_PI_2);
+        Some(Bend { theta, omega: direction.map(|part| part * omega) })
+    }
+
+    /// Presses every cell of a field that it touches in a step, waking their patches.
+    pub fn press(&self, field: &mut Field, dt_secs: f32) {
+        let size = super::size(field);
+        let cell_m = field.layout().cell_m;
+        let reach_m = |axis: usize| self.radius_m + self.velocity_m_per_s[axis].abs() * dt_secs + cell_m;
+        let range = |axis: usize| {
+            let to_cell = |m: f32| (m / cell_m + 0.5 * size[axis] as f32).clamp(0.0, size[axis] as f32) as usize;
+            to_cell(self.at_m[axis] - reach_m(axis))..to_cell(self.at_m[axis] + reach_m(axis))
+        };
+        for j in range(1) {
+            for i in range(0) {
+                let cell = [i as i64, j as i64];
+                let middle = |n: usize, axis: usize| (2 * n as i64 + 1 - size[axis] as i64) as f32 * (0.5 * cell_m);
+                if let Some(bend) = self.strike([middle(i, 0), middle(j, 1)], field.cell(cell).theta, dt_secs) {
+                    if let Some((patch, _)) = field.locate(cell) {
+                        field.wake(patch);
+                    }
+                    field.press(cell, bend);
+                }
+            }
+        }
+    }
+}

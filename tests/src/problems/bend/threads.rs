@@ -1,0 +1,19 @@
+//! Tasks dealt out to several threads.
+
+use shared::bend::Crew;
+
+/// So many threads, started anew each time; tasks are dealt out like cards, so that neighbours meet in different threads.
+#[derive(Clone, Copy, Debug)]
+pub struct Threads(pub usize);
+
+impl Crew for Threads {
+    fn for_each<T: Send>(&self, tasks: Vec<T>, act: impl Fn(T) + Send + Sync) {
+        let mut hands: Vec<Vec<T>> = (0..self.0).map(|_| vec![]).collect();
+        tasks.into_iter().enumerate().for_each(|(n, task)| hands[n % self.0].push(task));
+        std::thread::scope(|scope| {
+            for hand in hands {
+                scope.spawn(|| hand.into_iter().rev().for_each(&act));
+            }
+        });
+    }
+}

@@ -1,0 +1,68 @@
+//! Thousands of random draws from 001's ranges, objects at up to 60 m/s, 20 to 120 steps a second.
+//!
+//! Contact bends to π/2 at most. Waves that meet, or are thrown back, add up to more, the more so where they come out of fast grass (Eq. 4): nothing
+//! in the propagation clamps. What is asserted is that this overshoot has a bound.
+
+use std::f32::consts::FRAC_PI_2;
+
+use rayon::prelude::*;
+use shared::bend::{Rest, Scheme};
+use tests::problems::bend::{Course, Draw};
+
+const DEFAULT_REST: Rest = Rest { theta_rad: 0.01, omega_rad_per_s: 0.2 };
+
+/// Half of the draws with a tolerance, each eighth on nine patches.
+fn run(draw: &Draw, number: u64, scheme: Scheme) -> Course {
+    let rest = if number.is_multiple_of(2) { Rest::EXACT } else { DEFAULT_REST };
+    draw.run(scheme, rest, if number % 8 == 7 { 3 } else { 1 })
+}
+
+fn print_shares(what: &str, mut values: Vec<f64>) {
+    values.sort_by(f64::total_cmp);
+    let at = |share: f64| values[(share * (values.len() - 1) as f64) as usize];
+    println!("{what}: half of the draws below {:.3}, 90 % below {:.3}, 99 % below {:.3}, all below {:.3}", at(0.5), at(0.9), at(0.99), at(1.0));
+}
+
+/// Asserts that every course stays within a multiple of what contact can bend, and says what is to be said of all.
+fn assert_courses(scheme: Scheme, courses: &[(u64, Draw, Course)], overshoot: f32) {
+    println!("{scheme:?}, {} draws, {:.2} sub-steps a step", courses.len(), mean(courses, |course| f64::from(course.substeps) / 600.0));
+    let shares = |what: &str, of: fn(&Course) -> f64| print_shares(what, courses.iter().map(|(_, _, course)| of(course)).collect());
+    shares("largest |θ| over π/2", |course| f64::from(course.theta_max_rad / FRAC_PI_2));
+    shares("growth of Σθ² once the objects have gone", |course| course.squares[1] / course.squares[0].max(1e-9));
+    shares("Σθ² at the end over that once the objects have gone", |course| course.squares[2] / course.squares[0].max(1e-9));
+    for (number, draw, course) in courses {
+        let Course { theta_max_rad, squares: [gone, most, end], broken, .. } = *course;
+        assert!(broken == 0, "draw {number}: {broken} patches held what is no number: {draw:?}");
+        assert!(theta_max_rad <= overshoot * FRAC_PI_2, "draw {number}: |θ| up to {theta_max_rad}: {draw:?}");
+        assert!(most <= 2.0 * gone, "draw {number}: Σθ² {gone} once the objects have gone, {most} later: {draw:?}");
+        assert!(end <= gone, "draw {number}: Σθ² {gone} once the objects have gone, {end} at the end: {draw:?}");
+    }
+}
+
+fn mean(courses: &[(u64, Draw, Course)], of: impl Fn(&Course) -> f64) -> f64 {
+    courses.iter().map(|(_, _, course)| of(course)).sum::<f64>() / courses.len() as f64
+}
+
+#[test]
+fn five_thousand_draws_stay_finite_bounded_and_come_to_rest_by_sub_steps() {
+    let course = |number: u64| {
+        let draw = Draw::new(number);
+        let course = run(&draw, number, Scheme::Substepped);
+        (number, draw, course)
+    };
+    let courses: Vec<_> = (0..5000).into_par_iter().map(course).collect();
+    assert_courses(Scheme::Substepped, &courses, 6.0);
+}
+
+/// Beyond a Courant number of about 1 its lines and columns do not go together where the speed varies: there it is for constant speeds alone.
+#[test]
+fn without_mu_the_implicit_scheme_stays_finite_bounded_and_comes_to_rest() {
+    let course = |number: u64| {
+        let mut draw = Draw::new(number);
+        draw.waves.mu_m_per_rad = 0.0;
+        let course = draw.run(Scheme::Implicit, DEFAULT_REST, 1);
+        (number, draw, course)
+    };
+    let courses: Vec<_> = (0..400).into_par_iter().map(course).collect();
+    assert_courses(Scheme::Implicit, &courses, 2.5);
+}
