@@ -77,7 +77,7 @@ impl OneGrid {
         };
         let courant = |[_, x, z]: &[Vec<f32>; CHANNELS]| k.r0 + k.r_mu * (x[n] * x[n] + z[n] * z[n]).sqrt();
         let (r, r_before) = (courant(&self.now), courant(&self.before));
-        let slowed = if r < r_before { r / r_before } else { 1.0 };
+        let slowed = if r < r_before { (r / r_before).max(k.kept_at_least) } else { 1.0 };
         let [theta, x, z] = self.now.each_ref().map(|plane| [plane[n], laplacian(plane)]);
         let before = self.before.each_ref().map(|plane| plane[n]);
         let memory = (1.0 - k.lambda_theta) * slowed;
