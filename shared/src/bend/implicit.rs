@@ -38,10 +38,9 @@ impl Coefficients {
         }
     }
 
-    /// Square of the Courant number of a channel where the grass bends at a speed whose square is `omega2`.
-    fn r2(&self, channel: usize, omega2: f32) -> f32 {
-        let r = if channel == 0 { self.r[0] + self.r_mu * omega2.sqrt() } else { self.r[1] };
-        r * r
+    /// Courant number of θ (0) or ω (1) where the grass bends at a speed whose square is `omega2`.
+    fn r(&self, set: usize, omega2: f32) -> f32 {
+        if set == 0 { self.r[0] + self.r_mu * omega2.sqrt() } else { self.r[1] }
     }
 }
 
@@ -70,27 +69,28 @@ fn kind_at(patch: &Patch, at: usize) -> usize {
     }
 }
 
-/// Right-hand sides over A, of the patch's own cells, row by row. Moves the earlier state if dt has changed.
+/// Right-hand sides over A, of the patch's own cells, row by row. Moves the earlier state if dt has changed, and where waves slow down, which keep
+/// their motion only in part, as in [`verlet`](super::verlet).
 fn forces(patch: &mut Patch, kinds: &[Coefficients], ratio: f32) -> Planes {
     let (side, stride) = (patch.side(), patch.stride());
     let mut forces: Planes = std::array::from_fn(|_| Vec::with_capacity(side * side));
     for j in 0..side as i64 {
         let row = patch.at(0, j);
-        for channel in 0..CHANNELS {
-            let set = channel.min(1);
+        for at in row..row + side {
+            let k = &kinds[kind_at(patch, at)];
             let [_, x, z] = &patch.now;
-            let (now, before) = (&patch.now[channel], &mut patch.before[channel]);
-            forces[channel].extend((row..row + side).map(|at| {
-                let kind = match &patch.ground {
-                    Ground::One(kind) => *kind,
-                    Ground::Map(kinds) => kinds[at],
-                };
-                let k = &kinds[usize::from(kind)];
-                before[at] = now[at] - (now[at] - before[at]) * ratio;
+            let [_, x_before, z_before] = &patch.before;
+            let (omega2, omega2_before) = (x[at] * x[at] + z[at] * z[at], x_before[at] * x_before[at] + z_before[at] * z_before[at]);
+            for channel in 0..CHANNELS {
+                let (set, now, before) = (channel.min(1), &patch.now[channel], &mut patch.before[channel]);
+                let r = k.r(set, omega2);
+                // `min` drops what is no number: nothing over nothing is 1.
+                let kept = (r / k.r(set, omega2_before)).min(1.0);
+                before[at] = now[at] - (now[at] - before[at]) * (ratio * kept);
                 let laplacian = (now[at - 1] + now[at + 1]) + (now[at - stride] + now[at + stride]) - 4.0 * now[at];
-                let r2 = k.r2(channel, x[at] * x[at] + z[at] * z[at]);
-                (r2 * laplacian - k.restoring * now[at] - k.damping[set] * (now[at] - before[at])) * k.inverse_mass[set]
-            }));
+                let force = r * r * laplacian - k.restoring * now[at] - k.damping[set] * (now[at] - before[at]);
+                forces[channel].push(force * k.inverse_mass[set]);
+            }
         }
     }
     forces
@@ -204,6 +204,6 @@ fn weights(patch: &Patch, kinds: &[Coefficients], set: usize, axis: usize, along
         let at = patch.at(i as i64, j as i64);
         let k = &kinds[kind_at(patch, at)];
         let [_, x, z] = &patch.now;
-        0.25 * k.r2(set, x[at] * x[at] + z[at] * z[at]) * k.inverse_mass[set]
+        0.25 * k.r(set, x[at] * x[at] + z[at] * z[at]).powi(2) * k.inverse_mass[set]
     })
 }

@@ -101,7 +101,9 @@ fn propagate(field: &mut Field, channels: [Option<usize>; 2], oscillation: &Osci
     for_each_row(field, |patch, at, [x, z]| {
         for i in at..at + patch.side() {
             let carried = grid[(z + first) * period[0] + x + first + i - at];
-            for (channel, carried) in channels.into_iter().zip([carried.re, carried.im]).filter_map(|(channel, value)| Some((channel?, value))) {
+            for (channel, carried) in
+                channels.into_iter().zip([carried.re, carried.im]).filter_map(|(channel, value)| Some((channel?, value)))
+            {
                 let now = patch.now[channel][i];
                 let before = now - (now - patch.before[channel][i]) * ratio;
                 patch.before[channel][i] = (carried - decay * f64::from(before)) as f32;

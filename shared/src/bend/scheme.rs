@@ -63,7 +63,9 @@ pub enum StepError {
         dt_secs: f32,
     },
     /// The modal scheme where the speed is not constant.
-    #[error("the modal scheme needs one constant speed of θ; here are {kinds} kinds of grass and μ up to {mu_m_per_rad} m/rad; allowed: 1 and 0")]
+    #[error(
+        "the modal scheme needs one constant speed of θ; here are {kinds} kinds of grass and μ up to {mu_m_per_rad} m/rad; allowed: 1 and 0"
+    )]
     SpeedVaries {
         /// Kinds of grass.
         kinds: usize,

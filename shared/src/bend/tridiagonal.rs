@@ -80,9 +80,8 @@ impl Line {
         if self.ends[0] == End::Joined {
             let last = values.len() - 1;
             // The matrix is the eliminated one plus u·vᵗ, u = (−a₀, 0, …, −aₙ) and v = (1, 0, …, 0, 1).
-            let share: Lanes = std::array::from_fn(|lane| {
-                (values[0][lane] + values[last][lane]) / (1.0 + self.joint[0][lane] + self.joint[last][lane])
-            });
+            let share: Lanes =
+                std::array::from_fn(|lane| (values[0][lane] + values[last][lane]) / (1.0 + self.joint[0][lane] + self.joint[last][lane]));
             for (values, joint) in values.iter_mut().zip(&self.joint) {
                 *values = std::array::from_fn(|lane| values[lane] - share[lane] * joint[lane]);
             }
@@ -111,7 +110,9 @@ mod tests {
     /// The product of the matrix with a solution is the right-hand side again.
     #[test]
     fn solutions_fulfil_their_systems() {
-        for ends in [[End::Rest, End::Rest], [End::Free, End::Rest], [End::Rest, End::Free], [End::Free, End::Free], [End::Joined, End::Joined]] {
+        for ends in
+            [[End::Rest, End::Rest], [End::Free, End::Rest], [End::Rest, End::Free], [End::Free, End::Free], [End::Joined, End::Joined]]
+        {
             let mut line = Line::new(17, ends);
             let lanes = |cell: usize, turn: f32| -> Lanes { std::array::from_fn(|lane| ((cell * 13 + lane * 7) as f32 * turn).sin()) };
             line.weights = (0..17).map(|cell| lanes(cell, 0.37).map(|v| 4.0 * v * v)).collect();

@@ -11,9 +11,9 @@
 //! A patch does up to [`HALO`] sub-steps while it lies in the cache: its halo then holds as many rings of its neighbours' cells, of which each
 //! sub-step uses up one. Its neighbours compute these cells, too, with the same bits.
 
+use super::Coefficients;
 use super::patch::{CHANNELS, Ground, HALO, Patch, Planes};
 use super::tiles::{TILE, size_bits, square_bits};
-use super::Coefficients;
 use multiversion::multiversion;
 
 /// What a patch does between two exchanges.

@@ -17,8 +17,8 @@ mod species;
 mod terrain;
 mod wind;
 
-pub use bend::BendField;
 pub use allowed::{Allowed, FIELDS, REQUIRED};
+pub use bend::BendField;
 pub use check::{AWAKE_CELLS_LIMIT, EXTENT_LIMIT_M, WIND_CELLS_LIMIT};
 pub use fault::SceneFault;
 pub use grass::Grass;
