@@ -134,7 +134,14 @@ fn main() {
 
 /// A patch in which two tiles beside each other move, so that twelve step, and nothing spreads.
 fn few_tiles(pool: &ThreadPool) {
-    let still = WaveParams { c0_m_per_s: 0.0, mu_m_per_rad: 0.0, c_omega_m_per_s: 0.0, theta_damping_per_s: 0.0, omega_damping_per_s: 0.0, stiffness_per_s2: 0.0 };
+    let still = WaveParams {
+        c0_m_per_s: 0.0,
+        mu_m_per_rad: 0.0,
+        c_omega_m_per_s: 0.0,
+        theta_damping_per_s: 0.0,
+        omega_damping_per_s: 0.0,
+        stiffness_per_s2: 0.0,
+    };
     let layout = PatchLayout { count: [1, 1], cells: CELLS, cell_m: CELL_M };
     let time = |pressed: &dyn Fn(usize, usize) -> bool| {
         let mut field = Field::new(layout, Kinds::one(still)).with_rest(Rest { theta_rad: 0.01, omega_rad_per_s: 0.2 });
@@ -152,5 +159,8 @@ fn few_tiles(pool: &ThreadPool) {
         best * 1e6
     };
     let (few, all) = pool.install(|| (time(&|x, z| (7..9).contains(&x) && z == 7), time(&|_, _| true)));
-    println!("\none patch of 225 tiles: {all:.1} µs a step where all move, {few:.1} µs where 12 step ({:.1} % of the time for 5.3 % of the tiles)", 100.0 * few / all);
+    println!(
+        "\none patch of 225 tiles: {all:.1} µs a step where all move, {few:.1} µs where 12 step ({:.1} % of the time for 5.3 % of the tiles)",
+        100.0 * few / all
+    );
 }

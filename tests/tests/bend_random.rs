@@ -20,7 +20,13 @@ fn run(draw: &Draw, number: u64, scheme: Scheme) -> Course {
 fn print_shares(what: &str, mut values: Vec<f64>) {
     values.sort_by(f64::total_cmp);
     let at = |share: f64| values[(share * (values.len() - 1) as f64) as usize];
-    println!("{what}: half of the draws below {:.3}, 90 % below {:.3}, 99 % below {:.3}, all below {:.3}", at(0.5), at(0.9), at(0.99), at(1.0));
+    println!(
+        "{what}: half of the draws below {:.3}, 90 % below {:.3}, 99 % below {:.3}, all below {:.3}",
+        at(0.5),
+        at(0.9),
+        at(0.99),
+        at(1.0)
+    );
 }
 
 /// Asserts that every course stays within a multiple of what contact can bend, and says what is to be said of all.

@@ -137,7 +137,7 @@ impl Case {
     }
 
     /// The same on one grid, with the sub-steps that a field took.
-    fn run_on_one_grid(&self, damping: Damping, reports: &[Report]) -> OneGrid {
+    fn run_on_one_grid(&self, damping: Damping, reports: &[Report]) -> OneGrid<f32> {
         let mut grid = OneGrid::like(&self.field(), self.edges);
         for ((dt_secs, presses), report) in self.steps.iter().zip(reports) {
             presses.iter().for_each(|press| grid.press(self.cell(press), press.bend));
@@ -159,7 +159,7 @@ fn first_difference(a: &Field, b: &Field) -> Option<([usize; 2], Bend, Bend)> {
     one_way(a, b).or_else(|| one_way(b, a))
 }
 
-fn first_difference_from_grid(field: &Field, grid: &OneGrid) -> Option<([usize; 2], Bend, Bend)> {
+fn first_difference_from_grid(field: &Field, grid: &OneGrid<f32>) -> Option<([usize; 2], Bend, Bend)> {
     let size = size(field);
     let places = (0..size[0] * size[1]).map(|n| [n % size[0], n / size[0]]);
     places.map(|cell| (cell, field.cell(cell.map(|n| n as i64)), grid.bend(cell))).find(|(_, a, b)| bits(*a) != bits(*b))
@@ -350,7 +350,10 @@ fn what_is_put_to_rest_within_the_tolerance_is_missed_by_no_more() {
         let runs: Vec<_> = (0..16).into_par_iter().map(|seed| tolerance_error(seed, rest, damping_per_s.clone())).collect();
         let largest = runs.iter().map(|run| run[0]).fold(0.0, f64::max);
         let share = runs.iter().map(|run| run[1]).sum::<f64>() / runs.len() as f64;
-        println!("damping {damping_per_s:?} /s: θ off by {largest:.2} times the tolerance at most, {:.0} % of the cells stepped", 100.0 * share);
+        println!(
+            "damping {damping_per_s:?} /s: θ off by {largest:.2} times the tolerance at most, {:.0} % of the cells stepped",
+            100.0 * share
+        );
         assert!(largest > 0.1, "the tolerance puts something to rest");
         assert!(largest < allowed, "damping {damping_per_s:?} /s: {largest} times the tolerance");
         assert!(share < 0.4, "{share} of the cells are stepped");

@@ -97,7 +97,9 @@ fn the_modal_scheme_errs_in_space_alone_at_second_order() {
     for edges in EDGES {
         let mode = Mode { edges, waves: if edges == Edges::Wrapped { [2, 1] } else { [3, 2] } };
         // One long step to the end.
-        let error = |count| (mode.cell_m(WIDTH_M, count), mode_error(Scheme::Modal, mode, count, [0.8, 1.5], Exact::Continuum, [1.25, f64::INFINITY]));
+        let error = |count| {
+            (mode.cell_m(WIDTH_M, count), mode_error(Scheme::Modal, mode, count, [0.8, 1.5], Exact::Continuum, [1.25, f64::INFINITY]))
+        };
         assert_order(&format!("Modal, {edges:?}, h"), 2.0, &[16, 24, 32, 48].map(error));
     }
 }
