@@ -48,6 +48,7 @@ struct Plant {
     side: f32,
     hue: f32,
     is_flower: bool,
+    kind: u32,
     normal: vec3<f32>,
 }
 
@@ -72,39 +73,63 @@ fn plant_at(grid: vec2<i32>, index: u32, place: vec2<f32>, is_flower: bool) -> P
     var plant: Plant;
     plant.root = vec3<f32>(p.x, ground_height(p), p.y);
     plant.normal = ground_normal(p);
+    // Kinds mingle where they meet.
+    plant.kind = kind_at(p + (r.xz - 0.5) * 0.7);
+    let kind = kinds.list[plant.kind];
     let grown = mix(0.72, 1.22, meadow) * mix(0.78, 1.15, shared_by.x);
-    plant.height = frame.blade.x * (1.0 + frame.blade.y * (2.0 * r.y - 1.0)) * grown;
-    plant.width = frame.blade.z * mix(0.75, 1.3, r.z);
+    plant.height = kind.root.w * (1.0 + frame.blade.y * (2.0 * r.y - 1.0)) * grown;
+    plant.width = frame.blade.z * kind.shape.w * mix(0.75, 1.3, r.z);
     let own = (s.x - 0.5) * TAU;
     let leaning = away * 2.2 + (shared_by.yz - 0.5) * 0.5 + vec2<f32>(cos(own), sin(own)) * mix(0.08, 0.42, s.y * s.y);
-    plant.droop = leaning;
+    plant.droop = leaning * kind.shape.z;
     plant.side = own + s.z * 1.3;
-    plant.hue = clamp(shared_by.y * 0.45 + s.z * 0.55, 0.0, 1.0);
+    plant.hue = clamp(shared_by.y * 0.45 + s.z * 0.55, 0.0, 0.999);
     plant.is_flower = is_flower;
     if is_flower {
         // Petals stand at 0.65 of the tallest blades' height (000 section 3.3).
-        plant.height = frame.blade.x * (1.0 + frame.blade.y) * mix(0.65, 0.90, r.y) * max(grown, 0.9);
-        plant.width = frame.blade.z * 0.45;
+        plant.height = kind.root.w * (1.0 + frame.blade.y) * mix(0.65, 0.90, r.y) * max(grown, 0.9);
+        plant.width = frame.blade.z * kind.shape.w * 0.45;
         plant.droop = leaning * 0.35;
     }
     return plant;
 }
 
-// Control points of a plant that leans by `lean` (rad) and droops of itself: each third leans more than the one below.
-fn posture_of(plant: Plant, lean: vec2<f32>) -> array<vec3<f32>, 3> {
+// Control points of a plant whose thirds lean by `leans_in` (rad) and that droops of itself: each third leans more than the one
+// below, but for plants of one segment.
+fn posture_of(plant: Plant, leans_in: array<vec2<f32>, 3>) -> array<vec3<f32>, 3> {
+    var leans = leans_in;
     var points: array<vec3<f32>, 3>;
     var at = vec3<f32>(0.0);
-    let flat_share = smoothstep(0.5, 1.3, length(lean));
+    let is_stiff = kinds.list[plant.kind].shape.x < 1.5;
+    let flat_share = smoothstep(0.5, 1.3, length(leans[0]));
     for (var i = 0; i < 3; i++) {
         let share = (f32(i) + 1.0) / 3.0;
-        let bend = mix(0.55 + 0.75 * share, 1.0 + 0.06 * share, flat_share);
-        let v = lean * bend + plant.droop * share * (1.6 - 1.1 * flat_share);
+        let bend = select(mix(0.55 + 0.75 * share, 1.0 + 0.06 * share, flat_share), 1.0, is_stiff);
+        let v = leans[i] * bend + plant.droop * share * (1.6 - 1.1 * flat_share);
         let angle = min(length(v), 1.55);
         let direction = v / max(length(v), 1e-5);
         at += vec3<f32>(direction.x * sin(angle), cos(angle), direction.y * sin(angle)) * (plant.height / 3.0);
         points[i] = above_ground(at, plant.normal);
     }
     return points;
+}
+
+// How the thirds of a plant lean (rad) of which nothing is remembered: the upper ones trail the lowest (001 section 4.5).
+fn trailing_leans(plant: Plant, gust: f32) -> array<vec2<f32>, 3> {
+    let kind = kinds.list[plant.kind];
+    let p = plant.root.xz;
+    let lag_secs = select(0.0, kind.lag.z, kind.shape.x > 1.5);
+    let share = field_share(p);
+    let now = bend_at(p, 0.0, 0);
+    let held = lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w);
+    var leans: array<vec2<f32>, 3>;
+    for (var i = 0; i < 3; i++) {
+        leans[i] = held;
+        if share > 0.0 {
+            leans[i] += trailing_lean(p, 0.0, now, kind, lag_secs * f32(i) * 0.5) * share;
+        }
+    }
+    return leans;
 }
 
 fn above_ground(offset: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
@@ -148,7 +173,7 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
     let p = plant.root + points[1];
     let light = cloud_light(p.xz) * sun_visible(p);
     blade.points[0] = vec4<f32>(points[0] * grown, plant.side);
-    blade.points[1] = vec4<f32>(points[1] * grown, plant.hue);
+    blade.points[1] = vec4<f32>(points[1] * grown, f32(plant.kind) + plant.hue);
     blade.points[2] = vec4<f32>(points[2] * grown, light);
     if plant.is_flower {
         var head = blade;
@@ -184,7 +209,9 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     let plant = plant_at(grid, index, place, is_flower);
     // Where the field and the wind hold the plant: drag in a steady wind balances stiffness there.
     let gust = gust_at(plant.root.xz) * (0.9 + 0.2 * random3(grid, index + 47u).y);
-    let held = posture_of(plant, lean_at(plant.root, 0.0, gust));
+    let kind = kinds.list[plant.kind];
+    let lean = lean_at(plant.root, 0.0, gust, kind.tip.w);
+    let held = posture_of(plant, array<vec2<f32>, 3>(lean, lean, lean));
     let at = id.y * count + index;
 
     var now: array<vec3<f32>, 3>;
@@ -202,9 +229,9 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     // Stiffness per mass falls with the height. The drag of air that passes at |u - v|^2 is taken as linear in v about the wind
     // u: it damps the plant's own motion the more, the farther that wind bends it.
     let mass = select(1.0, 2.2, plant.is_flower);
-    let stiff = 95.0 * sqrt(0.8 / plant.height) / mass;
+    let stiff = 95.0 * sqrt(0.8 / plant.height) / mass * kind.shape.y;
     let wind = wind_at(plant.root, 0.0).xz * gust;
-    let drag = 2.0 * plant.height * sin(length(lean_of_wind(wind))) / max(length(wind), 1e-3);
+    let drag = 2.0 * plant.height * sin(length(lean_of_wind(wind, kind.tip.w))) / max(length(wind), 1e-3);
     for (var step = 0; step < i32(plants.shape.w); step++) {
         for (var i = 0; i < 3; i++) {
             let share_of_height = (f32(i) + 1.0) / 3.0;
@@ -302,8 +329,8 @@ fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let r = random3(grid, index + 47u);
     let flutter = 1.0 + 0.065 * sin(frame.eye.w * mix(6.0, 9.0, r.x) + r.z * TAU);
-    let lean = lean_at(plant.root, 0.0, gust_at(plant.root.xz) * (0.9 + 0.2 * r.y) * flutter);
-    show(plant, posture_of(plant, lean), grown, distance(plant.root, frame.eye.xyz), random3(grid, index + 61u).z);
+    let leans = trailing_leans(plant, gust_at(plant.root.xz) * (0.9 + 0.2 * r.y) * flutter);
+    show(plant, posture_of(plant, leans), grown, distance(plant.root, frame.eye.xyz), random3(grid, index + 61u).z);
 }
 
 // Indirect draws of 64 plants an instance.

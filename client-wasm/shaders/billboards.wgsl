@@ -7,8 +7,10 @@ struct Clump {
 
 // What is the same for all vertices of a clump.
 struct Stand {
-    // Lean (rad), height of the plants (m), share of the clump that is shown.
+    // Height of its pattern (m), segments, share of the clump that is shown, unused.
     pose: vec4<f32>,
+    // Tops of the segments, from the foot (m).
+    joints: array<vec4<f32>, 6>,
     // Lit colours of the plants' roots and tips; petals' light.
     root_color: vec4<f32>,
     tip_color: vec4<f32>,
@@ -16,8 +18,10 @@ struct Stand {
 }
 
 struct List {
-    // Clumps, unused.
+    // Clumps; instances whose clumps have several segments, and how many their rectangles have at most; unused.
     range: vec4<u32>,
+    // Distance from which on clumps begin to bend as a whole (m), and at which all do; unused.
+    several: vec4<f32>,
 }
 
 @group(1) @binding(0) var<storage, read> clumps: array<Clump>;
@@ -26,9 +30,39 @@ struct List {
 @group(1) @binding(3) var<storage, read> stands: array<Stand>;
 @group(1) @binding(4) var<storage, read_write> placed: array<Stand>;
 
+// Clumps in one instance; twin of the constant in `billboards.rs`.
+const CLUMPS: u32 = 32u;
 // Width and height of the texture's pattern (m per m of mean blade height).
 const PATTERN_WIDTH: f32 = 4.0;
 const PATTERN_HEIGHT: f32 = 1.25;
+
+// Tops of the segments of a clump on `ground` (m from there) whose kind bends the lowest by `lean`, those above as it did a while ago
+// (001 section 4.5); the farther it is, the more they are one straight line. None is below the land.
+fn joints_of(ground: vec3<f32>, kind: Kind, segments: u32, height: f32, level: f32, wind_lean: vec2<f32>, straight: f32) -> array<vec4<f32>, 6> {
+    let p = ground.xz;
+    let share = field_share(p);
+    let now = bend_at(p, level, 0);
+    let lowest = wind_lean + lean_of_bend(now) * share;
+    let curl = (1.0 - straight) * (1.0 - smoothstep(0.5, 1.3, length(lowest)));
+    var joints: array<vec4<f32>, 6>;
+    var at = vec3<f32>(0.0);
+    for (var i = 0u; i < segments; i++) {
+        var lean = lowest;
+        if i > 0u && share > 0.0 && straight < 1.0 {
+            let secs = kind.lag.z * f32(i) / f32(segments - 1u);
+            lean = mix(wind_lean + trailing_lean(p, level, now, kind, secs) * share, lowest, straight);
+        }
+        if segments > 1u {
+            lean *= 1.0 + curl * (0.7 * f32(i) / f32(segments - 1u) - 0.35);
+        }
+        let tilt = min(length(lean), 1.45);
+        let aside = lean / max(length(lean), 1e-4) * sin(tilt);
+        at += vec3<f32>(aside.x, cos(tilt), aside.y) * (height / f32(segments));
+        at.y = max(at.y, ground_height(p + at.xz) - ground.y);
+        joints[i] = vec4<f32>(at, 0.0);
+    }
+    return joints;
+}
 
 @compute @workgroup_size(64)
 fn place(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -38,10 +72,14 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let clump = clumps[id.x].place;
     let root = clump.xy;
     let share = grass_share(root);
-    let height = frame.blade.x * PATTERN_HEIGHT * mix(0.80, 1.18, noise(root / 14.0).a) * sqrt(share);
+    // Kinds mingle where they meet.
+    let kind = kinds.list[kind_at(root + (vec2<f32>(clump.w, fract(clump.w * 7.3)) - 0.5) * 0.9)];
+    let height = kind.root.w * PATTERN_HEIGHT * mix(0.80, 1.18, noise(root / 14.0).a) * sqrt(share);
     let ground = vec3<f32>(root.x, ground_height(root), root.y);
     let distance_m = distance(ground, frame.eye.xyz);
-    let lean = lean_at(ground, field_level(distance_m), gust_at(root));
+    let level = field_level(distance_m);
+    let wind_lean = lean_of_wind(wind_at(ground, 0.0).xz * gust_at(root), kind.tip.w);
+    let lean = lean_of_field(root, level) + wind_lean;
     let fade_in = smoothstep(frame.reach.x * 0.72, frame.reach.y, distance_m + (clump.w - 0.5) * 2.0);
     let fade_out = 1.0 - smoothstep(frame.reach.z, frame.reach.w, distance_m);
     var stand: Stand;
@@ -51,17 +89,22 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let down = smoothstep(0.09, 0.22, dot(frame.eye.xyz - ground, ground_normal(root)) / max(distance_m, 1e-3));
     let flat_share = down * smoothstep(frame.reach.y * 0.9, frame.reach.y * 1.6, distance_m);
     let risen = fade_in * mix(0.35, 1.0, fade_out) * (1.0 - flat_share);
-    stand.pose = vec4<f32>(lean, height * risen, min(fade_out * 4.0, 1.0) * step(0.1, share) * step(0.05, risen));
+    let segments = select(1u, u32(kind.shape.x), id.x / CLUMPS < list.range.y);
+    let straight = smoothstep(list.several.x, list.several.y, distance_m);
+    stand.pose = vec4<f32>(kind.root.w, f32(segments), min(fade_out * 4.0, 1.0) * step(0.1, share) * step(0.05, risen), 0.0);
+    if stand.pose.z > 0.0 {
+        stand.joints = joints_of(ground, kind, segments, height * risen, level, wind_lean, straight);
+    }
     let p = ground + vec3<f32>(0.0, height * risen * 0.5, 0.0);
     let view = normalize(p - frame.eye.xyz);
     let normal = normalize(ground_normal(root) - view * 0.45 + vec3<f32>(lean.x, 0.0, lean.y) * 0.7);
     let tangent = normalize(vec3<f32>(lean.x, 1.0, lean.y));
     let tilt = min(length(lean), 1.45);
     let tint = grass_tint(root);
-    let tip = frame.tip_rgb.rgb * tint * (0.90 + 0.42 * smoothstep(0.05, 0.45, tilt));
+    let tip = kind.tip.rgb * tint * (0.90 + 0.42 * smoothstep(0.05, 0.45, tilt));
     // Seen from above a clump shows its upper parts.
     let above = smoothstep(0.10, 0.50, -view.y);
-    let base = mix(frame.root_rgb.rgb * tint, tip * 0.8, above * 0.75);
+    let base = mix(kind.root.rgb * tint, tip * 0.8, above * 0.75);
     let root_lit = grass_light(base, normal, tangent, view, light * mix(0.4, 0.9, above), mix(0.3, 0.8, above));
     stand.root_color = vec4<f32>(hazed(root_lit, p), 0.0);
     stand.tip_color = vec4<f32>(hazed(grass_light(tip * trodden(tilt), normal, tangent, view, light, 1.0), p), 0.0);
@@ -81,35 +124,35 @@ struct Rectangle {
 
 @vertex
 fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Rectangle {
-    let number = instance * 32u + index / 24u;
-    let local = index % 24u;
+    let rows = select(1u, list.range.z, instance < list.range.y);
+    let corners = 2u * (rows + 1u);
+    let number = instance * CLUMPS + index / (6u * corners);
+    let local = index % (6u * corners);
     var out: Rectangle;
     out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
-    if number >= list.range.x || stands[number].pose.w <= 0.0 {
+    if number >= list.range.x || stands[number].pose.z <= 0.0 {
         return out;
     }
     let place = clumps[number].place;
-    let stand = stands[number];
-    let side = local / 4u;
+    let pose = stands[number].pose;
+    let side = local / corners;
     let outward = f32(local & 1u);
-    let upward = f32((local >> 1u) & 1u);
+    // Rows above the topmost segment of its kind lie on its top.
+    let row = min((local % corners) >> 1u, u32(pose.y));
     let angle = (f32(side) / 6.0 + place.w) * TAU;
     let direction = vec2<f32>(cos(angle), sin(angle));
     let root = place.xy + direction * place.z * outward;
-    let ground = vec3<f32>(root.x, ground_height(root), root.y);
-
-    // Only the tops move, along a circle about their foot.
-    let lean = stand.pose.xy;
-    let tilt = min(length(lean), 1.45);
-    let aside = lean / max(length(lean), 1e-4) * sin(tilt);
-    let top = vec3<f32>(aside.x, cos(tilt), aside.y) * stand.pose.z;
-    let p = ground + top * upward + vec3<f32>(0.0, -0.03, 0.0);
-    out.root_color = stand.root_color.rgb;
-    out.tip_color = stand.tip_color.rgb;
-    out.petal_light = stand.petal_light.rgb;
-    out.shown = stand.pose.w;
+    var p = vec3<f32>(root.x, ground_height(root) - 0.03, root.y);
+    if row > 0u {
+        p += stands[number].joints[row - 1u].xyz;
+    }
+    let upward = f32(row) / pose.y;
+    out.root_color = stands[number].root_color.rgb;
+    out.tip_color = stands[number].tip_color.rgb;
+    out.petal_light = stands[number].petal_light.rgb;
+    out.shown = pose.z;
     out.uv = vec2<f32>(
-        place.w * 7.0 + f32(side) * 0.37 + outward * place.z / (PATTERN_WIDTH * frame.blade.x),
+        place.w * 7.0 + f32(side) * 0.37 + outward * place.z / (PATTERN_WIDTH * pose.x),
         1.0 - upward,
     );
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
@@ -128,6 +171,6 @@ fn fs(r: Rectangle) -> @location(0) vec4<f32> {
     let t = texel.r * smoothstep(-0.15, 0.75, up);
     let color = plant_color(r.root_color, r.tip_color, t, texel.g);
     let petal = select(vec3<f32>(0.85, 0.80, 0.72), vec3<f32>(0.80, 0.58, 0.06), texel.g > 0.5);
-    let flowers = texel.b * step(0.01, frame.root_rgb.w);
+    let flowers = texel.b * step(0.01, frame.blade.x);
     return vec4<f32>(mix(color, petal * r.petal_light, flowers), 1.0);
 }

@@ -61,18 +61,21 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let up = ground_normal(blade.root.xz);
     let soft = normalize(normal * 0.62 + up * 0.75 + wide * (across * 0.35));
 
-    let hue = blade.points[1].w;
+    let kind = kinds.list[u32(blade.points[1].w)];
+    let hue = fract(blade.points[1].w);
     let tint = grass_tint(blade.root.xz);
-    var albedo = tint * plant_color(frame.root_rgb.rgb, frame.tip_rgb.rgb, t, hue);
+    var albedo = tint * plant_color(kind.root.rgb, kind.tip.rgb, t, hue);
     let straw = smoothstep(0.86, 0.99, hue) * 0.75;
     albedo = mix(albedo, vec3<f32>(0.38, 0.30, 0.13) * (0.35 + 0.65 * t), straw);
     // Pale ends, as of flowering grass.
     albedo = mix(albedo, albedo * vec3<f32>(1.35, 1.12, 0.95), smoothstep(0.72, 1.0, t) * smoothstep(0.3, 0.9, hue));
     let tilt = length(lean) / max(length(c), 1e-3);
     albedo *= (0.90 + 0.42 * smoothstep(0.15, 0.6, tilt) * t) * trodden(asin(min(tilt, 1.0)));
-    let height = offset.y / frame.blade.x;
-    let occlusion = mix(0.16, 1.0, smoothstep(0.0, 0.85, max(height, t * 0.75)));
-    let light = blade.points[2].w * mix(0.30, 1.0, smoothstep(0.05, 0.75, max(height, t * 0.7)));
+    let height = offset.y / kind.root.w;
+    // Little light is lost on the way down into short grass.
+    let deep = smoothstep(0.0, 0.60, kind.root.w);
+    let occlusion = mix(mix(0.60, 0.16, deep), 1.0, smoothstep(0.0, 0.85, max(height, t * 0.75)));
+    let light = blade.points[2].w * mix(mix(0.75, 0.30, deep), 1.0, smoothstep(0.05, 0.75, max(height, t * 0.7)));
     out.color = hazed(grass_light(albedo, soft, tangent, view, light, occlusion), p);
     out.across = across;
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);

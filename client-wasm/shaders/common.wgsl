@@ -34,7 +34,7 @@ struct Frame {
 @group(0) @binding(11) var kind_map: texture_2d<u32>;
 @group(0) @binding(12) var<uniform> kinds: Kinds;
 
-// One kind of grass; its twin is in `kinds.rs`.
+// One kind of grass; its twin is in `uniforms.rs`.
 struct Kind {
     root: vec4<f32>,
     tip: vec4<f32>,
@@ -141,21 +141,25 @@ struct KindsAbout {
     shares: vec4<f32>,
 }
 
+// A pixel inside of a map that is mirrored at its edges over and over.
+fn mirrored(pixel: vec2<i32>, size: vec2<i32>) -> vec2<i32> {
+    let at = ((pixel % (2 * size)) + 2 * size) % (2 * size);
+    return min(at, 2 * size - 1 - at);
+}
+
 fn kinds_about(p: vec2<f32>) -> KindsAbout {
     let size = textureDimensions(kind_map);
-    if size.x < 2u {
-        return KindsAbout(vec4<u32>(0u), vec4<f32>(1.0, 0.0, 0.0, 0.0));
-    }
     let px_m = frame.world.xy / vec2<f32>(size);
-    // Ragged borders: a place is taken for one beside it.
+    // Ragged borders: a place is taken for one beside it, and the farther beyond the world's edge, the farther away.
     let broad = vec2<f32>(noise(p / 13.0).r, noise(p / 13.0 + 0.37).r) - 0.5;
     let fine = vec2<f32>(noise(p / 3.7).g, noise(p / 3.7 + 0.61).g) - 0.5;
-    let at = (p + (broad * 1.7 + fine * 0.8) * clamp(px_m, vec2<f32>(1.0), vec2<f32>(5.0))) / px_m - 0.5;
+    let hilly = vec2<f32>(noise(p / 830.0).r, noise(p / 830.0 + 0.43).r) - 0.5;
+    let beside_m = (broad * 1.7 + fine * 0.8) * clamp(px_m, vec2<f32>(1.0), vec2<f32>(5.0)) + hilly * metres_outside(p);
+    let at = (p + beside_m) / px_m - 0.5;
     let low = floor(at);
     let share = at - low;
-    let last = vec2<i32>(size) - 1;
-    let nw = clamp(vec2<i32>(low), vec2<i32>(0), last);
-    let se = clamp(vec2<i32>(low) + 1, vec2<i32>(0), last);
+    let nw = mirrored(vec2<i32>(low), vec2<i32>(size));
+    let se = mirrored(vec2<i32>(low) + 1, vec2<i32>(size));
     var about: KindsAbout;
     about.kinds = vec4<u32>(
         textureLoad(kind_map, nw, 0).r,
@@ -169,9 +173,17 @@ fn kinds_about(p: vec2<f32>) -> KindsAbout {
     return about;
 }
 
+// A scene of one kind has a map of one pixel.
+fn has_one_kind() -> bool {
+    return textureDimensions(kind_map).x < 2u;
+}
+
 // Number of the kind that grows at a place: the one that counts most there.
 fn kind_at(p: vec2<f32>) -> u32 {
-    let about = kinds_about(p);
+    if has_one_kind() {
+        return 0u;
+    }
+    var about = kinds_about(p);
     var found = 0u;
     var most = 0.0;
     for (var i = 0; i < 4; i++) {
@@ -187,7 +199,10 @@ fn kind_at(p: vec2<f32>) -> u32 {
 
 // The kinds at a place blended: what is seen of them from afar.
 fn kinds_blended(p: vec2<f32>) -> Kind {
-    let about = kinds_about(p);
+    if has_one_kind() {
+        return kinds.list[0];
+    }
+    var about = kinds_about(p);
     var blend = Kind(vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0));
     for (var i = 0; i < 4; i++) {
         let kind = kinds.list[about.kinds[i]];
@@ -302,7 +317,7 @@ fn earlier_lean(p: vec2<f32>, level: f32, now: vec3<f32>, kind: Kind, secs: f32)
 // Lean of a segment that trails the lowest by `secs`; less where the grass rises. Twin of `Lag::lean_rad` in shared/src/lod/lag.rs.
 fn trailing_lean(p: vec2<f32>, level: f32, now: vec3<f32>, kind: Kind, secs: f32) -> vec2<f32> {
     let lean = lean_of_bend(now);
-    if secs <= 0.0 || now.x == 0.0 && frame.past.w < 0.0 {
+    if secs <= 0.0 {
         return lean;
     }
     let then = earlier_lean(p, level, now, kind, secs);

@@ -32,7 +32,7 @@ fn placed(vertex: Vertex, instance: Instance) -> vec3<f32> {
     if sway > 0.0 {
         let foot = instance.world_from_model[3].xyz;
         let up = max(p.y - foot.y, 0.0);
-        let lean = lean_of_wind(wind_at(foot, 6.0).xz * gust_at(foot.xz));
+        let lean = lean_of_wind(wind_at(foot, 6.0).xz * gust_at(foot.xz), kinds.list[0].tip.w);
         let phase = frame.eye.w * 1.7 + foot.x * 0.7 + foot.z * 1.3;
         let swing = lean * (0.7 + 0.3 * sin(phase)) * sway * up * up * 0.02;
         p += vec3<f32>(swing.x, 0.0, swing.y);

@@ -42,6 +42,7 @@ fn seat(kind: VehicleKind) -> Seat {
         VehicleKind::Car => Seat { distance_m: 8.0, height_m: 2.8 },
         VehicleKind::Monster => Seat { distance_m: 5.0, height_m: 2.0 },
         VehicleKind::Helicopter => Seat { distance_m: 15.0, height_m: 4.5 },
+        VehicleKind::Sled => Seat { distance_m: 10.0, height_m: 4.0 },
     }
 }
 

@@ -30,7 +30,9 @@ fn meadow_in(cover: u8, wind: Wind) -> Mirror {
         plants: Default::default(),
         species: Vec::new(),
         bend: Default::default(),
+        natural_wind: Default::default(),
         objects: Default::default(),
+        drawn_winds: vec![],
         camera: Default::default(),
         light: Default::default(),
     };

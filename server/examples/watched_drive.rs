@@ -6,7 +6,7 @@ use anyhow::Context;
 use server::runner::{Published, Simulation};
 use server::scenes;
 use server::stream::{Clients, Gaze, SendLimits, Streamer};
-use server::world::{Command, Maps, World};
+use server::world::{Command, World};
 use shared::grid::PatchLayout;
 use shared::scene::VehicleKind;
 use shared::wire::{Drive, SERVER_MESSAGE_LIMIT, ServerMessage, decode};
@@ -24,7 +24,7 @@ fn main() -> anyhow::Result<()> {
     let seconds: f32 = arguments.next().map_or(Ok(20.0), |text| text.parse()).context("SECONDS")?;
     let loaded = scenes::load(&scene)?;
     let tick_hz = loaded.scene.tick_hz;
-    let mut world = World::new(&loaded.scene, Maps { height: loaded.height, cover: loaded.cover })?;
+    let mut world = World::new(&loaded.scene, loaded.maps())?;
     let layout = PatchLayout::from(&loaded.scene.patches);
     let limits = SendLimits { bytes_per_sec: 1e9, ..SendLimits::default() };
     let mut streamer = Streamer::new(layout, limits, tick_hz / STEPS_PER_PUBLISH as f32);

@@ -13,6 +13,7 @@ pub mod net;
 pub mod objects;
 pub mod runner;
 pub mod scenes;
+mod shown;
 pub mod snapshot;
 pub mod stream;
 pub mod weather;
@@ -33,7 +34,7 @@ use thiserror::Error;
 use tokio::net::TcpListener;
 use tokio::sync::{Semaphore, watch};
 use tokio::time::timeout;
-use world::{Maps, World, WorldError};
+use world::{World, WorldError};
 
 /// Time that sessions are given to say goodbye when the server stops.
 const GOODBYE: Duration = Duration::from_secs(2);
@@ -67,8 +68,7 @@ pub enum RunError {
 /// [`RunError`] when the world cannot be made, or one of the threads fails.
 pub async fn run(config: Config, listener: TcpListener, shutdown: impl Future<Output = ()>) -> Result<(), RunError> {
     let loaded = &config.scene;
-    let maps = Maps { height: loaded.height.clone(), cover: loaded.cover.clone() };
-    let world = World::new(&loaded.scene, maps)?;
+    let world = World::new(&loaded.scene, loaded.maps())?;
     run_simulation(world, config, listener, shutdown).await
 }
 

@@ -19,6 +19,8 @@ pub struct Snapshot {
     pub time_secs: f64,
     /// Every object.
     pub objects: Vec<ObjectPose>,
+    /// Most objects at once.
+    pub object_limit: u32,
     /// The wind.
     pub wind: Arc<WindFrame>,
     /// The bend field.
@@ -78,6 +80,12 @@ pub struct Health {
     pub awake_patches: u32,
     /// Patches let go since the start because the limit of awake ones was reached.
     pub evicted_patches: u64,
+    /// Tiles of 8 × 8 cells in which objects have laid grass.
+    pub laid_tiles: u32,
+    /// Patches whose laid grass was let go since the start because there was too much.
+    pub dropped_tracks: u64,
+    /// Motions of objects refused since the start because they were none.
+    pub refused_motions: u64,
     /// Sub-steps of the bend field in the newest step.
     pub substeps: u32,
     /// Largest Courant number of a sub-step of the bend field.

@@ -1,18 +1,19 @@
 //! The world: one fixed step after the other. No clock, no input or output; the same commands give the same bits.
 
-use crate::bend::Meadow;
 pub use crate::bend::View;
+use crate::bend::drawing::Drawings;
+use crate::bend::Meadow;
 use crate::objects::{Objects, Place, SPEED_LIMIT_M_PER_S};
-use crate::snapshot::{BentPatches, Health, PatchCodes, Snapshot};
+use crate::shown::Shown;
+use crate::snapshot::{Health, Snapshot};
 use crate::weather::{self, Weather, WeatherError};
 use crate::wind::StepError;
 use crate::wind::state::MAX_SUBSTEPS;
-use rayon::prelude::*;
-use shared::bend::{Damping, Patch, Scheme, WaveParams, limits};
-use shared::scene::{Grass, Patches, Scene, VehicleKind};
+use shared::bend::{Damping, Scheme, WaveParams, limits};
+use shared::grid::{PatchIndex, PatchLayout};
+use shared::scene::{CarTread, Grass, HelicopterTread, MonsterTread, Patches, Scene, SledTread, VehicleKind, WindShape};
 use shared::terrain::{CoverMap, HeightMap};
-use shared::wire::quantise;
-use shared::wire::{Drive, ObjectId};
+use shared::wire::{Drive, ObjectId, VIEW_RADIUS_LIMIT_M};
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -54,6 +55,8 @@ pub struct Maps {
     pub height: HeightMap,
     /// What covers it.
     pub cover: CoverMap,
+    /// The drawings that the scene's winds name.
+    pub drawings: Drawings,
 }
 
 /// Constants of a scene that are each in range and make no world together.
@@ -82,7 +85,7 @@ pub struct World {
     weather: Weather,
     meadow: Meadow,
     views: Vec<View>,
-    shown: Arc<BentPatches>,
+    shown: Shown,
 }
 
 impl World {
@@ -92,10 +95,11 @@ impl World {
     /// [`WorldError`] when constants that are each in range make no world together.
     pub fn new(scene: &Scene, maps: Maps) -> Result<Self, WorldError> {
         check_stiffness(scene)?;
+        check_drawings(scene, &maps.drawings)?;
         let weather = Weather::new(scene, &maps).map_err(|error| no_wind(scene, error))?;
         let height = Arc::new(maps.height);
         let place = Place { height: Arc::clone(&height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
-        let meadow = Meadow::new(scene, Arc::clone(&height), &place.cover);
+        let meadow = Meadow::with_drawings(scene, Arc::clone(&height), &place.cover, &maps.drawings);
         Ok(Self {
             dt_secs: scene.dt_secs(),
             tick: 0,
@@ -103,7 +107,7 @@ impl World {
             extent_m: scene.extent_m(),
             objects: Objects::new(scene, place),
             weather,
-            shown: Arc::default(),
+            shown: Shown::default(),
             meadow,
             views: vec![],
         })
@@ -129,14 +133,18 @@ impl World {
             tick: self.tick,
             time_secs: self.tick as f64 * f64::from(self.dt_secs),
             objects: self.objects.poses(),
+            object_limit: self.objects.limit(),
             wind: Arc::clone(self.weather.frame()),
-            patches: Arc::clone(&self.shown),
+            patches: Arc::clone(self.shown.patches()),
             health: Health {
                 divergence_rms: wind.divergence_rms_rel as f32,
                 wind_energy: wind.kinetic_energy_m2_per_s2,
                 bend_energy: self.meadow.activity(),
                 awake_patches: self.meadow.field().awake_count() as u32,
                 evicted_patches: self.meadow.evicted(),
+                laid_tiles: self.meadow.laid().tiles() as u32,
+                dropped_tracks: self.meadow.laid().dropped(),
+                refused_motions: self.meadow.refused_count(),
                 wind_resets: self.weather.resets(),
                 substeps: bend.substeps,
                 courant: bend.courant_share,
@@ -169,6 +177,7 @@ impl World {
                 sum.add(row.into_iter().flatten().map(|v| v.to_bits()));
             }
         }
+        sum.add(self.meadow.laid().words());
         sum.0
     }
 
@@ -195,35 +204,32 @@ impl World {
             .unwrap_or(self.extent_m.map(|extent| 0.5 * extent))
     }
 
-    /// Quantises the patches that changed.
+    /// Quantises the patches that changed: those that are awake, and near the cameras those that are only laid.
     fn show_patches(&mut self) {
-        let (tick, before) = (self.tick, &self.shown);
-        let show = |patch: &Patch| {
-            let (index, codes) = (patch.index(), codes_of(patch));
-            match before.get(&index) {
-                Some(before) if before.codes == codes => Some((index, Arc::clone(before))),
-                _ if codes.iter().all(|&code| code == 0) => None,
-                _ => Some((index, Arc::new(PatchCodes { tick, codes }))),
-            }
-        };
-        let awake: Vec<_> = self.meadow.field().awake().collect();
-        self.shown = Arc::new(awake.into_par_iter().filter_map(show).collect());
+        let (layout, views) = (*self.meadow.field().layout(), &self.views);
+        self.shown.renew(self.tick, &mut self.meadow, |patch| is_in_sight(&layout, views, patch));
     }
 }
 
-/// Three planes of codes: θ, ωx, ωz.
-fn codes_of(patch: &Patch) -> Vec<i8> {
-    let side = patch.side();
-    let mut codes = vec![0; 3 * side * side];
-    let (theta_codes, omega_codes) = codes.split_at_mut(side * side);
-    let (x_codes, z_codes) = omega_codes.split_at_mut(side * side);
-    let rows = theta_codes.chunks_exact_mut(side).zip(x_codes.chunks_exact_mut(side)).zip(z_codes.chunks_exact_mut(side));
-    for (((theta_codes, x_codes), z_codes), [theta, x, z]) in rows.zip(patch.rows()) {
-        theta_codes.iter_mut().zip(theta).for_each(|(code, &theta)| *code = quantise::theta_code(theta));
-        x_codes.iter_mut().zip(x).for_each(|(code, &omega)| *code = quantise::omega_code(omega));
-        z_codes.iter_mut().zip(z).for_each(|(code, &omega)| *code = quantise::omega_code(omega));
+/// Whether a patch may be within any camera's reach.
+fn is_in_sight(layout: &PatchLayout, views: &[View], patch: PatchIndex) -> bool {
+    let center_m = layout.center_m(patch);
+    let reach_m = VIEW_RADIUS_LIMIT_M + layout.patch_m();
+    views.iter().any(|view| (center_m[0] - view.eye_m[0]).hypot(center_m[1] - view.eye_m[2]) < reach_m)
+}
+
+/// All drawings that the winds of `scene` name are there.
+fn check_drawings(scene: &Scene, drawings: &Drawings) -> Result<(), WorldError> {
+    let winds = scene.drawn_winds.iter().map(|wind| ("drawn_winds", &wind.shape));
+    let named = winds.chain([("objects.helicopter.wash_shape", &scene.objects.helicopter.wash_shape)]);
+    let mut missing = named.filter_map(|(field, shape)| match shape {
+        WindShape::Drawn(name) if !drawings.contains_key(name) => Some((field, name)),
+        _ => None,
+    });
+    match missing.next() {
+        Some((field, name)) => Err(WorldError { field, message: format!("names the drawing `{name}`, which is not among the maps") }),
+        None => Ok(()),
     }
-    codes
 }
 
 fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
@@ -237,7 +243,7 @@ fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
         return Ok(());
     }
     type Mend = fn(&mut Scene);
-    let usual: [(&str, Mend); 7] = [
+    let usual: [(&str, Mend); 11] = [
         ("grass.mu_m_per_rad", |scene| scene.grass.mu_m_per_rad = Grass::default().mu_m_per_rad),
         ("grass.c0_m_per_s", |scene| scene.grass.c0_m_per_s = Grass::default().c0_m_per_s),
         ("grass.c_omega_m_per_s", |scene| scene.grass.c_omega_m_per_s = Grass::default().c_omega_m_per_s),
@@ -245,6 +251,10 @@ fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
         ("species", |scene| scene.species.clear()),
         ("patches.cell_m", |scene| scene.patches.cell_m = Patches::default().cell_m),
         ("tick_hz", |scene| scene.tick_hz = 60.0),
+        ("objects.car.strike_height_m", |scene| scene.objects.car = CarTread::default()),
+        ("objects.monster.strike_height_m", |scene| scene.objects.monster = MonsterTread::default()),
+        ("objects.helicopter.strike_height_m", |scene| scene.objects.helicopter = HelicopterTread::default()),
+        ("objects.sled.strike_height_m", |scene| scene.objects.sled = SledTread::default()),
     ];
     let needed_with = |mend: Mend| {
         let mut mended = scene.clone();
@@ -274,7 +284,7 @@ fn substeps_when_struck(scene: &Scene) -> u32 {
 }
 
 fn substeps_of(scene: &Scene, waves: &[WaveParams]) -> u32 {
-    let strike_m = VehicleKind::ALL.map(VehicleKind::strike_height_m).into_iter().fold(f32::INFINITY, f32::min);
+    let strike_m = VehicleKind::ALL.map(|kind| scene.objects.tread(kind).strike_height_m).into_iter().fold(f32::INFINITY, f32::min);
     let damping = if scene.bend.scheme == Scheme::Verlet { Damping::Plain } else { Damping::Exact };
     let needed = limits::substeps(waves, scene.patches.cell_m, scene.dt_secs(), SPEED_LIMIT_M_PER_S / strike_m, damping);
     needed.unwrap_or(limits::SUBSTEPS_LIMIT)

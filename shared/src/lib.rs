@@ -13,6 +13,7 @@
 //! - [`wind`]: which place of the wind's box blows where.
 //! - [`hash`]: random numbers by place.
 //! - [`lod`]: which grass grid is drawn how.
+//! - [`outline`]: polygons on the ground and their convex parts.
 //! - [`wire`]: the messages between server and client, and the codec of the fields.
 //!
 //! Everything here builds for `wasm32` and is deterministic: only `+ − × ÷` and square roots where both sides must agree.
@@ -21,6 +22,7 @@ pub mod bend;
 pub mod grid;
 pub mod hash;
 pub mod lod;
+pub mod outline;
 pub mod scene;
 pub mod terrain;
 pub mod wind;

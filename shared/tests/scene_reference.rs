@@ -11,7 +11,7 @@ struct Field {
 }
 
 /// Source files and, for each struct in them, the section that it describes.
-const SOURCES: [(&str, &[(&str, &str)]); 12] = [
+const SOURCES: [(&str, &[(&str, &str)]); 15] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
     ("terrain.rs", &[("TerrainMaps", "terrain")]),
@@ -19,15 +19,44 @@ const SOURCES: [(&str, &[(&str, &str)]); 12] = [
     ("wind/faces.rs", &[("WindFaces", "wind.faces")]),
     ("wind/dust.rs", &[("WindDust", "wind.dust")]),
     ("wind/primitive.rs", &[("Primitive", "wind.primitives")]),
+    ("natural_wind.rs", &[("NaturalWind", "natural_wind")]),
+    ("bend.rs", &[("BendField", "bend")]),
     ("grass.rs", &[("Grass", "grass")]),
     ("plants.rs", &[("Plants", "plants")]),
     ("species.rs", &[("Species", "species")]),
-    ("objects.rs", &[("Objects", "objects")]),
+    (
+        "objects.rs",
+        &[
+            ("Objects", "objects"),
+            ("CarTread", "objects.car"),
+            ("MonsterTread", "objects.monster"),
+            ("HelicopterTread", "objects.helicopter"),
+            ("SledTread", "objects.sled"),
+        ],
+    ),
+    ("drawn_wind.rs", &[("DrawnWind", "drawn_winds")]),
     ("picture.rs", &[("CameraStart", "camera"), ("Light", "light")]),
 ];
 
 /// Sections that may stand once.
-const SECTIONS: [&str; 10] = ["patches", "terrain", "wind", "wind.faces", "wind.dust", "grass", "plants", "objects", "camera", "light"];
+const SECTIONS: [&str; 16] = [
+    "patches",
+    "terrain",
+    "wind",
+    "wind.faces",
+    "wind.dust",
+    "natural_wind",
+    "bend",
+    "grass",
+    "plants",
+    "objects",
+    "objects.car",
+    "objects.monster",
+    "objects.helicopter",
+    "objects.sled",
+    "camera",
+    "light",
+];
 
 fn documented() -> Vec<Field> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scene");
@@ -72,7 +101,9 @@ fn minimal() -> toml::Table {
 
 /// A scene with every field written out, and one section in each list of sections.
 fn complete() -> toml::Table {
-    let text = minimal().to_string() + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n[[species]]\nname = ''\ncover = 1\n";
+    let text = minimal().to_string()
+        + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n[[species]]\nname = ''\ncover = 1\n"
+        + "[[drawn_winds]]\nshape = 'swirl'\npath_m = [[1.0, 2.0]]\n";
     toml::Table::try_from(parse(&text).unwrap()).unwrap()
 }
 
@@ -113,7 +144,7 @@ fn field_of(path: &str) -> String {
 /// `value` with every number replaced.
 fn with_number(value: &toml::Value, number: &toml::Value) -> toml::Value {
     match value {
-        toml::Value::Array(items) => items.iter().map(|_| number.clone()).collect::<Vec<_>>().into(),
+        toml::Value::Array(items) => items.iter().map(|item| with_number(item, number)).collect::<Vec<_>>().into(),
         _ => number.clone(),
     }
 }
@@ -137,6 +168,10 @@ fn doc_comments_give_the_checked_range_and_the_true_default() {
             let stated = numbers(after(&field.doc, "allowed ").unwrap_or_else(|| panic!("{path} states no range")));
             assert_eq!(stated[..2], [low, high], "{path}: {}", field.doc);
         }
+        if let Allowed::Places(least, most, low, high) = allowed {
+            let stated = numbers(after(&field.doc, "allowed ").unwrap());
+            assert_eq!(stated[..4], [least as f64, most as f64, low, high], "{path}: {}", field.doc);
+        }
         if let Allowed::Sections(limit) = allowed {
             assert_eq!(numbers(after(&field.doc, "allowed ").unwrap()), [limit as f64], "{path}: {}", field.doc);
         }
@@ -149,7 +184,7 @@ fn doc_comments_give_the_checked_range_and_the_true_default() {
         }
         let stated = after(&field.doc, "Default ").unwrap_or_else(|| panic!("{path} states no default"));
         let values = match value_at(&mut scene, path).clone() {
-            toml::Value::Array(items) => items,
+            toml::Value::Array(items) => items.into_iter().flat_map(|item| item.as_array().cloned().unwrap_or(vec![item])).collect(),
             value => vec![value],
         };
         for (i, value) in values.iter().enumerate() {
@@ -168,7 +203,7 @@ fn doc_comments_give_the_checked_range_and_the_true_default() {
 #[test]
 fn every_number_is_checked() {
     for (path, allowed) in FIELDS {
-        let Allowed::Range(low, high) = allowed else { continue };
+        let (Allowed::Range(low, high) | Allowed::Places(.., low, high)) = allowed else { continue };
         let mut absurd =
             vec![f64::NAN.into(), f64::INFINITY.into(), f64::NEG_INFINITY.into(), (high * 2.0 + 1e6).into(), (low - 1e6).into()];
         absurd.push(toml::Value::Integer(i64::MIN));

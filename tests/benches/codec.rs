@@ -4,7 +4,7 @@
 //! Payload sizes are printed first, since speed means nothing without them.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use shared::bend::{Bend, Field, WaveParams};
+use shared::bend::{Alone, Bend, Field, Kinds, Scheme, WaveParams};
 use shared::grid::PatchLayout;
 use shared::scene::Grass;
 use shared::wire::{Shape, codec, quantise};
@@ -18,8 +18,7 @@ const STEPS_PER_FRAME: usize = 3;
 
 /// Codes of consecutive frames while a disc of 1 m radius crosses the patch at 8 m/s.
 fn frames() -> Vec<Vec<i8>> {
-    let params = WaveParams::from(&Grass::default());
-    let mut field = Field::new(LAYOUT);
+    let mut field = Field::new(LAYOUT, Kinds::one(WaveParams::from(&Grass::default())));
     let mut frames = Vec::new();
     for step in 0..120 {
         let x_m = 1.0 + 8.0 * step as f32 * DT_SECS;
@@ -33,13 +32,13 @@ fn frames() -> Vec<Vec<i8>> {
                 }
             }
         }
-        field.step(&params, DT_SECS);
+        field.step(Scheme::Substepped, DT_SECS, &Alone).expect("a step of some length");
         if step % STEPS_PER_FRAME == 0 {
-            let [theta, omega_x, omega_z] = field.patch(0).expect("awake").channels();
-            let own = |values: &[f32], code: fn(f32) -> i8| -> Vec<i8> {
-                values.chunks_exact(SIDE + 2).skip(1).take(SIDE).flat_map(|row| row[1..=SIDE].iter().map(|&v| code(v))).collect()
+            let patch = field.patch(0).expect("awake");
+            let own = |channel: usize, code: fn(f32) -> i8| -> Vec<i8> {
+                patch.rows().flat_map(|row| row[channel].iter().map(|&value| code(value)).collect::<Vec<_>>()).collect()
             };
-            let planes = [own(theta, quantise::theta_code), own(omega_x, quantise::omega_code), own(omega_z, quantise::omega_code)];
+            let planes = [own(0, quantise::theta_code), own(1, quantise::omega_code), own(2, quantise::omega_code)];
             frames.push(planes.concat());
         }
     }

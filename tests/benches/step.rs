@@ -3,7 +3,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use server::world::{Command, View, World};
-use shared::bend::{Bend, Field, WaveParams};
+use shared::bend::{Alone, Bend, Field, Kinds, Scheme, WaveParams};
 use shared::grid::PatchLayout;
 use shared::scene::{Grass, Patches, VehicleKind};
 use shared::wire::Drive;
@@ -56,7 +56,7 @@ const TIMED_STEPS: usize = 3600;
 
 /// A field of a million cells, all bent.
 fn awake_field() -> Field {
-    let mut field = Field::new(PatchLayout::from(&Patches::default()));
+    let mut field = Field::new(PatchLayout::from(&Patches::default()), Kinds::one(WaveParams::from(&Grass::default())));
     let layout = *field.layout();
     for index in 0..layout.patches() as u32 {
         let patch = field.wake(index);
@@ -69,9 +69,8 @@ fn awake_field() -> Field {
 }
 
 fn bend(criterion: &mut Criterion) {
-    let params = WaveParams::from(&Grass::default());
     let mut field = awake_field();
-    criterion.bench_function("bend field, 1 M cells awake", |bench| bench.iter(|| field.step(&params, 1.0 / 60.0)));
+    criterion.bench_function("bend field, 1 M cells awake", |bench| bench.iter(|| field.step(Scheme::Substepped, 1.0 / 60.0, &Alone)));
 }
 
 /// What a mean hides: the wind steps on every third tick only, and a tick that is late is seen.

@@ -4,7 +4,7 @@ use anyhow::{Context as _, Result};
 use client_wasm::state::Mirror;
 use server::scenes;
 use server::snapshot::PatchCodes;
-use server::world::{Command, Maps, View, World};
+use server::world::{Command, View, World};
 use shared::scene::{Scene, VehicleKind};
 use shared::terrain::HeightMap;
 use shared::wire::{Drive, ObjectPose, ServerMessage, Shape, codec};
@@ -31,6 +31,7 @@ impl Stage {
     /// When the scene is faulty.
     pub fn load(name_or_path: &str) -> Result<Self> {
         let loaded = scenes::load(name_or_path)?;
+        let world = World::new(&loaded.scene, loaded.maps())?;
         let mut mirror = Mirror::default();
         mirror.apply(ServerMessage::Scene {
             scene: Box::new(loaded.scene.clone()),
@@ -38,7 +39,6 @@ impl Stage {
             covering_png: loaded.covering_png,
             models: loaded.models,
         })?;
-        let world = World::new(&loaded.scene, Maps { height: loaded.height.clone(), cover: loaded.cover })?;
         Ok(Self { world, mirror, scene: loaded.scene, height: loaded.height, sent: BTreeMap::new(), frame: 0, time_secs: 0.0 })
     }
 
@@ -129,6 +129,8 @@ pub enum Act {
     Wash,
     /// A monster walks through the grass.
     Walk,
+    /// A sled has been dragged across the view.
+    Drag,
 }
 
 /// Plays an act in front of the eye and leaves the mirror at its end. Returns the pose of the act's own object.
@@ -150,12 +152,17 @@ pub fn play(stage: &mut Stage, act: Act, eye_m: [f32; 3]) -> Result<Option<Objec
             (3.5, Drive { throttle: 0.0, steer: 0.0, lift: 0.0, brake: 0.0 }),
         ],
         Act::Walk => &[(4.0, Drive { throttle: 0.7, steer: 0.1, lift: 0.0, brake: 0.0 })],
+        Act::Drag => &[
+            (1.8, Drive { throttle: 0.8, steer: 0.0, lift: 0.0, brake: 0.0 }),
+            (2.4, Drive { throttle: 0.6, steer: 0.7, lift: 0.0, brake: 0.0 }),
+        ],
     };
     let kind = match act {
         Act::Wind => None,
         Act::Track => Some(VehicleKind::Car),
         Act::Wash => Some(VehicleKind::Helicopter),
         Act::Walk => Some(VehicleKind::Monster),
+        Act::Drag => Some(VehicleKind::Sled),
     };
     if let Some(kind) = kind {
         stage.spawn(1, kind);

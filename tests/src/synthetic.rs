@@ -74,7 +74,9 @@ fn scene() -> Scene {
         plants: Default::default(),
         species: Vec::new(),
         bend: Default::default(),
+        natural_wind: Default::default(),
         objects: Default::default(),
+        drawn_winds: vec![],
         camera: Default::default(),
         light: Default::default(),
     }

@@ -1,5 +1,6 @@
-//! Small worlds to test with, made without files.
+//! Worlds to test with: small ones, made without files, and the largest that ships.
 
+use server::scenes;
 use server::world::{Maps, World};
 use shared::scene::Scene;
 use shared::terrain::{CoverMap, HeightMap, grey_png};
@@ -23,7 +24,9 @@ pub fn scene(count: u32) -> Scene {
         plants: Default::default(),
         species: Vec::new(),
         bend: Default::default(),
+        natural_wind: Default::default(),
         objects: Default::default(),
+        drawn_winds: vec![],
         camera: Default::default(),
         light: Default::default(),
     };
@@ -38,7 +41,8 @@ pub fn maps(scene: &Scene, height_m: impl Fn(f32, f32) -> f32, cover: impl Fn(f3
     let heights = (0..width * depth).map(|i| height_m(at(i).0, at(i).1)).collect();
     let ids: Vec<u8> = (0..width * depth).map(|i| cover(at(i).0, at(i).1)).collect();
     let height = HeightMap::from_heights(width, depth, [2.0; 2], heights);
-    Maps { height, cover: CoverMap::from_png(&grey_png([width, depth], &ids)).expect("a grey PNG of eight bits") }
+    let cover = CoverMap::from_png(&grey_png([width, depth], &ids)).expect("a grey PNG of eight bits");
+    Maps { height, cover, drawings: Default::default() }
 }
 
 /// Flat land, all grass.
@@ -59,4 +63,15 @@ pub fn hills(scene: &Scene) -> World {
         _ => 255,
     };
     World::new(scene, maps(scene, hills_m, cover)).expect("the default constants make a world")
+}
+
+/// The built-in scene `continuum` with `cars` that drive themselves at 20 m/s and start about `apart_m` from each other, and its maps.
+pub fn continuum(cars: u32, apart_m: f32) -> (Scene, Maps) {
+    let loaded = scenes::load("continuum").expect("a built-in scene is sound");
+    let (maps, mut scene) = (loaded.maps(), loaded.scene);
+    scene.objects.limit = scene.objects.limit.max(cars);
+    scene.objects.self_driving = cars;
+    scene.objects.self_driving_m_per_s = 20.0;
+    scene.objects.self_driving_apart_m = apart_m;
+    (scene, maps)
 }

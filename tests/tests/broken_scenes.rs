@@ -6,7 +6,7 @@ use shared::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
-const BROKEN: [&str; 18] = [
+const BROKEN: [&str; 26] = [
     "unknown-field",
     "syntax",
     "out-of-range",
@@ -25,6 +25,14 @@ const BROKEN: [&str; 18] = [
     "wind-stable-fluids",
     "wind-primitives",
     "wind-one-primitive",
+    "species",
+    "species-hole",
+    "objects",
+    "sled-outline",
+    "sled-without-footprint",
+    "sled-of-no-area",
+    "drawn-winds",
+    "drawn-winds-out-of-range",
 ];
 
 /// The message for a broken scene equals the stored text beside it; `PRAIRIE_UPDATE=1` stores it anew.
@@ -45,9 +53,9 @@ fn names_and_files_that_are_not_there_are_told() {
     let told = |name: &str| load(name).unwrap_err().to_string();
     assert_eq!(
         told("medow"),
-        "no built-in scene and no file is called `medow`; did you mean `meadow`? Built-in scenes: meadow, jacksboro, devil"
+        "no built-in scene and no file is called `medow`; did you mean `meadow`? Built-in scenes: meadow, jacksboro, devil, continuum"
     );
-    assert_eq!(told("xyzzy"), "no built-in scene and no file is called `xyzzy`. Built-in scenes: meadow, jacksboro, devil");
+    assert_eq!(told("xyzzy"), "no built-in scene and no file is called `xyzzy`. Built-in scenes: meadow, jacksboro, devil, continuum");
     assert!(told("scenes/none.toml").starts_with("scene file `scenes/none.toml` cannot be read: No such file"));
     assert_eq!(told("scenes/broken"), "scene file `scenes/broken` cannot be read: it is not a file");
     assert!(told("scenes/broken/no-model.glb").contains("not TOML"));

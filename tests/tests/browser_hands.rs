@@ -3,7 +3,7 @@
 use anyhow::{Context as _, Result, ensure};
 use fantoccini::actions::{InputSource as _, PointerAction, TouchActions};
 use server::scenes;
-use server::world::{Maps, World};
+use server::world::World;
 use std::time::Duration;
 use tests::browser::{Browser, VIEW};
 use tests::prairie::Prairie;
@@ -13,8 +13,7 @@ const FAR_M: f64 = 4.0;
 
 async fn meadow() -> Result<Prairie> {
     let meadow = scenes::load("meadow")?;
-    let maps = Maps { height: meadow.height.clone(), cover: meadow.cover.clone() };
-    let world = World::new(&meadow.scene, maps)?;
+    let world = World::new(&meadow.scene, meadow.maps())?;
     Prairie::serve(meadow, world).await
 }
 

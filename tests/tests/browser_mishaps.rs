@@ -2,14 +2,13 @@
 
 use anyhow::{Result, ensure};
 use server::scenes;
-use server::world::{Maps, World};
+use server::world::World;
 use tests::browser::Browser;
 use tests::prairie::Prairie;
 
 async fn visited_meadow() -> Result<(Prairie, Browser)> {
     let meadow = scenes::load("meadow")?;
-    let maps = Maps { height: meadow.height.clone(), cover: meadow.cover.clone() };
-    let world = World::new(&meadow.scene, maps)?;
+    let world = World::new(&meadow.scene, meadow.maps())?;
     let prairie = Prairie::serve(meadow, world).await?;
     let browser = prairie.visitor("Ada").await?;
     Ok((prairie, browser))

@@ -7,11 +7,11 @@ use tests::worlds;
 
 const CLIENTS: u32 = 6;
 
-/// What visitors do at a tick: three kinds of vehicle, driven about; a camera that wanders; one leaves, and comes back.
+/// What visitors do at a tick: all kinds of vehicle, driven about; a camera that wanders; one leaves, and comes back.
 fn commands(tick: u32) -> Vec<Command> {
     let mut commands = vec![];
     if tick == 0 {
-        let kind = |client: u32| VehicleKind::ALL[client as usize % 3];
+        let kind = |client: u32| VehicleKind::ALL[client as usize % 4];
         commands.extend((0..CLIENTS).map(|client| Command::Spawn { client, kind: kind(client) }));
     }
     if tick.is_multiple_of(30) {

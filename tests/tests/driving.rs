@@ -1,9 +1,11 @@
 //! Objects stay on the land, in the world and apart, and do as they are told.
 
+use server::objects::{Objects, Place};
 use server::world::{Command, View, World};
-use shared::scene::VehicleKind::{Car, Helicopter, Monster};
+use shared::scene::VehicleKind::{Car, Helicopter, Monster, Sled};
 use shared::scene::{Scene, VehicleKind};
 use shared::wire::{Drive, ObjectPose};
+use std::sync::Arc;
 use tests::worlds;
 
 fn spawn(world: &mut World, client: u32, kind: VehicleKind) {
@@ -75,7 +77,7 @@ fn a_minute_of_wild_driving_stays_on_the_land_and_in_the_world() {
             random ^= random << 5;
             (random >> 8) as f32 / 8_388_608.0 - 1.0
         };
-        let kinds = [Car, Monster, Helicopter, Car];
+        let kinds = [Car, Monster, Helicopter, Sled];
         for (client, kind) in (0..).zip(kinds) {
             spawn(&mut world, client, kind);
         }
@@ -134,6 +136,40 @@ fn a_monster_walks_on_the_land() {
 }
 
 #[test]
+fn a_sled_glides_over_the_land_and_tilts_with_it() {
+    let scene = worlds::scene(24);
+    let mut world = worlds::hills(&scene);
+    spawn(&mut world, 1, Sled);
+    let mut fastest = 0.0_f32;
+    for _ in 0..30 {
+        let pose = drive(&mut world, 1, Drive { steer: 0.3, ..AHEAD }, 20);
+        let [x, y, z] = pose.position_m;
+        assert!((y - 0.35 - worlds::hills_m(x, z)).abs() < 0.35, "floor at {}, land at {}", y - 0.25, worlds::hills_m(x, z));
+        let slope = [worlds::hills_m(x + 0.1, z) - worlds::hills_m(x - 0.1, z), worlds::hills_m(x, z + 0.1) - worlds::hills_m(x, z - 0.1)];
+        let land = glam::Vec3::new(-slope[0], 0.2, -slope[1]).normalize();
+        let up = glam::Quat::from_array(pose.rotation) * glam::Vec3::Y;
+        assert!(up.dot(land) > 0.9, "up {up}, land {land}");
+        fastest = fastest.max(speed(&pose));
+    }
+    assert!((10.0..16.0).contains(&fastest), "{fastest} m/s");
+    let stopped = drive(&mut world, 1, Drive { brake: 1.0, ..Drive::default() }, 240);
+    assert!(speed(&stopped) < 0.3, "after 4 s of braking: {} m/s", speed(&stopped));
+}
+
+#[test]
+fn vehicles_of_every_kind_drive_themselves() {
+    for kind in VehicleKind::ALL {
+        let mut scene = worlds::scene(20);
+        (scene.objects.self_driving, scene.objects.self_driving_kind) = (3, kind);
+        let mut world = worlds::flat(&scene);
+        (0..600).for_each(|_| world.step(&[]));
+        let poses = world.snapshot().objects;
+        assert!(poses.len() == 3 && poses.iter().all(|pose| pose.kind == kind && speed(pose) > 2.0), "{poses:?}");
+        assert!(kind != Helicopter || poses.iter().all(|pose| (3.0..10.0).contains(&pose.position_m[1])), "{poses:?}");
+    }
+}
+
+#[test]
 fn a_helicopter_climbs_hovers_flies_and_lands() {
     let mut world = worlds::flat(&worlds::scene(30));
     spawn(&mut world, 1, Helicopter);
@@ -156,7 +192,7 @@ fn objects_start_apart_and_never_exceed_the_limit() {
     let mut world = worlds::hills(&scene);
     let view = View { client: 7, eye_m: [100.0, 2.0, 60.0] };
     let mut commands = vec![Command::Views(vec![view])];
-    commands.extend((0..50).map(|client| Command::Spawn { client, kind: VehicleKind::ALL[client as usize % 3] }));
+    commands.extend((0..50).map(|client| Command::Spawn { client, kind: VehicleKind::ALL[client as usize % 4] }));
     world.step(&commands);
     assert_eq!((0..50).filter(|&client| world.object_of(client).is_none()).count(), 10);
     let objects = world.snapshot().objects;
@@ -200,4 +236,45 @@ fn absurd_land_and_constants_give_numbers() {
     let maps = worlds::maps(&scene, spikes, |_, _| 255);
     let refused = World::new(&scene, maps).err().expect("too many sub-steps").to_string();
     assert!(refused.contains("mu_m_per_rad = 10") && refused.contains("allowed: 64"), "{refused}");
+}
+
+/// Objects of the scene `continuum`: nothing but these cars, which drive themselves at 20 m/s.
+fn self_driving(cars: u32, apart_m: f32) -> (Scene, Objects) {
+    let (scene, maps) = worlds::continuum(cars, apart_m);
+    let place = Place { height: Arc::new(maps.height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
+    let objects = Objects::new(&scene, place);
+    assert_eq!(objects.poses().len(), cars as usize);
+    (scene, objects)
+}
+
+#[test]
+fn cars_that_drive_themselves_start_as_far_apart_as_asked() {
+    for (cars, apart_m) in [(64, 200.0), (256, 140.0)] {
+        let (scene, objects) = self_driving(cars, apart_m);
+        let poses = objects.poses();
+        for (n, a) in poses.iter().enumerate() {
+            assert!([0, 2].iter().all(|&axis| (0.0..scene.extent_m()[0]).contains(&a.position_m[axis])), "{a:?}");
+            for b in &poses[..n] {
+                let [x, z] = [0, 2].map(|axis| a.position_m[axis] - b.position_m[axis]);
+                assert!(x.hypot(z) > apart_m, "{cars} cars: {} and {} start {} m apart", a.id, b.id, x.hypot(z));
+            }
+        }
+    }
+}
+
+#[test]
+fn cars_that_drive_themselves_hold_their_speed_on_wide_circles() {
+    let (scene, mut objects) = self_driving(64, 200.0);
+    let starts = objects.poses();
+    for tick in 1..=2400 {
+        objects.step(scene.dt_secs());
+        let poses = objects.poses();
+        for (pose, start) in poses.iter().zip(&starts) {
+            let [x, z] = [0, 2].map(|axis| pose.position_m[axis] - start.position_m[axis]);
+            assert!(x.hypot(z) < 300.0, "tick {tick}: car {} has gone {} m from where it started", pose.id, x.hypot(z));
+        }
+        // One that has struck a stone, a tree or another car backs off and comes up to speed again.
+        let delayed: Vec<_> = poses.iter().filter(|pose| (speed(pose) - 20.0).abs() > 1.5).map(|pose| (pose.id, speed(pose))).collect();
+        assert!(tick < 600 || delayed.len() <= 6, "tick {tick}: {delayed:?}");
+    }
 }

@@ -14,8 +14,8 @@ const SIZE_PX: [u32; 2] = [480, 270];
 const FRAMES: u32 = 12;
 const DT_SECS: f32 = 1.0 / 30.0;
 
-fn draw(act: Act) -> Result<Picture> {
-    let mut stage = Stage::load("meadow")?;
+fn draw(scene: &str, act: Act) -> Result<Picture> {
+    let mut stage = Stage::load(scene)?;
     let scene = stage.scene();
     let camera = Camera::start(&scene.camera, scene.extent_m(), |x, z| stage.ground_m(x, z));
     play(&mut stage, act, camera.eye_m.to_array())?;
@@ -33,8 +33,8 @@ fn stored(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("golden").join(format!("{name}.png"))
 }
 
-fn compare(name: &str, act: Act) -> Result<()> {
-    let (drawn, path) = (draw(act)?, stored(name));
+fn compare(name: &str, scene: &str, act: Act) -> Result<()> {
+    let (drawn, path) = (draw(scene, act)?, stored(name));
     if std::env::var_os("PRAIRIE_BLESS").is_some() {
         return drawn.save(&path);
     }
@@ -49,13 +49,18 @@ fn compare(name: &str, act: Act) -> Result<()> {
 
 #[test]
 fn the_meadow_looks_as_stored() -> Result<()> {
-    compare("meadow", Act::Wind)
+    compare("meadow", "meadow", Act::Wind)
 }
 
 #[test]
 fn a_track_looks_as_stored_and_unlike_the_untouched_meadow() -> Result<()> {
-    compare("track", Act::Track)?;
+    compare("track", "meadow", Act::Track)?;
     let difference = Picture::load(&stored("track"))?.difference(&Picture::load(&stored("meadow"))?)?;
     ensure!(difference.changed > 0.005, "the track's picture shows no track: {difference:?}");
     Ok(())
+}
+
+#[test]
+fn species_side_by_side_look_as_stored() -> Result<()> {
+    compare("species", "scenes/species/species.toml", Act::Wind)
 }

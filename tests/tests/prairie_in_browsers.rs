@@ -7,7 +7,7 @@ use serde_json::Value;
 use server::runner::Simulation;
 use server::scenes::{self, LoadedScene};
 use server::snapshot::Snapshot;
-use server::world::{Command, Maps, World};
+use server::world::{Command, World};
 use shared::wire::ObjectId;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -52,9 +52,8 @@ struct Prairie {
 
 impl Prairie {
     async fn serve(scene: LoadedScene) -> Result<Self> {
-        let maps = Maps { height: scene.height.clone(), cover: scene.cover.clone() };
         let held = Arc::new(AtomicBool::new(false));
-        let world = Held { world: World::new(&scene.scene, maps)?, held: Arc::clone(&held), waiting: vec![] };
+        let world = Held { world: World::new(&scene.scene, scene.maps())?, held: Arc::clone(&held), waiting: vec![] };
         Ok(Self { server: tests::prairie::Prairie::serve(scene, world).await?, held })
     }
 

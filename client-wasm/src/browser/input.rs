@@ -136,6 +136,7 @@ fn wish(key: &str, code: &str) -> Option<Wish> {
         "c" => Some(VehicleKind::Car),
         "m" => Some(VehicleKind::Monster),
         "h" => Some(VehicleKind::Helicopter),
+        "l" => Some(VehicleKind::Sled),
         "f" | "escape" => None,
         _ => return HEIGHTS_M.iter().find(|(known, _)| *known == code).map(|&(_, height_m)| Wish::Height(height_m)),
     };

@@ -13,12 +13,16 @@ use shared::hash::hash3;
 use shared::lod::{billboard_plants, billboards_per_side};
 use wgpu::BufferUsages;
 
-/// Clumps in one instance; twin of the constant in `billboards.wgsl`.
+/// Clumps in one instance; twin of `CLUMPS` in `billboards.wgsl`.
 const CHUNK: u32 = 32;
 /// Most clumps in a frame.
 const CLUMP_LIMIT: usize = 32_768;
 /// Bytes of a clump's pose, `Stand` in `billboards.wgsl`.
-const STAND_BYTES: u64 = 64;
+const STAND_BYTES: u64 = 160;
+/// Most segments of a plant.
+const SEGMENT_LIMIT: usize = 6;
+/// A clump fades in this much nearer or farther than others; twin of the spread in `billboards.wgsl`.
+const FADE_SPREAD_M: f32 = 1.0;
 /// Grids up to this many away get the clumps of the nearest ring, as plants thin out there.
 const DENSE_GRIDS: u32 = 2;
 
@@ -30,6 +34,22 @@ struct Clump {
     random: f32,
 }
 
+/// How far from the camera clumps are drawn (m).
+pub(super) struct Reach {
+    pub(super) from_m: f32,
+    /// From here on as one segment.
+    pub(super) several_m: f32,
+    pub(super) to_m: f32,
+}
+
+/// What the shaders know of a frame's clumps: `List` in `billboards.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct List {
+    counts: [u32; 4],
+    several_m: [f32; 4],
+}
+
 pub(super) struct Billboards {
     pipeline: wgpu::RenderPipeline,
     place: wgpu::ComputePipeline,
@@ -37,8 +57,12 @@ pub(super) struct Billboards {
     clumps: wgpu::Buffer,
     list: wgpu::Buffer,
     group: wgpu::BindGroup,
-    indices: wgpu::Buffer,
+    /// Of instances whose rectangles have 1, 2, ... rows.
+    indices: [wgpu::Buffer; SEGMENT_LIMIT],
     count: u32,
+    /// Instances whose clumps have several segments, and the most that they have.
+    several: u32,
+    segments: usize,
 }
 
 impl Billboards {
@@ -53,7 +77,7 @@ impl Billboards {
         let place = maker.compute("place", &module, "place", &place_layout);
         let size = (CLUMP_LIMIT * size_of::<Clump>()) as u64;
         let clumps = gpu.empty_buffer("clumps", size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
-        let list = gpu.empty_buffer("clump list", 16, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+        let list = gpu.empty_buffer("clump list", size_of::<List>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let tufts = gpu.texture("tufts", wgpu::TextureFormat::Rgba8Unorm, paint::TUFT_PX, &paint::tufts());
         let tufts = tufts.create_view(&Default::default());
         let stands = gpu.empty_buffer("stands", (CLUMP_LIMIT as u64) * STAND_BYTES, BufferUsages::STORAGE);
@@ -67,25 +91,28 @@ impl Billboards {
             layout: &place_layout,
             entries: &place_entries,
         });
-        let rectangles = (0..CHUNK as u16 * 6).map(|i| i * 4);
-        let indices: Vec<u16> = rectangles.flat_map(|a| [a, a + 1, a + 2, a + 2, a + 1, a + 3]).collect();
-        let indices = gpu.buffer("clump", bytemuck::cast_slice(&indices), BufferUsages::INDEX);
-        Self { pipeline, place, place_group, clumps, list, group, indices, count: 0 }
+        let indices = std::array::from_fn(|i| gpu.buffer("clump", bytemuck::cast_slice(&clump_indices(i as u16 + 1)), BufferUsages::INDEX));
+        Self { pipeline, place, place_group, clumps, list, group, indices, count: 0, several: 0, segments: 1 }
     }
 
-    /// Lists the clumps in view between `from_m` and `to_m`, nearest grids first.
-    pub(super) fn prepare(&mut self, gpu: &Gpu, land: &Land, eye_m: Vec3, frustum: &Frustum, from_m: f32, to_m: f32) {
+    /// Lists the clumps in view, nearest grids first.
+    pub(super) fn prepare(&mut self, gpu: &Gpu, land: &Land, eye_m: Vec3, frustum: &Frustum, within: Reach) {
         let plants = &land.scene().plants;
         let grid_m = plants.grid_m;
         let home = [eye_m.x, eye_m.z].map(|m| (m / grid_m).floor() as i32);
-        let reach = (to_m / grid_m).ceil() as i32;
+        let reach = (within.to_m / grid_m).ceil() as i32;
+        let several_rings = (within.several_m / grid_m) as i32;
         let mut clumps = Vec::new();
+        let mut several = 0;
         'rings: for ring in 0..=reach {
+            if ring <= several_rings {
+                several = clumps.len();
+            }
             for [dx, dz] in ring_of(ring) {
                 let grid = [home[0] + dx, home[1] + dz];
                 let centre = grid.map(|n| (n as f32 + 0.5) * grid_m);
                 let distance_m = (centre[0] - eye_m.x).hypot(centre[1] - eye_m.z);
-                if distance_m + grid_m < from_m || !grid_is_seen(land, grid, grid_m, frustum) {
+                if distance_m + grid_m < within.from_m || !grid_is_seen(land, grid, grid_m, frustum) {
                     continue;
                 }
                 let away = (ring as u32).saturating_sub(DENSE_GRIDS).max(1);
@@ -96,11 +123,11 @@ impl Billboards {
                     for i in 0..per_side {
                         let random = random3(grid, i + j * 256);
                         let place = |n: i32, k: u32, r: f32| n as f32 * grid_m + (k as f32 + 0.15 + 0.7 * r) * spacing_m;
-                        clumps.push(Clump {
-                            axis_m: [place(grid[0], i, random[0]), place(grid[1], j, random[1])],
-                            length_m: spacing_m * 0.5 * overlap,
-                            random: random[2],
-                        });
+                        let axis_m = [place(grid[0], i, random[0]), place(grid[1], j, random[1])];
+                        if is_nearer(land, axis_m, eye_m, within.from_m - FADE_SPREAD_M) {
+                            continue;
+                        }
+                        clumps.push(Clump { axis_m, length_m: spacing_m * 0.5 * overlap, random: random[2] });
                         if clumps.len() == CLUMP_LIMIT {
                             break 'rings;
                         }
@@ -110,7 +137,13 @@ impl Billboards {
         }
         self.count = clumps.len() as u32;
         gpu.queue.write_buffer(&self.clumps, 0, bytemuck::cast_slice(&clumps));
-        gpu.queue.write_buffer(&self.list, 0, bytemuck::bytes_of(&[self.count, 0, 0, 0]));
+        self.several = several.div_ceil(CHUNK as usize) as u32;
+        self.segments = land.scene().kinds().iter().map(|grass| grass.segments as usize).max().unwrap_or(1).clamp(1, SEGMENT_LIMIT);
+        // Every clump beyond the last ring with several segments is at least this far away.
+        let straight_m = ((several_rings - 1) as f32 * grid_m).max(1.0);
+        let list =
+            List { counts: [self.count, self.several, self.segments as u32, 0], several_m: [0.5 * straight_m, straight_m, 0.0, 0.0] };
+        gpu.queue.write_buffer(&self.list, 0, bytemuck::bytes_of(&list));
     }
 
     /// Clumps in the frame.
@@ -130,9 +163,25 @@ impl Billboards {
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, &self.group, &[]);
-        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
-        pass.draw_indexed(0..CHUNK * 36, 0, 0..self.count.div_ceil(CHUNK));
+        let instances = self.count.div_ceil(CHUNK);
+        for (rows, range) in [(self.segments, 0..self.several), (1, self.several..instances)] {
+            pass.set_index_buffer(self.indices[rows - 1].slice(..), wgpu::IndexFormat::Uint16);
+            pass.draw_indexed(0..CHUNK * 36 * rows as u32, 0, range);
+        }
     }
+}
+
+/// Whether a place on the land is nearer to the eye than `limit_m`.
+fn is_nearer(land: &Land, [x, z]: [f32; 2], eye_m: Vec3, limit_m: f32) -> bool {
+    let is_near = |y: f32| eye_m.distance_squared(Vec3::new(x, y, z)) < limit_m * limit_m;
+    limit_m > 0.0 && is_near(eye_m.y) && is_near(land.heights().height_m(x, z))
+}
+
+/// Triangles of an instance's clumps, six rectangles each, of so many rows.
+fn clump_indices(rows: u16) -> Vec<u16> {
+    let corners = 2 * (rows + 1);
+    let firsts = (0..CHUNK as u16 * 6).flat_map(|rectangle| (0..rows).map(move |row| rectangle * corners + 2 * row));
+    firsts.flat_map(|a| [a, a + 1, a + 2, a + 2, a + 1, a + 3]).collect()
 }
 
 /// Offsets of the grids that lie `ring` away (Chebyshev distance).

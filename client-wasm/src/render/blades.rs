@@ -214,7 +214,7 @@ pub(super) fn grid_is_seen(land: &Land, grid: [i32; 2], grid_m: f32, frustum: &F
     let corners = [(0.0, 0.0), (0.5, 0.5), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
     let heights = corners.map(|(i, j)| h.height_m(x + i * grid_m, z + j * grid_m));
     let low = heights.iter().copied().fold(f32::MAX, f32::min) - 0.1 * grid_m;
-    let high = heights.iter().copied().fold(f32::MIN, f32::max) + 0.1 * grid_m + 2.0 * land.scene().plants.height_m;
+    let high = heights.iter().copied().fold(f32::MIN, f32::max) + 0.1 * grid_m + 2.0 * land.scene().tallest_m();
     frustum.sees_box(Vec3::new(x - 0.5, low, z - 0.5), Vec3::new(x + grid_m + 0.5, high, z + grid_m + 0.5))
 }
 

@@ -82,21 +82,16 @@ impl Gpu {
         });
         for (level, texels) in levels.iter().enumerate() {
             let size = size_px.map(|side| (side >> level).max(1));
-            self.write_level(&texture, level as u32, [0, 0], size, texels);
+            self.write_level(&texture, level as u32, [0; 3], size, texels);
         }
         texture
     }
 
-    /// Writes a rectangle of one mip level.
-    pub(super) fn write_level(&self, texture: &wgpu::Texture, level: u32, origin: [u32; 2], size_px: [u32; 2], texels: &[u8]) {
+    /// Writes a rectangle of one mip level; `origin` has the layer last.
+    pub(super) fn write_level(&self, texture: &wgpu::Texture, level: u32, [x, y, z]: [u32; 3], size_px: [u32; 2], texels: &[u8]) {
         let row_bytes = texels.len() as u32 / size_px[1];
         self.queue.write_texture(
-            wgpu::TexelCopyTextureInfo {
-                texture,
-                mip_level: level,
-                origin: wgpu::Origin3d { x: origin[0], y: origin[1], z: 0 },
-                aspect: wgpu::TextureAspect::All,
-            },
+            wgpu::TexelCopyTextureInfo { texture, mip_level: level, origin: wgpu::Origin3d { x, y, z }, aspect: wgpu::TextureAspect::All },
             texels,
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: Some(size_px[1]) },
             wgpu::Extent3d { width: size_px[0], height: size_px[1], depth_or_array_layers: 1 },

@@ -2,11 +2,13 @@
 
 use super::atlas::Atlas;
 use super::gpu::Gpu;
+use super::kinds;
 use super::paint;
 use super::pipeline::{DEPTH, bind, sampled, sampler, texture, uniform};
 use super::uniforms::Frame;
 use super::wind::WindTexture;
 use crate::state::Land;
+use shared::scene::Scene;
 use shared::terrain::{Cover, CoverMap, HeightMap};
 use wgpu::{TextureFormat, TextureSampleType, TextureViewDimension};
 
@@ -39,13 +41,15 @@ impl FrameGroup {
             sampled(1, TextureSampleType::Float { filterable: false }, TextureViewDimension::D2),
             texture(2),
             texture(3),
-            texture(4),
+            sampled(4, TextureSampleType::Float { filterable: true }, TextureViewDimension::D2Array),
             sampled(5, TextureSampleType::Float { filterable: true }, TextureViewDimension::D3),
             texture(6),
             sampler(7, wgpu::SamplerBindingType::Filtering),
             sampler(8, wgpu::SamplerBindingType::Filtering),
             sampled(9, TextureSampleType::Depth, TextureViewDimension::D2),
             sampler(10, wgpu::SamplerBindingType::Comparison),
+            sampled(11, TextureSampleType::Uint, TextureViewDimension::D2),
+            uniform(12),
         ];
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries: &entries });
         let linear = |mode, compare| {
@@ -106,14 +110,18 @@ impl LandTextures {
         let height_texture =
             gpu.texture("heights", TextureFormat::R32Float, heights.size_px(), &[bytemuck::cast_slice(heights.heights_m()).to_vec()]);
         let normal_texture = gpu.texture("normals", TextureFormat::Rgba8Snorm, heights.size_px(), &[normals(heights)]);
-        let cover = land.cover();
-        let cover_texture = gpu.texture("cover", TextureFormat::R8Unorm, cover.size_px(), &[grass(cover)]);
-        let atlas = Atlas::new(gpu, *land.layout());
+        let (cover, kind_map) = (land.cover(), land.kinds());
+        let cover_texture = gpu.texture("cover", TextureFormat::R8Unorm, cover.size_px(), &[grass(land.scene(), cover)]);
+        let kind_texture = gpu.texture("kinds", TextureFormat::R8Uint, kind_map.size_px(), &[kind_map.kinds().to_vec()]);
+        let kinds = gpu.buffer("kinds", bytemuck::bytes_of(&kinds::table(land.scene())), wgpu::BufferUsages::UNIFORM);
+        let atlas = Atlas::new(gpu, *land.layout(), land.scene());
         let wind = WindTexture::new(gpu, &land.scene().wind);
         let group = |label, shadows| {
             use wgpu::BindingResource::{Sampler, TextureView};
-            let views = [&height_texture, &normal_texture, &cover_texture, &atlas.texture, &wind.texture].map(view);
-            let [heights, normals, cover, bends, winds] = &views;
+            let views = [&height_texture, &normal_texture, &cover_texture, &wind.texture, &kind_texture].map(view);
+            let [heights, normals, cover, winds, kind_map] = &views;
+            let layers = wgpu::TextureViewDescriptor { dimension: Some(TextureViewDimension::D2Array), ..Default::default() };
+            let bends = &atlas.texture.create_view(&layers);
             let resources = [
                 frame.uniforms.as_entire_binding(),
                 TextureView(heights),
@@ -126,6 +134,8 @@ impl LandTextures {
                 Sampler(&frame.clamped),
                 TextureView(shadows),
                 Sampler(&frame.shadow_sampler),
+                TextureView(kind_map),
+                kinds.as_entire_binding(),
             ];
             bind(gpu, label, &frame.layout, &resources)
         };
@@ -156,12 +166,12 @@ fn normals(heights: &HeightMap) -> Vec<u8> {
 }
 
 /// Share of grass at the pixels; grass grows up to a tree's trunk.
-fn grass(cover: &CoverMap) -> Vec<u8> {
+fn grass(scene: &Scene, cover: &CoverMap) -> Vec<u8> {
     let share = |id: u8| match Cover::from(id) {
-        Cover::Grass => 255,
+        cover if scene.is_grass(cover) => 255,
         Cover::Tree => 190,
         Cover::Stone => 110,
-        Cover::Gap | Cover::Free(_) => 0,
+        _ => 0,
     };
     cover.ids().iter().map(|&id| share(id)).collect()
 }

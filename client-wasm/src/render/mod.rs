@@ -10,6 +10,7 @@ mod cull;
 mod dust;
 mod flora;
 mod gpu;
+mod kinds;
 mod land;
 mod mesh;
 mod objects;
@@ -35,7 +36,7 @@ pub use quality::Quality;
 
 use crate::camera::Camera;
 use crate::state::Mirror;
-use billboards::Billboards;
+use billboards::{Billboards, Reach};
 use blades::Blades;
 use cull::Frustum;
 use dust::Dust;
@@ -47,6 +48,9 @@ use sky::Sky;
 use terrain::{Ground, Terrain};
 use tone::Tone;
 use view::View;
+
+/// Distance up to which clumps of plants have several segments, over that at which single plants end.
+const SEVERAL_REACHES: f32 = 1.6;
 
 /// What a frame drew.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -186,7 +190,7 @@ impl Renderer {
         let Some(scene) = &mut self.scene else { return FrameStats::default() };
         let gpu = &self.gpu;
         let poses: Vec<ObjectPose> = mirror.objects().collect();
-        let patches_written = scene.textures.atlas.follow(gpu, mirror, camera.eye_m.x, camera.eye_m.z);
+        let patches_written = scene.textures.atlas.follow(gpu, mirror, [camera.eye_m.x, camera.eye_m.z], dt_secs);
         scene.textures.wind.follow(gpu, mirror.wind(), dt_secs);
         let Some(land) = mirror.land() else { return FrameStats::default() };
 
@@ -197,7 +201,8 @@ impl Renderer {
         let tiles = scene.ground.tiles(camera.eye_m, &frustum);
         self.terrain.prepare(gpu, &tiles);
         scene.blades.prepare(gpu, self.quality, land, camera.eye_m, &frustum, dt_secs);
-        self.billboards.prepare(gpu, land, camera.eye_m, &frustum, 0.72 * frame.reach[0], frame.reach[3]);
+        let reach = Reach { from_m: 0.72 * frame.reach[0], several_m: SEVERAL_REACHES * frame.reach[1], to_m: frame.reach[3] };
+        self.billboards.prepare(gpu, land, camera.eye_m, &frustum, reach);
         if let Some(dust) = &scene.dust {
             dust.prepare(gpu, dt_secs);
         }

@@ -212,7 +212,7 @@ fn part_solid(land: &Land, part: Part) -> Solid {
             return Solid::default();
         }
     }
-    part.solid()
+    part.solid(&land.scene().objects)
 }
 
 fn model(mesh: &Mesh) -> Solid {

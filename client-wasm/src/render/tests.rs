@@ -1,13 +1,14 @@
 use super::pipeline::{Maker, bind, storage_rw};
 use super::shaders;
-use super::uniforms::{Drift, Frame, Plants};
+use super::uniforms::{Drift, Frame, Kind, Kinds, Plants};
 use super::{Gpu, Picture, Quality};
 use crate::camera::Camera;
 use crate::state::Mirror;
 use glam::Vec3;
-use shared::scene::{Grass, Patches, Scene, TerrainMaps, Wind, WindDust, WindTiling};
+use shared::lod::Lag;
+use shared::scene::{Grass, LagWay, Patches, Scene, Species, TerrainMaps, Wind, WindDust, WindTiling};
 use shared::terrain::grey_png;
-use shared::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, theta_code};
+use shared::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, omega_rad_per_s, theta_code};
 use shared::wire::{ServerMessage, Shape, codec};
 use wgpu::naga;
 
@@ -51,6 +52,8 @@ fn uniform_blocks_lie_as_their_twins() {
     let module = module(shaders::BEND);
     assert_twins(&module, "Frame", Frame::LAYOUT, size_of::<Frame>());
     assert_twins(&module, "Plants", Plants::LAYOUT, size_of::<Plants>());
+    assert_twins(&module, "Kind", Kind::LAYOUT, size_of::<Kind>());
+    assert_twins(&module, "Kinds", Kinds::LAYOUT, size_of::<Kinds>());
     assert_twins(&self::module(shaders::DUST), "Drift", Drift::LAYOUT, size_of::<Drift>());
 }
 
@@ -60,27 +63,35 @@ fn meadow(wind_m_per_s: f32) -> Mirror {
 }
 
 fn meadow_in(wind: Wind) -> Mirror {
+    meadow_of(|scene| scene.wind = wind, &[255; 16 * 16])
+}
+
+/// The same with a scene changed, over a covering map of 16 × 16 pixels.
+fn meadow_of(change: impl FnOnce(&mut Scene), covering: &[u8]) -> Mirror {
     let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 0.0, base_m: 0.0 };
-    let scene = Scene {
+    let mut scene = Scene {
         summary: String::new(),
         seed: 1,
         tick_hz: 60.0,
         patches: Patches { count: [4, 4], ..Patches::default() },
         terrain: maps,
-        wind,
+        wind: Default::default(),
         grass: Default::default(),
         plants: Default::default(),
         species: Vec::new(),
         bend: Default::default(),
+        natural_wind: Default::default(),
         objects: Default::default(),
+        drawn_winds: vec![],
         camera: Default::default(),
         light: Default::default(),
     };
+    change(&mut scene);
     let mut mirror = Mirror::default();
     let scene = ServerMessage::Scene {
         scene: Box::new(scene),
         height_png: grey_png([17; 2], &[0; 17 * 17]),
-        covering_png: grey_png([16; 2], &[255; 16 * 16]),
+        covering_png: grey_png([16; 2], covering),
         models: Vec::new(),
     };
     mirror.apply(scene).expect("a sound scene");
@@ -89,9 +100,16 @@ fn meadow_in(wind: Wind) -> Mirror {
 
 /// Streams a field that leans eastward by `theta_rad` everywhere.
 fn stream_lean(mirror: &mut Mirror, theta_rad: f32) {
-    let plane = |code: i8| std::iter::repeat_n(code, 64 * 64);
-    let codes: Vec<i8> = plane(theta_code(theta_rad)).chain(plane(omega_code(2.5 * theta_rad))).chain(plane(0)).collect();
+    stream(mirror, |_| theta_rad, 2.5 * theta_rad);
+}
+
+/// Streams a field that leans eastward by what `theta_rad` says of X (m), at one bending velocity.
+fn stream(mirror: &mut Mirror, theta_rad: impl Fn(f32) -> f32, omega_rad_per_s: f32) {
     for patch in 0..16 {
+        let west_m = (patch % 4) as f32 * 16.0;
+        let thetas = (0..64 * 64).map(|at| theta_code(theta_rad(west_m + ((at % 64) as f32 + 0.5) * 0.25)));
+        let plane = |code: i8| std::iter::repeat_n(code, 64 * 64);
+        let codes: Vec<i8> = thetas.chain(plane(omega_code(omega_rad_per_s))).chain(plane(0)).collect();
         let payload = codec::encode(Shape::patch(64), &codes, None);
         mirror.apply(ServerMessage::Patch { patch, seq: 1, key: true, payload }).expect("a sound patch");
     }
@@ -153,16 +171,20 @@ fn near_blades_lean_with_the_square_of_a_weak_wind() {
 
 /// What the shaders find in the air at places: X, height above the ground and Z (m).
 fn air(gpu: &Gpu, picture: &Picture, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
-    const PROBE: &str = "@group(1) @binding(0) var<storage, read_write> probes: array<vec4<f32>>;
-        @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
-            let place = probes[id.x];
-            let air = air_at(place.xz, place.y);
-            probes[id.x] = vec4<f32>(air.xyz, dust_of(air));
-        }";
+    probe(gpu, picture, "let air = air_at(at.xz, at.y); return vec4<f32>(air.xyz, dust_of(air));", places)
+}
+
+/// What the body of a function of `at`, written in WGSL over the shared pieces, says of each of `places`.
+fn probe(gpu: &Gpu, picture: &Picture, body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    let source = format!(
+        "@group(1) @binding(0) var<storage, read_write> probes: array<vec4<f32>>;
+        fn found(at: vec4<f32>) -> vec4<f32> {{ {body} }}
+        @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {{ probes[id.x] = found(probes[id.x]); }}"
+    );
     let renderer = &picture.renderer;
     let maker = Maker { gpu, frame_layout: &renderer.frame.layout, samples: 1 };
     let layout = maker.layout("probes", &[storage_rw(0)]);
-    let pipeline = maker.compute("probe", &gpu.shader("probe", PROBE), "probe", &layout);
+    let pipeline = maker.compute("probe", &gpu.shader("probe", &source), "probe", &layout);
     let probes = gpu.buffer("probes", bytemuck::cast_slice(places), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let group = bind(gpu, "probes", &layout, &[probes.as_entire_binding()]);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -221,4 +243,80 @@ fn trilinear(codes: &[i8], place_m: [f32; 3]) -> [f32; 4] {
         sum.iter_mut().enumerate().for_each(|(plane, sum)| *sum += f32::from(codes[64 * plane + index]) * share);
     }
     sum
+}
+
+/// Lean eastward (rad) of a segment that trails by `at.y` seconds at `at.xz`.
+const TRAILING: &str = "return vec4<f32>(trailing_lean(at.xz, 0.0, bend_at(at.xz, 0.0, 0), kinds.list[0], at.y), 0.0, 0.0);";
+
+#[test]
+fn segments_that_look_upwind_find_what_their_twin_finds() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut mirror = meadow_of(
+        |scene| (scene.grass.c0_m_per_s, scene.grass.mu_m_per_rad, scene.grass.recovery_lag_share) = (6.0, 0.5, 0.3),
+        &[255; 16 * 16],
+    );
+    // Bends that fall and rise towards the east, slowly enough for bytes to follow.
+    let theta_rad = |x_m: f32| 0.5 + 0.4 * (x_m * 0.3).sin();
+    let omega = omega_rad_per_s(omega_code(1.2));
+    stream(&mut mirror, theta_rad, omega);
+    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    picture.draw(&mut mirror, &Camera { eye_m: Vec3::new(32.0, 2.0, 32.0), ..Camera::default() }, 0.0, 0.0);
+    let lag = Lag::from(&mirror.land().expect("a scene").scene().grass);
+    let places: Vec<_> = (0..60).map(|n| [15.0 + 0.5 * n as f32, [0.0, 0.06, 0.12][n % 3], 20.0, 0.0]).collect();
+    for (at, found) in places.iter().zip(probe(&gpu, &picture, TRAILING, &places)) {
+        let wanted = lag.lean_rad(at[1], |secs| [theta_rad(at[0] + lag.reached_m([omega, 0.0], secs)[0]), 0.0]);
+        assert!((found[0] - wanted[0]).abs() < 0.02 && found[1].abs() < 1e-6, "{found:?} instead of {wanted:?} at {at:?}");
+    }
+}
+
+#[test]
+fn segments_that_look_back_find_what_was_streamed() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut mirror = meadow_of(|scene| (scene.plants.lag, scene.grass.lag_secs) = (LagWay::History, 0.2), &[255; 16 * 16]);
+    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let camera = Camera { eye_m: Vec3::new(32.0, 2.0, 32.0), ..Camera::default() };
+    let mut stay = |mirror: &mut Mirror, secs: f32, lag_secs: f32| {
+        (0..(secs / 0.02).round() as u32).for_each(|_| {
+            picture.draw(mirror, &camera, 0.0, 0.02);
+        });
+        probe(&gpu, &picture, TRAILING, &[[30.0, lag_secs, 30.0, 0.0]])[0][0]
+    };
+    let near = |found: f32, wanted: f32| assert!((found - wanted).abs() < 0.02, "{found} instead of {wanted}");
+    stream_lean(&mut mirror, 0.3);
+    near(stay(&mut mirror, 0.5, 0.2), 0.3);
+    // The tip knows of a new bend when its lag has passed.
+    stream_lean(&mut mirror, 0.8);
+    near(stay(&mut mirror, 0.04, 0.0), 0.8);
+    near(stay(&mut mirror, 0.06, 0.2), 0.3);
+    near(stay(&mut mirror, 0.30, 0.2), 0.8);
+    // It rises with 0.4 of that lag.
+    stream_lean(&mut mirror, 0.1);
+    near(stay(&mut mirror, 0.02, 0.2), 0.8);
+    near(stay(&mut mirror, 0.18, 0.2), 0.1);
+}
+
+#[test]
+fn places_have_the_kind_of_their_map() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    // Kind 1 in the west, kind 2 in the east.
+    let covering: Vec<u8> = (0..256).map(|at| if at % 16 < 8 { 7 } else { 9 }).collect();
+    let species = |scene: &mut Scene| {
+        let kind =
+            |name: &str, cover, bend_rad| Species { wind_bend_rad: bend_rad, ..Species::new(name, cover, &scene.grass, &scene.plants) };
+        scene.species = vec![kind("stiff", 7, 0.2), kind("soft", 9, 1.0)];
+    };
+    let mut mirror = meadow_of(species, &covering);
+    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
+    let places: Vec<_> = (0..64).map(|n| [n as f32 + 0.5, 0.0, 31.7, 0.0]).collect();
+    let body = "let kind = kind_at(at.xz); return vec4<f32>(f32(kind), kinds.list[kind].tip.w, kinds_blended(at.xz).tip.w, 0.0);";
+    for (at, [kind, bend_rad, blended_rad, _]) in places.iter().zip(probe(&gpu, &picture, body, &places)) {
+        assert_eq!(bend_rad, [0.5, 0.2, 1.0][kind as usize]);
+        assert!((0.2 - 1e-6..=1.0 + 1e-6).contains(&blended_rad));
+        // Borders are ragged, over less than two pixels of 4 m.
+        if (at[0] - 32.0).abs() > 8.0 {
+            assert_eq!(kind, if at[0] < 32.0 { 1.0 } else { 2.0 }, "at {at:?}");
+            assert!((blended_rad - bend_rad).abs() < 1e-6, "at {at:?}");
+        }
+    }
 }

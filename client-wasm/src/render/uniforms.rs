@@ -47,12 +47,10 @@ uniform_block! {
         tiling: [u32; 4],
         /// Unit vector of the mean wind (x, z); its speed (m/s); distance the gusts have travelled (m).
         gust: [f32; 4],
-        /// Mean height of a blade (m), its variation, width (m), bend by a wind of 10 m/s (rad).
+        /// Ages of the atlas's layers of the past (s), youngest first; number of the youngest, or −1 where none is kept.
+        past: [f32; 4],
+        /// Flowers per square metre; variation of the height of a blade; width of a blade (m); unused.
         blade: [f32; 4],
-        /// Root colour; flowers per square metre.
-        root_rgb: [f32; 4],
-        /// Tip colour; 1 / pixels of the covering map along X.
-        tip_rgb: [f32; 4],
         /// Pixels of the picture along X and Y; angle of a pixel (rad); unused.
         screen: [f32; 4],
         /// Near blades fade out from (m), to (m); billboards end from (m), to (m).
@@ -61,6 +59,31 @@ uniform_block! {
         clouds: [f32; 4],
         /// Interaction spheres: centre and radius (m).
         spheres: [[f32; 4]; SPHERE_LIMIT],
+    }
+}
+
+/// Most kinds of grass: that of `[grass]` and 16 species.
+pub(super) const KIND_LIMIT: usize = 17;
+
+uniform_block! {
+    /// One kind of grass; its twin is in `common.wgsl`.
+    Kind {
+        /// Colour at the root; mean height of a blade (m).
+        root: [f32; 4],
+        /// Colour at the tip; bend by a wind of 10 m/s (rad).
+        tip: [f32; 4],
+        /// Base speed of a bend (m/s) and its growth with the bending speed (m/rad); lag of the topmost segment (s); share of it while the grass rises.
+        lag: [f32; 4],
+        /// Segments; factors on a blade's stiffness, on how it droops of itself, and on its width.
+        shape: [f32; 4],
+    }
+}
+
+uniform_block! {
+    /// All kinds of grass by their number; its twin is in `common.wgsl`.
+    Kinds {
+        /// Those beyond the last kind are zero.
+        list: [Kind; KIND_LIMIT],
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::mesh::{Paint, Solid};
 use glam::{Affine3A, Quat, Vec2, Vec3};
-use shared::scene::VehicleKind;
+use shared::outline::convex_parts;
+use shared::scene::{Objects, VehicleKind};
 use shared::wire::ObjectPose;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -17,10 +18,11 @@ pub(super) enum Part {
     HelicopterBody,
     Rotor,
     TailRotor,
+    SledFrame,
 }
 
 impl Part {
-    pub(super) const ALL: [Self; 8] = [
+    pub(super) const ALL: [Self; 9] = [
         Self::CarBody,
         Self::Wheel,
         Self::MonsterBody,
@@ -29,9 +31,11 @@ impl Part {
         Self::HelicopterBody,
         Self::Rotor,
         Self::TailRotor,
+        Self::SledFrame,
     ];
 
-    pub(super) fn solid(self) -> Solid {
+    /// The built-in model, for objects with these settings.
+    pub(super) fn solid(self, objects: &Objects) -> Solid {
         match self {
             Self::CarBody => car_body(),
             Self::Wheel => wheel(),
@@ -41,6 +45,7 @@ impl Part {
             Self::HelicopterBody => helicopter_body(),
             Self::Rotor => rotor(4, 4.2, 0.22),
             Self::TailRotor => rotor(3, 0.62, 0.12),
+            Self::SledFrame => sled_frame(&objects.sled_outline_m, objects.half_extents_m(VehicleKind::Sled)[1]),
         }
     }
 
@@ -50,6 +55,7 @@ impl Part {
             Self::CarBody | Self::Wheel => VehicleKind::Car,
             Self::MonsterBody | Self::MonsterLeg | Self::MonsterArm => VehicleKind::Monster,
             Self::HelicopterBody | Self::Rotor | Self::TailRotor => VehicleKind::Helicopter,
+            Self::SledFrame => VehicleKind::Sled,
         }
     }
 
@@ -59,6 +65,7 @@ impl Part {
             VehicleKind::Car => Self::CarBody,
             VehicleKind::Monster => Self::MonsterBody,
             VehicleKind::Helicopter => Self::HelicopterBody,
+            VehicleKind::Sled => Self::SledFrame,
         }
     }
 }
@@ -102,6 +109,7 @@ pub(super) fn parts(pose: &ObjectPose, rolled_m: f32, time_secs: f32) -> Vec<(Pa
                 place(Part::TailRotor, Vec3::new(0.20, 0.62, 3.95), Quat::from_rotation_z(-FRAC_PI_2) * Quat::from_rotation_y(phase * 1.7)),
             ]
         }
+        VehicleKind::Sled => vec![place(Part::SledFrame, Vec3::ZERO, Quat::IDENTITY)],
     }
 }
 
@@ -289,6 +297,28 @@ fn helicopter_body() -> Solid {
         craft.block(Vec3::new(side * 0.10, 0.62, 3.95), Vec3::new(0.09, 0.035, 0.035), 0.01, STEEL);
     }
     craft
+}
+
+/// A drag frame of planks over the scene's own outline, between ±`half_m`: a dark runner below, a rail around the rim.
+fn sled_frame(outline_m: &[[f32; 2]], half_m: f32) -> Solid {
+    const PLANK: Paint = Paint::new(0.34, 0.19, 0.075, 0.25);
+    const RAIL_M: f32 = 0.055;
+    let (floor, middle, deck) = (-half_m, -0.4 * half_m, half_m - RAIL_M);
+    let mut frame = Solid::default();
+    for part in convex_parts(outline_m) {
+        let at = |[x, z]: [f32; 2], y: f32| Vec3::new(x, y, z);
+        let corners = || part.corners_m.iter().copied();
+        frame.polygon(&corners().map(|corner| at(corner, floor)).collect::<Vec<_>>(), TRIM);
+        frame.polygon(&corners().rev().map(|corner| at(corner, deck)).collect::<Vec<_>>(), PLANK);
+        for ((a, b), seam) in corners().zip(corners().cycle().skip(1)).zip(&part.seams) {
+            if !seam {
+                frame.polygon(&[at(a, floor), at(a, middle), at(b, middle), at(b, floor)], TRIM);
+                frame.polygon(&[at(a, middle), at(a, deck), at(b, deck), at(b, middle)], PLANK);
+                frame.tube(&[(at(a, deck), RAIL_M), (at(b, deck), RAIL_M)], 8, STEEL);
+            }
+        }
+    }
+    frame
 }
 
 /// Blades about Y.

@@ -51,7 +51,6 @@ impl<'a> View<'a> {
         let drift = -(self.time_secs * CLOUD_SPEED) as f32;
         let plants = &scene.plants;
         let width_m = plants.width_m * self.quality.width_factor();
-        let [root, tip] = [plants.root_rgb, plants.tip_rgb];
         let billboards_to = self.quality.billboard_reach_m();
         let pixel_rad = self.camera.fov_rad / self.size_px[1] as f32;
         let spheres = spheres(poses, eye);
@@ -70,9 +69,8 @@ impl<'a> View<'a> {
             wind_box: [box_m[0], box_m[1], box_m[2], patch_m],
             tiling: [land.tiles().seed(), wraps_x, wraps_z, 0],
             gust: [dir_x, dir_z, mean, travelled],
-            blade: [plants.height_m, plants.height_variation, width_m, scene.grass.wind_bend_rad],
-            root_rgb: [root[0], root[1], root[2], plants.flowers_per_m2],
-            tip_rgb: [tip[0], tip[1], tip[2], 0.0],
+            past: atlas.past(),
+            blade: [plants.flowers_per_m2, plants.height_variation, width_m, 0.0],
             screen: [self.size_px[0] as f32, self.size_px[1] as f32, pixel_rad, 0.0],
             reach: [blade_reach_m * 0.72, blade_reach_m, billboards_to * 0.6, billboards_to],
             clouds: [drift * dir_x * mean, drift * dir_z * mean, 0.5, spheres.len() as f32],
@@ -103,6 +101,7 @@ impl<'a> View<'a> {
 fn spheres(poses: &[ObjectPose], eye: Vec3) -> Vec<[f32; 4]> {
     let mut spheres: Vec<(f32, [f32; 4])> = poses
         .iter()
+        .filter(|pose| pose.kind.interaction_radius_m() > 0.0)
         .map(|pose| {
             let [x, y, z] = pose.position_m;
             let [_, half_y, _] = pose.kind.half_extents_m();

@@ -3,7 +3,7 @@
 use super::{MirrorError, range};
 use shared::grid::PatchLayout;
 use shared::scene::{Scene, VehicleKind, WIND_CELLS_LIMIT};
-use shared::terrain::{Cover, CoverMap, HeightMap};
+use shared::terrain::{Cover, CoverMap, HeightMap, KindMap};
 use shared::wind::Tiles;
 use shared::wire::Mesh;
 
@@ -14,6 +14,7 @@ pub struct Land {
     layout: PatchLayout,
     heights: HeightMap,
     cover: CoverMap,
+    kinds: KindMap,
     models: Vec<(VehicleKind, Mesh)>,
     tiles: Tiles,
 }
@@ -32,8 +33,8 @@ impl Land {
             check_mesh(mesh)?;
         }
         let layout = PatchLayout::from(&scene.patches);
-        let tiles = Tiles::new(&scene);
-        Ok(Self { scene, layout, heights, cover, models, tiles })
+        let (tiles, kinds) = (Tiles::new(&scene), KindMap::new(&scene, &cover));
+        Ok(Self { scene, layout, heights, cover, kinds, models, tiles })
     }
 
     /// The scene.
@@ -59,6 +60,11 @@ impl Land {
     /// The covering map.
     pub fn cover(&self) -> &CoverMap {
         &self.cover
+    }
+
+    /// Which kind of grass grows where.
+    pub fn kinds(&self) -> &KindMap {
+        &self.kinds
     }
 
     /// What covers the point `(x_m, z_m)`.
@@ -103,7 +109,6 @@ fn check(scene: &Scene) -> Result<(), MirrorError> {
     within("terrain.base_m", scene.terrain.base_m, -20_000.0, 20_000.0)?;
     within("plants.grid_m", plants.grid_m, 1.0, 64.0)?;
     within("plants.plants_per_side", plants.plants_per_side as f32, 2.0, 256.0)?;
-    within("plants.height_m", plants.height_m, 0.02, 5.0)?;
     within("plants.height_variation", plants.height_variation, 0.0, 0.9)?;
     within("plants.width_m", plants.width_m, 0.001, 0.5)?;
     within("plants.flowers_per_m2", plants.flowers_per_m2, 0.0, 50.0)?;
@@ -112,9 +117,23 @@ fn check(scene: &Scene) -> Result<(), MirrorError> {
     within("light.sun_elevation_rad", scene.light.sun_elevation_rad, 0.02, 1.58)?;
     within("light.sun_heading_rad", scene.light.sun_heading_rad, -100.0, 100.0)?;
     within("light.haze_m", scene.light.haze_m, 10.0, 100_000.0)?;
-    within("grass.wind_bend_rad", scene.grass.wind_bend_rad, 0.0, 1.5)?;
-    for channel in plants.root_rgb.into_iter().chain(plants.tip_rgb) {
-        within("plants.*_rgb", channel, 0.0, 1.0)?;
+    if scene.species.len() > 16 {
+        return Err(range("number of species", scene.species.len(), "at most 16"));
+    }
+    for grass in scene.kinds() {
+        within("*.c0_m_per_s", grass.c0_m_per_s, 0.0, 50.0)?;
+        within("*.mu_m_per_rad", grass.mu_m_per_rad, 0.0, 10.0)?;
+        within("*.stiffness_per_s2", grass.stiffness_per_s2, 0.0, 10_000.0)?;
+        within("*.wind_bend_rad", grass.wind_bend_rad, 0.0, 1.5)?;
+        within("*.lag_secs", grass.lag_secs, 0.0, 1.0)?;
+        within("*.recovery_lag_share", grass.recovery_lag_share, 0.0, 1.0)?;
+        within("*.segments", grass.segments as f32, 1.0, 6.0)?;
+    }
+    for plants in scene.kinds_of_plants() {
+        within("*.height_m", plants.height_m, 0.02, 5.0)?;
+        for channel in plants.root_rgb.into_iter().chain(plants.tip_rgb) {
+            within("*_rgb", channel, 0.0, 1.0)?;
+        }
     }
     for mean in scene.wind.mean_m_per_s {
         within("wind.mean_m_per_s", mean, -40.0, 40.0)?;

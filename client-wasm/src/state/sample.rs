@@ -16,7 +16,9 @@ impl Mirror {
     pub fn theta_at(&self, x_m: f32, z_m: f32) -> f32 {
         let Some(land) = self.land() else { return 0.0 };
         let wind = self.wind_at(Vec3::new(x_m, self.ground_m(x_m, z_m), z_m));
-        let [wind, field] = [wind_lean_rad([wind.x, wind.z], land.scene().grass.wind_bend_rad), self.field_lean_rad(x_m, z_m)];
+        let kind = usize::from(land.kinds().at(x_m, z_m));
+        let bend_rad = land.scene().kinds()[kind].wind_bend_rad;
+        let [wind, field] = [wind_lean_rad([wind.x, wind.z], bend_rad), self.field_lean_rad(x_m, z_m)];
         let [x, z] = [0, 1].map(|axis| wind[axis] + field[axis]);
         (x * x + z * z).sqrt()
     }

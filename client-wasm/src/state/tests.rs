@@ -1,7 +1,7 @@
 use super::*;
 use glam::Vec3;
 use proptest::prelude::*;
-use shared::scene::{Patches, Scene, TerrainMaps, VehicleKind, Wind};
+use shared::scene::{Patches, Scene, Species, TerrainMaps, VehicleKind, Wind};
 use shared::terrain::grey_png;
 use shared::wire::quantise::{dust_code, theta_code, wind_code};
 use shared::wire::{Shape, codec, decode};
@@ -18,7 +18,9 @@ fn scene() -> Scene {
         plants: Default::default(),
         species: Vec::new(),
         bend: Default::default(),
+        natural_wind: Default::default(),
         objects: Default::default(),
+        drawn_winds: vec![],
         camera: Default::default(),
         light: Default::default(),
     }
@@ -212,4 +214,21 @@ fn the_angle_of_grass_is_that_of_its_two_leans_together() {
         let found_rad = mirror.theta_at(3.0, 1.0);
         assert!((found_rad - together_rad).abs() < 0.015, "{found_rad} instead of {together_rad} where ω is {omega:?}");
     }
+}
+
+#[test]
+fn a_species_that_the_client_cannot_hold_is_refused() {
+    let refused = |change: fn(&mut Species)| {
+        let mut scene = scene();
+        let mut species = Species::new("reed", 1, &scene.grass, &scene.plants);
+        change(&mut species);
+        scene.species = vec![species];
+        Mirror::default().apply(scene_message(scene)).err().map(|error| error.to_string())
+    };
+    assert_eq!(refused(|_| ()), None);
+    assert_eq!(refused(|species| species.segments = 7).as_deref(), Some("*.segments is 7; allowed: 1..=6"));
+    assert_eq!(refused(|species| species.height_m = f32::NAN).as_deref(), Some("*.height_m is NaN; allowed: 0.02..=5"));
+    let mut many = scene();
+    many.species = vec![Species::new("reed", 1, &many.grass, &many.plants); 17];
+    assert!(Mirror::default().apply(scene_message(many)).is_err());
 }

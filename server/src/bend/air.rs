@@ -1,66 +1,10 @@
-//! Air as it bends grass: the wash below a helicopter, taken as an object (001 §5.3), and the natural wind.
+//! The natural wind as it bends grass.
 
-use super::contact::{HELD_RAD_PER_S, bending_speed_rad_per_s, for_each_cell, unit};
-use super::footprint::Footprint;
-use shared::bend::{Bend, Field, wind_lean_rad};
+use shared::bend::wind_lean_rad;
 use shared::scene::Scene;
 use shared::terrain::KindMap;
 use shared::wind::Tiles;
 use std::sync::Arc;
-
-/// Height of a rotor above the ground from which its wash reaches no grass (m).
-pub const WASH_CEILING_M: f32 = 30.0;
-/// Radius of the wash of a rotor on the ground (m), its speed (m/s), the bend it sustains (rad), the height it strikes at (m).
-const WASH_RADIUS_M: f32 = 10.0;
-const WASH_M_PER_S: f32 = 12.0;
-const WASH_BEND_RAD: f32 = 1.2;
-const WASH_STRIKE_M: f32 = 0.5;
-
-/// The wash below a helicopter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wash {
-    /// Below the rotor (m).
-    pub center_m: [f32; 2],
-    /// Of the area it bends (m).
-    pub radius_m: f32,
-    /// 1 on the ground, 0 from [`WASH_CEILING_M`] on.
-    pub strength: f32,
-}
-
-impl Wash {
-    /// The wash of a helicopter at `height_m` above the ground: weaker and smaller as it climbs. None above [`WASH_CEILING_M`].
-    pub fn below(center_m: [f32; 2], height_m: f32) -> Option<Self> {
-        let nearness = 1.0 - height_m.max(0.0) / WASH_CEILING_M;
-        (nearness > 0.0).then_some(Self { center_m, radius_m: WASH_RADIUS_M * (0.4 + 0.6 * nearness), strength: nearness * nearness })
-    }
-
-    /// Bends the grass of awake patches outward (001 Fig. 9a), against the wind where it must: most halfway to the rim, not at all in the
-    /// middle and at the rim. Returns the largest bending speed (rad/s).
-    pub fn press(&self, field: &mut Field, wind: &GroundWind, dt_secs: f32) -> f32 {
-        let mut largest = 0.0_f32;
-        for_each_cell(field, &self.footprint(), wind, |at_m, bend| {
-            let out = [at_m[0] - self.center_m[0], at_m[1] - self.center_m[1]];
-            let share = ((out[0] * out[0] + out[1] * out[1]).sqrt() / self.radius_m).min(1.0);
-            let strength = self.strength * 4.0 * share * (1.0 - share);
-            let limit = WASH_BEND_RAD * strength;
-            if bend.theta >= limit {
-                return None;
-            }
-            let omega = bending_speed_rad_per_s(WASH_M_PER_S * strength, bend.theta, WASH_STRIKE_M);
-            let held = omega.max(HELD_RAD_PER_S);
-            largest = largest.max(held);
-            Some(Bend { theta: limit.min(bend.theta + omega * dt_secs), omega: unit(out)?.map(|d| d * held) })
-        });
-        largest
-    }
-
-    /// The square around the disc.
-    pub fn footprint(&self) -> Footprint {
-        let [x, z] = self.center_m;
-        let r = self.radius_m;
-        Footprint::around(vec![[x - r, z - r], [x + r, z - r], [x + r, z + r], [x - r, z + r]])
-    }
-}
 
 /// Where the wind near the ground alone holds the grass, on the wind's grid over the world.
 #[derive(Clone, Debug)]
@@ -145,7 +89,8 @@ impl GroundWind {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::scene::WindTiling;
+    use shared::scene::{Species, WindTiling};
+    use shared::terrain::{CoverMap, grey_png};
     use shared::wind::offset_cells;
 
     #[test]
@@ -160,6 +105,20 @@ mod tests {
         assert!(close(wind.lean_rad([16.0, 2.0]), [0.2, 0.0]));
         let held = GroundWind { wraps: [false, true], ..wind };
         assert!(close(held.lean_rad([16.0, 6.0 + 8.0 * 8.0]), [0.4, 0.2]));
+    }
+
+    #[test]
+    fn each_kind_of_grass_leans_by_its_own_bend() {
+        let mut scene = crate::scenes::load("meadow").unwrap().scene;
+        let stiff = Species::new("stiff", 1, &scene.grass, &scene.plants);
+        scene.species = vec![Species { wind_bend_rad: 0.1, ..stiff }];
+        // Over a world of 256 m the eastern half is stiff.
+        let cover = CoverMap::from_png(&grey_png([2; 2], &[255, 1, 255, 1])).unwrap();
+        let mut wind = GroundWind::still(&scene).over(KindMap::new(&scene, &cover));
+        let cells: u32 = scene.wind.cells.iter().product();
+        wind.blow(scene.wind.cells[1] as usize, (0..cells).map(|_| [12.0, 0.0]));
+        let [[soft, _], [stiff, _]] = [[60.0, 9.0], [190.0, 9.0]].map(|at_m| wind.lean_rad(at_m));
+        assert!((soft - scene.grass.wind_bend_rad).abs() < 1e-6 && (stiff - 0.1).abs() < 1e-6, "{soft} and {stiff}");
     }
 
     #[test]

@@ -1,68 +1,6 @@
-//! Footprints: the area that a convex part of an object sweeps over in one step (001 §5.1), in cells.
+//! Footprints: convex areas on the ground, and the cells in them.
 
-use crate::objects::{Motion, Stand};
 use shared::grid::PatchLayout;
-use shared::scene::VehicleKind;
-
-/// A convex part of an object; concave objects are several (001 §6).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Part {
-    /// Centre in the body's axes (m).
-    pub center_m: [f32; 3],
-    /// Half extents of its box (m).
-    pub half_m: [f32; 3],
-    /// Whether it is as round as a disc within the box, seen from above.
-    pub round: bool,
-    /// Whether it parts the grass sideways (001 Eq. 10), or only rolls it down.
-    pub parts_grass: bool,
-}
-
-/// The parts of a kind that can touch grass.
-pub fn parts(kind: VehicleKind) -> &'static [Part] {
-    const fn wheels(x: f32) -> Part {
-        Part { center_m: [x, -0.45, 0.0], half_m: [0.13, 0.25, 1.6], round: false, parts_grass: false }
-    }
-    const CAR: [Part; 3] =
-        [wheels(-0.8), wheels(0.8), Part { center_m: [0.0, 0.1, 0.0], half_m: [0.95, 0.5, 2.2], round: false, parts_grass: true }];
-    const MONSTER: [Part; 1] = [Part { center_m: [0.0; 3], half_m: [0.6, 0.9, 0.6], round: true, parts_grass: true }];
-    const HELICOPTER: [Part; 3] = [
-        Part { center_m: [-0.95, -1.2, 0.0], half_m: [0.15, 0.1, 1.8], round: false, parts_grass: false },
-        Part { center_m: [0.95, -1.2, 0.0], half_m: [0.15, 0.1, 1.8], round: false, parts_grass: false },
-        Part { center_m: [0.0, -0.35, 0.0], half_m: [0.9, 0.65, 2.6], round: false, parts_grass: true },
-    ];
-    match kind {
-        VehicleKind::Car => &CAR,
-        VehicleKind::Monster => &MONSTER,
-        VehicleKind::Helicopter => &HELICOPTER,
-    }
-}
-
-impl Part {
-    /// The part's lowest point (m) where the body stands at `stand`.
-    pub fn lowest_m(&self, stand: &Stand) -> f32 {
-        self.corners(stand, 0.0).map(|corner| corner[1]).fold(f32::INFINITY, f32::min)
-    }
-
-    /// The convex hull of the part at both ends of a step. A part narrower than a cell counts as one cell wide, so that no track
-    /// has holes.
-    pub fn swept(&self, motion: &Motion, cell_m: f32) -> Footprint {
-        let ends = [&motion.from, &motion.to];
-        Footprint::around(ends.into_iter().flat_map(|stand| self.corners(stand, 0.5 * cell_m)).map(|[x, _, z]| [x, z]).collect())
-    }
-
-    fn corners(&self, stand: &Stand, least_m: f32) -> impl Iterator<Item = [f32; 3]> + use<> {
-        const HALF: f32 = std::f32::consts::FRAC_1_SQRT_2;
-        const RING: [[f32; 2]; 8] =
-            [[1.0, 0.0], [HALF, HALF], [0.0, 1.0], [-HALF, HALF], [-1.0, 0.0], [-HALF, -HALF], [0.0, -1.0], [HALF, -HALF]];
-        const SQUARE: [[f32; 2]; 4] = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
-        let ring: &[[f32; 2]] = if self.round { &RING } else { &SQUARE };
-        let (center, half, stand) = (self.center_m, self.half_m, *stand);
-        let wide = [half[0].max(least_m), half[2].max(least_m)];
-        ring.iter().flat_map(move |[x, z]| {
-            [-half[1], half[1]].map(|y| stand.point_m([center[0] + x * wide[0], center[1] + y, center[2] + z * wide[1]]).to_array())
-        })
-    }
-}
 
 /// A convex polygon on the ground, corners in order (m).
 #[derive(Clone, Debug, PartialEq)]
@@ -101,6 +39,27 @@ impl Footprint {
         let mut corners_m = half(&mut points_m.iter().copied());
         corners_m.extend(half(&mut points_m.iter().rev().copied()));
         Self { corners_m }
+    }
+
+    /// The polygon of corners that are in order, turning from +X towards +Z, and all convex.
+    pub fn of(corners_m: Vec<[f32; 2]>) -> Self {
+        Self { corners_m }
+    }
+
+    /// The polygon widened to `least_m` across its narrowest and then across its next narrow direction; none where it is wide enough.
+    /// A strip as wide as a cell holds a chain of cells that touch at least at their corners, whatever its direction.
+    pub fn widened(&self, least_m: f32) -> Option<Self> {
+        let mut wide: Option<Self> = None;
+        for _ in 0..2 {
+            let polygon = wide.as_ref().unwrap_or(self);
+            let across = |side: &Edge| polygon.corners_m.iter().map(|&corner| side.depth_m(corner)).fold(0.0, f32::max);
+            let narrowest = polygon.sides().into_iter().map(|side| (across(&side), side.normal)).min_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((width_m, [x, z])) = narrowest.filter(|(width_m, _)| *width_m < least_m) else { break };
+            let out = 0.5 * (least_m - width_m);
+            let moved = |by: f32| polygon.corners_m.iter().map(move |corner| [corner[0] + x * by, corner[1] + z * by]);
+            wide = Some(Self::around(moved(-out).chain(moved(out)).collect()));
+        }
+        wide
     }
 
     /// Corners in order, turning from +X towards +Z (m).

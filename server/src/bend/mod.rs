@@ -1,20 +1,33 @@
 //! What drives the bend field (001 sections 4 and 5): regions, contact, air, propagation.
 
 pub mod air;
+mod breeze;
 pub mod contact;
+pub mod drawing;
+pub mod drawn;
 pub mod footprint;
+pub mod laid;
+pub mod parts;
 pub mod regions;
 pub mod step;
+pub mod sward;
+pub mod swath;
 
-use crate::objects::Motion;
-use air::{GroundWind, Wash};
+use crate::objects::{Motion, MotionError};
+use air::GroundWind;
+use breeze::Breeze;
 use contact::Contact;
+use drawing::Drawings;
+use drawn::{Blow, Blows};
+use laid::Laid;
+use parts::Bodies;
 use regions::Regions;
 use shared::bend::{Field, Kinds, Patch, Report, Scheme, StepError};
 use shared::grid::{PatchIndex, PatchLayout};
-use shared::scene::{Scene, VehicleKind};
+use shared::scene::Scene;
 use shared::terrain::{CoverMap, HeightMap};
 use std::sync::Arc;
+use sward::{Growth, Sward};
 
 /// A camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,17 +46,27 @@ pub struct Meadow {
     field: Field,
     scheme: Scheme,
     height: Arc<HeightMap>,
-    blade_m: f32,
-    theta_max_rad: f32,
+    growth: Growth,
+    breeze: Option<Breeze>,
+    bodies: Bodies,
+    blows: Blows,
+    laid: Laid,
+    refused: Vec<MotionError>,
+    refused_count: u64,
     regions: Regions,
     report: Report,
 }
 
 impl Meadow {
-    /// A meadow at rest.
+    /// A meadow at rest, without drawings for its winds.
     pub fn new(scene: &Scene, height: Arc<HeightMap>, cover: &CoverMap) -> Self {
-        let (settings, limit) = (scene.bend, scene.patches.awake_limit as usize);
-        let mut field = Field::new(PatchLayout::from(&scene.patches), Kinds::of(scene, cover))
+        Self::with_drawings(scene, height, cover, &Drawings::new())
+    }
+
+    /// A meadow at rest; a wind whose drawing is not among `drawings` blows nothing.
+    pub fn with_drawings(scene: &Scene, height: Arc<HeightMap>, cover: &CoverMap, drawings: &Drawings) -> Self {
+        let (layout, settings, limit) = (PatchLayout::from(&scene.patches), scene.bend, scene.patches.awake_limit as usize);
+        let mut field = Field::new(layout, Kinds::of(scene, cover))
             .with_edges(settings.edges)
             .with_seams(settings.seams)
             .with_rest(settings.rest())
@@ -51,12 +74,19 @@ impl Meadow {
         if settings.scheme == Scheme::Modal {
             field.wake_all();
         }
+        // As much as the awake patches could hold.
+        let tile_limit = limit * (layout.cells as usize / laid::TILE).pow(2);
         Self {
             field,
             scheme: settings.scheme,
             height,
-            blade_m: scene.plants.height_m,
-            theta_max_rad: scene.grass.theta_max_rad,
+            growth: Growth::new(scene, cover),
+            breeze: Breeze::new(scene),
+            bodies: Bodies::new(&scene.objects),
+            blows: Blows::new(scene, drawings),
+            laid: Laid::new(layout, scene.grass.laid_recovery_secs, tile_limit),
+            refused: vec![],
+            refused_count: 0,
             regions: Regions::new(limit),
             report: Report::default(),
         }
@@ -83,32 +113,62 @@ impl Meadow {
         self.regions.evicted()
     }
 
-    /// One step: regions, contact and wash (which bend directly), propagation.
+    /// What stays bent below the weight of objects.
+    pub fn laid(&self) -> &Laid {
+        &self.laid
+    }
+
+    /// Takes note that everything was shown as it is.
+    pub fn was_shown(&mut self) {
+        self.laid.was_shown();
+        self.field.awake_mut().for_each(Patch::forget_changes);
+    }
+
+    /// Motions that the newest step refused, and why; the grass did not feel them.
+    pub fn refused(&self) -> &[MotionError] {
+        &self.refused
+    }
+
+    /// Motions refused so far.
+    pub fn refused_count(&self) -> u64 {
+        self.refused_count
+    }
+
+    /// One step: regions, contact and blowing air (which bend directly), propagation. Motions that are none are [refused](Self::refused).
     pub fn step(&mut self, dt_secs: f32, motions: &[Motion], views: &[View], wind: &GroundWind) {
-        let contacts: Vec<_> = motions.iter().flat_map(|motion| self.contacts(motion)).collect();
-        let washes: Vec<_> = motions.iter().filter_map(|motion| self.wash(motion)).collect();
+        let motions = self.sound(motions);
+        let cell_m = self.field.layout().cell_m;
+        let (bodies, height, growth) = (&self.bodies, &*self.height, &self.growth);
+        let contacts: Vec<_> = motions.iter().flat_map(|motion| bodies.contacts(motion, height, growth, cell_m)).collect();
+        let blows = self.blows.step(&motions, &self.height, dt_secs);
+        let breezy = self.breeze.as_ref().map(|breeze| breeze.patches(self.field.layout(), views)).unwrap_or_default();
         if self.scheme != Scheme::Modal {
-            let touched = self.touched(&contacts, &washes);
+            let touched = [self.touched(&contacts, &blows), breezy.clone()].concat();
             self.regions.update(&mut self.field, &touched, views);
         }
+        let mut sward = Sward { field: &mut self.field, laid: &mut self.laid, wind, height: &self.height, growth: &self.growth };
         for contact in &contacts {
-            contact::press(&mut self.field, contact, wind, &self.height, self.theta_max_rad, dt_secs);
+            contact::press(&mut sward, contact, dt_secs);
         }
-        for wash in &washes {
-            wash.press(&mut self.field, wind, dt_secs);
+        for blow in &blows {
+            blow.press(&mut sward);
         }
+        if let Some(breeze) = &mut self.breeze {
+            breeze.blow(&mut self.field, &breezy, dt_secs);
+        }
+        self.laid.step(dt_secs, views);
         self.report = self.propagate(dt_secs);
     }
 
-    /// Carries the waves on. Grass that bends too fast for any number of sub-steps allowed is put to rest and counts as broken.
+    /// Carries the waves on. Grass that bends too fast for as many sub-steps as allowed is put to rest and counts as broken.
     fn propagate(&mut self, dt_secs: f32) -> Report {
         let mut broken = 0;
         loop {
             match self.field.step(self.scheme, dt_secs, &step::Pool) {
                 Ok(report) => return Report { broken: report.broken + broken, ..report },
                 Err(StepError::TooFast { omega_rad_per_s, .. }) => {
-                    let fastest: Vec<_> =
-                        self.field.awake().filter(|patch| patch.omega_max_rad_per_s() >= omega_rad_per_s).map(Patch::index).collect();
+                    let is_fastest = |patch: &&Patch| patch.omega_max_rad_per_s() >= omega_rad_per_s;
+                    let fastest: Vec<_> = self.field.awake().filter(is_fastest).map(Patch::index).collect();
                     broken += fastest.len() as u32;
                     fastest.into_iter().for_each(|patch| self.field.sleep(patch));
                 }
@@ -118,35 +178,17 @@ impl Meadow {
         }
     }
 
-    /// Where a motion touches grass: parts that are lower than the grass is high.
-    fn contacts(&self, motion: &Motion) -> Vec<Contact> {
-        let cell_m = self.field.layout().cell_m;
-        let [x, z] = motion.to.xz();
-        let land_m = self.height.height_m(x, z);
-        let [u, _, w] = motion.velocity_m_per_s;
-        let touching = footprint::parts(motion.kind).iter().filter_map(|part| {
-            let clearance = (part.lowest_m(&motion.to) - land_m).max(0.0) / self.blade_m;
-            (clearance < 1.0).then(|| Contact {
-                footprint: part.swept(motion, cell_m),
-                velocity_m_per_s: [u, w],
-                strike_height_m: motion.kind.strike_height_m(),
-                slips_rad: clearance.acos(),
-                parts_grass: part.parts_grass,
-            })
-        });
-        touching.collect()
+    /// The motions that are some; the others are kept as refused.
+    fn sound(&mut self, motions: &[Motion]) -> Vec<Motion> {
+        self.refused = motions.iter().filter_map(|motion| motion.check().err()).collect();
+        self.refused_count += self.refused.len() as u64;
+        motions.iter().filter(|motion| motion.check().is_ok()).copied().collect()
     }
 
-    fn wash(&self, motion: &Motion) -> Option<Wash> {
-        let at = motion.to.xz();
-        let skids_m = motion.to.position_m[1] - motion.kind.half_extents_m()[1];
-        (motion.kind == VehicleKind::Helicopter).then(|| Wash::below(at, skids_m - self.height.height_m(at[0], at[1])))?
-    }
-
-    fn touched(&self, contacts: &[Contact], washes: &[Wash]) -> Vec<PatchIndex> {
+    fn touched(&self, contacts: &[Contact], blows: &[Blow]) -> Vec<PatchIndex> {
         let layout = self.field.layout();
         let around = |[low, high]: [[f32; 2]; 2]| layout.patches_touching(low.map(|m| m - MARGIN_M), high.map(|m| m + MARGIN_M));
-        let bodies = contacts.iter().flat_map(|contact| around(contact.footprint.bounds_m()));
-        bodies.chain(washes.iter().flat_map(|wash| around(wash.footprint().bounds_m()))).collect()
+        let bodies = contacts.iter().flat_map(|contact| around(contact.swath.bounds_m()));
+        bodies.chain(blows.iter().flat_map(|blow| around(blow.footprint().bounds_m()))).collect()
     }
 }

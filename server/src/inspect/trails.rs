@@ -45,6 +45,7 @@ pub(super) fn kind_rgb(kind: VehicleKind) -> Rgb {
         VehicleKind::Car => [255, 84, 66],
         VehicleKind::Monster => [186, 104, 255],
         VehicleKind::Helicopter => [64, 196, 255],
+        VehicleKind::Sled => [255, 202, 40],
     }
 }
 

@@ -8,7 +8,7 @@ use axum::extract::ws::{CloseFrame, Message, WebSocket};
 use bytes::Bytes;
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
-use shared::wire::{self, CLIENT_MESSAGE_LIMIT, ClientMessage, Close, Drive, Refusal, ServerMessage, WireError};
+use shared::wire::{self, CLIENT_MESSAGE_LIMIT, ClientMessage, Close, Drive, Refusal, ServerMessage, VIEW_RADIUS_LIMIT_M, WireError};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tokio::sync::{OwnedSemaphorePermit, mpsc};
@@ -26,9 +26,8 @@ const REPLY_CAPACITY: usize = 16;
 /// Longest name (characters).
 const NAME_LIMIT: usize = 32;
 
-/// Largest distance of a camera from the world's corner (m) and largest radius that it may ask for (m).
+/// Largest distance of a camera from the world's corner (m).
 const EYE_LIMIT_M: f32 = 1e6;
-const RADIUS_LIMIT_M: f32 = 512.0;
 
 /// The client's words, taken in no faster than the limit allows.
 struct Ear {
@@ -178,8 +177,8 @@ async fn carry_out(
             if !eye_m.iter().all(|m| m.abs() <= EYE_LIMIT_M) {
                 return Err(bad(format!("view: eye_m is {eye_m:?}; each must be within ±{EYE_LIMIT_M}")));
             }
-            if !(0.0..=RADIUS_LIMIT_M).contains(&radius_m) {
-                return Err(bad(format!("view: radius_m is {radius_m}; allowed: 0..={RADIUS_LIMIT_M}")));
+            if !(0.0..=VIEW_RADIUS_LIMIT_M).contains(&radius_m) {
+                return Err(bad(format!("view: radius_m is {radius_m}; allowed: 0..={VIEW_RADIUS_LIMIT_M}")));
             }
             client.look(Gaze { eye_m, radius_m });
         }

@@ -2,7 +2,8 @@
 
 use shared::wire::Drive;
 
-const SPEED_M_PER_S: f32 = 11.0;
+/// Excess of speed from which on a driver brakes, as downhill (m/s).
+const BRAKE_BEYOND_M_PER_S: f32 = 0.5;
 /// A car slower than this for [`STUCK_SECS`] backs off for [`BACK_SECS`] (m/s, s, s).
 const STUCK_M_PER_S: f32 = 0.7;
 const STUCK_SECS: f32 = 2.0;
@@ -11,16 +12,18 @@ const BACK_SECS: f32 = 1.5;
 /// Drives one car.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Circling {
+    speed_m_per_s: f32,
     steer: f32,
     stuck_secs: f32,
     back_secs: f32,
 }
 
 impl Circling {
-    /// The driver of the `n`-th car; even ones turn right, odd ones left, each on a circle of its own width.
-    pub(super) fn new(n: u32) -> Self {
+    /// The driver of the `n`-th car, at a speed; even ones turn right, odd ones left, each on a circle of its own width.
+    pub(super) fn new(n: u32, speed_m_per_s: f32) -> Self {
         let width = 0.55 + 0.1 * (n % 5) as f32;
-        Self { steer: if n.is_multiple_of(2) { width } else { -width }, stuck_secs: 0.0, back_secs: 0.0 }
+        let steer = if n.is_multiple_of(2) { width } else { -width };
+        Self { speed_m_per_s, steer, stuck_secs: 0.0, back_secs: 0.0 }
     }
 
     /// What its hands do at a speed.
@@ -33,7 +36,9 @@ impl Circling {
         if self.stuck_secs > STUCK_SECS {
             (self.stuck_secs, self.back_secs) = (0.0, BACK_SECS);
         }
-        let throttle = (0.5 * (SPEED_M_PER_S - speed_m_per_s)).clamp(0.05, 1.0);
-        Drive { throttle, steer: self.steer, ..Drive::default() }
+        let excess_m_per_s = speed_m_per_s - self.speed_m_per_s;
+        let throttle = (-0.5 * excess_m_per_s).clamp(0.0, 1.0);
+        let brake = (0.2 * (excess_m_per_s - BRAKE_BEYOND_M_PER_S)).clamp(0.0, 1.0);
+        Drive { throttle, brake, steer: self.steer, ..Drive::default() }
     }
 }

@@ -1,4 +1,4 @@
-//! Cars, monsters and helicopters: bodies, driving, and where they may be.
+//! Cars, monsters, helicopters and sleds: bodies, driving, and where they may be.
 //!
 //! Bodies are rapier's, on one thread and in the order of their numbers, so that the same commands give the same bits.
 
@@ -10,9 +10,10 @@ pub mod model;
 mod monster;
 mod motion;
 mod place;
+mod sled;
 mod spawn;
 
-pub use motion::{Motion, Stand};
+pub use motion::{Motion, MotionError, Stand};
 pub use place::Place;
 
 use car::Car;
@@ -21,14 +22,18 @@ use ground::Ground;
 use helicopter::Helicopter;
 use monster::Monster;
 use rapier3d::prelude::*;
-use shared::scene::{Scene, VehicleKind};
+use shared::scene::{self, Scene, VehicleKind};
 use shared::wire::{Drive, ObjectId, ObjectPose};
+use sled::Sled;
 use spawn::Disc;
 
 /// Fastest that any object moves (m/s); a body thrown faster is slowed to it.
 pub const SPEED_LIMIT_M_PER_S: f32 = 90.0;
 /// Gap between the boxes of a new object and the ground (m).
 const DROP_M: f32 = 0.05;
+/// Height above the land at which a helicopter that drives itself flies (m), and how hard it seeks it (1/m).
+const CRUISE_M: f32 = 6.0;
+const CRUISE_PER_M: f32 = 0.3;
 
 /// Everything that moves by itself.
 pub struct Objects {
@@ -36,13 +41,14 @@ pub struct Objects {
     ground: Ground,
     physics: PhysicsWorld,
     vehicles: Vec<Vehicle>,
-    limit: usize,
+    settings: scene::Objects,
     next_id: ObjectId,
 }
 
 struct Vehicle {
     id: ObjectId,
     kind: VehicleKind,
+    half_extents_m: [f32; 3],
     driver: Driver,
     body: RigidBodyHandle,
     controls: Controls,
@@ -58,18 +64,20 @@ enum Controls {
     Car(Car),
     Monster(Monster),
     Helicopter(Helicopter),
+    Sled(Sled),
 }
 
 impl Objects {
-    /// The scene's own cars in their places; nothing else yet.
+    /// The scene's own vehicles in their places; nothing else yet.
     pub fn new(scene: &Scene, place: Place) -> Self {
         let ground = Ground::new(&place, &scene.plants);
         let mut physics = PhysicsWorld::new();
         physics.integration_parameters.dt = scene.dt_secs();
-        let mut objects = Self { place, ground, physics, vehicles: vec![], limit: scene.objects.limit as usize, next_id: 1 };
+        let mut objects = Self { place, ground, physics, vehicles: vec![], settings: scene.objects.clone(), next_id: 1 };
         let middle = objects.place.extent_m.map(|extent| 0.5 * extent);
-        for n in 0..scene.objects.self_driving {
-            objects.add(VehicleKind::Car, Driver::Circling(Circling::new(n)), middle);
+        let shared::scene::Objects { self_driving, self_driving_m_per_s, self_driving_apart_m, self_driving_kind, .. } = scene.objects;
+        for n in 0..self_driving {
+            objects.add(self_driving_kind, Driver::Circling(Circling::new(n, self_driving_m_per_s)), middle, self_driving_apart_m);
         }
         objects
     }
@@ -77,7 +85,7 @@ impl Objects {
     /// Gives `client` a vehicle near `middle_m`; the one driven before goes. None when the limit is reached or nowhere is free.
     pub fn spawn(&mut self, client: u32, kind: VehicleKind, middle_m: [f32; 2]) -> Option<ObjectId> {
         self.remove(client);
-        self.add(kind, Driver::Client { client, drive: Drive::default() }, middle_m)
+        self.add(kind, Driver::Client { client, drive: Drive::default() }, middle_m, spawn::NEAR_M)
     }
 
     /// Takes the vehicle of `client` out of the world.
@@ -98,6 +106,11 @@ impl Objects {
         }
     }
 
+    /// Most vehicles at once.
+    pub fn limit(&self) -> u32 {
+        self.settings.limit
+    }
+
     /// The vehicle of `client`.
     pub fn object_of(&self, client: u32) -> Option<ObjectId> {
         self.slot_of(client).map(|slot| self.vehicles[slot].id)
@@ -109,11 +122,12 @@ impl Objects {
         self.ground.follow(&at, &mut self.physics);
         for vehicle in &mut self.vehicles {
             vehicle.stood = stand(&self.physics.bodies[vehicle.body]);
-            let drive = vehicle.hands(dt_secs, &self.physics);
+            let drive = vehicle.hands(dt_secs, &self.physics, &self.ground);
             match &mut vehicle.controls {
                 Controls::Car(car) => car.control(drive, dt_secs, &mut self.physics),
                 Controls::Monster(monster) => monster.control(drive, dt_secs, &mut self.physics, &self.ground),
                 Controls::Helicopter(helicopter) => helicopter.control(drive, dt_secs, &mut self.physics, &self.ground),
+                Controls::Sled(sled) => sled.control(drive, dt_secs, &mut self.physics, &self.ground),
             }
         }
         self.physics.step();
@@ -132,6 +146,7 @@ impl Objects {
                 Controls::Car(car) => car.steering_rad(),
                 Controls::Monster(monster) => monster.phase_rad(),
                 Controls::Helicopter(helicopter) => helicopter.rotor_rad(),
+                Controls::Sled(_) => 0.0,
             };
             ObjectPose { id: vehicle.id, kind: vehicle.kind, position_m, rotation, velocity_m_per_s, part_rad }
         };
@@ -151,57 +166,69 @@ impl Objects {
         self.vehicles.iter().position(|vehicle| matches!(vehicle.driver, Driver::Client { client: other, .. } if other == client))
     }
 
-    fn add(&mut self, kind: VehicleKind, driver: Driver, middle_m: [f32; 2]) -> Option<ObjectId> {
-        if self.vehicles.len() >= self.limit {
+    fn add(&mut self, kind: VehicleKind, driver: Driver, middle_m: [f32; 2], apart_m: f32) -> Option<ObjectId> {
+        if self.vehicles.len() >= self.settings.limit as usize {
             return None;
         }
         let taken: Vec<_> = self
             .vehicles
             .iter()
-            .map(|other| Disc { at_m: stand(&self.physics.bodies[other.body]).xz(), radius_m: radius_m(other.kind) })
+            .map(|other| Disc { at_m: stand(&self.physics.bodies[other.body]).xz(), radius_m: radius_m(other.half_extents_m) })
             .collect();
-        let at_m = spawn::find(middle_m, radius_m(kind), &taken, &self.ground, &self.place)?;
+        let half_extents_m = self.settings.half_extents_m(kind);
+        let at_m = spawn::find(middle_m, apart_m, radius_m(half_extents_m), &taken, &self.ground, &self.place)?;
         let heading_rad = (at_m[0] - middle_m[0]).atan2(middle_m[1] - at_m[1]);
         let (body, collider) = match kind {
             VehicleKind::Car => car::body(),
             VehicleKind::Monster => monster::body(),
             VehicleKind::Helicopter => helicopter::body(),
+            VehicleKind::Sled => sled::body(&self.settings),
         };
-        let center = Vector::new(at_m[0], self.highest_under(at_m, kind) + kind.half_extents_m()[1] + DROP_M, at_m[1]);
+        let center = Vector::new(at_m[0], self.highest_under(at_m, kind) + half_extents_m[1] + DROP_M, at_m[1]);
         let body = body.pose(Pose::from_parts(center, Rotation::from_rotation_y(-heading_rad)));
         let (body, _) = self.physics.insert(body, collider);
         let controls = match kind {
             VehicleKind::Car => Controls::Car(Car::new(body)),
             VehicleKind::Monster => Controls::Monster(Monster::new(body, heading_rad)),
             VehicleKind::Helicopter => Controls::Helicopter(Helicopter::new(body)),
+            VehicleKind::Sled => Controls::Sled(Sled::new(body, half_extents_m[1], heading_rad)),
         };
         let id = self.next_id;
         self.next_id += 1;
         let stood = stand(&self.physics.bodies[body]);
-        self.vehicles.push(Vehicle { id, kind, driver, body, controls, stood });
+        self.vehicles.push(Vehicle { id, kind, half_extents_m, driver, body, controls, stood });
         Some(id)
     }
 
     /// Height of the land under the box of `kind` (m), wherever it is highest.
     fn highest_under(&self, [x, z]: [f32; 2], kind: VehicleKind) -> f32 {
-        let reach = if kind == VehicleKind::Monster { 0.0 } else { 0.7 * radius_m(kind) };
+        let reach = match kind {
+            // Their floors follow the land below their middle.
+            VehicleKind::Monster | VehicleKind::Sled => 0.0,
+            _ => 0.7 * radius_m(kind.half_extents_m()),
+        };
         let around = [[x, z], [x - reach, z - reach], [x + reach, z - reach], [x - reach, z + reach], [x + reach, z + reach]];
         around.into_iter().map(|at| self.ground.height_m(at)).fold(f32::NEG_INFINITY, f32::max)
     }
 }
 
 impl Vehicle {
-    fn hands(&mut self, dt_secs: f32, physics: &PhysicsWorld) -> Drive {
+    fn hands(&mut self, dt_secs: f32, physics: &PhysicsWorld, ground: &Ground) -> Drive {
+        let body = &physics.bodies[self.body];
         match &mut self.driver {
             Driver::Client { drive, .. } => *drive,
-            Driver::Circling(circling) => circling.hands(physics.bodies[self.body].linvel().length(), dt_secs),
+            Driver::Circling(circling) => {
+                let at = body.translation();
+                let below_cruise_m = CRUISE_M - (at.y - ground.height_m([at.x, at.z]));
+                let lift = (CRUISE_PER_M * below_cruise_m).clamp(-1.0, 1.0);
+                Drive { lift, ..circling.hands(body.linvel().length(), dt_secs) }
+            }
         }
     }
 }
 
-/// Radius of the circle around the box of `kind`, seen from above (m).
-fn radius_m(kind: VehicleKind) -> f32 {
-    let [x, _, z] = kind.half_extents_m();
+/// Radius of the circle around a box, seen from above (m).
+fn radius_m([x, _, z]: [f32; 3]) -> f32 {
     x.hypot(z)
 }
 
@@ -230,7 +257,7 @@ fn confine(vehicle: &Vehicle, body: &mut RigidBody, place: &Place, ground: &Grou
     }
     let land_m = ground.height_m([inside.x, inside.z]);
     if inside.y < land_m {
-        inside.y = land_m + vehicle.kind.half_extents_m()[1];
+        inside.y = land_m + vehicle.half_extents_m[1];
         slowed.y = slowed.y.max(0.0);
     }
     if inside != at {

@@ -2,6 +2,7 @@
 
 use glam::{Quat, Vec3};
 use shared::scene::VehicleKind;
+use thiserror::Error;
 
 /// Position and orientation of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +34,71 @@ pub struct Motion {
     pub from: Stand,
     /// After it.
     pub to: Stand,
-    /// Velocity after it (m/s).
+    /// Velocity after it (m/s), which moves the air; the grass goes by the way from one stand to the other.
     pub velocity_m_per_s: [f32; 3],
+}
+
+/// Farthest that an object moves in one step (m): the fastest one in the longest step goes 9 m.
+const WAY_LIMIT_M: f32 = 100.0;
+/// How far the square of a unit quaternion's length may be from 1.
+const UNIT_SLACK: f32 = 0.01;
+
+/// Why a motion is none.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum MotionError {
+    /// A vector that holds what is no number.
+    #[error("`{field}` of a {} is {value:?}; allowed: finite numbers", .kind.name())]
+    NotFinite {
+        /// What moves.
+        kind: VehicleKind,
+        /// Which part of the motion, such as `velocity_m_per_s`.
+        field: &'static str,
+        /// What it holds.
+        value: Vec<f32>,
+    },
+    /// A rotation that is no unit quaternion.
+    #[error("`{field}` of a {} is {value:?}; allowed: a unit quaternion", .kind.name())]
+    NotUnit {
+        /// What moves.
+        kind: VehicleKind,
+        /// Which part of the motion.
+        field: &'static str,
+        /// What it holds.
+        value: [f32; 4],
+    },
+    /// A leap.
+    #[error("a {} moves {way_m:.1} m in one step; allowed: up to {WAY_LIMIT_M} m", .kind.name())]
+    TooFar {
+        /// What moves.
+        kind: VehicleKind,
+        /// How far (m).
+        way_m: f32,
+    },
+}
+
+impl Motion {
+    /// Whether it is the motion of a body.
+    ///
+    /// # Errors
+    /// [`MotionError`]: numbers that are none, a rotation that is no unit quaternion, or more than 100 m in one step.
+    pub fn check(&self) -> Result<(), MotionError> {
+        let Self { kind, from, to, velocity_m_per_s } = *self;
+        let vectors: [(&str, &[f32]); 5] = [
+            ("from.position_m", &from.position_m),
+            ("from.rotation", &from.rotation),
+            ("to.position_m", &to.position_m),
+            ("to.rotation", &to.rotation),
+            ("velocity_m_per_s", &velocity_m_per_s),
+        ];
+        if let Some((field, value)) = vectors.into_iter().find(|(_, value)| !value.iter().all(|v| v.is_finite())) {
+            return Err(MotionError::NotFinite { kind, field, value: value.to_vec() });
+        }
+        for (field, value) in [("from.rotation", from.rotation), ("to.rotation", to.rotation)] {
+            if (Quat::from_array(value).length_squared() - 1.0).abs() > UNIT_SLACK {
+                return Err(MotionError::NotUnit { kind, field, value });
+            }
+        }
+        let way_m = Vec3::from_array(from.position_m).distance(Vec3::from_array(to.position_m));
+        if way_m <= WAY_LIMIT_M { Ok(()) } else { Err(MotionError::TooFar { kind, way_m }) }
+    }
 }

@@ -17,7 +17,7 @@ macro_rules! file {
 }
 
 /// All of them, the default first.
-pub(super) const BUILT_IN: [BuiltIn; 3] = [
+pub(super) const BUILT_IN: [BuiltIn; 4] = [
     BuiltIn {
         name: "meadow",
         text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meadow.toml")),
@@ -32,6 +32,11 @@ pub(super) const BUILT_IN: [BuiltIn; 3] = [
         name: "devil",
         text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/devil.toml")),
         files: &[file!("meadow-height.png"), file!("meadow-covering.png")],
+    },
+    BuiltIn {
+        name: "continuum",
+        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/continuum.toml")),
+        files: &[file!("continuum-height.png"), file!("continuum-covering.png")],
     },
 ];
 
@@ -53,7 +58,7 @@ impl BuiltIn {
 
 /// Elevations and extent of the world (m) of `jacksboro`, which its covering map is made from.
 pub(super) fn jacksboro_land() -> (HeightMap, [f32; 2]) {
-    let [_, jacksboro, _] = &BUILT_IN;
+    let [_, jacksboro, ..] = &BUILT_IN;
     let scene = jacksboro.scene();
     let png = jacksboro.file(&scene.terrain.height_map).expect("the scene names a file that ships with it");
     (HeightMap::from_png(png, &scene.terrain).expect("the elevations are a grey PNG"), scene.extent_m())

@@ -2,19 +2,24 @@
 
 use super::builtin::{BUILT_IN, BuiltIn};
 use super::error::{FaultyScene, SceneError};
+use crate::bend::drawing::{Drawing, Drawings};
 use crate::file;
 use crate::objects::model;
-use crate::world::{self, WorldError};
-use shared::scene::{Scene, SceneFault, VehicleKind, parse};
+use crate::world::{self, Maps, WorldError};
+use shared::scene::{Scene, SceneFault, VehicleKind, WindShape, parse};
 use shared::terrain::{Cover, CoverMap, HeightMap, MapError};
 use shared::wire::Mesh;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Largest scene file (bytes).
 const SCENE_LIMIT: u64 = 1 << 20;
 
 /// Largest file of a map (bytes); two of them and two models fit into a message.
 pub(crate) const MAP_LIMIT: u64 = 24 << 20;
+
+/// Largest file of a drawn wind (bytes): more than the largest picture needs.
+const DRAWING_LIMIT: u64 = 4 << 20;
 
 /// Lowest and highest land (m).
 const LAND_RANGE_M: [f32; 2] = [-20_000.0, 20_000.0];
@@ -32,8 +37,17 @@ pub struct LoadedScene {
     pub height: HeightMap,
     /// What covers the land.
     pub cover: CoverMap,
+    /// The drawings of winds, by the numbers that stand for their files in the scene.
+    pub drawings: Drawings,
     /// Models read from glTF files; kinds that are missing are drawn with the built-in one.
     pub models: Vec<(VehicleKind, Mesh)>,
+}
+
+impl LoadedScene {
+    /// What a world of the scene is made from.
+    pub fn maps(&self) -> Maps {
+        Maps { height: self.height.clone(), cover: self.cover.clone(), drawings: self.drawings.clone() }
+    }
 }
 
 /// Loads a built-in scene by name, or a scene file by path, with its maps and models.
@@ -110,6 +124,18 @@ fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, Sce
             Err(reason) => note(&format!("objects.{}_model", kind.name()), format!("names `{field}`, which {reason}")),
         }
     }
+    let mut drawings = Drawings::new();
+    for (path, shape) in wind_shapes(&mut scene) {
+        let WindShape::Drawn(name) = shape else { continue };
+        match drawing(name, source) {
+            Ok(drawing) => {
+                let number = format!("{}.png", drawings.len() + 1);
+                *name = number.clone();
+                drawings.insert(number, Arc::new(drawing));
+            }
+            Err(reason) => note(&path, format!("names `{name}`, which {reason}")),
+        }
+    }
     let (Some((height_png, height)), Some((covering_png, cover))) = (height, cover) else { return Err(faulty(faults)) };
     if !faults.is_empty() {
         return Err(faulty(faults));
@@ -119,7 +145,19 @@ fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, Sce
     {
         path.clear();
     }
-    Ok(LoadedScene { scene, height_png, covering_png, height, cover, models: loaded_models })
+    Ok(LoadedScene { scene, height_png, covering_png, height, cover, drawings, models: loaded_models })
+}
+
+/// Everything in a scene that may name a drawing, with its path.
+fn wind_shapes(scene: &mut Scene) -> Vec<(String, &mut WindShape)> {
+    let winds = scene.drawn_winds.iter_mut().enumerate().map(|(i, wind)| (format!("drawn_winds[{i}].shape"), &mut wind.shape));
+    let wash = ("objects.helicopter.wash_shape".to_owned(), &mut scene.objects.helicopter.wash_shape);
+    winds.chain([wash]).collect()
+}
+
+fn drawing(name: &str, source: &Source) -> Result<Drawing, String> {
+    let png = source.read(name, DRAWING_LIMIT).map_err(|reason| format!("cannot be read: {reason}"))?;
+    Drawing::from_png(&png).map_err(|error| error.to_string())
 }
 
 fn height_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, HeightMap), String> {

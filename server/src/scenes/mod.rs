@@ -39,10 +39,31 @@ mod tests {
             let stored = std::fs::read(format!("{}/scenes/{}", env!("CARGO_MANIFEST_DIR"), map.name)).unwrap();
             let mut reader = png::Decoder::new(std::io::Cursor::new(stored)).read_info().unwrap();
             assert_eq!([reader.info().width, reader.info().height], map.size_px, "{}", map.name);
-            let mut levels = vec![0; map.levels.len()];
-            reader.next_frame(&mut levels).unwrap();
-            assert!(levels == map.levels, "{} differs; run `prairie maps --out server/scenes`", map.name);
+            let levels = match map.levels {
+                maps::Levels::Eight(levels) => levels,
+                maps::Levels::Sixteen(levels) => levels.into_iter().flat_map(u16::to_be_bytes).collect(),
+            };
+            let mut stored_levels = vec![0; levels.len()];
+            reader.next_frame(&mut stored_levels).unwrap();
+            assert!(stored_levels == levels, "{} differs; run `prairie maps --out server/scenes`", map.name);
         }
+    }
+
+    #[test]
+    fn the_continuum_is_rolling_land_under_drifts_of_all_its_grasses() {
+        let LoadedScene { scene, height, cover, .. } = load("continuum").unwrap();
+        let [side_m, _] = scene.extent_m();
+        assert!((side_m - 4828.032).abs() < 0.01 && scene.patches.awake_limit == 225);
+        let [low, high] = height.range_m();
+        assert!(low > 0.0 && (40.0..90.0).contains(&(high - low)), "{low} to {high}");
+        let places = (0..200).flat_map(|row| (0..200).map(move |column| [column, row].map(|n| (n as f32 + 0.5) / 200.0 * side_m)));
+        let steepest = places.map(|[x, z]| height.slope(x, z)).map(|[east, south]| east.hypot(south)).fold(0.0, f32::max);
+        assert!(steepest < 0.3, "{steepest}");
+        for (id, least, most) in [(1, 0.15, 0.4), (2, 0.2, 0.5), (3, 0.003, 0.03), (255, 0.25, 0.5)] {
+            let share = cover.ids().iter().filter(|&&found| found == id).count() as f32 / cover.ids().len() as f32;
+            assert!((least..most).contains(&share), "{share} of ID {id}");
+        }
+        assert_eq!(scene.species.iter().map(|species| species.cover).collect::<Vec<_>>(), [1, 2, 3]);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::clients::{Client, Clients};
 use super::encoder::Encoder;
 use super::pace::{Common, Pace, SendLimits};
 use crate::runner::Published;
+use crate::snapshot::Snapshot;
 use crate::world::{Command, View};
 use bytes::Bytes;
 use shared::grid::PatchLayout;
@@ -81,7 +82,7 @@ impl Streamer {
         };
         for client in clients {
             let refusal = self.refusal(published, client.id);
-            let extra = refusal.is_some().then(object_limit);
+            let extra = refusal.is_some().then(|| no_vehicle(&published.snapshot));
             let pace = self.paces.entry(client.id).or_insert_with(|| Pace::new(self.limits, now));
             if pace.serve(client, &common, &mut self.encoder, extra) {
                 self.told.extend(refusal.map(|tick| (client.id, tick)));
@@ -120,8 +121,14 @@ impl Streamer {
     }
 }
 
-fn object_limit() -> Bytes {
-    let reason = "the scene's limit of objects is reached; wait until somebody gives a vehicle up".to_owned();
+/// Why a client gets no vehicle.
+fn no_vehicle(snapshot: &Snapshot) -> Bytes {
+    let (count, limit) = (snapshot.objects.len(), snapshot.object_limit);
+    let reason = if count >= limit as usize {
+        format!("there are {count} objects, and the scene allows {limit}; wait until somebody gives a vehicle up")
+    } else {
+        "there is no free place near where you look from; look elsewhere and ask again".to_owned()
+    };
     wire::encode(&ServerMessage::Refused { refusal: Refusal::ObjectLimit, reason }).into()
 }
 

@@ -65,3 +65,24 @@ impl Standing {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::bend::{Kinds, WaveParams};
+    use shared::grid::PatchLayout;
+    use shared::scene::Species;
+    use shared::terrain::grey_png;
+
+    #[test]
+    fn grass_counts_by_its_height() {
+        let mut scene = crate::scenes::load("meadow").unwrap().scene;
+        (scene.wind.cells, scene.wind.spacing_m, scene.plants.height_m) = ([2, 4, 2], [128.0, 2.0, 128.0], 0.5);
+        let tall = Species::new("tall", 1, &scene.grass, &scene.plants);
+        scene.species = vec![Species { height_m: 2.0, ..tall }];
+        let cover = CoverMap::from_png(&grey_png([2; 2], &[255, 1, 0, 7])).unwrap();
+        let mut standing = Standing::new(&scene, &cover, scene.tallest_m());
+        let still = Field::new(PatchLayout::from(&scene.patches), Kinds::one(WaveParams::from(&scene.grass)));
+        assert_eq!(standing.shares(&still).collect::<Vec<_>>(), [0.25, 1.0, 0.0, 0.0]);
+    }
+}

@@ -1,13 +1,14 @@
 use super::*;
 use crate::objects::Stand;
-use shared::bend::Bend;
+use shared::bend::{Bend, Field, Kinds, WaveParams};
 use shared::grid::PatchLayout;
 use shared::scene::{Primitive, PrimitiveKind};
 use shared::scene::{VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTime};
 
 fn meadow() -> (Scene, Maps) {
     let loaded = crate::scenes::load("meadow").unwrap();
-    (loaded.scene, Maps { height: loaded.height, cover: loaded.cover })
+    let maps = loaded.maps();
+    (loaded.scene, maps)
 }
 
 fn flat() -> HeightMap {
@@ -15,7 +16,7 @@ fn flat() -> HeightMap {
 }
 
 fn grass(scene: &Scene) -> Field {
-    Field::new(PatchLayout::from(&scene.patches))
+    Field::new(PatchLayout::from(&scene.patches), Kinds::one(WaveParams::from(&scene.grass)))
 }
 
 fn hovering(velocity_m_per_s: [f32; 3]) -> Motion {

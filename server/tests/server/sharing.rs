@@ -129,6 +129,10 @@ async fn a_refused_vehicle_leaves_the_connection() {
     let mut late = Plain::join(&server, "late").await;
     late.say(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
     late.frames_until(|late| late.refusals == [Refusal::ObjectLimit]).await;
+    assert_eq!(
+        late.reasons,
+        [format!("there are {OBJECT_LIMIT} objects, and the scene allows {OBJECT_LIMIT}; wait until somebody gives a vehicle up")]
+    );
     late.say(&ClientMessage::Ping { nonce: 7 }).await;
     while late.hear().await != Ok(ServerMessage::Pong { nonce: 7 }) {}
     server.stop().await;

@@ -85,6 +85,7 @@ impl Simulation for Meadow {
             time_secs: self.tick as f64 / 60.0,
             objects: self.objects.values().copied().collect(),
             wind: Arc::new(wind),
+            object_limit: OBJECT_LIMIT as u32,
             patches: Arc::new((0..PATCHES).map(patch).collect()),
             ..Snapshot::default()
         }
@@ -114,7 +115,9 @@ pub(crate) fn scene() -> LoadedScene {
         plants: Default::default(),
         species: Vec::new(),
         bend: Default::default(),
+        natural_wind: Default::default(),
         objects: Default::default(),
+        drawn_winds: vec![],
         camera: Default::default(),
         light: Default::default(),
     };
@@ -125,6 +128,7 @@ pub(crate) fn scene() -> LoadedScene {
         height_png: png_bytes.clone(),
         covering_png: png_bytes,
         scene,
+        drawings: Default::default(),
         models: Vec::new(),
     }
 }

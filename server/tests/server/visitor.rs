@@ -17,6 +17,8 @@ pub(crate) struct Visitor<S> {
     pub(crate) peers: Vec<(u32, String, Option<ObjectId>)>,
     pub(crate) objects: Vec<ObjectPose>,
     pub(crate) refusals: Vec<Refusal>,
+    /// Why, for the person.
+    pub(crate) reasons: Vec<String>,
 }
 
 pub(crate) type Plain = Visitor<TcpStream>;
@@ -38,7 +40,15 @@ impl Plain {
 impl<S: AsyncRead + AsyncWrite + Unpin> Visitor<S> {
     pub(crate) async fn over(stream: S, url: &str) -> Self {
         let (socket, _) = within(tokio_tungstenite::client_async(url, stream)).await.unwrap();
-        Self { socket, picture: Picture::default(), client: 0, peers: Vec::new(), objects: Vec::new(), refusals: Vec::new() }
+        Self {
+            socket,
+            picture: Picture::default(),
+            client: 0,
+            peers: Vec::new(),
+            objects: Vec::new(),
+            refusals: Vec::new(),
+            reasons: Vec::new(),
+        }
     }
 
     pub(crate) async fn greet(&mut self, name: &str) {
@@ -70,7 +80,10 @@ impl<S: AsyncRead + AsyncWrite + Unpin> Visitor<S> {
                             self.peers = peers.iter().map(|peer| (peer.client, peer.name.clone(), peer.object)).collect();
                         }
                         ServerMessage::Poses { objects, .. } => self.objects.clone_from(objects),
-                        ServerMessage::Refused { refusal, .. } => self.refusals.push(*refusal),
+                        ServerMessage::Refused { refusal, reason } => {
+                            self.refusals.push(*refusal);
+                            self.reasons.push(reason.clone());
+                        }
                         _ => {}
                     }
                     return Ok(message);

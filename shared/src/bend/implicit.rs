@@ -6,7 +6,8 @@
 //! direction methods for hyperbolic differential equations, J. SIAM 10, 1962). Stable for any step where c is constant.
 
 use super::halo::Edges;
-use super::patch::{CHANNELS, Ground, Patch, Planes};
+use super::patch::{CHANNELS, Patch, Planes};
+use super::verlet::for_each_kind;
 use super::tridiagonal::{End, LANES, Lanes, Line};
 use super::{Crew, Field, Report, WaveParams};
 use std::collections::BTreeMap;
@@ -37,63 +38,77 @@ impl Coefficients {
             inverse_mass: damping.map(|damping| 1.0 / (1.0 + 0.5 * damping + 0.25 * restoring)),
         }
     }
-
-    /// Courant number of θ (0) or ω (1) where the grass bends at a speed whose square is `omega2`.
-    fn r(&self, set: usize, omega2: f32) -> f32 {
-        if set == 0 { self.r[0] + self.r_mu * omega2.sqrt() } else { self.r[1] }
-    }
 }
 
-/// Advances all patches that anything in or around moves by one step of `dt_secs`.
+/// What a step solves for, of a patch's own cells, row by row.
+#[derive(Default)]
+struct Work {
+    /// `a = r²/(4A)`, of θ and of ω.
+    weights: [Vec<f32>; 2],
+    /// Right-hand sides over A; then δ.
+    changes: Planes,
+}
+
+/// Advances all awake patches by one step of `dt_secs`.
 pub(super) fn step(field: &mut Field, dt_secs: f32, crew: &impl Crew) -> Report {
     let ratio = field.dt_secs.replace(dt_secs).map_or(1.0, |last| dt_secs / last);
     let kinds: Vec<_> = field.kinds.waves().iter().map(|waves| Coefficients::new(waves, field.layout.cell_m, dt_secs)).collect();
     let refused = field.meet(1);
-    let mut changes: Vec<Planes> = field.patches.iter().map(|_| Planes::default()).collect();
-    let tasks: Vec<_> = field.patches.iter_mut().zip(&mut changes).collect();
-    crew.for_each(tasks, |(patch, changes)| *changes = forces(patch, &kinds, ratio));
+    let mut works: Vec<Work> = field.patches.iter().map(|_| Work::default()).collect();
+    let tasks: Vec<_> = field.patches.iter_mut().zip(&mut works).collect();
+    crew.for_each(tasks, |(patch, work)| *work = begin(patch, &kinds, ratio));
     for axis in [0, 1] {
-        let lines = lines(field, &mut changes, axis);
-        crew.for_each(lines, |mut line| line.solve(&kinds, axis));
+        let lines = lines(field, &mut works, axis);
+        crew.for_each(lines, |mut line| line.solve(axis));
     }
-    let tasks: Vec<_> = field.patches.iter_mut().zip(&changes).collect();
-    crew.for_each(tasks, |(patch, changes)| take_on(patch, changes));
+    let tasks: Vec<_> = field.patches.iter_mut().zip(&works).collect();
+    crew.for_each(tasks, |(patch, work)| take_on(patch, &work.changes));
     let cells = u64::from(field.layout.cells).pow(2);
     Report { substeps: 1, cell_steps: cells * field.patches.len() as u64, refused, ..Report::default() }
 }
 
-fn kind_at(patch: &Patch, at: usize) -> usize {
-    match &patch.ground {
-        Ground::One(kind) => usize::from(*kind),
-        Ground::Map(kinds) => usize::from(kinds[at]),
-    }
-}
-
-/// Right-hand sides over A, of the patch's own cells, row by row. Moves the earlier state if dt has changed, and where waves slow down, which keep
-/// their motion only in part, as in [`verlet`](super::verlet).
-fn forces(patch: &mut Patch, kinds: &[Coefficients], ratio: f32) -> Planes {
+/// Weights and right-hand sides. Moves the earlier state if dt has changed, and where waves slow down, which then lose the motion that they can no
+/// longer carry, as in [`verlet`](super::verlet).
+fn begin(patch: &mut Patch, kinds: &[Coefficients], ratio: f32) -> Work {
     let (side, stride) = (patch.side(), patch.stride());
-    let mut forces: Planes = std::array::from_fn(|_| Vec::with_capacity(side * side));
-    for j in 0..side as i64 {
-        let row = patch.at(0, j);
-        for at in row..row + side {
-            let k = &kinds[kind_at(patch, at)];
-            let [_, x, z] = &patch.now;
-            let [_, x_before, z_before] = &patch.before;
-            let (omega2, omega2_before) = (x[at] * x[at] + z[at] * z[at], x_before[at] * x_before[at] + z_before[at] * z_before[at]);
-            for channel in 0..CHANNELS {
-                let (set, now, before) = (channel.min(1), &patch.now[channel], &mut patch.before[channel]);
-                let r = k.r(set, omega2);
-                // `min` drops what is no number: nothing over nothing is 1.
-                let kept = (r / k.r(set, omega2_before)).min(1.0);
-                before[at] = now[at] - (now[at] - before[at]) * (ratio * kept);
-                let laplacian = (now[at - 1] + now[at + 1]) + (now[at - stride] + now[at + stride]) - 4.0 * now[at];
-                let force = r * r * laplacian - k.restoring * now[at] - k.damping[set] * (now[at] - before[at]);
-                forces[channel].push(force * k.inverse_mass[set]);
+    let plane = || vec![0.0; side * side];
+    let mut work = Work { weights: [plane(), plane()], changes: std::array::from_fn(|_| plane()) };
+    for j in 0..side {
+        let row = patch.at(0, j as i64);
+        let own = |at: usize| j * side + at - row;
+        for_each_kind(&patch.ground, row, row + side, |kind, from, to| {
+            let (k, cells) = (&kinds[usize::from(kind)], own(from)..own(from) + to - from);
+            let [theta_weights, omega_weights] = work.weights.each_mut().map(|plane| &mut plane[cells.clone()]);
+            let [theta, x, z] = patch.now.each_ref().map(|plane| &plane[from..to]);
+            let [theta_before, x_before, z_before] = patch.before.each_mut().map(|plane| &mut plane[from..to]);
+            let courant = |x: f32, z: f32| k.r[0] + k.r_mu * (x * x + z * z).sqrt();
+            for i in 0..theta.len() {
+                let r = courant(x[i], z[i]);
+                theta_weights[i] = 0.25 * r * r * k.inverse_mass[0];
+                if k.r_mu != 0.0 {
+                    // `min` drops what is no number: nothing over nothing is 1.
+                    let kept = (r / courant(x_before[i], z_before[i])).min(1.0);
+                    theta_before[i] = theta[i] - (theta[i] - theta_before[i]) * kept;
+                }
             }
-        }
+            omega_weights.fill(0.25 * k.r[1] * k.r[1] * k.inverse_mass[1]);
+            for channel in 0..CHANNELS {
+                let set = channel.min(1);
+                let plane = &patch.now[channel];
+                let (now, before) = (&plane[from..to], &mut patch.before[channel][from..to]);
+                let (west, east) = (&plane[from - 1..to - 1], &plane[from + 1..to + 1]);
+                let (north, south) = (&plane[from - stride..to - stride], &plane[from + stride..to + stride]);
+                let (weights, changes) = (&work.weights[set][cells.clone()], &mut work.changes[channel][cells.clone()]);
+                let (restoring, damping) = (k.restoring * k.inverse_mass[set], k.damping[set] * k.inverse_mass[set]);
+                for i in 0..now.len() {
+                    before[i] = now[i] - (now[i] - before[i]) * ratio;
+                    let laplacian = (west[i] + east[i]) + (north[i] + south[i]) - 4.0 * now[i];
+                    changes[i] = 4.0 * weights[i] * laplacian - restoring * now[i] - damping * (now[i] - before[i]);
+                }
+            }
+        });
     }
-    forces
+    work
 }
 
 fn take_on(patch: &mut Patch, changes: &Planes) {
@@ -114,16 +129,17 @@ fn take_on(patch: &mut Patch, changes: &Planes) {
 
 /// Awake patches side by side along an axis.
 struct Lined<'a> {
-    patches: Vec<(&'a Patch, &'a mut Planes)>,
+    side: usize,
+    patches: Vec<&'a mut Work>,
     ends: [End; 2],
 }
 
 /// The awake patches in lines along an axis; a line ends where a patch sleeps.
-fn lines<'a>(field: &'a Field, changes: &'a mut [Planes], axis: usize) -> Vec<Lined<'a>> {
-    let mut rows: BTreeMap<u32, Vec<(u32, &Patch, &mut Planes)>> = BTreeMap::new();
-    for (patch, changes) in field.patches.iter().zip(changes) {
+fn lines<'a>(field: &Field, works: &'a mut [Work], axis: usize) -> Vec<Lined<'a>> {
+    let mut rows: BTreeMap<u32, Vec<(u32, &mut Work)>> = BTreeMap::new();
+    for (patch, work) in field.patches.iter().zip(works) {
         let place = field.layout.place(patch.index());
-        rows.entry(place[1 - axis]).or_default().push((place[axis], patch, changes));
+        rows.entry(place[1 - axis]).or_default().push((place[axis], work));
     }
     let count = field.layout.count[axis];
     let mut lines = vec![];
@@ -140,13 +156,13 @@ fn lines<'a>(field: &'a Field, changes: &'a mut [Planes], axis: usize) -> Vec<Li
             _ => End::Rest,
         };
         let mut last = None;
-        for (place, patch, changes) in row {
+        for (place, work) in row {
             let goes_on = last.is_some_and(|last: u32| (last + 1) % count == place && (last + 1 < count || field.edges == Edges::Wrapped));
             if !goes_on {
-                lines.push(Lined { patches: vec![], ends: [end(place, 0), End::Rest] });
+                lines.push(Lined { side: field.layout.cells as usize, patches: vec![], ends: [end(place, 0), End::Rest] });
             }
             if let Some(line) = lines.last_mut() {
-                line.patches.push((patch, changes));
+                line.patches.push(work);
                 line.ends[1] = end(place, count - 1);
             }
             last = Some(place);
@@ -156,26 +172,25 @@ fn lines<'a>(field: &'a Field, changes: &'a mut [Planes], axis: usize) -> Vec<Li
 }
 
 impl Lined<'_> {
-    fn solve(&mut self, kinds: &[Coefficients], axis: usize) {
-        let side = self.patches[0].0.side();
+    fn solve(&mut self, axis: usize) {
+        let side = self.side;
         let mut line = Line::new(side * self.patches.len(), self.ends);
         for first in (0..side).step_by(LANES) {
-            for set in 0..2 {
-                let channels = if set == 0 { 0..1 } else { 1..CHANNELS };
+            for (set, channels) in [0..1, 1..CHANNELS].into_iter().enumerate() {
                 line.weights.clear();
-                for (patch, _) in &self.patches {
-                    line.weights.extend((0..side).map(|along| weights(patch, kinds, set, axis, along, first)));
+                for work in &self.patches {
+                    line.weights.extend((0..side).map(|along| gather(&work.weights[set], side, axis, along, first)));
                 }
                 line.factorise();
                 for channel in channels {
                     line.values.clear();
-                    for (_, changes) in &self.patches {
-                        line.values.extend((0..side).map(|along| gather(&changes[channel], side, axis, along, first)));
+                    for work in &self.patches {
+                        line.values.extend((0..side).map(|along| gather(&work.changes[channel], side, axis, along, first)));
                     }
                     line.solve();
-                    for ((_, changes), solved) in self.patches.iter_mut().zip(line.values.chunks_exact(side)) {
+                    for (work, solved) in self.patches.iter_mut().zip(line.values.chunks_exact(side)) {
                         for (along, lanes) in solved.iter().enumerate() {
-                            scatter(&mut changes[channel], side, axis, along, first, lanes);
+                            scatter(&mut work.changes[channel], side, axis, along, first, lanes);
                         }
                     }
                 }
@@ -195,15 +210,4 @@ fn gather(plane: &[f32], side: usize, axis: usize, along: usize, first: usize) -
 
 fn scatter(plane: &mut [f32], side: usize, axis: usize, along: usize, first: usize, lanes: &Lanes) {
     abreast(side, axis, along, first).into_iter().zip(lanes).for_each(|(at, value)| plane[at] = *value);
-}
-
-/// `a = r²/(4A)` of eight cells abreast.
-fn weights(patch: &Patch, kinds: &[Coefficients], set: usize, axis: usize, along: usize, first: usize) -> Lanes {
-    std::array::from_fn(|lane| {
-        let [i, j] = if axis == 0 { [along, first + lane] } else { [first + lane, along] };
-        let at = patch.at(i as i64, j as i64);
-        let k = &kinds[kind_at(patch, at)];
-        let [_, x, z] = &patch.now;
-        0.25 * k.r(set, x[at] * x[at] + z[at] * z[at]).powi(2) * k.inverse_mass[set]
-    })
 }

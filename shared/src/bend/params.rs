@@ -35,10 +35,12 @@ impl From<&Grass> for WaveParams {
 /// How a sub-step takes the damping rate k.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Damping {
-    /// 001 Eqs (5)–(6) as they stand, with λ = 1 − exp(−k·dt): the force counts in full. First order in time.
+    /// 001 Eqs (5)–(6) as they stand, with λ = 1 − exp(−k·dt): the force counts in full, and a wave that slows down keeps its motion. First
+    /// order in time.
     Plain,
     /// The velocity decays by 1 − λ and gains the force times (1 − exp(−k·dt))/k, as it would exactly under a steady force.
-    /// Second order in time.
+    /// Second order in time. A wave that slows down by Eq. (4) loses the motion that it can no longer carry, so that no change of its speed adds
+    /// energy.
     Exact,
 }
 
@@ -58,6 +60,8 @@ pub struct Coefficients {
     pub r2_omega: f32,
     /// φ·κ·dt², of θ and of ω.
     pub restoring: [f32; 2],
+    /// Least share of its motion that θ keeps where its speed falls by Eq. (4): 1 for [`Damping::Plain`], 0 for [`Damping::Exact`].
+    pub kept_at_least: f32,
 }
 
 impl Coefficients {
@@ -75,6 +79,7 @@ impl Coefficients {
             r_mu: courant(params.mu_m_per_rad, &theta),
             r2_omega: r_omega * r_omega,
             restoring: [restoring(&theta), restoring(&omega)],
+            kept_at_least: if damping == Damping::Plain { 1.0 } else { 0.0 },
         }
     }
 }

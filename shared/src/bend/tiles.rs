@@ -66,7 +66,7 @@ impl Tiles {
             peaks: vec![[0; 2]; count * count],
             steps: vec![false; ringed],
             loud: vec![false; ringed],
-            changed: vec![false; count * count],
+            changed: vec![true; count * count],
         }
     }
 

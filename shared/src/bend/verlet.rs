@@ -6,7 +6,7 @@
 //!
 //! Where the bend slows down, so does the wave (Eq. 4), from c⁻ to c: its motion θ − θ⁻ then is kept by c/c⁻ only. A wave's energy is
 //! `(θ'/c)² + |∇θ|²`: were the motion kept whole, each fall of c would add to it, and |ω|, which swings, would drive θ up without end, however short
-//! the steps (Hill's equation; 250 000 rad in one of 5000 random draws).
+//! the steps (Hill's equation; 250 000 rad in one of 5000 random draws). [`Damping::Plain`](super::Damping) keeps it whole, as 001 does.
 //!
 //! A patch does up to [`HALO`] sub-steps while it lies in the cache: its halo then holds as many rings of its neighbours' cells, of which each
 //! sub-step uses up one. Its neighbours compute these cells, too, with the same bits.
@@ -175,7 +175,7 @@ fn advance_run(patch: &mut Patch, kinds: &[Coefficients], run: Run, mut peaks: O
 }
 
 /// Splits cells `first..last` of the planes into runs of one kind.
-fn for_each_kind(ground: &Ground, first: usize, last: usize, mut act: impl FnMut(u8, usize, usize)) {
+pub(super) fn for_each_kind(ground: &Ground, first: usize, last: usize, mut act: impl FnMut(u8, usize, usize)) {
     match ground {
         Ground::One(kind) => act(*kind, first, last),
         Ground::Map(kinds) => {
@@ -234,7 +234,7 @@ fn next_cell<const VARIES: bool>(row: &[Stencil; CHANNELS], i: usize, before: [f
         let courant = |x: f32, z: f32| k.r0 + k.r_mu * (x * x + z * z).sqrt();
         r = courant(x.center(i), z.center(i));
         // `min` drops what is no number: nothing over nothing is 1.
-        theta_memory *= (r / courant(before[1], before[2])).min(1.0);
+        theta_memory *= (r / courant(before[1], before[2])).min(1.0).max(k.kept_at_least);
     }
     let theta_keep = 1.0 + theta_memory - k.restoring[0];
     let (keep, memory) = (2.0 - k.lambda_omega - k.restoring[1], 1.0 - k.lambda_omega);

@@ -1,7 +1,7 @@
 //! What each field of a scene file may hold: the one table that parsing, the reference in the README and its tests share.
 
 use super::{
-    LagWay, PrimitiveKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    LagWay, PrimitiveKind, VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, Scheme, Seams};
 use std::fmt;
@@ -17,16 +17,19 @@ pub enum Allowed {
     OneOf(&'static [&'static str]),
     /// A list of sections, up to so many.
     Sections(usize),
+    /// A list of so many to so many places [x, z], each number from the third to the fourth.
+    Places(usize, usize, f64, f64),
 }
 
-use Allowed::{OneOf, Range, Sections, Text};
+use Allowed::{OneOf, Places, Range, Sections, Text};
 
 /// Every field by its path, in the order of the structs; in a list of sections, those of one section.
-pub const FIELDS: [(&str, Allowed); 105] = [
+pub const FIELDS: [(&str, Allowed); 133] = [
     ("summary", Text),
     ("seed", Range(0.0, i64::MAX as f64)),
     ("tick_hz", Range(10.0, 240.0)),
     ("species", Sections(16)),
+    ("drawn_winds", Sections(16)),
     ("patches.count", Range(1.0, 2048.0)),
     ("patches.cells", Range(8.0, 256.0)),
     ("patches.cell_m", Range(0.05, 10.0)),
@@ -74,6 +77,10 @@ pub const FIELDS: [(&str, Allowed); 105] = [
     ("wind.primitives.heading_rad", Range(-6.3, 6.3)),
     ("wind.primitives.drift_m_per_s", Range(-40.0, 40.0)),
     ("wind.primitives.dust", Range(0.0, 1.0)),
+    ("natural_wind.strength_rad_per_s2", Range(0.0, 20.0)),
+    ("natural_wind.scale_m", Range(8.0, 1000.0)),
+    ("natural_wind.drift_m_per_s", Range(-40.0, 40.0)),
+    ("natural_wind.reach_m", Range(0.0, 500.0)),
     ("bend.scheme", OneOf(Scheme::WORDS)),
     ("bend.seams", OneOf(Seams::WORDS)),
     ("bend.edges", OneOf(Edges::WORDS)),
@@ -90,6 +97,7 @@ pub const FIELDS: [(&str, Allowed); 105] = [
     ("grass.lag_secs", Range(0.0, 1.0)),
     ("grass.recovery_lag_share", Range(0.0, 1.0)),
     ("grass.segments", Range(1.0, 6.0)),
+    ("grass.laid_recovery_secs", Range(0.5, 86_400.0)),
     ("plants.grid_m", Range(1.0, 64.0)),
     ("plants.plants_per_side", Range(2.0, 256.0)),
     ("plants.height_m", Range(0.02, 5.0)),
@@ -121,6 +129,28 @@ pub const FIELDS: [(&str, Allowed); 105] = [
     ("objects.car_model", Text),
     ("objects.monster_model", Text),
     ("objects.self_driving", Range(0.0, 1024.0)),
+    ("objects.self_driving_m_per_s", Range(1.0, 60.0)),
+    ("objects.self_driving_apart_m", Range(1.0, 1000.0)),
+    ("objects.self_driving_kind", OneOf(VehicleKind::WORDS)),
+    ("objects.sled_outline_m", Places(3, 64, -20.0, 20.0)),
+    ("objects.car.strike_height_m", Range(0.05, 5.0)),
+    ("objects.car.lays_share", Range(0.0, 1.0)),
+    ("objects.monster.strike_height_m", Range(0.05, 5.0)),
+    ("objects.monster.lays_share", Range(0.0, 1.0)),
+    ("objects.helicopter.strike_height_m", Range(0.05, 5.0)),
+    ("objects.helicopter.lays_share", Range(0.0, 1.0)),
+    ("objects.helicopter.wash_shape", Text),
+    ("objects.sled.strike_height_m", Range(0.05, 5.0)),
+    ("objects.sled.lays_share", Range(0.0, 1.0)),
+    ("drawn_winds.shape", Text),
+    ("drawn_winds.path_m", Places(1, 64, 0.0, 100_000.0)),
+    ("drawn_winds.travel_m_per_s", Range(0.0, 60.0)),
+    ("drawn_winds.turns_per_s", Range(-10.0, 10.0)),
+    ("drawn_winds.radius_m", Range(0.5, 500.0)),
+    ("drawn_winds.speed_m_per_s", Range(0.0, 60.0)),
+    ("drawn_winds.bend_rad", Range(0.0, 1.5)),
+    ("drawn_winds.strike_height_m", Range(0.05, 5.0)),
+    ("drawn_winds.height_m", Range(0.0, 30.0)),
     ("camera.at", Range(0.0, 1.0)),
     ("camera.height_m", Range(0.02, 2000.0)),
     ("camera.heading_rad", Range(-6.3, 6.3)),
@@ -131,7 +161,7 @@ pub const FIELDS: [(&str, Allowed); 105] = [
 ];
 
 /// Fields that a scene file must give; in a list of sections, each section of it.
-pub const REQUIRED: [&str; 10] = [
+pub const REQUIRED: [&str; 12] = [
     "summary",
     "terrain",
     "terrain.height_map",
@@ -142,6 +172,8 @@ pub const REQUIRED: [&str; 10] = [
     "wind.primitives.at_m",
     "species.name",
     "species.cover",
+    "drawn_winds.shape",
+    "drawn_winds.path_m",
 ];
 
 /// What the field at `path` may hold; text for a path that is not in the table.
@@ -150,6 +182,14 @@ pub(super) fn allowed_at(path: &str) -> Allowed {
 }
 
 impl Allowed {
+    /// What an element of a list may hold.
+    pub(super) fn of_element(self) -> Self {
+        match self {
+            Places(_, _, low, high) => Range(low, high),
+            other => other,
+        }
+    }
+
     /// Whether a number is in the range; never for what is no range.
     pub(super) fn contains(self, value: f64) -> bool {
         matches!(self, Range(low, high) if (low..=high).contains(&value))
@@ -169,6 +209,7 @@ impl fmt::Display for Allowed {
                 Ok(())
             }
             Sections(limit) => write!(f, "at most {limit} sections"),
+            Places(least, most, low, high) => write!(f, "{least} to {most} places [x, z], each number {low} to {high}"),
         }
     }
 }

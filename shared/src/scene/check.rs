@@ -1,6 +1,6 @@
 //! Checks of values against each other; the range of each single value is in [`FIELDS`](super::FIELDS).
 
-use super::{Scene, wind};
+use super::{Scene, drawn_wind, objects, wind};
 use crate::bend::{Scheme, Seams};
 
 /// Largest side of the world (m): up to here a coordinate in single precision resolves 1 cm.
@@ -34,7 +34,7 @@ impl Misfits {
 /// What does not fit together in `scene`.
 pub(super) fn cross_checks(scene: &Scene) -> Vec<Misfit> {
     let mut misfits = Misfits::default();
-    let Scene { patches, objects, species, .. } = scene;
+    let Scene { patches, species, .. } = scene;
 
     if !patches.cells.is_multiple_of(8) {
         misfits.note(&["patches.cells"], format!("is {}; allowed: a multiple of 8", patches.cells));
@@ -68,10 +68,8 @@ pub(super) fn cross_checks(scene: &Scene) -> Vec<Misfit> {
             misfits.note(&[&fields[0], &fields[1]], message);
         }
     }
-    if objects.self_driving > objects.limit {
-        let message = format!("is {}; allowed: up to `objects.limit`, {}", objects.self_driving, objects.limit);
-        misfits.note(&["objects.self_driving", "objects.limit"], message);
-    }
+    objects::check(&scene.objects, &mut misfits);
+    drawn_wind::check(scene, &mut misfits);
     misfits.0
 }
 

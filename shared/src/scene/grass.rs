@@ -31,6 +31,8 @@ pub struct Grass {
     pub recovery_lag_share: f32,
     /// Segments that bend one after the other, from the root up; 1 is stiff, short grass, which bends as a whole. Default 3, allowed 1..=6.
     pub segments: u32,
+    /// Time in which grass that an object's weight has laid rises to 1/e of its lean (s). Default 60, allowed 0.5..=86400.
+    pub laid_recovery_secs: f32,
 }
 
 impl Default for Grass {
@@ -47,6 +49,7 @@ impl Default for Grass {
             lag_secs: 0.12,
             recovery_lag_share: 0.4,
             segments: 3,
+            laid_recovery_secs: 60.0,
         }
     }
 }

@@ -6,6 +6,8 @@
 mod allowed;
 mod bend;
 mod check;
+mod drawn_wind;
+mod natural_wind;
 mod fault;
 mod grass;
 mod objects;
@@ -20,9 +22,11 @@ mod wind;
 pub use allowed::{Allowed, FIELDS, REQUIRED};
 pub use bend::BendField;
 pub use check::{AWAKE_CELLS_LIMIT, EXTENT_LIMIT_M, WIND_CELLS_LIMIT};
+pub use drawn_wind::{DrawnWind, WindShape};
 pub use fault::SceneFault;
 pub use grass::Grass;
-pub use objects::{Objects, VehicleKind};
+pub use natural_wind::NaturalWind;
+pub use objects::{CarTread, HelicopterTread, MonsterTread, Objects, SledTread, Tread, VehicleKind};
 pub use parse::parse;
 pub use patches::Patches;
 pub use picture::{CameraStart, Light};
@@ -58,6 +62,9 @@ pub struct Scene {
     /// The wind: its box, what drives it, and how it is solved.
     #[serde(default)]
     pub wind: Wind,
+    /// Gusts of noise that push the grass near cameras (001 §5.3).
+    #[serde(default)]
+    pub natural_wind: NaturalWind,
     /// How the bend field is solved.
     #[serde(default)]
     pub bend: BendField,
@@ -71,9 +78,13 @@ pub struct Scene {
     /// species, or 0, 253, 254 or 255. Default none, allowed at most 16.
     #[serde(default)]
     pub species: Vec<Species>,
-    /// Cars, monsters and helicopters: how many, and their models.
+    /// Cars, monsters, helicopters and sleds: how many, their models, and how they meet the grass.
     #[serde(default)]
     pub objects: Objects,
+    /// Winds that press the grass as objects do, such as cyclones (001 §5.3), each a section
+    /// `[[drawn_winds]]`. Default none, allowed at most 16.
+    #[serde(default)]
+    pub drawn_winds: Vec<DrawnWind>,
     /// Where a visitor's camera starts.
     #[serde(default)]
     pub camera: CameraStart,

@@ -2,7 +2,7 @@
 
 use super::allowed::{Allowed, FIELDS, REQUIRED, allowed_at};
 use super::check::{Misfit, cross_checks};
-use super::{Grass, Plants, Primitive, PrimitiveKind, Scene, SceneFault, Species, TerrainMaps, Wind, WindMethod};
+use super::{DrawnWind, Grass, Plants, Primitive, PrimitiveKind, Scene, SceneFault, Species, TerrainMaps, Wind, WindMethod, WindShape};
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Value;
@@ -65,16 +65,22 @@ fn template(method: WindMethod) -> toml::Table {
         plants: Default::default(),
         species: Vec::new(),
         bend: Default::default(),
+        natural_wind: Default::default(),
         objects: Default::default(),
+        drawn_winds: Vec::new(),
         camera: Default::default(),
         light: Default::default(),
     };
     toml::Table::try_from(scene).unwrap_or_default()
 }
 
-/// One section `[[wind.primitives]]` with all its fields.
-fn primitive_template() -> Value {
-    Value::try_from(Primitive::new(PrimitiveKind::Uniform, [0.0; 3])).unwrap_or_else(|_| toml::Table::new().into())
+/// One section of the list of sections at `path`, with all its fields.
+fn section_template(path: &str) -> Value {
+    let section = match path {
+        "drawn_winds" => Value::try_from(DrawnWind::new(WindShape::Outward, vec![[0.0; 2]])),
+        _ => Value::try_from(Primitive::new(PrimitiveKind::Uniform, [0.0; 3])),
+    };
+    section.unwrap_or_else(|_| toml::Table::new().into())
 }
 
 /// One section `[[species]]` with all its fields: what it leaves unsaid is as in a file's own `[grass]` and `[plants]`.
@@ -127,18 +133,35 @@ impl Walk<'_> {
         if items.len() > limit {
             return self.fault(span, path, format!("has {} sections; allowed: at most {limit}", items.len()));
         }
-        places.resize(items.len(), if path == "species" { self.species.clone() } else { primitive_template() });
+        places.resize(items.len(), if path == "species" { self.species.clone() } else { section_template(path) });
+        for (i, (place, item)) in places.iter_mut().zip(items.iter()).enumerate() {
+            self.value(place, item.get_ref(), item.span(), &format!("{path}[{i}]"));
+        }
+    }
+
+    /// Puts a pair of numbers in `places` for each of `items`.
+    fn places(&mut self, places: &mut Vec<Value>, items: &DeArray<'_>, allowed: Allowed, span: Range<usize>, path: &str) {
+        let Allowed::Places(least, most, ..) = allowed else { return };
+        if !(least..=most).contains(&items.len()) {
+            let why = if least == 3 && items.len() < 3 { ", since fewer are no footprint" } else { "" };
+            return self.fault(span, path, format!("has {} places; allowed: {least} to {most}{why}", items.len()));
+        }
+        places.clear();
+        places.resize(items.len(), Value::Array(vec![Value::Float(0.0); 2]));
         for (i, (place, item)) in places.iter_mut().zip(items.iter()).enumerate() {
             self.value(place, item.get_ref(), item.span(), &format!("{path}[{i}]"));
         }
     }
 
     fn value(&mut self, place: &mut Value, found: &DeValue<'_>, span: Range<usize>, path: &str) {
-        let allowed = allowed_at(&field_of(path));
+        let allowed = allowed_of(path);
         match (place, found) {
             (Value::Table(values), DeValue::Table(table)) => self.table(values, table, span, path),
             (Value::Array(places), DeValue::Array(items)) if let Allowed::Sections(limit) = allowed => {
                 self.sections(places, items, limit, span, path)
+            }
+            (Value::Array(places), DeValue::Array(items)) if matches!(allowed, Allowed::Places(..)) => {
+                self.places(places, items, allowed, span, path)
             }
             (Value::Array(values), DeValue::Array(items)) if values.len() == items.len() => {
                 for (i, (place, item)) in values.iter_mut().zip(items.iter()).enumerate() {
@@ -166,6 +189,12 @@ impl Walk<'_> {
             (place, _) => self.fault(span, path, format!("is {}; expected {}", kind_of(found), expectation(place, path))),
         }
     }
+}
+
+/// What the field at `path` may hold, or where `path` ends with a place in a list, an element of it.
+fn allowed_of(path: &str) -> Allowed {
+    let allowed = allowed_at(&field_of(path));
+    if path.ends_with(']') { allowed.of_element() } else { allowed }
 }
 
 /// The path of a field without places in lists: `wind.primitives.at_m` of `wind.primitives[2].at_m[0]`.
@@ -212,10 +241,10 @@ fn kind_of(found: &DeValue<'_>) -> String {
 }
 
 fn expectation(expected: &Value, path: &str) -> String {
-    let field = field_of(path);
-    let allowed = allowed_at(&field);
+    let (field, allowed) = (field_of(path), allowed_of(path));
     match expected {
         _ if matches!(allowed, Allowed::Sections(_)) => format!("{allowed} `[[{field}]]`"),
+        _ if matches!(allowed, Allowed::Places(..)) => format!("a list of {allowed}"),
         Value::Array(items) => format!("a list of {} numbers, each {allowed}", items.len()),
         Value::Integer(_) => format!("a whole number, {allowed}"),
         Value::Float(_) => format!("a number, {allowed}"),

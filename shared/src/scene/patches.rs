@@ -15,14 +15,14 @@ pub struct Patches {
     pub cells: u32,
     /// Side of a cell (m). Default 0.25, allowed 0.05..=10.
     pub cell_m: f32,
-    /// Most patches that hold field memory at once; the one farthest from any camera is let go first. Default 400,
+    /// Most patches that hold field memory at once; the one farthest from any camera is let go first. Default 225 (001 §4.2),
     /// allowed 9..=4096, and awake_limit × cells² at most 33554432 (about 1 GB).
     pub awake_limit: u32,
 }
 
 impl Default for Patches {
     fn default() -> Self {
-        Self { count: [16, 16], cells: 64, cell_m: 0.25, awake_limit: 400 }
+        Self { count: [16, 16], cells: 64, cell_m: 0.25, awake_limit: 225 }
     }
 }
 

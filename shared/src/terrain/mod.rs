@@ -43,14 +43,27 @@ pub const MAP_LIMIT_PX: u32 = 8192;
 ///
 /// # Panics
 /// When there is not one level for each pixel, or no pixel.
-pub fn grey_png([width, height]: [u32; 2], levels: &[u8]) -> Vec<u8> {
+pub fn grey_png(size_px: [u32; 2], levels: &[u8]) -> Vec<u8> {
+    encode_grey(size_px, png::BitDepth::Eight, levels)
+}
+
+/// A grey PNG file of 16 bits a pixel, as [`grey_png`].
+///
+/// # Panics
+/// As [`grey_png`].
+pub fn grey_png_16(size_px: [u32; 2], levels: &[u16]) -> Vec<u8> {
+    let bytes: Vec<u8> = levels.iter().flat_map(|level| level.to_be_bytes()).collect();
+    encode_grey(size_px, png::BitDepth::Sixteen, &bytes)
+}
+
+fn encode_grey([width, height]: [u32; 2], depth: png::BitDepth, level_bytes: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Grayscale);
-    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_depth(depth);
     encoder.set_compression(png::Compression::High);
     let mut writer = encoder.write_header().expect("the picture has a pixel");
-    writer.write_image_data(levels).expect("as many levels as pixels");
+    writer.write_image_data(level_bytes).expect("as many levels as pixels");
     writer.finish().expect("memory takes what is written");
     bytes
 }

@@ -19,6 +19,9 @@ pub const PROTOCOL: u8 = 5;
 /// Largest message a client may send (bytes).
 pub const CLIENT_MESSAGE_LIMIT: usize = 4096;
 
+/// Largest radius of a view (m): farther patches are never sent.
+pub const VIEW_RADIUS_LIMIT_M: f32 = 512.0;
+
 /// Patches that a client keeps at least: those that it was told of last. A server sends deltas only to these.
 pub const PATCH_MEMORY: usize = 2048;
 

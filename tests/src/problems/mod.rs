@@ -10,7 +10,9 @@
 //! | [`Cavity`] | no-slip walls and a moving lid, against three published tables |
 //! | [`SlottedDisc`], [`RotatingGaussian`], [`drifting_hill`] | advection alone: sharp edges, a smooth hill on curved and on straight paths |
 //! | [`HeatKernel`] | diffusion alone, in one to three dimensions |
+//! | [`bend`] | the bend field: standing modes, pulses, dispersion, energy, strikes, random draws |
 
+pub mod bend;
 mod cavity;
 #[cfg(test)]
 mod differences;

@@ -1,8 +1,8 @@
 //! What covers the real land of `jacksboro`: woods on steep and high land, rocks where it is steepest.
 
-use super::GreyMap;
 use super::dice::Dice;
 use super::land::{Noise, Point, scatter, smooth_step};
+use super::{GreyMap, Levels};
 use crate::scenes::builtin;
 use shared::terrain::HeightMap;
 
@@ -36,7 +36,7 @@ pub(super) fn covering() -> GreyMap {
             levels[index(at)] = id;
         }
     }
-    GreyMap { name: "jacksboro-covering.png", size_px: [COVER_PX; 2], levels }
+    GreyMap { name: "jacksboro-covering.png", size_px: [COVER_PX; 2], levels: Levels::Eight(levels) }
 }
 
 struct Land {

@@ -1,14 +1,14 @@
 //! Pieces that land is made of: noise, bumps, paths, and things set apart from each other.
 
 use super::dice::Dice;
-use noise::{NoiseFn, OpenSimplex};
+use noise::{NoiseFn, OpenSimplex, Perlin};
 
 /// A point on the ground (m).
 pub(super) type Point = [f64; 2];
 
 /// Octaves of lattice noise, each half as long and `gain` as strong as the one before.
 pub(super) struct Noise {
-    lattice: OpenSimplex,
+    lattice: Box<dyn NoiseFn<f64, 2>>,
     wavelength_m: f64,
     octaves: u32,
     gain: f64,
@@ -16,7 +16,12 @@ pub(super) struct Noise {
 
 impl Noise {
     pub(super) fn new(seed: u32, wavelength_m: f64, octaves: u32, gain: f64) -> Self {
-        Self { lattice: OpenSimplex::new(seed), wavelength_m, octaves, gain }
+        Self { lattice: Box::new(OpenSimplex::new(seed)), wavelength_m, octaves, gain }
+    }
+
+    /// Noise without the faint faults of [`new`](Self::new), which long gentle slopes would show.
+    pub(super) fn smooth(seed: u32, wavelength_m: f64, octaves: u32, gain: f64) -> Self {
+        Self { lattice: Box::new(Perlin::new(seed)), wavelength_m, octaves, gain }
     }
 
     /// Value at a point, about −1..1.

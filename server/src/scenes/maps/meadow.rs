@@ -1,8 +1,8 @@
 //! The meadow: a broad valley between knolls, with a trail, and ridges along the edges.
 
-use super::GreyMap;
 use super::dice::Dice;
 use super::land::{Noise, Path, Point, bump, distance, scatter, smooth_step};
+use super::{GreyMap, Levels};
 
 const EXTENT_M: Point = [256.0, 256.0];
 
@@ -40,7 +40,7 @@ const TRAIL: [Point; 8] =
 pub(super) fn maps() -> [GreyMap; 2] {
     let land = Land::new();
     let levels = pixels(HEIGHT_PX, PIXEL_M, 0.0).map(|at| ((land.height_m(at) - BASE_M) / LEVEL_M).round().clamp(0.0, 255.0) as u8);
-    let height = GreyMap { name: "meadow-height.png", size_px: [HEIGHT_PX; 2], levels: levels.collect() };
+    let height = GreyMap { name: "meadow-height.png", size_px: [HEIGHT_PX; 2], levels: Levels::Eight(levels.collect()) };
     [height, land.covering()]
 }
 
@@ -99,7 +99,7 @@ impl Land {
         let mut dice = Dice(2013);
         put(253, scatter(&mut dice, EXTENT_M, TREES, 3.4, |at| self.tree_chance(at)));
         put(254, scatter(&mut dice, EXTENT_M, STONES, 1.6, |at| self.stone_chance(at)));
-        GreyMap { name: "meadow-covering.png", size_px: [COVER_PX; 2], levels }
+        GreyMap { name: "meadow-covering.png", size_px: [COVER_PX; 2], levels: Levels::Eight(levels) }
     }
 
     /// The trail's two ruts with grass between them, and worn patches beside it.

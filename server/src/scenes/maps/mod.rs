@@ -2,16 +2,17 @@
 //!
 //! Only `+ − × ÷`, square roots and lattice noise go into them, so that every machine makes the same pixels.
 
+mod continuum;
 mod dice;
 mod jacksboro;
 mod land;
 mod meadow;
 
-use shared::terrain::grey_png;
+use shared::terrain::{grey_png, grey_png_16};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A grey 8-bit image, row by row from the north.
+/// A grey image, row by row from the north.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GreyMap {
     /// File name in the folder of the built-in scenes.
@@ -19,20 +20,34 @@ pub struct GreyMap {
     /// Pixels along X and Z.
     pub size_px: [u32; 2],
     /// Grey levels.
-    pub levels: Vec<u8>,
+    pub levels: Levels,
+}
+
+/// Grey levels of a map.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Levels {
+    /// 8 bits a pixel.
+    Eight(Vec<u8>),
+    /// 16 bits a pixel.
+    Sixteen(Vec<u16>),
 }
 
 impl GreyMap {
     /// The image as a PNG file.
     pub fn to_png(&self) -> Vec<u8> {
-        grey_png(self.size_px, &self.levels)
+        match &self.levels {
+            Levels::Eight(levels) => grey_png(self.size_px, levels),
+            Levels::Sixteen(levels) => grey_png_16(self.size_px, levels),
+        }
     }
 }
 
 /// Makes every generated map anew.
 pub fn generate() -> Vec<GreyMap> {
-    let [height, covering] = meadow::maps();
-    vec![height, covering, jacksboro::covering()]
+    let mut maps = vec![jacksboro::covering()];
+    maps.extend(meadow::maps());
+    maps.extend(continuum::maps());
+    maps
 }
 
 /// Writes every generated map into `folder`, and names the files.

@@ -123,6 +123,8 @@ impl<T: Real> OneGrid<T> {
         let courant = |[_, x, z]: &[Vec<T>; CHANNELS]| r0 + r_mu * (x[n] * x[n] + z[n] * z[n]).root();
         let (r, r_before) = (courant(&self.now), courant(&self.before));
         let slowed = if r < r_before { r / r_before } else { one };
+        let least = T::from(k.kept_at_least);
+        let slowed = if slowed < least { least } else { slowed };
         let [theta, x, z] = self.now.each_ref().map(|plane| [plane[n], laplacian(plane)]);
         let before = self.before.each_ref().map(|plane| plane[n]);
         let memory = (one - lambda_theta) * slowed;

@@ -1,0 +1,230 @@
+//! The world at the full scale of 001, 88 × 88 patches of 120 × 120 cells: at rest, with 64 cars, and against the number of cars.
+//!
+//! The name of a part (`rest`, `minute` or `cars`) runs that alone; `PRAIRIE_QUICK=1` takes a tenth of the time, for a first look.
+
+use futures_util::{SinkExt, StreamExt};
+use server::objects::{Objects, Place};
+use server::scenes;
+use server::weather::Weather;
+use server::world::{Maps, World};
+use shared::scene::Scene;
+use shared::terrain::HeightMap;
+use shared::wire::{ClientMessage, SERVER_MESSAGE_LIMIT, ServerMessage, decode, encode};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use tests::prairie::Prairie;
+use tests::worlds;
+use tokio::net::TcpStream;
+use tokio_tungstenite::tungstenite::Message;
+
+/// Steps from one snapshot to the next.
+const PUBLISH_EVERY: u64 = 3;
+const THREADS: usize = 2;
+
+/// `secs`, or a tenth of them for a first look.
+fn sampled(secs: f32) -> f32 {
+    if std::env::var_os("PRAIRIE_QUICK").is_some() { 0.1 * secs } else { secs }
+}
+
+/// The world, with twins of its objects and its wind that step beside it: so their share of a tick is known.
+struct Timed {
+    scene: Scene,
+    world: World,
+    height: Arc<HeightMap>,
+    objects: Objects,
+    weather: Weather,
+    tick: u64,
+}
+
+/// What a tick took (ms); a snapshot counts for the tick after which it is taken.
+#[derive(Clone, Copy, Default)]
+struct Cost {
+    objects: f64,
+    wind: f64,
+    step: f64,
+    snapshot: f64,
+}
+
+impl Cost {
+    fn bend(&self) -> f64 {
+        (self.step - self.objects - self.wind).max(0.0)
+    }
+
+    fn tick(&self) -> f64 {
+        self.step + self.snapshot
+    }
+}
+
+impl Timed {
+    fn new(cars: u32, apart_m: f32, awake_limit: u32) -> Self {
+        let (mut scene, maps) = worlds::continuum(cars, apart_m);
+        scene.patches.awake_limit = awake_limit;
+        let Maps { height, cover, .. } = maps.clone();
+        let (height, cover) = (Arc::new(height), Arc::new(cover));
+        let place = Place { height: height.clone(), cover, extent_m: scene.extent_m() };
+        let objects = Objects::new(&scene, place);
+        let weather = Weather::new(&scene, &maps).expect("a built-in scene is sound");
+        let world = World::new(&scene, maps).expect("a built-in scene is sound");
+        Self { scene, world, height, objects, weather, tick: 0 }
+    }
+
+    /// One tick, and a snapshot where one is due.
+    fn tick(&mut self) -> Cost {
+        self.tick += 1;
+        let dt_secs = self.scene.dt_secs();
+        let ((), objects) = timed_ms(|| self.objects.step(dt_secs));
+        let motions = self.objects.motions();
+        let ((), wind) = timed_ms(|| self.weather.step(self.tick, &motions, &self.height, self.world.meadow().field()));
+        let ((), step) = timed_ms(|| self.world.step(&[]));
+        let mut snapshot = 0.0;
+        if self.tick.is_multiple_of(PUBLISH_EVERY) {
+            let (shown, taken) = timed_ms(|| self.world.snapshot());
+            assert_eq!(shown.objects, self.objects.poses(), "the twins do as the world does");
+            snapshot = taken;
+        }
+        Cost { objects, wind, step, snapshot }
+    }
+
+    fn ticks(&mut self, secs: f32) -> Vec<Cost> {
+        (0..(secs * self.scene.tick_hz) as u32).map(|_| self.tick()).collect()
+    }
+}
+
+fn timed_ms<T>(act: impl FnOnce() -> T) -> (T, f64) {
+    let begun = Instant::now();
+    let done = act();
+    (done, begun.elapsed().as_secs_f64() * 1e3)
+}
+
+/// Runs `act` on as many threads as the aim allows.
+fn on_two_threads<T: Send>(act: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(THREADS).build().expect("two threads can be started").install(act)
+}
+
+fn table(costs: &[Cost]) {
+    println!("{:>10} {:>9} {:>9} {:>9} {:>9} {:>9}  ms of {} ticks", "", "mean", "median", "90 %", "99 %", "longest", costs.len());
+    let parts: [(&str, fn(&Cost) -> f64); 5] = [
+        ("objects", |cost| cost.objects),
+        ("wind", |cost| cost.wind),
+        ("bend", Cost::bend),
+        ("snapshot", |cost| cost.snapshot),
+        ("tick", Cost::tick),
+    ];
+    for (name, part) in parts {
+        let mut times: Vec<f64> = costs.iter().map(part).collect();
+        times.sort_by(f64::total_cmp);
+        let at = |share: f64| times[(share * (times.len() - 1) as f64) as usize];
+        let mean = times.iter().sum::<f64>() / times.len() as f64;
+        println!("{name:>10} {mean:>9.3} {:>9.3} {:>9.3} {:>9.3} {:>9.3}", at(0.5), at(0.9), at(0.99), at(1.0));
+    }
+}
+
+/// Ticks without a car; then the whole server in real time, without a visitor and with one whose camera stands still.
+fn at_rest() {
+    println!("at rest, {THREADS} threads:");
+    on_two_threads(|| table(&Timed::new(0, 200.0, 225).ticks(sampled(60.0))));
+    let runtime = tokio::runtime::Runtime::new().expect("a runtime can be started");
+    runtime.block_on(async {
+        let mut loaded = scenes::load("continuum").expect("a built-in scene is sound");
+        loaded.scene.objects.self_driving = 0;
+        let world = World::new(&loaded.scene, loaded.maps()).expect("a built-in scene is sound");
+        let prairie = Prairie::serve(loaded, world).await.expect("a port is free");
+        share_of_a_core("at rest, no visitor").await;
+        let visit = tokio::spawn(visit(prairie.addr.to_string()));
+        share_of_a_core("at rest, one visitor who stands still").await;
+        visit.abort();
+    });
+}
+
+async fn share_of_a_core(name: &str) {
+    let period = Duration::from_secs_f32(sampled(20.0).max(5.0));
+    tokio::time::sleep(Duration::from_secs(2)).await;
+    let (begun, used_secs) = (Instant::now(), cpu_secs());
+    tokio::time::sleep(period).await;
+    let share = (cpu_secs() - used_secs) / begun.elapsed().as_secs_f64();
+    println!("{name}: {:.2} % of a core, {:.0} MB resident", 100.0 * share, resident_mb());
+}
+
+/// A visitor who looks at the middle of the world and takes every frame.
+async fn visit(addr: String) {
+    let stream = TcpStream::connect(&addr).await.expect("the server listens");
+    let (mut socket, _) = tokio_tungstenite::client_async(format!("ws://{addr}/ws"), stream).await.expect("a socket opens");
+    let say = |message: &ClientMessage| Message::Binary(encode(message).into());
+    socket.send(say(&ClientMessage::Hello { name: "visitor".to_owned() })).await.expect("the server hears");
+    socket.send(say(&ClientMessage::View { eye_m: [2414.0, 40.0, 2414.0], radius_m: 512.0 })).await.expect("the server hears");
+    while let Some(Ok(message)) = socket.next().await {
+        let Message::Binary(bytes) = message else { continue };
+        if let Ok(ServerMessage::FrameEnd { frame, .. }) = decode(&bytes, SERVER_MESSAGE_LIMIT) {
+            socket.send(say(&ClientMessage::Ack { frame })).await.expect("the server hears");
+        }
+    }
+}
+
+/// Time that all threads of this process have had (s); 0 where the system does not tell.
+fn cpu_secs() -> f64 {
+    let tasks = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
+    let nanos = tasks.filter_map(|task| {
+        let text = std::fs::read_to_string(task.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse::<f64>().ok()
+    });
+    nanos.sum::<f64>() * 1e-9
+}
+
+/// Memory of this process that is resident (MB); 0 where the system does not tell.
+fn resident_mb() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    line.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok()).unwrap_or(0.0) * 1024e-6
+}
+
+/// A minute with 64 cars, as the scene limits the patches.
+fn minute() {
+    on_two_threads(|| {
+        let mut timed = Timed::new(64, 200.0, 225);
+        timed.ticks(2.0);
+        println!("64 cars at 20 m/s, {THREADS} threads:");
+        table(&timed.ticks(sampled(60.0)));
+        let health = timed.world.snapshot().health;
+        println!("{} patches awake, {} let go, {:.0} MB resident", health.awake_patches, health.evicted_patches, resident_mb());
+    });
+}
+
+/// What a car costs: as many as 256, each with a track of its own that no limit cuts.
+fn cars() {
+    let warm_up_secs = 9.0;
+    println!("{:>6} {:>9} {:>9} {:>9}  mean ms of a tick, {THREADS} threads", "cars", "bend", "tick", "awake");
+    let mut points = vec![];
+    for cars in [1, 4, 16, 64, 256] {
+        let (bend, tick, awake) = on_two_threads(|| {
+            let mut timed = Timed::new(cars, 140.0, 2330);
+            timed.ticks(sampled(warm_up_secs));
+            let costs = timed.ticks(sampled(3.0));
+            let mean = |part: fn(&Cost) -> f64| costs.iter().map(part).sum::<f64>() / costs.len() as f64;
+            (mean(Cost::bend), mean(Cost::tick), timed.world.snapshot().health.awake_patches)
+        });
+        println!("{cars:>6} {bend:>9.3} {tick:>9.3} {awake:>9}");
+        points.push((f64::from(cars), bend, tick));
+    }
+    for (name, part) in [("bend", 1), ("tick", 2)] {
+        let line: Vec<_> = points.iter().map(|&(cars, bend, tick)| (cars, if part == 1 { bend } else { tick })).collect();
+        let (start, slope, r2) = fit(&line);
+        println!("{name}: {start:.3} ms + {:.1} µs a car, R² {r2:.4}", 1e3 * slope);
+    }
+}
+
+/// Line of least squares through points: value at 0, slope and R².
+fn fit(points: &[(f64, f64)]) -> (f64, f64, f64) {
+    let n = points.len() as f64;
+    let mean = |part: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(part).sum::<f64>() / n;
+    let [x, y] = [mean(&|point| point.0), mean(&|point| point.1)];
+    let [xx, xy, yy] =
+        [mean(&|point| (point.0 - x).powi(2)), mean(&|point| (point.0 - x) * (point.1 - y)), mean(&|point| (point.1 - y).powi(2))];
+    let slope = xy / xx;
+    (y - slope * x, slope, xy * xy / (xx * yy))
+}
+
+fn main() {
+    let wanted = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
+    let parts: [(&str, fn()); 3] = [("rest", at_rest), ("minute", minute), ("cars", cars)];
+    parts.iter().filter(|(name, _)| wanted.as_ref().is_none_or(|wanted| wanted == name)).for_each(|(_, run)| run());
+}

@@ -1,0 +1,133 @@
+//! Wind as an object (001 §5.3): the wash of a helicopter, cyclones, winds drawn by hand.
+
+use png::{BitDepth, ColorType};
+use server::bend::air::GroundWind;
+use server::bend::drawing::Drawing;
+use server::bend::drawn::{Blow, Pattern};
+use server::bend::laid::Laid;
+use server::bend::sward::{Growth, Sward};
+use server::scenes;
+use server::world::World;
+use shared::bend::{Bend, Field, Kinds, Patch, WaveParams};
+use shared::grid::PatchLayout;
+use shared::scene::{DrawnWind, Grass, WindShape};
+use shared::terrain::{CoverMap, HeightMap, grey_png};
+use std::sync::Arc;
+use tests::{maps, worlds};
+
+const DT_SECS: f32 = 1.0 / 60.0;
+const LAYOUT: PatchLayout = PatchLayout { count: [2, 2], cells: 64, cell_m: 0.25 };
+
+/// A field of 32 m after two seconds of a blow.
+fn blown(blow: &Blow) -> Field {
+    let mut field = Field::new(LAYOUT, Kinds::one(WaveParams::from(&Grass::default())));
+    (0..4).for_each(|index| {
+        field.wake(index);
+    });
+    let mut laid = Laid::new(LAYOUT, 60.0, 0);
+    let flat = HeightMap::from_heights(2, 2, [1000.0; 2], vec![0.0; 4]);
+    let wind = GroundWind::still(&worlds::scene(1));
+    let grass = CoverMap::from_png(&grey_png([2; 2], &[255; 4])).expect("a grey PNG");
+    let growth = Growth::new(&worlds::scene(1), &grass);
+    let mut sward = Sward { field: &mut field, laid: &mut laid, wind: &wind, height: &flat, growth: &growth };
+    for _ in 0..120 {
+        blow.press(&mut sward);
+    }
+    field
+}
+
+/// Directions of the bend around the middle: east, south, west and north of it.
+fn around(field: &Field) -> [[f32; 2]; 4] {
+    [[20.0, 16.1], [15.9, 20.0], [12.0, 15.9], [16.1, 12.0]].map(|[x, z]| {
+        let Bend { theta, omega } = field.bend_at(x, z);
+        assert!(theta > 0.1, "bent by {theta} rad at {x}, {z}");
+        omega.map(|d| d / omega[0].hypot(omega[1]))
+    })
+}
+
+fn close(found: [[f32; 2]; 4], expected: [[f32; 2]; 4]) -> bool {
+    found.iter().zip(expected).all(|(a, b)| (0..2).all(|axis| (a[axis] - b[axis]).abs() < 0.1))
+}
+
+#[test]
+fn the_higher_the_source_the_weaker_and_smaller_what_it_does() {
+    let bent = |height_m: f32| {
+        let field = Blow::wash(Pattern::Outward, [16.0, 16.0], height_m, DT_SECS).map(|blow| blown(&blow))?;
+        let cells = field.awake().flat_map(Patch::rows).flat_map(|[theta, _, _]| theta).filter(|theta| **theta > 0.02).count();
+        Some((cells, field.awake().map(Patch::theta_max_rad).fold(0.0, f32::max)))
+    };
+    let steps = [0.0, 5.0, 12.0, 20.0].map(|height_m| bent(height_m).expect("it reaches the ground"));
+    for pair in steps.windows(2) {
+        assert!(pair[1].0 < pair[0].0 && pair[1].1 < pair[0].1, "{steps:?}");
+    }
+    assert!((steps[0].1 - 1.2).abs() < 0.01, "on the ground the wash holds its bend: {steps:?}");
+    assert_eq!(bent(30.0), None);
+}
+
+#[test]
+fn outward_swirl_and_drawn_winds_blow_their_ways() {
+    let wash = |pattern| blown(&Blow::wash(pattern, [16.0, 16.0], 0.0, DT_SECS).unwrap());
+    let (east, south, west, north) = ([1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]);
+    assert!(close(around(&wash(Pattern::Outward)), [east, south, west, north]));
+    assert!(close(around(&wash(Pattern::Swirl)), [south, west, north, east]), "{:?}", around(&wash(Pattern::Swirl)));
+
+    // Eastward in the northern half, southward in the southern.
+    let pixels = [[255, 128, 200], [255, 128, 200], [128, 255, 200], [128, 255, 200]].concat();
+    let drawing = Drawing::from_png(&maps::png(ColorType::Rgb, BitDepth::Eight, [2, 2], &pixels)).unwrap();
+    let pattern = Pattern::Drawn(Arc::new(drawing));
+    let at = |field: &Field, x: f32, z: f32| {
+        field.bend_at(x, z).omega.map(|d| d / field.bend_at(x, z).omega[0].hypot(field.bend_at(x, z).omega[1]))
+    };
+    let straight = wash(pattern.clone());
+    assert!(at(&straight, 16.0, 9.0)[0] > 0.99 && at(&straight, 12.0, 23.0)[1] > 0.99);
+    // A quarter turn takes north to east and east to south.
+    let turned = blown(&Blow { turned_rad: std::f32::consts::FRAC_PI_2, ..Blow::wash(pattern, [16.0, 16.0], 0.0, DT_SECS).unwrap() });
+    assert!(at(&turned, 23.0, 16.0)[1] > 0.99 && at(&turned, 9.0, 16.0)[0] < -0.99);
+}
+
+#[test]
+fn a_cyclone_travels_along_its_path_and_leaves_nothing_laid() {
+    let mut scene = worlds::scene(8);
+    let mut cyclone = DrawnWind::new(WindShape::Swirl, vec![[30.0, 40.0], [90.0, 40.0]]);
+    (cyclone.radius_m, cyclone.travel_m_per_s) = (8.0, 5.0);
+    scene.drawn_winds = vec![cyclone];
+    // Grass that rises fast shows where the wind is.
+    (scene.grass.stiffness_per_s2, scene.grass.mu_m_per_rad) = (25.0, 0.0);
+    let mut world = worlds::flat(&scene);
+    let middle = |world: &World| {
+        let field = world.meadow().field();
+        let cell = |n: u32| (n as f32 + 0.5) * 0.25;
+        let bent = (0..512 * 512).map(|n| [cell(n % 512), cell(n / 512)]).filter(|[x, z]| field.bend_at(*x, *z).theta > 0.5);
+        let (sum, count) = bent.fold(([0.0; 2], 0.0), |(sum, count), [x, z]| ([sum[0] + x, sum[1] + z], count + 1.0));
+        sum.map(|m| m / count)
+    };
+    for (secs, x_m) in [(4.0, 50.0), (6.0, 80.0), (4.0, 80.0)] {
+        (0..(secs * 60.0) as u32).for_each(|_| world.step(&[]));
+        let found = middle(&world);
+        assert!((found[0] - x_m).abs() < 2.0 && (found[1] - 40.0).abs() < 1.0, "{found:?}, and it is at {x_m}");
+    }
+    assert_eq!(world.meadow().laid().tiles(), 0);
+    assert!(world.snapshot().health.awake_patches < 30);
+}
+
+#[test]
+fn a_drawing_travels_from_the_scene_file_to_the_grass() {
+    let folder = tempfile::tempdir().unwrap();
+    let west = maps::png(ColorType::Rgb, BitDepth::Eight, [2, 2], &[1, 128, 255].repeat(4));
+    std::fs::write(folder.path().join("west.png"), west).unwrap();
+    std::fs::write(folder.path().join("h.png"), grey_png([64, 64], &[0; 4096])).unwrap();
+    std::fs::write(folder.path().join("c.png"), grey_png([2, 2], &[255; 4])).unwrap();
+    let text = "summary = \"s\"\n[patches]\ncount = [4, 4]\n[terrain]\nheight_map = \"h.png\"\ncovering_map = \"c.png\"\npixel_m = [2, 2]\n\
+                level_m = 1\n[objects.helicopter]\nwash_shape = \"west.png\"\n[[drawn_winds]]\nshape = \"west.png\"\npath_m = [[32, 32]]\nradius_m = 5\n";
+    let path = folder.path().join("s.toml");
+    std::fs::write(&path, text).unwrap();
+    let loaded = scenes::load(path.to_str().unwrap()).unwrap();
+    assert_eq!(loaded.scene.drawn_winds[0].shape, WindShape::Drawn("1.png".to_owned()), "clients are told no paths");
+    let mut world = World::new(&loaded.scene, loaded.maps()).unwrap();
+    (0..120).for_each(|_| world.step(&[]));
+    let Bend { theta, omega } = world.meadow().field().bend_at(32.0, 32.0);
+    assert!(theta > 0.5 && omega[0] < 0.0 && omega[1].abs() < 0.1 * -omega[0], "{theta} rad along {omega:?}");
+
+    let bare = World::new(&loaded.scene, server::world::Maps { drawings: Default::default(), ..loaded.maps() });
+    assert_eq!(bare.err().unwrap().to_string(), "`drawn_winds` names the drawing `1.png`, which is not among the maps");
+}
