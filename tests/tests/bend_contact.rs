@@ -208,7 +208,10 @@ fn a_crossing_leaves_the_same_bend_at_any_tick_rate() {
     let whole = [20, 60, 120].map(|hz| crossed(&springy(3), hz));
     for (n, hz, [track_bound_rad, bound_rad]) in [(0, 20, [0.2, 0.4]), (1, 60, [0.06, 0.1])] {
         let [track_rad, all_rad] = differences_rad(&whole[n], &whole[2]);
-        assert!(track_rad < track_bound_rad && all_rad < bound_rad, "with waves at {hz} Hz and at 120 Hz: {track_rad} and {all_rad} rad apart");
+        assert!(
+            track_rad < track_bound_rad && all_rad < bound_rad,
+            "with waves at {hz} Hz and at 120 Hz: {track_rad} and {all_rad} rad apart"
+        );
     }
 }
 

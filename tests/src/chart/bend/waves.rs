@@ -3,7 +3,8 @@
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use anyhow::Result;
+use anyhow::{Context as _, Result};
+use shared::bend::limits::substeps;
 use shared::bend::{Alone, Damping, Edges, Field, Kinds, Rest, Scheme, WaveParams};
 use shared::grid::PatchLayout;
 
@@ -51,6 +52,15 @@ fn outcome(mut field: Field, scheme: Scheme, [end_secs, dt_secs]: [f64; 2], exac
     Ok(Outcome { error, simulated_secs: end_secs, wall })
 }
 
+/// Time between the two states that a field starts with (s): that of the sub-steps, so that none has to be moved.
+fn start_secs(field: &Field, scheme: Scheme, dt_secs: f64) -> Result<f64> {
+    let count = match scheme {
+        Scheme::Substepped => substeps(field.kinds().waves(), field.layout().cell_m, dt_secs as f32, 0.0, Damping::Exact),
+        _ => Some(1),
+    };
+    Ok(dt_secs / f64::from(count.context("too many sub-steps")?))
+}
+
 fn field(count: usize, cell_m: f64, edges: Edges) -> Field {
     let layout = PatchLayout { count: [2; 2], cells: count as u32 / 2, cell_m: cell_m as f32 };
     Field::new(layout, Kinds::one(alike(SPEED_M_PER_S as f32, DAMPING_PER_S as f32, STIFFNESS_PER_S2 as f32))).with_edges(edges)
@@ -66,7 +76,8 @@ pub(super) fn standing(quick: bool) -> Problem {
     let error = |count: usize, scheme: Scheme, times: [f64; 2]| {
         let (wave, size) = (WAVE(), [count; 2]);
         let mut field = field(count, MODE.cell_m(WIDTH_M, count), MODE.edges);
-        start(&mut field, times[1], |cell| [0.0, -times[1]].map(|secs| MODE.shape(size, cell) * wave.at(secs)));
+        let before_secs = start_secs(&field, scheme, times[1])?;
+        start(&mut field, before_secs, |cell| [0.0, -before_secs].map(|secs| MODE.shape(size, cell) * wave.at(secs)));
         outcome(field, scheme, times, |cell| MODE.shape(size, cell) * wave.at(times[0]))
     };
     let end_secs = 1.25 * std::f64::consts::TAU / WAVE().frequency_rad_per_s();
@@ -85,9 +96,10 @@ pub(super) fn pulse(quick: bool) -> Problem {
             stiffness_per_s2: STIFFNESS_PER_S2,
         };
         let cell_m = WIDTH_M / count as f64;
-        let [first, before, last] = [0.0, -times[1], times[0]].map(|secs| pulse.on_grid(count, cell_m, secs));
         let mut field = field(count, cell_m, Edges::Rest);
-        start(&mut field, times[1], |[i, j]| [&first, &before].map(|state| state[j * count + i]));
+        let before_secs = start_secs(&field, scheme, times[1])?;
+        let [first, before, last] = [0.0, -before_secs, times[0]].map(|secs| pulse.on_grid(count, cell_m, secs));
+        start(&mut field, before_secs, |[i, j]| [&first, &before].map(|state| state[j * count + i]));
         outcome(field, scheme, times, |[i, j]| last[j * count + i])
     };
     let counts: &[usize] = if quick { &[16, 32, 64] } else { &[16, 32, 64, 128] };

@@ -122,12 +122,18 @@ impl<T: Real> OneGrid<T> {
         let (one, two) = (T::from(1.0), T::from(2.0));
         let courant = |[_, x, z]: &[Vec<T>; CHANNELS]| r0 + r_mu * (x[n] * x[n] + z[n] * z[n]).root();
         let (r, r_before) = (courant(&self.now), courant(&self.before));
-        let slowed = if r < r_before { r / r_before } else { one };
-        let least = T::from(k.kept_at_least);
-        let slowed = if slowed < least { least } else { slowed };
+        let (slowed, least) = (r / r_before, T::from(k.kept_at_least));
+        // Where nothing moves and nothing could, the quotient is no number, and all is kept.
+        let kept = if slowed < least {
+            least
+        } else if slowed < one {
+            slowed
+        } else {
+            one
+        };
         let [theta, x, z] = self.now.each_ref().map(|plane| [plane[n], laplacian(plane)]);
         let before = self.before.each_ref().map(|plane| plane[n]);
-        let memory = (one - lambda_theta) * slowed;
+        let memory = (one - lambda_theta) * kept;
         let along = |[now, laplacian]: [T; 2], before: T| {
             (two - lambda_omega - restoring_omega) * now - (one - lambda_omega) * before + r2_omega * laplacian
         };
