@@ -1,8 +1,8 @@
 //! The world: one fixed step after the other. No clock, no input or output; the same commands give the same bits.
 
+use crate::bend::Meadow;
 pub use crate::bend::View;
 use crate::bend::drawing::Drawings;
-use crate::bend::Meadow;
 use crate::objects::{Objects, Place, SPEED_LIMIT_M_PER_S};
 use crate::shown::Shown;
 use crate::snapshot::{Health, Snapshot};

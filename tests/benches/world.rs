@@ -103,7 +103,8 @@ fn on_two_threads<T: Send>(act: impl FnOnce() -> T + Send) -> T {
 
 fn table(costs: &[Cost]) {
     println!("{:>10} {:>9} {:>9} {:>9} {:>9} {:>9}  ms of {} ticks", "", "mean", "median", "90 %", "99 %", "longest", costs.len());
-    let parts: [(&str, fn(&Cost) -> f64); 5] = [
+    type Part = (&'static str, fn(&Cost) -> f64);
+    let parts: [Part; 5] = [
         ("objects", |cost| cost.objects),
         ("wind", |cost| cost.wind),
         ("bend", Cost::bend),

@@ -100,7 +100,7 @@ proptest! {
     #[test]
     fn a_swath_is_what_a_fine_sweep_finds(
         speed_m_per_s in 0.0f32..60.0,
-        heading_rad in 0.0f32..6.28,
+        heading_rad in 0.0f32..std::f32::consts::TAU,
         turn_rad_per_s in -3.0f32..3.0,
         hz in 20.0f32..120.0,
         cell_m in prop::sample::select(vec![0.25f32, 0.4572, 1.0]),

@@ -256,7 +256,7 @@ fn frequency_and_decay_are_those_of_the_discrete_dispersion_relation() {
 
 /// Noise that is the same everywhere this runs.
 fn noise([i, j]: [usize; 2]) -> f64 {
-    let mixed = (i as u32 * 0x9E37_79B1 ^ j as u32 * 0x85EB_CA77).wrapping_mul(0xC2B2_AE3D);
+    let mixed = ((i as u32 * 0x9E37_79B1) ^ (j as u32 * 0x85EB_CA77)).wrapping_mul(0xC2B2_AE3D);
     f64::from(mixed ^ (mixed >> 15)) / f64::from(u32::MAX) - 0.5
 }
 

@@ -76,7 +76,8 @@ impl Breeze {
         let most = self.settings.strength_rad_per_s2 * dt_secs * dt_secs;
         let push = |n: usize| {
             let at_m = [(n % corners) as f32 * tile_m + corner_x, (n / corners) as f32 * tile_m + corner_z];
-            let [x, z] = [0, 1].map(|axis| (f64::from(at_m[axis]) - f64::from(self.settings.drift_m_per_s[axis]) * self.time_secs) / scale_m);
+            let [x, z] =
+                [0, 1].map(|axis| (f64::from(at_m[axis]) - f64::from(self.settings.drift_m_per_s[axis]) * self.time_secs) / scale_m);
             most * (self.noise.get([x, z, self.time_secs * CHANGE_PER_S]) as f32).max(0.0)
         };
         (0..corners * corners).map(push).collect()

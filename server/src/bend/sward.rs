@@ -89,7 +89,8 @@ impl Sward<'_> {
                     let i = (i - first) as usize;
                     let (wind_rad, laid_rad) = (wind_rad(at_m[0]), self.laid.lean_rad(index, i, j));
                     let bend = leaning(self.field.cell(cell), sum(wind_rad, laid_rad), TELLING_RAD_PER_S);
-                    let limit_rad = |direction| terrain_limit_rad(self.growth.theta_max_rad(at_m), self.height.slope(at_m[0], at_m[1]), direction);
+                    let limit_rad =
+                        |direction| terrain_limit_rad(self.growth.theta_max_rad(at_m), self.height.slope(at_m[0], at_m[1]), direction);
                     let Some(Pressed { bend, lays_share }) = change(at_m, bend, &limit_rad) else { continue };
                     let laid_rad = match unit(bend.omega).filter(|_| lays_share > 0.0) {
                         Some(along) => {

@@ -299,8 +299,8 @@ impl Field {
             self.hear_neighbours(&around);
         }
         self.patches.iter_mut().for_each(choose_tiles);
-        for own in 0..self.patches.len() {
-            for (toward, met) in AROUND.into_iter().zip(around[own]) {
+        for (own, around) in around.iter().enumerate() {
+            for (toward, met) in AROUND.into_iter().zip(*around) {
                 self.meet_neighbour(own, toward, met, substeps);
             }
         }
@@ -351,8 +351,8 @@ impl Field {
 
     /// Tells each patch which tiles are loud beyond its border.
     fn hear_neighbours(&mut self, around: &[[Option<(usize, Neighbour)>; 8]]) {
-        for own in 0..self.patches.len() {
-            for (toward, met) in AROUND.into_iter().zip(around[own]) {
+        for (own, around) in around.iter().enumerate() {
+            for (toward, met) in AROUND.into_iter().zip(*around) {
                 let Some((from, neighbour)) = met else { continue };
                 let count = self.patches[own].tiles.count();
                 for [x, z] in ring(count, toward) {

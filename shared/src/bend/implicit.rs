@@ -7,8 +7,8 @@
 
 use super::halo::Edges;
 use super::patch::{CHANNELS, Patch, Planes};
-use super::verlet::for_each_kind;
 use super::tridiagonal::{End, LANES, Lanes, Line};
+use super::verlet::for_each_kind;
 use super::{Crew, Field, Report, WaveParams};
 use std::collections::BTreeMap;
 

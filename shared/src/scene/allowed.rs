@@ -1,7 +1,8 @@
 //! What each field of a scene file may hold: the one table that parsing, the reference in the README and its tests share.
 
 use super::{
-    LagWay, PrimitiveKind, VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    LagWay, PrimitiveKind, VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling,
+    WindTime,
 };
 use crate::bend::{Edges, Scheme, Seams};
 use std::fmt;

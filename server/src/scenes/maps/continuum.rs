@@ -77,7 +77,7 @@ impl Land {
         self.valley_z_m(x) + 190.0 * self.meander.at([x, 150.0])
     }
 
-    fn from_creek_m(&self, at: Point) -> f64 {
+    fn creek_distance_m(&self, at: Point) -> f64 {
         distance_from(|x| self.creek_z_m(x), at)
     }
 
@@ -98,7 +98,7 @@ impl Land {
     fn height_m(&self, at: Point) -> f64 {
         let creek_m = SPRING_M - FALL_M * at[0] / EXTENT_M;
         let upland = self.upland(at);
-        let channel_m = 1.5 * (1.0 - smooth_step(2.0, 15.0, self.from_creek_m(at)));
+        let channel_m = 1.5 * (1.0 - smooth_step(2.0, 15.0, self.creek_distance_m(at)));
         creek_m + upland * (self.swell_m(at) - 5.0 * self.draw(at)) + (0.3 + 0.3 * upland) * self.rough.at(at) - channel_m
     }
 
@@ -120,11 +120,11 @@ impl Land {
     /// and here and there a worn patch bear nothing.
     fn grass(&self, at: Point) -> u8 {
         let (drift, wear) = (self.drift.at(at), self.wear.at(at));
-        let from_creek_m = self.from_creek_m(at);
-        if from_creek_m < 2.6 + 1.2 * wear {
+        let creek_distance_m = self.creek_distance_m(at);
+        if creek_distance_m < 2.6 + 1.2 * wear {
             return 0;
         }
-        if from_creek_m < 20.0 + 26.0 * drift {
+        if creek_distance_m < 20.0 + 26.0 * drift {
             return CORDGRASS;
         }
         let upland = self.upland(at);
@@ -139,8 +139,8 @@ impl Land {
 
     /// Groves beside the creek, a lone tree in a draw.
     fn tree_chance(&self, at: Point) -> f64 {
-        let from_creek_m = self.from_creek_m(at);
-        let bank = smooth_step(7.0, 12.0, from_creek_m) * (1.0 - smooth_step(30.0, 75.0, from_creek_m));
+        let creek_distance_m = self.creek_distance_m(at);
+        let bank = smooth_step(7.0, 12.0, creek_distance_m) * (1.0 - smooth_step(30.0, 75.0, creek_distance_m));
         let grove = smooth_step(0.05, 0.4, self.groves.at(at));
         bank * (0.04 + grove) + 0.0006 * smooth_step(0.5, 0.9, self.draw(at))
     }

@@ -9,9 +9,9 @@ use super::Striker;
 use crate::random_winds::Dice;
 
 /// Steps in which objects strike; then they are gone.
-pub const STRIKING_STEPS: u32 = 150;
+pub(super) const STRIKING_STEPS: u32 = 150;
 /// Steps of a run.
-pub const STEPS: u32 = 600;
+pub(super) const STEPS: u32 = 600;
 /// Half of the world's side (m).
 const HALF_M: f32 = 12.0 * 0.4572;
 

@@ -123,14 +123,9 @@ impl<T: Real> OneGrid<T> {
         let courant = |[_, x, z]: &[Vec<T>; CHANNELS]| r0 + r_mu * (x[n] * x[n] + z[n] * z[n]).root();
         let (r, r_before) = (courant(&self.now), courant(&self.before));
         let (slowed, least) = (r / r_before, T::from(k.kept_at_least));
-        // Where nothing moves and nothing could, the quotient is no number, and all is kept.
-        let kept = if slowed < least {
-            least
-        } else if slowed < one {
-            slowed
-        } else {
-            one
-        };
+        // A quotient that is no number, where no wave runs, lets all be kept.
+        let kept = if slowed < one { slowed } else { one };
+        let kept = if kept < least { least } else { kept };
         let [theta, x, z] = self.now.each_ref().map(|plane| [plane[n], laplacian(plane)]);
         let before = self.before.each_ref().map(|plane| plane[n]);
         let memory = (one - lambda_theta) * kept;
