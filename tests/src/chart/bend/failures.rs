@@ -51,8 +51,8 @@ fn cross(scheme: Scheme, speed_m_per_s: f32, rate_per_s: f32, steps: u32) -> Opt
         for _ in 0..steps {
             let report = field.step(scheme, dt_secs / steps as f32, &Alone).ok()?;
             let theta = field.awake().map(|patch| patch.theta_max_rad()).fold(0.0, f32::max);
-            // What is no number counts as broken one step later, and is no less than any limit here.
-            if report.broken > 0 || !(theta < BLOWN_UP_RAD) {
+            // What is no number counts as broken one step later.
+            if report.broken > 0 || theta.is_nan() || theta > BLOWN_UP_RAD {
                 return None;
             }
         }
