@@ -137,7 +137,7 @@ impl Case {
     }
 
     /// The same on one grid, with the sub-steps that a field took.
-    fn run_on_one_grid(&self, damping: Damping, reports: &[Report]) -> OneGrid {
+    fn run_on_one_grid(&self, damping: Damping, reports: &[Report]) -> OneGrid<f32> {
         let mut grid = OneGrid::like(&self.field(), self.edges);
         for ((dt_secs, presses), report) in self.steps.iter().zip(reports) {
             presses.iter().for_each(|press| grid.press(self.cell(press), press.bend));
@@ -159,7 +159,7 @@ fn first_difference(a: &Field, b: &Field) -> Option<([usize; 2], Bend, Bend)> {
     one_way(a, b).or_else(|| one_way(b, a))
 }
 
-fn first_difference_from_grid(field: &Field, grid: &OneGrid) -> Option<([usize; 2], Bend, Bend)> {
+fn first_difference_from_grid(field: &Field, grid: &OneGrid<f32>) -> Option<([usize; 2], Bend, Bend)> {
     let size = size(field);
     let places = (0..size[0] * size[1]).map(|n| [n % size[0], n / size[0]]);
     places.map(|cell| (cell, field.cell(cell.map(|n| n as i64)), grid.bend(cell))).find(|(_, a, b)| bits(*a) != bits(*b))

@@ -67,7 +67,8 @@ pub(super) fn step(field: &mut Field, dt_secs: f32, crew: &impl Crew) -> Report 
     Report { substeps: 1, cell_steps: cells * field.patches.len() as u64, refused, ..Report::default() }
 }
 
-/// Weights and right-hand sides. Moves the earlier state if dt has changed.
+/// Weights and right-hand sides. Moves the earlier state if dt has changed, and where waves slow down, which then lose the motion that they can no
+/// longer carry, as in [`verlet`](super::verlet).
 fn begin(patch: &mut Patch, kinds: &[Coefficients], ratio: f32) -> Work {
     let (side, stride) = (patch.side(), patch.stride());
     let plane = || vec![0.0; side * side];
@@ -78,10 +79,17 @@ fn begin(patch: &mut Patch, kinds: &[Coefficients], ratio: f32) -> Work {
         for_each_kind(&patch.ground, row, row + side, |kind, from, to| {
             let (k, cells) = (&kinds[usize::from(kind)], own(from)..own(from) + to - from);
             let [theta_weights, omega_weights] = work.weights.each_mut().map(|plane| &mut plane[cells.clone()]);
-            let [_, x, z] = patch.now.each_ref().map(|plane| &plane[from..to]);
-            for ((weight, x), z) in theta_weights.iter_mut().zip(x).zip(z) {
-                let r = k.r[0] + k.r_mu * (x * x + z * z).sqrt();
-                *weight = 0.25 * r * r * k.inverse_mass[0];
+            let [theta, x, z] = patch.now.each_ref().map(|plane| &plane[from..to]);
+            let [theta_before, x_before, z_before] = patch.before.each_mut().map(|plane| &mut plane[from..to]);
+            let courant = |x: f32, z: f32| k.r[0] + k.r_mu * (x * x + z * z).sqrt();
+            for i in 0..theta.len() {
+                let r = courant(x[i], z[i]);
+                theta_weights[i] = 0.25 * r * r * k.inverse_mass[0];
+                if k.r_mu != 0.0 {
+                    // `min` drops what is no number: nothing over nothing is 1.
+                    let kept = (r / courant(x_before[i], z_before[i])).min(1.0);
+                    theta_before[i] = theta[i] - (theta[i] - theta_before[i]) * kept;
+                }
             }
             omega_weights.fill(0.25 * k.r[1] * k.r[1] * k.inverse_mass[1]);
             for channel in 0..CHANNELS {

@@ -11,7 +11,7 @@ use tests::chart::row::cells_text;
 use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
 use tests::chart::tables::with_tables;
-use tests::chart::{Problem, wind};
+use tests::chart::{Problem, bend, wind};
 
 /// Measures methods on problems whose answer is known: how long each takes for how small an error.
 ///
@@ -28,13 +28,23 @@ const EXAMPLES: &str = "\
 Examples:
   cargo run --release -p tests --bin chart -- wind
   cargo run --release -p tests --bin chart -- wind --quick --only cavity --out /tmp/charts
-  cargo run --release -p tests --bin chart -- wind --tables tests/README.md";
+  cargo run --release -p tests --bin chart -- wind --tables tests/README.md
+  cargo run --release -p tests --bin chart -- bend --only cars";
 
 #[derive(Subcommand)]
 enum Model {
     /// The solvers of the wind, on flows that are known exactly
     #[command(after_help = FILES)]
-    Wind(Options),
+    Wind {
+        #[command(flatten)]
+        options: Options,
+        /// No charts: write the tables of fitted orders and limits in this document anew
+        #[arg(long, value_name = "FILE", conflicts_with_all = ["out", "quick", "only"])]
+        tables: Option<PathBuf>,
+    },
+    /// The schemes of the bend field: error against time, cost against cars, where each fails, the loose overlap
+    #[command(after_help = BEND_FILES)]
+    Bend(Options),
 }
 
 const FILES: &str = "\
@@ -47,6 +57,13 @@ Files in DIR, written anew as each problem is done:
 On the screen, for each problem and a few errors: the method that gets there in the least time, read
 from its line between two runs, and by how much the best of another family takes longer.";
 
+const BEND_FILES: &str = "\
+Files in DIR:
+  bend-PROBLEM.svg        error across, time up, as for the wind; bend.csv and bend.json hold the figures
+  bend-cars.svg, .csv     time of a step against the number of cars that move, with a straight line through it
+  bend-failures.svg, .csv where each scheme is fine, inaccurate or blows up: speed of a car against steps a second
+  bend-overlap.svg, .csv  error of 001's loose overlap against the speed of the waves, for three rates of damping";
+
 #[derive(Args)]
 struct Options {
     /// Folder the files are written to
@@ -58,16 +75,36 @@ struct Options {
     /// Only problems and methods with this word in their name
     #[arg(long, value_name = "WORD")]
     only: Option<String>,
-    /// No charts: write the tables of fitted orders and limits in this document anew
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["out", "quick", "only"])]
-    tables: Option<PathBuf>,
 }
 
 fn main() -> Result<()> {
     match Arguments::parse().model {
-        Model::Wind(Options { tables: Some(document), .. }) => write_tables(&document),
-        Model::Wind(options) => chart("wind", wind::problems(options.quick), &options),
+        Model::Wind { tables: Some(document), .. } => write_tables(&document),
+        Model::Wind { options, .. } => chart("wind", wind::problems(options.quick), &options),
+        Model::Bend(options) => bend_charts(&options),
     }
+}
+
+/// Error against time as for the wind, then the figures of the bend field's own.
+fn bend_charts(options: &Options) -> Result<()> {
+    let is_asked = |name: &str| options.only.as_ref().is_none_or(|word| name.to_lowercase().contains(&word.to_lowercase()));
+    let figures: Vec<_> = bend::FIGURES.into_iter().filter(|figure| is_asked(figure.name)).collect();
+    let problems = bend::problems(options.quick);
+    let has_problem = problems.iter().any(|problem| is_asked(problem.name) || problem.runs.iter().any(|run| is_asked(&run.method)));
+    if has_problem || figures.is_empty() {
+        chart("bend", problems, options)?;
+    }
+    std::fs::create_dir_all(&options.out).with_context(|| format!("{} cannot be made", options.out.display()))?;
+    for figure in figures {
+        println!("\n{}", figure.title);
+        let drawn = (figure.draw)(options.quick, &machine())?;
+        println!("{}", drawn.said);
+        for (ending, text) in [("svg", drawn.svg), ("csv", drawn.csv)] {
+            let path = options.out.join(format!("bend-{}.{ending}", figure.name));
+            std::fs::write(&path, text).with_context(|| format!("{} cannot be written", path.display()))?;
+        }
+    }
+    Ok(())
 }
 
 fn write_tables(document: &Path) -> Result<()> {

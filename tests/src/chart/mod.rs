@@ -5,6 +5,7 @@
 //! | [`row`] | one measured figure; CSV and JSON |
 //! | [`run`] | what is run, and its timing |
 //! | [`wind`] | the runs of the wind |
+//! | [`bend`] | the runs of the bend field, and figures of their own kinds |
 //! | [`line`](mod@line) | one line per method, and reading between its points |
 //! | [`plot`], [`ticks`] | a log–log chart as SVG |
 //! | [`summary`] | which method wins where, on one screen |
@@ -13,6 +14,7 @@
 //! | [`files`] | all files of a model |
 //! | [`machine`] | what the figures were measured on |
 
+pub mod bend;
 pub mod files;
 pub mod line;
 pub mod machine;

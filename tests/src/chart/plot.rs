@@ -21,7 +21,7 @@ pub struct Labels<'a> {
     pub caption: &'a str,
 }
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Plane<'a> = DrawingArea<SVGBackend<'a>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
 const PLOT_PX: u32 = 790;
@@ -29,13 +29,13 @@ const HEIGHT_PX: u32 = 680;
 /// Room for a letter of the legend, on average.
 const LETTER_PX: usize = 8;
 const FONT: &str = "Helvetica, Arial, sans-serif";
-const INK: RGBColor = RGBColor(32, 36, 42);
-const FAINT_INK: RGBColor = RGBColor(96, 102, 110);
-const GRID: RGBColor = RGBColor(208, 212, 217);
+pub(super) const INK: RGBColor = RGBColor(32, 36, 42);
+pub(super) const FAINT_INK: RGBColor = RGBColor(96, 102, 110);
+pub(super) const GRID: RGBColor = RGBColor(208, 212, 217);
 const FAINT_GRID: RGBColor = RGBColor(236, 238, 241);
 const FRONT: RGBColor = RGBColor(255, 229, 153);
 /// Told apart with any colour vision, together with the markers: Okabe & Ito's palette without its yellow, then darker ones of Tol's.
-const COLOURS: [RGBColor; 11] = [
+pub(super) const COLOURS: [RGBColor; 11] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -142,14 +142,14 @@ fn draw_key(legend: &Area, y: i32, name: &str, stroke: ShapeStyle) -> Result<()>
     write(legend, name, (64, y), 17, INK, HPos::Left)
 }
 
-struct Marker {
-    corners: &'static [(i32, i32)],
-    colour: RGBColor,
-    hollow: bool,
+pub(super) struct Marker {
+    pub(super) corners: &'static [(i32, i32)],
+    pub(super) colour: RGBColor,
+    pub(super) hollow: bool,
 }
 
 impl Marker {
-    fn draw(&self, area: &Area, at: (i32, i32)) -> Result<()> {
+    pub(super) fn draw(&self, area: &Area, at: (i32, i32)) -> Result<()> {
         let placed: Vec<(i32, i32)> = self.corners.iter().map(|corner| (at.0 + corner.0, at.1 + corner.1)).collect();
         area.draw(&Polygon::new(placed.clone(), if self.hollow { WHITE } else { self.colour }.filled()))?;
         area.draw(&PathElement::new([placed.clone(), vec![placed[0]]].concat(), self.colour.stroke_width(2)))?;
@@ -157,12 +157,12 @@ impl Marker {
     }
 }
 
-fn text_style<'a>(size_px: u32, colour: RGBColor, horizontal: HPos) -> TextStyle<'a> {
+pub(super) fn text_style<'a>(size_px: u32, colour: RGBColor, horizontal: HPos) -> TextStyle<'a> {
     (FONT, size_px).into_font().color(&colour).pos(Pos::new(horizontal, VPos::Center))
 }
 
 /// Text whose start, middle or end, at half its height, is at `at`. None for no text.
-fn write(area: &Area, text: &str, at: (i32, i32), size_px: u32, colour: RGBColor, horizontal: HPos) -> Result<()> {
+pub(super) fn write(area: &Area, text: &str, at: (i32, i32), size_px: u32, colour: RGBColor, horizontal: HPos) -> Result<()> {
     if !text.is_empty() {
         area.draw(&Text::new(text.to_owned(), at, text_style(size_px, colour, horizontal)))?;
     }
@@ -170,7 +170,7 @@ fn write(area: &Area, text: &str, at: (i32, i32), size_px: u32, colour: RGBColor
 }
 
 /// Colour and marker of the family at a place in the list: each pair once in the first 66.
-fn look(style: usize) -> (RGBColor, &'static [(i32, i32)]) {
+pub(super) fn look(style: usize) -> (RGBColor, &'static [(i32, i32)]) {
     let (round, place) = (style / COLOURS.len(), style % COLOURS.len());
     (COLOURS[place], MARKERS[(place + round) % MARKERS.len()])
 }

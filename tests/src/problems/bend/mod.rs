@@ -22,7 +22,7 @@ mod threads;
 pub use draw::{Course, Draw};
 pub use energy::Energy;
 pub use mode::{Mode, Oscillation};
-pub use one_grid::OneGrid;
+pub use one_grid::{OneGrid, Real};
 pub use pulse::Pulse;
 pub use recurrence::{Recurrence, Steps};
 pub use striker::Striker;

@@ -1,29 +1,60 @@
 //! The explicit scheme on one grid, cell by cell as its formula stands.
 
+use std::ops::{Add, Div, Mul, Sub};
+
 use shared::bend::{Bend, CHANNELS, Coefficients, Damping, Edges, Field, WaveParams};
 
 use super::{channels, size};
 
-/// All cells of a world in one grid, without patches, halos or tiles; the arithmetic of [`shared::bend`]'s explicit schemes, in the same order.
+/// The numbers that a grid computes with.
+pub trait Real: Copy + From<f32> + PartialOrd + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
+    /// The positive root.
+    fn root(self) -> Self;
+    /// The nearest f32.
+    fn rounded(self) -> f32;
+}
+
+impl Real for f32 {
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+
+    fn rounded(self) -> f32 {
+        self
+    }
+}
+
+impl Real for f64 {
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+
+    fn rounded(self) -> f32 {
+        self as f32
+    }
+}
+
+/// All cells of a world in one grid, without patches, halos or tiles; the arithmetic of [`shared::bend`]'s explicit schemes, in the same order. In f32
+/// their very bits; in f64 what they would be without rounding, which steps shorter than a millisecond suffer from.
 #[derive(Clone, Debug)]
-pub struct OneGrid {
+pub struct OneGrid<T> {
     size: [usize; 2],
     cell_m: f32,
     edges: Edges,
     waves: Vec<WaveParams>,
     kinds: Vec<u8>,
-    now: [Vec<f32>; CHANNELS],
-    before: [Vec<f32>; CHANNELS],
+    now: [Vec<T>; CHANNELS],
+    before: [Vec<T>; CHANNELS],
     dt_secs: Option<f32>,
 }
 
-impl OneGrid {
+impl<T: Real> OneGrid<T> {
     /// A grid at rest with the cells and kinds of grass of a field.
     pub fn like(field: &Field, edges: Edges) -> Self {
         let size = size(field);
         let count = size[0] * size[1];
         let kind = |n: usize| field.kinds().kind(field.layout(), [n % size[0], n / size[0]].map(|n| n as i64));
-        let zeros = || std::array::from_fn(|_| vec![0.0; count]);
+        let zeros = || std::array::from_fn(|_| vec![T::from(0.0); count]);
         Self {
             size,
             cell_m: field.layout().cell_m,
@@ -36,18 +67,28 @@ impl OneGrid {
         }
     }
 
+    /// Cells along X and Z.
+    pub fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// Side of a cell (m).
+    pub fn cell_m(&self) -> f32 {
+        self.cell_m
+    }
+
     /// Sets a cell as contact does.
     pub fn press(&mut self, cell: [usize; 2], bend: Bend) {
         let at = cell[1] * self.size[0] + cell[0];
         for (channel, value) in channels(bend).into_iter().enumerate() {
-            (self.now[channel][at], self.before[channel][at]) = (value, value);
+            (self.now[channel][at], self.before[channel][at]) = (value.into(), value.into());
         }
     }
 
     /// State of a cell.
     pub fn bend(&self, cell: [usize; 2]) -> Bend {
         let at = cell[1] * self.size[0] + cell[0];
-        let [theta, x, z] = self.now.each_ref().map(|plane| plane[at]);
+        let [theta, x, z] = self.now.each_ref().map(|plane| plane[at].rounded());
         Bend { theta, omega: [x, z] }
     }
 
@@ -56,8 +97,9 @@ impl OneGrid {
         let substep_secs = dt_secs / substeps as f32;
         let ratio = self.dt_secs.replace(substep_secs).map_or(1.0, |last| substep_secs / last);
         if ratio != 1.0 {
+            let ratio = T::from(ratio);
             for (now, before) in self.now.iter().zip(&mut self.before) {
-                now.iter().zip(before).for_each(|(now, before)| *before = now - (now - *before) * ratio);
+                now.iter().zip(before).for_each(|(now, before)| *before = *now - (*now - *before) * ratio);
             }
         }
         let kinds: Vec<_> = self.waves.iter().map(|waves| Coefficients::new(waves, self.cell_m, substep_secs, damping)).collect();
@@ -68,23 +110,29 @@ impl OneGrid {
         }
     }
 
-    fn next(&self, n: usize, k: &Coefficients) -> [f32; CHANNELS] {
+    fn next(&self, n: usize, k: &Coefficients) -> [T; CHANNELS] {
         let [i, j] = [n % self.size[0], n / self.size[0]].map(|n| n as i64);
-        let laplacian = |plane: &[f32]| {
+        let laplacian = |plane: &[T]| {
             let [east, south, west, north] =
-                [[1, 0], [0, 1], [-1, 0], [0, -1]].map(|[x, z]| self.beside([i + x, j + z]).map_or(0.0, |at| plane[at]));
-            (west + east) + (north + south) - 4.0 * plane[n]
+                [[1, 0], [0, 1], [-1, 0], [0, -1]].map(|[x, z]| self.beside([i + x, j + z]).map_or(T::from(0.0), |at| plane[at]));
+            (west + east) + (north + south) - T::from(4.0) * plane[n]
         };
-        let courant = |[_, x, z]: &[Vec<f32>; CHANNELS]| k.r0 + k.r_mu * (x[n] * x[n] + z[n] * z[n]).sqrt();
+        let [r0, r_mu, r2_omega, lambda_theta, lambda_omega] = [k.r0, k.r_mu, k.r2_omega, k.lambda_theta, k.lambda_omega].map(T::from);
+        let [restoring_theta, restoring_omega] = k.restoring.map(T::from);
+        let (one, two) = (T::from(1.0), T::from(2.0));
+        let courant = |[_, x, z]: &[Vec<T>; CHANNELS]| r0 + r_mu * (x[n] * x[n] + z[n] * z[n]).root();
         let (r, r_before) = (courant(&self.now), courant(&self.before));
-        let slowed = if r < r_before { (r / r_before).max(k.kept_at_least) } else { 1.0 };
+        let (slowed, least) = (r / r_before, T::from(k.kept_at_least));
+        // A quotient that is no number, where no wave runs, lets all be kept.
+        let kept = if slowed < one { slowed } else { one };
+        let kept = if kept < least { least } else { kept };
         let [theta, x, z] = self.now.each_ref().map(|plane| [plane[n], laplacian(plane)]);
         let before = self.before.each_ref().map(|plane| plane[n]);
-        let memory = (1.0 - k.lambda_theta) * slowed;
-        let along = |[now, laplacian]: [f32; 2], before: f32| {
-            (2.0 - k.lambda_omega - k.restoring[1]) * now - (1.0 - k.lambda_omega) * before + k.r2_omega * laplacian
+        let memory = (one - lambda_theta) * kept;
+        let along = |[now, laplacian]: [T; 2], before: T| {
+            (two - lambda_omega - restoring_omega) * now - (one - lambda_omega) * before + r2_omega * laplacian
         };
-        [(1.0 + memory - k.restoring[0]) * theta[0] - memory * before[0] + r * r * theta[1], along(x, before[1]), along(z, before[2])]
+        [(one + memory - restoring_theta) * theta[0] - memory * before[0] + r * r * theta[1], along(x, before[1]), along(z, before[2])]
     }
 
     fn beside(&self, cell: [i64; 2]) -> Option<usize> {

@@ -4,6 +4,8 @@ use std::f32::consts::FRAC_PI_2;
 
 use shared::bend::{Bend, Field};
 
+use super::{OneGrid, Real};
+
 /// A round object that moves straight on for a step. Places are metres from the centre of the world.
 ///
 /// Every sum is of two terms, so that turning the world by a quarter only exchanges and negates what is computed: no bit of a result changes.
@@ -57,24 +59,35 @@ impl Striker {
 
     /// Presses every cell of a field that it touches in a step, waking their patches.
     pub fn press(&self, field: &mut Field, dt_secs: f32) {
-        let size = super::size(field);
-        let cell_m = field.layout().cell_m;
+        for (cell, center_m) in self.within_reach(super::size(field), field.layout().cell_m, dt_secs) {
+            let cell = cell.map(|n| n as i64);
+            if let Some(bend) = self.strike(center_m, field.cell(cell).theta, dt_secs) {
+                if let Some((patch, _)) = field.locate(cell) {
+                    field.wake(patch);
+                }
+                field.press(cell, bend);
+            }
+        }
+    }
+
+    /// The same on one grid.
+    pub fn press_grid<T: Real>(&self, grid: &mut OneGrid<T>, dt_secs: f32) {
+        for (cell, center_m) in self.within_reach(grid.size(), grid.cell_m(), dt_secs) {
+            if let Some(bend) = self.strike(center_m, grid.bend(cell).theta, dt_secs) {
+                grid.press(cell, bend);
+            }
+        }
+    }
+
+    /// Cells that it might touch in a step, with their centres (m from the world's).
+    fn within_reach(&self, size: [usize; 2], cell_m: f32, dt_secs: f32) -> impl Iterator<Item = ([usize; 2], [f32; 2])> {
         let reach_m = |axis: usize| self.radius_m + self.velocity_m_per_s[axis].abs() * dt_secs + cell_m;
         let range = |axis: usize| {
             let to_cell = |m: f32| (m / cell_m + 0.5 * size[axis] as f32).clamp(0.0, size[axis] as f32) as usize;
             to_cell(self.at_m[axis] - reach_m(axis))..to_cell(self.at_m[axis] + reach_m(axis))
         };
-        for j in range(1) {
-            for i in range(0) {
-                let cell = [i as i64, j as i64];
-                let middle = |n: usize, axis: usize| (2 * n as i64 + 1 - size[axis] as i64) as f32 * (0.5 * cell_m);
-                if let Some(bend) = self.strike([middle(i, 0), middle(j, 1)], field.cell(cell).theta, dt_secs) {
-                    if let Some((patch, _)) = field.locate(cell) {
-                        field.wake(patch);
-                    }
-                    field.press(cell, bend);
-                }
-            }
-        }
+        let middle = move |n: usize, axis: usize| (2 * n as i64 + 1 - size[axis] as i64) as f32 * (0.5 * cell_m);
+        let (columns, rows) = (range(0), range(1));
+        rows.flat_map(move |j| columns.clone().map(move |i| ([i, j], [middle(i, 0), middle(j, 1)])))
     }
 }
