@@ -139,11 +139,20 @@ pub(super) fn fetch(patches: &mut [Patch], own: usize, from: usize, toward: [i64
         }
         let Ok([own, from]) = patches.get_disjoint_mut([own, from]) else { unreachable!("two patches of one field") };
         for (to, from) in own.planes_mut(states).zip(from.planes_mut(states)) {
-            to[target..target + width].copy_from_slice(&from[source..source + width]);
+            copy(&from[source..source + width], &mut to[target..target + width]);
             if reversed {
                 to[target..target + width].reverse();
             }
         }
+    }
+}
+
+/// Copies a row of ghosts; those beside a patch are too few to be worth a call.
+fn copy(from: &[f32], to: &mut [f32]) {
+    match (from, to) {
+        ([from], [to]) => *to = *from,
+        (from, to) if from.len() == HALO && to.len() == HALO => to.iter_mut().zip(from).take(HALO).for_each(|(to, from)| *to = *from),
+        (from, to) => to.copy_from_slice(from),
     }
 }
 

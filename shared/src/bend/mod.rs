@@ -53,6 +53,7 @@ mod crew;
 mod field;
 mod halo;
 mod implicit;
+mod kernel;
 mod kinds;
 pub mod limits;
 mod modal;

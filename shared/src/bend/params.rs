@@ -60,8 +60,8 @@ pub struct Coefficients {
     pub r2_omega: f32,
     /// φ·κ·dt², of θ and of ω.
     pub restoring: [f32; 2],
-    /// Least share of its motion that θ keeps where its speed falls by Eq. (4): 1 for [`Damping::Plain`], 0 for [`Damping::Exact`].
-    pub kept_at_least: f32,
+    /// Whether θ keeps all its motion where its speed falls by Eq. (4).
+    pub keeps_motion: bool,
 }
 
 impl Coefficients {
@@ -79,7 +79,7 @@ impl Coefficients {
             r_mu: courant(params.mu_m_per_rad, &theta),
             r2_omega: r_omega * r_omega,
             restoring: [restoring(&theta), restoring(&omega)],
-            kept_at_least: if damping == Damping::Plain { 1.0 } else { 0.0 },
+            keeps_motion: damping == Damping::Plain,
         }
     }
 }

@@ -18,6 +18,9 @@ pub const CHANNELS: usize = 3;
 /// Width of the ghosts around a patch (cells), that of 001's overlaps; also the most sub-steps between two exchanges.
 pub const HALO: usize = 4;
 
+/// Values that follow each plane, never read: planes a multiple of 4 KiB apart would contend for the same places in the cache.
+const STAGGER: usize = 160;
+
 pub(super) type Planes = [Vec<f32>; CHANNELS];
 
 /// A square patch of `side × side` cells (a multiple of 8) inside a halo; row-major from the north-west, `(side + 8)²` values a channel.
@@ -46,7 +49,7 @@ impl Patch {
     /// A patch at rest, with the kinds that grow in it and its halo, row by row.
     pub(super) fn new(index: PatchIndex, side: usize, kind: impl Fn([i64; 2]) -> u8) -> Self {
         let stride = side + 2 * HALO;
-        let zeros = || vec![0.0; stride * stride];
+        let zeros = || vec![0.0; stride * stride + STAGGER];
         let halo = HALO as i64;
         let cells = (0..stride * stride).map(|at| [(at % stride) as i64 - halo, (at / stride) as i64 - halo]);
         let kinds: Vec<u8> = cells.map(kind).collect();

@@ -122,10 +122,9 @@ impl<T: Real> OneGrid<T> {
         let (one, two) = (T::from(1.0), T::from(2.0));
         let courant = |[_, x, z]: &[Vec<T>; CHANNELS]| r0 + r_mu * (x[n] * x[n] + z[n] * z[n]).root();
         let (r, r_before) = (courant(&self.now), courant(&self.before));
-        let (slowed, least) = (r / r_before, T::from(k.kept_at_least));
+        let slowed = r / r_before;
         // A quotient that is no number, where no wave runs, lets all be kept.
-        let kept = if slowed < one { slowed } else { one };
-        let kept = if kept < least { least } else { kept };
+        let kept = if !k.keeps_motion && slowed < one { slowed } else { one };
         let [theta, x, z] = self.now.each_ref().map(|plane| [plane[n], laplacian(plane)]);
         let before = self.before.each_ref().map(|plane| plane[n]);
         let memory = (one - lambda_theta) * kept;

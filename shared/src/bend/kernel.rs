@@ -1,0 +1,145 @@
+//! What one sub-step makes of a block of cells of one kind of grass: the innermost loops.
+
+use super::Coefficients;
+use super::patch::{CHANNELS, Planes};
+use super::tiles::{size_bits, square_bits};
+use multiversion::multiversion;
+
+/// A block of cells in the planes.
+#[derive(Clone, Copy)]
+pub(super) struct Block {
+    /// Place of the north-western cell.
+    pub(super) first: usize,
+    /// Cells in a row.
+    pub(super) width: usize,
+    pub(super) rows: usize,
+    /// Distance between rows.
+    pub(super) stride: usize,
+}
+
+/// Puts the next state of a block in the place of the state before.
+pub(super) fn advance(now: &Planes, before: &mut Planes, block: Block, k: &Coefficients) {
+    let advance = match speed(k) {
+        STEADY => advance_block::<STEADY>,
+        FOLLOWING => advance_block::<FOLLOWING>,
+        _ => advance_block::<LOSING>,
+    };
+    let [theta, x, z] = before;
+    advance(now, theta, x, z, block, k);
+}
+
+/// The same; raises `peaks`, the largest |θ| and |ω|² of each column as bits, to those at both times.
+pub(super) fn advance_and_measure(now: &Planes, before: &mut Planes, block: Block, k: &Coefficients, peaks: [&mut [u32]; 2]) {
+    let advance = match speed(k) {
+        STEADY => advance_and_measure_block::<STEADY>,
+        FOLLOWING => advance_and_measure_block::<FOLLOWING>,
+        _ => advance_and_measure_block::<LOSING>,
+    };
+    let ([theta, x, z], [theta_peaks, omega2_peaks]) = (before, peaks);
+    advance(now, theta, x, z, block, k, theta_peaks, omega2_peaks);
+}
+
+/// Cells of a channel with those around them, all of one length.
+#[derive(Clone, Copy)]
+struct Stencil<'a> {
+    center: &'a [f32],
+    west: &'a [f32],
+    east: &'a [f32],
+    north: &'a [f32],
+    south: &'a [f32],
+}
+
+impl<'a> Stencil<'a> {
+    #[inline(always)]
+    fn new(plane: &'a [f32], at: usize, width: usize, stride: usize) -> Self {
+        let row = |first: usize| &plane[first..][..width];
+        Self { center: row(at), west: row(at - 1), east: row(at + 1), north: row(at - stride), south: row(at + stride) }
+    }
+
+    #[inline(always)]
+    fn laplacian(&self, i: usize) -> f32 {
+        (self.west[i] + self.east[i]) + (self.north[i] + self.south[i]) - 4.0 * self.center[i]
+    }
+}
+
+// Written out: from `map` the compiler does not learn that all are of one length.
+#[inline(always)]
+fn stencils([theta, x, z]: &Planes, at: usize, width: usize, stride: usize) -> [Stencil<'_>; CHANNELS] {
+    [Stencil::new(theta, at, width, stride), Stencil::new(x, at, width, stride), Stencil::new(z, at, width, stride)]
+}
+
+/// The speed of θ: one and the same; following the bend (Eq. 4); following it, and θ loses motion where it falls.
+const STEADY: u8 = 0;
+const FOLLOWING: u8 = 1;
+const LOSING: u8 = 2;
+
+fn speed(k: &Coefficients) -> u8 {
+    match (k.r_mu == 0.0, k.keeps_motion) {
+        (true, _) => STEADY,
+        (false, true) => FOLLOWING,
+        (false, false) => LOSING,
+    }
+}
+
+/// What a cell of θ, ωx, ωz becomes.
+#[inline(always)]
+fn next_cell<const SPEED: u8>(row: &[Stencil; CHANNELS], i: usize, before: [f32; CHANNELS], k: &Coefficients) -> [f32; CHANNELS] {
+    let [theta, x, z] = row;
+    let (mut r, mut theta_memory) = (k.r0, 1.0 - k.lambda_theta);
+    if SPEED != STEADY {
+        let courant = |x: f32, z: f32| k.r0 + k.r_mu * (x * x + z * z).sqrt();
+        r = courant(x.center[i], z.center[i]);
+        if SPEED == LOSING {
+            // `min` drops what is no number: nothing over nothing is 1.
+            theta_memory *= (r / courant(before[1], before[2])).min(1.0);
+        }
+    }
+    let theta_keep = 1.0 + theta_memory - k.restoring[0];
+    let (keep, memory) = (2.0 - k.lambda_omega - k.restoring[1], 1.0 - k.lambda_omega);
+    [
+        theta_keep * theta.center[i] - theta_memory * before[0] + r * r * theta.laplacian(i),
+        keep * x.center[i] - memory * before[1] + k.r2_omega * x.laplacian(i),
+        keep * z.center[i] - memory * before[2] + k.r2_omega * z.laplacian(i),
+    ]
+}
+
+// Slices that are arguments of their own are known not to overlap; put together, or inlined, they would not be, and the loops not made of vectors.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn advance_block<const SPEED: u8>(now: &Planes, theta: &mut [f32], x: &mut [f32], z: &mut [f32], block: Block, k: &Coefficients) {
+    let Block { first, width, rows, stride } = block;
+    let k = *k;
+    for at in (0..rows).map(|row| first + row * stride) {
+        let row = stencils(now, at, width, stride);
+        let (theta, x, z) = (&mut theta[at..][..width], &mut x[at..][..width], &mut z[at..][..width]);
+        for i in 0..width {
+            [theta[i], x[i], z[i]] = next_cell::<SPEED>(&row, i, [theta[i], x[i], z[i]], &k);
+        }
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn advance_and_measure_block<const SPEED: u8>(
+    now: &Planes,
+    theta: &mut [f32],
+    x: &mut [f32],
+    z: &mut [f32],
+    block: Block,
+    k: &Coefficients,
+    theta_peaks: &mut [u32],
+    omega2_peaks: &mut [u32],
+) {
+    let Block { first, width, rows, stride } = block;
+    let k = *k;
+    let (theta_peaks, omega2_peaks) = (&mut theta_peaks[..width], &mut omega2_peaks[..width]);
+    for at in (0..rows).map(|row| first + row * stride) {
+        let row = stencils(now, at, width, stride);
+        let (theta, x, z) = (&mut theta[at..][..width], &mut x[at..][..width], &mut z[at..][..width]);
+        for i in 0..width {
+            let next = next_cell::<SPEED>(&row, i, [theta[i], x[i], z[i]], &k);
+            [theta[i], x[i], z[i]] = next;
+            theta_peaks[i] = theta_peaks[i].max(size_bits(next[0])).max(size_bits(row[0].center[i]));
+            let omega2 = square_bits(row[1].center[i], row[2].center[i]);
+            omega2_peaks[i] = omega2_peaks[i].max(omega2).max(square_bits(next[1], next[2]));
+        }
+    }
+}
