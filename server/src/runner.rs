@@ -27,6 +27,10 @@ pub trait Simulation: Send + 'static {
     fn snapshot(&mut self) -> Snapshot;
     /// The object that a client drives.
     fn object_of(&self, client: u32) -> Option<ObjectId>;
+    /// Whether nothing but the wind moves. Then the steps up to the next snapshot are done at once, for fewer of them wake the processor.
+    fn is_idle(&self) -> bool {
+        false
+    }
 }
 
 impl Simulation for World {
@@ -40,6 +44,10 @@ impl Simulation for World {
 
     fn object_of(&self, client: u32) -> Option<ObjectId> {
         Self::object_of(self, client)
+    }
+
+    fn is_idle(&self) -> bool {
+        Self::is_idle(self)
     }
 }
 
@@ -176,8 +184,14 @@ impl<S: Simulation> Loop<S> {
                 tracing::warn!(dropped_secs = self.clock.dropped_secs(), "the world is slower than real time; simulated time is left out");
                 logged = Some((Instant::now(), self.clock.dropped));
             }
-            std::thread::sleep(self.clock.until_next(start.elapsed()));
+            std::thread::sleep(self.clock.until(self.steps_at_once(), start.elapsed()));
         }
+    }
+
+    /// Steps that may fall due before the next of them is done.
+    fn steps_at_once(&self) -> u64 {
+        let to_publish = self.steps_per_publish - self.tick % self.steps_per_publish;
+        if self.simulation.is_idle() { to_publish.min(CATCH_UP_STEPS / 2) } else { 1 }
     }
 
     fn step(&mut self) {
@@ -246,8 +260,9 @@ impl Clock {
         steps
     }
 
-    fn until_next(&self, elapsed: Duration) -> Duration {
-        let next_secs = (self.accounted + 1) as f64 / self.tick_hz;
+    /// Time until so many steps are due.
+    fn until(&self, steps: u64, elapsed: Duration) -> Duration {
+        let next_secs = (self.accounted + steps) as f64 / self.tick_hz;
         Duration::from_secs_f64((next_secs - elapsed.as_secs_f64()).max(0.0))
     }
 
@@ -265,8 +280,9 @@ mod tests {
         let mut clock = Clock::new(60.0);
         let steps: u64 = (1..=1000).map(|ms| clock.due(Duration::from_millis(ms * 10))).sum();
         assert_eq!((steps, clock.dropped), (600, 0));
-        let wait = clock.until_next(Duration::from_secs(10));
+        let wait = clock.until(1, Duration::from_secs(10));
         assert!(wait <= Duration::from_secs_f64(1.0 / 60.0) && wait > Duration::from_millis(16));
+        assert_eq!(clock.until(3, Duration::from_millis(10_020)), Duration::from_millis(30));
     }
 
     #[test]

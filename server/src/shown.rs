@@ -53,7 +53,7 @@ impl Shown {
             };
             match before {
                 Some(before) if before.codes == codes => Some((index, Arc::clone(before))),
-                _ if codes.iter().all(|&code| code == 0) => None,
+                _ if are_zero(&codes) => None,
                 _ => Some((index, Arc::new(PatchCodes { tick, codes }))),
             }
         };
@@ -63,12 +63,17 @@ impl Shown {
     }
 }
 
+/// Whether all codes are zero; a chunk at a time, in vectors.
+fn are_zero(codes: &[i8]) -> bool {
+    codes.chunks(256).all(|chunk| chunk.iter().fold(0, |any, code| any | code) == 0)
+}
+
 /// Three planes of codes: θ, ωx, ωz.
 fn anew(index: PatchIndex, patch: Option<&Patch>, meadow: &Meadow) -> Vec<i8> {
     let side = meadow.field().layout().cells as usize;
     let mut codes = vec![0; 3 * side * side];
     if let Some(patch) = patch {
-        (0..(side / TILE).pow(2)).for_each(|tile| write_tile(&mut codes, patch, tile));
+        write_tiles(&mut codes, patch, |_| true);
     }
     add_laid(&mut codes, side, index, patch, meadow, |_| true);
     codes
@@ -79,21 +84,27 @@ fn renewed(before: Option<&[i8]>, patch: &Patch, meadow: &Meadow) -> Vec<i8> {
     let side = patch.side();
     let mut codes = before.map_or_else(|| vec![0; 3 * side * side], <[i8]>::to_vec);
     let changed = patch.changed_tiles();
-    changed.iter().enumerate().filter(|(_, changed)| **changed).for_each(|(tile, _)| write_tile(&mut codes, patch, tile));
+    write_tiles(&mut codes, patch, |tile| changed[tile]);
     add_laid(&mut codes, side, patch.index(), Some(patch), meadow, |tile| changed[tile]);
     codes
 }
 
-fn write_tile(codes: &mut [i8], patch: &Patch, tile: usize) {
+/// Writes the chosen tiles, those side by side at once.
+fn write_tiles(codes: &mut [i8], patch: &Patch, chosen: impl Fn(usize) -> bool) {
     let (side, count) = (patch.side(), patch.side() / TILE);
-    let [i, j] = [tile % count, tile / count].map(|n| n * TILE);
     let plane = side * side;
-    for (row, [theta, x, z]) in patch.rows().enumerate().skip(j).take(TILE) {
-        let at = row * side + i;
-        for lane in 0..TILE {
-            codes[at + lane] = quantise::theta_code(theta[i + lane]);
-            codes[plane + at + lane] = quantise::omega_code(x[i + lane]);
-            codes[2 * plane + at + lane] = quantise::omega_code(z[i + lane]);
+    for band in 0..count {
+        let tiles: Vec<_> = (0..count).filter(|tile| chosen(band * count + tile)).collect();
+        for span in tiles.chunk_by(|a, b| a + 1 == *b) {
+            let (first, last) = (span[0] * TILE, (span[span.len() - 1] + 1) * TILE);
+            for j in band * TILE..(band + 1) * TILE {
+                let [theta, x, z] = patch.row(j).map(|row| &row[first..last]);
+                let row = j * side + first..j * side + last;
+                let place = |channel: usize| channel * plane + row.start..channel * plane + row.end;
+                quantise::theta_codes(theta, &mut codes[place(0)]);
+                quantise::omega_codes(x, &mut codes[place(1)]);
+                quantise::omega_codes(z, &mut codes[place(2)]);
+            }
         }
     }
 }

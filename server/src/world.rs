@@ -153,6 +153,11 @@ impl World {
         }
     }
 
+    /// Whether nothing but the wind moves: no object is there, and all grass sleeps.
+    pub fn is_idle(&self) -> bool {
+        self.objects.is_empty() && self.meadow.field().awake_count() == 0
+    }
+
     /// The vehicle of a client.
     pub fn object_of(&self, client: u32) -> Option<ObjectId> {
         self.objects.object_of(client)

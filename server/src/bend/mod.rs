@@ -21,6 +21,7 @@ use drawing::Drawings;
 use drawn::{Blow, Blows};
 use laid::Laid;
 use parts::Bodies;
+use rayon::prelude::*;
 use regions::Regions;
 use shared::bend::{Field, Kinds, Patch, Report, Scheme, StepError};
 use shared::grid::{PatchIndex, PatchLayout};
@@ -104,8 +105,10 @@ impl Meadow {
 
     /// Sum of θ² + ω² over all cells (mixed units).
     pub fn activity(&self) -> f64 {
+        let patches: Vec<_> = self.field.awake().collect();
+        let activities: Vec<_> = patches.par_iter().map(|patch| patch.activity()).collect();
         // The sum of nothing would be −0.
-        self.field.awake().map(Patch::activity).fold(0.0, |sum, activity| sum + activity)
+        activities.into_iter().fold(0.0, |sum, activity| sum + activity)
     }
 
     /// Patches let go so far because too many were awake.

@@ -77,6 +77,11 @@ impl Ground {
         })
     }
 
+    /// Whether no tile is made.
+    pub(super) fn is_empty(&self) -> bool {
+        self.made.is_empty()
+    }
+
     /// Makes the tiles near `objects_m`, drops those that are far from all.
     pub(super) fn follow(&mut self, objects_m: &[[f32; 2]], physics: &mut PhysicsWorld) {
         let around = |reach_m| objects_m.iter().flat_map(|&at_m| self.tiles_around(at_m, reach_m)).collect::<BTreeSet<_>>();

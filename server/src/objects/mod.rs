@@ -118,6 +118,9 @@ impl Objects {
 
     /// Moves everything by `dt_secs`.
     pub fn step(&mut self, dt_secs: f32) {
+        if self.is_empty() && self.ground.is_empty() {
+            return;
+        }
         let at: Vec<_> = self.vehicles.iter().map(|vehicle| stand(&self.physics.bodies[vehicle.body]).xz()).collect();
         self.ground.follow(&at, &mut self.physics);
         for vehicle in &mut self.vehicles {
@@ -134,6 +137,11 @@ impl Objects {
         for vehicle in &self.vehicles {
             confine(vehicle, &mut self.physics.bodies[vehicle.body], &self.place, &self.ground);
         }
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.vehicles.is_empty()
     }
 
     /// Where everything is, ascending by number.

@@ -124,21 +124,27 @@ pub(super) fn fetch(patches: &mut [Patch], own: usize, from: usize, toward: [i64
     let reversed = toward[0] != 0 && neighbour.mirrored[0];
     let their_column = |at| theirs(at, toward[0], side, neighbour.mirrored[0]);
     let first_column = if reversed { their_column(columns.end - 1) } else { their_column(columns.start) };
-    for row in rows {
+    let place = |row| {
         let source = patches[own].at(first_column, theirs(row, toward[1], side, neighbour.mirrored[1]));
-        let target = patches[own].at(columns.start, row);
-        let states = if rings > 1 { 2 } else { 1 };
-        if own == from {
-            for plane in patches[own].planes_mut(states) {
+        [source, patches[own].at(columns.start, row)]
+    };
+    let places: Vec<_> = rows.map(place).collect();
+    let states = if rings > 1 { 2 } else { 1 };
+    if own == from {
+        for plane in patches[own].planes_mut(states) {
+            for &[source, target] in &places {
                 plane.copy_within(source..source + width, target);
                 if reversed {
                     plane[target..target + width].reverse();
                 }
             }
-            continue;
         }
-        let Ok([own, from]) = patches.get_disjoint_mut([own, from]) else { unreachable!("two patches of one field") };
-        for (to, from) in own.planes_mut(states).zip(from.planes_mut(states)) {
+        return;
+    }
+    let Ok([own, from]) = patches.get_disjoint_mut([own, from]) else { unreachable!("two patches of one field") };
+    // Plane by plane: steps of one length, which the processor foresees.
+    for (to, from) in own.planes_mut(states).zip(from.planes_mut(states)) {
+        for &[source, target] in &places {
             copy(&from[source..source + width], &mut to[target..target + width]);
             if reversed {
                 to[target..target + width].reverse();

@@ -119,17 +119,25 @@ impl Patch {
 
     /// Rows of θ, ωx and ωz from the north.
     pub fn rows(&self) -> impl Iterator<Item = [&[f32]; CHANNELS]> {
-        self.rows_of(&self.now)
+        (0..self.side).map(|j| self.row(j))
     }
 
     /// Rows one sub-step earlier; with [`rows`](Self::rows) the whole state of a patch.
     pub fn rows_before(&self) -> impl Iterator<Item = [&[f32]; CHANNELS]> {
-        self.rows_of(&self.before)
+        (0..self.side).map(|j| self.row_of(&self.before, j))
     }
 
-    fn rows_of<'a>(&self, planes: &'a Planes) -> impl Iterator<Item = [&'a [f32]; CHANNELS]> + use<'a> {
-        let (side, stride) = (self.side, self.stride());
-        (0..side).map(move |j| planes.each_ref().map(|plane| &plane[(j + HALO) * stride + HALO..][..side]))
+    /// θ, ωx and ωz of row `j`.
+    ///
+    /// # Panics
+    /// When the patch has no such row.
+    pub fn row(&self, j: usize) -> [&[f32]; CHANNELS] {
+        self.row_of(&self.now, j)
+    }
+
+    fn row_of<'a>(&self, planes: &'a Planes, j: usize) -> [&'a [f32]; CHANNELS] {
+        assert!(j < self.side, "row {j} of a patch of {}", self.side);
+        planes.each_ref().map(|plane| &plane[(j + HALO) * self.stride() + HALO..][..self.side])
     }
 
     /// Largest |θ| (rad) of the newest two times.
@@ -144,14 +152,21 @@ impl Patch {
 
     /// Sum of θ² + ω² over the cells (mixed units): how far from rest the patch is.
     pub fn activity(&self) -> f64 {
-        let squares = |cells: &[f32]| cells.iter().map(|v| f64::from(*v) * f64::from(*v)).sum::<f64>();
-        let tile = |x: usize, z: usize| {
-            let row = move |row: usize| self.at((x * TILE) as i64, (z * TILE + row) as i64);
-            (0..TILE).map(row).map(|at| self.now.iter().map(|plane| squares(&plane[at..at + TILE])).sum::<f64>()).sum::<f64>()
-        };
         let tiles = (0..self.tiles.count()).flat_map(|z| (0..self.tiles.count()).map(move |x| (x, z)));
         // The sum of nothing would be −0.
-        tiles.filter(|&(x, z)| self.tiles.holds(x, z)).fold(0.0, |sum, (x, z)| sum + tile(x, z))
+        tiles.filter(|&(x, z)| self.tiles.holds(x, z)).fold(0.0, |sum, (x, z)| sum + f64::from(self.tile_activity(x, z)))
+    }
+
+    /// The same of one tile; column by column, in vectors.
+    fn tile_activity(&self, x: usize, z: usize) -> f32 {
+        let mut columns = [0.0_f32; TILE];
+        for row in 0..TILE {
+            let at = self.at((x * TILE) as i64, (z * TILE + row) as i64);
+            for plane in &self.now {
+                columns.iter_mut().zip(&plane[at..at + TILE]).for_each(|(sum, value)| *sum += value * value);
+            }
+        }
+        columns.iter().sum()
     }
 
     /// Tiles of 8 × 8 cells that have changed since they were last taken, row by row.

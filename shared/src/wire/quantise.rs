@@ -2,6 +2,8 @@
 //!
 //! θ is linear; ω and dust are companded by a square root, so that weak bends keep their direction and thin dust stays; wind is linear.
 
+use multiversion::multiversion;
+
 /// θ at code ±127 (rad). The field holds a bend less the wind's lean: grass that lies one way where the wind would hold it the other way
 /// departs by up to a right angle and [`wind_bend_rad`](crate::scene::Grass::wind_bend_rad), 3.07 rad.
 pub const THETA_FULL_RAD: f32 = std::f32::consts::PI;
@@ -18,6 +20,12 @@ pub fn theta_code(theta_rad: f32) -> i8 {
     linear_code(theta_rad, THETA_FULL_RAD)
 }
 
+/// [`theta_code`] of a row of cells.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+pub fn theta_codes(thetas_rad: &[f32], codes: &mut [i8]) {
+    codes.iter_mut().zip(thetas_rad).for_each(|(code, theta_rad)| *code = theta_code(*theta_rad));
+}
+
 /// Bending angle of a code (rad).
 pub fn theta_rad(code: i8) -> f32 {
     linear_value(code, THETA_FULL_RAD)
@@ -29,6 +37,12 @@ pub fn theta_rad(code: i8) -> f32 {
 pub fn omega_code(omega_rad_per_s: f32) -> i8 {
     let size = (omega_rad_per_s.abs() * (127.0 * 127.0 / OMEGA_FULL_RAD_PER_S)).sqrt();
     rounded(size.copysign(omega_rad_per_s))
+}
+
+/// [`omega_code`] of a row of cells.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+pub fn omega_codes(omegas_rad_per_s: &[f32], codes: &mut [i8]) {
+    codes.iter_mut().zip(omegas_rad_per_s).for_each(|(code, omega_rad_per_s)| *code = omega_code(*omega_rad_per_s));
 }
 
 /// Component of the bending velocity of a code (rad/s).
