@@ -23,6 +23,8 @@ const LAG_LOG_EVERY: Duration = Duration::from_secs(10);
 pub trait Simulation: Send + 'static {
     /// Advances by one fixed step after carrying out `commands` in order.
     fn step(&mut self, commands: &[Command]);
+    /// After a step without a snapshot: gets one of so many parts of the next one ready, so that no step takes much longer than others.
+    fn prepare(&mut self, _part: [u64; 2]) {}
     /// The state after the newest step.
     fn snapshot(&mut self) -> Snapshot;
     /// The object that a client drives.
@@ -36,6 +38,10 @@ pub trait Simulation: Send + 'static {
 impl Simulation for World {
     fn step(&mut self, commands: &[Command]) {
         Self::step(self, commands);
+    }
+
+    fn prepare(&mut self, part: [u64; 2]) {
+        Self::prepare(self, part);
     }
 
     fn snapshot(&mut self) -> Snapshot {
@@ -201,8 +207,9 @@ impl<S: Simulation> Loop<S> {
         self.step_times.push(begun.elapsed());
         self.tick += 1;
         self.settle(&commands);
-        if self.tick.is_multiple_of(self.steps_per_publish) {
-            self.publish();
+        match self.tick % self.steps_per_publish {
+            0 => self.publish(),
+            part => self.simulation.prepare([part, self.steps_per_publish]),
         }
     }
 

@@ -21,6 +21,8 @@ struct Sources {
 pub(crate) struct Shown {
     patches: Arc<BentPatches>,
     sources: BTreeMap<PatchIndex, Sources>,
+    /// Codes of patches renewed since, none where all are zero.
+    ahead: BTreeMap<PatchIndex, Option<Arc<PatchCodes>>>,
 }
 
 impl Shown {
@@ -29,37 +31,57 @@ impl Shown {
         &self.patches
     }
 
+    /// Renews one of so many `parts` of the awake patches ahead of the next [`renew`](Self::renew), which then leaves them as they are.
+    pub(crate) fn renew_part(&mut self, tick: u64, meadow: &mut Meadow, [part, parts]: [u64; 2]) {
+        let is_due = |index: &PatchIndex| u64::from(*index) % parts == part && !self.ahead.contains_key(index);
+        let due: Vec<_> = meadow.field().awake().map(Patch::index).filter(is_due).collect();
+        let (sources, now) = (&self.sources, &*meadow);
+        let show = |index: PatchIndex| {
+            let source = sources.get(&index).filter(|source| source.awake)?;
+            Some((index, self.show(tick, index, Some(source), now)))
+        };
+        let shown: Vec<_> = due.into_par_iter().filter_map(show).collect();
+        shown.iter().for_each(|(index, _)| meadow.was_shown(*index));
+        self.ahead.extend(shown);
+    }
+
     /// Renews what changed: in patches that are awake, and in those `in_sight` that are only laid.
     pub(crate) fn renew(&mut self, tick: u64, meadow: &mut Meadow, in_sight: impl Fn(PatchIndex) -> bool) {
-        let laid_changed: BTreeMap<PatchIndex, bool> = meadow.laid().patches().collect();
         let mut sources: BTreeMap<_, _> =
             meadow.field().awake().map(|patch| (patch.index(), Sources { awake: true, laid: false })).collect();
-        for &index in laid_changed.keys() {
+        for index in meadow.laid().patches() {
             let source = sources.get(&index).map_or(in_sight(index).then_some(false), |_| Some(true));
             if let Some(awake) = source {
                 sources.insert(index, Sources { awake, laid: true });
             }
         }
-        let (before, meadow_now) = (&self.patches, &*meadow);
-        let show = |(&index, source): (&PatchIndex, &Sources)| {
-            let patch = meadow_now.field().patch(index);
-            let before = before.get(&index);
-            let is_known = self.sources.get(&index) == Some(source) && laid_changed.get(&index) != Some(&true);
-            let codes = match (patch, is_known) {
-                (None, true) => return before.map(|before| (index, Arc::clone(before))),
-                (Some(patch), true) if !patch.changed_tiles().contains(&true) => return before.map(|before| (index, Arc::clone(before))),
-                (Some(patch), true) => renewed(before.map(|before| before.codes.as_slice()), patch, meadow_now),
-                _ => anew(index, patch, meadow_now),
-            };
-            match before {
-                Some(before) if before.codes == codes => Some((index, Arc::clone(before))),
-                _ if are_zero(&codes) => None,
-                _ => Some((index, Arc::new(PatchCodes { tick, codes }))),
-            }
+        let (before, mut ahead) = (&self.sources, std::mem::take(&mut self.ahead));
+        ahead.retain(|index, _| sources.get(index).is_some_and(|source| before.get(index) == Some(source)));
+        let now = &*meadow;
+        let show = |(&index, source): (&PatchIndex, &Sources)| match ahead.get(&index) {
+            Some(codes) => Some((index, codes.clone()?)),
+            None => Some((index, self.show(tick, index, before.get(&index).filter(|before| *before == source), now)?)),
         };
         self.patches = Arc::new(sources.par_iter().filter_map(show).collect());
+        sources.keys().filter(|index| !ahead.contains_key(index)).for_each(|index| meadow.was_shown(*index));
         self.sources = sources;
-        meadow.was_shown();
+    }
+
+    /// Codes of a patch, from those shown before where it then had the same `source`; none where all are zero.
+    fn show(&self, tick: u64, index: PatchIndex, source: Option<&Sources>, meadow: &Meadow) -> Option<Arc<PatchCodes>> {
+        let (patch, before) = (meadow.field().patch(index), self.patches.get(&index));
+        let is_known = source.is_some() && !meadow.laid().changed(index);
+        let codes = match (patch, is_known) {
+            (None, true) => return before.map(Arc::clone),
+            (Some(patch), true) if !patch.changed_tiles().contains(&true) => return before.map(Arc::clone),
+            (Some(patch), true) => renewed(before.map(|before| before.codes.as_slice()), patch, meadow),
+            _ => anew(index, patch, meadow),
+        };
+        match before {
+            Some(before) if before.codes == codes => Some(Arc::clone(before)),
+            _ if are_zero(&codes) => None,
+            _ => Some(Arc::new(PatchCodes { tick, codes })),
+        }
     }
 }
 

@@ -125,6 +125,11 @@ impl World {
         self.meadow.step(self.dt_secs, &motions, &self.views, self.weather.ground());
     }
 
+    /// Gets one of so many `parts` of the patches ready for the next [`snapshot`](Self::snapshot), which then shows them as they are now.
+    pub fn prepare(&mut self, part: [u64; 2]) {
+        self.shown.renew_part(self.tick, &mut self.meadow, part);
+    }
+
     /// What the world shows of itself.
     pub fn snapshot(&mut self) -> Snapshot {
         self.show_patches();

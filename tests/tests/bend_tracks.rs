@@ -61,7 +61,7 @@ fn a_track_fades_by_its_own_time_constant() {
     let laid = |world: &World| {
         let laid = world.meadow().laid();
         laid.patches()
-            .flat_map(|(patch, _)| laid.cells(patch).map(move |(cell, lean)| (patch, cell, lean)).collect::<Vec<_>>())
+            .flat_map(|patch| laid.cells(patch).map(move |(cell, lean)| (patch, cell, lean)).collect::<Vec<_>>())
             .collect::<Vec<_>>()
     };
     let at_first = laid(&world);

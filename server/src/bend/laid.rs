@@ -77,9 +77,9 @@ impl Laid {
         self.dropped
     }
 
-    /// Patches with laid grass, ascending, and whether each looks other than when it was [shown](Self::was_shown) last.
-    pub fn patches(&self) -> impl Iterator<Item = (PatchIndex, bool)> {
-        self.patches.iter().map(|(&index, patch)| (index, patch.changed))
+    /// Patches with laid grass, ascending.
+    pub fn patches(&self) -> impl Iterator<Item = PatchIndex> {
+        self.patches.keys().copied()
     }
 
     /// Lean of cell `(i, j)` of a patch (rad, as a vector along X and Z); none where nothing is laid. Off the exact course by at most
@@ -143,9 +143,16 @@ impl Laid {
         }
     }
 
-    /// Takes note that all patches were shown.
-    pub fn was_shown(&mut self) {
-        self.patches.values_mut().for_each(|patch| patch.changed = false);
+    /// Whether a patch looks other than when it was [shown](Self::was_shown) last.
+    pub fn changed(&self, patch: PatchIndex) -> bool {
+        self.patches.get(&patch).is_some_and(|patch| patch.changed)
+    }
+
+    /// Takes note that a patch was shown.
+    pub fn was_shown(&mut self, patch: PatchIndex) {
+        if let Some(patch) = self.patches.get_mut(&patch) {
+            patch.changed = false;
+        }
     }
 
     /// Everything that tells how the grass lies: place, age bits and leans of each tile.
@@ -260,7 +267,7 @@ mod tests {
             assert!(laid.tiles() <= 50);
         }
         assert_eq!(laid.dropped(), 375);
-        let kept_m2 = laid.patches().map(|(index, _)| laid.distance2_m2(index, &views)).fold(0.0, f32::max);
+        let kept_m2 = laid.patches().map(|index| laid.distance2_m2(index, &views)).fold(0.0, f32::max);
         assert!(kept_m2 < 40.0 * 40.0, "the farthest that is kept lies {} m off", kept_m2.sqrt());
     }
 

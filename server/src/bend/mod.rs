@@ -121,10 +121,12 @@ impl Meadow {
         &self.laid
     }
 
-    /// Takes note that everything was shown as it is.
-    pub fn was_shown(&mut self) {
-        self.laid.was_shown();
-        self.field.awake_mut().for_each(Patch::forget_changes);
+    /// Takes note that a patch was shown as it is.
+    pub fn was_shown(&mut self, patch: PatchIndex) {
+        self.laid.was_shown(patch);
+        if let Some(patch) = self.field.patch_mut(patch) {
+            patch.forget_changes();
+        }
     }
 
     /// Motions that the newest step refused, and why; the grass did not feel them.
