@@ -16,8 +16,8 @@ const COMMAND_CAPACITY: usize = 1024;
 /// Most steps that are caught up at once; time beyond them is dropped.
 pub const CATCH_UP_STEPS: u64 = 6;
 
-/// Least time between two log lines about dropped time.
-const LAG_LOG_EVERY: Duration = Duration::from_secs(10);
+/// Least time between two log lines about the same count.
+const LOG_EVERY: Duration = Duration::from_secs(10);
 
 /// What the runner runs: the world, or a test's stand-in.
 pub trait Simulation: Send + 'static {
@@ -162,6 +162,8 @@ struct Loop<S> {
     tick: u64,
     requests: BTreeMap<u32, Request>,
     step_times: Vec<Duration>,
+    dropped: Rising,
+    evicted: Rising,
 }
 
 impl<S: Simulation> Loop<S> {
@@ -175,20 +177,19 @@ impl<S: Simulation> Loop<S> {
             tick: 0,
             requests: BTreeMap::new(),
             step_times: Vec::new(),
+            dropped: Rising::default(),
+            evicted: Rising::default(),
         }
     }
 
     fn run(mut self, stop: &AtomicBool) {
         let start = Instant::now();
-        let mut logged: Option<(Instant, u64)> = None;
         while !stop.load(Relaxed) {
             for _ in 0..self.clock.due(start.elapsed()) {
                 self.step();
             }
-            let (logged_at, logged_steps) = logged.map_or((None, 0), |(at, steps)| (Some(at), steps));
-            if self.clock.dropped > logged_steps && logged_at.is_none_or(|at| at.elapsed() > LAG_LOG_EVERY) {
+            if self.dropped.news(self.clock.dropped).is_some() {
                 tracing::warn!(dropped_secs = self.clock.dropped_secs(), "the world is slower than real time; simulated time is left out");
-                logged = Some((Instant::now(), self.clock.dropped));
             }
             std::thread::sleep(self.clock.until(self.steps_at_once(), start.elapsed()));
         }
@@ -239,8 +240,34 @@ impl<S: Simulation> Loop<S> {
         if resets > self.sender.borrow().snapshot.health.wind_resets {
             tracing::warn!(resets, "the wind was lost and has begun anew from its mean");
         }
+        if let Some(patches) = self.evicted.news(snapshot.health.evicted_patches) {
+            let awake = snapshot.health.awake_patches;
+            tracing::warn!(
+                patches,
+                awake,
+                "grass was put to rest far from all cameras, for as many patches are awake as `patches.awake_limit` allows"
+            );
+        }
         let published = Published { snapshot, requests: self.requests.clone(), dropped_secs: self.clock.dropped_secs() };
         self.sender.send_replace(Arc::new(published));
+    }
+}
+
+/// A count that only rises, as it was when it was last told.
+#[derive(Default)]
+struct Rising {
+    told: u64,
+    told_at: Option<Instant>,
+}
+
+impl Rising {
+    /// By how much the count has risen, if it has and it was not told of lately.
+    fn news(&mut self, count: u64) -> Option<u64> {
+        if count <= self.told || self.told_at.is_some_and(|at| at.elapsed() <= LOG_EVERY) {
+            return None;
+        }
+        self.told_at = Some(Instant::now());
+        Some(count - std::mem::replace(&mut self.told, count))
     }
 }
 
@@ -299,6 +326,14 @@ mod tests {
         assert_eq!(clock.dropped, 600 - CATCH_UP_STEPS);
         assert_eq!(clock.due(Duration::from_secs(10)), 0);
         assert_eq!(clock.due(Duration::from_secs(11)) + clock.due(Duration::from_secs_f64(11.017)), CATCH_UP_STEPS + 1);
+    }
+
+    #[test]
+    fn a_rising_count_is_told_once_in_a_while() {
+        let mut count = Rising::default();
+        assert_eq!([0, 3, 5].map(|now| count.news(now)), [None, Some(3), None]);
+        count.told_at = None;
+        assert_eq!([3, 6].map(|now| count.news(now)), [None, Some(3)]);
     }
 
     #[test]
