@@ -1,8 +1,10 @@
 //! Heavy objects flatten grass for longer: tracks stay, fade with a time constant of their own, and are shown though their patches sleep.
 
-use server::bend::laid::QUANTUM_RAD;
+use server::bend::laid::{self, QUANTUM_RAD, TILE_BYTES};
 use server::world::{Command, View, World};
-use shared::scene::{Scene, VehicleKind};
+use shared::bend::{Field, Kinds, WaveParams};
+use shared::grid::PatchLayout;
+use shared::scene::{Grass, Scene, VehicleKind};
 use shared::wire::Drive;
 use shared::wire::quantise::{omega_rad_per_s, theta_rad};
 use tests::worlds;
@@ -25,6 +27,16 @@ fn driven(scene: &Scene) -> World {
     run(&mut world, 5.0);
     world.step(&[Command::Remove { client: 1 }]);
     world
+}
+
+#[test]
+fn an_awake_cell_holds_at_most_32_bytes_with_what_is_laid() {
+    let layout = PatchLayout { count: [3; 2], cells: 120, cell_m: 0.4572 };
+    let mut field = Field::new(layout, Kinds::one(WaveParams::from(&Grass::default())));
+    assert_eq!(field.memory_bytes(), 0, "grass that sleeps holds none");
+    field.wake(4);
+    let bytes = field.memory_bytes() as f64 / 120.0_f64.powi(2) + TILE_BYTES as f64 / (laid::TILE as f64).powi(2);
+    assert!(bytes > 24.0 && bytes <= 32.0, "{bytes} bytes a cell");
 }
 
 /// Cells that a client is shown as bent, and the largest bend among them (rad).

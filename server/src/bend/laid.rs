@@ -12,6 +12,8 @@ use std::f32::consts::PI;
 
 /// Cells along one side of a tile.
 pub const TILE: usize = 8;
+/// Memory of a tile, with its place in the list.
+pub const TILE_BYTES: usize = size_of::<Tile>() + size_of::<Option<Box<Tile>>>();
 /// Lean of one unit (rad). Leans are cut towards zero to whole units, so that they end.
 pub const QUANTUM_RAD: f32 = PI / i16::MAX as f32;
 /// A tile whose leans are all below this is let go (rad): half a code on the wire, so that it shows no more.
@@ -67,7 +69,7 @@ impl Laid {
         Self { layout, clock, tile_limit, tick: 0, patches: BTreeMap::new(), dropped: 0 }
     }
 
-    /// Number of tiles, 272 bytes each.
+    /// Number of tiles, [`TILE_BYTES`] each.
     pub fn tiles(&self) -> usize {
         self.patches.values().map(|patch| patch.count).sum()
     }

@@ -5,9 +5,9 @@ use super::patch::{CHANNELS, Planes};
 use super::tiles::{size_bits, square_bits};
 use multiversion::multiversion;
 
-/// A block of cells in the planes.
+/// A block of cells in the planes, all of one kind of grass.
 #[derive(Clone, Copy)]
-pub(super) struct Block {
+pub(super) struct Block<'a> {
     /// Place of the north-western cell.
     pub(super) first: usize,
     /// Cells in a row.
@@ -15,28 +15,30 @@ pub(super) struct Block {
     pub(super) rows: usize,
     /// Distance between rows.
     pub(super) stride: usize,
+    /// Coefficients of its grass.
+    pub(super) k: &'a Coefficients,
 }
 
 /// Puts the next state of a block in the place of the state before.
-pub(super) fn advance(now: &Planes, before: &mut Planes, block: Block, k: &Coefficients) {
-    let advance = match speed(k) {
+pub(super) fn advance(now: &Planes, before: &mut Planes, block: Block) {
+    let advance = match speed(block.k) {
         STEADY => advance_block::<STEADY>,
         FOLLOWING => advance_block::<FOLLOWING>,
         _ => advance_block::<LOSING>,
     };
     let [theta, x, z] = before;
-    advance(now, theta, x, z, block, k);
+    advance(now, theta, x, z, block);
 }
 
 /// The same; raises `peaks`, the largest |θ| and |ω|² of each column as bits, to those at both times.
-pub(super) fn advance_and_measure(now: &Planes, before: &mut Planes, block: Block, k: &Coefficients, peaks: [&mut [u32]; 2]) {
-    let advance = match speed(k) {
+pub(super) fn advance_and_measure(now: &Planes, before: &mut Planes, block: Block, peaks: [&mut [u32]; 2]) {
+    let advance = match speed(block.k) {
         STEADY => advance_and_measure_block::<STEADY>,
         FOLLOWING => advance_and_measure_block::<FOLLOWING>,
         _ => advance_and_measure_block::<LOSING>,
     };
     let ([theta, x, z], [theta_peaks, omega2_peaks]) = (before, peaks);
-    advance(now, theta, x, z, block, k, theta_peaks, omega2_peaks);
+    advance(now, theta, x, z, block, theta_peaks, omega2_peaks);
 }
 
 /// Cells of a channel with those around them, all of one length.
@@ -105,8 +107,8 @@ fn next_cell<const SPEED: u8>(row: &[Stencil; CHANNELS], i: usize, before: [f32;
 
 // Slices that are arguments of their own are known not to overlap; put together, or inlined, they would not be, and the loops not made of vectors.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn advance_block<const SPEED: u8>(now: &Planes, theta: &mut [f32], x: &mut [f32], z: &mut [f32], block: Block, k: &Coefficients) {
-    let Block { first, width, rows, stride } = block;
+fn advance_block<const SPEED: u8>(now: &Planes, theta: &mut [f32], x: &mut [f32], z: &mut [f32], block: Block) {
+    let Block { first, width, rows, stride, k } = block;
     let k = *k;
     for at in (0..rows).map(|row| first + row * stride) {
         let row = stencils(now, at, width, stride);
@@ -124,11 +126,10 @@ fn advance_and_measure_block<const SPEED: u8>(
     x: &mut [f32],
     z: &mut [f32],
     block: Block,
-    k: &Coefficients,
     theta_peaks: &mut [u32],
     omega2_peaks: &mut [u32],
 ) {
-    let Block { first, width, rows, stride } = block;
+    let Block { first, width, rows, stride, k } = block;
     let k = *k;
     let (theta_peaks, omega2_peaks) = (&mut theta_peaks[..width], &mut omega2_peaks[..width]);
     for at in (0..rows).map(|row| first + row * stride) {

@@ -19,7 +19,7 @@ pub const CHANNELS: usize = 3;
 pub const HALO: usize = 4;
 
 /// Values that follow each plane, never read: planes a multiple of 4 KiB apart would contend for the same places in the cache.
-const STAGGER: usize = 160;
+const STAGGER: usize = 32;
 
 pub(super) type Planes = [Vec<f32>; CHANNELS];
 

@@ -148,24 +148,23 @@ fn advance_span(patch: &mut Patch, kinds: &[Coefficients], band: i64, rings: i64
     let is_own = 0 <= from && to <= side;
     let (start, width) = (patch.at(from, first), (to - from) as usize);
     let (now, before) = (&patch.now, &mut patch.before);
-    let mut advance = |kind: u8, block: Block| {
+    let mut advance = |block: Block| {
         let column = (block.first - start) % stride + from.max(0) as usize;
-        let k = &kinds[usize::from(kind)];
         match peaks.as_deref_mut().filter(|_| is_own) {
             Some(peaks) => {
                 let columns = column..column + block.width;
-                kernel::advance_and_measure(now, before, block, k, [&mut peaks.theta[columns.clone()], &mut peaks.omega2[columns]]);
+                kernel::advance_and_measure(now, before, block, [&mut peaks.theta[columns.clone()], &mut peaks.omega2[columns]]);
             }
-            None => kernel::advance(now, before, block, k),
+            None => kernel::advance(now, before, block),
         }
     };
     let rows = (last - first) as usize;
     match &patch.ground {
-        Ground::One(kind) => advance(*kind, Block { first: start, width, rows, stride }),
+        Ground::One(kind) => advance(Block { first: start, width, rows, stride, k: &kinds[usize::from(*kind)] }),
         Ground::Map(_) => {
             for first in (0..rows).map(|row| start + row * stride) {
                 for_each_kind(&patch.ground, first, first + width, |kind, from, to| {
-                    advance(kind, Block { first: from, width: to - from, rows: 1, stride });
+                    advance(Block { first: from, width: to - from, rows: 1, stride, k: &kinds[usize::from(kind)] });
                 });
             }
         }
