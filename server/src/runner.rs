@@ -16,6 +16,12 @@ const COMMAND_CAPACITY: usize = 1024;
 /// Most steps that are caught up at once; time beyond them is dropped.
 pub const CATCH_UP_STEPS: u64 = 6;
 
+/// Steps over which the making of a snapshot is spread: a patch is shown as it was at most one step fewer before.
+pub const SNAPSHOT_STEPS: u64 = 3;
+
+/// Longest time that an idle world sleeps (s).
+const NAP_SECS: f64 = 0.05;
+
 /// Least time between two log lines about the same count.
 const LOG_EVERY: Duration = Duration::from_secs(10);
 
@@ -164,6 +170,7 @@ struct Loop<S> {
     step_times: Vec<Duration>,
     dropped: Rising,
     evicted: Rising,
+    broken: Rising,
 }
 
 impl<S: Simulation> Loop<S> {
@@ -179,6 +186,7 @@ impl<S: Simulation> Loop<S> {
             step_times: Vec::new(),
             dropped: Rising::default(),
             evicted: Rising::default(),
+            broken: Rising::default(),
         }
     }
 
@@ -197,8 +205,17 @@ impl<S: Simulation> Loop<S> {
 
     /// Steps that may fall due before the next of them is done.
     fn steps_at_once(&self) -> u64 {
+        if !self.simulation.is_idle() {
+            return 1;
+        }
+        let in_a_nap = (NAP_SECS * self.clock.tick_hz) as u64;
         let to_publish = self.steps_per_publish - self.tick % self.steps_per_publish;
-        if self.simulation.is_idle() { to_publish.min(CATCH_UP_STEPS / 2) } else { 1 }
+        to_publish.min(in_a_nap).clamp(1, CATCH_UP_STEPS / 2)
+    }
+
+    /// Steps until a snapshot is due; none when it is due now.
+    fn steps_to_publish(&self) -> u64 {
+        (self.steps_per_publish - self.tick % self.steps_per_publish) % self.steps_per_publish
     }
 
     fn step(&mut self) {
@@ -208,9 +225,11 @@ impl<S: Simulation> Loop<S> {
         self.step_times.push(begun.elapsed());
         self.tick += 1;
         self.settle(&commands);
-        match self.tick % self.steps_per_publish {
+        let parts = self.steps_per_publish.min(SNAPSHOT_STEPS);
+        match self.steps_to_publish() {
             0 => self.publish(),
-            part => self.simulation.prepare([part, self.steps_per_publish]),
+            left if left < parts => self.simulation.prepare([parts - left, parts]),
+            _ => {}
         }
     }
 
@@ -247,6 +266,9 @@ impl<S: Simulation> Loop<S> {
                 awake,
                 "grass was put to rest far from all cameras, for as many patches are awake as `patches.awake_limit` allows"
             );
+        }
+        if let Some(patches) = self.broken.news(snapshot.health.broken_patches) {
+            tracing::warn!(patches, "grass moved faster than the scheme can follow, or was no number, and was put to rest");
         }
         let published = Published { snapshot, requests: self.requests.clone(), dropped_secs: self.clock.dropped_secs() };
         self.sender.send_replace(Arc::new(published));

@@ -80,6 +80,8 @@ pub struct Health {
     pub awake_patches: u32,
     /// Patches let go since the start because the limit of awake ones was reached.
     pub evicted_patches: u64,
+    /// Patches put to rest since the start because their grass moved faster than the scheme can follow, or was no number.
+    pub broken_patches: u64,
     /// Tiles of 8 × 8 cells in which objects have laid grass.
     pub laid_tiles: u32,
     /// Patches whose laid grass was let go since the start because there was too much.

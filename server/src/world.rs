@@ -147,6 +147,7 @@ impl World {
                 bend_energy: self.meadow.activity(),
                 awake_patches: self.meadow.field().awake_count() as u32,
                 evicted_patches: self.meadow.evicted(),
+                broken_patches: self.meadow.broken(),
                 laid_tiles: self.meadow.laid().tiles() as u32,
                 dropped_tracks: self.meadow.laid().dropped(),
                 refused_motions: self.meadow.refused_count(),

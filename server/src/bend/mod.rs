@@ -54,6 +54,7 @@ pub struct Meadow {
     laid: Laid,
     refused: Vec<MotionError>,
     refused_count: u64,
+    broken: u64,
     regions: Regions,
     report: Report,
 }
@@ -67,14 +68,11 @@ impl Meadow {
     /// A meadow at rest; a wind whose drawing is not among `drawings` blows nothing.
     pub fn with_drawings(scene: &Scene, height: Arc<HeightMap>, cover: &CoverMap, drawings: &Drawings) -> Self {
         let (layout, settings, limit) = (PatchLayout::from(&scene.patches), scene.bend, scene.patches.awake_limit as usize);
-        let mut field = Field::new(layout, Kinds::of(scene, cover))
+        let field = Field::new(layout, Kinds::of(scene, cover))
             .with_edges(settings.edges)
             .with_seams(settings.seams)
             .with_rest(settings.rest())
             .with_awake_limit(limit);
-        if settings.scheme == Scheme::Modal {
-            field.wake_all();
-        }
         // As much as the awake patches could hold.
         let tile_limit = limit * (layout.cells as usize / laid::TILE).pow(2);
         Self {
@@ -88,6 +86,7 @@ impl Meadow {
             laid: Laid::new(layout, scene.grass.laid_recovery_secs, tile_limit),
             refused: vec![],
             refused_count: 0,
+            broken: 0,
             regions: Regions::new(limit),
             report: Report::default(),
         }
@@ -114,6 +113,11 @@ impl Meadow {
     /// Patches let go so far because too many were awake.
     pub fn evicted(&self) -> u64 {
         self.regions.evicted()
+    }
+
+    /// Patches put to rest so far because their grass moved faster than the scheme can follow, or was no number.
+    pub fn broken(&self) -> u64 {
+        self.broken
     }
 
     /// What stays bent below the weight of objects.
@@ -147,7 +151,10 @@ impl Meadow {
         let contacts: Vec<_> = motions.iter().flat_map(|motion| bodies.contacts(motion, height, growth, cell_m)).collect();
         let blows = self.blows.step(&motions, &self.height, dt_secs);
         let breezy = self.breeze.as_ref().map(|breeze| breeze.patches(self.field.layout(), views)).unwrap_or_default();
-        if self.scheme != Scheme::Modal {
+        if self.scheme == Scheme::Modal {
+            // What was broken and let go comes back at rest.
+            self.field.wake_all();
+        } else {
             let touched = [self.touched(&contacts, &blows), breezy.clone()].concat();
             self.regions.update(&mut self.field, &touched, views);
         }
@@ -163,6 +170,7 @@ impl Meadow {
         }
         self.laid.step(dt_secs, views);
         self.report = self.propagate(dt_secs);
+        self.broken += u64::from(self.report.broken);
     }
 
     /// Carries the waves on. Grass that bends too fast for as many sub-steps as allowed is put to rest and counts as broken.

@@ -47,7 +47,7 @@ const SCALE_STEPS: usize = 9;
 
 /// Scalars: entity, name in the plots, colour, and how to read it.
 #[expect(clippy::type_complexity, reason = "a table reads best as one literal")]
-const SCALARS: [(&str, &str, u32, fn(&Frame) -> f64); 17] = [
+const SCALARS: [(&str, &str, u32, fn(&Frame) -> f64); 18] = [
     ("health/step/mean_ms", "mean", 0x4CAF_50FF, |frame| f64::from(frame.snapshot.health.step_secs) * 1e3),
     ("health/step/longest_ms", "longest", 0xFF70_43FF, |frame| f64::from(frame.snapshot.health.step_max_secs) * 1e3),
     ("health/wind/divergence", "rms divergence", 0x29B6_F6FF, |frame| f64::from(frame.snapshot.health.divergence_rms)),
@@ -62,6 +62,7 @@ const SCALARS: [(&str, &str, u32, fn(&Frame) -> f64); 17] = [
     ("health/sent/kbyte_per_s", "sent", 0x26A6_9AFF, |frame| frame.traffic.bytes_per_s / 1e3),
     ("health/lost/log_frames", "log frames", 0xBDBD_BDFF, |frame| frame.dropped as f64),
     ("health/lost/evicted_patches", "evicted patches", 0xFFCA_28FF, |frame| frame.snapshot.health.evicted_patches as f64),
+    ("health/lost/broken_patches", "broken patches", 0xAB47_BCFF, |frame| frame.snapshot.health.broken_patches as f64),
     ("health/lost/tracks", "tracks let go", 0x8D6E_63FF, |frame| frame.snapshot.health.dropped_tracks as f64),
     ("health/lost/motions", "motions refused", 0xEF53_50FF, |frame| frame.snapshot.health.refused_motions as f64),
     ("health/lost/winds", "winds begun anew", 0x29B6_F6FF, |frame| frame.snapshot.health.wind_resets as f64),

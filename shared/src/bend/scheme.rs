@@ -35,7 +35,7 @@ pub struct Report {
     pub substeps: u32,
     /// Largest Courant number of a sub-step, over its limit: an explicit scheme is stable up to 1.
     pub courant_share: f32,
-    /// Cells stepped, times sub-steps.
+    /// Cells stepped, times sub-steps; ghosts do not count.
     pub cell_steps: u64,
     /// Patches put to rest because a value in them was no number.
     pub broken: u32,

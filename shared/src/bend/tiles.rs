@@ -29,7 +29,7 @@ impl Rest {
 }
 
 /// Of each tile: how far from rest it is, whether it steps, whether it has changed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Tiles {
     /// Tiles along one side.
     count: usize,

@@ -41,7 +41,7 @@ pub(super) fn advance(patch: &mut Patch, pass: &Pass<'_>) -> u64 {
     }
     for substep in 1..=pass.substeps {
         let rings = pass.rings.unwrap_or(pass.substeps - substep) as i64;
-        // Rows of whole vectors: the ghosts beyond the rings become whatever they become, and nothing reads them before they are fetched anew.
+        // Rows of whole vectors: the ghosts beyond the rings become whatever they become; only such ghosts read them before they are fetched anew.
         let columns = if pass.rings.is_none() && rings > 0 { HALO as i64 } else { rings };
         let is_last = substep == pass.substeps;
         for band in bands.clone() {
@@ -50,9 +50,8 @@ pub(super) fn advance(patch: &mut Patch, pass: &Pass<'_>) -> u64 {
                 continue;
             }
             let mut peaks = is_last.then(Peaks::default);
-            let [first, last] = extent(patch, band, rings);
             for span in &spans {
-                cells += ((last - first) * (span[1] - span[0])) as u64;
+                cells += own_cells(patch, band, *span);
                 advance_span(patch, pass.kinds, band, rings, *span, peaks.as_mut());
             }
             if let Some(peaks) = peaks {
@@ -98,6 +97,12 @@ fn find_spans(patch: &Patch, band: i64, [columns, rows]: [i64; 2], join: Join, s
             _ => {}
         }
     }
+}
+
+/// Cells of a span of columns in a band that are no ghosts.
+fn own_cells(patch: &Patch, band: i64, [from, to]: [i64; 2]) -> u64 {
+    let is_own = (0..patch.tiles.count() as i64).contains(&band);
+    if is_own { TILE as u64 * (to.min(patch.side() as i64) - from.max(0)).max(0) as u64 } else { 0 }
 }
 
 /// Moves the earlier state of a span of columns along the line through both, so that every rate of change stays.
