@@ -11,7 +11,7 @@ use crate::wind::StepError;
 use crate::wind::state::MAX_SUBSTEPS;
 use shared::bend::{Damping, Scheme, WaveParams, limits};
 use shared::grid::{PatchIndex, PatchLayout};
-use shared::scene::{CarTread, Grass, HelicopterTread, MonsterTread, Patches, Scene, SledTread, VehicleKind, WindShape};
+use shared::scene::{CarTread, DrawnWind, Grass, HelicopterTread, MonsterTread, Patches, Scene, SledTread, VehicleKind, WindShape};
 use shared::terrain::{CoverMap, HeightMap};
 use shared::wire::{Drive, ObjectId, VIEW_RADIUS_LIMIT_M};
 use std::sync::Arc;
@@ -254,7 +254,7 @@ fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
         return Ok(());
     }
     type Mend = fn(&mut Scene);
-    let usual: [(&str, Mend); 11] = [
+    let usual: [(&str, Mend); 12] = [
         ("grass.mu_m_per_rad", |scene| scene.grass.mu_m_per_rad = Grass::default().mu_m_per_rad),
         ("grass.c0_m_per_s", |scene| scene.grass.c0_m_per_s = Grass::default().c0_m_per_s),
         ("grass.c_omega_m_per_s", |scene| scene.grass.c_omega_m_per_s = Grass::default().c_omega_m_per_s),
@@ -266,6 +266,7 @@ fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
         ("objects.monster.strike_height_m", |scene| scene.objects.monster = MonsterTread::default()),
         ("objects.helicopter.strike_height_m", |scene| scene.objects.helicopter = HelicopterTread::default()),
         ("objects.sled.strike_height_m", |scene| scene.objects.sled = SledTread::default()),
+        ("drawn_winds", |scene| scene.drawn_winds.clear()),
     ];
     let needed_with = |mend: Mend| {
         let mut mended = scene.clone();
@@ -276,9 +277,10 @@ fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
     let (field, _) = usual.into_iter().min_by_key(|&(_, mend)| needed_with(mend)).expect("the list is not empty");
     let stiffest = scene.kinds().into_iter().max_by_key(|grass| substeps_of(scene, &[WaveParams::from(grass)])).unwrap_or(scene.grass);
     let Grass { c0_m_per_s, mu_m_per_rad, c_omega_m_per_s, stiffness_per_s2, .. } = stiffest;
+    let (_, by) = hardest_strike(scene);
     let message = format!(
-        "makes the grass too stiff: with `bend.scheme` = \"{}\" it needs {needed} sub-steps in a step when an object strikes it at \
-         {SPEED_LIMIT_M_PER_S} m/s; allowed: {allowed}. It has mu_m_per_rad = {mu_m_per_rad}, c0_m_per_s = {c0_m_per_s}, \
+        "makes the grass too stiff: with `bend.scheme` = \"{}\" it needs {needed} sub-steps in a step when {by}; \
+         allowed: {allowed}. It has mu_m_per_rad = {mu_m_per_rad}, c0_m_per_s = {c0_m_per_s}, \
          c_omega_m_per_s = {c_omega_m_per_s}, stiffness_per_s2 = {stiffness_per_s2} on cells of {} m at {} Hz; smaller ones, a larger cell_m or a \
          higher tick_hz need fewer",
         scene.bend.scheme.word(),
@@ -288,17 +290,28 @@ fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
     Err(WorldError { field, message })
 }
 
-/// Sub-steps of the grass when an object strikes it at its fastest.
+/// Sub-steps of the grass when it is struck at its hardest.
 fn substeps_when_struck(scene: &Scene) -> u32 {
     let waves: Vec<_> = scene.kinds().iter().map(WaveParams::from).collect();
     substeps_of(scene, &waves)
 }
 
 fn substeps_of(scene: &Scene, waves: &[WaveParams]) -> u32 {
-    let strike_m = VehicleKind::ALL.map(|kind| scene.objects.tread(kind).strike_height_m).into_iter().fold(f32::INFINITY, f32::min);
+    let (omega_rad_per_s, _) = hardest_strike(scene);
     let damping = if scene.bend.scheme == Scheme::Verlet { Damping::Plain } else { Damping::Exact };
-    let needed = limits::substeps(waves, scene.patches.cell_m, scene.dt_secs(), SPEED_LIMIT_M_PER_S / strike_m, damping);
+    let needed = limits::substeps(waves, scene.patches.cell_m, scene.dt_secs(), omega_rad_per_s, damping);
     needed.unwrap_or(limits::SUBSTEPS_LIMIT)
+}
+
+/// The most that grass is made to bend (rad/s), and what does it.
+fn hardest_strike(scene: &Scene) -> (f32, String) {
+    let object = |kind| {
+        (SPEED_LIMIT_M_PER_S / scene.objects.tread(kind).strike_height_m, format!("an object strikes it at {SPEED_LIMIT_M_PER_S} m/s"))
+    };
+    let wind =
+        |wind: &DrawnWind| (wind.speed_m_per_s / wind.strike_height_m, format!("a drawn wind of {} m/s strikes it", wind.speed_m_per_s));
+    let strikes = VehicleKind::ALL.map(object).into_iter().chain(scene.drawn_winds.iter().map(wind));
+    strikes.max_by(|a, b| a.0.total_cmp(&b.0)).expect("there are kinds of objects")
 }
 
 fn no_wind(scene: &Scene, error: WeatherError) -> WorldError {

@@ -6,7 +6,7 @@ use shared::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
-const BROKEN: [&str; 26] = [
+const BROKEN: [&str; 27] = [
     "unknown-field",
     "syntax",
     "out-of-range",
@@ -33,6 +33,7 @@ const BROKEN: [&str; 26] = [
     "sled-of-no-area",
     "drawn-winds",
     "drawn-winds-out-of-range",
+    "drawn-winds-too-hard",
 ];
 
 /// The message for a broken scene equals the stored text beside it; `PRAIRIE_UPDATE=1` stores it anew.
