@@ -13,6 +13,7 @@
 //! - [`wind`]: which place of the wind's box blows where.
 //! - [`hash`]: random numbers by place.
 //! - [`lod`]: which grass grid is drawn how.
+//! - [`plant`]: blades and underbrush, how they bend, and where they grow.
 //! - [`outline`]: polygons on the ground and their convex parts.
 //! - [`wire`]: the messages between server and client, and the codec of the fields.
 //!
@@ -23,6 +24,7 @@ pub mod grid;
 pub mod hash;
 pub mod lod;
 pub mod outline;
+pub mod plant;
 pub mod scene;
 pub mod terrain;
 pub mod wind;

@@ -9,6 +9,7 @@ mod check;
 mod drawn_wind;
 mod fault;
 mod grass;
+mod growth;
 mod natural_wind;
 mod objects;
 mod parse;
@@ -17,6 +18,7 @@ mod picture;
 mod plants;
 mod species;
 mod terrain;
+mod underbrush;
 mod wind;
 
 pub use allowed::{Allowed, FIELDS, REQUIRED};
@@ -25,6 +27,7 @@ pub use check::{AWAKE_CELLS_LIMIT, EXTENT_LIMIT_M, WIND_CELLS_LIMIT};
 pub use drawn_wind::{DrawnWind, WindShape};
 pub use fault::SceneFault;
 pub use grass::Grass;
+pub use growth::Growth;
 pub use natural_wind::NaturalWind;
 pub use objects::{CarTread, HelicopterTread, MonsterTread, Objects, SledTread, Tread, VehicleKind};
 pub use parse::parse;
@@ -33,6 +36,7 @@ pub use picture::{CameraStart, Light};
 pub use plants::{LagWay, Plants};
 pub use species::Species;
 pub use terrain::TerrainMaps;
+pub use underbrush::{Component, ComponentKind, Underbrush};
 pub(crate) use wind::words;
 pub use wind::{
     Primitive, PrimitiveKind, Wind, WindAdvection, WindBoundary, WindDiffusion, WindDust, WindFaces, WindMethod, WindPressure, WindTerrain,
