@@ -1,0 +1,69 @@
+//! A blade of grass that sways (000 chapter 3): a cantilever of three links between the four control points of its backbone.
+//!
+//! What moves are the leans of the links, each a vector on the ground (rad) as in the bend field, so that wind, cars and spheres press one and the same
+//! blade, and so that its length is exact whatever it does: a control point stands one link's length from the one below.
+//!
+//! - [`modes`]: natural frequencies of the chain, and how links and wind couple to its modes;
+//! - [`propagator`]: three ways to take a mode through time, each with its limit;
+//! - [`step`]: one step of a blade, alone or eight abreast;
+//! - [`lean`]: from a lean to a direction and back;
+//! - [`contact`]: never below the ground, never inside a sphere;
+//! - [`backbone`]: the curve through the control points and the outline about it.
+//!
+//! The twin on the GPU is `blade.wgsl`.
+
+pub mod backbone;
+pub mod contact;
+pub mod lean;
+pub mod modes;
+pub mod propagator;
+pub mod step;
+
+pub use propagator::Integrator;
+pub use step::{Eight, advance, advance_eight};
+
+/// Links of a blade.
+pub const LINKS: usize = 3;
+
+/// A vector on the ground for each link: X and Z.
+pub type Leans = [[f32; 2]; LINKS];
+
+/// What a blade is like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blade {
+    /// Length (m).
+    pub length_m: f32,
+    /// First natural frequency ω₁ (rad/s), from [`modes::first_frequency_rad_per_s`] or as measured.
+    pub frequency_rad_per_s: f32,
+    /// Damping of each mode as a share of the critical one.
+    pub damping_share: f32,
+    /// Mean lean that the drag of a wind of 1 m/s sustains (rad s²/m²); drag grows with the square of the speed.
+    pub lean_per_wind2: f32,
+}
+
+/// How a blade leans and sways.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sway {
+    /// Lean of each link from upright (rad).
+    pub lean_rad: Leans,
+    /// Its rate of change (rad/s).
+    pub rate_rad_per_s: Leans,
+}
+
+impl Sway {
+    /// At rest in a lean.
+    pub fn at_rest(lean_rad: Leans) -> Self {
+        Self { lean_rad, rate_rad_per_s: Leans::default() }
+    }
+
+    /// Offsets of the three control points above the root from it (m): X, height, Z.
+    pub fn points_m(&self, length_m: f32) -> [[f32; 3]; LINKS] {
+        let link_m = length_m / LINKS as f32;
+        let mut at = [0.0; 3];
+        self.lean_rad.map(|lean_rad| {
+            let along = lean::direction(lean_rad);
+            at = std::array::from_fn(|axis| at[axis] + link_m * along[axis]);
+            at
+        })
+    }
+}
