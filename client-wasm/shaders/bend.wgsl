@@ -1,7 +1,7 @@
 // Single plants: how each blade and flower stem stands in this frame, and which of them are seen.
 //
-// Near plants (nine grids about the camera) keep their control points from frame to frame and obey drag, stiffness and the
-// length of the blade (000 section 3.2); those farther away stand as the bend field and the wind of the moment would have them.
+// Near plants (nine grids about the camera) keep the sway of their links from frame to frame and obey drag and stiffness (000
+// section 3.2, `blade.wgsl`); those farther away stand as the bend field and the wind of the moment would have them.
 
 struct Plants {
     // Grid (x, z) that lives in each of the nine slots; 1 in z when it has just moved in.
@@ -10,15 +10,12 @@ struct Plants {
     counts: vec4<u32>,
     // Capacities of the drawn lists: fine blades, coarse blades, flowers.
     capacities: vec4<u32>,
-    // Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), sub-steps due: the
-    // whole ones are done in this frame.
+    // Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), damping share of a blade.
     shape: vec4<f32>,
-}
-
-// Offsets of three control points from the root (m), now and one sub-step ago.
-struct Posture {
-    now: array<vec4<f32>, 3>,
-    before: array<vec4<f32>, 3>,
+    // Steps of this frame; way of integration; unused.
+    steps: vec4<u32>,
+    // Length of a step (s); unused.
+    time: vec4<f32>,
 }
 
 struct Counters {
@@ -26,14 +23,11 @@ struct Counters {
 }
 
 @group(1) @binding(0) var<uniform> plants: Plants;
-@group(1) @binding(1) var<storage, read_write> postures: array<Posture>;
+@group(1) @binding(1) var<storage, read_write> sways: array<Sway>;
 @group(1) @binding(2) var<storage, read_write> drawn: array<Blade>;
 @group(1) @binding(3) var<storage, read_write> counters: Counters;
 @group(1) @binding(4) var<storage, read> far_grids: array<vec4<i32>>;
 @group(1) @binding(5) var<storage, read_write> draws: array<u32>;
-
-// Length of a sub-step (s); twin of the constant in `blades.rs`.
-const STEP_SECS: f32 = 1.0 / 120.0;
 
 const FINE: u32 = 0u;
 const COARSE: u32 = 1u;
@@ -94,24 +88,27 @@ fn plant_at(grid: vec2<i32>, index: u32, place: vec2<f32>, is_flower: bool) -> P
     return plant;
 }
 
-// Control points of a plant whose thirds lean by `leans_in` (rad) and that droops of itself: each third leans more than the one
+// Leans of a plant whose thirds are pressed by `leans_in` (rad) and that droops of itself: each third leans more than the one
 // below, but for plants of one segment.
-fn posture_of(plant: Plant, leans_in: array<vec2<f32>, 3>) -> array<vec3<f32>, 3> {
-    var leans = leans_in;
-    var points: array<vec3<f32>, 3>;
-    var at = vec3<f32>(0.0);
+fn leans_of(plant: Plant, leans_in: array<vec2<f32>, 3>) -> array<vec2<f32>, 3> {
+    var pressed = leans_in;
+    var shares = WIND_SHAPE;
+    var leans: array<vec2<f32>, 3>;
     let is_stiff = kinds.list[plant.kind].shape.x < 1.5;
-    let flat_share = smoothstep(0.5, 1.3, length(leans[0]));
-    for (var i = 0; i < 3; i++) {
+    let flat_share = smoothstep(0.5, 1.3, length(pressed[0]));
+    for (var i = 0; i < LINKS; i++) {
         let share = (f32(i) + 1.0) / 3.0;
-        let bend = select(mix(0.55 + 0.75 * share, 1.0 + 0.06 * share, flat_share), 1.0, is_stiff);
-        let v = leans[i] * bend + plant.droop * share * (1.6 - 1.1 * flat_share);
-        let angle = min(length(v), 1.55);
-        let direction = v / max(length(v), 1e-5);
-        at += vec3<f32>(direction.x * sin(angle), cos(angle), direction.y * sin(angle)) * (plant.height / 3.0);
-        points[i] = above_ground(at, plant.normal);
+        let bend = select(mix(shares[i], 1.0 + 0.06 * share, flat_share), 1.0, is_stiff);
+        let v = pressed[i] * bend + plant.droop * share * (1.6 - 1.1 * flat_share);
+        leans[i] = v * min(1.0, 1.55 / max(length(v), 1e-5));
     }
-    return points;
+    return leans;
+}
+
+// A plant that stands still in leans.
+fn still(plant: Plant, leans_in: array<vec2<f32>, 3>) -> Sway {
+    var leans = leans_of(plant, leans_in);
+    return Sway(array<vec4<f32>, 3>(vec4<f32>(leans[0], 0.0, 0.0), vec4<f32>(leans[1], 0.0, 0.0), vec4<f32>(leans[2], 0.0, 0.0)));
 }
 
 // How the thirds of a plant lean (rad) of which nothing is remembered: the upper ones trail the lowest (001 section 4.5).
@@ -121,7 +118,7 @@ fn trailing_leans(plant: Plant, gust: f32) -> array<vec2<f32>, 3> {
     let lag_secs = select(0.0, kind.lag.z, kind.shape.x > 1.5);
     let share = field_share(p);
     let now = bend_at(p, 0.0, 0);
-    let held = lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w);
+    let held = lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w) * give_of(plant);
     var leans: array<vec2<f32>, 3>;
     for (var i = 0; i < 3; i++) {
         leans[i] = held;
@@ -130,11 +127,6 @@ fn trailing_leans(plant: Plant, gust: f32) -> array<vec2<f32>, 3> {
         }
     }
     return leans;
-}
-
-fn above_ground(offset: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
-    let depth = 0.015 - dot(offset, normal);
-    return offset + normal * max(depth, 0.0);
 }
 
 fn is_seen(centre: vec3<f32>, radius: f32) -> bool {
@@ -207,102 +199,46 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let is_flower = index % max(count / max(plants.counts.y, 1u), 1u) == 0u && plants.counts.y > 0u;
     let plant = plant_at(grid, index, place, is_flower);
-    // Where the field and the wind hold the plant: drag in a steady wind balances stiffness there.
-    let gust = gust_at(plant.root.xz) * (0.9 + 0.2 * random3(grid, index + 47u).y);
-    let kind = kinds.list[plant.kind];
-    let lean = lean_at(plant.root, 0.0, gust, kind.tip.w);
-    let held = posture_of(plant, array<vec2<f32>, 3>(lean, lean, lean));
     let at = id.y * count + index;
+    let kind = kinds.list[plant.kind];
+    let gust = gust_at(plant.root.xz) * (0.9 + 0.2 * random3(grid, index + 47u).y);
+    let field_lean = lean_of_field(plant.root.xz, 0.0);
+    let held = leans_of(plant, array<vec2<f32>, 3>(field_lean, field_lean, field_lean));
+    let give = give_of(plant);
+    let nature = BladeNature(plant.height, kind.shape.y * sqrt(give) * kind.root.w / plant.height, plants.shape.w, kind.tip.w * 0.01 * give);
 
-    var now: array<vec3<f32>, 3>;
-    var before: array<vec3<f32>, 3>;
-    if slot.z != 0 {
-        now = held;
-        before = held;
-    } else {
-        for (var i = 0; i < 3; i++) {
-            now[i] = postures[at].now[i].xyz;
-            before[i] = postures[at].before[i].xyz;
-        }
+    var sway = sways[at];
+    if slot.z != 0 || !all(abs(sway.links[2]) < vec4<f32>(1e6)) {
+        let lean = field_lean + lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w) * give;
+        sway = still(plant, array<vec2<f32>, 3>(lean, lean, lean));
     }
-
-    // Stiffness per mass falls with the height. The drag of air that passes at |u - v|^2 is taken as linear in v about the wind
-    // u: it damps the plant's own motion the more, the farther that wind bends it.
-    let mass = select(1.0, 2.2, plant.is_flower);
-    let stiff = 95.0 * sqrt(0.8 / plant.height) / mass * kind.shape.y;
-    let wind = wind_at(plant.root, 0.0).xz * gust;
-    let drag = 2.0 * plant.height * sin(length(lean_of_wind(wind, kind.tip.w))) / max(length(wind), 1e-3);
-    for (var step = 0; step < i32(plants.shape.w); step++) {
-        for (var i = 0; i < 3; i++) {
-            let share_of_height = (f32(i) + 1.0) / 3.0;
-            let k = stiff * mix(2.2, 1.0, share_of_height);
-            let v = (now[i] - before[i]) / STEP_SECS;
-            let pull = (held[i] - now[i]) * k - v * (0.20 * sqrt(k) + drag * share_of_height * k);
-            let next = now[i] + v * STEP_SECS + pull * (STEP_SECS * STEP_SECS);
-            before[i] = now[i];
-            now[i] = next;
-        }
-        keep_length(&now, plant);
+    for (var step = 0u; step < plants.steps.x; step++) {
+        let points = points_of(sway, plant.height);
+        let winds = array<vec2<f32>, 3>(
+            blowing(plant.root + points[0], points[0].y, gust),
+            blowing(plant.root + points[1], points[1].y, gust),
+            blowing(plant.root + points[2], points[2].y, gust),
+        );
+        sway = settle(advance(sway, nature, held, winds, plants.steps.y, plants.time.x), plant.height, plant.normal, plant.root);
     }
-    if !all(abs(now[2]) < vec3<f32>(100.0)) {
-        now = held;
-        before = held;
-    }
-    for (var i = 0; i < 3; i++) {
-        postures[at].now[i] = vec4<f32>(now[i], 0.0);
-        postures[at].before[i] = vec4<f32>(before[i], 0.0);
-    }
+    sways[at] = sway;
 
     let grown = growth(index, count, distance_m);
     if grown <= 0.01 || !is_seen(plant.root + vec3<f32>(0.0, plant.height * 0.5, 0.0), plant.height * 0.75) {
         return;
     }
-    // Between the last two sub-steps, as far as the next is due.
-    var shown: array<vec3<f32>, 3>;
-    for (var i = 0; i < 3; i++) {
-        shown[i] = mix(before[i], now[i], fract(plants.shape.w));
-    }
-    push_aside(&shown, plant);
-    show(plant, shown, grown, distance(plant.root, frame.eye.xyz), random3(grid, index + 61u).z);
+    show(plant, points_of(sway, plant.height), grown, distance(plant.root, frame.eye.xyz), random3(grid, index + 61u).z);
 }
 
-// Length constraint from root to tip, never below the ground.
-fn keep_length(points: ptr<function, array<vec3<f32>, 3>>, plant: Plant) {
-    var below = vec3<f32>(0.0);
-    let segment = plant.height / 3.0;
-    for (var i = 0; i < 3; i++) {
-        let along = (*points)[i] - below;
-        let at = below + along * (segment / max(length(along), 1e-5));
-        (*points)[i] = above_ground(at, plant.normal);
-        below = (*points)[i];
-    }
+// How much of a blade's lean a plant shows in the same wind: flowers are heavier, and slower by the root of it (000 section 3.4).
+fn give_of(plant: Plant) -> f32 {
+    return select(1.0, 0.55, plant.is_flower);
 }
 
-// Spheres push plants aside that root within their circle: the first point inside moves out to the sphere, and the rest
-// of the plant is tangent there (000 section 6.2).
-fn push_aside(points: ptr<function, array<vec3<f32>, 3>>, plant: Plant) {
-    for (var s = 0; s < i32(frame.clouds.w); s++) {
-        let centre = frame.spheres[s].xyz - plant.root;
-        let radius = frame.spheres[s].w;
-        if dot(centre.xz, centre.xz) > radius * radius {
-            continue;
-        }
-        var below = vec3<f32>(0.0);
-        for (var i = 0; i < 3; i++) {
-            let out = (*points)[i] - centre;
-            if dot(out, out) < radius * radius {
-                let moved = centre + out * (radius / max(length(out), 1e-4));
-                (*points)[i] = moved;
-                let along = normalize(moved - below);
-                for (var j = i + 1; j < 3; j++) {
-                    (*points)[j] = (*points)[j - 1] + along * (plant.height / 3.0);
-                }
-                break;
-            }
-            below = (*points)[i];
-        }
-        keep_length(points, plant);
-    }
+// Wind over the ground at a control point (m/s), no stronger than what still bends grass farther.
+fn blowing(p: vec3<f32>, above_m: f32, gust: f32) -> vec2<f32> {
+    let wind = wind_at(p, max(above_m, 0.0)).xz * gust;
+    return wind * min(1.0, 10.0 / max(length(wind), 1e-3));
 }
 
 @compute @workgroup_size(64)
@@ -330,7 +266,8 @@ fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
     let r = random3(grid, index + 47u);
     let flutter = 1.0 + 0.065 * sin(frame.eye.w * mix(6.0, 9.0, r.x) + r.z * TAU);
     let leans = trailing_leans(plant, gust_at(plant.root.xz) * (0.9 + 0.2 * r.y) * flutter);
-    show(plant, posture_of(plant, leans), grown, distance(plant.root, frame.eye.xyz), random3(grid, index + 61u).z);
+    let sway = settle(still(plant, leans), plant.height, plant.normal, plant.root);
+    show(plant, points_of(sway, plant.height), grown, distance(plant.root, frame.eye.xyz), random3(grid, index + 61u).z);
 }
 
 // Indirect draws of 64 plants an instance.

@@ -9,6 +9,7 @@ use super::shaders;
 use super::uniforms::Plants;
 use crate::state::Land;
 use glam::Vec3;
+use shared::scene::BladeIntegrator;
 use wgpu::BufferUsages;
 
 /// Plants in one instance of an indirect draw; twin of the constants in `blades.wgsl` and `flowers.wgsl`.
@@ -17,14 +18,14 @@ const CHUNK: u32 = 64;
 const ROWS: [u32; 2] = [7, 3];
 /// Vertices of a flower head; twin of `VERTICES` in `flowers.wgsl`.
 const FLOWER_VERTICES: u32 = 67;
-/// Bytes of a drawn blade and of a posture, as in `bend.wgsl`.
+/// Bytes of a drawn blade and of its sway, as in `common.wgsl` and `blade.wgsl`.
 const BLADE_BYTES: u64 = 64;
-const POSTURE_BYTES: u64 = 96;
-/// Length of each sub-step of the blades (s), far below the limit 2/√k of the stiffest control point; twin of the constant in
-/// `bend.wgsl`. Verlet's scheme needs it the same from step to step.
+const SWAY_BYTES: u64 = 48;
+/// Longest step of the schemes that have a limit (s), and most of them in a frame; below 15 frames a second such blades move in slow motion.
 const STEP_SECS: f32 = 1.0 / 120.0;
-/// Most sub-steps in a frame; below 15 frames a second the blades move in slow motion.
 const STEP_LIMIT: f32 = 8.0;
+/// Longest step of the exact one (s): wind and obstacles stay as they are for a step.
+const EXACT_STEP_SECS: f32 = 0.1;
 
 pub(super) struct Blades {
     near: wgpu::ComputePipeline,
@@ -34,7 +35,7 @@ pub(super) struct Blades {
     heads: wgpu::RenderPipeline,
     plants: wgpu::Buffer,
     #[cfg(test)]
-    pub(super) postures: wgpu::Buffer,
+    pub(super) sways: wgpu::Buffer,
     counters: wgpu::Buffer,
     far_grids: wgpu::Buffer,
     draws: wgpu::Buffer,
@@ -49,7 +50,6 @@ pub(super) struct Blades {
     capacities: [u32; 3],
     slots: [Option<[i32; 2]>; 9],
     far_count: u32,
-    sub_steps: SubSteps,
 }
 
 impl Blades {
@@ -67,7 +67,7 @@ impl Blades {
 
         let storage_usage = BufferUsages::STORAGE;
         let plants = gpu.empty_buffer("plants", size_of::<Plants>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
-        let postures = gpu.empty_buffer("postures", u64::from(near_blades) * 9 * POSTURE_BYTES, storage_usage | BufferUsages::COPY_SRC);
+        let sways = gpu.empty_buffer("sways", u64::from(near_blades) * 9 * SWAY_BYTES, storage_usage | BufferUsages::COPY_SRC);
         let drawn_count = capacities.iter().sum::<u32>();
         let drawn = gpu.empty_buffer("drawn plants", u64::from(drawn_count) * BLADE_BYTES, storage_usage);
         let counters = gpu.empty_buffer("counters", 16, storage_usage | BufferUsages::COPY_DST);
@@ -80,7 +80,7 @@ impl Blades {
         let bend = gpu.shader("bend", shaders::BEND);
         let compute_layout =
             maker.layout("bend", &[uniform(0), storage_rw(1), storage_rw(2), storage_rw(3), storage_compute(4), storage_rw(5)]);
-        let buffers = [&plants, &postures, &drawn, &counters, &far_grids, &draws];
+        let buffers = [&plants, &sways, &drawn, &counters, &far_grids, &draws];
         let compute_group = bind(gpu, "bend", &compute_layout, &buffers.map(|buffer| buffer.as_entire_binding()));
 
         let list_layout = maker.layout("plant list", &[storage(0), storage(1), uniform(2)]);
@@ -105,7 +105,7 @@ impl Blades {
             heads,
             plants,
             #[cfg(test)]
-            postures,
+            sways,
             counters,
             far_grids,
             draws,
@@ -120,7 +120,6 @@ impl Blades {
             capacities,
             slots: [None; 9],
             far_count: 0,
-            sub_steps: SubSteps::default(),
         }
     }
 
@@ -157,12 +156,15 @@ impl Blades {
             }
         }
         self.far_count = far.len() as u32;
-        let due = self.sub_steps.after(dt_secs);
+        let looks = &land.scene().plants;
+        let (steps, step_secs) = steps(looks.integrator, dt_secs);
         let plants = Plants {
             slots,
             counts: [self.near_blades, self.flowers, self.far_count, self.far_blades],
             capacities: [self.capacities[0], self.capacities[1], self.capacities[2], 0],
-            shape: [self.grid_m, full_density_m(quality), fine_m(quality), due],
+            shape: [self.grid_m, full_density_m(quality), fine_m(quality), looks.swing_damping],
+            steps: [steps, looks.integrator as u32, 0, 0],
+            time: [step_secs, 0.0, 0.0, 0.0],
         };
         gpu.queue.write_buffer(&self.plants, 0, bytemuck::bytes_of(&plants));
         gpu.queue.write_buffer(&self.counters, 0, &[0; 16]);
@@ -191,20 +193,14 @@ impl Blades {
     }
 }
 
-/// Shares out frames of any length into sub-steps of one length.
-#[derive(Debug, Default)]
-struct SubSteps {
-    /// Time passed since the last sub-step, in sub-steps.
-    begun: f32,
-}
-
-impl SubSteps {
-    /// Sub-steps due after a frame of `dt_secs`, at most [`STEP_LIMIT`]: the whole ones are to be done, what is left counts in the next frame.
-    fn after(&mut self, dt_secs: f32) -> f32 {
-        let due = (self.begun + dt_secs.max(0.0) / STEP_SECS).min(STEP_LIMIT);
-        self.begun = due.fract();
-        due
+/// How many steps a frame of `dt_secs` takes, and how long each is (s).
+fn steps(integrator: BladeIntegrator, dt_secs: f32) -> (u32, f32) {
+    let dt_secs = dt_secs.max(0.0);
+    if integrator == BladeIntegrator::Exact {
+        return (u32::from(dt_secs > 0.0), dt_secs.min(EXACT_STEP_SECS));
     }
+    let count = (dt_secs / STEP_SECS - 1e-3).ceil().clamp(0.0, STEP_LIMIT);
+    (count as u32, (dt_secs / count.max(1.0)).min(STEP_SECS))
 }
 
 /// Whether any plant of a grid may be in view.
@@ -280,24 +276,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_of_a_coarse_clock_lose_no_time() {
-        let mut sub_steps = SubSteps::default();
-        // 60 Hz as a clock of 0.1 ms tells it.
-        let frames_secs = [0.0166, 0.0167, 0.0167].repeat(400);
-        let passed_secs: f32 = frames_secs.iter().sum();
-        let dues: Vec<f32> = frames_secs.iter().map(|&dt_secs| sub_steps.after(dt_secs)).collect();
-        let done: f32 = dues.iter().map(|due| due.trunc()).sum();
-        assert!((done * STEP_SECS - passed_secs).abs() <= 1.01 * STEP_SECS, "{done} sub-steps in {passed_secs} s");
-        assert!(dues.iter().all(|due| (1.0..4.0).contains(due)), "{dues:?}");
-    }
-
-    #[test]
-    fn short_frames_add_up_and_pauses_are_cut() {
-        let mut sub_steps = SubSteps::default();
-        let dues = [0.5, 0.25, 0.5, 0.0].map(|steps| sub_steps.after(steps * STEP_SECS));
-        assert_eq!(dues, [0.5, 0.75, 1.25, 0.25]);
-        assert_eq!(sub_steps.after(10.0), STEP_LIMIT);
-        assert_eq!(sub_steps.after(-1.0), 0.0);
+    fn frames_take_the_steps_that_their_scheme_can_take() {
+        let found = [0.0, 0.004, 1.0 / 60.0, 0.02, 1.0, -1.0].map(|dt_secs| steps(BladeIntegrator::Verlet, dt_secs));
+        assert_eq!(found.map(|(count, _)| count), [0, 1, 2, 3, 8, 0]);
+        assert!(found.iter().all(|&(_, step_secs)| step_secs <= STEP_SECS));
+        assert!((found[3].1 - 0.02 / 3.0).abs() < 1e-6);
+        assert_eq!([0.0, 0.02, 5.0].map(|dt_secs| steps(BladeIntegrator::Exact, dt_secs)), [(0, 0.0), (1, 0.02), (1, EXACT_STEP_SECS)]);
     }
 
     #[test]

@@ -4,7 +4,10 @@
 const COMMON: &str = include_str!("../../shaders/common.wgsl");
 
 /// Compute passes that bend single plants.
-pub(super) const BEND: &str = include_str!("../../shaders/bend.wgsl");
+pub(super) const BEND: &str = concat!(include_str!("../../shaders/blade.wgsl"), include_str!("../../shaders/bend.wgsl"));
+/// How a single blade moves.
+#[cfg(test)]
+pub(super) const BLADE: &str = include_str!("../../shaders/blade.wgsl");
 /// Blades as tapered strips.
 pub(super) const BLADES: &str = include_str!("../../shaders/blades.wgsl");
 /// Flower heads.

@@ -6,10 +6,13 @@ use crate::camera::Camera;
 use crate::state::Mirror;
 use glam::Vec3;
 use shared::lod::Lag;
-use shared::scene::{Grass, LagWay, Patches, Scene, Species, TerrainMaps, Wind, WindDust, WindTiling};
+use shared::hash::hash3;
+use shared::plant::blade::contact::{Sphere, settle};
+use shared::plant::blade::{Blade, LINKS, Sway, advance};
+use shared::scene::{BladeIntegrator, Grass, LagWay, Patches, Scene, Species, TerrainMaps, VehicleKind, Wind, WindDust, WindTiling};
 use shared::terrain::grey_png;
 use shared::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, omega_rad_per_s, theta_code};
-use shared::wire::{ServerMessage, Shape, codec};
+use shared::wire::{ObjectPose, ServerMessage, Shape, codec};
 use wgpu::naga;
 
 fn module(source: &str) -> naga::Module {
@@ -115,7 +118,7 @@ fn stream(mirror: &mut Mirror, theta_rad: impl Fn(f32) -> f32, omega_rad_per_s: 
     }
 }
 
-/// Tips of the near blades after a second in a wind, as offsets from their roots (m).
+/// Tips of the near blades after a second in a wind, as offsets from their roots in lengths of the blade.
 fn tips(gpu: &Gpu, wind_m_per_s: f32, streamed_rad: Option<f32>) -> Vec<Vec3> {
     let mut mirror = meadow(wind_m_per_s);
     let mut picture = Picture::new(gpu, [16, 16], Quality::Low);
@@ -126,10 +129,9 @@ fn tips(gpu: &Gpu, wind_m_per_s: f32, streamed_rad: Option<f32>) -> Vec<Vec3> {
         }
         picture.draw(&mut mirror, &camera, 0.0, 1.0 / 30.0);
     }
-    let postures = &picture.renderer.scene.as_ref().expect("a scene").blades.postures;
-    let bytes = read(gpu, postures);
-    let points: &[[[f32; 4]; 6]] = bytemuck::cast_slice(&bytes);
-    points.iter().map(|[_, _, tip, ..]| Vec3::new(tip[0], tip[1], tip[2])).collect()
+    let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").blades.sways);
+    let sways: &[[[f32; 4]; LINKS]] = bytemuck::cast_slice(&bytes);
+    sways.iter().map(|links| Vec3::from(Sway::at_rest(links.map(|[x, z, ..]| [x, z])).points_m(1.0)[LINKS - 1])).collect()
 }
 
 /// Bytes of a buffer on the GPU.
@@ -181,11 +183,16 @@ fn probe(gpu: &Gpu, picture: &Picture, body: &str, places: &[[f32; 4]]) -> Vec<[
         fn found(at: vec4<f32>) -> vec4<f32> {{ {body} }}
         @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {{ probes[id.x] = found(probes[id.x]); }}"
     );
+    compute(gpu, picture, &source, places, places.len() as u32)
+}
+
+/// What so many invocations of `probe` in a WGSL source make of a storage buffer of `inputs`.
+fn compute(gpu: &Gpu, picture: &Picture, source: &str, inputs: &[[f32; 4]], invocations: u32) -> Vec<[f32; 4]> {
     let renderer = &picture.renderer;
     let maker = Maker { gpu, frame_layout: &renderer.frame.layout, samples: 1 };
     let layout = maker.layout("probes", &[storage_rw(0)]);
-    let pipeline = maker.compute("probe", &gpu.shader("probe", &source), "probe", &layout);
-    let probes = gpu.buffer("probes", bytemuck::cast_slice(places), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+    let pipeline = maker.compute("probe", &gpu.shader("probe", source), "probe", &layout);
+    let probes = gpu.buffer("probes", bytemuck::cast_slice(inputs), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let group = bind(gpu, "probes", &layout, &[probes.as_entire_binding()]);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     {
@@ -193,7 +200,7 @@ fn probe(gpu: &Gpu, picture: &Picture, body: &str, places: &[[f32; 4]]) -> Vec<[
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &renderer.scene.as_ref().expect("a scene").textures.group, &[]);
         pass.set_bind_group(1, &group, &[]);
-        pass.dispatch_workgroups(places.len() as u32, 1, 1);
+        pass.dispatch_workgroups(invocations, 1, 1);
     }
     gpu.queue.submit([encoder.finish()]);
     bytemuck::cast_slice(&read(gpu, &probes)).to_vec()
@@ -319,4 +326,87 @@ fn places_have_the_kind_of_their_map() {
             assert!((blended_rad - bend_rad).abs() < 1e-6, "at {at:?}");
         }
     }
+}
+
+/// What a blade of the comparison is like and where it starts; 12 × 4 floats, as `Case` in the WGSL below.
+fn blade_case(n: usize) -> ([[f32; 4]; 3], [[f32; 4]; 3], [f32; 4], [f32; 4], [f32; 4]) {
+    let random = |k: u32| hash3([n as u32, k, 77]).map(|v| (v >> 8) as f32 / 16_777_216.0);
+    let links = std::array::from_fn(|i| {
+        let [a, b, c] = random(i as u32);
+        [a * 2.0 - 1.0, b * 2.0 - 1.0, c * 8.0 - 4.0, 4.0 * a - 2.0]
+    });
+    let acts = std::array::from_fn(|i| {
+        let [a, b, c] = random(10 + i as u32);
+        [a - 0.5, b - 0.5, c * 16.0 - 8.0, a * 10.0 - 5.0]
+    });
+    let [a, b, c] = random(20);
+    let blade = [0.1 + 1.5 * a, 4.0 + 40.0 * b, 0.02 + c, 0.004 * a];
+    let [x, z, t] = random(21);
+    let root = [30.0 + 5.0 * x, 0.0, 30.0 + 5.0 * z, 0.002 + 0.03 * t];
+    let [x, z, way] = random(22);
+    let normal = Vec3::new(0.6 * (x - 0.5), 1.0, 0.6 * (z - 0.5)).normalize();
+    (links, acts, blade, root, [normal.x, normal.y, normal.z, (way * 3.0).floor()])
+}
+
+#[test]
+fn blades_move_as_their_twins_do() {
+    const SOURCE: &str = "
+        struct Case { links: array<vec4<f32>, 3>, acts: array<vec4<f32>, 3>, blade: vec4<f32>, root: vec4<f32>, normal: vec4<f32> }
+        @group(1) @binding(0) var<storage, read_write> cases: array<Case>;
+        @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
+            let case = cases[id.x];
+            let held = array<vec2<f32>, 3>(case.acts[0].xy, case.acts[1].xy, case.acts[2].xy);
+            let winds_m_per_s = array<vec2<f32>, 3>(case.acts[0].zw, case.acts[1].zw, case.acts[2].zw);
+            let nature = BladeNature(case.blade.x, case.blade.y, case.blade.z, case.blade.w);
+            var sway = Sway(case.links);
+            for (var i = 0; i < 5; i++) {
+                sway = advance(sway, nature, held, winds_m_per_s, u32(case.normal.w), case.root.w);
+                sway = settle(sway, nature.length, case.normal.xyz, case.root.xyz);
+            }
+            cases[id.x].links = sway.links;
+        }";
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut mirror = meadow(0.0);
+    let pose = |id: u32, position_m: [f32; 3]| ObjectPose {
+        id,
+        kind: VehicleKind::Monster,
+        position_m,
+        rotation: [0.0, 0.0, 0.0, 1.0],
+        velocity_m_per_s: [0.0; 3],
+        part_rad: 0.0,
+    };
+    mirror.apply(ServerMessage::Poses { tick: 1, objects: vec![pose(1, [31.0, 1.0, 31.5]), pose(2, [34.0, 1.5, 33.0])] }).expect("sound poses");
+    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    picture.draw(&mut mirror, &Camera { eye_m: Vec3::new(32.0, 2.0, 32.0), ..Camera::default() }, 0.0, 0.0);
+    let count = probe(&gpu, &picture, "return vec4<f32>(frame.clouds.w);", &[[0.0; 4]])[0][0] as usize;
+    let numbers: Vec<_> = (0..count).map(|i| [i as f32, 0.0, 0.0, 0.0]).collect();
+    let spheres = probe(&gpu, &picture, "return frame.spheres[u32(at.x)];", &numbers);
+    assert!(count >= 2, "the monsters' feet push plants aside");
+
+    let cases: Vec<_> = (0..600).map(blade_case).collect();
+    let inputs: Vec<[f32; 4]> =
+        cases.iter().flat_map(|(links, acts, blade, root, normal)| links.iter().chain(acts).chain([blade, root, normal]).copied()).collect();
+    let outputs = compute(&gpu, &picture, &format!("{}\n{SOURCE}", shaders::BLADE), &inputs, cases.len() as u32);
+    let mut touching = 0;
+    for ((links, acts, [length_m, frequency_rad_per_s, damping_share, lean_per_wind2], root, [x, y, z, way]), found) in
+        cases.into_iter().zip(outputs.chunks_exact(9))
+    {
+        let blade = Blade { length_m, frequency_rad_per_s, damping_share, lean_per_wind2 };
+        let integrator = [BladeIntegrator::Euler, BladeIntegrator::Verlet, BladeIntegrator::Exact][way as usize];
+        let about = spheres.iter().map(|s| Sphere { centre_m: std::array::from_fn(|i| s[i] - root[i]), radius_m: s[3] }).collect::<Vec<_>>();
+        let pair = |part: [[f32; 4]; LINKS], first: usize| part.map(|link| [link[first], link[first + 1]]);
+        let mut sway = Sway { lean_rad: pair(links, 0), rate_rad_per_s: pair(links, 2) };
+        for _ in 0..5 {
+            sway = advance(&sway, &blade, &pair(acts, 0), &pair(acts, 2), integrator, root[3]);
+            let free = sway;
+            sway = settle(&sway, length_m, [x, y, z], &about);
+            touching += u32::from(free != sway);
+        }
+        let twin = Sway::at_rest(pair([found[0], found[1], found[2]], 0));
+        for (wanted, found) in sway.points_m(length_m).into_iter().zip(twin.points_m(length_m)) {
+            let apart_m = Vec3::from(wanted).distance(Vec3::from(found));
+            assert!(apart_m < 1e-4 * length_m, "{apart_m} m apart: {sway:?} and {twin:?}");
+        }
+    }
+    assert!(touching > 300, "only {touching} contacts were compared");
 }

@@ -74,7 +74,7 @@ uniform_block! {
         tip: [f32; 4],
         /// Base speed of a bend (m/s) and its growth with the bending speed (m/rad); lag of the topmost segment (s); share of it while the grass rises.
         lag: [f32; 4],
-        /// Segments; factors on a blade's stiffness, on how it droops of itself, and on its width.
+        /// Segments; first natural frequency of a blade of mean height (rad/s); factors on how it droops of itself, and on its width.
         shape: [f32; 4],
     }
 }
@@ -107,7 +107,11 @@ uniform_block! {
         counts: [u32; 4],
         /// Capacities of the lists of fine blades, coarse blades and flowers.
         capacities: [u32; 4],
-        /// Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), sub-steps due.
+        /// Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), damping share of a blade.
         shape: [f32; 4],
+        /// Steps of this frame; way of integration, as the constants of `blade.wgsl`; unused.
+        steps: [u32; 4],
+        /// Length of a step (s); unused.
+        time: [f32; 4],
     }
 }

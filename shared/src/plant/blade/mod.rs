@@ -5,7 +5,7 @@
 //!
 //! - [`modes`]: natural frequencies of the chain, and how links and wind couple to its modes;
 //! - [`propagator`]: three ways to take a mode through time, each with its limit;
-//! - [`step`]: one step of a blade, alone or eight abreast;
+//! - [`step`]: one step of a blade, alone or [eight abreast](number);
 //! - [`lean`]: from a lean to a direction and back;
 //! - [`contact`]: never below the ground, never inside a sphere;
 //! - [`backbone`]: the curve through the control points and the outline about it.
@@ -16,38 +16,39 @@ pub mod backbone;
 pub mod contact;
 pub mod lean;
 pub mod modes;
+pub mod number;
 pub mod propagator;
 pub mod step;
 
 pub use propagator::Integrator;
-pub use step::{Eight, advance, advance_eight};
+pub use step::advance;
 
 /// Links of a blade.
 pub const LINKS: usize = 3;
 
 /// A vector on the ground for each link: X and Z.
-pub type Leans = [[f32; 2]; LINKS];
+pub type Leans<T = f32> = [[T; 2]; LINKS];
 
 /// What a blade is like.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Blade {
+pub struct Blade<T = f32> {
     /// Length (m).
-    pub length_m: f32,
+    pub length_m: T,
     /// First natural frequency ω₁ (rad/s), from [`modes::first_frequency_rad_per_s`] or as measured.
-    pub frequency_rad_per_s: f32,
+    pub frequency_rad_per_s: T,
     /// Damping of each mode as a share of the critical one.
-    pub damping_share: f32,
+    pub damping_share: T,
     /// Mean lean that the drag of a wind of 1 m/s sustains (rad s²/m²); drag grows with the square of the speed.
-    pub lean_per_wind2: f32,
+    pub lean_per_wind2: T,
 }
 
 /// How a blade leans and sways.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sway {
+pub struct Sway<T = f32> {
     /// Lean of each link from upright (rad).
-    pub lean_rad: Leans,
+    pub lean_rad: Leans<T>,
     /// Its rate of change (rad/s).
-    pub rate_rad_per_s: Leans,
+    pub rate_rad_per_s: Leans<T>,
 }
 
 impl Sway {

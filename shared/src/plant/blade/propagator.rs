@@ -1,20 +1,9 @@
 //! How one mode is taken through a step: `ẍ + 2γẋ + ω²x = 0`, x the distance from where it is held.
 
 use super::modes::FREQUENCIES;
-use crate::scene::words;
-use serde::{Deserialize, Serialize};
+use super::number::Number;
 
-words! {
-    /// How blades are taken through time.
-    Integrator {
-        /// Explicit Euler, 000 Eq. (6): first order; amplitudes grow unless the damping share is above half of ω·dt.
-        Euler = "euler",
-        /// Verlet, 000 Eq. (7), with the acceleration that it lacks in its listing; second order, bounded up to ω·dt = 2 without damping.
-        Verlet = "verlet",
-        /// The exponential of the mode's own matrix; exact for any dt.
-        Exact = "exact",
-    }
-}
+pub use crate::scene::BladeIntegrator as Integrator;
 
 /// Squarings of the exponential of an eighth of a step.
 const SQUARINGS: u32 = 3;
@@ -22,21 +11,21 @@ const SQUARINGS: u32 = 3;
 /// What a step makes of distance x and rate v: `x' = x + stay·x + glide·v`, `v' = v + pull·x + brake·v`. Changes are kept apart from what they add to, so
 /// that rounding is relative to the changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Propagator {
+pub struct Propagator<T = f32> {
     /// Change of x over x.
-    pub stay: f32,
+    pub stay: T,
     /// Change of x over v (s).
-    pub glide: f32,
+    pub glide: T,
     /// Change of v over x (1/s).
-    pub pull: f32,
+    pub pull: T,
     /// Change of v over v.
-    pub brake: f32,
+    pub brake: T,
 }
 
-impl Propagator {
+impl<T: Number> Propagator<T> {
     /// Of a step of `dt_secs` for a mode with frequency ω (rad/s) and damping rate γ (1/s), both at least 0.
     #[inline(always)]
-    pub fn new(integrator: Integrator, omega_rad_per_s: f32, gamma_per_s: f32, dt_secs: f32) -> Self {
+    pub fn new(integrator: Integrator, omega_rad_per_s: T, gamma_per_s: T, dt_secs: f32) -> Self {
         match integrator {
             Integrator::Euler => Self::euler(omega_rad_per_s, gamma_per_s, dt_secs),
             Integrator::Verlet => Self::verlet(omega_rad_per_s, gamma_per_s, dt_secs),
@@ -46,41 +35,44 @@ impl Propagator {
 
     /// 000 Eq. (6): position and velocity by their rates at the start of the step.
     #[inline(always)]
-    pub fn euler(omega_rad_per_s: f32, gamma_per_s: f32, dt_secs: f32) -> Self {
-        let pull = -omega_rad_per_s * omega_rad_per_s * dt_secs;
-        Self { stay: 0.0, glide: dt_secs, pull, brake: -2.0 * gamma_per_s * dt_secs }
+    fn euler(omega_rad_per_s: T, gamma_per_s: T, dt_secs: f32) -> Self {
+        let dt = T::splat(dt_secs);
+        let pull = -(omega_rad_per_s * omega_rad_per_s * dt);
+        Self { stay: T::splat(0.0), glide: dt, pull, brake: T::splat(-2.0) * gamma_per_s * dt }
     }
 
     /// 000 Eq. (7), `x' = 2x − x'' + a·dt²`, with v for (x − x'')/dt and the damping of that v.
     #[inline(always)]
-    pub fn verlet(omega_rad_per_s: f32, gamma_per_s: f32, dt_secs: f32) -> Self {
+    fn verlet(omega_rad_per_s: T, gamma_per_s: T, dt_secs: f32) -> Self {
+        let dt = T::splat(dt_secs);
         let Self { pull, brake, .. } = Self::euler(omega_rad_per_s, gamma_per_s, dt_secs);
-        Self { stay: pull * dt_secs, glide: dt_secs + brake * dt_secs, pull, brake }
+        Self { stay: pull * dt, glide: dt + brake * dt, pull, brake }
     }
 
     /// The exponential of the matrix A of the mode, as `1 + e + p·A` (Cayley–Hamilton: A² = −ω² − 2γA): Padé's (2, 2) approximant of an eighth of the step, squared
     /// three times. Within 4e-6 of exact up to ω·dt = 1.5 and critical damping; bounded for every step and damping.
     #[inline(always)]
-    pub fn exact(omega_rad_per_s: f32, gamma_per_s: f32, dt_secs: f32) -> Self {
-        let h = dt_secs / (1 << SQUARINGS) as f32;
-        let (omega2, gamma2) = (omega_rad_per_s * omega_rad_per_s, 2.0 * gamma_per_s);
+    fn exact(omega_rad_per_s: T, gamma_per_s: T, dt_secs: f32) -> Self {
+        let h_secs = dt_secs / (1 << SQUARINGS) as f32;
+        let (h, twelfth) = (T::splat(h_secs), T::splat(h_secs * h_secs / 12.0));
+        let (one, two) = (T::splat(1.0), T::splat(2.0));
+        let (omega2, gamma2) = (omega_rad_per_s * omega_rad_per_s, two * gamma_per_s);
         // Numerator and denominator 1 ± Ah/2 + (Ah)²/12 as a + up·A and a + down·A, with up = down + h.
-        let a = 1.0 - omega2 * h * h / 12.0;
-        let bend = gamma2 * h * h / 12.0;
-        let down = -0.5 * h - bend;
+        let a = one - omega2 * twelfth;
+        let down = -(T::splat(0.5) * h + gamma2 * twelfth);
         let norm = a * a - gamma2 * a * down + omega2 * down * down;
         // (a + up·A)/(a + down·A) = 1 + e + p·A.
-        let (mut e, mut p) = (omega2 * down * h / norm, a * h / norm);
+        let (mut e, mut p) = ((omega2 * down * h).over(norm), (a * h).over(norm));
         for _ in 0..SQUARINGS {
-            (e, p) = (2.0 * e + e * e - omega2 * p * p, p * (2.0 + 2.0 * e - gamma2 * p));
+            (e, p) = (two * e + e * e - omega2 * p * p, p * (two + two * e - gamma2 * p));
         }
-        Self { stay: e, glide: p, pull: -omega2 * p, brake: e - gamma2 * p }
+        Self { stay: e, glide: p, pull: -(omega2 * p), brake: e - gamma2 * p }
     }
 
-    /// Distance and rate after the step.
+    /// What a step adds to distance and rate.
     #[inline(always)]
-    pub fn apply(&self, x: f32, v: f32) -> [f32; 2] {
-        [x + (self.stay * x + self.glide * v), v + (self.pull * x + self.brake * v)]
+    pub fn change(&self, x: T, v: T) -> [T; 2] {
+        [self.stay * x + self.glide * v, self.pull * x + self.brake * v]
     }
 }
 
@@ -109,6 +101,11 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    fn after(step: &Propagator, [x, v]: [f32; 2]) -> [f32; 2] {
+        let [dx, dv] = step.change(x, v);
+        [x + dx, v + dv]
+    }
+
     /// The exponential in f64 by its closed form.
     fn closed(omega: f64, gamma: f64, t: f64, [x, v]: [f64; 2]) -> [f64; 2] {
         let spread = omega * omega - gamma * gamma;
@@ -127,7 +124,7 @@ mod tests {
         fn the_exponential_is_exact(omega in 0.0_f32..200.0, share in 0.0_f32..1.0, step in 0.0_f32..1.5, x in -1.0_f32..1.0, v in -1.0_f32..1.0) {
             let dt = step / omega.max(1.0);
             let v = v * omega.max(1.0);
-            let found = Propagator::exact(omega, share * omega, dt).apply(x, v);
+            let found = after(&Propagator::exact(omega, share * omega, dt), [x, v]);
             let wanted = closed(f64::from(omega), f64::from(share * omega), f64::from(dt), [f64::from(x), f64::from(v)]);
             let scale = [1.0, f64::from(omega.max(1.0))];
             prop_assert!((0..2).all(|i| (f64::from(found[i]) - wanted[i]).abs() < 4e-6 * scale[i]), "{found:?} instead of {wanted:?}");
@@ -138,7 +135,7 @@ mod tests {
             let step = Propagator::exact(omega, share * omega, dt);
             let [mut x, mut v] = [1.0_f32, 0.0];
             for _ in 0..200 {
-                [x, v] = step.apply(x, v);
+                [x, v] = after(&step, [x, v]);
                 prop_assert!(x.abs() <= 1.001 && v.abs() <= 1.001 * omega, "{x}, {v}");
             }
         }
@@ -177,8 +174,7 @@ mod tests {
     #[test]
     fn two_half_steps_are_a_whole_one() {
         let (half, whole) = (Propagator::exact(12.0, 1.5, 0.02), Propagator::exact(12.0, 1.5, 0.04));
-        let [x, v] = half.apply(0.3, -2.0);
-        let (twice, once) = (half.apply(x, v), whole.apply(0.3, -2.0));
+        let (twice, once) = (after(&half, after(&half, [0.3, -2.0])), after(&whole, [0.3, -2.0]));
         assert!((twice[0] - once[0]).abs() < 1e-6 && (twice[1] - once[1]).abs() < 1e-5);
     }
 }
