@@ -11,7 +11,7 @@ struct Field {
 }
 
 /// Source files and, for each struct in them, the section that it describes.
-const SOURCES: [(&str, &[(&str, &str)]); 15] = [
+const SOURCES: [(&str, &[(&str, &str)]); 18] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
     ("terrain.rs", &[("TerrainMaps", "terrain")]),
@@ -20,10 +20,13 @@ const SOURCES: [(&str, &[(&str, &str)]); 15] = [
     ("wind/dust.rs", &[("WindDust", "wind.dust")]),
     ("wind/primitive.rs", &[("Primitive", "wind.primitives")]),
     ("natural_wind.rs", &[("NaturalWind", "natural_wind")]),
+    ("rain.rs", &[("Rain", "rain")]),
     ("bend.rs", &[("BendField", "bend")]),
     ("grass.rs", &[("Grass", "grass")]),
     ("plants.rs", &[("Plants", "plants")]),
     ("species.rs", &[("Species", "species")]),
+    ("underbrush.rs", &[("Underbrush", "underbrush"), ("Component", "underbrush.components")]),
+    ("growth.rs", &[("Growth", "growth")]),
     (
         "objects.rs",
         &[
@@ -39,16 +42,18 @@ const SOURCES: [(&str, &[(&str, &str)]); 15] = [
 ];
 
 /// Sections that may stand once.
-const SECTIONS: [&str; 16] = [
+const SECTIONS: [&str; 18] = [
     "patches",
     "terrain",
     "wind",
     "wind.faces",
     "wind.dust",
     "natural_wind",
+    "rain",
     "bend",
     "grass",
     "plants",
+    "growth",
     "objects",
     "objects.car",
     "objects.monster",
@@ -103,6 +108,7 @@ fn minimal() -> toml::Table {
 fn complete() -> toml::Table {
     let text = minimal().to_string()
         + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n[[species]]\nname = ''\ncover = 1\n"
+        + "[[underbrush]]\nname = ''\n[[underbrush.components]]\nname = ''\nkind = 'leaf'\n"
         + "[[drawn_winds]]\nshape = 'swirl'\npath_m = [[1.0, 2.0]]\n";
     toml::Table::try_from(parse(&text).unwrap()).unwrap()
 }
@@ -172,8 +178,10 @@ fn doc_comments_give_the_checked_range_and_the_true_default() {
             let stated = numbers(after(&field.doc, "allowed ").unwrap());
             assert_eq!(stated[..4], [least as f64, most as f64, low, high], "{path}: {}", field.doc);
         }
-        if let Allowed::Sections(limit) = allowed {
-            assert_eq!(numbers(after(&field.doc, "allowed ").unwrap()), [limit as f64], "{path}: {}", field.doc);
+        if let Allowed::Sections(least, most) = allowed {
+            let stated = after(&field.doc, "allowed ").unwrap().split(',').next().unwrap();
+            let expected = if least == 0 { vec![most as f64] } else { vec![least as f64, most as f64] };
+            assert_eq!(numbers(stated), expected, "{path}: {}", field.doc);
         }
         if let Allowed::OneOf(words) = allowed {
             assert!(words.iter().all(|word| field.doc.contains(&format!("`{word}`"))), "{path}: {}", field.doc);
@@ -270,7 +278,7 @@ fn the_readme_shows_every_field() {
     for field in documented() {
         let (name, key) = field.path.rsplit_once('.').unwrap_or(("", &field.path));
         if section.as_deref() != Some(name) {
-            let is_list = FIELDS.iter().any(|(path, allowed)| *path == name && matches!(allowed, Allowed::Sections(_)));
+            let is_list = FIELDS.iter().any(|(path, allowed)| *path == name && matches!(allowed, Allowed::Sections(..)));
             let title = match name {
                 "" => "At the top".to_owned(),
                 _ if is_list => format!("`[[{name}]]`"),

@@ -9,24 +9,25 @@ fn scene(more: &str) -> Result<Scene, Vec<String>> {
 }
 
 const TWO: &str = "[[species]]\nname = 'buffalo grass'\ncover = 7\nstiffness_per_s2 = 9\nsegments = 1\n\
-                   [[species]]\nname = 'bluestem'\ncover = 3\nheight_m = 1.6\nlag_secs = 0.3\n";
+                   [[species]]\nname = 'bluestem'\ncover = 3\nheight_m = 1.6\nswing_hz = 0.7\nlag_secs = 0.3\n";
 
 #[test]
 fn what_a_species_leaves_unsaid_is_as_in_grass_and_plants() {
     // Wherever in the file those sections are.
     for more in [
-        format!("{TWO}[grass]\nc0_m_per_s = 4\n[plants]\ntip_rgb = [1, 1, 0]\n"),
-        format!("[plants]\ntip_rgb = [1, 1, 0]\n[grass]\nc0_m_per_s = 4\n{TWO}"),
+        format!("{TWO}[grass]\nc0_m_per_s = 4\n[plants]\ntip_rgb = [1, 1, 0]\nswing_hz = 2\n"),
+        format!("[plants]\ntip_rgb = [1, 1, 0]\nswing_hz = 2\n[grass]\nc0_m_per_s = 4\n{TWO}"),
     ] {
         let scene = scene(&more).unwrap();
-        let (grass, plants) = (Grass { c0_m_per_s: 4.0, ..Grass::default() }, Plants { tip_rgb: [1.0, 1.0, 0.0], ..Plants::default() });
+        let (grass, plants) =
+            (Grass { c0_m_per_s: 4.0, ..Grass::default() }, Plants { tip_rgb: [1.0, 1.0, 0.0], swing_hz: 2.0, ..Plants::default() });
         assert_eq!((scene.grass, scene.plants), (grass, plants));
         let mut buffalo = Species::new("buffalo grass", 7, &grass, &plants);
         (buffalo.stiffness_per_s2, buffalo.segments) = (9.0, 1);
         assert_eq!(scene.species[0], buffalo);
         let kinds = [grass, Grass { stiffness_per_s2: 9.0, segments: 1, ..grass }, Grass { lag_secs: 0.3, ..grass }];
         assert_eq!(scene.kinds(), kinds);
-        assert_eq!(scene.kinds_of_plants(), [plants, plants, Plants { height_m: 1.6, ..plants }]);
+        assert_eq!(scene.kinds_of_plants(), [plants, plants, Plants { height_m: 1.6, swing_hz: 0.7, ..plants }]);
     }
 }
 
@@ -35,6 +36,10 @@ fn an_id_has_the_kind_that_claims_it() {
     let with = scene(TWO).unwrap();
     assert_eq!([7, 3, 0, 253, 254, 255, 8].map(|id| with.kind_of_cover(id)), [1, 2, 0, 0, 0, 0, 0]);
     assert_eq!([7, 3, 0, 253, 254, 255, 8].map(|id| with.is_grass(Cover::from(id))), [true, true, false, false, false, true, false]);
+    let painted = "[[underbrush]]\nname = 'reed'\ncover = 8\n[[underbrush.components]]\nname = 'stalk'\nkind = 'branch'\n";
+    let grown = scene(&format!("{TWO}{painted}")).unwrap();
+    assert_eq!([7, 8, 9].map(|id| grown.kind_of_cover(id)), [1, 0, 0]);
+    assert_eq!([0, 7, 8, 9].map(|id| grown.is_grass(Cover::from(id))), [false, true, true, false]);
     let without = scene("").unwrap();
     assert_eq!(without.kinds(), [Grass::default()]);
     assert!(!without.is_grass(Cover::from(7)));

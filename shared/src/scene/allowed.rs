@@ -1,8 +1,8 @@
 //! What each field of a scene file may hold: the one table that parsing, the reference in the README and its tests share.
 
 use super::{
-    LagWay, PrimitiveKind, VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling,
-    WindTime,
+    BladeIntegrator, BladeShape, ComponentKind, LagWay, PrimitiveKind, SPECIES_LIMIT, VehicleKind, WindAdvection, WindBoundary,
+    WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, Scheme, Seams};
 use std::fmt;
@@ -16,8 +16,8 @@ pub enum Allowed {
     Range(f64, f64),
     /// One of these words.
     OneOf(&'static [&'static str]),
-    /// A list of sections, up to so many.
-    Sections(usize),
+    /// A list of so many to so many sections.
+    Sections(usize, usize),
     /// A list of so many to so many places [x, z], each number from the third to the fourth.
     Places(usize, usize, f64, f64),
 }
@@ -25,12 +25,14 @@ pub enum Allowed {
 use Allowed::{OneOf, Places, Range, Sections, Text};
 
 /// Every field by its path, in the order of the structs; in a list of sections, those of one section.
-pub const FIELDS: [(&str, Allowed); 133] = [
+pub const FIELDS: [(&str, Allowed); 179] = [
     ("summary", Text),
     ("seed", Range(0.0, i64::MAX as f64)),
     ("tick_hz", Range(10.0, 240.0)),
-    ("species", Sections(16)),
-    ("drawn_winds", Sections(16)),
+    ("species", Sections(0, 16)),
+    ("underbrush_file", Text),
+    ("underbrush", Sections(0, SPECIES_LIMIT)),
+    ("drawn_winds", Sections(0, 16)),
     ("patches.count", Range(1.0, 2048.0)),
     ("patches.cells", Range(8.0, 256.0)),
     ("patches.cell_m", Range(0.05, 10.0)),
@@ -59,7 +61,7 @@ pub const FIELDS: [(&str, Allowed); 133] = [
     ("wind.pressure", OneOf(WindPressure::WORDS)),
     ("wind.pressure_tolerance", Range(1e-12, 0.1)),
     ("wind.pressure_sweeps", Range(1.0, 100_000.0)),
-    ("wind.primitives", Sections(64)),
+    ("wind.primitives", Sections(0, 64)),
     ("wind.faces.west", OneOf(WindBoundary::WORDS)),
     ("wind.faces.east", OneOf(WindBoundary::WORDS)),
     ("wind.faces.bottom", OneOf(WindBoundary::WORDS)),
@@ -82,6 +84,7 @@ pub const FIELDS: [(&str, Allowed); 133] = [
     ("natural_wind.scale_m", Range(8.0, 1000.0)),
     ("natural_wind.drift_m_per_s", Range(-40.0, 40.0)),
     ("natural_wind.reach_m", Range(0.0, 500.0)),
+    ("rain.rate_mm_per_h", Range(0.0, 200.0)),
     ("bend.scheme", OneOf(Scheme::WORDS)),
     ("bend.seams", OneOf(Seams::WORDS)),
     ("bend.edges", OneOf(Edges::WORDS)),
@@ -110,11 +113,16 @@ pub const FIELDS: [(&str, Allowed); 133] = [
     ("plants.tree_m", Range(0.5, 60.0)),
     ("plants.stone_m", Range(0.05, 20.0)),
     ("plants.lag", OneOf(LagWay::WORDS)),
+    ("plants.blade_shape", OneOf(BladeShape::WORDS)),
+    ("plants.swing_hz", Range(0.05, 50.0)),
+    ("plants.swing_damping", Range(0.005, 5.0)),
+    ("plants.integrator", OneOf(BladeIntegrator::WORDS)),
     ("species.name", Text),
     ("species.cover", Range(1.0, 252.0)),
     ("species.height_m", Range(0.02, 5.0)),
     ("species.root_rgb", Range(0.0, 1.0)),
     ("species.tip_rgb", Range(0.0, 1.0)),
+    ("species.swing_hz", Range(0.05, 50.0)),
     ("species.c0_m_per_s", Range(0.0, 50.0)),
     ("species.mu_m_per_rad", Range(0.0, 10.0)),
     ("species.c_omega_m_per_s", Range(0.0, 50.0)),
@@ -126,6 +134,42 @@ pub const FIELDS: [(&str, Allowed); 133] = [
     ("species.lag_secs", Range(0.0, 1.0)),
     ("species.recovery_lag_share", Range(0.0, 1.0)),
     ("species.segments", Range(1.0, 6.0)),
+    ("underbrush.name", Text),
+    ("underbrush.cover", Range(0.0, 252.0)),
+    ("underbrush.settle_secs", Range(0.01, 10.0)),
+    ("underbrush.size_variation", Range(0.0, 0.9)),
+    ("underbrush.room_m", Range(0.05, 20.0)),
+    ("underbrush.reach_m", Range(0.05, 50.0)),
+    ("underbrush.propagation_points", Range(0.0, 10_000.0)),
+    ("underbrush.needs", Range(0.0, 1.0)),
+    ("underbrush.uptake", Range(0.0, 1.0)),
+    ("underbrush.light_need", Range(0.0, 1.0)),
+    ("underbrush.components", Sections(1, 16)),
+    ("underbrush.components.name", Text),
+    ("underbrush.components.kind", OneOf(ComponentKind::WORDS)),
+    ("underbrush.components.on", Text),
+    ("underbrush.components.count", Range(1.0, 32.0)),
+    ("underbrush.components.from_share", Range(0.0, 1.0)),
+    ("underbrush.components.to_share", Range(0.0, 1.0)),
+    ("underbrush.components.length_m", Range(0.005, 5.0)),
+    ("underbrush.components.length_variation", Range(0.0, 0.9)),
+    ("underbrush.components.width_m", Range(0.0005, 1.0)),
+    ("underbrush.components.petals", Range(3.0, 16.0)),
+    ("underbrush.components.sections", Range(1.0, 8.0)),
+    ("underbrush.components.mass_kg", Range(1e-6, 10.0)),
+    ("underbrush.components.stiffness_n_m2", Range(1e-9, 1000.0)),
+    ("underbrush.components.tip_stiffness_share", Range(0.01, 1.0)),
+    ("underbrush.components.strength_n_m", Range(0.0, 10_000.0)),
+    ("underbrush.components.angle_rad", Range(0.0, 3.1)),
+    ("underbrush.components.angle_variation_rad", Range(0.0, 1.5)),
+    ("underbrush.components.turn_rad", Range(-6.3, 6.3)),
+    ("underbrush.components.root_rgb", Range(0.0, 1.0)),
+    ("underbrush.components.tip_rgb", Range(0.0, 1.0)),
+    ("growth.nutrient_map", Text),
+    ("growth.richness", Range(0.0, 1.0)),
+    ("growth.patch_m", Range(1.0, 1000.0)),
+    ("growth.spacing_m", Range(0.05, 20.0)),
+    ("growth.shade", Range(0.0, 1.0)),
     ("objects.limit", Range(0.0, 1024.0)),
     ("objects.car_model", Text),
     ("objects.monster_model", Text),
@@ -133,6 +177,8 @@ pub const FIELDS: [(&str, Allowed); 133] = [
     ("objects.self_driving_m_per_s", Range(1.0, 60.0)),
     ("objects.self_driving_apart_m", Range(1.0, 1000.0)),
     ("objects.self_driving_kind", OneOf(VehicleKind::WORDS)),
+    ("objects.balls", Range(0.0, 64.0)),
+    ("objects.ball_radius_m", Range(0.1, 5.0)),
     ("objects.sled_outline_m", Places(3, 64, -20.0, 20.0)),
     ("objects.car.strike_height_m", Range(0.05, 5.0)),
     ("objects.car.lays_share", Range(0.0, 1.0)),
@@ -162,7 +208,7 @@ pub const FIELDS: [(&str, Allowed); 133] = [
 ];
 
 /// Fields that a scene file must give; in a list of sections, each section of it.
-pub const REQUIRED: [&str; 12] = [
+pub const REQUIRED: [&str; 16] = [
     "summary",
     "terrain",
     "terrain.height_map",
@@ -173,6 +219,10 @@ pub const REQUIRED: [&str; 12] = [
     "wind.primitives.at_m",
     "species.name",
     "species.cover",
+    "underbrush.name",
+    "underbrush.components",
+    "underbrush.components.name",
+    "underbrush.components.kind",
     "drawn_winds.shape",
     "drawn_winds.path_m",
 ];
@@ -209,7 +259,8 @@ impl fmt::Display for Allowed {
                 }
                 Ok(())
             }
-            Sections(limit) => write!(f, "at most {limit} sections"),
+            Sections(0, most) => write!(f, "at most {most}"),
+            Sections(least, most) => write!(f, "{least} to {most}"),
             Places(least, most, low, high) => write!(f, "{least} to {most} places [x, z], each number {low} to {high}"),
         }
     }

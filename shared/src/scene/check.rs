@@ -1,6 +1,6 @@
 //! Checks of values against each other; the range of each single value is in [`FIELDS`](super::FIELDS).
 
-use super::{Scene, drawn_wind, objects, wind};
+use super::{Scene, drawn_wind, objects, underbrush, wind};
 use crate::bend::{Scheme, Seams};
 
 /// Largest side of the world (m): up to here a coordinate in single precision resolves 1 cm.
@@ -22,17 +22,17 @@ pub(super) struct Misfit {
 
 /// Keeps what does not fit together.
 #[derive(Default)]
-pub(super) struct Misfits(Vec<Misfit>);
+pub(super) struct Misfits(pub(super) Vec<Misfit>);
 
 impl Misfits {
     /// Notes what is wrong with the first of the `fields` that take part.
-    pub(super) fn note(&mut self, fields: &[&str], message: String) {
-        self.0.push(Misfit { fields: fields.iter().map(|&field| field.to_owned()).collect(), message });
+    pub(super) fn note(&mut self, fields: &[impl AsRef<str>], message: String) {
+        self.0.push(Misfit { fields: fields.iter().map(|field| field.as_ref().to_owned()).collect(), message });
     }
 }
 
-/// What does not fit together in `scene`.
-pub(super) fn cross_checks(scene: &Scene) -> Vec<Misfit> {
+/// What does not fit together in `scene`, whose first `from_file` species of underbrush come from its underbrush file.
+pub(super) fn cross_checks(scene: &Scene, from_file: usize) -> Misfits {
     let mut misfits = Misfits::default();
     let Scene { patches, species, .. } = scene;
 
@@ -68,9 +68,10 @@ pub(super) fn cross_checks(scene: &Scene) -> Vec<Misfit> {
             misfits.note(&[&fields[0], &fields[1]], message);
         }
     }
+    underbrush::check::check(scene, from_file, &mut misfits);
     objects::check(&scene.objects, &mut misfits);
     drawn_wind::check(scene, &mut misfits);
-    misfits.0
+    misfits
 }
 
 /// What the modal scheme asks for.

@@ -16,9 +16,12 @@ mod parse;
 mod patches;
 mod picture;
 mod plants;
+mod rain;
 mod species;
+mod template;
 mod terrain;
 mod underbrush;
+mod walk;
 mod wind;
 
 pub use allowed::{Allowed, FIELDS, REQUIRED};
@@ -30,13 +33,14 @@ pub use grass::Grass;
 pub use growth::Growth;
 pub use natural_wind::NaturalWind;
 pub use objects::{CarTread, HelicopterTread, MonsterTread, Objects, SledTread, Tread, VehicleKind};
-pub use parse::parse;
+pub use parse::{parse, parse_underbrush, parse_with};
 pub use patches::Patches;
 pub use picture::{CameraStart, Light};
-pub use plants::{LagWay, Plants};
+pub use plants::{BladeIntegrator, BladeShape, LagWay, Plants};
+pub use rain::Rain;
 pub use species::Species;
 pub use terrain::TerrainMaps;
-pub use underbrush::{Component, ComponentKind, Underbrush};
+pub use underbrush::{Component, ComponentKind, PARTS_LIMIT, SITES_LIMIT, SPECIES_LIMIT, Underbrush};
 pub(crate) use wind::words;
 pub use wind::{
     Primitive, PrimitiveKind, Wind, WindAdvection, WindBoundary, WindDiffusion, WindDust, WindFaces, WindMethod, WindPressure, WindTerrain,
@@ -69,6 +73,9 @@ pub struct Scene {
     /// Gusts of noise that push the grass near cameras (001 §5.3).
     #[serde(default)]
     pub natural_wind: NaturalWind,
+    /// Rain that beats on the plants.
+    #[serde(default)]
+    pub rain: Rain,
     /// How the bend field is solved.
     #[serde(default)]
     pub bend: BendField,
@@ -79,9 +86,20 @@ pub struct Scene {
     #[serde(default)]
     pub plants: Plants,
     /// Kinds of grass beside that of `[grass]` and `[plants]`, each a section `[[species]]`; with any, every ID of the covering map is that of a
-    /// species, or 0, 253, 254 or 255. Default none, allowed at most 16.
+    /// species, of a kind of underbrush, or 0, 253, 254 or 255. Default none, allowed at most 16.
     #[serde(default)]
     pub species: Vec<Species>,
+    /// TOML file beside the scene file that holds nothing but sections `[[underbrush]]`, for scenes to share; they count as if they stood in the
+    /// scene file before its own. Default empty, no such file.
+    #[serde(default)]
+    pub underbrush_file: String,
+    /// Species of underbrush, which grows between the grass (004), each a section `[[underbrush]]`. Default none, allowed at most 16, those of
+    /// `underbrush_file` among them.
+    #[serde(default)]
+    pub underbrush: Vec<Underbrush>,
+    /// What the underbrush grows on.
+    #[serde(default)]
+    pub growth: Growth,
     /// Cars, monsters, helicopters and sleds: how many, their models, and how they meet the grass.
     #[serde(default)]
     pub objects: Objects,
@@ -106,6 +124,31 @@ fn default_tick_hz() -> f32 {
 }
 
 impl Scene {
+    /// A scene of `terrain` with the defaults of all else and nothing in its summary.
+    pub fn new(terrain: TerrainMaps) -> Self {
+        Self {
+            summary: String::new(),
+            seed: default_seed(),
+            tick_hz: default_tick_hz(),
+            patches: Patches::default(),
+            terrain,
+            wind: Wind::default(),
+            natural_wind: NaturalWind::default(),
+            rain: Rain::default(),
+            bend: BendField::default(),
+            grass: Grass::default(),
+            plants: Plants::default(),
+            species: Vec::new(),
+            underbrush_file: String::new(),
+            underbrush: Vec::new(),
+            growth: Growth::default(),
+            objects: Objects::default(),
+            drawn_winds: Vec::new(),
+            camera: CameraStart::default(),
+            light: Light::default(),
+        }
+    }
+
     /// Duration of one fixed step (s).
     pub fn dt_secs(&self) -> f32 {
         1.0 / self.tick_hz

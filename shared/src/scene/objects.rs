@@ -86,6 +86,10 @@ pub struct Objects {
     pub self_driving_apart_m: f32,
     /// What those are: `car`, `monster`, `helicopter` or `sled`. Default `car`.
     pub self_driving_kind: VehicleKind,
+    /// Balls that lie about and can be pushed. Default 0, allowed 0..=64.
+    pub balls: u32,
+    /// Radius of a ball (m). Default 0.5, allowed 0.1..=5.
+    pub ball_radius_m: f32,
     /// Outline of a sled seen from above: corners [x, z] in order, x to the right and z to the back of its middle (m). It may be
     /// concave; its edges must not cross and must enclose at least 0.01 m². Default the U (−2, −2.5), (−1.2, −2.5), (−1.2, 1.7),
     /// (1.2, 1.7), (1.2, −2.5), (2, −2.5), (2, 2.5), (−2, 2.5); allowed 3..=64 corners, −20..=20 each.
@@ -110,6 +114,8 @@ impl Default for Objects {
             self_driving_m_per_s: 11.0,
             self_driving_apart_m: 4.0,
             self_driving_kind: VehicleKind::Car,
+            balls: 0,
+            ball_radius_m: 0.5,
             sled_outline_m: vec![[-2.0, -2.5], [-1.2, -2.5], [-1.2, 1.7], [1.2, 1.7], [1.2, -2.5], [2.0, -2.5], [2.0, 2.5], [-2.0, 2.5]],
             car: CarTread::default(),
             monster: MonsterTread::default(),

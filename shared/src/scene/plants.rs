@@ -13,7 +13,29 @@ words! {
     }
 }
 
-/// Size, number and colour of what the covering map places.
+words! {
+    /// What a single blade looks like (000 Fig. 5).
+    BladeShape {
+        /// A strip that tapers to its tip (000 Fig. 5a).
+        Simple = "simple",
+        /// Five shapes that a texture's alpha cuts out of wider strips, mixed (000 Fig. 5b).
+        Textured = "textured",
+    }
+}
+
+words! {
+    /// How the swing of a blade is carried on in time.
+    BladeIntegrator {
+        /// Explicit Euler; first order, and gains energy where damping is weak.
+        Euler = "euler",
+        /// The Verlet integration of 000 Eq. (7); second order.
+        Verlet = "verlet",
+        /// The closed form of each mode; stable for any step.
+        Exact = "exact",
+    }
+}
+
+/// Size, number, colour and swing of what the covering map places.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Plants {
@@ -40,6 +62,15 @@ pub struct Plants {
     /// Where upper segments of plants find the bend that the root had `grass.lag_secs` ago: `upwind`, at the place that the bend has reached since (001 Eqs
     /// 8–9); `history`, in earlier pictures of the field, which are kept for it (Eq. 7). Default `upwind`.
     pub lag: LagWay,
+    /// What single blades look like (000 Fig. 5): `simple`, a strip that tapers; `textured`, five shapes with a texture's alpha, mixed. Default `simple`.
+    pub blade_shape: BladeShape,
+    /// Natural frequency of a blade of mean height (Hz). Default 1.55, allowed 0.05..=50.
+    pub swing_hz: f32,
+    /// Damping of its swing as a share of critical damping. Default 0.1, allowed 0.005..=5.
+    pub swing_damping: f32,
+    /// How its swing is carried on in time: `euler`, explicit Euler; `verlet` of 000 Eq. (7); `exact`, the closed form of each mode, stable for any step.
+    /// Default `exact`.
+    pub integrator: BladeIntegrator,
 }
 
 impl Default for Plants {
@@ -56,6 +87,10 @@ impl Default for Plants {
             tree_m: 7.0,
             stone_m: 0.8,
             lag: LagWay::Upwind,
+            blade_shape: BladeShape::Simple,
+            swing_hz: 1.55,
+            swing_damping: 0.1,
+            integrator: BladeIntegrator::Exact,
         }
     }
 }

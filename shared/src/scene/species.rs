@@ -4,7 +4,7 @@ use super::{Grass, Plants, Scene};
 use crate::terrain::Cover;
 use serde::{Deserialize, Serialize};
 
-/// One kind of grass: the ID that it has in the covering map, its size and colours, and how it bends. What a section leaves unsaid is as in
+/// One kind of grass: the ID that it has in the covering map, its size, colours and swing, and how it bends. What a section leaves unsaid is as in
 /// `[grass]` and `[plants]`, which are the kind of ID 255.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -19,6 +19,8 @@ pub struct Species {
     pub root_rgb: [f32; 3],
     /// Colour at the tip, linear RGB. Default (0.3, 0.4, 0.09) or as in `[plants]`, allowed 0..=1 each.
     pub tip_rgb: [f32; 3],
+    /// Natural frequency of a blade of mean height (Hz). Default 1.55 or as in `[plants]`, allowed 0.05..=50.
+    pub swing_hz: f32,
     /// Base speed at which θ spreads (m/s). Default 1 or as in `[grass]`, allowed 0..=50.
     pub c0_m_per_s: f32,
     /// How the bending speed adds to the speed of θ (m/rad). Default 0.05 or as in `[grass]`, allowed 0..=10.
@@ -52,6 +54,7 @@ impl Species {
             height_m: plants.height_m,
             root_rgb: plants.root_rgb,
             tip_rgb: plants.tip_rgb,
+            swing_hz: plants.swing_hz,
             c0_m_per_s: grass.c0_m_per_s,
             mu_m_per_rad: grass.mu_m_per_rad,
             c_omega_m_per_s: grass.c_omega_m_per_s,
@@ -83,9 +86,9 @@ impl Species {
         grass
     }
 
-    /// What grows there: size and colours of its own, the rest of `base`.
+    /// What grows there: size, colours and swing of its own, the rest of `base`.
     pub fn plants(&self, base: &Plants) -> Plants {
-        Plants { height_m: self.height_m, root_rgb: self.root_rgb, tip_rgb: self.tip_rgb, ..*base }
+        Plants { height_m: self.height_m, root_rgb: self.root_rgb, tip_rgb: self.tip_rgb, swing_hz: self.swing_hz, ..*base }
     }
 }
 
@@ -113,11 +116,11 @@ impl Scene {
         species.map_or(0, |index| index as u8 + 1)
     }
 
-    /// Whether grass of any kind grows where the covering map says `cover`.
+    /// Whether grass of any kind grows where the covering map says `cover`; between painted underbrush it is that of `[grass]` and `[plants]`.
     pub fn is_grass(&self, cover: Cover) -> bool {
         match cover {
             Cover::Grass => true,
-            Cover::Free(id) => self.kind_of_cover(id) > 0,
+            Cover::Free(id) => self.kind_of_cover(id) > 0 || self.underbrush.iter().any(|underbrush| underbrush.cover == id),
             Cover::Gap | Cover::Tree | Cover::Stone => false,
         }
     }

@@ -1,5 +1,9 @@
 //! Species of underbrush: plants made of leaves, branches and flowers (004 §3).
 
+pub(super) mod check;
+
+pub use check::{PARTS_LIMIT, SITES_LIMIT, SPECIES_LIMIT};
+
 use super::wind::words;
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +31,7 @@ pub struct Component {
     pub kind: ComponentKind,
     /// Name of the branch that it stands on, which comes before it; empty for the ground. Default empty.
     pub on: String,
-    /// How many stand on the ground or on each of those branches. Default 1, allowed 1..=32.
+    /// How many stand on the ground or on each of those branches. Default 1, allowed 1..=32, and at most 128 on a plant of all components.
     pub count: u32,
     /// Where the lowest of them stands, as a share of the branch's length. Default 1, allowed 0..=1.
     pub from_share: f32,
@@ -56,7 +60,7 @@ pub struct Component {
     pub angle_rad: f32,
     /// Random part of that angle, plus or minus (rad). Default 0.1, allowed 0..=1.5.
     pub angle_variation_rad: f32,
-    /// Turn about what it stands on from each to the next (rad). Default 2.4, the golden angle; allowed -6.3..=6.3.
+    /// Turn about what it stands on from each to the next (rad). Default 2.4, the golden angle; allowed −6.3..=6.3.
     pub turn_rad: f32,
     /// Colour at its foot, linear RGB. Default (0.04, 0.09, 0.02), allowed 0..=1 each.
     pub root_rgb: [f32; 3],
@@ -136,5 +140,24 @@ impl Underbrush {
             light_need: 0.3,
             components,
         }
+    }
+    /// Index of the branch that the component at `index` stands on, which comes before it; none on the ground, and where there is no such branch.
+    ///
+    /// # Panics
+    /// When there is no such component.
+    pub fn branch_below(&self, index: usize) -> Option<usize> {
+        let on = self.components[index].on.as_str();
+        let is_it = |below: &Component| below.kind == ComponentKind::Branch && below.name == on;
+        if on.is_empty() { None } else { self.components[..index].iter().position(is_it) }
+    }
+
+    /// How many of each component a plant has: its `count` times the number of the branch that it stands on.
+    pub fn parts(&self) -> Vec<u64> {
+        let mut parts = Vec::with_capacity(self.components.len());
+        for (index, component) in self.components.iter().enumerate() {
+            let below = self.branch_below(index).map_or(1, |below| parts[below]);
+            parts.push(u64::from(component.count).saturating_mul(below));
+        }
+        parts
     }
 }

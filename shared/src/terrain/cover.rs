@@ -13,7 +13,7 @@ pub enum Cover {
     Stone,
     /// Grass (ID 255).
     Grass,
-    /// Any other ID: a species of grass where the scene [names it](crate::scene::Scene::is_grass), else bare ground.
+    /// Any other ID: a species of grass or of underbrush where the scene [names it](crate::scene::Scene::is_grass), else bare ground.
     Free(u8),
 }
 

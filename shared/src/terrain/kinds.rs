@@ -5,7 +5,7 @@ use crate::scene::Scene;
 
 /// Kinds of grass over the whole world, as indices in [`Scene::kinds`], one for each pixel of the covering map; nearest pixel.
 ///
-/// Bare ground, trees and stones take the kind that grows beside them, so that what reaches over their border is of one kind with it.
+/// Painted underbrush stands in the kind of `[grass]`. Bare ground, trees and stones take the kind that grows beside them, so that what reaches over their border is of one kind with it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KindMap {
     size_px: [u32; 2],
@@ -100,6 +100,13 @@ mod tests {
     fn what_is_far_from_any_grass_is_of_the_first_kind() {
         let map = kinds(TWO, [7, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
         assert_eq!(map.kinds(), [1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 0, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn between_painted_underbrush_grows_the_first_kind() {
+        let reed = "[[underbrush]]\nname = 'reed'\ncover = 5\n[[underbrush.components]]\nname = 'stalk'\nkind = 'branch'\n";
+        let map = kinds(&format!("{TWO}{reed}"), [7, 7, 5, 5, 7, 5, 5, 0, 9, 9, 0, 0, 9, 9, 0, 0]);
+        assert_eq!(map.kinds(), [1, 1, 0, 0, 1, 0, 0, 0, 2, 2, 0, 0, 2, 2, 2, 0]);
     }
 
     #[test]

@@ -1,0 +1,11 @@
+//! Rain.
+
+use serde::{Deserialize, Serialize};
+
+/// Rain that beats on the plants: an outer agent of their force field (004 §1, §4.1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Rain {
+    /// How much rain falls (mm/h): 2 is a drizzle, 50 a cloudburst. Default 0, dry; allowed 0..=200.
+    pub rate_mm_per_h: f32,
+}

@@ -1,0 +1,188 @@
+//! The walk through a file's values, which keeps all that is wrong with each.
+
+use super::allowed::{Allowed, FIELDS, REQUIRED, allowed_at};
+use super::check::{Misfit, Misfits};
+use super::{SceneFault, template};
+use std::ops::Range;
+use toml::de::{DeArray, DeTable, DeValue};
+use toml::{Table, Value};
+
+/// Puts a file's values in the place of the template's, and keeps what does not agree with it or with [`FIELDS`].
+pub(super) struct Walk<'t> {
+    text: &'t str,
+    /// What the file is.
+    file: &'static str,
+    /// Names of all that may stand at its top.
+    top: Vec<String>,
+    /// A section `[[species]]` that says nothing.
+    species: Table,
+    faults: Vec<SceneFault>,
+}
+
+impl<'t> Walk<'t> {
+    /// A walk through `text`, a `file` with the fields of `template`.
+    pub(super) fn new(text: &'t str, file: &'static str, template: &Table) -> Self {
+        Self { text, file, top: template.keys().cloned().collect(), species: Table::new(), faults: Vec::new() }
+    }
+
+    /// The same with a section `[[species]]` that says nothing.
+    pub(super) fn with_species(self, species: Table) -> Self {
+        Self { species, ..self }
+    }
+
+    /// Nothing if all is well, or every fault in the order of the lines: those found on the way, and of `misfits` those whose values are sound by
+    /// themselves.
+    pub(super) fn judge(mut self, misfits: Misfits) -> Result<(), Vec<SceneFault>> {
+        let is_sound = |misfit: &Misfit| !self.faults.iter().any(|fault| misfit.fields.iter().any(|field| overlap(&fault.path, field)));
+        let told: Vec<_> = misfits.0.into_iter().filter(is_sound).collect();
+        self.faults.extend(told.into_iter().map(|misfit| SceneFault::at(self.text, &misfit.fields[0], misfit.message)));
+        self.faults.sort_by_key(|fault| (fault.line, fault.column));
+        if self.faults.is_empty() { Ok(()) } else { Err(self.faults) }
+    }
+
+    fn fault(&mut self, span: Range<usize>, path: &str, message: impl Into<String>) {
+        self.faults.push(SceneFault::spanning(self.text, span, path, message));
+    }
+
+    /// Puts what is found in a section in the place of `values`.
+    pub(super) fn table(&mut self, values: &mut Table, found: &DeTable<'_>, span: Range<usize>, path: &str) {
+        for (key, value) in found {
+            let path = join(path, key.get_ref());
+            match values.get_mut(key.get_ref().as_ref()) {
+                Some(place) => self.value(place, value.get_ref(), value.span(), &path),
+                None => self.fault(key.span(), &path, self.unknown_field(key.get_ref(), &path, values)),
+            }
+        }
+        for key in values.keys().filter(|key| !found.contains_key(key.as_str())) {
+            let path = join(path, key);
+            if REQUIRED.contains(&field_of(&path).as_str()) {
+                self.fault(span.clone(), &path, format!("is missing and has no default; expected {}", expectation(&values[key], &path)));
+            }
+        }
+    }
+
+    /// Puts a section in `places` for each of `items`.
+    fn sections(&mut self, places: &mut Vec<Value>, items: &DeArray<'_>, allowed: Allowed, span: Range<usize>, path: &str) {
+        let Allowed::Sections(least, most) = allowed else { return };
+        if !(least..=most).contains(&items.len()) {
+            return self.fault(span, path, format!("has {} sections; allowed: {allowed}", items.len()));
+        }
+        let section = if path == "species" { self.species.clone() } else { template::section(&field_of(path)) };
+        places.resize(items.len(), section.into());
+        for (i, (place, item)) in places.iter_mut().zip(items.iter()).enumerate() {
+            self.value(place, item.get_ref(), item.span(), &format!("{path}[{i}]"));
+        }
+    }
+
+    /// Puts a pair of numbers in `places` for each of `items`.
+    fn places(&mut self, places: &mut Vec<Value>, items: &DeArray<'_>, allowed: Allowed, span: Range<usize>, path: &str) {
+        let Allowed::Places(least, most, ..) = allowed else { return };
+        if !(least..=most).contains(&items.len()) {
+            let why = if least == 3 && items.len() < 3 { ", since fewer are no footprint" } else { "" };
+            return self.fault(span, path, format!("has {} places; allowed: {least} to {most}{why}", items.len()));
+        }
+        places.clear();
+        places.resize(items.len(), Value::Array(vec![Value::Float(0.0); 2]));
+        for (i, (place, item)) in places.iter_mut().zip(items.iter()).enumerate() {
+            self.value(place, item.get_ref(), item.span(), &format!("{path}[{i}]"));
+        }
+    }
+
+    /// Puts what is found in the place of a value.
+    pub(super) fn value(&mut self, place: &mut Value, found: &DeValue<'_>, span: Range<usize>, path: &str) {
+        let allowed = allowed_of(path);
+        match (place, found) {
+            (Value::Table(values), DeValue::Table(table)) => self.table(values, table, span, path),
+            (Value::Array(places), DeValue::Array(items)) if matches!(allowed, Allowed::Sections(..)) => {
+                self.sections(places, items, allowed, span, path)
+            }
+            (Value::Array(places), DeValue::Array(items)) if matches!(allowed, Allowed::Places(..)) => {
+                self.places(places, items, allowed, span, path)
+            }
+            (Value::Array(values), DeValue::Array(items)) if values.len() == items.len() => {
+                for (i, (place, item)) in values.iter_mut().zip(items.iter()).enumerate() {
+                    self.value(place, item.get_ref(), item.span(), &format!("{path}[{i}]"));
+                }
+            }
+            (Value::String(place), DeValue::String(word)) => match allowed {
+                Allowed::OneOf(words) if !words.contains(&word.as_ref()) => {
+                    self.fault(span, path, format!("is \"{word}\"; allowed: {allowed}"));
+                }
+                _ => *place = word.to_string(),
+            },
+            (place @ (Value::Integer(_) | Value::Float(_)), DeValue::Integer(number)) => {
+                let value = i64::from_str_radix(number.as_str(), number.radix()).ok();
+                match value.filter(|&value| allowed.contains(value as f64)) {
+                    Some(value) if place.is_integer() => *place = Value::Integer(value),
+                    Some(value) => *place = Value::Float(value as f64),
+                    None => self.fault(span, path, format!("is {number}; allowed: {allowed}")),
+                }
+            }
+            (Value::Float(place), DeValue::Float(number)) => match number.as_str().parse().ok().filter(|&value| allowed.contains(value)) {
+                Some(value) => *place = value,
+                None => self.fault(span, path, format!("is {number}; allowed: {allowed}")),
+            },
+            (place, _) => self.fault(span, path, format!("is {}; expected {}", kind_of(found), expectation(place, path))),
+        }
+    }
+    /// Names the field that was probably meant: in the same section by likeness, or the same name in another section.
+    fn unknown_field(&self, key: &str, path: &str, values: &Table) -> String {
+        let (file, field) = (self.file, field_of(path));
+        let like = |known: &&str| strsim::jaro_winkler(key, known);
+        let nearest = values.keys().map(String::as_str).filter(|known| like(known) > 0.8).max_by(|a, b| like(a).total_cmp(&like(b)));
+        let may_stand = |known: &&str| known.split('.').next().is_some_and(|first| self.top.iter().any(|top| top == first));
+        let has_name = |known: &&str| known.rsplit('.').next() == Some(key) && *known != field;
+        let elsewhere = || FIELDS.iter().map(|(known, _)| *known).find(|known| may_stand(known) && has_name(known));
+        if let Some(known) = nearest.or_else(elsewhere) {
+            return format!("is no field of {file}; did you mean `{known}`?");
+        }
+        let known: Vec<_> = values.keys().map(|known| format!("`{known}`")).collect();
+        format!("is no field of {file}; known here: {}", known.join(", "))
+    }
+}
+
+/// What the field at `path` may hold, or where `path` ends with a place in a list, an element of it.
+fn allowed_of(path: &str) -> Allowed {
+    let allowed = allowed_at(&field_of(path));
+    if path.ends_with(']') { allowed.of_element() } else { allowed }
+}
+
+/// The path of a field without places in lists: `wind.primitives.at_m` of `wind.primitives[2].at_m[0]`.
+fn field_of(path: &str) -> String {
+    path.split('[').map(|part| part.split_once(']').map_or(part, |(_, rest)| rest)).collect()
+}
+
+/// Whether one of two paths is the other or leads into it.
+fn overlap(one: &str, other: &str) -> bool {
+    let leads = |short: &str, long: &str| long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
+    leads(one, other) || leads(other, one)
+}
+
+fn join(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+}
+
+fn kind_of(found: &DeValue<'_>) -> String {
+    match found {
+        DeValue::String(_) => "text".to_owned(),
+        DeValue::Integer(number) => format!("the number {number}"),
+        DeValue::Float(number) => format!("the number {number}"),
+        DeValue::Boolean(truth) => truth.to_string(),
+        DeValue::Datetime(_) => "a date or time".to_owned(),
+        DeValue::Array(items) => format!("a list of {}", items.len()),
+        DeValue::Table(_) => "a section".to_owned(),
+    }
+}
+
+fn expectation(expected: &Value, path: &str) -> String {
+    let (field, allowed) = (field_of(path), allowed_of(path));
+    match expected {
+        _ if matches!(allowed, Allowed::Sections(..)) => format!("{allowed} sections `[[{field}]]`"),
+        _ if matches!(allowed, Allowed::Places(..)) => format!("a list of {allowed}"),
+        Value::Array(items) => format!("a list of {} numbers, each {allowed}", items.len()),
+        Value::Integer(_) => format!("a whole number, {allowed}"),
+        Value::Float(_) => format!("a number, {allowed}"),
+        Value::Table(_) => format!("a section `[{field}]`"),
+        _ => allowed.to_string(),
+    }
+}
