@@ -5,8 +5,8 @@ use super::{Gpu, Picture, Quality};
 use crate::camera::Camera;
 use crate::state::Mirror;
 use glam::Vec3;
-use shared::lod::Lag;
 use shared::hash::hash3;
+use shared::lod::Lag;
 use shared::plant::blade::contact::{Sphere, settle};
 use shared::plant::blade::{Blade, LINKS, Sway, advance};
 use shared::scene::{BladeIntegrator, Grass, LagWay, Patches, Scene, Species, TerrainMaps, VehicleKind, Wind, WindDust, WindTiling};
@@ -375,7 +375,9 @@ fn blades_move_as_their_twins_do() {
         velocity_m_per_s: [0.0; 3],
         part_rad: 0.0,
     };
-    mirror.apply(ServerMessage::Poses { tick: 1, objects: vec![pose(1, [31.0, 1.0, 31.5]), pose(2, [34.0, 1.5, 33.0])] }).expect("sound poses");
+    mirror
+        .apply(ServerMessage::Poses { tick: 1, objects: vec![pose(1, [31.0, 1.0, 31.5]), pose(2, [34.0, 1.5, 33.0])] })
+        .expect("sound poses");
     let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut mirror, &Camera { eye_m: Vec3::new(32.0, 2.0, 32.0), ..Camera::default() }, 0.0, 0.0);
     let count = probe(&gpu, &picture, "return vec4<f32>(frame.clouds.w);", &[[0.0; 4]])[0][0] as usize;
@@ -384,8 +386,10 @@ fn blades_move_as_their_twins_do() {
     assert!(count >= 2, "the monsters' feet push plants aside");
 
     let cases: Vec<_> = (0..600).map(blade_case).collect();
-    let inputs: Vec<[f32; 4]> =
-        cases.iter().flat_map(|(links, acts, blade, root, normal)| links.iter().chain(acts).chain([blade, root, normal]).copied()).collect();
+    let inputs: Vec<[f32; 4]> = cases
+        .iter()
+        .flat_map(|(links, acts, blade, root, normal)| links.iter().chain(acts).chain([blade, root, normal]).copied())
+        .collect();
     let outputs = compute(&gpu, &picture, &format!("{}\n{SOURCE}", shaders::BLADE), &inputs, cases.len() as u32);
     let mut touching = 0;
     for ((links, acts, [length_m, frequency_rad_per_s, damping_share, lean_per_wind2], root, [x, y, z, way]), found) in
@@ -393,7 +397,8 @@ fn blades_move_as_their_twins_do() {
     {
         let blade = Blade { length_m, frequency_rad_per_s, damping_share, lean_per_wind2 };
         let integrator = [BladeIntegrator::Euler, BladeIntegrator::Verlet, BladeIntegrator::Exact][way as usize];
-        let about = spheres.iter().map(|s| Sphere { centre_m: std::array::from_fn(|i| s[i] - root[i]), radius_m: s[3] }).collect::<Vec<_>>();
+        let about =
+            spheres.iter().map(|s| Sphere { centre_m: std::array::from_fn(|i| s[i] - root[i]), radius_m: s[3] }).collect::<Vec<_>>();
         let pair = |part: [[f32; 4]; LINKS], first: usize| part.map(|link| [link[first], link[first + 1]]);
         let mut sway = Sway { lean_rad: pair(links, 0), rate_rad_per_s: pair(links, 2) };
         for _ in 0..5 {
