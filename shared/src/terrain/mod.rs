@@ -99,11 +99,7 @@ pub(crate) struct Decoded {
 }
 
 /// Reads a PNG of one of these `kinds`, which `allowed` names, of 8 or 16 bits a channel.
-pub(crate) fn decode(
-    png_bytes: &[u8],
-    kinds: &[(png::ColorType, png::BitDepth)],
-    allowed: &'static str,
-) -> Result<Decoded, MapError> {
+pub(crate) fn decode(png_bytes: &[u8], kinds: &[(png::ColorType, png::BitDepth)], allowed: &'static str) -> Result<Decoded, MapError> {
     let unreadable = |error: png::DecodingError| MapError::Unreadable(error.to_string());
     let mut decoder = png::Decoder::new(std::io::Cursor::new(png_bytes));
     decoder.set_transformations(png::Transformations::IDENTITY);

@@ -83,8 +83,8 @@ impl Sites {
 
     /// Column and row of a site.
     pub(super) fn square(&self, site: usize) -> [i64; 2] {
-        let columns = self.count[0] as usize;
-        [(site % columns) as i64, (site / columns) as i64]
+        let (site, columns) = (site as u32, self.count[0]);
+        [i64::from(site % columns), i64::from(site / columns)]
     }
 
     /// The site in a square, if it is in the lattice.

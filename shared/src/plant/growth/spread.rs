@@ -60,14 +60,7 @@ impl Ground {
 ///
 /// # Panics
 /// When there are more than [`SPECIES_LIMIT`] species, not one height for each, or not one soil for each site.
-pub fn grow(
-    sites: Sites,
-    soil: Soil,
-    species: &[Underbrush],
-    heights_m: &[f32],
-    shade: f32,
-    ground: impl Fn([f32; 2]) -> Ground,
-) -> Grown {
+pub fn grow(sites: Sites, soil: Soil, species: &[Underbrush], heights_m: &[f32], shade: f32, ground: impl Fn([f32; 2]) -> Ground) -> Grown {
     assert!(species.len() <= SPECIES_LIMIT && species.len() == heights_m.len() && soil.levels().len() == sites.total());
     let habits = Habit::of_all(species, heights_m, shade, &sites);
     let mut land = Land::new(sites, soil, &habits);
@@ -81,7 +74,8 @@ pub fn grow(
         }
     }
     for (species, habit) in habits.iter().enumerate() {
-        let suited = (0..land.sites.total()).filter(|&site| land.is_open(site, species) && habit.surplus(land.soil.levels()[site]).is_some());
+        let suited =
+            (0..land.sites.total()).filter(|&site| land.is_open(site, species) && habit.surplus(land.soil.levels()[site]).is_some());
         let points = land.draw(suited, species, habit.propagation_points);
         points.into_iter().for_each(|site| land.reach(site, species, habit, &mut queues[species]));
     }
@@ -241,7 +235,7 @@ impl Land {
     fn settle(&mut self, site: usize, habit: &Habit) -> u8 {
         let (mut got, mut count) = ([0; 3], 0);
         let soil = self.soil.levels_mut();
-        for (other, distance2) in self.sites.within(&habit.room, site) {
+        self.sites.within(&habit.room, site).for_each(|(other, distance2)| {
             for nutrient in 0..3 {
                 let taken = soil[other][nutrient].min(habit.uptake[nutrient]);
                 soil[other][nutrient] -= taken;
@@ -251,7 +245,7 @@ impl Land {
             for &(bit, apart2) in &habit.keeps_away {
                 self.closed[other] |= if distance2 < apart2 { bit } else { 0 };
             }
-        }
+        });
         self.taken = std::array::from_fn(|nutrient| self.taken[nutrient] + got[nutrient]);
         habit.vigour(got, count)
     }
@@ -260,14 +254,14 @@ impl Land {
         if habit.shades.is_empty() {
             return;
         }
-        for (other, distance2) in self.sites.within(&habit.shade, site) {
+        self.sites.within(&habit.shade, site).for_each(|(other, distance2)| {
             let fall = 2.0 - (distance2 as f32).sqrt() / habit.room_steps;
             for &(species, taken) in &habit.shades {
                 let light = &mut self.light[species][other];
                 // A cast takes what is more than all light to all.
                 *light = light.saturating_sub((taken * fall) as u16);
             }
-        }
+        });
     }
 
     fn scatter(&mut self, site: usize, species: usize, habit: &Habit, queue: &mut Queue) {
