@@ -17,7 +17,13 @@ fn scene() -> Scene {
 
 fn scene_message(scene: Scene) -> ServerMessage {
     let map = grey_png([4; 2], &[255; 16]);
-    ServerMessage::Scene { scene: Box::new(scene), height_png: map.clone(), covering_png: map, nutrient_png: Vec::new(), models: Vec::new() }
+    ServerMessage::Scene {
+        scene: Box::new(scene),
+        height_png: map.clone(),
+        covering_png: map,
+        nutrient_png: Vec::new(),
+        models: Vec::new(),
+    }
 }
 
 fn loaded() -> Mirror {
@@ -249,7 +255,10 @@ fn underbrush_that_the_client_cannot_hold_is_refused() {
         (|scene| leaf(scene).from_share = 1.5, "from_share is 1.5; allowed: 0..=1"),
         (|scene| leaf(scene).to_share = 0.5, "to_share is 0.5; allowed: 1..=1"),
         (|scene| leaf(scene).on = "leaf".to_owned(), "what a component stands on is leaf; allowed: a branch before it, or nothing"),
-        (|scene| (scene.patches.count, scene.growth.spacing_m) = ([2048; 2], 0.1), "number of sites is 1677721600; allowed: at most 4194304"),
+        (
+            |scene| (scene.patches.count, scene.growth.spacing_m) = ([2048; 2], 0.1),
+            "number of sites is 1677721600; allowed: at most 4194304",
+        ),
     ];
     for (change, message) in cases {
         assert_eq!(refused(change).as_deref(), Some(message));

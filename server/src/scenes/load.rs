@@ -168,7 +168,9 @@ fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, Sce
     };
     let Scene { terrain, objects, growth, underbrush_file, .. } = &mut scene;
     let of_objects = [&mut objects.car_model, &mut objects.monster_model];
-    for path in [&mut terrain.height_map, &mut terrain.covering_map, &mut growth.nutrient_map, underbrush_file].into_iter().chain(of_objects) {
+    for path in
+        [&mut terrain.height_map, &mut terrain.covering_map, &mut growth.nutrient_map, underbrush_file].into_iter().chain(of_objects)
+    {
         path.clear();
     }
     Ok(LoadedScene { scene, height_png, covering_png, nutrient_png, height, cover, drawings, models: loaded_models })
