@@ -7,6 +7,7 @@ mod fields;
 mod land;
 mod playback;
 mod sample;
+mod underbrush;
 
 pub use fields::{PATCH_LIMIT, PatchCodes, WindCodes};
 pub use land::Land;
@@ -110,8 +111,8 @@ impl Mirror {
     pub fn apply(&mut self, message: ServerMessage) -> Result<Option<Event>, MirrorError> {
         Ok(match message {
             ServerMessage::Welcome { client, server_version } => Some(Event::Welcome { client, server_version }),
-            ServerMessage::Scene { scene, height_png, covering_png, models } => {
-                self.land = Some(Land::new(*scene, &height_png, &covering_png, models)?);
+            ServerMessage::Scene { scene, height_png, covering_png, nutrient_png, models } => {
+                self.land = Some(Land::new(*scene, &height_png, &covering_png, &nutrient_png, models)?);
                 self.scene_number = self.scene_number.wrapping_add(1);
                 self.patches = Patches::default();
                 self.wind = WindFrames::default();
@@ -231,6 +232,11 @@ impl Mirror {
 
 fn range(what: &'static str, found: impl ToString, allowed: impl ToString) -> MirrorError {
     MirrorError::Range { what, found: found.to_string(), allowed: allowed.to_string() }
+}
+
+/// A number is `low..=high`.
+fn within(what: &'static str, value: f32, low: f32, high: f32) -> Result<(), MirrorError> {
+    if (low..=high).contains(&value) { Ok(()) } else { Err(range(what, value, format!("{low}..={high}"))) }
 }
 
 #[cfg(test)]

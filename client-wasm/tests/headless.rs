@@ -19,28 +19,13 @@ fn meadow(cover: u8) -> Mirror {
 
 fn meadow_in(cover: u8, wind: Wind) -> Mirror {
     let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 0.0, base_m: 0.0 };
-    let scene = Scene {
-        summary: String::new(),
-        seed: 1,
-        tick_hz: 60.0,
-        patches: Patches { count: [4, 4], ..Patches::default() },
-        terrain: maps,
-        wind,
-        grass: Default::default(),
-        plants: Default::default(),
-        species: Vec::new(),
-        bend: Default::default(),
-        natural_wind: Default::default(),
-        objects: Default::default(),
-        drawn_winds: vec![],
-        camera: Default::default(),
-        light: Default::default(),
-    };
+    let scene = Scene { patches: Patches { count: [4, 4], ..Patches::default() }, wind, ..Scene::new(maps) };
     let mut mirror = Mirror::default();
     let scene = ServerMessage::Scene {
         scene: Box::new(scene),
         height_png: grey_png([17; 2], &[0; 17 * 17]),
         covering_png: grey_png([16; 2], &[cover; 16 * 16]),
+        nutrient_png: Vec::new(),
         models: Vec::new(),
     };
     mirror.apply(scene).expect("a sound scene");

@@ -158,6 +158,7 @@ fn scene_message(config: &Config) -> bytes::Bytes {
         scene: Box::new(loaded.scene.clone()),
         height_png: loaded.height_png.clone(),
         covering_png: loaded.covering_png.clone(),
+        nutrient_png: loaded.nutrient_png.clone(),
         models: loaded.models.clone(),
     };
     wire::encode(&message).into()

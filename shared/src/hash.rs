@@ -14,3 +14,8 @@ pub fn hash3(place: [u32; 3]) -> [u32; 3] {
     let scrambled = place.map(|v| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
     stir(stir(scrambled).map(|v| v ^ (v >> 16)))
 }
+
+/// A seed in half its bits, as [`hash3`] takes it.
+pub(crate) fn folded(seed: u64) -> u32 {
+    (seed ^ (seed >> 32)) as u32
+}

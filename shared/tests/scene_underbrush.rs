@@ -191,8 +191,8 @@ fn an_underbrush_file_comes_before_the_scenes_own() {
     assert_eq!(
         faults(&format!("{own}{REED}")),
         [
-            "13:8: `underbrush[1].name` is \"reed\", as that of `underbrush[0]` in `underbrush_file`; allowed: a name of its own",
-            "14:9: `underbrush[1].cover` is 5, as that of `underbrush[0]` in `underbrush_file`, \"reed\"; allowed: 0, not painted, or an ID of its own, 1 to 252",
+            "15:8: `underbrush[1].name` is \"reed\", as that of `underbrush[0]` in `underbrush_file`; allowed: a name of its own",
+            "16:9: `underbrush[1].cover` is 5, as that of `underbrush[0]` in `underbrush_file`, \"reed\"; allowed: 0, not painted, or an ID of its own, 1 to 252",
         ]
     );
     assert_eq!(
@@ -213,14 +213,12 @@ fn an_underbrush_file_holds_nothing_else() {
     assert_eq!(told("[wind]\nsources = 3\n"), ["`wind` is no field of an underbrush file; known here: `underbrush`"]);
     assert_eq!(told("underbush = 3\n"), ["`underbush` is no field of an underbrush file; did you mean `underbrush`?"]);
     assert_eq!(
-        told(&format!("{REED}spacing_m = 2\nroom_m = 2\n")),
-        [
-            "`underbrush[0].components[1].spacing_m` is no field of an underbrush file; known here: `name`, `kind`, `on`, `count`, `from_share`, \
-             `to_share`, `length_m`, `length_variation`, `width_m`, `petals`, `sections`, `mass_kg`, `stiffness_n_m2`, `tip_stiffness_share`, \
-             `strength_n_m`, `angle_rad`, `angle_variation_rad`, `turn_rad`, `root_rgb`, `tip_rgb`",
-            "`underbrush[0].components[1].room_m` is no field of an underbrush file; did you mean `underbrush.room_m`?",
-        ]
+        told(&format!("{REED}light_need = 0.5\n")),
+        ["`underbrush[0].components[1].light_need` is no field of an underbrush file; did you mean `underbrush.light_need`?"]
     );
+    // What a scene may say elsewhere is not offered.
+    let elsewhere = told(&format!("{REED}haze_m = 2\n"));
+    assert!(elsewhere[0].contains("is no field of an underbrush file; known here: `angle_rad`, "), "{elsewhere:?}");
     assert!(told("[[underbrush]\n")[0].starts_with("not TOML"));
     assert_eq!(told(&format!("{REED}{REED}")).len(), 2);
 }

@@ -37,6 +37,7 @@ impl Stage {
             scene: Box::new(loaded.scene.clone()),
             height_png: loaded.height_png,
             covering_png: loaded.covering_png,
+            nutrient_png: loaded.nutrient_png,
             models: loaded.models,
         })?;
         Ok(Self { world, mirror, scene: loaded.scene, height: loaded.height, sent: BTreeMap::new(), frame: 0, time_secs: 0.0 })

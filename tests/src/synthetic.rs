@@ -47,7 +47,7 @@ fn messages() -> Vec<ServerMessage> {
     let layout = PatchLayout::from(&scene.patches);
     let mut messages = vec![
         ServerMessage::Welcome { client: 1, server_version: String::new() },
-        ServerMessage::Scene { scene: Box::new(scene.clone()), height_png, covering_png, models: Vec::new() },
+        ServerMessage::Scene { scene: Box::new(scene.clone()), height_png, covering_png, nutrient_png: Vec::new(), models: Vec::new() },
         wind(&scene),
         ServerMessage::Poses { tick: 1, objects: objects(&heights) },
     ];
@@ -57,29 +57,9 @@ fn messages() -> Vec<ServerMessage> {
 }
 
 fn scene() -> Scene {
-    Scene {
-        summary: "hills without a server".into(),
-        seed: 1,
-        tick_hz: 60.0,
-        patches: Patches::default(),
-        terrain: TerrainMaps {
-            height_map: String::new(),
-            covering_map: String::new(),
-            pixel_m: [PIXEL_M; 2],
-            level_m: LEVEL_M,
-            base_m: 0.0,
-        },
-        wind: Default::default(),
-        grass: Default::default(),
-        plants: Default::default(),
-        species: Vec::new(),
-        bend: Default::default(),
-        natural_wind: Default::default(),
-        objects: Default::default(),
-        drawn_winds: vec![],
-        camera: Default::default(),
-        light: Default::default(),
-    }
+    let terrain =
+        TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [PIXEL_M; 2], level_m: LEVEL_M, base_m: 0.0 };
+    Scene { summary: "hills without a server".into(), ..Scene::new(terrain) }
 }
 
 fn height_m(x: f32, z: f32) -> f32 {

@@ -2,34 +2,13 @@
 
 use server::scenes;
 use server::world::{Maps, World};
-use shared::scene::Scene;
+use shared::scene::{Scene, TerrainMaps};
 use shared::terrain::{CoverMap, HeightMap, grey_png};
 
 /// A scene of `count × count` patches with the defaults of everything else.
 pub fn scene(count: u32) -> Scene {
-    let mut scene = Scene {
-        summary: "A world made by a test".to_owned(),
-        seed: 1,
-        tick_hz: 60.0,
-        patches: Default::default(),
-        terrain: shared::scene::TerrainMaps {
-            height_map: String::new(),
-            covering_map: String::new(),
-            pixel_m: [2.0; 2],
-            level_m: 0.1,
-            base_m: 0.0,
-        },
-        wind: Default::default(),
-        grass: Default::default(),
-        plants: Default::default(),
-        species: Vec::new(),
-        bend: Default::default(),
-        natural_wind: Default::default(),
-        objects: Default::default(),
-        drawn_winds: vec![],
-        camera: Default::default(),
-        light: Default::default(),
-    };
+    let terrain = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [2.0; 2], level_m: 0.1, base_m: 0.0 };
+    let mut scene = Scene { summary: "A world made by a test".to_owned(), ..Scene::new(terrain) };
     scene.patches.count = [count; 2];
     scene
 }

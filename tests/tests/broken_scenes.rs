@@ -1,12 +1,12 @@
 //! Every broken scene is told apart, with everything that is wrong in it and where.
 
 use png::{BitDepth, ColorType};
-use server::scenes::{SceneError, load};
+use server::scenes::{SceneError, check, load};
 use shared::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
-const BROKEN: [&str; 27] = [
+const BROKEN: [&str; 34] = [
     "unknown-field",
     "syntax",
     "out-of-range",
@@ -27,6 +27,13 @@ const BROKEN: [&str; 27] = [
     "wind-one-primitive",
     "species",
     "species-hole",
+    "underbrush",
+    "underbrush-misfits",
+    "underbrush-file",
+    "underbrush-twice",
+    "underbrush-hole",
+    "no-underbrush-file",
+    "no-nutrients",
     "objects",
     "sled-outline",
     "sled-without-footprint",
@@ -110,4 +117,51 @@ fn height_maps_of_other_kinds_and_sizes_are_refused() {
     assert!(message(&even(BitDepth::Sixteen, ColorType::Grayscale, [128, 128], 255)).contains("heights of 65535 m"));
     assert!(message(&good[..good.len() / 2]).contains("is not a readable PNG"));
     assert!(message(b"").contains("is not a readable PNG"));
+}
+
+#[test]
+fn maps_of_nutrients_are_grey_or_coloured() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = |nutrients: &[u8]| {
+        let text = "summary = \"s\"\n[terrain]\nheight_map = \"h.png\"\ncovering_map = \"c.png\"\npixel_m = [2, 2]\nlevel_m = 1\n\
+                    [growth]\nnutrient_map = \"n.png\"\n";
+        std::fs::write(folder.path().join("s.toml"), text).unwrap();
+        std::fs::write(folder.path().join("h.png"), grey_png([128; 2], &[0; 128 * 128])).unwrap();
+        std::fs::write(folder.path().join("c.png"), grey_png([2, 2], &[255; 4])).unwrap();
+        std::fs::write(folder.path().join("n.png"), nutrients).unwrap();
+        load(folder.path().join("s.toml").to_str().unwrap())
+    };
+    for colour in [ColorType::Grayscale, ColorType::Rgb] {
+        let png = even(BitDepth::Eight, colour, [4, 3], 9);
+        let loaded = scene(&png).unwrap();
+        assert_eq!((loaded.nutrient_png, loaded.scene.growth.nutrient_map.as_str()), (png, ""));
+    }
+    let told = |bits, colour, size_px| scene(&even(bits, colour, size_px, 0)).unwrap_err().to_string();
+    let place = "s.toml:8:16: `growth.nutrient_map` names `n.png`, which is ";
+    for (bits, colour, name) in [(BitDepth::Eight, ColorType::Rgba, "Rgba 8 bits"), (BitDepth::Sixteen, ColorType::Rgb, "Rgb 16 bits")] {
+        let told = told(bits, colour, [4, 3]);
+        assert!(told.contains(&format!("{place}a PNG of kind {name}; allowed: grey or RGB without alpha, 8 bits\n")), "{told}");
+    }
+    let told = told(BitDepth::Eight, ColorType::Rgb, [1, 3]);
+    assert!(told.contains(&format!("{place}1 × 3 pixels; allowed: 2 × 2 to 8192 × 8192\n")), "{told}");
+}
+
+#[test]
+fn the_species_of_a_file_come_before_those_of_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let species = |name: &str| format!("[[underbrush]]\nname = \"{name}\"\n[[underbrush.components]]\nname = \"leaf\"\nkind = \"leaf\"\n");
+    let text = "underbrush_file = \"u.toml\"\nsummary = \"s\"\n[terrain]\nheight_map = \"h.png\"\ncovering_map = \"c.png\"\npixel_m = [2, 2]\nlevel_m = 1\n";
+    std::fs::write(folder.path().join("s.toml"), format!("{text}{}", species("sedge"))).unwrap();
+    std::fs::write(folder.path().join("u.toml"), species("reed") + &species("fern")).unwrap();
+    std::fs::write(folder.path().join("h.png"), grey_png([128; 2], &[0; 128 * 128])).unwrap();
+    std::fs::write(folder.path().join("c.png"), grey_png([2, 2], &[255; 4])).unwrap();
+    let path = folder.path().join("s.toml");
+    let loaded = load(path.to_str().unwrap()).unwrap();
+    assert_eq!(loaded.scene.underbrush.iter().map(|species| species.name.as_str()).collect::<Vec<_>>(), ["reed", "fern", "sedge"]);
+    assert!(loaded.scene.underbrush_file.is_empty() && loaded.nutrient_png.is_empty());
+    let report = check(path.to_str().unwrap()).unwrap().to_string();
+    assert!(report.contains("\n  underbrush reed, fern, sedge, on 512 × 512 sites of generated soil\n"), "{report}");
+    std::fs::write(folder.path().join("u.toml"), [0xff, 0xfe]).unwrap();
+    let told = load(path.to_str().unwrap()).unwrap_err().to_string();
+    assert!(told.contains("s.toml:1:19: `underbrush_file` names `u.toml`, which cannot be read: it is not UTF-8 text: "), "{told}");
 }

@@ -72,29 +72,14 @@ fn meadow_in(wind: Wind) -> Mirror {
 /// The same with a scene changed, over a covering map of 16 × 16 pixels.
 fn meadow_of(change: impl FnOnce(&mut Scene), covering: &[u8]) -> Mirror {
     let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 0.0, base_m: 0.0 };
-    let mut scene = Scene {
-        summary: String::new(),
-        seed: 1,
-        tick_hz: 60.0,
-        patches: Patches { count: [4, 4], ..Patches::default() },
-        terrain: maps,
-        wind: Default::default(),
-        grass: Default::default(),
-        plants: Default::default(),
-        species: Vec::new(),
-        bend: Default::default(),
-        natural_wind: Default::default(),
-        objects: Default::default(),
-        drawn_winds: vec![],
-        camera: Default::default(),
-        light: Default::default(),
-    };
+    let mut scene = Scene { patches: Patches { count: [4, 4], ..Patches::default() }, ..Scene::new(maps) };
     change(&mut scene);
     let mut mirror = Mirror::default();
     let scene = ServerMessage::Scene {
         scene: Box::new(scene),
         height_png: grey_png([17; 2], &[0; 17 * 17]),
         covering_png: grey_png([16; 2], covering),
+        nutrient_png: Vec::new(),
         models: Vec::new(),
     };
     mirror.apply(scene).expect("a sound scene");

@@ -1,7 +1,9 @@
 //! What stays as it is for a run: the scene, its decoded maps and models.
 
-use super::{MirrorError, range};
+use super::underbrush::check_underbrush;
+use super::{MirrorError, range, within};
 use shared::grid::PatchLayout;
+use shared::plant::growth::NutrientMap;
 use shared::scene::{Scene, VehicleKind, WIND_CELLS_LIMIT};
 use shared::terrain::{Cover, CoverMap, HeightMap, KindMap};
 use shared::wind::Tiles;
@@ -15,6 +17,7 @@ pub struct Land {
     heights: HeightMap,
     cover: CoverMap,
     kinds: KindMap,
+    nutrients: Option<NutrientMap>,
     models: Vec<(VehicleKind, Mesh)>,
     tiles: Tiles,
 }
@@ -24,17 +27,25 @@ impl Land {
     ///
     /// # Errors
     /// [`MirrorError`] when a map is unreadable, or the scene leaves what a client can hold.
-    pub fn new(scene: Scene, height_png: &[u8], covering_png: &[u8], models: Vec<(VehicleKind, Mesh)>) -> Result<Self, MirrorError> {
+    pub fn new(
+        scene: Scene,
+        height_png: &[u8],
+        covering_png: &[u8],
+        nutrient_png: &[u8],
+        models: Vec<(VehicleKind, Mesh)>,
+    ) -> Result<Self, MirrorError> {
         check(&scene)?;
         let heights = HeightMap::from_png(height_png, &scene.terrain);
         let heights = heights.map_err(|error| MirrorError::Map { map: "height map", error })?;
         let cover = CoverMap::from_png(covering_png).map_err(|error| MirrorError::Map { map: "covering map", error })?;
+        let nutrients = if nutrient_png.is_empty() { None } else { Some(NutrientMap::from_png(nutrient_png)) };
+        let nutrients = nutrients.transpose().map_err(|error| MirrorError::Map { map: "map of nutrients", error })?;
         for (_, mesh) in &models {
             check_mesh(mesh)?;
         }
         let layout = PatchLayout::from(&scene.patches);
         let (tiles, kinds) = (Tiles::new(&scene), KindMap::new(&scene, &cover));
-        Ok(Self { scene, layout, heights, cover, kinds, models, tiles })
+        Ok(Self { scene, layout, heights, cover, kinds, nutrients, models, tiles })
     }
 
     /// The scene.
@@ -67,6 +78,11 @@ impl Land {
         &self.kinds
     }
 
+    /// What is drawn of the soil's nutrients; none where they are generated.
+    pub fn nutrients(&self) -> Option<&NutrientMap> {
+        self.nutrients.as_ref()
+    }
+
     /// What covers the point `(x_m, z_m)`.
     pub fn cover_at(&self, x_m: f32, z_m: f32) -> Cover {
         self.cover.at(x_m, z_m, self.scene.extent_m())
@@ -79,9 +95,6 @@ impl Land {
 }
 
 fn check(scene: &Scene) -> Result<(), MirrorError> {
-    let within = |what, value: f32, low: f32, high: f32| {
-        if (low..=high).contains(&value) { Ok(()) } else { Err(range(what, value, format!("{low}..={high}"))) }
-    };
     let cells = scene.patches.cells;
     if !(8..=256).contains(&cells) || !cells.is_multiple_of(8) {
         return Err(range("patches.cells", cells, "8..=256, a multiple of 8"));
@@ -114,6 +127,10 @@ fn check(scene: &Scene) -> Result<(), MirrorError> {
     within("plants.flowers_per_m2", plants.flowers_per_m2, 0.0, 50.0)?;
     within("plants.tree_m", plants.tree_m, 0.5, 60.0)?;
     within("plants.stone_m", plants.stone_m, 0.05, 20.0)?;
+    within("plants.swing_damping", plants.swing_damping, 0.005, 5.0)?;
+    within("rain.rate_mm_per_h", scene.rain.rate_mm_per_h, 0.0, 200.0)?;
+    within("objects.balls", scene.objects.balls as f32, 0.0, 64.0)?;
+    within("objects.ball_radius_m", scene.objects.ball_radius_m, 0.1, 5.0)?;
     within("light.sun_elevation_rad", scene.light.sun_elevation_rad, 0.02, 1.58)?;
     within("light.sun_heading_rad", scene.light.sun_heading_rad, -100.0, 100.0)?;
     within("light.haze_m", scene.light.haze_m, 10.0, 100_000.0)?;
@@ -131,6 +148,7 @@ fn check(scene: &Scene) -> Result<(), MirrorError> {
     }
     for plants in scene.kinds_of_plants() {
         within("*.height_m", plants.height_m, 0.02, 5.0)?;
+        within("*.swing_hz", plants.swing_hz, 0.05, 50.0)?;
         for channel in plants.root_rgb.into_iter().chain(plants.tip_rgb) {
             within("*_rgb", channel, 0.0, 1.0)?;
         }
@@ -138,7 +156,7 @@ fn check(scene: &Scene) -> Result<(), MirrorError> {
     for mean in scene.wind.mean_m_per_s {
         within("wind.mean_m_per_s", mean, -40.0, 40.0)?;
     }
-    Ok(())
+    check_underbrush(scene)
 }
 
 fn check_mesh(mesh: &Mesh) -> Result<(), MirrorError> {

@@ -1,34 +1,29 @@
 use super::*;
 use glam::Vec3;
 use proptest::prelude::*;
-use shared::scene::{Patches, Scene, Species, TerrainMaps, VehicleKind, Wind};
+use shared::scene::{Component, ComponentKind, Patches, Scene, Species, TerrainMaps, Underbrush, VehicleKind, Wind};
 use shared::terrain::grey_png;
 use shared::wire::quantise::{dust_code, theta_code, wind_code};
 use shared::wire::{Shape, codec, decode};
 
 fn scene() -> Scene {
+    let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [1.0, 1.0], level_m: 0.1, base_m: 0.0 };
     Scene {
-        summary: String::new(),
-        seed: 1,
-        tick_hz: 60.0,
         patches: Patches { count: [3, 2], cells: 8, ..Patches::default() },
-        terrain: TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [1.0, 1.0], level_m: 0.1, base_m: 0.0 },
         wind: Wind { cells: [4, 2, 4], ..Wind::default() },
-        grass: Default::default(),
-        plants: Default::default(),
-        species: Vec::new(),
-        bend: Default::default(),
-        natural_wind: Default::default(),
-        objects: Default::default(),
-        drawn_winds: vec![],
-        camera: Default::default(),
-        light: Default::default(),
+        ..Scene::new(maps)
     }
 }
 
 fn scene_message(scene: Scene) -> ServerMessage {
     let map = grey_png([4; 2], &[255; 16]);
-    ServerMessage::Scene { scene: Box::new(scene), height_png: map.clone(), covering_png: map, models: Vec::new() }
+    ServerMessage::Scene {
+        scene: Box::new(scene),
+        height_png: map.clone(),
+        covering_png: map,
+        nutrient_png: Vec::new(),
+        models: Vec::new(),
+    }
 }
 
 fn loaded() -> Mirror {
@@ -231,4 +226,59 @@ fn a_species_that_the_client_cannot_hold_is_refused() {
     let mut many = scene();
     many.species = vec![Species::new("reed", 1, &many.grass, &many.plants); 17];
     assert!(Mirror::default().apply(scene_message(many)).is_err());
+}
+
+#[test]
+fn underbrush_that_the_client_cannot_hold_is_refused() {
+    let refused = |change: fn(&mut Scene)| {
+        let mut scene = scene();
+        let stalk = Component::new("stalk", ComponentKind::Branch);
+        let leaf = Component { on: "stalk".to_owned(), ..Component::new("leaf", ComponentKind::Leaf) };
+        scene.underbrush = vec![Underbrush::new("reed", vec![stalk, leaf])];
+        change(&mut scene);
+        Mirror::default().apply(scene_message(scene)).err().map(|error| error.to_string())
+    };
+    fn leaf(scene: &mut Scene) -> &mut Component {
+        &mut scene.underbrush[0].components[1]
+    }
+    assert_eq!(refused(|_| ()), None);
+    type Change = fn(&mut Scene);
+    let cases: [(Change, &str); 12] = [
+        (|scene| scene.plants.swing_hz = 0.0, "*.swing_hz is 0; allowed: 0.05..=50"),
+        (|scene| scene.rain.rate_mm_per_h = f32::INFINITY, "rain.rate_mm_per_h is inf; allowed: 0..=200"),
+        (|scene| scene.objects.balls = 65, "objects.balls is 65; allowed: 0..=64"),
+        (|scene| scene.growth.spacing_m = 0.0, "growth.spacing_m is 0; allowed: 0.05..=20"),
+        (|scene| scene.underbrush[0].reach_m = f32::NAN, "underbrush.reach_m is NaN; allowed: 0.05..=50"),
+        (|scene| scene.underbrush[0].components.clear(), "number of components is 0; allowed: 1..=16"),
+        (|scene| leaf(scene).sections = 9, "sections is 9; allowed: 1..=8"),
+        (|scene| leaf(scene).mass_kg = -1.0, "mass_kg is -1; allowed: 0.000001..=10"),
+        (|scene| leaf(scene).from_share = 1.5, "from_share is 1.5; allowed: 0..=1"),
+        (|scene| leaf(scene).to_share = 0.5, "to_share is 0.5; allowed: 1..=1"),
+        (|scene| leaf(scene).on = "leaf".to_owned(), "what a component stands on is leaf; allowed: a branch before it, or nothing"),
+        (
+            |scene| (scene.patches.count, scene.growth.spacing_m) = ([2048; 2], 0.1),
+            "number of sites is 1677721600; allowed: at most 4194304",
+        ),
+    ];
+    for (change, message) in cases {
+        assert_eq!(refused(change).as_deref(), Some(message));
+    }
+    let many = refused(|scene| scene.underbrush[0].components.iter_mut().for_each(|component| component.count = 32));
+    assert_eq!(many.as_deref(), Some("parts of a plant is 1056; allowed: at most 128"));
+}
+
+#[test]
+fn the_map_of_nutrients_is_read_if_there_is_one() {
+    let mirror_with = |png: Vec<u8>| {
+        let mut message = scene_message(scene());
+        if let ServerMessage::Scene { nutrient_png, .. } = &mut message {
+            *nutrient_png = png;
+        }
+        let mut mirror = Mirror::default();
+        mirror.apply(message).map(|_| mirror)
+    };
+    let size_px = |mirror: Mirror| mirror.land().and_then(Land::nutrients).map(|map| map.size_px());
+    assert_eq!(mirror_with(Vec::new()).map(size_px), Ok(None));
+    assert_eq!(mirror_with(grey_png([3, 2], &[7; 6])).map(size_px), Ok(Some([3, 2])));
+    assert!(matches!(mirror_with(vec![1, 2, 3]).map(size_px), Err(MirrorError::Map { map: "map of nutrients", .. })));
 }

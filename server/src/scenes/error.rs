@@ -35,12 +35,12 @@ fn meant(nearest: Option<&str>) -> String {
     nearest.map_or_else(|| ".".to_owned(), |name| format!("; did you mean `{name}`?"))
 }
 
-/// A scene's text with everything that is wrong in it.
+/// The text of a scene file, or of its underbrush file, with everything that is wrong in it.
 ///
 /// Displayed over several lines: for each fault the place, what is wrong, the line of the file and carets below it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FaultyScene {
-    /// The scene file, as it was named.
+    /// The file: the scene's as it was named, that of the underbrush with its folder.
     pub file: String,
     /// Its text.
     pub text: String,

@@ -6,16 +6,17 @@ use crate::bend::drawing::{Drawing, Drawings};
 use crate::file;
 use crate::objects::model;
 use crate::world::{self, Maps, WorldError};
-use shared::scene::{Scene, SceneFault, VehicleKind, WindShape, parse};
+use shared::plant::growth::NutrientMap;
+use shared::scene::{Scene, SceneFault, VehicleKind, WindShape, parse, parse_underbrush, parse_with};
 use shared::terrain::{Cover, CoverMap, HeightMap, MapError};
 use shared::wire::Mesh;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Largest scene file (bytes).
+/// Largest scene file, and largest file of underbrush (bytes).
 const SCENE_LIMIT: u64 = 1 << 20;
 
-/// Largest file of a map (bytes); two of them and two models fit into a message.
+/// Largest file of a map (bytes); three of them and two models fit into a message.
 pub(crate) const MAP_LIMIT: u64 = 24 << 20;
 
 /// Largest file of a drawn wind (bytes): more than the largest picture needs.
@@ -33,6 +34,8 @@ pub struct LoadedScene {
     pub height_png: Vec<u8>,
     /// Covering map, the PNG file's bytes.
     pub covering_png: Vec<u8>,
+    /// Map of the soil's nutrients, the PNG file's bytes; empty where they are generated.
+    pub nutrient_png: Vec<u8>,
     /// Heights of the land.
     pub height: HeightMap,
     /// What covers the land.
@@ -54,7 +57,7 @@ impl LoadedScene {
 ///
 /// # Errors
 /// [`SceneError`]: the name is unknown, the file cannot be read, or something in it or in the files that it names is wrong;
-/// then every fault at once, with its place.
+/// then every fault of the scene file, or else of its underbrush file, or else of its maps and models at once, each with its place.
 pub fn load(name_or_path: &str) -> Result<LoadedScene, SceneError> {
     if let Some(built_in) = BuiltIn::find(name_or_path) {
         return load_text(built_in.name, built_in.text, &Source::BuiltIn(built_in));
@@ -65,10 +68,13 @@ pub fn load(name_or_path: &str) -> Result<LoadedScene, SceneError> {
         return Err(unknown(name_or_path));
     }
     let unreadable = |reason: String| SceneError::Unreadable { path: path.to_owned(), reason };
-    let bytes = file::read(path, SCENE_LIMIT).map_err(unreadable)?;
-    let text = String::from_utf8(bytes).map_err(|error| unreadable(format!("is not UTF-8 text: {error}")))?;
+    let text = file::read(path, SCENE_LIMIT).and_then(utf8).map_err(unreadable)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     load_text(name_or_path, &text, &Source::Folder(folder))
+}
+
+fn utf8(bytes: Vec<u8>) -> Result<String, String> {
+    String::from_utf8(bytes).map_err(|error| format!("it is not UTF-8 text: {error}"))
 }
 
 fn unknown(name: &str) -> SceneError {
@@ -100,12 +106,31 @@ impl Source {
     }
 }
 
-fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, SceneError> {
-    let faulty = |mut faults: Vec<SceneFault>| {
-        faults.sort_by_key(|fault| (fault.line, fault.column));
-        SceneError::Faulty(FaultyScene { file: file.to_owned(), text: text.to_owned(), faults })
+/// The error of a `file` with this `text` that has `faults`.
+fn faulty(file: &str, text: &str, mut faults: Vec<SceneFault>) -> SceneError {
+    faults.sort_by_key(|fault| (fault.line, fault.column));
+    SceneError::Faulty(FaultyScene { file: file.to_owned(), text: text.to_owned(), faults })
+}
+
+/// The scene that `text` tells, with the species of the underbrush file that it names.
+fn scene_of(file: &str, text: &str, source: &Source) -> Result<Scene, SceneError> {
+    let scene = parse(text).map_err(|faults| faulty(file, text, faults))?;
+    let name = &scene.underbrush_file;
+    if name.is_empty() {
+        return Ok(scene);
+    }
+    let unreadable = |reason| {
+        let message = format!("names `{name}`, which cannot be read: {reason}");
+        faulty(file, text, vec![SceneFault::at(text, "underbrush_file", message)])
     };
-    let mut scene = parse(text).map_err(faulty)?;
+    let species_text = source.read(name, SCENE_LIMIT).and_then(utf8).map_err(unreadable)?;
+    let species_file = source.path(name).display().to_string();
+    let species = parse_underbrush(&species_text).map_err(|faults| faulty(&species_file, &species_text, faults))?;
+    parse_with(text, species).map_err(|faults| faulty(file, text, faults))
+}
+
+fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, SceneError> {
+    let mut scene = scene_of(file, text, source)?;
     let mut faults = Vec::new();
     let mut note = |path: &str, message: String| faults.push(SceneFault::at(text, path, message));
 
@@ -114,6 +139,7 @@ fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, Sce
     }
     let height = height_map(&scene, source).map_err(|message| note("terrain.height_map", message)).ok();
     let cover = covering_map(&scene, source).map_err(|message| note("terrain.covering_map", message)).ok();
+    let nutrients = nutrient_map(&scene, source).map_err(|message| note("growth.nutrient_map", message)).ok();
     let mut loaded_models = Vec::new();
     for (kind, field) in [(VehicleKind::Car, &scene.objects.car_model), (VehicleKind::Monster, &scene.objects.monster_model)] {
         if field.is_empty() {
@@ -136,16 +162,18 @@ fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, Sce
             Err(reason) => note(&path, format!("names `{name}`, which {reason}")),
         }
     }
-    let (Some((height_png, height)), Some((covering_png, cover))) = (height, cover) else { return Err(faulty(faults)) };
-    if !faults.is_empty() {
-        return Err(faulty(faults));
-    }
+    let (Some((height_png, height)), Some((covering_png, cover)), Some(nutrient_png), []) = (height, cover, nutrients, faults.as_slice())
+    else {
+        return Err(faulty(file, text, faults));
+    };
+    let Scene { terrain, objects, growth, underbrush_file, .. } = &mut scene;
+    let of_objects = [&mut objects.car_model, &mut objects.monster_model];
     for path in
-        [&mut scene.terrain.height_map, &mut scene.terrain.covering_map, &mut scene.objects.car_model, &mut scene.objects.monster_model]
+        [&mut terrain.height_map, &mut terrain.covering_map, &mut growth.nutrient_map, underbrush_file].into_iter().chain(of_objects)
     {
         path.clear();
     }
-    Ok(LoadedScene { scene, height_png, covering_png, height, cover, drawings, models: loaded_models })
+    Ok(LoadedScene { scene, height_png, covering_png, nutrient_png, height, cover, drawings, models: loaded_models })
 }
 
 /// Everything in a scene that may name a drawing, with its path.
@@ -160,43 +188,55 @@ fn drawing(name: &str, source: &Source) -> Result<Drawing, String> {
     Drawing::from_png(&png).map_err(|error| error.to_string())
 }
 
+/// The bytes of a map's file, and what they `decode` to.
+fn map<M>(name: &str, source: &Source, decode: impl FnOnce(&[u8]) -> Result<M, MapError>) -> Result<(Vec<u8>, M), String> {
+    let png = source.read(name, MAP_LIMIT).map_err(|reason| format!("names `{name}`, which cannot be read: {reason}"))?;
+    let map = decode(&png).map_err(|error| format!("names `{name}`, which {error}"))?;
+    Ok((png, map))
+}
+
 fn height_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, HeightMap), String> {
     let name = &scene.terrain.height_map;
-    let told = |error: &dyn std::fmt::Display| format!("names `{name}`, which {error}");
-    let png = source.read(name, MAP_LIMIT).map_err(|reason| told(&format!("cannot be read: {reason}")))?;
-    let map = HeightMap::from_png(&png, &scene.terrain).map_err(|error: MapError| told(&error))?;
+    let (png, map) = map(name, source, |png| HeightMap::from_png(png, &scene.terrain))?;
 
     let [columns, rows] = map.size_px();
     let reach_m = [columns as f32 * scene.terrain.pixel_m[0], rows as f32 * scene.terrain.pixel_m[1]];
     let world_m = scene.extent_m();
     if reach_m[0] < world_m[0] || reach_m[1] < world_m[1] {
-        return Err(told(&format!(
-            "reaches over {} m × {} m ({columns} × {rows} pixels × pixel_m); allowed: at least over the world, {} m × {} m \
+        return Err(format!(
+            "names `{name}`, which reaches over {} m × {} m ({columns} × {rows} pixels × pixel_m); allowed: at least over the world, {} m × {} m \
              (patches: count × cells × cell_m). Take more pixels, a larger pixel_m or a smaller world",
             reach_m[0], reach_m[1], world_m[0], world_m[1]
-        )));
+        ));
     }
     let [low, high] = map.range_m();
     if low < LAND_RANGE_M[0] || high > LAND_RANGE_M[1] {
-        return Err(told(&format!("gives heights of {low} m to {high} m; allowed: {} to {} m", LAND_RANGE_M[0], LAND_RANGE_M[1])));
+        let [lowest, highest] = LAND_RANGE_M;
+        return Err(format!("names `{name}`, which gives heights of {low} m to {high} m; allowed: {lowest} to {highest} m"));
     }
     Ok((png, map))
 }
 
 fn covering_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, CoverMap), String> {
     let name = &scene.terrain.covering_map;
-    let told = |error: &dyn std::fmt::Display| format!("names `{name}`, which {error}");
-    let png = source.read(name, MAP_LIMIT).map_err(|reason| told(&format!("cannot be read: {reason}")))?;
-    let map = CoverMap::from_png(&png).map_err(|error: MapError| told(&error))?;
+    let (png, map) = map(name, source, CoverMap::from_png)?;
     if let Some(([column, row], id)) = map.find(|id| !scene.species.is_empty() && is_unknown(scene, id)) {
-        let species: Vec<_> = scene.species.iter().map(|species| format!("{} ({})", species.cover, species.name)).collect();
-        return Err(told(&format!(
-            "has the ID {id} at column {column} of row {row}, a hole in the species table; allowed: 0 (gap), 253 (tree), 254 (stone), 255 (grass) or that of a \
-             species, {}",
+        let grass = scene.species.iter().map(|species| (species.cover, &species.name));
+        let underbrush = scene.underbrush.iter().filter(|species| species.cover > 0).map(|species| (species.cover, &species.name));
+        let species: Vec<_> = grass.chain(underbrush).map(|(cover, name)| format!("{cover} ({name})")).collect();
+        return Err(format!(
+            "names `{name}`, which has the ID {id} at column {column} of row {row}, a hole in the species table; allowed: 0 (gap), 253 (tree), 254 (stone), \
+             255 (grass) or that of a species, {}",
             species.join(", ")
-        )));
+        ));
     }
     Ok((png, map))
+}
+
+/// The bytes of the map of nutrients; none where they are generated.
+fn nutrient_map(scene: &Scene, source: &Source) -> Result<Vec<u8>, String> {
+    let name = &scene.growth.nutrient_map;
+    if name.is_empty() { Ok(Vec::new()) } else { map(name, source, NutrientMap::from_png).map(|(png, _)| png) }
 }
 
 /// Whether nothing that a scene knows has this ID in its covering map.

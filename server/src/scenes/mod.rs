@@ -28,6 +28,7 @@ mod tests {
             let loaded = load(name).unwrap_or_else(|error| panic!("{error}"));
             assert!(!summary.is_empty() && loaded.scene.summary == summary);
             assert!(loaded.scene.terrain.height_map.is_empty() && loaded.scene.terrain.covering_map.is_empty());
+            assert!(loaded.scene.growth.nutrient_map.is_empty() && loaded.scene.underbrush_file.is_empty());
             assert!(check(name).unwrap().to_string().starts_with(&format!("{name}: sound\n")));
         }
         assert_eq!(list().next().unwrap().0, "meadow");

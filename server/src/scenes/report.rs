@@ -23,7 +23,7 @@ pub fn check(name_or_path: &str) -> Result<Report, SceneError> {
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let LoadedScene { scene, height, cover, models, .. } = &self.loaded;
+        let LoadedScene { scene, nutrient_png, height, cover, models, .. } = &self.loaded;
         let [width_m, depth_m] = scene.extent_m();
         let [nx, nz] = scene.patches.count;
         let [low, high] = height.range_m();
@@ -43,6 +43,12 @@ impl fmt::Display for Report {
             let species =
                 scene.species.iter().map(|species| format!("{} ({:.0} %)", species.name, percent(count(Cover::from(species.cover)))));
             writeln!(f, "  species   {}", species.collect::<Vec<_>>().join(", "))?;
+        }
+        if !scene.underbrush.is_empty() {
+            let species: Vec<_> = scene.underbrush.iter().map(|species| species.name.as_str()).collect();
+            let [columns, rows] = scene.growth.sites(scene.extent_m());
+            let soil = if nutrient_png.is_empty() { "generated" } else { "drawn" };
+            writeln!(f, "  underbrush {}, on {columns} × {rows} sites of {soil} soil", species.join(", "))?;
         }
         let triangles = |count: usize| if count == 1 { "1 triangle".to_owned() } else { format!("{count} triangles") };
         let models: Vec<_> = models.iter().map(|(kind, mesh)| format!("{} ({})", kind.name(), triangles(mesh.indices.len() / 3))).collect();

@@ -104,29 +104,14 @@ pub(crate) fn scene() -> LoadedScene {
     let terrain = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [1.0, 1.0], level_m: 0.1, base_m: 0.0 };
     let patches = Patches { count: [3, 3], cells: CELLS as u32, cell_m: 1.0, ..Patches::default() };
     let wind = Wind { cells: WIND_CELLS, ..Wind::default() };
-    let scene = Scene {
-        summary: "a test".to_owned(),
-        seed: 1,
-        tick_hz: 120.0,
-        patches,
-        terrain,
-        wind,
-        grass: Default::default(),
-        plants: Default::default(),
-        species: Vec::new(),
-        bend: Default::default(),
-        natural_wind: Default::default(),
-        objects: Default::default(),
-        drawn_winds: vec![],
-        camera: Default::default(),
-        light: Default::default(),
-    };
+    let scene = Scene { summary: "a test".to_owned(), tick_hz: 120.0, patches, wind, ..Scene::new(terrain) };
     let png_bytes = grey_png([2; 2], &[255; 4]);
     LoadedScene {
         height: HeightMap::from_png(&png_bytes, &scene.terrain).unwrap(),
         cover: CoverMap::from_png(&png_bytes).unwrap(),
         height_png: png_bytes.clone(),
         covering_png: png_bytes,
+        nutrient_png: Vec::new(),
         scene,
         drawings: Default::default(),
         models: Vec::new(),

@@ -1,8 +1,8 @@
 //! What each field of a scene file may hold: the one table that parsing, the reference in the README and its tests share.
 
 use super::{
-    BladeIntegrator, BladeShape, ComponentKind, LagWay, PrimitiveKind, SPECIES_LIMIT, VehicleKind, WindAdvection, WindBoundary,
-    WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, LagWay, PrimitiveKind, SPECIES_LIMIT, VehicleKind, WindAdvection,
+    WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, Scheme, Seams};
 use std::fmt;
@@ -144,7 +144,7 @@ pub const FIELDS: [(&str, Allowed); 179] = [
     ("underbrush.needs", Range(0.0, 1.0)),
     ("underbrush.uptake", Range(0.0, 1.0)),
     ("underbrush.light_need", Range(0.0, 1.0)),
-    ("underbrush.components", Sections(1, 16)),
+    ("underbrush.components", Sections(1, COMPONENTS_LIMIT)),
     ("underbrush.components.name", Text),
     ("underbrush.components.kind", OneOf(ComponentKind::WORDS)),
     ("underbrush.components.on", Text),

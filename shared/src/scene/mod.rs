@@ -40,7 +40,7 @@ pub use plants::{BladeIntegrator, BladeShape, LagWay, Plants};
 pub use rain::Rain;
 pub use species::Species;
 pub use terrain::TerrainMaps;
-pub use underbrush::{Component, ComponentKind, PARTS_LIMIT, SITES_LIMIT, SPECIES_LIMIT, Underbrush};
+pub use underbrush::{COMPONENTS_LIMIT, Component, ComponentKind, PARTS_LIMIT, SITES_LIMIT, SPECIES_LIMIT, Underbrush};
 pub(crate) use wind::words;
 pub use wind::{
     Primitive, PrimitiveKind, Wind, WindAdvection, WindBoundary, WindDiffusion, WindDust, WindFaces, WindMethod, WindPressure, WindTerrain,

@@ -2,7 +2,7 @@
 
 pub(super) mod check;
 
-pub use check::{PARTS_LIMIT, SITES_LIMIT, SPECIES_LIMIT};
+pub use check::{COMPONENTS_LIMIT, PARTS_LIMIT, SITES_LIMIT, SPECIES_LIMIT};
 
 use super::wind::words;
 use serde::{Deserialize, Serialize};

@@ -78,28 +78,42 @@ struct GreyImage {
 }
 
 fn decode_grey(png_bytes: &[u8], allow_16_bits: bool) -> Result<GreyImage, MapError> {
+    use png::{BitDepth, ColorType};
+    let kinds: &[_] = &[(ColorType::Grayscale, BitDepth::Eight), (ColorType::Grayscale, BitDepth::Sixteen)];
+    let (kinds, allowed) =
+        if allow_16_bits { (kinds, "grey without alpha, 8 or 16 bits") } else { (&kinds[..1], "grey without alpha, 8 bits") };
+    let Decoded { size_px: [width, height], kind: (_, depth), bytes } = decode(png_bytes, kinds, allowed)?;
+    let levels = match depth {
+        BitDepth::Sixteen => bytes.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect(),
+        _ => bytes.into_iter().map(u16::from).collect(),
+    };
+    Ok(GreyImage { width, height, levels, bits: depth as u8 })
+}
+
+/// A decoded PNG of 8 or 16 bits a channel.
+pub(crate) struct Decoded {
+    pub(crate) size_px: [u32; 2],
+    pub(crate) kind: (png::ColorType, png::BitDepth),
+    /// Pixels row by row from the top left, as the file holds them.
+    pub(crate) bytes: Vec<u8>,
+}
+
+/// Reads a PNG of one of these `kinds`, which `allowed` names, of 8 or 16 bits a channel.
+pub(crate) fn decode(png_bytes: &[u8], kinds: &[(png::ColorType, png::BitDepth)], allowed: &'static str) -> Result<Decoded, MapError> {
     let unreadable = |error: png::DecodingError| MapError::Unreadable(error.to_string());
     let mut decoder = png::Decoder::new(std::io::Cursor::new(png_bytes));
     decoder.set_transformations(png::Transformations::IDENTITY);
     let mut reader = decoder.read_info().map_err(unreadable)?;
     let info = reader.info();
-    let (width, height) = (info.width, info.height);
-    let bits = match (info.color_type, info.bit_depth) {
-        (png::ColorType::Grayscale, png::BitDepth::Eight) => 8,
-        (png::ColorType::Grayscale, png::BitDepth::Sixteen) if allow_16_bits => 16,
-        (colour, depth) => {
-            let allowed = if allow_16_bits { "grey without alpha, 8 or 16 bits" } else { "grey without alpha, 8 bits" };
-            return Err(MapError::Kind { found: format!("{colour:?} {} bits", depth as u8), allowed });
-        }
-    };
+    let (width, height, kind) = (info.width, info.height, (info.color_type, info.bit_depth));
+    if !kinds.contains(&kind) {
+        return Err(MapError::Kind { found: format!("{:?} {} bits", kind.0, kind.1 as u8), allowed });
+    }
     if width < 2 || height < 2 || width > MAP_LIMIT_PX || height > MAP_LIMIT_PX {
         return Err(MapError::Size { width, height, limit: MAP_LIMIT_PX });
     }
-    let mut bytes = vec![0; width as usize * height as usize * usize::from(bits / 8)];
+    let bytes_per_pixel = kind.0.samples() * (kind.1 as usize / 8);
+    let mut bytes = vec![0; width as usize * height as usize * bytes_per_pixel];
     reader.next_frame(&mut bytes).map_err(unreadable)?;
-    let levels = match bits {
-        8 => bytes.into_iter().map(u16::from).collect(),
-        _ => bytes.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect(),
-    };
-    Ok(GreyImage { width, height, levels, bits })
+    Ok(Decoded { size_px: [width, height], kind, bytes })
 }

@@ -3,7 +3,7 @@
 //! Patches meet in a band one cell of the wind wide, in which the wind goes over from the one's to the other's along a straight line.
 
 use crate::grid::PatchLayout;
-use crate::hash::hash3;
+use crate::hash::{folded, hash3};
 use crate::scene::{Scene, WindTiling};
 
 /// A place in the wind's box, and how much of the wind there blows.
@@ -93,11 +93,6 @@ impl Patches {
 pub fn offset_cells(seed: u32, [x, z]: [i32; 2], cells: [u32; 2]) -> [u32; 2] {
     let [a, b, _] = hash3([x as u32, z as u32, seed]);
     [(a >> 8) % cells[0], (b >> 8) % cells[1]]
-}
-
-/// A seed in half its bits.
-fn folded(seed: u64) -> u32 {
-    (seed ^ (seed >> 32)) as u32
 }
 
 #[cfg(test)]

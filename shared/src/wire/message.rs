@@ -89,6 +89,9 @@ pub enum ServerMessage {
         /// Covering map, the PNG file's bytes.
         #[serde(with = "serde_bytes")]
         covering_png: Vec<u8>,
+        /// Map of the soil's nutrients, the PNG file's bytes; empty: the nutrients are generated from the seed.
+        #[serde(with = "serde_bytes")]
+        nutrient_png: Vec<u8>,
         /// Models read from glTF files; kinds that are missing are drawn with the built-in one.
         models: Vec<(VehicleKind, Mesh)>,
     },
@@ -213,7 +216,7 @@ pub struct Mesh {
 impl Mesh {
     /// Most vertices: as many as 16 bits can number.
     pub const VERTEX_LIMIT: usize = 1 << 16;
-    /// Most indices; two such meshes and two maps of 24 MiB fit into [`SERVER_MESSAGE_LIMIT`](super::SERVER_MESSAGE_LIMIT).
+    /// Most indices; two such meshes and three maps of 24 MiB fit into [`SERVER_MESSAGE_LIMIT`](super::SERVER_MESSAGE_LIMIT).
     pub const INDEX_LIMIT: usize = 1 << 20;
 }
 

@@ -14,7 +14,7 @@ pub use codec::{CodecError, Shape};
 pub use message::{ClientMessage, Drive, Mesh, ObjectId, ObjectPose, Peer, Refusal, ServerMessage, WireError, decode, encode};
 
 /// Version of the protocol; both sides must agree.
-pub const PROTOCOL: u8 = 5;
+pub const PROTOCOL: u8 = 6;
 
 /// Largest message a client may send (bytes).
 pub const CLIENT_MESSAGE_LIMIT: usize = 4096;
@@ -25,5 +25,5 @@ pub const VIEW_RADIUS_LIMIT_M: f32 = 512.0;
 /// Patches that a client keeps at least: those that it was told of last. A server sends deltas only to these.
 pub const PATCH_MEMORY: usize = 2048;
 
-/// Largest message a server may send (bytes): a scene with two maps and two models.
-pub const SERVER_MESSAGE_LIMIT: usize = 64 << 20;
+/// Largest message a server may send (bytes): a scene with three maps and two models.
+pub const SERVER_MESSAGE_LIMIT: usize = 96 << 20;

@@ -187,7 +187,7 @@ fn models_that_are_too_large_are_refused() {
 }
 
 #[test]
-fn two_largest_models_and_maps_fit_into_a_message() {
+fn two_largest_models_and_three_maps_fit_into_a_message() {
     let mesh = Mesh {
         positions_m: vec![[f32::MAX; 3]; Mesh::VERTEX_LIMIT],
         normals: vec![[f32::MAX; 3]; Mesh::VERTEX_LIMIT],
@@ -197,6 +197,12 @@ fn two_largest_models_and_maps_fit_into_a_message() {
     let scene = crate::scenes::load("meadow").unwrap().scene;
     let map = vec![0; crate::scenes::MAP_LIMIT as usize];
     let models = vec![(VehicleKind::Car, mesh.clone()), (VehicleKind::Monster, mesh)];
-    let message = shared::wire::ServerMessage::Scene { scene: Box::new(scene), height_png: map.clone(), covering_png: map, models };
+    let message = shared::wire::ServerMessage::Scene {
+        scene: Box::new(scene),
+        height_png: map.clone(),
+        covering_png: map.clone(),
+        nutrient_png: map,
+        models,
+    };
     assert!(shared::wire::encode(&message).len() <= shared::wire::SERVER_MESSAGE_LIMIT);
 }

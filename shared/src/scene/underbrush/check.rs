@@ -7,6 +7,9 @@ use crate::scene::check::Misfits;
 /// Most species of underbrush in a scene.
 pub const SPECIES_LIMIT: usize = 16;
 
+/// Most components of a species.
+pub const COMPONENTS_LIMIT: usize = 16;
+
 /// Most leaves, branches and flowers of one plant.
 pub const PARTS_LIMIT: u64 = 128;
 
