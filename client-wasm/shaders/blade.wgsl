@@ -60,7 +60,7 @@ fn propagator(integrator: u32, omega: f32, gamma: f32, dt: f32) -> vec4<f32> {
 }
 
 fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_per_s: array<vec2<f32>, 3>, integrator: u32, dt: f32) -> Sway {
-    var from = sway;
+    var old = sway;
     var held_in = held;
     var winds_in = winds_m_per_s;
     let link = blade.length / 3.0;
@@ -69,16 +69,16 @@ fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_pe
     var drag_x = vec3<f32>(0.0);
     var drag_z = vec3<f32>(0.0);
     for (var j = 0; j < LINKS; j++) {
-        own += link * from.links[j].zw;
+        own += link * old.links[j].zw;
         past[j] = length(winds_in[j] - own) * blade.lean_per_wind2;
         drag_x[j] = winds_in[j].x * past[j];
         drag_z[j] = winds_in[j].y * past[j];
     }
     let braked = 0.5 * blade.length * blade.frequency * blade.frequency;
-    let lean_x = vec3<f32>(from.links[0].x, from.links[1].x, from.links[2].x) - vec3<f32>(held_in[0].x, held_in[1].x, held_in[2].x);
-    let lean_z = vec3<f32>(from.links[0].y, from.links[1].y, from.links[2].y) - vec3<f32>(held_in[0].y, held_in[1].y, held_in[2].y);
-    let rate_x = vec3<f32>(from.links[0].z, from.links[1].z, from.links[2].z);
-    let rate_z = vec3<f32>(from.links[0].w, from.links[1].w, from.links[2].w);
+    let lean_x = vec3<f32>(old.links[0].x, old.links[1].x, old.links[2].x) - vec3<f32>(held_in[0].x, held_in[1].x, held_in[2].x);
+    let lean_z = vec3<f32>(old.links[0].y, old.links[1].y, old.links[2].y) - vec3<f32>(held_in[0].y, held_in[1].y, held_in[2].y);
+    let rate_x = vec3<f32>(old.links[0].z, old.links[1].z, old.links[2].z);
+    let rate_z = vec3<f32>(old.links[0].w, old.links[1].w, old.links[2].w);
     var to = sway;
     for (var m = 0; m < LINKS; m++) {
         var frequencies = FREQUENCIES;
@@ -98,27 +98,53 @@ fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_pe
     return to;
 }
 
-// Unit vector of a link that leans by a vector on the ground (rad).
+// Unit vector of a link that leans by a vector on the ground (rad): Taylor's polynomials, as the twin has them.
 fn direction_of(lean: vec2<f32>) -> vec3<f32> {
     let t = min(dot(lean, lean), 9.8696044);
-    let angle = sqrt(t);
-    let aside = select(sin(angle) / angle, 1.0 - t / 6.0, t < 1e-3);
-    return vec3<f32>(lean.x * aside, cos(angle), lean.y * aside);
+    var up = 1.0 / 20922789888000.0;
+    up = up * t - 1.0 / 87178291200.0;
+    up = up * t + 1.0 / 479001600.0;
+    up = up * t - 1.0 / 3628800.0;
+    up = up * t + 1.0 / 40320.0;
+    up = up * t - 1.0 / 720.0;
+    up = up * t + 1.0 / 24.0;
+    up = up * t - 0.5;
+    up = up * t + 1.0;
+    var aside = 1.0 / 355687428096000.0;
+    aside = aside * t - 1.0 / 1307674368000.0;
+    aside = aside * t + 1.0 / 6227020800.0;
+    aside = aside * t - 1.0 / 39916800.0;
+    aside = aside * t + 1.0 / 362880.0;
+    aside = aside * t - 1.0 / 5040.0;
+    aside = aside * t + 1.0 / 120.0;
+    aside = aside * t - 1.0 / 6.0;
+    aside = aside * t + 1.0;
+    return vec3<f32>(lean.x * aside, up, lean.y * aside);
 }
 
 fn lean_of(direction: vec3<f32>) -> vec2<f32> {
     let aside = length(direction.xz);
-    let angle = 2.0 * atan(aside / max(1.0 + direction.y, 1e-3));
+    var tangent = aside / max(1.0 + direction.y, 1e-3);
+    tangent /= 1.0 + sqrt(1.0 + tangent * tangent);
+    tangent /= 1.0 + sqrt(1.0 + tangent * tangent);
+    let t = tangent * tangent;
+    var angle = 1.0 / 13.0;
+    angle = angle * t - 1.0 / 11.0;
+    angle = angle * t + 1.0 / 9.0;
+    angle = angle * t - 1.0 / 7.0;
+    angle = angle * t + 1.0 / 5.0;
+    angle = angle * t - 1.0 / 3.0;
+    angle = (angle * t + 1.0) * 8.0 * tangent;
     return direction.xz * (angle / max(aside, 1e-9));
 }
 
 // Offsets of the control points above the root from it (m).
 fn points_of(sway: Sway, length_m: f32) -> array<vec3<f32>, 3> {
-    var from = sway;
+    var old = sway;
     var points: array<vec3<f32>, 3>;
     var at = vec3<f32>(0.0);
     for (var i = 0; i < LINKS; i++) {
-        at += direction_of(from.links[i].xy) * (length_m / 3.0);
+        at += direction_of(old.links[i].xy) * (length_m / 3.0);
         points[i] = at;
     }
     return points;
