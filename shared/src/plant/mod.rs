@@ -1,3 +1,4 @@
 //! Plants: blades of grass (000 chapter 3), underbrush of leaves, branches and flowers (004), and where they grow.
 
+pub mod force_field;
 pub mod growth;
