@@ -1,1 +1,3 @@
 //! Plants: blades of grass (000 chapter 3), underbrush of leaves, branches and flowers (004), and where they grow.
+
+pub mod underbrush;

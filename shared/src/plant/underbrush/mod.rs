@@ -1,0 +1,3 @@
+//! Underbrush.
+pub mod rest;
+pub mod section;
