@@ -56,41 +56,62 @@ pub fn one_pass(joints: &[f64], load: Load, unbent_rad: f64, bends_rad: &mut [f6
 /// upright, 0..=π; an upright component that cannot stand takes the bent shape.
 ///
 /// Shooting: the angle of the topmost section gives all others down to the clamp, as the moment at a joint depends on the sections above it alone. While
-/// none of them rises above the unbent axis, the clamp's angle grows with that of the tip (there is but one shape bent to one side all along: the load's
-/// sin ψ/ψ falls with ψ, after Brezis & Oswald, Nonlinear Analysis 10, 1986); so halving finds the shape always, and no other. Angles are
-/// measured from the load's direction, where heavy loads leave differences too small for an angle from upright.
+/// none of them rises above the unbent axis, there is but one angle that fits the clamp (the load's sin ψ/ψ falls with ψ: Brezis & Oswald, Nonlinear
+/// Analysis 10, 1986), and all larger ones rise above it; so a bracket finds the shape always, and no other. Angles are measured from the load's
+/// direction, where heavy loads leave differences too small for an angle from upright.
 pub fn balanced(joints: &[f64], load: Load, unbent_rad: f64, bends_rad: &mut [f64]) {
     let clamp_rad = PI - unbent_rad;
-    let mut high = clamp_rad;
-    let mut low = 0.5 * high;
-    while low > 0.0 && !stays_within(joints, load, clamp_rad, low, bends_rad) {
-        high = low;
-        low *= 0.5;
+    // As sin ψ ≤ ψ, angles grow no faster towards the foot than where the load turns with ψ itself.
+    let mut low = clamp_rad / shoot(joints, load, 1.0, f64::INFINITY, |angle| angle, bends_rad);
+    let mut excess = |tip_rad: f64| shoot(joints, load, tip_rad, clamp_rad, f64::sin, bends_rad) - clamp_rad;
+    let mut excess_low = excess(low);
+    // A straight upright shape would fit as well, but falls over.
+    let (mut high, mut excess_high) = (clamp_rad, 1.0);
+    while excess_low < 0.0 && low > 0.0 && 2.0 * low < high {
+        let more = excess(2.0 * low);
+        if more > 0.0 {
+            (high, excess_high) = (2.0 * low, more);
+        } else {
+            (low, excess_low) = (2.0 * low, more);
+        }
     }
-    loop {
-        let middle = low + 0.5 * (high - low);
+    // Ridders' method: each round at least halves the bracket.
+    while excess_low < -CLOSE_RAD {
+        let middle = 0.5 * (low + high);
+        let at_middle = excess(middle);
+        let tip_rad = middle - (middle - low) * at_middle / (at_middle * at_middle - excess_low * excess_high).sqrt();
         if middle <= low || middle >= high {
             break;
         }
-        if stays_within(joints, load, clamp_rad, middle, bends_rad) { low = middle } else { high = middle }
+        for (tip_rad, found) in [(middle, at_middle), (tip_rad, excess(tip_rad))] {
+            if found <= 0.0 && tip_rad > low {
+                (low, excess_low) = (tip_rad, found);
+            } else if found > 0.0 && tip_rad < high {
+                (high, excess_high) = (tip_rad, found);
+            }
+        }
     }
-    stays_within(joints, load, clamp_rad, low, bends_rad);
+    excess(low);
     bends_rad.iter_mut().for_each(|angle_rad| *angle_rad = clamp_rad - *angle_rad);
 }
 
-/// Angles of the sections from the load's direction that follow from that of the topmost; false as soon as one exceeds that of the clamp.
-fn stays_within(joints: &[f64], load: Load, clamp_rad: f64, tip_rad: f64, angles_rad: &mut [f64]) -> bool {
+/// How closely a shape fits its clamp (rad).
+const CLOSE_RAD: f64 = 1e-14;
+
+/// Angles of the sections from the load's direction that follow from that of the topmost; the load turns them with `pull` of their angle. Returns the
+/// angle that fits the clamp, or the first that exceeds `limit_rad`.
+fn shoot(joints: &[f64], load: Load, tip_rad: f64, limit_rad: f64, pull: impl Fn(f64) -> f64, angles_rad: &mut [f64]) -> f64 {
     let count = joints.len();
     let (mut angle_rad, mut moment) = (tip_rad, 0.0);
     for (section, (&joint, out)) in joints.iter().zip(angles_rad).enumerate().rev() {
         *out = angle_rad;
-        moment += load.above_middle(section, count) * angle_rad.sin() / count as f64;
+        moment += load.above_middle(section, count) * pull(angle_rad) / count as f64;
         angle_rad += moment / joint;
-        if angle_rad > clamp_rad {
-            return false;
+        if angle_rad > limit_rad {
+            break;
         }
     }
-    true
+    angle_rad
 }
 
 /// Writes the bending moment at the lower end of each section that a load causes in a shape (in units of EI/L).
