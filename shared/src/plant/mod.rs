@@ -3,3 +3,4 @@
 pub mod blade;
 pub mod force_field;
 pub mod growth;
+pub mod underbrush;
