@@ -1,0 +1,141 @@
+//! All underbrush of a world: what grew, and how each plant is made.
+
+use super::growth::{Ground, Grown, NutrientMap, Plant, Sites, Soil, grow};
+use super::underbrush::plan::Plan;
+use super::underbrush::posture::Nodes;
+use crate::hash::{folded, hash3};
+use crate::scene::{Component, Scene, Underbrush};
+use crate::terrain::CoverMap;
+use std::f32::consts::TAU;
+
+/// The underbrush of a world, the same for everyone who has its scene and maps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flora {
+    grown: Grown,
+    species: Vec<Underbrush>,
+    plans: Vec<Plan>,
+    seed: u32,
+}
+
+/// How one plant stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Standing {
+    /// Place on the ground, X and Z (m).
+    pub at_m: [f32; 2],
+    /// Index of its species.
+    pub species: usize,
+    /// Size over that of its species: by lot within `size_variation`, and down to 0.6 of that where it is badly fed.
+    pub size: f32,
+    /// Heading of its first turn (rad).
+    pub heading_rad: f32,
+    /// Number that its components are drawn by.
+    pub number: u32,
+}
+
+impl Flora {
+    /// Lets the underbrush of a scene grow; none if it has none, with `nutrients` where the soil is a map.
+    pub fn new(scene: &Scene, cover: &CoverMap, nutrients: Option<&NutrientMap>) -> Option<Self> {
+        if scene.underbrush.is_empty() {
+            return None;
+        }
+        let extent_m = scene.extent_m();
+        let sites = Sites::new(extent_m, scene.growth.spacing_m, scene.seed);
+        let soil = nutrients.map_or_else(|| Soil::generated(&scene.growth, &sites), |map| Soil::of_map(map, &sites, extent_m));
+        let species = scene.underbrush.clone();
+        let heights_m: Vec<f32> = species.iter().map(height_m).collect();
+        let ground = |[x_m, z_m]: [f32; 2]| {
+            let cover = cover.at(x_m, z_m, extent_m);
+            Ground::new(cover, scene.is_grass(cover), &species)
+        };
+        let grown = grow(sites, soil, &species, &heights_m, scene.growth.shade, ground);
+        let plans = species.iter().map(|species| Plan::new(species, Nodes::default())).collect();
+        Some(Self { grown, species, plans, seed: folded(scene.seed) })
+    }
+
+    /// What grew.
+    pub fn grown(&self) -> &Grown {
+        &self.grown
+    }
+
+    /// The species, in the scene's order.
+    pub fn species(&self) -> &[Underbrush] {
+        &self.species
+    }
+
+    /// How each species is made, in that order.
+    pub fn plans(&self) -> &[Plan] {
+        &self.plans
+    }
+
+    /// How a plant stands.
+    pub fn standing(&self, plant: &Plant) -> Standing {
+        let [size, heading, number] = hash3([plant.site, 0x5a, self.seed]);
+        let share = |random: u32| (random >> 8) as f32 / (1_u32 << 24) as f32;
+        let species = usize::from(plant.species);
+        let by_lot = 1.0 + self.species[species].size_variation * (2.0 * share(size) - 1.0);
+        Standing {
+            at_m: self.grown.sites.place_m(plant.site),
+            species,
+            size: by_lot * (0.6 + 0.4 * f32::from(plant.vigour) / 255.0),
+            heading_rad: TAU * share(heading),
+            number,
+        }
+    }
+}
+
+/// Height of a species' unbent plants (m): that of the highest tip where all components have their mean angles and lengths; shade goes by it. Only
+/// `+ − × ÷` and roots, since server and client must agree.
+pub fn height_m(species: &Underbrush) -> f32 {
+    let mut tips: Vec<(&Component, f32)> = Vec::new();
+    for component in &species.components {
+        let foot_m = tips
+            .iter()
+            .find(|(other, _)| other.name == component.on)
+            .map_or(0.0, |&(other, tip_m)| tip_m - rise_m(other) * (1.0 - component.to_share));
+        tips.push((component, foot_m + rise_m(component)));
+    }
+    tips.into_iter().map(|(_, tip_m)| tip_m).fold(0.01, f32::max)
+}
+
+/// How far a component rises from its foot (m): its length by the cosine of its angle.
+fn rise_m(component: &Component) -> f32 {
+    component.length_m * super::blade::lean::direction([component.angle_rad, 0.0])[1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{ComponentKind, parse};
+    use crate::terrain::grey_png;
+
+    fn meadow() -> (Scene, CoverMap) {
+        let text = "summary = 's'\npatches = { count = [2, 2] }\n[terrain]\nheight_map = 'h.png'\ncovering_map = 'c.png'\npixel_m = [2, 2]\nlevel_m = 0.1\n\
+            [[underbrush]]\nname = 'a'\n[[underbrush.components]]\nname = 'leaf'\nkind = 'leaf'\ncount = 3\n";
+        (parse(text).unwrap(), CoverMap::from_png(&grey_png([4; 2], &[255; 16])).unwrap())
+    }
+
+    #[test]
+    fn everyone_finds_the_same_plants() {
+        let (scene, cover) = meadow();
+        let [one, other] = [(); 2].map(|()| Flora::new(&scene, &cover, None).expect("a scene with underbrush"));
+        assert_eq!(one, other);
+        let all: Vec<Standing> = one.grown().plants().iter().map(|plant| one.standing(plant)).collect();
+        assert!(all.len() > 500, "{} plants", all.len());
+        let extent_m = scene.extent_m();
+        assert!(all.iter().all(|one| (0..2).all(|axis| (0.0..extent_m[axis]).contains(&one.at_m[axis]))));
+        let (low, high) = (0.6 * (1.0 - scene.underbrush[0].size_variation), 1.0 + scene.underbrush[0].size_variation);
+        assert!(all.iter().all(|one| (low..=high).contains(&one.size)));
+        assert!(Flora::new(&Scene { underbrush: Vec::new(), ..scene }, &cover, None).is_none());
+    }
+
+    #[test]
+    fn the_height_is_that_of_the_highest_tip() {
+        let mut stalk = Component::new("stalk", ComponentKind::Branch);
+        (stalk.length_m, stalk.angle_rad) = (1.0, 0.0);
+        let mut leaf = Component::new("leaf", ComponentKind::Leaf);
+        (leaf.on, leaf.to_share, leaf.length_m, leaf.angle_rad) = ("stalk".into(), 0.5, 0.3, std::f32::consts::FRAC_PI_3);
+        assert!((height_m(&Underbrush::new("a", vec![stalk.clone(), leaf.clone()])) - 1.0).abs() < 1e-6);
+        leaf.to_share = 1.0;
+        assert!((height_m(&Underbrush::new("a", vec![stalk, leaf])) - 1.15).abs() < 1e-5);
+    }
+}
