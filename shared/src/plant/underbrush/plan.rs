@@ -22,14 +22,15 @@ const BRANCH_MEAN_WIDTH: f32 = 0.75;
 
 /// Drag coefficients on the greatest silhouette. A stalk is a cylinder across the wind (1.1, at the Reynolds numbers 1e3 to 1e5 of stalks); leaves and
 /// petals turn their edge to the wind and stream in it (reconfiguration; Vogel, Journal of Experimental Botany 40, 1989), which leaves them the less the
-/// more they bend; 0.4 is a middle.
-const LEAF_DRAG: f32 = 0.4;
+/// more they bend; 0.25 is a middle.
+const LEAF_DRAG: f32 = 0.25;
 const STALK_DRAG: f32 = 1.1;
 
 /// A kind of component of a species, with what its bending needs.
 ///
 /// Plants and components of other sizes are of the same shape: at size s their mass goes with s³, their rigidity with s⁴, their strength with s³. So the load
-/// Λ = |R|·L²/EI that a component feels is that of `weight_secs2_per_m·s` times the force per mass and of `drag_per_pa` times the pressure of the air.
+/// Λ = |R|·L²/EI that a component feels is that of `weight_secs2_per_m·s` times the force per mass and of `drag_per_pa` times the pressure of the air. A
+/// branch doesn't feel what stands on it: its own mass stands for that too.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// As in the scene.
@@ -230,7 +231,7 @@ mod tests {
     fn load_and_strength_are_in_units_of_the_stiffness() {
         let part = Plan::new(&bush(), NODES).parts.remove(2);
         assert!((part.weight_secs2_per_m - 0.001 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
-        assert!((part.drag_per_pa - 0.4 * 0.73 * 0.4 * 0.01 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
+        assert!((part.drag_per_pa - 0.25 * 0.73 * 0.4 * 0.01 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
         assert!((part.strength - 0.01 * 0.4 / 0.001).abs() < 1e-6);
     }
 

@@ -99,16 +99,15 @@ pub fn balanced(joints: &[f64], load: Load, unbent_rad: f64, bends_rad: &mut [f6
 const CLOSE_RAD: f64 = 1e-14;
 
 /// Angles of the sections from the load's direction that follow from that of the topmost; the load turns them with `pull` of their angle. Returns the
-/// angle that fits the clamp, or the first that exceeds `limit_rad`.
+/// angle that fits the clamp, or the first that exceeds `limit_rad`; sections below that are left at the limit.
 fn shoot(joints: &[f64], load: Load, tip_rad: f64, limit_rad: f64, pull: impl Fn(f64) -> f64, angles_rad: &mut [f64]) -> f64 {
     let count = joints.len();
     let (mut angle_rad, mut moment) = (tip_rad, 0.0);
     for (section, (&joint, out)) in joints.iter().zip(angles_rad).enumerate().rev() {
-        *out = angle_rad;
-        moment += load.above_middle(section, count) * pull(angle_rad) / count as f64;
-        angle_rad += moment / joint;
-        if angle_rad > limit_rad {
-            break;
+        *out = angle_rad.min(limit_rad);
+        if angle_rad <= limit_rad {
+            moment += load.above_middle(section, count) * pull(angle_rad) / count as f64;
+            angle_rad += moment / joint;
         }
     }
     angle_rad

@@ -86,19 +86,20 @@ fn stalks_stand_and_leaves_droop() {
             let fitting = if part.component.kind == ComponentKind::Leaf { 0.5..=6.0 } else { 0.01..=1.5 };
             assert!(fitting.contains(&load), "{} of {}: {load}", part.component.name, species.name);
         }
-        for one in (0..40).flat_map(|number| pose(plan, number, 0.0)) {
-            let part = &plan.parts[one.part];
-            let sections = one.sections();
-            let rise = (sections[sections.len() - 1].end_m - one.foot_m).y / (part.component.length_m * one.size);
-            let bend_rad = sections[sections.len() - 1].direction.angle_between(one.axis);
-            match part.component.kind {
-                ComponentKind::Leaf if part.on.is_none() => {
-                    assert!(rise > 0.15, "{} of {} lies: {rise}", part.component.name, species.name)
-                }
-                ComponentKind::Leaf => assert!(bend_rad < 1.8, "{} of {} hangs: {bend_rad}", part.component.name, species.name),
-                _ => assert!(bend_rad < 0.7 && rise > -0.2, "{} of {} buckles: {bend_rad}", part.component.name, species.name),
-            }
-            assert!(one.strain < 0.2);
+        for (index, part) in plan.parts.iter().enumerate() {
+            let all: Vec<Posed> = (0..40).flat_map(|number| pose(plan, number, 0.0)).filter(|one| one.part == index).collect();
+            let tip = |one: &Posed| one.sections()[one.sections().len() - 1];
+            let rises = all.iter().map(|one| (tip(one).end_m - one.foot_m).y / (part.component.length_m * one.size));
+            let mean_rise = rises.clone().sum::<f32>() / all.len() as f32;
+            let least_rise = rises.fold(1.0, f32::min);
+            let most_bend_rad = all.iter().map(|one| tip(one).direction.angle_between(one.axis)).fold(0.0, f32::max);
+            let fits = match part.component.kind {
+                ComponentKind::Leaf if part.on.is_none() => mean_rise > 0.3 && least_rise > 0.05 && most_bend_rad > 0.2,
+                ComponentKind::Leaf => most_bend_rad < 1.2,
+                _ => most_bend_rad < 0.5 && least_rise > 0.3,
+            };
+            assert!(fits, "{} of {}: {mean_rise}, {least_rise}, {most_bend_rad}", part.component.name, species.name);
+            assert!(all.iter().all(|one| one.strain < 0.2));
         }
     }
 }

@@ -14,7 +14,7 @@ pub fn shares(sections: usize, tip_share: f64) -> Vec<f64> {
 }
 
 /// The joint with the largest moment for its strength, and that moment over its share of the strength (in units of EI/L).
-pub fn weakest(shares: &[f64], moments: &[f64]) -> (usize, f64) {
+pub(super) fn weakest(shares: &[f64], moments: &[f64]) -> (usize, f64) {
     let strains = moments.iter().zip(shares).map(|(moment, share)| moment / share).enumerate();
     strains.fold((0, 0.0), |most, joint| if joint.1 > most.1 { joint } else { most })
 }
@@ -30,7 +30,7 @@ pub fn breaks(joints: &[f64], shares: &[f64], strength: f64, load: Load, unbent_
 }
 
 /// The joints of a component that a growing load across it has broken; none if no load across it does.
-pub fn broken_across(joints: &[f64], shares: &[f64], strength: f64) -> Option<Vec<f64>> {
+pub(super) fn broken_across(joints: &[f64], shares: &[f64], strength: f64) -> Option<Vec<f64>> {
     let loads = (-8..40).map(|twofold| Load { spread: 2f64.powi(twofold), tip: 0.0 });
     let joint = loads.into_iter().find_map(|load| breaks(joints, shares, strength, load, FRAC_PI_2))?;
     let mut broken = joints.to_vec();

@@ -46,7 +46,7 @@ pub fn vectors(part: &Part, posed: &Posed, every: usize) -> Vec<Vectors> {
 
 /// Width of a component's outline (m) at a share of its length. A leaf is widest at 0.425 of it, 0.45 as wide at its foot, and pointed; a branch, or the
 /// stalk of a flower, is half as thick at its tip.
-pub fn width_m(part: &Part, size: f32, share: f32) -> f32 {
+fn width_m(part: &Part, size: f32, share: f32) -> f32 {
     let width_m = part.component.width_m * size;
     match part.component.kind {
         ComponentKind::Leaf => width_m * (share + 0.15) * (1.0 - share) / (0.575 * 0.575),
