@@ -53,10 +53,16 @@ impl Mesh {
         self.strides()[1] * (self.count[1] + 2)
     }
 
+    /// Rows of volumes along X, by their place upwards and along Z, in the order of the planes.
+    fn layers_and_rows(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let [_, layers, rows] = self.count;
+        (0..layers).flat_map(move |y| (0..rows).map(move |z| (y, z)))
+    }
+
     /// All volumes, in the order of the planes.
     pub(super) fn volumes(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
-        let [nx, ny, nz] = self.count;
-        (0..ny).flat_map(move |y| (0..nz).flat_map(move |z| (0..nx).map(move |x| [x, y, z])))
+        let width = self.count[0];
+        self.layers_and_rows().flat_map(move |(y, z)| (0..width).map(move |x| [x, y, z]))
     }
 }
 
@@ -126,14 +132,21 @@ impl ForceField {
         }
         let mesh = self.mesh;
         let [nx, _, nz] = mesh.count.map(|count| count as i64);
-        let source = |[x, y, z]: [usize; 3]| {
-            let (from_x, from_z) = (x as i64 + moved[0], z as i64 + moved[1]);
-            let is_inside = (0..nx).contains(&from_x) && (0..nz).contains(&from_z);
-            is_inside.then(|| mesh.place([from_x as usize, y, from_z as usize]))
-        };
-        let shift = |plane: &mut Vec<f32>, coming: f32| {
-            let before = plane.clone();
-            mesh.volumes().for_each(|volume| plane[mesh.place(volume)] = source(volume).map_or(coming, |place| before[place]));
+        // Columns that stay in, as they are numbered now.
+        let (from, to) = ((-moved[0]).clamp(0, nx), (nx - moved[0]).clamp(0, nx));
+        let stays = |z: usize| from < to && (0..nz).contains(&(z as i64 + moved[1]));
+        let mut shift = |plane: &mut [f32], coming: f32| {
+            self.next.copy_from_slice(plane);
+            for (y, z) in mesh.layers_and_rows() {
+                let first = mesh.place([0, y, z]);
+                plane[first..][..mesh.count[0]].fill(coming);
+                if stays(z) {
+                    let source = mesh.place([(from + moved[0]) as usize, y, (z as i64 + moved[1]) as usize]);
+                    let width = (to - from) as usize;
+                    plane[first + from as usize..][..width].copy_from_slice(&self.next[source..][..width]);
+                }
+            }
+            self.next.fill(0.0);
         };
         self.lasting.iter_mut().for_each(|plane| shift(plane, 0.0));
         shift(&mut self.open, 1.0);
@@ -153,10 +166,16 @@ impl ForceField {
     /// Adds a force (Pa) to what drives the next step, by the centres of the volumes (X, height above the land, Z; m).
     pub fn drive(&mut self, mut force_pa: impl FnMut([f32; 3]) -> [f32; 3]) {
         let mesh = self.mesh;
-        for volume in mesh.volumes() {
-            let place = mesh.place(volume);
-            let added = force_pa(mesh.center_m(volume));
-            self.driven.iter_mut().zip(added).for_each(|(plane, added)| plane[place] += added);
+        for (y, z) in mesh.layers_and_rows() {
+            let (first, [_, y_m, z_m]) = (mesh.place([0, y, z]), mesh.center_m([0, y, z]));
+            let [east, up, south] = self.driven.each_mut().map(|plane| &mut plane[first..][..mesh.count[0]]);
+            for x in 0..mesh.count[0] {
+                let [x_m, _, _] = mesh.center_m([x, y, z]);
+                let added = force_pa([x_m, y_m, z_m]);
+                east[x] += added[0];
+                up[x] += added[1];
+                south[x] += added[2];
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use crate::scene::{Primitive, PrimitiveKind};
 /// Density of air (kg/m³), dry at 20 °C.
 pub const AIR_KG_PER_M3: f32 = 1.2;
 
-/// Mass of a drop of rain (kg): a sphere of water 2 mm across, the median of moderate rain (Marshall & Palmer 1948).
+/// Mass of a drop of rain (kg): a sphere of water 2 mm across. In heavy rain, 50 mm/h, half of the water falls in larger ones (Marshall & Palmer 1948).
 pub const DROP_KG: f32 = 4.19e-6;
 
 /// Speed at which such a drop falls (m/s; Gunn & Kinzer 1949).

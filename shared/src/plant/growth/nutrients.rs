@@ -28,11 +28,6 @@ impl NutrientMap {
         Ok(Self { size_px, levels })
     }
 
-    /// Pixels along X and Z.
-    pub fn size_px(&self) -> [u32; 2] {
-        self.size_px
-    }
-
     /// Concentrations at a place given as a share of the world along X and Z; those of the edge outside.
     fn at(&self, share: [f64; 2]) -> [u16; 3] {
         let [(x, east), (z, south)] = [0, 1].map(|axis| {
@@ -171,7 +166,7 @@ mod tests {
         assert_eq!(grey.at([0.5, 0.0])[0], 32767, "half way between the pixels");
         assert_eq!(grey.at([9.0, -9.0]), [65535; 3], "the edge holds outside");
         let rgb = NutrientMap::from_png(&rgb_png([2, 2], &[255, 0, 51, 0, 0, 0, 0, 0, 0, 0, 0, 0], ColorType::Rgb)).unwrap();
-        assert_eq!((rgb.size_px(), rgb.at([0.1, 0.1])), ([2, 2], [65535, 0, 13107]));
+        assert_eq!(rgb.at([0.1, 0.1]), [65535, 0, 13107]);
     }
 
     #[test]

@@ -59,7 +59,8 @@ impl Ground {
 /// Takes 5 bytes a site while it runs, 2 more for each species that others shade, and 8 for each candidate that waits.
 ///
 /// # Panics
-/// When there are more than [`SPECIES_LIMIT`] species, not one height for each, or not one soil for each site.
+/// When there are more than [`SPECIES_LIMIT`] species, not one height for each, or not one soil for each site; or when `ground` names
+/// a species that is not among them.
 pub fn grow(sites: Sites, soil: Soil, species: &[Underbrush], heights_m: &[f32], shade: f32, ground: impl Fn([f32; 2]) -> Ground) -> Grown {
     assert!(species.len() <= SPECIES_LIMIT && species.len() == heights_m.len() && soil.levels().len() == sites.total());
     let habits = Habit::of_all(species, heights_m, shade, &sites);
