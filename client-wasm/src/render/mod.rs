@@ -23,6 +23,7 @@ mod shaders;
 mod sky;
 mod terrain;
 mod tone;
+mod underbrush;
 mod uniforms;
 mod vehicles;
 mod view;
@@ -47,6 +48,7 @@ use shared::wire::ObjectPose;
 use sky::Sky;
 use terrain::{Ground, Terrain};
 use tone::Tone;
+use underbrush::Underbrush;
 use view::View;
 
 /// Distance up to which clumps of plants have several segments, over that at which single plants end.
@@ -59,6 +61,8 @@ pub struct FrameStats {
     pub blades: u32,
     /// Clumps of far plants.
     pub clumps: u32,
+    /// Underbrush in the scene.
+    pub underbrush: u32,
     /// Vertices of the ground.
     pub ground_vertices: u64,
     /// Triangles of vehicles, trees and stones.
@@ -87,6 +91,7 @@ struct SceneParts {
     textures: LandTextures,
     ground: Ground,
     blades: Blades,
+    underbrush: Option<Underbrush>,
     objects: Objects,
     dust: Option<Dust>,
 }
@@ -175,6 +180,7 @@ impl Renderer {
                 textures: LandTextures::new(&self.gpu, &self.frame, land),
                 ground: Ground::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), scene.light.haze_m),
                 blades: Blades::new(&maker, self.quality, land),
+                underbrush: Underbrush::new(&maker, land, self.quality.underbrush_reach_m()),
                 objects: Objects::new(&maker, land),
                 dust: Dust::new(&maker, self.quality, land),
             }
@@ -203,6 +209,9 @@ impl Renderer {
         scene.blades.prepare(gpu, self.quality, land, camera.eye_m, &frustum, dt_secs);
         let reach = Reach { from_m: 0.72 * frame.reach[0], several_m: SEVERAL_REACHES * frame.reach[1], to_m: frame.reach[3] };
         self.billboards.prepare(gpu, land, camera.eye_m, &frustum, reach);
+        if let Some(underbrush) = &mut scene.underbrush {
+            underbrush.prepare(gpu, camera.eye_m, &frustum, dt_secs);
+        }
         if let Some(dust) = &scene.dust {
             dust.prepare(gpu, dt_secs);
         }
@@ -220,6 +229,9 @@ impl Renderer {
             pass.set_bind_group(0, &scene.textures.group, &[]);
             scene.blades.bend(&mut pass);
             self.billboards.bend(&mut pass);
+            if let Some(underbrush) = &scene.underbrush {
+                underbrush.bend(&mut pass);
+            }
             if let Some(dust) = &scene.dust {
                 dust.blow(&mut pass);
             }
@@ -229,6 +241,9 @@ impl Renderer {
             pass.set_bind_group(0, &scene.textures.group, &[]);
             scene.objects.draw(&mut pass);
             scene.blades.draw(&mut pass);
+            if let Some(underbrush) = &scene.underbrush {
+                underbrush.draw(&mut pass);
+            }
             self.billboards.draw(&mut pass);
             self.terrain.draw(&mut pass);
             self.sky.draw(&mut pass);
@@ -245,6 +260,7 @@ impl Renderer {
         FrameStats {
             blades: scene.blades.simulated(),
             clumps: self.billboards.count(),
+            underbrush: scene.underbrush.as_ref().map_or(0, Underbrush::plants),
             ground_vertices: self.terrain.vertices(),
             object_triangles: scene.objects.triangles(),
             patches_written,

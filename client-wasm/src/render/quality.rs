@@ -82,6 +82,16 @@ impl Quality {
         }
     }
 
+    /// Distance at which underbrush has melted into the grass (m).
+    pub(super) fn underbrush_reach_m(self) -> f32 {
+        match self {
+            Self::Low => 60.0,
+            Self::Medium => 110.0,
+            Self::High => 180.0,
+            Self::Ultra => 260.0,
+        }
+    }
+
     /// Motes that drift about the camera in a scene with dust.
     pub(super) fn motes(self) -> u32 {
         match self {

@@ -1,6 +1,6 @@
 use super::pipeline::{Maker, bind, storage_rw};
 use super::shaders;
-use super::uniforms::{Drift, Frame, Kind, Kinds, Plants};
+use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Plants, UnderbrushFrame};
 use super::{Gpu, Picture, Quality};
 use crate::camera::Camera;
 use crate::state::Mirror;
@@ -31,6 +31,7 @@ fn every_shader_is_valid_wgsl_without_extensions() {
         shaders::BEND,
         shaders::BLADES,
         shaders::FLOWERS,
+        shaders::UNDERBRUSH,
         shaders::BILLBOARDS,
         shaders::DUST,
         shaders::TERRAIN,
@@ -57,6 +58,9 @@ fn uniform_blocks_lie_as_their_twins() {
     assert_twins(&module, "Plants", Plants::LAYOUT, size_of::<Plants>());
     assert_twins(&module, "Kind", Kind::LAYOUT, size_of::<Kind>());
     assert_twins(&module, "Kinds", Kinds::LAYOUT, size_of::<Kinds>());
+    let underbrush = self::module(shaders::UNDERBRUSH);
+    assert_twins(&underbrush, "UnderbrushFrame", UnderbrushFrame::LAYOUT, size_of::<UnderbrushFrame>());
+    assert_twins(&underbrush, "BrushList", BrushList::LAYOUT, size_of::<BrushList>());
     assert_twins(&self::module(shaders::DUST), "Drift", Drift::LAYOUT, size_of::<Drift>());
 }
 

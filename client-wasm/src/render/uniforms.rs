@@ -1,6 +1,7 @@
 //! The uniform block that all passes share; its twin is `Frame` in `common.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
+use shared::plant::growth::SPECIES_LIMIT;
 
 /// Most interaction spheres in a frame; those nearest to the camera are kept.
 pub(super) const SPHERE_LIMIT: usize = 16;
@@ -113,5 +114,31 @@ uniform_block! {
         steps: [u32; 4],
         /// Length of a step (s); unused.
         time: [f32; 4],
+    }
+}
+
+uniform_block! {
+    /// What the compute pass of the underbrush knows; its twin is in `underbrush.wgsl`.
+    UnderbrushFrame {
+        /// Chunks of plants that may be seen; number of the frame; species; unused.
+        counts: [u32; 4],
+        /// Time since the frame before (s); distance at which plants have shrunk to nothing (m); unused.
+        shape: [f32; 4],
+        /// Of each species: height (m), time constant (s), unused.
+        species: [[f32; 4]; SPECIES_LIMIT],
+        /// First place of the species among the listed plants, places of each of its levels, unused.
+        places: [[u32; 4]; SPECIES_LIMIT],
+    }
+}
+
+uniform_block! {
+    /// A species of underbrush at a level of detail, as it is drawn; its twin is in `underbrush.wgsl`.
+    BrushList {
+        /// First row of the species' postures; rows of a plant; first look; plants in an instance.
+        rows: [u32; 4],
+        /// Number of the list; first of the listed plants; 1 if the nearest posture will do; unused.
+        which: [u32; 4],
+        /// Unit of the places of rows (m).
+        scale: [f32; 4],
     }
 }

@@ -3,6 +3,7 @@
 use super::underbrush::check_underbrush;
 use super::{MirrorError, range, within};
 use shared::grid::PatchLayout;
+use shared::plant::flora::Flora;
 use shared::plant::growth::NutrientMap;
 use shared::scene::{Scene, VehicleKind, WIND_CELLS_LIMIT};
 use shared::terrain::{Cover, CoverMap, HeightMap, KindMap};
@@ -17,7 +18,7 @@ pub struct Land {
     heights: HeightMap,
     cover: CoverMap,
     kinds: KindMap,
-    nutrients: Option<NutrientMap>,
+    flora: Option<Flora>,
     models: Vec<(VehicleKind, Mesh)>,
     tiles: Tiles,
 }
@@ -45,7 +46,8 @@ impl Land {
         }
         let layout = PatchLayout::from(&scene.patches);
         let (tiles, kinds) = (Tiles::new(&scene), KindMap::new(&scene, &cover));
-        Ok(Self { scene, layout, heights, cover, kinds, nutrients, models, tiles })
+        let flora = Flora::new(&scene, &cover, nutrients.as_ref());
+        Ok(Self { scene, layout, heights, cover, kinds, flora, models, tiles })
     }
 
     /// The scene.
@@ -78,9 +80,9 @@ impl Land {
         &self.kinds
     }
 
-    /// What is drawn of the soil's nutrients; none where they are generated.
-    pub fn nutrients(&self) -> Option<&NutrientMap> {
-        self.nutrients.as_ref()
+    /// The underbrush; none in a scene that has none.
+    pub fn flora(&self) -> Option<&Flora> {
+        self.flora.as_ref()
     }
 
     /// What covers the point `(x_m, z_m)`.

@@ -269,16 +269,18 @@ fn underbrush_that_the_client_cannot_hold_is_refused() {
 
 #[test]
 fn the_map_of_nutrients_is_read_if_there_is_one() {
-    let mirror_with = |png: Vec<u8>| {
-        let mut message = scene_message(scene());
+    let plants_with = |png: Vec<u8>| {
+        let mut own = scene();
+        own.underbrush = vec![Underbrush::new("a", vec![Component::new("leaf", ComponentKind::Leaf)])];
+        let mut message = scene_message(own);
         if let ServerMessage::Scene { nutrient_png, .. } = &mut message {
             *nutrient_png = png;
         }
         let mut mirror = Mirror::default();
-        mirror.apply(message).map(|_| mirror)
+        mirror.apply(message).map(|_| mirror.land().and_then(Land::flora).map_or(0, |flora| flora.grown().plants().len()))
     };
-    let size_px = |mirror: Mirror| mirror.land().and_then(Land::nutrients).map(|map| map.size_px());
-    assert_eq!(mirror_with(Vec::new()).map(size_px), Ok(None));
-    assert_eq!(mirror_with(grey_png([3, 2], &[7; 6])).map(size_px), Ok(Some([3, 2])));
-    assert!(matches!(mirror_with(vec![1, 2, 3]).map(size_px), Err(MirrorError::Map { map: "map of nutrients", .. })));
+    let [generated, rich, barren] =
+        [Vec::new(), grey_png([3, 2], &[255; 6]), grey_png([3, 2], &[7; 6])].map(|png| plants_with(png).expect("a sound map"));
+    assert!(rich > generated && generated > 0 && barren == 0, "{rich}, {generated} and {barren} plants");
+    assert!(matches!(plants_with(vec![1, 2, 3]), Err(MirrorError::Map { map: "map of nutrients", .. })));
 }

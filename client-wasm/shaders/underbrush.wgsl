@@ -1,0 +1,303 @@
+// Underbrush: how each plant is bent in this frame, which of them are seen and at which level of detail; then their rows, blended
+// between postures made beforehand (004 section 4.2), widened to ribbons.
+
+struct UnderbrushFrame {
+    // Chunks of plants that may be seen; number of the frame; species; unused.
+    counts: vec4<u32>,
+    // Time since the frame before (s); distance at which plants have shrunk to nothing (m); unused.
+    shape: vec4<f32>,
+    // Of each species: height (m), time constant (s), unused.
+    species: array<vec4<f32>, 16>,
+    // First place of the species among the listed plants, places of each of its levels, unused.
+    places: array<vec4<u32>, 16>,
+}
+
+// A plant: place (m), size, species in the low byte, its make in the next, its site in the upper half of `site`.
+struct Grown {
+    at: vec2<f32>,
+    size: f32,
+    make: u32,
+    heading: f32,
+    site: u32,
+}
+
+// What a plant feels, as it follows the force field (004 section 4.3): pressure (Pa) and its rate; the frame that it was last seen in.
+struct Felt {
+    pressure: vec4<f32>,
+    frame: u32,
+}
+
+// A plant as it is drawn: root (m) and size; lean (rad), light and heading; row of its posture's first, steps to the next heading and
+// strength, and how far it is towards them.
+struct Stand {
+    root: vec4<f32>,
+    lean: vec4<f32>,
+    posture: vec4<f32>,
+    towards: vec4<f32>,
+}
+
+struct Tally {
+    drawn: array<atomic<u32>, 64>,
+}
+
+@group(1) @binding(0) var<uniform> brush: UnderbrushFrame;
+@group(1) @binding(1) var<storage, read> grown: array<Grown>;
+@group(1) @binding(2) var<storage, read> chunks: array<vec2<u32>>;
+@group(1) @binding(3) var<storage, read_write> felt: array<Felt>;
+@group(1) @binding(4) var<storage, read_write> stands_out: array<Stand>;
+@group(1) @binding(5) var<storage, read_write> tally: Tally;
+@group(1) @binding(6) var<storage, read_write> listed: array<u32>;
+@group(1) @binding(7) var<storage, read> broken: array<u32>;
+@group(1) @binding(8) var<storage, read_write> brush_draws: array<u32>;
+
+const HEADINGS: u32 = 8u;
+const STRENGTHS: u32 = 7u;
+const VARIANTS: u32 = 4u;
+const MIDDLE_PA: f32 = 8.0;
+const LEVELS: u32 = 4u;
+
+fn is_in_view(centre: vec3<f32>, radius: f32) -> bool {
+    let m = transpose(frame.projection_from_world);
+    let c = vec4<f32>(centre, 1.0);
+    let left = m[3] + m[0];
+    let right = m[3] - m[0];
+    let low = m[3] + m[1];
+    let high = m[3] - m[1];
+    return dot(left, c) > -radius * length(left.xyz) && dot(right, c) > -radius * length(right.xyz)
+        && dot(low, c) > -radius * length(low.xyz) && dot(high, c) > -radius * length(high.xyz) && dot(m[3], c) > -radius;
+}
+
+// A value that follows a target by a critically damped spring, in closed form; twin of `Following` in
+// shared/src/plant/underbrush/constraint.rs.
+fn followed(state: vec4<f32>, goal: vec2<f32>, settle_secs: f32, dt: f32) -> vec4<f32> {
+    let taus = dt / settle_secs;
+    let decay = exp(-taus);
+    let off = state.xy - goal;
+    let value = goal + off * ((1.0 + taus) * decay) + state.zw * (dt * decay);
+    return vec4<f32>(value, off * (-taus / settle_secs * decay) + state.zw * ((1.0 - taus) * decay));
+}
+
+@compute @workgroup_size(64)
+fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    let chunk = chunks[group.x];
+    if local >= chunk.y {
+        return;
+    }
+    let index = chunk.x + local;
+    let plant = grown[index];
+    let species = plant.make & 255u;
+    let nature = brush.species[species];
+    let height = nature.x * plant.size;
+    let root = vec3<f32>(plant.at.x, ground_height(plant.at), plant.at.y);
+    let distance_m = distance(root + vec3<f32>(0.0, 0.5 * height, 0.0), frame.eye.xyz);
+    let reach_m = brush.shape.y;
+    if distance_m > reach_m || !is_in_view(root + vec3<f32>(0.0, 0.5 * height, 0.0), 0.9 * height + 0.1) {
+        return;
+    }
+    // What is but a few pixels tall thins out, and what is left is larger.
+    let tall_px = height / (distance_m * frame.screen.z);
+    let kept = clamp(tall_px / 7.0, 0.12, 1.0);
+    let lot = random3(vec2<i32>(i32(plant.site), 5), 91u).x;
+    let left = clamp((kept - lot) / (0.2 * kept), 0.0, 1.0) * (1.0 - smoothstep(0.8, 1.0, distance_m / reach_m));
+    if left <= 0.01 {
+        return;
+    }
+
+    let gust = gust_at(plant.at);
+    let wind = wind_at(root, 0.5 * height) * gust;
+    let goal = 0.6 * length(wind) * wind.xz;
+    var feels = felt[index];
+    if feels.frame + 1u != brush.counts.y {
+        feels.pressure = vec4<f32>(goal, 0.0, 0.0);
+    } else {
+        feels.pressure = followed(feels.pressure, goal, nature.y, brush.shape.x);
+    }
+    feels.frame = brush.counts.y;
+    felt[index] = feels;
+
+    var lean = lean_of_field(plant.at, 0.0);
+    for (var s = 0; s < i32(frame.clouds.w); s++) {
+        let sphere = frame.spheres[s];
+        let away = plant.at - sphere.xz;
+        let apart = length(away);
+        if apart < sphere.w && sphere.y - sphere.w < root.y + height {
+            lean += away / max(apart, 1e-3) * (1.3 * (1.0 - apart / sphere.w));
+        }
+    }
+    let tilt = length(lean);
+    lean *= min(1.0, 1.5 / max(tilt, 1e-5));
+
+    let pressure = feels.pressure.xy;
+    let size_pa = length(pressure);
+    let angle = fract((atan2(pressure.y, pressure.x) - plant.heading) / TAU + 1.0) * f32(HEADINGS);
+    let heading = u32(angle) % HEADINGS;
+    let strength = min(size_pa / (size_pa + MIDDLE_PA) / 0.93, 0.9999) * f32(STRENGTHS - 1u);
+    let is_broken = (broken[plant.site >> 5u] >> (plant.site & 31u)) & 1u;
+    let make = (plant.make >> 8u) % VARIANTS + is_broken * VARIANTS;
+    let posture = (make * HEADINGS + heading) * STRENGTHS + u32(strength);
+    let next_heading = (make * HEADINGS + (heading + 1u) % HEADINGS) * STRENGTHS + u32(strength);
+
+    var out: Stand;
+    out.root = vec4<f32>(root, plant.size * left * pow(kept, -0.5));
+    let lit = root + vec3<f32>(0.0, 0.6 * height, 0.0);
+    out.lean = vec4<f32>(lean, cloud_light(plant.at) * sun_visible(lit), plant.heading);
+    out.posture = vec4<f32>(bitcast<f32>(posture), bitcast<f32>(next_heading), fract(angle), fract(strength));
+    out.towards = vec4<f32>(height, random3(vec2<i32>(i32(plant.site), 9), 17u).x, distance_m, 0.0);
+    stands_out[index] = out;
+
+    let level = select(select(select(3u, 2u, tall_px > 26.0), 1u, tall_px > 90.0), 0u, tall_px > 300.0);
+    let list = species * LEVELS + level;
+    let number = atomicAdd(&tally.drawn[list], 1u);
+    let places = brush.places[species];
+    listed[places.x + level * places.y + number] = index;
+}
+
+// Indirect draws: as many instances as hold the listed plants; word 5 of each is how many plants an instance holds.
+@compute @workgroup_size(64)
+fn finish(@builtin(local_invocation_index) list: u32) {
+    let held = brush_draws[list * 8u + 5u];
+    brush_draws[list * 8u + 1u] = (atomicLoad(&tally.drawn[list]) + held - 1u) / max(held, 1u);
+}
+
+// --- drawing ----------------------------------------------------------------------------------------------------------
+
+struct BrushList {
+    // First row of the species' postures; rows of a plant; first look; plants in an instance.
+    rows: vec4<u32>,
+    // Number of the list; first of the listed plants; 1 if the nearest posture will do; unused.
+    which: vec4<u32>,
+    // Unit of the places of rows (m).
+    scale: vec4<f32>,
+}
+
+@group(1) @binding(10) var<storage, read> stands: array<Stand>;
+@group(1) @binding(11) var<storage, read> shown: array<u32>;
+@group(1) @binding(12) var<storage, read> counted: array<u32>;
+@group(1) @binding(13) var<storage, read> postures: array<u32>;
+@group(1) @binding(14) var<storage, read> looks: array<vec2<u32>>;
+@group(1) @binding(15) var<uniform> list: BrushList;
+
+const WIDTH_UNIT_M: f32 = 1.0 / 16384.0;
+const STALK: u32 = 1u;
+const PETAL: u32 = 2u;
+
+struct Ribbon {
+    @builtin(position) position: vec4<f32>,
+    @location(0) color: vec3<f32>,
+}
+
+struct BentRow {
+    at: vec3<f32>,
+    side: vec3<f32>,
+    along: vec3<f32>,
+}
+
+fn octahedral(word: u32) -> vec3<f32> {
+    let flat = vec2<f32>(vec2<i32>(i32(word << 24u) >> 24u, i32(word << 16u) >> 24u)) / 127.0;
+    let y = 1.0 - abs(flat.x) - abs(flat.y);
+    let folded = (1.0 - abs(flat.yx)) * select(vec2<f32>(-1.0), vec2<f32>(1.0), flat >= vec2<f32>(0.0));
+    let xz = select(flat, folded, y < 0.0);
+    return normalize(vec3<f32>(xz.x, y, xz.y));
+}
+
+fn row_of(posture: u32, row: u32) -> BentRow {
+    let at = (list.rows.x + posture * list.rows.y + row) * 3u;
+    let a = postures[at];
+    let b = postures[at + 1u];
+    let place = vec3<f32>(vec3<i32>(i32(a << 16u) >> 16u, i32(a) >> 16u, i32(b << 16u) >> 16u));
+    return BentRow(place / 32767.0, octahedral(b >> 16u), octahedral(postures[at + 2u]));
+}
+
+fn blended(a: BentRow, b: BentRow, share: f32) -> BentRow {
+    return BentRow(mix(a.at, b.at, share), mix(a.side, b.side, share), mix(a.along, b.along, share));
+}
+
+// Turned about the upright by a heading, then tipped by a lean.
+fn turned(v: vec3<f32>, heading: f32, lean: vec2<f32>) -> vec3<f32> {
+    let c = cos(heading);
+    let s = sin(heading);
+    let p = vec3<f32>(v.x * c - v.z * s, v.y, v.x * s + v.z * c);
+    let angle = length(lean);
+    if angle < 1e-4 {
+        return p;
+    }
+    let axis = vec3<f32>(lean.y, 0.0, -lean.x) / angle;
+    return p * cos(angle) + cross(axis, p) * sin(angle) + axis * (dot(axis, p) * (1.0 - cos(angle)));
+}
+
+@vertex
+fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Ribbon {
+    let rows = list.rows.y;
+    let number = instance * list.rows.w + index / (2u * rows);
+    let local = index % (2u * rows);
+    let row = local / 2u;
+    var out: Ribbon;
+    if number >= counted[list.which.x] {
+        out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+        return out;
+    }
+    let plant = stands[shown[list.which.y + number]];
+    let posture = bitcast<u32>(plant.posture.x);
+    let aside = bitcast<u32>(plant.posture.y);
+    var bent: BentRow;
+    if list.which.z == 1u {
+        let near = select(posture, aside, plant.posture.z > 0.5) + select(0u, 1u, plant.posture.w > 0.5);
+        bent = row_of(near, row);
+    } else {
+        let lower = blended(row_of(posture, row), row_of(aside, row), plant.posture.z);
+        let upper = blended(row_of(posture + 1u, row), row_of(aside + 1u, row), plant.posture.z);
+        bent = blended(lower, upper, plant.posture.w);
+    }
+    let look = looks[list.rows.z + row];
+    let stuff = look.x >> 16u;
+    let size = plant.root.w;
+    let distance_m = plant.towards.z;
+    let offset = turned(bent.at, plant.lean.w, plant.lean.xy) * (list.scale.x * size);
+    let along = normalize(turned(bent.along, plant.lean.w, plant.lean.xy));
+    var p = plant.root.xyz + offset;
+    let view = normalize(p - frame.eye.xyz);
+    let toward = cross(along, view);
+    let facing_side = toward / max(length(toward), 1e-3);
+    var side = normalize(turned(bent.side, plant.lean.w, plant.lean.xy));
+    let across = f32(local & 1u) * 2.0 - 1.0;
+    if stuff == STALK {
+        side = facing_side;
+    } else if stuff != PETAL {
+        // A leaf seen edge on still shows some of its width.
+        side = normalize(side + facing_side * (0.35 * sign(dot(facing_side, side) + 1e-4)));
+    }
+    let half = max(f32(look.x & 0xffffu) * WIDTH_UNIT_M * size, select(0.0, 0.45 * distance_m * frame.screen.z, (look.x & 0xffffu) > 0u));
+    p += side * (across * half);
+    let normal_up = ground_normal(plant.root.xz);
+    p += normal_up * max(0.012 - dot(p - plant.root.xyz, normal_up), 0.0);
+
+    var normal = normalize(cross(side, along));
+    normal *= -sign(dot(normal, view) + 1e-5);
+    let rounded = normalize(normal * select(0.8, 0.55, stuff == STALK) + side * (across * select(0.25, 0.8, stuff == STALK)) + normal_up * 0.35);
+    let root_color = vec3<f32>(f32(look.y & 255u), f32((look.y >> 8u) & 255u), f32((look.y >> 16u) & 255u)) / 255.0;
+    var albedo = root_color * root_color;
+    let hue = plant.towards.y;
+    if stuff != PETAL {
+        albedo *= grass_tint(plant.root.xz) * mix(vec3<f32>(0.86, 0.98, 0.85), vec3<f32>(1.14, 1.03, 0.9), hue);
+    }
+    let up = clamp(dot(p - plant.root.xyz, normal_up) / max(plant.towards.x, 0.05), 0.0, 1.0);
+    let deep = smoothstep(0.0, 0.6, plant.towards.x);
+    let occlusion = mix(mix(0.62, 0.30, deep), 1.0, smoothstep(0.0, 0.8, up));
+    let light = plant.lean.z * mix(mix(0.8, 0.42, deep), 1.0, smoothstep(0.05, 0.7, up));
+    if stuff == PETAL {
+        let sun_facing = dot(normal, frame.sun.xyz);
+        let diffuse = clamp((abs(sun_facing) + 0.3) / 1.3, 0.0, 1.0);
+        let through = 0.4 * max(dot(view, frame.sun.xyz), 0.0) * clamp(0.6 - sun_facing, 0.0, 1.0);
+        let lit = albedo * (frame.sun_color.rgb * light * (diffuse + through) * 0.8 + ambient(rounded));
+        out.color = hazed(lit, p);
+    } else {
+        out.color = hazed(grass_light(albedo, rounded, along, view, light, occlusion), p);
+    }
+    out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
+    return out;
+}
+
+@fragment
+fn fs(ribbon: Ribbon) -> @location(0) vec4<f32> {
+    return vec4<f32>(ribbon.color, 1.0);
+}

@@ -1,0 +1,286 @@
+//! Plants of a species as rows of vectors, bent beforehand by winds of every heading and a range of strengths (004 §4.2), for a level of detail.
+//!
+//! A row is a point on a component's axis with the direction of its side and of its axis; borders stand half a width off it. All plants of a species have the
+//! same rows, whatever bends them, so that the GPU blends rows and no more.
+
+use glam::Vec3;
+use shared::plant::underbrush::plan::{Part, Placed, Plan};
+use shared::plant::underbrush::plant::{Forces, LookUp, Posed, Stand, posed};
+use shared::plant::underbrush::vectors::{petals, vectors};
+use shared::scene::{ComponentKind, Underbrush};
+use std::f32::consts::TAU;
+
+/// Plants of different make of each species.
+pub(super) const VARIANTS: u32 = 4;
+/// Headings of the wind that they are bent by, evenly round; twin of the constant in `underbrush.wgsl`.
+pub(super) const HEADINGS: u32 = 8;
+/// Strengths of it, at dynamic pressures of [`pressure_pa`]; twin of the constant in `underbrush.wgsl`.
+pub(super) const STRENGTHS: u32 = 7;
+/// Pressure in the middle of the range (Pa), that of 3.7 m/s; twin of the constant in `underbrush.wgsl`.
+const MIDDLE_PA: f32 = 8.0;
+/// Levels of detail: every section, every second, fourth, and the whole component as one, of fewer components.
+pub(super) const LEVELS: usize = 4;
+/// Most leaves of a plant in the coarsest level.
+const COARSE_LEAVES: usize = 7;
+/// Half-widths are in units of this (m); twin of the constant in `underbrush.wgsl`.
+const WIDTH_UNIT_M: f32 = 1.0 / 16_384.0;
+
+const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
+
+/// What of a row stays as it is however it bends: half its width, its share of the component's length, what it is of, and its colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Look {
+    half_m: f32,
+    rgb: Vec3,
+    stuff: Stuff,
+}
+
+/// What a row is of; twins of the constants in `underbrush.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stuff {
+    Leaf = 0,
+    Stalk = 1,
+    Petal = 2,
+}
+
+impl Look {
+    /// Half width and colour, as `underbrush.wgsl` takes them: the square root keeps dark colours apart in 8 bits.
+    pub(super) fn packed(&self) -> [u32; 2] {
+        let half = (self.half_m / WIDTH_UNIT_M).round().clamp(0.0, 65_535.0) as u32;
+        let [r, g, b] = self.rgb.to_array().map(|v| (v.clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u32);
+        [half | (self.stuff as u32) << 16, r | g << 8 | b << 16]
+    }
+}
+
+/// Where a row is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Row {
+    at_m: Vec3,
+    side: Vec3,
+    along: Vec3,
+}
+
+/// A species at a level of detail.
+pub(super) struct Baked {
+    /// Of each row.
+    pub(super) looks: Vec<Look>,
+    /// Rows of each component or petal, in order.
+    pub(super) ribbons: Vec<u32>,
+    /// Rows by make (whole ones, then broken ones), heading, strength and number, each packed in three words.
+    pub(super) rows: Vec<[u32; 3]>,
+    /// Unit of the rows' places (m).
+    pub(super) extent_m: f32,
+}
+
+/// Dynamic pressure of a strength (Pa): q/(q + 8) in even steps, the last at 104 Pa, a wind of 13 m/s.
+pub(super) fn pressure_pa(strength: u32) -> f32 {
+    let share = strength as f32 / (STRENGTHS - 1) as f32 * 0.93;
+    MIDDLE_PA * share / (1.0 - share)
+}
+
+impl Baked {
+    /// Bends the plants of `species`, made by `plan`, at a level of detail.
+    pub(super) fn new(species: &Underbrush, plan: &Plan, level: usize) -> Self {
+        let makes: Vec<(Vec<Placed>, u64)> =
+            [0, u64::MAX].into_iter().flat_map(|broken| (0..VARIANTS).map(move |number| (plan.placed(number), broken))).collect();
+        let mut poses: Vec<Vec<Posed>> = Vec::new();
+        for (placed, broken) in &makes {
+            for heading in 0..HEADINGS {
+                for strength in 0..STRENGTHS {
+                    poses.push(bent(plan, placed, *broken, heading, strength));
+                }
+            }
+        }
+        let kept = kept(plan, &makes[0].0, level);
+        let reach_m =
+            |pose: &Vec<Posed>| pose.iter().flat_map(|one| one.sections()).map(|one| one.end_m.abs().max_element()).fold(0.0, f32::max);
+        let extent_m = 1.05 * poses.iter().map(reach_m).fold(0.01, f32::max) + widest_m(species);
+        let mut baked = Self { looks: Vec::new(), ribbons: Vec::new(), rows: Vec::new(), extent_m };
+        for (number, pose) in poses.iter().enumerate() {
+            for &(index, wider) in &kept {
+                let one = &pose[index];
+                for ribbon in ribbons(&plan.parts[one.part], one, level, wider) {
+                    if number == 0 {
+                        baked.ribbons.push(ribbon.len() as u32);
+                        baked.looks.extend(ribbon.iter().map(|&(_, look)| look));
+                    }
+                    baked.rows.extend(ribbon.iter().map(|(row, _)| packed(row, extent_m)));
+                }
+            }
+        }
+        baked
+    }
+
+    /// Triangles of so many plants, two vertices a row.
+    pub(super) fn indices(&self, plants: u32) -> Vec<u32> {
+        let mut indices = Vec::new();
+        let mut first = 0;
+        for _ in 0..plants {
+            for &rows in &self.ribbons {
+                let quads = (0..rows - 1).map(|row| first + 2 * row);
+                indices.extend(quads.flat_map(|a| [a, a + 1, a + 2, a + 2, a + 1, a + 3]));
+                first += 2 * rows;
+            }
+        }
+        indices
+    }
+}
+
+fn widest_m(species: &Underbrush) -> f32 {
+    species.components.iter().map(|component| component.width_m).fold(0.0, f32::max)
+}
+
+fn bent(plan: &Plan, placed: &[Placed], broken: u64, heading: u32, strength: u32) -> Vec<Posed> {
+    let (sine, cosine) = (TAU * heading as f32 / HEADINGS as f32).sin_cos();
+    let pressure_pa = Vec3::new(cosine, 0.0, sine) * pressure_pa(strength);
+    let stand = Stand { size: 1.0, heading_rad: 0.0, lean_rad: [0.0; 2] };
+    posed(plan, placed, stand, Forces { per_mass_m_per_s2: GRAVITY, pressure_pa }, LookUp::Interpolated, broken)
+}
+
+/// The components that a level shows, and how much wider it shows them to cover as much: the coarsest leaves thin stalks out, and most leaves.
+fn kept(plan: &Plan, placed: &[Placed], level: usize) -> Vec<(usize, f32)> {
+    let kind = |index: usize| plan.parts[placed[index].part].component.kind;
+    let is_stout = |index: usize| plan.parts[placed[index].part].component.width_m > 0.006;
+    if level + 1 < LEVELS {
+        return (0..placed.len()).map(|index| (index, 1.0)).collect();
+    }
+    let leaves: Vec<usize> = (0..placed.len()).filter(|&index| kind(index) == ComponentKind::Leaf).collect();
+    let step = leaves.len().div_ceil(COARSE_LEAVES).max(1);
+    let thinned: Vec<usize> = leaves.iter().copied().step_by(step).collect();
+    let wider = leaves.len() as f32 / thinned.len().max(1) as f32;
+    let shown = |index: &usize| match kind(*index) {
+        ComponentKind::Leaf => thinned.contains(index),
+        ComponentKind::Branch => is_stout(*index),
+        ComponentKind::Flower => true,
+    };
+    let width = |index: usize| (index, if kind(index) == ComponentKind::Leaf { wider.sqrt() } else { 1.0 });
+    (0..placed.len()).filter(shown).map(width).collect()
+}
+
+/// The ribbons of a component: its own, and those of its petals.
+fn ribbons(part: &Part, one: &Posed, level: usize, wider: f32) -> Vec<Vec<(Row, Look)>> {
+    let component = &part.component;
+    let (root, tip) = (Vec3::from(component.root_rgb), Vec3::from(component.tip_rgb));
+    let every = 1 << level;
+    let outline = vectors(part, one, every);
+    // A coarse outline cuts the belly of a leaf off: it is widened until its area is the leaf's.
+    let halves: Vec<f32> = outline.iter().map(|vector| vector.right_m.length()).collect();
+    let area: f32 = halves.windows(2).map(|pair| pair[0] + pair[1]).sum::<f32>() / (halves.len() - 1).max(1) as f32;
+    let whole = if component.kind == ComponentKind::Leaf { 0.73 * component.width_m * one.size } else { area };
+    let fill = if area > 0.0 { whole / area } else { 1.0 };
+    let stuff = if component.kind == ComponentKind::Leaf { Stuff::Leaf } else { Stuff::Stalk };
+    let sections = one.sections();
+    let mut at_m = one.foot_m;
+    let own = outline.iter().enumerate().map(|(number, vector)| {
+        at_m += vector.axis_m;
+        let section = sections[(number * every).clamp(1, sections.len()) - 1];
+        let share = number as f32 / (outline.len() - 1).max(1) as f32;
+        let row = Row { at_m, side: section.side, along: section.direction };
+        let color = if component.kind == ComponentKind::Flower { root } else { root.lerp(tip, share) };
+        (row, Look { half_m: halves[number] * fill * wider, rgb: color, stuff })
+    });
+    let mut all = vec![own.collect::<Vec<_>>()];
+    if component.kind != ComponentKind::Flower {
+        return all;
+    }
+    let head_m = at_m;
+    if level + 1 == LEVELS {
+        // One face for the ring of petals.
+        let last = sections[sections.len() - 1];
+        let radius_m = 0.5 * component.width_m * one.size;
+        let across = last.direction.cross(last.side);
+        let row = |sign: f32| Row { at_m: head_m + across * (sign * radius_m), side: last.side, along: across };
+        all.push([-1.0, 1.0].map(|sign| (row(sign), Look { half_m: 0.8 * radius_m, rgb: tip, stuff: Stuff::Petal })).to_vec());
+        return all;
+    }
+    for petal in petals(part, one) {
+        let along = petal.axis_m.normalize_or(Vec3::Y);
+        let half_m = petal.right_m.length();
+        let side = petal.right_m / half_m.max(1e-9);
+        let row = |share: f32, wide: f32| {
+            let shade = 0.7 + 0.3 * share;
+            (
+                Row { at_m: head_m + petal.axis_m * share, side, along },
+                Look { half_m: half_m * wide, rgb: tip * shade, stuff: Stuff::Petal },
+            )
+        };
+        all.push(vec![row(0.0, 0.25), row(0.55, 1.0), row(1.0, 0.55)]);
+    }
+    all
+}
+
+/// Place, side and direction in three words: the place in 16 bits an axis, each direction in 16 (octahedral).
+fn packed(row: &Row, extent_m: f32) -> [u32; 3] {
+    let [x, y, z] = row.at_m.to_array().map(|m| u32::from((m / extent_m * 32_767.0).round().clamp(-32_767.0, 32_767.0) as i16 as u16));
+    [x | y << 16, z | octahedral(row.side) << 16, octahedral(row.along)]
+}
+
+/// A direction as two signed bytes (Meyer et al., On Floating-Point Normal Vectors, EGSR 2010).
+fn octahedral(direction: Vec3) -> u32 {
+    let flat = direction / (direction.x.abs() + direction.y.abs() + direction.z.abs()).max(1e-9);
+    let fold = |a: f32, b: f32| if flat.y < 0.0 { (1.0 - b.abs()) * if a < 0.0 { -1.0 } else { 1.0 } } else { a };
+    let byte = |v: f32| u32::from((v * 127.0).round() as i8 as u8);
+    byte(fold(flat.x, flat.z)) | byte(fold(flat.z, flat.x)) << 8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::plant::underbrush::posture::Nodes;
+    use shared::scene::Component;
+
+    fn tuft() -> Underbrush {
+        let mut leaf = Component::new("leaf", ComponentKind::Leaf);
+        (leaf.count, leaf.sections) = (12, 8);
+        let mut flower = Component::new("flower", ComponentKind::Flower);
+        (flower.count, flower.width_m, flower.petals) = (2, 0.06, 5);
+        Underbrush::new("tuft", vec![leaf, flower])
+    }
+
+    #[test]
+    fn every_posture_has_the_rows_of_the_looks() {
+        let species = tuft();
+        let plan = Plan::new(&species, Nodes::default());
+        let mut before = usize::MAX;
+        for level in 0..LEVELS {
+            let baked = Baked::new(&species, &plan, level);
+            let postures = (2 * VARIANTS * HEADINGS * STRENGTHS) as usize;
+            assert_eq!(baked.rows.len(), postures * baked.looks.len());
+            assert_eq!(baked.ribbons.iter().sum::<u32>() as usize, baked.looks.len());
+            assert!(baked.looks.len() < before, "{} rows after {before}", baked.looks.len());
+            assert_eq!(baked.indices(3).iter().max().map(|&last| last as usize), Some(6 * baked.looks.len() - 1));
+            before = baked.looks.len();
+        }
+    }
+
+    #[test]
+    fn a_coarse_leaf_covers_what_a_fine_one_does() {
+        let species =
+            Underbrush::new("leaf", vec![Component { sections: 8, length_variation: 0.0, ..Component::new("leaf", ComponentKind::Leaf) }]);
+        let plan = Plan::new(&species, Nodes::default());
+        let area = |level: usize| {
+            let halves: Vec<f32> = Baked::new(&species, &plan, level).looks.iter().map(|look| look.half_m).collect();
+            halves.windows(2).map(|pair| pair[0] + pair[1]).sum::<f32>() / (halves.len() - 1) as f32
+        };
+        for level in 0..LEVELS {
+            assert!((area(level) / (0.73 * 0.01) - 1.0).abs() < 0.02, "{} at level {level}", area(level));
+        }
+    }
+
+    #[test]
+    fn directions_come_back_from_two_bytes() {
+        for n in 0..500 {
+            let angle = n as f32 * 2.4;
+            let y = 1.0 - 2.0 * (n as f32 + 0.5) / 500.0;
+            let wanted = Vec3::new((1.0 - y * y).sqrt() * angle.cos(), y, (1.0 - y * y).sqrt() * angle.sin());
+            let word = octahedral(wanted);
+            let part = |shift: u32| f32::from((word >> shift) as u8 as i8) / 127.0;
+            let (a, b) = (part(0), part(8));
+            let mut found = Vec3::new(a, 1.0 - a.abs() - b.abs(), b);
+            if found.y < 0.0 {
+                (found.x, found.z) = ((1.0 - b.abs()) * a.signum(), (1.0 - a.abs()) * b.signum());
+            }
+            assert!(found.normalize().distance(wanted) < 0.02, "{found:?} instead of {wanted:?}");
+        }
+    }
+}

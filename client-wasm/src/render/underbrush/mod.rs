@@ -1,0 +1,257 @@
+//! Underbrush (004): a compute pass bends the plants in view by what they feel and lists them by species and level of detail; indirect draws blend their
+//! postures, which are made beforehand.
+
+mod bake;
+
+use super::cull::Frustum;
+use super::gpu::Gpu;
+use super::pipeline::{Draw, Maker, storage, storage_rw, uniform};
+use super::shaders;
+use super::uniforms::{BrushList, UnderbrushFrame};
+use crate::state::Land;
+use bake::{Baked, LEVELS, VARIANTS};
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use shared::plant::flora::{Flora, height_m};
+use shared::plant::growth::SPECIES_LIMIT;
+use wgpu::BufferUsages;
+
+/// Plants of a workgroup.
+const CHUNK: u32 = 64;
+/// Side of the squares that are culled as one (m).
+const TILE_M: f32 = 8.0;
+/// Vertices of an instance, about: many small plants are drawn as one.
+const INSTANCE_VERTICES: u32 = 2048;
+/// Bytes of a plant's feelings and of how it stands, as in `underbrush.wgsl`.
+const FELT_BYTES: u64 = 32;
+const STAND_BYTES: u64 = 64;
+/// Words of an indirect draw and of what `finish` needs beside it.
+const DRAW_WORDS: usize = 8;
+
+/// A plant as `underbrush.wgsl` takes it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Grown {
+    at_m: [f32; 2],
+    size: f32,
+    make: u32,
+    heading_rad: f32,
+    site: u32,
+}
+
+/// Plants of a square of the land.
+#[derive(Clone, Copy, Debug)]
+struct Tile {
+    low_m: Vec3,
+    high_m: Vec3,
+    first: u32,
+    count: u32,
+}
+
+/// A list that is drawn: a species at a level of detail.
+struct List {
+    number: usize,
+    indices: wgpu::Buffer,
+    group: wgpu::BindGroup,
+}
+
+pub(super) struct Underbrush {
+    stand: wgpu::ComputePipeline,
+    finish: wgpu::ComputePipeline,
+    pipeline: wgpu::RenderPipeline,
+    frame: wgpu::Buffer,
+    chunks: wgpu::Buffer,
+    tally: wgpu::Buffer,
+    draws: wgpu::Buffer,
+    compute_group: wgpu::BindGroup,
+    lists: Vec<List>,
+    tiles: Vec<Tile>,
+    species: [[f32; 4]; SPECIES_LIMIT],
+    places: [[u32; 4]; SPECIES_LIMIT],
+    reach_m: f32,
+    frame_number: u32,
+    chunk_count: u32,
+    plants: u32,
+}
+
+impl Underbrush {
+    /// Of a scene that has any.
+    pub(super) fn new(maker: &Maker<'_>, land: &Land, reach_m: f32) -> Option<Self> {
+        let flora = land.flora()?;
+        let gpu = maker.gpu;
+        let (grown, tiles) = tiles(land, flora);
+        let count = grown.len().max(1) as u64;
+        let storage_usage = BufferUsages::STORAGE;
+
+        let mut places = [[0; 4]; SPECIES_LIMIT];
+        let mut first = 0;
+        for (number, place) in places.iter_mut().enumerate().take(flora.species().len()) {
+            let own = grown.iter().filter(|plant| (plant.make & 255) as usize == number).count() as u32;
+            *place = [first, own, 0, 0];
+            first += own * LEVELS as u32;
+        }
+        let mut species = [[0.0; 4]; SPECIES_LIMIT];
+        for (slot, own) in species.iter_mut().zip(flora.species()) {
+            *slot = [height_m(own), own.settle_secs, 0.0, 0.0];
+        }
+
+        let sites = flora.grown().sites.total() as u64;
+        let plants = gpu.buffer("underbrush", bytemuck::cast_slice(&grown), storage_usage);
+        let frame =
+            gpu.empty_buffer("underbrush frame", size_of::<UnderbrushFrame>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+        let chunk_limit = tiles.iter().map(|tile| u64::from(tile.count.div_ceil(CHUNK))).sum::<u64>().max(1);
+        let chunks = gpu.empty_buffer("underbrush chunks", chunk_limit * 8, storage_usage | BufferUsages::COPY_DST);
+        let felt = gpu.empty_buffer("felt", count * FELT_BYTES, storage_usage);
+        let stands = gpu.empty_buffer("underbrush stands", count * STAND_BYTES, storage_usage);
+        let tally = gpu.empty_buffer("underbrush tally", (SPECIES_LIMIT * LEVELS * 4) as u64, storage_usage | BufferUsages::COPY_DST);
+        let listed = gpu.empty_buffer("listed underbrush", u64::from(first.max(1)) * 4, storage_usage);
+        let broken = gpu.empty_buffer("broken plants", sites.div_ceil(32) * 4, storage_usage | BufferUsages::COPY_DST);
+
+        let module = gpu.shader("underbrush", shaders::UNDERBRUSH);
+        let read = |binding| wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::COMPUTE, ..storage(binding) };
+        let entries = [uniform(0), read(1), read(2), storage_rw(3), storage_rw(4), storage_rw(5), storage_rw(6), read(7), storage_rw(8)];
+        let compute_layout = maker.layout("underbrush", &entries);
+        let list_layout = maker.layout("underbrush list", &[storage(10), storage(11), storage(12), storage(13), storage(14), uniform(15)]);
+        let draw =
+            Draw { label: "underbrush", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None };
+        let pipeline = maker.draw(&module, Some(&list_layout), &draw);
+
+        let mut draw_words = vec![0_u32; SPECIES_LIMIT * LEVELS * DRAW_WORDS];
+        let mut lists = Vec::new();
+        for (number, (own, plan)) in flora.species().iter().zip(flora.plans()).enumerate() {
+            for level in 0..LEVELS {
+                let baked = Baked::new(own, plan, level);
+                let rows = baked.looks.len() as u32;
+                let held = (INSTANCE_VERTICES / (2 * rows)).clamp(1, 64);
+                let indices = baked.indices(held);
+                let list = number * LEVELS + level;
+                draw_words[list * DRAW_WORDS] = indices.len() as u32;
+                draw_words[list * DRAW_WORDS + 5] = held;
+                let looks: Vec<[u32; 2]> = baked.looks.iter().map(|look| look.packed()).collect();
+                let settings = BrushList {
+                    rows: [0, rows, 0, held],
+                    which: [list as u32, places[number][0] + level as u32 * places[number][1], u32::from(level + 1 == LEVELS), 0],
+                    scale: [baked.extent_m, 0.0, 0.0, 0.0],
+                };
+                let postures = gpu.buffer("postures", bytemuck::cast_slice(&baked.rows), storage_usage);
+                let looks = gpu.buffer("looks", bytemuck::cast_slice(&looks), storage_usage);
+                let settings = gpu.buffer("underbrush list", bytemuck::bytes_of(&settings), BufferUsages::UNIFORM);
+                let buffers = [&stands, &listed, &tally, &postures, &looks, &settings];
+                lists.push(List {
+                    number: list,
+                    indices: gpu.buffer("underbrush indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
+                    group: numbered(gpu, "underbrush list", &list_layout, 10, &buffers),
+                });
+            }
+        }
+        let draws = gpu.buffer("underbrush draws", bytemuck::cast_slice(&draw_words), storage_usage | BufferUsages::INDIRECT);
+        let buffers = [&frame, &plants, &chunks, &felt, &stands, &tally, &listed, &broken, &draws];
+        Some(Self {
+            stand: maker.compute("stand", &module, "stand", &compute_layout),
+            finish: maker.compute("finish", &module, "finish", &compute_layout),
+            pipeline,
+            compute_group: numbered(gpu, "underbrush", &compute_layout, 0, &buffers),
+            frame,
+            chunks,
+            tally,
+            draws,
+            lists,
+            tiles,
+            species,
+            places,
+            reach_m,
+            frame_number: 1,
+            chunk_count: 0,
+            plants: grown.len() as u32,
+        })
+    }
+
+    /// Plants in the scene.
+    pub(super) fn plants(&self) -> u32 {
+        self.plants
+    }
+
+    /// Lists the plants of the squares that may be seen.
+    pub(super) fn prepare(&mut self, gpu: &Gpu, eye_m: Vec3, frustum: &Frustum, dt_secs: f32) {
+        let mut chunks: Vec<[u32; 2]> = Vec::new();
+        for tile in &self.tiles {
+            let nearest = eye_m.clamp(tile.low_m, tile.high_m);
+            if nearest.distance_squared(eye_m) < self.reach_m * self.reach_m && frustum.sees_box(tile.low_m, tile.high_m) {
+                let starts = (0..tile.count).step_by(CHUNK as usize);
+                chunks.extend(starts.map(|start| [tile.first + start, (tile.count - start).min(CHUNK)]));
+            }
+        }
+        self.chunk_count = chunks.len() as u32;
+        self.frame_number = self.frame_number.wrapping_add(1);
+        let frame = UnderbrushFrame {
+            counts: [self.chunk_count, self.frame_number, 0, 0],
+            shape: [dt_secs.max(0.0), self.reach_m, 0.0, 0.0],
+            species: self.species,
+            places: self.places,
+        };
+        gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
+        gpu.queue.write_buffer(&self.chunks, 0, bytemuck::cast_slice(&chunks));
+        gpu.queue.write_buffer(&self.tally, 0, &[0; SPECIES_LIMIT * LEVELS * 4]);
+    }
+
+    pub(super) fn bend(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.set_bind_group(1, &self.compute_group, &[]);
+        if self.chunk_count > 0 {
+            pass.set_pipeline(&self.stand);
+            pass.dispatch_workgroups(self.chunk_count, 1, 1);
+        }
+        pass.set_pipeline(&self.finish);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        if self.chunk_count == 0 {
+            return;
+        }
+        pass.set_pipeline(&self.pipeline);
+        for list in &self.lists {
+            pass.set_bind_group(1, &list.group, &[]);
+            pass.set_index_buffer(list.indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed_indirect(&self.draws, (list.number * DRAW_WORDS * 4) as u64);
+        }
+    }
+}
+
+/// A bind group of whole buffers, numbered from `first`.
+fn numbered(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, first: u32, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
+    let entries: Vec<_> =
+        (first..).zip(buffers).map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }).collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+/// All plants, square by square, and the squares.
+fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
+    let heights_m: Vec<f32> = flora.species().iter().map(height_m).collect();
+    let mut by_tile: Vec<([i32; 2], Grown, f32)> = flora
+        .grown()
+        .plants()
+        .iter()
+        .map(|plant| {
+            let standing = flora.standing(plant);
+            let make = standing.species as u32 | (standing.number % VARIANTS) << 8;
+            let grown = Grown { at_m: standing.at_m, size: standing.size, make, heading_rad: standing.heading_rad, site: plant.site };
+            (standing.at_m.map(|m| (m / TILE_M) as i32), grown, heights_m[standing.species] * standing.size)
+        })
+        .collect();
+    by_tile.sort_by_key(|&([x, z], ..)| [z, x]);
+    let mut tiles = Vec::new();
+    let mut first = 0;
+    for own in by_tile.chunk_by(|a, b| a.0 == b.0) {
+        let (mut low_m, mut high_m) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for (_, plant, height_m) in own {
+            let [x, z] = plant.at_m;
+            let ground_m = land.heights().height_m(x, z);
+            // As far aside as it is tall: it may lie down.
+            low_m = low_m.min(Vec3::new(x - height_m, ground_m - 0.1, z - height_m));
+            high_m = high_m.max(Vec3::new(x + height_m, ground_m + 1.1 * height_m, z + height_m));
+        }
+        tiles.push(Tile { low_m, high_m, first, count: own.len() as u32 });
+        first += own.len() as u32;
+    }
+    (by_tile.into_iter().map(|(_, plant, _)| plant).collect(), tiles)
+}
