@@ -39,7 +39,7 @@ impl Land {
         let heights = HeightMap::from_png(height_png, &scene.terrain);
         let heights = heights.map_err(|error| MirrorError::Map { map: "height map", error })?;
         let cover = CoverMap::from_png(covering_png).map_err(|error| MirrorError::Map { map: "covering map", error })?;
-        let nutrients = if nutrient_png.is_empty() { None } else { Some(NutrientMap::from_png(nutrient_png)) };
+        let nutrients = (!nutrient_png.is_empty()).then(|| NutrientMap::from_png(nutrient_png));
         let nutrients = nutrients.transpose().map_err(|error| MirrorError::Map { map: "map of nutrients", error })?;
         for (_, mesh) in &models {
             check_mesh(mesh)?;

@@ -20,6 +20,7 @@ pub fn list() -> impl Iterator<Item = (&'static str, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use shared::scene::{FIELDS, parse};
     use shared::terrain::Cover;
 
     #[test]
@@ -32,6 +33,21 @@ mod tests {
             assert!(check(name).unwrap().to_string().starts_with(&format!("{name}: sound\n")));
         }
         assert_eq!(list().next().unwrap().0, "meadow");
+    }
+
+    #[test]
+    fn the_meadow_shows_every_field_and_its_examples_are_sound() {
+        let text = builtin::BUILT_IN[0].text;
+        for (path, _) in FIELDS {
+            let key = path.rsplit('.').next().unwrap();
+            let is_shown = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').any(|word| word == key);
+            assert!(is_shown, "{path} is not in meadow.toml");
+        }
+        let is_example = |line: &&str| line.starts_with("[[") || line.split_once(" = ").is_some_and(|(key, _)| !key.contains(' '));
+        let shown = text.lines().map(|line| line.strip_prefix("# ").filter(is_example).unwrap_or(line));
+        let scene = parse(&shown.collect::<Vec<_>>().join("\n")).unwrap_or_else(|faults| panic!("{faults:?}"));
+        assert_eq!([scene.wind.primitives.len(), scene.species.len(), scene.underbrush.len(), scene.drawn_winds.len()], [1; 4]);
+        assert_eq!(scene.underbrush[0].components.len(), 1);
     }
 
     #[test]
