@@ -8,11 +8,18 @@ struct List {
 @group(1) @binding(0) var<storage, read> blades: array<Blade>;
 @group(1) @binding(1) var<storage, read> drawn: array<u32>;
 @group(1) @binding(2) var<uniform> list: List;
+@group(1) @binding(3) var shapes: texture_2d<f32>;
+
+// Shapes in the texture; how much wider a textured blade's strip is than a tapered one.
+const SHAPES: f32 = 5.0;
+const WIDER: f32 = 2.6;
 
 struct Strip {
     @builtin(position) position: vec4<f32>,
     @location(0) color: vec3<f32>,
     @location(1) @interpolate(linear) across: f32,
+    // Place in the texture of shapes; below zero for a tapered blade.
+    @location(2) shape: vec2<f32>,
 }
 
 @vertex
@@ -30,6 +37,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let row = local / 2u;
     let t = f32(row) / f32(rows);
     let across = select(f32(local % 2u) * 2.0 - 1.0, 0.0, local == vertices - 1u);
+    let is_textured = frame.blade.w > 0.5;
 
     let a = blade.points[0].xyz;
     let b = blade.points[1].xyz;
@@ -53,7 +61,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let facing_side = cross(tangent, view);
     let toward = facing_side * sign(dot(facing_side, side) + 1e-5);
     let wide = normalize(side * 0.55 + toward / max(length(toward), 1e-3) * 0.45);
-    let profile = (1.0 - t * t) * (0.80 + 0.55 * t);
+    let profile = select((1.0 - t * t) * (0.80 + 0.55 * t), WIDER, is_textured);
     let p = centre + wide * (across * profile * blade.root.w * 0.5);
 
     var normal = normalize(cross(wide, tangent));
@@ -78,12 +86,21 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let light = blade.points[2].w * mix(mix(0.75, 0.30, deep), 1.0, smoothstep(0.05, 0.75, max(height, t * 0.7)));
     out.color = hazed(grass_light(albedo, soft, tangent, view, light, occlusion), p);
     out.across = across;
+    let shape = floor(fract(blade.points[1].w * 61.0) * SHAPES);
+    out.shape = select(vec2<f32>(-1.0), vec2<f32>((shape + 0.5 + 0.48 * across) / SHAPES, 1.0 - t), is_textured);
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
     return out;
 }
 
 @fragment
 fn fs(strip: Strip) -> @location(0) vec4<f32> {
+    let texel = textureSample(shapes, clamped, strip.shape);
+    if strip.shape.x >= 0.0 {
+        if texel.a < 0.5 {
+            discard;
+        }
+        return vec4<f32>(strip.color * (0.3 + 0.85 * texel.r), 1.0);
+    }
     // A fold along the middle: one half lighter than the other, the rib darker.
     let fold = 1.0 + 0.10 * strip.across - 0.16 * (1.0 - smoothstep(0.0, 0.35, abs(strip.across)));
     return vec4<f32>(strip.color * fold, 1.0);

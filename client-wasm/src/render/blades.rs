@@ -4,7 +4,8 @@
 use super::Quality;
 use super::cull::Frustum;
 use super::gpu::Gpu;
-use super::pipeline::{Draw, Maker, bind, storage, storage_rw, uniform};
+use super::paint;
+use super::pipeline::{Draw, Maker, bind, storage, storage_rw, texture, uniform};
 use super::shaders;
 use super::uniforms::Plants;
 use crate::state::Land;
@@ -83,15 +84,17 @@ impl Blades {
         let buffers = [&plants, &sways, &drawn, &counters, &far_grids, &draws];
         let compute_group = bind(gpu, "bend", &compute_layout, &buffers.map(|buffer| buffer.as_entire_binding()));
 
-        let list_layout = maker.layout("plant list", &[storage(0), storage(1), uniform(2)]);
+        let list_layout = maker.layout("plant list", &[storage(0), storage(1), uniform(2), texture(3)]);
+        let shapes = gpu.texture("blades", wgpu::TextureFormat::Rgba8Unorm, paint::BLADE_PX, &paint::blades());
+        let shapes = shapes.create_view(&Default::default());
         let mut first = 0;
         let lists = std::array::from_fn(|list| {
             let rows = ROWS.get(list).copied().unwrap_or(0);
             let range = [first, capacities[list], rows, list as u32];
             first += capacities[list];
             let range = gpu.buffer("list", bytemuck::bytes_of(&range), BufferUsages::UNIFORM);
-            let resources = [&drawn, &counters, &range].map(|buffer| buffer.as_entire_binding());
-            bind(gpu, "plant list", &list_layout, &resources)
+            let [drawn, counters, range] = [&drawn, &counters, &range].map(|buffer| buffer.as_entire_binding());
+            bind(gpu, "plant list", &list_layout, &[drawn, counters, range, wgpu::BindingResource::TextureView(&shapes)])
         });
         let draw = |label| Draw { label, vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None };
         let strips = maker.draw(&gpu.shader("blades", shaders::BLADES), Some(&list_layout), &draw("blades"));

@@ -6,6 +6,8 @@ pub(super) const NOISE_PX: u32 = 256;
 pub(super) const TUFT_PX: [u32; 2] = [1024, 256];
 /// Side of the leaf texture (px).
 pub(super) const LEAF_PX: u32 = 128;
+/// Size of the texture of blades (px): their shapes side by side; twin of `SHAPES` in `blades.wgsl`.
+pub(super) const BLADE_PX: [u32; 2] = [64 * 5, 256];
 
 /// A generator of random numbers in 0..1 (splitmix64), the same on every machine.
 pub(super) struct Random(u64);
@@ -177,6 +179,49 @@ impl Canvas {
             }
         }
         levels
+    }
+}
+
+/// The five blades of 000 Fig. 5 b: R light, A where there is one. Tips are above.
+pub(super) fn blades() -> Vec<Vec<u8>> {
+    let [width, height] = BLADE_PX.map(|px| px as usize);
+    let tile = width / 5;
+    let mut texels = vec![0; width * height * 4];
+    for y in 0..height {
+        let up = 1.0 - (y as f32 + 0.5) / height as f32;
+        for x in 0..width {
+            let across = 2.0 * ((x % tile) as f32 + 0.5) / tile as f32 - 1.0;
+            if let Some(light) = blade(x / tile, up, across) {
+                let at = (y * width + x) * 4;
+                texels[at..at + 4].copy_from_slice(&[(light.clamp(0.0, 1.0) * 255.0) as u8, 0, 0, 255]);
+            }
+        }
+    }
+    vec![texels]
+}
+
+/// Light of a blade of a shape at a height and a place across, both as shares; none beside it.
+fn blade(shape: usize, up: f32, across: f32) -> Option<f32> {
+    let taper = (1.0 - up * up).max(0.0);
+    // Middle and half-width of each of its leaves.
+    let leaf = |middle: f32, half: f32| {
+        let off = (across - middle).abs() / half.max(1e-4);
+        (off < 1.0).then(|| 0.92 - 0.22 * off * off - if off < 0.09 { 0.2 } else { 0.0 } + 0.05 * (across * 40.0).sin())
+    };
+    match shape {
+        // A plain lance.
+        0 => leaf(0.0, 0.55 * taper * (0.7 + 0.6 * up)),
+        // Toothed at its edges.
+        1 => leaf(0.0, 0.6 * taper * (0.75 + 0.25 * (1.0 - (up * 14.0).fract()))),
+        // A fork of two.
+        2 => leaf(-0.32 * up, 0.30 * (1.0 - up).sqrt()).or_else(|| leaf(0.42 * up * up, 0.26 * (1.0 - 0.9 * up))),
+        // Three slender ones from one foot.
+        3 => leaf(-0.62 * up, 0.15 * (1.0 - up * 1.15).max(0.0).sqrt())
+            .or_else(|| leaf(0.05 * up, 0.18 * (1.0 - up).sqrt()))
+            .or_else(|| leaf(0.66 * up, 0.15 * (1.0 - up * 1.3).max(0.0).sqrt())),
+        // A thin stalk with an ear.
+        _ if up < 0.7 => leaf(0.0, 0.12),
+        _ => leaf(0.0, 0.34 * (1.0 - ((up - 0.85) / 0.15).powi(2)).max(0.0).sqrt() * (0.6 + 0.4 * (up * 60.0).sin().abs())),
     }
 }
 

@@ -70,7 +70,7 @@ impl<'a> View<'a> {
             tiling: [land.tiles().seed(), wraps_x, wraps_z, 0],
             gust: [dir_x, dir_z, mean, travelled],
             past: atlas.past(),
-            blade: [plants.flowers_per_m2, plants.height_variation, width_m, 0.0],
+            blade: [plants.flowers_per_m2, plants.height_variation, width_m, plants.blade_shape as u32 as f32],
             screen: [self.size_px[0] as f32, self.size_px[1] as f32, pixel_rad, 0.0],
             reach: [blade_reach_m * 0.72, blade_reach_m, billboards_to * 0.6, billboards_to],
             clouds: [drift * dir_x * mean, drift * dir_z * mean, 0.5, spheres.len() as f32],

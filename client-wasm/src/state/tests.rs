@@ -281,6 +281,6 @@ fn the_map_of_nutrients_is_read_if_there_is_one() {
     };
     let [generated, rich, barren] =
         [Vec::new(), grey_png([3, 2], &[255; 6]), grey_png([3, 2], &[7; 6])].map(|png| plants_with(png).expect("a sound map"));
-    assert!(rich > generated && generated > 0 && barren == 0, "{rich}, {generated} and {barren} plants");
+    assert!(rich != generated && rich > 0 && generated > 0 && barren == 0, "{rich}, {generated} and {barren} plants");
     assert!(matches!(plants_with(vec![1, 2, 3]), Err(MirrorError::Map { map: "map of nutrients", .. })));
 }

@@ -17,11 +17,11 @@ macro_rules! file {
 }
 
 /// All of them, the default first.
-pub(super) const BUILT_IN: [BuiltIn; 4] = [
+pub(super) const BUILT_IN: [BuiltIn; 6] = [
     BuiltIn {
         name: "meadow",
         text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meadow.toml")),
-        files: &[file!("meadow-height.png"), file!("meadow-covering.png")],
+        files: &[file!("meadow-height.png"), file!("meadow-covering.png"), file!("species.toml")],
     },
     BuiltIn {
         name: "jacksboro",
@@ -37,6 +37,16 @@ pub(super) const BUILT_IN: [BuiltIn; 4] = [
         name: "continuum",
         text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/continuum.toml")),
         files: &[file!("continuum-height.png"), file!("continuum-covering.png")],
+    },
+    BuiltIn {
+        name: "underbrush",
+        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/underbrush.toml")),
+        files: &[file!("meadow-height.png"), file!("underbrush-covering.png"), file!("species.toml")],
+    },
+    BuiltIn {
+        name: "blades",
+        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/blades.toml")),
+        files: &[file!("blades-height.png"), file!("blades-covering.png")],
     },
 ];
 

@@ -15,6 +15,10 @@ const BASE_M: f64 = -5.0;
 /// Covering map: pixels a side, one for each place of a plant (000 §5.5.1).
 const COVER_PX: u32 = 512;
 
+/// IDs of painted species of underbrush.
+const REEDS: u8 = 20;
+const POPPIES: u8 = 21;
+
 const TREES: usize = 250;
 const STONES: usize = 200;
 
@@ -36,12 +40,12 @@ const BED: [Point; 6] = [[96.0, 262.0], [104.0, 212.0], [134.0, 168.0], [120.0, 
 const TRAIL: [Point; 8] =
     [[-6.0, 146.0], [40.0, 150.0], [84.0, 140.0], [118.0, 150.0], [148.0, 132.0], [144.0, 96.0], [158.0, 52.0], [146.0, -6.0]];
 
-/// Height map and covering map.
-pub(super) fn maps() -> [GreyMap; 2] {
+/// Height map, covering map, and that with reeds and poppies painted on it.
+pub(super) fn maps() -> [GreyMap; 3] {
     let land = Land::new();
     let levels = pixels(HEIGHT_PX, PIXEL_M, 0.0).map(|at| ((land.height_m(at) - BASE_M) / LEVEL_M).round().clamp(0.0, 255.0) as u8);
     let height = GreyMap { name: "meadow-height.png", size_px: [HEIGHT_PX; 2], levels: Levels::Eight(levels.collect()) };
-    [height, land.covering()]
+    [height, land.covering(), land.painted()]
 }
 
 /// Points of a square map's pixels, row by row; `offset` is that of the first in pixels.
@@ -100,6 +104,30 @@ impl Land {
         put(253, scatter(&mut dice, EXTENT_M, TREES, 3.4, |at| self.tree_chance(at)));
         put(254, scatter(&mut dice, EXTENT_M, STONES, 1.6, |at| self.stone_chance(at)));
         GreyMap { name: "meadow-covering.png", size_px: [COVER_PX; 2], levels: Levels::Eight(levels) }
+    }
+
+    /// The covering with reeds in the wettest of the valley's bed and drifts of poppies on its sunny side.
+    fn painted(&self) -> GreyMap {
+        let GreyMap { size_px, levels: Levels::Eight(mut levels), .. } = self.covering() else { unreachable!("it has 8 bits") };
+        let pixel_m = EXTENT_M[0] / f64::from(COVER_PX);
+        for (level, at) in levels.iter_mut().zip(pixels(COVER_PX, pixel_m, 0.5)).filter(|(level, _)| **level == 255) {
+            if self.is_wet(at) {
+                *level = REEDS;
+            } else if self.is_drift(at) {
+                *level = POPPIES;
+            }
+        }
+        GreyMap { name: "underbrush-covering.png", size_px, levels: Levels::Eight(levels) }
+    }
+
+    fn is_wet(&self, at: Point) -> bool {
+        let along = smooth_step(112.0, 126.0, at[1]) * (1.0 - smooth_step(176.0, 192.0, at[1]));
+        self.bed.distance(at) < along * (4.5 + 5.0 * self.wear.at(at))
+    }
+
+    fn is_drift(&self, at: Point) -> bool {
+        let from_bed = self.bed.distance(at);
+        from_bed > 9.0 && from_bed < 34.0 && self.groves.at([at[0] + 700.0, at[1]]) + 0.6 * self.wear.at(at) > 0.52
     }
 
     /// The trail's two ruts with grass between them, and worn patches beside it.

@@ -2,6 +2,7 @@
 //!
 //! Only `+ − × ÷`, square roots and lattice noise go into them, so that every machine makes the same pixels.
 
+mod blades;
 mod continuum;
 mod dice;
 mod jacksboro;
@@ -47,6 +48,7 @@ pub fn generate() -> Vec<GreyMap> {
     let mut maps = vec![jacksboro::covering()];
     maps.extend(meadow::maps());
     maps.extend(continuum::maps());
+    maps.extend(blades::maps());
     maps
 }
 
