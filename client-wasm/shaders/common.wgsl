@@ -362,7 +362,7 @@ fn sky_color(direction: vec3<f32>) -> vec3<f32> {
     var color = mix(horizon, zenith, pow(up, 0.48));
     let glow = frame.sun_color.rgb * (0.10 * pow(toward_sun, 5.0) + 0.16 * pow(toward_sun, 40.0));
     color += glow * (1.0 - 0.5 * up);
-    return color;
+    return mix(color, mix(vec3<f32>(0.34, 0.37, 0.40), vec3<f32>(0.22, 0.25, 0.29), pow(up, 0.5)), frame.screen.w);
 }
 
 fn hazed(color: vec3<f32>, p: vec3<f32>) -> vec3<f32> {

@@ -29,7 +29,7 @@ fn fs(ray: Ray) -> @location(0) vec4<f32> {
     var color = sky_color(direction);
     let toward_sun = max(dot(direction, frame.sun.xyz), 0.0);
     color += frame.sun_color.rgb * (smoothstep(0.99955, 0.99985, toward_sun) * 12.0 + pow(toward_sun, 900.0) * 0.8);
-    if direction.y > 0.015 {
+    if direction.y > 0.015 && frame.screen.w < 0.95 {
         let at = frame.eye.xz + frame.clouds.xy + direction.xz / (direction.y + 0.05) * 1500.0;
         let density = cloud_density(at);
         if density > 0.003 {
@@ -39,7 +39,7 @@ fn fs(ray: Ray) -> @location(0) vec4<f32> {
             let shade = vec3<f32>(0.58, 0.64, 0.74);
             let cloud = mix(bright, shade, clamp(lit * 0.85 + density * 0.15, 0.0, 1.0) * (1.0 - 0.5 * edge));
             let fade = smoothstep(0.015, 0.16, direction.y);
-            color = mix(color, cloud, density * 0.9 * fade);
+            color = mix(color, cloud, density * 0.9 * fade * (1.0 - frame.screen.w));
         }
     }
     return vec4<f32>(color, 1.0);

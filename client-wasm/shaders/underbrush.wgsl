@@ -4,8 +4,10 @@
 struct UnderbrushFrame {
     // Chunks of plants that may be seen; number of the frame; species; unused.
     counts: vec4<u32>,
-    // Time since the frame before (s); distance at which plants have shrunk to nothing (m); unused.
+    // Time since the frame before (s); distance at which plants have shrunk to nothing (m); height of the force field (m); unused.
     shape: vec4<f32>,
+    // Corner of the force field and its extent, X and Z (m).
+    forces: vec4<f32>,
     // Of each species: height (m), time constant (s), unused.
     species: array<vec4<f32>, 16>,
     // First place of the species among the listed plants, places of each of its levels, unused.
@@ -49,6 +51,7 @@ struct Tally {
 @group(1) @binding(6) var<storage, read_write> listed: array<u32>;
 @group(1) @binding(7) var<storage, read> broken: array<u32>;
 @group(1) @binding(8) var<storage, read_write> brush_draws: array<u32>;
+@group(1) @binding(9) var forces: texture_3d<f32>;
 
 const HEADINGS: u32 = 8u;
 const STRENGTHS: u32 = 7u;
@@ -65,6 +68,22 @@ fn is_in_view(centre: vec3<f32>, radius: f32) -> bool {
     let high = m[3] - m[1];
     return dot(left, c) > -radius * length(left.xyz) && dot(right, c) > -radius * length(right.xyz)
         && dot(low, c) > -radius * length(low.xyz) && dot(high, c) > -radius * length(high.xyz) && dot(m[3], c) > -radius;
+}
+
+// Force on a silhouette (Pa) so high above the ground at a root: that of the force field, or beyond it that of the wind alone.
+fn pressure_at(root: vec3<f32>, above_m: f32) -> vec3<f32> {
+    let at = (root.xz - brush.forces.xy) / brush.forces.zw;
+    let inside = 1.0 - smoothstep(0.40, 0.49, max(abs(at.x - 0.5), abs(at.y - 0.5)));
+    var force = vec3<f32>(0.0);
+    if inside > 0.0 {
+        force = textureSampleLevel(forces, clamped, vec3<f32>(at, above_m / brush.shape.z), 0.0).xyz * inside;
+    }
+    if inside < 1.0 {
+        let wind = wind_at(root, above_m);
+        force += wind * (0.6 * length(wind) * (1.0 - inside));
+    }
+    // Down among the plants the air is stiller: a quarter-power law of the height, over the 2 m that the field's wind is from.
+    return force * sqrt(clamp(0.5 * above_m, 0.02, 1.0));
 }
 
 // A value that follows a target by a critically damped spring, in closed form; twin of `Following` in
@@ -104,8 +123,7 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     }
 
     let gust = gust_at(plant.at);
-    let wind = wind_at(root, 0.5 * height) * gust;
-    let goal = 0.6 * length(wind) * wind.xz;
+    let goal = pressure_at(root, 0.5 * height).xz * (gust * gust);
     var feels = felt[index];
     if feels.frame + 1u != brush.counts.y {
         feels.pressure = vec4<f32>(goal, 0.0, 0.0);

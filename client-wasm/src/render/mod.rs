@@ -9,6 +9,7 @@ mod blades;
 mod cull;
 mod dust;
 mod flora;
+mod forces;
 mod gpu;
 mod kinds;
 mod land;
@@ -19,6 +20,7 @@ mod paint;
 mod picture;
 mod pipeline;
 mod quality;
+mod rain;
 mod shaders;
 mod sky;
 mod terrain;
@@ -41,9 +43,11 @@ use billboards::{Billboards, Reach};
 use blades::Blades;
 use cull::Frustum;
 use dust::Dust;
+use forces::Forces;
 use land::{FrameGroup, LandTextures};
 use objects::Objects;
 use pipeline::{COLOR, DEPTH, Maker};
+use rain::RainPass;
 use shared::wire::ObjectPose;
 use sky::Sky;
 use terrain::{Ground, Terrain};
@@ -91,7 +95,9 @@ struct SceneParts {
     textures: LandTextures,
     ground: Ground,
     blades: Blades,
+    forces: Forces,
     underbrush: Option<Underbrush>,
+    rain: Option<RainPass>,
     objects: Objects,
     dust: Option<Dust>,
 }
@@ -175,12 +181,15 @@ impl Renderer {
             let maker = Maker { gpu: &self.gpu, frame_layout: &self.frame.layout, samples: self.quality.samples() };
             let scene = land.scene();
             let heights = land.heights();
+            let forces = Forces::new(&self.gpu, land);
             SceneParts {
                 number: mirror.scene_number(),
                 textures: LandTextures::new(&self.gpu, &self.frame, land),
                 ground: Ground::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), scene.light.haze_m),
                 blades: Blades::new(&maker, self.quality, land),
-                underbrush: Underbrush::new(&maker, land, self.quality.underbrush_reach_m()),
+                underbrush: Underbrush::new(&maker, land, &forces, self.quality.underbrush_reach_m()),
+                forces,
+                rain: RainPass::new(&maker, self.quality, land),
                 objects: Objects::new(&maker, land),
                 dust: Dust::new(&maker, self.quality, land),
             }
@@ -210,7 +219,8 @@ impl Renderer {
         let reach = Reach { from_m: 0.72 * frame.reach[0], several_m: SEVERAL_REACHES * frame.reach[1], to_m: frame.reach[3] };
         self.billboards.prepare(gpu, land, camera.eye_m, &frustum, reach);
         if let Some(underbrush) = &mut scene.underbrush {
-            underbrush.prepare(gpu, camera.eye_m, &frustum, dt_secs);
+            scene.forces.follow(gpu, land, &scene.textures.wind, &poses, [camera.eye_m.x, camera.eye_m.z], dt_secs);
+            underbrush.prepare(gpu, &scene.forces, camera.eye_m, &frustum, dt_secs);
         }
         if let Some(dust) = &scene.dust {
             dust.prepare(gpu, dt_secs);
@@ -249,6 +259,9 @@ impl Renderer {
             self.sky.draw(&mut pass);
             if let Some(dust) = &scene.dust {
                 dust.draw(&mut pass);
+            }
+            if let Some(rain) = &scene.rain {
+                rain.draw(&mut pass);
             }
         }
         {

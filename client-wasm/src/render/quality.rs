@@ -82,6 +82,16 @@ impl Quality {
         }
     }
 
+    /// Streaks of heavy rain.
+    pub(super) fn drops(self) -> u32 {
+        match self {
+            Self::Low => 4000,
+            Self::Medium => 9000,
+            Self::High => 18_000,
+            Self::Ultra => 30_000,
+        }
+    }
+
     /// Distance at which underbrush has melted into the grass (m).
     pub(super) fn underbrush_reach_m(self) -> f32 {
         match self {

@@ -10,6 +10,8 @@ pub(super) const BEND: &str = concat!(include_str!("../../shaders/blade.wgsl"), 
 pub(super) const BLADE: &str = include_str!("../../shaders/blade.wgsl");
 /// Blades as tapered strips.
 pub(super) const BLADES: &str = include_str!("../../shaders/blades.wgsl");
+/// Rain.
+pub(super) const RAIN: &str = include_str!("../../shaders/rain.wgsl");
 /// Underbrush.
 pub(super) const UNDERBRUSH: &str = include_str!("../../shaders/underbrush.wgsl");
 /// Flower heads.

@@ -1,6 +1,6 @@
 use super::pipeline::{Maker, bind, storage_rw};
 use super::shaders;
-use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Plants, UnderbrushFrame};
+use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Plants, Shower, UnderbrushFrame};
 use super::{Gpu, Picture, Quality};
 use crate::camera::Camera;
 use crate::state::Mirror;
@@ -32,6 +32,7 @@ fn every_shader_is_valid_wgsl_without_extensions() {
         shaders::BLADES,
         shaders::FLOWERS,
         shaders::UNDERBRUSH,
+        shaders::RAIN,
         shaders::BILLBOARDS,
         shaders::DUST,
         shaders::TERRAIN,
@@ -61,6 +62,7 @@ fn uniform_blocks_lie_as_their_twins() {
     let underbrush = self::module(shaders::UNDERBRUSH);
     assert_twins(&underbrush, "UnderbrushFrame", UnderbrushFrame::LAYOUT, size_of::<UnderbrushFrame>());
     assert_twins(&underbrush, "BrushList", BrushList::LAYOUT, size_of::<BrushList>());
+    assert_twins(&self::module(shaders::RAIN), "Shower", Shower::LAYOUT, size_of::<Shower>());
     assert_twins(&self::module(shaders::DUST), "Drift", Drift::LAYOUT, size_of::<Drift>());
 }
 
@@ -213,12 +215,15 @@ fn patches_show_the_box_where_the_server_has_it() {
     let seams = (0..40).map(|n| [16.0 * (n % 4) as f32, 3.0, 7.0 + 0.37 * n as f32, 0.0]);
     let places: Vec<_> = middles.chain(seams).collect();
     let land = mirror.land().expect("a scene");
+    let wind = &picture.renderer.scene.as_ref().expect("a scene").textures.wind;
     for (place, found) in places.iter().zip(air(&gpu, &picture, &places)) {
         let wanted = land.tiles().blend([place[0], place[2]], |at_m| trilinear(&codes, [at_m[0], place[1], at_m[1]]));
         let [u, v, w, root] = wanted.map(|code| code / 127.0);
         let wanted = [u * WIND_FULL_M_PER_S, v * WIND_FULL_M_PER_S, w * WIND_FULL_M_PER_S, root * root * DUST_FULL];
         // Filtering has 8 bits of fraction.
         assert!(wanted.iter().zip(found).all(|(a, b)| (a - b).abs() < 0.15), "{found:?} instead of {wanted:?} at {place:?}");
+        let twin = wind.at(land, [place[0], place[1], place[2]]);
+        assert!(wanted.iter().zip(twin).all(|(a, b)| (a - b).abs() < 1e-3), "{twin:?} instead of {wanted:?} at {place:?}");
     }
 }
 

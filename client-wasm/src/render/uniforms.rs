@@ -52,7 +52,7 @@ uniform_block! {
         past: [f32; 4],
         /// Flowers per square metre; variation of the height of a blade; width of a blade (m); 1 where blades have textured shapes.
         blade: [f32; 4],
-        /// Pixels of the picture along X and Y; angle of a pixel (rad); unused.
+        /// Pixels of the picture along X and Y; angle of a pixel (rad); how much it rains, 0..1.
         screen: [f32; 4],
         /// Near blades fade out from (m), to (m); billboards end from (m), to (m).
         reach: [f32; 4],
@@ -122,8 +122,10 @@ uniform_block! {
     UnderbrushFrame {
         /// Chunks of plants that may be seen; number of the frame; species; unused.
         counts: [u32; 4],
-        /// Time since the frame before (s); distance at which plants have shrunk to nothing (m); unused.
+        /// Time since the frame before (s); distance at which plants have shrunk to nothing (m); height of the force field (m); unused.
         shape: [f32; 4],
+        /// Corner of the force field and its extent, X and Z (m).
+        forces: [f32; 4],
         /// Of each species: height (m), time constant (s), unused.
         species: [[f32; 4]; SPECIES_LIMIT],
         /// First place of the species among the listed plants, places of each of its levels, unused.
@@ -140,5 +142,15 @@ uniform_block! {
         which: [u32; 4],
         /// Unit of the places of rows (m).
         scale: [f32; 4],
+    }
+}
+
+uniform_block! {
+    /// What the rain's pass knows; its twin is in `rain.wgsl`.
+    Shower {
+        /// Drops; unused.
+        counts: [u32; 4],
+        /// Side of the square that they are in, and its height (m); speed at which they fall (m/s); opacity.
+        shape: [f32; 4],
     }
 }

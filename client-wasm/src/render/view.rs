@@ -18,6 +18,9 @@ const CLOUD_SPEED: f64 = 1.6;
 const SHADOW_HALF_M: f32 = 52.0;
 const SHADOW_DEPTH_M: f32 = 160.0;
 
+/// Rate of rain at which the sky is overcast (mm/h).
+const OVERCAST_MM_PER_H: f32 = 10.0;
+
 pub(super) struct View<'a> {
     camera: &'a Camera,
     size_px: [u32; 2],
@@ -40,7 +43,8 @@ impl<'a> View<'a> {
         let [width, depth] = land.heights().size_px().map(|px| px as f32);
         let eye = self.camera.eye_m;
         let sun = sun_direction(scene.light.sun_heading_rad, scene.light.sun_elevation_rad);
-        let sun_rgb = sun_color(sun.y);
+        let rain_share = (scene.rain.rate_mm_per_h / OVERCAST_MM_PER_H).min(1.0);
+        let sun_rgb = sun_color(sun.y) * (1.0 - 0.82 * rain_share);
         let box_m = scene.wind.box_m();
         let patch_m = if land.tiles().by_patch() { land.layout().patch_m() } else { 0.0 };
         let [wraps_x, _, wraps_z] = scene.wind.faces.wraps().map(u32::from);
@@ -63,7 +67,7 @@ impl<'a> View<'a> {
             shadow_from_world: self.shadow_from_world(sun).to_cols_array(),
             eye: [eye.x, eye.y, eye.z, (self.time_secs % 10_000.0) as f32],
             sun: [sun.x, sun.y, sun.z, 1.0 / self.quality.shadow_px() as f32],
-            sun_color: [sun_rgb.x, sun_rgb.y, sun_rgb.z, scene.light.haze_m],
+            sun_color: [sun_rgb.x, sun_rgb.y, sun_rgb.z, scene.light.haze_m * (1.0 - 0.6 * rain_share)],
             world: [extent_x, extent_z, pixel_x, pixel_z],
             maps: [width, depth, atlas.window_m(), atlas.reach_m()],
             wind_box: [box_m[0], box_m[1], box_m[2], patch_m],
@@ -71,7 +75,7 @@ impl<'a> View<'a> {
             gust: [dir_x, dir_z, mean, travelled],
             past: atlas.past(),
             blade: [plants.flowers_per_m2, plants.height_variation, width_m, plants.blade_shape as u32 as f32],
-            screen: [self.size_px[0] as f32, self.size_px[1] as f32, pixel_rad, 0.0],
+            screen: [self.size_px[0] as f32, self.size_px[1] as f32, pixel_rad, rain_share],
             reach: [blade_reach_m * 0.72, blade_reach_m, billboards_to * 0.6, billboards_to],
             clouds: [drift * dir_x * mean, drift * dir_z * mean, 0.5, spheres.len() as f32],
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_default()),

@@ -1,9 +1,10 @@
 //! The streamed wind as a 3-D texture, dust in its fourth channel, that follows the newest frame smoothly.
 
 use super::gpu::Gpu;
-use crate::state::WindCodes;
+use crate::state::{Land, WindCodes};
 use shared::scene::Wind;
 use shared::wire::Shape;
+use shared::wire::quantise::WIND_FULL_M_PER_S;
 
 /// Time in which the shown wind takes up 63 % of a change (s).
 const FOLLOW_SECS: f32 = 0.12;
@@ -54,6 +55,33 @@ impl WindTexture {
         self.seq = Some(newest.seq());
         self.settled = rest < 0.5;
         self.write(gpu);
+    }
+
+    /// The shown wind at a place (m/s): X, height above the ground, Z (m), as `air_at` in `common.wgsl` finds it.
+    pub(super) fn at(&self, land: &Land, [x, above_m, z]: [f32; 3]) -> [f32; 3] {
+        let wind = &land.scene().wind;
+        let wraps = wind.faces.wraps();
+        land.tiles().blend([x, z], |[x, z]| {
+            let place_m = [x, above_m, z];
+            let axes: [([usize; 2], f32); 3] = std::array::from_fn(|axis| {
+                let at = place_m[axis] / wind.spacing_m[axis] - 0.5;
+                let (low, count) = (at.floor(), self.cells[axis] as i32);
+                let is_round = wraps[axis] && axis != 1;
+                let cell = |n: i32| if is_round { n.rem_euclid(count) } else { n.clamp(0, count - 1) } as usize;
+                ([cell(low as i32), cell(low as i32 + 1)], at - low)
+            });
+            let [nx, ny, nz] = self.cells.map(|n| n as usize);
+            let mut sum = [0.0; 3];
+            for corner in 0..8 {
+                let far = [corner & 1, corner >> 1 & 1, corner >> 2];
+                let share: f32 = (0..3).map(|axis| if far[axis] == 1 { axes[axis].1 } else { 1.0 - axes[axis].1 }).product();
+                let [i, j, k]: [usize; 3] = std::array::from_fn(|axis| axes[axis].0[far[axis]]);
+                for (channel, sum) in sum.iter_mut().enumerate() {
+                    *sum += share * self.shown[channel * nx * ny * nz + i + nx * (j + ny * k)];
+                }
+            }
+            sum.map(|code| code * (WIND_FULL_M_PER_S / 127.0))
+        })
     }
 
     fn write(&self, gpu: &Gpu) {

@@ -4,8 +4,9 @@
 mod bake;
 
 use super::cull::Frustum;
+use super::forces::Forces;
 use super::gpu::Gpu;
-use super::pipeline::{Draw, Maker, storage, storage_rw, uniform};
+use super::pipeline::{Draw, Maker, sampled, storage, storage_rw, uniform};
 use super::shaders;
 use super::uniforms::{BrushList, UnderbrushFrame};
 use crate::state::Land;
@@ -76,7 +77,7 @@ pub(super) struct Underbrush {
 
 impl Underbrush {
     /// Of a scene that has any.
-    pub(super) fn new(maker: &Maker<'_>, land: &Land, reach_m: f32) -> Option<Self> {
+    pub(super) fn new(maker: &Maker<'_>, land: &Land, forces: &Forces, reach_m: f32) -> Option<Self> {
         let flora = land.flora()?;
         let gpu = maker.gpu;
         let (grown, tiles) = tiles(land, flora);
@@ -109,7 +110,8 @@ impl Underbrush {
 
         let module = gpu.shader("underbrush", shaders::UNDERBRUSH);
         let read = |binding| wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::COMPUTE, ..storage(binding) };
-        let entries = [uniform(0), read(1), read(2), storage_rw(3), storage_rw(4), storage_rw(5), storage_rw(6), read(7), storage_rw(8)];
+        let entries =
+            [uniform(0), read(1), read(2), storage_rw(3), storage_rw(4), storage_rw(5), storage_rw(6), read(7), storage_rw(8), volumes(9)];
         let compute_layout = maker.layout("underbrush", &entries);
         let list_layout = maker.layout("underbrush list", &[storage(10), storage(11), storage(12), storage(13), storage(14), uniform(15)]);
         let draw =
@@ -140,17 +142,18 @@ impl Underbrush {
                 lists.push(List {
                     number: list,
                     indices: gpu.buffer("underbrush indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
-                    group: numbered(gpu, "underbrush list", &list_layout, 10, &buffers),
+                    group: numbered(gpu, "underbrush list", &list_layout, 10, &buffers, None),
                 });
             }
         }
         let draws = gpu.buffer("underbrush draws", bytemuck::cast_slice(&draw_words), storage_usage | BufferUsages::INDIRECT);
         let buffers = [&frame, &plants, &chunks, &felt, &stands, &tally, &listed, &broken, &draws];
+        let forces = (9, wgpu::BindingResource::TextureView(&forces.view));
         Some(Self {
             stand: maker.compute("stand", &module, "stand", &compute_layout),
             finish: maker.compute("finish", &module, "finish", &compute_layout),
             pipeline,
-            compute_group: numbered(gpu, "underbrush", &compute_layout, 0, &buffers),
+            compute_group: numbered(gpu, "underbrush", &compute_layout, 0, &buffers, Some(forces)),
             frame,
             chunks,
             tally,
@@ -172,7 +175,7 @@ impl Underbrush {
     }
 
     /// Lists the plants of the squares that may be seen.
-    pub(super) fn prepare(&mut self, gpu: &Gpu, eye_m: Vec3, frustum: &Frustum, dt_secs: f32) {
+    pub(super) fn prepare(&mut self, gpu: &Gpu, forces: &Forces, eye_m: Vec3, frustum: &Frustum, dt_secs: f32) {
         let mut chunks: Vec<[u32; 2]> = Vec::new();
         for tile in &self.tiles {
             let nearest = eye_m.clamp(tile.low_m, tile.high_m);
@@ -185,7 +188,8 @@ impl Underbrush {
         self.frame_number = self.frame_number.wrapping_add(1);
         let frame = UnderbrushFrame {
             counts: [self.chunk_count, self.frame_number, 0, 0],
-            shape: [dt_secs.max(0.0), self.reach_m, 0.0, 0.0],
+            shape: [dt_secs.max(0.0), self.reach_m, forces.height_m(), 0.0],
+            forces: forces.window_m(),
             species: self.species,
             places: self.places,
         };
@@ -217,10 +221,21 @@ impl Underbrush {
     }
 }
 
-/// A bind group of whole buffers, numbered from `first`.
-fn numbered(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, first: u32, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
-    let entries: Vec<_> =
-        (first..).zip(buffers).map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }).collect();
+fn volumes(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    sampled(binding, wgpu::TextureSampleType::Float { filterable: true }, wgpu::TextureViewDimension::D3)
+}
+
+/// A bind group of whole buffers, numbered from `first`, and perhaps one resource more.
+fn numbered(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    first: u32,
+    buffers: &[&wgpu::Buffer],
+    more: Option<(u32, wgpu::BindingResource<'_>)>,
+) -> wgpu::BindGroup {
+    let whole = (first..).zip(buffers).map(|(binding, buffer)| (binding, buffer.as_entire_binding()));
+    let entries: Vec<_> = whole.chain(more).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 

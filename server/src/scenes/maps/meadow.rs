@@ -122,7 +122,7 @@ impl Land {
 
     fn is_wet(&self, at: Point) -> bool {
         let along = smooth_step(112.0, 126.0, at[1]) * (1.0 - smooth_step(176.0, 192.0, at[1]));
-        self.bed.distance(at) < along * (4.5 + 5.0 * self.wear.at(at))
+        self.bed.distance(at) < along * (2.4 + 3.6 * self.wear.at(at))
     }
 
     fn is_drift(&self, at: Point) -> bool {
