@@ -400,7 +400,8 @@ fn sun_visible(p: vec3<f32>) -> f32 {
 fn ambient(normal: vec3<f32>) -> vec3<f32> {
     let sky = mix(vec3<f32>(0.42, 0.50, 0.62), vec3<f32>(0.36, 0.52, 0.86), clamp(normal.y, 0.0, 1.0));
     let bounce = vec3<f32>(0.20, 0.21, 0.10);
-    return mix(bounce, sky, 0.5 + 0.5 * normal.y) * 0.62;
+    // Under a rainy sky all light is the sky's.
+    return mix(bounce, sky, 0.5 + 0.5 * normal.y) * mix(0.62, 1.15, frame.screen.w);
 }
 
 // Light on something thin and green: wrapped diffuse, light through it against the sun, a sheen along the blade

@@ -10,8 +10,8 @@ struct Shower {
 @group(1) @binding(0) var<uniform> shower: Shower;
 
 // Time for which a drop leaves its streak in the eye (s); half of its width (m).
-const STREAK_SECS: f32 = 0.028;
-const HALF_WIDTH_M: f32 = 0.0014;
+const STREAK_SECS: f32 = 0.045;
+const HALF_WIDTH_M: f32 = 0.0020;
 
 struct Streak {
     @builtin(position) position: vec4<f32>,
@@ -38,7 +38,7 @@ fn vs(@builtin(vertex_index) index: u32) -> Streak {
     let to = centre - frame.eye.xyz;
     let distance_m = length(to);
     let across = normalize(cross(along, to));
-    let half_width = max(HALF_WIDTH_M, 0.35 * distance_m * frame.screen.z);
+    let half_width = max(HALF_WIDTH_M, 0.6 * distance_m * frame.screen.z);
     let end = f32(corner >> 1u) - 0.5;
     let side_of = f32(corner & 1u) * 2.0 - 1.0;
     let p = centre + velocity * (STREAK_SECS * end) + across * (half_width * side_of);
@@ -56,6 +56,6 @@ fn vs(@builtin(vertex_index) index: u32) -> Streak {
 @fragment
 fn fs(streak: Streak) -> @location(0) vec4<f32> {
     let opacity = streak.opacity * (1.0 - streak.across * streak.across);
-    let light = vec3<f32>(0.62, 0.67, 0.72);
+    let light = vec3<f32>(0.80, 0.85, 0.90);
     return vec4<f32>(light * opacity, opacity);
 }

@@ -28,7 +28,7 @@ impl RainPass {
             return None;
         }
         let drops = (quality.drops() as f32 * (rate_mm_per_h / FULL_MM_PER_H).clamp(0.05, 1.0)) as u32;
-        let contents = Shower { counts: [drops, 0, 0, 0], shape: [SQUARE_M, TALL_M, DROP_M_PER_S, 0.5] };
+        let contents = Shower { counts: [drops, 0, 0, 0], shape: [SQUARE_M, TALL_M, DROP_M_PER_S, 0.75] };
         let shower = maker.gpu.buffer("shower", bytemuck::bytes_of(&contents), BufferUsages::UNIFORM);
         let layout = maker.layout("rain", &[uniform(0)]);
         let draw = Draw {

@@ -9,6 +9,7 @@ use shared::hash::hash3;
 use shared::lod::Lag;
 use shared::plant::blade::contact::{Sphere, settle};
 use shared::plant::blade::{Blade, LINKS, Sway, advance};
+use shared::plant::underbrush::constraint::Following;
 use shared::scene::{BladeIntegrator, Grass, LagWay, Patches, Scene, Species, TerrainMaps, VehicleKind, Wind, WindDust, WindTiling};
 use shared::terrain::grey_png;
 use shared::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, omega_rad_per_s, theta_code};
@@ -410,4 +411,40 @@ fn blades_move_as_their_twins_do() {
         }
     }
     assert!(touching > 300, "only {touching} contacts were compared");
+}
+
+#[test]
+fn underbrush_follows_the_force_as_its_twin_does() {
+    const SOURCE: &str = "
+        @group(1) @binding(0) var<storage, read_write> cases: array<vec4<f32>>;
+        @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
+            let goal = cases[id.x * 2u + 1u];
+            cases[id.x * 2u] = followed(cases[id.x * 2u], goal.xy, goal.z, goal.w);
+            cases[id.x * 2u + 1u] = vec4<f32>(octahedral(u32(goal.x * 100.0 + 6000.0)), 0.0);
+        }";
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut mirror = meadow(0.0);
+    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
+    let inputs: Vec<[f32; 4]> = (0..400_u32)
+        .map(|n| {
+            let [a, b, c] = hash3([n, 3, 5]).map(|v| (v >> 8) as f32 / 16_777_216.0);
+            let [d, ..] = hash3([n, 4, 5]).map(|v| (v >> 8) as f32 / 16_777_216.0);
+            if n % 2 == 0 { [a * 50.0, b * 50.0 - 25.0, c * 90.0, d * 90.0 - 45.0] } else { [a * 60.0, b * 60.0, 0.1 + c, d] }
+        })
+        .collect();
+    let source = shaders::UNDERBRUSH.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(20) var<uniform>");
+    let found = compute(&gpu, &picture, &format!("{source}\n{SOURCE}"), &inputs, 200);
+    for (input, found) in inputs.chunks_exact(2).zip(found.chunks_exact(2)) {
+        let ([x, z, dx, dz], [goal_x, goal_z, settle_secs, dt_secs]) = (input[0], input[1]);
+        let twin = Following { value: [x, 0.0, z], rate_per_s: [dx, 0.0, dz] }.followed([goal_x, 0.0, goal_z], settle_secs, dt_secs);
+        let wanted = [twin.value[0], twin.value[2], twin.rate_per_s[0], twin.rate_per_s[2]];
+        assert!(wanted.iter().zip(found[0]).all(|(a, b)| (a - b).abs() < 2e-3), "{:?} instead of {wanted:?}", found[0]);
+        let word = (goal_x * 100.0 + 6000.0) as u32;
+        let [a, b] = [0, 8].map(|shift| f32::from((word >> shift) as u8 as i8) / 127.0);
+        let y = 1.0 - a.abs() - b.abs();
+        let sign = |v: f32| if v >= 0.0 { 1.0 } else { -1.0 };
+        let direction = if y < 0.0 { Vec3::new((1.0 - b.abs()) * sign(a), y, (1.0 - a.abs()) * sign(b)) } else { Vec3::new(a, y, b) };
+        assert!(direction.normalize().distance(Vec3::from_slice(&found[1][..3])) < 1e-3, "word {word}: {:?}", found[1]);
+    }
 }

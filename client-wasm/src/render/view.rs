@@ -44,7 +44,7 @@ impl<'a> View<'a> {
         let eye = self.camera.eye_m;
         let sun = sun_direction(scene.light.sun_heading_rad, scene.light.sun_elevation_rad);
         let rain_share = (scene.rain.rate_mm_per_h / OVERCAST_MM_PER_H).min(1.0);
-        let sun_rgb = sun_color(sun.y) * (1.0 - 0.82 * rain_share);
+        let sun_rgb = sun_color(sun.y) * (1.0 - 0.75 * rain_share);
         let box_m = scene.wind.box_m();
         let patch_m = if land.tiles().by_patch() { land.layout().patch_m() } else { 0.0 };
         let [wraps_x, _, wraps_z] = scene.wind.faces.wraps().map(u32::from);
