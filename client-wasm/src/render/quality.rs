@@ -95,7 +95,7 @@ impl Quality {
     /// Distance at which underbrush has melted into the grass (m).
     pub(super) fn underbrush_reach_m(self) -> f32 {
         match self {
-            Self::Low => 60.0,
+            Self::Low => 45.0,
             Self::Medium => 110.0,
             Self::High => 180.0,
             Self::Ultra => 260.0,

@@ -21,7 +21,7 @@ const MIDDLE_PA: f32 = 8.0;
 /// Levels of detail: every section, every second, fourth, and the whole component as one, of fewer components.
 pub(super) const LEVELS: usize = 4;
 /// Most leaves of a plant in the coarsest level.
-const COARSE_LEAVES: usize = 7;
+const COARSE_LEAVES: usize = 10;
 /// Half-widths are in units of this (m); twin of the constant in `underbrush.wgsl`.
 const WIDTH_UNIT_M: f32 = 1.0 / 16_384.0;
 
@@ -153,7 +153,7 @@ fn kept(plan: &Plan, placed: &[Placed], level: usize) -> Vec<(usize, f32)> {
         ComponentKind::Branch => is_stout(*index),
         ComponentKind::Flower => true,
     };
-    let width = |index: usize| (index, if kind(index) == ComponentKind::Leaf { wider.sqrt() } else { 1.0 });
+    let width = |index: usize| (index, if kind(index) == ComponentKind::Leaf { wider.powf(0.75) } else { 1.0 });
     (0..placed.len()).filter(shown).map(width).collect()
 }
 
