@@ -5,7 +5,7 @@ use crate::maps;
 use client_wasm::state::Mirror;
 use glam::{Quat, Vec2, Vec3};
 use shared::grid::PatchLayout;
-use shared::scene::{Patches, Scene, TerrainMaps, VehicleKind};
+use shared::scene::{Scene, TerrainMaps, VehicleKind};
 use shared::terrain::{HeightMap, grey_png};
 use shared::wire::quantise::{omega_code, theta_code, wind_code};
 use shared::wire::{ObjectPose, ServerMessage, Shape, codec};
