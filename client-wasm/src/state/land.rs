@@ -1,8 +1,9 @@
-//! What stays as it is for a run: the scene, its decoded maps and models.
+//! What stays as it is for a run: the scene, its decoded maps, its underbrush and models.
 
 use super::underbrush::check_underbrush;
 use super::{MirrorError, range, within};
 use shared::grid::PatchLayout;
+use shared::plant::flora::Flora;
 use shared::plant::growth::NutrientMap;
 use shared::scene::{Scene, VehicleKind, WIND_CELLS_LIMIT};
 use shared::terrain::{Cover, CoverMap, HeightMap, KindMap};
@@ -18,12 +19,13 @@ pub struct Land {
     cover: CoverMap,
     kinds: KindMap,
     nutrients: Option<NutrientMap>,
+    flora: Option<Flora>,
     models: Vec<(VehicleKind, Mesh)>,
     tiles: Tiles,
 }
 
 impl Land {
-    /// Decodes the maps and checks what the client relies on.
+    /// Decodes the maps, lets the underbrush grow and checks what the client relies on.
     ///
     /// # Errors
     /// [`MirrorError`] when a map is unreadable, or the scene leaves what a client can hold.
@@ -45,7 +47,8 @@ impl Land {
         }
         let layout = PatchLayout::from(&scene.patches);
         let (tiles, kinds) = (Tiles::new(&scene), KindMap::new(&scene, &cover));
-        Ok(Self { scene, layout, heights, cover, kinds, nutrients, models, tiles })
+        let flora = Flora::new(&scene, &cover, nutrients.as_ref());
+        Ok(Self { scene, layout, heights, cover, kinds, nutrients, flora, models, tiles })
     }
 
     /// The scene.
@@ -81,6 +84,11 @@ impl Land {
     /// What is drawn of the soil's nutrients; none where they are generated.
     pub fn nutrients(&self) -> Option<&NutrientMap> {
         self.nutrients.as_ref()
+    }
+
+    /// The underbrush; none in a scene without any.
+    pub fn flora(&self) -> Option<&Flora> {
+        self.flora.as_ref()
     }
 
     /// What covers the point `(x_m, z_m)`.
