@@ -43,6 +43,7 @@ fn seat(kind: VehicleKind) -> Seat {
         VehicleKind::Monster => Seat { distance_m: 5.0, height_m: 2.0 },
         VehicleKind::Helicopter => Seat { distance_m: 15.0, height_m: 4.5 },
         VehicleKind::Sled => Seat { distance_m: 10.0, height_m: 4.0 },
+        VehicleKind::Ball => Seat { distance_m: 7.0, height_m: 2.4 },
     }
 }
 
@@ -211,6 +212,9 @@ impl Rig {
 
 /// Heading of a vehicle (rad) from north towards east.
 fn heading_of(pose: &ObjectPose) -> f32 {
+    if pose.kind == VehicleKind::Ball {
+        return pose.part_rad;
+    }
     let forward = Quat::from_array(pose.rotation) * Vec3::NEG_Z;
     forward.x.atan2(-forward.z)
 }

@@ -1,8 +1,9 @@
 //! The client's mirror of the server: every [`ServerMessage`] goes in, the renderer reads it out.
 //!
 //! The bytes behind the messages are hostile: lengths, indices and numbers are checked before anything is kept, and what is
-//! kept is bounded by [`PATCH_LIMIT`], [`OBJECT_LIMIT`] and [`PEER_LIMIT`].
+//! kept is bounded by [`PATCH_LIMIT`], [`OBJECT_LIMIT`], [`PEER_LIMIT`] and the number of sites.
 
+mod broken;
 mod fields;
 mod land;
 mod playback;
@@ -13,6 +14,7 @@ pub use fields::{PATCH_LIMIT, PatchCodes, WindCodes};
 pub use land::Land;
 pub use playback::OBJECT_LIMIT;
 
+use broken::Broken;
 use fields::{Patches, WindFrames};
 use playback::Playback;
 use shared::grid::PatchIndex;
@@ -98,6 +100,7 @@ pub struct Mirror {
     patches: Patches,
     wind: WindFrames,
     poses: Playback,
+    broken: Broken,
     peers: Vec<Peer>,
     tick: u64,
     time_secs: f64,
@@ -112,7 +115,9 @@ impl Mirror {
         Ok(match message {
             ServerMessage::Welcome { client, server_version } => Some(Event::Welcome { client, server_version }),
             ServerMessage::Scene { scene, height_png, covering_png, nutrient_png, models } => {
-                self.land = Some(Land::new(*scene, &height_png, &covering_png, &nutrient_png, models)?);
+                let land = Land::new(*scene, &height_png, &covering_png, &nutrient_png, models)?;
+                self.broken = Broken::new(land.flora().map_or(0, |flora| flora.grown().sites.total()));
+                self.land = Some(land);
                 self.scene_number = self.scene_number.wrapping_add(1);
                 self.patches = Patches::default();
                 self.wind = WindFrames::default();
@@ -137,6 +142,10 @@ impl Mirror {
                 peers.truncate(PEER_LIMIT);
                 self.peers = peers;
                 Some(Event::Roster)
+            }
+            ServerMessage::Broken { plants } => {
+                self.broken.take_in(&plants)?;
+                None
             }
             ServerMessage::FrameEnd { frame, tick, time_secs } => {
                 if !time_secs.is_finite() {
@@ -222,6 +231,16 @@ impl Mirror {
     /// Patches that have changed since the last call.
     pub fn take_dirty_patches(&mut self) -> Vec<PatchIndex> {
         self.patches.take_dirty()
+    }
+
+    /// Which plants of the underbrush are broken: that of site `s` where bit `s % 32` of word `s / 32` is 1.
+    pub fn broken(&self) -> &[u32] {
+        self.broken.words()
+    }
+
+    /// Number of broken plants; they never heal, so it only rises until the next scene.
+    pub fn broken_count(&self) -> u32 {
+        self.broken.count()
     }
 
     /// The newest wind.

@@ -7,7 +7,7 @@
 //   wind(x, y, z)                    wind there, in the client's mirror (m/s)
 //   dust(x, y, z)                    concentration of dust there
 //   look([x, y, z], heading, pitch)  puts the free camera somewhere (m, rad)
-//   choose(vehicle)                  takes "car", "monster", "helicopter" or "sled"; "" gives it up
+//   choose(vehicle)                  takes "car", "monster", "helicopter", "sled" or "ball"; "" gives it up
 //   draw(time)                       draws one picture for this time (s); settles when it is on the screen
 // The address may say ?quality=low|medium|high|ultra, ?name=…, ?panel=0 (nothing above the picture; P brings it), ?paused=1 (draws only when draw() asks).
 

@@ -11,6 +11,7 @@ mod file;
 pub mod inspect;
 pub mod net;
 pub mod objects;
+pub mod plants;
 pub mod runner;
 pub mod scenes;
 mod shown;

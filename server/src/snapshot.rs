@@ -25,6 +25,8 @@ pub struct Snapshot {
     pub wind: Arc<WindFrame>,
     /// The bend field.
     pub patches: Arc<BentPatches>,
+    /// Sites of the broken plants of the underbrush, in the order of their breaking: those of a snapshot before, and newer ones after them.
+    pub broken: Arc<Vec<u32>>,
     /// The scalars that tell how the world fares.
     pub health: Health,
 }

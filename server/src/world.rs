@@ -4,6 +4,7 @@ use crate::bend::Meadow;
 pub use crate::bend::View;
 use crate::bend::drawing::Drawings;
 use crate::objects::{Objects, Place, SPEED_LIMIT_M_PER_S};
+use crate::plants::Plants;
 use crate::shown::Shown;
 use crate::snapshot::{Health, Snapshot};
 use crate::weather::{self, Weather, WeatherError};
@@ -11,7 +12,11 @@ use crate::wind::StepError;
 use crate::wind::state::MAX_SUBSTEPS;
 use shared::bend::{Damping, Scheme, WaveParams, limits};
 use shared::grid::{PatchIndex, PatchLayout};
-use shared::scene::{CarTread, DrawnWind, Grass, HelicopterTread, MonsterTread, Patches, Scene, SledTread, VehicleKind, WindShape};
+use shared::plant::flora::Flora;
+use shared::plant::growth::NutrientMap;
+use shared::scene::{
+    BallTread, CarTread, DrawnWind, Grass, HelicopterTread, MonsterTread, Patches, Scene, SledTread, VehicleKind, WindShape,
+};
 use shared::terrain::{CoverMap, HeightMap};
 use shared::wire::{Drive, ObjectId, VIEW_RADIUS_LIMIT_M};
 use std::sync::Arc;
@@ -57,6 +62,8 @@ pub struct Maps {
     pub cover: CoverMap,
     /// The drawings that the scene's winds name.
     pub drawings: Drawings,
+    /// Nutrients of the soil; none where they are generated.
+    pub nutrients: Option<NutrientMap>,
 }
 
 /// Constants of a scene that are each in range and make no world together.
@@ -75,7 +82,7 @@ pub fn misfits(scene: &Scene) -> Vec<WorldError> {
     check_stiffness(scene).err().into_iter().chain(calm.err()).collect()
 }
 
-/// Objects, wind and grass.
+/// Objects, wind, grass and underbrush.
 pub struct World {
     dt_secs: f32,
     tick: u64,
@@ -84,6 +91,7 @@ pub struct World {
     objects: Objects,
     weather: Weather,
     meadow: Meadow,
+    plants: Plants,
     views: Vec<View>,
     shown: Shown,
 }
@@ -99,6 +107,7 @@ impl World {
         let weather = Weather::new(scene, &maps).map_err(|error| no_wind(scene, error))?;
         let height = Arc::new(maps.height);
         let place = Place { height: Arc::clone(&height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
+        let plants = Plants::new(Flora::new(scene, &place.cover, maps.nutrients.as_ref()));
         let meadow = Meadow::with_drawings(scene, Arc::clone(&height), &place.cover, &maps.drawings);
         Ok(Self {
             dt_secs: scene.dt_secs(),
@@ -109,11 +118,12 @@ impl World {
             weather,
             shown: Shown::default(),
             meadow,
+            plants,
             views: vec![],
         })
     }
 
-    /// One fixed step: commands, objects, wind, bend field.
+    /// One fixed step: commands, objects, wind, bend field, underbrush.
     pub fn step(&mut self, commands: &[Command]) {
         for command in commands {
             self.obey(command);
@@ -123,6 +133,7 @@ impl World {
         let motions = self.objects.motions();
         self.weather.step(self.tick, &motions, &self.height, self.meadow.field());
         self.meadow.step(self.dt_secs, &motions, &self.views, self.weather.ground());
+        self.plants.step(self.dt_secs, &self.meadow, self.weather.ground());
     }
 
     /// Gets one of so many `parts` of the patches ready for the next [`snapshot`](Self::snapshot), which then shows them as they are now.
@@ -141,6 +152,7 @@ impl World {
             object_limit: self.objects.limit(),
             wind: Arc::clone(self.weather.frame()),
             patches: Arc::clone(self.shown.patches()),
+            broken: Arc::clone(self.plants.broken()),
             health: Health {
                 divergence_rms: wind.divergence_rms_rel as f32,
                 wind_energy: wind.kinetic_energy_m2_per_s2,
@@ -174,7 +186,7 @@ impl World {
         &self.meadow
     }
 
-    /// A number that differs when any bit of the objects', the wind's or the bend field's state does (FNV-1a).
+    /// A number that differs when any bit of the objects', the wind's, the bend field's or the underbrush's state does (FNV-1a).
     pub fn checksum(&self) -> u64 {
         let mut sum = Checksum::default();
         for pose in self.objects.poses() {
@@ -189,6 +201,7 @@ impl World {
             }
         }
         sum.add(self.meadow.laid().words());
+        sum.add(self.plants.broken().iter().copied());
         sum.0
     }
 
@@ -254,7 +267,7 @@ fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
         return Ok(());
     }
     type Mend = fn(&mut Scene);
-    let usual: [(&str, Mend); 12] = [
+    let usual: [(&str, Mend); 13] = [
         ("grass.mu_m_per_rad", |scene| scene.grass.mu_m_per_rad = Grass::default().mu_m_per_rad),
         ("grass.c0_m_per_s", |scene| scene.grass.c0_m_per_s = Grass::default().c0_m_per_s),
         ("grass.c_omega_m_per_s", |scene| scene.grass.c_omega_m_per_s = Grass::default().c_omega_m_per_s),
@@ -266,6 +279,7 @@ fn check_stiffness(scene: &Scene) -> Result<(), WorldError> {
         ("objects.monster.strike_height_m", |scene| scene.objects.monster = MonsterTread::default()),
         ("objects.helicopter.strike_height_m", |scene| scene.objects.helicopter = HelicopterTread::default()),
         ("objects.sled.strike_height_m", |scene| scene.objects.sled = SledTread::default()),
+        ("objects.ball.strike_height_m", |scene| scene.objects.ball = BallTread::default()),
         ("drawn_winds", |scene| scene.drawn_winds.clear()),
     ];
     let needed_with = |mend: Mend| {

@@ -8,7 +8,7 @@ use server::runner::{Published, Request};
 use server::snapshot::{BentPatches, PatchCodes, Snapshot, WindFrame};
 use server::stream::{Client, Clients, DEAD_BAND, Frame, Gaze, SendLimits, Streamer, interest};
 use shared::grid::PatchLayout;
-use shared::wire::{PATCH_MEMORY, Refusal, ServerMessage};
+use shared::wire::{BROKEN_LIMIT, PATCH_MEMORY, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, decode};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};
@@ -348,4 +348,84 @@ fn a_refused_vehicle_is_said_once() {
         }
     }
     assert_eq!(refusals, 1);
+}
+
+/// Plants told of in frames, in the order of telling.
+fn broken_in(frames: &[Frame]) -> Vec<Vec<u32>> {
+    let messages = frames.iter().flat_map(|frame| &frame.messages);
+    let plants = |message: &bytes::Bytes| match decode(message, SERVER_MESSAGE_LIMIT) {
+        Ok(ServerMessage::Broken { plants }) => Some(plants),
+        _ => None,
+    };
+    messages.filter_map(plants).collect()
+}
+
+#[test]
+fn a_newcomer_is_told_of_all_broken_plants_in_bounded_messages() {
+    let limits = SendLimits::default();
+    let (clients, mut prairie, mut now) = (Clients::default(), Prairie::at_rest(), Instant::now());
+    let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
+    // In an order of breaking that is not that of the sites.
+    let all: Vec<u32> = (0..10_000_u32).map(|n| n * 7919 % 10_007).collect();
+    prairie.snapshot.broken = Arc::new(all.clone());
+    let mut visitor = Visitor::join(&clients, limits, 100.0);
+    let mut told = Vec::new();
+    for publish in 0..6 {
+        now += Duration::from_millis(50);
+        streamer.publish(&prairie.publish(), &clients.all(), now);
+        let messages = broken_in(&visitor.read());
+        assert!(messages.len() <= 1 && (publish < 3) == (messages.len() == 1), "publish {publish}: {} messages", messages.len());
+        assert!(messages.iter().all(|plants| plants.len() <= BROKEN_LIMIT && plants.is_sorted()));
+        told.extend(messages.into_iter().flatten());
+    }
+    let sorted = |mut plants: Vec<u32>| {
+        plants.sort_unstable();
+        plants
+    };
+    assert_eq!(sorted(told), sorted(all));
+}
+
+/// Plants that break while a client reads nothing, or has spent its budget, are told later: all of them, each once.
+#[test]
+fn a_client_that_lags_misses_no_broken_plant() {
+    let limits = SendLimits { in_flight: 2, bytes_per_sec: 1_000.0 };
+    let (clients, mut prairie, mut now) = (Clients::default(), Prairie::at_rest(), Instant::now());
+    let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
+    let mut visitors: Vec<_> = (0..3).map(|_| Visitor::join(&clients, limits, 100.0)).collect();
+    let mut told = vec![Vec::new(); 3];
+    for publish in 0..400_u32 {
+        if publish < 200 {
+            Arc::make_mut(&mut prairie.snapshot.broken).extend((0..publish % 5).map(|n| 5 * publish + n));
+        }
+        now += Duration::from_millis(50);
+        streamer.publish(&prairie.publish(), &clients.all(), now);
+        for (n, visitor) in visitors.iter_mut().enumerate() {
+            if publish.is_multiple_of([1, 7, 60][n]) || publish >= 300 {
+                told[n].extend(broken_in(&visitor.read()).into_iter().flatten());
+            }
+        }
+    }
+    assert_eq!(prairie.snapshot.broken.len(), 400);
+    for told in told {
+        assert_eq!(told.len(), 400, "each once");
+        assert!(prairie.snapshot.broken.iter().all(|plant| told.contains(plant)));
+    }
+}
+
+#[test]
+fn news_of_broken_plants_are_encoded_once_for_all() {
+    let limits = SendLimits::default();
+    let (clients, mut prairie, now) = (Clients::default(), Prairie::at_rest(), Instant::now());
+    let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
+    prairie.snapshot.broken = Arc::new(vec![3, 1, 2]);
+    let mut visitors: Vec<_> = (0..4).map(|_| Visitor::join(&clients, limits, 100.0)).collect();
+    streamer.publish(&prairie.publish(), &clients.all(), now);
+    let places = visitors.iter_mut().map(|visitor| {
+        let frames = visitor.read();
+        assert_eq!(broken_in(&frames), [[1, 2, 3]]);
+        let is_broken = |message: &&bytes::Bytes| matches!(decode(message, SERVER_MESSAGE_LIMIT), Ok(ServerMessage::Broken { .. }));
+        frames[0].messages.iter().find(is_broken).expect("the message is there").as_ptr()
+    });
+    let places: Vec<_> = places.collect();
+    assert!(places.iter().all(|place| *place == places[0]), "all share the same bytes in memory");
 }

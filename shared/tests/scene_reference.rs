@@ -35,6 +35,7 @@ const SOURCES: [(&str, &[(&str, &str)]); 18] = [
             ("MonsterTread", "objects.monster"),
             ("HelicopterTread", "objects.helicopter"),
             ("SledTread", "objects.sled"),
+            ("BallTread", "objects.ball"),
         ],
     ),
     ("drawn_wind.rs", &[("DrawnWind", "drawn_winds")]),
@@ -42,7 +43,7 @@ const SOURCES: [(&str, &[(&str, &str)]); 18] = [
 ];
 
 /// Sections that may stand once.
-const SECTIONS: [&str; 18] = [
+const SECTIONS: [&str; 19] = [
     "patches",
     "terrain",
     "wind",
@@ -59,6 +60,7 @@ const SECTIONS: [&str; 18] = [
     "objects.monster",
     "objects.helicopter",
     "objects.sled",
+    "objects.ball",
     "camera",
     "light",
 ];

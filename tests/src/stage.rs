@@ -7,7 +7,7 @@ use server::snapshot::PatchCodes;
 use server::world::{Command, View, World};
 use shared::scene::{Scene, VehicleKind};
 use shared::terrain::HeightMap;
-use shared::wire::{Drive, ObjectPose, ServerMessage, Shape, codec};
+use shared::wire::{BROKEN_LIMIT, Drive, ObjectPose, ServerMessage, Shape, codec};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -20,6 +20,7 @@ pub struct Stage {
     scene: Scene,
     height: HeightMap,
     sent: BTreeMap<u32, (u32, Arc<PatchCodes>)>,
+    told_broken: usize,
     frame: u32,
     time_secs: f64,
 }
@@ -40,7 +41,16 @@ impl Stage {
             nutrient_png: loaded.nutrient_png,
             models: loaded.models,
         })?;
-        Ok(Self { world, mirror, scene: loaded.scene, height: loaded.height, sent: BTreeMap::new(), frame: 0, time_secs: 0.0 })
+        Ok(Self {
+            world,
+            mirror,
+            scene: loaded.scene,
+            height: loaded.height,
+            sent: BTreeMap::new(),
+            told_broken: 0,
+            frame: 0,
+            time_secs: 0.0,
+        })
     }
 
     /// The scene.
@@ -94,6 +104,10 @@ impl Stage {
         for patch in shown {
             self.show_patch(patch, snapshot.patches.get(&patch))?;
         }
+        for plants in snapshot.broken[self.told_broken..].chunks(BROKEN_LIMIT) {
+            self.mirror.apply(ServerMessage::Broken { plants: plants.to_vec() })?;
+        }
+        self.told_broken = snapshot.broken.len();
         let secs = snapshot.time_secs - self.time_secs;
         self.time_secs = snapshot.time_secs;
         self.mirror.apply(ServerMessage::FrameEnd { frame: self.frame, tick: snapshot.tick, time_secs: snapshot.time_secs })?;

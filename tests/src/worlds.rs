@@ -21,7 +21,7 @@ pub fn maps(scene: &Scene, height_m: impl Fn(f32, f32) -> f32, cover: impl Fn(f3
     let ids: Vec<u8> = (0..width * depth).map(|i| cover(at(i).0, at(i).1)).collect();
     let height = HeightMap::from_heights(width, depth, [2.0; 2], heights);
     let cover = CoverMap::from_png(&grey_png([width, depth], &ids)).expect("a grey PNG of eight bits");
-    Maps { height, cover, drawings: Default::default() }
+    Maps { height, cover, drawings: Default::default(), nutrients: None }
 }
 
 /// Flat land, all grass.

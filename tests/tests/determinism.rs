@@ -11,7 +11,7 @@ const CLIENTS: u32 = 6;
 fn commands(tick: u32) -> Vec<Command> {
     let mut commands = vec![];
     if tick == 0 {
-        let kind = |client: u32| VehicleKind::ALL[client as usize % 4];
+        let kind = |client: u32| VehicleKind::ALL[client as usize % VehicleKind::ALL.len()];
         commands.extend((0..CLIENTS).map(|client| Command::Spawn { client, kind: kind(client) }));
     }
     if tick.is_multiple_of(30) {
@@ -36,7 +36,7 @@ fn run(threads: usize) -> Vec<u64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
     pool.install(|| {
         let mut scene = worlds::scene(7);
-        scene.objects.self_driving = 3;
+        (scene.objects.self_driving, scene.objects.balls) = (3, 4);
         let mut world = worlds::hills(&scene);
         let mut sums = vec![];
         for tick in 0..600 {

@@ -2,7 +2,7 @@
 
 use server::objects::{Objects, Place};
 use server::world::{Command, View, World};
-use shared::scene::VehicleKind::{Car, Helicopter, Monster, Sled};
+use shared::scene::VehicleKind::{Ball, Car, Helicopter, Monster, Sled};
 use shared::scene::{Scene, VehicleKind};
 use shared::wire::{Drive, ObjectPose};
 use std::sync::Arc;
@@ -77,13 +77,13 @@ fn a_minute_of_wild_driving_stays_on_the_land_and_in_the_world() {
             random ^= random << 5;
             (random >> 8) as f32 / 8_388_608.0 - 1.0
         };
-        let kinds = [Car, Monster, Helicopter, Sled];
+        let kinds = [Car, Monster, Helicopter, Sled, Ball];
         for (client, kind) in (0..).zip(kinds) {
             spawn(&mut world, client, kind);
         }
         let land = worlds::hills_m;
         for tick in 0..3600 {
-            let commands: Vec<_> = (0..4)
+            let commands: Vec<_> = (0..5)
                 .filter(|_| tick % 45 == 0)
                 .map(|client| Command::Drive {
                     client,
@@ -192,7 +192,7 @@ fn objects_start_apart_and_never_exceed_the_limit() {
     let mut world = worlds::hills(&scene);
     let view = View { client: 7, eye_m: [100.0, 2.0, 60.0] };
     let mut commands = vec![Command::Views(vec![view])];
-    commands.extend((0..50).map(|client| Command::Spawn { client, kind: VehicleKind::ALL[client as usize % 4] }));
+    commands.extend((0..50).map(|client| Command::Spawn { client, kind: VehicleKind::ALL[client as usize % VehicleKind::ALL.len()] }));
     world.step(&commands);
     assert_eq!((0..50).filter(|&client| world.object_of(client).is_none()).count(), 10);
     let objects = world.snapshot().objects;

@@ -137,6 +137,7 @@ fn wish(key: &str, code: &str) -> Option<Wish> {
         "m" => Some(VehicleKind::Monster),
         "h" => Some(VehicleKind::Helicopter),
         "l" => Some(VehicleKind::Sled),
+        "b" => Some(VehicleKind::Ball),
         "f" | "escape" => None,
         _ => return HEIGHTS_M.iter().find(|(known, _)| *known == code).map(|&(_, height_m)| Wish::Height(height_m)),
     };

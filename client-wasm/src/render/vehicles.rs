@@ -19,10 +19,11 @@ pub(super) enum Part {
     Rotor,
     TailRotor,
     SledFrame,
+    Ball,
 }
 
 impl Part {
-    pub(super) const ALL: [Self; 9] = [
+    pub(super) const ALL: [Self; 10] = [
         Self::CarBody,
         Self::Wheel,
         Self::MonsterBody,
@@ -32,6 +33,7 @@ impl Part {
         Self::Rotor,
         Self::TailRotor,
         Self::SledFrame,
+        Self::Ball,
     ];
 
     /// The built-in model, for objects with these settings.
@@ -46,6 +48,7 @@ impl Part {
             Self::Rotor => rotor(4, 4.2, 0.22),
             Self::TailRotor => rotor(3, 0.62, 0.12),
             Self::SledFrame => sled_frame(&objects.sled_outline_m, objects.half_extents_m(VehicleKind::Sled)[1]),
+            Self::Ball => ball(objects.ball_radius_m),
         }
     }
 
@@ -56,6 +59,7 @@ impl Part {
             Self::MonsterBody | Self::MonsterLeg | Self::MonsterArm => VehicleKind::Monster,
             Self::HelicopterBody | Self::Rotor | Self::TailRotor => VehicleKind::Helicopter,
             Self::SledFrame => VehicleKind::Sled,
+            Self::Ball => VehicleKind::Ball,
         }
     }
 
@@ -66,6 +70,7 @@ impl Part {
             VehicleKind::Monster => Self::MonsterBody,
             VehicleKind::Helicopter => Self::HelicopterBody,
             VehicleKind::Sled => Self::SledFrame,
+            VehicleKind::Ball => Self::Ball,
         }
     }
 }
@@ -110,6 +115,7 @@ pub(super) fn parts(pose: &ObjectPose, rolled_m: f32, time_secs: f32) -> Vec<(Pa
             ]
         }
         VehicleKind::Sled => vec![place(Part::SledFrame, Vec3::ZERO, Quat::IDENTITY)],
+        VehicleKind::Ball => vec![place(Part::Ball, Vec3::ZERO, Quat::IDENTITY)],
     }
 }
 
@@ -319,6 +325,31 @@ fn sled_frame(outline_m: &[[f32; 2]], half_m: f32) -> Solid {
         }
     }
     frame
+}
+
+/// A ball of four rings of eight panels in two colours, so that one sees it roll.
+fn ball(radius_m: f32) -> Solid {
+    const PAINTS: [Paint; 2] = [Paint::new(0.78, 0.10, 0.05, 0.5), Paint::new(0.85, 0.83, 0.76, 0.5)];
+    const RINGS: usize = 4;
+    const PANELS: usize = 8;
+    /// Parts of a panel along each of its edges.
+    const FINE: usize = 4;
+    let direction = |up: usize, around: usize| {
+        let (sin, cos) = (PI * up as f32 / (RINGS * FINE) as f32).sin_cos();
+        let (s, c) = (TAU * around as f32 / (PANELS * FINE) as f32).sin_cos();
+        Vec3::new(c * sin, -cos, -s * sin)
+    };
+    let mut ball = Solid::default();
+    for (up, around) in (0..RINGS * FINE).flat_map(|up| (0..PANELS * FINE).map(move |around| (up, around))) {
+        let paint = PAINTS[(up / FINE + around / FINE) % 2];
+        let corners = [(up, around), (up, around + 1), (up + 1, around + 1), (up + 1, around)];
+        let [a, b, c, d] = corners.map(|(up, around)| {
+            let outward = direction(up, around);
+            ball.vertex(outward * radius_m, outward, paint, Vec2::ZERO)
+        });
+        ball.indices.extend([a, b, c, a, c, d]);
+    }
+    ball
 }
 
 /// Blades about Y.

@@ -6,6 +6,7 @@ use super::uniforms::{Frame, SPHERE_LIMIT};
 use crate::camera::Camera;
 use crate::state::Land;
 use glam::{Mat4, Vec3, Vec4};
+use shared::scene::Objects;
 use shared::wire::ObjectPose;
 
 /// Distance after which all patterns of `gust_at` in `common.wgsl` repeat (m): 60 × 23.
@@ -57,7 +58,7 @@ impl<'a> View<'a> {
         let width_m = plants.width_m * self.quality.width_factor();
         let billboards_to = self.quality.billboard_reach_m();
         let pixel_rad = self.camera.fov_rad / self.size_px[1] as f32;
-        let spheres = spheres(poses, eye);
+        let spheres = spheres(&scene.objects, poses, eye);
         let rays = Mat4::from_mat3(glam::Mat3::from_mat4(glam::camera::rh::view::look_to_mat4(Vec3::ZERO, self.camera.forward(), Vec3::Y)));
         let aspect = self.size_px[0] as f32 / self.size_px[1] as f32;
         let world_from_projection = (self.camera.projection_from_view(aspect) * rays).inverse();
@@ -101,16 +102,14 @@ impl<'a> View<'a> {
     }
 }
 
-/// Interaction spheres at the objects' feet (000 section 6.2), nearest first: centre and radius.
-fn spheres(poses: &[ObjectPose], eye: Vec3) -> Vec<[f32; 4]> {
+/// Interaction spheres of the objects (000 section 6.2), nearest first: centre and radius.
+fn spheres(objects: &Objects, poses: &[ObjectPose], eye: Vec3) -> Vec<[f32; 4]> {
     let mut spheres: Vec<(f32, [f32; 4])> = poses
         .iter()
-        .filter(|pose| pose.kind.interaction_radius_m() > 0.0)
-        .map(|pose| {
+        .filter_map(|pose| {
             let [x, y, z] = pose.position_m;
-            let [_, half_y, _] = pose.kind.half_extents_m();
-            let radius = pose.kind.interaction_radius_m();
-            (Vec3::from(pose.position_m).distance(eye), [x, y - half_y + 0.35 * radius, z, radius])
+            let [above_m, radius_m] = objects.interaction_sphere_m(pose.kind)?;
+            Some((Vec3::from(pose.position_m).distance(eye), [x, y + above_m, z, radius_m]))
         })
         .collect();
     spheres.sort_by(|a, b| a.0.total_cmp(&b.0));

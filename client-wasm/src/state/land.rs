@@ -1,4 +1,4 @@
-//! What stays as it is for a run: the scene, its decoded maps and models.
+//! What stays as it is for a run: the scene, its decoded maps, its underbrush and models.
 
 use super::underbrush::check_underbrush;
 use super::{MirrorError, range, within};
@@ -24,7 +24,7 @@ pub struct Land {
 }
 
 impl Land {
-    /// Decodes the maps and checks what the client relies on.
+    /// Decodes the maps, lets the underbrush grow and checks what the client relies on.
     ///
     /// # Errors
     /// [`MirrorError`] when a map is unreadable, or the scene leaves what a client can hold.

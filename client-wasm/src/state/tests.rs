@@ -167,7 +167,7 @@ fn scenes_out_of_range_are_refused() {
 
 proptest! {
     #[test]
-    fn no_bytes_make_the_mirror_panic(kind in 0_u8..10, bytes in proptest::collection::vec(any::<u8>(), 0..600)) {
+    fn no_bytes_make_the_mirror_panic(kind in 0_u8..11, bytes in proptest::collection::vec(any::<u8>(), 0..600)) {
         let mut mirror = loaded();
         let mut message = vec![shared::wire::PROTOCOL, kind];
         message.extend(bytes);
@@ -283,4 +283,47 @@ fn the_map_of_nutrients_is_read_if_there_is_one() {
         [Vec::new(), grey_png([3, 2], &[255; 6]), grey_png([3, 2], &[7; 6])].map(|png| plants_with(png).expect("a sound map"));
     assert!(rich != generated && rich > 0 && generated > 0 && barren == 0, "{rich}, {generated} and {barren} plants");
     assert!(matches!(plants_with(vec![1, 2, 3]), Err(MirrorError::Map { map: "map of nutrients", .. })));
+}
+
+/// A mirror of a scene with underbrush on so many sites.
+fn overgrown() -> (Mirror, u32) {
+    let mut scene = scene();
+    scene.underbrush = vec![Underbrush::new("sedge", vec![Component::new("leaf", ComponentKind::Leaf)])];
+    let mut mirror = Mirror::default();
+    mirror.apply(scene_message(scene)).unwrap();
+    let sites = mirror.land().and_then(Land::flora).expect("it grows").grown().sites.total();
+    (mirror, sites as u32)
+}
+
+fn broken(plants: impl IntoIterator<Item = u32>) -> ServerMessage {
+    ServerMessage::Broken { plants: plants.into_iter().collect() }
+}
+
+#[test]
+fn broken_plants_stay_broken_until_another_scene_comes() {
+    let (mut mirror, sites) = overgrown();
+    assert_eq!((mirror.broken().len(), mirror.broken_count()), (sites.div_ceil(32) as usize, 0));
+    assert_eq!(mirror.apply(broken([0, 33, sites - 1])), Ok(None));
+    assert_eq!(mirror.apply(broken([33, 34])), Ok(None));
+    let is_broken = |mirror: &Mirror, site: u32| mirror.broken()[site as usize / 32] >> (site % 32) & 1 == 1;
+    let found: Vec<u32> = (0..sites).filter(|&site| is_broken(&mirror, site)).collect();
+    assert_eq!((found, mirror.broken_count()), (vec![0, 33, 34, sites - 1], 4));
+    mirror.apply(scene_message(scene())).unwrap();
+    assert_eq!((mirror.broken(), mirror.broken_count()), ([].as_slice(), 0));
+    assert!(mirror.land().and_then(Land::flora).is_none());
+}
+
+#[test]
+fn broken_plants_beyond_the_sites_are_refused_and_change_nothing() {
+    let (mut mirror, sites) = overgrown();
+    let refused = |mirror: &mut Mirror, message| mirror.apply(message).err().map(|error| error.to_string());
+    let beyond = refused(&mut mirror, broken([1, sites]));
+    assert_eq!(beyond, Some(format!("site of a broken plant is {sites}; allowed: below {sites}")));
+    assert!(refused(&mut mirror, broken([u32::MAX])).is_some());
+    let many = refused(&mut mirror, broken(std::iter::repeat_n(1, 4097)));
+    assert_eq!(many.as_deref(), Some("number of broken plants is 4097; allowed: at most 4096"));
+    assert_eq!(mirror.broken_count(), 0);
+    assert!(mirror.broken().iter().all(|word| *word == 0));
+    assert!(refused(&mut Mirror::default(), broken([0])).is_some(), "before a scene");
+    assert!(refused(&mut loaded(), broken([0])).is_some(), "where nothing grows");
 }

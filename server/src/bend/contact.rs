@@ -7,7 +7,7 @@ use shared::bend::Bend;
 use std::f32::consts::FRAC_PI_2;
 
 /// Slower than this an object counts as standing (m/s).
-const STANDING_M_PER_S: f32 = 0.05;
+pub const STANDING_M_PER_S: f32 = 0.05;
 /// Speed at which grass gives way below the weight of a standing object (m/s).
 const SETTLING_M_PER_S: f32 = 0.3;
 /// Least bending speed of pressed grass (rad/s): its direction is that of the bend, and must outlast the motion.

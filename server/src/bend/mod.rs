@@ -52,6 +52,7 @@ pub struct Meadow {
     bodies: Bodies,
     blows: Blows,
     laid: Laid,
+    contacts: Vec<Contact>,
     refused: Vec<MotionError>,
     refused_count: u64,
     broken: u64,
@@ -84,6 +85,7 @@ impl Meadow {
             bodies: Bodies::new(&scene.objects),
             blows: Blows::new(scene, drawings),
             laid: Laid::new(layout, scene.grass.laid_recovery_secs, tile_limit),
+            contacts: vec![],
             refused: vec![],
             refused_count: 0,
             broken: 0,
@@ -123,6 +125,16 @@ impl Meadow {
     /// What stays bent below the weight of objects.
     pub fn laid(&self) -> &Laid {
         &self.laid
+    }
+
+    /// What touched the grass in the newest step.
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// Bend of the grass at a place in a wind (rad), all that holds it together.
+    pub fn bend_rad(&self, at_m: [f32; 2], wind: &GroundWind) -> f32 {
+        sward::standing(&self.field, &self.laid, wind, at_m).theta
     }
 
     /// Takes note that a patch was shown as it is.
@@ -168,6 +180,7 @@ impl Meadow {
         if let Some(breeze) = &mut self.breeze {
             breeze.blow(&mut self.field, &breezy, dt_secs);
         }
+        self.contacts = contacts;
         self.laid.step(dt_secs, views);
         self.report = self.propagate(dt_secs);
         self.broken += u64::from(self.report.broken);

@@ -9,6 +9,9 @@ use shared::scene::{Objects, Tread, VehicleKind};
 use shared::terrain::HeightMap;
 use std::f32::consts::FRAC_1_SQRT_2;
 
+/// Heights of the slices that a ball meets the grass with, over its radius; each is about twice as wide as the next.
+const BALL_SLICES: [f32; 5] = [1.0, 0.25, 0.0625, 0.015_625, 0.003_906_25];
+
 /// A convex part of an object, an upright prism in the body's axes; concave objects are several (001 §6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
@@ -38,6 +41,13 @@ impl Part {
         Self { parts_grass: false, bears_weight: true, ..Self::cuboid(center_m, half_m) }
     }
 
+    /// An upright post, as near round as eight corners are, that bears weight and parts the grass.
+    fn post(radius_m: f32, span_m: [f32; 2]) -> Self {
+        let (r, d) = (radius_m, radius_m * FRAC_1_SQRT_2);
+        let outline_m = vec![[r, 0.0], [d, d], [0.0, r], [-d, d], [-r, 0.0], [-d, -d], [0.0, -r], [d, -d]];
+        Self { outline_m, seams: vec![false; 8], span_m, parts_grass: true, bears_weight: true }
+    }
+
     /// The part's lowest point (m) where the body stands at `stand`.
     pub fn lowest_m(&self, stand: &Stand) -> f32 {
         self.corners(stand, self.span_m).map(|corner| corner[1]).fold(f32::INFINITY, f32::min)
@@ -64,12 +74,7 @@ pub fn parts(kind: VehicleKind, objects: &Objects) -> Vec<Part> {
             let wheels = |x: f32| Part::runner([x, -0.45, 0.0], [0.13, 0.25, 1.6]);
             vec![Part::cuboid([0.0, 0.1, 0.0], [0.95, 0.5, 2.2]), wheels(-0.8), wheels(0.8)]
         }
-        VehicleKind::Monster => {
-            const R: f32 = 0.6;
-            const D: f32 = R * FRAC_1_SQRT_2;
-            let outline_m = vec![[R, 0.0], [D, D], [0.0, R], [-D, D], [-R, 0.0], [-D, -D], [0.0, -R], [D, -D]];
-            vec![Part { outline_m, seams: vec![false; 8], span_m: [-0.9, 0.9], parts_grass: true, bears_weight: true }]
-        }
+        VehicleKind::Monster => vec![Part::post(0.6, [-0.9, 0.9])],
         VehicleKind::Helicopter => {
             let skid = |x: f32| Part::runner([x, -1.2, 0.0], [0.15, 0.1, 1.8]);
             vec![Part::cuboid([0.0, -0.35, 0.0], [0.9, 0.65, 2.6]), skid(-0.95), skid(0.95)]
@@ -85,6 +90,12 @@ pub fn parts(kind: VehicleKind, objects: &Objects) -> Vec<Part> {
                 bears_weight: true,
             };
             whole.map(part).collect()
+        }
+        VehicleKind::Ball => {
+            let radius_m = objects.ball_radius_m;
+            // At the height q·r above its foot a ball of radius r is r·√(2q − q²) wide; only what is lower than the grass touches it.
+            let slice = |q: f32| Part::post(radius_m * (2.0 * q - q * q).sqrt(), [(q - 1.0) * radius_m, radius_m]);
+            BALL_SLICES.map(slice).to_vec()
         }
     }
 }
@@ -104,17 +115,19 @@ impl Bodies {
     /// Where a motion touches grass: parts that are lower than the grass is high.
     pub fn contacts<'a>(
         &'a self,
-        motion: &'a Motion,
+        motion: &Motion,
         height: &'a HeightMap,
         growth: &'a Growth,
         cell_m: f32,
     ) -> impl Iterator<Item = Contact> + 'a {
         let (parts, tread) = &self.kinds[motion.kind as usize];
+        // A ball is as round one way as the other.
+        let motion = if motion.kind == VehicleKind::Ball { motion.unturned() } else { *motion };
         parts.iter().filter_map(move |part| {
             let [x, z] = part.foot_m(&motion.to);
             let clearance = (part.lowest_m(&motion.to) - height.height_m(x, z)).max(0.0) / growth.blade_m([x, z]);
             (clearance < 1.0).then(|| Contact {
-                swath: Swath::new(part, motion, cell_m),
+                swath: Swath::new(part, &motion, cell_m),
                 strike_height_m: tread.strike_height_m,
                 slips_rad: clearance.acos(),
                 parts_grass: part.parts_grass,

@@ -107,6 +107,17 @@ impl Sward<'_> {
     }
 }
 
+/// How grass stands at a place, with the field, the wind and what is laid in the cell there.
+pub fn standing(field: &Field, laid: &Laid, wind: &GroundWind, at_m: [f32; 2]) -> Bend {
+    let layout = field.layout();
+    let (cell, cells) = (at_m.map(|m| (m / layout.cell_m).floor() as i64), i64::from(layout.cells));
+    let [patch_x, patch_z] = cell.map(|at| at.div_euclid(cells));
+    let [i, j] = cell.map(|at| at.rem_euclid(cells) as usize);
+    let laid_rad = layout.index(patch_x, patch_z).map_or([0.0; 2], |patch| laid.lean_rad(patch, i, j));
+    let center_m = cell.map(|at| (at as f32 + 0.5) * layout.cell_m);
+    leaning(field.cell(cell), sum(wind.lean_rad(center_m), laid_rad), TELLING_RAD_PER_S)
+}
+
 /// How a cell is shown: its field's bend together with what is laid there; its ω tells the direction.
 pub fn shown(bend: Bend, laid_rad: [f32; 2]) -> Bend {
     leaning(bend, laid_rad, HELD_RAD_PER_S)

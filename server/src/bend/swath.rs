@@ -82,10 +82,20 @@ impl Swath {
 
     /// Lowest and highest coordinates (m).
     pub fn bounds_m(&self) -> [[f32; 2]; 2] {
-        let reach_m = self.outline.corners_m().iter().map(|[x, z]| x.hypot(*z)).fold(0.0, f32::max);
+        let reach_m = self.reach_m();
         let ends = [self.from.at_m, self.level(1.0).at_m];
         let axes = [0, 1];
         [axes.map(|axis| ends[0][axis].min(ends[1][axis]) - reach_m), axes.map(|axis| ends[0][axis].max(ends[1][axis]) + reach_m)]
+    }
+
+    /// Longest way that any of its points goes (m), or a little more.
+    pub fn way_m(&self) -> f32 {
+        self.moved_m[0].hypot(self.moved_m[1]) + self.turn_rad.abs() * self.reach_m()
+    }
+
+    /// Distance of its farthest corner from the body's middle (m).
+    fn reach_m(&self) -> f32 {
+        self.outline.corners_m().iter().map(|[x, z]| x.hypot(*z)).fold(0.0, f32::max)
     }
 
     /// The step cut into legs, in order.

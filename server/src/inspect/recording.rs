@@ -47,7 +47,7 @@ const SCALE_STEPS: usize = 9;
 
 /// Scalars: entity, name in the plots, colour, and how to read it.
 #[expect(clippy::type_complexity, reason = "a table reads best as one literal")]
-const SCALARS: [(&str, &str, u32, fn(&Frame) -> f64); 18] = [
+const SCALARS: [(&str, &str, u32, fn(&Frame) -> f64); 19] = [
     ("health/step/mean_ms", "mean", 0x4CAF_50FF, |frame| f64::from(frame.snapshot.health.step_secs) * 1e3),
     ("health/step/longest_ms", "longest", 0xFF70_43FF, |frame| f64::from(frame.snapshot.health.step_max_secs) * 1e3),
     ("health/wind/divergence", "rms divergence", 0x29B6_F6FF, |frame| f64::from(frame.snapshot.health.divergence_rms)),
@@ -55,6 +55,7 @@ const SCALARS: [(&str, &str, u32, fn(&Frame) -> f64); 18] = [
     ("health/bend/energy", "bend", 0xFFCA_28FF, |frame| frame.snapshot.health.bend_energy),
     ("health/bend/awake_patches", "awake patches", 0xFFCA_28FF, |frame| f64::from(frame.snapshot.health.awake_patches)),
     ("health/bend/laid_tiles", "laid tiles", 0x8D6E_63FF, |frame| f64::from(frame.snapshot.health.laid_tiles)),
+    ("health/bend/broken_plants", "broken plants", 0xEF53_50FF, |frame| frame.snapshot.broken.len() as f64),
     ("health/steps/substeps", "sub-steps", 0xAB47_BCFF, |frame| f64::from(frame.snapshot.health.substeps)),
     ("health/steps/courant", "Courant number", 0xEC40_7AFF, |frame| f64::from(frame.snapshot.health.courant)),
     ("health/net/clients", "clients", 0x26A6_9AFF, |frame| f64::from(frame.traffic.clients)),

@@ -46,6 +46,7 @@ pub(super) fn kind_rgb(kind: VehicleKind) -> Rgb {
         VehicleKind::Monster => [186, 104, 255],
         VehicleKind::Helicopter => [64, 196, 255],
         VehicleKind::Sled => [255, 202, 40],
+        VehicleKind::Ball => [240, 240, 240],
     }
 }
 

@@ -85,6 +85,7 @@ async fn health(State(app): State<Arc<App>>) -> impl IntoResponse {
         "awake_patches": health.awake_patches,
         "evicted_patches": health.evicted_patches,
         "broken_patches": health.broken_patches,
+        "broken_plants": snapshot.broken.len(),
         "laid_tiles": health.laid_tiles,
         "dropped_tracks": health.dropped_tracks,
         "refused_motions": health.refused_motions,

@@ -1,5 +1,6 @@
 //! A car: a body on four sprung wheels that feel the ground by rays.
 
+use super::ball::BALLS;
 use rapier3d::control::{DynamicRayCastVehicleController, WheelTuning};
 use rapier3d::prelude::*;
 use shared::wire::Drive;
@@ -41,6 +42,12 @@ pub(super) fn body() -> (RigidBodyBuilder, ColliderBuilder) {
     let body = RigidBodyBuilder::dynamic().additional_mass_properties(mass).can_sleep(false);
     let collider = ColliderBuilder::cuboid(0.95, 0.5, 2.2).translation(Vector::new(0.0, 0.2, 0.0)).density(0.0).friction(0.4);
     (body, collider)
+}
+
+/// Wheels and bumpers as balls meet them; what is not for the road.
+pub(super) fn skirt() -> ColliderBuilder {
+    let groups = InteractionGroups::new(Group::GROUP_1, BALLS, InteractionTestMode::And);
+    ColliderBuilder::cuboid(0.93, 0.3, 2.2).translation(Vector::new(0.0, -0.3, 0.0)).density(0.0).friction(0.4).collision_groups(groups)
 }
 
 impl Car {

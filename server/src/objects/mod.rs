@@ -1,7 +1,8 @@
-//! Cars, monsters, helicopters and sleds: bodies, driving, and where they may be.
+//! Cars, monsters, helicopters, sleds and balls: bodies, driving, and where they may be.
 //!
 //! Bodies are rapier's, on one thread and in the order of their numbers, so that the same commands give the same bits.
 
+mod ball;
 mod car;
 mod circling;
 mod ground;
@@ -16,6 +17,7 @@ mod spawn;
 pub use motion::{Motion, MotionError, Stand};
 pub use place::Place;
 
+use ball::Ball;
 use car::Car;
 use circling::Circling;
 use ground::Ground;
@@ -34,6 +36,8 @@ const DROP_M: f32 = 0.05;
 /// Height above the land at which a helicopter that drives itself flies (m), and how hard it seeks it (1/m).
 const CRUISE_M: f32 = 6.0;
 const CRUISE_PER_M: f32 = 0.3;
+/// Distance from one of the scene's balls to the next, about (m).
+const BALLS_APART_M: f32 = 6.0;
 
 /// Everything that moves by itself.
 pub struct Objects {
@@ -58,6 +62,7 @@ struct Vehicle {
 enum Driver {
     Client { client: u32, drive: Drive },
     Circling(Circling),
+    Nobody,
 }
 
 enum Controls {
@@ -65,19 +70,26 @@ enum Controls {
     Monster(Monster),
     Helicopter(Helicopter),
     Sled(Sled),
+    Ball(Ball),
 }
 
 impl Objects {
-    /// The scene's own vehicles in their places; nothing else yet.
+    /// The scene's own vehicles and balls in their places; nothing else yet.
     pub fn new(scene: &Scene, place: Place) -> Self {
         let ground = Ground::new(&place, &scene.plants);
         let mut physics = PhysicsWorld::new();
         physics.integration_parameters.dt = scene.dt_secs();
         let mut objects = Self { place, ground, physics, vehicles: vec![], settings: scene.objects.clone(), next_id: 1 };
         let middle = objects.place.extent_m.map(|extent| 0.5 * extent);
-        let shared::scene::Objects { self_driving, self_driving_m_per_s, self_driving_apart_m, self_driving_kind, .. } = scene.objects;
+        let shared::scene::Objects { self_driving, self_driving_m_per_s, self_driving_apart_m, self_driving_kind, balls, .. } =
+            scene.objects;
         for n in 0..self_driving {
             objects.add(self_driving_kind, Driver::Circling(Circling::new(n, self_driving_m_per_s)), middle, self_driving_apart_m);
+        }
+        let [east, south] = scene.camera.at;
+        let start = [objects.place.extent_m[0] * east, objects.place.extent_m[1] * south];
+        for _ in 0..balls {
+            objects.add(VehicleKind::Ball, Driver::Nobody, start, BALLS_APART_M);
         }
         objects
     }
@@ -131,6 +143,7 @@ impl Objects {
                 Controls::Monster(monster) => monster.control(drive, dt_secs, &mut self.physics, &self.ground),
                 Controls::Helicopter(helicopter) => helicopter.control(drive, dt_secs, &mut self.physics, &self.ground),
                 Controls::Sled(sled) => sled.control(drive, dt_secs, &mut self.physics, &self.ground),
+                Controls::Ball(ball) => ball.control(drive, dt_secs, &mut self.physics, &self.ground),
             }
         }
         self.physics.step();
@@ -155,6 +168,7 @@ impl Objects {
                 Controls::Monster(monster) => monster.phase_rad(),
                 Controls::Helicopter(helicopter) => helicopter.rotor_rad(),
                 Controls::Sled(_) => 0.0,
+                Controls::Ball(ball) => ball.heading_rad(),
             };
             ObjectPose { id: vehicle.id, kind: vehicle.kind, position_m, rotation, velocity_m_per_s, part_rad }
         };
@@ -191,15 +205,20 @@ impl Objects {
             VehicleKind::Monster => monster::body(),
             VehicleKind::Helicopter => helicopter::body(),
             VehicleKind::Sled => sled::body(&self.settings),
+            VehicleKind::Ball => ball::body(half_extents_m[0]),
         };
-        let center = Vector::new(at_m[0], self.highest_under(at_m, kind) + half_extents_m[1] + DROP_M, at_m[1]);
+        let center = Vector::new(at_m[0], self.highest_under(at_m, kind, half_extents_m) + half_extents_m[1] + DROP_M, at_m[1]);
         let body = body.pose(Pose::from_parts(center, Rotation::from_rotation_y(-heading_rad)));
         let (body, _) = self.physics.insert(body, collider);
+        if kind == VehicleKind::Car {
+            self.physics.insert_collider(car::skirt(), Some(body));
+        }
         let controls = match kind {
             VehicleKind::Car => Controls::Car(Car::new(body)),
             VehicleKind::Monster => Controls::Monster(Monster::new(body, heading_rad)),
             VehicleKind::Helicopter => Controls::Helicopter(Helicopter::new(body)),
             VehicleKind::Sled => Controls::Sled(Sled::new(body, half_extents_m[1], heading_rad)),
+            VehicleKind::Ball => Controls::Ball(Ball::new(body, half_extents_m[0], heading_rad)),
         };
         let id = self.next_id;
         self.next_id += 1;
@@ -208,12 +227,12 @@ impl Objects {
         Some(id)
     }
 
-    /// Height of the land under the box of `kind` (m), wherever it is highest.
-    fn highest_under(&self, [x, z]: [f32; 2], kind: VehicleKind) -> f32 {
+    /// Height of the land under the box of an object (m), wherever it is highest.
+    fn highest_under(&self, [x, z]: [f32; 2], kind: VehicleKind, half_extents_m: [f32; 3]) -> f32 {
         let reach = match kind {
             // Their floors follow the land below their middle.
             VehicleKind::Monster | VehicleKind::Sled => 0.0,
-            _ => 0.7 * radius_m(kind.half_extents_m()),
+            _ => 0.7 * radius_m(half_extents_m),
         };
         let around = [[x, z], [x - reach, z - reach], [x + reach, z - reach], [x - reach, z + reach], [x + reach, z + reach]];
         around.into_iter().map(|at| self.ground.height_m(at)).fold(f32::NEG_INFINITY, f32::max)
@@ -225,6 +244,7 @@ impl Vehicle {
         let body = &physics.bodies[self.body];
         match &mut self.driver {
             Driver::Client { drive, .. } => *drive,
+            Driver::Nobody => Drive::default(),
             Driver::Circling(circling) => {
                 let at = body.translation();
                 let below_cruise_m = CRUISE_M - (at.y - ground.height_m([at.x, at.z]));

@@ -77,6 +77,12 @@ pub enum MotionError {
 }
 
 impl Motion {
+    /// The same way without any turning.
+    pub fn unturned(&self) -> Self {
+        let unturned = |stand: Stand| Stand { rotation: Quat::IDENTITY.to_array(), ..stand };
+        Self { from: unturned(self.from), to: unturned(self.to), ..*self }
+    }
+
     /// Whether it is the motion of a body.
     ///
     /// # Errors

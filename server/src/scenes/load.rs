@@ -40,6 +40,8 @@ pub struct LoadedScene {
     pub height: HeightMap,
     /// What covers the land.
     pub cover: CoverMap,
+    /// Nutrients of the soil; none where they are generated.
+    pub nutrients: Option<NutrientMap>,
     /// The drawings of winds, by the numbers that stand for their files in the scene.
     pub drawings: Drawings,
     /// Models read from glTF files; kinds that are missing are drawn with the built-in one.
@@ -49,7 +51,7 @@ pub struct LoadedScene {
 impl LoadedScene {
     /// What a world of the scene is made from.
     pub fn maps(&self) -> Maps {
-        Maps { height: self.height.clone(), cover: self.cover.clone(), drawings: self.drawings.clone() }
+        Maps { height: self.height.clone(), cover: self.cover.clone(), drawings: self.drawings.clone(), nutrients: self.nutrients.clone() }
     }
 }
 
@@ -162,7 +164,8 @@ fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, Sce
             Err(reason) => note(&path, format!("names `{name}`, which {reason}")),
         }
     }
-    let (Some((height_png, height)), Some((covering_png, cover)), Some(nutrient_png), []) = (height, cover, nutrients, faults.as_slice())
+    let (Some((height_png, height)), Some((covering_png, cover)), Some((nutrient_png, nutrients)), []) =
+        (height, cover, nutrients, faults.as_slice())
     else {
         return Err(faulty(file, text, faults));
     };
@@ -173,7 +176,7 @@ fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, Sce
     {
         path.clear();
     }
-    Ok(LoadedScene { scene, height_png, covering_png, nutrient_png, height, cover, drawings, models: loaded_models })
+    Ok(LoadedScene { scene, height_png, covering_png, nutrient_png, height, cover, nutrients, drawings, models: loaded_models })
 }
 
 /// Everything in a scene that may name a drawing, with its path.
@@ -234,9 +237,9 @@ fn covering_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, CoverMap), S
 }
 
 /// The bytes of the map of nutrients; none where they are generated.
-fn nutrient_map(scene: &Scene, source: &Source) -> Result<Vec<u8>, String> {
+fn nutrient_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, Option<NutrientMap>), String> {
     let name = &scene.growth.nutrient_map;
-    if name.is_empty() { Ok(Vec::new()) } else { map(name, source, NutrientMap::from_png).map(|(png, _)| png) }
+    if name.is_empty() { Ok((Vec::new(), None)) } else { map(name, source, |png| NutrientMap::from_png(png).map(Some)) }
 }
 
 /// Whether nothing that a scene knows has this ID in its covering map.

@@ -4,7 +4,7 @@ use super::track::{Numbering, Pacing, Track};
 use crate::snapshot::{PatchCodes, Snapshot, WindFrame};
 use bytes::Bytes;
 use shared::grid::PatchIndex;
-use shared::wire::{self, ServerMessage};
+use shared::wire::{self, BROKEN_LIMIT, ServerMessage};
 use std::collections::HashMap;
 
 /// Largest change of a patch (codes) that waits for a slow frame. Two codes are 0.05 rad of θ.
@@ -28,6 +28,8 @@ pub struct Encoder {
     wind_pacing: Pacing,
     patches: HashMap<PatchIndex, Track<PatchCodes>>,
     wind: Option<Track<WindFrame>>,
+    /// Messages of this publish about broken plants, by the first and the number past the last in the order of their breaking.
+    broken: HashMap<[usize; 2], Bytes>,
     encodings: u64,
 }
 
@@ -42,6 +44,7 @@ impl Encoder {
             wind_pacing: Pacing { dead_band: u8::MAX, slow_every: every(WIND_HZ) },
             patches: HashMap::new(),
             wind: None,
+            broken: HashMap::new(),
             encodings: 0,
         }
     }
@@ -49,6 +52,7 @@ impl Encoder {
     /// Starts a publish; every grid may get a new frame. Now and then forgets the patches that nobody has asked for of late.
     pub fn begin(&mut self) {
         self.publish += 1;
+        self.broken.clear();
         if self.publish.is_multiple_of(self.kept_publishes) {
             self.patches.retain(|_, track| track.offered_at() + self.kept_publishes >= self.publish);
         }
@@ -67,6 +71,19 @@ impl Encoder {
     /// The poses of a snapshot.
     pub fn poses(snapshot: &Snapshot) -> Bytes {
         wire::encode(&ServerMessage::Poses { tick: snapshot.tick, objects: snapshot.objects.clone() }).into()
+    }
+
+    /// The message that tells a client of broken plants beyond the first `told`, and how many it then knows of; none if it knows of all.
+    pub fn broken(&mut self, snapshot: &Snapshot, told: usize) -> Option<(usize, Bytes)> {
+        let news = snapshot.broken.get(told..)?;
+        let news = &news[..news.len().min(BROKEN_LIMIT)];
+        let known = told + news.len();
+        let encode = || {
+            let mut plants = news.to_vec();
+            plants.sort_unstable();
+            wire::encode(&ServerMessage::Broken { plants }).into()
+        };
+        (!news.is_empty()).then(|| (known, self.broken.entry([told, known]).or_insert_with(encode).clone()))
     }
 
     /// The message that brings the wind of a client from frame `held` to the newest, and that frame's number.

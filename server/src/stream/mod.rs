@@ -4,6 +4,8 @@
 //! delta and as a key, when the first client needs it; all clients share the bytes. A client that holds the frame before gets the delta,
 //! any other the key, so a frame that a slow client misses costs it a key later and nobody else anything.
 //!
+//! Broken plants are an ordered list that only grows: of each client the streamer remembers how many of them a frame has told it.
+//!
 //! What nobody looks at costs nothing: the frames of a patch that no client has asked for of late are dropped, and of a client the streamer
 //! remembers only the patches that it was sent last, no more than any client keeps. Any other patch it is sent as a key.
 //!

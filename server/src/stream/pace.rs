@@ -65,6 +65,8 @@ pub struct Pace {
     patch_messages: u64,
     held_wind: Option<u32>,
     held_roster: u64,
+    /// How many of the broken plants it was told of, in the order of their breaking.
+    told_broken: usize,
     gaze: Option<Gaze>,
     wanted: Vec<PatchIndex>,
 }
@@ -80,13 +82,14 @@ impl Pace {
             patch_messages: 0,
             held_wind: None,
             held_roster: 0,
+            told_broken: 0,
             gaze: None,
             wanted: Vec::new(),
         }
     }
 
     /// Sends the newest state to a client, unless as much as allowed is on its way already; then it gets a newer state later.
-    /// Poses always go; wind and patches, nearest first, as far as the budget lasts, the rest with a later frame. `extra` is for this client alone.
+    /// Poses always go; broken plants, wind and patches, nearest first, as far as the budget lasts, the rest with a later frame. `extra` is for this client alone.
     pub fn serve(&mut self, client: &Client, common: &Common<'_>, encoder: &mut Encoder, extra: Option<Bytes>) -> bool {
         if client.in_flight() >= self.limits.in_flight {
             return false;
@@ -100,6 +103,9 @@ impl Pace {
             messages.push(common.roster.clone());
         }
         self.budget.charge(messages.iter().map(Bytes::len).sum::<usize>() as f64);
+        let broken = encoder.broken(snapshot, self.told_broken);
+        let broken = broken.filter(|(_, message)| self.budget.try_overdraw(message.len() as f64));
+        messages.extend(broken.iter().map(|(_, message)| message.clone()));
         let wind = encoder.wind(snapshot, self.held_wind).filter(|(_, message)| self.budget.try_overdraw(message.len() as f64));
         let mut patches = Vec::new();
         for &patch in &self.wanted {
@@ -122,6 +128,7 @@ impl Pace {
         }
         self.frame = number;
         self.held_roster = common.roster_version;
+        self.told_broken = broken.map_or(self.told_broken, |(known, _)| known);
         self.held_wind = wind.map(|(seq, _)| seq).or(self.held_wind);
         self.hold(patches);
         true

@@ -14,7 +14,7 @@ const WAKE_FROM_M_PER_S: f32 = 4.0;
 const WAKE_RADIUS_M: f32 = 4.0;
 const WAKE_PER_S: f32 = 1.0;
 
-/// The wash of a helicopter or the wake of what moves fast, above ground of this height (m).
+/// The wash of a helicopter or the wake of what moves fast, above ground of this height (m); a ball drags too little air along to count.
 pub(super) fn jet(motion: &Motion, ground_m: f32) -> Option<Jet> {
     let [x, y, z] = motion.to.position_m;
     let above_m = (y - ground_m).max(0.0);
@@ -25,5 +25,5 @@ pub(super) fn jet(motion: &Motion, ground_m: f32) -> Option<Jet> {
         return Some(Jet { position_m: below, radius_m: DOWNWASH_RADIUS_M, velocity_m_per_s: down, rate_per_sec: DOWNWASH_PER_S });
     }
     let wake = Jet { position_m: Vec3::new(x, above_m, z), radius_m: WAKE_RADIUS_M, velocity_m_per_s: velocity, rate_per_sec: WAKE_PER_S };
-    (velocity.length() > WAKE_FROM_M_PER_S).then_some(wake)
+    (motion.kind != VehicleKind::Ball && velocity.length() > WAKE_FROM_M_PER_S).then_some(wake)
 }

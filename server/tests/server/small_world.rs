@@ -112,6 +112,7 @@ pub(crate) fn scene() -> LoadedScene {
         height_png: png_bytes.clone(),
         covering_png: png_bytes,
         nutrient_png: Vec::new(),
+        nutrients: None,
         scene,
         drawings: Default::default(),
         models: Vec::new(),

@@ -25,7 +25,7 @@ pub enum Allowed {
 use Allowed::{OneOf, Places, Range, Sections, Text};
 
 /// Every field by its path, in the order of the structs; in a list of sections, those of one section.
-pub const FIELDS: [(&str, Allowed); 179] = [
+pub const FIELDS: [(&str, Allowed); 181] = [
     ("summary", Text),
     ("seed", Range(0.0, i64::MAX as f64)),
     ("tick_hz", Range(10.0, 240.0)),
@@ -189,6 +189,8 @@ pub const FIELDS: [(&str, Allowed); 179] = [
     ("objects.helicopter.wash_shape", Text),
     ("objects.sled.strike_height_m", Range(0.05, 5.0)),
     ("objects.sled.lays_share", Range(0.0, 1.0)),
+    ("objects.ball.strike_height_m", Range(0.05, 5.0)),
+    ("objects.ball.lays_share", Range(0.0, 1.0)),
     ("drawn_winds.shape", Text),
     ("drawn_winds.path_m", Places(1, 64, 0.0, 100_000.0)),
     ("drawn_winds.travel_m_per_s", Range(0.0, 60.0)),

@@ -32,7 +32,7 @@ pub use fault::SceneFault;
 pub use grass::Grass;
 pub use growth::Growth;
 pub use natural_wind::NaturalWind;
-pub use objects::{CarTread, HelicopterTread, MonsterTread, Objects, SledTread, Tread, VehicleKind};
+pub use objects::{BallTread, CarTread, HelicopterTread, MonsterTread, Objects, SledTread, Tread, VehicleKind};
 pub use parse::{parse, parse_underbrush, parse_with};
 pub use patches::Patches;
 pub use picture::{CameraStart, Light};
@@ -100,7 +100,7 @@ pub struct Scene {
     /// What the underbrush grows on.
     #[serde(default)]
     pub growth: Growth,
-    /// Cars, monsters, helicopters and sleds: how many, their models, and how they meet the grass.
+    /// Cars, monsters, helicopters, sleds and balls: how many, their models, and how they meet the grass.
     #[serde(default)]
     pub objects: Objects,
     /// Winds that press the grass as objects do, such as cyclones (001 §5.3), each a section

@@ -134,6 +134,12 @@ pub enum ServerMessage {
         /// Every client.
         peers: Vec<Peer>,
     },
+    /// Plants of the underbrush that are broken, for good: those that the client was not told of before, at most [`BROKEN_LIMIT`](super::BROKEN_LIMIT);
+    /// any that are left come with the next frames.
+    Broken {
+        /// Their sites, ascending; numbers as in [`Sites`](crate::plant::growth::Sites).
+        plants: Vec<u32>,
+    },
     /// All of a frame has been sent; to be acknowledged.
     FrameEnd {
         /// Number of the frame, per client, from 1.
@@ -196,7 +202,7 @@ pub struct ObjectPose {
     pub rotation: [f32; 4],
     /// Velocity (m/s).
     pub velocity_m_per_s: [f32; 3],
-    /// Steering of the front wheels (rad, + right), or the rotor's or the walk's phase (rad).
+    /// Steering of the front wheels (rad, + right), the rotor's or the walk's phase, or where a ball's driver looks (rad).
     pub part_rad: f32,
 }
 

@@ -14,13 +14,16 @@ pub use codec::{CodecError, Shape};
 pub use message::{ClientMessage, Drive, Mesh, ObjectId, ObjectPose, Peer, Refusal, ServerMessage, WireError, decode, encode};
 
 /// Version of the protocol; both sides must agree.
-pub const PROTOCOL: u8 = 6;
+pub const PROTOCOL: u8 = 7;
 
 /// Largest message a client may send (bytes).
 pub const CLIENT_MESSAGE_LIMIT: usize = 4096;
 
 /// Largest radius of a view (m): farther patches are never sent.
 pub const VIEW_RADIUS_LIMIT_M: f32 = 512.0;
+
+/// Most plants of a [`ServerMessage::Broken`].
+pub const BROKEN_LIMIT: usize = 4096;
 
 /// Patches that a client keeps at least: those that it was told of last. A server sends deltas only to these.
 pub const PATCH_MEMORY: usize = 2048;

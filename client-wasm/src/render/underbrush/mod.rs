@@ -62,6 +62,8 @@ pub(super) struct Underbrush {
     pipeline: wgpu::RenderPipeline,
     frame: wgpu::Buffer,
     chunks: wgpu::Buffer,
+    broken: wgpu::Buffer,
+    shown_broken: u32,
     tally: wgpu::Buffer,
     draws: wgpu::Buffer,
     compute_group: wgpu::BindGroup,
@@ -156,6 +158,8 @@ impl Underbrush {
             compute_group: numbered(gpu, "underbrush", &compute_layout, 0, &buffers, Some(forces)),
             frame,
             chunks,
+            broken,
+            shown_broken: 0,
             tally,
             draws,
             lists,
@@ -196,6 +200,14 @@ impl Underbrush {
         gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
         gpu.queue.write_buffer(&self.chunks, 0, bytemuck::cast_slice(&chunks));
         gpu.queue.write_buffer(&self.tally, 0, &[0; SPECIES_LIMIT * LEVELS * 4]);
+    }
+
+    /// Shows as broken what a mirror says: a bit for each site, and how many they are.
+    pub(super) fn show_broken(&mut self, gpu: &Gpu, sites: &[u32], count: u32) {
+        if count != self.shown_broken {
+            self.shown_broken = count;
+            gpu.queue.write_buffer(&self.broken, 0, bytemuck::cast_slice(sites));
+        }
     }
 
     pub(super) fn bend(&self, pass: &mut wgpu::ComputePass<'_>) {

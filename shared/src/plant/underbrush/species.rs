@@ -68,7 +68,7 @@ fn there_are_eight_species_within_the_limits() {
             assert!([component.root_rgb, component.tip_rgb].concat().iter().all(|level| (0.0..=1.0).contains(level)));
         }
         let asked: usize = plan.parts.iter().map(|part| components_of(plan, part.on) * part.component.count as usize).sum();
-        assert!(asked <= if species.name == "fern" { 60 } else { 40 } && asked <= COMPONENTS_LIMIT);
+        assert!(asked <= COMPONENTS_LIMIT);
         assert_eq!(plan.placed(1).len(), asked);
     }
 }

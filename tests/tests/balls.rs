@@ -1,0 +1,178 @@
+//! Balls lie still, are kicked by whatever drives or walks into them, roll, come to rest again, and press the grass.
+
+use server::world::{Command, View, World};
+use shared::scene::Scene;
+use shared::scene::VehicleKind::{self, Ball, Car, Helicopter, Monster, Sled};
+use shared::wire::{Drive, ObjectPose};
+use tests::worlds;
+
+const AHEAD: Drive = Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 };
+
+/// A scene of `count × count` patches with so many balls.
+fn with_balls(count: u32, balls: u32) -> Scene {
+    let mut scene = worlds::scene(count);
+    scene.objects.balls = balls;
+    scene
+}
+
+fn balls(world: &mut World) -> Vec<ObjectPose> {
+    world.snapshot().objects.into_iter().filter(|pose| pose.kind == Ball).collect()
+}
+
+fn speed(pose: &ObjectPose) -> f32 {
+    let [x, y, z] = pose.velocity_m_per_s;
+    (x * x + y * y + z * z).sqrt()
+}
+
+fn distance(a: &ObjectPose, b: &ObjectPose) -> f32 {
+    let [x, z] = [0, 2].map(|axis| a.position_m[axis] - b.position_m[axis]);
+    x.hypot(z)
+}
+
+fn run(world: &mut World, ticks: u32) {
+    (0..ticks).for_each(|_| world.step(&[]));
+}
+
+/// Puts a vehicle of client 1 about 11 m before the first ball and lets it head for it, until the ball moves; returns how fast that goes off.
+fn kick(world: &mut World, kind: VehicleKind) -> f32 {
+    run(world, 60);
+    let [x, _, z] = balls(world)[0].position_m;
+    // The first place that is tried lies 9 m east of the camera, and what is put there looks away from it.
+    world.step(&[Command::Views(vec![View { client: 1, eye_m: [x - 20.0, 2.0, z] }])]);
+    world.step(&[Command::Spawn { client: 1, kind }, Command::Drive { client: 1, drive: AHEAD }]);
+    assert!(world.object_of(1).is_some(), "no room for a {}", kind.name());
+    let mut fastest = 0.0_f32;
+    for _ in 0..600 {
+        world.step(&[]);
+        let now = speed(&balls(world)[0]);
+        if now < fastest {
+            return fastest;
+        }
+        fastest = now;
+    }
+    panic!("the {} has not touched the ball in 10 s", kind.name());
+}
+
+#[test]
+fn balls_lie_apart_near_where_visitors_first_stand_and_stay_at_rest() {
+    let mut scene = with_balls(12, 20);
+    scene.camera.at = [0.6, 0.4];
+    let mut world = worlds::flat(&scene);
+    run(&mut world, 60);
+    let before = balls(&mut world);
+    assert_eq!(before.len(), 20);
+    let [width_m, depth_m] = scene.extent_m();
+    for (n, ball) in before.iter().enumerate() {
+        let [x, y, z] = ball.position_m;
+        assert!((x - 0.6 * width_m).hypot(z - 0.4 * depth_m) < 40.0 && (y - 0.5).abs() < 0.02, "{ball:?}");
+        assert!(before[..n].iter().all(|other| distance(ball, other) > 2.0), "{ball:?} lies in another");
+    }
+    run(&mut world, 1800);
+    for (before, after) in before.iter().zip(balls(&mut world)) {
+        assert!(distance(before, &after) < 0.01 && speed(&after) < 0.01, "{before:?} has become {after:?} in half a minute");
+    }
+}
+
+#[test]
+fn whatever_drives_into_a_ball_sends_it_off_and_it_comes_to_rest_again() {
+    for kind in [Car, Monster, Sled, Ball] {
+        let mut world = worlds::flat(&with_balls(16, 1));
+        run(&mut world, 60);
+        let start = balls(&mut world)[0];
+        let kicked = kick(&mut world, kind);
+        let own = world.object_of(1).expect("it drives");
+        let pusher = *world.snapshot().objects.iter().find(|pose| pose.id == own).expect("it has a pose");
+        assert!(kicked > speed(&pusher) && kicked > 3.0, "a {} at {} m/s gives the ball {kicked} m/s", kind.name(), speed(&pusher));
+        world.step(&[Command::Remove { client: 1 }]);
+        run(&mut world, 1800);
+        let end = balls(&mut world)[0];
+        // One ball gives another backspin, which soon stops it.
+        let least_m = if kind == Ball { 0.5 } else { 3.0 };
+        assert!(distance(&start, &end) > least_m, "a {} sends it {} m far", kind.name(), distance(&start, &end));
+        assert!(speed(&end) < 0.01 && (end.position_m[1] - 0.5).abs() < 0.05, "{end:?}");
+        let turned = glam::Quat::from_array(start.rotation).angle_between(glam::Quat::from_array(end.rotation));
+        assert!(turned > 0.01, "it rolls");
+    }
+}
+
+#[test]
+fn balls_of_every_size_are_kicked_by_cars_and_monsters() {
+    for (radius_m, kind) in [0.1, 0.2, 1.0, 3.0].into_iter().flat_map(|radius_m| [Car, Monster].map(|kind| (radius_m, kind))) {
+        let mut scene = with_balls(16, 1);
+        scene.objects.ball_radius_m = radius_m;
+        let mut world = worlds::flat(&scene);
+        let kicked = kick(&mut world, kind);
+        assert!(kicked > 1.0, "a {} gives a ball of {radius_m} m {kicked} m/s", kind.name());
+    }
+}
+
+#[test]
+fn a_ball_rolls_downhill_without_slipping_and_lies_still_on_a_gentle_slope() {
+    let on_a_slope = |slope: f32| {
+        let scene = with_balls(16, 1);
+        let mut world = World::new(&scene, worlds::maps(&scene, |x, _| slope * x, |_, _| 255)).expect("a sound scene");
+        let start = balls(&mut world)[0];
+        run(&mut world, 240);
+        (start, balls(&mut world)[0])
+    };
+    let (start, end) = on_a_slope(0.25);
+    assert!(start.position_m[0] - end.position_m[0] > 4.0 && (start.position_m[2] - end.position_m[2]).abs() < 0.5, "{end:?}");
+    assert!((0.5..1.2).contains(&(end.position_m[1] - 0.25 * end.position_m[0] + 0.3)), "on the land: {end:?}");
+    let (start, end) = on_a_slope(0.04);
+    assert!(distance(&start, &end) < 0.1, "grass holds it: {start:?}, {end:?}");
+}
+
+#[test]
+fn a_visitor_rolls_a_ball_and_steers_it() {
+    let mut world = worlds::flat(&worlds::scene(24));
+    world.step(&[Command::Spawn { client: 1, kind: Ball }]);
+    let mut drive = |drive: Drive, ticks: u32| {
+        world.step(&[Command::Drive { client: 1, drive }]);
+        run(&mut world, ticks);
+        balls(&mut world)[0]
+    };
+    let start = drive(Drive::default(), 60);
+    let rolling = drive(AHEAD, 180);
+    assert!(speed(&rolling) > 5.0 && distance(&start, &rolling) > 8.0, "after 3 s: {rolling:?}");
+    let [x, _, z] = rolling.velocity_m_per_s;
+    let along = [rolling.part_rad.sin(), -rolling.part_rad.cos()];
+    assert!(x * along[0] + z * along[1] > 0.95 * speed(&rolling), "where its driver looks");
+    let turned = drive(Drive { steer: 0.5, ..AHEAD }, 90);
+    let [after_x, _, after_z] = turned.velocity_m_per_s;
+    assert!(x * after_z - z * after_x > 0.0, "right is from −Z to +X");
+    let stopped = drive(Drive { brake: 1.0, ..Drive::default() }, 240);
+    assert!(speed(&stopped) < 0.05, "{stopped:?}");
+}
+
+#[test]
+fn a_ball_presses_the_grass_where_it_rolls_the_more_the_deeper_it_sits() {
+    let pressed = |radius_m: f32| {
+        let mut scene = worlds::scene(8);
+        scene.objects.ball_radius_m = radius_m;
+        let mut world = worlds::flat(&scene);
+        world.step(&[Command::Spawn { client: 1, kind: Ball }, Command::Drive { client: 1, drive: AHEAD }]);
+        run(&mut world, 90);
+        let [x, _, z] = balls(&mut world)[0].position_m;
+        let field = world.meadow().field();
+        let cells = (-160..160).flat_map(|j| (-160..160).map(move |i| [i, j].map(|n| n as f32 * 0.05)));
+        let bent = |[dx, dz]: [f32; 2]| field.bend_at(x + dx, z + dz).theta;
+        // Just below it, and how much ground is bent within 0.8 m.
+        let area_m2 = cells.filter(|&[dx, dz]| dx.hypot(dz) < 0.8 && bent([dx, dz]) > 0.5).count() as f32 * 0.05 * 0.05;
+        let behind = world.meadow().laid().tiles();
+        (bent([0.0, 0.0]), area_m2, behind)
+    };
+    let (small, large) = (pressed(0.15), pressed(0.8));
+    assert!(small.0 > 0.8 && large.0 > 0.8, "{small:?}, {large:?}");
+    assert!(large.1 > 1.5 * small.1, "bent by a small ball: {} m², by a large one: {} m²", small.1, large.1);
+    assert!(small.2 > 0 && large.2 > 0, "a track stays");
+}
+
+#[test]
+fn balls_count_among_the_objects() {
+    let mut scene = with_balls(16, 5);
+    scene.objects.limit = 6;
+    let mut world = worlds::flat(&scene);
+    world.step(&[Command::Spawn { client: 1, kind: Helicopter }, Command::Spawn { client: 2, kind: Car }]);
+    assert!(world.object_of(1).is_some() && world.object_of(2).is_none());
+    assert_eq!(world.snapshot().objects.len(), 6);
+}

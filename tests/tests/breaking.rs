@@ -1,0 +1,140 @@
+//! Underbrush that objects pass over breaks for good; wind alone breaks none.
+
+use server::scenes;
+use server::world::{Command, View, World};
+use shared::plant::flora::Flora;
+use shared::scene::{Scene, VehicleKind, parse_underbrush};
+use shared::terrain::{CoverMap, grey_png};
+use shared::wire::Drive;
+use tests::worlds;
+
+const AHEAD: Drive = Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 };
+
+/// A scene of `count × count` patches where the reed that ships grows all over, painted on flat land.
+fn reeds(count: u32) -> Scene {
+    let species = include_str!("../../server/scenes/species.toml");
+    let mut reed =
+        parse_underbrush(species).expect("sound species").into_iter().find(|species| species.name == "reed").expect("there is a reed");
+    (reed.needs, reed.light_need, reed.cover) = ([0.0; 3], 0.0, 0);
+    (reed.propagation_points, reed.reach_m) = (400, 3.0);
+    let mut scene = worlds::scene(count);
+    scene.underbrush = vec![reed];
+    scene
+}
+
+fn flora(scene: &Scene) -> Flora {
+    let cover = CoverMap::from_png(&grey_png([2; 2], &[255; 4])).expect("a grey PNG");
+    Flora::new(scene, &cover, None).expect("a scene with underbrush")
+}
+
+fn run(world: &mut World, ticks: u32) {
+    (0..ticks).for_each(|_| world.step(&[]));
+}
+
+/// A car of client 1 that drives eastward for so many steps; where it was after each.
+fn drive(world: &mut World, kind: VehicleKind, ticks: u32) -> Vec<[f32; 2]> {
+    world.step(&[Command::Views(vec![View { client: 1, eye_m: [30.0, 2.0, 64.0] }])]);
+    world.step(&[Command::Spawn { client: 1, kind }, Command::Drive { client: 1, drive: AHEAD }]);
+    let id = world.object_of(1).expect("there is room");
+    let mut place = || {
+        world.step(&[]);
+        let [x, _, z] = world.snapshot().objects.into_iter().find(|pose| pose.id == id).expect("it has a pose").position_m;
+        [x, z]
+    };
+    (0..ticks).map(|_| place()).collect()
+}
+
+#[test]
+fn a_car_through_reeds_leaves_broken_ones_behind_for_good() {
+    let scene = reeds(8);
+    let (mut world, flora) = (worlds::flat(&scene), flora(&scene));
+    let way = drive(&mut world, VehicleKind::Car, 300);
+    let broken = world.snapshot().broken;
+    let from_way_m = |site: u32| {
+        let [x, z] = flora.grown().sites.place_m(site);
+        way.iter().map(|at| (at[0] - x).hypot(at[1] - z)).fold(f32::INFINITY, f32::min)
+    };
+    assert!(broken.len() > 20, "{} broken", broken.len());
+    for &site in broken.iter() {
+        assert!(flora.grown().plant_at(site).is_some(), "a plant grows at site {site}");
+        assert!(from_way_m(site) < 2.6, "site {site} lies {} m from the way", from_way_m(site));
+    }
+    // Below the wheels, where the grass is pressed the most, none is left.
+    let below_wheels = |at: [f32; 2]| {
+        let passed = way[30..270].iter().any(|place| (place[0] - at[0]).abs() < 0.5);
+        let across_m = (at[1] - way[0][1]).abs();
+        passed && (0.72..0.88).contains(&across_m)
+    };
+    let under: Vec<_> = flora.grown().plants().iter().filter(|plant| below_wheels(flora.grown().sites.place_m(plant.site))).collect();
+    let straight = way.iter().all(|at| (at[1] - way[0][1]).abs() < 0.05);
+    assert!(straight && under.len() >= 10, "{} reeds below the wheels", under.len());
+    assert!(under.iter().all(|plant| broken.contains(&plant.site)), "all of {} below the wheels", under.len());
+
+    let mut sorted = broken.to_vec();
+    sorted.sort_unstable();
+    sorted.dedup();
+    assert_eq!(sorted.len(), broken.len(), "each breaks once");
+    world.step(&[Command::Remove { client: 1 }]);
+    run(&mut world, 1200);
+    assert_eq!(world.snapshot().broken, broken, "nothing heals, and nothing breaks by itself");
+    drive(&mut world, VehicleKind::Car, 200);
+    assert!(world.snapshot().broken.starts_with(&broken), "what breaks later comes after");
+}
+
+#[test]
+fn neither_wind_nor_wash_breaks_any() {
+    let mut scene = reeds(6);
+    scene.wind.mean_m_per_s = [28.0, 10.0];
+    scene.grass.wind_bend_rad = 1.5;
+    let mut world = worlds::flat(&scene);
+    run(&mut world, 300);
+    assert!(world.snapshot().broken.is_empty(), "a gale");
+    world.step(&[Command::Spawn { client: 1, kind: VehicleKind::Helicopter }]);
+    let hover = Drive { lift: 1.0, ..Drive::default() };
+    world.step(&[Command::Drive { client: 1, drive: hover }]);
+    run(&mut world, 90);
+    let lifted = world.snapshot().broken;
+    world.step(&[Command::Drive { client: 1, drive: AHEAD }]);
+    run(&mut world, 300);
+    assert!(world.meadow().field().awake_count() > 0, "the wash bends the grass");
+    assert_eq!(world.snapshot().broken, lifted, "a wash");
+}
+
+#[test]
+fn plants_without_a_strength_never_break_and_a_ball_breaks_the_weak() {
+    let mut scene = reeds(8);
+    scene.underbrush[0].components.iter_mut().for_each(|component| component.strength_n_m = 0.0);
+    let mut world = worlds::flat(&scene);
+    drive(&mut world, VehicleKind::Car, 300);
+    assert!(world.snapshot().broken.is_empty());
+    let stalk = &mut scene.underbrush[0].components[0];
+    stalk.strength_n_m = 0.5 * stalk.stiffness_n_m2 / stalk.length_m;
+    let mut world = worlds::flat(&scene);
+    drive(&mut world, VehicleKind::Ball, 300);
+    assert!(!world.snapshot().broken.is_empty());
+}
+
+#[test]
+fn the_same_plants_break_on_any_number_of_threads() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+        pool.install(|| {
+            let mut scene = reeds(8);
+            (scene.objects.self_driving, scene.objects.balls) = (4, 3);
+            let mut world = worlds::hills(&scene);
+            run(&mut world, 400);
+            (world.snapshot().broken, world.checksum())
+        })
+    };
+    let once = run(1);
+    assert!(once.0.len() > 20, "{} broken", once.0.len());
+    assert!(once == run(1) && once == run(2));
+}
+
+#[test]
+fn the_scenes_that_ship_have_no_broken_plants_at_the_start() {
+    let loaded = scenes::load("meadow").expect("a built-in scene is sound");
+    let mut world = World::new(&loaded.scene, loaded.maps()).expect("a world");
+    world.step(&[]);
+    assert!(world.snapshot().broken.is_empty());
+}
