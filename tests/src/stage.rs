@@ -146,6 +146,8 @@ pub enum Act {
     Walk,
     /// A sled has been dragged across the view.
     Drag,
+    /// A ball rolls away through the grass.
+    Roll,
 }
 
 /// Plays an act in front of the eye and leaves the mirror at its end. Returns the pose of the act's own object.
@@ -167,6 +169,7 @@ pub fn play(stage: &mut Stage, act: Act, eye_m: [f32; 3]) -> Result<Option<Objec
             (3.5, Drive { throttle: 0.0, steer: 0.0, lift: 0.0, brake: 0.0 }),
         ],
         Act::Walk => &[(4.0, Drive { throttle: 0.7, steer: 0.1, lift: 0.0, brake: 0.0 })],
+        Act::Roll => &[(2.6, Drive { throttle: 1.0, steer: 0.15, lift: 0.0, brake: 0.0 })],
         Act::Drag => &[
             (1.8, Drive { throttle: 0.8, steer: 0.0, lift: 0.0, brake: 0.0 }),
             (2.4, Drive { throttle: 0.6, steer: 0.7, lift: 0.0, brake: 0.0 }),
@@ -178,6 +181,7 @@ pub fn play(stage: &mut Stage, act: Act, eye_m: [f32; 3]) -> Result<Option<Objec
         Act::Wash => Some(VehicleKind::Helicopter),
         Act::Walk => Some(VehicleKind::Monster),
         Act::Drag => Some(VehicleKind::Sled),
+        Act::Roll => Some(VehicleKind::Ball),
     };
     if let Some(kind) = kind {
         stage.spawn(1, kind);
