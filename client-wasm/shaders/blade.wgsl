@@ -124,7 +124,8 @@ fn direction_of(lean: vec2<f32>) -> vec3<f32> {
 
 fn lean_of(direction: vec3<f32>) -> vec2<f32> {
     let aside = length(direction.xz);
-    var tangent = aside / max(1.0 + direction.y, 1e-3);
+    let hangs = direction.y < 0.0;
+    var tangent = select(aside, 1.0 - direction.y, hangs) / select(1.0 + direction.y, max(aside, 1e-9), hangs);
     tangent /= 1.0 + sqrt(1.0 + tangent * tangent);
     tangent /= 1.0 + sqrt(1.0 + tangent * tangent);
     let t = tangent * tangent;
@@ -135,7 +136,7 @@ fn lean_of(direction: vec3<f32>) -> vec2<f32> {
     angle = angle * t + 1.0 / 5.0;
     angle = angle * t - 1.0 / 3.0;
     angle = (angle * t + 1.0) * 8.0 * tangent;
-    return direction.xz * (angle / max(aside, 1e-9));
+    return select(direction.xz * (angle / max(aside, 1e-9)), vec2<f32>(angle, 0.0), hangs && aside < 1e-9);
 }
 
 // Offsets of the control points above the root from it (m).

@@ -1,7 +1,9 @@
-//! The wind as both sides read it: which place of the solver's box blows where, and whether there is dust in it.
+//! The wind as both sides read it: which place of the solver's box blows where, how it is read between cells, and whether there is dust in it.
 
+mod sample;
 mod tiling;
 
+pub use sample::WindCells;
 pub use tiling::{Tap, Tiles, offset_cells};
 
 use crate::scene::Wind;

@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, Result, ensure};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
+use tests::chart::figure::Figure;
 use tests::chart::files::write_all;
 use tests::chart::machine::machine;
 use tests::chart::row::cells_text;
 use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
 use tests::chart::tables::with_tables;
-use tests::chart::{Problem, bend, wind};
+use tests::chart::{Problem, bend, plants, wind};
 
 /// Measures methods on problems whose answer is known: how long each takes for how small an error.
 ///
@@ -45,6 +46,9 @@ enum Model {
     /// The schemes of the bend field: error against time, cost against cars, where each fails, the loose overlap
     #[command(after_help = BEND_FILES)]
     Bend(Options),
+    /// Blades and underbrush: integrators, sections, tables of postures, the dynamic constraint, limits
+    #[command(after_help = PLANTS_FILES)]
+    Plants(Options),
 }
 
 const FILES: &str = "\
@@ -64,6 +68,14 @@ Files in DIR:
   bend-failures.svg, .csv where each scheme is fine, inaccurate or blows up: speed of a car against steps a second
   bend-overlap.svg, .csv  error of 001's loose overlap against the speed of the waves, for three rates of damping";
 
+const PLANTS_FILES: &str = "\
+Files in DIR:
+  plants-PROBLEM.svg         error across, time up, as for the wind: a blade's integrators in a recorded gust, and the
+                             sections of a component under its weight; plants.csv and plants.json hold the figures
+  plants-postures.svg, .csv  error of the tip against the size of a table of postures, and what a look-up takes
+  plants-constraint.svg, .csv what a plant feels after a gust, with and without the velocity term of the constraint
+  plants-stability.svg, .csv longest steps of a blade against its damping, measured and in theory";
+
 #[derive(Args)]
 struct Options {
     /// Folder the files are written to
@@ -81,18 +93,18 @@ fn main() -> Result<()> {
     match Arguments::parse().model {
         Model::Wind { tables: Some(document), .. } => write_tables(&document),
         Model::Wind { options, .. } => chart("wind", wind::problems(options.quick), &options),
-        Model::Bend(options) => bend_charts(&options),
+        Model::Bend(options) => charts("bend", bend::problems(options.quick), &bend::FIGURES, &options),
+        Model::Plants(options) => charts("plants", plants::problems(options.quick), &plants::FIGURES, &options),
     }
 }
 
-/// Error against time as for the wind, then the figures of the bend field's own.
-fn bend_charts(options: &Options) -> Result<()> {
+/// Error against time as for the wind, then the figures of the model's own.
+fn charts(model: &str, problems: Vec<Problem>, figures: &[Figure], options: &Options) -> Result<()> {
     let is_asked = |name: &str| options.only.as_ref().is_none_or(|word| name.to_lowercase().contains(&word.to_lowercase()));
-    let figures: Vec<_> = bend::FIGURES.into_iter().filter(|figure| is_asked(figure.name)).collect();
-    let problems = bend::problems(options.quick);
+    let figures: Vec<_> = figures.iter().filter(|figure| is_asked(figure.name)).collect();
     let has_problem = problems.iter().any(|problem| is_asked(problem.name) || problem.runs.iter().any(|run| is_asked(&run.method)));
     if has_problem || figures.is_empty() {
-        chart("bend", problems, options)?;
+        chart(model, problems, options)?;
     }
     std::fs::create_dir_all(&options.out).with_context(|| format!("{} cannot be made", options.out.display()))?;
     for figure in figures {
@@ -100,7 +112,7 @@ fn bend_charts(options: &Options) -> Result<()> {
         let drawn = (figure.draw)(options.quick, &machine())?;
         println!("{}", drawn.said);
         for (ending, text) in [("svg", drawn.svg), ("csv", drawn.csv)] {
-            let path = options.out.join(format!("bend-{}.{ending}", figure.name));
+            let path = options.out.join(format!("{model}-{}.{ending}", figure.name));
             std::fs::write(&path, text).with_context(|| format!("{} cannot be written", path.display()))?;
         }
     }

@@ -6,6 +6,8 @@
 //! | [`run`] | what is run, and its timing |
 //! | [`wind`] | the runs of the wind |
 //! | [`bend`] | the runs of the bend field, and figures of their own kinds |
+//! | [`plants`] | those of blades and underbrush |
+//! | [`figure`] | lines and fields of colour over two axes as SVG |
 //! | [`line`](mod@line) | one line per method, and reading between its points |
 //! | [`plot`], [`ticks`] | a log–log chart as SVG |
 //! | [`summary`] | which method wins where, on one screen |
@@ -15,9 +17,11 @@
 //! | [`machine`] | what the figures were measured on |
 
 pub mod bend;
+pub mod figure;
 pub mod files;
 pub mod line;
 pub mod machine;
+pub mod plants;
 pub mod plot;
 pub mod row;
 pub mod run;

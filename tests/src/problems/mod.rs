@@ -10,6 +10,7 @@
 //! | [`Cavity`] | no-slip walls and a moving lid, against three published tables |
 //! | [`SlottedDisc`], [`RotatingGaussian`], [`drifting_hill`] | advection alone: sharp edges, a smooth hill on curved and on straight paths |
 //! | [`HeatKernel`] | diffusion alone, in one to three dimensions |
+//! | [`plants`] | blades in a recorded gust, components under their weight |
 //! | [`bend`] | the bend field: standing modes, pulses, dispersion, energy, strikes, random draws |
 
 pub mod bend;
@@ -19,6 +20,7 @@ mod differences;
 mod ethier_steinman;
 mod heat;
 mod hill;
+pub mod plants;
 mod rotation;
 mod taylor_green;
 

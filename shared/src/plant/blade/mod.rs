@@ -20,6 +20,7 @@ pub mod number;
 pub mod propagator;
 pub mod step;
 
+use number::Number;
 pub use propagator::Integrator;
 pub use step::advance;
 
@@ -56,11 +57,14 @@ impl Sway {
     pub fn at_rest(lean_rad: Leans) -> Self {
         Self { lean_rad, rate_rad_per_s: Leans::default() }
     }
+}
 
+impl<T: Number> Sway<T> {
     /// Offsets of the three control points above the root from it (m): X, height, Z.
-    pub fn points_m(&self, length_m: f32) -> [[f32; 3]; LINKS] {
-        let link_m = length_m / LINKS as f32;
-        let mut at = [0.0; 3];
+    #[inline(always)]
+    pub fn points_m(&self, length_m: T) -> [[T; 3]; LINKS] {
+        let link_m = length_m.over(T::splat(LINKS as f32));
+        let mut at = [T::splat(0.0); 3];
         self.lean_rad.map(|lean_rad| {
             let along = lean::direction(lean_rad);
             at = std::array::from_fn(|axis| at[axis] + link_m * along[axis]);

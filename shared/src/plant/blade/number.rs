@@ -11,6 +11,8 @@ pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
     fn over(self, divisor: Self) -> Self;
     /// Square root.
     fn root(self) -> Self;
+    /// The lesser of two numbers.
+    fn least(self, other: Self) -> Self;
 }
 
 impl Number for f32 {
@@ -28,6 +30,11 @@ impl Number for f32 {
     fn root(self) -> Self {
         self.sqrt()
     }
+
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        self.min(other)
+    }
 }
 
 impl Number for f32x8 {
@@ -44,5 +51,10 @@ impl Number for f32x8 {
     #[inline(always)]
     fn root(self) -> Self {
         self.sqrt()
+    }
+
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        self.min(other)
     }
 }

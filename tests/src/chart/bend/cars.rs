@@ -9,8 +9,7 @@ use shared::bend::{Alone, Field, Kinds, Rest, Scheme, WaveParams};
 use shared::grid::PatchLayout;
 use shared::scene::Grass;
 
-use super::Drawn;
-use super::figure::{Axis, Curve, Words, curves_svg};
+use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
 use crate::problems::bend::Striker;
 
 const DT_SECS: f32 = 1.0 / 60.0;

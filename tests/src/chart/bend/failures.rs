@@ -7,8 +7,7 @@ use plotters::style::RGBColor;
 use shared::bend::{Alone, Field, Kinds, Rest, Scheme, WaveParams};
 use shared::grid::PatchLayout;
 
-use super::Drawn;
-use super::figure::{Axis, Panel, Words, panels_svg};
+use super::super::figure::{Axis, Drawn, Panel, Words, panels_svg};
 use crate::problems::bend::{Striker, cells};
 
 const SPEEDS_M_PER_S: [f64; 2] = [0.0, 60.0];

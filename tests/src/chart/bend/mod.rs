@@ -6,37 +6,14 @@
 //! | `cars` | cost against the number of cars that move |
 //! | `failures` | where each scheme is fine, inaccurate or blows up |
 //! | `overlap` | error of 001's loose overlap |
-//! | `figure` | axes, lines and fields of colour as SVG |
 
 mod cars;
 mod failures;
-mod figure;
 mod overlap;
 mod waves;
 
-use anyhow::Result;
-
 use super::Problem;
-
-/// A figure of its own kind.
-pub struct Figure {
-    /// Its name in a file's.
-    pub name: &'static str,
-    /// Its headline.
-    pub title: &'static str,
-    /// Measures and draws it: coarsely or not, with a caption.
-    pub draw: fn(quick: bool, caption: &str) -> Result<Drawn>,
-}
-
-/// What became of a figure.
-pub struct Drawn {
-    /// The picture.
-    pub svg: String,
-    /// What is in it (RFC 4180).
-    pub csv: String,
-    /// What it says, in a few lines.
-    pub said: String,
-}
+use super::figure::Figure;
 
 /// All figures that are not of error against time.
 pub const FIGURES: [Figure; 3] = [

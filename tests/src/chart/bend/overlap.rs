@@ -6,8 +6,7 @@ use anyhow::Result;
 use shared::bend::{Alone, Field, Kinds, Scheme, Seams, WaveParams};
 use shared::grid::PatchLayout;
 
-use super::Drawn;
-use super::figure::{Axis, Curve, Words, curves_svg};
+use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
 use crate::problems::bend::{Striker, largest_difference};
 
 const DT_SECS: f32 = 1.0 / 60.0;

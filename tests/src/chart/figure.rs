@@ -1,11 +1,31 @@
-//! Lines over two axes, linear or logarithmic, and fields of colour, as SVG.
+//! Figures of their own kinds: lines over two axes, linear or logarithmic, and fields of colour, as SVG.
 
 use anyhow::{Result, ensure};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::super::plot::{Area, FAINT_INK, GRID, INK, Marker, look, text_style, write};
-use super::super::ticks::ticks;
+use super::plot::{Area, FAINT_INK, GRID, INK, Marker, look, text_style, write};
+use super::ticks::ticks;
+
+/// A figure of its own kind.
+pub struct Figure {
+    /// Its name in a file's.
+    pub name: &'static str,
+    /// Its headline.
+    pub title: &'static str,
+    /// Measures and draws it: coarsely or not, with a caption.
+    pub draw: fn(quick: bool, caption: &str) -> Result<Drawn>,
+}
+
+/// What became of a figure.
+pub struct Drawn {
+    /// The picture.
+    pub svg: String,
+    /// What is in it (RFC 4180).
+    pub csv: String,
+    /// What it says, in a few lines.
+    pub said: String,
+}
 
 /// One axis.
 #[derive(Clone, Copy, Debug)]

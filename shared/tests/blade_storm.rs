@@ -1,0 +1,182 @@
+//! A blade through a hundred thousand steps of gusts and hits: it keeps its length, stays out of the ground and of what hits it, and gives the same bits.
+
+use shared::hash::hash3;
+use shared::plant::blade::contact::{Sphere, settle};
+use shared::plant::blade::number::Number;
+use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
+use wide::f32x8;
+
+const DT_SECS: f32 = 1.0 / 60.0;
+
+/// A random number from 0 to under 1.
+fn share(place: [u32; 3]) -> f32 {
+    (hash3(place)[0] >> 8) as f32 / (1 << 24) as f32
+}
+
+fn between(low: f32, high: f32, place: [u32; 3]) -> f32 {
+    low + (high - low) * share(place)
+}
+
+/// Wind at the control points (m/s) that drifts from one random value to the next every half a second, up to 10 m/s along each axis, and gusts by a third.
+fn wind(number: u32, step: u32) -> Leans {
+    let (beat, part) = (step / 30, (step % 30) as f32 / 30.0);
+    std::array::from_fn(|link| {
+        std::array::from_fn(|axis| {
+            let [from, to] = [beat, beat + 1].map(|beat| between(-10.0, 10.0, [number, beat, axis as u32]));
+            (from + (to - from) * part) * (1.0 + 0.3 * (share([number, step, 16 + link as u32]) - 0.5)) * (0.6 + 0.2 * link as f32)
+        })
+    })
+}
+
+/// Gap under a sphere over the ground, and between two of them, in lengths of the blade: room for it to pass through.
+const ROOM: [f32; 2] = [0.05, 0.2];
+
+/// Two spheres that pass the blade over ground with this normal, each from a tenth to the whole of its length in radius.
+fn passing(number: u32, step: u32, length_m: f32, normal: [f32; 3]) -> [Sphere; 2] {
+    const STEPS: u32 = 90;
+    let (pass, part) = (step / STEPS, (step % STEPS) as f32 / STEPS as f32);
+    let sphere = |side: u32, x_m: f32| {
+        let random = |low: f32, high: f32, what: u32| between(low, high, [number, pass, 32 + 8 * side + what]) * length_m;
+        let (radius_m, gap_m) = (random(0.1, 1.0, 0), random(ROOM[0], 0.6, 1));
+        let (x_m, z_m) = (x_m + random(-1.2, 1.2, 2), (part - 0.5) * random(2.0, 8.0, 3));
+        let [nx, ny, nz] = normal;
+        Sphere { centre_m: [x_m, (radius_m + gap_m - nx * x_m - nz * z_m) / ny, z_m], radius_m }
+    };
+    let (one, mut other) = (sphere(0, 0.0), sphere(1, 0.0));
+    // The other gives way along X, away from the blade.
+    let away_m = if other.centre_m[0] < one.centre_m[0] { -0.02 } else { 0.02 };
+    while apart_m(&one, &other) < ROOM[1] * length_m {
+        other.centre_m[0] += away_m * length_m;
+        other.centre_m[1] -= normal[0] / normal[1] * away_m * length_m;
+    }
+    [one, other]
+}
+
+fn length(of: [f32; 3]) -> f32 {
+    of.iter().map(|v| v * v).sum::<f32>().sqrt()
+}
+
+fn apart_m(one: &Sphere, other: &Sphere) -> f32 {
+    length([0, 1, 2].map(|i| one.centre_m[i] - other.centre_m[i])) - one.radius_m - other.radius_m
+}
+
+/// How deep the links of a blade lie in a sphere (m).
+fn depth_m(points_m: &[[f32; 3]; LINKS], sphere: &Sphere) -> f32 {
+    let below_m = [[0.0; 3], points_m[0], points_m[1]];
+    let ends = below_m.iter().zip(points_m);
+    let nearest_m = ends.map(|(from, to)| {
+        let (along, aside) = ([0, 1, 2].map(|i| to[i] - from[i]), [0, 1, 2].map(|i| sphere.centre_m[i] - from[i]));
+        let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let share = (dot(along, aside) / dot(along, along)).clamp(0.0, 1.0);
+        length([0, 1, 2].map(|i| aside[i] - share * along[i]))
+    });
+    sphere.radius_m - nearest_m.fold(f32::INFINITY, f32::min)
+}
+
+/// A blade, the slope that it stands on, and its lean without wind.
+fn grown(number: u32) -> (Blade, [f32; 3], Leans) {
+    let random = |low: f32, high: f32, what: u32| between(low, high, [number, what, 99]);
+    let slope = [random(-0.6, 0.6, 0), random(-0.6, 0.6, 1)];
+    let long = (1.0 + slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
+    let blade = Blade {
+        length_m: random(0.2, 1.5, 2),
+        frequency_rad_per_s: random(4.0, 25.0, 3),
+        damping_share: random(0.02, 0.5, 4),
+        lean_per_wind2: random(0.001, 0.01, 5),
+    };
+    let droop = [random(-0.4, 0.4, 6), random(-0.4, 0.4, 7)];
+    (blade, [-slope[0] / long, 1.0 / long, -slope[1] / long], [0.6, 1.0, 1.4].map(|share| droop.map(|lean| share * lean)))
+}
+
+#[test]
+fn a_storm_of_gusts_and_hits_leaves_a_blade_whole() {
+    let (mut hits, mut deepest) = (0, 0.0_f32);
+    for number in 0..4 {
+        let (blade, normal, held) = grown(number);
+        let mut sway = Sway::at_rest(held);
+        for step in 0..100_000 {
+            let spheres = passing(number, step, blade.length_m, normal);
+            sway = advance(&sway, &blade, &held, &wind(number, step), Integrator::Exact, DT_SECS);
+            let touched = spheres.iter().any(|sphere| depth_m(&sway.points_m(blade.length_m), sphere) > 0.0);
+            sway = settle(&sway, blade.length_m, normal, &spheres);
+            assert!(sway.lean_rad.iter().chain(&sway.rate_rad_per_s).flatten().all(|value| value.is_finite()), "{sway:?}");
+            let points_m = sway.points_m(blade.length_m);
+            let mut below_m = [0.0; 3];
+            for point_m in points_m {
+                let link_m = length([0, 1, 2].map(|i| point_m[i] - below_m[i]));
+                assert!((link_m * 3.0 / blade.length_m - 1.0).abs() < 1e-5, "{link_m} m of {}", blade.length_m);
+                let height_m: f32 = (0..3).map(|i| point_m[i] * normal[i]).sum();
+                assert!(height_m > 0.0, "{height_m} m at step {step} of blade {number}");
+                below_m = point_m;
+            }
+            let depth = spheres.iter().map(|sphere| depth_m(&points_m, sphere)).fold(0.0, f32::max) / blade.length_m;
+            hits += u32::from(touched);
+            deepest = deepest.max(depth);
+        }
+    }
+    assert!(hits > 20_000, "{hits} hits");
+    assert!(deepest < 0.01, "{deepest} of the length deep");
+}
+
+/// As [`grown`] and [`wind`] but in lanes.
+fn lanes<const N: usize>(of: impl Fn(u32) -> [f32; N]) -> [f32x8; N] {
+    let each: [[f32; N]; 8] = std::array::from_fn(|lane| of(lane as u32));
+    std::array::from_fn(|n| f32x8::from(each.map(|values| values[n])))
+}
+
+fn flat<T: Number>(leans: &Leans<T>) -> [T; 2 * LINKS] {
+    std::array::from_fn(|n| leans[n / 2][n % 2])
+}
+
+fn unflat<T: Number>(values: [T; 2 * LINKS]) -> Leans<T> {
+    std::array::from_fn(|link| [values[2 * link], values[2 * link + 1]])
+}
+
+#[test]
+fn eight_abreast_have_the_bits_of_one() {
+    let nature = lanes(|lane| {
+        let blade = grown(lane).0;
+        [blade.length_m, blade.frequency_rad_per_s, blade.damping_share, blade.lean_per_wind2]
+    });
+    let [length_m, frequency_rad_per_s, damping_share, lean_per_wind2] = nature;
+    let abreast = Blade { length_m, frequency_rad_per_s, damping_share, lean_per_wind2 };
+    let held = unflat(lanes(|lane| flat(&grown(lane).2)));
+    for integrator in [Integrator::Euler, Integrator::Verlet, Integrator::Exact] {
+        // Short enough for Euler not to leave the numbers.
+        let dt_secs = if integrator == Integrator::Exact { DT_SECS } else { 1e-4 };
+        let mut alone: [Sway; 8] = std::array::from_fn(|lane| Sway::at_rest(grown(lane as u32).2));
+        let mut together = Sway { lean_rad: held, rate_rad_per_s: [[f32x8::ZERO; 2]; LINKS] };
+        for step in 0..2000 {
+            for (lane, sway) in alone.iter_mut().enumerate() {
+                let (blade, _, held) = grown(lane as u32);
+                *sway = advance(sway, &blade, &held, &wind(lane as u32, step), integrator, dt_secs);
+            }
+            let winds = unflat(lanes(|lane| flat(&wind(lane, step))));
+            together = advance(&together, &abreast, &held, &winds, integrator, dt_secs);
+        }
+        let found =
+            [flat(&together.lean_rad), flat(&together.rate_rad_per_s)].map(|values| values.map(|value| value.to_array().map(f32::to_bits)));
+        for (lane, sway) in alone.iter().enumerate() {
+            let wanted = [flat(&sway.lean_rad), flat(&sway.rate_rad_per_s)].map(|values| values.map(f32::to_bits));
+            assert_eq!(found.map(|values| values.map(|bits| bits[lane])), wanted, "{integrator:?}, lane {lane}");
+        }
+    }
+}
+
+#[test]
+fn the_same_storm_gives_the_same_bits_everywhere() {
+    // FNV-1a over all leans and rates. Only + − × ÷ and roots are in it, so that it is the same on every machine.
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    for number in 0..4 {
+        let (blade, normal, held) = grown(number);
+        let mut sway = Sway::at_rest(held);
+        for step in 0..1000 {
+            sway = advance(&sway, &blade, &held, &wind(number, step), Integrator::Exact, DT_SECS);
+            sway = settle(&sway, blade.length_m, normal, &passing(number, step, blade.length_m, normal));
+            for value in sway.lean_rad.iter().chain(&sway.rate_rad_per_s).flatten() {
+                hash = (hash ^ u64::from(value.to_bits())).wrapping_mul(0x0100_0000_01b3);
+            }
+        }
+    }
+    assert_eq!(hash, 0x4e24_845b_45e9_d1be, "{hash:#018x}");
+}

@@ -1,0 +1,386 @@
+//! Plants on one core: a step of the near blades, and what it is made of; postures of underbrush; growing; the force field.
+//!
+//! Every line has the least and the median time of many runs, and how often the least goes into that of the line that it is compared with. Near blades are
+//! those of nine grids with 1024 each, as around a camera; their step reads the wind at three control points of every blade, swings it, and
+//! mends what leans far or has a sphere within reach.
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use glam::Vec3;
+use server::wind::{Air, Config, Method};
+use shared::hash::hash3;
+use shared::plant::blade::contact::{Sphere, settle};
+use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
+use shared::plant::flora::Flora;
+use shared::plant::force_field::{ForceField, Lingering, Mesh, dynamic_pressure_pa};
+use shared::plant::underbrush::plant::{Forces, LookUp, Stand, posed};
+use shared::plant::underbrush::posture::{Nodes, Postures};
+use shared::plant::underbrush::rest::{Load, balanced, joints};
+use shared::plant::underbrush::strength::shares;
+use shared::scene::parse;
+use shared::terrain::{CoverMap, grey_png};
+use shared::wind::WindCells;
+use wide::f32x8;
+
+/// Nine grids of 8 m with 1024 plants each.
+const PLANTS: usize = 9 * 1024;
+const GRIDS_M: f32 = 24.0;
+const DT_SECS: f32 = 1.0 / 60.0;
+/// Lean of a link (rad) from which a blade may touch the ground.
+const FAR_RAD: f32 = 1.0;
+/// How long a line is timed, once it has run through the least number of runs.
+const ENOUGH: Duration = Duration::from_millis(500);
+const FEWEST_RUNS: usize = 3;
+
+/// Least and median time of a run (s).
+#[derive(Clone, Copy)]
+struct Times {
+    least_secs: f64,
+    median_secs: f64,
+}
+
+fn time(mut work: impl FnMut()) -> Times {
+    let (begun, mut runs) = (Instant::now(), Vec::new());
+    while runs.len() < FEWEST_RUNS || begun.elapsed() < ENOUGH {
+        let run = Instant::now();
+        work();
+        runs.push(run.elapsed().as_secs_f64());
+    }
+    runs.sort_by(f64::total_cmp);
+    Times { least_secs: runs[0], median_secs: runs[runs.len() / 2] }
+}
+
+/// A line: times over `count`, in a unit of so many seconds; beside another line, how many times longer that takes.
+fn line(name: &str, times: Times, count: usize, (unit, unit_secs): (&str, f64), than: Option<Times>) {
+    let per = |secs: f64| secs / count as f64 / unit_secs;
+    let ratio = than.map_or(String::new(), |than| format!("{:.1}×", than.least_secs / times.least_secs));
+    println!("| {name:<58} | {:>8.3} | {:>8.3} | {unit:<12} | {ratio:>6} |", per(times.least_secs), per(times.median_secs));
+}
+
+const MS: (&str, f64) = ("ms", 1e-3);
+const NS: (&str, f64) = ("ns", 1e-9);
+
+fn heading(of: &str, than: &str) {
+    println!("\n| {of:<58} |    least |   median | unit         | {than:>6} |");
+    println!("| {} | -------: | -------: | ------------ | -----: |", "-".repeat(58));
+}
+
+fn share(place: [u32; 3]) -> f32 {
+    (hash3(place)[0] >> 8) as f32 / (1 << 24) as f32
+}
+
+/// A plant as the meadow has it: where its root is, its blade, and the lean without wind.
+struct Grown {
+    root_m: [f32; 2],
+    blade: Blade,
+    held_rad: Leans,
+}
+
+fn grown(number: usize) -> Grown {
+    let random = |low: f32, high: f32, what: u32| low + (high - low) * share([number as u32, what, 7]);
+    // Plants of one grid after the other, as they are kept.
+    let (grid, within) = (number / 1024, [random(0.0, 8.0, 0), random(0.0, 8.0, 1)]);
+    let corner = [grid % 3, grid / 3].map(|n| 100.0 + 8.0 * n as f32);
+    let length_m = random(0.5, 1.1, 2);
+    let droop = [random(-0.2, 0.2, 3), random(-0.2, 0.2, 4)];
+    Grown {
+        root_m: [corner[0] + within[0], corner[1] + within[1]],
+        blade: Blade { length_m, frequency_rad_per_s: 9.74 * 0.8 / length_m, damping_share: 0.1, lean_per_wind2: 0.005 },
+        held_rad: [0.6, 1.0, 1.4].map(|part| droop.map(|lean| part * lean)),
+    }
+}
+
+/// The default wind with its gusts, in 32 × 8 × 32 cells.
+struct Wind {
+    spacing_m: [f32; 3],
+    count: [usize; 3],
+    cells: Vec<[f32; 2]>,
+}
+
+impl Wind {
+    fn blown() -> Self {
+        let config = Config::default();
+        let mut air = Air::<f32>::new(Method::Staggered, &config).expect("the default settings are allowed");
+        (0..240).for_each(|_| drop(air.step(f64::from(DT_SECS), &[]).expect("a step within the limits")));
+        let (count, spacing_m) = (config.cells, config.spacing_m.map(|h| h as f32));
+        let centre = |n: usize, axis: usize| (n as f32 + 0.5) * spacing_m[axis];
+        let places = (0..count[0] * count[1] * count[2]).map(|n| [n % count[0], n / count[0] / count[2], n / count[0] % count[2]]);
+        let velocity = |[x, y, z]: [usize; 3]| air.velocity_at([centre(x, 0), centre(y, 1), centre(z, 2)]);
+        let cells = places.map(velocity).map(|[east, _, south]| [east, south]).collect();
+        Self { spacing_m, count, cells }
+    }
+
+    fn cell(&self, [x, y, z]: [usize; 3]) -> [f32; 2] {
+        self.cells[x + (z + y * self.count[2]) * self.count[0]]
+    }
+
+    /// Trilinear at one point, cell by cell.
+    fn at(&self, at_m: [f32; 3]) -> [f32; 2] {
+        let along = |axis: usize| {
+            let place = at_m[axis] / self.spacing_m[axis] - 0.5;
+            let place = if axis == 1 { place.clamp(0.0, self.count[1] as f32 - 1.0) } else { place };
+            let low = place.floor();
+            let cell = |n: i64| n.rem_euclid(self.count[axis] as i64) as usize;
+            ([cell(low as i64), if axis == 1 { (low as usize + 1).min(self.count[1] - 1) } else { cell(low as i64 + 1) }], place - low)
+        };
+        let [(x, east), (y, up), (z, south)] = [0, 1, 2].map(along);
+        let mut sum = [0.0; 2];
+        for corner in 0..8 {
+            let [dx, dy, dz] = [corner & 1, corner >> 1 & 1, corner >> 2];
+            let weight = [1.0 - east, east][dx] * [1.0 - up, up][dy] * [1.0 - south, south][dz];
+            let wind = self.cell([x[dx], y[dy], z[dz]]);
+            sum = [0, 1].map(|axis| sum[axis] + weight * wind[axis]);
+        }
+        sum
+    }
+}
+
+/// A car's two ends and a ball, where they are among the plants.
+fn spheres_m() -> [Sphere; 3] {
+    let sphere = |x: f32, y: f32, z: f32, radius_m: f32| Sphere { centre_m: [100.0 + x, y, 100.0 + z], radius_m };
+    [sphere(9.0, 1.0, 12.0, 0.9), sphere(10.8, 1.0, 12.0, 0.9), sphere(16.0, 0.45, 5.0, 0.4)]
+}
+
+/// Plants eight abreast.
+struct Eight {
+    root_m: [f32x8; 2],
+    blade: Blade<f32x8>,
+    held_rad: Leans<f32x8>,
+}
+
+fn eight(number: usize) -> Eight {
+    let each: [Grown; 8] = std::array::from_fn(|lane| grown(8 * number + lane));
+    let lanes = |of: &dyn Fn(&Grown) -> f32| f32x8::from(each.each_ref().map(of));
+    Eight {
+        root_m: [0, 1].map(|axis| lanes(&|one| one.root_m[axis])),
+        blade: Blade {
+            length_m: lanes(&|one| one.blade.length_m),
+            frequency_rad_per_s: lanes(&|one| one.blade.frequency_rad_per_s),
+            damping_share: lanes(&|one| one.blade.damping_share),
+            lean_per_wind2: lanes(&|one| one.blade.lean_per_wind2),
+        },
+        held_rad: std::array::from_fn(|link| std::array::from_fn(|axis| lanes(&|one| one.held_rad[link][axis]))),
+    }
+}
+
+/// Wind at the control points of eight plants.
+fn winds(cells: &WindCells, plants: &Eight, sway: &Sway<f32x8>) -> Leans<f32x8> {
+    let [x, z] = plants.root_m;
+    sway.points_m(plants.blade.length_m).map(|[east, up, south]| cells.at_eight([x + east, up, z + south]))
+}
+
+/// Takes a blade out of the lanes, mends it, and puts it back.
+fn mend(sway: &mut Sway<f32x8>, lane: usize, length_m: f32, spheres: &[Sphere]) {
+    let one = |leans: &Leans<f32x8>| leans.map(|link| link.map(|part| part.to_array()[lane]));
+    let mended =
+        settle(&Sway { lean_rad: one(&sway.lean_rad), rate_rad_per_s: one(&sway.rate_rad_per_s) }, length_m, [0.0, 1.0, 0.0], spheres);
+    for link in 0..LINKS {
+        for axis in 0..2 {
+            sway.lean_rad[link][axis].as_mut_array()[lane] = mended.lean_rad[link][axis];
+            sway.rate_rad_per_s[link][axis].as_mut_array()[lane] = mended.rate_rad_per_s[link][axis];
+        }
+    }
+}
+
+/// Spheres that a blade may meet, from its root.
+fn within_reach(spheres: &[Sphere], [x, z]: [f32; 2], length_m: f32) -> Vec<Sphere> {
+    let from_root = |sphere: &Sphere| Sphere { centre_m: [sphere.centre_m[0] - x, sphere.centre_m[1], sphere.centre_m[2] - z], ..*sphere };
+    let is_near = |sphere: &Sphere| {
+        let reach_m = sphere.radius_m + length_m;
+        sphere.centre_m.iter().map(|m| m * m).sum::<f32>() < reach_m * reach_m
+    };
+    spheres.iter().map(from_root).filter(is_near).collect()
+}
+
+/// One bit for each lane in which a blade leans far or has a sphere within reach.
+fn to_mend(plants: &Eight, sway: &Sway<f32x8>, spheres: &[Sphere]) -> u32 {
+    let [x, z] = plants.root_m;
+    let steepest = sway.lean_rad.iter().fold(f32x8::ZERO, |most, [x, z]| most.fast_max(*x * *x + *z * *z));
+    let mut lanes = steepest.simd_gt(f32x8::splat(FAR_RAD * FAR_RAD)).to_bitmask();
+    for sphere in spheres {
+        let [cx, cy, cz] = sphere.centre_m.map(f32x8::splat);
+        let reach_m = f32x8::splat(sphere.radius_m) + plants.blade.length_m;
+        let distance2 = (cx - x) * (cx - x) + cy * cy + (cz - z) * (cz - z);
+        lanes |= distance2.simd_lt(reach_m * reach_m).to_bitmask();
+    }
+    lanes
+}
+
+fn step_eight(plants: &Eight, sway: &mut Sway<f32x8>, cells: &WindCells, spheres: &[Sphere], integrator: Integrator, dt_secs: f32) -> u32 {
+    let winds = winds(cells, plants, sway);
+    *sway = advance(sway, &plants.blade, &plants.held_rad, &winds, integrator, dt_secs);
+    let mut lanes = to_mend(plants, sway, spheres);
+    let mended = lanes.count_ones();
+    while lanes != 0 {
+        let lane = lanes.trailing_zeros() as usize;
+        let (root_m, length_m) = (plants.root_m.map(|part| part.to_array()[lane]), plants.blade.length_m.to_array()[lane]);
+        mend(sway, lane, length_m, &within_reach(spheres, root_m, length_m));
+        lanes &= lanes - 1;
+    }
+    mended
+}
+
+fn step_one(plant: &Grown, sway: &mut Sway, wind: &Wind, spheres: &[Sphere], integrator: Integrator, dt_secs: f32) {
+    let [x, z] = plant.root_m;
+    let winds = sway.points_m(plant.blade.length_m).map(|[east, up, south]| wind.at([x + east, up, z + south]));
+    *sway = advance(sway, &plant.blade, &plant.held_rad, &winds, integrator, dt_secs);
+    let near = within_reach(spheres, plant.root_m, plant.blade.length_m);
+    if !near.is_empty() || sway.lean_rad.iter().any(|[x, z]| x * x + z * z > FAR_RAD * FAR_RAD) {
+        *sway = settle(sway, plant.blade.length_m, [0.0, 1.0, 0.0], &near);
+    }
+}
+
+fn near_plants() {
+    let wind = Wind::blown();
+    let cells = WindCells::new(wind.count, wind.spacing_m, |cell| wind.cell(cell));
+    let spheres = spheres_m();
+    let plants: Vec<Grown> = (0..PLANTS).map(grown).collect();
+    assert!(plants.iter().all(|plant| plant.root_m.iter().all(|m| (100.0..100.0 + GRIDS_M).contains(m))));
+    let abreast: Vec<Eight> = (0..PLANTS / 8).map(eight).collect();
+    heading("near plants, nine grids of 1024, one step", "faster");
+    for (name, integrator) in [("Euler", Integrator::Euler), ("Verlet", Integrator::Verlet), ("exact", Integrator::Exact)] {
+        // Euler and Verlet do not bear a step of 1/60 s.
+        let dt_secs = if integrator == Integrator::Exact { DT_SECS } else { 1.0 / 960.0 };
+        let mut alone: Vec<Sway> = plants.iter().map(|plant| Sway::at_rest(plant.held_rad)).collect();
+        let mut lanes: Vec<Sway<f32x8>> =
+            abreast.iter().map(|plants| Sway { lean_rad: plants.held_rad, rate_rad_per_s: [[f32x8::ZERO; 2]; LINKS] }).collect();
+        let whole_alone = time(|| {
+            plants.iter().zip(&mut alone).for_each(|(plant, sway)| step_one(plant, sway, &wind, &spheres, integrator, dt_secs));
+        });
+        let mut mended = 0;
+        let whole_lanes = time(|| {
+            let step = |(plants, sway): (&Eight, &mut Sway<f32x8>)| step_eight(plants, sway, &cells, &spheres, integrator, dt_secs);
+            mended = abreast.iter().zip(&mut lanes).map(step).sum();
+        });
+        line(&format!("{name}: all of it, one by one"), whole_alone, 1, MS, None);
+        line(&format!("{name}: all of it, eight abreast"), whole_lanes, 1, MS, Some(whole_alone));
+        println!("{mended} of {PLANTS} mended; {:.0} blades/ms", PLANTS as f64 * 1e-3 / whole_lanes.least_secs);
+        let swing_alone = time(|| {
+            for (plant, sway) in plants.iter().zip(&mut alone) {
+                *sway = advance(sway, &plant.blade, &plant.held_rad, &[[4.0, 1.0]; LINKS], integrator, dt_secs);
+            }
+        });
+        let calm = [[4.0, 1.0].map(f32x8::splat); LINKS];
+        let swing_lanes = time(|| {
+            for (plants, sway) in abreast.iter().zip(&mut lanes) {
+                *sway = advance(sway, &plants.blade, &plants.held_rad, &calm, integrator, dt_secs);
+            }
+        });
+        line(&format!("{name}: swing alone, one by one"), swing_alone, 1, MS, None);
+        line(&format!("{name}: swing alone, eight abreast"), swing_lanes, 1, MS, Some(swing_alone));
+        if integrator == Integrator::Exact {
+            let wind_alone = time(|| {
+                for (plant, sway) in plants.iter().zip(&alone) {
+                    let [x, z] = plant.root_m;
+                    black_box(sway.points_m(plant.blade.length_m).map(|[east, up, south]| wind.at([x + east, up, z + south])));
+                }
+            });
+            let wind_lanes = time(|| {
+                abreast.iter().zip(&lanes).for_each(|(plants, sway)| drop(black_box(winds(&cells, plants, sway))));
+            });
+            line("wind at three points a plant, cell by cell", wind_alone, 1, MS, None);
+            line("wind at three points a plant, eight abreast", wind_lanes, 1, MS, Some(wind_alone));
+            let settled = time(|| {
+                for (plant, sway) in plants.iter().zip(&alone) {
+                    black_box(settle(sway, plant.blade.length_m, [0.0, 1.0, 0.0], &[]));
+                }
+            });
+            line("contact with the ground, were it for all", settled, 1, MS, None);
+        }
+    }
+}
+
+fn postures() {
+    let (joints, shares) = (joints(8, 0.5), shares(8, 0.5));
+    let table = Postures::new(&joints, &shares, Nodes::default());
+    let asked: Vec<[f32; 2]> = (0..4096)
+        .map(|n| [share([n, 1, 2]) * 3.14, 0.1 * 2000.0_f32.powf(share([n, 2, 2]))])
+        .map(|[angle, load]| [angle.cos(), load])
+        .collect();
+    let balance = time(|| {
+        let mut bends_rad = [0.0; 8];
+        for &[cosine, load] in &asked {
+            balanced(&joints, Load { spread: load.into(), tip: 0.0 }, f64::from(cosine).acos(), &mut bends_rad);
+            black_box(&bends_rad);
+        }
+    });
+    let nearest = time(|| asked.iter().for_each(|&[cosine, load]| drop(black_box(table.nearest(cosine, load)[0]))));
+    let interpolated = time(|| {
+        let mut node = [0.0; 9];
+        for &[cosine, load] in &asked {
+            table.interpolated(cosine, load, &mut node);
+            black_box(&node);
+        }
+    });
+    heading("postures, 33 × 33 nodes of eight sections", "faster");
+    line("a component in full balance", balance, asked.len(), NS, None);
+    line("looked up at the nearest node", nearest, asked.len(), NS, Some(balance));
+    line("looked up between nodes", interpolated, asked.len(), NS, Some(balance));
+}
+
+/// The land of the default size, 256 m square, with the eight species that ship.
+fn flora() -> (Times, Flora) {
+    let scene = format!(
+        "summary = 's'\n[terrain]\nheight_map = 'h.png'\ncovering_map = 'c.png'\npixel_m = [2, 2]\nlevel_m = 0.1\n{}",
+        include_str!("../../server/scenes/species.toml")
+    );
+    let scene = parse(&scene).expect("the species that ship are allowed");
+    let cover = CoverMap::from_png(&grey_png([4; 2], &[255; 16])).expect("a covering map");
+    let mut found = None;
+    let times = time(|| found = Flora::new(&scene, &cover, None));
+    (times, found.expect("a scene with underbrush"))
+}
+
+fn underbrush() {
+    let (growing, flora) = flora();
+    let forces = Forces { per_mass_m_per_s2: Vec3::Y * -9.81, pressure_pa: dynamic_pressure_pa([5.0, 0.0, 1.5]).into() };
+    heading("underbrush, a component posed", "slower");
+    for (species, plan) in flora.species().iter().zip(flora.plans()) {
+        let plants: Vec<_> = (0..64).map(|number| plan.placed(number)).collect();
+        let count: usize = plants.iter().map(Vec::len).sum();
+        let pose = |look_up: LookUp| {
+            time(|| {
+                for (number, placed) in plants.iter().enumerate() {
+                    let stand = Stand { size: 1.0, heading_rad: number as f32, lean_rad: [0.1, 0.0] };
+                    black_box(posed(plan, placed, stand, forces, look_up, 0));
+                }
+            })
+        };
+        let [nearest, interpolated] = [LookUp::Nearest, LookUp::Interpolated].map(pose);
+        line(&format!("{}, interpolated; nearest beside", species.name), interpolated, count, NS, Some(nearest));
+    }
+    let [columns, rows] = flora.grown().sites.count();
+    heading("growing, with the tables of all species", "");
+    line(&format!("{columns} × {rows} sites, {} plants of eight species", flora.grown().plants().len()), growing, 1, MS, None);
+}
+
+fn force_field() {
+    let mesh = Mesh { count: [64, 4, 64], spacing_m: [1.0, 0.5, 1.0], corner: [0, 0] };
+    let mut field = ForceField::new(mesh, Lingering { spread_m2_per_s: 0.2, decay_per_s: 3.0 });
+    field.strike([32, 1, 32], [40.0, 0.0, 0.0], DT_SECS);
+    let spread = time(|| field.step(DT_SECS));
+    let driven = time(|| {
+        field.calm();
+        field.drive(|[x, _, z]| dynamic_pressure_pa([5.0 + 0.01 * x, 0.0, 1.5 - 0.01 * z]));
+    });
+    let summed = time(|| field.sum_up());
+    heading("force field, 64 × 4 × 64 volumes", "");
+    line("what lingers spreads and decays", spread, 1, MS, None);
+    line("the wind drives it", driven, 1, MS, None);
+    line("forces summed up", summed, 1, MS, None);
+}
+
+fn main() {
+    // `cargo test` and `--test` run each benchmark once; this one would take half a minute.
+    if std::env::args().any(|argument| argument == "--test") {
+        return;
+    }
+    let asked: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
+    let parts: [(&str, fn()); 4] = [("near", near_plants), ("postures", postures), ("underbrush", underbrush), ("field", force_field)];
+    for (name, part) in parts {
+        if asked.is_empty() || asked.iter().any(|word| name.contains(word.as_str())) {
+            part();
+        }
+    }
+}

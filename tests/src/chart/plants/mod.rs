@@ -1,0 +1,53 @@
+//! The runs and figures of blades and underbrush.
+//!
+//! | file | what it draws |
+//! |---|---|
+//! | `gust` | a blade's integrators in a recorded gust: error against time |
+//! | `sections` | a component under its weight, 004's way and in balance: error against time |
+//! | `postures` | tables of postures: error against time, and against size |
+//! | `constraint` | what a plant feels after a gust, with and without the velocity term |
+//! | `stability` | the longest steps of a blade |
+
+mod constraint;
+mod gust;
+mod postures;
+mod sections;
+mod stability;
+
+use super::Problem;
+use super::figure::Figure;
+
+/// All figures that are not of error against time.
+pub const FIGURES: [Figure; 3] = [
+    Figure { name: "postures", title: "What a table of postures costs", draw: postures::draw },
+    Figure { name: "constraint", title: "The dynamic constraint", draw: constraint::draw },
+    Figure { name: "stability", title: "How long steps of a blade may be", draw: stability::draw },
+];
+
+/// Problems of error against time; `quick` leaves out the finest.
+pub fn problems(quick: bool) -> Vec<Problem> {
+    vec![gust::problem(quick), sections::problem(quick), postures::problem(quick)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_finest_run_of_each_problem_gets_near_the_answer_and_nearer_than_the_coarsest() {
+        for Problem { name, runs, .. } in problems(true) {
+            let last = runs.iter().rposition(|run| run.method == runs[runs.len() - 1].method).unwrap();
+            let first = runs.iter().position(|run| run.method == runs[last].method).unwrap();
+            let [coarse, fine] = [first, last].map(|n| (runs[n].solve)().unwrap().error.l2);
+            assert!(fine > 1e-9 && fine < 0.02 && fine < 0.5 * coarse, "{name}: {coarse} and {fine}");
+        }
+    }
+
+    #[test]
+    fn every_figure_has_its_data() {
+        for figure in &FIGURES {
+            let drawn = (figure.draw)(true, "caption").unwrap();
+            assert!(drawn.svg.contains("caption") && drawn.csv.lines().count() > 5 && !drawn.said.is_empty(), "{}", figure.name);
+        }
+    }
+}
