@@ -64,3 +64,13 @@ fn a_track_looks_as_stored_and_unlike_the_untouched_meadow() -> Result<()> {
 fn species_side_by_side_look_as_stored() -> Result<()> {
     compare("species", "scenes/species/species.toml", Act::Wind)
 }
+
+#[test]
+fn underbrush_looks_as_stored() -> Result<()> {
+    compare("underbrush", "underbrush", Act::Wind)
+}
+
+#[test]
+fn textured_blades_look_as_stored() -> Result<()> {
+    compare("blades", "blades", Act::Wind)
+}

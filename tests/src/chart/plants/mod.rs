@@ -6,9 +6,11 @@
 //! | `sections` | a component under its weight, 004's way and in balance: error against time |
 //! | `postures` | tables of postures: error against time, and against size |
 //! | `constraint` | what a plant feels after a gust, with and without the velocity term |
+//! | `drawn` | what underbrush costs to draw, against the number of plants |
 //! | `stability` | the longest steps of a blade |
 
 mod constraint;
+mod drawn;
 mod gust;
 mod postures;
 mod sections;
@@ -18,9 +20,10 @@ use super::Problem;
 use super::figure::Figure;
 
 /// All figures that are not of error against time.
-pub const FIGURES: [Figure; 3] = [
+pub const FIGURES: [Figure; 4] = [
     Figure { name: "postures", title: "What a table of postures costs", draw: postures::draw },
     Figure { name: "constraint", title: "The dynamic constraint", draw: constraint::draw },
+    Figure { name: "drawn", title: "What underbrush costs to draw", draw: drawn::draw },
     Figure { name: "stability", title: "How long steps of a blade may be", draw: stability::draw },
 ];
 
