@@ -80,7 +80,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
         marked: false,
     };
     let said = format!("a step of the bend field takes {}", line.name);
-    let measured = Curve { name: "measured".into(), points, marked: true };
+    let measured = Curve { name: "measured".into(), points, marked: true, joined: true };
     let axis = |name, most: f64| Axis { name, range: [0.0, 1.05 * most], logarithmic: false };
     let words = Words {
         title: "What moving cars cost",
