@@ -102,7 +102,9 @@ impl Wind {
     fn blown() -> Self {
         let config = Config::default();
         let mut air = Air::<f32>::new(Method::Staggered, &config).expect("the default settings are allowed");
-        (0..240).for_each(|_| drop(air.step(f64::from(DT_SECS), &[]).expect("a step within the limits")));
+        for _ in 0..240 {
+            air.step(f64::from(DT_SECS), &[]).expect("a step within the limits");
+        }
         let (count, spacing_m) = (config.cells, config.spacing_m.map(|h| h as f32));
         let centre = |n: usize, axis: usize| (n as f32 + 0.5) * spacing_m[axis];
         let places = (0..count[0] * count[1] * count[2]).map(|n| [n % count[0], n / count[0] / count[2], n / count[0] % count[2]]);
@@ -277,7 +279,9 @@ fn near_plants() {
                 }
             });
             let wind_lanes = time(|| {
-                abreast.iter().zip(&lanes).for_each(|(plants, sway)| drop(black_box(winds(&cells, plants, sway))));
+                for (plants, sway) in abreast.iter().zip(&lanes) {
+                    black_box(winds(&cells, plants, sway));
+                }
             });
             line("wind at three points a plant, cell by cell", wind_alone, 1, MS, None);
             line("wind at three points a plant, eight abreast", wind_lanes, 1, MS, Some(wind_alone));
@@ -305,7 +309,11 @@ fn postures() {
             black_box(&bends_rad);
         }
     });
-    let nearest = time(|| asked.iter().for_each(|&[cosine, load]| drop(black_box(table.nearest(cosine, load)[0]))));
+    let nearest = time(|| {
+        asked.iter().for_each(|&[cosine, load]| {
+            black_box(table.nearest(cosine, load)[0]);
+        })
+    });
     let interpolated = time(|| {
         let mut node = [0.0; 9];
         for &[cosine, load] in &asked {

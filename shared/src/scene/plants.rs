@@ -28,7 +28,7 @@ words! {
     BladeIntegrator {
         /// Explicit Euler; first order, and gains energy where damping is weak.
         Euler = "euler",
-        /// The Verlet integration of 000 Eq. (7); second order.
+        /// The Verlet integration of 000 Eq. (7); second order undamped, else first.
         Verlet = "verlet",
         /// The closed form of each mode; stable for any step.
         Exact = "exact",

@@ -64,12 +64,13 @@ fn trimmed(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// A line with markers at its points, or a plain one.
+/// A line, markers at its points, or both.
 #[derive(Clone, Debug)]
 pub(super) struct Curve {
     pub(super) name: String,
     pub(super) points: Vec<[f64; 2]>,
     pub(super) marked: bool,
+    pub(super) joined: bool,
 }
 
 /// What stands around a picture.
@@ -142,9 +143,11 @@ pub(super) fn curves_svg(curves: &[Curve], axes: [Axis; 2], words: Words) -> Res
         let (colour, corners) = look(n);
         let marker = Marker { corners, colour, hollow: false };
         let points: Vec<_> = curve.points.iter().map(|at| frame.place([x, y], *at)).collect();
-        root.draw(&PathElement::new(points.clone(), colour.stroke_width(2)))?;
         let key = (800, 100 + 26 * n as i32);
-        root.draw(&PathElement::new([(key.0 - 18, key.1), (key.0 + 18, key.1)], colour.stroke_width(2)))?;
+        if curve.joined {
+            root.draw(&PathElement::new(points.clone(), colour.stroke_width(2)))?;
+            root.draw(&PathElement::new([(key.0 - 18, key.1), (key.0 + 18, key.1)], colour.stroke_width(2)))?;
+        }
         write(&root, &curve.name, (key.0 + 30, key.1), 17, INK, HPos::Left)?;
         if curve.marked {
             points.into_iter().chain([key]).try_for_each(|at| marker.draw(&root, at))?;
@@ -211,7 +214,7 @@ mod tests {
     #[test]
     fn a_curve_and_its_name_are_drawn_where_its_values_are() {
         let axis = |name| Axis { name, range: [0.0, 10.0], logarithmic: false };
-        let curve = Curve { name: "made up".into(), points: vec![[0.0, 0.0], [10.0, 10.0]], marked: false };
+        let curve = Curve { name: "made up".into(), points: vec![[0.0, 0.0], [10.0, 10.0]], marked: false, joined: true };
         let words = Words { title: "title", subtitle: "subtitle", caption: "caption" };
         let text = curves_svg(&[curve], [axis("across"), axis("up")], words).unwrap();
         for word in ["made up", "title", "subtitle", "caption", "across", "up", "100,534 740,84"] {

@@ -78,9 +78,10 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
         name: format!("{:.1} µs + {:.1} µs a car, R² = {explained:.4}", 1e3 * at_zero, 1e3 * slope),
         points: [0.0, most[0]].map(|cars| [cars, (at_zero + slope * cars).max(0.0)]).to_vec(),
         marked: false,
+        joined: true,
     };
     let said = format!("a step of the bend field takes {}", line.name);
-    let measured = Curve { name: "measured".into(), points, marked: true };
+    let measured = Curve { name: "measured".into(), points, marked: true, joined: true };
     let axis = |name, most: f64| Axis { name, range: [0.0, 1.05 * most], logarithmic: false };
     let words = Words {
         title: "What moving cars cost",

@@ -48,7 +48,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     let mut curves = vec![];
     for damping_per_s in DAMPING_PER_S {
         let lambda = 1.0 - (-damping_per_s * DT_SECS).exp();
-        let mut curve = Curve { name: format!("{damping_per_s} /s (λ = {lambda:.2})"), points: vec![], marked: true };
+        let mut curve = Curve { name: format!("{damping_per_s} /s (λ = {lambda:.2})"), points: vec![], marked: true, joined: true };
         for speed in speeds.clone() {
             let error = f64::from(error_rad(speed as f32, damping_per_s)?);
             writeln!(csv, "{damping_per_s},{lambda},{speed},{error:e}")?;

@@ -10,7 +10,7 @@ use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
 /// Time constant τ (s); the default of a species.
 const SETTLE_SECS: f32 = 0.25;
 /// When the gust comes and goes (s), and the end.
-const GUST_SECS: [f32; 2] = [0.5, 2.0];
+const GUST_SECS: [f32; 2] = [0.5, 1.3];
 const END_SECS: f32 = 5.0;
 
 type Way = fn(&Following, [f32; 3], f32, f32) -> Following;
@@ -24,12 +24,13 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     let dt_secs = END_SECS / steps as f32;
     let (mut csv, mut said) = (String::from("way,secs,force\n"), String::new());
     let corners = [[0.0, 0.0], [GUST_SECS[0], 0.0], [GUST_SECS[0], 1.0], [GUST_SECS[1], 1.0], [GUST_SECS[1], 0.0], [END_SECS, 0.0]];
-    let mut curves = vec![Curve { name: "the gust".into(), points: corners.map(|at| at.map(f64::from)).to_vec(), marked: false }];
+    let mut curves =
+        vec![Curve { name: "the gust".into(), points: corners.map(|at| at.map(f64::from)).to_vec(), marked: false, joined: true }];
     let ways: [(&str, Way); 2] =
         [("without the velocity term (004 Eq. 5)", Following::swung), ("closed form, critically damped", Following::followed)];
     for (name, way) in ways {
         let mut plant = Following::default();
-        let mut curve = Curve { name: name.into(), points: vec![[0.0, 0.0]], marked: false };
+        let mut curve = Curve { name: name.into(), points: vec![[0.0, 0.0]], marked: false, joined: true };
         for step in 1..=steps {
             // The force of the middle of the step, so that no step takes what is over at its end.
             plant = way(&plant, [gust_at((step as f32 - 0.5) * dt_secs), 0.0, 0.0], SETTLE_SECS, dt_secs);

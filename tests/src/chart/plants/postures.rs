@@ -112,7 +112,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     let mut csv = String::from("look_up,nodes,bytes,error_rms,error_max,look_up_secs\n");
     let (mut said, mut curves) = (String::new(), vec![]);
     for (name, way) in WAYS {
-        let mut curve = Curve { name: name.into(), points: vec![], marked: true };
+        let mut curve = Curve { name: name.into(), points: vec![], marked: true, joined: true };
         let mut times = vec![];
         for &size in sizes {
             let table = table(size);

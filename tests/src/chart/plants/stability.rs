@@ -48,8 +48,8 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     {
         let theory_secs = |share: f32| stable_dt_secs(integrator, FREQUENCY_RAD_PER_S, share);
         let line = (0..=60).map(|n| damping(n as f32 / 60.0)).map(|share| [share, theory_secs(share) * highest_rad_per_s].map(f64::from));
-        curves.push(Curve { name: format!("{formula}, theory"), points: line.collect(), marked: false });
-        let mut found = Curve { name: format!("{name}, measured"), points: vec![], marked: true };
+        curves.push(Curve { name: format!("{formula}, theory"), points: line.collect(), marked: false, joined: true });
+        let mut found = Curve { name: format!("{name}, measured"), points: vec![], marked: true, joined: false };
         let (mut least, mut most) = (f32::INFINITY, 0.0_f32);
         for share in (0..dampings).map(|n| damping(n as f32 / (dampings - 1) as f32)) {
             let (theory, measured) = (theory_secs(share), measured_secs(integrator, share, theory_secs(share)));

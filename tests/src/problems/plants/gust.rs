@@ -34,7 +34,9 @@ impl Gust {
         GUST.get_or_init(|| {
             let mut air = Air::<f32>::new(Method::Staggered, &Config::default()).expect("the default settings are allowed");
             let mut step = |times: usize| {
-                (0..times).for_each(|_| drop(air.step(1.0 / FRAMES as f64, &[]).expect("a step within the limits")));
+                for _ in 0..times {
+                    air.step(1.0 / FRAMES as f64, &[]).expect("a step within the limits");
+                }
                 std::array::from_fn(|place| {
                     std::array::from_fn(|link| {
                         let [x, z] = [place % 8, place / 8].map(|n| 32.0 * n as f32 + 5.0);
@@ -65,8 +67,7 @@ impl Gust {
         winds.collect()
     }
 
-    /// Tips of the blades after the second (m from the root), from steps so short that no integrator matters; by the steps of the wind that it reads, each
-    /// held from its beginning.
+    /// Tips of the blades after the second (m from the root), from steps so short that no integrator matters.
     pub fn tips_m(&self) -> &'static [[f32; 3]] {
         static TIPS: OnceLock<Vec<[f32; 3]>> = OnceLock::new();
         TIPS.get_or_init(|| {
