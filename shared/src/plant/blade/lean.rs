@@ -75,7 +75,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn directions_are_those_of_sine_and_cosine(angle in 0.0_f64..3.14159, heading in 0.0_f64..6.3) {
+        fn directions_are_those_of_sine_and_cosine(angle in 0.0_f64..std::f64::consts::PI, heading in 0.0_f64..6.3) {
             let lean = [angle * heading.cos(), angle * heading.sin()];
             let found = direction(lean.map(|v| v as f32)).map(f64::from);
             let wanted = [angle.sin() * heading.cos(), angle.cos(), angle.sin() * heading.sin()];

@@ -68,7 +68,8 @@ fn frame_secs(gpu: &Gpu, mirror: &mut Mirror, camera: &Camera, frames: u32) -> f
 }
 
 pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
-    let (counts, frames): (&[u32], _) = if quick { (&[100, 300, 1000, 3000, 10_000], 2) } else { (&[250, 800, 2500, 8000, 25_000, 80_000, 262_144], 4) };
+    let (counts, frames): (&[u32], _) =
+        if quick { (&[100, 300, 1000, 3000, 10_000], 2) } else { (&[250, 800, 2500, 8000, 25_000, 80_000, 262_144], 4) };
     let gpu = Gpu::headless()?;
     let camera = Camera { eye_m: Vec3::new(64.0, 45.0, 158.0), pitch_rad: -0.5, ..Camera::default() };
     let bare_secs = frame_secs(&gpu, &mut meadow(0, &camera)?.0, &camera, frames);
@@ -95,8 +96,13 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     };
     let [least, most] = [range(|v| v / 1.3, 0)[0], range(|v| v * 1.3, 0)[1]];
     let top = range(|v| v * 1.5, 1)[1];
-    let bare = Curve { name: "the same without underbrush".into(), points: vec![[least, 1e3 * bare_secs], [most, 1e3 * bare_secs]], marked: false };
-    let measured = Curve { name: format!("with {SPECIES_NAME}"), points, marked: true };
+    let bare = Curve {
+        name: "the same without underbrush".into(),
+        points: vec![[least, 1e3 * bare_secs], [most, 1e3 * bare_secs]],
+        marked: false,
+        joined: true,
+    };
+    let measured = Curve { name: format!("with {SPECIES_NAME}"), points, marked: true, joined: true };
     let axes = [
         Axis { name: "plants in view", range: [least, most], logarithmic: true },
         Axis { name: "time of a frame (ms)", range: [1e3 * bare_secs / 1.5, top], logarithmic: true },
