@@ -129,17 +129,6 @@ fn trailing_leans(plant: Plant, gust: f32) -> array<vec2<f32>, 3> {
     return leans;
 }
 
-fn is_seen(centre: vec3<f32>, radius: f32) -> bool {
-    let m = transpose(frame.projection_from_world);
-    let c = vec4<f32>(centre, 1.0);
-    let left = m[3] + m[0];
-    let right = m[3] - m[0];
-    let low = m[3] + m[1];
-    let high = m[3] - m[1];
-    return dot(left, c) > -radius * length(left.xyz) && dot(right, c) > -radius * length(right.xyz)
-        && dot(low, c) > -radius * length(low.xyz) && dot(high, c) > -radius * length(high.xyz) && dot(m[3], c) > -radius;
-}
-
 // Share of the plants that stand at a distance; the rest make room, and those left grow wider.
 fn density(distance_m: f32) -> f32 {
     return min(pow(plants.shape.y / max(distance_m, 0.01), 1.25), 1.0);

@@ -214,6 +214,18 @@ fn kinds_blended(p: vec2<f32>) -> Kind {
     return blend;
 }
 
+// Whether any of a sphere (m) may be in view.
+fn is_seen(centre: vec3<f32>, radius: f32) -> bool {
+    let m = transpose(frame.projection_from_world);
+    let c = vec4<f32>(centre, 1.0);
+    let left = m[3] + m[0];
+    let right = m[3] - m[0];
+    let low = m[3] + m[1];
+    let high = m[3] - m[1];
+    return dot(left, c) > -radius * length(left.xyz) && dot(right, c) > -radius * length(right.xyz)
+        && dot(low, c) > -radius * length(low.xyz) && dot(high, c) > -radius * length(high.xyz) && dot(m[3], c) > -radius;
+}
+
 // --- wind and bend --------------------------------------------------------------------------------------------------
 
 // Wind (m/s), and the root of the dust's concentration over `DUST_FULL`, at a place in the wind's box.

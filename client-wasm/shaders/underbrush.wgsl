@@ -2,13 +2,13 @@
 // between postures made beforehand (004 section 4.2), widened to ribbons.
 
 struct UnderbrushFrame {
-    // Chunks of plants that may be seen; number of the frame; species; unused.
+    // Number of the frame; unused.
     counts: vec4<u32>,
     // Time since the frame before (s); distance at which plants have shrunk to nothing (m); height of the force field (m); unused.
     shape: vec4<f32>,
     // Corner of the force field and its extent, X and Z (m).
     forces: vec4<f32>,
-    // Of each species: height (m), time constant (s), unused.
+    // Of each species: height (m), time constant (s), how far it reaches from its root at most (m), unused.
     species: array<vec4<f32>, 16>,
     // First place of the species among the listed plants, places of each of its levels, unused.
     places: array<vec4<u32>, 16>,
@@ -57,18 +57,8 @@ const HEADINGS: u32 = 8u;
 const STRENGTHS: u32 = 7u;
 const VARIANTS: u32 = 4u;
 const MIDDLE_PA: f32 = 8.0;
+const STRONGEST: f32 = 0.93;
 const LEVELS: u32 = 4u;
-
-fn is_in_view(centre: vec3<f32>, radius: f32) -> bool {
-    let m = transpose(frame.projection_from_world);
-    let c = vec4<f32>(centre, 1.0);
-    let left = m[3] + m[0];
-    let right = m[3] - m[0];
-    let low = m[3] + m[1];
-    let high = m[3] - m[1];
-    return dot(left, c) > -radius * length(left.xyz) && dot(right, c) > -radius * length(right.xyz)
-        && dot(low, c) > -radius * length(low.xyz) && dot(high, c) > -radius * length(high.xyz) && dot(m[3], c) > -radius;
-}
 
 // Force on a silhouette (Pa) so high above the ground at a root: that of the force field, or beyond it that of the wind alone.
 fn pressure_at(root: vec3<f32>, above_m: f32) -> vec3<f32> {
@@ -108,13 +98,14 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     let nature = brush.species[species];
     let height = nature.x * plant.size;
     let root = vec3<f32>(plant.at.x, ground_height(plant.at), plant.at.y);
-    let distance_m = distance(root + vec3<f32>(0.0, 0.5 * height, 0.0), frame.eye.xyz);
+    let tall = max(height, 0.5 * nature.z * plant.size);
+    let distance_m = distance(root + vec3<f32>(0.0, 0.5 * tall, 0.0), frame.eye.xyz);
     let reach_m = brush.shape.y;
-    if distance_m > reach_m || !is_in_view(root + vec3<f32>(0.0, 0.5 * height, 0.0), 0.9 * height + 0.1) {
+    if distance_m > reach_m || !is_seen(root, nature.z * plant.size * 1.8) {
         return;
     }
     // What is but a few pixels tall thins out, and what is left is larger.
-    let tall_px = height / (distance_m * frame.screen.z);
+    let tall_px = tall / (distance_m * frame.screen.z);
     let kept = clamp(tall_px / 7.0, 0.12, 1.0);
     let lot = random3(vec2<i32>(i32(plant.site), 5), 91u).x;
     let left = clamp((kept - lot) / (0.2 * kept), 0.0, 1.0) * (1.0 - smoothstep(0.8, 1.0, distance_m / reach_m));
@@ -125,12 +116,12 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     let gust = gust_at(plant.at);
     let goal = pressure_at(root, 0.5 * height).xz * (gust * gust);
     var feels = felt[index];
-    if feels.frame + 1u != brush.counts.y {
+    if feels.frame + 1u != brush.counts.x {
         feels.pressure = vec4<f32>(goal, 0.0, 0.0);
     } else {
         feels.pressure = followed(feels.pressure, goal, nature.y, brush.shape.x);
     }
-    feels.frame = brush.counts.y;
+    feels.frame = brush.counts.x;
     felt[index] = feels;
 
     var lean = lean_of_field(plant.at, 0.0);
@@ -138,8 +129,10 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
         let sphere = frame.spheres[s];
         let away = plant.at - sphere.xz;
         let apart = length(away);
-        if apart < sphere.w && sphere.y - sphere.w < root.y + height {
-            lean += away / max(apart, 1e-3) * (1.3 * (1.0 - apart / sphere.w));
+        let deep = clamp((root.y + height - sphere.y + sphere.w) / height, 0.0, 1.0);
+        let pushed = 1.3 * deep * (1.0 - apart / sphere.w);
+        if pushed > length(lean) {
+            lean = away / max(apart, 1e-3) * pushed;
         }
     }
     let tilt = length(lean);
@@ -147,9 +140,10 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
 
     let pressure = feels.pressure.xy;
     let size_pa = length(pressure);
-    let angle = fract((atan2(pressure.y, pressure.x) - plant.heading) / TAU + 1.0) * f32(HEADINGS);
+    let toward = select(0.0, atan2(pressure.y, pressure.x), size_pa > 1e-6);
+    let angle = fract((toward - plant.heading) / TAU + 1.0) * f32(HEADINGS);
     let heading = u32(angle) % HEADINGS;
-    let strength = min(size_pa / (size_pa + MIDDLE_PA) / 0.93, 0.9999) * f32(STRENGTHS - 1u);
+    let strength = min(size_pa / (size_pa + MIDDLE_PA) / STRONGEST, 0.9999) * f32(STRENGTHS - 1u);
     let is_broken = (broken[plant.site >> 5u] >> (plant.site & 31u)) & 1u;
     let make = (plant.make >> 8u) % VARIANTS + is_broken * VARIANTS;
     let posture = (make * HEADINGS + heading) * STRENGTHS + u32(strength);
@@ -180,7 +174,7 @@ fn finish(@builtin(local_invocation_index) list: u32) {
 // --- drawing ----------------------------------------------------------------------------------------------------------
 
 struct BrushList {
-    // First row of the species' postures; rows of a plant; first look; plants in an instance.
+    // Rows of a plant; plants in an instance; unused.
     rows: vec4<u32>,
     // Number of the list; first of the listed plants; 1 if the nearest posture will do; unused.
     which: vec4<u32>,
@@ -221,7 +215,7 @@ fn octahedral(word: u32) -> vec3<f32> {
 }
 
 fn row_of(posture: u32, row: u32) -> BentRow {
-    let at = (list.rows.x + posture * list.rows.y + row) * 3u;
+    let at = (posture * list.rows.x + row) * 3u;
     let a = postures[at];
     let b = postures[at + 1u];
     let place = vec3<f32>(vec3<i32>(i32(a << 16u) >> 16u, i32(a) >> 16u, i32(b << 16u) >> 16u));
@@ -247,8 +241,8 @@ fn turned(v: vec3<f32>, heading: f32, lean: vec2<f32>) -> vec3<f32> {
 
 @vertex
 fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Ribbon {
-    let rows = list.rows.y;
-    let number = instance * list.rows.w + index / (2u * rows);
+    let rows = list.rows.x;
+    let number = instance * list.rows.y + index / (2u * rows);
     let local = index % (2u * rows);
     let row = local / 2u;
     var out: Ribbon;
@@ -268,7 +262,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
         let upper = blended(row_of(posture + 1u, row), row_of(aside + 1u, row), plant.posture.z);
         bent = blended(lower, upper, plant.posture.w);
     }
-    let look = looks[list.rows.z + row];
+    let look = looks[posture / (HEADINGS * STRENGTHS) * rows + row];
     let stuff = look.x >> 16u;
     let size = plant.root.w;
     let distance_m = plant.towards.z;

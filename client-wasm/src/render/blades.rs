@@ -20,8 +20,8 @@ const ROWS: [u32; 2] = [7, 3];
 /// Vertices of a flower head; twin of `VERTICES` in `flowers.wgsl`.
 const FLOWER_VERTICES: u32 = 67;
 /// Bytes of a drawn blade and of its sway, as in `common.wgsl` and `blade.wgsl`.
-const BLADE_BYTES: u64 = 64;
-const SWAY_BYTES: u64 = 48;
+pub(super) const BLADE_BYTES: u64 = 64;
+pub(super) const SWAY_BYTES: u64 = 48;
 /// Longest step of the schemes that have a limit (s), and most of them in a frame; below 15 frames a second such blades move in slow motion.
 const STEP_SECS: f32 = 1.0 / 120.0;
 const STEP_LIMIT: f32 = 8.0;

@@ -84,7 +84,7 @@ impl Forces {
             let [x, y, z] = pose.position_m;
             let speed2: f32 = pose.velocity_m_per_s.iter().map(|v| v * v).sum();
             if speed2 > LEAST_M_PER_S * LEAST_M_PER_S {
-                let radius_m = pose.kind.half_extents_m().into_iter().fold(0.0, f32::max).min(2.0);
+                let radius_m = land.scene().objects.half_extents_m(pose.kind).into_iter().fold(0.0, f32::max).min(2.0);
                 let at_m = [x, y - land.heights().height_m(x, z), z];
                 Ball { at_m, radius_m, velocity_m_per_s: pose.velocity_m_per_s }.push(&mut self.field, dt_secs);
             }

@@ -19,13 +19,12 @@ fn kind(scene: &Scene, grass: &Grass, plants: &Plants) -> Kind {
     let [root, tip] = [plants.root_rgb, plants.tip_rgb];
     let usual = scene.grass.stiffness_per_s2;
     let stiffness = if usual > 0.0 { grass.stiffness_per_s2 / usual } else { 1.0 };
-    let swing_rad_per_s = TAU * plants.swing_hz * stiffness.powf(0.25);
     let droop = stiffness.powf(-0.25).clamp(0.5, 1.6);
     let width = (plants.height_m / scene.plants.height_m).sqrt().clamp(0.8, 1.5);
     Kind {
         root: [root[0], root[1], root[2], plants.height_m],
         tip: [tip[0], tip[1], tip[2], grass.wind_bend_rad],
         lag: [grass.c0_m_per_s, grass.mu_m_per_rad, grass.lag_secs, grass.recovery_lag_share],
-        shape: [grass.segments as f32, swing_rad_per_s, droop, width],
+        shape: [grass.segments as f32, TAU * plants.swing_hz, droop, width],
     }
 }

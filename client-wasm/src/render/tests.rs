@@ -1,7 +1,7 @@
 use super::pipeline::{Maker, bind, storage_rw};
 use super::shaders;
 use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Plants, Shower, UnderbrushFrame};
-use super::{Gpu, Picture, Quality};
+use super::{Gpu, Picture, Quality, blades};
 use crate::camera::Camera;
 use crate::state::Mirror;
 use glam::Vec3;
@@ -63,6 +63,20 @@ fn uniform_blocks_lie_as_their_twins() {
     let underbrush = self::module(shaders::UNDERBRUSH);
     assert_twins(&underbrush, "UnderbrushFrame", UnderbrushFrame::LAYOUT, size_of::<UnderbrushFrame>());
     assert_twins(&underbrush, "BrushList", BrushList::LAYOUT, size_of::<BrushList>());
+    for (of, name, bytes) in [
+        (&module, "Sway", blades::SWAY_BYTES as u32),
+        (&module, "Blade", blades::BLADE_BYTES as u32),
+        (&underbrush, "Grown", 24),
+        (&underbrush, "Felt", 32),
+        (&underbrush, "Stand", 64),
+    ] {
+        let (_, found) = of.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("it is there");
+        assert!(
+            matches!(found.inner, naga::TypeInner::Struct { span, .. } if span == bytes),
+            "{name} has not {bytes} bytes: {:?}",
+            found.inner
+        );
+    }
     assert_twins(&self::module(shaders::RAIN), "Shower", Shower::LAYOUT, size_of::<Shower>());
     assert_twins(&self::module(shaders::DUST), "Drift", Drift::LAYOUT, size_of::<Drift>());
 }
@@ -323,17 +337,17 @@ fn places_have_the_kind_of_their_map() {
     }
 }
 
-/// What a blade of the comparison is like and where it starts; 12 × 4 floats, as `Case` in the WGSL below.
-fn blade_case(n: usize) -> ([[f32; 4]; 3], [[f32; 4]; 3], [f32; 4], [f32; 4], [f32; 4]) {
-    let random = |k: u32| hash3([n as u32, k, 77]).map(|v| (v >> 8) as f32 / 16_777_216.0);
-    let links = std::array::from_fn(|i| {
-        let [a, b, c] = random(i as u32);
+/// What a blade of the comparison is like and where it starts: links, what acts on them, blade, root, normal, as `Case` in the WGSL below.
+fn blade_case(n: u32) -> [[f32; 4]; 9] {
+    let random = |k: u32| hash3([n, k, 77]).map(|v| (v >> 8) as f32 / 16_777_216.0);
+    let link = |i: u32| {
+        let [a, b, c] = random(i);
         [a * 2.0 - 1.0, b * 2.0 - 1.0, c * 8.0 - 4.0, 4.0 * a - 2.0]
-    });
-    let acts = std::array::from_fn(|i| {
-        let [a, b, c] = random(10 + i as u32);
+    };
+    let acts = |i: u32| {
+        let [a, b, c] = random(10 + i);
         [a - 0.5, b - 0.5, c * 16.0 - 8.0, a * 10.0 - 5.0]
-    });
+    };
     let [a, b, c] = random(20);
     let [x, z, way] = random(22);
     // Steps that the schemes with a limit can take.
@@ -342,7 +356,8 @@ fn blade_case(n: usize) -> ([[f32; 4]; 3], [[f32; 4]; 3], [f32; 4], [f32; 4], [f
     let [rx, rz, t] = random(21);
     let root = [30.0 + 5.0 * rx, 0.0, 30.0 + 5.0 * rz, longest_secs * (0.1 + 0.9 * t)];
     let normal = Vec3::new(0.6 * (x - 0.5), 1.0, 0.6 * (z - 0.5)).normalize();
-    (links, acts, blade, root, [normal.x, normal.y, normal.z, (way * 3.0).floor()])
+    let normal = [normal.x, normal.y, normal.z, (way * 3.0).floor()];
+    [link(0), link(1), link(2), acts(0), acts(1), acts(2), blade, root, normal]
 }
 
 #[test]
@@ -383,15 +398,12 @@ fn blades_move_as_their_twins_do() {
     assert!(count >= 2, "the monsters' feet push plants aside");
 
     let cases: Vec<_> = (0..600).map(blade_case).collect();
-    let inputs: Vec<[f32; 4]> = cases
-        .iter()
-        .flat_map(|(links, acts, blade, root, normal)| links.iter().chain(acts).chain([blade, root, normal]).copied())
-        .collect();
-    let outputs = compute(&gpu, &picture, &format!("{}\n{SOURCE}", shaders::BLADE), &inputs, cases.len() as u32);
+    let source = format!("{}\n{SOURCE}", shaders::BLADE);
+    let outputs = compute(&gpu, &picture, &source, cases.as_flattened(), cases.len() as u32);
     let mut touching = 0;
-    for ((links, acts, [length_m, frequency_rad_per_s, damping_share, lean_per_wind2], root, [x, y, z, way]), found) in
-        cases.into_iter().zip(outputs.chunks_exact(9))
-    {
+    for (case, found) in cases.into_iter().zip(outputs.chunks_exact(9)) {
+        let [l0, l1, l2, a0, a1, a2, [length_m, frequency_rad_per_s, damping_share, lean_per_wind2], root, [x, y, z, way]] = case;
+        let (links, acts) = ([l0, l1, l2], [a0, a1, a2]);
         let blade = Blade { length_m, frequency_rad_per_s, damping_share, lean_per_wind2 };
         let integrator = [BladeIntegrator::Euler, BladeIntegrator::Verlet, BladeIntegrator::Exact][way as usize];
         let about =

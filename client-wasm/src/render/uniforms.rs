@@ -120,13 +120,13 @@ uniform_block! {
 uniform_block! {
     /// What the compute pass of the underbrush knows; its twin is in `underbrush.wgsl`.
     UnderbrushFrame {
-        /// Chunks of plants that may be seen; number of the frame; species; unused.
+        /// Number of the frame; unused.
         counts: [u32; 4],
         /// Time since the frame before (s); distance at which plants have shrunk to nothing (m); height of the force field (m); unused.
         shape: [f32; 4],
         /// Corner of the force field and its extent, X and Z (m).
         forces: [f32; 4],
-        /// Of each species: height (m), time constant (s), unused.
+        /// Of each species: height (m), time constant (s), how far it reaches from its root at most (m), unused.
         species: [[f32; 4]; SPECIES_LIMIT],
         /// First place of the species among the listed plants, places of each of its levels, unused.
         places: [[u32; 4]; SPECIES_LIMIT],
@@ -136,7 +136,7 @@ uniform_block! {
 uniform_block! {
     /// A species of underbrush at a level of detail, as it is drawn; its twin is in `underbrush.wgsl`.
     BrushList {
-        /// First row of the species' postures; rows of a plant; first look; plants in an instance.
+        /// Rows of a plant; plants in an instance; unused.
         rows: [u32; 4],
         /// Number of the list; first of the listed plants; 1 if the nearest posture will do; unused.
         which: [u32; 4],

@@ -264,7 +264,7 @@ fn underbrush_that_the_client_cannot_hold_is_refused() {
         assert_eq!(refused(change).as_deref(), Some(message));
     }
     let many = refused(|scene| scene.underbrush[0].components.iter_mut().for_each(|component| component.count = 32));
-    assert_eq!(many.as_deref(), Some("parts of a plant is 1056; allowed: at most 128"));
+    assert_eq!(many.as_deref(), Some("parts of a plant is 1056; allowed: at most 64"));
 }
 
 #[test]

@@ -97,6 +97,16 @@ pub fn height_m(species: &Underbrush) -> f32 {
     tips.into_iter().map(|(_, tip_m)| tip_m).fold(0.01, f32::max)
 }
 
+/// How far a species' plants reach from their root at most (m), however they lean: the longest way along components that stand on each other.
+pub fn reach_m(species: &Underbrush) -> f32 {
+    let mut ways: Vec<(&Component, f32)> = Vec::new();
+    for component in &species.components {
+        let foot_m = ways.iter().find(|(other, _)| other.name == component.on).map_or(0.0, |&(_, way_m)| way_m);
+        ways.push((component, foot_m + component.length_m * (1.0 + component.length_variation) + 0.5 * component.width_m));
+    }
+    ways.into_iter().map(|(_, way_m)| way_m).fold(0.01, f32::max)
+}
+
 /// How far a component rises from its foot (m): its length by the cosine of its angle.
 fn rise_m(component: &Component) -> f32 {
     component.length_m * super::blade::lean::direction([component.angle_rad, 0.0])[1]
@@ -136,6 +146,8 @@ mod tests {
         (leaf.on, leaf.to_share, leaf.length_m, leaf.angle_rad) = ("stalk".into(), 0.5, 0.3, std::f32::consts::FRAC_PI_3);
         assert!((height_m(&Underbrush::new("a", vec![stalk.clone(), leaf.clone()])) - 1.0).abs() < 1e-6);
         leaf.to_share = 1.0;
-        assert!((height_m(&Underbrush::new("a", vec![stalk, leaf])) - 1.15).abs() < 1e-5);
+        let species = Underbrush::new("a", vec![stalk, leaf]);
+        assert!((height_m(&species) - 1.15).abs() < 1e-5);
+        assert!((reach_m(&species) - 1.2 * 1.3 - 2.0 * 0.005).abs() < 1e-5, "{}", reach_m(&species));
     }
 }

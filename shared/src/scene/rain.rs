@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Rain that beats on the plants: an outer agent of their force field (004 §1, §4.1).
+/// Rain: an outer agent of the plants' force field (004 §1, §4.1), where it weighs little, and under an overcast sky.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Rain {

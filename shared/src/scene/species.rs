@@ -31,7 +31,7 @@ pub struct Species {
     pub theta_damping_per_s: f32,
     /// Damping rate of the bending velocity (1/s). Default 6 or as in `[grass]`, allowed 0..=200.
     pub omega_damping_per_s: f32,
-    /// Restoring rate (1/s²); stiffer plants also swing faster and droop less. Default 1.2 or as in `[grass]`, allowed 0..=10000.
+    /// Restoring rate (1/s²); stiffer plants also droop less. Default 1.2 or as in `[grass]`, allowed 0..=10000.
     pub stiffness_per_s2: f32,
     /// Largest bend on flat land (rad). Default 1.45 or as in `[grass]`, allowed 0.1..=1.57.
     pub theta_max_rad: f32,

@@ -31,7 +31,7 @@ pub struct Component {
     pub kind: ComponentKind,
     /// Name of the branch that it stands on, which comes before it; empty for the ground. Default empty.
     pub on: String,
-    /// How many stand on the ground or on each of those branches. Default 1, allowed 1..=32, and at most 128 on a plant of all components.
+    /// How many stand on the ground or on each of those branches. Default 1, allowed 1..=32, and at most 64 on a plant of all components.
     pub count: u32,
     /// Where the lowest of them stands, as a share of the branch's length. Default 1, allowed 0..=1.
     pub from_share: f32,

@@ -4,6 +4,7 @@
 //! same rows, whatever bends them, so that the GPU blends rows and no more.
 
 use glam::Vec3;
+use shared::plant::flora::reach_m;
 use shared::plant::underbrush::plan::{Part, Placed, Plan};
 use shared::plant::underbrush::plant::{Forces, LookUp, Posed, Stand, posed};
 use shared::plant::underbrush::vectors::{petals, vectors};
@@ -18,6 +19,8 @@ pub(super) const HEADINGS: u32 = 8;
 pub(super) const STRENGTHS: u32 = 7;
 /// Pressure in the middle of the range (Pa), that of 3.7 m/s; twin of the constant in `underbrush.wgsl`.
 const MIDDLE_PA: f32 = 8.0;
+/// q/(q + 8) of the strongest; twin of the constant in `underbrush.wgsl`.
+const STRONGEST: f32 = 0.93;
 /// Levels of detail: every section, every second, fourth, and the whole component as one, of fewer components.
 pub(super) const LEVELS: usize = 4;
 /// Most leaves of a plant in the coarsest level.
@@ -27,7 +30,7 @@ const WIDTH_UNIT_M: f32 = 1.0 / 16_384.0;
 
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 
-/// What of a row stays as it is however it bends: half its width, its share of the component's length, what it is of, and its colour.
+/// What of a row stays as it is however it bends: half its width, its colour, and what it is of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Look {
     half_m: f32,
@@ -60,51 +63,59 @@ struct Row {
     along: Vec3,
 }
 
+/// All plants of a species that are made beforehand, bent in all ways: by make (whole ones, then broken ones), heading and strength.
+pub(super) struct Bent {
+    placed: Vec<Placed>,
+    poses: Vec<Vec<Posed>>,
+    extent_m: f32,
+}
+
+impl Bent {
+    /// Bends the plants of `species`, made by `plan`.
+    pub(super) fn new(species: &Underbrush, plan: &Plan) -> Self {
+        let mut poses = Vec::new();
+        for broken in [0, u64::MAX] {
+            for number in 0..VARIANTS {
+                let placed = plan.placed(number);
+                let winds = (0..HEADINGS).flat_map(|heading| (0..STRENGTHS).map(move |strength| (heading, strength)));
+                poses.extend(winds.map(|(heading, strength)| bent(plan, &placed, broken, heading, strength)));
+            }
+        }
+        Self { placed: plan.placed(0), poses, extent_m: reach_m(species) }
+    }
+
+    /// Unit of the rows' places (m): no plant of the species' own size reaches farther.
+    pub(super) fn extent_m(&self) -> f32 {
+        self.extent_m
+    }
+}
+
 /// A species at a level of detail.
 pub(super) struct Baked {
-    /// Of each row.
+    /// Of each row, make by make.
     pub(super) looks: Vec<Look>,
     /// Rows of each component or petal, in order.
     pub(super) ribbons: Vec<u32>,
-    /// Rows by make (whole ones, then broken ones), heading, strength and number, each packed in three words.
+    /// Rows by make, heading, strength and number, each packed in three words.
     pub(super) rows: Vec<[u32; 3]>,
-    /// Unit of the rows' places (m).
-    pub(super) extent_m: f32,
-}
-
-/// Dynamic pressure of a strength (Pa): q/(q + 8) in even steps, the last at 104 Pa, a wind of 13 m/s.
-pub(super) fn pressure_pa(strength: u32) -> f32 {
-    let share = strength as f32 / (STRENGTHS - 1) as f32 * 0.93;
-    MIDDLE_PA * share / (1.0 - share)
 }
 
 impl Baked {
-    /// Bends the plants of `species`, made by `plan`, at a level of detail.
-    pub(super) fn new(species: &Underbrush, plan: &Plan, level: usize) -> Self {
-        let makes: Vec<(Vec<Placed>, u64)> =
-            [0, u64::MAX].into_iter().flat_map(|broken| (0..VARIANTS).map(move |number| (plan.placed(number), broken))).collect();
-        let mut poses: Vec<Vec<Posed>> = Vec::new();
-        for (placed, broken) in &makes {
-            for heading in 0..HEADINGS {
-                for strength in 0..STRENGTHS {
-                    poses.push(bent(plan, placed, *broken, heading, strength));
-                }
-            }
-        }
-        let kept = kept(plan, &makes[0].0, level);
-        let reach_m =
-            |pose: &Vec<Posed>| pose.iter().flat_map(|one| one.sections()).map(|one| one.end_m.abs().max_element()).fold(0.0, f32::max);
-        let extent_m = 1.05 * poses.iter().map(reach_m).fold(0.01, f32::max) + widest_m(species);
-        let mut baked = Self { looks: Vec::new(), ribbons: Vec::new(), rows: Vec::new(), extent_m };
-        for (number, pose) in poses.iter().enumerate() {
+    /// What a level of detail shows of bent plants.
+    pub(super) fn new(plan: &Plan, bent: &Bent, level: usize) -> Self {
+        let kept = kept(plan, &bent.placed, level);
+        let mut baked = Self { looks: Vec::new(), ribbons: Vec::new(), rows: Vec::new() };
+        for (number, pose) in bent.poses.iter().enumerate() {
             for &(index, wider) in &kept {
                 let one = &pose[index];
                 for ribbon in ribbons(&plan.parts[one.part], one, level, wider) {
                     if number == 0 {
                         baked.ribbons.push(ribbon.len() as u32);
+                    }
+                    if number % (HEADINGS * STRENGTHS) as usize == 0 {
                         baked.looks.extend(ribbon.iter().map(|&(_, look)| look));
                     }
-                    baked.rows.extend(ribbon.iter().map(|(row, _)| packed(row, extent_m)));
+                    baked.rows.extend(ribbon.iter().map(|(row, _)| packed(row, bent.extent_m)));
                 }
             }
         }
@@ -126,8 +137,10 @@ impl Baked {
     }
 }
 
-fn widest_m(species: &Underbrush) -> f32 {
-    species.components.iter().map(|component| component.width_m).fold(0.0, f32::max)
+/// Dynamic pressure of a strength (Pa): q/(q + 8) in even steps, the last at 106 Pa, a wind of 13 m/s.
+fn pressure_pa(strength: u32) -> f32 {
+    let share = strength as f32 / (STRENGTHS - 1) as f32 * STRONGEST;
+    MIDDLE_PA * share / (1.0 - share)
 }
 
 fn bent(plan: &Plan, placed: &[Placed], broken: u64, heading: u32, strength: u32) -> Vec<Posed> {
@@ -148,9 +161,10 @@ fn kept(plan: &Plan, placed: &[Placed], level: usize) -> Vec<(usize, f32)> {
     let step = leaves.len().div_ceil(COARSE_LEAVES).max(1);
     let thinned: Vec<usize> = leaves.iter().copied().step_by(step).collect();
     let wider = leaves.len() as f32 / thinned.len().max(1) as f32;
+    let is_all_thin = leaves.is_empty() && !(0..placed.len()).any(is_stout);
     let shown = |index: &usize| match kind(*index) {
         ComponentKind::Leaf => thinned.contains(index),
-        ComponentKind::Branch => is_stout(*index),
+        ComponentKind::Branch => is_all_thin || is_stout(*index),
         ComponentKind::Flower => true,
     };
     let width = |index: usize| (index, if kind(index) == ComponentKind::Leaf { wider.powf(0.75) } else { 1.0 });
@@ -242,14 +256,25 @@ mod tests {
         let species = tuft();
         let plan = Plan::new(&species, Nodes::default());
         let mut before = usize::MAX;
+        let bent = Bent::new(&species, &plan);
         for level in 0..LEVELS {
-            let baked = Baked::new(&species, &plan, level);
-            let postures = (2 * VARIANTS * HEADINGS * STRENGTHS) as usize;
-            assert_eq!(baked.rows.len(), postures * baked.looks.len());
-            assert_eq!(baked.ribbons.iter().sum::<u32>() as usize, baked.looks.len());
-            assert!(baked.looks.len() < before, "{} rows after {before}", baked.looks.len());
-            assert_eq!(baked.indices(3).iter().max().map(|&last| last as usize), Some(6 * baked.looks.len() - 1));
-            before = baked.looks.len();
+            let baked = Baked::new(&plan, &bent, level);
+            let rows = baked.ribbons.iter().sum::<u32>() as usize;
+            assert_eq!(baked.looks.len(), 2 * VARIANTS as usize * rows);
+            assert_eq!(baked.rows.len(), (HEADINGS * STRENGTHS) as usize * baked.looks.len());
+            assert!(rows < before, "{rows} rows after {before}");
+            assert_eq!(baked.indices(3).iter().max().map(|&last| last as usize), Some(6 * rows - 1));
+            before = rows;
+        }
+    }
+
+    #[test]
+    fn every_level_shows_something_of_every_plant() {
+        for (kind, width_m) in [(ComponentKind::Branch, 0.004), (ComponentKind::Flower, 0.03), (ComponentKind::Leaf, 0.001)] {
+            let species = Underbrush::new("one", vec![Component { width_m, ..Component::new("one", kind) }]);
+            let plan = Plan::new(&species, Nodes::default());
+            let bent = Bent::new(&species, &plan);
+            assert!((0..LEVELS).all(|level| !Baked::new(&plan, &bent, level).rows.is_empty()), "{kind:?}");
         }
     }
 
@@ -259,7 +284,8 @@ mod tests {
             Underbrush::new("leaf", vec![Component { sections: 8, length_variation: 0.0, ..Component::new("leaf", ComponentKind::Leaf) }]);
         let plan = Plan::new(&species, Nodes::default());
         let area = |level: usize| {
-            let halves: Vec<f32> = Baked::new(&species, &plan, level).looks.iter().map(|look| look.half_m).collect();
+            let baked = Baked::new(&plan, &Bent::new(&species, &plan), level);
+            let halves: Vec<f32> = baked.looks[..baked.ribbons[0] as usize].iter().map(|look| look.half_m).collect();
             halves.windows(2).map(|pair| pair[0] + pair[1]).sum::<f32>() / (halves.len() - 1) as f32
         };
         for level in 0..LEVELS {

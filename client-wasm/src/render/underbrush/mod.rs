@@ -10,10 +10,10 @@ use super::pipeline::{Draw, Maker, sampled, storage, storage_rw, uniform};
 use super::shaders;
 use super::uniforms::{BrushList, UnderbrushFrame};
 use crate::state::Land;
-use bake::{Baked, LEVELS, VARIANTS};
+use bake::{Baked, Bent, LEVELS, VARIANTS};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use shared::plant::flora::{Flora, height_m};
+use shared::plant::flora::{Flora, height_m, reach_m};
 use shared::plant::growth::SPECIES_LIMIT;
 use wgpu::BufferUsages;
 
@@ -26,6 +26,8 @@ const INSTANCE_VERTICES: u32 = 2048;
 /// Bytes of a plant's feelings and of how it stands, as in `underbrush.wgsl`.
 const FELT_BYTES: u64 = 32;
 const STAND_BYTES: u64 = 64;
+/// Most plants that are drawn: as many stand in the 128 MiB that every device binds at once.
+const PLANT_LIMIT: usize = (128 << 20) / STAND_BYTES as usize;
 /// Words of an indirect draw and of what `finish` needs beside it.
 const DRAW_WORDS: usize = 8;
 
@@ -78,12 +80,15 @@ pub(super) struct Underbrush {
 }
 
 impl Underbrush {
-    /// Of a scene that has any.
+    /// Of a scene in which any grows.
     pub(super) fn new(maker: &Maker<'_>, land: &Land, forces: &Forces, reach_m: f32) -> Option<Self> {
         let flora = land.flora()?;
         let gpu = maker.gpu;
         let (grown, tiles) = tiles(land, flora);
-        let count = grown.len().max(1) as u64;
+        if grown.is_empty() {
+            return None;
+        }
+        let count = grown.len() as u64;
         let storage_usage = BufferUsages::STORAGE;
 
         let mut places = [[0; 4]; SPECIES_LIMIT];
@@ -94,9 +99,6 @@ impl Underbrush {
             first += own * LEVELS as u32;
         }
         let mut species = [[0.0; 4]; SPECIES_LIMIT];
-        for (slot, own) in species.iter_mut().zip(flora.species()) {
-            *slot = [height_m(own), own.settle_secs, 0.0, 0.0];
-        }
 
         let sites = flora.grown().sites.total() as u64;
         let plants = gpu.buffer("underbrush", bytemuck::cast_slice(&grown), storage_usage);
@@ -123,9 +125,11 @@ impl Underbrush {
         let mut draw_words = vec![0_u32; SPECIES_LIMIT * LEVELS * DRAW_WORDS];
         let mut lists = Vec::new();
         for (number, (own, plan)) in flora.species().iter().zip(flora.plans()).enumerate() {
+            let bent = Bent::new(own, plan);
+            species[number] = [height_m(own), own.settle_secs, bent.extent_m(), 0.0];
             for level in 0..LEVELS {
-                let baked = Baked::new(own, plan, level);
-                let rows = baked.looks.len() as u32;
+                let baked = Baked::new(plan, &bent, level);
+                let rows = baked.ribbons.iter().sum::<u32>();
                 let held = (INSTANCE_VERTICES / (2 * rows)).clamp(1, 64);
                 let indices = baked.indices(held);
                 let list = number * LEVELS + level;
@@ -133,9 +137,9 @@ impl Underbrush {
                 draw_words[list * DRAW_WORDS + 5] = held;
                 let looks: Vec<[u32; 2]> = baked.looks.iter().map(|look| look.packed()).collect();
                 let settings = BrushList {
-                    rows: [0, rows, 0, held],
+                    rows: [rows, held, 0, 0],
                     which: [list as u32, places[number][0] + level as u32 * places[number][1], u32::from(level + 1 == LEVELS), 0],
-                    scale: [baked.extent_m, 0.0, 0.0, 0.0],
+                    scale: [bent.extent_m(), 0.0, 0.0, 0.0],
                 };
                 let postures = gpu.buffer("postures", bytemuck::cast_slice(&baked.rows), storage_usage);
                 let looks = gpu.buffer("looks", bytemuck::cast_slice(&looks), storage_usage);
@@ -191,7 +195,7 @@ impl Underbrush {
         self.chunk_count = chunks.len() as u32;
         self.frame_number = self.frame_number.wrapping_add(1);
         let frame = UnderbrushFrame {
-            counts: [self.chunk_count, self.frame_number, 0, 0],
+            counts: [self.frame_number, 0, 0, 0],
             shape: [dt_secs.max(0.0), self.reach_m, forces.height_m(), 0.0],
             forces: forces.window_m(),
             species: self.species,
@@ -253,16 +257,17 @@ fn numbered(
 
 /// All plants, square by square, and the squares.
 fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
-    let heights_m: Vec<f32> = flora.species().iter().map(height_m).collect();
+    let reaches_m: Vec<f32> = flora.species().iter().map(reach_m).collect();
     let mut by_tile: Vec<([i32; 2], Grown, f32)> = flora
         .grown()
         .plants()
         .iter()
+        .take(PLANT_LIMIT)
         .map(|plant| {
             let standing = flora.standing(plant);
             let make = standing.species as u32 | (standing.number % VARIANTS) << 8;
             let grown = Grown { at_m: standing.at_m, size: standing.size, make, heading_rad: standing.heading_rad, site: plant.site };
-            (standing.at_m.map(|m| (m / TILE_M) as i32), grown, heights_m[standing.species] * standing.size)
+            (standing.at_m.map(|m| (m / TILE_M) as i32), grown, reaches_m[standing.species] * standing.size)
         })
         .collect();
     by_tile.sort_by_key(|&([x, z], ..)| [z, x]);
@@ -270,12 +275,11 @@ fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
     let mut first = 0;
     for own in by_tile.chunk_by(|a, b| a.0 == b.0) {
         let (mut low_m, mut high_m) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        for (_, plant, height_m) in own {
+        for (_, plant, reach_m) in own {
             let [x, z] = plant.at_m;
             let ground_m = land.heights().height_m(x, z);
-            // As far aside as it is tall: it may lie down.
-            low_m = low_m.min(Vec3::new(x - height_m, ground_m - 0.1, z - height_m));
-            high_m = high_m.max(Vec3::new(x + height_m, ground_m + 1.1 * height_m, z + height_m));
+            low_m = low_m.min(Vec3::new(x - reach_m, ground_m - 0.1, z - reach_m));
+            high_m = high_m.max(Vec3::new(x + reach_m, ground_m + reach_m, z + reach_m));
         }
         tiles.push(Tile { low_m, high_m, first, count: own.len() as u32 });
         first += own.len() as u32;

@@ -1,4 +1,4 @@
-//! How a plant stands under the forces that it feels: the twin of the vertex shader.
+//! How a plant stands under the forces that it feels; the GPU blends between such postures.
 
 use super::plan::{Placed, Plan, SECTIONS_LIMIT};
 use super::posture::Postures;

@@ -11,7 +11,7 @@ pub const SPECIES_LIMIT: usize = 16;
 pub const COMPONENTS_LIMIT: usize = 16;
 
 /// Most leaves, branches and flowers of one plant.
-pub const PARTS_LIMIT: u64 = 128;
+pub const PARTS_LIMIT: u64 = crate::plant::underbrush::plan::COMPONENTS_LIMIT as u64;
 
 /// Most sites of a world that plants may take.
 pub const SITES_LIMIT: u64 = 1 << 22;
