@@ -146,14 +146,14 @@ fn values_that_do_not_fit_each_other_are_told() {
 #[test]
 fn a_plant_has_its_limit_of_leaves_branches_and_flowers() {
     let shrub = |leaves: u32| {
-        let (on_stem, on_twig) = ("on = 'stem'\ncount = 9", format!("on = 'twig'\ncount = {leaves}"));
+        let (on_stem, on_twig) = ("on = 'stem'\ncount = 5", format!("on = 'twig'\ncount = {leaves}"));
         species(&[("stem", "branch", "count = 3"), ("twig", "branch", on_stem), ("leaf", "leaf", &on_twig)])
     };
-    assert_eq!(scene(&shrub(3)).unwrap().underbrush[0].parts(), [3, 27, 81]);
+    assert_eq!(scene(&shrub(3)).unwrap().underbrush[0].parts(), [3, 15, 45]);
     assert_eq!(
         fault(&shrub(4)),
-        "`underbrush[0].components[2].count` is 4 on each of what it stands on, which makes 138 leaves, branches and flowers of a plant with those before \
-         it; allowed: 128"
+        "`underbrush[0].components[2].count` is 4 on each of what it stands on, which makes 78 leaves, branches and flowers of a plant with those before \
+         it; allowed: 64"
     );
     // Sixteen generations of 32 are more than can be counted.
     let names: Vec<_> = (0..16).map(|i| i.to_string()).collect();
