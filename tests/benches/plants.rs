@@ -105,7 +105,7 @@ impl Wind {
         for _ in 0..240 {
             air.step(f64::from(DT_SECS), &[]).expect("a step within the limits");
         }
-        let (count, spacing_m) = (config.cells, config.spacing_m.map(|h| h as f32));
+        let (count, spacing_m) = (config.cells, config.spacing_m);
         let centre = |n: usize, axis: usize| (n as f32 + 0.5) * spacing_m[axis];
         let places = (0..count[0] * count[1] * count[2]).map(|n| [n % count[0], n / count[0] / count[2], n / count[0] % count[2]]);
         let velocity = |[x, y, z]: [usize; 3]| air.velocity_at([centre(x, 0), centre(y, 1), centre(z, 2)]);
@@ -299,7 +299,7 @@ fn postures() {
     let (joints, shares) = (joints(8, 0.5), shares(8, 0.5));
     let table = Postures::new(&joints, &shares, Nodes::default());
     let asked: Vec<[f32; 2]> = (0..4096)
-        .map(|n| [share([n, 1, 2]) * 3.14, 0.1 * 2000.0_f32.powf(share([n, 2, 2]))])
+        .map(|n| [share([n, 1, 2]) * std::f32::consts::PI, 0.1 * 2000.0_f32.powf(share([n, 2, 2]))])
         .map(|[angle, load]| [angle.cos(), load])
         .collect();
     let balance = time(|| {

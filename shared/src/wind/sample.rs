@@ -58,22 +58,27 @@ impl WindCells {
     }
 
     /// Both parts in a cell and in the one east of it.
+    #[inline(always)]
     fn pair(&self, first: usize) -> f32x4 {
-        let numbers = &self.numbers[first..first + 4];
-        f32x4::from([numbers[0], numbers[1], numbers[2], numbers[3]])
+        bytemuck::pod_read_unaligned(bytemuck::cast_slice(&self.numbers[first..first + 4]))
     }
 }
 
 /// Places taken to the first of the boxes that repeat.
+#[inline(always)]
 fn around(place: f32x8, count: usize) -> f32x8 {
     let count = count as f32;
-    place - f32x8::splat(count) * (place * f32x8::splat(1.0 / count)).floor()
+    let boxes = place * f32x8::splat(1.0 / count);
+    let nearer = f32x8::from_i32x8(boxes.fast_trunc_int());
+    let first = nearer - (nearer.simd_gt(boxes) & f32x8::ONE);
+    place - f32x8::splat(count) * first
 }
 
 /// The cell before each place, of so many that have one after them, and the share of the way to that.
+#[inline(always)]
 fn split(place: f32x8, count: usize) -> [f32x8; 2] {
-    let within = place.max(f32x8::ZERO).min(f32x8::splat(count as f32));
-    let cell = f32x8::from_i32x8(within.min(f32x8::splat(count as f32 - 1.0)).fast_trunc_int());
+    let within = f32x8::ZERO.fast_max(place.fast_min(f32x8::splat(count as f32)));
+    let cell = f32x8::from_i32x8(within.fast_min(f32x8::splat(count as f32 - 1.0)).fast_trunc_int());
     [cell, within - cell]
 }
 

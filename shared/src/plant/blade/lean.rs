@@ -75,7 +75,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn directions_are_those_of_sine_and_cosine(angle in 0.0_f64..std::f64::consts::PI, heading in 0.0_f64..6.3) {
+        fn directions_are_those_of_sine_and_cosine(angle in 0.0..std::f64::consts::PI, heading in 0.0_f64..6.3) {
             let lean = [angle * heading.cos(), angle * heading.sin()];
             let found = direction(lean.map(|v| v as f32)).map(f64::from);
             let wanted = [angle.sin() * heading.cos(), angle.cos(), angle.sin() * heading.sin()];
@@ -83,7 +83,7 @@ mod tests {
         }
 
         #[test]
-        fn a_lean_is_found_again(angle in 0.0_f32..3.1415, heading in 0.0_f32..6.3) {
+        fn a_lean_is_found_again(angle in 0.0..0.9999 * PI, heading in 0.0_f32..6.3) {
             let lean = [angle * heading.cos(), angle * heading.sin()];
             let found = lean_of(direction(lean));
             prop_assert!((0..2).all(|i| (found[i] - lean[i]).abs() < 1e-5), "{found:?} instead of {lean:?}");

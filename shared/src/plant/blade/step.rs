@@ -38,8 +38,7 @@ pub fn advance<T: Number>(
             let apart = [0, 1, 2].map(|link| sway.lean_rad[link][axis] - held_rad[link][axis]);
             let x = weighted(&AMPLITUDES[m], apart) - weighted(&PUSHES[m], of(&drag));
             let [dx, dv] = step.change(x, weighted(&AMPLITUDES[m], of(&sway.rate_rad_per_s)));
-            for (link, &share) in MODES[m].iter().enumerate() {
-                let share = T::splat(share);
+            for (link, share) in MODES[m].map(T::splat).into_iter().enumerate() {
                 swung.lean_rad[link][axis] = swung.lean_rad[link][axis] + share * dx;
                 swung.rate_rad_per_s[link][axis] = swung.rate_rad_per_s[link][axis] + share * dv;
             }
