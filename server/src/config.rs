@@ -7,7 +7,7 @@ use crate::stream::SendLimits;
 use std::time::Duration;
 
 /// Everything that a run needs but the socket it listens on.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Config {
     /// The scene with its maps.
     pub scene: LoadedScene,

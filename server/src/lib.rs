@@ -12,6 +12,7 @@ pub mod inspect;
 pub mod net;
 pub mod objects;
 pub mod plants;
+mod reload;
 pub mod runner;
 pub mod scenes;
 mod shown;
@@ -22,6 +23,7 @@ pub mod wind;
 pub mod world;
 
 pub use config::{Config, Limits};
+pub use reload::run_and_reload;
 
 use inspect::{InspectError, Inspector};
 use net::App;
@@ -46,6 +48,9 @@ pub enum RunError {
     /// The system gives no threads.
     #[error("cannot start the threads of the simulation: {0}")]
     Threads(#[from] std::io::Error),
+    /// The system takes the socket away.
+    #[error("cannot go on listening: {0}")]
+    Socket(std::io::Error),
     /// The scene's constants make no world together.
     #[error(transparent)]
     World(#[from] WorldError),

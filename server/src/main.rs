@@ -62,6 +62,7 @@ Examples:
   prairie serve --rerun save=run.rrd         records wind and grass for the rerun viewer
 
 Browsers give WebGPU only to pages from this machine or over https, so other machines need --tls.
+A scene of your own is read anew when you save it or a file that it names, and every page shows it.
 With `--tls self` the browser warns first: compare the fingerprint with the one printed here.
 The log goes to stderr; RUST_LOG=server=debug makes it talk more.";
 
@@ -152,7 +153,7 @@ fn serve(arguments: Serve) -> anyhow::Result<()> {
             announce(address, tls.as_ref(), arguments.open);
             asked_to_stop().await;
         };
-        Ok(server::run(config, listener, run_until_asked).await?)
+        Ok(server::run_and_reload(config, listener, run_until_asked).await?)
     })
 }
 

@@ -21,7 +21,7 @@ pub(super) const BUILT_IN: [BuiltIn; 6] = [
     BuiltIn {
         name: "meadow",
         text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meadow.toml")),
-        files: &[file!("meadow-height.png"), file!("meadow-covering.png"), file!("species.toml")],
+        files: &[file!("meadow-height.png"), file!("meadow-reeds-covering.png"), file!("species.toml")],
     },
     BuiltIn {
         name: "jacksboro",

@@ -10,6 +10,8 @@ use shared::plant::growth::NutrientMap;
 use shared::scene::{Scene, SceneFault, VehicleKind, WindShape, parse, parse_underbrush, parse_with};
 use shared::terrain::{Cover, CoverMap, HeightMap, MapError};
 use shared::wire::Mesh;
+use std::cell::RefCell;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -46,6 +48,8 @@ pub struct LoadedScene {
     pub drawings: Drawings,
     /// Models read from glTF files; kinds that are missing are drawn with the built-in one.
     pub models: Vec<(VehicleKind, Mesh)>,
+    /// Files that all this was read from, the scene's own first; none where it ships with the program.
+    pub files: Vec<PathBuf>,
 }
 
 impl LoadedScene {
@@ -62,7 +66,7 @@ impl LoadedScene {
 /// then every fault of the scene file, or else of its underbrush file, or else of its maps and models at once, each with its place.
 pub fn load(name_or_path: &str) -> Result<LoadedScene, SceneError> {
     if let Some(built_in) = BuiltIn::find(name_or_path) {
-        return load_text(built_in.name, built_in.text, &Source::BuiltIn(built_in));
+        return load_text(built_in.name, built_in.text, Source::BuiltIn(built_in));
     }
     let path = Path::new(name_or_path);
     let looks_like_a_file = path.extension().is_some() || path.components().count() > 1 || path.exists();
@@ -72,7 +76,7 @@ pub fn load(name_or_path: &str) -> Result<LoadedScene, SceneError> {
     let unreadable = |reason: String| SceneError::Unreadable { path: path.to_owned(), reason };
     let text = file::read(path, SCENE_LIMIT).and_then(utf8).map_err(unreadable)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    load_text(name_or_path, &text, &Source::Folder(folder))
+    load_text(name_or_path, &text, Source::Folder { folder, read: RefCell::new(vec![path.to_owned()]) })
 }
 
 fn utf8(bytes: Vec<u8>) -> Result<String, String> {
@@ -89,21 +93,38 @@ fn unknown(name: &str) -> SceneError {
 /// Where the files that a scene names are.
 enum Source {
     BuiltIn(&'static BuiltIn),
-    Folder(PathBuf),
+    /// A folder, and what has been read so far.
+    Folder { folder: PathBuf, read: RefCell<Vec<PathBuf>> },
 }
 
 impl Source {
     fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, String> {
         match self {
             Self::BuiltIn(scene) => scene.file(name).map(<[u8]>::to_vec).ok_or_else(|| "does not ship with the program".to_owned()),
-            Self::Folder(folder) => file::read(&folder.join(name), limit),
+            Self::Folder { .. } => file::read(&self.path(name), limit),
         }
     }
 
+    /// Where a file is that is about to be read.
     fn path(&self, name: &str) -> PathBuf {
         match self {
             Self::BuiltIn(_) => PathBuf::from(name),
-            Self::Folder(folder) => folder.join(name),
+            Self::Folder { folder, read } => {
+                let path = folder.join(name);
+                read.borrow_mut().push(path.clone());
+                path
+            }
+        }
+    }
+
+    /// Files that have been read, each once.
+    fn into_files(self) -> Vec<PathBuf> {
+        match self {
+            Self::BuiltIn(_) => Vec::new(),
+            Self::Folder { read, .. } => {
+                let mut known = HashSet::new();
+                read.into_inner().into_iter().filter(|path| known.insert(path.clone())).collect()
+            }
         }
     }
 }
@@ -131,17 +152,17 @@ fn scene_of(file: &str, text: &str, source: &Source) -> Result<Scene, SceneError
     parse_with(text, species).map_err(|faults| faulty(file, text, faults))
 }
 
-fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, SceneError> {
-    let mut scene = scene_of(file, text, source)?;
+fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, SceneError> {
+    let mut scene = scene_of(file, text, &source)?;
     let mut faults = Vec::new();
     let mut note = |path: &str, message: String| faults.push(SceneFault::at(text, path, message));
 
     for WorldError { field, message } in world::misfits(&scene) {
         note(field, message);
     }
-    let height = height_map(&scene, source).map_err(|message| note("terrain.height_map", message)).ok();
-    let cover = covering_map(&scene, source).map_err(|message| note("terrain.covering_map", message)).ok();
-    let nutrients = nutrient_map(&scene, source).map_err(|message| note("growth.nutrient_map", message)).ok();
+    let height = height_map(&scene, &source).map_err(|message| note("terrain.height_map", message)).ok();
+    let cover = covering_map(&scene, &source).map_err(|message| note("terrain.covering_map", message)).ok();
+    let nutrients = nutrient_map(&scene, &source).map_err(|message| note("growth.nutrient_map", message)).ok();
     let mut loaded_models = Vec::new();
     for (kind, field) in [(VehicleKind::Car, &scene.objects.car_model), (VehicleKind::Monster, &scene.objects.monster_model)] {
         if field.is_empty() {
@@ -155,7 +176,7 @@ fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, Sce
     let mut drawings = Drawings::new();
     for (path, shape) in wind_shapes(&mut scene) {
         let WindShape::Drawn(name) = shape else { continue };
-        match drawing(name, source) {
+        match drawing(name, &source) {
             Ok(drawing) => {
                 let number = format!("{}.png", drawings.len() + 1);
                 *name = number.clone();
@@ -176,7 +197,8 @@ fn load_text(file: &str, text: &str, source: &Source) -> Result<LoadedScene, Sce
     {
         path.clear();
     }
-    Ok(LoadedScene { scene, height_png, covering_png, nutrient_png, height, cover, nutrients, drawings, models: loaded_models })
+    let files = source.into_files();
+    Ok(LoadedScene { scene, height_png, covering_png, nutrient_png, height, cover, nutrients, drawings, models: loaded_models, files })
 }
 
 /// Everything in a scene that may name a drawing, with its path.

@@ -7,6 +7,7 @@ mod bad_visitors;
 mod command_line;
 mod encrypted;
 mod pages;
+mod reloading;
 mod running;
 mod sharing;
 mod small_world;

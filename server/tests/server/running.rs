@@ -2,8 +2,9 @@
 
 use crate::small_world::{Meadow, scene};
 use server::net::{Tls, TlsChoice, bind};
-use server::{Config, Limits, RunError, run, run_simulation, scenes};
+use server::{Config, Limits, RunError, run, run_and_reload, run_simulation, scenes};
 use std::net::SocketAddr;
+use std::path::Path;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
@@ -42,6 +43,15 @@ impl Server {
         let (stop, stopped) = oneshot::channel();
         let config = Config::new(scenes::load("meadow").unwrap());
         Self { address, stop, outcome: tokio::spawn(run(config, listener, async { drop(stopped.await) })) }
+    }
+
+    /// A scene file, served as the program does.
+    pub(crate) async fn start_file(scene: &Path) -> Self {
+        let listener = bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        let (stop, stopped) = oneshot::channel();
+        let config = Config::new(scenes::load(scene.to_str().unwrap()).unwrap());
+        Self { address, stop, outcome: tokio::spawn(run_and_reload(config, listener, async { drop(stopped.await) })) }
     }
 
     pub(crate) async fn stop(self) {

@@ -116,5 +116,6 @@ pub(crate) fn scene() -> LoadedScene {
         scene,
         drawings: Default::default(),
         models: Vec::new(),
+        files: Vec::new(),
     }
 }

@@ -40,12 +40,22 @@ const BED: [Point; 6] = [[96.0, 262.0], [104.0, 212.0], [134.0, 168.0], [120.0, 
 const TRAIL: [Point; 8] =
     [[-6.0, 146.0], [40.0, 150.0], [84.0, 140.0], [118.0, 150.0], [148.0, 132.0], [144.0, 96.0], [158.0, 52.0], [146.0, -6.0]];
 
-/// Height map, covering map, and that with reeds and poppies painted on it.
-pub(super) fn maps() -> [GreyMap; 3] {
+/// Where along the valley's bed (m, Z) reeds begin and end: in the meadow ahead of where a visitor first stands, among the underbrush beside it.
+const MEADOW_REEDS_M: [f64; 2] = [70.0, 142.0];
+const UNDERBRUSH_REEDS_M: [f64; 2] = [112.0, 192.0];
+
+/// Height map, covering map, that with reeds painted on it, and that with reeds and poppies.
+pub(super) fn maps() -> [GreyMap; 4] {
     let land = Land::new();
     let levels = pixels(HEIGHT_PX, PIXEL_M, 0.0).map(|at| ((land.height_m(at) - BASE_M) / LEVEL_M).round().clamp(0.0, 255.0) as u8);
     let height = GreyMap { name: "meadow-height.png", size_px: [HEIGHT_PX; 2], levels: Levels::Eight(levels.collect()) };
-    [height, land.covering(), land.painted()]
+    let reeds = land.painted("meadow-reeds-covering.png", |at| land.is_wet(at, MEADOW_REEDS_M).then_some(REEDS));
+    let underbrush = land.painted("underbrush-covering.png", |at| match at {
+        at if land.is_wet(at, UNDERBRUSH_REEDS_M) => Some(REEDS),
+        at if land.is_drift(at) => Some(POPPIES),
+        _ => None,
+    });
+    [height, land.covering(), reeds, underbrush]
 }
 
 /// Points of a square map's pixels, row by row; `offset` is that of the first in pixels.
@@ -106,22 +116,19 @@ impl Land {
         GreyMap { name: "meadow-covering.png", size_px: [COVER_PX; 2], levels: Levels::Eight(levels) }
     }
 
-    /// The covering with reeds in the wettest of the valley's bed and drifts of poppies on its sunny side.
-    fn painted(&self) -> GreyMap {
+    /// The covering with the IDs painted on its grass that `brush` has there.
+    fn painted(&self, name: &'static str, brush: impl Fn(Point) -> Option<u8>) -> GreyMap {
         let GreyMap { size_px, levels: Levels::Eight(mut levels), .. } = self.covering() else { unreachable!("it has 8 bits") };
         let pixel_m = EXTENT_M[0] / f64::from(COVER_PX);
         for (level, at) in levels.iter_mut().zip(pixels(COVER_PX, pixel_m, 0.5)).filter(|(level, _)| **level == 255) {
-            if self.is_wet(at) {
-                *level = REEDS;
-            } else if self.is_drift(at) {
-                *level = POPPIES;
-            }
+            *level = brush(at).unwrap_or(*level);
         }
-        GreyMap { name: "underbrush-covering.png", size_px, levels: Levels::Eight(levels) }
+        GreyMap { name, size_px, levels: Levels::Eight(levels) }
     }
 
-    fn is_wet(&self, at: Point) -> bool {
-        let along = smooth_step(112.0, 126.0, at[1]) * (1.0 - smooth_step(176.0, 192.0, at[1]));
+    /// The wettest of the valley's bed.
+    fn is_wet(&self, at: Point, [from_m, to_m]: [f64; 2]) -> bool {
+        let along = smooth_step(from_m, from_m + 14.0, at[1]) * (1.0 - smooth_step(to_m - 16.0, to_m, at[1]));
         self.bed.distance(at) < along * (2.4 + 3.6 * self.wear.at(at))
     }
 
