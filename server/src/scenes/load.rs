@@ -94,7 +94,10 @@ fn unknown(name: &str) -> SceneError {
 enum Source {
     BuiltIn(&'static BuiltIn),
     /// A folder, and what has been read so far.
-    Folder { folder: PathBuf, read: RefCell<Vec<PathBuf>> },
+    Folder {
+        folder: PathBuf,
+        read: RefCell<Vec<PathBuf>>,
+    },
 }
 
 impl Source {
