@@ -12,7 +12,7 @@ const AHEAD: Drive = Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 };
 
 /// A scene of `count × count` patches where the reed that ships grows all over, painted on flat land.
 fn reeds(count: u32) -> Scene {
-    let species = include_str!("../../server/scenes/species.toml");
+    let species = include_str!("../../../server/scenes/species.toml");
     let mut reed =
         parse_underbrush(species).expect("sound species").into_iter().find(|species| species.name == "reed").expect("there is a reed");
     (reed.needs, reed.light_need, reed.cover) = ([0.0; 3], 0.0, 0);

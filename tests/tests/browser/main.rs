@@ -1,0 +1,7 @@
+//! The page in a real browser, and the world behind it.
+
+mod hands;
+mod mishaps;
+mod page;
+mod prairie;
+mod webgpu;
