@@ -250,7 +250,7 @@ fn underbrush_that_the_client_cannot_hold_is_refused() {
         (|scene| scene.growth.spacing_m = 0.0, "growth.spacing_m is 0; allowed: 0.05..=20"),
         (|scene| scene.underbrush[0].reach_m = f32::NAN, "underbrush.reach_m is NaN; allowed: 0.05..=50"),
         (|scene| scene.underbrush[0].components.clear(), "number of components is 0; allowed: 1..=16"),
-        (|scene| leaf(scene).sections = 9, "sections is 9; allowed: 1..=8"),
+        (|scene| leaf(scene).sections = 17, "sections is 17; allowed: 1..=16"),
         (|scene| leaf(scene).mass_kg = -1.0, "mass_kg is -1; allowed: 0.000001..=10"),
         (|scene| leaf(scene).from_share = 1.5, "from_share is 1.5; allowed: 0..=1"),
         (|scene| leaf(scene).to_share = 0.5, "to_share is 0.5; allowed: 1..=1"),

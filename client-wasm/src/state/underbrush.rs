@@ -1,6 +1,7 @@
 //! What a client relies on in a scene's underbrush.
 
 use super::{MirrorError, range, within};
+use shared::plant::underbrush::plan::SECTIONS_LIMIT;
 use shared::scene::{COMPONENTS_LIMIT, Component, Growth, PARTS_LIMIT, SITES_LIMIT, SPECIES_LIMIT, Scene, Underbrush};
 
 /// Checks the underbrush of a scene, and what it grows on.
@@ -45,7 +46,8 @@ fn check_species(species: &Underbrush) -> Result<(), MirrorError> {
 }
 
 fn check_component(component: &Component) -> Result<(), MirrorError> {
-    let whole = [("count", component.count, 1, 32), ("petals", component.petals, 3, 16), ("sections", component.sections, 1, 8)];
+    let sections = ("sections", component.sections, 1, SECTIONS_LIMIT as u32);
+    let whole = [("count", component.count, 1, 32), ("petals", component.petals, 3, 16), sections];
     for (what, value, low, high) in whole {
         within(what, value as f32, low as f32, high as f32)?;
     }

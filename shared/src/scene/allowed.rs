@@ -5,6 +5,7 @@ use super::{
     WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, Scheme, Seams};
+use crate::plant::underbrush::plan::SECTIONS_LIMIT;
 use std::fmt;
 
 /// Values that a field may hold.
@@ -155,7 +156,7 @@ pub const FIELDS: [(&str, Allowed); 181] = [
     ("underbrush.components.length_variation", Range(0.0, 0.9)),
     ("underbrush.components.width_m", Range(0.0005, 1.0)),
     ("underbrush.components.petals", Range(3.0, 16.0)),
-    ("underbrush.components.sections", Range(1.0, 8.0)),
+    ("underbrush.components.sections", Range(1.0, SECTIONS_LIMIT as f64)),
     ("underbrush.components.mass_kg", Range(1e-6, 10.0)),
     ("underbrush.components.stiffness_n_m2", Range(1e-9, 1000.0)),
     ("underbrush.components.tip_stiffness_share", Range(0.01, 1.0)),

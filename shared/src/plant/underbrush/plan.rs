@@ -11,7 +11,7 @@ use std::f32::consts::TAU;
 pub const COMPONENTS_LIMIT: usize = 64;
 
 /// Most sections of a component.
-pub const SECTIONS_LIMIT: usize = 8;
+pub const SECTIONS_LIMIT: usize = 16;
 
 /// Diameter of a flower's stalk over that of its ring of petals.
 pub(super) const STALK_SHARE: f32 = 0.06;

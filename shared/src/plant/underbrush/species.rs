@@ -59,7 +59,7 @@ fn there_are_eight_species_within_the_limits() {
         assert!((1..=12).contains(&species.components.len()));
         for (part, component) in plan.parts.iter().zip(&species.components) {
             assert_eq!(part.on.is_some(), !component.on.is_empty(), "{} stands on a branch before it", component.name);
-            assert!((1..=32).contains(&component.count) && (1..=8).contains(&component.sections) && (3..=16).contains(&component.petals));
+            assert!((1..=32).contains(&component.count) && (1..=16).contains(&component.sections) && (3..=16).contains(&component.petals));
             assert!((0.005..=5.0).contains(&component.length_m) && (0.0005..=1.0).contains(&component.width_m));
             assert!((1e-6..=10.0).contains(&component.mass_kg) && (1e-9..=1000.0).contains(&component.stiffness_n_m2));
             assert!((0.0..=3.1).contains(&component.angle_rad) && (0.0..=1.5).contains(&component.angle_variation_rad));
