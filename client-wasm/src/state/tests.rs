@@ -248,7 +248,7 @@ fn underbrush_that_the_client_cannot_hold_is_refused() {
         (|scene| scene.rain.rate_mm_per_h = f32::INFINITY, "rain.rate_mm_per_h is inf; allowed: 0..=200"),
         (|scene| scene.objects.balls = 65, "objects.balls is 65; allowed: 0..=64"),
         (|scene| scene.growth.spacing_m = 0.0, "growth.spacing_m is 0; allowed: 0.05..=20"),
-        (|scene| scene.underbrush[0].reach_m = f32::NAN, "underbrush.reach_m is NaN; allowed: 0.05..=50"),
+        (|scene| scene.underbrush[0].reach_m = f32::NAN, "underbrush.reach_m is NaN; allowed: 0..=50"),
         (|scene| scene.underbrush[0].components.clear(), "number of components is 0; allowed: 1..=16"),
         (|scene| leaf(scene).sections = 17, "sections is 17; allowed: 1..=16"),
         (|scene| leaf(scene).mass_kg = -1.0, "mass_kg is -1; allowed: 0.000001..=10"),

@@ -26,7 +26,7 @@ fn check_species(species: &Underbrush) -> Result<(), MirrorError> {
     within("underbrush.settle_secs", species.settle_secs, 0.01, 10.0)?;
     within("underbrush.size_variation", species.size_variation, 0.0, 0.9)?;
     within("underbrush.room_m", species.room_m, 0.05, 20.0)?;
-    within("underbrush.reach_m", species.reach_m, 0.05, 50.0)?;
+    within("underbrush.reach_m", species.reach_m, 0.0, 50.0)?;
     within("underbrush.propagation_points", species.propagation_points as f32, 0.0, 10_000.0)?;
     for share in species.needs.into_iter().chain(species.uptake).chain([species.light_need]) {
         within("needs of underbrush", share, 0.0, 1.0)?;
