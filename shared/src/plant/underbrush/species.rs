@@ -100,6 +100,10 @@ fn stalks_stand_and_leaves_droop() {
             };
             assert!(fits, "{} of {}: {mean_rise}, {least_rise}, {most_bend_rad}", part.component.name, species.name);
             assert!(all.iter().all(|one| one.strain < 0.2));
+            let is_smooth =
+                |one: &&Posed| one.sections().windows(2).all(|pair| pair[0].direction.angle_between(pair[1].direction) < 0.1745);
+            let smooth = all.iter().filter(is_smooth).count();
+            assert!(smooth * 10 >= all.len() * 9, "{} of {}: {smooth} of {}", part.component.name, species.name, all.len());
         }
     }
 }
