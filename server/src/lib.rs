@@ -72,9 +72,11 @@ pub enum RunError {
 ///
 /// # Errors
 /// [`RunError`] when the world cannot be made, or one of the threads fails.
-pub async fn run(config: Config, listener: TcpListener, shutdown: impl Future<Output = ()>) -> Result<(), RunError> {
-    let loaded = &config.scene;
-    let world = World::new(&loaded.scene, loaded.maps())?;
+pub async fn run(mut config: Config, listener: TcpListener, shutdown: impl Future<Output = ()>) -> Result<(), RunError> {
+    let maps = config.scene.maps();
+    // Nothing more grows from them, and they may be large.
+    config.scene.nutrients = None;
+    let world = World::new(&config.scene.scene, maps)?;
     run_simulation(world, config, listener, shutdown).await
 }
 

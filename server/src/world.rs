@@ -63,7 +63,7 @@ pub struct Maps {
     /// The drawings that the scene's winds name.
     pub drawings: Drawings,
     /// Nutrients of the soil; none where they are generated.
-    pub nutrients: Option<NutrientMap>,
+    pub nutrients: Option<Arc<NutrientMap>>,
 }
 
 /// Constants of a scene that are each in range and make no world together.
@@ -107,7 +107,7 @@ impl World {
         let weather = Weather::new(scene, &maps).map_err(|error| no_wind(scene, error))?;
         let height = Arc::new(maps.height);
         let place = Place { height: Arc::clone(&height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
-        let plants = Plants::new(Flora::new(scene, &place.cover, maps.nutrients.as_ref()));
+        let plants = Plants::new(Flora::new(scene, &place.cover, maps.nutrients.as_deref()));
         let meadow = Meadow::with_drawings(scene, Arc::clone(&height), &place.cover, &maps.drawings);
         Ok(Self {
             dt_secs: scene.dt_secs(),

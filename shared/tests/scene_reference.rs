@@ -109,8 +109,8 @@ fn minimal() -> toml::Table {
 /// A scene with every field written out, and one section in each list of sections.
 fn complete() -> toml::Table {
     let text = minimal().to_string()
-        + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n[[species]]\nname = ''\ncover = 1\n"
-        + "[[underbrush]]\nname = ''\n[[underbrush.components]]\nname = ''\nkind = 'leaf'\n"
+        + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n[[species]]\nname = 'a'\ncover = 1\n"
+        + "[[underbrush]]\nname = 'a'\n[[underbrush.components]]\nname = 'a'\nkind = 'leaf'\n"
         + "[[drawn_winds]]\nshape = 'swirl'\npath_m = [[1.0, 2.0]]\n";
     toml::Table::try_from(parse(&text).unwrap()).unwrap()
 }
@@ -184,6 +184,9 @@ fn doc_comments_give_the_checked_range_and_the_true_default() {
             let stated = after(&field.doc, "allowed ").unwrap().split(',').next().unwrap();
             let expected = if least == 0 { vec![most as f64] } else { vec![least as f64, most as f64] };
             assert_eq!(numbers(stated), expected, "{path}: {}", field.doc);
+        }
+        if allowed == Allowed::Name {
+            assert!(field.doc.contains("not empty"), "{path}: {}", field.doc);
         }
         if let Allowed::OneOf(words) = allowed {
             assert!(words.iter().all(|word| field.doc.contains(&format!("`{word}`"))), "{path}: {}", field.doc);

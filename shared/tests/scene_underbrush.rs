@@ -125,6 +125,16 @@ fn values_that_do_not_fit_each_other_are_told() {
         fault(&species(&[("leaf", "leaf", ""), ("leaf", "flower", "")])),
         "`underbrush[0].components[1].name` is \"leaf\", as that of `underbrush[0].components[0]`; allowed: a name of its own in its plant"
     );
+    let spread = |more: &str| format!("[[underbrush]]\nname = 'a'\n{more}\n[[underbrush.components]]\nname = 'leaf'\nkind = 'leaf'\n");
+    for (more, reach, room) in [("reach_m = 0.3", 0.3, 0.5), ("room_m = 1.5", 1.5, 1.5), ("reach_m = 2\nroom_m = 2.5", 2.0, 2.5)] {
+        assert_eq!(
+            fault(&spread(more)),
+            format!(
+                "`underbrush[0].reach_m` is {reach}; allowed: 0, it does not spread, or more than its `room_m`, {room}, in which none of its own comes up"
+            )
+        );
+    }
+    assert!(scene(&spread("reach_m = 0")).is_ok() && scene(&spread("reach_m = 0.501")).is_ok());
     let other = REED.replace("cover = 5", "cover = 6");
     assert_eq!(
         fault(&format!("{REED}{other}")),
@@ -141,6 +151,32 @@ fn values_that_do_not_fit_each_other_are_told() {
     );
     // Species that are not painted need no ID.
     assert!(scene(&format!("{}{}", species(&[("leaf", "leaf", "")]), REED.replace("cover = 5", "cover = 0"))).is_ok());
+}
+
+#[test]
+fn nothing_is_without_a_name() {
+    let told = "is \"\"; allowed: a name in quotes, not empty";
+    assert_eq!(fault(&species(&[("stem", "branch", ""), ("", "leaf", "")])), format!("`underbrush[0].components[1].name` {told}"));
+    assert_eq!(fault(&REED.replace("'reed'", "''")), format!("`underbrush[0].name` {told}"));
+    assert_eq!(fault("[[species]]\nname = ''\ncover = 5\n"), format!("`species[0].name` {told}"));
+    assert!(fault(&REED.replace("'reed'", "' '")).contains("is \" \"; allowed"));
+    // What stands on the ground isn't on a branch without a name.
+    assert_eq!(scene(&species(&[("", "branch", ""), ("leaf", "leaf", "on = ''")])).unwrap_err().len(), 1);
+}
+
+#[test]
+fn masses_and_sections_are_above_zero() {
+    let told = |more: &str| fault(&species(&[("leaf", "leaf", more)]));
+    for mass in ["0", "0.0", "-0.001", "nan", "-inf", "1e-7"] {
+        assert_eq!(told(&format!("mass_kg = {mass}")), format!("`underbrush[0].components[0].mass_kg` is {mass}; allowed: 0.000001 to 10"));
+    }
+    for sections in ["0", "-1", "17"] {
+        assert_eq!(
+            told(&format!("sections = {sections}")),
+            format!("`underbrush[0].components[0].sections` is {sections}; allowed: 1 to 16")
+        );
+    }
+    assert!(scene(&species(&[("leaf", "leaf", "sections = 16\nmass_kg = 0.000001")])).is_ok());
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! What a client relies on in a scene's underbrush.
 
 use super::{MirrorError, range, within};
+use shared::plant::underbrush::plan::SECTIONS_LIMIT;
 use shared::scene::{COMPONENTS_LIMIT, Component, Growth, PARTS_LIMIT, SITES_LIMIT, SPECIES_LIMIT, Scene, Underbrush};
 
 /// Checks the underbrush of a scene, and what it grows on.
@@ -25,7 +26,7 @@ fn check_species(species: &Underbrush) -> Result<(), MirrorError> {
     within("underbrush.settle_secs", species.settle_secs, 0.01, 10.0)?;
     within("underbrush.size_variation", species.size_variation, 0.0, 0.9)?;
     within("underbrush.room_m", species.room_m, 0.05, 20.0)?;
-    within("underbrush.reach_m", species.reach_m, 0.05, 50.0)?;
+    within("underbrush.reach_m", species.reach_m, 0.0, 50.0)?;
     within("underbrush.propagation_points", species.propagation_points as f32, 0.0, 10_000.0)?;
     for share in species.needs.into_iter().chain(species.uptake).chain([species.light_need]) {
         within("needs of underbrush", share, 0.0, 1.0)?;
@@ -45,7 +46,8 @@ fn check_species(species: &Underbrush) -> Result<(), MirrorError> {
 }
 
 fn check_component(component: &Component) -> Result<(), MirrorError> {
-    let whole = [("count", component.count, 1, 32), ("petals", component.petals, 3, 16), ("sections", component.sections, 1, 8)];
+    let sections = ("sections", component.sections, 1, SECTIONS_LIMIT as u32);
+    let whole = [("count", component.count, 1, 32), ("petals", component.petals, 3, 16), sections];
     for (what, value, low, high) in whole {
         within(what, value as f32, low as f32, high as f32)?;
     }

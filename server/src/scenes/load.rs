@@ -43,7 +43,7 @@ pub struct LoadedScene {
     /// What covers the land.
     pub cover: CoverMap,
     /// Nutrients of the soil; none where they are generated.
-    pub nutrients: Option<NutrientMap>,
+    pub nutrients: Option<Arc<NutrientMap>>,
     /// The drawings of winds, by the numbers that stand for their files in the scene.
     pub drawings: Drawings,
     /// Models read from glTF files; kinds that are missing are drawn with the built-in one.
@@ -200,8 +200,18 @@ fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, Scen
     {
         path.clear();
     }
-    let files = source.into_files();
-    Ok(LoadedScene { scene, height_png, covering_png, nutrient_png, height, cover, nutrients, drawings, models: loaded_models, files })
+    Ok(LoadedScene {
+        scene,
+        height_png,
+        covering_png,
+        nutrient_png,
+        height,
+        cover,
+        nutrients: nutrients.map(Arc::new),
+        drawings,
+        models: loaded_models,
+        files: source.into_files(),
+    })
 }
 
 /// Everything in a scene that may name a drawing, with its path.

@@ -86,25 +86,23 @@ impl Flora {
 /// Height of a species' unbent plants (m): that of the highest tip where all components have their mean angles and lengths; shade goes by it. Only
 /// `+ − × ÷` and roots, since server and client must agree.
 pub fn height_m(species: &Underbrush) -> f32 {
-    let mut tips: Vec<(&Component, f32)> = Vec::new();
-    for component in &species.components {
-        let foot_m = tips
-            .iter()
-            .find(|(other, _)| other.name == component.on)
-            .map_or(0.0, |&(other, tip_m)| tip_m - rise_m(other) * (1.0 - component.to_share));
-        tips.push((component, foot_m + rise_m(component)));
+    let mut tips_m: Vec<f32> = Vec::new();
+    for (index, component) in species.components.iter().enumerate() {
+        let along_m = |below: usize| tips_m[below] - rise_m(&species.components[below]) * (1.0 - component.to_share);
+        let foot_m = species.branch_below(index).map_or(0.0, along_m);
+        tips_m.push(foot_m + rise_m(component));
     }
-    tips.into_iter().map(|(_, tip_m)| tip_m).fold(0.01, f32::max)
+    tips_m.into_iter().fold(0.01, f32::max)
 }
 
 /// How far a species' plants reach from their root at most (m), however they lean: the longest way along components that stand on each other.
 pub fn reach_m(species: &Underbrush) -> f32 {
-    let mut ways: Vec<(&Component, f32)> = Vec::new();
-    for component in &species.components {
-        let foot_m = ways.iter().find(|(other, _)| other.name == component.on).map_or(0.0, |&(_, way_m)| way_m);
-        ways.push((component, foot_m + component.length_m * (1.0 + component.length_variation) + 0.5 * component.width_m));
+    let mut ways_m: Vec<f32> = Vec::new();
+    for (index, component) in species.components.iter().enumerate() {
+        let foot_m = species.branch_below(index).map_or(0.0, |below| ways_m[below]);
+        ways_m.push(foot_m + component.length_m * (1.0 + component.length_variation) + 0.5 * component.width_m);
     }
-    ways.into_iter().map(|(_, way_m)| way_m).fold(0.01, f32::max)
+    ways_m.into_iter().fold(0.01, f32::max)
 }
 
 /// How far a component rises from its foot (m): its length by the cosine of its angle.
@@ -149,5 +147,25 @@ mod tests {
         let species = Underbrush::new("a", vec![stalk, leaf]);
         assert!((height_m(&species) - 1.15).abs() < 1e-5);
         assert!((reach_m(&species) - 1.2 * 1.3 - 2.0 * 0.005).abs() < 1e-5, "{}", reach_m(&species));
+    }
+
+    #[test]
+    fn what_names_no_branch_before_it_stands_on_the_ground_for_all() {
+        let component = |name: &str, kind, on: &str| Component { on: on.into(), angle_rad: 0.0, ..Component::new(name, kind) };
+        let on = |on: &str| {
+            let components = vec![
+                component("stalk", ComponentKind::Branch, ""),
+                component("leaf", ComponentKind::Leaf, ""),
+                component("bud", ComponentKind::Leaf, on),
+                component("twig", ComponentKind::Branch, ""),
+            ];
+            let species = Underbrush::new("a", components);
+            let plan = Plan::new(&species, Nodes { angles: 2, loads: 2 });
+            (species.branch_below(2), plan.parts[2].on, (height_m(&species) / 0.4).round(), (reach_m(&species) / 0.485).round())
+        };
+        assert_eq!(on("stalk"), (Some(0), Some(0), 2.0, 2.0));
+        for none in ["leaf", "bud", "twig", "root", ""] {
+            assert_eq!(on(none), (None, None, 1.0, 1.0), "on \"{none}\"");
+        }
     }
 }

@@ -5,6 +5,7 @@ use super::{
     WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, Scheme, Seams};
+use crate::plant::underbrush::plan::SECTIONS_LIMIT;
 use std::fmt;
 
 /// Values that a field may hold.
@@ -12,6 +13,8 @@ use std::fmt;
 pub enum Allowed {
     /// Any text.
     Text,
+    /// Text that is not blank.
+    Name,
     /// A number from the first to the second, both included; in an array, each element.
     Range(f64, f64),
     /// One of these words.
@@ -22,7 +25,7 @@ pub enum Allowed {
     Places(usize, usize, f64, f64),
 }
 
-use Allowed::{OneOf, Places, Range, Sections, Text};
+use Allowed::{Name, OneOf, Places, Range, Sections, Text};
 
 /// Every field by its path, in the order of the structs; in a list of sections, those of one section.
 pub const FIELDS: [(&str, Allowed); 181] = [
@@ -117,7 +120,7 @@ pub const FIELDS: [(&str, Allowed); 181] = [
     ("plants.swing_hz", Range(0.05, 50.0)),
     ("plants.swing_damping", Range(0.005, 5.0)),
     ("plants.integrator", OneOf(BladeIntegrator::WORDS)),
-    ("species.name", Text),
+    ("species.name", Name),
     ("species.cover", Range(1.0, 252.0)),
     ("species.height_m", Range(0.02, 5.0)),
     ("species.root_rgb", Range(0.0, 1.0)),
@@ -134,18 +137,18 @@ pub const FIELDS: [(&str, Allowed); 181] = [
     ("species.lag_secs", Range(0.0, 1.0)),
     ("species.recovery_lag_share", Range(0.0, 1.0)),
     ("species.segments", Range(1.0, 6.0)),
-    ("underbrush.name", Text),
+    ("underbrush.name", Name),
     ("underbrush.cover", Range(0.0, 252.0)),
     ("underbrush.settle_secs", Range(0.01, 10.0)),
     ("underbrush.size_variation", Range(0.0, 0.9)),
     ("underbrush.room_m", Range(0.05, 20.0)),
-    ("underbrush.reach_m", Range(0.05, 50.0)),
+    ("underbrush.reach_m", Range(0.0, 50.0)),
     ("underbrush.propagation_points", Range(0.0, 10_000.0)),
     ("underbrush.needs", Range(0.0, 1.0)),
     ("underbrush.uptake", Range(0.0, 1.0)),
     ("underbrush.light_need", Range(0.0, 1.0)),
     ("underbrush.components", Sections(1, COMPONENTS_LIMIT)),
-    ("underbrush.components.name", Text),
+    ("underbrush.components.name", Name),
     ("underbrush.components.kind", OneOf(ComponentKind::WORDS)),
     ("underbrush.components.on", Text),
     ("underbrush.components.count", Range(1.0, 32.0)),
@@ -155,7 +158,7 @@ pub const FIELDS: [(&str, Allowed); 181] = [
     ("underbrush.components.length_variation", Range(0.0, 0.9)),
     ("underbrush.components.width_m", Range(0.0005, 1.0)),
     ("underbrush.components.petals", Range(3.0, 16.0)),
-    ("underbrush.components.sections", Range(1.0, 8.0)),
+    ("underbrush.components.sections", Range(1.0, SECTIONS_LIMIT as f64)),
     ("underbrush.components.mass_kg", Range(1e-6, 10.0)),
     ("underbrush.components.stiffness_n_m2", Range(1e-9, 1000.0)),
     ("underbrush.components.tip_stiffness_share", Range(0.01, 1.0)),
@@ -247,12 +250,22 @@ impl Allowed {
     pub(super) fn contains(self, value: f64) -> bool {
         matches!(self, Range(low, high) if (low..=high).contains(&value))
     }
+
+    /// Whether a text may stand there.
+    pub(super) fn admits(self, text: &str) -> bool {
+        match self {
+            OneOf(words) => words.contains(&text),
+            Name => !text.trim().is_empty(),
+            _ => true,
+        }
+    }
 }
 
 impl fmt::Display for Allowed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Text => f.write_str("text in quotes"),
+            Name => f.write_str("a name in quotes, not empty"),
             Range(low, high) => write!(f, "{low} to {high}"),
             OneOf(words) => {
                 for (i, word) in words.iter().enumerate() {

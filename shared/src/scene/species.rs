@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Species {
-    /// Name, one for each. Required.
+    /// Name, one for each, not empty. Required.
     pub name: String,
     /// Its ID in the covering map, one for each. Required, allowed 1..=252.
     pub cover: u8,

@@ -104,12 +104,8 @@ impl<'t> Walk<'t> {
                     self.value(place, item.get_ref(), item.span(), &format!("{path}[{i}]"));
                 }
             }
-            (Value::String(place), DeValue::String(word)) => match allowed {
-                Allowed::OneOf(words) if !words.contains(&word.as_ref()) => {
-                    self.fault(span, path, format!("is \"{word}\"; allowed: {allowed}"));
-                }
-                _ => *place = word.to_string(),
-            },
+            (Value::String(place), DeValue::String(word)) if allowed.admits(word) => *place = word.to_string(),
+            (Value::String(_), DeValue::String(word)) => self.fault(span, path, format!("is \"{word}\"; allowed: {allowed}")),
             (place @ (Value::Integer(_) | Value::Float(_)), DeValue::Integer(number)) => {
                 let value = i64::from_str_radix(number.as_str(), number.radix()).ok();
                 match value.filter(|&value| allowed.contains(value as f64)) {

@@ -98,13 +98,12 @@ pub(crate) struct Decoded {
     pub(crate) bytes: Vec<u8>,
 }
 
-/// Reads a PNG of one of these `kinds`, which `allowed` names, of 8 or 16 bits a channel.
+/// Reads a PNG of one of these `kinds`, which `allowed` names, of 8 or 16 bits a channel. Kind and sides are checked before anything is decoded.
 pub(crate) fn decode(png_bytes: &[u8], kinds: &[(png::ColorType, png::BitDepth)], allowed: &'static str) -> Result<Decoded, MapError> {
     let unreadable = |error: png::DecodingError| MapError::Unreadable(error.to_string());
     let mut decoder = png::Decoder::new(std::io::Cursor::new(png_bytes));
     decoder.set_transformations(png::Transformations::IDENTITY);
-    let mut reader = decoder.read_info().map_err(unreadable)?;
-    let info = reader.info();
+    let info = decoder.read_header_info().map_err(unreadable)?;
     let (width, height, kind) = (info.width, info.height, (info.color_type, info.bit_depth));
     if !kinds.contains(&kind) {
         return Err(MapError::Kind { found: format!("{:?} {} bits", kind.0, kind.1 as u8), allowed });
@@ -112,6 +111,7 @@ pub(crate) fn decode(png_bytes: &[u8], kinds: &[(png::ColorType, png::BitDepth)]
     if width < 2 || height < 2 || width > MAP_LIMIT_PX || height > MAP_LIMIT_PX {
         return Err(MapError::Size { width, height, limit: MAP_LIMIT_PX });
     }
+    let mut reader = decoder.read_info().map_err(unreadable)?;
     let bytes_per_pixel = kind.0.samples() * (kind.1 as usize / 8);
     let mut bytes = vec![0; width as usize * height as usize * bytes_per_pixel];
     reader.next_frame(&mut bytes).map_err(unreadable)?;

@@ -175,7 +175,7 @@ fn kept(plan: &Plan, placed: &[Placed], level: usize) -> Vec<(usize, f32)> {
 fn ribbons(part: &Part, one: &Posed, level: usize, wider: f32) -> Vec<Vec<(Row, Look)>> {
     let component = &part.component;
     let (root, tip) = (Vec3::from(component.root_rgb), Vec3::from(component.tip_rgb));
-    let every = 1 << level;
+    let every = if level + 1 == LEVELS { one.sections().len() } else { 1 << level };
     let outline = vectors(part, one, every);
     // A coarse outline cuts the belly of a leaf off: it is widened until its area is the leaf's.
     let halves: Vec<f32> = outline.iter().map(|vector| vector.right_m.length()).collect();
@@ -245,7 +245,7 @@ mod tests {
 
     fn tuft() -> Underbrush {
         let mut leaf = Component::new("leaf", ComponentKind::Leaf);
-        (leaf.count, leaf.sections) = (12, 8);
+        (leaf.count, leaf.sections) = (12, 16);
         let mut flower = Component::new("flower", ComponentKind::Flower);
         (flower.count, flower.width_m, flower.petals) = (2, 0.06, 5);
         Underbrush::new("tuft", vec![leaf, flower])
@@ -265,6 +265,7 @@ mod tests {
             assert!(rows < before, "{rows} rows after {before}");
             assert_eq!(baked.indices(3).iter().max().map(|&last| last as usize), Some(6 * rows - 1));
             before = rows;
+            assert!(level + 1 < LEVELS || baked.ribbons.iter().all(|&rows| rows == 2), "{:?}", baked.ribbons);
         }
     }
 

@@ -7,10 +7,14 @@ use crate::terrain::{Decoded, MapError, decode};
 use png::{BitDepth, ColorType};
 
 /// Three nutrients over the whole world; the map is stretched to the world's extent, bilinear between the pixels' centres.
+///
+/// Takes 1 byte a pixel where it is grey and 3 where it is RGB, 201 MB at most, and no more while it is read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NutrientMap {
     size_px: [u32; 2],
-    levels: Vec<[u8; 3]>,
+    /// Levels of a pixel: 1 for all nutrients alike, or 3.
+    channels: usize,
+    levels: Vec<u8>,
 }
 
 impl NutrientMap {
@@ -21,11 +25,7 @@ impl NutrientMap {
     pub fn from_png(png_bytes: &[u8]) -> Result<Self, MapError> {
         let kinds = [(ColorType::Grayscale, BitDepth::Eight), (ColorType::Rgb, BitDepth::Eight)];
         let Decoded { size_px, kind, bytes } = decode(png_bytes, &kinds, "grey or RGB without alpha, 8 bits")?;
-        let levels = match kind.0 {
-            ColorType::Rgb => bytes.chunks_exact(3).map(|rgb| [rgb[0], rgb[1], rgb[2]]).collect(),
-            _ => bytes.into_iter().map(|level| [level; 3]).collect(),
-        };
-        Ok(Self { size_px, levels })
+        Ok(Self { size_px, channels: kind.0.samples(), levels: bytes })
     }
 
     /// Concentrations at a place given as a share of the world along X and Z; those of the edge outside.
@@ -42,7 +42,8 @@ impl NutrientMap {
         let corners = [north_west, north_west + 1, north_west + row, north_west + row + 1];
         let weights = [(256 - east) * (256 - south), east * (256 - south), (256 - east) * south, east * south];
         std::array::from_fn(|nutrient| {
-            let sum: u32 = corners.iter().zip(weights).map(|(&pixel, weight)| u32::from(self.levels[pixel][nutrient]) * weight).sum();
+            let level = |pixel: usize| u32::from(self.levels[pixel * self.channels + nutrient % self.channels]);
+            let sum: u32 = corners.iter().zip(weights).map(|(&pixel, weight)| level(pixel) * weight).sum();
             (u64::from(sum) * u64::from(u16::MAX) / (255 << 16)) as u16
         })
     }
@@ -177,6 +178,24 @@ mod tests {
         assert_eq!(fault(&grey_png([1, 4], &[0; 4])), "is 1 × 4 pixels; allowed: 2 × 2 to 8192 × 8192");
         assert!(fault(b"P6").starts_with("is not a readable PNG: "));
         assert!(fault(&crate::terrain::grey_png_16([2, 2], &[0; 4])).starts_with("is a PNG of kind Grayscale 16 bits"));
+    }
+
+    #[test]
+    fn sides_are_refused_before_any_pixel_is_read() {
+        // A file that ends where its pixels begin.
+        let told = |width: u32, height: u32| {
+            let mut bytes = vec![];
+            let mut encoder = png::Encoder::new(&mut bytes, width, height);
+            encoder.set_color(ColorType::Rgb);
+            let mut writer = encoder.write_header().unwrap();
+            writer.write_chunk(png::chunk::IDAT, &[]).unwrap();
+            drop(writer);
+            NutrientMap::from_png(&bytes).unwrap_err().to_string()
+        };
+        for (width, height) in [(8193, 2), (2, 8193), (1, 8192), (0x7fff_ffff, 0x7fff_ffff)] {
+            assert_eq!(told(width, height), format!("is {width} × {height} pixels; allowed: 2 × 2 to 8192 × 8192"));
+        }
+        assert!(told(8192, 2).starts_with("is not a readable PNG: "));
     }
 
     /// Mean concentrations, and the lowest and highest of all.

@@ -161,7 +161,7 @@ fn a_gap_wider_than_the_reach_is_not_crossed() {
 
 #[test]
 fn without_propagation_points_nothing_grows_but_where_it_is_painted() {
-    let grass = Underbrush { propagation_points: 0, reach_m: 0.05, ..species("grass") };
+    let grass = Underbrush { propagation_points: 0, reach_m: 0.0, ..species("grass") };
     assert_eq!(grown(40.0, 1, std::slice::from_ref(&grass), &[0.5], |_| Ground::Open).plants(), []);
     let painted = grown(40.0, 1, &[grass], &[0.5], |[x_m, _]| if x_m < 10.0 { Ground::Painted(0) } else { Ground::Open });
     assert!(painted.plants().len() > 500);
@@ -171,7 +171,7 @@ fn without_propagation_points_nothing_grows_but_where_it_is_painted() {
 #[test]
 fn taller_plants_keep_out_those_that_need_light() {
     // A tall plant every 8 m, in a painted square of its own; where those do not shade, the low ones grow.
-    let tall = Underbrush { propagation_points: 0, room_m: 2.0, reach_m: 0.05, ..species("tall") };
+    let tall = Underbrush { propagation_points: 0, room_m: 2.0, reach_m: 0.0, ..species("tall") };
     let ground = |at_m: [f32; 2]| if at_m.iter().all(|m| m % 8.0 < 0.5) { Ground::Painted(0) } else { Ground::Open };
     let low = |light_need: f32, heights_m: [f32; 2]| {
         let low = Underbrush { needs: [0.0; 3], uptake: [0.0; 3], light_need, ..species("low") };
@@ -199,7 +199,7 @@ fn a_greedy_species_starves_another() {
     let modest = Underbrush { uptake: [0.0; 3], ..species("modest") };
     let beside = |uptake: f32| {
         let other =
-            Underbrush { uptake: [uptake; 3], needs: [0.1; 3], propagation_points: 150, room_m: 3.0, reach_m: 0.05, ..species("other") };
+            Underbrush { uptake: [uptake; 3], needs: [0.1; 3], propagation_points: 150, room_m: 3.0, reach_m: 0.0, ..species("other") };
         count_of(&grown(64.0, 6, &[modest.clone(), other], &[0.5, 0.5], |_| Ground::Open), 0)
     };
     let [fed, starved] = [beside(0.0), beside(0.6)];
@@ -294,7 +294,7 @@ proptest! {
         seed in any::<u64>(),
         spacing_m in 0.2_f32..20.0,
         extent_m in prop::array::uniform2(0.4_f32..30.0),
-        kinds in prop::collection::vec((0.05_f32..20.0, 0.05_f32..50.0, 0_u32..60, 0.0_f32..1.0, 0.0_f32..1.0, 0.02_f32..5.0), 0..16),
+        kinds in prop::collection::vec((0.05_f32..20.0, 0.0_f32..50.0, 0_u32..60, 0.0_f32..1.0, 0.0_f32..1.0, 0.02_f32..5.0), 0..16),
         shade in 0.0_f32..1.0,
     ) {
         let heights_m: Vec<_> = kinds.iter().map(|kind| kind.5).collect();

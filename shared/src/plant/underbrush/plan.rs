@@ -11,7 +11,7 @@ use std::f32::consts::TAU;
 pub const COMPONENTS_LIMIT: usize = 64;
 
 /// Most sections of a component.
-pub const SECTIONS_LIMIT: usize = 8;
+pub const SECTIONS_LIMIT: usize = 16;
 
 /// Diameter of a flower's stalk over that of its ring of petals.
 pub(super) const STALK_SHARE: f32 = 0.06;
@@ -80,10 +80,8 @@ impl Plan {
     pub fn new(species: &Underbrush, nodes: Nodes) -> Self {
         let mut tables = Tables { chains: Vec::new(), tables: Vec::new(), nodes };
         let mut parts: Vec<Part> = Vec::with_capacity(species.components.len());
-        for component in &species.components {
-            let branch = |part: &Part| part.component.kind == ComponentKind::Branch && part.component.name == component.on;
-            let on = parts.iter().position(branch);
-            parts.push(part(component, on, &mut tables));
+        for (index, component) in species.components.iter().enumerate() {
+            parts.push(part(component, species.branch_below(index), &mut tables));
         }
         Self { parts, tables: tables.tables }
     }

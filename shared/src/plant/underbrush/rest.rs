@@ -17,11 +17,20 @@ pub struct Load {
 }
 
 impl Load {
-    /// What the section `section` of `count` holds: all that is above its middle.
-    fn above_middle(&self, section: usize, count: usize) -> f64 {
-        self.tip + self.spread * (count as f64 - section as f64 - 0.5) / count as f64
+    /// What the section `section` of `count` holds, which is all that is above its middle, times its length.
+    fn held(&self, section: usize, count: usize) -> f64 {
+        (self.tip + self.spread * (count as f64 - section as f64 - 0.5) / count as f64) / count as f64
+    }
+
+    /// What of that turns it.
+    fn turning(&self, section: usize, count: usize) -> f64 {
+        self.held(section, count) * if section == 0 { FOOT_LOAD_SHARE } else { 1.0 }
     }
 }
+
+/// Share of its load that turns the lowest section. The joint at the clamp stands for half a section, so that it bends by the moment in the middle of that
+/// half: a quarter of the section is below.
+const FOOT_LOAD_SHARE: f64 = 0.75;
 
 /// Rotation stiffness of the joints at the lower ends of `sections` sections, foot first, where the rigidity falls linearly to `tip_share` at the tip.
 ///
@@ -36,7 +45,7 @@ pub fn joints(sections: usize, tip_share: f64) -> Vec<f64> {
 /// The rest shape as in 004 §3.2: from the foot up, each section bends under all that is above its joint, taken to be straight, and is then fixed. Writes
 /// for each section how far it is turned from the unbent axis towards the load (rad). `unbent_rad` is the angle of that axis from upright, 0..=π.
 ///
-/// The spring of a section is such that k·d² is its joint's stiffness, so that both ways agree on a single section which bends little.
+/// The spring of a section is such that k·d² is its joint's stiffness.
 pub fn one_pass(joints: &[f64], load: Load, unbent_rad: f64, bends_rad: &mut [f64]) {
     let count = joints.len();
     let mut bend_rad = 0.0;
@@ -54,6 +63,9 @@ pub fn one_pass(joints: &[f64], load: Load, unbent_rad: f64, bends_rad: &mut [f6
 /// The rest shape in which every joint balances the moment of all that is above it as it then lies: the stable shape that is reached without a jump as the
 /// load grows. Writes for each section how far it is turned from the unbent axis towards the load (rad). `unbent_rad` is the angle of that axis from
 /// upright, 0..=π; an upright component that cannot stand takes the bent shape.
+///
+/// Where a load across it at its tip is up to 10, the tip is at most 0.2/n² of the length off that of a continuous beam, n the number of sections, at
+/// least 6: 0.3 % with 8, 0.08 % with 16.
 ///
 /// Shooting: the angle of the topmost section gives all others down to the clamp, as the moment at a joint depends on the sections above it alone. While
 /// none of them rises above the unbent axis, there is but one angle that fits the clamp (the load's sin ψ/ψ falls with ψ: Brezis & Oswald, Nonlinear
@@ -106,7 +118,7 @@ fn shoot(joints: &[f64], load: Load, tip_rad: f64, limit_rad: f64, pull: impl Fn
     for (section, (&joint, out)) in joints.iter().zip(angles_rad).enumerate().rev() {
         *out = angle_rad.min(limit_rad);
         if angle_rad <= limit_rad {
-            moment += load.above_middle(section, count) * pull(angle_rad) / count as f64;
+            moment += load.turning(section, count) * pull(angle_rad);
             angle_rad += moment / joint;
         }
     }
@@ -118,7 +130,7 @@ pub fn moments(load: Load, unbent_rad: f64, bends_rad: &[f64], moments: &mut [f6
     let count = bends_rad.len();
     let mut moment = 0.0;
     for (section, (&bend_rad, out)) in bends_rad.iter().zip(moments).enumerate().rev() {
-        moment += load.above_middle(section, count) * (unbent_rad + bend_rad).sin() / count as f64;
+        moment += load.held(section, count) * (unbent_rad + bend_rad).sin();
         *out = moment;
     }
 }

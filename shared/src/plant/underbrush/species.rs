@@ -59,7 +59,7 @@ fn there_are_eight_species_within_the_limits() {
         assert!((1..=12).contains(&species.components.len()));
         for (part, component) in plan.parts.iter().zip(&species.components) {
             assert_eq!(part.on.is_some(), !component.on.is_empty(), "{} stands on a branch before it", component.name);
-            assert!((1..=32).contains(&component.count) && (1..=8).contains(&component.sections) && (3..=16).contains(&component.petals));
+            assert!((1..=32).contains(&component.count) && (1..=16).contains(&component.sections) && (3..=16).contains(&component.petals));
             assert!((0.005..=5.0).contains(&component.length_m) && (0.0005..=1.0).contains(&component.width_m));
             assert!((1e-6..=10.0).contains(&component.mass_kg) && (1e-9..=1000.0).contains(&component.stiffness_n_m2));
             assert!((0.0..=3.1).contains(&component.angle_rad) && (0.0..=1.5).contains(&component.angle_variation_rad));
@@ -100,6 +100,10 @@ fn stalks_stand_and_leaves_droop() {
             };
             assert!(fits, "{} of {}: {mean_rise}, {least_rise}, {most_bend_rad}", part.component.name, species.name);
             assert!(all.iter().all(|one| one.strain < 0.2));
+            let is_smooth =
+                |one: &&Posed| one.sections().windows(2).all(|pair| pair[0].direction.angle_between(pair[1].direction) < 0.1745);
+            let smooth = all.iter().filter(is_smooth).count();
+            assert!(smooth * 10 >= all.len() * 9, "{} of {}: {smooth} of {}", part.component.name, species.name, all.len());
         }
     }
 }

@@ -19,7 +19,7 @@ pub struct Vectors {
     pub right_m: Vec3,
 }
 
-/// Vectors of a component up from its foot, one for every `every` sections (004 §5.1: fewer, further away; 1, 2, 4 or 8) and always one to its tip. The first
+/// Vectors of a component up from its foot, one for every `every` sections (004 §5.1: fewer, further away) and always one to its tip. The first
 /// is the foot: it has no axis, and its borders are across the next.
 pub fn vectors(part: &Part, posed: &Posed, every: usize) -> Vec<Vectors> {
     let sections = posed.sections();

@@ -71,6 +71,13 @@ pub(in crate::scene) fn check_species(species: &[Underbrush], from_file: usize, 
             let message = format!("is {}, as that of {}, \"{}\"; allowed: {OWN_COVER}", later.cover, told(j), species[j].name);
             misfits.note(&fields(j, "cover"), message);
         }
+        if later.reach_m > 0.0 && later.reach_m <= later.room_m {
+            let message = format!(
+                "is {}; allowed: 0, it does not spread, or more than its `room_m`, {}, in which none of its own comes up",
+                later.reach_m, later.room_m
+            );
+            misfits.note(&["reach_m", "room_m"].map(|key| format!("{path}.{key}")), message);
+        }
         check_components(later, &format!("{path}.components"), misfits);
     }
 }
