@@ -126,7 +126,7 @@ impl Underbrush {
         let mut lists = Vec::new();
         for (number, (own, plan)) in flora.species().iter().zip(flora.plans()).enumerate() {
             let bent = Bent::new(own, plan);
-            species[number] = [height_m(own), own.settle_secs, bent.extent_m(), 0.0];
+            species[number] = [height_m(own), plan.settle_secs, bent.extent_m(), 0.0];
             for level in 0..LEVELS {
                 let baked = Baked::new(plan, &bent, level);
                 let rows = baked.ribbons.iter().sum::<u32>();
