@@ -1,5 +1,5 @@
-// Underbrush: how each plant is bent in this frame, which of them are seen and at which level of detail; then their rows, blended
-// between postures made beforehand (004 section 4.2), widened to ribbons.
+// Underbrush: what each plant feels in this frame, which of them are seen and at which level of detail; then their components, bent by
+// tables of postures made beforehand (004 section 4.2), and widened to ribbons.
 
 struct UnderbrushFrame {
     // Number of the frame; unused.
@@ -29,13 +29,13 @@ struct Felt {
     frame: u32,
 }
 
-// A plant as it is drawn: root (m) and size; lean (rad), light and heading; row of its posture's first, steps to the next heading and
-// strength, and how far it is towards them.
+// A plant as it is drawn: root (m), and size as it is shown; lean of the ground (rad), light and heading; pressure that it feels along
+// X and Z (Pa), its make, and the spheres that it may touch, a bit each; height (m), hue, distance (m), and its own size.
 struct Stand {
     root: vec4<f32>,
     lean: vec4<f32>,
-    posture: vec4<f32>,
-    towards: vec4<f32>,
+    feels: vec4<f32>,
+    about: vec4<f32>,
 }
 
 struct Tally {
@@ -53,11 +53,7 @@ struct Tally {
 @group(1) @binding(8) var<storage, read_write> brush_draws: array<u32>;
 @group(1) @binding(9) var forces: texture_3d<f32>;
 
-const HEADINGS: u32 = 8u;
-const STRENGTHS: u32 = 7u;
 const VARIANTS: u32 = 4u;
-const MIDDLE_PA: f32 = 8.0;
-const STRONGEST: f32 = 0.93;
 const LEVELS: u32 = 4u;
 
 // Force on a silhouette (Pa) so high above the ground at a root: that of the force field, or beyond it that of the wind alone.
@@ -125,36 +121,24 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     felt[index] = feels;
 
     var lean = lean_of_field(plant.at, 0.0);
-    for (var s = 0; s < i32(frame.clouds.w); s++) {
-        let sphere = frame.spheres[s];
-        let away = plant.at - sphere.xz;
-        let apart = length(away);
-        let deep = clamp((root.y + height - sphere.y + sphere.w) / height, 0.0, 1.0);
-        let pushed = 1.3 * deep * (1.0 - apart / sphere.w);
-        if pushed > length(lean) {
-            lean = away / max(apart, 1e-3) * pushed;
-        }
-    }
     let tilt = length(lean);
     lean *= min(1.0, 1.5 / max(tilt, 1e-5));
 
-    let pressure = feels.pressure.xy;
-    let size_pa = length(pressure);
-    let toward = select(0.0, atan2(pressure.y, pressure.x), size_pa > 1e-6);
-    let angle = fract((toward - plant.heading) / TAU + 1.0) * f32(HEADINGS);
-    let heading = u32(angle) % HEADINGS;
-    let strength = min(size_pa / (size_pa + MIDDLE_PA) / STRONGEST, 0.9999) * f32(STRENGTHS - 1u);
     let is_broken = (broken[plant.site >> 5u] >> (plant.site & 31u)) & 1u;
     let make = (plant.make >> 8u) % VARIANTS + is_broken * VARIANTS;
-    let posture = (make * HEADINGS + heading) * STRENGTHS + u32(strength);
-    let next_heading = (make * HEADINGS + (heading + 1u) % HEADINGS) * STRENGTHS + u32(strength);
+    let shown_size = plant.size * left * pow(kept, -0.5);
+    var spheres = 0u;
+    for (var s = 0u; s < u32(frame.clouds.w); s++) {
+        let sphere = frame.spheres[s];
+        spheres |= select(0u, 1u << s, distance(sphere.xyz, root) < sphere.w + nature.z * shown_size);
+    }
 
     var out: Stand;
-    out.root = vec4<f32>(root, plant.size * left * pow(kept, -0.5));
+    out.root = vec4<f32>(root, shown_size);
     let lit = root + vec3<f32>(0.0, 0.6 * height, 0.0);
     out.lean = vec4<f32>(lean, cloud_light(plant.at) * sun_visible(lit), plant.heading);
-    out.posture = vec4<f32>(bitcast<f32>(posture), bitcast<f32>(next_heading), fract(angle), fract(strength));
-    out.towards = vec4<f32>(height, random3(vec2<i32>(i32(plant.site), 9), 17u).x, distance_m, 0.0);
+    out.feels = vec4<f32>(feels.pressure.xy, f32(make), f32(spheres));
+    out.about = vec4<f32>(height, random3(vec2<i32>(i32(plant.site), 9), 17u).x, distance_m, plant.size);
     stands_out[index] = out;
 
     let level = select(select(select(3u, 2u, tall_px > 26.0), 1u, tall_px > 90.0), 0u, tall_px > 300.0);
@@ -174,21 +158,40 @@ fn finish(@builtin(local_invocation_index) list: u32) {
 // --- drawing ----------------------------------------------------------------------------------------------------------
 
 struct BrushList {
-    // Rows of a plant; plants in an instance; unused.
+    // Rows of a plant; plants in an instance; components of a plant; unused.
     rows: vec4<u32>,
     // Number of the list; first of the listed plants; 1 if the nearest posture will do; unused.
     which: vec4<u32>,
-    // Unit of the places of rows (m).
-    scale: vec4<f32>,
+    // Angles and loads of the tables; unused.
+    nodes: vec4<u32>,
+}
+
+// A row: half its width and what it is of, its colour, the component that it is on and the steps below it there, unused; of a petal how
+// far it is from the tip of the stalk (m), cosine and sine of its turn about that, and sine of the angle at which it stands off.
+struct Row {
+    look: vec4<u32>,
+    petal: vec4<f32>,
+}
+
+// A component: cosine and sine of its angle from what it stands on, and of its turn about that; load per force per mass (s²/m) and per
+// pressure (1/Pa), length (m), and where it stands, in steps of what it stands on; first step of its table, its steps, what it stands on,
+// and on how many, one on the other.
+struct Limb {
+    turns: vec4<f32>,
+    nature: vec4<f32>,
+    table: vec4<u32>,
 }
 
 @group(1) @binding(10) var<storage, read> stands: array<Stand>;
 @group(1) @binding(11) var<storage, read> shown: array<u32>;
 @group(1) @binding(12) var<storage, read> counted: array<u32>;
-@group(1) @binding(13) var<storage, read> postures: array<u32>;
-@group(1) @binding(14) var<storage, read> looks: array<vec2<u32>>;
+@group(1) @binding(13) var<storage, read> steps: array<vec2<f32>>;
+@group(1) @binding(14) var<storage, read> rows: array<Row>;
 @group(1) @binding(15) var<uniform> list: BrushList;
+@group(1) @binding(16) var<storage, read> limbs: array<Limb>;
 
+const GRAVITY_M_PER_S2: f32 = 9.81;
+const MIDDLE_LOAD: f32 = 8.0;
 const WIDTH_UNIT_M: f32 = 1.0 / 16384.0;
 const STALK: u32 = 1u;
 const PETAL: u32 = 2u;
@@ -200,79 +203,169 @@ struct Ribbon {
     @location(1) @interpolate(linear) across: f32,
 }
 
-struct BentRow {
+// A place on a component, from the root (m), and how it is directed there.
+struct Bent {
     at: vec3<f32>,
-    side: vec3<f32>,
     along: vec3<f32>,
+    side: vec3<f32>,
 }
 
-fn octahedral(word: u32) -> vec3<f32> {
-    let flat = vec2<f32>(vec2<i32>(i32(word << 24u) >> 24u, i32(word << 16u) >> 24u)) / 127.0;
-    let y = 1.0 - abs(flat.x) - abs(flat.y);
-    let folded = (1.0 - abs(flat.yx)) * select(vec2<f32>(-1.0), vec2<f32>(1.0), flat >= vec2<f32>(0.0));
-    let xz = select(flat, folded, y < 0.0);
-    return normalize(vec3<f32>(xz.x, y, xz.y));
+// What of a vector is across a direction of length 1.
+fn square(v: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
+    return v - direction * dot(v, direction);
 }
 
-fn row_of(posture: u32, row: u32) -> BentRow {
-    let at = (posture * list.rows.x + row) * 3u;
-    let a = postures[at];
-    let b = postures[at + 1u];
-    let place = vec3<f32>(vec3<i32>(i32(a << 16u) >> 16u, i32(a) >> 16u, i32(b << 16u) >> 16u));
-    return BentRow(place / 32767.0, octahedral(b >> 16u), octahedral(postures[at + 2u]));
+fn unit_or(v: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
+    let size = length(v);
+    return select(other, v / max(size, 1e-30), size > 1e-30);
 }
 
-fn blended(a: BentRow, b: BentRow, share: f32) -> BentRow {
-    return BentRow(mix(a.at, b.at, share), mix(a.side, b.side, share), mix(a.along, b.along, share));
+// Angle (rad) of a cosine, to 7e-5: Abramowitz & Stegun 4.4.45.
+fn arc_cosine(cosine: f32) -> f32 {
+    let size = abs(cosine);
+    let angle = sqrt(max(1.0 - size, 0.0)) * (1.5707288 + size * (-0.2121144 + size * (0.074261 - size * 0.0187293)));
+    return select(angle, 0.5 * TAU - angle, cosine < 0.0);
 }
 
-// Turned about the upright by a heading, then tipped by a lean.
-fn turned(v: vec3<f32>, heading: f32, lean: vec2<f32>) -> vec3<f32> {
-    let c = cos(heading);
-    let s = sin(heading);
-    let p = vec3<f32>(v.x * c - v.z * s, v.y, v.x * s + v.z * c);
-    let angle = length(lean);
-    if angle < 1e-4 {
-        return p;
+// Upright, turned by a heading and tipped by the lean of the ground.
+fn ground_frame(plant: Stand) -> Bent {
+    let side = vec3<f32>(sin(plant.lean.w), 0.0, -cos(plant.lean.w));
+    let angle = length(plant.lean.xy);
+    let axis = vec3<f32>(plant.lean.y, 0.0, -plant.lean.x) / max(angle, 1e-9);
+    let up = vec3<f32>(0.0, cos(angle), 0.0) + cross(axis, vec3<f32>(0.0, 1.0, 0.0)) * sin(angle);
+    let across = side * cos(angle) + cross(axis, side) * sin(angle) + axis * (dot(axis, side) * (1.0 - cos(angle)));
+    return Bent(vec3<f32>(0.0), up, across);
+}
+
+// A direction of length 1 as it is, or, of a step that ends below the ground, just as steep that it ends on it; one that falls straight
+// down lies down towards `front`.
+fn above_ground(direction: vec3<f32>, front: vec3<f32>, normal: vec3<f32>, height: f32) -> vec3<f32> {
+    let fall = dot(direction, normal);
+    let up = max(fall, -max(height, 0.0));
+    let level = unit_or(square(direction + front * 1e-4, normal), vec3<f32>(0.0));
+    return select(direction, normalize(normal * up + level * sqrt(max(1.0 - up * up, 0.0))), up > fall);
+}
+
+// Direction of a step from `below` that passes outside of the spheres, as links of blades do; where the nearest way is through the ground,
+// it is one above them.
+fn passing(along: vec3<f32>, below: vec3<f32>, length_m: f32, plant: Stand, normal: vec3<f32>) -> vec3<f32> {
+    var way = along;
+    let steepest = -max(dot(below, normal), 0.0) / length_m;
+    for (var round = 0; round < 2; round++) {
+        for (var left = u32(plant.feels.w); left != 0u; left &= left - 1u) {
+            let sphere = frame.spheres[firstTrailingBit(left)];
+            let centre = sphere.xyz - plant.root.xyz;
+            let nearest = aside_of(way, below, length_m, centre, sphere.w);
+            let above = aside_of(normalize(way + normal), below, length_m, centre, sphere.w);
+            way = select(nearest, above, any(nearest != way) && dot(nearest, normal) < steepest);
+        }
     }
-    let axis = vec3<f32>(lean.y, 0.0, -lean.x) / angle;
-    return p * cos(angle) + cross(axis, p) * sin(angle) + axis * (dot(axis, p) * (1.0 - cos(angle)));
+    return way;
+}
+
+// Where a component gets after so many steps, from what it stands on, and how step `last` is directed. Twin of `posed` in
+// shared/src/plant/underbrush/plant.rs; spheres turn it beside.
+fn bent(host: Bent, limb: Limb, so_many: f32, last: u32, plant: Stand, normal: vec3<f32>) -> Bent {
+    let outward = host.side * limb.turns.z - cross(host.along, host.side) * limb.turns.w;
+    let axis = normalize(host.along * limb.turns.x + outward * limb.turns.y);
+    let across = cross(outward, host.along);
+    let side = unit_or(square(cross(axis, vec3<f32>(0.0, 1.0, 0.0)) + across * 1e-3, axis), across);
+
+    let pressure = plant.feels.xy * limb.nature.y;
+    let load = vec3<f32>(pressure.x, -GRAVITY_M_PER_S2 * limb.nature.x * plant.about.w, pressure.y);
+    let size = length(load);
+    let down = load / max(size, 1e-30);
+    let away = cross(axis, side);
+    let towards = unit_or(square(square(down, axis) + away * 1e-6, axis), away);
+    let around = cross(axis, towards);
+
+    let nodes = vec2<f32>(list.nodes.xy - 1u);
+    let angle = arc_cosine(clamp(-dot(down, axis), -1.0, 1.0));
+    let place = vec2<f32>(sqrt(angle * 2.0 / TAU), 1.0 - MIDDLE_LOAD / (size + MIDDLE_LOAD)) * nodes;
+    let is_nearest = list.which.z == 1u;
+    let node = min(vec2<u32>(place + select(0.0, 0.5, is_nearest)), list.nodes.xy - select(2u, 1u, is_nearest));
+    let by = place - vec2<f32>(node);
+    let to_load = limb.table.y;
+    let to_angle = list.nodes.y * to_load;
+    let first = limb.table.x + node.x * to_angle + node.y * to_load;
+
+    let length_m = limb.nature.z * plant.root.w;
+    var now = Bent(host.at, axis, side);
+    var tangent = vec3<f32>(0.0);
+    for (var i = 0u; i <= last; i++) {
+        let at = first + i;
+        var step = steps[at];
+        if !is_nearest {
+            let heavier = mix(steps[at + to_angle], steps[at + to_angle + to_load], by.y);
+            step = mix(mix(step, steps[at + to_load], by.y), heavier, by.x);
+        }
+        let step_m = step.y * length_m;
+        let free = axis * cos(step.x) + towards * sin(step.x);
+        let turned = around * dot(side, around) + (towards * cos(step.x) - axis * sin(step.x)) * dot(side, towards);
+        let height = dot(now.at, normal) / step_m;
+        now.along = above_ground(free, cross(free, turned), normal, height);
+        if plant.feels.w > 0.0 {
+            // From the first that meets a sphere on they go on in its direction.
+            let own = select(now.along, tangent, any(tangent != vec3<f32>(0.0)));
+            let way = passing(own, now.at, step_m, plant, normal);
+            now.along = above_ground(way, cross(way, turned), normal, height);
+            tangent = select(tangent, now.along, any(way != own));
+        }
+        now.side = unit_or(square(turned, now.along), turned);
+        now.at += now.along * (step_m * clamp(so_many - f32(i), 0.0, 1.0));
+    }
+    return now;
+}
+
+// Where a row of a plant is, on ground with that normal: bent from the root on, one component on the other.
+fn bent_row(plant: Stand, row: Row, normal: vec3<f32>) -> Bent {
+    let limb_0 = (u32(plant.feels.z) % (2u * VARIANTS)) * list.rows.z;
+    let own = limbs[limb_0 + (row.look.z & 0xffffu)];
+    var now = ground_frame(plant);
+    for (var above = own.table.w; above > 0u; above--) {
+        // The component on which so many more stand, and the next of those.
+        var next = own;
+        for (var i = 1u; i < above; i++) {
+            next = limbs[limb_0 + next.table.z];
+        }
+        let limb = limbs[limb_0 + next.table.z];
+        now = bent(now, limb, next.nature.w, min(u32(next.nature.w), limb.table.y - 1u), plant, normal);
+    }
+    let so_many = row.look.z >> 16u;
+    now = bent(now, own, f32(so_many), max(so_many, 1u) - 1u, plant, normal);
+    if row.look.x >> 16u == PETAL {
+        let other = cross(now.along, now.side);
+        let outward = now.side * row.petal.y + other * row.petal.z;
+        let along = now.along * sqrt(1.0 - row.petal.w * row.petal.w) + outward * row.petal.w;
+        now = Bent(now.at + along * (row.petal.x * plant.root.w), along, other * row.petal.y - now.side * row.petal.z);
+    }
+    return now;
 }
 
 @vertex
 fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Ribbon {
-    let rows = list.rows.x;
-    let number = instance * list.rows.y + index / (2u * rows);
-    let local = index % (2u * rows);
-    let row = local / 2u;
+    let row_count = list.rows.x;
+    let number = instance * list.rows.y + index / (2u * row_count);
+    let local = index % (2u * row_count);
     var out: Ribbon;
     if number >= counted[list.which.x] {
         out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
         return out;
     }
     let plant = stands[shown[list.which.y + number]];
-    let posture = bitcast<u32>(plant.posture.x);
-    let aside = bitcast<u32>(plant.posture.y);
-    var bent: BentRow;
-    if list.which.z == 1u {
-        let near = select(posture, aside, plant.posture.z > 0.5) + select(0u, 1u, plant.posture.w > 0.5);
-        bent = row_of(near, row);
-    } else {
-        let lower = blended(row_of(posture, row), row_of(aside, row), plant.posture.z);
-        let upper = blended(row_of(posture + 1u, row), row_of(aside + 1u, row), plant.posture.z);
-        bent = blended(lower, upper, plant.posture.w);
-    }
-    let look = looks[posture / (HEADINGS * STRENGTHS) * rows + row];
+    let row = rows[u32(plant.feels.z) % VARIANTS * row_count + local / 2u];
+    let look = row.look;
     let stuff = look.x >> 16u;
     let size = plant.root.w;
-    let distance_m = plant.towards.z;
-    let offset = turned(bent.at, plant.lean.w, plant.lean.xy) * (list.scale.x * size);
-    let along = normalize(turned(bent.along, plant.lean.w, plant.lean.xy));
-    var p = plant.root.xyz + offset;
+    let distance_m = plant.about.z;
+    let normal_up = ground_normal(plant.root.xz);
+    let bent = bent_row(plant, row, normal_up);
+    let along = bent.along;
+    var p = plant.root.xyz + bent.at;
     let view = normalize(p - frame.eye.xyz);
     let toward = cross(along, view);
     let facing_side = toward / max(length(toward), 1e-3);
-    var side = normalize(turned(bent.side, plant.lean.w, plant.lean.xy));
+    var side = bent.side;
     let across = f32(local & 1u) * 2.0 - 1.0;
     if stuff == STALK {
         side = facing_side;
@@ -282,7 +375,6 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     }
     let half = max(f32(look.x & 0xffffu) * WIDTH_UNIT_M * size, select(0.0, 0.45 * distance_m * frame.screen.z, (look.x & 0xffffu) > 0u));
     p += side * (across * half);
-    let normal_up = ground_normal(plant.root.xz);
     p += normal_up * max(0.012 - dot(p - plant.root.xyz, normal_up), 0.0);
 
     var normal = normalize(cross(side, along));
@@ -290,12 +382,12 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let rounded = normalize(normal * select(0.8, 0.55, stuff == STALK) + side * (across * select(0.25, 0.8, stuff == STALK)) + normal_up * 0.35);
     let root_color = vec3<f32>(f32(look.y & 255u), f32((look.y >> 8u) & 255u), f32((look.y >> 16u) & 255u)) / 255.0;
     var albedo = root_color * root_color;
-    let hue = plant.towards.y;
+    let hue = plant.about.y;
     if stuff != PETAL {
         albedo *= grass_tint(plant.root.xz) * mix(vec3<f32>(0.86, 0.98, 0.85), vec3<f32>(1.14, 1.03, 0.9), hue);
     }
-    let up = clamp(dot(p - plant.root.xyz, normal_up) / max(plant.towards.x, 0.05), 0.0, 1.0);
-    let deep = smoothstep(0.0, 0.6, plant.towards.x);
+    let up = clamp(dot(p - plant.root.xyz, normal_up) / max(plant.about.x, 0.05), 0.0, 1.0);
+    let deep = smoothstep(0.0, 0.6, plant.about.x);
     let occlusion = mix(mix(0.62, 0.30, deep), 1.0, smoothstep(0.0, 0.8, up));
     let light = plant.lean.z * mix(mix(0.8, 0.42, deep), 1.0, smoothstep(0.05, 0.7, up));
     if stuff == PETAL {

@@ -13,7 +13,7 @@ pub(super) const BLADES: &str = include_str!("../../shaders/blades.wgsl");
 /// Rain.
 pub(super) const RAIN: &str = include_str!("../../shaders/rain.wgsl");
 /// Underbrush.
-pub(super) const UNDERBRUSH: &str = include_str!("../../shaders/underbrush.wgsl");
+pub(super) const UNDERBRUSH: &str = concat!(include_str!("../../shaders/blade.wgsl"), include_str!("../../shaders/underbrush.wgsl"));
 /// Flower heads.
 pub(super) const FLOWERS: &str = include_str!("../../shaders/flowers.wgsl");
 /// Clumps of far plants.

@@ -91,7 +91,7 @@ fn meadow_in(wind: Wind) -> Mirror {
 }
 
 /// The same with a scene changed, over a covering map of 16 × 16 pixels.
-fn meadow_of(change: impl FnOnce(&mut Scene), covering: &[u8]) -> Mirror {
+pub(super) fn meadow_of(change: impl FnOnce(&mut Scene), covering: &[u8]) -> Mirror {
     let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 0.0, base_m: 0.0 };
     let mut scene = Scene { patches: Patches { count: [4, 4], ..Patches::default() }, ..Scene::new(maps) };
     change(&mut scene);
@@ -141,7 +141,7 @@ fn tips(gpu: &Gpu, wind_m_per_s: f32, streamed_rad: Option<f32>) -> Vec<Vec3> {
 }
 
 /// Bytes of a buffer on the GPU.
-fn read(gpu: &Gpu, buffer: &wgpu::Buffer) -> Vec<u8> {
+pub(super) fn read(gpu: &Gpu, buffer: &wgpu::Buffer) -> Vec<u8> {
     let read = gpu.empty_buffer("read", buffer.size(), wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_buffer_to_buffer(buffer, 0, &read, 0, buffer.size());
@@ -183,7 +183,7 @@ fn air(gpu: &Gpu, picture: &Picture, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
 }
 
 /// What the body of a function of `at`, written in WGSL over the shared pieces, says of each of `places`.
-fn probe(gpu: &Gpu, picture: &Picture, body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
+pub(super) fn probe(gpu: &Gpu, picture: &Picture, body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
     let source = format!(
         "@group(1) @binding(0) var<storage, read_write> probes: array<vec4<f32>>;
         fn found(at: vec4<f32>) -> vec4<f32> {{ {body} }}
@@ -432,7 +432,6 @@ fn underbrush_follows_the_force_as_its_twin_does() {
         @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
             let goal = cases[id.x * 2u + 1u];
             cases[id.x * 2u] = followed(cases[id.x * 2u], goal.xy, goal.z, goal.w);
-            cases[id.x * 2u + 1u] = vec4<f32>(octahedral(u32(goal.x * 100.0 + 6000.0)), 0.0);
         }";
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow(0.0);
@@ -452,11 +451,5 @@ fn underbrush_follows_the_force_as_its_twin_does() {
         let twin = Following { value: [x, 0.0, z], rate_per_s: [dx, 0.0, dz] }.followed([goal_x, 0.0, goal_z], settle_secs, dt_secs);
         let wanted = [twin.value[0], twin.value[2], twin.rate_per_s[0], twin.rate_per_s[2]];
         assert!(wanted.iter().zip(found[0]).all(|(a, b)| (a - b).abs() < 2e-3), "{:?} instead of {wanted:?}", found[0]);
-        let word = (goal_x * 100.0 + 6000.0) as u32;
-        let [a, b] = [0, 8].map(|shift| f32::from((word >> shift) as u8 as i8) / 127.0);
-        let y = 1.0 - a.abs() - b.abs();
-        let sign = |v: f32| if v >= 0.0 { 1.0 } else { -1.0 };
-        let direction = if y < 0.0 { Vec3::new((1.0 - b.abs()) * sign(a), y, (1.0 - a.abs()) * sign(b)) } else { Vec3::new(a, y, b) };
-        assert!(direction.normalize().distance(Vec3::from_slice(&found[1][..3])) < 1e-3, "word {word}: {:?}", found[1]);
     }
 }

@@ -136,12 +136,12 @@ uniform_block! {
 uniform_block! {
     /// A species of underbrush at a level of detail, as it is drawn; its twin is in `underbrush.wgsl`.
     BrushList {
-        /// Rows of a plant; plants in an instance; unused.
+        /// Rows of a plant; plants in an instance; components of a plant; unused.
         rows: [u32; 4],
         /// Number of the list; first of the listed plants; 1 if the nearest posture will do; unused.
         which: [u32; 4],
-        /// Unit of the places of rows (m).
-        scale: [f32; 4],
+        /// Angles and loads of the tables; unused.
+        nodes: [u32; 4],
     }
 }
 

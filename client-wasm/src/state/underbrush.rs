@@ -23,7 +23,7 @@ pub(super) fn check_underbrush(scene: &Scene) -> Result<(), MirrorError> {
 }
 
 fn check_species(species: &Underbrush) -> Result<(), MirrorError> {
-    within("underbrush.settle_secs", species.settle_secs, 0.01, 10.0)?;
+    within("underbrush.settle_secs", species.settle_secs, 0.0, 10.0)?;
     within("underbrush.size_variation", species.size_variation, 0.0, 0.9)?;
     within("underbrush.room_m", species.room_m, 0.05, 20.0)?;
     within("underbrush.reach_m", species.reach_m, 0.0, 50.0)?;

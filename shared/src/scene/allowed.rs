@@ -139,7 +139,7 @@ pub const FIELDS: [(&str, Allowed); 181] = [
     ("species.segments", Range(1.0, 6.0)),
     ("underbrush.name", Name),
     ("underbrush.cover", Range(0.0, 252.0)),
-    ("underbrush.settle_secs", Range(0.01, 10.0)),
+    ("underbrush.settle_secs", Range(0.0, 10.0)),
     ("underbrush.size_variation", Range(0.0, 0.9)),
     ("underbrush.room_m", Range(0.05, 20.0)),
     ("underbrush.reach_m", Range(0.0, 50.0)),

@@ -105,7 +105,8 @@ pub struct Underbrush {
     pub name: String,
     /// ID in the covering map of places that are painted with it, where it alone grows; 0: it is not painted. Default 0, allowed 0..=252.
     pub cover: u8,
-    /// Time constant τ with which its plants follow a force (s), 004 Eq. (5). Default 0.25, allowed 0.01..=10.
+    /// Time constant τ with which its plants follow a force (s), 004 Eq. (5); 0: 1/ω₁ of the longest component on the ground, from its rigidity, mass and
+    /// length and what it carries. What comes out below 0.01 is 0.01, above 10 it is 10. Default 0, allowed 0..=10.
     pub settle_secs: f32,
     /// Share of its unbent size that plants differ by, plus or minus. Default 0.25, allowed 0..=0.9.
     pub size_variation: f32,
@@ -132,7 +133,7 @@ impl Underbrush {
         Self {
             name: name.to_owned(),
             cover: 0,
-            settle_secs: 0.25,
+            settle_secs: 0.0,
             size_variation: 0.25,
             room_m: 0.5,
             reach_m: 1.5,

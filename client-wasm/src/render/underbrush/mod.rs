@@ -1,4 +1,4 @@
-//! Underbrush (004): a compute pass bends the plants in view by what they feel and lists them by species and level of detail; indirect draws blend their
+//! Underbrush (004): a compute pass finds what the plants in view feel and lists them by species and level of detail; indirect draws bend them by tables of
 //! postures, which are made beforehand.
 
 mod bake;
@@ -10,10 +10,10 @@ use super::pipeline::{Draw, Maker, sampled, storage, storage_rw, uniform};
 use super::shaders;
 use super::uniforms::{BrushList, UnderbrushFrame};
 use crate::state::Land;
-use bake::{Baked, Bent, LEVELS, VARIANTS};
+use bake::{Baked, LEVELS, VARIANTS};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use shared::plant::flora::{Flora, height_m, reach_m};
+use shared::plant::flora::{self, Flora, height_m};
 use shared::plant::growth::SPECIES_LIMIT;
 use wgpu::BufferUsages;
 
@@ -77,6 +77,10 @@ pub(super) struct Underbrush {
     frame_number: u32,
     chunk_count: u32,
     plants: u32,
+    #[cfg(test)]
+    stands: wgpu::Buffer,
+    #[cfg(test)]
+    listed: wgpu::Buffer,
 }
 
 impl Underbrush {
@@ -107,9 +111,13 @@ impl Underbrush {
         let chunk_limit = tiles.iter().map(|tile| u64::from(tile.count.div_ceil(CHUNK))).sum::<u64>().max(1);
         let chunks = gpu.empty_buffer("underbrush chunks", chunk_limit * 8, storage_usage | BufferUsages::COPY_DST);
         let felt = gpu.empty_buffer("felt", count * FELT_BYTES, storage_usage);
-        let stands = gpu.empty_buffer("underbrush stands", count * STAND_BYTES, storage_usage);
-        let tally = gpu.empty_buffer("underbrush tally", (SPECIES_LIMIT * LEVELS * 4) as u64, storage_usage | BufferUsages::COPY_DST);
-        let listed = gpu.empty_buffer("listed underbrush", u64::from(first.max(1)) * 4, storage_usage);
+        let stands = gpu.empty_buffer("underbrush stands", count * STAND_BYTES, storage_usage | BufferUsages::COPY_SRC);
+        let tally = gpu.empty_buffer(
+            "underbrush tally",
+            (SPECIES_LIMIT * LEVELS * 4) as u64,
+            storage_usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+        );
+        let listed = gpu.empty_buffer("listed underbrush", u64::from(first.max(1)) * 4, storage_usage | BufferUsages::COPY_SRC);
         let broken = gpu.empty_buffer("broken plants", sites.div_ceil(32) * 4, storage_usage | BufferUsages::COPY_DST);
 
         let module = gpu.shader("underbrush", shaders::UNDERBRUSH);
@@ -117,7 +125,8 @@ impl Underbrush {
         let entries =
             [uniform(0), read(1), read(2), storage_rw(3), storage_rw(4), storage_rw(5), storage_rw(6), read(7), storage_rw(8), volumes(9)];
         let compute_layout = maker.layout("underbrush", &entries);
-        let list_layout = maker.layout("underbrush list", &[storage(10), storage(11), storage(12), storage(13), storage(14), uniform(15)]);
+        let list_layout =
+            maker.layout("underbrush list", &[storage(10), storage(11), storage(12), storage(13), storage(14), uniform(15), storage(16)]);
         let draw =
             Draw { label: "underbrush", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None };
         let pipeline = maker.draw(&module, Some(&list_layout), &draw);
@@ -125,26 +134,26 @@ impl Underbrush {
         let mut draw_words = vec![0_u32; SPECIES_LIMIT * LEVELS * DRAW_WORDS];
         let mut lists = Vec::new();
         for (number, (own, plan)) in flora.species().iter().zip(flora.plans()).enumerate() {
-            let bent = Bent::new(own, plan);
-            species[number] = [height_m(own), own.settle_secs, bent.extent_m(), 0.0];
+            species[number] = [height_m(own), plan.settle_secs, flora::reach_m(own), 0.0];
             for level in 0..LEVELS {
-                let baked = Baked::new(plan, &bent, level);
+                let baked = Baked::new(plan, level);
                 let rows = baked.ribbons.iter().sum::<u32>();
                 let held = (INSTANCE_VERTICES / (2 * rows)).clamp(1, 64);
                 let indices = baked.indices(held);
                 let list = number * LEVELS + level;
                 draw_words[list * DRAW_WORDS] = indices.len() as u32;
                 draw_words[list * DRAW_WORDS + 5] = held;
-                let looks: Vec<[u32; 2]> = baked.looks.iter().map(|look| look.packed()).collect();
+                let nodes = plan.tables[0].nodes();
                 let settings = BrushList {
-                    rows: [rows, held, 0, 0],
+                    rows: [rows, held, baked.limb_count(), 0],
                     which: [list as u32, places[number][0] + level as u32 * places[number][1], u32::from(level + 1 == LEVELS), 0],
-                    scale: [bent.extent_m(), 0.0, 0.0, 0.0],
+                    nodes: [nodes.angles as u32, nodes.loads as u32, 0, 0],
                 };
-                let postures = gpu.buffer("postures", bytemuck::cast_slice(&baked.rows), storage_usage);
-                let looks = gpu.buffer("looks", bytemuck::cast_slice(&looks), storage_usage);
+                let steps = gpu.buffer("steps", bytemuck::cast_slice(&baked.steps), storage_usage);
+                let rows = gpu.buffer("rows", bytemuck::cast_slice(&baked.rows), storage_usage);
+                let limbs = gpu.buffer("limbs", bytemuck::cast_slice(&baked.limbs), storage_usage);
                 let settings = gpu.buffer("underbrush list", bytemuck::bytes_of(&settings), BufferUsages::UNIFORM);
-                let buffers = [&stands, &listed, &tally, &postures, &looks, &settings];
+                let buffers = [&stands, &listed, &tally, &steps, &rows, &settings, &limbs];
                 lists.push(List {
                     number: list,
                     indices: gpu.buffer("underbrush indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
@@ -152,7 +161,11 @@ impl Underbrush {
                 });
             }
         }
-        let draws = gpu.buffer("underbrush draws", bytemuck::cast_slice(&draw_words), storage_usage | BufferUsages::INDIRECT);
+        let draws = gpu.buffer(
+            "underbrush draws",
+            bytemuck::cast_slice(&draw_words),
+            storage_usage | BufferUsages::INDIRECT | BufferUsages::COPY_SRC,
+        );
         let buffers = [&frame, &plants, &chunks, &felt, &stands, &tally, &listed, &broken, &draws];
         let forces = (9, wgpu::BindingResource::TextureView(&forces.view));
         Some(Self {
@@ -174,6 +187,10 @@ impl Underbrush {
             frame_number: 1,
             chunk_count: 0,
             plants: grown.len() as u32,
+            #[cfg(test)]
+            stands,
+            #[cfg(test)]
+            listed,
         })
     }
 
@@ -257,7 +274,7 @@ fn numbered(
 
 /// All plants, square by square, and the squares.
 fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
-    let reaches_m: Vec<f32> = flora.species().iter().map(reach_m).collect();
+    let reaches_m: Vec<f32> = flora.species().iter().map(flora::reach_m).collect();
     let mut by_tile: Vec<([i32; 2], Grown, f32)> = flora
         .grown()
         .plants()
@@ -286,3 +303,6 @@ fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
     }
     (by_tile.into_iter().map(|(_, plant, _)| plant).collect(), tiles)
 }
+
+#[cfg(test)]
+mod tests;

@@ -13,6 +13,9 @@ pub const COMPONENTS_LIMIT: usize = 64;
 /// Most sections of a component.
 pub const SECTIONS_LIMIT: usize = 16;
 
+/// Shortest and longest time constant with which a species follows a force (s).
+const SETTLE_SECS: [f32; 2] = [0.01, 10.0];
+
 /// Diameter of a flower's stalk over that of its ring of petals.
 pub(super) const STALK_SHARE: f32 = 0.06;
 
@@ -56,6 +59,9 @@ pub struct Plan {
     pub parts: Vec<Part>,
     /// Tables of postures; kinds that bend alike share one.
     pub tables: Vec<Postures>,
+    /// Time constant τ with which it follows a force (s), 0.01..=10: as the scene has it, or 1/ω₁ of the longest component on the ground, by
+    /// [`frequency_rad_per_s`].
+    pub settle_secs: f32,
 }
 
 /// A component of a plant.
@@ -83,7 +89,8 @@ impl Plan {
         for (index, component) in species.components.iter().enumerate() {
             parts.push(part(component, species.branch_below(index), &mut tables));
         }
-        Self { parts, tables: tables.tables }
+        let settle_secs = if species.settle_secs > 0.0 { species.settle_secs } else { 1.0 / slowest_rad_per_s(&parts) };
+        Self { parts, tables: tables.tables, settle_secs: settle_secs.clamp(SETTLE_SECS[0], SETTLE_SECS[1]) }
     }
 
     /// Components of the plant of that number, those that others stand on before them: the same for the same number.
@@ -93,7 +100,7 @@ impl Plan {
     pub fn placed(&self, number: u32) -> Vec<Placed> {
         let mut placed: Vec<Placed> = Vec::new();
         for (index, part) in self.parts.iter().enumerate() {
-            let Component { count, from_share, to_share, length_variation, angle_rad, angle_variation_rad, turn_rad, .. } = part.component;
+            let Component { count, length_variation, angle_rad, angle_variation_rad, turn_rad, .. } = part.component;
             let hosts: Vec<Option<usize>> = match part.on {
                 None => vec![None],
                 Some(on) => (0..placed.len()).filter(|&host| placed[host].part == on).map(Some).collect(),
@@ -106,11 +113,10 @@ impl Plan {
                         return placed;
                     }
                     let [angle, length, _] = hash3([number, index as u32, first + nth]).map(|random| 2.0 * share(random) - 1.0);
-                    let along = if count > 1 { nth as f32 / (count - 1) as f32 } else { 1.0 };
                     placed.push(Placed {
                         part: index,
                         on: host,
-                        at_share: from_share + (to_share - from_share) * along,
+                        at_share: at_share(&part.component, nth),
                         size: 1.0 + length_variation * length,
                         angle_rad: (angle_rad + angle_variation_rad * angle).abs(),
                         turn_rad: first_turn_rad + turn_rad * nth as f32,
@@ -120,6 +126,44 @@ impl Plan {
         }
         placed
     }
+}
+
+/// Where the nth of a component stands, as a share of the length of its branch.
+fn at_share(component: &Component, nth: u32) -> f32 {
+    let Component { count, from_share, to_share, .. } = *component;
+    let along = if count > 1 { nth as f32 / (count - 1) as f32 } else { 1.0 };
+    from_share + (to_share - from_share) * along
+}
+
+/// First natural frequency ω₁ (rad/s) of a component that is clamped at its foot and moves a mass at its tip as well.
+///
+/// Dunkerley's rule, `1/ω₁² = (m/12.36 + M/3)·L³/EI`, is exact for the bare uniform cantilever, 3.516·√(EI/(m·L³)), and for the mass alone, and 0.3 % low
+/// at worst between them. A rigidity that falls to the share t at the tip is taken to soften it to (3 + t)/4; with both it is within 4 %.
+pub fn frequency_rad_per_s(component: &Component, tip_kg: f32) -> f32 {
+    let Component { length_m, stiffness_n_m2, mass_kg, tip_stiffness_share, .. } = *component;
+    let moved_kg = mass_kg / (3.516 * 3.516) + tip_kg / 3.0;
+    (0.25 * (3.0 + tip_stiffness_share) * stiffness_n_m2 / (length_m * length_m * length_m * moved_kg)).sqrt()
+}
+
+/// Frequency ω₁ of the longest component on the ground (rad/s), with what stands on it: a mass at a share s of its length moves with the tip as the square of
+/// `(3s² − s³)/2`, the shape in which a load at the tip bends it.
+fn slowest_rad_per_s(parts: &[Part]) -> f32 {
+    let on_ground = parts.iter().enumerate().filter(|(_, part)| part.on.is_none());
+    let Some((longest, host)) = on_ground.max_by(|(_, a), (_, b)| a.component.length_m.total_cmp(&b.component.length_m)) else {
+        return 1.0;
+    };
+    // Of each kind the mass of one with all that stands on it: they come after what they stand on.
+    let mut whole_kg: Vec<f32> = parts.iter().map(|part| part.component.mass_kg).collect();
+    let mut tip_kg = 0.0;
+    for (index, Part { component, on, .. }) in parts.iter().enumerate().rev() {
+        let Some(on) = *on else { continue };
+        whole_kg[on] += component.count as f32 * whole_kg[index];
+        if on == longest {
+            let moves = (0..component.count).map(|nth| at_share(component, nth)).map(|s| 0.5 * s * s * (3.0 - s));
+            tip_kg += whole_kg[index] * moves.map(|by| by * by).sum::<f32>();
+        }
+    }
+    frequency_rad_per_s(&host.component, tip_kg)
 }
 
 /// A random number as a share, 0 to under 1.
@@ -231,6 +275,81 @@ mod tests {
         assert!((part.weight_secs2_per_m - 0.001 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
         assert!((part.drag_per_pa - 0.25 * 0.73 * 0.4 * 0.01 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
         assert!((part.strength - 0.01 * 0.4 / 0.001).abs() < 1e-6);
+    }
+
+    /// First natural frequency of a chain of `count` sections whose masses are in their middles, and of one at the tip, in units of √(EI/(m·L³)): the shape
+    /// that its own inertia bends, over and over.
+    fn chain_frequency(tip_share: f64, tip_mass: f64) -> f64 {
+        let count = 80;
+        let section = 1.0 / f64::from(count);
+        let joints = crate::plant::underbrush::rest::joints(count as usize, tip_share);
+        // In units of how far the tip moves.
+        let (mut shape, mut square) = (vec![0.5; count as usize], 0.0);
+        for _ in 0..30 {
+            let (mut force, mut moment) = (tip_mass, 0.0);
+            let mut moments: Vec<f64> = shape
+                .iter()
+                .rev()
+                .map(|moves| {
+                    moment += section * (force + 0.5 * section * moves);
+                    force += section * moves;
+                    moment
+                })
+                .collect();
+            moments.reverse();
+            let (mut angle_rad, mut end) = (0.0, 0.0);
+            for ((moves, moment), joint) in shape.iter_mut().zip(moments).zip(&joints) {
+                angle_rad += moment / joint;
+                *moves = end + 0.5 * section * angle_rad;
+                end += section * angle_rad;
+            }
+            shape.iter_mut().for_each(|moves| *moves /= end);
+            square = 1.0 / end;
+        }
+        square.sqrt()
+    }
+
+    #[test]
+    fn a_species_swings_as_its_longest_component_does() {
+        let mut reed = Component::new("reed", ComponentKind::Branch);
+        (reed.length_m, reed.mass_kg, reed.stiffness_n_m2, reed.tip_stiffness_share) = (1.5, 0.03, 2.0, 1.0);
+        let unit_rad_per_s = (2.0_f32 / (0.03 * 1.5 * 1.5 * 1.5)).sqrt();
+        let settle_secs = |components: Vec<Component>| Plan::new(&Underbrush::new("reed", components), NODES).settle_secs;
+        let mut leaf = Component::new("leaf", ComponentKind::Leaf);
+        leaf.length_m = 0.3;
+        // The published value of a bare uniform cantilever; what is shorter doesn't count.
+        assert!((settle_secs(vec![leaf.clone(), reed.clone()]) * 3.516 * unit_rad_per_s - 1.0).abs() < 0.01);
+        // Four times as stiff is twice as fast; what it carries makes it slower.
+        let stiffer = Component { stiffness_n_m2: 8.0, ..reed.clone() };
+        assert!((settle_secs(vec![stiffer]) / settle_secs(vec![reed.clone()]) - 0.5).abs() < 1e-5);
+        let plume = Component { on: "reed".into(), count: 3, mass_kg: 0.02, ..leaf };
+        let wanted = (0.03 / 12.362 + 0.06 / 3.0_f32).sqrt() / (0.03_f32 / 12.362).sqrt();
+        assert!((settle_secs(vec![reed.clone(), plume.clone()]) / settle_secs(vec![reed.clone()]) / wanted - 1.0).abs() < 1e-3);
+        let low = Component { from_share: 0.1, to_share: 0.1, ..plume };
+        assert!(settle_secs(vec![reed.clone(), low]) < 1.01 * settle_secs(vec![reed.clone()]));
+
+        let told =
+            |settle: f32| Plan::new(&Underbrush { settle_secs: settle, ..Underbrush::new("reed", vec![reed.clone()]) }, NODES).settle_secs;
+        assert_eq!([told(0.7), told(1e-9)], [0.7, 0.01]);
+        let rod = Component { stiffness_n_m2: 1000.0, mass_kg: 1e-6, length_m: 0.005, ..reed.clone() };
+        assert_eq!(settle_secs(vec![rod]), 0.01, "no faster than a species may be told to be");
+    }
+
+    #[test]
+    fn the_frequency_is_as_close_to_that_of_a_chain_as_it_says() {
+        for (tip_share, within) in [(1.0_f32, 0.004), (0.5, 0.04), (0.2, 0.04), (0.1, 0.04)] {
+            for tip_mass in [0.0_f32, 0.1, 0.5, 2.0, 100.0] {
+                let rod = Component {
+                    length_m: 1.0,
+                    mass_kg: 1.0,
+                    stiffness_n_m2: 1.0,
+                    tip_stiffness_share: tip_share,
+                    ..Component::new("a", ComponentKind::Leaf)
+                };
+                let off = f64::from(frequency_rad_per_s(&rod, tip_mass)) / chain_frequency(f64::from(tip_share), f64::from(tip_mass)) - 1.0;
+                assert!(off.abs() < within, "{off} at {tip_share} and {tip_mass}");
+            }
+        }
     }
 
     proptest! {

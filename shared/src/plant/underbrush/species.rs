@@ -51,7 +51,7 @@ fn there_are_eight_species_within_the_limits() {
     for (species, plan) in SPECIES.iter() {
         let shares = [species.needs, species.uptake].concat();
         assert!(shares.iter().chain([&species.light_need]).all(|share| (0.0..=1.0).contains(share)));
-        assert!((0.01..=10.0).contains(&species.settle_secs) && (0.0..=0.9).contains(&species.size_variation));
+        assert!((0.02..=0.5).contains(&plan.settle_secs) && (0.0..=0.9).contains(&species.size_variation));
         assert!(
             (0.05..=20.0).contains(&species.room_m) && (0.05..=50.0).contains(&species.reach_m) && species.propagation_points <= 10_000
         );

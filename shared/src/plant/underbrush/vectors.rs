@@ -6,7 +6,7 @@ use crate::scene::ComponentKind;
 use glam::Vec3;
 
 /// Angle at which petals stand off their flower's stalk (rad).
-const PETAL_RAD: f32 = 1.15;
+pub const PETAL_RAD: f32 = 1.15;
 
 /// One vector of each of the three sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
