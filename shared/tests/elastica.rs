@@ -2,6 +2,7 @@
 
 use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
 use shared::plant::underbrush::rest::{Load, balanced, joints};
+use shared::scene::parse_underbrush;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Steps of the integration along a beam.
@@ -110,6 +111,33 @@ fn at_every_angle_and_weight_a_component_is_as_near_as_its_sections_are_many() {
         }
         let order = order(&all);
         assert!((1.9..2.25).contains(&order), "order {order} of {all:?}");
+    }
+}
+
+#[test]
+fn the_worked_edit_of_a_species_shows_what_the_readme_says() {
+    let species = parse_underbrush(include_str!("../../server/scenes/species.toml")).expect("the species that ship");
+    let tall_grass = species.iter().find(|species| species.name == "tall grass").expect("there is tall grass");
+    let leaf = tall_grass.components.iter().find(|component| component.name == "leaf").expect("it has leaves");
+    assert_eq!(leaf.stiffness_n_m2, 0.002, "as it ships");
+    let (length_m, unbent_rad, sections) = (f64::from(leaf.length_m), f64::from(leaf.angle_rad), leaf.sections as usize);
+    for (stiffness_n_m2, [weight, aside_m, up_m, top_m, off_upright]) in [
+        (0.002, [3.9, 0.50, 0.55, 0.55, 54.0]),
+        (0.008, [1.0, 0.28, 0.70, 0.70, 23.0]),
+        (0.001, [7.7, 0.66, 0.07, 0.18, 113.0_f64]),
+    ] {
+        let load = f64::from(leaf.mass_kg) * 9.81 * length_m * length_m / stiffness_n_m2;
+        let mut bends_rad = vec![0.0; sections];
+        balanced(&joints(sections, leaf.tip_stiffness_share.into()), Load { spread: load, tip: 0.0 }, unbent_rad, &mut bends_rad);
+        let (mut at_m, mut highest_m) = ([0.0_f64; 2], 0.0_f64);
+        for bend_rad in &bends_rad {
+            let (aside, up) = (unbent_rad + bend_rad).sin_cos();
+            at_m = [at_m[0] + aside * length_m / sections as f64, at_m[1] + up * length_m / sections as f64];
+            highest_m = highest_m.max(at_m[1]);
+        }
+        let tip_rad = unbent_rad + bends_rad[sections - 1];
+        assert!((load - weight).abs() < 0.1 && (tip_rad.to_degrees() - off_upright).abs() < 3.0, "{load}, {tip_rad} rad");
+        assert!(distance(at_m, [aside_m, up_m]) < 0.02 && (highest_m - top_m).abs() < 0.02, "{at_m:?}, {highest_m} m");
     }
 }
 
