@@ -121,11 +121,9 @@ fn the_worked_edit_of_a_species_shows_what_the_readme_says() {
     let leaf = tall_grass.components.iter().find(|component| component.name == "leaf").expect("it has leaves");
     assert_eq!(leaf.stiffness_n_m2, 0.002, "as it ships");
     let (length_m, unbent_rad, sections) = (f64::from(leaf.length_m), f64::from(leaf.angle_rad), leaf.sections as usize);
-    for (stiffness_n_m2, [weight, aside_m, up_m, top_m, off_upright]) in [
-        (0.002, [3.9, 0.50, 0.55, 0.55, 54.0]),
-        (0.008, [1.0, 0.28, 0.70, 0.70, 23.0]),
-        (0.001, [7.7, 0.66, 0.07, 0.18, 113.0_f64]),
-    ] {
+    for (stiffness_n_m2, [weight, aside_m, up_m, top_m, off_upright]) in
+        [(0.002, [3.9, 0.50, 0.55, 0.55, 54.0]), (0.008, [1.0, 0.28, 0.70, 0.70, 23.0]), (0.001, [7.7, 0.66, 0.07, 0.18, 113.0_f64])]
+    {
         let load = f64::from(leaf.mass_kg) * 9.81 * length_m * length_m / stiffness_n_m2;
         let mut bends_rad = vec![0.0; sections];
         balanced(&joints(sections, leaf.tip_stiffness_share.into()), Load { spread: load, tip: 0.0 }, unbent_rad, &mut bends_rad);

@@ -108,7 +108,8 @@ impl Underbrush {
         let chunks = gpu.empty_buffer("underbrush chunks", chunk_limit * 8, storage_usage | BufferUsages::COPY_DST);
         let felt = gpu.empty_buffer("felt", count * FELT_BYTES, storage_usage);
         let stands = gpu.empty_buffer("underbrush stands", count * STAND_BYTES, storage_usage);
-        let tally = gpu.empty_buffer("underbrush tally", (SPECIES_LIMIT * LEVELS * 4) as u64, storage_usage | BufferUsages::COPY_DST);
+        let tally_usage = storage_usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
+        let tally = gpu.empty_buffer("underbrush tally", (SPECIES_LIMIT * LEVELS * 4) as u64, tally_usage);
         let listed = gpu.empty_buffer("listed underbrush", u64::from(first.max(1)) * 4, storage_usage);
         let broken = gpu.empty_buffer("broken plants", sites.div_ceil(32) * 4, storage_usage | BufferUsages::COPY_DST);
 
@@ -180,6 +181,12 @@ impl Underbrush {
     /// Plants in the scene.
     pub(super) fn plants(&self) -> u32 {
         self.plants
+    }
+
+    /// How many plants the newest frame drew of each species at each level of detail.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn tally(&self) -> &wgpu::Buffer {
+        &self.tally
     }
 
     /// Lists the plants of the squares that may be seen.
