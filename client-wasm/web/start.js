@@ -6,6 +6,7 @@
 //   theta(x, z)                      bending angle of the grass there, in the client's mirror (rad)
 //   wind(x, y, z)                    wind there, in the client's mirror (m/s)
 //   dust(x, y, z)                    concentration of dust there
+//   plants()                         checksum of the underbrush in the client's mirror, empty where none grows
 //   look([x, y, z], heading, pitch)  puts the free camera somewhere (m, rad)
 //   choose(vehicle)                  takes "car", "monster", "helicopter", "sled" or "ball"; "" gives it up
 //   draw(time)                       draws one picture for this time (s); settles when it is on the screen
@@ -78,6 +79,7 @@ async function begin() {
     theta: client.theta,
     wind: (x, y, z) => Array.from(client.wind(x, y, z)),
     dust: (x, y, z) => client.dust(x, y, z),
+    plants: client.plants,
     look: (eye, heading, pitch) => client.look(Float32Array.from(eye), heading, pitch),
     choose: client.choose,
     draw: async (time) => {

@@ -29,6 +29,11 @@ impl Plants {
         Self { flora, bears_rad, is_broken: vec![false; sites], broken: Arc::default() }
     }
 
+    /// What grows; none where nothing does.
+    pub fn flora(&self) -> Option<&Flora> {
+        self.flora.as_ref()
+    }
+
     /// Sites of the broken plants, in the order of their breaking, in one step in that of the objects. It only grows; a holder keeps it as it was.
     pub fn broken(&self) -> &Arc<Vec<u32>> {
         &self.broken

@@ -186,6 +186,11 @@ impl World {
         &self.meadow
     }
 
+    /// The underbrush, as it grew; none where nothing does.
+    pub fn flora(&self) -> Option<&Flora> {
+        self.plants.flora()
+    }
+
     /// A number that differs when any bit of the objects', the wind's, the bend field's or the underbrush's state does (FNV-1a).
     pub fn checksum(&self) -> u64 {
         let mut sum = Checksum::default();

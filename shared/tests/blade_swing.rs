@@ -1,4 +1,5 @@
-//! How a blade swings: its frequency is the cantilever's, its decay what damping, each integrator and the air say; and wind holds it where the bend field has it.
+//! How a blade swings: its first frequency is the one that it is calibrated to, its decay what damping, each integrator and the air say; and wind holds it where
+//! the bend field has it.
 
 use shared::bend::wind_lean_rad;
 use shared::plant::blade::modes::{BRAKES, CANTILEVER, FREQUENCIES, MODES, WIND_SHAPE, first_frequency_rad_per_s};
@@ -80,7 +81,7 @@ fn is_near(found: f64, wanted: f64, share: f64) -> bool {
 }
 
 #[test]
-fn a_blade_swings_as_a_cantilever_of_its_rigidity_mass_and_length() {
+fn a_blade_swings_at_the_first_frequency_that_it_is_calibrated_to() {
     let damping_share = 0.02;
     for (rigidity_n_m2, mass_kg_per_m, length_m) in
         [(0.0038, 0.0012, 0.8), (0.0038, 0.0012, 0.3), (0.015, 0.0012, 0.8), (0.0038, 0.006, 0.8), (0.4, 0.02, 2.0), (2e-5, 2e-4, 0.1)]
@@ -97,6 +98,21 @@ fn a_blade_swings_as_a_cantilever_of_its_rigidity_mass_and_length() {
             assert!(is_near(found, omega * (1.0 - share * share).sqrt(), 1e-4), "{found} for {omega}");
             assert!(is_near(decay, share * omega, 1e-4), "{decay} for {}", share * omega);
         }
+    }
+}
+
+#[test]
+fn higher_modes_swing_slower_than_a_cantilever_s_by_what_is_said_and_decay_at_their_own_rate() {
+    let (rigidity_n_m2, mass_kg_per_m, length_m, damping_share) = (0.0038_f32, 0.0012_f32, 0.8_f32, 0.02_f32);
+    let blade = Blade { length_m, ..blade(first_frequency_rad_per_s(rigidity_n_m2, mass_kg_per_m, length_m), damping_share) };
+    let unit_rad_per_s = f64::from(rigidity_n_m2 / mass_kg_per_m).sqrt() / f64::from(length_m).powi(2);
+    for (mode, (continuum, low)) in [(3.516_015, 0.0), (22.034_492, 0.099_3), (61.697_214, 0.199_0)].into_iter().enumerate() {
+        let cantilever = continuum * unit_rad_per_s;
+        let swing = Swing::released(in_mode(mode), &blade, &CALM, Integrator::Exact, (0.03 / cantilever) as f32, 3000, 0);
+        let (found, decay) = (swing.frequency_rad_per_s(2..16), swing.decay_per_s(2..16));
+        let damped = (1.0 - f64::from(damping_share).powi(2)).sqrt();
+        assert!((found / damped / cantilever - 1.0 + low).abs() < 5e-4, "mode {mode}: {found} for {cantilever}");
+        assert!(is_near(decay, f64::from(damping_share) * (1.0 - low) * cantilever, 2e-3), "mode {mode}: {decay}");
     }
 }
 

@@ -7,11 +7,11 @@ use server::snapshot::PatchCodes;
 use server::world::{Command, View, World};
 use shared::scene::{Scene, VehicleKind};
 use shared::terrain::HeightMap;
-use shared::wire::{BROKEN_LIMIT, Drive, ObjectPose, ServerMessage, Shape, codec};
+use shared::wire::{self, BROKEN_LIMIT, Drive, ObjectPose, SERVER_MESSAGE_LIMIT, ServerMessage, Shape, codec};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// A world, stepped by hand, and the mirror that its snapshots are brought to as messages.
+/// A world, stepped by hand, and the mirror that its snapshots are brought to as the bytes of messages.
 pub struct Stage {
     /// The world.
     pub world: World,
@@ -32,25 +32,30 @@ impl Stage {
     /// When the scene is faulty.
     pub fn load(name_or_path: &str) -> Result<Self> {
         let loaded = scenes::load(name_or_path)?;
-        let world = World::new(&loaded.scene, loaded.maps())?;
-        let mut mirror = Mirror::default();
-        mirror.apply(ServerMessage::Scene {
-            scene: Box::new(loaded.scene.clone()),
-            height_png: loaded.height_png,
-            covering_png: loaded.covering_png,
-            nutrient_png: loaded.nutrient_png,
-            models: loaded.models,
-        })?;
-        Ok(Self {
-            world,
-            mirror,
-            scene: loaded.scene,
+        let mut stage = Self {
+            world: World::new(&loaded.scene, loaded.maps())?,
+            mirror: Mirror::default(),
+            scene: loaded.scene.clone(),
             height: loaded.height,
             sent: BTreeMap::new(),
             told_broken: 0,
             frame: 0,
             time_secs: 0.0,
-        })
+        };
+        stage.bring(&ServerMessage::Scene {
+            scene: Box::new(loaded.scene),
+            height_png: loaded.height_png,
+            covering_png: loaded.covering_png,
+            nutrient_png: loaded.nutrient_png,
+            models: loaded.models,
+        })?;
+        Ok(stage)
+    }
+
+    /// Brings a message to the mirror as the wire would.
+    fn bring(&mut self, message: &ServerMessage) -> Result<()> {
+        self.mirror.apply(wire::decode(&wire::encode(message), SERVER_MESSAGE_LIMIT)?)?;
+        Ok(())
     }
 
     /// The scene.
@@ -95,22 +100,22 @@ impl Stage {
     /// When the mirror refuses what the world shows.
     pub fn show(&mut self) -> Result<Vec<ObjectPose>> {
         let snapshot = self.world.snapshot();
-        self.mirror.apply(ServerMessage::Poses { tick: snapshot.tick, objects: snapshot.objects.clone() })?;
+        self.bring(&ServerMessage::Poses { tick: snapshot.tick, objects: snapshot.objects.clone() })?;
         self.frame += 1;
         let wind = &snapshot.wind;
         let payload = codec::encode(Shape::wind(wind.cells[0] as usize, wind.has_dust()), &wind.codes, None);
-        self.mirror.apply(ServerMessage::Wind { tick: snapshot.tick, seq: self.frame, key: true, payload })?;
+        self.bring(&ServerMessage::Wind { tick: snapshot.tick, seq: self.frame, key: true, payload })?;
         let shown: BTreeSet<u32> = self.sent.keys().chain(snapshot.patches.keys()).copied().collect();
         for patch in shown {
             self.show_patch(patch, snapshot.patches.get(&patch))?;
         }
         for plants in snapshot.broken[self.told_broken..].chunks(BROKEN_LIMIT) {
-            self.mirror.apply(ServerMessage::Broken { plants: plants.to_vec() })?;
+            self.bring(&ServerMessage::Broken { plants: plants.to_vec() })?;
         }
         self.told_broken = snapshot.broken.len();
         let secs = snapshot.time_secs - self.time_secs;
         self.time_secs = snapshot.time_secs;
-        self.mirror.apply(ServerMessage::FrameEnd { frame: self.frame, tick: snapshot.tick, time_secs: snapshot.time_secs })?;
+        self.bring(&ServerMessage::FrameEnd { frame: self.frame, tick: snapshot.tick, time_secs: snapshot.time_secs })?;
         self.mirror.advance(secs);
         Ok(snapshot.objects)
     }
@@ -124,7 +129,7 @@ impl Stage {
         };
         let payload =
             codes.map_or_else(Vec::new, |codes| codec::encode(Shape::patch(self.scene.patches.cells as usize), &codes.codes, None));
-        self.mirror.apply(ServerMessage::Patch { patch, seq, key: true, payload })?;
+        self.bring(&ServerMessage::Patch { patch, seq, key: true, payload })?;
         match codes {
             Some(codes) => self.sent.insert(patch, (seq, Arc::clone(codes))),
             None => self.sent.remove(&patch),

@@ -118,6 +118,13 @@ pub fn dust(x_m: f32, y_m: f32, z_m: f32) -> f32 {
     with_app(|app| app.mirror.dust_at(Vec3::new(x_m, y_m, z_m))).unwrap_or(0.0)
 }
 
+/// Checksum of the underbrush in the client's mirror (`Flora::checksum`), 16 hexadecimal digits; empty where none grows.
+#[wasm_bindgen]
+pub fn plants() -> String {
+    let checksum = with_app(|app| app.mirror.land().and_then(|land| land.flora()).map(|flora| format!("{:016x}", flora.checksum())));
+    checksum.flatten().unwrap_or_default()
+}
+
 /// Puts the free camera at `eye_m` (three numbers); gives up the chase only while nothing is driven. False when a number is not finite.
 #[wasm_bindgen]
 pub fn look(eye_m: &[f32], heading_rad: f32, pitch_rad: f32) -> bool {

@@ -67,10 +67,27 @@ impl Picture {
         pixels.unwrap_or_default()
     }
 
+    /// Plants of underbrush that the newest frame drew: those in view but for what thins out with distance.
+    pub fn drawn_underbrush(&self) -> u32 {
+        let underbrush = self.renderer.scene.as_ref().and_then(|scene| scene.underbrush.as_ref());
+        underbrush.map_or(0, |underbrush| bytemuck::pod_collect_to_vec::<u8, u32>(&read(&self.gpu, underbrush.tally())).iter().sum())
+    }
+
     fn wait(&self) {
         // A lost device shows as an empty picture.
         let _ = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
     }
+}
+
+/// Bytes of a buffer on the GPU; none when the device is lost.
+pub(super) fn read(gpu: &Gpu, buffer: &wgpu::Buffer) -> Vec<u8> {
+    let read = gpu.empty_buffer("read", buffer.size(), wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &read, 0, buffer.size());
+    gpu.queue.submit([encoder.finish()]);
+    read.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+    let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+    read.slice(..).get_mapped_range().map(|bytes| bytes.to_vec()).unwrap_or_default()
 }
 
 fn row_bytes(width_px: u32) -> u32 {

@@ -1,3 +1,4 @@
+use super::picture::read;
 use super::pipeline::{Maker, bind, storage_rw};
 use super::shaders;
 use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Plants, Shower, UnderbrushFrame};
@@ -138,17 +139,6 @@ fn tips(gpu: &Gpu, wind_m_per_s: f32, streamed_rad: Option<f32>) -> Vec<Vec3> {
     let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").blades.sways);
     let sways: &[[[f32; 4]; LINKS]] = bytemuck::cast_slice(&bytes);
     sways.iter().map(|links| Vec3::from(Sway::at_rest(links.map(|[x, z, ..]| [x, z])).points_m(1.0)[LINKS - 1])).collect()
-}
-
-/// Bytes of a buffer on the GPU.
-pub(super) fn read(gpu: &Gpu, buffer: &wgpu::Buffer) -> Vec<u8> {
-    let read = gpu.empty_buffer("read", buffer.size(), wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(buffer, 0, &read, 0, buffer.size());
-    gpu.queue.submit([encoder.finish()]);
-    read.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device is there");
-    read.slice(..).get_mapped_range().expect("the buffer is mapped").to_vec()
 }
 
 /// Mean angle of the tips eastward from upright (rad).

@@ -67,6 +67,16 @@ impl Flora {
         &self.plans
     }
 
+    /// A number that differs when any plant differs in its site, species or vigour, or in any bit of how it stands (FNV-1a): for server and client to compare.
+    pub fn checksum(&self) -> u64 {
+        let words = self.grown.plants().iter().flat_map(|plant| {
+            let Standing { at_m: [x, z], size, heading_rad, number, .. } = self.standing(plant);
+            let kind = u32::from(plant.species) << 8 | u32::from(plant.vigour);
+            [plant.site, kind, number].into_iter().chain([x, z, size, heading_rad].map(f32::to_bits))
+        });
+        words.fold(0xcbf2_9ce4_8422_2325, |sum, word| (sum ^ u64::from(word)).wrapping_mul(0x0100_0000_01b3))
+    }
+
     /// How a plant stands.
     pub fn standing(&self, plant: &Plant) -> Standing {
         let [size, heading, number] = hash3([plant.site, 0x5a, self.seed]);
@@ -134,6 +144,23 @@ mod tests {
         let (low, high) = (0.6 * (1.0 - scene.underbrush[0].size_variation), 1.0 + scene.underbrush[0].size_variation);
         assert!(all.iter().all(|one| (low..=high).contains(&one.size)));
         assert!(Flora::new(&Scene { underbrush: Vec::new(), ..scene }, &cover, None).is_none());
+    }
+
+    #[test]
+    fn the_checksum_tells_plants_apart() {
+        let (scene, cover) = meadow();
+        let checksum = |scene: &Scene| Flora::new(scene, &cover, None).expect("a scene with underbrush").checksum();
+        let changes: [fn(&mut Scene); 4] = [
+            |scene| scene.seed += 1,
+            |scene| scene.growth.richness = [0.45; 3],
+            |scene| scene.growth.spacing_m *= 1.01,
+            |scene| scene.underbrush[0].size_variation += 0.01,
+        ];
+        for change in changes {
+            let mut other = scene.clone();
+            change(&mut other);
+            assert_ne!(checksum(&other), checksum(&scene));
+        }
     }
 
     #[test]

@@ -64,7 +64,7 @@ pub struct Plants {
     pub lag: LagWay,
     /// What single blades look like (000 Fig. 5): `simple`, a strip that tapers; `textured`, five shapes with a texture's alpha, mixed. Default `simple`.
     pub blade_shape: BladeShape,
-    /// Natural frequency of a blade of mean height (Hz). Default 1.55, allowed 0.05..=50.
+    /// Natural frequency of a blade of mean height (Hz); others swing in inverse proportion to their height. Default 1.55, allowed 0.05..=50.
     pub swing_hz: f32,
     /// Damping of its swing as a share of critical damping. Default 0.1, allowed 0.005..=5.
     pub swing_damping: f32,

@@ -8,6 +8,8 @@ use server::runner::Simulation;
 use server::scenes::{self, LoadedScene};
 use server::snapshot::Snapshot;
 use server::world::{Command, World};
+use shared::plant::growth::NutrientMap;
+use shared::terrain::grey_png;
 use shared::wire::ObjectId;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -48,13 +50,17 @@ impl Simulation for Held {
 struct Prairie {
     server: tests::prairie::Prairie,
     held: Arc<AtomicBool>,
+    /// Checksum of the plants in its world, as the page says it.
+    plants: String,
 }
 
 impl Prairie {
     async fn serve(scene: LoadedScene) -> Result<Self> {
         let held = Arc::new(AtomicBool::new(false));
-        let world = Held { world: World::new(&scene.scene, scene.maps())?, held: Arc::clone(&held), waiting: vec![] };
-        Ok(Self { server: tests::prairie::Prairie::serve(scene, world).await?, held })
+        let world = World::new(&scene.scene, scene.maps())?;
+        let plants = world.flora().map_or_else(String::new, |flora| format!("{:016x}", flora.checksum()));
+        let world = Held { world, held: Arc::clone(&held), waiting: vec![] };
+        Ok(Self { server: tests::prairie::Prairie::serve(scene, world).await?, held, plants })
     }
 
     /// Holds the world, or lets it go on.
@@ -120,6 +126,15 @@ fn still_meadow() -> Result<LoadedScene> {
     Ok(meadow)
 }
 
+/// The meadow over soil that a map draws.
+fn meadow_on_drawn_soil() -> Result<LoadedScene> {
+    let mut meadow = scenes::load("meadow")?;
+    let levels: Vec<u8> = (0..=255).collect();
+    meadow.nutrient_png = grey_png([16; 2], &levels);
+    meadow.nutrients = Some(NutrientMap::from_png(&meadow.nutrient_png)?);
+    Ok(meadow)
+}
+
 /// A car driven by the first visitor has made a track; this is the middle of it (m) and the way the car went (unit vector).
 struct Track {
     middle: [f64; 3],
@@ -178,9 +193,11 @@ impl Track {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn the_wind_moves_the_grass_in_the_mirror_and_in_the_pixels() -> Result<()> {
-    let prairie = Prairie::serve(scenes::load("meadow")?).await?;
+async fn the_server_s_plants_grow_in_the_page_and_the_wind_moves_the_grass_in_the_mirror_and_in_the_pixels() -> Result<()> {
+    let prairie = Prairie::serve(meadow_on_drawn_soil()?).await?;
     let visitor = prairie.visitor("Ada").await?;
+    let plants = visitor.evaluate("window.prairie.plants()").await?;
+    ensure!(!prairie.plants.is_empty() && plants == prairie.plants.as_str(), "the page grew {plants}, the server {}", prairie.plants);
     let eye = numbers(&visitor, "window.prairie.state().eye").await?;
     let (x, z) = (eye[0], eye[2]);
 

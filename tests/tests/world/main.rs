@@ -6,3 +6,4 @@ mod breaking;
 mod broken_scenes;
 mod determinism;
 mod driving;
+mod same_plants;

@@ -199,6 +199,12 @@ impl Underbrush {
         self.plants
     }
 
+    /// How many plants the newest frame drew of each species at each level of detail.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn tally(&self) -> &wgpu::Buffer {
+        &self.tally
+    }
+
     /// Lists the plants of the squares that may be seen.
     pub(super) fn prepare(&mut self, gpu: &Gpu, forces: &Forces, eye_m: Vec3, frustum: &Frustum, dt_secs: f32) {
         let mut chunks: Vec<[u32; 2]> = Vec::new();

@@ -1,4 +1,5 @@
-use super::super::tests::{meadow_of, probe, read};
+use super::super::picture::read;
+use super::super::tests::{meadow_of, probe};
 use super::super::{Picture, Quality};
 use super::*;
 use crate::camera::Camera;

@@ -3,6 +3,13 @@
 //! What moves are the leans of the links, each a vector on the ground (rad) as in the bend field, so that wind, cars and spheres press one and the same
 //! blade, and so that its length is exact whatever it does: a control point stands one link's length from the one below.
 //!
+//! # Accuracy
+//! Loads act across the blade however it leans, and springs are linear in the leans. Beside the elastica of a blade with the same first frequency the tip is
+//! within 1 % of the length up to a mean lean of 0.25 rad, and within 5 % up to 0.45 rad, under a force at the tip (1 and 1.5·EI/L²) and under even drag
+//! (2 and 3.6·EI/L² in all). A small force at the tip moves it 4.4 % too little, small even drag 0.6 % too much. Beyond, a blade leans too far, as the force on
+//! it does not fall with its silhouette: at a mean lean of 1 rad by a quarter of its length.
+//!
+//! # Parts
 //! - [`modes`]: natural frequencies of the chain, and how links and wind couple to its modes;
 //! - [`propagator`]: three ways to take a mode through time, each with its limit;
 //! - [`step`]: one step of a blade, alone or [eight abreast](number);

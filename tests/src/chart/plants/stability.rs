@@ -1,24 +1,41 @@
-//! The longest steps that a blade bears, against its damping.
+//! The longest steps that a blade bears, against its stiffness.
 
 use std::fmt::Write as _;
 
-use anyhow::Result;
-use shared::plant::blade::modes::FREQUENCIES;
+use anyhow::{Result, ensure};
+use shared::plant::blade::modes::{FREQUENCIES, first_frequency_rad_per_s};
 use shared::plant::blade::propagator::stable_dt_secs;
 use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
 
 use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
 
-/// Lowest frequency of the blade (rad/s); the chart is in units of the highest.
-const FREQUENCY_RAD_PER_S: f32 = 10.0;
-/// How closely the limit is looked for.
+/// Length of the blade (m) and its mass per length (kg/m): 0.96 g.
+const LENGTH_M: f32 = 0.8;
+const MASS_KG_PER_M: f32 = 0.0012;
+/// Rigidities of it (N·m²), from those of hair to those of cane.
+const RIGIDITIES_N_M2: [f32; 2] = [1e-6, 1.0];
+/// Steps (s) between which the limit is looked for, whatever theory says, and how closely.
+const STEPS_SECS: [f32; 2] = [1e-6, 100.0];
 const CLOSE: f32 = 1.005;
 
+/// What is measured: an integrator, a damping share, and the limit in theory, ω that of the highest mode.
+const CASES: [(Integrator, f32, &str); 5] = [
+    (Integrator::Verlet, 0.0, "Verlet, ζ = 0: 2/ω"),
+    (Integrator::Verlet, 0.1, "Verlet, ζ = 0.1: 2(√(1 + ζ²) − ζ)/ω"),
+    (Integrator::Verlet, 0.5, "Verlet, ζ = 0.5"),
+    (Integrator::Euler, 0.5, "Euler, ζ = 0.5: 2ζ/ω"),
+    (Integrator::Euler, 0.1, "Euler, ζ = 0.1"),
+];
+
+fn frequency_rad_per_s(rigidity_n_m2: f32) -> f32 {
+    first_frequency_rad_per_s(rigidity_n_m2, MASS_KG_PER_M, LENGTH_M)
+}
+
 /// Whether a blade that is bent in all of its modes stays within a hundred times that.
-fn holds(integrator: Integrator, damping_share: f32, dt_secs: f32) -> bool {
-    let blade = Blade { length_m: 0.8, frequency_rad_per_s: FREQUENCY_RAD_PER_S, damping_share, lean_per_wind2: 0.0 };
+fn holds(integrator: Integrator, frequency_rad_per_s: f32, damping_share: f32, dt_secs: f32) -> bool {
+    let blade = Blade { length_m: LENGTH_M, frequency_rad_per_s, damping_share, lean_per_wind2: 0.0 };
     // Half a hundredth beyond its limit Euler grows by 0.01·ζ² a step; enough of them for e⁶.
-    let steps = (600.0 / (damping_share * damping_share)).clamp(2e4, 3e6) as u32;
+    let steps = (600.0 / (damping_share * damping_share)).clamp(2e4, 1e5) as u32;
     let calm = Leans::default();
     let mut sway = Sway::at_rest([[0.01, 0.0], [-0.01, 0.01], [0.01, -0.01]]);
     (0..steps).all(|step| {
@@ -27,52 +44,79 @@ fn holds(integrator: Integrator, damping_share: f32, dt_secs: f32) -> bool {
     })
 }
 
-/// The longest step (s) that holds, between half and twice the limit in theory.
-fn measured_secs(integrator: Integrator, damping_share: f32, limit_secs: f32) -> f32 {
-    let (mut low, mut high) = (0.5 * limit_secs, 2.0 * limit_secs);
+/// The longest step (s) that holds.
+fn measured_secs(integrator: Integrator, frequency_rad_per_s: f32, damping_share: f32) -> Result<f32> {
+    let [mut low, mut high] = STEPS_SECS;
+    let holds = |dt_secs| holds(integrator, frequency_rad_per_s, damping_share, dt_secs);
+    ensure!(holds(low) && !holds(high), "{integrator:?} has no limit between {low} and {high} s");
     while high / low > CLOSE {
         let middle = (low * high).sqrt();
-        if holds(integrator, damping_share, middle) { low = middle } else { high = middle }
+        if holds(middle) { low = middle } else { high = middle }
     }
-    low
+    Ok(low)
 }
 
 pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
-    let (fewest, dampings) = if quick { (0.1_f32, 4) } else { (0.02, 10) };
-    let highest_rad_per_s = FREQUENCY_RAD_PER_S * FREQUENCIES[LINKS - 1];
-    let damping = |n: f32| fewest * (1.0 / fewest).powf(n);
-    let (mut csv, mut said) = (String::from("integrator,damping_share,theory_rad,measured_rad\n"), String::new());
-    let mut curves = vec![];
-    for (integrator, name, formula) in
-        [(Integrator::Verlet, "Verlet (000 Eq. 7)", "Verlet: 2(√(1 + ζ²) − ζ)"), (Integrator::Euler, "Euler (000 Eq. 6)", "Euler: 2ζ")]
-    {
-        let theory_secs = |share: f32| stable_dt_secs(integrator, FREQUENCY_RAD_PER_S, share);
-        let line = (0..=60).map(|n| damping(n as f32 / 60.0)).map(|share| [share, theory_secs(share) * highest_rad_per_s].map(f64::from));
-        curves.push(Curve { name: format!("{formula}, theory"), points: line.collect(), marked: false, joined: true });
-        let mut found = Curve { name: format!("{name}, measured"), points: vec![], marked: true, joined: false };
+    let places = if quick { 3 } else { 7 };
+    let [softest, stiffest] = RIGIDITIES_N_M2;
+    let rigidity = |n: f32| softest * (stiffest / softest).powf(n);
+    let mut csv = String::from("integrator,damping_share,rigidity_n_m2,highest_rad_per_s,theory_secs,measured_secs\n");
+    let (mut said, mut curves) = (String::new(), vec![]);
+    for (integrator, share, formula) in CASES {
+        let theory_secs = |rigidity_n_m2: f32| stable_dt_secs(integrator, frequency_rad_per_s(rigidity_n_m2), share);
+        let line = [softest, stiffest].map(|rigidity_n_m2| [rigidity_n_m2, theory_secs(rigidity_n_m2)].map(f64::from));
+        curves.push(Curve { name: formula.into(), points: line.to_vec(), marked: false, joined: true });
+        let mut found = Curve { name: "measured".into(), points: vec![], marked: true, joined: false };
         let (mut least, mut most) = (f32::INFINITY, 0.0_f32);
-        for share in (0..dampings).map(|n| damping(n as f32 / (dampings - 1) as f32)) {
-            let (theory, measured) = (theory_secs(share), measured_secs(integrator, share, theory_secs(share)));
+        for rigidity_n_m2 in (0..places).map(|n| rigidity(n as f32 / (places - 1) as f32)) {
+            let (frequency_rad_per_s, theory) = (frequency_rad_per_s(rigidity_n_m2), theory_secs(rigidity_n_m2));
+            let measured = measured_secs(integrator, frequency_rad_per_s, share)?;
             (least, most) = (least.min(measured / theory), most.max(measured / theory));
-            writeln!(csv, "{integrator:?},{share},{},{}", theory * highest_rad_per_s, measured * highest_rad_per_s)?;
-            found.points.push([share, measured * highest_rad_per_s].map(f64::from));
+            let highest_rad_per_s = frequency_rad_per_s * FREQUENCIES[LINKS - 1];
+            writeln!(csv, "{integrator:?},{share},{rigidity_n_m2:e},{highest_rad_per_s},{theory},{measured}")?;
+            found.points.push([rigidity_n_m2, measured].map(f64::from));
         }
-        writeln!(said, "{name}: fails at {least:.3} to {most:.3} of its limit")?;
+        writeln!(said, "{integrator:?}, ζ = {share}: fails at {least:.3} to {most:.3} of its limit")?;
         curves.push(found);
     }
-    let holds_all = [0.0, 0.02, 1.0]
-        .into_iter()
-        .all(|share| [1.0, 100.0, 1e5].into_iter().all(|step| holds(Integrator::Exact, share, step / highest_rad_per_s)));
+    let holds_all = RIGIDITIES_N_M2.map(frequency_rad_per_s).into_iter().all(|frequency_rad_per_s| {
+        let highest_rad_per_s = frequency_rad_per_s * FREQUENCIES[LINKS - 1];
+        let cases = [0.0, 0.1, 0.5].into_iter().flat_map(|share| [1.0, 100.0, 1e5].map(|step| (share, step / highest_rad_per_s)));
+        cases.into_iter().all(|(share, dt_secs)| holds(Integrator::Exact, frequency_rad_per_s, share, dt_secs))
+    });
     writeln!(said, "exact: {} at ω·dt of 1, 100 and 100 000", if holds_all { "holds" } else { "fails" })?;
+    let steps = curves.iter().flat_map(|curve| curve.points.iter().map(|point| point[1]));
+    let [shortest, longest] = [steps.clone().fold(f64::INFINITY, f64::min) / 1.5, steps.fold(0.0, f64::max) * 1.5];
     let axes = [
-        Axis { name: "damping ζ, as a share of the critical one", range: [0.9 * f64::from(fewest), 1.1], logarithmic: true },
-        Axis { name: "longest step ω·dt of the highest mode (rad)", range: [1.6 * f64::from(fewest), 3.0], logarithmic: true },
+        Axis { name: "flexural rigidity EI (N·m²)", range: RIGIDITIES_N_M2.map(f64::from), logarithmic: true },
+        Axis { name: "longest step (s)", range: [shortest, longest], logarithmic: true },
     ];
     let words = Words {
         title: "How long steps of a blade may be",
-        subtitle: "below its line an integrator is stable; the exact one is so everywhere",
+        subtitle: "0.8 m, 1.2 g/m; below its line an integrator is stable, lines are theory; the exact one is so everywhere",
         caption,
     };
     let svg = curves_svg(&curves, axes, words)?;
     Ok(Drawn { svg, csv, said })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blades_of_any_stiffness_fail_where_theory_says() {
+        for rigidity_n_m2 in RIGIDITIES_N_M2 {
+            let frequency_rad_per_s = frequency_rad_per_s(rigidity_n_m2);
+            let highest_rad_per_s = frequency_rad_per_s * FREQUENCIES[LINKS - 1];
+            for (integrator, share, formula) in CASES {
+                let limit = match integrator {
+                    Integrator::Verlet => 2.0 * ((1.0 + share * share).sqrt() - share),
+                    _ => 2.0 * share,
+                } / highest_rad_per_s;
+                let found = measured_secs(integrator, frequency_rad_per_s, share).unwrap() / limit;
+                assert!((0.99..1.01).contains(&found), "{formula}, {rigidity_n_m2} N·m²: {found} of the limit");
+            }
+        }
+    }
 }
