@@ -22,7 +22,9 @@ const COVER: u8 = 20;
 const COVER_PX: u32 = 64;
 /// A flat world, the same whatever grows there (m).
 const EXTENT_M: f32 = 128.0;
+/// Size of the picture (px), and of a quick one.
 const SIZE_PX: [u32; 2] = [1280, 720];
+const QUICK_SIZE_PX: [u32; 2] = [480, 270];
 const DT_SECS: f32 = 1.0 / 30.0;
 /// Plants that the fullest picture draws at least.
 const MOST_DRAWN: u32 = 200_000;
@@ -57,8 +59,8 @@ fn meadow(places: u32) -> Result<Mirror> {
 }
 
 /// Least time of a frame (s), as all that disturbs one makes it longer, and the plants that it draws.
-fn frame(gpu: &Gpu, mirror: &mut Mirror, camera: &Camera, frames: u32) -> (f64, u32) {
-    let mut picture = Picture::new(gpu, SIZE_PX, Quality::Ultra);
+fn frame(gpu: &Gpu, size_px: [u32; 2], mirror: &mut Mirror, camera: &Camera, frames: u32) -> (f64, u32) {
+    let mut picture = Picture::new(gpu, size_px, Quality::Ultra);
     let times = (0..frames).map(|frame| {
         let begun = Instant::now();
         picture.draw(mirror, camera, f64::from(frame) * f64::from(DT_SECS), DT_SECS);
@@ -72,14 +74,15 @@ fn frame(gpu: &Gpu, mirror: &mut Mirror, camera: &Camera, frames: u32) -> (f64, 
 pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     let (counts, frames): (&[u32], _) =
         if quick { (&[100, 300, 1000, 3000, 10_000], 2) } else { (&[250, 800, 2500, 8000, 25_000, 80_000, 250_000, 500_000], 4) };
+    let size_px = if quick { QUICK_SIZE_PX } else { SIZE_PX };
     let gpu = Gpu::headless()?;
     let camera = Camera { eye_m: Vec3::new(64.0, 30.0, 150.0), pitch_rad: -0.4, ..Camera::default() };
-    let (bare_secs, _) = frame(&gpu, &mut meadow(0)?, &camera, frames);
+    let (bare_secs, _) = frame(&gpu, size_px, &mut meadow(0)?, &camera, frames);
     let mut csv = String::from("plants_in_scene,plants_drawn,ms_a_frame,ms_without\n");
     let mut points = Vec::new();
     for &places in counts {
         let mut mirror = meadow(places)?;
-        let (secs, drawn) = frame(&gpu, &mut mirror, &camera, frames);
+        let (secs, drawn) = frame(&gpu, size_px, &mut mirror, &camera, frames);
         let grown = mirror.land().and_then(|land| land.flora()).map_or(0, |flora| flora.grown().plants().len());
         ensure!(drawn > 0 && drawn as usize <= grown, "{drawn} of {grown} plants are drawn");
         writeln!(csv, "{grown},{drawn},{:.2},{:.2}", 1e3 * secs, 1e3 * bare_secs)?;
@@ -112,7 +115,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
         Axis { name: "plants drawn", range: [least, most], logarithmic: true },
         Axis { name: "time of a frame (ms)", range: [1e3 * bare_secs / 1.5, top], logarithmic: true },
     ];
-    let subtitle = format!("{} × {} px, ultra, least of {} frames; {}", SIZE_PX[0], SIZE_PX[1], frames - 1, gpu.adapter_name);
+    let subtitle = format!("{} × {} px, ultra, least of {} frames; {}", size_px[0], size_px[1], frames - 1, gpu.adapter_name);
     let svg = curves_svg(&[measured, bare], axes, Words { title: "What underbrush costs to draw", subtitle: &subtitle, caption })?;
     Ok(Drawn { svg, csv, said })
 }
