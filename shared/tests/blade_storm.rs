@@ -2,9 +2,7 @@
 
 use shared::hash::hash3;
 use shared::plant::blade::contact::{Sphere, settle};
-use shared::plant::blade::number::Number;
-use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
-use wide::f32x8;
+use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, abreast, advance};
 
 const DT_SECS: f32 = 1.0 / 60.0;
 
@@ -118,47 +116,50 @@ fn a_storm_of_gusts_and_hits_leaves_a_blade_whole() {
     assert!(deepest < 0.01, "{deepest} of the length deep");
 }
 
-/// As [`grown`] and [`wind`] but in lanes.
-fn lanes<const N: usize>(of: impl Fn(u32) -> [f32; N]) -> [f32x8; N] {
-    let each: [[f32; N]; 8] = std::array::from_fn(|lane| of(lane as u32));
-    std::array::from_fn(|n| f32x8::from(each.map(|values| values[n])))
+/// Blades that are taken through a step at once; no multiple of what a register holds.
+const ABREAST: usize = 37;
+
+/// An array of each number of what is said of one blade.
+fn arrays<const M: usize>(of: impl Fn(u32) -> [f32; M]) -> [[f32; ABREAST]; M] {
+    let each: [[f32; M]; ABREAST] = std::array::from_fn(|n| of(n as u32));
+    std::array::from_fn(|m| each.map(|values| values[m]))
 }
 
-fn flat<T: Number>(leans: &Leans<T>) -> [T; 2 * LINKS] {
-    std::array::from_fn(|n| leans[n / 2][n % 2])
-}
-
-fn unflat<T: Number>(values: [T; 2 * LINKS]) -> Leans<T> {
-    std::array::from_fn(|link| [values[2 * link], values[2 * link + 1]])
+fn leans_abreast(of: impl Fn(u32) -> Leans) -> Leans<[f32; ABREAST]> {
+    std::array::from_fn(|link| arrays(|number| of(number)[link]))
 }
 
 #[test]
-fn eight_abreast_have_the_bits_of_one() {
-    let nature = lanes(|lane| {
-        let blade = grown(lane).0;
+fn many_abreast_have_the_bits_of_one() {
+    let [length_m, frequency_rad_per_s, damping_share, lean_per_wind2] = arrays(|number| {
+        let blade = grown(number).0;
         [blade.length_m, blade.frequency_rad_per_s, blade.damping_share, blade.lean_per_wind2]
     });
-    let [length_m, frequency_rad_per_s, damping_share, lean_per_wind2] = nature;
-    let abreast = Blade { length_m, frequency_rad_per_s, damping_share, lean_per_wind2 };
-    let held = unflat(lanes(|lane| flat(&grown(lane).2)));
+    let blades = Blade { length_m, frequency_rad_per_s, damping_share, lean_per_wind2 };
+    let held = leans_abreast(|number| grown(number).2);
+    let root = |number: u32| [between(0.0, 8.0, [number, 8, 99]), between(0.0, 8.0, [number, 9, 99])];
     for integrator in [Integrator::Euler, Integrator::Verlet, Integrator::Exact] {
         // Short enough for Euler not to leave the numbers.
         let dt_secs = if integrator == Integrator::Exact { DT_SECS } else { 1e-4 };
-        let mut alone: [Sway; 8] = std::array::from_fn(|lane| Sway::at_rest(grown(lane as u32).2));
-        let mut together = Sway { lean_rad: held, rate_rad_per_s: [[f32x8::ZERO; 2]; LINKS] };
-        for step in 0..2000 {
-            for (lane, sway) in alone.iter_mut().enumerate() {
-                let (blade, _, held) = grown(lane as u32);
-                *sway = advance(sway, &blade, &held, &wind(lane as u32, step), integrator, dt_secs);
+        let mut alone: [Sway; ABREAST] = std::array::from_fn(|n| Sway::at_rest(grown(n as u32).2));
+        let mut together = Sway { lean_rad: held, rate_rad_per_s: [[[0.0; ABREAST]; 2]; LINKS] };
+        for step in 0..1000 {
+            for (number, sway) in (0..).zip(&mut alone) {
+                let (blade, _, held) = grown(number);
+                *sway = advance(sway, &blade, &held, &wind(number, step), integrator, dt_secs);
             }
-            let winds = unflat(lanes(|lane| flat(&wind(lane, step))));
-            together = advance(&together, &abreast, &held, &winds, integrator, dt_secs);
+            let winds = leans_abreast(|number| wind(number, step));
+            abreast::advance(&mut together, &blades, &held, &winds, integrator, dt_secs);
         }
-        let found =
-            [flat(&together.lean_rad), flat(&together.rate_rad_per_s)].map(|values| values.map(|value| value.to_array().map(f32::to_bits)));
-        for (lane, sway) in alone.iter().enumerate() {
-            let wanted = [flat(&sway.lean_rad), flat(&sway.rate_rad_per_s)].map(|values| values.map(f32::to_bits));
-            assert_eq!(found.map(|values| values.map(|bits| bits[lane])), wanted, "{integrator:?}, lane {lane}");
+        let mut points_m = [[[0.0; ABREAST]; 3]; LINKS];
+        abreast::find_points(&together.lean_rad, &blades.length_m, &arrays(root), &mut points_m);
+        for (n, sway) in alone.iter().enumerate() {
+            let of = |leans: &Leans<[f32; ABREAST]>| leans.map(|link| link.map(|part| part[n].to_bits()));
+            let wanted = [sway.lean_rad, sway.rate_rad_per_s].map(|leans| leans.map(|link| link.map(f32::to_bits)));
+            assert_eq!([of(&together.lean_rad), of(&together.rate_rad_per_s)], wanted, "{integrator:?}, blade {n}");
+            let [x, z] = root(n as u32);
+            let wanted = sway.points_m(length_m[n]).map(|[east, up, south]| [x + east, up, z + south].map(f32::to_bits));
+            assert_eq!(points_m.map(|point_m| point_m.map(|part| part[n].to_bits())), wanted, "{integrator:?}, blade {n}");
         }
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! Every line has the least and the median time of many runs, and how often the least goes into that of the line that it is compared with. Near blades are
 //! those of nine grids with 1024 each, as around a camera; their step reads the wind at three control points of every blade, swings it, and
-//! mends what leans far or has a sphere within reach.
+//! mends what leans far or has a sphere within reach. Plants are kept as who places them would: grid by grid, and in a grid by the cell of the wind that they
+//! stand in, so that those that are stepped together read one window of it.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -11,7 +12,7 @@ use glam::Vec3;
 use server::wind::{Air, Config, Method};
 use shared::hash::hash3;
 use shared::plant::blade::contact::{Sphere, settle};
-use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
+use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, abreast, advance};
 use shared::plant::flora::Flora;
 use shared::plant::force_field::{ForceField, Lingering, Mesh, dynamic_pressure_pa};
 use shared::plant::underbrush::plant::{Forces, LookUp, Stand, posed};
@@ -21,11 +22,14 @@ use shared::plant::underbrush::strength::shares;
 use shared::scene::parse;
 use shared::terrain::{CoverMap, grey_png};
 use shared::wind::WindCells;
-use wide::f32x8;
 
-/// Nine grids of 8 m with 1024 plants each.
-const PLANTS: usize = 9 * 1024;
-const GRIDS_M: f32 = 24.0;
+/// Nine grids of 8 m with 1024 plants each, at multiples of their side as around a camera.
+const GRID_PLANTS: usize = 1024;
+const PLANTS: usize = 9 * GRID_PLANTS;
+const GRID_M: f32 = 8.0;
+const CORNER_M: f32 = 13.0 * GRID_M;
+/// Plants that are stepped together.
+const ABREAST: usize = 64;
 const DT_SECS: f32 = 1.0 / 60.0;
 /// Lean of a link (rad) from which a blade may touch the ground.
 const FAR_RAD: f32 = 1.0;
@@ -79,9 +83,8 @@ struct Grown {
 
 fn grown(number: usize) -> Grown {
     let random = |low: f32, high: f32, what: u32| low + (high - low) * share([number as u32, what, 7]);
-    // Plants of one grid after the other, as they are kept.
-    let (grid, within) = (number / 1024, [random(0.0, 8.0, 0), random(0.0, 8.0, 1)]);
-    let corner = [grid % 3, grid / 3].map(|n| 100.0 + 8.0 * n as f32);
+    let (grid, within) = (number / GRID_PLANTS, [random(0.0, GRID_M, 0), random(0.0, GRID_M, 1)]);
+    let corner = [grid % 3, grid / 3].map(|n| CORNER_M + GRID_M * n as f32);
     let length_m = random(0.5, 1.1, 2);
     let droop = [random(-0.2, 0.2, 3), random(-0.2, 0.2, 4)];
     Grown {
@@ -89,6 +92,15 @@ fn grown(number: usize) -> Grown {
         blade: Blade { length_m, frequency_rad_per_s: 9.74 * 0.8 / length_m, damping_share: 0.1, lean_per_wind2: 0.005 },
         held_rad: [0.6, 1.0, 1.4].map(|part| droop.map(|lean| part * lean)),
     }
+}
+
+/// All plants, as they are kept.
+fn meadow(spacing_m: [f32; 3]) -> Vec<Grown> {
+    let mut plants: Vec<Grown> = (0..PLANTS).map(grown).collect();
+    for grid in plants.chunks_mut(GRID_PLANTS) {
+        grid.sort_by_key(|plant| [(plant.root_m[1] / spacing_m[2]) as i32, (plant.root_m[0] / spacing_m[0]) as i32]);
+    }
+    plants
 }
 
 /// The default wind with its gusts, in 32 × 8 × 32 cells.
@@ -140,47 +152,85 @@ impl Wind {
 
 /// A car's two ends and a ball, where they are among the plants.
 fn spheres_m() -> [Sphere; 3] {
-    let sphere = |x: f32, y: f32, z: f32, radius_m: f32| Sphere { centre_m: [100.0 + x, y, 100.0 + z], radius_m };
+    let sphere = |x: f32, y: f32, z: f32, radius_m: f32| Sphere { centre_m: [CORNER_M + x, y, CORNER_M + z], radius_m };
     [sphere(9.0, 1.0, 12.0, 0.9), sphere(10.8, 1.0, 12.0, 0.9), sphere(16.0, 0.45, 5.0, 0.4)]
 }
 
-/// Plants eight abreast.
-struct Eight {
-    root_m: [f32x8; 2],
-    blade: Blade<f32x8>,
-    held_rad: Leans<f32x8>,
+/// Plants that are stepped together.
+struct Block {
+    root_m: [[f32; ABREAST]; 2],
+    blade: Blade<[f32; ABREAST]>,
+    held_rad: Leans<[f32; ABREAST]>,
 }
 
-fn eight(number: usize) -> Eight {
-    let each: [Grown; 8] = std::array::from_fn(|lane| grown(8 * number + lane));
-    let lanes = |of: &dyn Fn(&Grown) -> f32| f32x8::from(each.each_ref().map(of));
-    Eight {
-        root_m: [0, 1].map(|axis| lanes(&|one| one.root_m[axis])),
-        blade: Blade {
-            length_m: lanes(&|one| one.blade.length_m),
-            frequency_rad_per_s: lanes(&|one| one.blade.frequency_rad_per_s),
-            damping_share: lanes(&|one| one.blade.damping_share),
-            lean_per_wind2: lanes(&|one| one.blade.lean_per_wind2),
-        },
-        held_rad: std::array::from_fn(|link| std::array::from_fn(|axis| lanes(&|one| one.held_rad[link][axis]))),
+impl Block {
+    fn new(plants: &[Grown; ABREAST]) -> Self {
+        let each = |of: &dyn Fn(&Grown) -> f32| plants.each_ref().map(of);
+        Self {
+            root_m: [0, 1].map(|axis| each(&|one| one.root_m[axis])),
+            blade: Blade {
+                length_m: each(&|one| one.blade.length_m),
+                frequency_rad_per_s: each(&|one| one.blade.frequency_rad_per_s),
+                damping_share: each(&|one| one.blade.damping_share),
+                lean_per_wind2: each(&|one| one.blade.lean_per_wind2),
+            },
+            held_rad: std::array::from_fn(|link| std::array::from_fn(|axis| each(&|one| one.held_rad[link][axis]))),
+        }
+    }
+
+    fn at_rest(&self) -> Sway<[f32; ABREAST]> {
+        Sway { lean_rad: self.held_rad, rate_rad_per_s: [[[0.0; ABREAST]; 2]; LINKS] }
+    }
+
+    /// Wind at the control points.
+    fn winds(&self, cells: &WindCells, sway: &Sway<[f32; ABREAST]>) -> Leans<[f32; ABREAST]> {
+        let (mut points_m, mut winds) = ([[[0.0; ABREAST]; 3]; LINKS], [[[0.0; ABREAST]; 2]; LINKS]);
+        abreast::find_points(&sway.lean_rad, &self.blade.length_m, &self.root_m, &mut points_m);
+        let [x, z] = self.root_m.map(|part| part[0]);
+        cells.at_all([x, 0.0, z], &points_m, &mut winds);
+        winds
+    }
+
+    /// Which plants lean far or have a sphere within reach.
+    fn to_mend(&self, sway: &Sway<[f32; ABREAST]>, spheres: &[Sphere]) -> [bool; ABREAST] {
+        let mut is_due = [false; ABREAST];
+        for [x, z] in &sway.lean_rad {
+            for n in 0..ABREAST {
+                is_due[n] |= x[n] * x[n] + z[n] * z[n] > FAR_RAD * FAR_RAD;
+            }
+        }
+        for Sphere { centre_m: [x, y, z], radius_m } in spheres {
+            for n in 0..ABREAST {
+                let (reach_m, east_m, south_m) = (radius_m + self.blade.length_m[n], x - self.root_m[0][n], z - self.root_m[1][n]);
+                is_due[n] |= east_m * east_m + y * y + south_m * south_m < reach_m * reach_m;
+            }
+        }
+        is_due
+    }
+
+    /// How many had to be mended.
+    fn step(&self, sway: &mut Sway<[f32; ABREAST]>, cells: &WindCells, spheres: &[Sphere], integrator: Integrator, dt_secs: f32) -> u32 {
+        let winds = self.winds(cells, sway);
+        abreast::advance(sway, &self.blade, &self.held_rad, &winds, integrator, dt_secs);
+        let mut mended = 0;
+        for (n, _) in self.to_mend(sway, spheres).into_iter().enumerate().filter(|(_, is_due)| *is_due) {
+            let length_m = self.blade.length_m[n];
+            mend(sway, n, length_m, &within_reach(spheres, self.root_m.map(|part| part[n]), length_m));
+            mended += 1;
+        }
+        mended
     }
 }
 
-/// Wind at the control points of eight plants.
-fn winds(cells: &WindCells, plants: &Eight, sway: &Sway<f32x8>) -> Leans<f32x8> {
-    let [x, z] = plants.root_m;
-    sway.points_m(plants.blade.length_m).map(|[east, up, south]| cells.at_eight([x + east, up, z + south]))
-}
-
-/// Takes a blade out of the lanes, mends it, and puts it back.
-fn mend(sway: &mut Sway<f32x8>, lane: usize, length_m: f32, spheres: &[Sphere]) {
-    let one = |leans: &Leans<f32x8>| leans.map(|link| link.map(|part| part.to_array()[lane]));
-    let mended =
-        settle(&Sway { lean_rad: one(&sway.lean_rad), rate_rad_per_s: one(&sway.rate_rad_per_s) }, length_m, [0.0, 1.0, 0.0], spheres);
+/// Takes a blade from among the others, mends it, and puts it back.
+fn mend(sway: &mut Sway<[f32; ABREAST]>, n: usize, length_m: f32, spheres: &[Sphere]) {
+    let one = |leans: &Leans<[f32; ABREAST]>| leans.each_ref().map(|link| link.each_ref().map(|part| part[n]));
+    let one = Sway { lean_rad: one(&sway.lean_rad), rate_rad_per_s: one(&sway.rate_rad_per_s) };
+    let mended = settle(&one, length_m, [0.0, 1.0, 0.0], spheres);
     for link in 0..LINKS {
         for axis in 0..2 {
-            sway.lean_rad[link][axis].as_mut_array()[lane] = mended.lean_rad[link][axis];
-            sway.rate_rad_per_s[link][axis].as_mut_array()[lane] = mended.rate_rad_per_s[link][axis];
+            sway.lean_rad[link][axis][n] = mended.lean_rad[link][axis];
+            sway.rate_rad_per_s[link][axis][n] = mended.rate_rad_per_s[link][axis];
         }
     }
 }
@@ -193,34 +243,6 @@ fn within_reach(spheres: &[Sphere], [x, z]: [f32; 2], length_m: f32) -> Vec<Sphe
         sphere.centre_m.iter().map(|m| m * m).sum::<f32>() < reach_m * reach_m
     };
     spheres.iter().map(from_root).filter(is_near).collect()
-}
-
-/// One bit for each lane in which a blade leans far or has a sphere within reach.
-fn to_mend(plants: &Eight, sway: &Sway<f32x8>, spheres: &[Sphere]) -> u32 {
-    let [x, z] = plants.root_m;
-    let steepest = sway.lean_rad.iter().fold(f32x8::ZERO, |most, [x, z]| most.fast_max(*x * *x + *z * *z));
-    let mut lanes = steepest.simd_gt(f32x8::splat(FAR_RAD * FAR_RAD)).to_bitmask();
-    for sphere in spheres {
-        let [cx, cy, cz] = sphere.centre_m.map(f32x8::splat);
-        let reach_m = f32x8::splat(sphere.radius_m) + plants.blade.length_m;
-        let distance2 = (cx - x) * (cx - x) + cy * cy + (cz - z) * (cz - z);
-        lanes |= distance2.simd_lt(reach_m * reach_m).to_bitmask();
-    }
-    lanes
-}
-
-fn step_eight(plants: &Eight, sway: &mut Sway<f32x8>, cells: &WindCells, spheres: &[Sphere], integrator: Integrator, dt_secs: f32) -> u32 {
-    let winds = winds(cells, plants, sway);
-    *sway = advance(sway, &plants.blade, &plants.held_rad, &winds, integrator, dt_secs);
-    let mut lanes = to_mend(plants, sway, spheres);
-    let mended = lanes.count_ones();
-    while lanes != 0 {
-        let lane = lanes.trailing_zeros() as usize;
-        let (root_m, length_m) = (plants.root_m.map(|part| part.to_array()[lane]), plants.blade.length_m.to_array()[lane]);
-        mend(sway, lane, length_m, &within_reach(spheres, root_m, length_m));
-        lanes &= lanes - 1;
-    }
-    mended
 }
 
 fn step_one(plant: &Grown, sway: &mut Sway, wind: &Wind, spheres: &[Sphere], integrator: Integrator, dt_secs: f32) {
@@ -237,40 +259,38 @@ fn near_plants() {
     let wind = Wind::blown();
     let cells = WindCells::new(wind.count, wind.spacing_m, |cell| wind.cell(cell));
     let spheres = spheres_m();
-    let plants: Vec<Grown> = (0..PLANTS).map(grown).collect();
-    assert!(plants.iter().all(|plant| plant.root_m.iter().all(|m| (100.0..100.0 + GRIDS_M).contains(m))));
-    let abreast: Vec<Eight> = (0..PLANTS / 8).map(eight).collect();
+    let plants = meadow(wind.spacing_m);
+    let blocks: Vec<Block> = plants.as_chunks().0.iter().map(Block::new).collect();
     heading("near plants, nine grids of 1024, one step", "faster");
     for (name, integrator) in [("Euler", Integrator::Euler), ("Verlet", Integrator::Verlet), ("exact", Integrator::Exact)] {
         // Euler and Verlet do not bear a step of 1/60 s.
         let dt_secs = if integrator == Integrator::Exact { DT_SECS } else { 1.0 / 960.0 };
         let mut alone: Vec<Sway> = plants.iter().map(|plant| Sway::at_rest(plant.held_rad)).collect();
-        let mut lanes: Vec<Sway<f32x8>> =
-            abreast.iter().map(|plants| Sway { lean_rad: plants.held_rad, rate_rad_per_s: [[f32x8::ZERO; 2]; LINKS] }).collect();
+        let mut together: Vec<_> = blocks.iter().map(Block::at_rest).collect();
         let whole_alone = time(|| {
             plants.iter().zip(&mut alone).for_each(|(plant, sway)| step_one(plant, sway, &wind, &spheres, integrator, dt_secs));
         });
         let mut mended = 0;
-        let whole_lanes = time(|| {
-            let step = |(plants, sway): (&Eight, &mut Sway<f32x8>)| step_eight(plants, sway, &cells, &spheres, integrator, dt_secs);
-            mended = abreast.iter().zip(&mut lanes).map(step).sum();
+        let whole_together = time(|| {
+            let swaying = blocks.iter().zip(&mut together);
+            mended = swaying.map(|(block, sway)| block.step(sway, &cells, &spheres, integrator, dt_secs)).sum();
         });
         line(&format!("{name}: all of it, one by one"), whole_alone, 1, MS, None);
-        line(&format!("{name}: all of it, eight abreast"), whole_lanes, 1, MS, Some(whole_alone));
-        println!("{mended} of {PLANTS} mended; {:.0} blades/ms", PLANTS as f64 * 1e-3 / whole_lanes.least_secs);
+        line(&format!("{name}: all of it, {ABREAST} abreast"), whole_together, 1, MS, Some(whole_alone));
+        println!("{mended} of {PLANTS} mended; {:.0} blades/ms", PLANTS as f64 * 1e-3 / whole_together.least_secs);
+        let calm = [[[4.0; ABREAST], [1.0; ABREAST]]; LINKS];
         let swing_alone = time(|| {
             for (plant, sway) in plants.iter().zip(&mut alone) {
                 *sway = advance(sway, &plant.blade, &plant.held_rad, &[[4.0, 1.0]; LINKS], integrator, dt_secs);
             }
         });
-        let calm = [[4.0, 1.0].map(f32x8::splat); LINKS];
-        let swing_lanes = time(|| {
-            for (plants, sway) in abreast.iter().zip(&mut lanes) {
-                *sway = advance(sway, &plants.blade, &plants.held_rad, &calm, integrator, dt_secs);
+        let swing_together = time(|| {
+            for (block, sway) in blocks.iter().zip(&mut together) {
+                abreast::advance(sway, &block.blade, &block.held_rad, &calm, integrator, dt_secs);
             }
         });
         line(&format!("{name}: swing alone, one by one"), swing_alone, 1, MS, None);
-        line(&format!("{name}: swing alone, eight abreast"), swing_lanes, 1, MS, Some(swing_alone));
+        line(&format!("{name}: swing alone, {ABREAST} abreast"), swing_together, 1, MS, Some(swing_alone));
         if integrator == Integrator::Exact {
             let wind_alone = time(|| {
                 for (plant, sway) in plants.iter().zip(&alone) {
@@ -278,13 +298,13 @@ fn near_plants() {
                     black_box(sway.points_m(plant.blade.length_m).map(|[east, up, south]| wind.at([x + east, up, z + south])));
                 }
             });
-            let wind_lanes = time(|| {
-                for (plants, sway) in abreast.iter().zip(&lanes) {
-                    black_box(winds(&cells, plants, sway));
+            let wind_together = time(|| {
+                for (block, sway) in blocks.iter().zip(&together) {
+                    black_box(block.winds(&cells, sway));
                 }
             });
             line("wind at three points a plant, cell by cell", wind_alone, 1, MS, None);
-            line("wind at three points a plant, eight abreast", wind_lanes, 1, MS, Some(wind_alone));
+            line(&format!("wind at three points a plant, {ABREAST} abreast"), wind_together, 1, MS, Some(wind_alone));
             let settled = time(|| {
                 for (plant, sway) in plants.iter().zip(&alone) {
                     black_box(settle(sway, plant.blade.length_m, [0.0, 1.0, 0.0], &[]));

@@ -1,6 +1,5 @@
 //! From the lean of a link to its direction and back. Polynomials in place of the trigonometric functions, so that every machine finds the same bits.
 
-use super::number::Number;
 use std::f32::consts::PI;
 
 /// Taylor coefficients of cos √t.
@@ -33,19 +32,19 @@ const SINC: [f32; 9] = [
 const ATAN: [f32; 7] = [1.0, -1.0 / 3.0, 1.0 / 5.0, -1.0 / 7.0, 1.0 / 9.0, -1.0 / 11.0, 1.0 / 13.0];
 
 #[inline(always)]
-fn polynomial<T: Number, const N: usize>(coefficients: &[f32; N], t: T) -> T {
-    let mut sum = T::splat(coefficients[N - 1]);
+fn polynomial<const N: usize>(coefficients: &[f32; N], t: f32) -> f32 {
+    let mut sum = coefficients[N - 1];
     for i in (0..N - 1).rev() {
-        sum = sum * t + T::splat(coefficients[i]);
+        sum = sum * t + coefficients[i];
     }
     sum
 }
 
 /// Unit vector (X, up, Z) of a link that leans by a vector on the ground (rad): upright at 0, level at π/2, hanging at π and beyond. Within 2e-6 of exact.
 #[inline(always)]
-pub fn direction<T: Number>(lean_rad: [T; 2]) -> [T; 3] {
+pub fn direction(lean_rad: [f32; 2]) -> [f32; 3] {
     let [x, z] = lean_rad;
-    let t = (x * x + z * z).least(T::splat(PI * PI));
+    let t = (x * x + z * z).min(PI * PI);
     let aside = polynomial(&SINC, t);
     [x * aside, polynomial(&COS, t), z * aside]
 }

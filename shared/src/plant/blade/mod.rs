@@ -12,29 +12,28 @@
 //! # Parts
 //! - [`modes`]: natural frequencies of the chain, and how links and wind couple to its modes;
 //! - [`propagator`]: three ways to take a mode through time, each with its limit;
-//! - [`step`]: one step of a blade, alone or [eight abreast](number);
+//! - [`step`]: one step of a blade; [`abreast`]: the same for many;
 //! - [`lean`]: from a lean to a direction and back;
 //! - [`contact`]: never below the ground, never inside a sphere;
 //! - [`backbone`]: the curve through the control points and the outline about it.
 //!
 //! The twin on the GPU is `blade.wgsl`.
 
+pub mod abreast;
 pub mod backbone;
 pub mod contact;
 pub mod lean;
 pub mod modes;
-pub mod number;
 pub mod propagator;
 pub mod step;
 
-use number::Number;
 pub use propagator::Integrator;
 pub use step::advance;
 
 /// Links of a blade.
 pub const LINKS: usize = 3;
 
-/// A vector on the ground for each link: X and Z.
+/// A vector on the ground for each link: X and Z. As below, `T` is a number, or an array with that of each of many blades.
 pub type Leans<T = f32> = [[T; 2]; LINKS];
 
 /// What a blade is like.
@@ -61,21 +60,23 @@ pub struct Sway<T = f32> {
 
 impl Sway {
     /// At rest in a lean.
+    #[inline(always)]
     pub fn at_rest(lean_rad: Leans) -> Self {
         Self { lean_rad, rate_rad_per_s: Leans::default() }
     }
-}
 
-impl<T: Number> Sway<T> {
     /// Offsets of the three control points above the root from it (m): X, height, Z.
     #[inline(always)]
-    pub fn points_m(&self, length_m: T) -> [[T; 3]; LINKS] {
-        let link_m = length_m.over(T::splat(LINKS as f32));
-        let mut at = [T::splat(0.0); 3];
-        self.lean_rad.map(|lean_rad| {
-            let along = lean::direction(lean_rad);
-            at = std::array::from_fn(|axis| at[axis] + link_m * along[axis]);
-            at
-        })
+    pub fn points_m(&self, length_m: f32) -> [[f32; 3]; LINKS] {
+        let link_m = length_m * (1.0 / LINKS as f32);
+        let (mut at, mut points_m) = ([0.0; 3], [[0.0; 3]; LINKS]);
+        for (point_m, lean_rad) in points_m.iter_mut().zip(&self.lean_rad) {
+            let along = lean::direction(*lean_rad);
+            for axis in 0..3 {
+                at[axis] += link_m * along[axis];
+            }
+            *point_m = at;
+        }
+        points_m
     }
 }

@@ -1,7 +1,6 @@
 //! How one mode is taken through a step: `ẍ + 2γẋ + ω²x = 0`, x the distance from where it is held.
 
 use super::modes::FREQUENCIES;
-use super::number::Number;
 
 pub use crate::scene::BladeIntegrator as Integrator;
 
@@ -11,21 +10,21 @@ const SQUARINGS: u32 = 3;
 /// What a step makes of distance x and rate v: `x' = x + stay·x + glide·v`, `v' = v + pull·x + brake·v`. Changes are kept apart from what they add to, so
 /// that rounding is relative to the changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Propagator<T = f32> {
+pub struct Propagator {
     /// Change of x over x.
-    pub stay: T,
+    pub stay: f32,
     /// Change of x over v (s).
-    pub glide: T,
+    pub glide: f32,
     /// Change of v over x (1/s).
-    pub pull: T,
+    pub pull: f32,
     /// Change of v over v.
-    pub brake: T,
+    pub brake: f32,
 }
 
-impl<T: Number> Propagator<T> {
+impl Propagator {
     /// Of a step of `dt_secs` for a mode with frequency ω (rad/s) and damping rate γ (1/s), both at least 0.
     #[inline(always)]
-    pub fn new(integrator: Integrator, omega_rad_per_s: T, gamma_per_s: T, dt_secs: f32) -> Self {
+    pub fn new(integrator: Integrator, omega_rad_per_s: f32, gamma_per_s: f32, dt_secs: f32) -> Self {
         match integrator {
             Integrator::Euler => Self::euler(omega_rad_per_s, gamma_per_s, dt_secs),
             Integrator::Verlet => Self::verlet(omega_rad_per_s, gamma_per_s, dt_secs),
@@ -35,43 +34,40 @@ impl<T: Number> Propagator<T> {
 
     /// 000 Eq. (6): position and velocity by their rates at the start of the step.
     #[inline(always)]
-    fn euler(omega_rad_per_s: T, gamma_per_s: T, dt_secs: f32) -> Self {
-        let dt = T::splat(dt_secs);
-        let pull = -(omega_rad_per_s * omega_rad_per_s * dt);
-        Self { stay: T::splat(0.0), glide: dt, pull, brake: T::splat(-2.0) * gamma_per_s * dt }
+    fn euler(omega_rad_per_s: f32, gamma_per_s: f32, dt_secs: f32) -> Self {
+        let pull = -(omega_rad_per_s * omega_rad_per_s * dt_secs);
+        Self { stay: 0.0, glide: dt_secs, pull, brake: -2.0 * gamma_per_s * dt_secs }
     }
 
     /// 000 Eq. (7), `x' = 2x − x'' + a·dt²`, with v for (x − x'')/dt and the damping of that v.
     #[inline(always)]
-    fn verlet(omega_rad_per_s: T, gamma_per_s: T, dt_secs: f32) -> Self {
-        let dt = T::splat(dt_secs);
+    fn verlet(omega_rad_per_s: f32, gamma_per_s: f32, dt_secs: f32) -> Self {
         let Self { pull, brake, .. } = Self::euler(omega_rad_per_s, gamma_per_s, dt_secs);
-        Self { stay: pull * dt, glide: dt + brake * dt, pull, brake }
+        Self { stay: pull * dt_secs, glide: dt_secs + brake * dt_secs, pull, brake }
     }
 
     /// The exponential of the matrix A of the mode, as `1 + e + p·A` (Cayley–Hamilton: A² = −ω² − 2γA): Padé's (2, 2) approximant of an eighth of the step, squared
     /// three times. Within 4e-6 of exact up to ω·dt = 1.5 and critical damping; bounded for every step and damping.
     #[inline(always)]
-    fn exact(omega_rad_per_s: T, gamma_per_s: T, dt_secs: f32) -> Self {
+    fn exact(omega_rad_per_s: f32, gamma_per_s: f32, dt_secs: f32) -> Self {
         let h_secs = dt_secs / (1 << SQUARINGS) as f32;
-        let (h, twelfth) = (T::splat(h_secs), T::splat(h_secs * h_secs / 12.0));
-        let (one, two) = (T::splat(1.0), T::splat(2.0));
-        let (omega2, gamma2) = (omega_rad_per_s * omega_rad_per_s, two * gamma_per_s);
+        let twelfth = h_secs * h_secs / 12.0;
+        let (omega2, gamma2) = (omega_rad_per_s * omega_rad_per_s, 2.0 * gamma_per_s);
         // Numerator and denominator 1 ± Ah/2 + (Ah)²/12 as a + up·A and a + down·A, with up = down + h.
-        let a = one - omega2 * twelfth;
-        let down = -(T::splat(0.5) * h + gamma2 * twelfth);
+        let a = 1.0 - omega2 * twelfth;
+        let down = -(0.5 * h_secs + gamma2 * twelfth);
         let norm = a * a - gamma2 * a * down + omega2 * down * down;
         // (a + up·A)/(a + down·A) = 1 + e + p·A.
-        let (mut e, mut p) = ((omega2 * down * h).over(norm), (a * h).over(norm));
+        let (mut e, mut p) = (omega2 * down * h_secs / norm, a * h_secs / norm);
         for _ in 0..SQUARINGS {
-            (e, p) = (two * e + e * e - omega2 * p * p, p * (two + two * e - gamma2 * p));
+            (e, p) = (2.0 * e + e * e - omega2 * p * p, p * (2.0 + 2.0 * e - gamma2 * p));
         }
         Self { stay: e, glide: p, pull: -(omega2 * p), brake: e - gamma2 * p }
     }
 
     /// What a step adds to distance and rate.
     #[inline(always)]
-    pub fn change(&self, x: T, v: T) -> [T; 2] {
+    pub fn change(&self, x: f32, v: f32) -> [f32; 2] {
         [self.stay * x + self.glide * v, self.pull * x + self.brake * v]
     }
 }

@@ -1,53 +1,69 @@
 //! One step of a blade: where wind and stiffness hold it, and how it swings about that.
 
 use super::modes::{AMPLITUDES, BRAKES, FREQUENCIES, MODES, PUSHES};
-use super::number::Number;
 use super::propagator::{Integrator, Propagator};
 use super::{Blade, LINKS, Leans, Sway};
 
-/// Takes a blade, or eight, through `dt_secs`, held in `held_rad` without wind, in a wind over the ground of `wind_m_per_s` at its three control points above the
-/// root.
+/// Takes a blade through `dt_secs`, held in `held_rad` without wind, in a wind over the ground of `wind_m_per_s` at its three control points above the root.
 ///
 /// Drag is ½ρC_dA·|u − v|(u − v) across the blade at each of them, with the speed |u − v| as at the start of the step: its share in u moves the lean in which the
 /// blade is held, its share in v brakes each mode. Contacts are for [`contact`](super::contact) to mend after the step.
 #[inline(always)]
-pub fn advance<T: Number>(
-    sway: &Sway<T>,
-    blade: &Blade<T>,
-    held_rad: &Leans<T>,
-    wind_m_per_s: &Leans<T>,
-    integrator: Integrator,
-    dt_secs: f32,
-) -> Sway<T> {
-    let link_m = blade.length_m * T::splat(1.0 / LINKS as f32);
-    let mut own_m_per_s = [T::splat(0.0); 2];
-    let (mut past, mut drag) = ([T::splat(0.0); LINKS], [[T::splat(0.0); 2]; LINKS]);
+pub fn advance(sway: &Sway, blade: &Blade, held_rad: &Leans, wind_m_per_s: &Leans, integrator: Integrator, dt_secs: f32) -> Sway {
+    let link_m = blade.length_m * (1.0 / LINKS as f32);
+    let mut own_m_per_s = [0.0; 2];
+    let mut pull = Pull {
+        apart_rad: Leans::default(),
+        drag: Leans::default(),
+        past: [0.0; LINKS],
+        braked: 0.5 * blade.length_m * blade.frequency_rad_per_s * blade.frequency_rad_per_s,
+    };
     for j in 0..LINKS {
-        own_m_per_s = [0, 1].map(|axis| own_m_per_s[axis] + link_m * sway.rate_rad_per_s[j][axis]);
-        let [x, z] = [0, 1].map(|axis| wind_m_per_s[j][axis] - own_m_per_s[axis]);
-        past[j] = (x * x + z * z).root() * blade.lean_per_wind2;
-        drag[j] = wind_m_per_s[j].map(|u| u * past[j]);
-    }
-    let braked = T::splat(0.5) * blade.length_m * blade.frequency_rad_per_s * blade.frequency_rad_per_s;
-    let mut swung = *sway;
-    for m in 0..LINKS {
-        let omega = blade.frequency_rad_per_s * T::splat(FREQUENCIES[m]);
-        let step = Propagator::new(integrator, omega, blade.damping_share * omega + braked * weighted(&BRAKES[m], past), dt_secs);
         for axis in 0..2 {
-            let of = |leans: &Leans<T>| [0, 1, 2].map(|link| leans[link][axis]);
-            let apart = [0, 1, 2].map(|link| sway.lean_rad[link][axis] - held_rad[link][axis]);
-            let x = weighted(&AMPLITUDES[m], apart) - weighted(&PUSHES[m], of(&drag));
-            let [dx, dv] = step.change(x, weighted(&AMPLITUDES[m], of(&sway.rate_rad_per_s)));
-            for (link, share) in MODES[m].map(T::splat).into_iter().enumerate() {
-                swung.lean_rad[link][axis] = swung.lean_rad[link][axis] + share * dx;
-                swung.rate_rad_per_s[link][axis] = swung.rate_rad_per_s[link][axis] + share * dv;
-            }
+            own_m_per_s[axis] += link_m * sway.rate_rad_per_s[j][axis];
+            pull.apart_rad[j][axis] = sway.lean_rad[j][axis] - held_rad[j][axis];
         }
+        let [x, z] = [wind_m_per_s[j][0] - own_m_per_s[0], wind_m_per_s[j][1] - own_m_per_s[1]];
+        pull.past[j] = (x * x + z * z).sqrt() * blade.lean_per_wind2;
+        pull.drag[j] = [wind_m_per_s[j][0] * pull.past[j], wind_m_per_s[j][1] * pull.past[j]];
     }
+    let mut swung = *sway;
+    // Written out: of a loop, the compiler makes no vectors in the loop over many blades.
+    swing(0, &mut swung, sway, blade, &pull, integrator, dt_secs);
+    swing(1, &mut swung, sway, blade, &pull, integrator, dt_secs);
+    swing(2, &mut swung, sway, blade, &pull, integrator, dt_secs);
     swung
 }
 
+/// What moves a blade.
+struct Pull {
+    /// Leans less those in which it is held (rad).
+    apart_rad: Leans,
+    /// Lean that drag would sustain by itself at each control point (rad).
+    drag: Leans,
+    /// Speed of the air past each control point times the lean per squared wind (rad·s/m).
+    past: [f32; LINKS],
+    /// Damping rate (1/s) of a mode for a weighted sum of `past` of 1.
+    braked: f32,
+}
+
+/// Adds to a blade what mode `m` does in a step.
 #[inline(always)]
-fn weighted<T: Number>(weights: &[f32; LINKS], values: [T; LINKS]) -> T {
-    T::splat(weights[0]) * values[0] + T::splat(weights[1]) * values[1] + T::splat(weights[2]) * values[2]
+fn swing(m: usize, swung: &mut Sway, sway: &Sway, blade: &Blade, pull: &Pull, integrator: Integrator, dt_secs: f32) {
+    let omega = blade.frequency_rad_per_s * FREQUENCIES[m];
+    let step = Propagator::new(integrator, omega, blade.damping_share * omega + pull.braked * weighted(&BRAKES[m], pull.past), dt_secs);
+    for axis in 0..2 {
+        let of = |[low, middle, high]: &Leans| [low[axis], middle[axis], high[axis]];
+        let x = weighted(&AMPLITUDES[m], of(&pull.apart_rad)) - weighted(&PUSHES[m], of(&pull.drag));
+        let [dx, dv] = step.change(x, weighted(&AMPLITUDES[m], of(&sway.rate_rad_per_s)));
+        for (link, share) in MODES[m].iter().enumerate() {
+            swung.lean_rad[link][axis] += share * dx;
+            swung.rate_rad_per_s[link][axis] += share * dv;
+        }
+    }
+}
+
+#[inline(always)]
+fn weighted(weights: &[f32; LINKS], values: [f32; LINKS]) -> f32 {
+    weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
 }
