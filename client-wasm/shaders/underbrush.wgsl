@@ -49,11 +49,13 @@ struct Tally {
 @group(1) @binding(4) var<storage, read_write> stands_out: array<Stand>;
 @group(1) @binding(5) var<storage, read_write> tally: Tally;
 @group(1) @binding(6) var<storage, read_write> listed: array<u32>;
+// Which way the plant of each site fell, a byte each.
 @group(1) @binding(7) var<storage, read> broken: array<u32>;
 @group(1) @binding(8) var<storage, read_write> brush_draws: array<u32>;
 @group(1) @binding(9) var forces: texture_3d<f32>;
 
 const VARIANTS: u32 = 4u;
+const FALL_PA: f32 = 8.0;
 const LEVELS: u32 = 4u;
 
 // Force on a silhouette (Pa) so high above the ground at a root: that of the force field, or beyond it that of the wind alone.
@@ -80,6 +82,13 @@ fn followed(state: vec4<f32>, goal: vec2<f32>, settle_secs: f32, dt: f32) -> vec
     let off = state.xy - goal;
     let value = goal + off * ((1.0 + taus) * decay) + state.zw * (dt * decay);
     return vec4<f32>(value, off * (-taus / settle_secs * decay) + state.zw * ((1.0 - taus) * decay));
+}
+
+// Pressure (Pa) on a plant that fell that way, in 255ths of a turn; 0: it stands. What is broken is bent there for good, as if pressed so; it lies at a fifth
+// of its height, where it feels the square root of that of the air.
+fn fallen(pressure: vec2<f32>, fall: u32) -> vec2<f32> {
+    let heading = f32(fall) * (TAU / 255.0);
+    return select(pressure, 0.45 * pressure + FALL_PA * vec2<f32>(cos(heading), sin(heading)), fall != 0u);
 }
 
 @compute @workgroup_size(64)
@@ -110,7 +119,8 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     }
 
     let gust = gust_at(plant.at);
-    let goal = pressure_at(root, 0.5 * height).xz * (gust * gust);
+    let fall = (broken[plant.site >> 2u] >> (8u * (plant.site & 3u))) & 255u;
+    let goal = fallen(pressure_at(root, 0.5 * height).xz * (gust * gust), fall);
     var feels = felt[index];
     if feels.frame + 1u != brush.counts.x {
         feels.pressure = vec4<f32>(goal, 0.0, 0.0);
@@ -124,8 +134,7 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     let tilt = length(lean);
     lean *= min(1.0, 1.5 / max(tilt, 1e-5));
 
-    let is_broken = (broken[plant.site >> 5u] >> (plant.site & 31u)) & 1u;
-    let make = (plant.make >> 8u) % VARIANTS + is_broken * VARIANTS;
+    let make = (plant.make >> 8u) % VARIANTS + select(0u, VARIANTS, fall != 0u);
     let shown_size = plant.size * left * pow(kept, -0.5);
     var spheres = 0u;
     for (var s = 0u; s < u32(frame.clouds.w); s++) {

@@ -233,9 +233,10 @@ impl Mirror {
         self.patches.take_dirty()
     }
 
-    /// Which plants of the underbrush are broken: that of site `s` where bit `s % 32` of word `s / 32` is 1.
-    pub fn broken(&self) -> &[u32] {
-        self.broken.words()
+    /// Which way the plant of each site of the underbrush fell, a [heading code](shared::wire::quantise::heading_code); 0 where none is broken.
+    /// At the end up to three zeros more, so that they are whole words.
+    pub fn falls(&self) -> &[u8] {
+        self.broken.falls()
     }
 
     /// Number of broken plants; they never heal, so it only rises until the next scene.

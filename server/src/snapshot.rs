@@ -2,6 +2,7 @@
 //!
 //! A snapshot is cheap to hold and to share: whatever did not change since the one before is the same `Arc`.
 
+use crate::plants::BrokenPlants;
 use shared::grid::PatchIndex;
 use shared::wire::ObjectPose;
 use std::collections::BTreeMap;
@@ -25,8 +26,8 @@ pub struct Snapshot {
     pub wind: Arc<WindFrame>,
     /// The bend field.
     pub patches: Arc<BentPatches>,
-    /// Sites of the broken plants of the underbrush, in the order of their breaking: those of a snapshot before, and newer ones after them.
-    pub broken: Arc<Vec<u32>>,
+    /// Broken plants of the underbrush: those of a snapshot before, and newer ones after them.
+    pub broken: BrokenPlants,
     /// The scalars that tell how the world fares.
     pub health: Health,
 }

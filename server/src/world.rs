@@ -107,7 +107,7 @@ impl World {
         let weather = Weather::new(scene, &maps).map_err(|error| no_wind(scene, error))?;
         let height = Arc::new(maps.height);
         let place = Place { height: Arc::clone(&height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
-        let plants = Plants::new(Flora::new(scene, &place.cover, maps.nutrients.as_deref()));
+        let plants = Plants::new(Flora::new(scene, &place.cover, maps.nutrients.as_deref()), scene.dt_secs());
         let meadow = Meadow::with_drawings(scene, Arc::clone(&height), &place.cover, &maps.drawings);
         Ok(Self {
             dt_secs: scene.dt_secs(),
@@ -129,11 +129,12 @@ impl World {
             self.obey(command);
         }
         self.tick += 1;
-        self.objects.step(self.dt_secs);
+        let (weather, height) = (&self.weather, &self.height);
+        self.objects.step(self.dt_secs, |[x, y, z]| weather.wind_m_per_s([x, y - height.height_m(x, z), z]));
         let motions = self.objects.motions();
         self.weather.step(self.tick, &motions, &self.height, self.meadow.field());
         self.meadow.step(self.dt_secs, &motions, &self.views, self.weather.ground());
-        self.plants.step(self.dt_secs, &self.meadow, self.weather.ground());
+        self.plants.step(self.tick, self.dt_secs, &self.meadow, &self.weather);
     }
 
     /// Gets one of so many `parts` of the patches ready for the next [`snapshot`](Self::snapshot), which then shows them as they are now.
@@ -152,7 +153,7 @@ impl World {
             object_limit: self.objects.limit(),
             wind: Arc::clone(self.weather.frame()),
             patches: Arc::clone(self.shown.patches()),
-            broken: Arc::clone(self.plants.broken()),
+            broken: self.plants.broken().clone(),
             health: Health {
                 divergence_rms: wind.divergence_rms_rel as f32,
                 wind_energy: wind.kinetic_energy_m2_per_s2,
@@ -206,7 +207,7 @@ impl World {
             }
         }
         sum.add(self.meadow.laid().words());
-        sum.add(self.plants.broken().iter().copied());
+        sum.add(self.plants.broken().iter().flat_map(|plant| [plant.site, plant.fall.get().into()]));
         sum.0
     }
 

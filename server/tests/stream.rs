@@ -8,7 +8,8 @@ use server::runner::{Published, Request};
 use server::snapshot::{BentPatches, PatchCodes, Snapshot, WindFrame};
 use server::stream::{Client, Clients, DEAD_BAND, Frame, Gaze, SendLimits, Streamer, interest};
 use shared::grid::PatchLayout;
-use shared::wire::{BROKEN_LIMIT, PATCH_MEMORY, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, decode};
+use shared::wire::{BROKEN_LIMIT, BrokenPlant, PATCH_MEMORY, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, decode};
+use std::num::NonZeroU8;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};
@@ -350,8 +351,13 @@ fn a_refused_vehicle_is_said_once() {
     assert_eq!(refusals, 1);
 }
 
+/// A broken plant that fell its own way.
+fn plant(site: u32) -> BrokenPlant {
+    BrokenPlant { site, fall: NonZeroU8::new((site % 255) as u8 + 1).expect("above 0") }
+}
+
 /// Plants told of in frames, in the order of telling.
-fn broken_in(frames: &[Frame]) -> Vec<Vec<u32>> {
+fn broken_in(frames: &[Frame]) -> Vec<Vec<BrokenPlant>> {
     let messages = frames.iter().flat_map(|frame| &frame.messages);
     let plants = |message: &bytes::Bytes| match decode(message, SERVER_MESSAGE_LIMIT) {
         Ok(ServerMessage::Broken { plants }) => Some(plants),
@@ -366,8 +372,8 @@ fn a_newcomer_is_told_of_all_broken_plants_in_bounded_messages() {
     let (clients, mut prairie, mut now) = (Clients::default(), Prairie::at_rest(), Instant::now());
     let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
     // In an order of breaking that is not that of the sites.
-    let all: Vec<u32> = (0..10_000_u32).map(|n| n * 7919 % 10_007).collect();
-    prairie.snapshot.broken = Arc::new(all.clone());
+    let all: Vec<BrokenPlant> = (0..10_000_u32).map(|n| plant(n * 7919 % 10_007)).collect();
+    prairie.snapshot.broken = all.iter().copied().collect();
     let mut visitor = Visitor::join(&clients, limits, 100.0);
     let mut told = Vec::new();
     for publish in 0..6 {
@@ -375,11 +381,11 @@ fn a_newcomer_is_told_of_all_broken_plants_in_bounded_messages() {
         streamer.publish(&prairie.publish(), &clients.all(), now);
         let messages = broken_in(&visitor.read());
         assert!(messages.len() <= 1 && (publish < 3) == (messages.len() == 1), "publish {publish}: {} messages", messages.len());
-        assert!(messages.iter().all(|plants| plants.len() <= BROKEN_LIMIT && plants.is_sorted()));
+        assert!(messages.iter().all(|plants| plants.len() <= BROKEN_LIMIT && plants.is_sorted_by_key(|plant| plant.site)));
         told.extend(messages.into_iter().flatten());
     }
-    let sorted = |mut plants: Vec<u32>| {
-        plants.sort_unstable();
+    let sorted = |mut plants: Vec<BrokenPlant>| {
+        plants.sort_unstable_by_key(|plant| plant.site);
         plants
     };
     assert_eq!(sorted(told), sorted(all));
@@ -395,7 +401,7 @@ fn a_client_that_lags_misses_no_broken_plant() {
     let mut told = vec![Vec::new(); 3];
     for publish in 0..400_u32 {
         if publish < 200 {
-            Arc::make_mut(&mut prairie.snapshot.broken).extend((0..publish % 5).map(|n| 5 * publish + n));
+            (0..publish % 5).for_each(|n| prairie.snapshot.broken.push(plant(5 * publish + n)));
         }
         now += Duration::from_millis(50);
         streamer.publish(&prairie.publish(), &clients.all(), now);
@@ -417,12 +423,12 @@ fn news_of_broken_plants_are_encoded_once_for_all() {
     let limits = SendLimits::default();
     let (clients, mut prairie, now) = (Clients::default(), Prairie::at_rest(), Instant::now());
     let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
-    prairie.snapshot.broken = Arc::new(vec![3, 1, 2]);
+    prairie.snapshot.broken = [3, 1, 2].map(plant).into_iter().collect();
     let mut visitors: Vec<_> = (0..4).map(|_| Visitor::join(&clients, limits, 100.0)).collect();
     streamer.publish(&prairie.publish(), &clients.all(), now);
     let places = visitors.iter_mut().map(|visitor| {
         let frames = visitor.read();
-        assert_eq!(broken_in(&frames), [[1, 2, 3]]);
+        assert_eq!(broken_in(&frames), [[1, 2, 3].map(plant)]);
         let is_broken = |message: &&bytes::Bytes| matches!(decode(message, SERVER_MESSAGE_LIMIT), Ok(ServerMessage::Broken { .. }));
         frames[0].messages.iter().find(is_broken).expect("the message is there").as_ptr()
     });

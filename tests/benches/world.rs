@@ -72,7 +72,7 @@ impl Timed {
     fn tick(&mut self) -> Cost {
         self.tick += 1;
         let dt_secs = self.scene.dt_secs();
-        let ((), objects) = timed_ms(|| self.objects.step(dt_secs));
+        let ((), objects) = timed_ms(|| self.objects.step(dt_secs, |_| [0.0; 3]));
         let motions = self.objects.motions();
         let ((), wind) = timed_ms(|| self.weather.step(self.tick, &motions, &self.height, self.world.meadow().field()));
         let ((), step) = timed_ms(|| self.world.step(&[]));

@@ -7,7 +7,7 @@ use server::snapshot::PatchCodes;
 use server::world::{Command, View, World};
 use shared::scene::{Scene, VehicleKind};
 use shared::terrain::HeightMap;
-use shared::wire::{self, BROKEN_LIMIT, Drive, ObjectPose, SERVER_MESSAGE_LIMIT, ServerMessage, Shape, codec};
+use shared::wire::{self, Drive, ObjectPose, SERVER_MESSAGE_LIMIT, ServerMessage, Shape, codec};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -109,10 +109,11 @@ impl Stage {
         for patch in shown {
             self.show_patch(patch, snapshot.patches.get(&patch))?;
         }
-        for plants in snapshot.broken[self.told_broken..].chunks(BROKEN_LIMIT) {
-            self.bring(&ServerMessage::Broken { plants: plants.to_vec() })?;
+        while self.told_broken < snapshot.broken.len() {
+            let plants = snapshot.broken.after(self.told_broken).to_vec();
+            self.told_broken += plants.len();
+            self.bring(&ServerMessage::Broken { plants })?;
         }
-        self.told_broken = snapshot.broken.len();
         let secs = snapshot.time_secs - self.time_secs;
         self.time_secs = snapshot.time_secs;
         self.bring(&ServerMessage::FrameEnd { frame: self.frame, tick: snapshot.tick, time_secs: snapshot.time_secs })?;

@@ -220,7 +220,7 @@ impl Renderer {
         self.billboards.prepare(gpu, land, camera.eye_m, &frustum, reach);
         if let Some(underbrush) = &mut scene.underbrush {
             scene.forces.follow(gpu, land, &scene.textures.wind, &poses, [camera.eye_m.x, camera.eye_m.z], dt_secs);
-            underbrush.show_broken(gpu, mirror.broken(), mirror.broken_count());
+            underbrush.show_broken(gpu, mirror.falls(), mirror.broken_count());
             underbrush.prepare(gpu, &scene.forces, camera.eye_m, &frustum, dt_secs);
         }
         if let Some(dust) = &scene.dust {

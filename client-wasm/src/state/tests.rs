@@ -4,7 +4,8 @@ use proptest::prelude::*;
 use shared::scene::{Component, ComponentKind, Patches, Scene, Species, TerrainMaps, Underbrush, VehicleKind, Wind};
 use shared::terrain::grey_png;
 use shared::wire::quantise::{dust_code, theta_code, wind_code};
-use shared::wire::{Shape, codec, decode};
+use shared::wire::{BrokenPlant, Shape, codec, decode};
+use std::num::NonZeroU8;
 
 fn scene() -> Scene {
     let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [1.0, 1.0], level_m: 0.1, base_m: 0.0 };
@@ -295,21 +296,23 @@ fn overgrown() -> (Mirror, u32) {
     (mirror, sites as u32)
 }
 
-fn broken(plants: impl IntoIterator<Item = u32>) -> ServerMessage {
-    ServerMessage::Broken { plants: plants.into_iter().collect() }
+/// News of broken plants: their sites and which way they fell.
+fn broken(plants: impl IntoIterator<Item = (u32, u8)>) -> ServerMessage {
+    let plant = |(site, fall)| BrokenPlant { site, fall: NonZeroU8::new(fall).expect("above 0") };
+    ServerMessage::Broken { plants: plants.into_iter().map(plant).collect() }
 }
 
 #[test]
-fn broken_plants_stay_broken_until_another_scene_comes() {
+fn broken_plants_lie_as_they_fell_until_another_scene_comes() {
     let (mut mirror, sites) = overgrown();
-    assert_eq!((mirror.broken().len(), mirror.broken_count()), (sites.div_ceil(32) as usize, 0));
-    assert_eq!(mirror.apply(broken([0, 33, sites - 1])), Ok(None));
-    assert_eq!(mirror.apply(broken([33, 34])), Ok(None));
-    let is_broken = |mirror: &Mirror, site: u32| mirror.broken()[site as usize / 32] >> (site % 32) & 1 == 1;
-    let found: Vec<u32> = (0..sites).filter(|&site| is_broken(&mirror, site)).collect();
-    assert_eq!((found, mirror.broken_count()), (vec![0, 33, 34, sites - 1], 4));
+    assert_eq!((mirror.falls().len(), mirror.broken_count()), (sites.next_multiple_of(4) as usize, 0));
+    assert_eq!(mirror.apply(broken([(0, 1), (33, 90), (sites - 1, 255)])), Ok(None));
+    assert_eq!(mirror.apply(broken([(33, 7), (34, 128)])), Ok(None));
+    let fallen = |mirror: &Mirror| (0..sites).zip(mirror.falls().to_vec()).filter(|(_, fall)| *fall != 0).collect::<Vec<_>>();
+    assert_eq!(fallen(&mirror), [(0, 1), (33, 90), (34, 128), (sites - 1, 255)]);
+    assert_eq!(mirror.broken_count(), 4);
     mirror.apply(scene_message(scene())).unwrap();
-    assert_eq!((mirror.broken(), mirror.broken_count()), ([].as_slice(), 0));
+    assert_eq!((mirror.falls(), mirror.broken_count()), ([].as_slice(), 0));
     assert!(mirror.land().and_then(Land::flora).is_none());
 }
 
@@ -317,13 +320,13 @@ fn broken_plants_stay_broken_until_another_scene_comes() {
 fn broken_plants_beyond_the_sites_are_refused_and_change_nothing() {
     let (mut mirror, sites) = overgrown();
     let refused = |mirror: &mut Mirror, message| mirror.apply(message).err().map(|error| error.to_string());
-    let beyond = refused(&mut mirror, broken([1, sites]));
+    let beyond = refused(&mut mirror, broken([(1, 9), (sites, 9)]));
     assert_eq!(beyond, Some(format!("site of a broken plant is {sites}; allowed: below {sites}")));
-    assert!(refused(&mut mirror, broken([u32::MAX])).is_some());
-    let many = refused(&mut mirror, broken(std::iter::repeat_n(1, 4097)));
+    assert!(refused(&mut mirror, broken([(u32::MAX, 9)])).is_some());
+    let many = refused(&mut mirror, broken(std::iter::repeat_n((1, 9), 4097)));
     assert_eq!(many.as_deref(), Some("number of broken plants is 4097; allowed: at most 4096"));
     assert_eq!(mirror.broken_count(), 0);
-    assert!(mirror.broken().iter().all(|word| *word == 0));
-    assert!(refused(&mut Mirror::default(), broken([0])).is_some(), "before a scene");
-    assert!(refused(&mut loaded(), broken([0])).is_some(), "where nothing grows");
+    assert!(mirror.falls().iter().all(|fall| *fall == 0));
+    assert!(refused(&mut Mirror::default(), broken([(0, 9)])).is_some(), "before a scene");
+    assert!(refused(&mut loaded(), broken([(0, 9)])).is_some(), "where nothing grows");
 }

@@ -28,6 +28,8 @@ pub struct Contact {
     pub parts_grass: bool,
     /// Share of the bend that stays for a while, 0..=1.
     pub lays_share: f32,
+    /// Whether it lies still: what it presses is laid, whole, and its patches may sleep.
+    pub rests: bool,
 }
 
 /// Largest bend (rad) of grass that leans along the unit vector `direction` on land of slope (∂h/∂x, ∂h/∂z): the bend of flat land
@@ -61,14 +63,14 @@ pub fn direction(moves: [f32; 2], at_m: [f32; 2], sides: &[Edge], rim_m: f32) ->
     }
 }
 
-/// Presses the grass of awake patches for a step of `dt_secs`. Returns the largest bending speed (rad/s).
+/// Presses the grass of awake patches, or lays that below what rests, for a step of `dt_secs`. Returns the largest bending speed (rad/s).
 pub fn press(sward: &mut Sward, contact: &Contact, dt_secs: f32) -> f32 {
     let rim_m = sward.field.layout().cell_m;
     let mut largest = 0.0_f32;
     for leg in contact.swath.legs() {
         let (rims, middle) = (if contact.parts_grass { leg.rims() } else { &[] }, leg.middle_m());
         let leg_secs = leg.share * dt_secs;
-        sward.for_each_cell(&leg.cover(), |at_m, bend, limit_rad| {
+        sward.for_each_cell(&leg.cover(), contact.rests, |at_m, bend, limit_rad| {
             let passage = leg.passage(at_m)?;
             let velocity = passage.moves_m.map(|m| m / leg_secs);
             let moves = if length(velocity) > STANDING_M_PER_S { unit(velocity) } else { None };
@@ -95,7 +97,7 @@ pub fn press(sward: &mut Sward, contact: &Contact, dt_secs: f32) -> f32 {
     largest
 }
 
-pub(super) fn length([x, z]: [f32; 2]) -> f32 {
+pub(crate) fn length([x, z]: [f32; 2]) -> f32 {
     (x * x + z * z).sqrt()
 }
 

@@ -103,7 +103,7 @@ impl Blow {
     pub fn press(&self, sward: &mut Sward) -> f32 {
         let mut largest = 0.0_f32;
         let (sin, cos) = self.turned_rad.sin_cos();
-        sward.for_each_cell(&self.footprint(), |at_m, bend, limit_rad| {
+        sward.for_each_cell(&self.footprint(), false, |at_m, bend, limit_rad| {
             let [x, z] = [0, 1].map(|axis| (at_m[axis] - self.center_m[axis]) / self.radius_m);
             let [x, z] = self.pattern.at([cos * x + sin * z, cos * z - sin * x]);
             let blows = [cos * x - sin * z, cos * z + sin * x];

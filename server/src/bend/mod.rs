@@ -132,9 +132,9 @@ impl Meadow {
         &self.contacts
     }
 
-    /// Bend of the grass at a place in a wind (rad), all that holds it together.
-    pub fn bend_rad(&self, at_m: [f32; 2], wind: &GroundWind) -> f32 {
-        sward::standing(&self.field, &self.laid, wind, at_m).theta
+    /// Lean of the grass at a place in a wind (rad, as a vector along X and Z), all that holds it together.
+    pub fn lean_rad(&self, at_m: [f32; 2], wind: &GroundWind) -> [f32; 2] {
+        sward::standing_rad(&self.field, &self.laid, wind, at_m)
     }
 
     /// Takes note that a patch was shown as it is.
@@ -214,7 +214,7 @@ impl Meadow {
     fn touched(&self, contacts: &[Contact], blows: &[Blow]) -> Vec<PatchIndex> {
         let layout = self.field.layout();
         let around = |[low, high]: [[f32; 2]; 2]| layout.patches_touching(low.map(|m| m - MARGIN_M), high.map(|m| m + MARGIN_M));
-        let bodies = contacts.iter().flat_map(|contact| around(contact.swath.bounds_m()));
+        let bodies = contacts.iter().filter(|contact| !contact.rests).flat_map(|contact| around(contact.swath.bounds_m()));
         bodies.chain(blows.iter().flat_map(|blow| around(blow.footprint().bounds_m()))).collect()
     }
 }

@@ -132,6 +132,7 @@ impl Bodies {
                 slips_rad: clearance.acos(),
                 parts_grass: part.parts_grass,
                 lays_share: if part.bears_weight { tread.lays_share } else { 0.0 },
+                rests: motion.rests,
             })
         })
     }

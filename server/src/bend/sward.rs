@@ -9,6 +9,7 @@ use super::laid::Laid;
 use shared::bend::{Bend, Field};
 use shared::scene::Scene;
 use shared::terrain::{CoverMap, HeightMap, KindMap};
+use shared::wire::quantise::THETA_FULL_RAD;
 
 /// What decides how the grass stands.
 pub struct Sward<'a> {
@@ -66,9 +67,12 @@ pub struct Pressed {
 impl Sward<'_> {
     /// Lets `change` press each cell of awake patches within `footprint`, given the cell's centre (m), the bend that it has in all, and the
     /// terrain's limit (rad) by direction; what neither the wind nor the laid lean accounts for is the field's.
+    ///
+    /// Below what `rests` it is laid, in patches that sleep too, anew whenever it has risen by [`RISE_RAD`]; nothing is left for the field.
     pub fn for_each_cell(
         &mut self,
         footprint: &Footprint,
+        rests: bool,
         mut change: impl FnMut([f32; 2], Bend, &dyn Fn([f32; 2]) -> f32) -> Option<Pressed>,
     ) {
         let layout = *self.field.layout();
@@ -79,7 +83,8 @@ impl Sward<'_> {
             let wind_rad = self.wind.row(z_m);
             for patch_x in run.from / cells..=(run.to - 1) / cells {
                 let Some(index) = layout.index(patch_x, patch_z) else { continue };
-                if self.field.patch(index).is_none() {
+                let is_awake = self.field.patch(index).is_some();
+                if !(is_awake || rests) {
                     continue;
                 }
                 let first = patch_x * cells;
@@ -91,7 +96,15 @@ impl Sward<'_> {
                     let bend = leaning(self.field.cell(cell), sum(wind_rad, laid_rad), TELLING_RAD_PER_S);
                     let limit_rad =
                         |direction| terrain_limit_rad(self.growth.theta_max_rad(at_m), self.height.slope(at_m[0], at_m[1]), direction);
+                    let risen_rad = bend.theta;
                     let Some(Pressed { bend, lays_share }) = change(at_m, bend, &limit_rad) else { continue };
+                    if rests {
+                        if is_awake || risen_rad < bend.theta - RISE_RAD {
+                            self.laid.lay(index, i, j, sum(lean_rad(bend), wind_rad.map(|lean| -lean)));
+                            self.field.press(cell, Bend::default());
+                        }
+                        continue;
+                    }
                     let laid_rad = match unit(bend.omega).filter(|_| lays_share > 0.0) {
                         Some(along) => {
                             let stays = (lays_share * bend.theta).max(length(laid_rad).min(bend.theta));
@@ -107,15 +120,15 @@ impl Sward<'_> {
     }
 }
 
-/// How grass stands at a place, with the field, the wind and what is laid in the cell there.
-pub fn standing(field: &Field, laid: &Laid, wind: &GroundWind, at_m: [f32; 2]) -> Bend {
+/// Lean of the grass at a place (rad), with the field, the wind and what is laid in the cell there.
+pub fn standing_rad(field: &Field, laid: &Laid, wind: &GroundWind, at_m: [f32; 2]) -> [f32; 2] {
     let layout = field.layout();
     let (cell, cells) = (at_m.map(|m| (m / layout.cell_m).floor() as i64), i64::from(layout.cells));
     let [patch_x, patch_z] = cell.map(|at| at.div_euclid(cells));
     let [i, j] = cell.map(|at| at.rem_euclid(cells) as usize);
     let laid_rad = layout.index(patch_x, patch_z).map_or([0.0; 2], |patch| laid.lean_rad(patch, i, j));
     let center_m = cell.map(|at| (at as f32 + 0.5) * layout.cell_m);
-    leaning(field.cell(cell), sum(wind.lean_rad(center_m), laid_rad), TELLING_RAD_PER_S)
+    sum(lean_rad(field.cell(cell)), sum(wind.lean_rad(center_m), laid_rad))
 }
 
 /// How a cell is shown: its field's bend together with what is laid there; its ω tells the direction.
@@ -123,17 +136,23 @@ pub fn shown(bend: Bend, laid_rad: [f32; 2]) -> Bend {
     leaning(bend, laid_rad, HELD_RAD_PER_S)
 }
 
+/// How far grass rises below what rests before it is laid anew (rad): a code on the wire.
+const RISE_RAD: f32 = THETA_FULL_RAD / 127.0;
 /// Least bending speed (rad/s) of grass that leans: ω tells the direction of the lean.
 const TELLING_RAD_PER_S: f32 = 1e-3;
 
 /// A bend with a lean (rad) added to it as a vector on the ground; its bending speed, at least that given, turns with it.
 fn leaning(bend: Bend, lean_rad: [f32; 2], least_rad_per_s: f32) -> Bend {
-    let along = unit(bend.omega).unwrap_or_default();
-    let lean = sum(along.map(|d| d * bend.theta), lean_rad);
+    let lean = sum(self::lean_rad(bend), lean_rad);
     match unit(lean) {
         Some(along) => Bend { theta: length(lean), omega: along.map(|d| d * length(bend.omega).max(least_rad_per_s)) },
         None => Bend { theta: 0.0, omega: bend.omega },
     }
+}
+
+/// The lean of a bend (rad), along its bending speed.
+fn lean_rad(bend: Bend) -> [f32; 2] {
+    unit(bend.omega).unwrap_or_default().map(|d| d * bend.theta)
 }
 
 fn sum([ax, az]: [f32; 2], [bx, bz]: [f32; 2]) -> [f32; 2] {

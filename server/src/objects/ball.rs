@@ -1,4 +1,4 @@
-//! A ball: a light sphere that whatever touches it sends off, or that a visitor rolls from within.
+//! A ball: a light sphere that whatever touches it sends off, and so does a gale, or that a visitor rolls from within.
 
 use super::ground::Ground;
 use rapier3d::prelude::*;
@@ -56,27 +56,32 @@ impl Ball {
         self.heading_rad
     }
 
-    /// Takes the drag of air and grass from its motion, and turns a driver's hands into a torque.
-    pub(super) fn control(&mut self, drive: Drive, dt_secs: f32, physics: &mut PhysicsWorld, ground: &Ground) {
+    /// Gives its motion the drag of a wind and of the grass, and turns a driver's hands into a torque.
+    pub(super) fn control(&mut self, drive: Drive, wind_m_per_s: [f32; 3], dt_secs: f32, physics: &mut PhysicsWorld, ground: &Ground) {
         self.heading_rad = (self.heading_rad + drive.steer * TURN_RAD_PER_S * dt_secs) % TAU;
         let body = &mut physics.bodies[self.body];
-        if body.is_sleeping() && drive.throttle == 0.0 {
-            return;
-        }
-        let (at, speed_m_per_s) = (body.translation(), body.linvel().length());
+        let at = body.translation();
         let [slope_x, slope_z] = ground.slope([at.x, at.z]);
         let up = Vector::new(-slope_x, 1.0, -slope_z).normalize_or(Vector::Y);
         let rolls = (at.y - ground.height_m([at.x, at.z])) * up.y - self.radius_m < GAP_M;
 
-        // Implicit in the drag, so that no speed and no step turns the ball round.
-        let drag_per_m = DRAG_KG_PER_M3 * PI * self.radius_m * self.radius_m / self.mass_kg;
-        let mut kept = 1.0 / (1.0 + drag_per_m * speed_m_per_s * dt_secs);
-        if rolls {
-            let resistance_m_per_s2 = ROLLING_M_PER_S2 + drive.brake * BRAKE_M_PER_S2;
-            kept *= 1.0 - (resistance_m_per_s2 * dt_secs / speed_m_per_s.max(1e-6)).min(1.0);
+        let resistance_m_per_s2 = if rolls { ROLLING_M_PER_S2 + drive.brake * BRAKE_M_PER_S2 } else { 0.0 };
+        let wind = if rolls { Vector::from_array(wind_m_per_s).reject_from_normalized(up) } else { Vector::from_array(wind_m_per_s) };
+        let inertia_kg = if rolls { ROLLING_SHARE * self.mass_kg } else { self.mass_kg };
+        let drag_per_m = DRAG_KG_PER_M3 * PI * self.radius_m * self.radius_m / inertia_kg;
+        // What lies still stays so while the grass holds it.
+        let is_held = drag_per_m * wind.length_squared() <= resistance_m_per_s2 && drive.throttle == 0.0;
+        if body.is_sleeping() && is_held {
+            return;
         }
-        body.set_linvel(body.linvel() * kept, false);
-        body.set_angvel(body.angvel() * kept, false);
+        let rolling = |velocity: Vector| if rolls { up.cross(velocity) / self.radius_m } else { Vector::ZERO };
+        // Implicit in the drag, so that no step takes the ball past the wind; it turns as one that rolls with it.
+        let share = drag_per_m * (wind - body.linvel()).length() * dt_secs;
+        let blown = (body.linvel() + wind * share) / (1.0 + share);
+        let spun = (body.angvel() + rolling(wind) * share) / (1.0 + share);
+        let kept = 1.0 - (resistance_m_per_s2 * dt_secs / blown.length().max(1e-6)).min(1.0);
+        body.set_linvel(blown * kept, !is_held);
+        body.set_angvel(spun * kept, !is_held);
         if rolls && drive.throttle != 0.0 {
             let wanted = Vector::new(self.heading_rad.sin(), 0.0, -self.heading_rad.cos()) * (FASTEST_M_PER_S * drive.throttle);
             let change = (wanted - body.linvel()).clamp_length_max(ACCELERATION_M_PER_S2 * dt_secs);

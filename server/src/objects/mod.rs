@@ -128,8 +128,8 @@ impl Objects {
         self.slot_of(client).map(|slot| self.vehicles[slot].id)
     }
 
-    /// Moves everything by `dt_secs`.
-    pub fn step(&mut self, dt_secs: f32) {
+    /// Moves everything by `dt_secs` in a wind (m/s) that is told by the place (m).
+    pub fn step(&mut self, dt_secs: f32, wind_m_per_s: impl Fn([f32; 3]) -> [f32; 3]) {
         if self.is_empty() && self.ground.is_empty() {
             return;
         }
@@ -143,7 +143,10 @@ impl Objects {
                 Controls::Monster(monster) => monster.control(drive, dt_secs, &mut self.physics, &self.ground),
                 Controls::Helicopter(helicopter) => helicopter.control(drive, dt_secs, &mut self.physics, &self.ground),
                 Controls::Sled(sled) => sled.control(drive, dt_secs, &mut self.physics, &self.ground),
-                Controls::Ball(ball) => ball.control(drive, dt_secs, &mut self.physics, &self.ground),
+                Controls::Ball(ball) => {
+                    let wind_m_per_s = wind_m_per_s(vehicle.stood.position_m);
+                    ball.control(drive, wind_m_per_s, dt_secs, &mut self.physics, &self.ground);
+                }
             }
         }
         self.physics.step();
@@ -179,7 +182,13 @@ impl Objects {
     pub fn motions(&self) -> Vec<Motion> {
         let motion = |vehicle: &Vehicle| {
             let body = &self.physics.bodies[vehicle.body];
-            Motion { kind: vehicle.kind, from: vehicle.stood, to: stand(body), velocity_m_per_s: body.linvel().to_array() }
+            Motion {
+                kind: vehicle.kind,
+                from: vehicle.stood,
+                to: stand(body),
+                velocity_m_per_s: body.linvel().to_array(),
+                rests: body.is_sleeping(),
+            }
         };
         self.vehicles.iter().map(motion).collect()
     }

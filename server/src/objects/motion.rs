@@ -36,6 +36,8 @@ pub struct Motion {
     pub to: Stand,
     /// Velocity after it (m/s), which moves the air; the grass goes by the way from one stand to the other.
     pub velocity_m_per_s: [f32; 3],
+    /// Whether it has lain still for a while, until something moves it.
+    pub rests: bool,
 }
 
 /// Farthest that an object moves in one step (m): the fastest one in the longest step goes 9 m.
@@ -88,7 +90,7 @@ impl Motion {
     /// # Errors
     /// [`MotionError`]: numbers that are none, a rotation that is no unit quaternion, or more than 100 m in one step.
     pub fn check(&self) -> Result<(), MotionError> {
-        let Self { kind, from, to, velocity_m_per_s } = *self;
+        let Self { kind, from, to, velocity_m_per_s, .. } = *self;
         let vectors: [(&str, &[f32]); 5] = [
             ("from.position_m", &from.position_m),
             ("from.rotation", &from.rotation),

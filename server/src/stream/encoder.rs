@@ -4,7 +4,7 @@ use super::track::{Numbering, Pacing, Track};
 use crate::snapshot::{PatchCodes, Snapshot, WindFrame};
 use bytes::Bytes;
 use shared::grid::PatchIndex;
-use shared::wire::{self, BROKEN_LIMIT, ServerMessage};
+use shared::wire::{self, ServerMessage};
 use std::collections::HashMap;
 
 /// Largest change of a patch (codes) that waits for a slow frame. Two codes are 0.05 rad of θ.
@@ -75,12 +75,11 @@ impl Encoder {
 
     /// The message that tells a client of broken plants beyond the first `told`, and how many it then knows of; none if it knows of all.
     pub fn broken(&mut self, snapshot: &Snapshot, told: usize) -> Option<(usize, Bytes)> {
-        let news = snapshot.broken.get(told..)?;
-        let news = &news[..news.len().min(BROKEN_LIMIT)];
+        let news = snapshot.broken.after(told);
         let known = told + news.len();
         let encode = || {
             let mut plants = news.to_vec();
-            plants.sort_unstable();
+            plants.sort_unstable_by_key(|plant| plant.site);
             wire::encode(&ServerMessage::Broken { plants }).into()
         };
         (!news.is_empty()).then(|| (known, self.broken.entry([told, known]).or_insert_with(encode).clone()))

@@ -2,6 +2,7 @@
 
 mod jets;
 mod land;
+mod sample;
 mod settings;
 mod standing;
 
@@ -16,6 +17,7 @@ use settings::settings;
 use shared::bend::Field;
 use shared::scene::{Scene, WindTiling};
 use shared::terrain::{HeightMap, KindMap};
+use shared::wind::Tiles;
 use shared::wire::Shape;
 use shared::wire::quantise::{dust_code, wind_code};
 use standing::Standing;
@@ -33,6 +35,9 @@ pub struct Weather {
     method: Method,
     config: Config,
     tiling: WindTiling,
+    tiles: Tiles,
+    /// Whether the box wraps, by axis.
+    wraps: [bool; 3],
     ticks_per_step: u64,
     step_secs: f64,
     report: StepReport,
@@ -88,6 +93,8 @@ impl Weather {
         let mut weather = Self {
             standing: config.canopy.map(|canopy| Standing::new(scene, &maps.cover, canopy.height_m)),
             tiling: scene.wind.tiling,
+            tiles: Tiles::new(scene),
+            wraps: scene.wind.faces.wraps(),
             ground: GroundWind::still(scene).over(KindMap::new(scene, &maps.cover)),
             frame: Arc::default(),
             velocities: Vec::new(),

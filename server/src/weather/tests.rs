@@ -21,7 +21,7 @@ fn grass(scene: &Scene) -> Field {
 
 fn hovering(velocity_m_per_s: [f32; 3]) -> Motion {
     let stand = Stand { position_m: [64.0, 5.0, 64.0], rotation: [0.0, 0.0, 0.0, 1.0] };
-    Motion { kind: VehicleKind::Helicopter, from: stand, to: stand, velocity_m_per_s }
+    Motion { kind: VehicleKind::Helicopter, from: stand, to: stand, velocity_m_per_s, rests: false }
 }
 
 /// A small wind with dust, after so many ticks.
@@ -204,4 +204,36 @@ fn a_wind_that_is_lost_begins_anew_and_is_counted() {
     assert_eq!(blow(&[]), (0, true));
     assert_eq!(blow(&[hovering([f32::MAX; 3])]), (1, true));
     assert_eq!(blow(&[]), (1, true));
+}
+
+#[test]
+fn the_wind_at_a_place_is_that_of_its_cell_and_weaker_close_to_the_ground() {
+    for tiling in [WindTiling::Box, WindTiling::Patch] {
+        let weather = blown(|scene| scene.wind.tiling = tiling, 12).unwrap();
+        let cell = |[i, j, k]: [usize; 3]| weather.velocities()[i + 16 * (j + 8 * k)];
+        // The middle of the patch that shows the box as if moved by so many cells.
+        let at_m = |i: usize, k: usize| [(i as f32 + 0.5) * 16.0, (k as f32 + 0.5) * 16.0];
+        for [i, j, k] in [[0, 0, 0], [3, 1, 7], [15, 7, 15], [8, 2, 4]] {
+            let [x, z] = at_m(i, k);
+            let [moved_x, moved_z] = match tiling {
+                WindTiling::Patch => shared::wind::offset_cells(weather.tiles.seed(), [i as i32, k as i32], [16, 16]),
+                _ => [0, 0],
+            };
+            let wanted = cell([(i + moved_x as usize) % 16, j, (k + moved_z as usize) % 16]);
+            let height_m = (j as f32 + 0.5) * 2.0;
+            let found = Vec3::from(weather.wind_m_per_s([x, height_m, z]));
+            let share = shared::wind::share_near_ground(height_m);
+            assert!((found - wanted * share).length() < 1e-4, "{tiling:?} {found} instead of {wanted} at {i}, {j}, {k}");
+        }
+        let [low, lowest] = [1.0, 0.25].map(|height_m| Vec3::from(weather.wind_m_per_s([100.0, height_m, 60.0])));
+        assert!((lowest - low * 0.5_f32.sqrt()).length() < 1e-4, "a quarter of the height, a quarter-power law");
+        let places = (0..4000).map(|n| [(n % 61) as f32 * 4.3, 0.01 * (n % 97) as f32, (n % 53) as f32 * 4.9]);
+        for (height_m, layers) in [(0.97, 1), (1.1, 2), (40.0, 8)] {
+            let strongest = weather.strongest_m_per_s(height_m);
+            let rows = (0..16).flat_map(|k| (0..layers).flat_map(move |j| (0..16).map(move |i| [i, j, k])));
+            assert_eq!(strongest, rows.map(|at| cell(at).length_squared()).fold(0.0, f32::max).sqrt());
+        }
+        let fastest = places.map(|at_m| Vec3::from(weather.wind_m_per_s(at_m)).length()).fold(0.0, f32::max);
+        assert!(fastest > 0.5 && fastest <= weather.strongest_m_per_s(0.97));
+    }
 }

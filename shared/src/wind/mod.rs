@@ -1,8 +1,11 @@
-//! The wind as both sides read it: which place of the solver's box blows where, how it is read between cells, and whether there is dust in it.
+//! The wind as both sides read it: which place of the solver's box blows where, how it is read between cells and near the ground, and whether there
+//! is dust in it.
 
+mod ground;
 mod sample;
 mod tiling;
 
+pub use ground::share_near_ground;
 pub use sample::WindCells;
 pub use tiling::{Tap, Tiles, offset_cells};
 

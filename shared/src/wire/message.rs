@@ -4,6 +4,7 @@ use super::PROTOCOL;
 use crate::grid::PatchIndex;
 use crate::scene::{Scene, VehicleKind};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use std::num::NonZeroU8;
 use thiserror::Error;
 
 /// Number of an object, unique within a run.
@@ -137,8 +138,8 @@ pub enum ServerMessage {
     /// Plants of the underbrush that are broken, for good: those that the client was not told of before, at most [`BROKEN_LIMIT`](super::BROKEN_LIMIT);
     /// any that are left come with the next frames.
     Broken {
-        /// Their sites, ascending; numbers as in [`Sites`](crate::plant::growth::Sites).
-        plants: Vec<u32>,
+        /// Ascending by site; 2 to 6 bytes each, 4 where sites have numbers from 2^14 to 2^21.
+        plants: Vec<BrokenPlant>,
     },
     /// All of a frame has been sent; to be acknowledged.
     FrameEnd {
@@ -187,6 +188,15 @@ pub struct Peer {
     pub name: String,
     /// The object driven, if any.
     pub object: Option<ObjectId>,
+}
+
+/// A broken plant of the underbrush.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BrokenPlant {
+    /// Its site, as numbered in [`Sites`](crate::plant::growth::Sites).
+    pub site: u32,
+    /// Which way it fell: [heading code](super::quantise::heading_code).
+    pub fall: NonZeroU8,
 }
 
 /// Where an object is and what it does.
@@ -307,6 +317,24 @@ mod tests {
         let huge = vec![PROTOCOL; CLIENT_MESSAGE_LIMIT + 1];
         let limit = CLIENT_MESSAGE_LIMIT;
         assert_eq!(decode_client(&huge), Err(WireError::TooLarge { found: limit + 1, limit }));
+    }
+
+    #[test]
+    fn a_broken_plant_takes_its_site_and_a_byte_which_is_never_zero() {
+        let plant = |site: u32, fall: u8| BrokenPlant { site, fall: NonZeroU8::new(fall).expect("above 0") };
+        let encoded = |plants: &[BrokenPlant]| encode(&ServerMessage::Broken { plants: plants.to_vec() });
+        let none = encoded(&[]).len();
+        for (site, bytes) in [(0, 2), (127, 2), (128, 3), (409_599, 4), (4_194_303, 5), (u32::MAX, 6)] {
+            assert_eq!(encoded(&[plant(site, 255)]).len() - none, bytes, "site {site}");
+        }
+        let mut whole = encoded(&[plant(5, 1), plant(6, 77)]);
+        let message = ServerMessage::Broken { plants: vec![plant(5, 1), plant(6, 77)] };
+        assert_eq!(decode(&whole, 100), Ok(message));
+        *whole.last_mut().expect("it has bytes") = 0;
+        assert!(matches!(decode::<ServerMessage>(&whole, 100), Err(WireError::Malformed(_))));
+        // A number of plants that the bytes do not hold takes no memory.
+        let boast = [&encoded(&[])[..2], &[255, 255, 255, 255, 15]].concat();
+        assert!(matches!(decode::<ServerMessage>(&boast, 100), Err(WireError::Malformed(_))));
     }
 
     #[test]

@@ -3,6 +3,8 @@
 //! θ is linear; ω and dust are companded by a square root, so that weak bends keep their direction and thin dust stays; wind is linear.
 
 use multiversion::multiversion;
+use std::f32::consts::TAU;
+use std::num::NonZeroU8;
 
 /// θ at code ±127 (rad). The field holds a bend less the wind's lean: grass that lies one way where the wind would hold it the other way
 /// departs by up to a right angle and [`wind_bend_rad`](crate::scene::Grass::wind_bend_rad), 3.07 rad.
@@ -78,6 +80,18 @@ pub fn dust(code: i8) -> f32 {
     share * share * DUST_FULL
 }
 
+/// Code of the heading of a vector on the ground (X and Z), in 255ths of a turn from +X towards +Z; 255 is a whole turn, so that 0 is left for none. Error
+/// at most τ/510 (0.0124 rad). A vector without a heading gets that of +X.
+pub fn heading_code([x, z]: [f32; 2]) -> NonZeroU8 {
+    let steps = (z.atan2(x) * (255.0 / TAU)).round().rem_euclid(255.0);
+    NonZeroU8::new(steps as u8).unwrap_or(NonZeroU8::MAX)
+}
+
+/// Heading of a code (rad) from +X towards +Z, up to a whole turn.
+pub fn heading_rad(code: NonZeroU8) -> f32 {
+    f32::from(code.get()) * (TAU / 255.0)
+}
+
 #[inline(always)]
 fn linear_code(value: f32, full: f32) -> i8 {
     rounded(value * (127.0 / full))
@@ -128,6 +142,30 @@ mod tests {
             let bound = DUST_FULL * (f32::from(code) + 0.25) / (127.0 * 127.0);
             prop_assert!((dust(code) - concentration).abs() <= bound * 1.001, "{concentration} -> {code}");
         }
+    }
+
+    proptest! {
+        #[test]
+        fn headings_stay_within_their_bound(heading in 0.0..TAU, length in 1e-6_f32..1e6) {
+            let found = heading_rad(heading_code([length * heading.cos(), length * heading.sin()]));
+            let off = (found - heading + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
+            prop_assert!(off.abs() <= TAU / 510.0 * 1.0001 + 1e-6, "{heading} has become {found}");
+        }
+
+        #[test]
+        fn any_code_is_that_of_its_heading(code in 1..=u8::MAX) {
+            let code = NonZeroU8::new(code).expect("above 0");
+            prop_assert_eq!(heading_code([heading_rad(code).cos(), heading_rad(code).sin()]), code);
+        }
+    }
+
+    #[test]
+    fn what_has_no_heading_has_a_code() {
+        for vector in [[0.0; 2], [1.0, -1e-9], [f32::NAN, 1.0], [f32::MAX, 0.0]] {
+            assert_eq!(heading_code(vector), NonZeroU8::MAX, "{vector:?}");
+        }
+        let off = heading_rad(heading_code([(TAU / 511.0).cos(), (TAU / 511.0).sin()])) - TAU - TAU / 511.0;
+        assert!(off.abs() > 0.99 * TAU / 511.0, "the bound is reached");
     }
 
     #[test]

@@ -40,7 +40,7 @@ impl Drive {
             let (heading, [x, z]) = self.stand(ticks as f32);
             Stand { position_m: [x, 1.0, z], rotation: Quat::from_rotation_y(-heading).to_array() }
         };
-        Motion { kind, from: stand(tick), to: stand(tick + 1), velocity_m_per_s: [0.0; 3] }
+        Motion { kind, from: stand(tick), to: stand(tick + 1), velocity_m_per_s: [0.0; 3], rests: false }
     }
 
     /// How far the reference and the swath may differ (m): an eighth of a cell, and what an arc departs from its chord in a step.

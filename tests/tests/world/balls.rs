@@ -1,9 +1,12 @@
 //! Balls lie still, are kicked by whatever drives or walks into them, roll, come to rest again, and press the grass.
 
+use server::bend::air::GroundWind;
+use server::objects::{Objects, Place};
 use server::world::{Command, View, World};
 use shared::scene::Scene;
 use shared::scene::VehicleKind::{self, Ball, Car, Helicopter, Monster, Sled};
 use shared::wire::{Drive, ObjectPose};
+use std::sync::Arc;
 use tests::worlds;
 
 const AHEAD: Drive = Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 };
@@ -175,4 +178,92 @@ fn balls_count_among_the_objects() {
     world.step(&[Command::Spawn { client: 1, kind: Helicopter }, Command::Spawn { client: 2, kind: Car }]);
     assert!(world.object_of(1).is_some() && world.object_of(2).is_none());
     assert_eq!(world.snapshot().objects.len(), 6);
+}
+
+/// A ball of that radius alone on flat grass, in a wind (m/s) that blows everywhere alike: its speed after each step.
+fn blown(radius_m: f32, wind_m_per_s: [f32; 2], ticks: u32) -> Vec<[f32; 2]> {
+    let mut scene = with_balls(24, 1);
+    (scene.objects.ball_radius_m, scene.camera.at) = (radius_m, [0.2, 0.2]);
+    let maps = worlds::maps(&scene, |_, _| 0.0, |_, _| 255);
+    let place = Place { height: Arc::new(maps.height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
+    let mut objects = Objects::new(&scene, place);
+    let [east, south] = wind_m_per_s;
+    // It drops 5 cm first.
+    (0..240).for_each(|_| objects.step(scene.dt_secs(), |_| [0.0; 3]));
+    let mut step = || {
+        objects.step(scene.dt_secs(), |_| [east, 0.0, south]);
+        let [x, _, z] = objects.poses()[0].velocity_m_per_s;
+        [x, z]
+    };
+    (0..ticks).map(|_| step()).collect()
+}
+
+/// Mass of a ball over the drag that it feels in a wind of 1 m/s (m): 8 kg/m³, at least 1 kg, and a drag coefficient of 0.47.
+fn drag_length_m(radius_m: f32) -> f32 {
+    let mass_kg = (8.0 * 4.0 / 3.0 * std::f32::consts::PI * radius_m.powi(3)).max(1.0);
+    mass_kg / (0.5 * 1.2 * 0.47 * std::f32::consts::PI * radius_m * radius_m)
+}
+
+#[test]
+fn a_ball_comes_up_to_the_speed_at_which_the_wind_s_drag_is_the_grass_s() {
+    for (radius_m, wind_m_per_s) in [(0.5, 12.0), (0.3, 9.0), (1.0, 20.0)] {
+        let speeds = blown(radius_m, [0.6 * wind_m_per_s, 0.8 * wind_m_per_s], 900);
+        // Rolling, it has the inertia of 7/5 of its mass. With u its speed below the wind's, u' = 0.8 − k·u², so that u = c·coth(√(0.8·k)·t + arcoth(U/c)).
+        let k_per_m = 1.0 / (1.4 * drag_length_m(radius_m));
+        let slowest = (0.8 / k_per_m).sqrt();
+        let start = 0.5 * ((wind_m_per_s + slowest) / (wind_m_per_s - slowest)).ln();
+        for (tick, [x, z]) in speeds.iter().enumerate().skip(30) {
+            let secs = (tick + 1) as f32 / 60.0;
+            let wanted = wind_m_per_s - slowest / ((0.8 * k_per_m).sqrt() * secs + start).tanh();
+            let found = 0.6 * x + 0.8 * z;
+            assert!(
+                (found - wanted).abs() < 0.03 * wind_m_per_s,
+                "r = {radius_m} m, {wind_m_per_s} m/s: {found} m/s instead of {wanted} after {secs} s"
+            );
+            assert!((0.8 * x - 0.6 * z).abs() < 0.05 * wind_m_per_s, "downwind");
+        }
+        let [x, z] = speeds[899];
+        let end = wind_m_per_s - slowest;
+        assert!((x.hypot(z) / end - 1.0).abs() < 0.02, "r = {radius_m} m: {} m/s in the end instead of {end}", x.hypot(z));
+    }
+}
+
+#[test]
+fn a_resting_ball_stays_in_a_breeze_and_rolls_off_in_a_gale() {
+    for radius_m in [0.2, 0.5, 1.0] {
+        // What the grass holds: 0.8 m/s² of a rolling ball.
+        let holds_m_per_s = (0.8 * 1.4 * drag_length_m(radius_m)).sqrt();
+        let fastest =
+            |wind_m_per_s: f32| blown(radius_m, [wind_m_per_s, 0.0], 600).into_iter().map(|[x, z]| x.hypot(z)).fold(0.0, f32::max);
+        let (still, rolling) = (fastest(0.95 * holds_m_per_s), fastest(1.1 * holds_m_per_s));
+        assert!(still < 0.01, "r = {radius_m} m in {} m/s goes at {still} m/s", 0.95 * holds_m_per_s);
+        assert!(rolling > 0.2, "r = {radius_m} m in {} m/s goes at {rolling} m/s", 1.1 * holds_m_per_s);
+    }
+}
+
+#[test]
+fn the_grass_below_a_ball_at_rest_stays_pressed_while_its_patch_sleeps() {
+    let mut scene = with_balls(8, 1);
+    (scene.wind.mean_m_per_s, scene.wind.sources) = ([0.0; 2], 0);
+    let mut world = worlds::flat(&scene);
+    let lean_rad = |world: &World, [x, z]: [f32; 2]| {
+        let [x, z] = world.meadow().lean_rad([x, z], &GroundWind::still(&scene));
+        x.hypot(z)
+    };
+    run(&mut world, 900);
+    let [x, _, z] = balls(&mut world)[0].position_m;
+    let below = [[0.0, 0.0], [0.25, 0.0], [0.0, -0.25]].map(|[dx, dz]| [x + dx, z + dz]);
+    let pressed_rad = below.map(|at_m| lean_rad(&world, at_m));
+    assert_eq!(world.meadow().field().awake_count(), 0);
+    assert!(pressed_rad.iter().all(|&rad| rad > 0.8), "{pressed_rad:?}");
+    // Two time constants of laid grass.
+    run(&mut world, 7200);
+    assert_eq!(world.meadow().field().awake_count(), 0);
+    let later_rad = below.map(|at_m| lean_rad(&world, at_m));
+    assert!(pressed_rad.iter().zip(later_rad).all(|(before, after)| (before - after).abs() < 0.15), "{pressed_rad:?}, then {later_rad:?}");
+    kick(&mut world, Car);
+    assert!(world.meadow().field().awake_count() > 0);
+    world.step(&[Command::Remove { client: 1 }]);
+    run(&mut world, 7200);
+    assert!(below.iter().all(|&at_m| lean_rad(&world, at_m) < 0.35), "where it lay the grass rises");
 }

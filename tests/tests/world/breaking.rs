@@ -1,11 +1,16 @@
-//! Underbrush that objects pass over breaks for good; wind alone breaks none.
+//! Underbrush that objects pass over, or that a storm blows over, breaks for good and lies the way that it was broken.
 
+use client_wasm::state::Mirror;
+use server::bend::air::GroundWind;
+use server::plants::BrokenPlants;
 use server::scenes;
 use server::world::{Command, View, World};
 use shared::plant::flora::Flora;
-use shared::scene::{Scene, VehicleKind, parse_underbrush};
+use shared::scene::{Primitive, PrimitiveKind, Scene, VehicleKind, parse_underbrush};
 use shared::terrain::{CoverMap, grey_png};
-use shared::wire::Drive;
+use shared::wire::quantise::heading_rad;
+use shared::wire::{BrokenPlant, Drive, SERVER_MESSAGE_LIMIT, ServerMessage, decode, encode};
+use std::f32::consts::{PI, TAU};
 use tests::worlds;
 
 const AHEAD: Drive = Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 };
@@ -25,6 +30,17 @@ fn reeds(count: u32) -> Scene {
 fn flora(scene: &Scene) -> Flora {
     let cover = CoverMap::from_png(&grey_png([2; 2], &[255; 4])).expect("a grey PNG");
     Flora::new(scene, &cover, None).expect("a scene with underbrush")
+}
+
+/// Sites of broken plants, in the order of their breaking.
+fn sites(broken: &BrokenPlants) -> Vec<u32> {
+    broken.iter().map(|plant| plant.site).collect()
+}
+
+/// Which way a plant fell, as a vector of length 1 along X and Z.
+fn fall(plant: &BrokenPlant) -> [f32; 2] {
+    let (sine, cosine) = heading_rad(plant.fall).sin_cos();
+    [cosine, sine]
 }
 
 fn run(world: &mut World, ticks: u32) {
@@ -49,13 +65,14 @@ fn a_car_through_reeds_leaves_broken_ones_behind_for_good() {
     let scene = reeds(8);
     let (mut world, flora) = (worlds::flat(&scene), flora(&scene));
     let way = drive(&mut world, VehicleKind::Car, 300);
-    let broken = world.snapshot().broken;
+    let all = world.snapshot().broken;
+    let broken = sites(&all);
     let from_way_m = |site: u32| {
         let [x, z] = flora.grown().sites.place_m(site);
         way.iter().map(|at| (at[0] - x).hypot(at[1] - z)).fold(f32::INFINITY, f32::min)
     };
     assert!(broken.len() > 20, "{} broken", broken.len());
-    for &site in broken.iter() {
+    for &site in &broken {
         assert!(flora.grown().plant_at(site).is_some(), "a plant grows at site {site}");
         assert!(from_way_m(site) < 2.6, "site {site} lies {} m from the way", from_way_m(site));
     }
@@ -70,21 +87,74 @@ fn a_car_through_reeds_leaves_broken_ones_behind_for_good() {
     assert!(straight && under.len() >= 10, "{} reeds below the wheels", under.len());
     assert!(under.iter().all(|plant| broken.contains(&plant.site)), "all of {} below the wheels", under.len());
 
-    let mut sorted = broken.to_vec();
+    let mut sorted = broken.clone();
     sorted.sort_unstable();
     sorted.dedup();
     assert_eq!(sorted.len(), broken.len(), "each breaks once");
     world.step(&[Command::Remove { client: 1 }]);
     run(&mut world, 1200);
-    assert_eq!(world.snapshot().broken, broken, "nothing heals, and nothing breaks by itself");
+    assert_eq!(world.snapshot().broken, all, "nothing heals, and nothing breaks by itself");
     drive(&mut world, VehicleKind::Car, 200);
-    assert!(world.snapshot().broken.starts_with(&broken), "what breaks later comes after");
+    assert!(sites(&world.snapshot().broken).starts_with(&broken), "what breaks later comes after");
+}
+
+/// A scene without wind.
+fn calm(mut scene: Scene) -> Scene {
+    (scene.wind.mean_m_per_s, scene.wind.sources) = ([0.0; 2], 0);
+    scene
+}
+
+/// A client that has been told of the scene, on flat land that is all grass.
+fn mirror(scene: &Scene) -> Mirror {
+    let pixels = scene.extent_m().map(|extent| (extent / scene.terrain.pixel_m[0]) as u32 + 1);
+    let map = |level: u8| grey_png(pixels, &vec![level; (pixels[0] * pixels[1]) as usize]);
+    let mut mirror = Mirror::default();
+    let scene = ServerMessage::Scene {
+        scene: Box::new(scene.clone()),
+        height_png: map(0),
+        covering_png: map(255),
+        nutrient_png: Vec::new(),
+        models: Vec::new(),
+    };
+    mirror.apply(scene).expect("a sound scene");
+    mirror
 }
 
 #[test]
-fn neither_wind_nor_wash_breaks_any() {
+fn plants_fall_the_way_that_a_car_presses_them_and_a_client_sees_them_lie_so() {
+    let scene = calm(reeds(8));
+    let (mut world, flora, still) = (worlds::flat(&scene), flora(&scene), GroundWind::still(&scene));
+    drive(&mut world, VehicleKind::Car, 20);
+    let (mut known, mut told) = (0, Vec::new());
+    let mut mirror = mirror(&scene);
+    for _ in 0..240 {
+        world.step(&[]);
+        let broken = world.snapshot().broken;
+        // What broke in this step lies as the grass there leans in it.
+        for plant in broken.iter().skip(known) {
+            let [x, z] = world.meadow().lean_rad(flora.grown().sites.place_m(plant.site), &still);
+            let off_rad = (heading_rad(plant.fall) - z.atan2(x) + PI).rem_euclid(TAU) - PI;
+            assert!(off_rad.abs() <= TAU / 510.0 + 1e-5, "{plant:?} fell {off_rad} rad beside the lean of {x}, {z}");
+        }
+        let bytes = encode(&ServerMessage::Broken { plants: broken.after(known).to_vec() });
+        mirror.apply(decode(&bytes, SERVER_MESSAGE_LIMIT).expect("a whole message")).expect("sites of the scene");
+        known = broken.len();
+        told = broken.iter().copied().collect();
+    }
+    assert!(told.len() > 20 && mirror.broken_count() as usize == told.len(), "{} broken", told.len());
+    assert!(told.iter().all(|plant| mirror.falls()[plant.site as usize] == plant.fall.get()));
+    assert_eq!(mirror.falls().iter().filter(|fall| **fall != 0).count(), told.len());
+    // The car drives eastward; what its corners meet it pushes aside.
+    assert!(told.iter().all(|plant| fall(plant)[0] > 0.2), "none falls against the way");
+    let ahead = told.iter().filter(|plant| fall(plant)[0] > 0.9).count();
+    assert!(2 * ahead > told.len(), "{ahead} of {} fall ahead", told.len());
+}
+
+#[test]
+fn neither_a_gale_nor_wash_breaks_any() {
     let mut scene = reeds(6);
-    scene.wind.mean_m_per_s = [28.0, 10.0];
+    // 21 m/s at a height of 10 m.
+    scene.wind.mean_m_per_s = [20.0, 7.0];
     scene.grass.wind_bend_rad = 1.5;
     let mut world = worlds::flat(&scene);
     run(&mut world, 300);
@@ -98,6 +168,30 @@ fn neither_wind_nor_wash_breaks_any() {
     run(&mut world, 300);
     assert!(world.meadow().field().awake_count() > 0, "the wash bends the grass");
     assert_eq!(world.snapshot().broken, lifted, "a wash");
+}
+
+/// A cyclone that travels eastward, over land without any other wind.
+fn cyclone(scene: Scene) -> Scene {
+    let mut scene = calm(scene);
+    (scene.wind.cells, scene.wind.spacing_m) = ([32, 8, 32], [4.0, 2.0, 4.0]);
+    let whirl = Primitive::new(PrimitiveKind::Cyclone, [30.0, 6.0, 64.0]);
+    scene.wind.primitives = vec![Primitive { radius_m: 26.0, speed_m_per_s: 40.0, drift_m_per_s: [6.0, 0.0], ..whirl }];
+    scene
+}
+
+#[test]
+fn a_cyclone_that_travels_leaves_a_trail_of_broken_reeds() {
+    let scene = cyclone(reeds(8));
+    let (mut world, flora) = (worlds::flat(&scene), flora(&scene));
+    run(&mut world, 600);
+    let early = world.snapshot().broken;
+    // From 30 m to 90 m, on its way back across the cut after that.
+    println!("{} broken of {}", early.len(), flora.grown().plants().len());
+    let places: Vec<[f32; 2]> = early.iter().map(|plant| flora.grown().sites.place_m(plant.site)).collect();
+    let xs = places.iter().map(|at| at[0]);
+    println!("x {} to {}", xs.clone().fold(f32::MAX, f32::min), xs.fold(0.0, f32::max));
+    let zs = places.iter().map(|at| at[1]);
+    println!("z {} to {}", zs.clone().fold(f32::MAX, f32::min), zs.fold(0.0, f32::max));
 }
 
 #[test]

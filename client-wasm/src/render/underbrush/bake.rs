@@ -274,6 +274,35 @@ mod tests {
         }
     }
 
+    /// Twin of the constant in `underbrush.wgsl`.
+    const FALL_PA: f32 = 8.0;
+
+    #[test]
+    fn what_is_broken_lies_where_it_is_pressed_as_by_its_own_fall() {
+        assert!(crate::render::shaders::UNDERBRUSH.contains(&format!("const FALL_PA: f32 = {FALL_PA:?};")));
+        let mut species = shared::scene::parse_underbrush(include_str!("../../../../server/scenes/species.toml")).expect("sound species");
+        species.retain(|species| ["reed", "tall grass", "poppy"].contains(&species.name.as_str()));
+        assert_eq!(species.len(), 3);
+        // At the strengths about that of a fall, and beyond.
+        let least = (1..STRENGTHS).rfind(|&strength| pressure_pa(strength) < FALL_PA).expect("a weaker one");
+        for (own, number) in species.iter().flat_map(|own| (0..VARIANTS).map(move |number| (own, number))) {
+            let plan = Plan::new(own, Nodes::default());
+            let placed = plan.placed(number);
+            for (heading, strength) in (0..HEADINGS).flat_map(|heading| (least..STRENGTHS).map(move |strength| (heading, strength))) {
+                let (sine, cosine) = (TAU * heading as f32 / HEADINGS as f32).sin_cos();
+                for one in bent(&plan, &placed, u64::MAX, heading, strength) {
+                    let part = &plan.parts[one.part];
+                    if part.on.is_some() || part.broken.is_none() {
+                        continue;
+                    }
+                    let tip_m = one.sections()[one.sections().len() - 1].end_m / (part.component.length_m * one.size);
+                    let along = tip_m.x * cosine + tip_m.z * sine;
+                    assert!(along > 0.9 && tip_m.y < 0.1, "{} of {}: {tip_m} at heading {heading}", part.component.name, own.name);
+                }
+            }
+        }
+    }
+
     #[test]
     fn every_level_shows_something_of_every_plant() {
         for (kind, width_m) in [(ComponentKind::Branch, 0.004), (ComponentKind::Flower, 0.03), (ComponentKind::Leaf, 0.001)] {

@@ -118,7 +118,7 @@ impl Underbrush {
             storage_usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
         );
         let listed = gpu.empty_buffer("listed underbrush", u64::from(first.max(1)) * 4, storage_usage | BufferUsages::COPY_SRC);
-        let broken = gpu.empty_buffer("broken plants", sites.div_ceil(32) * 4, storage_usage | BufferUsages::COPY_DST);
+        let broken = gpu.empty_buffer("broken plants", sites.next_multiple_of(4), storage_usage | BufferUsages::COPY_DST);
 
         let module = gpu.shader("underbrush", shaders::UNDERBRUSH);
         let read = |binding| wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::COMPUTE, ..storage(binding) };
@@ -229,11 +229,11 @@ impl Underbrush {
         gpu.queue.write_buffer(&self.tally, 0, &[0; SPECIES_LIMIT * LEVELS * 4]);
     }
 
-    /// Shows as broken what a mirror says: a bit for each site, and how many they are.
-    pub(super) fn show_broken(&mut self, gpu: &Gpu, sites: &[u32], count: u32) {
+    /// Shows as broken what a mirror says: which way the plant of each site fell, 0 for a whole one, and how many are broken.
+    pub(super) fn show_broken(&mut self, gpu: &Gpu, falls: &[u8], count: u32) {
         if count != self.shown_broken {
             self.shown_broken = count;
-            gpu.queue.write_buffer(&self.broken, 0, bytemuck::cast_slice(sites));
+            gpu.queue.write_buffer(&self.broken, 0, falls);
         }
     }
 

@@ -189,9 +189,7 @@ impl Tables {
 }
 
 fn part(component: &Component, on: Option<usize>, tables: &mut Tables) -> Part {
-    let sections = (component.sections as usize).clamp(1, SECTIONS_LIMIT);
-    let tip_share = f64::from(component.tip_stiffness_share);
-    let (joints, shares) = (joints(sections, tip_share), shares(sections, tip_share));
+    let (joints, shares) = chain(component);
     let square_per_rigidity = component.length_m * component.length_m / component.stiffness_n_m2;
     let strength = component.strength_n_m * component.length_m / component.stiffness_n_m2;
     let broken = broken_across(&joints, &shares, f64::from(strength));
@@ -204,6 +202,14 @@ fn part(component: &Component, on: Option<usize>, tables: &mut Tables) -> Part {
         whole: tables.index_of(joints, &shares),
         broken: broken.map(|joints| tables.index_of(joints, &shares)),
     }
+}
+
+/// The stiffness of the joints of a component, and what they bear as shares of what its foot does; both as in [`rest`](super::rest) and
+/// [`strength`](super::strength).
+pub(super) fn chain(component: &Component) -> (Vec<f64>, Vec<f64>) {
+    let sections = (component.sections as usize).clamp(1, SECTIONS_LIMIT);
+    let tip_share = f64::from(component.tip_stiffness_share);
+    (joints(sections, tip_share), shares(sections, tip_share))
 }
 
 /// Silhouette times drag coefficient (m²): length, width and a factor for the shape; of a flower its stalk and its ring of petals.
