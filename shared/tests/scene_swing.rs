@@ -31,7 +31,7 @@ fn most_rad(blade: &Blade, integrator: BladeIntegrator, dt_secs: f32) -> f32 {
             std::array::from_fn(|link| [0, 1].map(|axis| (hash3([beat, axis, link as u32 / 2])[0] >> 8) as f32 / 8_388_608.0 * 7.0 - 7.0));
         sway = advance(&sway, blade, &[[0.0; 2]; LINKS], &wind, integrator, dt_secs);
         most = sway.lean_rad.as_flattened().iter().fold(most, |most, lean| most.max(lean.abs()));
-        if !(most < 1e3) {
+        if most > 1e3 {
             return f32::INFINITY;
         }
     }
