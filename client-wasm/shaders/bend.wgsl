@@ -6,15 +6,15 @@
 struct Plants {
     // Grid (x, z) that lives in each of the nine slots; 1 in z when it has just moved in.
     slots: array<vec4<i32>, 9>,
-    // Blades of a near grid, flowers among them; grids farther away, their blades.
+    // Plants of a near grid; unused; grids farther away, their plants.
     counts: vec4<u32>,
     // Capacities of the drawn lists: fine blades, coarse blades, flowers.
     capacities: vec4<u32>,
     // Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), damping share of a blade.
     shape: vec4<f32>,
-    // Steps of this frame; way of integration; unused.
+    // Steps of this frame; way of integration; segments of a fine blade, and of a coarse one.
     steps: vec4<u32>,
-    // Length of a step (s); unused.
+    // Length of a step (s); share of flowers among the plants; unused.
     time: vec4<f32>,
 }
 
@@ -33,9 +33,18 @@ const FINE: u32 = 0u;
 const COARSE: u32 = 1u;
 const FLOWER: u32 = 2u;
 
+// How high petals stand over the blade in whose place they are, and how much that varies (000 section 3.3).
+const PETALS_SHARE: f32 = 0.65;
+const PETALS_SPREAD: f32 = 0.05;
+// How much of a blade's lean a flower shows in the same wind: it is heavier, and slower by the root of it (000 section 3.4).
+const FLOWER_GIVE: f32 = 0.55;
+
 struct Plant {
     root: vec3<f32>,
+    // Length (m).
     height: f32,
+    // Lowest natural frequency (rad/s).
+    frequency: f32,
     width: f32,
     // Direction in which it leans by itself, as a vector of its lean (rad).
     droop: vec2<f32>,
@@ -52,6 +61,11 @@ fn plant_place(grid: vec2<i32>, index: u32) -> vec2<f32> {
     let jitter = random3(grid, index + 101u).xy - 0.5;
     let share = fract(start + vec2<f32>(f32(index) * 0.7548776662, f32(index) * 0.5698402910));
     return (vec2<f32>(grid) + share) * plants.shape.x + jitter * 0.12;
+}
+
+// Flowers stand where a lot says so, whatever their number.
+fn is_flower_at(grid: vec2<i32>, index: u32) -> bool {
+    return random3(grid, index + 22051u).x < plants.time.y;
 }
 
 fn plant_at(grid: vec2<i32>, index: u32, place: vec2<f32>, is_flower: bool) -> Plant {
@@ -72,6 +86,7 @@ fn plant_at(grid: vec2<i32>, index: u32, place: vec2<f32>, is_flower: bool) -> P
     let kind = kinds.list[plant.kind];
     let grown = mix(0.72, 1.22, meadow) * mix(0.78, 1.15, shared_by.x);
     plant.height = kind.root.w * (1.0 + frame.blade.y * (2.0 * r.y - 1.0)) * grown;
+    plant.frequency = kind.shape.y * kind.root.w / plant.height;
     plant.width = frame.blade.z * kind.shape.w * mix(0.75, 1.3, r.z);
     let own = (s.x - 0.5) * TAU;
     let leaning = away * 2.2 + (shared_by.yz - 0.5) * 0.5 + vec2<f32>(cos(own), sin(own)) * mix(0.08, 0.42, s.y * s.y);
@@ -80,8 +95,8 @@ fn plant_at(grid: vec2<i32>, index: u32, place: vec2<f32>, is_flower: bool) -> P
     plant.hue = clamp(shared_by.y * 0.45 + s.z * 0.55, 0.0, 0.999);
     plant.is_flower = is_flower;
     if is_flower {
-        // Petals stand at 0.65 of the tallest blades' height (000 section 3.3).
-        plant.height = kind.root.w * (1.0 + frame.blade.y) * mix(0.65, 0.90, r.y) * max(grown, 0.9);
+        plant.height *= PETALS_SHARE + PETALS_SPREAD * (2.0 * random3(grid, index + 22051u).y - 1.0);
+        plant.frequency *= sqrt(FLOWER_GIVE);
         plant.width = frame.blade.z * kind.shape.w * 0.45;
         plant.droop = leaning * 0.35;
     }
@@ -147,21 +162,23 @@ fn append(list: u32, blade: Blade) {
 
 fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, kind: f32) {
     let thinned = density(distance_m);
+    let is_fine = distance_m < plants.shape.z;
+    let along = drawn_out(points, plant.height * grown, select(plants.steps.w, plants.steps.z, is_fine));
     var blade: Blade;
     let pixel_m = distance_m * frame.screen.z;
     let width = plant.width * pow(thinned, -0.62);
     blade.root = vec4<f32>(plant.root, max(width, pixel_m * 0.9) * min(grown * 2.0, 1.0));
     let p = plant.root + points[1];
     let light = cloud_light(p.xz) * sun_visible(p);
-    blade.points[0] = vec4<f32>(points[0] * grown, plant.side);
-    blade.points[1] = vec4<f32>(points[1] * grown, f32(plant.kind) + plant.hue);
-    blade.points[2] = vec4<f32>(points[2] * grown, light);
+    blade.points[0] = vec4<f32>(along[0], plant.side);
+    blade.points[1] = vec4<f32>(along[1], f32(plant.kind) + plant.hue);
+    blade.points[2] = vec4<f32>(along[2], light);
     if plant.is_flower {
         var head = blade;
         head.points[1].w = kind;
         append(FLOWER, head);
     }
-    append(select(COARSE, FINE, distance_m < plants.shape.z), blade);
+    append(select(COARSE, FINE, is_fine), blade);
 }
 
 // How far a plant has grown in where the density is thinning: 0 gone, 1 whole.
@@ -186,18 +203,17 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     if random3(grid, index + 31u).x > share * 1.02 - 0.02 {
         return;
     }
-    let is_flower = index % max(count / max(plants.counts.y, 1u), 1u) == 0u && plants.counts.y > 0u;
-    let plant = plant_at(grid, index, place, is_flower);
+    let plant = plant_at(grid, index, place, is_flower_at(grid, index));
     let at = id.y * count + index;
     let kind = kinds.list[plant.kind];
     let gust = gust_at(plant.root.xz) * (0.9 + 0.2 * random3(grid, index + 47u).y);
     let field_lean = lean_of_field(plant.root.xz, 0.0);
     let held = leans_of(plant, array<vec2<f32>, 3>(field_lean, field_lean, field_lean));
     let give = give_of(plant);
-    let nature = BladeNature(plant.height, kind.shape.y * sqrt(give) * kind.root.w / plant.height, plants.shape.w, kind.tip.w * 0.01 * give);
+    let nature = BladeNature(plant.height, plant.frequency, plants.shape.w, kind.tip.w * 0.01 * give);
 
     var sway = sways[at];
-    if slot.z != 0 || !all(abs(sway.links[2]) < vec4<f32>(1e6)) {
+    if slot.z != 0 {
         let lean = field_lean + lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w) * give;
         sway = still(plant, array<vec2<f32>, 3>(lean, lean, lean));
     }
@@ -219,9 +235,9 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     show(plant, points_of(sway, plant.height), grown, distance(plant.root, frame.eye.xyz), random3(grid, index + 61u).z);
 }
 
-// How much of a blade's lean a plant shows in the same wind: flowers are heavier, and slower by the root of it (000 section 3.4).
+// How much of a blade's lean a plant shows in the same wind.
 fn give_of(plant: Plant) -> f32 {
-    return select(1.0, 0.55, plant.is_flower);
+    return select(1.0, FLOWER_GIVE, plant.is_flower);
 }
 
 // Wind over the ground at a control point (m/s), no stronger than what still bends grass farther.
@@ -247,8 +263,7 @@ fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
     if random3(grid, index + 31u).x > share * 1.02 - 0.02 {
         return;
     }
-    let is_flower = index % max(plants.counts.x / max(plants.counts.y, 1u), 1u) == 0u && plants.counts.y > 0u;
-    let plant = plant_at(grid, index, place, is_flower);
+    let plant = plant_at(grid, index, place, is_flower_at(grid, index));
     if !is_seen(plant.root + vec3<f32>(0.0, plant.height * 0.5, 0.0), plant.height * 0.75) {
         return;
     }

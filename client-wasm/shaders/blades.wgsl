@@ -1,7 +1,7 @@
-// Blades: cubic Bezier backbones, widened to tapered strips. One instance is 64 blades as one indexed list.
+// Blades: cubic Bezier backbones, widened to strips. One instance is 64 blades as one indexed list.
 
 struct List {
-    // First blade of the list, capacity, rows of two vertices below the tip, number of the list.
+    // First blade of the list, capacity, segments of a blade, number of the list.
     range: vec4<u32>,
 }
 
@@ -10,9 +10,8 @@ struct List {
 @group(1) @binding(2) var<uniform> list: List;
 @group(1) @binding(3) var shapes: texture_2d<f32>;
 
-// Shapes in the texture; how much wider a textured blade's strip is than a tapered one.
+// Shapes in the texture.
 const SHAPES: f32 = 5.0;
-const WIDER: f32 = 2.6;
 
 struct Strip {
     @builtin(position) position: vec4<f32>,
@@ -22,51 +21,46 @@ struct Strip {
     @location(2) shape: vec2<f32>,
 }
 
+// What is shown of a strip's side: nearly half of it turns to the eye, since a strip that is seen edge on would vanish between pixels, and
+// fewer blades close the sward so. For the picture alone; the backbone does not know of it.
+fn shown_side(side: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>) -> vec3<f32> {
+    let facing = cross(tangent, view);
+    let toward = facing * sign(dot(facing, side) + 1e-5);
+    return normalize(side * 0.55 + toward / max(length(toward), 1e-3) * 0.45);
+}
+
 @vertex
 fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Strip {
-    let rows = list.range.z;
-    let vertices = rows * 2u + 1u;
+    let segments = list.range.z;
+    let vertices = segments * 2u + 2u;
     let number = instance * 64u + index / vertices;
-    let local = index % vertices;
     var out: Strip;
     if number >= min(drawn[list.range.w], list.range.y) {
         out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
         return out;
     }
     let blade = blades[list.range.x + number];
-    let row = local / 2u;
-    let t = f32(row) / f32(rows);
-    let across = select(f32(local % 2u) * 2.0 - 1.0, 0.0, local == vertices - 1u);
+    let corner = corner_of(index % vertices, segments);
+    let t = corner.x;
+    let across = corner.y;
     let is_textured = frame.blade.w > 0.5;
 
-    let a = blade.points[0].xyz;
-    let b = blade.points[1].xyz;
-    let c = blade.points[2].xyz;
-    // The curve passes through the simulated points a, b, c at one third, two thirds and the tip.
-    let b1 = 3.0 * a - 1.5 * b + c / 3.0;
-    let b2 = -1.5 * a + 3.0 * b - 5.0 / 6.0 * c;
-    let s = 1.0 - t;
-    let offset = 3.0 * s * s * t * b1 + 3.0 * s * t * t * b2 + t * t * t * c;
-    let tangent = normalize(3.0 * s * s * b1 + 6.0 * s * t * (b2 - b1) + 3.0 * t * t * (c - b2) + vec3<f32>(0.0, 1e-4, 0.0));
+    let points = array<vec3<f32>, 3>(blade.points[0].xyz, blade.points[1].xyz, blade.points[2].xyz);
+    let tip = points[2];
+    let lean = tip.xz;
+    let offset = backbone_at(points, t);
+    let tangent = tangent_at(points, t);
     let centre = blade.root.xyz + offset;
     let view = normalize(centre - frame.eye.xyz);
-
-    // The blade turns evenly from its own side at the root towards the direction in which it leans (000 section 3.2).
-    let own = blade.points[0].w;
-    let lean = c.xz;
-    let lean_angle = atan2(lean.x, -lean.y);
-    let turn = fract((lean_angle - own) / TAU + 0.5) - 0.5;
-    let angle = own + turn * TAU * t * 0.5 * smoothstep(0.05, 0.35, length(lean) / max(length(c), 1e-3));
-    let side = vec3<f32>(cos(angle), 0.0, sin(angle));
-    let facing_side = cross(tangent, view);
-    let toward = facing_side * sign(dot(facing_side, side) + 1e-5);
-    let wide = normalize(side * 0.55 + toward / max(length(toward), 1e-3) * 0.45);
-    let profile = select((1.0 - t * t) * (0.80 + 0.55 * t), WIDER, is_textured);
-    let p = centre + wide * (across * profile * blade.root.w * 0.5);
+    let wide = shown_side(side_at(tip, blade.points[0].w, t), tangent, view);
+    let up = ground_normal(blade.root.xz);
+    // The backbone is above the ground, a wide strip's border need not be.
+    var from_root = offset + wide * (across * width_share(t, is_textured) * blade.root.w * 0.5);
+    from_root += up * max(-dot(from_root, up), 0.0);
+    let p = blade.root.xyz + from_root;
 
     var normal = normalize(cross(wide, tangent));
     normal = normal * -sign(dot(normal, view) + 1e-5);
-    let up = ground_normal(blade.root.xz);
     let soft = normalize(normal * 0.62 + up * 0.75 + wide * (across * 0.35));
 
     let kind = kinds.list[u32(blade.points[1].w)];
@@ -77,7 +71,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     albedo = mix(albedo, vec3<f32>(0.38, 0.30, 0.13) * (0.35 + 0.65 * t), straw);
     // Pale ends, as of flowering grass.
     albedo = mix(albedo, albedo * vec3<f32>(1.35, 1.12, 0.95), smoothstep(0.72, 1.0, t) * smoothstep(0.3, 0.9, hue));
-    let tilt = length(lean) / max(length(c), 1e-3);
+    let tilt = length(lean) / max(length(tip), 1e-3);
     albedo *= (0.90 + 0.42 * smoothstep(0.15, 0.6, tilt) * t) * trodden(asin(min(tilt, 1.0)));
     let height = offset.y / kind.root.w;
     // Little light is lost on the way down into short grass.

@@ -2,7 +2,7 @@
 
 struct Instance {
     world_from_model: mat4x4<f32>,
-    // Colour factor; sway of a tree (rad per rad of lean).
+    // Colour factor; sway of a tree in a wind of 10 m/s and above (rad), 0 of what stands still.
     tint: vec4<f32>,
 }
 
@@ -26,18 +26,26 @@ struct Surface {
     @location(3) leaf: vec2<f32>,
 }
 
+// How a sway (rad, as a vector on the ground: how far the top goes over its height) moves what is `up` metres above the foot of a tree: aside with the
+// square of that, as a beam bends, and down by what the bend takes, so that the trunk stays as long as it is.
+fn swayed(up: f32, height: f32, sway: vec2<f32>) -> vec3<f32> {
+    let aside = sway * (up * up / height);
+    return vec3<f32>(aside.x, -dot(sway, sway) * (2.0 / 3.0) * up * up * up / (height * height), aside.y);
+}
+
 fn placed(vertex: Vertex, instance: Instance) -> vec3<f32> {
     var p = (instance.world_from_model * vec4<f32>(vertex.position, 1.0)).xyz;
     let sway = instance.tint.a;
     if sway > 0.0 {
         let foot = instance.world_from_model[3].xyz;
-        let up = max(p.y - foot.y, 0.0);
-        let lean = lean_of_wind(wind_at(foot, 6.0).xz * gust_at(foot.xz), kinds.list[0].tip.w);
-        let phase = frame.eye.w * 1.7 + foot.x * 0.7 + foot.z * 1.3;
-        let swing = lean * (0.7 + 0.3 * sin(phase)) * sway * up * up * 0.02;
-        p += vec3<f32>(swing.x, 0.0, swing.y);
+        // Models are a metre tall.
+        let height = length(instance.world_from_model[1].xyz);
+        let held = lean_of_wind(wind_at(foot, 6.0).xz * gust_at(foot.xz), sway);
+        // The taller, the slower.
+        let phase = frame.eye.w * 4.5 / sqrt(height) + foot.x * 0.7 + foot.z * 1.3;
+        p += swayed(max(p.y - foot.y, 0.0), height, held * (0.7 + 0.3 * sin(phase)));
         if vertex.leaf.x > 0.0 {
-            let flutter = sin(frame.eye.w * 5.3 + dot(vertex.position, vec3<f32>(5.1, 7.7, 3.9))) * 0.035 * (0.4 + 3.0 * length(lean));
+            let flutter = sin(frame.eye.w * 5.3 + dot(vertex.position, vec3<f32>(5.1, 7.7, 3.9))) * 0.035 * (0.4 + 1.5 * length(held) / sway);
             p += vec3<f32>(flutter, flutter * 0.6, -flutter);
         }
     }

@@ -1,7 +1,9 @@
 //! The curve through a blade's control points and the outline about it.
 
 use proptest::prelude::*;
-use shared::plant::blade::backbone::{backbone_m, segment_points_m};
+use shared::plant::blade::backbone::{backbone_m, drawn_out_m, segment_points_m};
+use shared::plant::blade::contact::settle;
+use shared::plant::blade::modes::WIND_SHAPE;
 use shared::plant::blade::{LINKS, Leans, Sway};
 
 fn lean([angle, heading]: [f32; 2]) -> [f32; 2] {
@@ -12,11 +14,10 @@ fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f32>().sqrt()
 }
 
-/// Length of the curve of a blade of 1 m (m).
-fn curve_m(points_m: &[[f32; 3]; LINKS]) -> f32 {
-    const PARTS: usize = 256;
-    let at = |n: usize| backbone_m(points_m, n as f32 / PARTS as f32);
-    (0..PARTS).map(|n| distance(at(n), at(n + 1))).sum()
+/// Length of the curve of control points, as so many chords (m).
+fn curve_m(points_m: &[[f32; 3]; LINKS], chords: u32) -> f32 {
+    let at = |n: u32| backbone_m(points_m, n as f32 / chords as f32);
+    (0..chords).map(|n| distance(at(n), at(n + 1))).sum()
 }
 
 fn angles() -> impl Strategy<Value = [[f32; 2]; LINKS]> {
@@ -26,29 +27,57 @@ fn angles() -> impl Strategy<Value = [[f32; 2]; LINKS]> {
 
 proptest! {
     #[test]
-    fn the_curve_passes_through_the_control_points(angles in angles()) {
+    fn the_curve_starts_along_the_lowest_link_and_ends_along_the_topmost(angles in angles()) {
         let points_m = Sway::at_rest(angles.map(lean)).points_m(1.0);
         prop_assert_eq!(backbone_m(&points_m, 0.0), [0.0; 3]);
-        for (n, point_m) in points_m.into_iter().enumerate() {
-            prop_assert!(distance(backbone_m(&points_m, (n + 1) as f32 / 3.0), point_m) < 2e-6);
+        prop_assert!(distance(backbone_m(&points_m, 1.0), points_m[2]) < 1e-6);
+        let (low, high) = (backbone_m(&points_m, 1e-3), backbone_m(&points_m, 1.0 - 1e-3));
+        prop_assert!(distance(low.map(|v| v * 1e3 / 3.0), points_m[0]) < 2e-3);
+        let topmost = [0, 1, 2].map(|i| points_m[2][i] - points_m[1][i]);
+        prop_assert!(distance([0, 1, 2].map(|i| (points_m[2][i] - high[i]) * 1e3 / 3.0), topmost) < 3e-3);
+    }
+
+    #[test]
+    fn however_links_are_thrown_about_what_is_drawn_is_as_long_as_the_blade(angles in angles(), length_m in 0.05_f32..3.0, segments in 2_u32..16) {
+        let points_m = Sway::at_rest(angles.map(lean)).points_m(length_m);
+        let drawn_m = drawn_out_m(&points_m, length_m, segments);
+        prop_assert!((curve_m(&drawn_m, segments) / length_m - 1.0).abs() < 1e-5);
+        // By one factor: shapes stay, lengths change.
+        let factor = drawn_m[0][1] / points_m[0][1];
+        prop_assert!(factor >= 1.0);
+        for (drawn_m, point_m) in drawn_m.into_iter().zip(points_m) {
+            prop_assert!(distance(drawn_m, point_m.map(|v| v * factor)) < 1e-4 * length_m);
         }
     }
 
     #[test]
-    fn the_curve_is_as_long_as_the_blade(heading in 0.0_f32..6.3, mean in 0.0_f32..1.5) {
-        // As wind and weight hold it.
-        let shapes: [[f32; LINKS]; 2] = [[0.63, 1.13, 1.24], [1.0; LINKS]];
-        for shape in shapes {
-            let leans: Leans = shape.map(|share| lean([(share * mean).min(1.5), heading]));
-            let length_m = curve_m(&Sway::at_rest(leans).points_m(1.0));
-            prop_assert!((0.999..1.03).contains(&length_m), "{length_m} m at {mean} rad");
+    fn what_wind_bends_is_drawn_where_it_stands(heading in 0.0_f32..6.3, mean in 0.0_f32..1.2) {
+        let leans: Leans = WIND_SHAPE.map(|share| lean([share * mean, heading]));
+        let points_m = Sway::at_rest(leans).points_m(1.0);
+        let turn = (WIND_SHAPE[2] - WIND_SHAPE[0]) * mean;
+        for segments in [3, 7] {
+            let drawn_m = drawn_out_m(&points_m, 1.0, segments);
+            prop_assert!(distance(drawn_m[2], points_m[2]) < 0.06 * turn * turn + 1e-5, "{} after a turn of {turn}", distance(drawn_m[2], points_m[2]));
+            // The curve that the strip approximates, in length and in place.
+            let longer = curve_m(&drawn_m, 256) - 1.0;
+            prop_assert!(longer < 1.4 * (turn / segments as f32).powi(2) / 24.0 + 1e-5, "{longer}");
+            let n = segments as f32;
+            for segment in 0..segments {
+                let at = |i: f32| backbone_m(&drawn_m, (segment as f32 + i) / n);
+                let [from, to] = [at(0.0), at(1.0)];
+                let off_m = distance(at(0.5), [0, 1, 2].map(|i| 0.5 * (from[i] + to[i])));
+                prop_assert!(off_m < 2.0 * turn / (8.0 * n * n) + 1e-5, "{off_m} m of a turn of {turn} in {n} segments");
+            }
         }
     }
 
     #[test]
-    fn however_links_are_thrown_about_the_curve_is_at_most_longer_by_half(angles in angles()) {
-        let length_m = curve_m(&Sway::at_rest(angles.map(lean)).points_m(1.0));
-        prop_assert!((0.99..1.5).contains(&length_m), "{length_m} m");
+    fn no_curve_is_below_a_plane_that_its_control_points_are_above(angles in angles(), slope in [-0.8_f32..0.8, -0.8_f32..0.8], t in 0.0_f32..1.0) {
+        let long = (1.0 + slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
+        let normal = [-slope[0] / long, 1.0 / long, -slope[1] / long];
+        let points_m = settle(&Sway::at_rest(angles.map(lean)), 1.0, normal, &[]).points_m(1.0);
+        let at = backbone_m(&drawn_out_m(&points_m, 1.0, 7), t);
+        prop_assert!((0..3).map(|i| at[i] * normal[i]).sum::<f32>() > -1e-6);
     }
 
     #[test]

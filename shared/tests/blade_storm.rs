@@ -1,6 +1,7 @@
 //! A blade through a hundred thousand steps of gusts and hits: it keeps its length, stays out of the ground and of what hits it, and gives the same bits.
 
 use shared::hash::hash3;
+use shared::plant::blade::backbone::{backbone_m, drawn_out_m};
 use shared::plant::blade::contact::{Sphere, settle};
 use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, abreast, advance};
 
@@ -58,10 +59,10 @@ fn apart_m(one: &Sphere, other: &Sphere) -> f32 {
     length([0, 1, 2].map(|i| one.centre_m[i] - other.centre_m[i])) - one.radius_m - other.radius_m
 }
 
-/// How deep the links of a blade lie in a sphere (m).
-fn depth_m(points_m: &[[f32; 3]; LINKS], sphere: &Sphere) -> f32 {
-    let below_m = [[0.0; 3], points_m[0], points_m[1]];
-    let ends = below_m.iter().zip(points_m);
+/// How deep the links of a blade, or the segments of its strip, lie in a sphere (m).
+fn depth_m(points_m: &[[f32; 3]], sphere: &Sphere) -> f32 {
+    let below_m = std::iter::once(&[0.0; 3]).chain(points_m);
+    let ends = below_m.zip(points_m);
     let nearest_m = ends.map(|(from, to)| {
         let (along, aside) = ([0, 1, 2].map(|i| to[i] - from[i]), [0, 1, 2].map(|i| sphere.centre_m[i] - from[i]));
         let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -69,6 +70,16 @@ fn depth_m(points_m: &[[f32; 3]; LINKS], sphere: &Sphere) -> f32 {
         length([0, 1, 2].map(|i| aside[i] - share * along[i]))
     });
     sphere.radius_m - nearest_m.fold(f32::INFINITY, f32::min)
+}
+
+/// Ends of the segments that a blade is drawn as (m from the root), from the lowest up.
+fn strip_m(points_m: &[[f32; 3]; LINKS], segments: u32) -> Vec<[f32; 3]> {
+    (1..=segments).map(|segment| backbone_m(points_m, segment as f32 / segments as f32)).collect()
+}
+
+fn length_m(strip_m: &[[f32; 3]]) -> f32 {
+    let below_m = std::iter::once(&[0.0; 3]).chain(strip_m);
+    below_m.zip(strip_m).map(|(from, to)| length([0, 1, 2].map(|i| to[i] - from[i]))).sum()
 }
 
 /// A blade, the slope that it stands on, and its lean without wind.
@@ -88,7 +99,8 @@ fn grown(number: u32) -> (Blade, [f32; 3], Leans) {
 
 #[test]
 fn a_storm_of_gusts_and_hits_leaves_a_blade_whole() {
-    let (mut hits, mut deepest) = (0, 0.0_f32);
+    let (mut hits, mut cut) = (0, 0);
+    let (mut deepest, mut deepest_drawn, mut longest) = (0.0_f32, 0.0_f32, 0.0_f32);
     for number in 0..4 {
         let (blade, normal, held) = grown(number);
         let mut sway = Sway::at_rest(held);
@@ -107,13 +119,28 @@ fn a_storm_of_gusts_and_hits_leaves_a_blade_whole() {
                 assert!(height_m > 0.0, "{height_m} m at step {step} of blade {number}");
                 below_m = point_m;
             }
-            let depth = spheres.iter().map(|sphere| depth_m(&points_m, sphere)).fold(0.0, f32::max) / blade.length_m;
+            let deep = |points_m: &[[f32; 3]]| spheres.iter().map(|sphere| depth_m(points_m, sphere)).fold(0.0, f32::max) / blade.length_m;
             hits += u32::from(touched);
-            deepest = deepest.max(depth);
+            deepest = deepest.max(deep(&points_m));
+            for segments in [3, 7] {
+                let strip_m = strip_m(&drawn_out_m(&points_m, blade.length_m, segments), segments);
+                assert!((length_m(&strip_m) / blade.length_m - 1.0).abs() < 1e-5, "{} m of {}", length_m(&strip_m), blade.length_m);
+                let height_m = strip_m.iter().map(|point_m| (0..3).map(|i| point_m[i] * normal[i]).sum()).fold(f32::INFINITY, f32::min);
+                assert!(height_m > 0.0, "drawn at {height_m} m at step {step} of blade {number}");
+                let depth = deep(&strip_m);
+                cut += u32::from(depth > 0.01);
+                deepest_drawn = deepest_drawn.max(depth);
+            }
+            let curve_m = strip_m(&drawn_out_m(&points_m, blade.length_m, 7), 64);
+            longest = longest.max(length_m(&curve_m) / blade.length_m);
         }
     }
     assert!(hits > 20_000, "{hits} hits");
     assert!(deepest < 0.01, "{deepest} of the length deep");
+    // What is drawn rounds the corners that links make at spheres: deeper than that in one strip of 200.
+    assert!(cut < 800_000 / 200 && deepest_drawn < 0.2, "{cut} strips cut spheres, by up to {deepest_drawn} of the length");
+    // The curve that seven segments approximate.
+    assert!(longest < 1.01, "{longest} of the length");
 }
 
 /// Blades that are taken through a step at once; no multiple of what a register holds.

@@ -10,21 +10,21 @@ use super::shaders;
 use super::uniforms::Plants;
 use crate::state::Land;
 use glam::Vec3;
-use shared::scene::BladeIntegrator;
+use shared::scene::BLADE_STEPS_LIMIT;
+use std::f32::consts::{PI, TAU};
 use wgpu::BufferUsages;
 
 /// Plants in one instance of an indirect draw; twin of the constants in `blades.wgsl` and `flowers.wgsl`.
 const CHUNK: u32 = 64;
-/// Pairs of vertices below the tip, of a fine and of a coarse blade.
-const ROWS: [u32; 2] = [7, 3];
 /// Vertices of a flower head; twin of `VERTICES` in `flowers.wgsl`.
 const FLOWER_VERTICES: u32 = 67;
 /// Bytes of a drawn blade and of its sway, as in `common.wgsl` and `blade.wgsl`.
 pub(super) const BLADE_BYTES: u64 = 64;
 pub(super) const SWAY_BYTES: u64 = 48;
-/// Longest step of the schemes that have a limit (s), and most of them in a frame; below 15 frames a second such blades move in slow motion.
-const STEP_SECS: f32 = 1.0 / 120.0;
-const STEP_LIMIT: f32 = 8.0;
+/// Most plants of a near grid.
+const PLANTS_LIMIT: u32 = 60_000;
+/// Most steps in a frame, of an integrator that needs several: as many as a scene may ask for in 1/15 s. In longer frames its blades move in slow motion.
+const STEP_LIMIT: f32 = 4.0 * BLADE_STEPS_LIMIT as f32;
 /// Longest step of the exact one (s): wind and obstacles stay as they are for a step.
 const EXACT_STEP_SECS: f32 = 0.1;
 
@@ -37,7 +37,7 @@ pub(super) struct Blades {
     plants: wgpu::Buffer,
     #[cfg(test)]
     pub(super) sways: wgpu::Buffer,
-    counters: wgpu::Buffer,
+    pub(super) counters: wgpu::Buffer,
     far_grids: wgpu::Buffer,
     draws: wgpu::Buffer,
     compute_group: wgpu::BindGroup,
@@ -45,10 +45,14 @@ pub(super) struct Blades {
     indices: [wgpu::Buffer; 3],
     grid_m: f32,
     rings: i32,
-    near_blades: u32,
-    far_blades: u32,
-    flowers: u32,
-    capacities: [u32; 3],
+    near_plants: u32,
+    far_plants: u32,
+    flower_share: f32,
+    /// Most blades drawn fine and coarse, and most flower heads.
+    pub(super) capacities: [u32; 3],
+    segments: [u32; 2],
+    /// Longest step that every blade bears (s).
+    longest_step_secs: f32,
     slots: [Option<[i32; 2]>; 9],
     far_count: u32,
 }
@@ -58,23 +62,27 @@ impl Blades {
         let gpu = maker.gpu;
         let scene_plants = &land.scene().plants;
         let grid_m = scene_plants.grid_m;
-        // The quality counts on grids of 8 m; others get the same plants per area, within what the buffers hold.
-        let per_grid = quality.blades_per_side().pow(2) as f32 * (grid_m / 8.0).powi(2);
-        let near_blades = (per_grid as u32).clamp(64, 60_000);
-        let flowers = ((scene_plants.flowers_per_m2 * grid_m * grid_m) as u32).min(near_blades / 3);
+        let blades = quality.blades_per_side(scene_plants.plants_per_side).pow(2) as f32;
+        let flowers = scene_plants.flowers_per_m2 * grid_m * grid_m;
+        let near_plants = ((blades + flowers).round() as u32).min(PLANTS_LIMIT);
+        let flower_share = flowers / (blades + flowers);
         let rings = quality.rings();
-        let far_blades = (near_blades as f32 * full_density_m(quality) / grid_m * 1.1).min(near_blades as f32) as u32;
-        let capacities = [near_blades.max(4096), near_blades * 9 / 2 + far_blades * 6, near_blades / 2 + 256];
+        let far_plants = (near_plants as f32 * full_density_m(quality) / grid_m * 1.1).min(near_plants as f32) as u32;
+        let reach_m = (rings + 1) as f32 * grid_m;
+        let plants_per_m2 = near_plants as f32 / (grid_m * grid_m);
+        let most = |per_m2: f32, within_m: f32| most_standing(per_m2 * full_area_m2(full_density_m(quality), within_m));
+        let capacities = [most(plants_per_m2, fine_m(quality)), most(plants_per_m2, reach_m), most(plants_per_m2 * flower_share, reach_m)];
+        let segments = quality.segments();
 
         let storage_usage = BufferUsages::STORAGE;
         let plants = gpu.empty_buffer("plants", size_of::<Plants>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
-        let sways = gpu.empty_buffer("sways", u64::from(near_blades) * 9 * SWAY_BYTES, storage_usage | BufferUsages::COPY_SRC);
+        let sways = gpu.empty_buffer("sways", u64::from(near_plants) * 9 * SWAY_BYTES, storage_usage | BufferUsages::COPY_SRC);
         let drawn_count = capacities.iter().sum::<u32>();
         let drawn = gpu.empty_buffer("drawn plants", u64::from(drawn_count) * BLADE_BYTES, storage_usage);
-        let counters = gpu.empty_buffer("counters", 16, storage_usage | BufferUsages::COPY_DST);
+        let counters = gpu.empty_buffer("counters", 16, storage_usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
         let far_limit = ((2 * rings + 3) * (2 * rings + 3)) as u64;
         let far_grids = gpu.empty_buffer("far grids", far_limit * 16, storage_usage | BufferUsages::COPY_DST);
-        let indices = [strip_indices(ROWS[0]), strip_indices(ROWS[1]), flower_indices()];
+        let indices = [strip_indices(segments[0]), strip_indices(segments[1]), flower_indices()];
         let draw_args: Vec<u32> = indices.iter().flat_map(|list| [list.len() as u32, 0, 0, 0, 0]).collect();
         let draws = gpu.buffer("plant draws", bytemuck::cast_slice(&draw_args), storage_usage | BufferUsages::INDIRECT);
 
@@ -89,8 +97,7 @@ impl Blades {
         let shapes = shapes.create_view(&Default::default());
         let mut first = 0;
         let lists = std::array::from_fn(|list| {
-            let rows = ROWS.get(list).copied().unwrap_or(0);
-            let range = [first, capacities[list], rows, list as u32];
+            let range = [first, capacities[list], segments.get(list).copied().unwrap_or(0), list as u32];
             first += capacities[list];
             let range = gpu.buffer("list", bytemuck::bytes_of(&range), BufferUsages::UNIFORM);
             let [drawn, counters, range] = [&drawn, &counters, &range].map(|buffer| buffer.as_entire_binding());
@@ -117,10 +124,12 @@ impl Blades {
             indices: indices.map(|list| gpu.buffer("plant", bytemuck::cast_slice(&list), BufferUsages::INDEX)),
             grid_m,
             rings,
-            near_blades,
-            far_blades,
-            flowers,
+            near_plants,
+            far_plants,
+            flower_share,
             capacities,
+            segments,
+            longest_step_secs: land.scene().blade_step_secs(),
             slots: [None; 9],
             far_count: 0,
         }
@@ -128,7 +137,7 @@ impl Blades {
 
     /// Plants whose posture is simulated.
     pub(super) fn simulated(&self) -> u32 {
-        self.near_blades * 9
+        self.near_plants * 9
     }
 
     /// Distance (m) that single plants reach at least.
@@ -160,14 +169,14 @@ impl Blades {
         }
         self.far_count = far.len() as u32;
         let looks = &land.scene().plants;
-        let (steps, step_secs) = steps(looks.integrator, dt_secs);
+        let (steps, step_secs) = steps(self.longest_step_secs, dt_secs);
         let plants = Plants {
             slots,
-            counts: [self.near_blades, self.flowers, self.far_count, self.far_blades],
+            counts: [self.near_plants, 0, self.far_count, self.far_plants],
             capacities: [self.capacities[0], self.capacities[1], self.capacities[2], 0],
             shape: [self.grid_m, full_density_m(quality), fine_m(quality), looks.swing_damping],
-            steps: [steps, looks.integrator as u32, 0, 0],
-            time: [step_secs, 0.0, 0.0, 0.0],
+            steps: [steps, looks.integrator as u32, self.segments[0], self.segments[1]],
+            time: [step_secs, self.flower_share, 0.0, 0.0],
         };
         gpu.queue.write_buffer(&self.plants, 0, bytemuck::bytes_of(&plants));
         gpu.queue.write_buffer(&self.counters, 0, &[0; 16]);
@@ -177,10 +186,10 @@ impl Blades {
     pub(super) fn bend(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_bind_group(1, &self.compute_group, &[]);
         pass.set_pipeline(&self.near);
-        pass.dispatch_workgroups(self.near_blades.div_ceil(CHUNK), 9, 1);
+        pass.dispatch_workgroups(self.near_plants.div_ceil(CHUNK), 9, 1);
         if self.far_count > 0 {
             pass.set_pipeline(&self.far);
-            pass.dispatch_workgroups(self.far_blades.div_ceil(CHUNK), self.far_count, 1);
+            pass.dispatch_workgroups(self.far_plants.div_ceil(CHUNK), self.far_count, 1);
         }
         pass.set_pipeline(&self.finish);
         pass.dispatch_workgroups(1, 1, 1);
@@ -196,14 +205,25 @@ impl Blades {
     }
 }
 
-/// How many steps a frame of `dt_secs` takes, and how long each is (s).
-fn steps(integrator: BladeIntegrator, dt_secs: f32) -> (u32, f32) {
+/// How many steps a frame of `dt_secs` takes, and how long each is (s), where blades bear one of `longest_secs`.
+fn steps(longest_secs: f32, dt_secs: f32) -> (u32, f32) {
     let dt_secs = dt_secs.max(0.0);
-    if integrator == BladeIntegrator::Exact {
+    if longest_secs == f32::INFINITY {
         return (u32::from(dt_secs > 0.0), dt_secs.min(EXACT_STEP_SECS));
     }
-    let count = (dt_secs / STEP_SECS - 1e-3).ceil().clamp(0.0, STEP_LIMIT);
-    (count as u32, (dt_secs / count.max(1.0)).min(STEP_SECS))
+    let count = (dt_secs / longest_secs).ceil().min(STEP_LIMIT);
+    (count as u32, (dt_secs / count.max(1.0)).min(longest_secs))
+}
+
+/// Area (m²) at full density that holds as many plants as stand within a distance; twin of `density` in `bend.wgsl`.
+fn full_area_m2(full_m: f32, within_m: f32) -> f32 {
+    let inner_m = full_m.min(within_m);
+    PI * inner_m * inner_m + TAU / 0.75 * full_m.powf(1.25) * (within_m.powf(0.75) - inner_m.powf(0.75))
+}
+
+/// Most plants that stand where `mean` do on the average, each by a lot of its own: six standard deviations more.
+fn most_standing(mean: f32) -> u32 {
+    (mean + 6.0 * mean.sqrt() + 64.0) as u32
 }
 
 /// Whether any plant of a grid may be in view.
@@ -241,18 +261,14 @@ fn storage_compute(binding: u32) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::COMPUTE, ..storage(binding) }
 }
 
-/// Triangles of 64 blades with `rows` pairs of vertices and a tip.
-fn strip_indices(rows: u32) -> Vec<u16> {
-    let vertices = rows * 2 + 1;
+/// Triangles of 64 blades of so many rectangles.
+fn strip_indices(segments: u32) -> Vec<u16> {
     let mut indices = Vec::new();
     for blade in 0..CHUNK {
-        let first = blade * vertices;
-        for row in 0..rows - 1 {
-            let a = first + row * 2;
+        for segment in 0..segments {
+            let a = 2 * (blade * (segments + 1) + segment);
             indices.extend([a, a + 1, a + 2, a + 2, a + 1, a + 3].map(|i| i as u16));
         }
-        let last = first + (rows - 1) * 2;
-        indices.extend([last, last + 1, last + 2].map(|i| i as u16));
     }
     indices
 }
@@ -280,16 +296,26 @@ mod tests {
 
     #[test]
     fn frames_take_the_steps_that_their_scheme_can_take() {
-        let found = [0.0, 0.004, 1.0 / 60.0, 0.02, 1.0, -1.0].map(|dt_secs| steps(BladeIntegrator::Verlet, dt_secs));
-        assert_eq!(found.map(|(count, _)| count), [0, 1, 2, 3, 8, 0]);
-        assert!(found.iter().all(|&(_, step_secs)| step_secs <= STEP_SECS));
+        let found = [0.0, 0.004, 1.0 / 60.0, 0.02, 1.0, -1.0].map(|dt_secs| steps(0.008, dt_secs));
+        assert_eq!(found.map(|(count, _)| count), [0, 1, 3, 3, 32, 0]);
+        assert!(found.iter().all(|&(_, step_secs)| step_secs <= 0.008));
         assert!((found[3].1 - 0.02 / 3.0).abs() < 1e-6);
-        assert_eq!([0.0, 0.02, 5.0].map(|dt_secs| steps(BladeIntegrator::Exact, dt_secs)), [(0, 0.0), (1, 0.02), (1, EXACT_STEP_SECS)]);
+        assert_eq!([0.0, 0.02, 5.0].map(|dt_secs| steps(f32::INFINITY, dt_secs)), [(0, 0.0), (1, 0.02), (1, EXACT_STEP_SECS)]);
+    }
+
+    #[test]
+    fn a_textured_blade_is_of_rectangles_up_to_its_tip() {
+        for segments in [3, 7] {
+            let list = strip_indices(segments);
+            assert_eq!(list.len() as u32, CHUNK * segments * 6);
+            let tip = [2 * segments, 2 * segments + 1].map(|i| i as u16);
+            assert!(tip.iter().all(|corner| list[..segments as usize * 6].contains(corner)));
+        }
     }
 
     #[test]
     fn indices_stay_within_their_chunk() {
-        for (list, vertices) in [(strip_indices(7), 15), (strip_indices(3), 7), (flower_indices(), FLOWER_VERTICES)] {
+        for (list, vertices) in [(strip_indices(7), 16), (strip_indices(3), 8), (flower_indices(), FLOWER_VERTICES)] {
             let largest = u32::from(*list.iter().max().expect("indices"));
             assert_eq!(largest, CHUNK * vertices - 1);
         }

@@ -14,6 +14,9 @@ pub(super) const STONE_SHAPES: u32 = 3;
 /// Most trees or stones of a world; of more, every n-th stands.
 const PLACE_LIMIT: usize = 100_000;
 
+/// Sway of a tree's top in a wind of 10 m/s and above, over its height.
+const TREE_SWAY_RAD: f32 = 0.07;
+
 /// A tree or a stone that stands somewhere.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Standing {
@@ -56,7 +59,7 @@ pub(super) fn standing(land: &Land) -> Vec<Standing> {
                 is_tree,
                 size_m,
                 world_from_model: Mat4::from_scale_rotation_translation(squat, turn, position_m),
-                tint: [bright * warm, bright, bright * (2.0 - warm) * 0.95, if is_tree { 1.0 } else { 0.0 }],
+                tint: [bright * warm, bright, bright * (2.0 - warm) * 0.95, if is_tree { TREE_SWAY_RAD } else { 0.0 }],
             });
         }
     }

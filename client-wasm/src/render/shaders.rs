@@ -4,12 +4,16 @@
 const COMMON: &str = include_str!("../../shaders/common.wgsl");
 
 /// Compute passes that bend single plants.
-pub(super) const BEND: &str = concat!(include_str!("../../shaders/blade.wgsl"), include_str!("../../shaders/bend.wgsl"));
+pub(super) const BEND: &str =
+    concat!(include_str!("../../shaders/blade.wgsl"), include_str!("../../shaders/backbone.wgsl"), include_str!("../../shaders/bend.wgsl"));
 /// How a single blade moves.
 #[cfg(test)]
 pub(super) const BLADE: &str = include_str!("../../shaders/blade.wgsl");
-/// Blades as tapered strips.
-pub(super) const BLADES: &str = include_str!("../../shaders/blades.wgsl");
+/// The curve of a blade and the outline about it.
+#[cfg(test)]
+pub(super) const BACKBONE: &str = include_str!("../../shaders/backbone.wgsl");
+/// Blades as strips.
+pub(super) const BLADES: &str = concat!(include_str!("../../shaders/backbone.wgsl"), include_str!("../../shaders/blades.wgsl"));
 /// Rain.
 pub(super) const RAIN: &str = include_str!("../../shaders/rain.wgsl");
 /// Underbrush.

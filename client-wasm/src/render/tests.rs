@@ -8,6 +8,7 @@ use crate::state::Mirror;
 use glam::Vec3;
 use shared::hash::hash3;
 use shared::lod::Lag;
+use shared::plant::blade::backbone::{drawn_out_m, segment_points_m};
 use shared::plant::blade::contact::{Sphere, settle};
 use shared::plant::blade::{Blade, LINKS, Sway, advance};
 use shared::plant::underbrush::constraint::Following;
@@ -131,18 +132,25 @@ fn stream(mirror: &mut Mirror, theta_rad: impl Fn(f32) -> f32, omega_rad_per_s: 
 
 /// Tips of the near blades after a second in a wind, as offsets from their roots in lengths of the blade.
 fn tips(gpu: &Gpu, wind_m_per_s: f32, streamed_rad: Option<f32>) -> Vec<Vec3> {
-    let mut mirror = meadow(wind_m_per_s);
+    let swayed = sways(gpu, &mut meadow(wind_m_per_s), streamed_rad);
+    swayed.iter().map(|sway| Vec3::from(sway.points_m(1.0)[LINKS - 1])).collect()
+}
+
+/// The near blades after a second, from upright.
+fn sways(gpu: &Gpu, mirror: &mut Mirror, streamed_rad: Option<f32>) -> Vec<Sway> {
     let mut picture = Picture::new(gpu, [16, 16], Quality::Low);
     let camera = Camera { eye_m: Vec3::new(32.0, 2.2, 40.0), pitch_rad: -0.15, ..Camera::default() };
     for frame in 0..30 {
         if let Some(theta_rad) = streamed_rad.filter(|_| frame == 0) {
-            stream_lean(&mut mirror, theta_rad);
+            stream_lean(mirror, theta_rad);
         }
-        picture.draw(&mut mirror, &camera, 0.0, 1.0 / 30.0);
+        picture.draw(mirror, &camera, 0.0, 1.0 / 30.0);
     }
     let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").blades.sways);
     let sways: &[[[f32; 4]; LINKS]] = bytemuck::cast_slice(&bytes);
-    sways.iter().map(|links| Vec3::from(Sway::at_rest(links.map(|[x, z, ..]| [x, z])).points_m(1.0)[LINKS - 1])).collect()
+    let sway =
+        |links: &[[f32; 4]; LINKS]| Sway { lean_rad: links.map(|[x, z, ..]| [x, z]), rate_rad_per_s: links.map(|[.., x, z]| [x, z]) };
+    sways.iter().map(sway).collect()
 }
 
 /// Mean angle of the tips eastward from upright (rad).
@@ -171,6 +179,33 @@ fn near_blades_lean_with_the_square_of_a_weak_wind() {
     assert!((ratio - 4.0).abs() < 0.5, "twice the wind leans {ratio} times as far: {leans:?}");
 }
 
+#[test]
+fn near_blades_swing_alike_by_verlet_and_exactly() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let swung = |integrator| {
+        sways(
+            &gpu,
+            &mut meadow_of(
+                |scene| {
+                    (scene.plants.integrator, scene.wind.mean_m_per_s) = (integrator, [8.0, 0.0]);
+                },
+                &[255; 16 * 16],
+            ),
+            None,
+        )
+    };
+    let (exact, verlet) = (swung(BladeIntegrator::Exact), swung(BladeIntegrator::Verlet));
+    let mut apart_rad = 0.0;
+    for (exact, verlet) in exact.iter().zip(&verlet) {
+        assert!(verlet.lean_rad.as_flattened().iter().all(|lean| lean.abs() < 2.5), "{verlet:?}");
+        assert!(verlet.rate_rad_per_s.as_flattened().iter().all(|rate| rate.abs() < 40.0), "{verlet:?}");
+        let [a, b] = [exact, verlet].map(|sway| Vec3::from(sway.points_m(1.0)[LINKS - 1]));
+        apart_rad += a.angle_between(b);
+    }
+    let mean_rad = apart_rad / exact.len() as f32;
+    assert!(mean_rad < 0.03, "{mean_rad} rad apart");
+}
+
 /// What the shaders find in the air at places: X, height above the ground and Z (m).
 fn air(gpu: &Gpu, picture: &Picture, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
     probe(gpu, picture, "let air = air_at(at.xz, at.y); return vec4<f32>(air.xyz, dust_of(air));", places)
@@ -178,8 +213,14 @@ fn air(gpu: &Gpu, picture: &Picture, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
 
 /// What the body of a function of `at`, written in WGSL over the shared pieces, says of each of `places`.
 pub(super) fn probe(gpu: &Gpu, picture: &Picture, body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    probe_in(gpu, picture, "", body, places)
+}
+
+/// The same over a pass's WGSL, whose own binding 0 is out of the way.
+fn probe_in(gpu: &Gpu, picture: &Picture, pass: &str, body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
     let source = format!(
-        "@group(1) @binding(0) var<storage, read_write> probes: array<vec4<f32>>;
+        "{pass}
+        @group(1) @binding(0) var<storage, read_write> probes: array<vec4<f32>>;
         fn found(at: vec4<f32>) -> vec4<f32> {{ {body} }}
         @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {{ probes[id.x] = found(probes[id.x]); }}"
     );
@@ -417,6 +458,155 @@ fn blades_move_as_their_twins_do() {
         }
     }
     assert!(touching > 300, "only {touching} contacts were compared");
+}
+
+#[test]
+fn blades_are_drawn_as_their_twins_are() {
+    const SOURCE: &str = "
+        struct Case { links: array<vec4<f32>, 3>, how: vec4<f32> }
+        @group(1) @binding(0) var<storage, read_write> cases: array<Case>;
+        @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
+            let input = cases[id.x];
+            let points = drawn_out(points_of(Sway(input.links), input.how.x), input.how.x, u32(input.how.w));
+            cases[id.x].links[0] = vec4<f32>(backbone_at(points, input.how.z), 0.0);
+            cases[id.x].links[1] = vec4<f32>(side_at(points[2], input.how.y, input.how.z), 0.0);
+        }";
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    picture.draw(&mut meadow(0.0), &Camera::default(), 0.0, 0.0);
+    let cases: Vec<_> = (0..400)
+        .map(|n| {
+            let [l0, l1, l2, .., blade, root, _] = blade_case(n);
+            [l0, l1, l2, [blade[0], root[0] * 3.0 - 100.0, (n % 11) as f32 * 0.1, (2 + n % 7) as f32]]
+        })
+        .collect();
+    let source = format!("{}\n{}\n{SOURCE}", shaders::BLADE, shaders::BACKBONE);
+    let outputs = compute(&gpu, &picture, &source, cases.as_flattened(), cases.len() as u32);
+    for ([l0, l1, l2, [length_m, side_rad, t, segments]], found) in cases.into_iter().zip(outputs.chunks_exact(4)) {
+        let points_m = Sway::at_rest([l0, l1, l2].map(|[x, z, ..]| [x, z])).points_m(length_m);
+        let [left, right] = segment_points_m(&drawn_out_m(&points_m, length_m, segments as u32), side_rad, t, 1.0).map(Vec3::from);
+        let [at, side] = [Vec3::from_slice(&found[0][..3]), Vec3::from_slice(&found[1][..3])];
+        assert!(at.distance(0.5 * (left + right)) < 1e-4 * length_m, "{at} instead of {} at {t}", 0.5 * (left + right));
+        // Where the lean is along the side, either turn is the lesser.
+        let is_even =
+            (points_m[2][0] * side_rad.cos() + points_m[2][2] * side_rad.sin()).abs() > 0.9999 * points_m[2][0].hypot(points_m[2][2]);
+        assert!(is_even || side.distance(right - left) < 1e-3, "{side} instead of {} at {t}", right - left);
+    }
+}
+
+#[test]
+fn textured_blades_are_wide_up_to_their_tips_and_tapered_ones_end_in_a_point() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    picture.draw(&mut meadow(0.0), &Camera::default(), 0.0, 0.0);
+    let body =
+        "let corner = corner_of(u32(at.x), 7u); return vec4<f32>(corner, width_share(corner.x, false), width_share(corner.x, true));";
+    let vertices: Vec<_> = [0, 1, 14, 15].map(|vertex| [vertex as f32, 0.0, 0.0, 0.0]).to_vec();
+    let found = probe_in(&gpu, &picture, shaders::BACKBONE, body, &vertices);
+    let wide = found[0][3];
+    assert!(wide > 1.0, "{found:?}");
+    for ([t, across, tapered, textured], wanted) in
+        found.into_iter().zip([[0.0, -1.0, 0.8], [0.0, 1.0, 0.8], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0]])
+    {
+        assert_eq!([t, across, tapered, textured], [wanted[0], wanted[1], wanted[2], wide]);
+    }
+}
+
+#[test]
+fn petals_stand_at_065_of_the_height_of_the_blade_whose_place_they_take() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut mirror = meadow(0.0);
+    picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
+    let body = "let grid = vec2<i32>(at.xy);
+        let place = 8.0 * at.xy + 8.0 * random3(grid, u32(at.z)).xy;
+        let blade = plant_at(grid, u32(at.z), place, false);
+        let flower = plant_at(grid, u32(at.z), place, true);
+        return vec4<f32>(blade.height, flower.height, blade.frequency, flower.frequency);";
+    let places: Vec<_> = (0..4000).map(|n| [(n % 8) as f32, (n / 8 % 8) as f32, (n / 64) as f32, 0.0]).collect();
+    let source = shaders::BEND.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(20) var<uniform>");
+    let found = probe_in(&gpu, &picture, &source, body, &places);
+    let plants = mirror.land().expect("a scene").scene().plants;
+    for [blade_m, flower_m, blade_rad_per_s, flower_rad_per_s] in &found {
+        assert!((0.5999..0.7001).contains(&(flower_m / blade_m)), "{flower_m} m over {blade_m} m");
+        assert!((flower_rad_per_s / blade_rad_per_s - 0.55_f32.sqrt()).abs() < 1e-4, "heavier, so slower");
+        // As `Scene::blade_step_secs` has it.
+        let least_m = plants.height_m * (1.0 - plants.height_variation) * 0.72 * 0.78;
+        assert!(
+            *blade_m > least_m
+                && (blade_rad_per_s * blade_m / plants.height_m / plants.swing_hz / std::f32::consts::TAU - 1.0).abs() < 1e-4
+        );
+    }
+    let mean = |of: usize| found.iter().map(|found| found[of]).sum::<f32>() / found.len() as f32;
+    assert!((mean(1) / mean(0) - 0.65).abs() < 0.005, "{} m over {} m", mean(1), mean(0));
+}
+
+#[test]
+fn as_many_flowers_stand_as_the_scene_says_and_all_are_listed() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    // Straight down on all single plants.
+    let camera = Camera { eye_m: Vec3::new(32.0, 60.0, 32.0), pitch_rad: -1.55, ..Camera::default() };
+    for flowers_per_m2 in [0.6, 8.0, 50.0] {
+        let mut mirror = meadow_of(|scene| scene.plants.flowers_per_m2 = flowers_per_m2, &[255; 16 * 16]);
+        let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+        picture.draw(&mut mirror, &camera, 0.0, 0.0);
+        let blades = &picture.renderer.scene.as_ref().expect("a scene").blades;
+        let bytes = read(&gpu, &blades.counters);
+        let listed: &[u32] = bytemuck::cast_slice(&bytes);
+        assert!(listed.iter().zip(blades.capacities).all(|(&listed, most)| listed <= most), "{listed:?} of {:?}", blades.capacities);
+        // Full density up to 6 m, thinning up to 16 m.
+        let area_m2 = std::f32::consts::PI * 36.0 + std::f32::consts::TAU / 0.75 * 6.0_f32.powf(1.25) * (8.0 - 6.0_f32.powf(0.75));
+        let share = listed[2] as f32 / (flowers_per_m2 * area_m2);
+        assert!((share - 1.0).abs() < 0.03 + 3.0 / (flowers_per_m2 * area_m2).sqrt(), "{} flowers, {share} of those meant", listed[2]);
+    }
+}
+
+#[test]
+fn near_grids_hold_the_blades_that_the_scene_says() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    // 000's own: 20 × 20 on each grid; more at higher quality.
+    let lawn = |scene: &mut Scene| (scene.plants.grid_m, scene.plants.plants_per_side, scene.plants.flowers_per_m2) = (4.0, 20, 0.0);
+    for (quality, per_side) in [(Quality::Low, 20), (Quality::Medium, 40), (Quality::High, 66), (Quality::Ultra, 100)] {
+        let mut picture = Picture::new(&gpu, [16, 16], quality);
+        let stats = picture.draw(&mut meadow_of(lawn, &[255; 16 * 16]), &Camera::default(), 0.0, 0.0);
+        assert_eq!(stats.blades, 9 * per_side * per_side, "{quality:?}");
+    }
+}
+
+#[test]
+fn trees_sway_as_they_are_tall_and_stay_as_long_as_they_are() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let body = "let height = at.x;
+        let foot = vec4<f32>(32.0, 0.0, 32.0, 1.0);
+        let scaled = mat4x4<f32>(vec4<f32>(height, 0.0, 0.0, 0.0), vec4<f32>(0.0, height, 0.0, 0.0), vec4<f32>(0.0, 0.0, height, 0.0), foot);
+        let vertex = Vertex(vec3<f32>(0.0, at.y, 0.0), vec4<f32>(0.0), vec4<f32>(0.0), vec2<f32>(0.0));
+        return vec4<f32>((placed(vertex, Instance(scaled, vec4<f32>(0.0, 0.0, 0.0, at.z))) - foot.xyz) / height, 0.0);";
+    let source = shaders::OBJECTS.replace("@group(1) @binding(0) var<storage, read>", "@group(1) @binding(20) var<storage, read>");
+    let sway_rad = 0.07;
+    let tops = [0.0, 1.5].map(|grass_bend_rad| {
+        let mut mirror = meadow_of(
+            |scene| {
+                // Even the lulls between gusts blow with more than 10 m/s.
+                (scene.wind.mean_m_per_s, scene.grass.wind_bend_rad) = ([28.0, 0.0], grass_bend_rad);
+            },
+            &[255; 16 * 16],
+        );
+        let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+        picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
+        [2.0, 7.0, 60.0].map(|height_m| {
+            let trunk: Vec<_> = (0..=64).map(|i| [height_m, i as f32 / 64.0, sway_rad, 0.0]).collect();
+            let found: Vec<_> = probe_in(&gpu, &picture, &source, body, &trunk).iter().map(|at| Vec3::from_slice(&at[..3])).collect();
+            let length: f32 = found.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+            assert!((length - 1.0).abs() < 2e-4, "{length} of the height of {height_m} m");
+            assert!(found.iter().zip(&trunk).all(|(at, [_, up, ..])| at.y <= *up + 1e-6 && at.x >= -1e-6));
+            found[64]
+        })
+    });
+    for (top, other) in tops[0].iter().zip(tops[1]) {
+        assert!(top.distance(other) < 1e-6, "the grass's own bend does not move trees");
+        let aside = top.x.hypot(top.z);
+        assert!((0.4 * sway_rad - 1e-4..sway_rad + 1e-4).contains(&aside), "{aside} of the height");
+    }
 }
 
 #[test]

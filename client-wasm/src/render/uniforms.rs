@@ -104,15 +104,15 @@ uniform_block! {
     Plants {
         /// Grid (x, z) in each of the nine slots; third: 1 when it has just moved in.
         slots: [[i32; 4]; 9],
-        /// Plants of a near grid, flowers among them, grids farther away, their plants.
+        /// Plants of a near grid, unused, grids farther away, their plants.
         counts: [u32; 4],
         /// Capacities of the lists of fine blades, coarse blades and flowers.
         capacities: [u32; 4],
         /// Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), damping share of a blade.
         shape: [f32; 4],
-        /// Steps of this frame; way of integration, as the constants of `blade.wgsl`; unused.
+        /// Steps of this frame; way of integration, as the constants of `blade.wgsl`; segments of a fine blade, and of a coarse one.
         steps: [u32; 4],
-        /// Length of a step (s); unused.
+        /// Length of a step (s); share of flowers among the plants; unused.
         time: [f32; 4],
     }
 }

@@ -1,6 +1,6 @@
 //! Checks of values against each other; the range of each single value is in [`FIELDS`](super::FIELDS).
 
-use super::{Scene, drawn_wind, objects, underbrush, wind};
+use super::{Scene, drawn_wind, objects, swing, underbrush, wind};
 use crate::bend::{Scheme, Seams};
 
 /// Largest side of the world (m): up to here a coordinate in single precision resolves 1 cm.
@@ -53,6 +53,7 @@ pub(super) fn cross_checks(scene: &Scene, from_file: usize) -> Misfits {
         misfits.note(&["patches.awake_limit", "patches.cells"], message);
     }
     check_bend(scene, &mut misfits);
+    swing::check(scene, &mut misfits);
     wind::check::check(scene, &mut misfits);
     for (i, later) in species.iter().enumerate() {
         let earlier = || species[..i].iter().enumerate();

@@ -1,7 +1,8 @@
 //! A blade of grass that sways (000 chapter 3): a cantilever of three links between the four control points of its backbone.
 //!
 //! What moves are the leans of the links, each a vector on the ground (rad) as in the bend field, so that wind, cars and spheres press one and the same
-//! blade, and so that its length is exact whatever it does: a control point stands one link's length from the one below.
+//! blade, and so that its length is exact whatever it does: a control point stands one link's length from the one below, and [`backbone`] draws the curve that they span
+//! to the same length.
 //!
 //! # Accuracy
 //! Loads act across the blade however it leans, and springs are linear in the leans. Beside the elastica of a blade with the same first frequency the tip is
@@ -17,7 +18,7 @@
 //! - [`contact`]: never below the ground, never inside a sphere;
 //! - [`backbone`]: the curve through the control points and the outline about it.
 //!
-//! The twin on the GPU is `blade.wgsl`.
+//! The twins on the GPU are `blade.wgsl` and `backbone.wgsl`.
 
 pub mod abreast;
 pub mod backbone;

@@ -1,6 +1,8 @@
 //! How one mode is taken through a step: `ẍ + 2γẋ + ω²x = 0`, x the distance from where it is held.
 
-use super::modes::FREQUENCIES;
+use super::Blade;
+use super::modes::{BRAKES, FREQUENCIES};
+use super::number::Number;
 
 pub use crate::scene::BladeIntegrator as Integrator;
 
@@ -83,7 +85,32 @@ impl Propagator {
 /// assert_eq!(stable_dt_secs(Integrator::Euler, 10.0, 0.0), 0.0);
 /// ```
 pub fn stable_dt_secs(integrator: Integrator, frequency_rad_per_s: f32, damping_share: f32) -> f32 {
-    let omega_rad_per_s = frequency_rad_per_s * FREQUENCIES[FREQUENCIES.len() - 1];
+    mode_dt_secs(integrator, frequency_rad_per_s * FREQUENCIES[FREQUENCIES.len() - 1], damping_share)
+}
+
+/// Longest step (s) over which all modes of a blade stay bounded in air that passes its control points at any speed up to `past_m_per_s`, whose drag brakes
+/// them as [`advance`](super::advance) has it.
+///
+/// ```
+/// use shared::plant::blade::{Blade, Integrator, propagator::{stable_dt_in_air_secs, stable_dt_secs}};
+/// let blade = Blade { length_m: 0.8, frequency_rad_per_s: 10.0, damping_share: 0.1, lean_per_wind2: 0.005 };
+/// let [calm, blown] = [0.0, 20.0].map(|past_m_per_s| stable_dt_in_air_secs(Integrator::Verlet, &blade, past_m_per_s));
+/// assert_eq!(calm, stable_dt_secs(Integrator::Verlet, 10.0, 0.1));
+/// assert!(blown < calm);
+/// ```
+pub fn stable_dt_in_air_secs(integrator: Integrator, blade: &Blade, past_m_per_s: f32) -> f32 {
+    let omega = blade.frequency_rad_per_s;
+    let braked = 0.5 * blade.length_m * omega * omega * blade.lean_per_wind2 * past_m_per_s;
+    let modes = FREQUENCIES.iter().zip(BRAKES).flat_map(|(&times, brakes)| {
+        let drag_share = braked * brakes.iter().sum::<f32>() / (omega * times);
+        // Limits rise up to critical damping and fall beyond it, so that the least is at an end.
+        [0.0, drag_share].map(|drag_share| mode_dt_secs(integrator, omega * times, blade.damping_share + drag_share))
+    });
+    modes.fold(f32::INFINITY, f32::min)
+}
+
+/// Longest step (s) over which one mode stays bounded.
+fn mode_dt_secs(integrator: Integrator, omega_rad_per_s: f32, damping_share: f32) -> f32 {
     match integrator {
         Integrator::Euler if damping_share < 1.0 => 2.0 * damping_share / omega_rad_per_s,
         Integrator::Euler => 2.0 * (damping_share - (damping_share * damping_share - 1.0).sqrt()) / omega_rad_per_s,
