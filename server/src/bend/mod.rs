@@ -29,6 +29,7 @@ use shared::scene::Scene;
 use shared::terrain::{CoverMap, HeightMap};
 use std::sync::Arc;
 use sward::{Growth, Sward};
+use swath::Swath;
 
 /// A camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +53,7 @@ pub struct Meadow {
     bodies: Bodies,
     blows: Blows,
     laid: Laid,
-    contacts: Vec<Contact>,
+    motions: Vec<Motion>,
     refused: Vec<MotionError>,
     refused_count: u64,
     broken: u64,
@@ -85,7 +86,7 @@ impl Meadow {
             bodies: Bodies::new(&scene.objects),
             blows: Blows::new(scene, drawings),
             laid: Laid::new(layout, scene.grass.laid_recovery_secs, tile_limit),
-            contacts: vec![],
+            motions: vec![],
             refused: vec![],
             refused_count: 0,
             broken: 0,
@@ -127,9 +128,10 @@ impl Meadow {
         &self.laid
     }
 
-    /// What touched the grass in the newest step.
-    pub fn contacts(&self) -> &[Contact] {
-        &self.contacts
+    /// What the parts of objects swept over in the newest step at less than `below_m` above the land, and how high above it (m).
+    pub fn passages(&self, below_m: f32) -> impl Iterator<Item = (Swath, f32)> {
+        let cell_m = self.field.layout().cell_m;
+        self.motions.iter().flat_map(move |motion| self.bodies.passages(motion, &self.height, below_m, cell_m))
     }
 
     /// Lean of the grass at a place in a wind (rad, as a vector along X and Z), all that holds it together.
@@ -180,7 +182,7 @@ impl Meadow {
         if let Some(breeze) = &mut self.breeze {
             breeze.blow(&mut self.field, &breezy, dt_secs);
         }
-        self.contacts = contacts;
+        self.motions = motions;
         self.laid.step(dt_secs, views);
         self.report = self.propagate(dt_secs);
         self.broken += u64::from(self.report.broken);

@@ -120,12 +120,9 @@ impl Bodies {
         growth: &'a Growth,
         cell_m: f32,
     ) -> impl Iterator<Item = Contact> + 'a {
-        let (parts, tread) = &self.kinds[motion.kind as usize];
-        // A ball is as round one way as the other.
-        let motion = if motion.kind == VehicleKind::Ball { motion.unturned() } else { *motion };
-        parts.iter().filter_map(move |part| {
-            let [x, z] = part.foot_m(&motion.to);
-            let clearance = (part.lowest_m(&motion.to) - height.height_m(x, z)).max(0.0) / growth.blade_m([x, z]);
+        let tread = self.kinds[motion.kind as usize].1;
+        self.passing(motion, height).filter_map(move |(part, motion, foot_m, clearance_m)| {
+            let clearance = clearance_m / growth.blade_m(foot_m);
             (clearance < 1.0).then(|| Contact {
                 swath: Swath::new(part, &motion, cell_m),
                 strike_height_m: tread.strike_height_m,
@@ -134,6 +131,28 @@ impl Bodies {
                 lays_share: if part.bears_weight { tread.lays_share } else { 0.0 },
                 rests: motion.rests,
             })
+        })
+    }
+
+    /// What a motion's parts sweep over at less than `below_m` above the land, and how high above it (m).
+    pub fn passages<'a>(
+        &'a self,
+        motion: &Motion,
+        height: &'a HeightMap,
+        below_m: f32,
+        cell_m: f32,
+    ) -> impl Iterator<Item = (Swath, f32)> + use<'a> {
+        let low = self.passing(motion, height).filter(move |&(.., clearance_m)| clearance_m < below_m);
+        low.map(move |(part, motion, _, clearance_m)| (Swath::new(part, &motion, cell_m), clearance_m))
+    }
+
+    /// Parts of a moving body, where their feet are (m), and how high above the land (m).
+    fn passing<'a>(&'a self, motion: &Motion, height: &'a HeightMap) -> impl Iterator<Item = (&'a Part, Motion, [f32; 2], f32)> + use<'a> {
+        // A ball is as round one way as the other.
+        let motion = if motion.kind == VehicleKind::Ball { motion.unturned() } else { *motion };
+        self.kinds[motion.kind as usize].0.iter().map(move |part| {
+            let foot_m = part.foot_m(&motion.to);
+            (part, motion, foot_m, (part.lowest_m(&motion.to) - height.height_m(foot_m[0], foot_m[1])).max(0.0))
         })
     }
 }

@@ -1,8 +1,8 @@
 //! The underbrush that objects and the wind break, for good (004 §3.2).
 //!
-//! - Objects: a component that is pressed to lean by θ is bent over its lower half: the moment at its foot is then 2·θ·EI/L. So a plant breaks when an object
-//!   that moves passes over its site, the grass there is bent by θ, and 2·θ exceeds the strength of any component that it stands on. It falls the way that
-//!   the grass there leans. The wash of a helicopter breaks nothing so.
+//! - Objects: a component that is pressed to lean by θ is bent over its lower half: the moment at its foot is then 2·θ·EI/L. What a moving object passes over
+//!   must lie below it: a plant of height H under a body that is c above the land leans by arccos(c/H), or by as much as the grass there if that is more. It
+//!   breaks when 2·θ exceeds the strength of any component that it stands on, and falls the way that it is pressed. The wash of a helicopter breaks nothing so.
 //! - Wind: a plant breaks when the air at half its height presses harder than its species [bears](shared::plant::underbrush::bearing::bears_pa), and falls
 //!   downwind. Each is looked at every two seconds; none while the wind is too weak anywhere for the weakest species.
 
@@ -15,7 +15,7 @@ use crate::bend::Meadow;
 use crate::bend::contact::{STANDING_M_PER_S, length};
 use crate::weather::Weather;
 use gale::Gale;
-use shared::plant::flora::Flora;
+use shared::plant::flora::{Flora, height_m};
 use shared::plant::underbrush::bearing::bears_rad;
 use shared::wire::BrokenPlant;
 use shared::wire::quantise::heading_code;
@@ -23,10 +23,19 @@ use shared::wire::quantise::heading_code;
 /// The plants of a world, and which of them are broken.
 pub struct Plants {
     flora: Option<Flora>,
-    /// Bend beyond which each species breaks (rad).
-    bears_rad: Vec<f32>,
+    species: Vec<Bearing>,
+    /// Height of the tallest plants (m).
+    tallest_m: f32,
     gale: Gale,
     fallen: Fallen,
+}
+
+/// What the plants of a species bear.
+#[derive(Clone, Copy)]
+struct Bearing {
+    height_m: f32,
+    /// Bend beyond which they break (rad).
+    bears_rad: f32,
 }
 
 /// What is broken.
@@ -51,9 +60,11 @@ impl Fallen {
 impl Plants {
     /// Whole plants in a world that goes by steps of `dt_secs`.
     pub fn new(flora: Option<Flora>, dt_secs: f32) -> Self {
+        let known = || flora.iter().flat_map(|flora| flora.species().iter().zip(flora.plans()));
         let sites = flora.as_ref().map_or(0, |flora| flora.grown().sites.total());
         Self {
-            bears_rad: flora.iter().flat_map(|flora| flora.plans()).map(bears_rad).collect(),
+            species: known().map(|(species, plan)| Bearing { height_m: height_m(species), bears_rad: bears_rad(plan) }).collect(),
+            tallest_m: known().map(|(species, _)| height_m(species) * (1.0 + species.size_variation)).fold(0.0, f32::max),
             gale: Gale::new(flora.as_ref(), dt_secs),
             fallen: Fallen { is_broken: vec![false; sites], all: BrokenPlants::default() },
             flora,
@@ -74,17 +85,20 @@ impl Plants {
     pub fn step(&mut self, tick: u64, dt_secs: f32, meadow: &Meadow, weather: &Weather) {
         let Some(flora) = &self.flora else { return };
         let grown = flora.grown();
-        let moving = meadow.contacts().iter().filter(|contact| contact.swath.way_m() > STANDING_M_PER_S * dt_secs);
-        for leg in moving.flat_map(|contact| contact.swath.legs()) {
-            let [low_m, high_m] = leg.cover().bounds_m();
-            for plant in grown.in_rectangle(low_m, high_m) {
-                let at_m = grown.sites.place_m(plant.site);
-                if self.fallen.is_broken(plant.site) || leg.passage(at_m).is_none() {
-                    continue;
-                }
-                let lean_rad = meadow.lean_rad(at_m, weather.ground());
-                if length(lean_rad) > self.bears_rad[usize::from(plant.species)] {
-                    self.fallen.fell(plant.site, lean_rad);
+        let passages = meadow.passages(self.tallest_m).filter(|(swath, _)| swath.way_m() > STANDING_M_PER_S * dt_secs);
+        for (swath, clearance_m) in passages {
+            for leg in swath.legs() {
+                let [low_m, high_m] = leg.cover().bounds_m();
+                for plant in grown.in_rectangle(low_m, high_m) {
+                    let at_m = grown.sites.place_m(plant.site);
+                    let Some(passage) = leg.passage(at_m).filter(|_| !self.fallen.is_broken(plant.site)) else { continue };
+                    let Bearing { height_m, bears_rad } = self.species[usize::from(plant.species)];
+                    let below_rad = (clearance_m / (height_m * flora.standing(plant).size)).min(1.0).acos();
+                    let lean_rad = meadow.lean_rad(at_m, weather.ground());
+                    if below_rad.max(length(lean_rad)) > bears_rad {
+                        let along = if length(lean_rad) > below_rad { lean_rad } else { passage.moves_m };
+                        self.fallen.fell(plant.site, along);
+                    }
                 }
             }
         }

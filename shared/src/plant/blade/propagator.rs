@@ -2,7 +2,6 @@
 
 use super::Blade;
 use super::modes::{BRAKES, FREQUENCIES};
-use super::number::Number;
 
 pub use crate::scene::BladeIntegrator as Integrator;
 
