@@ -58,20 +58,22 @@ const VARIANTS: u32 = 4u;
 const FALL_PA: f32 = 8.0;
 const LEVELS: u32 = 4u;
 
-// Force on a silhouette (Pa) so high above the ground at a root: that of the force field, or beyond it that of the wind alone.
-fn pressure_at(root: vec3<f32>, above_m: f32) -> vec3<f32> {
+// Force on a silhouette (Pa, X and Z) so high above the ground at a root: that of the force field, or beyond it that of the wind alone.
+fn pressure_at(root: vec3<f32>, above_m: f32) -> vec2<f32> {
     let at = (root.xz - brush.forces.xy) / brush.forces.zw;
     let inside = 1.0 - smoothstep(0.40, 0.49, max(abs(at.x - 0.5), abs(at.y - 0.5)));
-    var force = vec3<f32>(0.0);
+    // Of the wind, and of what lingers of impulses.
+    var force = vec4<f32>(0.0);
     if inside > 0.0 {
-        force = textureSampleLevel(forces, clamped, vec3<f32>(at, above_m / brush.shape.z), 0.0).xyz * inside;
+        force = textureSampleLevel(forces, clamped, vec3<f32>(at, above_m / brush.shape.z), 0.0) * inside;
     }
     if inside < 1.0 {
         let wind = wind_at(root, above_m);
-        force += wind * (0.6 * length(wind) * (1.0 - inside));
+        force += vec4<f32>(wind.xz * (0.6 * length(wind) * (1.0 - inside)), 0.0, 0.0);
     }
-    // Down among the plants the air is stiller: a quarter-power law of the height, over the 2 m that the field's wind is from.
-    return force * sqrt(clamp(0.5 * above_m, 0.02, 1.0));
+    // The wind comes in gusts, and is stiller down among the plants: a quarter-power law of the height, over the 2 m that the field's wind is from.
+    let gust = gust_at(root.xz);
+    return force.xy * (gust * gust * sqrt(clamp(0.5 * above_m, 0.02, 1.0))) + force.zw;
 }
 
 // A value that follows a target by a critically damped spring, in closed form; twin of `Following` in
@@ -118,9 +120,8 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
         return;
     }
 
-    let gust = gust_at(plant.at);
     let fall = (broken[plant.site >> 2u] >> (8u * (plant.site & 3u))) & 255u;
-    let goal = fallen(pressure_at(root, 0.5 * height).xz * (gust * gust), fall);
+    let goal = fallen(pressure_at(root, 0.5 * height), fall);
     var feels = felt[index];
     if feels.frame + 1u != brush.counts.x {
         feels.pressure = vec4<f32>(goal, 0.0, 0.0);
@@ -173,6 +174,8 @@ struct BrushList {
     which: vec4<u32>,
     // Angles and loads of the tables; unused.
     nodes: vec4<u32>,
+    // Drops of rain that make leaves tremble (1/(m²·s)); unused.
+    rain: vec4<f32>,
 }
 
 // A row: half its width and what it is of, its colour, the component that it is on and the steps below it there, unused; of a petal how
@@ -184,11 +187,12 @@ struct Row {
 
 // A component: cosine and sine of its angle from what it stands on, and of its turn about that; load per force per mass (s²/m) and per
 // pressure (1/Pa), length (m), and where it stands, in steps of what it stands on; first step of its table, its steps, what it stands on,
-// and on how many, one on the other.
+// and on how many, one on the other; speed (m/s) and time (s) of its answer to a drop of rain, area on which drops strike it (m²), unused.
 struct Limb {
     turns: vec4<f32>,
     nature: vec4<f32>,
     table: vec4<u32>,
+    struck: vec4<f32>,
 }
 
 @group(1) @binding(10) var<storage, read> stands: array<Stand>;
@@ -202,6 +206,9 @@ struct Limb {
 const GRAVITY_M_PER_S2: f32 = 9.81;
 const MIDDLE_LOAD: f32 = 8.0;
 const WIDTH_UNIT_M: f32 = 1.0 / 16384.0;
+const DROP_M_PER_S: f32 = 6.49;
+// Share of its length by which a component dips at most; then its own weight has bent it as far as it goes.
+const FARTHEST_DIP: f32 = 0.25;
 const STALK: u32 = 1u;
 const PETAL: u32 = 2u;
 
@@ -326,10 +333,18 @@ fn bent(host: Bent, limb: Limb, so_many: f32, last: u32, plant: Stand, normal: v
     return now;
 }
 
+fn first_limb(plant: Stand) -> u32 {
+    return (u32(plant.feels.z) % (2u * VARIANTS)) * list.rows.z;
+}
+
+fn limb_of(plant: Stand, row: Row) -> Limb {
+    return limbs[first_limb(plant) + (row.look.z & 0xffffu)];
+}
+
 // Where a row of a plant is, on ground with that normal: bent from the root on, one component on the other.
 fn bent_row(plant: Stand, row: Row, normal: vec3<f32>) -> Bent {
-    let limb_0 = (u32(plant.feels.z) % (2u * VARIANTS)) * list.rows.z;
-    let own = limbs[limb_0 + (row.look.z & 0xffffu)];
+    let limb_0 = first_limb(plant);
+    let own = limb_of(plant, row);
     var now = ground_frame(plant);
     for (var above = own.table.w; above > 0u; above--) {
         // The component on which so many more stand, and the next of those.
@@ -349,6 +364,33 @@ fn bent_row(plant: Stand, row: Row, normal: vec3<f32>) -> Bent {
         now = Bent(now.at + along * (row.petal.x * plant.root.w), along, other * row.petal.y - now.side * row.petal.z);
     }
     return now;
+}
+
+// How far drops of rain have struck the tip of a component out of its posture (m), if they strike it straight: `speed` and `settle` are those of `Struck` in
+// shared/src/plant/underbrush/drops.rs, `per_s` how many come; `number` tells the component from others. In each span of `settle` one strikes somewhere on it, or
+// none. Where more come than every other span takes, strikes are as strong as the root of their number and the rest press steadily: so the mean is that of
+// drops that come singly, and the deviation at least 0.84 of theirs.
+fn dip_m(speed: f32, settle: f32, per_s: f32, number: vec2<u32>, secs: f32) -> f32 {
+    let drops = per_s * settle;
+    let chance = min(drops, 0.5);
+    let strength = sqrt(drops / chance);
+    // The mean of `bow` over the component.
+    var dip = 0.375 * (drops - chance * strength);
+    let now = secs / settle;
+    let span = i32(floor(now));
+    for (var i = 0; i < 8; i++) {
+        let lot = random3(vec2<i32>(span - i, i32(number.x)), number.y);
+        let since = now - (f32(span - i) + lot.x);
+        if since > 0.0 && lot.y < chance {
+            dip += strength * bow(lot.z) * since * exp(-since);
+        }
+    }
+    return speed * settle * dip;
+}
+
+// Shape of a cantilever that a force at its tip has bent by 1 there.
+fn bow(share: f32) -> f32 {
+    return share * share * (1.5 - 0.5 * share);
 }
 
 @vertex
@@ -371,6 +413,16 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let bent = bent_row(plant, row, normal_up);
     let along = bent.along;
     var p = plant.root.xyz + bent.at;
+    let own = limb_of(plant, row);
+    if list.rain.x * own.struck.z > 0.0 {
+        let number = vec2<u32>(u32(plant.about.y * 16777216.0), look.z & 0xffffu);
+        // The larger it is, the less the drop counts beside its mass.
+        let speed = 1.0 / mix(1.0 / DROP_M_PER_S, 1.0 / own.struck.x, size * size * size);
+        let dip = dip_m(speed, own.struck.y * size, own.struck.z * size * size * list.rain.x, number, frame.eye.w);
+        // Along the leaf it does not give.
+        let down = vec3<f32>(0.0, 1.0, 0.0) - along * along.y;
+        p -= down * (min(dip, FARTHEST_DIP * own.nature.z * size) * bow(f32(look.z >> 16u) / f32(own.table.y)));
+    }
     let view = normalize(p - frame.eye.xyz);
     let toward = cross(along, view);
     let facing_side = toward / max(length(toward), 1e-3);

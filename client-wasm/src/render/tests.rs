@@ -22,6 +22,8 @@ use shared::wire::{BrokenPlant, ObjectPose, ServerMessage, Shape, codec};
 use std::num::NonZeroU8;
 use wgpu::naga;
 
+mod underbrush;
+
 fn module(source: &str) -> naga::Module {
     let text = shaders::whole(source);
     let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));

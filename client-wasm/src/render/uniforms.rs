@@ -142,6 +142,8 @@ uniform_block! {
         which: [u32; 4],
         /// Angles and loads of the tables; unused.
         nodes: [u32; 4],
+        /// Drops of rain that make leaves tremble (1/(m²·s)); unused.
+        rain: [f32; 4],
     }
 }
 

@@ -13,12 +13,13 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
+use shared::plant::underbrush::drops::Struck;
 use shared::plant::underbrush::plan::{Part, Placed, Plan, SECTIONS_LIMIT};
 use shared::plant::underbrush::plant::{Forces, LookUp, Posed, Stand, posed};
 use shared::plant::underbrush::posture::Postures;
 use shared::plant::underbrush::vectors::{PETAL_RAD, vectors};
 use shared::scene::ComponentKind;
-use std::f32::consts::TAU;
+use std::f32::consts::{FRAC_PI_4, TAU};
 
 /// Plants of different make of each species; twin of the constant in `underbrush.wgsl`.
 pub(super) const VARIANTS: u32 = 4;
@@ -30,6 +31,12 @@ pub(super) const EVERY: [usize; LEVELS] = [1, 2, 4, SECTIONS_LIMIT];
 const COARSE_LEAVES: usize = 10;
 /// Half-widths are in units of this (m); twin of the constant in `underbrush.wgsl`.
 const WIDTH_UNIT_M: f32 = 1.0 / 16_384.0;
+/// Area of a leaf over its length times its width.
+const LEAF_SHARE: f32 = 0.73;
+/// Shortest time in which a component that trembles is as far off as it gets (s): what is back before the next picture can't be seen.
+const FASTEST_SECS: f32 = 1.0 / 60.0;
+
+const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 
 /// What a row is of; twins of the constants in `underbrush.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +79,9 @@ pub(super) struct Limb {
     nature: [f32; 4],
     /// First step of its table; its steps; what it stands on; on how many, one on the other.
     table: [u32; 4],
+    /// Speed at which a drop of rain sets its tip off (m/s), time in which that is as far off as it gets (s), area on which drops strike it (m²; 0 for what does
+    /// not tremble); unused.
+    struck: [f32; 4],
 }
 
 /// A species at a level of detail.
@@ -117,9 +127,13 @@ impl Baked {
             }
         }
         for is_broken in [false, true] {
-            baked.limbs.extend(
-                makes.iter().flat_map(|placed| (0..placed.len()).map(|index| limb(plan, &tables, placed, index, every, is_broken))),
-            );
+            for placed in &makes {
+                let calm = Forces { per_mass_m_per_s2: GRAVITY, pressure_pa: Vec3::ZERO };
+                let calm = posed(plan, placed, Stand { size: 1.0, heading_rad: 0.0, lean_rad: [0.0; 2] }, calm, LookUp::Nearest, 0);
+                let struck = |index: usize| struck(&plan.parts[placed[index].part], &calm[index]);
+                let limb = |index: usize| Limb { struck: struck(index), ..limb(plan, &tables, placed, index, every, is_broken) };
+                baked.limbs.extend((0..placed.len()).map(limb));
+            }
         }
         baked
     }
@@ -175,7 +189,28 @@ fn limb(plan: &Plan, tables: &[u32], placed: &[Placed], index: usize, every: usi
         turns: [cosine, sine, turn_cosine, turn_sine],
         nature: [part.weight_secs2_per_m * one.size, part.drag_per_pa, part.component.length_m * one.size, at_step],
         table: [tables[table], sections(table).div_ceil(every) as u32, one.on.unwrap_or(0) as u32, depth as u32],
+        struck: [0.0; 4],
     }
+}
+
+/// How a component answers drops of rain, as [`Limb`] has it. Of a leaf what is seen from above catches them, of a flower the disc of its petals; stalks are stiff.
+fn struck(part: &Part, calm: &Posed) -> [f32; 4] {
+    let component = &part.component;
+    let Struck { speed_m_per_s, settle_secs } = Struck::new(component, calm.size);
+    let catches_m2 = match component.kind {
+        _ if settle_secs < FASTEST_SECS => 0.0,
+        ComponentKind::Branch => 0.0,
+        ComponentKind::Flower => FRAC_PI_4 * (component.width_m * calm.size).powi(2),
+        ComponentKind::Leaf => {
+            let outline = vectors(part, calm, 1);
+            let area = |length_m: fn(Vec3) -> f32| -> f32 {
+                outline.windows(2).map(|pair| (pair[0].right_m.length() + pair[1].right_m.length()) * length_m(pair[1].axis_m)).sum()
+            };
+            let seen_share = area(|axis_m| axis_m.with_y(0.0).length()) / area(Vec3::length);
+            LEAF_SHARE * component.width_m * component.length_m * calm.size * calm.size * seen_share
+        }
+    };
+    [speed_m_per_s, settle_secs, catches_m2, 0.0]
 }
 
 /// The components that a level shows, and how much wider it shows them to cover as much: the coarsest leaves thin stalks out, and most leaves.
@@ -214,7 +249,7 @@ fn ribbons(part: &Part, one: &Posed, index: usize, level: usize, wider: f32) -> 
     // A coarse outline cuts the belly of a leaf off: it is widened until its area is the leaf's.
     let halves: Vec<f32> = outline.iter().map(|vector| vector.right_m.length()).collect();
     let area: f32 = halves.windows(2).map(|pair| pair[0] + pair[1]).sum::<f32>() / steps.max(1) as f32;
-    let whole = if component.kind == ComponentKind::Leaf { 0.73 * component.width_m * one.size } else { area };
+    let whole = if component.kind == ComponentKind::Leaf { LEAF_SHARE * component.width_m * one.size } else { area };
     let fill = if area > 0.0 { whole / area } else { 1.0 };
     let stuff = if component.kind == ComponentKind::Leaf { Stuff::Leaf } else { Stuff::Stalk };
     let own = halves.iter().enumerate().map(|(step, half_m)| {
@@ -326,6 +361,29 @@ mod tests {
         for level in 0..LEVELS {
             assert!((area(level) / (0.73 * 0.01) - 1.0).abs() < 0.02, "{} at level {level}", area(level));
         }
+    }
+
+    #[test]
+    fn leaves_catch_the_drops_that_fall_on_them() {
+        let component = |kind, angle_rad: f32| Component {
+            length_variation: 0.0,
+            angle_variation_rad: 0.0,
+            angle_rad,
+            stiffness_n_m2: 0.01,
+            ..Component::new("one", kind)
+        };
+        let catches_m2 = |component: Component| {
+            let plan = Plan::new(&Underbrush::new("one", vec![component]), Nodes::default());
+            Baked::new(&plan, 0).limbs[0].struck[2]
+        };
+        let level_m2 = catches_m2(component(ComponentKind::Leaf, 1.5));
+        assert!((level_m2 / (0.73 * 0.4 * 0.01) - 1.0).abs() < 0.05, "{level_m2}");
+        let upright_m2 = catches_m2(component(ComponentKind::Leaf, 0.1));
+        assert!(upright_m2 < 0.2 * level_m2, "{upright_m2} of {level_m2}");
+        let flower_m2 = catches_m2(component(ComponentKind::Flower, 0.3));
+        assert!((flower_m2 / (FRAC_PI_4 * 1e-4) - 1.0).abs() < 1e-4, "{flower_m2}");
+        assert_eq!(catches_m2(component(ComponentKind::Branch, 0.3)), 0.0, "stalks stand");
+        assert_eq!(catches_m2(Component { stiffness_n_m2: 1.0, ..component(ComponentKind::Leaf, 1.5) }), 0.0, "as do stiff leaves");
     }
 
     #[test]

@@ -15,6 +15,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use shared::plant::flora::{self, Flora, height_m};
 use shared::plant::growth::SPECIES_LIMIT;
+use shared::plant::underbrush::drops::drops_per_m2_s;
 use wgpu::BufferUsages;
 
 /// Plants of a workgroup.
@@ -28,23 +29,25 @@ const FELT_BYTES: u64 = 32;
 const STAND_BYTES: u64 = 64;
 /// Most plants that are drawn: as many stand in the 128 MiB that every device binds at once.
 const PLANT_LIMIT: usize = (128 << 20) / STAND_BYTES as usize;
+/// Levels whose leaves tremble in the rain; of coarser ones that is a pixel at most.
+const TREMBLING_LEVELS: usize = 2;
 /// Words of an indirect draw and of what `finish` needs beside it.
 const DRAW_WORDS: usize = 8;
 
 /// A plant as `underbrush.wgsl` takes it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Grown {
-    at_m: [f32; 2],
+pub(super) struct Grown {
+    pub(super) at_m: [f32; 2],
     size: f32,
     make: u32,
     heading_rad: f32,
-    site: u32,
+    pub(super) site: u32,
 }
 
 /// Plants of a square of the land.
 #[derive(Clone, Copy, Debug)]
-struct Tile {
+pub(super) struct Tile {
     low_m: Vec3,
     high_m: Vec3,
     first: u32,
@@ -68,6 +71,8 @@ pub(super) struct Underbrush {
     shown_broken: u32,
     tally: wgpu::Buffer,
     draws: wgpu::Buffer,
+    #[cfg(test)]
+    pub(super) felt: wgpu::Buffer,
     compute_group: wgpu::BindGroup,
     lists: Vec<List>,
     tiles: Vec<Tile>,
@@ -110,7 +115,7 @@ impl Underbrush {
             gpu.empty_buffer("underbrush frame", size_of::<UnderbrushFrame>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let chunk_limit = tiles.iter().map(|tile| u64::from(tile.count.div_ceil(CHUNK))).sum::<u64>().max(1);
         let chunks = gpu.empty_buffer("underbrush chunks", chunk_limit * 8, storage_usage | BufferUsages::COPY_DST);
-        let felt = gpu.empty_buffer("felt", count * FELT_BYTES, storage_usage);
+        let felt = gpu.empty_buffer("felt", count * FELT_BYTES, storage_usage | BufferUsages::COPY_SRC);
         let stands = gpu.empty_buffer("underbrush stands", count * STAND_BYTES, storage_usage | BufferUsages::COPY_SRC);
         let tally = gpu.empty_buffer(
             "underbrush tally",
@@ -133,6 +138,7 @@ impl Underbrush {
 
         let mut draw_words = vec![0_u32; SPECIES_LIMIT * LEVELS * DRAW_WORDS];
         let mut lists = Vec::new();
+        let rain_mm_per_h = land.scene().rain.rate_mm_per_h;
         for (number, (own, plan)) in flora.species().iter().zip(flora.plans()).enumerate() {
             species[number] = [height_m(own), plan.settle_secs, flora::reach_m(own), 0.0];
             for level in 0..LEVELS {
@@ -148,6 +154,7 @@ impl Underbrush {
                     rows: [rows, held, baked.limb_count(), 0],
                     which: [list as u32, places[number][0] + level as u32 * places[number][1], u32::from(level + 1 == LEVELS), 0],
                     nodes: [nodes.angles as u32, nodes.loads as u32, 0, 0],
+                    rain: [if level < TREMBLING_LEVELS { drops_per_m2_s(rain_mm_per_h) } else { 0.0 }, 0.0, 0.0, 0.0],
                 };
                 let steps = gpu.buffer("steps", bytemuck::cast_slice(&baked.steps), storage_usage);
                 let rows = gpu.buffer("rows", bytemuck::cast_slice(&baked.rows), storage_usage);
@@ -179,6 +186,8 @@ impl Underbrush {
             shown_broken: 0,
             tally,
             draws,
+            #[cfg(test)]
+            felt,
             lists,
             tiles,
             species,
@@ -279,7 +288,7 @@ fn numbered(
 }
 
 /// All plants, square by square, and the squares.
-fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
+pub(super) fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
     let reaches_m: Vec<f32> = flora.species().iter().map(flora::reach_m).collect();
     let mut by_tile: Vec<([i32; 2], Grown, f32)> = flora
         .grown()
