@@ -60,20 +60,22 @@ const MIDDLE_PA: f32 = 8.0;
 const STRONGEST: f32 = 0.93;
 const LEVELS: u32 = 4u;
 
-// Force on a silhouette (Pa) so high above the ground at a root: that of the force field, or beyond it that of the wind alone.
-fn pressure_at(root: vec3<f32>, above_m: f32) -> vec3<f32> {
+// Force on a silhouette (Pa, X and Z) so high above the ground at a root: that of the force field, or beyond it that of the wind alone.
+fn pressure_at(root: vec3<f32>, above_m: f32) -> vec2<f32> {
     let at = (root.xz - brush.forces.xy) / brush.forces.zw;
     let inside = 1.0 - smoothstep(0.40, 0.49, max(abs(at.x - 0.5), abs(at.y - 0.5)));
-    var force = vec3<f32>(0.0);
+    // Of the wind, and of what lingers of impulses.
+    var force = vec4<f32>(0.0);
     if inside > 0.0 {
-        force = textureSampleLevel(forces, clamped, vec3<f32>(at, above_m / brush.shape.z), 0.0).xyz * inside;
+        force = textureSampleLevel(forces, clamped, vec3<f32>(at, above_m / brush.shape.z), 0.0) * inside;
     }
     if inside < 1.0 {
         let wind = wind_at(root, above_m);
-        force += wind * (0.6 * length(wind) * (1.0 - inside));
+        force += vec4<f32>(wind.xz * (0.6 * length(wind) * (1.0 - inside)), 0.0, 0.0);
     }
-    // Down among the plants the air is stiller: a quarter-power law of the height, over the 2 m that the field's wind is from.
-    return force * sqrt(clamp(0.5 * above_m, 0.02, 1.0));
+    // The wind comes in gusts, and is stiller down among the plants: a quarter-power law of the height, over the 2 m that the field's wind is from.
+    let gust = gust_at(root.xz);
+    return force.xy * (gust * gust * sqrt(clamp(0.5 * above_m, 0.02, 1.0))) + force.zw;
 }
 
 // A value that follows a target by a critically damped spring, in closed form; twin of `Following` in
@@ -113,8 +115,7 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
         return;
     }
 
-    let gust = gust_at(plant.at);
-    let goal = pressure_at(root, 0.5 * height).xz * (gust * gust);
+    let goal = pressure_at(root, 0.5 * height);
     var feels = felt[index];
     if feels.frame + 1u != brush.counts.x {
         feels.pressure = vec4<f32>(goal, 0.0, 0.0);

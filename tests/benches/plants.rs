@@ -13,7 +13,7 @@ use shared::hash::hash3;
 use shared::plant::blade::contact::{Sphere, settle};
 use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
 use shared::plant::flora::Flora;
-use shared::plant::force_field::{ForceField, Lingering, Mesh, dynamic_pressure_pa};
+use shared::plant::force_field::{ForceField, Lingering, Mesh, Obstacle, dynamic_pressure_pa};
 use shared::plant::underbrush::plant::{Forces, LookUp, Stand, posed};
 use shared::plant::underbrush::posture::{Nodes, Postures};
 use shared::plant::underbrush::rest::{Load, balanced, joints};
@@ -366,17 +366,17 @@ fn underbrush() {
 fn force_field() {
     let mesh = Mesh { count: [64, 4, 64], spacing_m: [1.0, 0.5, 1.0], corner: [0, 0] };
     let mut field = ForceField::new(mesh, Lingering { spread_m2_per_s: 0.2, decay_per_s: 3.0 });
-    field.strike([32, 1, 32], [40.0, 0.0, 0.0], DT_SECS);
+    field.strike([([32, 1, 32], [40.0, 0.0, 0.0])], DT_SECS);
     let spread = time(|| field.step(DT_SECS));
-    let driven = time(|| {
-        field.calm();
-        field.drive(|[x, _, z]| dynamic_pressure_pa([5.0 + 0.01 * x, 0.0, 1.5 - 0.01 * z]));
-    });
-    let summed = time(|| field.sum_up());
+    let stones = (0..100).map(|i| Obstacle::round([0.64 * i as f32, 0.5, (7 * i % 64) as f32], [0.8; 3]));
+    let obstructed = time(|| field.obstruct(stones.clone()));
+    let blown = time(|| field.blow(|[x, _, z]| dynamic_pressure_pa([5.0 + 0.01 * x, 0.0, 1.5 - 0.01 * z])));
+    let sheltered = time(|| field.shelter());
     heading("force field, 64 × 4 × 64 volumes", "");
     line("what lingers spreads and decays", spread, 1, MS, None);
-    line("the wind drives it", driven, 1, MS, None);
-    line("forces summed up", summed, 1, MS, None);
+    line("100 stones get in the way", obstructed, 1, MS, None);
+    line("the wind blows", blown, 1, MS, None);
+    line("lees go on, and the wind arrives", sheltered, 1, MS, None);
 }
 
 fn main() {

@@ -63,28 +63,49 @@ pub(super) fn standing(land: &Land) -> Vec<Standing> {
     all
 }
 
+/// Radius of a trunk above its foot, over the tree's height.
+pub(super) const GIRTH: f32 = 0.032;
+
+/// Where the crown of a tree one metre tall begins and ends, and half its width (m).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Crown {
+    pub(super) low: f32,
+    pub(super) high: f32,
+    pub(super) wide: f32,
+}
+
+/// The crown of a shape: round oak, tall poplar, broad hawthorn, pine-like cone.
+pub(super) fn crown(shape: u32) -> Crown {
+    let [low, high, wide] = match shape {
+        0 => [0.26, 1.00, 0.42],
+        1 => [0.16, 1.04, 0.21],
+        2 => [0.20, 0.86, 0.50],
+        _ => [0.14, 1.02, 0.30],
+    };
+    Crown { low, high, wide }
+}
+
 /// A tree one metre tall; the coarse one has fewer and larger sprays of leaves.
 pub(super) fn tree(shape: u32, is_coarse: bool) -> Solid {
     let mut random = Random::new(900 + u64::from(shape));
     let bark = Paint::new(0.105, 0.075, 0.050, 0.03);
     let mut tree = Solid::default();
-    // Round oak, tall poplar, broad hawthorn, pine-like cone.
-    let (crown_low, crown_high, crown_wide, leaf) = match shape {
-        0 => (0.26, 1.00, 0.42, [0.100, 0.170, 0.030]),
-        1 => (0.16, 1.04, 0.21, [0.130, 0.200, 0.040]),
-        2 => (0.20, 0.86, 0.50, [0.120, 0.165, 0.032]),
-        _ => (0.14, 1.02, 0.30, [0.052, 0.105, 0.034]),
+    let Crown { low: crown_low, high: crown_high, wide: crown_wide } = crown(shape);
+    let leaf = match shape {
+        0 => [0.100, 0.170, 0.030],
+        1 => [0.130, 0.200, 0.040],
+        2 => [0.120, 0.165, 0.032],
+        _ => [0.052, 0.105, 0.034],
     };
     let is_cone = shape == 3;
     let bow = Vec3::new(random.between(-0.05, 0.05), 0.0, random.between(-0.05, 0.05));
     let trunk_top = if is_cone { 0.92 } else { crown_low + 0.45 * (crown_high - crown_low) };
     let sides = if is_coarse { 5 } else { 9 };
     let trunk = |t: f32| Vec3::new(bow.x * (t * 3.0).sin(), t * trunk_top, bow.z * (t * 2.2).sin());
-    let girth = 0.032;
     let rings: Vec<_> = (0..=5)
         .map(|i| {
             let t = i as f32 / 5.0;
-            (trunk(t), girth * (1.15 - 0.85 * t) + 0.02 * (1.0 - 5.0 * t).max(0.0))
+            (trunk(t), GIRTH * (1.15 - 0.85 * t) + 0.02 * (1.0 - 5.0 * t).max(0.0))
         })
         .collect();
     tree.tube(&rings, sides, bark);
@@ -106,7 +127,7 @@ pub(super) fn tree(shape: u32, is_coarse: bool) -> Solid {
         if !is_coarse && !is_cone && i % 2 == 0 {
             let start = trunk(random.between(0.55, 0.98));
             let knee = start.lerp(centre, 0.55) - Vec3::Y * 0.02;
-            tree.tube(&[(start, girth * 0.38), (knee, girth * 0.24), (centre, girth * 0.08)], 5, bark);
+            tree.tube(&[(start, GIRTH * 0.38), (knee, GIRTH * 0.24), (centre, GIRTH * 0.08)], 5, bark);
         }
     }
     let cards = if is_coarse { 3 } else { 11 };

@@ -1,9 +1,12 @@
-//! The force field (004 §4.1) about the camera: wind, rain and what objects push along, in one mesh of volumes that the underbrush feels.
+//! The force field (004 §4.1) about the camera: the wind, where nothing keeps it away, and what objects push along, in one mesh of volumes that the underbrush
+//! feels.
 
+use super::flora::Standing;
 use super::gpu::Gpu;
+use super::obstacles::{Still, of_pose};
 use super::wind::WindTexture;
 use crate::state::Land;
-use shared::plant::force_field::{Ball, ForceField, Lingering, Mesh, Rain, dynamic_pressure_pa};
+use shared::plant::force_field::{Ball, Force, ForceField, Lingering, Mesh, dynamic_pressure_pa};
 use shared::wire::ObjectPose;
 
 /// Volumes of the mesh, and their size (m).
@@ -20,17 +23,18 @@ const WIND_STEPS: u32 = 4;
 const LEAST_M_PER_S: f32 = 0.3;
 
 pub(super) struct Forces {
-    field: ForceField,
+    pub(super) field: ForceField,
+    still: Still,
+    /// Of each volume what arrives of the wind, X and Z, and what lingers, X and Z (Pa).
     texture: wgpu::Texture,
     pub(super) view: wgpu::TextureView,
-    rain: Rain,
     steps: u32,
     due_secs: f32,
 }
 
 impl Forces {
-    /// A still field.
-    pub(super) fn new(gpu: &Gpu, land: &Land) -> Self {
+    /// A field without force, over land on which `standing` stands.
+    pub(super) fn new(gpu: &Gpu, land: &Land, standing: &[Standing]) -> Self {
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("forces"),
             size: wgpu::Extent3d { width: COUNT[0] as u32, height: COUNT[2] as u32, depth_or_array_layers: COUNT[1] as u32 },
@@ -42,12 +46,11 @@ impl Forces {
             view_formats: &[],
         });
         let mesh = Mesh { count: COUNT, spacing_m: SPACING_M, corner: [0; 2] };
-        let scene = land.scene();
         Self {
             field: ForceField::new(mesh, LINGERING),
+            still: Still::new(land, standing),
             view: texture.create_view(&Default::default()),
             texture,
-            rain: Rain { rate_mm_per_h: scene.rain.rate_mm_per_h, seed: scene.seed },
             steps: 0,
             due_secs: STEP_SECS,
         }
@@ -72,30 +75,36 @@ impl Forces {
         }
         let dt_secs = std::mem::take(&mut self.due_secs).min(LONGEST_SECS);
         let corner = self.field.mesh().about(at_m).corner;
-        let has_moved = corner != self.field.mesh().corner;
-        self.field.move_to(corner);
-        self.field.step(dt_secs);
-        if has_moved || self.steps.is_multiple_of(WIND_STEPS) {
-            self.field.calm();
-            self.field.drive(|[x, above, z]| dynamic_pressure_pa(wind.at(land, [x, above, z])));
+        let is_first = self.steps == 0;
+        let has_moved = is_first || corner != self.field.mesh().corner;
+        if has_moved {
+            self.field.move_to(corner);
+            self.field.stand(self.still.near(*self.field.mesh()));
         }
-        self.rain.fall(&mut self.field, self.steps, dt_secs);
+        self.field.step(dt_secs);
+        self.field.obstruct(poses.iter().map(|pose| of_pose(land, pose)));
+        if has_moved || self.steps.is_multiple_of(WIND_STEPS) {
+            self.field.blow(|[x, above, z]| dynamic_pressure_pa(wind.at(land, [x, above, z])));
+        }
         for pose in poses {
             let [x, y, z] = pose.position_m;
             let speed2: f32 = pose.velocity_m_per_s.iter().map(|v| v * v).sum();
             if speed2 > LEAST_M_PER_S * LEAST_M_PER_S {
-                let radius_m = land.scene().objects.half_extents_m(pose.kind).into_iter().fold(0.0, f32::max).min(2.0);
+                // As large as the ellipsoid in its box and its mirror image in the ground, into which no air goes either.
+                let radius_m = (2.0 * land.scene().objects.half_extents_m(pose.kind).into_iter().product::<f32>()).cbrt();
                 let at_m = [x, y - land.heights().height_m(x, z), z];
                 Ball { at_m, radius_m, velocity_m_per_s: pose.velocity_m_per_s }.push(&mut self.field, dt_secs);
             }
         }
-        self.field.sum_up();
+        // Lees go on by a volume a step; in the first picture they are there.
+        (0..if is_first { COUNT[0] } else { 1 }).for_each(|_| self.field.shelter());
         self.steps += 1;
         self.write(gpu);
     }
 
     fn write(&self, gpu: &Gpu) {
-        let texels: Vec<[u16; 4]> = self.field.forces_pa().map(|[x, y, z]| [half(x), half(y), half(z), 0]).collect();
+        let texel = |Force { wind_pa, lasting_pa }| [wind_pa[0], wind_pa[2], lasting_pa[0], lasting_pa[2]].map(half);
+        let texels: Vec<[u16; 4]> = self.field.forces().map(texel).collect();
         let [width, layers, rows] = COUNT.map(|n| n as u32);
         gpu.queue.write_texture(
             self.texture.as_image_copy(),

@@ -15,6 +15,7 @@ mod kinds;
 mod land;
 mod mesh;
 mod objects;
+mod obstacles;
 mod paint;
 #[cfg(not(target_arch = "wasm32"))]
 mod picture;
@@ -181,7 +182,8 @@ impl Renderer {
             let maker = Maker { gpu: &self.gpu, frame_layout: &self.frame.layout, samples: self.quality.samples() };
             let scene = land.scene();
             let heights = land.heights();
-            let forces = Forces::new(&self.gpu, land);
+            let standing = flora::standing(land);
+            let forces = Forces::new(&self.gpu, land, &standing);
             SceneParts {
                 number: mirror.scene_number(),
                 textures: LandTextures::new(&self.gpu, &self.frame, land),
@@ -190,7 +192,7 @@ impl Renderer {
                 underbrush: Underbrush::new(&maker, land, &forces, self.quality.underbrush_reach_m()),
                 forces,
                 rain: RainPass::new(&maker, self.quality, land),
-                objects: Objects::new(&maker, land),
+                objects: Objects::new(&maker, land, standing),
                 dust: Dust::new(&maker, self.quality, land),
             }
         });

@@ -66,7 +66,7 @@ fn part_mesh(part: Part) -> usize {
 }
 
 impl Objects {
-    pub(super) fn new(maker: &Maker<'_>, land: &Land) -> Self {
+    pub(super) fn new(maker: &Maker<'_>, land: &Land, standing: Vec<Standing>) -> Self {
         let gpu = maker.gpu;
         let mut solids: Vec<Solid> = Part::ALL.iter().map(|&part| part_solid(land, part)).collect();
         solids.extend((0..TREE_SHAPES).map(|shape| flora::tree(shape, false)));
@@ -106,7 +106,7 @@ impl Objects {
             indices: gpu.buffer("mesh indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
             instances,
             meshes,
-            standing: flora::standing(land),
+            standing,
             rolled_m: HashMap::new(),
             seen: Vec::new(),
             lit: Vec::new(),

@@ -5,7 +5,7 @@ use super::pipeline::{Draw, Maker, bind, uniform};
 use super::shaders;
 use super::uniforms::Shower;
 use crate::state::Land;
-use shared::plant::force_field::DROP_M_PER_S;
+use shared::plant::underbrush::drops::DROP_M_PER_S;
 use wgpu::BufferUsages;
 
 /// Side and height of the box about the camera that streaks are in (m).

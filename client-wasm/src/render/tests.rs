@@ -16,6 +16,8 @@ use shared::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, omega_rad
 use shared::wire::{ObjectPose, ServerMessage, Shape, codec};
 use wgpu::naga;
 
+mod underbrush;
+
 fn module(source: &str) -> naga::Module {
     let text = shaders::whole(source);
     let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Rain: an outer agent of the plants' force field (004 §1, §4.1), where it weighs little, and under an overcast sky.
+/// Rain: an outer agent of plants (004 §1), whose leaves tremble under its drops, and an overcast sky.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Rain {

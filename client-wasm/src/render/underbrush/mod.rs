@@ -34,17 +34,17 @@ const DRAW_WORDS: usize = 8;
 /// A plant as `underbrush.wgsl` takes it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Grown {
-    at_m: [f32; 2],
+pub(super) struct Grown {
+    pub(super) at_m: [f32; 2],
     size: f32,
     make: u32,
     heading_rad: f32,
-    site: u32,
+    pub(super) site: u32,
 }
 
 /// Plants of a square of the land.
 #[derive(Clone, Copy, Debug)]
-struct Tile {
+pub(super) struct Tile {
     low_m: Vec3,
     high_m: Vec3,
     first: u32,
@@ -68,6 +68,8 @@ pub(super) struct Underbrush {
     shown_broken: u32,
     tally: wgpu::Buffer,
     draws: wgpu::Buffer,
+    #[cfg(test)]
+    pub(super) felt: wgpu::Buffer,
     compute_group: wgpu::BindGroup,
     lists: Vec<List>,
     tiles: Vec<Tile>,
@@ -106,7 +108,7 @@ impl Underbrush {
             gpu.empty_buffer("underbrush frame", size_of::<UnderbrushFrame>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let chunk_limit = tiles.iter().map(|tile| u64::from(tile.count.div_ceil(CHUNK))).sum::<u64>().max(1);
         let chunks = gpu.empty_buffer("underbrush chunks", chunk_limit * 8, storage_usage | BufferUsages::COPY_DST);
-        let felt = gpu.empty_buffer("felt", count * FELT_BYTES, storage_usage);
+        let felt = gpu.empty_buffer("felt", count * FELT_BYTES, storage_usage | BufferUsages::COPY_SRC);
         let stands = gpu.empty_buffer("underbrush stands", count * STAND_BYTES, storage_usage);
         let tally = gpu.empty_buffer("underbrush tally", (SPECIES_LIMIT * LEVELS * 4) as u64, storage_usage | BufferUsages::COPY_DST);
         let listed = gpu.empty_buffer("listed underbrush", u64::from(first.max(1)) * 4, storage_usage);
@@ -166,6 +168,8 @@ impl Underbrush {
             shown_broken: 0,
             tally,
             draws,
+            #[cfg(test)]
+            felt,
             lists,
             tiles,
             species,
@@ -256,7 +260,7 @@ fn numbered(
 }
 
 /// All plants, square by square, and the squares.
-fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
+pub(super) fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
     let reaches_m: Vec<f32> = flora.species().iter().map(reach_m).collect();
     let mut by_tile: Vec<([i32; 2], Grown, f32)> = flora
         .grown()

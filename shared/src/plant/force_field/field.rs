@@ -1,6 +1,8 @@
 //! The mesh, and its step.
 
+use super::Obstacle;
 use super::kernel::{self, Rows};
+use std::ops::Range;
 
 /// Volumes of a force field and where they lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,10 +28,15 @@ impl Mesh {
         Self { corner: [corner(0, at_m[0]), corner(2, at_m[1])], ..self }
     }
 
-    /// Place of a point in units of volumes from the centre of the first.
-    pub(super) fn index_of(&self, at_m: [f32; 3]) -> [f32; 3] {
-        let first = self.center_m([0; 3]);
-        std::array::from_fn(|axis| (at_m[axis] - first[axis]) / self.spacing_m[axis])
+    /// Volumes whose centres are no farther from a point than `reach_m` along each axis.
+    pub(super) fn within(&self, at_m: [f32; 3], reach_m: [f32; 3]) -> [Range<usize>; 3] {
+        let first_m = self.center_m([0; 3]);
+        std::array::from_fn(|axis| {
+            let index = |at_m: f32| (at_m - first_m[axis]) / self.spacing_m[axis];
+            // Casts take what is below zero to zero.
+            let (low, high) = (index(at_m[axis] - reach_m[axis]).ceil(), index(at_m[axis] + reach_m[axis]).floor() + 1.0);
+            low as usize..(high as usize).min(self.count[axis])
+        })
     }
 
     /// Distance between rows of the planes along Z and upwards.
@@ -58,12 +65,6 @@ impl Mesh {
         let [_, layers, rows] = self.count;
         (0..layers).flat_map(move |y| (0..rows).map(move |z| (y, z)))
     }
-
-    /// All volumes, in the order of the planes.
-    pub(super) fn volumes(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
-        let width = self.count[0];
-        self.layers_and_rows().flat_map(move |(y, z)| (0..width).map(move |x| [x, y, z]))
-    }
 }
 
 /// How long impulses linger and how far they spread.
@@ -90,31 +91,47 @@ impl Lingering {
 /// One number for each volume, along three axes.
 type Planes = [Vec<f32>; 3];
 
-/// The force field; 11 numbers of 4 bytes for each volume. A frame reads: [move](Self::move_to), [step](Self::step), [calm](Self::calm), then all that
-/// [drives](Self::drive) and [strikes](Self::strike) it, then [sum up](Self::sum_up).
+/// The force (Pa) on a silhouette in a volume, as of [`shelter`](ForceField::shelter).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Force {
+    /// That of the wind which arrives there.
+    pub wind_pa: [f32; 3],
+    /// What lingers of impulses.
+    pub lasting_pa: [f32; 3],
+}
+
+/// The force field; 14 numbers of 4 bytes for each volume. A frame reads: [move](Self::move_to), and if that was somewhere else say what
+/// [stands](Self::stand) there; [step](Self::step), say what [gets in the way](Self::obstruct), let the wind [blow](Self::blow) and all else
+/// [strike](Self::strike), then [shelter](Self::shelter).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForceField {
     mesh: Mesh,
     lingering: Lingering,
-    driven: Planes,
+    /// w, the wind's force in the open.
+    wind: Planes,
+    /// 1 − s, the share of it that obstacles keep away.
+    lee: Vec<f32>,
+    /// What arrives of it.
+    blown: Planes,
     /// r, what lingers of impulses.
     lasting: Planes,
     next: Vec<f32>,
-    force: Planes,
-    /// 0 in solids, 1 elsewhere.
+    /// Share of a force that a volume lets through, and the same with nothing but what stands.
     open: Vec<f32>,
+    standing: Vec<f32>,
 }
 
 impl ForceField {
-    /// A field of no force and no solids.
+    /// A field of no force and no obstacles.
     ///
     /// # Panics
     /// When the mesh has no volume.
     pub fn new(mesh: Mesh, lingering: Lingering) -> Self {
         assert!(mesh.count.iter().all(|&count| count > 0), "{:?} volumes", mesh.count);
-        let planes = || std::array::from_fn(|_| vec![0.0; mesh.plane_len()]);
-        let [next, open] = [0.0, 1.0].map(|value| vec![value; mesh.plane_len()]);
-        Self { mesh, lingering, driven: planes(), lasting: planes(), next, force: planes(), open }
+        let plane = |value: f32| vec![value; mesh.plane_len()];
+        let planes = || std::array::from_fn(|_| plane(0.0));
+        let (lee, next, open, standing) = (plane(0.0), plane(0.0), plane(1.0), plane(1.0));
+        Self { mesh, lingering, wind: planes(), lee, blown: planes(), lasting: planes(), next, open, standing }
     }
 
     /// Shape and place.
@@ -122,8 +139,8 @@ impl ForceField {
         &self.mesh
     }
 
-    /// Moves the mesh by whole volumes to another corner. What lingers stays where it is in the world; volumes that come in hold none of it and no
-    /// solid, so that they start with what drives them in the next step.
+    /// Moves the mesh by whole volumes to another corner. What lingers and the lee of obstacles stay where they are in the world; volumes that come in hold
+    /// neither. Wind and obstacles are to be said anew.
     pub fn move_to(&mut self, corner: [i32; 2]) {
         let moved = [0, 1].map(|axis| i64::from(corner[axis]) - i64::from(self.mesh.corner[axis]));
         self.mesh.corner = corner;
@@ -135,11 +152,11 @@ impl ForceField {
         // Columns that stay in, as they are numbered now.
         let (from, to) = ((-moved[0]).clamp(0, nx), (nx - moved[0]).clamp(0, nx));
         let stays = |z: usize| from < to && (0..nz).contains(&(z as i64 + moved[1]));
-        let mut shift = |plane: &mut [f32], coming: f32| {
+        let mut shift = |plane: &mut [f32]| {
             self.next.copy_from_slice(plane);
             for (y, z) in mesh.layers_and_rows() {
                 let first = mesh.place([0, y, z]);
-                plane[first..][..mesh.count[0]].fill(coming);
+                plane[first..][..mesh.count[0]].fill(0.0);
                 if stays(z) {
                     let source = mesh.place([(from + moved[0]) as usize, y, (z as i64 + moved[1]) as usize]);
                     let width = (to - from) as usize;
@@ -148,64 +165,54 @@ impl ForceField {
             }
             self.next.fill(0.0);
         };
-        self.lasting.iter_mut().for_each(|plane| shift(plane, 0.0));
-        shift(&mut self.open, 1.0);
+        self.lasting.iter_mut().for_each(|plane| shift(plane));
+        shift(&mut self.lee);
     }
 
-    /// Says which volumes solids fill, by their centres (X, height above the land, Z; m).
-    pub fn fill(&mut self, is_solid: impl Fn([f32; 3]) -> bool) {
-        let mesh = self.mesh;
-        mesh.volumes().for_each(|volume| self.open[mesh.place(volume)] = if is_solid(mesh.center_m(volume)) { 0.0 } else { 1.0 });
+    /// Says which obstacles stand where they are, in place of those said before.
+    pub fn stand(&mut self, obstacles: impl IntoIterator<Item = Obstacle>) {
+        self.standing.fill(1.0);
+        obstacles.into_iter().for_each(|obstacle| obstacle.close(&self.mesh, &mut self.standing));
+        self.obstruct([]);
     }
 
-    /// Takes away what drives the field, before a step drives it anew.
-    pub fn calm(&mut self) {
-        self.driven.iter_mut().for_each(|plane| plane.fill(0.0));
+    /// Says which obstacles there are now beside those that stand, in place of those said before.
+    pub fn obstruct(&mut self, obstacles: impl IntoIterator<Item = Obstacle>) {
+        self.open.copy_from_slice(&self.standing);
+        obstacles.into_iter().for_each(|obstacle| obstacle.close(&self.mesh, &mut self.open));
     }
 
-    /// Adds a force (Pa) to what drives the next step, by the centres of the volumes (X, height above the land, Z; m).
-    pub fn drive(&mut self, mut force_pa: impl FnMut([f32; 3]) -> [f32; 3]) {
+    /// Sets the wind's force in the open (Pa), by the centres of the volumes (X, height above the land, Z; m).
+    pub fn blow(&mut self, mut force_pa: impl FnMut([f32; 3]) -> [f32; 3]) {
         let mesh = self.mesh;
         for (y, z) in mesh.layers_and_rows() {
-            let (first, [_, y_m, z_m]) = (mesh.place([0, y, z]), mesh.center_m([0, y, z]));
-            let [east, up, south] = self.driven.each_mut().map(|plane| &mut plane[first..][..mesh.count[0]]);
+            let (first, [west_m, y_m, z_m]) = (mesh.place([0, y, z]), mesh.center_m([0, y, z]));
+            let [east, up, south] = self.wind.each_mut().map(|plane| &mut plane[first..][..mesh.count[0]]);
             for x in 0..mesh.count[0] {
-                let [x_m, _, _] = mesh.center_m([x, y, z]);
-                let added = force_pa([x_m, y_m, z_m]);
-                east[x] += added[0];
-                up[x] += added[1];
-                south[x] += added[2];
+                [east[x], up[x], south[x]] = force_pa([west_m + x as f32 * mesh.spacing_m[0], y_m, z_m]);
             }
         }
     }
 
-    /// Gives a volume the impulse (Pa·s) of a step of `dt_secs` (s), above 0.
-    pub fn strike(&mut self, volume: [usize; 3], impulse_pa_s: [f32; 3], dt_secs: f32) {
-        let rate_per_s = self.rate_per_s(dt_secs);
-        self.linger(volume, impulse_pa_s.map(|impulse| rate_per_s * impulse));
+    /// Gives volumes impulses (Pa·s), those of a step of `dt_secs` (s), above 0.
+    pub fn strike(&mut self, impulses_pa_s: impl IntoIterator<Item = ([usize; 3], [f32; 3])>, dt_secs: f32) {
+        let rate_per_s = -(-self.lingering.decay_per_s * dt_secs).exp_m1() / dt_secs;
+        for (volume, impulse) in impulses_pa_s {
+            let place = self.mesh.place(volume);
+            self.lasting.iter_mut().zip(impulse).for_each(|(plane, impulse)| plane[place] += rate_per_s * impulse);
+        }
     }
 
-    /// What an impulse of a step adds to r (1/s): (1 − e^(−k·dt))/dt.
-    pub(super) fn rate_per_s(&self, dt_secs: f32) -> f32 {
-        -(-self.lingering.decay_per_s * dt_secs).exp_m1() / dt_secs
-    }
-
-    /// Adds to r in a volume.
-    pub(super) fn linger(&mut self, volume: [usize; 3], force_pa: [f32; 3]) {
-        let place = self.mesh.place(volume);
-        self.lasting.iter_mut().zip(force_pa).for_each(|(plane, force)| plane[place] += force);
-    }
-
-    /// Whether a solid fills a volume.
-    pub(super) fn is_solid(&self, volume: [usize; 3]) -> bool {
-        self.open[self.mesh.place(volume)] == 0.0
-    }
-
-    /// Sums up the forces of now: what drives the field, and what lingers.
-    pub fn sum_up(&mut self) {
+    /// Takes the lee of the obstacles on by a volume, and the wind's force to what arrives behind and before them.
+    pub fn shelter(&mut self) {
         let (rows, [row, layer]) = (self.mesh.rows(), self.mesh.strides());
+        // Below the ground there is as much as above it.
+        self.lee.copy_within(layer..2 * layer, 0);
+        let wind = self.wind.each_ref().map(Vec::as_slice);
+        kernel::shelter(&self.lee, &mut self.next, &self.open, wind, rows, self.mesh.spacing_m);
+        std::mem::swap(&mut self.lee, &mut self.next);
         for (axis, stride) in [1, layer, row].into_iter().enumerate() {
-            kernel::sum(&self.driven[axis], &self.lasting[axis], &self.open, &mut self.force[axis], rows, stride);
+            kernel::arrive(&self.wind[axis], &self.lee, &self.open, &mut self.blown[axis], rows, stride);
         }
     }
 
@@ -229,34 +236,19 @@ impl ForceField {
         }
     }
 
-    /// The force in a volume (Pa), as of [`sum_up`](Self::sum_up).
-    pub fn force_pa(&self, volume: [usize; 3]) -> [f32; 3] {
-        let place = self.mesh.place(volume);
-        std::array::from_fn(|axis| self.force[axis][place])
+    /// The force in a volume.
+    pub fn force(&self, volume: [usize; 3]) -> Force {
+        self.force_at(self.mesh.place(volume))
     }
 
-    /// The forces of all volumes (Pa), as of [`sum_up`](Self::sum_up): rows along X, then Z, then upwards.
-    pub fn forces_pa(&self) -> impl Iterator<Item = [f32; 3]> + '_ {
-        self.mesh.volumes().map(|volume| self.force_pa(volume))
+    /// The forces of all volumes: rows along X, then Z, then upwards.
+    pub fn forces(&self) -> impl Iterator<Item = Force> + '_ {
+        let rows = self.mesh.layers_and_rows().map(|(y, z)| self.mesh.place([0, y, z]));
+        rows.flat_map(|first| first..first + self.mesh.count[0]).map(|place| self.force_at(place))
     }
 
-    /// The force at a point (X, height above the land, Z; m), trilinear between the centres of volumes; beyond the outermost theirs.
-    pub fn at(&self, at_m: [f32; 3]) -> [f32; 3] {
-        let index = self.mesh.index_of(at_m);
-        let along = |axis: usize| {
-            let last = self.mesh.count[axis] - 1;
-            let at = index[axis].clamp(0.0, last as f32);
-            let low = (at as usize).min(last);
-            ([low, (low + 1).min(last)], at - low as f32)
-        };
-        let [(x, east), (y, up), (z, south)] = [0, 1, 2].map(along);
-        let mut sum = [0.0; 3];
-        for corner in 0..8 {
-            let [dx, dy, dz] = [corner & 1, corner >> 1 & 1, corner >> 2];
-            let weight = [1.0 - east, east][dx] * [1.0 - up, up][dy] * [1.0 - south, south][dz];
-            let force = self.force_pa([x[dx], y[dy], z[dz]]);
-            sum = std::array::from_fn(|axis| sum[axis] + weight * force[axis]);
-        }
-        sum
+    fn force_at(&self, place: usize) -> Force {
+        let of = |planes: &Planes| planes.each_ref().map(|plane| plane[place]);
+        Force { wind_pa: of(&self.blown), lasting_pa: of(&self.lasting) }
     }
 }

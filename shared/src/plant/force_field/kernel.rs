@@ -1,4 +1,4 @@
-//! The innermost loops: how a step spreads what lingers, and sums up the forces.
+//! The innermost loops: how a step spreads what lingers, and what arrives of the wind.
 
 use multiversion::multiversion;
 
@@ -36,7 +36,7 @@ impl<'a> Stencil<'a> {
     }
 }
 
-/// One sub-step: each volume exchanges the share `shares` (x, y, z) of the difference with its neighbours where both are `open`; `keep` of all is left.
+/// One sub-step: each volume exchanges the share `shares` (x, y, z) of the difference with its neighbours as far as both are `open`; `keep` of all is left.
 // Slices that are arguments of their own are known not to overlap.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 pub(super) fn spread(now: &[f32], next: &mut [f32], open: &[f32], rows: Rows, shares: [f32; 3], keep: f32) {
@@ -52,16 +52,52 @@ pub(super) fn spread(now: &[f32], next: &mut [f32], open: &[f32], rows: Rows, sh
     }
 }
 
-/// Forces along one axis, with `stride` between neighbours: none in solids, and none that points into a solid beside.
+/// Mixing length ℓ (m) by which air from beside and above comes into a lee, the eddies' diffusivity over the wind's speed: κ·u*·z/u at z = 2 m over grass whose
+/// roughness is 5 cm, by the logarithmic profile.
+pub(super) const MIXING_M: f32 = 0.087;
+
+/// Force over length (Pa/m) below which the wind has no direction, and nothing a lee.
+const CALM_PA_PER_M: f32 = 1e-6;
+
+/// One sweep of the lee l along the wind n, implicit upwind: n·∇l = ℓ·∇²l, where each volume lets its `open` share of what comes with the wind through, and air
+/// mixes as far as both volumes are open.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-pub(super) fn sum(driven: &[f32], lingering: &[f32], open: &[f32], force: &mut [f32], rows: Rows, stride: usize) {
+pub(super) fn shelter(lee: &[f32], next: &mut [f32], open: &[f32], wind: [&[f32]; 3], rows: Rows, spacing_m: [f32; 3]) {
+    let along = spacing_m.map(f32::recip);
+    let across = along.map(|per_m| MIXING_M * per_m * per_m);
     for at in rows.starts() {
-        let (driven, lingering, center) = (&driven[at..][..rows.width], &lingering[at..][..rows.width], &open[at..][..rows.width]);
+        let (lee, open) = (Stencil::new(lee, at, rows.width, rows.strides), Stencil::new(open, at, rows.width, rows.strides));
+        let [east, up, south] = wind.map(|plane| &plane[at..][..rows.width]);
+        let next = &mut next[at..][..rows.width];
+        for (i, next) in next.iter_mut().enumerate() {
+            let (x, y, z) = (east[i], up[i], south[i]);
+            let size = (x * x + y * y + z * z).sqrt();
+            // From each side: what the wind carries in, and what mixes in.
+            let carried = |axis: usize, force: f32| along[axis] * force.max(0.0);
+            let carried = [carried(0, x), carried(0, -x), carried(1, y), carried(1, -y), carried(2, z), carried(2, -z)];
+            let mixed = |side: usize| across[side / 2] * size * open.sides[side][i];
+            let mixed = [mixed(0), mixed(1), mixed(2), mixed(3), mixed(4), mixed(5)];
+            let sum = |weights: [f32; 6]| weights[0] + weights[1] + weights[2] + weights[3] + weights[4] + weights[5];
+            let lees = |weights: [f32; 6]| {
+                let of = |side: usize| weights[side] * lee.sides[side][i];
+                of(0) + of(1) + of(2) + of(3) + of(4) + of(5)
+            };
+            let (comes, passes) = (sum(carried), open.center[i]);
+            *next = (comes - passes * (comes - lees(carried) - lees(mixed))) / (comes + passes * sum(mixed) + CALM_PA_PER_M);
+        }
+    }
+}
+
+/// What arrives of the wind's force along one axis, with `stride` between neighbours: less in a lee, and of what points into a neighbour the share that it
+/// lets through.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+pub(super) fn arrive(wind: &[f32], lee: &[f32], open: &[f32], blown: &mut [f32], rows: Rows, stride: usize) {
+    for at in rows.starts() {
+        let (wind, lee) = (&wind[at..][..rows.width], &lee[at..][..rows.width]);
         let (before, after) = (&open[at - stride..][..rows.width], &open[at + stride..][..rows.width]);
-        let force = &mut force[at..][..rows.width];
+        let blown = &mut blown[at..][..rows.width];
         for i in 0..rows.width {
-            let q = driven[i] + lingering[i];
-            force[i] = center[i] * (q.max(0.0) * after[i] + q.min(0.0) * before[i]);
+            blown[i] = (1.0 - lee[i]) * (wind[i].max(0.0) * after[i] + wind[i].min(0.0) * before[i]);
         }
     }
 }

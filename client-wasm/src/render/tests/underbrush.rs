@@ -1,0 +1,145 @@
+//! What underbrush feels.
+
+use super::super::obstacles::{Still, of_pose};
+use super::super::{flora, underbrush};
+use super::*;
+use shared::plant::force_field::Mesh;
+use shared::scene::{Component, ComponentKind, Underbrush};
+use std::collections::HashMap;
+use std::f32::consts::FRAC_PI_2;
+
+/// A species that grows wherever it can.
+fn grasses() -> Vec<Underbrush> {
+    let leaf = Component { count: 6, sections: 3, length_m: 1.2, stiffness_n_m2: 0.1, ..Component::new("leaf", ComponentKind::Leaf) };
+    vec![Underbrush { room_m: 0.3, needs: [0.0; 3], uptake: [0.0; 3], light_need: 0.0, ..Underbrush::new("grass", vec![leaf]) }]
+}
+
+/// Place of each plant (m) by its site, and what it feels (Pa), after a second and a half below a camera.
+fn felt(picture: &mut Picture, gpu: &Gpu, mirror: &mut Mirror) -> HashMap<u32, ([f32; 2], [f32; 2])> {
+    let camera = Camera { eye_m: Vec3::new(32.0, 16.0, 32.0), pitch_rad: -1.57, fov_rad: 1.9, ..Camera::default() };
+    (0..15).for_each(|_| {
+        picture.draw(mirror, &camera, 0.0, 0.1);
+    });
+    let land = mirror.land().expect("a scene");
+    let (grown, _) = underbrush::tiles(land, land.flora().expect("underbrush"));
+    let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").underbrush.as_ref().expect("underbrush").felt);
+    let felt: &[[f32; 8]] = bytemuck::cast_slice(&bytes);
+    grown.iter().zip(felt).map(|(plant, felt)| (plant.site, (plant.at_m, [felt[0], felt[1]]))).collect()
+}
+
+#[test]
+fn plants_behind_a_boulder_feel_less_of_the_wind() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let run = |is_stony: bool| {
+        let mut covering = [255; 16 * 16];
+        if is_stony {
+            covering[7 + 16 * 7] = 254;
+        }
+        let windy = |scene: &mut Scene| {
+            (scene.wind.mean_m_per_s, scene.plants.stone_m, scene.underbrush) = ([8.0, 0.0], 6.0, grasses());
+        };
+        let mut mirror = meadow_of(windy, &covering);
+        let land = mirror.land().expect("a scene");
+        let stone = flora::standing(land).first().map(|standing| (standing.position_m, standing.size_m));
+        (felt(&mut Picture::new(&gpu, [128; 2], Quality::Low), &gpu, &mut mirror), stone)
+    };
+    let ((open, _), (stony, stone)) = (run(false), run(true));
+    let (at_m, size_m) = stone.expect("a boulder");
+    let share = |is_there: fn(f32, f32) -> bool| {
+        let both = stony.iter().filter_map(|(site, (plant_m, felt))| {
+            let [x, z] = [plant_m[0] - at_m.x, plant_m[1] - at_m.z];
+            (is_there(x, z)).then_some((felt[0], open.get(site)?.1[0])).filter(|(_, open)| *open > 0.01)
+        });
+        let (felt, open, count) = both.fold((0.0, 0.0, 0), |sum, (felt, open)| (sum.0 + felt, sum.1 + open, sum.2 + 1));
+        assert!(count > 10, "{count} plants");
+        felt / open
+    };
+    let behind = share(|x, z| (2.5..6.0).contains(&x) && z.abs() < 1.0);
+    let farther = share(|x, z| (12.0..18.0).contains(&x) && z.abs() < 1.0);
+    let beside = share(|x, z| x.abs() < 6.0 && (6.0..12.0).contains(&z.abs()));
+    assert!(
+        behind < 0.6 && farther > behind && farther < 0.97 && beside > 0.97,
+        "of the wind {behind} behind a boulder of {size_m} m, {farther} farther behind, {beside} beside"
+    );
+}
+
+#[test]
+fn plants_feel_what_rushes_past_them_in_still_air_whatever_the_gusts() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut mirror = meadow_of(|scene| (scene.wind.mean_m_per_s, scene.underbrush) = ([0.0; 2], grasses()), &[255; 16 * 16]);
+    let car = ObjectPose {
+        id: 1,
+        kind: VehicleKind::Car,
+        position_m: [33.0, 0.9, 33.0],
+        rotation: [0.0, 0.0, 0.0, 1.0],
+        velocity_m_per_s: [0.0, 0.0, -12.0],
+        part_rad: 0.0,
+    };
+    mirror.apply(ServerMessage::Poses { tick: 1, objects: vec![car] }).expect("a sound pose");
+    let mut picture = Picture::new(&gpu, [128; 2], Quality::Low);
+    let felt = felt(&mut picture, &gpu, &mut mirror);
+    let field = &picture.renderer.scene.as_ref().expect("a scene").forces.field;
+    let [west, _, north] = field.mesh().center_m([0; 3]);
+    let (mut compared, mut strongest) = (0, 0.0_f32);
+    for ([x, z], [east_pa, south_pa]) in felt.values().copied() {
+        let at = [(x - west) / 2.0, (z - north) / 2.0];
+        let of = |y: usize, axis: usize| {
+            let [(i, u), (k, v)] = at.map(|at| (at as usize, at.fract()));
+            let force = |i: usize, k: usize| field.force([i, y, k]).lasting_pa[axis];
+            let mix = |a: f32, b: f32, share: f32| a + (b - a) * share;
+            mix(mix(force(i, k), force(i + 1, k), u), mix(force(i, k + 1), force(i + 1, k + 1), u), v)
+        };
+        // Plants are not seen where they have thinned out.
+        if (x - 33.0).abs() < 8.0 && (z - 33.0).abs() < 8.0 && [east_pa, south_pa] != [0.0; 2] {
+            // Half their height is between the centres of the two lowest layers.
+            for (axis, felt_pa) in [(0, east_pa), (2, south_pa)] {
+                let [one, other] = [of(0, axis), of(1, axis)];
+                let (low, high) = (one.min(other) - 0.1 * one.abs(), one.max(other) + 0.1 * one.abs());
+                assert!((low - 0.05..high + 0.05).contains(&felt_pa), "{felt_pa} Pa at ({x}, {z}), in a field of {one} to {other}");
+            }
+            compared += 1;
+            strongest = strongest.max(south_pa.abs());
+        }
+    }
+    assert!(compared > 50 && strongest > 10.0, "{compared} plants feel up to {strongest} Pa");
+}
+
+#[test]
+fn what_stands_near_the_mesh_is_in_its_way() {
+    let covering: Vec<u8> = (0..256).map(|at| if at % 5 == 0 { 253 } else { 254 }).collect();
+    let mirror = meadow_of(|scene| (scene.plants.stone_m, scene.plants.tree_m) = (0.9, 8.0), &covering);
+    let land = mirror.land().expect("a scene");
+    let standing = flora::standing(land);
+    let still = Still::new(land, &standing);
+    let mesh = Mesh { count: [8, 4, 6], spacing_m: [2.0, 0.75, 2.0], corner: [8, 10] };
+    let near: Vec<_> = still.near(mesh).collect();
+    let is_inside = |x: f32, z: f32| (16.0..32.0).contains(&x) && (20.0..32.0).contains(&z);
+    for standing in standing.iter().filter(|standing| is_inside(standing.position_m.x, standing.position_m.z)) {
+        let own = near.iter().filter(|obstacle| [obstacle.at_m[0], obstacle.at_m[2]] == [standing.position_m.x, standing.position_m.z]);
+        let own: Vec<_> = own.collect();
+        if standing.is_tree {
+            let [trunk, crown] = own[..] else { panic!("{} parts of a tree", own.len()) };
+            let (trunk, crown) = if trunk.stops > crown.stops { (trunk, crown) } else { (crown, trunk) };
+            assert!(trunk.stops == 1.0 && trunk.half_m[0] < 0.4 && crown.stops < 0.5 && crown.half_m[0] > 1.0);
+            assert!((trunk.at_m[1] + trunk.half_m[1]) < crown.at_m[1], "the crown is above");
+        } else {
+            assert_eq!(own.len(), 1);
+            assert!(own[0].at_m[1] < 0.0 && own[0].at_m[1] + own[0].half_m[1] > 0.0, "a stone sits in the ground");
+        }
+    }
+    assert!(near.iter().all(|obstacle| (8.0..40.0).contains(&obstacle.at_m[0]) && (12.0..40.0).contains(&obstacle.at_m[2])));
+    // A car across the wind is so much wider.
+    let car = |turn_rad: f32| ObjectPose {
+        id: 1,
+        kind: VehicleKind::Car,
+        position_m: [33.0, 0.9, 33.0],
+        rotation: glam::Quat::from_rotation_y(turn_rad).to_array(),
+        velocity_m_per_s: [0.0; 3],
+        part_rad: 0.0,
+    };
+    for (turn_rad, along) in [(0.0, [1.0, 0.0]), (FRAC_PI_2, [0.0, -1.0])] {
+        let obstacle = of_pose(land, &car(turn_rad));
+        assert!(obstacle.along.iter().zip(along).all(|(found, wanted)| (found - wanted).abs() < 1e-5), "{obstacle:?}");
+        assert_eq!((obstacle.at_m, obstacle.half_m), ([33.0, 0.9, 33.0], VehicleKind::Car.half_extents_m()));
+    }
+}
