@@ -179,7 +179,7 @@ struct BrushList {
     rows: vec4<u32>,
     // Number of the list; first of the listed plants; 1 if the nearest posture will do; unused.
     which: vec4<u32>,
-    // Unit of the places of rows (m).
+    // Unit of the places of rows (m); drops of rain that make leaves tremble (1/(m²·s)); unused.
     scale: vec4<f32>,
 }
 
@@ -187,10 +187,15 @@ struct BrushList {
 @group(1) @binding(11) var<storage, read> shown: array<u32>;
 @group(1) @binding(12) var<storage, read> counted: array<u32>;
 @group(1) @binding(13) var<storage, read> postures: array<u32>;
-@group(1) @binding(14) var<storage, read> looks: array<vec2<u32>>;
+@group(1) @binding(14) var<storage, read> looks: array<vec4<u32>>;
 @group(1) @binding(15) var<uniform> list: BrushList;
 
 const WIDTH_UNIT_M: f32 = 1.0 / 16384.0;
+const DROP_M_PER_S: f32 = 6.49;
+const SETTLE_FULL_SECS: f32 = 4.0;
+const CATCHES_FULL_M2: f32 = 0.1;
+// Share of its length by which a component dips at most; then its own weight has bent it as far as it goes.
+const FARTHEST_DIP: f32 = 0.25;
 const STALK: u32 = 1u;
 const PETAL: u32 = 2u;
 
@@ -240,6 +245,33 @@ fn turned(v: vec3<f32>, heading: f32, lean: vec2<f32>) -> vec3<f32> {
     return p * cos(angle) + cross(axis, p) * sin(angle) + axis * (dot(axis, p) * (1.0 - cos(angle)));
 }
 
+// How far drops of rain have struck the tip of a component out of its posture (m), if they strike it straight: `speed` and `settle` are those of `Struck` in
+// shared/src/plant/underbrush/drops.rs, `per_s` how many come; `number` tells the component from others. In each span of `settle` one strikes somewhere on it, or
+// none. Where more come than every other span takes, strikes are as strong as the root of their number and the rest press steadily: so the mean is that of
+// drops that come singly, and the deviation at least 0.84 of theirs.
+fn dip_m(speed: f32, settle: f32, per_s: f32, number: vec2<u32>, secs: f32) -> f32 {
+    let drops = per_s * settle;
+    let chance = min(drops, 0.5);
+    let strength = sqrt(drops / chance);
+    // The mean of `bow` over the component.
+    var dip = 0.375 * (drops - chance * strength);
+    let now = secs / settle;
+    let span = i32(floor(now));
+    for (var i = 0; i < 8; i++) {
+        let lot = random3(vec2<i32>(span - i, i32(number.x)), number.y);
+        let since = now - (f32(span - i) + lot.x);
+        if since > 0.0 && lot.y < chance {
+            dip += strength * bow(lot.z) * since * exp(-since);
+        }
+    }
+    return speed * settle * dip;
+}
+
+// Shape of a cantilever that a force at its tip has bent by 1 there.
+fn bow(share: f32) -> f32 {
+    return share * share * (1.5 - 0.5 * share);
+}
+
 @vertex
 fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Ribbon {
     let rows = list.rows.x;
@@ -264,11 +296,23 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
         bent = blended(lower, upper, plant.posture.w);
     }
     let look = looks[posture / (HEADINGS * STRENGTHS) * rows + row];
-    let stuff = look.x >> 16u;
+    let stuff = (look.x >> 16u) & 3u;
     let size = plant.root.w;
     let distance_m = plant.towards.z;
-    let offset = turned(bent.at, plant.lean.w, plant.lean.xy) * (list.scale.x * size);
+    var offset = turned(bent.at, plant.lean.w, plant.lean.xy) * (list.scale.x * size);
     let along = normalize(turned(bent.along, plant.lean.w, plant.lean.xy));
+    if list.scale.y > 0.0 {
+        let struck = unpack2x16unorm(look.z) * vec2<f32>(DROP_M_PER_S, SETTLE_FULL_SECS);
+        let per_s = unpack2x16unorm(look.w).x * CATCHES_FULL_M2 * size * size * list.scale.y;
+        if per_s > 0.0 {
+            let number = vec2<u32>(u32(plant.towards.y * 16777216.0), look.w >> 24u);
+            // The larger it is, the less the drop counts beside its mass.
+            let speed = 1.0 / mix(1.0 / DROP_M_PER_S, 1.0 / struck.x, size * size * size);
+            let dip = min(dip_m(speed, struck.y * size, per_s, number, frame.eye.w), FARTHEST_DIP * f32(look.x >> 18u) * 0.001 * size);
+            // Along the leaf it does not give.
+            offset -= (vec3<f32>(0.0, 1.0, 0.0) - along * along.y) * (dip * bow(f32((look.w >> 16u) & 255u) / 255.0));
+        }
+    }
     var p = plant.root.xyz + offset;
     let view = normalize(p - frame.eye.xyz);
     let toward = cross(along, view);

@@ -140,7 +140,7 @@ uniform_block! {
         rows: [u32; 4],
         /// Number of the list; first of the listed plants; 1 if the nearest posture will do; unused.
         which: [u32; 4],
-        /// Unit of the places of rows (m).
+        /// Unit of the places of rows (m); drops of rain that make leaves tremble (1/(m²·s)); unused.
         scale: [f32; 4],
     }
 }

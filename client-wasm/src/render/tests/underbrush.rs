@@ -1,4 +1,4 @@
-//! What underbrush feels.
+//! What underbrush feels and how it trembles.
 
 use super::super::obstacles::{Still, of_pose};
 use super::super::{flora, underbrush};
@@ -7,6 +7,51 @@ use shared::plant::force_field::Mesh;
 use shared::scene::{Component, ComponentKind, Underbrush};
 use std::collections::HashMap;
 use std::f32::consts::FRAC_PI_2;
+
+#[test]
+fn leaves_dip_by_the_drops_that_fall_on_them() {
+    const SOURCE: &str = "
+        @group(1) @binding(0) var<storage, read_write> cases: array<vec4<f32>>;
+        @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
+            let input = cases[id.x];
+            cases[id.x] = vec4<f32>(dip_m(input.x, input.y, input.z, vec2<u32>(id.x % 256u, 3u), input.w), bow(input.w / 100.0), 0.0, 0.0);
+        }";
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut mirror = meadow(0.0);
+    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
+    let source = shaders::UNDERBRUSH.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(20) var<uniform>");
+    let source = format!("{source}\n{SOURCE}");
+    let dips = |per_s: f32, times: &[f32]| {
+        let inputs: Vec<_> = times.iter().flat_map(|&secs| [[0.2, 0.1, per_s, secs]; 256]).collect();
+        compute(&gpu, &picture, &source, &inputs, inputs.len() as u32).into_iter().map(|found| f64::from(found[0])).collect::<Vec<_>>()
+    };
+    // Campbell's theorem for n drops a span, each t·e^(−t) from its strike on with (3s² − s³)/2 of its force: mean n·⅜, variance n·(33/140)·¼.
+    let unit_m = 0.2 * 0.1;
+    for per_s in [0.5, 4.0, 60.0_f32] {
+        let found = dips(per_s, &(0..100).map(|i| 7.0 + 1.13 * i as f32).collect::<Vec<_>>());
+        let n = f64::from(per_s) * 0.1;
+        let mean = found.iter().sum::<f64>() / found.len() as f64 / unit_m;
+        let deviation = (found.iter().map(|dip| (dip / unit_m - mean).powi(2)).sum::<f64>() / found.len() as f64).sqrt();
+        let wanted = (n * 33.0 / 140.0 / 4.0).sqrt();
+        assert!((mean / (0.375 * n) - 1.0).abs() < 0.05, "{mean} on average of {n} drops");
+        assert!((0.8..1.02).contains(&(deviation / wanted)), "{deviation} instead of {wanted} for {n} drops");
+    }
+    // A single one sets off at once, is farthest after its time, and comes back without a swing.
+    let times: Vec<f32> = (0..200).map(|i| 50.0 + 0.01 * i as f32).collect();
+    let rare = dips(0.05, &times);
+    let series = (0..256).map(|plant| rare.iter().skip(plant).step_by(256).copied().collect::<Vec<_>>());
+    let single = series.filter(|dips| dips[0] < 1e-6 && dips[199] < 1e-6 && dips.iter().any(|&dip| dip > 2e-3)).take(20);
+    let mut count = 0;
+    for dips in single {
+        let (at, most) = dips.iter().copied().enumerate().fold((0, 0.0), |most, now| if now.1 > most.1 { now } else { most });
+        assert!(most < 2.0 * unit_m / std::f64::consts::E);
+        let before = dips[..at].iter().rposition(|&dip| dip == 0.0).expect("it begins at rest");
+        assert!((6..=40).contains(&(at - before)), "{} ms to its farthest", 10 * (at - before));
+        count += 1;
+    }
+    assert!(count > 5, "{count} single strikes");
+}
 
 /// A species that grows wherever it can.
 fn grasses() -> Vec<Underbrush> {

@@ -5,11 +5,12 @@
 
 use glam::Vec3;
 use shared::plant::flora::reach_m;
+use shared::plant::underbrush::drops::{DROP_M_PER_S, Struck};
 use shared::plant::underbrush::plan::{Part, Placed, Plan};
 use shared::plant::underbrush::plant::{Forces, LookUp, Posed, Stand, posed};
 use shared::plant::underbrush::vectors::{petals, vectors};
-use shared::scene::{ComponentKind, Underbrush};
-use std::f32::consts::TAU;
+use shared::scene::{Component, ComponentKind, Underbrush};
+use std::f32::consts::{FRAC_PI_4, TAU};
 
 /// Plants of different make of each species.
 pub(super) const VARIANTS: u32 = 4;
@@ -28,14 +29,35 @@ const COARSE_LEAVES: usize = 10;
 /// Half-widths are in units of this (m); twin of the constant in `underbrush.wgsl`.
 const WIDTH_UNIT_M: f32 = 1.0 / 16_384.0;
 
+/// Greatest time in which a component that trembles is as far off as it gets (s), and greatest area on which drops strike it (m²); twins of the constants in
+/// `underbrush.wgsl`.
+const SETTLE_FULL_SECS: f32 = 4.0;
+const CATCHES_FULL_M2: f32 = 0.1;
+/// Shortest time in which a component that trembles is as far off as it gets (s).
+const FASTEST_SECS: f32 = 1.0 / 60.0;
+
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 
-/// What of a row stays as it is however it bends: half its width, its colour, and what it is of.
+/// What of a row stays as it is however it bends: half its width, its colour, what it is of, and how rain moves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Look {
     half_m: f32,
     rgb: Vec3,
     stuff: Stuff,
+    /// Where it is on its component, 0 at the foot and 1 at the tip.
+    share: f32,
+    trembling: Trembling,
+}
+
+/// How drops of rain make a component tremble.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Trembling {
+    /// Number of the component in its plant.
+    number: u32,
+    struck: Struck,
+    length_m: f32,
+    /// Area on which drops strike it (m²); 0 for what does not tremble.
+    catches_m2: f32,
 }
 
 /// What a row is of; twins of the constants in `underbrush.wgsl`.
@@ -47,11 +69,23 @@ enum Stuff {
 }
 
 impl Look {
-    /// Half width and colour, as `underbrush.wgsl` takes them: the square root keeps dark colours apart in 8 bits.
-    pub(super) fn packed(&self) -> [u32; 2] {
-        let half = (self.half_m / WIDTH_UNIT_M).round().clamp(0.0, 65_535.0) as u32;
+    /// Half width, stuff and length (mm), then the colour, as `underbrush.wgsl` takes them: the square root keeps dark colours apart in 8 bits. Then speed, time,
+    /// area and place of a strike, each as a share of its greatest, and the component's number.
+    pub(super) fn packed(&self) -> [u32; 4] {
+        let half_width = (self.half_m / WIDTH_UNIT_M).round().clamp(0.0, 65_535.0) as u32;
         let [r, g, b] = self.rgb.to_array().map(|v| (v.clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u32);
-        [half | (self.stuff as u32) << 16, r | g << 8 | b << 16]
+        let Trembling { number, struck: Struck { speed_m_per_s, settle_secs }, length_m, catches_m2 } = self.trembling;
+        let length_mm = (length_m * 1000.0).clamp(0.0, 16_383.0) as u32;
+        let of_full = |value: f32, full: f32| (value / full * 65_535.0).round().clamp(0.0, 65_535.0) as u32;
+        let [speed, settle, catches] =
+            [of_full(speed_m_per_s, DROP_M_PER_S), of_full(settle_secs, SETTLE_FULL_SECS), of_full(catches_m2, CATCHES_FULL_M2)];
+        let share = (self.share * 255.0).round() as u32;
+        [
+            half_width | (self.stuff as u32) << 16 | length_mm << 18,
+            r | g << 8 | b << 16,
+            speed | settle << 16,
+            catches | share << 16 | number << 24,
+        ]
     }
 }
 
@@ -108,7 +142,11 @@ impl Baked {
         for (number, pose) in bent.poses.iter().enumerate() {
             for &(index, wider) in &kept {
                 let one = &pose[index];
-                for ribbon in ribbons(&plan.parts[one.part], one, level, wider) {
+                let part = &plan.parts[one.part];
+                let mut ribbons = ribbons(part, one, level, wider);
+                let trembling = trembling(&part.component, one.size, index, &ribbons[0]);
+                ribbons.iter_mut().flatten().for_each(|(_, look)| look.trembling = trembling);
+                for ribbon in ribbons {
                     if number == 0 {
                         baked.ribbons.push(ribbon.len() as u32);
                     }
@@ -171,6 +209,20 @@ fn kept(plan: &Plan, placed: &[Placed], level: usize) -> Vec<(usize, f32)> {
     (0..placed.len()).filter(shown).map(width).collect()
 }
 
+/// How a leaf or a flower trembles, by its own ribbon: of a leaf the rows' silhouette from above, of a flower the disc of its petals, catch drops. Stalks are
+/// stiff, and what is back before the next picture can't be seen.
+fn trembling(component: &Component, size: f32, number: usize, own: &[(Row, Look)]) -> Trembling {
+    let struck = Struck::new(component, size);
+    let level_m = |pair: &[(Row, Look)]| (pair[1].0.at_m - pair[0].0.at_m).with_y(0.0).length();
+    let catches_m2 = match component.kind {
+        _ if struck.settle_secs < FASTEST_SECS => 0.0,
+        ComponentKind::Branch => 0.0,
+        ComponentKind::Leaf => own.windows(2).map(|pair| (pair[0].1.half_m + pair[1].1.half_m) * level_m(pair)).sum(),
+        ComponentKind::Flower => FRAC_PI_4 * (component.width_m * size).powi(2),
+    };
+    Trembling { number: number as u32, struck, length_m: component.length_m * size, catches_m2 }
+}
+
 /// The ribbons of a component: its own, and those of its petals.
 fn ribbons(part: &Part, one: &Posed, level: usize, wider: f32) -> Vec<Vec<(Row, Look)>> {
     let component = &part.component;
@@ -191,20 +243,21 @@ fn ribbons(part: &Part, one: &Posed, level: usize, wider: f32) -> Vec<Vec<(Row, 
         let share = number as f32 / (outline.len() - 1).max(1) as f32;
         let row = Row { at_m, side: section.side, along: section.direction };
         let color = if component.kind == ComponentKind::Flower { root } else { root.lerp(tip, share) };
-        (row, Look { half_m: halves[number] * fill * wider, rgb: color, stuff })
+        (row, Look { half_m: halves[number] * fill * wider, rgb: color, stuff, share, trembling: Trembling::default() })
     });
     let mut all = vec![own.collect::<Vec<_>>()];
     if component.kind != ComponentKind::Flower {
         return all;
     }
     let head_m = at_m;
+    let petal_look = |half_m: f32, rgb: Vec3| Look { half_m, rgb, stuff: Stuff::Petal, share: 1.0, trembling: Trembling::default() };
     if level + 1 == LEVELS {
         // One face for the ring of petals.
         let last = sections[sections.len() - 1];
         let radius_m = 0.5 * component.width_m * one.size;
         let across = last.direction.cross(last.side);
         let row = |sign: f32| Row { at_m: head_m + across * (sign * radius_m), side: last.side, along: across };
-        all.push([-1.0, 1.0].map(|sign| (row(sign), Look { half_m: 0.8 * radius_m, rgb: tip, stuff: Stuff::Petal })).to_vec());
+        all.push([-1.0, 1.0].map(|sign| (row(sign), petal_look(0.8 * radius_m, tip))).to_vec());
         return all;
     }
     for petal in petals(part, one) {
@@ -213,10 +266,7 @@ fn ribbons(part: &Part, one: &Posed, level: usize, wider: f32) -> Vec<Vec<(Row, 
         let side = petal.right_m / half_m.max(1e-9);
         let row = |share: f32, wide: f32| {
             let shade = 0.7 + 0.3 * share;
-            (
-                Row { at_m: head_m + petal.axis_m * share, side, along },
-                Look { half_m: half_m * wide, rgb: tip * shade, stuff: Stuff::Petal },
-            )
+            (Row { at_m: head_m + petal.axis_m * share, side, along }, petal_look(half_m * wide, tip * shade))
         };
         all.push(vec![row(0.0, 0.25), row(0.55, 1.0), row(1.0, 0.55)]);
     }
@@ -241,7 +291,6 @@ fn octahedral(direction: Vec3) -> u32 {
 mod tests {
     use super::*;
     use shared::plant::underbrush::posture::Nodes;
-    use shared::scene::Component;
 
     fn tuft() -> Underbrush {
         let mut leaf = Component::new("leaf", ComponentKind::Leaf);
@@ -291,6 +340,39 @@ mod tests {
         for level in 0..LEVELS {
             assert!((area(level) / (0.73 * 0.01) - 1.0).abs() < 0.02, "{} at level {level}", area(level));
         }
+    }
+
+    #[test]
+    fn leaves_catch_the_drops_that_fall_on_them() {
+        let component = |kind, angle_rad: f32| Component {
+            length_variation: 0.0,
+            angle_variation_rad: 0.0,
+            angle_rad,
+            stiffness_n_m2: 0.01,
+            ..Component::new("one", kind)
+        };
+        let catches = |component: Component| {
+            let species = Underbrush::new("one", vec![component]);
+            let plan = Plan::new(&species, Nodes::default());
+            let baked = Baked::new(&plan, &Bent::new(&species, &plan), 0);
+            let first = baked.looks[0].trembling;
+            assert!(baked.looks[..baked.ribbons.iter().sum::<u32>() as usize].iter().all(|look| look.trembling.number == first.number));
+            (first, baked.looks[baked.ribbons[0] as usize - 1])
+        };
+        let (level, tip) = catches(component(ComponentKind::Leaf, 1.5));
+        assert!((level.catches_m2 / (0.73 * 0.4 * 0.01) - 1.0).abs() < 0.05, "{level:?}");
+        assert_eq!((tip.share, tip.packed()[3] >> 16), (1.0, 255));
+        assert_eq!(tip.packed()[0] >> 18, 400, "mm");
+        let (upright, _) = catches(component(ComponentKind::Leaf, 0.1));
+        assert!(upright.catches_m2 < 0.2 * level.catches_m2, "{upright:?} of {level:?}");
+        let (flower, _) = catches(component(ComponentKind::Flower, 0.3));
+        assert!((flower.catches_m2 / (FRAC_PI_4 * 1e-4) - 1.0).abs() < 1e-4, "{flower:?}");
+        assert_eq!(catches(component(ComponentKind::Branch, 0.3)).0.catches_m2, 0.0, "stalks stand");
+        assert_eq!(
+            catches(Component { stiffness_n_m2: 1.0, ..component(ComponentKind::Leaf, 1.5) }).0.catches_m2,
+            0.0,
+            "as do stiff leaves"
+        );
     }
 
     #[test]

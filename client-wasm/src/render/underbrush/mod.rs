@@ -15,6 +15,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use shared::plant::flora::{Flora, height_m, reach_m};
 use shared::plant::growth::SPECIES_LIMIT;
+use shared::plant::underbrush::drops::drops_per_m2_s;
 use wgpu::BufferUsages;
 
 /// Plants of a workgroup.
@@ -28,6 +29,8 @@ const FELT_BYTES: u64 = 32;
 const STAND_BYTES: u64 = 64;
 /// Most plants that are drawn: as many stand in the 128 MiB that every device binds at once.
 const PLANT_LIMIT: usize = (128 << 20) / STAND_BYTES as usize;
+/// Levels whose leaves tremble in the rain; of coarser ones that is a pixel at most.
+const TREMBLING_LEVELS: usize = 2;
 /// Words of an indirect draw and of what `finish` needs beside it.
 const DRAW_WORDS: usize = 8;
 
@@ -126,6 +129,7 @@ impl Underbrush {
 
         let mut draw_words = vec![0_u32; SPECIES_LIMIT * LEVELS * DRAW_WORDS];
         let mut lists = Vec::new();
+        let rain_mm_per_h = land.scene().rain.rate_mm_per_h;
         for (number, (own, plan)) in flora.species().iter().zip(flora.plans()).enumerate() {
             let bent = Bent::new(own, plan);
             species[number] = [height_m(own), own.settle_secs, bent.extent_m(), 0.0];
@@ -137,11 +141,11 @@ impl Underbrush {
                 let list = number * LEVELS + level;
                 draw_words[list * DRAW_WORDS] = indices.len() as u32;
                 draw_words[list * DRAW_WORDS + 5] = held;
-                let looks: Vec<[u32; 2]> = baked.looks.iter().map(|look| look.packed()).collect();
+                let looks: Vec<[u32; 4]> = baked.looks.iter().map(|look| look.packed()).collect();
                 let settings = BrushList {
                     rows: [rows, held, 0, 0],
                     which: [list as u32, places[number][0] + level as u32 * places[number][1], u32::from(level + 1 == LEVELS), 0],
-                    scale: [bent.extent_m(), 0.0, 0.0, 0.0],
+                    scale: [bent.extent_m(), if level < TREMBLING_LEVELS { drops_per_m2_s(rain_mm_per_h) } else { 0.0 }, 0.0, 0.0],
                 };
                 let postures = gpu.buffer("postures", bytemuck::cast_slice(&baked.rows), storage_usage);
                 let looks = gpu.buffer("looks", bytemuck::cast_slice(&looks), storage_usage);
