@@ -6,7 +6,7 @@ use shared::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
-const BROKEN: [&str; 34] = [
+const BROKEN: [&str; 35] = [
     "unknown-field",
     "syntax",
     "out-of-range",
@@ -29,6 +29,7 @@ const BROKEN: [&str; 34] = [
     "species-hole",
     "underbrush",
     "underbrush-misfits",
+    "underbrush-nameless",
     "underbrush-file",
     "underbrush-twice",
     "underbrush-hole",
