@@ -318,14 +318,15 @@ mod tests {
         let mut species = shared::scene::parse_underbrush(include_str!("../../../../server/scenes/species.toml")).expect("sound species");
         species.retain(|species| ["reed", "tall grass", "poppy"].contains(&species.name.as_str()));
         assert_eq!(species.len(), 3);
-        // At the strengths about that of a fall, and beyond.
-        let least = (1..STRENGTHS).rfind(|&strength| pressure_pa(strength) < FALL_PA).expect("a weaker one");
         for (own, number) in species.iter().flat_map(|own| (0..VARIANTS).map(move |number| (own, number))) {
             let plan = Plan::new(own, Nodes::default());
             let placed = plan.placed(number);
-            for (heading, strength) in (0..HEADINGS).flat_map(|heading| (least..STRENGTHS).map(move |strength| (heading, strength))) {
-                let (sine, cosine) = (TAU * heading as f32 / HEADINGS as f32).sin_cos();
-                for one in bent(&plan, &placed, u64::MAX, heading, strength) {
+            // As hard as by a fall, and beyond that in a wind of 13 m/s.
+            for (heading, pressure_pa) in (0..8).flat_map(|heading| [FALL_PA, 30.0, 101.0].map(|pressure_pa| (heading, pressure_pa))) {
+                let (sine, cosine) = (TAU * heading as f32 / 8.0).sin_cos();
+                let forces = Forces { per_mass_m_per_s2: GRAVITY, pressure_pa: Vec3::new(cosine, 0.0, sine) * pressure_pa };
+                let stand = Stand { size: 1.0, heading_rad: 0.0, lean_rad: [0.0; 2] };
+                for one in posed(&plan, &placed, stand, forces, LookUp::Interpolated, u64::MAX) {
                     let part = &plan.parts[one.part];
                     if part.on.is_some() || part.broken.is_none() {
                         continue;

@@ -9,7 +9,8 @@ use shared::plant::underbrush::plan::Plan;
 use shared::plant::underbrush::plant::{LookUp, Posed, Stand, posed};
 use shared::plant::underbrush::posture::Nodes;
 use shared::scene::{Component, ComponentKind, Scene, Underbrush as Species, VehicleKind, parse_underbrush};
-use shared::wire::{ObjectPose, ServerMessage};
+use shared::wire::quantise::{heading_code, heading_rad};
+use shared::wire::{BrokenPlant, ObjectPose, ServerMessage};
 use std::collections::HashMap;
 
 const SPECIES: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../server/scenes/species.toml"));
@@ -127,6 +128,7 @@ impl Bender {
             rows: [rows, 1, baked.limb_count(), 0],
             which: [0, 0, u32::from(level + 1 == LEVELS), 0],
             nodes: [nodes.angles as u32, nodes.loads as u32, 0, 0],
+            rain: [0.0; 4],
         };
         let stands: Vec<_> = cases.iter().map(Case::packed).collect();
         let storage = |contents: &[u8]| gpu.buffer("cases", contents, BufferUsages::STORAGE);
@@ -360,6 +362,8 @@ fn the_compute_pass_says_how_each_plant_stands_and_lists_it_once() {
     let sites: Vec<u32> = mirror.land().and_then(Land::flora).expect("plants").grown().plants().iter().map(|plant| plant.site).collect();
     let mut broken: Vec<u32> = sites.into_iter().filter(|site| site % 3 == 0).collect();
     broken.sort_unstable();
+    let fall = heading_code([0.0, 1.0]);
+    let broken = broken.into_iter().map(|site| BrokenPlant { site, fall }).collect();
     mirror.apply(ServerMessage::Broken { plants: broken }).expect("sound sites");
     let camera = Camera { eye_m: Vec3::new(32.0, 1.2, 60.0), ..Camera::default() };
     let size_px = [320, 640];
@@ -425,14 +429,17 @@ fn the_compute_pass_says_how_each_plant_stands_and_lists_it_once() {
             let wind = scene.textures.wind.at(land, [at_m[0], 0.5 * height_m, at_m[1]]);
             let still: f32 = (0.25 * height_m).clamp(0.02, 1.0).sqrt();
             let pressure_pa = [wind[0], wind[2]].map(|speed| 0.6 * speed * wind[0].hypot(wind[2]) * still);
-            feeling.push(([at_m[0], 0.0, at_m[1], 0.0], pressure_pa, [feels[0], feels[1]]));
+            feeling.push(([at_m[0], 0.0, at_m[1], 0.0], pressure_pa, plant.site % 3 == 0, [feels[0], feels[1]]));
         }
     }
-    // What it feels: the wind's dynamic pressure at half its height, times the square of the gust, along the wind.
+    // What it feels: the wind's dynamic pressure at half its height, times the square of the gust, along the wind; what is broken less of it, and its own fall.
     let places: Vec<_> = feeling.iter().map(|&(at, ..)| at).collect();
     let gusts = probe(&gpu, &picture, "return vec4<f32>(gust_at(at.xz));", &places);
-    for ((at, wanted_pa, found_pa), [gust, ..]) in feeling.iter().zip(gusts) {
-        let wanted_pa = wanted_pa.map(|pa| pa * gust * gust);
+    for ((at, wind_pa, is_broken, found_pa), [gust, ..]) in feeling.iter().zip(gusts) {
+        let [east_pa, south_pa] = wind_pa.map(|pa| pa * gust * gust);
+        let fall = heading_rad(fall);
+        let wanted_pa =
+            if *is_broken { [0.45 * east_pa + 8.0 * fall.cos(), 0.45 * south_pa + 8.0 * fall.sin()] } else { [east_pa, south_pa] };
         assert!(
             (0..2).all(|i| (wanted_pa[i] - found_pa[i]).abs() < 0.01 * wanted_pa[i].abs()),
             "{found_pa:?} instead of {wanted_pa:?} at {at:?}"

@@ -5,12 +5,11 @@ use std::time::Instant;
 
 use anyhow::Result;
 use shared::plant::blade::propagator::stable_dt_secs;
-use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
-use wide::f32x8;
+use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, abreast};
 
 use super::super::{Outcome, Problem, Run};
 use crate::norms::Norms;
-use crate::problems::plants::{BLADE, Gust, PLACES};
+use crate::problems::plants::{ABREAST, BLADE, Gust, PLACES};
 
 /// Steps in the second: 1/15 s to 1/960 s, and two more for what fails on those.
 const STEPS: [usize; 9] = [15, 30, 60, 120, 240, 480, 960, 1920, 3840];
@@ -48,22 +47,22 @@ fn blow(integrator: Integrator, steps: usize) -> Result<Outcome> {
     let winds = gust.abreast(steps);
     let Blade { length_m, frequency_rad_per_s, damping_share, lean_per_wind2 } = BLADE;
     let [length_m, frequency_rad_per_s, damping_share, lean_per_wind2] =
-        [length_m, frequency_rad_per_s, damping_share, lean_per_wind2].map(f32x8::splat);
+        [length_m, frequency_rad_per_s, damping_share, lean_per_wind2].map(|value| [value; ABREAST]);
     let blade = Blade { length_m, frequency_rad_per_s, damping_share, lean_per_wind2 };
-    let held: Leans<f32x8> = [[f32x8::ZERO; 2]; LINKS];
+    let held: Leans<[f32; ABREAST]> = [[[0.0; ABREAST]; 2]; LINKS];
     let dt_secs = 1.0 / steps as f32;
     let begun = Instant::now();
-    let sways: Vec<Sway<f32x8>> = winds
+    let sways: Vec<Sway<[f32; ABREAST]>> = winds
         .chunks(steps)
         .map(|winds| {
-            let start = Sway { lean_rad: held, rate_rad_per_s: held };
-            winds.iter().fold(start, |sway, wind| advance(&sway, &blade, &held, wind, integrator, dt_secs))
+            let mut sway = Sway { lean_rad: held, rate_rad_per_s: held };
+            winds.iter().for_each(|wind| abreast::advance(&mut sway, &blade, &held, wind, integrator, dt_secs));
+            sway
         })
         .collect();
     let wall = begun.elapsed();
     let tips = black_box(sways).into_iter().flat_map(|sway| {
-        let tip = sway.points_m(length_m)[LINKS - 1].map(|part| part.to_array());
-        (0..8).map(move |lane| tip.map(|part| part[lane]))
+        (0..ABREAST).map(move |n| Sway::at_rest(sway.lean_rad.map(|link| link.map(|part| part[n]))).points_m(BLADE.length_m)[LINKS - 1])
     });
     let errors = tips.zip(gust.tips_m()).map(|(tip, wanted)| {
         let apart_m = (0..3).map(|axis| f64::from(tip[axis] - wanted[axis]).powi(2)).sum::<f64>().sqrt();

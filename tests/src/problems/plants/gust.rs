@@ -5,10 +5,12 @@ use std::sync::OnceLock;
 use anyhow::Result;
 use server::wind::{Air, Config, Method};
 use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
-use wide::f32x8;
 
 /// Places where the wind is recorded, each with a blade.
 pub const PLACES: usize = 64;
+
+/// Blades that are stepped at once.
+pub const ABREAST: usize = 16;
 
 /// Frames of the record in its second.
 const FRAMES: usize = 60;
@@ -57,12 +59,12 @@ impl Gust {
         std::array::from_fn(|link| std::array::from_fn(|axis| from[link][axis] + (to[link][axis] - from[link][axis]) * part))
     }
 
-    /// Wind at eight blades, in all steps of the second: for blades 0 to 7 in all steps, then for the next eight.
-    pub fn abreast(&self, steps: usize) -> Vec<Leans<f32x8>> {
-        let groups = (0..PLACES / 8).flat_map(|group| (0..steps).map(move |step| (group, step)));
+    /// Wind at [`ABREAST`] blades, in all steps of the second: for the first of them in all steps, then for the next.
+    pub fn abreast(&self, steps: usize) -> Vec<Leans<[f32; ABREAST]>> {
+        let groups = (0..PLACES / ABREAST).flat_map(|group| (0..steps).map(move |step| (group, step)));
         let winds = groups.map(|(group, step)| {
-            let each: [Leans; 8] = std::array::from_fn(|lane| self.wind_m_per_s(8 * group + lane, step, steps));
-            std::array::from_fn(|link| std::array::from_fn(|axis| f32x8::from(each.map(|wind| wind[link][axis]))))
+            let each: [Leans; ABREAST] = std::array::from_fn(|n| self.wind_m_per_s(ABREAST * group + n, step, steps));
+            std::array::from_fn(|link| std::array::from_fn(|axis| each.map(|wind| wind[link][axis])))
         });
         winds.collect()
     }

@@ -4,4 +4,4 @@ mod elastica;
 mod gust;
 
 pub use elastica::heavy_elastica;
-pub use gust::{BLADE, Gust, PLACES};
+pub use gust::{ABREAST, BLADE, Gust, PLACES};
