@@ -36,6 +36,9 @@ impl<'a> Stencil<'a> {
     }
 }
 
+/// What lingers below this is gone (Pa): numbers so small that they lose digits would make a step five times as long.
+const LEAST_PA: f32 = 1e-20;
+
 /// One sub-step: each volume exchanges the share `shares` (x, y, z) of the difference with its neighbours as far as both are `open`; `keep` of all is left.
 // Slices that are arguments of their own are known not to overlap.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
@@ -47,7 +50,8 @@ pub(super) fn spread(now: &[f32], next: &mut [f32], open: &[f32], rows: Rows, sh
         for (i, next) in next.iter_mut().enumerate() {
             let flow = |side: usize| open.sides[side][i] * (r.sides[side][i] - r.center[i]);
             let gain = x * (flow(0) + flow(1)) + y * (flow(2) + flow(3)) + z * (flow(4) + flow(5));
-            *next = keep * (r.center[i] + open.center[i] * gain);
+            let left = keep * (r.center[i] + open.center[i] * gain);
+            *next = if left.abs() < LEAST_PA { 0.0 } else { left };
         }
     }
 }
@@ -58,6 +62,9 @@ pub(super) const MIXING_M: f32 = 0.087;
 
 /// Force over length (Pa/m) below which the wind has no direction, and nothing a lee.
 const CALM_PA_PER_M: f32 = 1e-6;
+
+/// Lee below which there is none, lest far off it loses digits and takes long.
+const LEAST_LEE: f32 = 1e-6;
 
 /// One sweep of the lee l along the wind n, implicit upwind: n·∇l = ℓ·∇²l, where each volume lets its `open` share of what comes with the wind through, and air
 /// mixes as far as both volumes are open.
@@ -83,7 +90,8 @@ pub(super) fn shelter(lee: &[f32], next: &mut [f32], open: &[f32], wind: [&[f32]
                 of(0) + of(1) + of(2) + of(3) + of(4) + of(5)
             };
             let (comes, passes) = (sum(carried), open.center[i]);
-            *next = (comes - passes * (comes - lees(carried) - lees(mixed))) / (comes + passes * sum(mixed) + CALM_PA_PER_M);
+            let lee = (comes - passes * (comes - lees(carried) - lees(mixed))) / (comes + passes * sum(mixed) + CALM_PA_PER_M);
+            *next = if lee > LEAST_LEE { lee } else { 0.0 };
         }
     }
 }

@@ -80,6 +80,15 @@ fn forces_decay_at_their_rate_whatever_the_step() {
 }
 
 #[test]
+fn what_lingers_is_gone_in_the_end() {
+    let mut field = wide(LINGERING);
+    (0..20).for_each(|_| field.step(1.0));
+    assert!(forces(&field).iter().flatten().all(|force| *force == 0.0 || force.abs() > f32::MIN_POSITIVE), "and never subnormal");
+    (0..20).for_each(|_| field.step(1.0));
+    assert!(forces(&field).iter().all(|force| *force == [0.0; 3]));
+}
+
+#[test]
 fn two_half_steps_are_nearly_one() {
     let after = |steps: usize, step_secs: f32| {
         let mut field = wide(LINGERING);
