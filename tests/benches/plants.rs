@@ -1,4 +1,4 @@
-//! Plants on one core: a step of the near blades, and what it is made of; postures of underbrush; growing; the force field.
+//! Plants on one core: a step of the near blades, and what it is made of; postures of underbrush; growing; the force field; breaking by the wind.
 //!
 //! Every line has the least and the median time of many runs, and how often the least goes into that of the line that it is compared with. Near blades are
 //! those of nine grids with 1024 each, as around a camera; their step reads the wind at three control points of every blade, swings it, and
@@ -6,9 +6,14 @@
 //! stand in, so that those that are stepped together read one window of it.
 
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::Vec3;
+use server::bend::Meadow;
+use server::plants::Plants;
+use server::scenes;
+use server::weather::Weather;
 use server::wind::{Air, Config, Method};
 use shared::hash::hash3;
 use shared::plant::blade::contact::{Sphere, settle};
@@ -63,6 +68,7 @@ fn line(name: &str, times: Times, count: usize, (unit, unit_secs): (&str, f64), 
 }
 
 const MS: (&str, f64) = ("ms", 1e-3);
+const US: (&str, f64) = ("µs", 1e-6);
 const NS: (&str, f64) = ("ns", 1e-9);
 
 fn heading(of: &str, than: &str) {
@@ -399,13 +405,39 @@ fn force_field() {
     line("lees go on, and the wind arrives", sheltered, 1, MS, None);
 }
 
+/// What it takes in each step to see whether the wind breaks anything, in the wind of the scene that ships and in one that breaks the weakest.
+fn breaking() {
+    let loaded = scenes::load("underbrush").expect("a built-in scene is sound");
+    let maps = loaded.maps();
+    let flora = Flora::new(&loaded.scene, &maps.cover, None).expect("a scene with underbrush");
+    let meadow = Meadow::new(&loaded.scene, Arc::new(maps.height.clone()), &maps.cover);
+    heading(&format!("a look at the wind for {} plants, a step", flora.grown().plants().len()), "slower");
+    let mut calm = None;
+    for (name, wind_m_per_s) in [("in the scene's own wind", loaded.scene.wind.mean_m_per_s), ("in a storm", [40.0, 0.0])] {
+        let mut scene = loaded.scene.clone();
+        (scene.wind.mean_m_per_s, scene.wind.canopy_drag_per_m) = (wind_m_per_s, 0.0);
+        let weather = Weather::new(&scene, &maps).expect("a wind that blows");
+        let (mut plants, mut tick) = (Plants::new(Some(flora.clone()), DT_SECS), 0);
+        let times = time(|| {
+            for _ in 0..120 {
+                plants.step(tick, DT_SECS, &meadow, &weather);
+                tick += 1;
+            }
+        });
+        let strongest_m_per_s = weather.strongest_m_per_s(1.0);
+        line(&format!("{name}, up to {strongest_m_per_s:.0} m/s: {} broken", plants.broken().len()), times, 120, US, calm);
+        calm = calm.or(Some(times));
+    }
+}
+
 fn main() {
     // `cargo test` and `--test` run each benchmark once; this one would take half a minute.
     if std::env::args().any(|argument| argument == "--test") {
         return;
     }
     let asked: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
-    let parts: [(&str, fn()); 4] = [("near", near_plants), ("postures", postures), ("underbrush", underbrush), ("field", force_field)];
+    let parts: [(&str, fn()); 5] =
+        [("near", near_plants), ("postures", postures), ("underbrush", underbrush), ("field", force_field), ("breaking", breaking)];
     for (name, part) in parts {
         if asked.is_empty() || asked.iter().any(|word| name.contains(word.as_str())) {
             part();

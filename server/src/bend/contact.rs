@@ -84,10 +84,12 @@ pub fn press(sward: &mut Sward, contact: &Contact, dt_secs: f32) -> f32 {
             let along = (velocity[0] * direction[0] + velocity[1] * direction[1]).max(SETTLING_M_PER_S);
             let terrain_rad = limit_rad(direction);
             let limit = terrain_rad.min(contact.slips_rad);
-            let theta = if bend.theta < limit {
-                limit.min(bend_after_rad(bend.theta, along, contact.strike_height_m, passage.share * leg_secs))
-            } else {
+            let theta = if bend.theta >= limit {
                 bend.theta.min(terrain_rad)
+            } else if contact.rests {
+                limit
+            } else {
+                limit.min(bend_after_rad(bend.theta, along, contact.strike_height_m, passage.share * leg_secs))
             };
             let held = bending_speed_rad_per_s(along, theta, contact.strike_height_m).max(HELD_RAD_PER_S);
             largest = largest.max(held);

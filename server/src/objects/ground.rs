@@ -148,7 +148,10 @@ impl Ground {
             }
         }
         let center = Vector::new(corner[0] + 0.5 * self.tile_m[0], 0.0, corner[1] + 0.5 * self.tile_m[1]);
-        ColliderBuilder::heightfield(heights, Vector::new(self.tile_m[0], 1.0, self.tile_m[1])).translation(center).friction(0.8)
+        let scale = Vector::new(self.tile_m[0], 1.0, self.tile_m[1]);
+        // Without this a ball that rolls over flat land bounces off the edges of its triangles.
+        let flags = HeightFieldFlags::FIX_INTERNAL_EDGES;
+        ColliderBuilder::heightfield_with_flags(heights, scale, flags).translation(center).friction(0.8)
     }
 }
 

@@ -18,6 +18,12 @@ fn with_balls(count: u32, balls: u32) -> Scene {
     scene
 }
 
+/// A scene without wind.
+fn calm(mut scene: Scene) -> Scene {
+    (scene.wind.mean_m_per_s, scene.wind.sources) = ([0.0; 2], 0);
+    scene
+}
+
 fn balls(world: &mut World) -> Vec<ObjectPose> {
     world.snapshot().objects.into_iter().filter(|pose| pose.kind == Ball).collect()
 }
@@ -48,7 +54,7 @@ fn kick(world: &mut World, kind: VehicleKind) -> f32 {
     for _ in 0..600 {
         world.step(&[]);
         let now = speed(&balls(world)[0]);
-        if now < fastest {
+        if now < fastest && fastest > 0.1 {
             return fastest;
         }
         fastest = now;
@@ -112,7 +118,7 @@ fn balls_of_every_size_are_kicked_by_cars_and_monsters() {
 #[test]
 fn a_ball_rolls_downhill_without_slipping_and_lies_still_on_a_gentle_slope() {
     let on_a_slope = |slope: f32| {
-        let scene = with_balls(16, 1);
+        let scene = calm(with_balls(16, 1));
         let mut world = World::new(&scene, worlds::maps(&scene, |x, _| slope * x, |_, _| 255)).expect("a sound scene");
         let start = balls(&mut world)[0];
         run(&mut world, 240);
@@ -217,14 +223,14 @@ fn a_ball_comes_up_to_the_speed_at_which_the_wind_s_drag_is_the_grass_s() {
             let wanted = wind_m_per_s - slowest / ((0.8 * k_per_m).sqrt() * secs + start).tanh();
             let found = 0.6 * x + 0.8 * z;
             assert!(
-                (found - wanted).abs() < 0.03 * wind_m_per_s,
+                (found - wanted).abs() < 0.005 * wind_m_per_s,
                 "r = {radius_m} m, {wind_m_per_s} m/s: {found} m/s instead of {wanted} after {secs} s"
             );
-            assert!((0.8 * x - 0.6 * z).abs() < 0.05 * wind_m_per_s, "downwind");
+            assert!((0.8 * x - 0.6 * z).abs() < 0.005 * wind_m_per_s, "downwind");
         }
         let [x, z] = speeds[899];
         let end = wind_m_per_s - slowest;
-        assert!((x.hypot(z) / end - 1.0).abs() < 0.02, "r = {radius_m} m: {} m/s in the end instead of {end}", x.hypot(z));
+        assert!((x.hypot(z) / end - 1.0).abs() < 0.005, "r = {radius_m} m: {} m/s in the end instead of {end}", x.hypot(z));
     }
 }
 
@@ -243,8 +249,7 @@ fn a_resting_ball_stays_in_a_breeze_and_rolls_off_in_a_gale() {
 
 #[test]
 fn the_grass_below_a_ball_at_rest_stays_pressed_while_its_patch_sleeps() {
-    let mut scene = with_balls(8, 1);
-    (scene.wind.mean_m_per_s, scene.wind.sources) = ([0.0; 2], 0);
+    let scene = calm(with_balls(8, 1));
     let mut world = worlds::flat(&scene);
     let lean_rad = |world: &World, [x, z]: [f32; 2]| {
         let [x, z] = world.meadow().lean_rad([x, z], &GroundWind::still(&scene));

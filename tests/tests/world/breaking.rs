@@ -8,7 +8,7 @@ use server::world::{Command, View, World};
 use shared::plant::flora::Flora;
 use shared::scene::{Primitive, PrimitiveKind, Scene, VehicleKind, parse_underbrush};
 use shared::terrain::{CoverMap, grey_png};
-use shared::wire::quantise::heading_rad;
+use shared::wire::quantise::{heading_rad, wind_m_per_s};
 use shared::wire::{BrokenPlant, Drive, SERVER_MESSAGE_LIMIT, ServerMessage, decode, encode};
 use std::f32::consts::{PI, TAU};
 use tests::worlds;
@@ -170,11 +170,11 @@ fn neither_a_gale_nor_wash_breaks_any() {
     assert_eq!(world.snapshot().broken, lifted, "a wash");
 }
 
-/// A cyclone that travels eastward, over land without any other wind.
+/// A cyclone that travels eastward along z = 64 m, over land without any other wind.
 fn cyclone(scene: Scene) -> Scene {
     let mut scene = calm(scene);
     (scene.wind.cells, scene.wind.spacing_m) = ([32, 8, 32], [4.0, 2.0, 4.0]);
-    let whirl = Primitive::new(PrimitiveKind::Cyclone, [30.0, 6.0, 64.0]);
+    let whirl = Primitive::new(PrimitiveKind::Cyclone, [10.0, 6.0, 64.0]);
     scene.wind.primitives = vec![Primitive { radius_m: 26.0, speed_m_per_s: 40.0, drift_m_per_s: [6.0, 0.0], ..whirl }];
     scene
 }
@@ -183,15 +183,28 @@ fn cyclone(scene: Scene) -> Scene {
 fn a_cyclone_that_travels_leaves_a_trail_of_broken_reeds() {
     let scene = cyclone(reeds(8));
     let (mut world, flora) = (worlds::flat(&scene), flora(&scene));
-    run(&mut world, 600);
-    let early = world.snapshot().broken;
-    // From 30 m to 90 m, on its way back across the cut after that.
-    println!("{} broken of {}", early.len(), flora.grown().plants().len());
-    let places: Vec<[f32; 2]> = early.iter().map(|plant| flora.grown().sites.place_m(plant.site)).collect();
-    let xs = places.iter().map(|at| at[0]);
-    println!("x {} to {}", xs.clone().fold(f32::MAX, f32::min), xs.fold(0.0, f32::max));
-    let zs = places.iter().map(|at| at[1]);
-    println!("z {} to {}", zs.clone().fold(f32::MAX, f32::min), zs.fold(0.0, f32::max));
+    let places = |broken: &[BrokenPlant]| broken.iter().map(|plant| flora.grown().sites.place_m(plant.site)).collect::<Vec<_>>();
+    let mean = |of: fn(&[f32; 2]) -> f32, all: &[[f32; 2]]| all.iter().map(of).sum::<f32>() / all.len() as f32;
+    // The wind has blown for 6 s when the world starts: 46 m to 66 m, then on to 86 m.
+    run(&mut world, 200);
+    let first = world.snapshot().broken;
+    run(&mut world, 200);
+    let all: Vec<BrokenPlant> = world.snapshot().broken.iter().copied().collect();
+    let (early, late) = all.split_at(first.len());
+    assert!(early.len() > 300 && late.len() > 300, "{} and {} of {} broken", early.len(), late.len(), flora.grown().plants().len());
+    for [x, z] in places(&all) {
+        let beside_m = (z - 64.0).hypot(x - x.clamp(46.0, 86.0));
+        assert!(beside_m < 26.0, "one broke at {x} m, {z} m");
+    }
+    let [from_m, to_m] = [early, late].map(|broken| mean(|at| at[0], &places(broken)));
+    assert!(to_m > from_m + 15.0, "broken about {from_m} m first, then about {to_m} m");
+    // It turns against the clock seen from above: eastward in the south.
+    let eastward = |south: f32| {
+        let there = all.iter().zip(places(&all)).filter(|(_, at)| south * (at[1] - 64.0) > 4.0);
+        let falls: Vec<f32> = there.map(|(plant, _)| fall(plant)[0]).collect();
+        falls.iter().sum::<f32>() / falls.len() as f32
+    };
+    assert!(eastward(1.0) > 0.3 && eastward(-1.0) < -0.3, "{} in the south, {} in the north", eastward(1.0), eastward(-1.0));
 }
 
 #[test]
@@ -226,9 +239,16 @@ fn the_same_plants_break_on_any_number_of_threads() {
 }
 
 #[test]
-fn the_scenes_that_ship_have_no_broken_plants_at_the_start() {
-    let loaded = scenes::load("meadow").expect("a built-in scene is sound");
+fn the_wind_of_the_scene_that_ships_with_underbrush_breaks_nothing() {
+    let loaded = scenes::load("underbrush").expect("a built-in scene is sound");
     let mut world = World::new(&loaded.scene, loaded.maps()).expect("a world");
-    world.step(&[]);
+    run(&mut world, 1200);
     assert!(world.snapshot().broken.is_empty());
+    // Far from the 16 m/s that break the first poppy.
+    let wind = world.snapshot().wind;
+    let [nx, ny, _] = wind.cells.map(|n| n as usize);
+    let lowest = |at: &usize| at / nx % ny == 0;
+    let speed = |at: usize| wind_m_per_s(wind.codes[at]).hypot(wind_m_per_s(wind.codes[2 * wind.volume() + at]));
+    let strongest_m_per_s = (0..wind.volume()).filter(lowest).map(speed).fold(0.0, f32::max);
+    assert!(strongest_m_per_s > 1.0 && 1.5 * strongest_m_per_s < 15.0, "{strongest_m_per_s} m/s");
 }
