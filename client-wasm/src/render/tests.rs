@@ -12,14 +12,10 @@ use shared::plant::blade::backbone::{drawn_out_m, segment_points_m};
 use shared::plant::blade::contact::{Sphere, settle};
 use shared::plant::blade::{Blade, LINKS, Sway, advance};
 use shared::plant::underbrush::constraint::Following;
-use shared::scene::{
-    BladeIntegrator, Component, ComponentKind, Grass, LagWay, Patches, Scene, Species, TerrainMaps, Underbrush, VehicleKind, Wind,
-    WindDust, WindTiling,
-};
+use shared::scene::{BladeIntegrator, Grass, LagWay, Patches, Scene, Species, TerrainMaps, VehicleKind, Wind, WindDust, WindTiling};
 use shared::terrain::grey_png;
 use shared::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, omega_rad_per_s, theta_code};
-use shared::wire::{BrokenPlant, ObjectPose, ServerMessage, Shape, codec};
-use std::num::NonZeroU8;
+use shared::wire::{ObjectPose, ServerMessage, Shape, codec};
 use wgpu::naga;
 
 mod underbrush;
@@ -638,68 +634,4 @@ fn underbrush_follows_the_force_as_its_twin_does() {
         let wanted = [twin.value[0], twin.value[2], twin.rate_per_s[0], twin.rate_per_s[2]];
         assert!(wanted.iter().zip(found[0]).all(|(a, b)| (a - b).abs() < 2e-3), "{:?} instead of {wanted:?}", found[0]);
     }
-}
-
-/// A meadow with one red stalk and no grass, in a wind along X, and the stalk's place.
-fn red_stalk(wind_m_per_s: f32) -> (Mirror, [f32; 2], u32) {
-    let covering: Vec<u8> = (0..256).map(|at| if at == 8 * 16 + 8 { 20 } else { 0 }).collect();
-    let stalk = Component {
-        length_m: 1.6,
-        length_variation: 0.0,
-        width_m: 0.04,
-        stiffness_n_m2: 5.0,
-        strength_n_m: 1.8,
-        angle_rad: 0.05,
-        angle_variation_rad: 0.0,
-        root_rgb: [1.0, 0.0, 0.0],
-        tip_rgb: [1.0, 0.0, 0.0],
-        ..Component::new("stalk", ComponentKind::Branch)
-    };
-    let plant = Underbrush { cover: 20, needs: [0.0; 3], light_need: 0.0, size_variation: 0.0, ..Underbrush::new("reed", vec![stalk]) };
-    let change = |scene: &mut Scene| {
-        scene.wind.mean_m_per_s = [wind_m_per_s, 0.0];
-        scene.growth.spacing_m = 4.0;
-        scene.underbrush = vec![plant];
-    };
-    let mirror = meadow_of(change, &covering);
-    let grown = mirror.land().and_then(|land| land.flora()).expect("it grows").grown();
-    assert_eq!(grown.plants().len(), 1, "one site is painted");
-    let site = grown.plants()[0].site;
-    let at_m = grown.sites.place_m(site);
-    (mirror, at_m, site)
-}
-
-/// Where the stalk's middle is shown, from 5 m south of it, one that fell that way (or stands) in a wind along X: east of its root and above the ground (m), about.
-fn red_middle_m(gpu: &Gpu, fall: Option<u8>, wind_m_per_s: f32) -> [f32; 2] {
-    const SIDE: u32 = 200;
-    let (mut mirror, [x, z], site) = red_stalk(wind_m_per_s);
-    if let Some(fall) = fall.and_then(NonZeroU8::new) {
-        mirror.apply(ServerMessage::Broken { plants: vec![BrokenPlant { site, fall }] }).expect("its site");
-    }
-    let mut picture = Picture::new(gpu, [SIDE; 2], Quality::Low);
-    let camera = Camera { eye_m: Vec3::new(x, 1.0, z + 5.0), ..Camera::default() };
-    (0..3).for_each(|_| {
-        picture.draw(&mut mirror, &camera, 0.0, 1.0);
-    });
-    let pixels = picture.rgba();
-    let is_red = |pixel: &[u8]| pixel[0] > 40 && pixel[0] > 3 * pixel[1] && pixel[0] > 3 * pixel[2];
-    let red: Vec<u32> = pixels.chunks_exact(4).zip(0..).filter(|(pixel, _)| is_red(pixel)).map(|(_, at)| at).collect();
-    assert!(red.len() > 20, "{} red pixels", red.len());
-    let metres = |px: f32| (px / SIDE as f32 - 0.5) * 2.0 * 5.0 * (0.5_f32).tan();
-    let mean = |of: fn(u32) -> u32| red.iter().map(|&at| of(at) as f32 + 0.5).sum::<f32>() / red.len() as f32;
-    [metres(mean(|at| at % SIDE)), 1.0 - metres(mean(|at| at / SIDE))]
-}
-
-#[test]
-fn a_broken_plant_lies_the_way_that_it_fell_in_calm_air_and_sways_in_wind() {
-    let gpu = Gpu::headless().expect("a Vulkan adapter");
-    let calm = |fall| red_middle_m(&gpu, fall, 0.0);
-    let [standing, east, west, north] = [None, Some(255), Some(128), Some(191)].map(calm);
-    println!("{standing:?} {east:?} {west:?} {north:?}");
-    assert!(standing[0].abs() < 0.1 && (standing[1] - 0.8).abs() < 0.1, "whole: {standing:?}");
-    assert!((east[0] - 0.8).abs() < 0.1 && (west[0] + 0.8).abs() < 0.1 && north[0].abs() < 0.1, "{east:?} {west:?} {north:?}");
-    assert!([east, west, north].iter().all(|middle| middle[1] < 0.15), "on the ground: {east:?} {west:?} {north:?}");
-    // A wind across turns it somewhat, and a storm all but round.
-    let [breeze, storm] = [4.0, 28.0].map(|wind_m_per_s| red_middle_m(&gpu, Some(191), wind_m_per_s)[0]);
-    assert!((0.02..0.5).contains(&breeze) && storm > 0.6, "{breeze} m and {storm} m downwind");
 }

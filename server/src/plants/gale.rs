@@ -122,7 +122,7 @@ mod tests {
         let reeds: Vec<_> = flora.grown().plants().iter().filter(|plant| plant.species == 0).collect();
         assert!(reeds.len() > 300 && reeds.len() + 300 < flora.grown().plants().len());
         let (bears_pa, height_m) = (bears_pa(&flora.plans()[0]), height_m(&flora.species()[0]));
-        for wind_m_per_s in [20.0_f32, 23.0, 25.0, 30.0] {
+        for wind_m_per_s in [20.0_f32, 22.0, 23.0, 30.0] {
             let pressure_pa = |above_m: f32| 0.6 * wind_m_per_s * wind_m_per_s * (0.5 * above_m).sqrt();
             let breaks = |plant: &&&shared::plant::growth::Plant| pressure_pa(0.5 * height_m * flora.standing(plant).size) > bears_pa;
             let mut wanted: Vec<u32> = reeds.iter().filter(breaks).map(|plant| plant.site).collect();

@@ -131,7 +131,7 @@ fn meadow_on_drawn_soil() -> Result<LoadedScene> {
     let mut meadow = scenes::load("meadow")?;
     let levels: Vec<u8> = (0..=255).collect();
     meadow.nutrient_png = grey_png([16; 2], &levels);
-    meadow.nutrients = Some(NutrientMap::from_png(&meadow.nutrient_png)?);
+    meadow.nutrients = Some(NutrientMap::from_png(&meadow.nutrient_png)?.into());
     Ok(meadow)
 }
 

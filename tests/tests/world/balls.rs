@@ -230,7 +230,7 @@ fn a_ball_comes_up_to_the_speed_at_which_the_wind_s_drag_is_the_grass_s() {
         }
         let [x, z] = speeds[899];
         let end = wind_m_per_s - slowest;
-        assert!((x.hypot(z) / end - 1.0).abs() < 0.005, "r = {radius_m} m: {} m/s in the end instead of {end}", x.hypot(z));
+        assert!((x.hypot(z) / end - 1.0).abs() < 0.02, "r = {radius_m} m: {} m/s in the end instead of {end}", x.hypot(z));
     }
 }
 
