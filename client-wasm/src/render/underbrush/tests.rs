@@ -426,9 +426,9 @@ fn the_compute_pass_says_how_each_plant_stands_and_lists_it_once() {
                 assert_eq!(feels[3], f32::from(u8::from(apart_m < reaches_m)), "{plant:?}");
             }
             touched += u32::from(feels[3] > 0.0);
-            // In the lee of the object the wind is weaker.
+            // Before the object and in its lee the wind is weaker.
             let [aside_m, beyond_m] = [at_m[0] - 32.0, at_m[1] - 56.0];
-            if 0.8 * aside_m + 0.6 * beyond_m > -4.0 && (0.8 * beyond_m - 0.6 * aside_m).abs() < 8.0 {
+            if 0.8 * aside_m + 0.6 * beyond_m > -8.0 && (0.8 * beyond_m - 0.6 * aside_m).abs() < 8.0 {
                 continue;
             }
             let wind = scene.textures.wind.at(land, [at_m[0], 0.5 * height_m, at_m[1]]);

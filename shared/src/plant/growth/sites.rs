@@ -146,6 +146,11 @@ mod tests {
     }
 
     #[test]
+    fn a_disc_ends_at_the_next_whole_square() {
+        assert_eq!([0.0, 2.5, 3.0].map(super::super::disc::square_steps), [1, 7, 9]);
+    }
+
+    #[test]
     fn a_spacing_that_does_not_divide_the_world_covers_it() {
         assert_eq!(Sites::new([10.0, 0.2], 0.3, 1).count(), [34, 1]);
     }

@@ -249,6 +249,16 @@ fn painted_places_are_for_one_species_alone_whatever_the_soil() {
 }
 
 #[test]
+fn painted_places_keep_others_out_where_there_is_room_for_them() {
+    let reed = Underbrush { room_m: 3.0, reach_m: 0.0, propagation_points: 0, ..species("reed") };
+    let moss = Underbrush { room_m: 0.2, needs: [0.0; 3], uptake: [0.0; 3], ..species("moss") };
+    let ground = |[x_m, _]: [f32; 2]| if x_m < 20.0 { Ground::Painted(0) } else { Ground::Open };
+    let grown = grown(40.0, 3, &[reed, moss], &[0.5; 2], ground);
+    assert!(count_of(&grown, 0) > 10 && count_of(&grown, 1) > 1000);
+    assert!(grown.plants().iter().all(|plant| (grown.sites.place_m(plant.site)[0] < 20.0) == (plant.species == 0)));
+}
+
+#[test]
 fn plants_are_found_by_site_and_by_place() {
     let (species, heights_m) = mixed();
     let grown = grown(32.0, 3, &species, &heights_m, |_| Ground::Open);

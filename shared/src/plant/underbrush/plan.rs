@@ -226,7 +226,10 @@ fn drag_m2(component: &Component) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::plant::{Forces, LookUp, Stand, posed};
+    use super::super::vectors::vectors;
     use super::*;
+    use glam::Vec3;
     use proptest::prelude::*;
 
     const NODES: Nodes = Nodes { angles: 3, loads: 3 };
@@ -254,6 +257,10 @@ mod tests {
         }
         let leaves: Vec<f32> = placed.iter().filter(|one| one.part == 2).map(|one| one.at_share).collect();
         assert_eq!(leaves[..3], [0.5, 0.75, 1.0]);
+        let mut sizes: Vec<f32> = placed.iter().filter(|one| one.part == 2).map(|one| one.size).collect();
+        sizes.sort_by(f32::total_cmp);
+        sizes.dedup();
+        assert_eq!(sizes.len(), 18, "no branch has the leaves of another");
     }
 
     #[test]
@@ -281,6 +288,25 @@ mod tests {
         assert!((part.weight_secs2_per_m - 0.001 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
         assert!((part.drag_per_pa - 0.25 * 0.73 * 0.4 * 0.01 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
         assert!((part.strength - 0.01 * 0.4 / 0.001).abs() < 1e-6);
+        let drag_per_pa = |kind| Plan::new(&Underbrush::new("one", vec![Component::new("one", kind)]), NODES).parts[0].drag_per_pa;
+        assert!((drag_per_pa(ComponentKind::Branch) - 1.1 * 0.75 * 0.004 * 160.0).abs() < 1e-5);
+        assert!((drag_per_pa(ComponentKind::Flower) - (1.1 * 0.06 * 0.004 + 0.25 * 0.7854 * 1e-4) * 160.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn the_air_meets_the_outline_of_a_component() {
+        for (kind, drag) in [(ComponentKind::Leaf, LEAF_DRAG), (ComponentKind::Branch, STALK_DRAG)] {
+            let component = Component { sections: 16, length_variation: 0.0, ..Component::new("one", kind) };
+            let plan = Plan::new(&Underbrush::new("one", vec![component.clone()]), NODES);
+            let stand = Stand { size: 1.0, heading_rad: 0.0, lean_rad: [0.0; 2] };
+            let weightless = Forces { per_mass_m_per_s2: Vec3::ZERO, pressure_pa: Vec3::ZERO };
+            let one = posed(&plan, &plan.placed(1), stand, weightless, LookUp::Nearest, 0)[0];
+            let outline = vectors(&plan.parts[0], &one, 1);
+            let silhouette_m2: f32 =
+                outline.windows(2).map(|pair| pair[1].axis_m.length() * (pair[0].right_m.length() + pair[1].right_m.length())).sum();
+            let found_m2 = drag_m2(&component) / drag;
+            assert!((found_m2 / silhouette_m2 - 1.0).abs() < 0.01, "{found_m2} m² of {silhouette_m2} m²");
+        }
     }
 
     /// First natural frequency of a chain of `count` sections whose masses are in their middles, and of one at the tip, in units of √(EI/(m·L³)): the shape

@@ -171,7 +171,9 @@ fn bent(unbent: &Unbent, towards: Vec3, length_m: f32, bends_rad: &[f32]) -> ([S
         let turned = around * side.dot(around) + (towards * cosine - axis * sine) * side.dot(towards);
         let direction = above_ground(free, free.cross(turned), end_m.y / section_m);
         end_m += direction * section_m;
-        *section = Section { end_m, direction, side: square(turned, direction).normalize_or(turned) };
+        let side = square(turned, direction).normalize_or(turned);
+        // Once more, as little is left, of few digits, of a side that the ground has laid the section along.
+        *section = Section { end_m, direction, side: square(side, direction).normalize_or(side) };
     }
     (sections, bends_rad.len())
 }

@@ -218,6 +218,7 @@ mod tests {
             let told = f64::from(between(&table, unbent_rad, load)[8]) * load;
             assert!((told - found[0]).abs() < 0.01 * found[0], "{told} and {}", found[0]);
         }
+        assert!(between(&table, 1.0, 1e6)[8] < 1e-3, "what lies along a load feels no moment");
     }
 
     proptest! {

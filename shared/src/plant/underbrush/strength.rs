@@ -61,6 +61,18 @@ mod tests {
     }
 
     #[test]
+    fn a_load_across_breaks_the_joint_that_bears_least() {
+        let joints = joints(8, 0.02);
+        let softened = |shares: &[f64], strength: f64| {
+            let broken = broken_across(&joints, shares, strength)?;
+            Some((0..8).filter(|&joint| broken[joint] < joints[joint]).collect::<Vec<_>>())
+        };
+        assert_eq!(softened(&shares(8, 0.02), 0.1), Some(vec![0]));
+        assert_eq!(softened(&[1.0, 1.0, 1.0, 0.01, 1.0, 1.0, 1.0, 1.0], 0.1), Some(vec![3]));
+        assert_eq!(softened(&shares(8, 0.02), 0.0), None);
+    }
+
+    #[test]
     fn what_is_above_a_broken_joint_hangs() {
         let (joints, shares) = (joints(8, 0.5), shares(8, 0.5));
         let broken = broken_across(&joints, &shares, 1.0).unwrap();

@@ -111,10 +111,22 @@ fn leaves_droop_and_wind_carries_them_along() {
 
 #[test]
 fn a_pressed_plant_leans_as_the_grass_does() {
-    let stand = Stand { lean_rad: [0.0, 0.8], ..UPRIGHT };
     let mean = |posed: &[Posed]| posed.iter().filter(|one| one.part == 0).map(|one| one.axis).sum::<Vec3>() / 2.0;
     let upright = mean(&pose(5, UPRIGHT, CALM));
-    assert!((mean(&pose(5, stand, CALM)) - Quat::from_rotation_x(0.8) * upright).length() < 1e-6);
+    for (lean_rad, turn) in [([0.0, 0.8], Quat::from_rotation_x(0.8)), ([0.8, 0.0], Quat::from_rotation_z(-0.8))] {
+        assert!((mean(&pose(5, Stand { lean_rad, ..UPRIGHT }, CALM)) - turn * upright).length() < 1e-6);
+    }
+}
+
+#[test]
+fn each_stands_a_turn_on_from_the_one_before_as_headings_go() {
+    let headings = |posed: &[Posed]| [0, 1].map(|stalk| posed[stalk].axis.x.atan2(-posed[stalk].axis.z));
+    let off = |a: f32, b: f32| ((a - b).sin(), (a - b).cos() - 1.0);
+    let is_small = |(sine, cosine): (f32, f32)| sine.abs() < 1e-3 && cosine.abs() < 1e-3;
+    let [first, second] = headings(&pose(4, UPRIGHT, CALM));
+    assert!(is_small(off(second, first + PLAN.parts[0].component.turn_rad)), "{first} and {second}");
+    let [turned, _] = headings(&pose(4, Stand { heading_rad: 0.5, ..UPRIGHT }, CALM));
+    assert!(is_small(off(turned, first + 0.5)), "{first} and {turned}");
 }
 
 #[test]
@@ -127,6 +139,25 @@ fn a_storm_breaks_a_stalk_and_what_is_broken_lies() {
     let broken = posed(&PLAN, &PLAN.placed(2), UPRIGHT, CALM, LookUp::Interpolated, 1);
     let height = |one: &Posed| one.sections()[7].end_m.y;
     assert!(height(&broken[0]) < 0.1 && height(&broken[1]) > 0.3, "{} and {}", height(&broken[0]), height(&broken[1]));
+}
+
+#[test]
+fn a_larger_plant_bends_more_under_its_weight() {
+    let off = |size: f32| {
+        let stalk = pose(5, Stand { size, ..UPRIGHT }, CALM)[0];
+        (stalk.sections()[7].direction - stalk.axis).length()
+    };
+    let ratio = off(1.5) / off(1.0);
+    assert!((1.4..1.6).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn a_breath_of_air_strains_a_stalk_by_half_its_force_times_its_length() {
+    let breath = Forces { per_mass_m_per_s2: Vec3::ZERO, pressure_pa: Vec3::X };
+    for one in pose(6, UPRIGHT, breath).iter().filter(|one| one.part == 0) {
+        let moment_n_m = 1.1 * 0.75 * 0.4 * 0.01 * 0.2 * Vec3::X.cross(one.axis).length();
+        assert!((one.strain / (moment_n_m / 0.03) - 1.0).abs() < 0.02, "{}", one.strain);
+    }
 }
 
 #[test]

@@ -144,6 +144,11 @@ fn the_paper_s_pass_is_good_for_small_loads_alone() {
         let found = tip(one_pass, sections, 0.5, Load { spread: weight, tip: 0.0 }, unbent_rad);
         distance(found, heavy_elastica(0.5, weight, unbent_rad))
     };
+    let light = Load { spread: 0.0, tip: 0.05 };
+    assert!(
+        distance(tip(one_pass, 64, 0.5, light, 0.8), tip(balanced, 64, 0.5, light, 0.8)) < 0.001,
+        "what hangs at the tip pulls the same way"
+    );
     assert!(far(8, 0.5, 0.3) < 0.001 && far(8, 2.0, 0.3) < 0.015);
     // What it leaves out doesn't go away with more sections.
     assert!(far(8, 6.0, 0.3) > 0.2 && far(64, 6.0, 0.3) > 0.2);
