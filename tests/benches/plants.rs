@@ -205,10 +205,12 @@ impl Block {
                 is_due[n] |= x[n] * x[n] + z[n] * z[n] > FAR_RAD * FAR_RAD;
             }
         }
-        for Sphere { centre_m: [x, y, z], radius_m } in spheres {
+        let ([x, z], length_m) = (&self.root_m, &self.blade.length_m);
+        for sphere in spheres {
+            let [centre_x, height, centre_z] = sphere.centre_m;
             for n in 0..ABREAST {
-                let (reach_m, east_m, south_m) = (radius_m + self.blade.length_m[n], x - self.root_m[0][n], z - self.root_m[1][n]);
-                is_due[n] |= east_m * east_m + y * y + south_m * south_m < reach_m * reach_m;
+                let (east, south, reach_m) = (x[n] - centre_x, z[n] - centre_z, sphere.radius_m + length_m[n]);
+                is_due[n] |= east * east + height * height + south * south < reach_m * reach_m;
             }
         }
         is_due
