@@ -290,7 +290,9 @@ mod tests {
         assert!((part.strength - 0.01 * 0.4 / 0.001).abs() < 1e-6);
         let drag_per_pa = |kind| Plan::new(&Underbrush::new("one", vec![Component::new("one", kind)]), NODES).parts[0].drag_per_pa;
         assert!((drag_per_pa(ComponentKind::Branch) - 1.1 * 0.75 * 0.004 * 160.0).abs() < 1e-5);
-        assert!((drag_per_pa(ComponentKind::Flower) - (1.1 * 0.06 * 0.004 + 0.25 * 0.7854 * 1e-4) * 160.0).abs() < 1e-5);
+        assert!(
+            (drag_per_pa(ComponentKind::Flower) - (1.1 * 0.06 * 0.004 + 0.25 * std::f32::consts::FRAC_PI_4 * 1e-4) * 160.0).abs() < 1e-5
+        );
     }
 
     #[test]
