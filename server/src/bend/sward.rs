@@ -68,7 +68,7 @@ impl Sward<'_> {
     /// Lets `change` press each cell of awake patches within `footprint`, given the cell's centre (m), the bend that it has in all, and the
     /// terrain's limit (rad) by direction; what neither the wind nor the laid lean accounts for is the field's.
     ///
-    /// Below what `rests` it is laid, in patches that sleep too, anew whenever it has risen by [`RISE_RAD`]; nothing is left for the field.
+    /// Below what `rests` it is laid, in patches that sleep too, anew whenever it has risen by what a code on the wire tells; nothing is left for the field.
     pub fn for_each_cell(
         &mut self,
         footprint: &Footprint,
