@@ -13,6 +13,7 @@ mod forces;
 mod gpu;
 mod kinds;
 mod land;
+mod look;
 mod mesh;
 mod objects;
 mod obstacles;
@@ -34,6 +35,7 @@ mod wind;
 
 pub use atlas::reach_m as bend_reach_m;
 pub use gpu::{Gpu, GpuError};
+pub use look::{Far, Look, Order};
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::Picture;
 pub use quality::Quality;
@@ -80,6 +82,7 @@ pub struct FrameStats {
 pub struct Renderer {
     gpu: Gpu,
     quality: Quality,
+    look: Look,
     size_px: [u32; 2],
     frame: FrameGroup,
     targets: Targets,
@@ -152,6 +155,7 @@ impl Renderer {
             billboards: Billboards::new(&maker),
             gpu: gpu.clone(),
             quality,
+            look: Look::default(),
             size_px,
             targets,
             frame,
@@ -169,6 +173,16 @@ impl Renderer {
     /// Size of the target (px).
     pub fn size_px(&self) -> [u32; 2] {
         self.size_px
+    }
+
+    /// How frames are drawn from now on.
+    pub fn set_look(&mut self, look: Look) {
+        self.look = look;
+    }
+
+    /// How frames are drawn.
+    pub fn look(&self) -> Look {
+        self.look
     }
 
     /// How finely this renderer draws.

@@ -1,6 +1,6 @@
 //! Pictures without a window.
 
-use super::{FrameStats, Gpu, Quality, Renderer};
+use super::{FrameStats, Gpu, Look, Quality, Renderer};
 use crate::camera::Camera;
 use crate::state::Mirror;
 
@@ -32,6 +32,11 @@ impl Picture {
         let size = u64::from(row_bytes(size_px[0])) * u64::from(size_px[1]);
         let buffer = gpu.empty_buffer("pixels", size, wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
         Self { renderer: Renderer::new(gpu, format, size_px, quality), gpu: gpu.clone(), texture, buffer }
+    }
+
+    /// How frames are drawn from now on.
+    pub fn set_look(&mut self, look: Look) {
+        self.renderer.set_look(look);
     }
 
     /// Draws a frame and waits until it is done. See [`Renderer::draw`].
