@@ -4,17 +4,17 @@
 // section 3.2, `blade.wgsl`); those farther away stand as the bend field and the wind of the moment would have them.
 
 struct Plants {
-    // Grid (x, z) that lives in each of the nine slots; 1 in z when it has just moved in.
+    // Grid (x, z) that lives in each of the nine slots; 1 in z when it has just moved in; plants of it that may stand.
     slots: array<vec4<i32>, 9>,
-    // Plants of a near grid; unused; grids farther away, their plants.
+    // Places for plants in a near grid; plants there at this level of detail; 1 to leave out what is not seen; unused.
     counts: vec4<u32>,
-    // Capacities of the drawn lists: fine blades, coarse blades, flowers.
+    // Capacities of the lists: fine blades, all others, flowers.
     capacities: vec4<u32>,
     // Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), damping share of a blade.
     shape: vec4<f32>,
     // Steps of this frame; way of integration; segments of a fine blade, and of a coarse one.
     steps: vec4<u32>,
-    // Length of a step (s); share of flowers among the plants; unused.
+    // Length of a step (s); lot of the first plant of a grid to be a flower, and the power with which that falls; unused.
     time: vec4<f32>,
 }
 
@@ -26,12 +26,20 @@ struct Counters {
 @group(1) @binding(1) var<storage, read_write> sways: array<Sway>;
 @group(1) @binding(2) var<storage, read_write> drawn: array<Blade>;
 @group(1) @binding(3) var<storage, read_write> counters: Counters;
-@group(1) @binding(4) var<storage, read> far_grids: array<vec4<i32>>;
+// Up to 64 plants each: grid (x, z), the first, and how many the grid has.
+@group(1) @binding(4) var<storage, read> chunks: array<vec4<i32>>;
 @group(1) @binding(5) var<storage, read_write> draws: array<u32>;
 
 const FINE: u32 = 0u;
 const COARSE: u32 = 1u;
-const FLOWER: u32 = 2u;
+const SINGLE: u32 = 2u;
+const FLOWER: u32 = 3u;
+
+// About the radius of a flower's head (m).
+const HEAD_RADIUS_M: f32 = 0.04;
+
+// Height in the picture below which a blade is one segment (px).
+const SINGLE_PX: f32 = 12.0;
 
 // How high petals stand over the blade in whose place they are, and how much that varies (000 section 3.3).
 const PETALS_SHARE: f32 = 0.65;
@@ -63,9 +71,13 @@ fn plant_place(grid: vec2<i32>, index: u32) -> vec2<f32> {
     return (vec2<f32>(grid) + share) * plants.shape.x + jitter * 0.12;
 }
 
-// Flowers stand where a lot says so, whatever their number.
+// Flowers stand where a lot says so; the lot falls along the sequence, so that they thin out more slowly than blades.
+fn is_flower(grid: vec2<i32>, index: u32, first_lot: f32, power: f32) -> bool {
+    return random3(grid, index + 22051u).x < first_lot * pow(f32(index) + 1.0, power);
+}
+
 fn is_flower_at(grid: vec2<i32>, index: u32) -> bool {
-    return random3(grid, index + 22051u).x < plants.time.y;
+    return is_flower(grid, index, plants.time.y, plants.time.z);
 }
 
 fn plant_at(grid: vec2<i32>, index: u32, place: vec2<f32>, is_flower: bool) -> Plant {
@@ -144,46 +156,75 @@ fn trailing_leans(plant: Plant, gust: f32) -> array<vec2<f32>, 3> {
     return leans;
 }
 
-// Share of the plants that stand at a distance; the rest make room, and those left grow wider.
-fn density(distance_m: f32) -> f32 {
-    return min(pow(plants.shape.y / max(distance_m, 0.01), 1.25), 1.0);
-}
-
 fn append(list: u32, blade: Blade) {
-    let capacity = plants.capacities[list];
     let number = atomicAdd(&counters.drawn[list], 1u);
-    if number < capacity {
-        var base = 0u;
-        if list > 0u { base += plants.capacities.x; }
-        if list > 1u { base += plants.capacities.y; }
-        drawn[base + number] = blade;
+    let fine = plants.capacities.x;
+    let others = plants.capacities.y;
+    // Blades of one segment fill the place of the coarse ones from its end.
+    if list == FINE && number < fine {
+        drawn[number] = blade;
+    } else if list == COARSE && number < others {
+        drawn[fine + number] = blade;
+    } else if list == SINGLE && number < others {
+        drawn[fine + others - 1u - number] = blade;
+    } else if list == FLOWER && number < plants.capacities.z {
+        drawn[fine + others + number] = blade;
     }
 }
 
+// Whether a blade may be in view, whose curve lies in the hull of its control points.
+fn is_blade_seen(root: vec3<f32>, points: array<vec3<f32>, 3>, width: f32) -> bool {
+    let centre = 0.5 * points[2];
+    let reach = max(length(centre), max(distance(centre, points[0]), distance(centre, points[1])));
+    return plants.counts.z == 0u || is_seen(root + centre, 1.1 * reach + width);
+}
+
+// The grass about a plant as it is seen from afar, and how much of it shows between the plants that are drawn.
+fn about(plant: Plant, lean: vec2<f32>, distance_m: f32, light: f32) -> vec4<f32> {
+    let kind = kinds.list[plant.kind];
+    let view = normalize(plant.root - frame.eye.xyz);
+    let between = bare_between(distance_m, kind, view, plant.normal);
+    if between <= 0.02 {
+        return vec4<f32>(0.0);
+    }
+    return vec4<f32>(sward_color(plant.normal, kind, grass_tint(plant.root.xz), lean, view, light), between);
+}
+
 fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, kind: f32) {
-    let thinned = density(distance_m);
-    let is_fine = distance_m < plants.shape.z;
-    let along = drawn_out(points, plant.height * grown, select(plants.steps.w, plants.steps.z, is_fine));
-    var blade: Blade;
     let pixel_m = distance_m * frame.screen.z;
-    let width = plant.width * pow(thinned, -0.62);
-    blade.root = vec4<f32>(plant.root, max(width, pixel_m * 0.9) * min(grown * 2.0, 1.0));
+    let thinned = inverseSqrt(density(distance_m, plants.shape.y));
+    let width = max(plant.width * thinned, pixel_m * frame.sward.z) * min(grown * 2.0, 1.0);
+    if !is_blade_seen(plant.root, points, width) {
+        return;
+    }
+    let length_m = plant.height * grown;
+    let list = select(select(COARSE, SINGLE, length_m < SINGLE_PX * pixel_m), FINE, distance_m < plants.shape.z);
+    let segments = select(select(1u, plants.steps.w, list == COARSE), plants.steps.z, list == FINE);
+    let along = drawn_out(points, length_m, segments);
+    var blade: Blade;
+    blade.root = vec4<f32>(plant.root, width);
     let p = plant.root + points[1];
     let light = cloud_light(p.xz) * sun_visible(p);
     blade.points[0] = vec4<f32>(along[0], plant.side);
     blade.points[1] = vec4<f32>(along[1], f32(plant.kind) + plant.hue);
     blade.points[2] = vec4<f32>(along[2], light);
+    blade.about = about(plant, points[2].xz / plant.height, distance_m, light);
     if plant.is_flower {
-        var head = blade;
-        head.points[1].w = kind;
-        append(FLOWER, head);
+        // Heads too small to be seen thin out, and those left are as large as can be seen.
+        let small = max(max(pixel_m * frame.sward.z * 1.4 / HEAD_RADIUS_M, 0.5 * distance_m / plants.shape.y), 1.0);
+        if fract(kind * 37.7) * small * small <= 1.0 {
+            var head = blade;
+            head.root.w = small;
+            head.points[1].w = kind;
+            append(FLOWER, head);
+        }
     }
-    append(select(COARSE, FINE, is_fine), blade);
+    append(list, blade);
 }
 
 // How far a plant has grown in where the density is thinning: 0 gone, 1 whole.
-fn growth(index: u32, count: u32, distance_m: f32) -> f32 {
-    let kept = f32(plants.counts.x) * density(distance_m);
+fn growth(index: u32, distance_m: f32) -> f32 {
+    let kept = f32(plants.counts.y) * density(distance_m, plants.shape.y);
     let thinning = clamp((kept - f32(index)) / (0.18 * kept), 0.0, 1.0);
     return thinning * (1.0 - smoothstep(frame.reach.x, frame.reach.y, distance_m));
 }
@@ -191,20 +232,18 @@ fn growth(index: u32, count: u32, distance_m: f32) -> f32 {
 @compute @workgroup_size(64)
 fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     let index = id.x;
-    let count = plants.counts.x;
-    if index >= count {
+    let slot = plants.slots[id.y];
+    if i32(index) >= slot.w {
         return;
     }
-    let slot = plants.slots[id.y];
     let grid = slot.xy;
     let place = plant_place(grid, index);
-    let distance_m = distance(place, frame.eye.xz);
     let share = grass_share(place);
     if random3(grid, index + 31u).x > share * 1.02 - 0.02 {
         return;
     }
     let plant = plant_at(grid, index, place, is_flower_at(grid, index));
-    let at = id.y * count + index;
+    let at = id.y * plants.counts.x + index;
     let kind = kinds.list[plant.kind];
     let gust = gust_at(plant.root.xz) * (0.9 + 0.2 * random3(grid, index + 47u).y);
     let field_lean = lean_of_field(plant.root.xz, 0.0);
@@ -228,11 +267,11 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     sways[at] = sway;
 
-    let grown = growth(index, count, distance_m);
-    if grown <= 0.01 || !is_seen(plant.root + vec3<f32>(0.0, plant.height * 0.5, 0.0), plant.height * 0.75) {
-        return;
+    let distance_m = distance(plant.root, frame.eye.xyz);
+    let grown = growth(index, distance_m);
+    if grown > 0.01 {
+        show(plant, points_of(sway, plant.height), grown, distance_m, random3(grid, index + 61u).z);
     }
-    show(plant, points_of(sway, plant.height), grown, distance(plant.root, frame.eye.xyz), random3(grid, index + 61u).z);
 }
 
 // How much of a blade's lean a plant shows in the same wind.
@@ -247,16 +286,17 @@ fn blowing(p: vec3<f32>, above_m: f32, gust: f32) -> vec2<f32> {
 }
 
 @compute @workgroup_size(64)
-fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
-    let index = id.x;
-    if index >= plants.counts.w {
+fn bend_far(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    let chunk = chunks[group.x];
+    let grid = chunk.xy;
+    let index = u32(chunk.z) + local;
+    if index >= u32(chunk.w) {
         return;
     }
-    let grid = far_grids[id.y].xy;
     let place = plant_place(grid, index);
-    let flat_m = distance(place, frame.eye.xz);
-    let grown = growth(index, plants.counts.x, flat_m);
-    if grown <= 0.01 {
+    let ground = vec3<f32>(place.x, ground_height(place), place.y);
+    // Tufts draw plants together by less than this.
+    if growth(index, distance(ground, frame.eye.xyz) - 0.5) <= 0.01 {
         return;
     }
     let share = grass_share(place);
@@ -264,21 +304,23 @@ fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let plant = plant_at(grid, index, place, is_flower_at(grid, index));
-    if !is_seen(plant.root + vec3<f32>(0.0, plant.height * 0.5, 0.0), plant.height * 0.75) {
+    let distance_m = distance(plant.root, frame.eye.xyz);
+    let grown = growth(index, distance_m);
+    if grown <= 0.01 || (plants.counts.z != 0u && !is_seen(plant.root, plant.height * 1.1 + 1.0)) {
         return;
     }
     let r = random3(grid, index + 47u);
     let flutter = 1.0 + 0.065 * sin(frame.eye.w * mix(6.0, 9.0, r.x) + r.z * TAU);
     let leans = trailing_leans(plant, gust_at(plant.root.xz) * (0.9 + 0.2 * r.y) * flutter);
     let sway = settle(still(plant, leans), plant.height, plant.normal, plant.root);
-    show(plant, points_of(sway, plant.height), grown, distance(plant.root, frame.eye.xyz), random3(grid, index + 61u).z);
+    show(plant, points_of(sway, plant.height), grown, distance_m, random3(grid, index + 61u).z);
 }
 
 // Indirect draws of 64 plants an instance.
 @compute @workgroup_size(4)
 fn finish(@builtin(local_invocation_index) list: u32) {
-    if list < 3u {
-        let count = min(atomicLoad(&counters.drawn[list]), plants.capacities[list]);
+    if list < 4u {
+        let count = min(atomicLoad(&counters.drawn[list]), plants.capacities[array<u32, 4>(0u, 1u, 1u, 2u)[list]]);
         draws[list * 5u + 1u] = (count + 63u) / 64u;
     }
 }

@@ -1,13 +1,15 @@
 // Blades: cubic Bezier backbones, widened to strips. One instance is 64 blades as one indexed list.
 
-struct List {
-    // First blade of the list, capacity, segments of a blade, number of the list.
+struct StripList {
+    // First of the list, capacity, segments of a blade, number of the list.
     range: vec4<u32>,
+    // 1 where those that follow lie after the first, -1 where before it; unused.
+    order: vec4<i32>,
 }
 
 @group(1) @binding(0) var<storage, read> blades: array<Blade>;
 @group(1) @binding(1) var<storage, read> drawn: array<u32>;
-@group(1) @binding(2) var<uniform> list: List;
+@group(1) @binding(2) var<uniform> list: StripList;
 @group(1) @binding(3) var shapes: texture_2d<f32>;
 
 // Shapes in the texture.
@@ -39,7 +41,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
         out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
         return out;
     }
-    let blade = blades[list.range.x + number];
+    let blade = blades[u32(i32(list.range.x) + i32(number) * list.order.x)];
     let corner = corner_of(index % vertices, segments);
     let t = corner.x;
     let across = corner.y;
@@ -64,21 +66,14 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let soft = normalize(normal * 0.62 + up * 0.75 + wide * (across * 0.35));
 
     let kind = kinds.list[u32(blade.points[1].w)];
-    let hue = fract(blade.points[1].w);
-    let tint = grass_tint(blade.root.xz);
-    var albedo = tint * plant_color(kind.root.rgb, kind.tip.rgb, t, hue);
-    let straw = smoothstep(0.86, 0.99, hue) * 0.75;
-    albedo = mix(albedo, vec3<f32>(0.38, 0.30, 0.13) * (0.35 + 0.65 * t), straw);
-    // Pale ends, as of flowering grass.
-    albedo = mix(albedo, albedo * vec3<f32>(1.35, 1.12, 0.95), smoothstep(0.72, 1.0, t) * smoothstep(0.3, 0.9, hue));
-    let tilt = length(lean) / max(length(tip), 1e-3);
-    albedo *= (0.90 + 0.42 * smoothstep(0.15, 0.6, tilt) * t) * trodden(asin(min(tilt, 1.0)));
+    let tilt = asin(min(length(lean) / max(length(tip), 1e-3), 1.0));
     let height = offset.y / kind.root.w;
-    // Little light is lost on the way down into short grass.
-    let deep = smoothstep(0.0, 0.60, kind.root.w);
-    let occlusion = mix(mix(0.60, 0.16, deep), 1.0, smoothstep(0.0, 0.85, max(height, t * 0.75)));
-    let light = blade.points[2].w * mix(mix(0.75, 0.30, deep), 1.0, smoothstep(0.05, 0.75, max(height, t * 0.7)));
-    out.color = hazed(grass_light(albedo, soft, tangent, view, light, occlusion), p);
+    let own = blade_color(
+        kind, grass_tint(blade.root.xz), t, height, fract(blade.points[1].w), tilt, soft, tangent, view, blade.points[2].w,
+    );
+    // Far down it is one with the grass about it that is not drawn.
+    let color = mix(own, blade.about.rgb, blade.about.w * (1.0 - smoothstep(0.0, 0.8, t)));
+    out.color = hazed(color, p);
     out.across = across;
     let shape = floor(fract(blade.points[1].w * 61.0) * SHAPES);
     out.shape = select(vec2<f32>(-1.0), vec2<f32>((shape + 0.5 + 0.48 * across) / SHAPES, 1.0 - t), is_textured);

@@ -16,6 +16,7 @@ struct Frame {
     blade: vec4<f32>,
     screen: vec4<f32>,
     reach: vec4<f32>,
+    sward: vec4<f32>,
     clouds: vec4<f32>,
     spheres: array<vec4<f32>, 16>,
 }
@@ -53,6 +54,8 @@ struct Blade {
     // Offsets of the control points from the root (m); w: angle of the side; number of its kind and hue 0..1 as a fraction, or of a
     // flower the kind of its petals 0..1; light 0..1.
     points: array<vec4<f32>, 3>,
+    // What the grass about it looks like from afar; how much of that it shows at its root.
+    about: vec4<f32>,
 }
 
 const TAU: f32 = 6.2831853;
@@ -224,6 +227,26 @@ fn is_seen(centre: vec3<f32>, radius: f32) -> bool {
     let high = m[3] - m[1];
     return dot(left, c) > -radius * length(left.xyz) && dot(right, c) > -radius * length(right.xyz)
         && dot(low, c) > -radius * length(low.xyz) && dot(high, c) > -radius * length(high.xyz) && dot(m[3], c) > -radius;
+}
+
+// Whether any of a box (m) may be in view.
+fn is_box_seen(low: vec3<f32>, high: vec3<f32>) -> bool {
+    let m = transpose(frame.projection_from_world);
+    let planes = array<vec4<f32>, 5>(m[3] + m[0], m[3] - m[0], m[3] + m[1], m[3] - m[1], m[3]);
+    for (var i = 0; i < 5; i++) {
+        let plane = planes[i];
+        let farthest = select(low, high, plane.xyz >= vec3<f32>(0.0));
+        if dot(plane.xyz, farthest) + plane.w < 0.0 {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Share of the plants that stand at a distance, where all do up to `full_m`: as many to a pixel wherever they are.
+fn density(distance_m: f32, full_m: f32) -> f32 {
+    let near = full_m / max(distance_m, 0.01);
+    return min(near * near, 1.0);
 }
 
 // --- wind and bend --------------------------------------------------------------------------------------------------

@@ -1,12 +1,15 @@
 // Flower heads of six kinds: a ring of petals about a disc. One instance is 16 heads as one indexed list.
 
-struct List {
+struct StripList {
+    // First of the list, capacity, segments of a blade, number of the list.
     range: vec4<u32>,
+    // 1 where those that follow lie after the first, -1 where before it; unused.
+    order: vec4<i32>,
 }
 
 @group(1) @binding(0) var<storage, read> blades: array<Blade>;
 @group(1) @binding(1) var<storage, read> drawn: array<u32>;
-@group(1) @binding(2) var<uniform> list: List;
+@group(1) @binding(2) var<uniform> list: StripList;
 
 // Petals 0..12 of five vertices, then the disc: a centre and six on its rim.
 const PETALS: u32 = 12u;
@@ -47,16 +50,15 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
         out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
         return out;
     }
-    let stem = blades[list.range.x + number];
+    let stem = blades[u32(i32(list.range.x) + i32(number) * list.order.x)];
     let head = stem.root.xyz + stem.points[2].xyz;
-    let distance_m = distance(head, frame.eye.xyz);
     let kind = kind_of(clamp(stem.points[1].w, 0.0, 0.999));
     let tangent = normalize(stem.points[2].xyz - stem.points[1].xyz);
     // Heads look up along their stem and a little towards the sun.
     let axis = normalize(tangent + frame.sun.xyz * 0.45 + vec3<f32>(0.0, 0.35, 0.0));
     let right = normalize(cross(axis, vec3<f32>(0.31, 0.17, 0.93)));
     let ahead = cross(right, axis);
-    let size = max(1.0, distance_m * frame.screen.z * 2.6 / kind.shape.y) * 1.7;
+    let size = stem.root.w * 1.7;
 
     var p: vec3<f32>;
     var normal = axis;

@@ -48,27 +48,17 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let litter = mix(soil, vec3<f32>(0.16, 0.15, 0.055), smoothstep(0.45, 0.75, grain.a) * 0.55);
     let bare = litter * (frame.sun_color.rgb * sun_light * max(dot(normal, frame.sun.xyz), 0.0) + ambient(normal));
 
-    // The grass as seen from afar: the colour of its upper half, leaning as the blades do.
-    let near = 1.0 - smoothstep(frame.reach.x * 0.5, frame.reach.y * 1.6, distance_m);
+    // The grass as seen from afar, leaning as the blades do, where no blades hide the ground; between them it is dark.
     let kind = kinds_blended(p);
     let lean = lean_at(ground.p, field_level(distance_m), gust_at(p), kind.tip.w);
-    let tilt = length(lean);
-    let tint = grass_tint(p);
+    let afar = sward_color(normal, kind, grass_tint(p), lean, view, sun_light);
     let mottle = 0.80 + 0.5 * (noise(p / 2.9).g * 0.6 + noise(p / 0.83).r * 0.4);
-    let depth = mix(0.50, 0.82, smoothstep(0.02, 0.45, abs(view.y)) * -0.25 + 0.75);
-    var albedo = mix(kind.root.rgb, kind.tip.rgb, depth) * tint * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
-    let blade_normal = normalize(normal + vec3<f32>(lean.x, 0.0, lean.y) * 0.9 - view * 0.35);
-    let tangent = normalize(normal + vec3<f32>(lean.x, 0.0, lean.y) * 1.4);
-    albedo *= (0.90 + 0.42 * smoothstep(0.05, 0.45, tilt)) * trodden(tilt);
-    var grass = grass_light(albedo, blade_normal, tangent, view, sun_light, 0.80);
+    var grass = afar * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
     let flowers = smoothstep(0.72, 0.80, noise(p / 3.7 + 0.31).b) * min(frame.blade.x * 0.25, 0.35);
     grass = mix(grass, vec3<f32>(0.75, 0.72, 0.55) * sun_light, flowers * smoothstep(20.0, 60.0, distance_m) * 0.5);
-    let down = smoothstep(0.10, 0.50, -view.y);
     let under = mix(kind.root.rgb * 0.9, soil * 0.35, 0.35)
         * (frame.sun_color.rgb * sun_light * 0.35 + ambient(normal) * 0.55);
-    // Short grass hides little of the ground's light.
-    let deep = smoothstep(-0.25, 0.60, kind.root.w);
-    grass = mix(grass, under, near * deep * mix(0.9, mix(0.45, 0.9, 1.0 - smoothstep(frame.reach.y, frame.reach.y * 2.0, distance_m)), down));
+    grass = mix(under, grass, bare_between(distance_m, kind, view, normal));
     let color = mix(bare, grass, share);
     return vec4<f32>(hazed(color, ground.p), 1.0);
 }

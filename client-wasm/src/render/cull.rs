@@ -9,6 +9,9 @@ pub(super) struct Frustum {
 }
 
 impl Frustum {
+    /// Sees everything.
+    pub(super) const ALL: Self = Self { planes: [Vec4::ZERO; 5] };
+
     /// Frustum of a projection with reversed or ordinary depth; depth itself is not used.
     pub(super) fn new(projection_from_world: &Mat4) -> Self {
         let rows = projection_from_world.transpose();

@@ -7,6 +7,7 @@ mod atlas;
 mod billboards;
 mod blades;
 mod cull;
+mod detail;
 mod dust;
 mod flora;
 mod forces;
@@ -38,13 +39,14 @@ pub use gpu::{Gpu, GpuError};
 pub use look::{Far, Look, Order};
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::Picture;
-pub use quality::Quality;
+pub use quality::{Quality, REFERENCE_M};
 
 use crate::camera::Camera;
 use crate::state::Mirror;
 use billboards::{Billboards, Reach};
-use blades::Blades;
+use blades::{Blades, Standpoint};
 use cull::Frustum;
+use detail::Detail;
 use dust::Dust;
 use forces::Forces;
 use land::{FrameGroup, LandTextures};
@@ -83,6 +85,7 @@ pub struct Renderer {
     gpu: Gpu,
     quality: Quality,
     look: Look,
+    detail: Detail,
     size_px: [u32; 2],
     frame: FrameGroup,
     targets: Targets,
@@ -156,6 +159,7 @@ impl Renderer {
             gpu: gpu.clone(),
             quality,
             look: Look::default(),
+            detail: quality.detail(),
             size_px,
             targets,
             frame,
@@ -185,7 +189,12 @@ impl Renderer {
         self.look
     }
 
-    /// How finely this renderer draws.
+    /// Draws plants at a level of detail between 0, that of low quality, and 3, that of ultra, from now on; no finer than this renderer's own quality.
+    pub fn set_level(&mut self, level: f32) {
+        self.detail = Detail::at(level.min(self.quality.level()));
+    }
+
+    /// How finely this renderer can draw.
     pub fn quality(&self) -> Quality {
         self.quality
     }
@@ -203,7 +212,7 @@ impl Renderer {
                 textures: LandTextures::new(&self.gpu, &self.frame, land),
                 ground: Ground::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), scene.light.haze_m),
                 blades: Blades::new(&maker, self.quality, land),
-                underbrush: Underbrush::new(&maker, land, &forces, self.quality.underbrush_reach_m()),
+                underbrush: Underbrush::new(&maker, land, &forces, self.detail.underbrush_m),
                 forces,
                 rain: RainPass::new(&maker, self.quality, land),
                 objects: Objects::new(&maker, land, standing),
@@ -225,15 +234,18 @@ impl Renderer {
         scene.textures.wind.follow(gpu, mirror.wind(), dt_secs);
         let Some(land) = mirror.land() else { return FrameStats::default() };
 
-        let view = View::new(camera, self.size_px, self.quality, time_secs);
-        let frame = view.frame(land, &scene.textures.atlas, scene.blades.reach_m(), &poses);
+        let view = View::new(camera, self.size_px, self.quality, self.detail, time_secs);
+        let frame = view.frame(land, &scene.textures.atlas, &poses);
         self.frame.write(gpu, &frame);
-        let frustum = Frustum::new(&view.projection_from_world);
+        let frustum = if self.look.culls { Frustum::new(&view.projection_from_world) } else { Frustum::ALL };
         let tiles = scene.ground.tiles(camera.eye_m, &frustum);
         self.terrain.prepare(gpu, &tiles);
-        scene.blades.prepare(gpu, self.quality, land, camera.eye_m, &frustum, dt_secs);
+        let from = Standpoint { eye_m: camera.eye_m, frustum: &frustum, detail: &self.detail, look: self.look, dt_secs };
+        scene.blades.prepare(gpu, land, &from);
         let reach = Reach { from_m: 0.72 * frame.reach[0], several_m: SEVERAL_REACHES * frame.reach[1], to_m: frame.reach[3] };
-        self.billboards.prepare(gpu, land, camera.eye_m, &frustum, reach);
+        if self.look.far == Far::Clumps {
+            self.billboards.prepare(gpu, land, camera.eye_m, &frustum, reach);
+        }
         if let Some(underbrush) = &mut scene.underbrush {
             scene.forces.follow(gpu, land, &scene.textures.wind, &poses, [camera.eye_m.x, camera.eye_m.z], dt_secs);
             underbrush.show_broken(gpu, mirror.falls(), mirror.broken_count());
@@ -242,51 +254,65 @@ impl Renderer {
         if let Some(dust) = &scene.dust {
             dust.prepare(gpu, dt_secs);
         }
-        let reach_m = self.quality.tree_reach_m();
+        let reach_m = self.detail.trees_m;
         scene.objects.prepare(gpu, &poses, camera.eye_m, &frustum, time_secs as f32, dt_secs, reach_m);
 
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
-        {
-            let mut pass = shadow_pass(&mut encoder, self.frame.shadow_map());
-            pass.set_bind_group(0, &scene.textures.shadow_group, &[]);
-            scene.objects.draw_shadows(&mut pass);
+        let turns = scene.blades.turns();
+        for turn in 0..turns {
+            scene.blades.begin_turn(gpu, turn);
+            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+            if turn == 0 {
+                let mut pass = shadow_pass(&mut encoder, self.frame.shadow_map());
+                pass.set_bind_group(0, &scene.textures.shadow_group, &[]);
+                scene.objects.draw_shadows(&mut pass);
+            }
+            {
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes: None });
+                pass.set_bind_group(0, &scene.textures.group, &[]);
+                scene.blades.bend(&mut pass);
+                if turn == 0 {
+                    if self.look.far == Far::Clumps {
+                        self.billboards.bend(&mut pass);
+                    }
+                    if let Some(underbrush) = &scene.underbrush {
+                        underbrush.bend(&mut pass);
+                    }
+                    if let Some(dust) = &scene.dust {
+                        dust.blow(&mut pass);
+                    }
+                }
+            }
+            {
+                let mut pass = main_pass(&mut encoder, &self.targets, turn == 0, turn + 1 == turns);
+                pass.set_bind_group(0, &scene.textures.group, &[]);
+                if turn == 0 {
+                    scene.objects.draw(&mut pass);
+                }
+                scene.blades.draw(&mut pass);
+                if turn + 1 == turns {
+                    if let Some(underbrush) = &scene.underbrush {
+                        underbrush.draw(&mut pass);
+                    }
+                    if self.look.far == Far::Clumps {
+                        self.billboards.draw(&mut pass);
+                    }
+                    self.terrain.draw(&mut pass);
+                    self.sky.draw(&mut pass);
+                    if let Some(dust) = &scene.dust {
+                        dust.draw(&mut pass);
+                    }
+                    if let Some(rain) = &scene.rain {
+                        rain.draw(&mut pass);
+                    }
+                }
+            }
+            if turn + 1 == turns {
+                let mut pass = tone_pass(&mut encoder, target);
+                pass.set_bind_group(0, &scene.textures.group, &[]);
+                self.tone.draw(&mut pass);
+            }
+            gpu.queue.submit([encoder.finish()]);
         }
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes: None });
-            pass.set_bind_group(0, &scene.textures.group, &[]);
-            scene.blades.bend(&mut pass);
-            self.billboards.bend(&mut pass);
-            if let Some(underbrush) = &scene.underbrush {
-                underbrush.bend(&mut pass);
-            }
-            if let Some(dust) = &scene.dust {
-                dust.blow(&mut pass);
-            }
-        }
-        {
-            let mut pass = main_pass(&mut encoder, &self.targets);
-            pass.set_bind_group(0, &scene.textures.group, &[]);
-            scene.objects.draw(&mut pass);
-            scene.blades.draw(&mut pass);
-            if let Some(underbrush) = &scene.underbrush {
-                underbrush.draw(&mut pass);
-            }
-            self.billboards.draw(&mut pass);
-            self.terrain.draw(&mut pass);
-            self.sky.draw(&mut pass);
-            if let Some(dust) = &scene.dust {
-                dust.draw(&mut pass);
-            }
-            if let Some(rain) = &scene.rain {
-                rain.draw(&mut pass);
-            }
-        }
-        {
-            let mut pass = tone_pass(&mut encoder, target);
-            pass.set_bind_group(0, &scene.textures.group, &[]);
-            self.tone.draw(&mut pass);
-        }
-        gpu.queue.submit([encoder.finish()]);
         FrameStats {
             blades: scene.blades.simulated(),
             clumps: self.billboards.count(),
@@ -313,19 +339,25 @@ fn shadow_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, depth: &wgpu::TextureV
     })
 }
 
-fn main_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, targets: &Targets) -> wgpu::RenderPass<'a> {
-    let store = if targets.resolved.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
+/// The pass that draws the picture: the first one begins it, the last one ends it.
+fn main_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, targets: &Targets, is_first: bool, is_last: bool) -> wgpu::RenderPass<'a> {
+    use wgpu::{LoadOp, StoreOp};
+    let resolve_target = targets.resolved.as_ref().filter(|_| is_last);
+    let keep = |is_kept| if is_kept { StoreOp::Store } else { StoreOp::Discard };
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("picture"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view: &targets.color,
             depth_slice: None,
-            resolve_target: targets.resolved.as_ref(),
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store },
+            resolve_target,
+            ops: wgpu::Operations {
+                load: if is_first { LoadOp::Clear(wgpu::Color::BLACK) } else { LoadOp::Load },
+                store: keep(!is_last || targets.resolved.is_none()),
+            },
         })],
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: &targets.depth,
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            depth_ops: Some(wgpu::Operations { load: if is_first { LoadOp::Clear(0.0) } else { LoadOp::Load }, store: keep(!is_last) }),
             stencil_ops: None,
         }),
         timestamp_writes: None,

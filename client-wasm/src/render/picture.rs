@@ -39,6 +39,11 @@ impl Picture {
         self.renderer.set_look(look);
     }
 
+    /// Draws plants at this level of detail from now on. See [`Renderer::set_level`].
+    pub fn set_level(&mut self, level: f32) {
+        self.renderer.set_level(level);
+    }
+
     /// Draws a frame and waits until it is done. See [`Renderer::draw`].
     pub fn draw(&mut self, mirror: &mut Mirror, camera: &Camera, time_secs: f64, dt_secs: f32) -> FrameStats {
         let view = self.texture.create_view(&Default::default());

@@ -1,5 +1,7 @@
 //! How finely the picture is drawn.
 
+use super::detail::Detail;
+
 /// Level of detail of the whole picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
@@ -12,10 +14,15 @@ pub enum Quality {
     High,
     /// 230 thousand.
     Ultra,
+    /// Every plant at full detail as far as [`REFERENCE_M`], whatever it costs: what the others are measured against.
+    Reference,
 }
 
+/// Distance up to which [`Quality::Reference`] draws every plant (m).
+pub const REFERENCE_M: f32 = 160.0;
+
 impl Quality {
-    /// All levels, coarsest first.
+    /// All levels that a visitor may choose, coarsest first.
     pub const ALL: [Self; 4] = [Self::Low, Self::Medium, Self::High, Self::Ultra];
 
     /// Name as an address and the page write it.
@@ -25,6 +32,7 @@ impl Quality {
             Self::Medium => "medium",
             Self::High => "high",
             Self::Ultra => "ultra",
+            Self::Reference => "reference",
         }
     }
 
@@ -33,24 +41,19 @@ impl Quality {
         Self::ALL.into_iter().find(|quality| quality.name() == name)
     }
 
-    /// Blades along one side of a near grid of a scene that has `plants_per_side`: as many at low quality, up to five times as many at the others; nine
-    /// such grids are simulated.
-    pub fn blades_per_side(self, plants_per_side: u32) -> u32 {
-        (plants_per_side as f32 * self.blades_factor()).round() as u32
+    /// The most detail of plants that it has room for.
+    pub(super) fn detail(self) -> Detail {
+        if self == Self::Reference { Detail::whole(REFERENCE_M) } else { Detail::at(self.level()) }
     }
 
-    fn blades_factor(self) -> f32 {
+    /// Level of detail of its plants, from 0 to 3.
+    pub fn level(self) -> f32 {
         match self {
-            Self::Low => 1.0,
-            Self::Medium => 2.0,
-            Self::High => 3.3,
-            Self::Ultra => 5.0,
+            Self::Low => 0.0,
+            Self::Medium => 1.0,
+            Self::High => 2.0,
+            Self::Ultra | Self::Reference => 3.0,
         }
-    }
-
-    /// Factor on the width of blades, so that fewer still close the sward.
-    pub(super) fn width_factor(self) -> f32 {
-        (Self::High.blades_factor() / self.blades_factor()).max(1.0).powf(0.9)
     }
 
     /// Segments of a fine blade and of a coarse one, one less than the backbone points of 000 §3.1.1. Where n segments share a turn of θ evenly, a blade of
@@ -58,17 +61,7 @@ impl Quality {
     pub(super) fn segments(self) -> [u32; 2] {
         match self {
             Self::Low | Self::Medium | Self::High => [7, 3],
-            Self::Ultra => [10, 4],
-        }
-    }
-
-    /// Rings of grids beyond the nine whose plants are drawn singly.
-    pub(super) fn rings(self) -> i32 {
-        match self {
-            Self::Low => 1,
-            Self::Medium => 2,
-            Self::High => 4,
-            Self::Ultra => 6,
+            Self::Ultra | Self::Reference => [10, 4],
         }
     }
 
@@ -82,17 +75,7 @@ impl Quality {
         match self {
             Self::Low => 512,
             Self::Medium => 1024,
-            Self::High | Self::Ultra => 2048,
-        }
-    }
-
-    /// Distance at which billboards have melted into the ground (m).
-    pub(super) fn billboard_reach_m(self) -> f32 {
-        match self {
-            Self::Low => 60.0,
-            Self::Medium => 100.0,
-            Self::High => 150.0,
-            Self::Ultra => 220.0,
+            Self::High | Self::Ultra | Self::Reference => 2048,
         }
     }
 
@@ -102,17 +85,7 @@ impl Quality {
             Self::Low => 4000,
             Self::Medium => 9000,
             Self::High => 18_000,
-            Self::Ultra => 30_000,
-        }
-    }
-
-    /// Distance at which underbrush has melted into the grass (m).
-    pub(super) fn underbrush_reach_m(self) -> f32 {
-        match self {
-            Self::Low => 45.0,
-            Self::Medium => 110.0,
-            Self::High => 180.0,
-            Self::Ultra => 260.0,
+            Self::Ultra | Self::Reference => 30_000,
         }
     }
 
@@ -122,7 +95,7 @@ impl Quality {
             Self::Low => 3000,
             Self::Medium => 6000,
             Self::High => 14_000,
-            Self::Ultra => 28_000,
+            Self::Ultra | Self::Reference => 28_000,
         }
     }
 
@@ -132,7 +105,7 @@ impl Quality {
             Self::Low => (1024, 130.0),
             Self::Medium => (3072, 200.0),
             Self::High => (4096, 220.0),
-            Self::Ultra => (8192, 280.0),
+            Self::Ultra | Self::Reference => (8192, 280.0),
         }
     }
 
@@ -142,16 +115,7 @@ impl Quality {
             Self::Low => 96.0,
             Self::Medium => 128.0,
             Self::High => 192.0,
-            Self::Ultra => 256.0,
-        }
-    }
-
-    /// Distance up to which trees are drawn (m).
-    pub(super) fn tree_reach_m(self) -> f32 {
-        match self {
-            Self::Low => 400.0,
-            Self::Medium => 800.0,
-            Self::High | Self::Ultra => 2000.0,
+            Self::Ultra | Self::Reference => 256.0,
         }
     }
 }

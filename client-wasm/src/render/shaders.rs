@@ -4,8 +4,14 @@
 const COMMON: &str = include_str!("../../shaders/common.wgsl");
 
 /// Compute passes that bend single plants.
-pub(super) const BEND: &str =
-    concat!(include_str!("../../shaders/blade.wgsl"), include_str!("../../shaders/backbone.wgsl"), include_str!("../../shaders/bend.wgsl"));
+pub(super) const BEND: &str = concat!(
+    include_str!("../../shaders/blade.wgsl"),
+    include_str!("../../shaders/backbone.wgsl"),
+    include_str!("../../shaders/sward.wgsl"),
+    include_str!("../../shaders/bend.wgsl")
+);
+/// Compute pass that lists grass grids.
+pub(super) const GRIDS: &str = include_str!("../../shaders/grids.wgsl");
 /// How a single blade moves.
 #[cfg(test)]
 pub(super) const BLADE: &str = include_str!("../../shaders/blade.wgsl");
@@ -13,7 +19,11 @@ pub(super) const BLADE: &str = include_str!("../../shaders/blade.wgsl");
 #[cfg(test)]
 pub(super) const BACKBONE: &str = include_str!("../../shaders/backbone.wgsl");
 /// Blades as strips.
-pub(super) const BLADES: &str = concat!(include_str!("../../shaders/backbone.wgsl"), include_str!("../../shaders/blades.wgsl"));
+pub(super) const BLADES: &str = concat!(
+    include_str!("../../shaders/backbone.wgsl"),
+    include_str!("../../shaders/sward.wgsl"),
+    include_str!("../../shaders/blades.wgsl")
+);
 /// Rain.
 pub(super) const RAIN: &str = include_str!("../../shaders/rain.wgsl");
 /// Underbrush.
@@ -25,7 +35,7 @@ pub(super) const BILLBOARDS: &str = include_str!("../../shaders/billboards.wgsl"
 /// Motes and puffs of dust.
 pub(super) const DUST: &str = include_str!("../../shaders/dust.wgsl");
 /// Ground.
-pub(super) const TERRAIN: &str = include_str!("../../shaders/terrain.wgsl");
+pub(super) const TERRAIN: &str = concat!(include_str!("../../shaders/sward.wgsl"), include_str!("../../shaders/terrain.wgsl"));
 /// Objects, trees and stones.
 pub(super) const OBJECTS: &str = include_str!("../../shaders/objects.wgsl");
 /// Sky.

@@ -1,8 +1,8 @@
 use super::picture::read;
 use super::pipeline::{Maker, bind, storage_rw};
 use super::shaders;
-use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Plants, Shower, UnderbrushFrame};
-use super::{Gpu, Picture, Quality, blades};
+use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Plants, Shower, Squares, StripList, UnderbrushFrame};
+use super::{Gpu, Look, Picture, Quality, blades};
 use crate::camera::Camera;
 use crate::state::Mirror;
 use glam::Vec3;
@@ -34,6 +34,7 @@ fn module(source: &str) -> naga::Module {
 fn every_shader_is_valid_wgsl_without_extensions() {
     for source in [
         shaders::BEND,
+        shaders::GRIDS,
         shaders::BLADES,
         shaders::FLOWERS,
         shaders::UNDERBRUSH,
@@ -82,6 +83,10 @@ fn uniform_blocks_lie_as_their_twins() {
         );
     }
     assert_twins(&self::module(shaders::RAIN), "Shower", Shower::LAYOUT, size_of::<Shower>());
+    assert_twins(&self::module(shaders::GRIDS), "Squares", Squares::LAYOUT, size_of::<Squares>());
+    for strips in [shaders::BLADES, shaders::FLOWERS] {
+        assert_twins(&self::module(strips), "StripList", StripList::LAYOUT, size_of::<StripList>());
+    }
     assert_twins(&self::module(shaders::DUST), "Drift", Drift::LAYOUT, size_of::<Drift>());
 }
 
@@ -134,9 +139,10 @@ fn tips(gpu: &Gpu, wind_m_per_s: f32, streamed_rad: Option<f32>) -> Vec<Vec3> {
     swayed.iter().map(|sway| Vec3::from(sway.points_m(1.0)[LINKS - 1])).collect()
 }
 
-/// The near blades after a second, from upright.
+/// The near blades that stand, after a second from upright.
 fn sways(gpu: &Gpu, mirror: &mut Mirror, streamed_rad: Option<f32>) -> Vec<Sway> {
     let mut picture = Picture::new(gpu, [16, 16], Quality::Low);
+    picture.set_look(Look { culls: false, ..Look::default() });
     let camera = Camera { eye_m: Vec3::new(32.0, 2.2, 40.0), pitch_rad: -0.15, ..Camera::default() };
     for frame in 0..30 {
         if let Some(theta_rad) = streamed_rad.filter(|_| frame == 0) {
@@ -148,7 +154,7 @@ fn sways(gpu: &Gpu, mirror: &mut Mirror, streamed_rad: Option<f32>) -> Vec<Sway>
     let sways: &[[[f32; 4]; LINKS]] = bytemuck::cast_slice(&bytes);
     let sway =
         |links: &[[f32; 4]; LINKS]| Sway { lean_rad: links.map(|[x, z, ..]| [x, z]), rate_rad_per_s: links.map(|[.., x, z]| [x, z]) };
-    sways.iter().map(sway).collect()
+    sways.iter().filter(|links| links.as_flattened().iter().any(|&v| v != 0.0)).map(sway).collect()
 }
 
 /// Mean angle of the tips eastward from upright (rad).
@@ -542,20 +548,31 @@ fn petals_stand_at_065_of_the_height_of_the_blade_whose_place_they_take() {
 #[test]
 fn as_many_flowers_stand_as_the_scene_says_and_all_are_listed() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
-    // Straight down on all single plants.
-    let camera = Camera { eye_m: Vec3::new(32.0, 60.0, 32.0), pitch_rad: -1.55, ..Camera::default() };
+    let camera = Camera { eye_m: Vec3::new(32.0, 1.0, 32.0), ..Camera::default() };
     for flowers_per_m2 in [0.6, 8.0, 50.0] {
         let mut mirror = meadow_of(|scene| scene.plants.flowers_per_m2 = flowers_per_m2, &[255; 16 * 16]);
-        let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+        // So tall that no head is too small to be seen.
+        let mut picture = Picture::new(&gpu, [16, 2048], Quality::Low);
+        picture.set_look(Look { culls: false, ..Look::default() });
         picture.draw(&mut mirror, &camera, 0.0, 0.0);
         let blades = &picture.renderer.scene.as_ref().expect("a scene").blades;
         let bytes = read(&gpu, &blades.counters);
-        let listed: &[u32] = bytemuck::cast_slice(&bytes);
-        assert!(listed.iter().zip(blades.capacities).all(|(&listed, most)| listed <= most), "{listed:?} of {:?}", blades.capacities);
-        // Full density up to 6 m, thinning up to 16 m.
-        let area_m2 = std::f32::consts::PI * 36.0 + std::f32::consts::TAU / 0.75 * 6.0_f32.powf(1.25) * (8.0 - 6.0_f32.powf(0.75));
-        let share = listed[2] as f32 / (flowers_per_m2 * area_m2);
-        assert!((share - 1.0).abs() < 0.03 + 3.0 / (flowers_per_m2 * area_m2).sqrt(), "{} flowers, {share} of those meant", listed[2]);
+        let &[fine, coarse, single, heads] = bytemuck::cast_slice::<u8, u32>(&bytes) else { panic!("four lists") };
+        let [fine_limit, others_limit, heads_limit] = blades.capacities;
+        assert!(fine <= fine_limit && coarse + single <= others_limit && heads <= heads_limit, "{bytes:?} of {:?}", blades.capacities);
+        // All those within the distance of full density, and some of those beyond.
+        let near_m2 = std::f32::consts::PI * 100.0;
+        assert!(heads as f32 > flowers_per_m2 * near_m2 * 1.1, "{heads} heads");
+
+        let of_grid = 1024 + (flowers_per_m2 * 64.0).round() as u32;
+        let lot = blades::flower_lot(flowers_per_m2 * 64.0, of_grid);
+        let power = blades::FLOWER_POWER;
+        let body = format!("return vec4<f32>(select(0.0, 1.0, is_flower(vec2<i32>(at.xy), u32(at.z), {lot:?}, {power:?})));");
+        let places: Vec<_> = (0..of_grid * 15).map(|n| [(n / of_grid) as f32, 3.0, (n % of_grid) as f32, 0.0]).collect();
+        let source = shaders::BEND.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(20) var<uniform>");
+        let found = probe_in(&gpu, &picture, &source, &body, &places);
+        let flowers = found.iter().map(|found| found[0]).sum::<f32>() / (15.0 * 64.0);
+        assert!((flowers / flowers_per_m2 - 1.0).abs() < 0.03 + 4.0 / (flowers_per_m2 * 960.0).sqrt(), "{flowers} of {flowers_per_m2}");
     }
 }
 
@@ -566,6 +583,7 @@ fn near_grids_hold_the_blades_that_the_scene_says() {
     let lawn = |scene: &mut Scene| (scene.plants.grid_m, scene.plants.plants_per_side, scene.plants.flowers_per_m2) = (4.0, 20, 0.0);
     for (quality, per_side) in [(Quality::Low, 20), (Quality::Medium, 40), (Quality::High, 66), (Quality::Ultra, 100)] {
         let mut picture = Picture::new(&gpu, [16, 16], quality);
+        picture.set_look(Look { culls: false, ..Look::default() });
         let stats = picture.draw(&mut meadow_of(lawn, &[255; 16 * 16]), &Camera::default(), 0.0, 0.0);
         assert_eq!(stats.blades, 9 * per_side * per_side, "{quality:?}");
     }

@@ -56,6 +56,9 @@ uniform_block! {
         screen: [f32; 4],
         /// Near blades fade out from (m), to (m); billboards end from (m), to (m).
         reach: [f32; 4],
+        /// Leaf area over the ground below it, of blades of mean height as they stand near by; distance up to which they stand so (m); least width that a blade
+        /// is drawn with (px); the same leaf area where every blade stands.
+        sward: [f32; 4],
         /// Offset of the clouds (m, x and z); share of cloud; number of interaction spheres.
         clouds: [f32; 4],
         /// Interaction spheres: centre and radius (m).
@@ -102,18 +105,42 @@ uniform_block! {
 uniform_block! {
     /// What the compute passes know of the single plants; its twin is in `bend.wgsl`.
     Plants {
-        /// Grid (x, z) in each of the nine slots; third: 1 when it has just moved in.
+        /// Grid (x, z) in each of the nine slots; third: 1 when it has just moved in; fourth: plants of it that may stand.
         slots: [[i32; 4]; 9],
-        /// Plants of a near grid, unused, grids farther away, their plants.
+        /// Places for plants in a near grid; plants there at this level of detail; 1 to leave out what is not seen; unused.
         counts: [u32; 4],
-        /// Capacities of the lists of fine blades, coarse blades and flowers.
+        /// Capacities of the lists of fine blades, of all others, and of flowers.
         capacities: [u32; 4],
         /// Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), damping share of a blade.
         shape: [f32; 4],
         /// Steps of this frame; way of integration, as the constants of `blade.wgsl`; segments of a fine blade, and of a coarse one.
         steps: [u32; 4],
-        /// Length of a step (s); share of flowers among the plants; unused.
+        /// Length of a step (s); lot of the first plant of a grid to be a flower, and the power with which that falls; unused.
         time: [f32; 4],
+    }
+}
+
+uniform_block! {
+    /// What the pass that lists grass grids knows; its twin is in `grids.wgsl`.
+    Squares {
+        /// First grid of the square about the camera (x, z); grids along its side; 1 to leave out what is not seen.
+        window: [i32; 4],
+        /// Plants of a grid near the camera; most chunks of single plants; grids on each side of the camera's that are simulated; unused.
+        counts: [u32; 4],
+        /// Grids of the square that are listed: the first, and the first that is not; unused.
+        turn: [u32; 4],
+        /// Side of a grid (m), distance of full density (m), distance at which single plants end (m), how far plants reach beyond their grid (m).
+        shape: [f32; 4],
+    }
+}
+
+uniform_block! {
+    /// A list of blades or flowers as it is drawn; its twin is in `blades.wgsl` and `flowers.wgsl`.
+    StripList {
+        /// First of the list, capacity, segments of a blade, number of the list.
+        range: [u32; 4],
+        /// 1 where those that follow lie after the first, −1 where before it; unused.
+        order: [i32; 4],
     }
 }
 

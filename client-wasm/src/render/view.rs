@@ -2,11 +2,12 @@
 
 use super::Quality;
 use super::atlas::Atlas;
+use super::detail::Detail;
 use super::uniforms::{Frame, SPHERE_LIMIT};
 use crate::camera::Camera;
 use crate::state::Land;
 use glam::{Mat4, Vec3, Vec4};
-use shared::scene::Objects;
+use shared::scene::{Objects, Plants};
 use shared::wire::ObjectPose;
 
 /// Distance after which all patterns of `gust_at` in `common.wgsl` repeat (m): 60 × 23.
@@ -26,18 +27,19 @@ pub(super) struct View<'a> {
     camera: &'a Camera,
     size_px: [u32; 2],
     quality: Quality,
+    detail: Detail,
     time_secs: f64,
     pub(super) projection_from_world: Mat4,
 }
 
 impl<'a> View<'a> {
-    pub(super) fn new(camera: &'a Camera, size_px: [u32; 2], quality: Quality, time_secs: f64) -> Self {
+    pub(super) fn new(camera: &'a Camera, size_px: [u32; 2], quality: Quality, detail: Detail, time_secs: f64) -> Self {
         let aspect = size_px[0] as f32 / size_px[1] as f32;
         let projection_from_world = camera.projection_from_world(aspect);
-        Self { camera, size_px, quality, time_secs, projection_from_world }
+        Self { camera, size_px, quality, detail, time_secs, projection_from_world }
     }
 
-    pub(super) fn frame(&self, land: &Land, atlas: &Atlas, blade_reach_m: f32, poses: &[ObjectPose]) -> Frame {
+    pub(super) fn frame(&self, land: &Land, atlas: &Atlas, poses: &[ObjectPose]) -> Frame {
         let scene = land.scene();
         let [extent_x, extent_z] = scene.extent_m();
         let [pixel_x, pixel_z] = land.heights().pixel_m();
@@ -55,8 +57,8 @@ impl<'a> View<'a> {
         let travelled = (self.time_secs * f64::from(mean) * GUST_SPEED).rem_euclid(GUST_PERIOD_M) as f32;
         let drift = -(self.time_secs * CLOUD_SPEED) as f32;
         let plants = &scene.plants;
-        let width_m = plants.width_m * self.quality.width_factor();
-        let billboards_to = self.quality.billboard_reach_m();
+        let width_m = plants.width_m * self.detail.width_factor();
+        let Detail { blades_m, far_m, .. } = self.detail;
         let pixel_rad = self.camera.fov_rad / self.size_px[1] as f32;
         let spheres = spheres(&scene.objects, poses, eye);
         let rays = Mat4::from_mat3(glam::Mat3::from_mat4(glam::camera::rh::view::look_to_mat4(Vec3::ZERO, self.camera.forward(), Vec3::Y)));
@@ -77,10 +79,23 @@ impl<'a> View<'a> {
             past: atlas.past(),
             blade: [plants.flowers_per_m2, plants.height_variation, width_m, plants.blade_shape as u32 as f32],
             screen: [self.size_px[0] as f32, self.size_px[1] as f32, pixel_rad, rain_share],
-            reach: [blade_reach_m * 0.72, blade_reach_m, billboards_to * 0.6, billboards_to],
+            reach: [blades_m * 0.72, blades_m, far_m * 0.6, far_m],
+            sward: self.sward(plants, width_m),
             clouds: [drift * dir_x * mean, drift * dir_z * mean, 0.5, spheres.len() as f32],
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_default()),
         }
+    }
+
+    /// What stands near by and how it is drawn, as the ground under it has to know.
+    fn sward(&self, plants: &Plants, width_m: f32) -> [f32; 4] {
+        /// Area of a blade over its height and the width of its root.
+        const LEAF_SHARE: f32 = 0.65;
+        let leaf_area = |detail: &Detail, width_m: f32| {
+            detail.blades_of_grid(plants.plants_per_side) / plants.grid_m.powi(2) * LEAF_SHARE * plants.height_m * width_m
+        };
+        let thinnest_px = if self.quality == Quality::Reference { 0.0 } else { 0.9 };
+        let whole = Detail::whole(self.detail.far_m);
+        [leaf_area(&self.detail, width_m), self.detail.full_m, thinnest_px, leaf_area(&whole, plants.width_m)]
     }
 
     /// A square about what lies ahead, as the sun sees it; moves in whole texels, so that shadows do not crawl.

@@ -1,0 +1,328 @@
+//! Single plants: compute passes bend them and list those in view, indirect draws make strips of the blades and one makes the flower heads. Nine grids
+//! about the camera keep their plants' postures; those of the grids beyond stand as the wind of the moment would have them.
+
+mod grids;
+mod strips;
+
+use super::cull::Frustum;
+use super::detail::Detail;
+use super::gpu::Gpu;
+use super::paint;
+use super::pipeline::{Draw, Maker, bind, storage, storage_rw, texture, uniform};
+use super::shaders;
+use super::uniforms::{Plants, StripList};
+use super::{Look, Quality};
+use crate::state::Land;
+use glam::Vec3;
+use grids::Grids;
+pub(super) use grids::grid_is_seen;
+use shared::scene::BLADE_STEPS_LIMIT;
+use std::f32::consts::{PI, TAU};
+use strips::{flower_indices, strip_indices};
+use wgpu::BufferUsages;
+
+/// Plants in one instance of an indirect draw; twin of the constants in `blades.wgsl` and `flowers.wgsl`.
+const CHUNK: u32 = 64;
+/// Bytes of a drawn blade and of its sway, as in `common.wgsl` and `blade.wgsl`.
+pub(super) const BLADE_BYTES: u64 = 80;
+pub(super) const SWAY_BYTES: u64 = 48;
+/// Most plants of a near grid.
+const PLANTS_LIMIT: f32 = 60_000.0;
+/// Most steps in a frame, of an integrator that needs several: as many as a scene may ask for in 1/15 s. In longer frames its blades move in slow motion.
+const STEP_LIMIT: f32 = 4.0 * BLADE_STEPS_LIMIT as f32;
+/// Longest step of the exact one (s): wind and obstacles stay as they are for a step.
+const EXACT_STEP_SECS: f32 = 0.1;
+/// A flower's lot by its place in the sequence of its grid falls with this power, so that flowers thin out more slowly than blades do.
+pub(super) const FLOWER_POWER: f32 = -0.8;
+/// Most blades that are listed at once where all of them are drawn; of more, they are drawn by turns.
+const TURN_LIMIT: u32 = 800_000;
+
+/// Lists that are drawn: fine blades, coarse ones, those of one segment, flower heads.
+const LISTS: usize = 4;
+const SINGLE: usize = 2;
+const FLOWERS: usize = 3;
+
+pub(super) struct Blades {
+    near: wgpu::ComputePipeline,
+    far: wgpu::ComputePipeline,
+    finish: wgpu::ComputePipeline,
+    strips: wgpu::RenderPipeline,
+    heads: wgpu::RenderPipeline,
+    plants: wgpu::Buffer,
+    #[cfg(test)]
+    pub(super) sways: wgpu::Buffer,
+    pub(super) counters: wgpu::Buffer,
+    draws: wgpu::Buffer,
+    compute_group: wgpu::BindGroup,
+    lists: [wgpu::BindGroup; LISTS],
+    indices: [wgpu::Buffer; LISTS],
+    grids: Grids,
+    grid_m: f32,
+    /// Places for plants in each near grid.
+    places: u32,
+    /// Plants that this frame moves.
+    simulated: u32,
+    near_workgroups: u32,
+    /// Most blades drawn fine, most of all others, and most flower heads.
+    pub(super) capacities: [u32; 3],
+    segments: [u32; 2],
+    /// Longest step that every blade bears (s).
+    longest_step_secs: f32,
+    slots: [Option<[i32; 2]>; 9],
+}
+
+/// What a frame's plants depend on besides the land.
+pub(super) struct Standpoint<'a> {
+    pub(super) eye_m: Vec3,
+    pub(super) frustum: &'a Frustum,
+    pub(super) detail: &'a Detail,
+    pub(super) look: Look,
+    pub(super) dt_secs: f32,
+}
+
+impl Blades {
+    pub(super) fn new(maker: &Maker<'_>, quality: Quality, land: &Land) -> Self {
+        let gpu = maker.gpu;
+        let detail = quality.detail();
+        let grid_m = land.scene().plants.grid_m;
+        let places = plants_of_grid(land, &detail);
+        let plants_per_m2 = places as f32 / (grid_m * grid_m);
+        let most = |within_m: f32| most_standing(plants_per_m2 * full_area_m2(detail.full_m, within_m));
+        let all = most(detail.blades_m);
+        let grids = Grids::new(maker, land, &detail, places, all > TURN_LIMIT);
+        let flowers_per_m2 = land.scene().plants.flowers_per_m2;
+        let thinned = full_area_m2(detail.full_m * 2.0, detail.blades_m);
+        let capacities = [most(detail.fine_m), all, most_standing(flowers_per_m2 * thinned)].map(|count| count.min(TURN_LIMIT));
+        let segments = quality.segments();
+
+        let storage_usage = BufferUsages::STORAGE;
+        let plants = gpu.empty_buffer("plants", size_of::<Plants>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+        let sways = gpu.empty_buffer("sways", u64::from(places) * 9 * SWAY_BYTES, storage_usage | BufferUsages::COPY_SRC);
+        let drawn_count = capacities.iter().sum::<u32>();
+        let drawn = gpu.empty_buffer("drawn plants", u64::from(drawn_count) * BLADE_BYTES, storage_usage);
+        let counters = gpu.empty_buffer("counters", 4 * LISTS as u64, storage_usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
+        let indices = [strip_indices(segments[0]), strip_indices(segments[1]), strip_indices(1), flower_indices()];
+        let draw_args: Vec<u32> = indices.iter().flat_map(|list| [list.len() as u32, 0, 0, 0, 0]).collect();
+        let draws = gpu.buffer("plant draws", bytemuck::cast_slice(&draw_args), storage_usage | BufferUsages::INDIRECT);
+
+        let bend = gpu.shader("bend", shaders::BEND);
+        let compute_layout =
+            maker.layout("bend", &[uniform(0), storage_rw(1), storage_rw(2), storage_rw(3), storage_compute(4), storage_rw(5)]);
+        let buffers = [&plants, &sways, &drawn, &counters, grids.chunks(), &draws];
+        let compute_group = bind(gpu, "bend", &compute_layout, &buffers.map(|buffer| buffer.as_entire_binding()));
+
+        let list_layout = maker.layout("plant list", &[storage(0), storage(1), uniform(2), texture(3)]);
+        let shapes = gpu.texture("blades", wgpu::TextureFormat::Rgba8Unorm, paint::BLADE_PX, &paint::blades());
+        let shapes = shapes.create_view(&Default::default());
+        let [fine, others, heads] = capacities;
+        // Blades of one segment fill the place of the coarse ones from its end.
+        let of_list = [
+            StripList { range: [0, fine, segments[0], 0], order: [1, 0, 0, 0] },
+            StripList { range: [fine, others, segments[1], 1], order: [1, 0, 0, 0] },
+            StripList { range: [fine + others - 1, others, 1, SINGLE as u32], order: [-1, 0, 0, 0] },
+            StripList { range: [fine + others, heads, 0, FLOWERS as u32], order: [1, 0, 0, 0] },
+        ];
+        let lists = of_list.map(|list| {
+            let list = gpu.buffer("list", bytemuck::bytes_of(&list), BufferUsages::UNIFORM);
+            let [drawn, counters, list] = [&drawn, &counters, &list].map(|buffer| buffer.as_entire_binding());
+            bind(gpu, "plant list", &list_layout, &[drawn, counters, list, wgpu::BindingResource::TextureView(&shapes)])
+        });
+        let draw = |label| Draw { label, vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None };
+        let strips = maker.draw(&gpu.shader("blades", shaders::BLADES), Some(&list_layout), &draw("blades"));
+        let heads = maker.draw(&gpu.shader("flowers", shaders::FLOWERS), Some(&list_layout), &draw("flowers"));
+        let compute = |entry| maker.compute(entry, &bend, entry, &compute_layout);
+        Self {
+            near: compute("bend_near"),
+            far: compute("bend_far"),
+            finish: compute("finish"),
+            strips,
+            heads,
+            plants,
+            #[cfg(test)]
+            sways,
+            counters,
+            draws,
+            compute_group,
+            lists,
+            indices: indices.map(|list| gpu.buffer("plant", bytemuck::cast_slice(&list), BufferUsages::INDEX)),
+            grids,
+            grid_m,
+            places,
+            simulated: 0,
+            near_workgroups: 0,
+            capacities,
+            segments,
+            longest_step_secs: land.scene().blade_step_secs(),
+            slots: [None; 9],
+        }
+    }
+
+    /// Plants whose posture the newest frame has moved.
+    pub(super) fn simulated(&self) -> u32 {
+        self.simulated
+    }
+
+    pub(super) fn prepare(&mut self, gpu: &Gpu, land: &Land, from: &Standpoint<'_>) {
+        let detail = from.detail;
+        let plants_of_grid = plants_of_grid(land, detail).min(self.places);
+        let home = [from.eye_m.x, from.eye_m.z].map(|m| (m / self.grid_m).floor() as i32);
+        let mut slots = [[0; 4]; 9];
+        let mut most = 0;
+        self.simulated = 0;
+        for dz in -1..=1 {
+            for dx in -1..=1 {
+                let grid = [home[0] + dx, home[1] + dz];
+                let slot = (grid[0].rem_euclid(3) + 3 * grid[1].rem_euclid(3)) as usize;
+                let is_new = self.slots[slot] != Some(grid);
+                let bounds = grids::bounds_m(land, grid, self.grid_m);
+                let distance_m = from.eye_m.distance(from.eye_m.clamp(bounds[0], bounds[1]));
+                let is_seen = !from.look.culls || from.frustum.sees_box(bounds[0], bounds[1]);
+                let stands = if is_seen { (plants_of_grid as f32 * density(distance_m, detail.full_m)).ceil() as u32 } else { 0 };
+                // What is not moved for a while stands still when it comes into view again.
+                self.slots[slot] = (stands > 0).then_some(grid);
+                self.simulated += stands;
+                most = most.max(stands);
+                slots[slot] = [grid[0], grid[1], i32::from(is_new), stands as i32];
+            }
+        }
+        self.near_workgroups = most.div_ceil(CHUNK);
+        let looks = &land.scene().plants;
+        let (steps, step_secs) = steps(self.longest_step_secs, from.dt_secs);
+        let flowers = looks.flowers_per_m2 * self.grid_m * self.grid_m;
+        let plants = Plants {
+            slots,
+            counts: [self.places, plants_of_grid, u32::from(from.look.culls), 0],
+            capacities: [self.capacities[0], self.capacities[1], self.capacities[2], 0],
+            shape: [self.grid_m, detail.full_m, detail.fine_m, looks.swing_damping],
+            steps: [steps, looks.integrator as u32, self.segments[0], self.segments[1]],
+            time: [step_secs, flower_lot(flowers, plants_of_grid), FLOWER_POWER, 0.0],
+        };
+        gpu.queue.write_buffer(&self.plants, 0, bytemuck::bytes_of(&plants));
+        self.grids.prepare(from, home, plants_of_grid);
+    }
+
+    /// Turns in which a frame's plants are listed and drawn: one, but where all of them are.
+    pub(super) fn turns(&self) -> u32 {
+        self.grids.turns()
+    }
+
+    /// Lists the plants of this turn from now on.
+    pub(super) fn begin_turn(&mut self, gpu: &Gpu, turn: u32) {
+        if turn > 0 {
+            self.near_workgroups = 0;
+        }
+        gpu.queue.write_buffer(&self.counters, 0, &[0; 4 * LISTS]);
+        self.grids.begin_turn(gpu, turn);
+    }
+
+    pub(super) fn bend(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.grids.list(pass);
+        pass.set_bind_group(1, &self.compute_group, &[]);
+        if self.near_workgroups > 0 {
+            pass.set_pipeline(&self.near);
+            pass.dispatch_workgroups(self.near_workgroups, 9, 1);
+        }
+        pass.set_pipeline(&self.far);
+        pass.dispatch_workgroups_indirect(self.grids.workgroups(), 0);
+        pass.set_pipeline(&self.finish);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        for (list, group) in self.lists.iter().enumerate() {
+            pass.set_pipeline(if list < FLOWERS { &self.strips } else { &self.heads });
+            pass.set_bind_group(1, group, &[]);
+            pass.set_index_buffer(self.indices[list].slice(..), wgpu::IndexFormat::Uint16);
+            pass.draw_indexed_indirect(&self.draws, list as u64 * 20);
+        }
+    }
+}
+
+/// Plants of a grid near the camera, blades and flowers.
+fn plants_of_grid(land: &Land, detail: &Detail) -> u32 {
+    let plants = &land.scene().plants;
+    let flowers = plants.flowers_per_m2 * plants.grid_m * plants.grid_m;
+    (detail.blades_of_grid(plants.plants_per_side) + flowers).round().min(PLANTS_LIMIT) as u32
+}
+
+/// Share of plants that stand at a distance; twin of `density` in `common.wgsl`.
+fn density(distance_m: f32, full_m: f32) -> f32 {
+    (full_m / distance_m.max(0.01)).powi(2).min(1.0)
+}
+
+/// Factor c such that of `plants` with lots min(1, c·(i + 1)^[`FLOWER_POWER`]) as many as `flowers` are flowers on the average.
+pub(super) fn flower_lot(flowers: f32, plants: u32) -> f32 {
+    /// Lots that are summed one by one; of the others, which differ little from one to the next, the integral.
+    const FIRST: u32 = 64;
+    let expected = |factor: f32| {
+        let lot = |i: u32| (factor * (i as f32 + 1.0).powf(FLOWER_POWER)).min(1.0);
+        let sure = factor.powf(-1.0 / FLOWER_POWER).clamp(FIRST.min(plants) as f32, plants as f32);
+        let power = FLOWER_POWER + 1.0;
+        let rest = factor / power * ((plants as f32 + 0.5).powf(power) - (sure + 0.5).powf(power));
+        (0..FIRST.min(plants)).map(lot).sum::<f32>() + (sure - FIRST.min(plants) as f32) + rest.max(0.0)
+    };
+    let (mut low, mut high) = (0.0_f32, plants as f32 + 1.0);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if expected(middle) < flowers { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// How many steps a frame of `dt_secs` takes, and how long each is (s), where blades bear one of `longest_secs`.
+fn steps(longest_secs: f32, dt_secs: f32) -> (u32, f32) {
+    let dt_secs = dt_secs.max(0.0);
+    if longest_secs == f32::INFINITY {
+        return (u32::from(dt_secs > 0.0), dt_secs.min(EXACT_STEP_SECS));
+    }
+    let count = (dt_secs / longest_secs).ceil().min(STEP_LIMIT);
+    (count as u32, (dt_secs / count.max(1.0)).min(longest_secs))
+}
+
+/// Area (m²) at full density that holds as many plants as stand within a distance.
+fn full_area_m2(full_m: f32, within_m: f32) -> f32 {
+    let inner_m = full_m.min(within_m);
+    PI * inner_m * inner_m + TAU * full_m * full_m * (within_m / inner_m).ln()
+}
+
+/// Most plants that stand where `mean` do on the average, each by a lot of its own: six standard deviations more.
+fn most_standing(mean: f32) -> u32 {
+    (mean + 6.0 * mean.sqrt() + 64.0) as u32
+}
+
+fn storage_compute(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::COMPUTE, ..storage(binding) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_take_the_steps_that_their_scheme_can_take() {
+        let found = [0.0, 0.004, 1.0 / 60.0, 0.02, 1.0, -1.0].map(|dt_secs| steps(0.008, dt_secs));
+        assert_eq!(found.map(|(count, _)| count), [0, 1, 3, 3, 32, 0]);
+        assert!(found.iter().all(|&(_, step_secs)| step_secs <= 0.008));
+        assert!((found[3].1 - 0.02 / 3.0).abs() < 1e-6);
+        assert_eq!([0.0, 0.02, 5.0].map(|dt_secs| steps(f32::INFINITY, dt_secs)), [(0, 0.0), (1, 0.02), (1, EXACT_STEP_SECS)]);
+    }
+
+    #[test]
+    fn lots_of_flowers_sum_to_as_many_as_there_are() {
+        for (flowers, plants) in [(38.4, 1062), (38.4, 25_638), (3200.0, 4000), (1.2, 400)] {
+            let factor = flower_lot(flowers, plants);
+            let sum: f32 = (0..plants).map(|i| (factor * (i as f32 + 1.0).powf(FLOWER_POWER)).min(1.0)).sum();
+            assert!((sum / flowers - 1.0).abs() < 0.02, "{sum} of {flowers}");
+        }
+        assert_eq!(flower_lot(0.0, 1000), 0.0);
+    }
+
+    #[test]
+    fn a_disc_holds_the_area_that_its_density_sums_to() {
+        let (full_m, within_m) = (8.0, 100.0);
+        let rings = 200_000;
+        let step_m = within_m / rings as f32;
+        let sum: f64 = (0..rings).map(|i| (i as f32 + 0.5) * step_m).map(|r_m| f64::from(TAU * r_m * step_m * density(r_m, full_m))).sum();
+        assert!((sum / f64::from(full_area_m2(full_m, within_m)) - 1.0).abs() < 1e-3);
+    }
+}

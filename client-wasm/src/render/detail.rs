@@ -1,0 +1,80 @@
+//! How much of what grows is drawn: what the presets set, and what a frame budget steers between them.
+
+/// Detail of plants. What a renderer holds room for follows from its quality; this may change from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Detail {
+    /// Blades along one side of a near grid, over what the scene says.
+    pub(super) blades: f32,
+    /// Distance up to which every blade stands (m); beyond, their density falls with the square of the distance, so that a patch of the picture shows as
+    /// many wherever it is.
+    pub(super) full_m: f32,
+    /// Distance up to which blades have all their segments (m).
+    pub(super) fine_m: f32,
+    /// Distance at which the last single blades have melted into what stands for far plants (m).
+    pub(super) blades_m: f32,
+    /// Distance at which clumps or shells have melted into the land (m).
+    pub(super) far_m: f32,
+    /// Distance at which underbrush has melted into the grass (m).
+    pub(super) underbrush_m: f32,
+    /// Distance up to which trees are drawn (m).
+    pub(super) trees_m: f32,
+}
+
+/// Those of the levels 0, 1, 2, 3.
+const LEVELS: [Detail; 4] = [
+    Detail { blades: 1.0, full_m: 10.0, fine_m: 2.5, blades_m: 55.0, far_m: 60.0, underbrush_m: 45.0, trees_m: 400.0 },
+    Detail { blades: 2.0, full_m: 10.0, fine_m: 3.5, blades_m: 90.0, far_m: 100.0, underbrush_m: 110.0, trees_m: 800.0 },
+    Detail { blades: 3.3, full_m: 11.0, fine_m: 5.0, blades_m: 130.0, far_m: 150.0, underbrush_m: 180.0, trees_m: 2000.0 },
+    Detail { blades: 5.0, full_m: 11.0, fine_m: 8.0, blades_m: 180.0, far_m: 220.0, underbrush_m: 260.0, trees_m: 2000.0 },
+];
+
+impl Detail {
+    /// At a level from 0, that of low quality, to 3, that of ultra; between two of them all numbers grow by equal factors.
+    pub(super) fn at(level: f32) -> Self {
+        let level = level.clamp(0.0, (LEVELS.len() - 1) as f32);
+        let below = (level as usize).min(LEVELS.len() - 2);
+        let (a, b, share) = (LEVELS[below], LEVELS[below + 1], level - below as f32);
+        let between = |a: f32, b: f32| if a == b { a } else { a * (b / a).powf(share) };
+        Self {
+            blades: between(a.blades, b.blades),
+            full_m: between(a.full_m, b.full_m),
+            fine_m: between(a.fine_m, b.fine_m),
+            blades_m: between(a.blades_m, b.blades_m),
+            far_m: between(a.far_m, b.far_m),
+            underbrush_m: between(a.underbrush_m, b.underbrush_m),
+            trees_m: between(a.trees_m, b.trees_m),
+        }
+    }
+
+    /// Every plant as far as `reach_m`, with all its segments: what the other levels are measured against.
+    pub(super) fn whole(reach_m: f32) -> Self {
+        let most = LEVELS[LEVELS.len() - 1];
+        Self { full_m: reach_m, fine_m: reach_m, blades_m: reach_m, far_m: reach_m, underbrush_m: reach_m, ..most }
+    }
+
+    /// Factor on the width of blades, so that fewer still close the sward.
+    pub(super) fn width_factor(&self) -> f32 {
+        (LEVELS[2].blades / self.blades).max(1.0).powf(0.9)
+    }
+
+    /// Blades of a grid near the camera, where the scene has so many along one side.
+    pub(super) fn blades_of_grid(&self, plants_per_side: u32) -> f32 {
+        (plants_per_side as f32 * self.blades).round().powi(2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_are_their_presets_and_grow_between_them() {
+        for (level, preset) in LEVELS.iter().enumerate() {
+            assert_eq!(Detail::at(level as f32), *preset);
+        }
+        assert_eq!(Detail::at(-1.0), LEVELS[0]);
+        assert_eq!(Detail::at(9.0), LEVELS[3]);
+        let reaches: Vec<f32> = (0..=30).map(|tenth| Detail::at(tenth as f32 * 0.1).blades_m).collect();
+        assert!(reaches.windows(2).all(|pair| pair[0] < pair[1]), "{reaches:?}");
+    }
+}
