@@ -14,7 +14,8 @@ struct Plants {
     shape: vec4<f32>,
     // Steps of this frame; way of integration; segments of a fine blade, and of a coarse one.
     steps: vec4<u32>,
-    // Length of a step (s); lot of the first plant of a grid to be a flower, and the power with which that falls; unused.
+    // Length of a step (s); lot of the first plant of a grid to be a flower, and the power with which that falls; least width that a blade is
+    // drawn with (px).
     time: vec4<f32>,
 }
 
@@ -184,7 +185,7 @@ fn about(plant: Plant, lean: vec2<f32>, distance_m: f32, light: f32) -> vec4<f32
     let kind = kinds.list[plant.kind];
     let view = normalize(plant.root - frame.eye.xyz);
     let between = bare_between(distance_m, kind, view, plant.normal);
-    if between <= 0.02 {
+    if between <= 0.02 && contrast(distance_m) >= 1.0 {
         return vec4<f32>(0.0);
     }
     return vec4<f32>(sward_color(plant.normal, kind, grass_tint(plant.root.xz), lean, view, light), between);
@@ -193,7 +194,7 @@ fn about(plant: Plant, lean: vec2<f32>, distance_m: f32, light: f32) -> vec4<f32
 fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, kind: f32) {
     let pixel_m = distance_m * frame.screen.z;
     let thinned = inverseSqrt(density(distance_m, plants.shape.y));
-    let width = max(plant.width * thinned, pixel_m * frame.sward.z) * min(grown * 2.0, 1.0);
+    let width = max(plant.width * thinned, pixel_m * plants.time.w) * min(grown * 2.0, 1.0);
     if !is_blade_seen(plant.root, points, width) {
         return;
     }
@@ -211,7 +212,7 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
     blade.about = about(plant, points[2].xz / plant.height, distance_m, light);
     if plant.is_flower {
         // Heads too small to be seen thin out, and those left are as large as can be seen.
-        let small = max(max(pixel_m * frame.sward.z * 1.4 / HEAD_RADIUS_M, 0.5 * distance_m / plants.shape.y), 1.0);
+        let small = max(max(pixel_m * plants.time.w * 1.4 / HEAD_RADIUS_M, 0.5 * distance_m / plants.shape.y), 1.0);
         if fract(kind * 37.7) * small * small <= 1.0 {
             var head = blade;
             head.root.w = small;

@@ -101,13 +101,11 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let tangent = normalize(vec3<f32>(lean.x, 1.0, lean.y));
     let tilt = min(length(lean), 1.45);
     let tint = grass_tint(root);
-    let tip = kind.tip.rgb * tint * (0.90 + 0.42 * smoothstep(0.05, 0.45, tilt));
-    // Seen from above a clump shows its upper parts.
-    let above = smoothstep(0.10, 0.50, -view.y);
-    let base = mix(kind.root.rgb * tint, tip * 0.8, above * 0.75);
-    let root_lit = grass_light(base, normal, tangent, view, light * mix(0.4, 0.9, above), mix(0.3, 0.8, above));
-    stand.root_color = vec4<f32>(hazed(root_lit, p), 0.0);
-    stand.tip_color = vec4<f32>(hazed(grass_light(tip * trodden(tilt), normal, tangent, view, light, 1.0), p), 0.0);
+    // Far down a clump is one with the grass about it that is not drawn.
+    let afar = sward_color(ground_normal(root), kind, tint, lean, view, light);
+    stand.root_color = vec4<f32>(hazed(afar, p), 0.0);
+    let top = blade_color(kind, tint, 0.95, 0.9, 0.5, tilt, normal, tangent, view, light);
+    stand.tip_color = vec4<f32>(hazed(mix(afar, top, 0.35 + 0.65 * contrast(distance_m)), p), 0.0);
     stand.petal_light = vec4<f32>(frame.sun_color.rgb * light * 0.6 + ambient(normal), 0.0);
     placed[id.x] = stand;
 }
@@ -169,7 +167,7 @@ fn fs(r: Rectangle) -> @location(0) vec4<f32> {
     }
     let up = 1.0 - r.uv.y;
     let t = texel.r * smoothstep(-0.15, 0.75, up);
-    let color = plant_color(r.root_color, r.tip_color, t, texel.g);
+    let color = mix(r.root_color, r.tip_color, t * t);
     let petal = select(vec3<f32>(0.85, 0.80, 0.72), vec3<f32>(0.80, 0.58, 0.06), texel.g > 0.5);
     let flowers = texel.b * step(0.01, frame.blade.x);
     return vec4<f32>(mix(color, petal * r.petal_light, flowers), 1.0);

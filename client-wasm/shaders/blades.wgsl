@@ -71,8 +71,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let own = blade_color(
         kind, grass_tint(blade.root.xz), t, height, fract(blade.points[1].w), tilt, soft, tangent, view, blade.points[2].w,
     );
-    // Far down it is one with the grass about it that is not drawn.
-    let color = mix(own, blade.about.rgb, blade.about.w * (1.0 - smoothstep(0.0, 0.8, t)));
+    let color = among(own, blade.about, t, distance(blade.root.xyz, frame.eye.xyz));
     out.color = hazed(color, p);
     out.across = across;
     let shape = floor(fract(blade.points[1].w * 61.0) * SHAPES);

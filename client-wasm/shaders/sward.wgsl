@@ -20,6 +20,10 @@ fn blade_color(
 
 // Leaf area that a ray meets on its way through the whole sward, over the ground below it: half of the leaves' area, since they stand every way.
 const FACING: f32 = 0.5;
+// The same of what is seen, since blades stand in tufts and hide each other there.
+const SEEN: f32 = 0.3;
+// How much lower than the tallest blades those are on which a level look ends, over their height.
+const RAGGED: f32 = 0.1;
 
 // Leaf area over the ground of blades drawn at a distance, which are fewer there, and wider.
 fn drawn_leaf_area(distance_m: f32, kind: Kind) -> f32 {
@@ -33,6 +37,18 @@ fn bare_between(distance_m: f32, kind: Kind, view: vec3<f32>, up: vec3<f32>) -> 
     return 1.0 - hidden * hidden;
 }
 
+// How much a single blade stands out: of several to a pixel what is seen is their mean, which varies as the root of their number.
+fn contrast(distance_m: f32) -> f32 {
+    return clamp(sqrt(1.5 * frame.sward.w / (distance_m * frame.screen.z)), 0.0, 1.0);
+}
+
+// What is seen of a plant's part of a colour so far up in the grass (0 at the ground, 1 at its top), where `about` is what the grass about it looks like from
+// afar, and how much of that shows between the plants that are drawn: down in the grass it is one with what is not drawn.
+fn among(color: vec3<f32>, about: vec4<f32>, up: f32, distance_m: f32) -> vec3<f32> {
+    let own = contrast(distance_m) * (1.0 - about.w * (1.0 - smoothstep(0.0, 0.8, up)));
+    return mix(about.rgb, color, own);
+}
+
 // Leaf area of a kind over that of the first kind, which the frame's is of.
 fn leafiness(kind: Kind) -> f32 {
     return kind.shape.w * kind.root.w / (kinds.list[0].shape.w * kinds.list[0].root.w);
@@ -40,15 +56,15 @@ fn leafiness(kind: Kind) -> f32 {
 
 // All blades of a place as they are seen from afar: the deeper a leaf is, the less of it; leaves' depths are those of equal shares of what is seen.
 fn sward_color(up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: vec2<f32>, view: vec3<f32>, light: f32) -> vec3<f32> {
-    let leaf_area = frame.sward.w * leafiness(kind);
-    let free = clamp(-dot(view, up), 0.05, 1.0) / (FACING * max(leaf_area, 0.05));
+    let leaf_area = frame.sward.z * leafiness(kind);
+    let free = clamp(-dot(view, up), 0.05, 1.0) / (SEEN * max(leaf_area, 0.05));
     let tilt = length(lean);
     let tangent = normalize(up + vec3<f32>(lean.x, 0.0, lean.y) * 1.4);
     // Blades stand every way, and those that turn to the eye are seen.
     let facing = normalize(up * 0.75 - (view - up * dot(view, up)) * 0.45 + vec3<f32>(lean.x, 0.0, lean.y) * 0.3);
     var color = vec3<f32>(0.0);
     for (var i = 0; i < 2; i++) {
-        let height = max(1.0 - free * select(1.39, 0.29, i == 0), 0.0);
+        let height = max(1.0 - RAGGED - free * select(1.39, 0.29, i == 0), 0.0);
         let t = mix(height, 1.0, 0.35);
         color += blade_color(kind, tint, t, height, select(0.65, 0.35, i == 0), tilt, facing, tangent, view, light);
     }

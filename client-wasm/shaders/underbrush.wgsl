@@ -30,12 +30,14 @@ struct Felt {
 }
 
 // A plant as it is drawn: root (m), and size as it is shown; lean of the ground (rad), light and heading; pressure that it feels along
-// X and Z (Pa), its make, and the spheres that it may touch, a bit each; height (m), hue, distance (m), and its own size.
+// X and Z (Pa), its make and the kind of the grass about it, and the spheres that it may touch, a bit each; height (m), hue, distance (m), and its own size.
 struct Stand {
     root: vec4<f32>,
     lean: vec4<f32>,
     feels: vec4<f32>,
     about: vec4<f32>,
+    // What the grass about it looks like from afar, and how much of that shows between the plants that are drawn.
+    sward: vec4<f32>,
 }
 
 struct Tally {
@@ -147,8 +149,14 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     out.root = vec4<f32>(root, shown_size);
     let lit = root + vec3<f32>(0.0, 0.6 * height, 0.0);
     out.lean = vec4<f32>(lean, cloud_light(plant.at) * sun_visible(lit), plant.heading);
-    out.feels = vec4<f32>(feels.pressure.xy, f32(make), f32(spheres));
+    let kind_number = kind_at(plant.at);
+    let kind = kinds.list[kind_number];
+    out.feels = vec4<f32>(feels.pressure.xy, f32(make + 2u * VARIANTS * kind_number), f32(spheres));
     out.about = vec4<f32>(height, random3(vec2<i32>(i32(plant.site), 9), 17u).x, distance_m, plant.size);
+    let up = ground_normal(plant.at);
+    let view = normalize(root - frame.eye.xyz);
+    let afar = sward_color(up, kind, grass_tint(plant.at), lean, view, out.lean.z);
+    out.sward = vec4<f32>(afar, bare_between(distance_m, kind, view, up) * grass_share(plant.at));
     stands_out[index] = out;
 
     let level = select(select(select(3u, 2u, tall_px > 26.0), 1u, tall_px > 90.0), 0u, tall_px > 300.0);
@@ -163,6 +171,11 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
 fn finish(@builtin(local_invocation_index) list: u32) {
     let held = brush_draws[list * 8u + 5u];
     brush_draws[list * 8u + 1u] = (atomicLoad(&tally.drawn[list]) + held - 1u) / max(held, 1u);
+}
+
+// What is seen of a part so far up in the grass (1 at its mean height) that hides it.
+fn among_grass(color: vec3<f32>, sward: vec4<f32>, up: f32) -> vec3<f32> {
+    return mix(color, sward.rgb, sward.w * (1.0 - smoothstep(0.3, 1.1, up)));
 }
 
 // --- drawing ----------------------------------------------------------------------------------------------------------
@@ -451,15 +464,17 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let deep = smoothstep(0.0, 0.6, plant.about.x);
     let occlusion = mix(mix(0.62, 0.30, deep), 1.0, smoothstep(0.0, 0.8, up));
     let light = plant.lean.z * mix(mix(0.8, 0.42, deep), 1.0, smoothstep(0.05, 0.7, up));
+    var color: vec3<f32>;
     if stuff == PETAL {
         let sun_facing = dot(normal, frame.sun.xyz);
         let diffuse = clamp((abs(sun_facing) + 0.3) / 1.3, 0.0, 1.0);
         let through = 0.4 * max(dot(view, frame.sun.xyz), 0.0) * clamp(0.6 - sun_facing, 0.0, 1.0);
-        let lit = albedo * (frame.sun_color.rgb * light * (diffuse + through) * 0.8 + ambient(rounded));
-        out.color = hazed(lit, p);
+        color = albedo * (frame.sun_color.rgb * light * (diffuse + through) * 0.8 + ambient(rounded));
     } else {
-        out.color = hazed(grass_light(albedo, rounded, along, view, light, occlusion), p);
+        color = grass_light(albedo, rounded, along, view, light, occlusion);
     }
+    let grass_m = kinds.list[u32(plant.feels.z) / (2u * VARIANTS)].root.w;
+    out.color = hazed(among_grass(color, plant.sward, dot(p - plant.root.xyz, normal_up) / grass_m), p);
     out.across = select(9.0, across, stuff != STALK && stuff != PETAL);
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
     return out;

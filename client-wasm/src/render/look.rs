@@ -41,25 +41,22 @@ impl Order {
 /// What stands for the plants beyond those that are drawn singly.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Far {
-    /// Single blades as far as they can be told apart, fewer and wider the farther they are.
-    Blades,
-    /// Clumps of six rectangles (000 §4).
+    /// Nothing but the land, whose colours are those of its grass; single blades reach as far as they can be told apart.
     #[default]
+    Land,
+    /// Clumps of six rectangles (000 §4).
     Clumps,
     /// Shells (003).
     Shells,
-    /// The land's own colours.
-    Land,
 }
 
 impl Far {
     /// All ways.
-    pub const ALL: [Self; 4] = [Self::Blades, Self::Clumps, Self::Shells, Self::Land];
+    pub const ALL: [Self; 3] = [Self::Land, Self::Clumps, Self::Shells];
 
     /// Name as an address and the page write it.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Blades => "blades",
             Self::Clumps => "clumps",
             Self::Shells => "shells",
             Self::Land => "land",

@@ -65,6 +65,11 @@ impl Quality {
         }
     }
 
+    /// Least width that a blade is drawn with (px), so that none vanishes between samples.
+    pub(super) fn thinnest_px(self) -> f32 {
+        if self == Self::Reference { 0.0 } else { 0.9 }
+    }
+
     /// Samples a pixel.
     pub(super) fn samples(self) -> u32 {
         if self == Self::Low { 1 } else { 4 }

@@ -27,11 +27,15 @@ pub(super) const BLADES: &str = concat!(
 /// Rain.
 pub(super) const RAIN: &str = include_str!("../../shaders/rain.wgsl");
 /// Underbrush.
-pub(super) const UNDERBRUSH: &str = concat!(include_str!("../../shaders/blade.wgsl"), include_str!("../../shaders/underbrush.wgsl"));
+pub(super) const UNDERBRUSH: &str = concat!(
+    include_str!("../../shaders/blade.wgsl"),
+    include_str!("../../shaders/sward.wgsl"),
+    include_str!("../../shaders/underbrush.wgsl")
+);
 /// Flower heads.
 pub(super) const FLOWERS: &str = include_str!("../../shaders/flowers.wgsl");
 /// Clumps of far plants.
-pub(super) const BILLBOARDS: &str = include_str!("../../shaders/billboards.wgsl");
+pub(super) const BILLBOARDS: &str = concat!(include_str!("../../shaders/sward.wgsl"), include_str!("../../shaders/billboards.wgsl"));
 /// Motes and puffs of dust.
 pub(super) const DUST: &str = include_str!("../../shaders/dust.wgsl");
 /// Ground.

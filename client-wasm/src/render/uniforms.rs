@@ -56,8 +56,8 @@ uniform_block! {
         screen: [f32; 4],
         /// Near blades fade out from (m), to (m); billboards end from (m), to (m).
         reach: [f32; 4],
-        /// Leaf area over the ground below it, of blades of mean height as they stand near by; distance up to which they stand so (m); least width that a blade
-        /// is drawn with (px); the same leaf area where every blade stands.
+        /// Leaf area over the ground below it, of blades of mean height as they stand near by; distance up to which they stand so (m); the same leaf area where
+        /// every blade stands, and the width of a blade there (m).
         sward: [f32; 4],
         /// Offset of the clouds (m, x and z); share of cloud; number of interaction spheres.
         clouds: [f32; 4],
@@ -115,7 +115,8 @@ uniform_block! {
         shape: [f32; 4],
         /// Steps of this frame; way of integration, as the constants of `blade.wgsl`; segments of a fine blade, and of a coarse one.
         steps: [u32; 4],
-        /// Length of a step (s); lot of the first plant of a grid to be a flower, and the power with which that falls; unused.
+        /// Length of a step (s); lot of the first plant of a grid to be a flower, and the power with which that falls; least width that a blade is
+        /// drawn with (px).
         time: [f32; 4],
     }
 }

@@ -93,9 +93,8 @@ impl<'a> View<'a> {
         let leaf_area = |detail: &Detail, width_m: f32| {
             detail.blades_of_grid(plants.plants_per_side) / plants.grid_m.powi(2) * LEAF_SHARE * plants.height_m * width_m
         };
-        let thinnest_px = if self.quality == Quality::Reference { 0.0 } else { 0.9 };
         let whole = Detail::whole(self.detail.far_m);
-        [leaf_area(&self.detail, width_m), self.detail.full_m, thinnest_px, leaf_area(&whole, plants.width_m)]
+        [leaf_area(&self.detail, width_m), self.detail.full_m, leaf_area(&whole, plants.width_m), plants.width_m]
     }
 
     /// A square about what lies ahead, as the sun sees it; moves in whole texels, so that shadows do not crawl.

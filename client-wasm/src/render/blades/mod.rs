@@ -66,6 +66,7 @@ pub(super) struct Blades {
     /// Most blades drawn fine, most of all others, and most flower heads.
     pub(super) capacities: [u32; 3],
     segments: [u32; 2],
+    thinnest_px: f32,
     /// Longest step that every blade bears (s).
     longest_step_secs: f32,
     slots: [Option<[i32; 2]>; 9],
@@ -152,6 +153,7 @@ impl Blades {
             near_workgroups: 0,
             capacities,
             segments,
+            thinnest_px: quality.thinnest_px(),
             longest_step_secs: land.scene().blade_step_secs(),
             slots: [None; 9],
         }
@@ -195,7 +197,7 @@ impl Blades {
             capacities: [self.capacities[0], self.capacities[1], self.capacities[2], 0],
             shape: [self.grid_m, detail.full_m, detail.fine_m, looks.swing_damping],
             steps: [steps, looks.integrator as u32, self.segments[0], self.segments[1]],
-            time: [step_secs, flower_lot(flowers, plants_of_grid), FLOWER_POWER, 0.0],
+            time: [step_secs, flower_lot(flowers, plants_of_grid), FLOWER_POWER, self.thinnest_px],
         };
         gpu.queue.write_buffer(&self.plants, 0, bytemuck::bytes_of(&plants));
         self.grids.prepare(from, home, plants_of_grid);

@@ -26,7 +26,7 @@ const TILE_M: f32 = 8.0;
 const INSTANCE_VERTICES: u32 = 2048;
 /// Bytes of a plant's feelings and of how it stands, as in `underbrush.wgsl`.
 const FELT_BYTES: u64 = 32;
-const STAND_BYTES: u64 = 64;
+const STAND_BYTES: u64 = 80;
 /// Most plants that are drawn: as many stand in the 128 MiB that every device binds at once.
 const PLANT_LIMIT: usize = (128 << 20) / STAND_BYTES as usize;
 /// Levels whose leaves tremble in the rain; of coarser ones that is a pixel at most.
