@@ -132,6 +132,9 @@ fn ground_normal(p: vec2<f32>) -> vec3<f32> {
 // Share of grass at a place: 0 on bare ground, stones and at trunks, with a ragged border.
 fn grass_share(p: vec2<f32>) -> f32 {
     let soft = textureSampleLevel(cover, clamped, p / frame.world.xy, 0.0).r;
+    if soft <= 0.0 || soft >= 1.0 {
+        return soft;
+    }
     let ragged = noise(p / 7.0).b * 0.3 + noise(p / 2.1).g * 0.3 - 0.3;
     return smoothstep(0.35, 0.65, soft + ragged * (1.0 - abs(2.0 * soft - 1.0)));
 }

@@ -12,6 +12,9 @@ struct Tile {
 struct Ground {
     @builtin(position) position: vec4<f32>,
     @location(0) p: vec3<f32>,
+    // What changes little from one vertex to the next: lean by the wind (rad), light that clouds let through; tint of the grass.
+    @location(1) air: vec3<f32>,
+    @location(2) tint: vec3<f32>,
 }
 
 @vertex
@@ -27,8 +30,19 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let p = flat_p - odd * spacing * morph;
     var out: Ground;
     out.p = vec3<f32>(p.x, ground_height(p), p.y);
+    let wind = wind_at(out.p, 0.0).xz * gust_at(p);
+    out.air = vec3<f32>(lean_of_wind(wind, 1.0), cloud_light(p));
+    out.tint = grass_tint(p);
     out.position = frame.projection_from_world * vec4<f32>(out.p, 1.0);
     return out;
+}
+
+// Soil and litter under the plants.
+fn soil_at(p: vec2<f32>) -> vec3<f32> {
+    let grain = noise(p / 1.3);
+    let coarse = noise(p / 5.1);
+    let soil = mix(vec3<f32>(0.060, 0.042, 0.026), vec3<f32>(0.155, 0.118, 0.075), grain.r * 0.6 + coarse.g * 0.5);
+    return mix(soil, vec3<f32>(0.16, 0.15, 0.055), smoothstep(0.45, 0.75, grain.a) * 0.55);
 }
 
 @fragment
@@ -39,26 +53,21 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let view = to / distance_m;
     let normal = ground_normal(p);
     let share = grass_share(p);
-    let sun_light = cloud_light(p) * sun_visible(ground.p + normal * 0.05);
-
-    // Under the plants: soil and litter, dark between the blades near by.
-    let grain = noise(p / 1.3);
-    let coarse = noise(p / 5.1);
-    let soil = mix(vec3<f32>(0.060, 0.042, 0.026), vec3<f32>(0.155, 0.118, 0.075), grain.r * 0.6 + coarse.g * 0.5);
-    let litter = mix(soil, vec3<f32>(0.16, 0.15, 0.055), smoothstep(0.45, 0.75, grain.a) * 0.55);
-    let bare = litter * (frame.sun_color.rgb * sun_light * max(dot(normal, frame.sun.xyz), 0.0) + ambient(normal));
-
-    // The grass as seen from afar, leaning as the blades do, where no blades hide the ground; between them it is dark.
-    let kind = kinds_blended(p);
-    let lean = lean_at(ground.p, field_level(distance_m), gust_at(p), kind.tip.w);
-    let afar = sward_color(normal, kind, grass_tint(p), lean, view, sun_light);
-    let mottle = 0.80 + 0.5 * (noise(p / 2.9).g * 0.6 + noise(p / 0.83).r * 0.4);
-    var grass = afar * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
-    let flowers = smoothstep(0.72, 0.80, noise(p / 3.7 + 0.31).b) * min(frame.blade.x * 0.25, 0.35);
-    grass = mix(grass, vec3<f32>(0.75, 0.72, 0.55) * sun_light, flowers * smoothstep(20.0, 60.0, distance_m) * 0.5);
-    let under = mix(kind.root.rgb * 0.9, soil * 0.35, 0.35)
-        * (frame.sun_color.rgb * sun_light * 0.35 + ambient(normal) * 0.55);
-    grass = mix(under, grass, bare_between(distance_m, kind, view, normal));
-    let color = mix(bare, grass, share);
+    let sun_light = ground.air.z * sun_visible(ground.p + normal * 0.05);
+    var color = vec3<f32>(0.0);
+    if share < 1.0 {
+        let direct = frame.sun_color.rgb * (sun_light * max(dot(normal, frame.sun.xyz), 0.0));
+        color = soil_at(p) * (direct + ambient(normal)) * (1.0 - share);
+    }
+    if share > 0.0 {
+        // The grass as seen from afar, leaning as the blades do, where no blades hide the ground; between them it is dark.
+        let kind = kinds_blended(p);
+        let lean = lean_of_field(p, field_level(distance_m)) + ground.air.xy * kind.tip.w;
+        let afar = sward_color(normal, kind, ground.tint, lean, view, sun_light);
+        let mottle = 0.80 + 0.5 * (noise(p / 2.9).g * 0.6 + 0.2);
+        let under = kind.root.rgb * 0.7 * (frame.sun_color.rgb * sun_light * 0.35 + ambient(normal) * 0.55);
+        let grass = afar * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
+        color += mix(under, grass, bare_between(distance_m, kind, view, normal)) * share;
+    }
     return vec4<f32>(hazed(color, ground.p), 1.0);
 }

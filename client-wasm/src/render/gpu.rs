@@ -14,6 +14,9 @@ pub enum GpuError {
     NoDevice(String),
 }
 
+/// Parts of the names of adapters that draw on the processor; browsers tell no more.
+const SOFTWARE: [&str; 5] = ["llvmpipe", "lavapipe", "swiftshader", "basic render", "warp"];
+
 /// A device and its queue.
 #[derive(Clone, Debug)]
 pub struct Gpu {
@@ -23,6 +26,8 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// Name of the adapter, for people.
     pub adapter_name: String,
+    /// Whether it draws without a graphics card, on the processor.
+    pub is_software: bool,
 }
 
 impl Gpu {
@@ -57,7 +62,11 @@ impl Gpu {
     pub async fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let descriptor = wgpu::DeviceDescriptor { label: Some("prairie"), ..Default::default() };
         let (device, queue) = adapter.request_device(&descriptor).await.map_err(|error| GpuError::NoDevice(error.to_string()))?;
-        Ok(Self { device, queue, adapter_name: adapter.get_info().name })
+        let info = adapter.get_info();
+        let names = [&info.name, &info.driver, &info.driver_info].map(|name| name.to_lowercase());
+        let is_named = names.iter().any(|name| SOFTWARE.iter().any(|software| name.contains(software)));
+        let is_software = info.device_type == wgpu::DeviceType::Cpu || is_named;
+        Ok(Self { device, queue, adapter_name: info.name, is_software })
     }
 
     pub(super) fn buffer(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {

@@ -149,8 +149,8 @@ impl Renderer {
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, size_px: [u32; 2], quality: Quality) -> Self {
         let size_px = size_px.map(|side| side.max(1));
         let frame = FrameGroup::new(gpu, quality.shadow_px());
-        let maker = Maker { gpu, frame_layout: &frame.layout, samples: quality.samples() };
-        let targets = Targets::new(gpu, size_px, quality.samples());
+        let maker = Maker { gpu, frame_layout: &frame.layout, samples: quality.samples(gpu.is_software) };
+        let targets = Targets::new(gpu, size_px, quality.samples(gpu.is_software));
         Self {
             tone: Tone::new(&maker, format, targets.picture()),
             sky: Sky::new(&maker),
@@ -170,7 +170,7 @@ impl Renderer {
     /// Changes the size of the target.
     pub fn resize(&mut self, size_px: [u32; 2]) {
         self.size_px = size_px.map(|side| side.max(1));
-        self.targets = Targets::new(&self.gpu, self.size_px, self.quality.samples());
+        self.targets = Targets::new(&self.gpu, self.size_px, self.quality.samples(self.gpu.is_software));
         self.tone.set_picture(&self.gpu, self.targets.picture());
     }
 
@@ -202,7 +202,7 @@ impl Renderer {
     /// Loads the mirror's scene. [`draw`](Self::draw) does so by itself when a new scene has come.
     pub fn load_scene(&mut self, mirror: &Mirror) {
         self.scene = mirror.land().map(|land| {
-            let maker = Maker { gpu: &self.gpu, frame_layout: &self.frame.layout, samples: self.quality.samples() };
+            let maker = Maker { gpu: &self.gpu, frame_layout: &self.frame.layout, samples: self.quality.samples(self.gpu.is_software) };
             let scene = land.scene();
             let heights = land.heights();
             let standing = flora::standing(land);
