@@ -9,6 +9,8 @@ struct Squares {
     turn: vec4<u32>,
     // Side of a grid (m), distance of full density (m), distance at which single plants end (m), how far plants reach beyond their grid (m).
     shape: vec4<f32>,
+    // Size of a cell of the lowest land (m, X and Z); unused.
+    cells: vec4<f32>,
 }
 
 // Up to 64 plants of a grid: its place (x, z), the first of them, and how many the grid has.
@@ -25,6 +27,13 @@ struct Workgroups {
 @group(1) @binding(0) var<uniform> squares: Squares;
 @group(1) @binding(1) var<storage, read_write> chunks: array<Chunk>;
 @group(1) @binding(2) var<storage, read_write> workgroups: Workgroups;
+
+@group(1) @binding(3) var lowest: texture_2d<f32>;
+
+// Steps of a look along the land, and how much lower the land may be drawn than it is (m, and per metre of distance): its tiles get coarser there.
+const LOOKS: u32 = 24u;
+const DRAWN_LOWER_M: f32 = 0.3;
+const DRAWN_LOWER: f32 = 0.004;
 
 // What the far hills beyond the world's edge may differ from a few samples of them (m).
 const HILLS_SLACK_M: f32 = 4.0;
@@ -50,6 +59,40 @@ fn heights_within(low: vec2<f32>, high: vec2<f32>) -> vec2<f32> {
     return range;
 }
 
+// Lowest land of a rectangle (m), at most; far below everything beyond the world's edge.
+fn lowest_within(low: vec2<f32>, high: vec2<f32>) -> f32 {
+    if any(low < vec2<f32>(0.0)) || any(high >= frame.world.xy) {
+        return -1e9;
+    }
+    let start = vec2<i32>(low / squares.cells.xy);
+    let end = vec2<i32>(high / squares.cells.xy);
+    var found = 1e9;
+    for (var z = start.y; z <= end.y; z++) {
+        for (var x = start.x; x <= end.x; x++) {
+            found = min(found, textureLoad(lowest, vec2<i32>(x, z), 0).r);
+        }
+    }
+    return found;
+}
+
+// Whether the land surely hides a box from the eye: a share of the way along, all rays to it pass one rectangle, no higher than the ray to its top does.
+fn is_hidden(low: vec3<f32>, high: vec3<f32>) -> bool {
+    let eye = frame.eye.xyz;
+    // An eye under the land sees through it.
+    if eye.y < ground_height(eye.xz) + DRAWN_LOWER_M {
+        return false;
+    }
+    let far = length(max(abs(low.xz - eye.xz), abs(high.xz - eye.xz)));
+    for (var i = 1u; i < LOOKS; i++) {
+        let share = f32(i) / f32(LOOKS);
+        let ground = lowest_within(mix(eye.xz, low.xz, share), mix(eye.xz, high.xz, share));
+        if ground - DRAWN_LOWER_M - DRAWN_LOWER * far * share > mix(eye.y, high.y, share) {
+            return true;
+        }
+    }
+    return false;
+}
+
 @compute @workgroup_size(64)
 fn list_grids(@builtin(global_invocation_id) id: vec3<u32>) {
     let side = u32(squares.window.z);
@@ -70,7 +113,7 @@ fn list_grids(@builtin(global_invocation_id) id: vec3<u32>) {
     let box_high = vec3<f32>(high.x + reach, range.y + reach, high.y + reach);
     let nearest = clamp(frame.eye.xyz, vec3<f32>(low.x, range.x, low.y), vec3<f32>(high.x, range.y, high.y));
     let distance_m = distance(nearest, frame.eye.xyz);
-    if distance_m >= squares.shape.z || (squares.window.w != 0 && !is_box_seen(box_low, box_high)) {
+    if distance_m >= squares.shape.z || (squares.window.w != 0 && (!is_box_seen(box_low, box_high) || is_hidden(box_low, box_high))) {
         return;
     }
     let count = u32(ceil(f32(squares.counts.x) * density(distance_m, squares.shape.y)));

@@ -132,6 +132,8 @@ uniform_block! {
         turn: [u32; 4],
         /// Side of a grid (m), distance of full density (m), distance at which single plants end (m), how far plants reach beyond their grid (m).
         shape: [f32; 4],
+        /// Size of a cell of the lowest land (m, X and Z); unused.
+        cells: [f32; 4],
     }
 }
 

@@ -1,17 +1,18 @@
 //! Which grass grids beyond the simulated ones have plants to draw: a compute pass lists them, 64 plants a workgroup, so that the work of the CPU does not
 //! grow with their number (000 section 5.3).
 
+use super::horizon::Lowest;
 use super::{CHUNK, Standpoint, TURN_LIMIT, density};
 use crate::render::cull::Frustum;
 use crate::render::detail::Detail;
 use crate::render::gpu::Gpu;
-use crate::render::pipeline::{Maker, bind, storage_rw, uniform};
+use crate::render::pipeline::{Maker, bind, sampled, storage_rw, uniform};
 use crate::render::shaders;
 use crate::render::uniforms::Squares;
 use crate::state::Land;
 use glam::Vec3;
 use std::ops::Range;
-use wgpu::BufferUsages;
+use wgpu::{BindingResource, BufferUsages, TextureSampleType, TextureViewDimension};
 
 /// Grids on each side of the camera's that are simulated, and so not listed.
 const NEAR_GRIDS: i32 = 1;
@@ -43,15 +44,27 @@ impl Grids {
         let side = side(detail, grid_m);
         let of_turn = if by_turns { (TURN_LIMIT / places.max(1)).max(1) } else { side * side };
         let capacity = chunk_limit(detail, grid_m, places, of_turn);
-        let layout = maker.layout("grids", &[uniform(0), storage_rw(1), storage_rw(2)]);
+        let layout = maker.layout(
+            "grids",
+            &[
+                uniform(0),
+                storage_rw(1),
+                storage_rw(2),
+                sampled(3, TextureSampleType::Float { filterable: false }, TextureViewDimension::D2),
+            ],
+        );
         let squares = gpu.empty_buffer("squares", size_of::<Squares>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let chunks = gpu.empty_buffer("chunks", u64::from(capacity) * 16, BufferUsages::STORAGE);
         let usage = BufferUsages::STORAGE | BufferUsages::INDIRECT | BufferUsages::COPY_DST;
         let workgroups = gpu.buffer("workgroups", bytemuck::bytes_of(&[0_u32, 1, 1]), usage);
-        let group = bind(gpu, "grids", &layout, &[&squares, &chunks, &workgroups].map(|buffer| buffer.as_entire_binding()));
+        let lowest = Lowest::new(land, grid_m);
+        let [cell_x_m, cell_z_m] = lowest.cell_m;
+        let lowest = lowest.texture(gpu);
+        let [own, listed, counted] = [&squares, &chunks, &workgroups].map(|buffer| buffer.as_entire_binding());
+        let group = bind(gpu, "grids", &layout, &[own, listed, counted, BindingResource::TextureView(&lowest)]);
         let list = maker.compute("list_grids", &gpu.shader("grids", shaders::GRIDS), "list_grids", &layout);
         let beyond_m = beyond_m(land);
-        let frame = bytemuck::Zeroable::zeroed();
+        let frame = Squares { cells: [cell_x_m, cell_z_m, 0.0, 0.0], ..bytemuck::Zeroable::zeroed() };
         Self { list, group, squares, chunks, workgroups, grid_m, beyond_m, capacity, of_turn, frame }
     }
 
@@ -71,8 +84,8 @@ impl Grids {
         self.frame = Squares {
             window: [first[0], first[1], side, i32::from(from.look.culls)],
             counts: [plants_of_grid, self.capacity, NEAR_GRIDS as u32, 0],
-            turn: [0; 4],
             shape: [self.grid_m, from.detail.full_m, from.detail.blades_m, self.beyond_m],
+            ..self.frame
         };
     }
 

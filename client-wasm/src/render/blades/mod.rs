@@ -2,6 +2,7 @@
 //! about the camera keep their plants' postures; those of the grids beyond stand as the wind of the moment would have them.
 
 mod grids;
+mod horizon;
 mod strips;
 
 use super::cull::Frustum;
