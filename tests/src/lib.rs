@@ -15,6 +15,7 @@ pub mod prairie;
 pub mod problems;
 pub mod random_winds;
 pub mod stage;
+pub mod still;
 pub mod synthetic;
 pub mod turntable;
 pub mod views;

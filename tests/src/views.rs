@@ -166,16 +166,6 @@ impl View {
         };
         Ok((stage, camera))
     }
-
-    /// Arguments of the program `picture` that draw it.
-    pub fn arguments(&self, camera: &Camera) -> String {
-        let act = clap::ValueEnum::to_possible_value(&self.act).map_or_else(String::new, |value| value.get_name().to_owned());
-        let eye = match self.eye {
-            Eye::Over { .. } => format!("--camera {}", camera.to_hash()),
-            Eye::Chase([away, above, aside]) => format!("--chase {away},{above},{aside}"),
-        };
-        format!("--scene {} --act {act} {eye}", self.scene)
-    }
 }
 
 /// A camera that looks at a vehicle from so far behind, above and right of it (m), above the land.
