@@ -70,7 +70,7 @@ pub fn shots(
                 view: name.to_owned(),
                 method: method.name(),
                 quality: quality.name().to_owned(),
-                level: f64::from(quality as u8),
+                level: quality.level().into(),
                 ms,
                 flip: likeness.flip_mean,
                 flip_worst: likeness.flip_worst,
