@@ -10,7 +10,6 @@ use crate::{SIZE_PX, gpu, view};
 /// Largest mean FLIP and least SSIM of a way of drawing on the views below.
 fn bounds(method: Method) -> [f64; 2] {
     match (method.far, method.order) {
-        (Far::Land, _) => [0.12, 0.40],
         (Far::Shells, _) => [0.10, 0.45],
         (_, Order::Weighted) => [0.11, 0.45],
         _ => [0.09, 0.50],

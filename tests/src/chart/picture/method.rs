@@ -15,16 +15,15 @@ const fn method(far: Far, order: Order) -> Method {
     Method { far, order }
 }
 
-/// Every way for far plants without an order, and every order with clumps.
-pub const METHODS: [Method; 8] = [
+/// Every way for far plants without an order, the default first, and every order with clumps, which have the most that is partly transparent.
+pub const METHODS: [Method; 7] = [
+    method(Far::Land, Order::Cut),
     method(Far::Clumps, Order::Cut),
+    method(Far::Shells, Order::Cut),
     method(Far::Clumps, Order::Coverage),
     method(Far::Clumps, Order::Sorted),
     method(Far::Clumps, Order::Precomputed),
     method(Far::Clumps, Order::Weighted),
-    method(Far::Blades, Order::Cut),
-    method(Far::Shells, Order::Cut),
-    method(Far::Land, Order::Cut),
 ];
 
 impl Method {
@@ -48,6 +47,7 @@ mod tests {
         let has = |is: &dyn Fn(&Method) -> bool| METHODS.iter().any(is);
         assert!(Far::ALL.iter().all(|far| has(&|method| method.far == *far)));
         assert!(Order::ALL.iter().all(|order| has(&|method| method.order == *order)));
+        assert_eq!(METHODS[0].look(), Look::default());
         assert!(METHODS.iter().enumerate().all(|(n, method)| !METHODS[..n].contains(method)));
     }
 }
