@@ -1,9 +1,14 @@
 //! Worlds to test with: small ones, made without files, and the largest that ships.
 
+use anyhow::Result;
+use client_wasm::camera::Camera;
+use client_wasm::state::Mirror;
+use glam::Vec3;
 use server::scenes;
 use server::world::{Maps, World};
-use shared::scene::{Scene, TerrainMaps};
+use shared::scene::{Patches, Scene, TerrainMaps};
 use shared::terrain::{CoverMap, HeightMap, grey_png};
+use shared::wire::ServerMessage;
 
 /// A scene of `count × count` patches with the defaults of everything else.
 pub fn scene(count: u32) -> Scene {
@@ -42,6 +47,34 @@ pub fn hills(scene: &Scene) -> World {
         _ => 255,
     };
     World::new(scene, maps(scene, hills_m, cover)).expect("the default constants make a world")
+}
+
+/// What a client knows of a flat meadow with this side (m), a multiple of 8, in still air; and its places for plants, 16 a square metre.
+///
+/// # Errors
+/// When the client refuses it.
+pub fn flat_meadow(side_m: u32) -> Result<(Mirror, f64)> {
+    const PATCH_M: u32 = 8;
+    let pixel_m = [PATCH_M as f32; 2];
+    let terrain = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m, level_m: 0.0, base_m: 0.0 };
+    let patches = Patches { count: [side_m / PATCH_M; 2], cells: 32, cell_m: PATCH_M as f32 / 32.0, ..Patches::default() };
+    let scene = Scene { patches, ..Scene::new(terrain) };
+    let plants_per_m2 = (f64::from(scene.plants.plants_per_side) / f64::from(scene.plants.grid_m)).powi(2);
+    let pixels = side_m / PATCH_M + 1;
+    let mut mirror = Mirror::default();
+    mirror.apply(ServerMessage::Scene {
+        scene: Box::new(scene),
+        height_png: grey_png([pixels; 2], &vec![0; (pixels * pixels) as usize]),
+        covering_png: grey_png([8; 2], &[255; 64]),
+        nutrient_png: Vec::new(),
+        models: Vec::new(),
+    })?;
+    Ok((mirror, plants_per_m2 * f64::from(side_m).powi(2)))
+}
+
+/// On foot in such a meadow: from the middle of its southern edge northwards.
+pub fn on_foot(side_m: u32) -> Camera {
+    Camera { eye_m: Vec3::new(side_m as f32 / 2.0, 1.7, side_m as f32), pitch_rad: -0.08, ..Camera::default() }
 }
 
 /// The built-in scene `continuum` with `cars` that drive themselves at 20 m/s and start about `apart_m` from each other, and its maps.

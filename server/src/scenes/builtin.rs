@@ -17,7 +17,7 @@ macro_rules! file {
 }
 
 /// All of them, the default first.
-pub(super) const BUILT_IN: [BuiltIn; 6] = [
+pub(super) const BUILT_IN: [BuiltIn; 7] = [
     BuiltIn {
         name: "meadow",
         text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meadow.toml")),
@@ -32,6 +32,11 @@ pub(super) const BUILT_IN: [BuiltIn; 6] = [
         name: "devil",
         text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/devil.toml")),
         files: &[file!("meadow-height.png"), file!("meadow-covering.png")],
+    },
+    BuiltIn {
+        name: "storm",
+        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/storm.toml")),
+        files: &[file!("meadow-height.png"), file!("meadow-reeds-covering.png"), file!("species.toml")],
     },
     BuiltIn {
         name: "continuum",

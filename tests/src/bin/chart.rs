@@ -4,15 +4,20 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, ensure};
 use clap::{Args, Parser, Subcommand};
+use client_wasm::render::{Gpu, Quality};
 use indicatif::{ProgressBar, ProgressStyle};
 use tests::chart::figure::Figure;
 use tests::chart::files::write_all;
+use tests::chart::gallery::{self, reference_path};
 use tests::chart::machine::machine;
+use tests::chart::picture::{self, METHODS, Method, ViewShots};
 use tests::chart::row::cells_text;
 use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
 use tests::chart::tables::with_tables;
 use tests::chart::{Problem, bend, plants, wind};
+use tests::still::Still;
+use tests::views::{VIEWS, View};
 
 /// Measures methods on problems whose answer is known: how long each takes for how small an error.
 ///
@@ -30,7 +35,9 @@ Examples:
   cargo run --release -p tests --bin chart -- wind
   cargo run --release -p tests --bin chart -- wind --quick --only cavity --out /tmp/charts
   cargo run --release -p tests --bin chart -- wind --tables tests/README.md
-  cargo run --release -p tests --bin chart -- bend --only cars";
+  cargo run --release -p tests --bin chart -- bend --only cars
+  cargo run --release -p tests --bin chart -- picture --quick --views ant-calm,hill-storm
+  cargo run --release -p tests --bin chart -- gallery";
 
 #[derive(Subcommand)]
 enum Model {
@@ -49,7 +56,40 @@ enum Model {
     /// Blades and underbrush: integrators, sections, tables of postures, the dynamic constraint, limits
     #[command(after_help = PLANTS_FILES)]
     Plants(Options),
+    /// Ways of drawing the picture: time of a frame against what one sees missing, on ten views
+    #[command(after_help = PICTURE_FILES)]
+    Picture {
+        #[command(flatten)]
+        options: Options,
+        /// Width and height of the pictures (px); default 960x540, with --quick 320x180
+        #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size_px)]
+        size: Option<[u32; 2]>,
+        /// Only these views, with commas between them
+        #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = View::find)]
+        views: Vec<&'static View>,
+    },
+    /// A page of the ten views with their times, likeness and the figures of the source texts that they answer
+    Gallery {
+        /// Folder of the page
+        #[arg(long, value_name = "DIR", default_value = "tests/results/gallery")]
+        out: PathBuf,
+        /// Folder that keeps references
+        #[arg(long, value_name = "DIR", default_value = CACHE)]
+        cache: PathBuf,
+        /// Width and height of the pictures (px)
+        #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "640x360", value_parser = size_px)]
+        size: [u32; 2],
+        /// low, medium, high or ultra
+        #[arg(long, default_value = "high", value_parser = quality)]
+        quality: Quality,
+        /// Only these views, with commas between them
+        #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = View::find)]
+        views: Vec<&'static View>,
+    },
 }
+
+/// Folder that keeps references, in the one that charts are written to.
+const CACHE: &str = "target/charts/cache";
 
 const FILES: &str = "\
 Files in DIR, written anew as each problem is done:
@@ -76,6 +116,17 @@ Files in DIR:
   plants-constraint.svg, .csv what a plant feels after a gust, with and without the velocity term of the constraint
   plants-stability.svg, .csv longest steps of a blade against its damping, measured and in theory";
 
+const PICTURE_FILES: &str = "\
+Files in DIR:
+  picture-VIEW.svg         mean FLIP across, time of a frame up, both logarithmic; one line per way of drawing, whose points
+                           are the qualities; picture-all-views.svg has the means of the views
+  picture.csv, .json       every figure: view, method, quality, level, ms, FLIP (mean, and what 1 % exceed), SSIM, counts
+  picture-plants.svg, .csv time of a frame against the plants of the scene
+  picture-height.svg, .csv time of a frame against the height of the view
+  cache/VIEW-SIZE.png      references, drawn anew when this program has been built anew
+
+--only WORD picks ways of drawing (`clumps`, `sorted`) or one of the figures `plants` and `height`.";
+
 #[derive(Args)]
 struct Options {
     /// Folder the files are written to
@@ -95,7 +146,80 @@ fn main() -> Result<()> {
         Model::Wind { options, .. } => chart("wind", wind::problems(options.quick), &options),
         Model::Bend(options) => charts("bend", bend::problems(options.quick), &bend::FIGURES, &options),
         Model::Plants(options) => charts("plants", plants::problems(options.quick), &plants::FIGURES, &options),
+        Model::Picture { options, size, views } => chart_picture(&options, size, &chosen(views)),
+        Model::Gallery { out, cache, size, quality, views } => hang(&out, &cache, size, quality, &chosen(views)),
     }
+}
+
+fn size_px(text: &str) -> Result<[u32; 2]> {
+    let sides = text.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    sides
+        .filter(|sides| sides.iter().all(|side| (16..=4096).contains(side)))
+        .context("WIDTHxHEIGHT is allowed, each 16 to 4096, such as 960x540")
+}
+
+fn quality(name: &str) -> Result<Quality> {
+    Quality::from_name(name).context("low, medium, high or ultra are allowed")
+}
+
+/// The views that are asked for; all where none is.
+fn chosen(views: Vec<&'static View>) -> Vec<&'static View> {
+    if views.is_empty() { VIEWS.iter().collect() } else { views }
+}
+
+fn progress(steps: usize) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {wide_msg}").expect("the template is well formed");
+    ProgressBar::new(steps as u64).with_style(style)
+}
+
+/// Every way of drawing on every view; files are written after each view, so that what is cut short keeps what it has.
+fn chart_picture(options: &Options, size: Option<[u32; 2]>, views: &[&View]) -> Result<()> {
+    let is_asked = |name: &str| options.only.as_ref().is_none_or(|word| name.to_lowercase().contains(&word.to_lowercase()));
+    let methods: Vec<Method> = METHODS.into_iter().filter(|method| is_asked(&method.name())).collect();
+    let figures: Vec<&Figure> = picture::FIGURES.iter().filter(|figure| is_asked(figure.name)).collect();
+    ensure!(!methods.is_empty() || !figures.is_empty(), "--only: no way of drawing and no figure has this in its name");
+    if !methods.is_empty() {
+        let qualities = if options.quick { vec![Quality::Low, Quality::Medium] } else { Quality::ALL.to_vec() };
+        let size_px = size.unwrap_or(if options.quick { [320, 180] } else { [960, 540] });
+        let wanted = ViewShots { methods, qualities, frames: if options.quick { 1 } else { 5 } };
+        let gpu = Gpu::headless()?;
+        let about = format!("{} × {} px; {}; {}", size_px[0], size_px[1], gpu.adapter_name, machine());
+        let bar = progress(views.len() * (1 + wanted.methods.len() * wanted.qualities.len()));
+        let (mut shots, mut files) = (Vec::new(), Vec::new());
+        for view in views {
+            bar.set_message(format!("{}, reference", view.name));
+            let mut still = Still::of(view, size_px)?;
+            let reference = still.kept_reference(&gpu, &reference_path(&options.out.join("cache"), view, size_px))?;
+            bar.inc(1);
+            shots.extend(picture::shots(&gpu, view.name, &mut still, &reference, &wanted, |name| {
+                bar.set_message(name.to_owned());
+                bar.inc(1);
+            })?);
+            files = picture::write_all(&shots, &about, &options.out)?;
+        }
+        bar.finish_and_clear();
+        println!("picture: means over {} views\n{about}\n\n{}", views.len(), picture::said(&shots));
+        println!("{} files in {}", files.len(), options.out.display());
+    }
+    draw_figures("picture", &figures, options)
+}
+
+/// The page of the gallery.
+fn hang(out: &Path, cache: &Path, size_px: [u32; 2], quality: Quality, views: &[&View]) -> Result<()> {
+    let gpu = Gpu::headless()?;
+    let bar = progress(views.len());
+    let mut plates = Vec::new();
+    for view in views {
+        bar.set_message(view.name);
+        plates.push(gallery::plate(&gpu, view, size_px, quality, out, cache)?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    if views.len() == VIEWS.len() {
+        gallery::write(&plates, size_px, quality, &format!("{}; {}", gpu.adapter_name, machine()), out)?;
+    }
+    println!("{} pictures in {}", plates.len(), out.display());
+    Ok(())
 }
 
 /// Error against time as for the wind, then the figures of the model's own.
@@ -106,6 +230,10 @@ fn charts(model: &str, problems: Vec<Problem>, figures: &[Figure], options: &Opt
     if has_problem || figures.is_empty() {
         chart(model, problems, options)?;
     }
+    draw_figures(model, &figures, options)
+}
+
+fn draw_figures(model: &str, figures: &[&Figure], options: &Options) -> Result<()> {
     std::fs::create_dir_all(&options.out).with_context(|| format!("{} cannot be made", options.out.display()))?;
     for figure in figures {
         println!("\n{}", figure.title);
@@ -134,8 +262,7 @@ fn chart(model: &str, mut problems: Vec<Problem>, options: &Options) -> Result<(
         ensure!(!problems.is_empty(), "--only {word}: no problem or method has this in its name");
     }
     let (machine, repeats) = (machine(), if options.quick { Repeats::QUICK } else { Repeats::THOROUGH });
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {wide_msg}").expect("the template is well formed");
-    let bar = ProgressBar::new(problems.iter().map(|problem| problem.runs.len() as u64).sum()).with_style(style);
+    let bar = progress(problems.iter().map(|problem| problem.runs.len()).sum());
     let (mut rows, mut failures, mut files) = (Vec::new(), Vec::new(), Vec::new());
     for problem in &problems {
         for run in &problem.runs {

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 use tests::picture::Picture;
 use tests::stage::{Act, Stage, play};
+use tests::views::chase;
 
 /// Draws a scene to a PNG file, and says how long a frame takes.
 #[derive(Parser)]
@@ -50,19 +51,11 @@ fn main() -> Result<()> {
         None => Camera::start(&scene.camera, scene.extent_m(), |x, z| stage.ground_m(x, z)),
     };
     let pose = play(&mut stage, arguments.act, camera.eye_m.to_array())?;
-    if let Some(chase) = &arguments.chase {
+    if let Some(offset) = &arguments.chase {
         let pose = pose.context("--chase needs an act with a vehicle")?;
-        let parts: Vec<f32> = chase.split(',').map(str::parse).collect::<Result<_, _>>().context("--chase: AWAY,ABOVE,ASIDE")?;
+        let parts: Vec<f32> = offset.split(',').map(str::parse).collect::<Result<_, _>>().context("--chase: AWAY,ABOVE,ASIDE")?;
         let &[away, above, aside] = parts.as_slice() else { anyhow::bail!("--chase: three numbers are allowed: AWAY,ABOVE,ASIDE") };
-        let rotation = glam::Quat::from_array(pose.rotation);
-        let level = |axis: glam::Vec3| (rotation * axis).with_y(0.0).normalize_or(axis);
-        let target = glam::Vec3::from(pose.position_m);
-        let mut eye = target + level(glam::Vec3::Z) * away + level(glam::Vec3::X) * aside;
-        eye.y = (target.y + above).max(stage.ground_m(eye.x, eye.z) + 0.3);
-        let towards = target - eye;
-        camera.eye_m = eye;
-        camera.heading_rad = towards.x.atan2(-towards.z);
-        camera.pitch_rad = (towards.y / towards.length()).asin();
+        camera = chase(&pose, [away, above, aside], |x, z| stage.ground_m(x, z));
     }
 
     let gpu = Gpu::headless()?;

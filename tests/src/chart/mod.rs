@@ -7,6 +7,8 @@
 //! | [`wind`] | the runs of the wind |
 //! | [`bend`] | the runs of the bend field, and figures of their own kinds |
 //! | [`plants`] | those of blades and underbrush |
+//! | [`picture`] | ways of drawing: time of a frame against likeness, and figures of their own kinds |
+//! | [`gallery`] | a page of pictures with their figures |
 //! | [`figure`] | lines and fields of colour over two axes as SVG |
 //! | [`line`](mod@line) | one line per method, and reading between its points |
 //! | [`plot`], [`ticks`] | a log–log chart as SVG |
@@ -19,8 +21,10 @@
 pub mod bend;
 pub mod figure;
 pub mod files;
+pub mod gallery;
 pub mod line;
 pub mod machine;
+pub mod picture;
 pub mod plants;
 pub mod plot;
 pub mod row;

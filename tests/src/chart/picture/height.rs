@@ -1,0 +1,33 @@
+//! Time of a frame against the height of the view: from among the blades to an aircraft's (000 Figure 23 has heights 1, 5, 10 and 20).
+
+use anyhow::Result;
+use client_wasm::camera::Camera;
+use client_wasm::render::Gpu;
+use glam::Vec3;
+
+use super::super::figure::Drawn;
+use super::sweep::{Sweep, qualities, sweep};
+use crate::stage::{Act, Stage, play};
+
+/// Heights above the ground (m).
+const HEIGHTS_M: [f32; 8] = [1.0, 2.0, 5.0, 10.0, 20.0, 35.0, 60.0, 100.0];
+const QUICK_HEIGHTS_M: [f32; 3] = [1.0, 10.0, 100.0];
+/// Where the view rises (m), over the valley of the meadow.
+const AT_M: [f32; 2] = [128.0, 200.0];
+
+pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
+    let gpu = Gpu::headless()?;
+    let mut stage = Stage::load("meadow")?;
+    let [x, z] = AT_M;
+    let ground_m = stage.ground_m(x, z);
+    play(&mut stage, Act::Wind, [x, ground_m + 2.0, z])?;
+    let heights_m: &[f32] = if quick { &QUICK_HEIGHTS_M } else { &HEIGHTS_M };
+    let mut found = Sweep::default();
+    for &height_m in heights_m {
+        let camera = Camera { eye_m: Vec3::new(x, ground_m + height_m, z), heading_rad: 0.35, pitch_rad: -0.25, ..Camera::default() };
+        for quality in qualities(quick) {
+            found.time(&gpu, quick, *quality, height_m.into(), &mut stage.mirror, &camera);
+        }
+    }
+    sweep(&found, "Time of a frame against the height of the view", "height above the ground (m)", quick, caption, &gpu)
+}

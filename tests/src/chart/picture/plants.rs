@@ -1,0 +1,36 @@
+//! Time of a frame against the plants of the scene, which grow in number with the world: what the view cannot show should cost nothing.
+
+use anyhow::Result;
+use client_wasm::render::Gpu;
+
+use super::super::figure::Drawn;
+use super::sweep::{Sweep, qualities, sweep};
+use crate::worlds::{flat_meadow, on_foot};
+
+/// Sides of the worlds (m), which hold 16 places for plants in each square metre: 1 k to 10 M.
+const SIDES_M: [u32; 5] = [8, 24, 80, 256, 800];
+const QUICK_SIDES_M: [u32; 3] = [8, 40, 160];
+
+pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
+    let gpu = Gpu::headless()?;
+    let sides_m: &[u32] = if quick { &QUICK_SIDES_M } else { &SIDES_M };
+    let mut found = Sweep::default();
+    for &side_m in sides_m {
+        let (mut mirror, plants) = flat_meadow(side_m)?;
+        for quality in qualities(quick) {
+            found.time(&gpu, quick, *quality, plants, &mut mirror, &on_foot(side_m));
+        }
+    }
+    sweep(&found, "Time of a frame against the plants of the scene", "places for plants in the scene", quick, caption, &gpu)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn worlds_hold_what_the_chart_is_of() {
+        let counts = SIDES_M.map(|side_m| flat_meadow(side_m).unwrap().1);
+        assert!(counts[0] < 1.1e3 && counts[4] > 1e7, "{counts:?}");
+    }
+}

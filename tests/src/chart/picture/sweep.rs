@@ -1,0 +1,64 @@
+//! Times of frames over one quantity, a line for each quality.
+
+use std::fmt::Write as _;
+
+use anyhow::Result;
+use client_wasm::camera::Camera;
+use client_wasm::render::{Gpu, Picture as Canvas, Quality};
+use client_wasm::state::Mirror;
+
+use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
+use crate::still::frame_secs;
+
+/// Size of the pictures (px), and of quick ones.
+const SIZE_PX: [u32; 2] = [960, 540];
+const QUICK_SIZE_PX: [u32; 2] = [320, 180];
+
+pub(super) fn qualities(quick: bool) -> &'static [Quality] {
+    if quick { &[Quality::Low, Quality::Medium] } else { &[Quality::Low, Quality::Medium, Quality::High] }
+}
+
+/// What was timed: quality, the quantity, ms a frame, plants simulated, clumps drawn.
+#[derive(Default)]
+pub(super) struct Sweep {
+    timed: Vec<(Quality, f64, f64, u32, u32)>,
+}
+
+impl Sweep {
+    pub(super) fn time(&mut self, gpu: &Gpu, quick: bool, quality: Quality, at: f64, mirror: &mut Mirror, camera: &Camera) {
+        let mut canvas = Canvas::new(gpu, if quick { QUICK_SIZE_PX } else { SIZE_PX }, quality);
+        let stats = canvas.draw(mirror, camera, 0.0, 0.0);
+        let secs = frame_secs(&mut canvas, mirror, camera, if quick { 1 } else { 5 });
+        self.timed.push((quality, at, 1e3 * secs, stats.blades, stats.clumps));
+    }
+}
+
+pub(super) fn sweep(found: &Sweep, title: &str, over: &'static str, quick: bool, caption: &str, gpu: &Gpu) -> Result<Drawn> {
+    let mut csv = format!("quality,\"{over}\",ms,blades,clumps\n");
+    for (quality, at, ms, blades, clumps) in &found.timed {
+        writeln!(csv, "{},{at},{ms:.3},{blades},{clumps}", quality.name())?;
+    }
+    let curve = |quality: Quality| Curve {
+        name: quality.name().to_owned(),
+        points: found.timed.iter().filter(|timed| timed.0 == quality).map(|timed| [timed.1, timed.2]).collect(),
+        marked: true,
+        joined: true,
+    };
+    let curves: Vec<Curve> = qualities(quick).iter().map(|quality| curve(*quality)).collect();
+    let mut said = String::new();
+    for curve in &curves {
+        let (Some([from, first]), Some([to, last])) = (curve.points.first(), curve.points.last()) else { continue };
+        writeln!(said, "{}: {first:.0} ms at {from:.0}, {last:.0} ms at {to:.0}", curve.name)?;
+    }
+    let range = |axis: usize| {
+        let values = curves.iter().flat_map(|curve| &curve.points).map(move |point| point[axis]);
+        [values.clone().fold(f64::INFINITY, f64::min) / 1.3, values.fold(0.0, f64::max) * 1.3]
+    };
+    let axes = [
+        Axis { name: over, range: range(0), logarithmic: true },
+        Axis { name: "time of a frame (ms)", range: range(1), logarithmic: true },
+    ];
+    let [width, height] = if quick { QUICK_SIZE_PX } else { SIZE_PX };
+    let subtitle = format!("{width} × {height} px; {}", gpu.adapter_name);
+    Ok(Drawn { svg: curves_svg(&curves, axes, Words { title, subtitle: &subtitle, caption })?, csv, said: said.trim_end().to_owned() })
+}

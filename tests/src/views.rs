@@ -1,0 +1,218 @@
+//! Ten fixed views, from an ant's to an aircraft's, each in calm air and in a storm: what the ways of drawing are compared on.
+
+use anyhow::{Context as _, Result};
+use client_wasm::camera::Camera;
+use glam::{Quat, Vec3};
+use shared::wire::ObjectPose;
+
+use crate::stage::{Act, Stage, play};
+
+/// A view of a scene after an act.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Its name, such as `ant-calm`.
+    pub name: &'static str,
+    /// Built-in scene.
+    pub scene: &'static str,
+    /// What happens before.
+    pub act: Act,
+    /// Where the camera is.
+    pub eye: Eye,
+    /// What there is to see.
+    pub shows: &'static str,
+    /// Figures of the source texts that it answers.
+    pub answers: &'static str,
+}
+
+/// Where a camera is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Eye {
+    /// Over a place on the land: X and Z (m), height above the ground (m), heading and pitch (degrees).
+    Over {
+        /// X and Z (m).
+        at_m: [f32; 2],
+        /// Above the ground (m).
+        height_m: f32,
+        /// From north towards east.
+        heading_deg: f32,
+        /// Negative looks down.
+        pitch_deg: f32,
+    },
+    /// At the act's vehicle, from so far behind, above and right of it (m).
+    Chase([f32; 3]),
+}
+
+const fn over(at_m: [f32; 2], height_m: f32, heading_deg: f32, pitch_deg: f32) -> Eye {
+    Eye::Over { at_m, height_m, heading_deg, pitch_deg }
+}
+
+/// All views, the lowest first.
+pub const VIEWS: [View; 10] = [
+    View {
+        name: "ant-calm",
+        scene: "underbrush",
+        act: Act::Wind,
+        eye: over([145.0, 140.0], 0.08, 60.0, 6.0),
+        shows: "an ant's view between stems and flowers",
+        answers: "003 Figure 3.3, 004 Figure 9",
+    },
+    View {
+        name: "ant-storm",
+        scene: "storm",
+        act: Act::Wind,
+        eye: over([128.0, 158.72], 0.1, 40.0, 8.0),
+        shows: "blades against a stormy sky, from 0.1 m",
+        answers: "003 Figure 1.1",
+    },
+    View {
+        name: "walking-calm",
+        scene: "meadow",
+        act: Act::Walk,
+        eye: Eye::Chase([6.0, 1.2, 1.5]),
+        shows: "a monster wades through the grass",
+        answers: "000 Figures 22 and 23 (a, height 1)",
+    },
+    View {
+        name: "walking-storm",
+        scene: "storm",
+        act: Act::Wind,
+        eye: over([128.0, 158.72], 1.7, 20.0, -6.0),
+        shows: "gusts press the grass, rain drives across it",
+        answers: "004 Figure 8",
+    },
+    View {
+        name: "driving-calm",
+        scene: "meadow",
+        act: Act::Track,
+        eye: Eye::Chase([7.0, 2.2, 0.0]),
+        shows: "a car at speed and the track that it leaves",
+        answers: "001 Figure 10",
+    },
+    View {
+        name: "driving-storm",
+        scene: "storm",
+        act: Act::Drag,
+        eye: Eye::Chase([8.0, 3.0, 0.0]),
+        shows: "a sled, a concave object, through laid grass",
+        answers: "001 Figure 12",
+    },
+    View {
+        name: "hill-calm",
+        scene: "meadow",
+        act: Act::Wind,
+        eye: over([128.0, 200.0], 10.0, 20.0, -12.0),
+        shows: "the valley from 10 m",
+        answers: "000 Figure 23 (b and c, heights 5 and 10), 003 Figure 1.2",
+    },
+    View {
+        name: "hill-storm",
+        scene: "storm",
+        act: Act::Wash,
+        eye: Eye::Chase([16.0, 6.0, 4.0]),
+        shows: "a helicopter's wash in wind-blown grass",
+        answers: "001 Figure 11",
+    },
+    View {
+        name: "aircraft-calm",
+        scene: "continuum",
+        act: Act::Track,
+        eye: Eye::Chase([90.0, 60.0, 20.0]),
+        shows: "cars and drifts of four grasses from 60 m",
+        answers: "001 Figure 13, 000 Figure 23 (d, height 20)",
+    },
+    View {
+        name: "aircraft-storm",
+        scene: "storm",
+        act: Act::Wind,
+        eye: over([40.0, 230.0], 60.0, 40.0, -22.0),
+        shows: "waves of wind over the valley from 60 m",
+        answers: "003 Figures 4.1 to 4.3",
+    },
+];
+
+impl View {
+    /// The view of that name.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn find(name: &str) -> Result<&'static Self> {
+        let known = || VIEWS.map(|view| view.name).join(", ");
+        VIEWS.iter().find(|view| view.name == name).with_context(|| format!("no view is called `{name}`; allowed: {}", known()))
+    }
+
+    /// Plays the act: the stage at its end, and the camera there.
+    ///
+    /// # Errors
+    /// When the scene is faulty or the act fails.
+    pub fn play(&self) -> Result<(Stage, Camera)> {
+        let mut stage = Stage::load(self.scene)?;
+        let start = Camera::start(&stage.scene().camera, stage.scene().extent_m(), |x, z| stage.ground_m(x, z));
+        let fixed = match self.eye {
+            Eye::Over { at_m: [x, z], height_m, heading_deg, pitch_deg } => Some(Camera {
+                eye_m: Vec3::new(x, stage.ground_m(x, z) + height_m, z),
+                heading_rad: heading_deg.to_radians(),
+                pitch_rad: pitch_deg.to_radians(),
+                ..start
+            }),
+            Eye::Chase(_) => None,
+        };
+        let pose = play(&mut stage, self.act, fixed.unwrap_or(start).eye_m.to_array())?;
+        let camera = match (fixed, self.eye) {
+            (None, Eye::Chase(offset_m)) => {
+                let pose = pose.with_context(|| format!("{}: nothing to chase", self.name))?;
+                chase(&pose, offset_m, |x, z| stage.ground_m(x, z))
+            }
+            (fixed, _) => fixed.unwrap_or(start),
+        };
+        Ok((stage, camera))
+    }
+}
+
+/// A camera that looks at a vehicle from so far behind, above and right of it (m), above the land.
+pub fn chase(pose: &ObjectPose, [away_m, above_m, aside_m]: [f32; 3], ground_m: impl Fn(f32, f32) -> f32) -> Camera {
+    let rotation = Quat::from_array(pose.rotation);
+    let level = |axis: Vec3| (rotation * axis).with_y(0.0).normalize_or(axis);
+    let target = Vec3::from(pose.position_m);
+    let mut eye_m = target + level(Vec3::Z) * away_m + level(Vec3::X) * aside_m;
+    eye_m.y = (target.y + above_m).max(ground_m(eye_m.x, eye_m.z) + 0.3);
+    let towards = target - eye_m;
+    Camera { eye_m, heading_rad: towards.x.atan2(-towards.z), pitch_rad: (towards.y / towards.length()).asin(), ..Camera::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::scene::VehicleKind;
+
+    #[test]
+    fn views_have_names_of_their_own_and_built_in_scenes() -> Result<()> {
+        for view in &VIEWS {
+            assert_eq!(View::find(view.name)?, view);
+            assert!(server::scenes::list().any(|(name, _)| name == view.scene), "{}", view.scene);
+        }
+        for place in ["ant", "walking", "driving", "hill", "aircraft"] {
+            assert!(["calm", "storm"].iter().all(|air| View::find(&format!("{place}-{air}")).is_ok()), "{place}");
+        }
+        let error = View::find("moon").expect_err("there is no such view").to_string();
+        assert!(error.starts_with("no view is called `moon`; allowed: ant-calm, ant-storm, "), "{error}");
+        Ok(())
+    }
+
+    #[test]
+    fn a_chase_looks_at_what_it_chases_and_stays_above_the_land() {
+        let pose = ObjectPose {
+            id: 1,
+            kind: VehicleKind::Car,
+            position_m: [10.0, 2.0, 20.0],
+            rotation: Quat::from_rotation_y(0.7).to_array(),
+            velocity_m_per_s: [0.0; 3],
+            part_rad: 0.0,
+        };
+        for (above_m, ground_m) in [(3.0, 0.0), (1.0, 6.0)] {
+            let camera = chase(&pose, [8.0, above_m, 2.0], |_, _| ground_m);
+            assert!(camera.eye_m.y >= ground_m + 0.29);
+            let clip = camera.projection_from_world(1.6).project_point3(Vec3::from(pose.position_m));
+            assert!(clip.x.abs() < 1e-3 && clip.y.abs() < 1e-3, "{clip}");
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Culling leaves out nothing that is seen.
+
+use anyhow::{Result, ensure};
+use client_wasm::camera::Camera;
+use client_wasm::render::{Look, Quality};
+use glam::Vec3;
+use tests::random_winds::Dice;
+use tests::still::Still;
+use tests::views::View;
+
+use crate::gpu;
+
+const CAMERAS: u32 = 200;
+const SIZE_PX: [u32; 2] = [96, 54];
+
+/// Anywhere over the meadow's hills: among the blades or 40 m above, looking anywhere but straight up or down.
+fn camera(dice: &mut Dice, still: &Still) -> Camera {
+    let [width, depth] = still.stage.scene().extent_m().map(f64::from);
+    let [x, z] = [dice.between(4.0, width - 4.0), dice.between(4.0, depth - 4.0)].map(|m| m as f32);
+    let above_m = dice.scale(0.05, 40.0) as f32;
+    Camera {
+        eye_m: Vec3::new(x, still.stage.ground_m(x, z) + above_m, z),
+        heading_rad: dice.between(0.0, std::f64::consts::TAU) as f32,
+        pitch_rad: dice.between(-1.3, 0.5) as f32,
+        ..Camera::default()
+    }
+}
+
+#[test]
+fn pictures_are_the_same_with_and_without() -> Result<()> {
+    let gpu = gpu()?;
+    let mut still = Still::of(View::find("driving-calm")?, SIZE_PX)?;
+    let mut dice = Dice::new(6);
+    let [mut culled, mut whole] = [true, false].map(|culls| {
+        let mut canvas = still.canvas(&gpu, Quality::Low);
+        canvas.set_look(Look { culls, ..Look::default() });
+        canvas
+    });
+    let mut simulated = [0_u64; 2];
+    let mut failures = Vec::new();
+    for number in 0..CAMERAS {
+        still.camera = camera(&mut dice, &still);
+        let [(with, with_stats), (without, without_stats)] = [&mut culled, &mut whole].map(|canvas| still.draw(canvas));
+        for (sum, stats) in simulated.iter_mut().zip([with_stats, without_stats]) {
+            *sum += u64::from(stats.blades);
+        }
+        let differing = with.rgba.chunks_exact(4).zip(without.rgba.chunks_exact(4)).filter(|(a, b)| a != b).count();
+        if differing > 0 {
+            failures.push(format!("camera {number}, {}: {differing} pixels differ", still.camera.to_hash()));
+        }
+    }
+    ensure!(failures.is_empty(), "{} of {CAMERAS}\n{}", failures.len(), failures.join("\n"));
+    let [with, without] = simulated;
+    ensure!(5 * with < 4 * without, "culling saves too little for the claim to mean anything: {with} of {without} plants are simulated");
+    Ok(())
+}

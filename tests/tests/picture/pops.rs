@@ -1,0 +1,49 @@
+//! Nothing pops: what changes from frame to frame of a flight, beyond what the flight itself changes.
+
+use anyhow::{Result, ensure};
+use client_wasm::render::{Look, Picture as Canvas, Quality};
+use tests::likeness::Flip;
+use tests::still::Still;
+use tests::views::View;
+
+use crate::gpu;
+
+const FRAMES: u32 = 41;
+const STEP_M: f32 = 0.25;
+const SIZE_PX: [u32; 2] = [192, 108];
+/// Largest mean FLIP from one frame to the next that detail alone may cause.
+const FLIP_LIMIT: f64 = 0.02;
+
+/// FLIP from each frame to the next of a flight over the meadow, straight ahead, while time stands still.
+fn changes(still: &mut Still, canvas: &mut Canvas) -> Result<Vec<f64>> {
+    let start = still.camera;
+    let ahead = start.forward().with_y(0.0).normalize();
+    let mut frames = Vec::new();
+    for frame in 0..FRAMES {
+        let mut eye_m = start.eye_m + ahead * (frame as f32 * STEP_M);
+        eye_m.y = still.stage.ground_m(eye_m.x, eye_m.z) + 1.7;
+        still.camera.eye_m = eye_m;
+        frames.push(still.draw(canvas).0);
+    }
+    still.camera = start;
+    frames.windows(2).map(|pair| Ok(Flip::of(&pair[0], &pair[1])?.mean())).collect()
+}
+
+/// A flight changes a picture by itself. Of the same flight with every plant at full detail nothing else changes it; what a picture changes more than that is due to
+/// its detail.
+#[test]
+fn detail_alone_changes_little_from_frame_to_frame() -> Result<()> {
+    let gpu = gpu()?;
+    let mut still = Still::of(View::find("walking-storm")?, SIZE_PX)?;
+    let by_flight = changes(&mut still, &mut Canvas::new(&gpu, SIZE_PX, Quality::Reference))?;
+    for quality in [Quality::Low, Quality::Medium] {
+        let mut canvas = still.canvas(&gpu, quality);
+        canvas.set_look(Look::default());
+        let by_both = changes(&mut still, &mut canvas)?;
+        let by_detail: Vec<f64> = by_both.iter().zip(&by_flight).map(|(both, flight)| both - flight).collect();
+        let (at, most) = by_detail.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
+        println!("{}: at most {most:.4} by detail alone, from frame {at}; {:.4} by the flight", quality.name(), by_flight[at]);
+        ensure!(most < FLIP_LIMIT, "{}: {most:.4} from frame {at} on, {FLIP_LIMIT} is allowed", quality.name());
+    }
+    Ok(())
+}
