@@ -68,6 +68,8 @@ pub enum Event {
         client: u32,
         /// Version of the server's package.
         server_version: String,
+        /// Name of the scene that the server runs.
+        scene_name: String,
     },
     /// A new scene; the renderer must load it.
     Scene,
@@ -113,7 +115,7 @@ impl Mirror {
     /// [`MirrorError`] when the message cannot be part of a sound stream.
     pub fn apply(&mut self, message: ServerMessage) -> Result<Option<Event>, MirrorError> {
         Ok(match message {
-            ServerMessage::Welcome { client, server_version } => Some(Event::Welcome { client, server_version }),
+            ServerMessage::Welcome { client, server_version, scene_name } => Some(Event::Welcome { client, server_version, scene_name }),
             ServerMessage::Scene { scene, height_png, covering_png, nutrient_png, models } => {
                 let land = Land::new(*scene, &height_png, &covering_png, &nutrient_png, models)?;
                 self.broken = Broken::new(land.flora().map_or(0, |flora| flora.grown().sites.total()));

@@ -109,6 +109,7 @@ pub async fn run_simulation(
         counters,
         published: runner.published(),
         commands: runner.commands(),
+        scene_name: config.scene.name.clone(),
         scene: scene_message(&config),
         limits: config.limits,
         seats: seats.clone(),

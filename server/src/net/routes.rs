@@ -26,6 +26,8 @@ pub(crate) struct App {
     pub(crate) counters: Arc<Counters>,
     pub(crate) published: watch::Receiver<Arc<Published>>,
     pub(crate) commands: mpsc::Sender<Command>,
+    /// Name of the scene.
+    pub(crate) scene_name: String,
     /// The scene message, the same for all.
     pub(crate) scene: Bytes,
     pub(crate) limits: Limits,
@@ -75,6 +77,7 @@ async fn health(State(app): State<Arc<App>>) -> impl IntoResponse {
     let report = json!({
         "status": "ok",
         "version": env!("CARGO_PKG_VERSION"),
+        "scene": app.scene_name,
         "uptime_secs": app.started.elapsed().as_secs_f64(),
         "tick": snapshot.tick,
         "time_secs": snapshot.time_secs,

@@ -118,7 +118,8 @@ async fn stopping(app: &App) -> End {
 /// A joined client's time, from welcome to end; leaves no trace of it.
 async fn visit(sink: &mut Sink, ear: &mut Ear, app: &App, name: &str) -> End {
     let id = app.clients.next_id();
-    let welcome = ServerMessage::Welcome { client: id, server_version: env!("CARGO_PKG_VERSION").to_owned() };
+    let (server_version, scene_name) = (env!("CARGO_PKG_VERSION").to_owned(), app.scene_name.clone());
+    let welcome = ServerMessage::Welcome { client: id, server_version, scene_name };
     let greeting = [wire::encode(&welcome).into(), app.scene.clone()];
     if let Err(end) = write(sink, greeting, app.limits.stall).await {
         return end;

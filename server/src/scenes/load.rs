@@ -30,6 +30,8 @@ const LAND_RANGE_M: [f32; 2] = [-20_000.0, 20_000.0];
 /// A checked scene with its maps and models, as the world, the server and its clients need it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadedScene {
+    /// Its name in links: a built-in scene's, or that of its file without folder and ending.
+    pub name: String,
     /// The scene, without paths: what a client is told.
     pub scene: Scene,
     /// Height map, the PNG file's bytes.
@@ -201,6 +203,7 @@ fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, Scen
         path.clear();
     }
     Ok(LoadedScene {
+        name: Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned(),
         scene,
         height_png,
         covering_png,

@@ -27,7 +27,7 @@ mod tests {
     fn built_in_scenes_are_sound_and_tell_clients_no_paths() {
         for (name, summary) in list() {
             let loaded = load(name).unwrap_or_else(|error| panic!("{error}"));
-            assert!(!summary.is_empty() && loaded.scene.summary == summary);
+            assert!(!summary.is_empty() && loaded.scene.summary == summary && loaded.name == name);
             assert!(loaded.scene.terrain.height_map.is_empty() && loaded.scene.terrain.covering_map.is_empty());
             assert!(loaded.scene.growth.nutrient_map.is_empty() && loaded.scene.underbrush_file.is_empty());
             assert!(check(name).unwrap().to_string().starts_with(&format!("{name}: sound\n")));

@@ -25,8 +25,10 @@ async fn greeted(server: &Server) -> (Plain, f32) {
     let mut visitor = Plain::connect(server).await;
     visitor.say(&ClientMessage::Hello { name: "Ada".to_owned() }).await;
     loop {
-        if let ServerMessage::Scene { scene, .. } = visitor.hear().await.unwrap() {
-            return (visitor, scene.underbrush[0].components[0].stiffness_n_m2);
+        match visitor.hear().await.unwrap() {
+            ServerMessage::Welcome { scene_name, .. } => assert_eq!(scene_name, "scene"),
+            ServerMessage::Scene { scene, .. } => return (visitor, scene.underbrush[0].components[0].stiffness_n_m2),
+            _ => {}
         }
     }
 }

@@ -107,6 +107,7 @@ pub(crate) fn scene() -> LoadedScene {
     let scene = Scene { summary: "a test".to_owned(), tick_hz: 120.0, patches, wind, ..Scene::new(terrain) };
     let png_bytes = grey_png([2; 2], &[255; 4]);
     LoadedScene {
+        name: "small".to_owned(),
         height: HeightMap::from_png(&png_bytes, &scene.terrain).unwrap(),
         cover: CoverMap::from_png(&png_bytes).unwrap(),
         height_png: png_bytes.clone(),

@@ -54,7 +54,8 @@ impl<S: AsyncRead + AsyncWrite + Unpin> Visitor<S> {
     pub(crate) async fn greet(&mut self, name: &str) {
         self.say(&ClientMessage::Hello { name: name.to_owned() }).await;
         let welcome = self.hear().await.unwrap();
-        let ServerMessage::Welcome { client, .. } = welcome else { panic!("{welcome:?}") };
+        let ServerMessage::Welcome { client, scene_name, .. } = welcome else { panic!("{welcome:?}") };
+        assert_eq!(scene_name, "small");
         self.client = client;
         assert!(matches!(self.hear().await, Ok(ServerMessage::Scene { .. })));
         self.say(&ClientMessage::View { eye_m: [12.0, 2.0, 12.0], radius_m: 100.0 }).await;

@@ -79,6 +79,8 @@ pub enum ServerMessage {
         client: u32,
         /// Version of the server's package.
         server_version: String,
+        /// Name of the scene that the server runs, as a link to it says it: a built-in scene's, or that of the scene file without its ending.
+        scene_name: String,
     },
     /// Everything that stays as it is for the run.
     Scene {
