@@ -45,7 +45,8 @@ fn placed(vertex: Vertex, instance: Instance) -> vec3<f32> {
         let phase = frame.eye.w * 4.5 / sqrt(height) + foot.x * 0.7 + foot.z * 1.3;
         p += swayed(max(p.y - foot.y, 0.0), height, held * (0.7 + 0.3 * sin(phase)));
         if vertex.leaf.x > 0.0 {
-            let flutter = sin(frame.eye.w * 5.3 + dot(vertex.position, vec3<f32>(5.1, 7.7, 3.9))) * 0.035 * (0.4 + 1.5 * length(held) / sway);
+            let blown = length(held) / sway;
+            let flutter = sin(frame.eye.w * 5.3 + dot(vertex.position, vec3<f32>(5.1, 7.7, 3.9))) * 0.035 * min(6.0 * blown, 0.4 + 1.5 * blown);
             p += vec3<f32>(flutter, flutter * 0.6, -flutter);
         }
     }

@@ -235,6 +235,18 @@ impl Mirror {
         self.patches.take_dirty()
     }
 
+    /// Whether any patch has changed since [`take_dirty_patches`](Self::take_dirty_patches).
+    pub fn has_dirty_patches(&self) -> bool {
+        self.patches.has_dirty()
+    }
+
+    /// Whether nothing is in the air that moves by itself: no wind, no rain, no dust. True before the scene has come.
+    pub fn is_calm(&self) -> bool {
+        let scene_is_calm =
+            self.land.as_ref().is_none_or(|land| land.scene().wind.mean_m_per_s == [0.0; 2] && land.scene().rain.rate_mm_per_h <= 0.0);
+        scene_is_calm && self.wind().is_none_or(WindCodes::is_calm)
+    }
+
     /// Which way the plant of each site of the underbrush fell, a [heading code](shared::wire::quantise::heading_code); 0 where none is broken.
     /// At the end up to three zeros more, so that they are whole words.
     pub fn falls(&self) -> &[u8] {

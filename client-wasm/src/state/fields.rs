@@ -90,6 +90,10 @@ impl Patches {
         self.entries.iter().filter(|(_, entry)| entry.codes.is_some()).map(|(&index, _)| index)
     }
 
+    pub(super) fn has_dirty(&self) -> bool {
+        !self.dirty.is_empty()
+    }
+
     pub(super) fn take_dirty(&mut self) -> Vec<PatchIndex> {
         std::mem::take(&mut self.dirty).into_iter().collect()
     }
@@ -101,6 +105,7 @@ pub struct WindCodes {
     cells: [u32; 3],
     seq: u32,
     planes: Vec<i8>,
+    is_calm: bool,
 }
 
 impl WindCodes {
@@ -112,6 +117,11 @@ impl WindCodes {
     /// Number of this frame.
     pub fn seq(&self) -> u32 {
         self.seq
+    }
+
+    /// Whether no cell has any wind, nor any dust.
+    pub fn is_calm(&self) -> bool {
+        self.is_calm
     }
 
     fn plane(&self, index: usize) -> &[i8] {
@@ -152,7 +162,8 @@ impl WindFrames {
         };
         let mut planes = planes;
         codec::decode(shape, payload, &mut planes).map_err(|error| MirrorError::Field { field: "wind", error })?;
-        self.newest = Some(WindCodes { cells, seq, planes });
+        let is_calm = planes.iter().all(|&code| code == 0);
+        self.newest = Some(WindCodes { cells, seq, planes, is_calm });
         Ok(())
     }
 
