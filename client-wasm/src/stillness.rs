@@ -24,12 +24,11 @@ pub struct Stillness<H> {
     seen: Option<Seen<H>>,
     /// Time drawn since the last change (s).
     settled_secs: f32,
-    skipped: u64,
 }
 
 impl<H> Default for Stillness<H> {
     fn default() -> Self {
-        Self { seen: None, settled_secs: 0.0, skipped: 0 }
+        Self { seen: None, settled_secs: 0.0 }
     }
 }
 
@@ -51,7 +50,7 @@ impl<H: PartialEq> Seen<H> {
 }
 
 impl<H: PartialEq> Stillness<H> {
-    /// Whether the frame after `dt_secs` may differ from the one before; counts it as skipped where not.
+    /// Whether the frame after `dt_secs` may differ from the one before.
     pub fn needs_frame(&mut self, mirror: &Mirror, camera: &Camera, how: H, dt_secs: f32) -> bool {
         let Some(land) = mirror.land() else { return true };
         let poses: Vec<ObjectPose> = mirror.objects().collect();
@@ -65,18 +64,12 @@ impl<H: PartialEq> Stillness<H> {
         }
         let is_moving = self.settled_secs < settle_secs(land.scene());
         self.settled_secs += dt_secs;
-        self.skipped += u64::from(!is_moving);
         is_moving
     }
 
     /// The next frame is needed, whatever it shows.
     pub fn wake(&mut self) {
         self.seen = None;
-    }
-
-    /// Frames that were not needed.
-    pub fn skipped(&self) -> u64 {
-        self.skipped
     }
 }
 
@@ -142,7 +135,7 @@ mod tests {
     /// Frames that are needed of those of so many seconds; each takes the patches that have changed, as a drawn one does.
     fn needed(stillness: &mut Stillness<u32>, mirror: &mut Mirror, secs: f32) -> u32 {
         let camera = Camera::default();
-        let frame = |mirror: &mut Mirror| {
+        let mut frame = |mirror: &mut Mirror| {
             mirror.advance(f64::from(DT_SECS));
             let is_needed = stillness.needs_frame(mirror, &camera, 0, DT_SECS);
             if is_needed {
@@ -161,7 +154,6 @@ mod tests {
         let frames = needed(&mut stillness, &mut mirror, 60.0);
         assert!(settle_secs < 30.0 && (frames as f32 * DT_SECS - settle_secs).abs() < 0.2, "{frames} frames to settle in {settle_secs} s");
         assert_eq!(needed(&mut stillness, &mut mirror, 10.0), 0);
-        assert_eq!(stillness.skipped(), 60 * 30 - u64::from(frames) + 10 * 30);
 
         bend(&mut mirror, 1, 5);
         assert_eq!(needed(&mut stillness, &mut mirror, 60.0), frames, "a patch that bends");

@@ -1,15 +1,19 @@
 //! One page's client: what arrives is mirrored, what hands do is sent, and each frame shows where things stand.
 
+use super::choices::{Automatic, Choices};
 use super::connection::{Connection, Standing};
+use super::fitting::Fitting;
 use super::input::{Input, Wish};
 use super::meter::Meter;
 use super::socket::SocketEvent;
-use super::stage::Stage;
+use super::stage::{Moment, Stage};
 use super::{page, with_app};
+use crate::budget::FrameTime;
 use crate::camera::Camera;
-use crate::render::{Quality, bend_reach_m};
+use crate::render::{Look, Quality, Split, bend_reach_m};
 use crate::rig::Rig;
 use crate::state::{Event, Mirror};
+use crate::stillness::Stillness;
 use glam::Vec3;
 use serde::Deserialize;
 use shared::scene::VehicleKind;
@@ -34,8 +38,12 @@ const LOSSES: usize = 3;
 pub(super) struct Options {
     /// The visitor's name.
     name: String,
-    /// How fine the picture is.
+    /// How fine the picture is, or `auto`.
     quality: String,
+    /// What `auto` means on this device.
+    automatic: Automatic,
+    /// The scene that the address names, if it names one.
+    scene: Option<String>,
     /// Draw only when asked to.
     paused: bool,
     /// What the browser says of its graphics adapter.
@@ -45,16 +53,24 @@ pub(super) struct Options {
 /// Everything behind a page.
 pub(super) struct App {
     pub(super) options: Options,
-    pub(super) quality: Quality,
+    pub(super) choices: Choices,
     pub(super) mirror: Mirror,
     pub(super) connection: Connection,
     pub(super) rig: Option<Rig>,
     pub(super) meter: Meter,
-    pub(super) failure: Option<String>,
+    pub(super) failure: Option<Failure>,
+    pub(super) stillness: Stillness<How>,
+    /// Name of the scene that the server runs.
+    pub(super) scene_name: Option<String>,
+    pub(super) canvas: HtmlCanvasElement,
+    pub(super) stage: Option<Stage>,
+    pub(super) fitting: Fitting,
     window: Window,
-    canvas: HtmlCanvasElement,
     input: Input,
-    stage: Option<Stage>,
+    keeps_drawing: bool,
+    /// Whether the device was behind since the last picture, and when that was drawn (s).
+    waited: bool,
+    drew_secs: f64,
     losses_secs: Vec<f64>,
     wanted: Option<VehicleKind>,
     clock_secs: f64,
@@ -65,24 +81,48 @@ pub(super) struct App {
     told: Option<(&'static str, String)>,
 }
 
+/// Why the client stopped.
+#[derive(Clone, Debug)]
+pub(super) struct Failure {
+    /// Message of the page.
+    pub(super) kind: &'static str,
+    /// What it says below.
+    pub(super) reason: String,
+}
+
+/// What a frame depends on beside world and camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct How {
+    size_px: [u32; 2],
+    quality: Quality,
+    level: f32,
+    look: Look,
+    split: Option<Split>,
+}
+
 impl App {
     pub(super) fn new(window: Window, canvas: HtmlCanvasElement, options: Options) -> Result<Self, String> {
-        let quality = Quality::from_name(&options.quality)
-            .ok_or_else(|| format!("quality `{}`: allowed are {}", options.quality, Quality::ALL.map(Quality::name).join(", ")))?;
+        let choices = Choices::new(&options.quality, options.automatic)?;
         let input = Input::new(&window, &canvas);
         let connection = Connection::new(page::socket_url(&window)?, options.name.clone(), hear);
         Ok(Self {
             options,
-            quality,
+            choices,
             mirror: Mirror::default(),
             connection,
             rig: None,
             meter: Meter::default(),
             failure: None,
-            window,
+            stillness: Stillness::default(),
+            scene_name: None,
             canvas,
-            input,
             stage: None,
+            fitting: Fitting::default(),
+            window,
+            input,
+            keeps_drawing: false,
+            waited: false,
+            drew_secs: 0.0,
             losses_secs: Vec::new(),
             wanted: None,
             clock_secs: 0.0,
@@ -112,29 +152,55 @@ impl App {
             self.keep_link(camera, now_secs);
         }
         self.mend_stage(now_secs);
+        self.fit_stage();
         self.tell();
     }
 
-    /// Moves the eye on to `time_secs` and draws; returns whether it did: not while there is nothing to draw, or the device is behind.
-    pub(super) fn frame(&mut self, now_secs: f64, time_secs: f64) -> bool {
+    /// Moves the eye on to `time_secs` and draws, unless that would give the last picture again and none `is_wanted`. Returns whether it drew: not while
+    /// there is nothing to draw, or the device is behind.
+    pub(super) fn frame(&mut self, now_secs: f64, time_secs: f64, is_wanted: bool) -> bool {
         self.run_clock(now_secs);
         let dt_secs = (time_secs - self.drawn_secs).clamp(0.0, LONGEST_FRAME_SECS) as f32;
         let vehicle = self.shown_own_object();
         let (Some(rig), Some(stage)) = (&mut self.rig, &mut self.stage) else { return false };
         if stage.is_busy() {
+            self.waited = true;
             return false;
         }
+        let Some(renderer) = stage.renderer(&self.mirror) else { return false };
+        let (look, split) = (self.choices.look(), self.choices.split());
+        renderer.set_look(look);
+        let quality = renderer.quality();
+        let how = How { size_px: stage.wanted_size_px(quality), quality, level: self.choices.level(), look, split };
         self.drawn_secs = time_secs;
         let [right_rad, up_rad] = self.input.take_look(dt_secs);
         rig.look(right_rad, up_rad);
         rig.zoom(self.input.take_zoom());
         let mirror = &self.mirror;
         rig.advance(self.input.controls(), vehicle.as_ref(), |x_m, z_m| mirror.ground_m(x_m, z_m), dt_secs);
-        let drawn = stage.draw(&mut self.mirror, &rig.camera(), time_secs, dt_secs);
-        if drawn {
-            self.meter.drew(now_secs);
+        let camera = rig.camera();
+        if !self.stillness.needs_frame(&self.mirror, &camera, how, dt_secs) && !is_wanted && !self.keeps_drawing {
+            self.meter.rested();
+            return false;
         }
-        drawn
+        let moment = Moment { time_secs, dt_secs, split };
+        let Some(cpu_secs) = stage.draw(&mut self.mirror, &camera, &moment) else {
+            self.stillness.wake();
+            return false;
+        };
+        self.meter.drew(now_secs, cpu_secs);
+        let interval_secs = (now_secs - std::mem::replace(&mut self.drew_secs, now_secs)) as f32;
+        let work_secs = stage.work_secs().max(cpu_secs) as f32;
+        let waited = std::mem::take(&mut self.waited);
+        if let Some(budget) = self.choices.budget_mut() {
+            budget.drew(FrameTime { work_secs, interval_secs, waited });
+        }
+        true
+    }
+
+    /// Draws every picture from now on, or only those that differ from the last.
+    pub(super) fn keep_drawing(&mut self, keeps: bool) {
+        self.keeps_drawing = keeps;
     }
 
     pub(super) fn is_paused(&self) -> bool {
@@ -171,13 +237,6 @@ impl App {
         self.input.hold_rise(rise);
     }
 
-    pub(super) fn set_quality(&mut self, quality: Quality) {
-        self.quality = quality;
-        if let Some(stage) = &mut self.stage {
-            stage.set_quality(quality);
-        }
-    }
-
     /// Puts the free camera somewhere.
     pub(super) fn look(&mut self, camera: Camera) {
         let ground_m = self.mirror.ground_m(camera.eye_m.x, camera.eye_m.z);
@@ -192,7 +251,7 @@ impl App {
     /// Distance up to which the bend field is asked for (m): no farther than it can be shown.
     fn view_radius_m(&self) -> f32 {
         let shown_m = self.mirror.land().map_or(f32::INFINITY, |land| bend_reach_m(land.layout()));
-        self.quality.bend_radius_m().min(shown_m)
+        self.choices.quality().bend_radius_m().min(shown_m)
     }
 
     pub(super) fn picture_px(&self) -> [u32; 2] {
@@ -218,8 +277,9 @@ impl App {
     fn receive(&mut self, message: ServerMessage, now_secs: f64) {
         self.run_clock(now_secs);
         match self.mirror.apply(message) {
-            Ok(Some(Event::Welcome { client, .. })) => {
+            Ok(Some(Event::Welcome { client, scene_name, .. })) => {
                 self.connection.welcomed(client);
+                self.scene_name = Some(scene_name);
                 self.welcomed_once = true;
             }
             Ok(Some(Event::Scene)) => {
@@ -241,7 +301,7 @@ impl App {
 
     /// Finds a place for the eye in a land that has just come: that of the link, or the scene's own.
     fn settle(&mut self) {
-        let Some(land) = self.mirror.land().filter(|_| self.rig.is_none()) else { return };
+        let Some(land) = self.mirror.land().filter(|_| self.rig.is_none() && self.other_scene().is_none()) else { return };
         let linked = self.window.location().hash().ok().and_then(|hash| Camera::from_hash(&hash));
         let ground_m = |x_m: f32, z_m: f32| land.heights().height_m(x_m, z_m);
         let camera = linked.unwrap_or_else(|| Camera::start(&land.scene().camera, land.scene().extent_m(), ground_m));
@@ -267,8 +327,14 @@ impl App {
         self.clock_secs = now_secs;
     }
 
+    /// The scene that the address names and the one that the server runs, where these are two.
+    fn other_scene(&self) -> Option<(&str, &str)> {
+        let (linked, running) = (self.options.scene.as_deref()?, self.scene_name.as_deref()?);
+        (linked != running).then_some((linked, running))
+    }
+
     fn fail(&mut self, reason: String) {
-        self.failure.get_or_insert(reason);
+        self.failure.get_or_insert(Failure { kind: "failed", reason });
         self.connection.end(Close::BadMessage);
     }
 
@@ -283,30 +349,19 @@ impl App {
 
     /// Replaces a lost device, unless it is lost again and again.
     fn mend_stage(&mut self, now_secs: f64) {
+        if let Some(fault) = self.stage.as_ref().filter(|stage| stage.lost().is_none()).and_then(Stage::fault) {
+            self.failure.get_or_insert(Failure { kind: "failed", reason: fault.to_owned() });
+        }
         let Some(reason) = self.stage.as_ref().and_then(Stage::lost).map(str::to_owned) else { return };
         self.stage = None;
         self.losses_secs.retain(|at_secs| now_secs - at_secs < 60.0);
         self.losses_secs.push(now_secs);
         if self.losses_secs.len() > LOSSES {
-            self.failure = Some(reason);
+            self.failure = Some(Failure { kind: "device-lost", reason });
         } else {
+            self.stillness.wake();
             self.build_stage();
         }
-    }
-
-    /// Takes a device in the background.
-    pub(super) fn build_stage(&self) {
-        let (canvas, quality) = (self.canvas.clone(), self.quality);
-        wasm_bindgen_futures::spawn_local(async move {
-            let stage = Stage::new(canvas, quality).await;
-            with_app(|app| match stage {
-                Ok(mut stage) => {
-                    stage.set_quality(app.quality);
-                    app.stage = Some(stage);
-                }
-                Err(error) => app.failure = Some(error.to_string()),
-            });
-        });
     }
 
     /// Shows the page's message for where things stand, when that has changed.
@@ -324,7 +379,12 @@ impl App {
     fn message(&self) -> Option<(&'static str, String)> {
         let words = |kind, detail: &str| Some((kind, detail.to_owned()));
         if let Some(failure) = &self.failure {
-            return words(if self.losses_secs.len() > LOSSES { "device-lost" } else { "failed" }, failure);
+            return words(failure.kind, &failure.reason);
+        }
+        if let Some((linked, running)) = self.other_scene().filter(|_| self.connection.client().is_some()) {
+            let linked: String = linked.chars().take(64).collect();
+            let what = format!("The link names the scene {linked}; this server runs {running}.");
+            return words("other-scene", &format!("{what} To see the link, start the server with: prairie serve --scene {linked}"));
         }
         match self.connection.standing() {
             Standing::Over(Close::Version) => return words("version", ""),

@@ -3,7 +3,9 @@
 //! There is one client a page. Every function does nothing, or gives nothing, before [`start`].
 
 mod app;
+mod choices;
 mod connection;
+mod fitting;
 mod gamepad;
 mod input;
 mod listener;
@@ -14,9 +16,10 @@ mod report;
 mod socket;
 mod stage;
 
-use crate::render::Quality;
+use crate::render::{Far, Look, Order, Quality};
 use app::App;
 use glam::Vec3;
+use serde_json::json;
 use shared::scene::VehicleKind;
 use std::cell::{OnceCell, RefCell};
 use std::rc::Rc;
@@ -35,8 +38,9 @@ fn with_app<T>(act: impl FnOnce(&mut App) -> T) -> Option<T> {
     APP.with_borrow_mut(|app| app.as_mut().map(act))
 }
 
-/// Starts the client on the canvas with this id. `options` is a JSON object: `name`, `quality` (`low`, `medium`, `high`, `ultra`),
-/// `paused` (draw only when [`draw`] asks) and `adapter` (what the browser says of its graphics).
+/// Starts the client on the canvas with this id. `options` is a JSON object: `name`, `quality` (`auto`, `low`, `medium`, `high`, `ultra`), `automatic` (what
+/// `auto` means: `finest` quality, first `level`, 0 to 3, and `budget_ms` for a frame), `scene` (the scene that the address names, or null), `paused` (draw
+/// only when [`draw`] asks) and `adapter` (what the browser says of its graphics).
 ///
 /// # Errors
 /// When the page has no such canvas, or the options are none of these.
@@ -45,7 +49,7 @@ pub fn start(canvas_id: &str, options: &str) -> Result<(), JsError> {
     console_error_panic_hook::set_once();
     let window = web_sys::window().ok_or_else(|| JsError::new("the client runs in a page"))?;
     let canvas = page::canvas(&window, canvas_id)?;
-    let app = App::new(window.clone(), canvas, app::options(options)?).map_err(|error| JsError::new(&error))?;
+    let mut app = App::new(window.clone(), canvas, app::options(options)?).map_err(|error| JsError::new(&error))?;
     app.build_stage();
     APP.set(Some(app));
 
@@ -70,7 +74,7 @@ fn draw_on(window: Window) {
         Closure::new(move |time_ms: f64| {
             with_app(|app| {
                 if !app.is_paused() {
-                    app.frame(page::now_secs(&asking), time_ms / 1e3);
+                    app.frame(page::now_secs(&asking), time_ms / 1e3, false);
                 }
             });
             ask_for_frame(&asking, &own);
@@ -86,12 +90,12 @@ fn ask_for_frame(window: &Window, on_frame: &OnFrame) {
     }
 }
 
-/// Draws one picture, with `time_secs` as the time of whatever moves by itself. False when there is nothing to draw yet, or the device
-/// is behind.
+/// Draws one picture, even if it is like the last, with `time_secs` as the time of whatever moves by itself. False when there is nothing to draw yet, or the
+/// device is behind.
 #[wasm_bindgen]
 pub fn draw(time_secs: f64) -> bool {
     let now_secs = web_sys::window().map_or(0.0, |window| page::now_secs(&window));
-    with_app(|app| app.frame(now_secs, time_secs)).unwrap_or(false)
+    with_app(|app| app.frame(now_secs, time_secs, true)).unwrap_or(false)
 }
 
 /// The client's own account of itself, as JSON; `null` before it has started.
@@ -144,12 +148,36 @@ pub fn set_height(height_m: f32) {
     with_app(|app| app.set_height(height_m));
 }
 
-/// Changes how fine the picture is; an unknown name changes nothing.
+/// Changes how fine the picture is, `auto` included; an unknown name changes nothing.
 #[wasm_bindgen]
 pub fn set_quality(name: &str) {
-    if let Some(quality) = Quality::from_name(name) {
-        with_app(|app| app.set_quality(quality));
-    }
+    with_app(|app| app.choices.set_quality(name));
+}
+
+/// Names of the ways of drawing between which [`set_look`] and [`compare`] choose, as a JSON object: `quality`, `order`, `far`, and `compared`, which are the
+/// ways that can stand side by side.
+#[wasm_bindgen]
+pub fn ways() -> String {
+    let (order, far) = (Order::ALL.map(Order::name), Far::ALL.map(Far::name));
+    json!({ "quality": Quality::ALL.map(Quality::name), "order": order, "far": far, "compared": Look::ways().collect::<Vec<_>>() }).to_string()
+}
+
+/// Changes how plants are laid over each other and what stands for those far away; an unknown name changes nothing.
+#[wasm_bindgen]
+pub fn set_look(order: &str, far: &str) {
+    with_app(|app| app.choices.set_look(order, far));
+}
+
+/// Shows two ways side by side, with the border at a share of the width; one picture where a name is unknown.
+#[wasm_bindgen]
+pub fn compare(left: String, right: String, at: f32) {
+    with_app(|app| app.choices.compare([left, right], at));
+}
+
+/// Draws every picture that the screen shows, for a film, or only those that differ from the last.
+#[wasm_bindgen]
+pub fn keep_drawing(keeps: bool) {
+    with_app(|app| app.keep_drawing(keeps));
 }
 
 /// Takes another name.

@@ -1,5 +1,6 @@
 //! The device: a headless one natively, the canvas's in a browser.
 
+use super::fit;
 use thiserror::Error;
 use wgpu::util::DeviceExt;
 
@@ -9,6 +10,24 @@ pub enum GpuError {
     /// No adapter can draw.
     #[error("no graphics adapter: {0}")]
     NoAdapter(String),
+    /// The adapter allows less than every picture needs.
+    #[error("the graphics adapter allows {name} up to {found}; the prairie needs {needed}")]
+    Limit {
+        /// WebGPU's limit.
+        name: &'static str,
+        /// What the adapter allows.
+        found: u64,
+        /// What is needed.
+        needed: u64,
+    },
+    /// A picture is more than the device holds.
+    #[error("the device cannot hold the picture in {quality} quality: {reason}")]
+    TooMuch {
+        /// Name of the quality.
+        quality: &'static str,
+        /// What the device says.
+        reason: String,
+    },
     /// The adapter gives no device.
     #[error("the graphics adapter gives no device: {0}")]
     NoDevice(String),
@@ -55,18 +74,32 @@ impl Gpu {
         Self::from_adapter(&adapter).await
     }
 
-    /// A device of `adapter` with the limits that every WebGPU implementation guarantees.
+    /// A device of `adapter` with the limits that every WebGPU implementation guarantees, or less where the adapter has less.
     ///
     /// # Errors
-    /// [`GpuError::NoDevice`] when the adapter has none left.
+    /// [`GpuError::Limit`] when it has less than every picture needs; [`GpuError::NoDevice`] when it has no device left.
     pub async fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
-        let descriptor = wgpu::DeviceDescriptor { label: Some("prairie"), ..Default::default() };
+        Self::within(adapter, &adapter.limits()).await
+    }
+
+    /// The same with no more than `allowed`.
+    pub(super) async fn within(adapter: &wgpu::Adapter, allowed: &wgpu::Limits) -> Result<Self, GpuError> {
+        if let Some(error) = fit::lacking(allowed) {
+            return Err(error);
+        }
+        let required_limits = wgpu::Limits::default().or_worse_values_from(allowed);
+        let descriptor = wgpu::DeviceDescriptor { label: Some("prairie"), required_limits, ..Default::default() };
         let (device, queue) = adapter.request_device(&descriptor).await.map_err(|error| GpuError::NoDevice(error.to_string()))?;
         let info = adapter.get_info();
         let names = [&info.name, &info.driver, &info.driver_info].map(|name| name.to_lowercase());
         let is_named = names.iter().any(|name| SOFTWARE.iter().any(|software| name.contains(software)));
         let is_software = info.device_type == wgpu::DeviceType::Cpu || is_named;
         Ok(Self { device, queue, adapter_name: info.name, is_software })
+    }
+
+    /// Longest side that a texture may have (px).
+    pub fn side_limit_px(&self) -> u32 {
+        self.device.limits().max_texture_dimension_2d
     }
 
     pub(super) fn buffer(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {

@@ -80,8 +80,45 @@ pub struct Look {
     pub culls: bool,
 }
 
+impl Look {
+    /// Name of the way that leaves nothing out.
+    const UNCULLED: &str = "unculled";
+
+    /// Names of all ways that [`with`](Self::with) knows.
+    pub fn ways() -> impl Iterator<Item = &'static str> {
+        let (fars, orders) = (Far::ALL.into_iter().map(Far::name), Order::ALL.into_iter().map(Order::name));
+        fars.chain(orders).chain([Self::UNCULLED])
+    }
+
+    /// This look but for the one way that has this name; none where no way has it.
+    pub fn with(self, way: &str) -> Option<Self> {
+        let far = Far::from_name(way).map(|far| Self { far, ..self });
+        let order = Order::from_name(way).map(|order| Self { order, ..self });
+        far.or(order).or((way == Self::UNCULLED).then_some(Self { culls: false, ..self }))
+    }
+}
+
 impl Default for Look {
     fn default() -> Self {
         Self { order: Order::default(), far: Far::default(), culls: true }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_way_has_a_name_of_its_own_and_changes_itself_alone() {
+        let own = Look { order: Order::Weighted, far: Far::Land, culls: true };
+        let names: Vec<_> = Look::ways().collect();
+        for (at, name) in names.iter().enumerate() {
+            assert!(!names[..at].contains(name), "{name}");
+            let look = own.with(name).expect("a way");
+            let changed = [look.order != own.order, look.far != own.far, look.culls != own.culls];
+            let is_own = own.order.name() == *name || own.far.name() == *name;
+            assert_eq!(changed.iter().filter(|&&changed| changed).count(), usize::from(!is_own), "{name}");
+        }
+        assert_eq!(own.with("Clumps"), None);
     }
 }

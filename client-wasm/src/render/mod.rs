@@ -9,6 +9,7 @@ mod blades;
 mod cull;
 mod detail;
 mod dust;
+mod fit;
 mod flora;
 mod forces;
 mod gpu;
@@ -26,6 +27,7 @@ mod quality;
 mod rain;
 mod shaders;
 mod sky;
+mod split;
 mod terrain;
 mod tone;
 mod underbrush;
@@ -35,11 +37,13 @@ mod view;
 mod wind;
 
 pub use atlas::reach_m as bend_reach_m;
+pub use fit::fitting_px;
 pub use gpu::{Gpu, GpuError};
 pub use look::{Far, Look, Order};
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::Picture;
 pub use quality::{Quality, REFERENCE_M};
+pub use split::Split;
 
 use crate::camera::Camera;
 use crate::state::Mirror;
@@ -55,6 +59,7 @@ use pipeline::{COLOR, DEPTH, Maker};
 use rain::RainPass;
 use shared::wire::ObjectPose;
 use sky::Sky;
+use split::Part;
 use terrain::{Ground, Terrain};
 use tone::Tone;
 use underbrush::Underbrush;
@@ -224,6 +229,19 @@ impl Renderer {
     /// Draws a frame to `target`: `time_secs` runs the clouds, gusts and flutter, `dt_secs` is the time since the frame before.
     /// Without a scene the target stays as it is.
     pub fn draw(&mut self, mirror: &mut Mirror, camera: &Camera, time_secs: f64, dt_secs: f32, target: &wgpu::TextureView) -> FrameStats {
+        let whole = Part { columns: 0..self.size_px[0], keeps: false };
+        self.draw_part(mirror, camera, time_secs, dt_secs, target, &whole)
+    }
+
+    fn draw_part(
+        &mut self,
+        mirror: &mut Mirror,
+        camera: &Camera,
+        time_secs: f64,
+        dt_secs: f32,
+        target: &wgpu::TextureView,
+        part: &Part,
+    ) -> FrameStats {
         if self.scene.as_ref().is_none_or(|scene| scene.number != mirror.scene_number()) {
             self.load_scene(mirror);
         }
@@ -307,7 +325,8 @@ impl Renderer {
                 }
             }
             if turn + 1 == turns {
-                let mut pass = tone_pass(&mut encoder, target);
+                let mut pass = tone_pass(&mut encoder, target, part.keeps);
+                pass.set_scissor_rect(part.columns.start, 0, part.columns.len() as u32, self.size_px[1]);
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 self.tone.draw(&mut pass);
             }
@@ -366,14 +385,15 @@ fn main_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, targets: &Targets, is_fi
     })
 }
 
-fn tone_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, target: &wgpu::TextureView) -> wgpu::RenderPass<'a> {
+fn tone_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, target: &wgpu::TextureView, keeps: bool) -> wgpu::RenderPass<'a> {
+    let load = if keeps { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("tone"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view: target,
             depth_slice: None,
             resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
         })],
         depth_stencil_attachment: None,
         timestamp_writes: None,

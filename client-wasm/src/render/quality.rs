@@ -46,6 +46,12 @@ impl Quality {
         if self == Self::Reference { Detail::whole(REFERENCE_M) } else { Detail::at(self.level()) }
     }
 
+    /// The next coarser level; none below the coarsest.
+    pub fn lower(self) -> Option<Self> {
+        let at = Self::ALL.iter().position(|&quality| quality == self).unwrap_or(Self::ALL.len());
+        at.checked_sub(1).map(|below| Self::ALL[below])
+    }
+
     /// Level of detail of its plants, from 0 to 3.
     pub fn level(self) -> f32 {
         match self {
