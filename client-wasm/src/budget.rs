@@ -272,7 +272,8 @@ mod tests {
 
     #[test]
     fn overload_is_answered_within_two_seconds_and_relief_slowly() {
-        for (slope, refresh_secs, budget_secs) in [(0.7, 1.0 / 60.0, BUDGET_SECS), (1.0, 1.0 / 144.0, BUDGET_SECS), (1.4, 1.0 / 60.0, 0.1)] {
+        for (slope, refresh_secs, budget_secs) in [(0.7, 1.0 / 60.0, BUDGET_SECS), (1.0, 1.0 / 144.0, BUDGET_SECS), (1.4, 1.0 / 60.0, 0.1)]
+        {
             let calm = Device { slope, refresh_secs, least_secs: 0.95 * budget_secs / (2.5 * slope).exp(), ..DEVICE };
             let mut budget = Budget::new(budget_secs, 2.5, 3.0);
             calm.draw(&mut budget, 10.0);

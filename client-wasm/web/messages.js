@@ -1,6 +1,15 @@
 // What the page says when there is something to say instead of, or above, the prairie.
 // A message has a tone: `wait` and `stop` cover the page, `strip` leaves the last picture in sight.
 
+// The start of the scene that runs here, whatever the address says.
+function elsewhere() {
+  const here = new URL(location.href);
+  here.hash = "";
+  here.searchParams.delete("scene");
+  history.replaceState(null, "", here);
+  location.reload();
+}
+
 const RELOAD = ["Reload", () => location.reload()];
 
 const MESSAGES = {
@@ -47,6 +56,22 @@ const MESSAGES = {
     button: RELOAD,
   },
   refused: { tone: "stop", title: "The server closed this connection", text: "It gave the reason below.", button: RELOAD },
+  "other-scene": {
+    tone: "stop",
+    title: "This link is to another scene",
+    text: "A server runs one scene at a time, and this one runs another.",
+    button: ["Look at what runs here", elsewhere],
+  },
+  limits: {
+    tone: "stop",
+    title: "This graphics device is too small",
+    text: "Not even the coarsest picture fits into what it allows:",
+    items: [
+      "Update the graphics driver, and turn hardware acceleration on in the browser's settings.",
+      "A machine with another graphics card, or another browser on this one, may allow more.",
+    ],
+    button: RELOAD,
+  },
   "device-back": { tone: "strip", title: "The graphics device was lost", text: "Starting it again…" },
   "device-lost": {
     tone: "stop",

@@ -1,16 +1,34 @@
 // The panel: what the visitor chooses, who is here, and how fast things go. It reads the client's own state a few times a second.
 
+import { ask, keep, link } from "./address.js";
+
 const byId = (id) => document.getElementById(id);
 const UPDATE_MS = 250;
 const HINT_MS = 14_000;
+const TOLD_MS = 5_000;
+
+const LABELS = {
+  blades: "Blades", clumps: "Clumps", shells: "Shells", land: "Bare land",
+  cut: "Cut out", coverage: "Coverage", sorted: "Sorted", precomputed: "Eight orders", weighted: "Weighted",
+  unculled: "Nothing culled",
+};
+
+// A way's name for people.
+export const label = (way) => LABELS[way] ?? way;
 
 export class Panel {
-  // `client` is the started client; `remember(key, value)` keeps a choice for the next visit.
-  constructor(client, { name, quality }, remember) {
+  // `client` is the started client; `remember(key, value)` keeps a choice for the next visit; `capture` takes pictures and films.
+  constructor(client, { name, quality }, { remember, capture }) {
     this.client = client;
     this.remember = remember;
+    this.capture = capture;
+    this.told = { text: "", until: 0 };
     byId("name").value = name;
     byId("quality").value = quality;
+    const { order, far, compared } = JSON.parse(client.ways());
+    for (const [id, ways] of [["order", order], ["far", far], ["left", compared], ["right", compared]]) {
+      byId(id).append(...ways.map((way) => new Option(label(way), way)));
+    }
     this.listen();
     setInterval(() => this.update(JSON.parse(client.state())), UPDATE_MS);
   }
@@ -34,6 +52,29 @@ export class Panel {
     for (const kind of ["keydown", "pointerdown"]) addEventListener(kind, () => setTimeout(gone, 1500), { once: true });
   }
 
+  // Says a line for a while.
+  tell(text) {
+    this.told = { text, until: performance.now() + TOLD_MS };
+    this.update(JSON.parse(this.client.state()));
+  }
+
+  // Shows how long a film has run (s), or that there is none: null.
+  filming(seconds) {
+    const runs = seconds !== null;
+    byId("film").setAttribute("aria-pressed", String(runs));
+    write("film-label", runs ? `● ${Math.floor(seconds)} s` : "Film");
+  }
+
+  async share() {
+    const address = link(JSON.parse(this.client.state()).view);
+    try {
+      await navigator.clipboard.writeText(address);
+      this.tell("Link copied.");
+    } catch {
+      this.tell(`The browser lets no page copy; this is the link: ${address}`);
+    }
+  }
+
   toggle(shown = byId("panel").hidden) {
     this.show(shown);
     this.remember("panel", shown ? "1" : "0");
@@ -55,8 +96,19 @@ export class Panel {
     byId("quality").addEventListener("change", ({ target }) => {
       this.client.set_quality(target.value);
       this.remember("quality", target.value);
+      keep({ quality: target.value });
       byId("view").focus();
     });
+    for (const id of ["order", "far"]) {
+      byId(id).addEventListener("change", ({ target }) => {
+        this.client.set_look(byId("order").value, byId("far").value);
+        keep({ [id]: target.value });
+        byId("view").focus();
+      });
+    }
+    byId("shoot").addEventListener("click", () => this.capture.picture());
+    byId("film").addEventListener("click", () => this.capture.film());
+    byId("share").addEventListener("click", () => this.share());
     byId("name").addEventListener("change", ({ target }) => {
       this.client.set_name(target.value.trim());
       this.remember("name", target.value.trim());
@@ -80,8 +132,11 @@ export class Panel {
 
   key(event) {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("input, select")) return;
+    const once = event.repeat ? "" : event.key.toLowerCase();
     if (event.key === "?" || event.key === "F1") this.help();
-    else if (event.key.toLowerCase() === "p" && !event.repeat) this.toggle();
+    else if (once === "p") this.toggle();
+    else if (once === "k") this.capture.picture();
+    else if (once === "v") this.capture.film();
     else return;
     event.preventDefault();
   }
@@ -92,12 +147,19 @@ export class Panel {
     for (const button of byId("vehicles").children) button.setAttribute("aria-pressed", String(button.dataset.vehicle === driven));
     write("scene", state.scene ?? "");
     write("count", state.peers.length > 1 ? String(state.peers.length) : "");
-    write("frame", state.frame_ms ? `${state.frame_ms.toFixed(state.frame_ms < 100 ? 1 : 0)} ms · ${state.fps.toFixed(state.fps < 10 ? 1 : 0)}/s` : "–");
+    if (state.eye && ask("scene") !== state.scene_name) keep({ scene: state.scene_name });
+    for (const id of ["order", "far"]) if (document.activeElement !== byId(id)) byId(id).value = state[id];
+    write("work", state.cpu_ms === null ? "–" : `CPU ${state.cpu_ms.toFixed(1)} · GPU ${state.gpu_ms.toFixed(1)} ms`);
+    write("detail", state.automatic ? `${state.level.toFixed(1)} of 3 · ${state.budget_ms.toFixed(0)} ms` : state.quality);
+    byId("fallback").hidden = !state.fallbacks.length;
+    write("fallback", state.fallbacks.join(" "));
+    write("frame", state.resting ? "at rest" : state.frame_ms ? `${state.frame_ms.toFixed(state.frame_ms < 100 ? 1 : 0)} ms · ${state.fps.toFixed(state.fps < 10 ? 1 : 0)}/s` : "–");
     write("stream", `${rate(state.bytes_per_s)}`);
     write("latency", state.latency_ms === null ? "–" : `${state.latency_ms.toFixed(state.latency_ms < 10 ? 1 : 0)} ms`);
     this.people(state.peers);
-    byId("notice").hidden = !state.notice;
-    write("notice", state.notice ?? "");
+    const notice = state.notice ?? (performance.now() < this.told.until ? this.told.text : "");
+    byId("notice").hidden = !notice;
+    write("notice", notice);
   }
 
   people(peers) {

@@ -8,15 +8,20 @@
 //   dust(x, y, z)                    concentration of dust there
 //   plants()                         checksum of the underbrush in the client's mirror, empty where none grows
 //   look([x, y, z], heading, pitch)  puts the free camera somewhere (m, rad)
+//   picture()                        a picture of the canvas in its full size: { name, blob }
+//   link()                           the link to what is seen
 //   choose(vehicle)                  takes "car", "monster", "helicopter", "sled" or "ball"; "" gives it up
 //   draw(time)                       draws one picture for this time (s); settles when it is on the screen
-// The address may say ?quality=low|medium|high|ultra, ?name=…, ?panel=0 (nothing above the picture; P brings it), ?paused=1 (draws only when draw() asks).
+// The address may say ?scene=… (that it is a link to), ?quality=auto|low|medium|high|ultra, ?budget=… (ms a frame of automatic quality may take), ?order=…, ?far=… and
+// ?compare=…,…&at=… (ways of drawing, as client.ways() names them), ?name=…, ?panel=0 (nothing above the picture; P brings it), ?paused=1 (draws only when draw() asks).
 
+import { ask, keep, link } from "./address.js";
+import { Capture } from "./capture.js";
+import { Comparison } from "./compare.js";
 import { hide, show } from "./messages.js";
-import { Panel } from "./panel.js";
+import { Panel, label } from "./panel.js";
 
-const asked = new URLSearchParams(location.search);
-const QUALITIES = ["low", "medium", "high", "ultra"];
+const QUALITIES = ["auto", "low", "medium", "high", "ultra"];
 const NAMES = ["Bluestem", "Bobolink", "Bison", "Clover", "Curlew", "Hare", "Lark", "Lupine", "Meadowlark", "Poppy", "Sage", "Yarrow"];
 
 window.prairie = { message: show, clear: hide, state: () => null };
@@ -32,12 +37,15 @@ async function obstacle() {
   return adapter ? [null, adapter.info] : ["no-adapter"];
 }
 
-// What a device of this kind draws fluently, unless address or memory say otherwise.
-function quality(info) {
-  const chosen = [asked.get("quality"), remembered("quality")].find((name) => QUALITIES.includes(name));
-  if (chosen) return chosen;
-  if (isSoftware(info)) return "low";
-  return matchMedia("(pointer: coarse)").matches ? "medium" : "high";
+const quality = () => [ask("quality"), remembered("quality")].find((name) => QUALITIES.includes(name)) ?? "auto";
+
+// What automatic quality is on a device of this kind: the finest level, the first, and how long a frame may take (ms).
+function automatic(info) {
+  const wanted = Number(ask("budget"));
+  const budget = (usual) => (wanted >= 1 && wanted <= 1000 ? wanted : usual);
+  if (isSoftware(info)) return { finest: "medium", level: 0, budget_ms: budget(100) };
+  if (matchMedia("(pointer: coarse)").matches) return { finest: "high", level: 1, budget_ms: budget(16.7) };
+  return { finest: "ultra", level: 1.5, budget_ms: budget(16.7) };
 }
 
 const isSoftware = (info) => info.isFallbackAdapter || /swiftshader|llvmpipe|lavapipe|warp|basic render/i.test(adapterName(info));
@@ -45,7 +53,7 @@ const isSoftware = (info) => info.isFallbackAdapter || /swiftshader|llvmpipe|lav
 const adapterName = (info) => [info.description, info.vendor, info.architecture, info.device].filter(Boolean).join(" ");
 
 function name() {
-  const given = asked.get("name") || remembered("name") || NAMES[Math.floor(Math.random() * NAMES.length)];
+  const given = ask("name") || remembered("name") || NAMES[Math.floor(Math.random() * NAMES.length)];
   remember("name", given);
   return given;
 }
@@ -87,11 +95,20 @@ async function begin() {
       await nextFrame();
     },
   });
-  const options = { name: name(), quality: quality(info), paused: asked.get("paused") === "1", adapter: adapterName(info) };
+  const options = {
+    name: name(), quality: quality(), automatic: automatic(info), scene: ask("scene"), paused: ask("paused") === "1", adapter: adapterName(info),
+  };
   client.start("view", JSON.stringify(options));
-  const panel = new Panel(client, options, remember);
-  panel.show((asked.get("panel") ?? remembered("panel") ?? (innerWidth < 640 ? "0" : "1")) !== "0");
-  if (asked.get("panel") === "0") document.getElementById("open").hidden = true;
+  client.set_look(ask("order") ?? "", ask("far") ?? "");
+  const { state } = window.prairie;
+  const capture = new Capture(client, document.getElementById("view"), {
+    state, tell: (text) => panel.tell(text), filming: (seconds) => panel.filming(seconds),
+  });
+  const panel = new Panel(client, options, { remember, capture });
+  new Comparison(client, { ways: JSON.parse(client.ways()).compared, label, keep }).restore(ask("compare"), ask("at"));
+  Object.assign(window.prairie, { picture: () => capture.shoot(), link: () => link(state().view) });
+  panel.show((ask("panel") ?? remembered("panel") ?? (innerWidth < 640 ? "0" : "1")) !== "0");
+  if (ask("panel") === "0") document.getElementById("open").hidden = true;
   else panel.hint();
 }
 

@@ -198,6 +198,11 @@ impl App {
         true
     }
 
+    /// Draws the newest picture again.
+    pub(super) fn redraw(&mut self, now_secs: f64) -> bool {
+        self.frame(now_secs, self.drawn_secs, true)
+    }
+
     /// Draws every picture from now on, or only those that differ from the last.
     pub(super) fn keep_drawing(&mut self, keeps: bool) {
         self.keeps_drawing = keeps;

@@ -147,9 +147,9 @@ fn wish(key: &str, code: &str) -> Option<Wish> {
 /// Whether the visitor is at one of the page's own controls, which understand this key themselves.
 fn is_for_the_page(event: &KeyboardEvent) -> bool {
     let controls = if matches!(event.code().as_str(), "Space" | "Escape") {
-        "input, select, textarea, dialog, button, summary"
+        "input, select, textarea, dialog, [role=slider], button, summary"
     } else {
-        "input, select, textarea, dialog"
+        "input, select, textarea, dialog, [role=slider]"
     };
     let element = event.target().and_then(|target| target.dyn_into::<Element>().ok());
     element.is_some_and(|element| element.closest(controls).is_ok_and(|found| found.is_some()))

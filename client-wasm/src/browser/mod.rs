@@ -98,6 +98,13 @@ pub fn draw(time_secs: f64) -> bool {
     with_app(|app| app.frame(now_secs, time_secs, true)).unwrap_or(false)
 }
 
+/// Draws the newest picture again, for whoever wants to read the canvas. False as for [`draw`].
+#[wasm_bindgen]
+pub fn redraw() -> bool {
+    let now_secs = web_sys::window().map_or(0.0, |window| page::now_secs(&window));
+    with_app(|app| app.redraw(now_secs)).unwrap_or(false)
+}
+
 /// The client's own account of itself, as JSON; `null` before it has started.
 #[wasm_bindgen]
 pub fn state() -> String {
@@ -159,7 +166,8 @@ pub fn set_quality(name: &str) {
 #[wasm_bindgen]
 pub fn ways() -> String {
     let (order, far) = (Order::ALL.map(Order::name), Far::ALL.map(Far::name));
-    json!({ "quality": Quality::ALL.map(Quality::name), "order": order, "far": far, "compared": Look::ways().collect::<Vec<_>>() }).to_string()
+    json!({ "quality": Quality::ALL.map(Quality::name), "order": order, "far": far, "compared": Look::ways().collect::<Vec<_>>() })
+        .to_string()
 }
 
 /// Changes how plants are laid over each other and what stands for those far away; an unknown name changes nothing.

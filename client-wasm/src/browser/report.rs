@@ -51,6 +51,7 @@ impl App {
             "eye": camera.map(|camera| camera.eye_m.to_array()),
             "heading": camera.map(|camera| camera.heading_rad),
             "pitch": camera.map(|camera| camera.pitch_rad),
+            "view": camera.map(|camera| camera.to_hash()),
             "height": camera.map(|camera| camera.eye_m.y - self.mirror.ground_m(camera.eye_m.x, camera.eye_m.z)),
             "patches_known": self.mirror.known_patches(),
             "patches_bent": self.mirror.bent_patches().count(),

@@ -133,8 +133,9 @@ impl Stage {
     pub(super) fn shrinks(&self, quality: Quality) -> Option<String> {
         let ([width, height], [wide, high]) = (self.wanted_size_px(quality), wanted_px(&self.canvas, quality));
         let limit_px = self.gpu.side_limit_px();
-        (wide > width || high > height)
-            .then(|| format!("picture of {width} × {height} px instead of {wide} × {high}: the device's max_texture_dimension_2d is {limit_px}"))
+        (wide > width || high > height).then(|| {
+            format!("picture of {width} × {height} px instead of {wide} × {high}: the device's max_texture_dimension_2d is {limit_px}")
+        })
     }
 
     /// Draws the mirror's world as `camera` sees it. Gives the processor's time for that (s); none without a picture.

@@ -1,6 +1,6 @@
 //! Pictures without a window.
 
-use super::{FrameStats, Gpu, Look, Quality, Renderer};
+use super::{FrameStats, Gpu, Look, Quality, Renderer, Split};
 use crate::camera::Camera;
 use crate::state::Mirror;
 
@@ -48,6 +48,14 @@ impl Picture {
     pub fn draw(&mut self, mirror: &mut Mirror, camera: &Camera, time_secs: f64, dt_secs: f32) -> FrameStats {
         let view = self.texture.create_view(&Default::default());
         let stats = self.renderer.draw(mirror, camera, time_secs, dt_secs, &view);
+        self.wait();
+        stats
+    }
+
+    /// Draws a frame of two looks side by side and waits until it is done. See [`Renderer::draw_split`].
+    pub fn draw_split(&mut self, mirror: &mut Mirror, camera: &Camera, time_secs: f64, dt_secs: f32, split: &Split) -> FrameStats {
+        let view = self.texture.create_view(&Default::default());
+        let stats = self.renderer.draw_split(mirror, camera, time_secs, dt_secs, &view, split);
         self.wait();
         stats
     }

@@ -1,0 +1,102 @@
+//! Devices that can do little, and pictures in two parts.
+
+use super::super::fit::needed;
+use super::super::{GpuError, Look, Renderer, Split, fitting_px};
+use super::{meadow_of, module};
+use crate::camera::Camera;
+use crate::render::{Gpu, Picture, Quality, shaders};
+use crate::state::Mirror;
+use glam::Vec3;
+use shared::scene::Scene;
+
+fn device(allowed: &wgpu::Limits) -> Result<Gpu, GpuError> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())).expect("a Vulkan adapter");
+    pollster::block_on(Gpu::within(&adapter, allowed))
+}
+
+fn meadow(change: impl FnOnce(&mut Scene)) -> Mirror {
+    meadow_of(change, &[255; 16 * 16])
+}
+
+fn fits(gpu: &Gpu, quality: Quality, mirror: &Mirror) -> Result<(), GpuError> {
+    let (_, verdict) = Renderer::fitted(gpu, wgpu::TextureFormat::Rgba8UnormSrgb, [64, 36], quality, mirror);
+    pollster::block_on(verdict)
+}
+
+fn camera() -> Camera {
+    Camera { eye_m: Vec3::new(32.0, 2.2, 40.0), pitch_rad: -0.15, ..Camera::default() }
+}
+
+#[test]
+fn a_small_device_draws_a_smaller_and_coarser_picture() {
+    let gpu = device(&needed()).expect("no more is needed");
+    let mut mirror = meadow(|_| {});
+    let finest = Quality::ALL.into_iter().rev().find(|&quality| fits(&gpu, quality, &mirror) == Ok(()));
+    let quality = finest.expect("the coarsest picture fits into what is needed");
+    assert_ne!(quality, Quality::Ultra);
+
+    let size_px = fitting_px([96, 4096], gpu.side_limit_px());
+    assert_eq!(size_px, [48, 2048]);
+    let mut picture = Picture::new(&gpu, size_px, quality);
+    picture.draw(&mut mirror, &camera(), 0.0, 0.0);
+    let rgba = picture.rgba();
+    let sum = |row: usize, channel: usize| rgba[row * 48 * 4..][..48 * 4].chunks_exact(4).map(|px| u32::from(px[channel])).sum::<u32>();
+    assert!(sum(99, 2) > sum(99, 0) && sum(1900, 1) > 2 * sum(1900, 2), "neither sky above nor grass below");
+}
+
+#[test]
+fn what_no_quality_makes_fit_is_named_with_its_limit() {
+    let few = wgpu::Limits { max_storage_buffers_per_shader_stage: 4, ..wgpu::Limits::default() };
+    let error = device(&few).expect_err("bend alone needs more");
+    assert_eq!(error.to_string(), "the graphics adapter allows max_storage_buffers_per_shader_stage up to 4; the prairie needs 8");
+
+    let gpu = device(&needed()).expect("no more is needed");
+    let crowded = meadow(|scene| scene.plants.plants_per_side = 256);
+    let error = fits(&gpu, Quality::Low, &crowded).expect_err("nine times 65536 blades are more than the buffers hold");
+    let said = error.to_string();
+    let numbers = said.split(|c: char| !c.is_ascii_digit()).filter_map(|digits| digits.parse::<u64>().ok());
+    assert!(said.starts_with("the device cannot hold the picture in low quality: "), "{said}");
+    assert!(
+        numbers.clone().any(|number| number == 16 << 20) && numbers.max() > Some(16 << 20),
+        "neither the limit nor what is needed: {said}"
+    );
+}
+
+#[test]
+fn shaders_stay_within_what_is_needed() {
+    let most = needed().max_compute_invocations_per_workgroup;
+    for source in [shaders::BEND, shaders::BILLBOARDS, shaders::UNDERBRUSH, shaders::DUST] {
+        for entry in module(source).entry_points {
+            assert!(entry.workgroup_size.iter().product::<u32>() <= most, "{}", entry.name);
+        }
+    }
+}
+
+#[test]
+fn the_two_parts_of_a_picture_are_those_of_two_pictures() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut mirror = meadow(|_| {});
+    let looks = ["land", "clumps"].map(|way| Look::default().with(way).expect("a way"));
+    let mut whole = looks.map(|look| {
+        let mut picture = Picture::new(&gpu, [96, 54], Quality::Low);
+        picture.set_look(look);
+        picture.draw(&mut mirror, &camera(), 1.0, 0.0);
+        picture.rgba()
+    });
+    for at in [0.0, 0.25, 1.0] {
+        let split = Split { looks, at };
+        let mut picture = Picture::new(&gpu, [96, 54], Quality::Low);
+        picture.draw_split(&mut mirror, &camera(), 1.0, 0.0, &split);
+        let rgba = picture.rgba();
+        let border_px = (96.0 * at) as usize;
+        for (row, found) in rgba.chunks_exact(96 * 4).enumerate() {
+            let [left, right] = whole.each_mut().map(|rgba| &mut rgba[row * 96 * 4..][..96 * 4]);
+            assert!(
+                found[..border_px * 4] == left[..border_px * 4] && found[border_px * 4..] == right[border_px * 4..],
+                "row {row} at {at}"
+            );
+        }
+        assert_eq!(picture.renderer.look(), Look::default());
+    }
+}
