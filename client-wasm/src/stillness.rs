@@ -12,6 +12,8 @@ const TIME_CONSTANTS: f32 = 7.0;
 const LINGERING_SECS: f32 = 1.0;
 /// Longest that plants are watched coming to rest (s).
 const LONGEST_SECS: f32 = 60.0;
+/// Longest time that a frame lets blades swing for (s).
+const LONGEST_STEP_SECS: f32 = 0.1;
 /// Height of the tallest blades over the mean, before the random share of each; the taller, the slower.
 const TALLEST: f32 = 1.5;
 
@@ -63,7 +65,7 @@ impl<H: PartialEq> Stillness<H> {
             return true;
         }
         let is_moving = self.settled_secs < settle_secs(land.scene());
-        self.settled_secs += dt_secs;
+        self.settled_secs += dt_secs.min(LONGEST_STEP_SECS);
         is_moving
     }
 

@@ -4,6 +4,7 @@
 use client_wasm::camera::Camera;
 use client_wasm::render::{Gpu, Picture, Quality};
 use client_wasm::state::Mirror;
+use client_wasm::stillness::Stillness;
 use glam::Vec3;
 use shared::scene::{Patches, Scene, TerrainMaps, Wind, WindDust};
 use shared::terrain::grey_png;
@@ -12,19 +13,29 @@ use shared::wire::{ServerMessage, Shape, codec};
 
 const SIZE_PX: [u32; 2] = [192, 108];
 
+/// ID of a tree in a covering map.
+const TREE: u8 = 253;
+
+/// Time between two frames (s).
+const DT_SECS: f32 = 1.0 / 15.0;
+
 /// A flat meadow of 64 m, covered with `cover`.
 fn meadow(cover: u8) -> Mirror {
     meadow_in(cover, Wind::default())
 }
 
 fn meadow_in(cover: u8, wind: Wind) -> Mirror {
+    meadow_of(&[cover; 16 * 16], wind)
+}
+
+fn meadow_of(covering: &[u8], wind: Wind) -> Mirror {
     let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 0.0, base_m: 0.0 };
     let scene = Scene { patches: Patches { count: [4, 4], ..Patches::default() }, wind, ..Scene::new(maps) };
     let mut mirror = Mirror::default();
     let scene = ServerMessage::Scene {
         scene: Box::new(scene),
         height_png: grey_png([17; 2], &[0; 17 * 17]),
-        covering_png: grey_png([16; 2], &[cover; 16 * 16]),
+        covering_png: grey_png([16; 2], covering),
         nutrient_png: Vec::new(),
         models: Vec::new(),
     };
@@ -110,4 +121,24 @@ fn dust_is_seen_where_it_is_and_nowhere_else() {
     let middle = SIZE_PX[0] as usize / 2;
     assert!(differing(0..middle / 2) > 0.3, "dust in the west: {}", differing(0..middle / 2));
     assert_eq!(differing(middle..2 * middle), 0.0, "no dust in the east");
+}
+
+#[test]
+fn at_rest_a_frame_would_equal_the_last() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter; mesa-vulkan-drivers brings one in software");
+    let mut covering = [255; 16 * 16];
+    // A tree in view.
+    covering[5 * 16 + 8] = TREE;
+    let mut mirror = meadow_of(&covering, Wind { mean_m_per_s: [0.0; 2], ..Wind::default() });
+    let (mut picture, mut stillness) = (Picture::new(&gpu, SIZE_PX, Quality::Low), Stillness::default());
+    let mut time_secs = 0.0;
+    while stillness.needs_frame(&mirror, &camera(), (), DT_SECS) {
+        picture.draw(&mut mirror, &camera(), time_secs, DT_SECS);
+        time_secs += f64::from(DT_SECS);
+    }
+    assert!(time_secs > 2.0, "blades need time to come to rest: {time_secs} s");
+    let rest = picture.rgba();
+    picture.draw(&mut mirror, &camera(), time_secs + 37.0, DT_SECS);
+    let changed = rest.iter().zip(picture.rgba()).filter(|(a, b)| a.abs_diff(*b) > 2).count();
+    assert!(changed * 10_000 < rest.len(), "{changed} of {} values changed at rest", rest.len());
 }

@@ -37,10 +37,24 @@ impl Prairie {
     /// # Errors
     /// When no browser can be started, or the page does not get that far.
     pub async fn visitor(&self, name: &str) -> Result<Browser> {
-        let url = format!("http://{}/?quality=low&panel=0&paused=1&name={name}", self.addr);
-        let browser = Browser::open(&url).await?;
+        self.visitor_at(&format!("?quality=low&panel=0&name={name}")).await
+    }
+
+    /// The same at an address of one's own, from its `?` on.
+    ///
+    /// # Errors
+    /// As [`visitor`](Self::visitor).
+    pub async fn visitor_at(&self, address: &str) -> Result<Browser> {
+        let browser = Browser::open(&self.url(address)).await?;
         browser.until("(s => s && s.connected && s.time_secs > 0)(window.prairie.state())").await?;
         browser.until("document.getElementById('message').hidden").await?;
         Ok(browser)
+    }
+
+    /// An address on this server, from its `?` on, for a page that draws only when asked.
+    #[must_use]
+    pub fn url(&self, address: &str) -> String {
+        let query = address.trim_start_matches('?');
+        format!("http://{}/?paused=1&{query}", self.addr)
     }
 }

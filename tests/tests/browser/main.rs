@@ -4,4 +4,5 @@ mod hands;
 mod mishaps;
 mod page;
 mod prairie;
+mod share;
 mod webgpu;
