@@ -17,7 +17,7 @@ const SIZE_PX: [u32; 2] = [192, 108];
 const TREE: u8 = 253;
 
 /// Time between two frames (s).
-const DT_SECS: f32 = 1.0 / 15.0;
+const DT_SECS: f32 = 0.1;
 
 /// A flat meadow of 64 m, covered with `cover`.
 fn meadow(cover: u8) -> Mirror {
@@ -29,8 +29,13 @@ fn meadow_in(cover: u8, wind: Wind) -> Mirror {
 }
 
 fn meadow_of(covering: &[u8], wind: Wind) -> Mirror {
+    meadow_with(covering, |scene| scene.wind = wind)
+}
+
+fn meadow_with(covering: &[u8], change: impl FnOnce(&mut Scene)) -> Mirror {
     let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 0.0, base_m: 0.0 };
-    let scene = Scene { patches: Patches { count: [4, 4], ..Patches::default() }, wind, ..Scene::new(maps) };
+    let mut scene = Scene { patches: Patches { count: [4, 4], ..Patches::default() }, ..Scene::new(maps) };
+    change(&mut scene);
     let mut mirror = Mirror::default();
     let scene = ServerMessage::Scene {
         scene: Box::new(scene),
@@ -129,8 +134,11 @@ fn at_rest_a_frame_would_equal_the_last() {
     let mut covering = [255; 16 * 16];
     // A tree in view.
     covering[5 * 16 + 8] = TREE;
-    let mut mirror = meadow_of(&covering, Wind { mean_m_per_s: [0.0; 2], ..Wind::default() });
-    let (mut picture, mut stillness) = (Picture::new(&gpu, SIZE_PX, Quality::Low), Stillness::default());
+    let mut mirror = meadow_with(&covering, |scene| {
+        scene.wind.mean_m_per_s = [0.0; 2];
+        (scene.plants.plants_per_side, scene.plants.swing_damping) = (12, 0.5);
+    });
+    let (mut picture, mut stillness) = (Picture::new(&gpu, [64, 36], Quality::Low), Stillness::default());
     let mut time_secs = 0.0;
     while stillness.needs_frame(&mirror, &camera(), (), DT_SECS) {
         picture.draw(&mut mirror, &camera(), time_secs, DT_SECS);

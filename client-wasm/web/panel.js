@@ -11,6 +11,7 @@ const LABELS = {
   blades: "Blades", clumps: "Clumps", shells: "Shells", land: "Bare land",
   cut: "Cut out", coverage: "Coverage", sorted: "Sorted", precomputed: "Eight orders", weighted: "Weighted",
   unculled: "Nothing culled",
+  low: "Low detail", medium: "Medium detail", high: "High detail", ultra: "Ultra detail",
 };
 
 // A way's name for people.

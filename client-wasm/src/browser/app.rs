@@ -170,6 +170,7 @@ impl App {
         let Some(renderer) = stage.renderer(&self.mirror) else { return false };
         let (look, split) = (self.choices.look(), self.choices.split());
         renderer.set_look(look);
+        renderer.set_level(self.choices.level());
         let quality = renderer.quality();
         let how = How { size_px: stage.wanted_size_px(quality), quality, level: self.choices.level(), look, split };
         self.drawn_secs = time_secs;

@@ -1,7 +1,7 @@
 //! How the visitor wants the picture: quality, ways of drawing, and two of them side by side.
 
 use crate::budget::Budget;
-use crate::render::{Far, Look, Order, Quality, Split};
+use crate::render::{Far, Look, Order, Quality, Split, Way};
 use serde::Deserialize;
 
 /// Name of the quality that a budget of time steers.
@@ -67,7 +67,8 @@ impl Choices {
 
     /// How finely a renderer has to be able to draw.
     pub(super) fn quality(&self) -> Quality {
-        self.quality
+        let compared = self.compared.iter().flat_map(|compared| &compared.ways).filter_map(|way| Quality::from_name(way));
+        compared.fold(self.quality, |finest, quality| if quality.level() > finest.level() { quality } else { finest })
     }
 
     /// What steers the level of detail, if anything does.
@@ -96,7 +97,7 @@ impl Choices {
 
     /// Shows two ways side by side; unknown names show one picture.
     pub(super) fn compare(&mut self, ways: [String; 2], at: f32) {
-        let is_known = at.is_finite() && ways.iter().all(|way| self.look.with(way).is_some());
+        let is_known = at.is_finite() && ways.iter().all(|way| self.way().with(way).is_some());
         self.compared = is_known.then(|| Compared { ways, at: at.clamp(0.0, 1.0) });
     }
 
@@ -105,9 +106,13 @@ impl Choices {
         self.compared.as_ref().map(|compared| (&compared.ways, compared.at))
     }
 
-    /// The two looks side by side, if two are wanted.
+    fn way(&self) -> Way {
+        Way { look: self.look, level: self.level() }
+    }
+
+    /// The two ways side by side, if two are wanted.
     pub(super) fn split(&self) -> Option<Split> {
         let Compared { ways: [left, right], at } = self.compared.as_ref()?;
-        Some(Split { looks: [self.look.with(left)?, self.look.with(right)?], at: *at })
+        Some(Split { ways: [self.way().with(left)?, self.way().with(right)?], at: *at })
     }
 }

@@ -16,7 +16,7 @@ mod report;
 mod socket;
 mod stage;
 
-use crate::render::{Far, Look, Order, Quality};
+use crate::render::{Far, Order, Quality, Way};
 use app::App;
 use glam::Vec3;
 use serde_json::json;
@@ -166,7 +166,7 @@ pub fn set_quality(name: &str) {
 #[wasm_bindgen]
 pub fn ways() -> String {
     let (order, far) = (Order::ALL.map(Order::name), Far::ALL.map(Far::name));
-    json!({ "quality": Quality::ALL.map(Quality::name), "order": order, "far": far, "compared": Look::ways().collect::<Vec<_>>() })
+    json!({ "quality": Quality::ALL.map(Quality::name), "order": order, "far": far, "compared": Way::names().collect::<Vec<_>>() })
         .to_string()
 }
 

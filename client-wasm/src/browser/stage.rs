@@ -43,7 +43,7 @@ pub(super) struct Moment {
     /// Time of whatever moves by itself (s), and since the picture before (s).
     pub(super) time_secs: f64,
     pub(super) dt_secs: f32,
-    /// Two looks side by side, instead of the renderer's own.
+    /// Two ways side by side, instead of the renderer's own.
     pub(super) split: Option<Split>,
 }
 

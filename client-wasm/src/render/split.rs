@@ -1,15 +1,37 @@
 //! Two ways of drawing in one picture, side by side.
 
-use super::{FrameStats, Look, Renderer};
+use super::{FrameStats, Look, Quality, Renderer};
 use crate::camera::Camera;
 use crate::state::Mirror;
 use std::ops::Range;
+
+/// A way of drawing: a look and a level of detail.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    /// Which of several ways each step goes.
+    pub look: Look,
+    /// Level of detail, as for [`Renderer::set_level`].
+    pub level: f32,
+}
+
+impl Way {
+    /// All names that [`with`](Self::with) knows.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        Look::ways().chain(Quality::ALL.map(Quality::name))
+    }
+
+    /// This way but for what has this name: one of [the looks' ways](Look::ways), or a quality, which gives its level; none where nothing has it.
+    pub fn with(self, name: &str) -> Option<Self> {
+        let level = Quality::from_name(name).map(|quality| Self { level: quality.level(), ..self });
+        level.or(self.look.with(name).map(|look| Self { look, ..self }))
+    }
+}
 
 /// What is left and what is right of an upright border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Split {
     /// How the left part is drawn, and the right one.
-    pub looks: [Look; 2],
+    pub ways: [Way; 2],
     /// Where the border is, as a share of the width from the left, 0..=1.
     pub at: f32,
 }
@@ -32,8 +54,8 @@ pub(super) struct Part {
 }
 
 impl Renderer {
-    /// [`draw`](Self::draw) with one look to the left of a border and another to its right. Both show the same moment: only the first that
-    /// is drawn lets time go on. A part without columns costs nothing.
+    /// [`draw`](Self::draw) in one way to the left of a border and in another to its right. Both show the same moment: time goes on in the one with more
+    /// detail, which has all the plants of the other. A part without columns costs nothing.
     pub fn draw_split(
         &mut self,
         mirror: &mut Mirror,
@@ -43,15 +65,18 @@ impl Renderer {
         target: &wgpu::TextureView,
         split: &Split,
     ) -> FrameStats {
-        let own = self.look();
+        let (look, detail) = (self.look, self.detail);
         let mut stats = FrameStats::default();
-        let parts = split.looks.into_iter().zip(split.columns(self.size_px()[0])).filter(|(_, columns)| !columns.is_empty());
-        for (drawn, (look, columns)) in parts.enumerate() {
-            self.set_look(look);
+        let parts = split.ways.into_iter().zip(split.columns(self.size_px[0]));
+        let mut parts: Vec<_> = parts.filter(|(_, columns)| !columns.is_empty()).collect();
+        parts.sort_by(|(a, _), (b, _)| b.level.total_cmp(&a.level));
+        for (drawn, (way, columns)) in parts.into_iter().enumerate() {
+            self.set_look(way.look);
+            self.set_level(way.level);
             let part = Part { columns, keeps: drawn > 0 };
             stats = self.draw_part(mirror, camera, time_secs, if drawn > 0 { 0.0 } else { dt_secs }, target, &part);
         }
-        self.set_look(own);
+        (self.look, self.detail) = (look, detail);
         stats
     }
 }
@@ -62,9 +87,23 @@ mod tests {
 
     #[test]
     fn the_parts_are_the_whole() {
-        let split = |at| Split { looks: [Look::default(); 2], at }.columns(101);
+        let way = Way { look: Look::default(), level: 0.0 };
+        let split = |at| Split { ways: [way; 2], at }.columns(101);
         assert_eq!(split(0.5), [0..51, 51..101]);
         assert_eq!([split(0.0), split(-1.0)], [[0..0, 0..101], [0..0, 0..101]]);
         assert_eq!(split(7.0), [0..101, 101..101]);
+    }
+
+    #[test]
+    fn ways_are_named_once() {
+        let own = Way { look: Look::default(), level: 0.5 };
+        let names: Vec<_> = Way::names().collect();
+        for (at, name) in names.iter().enumerate() {
+            assert!(!names[..at].contains(name), "{name}");
+            let way = own.with(name).expect("a way");
+            assert!(way.look == own.look || way.level == own.level, "{name}");
+        }
+        assert_eq!(own.with("high"), Some(Way { level: 2.0, ..own }));
+        assert_eq!(own.with("auto"), None);
     }
 }

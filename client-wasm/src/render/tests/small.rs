@@ -1,7 +1,7 @@
 //! Devices that can do little, and pictures in two parts.
 
 use super::super::fit::needed;
-use super::super::{GpuError, Look, Renderer, Split, fitting_px};
+use super::super::{GpuError, Look, Renderer, Split, Way, fitting_px};
 use super::{meadow_of, module};
 use crate::camera::Camera;
 use crate::render::{Gpu, Picture, Quality, shaders};
@@ -77,16 +77,19 @@ fn shaders_stay_within_what_is_needed() {
 fn the_two_parts_of_a_picture_are_those_of_two_pictures() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow(|_| {});
-    let looks = ["land", "clumps"].map(|way| Look::default().with(way).expect("a way"));
-    let mut whole = looks.map(|look| {
-        let mut picture = Picture::new(&gpu, [96, 54], Quality::Low);
-        picture.set_look(look);
+    let own = Way { look: Look::default(), level: 0.0 };
+    let ways = ["low", "medium"].map(|name| own.with("land").and_then(|way| way.with(name)).expect("a way"));
+    let mut whole = ways.map(|way| {
+        let mut picture = Picture::new(&gpu, [96, 54], Quality::Medium);
+        picture.set_look(way.look);
+        picture.renderer.set_level(way.level);
         picture.draw(&mut mirror, &camera(), 1.0, 0.0);
         picture.rgba()
     });
+    assert_ne!(whole[0], whole[1]);
     for at in [0.0, 0.25, 1.0] {
-        let split = Split { looks, at };
-        let mut picture = Picture::new(&gpu, [96, 54], Quality::Low);
+        let split = Split { ways, at };
+        let mut picture = Picture::new(&gpu, [96, 54], Quality::Medium);
         picture.draw_split(&mut mirror, &camera(), 1.0, 0.0, &split);
         let rgba = picture.rgba();
         let border_px = (96.0 * at) as usize;
