@@ -36,6 +36,8 @@ const CAUTION: f32 = 1.5;
 
 /// After a climb that went over the budget there is none for so long (s), twice as long each time, at most so long.
 const REST_SECS: [f32; 2] = [4.0, 64.0];
+/// So long over the budget at the lowest level (s), no level keeps it.
+const EXHAUSTED_SECS: f32 = 2.0;
 /// Costs that have fallen to this share meanwhile are another view's: it ends the rest.
 const RELIEF: f32 = 0.7;
 
@@ -73,6 +75,8 @@ pub struct Budget {
     before: Option<(f32, f32)>,
     climbed: bool,
     rest: Rest,
+    /// Time over the budget at the lowest level (s).
+    exhausted_secs: f32,
 }
 
 /// How long there is no climb.
@@ -101,6 +105,7 @@ impl Budget {
             before: None,
             climbed: false,
             rest: Rest::default(),
+            exhausted_secs: 0.0,
         }
     }
 
@@ -112,6 +117,11 @@ impl Budget {
     /// Level of detail for the next frame.
     pub fn level(&self) -> f32 {
         self.shown.value.clamp(0.0, self.highest)
+    }
+
+    /// Whether not even the lowest level keeps the budget.
+    pub fn is_exhausted(&self) -> bool {
+        self.exhausted_secs >= EXHAUSTED_SECS
     }
 
     /// Takes in what a frame took.
@@ -140,9 +150,11 @@ impl Budget {
     fn decide(&mut self) {
         let cost_secs = median(&mut self.costs_secs).max(1e-5);
         self.costs_secs.clear();
-        self.span_secs = 0.0;
+        let span_secs = std::mem::take(&mut self.span_secs);
         self.learn(cost_secs);
         let share = cost_secs / self.budget_secs;
+        let is_over = share > BAND[1] && self.goal <= 0.0;
+        self.exhausted_secs = if is_over { self.exhausted_secs + span_secs } else { 0.0 };
         if self.rest.cost_secs == 0.0 {
             self.rest.cost_secs = cost_secs;
         }
@@ -265,9 +277,13 @@ mod tests {
     fn a_fast_device_ends_at_the_highest_level_and_a_slow_one_at_the_lowest() {
         let mut budget = Budget::new(BUDGET_SECS, 1.5, 2.0);
         Device { least_secs: 0.001, ..DEVICE }.draw(&mut budget, 30.0);
-        assert_eq!(budget.level(), 2.0);
-        Device { least_secs: 0.2, ..DEVICE }.draw(&mut budget, 30.0);
-        assert_eq!(budget.level(), 0.0);
+        assert!(budget.level() == 2.0 && !budget.is_exhausted());
+        Device { least_secs: 0.012, ..DEVICE }.draw(&mut budget, 30.0);
+        assert!(!budget.is_exhausted());
+        Device { least_secs: 0.2, ..DEVICE }.draw(&mut budget, 10.0);
+        assert!(budget.level() == 0.0 && budget.is_exhausted());
+        Device { least_secs: 0.012, ..DEVICE }.draw(&mut budget, 10.0);
+        assert!(!budget.is_exhausted());
     }
 
     #[test]

@@ -193,9 +193,7 @@ impl App {
         let interval_secs = (now_secs - std::mem::replace(&mut self.drew_secs, now_secs)) as f32;
         let work_secs = stage.work_secs().max(cpu_secs) as f32;
         let waited = std::mem::take(&mut self.waited);
-        if let Some(budget) = self.choices.budget_mut() {
-            budget.drew(FrameTime { work_secs, interval_secs, waited });
-        }
+        self.choices.drew(FrameTime { work_secs, interval_secs, waited });
         true
     }
 

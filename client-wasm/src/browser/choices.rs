@@ -1,6 +1,6 @@
 //! How the visitor wants the picture: quality, ways of drawing, and two of them side by side.
 
-use crate::budget::Budget;
+use crate::budget::{Budget, FrameTime};
 use crate::render::{Far, Look, Order, Quality, Split, Way};
 use serde::Deserialize;
 
@@ -76,8 +76,14 @@ impl Choices {
         self.budget.as_ref()
     }
 
-    pub(super) fn budget_mut(&mut self) -> Option<&mut Budget> {
-        self.budget.as_mut()
+    /// Lets the budget know what a frame took. Where no level keeps it, the next coarser quality has to: fewer samples, fewer pixels.
+    pub(super) fn drew(&mut self, frame: FrameTime) {
+        let Some(budget) = &mut self.budget else { return };
+        budget.drew(frame);
+        if let Some(coarser) = self.quality.lower().filter(|_| budget.is_exhausted()) {
+            *budget = Budget::new(budget.budget_secs(), 0.0, coarser.level());
+            self.quality = coarser;
+        }
     }
 
     /// Level of detail to draw with.

@@ -192,7 +192,7 @@ fn wanted_px(canvas: &HtmlCanvasElement, quality: Quality) -> [u32; 2] {
         Quality::Low => 1.0,
         Quality::Medium => 1.25,
         Quality::High => 2.0,
-        Quality::Ultra => 3.0,
+        Quality::Ultra | Quality::Reference => 3.0,
     };
     let ratio = web_sys::window().map_or(1.0, |window| window.device_pixel_ratio()).min(finest);
     [canvas.client_width(), canvas.client_height()].map(|css_px| (f64::from(css_px) * ratio).round() as u32)
