@@ -15,6 +15,7 @@ export class Comparison {
     this.at = 0.5;
     this.shown = false;
     this.listen();
+    this.apply();
   }
 
   // Shows what an address says, such as "clumps,shells" and "0.5"; nothing when it names no two ways.
