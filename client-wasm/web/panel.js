@@ -30,6 +30,7 @@ export class Panel {
     for (const [id, ways] of [["order", order], ["far", far], ["left", compared], ["right", compared]]) {
       byId(id).append(...ways.map((way) => new Option(label(way), way)));
     }
+    byId("ways").open = ["order", "far", "compare"].some((key) => ask(key) !== null);
     this.listen();
     setInterval(() => this.update(JSON.parse(client.state())), UPDATE_MS);
   }
