@@ -59,7 +59,7 @@ const MESSAGES = {
   "other-scene": {
     tone: "stop",
     title: "This link is to another scene",
-    text: "A server runs one scene at a time, and this one runs another.",
+    text: null,
     button: ["Look at what runs here", elsewhere],
   },
   limits: {
@@ -84,17 +84,17 @@ const MESSAGES = {
 
 const place = document.getElementById("message");
 
-// Shows the message of this kind, with a plain-text detail of the moment below it.
+// Shows the message of this kind, with a plain-text detail of the moment below its text, or as its text where it has none.
 export function show(kind, detail = "") {
   const { tone, title, text, items = [], button } = MESSAGES[kind] ?? MESSAGES.failed;
   const section = document.createElement("section");
-  section.append(element("h1", title), element("p", text));
+  section.append(element("h1", title), element("p", text ?? detail));
   if (items.length) {
     const list = element("ul");
     list.innerHTML = items.map((item) => `<li>${item.replace("PORT", location.port || "8080")}</li>`).join("");
     section.append(list);
   }
-  if (detail) section.append(element("p", detail, "detail"));
+  if (detail && text !== null) section.append(element("p", detail, "detail"));
   if (button) {
     const [label, act] = button;
     const press = element("button", label);
