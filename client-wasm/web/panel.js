@@ -8,7 +8,7 @@ const HINT_MS = 14_000;
 const TOLD_MS = 5_000;
 
 const LABELS = {
-  blades: "Blades", clumps: "Clumps", shells: "Shells", land: "Bare land",
+  land: "Land alone", clumps: "Clumps", shells: "Shells",
   cut: "Cut out", coverage: "Coverage", sorted: "Sorted", precomputed: "Eight orders", weighted: "Weighted",
   unculled: "Nothing culled",
   low: "Low detail", medium: "Medium detail", high: "High detail", ultra: "Ultra detail",

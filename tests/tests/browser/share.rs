@@ -42,12 +42,12 @@ async fn a_picture_is_what_the_canvas_shows_and_is_named_after_scene_and_view() 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_link_restores_what_is_seen_and_says_when_it_cannot() -> Result<()> {
     let prairie = meadow().await?;
-    let browser = prairie.visitor_at("?quality=low&panel=0&far=land&compare=cut,clumps&at=0.25#120,7.5,130,250,-10").await?;
+    let browser = prairie.visitor_at("?quality=low&panel=0&far=clumps&compare=cut,land&at=0.25#120,7.5,130,250,-10").await?;
     browser.until("new URLSearchParams(location.search).get('scene') === 'meadow'").await?;
     let seen = "(({ scene_name, view, far, compared, at, quality }) => ({ scene_name, view, far, compared, at, quality }))(window.prairie.state())";
     let before = browser.evaluate(seen).await?;
     let ways = (&before["far"], &before["compared"], &before["at"]);
-    ensure!(ways == (&json!("land"), &json!(["cut", "clumps"]), &json!(0.25)), "the page draws {before}");
+    ensure!(ways == (&json!("clumps"), &json!(["cut", "land"]), &json!(0.25)), "the page draws {before}");
     let link = browser.evaluate("window.prairie.link()").await?;
     let link = link.as_str().context("a link")?;
     let [query, hash] = [link.find('?'), link.find('#')].map(Option::unwrap_or_default);
