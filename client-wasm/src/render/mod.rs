@@ -26,6 +26,7 @@ mod quality;
 mod rain;
 mod shaders;
 mod sky;
+mod sort;
 mod terrain;
 mod tone;
 mod underbrush;

@@ -38,6 +38,8 @@ pub(super) const FLOWERS: &str = include_str!("../../shaders/flowers.wgsl");
 pub(super) const BILLBOARDS: &str = concat!(include_str!("../../shaders/sward.wgsl"), include_str!("../../shaders/billboards.wgsl"));
 /// Motes and puffs of dust.
 pub(super) const DUST: &str = include_str!("../../shaders/dust.wgsl");
+/// Sort of pairs by their keys.
+pub(super) const SORT: &str = include_str!("../../shaders/sort.wgsl");
 /// Ground.
 pub(super) const TERRAIN: &str = concat!(include_str!("../../shaders/sward.wgsl"), include_str!("../../shaders/terrain.wgsl"));
 /// Objects, trees and stones.

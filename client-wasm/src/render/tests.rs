@@ -1,7 +1,7 @@
 use super::picture::read;
 use super::pipeline::{Maker, bind, storage_rw};
 use super::shaders;
-use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Plants, Shower, Squares, StripList, UnderbrushFrame};
+use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Plants, Shower, SortDigit, Squares, StripList, UnderbrushFrame};
 use super::{Gpu, Look, Picture, Quality, blades};
 use crate::camera::Camera;
 use crate::state::Mirror;
@@ -41,6 +41,7 @@ fn every_shader_is_valid_wgsl_without_extensions() {
         shaders::RAIN,
         shaders::BILLBOARDS,
         shaders::DUST,
+        shaders::SORT,
         shaders::TERRAIN,
         shaders::OBJECTS,
         shaders::SKY,
@@ -88,6 +89,7 @@ fn uniform_blocks_lie_as_their_twins() {
         assert_twins(&self::module(strips), "StripList", StripList::LAYOUT, size_of::<StripList>());
     }
     assert_twins(&self::module(shaders::DUST), "Drift", Drift::LAYOUT, size_of::<Drift>());
+    assert_twins(&self::module(shaders::SORT), "SortDigit", SortDigit::LAYOUT, size_of::<SortDigit>());
 }
 
 /// A flat meadow of 64 m in a wind towards the east.

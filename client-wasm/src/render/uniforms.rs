@@ -184,3 +184,11 @@ uniform_block! {
         shape: [f32; 4],
     }
 }
+
+uniform_block! {
+    /// A digit by which pairs are sorted; its twin is in `sort.wgsl`.
+    SortDigit {
+        /// Lowest bit of the digit; which counter says how many pairs there are; most pairs; unused.
+        shape: [u32; 4],
+    }
+}
