@@ -21,6 +21,19 @@ impl Order {
     /// All ways.
     pub const ALL: [Self; 5] = [Self::Cut, Self::Coverage, Self::Sorted, Self::Precomputed, Self::Weighted];
 
+    /// What becomes of it where a pixel has so many samples; with blades listed by turns, which have no order, only their depth decides.
+    pub(super) fn at(self, samples: u32, by_turns: bool) -> Self {
+        match if self.blends() && by_turns { Self::Coverage } else { self } {
+            Self::Coverage if samples == 1 => Self::Cut,
+            order => order,
+        }
+    }
+
+    /// Whether plants are blended over what is opaque.
+    pub(super) fn blends(self) -> bool {
+        matches!(self, Self::Sorted | Self::Precomputed | Self::Weighted)
+    }
+
     /// Name as an address and the page write it.
     pub fn name(self) -> &'static str {
         match self {

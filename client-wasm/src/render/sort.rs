@@ -5,7 +5,7 @@
 //! workgroup adds up the counts of all tiles, in time that grows with their number.
 
 use super::gpu::Gpu;
-use super::pipeline::{storage, storage_rw, uniform};
+use super::pipeline::{bind_as, storage, storage_rw, uniform};
 use super::shaders;
 use super::uniforms::SortDigit;
 use wgpu::BufferUsages;
@@ -77,11 +77,7 @@ impl Sort {
             .map(|digit| SortDigit { shape: [8 * digit, counter, capacity, 0] })
             .map(|shape| gpu.buffer("sort digit", bytemuck::bytes_of(&shape), BufferUsages::UNIFORM))
             .collect();
-        let grouped = |layout, entries: &[(u32, &wgpu::Buffer)]| {
-            let entries: Vec<_> =
-                entries.iter().map(|&(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }).collect();
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("sort"), layout, entries: &entries })
-        };
+        let grouped = |layout, buffers: &[_]| bind_as(gpu, "sort", layout, buffers);
         let plan_group = grouped(&sorter.plan_layout, &[(0, counters), (1, &shapes[0]), (2, &tiles)]);
         let digit_groups = shapes
             .iter()
