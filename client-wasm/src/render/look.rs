@@ -8,9 +8,9 @@ pub enum Order {
     Cut,
     /// Opacity becomes a share of a pixel's samples, and the depth buffer decides; as [`Order::Cut`] where a pixel has one sample.
     Coverage,
-    /// All plants in view sorted far to near each frame on the GPU, blended by 000 Eq. (10).
+    /// Blades and clumps in view sorted far to near each frame on the GPU, blended by 000 Eq. (10).
     Sorted,
-    /// The plants of the camera's grid sorted, those of the grids about it in one of eight orders made beforehand, grids far to near
+    /// Blades of the camera's grid sorted, those of the grids about it in one of eight orders made beforehand, grids far to near
     /// (000 §5.4.1 and §5.4.2); blended by Eq. (10).
     Precomputed,
     /// Blended without order, each weighted by its depth (McGuire & Bavoil, J. Comput. Graph. Tech. 2013).

@@ -90,7 +90,7 @@ impl Maker<'_> {
         match order {
             Order::Cut => self.draw(module, own, draw),
             Order::Coverage => self.render(module, own, draw, &[target(COLOR, None)], true),
-            // What comes later hides or is nearer, so that depth may be written by all that shows.
+            // What comes later is nearer. Where it is not, as plants that lean cross, depth keeps the nearer one.
             Order::Sorted | Order::Precomputed => self.render(module, own, draw, &[target(COLOR, Some(OVER))], false),
             Order::Weighted => {
                 let targets = [target(SUM, Some(blended(One, One))), target(COVERED, Some(blended(Zero, OneMinusSrc)))];
