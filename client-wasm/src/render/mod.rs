@@ -268,8 +268,8 @@ impl Renderer {
         let frustum = if self.look.culls { Frustum::new(&view.projection_from_world) } else { Frustum::ALL };
         let tiles = scene.ground.tiles(camera.eye_m, &frustum);
         self.terrain.prepare(gpu, &tiles);
-        let order = self.look.order.at(self.quality.samples(), scene.blades.by_turns());
-        let maker = Maker { gpu, frame_layout: &self.frame.layout, samples: self.quality.samples() };
+        let maker = Maker { gpu, frame_layout: &self.frame.layout, samples: self.quality.samples(gpu.is_software) };
+        let order = self.look.order.at(maker.samples, scene.blades.by_turns());
         scene.blades.set_order(&maker, order);
         self.billboards.set_order(&maker, order);
         if order == Order::Weighted && self.weighted.is_none() {

@@ -102,7 +102,7 @@ fn blades_in_the_order_made_beforehand_hide_none_that_comes_later() {
 #[test]
 fn orders_change_from_frame_to_frame() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
-    let (mut mirror, mut picture) = grown(&gpu, Quality::Medium);
+    let (mut mirror, mut picture) = grown(&gpu, Quality::High);
     let mut draw = |order| pixels(&mut mirror, &mut picture, order);
     let [cut, coverage, sorted, precomputed, weighted] = Order::ALL.map(&mut draw);
     assert!(apart(&cut, &draw(Order::Cut)) < 0.02, "nothing is left of the others");
