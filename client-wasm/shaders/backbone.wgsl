@@ -49,3 +49,8 @@ fn corner_of(vertex: u32, segments: u32) -> vec2<f32> {
 fn width_share(t: f32, is_textured: bool) -> f32 {
     return select((1.0 - t * t) * (0.80 + 0.55 * t), WIDER, is_textured);
 }
+
+// Share of a pixel that a strip covers whose middle is `border.x` away and whose half width is `border.y` (px).
+fn covered(border: vec2<f32>) -> f32 {
+    return clamp(min(border.x + 0.5, border.y) - max(border.x - 0.5, -border.y), 0.0, 1.0);
+}

@@ -6,7 +6,8 @@
 struct Plants {
     // Grid (x, z) that lives in each of the nine slots; 1 in z when it has just moved in; plants of it that may stand.
     slots: array<vec4<i32>, 9>,
-    // Places for plants in a near grid; plants there at this level of detail; 1 to leave out what is not seen; unused.
+    // Places for plants in a near grid; plants there at this level of detail; 1 to leave out what is not seen; 1 where blades narrower than a
+    // pixel are drawn as wide as they are.
     counts: vec4<u32>,
     // Capacities of the lists: fine blades, all others, flowers.
     capacities: vec4<u32>,
@@ -194,7 +195,8 @@ fn about(plant: Plant, lean: vec2<f32>, distance_m: f32, light: f32) -> vec4<f32
 fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, kind: f32) {
     let pixel_m = distance_m * frame.screen.z;
     let thinned = inverseSqrt(density(distance_m, plants.shape.y));
-    let width = max(plant.width * thinned, pixel_m * plants.time.w) * min(grown * 2.0, 1.0);
+    let least_m = select(pixel_m * plants.time.w, 0.0, plants.counts.w != 0u);
+    let width = max(plant.width * thinned, least_m) * min(grown * 2.0, 1.0);
     if !is_blade_seen(plant.root, points, width) {
         return;
     }
@@ -227,7 +229,7 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
 fn growth(index: u32, distance_m: f32) -> f32 {
     let kept = f32(plants.counts.y) * density(distance_m, plants.shape.y);
     let thinning = clamp((kept - f32(index)) / (0.18 * kept), 0.0, 1.0);
-    return thinning * (1.0 - smoothstep(frame.reach.x, frame.reach.y, distance_m));
+    return select(thinning, 0.0, distance_m >= frame.reach.y);
 }
 
 @compute @workgroup_size(64)

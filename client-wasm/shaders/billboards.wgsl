@@ -18,7 +18,7 @@ struct Stand {
 }
 
 struct List {
-    // Clumps; instances whose clumps have several segments, and how many their rectangles have at most; unused.
+    // Clumps; instances whose clumps have several segments, and how many their rectangles have at most; those clumps.
     range: vec4<u32>,
     // Distance from which on clumps begin to bend as a whole (m), and at which all do; unused.
     several: vec4<f32>,
@@ -29,6 +29,9 @@ struct List {
 @group(1) @binding(2) var tufts: texture_2d<f32>;
 @group(1) @binding(3) var<storage, read> stands: array<Stand>;
 @group(1) @binding(4) var<storage, read_write> placed: array<Stand>;
+// Keys and numbers of clumps far to near, those of one segment before all others: what is sorted, and what is drawn.
+@group(1) @binding(5) var<storage, read_write> keyed: array<vec2<u32>>;
+@group(1) @binding(6) var<storage, read> in_order: array<vec2<u32>>;
 
 // Clumps in one instance; twin of the constant in `billboards.rs`.
 const CLUMPS: u32 = 32u;
@@ -80,18 +83,18 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let level = field_level(distance_m);
     let wind_lean = lean_of_wind(wind_at(ground, 0.0).xz * gust_at(root), kind.tip.w);
     let lean = lean_of_field(root, level) + wind_lean;
-    let fade_in = smoothstep(frame.reach.x * 0.72, frame.reach.y, distance_m + (clump.w - 0.5) * 2.0);
+    // As single plants fade out (000 section 6.1).
+    let fade_in = smoothstep(frame.reach.x, frame.reach.y, distance_m + (clump.w - 0.5) * 2.0);
     let fade_out = 1.0 - smoothstep(frame.reach.z, frame.reach.w, distance_m);
     var stand: Stand;
     let light = cloud_light(root) * sun_visible(ground + vec3<f32>(0.0, height * 0.6, 0.0));
-    // Clumps rise and sink rather than dissolve.
     // From above, sparse clumps would show as stars; the ground's own colour serves there.
     let down = smoothstep(0.09, 0.22, dot(frame.eye.xyz - ground, ground_normal(root)) / max(distance_m, 1e-3));
     let flat_share = down * smoothstep(frame.reach.y * 0.9, frame.reach.y * 1.6, distance_m);
-    let risen = fade_in * mix(0.35, 1.0, fade_out) * (1.0 - flat_share);
+    let risen = mix(0.35, 1.0, fade_out) * (1.0 - flat_share);
     let segments = select(1u, u32(kind.shape.x), id.x / CLUMPS < list.range.y);
     let straight = smoothstep(list.several.x, list.several.y, distance_m);
-    stand.pose = vec4<f32>(kind.root.w, f32(segments), min(fade_out * 4.0, 1.0) * step(0.1, share) * step(0.05, risen), 0.0);
+    stand.pose = vec4<f32>(kind.root.w, f32(segments), fade_in * min(fade_out * 4.0, 1.0) * step(0.1, share) * step(0.05, risen), 0.0);
     if stand.pose.z > 0.0 {
         stand.joints = joints_of(ground, kind, segments, height * risen, level, wind_lean, straight);
     }
@@ -110,6 +113,15 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     placed[id.x] = stand;
 }
 
+@compute @workgroup_size(64)
+fn key_clumps(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x < list.range.x {
+        let root = clumps[id.x].place.xy;
+        let near = nearness(distance(vec3<f32>(root.x, ground_height(root), root.y), frame.eye.xyz));
+        keyed[id.x] = vec2<u32>((u32(id.x < list.range.w) << 15u) | near, id.x);
+    }
+}
+
 struct Rectangle {
     @builtin(position) position: vec4<f32>,
     @location(0) uv: vec2<f32>,
@@ -118,25 +130,22 @@ struct Rectangle {
     @location(2) tip_color: vec3<f32>,
     @location(3) petal_light: vec3<f32>,
     @location(4) shown: f32,
+    // From the eye (m).
+    @location(5) distance_m: f32,
 }
 
-@vertex
-fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Rectangle {
-    let rows = select(1u, list.range.z, instance < list.range.y);
-    let corners = 2u * (rows + 1u);
-    let number = instance * CLUMPS + index / (6u * corners);
-    let local = index % (6u * corners);
+// A corner of one of a clump's six rectangles: two a row, from the lowest.
+fn corner_of(number: u32, side: u32, corner: u32) -> Rectangle {
     var out: Rectangle;
     out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
-    if number >= list.range.x || stands[number].pose.z <= 0.0 {
+    if stands[number].pose.z <= 0.0 {
         return out;
     }
     let place = clumps[number].place;
     let pose = stands[number].pose;
-    let side = local / corners;
-    let outward = f32(local & 1u);
+    let outward = f32(corner & 1u);
     // Rows above the topmost segment of its kind lie on its top.
-    let row = min((local % corners) >> 1u, u32(pose.y));
+    let row = min(corner >> 1u, u32(pose.y));
     let angle = (f32(side) / 6.0 + place.w) * TAU;
     let direction = vec2<f32>(cos(angle), sin(angle));
     let root = place.xy + direction * place.z * outward;
@@ -154,21 +163,84 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
         1.0 - upward,
     );
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
+    out.distance_m = distance(p, frame.eye.xyz);
     return out;
 }
 
-@fragment
-fn fs(r: Rectangle) -> @location(0) vec4<f32> {
+fn hidden() -> Rectangle {
+    var out: Rectangle;
+    out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+    return out;
+}
+
+@vertex
+fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Rectangle {
+    let rows = select(1u, list.range.z, instance < list.range.y);
+    let corners = 2u * (rows + 1u);
+    let number = instance * CLUMPS + index / (6u * corners);
+    if number >= list.range.x {
+        return hidden();
+    }
+    return corner_of(number, index / corners % 6u, index % corners);
+}
+
+// Instances of clumps of one segment come first.
+@vertex
+fn vs_in_order(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Rectangle {
+    let single = list.range.x - list.range.w;
+    let single_instances = (single + CLUMPS - 1u) / CLUMPS;
+    let is_single = instance < single_instances;
+    let rows = select(list.range.z, 1u, is_single);
+    let corners = 2u * (rows + 1u);
+    let first = select(single + (instance - single_instances) * CLUMPS, instance * CLUMPS, is_single);
+    let at = first + index / (6u * corners);
+    if at >= select(list.range.x, single, is_single) {
+        return hidden();
+    }
+    let number = in_order[at].y;
+    // The rectangle that points away from the eye, those on both sides of it, and so on.
+    let place = clumps[number].place;
+    let away = place.xy - frame.eye.xz;
+    let farthest = round((atan2(away.y, away.x) / TAU - place.w) * 6.0);
+    let aside = array<f32, 6>(0.0, 1.0, -1.0, 2.0, -2.0, 3.0)[index / corners % 6u];
+    return corner_of(number, u32(farthest + aside + 18.0) % 6u, index % corners);
+}
+
+// Opacity below which nothing is drawn.
+const LEAST: f32 = 0.08;
+
+fn painted(r: Rectangle) -> vec4<f32> {
     // Texture: height along the plant, hue, petals' share, cover.
     let texel = textureSample(tufts, repeated, vec2<f32>(r.uv.x, clamp(r.uv.y, 0.01, 0.99)));
     let alpha = clamp((texel.a - 0.5) / max(fwidth(texel.a), 0.0001) + 0.5, 0.0, 1.0);
-    if alpha * r.shown <= random3(vec2<i32>(r.position.xy), 11u).x * 0.98 + 0.01 {
-        discard;
-    }
     let up = 1.0 - r.uv.y;
     let t = texel.r * smoothstep(-0.15, 0.75, up);
     let color = mix(r.root_color, r.tip_color, t * t);
     let petal = select(vec3<f32>(0.85, 0.80, 0.72), vec3<f32>(0.80, 0.58, 0.06), texel.g > 0.5);
     let flowers = texel.b * step(0.01, frame.blade.x);
-    return vec4<f32>(mix(color, petal * r.petal_light, flowers), 1.0);
+    return vec4<f32>(mix(color, petal * r.petal_light, flowers), alpha * r.shown);
+}
+
+@fragment
+fn fs(r: Rectangle) -> @location(0) vec4<f32> {
+    let paint = painted(r);
+    if paint.a <= random3(vec2<i32>(r.position.xy), 11u).x * 0.98 + 0.01 {
+        discard;
+    }
+    return vec4<f32>(paint.rgb, 1.0);
+}
+
+@fragment
+fn fs_soft(r: Rectangle) -> @location(0) vec4<f32> {
+    let paint = painted(r);
+    if paint.a < LEAST {
+        discard;
+    }
+    return paint;
+}
+
+@fragment
+fn fs_weighted(r: Rectangle) -> Weighted {
+    let paint = painted(r);
+    return weighted(paint.rgb, paint.a, r.distance_m);
 }

@@ -8,9 +8,12 @@ struct StripList {
 }
 
 @group(1) @binding(0) var<storage, read> blades: array<Blade>;
+// Lengths of the lists; where blades are drawn far to near, their spans in that order, as `order.wgsl` has them.
 @group(1) @binding(1) var<storage, read> drawn: array<u32>;
 @group(1) @binding(2) var<uniform> list: StripList;
 @group(1) @binding(3) var shapes: texture_2d<f32>;
+// Keys and places of blades far to near.
+@group(1) @binding(4) var<storage, read> in_order: array<vec2<u32>>;
 
 // Shapes in the texture.
 const SHAPES: f32 = 5.0;
@@ -21,7 +24,17 @@ struct Strip {
     @location(1) @interpolate(linear) across: f32,
     // Place in the texture of shapes; below zero for a tapered blade.
     @location(2) shape: vec2<f32>,
+    // Share that is shown where blades give way to what stands for far plants.
+    @location(3) shown: f32,
+    // Across the strip from its middle, and its half width (px).
+    @location(4) @interpolate(linear) border: vec2<f32>,
+    @location(5) distance_m: f32,
 }
+
+// Nearest that borders are widened (m).
+const BORDER_FROM_M: f32 = 0.05;
+// Opacity below which nothing is drawn.
+const LEAST: f32 = 0.08;
 
 // What is shown of a strip's side: nearly half of it turns to the eye, since a strip that is seen edge on would vanish between pixels, and
 // fewer blades close the sward so. For the picture alone; the backbone does not know of it.
@@ -31,18 +44,20 @@ fn shown_side(side: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>) -> vec3<f32>
     return normalize(side * 0.55 + toward / max(length(toward), 1e-3) * 0.45);
 }
 
-@vertex
-fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Strip {
-    let segments = list.range.z;
-    let vertices = segments * 2u + 2u;
-    let number = instance * 64u + index / vertices;
+fn hidden() -> Strip {
     var out: Strip;
-    if number >= min(drawn[list.range.w], list.range.y) {
-        out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
-        return out;
-    }
-    let blade = blades[u32(i32(list.range.x) + i32(number) * list.order.x)];
-    let corner = corner_of(index % vertices, segments);
+    out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+    return out;
+}
+
+// A place on the picture (px from its middle).
+fn pixel_of(clip: vec4<f32>) -> vec2<f32> {
+    return clip.xy / clip.w * frame.screen.xy * 0.5;
+}
+
+// A corner of a strip; one with soft borders is half a pixel wider on either side.
+fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
+    var out: Strip;
     let t = corner.x;
     let across = corner.y;
     let is_textured = frame.blade.w > 0.5;
@@ -77,19 +92,121 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let shape = floor(fract(blade.points[1].w * 61.0) * SHAPES);
     out.shape = select(vec2<f32>(-1.0), vec2<f32>((shape + 0.5 + 0.48 * across) / SHAPES, 1.0 - t), is_textured);
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
+    out.distance_m = distance(p, frame.eye.xyz);
+    out.shown = 1.0 - smoothstep(frame.reach.x, frame.reach.y, distance(blade.root.xyz, frame.eye.xyz));
+    // What is so near has no border to speak of.
+    out.border = vec2<f32>(across, 1.0) * 100.0;
+    let middle = frame.projection_from_world * vec4<f32>(centre, 1.0);
+    let ahead = frame.projection_from_world * vec4<f32>(centre + tangent * 0.01, 1.0);
+    if has_soft_borders && min(min(middle.w, ahead.w), out.position.w) > BORDER_FROM_M {
+        let at = pixel_of(out.position);
+        let along = pixel_of(ahead) - pixel_of(middle);
+        let sideways = vec2<f32>(-along.y, along.x) / max(length(along), 1e-6);
+        let aside = dot(at - pixel_of(middle), sideways);
+        let half_px = abs(aside);
+        out.border = vec2<f32>(across * (half_px + 0.5), half_px);
+        let widened = at + sideways * (0.5 * select(-1.0, 1.0, aside >= 0.0));
+        out.position = vec4<f32>(widened / (frame.screen.xy * 0.5) * out.position.w, out.position.zw);
+    }
     return out;
+}
+
+// Which blade of the list a vertex belongs to.
+fn number_of(index: u32, instance: u32) -> u32 {
+    return instance * 64u + index / (list.range.z * 2u + 2u);
+}
+
+fn corner_at(index: u32) -> vec2<f32> {
+    return corner_of(index % (list.range.z * 2u + 2u), list.range.z);
+}
+
+fn listed(number: u32) -> Blade {
+    return blades[u32(i32(list.range.x) + i32(number) * list.order.x)];
+}
+
+@vertex
+fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Strip {
+    let number = number_of(index, instance);
+    if number >= min(drawn[list.range.w], list.range.y) {
+        return hidden();
+    }
+    return strip_of(listed(number), corner_at(index), false);
+}
+
+@vertex
+fn vs_soft(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Strip {
+    let number = number_of(index, instance);
+    if number >= min(drawn[list.range.w], list.range.y) {
+        return hidden();
+    }
+    return strip_of(listed(number), corner_at(index), true);
+}
+
+// The list's number is that of its span.
+@vertex
+fn vs_in_order(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Strip {
+    let number = number_of(index, instance);
+    if number >= drawn[list.range.w + 1u] {
+        return hidden();
+    }
+    let place = in_order[drawn[list.range.w] + number].y;
+    var corner = corner_at(index);
+    // A blade of one segment has only its first and last row.
+    if place >= drawn[5] {
+        corner.x = floor(corner.x + 0.5);
+    }
+    return strip_of(blades[place], corner, true);
+}
+
+struct Painted {
+    color: vec3<f32>,
+    opacity: f32,
+}
+
+// Light of a tapered blade across: a fold along the middle, one half lighter than the other, the rib darker.
+fn fold(across: f32) -> f32 {
+    return 1.0 + 0.10 * across - 0.16 * (1.0 - smoothstep(0.0, 0.35, abs(across)));
+}
+
+// Light of a textured one: where it ends, the texture is dark.
+fn grain(texel: vec4<f32>) -> f32 {
+    return 0.3 + 0.85 * texel.r / max(texel.a, 0.05);
 }
 
 @fragment
 fn fs(strip: Strip) -> @location(0) vec4<f32> {
-    let texel = textureSample(shapes, clamped, strip.shape);
+    let texel = textureSampleLevel(shapes, clamped, strip.shape, 0.0);
+    // What stands for far plants is dithered by the same number.
+    if strip.shown < 1.0 && strip.shown <= 0.99 - 0.98 * random3(vec2<i32>(strip.position.xy), 11u).x {
+        discard;
+    }
     if strip.shape.x >= 0.0 {
         if texel.a < 0.5 {
             discard;
         }
-        return vec4<f32>(strip.color * (0.3 + 0.85 * texel.r), 1.0);
+        return vec4<f32>(strip.color * grain(texel), 1.0);
     }
-    // A fold along the middle: one half lighter than the other, the rib darker.
-    let fold = 1.0 + 0.10 * strip.across - 0.16 * (1.0 - smoothstep(0.0, 0.35, abs(strip.across)));
-    return vec4<f32>(strip.color * fold, 1.0);
+    return vec4<f32>(strip.color * fold(strip.across), 1.0);
+}
+
+fn painted(strip: Strip) -> Painted {
+    let texel = textureSample(shapes, clamped, strip.shape);
+    let is_textured = strip.shape.x >= 0.0;
+    let light = select(fold(strip.across), grain(texel), is_textured);
+    return Painted(strip.color * light, covered(strip.border) * strip.shown * select(1.0, texel.a, is_textured));
+}
+
+@fragment
+fn fs_soft(strip: Strip) -> @location(0) vec4<f32> {
+    let paint = painted(strip);
+    if paint.opacity < LEAST {
+        discard;
+    }
+    return vec4<f32>(paint.color, paint.opacity);
+}
+
+@fragment
+fn fs_weighted(strip: Strip) -> Weighted {
+    let paint = painted(strip);
+    return weighted(paint.color, paint.opacity, strip.distance_m);
 }

@@ -58,7 +58,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let axis = normalize(tangent + frame.sun.xyz * 0.45 + vec3<f32>(0.0, 0.35, 0.0));
     let right = normalize(cross(axis, vec3<f32>(0.31, 0.17, 0.93)));
     let ahead = cross(right, axis);
-    let size = stem.root.w * 1.7;
+    let size = stem.root.w * 1.7 * (1.0 - smoothstep(frame.reach.x, frame.reach.y, distance(head, frame.eye.xyz)));
 
     var p: vec3<f32>;
     var normal = axis;

@@ -1,16 +1,19 @@
 //! Clumps of far plants (000 section 4.1): how many and how long follows from the grids between them and the camera.
 
 use super::blades::grid_is_seen;
+use super::clump_order::{Cell, Laid};
 use super::cull::Frustum;
 use super::gpu::Gpu;
+use super::look::Order;
 use super::paint;
-use super::pipeline::{Draw, Maker, bind, storage, storage_rw, texture, uniform};
+use super::pipeline::{Maker, bind_as, storage, storage_rw, uniform};
 use super::shaders;
 use crate::state::Land;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use shared::hash::hash3;
 use shared::lod::{billboard_plants, billboards_per_side};
+use std::ops::Range;
 use wgpu::BufferUsages;
 
 /// Clumps in one instance; twin of `CLUMPS` in `billboards.wgsl`.
@@ -46,17 +49,19 @@ pub(super) struct Reach {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct List {
+    /// Clumps; instances whose clumps have several segments, and how many at most; those clumps.
     counts: [u32; 4],
     several_m: [f32; 4],
 }
 
 pub(super) struct Billboards {
-    pipeline: wgpu::RenderPipeline,
+    laid: Laid,
     place: wgpu::ComputePipeline,
     place_group: wgpu::BindGroup,
     clumps: wgpu::Buffer,
     list: wgpu::Buffer,
-    group: wgpu::BindGroup,
+    stands: wgpu::Buffer,
+    tufts: wgpu::TextureView,
     /// Of instances whose rectangles have 1, 2, ... rows.
     indices: [wgpu::Buffer; SEGMENT_LIMIT],
     count: u32,
@@ -68,12 +73,8 @@ pub(super) struct Billboards {
 impl Billboards {
     pub(super) fn new(maker: &Maker<'_>) -> Self {
         let gpu = maker.gpu;
-        let layout = maker.layout("billboards", &[storage(0), uniform(1), texture(2), storage(3)]);
         let place_layout = maker.layout("billboard places", &[storage(0), uniform(1), storage_rw(4)]);
-        let draw =
-            Draw { label: "billboards", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None };
         let module = gpu.shader("billboards", shaders::BILLBOARDS);
-        let pipeline = maker.draw(&module, Some(&layout), &draw);
         let place = maker.compute("place", &module, "place", &place_layout);
         let size = (CLUMP_LIMIT * size_of::<Clump>()) as u64;
         let clumps = gpu.empty_buffer("clumps", size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
@@ -81,18 +82,17 @@ impl Billboards {
         let tufts = gpu.texture("tufts", wgpu::TextureFormat::Rgba8Unorm, paint::TUFT_PX, &paint::tufts());
         let tufts = tufts.create_view(&Default::default());
         let stands = gpu.empty_buffer("stands", (CLUMP_LIMIT as u64) * STAND_BYTES, BufferUsages::STORAGE);
-        let texture = wgpu::BindingResource::TextureView(&tufts);
-        let [clump_list, count, placed] = [&clumps, &list, &stands].map(|buffer| buffer.as_entire_binding());
-        let group = bind(gpu, "billboards", &layout, &[clump_list.clone(), count.clone(), texture, placed.clone()]);
-        let place_entries =
-            [(0, clump_list), (1, count), (4, placed)].map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource });
-        let place_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("billboard places"),
-            layout: &place_layout,
-            entries: &place_entries,
-        });
+        let place_group = bind_as(gpu, "billboard places", &place_layout, &[(0, &clumps), (1, &list), (4, &stands)]);
         let indices = std::array::from_fn(|i| gpu.buffer("clump", bytemuck::cast_slice(&clump_indices(i as u16 + 1)), BufferUsages::INDEX));
-        Self { pipeline, place, place_group, clumps, list, group, indices, count: 0, several: 0, segments: 1 }
+        let laid = Laid::new(maker, Order::default(), CLUMP_LIMIT as u32, [&clumps, &list, &stands], &tufts);
+        Self { laid, place, place_group, clumps, list, stands, tufts, indices, count: 0, several: 0, segments: 1 }
+    }
+
+    /// Lays clumps in another order from now on.
+    pub(super) fn set_order(&mut self, maker: &Maker<'_>, order: Order) {
+        if order != self.laid.order {
+            self.laid = Laid::new(maker, order, CLUMP_LIMIT as u32, [&self.clumps, &self.list, &self.stands], &self.tufts);
+        }
     }
 
     /// Lists the clumps in view, nearest grids first.
@@ -104,6 +104,7 @@ impl Billboards {
         let several_rings = (within.several_m / grid_m) as i32;
         let mut clumps = Vec::new();
         let mut several = 0;
+        let mut cells = Vec::new();
         'rings: for ring in 0..=reach {
             if ring <= several_rings {
                 several = clumps.len();
@@ -128,6 +129,7 @@ impl Billboards {
                             continue;
                         }
                         clumps.push(Clump { axis_m, length_m: spacing_m * 0.5 * overlap, random: random[2] });
+                        cells.push(Cell { away: [dx, dz], per_side, at: [i, j] });
                         if clumps.len() == CLUMP_LIMIT {
                             break 'rings;
                         }
@@ -138,11 +140,13 @@ impl Billboards {
         self.count = clumps.len() as u32;
         gpu.queue.write_buffer(&self.clumps, 0, bytemuck::cast_slice(&clumps));
         self.several = several.div_ceil(CHUNK as usize) as u32;
+        let several = self.count.min(self.several * CHUNK);
+        self.laid.prepare(gpu, &cells, several as usize);
         self.segments = land.scene().kinds().iter().map(|grass| grass.segments as usize).max().unwrap_or(1).clamp(1, SEGMENT_LIMIT);
         // Every clump beyond the last ring with several segments is at least this far away.
         let straight_m = ((several_rings - 1) as f32 * grid_m).max(1.0);
         let list =
-            List { counts: [self.count, self.several, self.segments as u32, 0], several_m: [0.5 * straight_m, straight_m, 0.0, 0.0] };
+            List { counts: [self.count, self.several, self.segments as u32, several], several_m: [0.5 * straight_m, straight_m, 0.0, 0.0] };
         gpu.queue.write_buffer(&self.list, 0, bytemuck::bytes_of(&list));
     }
 
@@ -151,23 +155,32 @@ impl Billboards {
         self.count
     }
 
-    /// Finds how each listed clump stands.
+    /// Finds how each listed clump stands, and their order.
     pub(super) fn bend(&self, pass: &mut wgpu::ComputePass<'_>) {
         if self.count > 0 {
             pass.set_pipeline(&self.place);
             pass.set_bind_group(1, &self.place_group, &[]);
             pass.dispatch_workgroups(self.count.div_ceil(64), 1, 1);
+            self.laid.run(pass, self.count);
         }
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(1, &self.group, &[]);
-        let instances = self.count.div_ceil(CHUNK);
-        for (rows, range) in [(self.segments, 0..self.several), (1, self.several..instances)] {
+        pass.set_pipeline(&self.laid.pipeline);
+        pass.set_bind_group(1, &self.laid.group, &[]);
+        for (rows, range) in self.instances() {
             pass.set_index_buffer(self.indices[rows - 1].slice(..), wgpu::IndexFormat::Uint16);
             pass.draw_indexed(0..CHUNK * 36 * rows as u32, 0, range);
         }
+    }
+
+    /// Rows of the instances in the order in which they are drawn: near ones first, or last where clumps are drawn far to near.
+    fn instances(&self) -> [(usize, Range<u32>); 2] {
+        if self.laid.is_in_order() {
+            let single = (self.count - self.count.min(self.several * CHUNK)).div_ceil(CHUNK);
+            return [(1, 0..single), (self.segments, single..single + self.several)];
+        }
+        [(self.segments, 0..self.several), (1, self.several..self.count.div_ceil(CHUNK))]
     }
 }
 

@@ -8,9 +8,9 @@ pub enum Order {
     Cut,
     /// Opacity becomes a share of a pixel's samples, and the depth buffer decides; as [`Order::Cut`] where a pixel has one sample.
     Coverage,
-    /// All plants in view sorted far to near each frame on the GPU, blended by 000 Eq. (10).
+    /// Blades and clumps in view sorted far to near each frame on the GPU, blended by 000 Eq. (10).
     Sorted,
-    /// The plants of the camera's grid sorted, those of the grids about it in one of eight orders made beforehand, grids far to near
+    /// Blades of the camera's grid sorted, those of the grids about it in one of eight orders made beforehand, grids far to near
     /// (000 §5.4.1 and §5.4.2); blended by Eq. (10).
     Precomputed,
     /// Blended without order, each weighted by its depth (McGuire & Bavoil, J. Comput. Graph. Tech. 2013).
@@ -20,6 +20,19 @@ pub enum Order {
 impl Order {
     /// All ways.
     pub const ALL: [Self; 5] = [Self::Cut, Self::Coverage, Self::Sorted, Self::Precomputed, Self::Weighted];
+
+    /// What becomes of it where a pixel has so many samples; with blades listed by turns, which have no order, only their depth decides.
+    pub(super) fn at(self, samples: u32, by_turns: bool) -> Self {
+        match if self.blends() && by_turns { Self::Coverage } else { self } {
+            Self::Coverage if samples == 1 => Self::Cut,
+            order => order,
+        }
+    }
+
+    /// Whether plants are blended over what is opaque.
+    pub(super) fn blends(self) -> bool {
+        matches!(self, Self::Sorted | Self::Precomputed | Self::Weighted)
+    }
 
     /// Name as an address and the page write it.
     pub fn name(self) -> &'static str {

@@ -6,6 +6,7 @@
 mod atlas;
 mod billboards;
 mod blades;
+mod clump_order;
 mod cull;
 mod detail;
 mod dust;
@@ -27,6 +28,7 @@ mod quality;
 mod rain;
 mod shaders;
 mod sky;
+mod sort;
 mod split;
 mod terrain;
 mod tone;
@@ -34,6 +36,7 @@ mod underbrush;
 mod uniforms;
 mod vehicles;
 mod view;
+mod weighted;
 mod wind;
 
 pub use atlas::reach_m as bend_reach_m;
@@ -64,6 +67,7 @@ use terrain::{Ground, Terrain};
 use tone::Tone;
 use underbrush::Underbrush;
 use view::View;
+use weighted::Weighted;
 
 /// Distance up to which clumps of plants have several segments, over that at which single plants end.
 const SEVERAL_REACHES: f32 = 1.6;
@@ -98,6 +102,8 @@ pub struct Renderer {
     sky: Sky,
     terrain: Terrain,
     billboards: Billboards,
+    /// Made when first needed.
+    weighted: Option<Weighted>,
     scene: Option<SceneParts>,
 }
 
@@ -112,6 +118,26 @@ struct SceneParts {
     rain: Option<RainPass>,
     objects: Objects,
     dust: Option<Dust>,
+}
+
+impl SceneParts {
+    /// Draws plants that are blended over what is opaque: far ones, then single ones.
+    fn draw_plants(&self, clumps: Option<&Billboards>, pass: &mut wgpu::RenderPass<'_>) {
+        if let Some(clumps) = clumps {
+            clumps.draw(pass);
+        }
+        self.blades.draw(pass);
+    }
+
+    /// Draws what is in the air.
+    fn draw_weather(&self, pass: &mut wgpu::RenderPass<'_>) {
+        if let Some(dust) = &self.dust {
+            dust.draw(pass);
+        }
+        if let Some(rain) = &self.rain {
+            rain.draw(pass);
+        }
+    }
 }
 
 /// The pictures that the passes draw to.
@@ -168,6 +194,7 @@ impl Renderer {
             size_px,
             targets,
             frame,
+            weighted: None,
             scene: None,
         }
     }
@@ -177,6 +204,7 @@ impl Renderer {
         self.size_px = size_px.map(|side| side.max(1));
         self.targets = Targets::new(&self.gpu, self.size_px, self.quality.samples(self.gpu.is_software));
         self.tone.set_picture(&self.gpu, self.targets.picture());
+        self.weighted = None;
     }
 
     /// Size of the target (px).
@@ -258,9 +286,16 @@ impl Renderer {
         let frustum = if self.look.culls { Frustum::new(&view.projection_from_world) } else { Frustum::ALL };
         let tiles = scene.ground.tiles(camera.eye_m, &frustum);
         self.terrain.prepare(gpu, &tiles);
+        let maker = Maker { gpu, frame_layout: &self.frame.layout, samples: self.quality.samples(gpu.is_software) };
+        let order = self.look.order.at(maker.samples, scene.blades.by_turns());
+        scene.blades.set_order(&maker, order);
+        self.billboards.set_order(&maker, order);
+        if order == Order::Weighted && self.weighted.is_none() {
+            self.weighted = Some(Weighted::new(&maker, self.size_px));
+        }
         let from = Standpoint { eye_m: camera.eye_m, frustum: &frustum, detail: &self.detail, look: self.look, dt_secs };
         scene.blades.prepare(gpu, land, &from);
-        let reach = Reach { from_m: 0.72 * frame.reach[0], several_m: SEVERAL_REACHES * frame.reach[1], to_m: frame.reach[3] };
+        let reach = Reach { from_m: frame.reach[0], several_m: SEVERAL_REACHES * frame.reach[1], to_m: frame.reach[3] };
         if self.look.far == Far::Clumps {
             self.billboards.prepare(gpu, land, camera.eye_m, &frustum, reach);
         }
@@ -275,6 +310,7 @@ impl Renderer {
         let reach_m = self.detail.trees_m;
         scene.objects.prepare(gpu, &poses, camera.eye_m, &frustum, time_secs as f32, dt_secs, reach_m);
 
+        let clumps = (self.look.far == Far::Clumps).then_some(&self.billboards);
         let turns = scene.blades.turns();
         for turn in 0..turns {
             scene.blades.begin_turn(gpu, turn);
@@ -289,8 +325,8 @@ impl Renderer {
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 scene.blades.bend(&mut pass);
                 if turn == 0 {
-                    if self.look.far == Far::Clumps {
-                        self.billboards.bend(&mut pass);
+                    if let Some(clumps) = clumps {
+                        clumps.bend(&mut pass);
                     }
                     if let Some(underbrush) = &scene.underbrush {
                         underbrush.bend(&mut pass);
@@ -300,29 +336,45 @@ impl Renderer {
                     }
                 }
             }
+            let weighted = self.weighted.as_ref().filter(|_| order == Order::Weighted);
+            let is_last = turn + 1 == turns;
             {
-                let mut pass = main_pass(&mut encoder, &self.targets, turn == 0, turn + 1 == turns);
+                let mut pass = main_pass(&mut encoder, &self.targets, turn == 0, is_last && weighted.is_none());
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 if turn == 0 {
                     scene.objects.draw(&mut pass);
                 }
-                scene.blades.draw(&mut pass);
-                if turn + 1 == turns {
+                if !order.blends() {
+                    scene.blades.draw(&mut pass);
+                }
+                scene.blades.draw_flowers(&mut pass);
+                if is_last {
                     if let Some(underbrush) = &scene.underbrush {
                         underbrush.draw(&mut pass);
                     }
-                    if self.look.far == Far::Clumps {
-                        self.billboards.draw(&mut pass);
+                    if let Some(clumps) = clumps.filter(|_| !order.blends()) {
+                        clumps.draw(&mut pass);
                     }
                     self.terrain.draw(&mut pass);
                     self.sky.draw(&mut pass);
-                    if let Some(dust) = &scene.dust {
-                        dust.draw(&mut pass);
-                    }
-                    if let Some(rain) = &scene.rain {
-                        rain.draw(&mut pass);
+                    if weighted.is_none() {
+                        if order.blends() {
+                            scene.draw_plants(clumps, &mut pass);
+                        }
+                        scene.draw_weather(&mut pass);
                     }
                 }
+            }
+            if let Some(weighted) = weighted {
+                {
+                    let mut pass = weighted.pass(&mut encoder, &self.targets.depth);
+                    pass.set_bind_group(0, &scene.textures.group, &[]);
+                    scene.draw_plants(clumps, &mut pass);
+                }
+                let mut pass = main_pass(&mut encoder, &self.targets, false, true);
+                pass.set_bind_group(0, &scene.textures.group, &[]);
+                weighted.compose(&mut pass);
+                scene.draw_weather(&mut pass);
             }
             if turn + 1 == turns {
                 let mut pass = tone_pass(&mut encoder, target, part.keeps);

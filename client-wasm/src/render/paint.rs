@@ -8,6 +8,8 @@ pub(super) const TUFT_PX: [u32; 2] = [1024, 256];
 pub(super) const LEAF_PX: u32 = 128;
 /// Size of the texture of blades (px): their shapes side by side; twin of `SHAPES` in `blades.wgsl`.
 pub(super) const BLADE_PX: [u32; 2] = [64 * 5, 256];
+/// Its mip levels, down to 4 px a shape, so that shapes do not run into each other.
+const BLADE_LEVELS: usize = 5;
 
 /// A generator of random numbers in 0..1 (splitmix64), the same on every machine.
 pub(super) struct Random(u64);
@@ -197,7 +199,25 @@ pub(super) fn blades() -> Vec<Vec<u8>> {
             }
         }
     }
-    vec![texels]
+    halved(texels, BLADE_PX, BLADE_LEVELS)
+}
+
+/// Mip levels of a picture, each the mean of the one before.
+fn halved(texels: Vec<u8>, [mut width, mut height]: [u32; 2], count: usize) -> Vec<Vec<u8>> {
+    let mut levels = vec![texels];
+    while levels.len() < count {
+        let finer = levels.last().expect("the finest level is there");
+        let row = width as usize * 4;
+        (width, height) = (width / 2, height / 2);
+        let mean = |at: usize| {
+            let (x, y, channel) = (at / 4 % width as usize, at / 4 / width as usize, at % 4);
+            let corner = 2 * y * row + 8 * x + channel;
+            let sum: u32 = [0, 4, row, row + 4].map(|beside| u32::from(finer[corner + beside])).iter().sum();
+            ((sum + 2) / 4) as u8
+        };
+        levels.push((0..(width * height * 4) as usize).map(mean).collect());
+    }
+    levels
 }
 
 /// Light of a blade of a shape at a height and a place across, both as shares; none beside it.

@@ -1,11 +1,25 @@
 //! How the passes make their bind groups and pipelines.
 
 use super::gpu::Gpu;
+use super::look::Order;
 
 /// Format of the picture before tone mapping.
 pub(super) const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Formats of what is blended without order: the weighted sum, and the share of a pixel that is left.
+pub(super) const SUM: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+pub(super) const COVERED: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
 /// Format of depth, reversed: 0 is infinitely far.
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Adds a factor of the source to a factor of what is there.
+const fn blended(src_factor: wgpu::BlendFactor, dst_factor: wgpu::BlendFactor) -> wgpu::BlendState {
+    let component = wgpu::BlendComponent { src_factor, dst_factor, operation: wgpu::BlendOperation::Add };
+    wgpu::BlendState { color: component, alpha: component }
+}
+
+/// 000 Eq. (10), in all four channels: S·Sₐ + D·(1 − Sₐ). So the alpha that is left is Sₐ² + Dₐ·(1 − Sₐ), which is not the share of a pixel that is
+/// covered; nothing reads it. Light is not held to 0..1 before tone mapping.
+const OVER: wgpu::BlendState = blended(wgpu::BlendFactor::SrcAlpha, wgpu::BlendFactor::OneMinusSrcAlpha);
 
 /// What all passes are made with.
 pub(super) struct Maker<'a> {
@@ -60,9 +74,41 @@ impl Maker<'_> {
     }
 
     pub(super) fn draw(&self, module: &wgpu::ShaderModule, own: Option<&wgpu::BindGroupLayout>, draw: &Draw<'_>) -> wgpu::RenderPipeline {
+        let targets: &[_] = if draw.vertex == "vs_shadow" { &[] } else { &[target(COLOR, draw.blend)] };
+        self.render(module, own, draw, targets, false)
+    }
+
+    /// A pass of plants that are laid over each other in an order.
+    pub(super) fn draw_in_order(
+        &self,
+        module: &wgpu::ShaderModule,
+        own: Option<&wgpu::BindGroupLayout>,
+        draw: &Draw<'_>,
+        order: Order,
+    ) -> wgpu::RenderPipeline {
+        use wgpu::BlendFactor::{One, OneMinusSrc, Zero};
+        match order {
+            Order::Cut => self.draw(module, own, draw),
+            Order::Coverage => self.render(module, own, draw, &[target(COLOR, None)], true),
+            // What comes later is nearer. Where it is not, as plants that lean cross, depth keeps the nearer one.
+            Order::Sorted | Order::Precomputed => self.render(module, own, draw, &[target(COLOR, Some(OVER))], false),
+            Order::Weighted => {
+                let targets = [target(SUM, Some(blended(One, One))), target(COVERED, Some(blended(Zero, OneMinusSrc)))];
+                self.render(module, own, &Draw { depth_write: false, ..*draw }, &targets, false)
+            }
+        }
+    }
+
+    fn render(
+        &self,
+        module: &wgpu::ShaderModule,
+        own: Option<&wgpu::BindGroupLayout>,
+        draw: &Draw<'_>,
+        targets: &[Option<wgpu::ColorTargetState>],
+        alpha_to_coverage_enabled: bool,
+    ) -> wgpu::RenderPipeline {
         let to_shadow = draw.vertex == "vs_shadow";
         let compare = if to_shadow { wgpu::CompareFunction::Less } else { wgpu::CompareFunction::GreaterEqual };
-        let targets = [Some(wgpu::ColorTargetState { format: COLOR, blend: draw.blend, write_mask: wgpu::ColorWrites::ALL })];
         self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(draw.label),
             layout: Some(&self.pipeline_layout(draw.label, own)),
@@ -80,17 +126,25 @@ impl Maker<'_> {
                 stencil: Default::default(),
                 bias: Default::default(),
             }),
-            multisample: wgpu::MultisampleState { count: if to_shadow { 1 } else { self.samples }, ..Default::default() },
+            multisample: wgpu::MultisampleState {
+                count: if to_shadow { 1 } else { self.samples },
+                alpha_to_coverage_enabled,
+                ..Default::default()
+            },
             fragment: draw.fragment.map(|entry| wgpu::FragmentState {
                 module,
                 entry_point: Some(entry),
                 compilation_options: Default::default(),
-                targets: if to_shadow { &[] } else { &targets },
+                targets,
             }),
             multiview_mask: None,
             cache: None,
         })
     }
+}
+
+fn target(format: wgpu::TextureFormat, blend: Option<wgpu::BlendState>) -> Option<wgpu::ColorTargetState> {
+    Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })
 }
 
 pub(super) fn uniform(binding: u32) -> wgpu::BindGroupLayoutEntry {
@@ -134,5 +188,12 @@ pub(super) fn bind(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, resou
         .enumerate()
         .map(|(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource: resource.clone() })
         .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+/// A bind group of buffers by their binding.
+pub(super) fn bind_as(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {
+    let entries: Vec<_> =
+        buffers.iter().map(|&(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }).collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }

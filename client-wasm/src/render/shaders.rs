@@ -22,6 +22,7 @@ pub(super) const BACKBONE: &str = include_str!("../../shaders/backbone.wgsl");
 pub(super) const BLADES: &str = concat!(
     include_str!("../../shaders/backbone.wgsl"),
     include_str!("../../shaders/sward.wgsl"),
+    include_str!("../../shaders/weighted.wgsl"),
     include_str!("../../shaders/blades.wgsl")
 );
 /// Rain.
@@ -35,9 +36,20 @@ pub(super) const UNDERBRUSH: &str = concat!(
 /// Flower heads.
 pub(super) const FLOWERS: &str = include_str!("../../shaders/flowers.wgsl");
 /// Clumps of far plants.
-pub(super) const BILLBOARDS: &str = concat!(include_str!("../../shaders/sward.wgsl"), include_str!("../../shaders/billboards.wgsl"));
+pub(super) const BILLBOARDS: &str = concat!(
+    include_str!("../../shaders/sward.wgsl"),
+    include_str!("../../shaders/nearness.wgsl"),
+    include_str!("../../shaders/weighted.wgsl"),
+    include_str!("../../shaders/billboards.wgsl")
+);
 /// Motes and puffs of dust.
 pub(super) const DUST: &str = include_str!("../../shaders/dust.wgsl");
+/// The listed blades far to near.
+pub(super) const ORDER: &str = concat!(include_str!("../../shaders/nearness.wgsl"), include_str!("../../shaders/order.wgsl"));
+/// What was blended without order, laid over the picture.
+pub(super) const COMPOSE: &str = include_str!("../../shaders/compose.wgsl");
+/// Sort of pairs by their keys.
+pub(super) const SORT: &str = include_str!("../../shaders/sort.wgsl");
 /// Ground.
 pub(super) const TERRAIN: &str = concat!(include_str!("../../shaders/sward.wgsl"), include_str!("../../shaders/terrain.wgsl"));
 /// Objects, trees and stones.

@@ -1,7 +1,7 @@
 use super::picture::read;
 use super::pipeline::{Maker, bind, storage_rw};
 use super::shaders;
-use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Plants, Shower, Squares, StripList, UnderbrushFrame};
+use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Ordering, Plants, Shower, SortDigit, Squares, StripList, UnderbrushFrame};
 use super::{Gpu, Look, Picture, Quality, blades};
 use crate::camera::Camera;
 use crate::state::Mirror;
@@ -18,6 +18,7 @@ use shared::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, omega_rad
 use shared::wire::{ObjectPose, ServerMessage, Shape, codec};
 use wgpu::naga;
 
+mod order;
 mod small;
 mod underbrush;
 
@@ -42,6 +43,9 @@ fn every_shader_is_valid_wgsl_without_extensions() {
         shaders::RAIN,
         shaders::BILLBOARDS,
         shaders::DUST,
+        shaders::SORT,
+        shaders::ORDER,
+        shaders::COMPOSE,
         shaders::TERRAIN,
         shaders::OBJECTS,
         shaders::SKY,
@@ -89,6 +93,8 @@ fn uniform_blocks_lie_as_their_twins() {
         assert_twins(&self::module(strips), "StripList", StripList::LAYOUT, size_of::<StripList>());
     }
     assert_twins(&self::module(shaders::DUST), "Drift", Drift::LAYOUT, size_of::<Drift>());
+    assert_twins(&self::module(shaders::SORT), "SortDigit", SortDigit::LAYOUT, size_of::<SortDigit>());
+    assert_twins(&self::module(shaders::ORDER), "Ordering", Ordering::LAYOUT, size_of::<Ordering>());
 }
 
 /// A flat meadow of 64 m in a wind towards the east.
@@ -557,7 +563,7 @@ fn as_many_flowers_stand_as_the_scene_says_and_all_are_listed() {
         picture.set_look(Look { culls: false, ..Look::default() });
         picture.draw(&mut mirror, &camera, 0.0, 0.0);
         let blades = &picture.renderer.scene.as_ref().expect("a scene").blades;
-        let bytes = read(&gpu, &blades.counters);
+        let bytes = read(&gpu, &blades.listed.counters);
         let &[fine, coarse, single, heads] = bytemuck::cast_slice::<u8, u32>(&bytes) else { panic!("four lists") };
         let [fine_limit, others_limit, heads_limit] = blades.capacities;
         assert!(fine <= fine_limit && coarse + single <= others_limit && heads <= heads_limit, "{bytes:?} of {:?}", blades.capacities);

@@ -107,7 +107,8 @@ uniform_block! {
     Plants {
         /// Grid (x, z) in each of the nine slots; third: 1 when it has just moved in; fourth: plants of it that may stand.
         slots: [[i32; 4]; 9],
-        /// Places for plants in a near grid; plants there at this level of detail; 1 to leave out what is not seen; unused.
+        /// Places for plants in a near grid; plants there at this level of detail; 1 to leave out what is not seen; 1 where blades narrower than a pixel are
+        /// drawn as wide as they are.
         counts: [u32; 4],
         /// Capacities of the lists of fine blades, of all others, and of flowers.
         capacities: [u32; 4],
@@ -183,6 +184,26 @@ uniform_block! {
         /// Drops; unused.
         counts: [u32; 4],
         /// Side of the square that they are in, and its height (m); speed at which they fall (m/s); opacity.
+        shape: [f32; 4],
+    }
+}
+
+uniform_block! {
+    /// A digit by which pairs are sorted; its twin is in `sort.wgsl`.
+    SortDigit {
+        /// Lowest bit of the digit; which counter says how many pairs there are; most pairs; unused.
+        shape: [u32; 4],
+    }
+}
+
+uniform_block! {
+    /// What the passes that order blades know; its twin is in `order.wgsl`.
+    Ordering {
+        /// Capacities of the lists of fine blades and of all others; 1 for the orders made beforehand; unused.
+        lists: [u32; 4],
+        /// The camera's grid (x, z); unused.
+        home: [i32; 4],
+        /// Side of a grid (m); unused.
         shape: [f32; 4],
     }
 }

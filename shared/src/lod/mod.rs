@@ -1,8 +1,10 @@
-//! Which grass grid is drawn how (000 §4.1 and §5.2), and how the segments of a plant follow each other (001 §4.5).
+//! Which grass grid is drawn how (000 §4.1 and §5.2) and in what order (000 §5.4), and how the segments of a plant follow each other (001 §4.5).
 
 mod lag;
+mod order;
 
 pub use lag::{Lag, PASTS, history_weights, joints_m};
+pub use order::{Section, far_to_near};
 
 /// Plants along one side of a billboard, l' of 000 Eq. (8), for a grid `g` grids away from the camera's
 /// (Chebyshev distance, at least 1): `l·2^⌊log₂ g⌋ + 1` with l = 2.

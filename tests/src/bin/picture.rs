@@ -3,7 +3,7 @@
 use anyhow::{Context as _, Result};
 use clap::Parser;
 use client_wasm::camera::Camera;
-use client_wasm::render::{Gpu, Quality};
+use client_wasm::render::{Far, Gpu, Look, Order, Quality};
 use std::path::PathBuf;
 use std::time::Instant;
 use tests::picture::Picture;
@@ -31,6 +31,12 @@ struct Arguments {
     /// low, medium, high or ultra
     #[arg(long, default_value = "high")]
     quality: String,
+    /// How plants are laid over each other: cut, coverage, sorted, precomputed or weighted
+    #[arg(long, default_value = "cut")]
+    order: String,
+    /// What stands for far plants: blades, clumps, shells or land
+    #[arg(long, default_value = "clumps")]
+    far: String,
     /// Frames drawn, 1/30 s apart, so that the blades have found their motion; the last one is kept
     #[arg(long, default_value_t = 45)]
     frames: u32,
@@ -44,6 +50,8 @@ fn main() -> Result<()> {
     let (width, height) = arguments.size.split_once('x').context("--size: WIDTHxHEIGHT is allowed, such as 1280x720")?;
     let size_px: [u32; 2] = [width.parse().context("--size: width")?, height.parse().context("--size: height")?];
     let quality = Quality::from_name(&arguments.quality).context("--quality: low, medium, high or ultra are allowed")?;
+    let order = Order::from_name(&arguments.order).context("--order: cut, coverage, sorted, precomputed or weighted are allowed")?;
+    let far = Far::from_name(&arguments.far).context("--far: blades, clumps, shells or land are allowed")?;
     let mut stage = Stage::load(&arguments.scene)?;
     let scene = stage.scene();
     let mut camera = match &arguments.camera {
@@ -60,6 +68,7 @@ fn main() -> Result<()> {
 
     let gpu = Gpu::headless()?;
     let mut picture = client_wasm::render::Picture::new(&gpu, size_px, quality);
+    picture.set_look(Look { order, far, ..Look::default() });
     const DT_SECS: f32 = 1.0 / 30.0;
     let mut stats = Default::default();
     let mut drawing_secs = 0.0;

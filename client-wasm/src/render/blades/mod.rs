@@ -3,6 +3,8 @@
 
 mod grids;
 mod horizon;
+mod laid;
+mod order;
 mod strips;
 
 use super::cull::Frustum;
@@ -12,11 +14,12 @@ use super::paint;
 use super::pipeline::{Draw, Maker, bind, storage, storage_rw, texture, uniform};
 use super::shaders;
 use super::uniforms::{Plants, StripList};
-use super::{Look, Quality};
+use super::{Look, Order, Quality};
 use crate::state::Land;
 use glam::Vec3;
 use grids::Grids;
 pub(super) use grids::grid_is_seen;
+use laid::{Laid, Listed};
 use shared::scene::BLADE_STEPS_LIMIT;
 use std::f32::consts::{PI, TAU};
 use strips::{flower_indices, strip_indices};
@@ -47,18 +50,18 @@ pub(super) struct Blades {
     near: wgpu::ComputePipeline,
     far: wgpu::ComputePipeline,
     finish: wgpu::ComputePipeline,
-    strips: wgpu::RenderPipeline,
+    pub(super) laid: Laid,
+    pub(super) listed: Listed,
     heads: wgpu::RenderPipeline,
     plants: wgpu::Buffer,
     #[cfg(test)]
     pub(super) sways: wgpu::Buffer,
-    pub(super) counters: wgpu::Buffer,
     draws: wgpu::Buffer,
     compute_group: wgpu::BindGroup,
     lists: [wgpu::BindGroup; LISTS],
     indices: [wgpu::Buffer; LISTS],
     grids: Grids,
-    grid_m: f32,
+    by_turns: bool,
     /// Places for plants in each near grid.
     places: u32,
     /// Plants that this frame moves.
@@ -66,7 +69,6 @@ pub(super) struct Blades {
     near_workgroups: u32,
     /// Most blades drawn fine, most of all others, and most flower heads.
     pub(super) capacities: [u32; 3],
-    segments: [u32; 2],
     thinnest_px: f32,
     /// Longest step that every blade bears (s).
     longest_step_secs: f32,
@@ -101,7 +103,7 @@ impl Blades {
         let plants = gpu.empty_buffer("plants", size_of::<Plants>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let sways = gpu.empty_buffer("sways", u64::from(places) * 9 * SWAY_BYTES, storage_usage | BufferUsages::COPY_SRC);
         let drawn_count = capacities.iter().sum::<u32>();
-        let drawn = gpu.empty_buffer("drawn plants", u64::from(drawn_count) * BLADE_BYTES, storage_usage);
+        let drawn = gpu.empty_buffer("drawn plants", u64::from(drawn_count) * BLADE_BYTES, storage_usage | BufferUsages::COPY_SRC);
         let counters = gpu.empty_buffer("counters", 4 * LISTS as u64, storage_usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
         let indices = [strip_indices(segments[0]), strip_indices(segments[1]), strip_indices(1), flower_indices()];
         let draw_args: Vec<u32> = indices.iter().flat_map(|list| [list.len() as u32, 0, 0, 0, 0]).collect();
@@ -113,7 +115,7 @@ impl Blades {
         let buffers = [&plants, &sways, &drawn, &counters, grids.chunks(), &draws];
         let compute_group = bind(gpu, "bend", &compute_layout, &buffers.map(|buffer| buffer.as_entire_binding()));
 
-        let list_layout = maker.layout("plant list", &[storage(0), storage(1), uniform(2), texture(3)]);
+        let list_layout = list_layout(maker);
         let shapes = gpu.texture("blades", wgpu::TextureFormat::Rgba8Unorm, paint::BLADE_PX, &paint::blades());
         let shapes = shapes.create_view(&Default::default());
         let [fine, others, heads] = capacities;
@@ -129,35 +131,46 @@ impl Blades {
             let [drawn, counters, list] = [&drawn, &counters, &list].map(|buffer| buffer.as_entire_binding());
             bind(gpu, "plant list", &list_layout, &[drawn, counters, list, wgpu::BindingResource::TextureView(&shapes)])
         });
-        let draw = |label| Draw { label, vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None };
-        let strips = maker.draw(&gpu.shader("blades", shaders::BLADES), Some(&list_layout), &draw("blades"));
-        let heads = maker.draw(&gpu.shader("flowers", shaders::FLOWERS), Some(&list_layout), &draw("flowers"));
+        let draw = Draw { label: "flowers", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None };
+        let heads = maker.draw(&gpu.shader("flowers", shaders::FLOWERS), Some(&list_layout), &draw);
+        let listed = Listed { blades: drawn, counters, shapes, capacities: [fine, others], segments, grid_m };
         let compute = |entry| maker.compute(entry, &bend, entry, &compute_layout);
         Self {
             near: compute("bend_near"),
             far: compute("bend_far"),
             finish: compute("finish"),
-            strips,
+            laid: Laid::new(maker, Order::default(), &listed),
+            listed,
             heads,
             plants,
             #[cfg(test)]
             sways,
-            counters,
             draws,
             compute_group,
             lists,
             indices: indices.map(|list| gpu.buffer("plant", bytemuck::cast_slice(&list), BufferUsages::INDEX)),
             grids,
-            grid_m,
+            by_turns: all > TURN_LIMIT,
             places,
             simulated: 0,
             near_workgroups: 0,
             capacities,
-            segments,
             thinnest_px: quality.thinnest_px(),
             longest_step_secs: land.scene().blade_step_secs(),
             slots: [None; 9],
         }
+    }
+
+    /// Lays blades in another order from now on.
+    pub(super) fn set_order(&mut self, maker: &Maker<'_>, order: Order) {
+        if order != self.laid.order() {
+            self.laid = Laid::new(maker, order, &self.listed);
+        }
+    }
+
+    /// Whether a frame may need several turns.
+    pub(super) fn by_turns(&self) -> bool {
+        self.by_turns
     }
 
     /// Plants whose posture the newest frame has moved.
@@ -168,7 +181,7 @@ impl Blades {
     pub(super) fn prepare(&mut self, gpu: &Gpu, land: &Land, from: &Standpoint<'_>) {
         let detail = from.detail;
         let plants_of_grid = plants_of_grid(land, detail).min(self.places);
-        let home = [from.eye_m.x, from.eye_m.z].map(|m| (m / self.grid_m).floor() as i32);
+        let home = [from.eye_m.x, from.eye_m.z].map(|m| (m / self.listed.grid_m).floor() as i32);
         let mut slots = [[0; 4]; 9];
         let mut most = 0;
         self.simulated = 0;
@@ -177,7 +190,7 @@ impl Blades {
                 let grid = [home[0] + dx, home[1] + dz];
                 let slot = (grid[0].rem_euclid(3) + 3 * grid[1].rem_euclid(3)) as usize;
                 let is_new = self.slots[slot] != Some(grid);
-                let bounds = grids::bounds_m(land, grid, self.grid_m);
+                let bounds = grids::bounds_m(land, grid, self.listed.grid_m);
                 let distance_m = from.eye_m.distance(from.eye_m.clamp(bounds[0], bounds[1]));
                 let is_seen = !from.look.culls || from.frustum.sees_box(bounds[0], bounds[1]);
                 let stands = if is_seen { (plants_of_grid as f32 * density(distance_m, detail.full_m)).ceil() as u32 } else { 0 };
@@ -191,16 +204,19 @@ impl Blades {
         self.near_workgroups = most.div_ceil(CHUNK);
         let looks = &land.scene().plants;
         let (steps, step_secs) = steps(self.longest_step_secs, from.dt_secs);
-        let flowers = looks.flowers_per_m2 * self.grid_m * self.grid_m;
+        let flowers = looks.flowers_per_m2 * self.listed.grid_m * self.listed.grid_m;
         let plants = Plants {
             slots,
-            counts: [self.places, plants_of_grid, u32::from(from.look.culls), 0],
+            counts: [self.places, plants_of_grid, u32::from(from.look.culls), u32::from(self.laid.order() != Order::Cut)],
             capacities: [self.capacities[0], self.capacities[1], self.capacities[2], 0],
-            shape: [self.grid_m, detail.full_m, detail.fine_m, looks.swing_damping],
-            steps: [steps, looks.integrator as u32, self.segments[0], self.segments[1]],
+            shape: [self.listed.grid_m, detail.full_m, detail.fine_m, looks.swing_damping],
+            steps: [steps, looks.integrator as u32, self.listed.segments[0], self.listed.segments[1]],
             time: [step_secs, flower_lot(flowers, plants_of_grid), FLOWER_POWER, self.thinnest_px],
         };
         gpu.queue.write_buffer(&self.plants, 0, bytemuck::bytes_of(&plants));
+        if let Some(ordered) = self.laid.ordered() {
+            ordered.prepare(gpu, home);
+        }
         self.grids.prepare(from, home, plants_of_grid);
     }
 
@@ -214,7 +230,7 @@ impl Blades {
         if turn > 0 {
             self.near_workgroups = 0;
         }
-        gpu.queue.write_buffer(&self.counters, 0, &[0; 4 * LISTS]);
+        gpu.queue.write_buffer(&self.listed.counters, 0, &[0; 4 * LISTS]);
         self.grids.begin_turn(gpu, turn);
     }
 
@@ -229,16 +245,31 @@ impl Blades {
         pass.dispatch_workgroups_indirect(self.grids.workgroups(), 0);
         pass.set_pipeline(&self.finish);
         pass.dispatch_workgroups(1, 1, 1);
-    }
-
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        for (list, group) in self.lists.iter().enumerate() {
-            pass.set_pipeline(if list < FLOWERS { &self.strips } else { &self.heads });
-            pass.set_bind_group(1, group, &[]);
-            pass.set_index_buffer(self.indices[list].slice(..), wgpu::IndexFormat::Uint16);
-            pass.draw_indexed_indirect(&self.draws, list as u64 * 20);
+        if let Some(ordered) = self.laid.ordered() {
+            ordered.run(pass);
         }
     }
+
+    /// Draws the blades in the order that is set.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.laid.draw(pass, |pass| (0..FLOWERS).for_each(|list| self.draw_list(pass, list)));
+    }
+
+    pub(super) fn draw_flowers(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.heads);
+        self.draw_list(pass, FLOWERS);
+    }
+
+    fn draw_list(&self, pass: &mut wgpu::RenderPass<'_>, list: usize) {
+        pass.set_bind_group(1, &self.lists[list], &[]);
+        pass.set_index_buffer(self.indices[list].slice(..), wgpu::IndexFormat::Uint16);
+        pass.draw_indexed_indirect(&self.draws, list as u64 * 20);
+    }
+}
+
+/// Bindings of a list of blades or flowers.
+fn list_layout(maker: &Maker<'_>) -> wgpu::BindGroupLayout {
+    maker.layout("plant list", &[storage(0), storage(1), uniform(2), texture(3)])
 }
 
 /// Plants of a grid near the camera, blades and flowers.

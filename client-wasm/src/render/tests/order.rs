@@ -1,0 +1,143 @@
+//! Plants laid over each other: blades far to near, borders that fade, orders that change from frame to frame.
+
+use super::super::blades::Blades;
+use super::super::{Look, Order};
+use super::*;
+
+const SIZE_PX: [u32; 2] = [96, 64];
+
+/// A meadow, and a picture of it whose blades have found their posture.
+fn grown(gpu: &Gpu, quality: Quality) -> (Mirror, Picture) {
+    let mut mirror = meadow(4.0);
+    let mut picture = Picture::new(gpu, SIZE_PX, quality);
+    for _ in 0..3 {
+        picture.draw(&mut mirror, &camera(), 1.0, 0.03);
+    }
+    (mirror, picture)
+}
+
+/// Off the middle of its grid, and not along its sides.
+fn camera() -> Camera {
+    Camera { eye_m: Vec3::new(33.1, 1.1, 38.7), heading_rad: 0.7, pitch_rad: -0.2, ..Camera::default() }
+}
+
+/// The same moment drawn in an order.
+fn pixels(mirror: &mut Mirror, picture: &mut Picture, order: Order) -> Vec<u8> {
+    picture.set_look(Look { order, ..Look::default() });
+    picture.draw(mirror, &camera(), 1.0, 0.0);
+    picture.rgba()
+}
+
+/// Mean of the absolute differences of two pictures, of 255.
+fn apart(a: &[u8], b: &[u8]) -> f64 {
+    a.iter().zip(b).map(|(&a, &b)| f64::from(a.abs_diff(b))).sum::<f64>() / a.len() as f64
+}
+
+fn blades(picture: &Picture) -> &Blades {
+    &picture.renderer.scene.as_ref().expect("a scene").blades
+}
+
+/// Roots (m) of the blades in the order in which they are drawn, and how many of them come before the fine ones.
+fn roots_in_order(gpu: &Gpu, picture: &Picture) -> (Vec<Vec3>, usize) {
+    let blades = blades(picture);
+    let ordered = blades.laid.ordered().expect("blades in order");
+    let spans: Vec<u32> = bytemuck::pod_collect_to_vec(&read(gpu, ordered.spans()));
+    let pairs: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&read(gpu, ordered.pairs()));
+    let listed: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read(gpu, &blades.listed.blades));
+    let rows = (blades::BLADE_BYTES / 16) as usize;
+    let mut places: Vec<u32> = pairs[..spans[0] as usize].iter().map(|pair| pair[1]).collect();
+    let roots = places.iter().map(|&place| Vec3::from_slice(&listed[place as usize * rows][..3])).collect();
+    let counters: Vec<u32> = bytemuck::pod_collect_to_vec(&read(gpu, &blades.listed.counters));
+    assert_eq!(places.len() as u32, counters[..3].iter().sum::<u32>(), "every blade that is listed is drawn");
+    places.sort_unstable();
+    places.dedup();
+    assert_eq!(places.len() as u32, spans[0], "and once");
+    assert_eq!([spans[1], spans[3]], [0, spans[2]]);
+    assert_eq!((spans[4], spans[2] + spans[4]), (counters[0], spans[0]));
+    (roots, spans[2] as usize)
+}
+
+#[test]
+fn sorted_blades_are_drawn_far_to_near() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let (mut mirror, mut picture) = grown(&gpu, Quality::Low);
+    pixels(&mut mirror, &mut picture, Order::Sorted);
+    let (roots, others) = roots_in_order(&gpu, &picture);
+    assert!(others > 500 && roots.len() - others > 50, "{others} and {} fine blades", roots.len() - others);
+    let distances: Vec<f32> = roots.iter().map(|root| root.distance(camera().eye_m)).collect();
+    // A step of the key is 0.027 % of the distance.
+    for (at, pair) in distances.windows(2).enumerate() {
+        assert!(pair[0] * 1.0004 > pair[1], "{} m before {} m at {at}", pair[0], pair[1]);
+    }
+    assert!(distances[0] > 4.0 * distances[distances.len() - 1]);
+}
+
+#[test]
+fn blades_in_the_order_made_beforehand_hide_none_that_comes_later() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let (mut mirror, mut picture) = grown(&gpu, Quality::Low);
+    pixels(&mut mirror, &mut picture, Order::Precomputed);
+    let (roots, others) = roots_in_order(&gpu, &picture);
+    let eye = [camera().eye_m.x, camera().eye_m.z];
+    let flat: Vec<[f32; 2]> = roots.iter().map(|root| [root.x - eye[0], root.z - eye[1]]).collect();
+    let mut overlapping = 0;
+    let mut wrong = 0;
+    for span in [&flat[..others], &flat[others..]] {
+        for (at, a) in span.iter().enumerate() {
+            for b in &span[at + 1..] {
+                let [near, far] = [a[0].hypot(a[1]), b[0].hypot(b[1])];
+                // Within the width of a blade of the line of sight to the farther.
+                let passes = (a[0] * b[1] - a[1] * b[0]).abs() / near.max(far);
+                if passes < 0.005 && a[0] * b[0] + a[1] * b[1] > 0.0 {
+                    overlapping += 1;
+                    wrong += u32::from(far > near * 1.003);
+                }
+            }
+        }
+    }
+    assert!(overlapping > 1000, "{overlapping} pairs");
+    assert!(f64::from(wrong) < 0.03 * f64::from(overlapping), "{wrong} of {overlapping} pairs");
+}
+
+#[test]
+fn orders_change_from_frame_to_frame() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let (mut mirror, mut picture) = grown(&gpu, Quality::High);
+    let mut draw = |order| pixels(&mut mirror, &mut picture, order);
+    let [cut, coverage, sorted, precomputed, weighted] = Order::ALL.map(&mut draw);
+    assert!(apart(&cut, &draw(Order::Cut)) < 0.02, "nothing is left of the others");
+    assert!(apart(&sorted, &draw(Order::Sorted)) < 0.02);
+    let same = apart(&sorted, &precomputed);
+    assert!(same < 0.6, "{same} between sorted and precomputed");
+    for (other, least, most) in [(&cut, 0.3, 12.0), (&coverage, 0.1, 12.0), (&weighted, 0.3, 40.0)] {
+        let apart = apart(&sorted, other);
+        assert!((least..most).contains(&apart), "{apart}");
+    }
+    picture.renderer.resize([48, 32]);
+    picture.renderer.resize(SIZE_PX);
+    assert!(apart(&weighted, &pixels(&mut mirror, &mut picture, Order::Weighted)) < 0.02);
+}
+
+#[test]
+fn coverage_of_one_sample_is_cut() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let (mut mirror, mut picture) = grown(&gpu, Quality::Low);
+    let [cut, coverage, ..] = Order::ALL.map(|order| pixels(&mut mirror, &mut picture, order));
+    assert!(apart(&cut, &coverage) < 0.02);
+}
+
+#[test]
+fn a_strip_covers_as_much_of_all_pixels_as_it_is_wide() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut mirror = meadow(0.0);
+    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
+    let strips: Vec<[f32; 4]> = (0..40).map(|i| [0.05 * i as f32, 0.11 * i as f32 % 1.0, 0.0, 0.0]).collect();
+    let body = "var sum = 0.0;
+        for (var pixel = -6; pixel <= 6; pixel++) { sum += covered(vec2<f32>(f32(pixel) + at.y, at.x)); }
+        return vec4<f32>(sum, covered(vec2<f32>(at.x + 0.5, at.x)), covered(vec2<f32>(0.0, at.x)), 0.0);";
+    for ([half_px, ..], [sum, beside, middle, _]) in strips.iter().zip(probe_in(&gpu, &picture, shaders::BACKBONE, body, &strips)) {
+        assert!((sum - 2.0 * half_px).abs() < 1e-5, "{sum} of a strip of {} px", 2.0 * half_px);
+        assert_eq!((beside, middle), (0.0, (2.0 * half_px).min(1.0)));
+    }
+}
