@@ -105,10 +105,13 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     // Seen from above a clump shows its upper parts.
     let above = smoothstep(0.10, 0.50, -view.y);
     let base = mix(kind.root.rgb * tint, tip * 0.8, above * 0.75);
-    let root_lit = grass_light(base, normal, tangent, view, light * mix(0.4, 0.9, above), mix(0.3, 0.8, above));
+    let root_light = light * mix(sun_in_grass(0.25, kind.root.w), 0.9, above);
+    let root_lit = grass_light(base, normal, tangent, view, root_light, mix(0.3, 0.8, above)) + grass_lamps(base, normal, tangent, view, p, above);
     stand.root_color = vec4<f32>(hazed(root_lit, p), 0.0);
-    stand.tip_color = vec4<f32>(hazed(grass_light(tip * trodden(tilt), normal, tangent, view, light, 1.0), p), 0.0);
-    stand.petal_light = vec4<f32>(frame.sun_color.rgb * light * 0.6 + ambient(normal), 0.0);
+    let tip_albedo = tip * trodden(tilt);
+    let tip_lit = grass_light(tip_albedo, normal, tangent, view, light, 1.0) + grass_lamps(tip_albedo, normal, tangent, view, p, 1.0);
+    stand.tip_color = vec4<f32>(hazed(tip_lit, p), 0.0);
+    stand.petal_light = vec4<f32>(frame.sun_color.rgb * light * 0.6 + ambient(normal) + lamps_on(p, normal, 0.3), 0.0);
     placed[id.x] = stand;
 }
 

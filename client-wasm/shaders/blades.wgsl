@@ -77,8 +77,9 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     // Little light is lost on the way down into short grass.
     let deep = smoothstep(0.0, 0.60, kind.root.w);
     let occlusion = mix(mix(0.60, 0.16, deep), 1.0, smoothstep(0.0, 0.85, max(height, t * 0.75)));
-    let light = blade.points[2].w * mix(mix(0.75, 0.30, deep), 1.0, smoothstep(0.05, 0.75, max(height, t * 0.7)));
-    out.color = hazed(grass_light(albedo, soft, tangent, view, light, occlusion), p);
+    let light = blade.points[2].w * sun_in_grass(max(height, t * 0.7), kind.root.w);
+    let lit = grass_light(albedo, soft, tangent, view, light, occlusion) + grass_lamps(albedo, soft, tangent, view, p, height);
+    out.color = hazed(lit, p);
     out.across = across;
     let shape = floor(fract(blade.points[1].w * 61.0) * SHAPES);
     out.shape = select(vec2<f32>(-1.0), vec2<f32>((shape + 0.5 + 0.48 * across) / SHAPES, 1.0 - t), is_textured);

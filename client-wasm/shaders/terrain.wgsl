@@ -46,7 +46,7 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let coarse = noise(p / 5.1);
     let soil = mix(vec3<f32>(0.060, 0.042, 0.026), vec3<f32>(0.155, 0.118, 0.075), grain.r * 0.6 + coarse.g * 0.5);
     let litter = mix(soil, vec3<f32>(0.16, 0.15, 0.055), smoothstep(0.45, 0.75, grain.a) * 0.55);
-    let bare = litter * (frame.sun_color.rgb * sun_light * max(dot(normal, frame.sun.xyz), 0.0) + ambient(normal));
+    let bare = litter * (frame.sun_color.rgb * sun_light * max(dot(normal, frame.sun.xyz), 0.0) + ambient(normal) + lamps_on(ground.p, normal, 0.0));
 
     // The grass as seen from afar: the colour of its upper half, leaning as the blades do.
     let near = 1.0 - smoothstep(frame.reach.x * 0.5, frame.reach.y * 1.6, distance_m);
@@ -60,12 +60,12 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let blade_normal = normalize(normal + vec3<f32>(lean.x, 0.0, lean.y) * 0.9 - view * 0.35);
     let tangent = normalize(normal + vec3<f32>(lean.x, 0.0, lean.y) * 1.4);
     albedo *= (0.90 + 0.42 * smoothstep(0.05, 0.45, tilt)) * trodden(tilt);
-    var grass = grass_light(albedo, blade_normal, tangent, view, sun_light, 0.80);
+    var grass = grass_light(albedo, blade_normal, tangent, view, sun_light, 0.80) + grass_lamps(albedo, blade_normal, tangent, view, ground.p, 0.7);
     let flowers = smoothstep(0.72, 0.80, noise(p / 3.7 + 0.31).b) * min(frame.blade.x * 0.25, 0.35);
-    grass = mix(grass, vec3<f32>(0.75, 0.72, 0.55) * sun_light, flowers * smoothstep(20.0, 60.0, distance_m) * 0.5);
+    grass = mix(grass, vec3<f32>(0.45, 0.43, 0.33) * (frame.sun_color.rgb * (0.4 * sun_light) + ambient(normal)), flowers * smoothstep(20.0, 60.0, distance_m) * 0.5);
     let down = smoothstep(0.10, 0.50, -view.y);
     let under = mix(kind.root.rgb * 0.9, soil * 0.35, 0.35)
-        * (frame.sun_color.rgb * sun_light * 0.35 + ambient(normal) * 0.55);
+        * (frame.sun_color.rgb * sun_light * sun_in_grass(0.0, kind.root.w) + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
     // Short grass hides little of the ground's light.
     let deep = smoothstep(-0.25, 0.60, kind.root.w);
     grass = mix(grass, under, near * deep * mix(0.9, mix(0.45, 0.9, 1.0 - smoothstep(frame.reach.y, frame.reach.y * 2.0, distance_m)), down));

@@ -450,15 +450,16 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let up = clamp(dot(p - plant.root.xyz, normal_up) / max(plant.about.x, 0.05), 0.0, 1.0);
     let deep = smoothstep(0.0, 0.6, plant.about.x);
     let occlusion = mix(mix(0.62, 0.30, deep), 1.0, smoothstep(0.0, 0.8, up));
-    let light = plant.lean.z * mix(mix(0.8, 0.42, deep), 1.0, smoothstep(0.05, 0.7, up));
+    let light = plant.lean.z * sun_in_grass(0.2 + up, plant.about.x);
     if stuff == PETAL {
         let sun_facing = dot(normal, frame.sun.xyz);
         let diffuse = clamp((abs(sun_facing) + 0.3) / 1.3, 0.0, 1.0);
         let through = 0.4 * max(dot(view, frame.sun.xyz), 0.0) * clamp(0.6 - sun_facing, 0.0, 1.0);
-        let lit = albedo * (frame.sun_color.rgb * light * (diffuse + through) * 0.8 + ambient(rounded));
+        let lit = albedo * (frame.sun_color.rgb * light * (diffuse + through) * 0.8 + ambient(rounded) + lamps_on(p, rounded, 0.3));
         out.color = hazed(lit, p);
     } else {
-        out.color = hazed(grass_light(albedo, rounded, along, view, light, occlusion), p);
+        let lit = grass_light(albedo, rounded, along, view, light, occlusion) + grass_lamps(albedo, rounded, along, view, p, up);
+        out.color = hazed(lit, p);
     }
     out.across = select(9.0, across, stuff != STALK && stuff != PETAL);
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);

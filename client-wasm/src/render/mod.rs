@@ -12,6 +12,7 @@ mod flora;
 mod forces;
 mod gpu;
 mod kinds;
+mod lamps;
 mod land;
 mod look;
 mod mesh;
@@ -25,6 +26,7 @@ mod quality;
 mod rain;
 mod shaders;
 mod sky;
+mod sun;
 mod terrain;
 mod tone;
 mod underbrush;
@@ -39,6 +41,7 @@ pub use look::{Far, Look, Order};
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::Picture;
 pub use quality::Quality;
+pub use shared::light::sun::Sun;
 
 use crate::camera::Camera;
 use crate::state::Mirror;
@@ -53,6 +56,7 @@ use pipeline::{COLOR, DEPTH, Maker};
 use rain::RainPass;
 use shared::wire::ObjectPose;
 use sky::Sky;
+use sun::Daylight;
 use terrain::{Ground, Terrain};
 use tone::Tone;
 use underbrush::Underbrush;
@@ -85,6 +89,7 @@ pub struct Renderer {
     look: Look,
     size_px: [u32; 2],
     frame: FrameGroup,
+    daylight: Daylight,
     targets: Targets,
     tone: Tone,
     sky: Sky,
@@ -145,7 +150,8 @@ impl Renderer {
     /// A renderer for targets of `format` and `size_px` (at least 1 × 1).
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, size_px: [u32; 2], quality: Quality) -> Self {
         let size_px = size_px.map(|side| side.max(1));
-        let frame = FrameGroup::new(gpu, quality.shadow_px());
+        let daylight = Daylight::new(gpu);
+        let frame = FrameGroup::new(gpu, quality, &daylight);
         let maker = Maker { gpu, frame_layout: &frame.layout, samples: quality.samples() };
         let targets = Targets::new(gpu, size_px, quality.samples());
         Self {
@@ -159,6 +165,7 @@ impl Renderer {
             size_px,
             targets,
             frame,
+            daylight,
             scene: None,
         }
     }
@@ -225,9 +232,11 @@ impl Renderer {
         scene.textures.wind.follow(gpu, mirror.wind(), dt_secs);
         let Some(land) = mirror.land() else { return FrameStats::default() };
 
-        let view = View::new(camera, self.size_px, self.quality, time_secs);
-        let frame = view.frame(land, &scene.textures.atlas, scene.blades.reach_m(), &poses);
-        self.frame.write(gpu, &frame);
+        let sun = self.look.sun.unwrap_or_else(|| land.scene().light.sun_at(mirror.time_secs()));
+        self.daylight.follow(gpu, sun);
+        let view = View::new(camera, self.size_px, self.quality, time_secs, sun);
+        let frame = view.frame(land, &scene.textures.atlas, &self.daylight, scene.blades.reach_m(), &poses);
+        self.frame.write(gpu, &frame, &view.lights(land, &self.daylight, &poses));
         let frustum = Frustum::new(&view.projection_from_world);
         let tiles = scene.ground.tiles(camera.eye_m, &frustum);
         self.terrain.prepare(gpu, &tiles);
@@ -246,10 +255,10 @@ impl Renderer {
         scene.objects.prepare(gpu, &poses, camera.eye_m, &frustum, time_secs as f32, dt_secs, reach_m);
 
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
-        {
-            let mut pass = shadow_pass(&mut encoder, self.frame.shadow_map());
+        for layer in 0..self.quality.shadow_layers() {
+            let mut pass = shadow_pass(&mut encoder, &self.frame.shadow_map(layer));
             pass.set_bind_group(0, &scene.textures.shadow_group, &[]);
-            scene.objects.draw_shadows(&mut pass);
+            scene.objects.draw_shadows(&mut pass, layer as usize);
         }
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes: None });

@@ -60,7 +60,7 @@ impl Maker<'_> {
     }
 
     pub(super) fn draw(&self, module: &wgpu::ShaderModule, own: Option<&wgpu::BindGroupLayout>, draw: &Draw<'_>) -> wgpu::RenderPipeline {
-        let to_shadow = draw.vertex == "vs_shadow";
+        let to_shadow = draw.vertex.starts_with("vs_shadow");
         let compare = if to_shadow { wgpu::CompareFunction::Less } else { wgpu::CompareFunction::GreaterEqual };
         let targets = [Some(wgpu::ColorTargetState { format: COLOR, blend: draw.blend, write_mask: wgpu::ColorWrites::ALL })];
         self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {

@@ -86,6 +86,11 @@ impl Quality {
         }
     }
 
+    /// Layers of the shadow map: a sharp one near by, and a coarse one far off.
+    pub(super) fn shadow_layers(self) -> u32 {
+        if self == Self::Low { 1 } else { 2 }
+    }
+
     /// Distance at which billboards have melted into the ground (m).
     pub(super) fn billboard_reach_m(self) -> f32 {
         match self {

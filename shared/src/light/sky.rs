@@ -15,7 +15,7 @@ pub const NIGHT_CD_PER_M2: Rgb = [0.024, 0.031, 0.047];
 pub const GROUND_ALBEDO: Rgb = [0.10, 0.13, 0.06];
 /// Height of the eye in the model of the air, and of the clouds that the sun lights (m).
 const EYE_M: f64 = 300.0;
-const CLOUDS_M: f64 = 2500.0;
+const CLOUDS_M: f64 = 6000.0;
 
 /// Places of the table of a sky: by the heading from the sun, and by the elevation.
 pub const HEADINGS: usize = 32;
