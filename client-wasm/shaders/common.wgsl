@@ -18,6 +18,7 @@ struct Frame {
     reach: vec4<f32>,
     clouds: vec4<f32>,
     spheres: array<vec4<f32>, 16>,
+    lights: Lights,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

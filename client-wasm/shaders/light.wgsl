@@ -22,12 +22,10 @@ struct Lights {
     heading: vec4<f32>,
     mist: vec4<f32>,
     shadow: vec4<f32>,
-    counts: vec4<u32>,
     lamps: array<Lamp, 16>,
 }
 
 @group(0) @binding(13) var sky_table: texture_2d<f32>;
-@group(0) @binding(14) var<uniform> lights: Lights;
 
 // --- sky and air ------------------------------------------------------------------------------------------------------
 
@@ -41,7 +39,7 @@ fn haze_phase(cosine: f32) -> f32 {
 
 // Unit vector on the ground towards the sun.
 fn sun_heading() -> vec2<f32> {
-    return lights.heading.xy;
+    return frame.lights.heading.xy;
 }
 
 // Sky over a direction: twin of `Sky::luminance` in shared/src/light/sky.rs. The upper half of the table has what molecules scatter, the lower that of
@@ -54,16 +52,16 @@ fn sky_color(direction: vec3<f32>) -> vec3<f32> {
     let uv = (place * (size - 1.0) + 0.5) / (size * vec2<f32>(1.0, 2.0));
     let molecules = textureSampleLevel(sky_table, clamped, uv, 0.0).rgb;
     let haze = textureSampleLevel(sky_table, clamped, uv + vec2<f32>(0.0, 0.5), 0.0).rgb;
-    let clear = molecules + haze * haze_phase(dot(direction, frame.sun.xyz)) + lights.night.rgb;
+    let clear = molecules + haze * haze_phase(dot(direction, frame.sun.xyz)) + frame.lights.night.rgb;
     // Under rain clouds all directions are grey, the horizon a little brighter.
-    let grey = dot(lights.mean.rgb + lights.up.rgb, vec3<f32>(0.2126, 0.7152, 0.0722));
+    let grey = dot(frame.lights.mean.rgb + frame.lights.up.rgb, vec3<f32>(0.2126, 0.7152, 0.0722));
     let overcast = vec3<f32>(0.94, 0.99, 1.06) * (grey * mix(1.0, 0.68, sqrt(up)));
     return mix(clear, overcast, frame.screen.w);
 }
 
 // Light from sky and land on a surface, over π; twin of `Sky::ambient`.
 fn ambient(normal: vec3<f32>) -> vec3<f32> {
-    return lights.mean.rgb + lights.up.rgb * normal.y + lights.toward_sun.rgb * dot(normal.xz, sun_heading());
+    return frame.lights.mean.rgb + frame.lights.up.rgb * normal.y + frame.lights.toward_sun.rgb * dot(normal.xz, sun_heading());
 }
 
 // Optical depth of air that thins out with height, along a way that begins `low` and rises by `rise` scale heights, over that of as much air of its density
@@ -81,16 +79,19 @@ fn hazed(color: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
     let to = p - frame.eye.xyz;
     let distance_m = length(to);
     let direction = to / max(distance_m, 1e-3);
-    let above_m = frame.eye.y - lights.mist.z;
+    let above_m = frame.eye.y - frame.lights.mist.z;
     let depth = distance_m / frame.sun_color.w * thinned_depth(above_m / HAZE_HEIGHT_M, to.y / HAZE_HEIGHT_M);
     let behind = sky_color(normalize(vec3<f32>(direction.x, max(direction.y, 0.0) + 0.03, direction.z)));
-    let clear = mix(color, behind * 0.93, 1.0 - exp(-depth));
-    if lights.mist.x <= 0.0 {
+    // When the sun has set, its glow is high up: the air between is lit by the whole sky.
+    let around = frame.lights.mean.rgb + frame.lights.up.rgb * 0.6;
+    let air = mix(around, behind, 0.3 + 0.7 * smoothstep(-0.04, 0.10, frame.sun.y));
+    let clear = mix(color, air * 0.93, 1.0 - exp(-depth));
+    let mist = 1.0 - exp(-distance_m * frame.lights.mist.x * thinned_depth(above_m / frame.lights.mist.y, to.y / frame.lights.mist.y));
+    if mist <= 0.0 {
         return clear;
     }
-    let mist = 1.0 - exp(-distance_m * lights.mist.x * thinned_depth(above_m / lights.mist.y, to.y / lights.mist.y));
     let ahead = max(dot(direction, frame.sun.xyz), 0.0);
-    let lit = (lights.mean.rgb + lights.up.rgb * 0.5) * 0.95 + frame.sun_color.rgb * (0.10 + 0.45 * pow(ahead, 6.0));
+    let lit = (frame.lights.mean.rgb + frame.lights.up.rgb * 0.5) * 0.95 + frame.sun_color.rgb * (0.10 + 0.45 * pow(ahead, 6.0));
     return mix(clear, lit, mist);
 }
 
@@ -149,17 +150,17 @@ fn sun_visible(p: vec3<f32>) -> f32 {
     let off = max(max(abs(near.x), abs(near.y)), abs(near.z * 2.0 - 1.0));
     var light = 1.0;
     if off < 0.98 {
-        light = soft_shadow(vec3<f32>(near.xy * vec2<f32>(0.5, -0.5) + 0.5, near.z), 0, lights.shadow.y, lights.shadow.x, turn);
+        light = soft_shadow(vec3<f32>(near.xy * vec2<f32>(0.5, -0.5) + 0.5, near.z), 0, frame.lights.shadow.y, frame.lights.shadow.x, turn);
     }
-    if off < 0.88 || lights.counts.y < 2u {
+    if off < 0.88 || textureNumLayers(shadows) < 2u {
         return light;
     }
-    let far = (lights.far_shadow_from_world * vec4<f32>(p, 1.0)).xyz;
+    let far = (frame.lights.far_shadow_from_world * vec4<f32>(p, 1.0)).xyz;
     let far_off = max(max(abs(far.x), abs(far.y)), abs(far.z * 2.0 - 1.0));
     if far_off >= 0.98 {
         return light;
     }
-    let coarse = soft_shadow(vec3<f32>(far.xy * vec2<f32>(0.5, -0.5) + 0.5, far.z), 1, lights.shadow.w, lights.shadow.z, turn);
+    let coarse = soft_shadow(vec3<f32>(far.xy * vec2<f32>(0.5, -0.5) + 0.5, far.z), 1, frame.lights.shadow.w, frame.lights.shadow.z, turn);
     return mix(mix(light, coarse, smoothstep(0.88, 0.98, off)), 1.0, smoothstep(0.85, 0.98, far_off));
 }
 
@@ -190,8 +191,8 @@ fn lamp_ray(lamp: Lamp, p: vec3<f32>) -> LampRay {
 // Light of all lamps on a surface, over π; `around` is how far light wraps around it: 0 of a solid.
 fn lamps_on(p: vec3<f32>, normal: vec3<f32>, around: f32) -> vec3<f32> {
     var light = vec3<f32>(0.0);
-    for (var i = 0u; i < lights.counts.x; i++) {
-        let ray = lamp_ray(lights.lamps[i], p);
+    for (var i = 0u; i < frame.tiling.w; i++) {
+        let ray = lamp_ray(frame.lights.lamps[i], p);
         light += ray.rgb * clamp((dot(normal, ray.toward) + around) / (1.0 + around), 0.0, 1.0);
     }
     return light;
@@ -226,14 +227,14 @@ fn sun_in_grass(height_share: f32, grass_m: f32) -> f32 {
 }
 
 // What a blade sends to the eye of the light from a direction: reflected as from a strip that is partly round (its own normal, and Kajiya and Kay's), let
-// through mostly straight on, and a highlight along it. `view` runs from the eye to the point. Reflected and let through together are less than what comes:
-// the first fades where the second begins.
+// through mostly straight on, and a highlight along it. `view` runs from the eye to the point. Averaged over all directions to the eye, both together are
+// at most 1.1 times the albedo.
 fn leaf_light(albedo: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>, toward: vec3<f32>) -> vec3<f32> {
     let facing = dot(normal, toward);
     let strip = clamp((facing + 0.35) / 1.35, 0.0, 1.0);
     let diffuse = mix(strip, strip * nearest_normal(dot(tangent, toward)), 0.4);
     let against = max(dot(view, toward), 0.0);
-    let through = (0.16 + 0.78 * against * against * against) * clamp(0.55 - 0.45 * facing, 0.0, 1.0);
+    let through = (0.18 + 1.0 * against * against * against) * clamp(0.55 - 0.45 * facing, 0.0, 1.0);
     let half_way = normalize(toward - view);
     let grazing = 1.0 - max(dot(half_way, toward), 0.0);
     let grazing2 = grazing * grazing;
@@ -256,9 +257,9 @@ fn grass_light(
 // Light of all lamps on the same, at a share of the grass's height.
 fn grass_lamps(albedo: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>, p: vec3<f32>, height_share: f32) -> vec3<f32> {
     var light = vec3<f32>(0.0);
-    for (var i = 0u; i < lights.counts.x; i++) {
-        if distance(p, lights.lamps[i].place.xyz) < lights.lamps[i].place.w {
-            let ray = lamp_ray(lights.lamps[i], p);
+    for (var i = 0u; i < frame.tiling.w; i++) {
+        if distance(p, frame.lights.lamps[i].place.xyz) < frame.lights.lamps[i].place.w {
+            let ray = lamp_ray(frame.lights.lamps[i], p);
             light += ray.rgb * leaf_light(albedo, normal, tangent, view, ray.toward);
         }
     }

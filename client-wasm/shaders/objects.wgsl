@@ -70,8 +70,8 @@ fn vs(vertex: Vertex, @builtin(instance_index) index: u32) -> Surface {
 // Light of the glass right before a lamp, where a solid turns with its beam.
 fn shining(p: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     var light = vec3<f32>(0.0);
-    for (var i = 0u; i < lights.counts.x; i++) {
-        let lamp = lights.lamps[i];
+    for (var i = 0u; i < frame.tiling.w; i++) {
+        let lamp = frame.lights.lamps[i];
         if distance(p, lamp.place.xyz) < GLASS_M {
             light += lamp.rgb.rgb * (6.0 * smoothstep(0.2, 0.8, dot(normal, lamp.aim.xyz)));
         }
@@ -128,7 +128,7 @@ fn vs_shadow(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
 @vertex
 fn vs_shadow_far(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
     var out: Shade;
-    out.position = lights.far_shadow_from_world * vec4<f32>(placed(vertex, instances[index]), 1.0);
+    out.position = frame.lights.far_shadow_from_world * vec4<f32>(placed(vertex, instances[index]), 1.0);
     out.leaf = vertex.leaf;
     return out;
 }

@@ -48,7 +48,7 @@ fn stars(direction: vec3<f32>) -> f32 {
     let middle = cell + 0.2 + 0.6 * own.xy;
     let pixel = max(frame.screen.z * 0.5 * STAR_CELLS, 0.02);
     let off = distance(at, middle) / pixel;
-    return exp(-0.7 * off * off) * (0.02 + 1.2 * pow(own.z, 22.0)) * smoothstep(0.0, 0.25, direction.y);
+    return exp(-0.7 * off * off) * (0.02 + 1.2 * pow(own.z, 22.0));
 }
 
 @fragment
@@ -58,8 +58,9 @@ fn fs(ray: Ray) -> @location(0) vec4<f32> {
     let toward_sun = max(dot(direction, frame.sun.xyz), 0.0);
     let clear = 1.0 - frame.screen.w;
     color += sun_disc(direction) * clear;
-    if lights.night.w > 0.0 {
-        color += vec3<f32>(0.85, 0.92, 1.05) * (stars(direction) * lights.night.w * clear);
+    let starry = frame.lights.night.w * clear * smoothstep(0.0, 0.25, direction.y);
+    if starry > 0.0 {
+        color += vec3<f32>(0.85, 0.92, 1.05) * (stars(direction) * starry);
     }
     if direction.y > 0.015 && frame.screen.w < 0.95 {
         let at = frame.eye.xz + frame.clouds.xy + direction.xz / (direction.y + 0.05) * 1500.0;
@@ -68,9 +69,9 @@ fn fs(ray: Ray) -> @location(0) vec4<f32> {
             // Sunlight comes in aslant: denser cloud on the sun's side keeps it away.
             let lit = cloud_density(at + sun_heading() * 260.0);
             let edge = pow(toward_sun, 12.0);
-            let sky = lights.mean.rgb + lights.up.rgb;
-            let bright = lights.cloud_sun.rgb * (0.44 + 0.6 * edge) + sky * 0.6;
-            let shade = lights.cloud_sun.rgb * 0.085 + sky * 0.75;
+            let sky = frame.lights.mean.rgb + frame.lights.up.rgb;
+            let bright = frame.lights.cloud_sun.rgb * (0.44 + 0.6 * edge) + sky * 0.6;
+            let shade = frame.lights.cloud_sun.rgb * 0.085 + sky * 0.75;
             let cloud = mix(bright, shade, clamp(lit * 0.85 + density * 0.15, 0.0, 1.0) * (1.0 - 0.5 * edge));
             let fade = smoothstep(0.015, 0.16, direction.y);
             color = mix(color, cloud, density * 0.9 * fade * clear);

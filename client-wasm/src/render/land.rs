@@ -1,4 +1,4 @@
-//! What all passes sample: heights, normals, cover, bend atlas, wind, noise, shadow map, sky, and the frame's uniform blocks.
+//! What all passes sample: heights, normals, cover, bend atlas, wind, noise, shadow map, sky, and the frame's uniform block.
 
 use super::atlas::Atlas;
 use super::gpu::Gpu;
@@ -7,7 +7,7 @@ use super::paint;
 use super::pipeline::{DEPTH, bind, sampled, sampler, texture, uniform};
 use super::quality::Quality;
 use super::sun::Daylight;
-use super::uniforms::{Frame, Lights};
+use super::uniforms::Frame;
 use super::wind::WindTexture;
 use crate::state::Land;
 use shared::scene::Scene;
@@ -18,7 +18,6 @@ use wgpu::{TextureFormat, TextureSampleType, TextureViewDimension};
 pub(super) struct FrameGroup {
     pub(super) layout: wgpu::BindGroupLayout,
     uniforms: wgpu::Buffer,
-    lights: wgpu::Buffer,
     sky: wgpu::TextureView,
     noise: wgpu::TextureView,
     repeated: wgpu::Sampler,
@@ -55,7 +54,6 @@ impl FrameGroup {
             sampled(11, TextureSampleType::Uint, TextureViewDimension::D2),
             uniform(12),
             texture(13),
-            uniform(14),
         ];
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries: &entries });
         let linear = |mode, compare| {
@@ -75,8 +73,7 @@ impl FrameGroup {
         let noise = gpu.texture("noise", TextureFormat::Rgba8Unorm, [paint::NOISE_PX; 2], &paint::noise());
         Self {
             layout,
-            uniforms: uniforms("frame", size_of::<Frame>()),
-            lights: uniforms("lights", size_of::<Lights>()),
+            uniforms: gpu.empty_buffer("frame", size_of::<Frame>() as u64, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST),
             sky: view(daylight.texture()),
             noise: view(&noise),
             repeated: linear(wgpu::AddressMode::Repeat, None),
@@ -87,9 +84,8 @@ impl FrameGroup {
         }
     }
 
-    pub(super) fn write(&self, gpu: &Gpu, frame: &Frame, lights: &Lights) {
+    pub(super) fn write(&self, gpu: &Gpu, frame: &Frame) {
         gpu.queue.write_buffer(&self.uniforms, 0, bytemuck::bytes_of(frame));
-        gpu.queue.write_buffer(&self.lights, 0, bytemuck::bytes_of(lights));
     }
 
     /// A layer of the shadow map.
@@ -155,7 +151,6 @@ impl LandTextures {
                 TextureView(kind_map),
                 kinds.as_entire_binding(),
                 TextureView(&frame.sky),
-                frame.lights.as_entire_binding(),
             ];
             bind(gpu, label, &frame.layout, &resources)
         };

@@ -236,7 +236,7 @@ impl Renderer {
         self.daylight.follow(gpu, sun);
         let view = View::new(camera, self.size_px, self.quality, time_secs, sun);
         let frame = view.frame(land, &scene.textures.atlas, &self.daylight, scene.blades.reach_m(), &poses);
-        self.frame.write(gpu, &frame, &view.lights(land, &self.daylight, &poses));
+        self.frame.write(gpu, &frame);
         let frustum = Frustum::new(&view.projection_from_world);
         let tiles = scene.ground.tiles(camera.eye_m, &frustum);
         self.terrain.prepare(gpu, &tiles);

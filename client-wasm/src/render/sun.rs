@@ -1,15 +1,15 @@
 //! Daylight: the sky for where the sun stands, in the brightness that an adapted eye gives it.
 
+use super::forces::half;
 use super::gpu::Gpu;
 use glam::Vec3;
-use shared::light::exposure::exposure;
 use shared::light::sky::{Air, ELEVATIONS, HEADINGS, NIGHT_CD_PER_M2, Sky};
 use shared::light::sun::Sun;
 use shared::light::{Rgb, luminance};
 use std::f32::consts::PI;
 
 /// Brightness of the picture for the key that the eye gives to what it sees.
-const GAIN: f32 = 0.6;
+const GAIN: f32 = 0.7;
 /// Way of the sun after which the sky is made anew (rad): a third of its disc.
 const SKY_STEP_RAD: f32 = 0.003;
 /// Luminance of the sky above which no star is seen, and at which all are (cd/m²).
@@ -63,7 +63,7 @@ impl Daylight {
 
     /// Brightness of the picture for each cd/m².
     pub(super) fn brightness(&self) -> f32 {
-        exposure(self.sky.illuminance_lx()) * GAIN
+        self.sky.exposure() * GAIN
     }
 
     /// Sunlight over π: on the land, and at the height of clouds.
@@ -87,23 +87,5 @@ impl Daylight {
     fn zenith(&self) -> f32 {
         let overhead: Rgb = self.sky.luminance(1.0, 1.0);
         luminance(overhead)
-    }
-}
-
-/// A positive number as a float of 16 bits, rounded; what is less than 6e-5, the least that it resolves fully, becomes that.
-fn half(value: f32) -> u16 {
-    let bits = value.clamp(6.2e-5, 65_000.0).to_bits();
-    ((bits + (1 << 12)) >> 13).wrapping_sub(112 << 10) as u16
-}
-
-#[cfg(test)]
-mod tests {
-    use super::half;
-
-    #[test]
-    fn halves_are_as_ieee_754_has_them() {
-        for (value, bits) in [(1.0, 0x3c00), (0.5, 0x3800), (1.5, 0x3e00), (0.1, 0x2e66), (65_000.0, 0x7bef), (0.0, 0x0410)] {
-            assert_eq!(half(value), bits, "{value}");
-        }
     }
 }

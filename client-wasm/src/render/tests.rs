@@ -18,6 +18,7 @@ use shared::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, omega_rad
 use shared::wire::{ObjectPose, ServerMessage, Shape, codec};
 use wgpu::naga;
 
+mod light;
 mod underbrush;
 
 fn module(source: &str) -> naga::Module {

@@ -44,7 +44,7 @@ uniform_block! {
         maps: [f32; 4],
         /// Extent of the wind's box (m); side of a patch (m) where each shows the box in its own place, else 0.
         wind_box: [f32; 4],
-        /// Seed of the patches' places in the wind's box; 1 where the box repeats along X; along Z; unused.
+        /// Seed of the patches' places in the wind's box; 1 where the box repeats along X; along Z; number of lamps.
         tiling: [u32; 4],
         /// Unit vector of the mean wind (x, z); its speed (m/s); distance the gusts have travelled (m).
         gust: [f32; 4],
@@ -60,6 +60,8 @@ uniform_block! {
         clouds: [f32; 4],
         /// Interaction spheres: centre and radius (m).
         spheres: [[f32; 4]; SPHERE_LIMIT],
+        /// Light of sky and lamps.
+        lights: Lights,
     }
 }
 
@@ -81,7 +83,8 @@ uniform_block! {
 }
 
 uniform_block! {
-    /// Light of sky and lamps; its twin is in `light.wgsl`.
+    /// Light of sky and lamps, in the frame's block since Mesa 22's software Vulkan crashes on a third uniform buffer in a group; its twin is in
+    /// `light.wgsl`.
     Lights {
         /// World to the clip space of the shadow map's coarse layer.
         far_shadow_from_world: [f32; 16],
@@ -101,8 +104,6 @@ uniform_block! {
         mist: [f32; 4],
         /// Side of a texel and depth of the shadow map's sharp layer (m), and of its coarse one.
         shadow: [f32; 4],
-        /// Lamps; layers of the shadow map; unused.
-        counts: [u32; 4],
         /// Those beyond the last lamp are zero.
         lamps: [Lamp; LAMP_LIMIT],
     }

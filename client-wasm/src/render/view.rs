@@ -66,6 +66,7 @@ impl<'a> View<'a> {
         let width_m = plants.width_m * self.quality.width_factor();
         let billboards_to = self.quality.billboard_reach_m();
         let pixel_rad = self.camera.fov_rad / self.size_px[1] as f32;
+        let lamps = lamps(scene, land.heights(), poses, self.sun.elevation_rad, daylight.brightness(), eye);
         let spheres = spheres(&scene.objects, poses, eye);
         let rays = Mat4::from_mat3(glam::Mat3::from_mat4(glam::camera::rh::view::look_to_mat4(Vec3::ZERO, self.camera.forward(), Vec3::Y)));
         let aspect = self.size_px[0] as f32 / self.size_px[1] as f32;
@@ -80,7 +81,7 @@ impl<'a> View<'a> {
             world: [extent_x, extent_z, pixel_x, pixel_z],
             maps: [width, depth, atlas.window_m(), atlas.reach_m()],
             wind_box: [box_m[0], box_m[1], box_m[2], patch_m],
-            tiling: [land.tiles().seed(), wraps_x, wraps_z, 0],
+            tiling: [land.tiles().seed(), wraps_x, wraps_z, lamps.len() as u32],
             gust: [dir_x, dir_z, mean, travelled],
             past: atlas.past(),
             blade: [plants.flowers_per_m2, plants.height_variation, width_m, plants.blade_shape as u32 as f32],
@@ -88,11 +89,12 @@ impl<'a> View<'a> {
             reach: [blade_reach_m * 0.72, blade_reach_m, billboards_to * 0.6, billboards_to],
             clouds: [drift * dir_x * mean, drift * dir_z * mean, 0.5, spheres.len() as f32],
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_default()),
+            lights: self.lights(land, daylight, &lamps),
         }
     }
 
     /// Light of sky and lamps.
-    pub(super) fn lights(&self, land: &Land, daylight: &Daylight, poses: &[ObjectPose]) -> Lights {
+    fn lights(&self, land: &Land, daylight: &Daylight, lamps: &[Lamp]) -> Lights {
         let scene = land.scene();
         let light = &scene.light;
         let rain_share = rain_share(land);
@@ -100,8 +102,6 @@ impl<'a> View<'a> {
         // Rain clouds let through a fifth of the day, all of it from the sky.
         let [mean, up, toward_sun] = daylight.ambient();
         let (night, stars) = daylight.night();
-        let eye_m = self.camera.eye_m;
-        let lamps = lamps(scene, land.heights(), poses, self.sun.elevation_rad, daylight.brightness(), eye_m);
         let texel_m = |layer: usize| 2.0 * SHADOW_HALF_M[layer] / self.quality.shadow_px() as f32;
         let wide = |rgb: Vec3, last: f32| rgb.extend(last).to_array();
         let (sin, cos) = self.sun.heading_rad.sin_cos();
@@ -115,7 +115,6 @@ impl<'a> View<'a> {
             heading: [sin, -cos, 0.0, 0.0],
             mist: [if light.mist_m > 0.0 { 1.0 / light.mist_m } else { 0.0 }, light.mist_height_m, land.heights().range_m()[0], 0.0],
             shadow: [texel_m(0), 2.0 * SHADOW_DEPTH_M[0], texel_m(1), 2.0 * SHADOW_DEPTH_M[1]],
-            counts: [lamps.len() as u32, self.quality.shadow_layers(), 0, 0],
             lamps: std::array::from_fn(|i| lamps.get(i).copied().unwrap_or_else(Lamp::zeroed)),
         }
     }

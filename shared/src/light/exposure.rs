@@ -1,6 +1,6 @@
 //! How brightly an eye sees a scene.
 
-/// Share of the light that a meadow with its sky throws back, about: what the eye adapts to is this share of the illuminance, over π.
+/// Share of light that a meadow throws back, about.
 const REFLECTANCE: f32 = 0.18;
 
 /// Brightness that the eye gives to the mean luminance (cd/m²) of what it sees, by G. Krawczyk, K. Myszkowski and H.-P. Seidel ("Perceptual
@@ -10,9 +10,10 @@ pub fn key(luminance_cd_per_m2: f32) -> f32 {
     1.03 - 2.0 / (2.0 + (luminance_cd_per_m2 + 1.0).log10())
 }
 
-/// Picture's brightness for each cd/m² (m²/cd) under so much light on level ground (lx).
-pub fn exposure(illuminance_lx: f32) -> f32 {
-    let adapted = (illuminance_lx * REFLECTANCE / std::f32::consts::PI).max(1e-4);
+/// Picture's brightness for each cd/m² (m²/cd), seen by an eye that has adapted to the mean of land and sky under so much light (lx): on the land, mean of
+/// what lies level and of what stands up towards the sun, and from the sky on level ground.
+pub fn exposure(land_lx: f32, sky_lx: f32) -> f32 {
+    let adapted = (0.5 * (land_lx * REFLECTANCE + sky_lx) / std::f32::consts::PI).max(1e-4);
     key(adapted) / adapted
 }
 
@@ -32,8 +33,8 @@ mod tests {
     fn less_light_is_seen_darker_though_exposed_longer() {
         let levels = [0.01, 0.25, 3.4, 100.0, 1e4, 1e5_f32];
         for pair in levels.windows(2) {
-            assert!(exposure(pair[0]) > exposure(pair[1]));
-            assert!(exposure(pair[0]) * pair[0] < exposure(pair[1]) * pair[1]);
+            assert!(exposure(pair[0], pair[0]) > exposure(pair[1], pair[1]));
+            assert!(exposure(pair[0], pair[0]) * pair[0] < exposure(pair[1], pair[1]) * pair[1]);
         }
     }
 }

@@ -4,6 +4,7 @@
 //! them; light that was scattered before counts as alike from all sides, `Ψ = L₂ / (1 − f)` (Eqs. (5) to (10)).
 
 use super::air::{self, Density};
+use super::exposure::exposure;
 use super::{Rgb, luminance};
 use std::f64::consts::{PI, TAU};
 
@@ -249,6 +250,13 @@ impl Sky {
     pub fn illuminance_lx(&self) -> f32 {
         let direct = self.elevation_rad.sin().max(0.0);
         luminance(self.sun_lx) * direct + luminance(self.ambient([0.0, 1.0, 0.0])) * std::f32::consts::PI
+    }
+
+    /// Picture's brightness for each cd/m², to an adapted eye: see [`exposure`].
+    pub fn exposure(&self) -> f32 {
+        let (sin, cos) = self.elevation_rad.sin_cos();
+        let sky_lx = luminance(self.ambient([0.0, 1.0, 0.0])) * std::f32::consts::PI;
+        exposure(luminance(self.sun_lx) * 0.5 * (sin + cos) + sky_lx, sky_lx)
     }
 
     /// Sums the sky over its half of the sphere, and the ground, which sun and sky light, over the other.
