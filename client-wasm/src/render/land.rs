@@ -68,8 +68,6 @@ impl FrameGroup {
                 ..Default::default()
             })
         };
-        let uniforms =
-            |label, size: usize| gpu.empty_buffer(label, size as u64, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST);
         let noise = gpu.texture("noise", TextureFormat::Rgba8Unorm, [paint::NOISE_PX; 2], &paint::noise());
         Self {
             layout,
