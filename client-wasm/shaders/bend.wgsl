@@ -189,7 +189,7 @@ fn about(plant: Plant, lean: vec2<f32>, distance_m: f32, light: f32) -> vec4<f32
     if between <= 0.02 && contrast(distance_m) >= 1.0 {
         return vec4<f32>(0.0);
     }
-    return vec4<f32>(sward_color(plant.normal, kind, grass_tint(plant.root.xz), lean, view, light), between);
+    return vec4<f32>(sward_color(plant.root, plant.normal, kind, grass_tint(plant.root.xz), lean, view, light), between);
 }
 
 fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, kind: f32) {

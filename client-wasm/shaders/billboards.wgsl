@@ -105,11 +105,11 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let tilt = min(length(lean), 1.45);
     let tint = grass_tint(root);
     // Far down a clump is one with the grass about it that is not drawn.
-    let afar = sward_color(ground_normal(root), kind, tint, lean, view, light);
+    let afar = sward_color(ground, ground_normal(root), kind, tint, lean, view, light);
     stand.root_color = vec4<f32>(hazed(afar, p), 0.0);
-    let top = blade_color(kind, tint, 0.95, 0.9, 0.5, tilt, normal, tangent, view, light);
+    let top = blade_color(kind, tint, 0.95, 0.9, 0.5, tilt, normal, tangent, view, p, light);
     stand.tip_color = vec4<f32>(hazed(mix(afar, top, 0.35 + 0.65 * contrast(distance_m)), p), 0.0);
-    stand.petal_light = vec4<f32>(frame.sun_color.rgb * light * 0.6 + ambient(normal), 0.0);
+    stand.petal_light = vec4<f32>(frame.sun_color.rgb * light * 0.6 + ambient(normal) + lamps_on(p, normal, 0.3), 0.0);
     placed[id.x] = stand;
 }
 

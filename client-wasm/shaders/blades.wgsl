@@ -84,7 +84,7 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
     let tilt = asin(min(length(lean) / max(length(tip), 1e-3), 1.0));
     let height = offset.y / kind.root.w;
     let own = blade_color(
-        kind, grass_tint(blade.root.xz), t, height, fract(blade.points[1].w), tilt, soft, tangent, view, blade.points[2].w,
+        kind, grass_tint(blade.root.xz), t, height, fract(blade.points[1].w), tilt, soft, tangent, view, p, blade.points[2].w,
     );
     let color = among(own, blade.about, t, distance(blade.root.xyz, frame.eye.xyz));
     out.color = hazed(color, p);

@@ -19,6 +19,7 @@ struct Frame {
     sward: vec4<f32>,
     clouds: vec4<f32>,
     spheres: array<vec4<f32>, 16>,
+    lights: Lights,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -30,7 +31,7 @@ struct Frame {
 @group(0) @binding(6) var noises: texture_2d<f32>;
 @group(0) @binding(7) var repeated: sampler;
 @group(0) @binding(8) var clamped: sampler;
-@group(0) @binding(9) var shadows: texture_depth_2d;
+@group(0) @binding(9) var shadows: texture_depth_2d_array;
 @group(0) @binding(10) var shadow_sampler: sampler_comparison;
 @group(0) @binding(11) var kind_map: texture_2d<u32>;
 @group(0) @binding(12) var<uniform> kinds: Kinds;
@@ -389,78 +390,7 @@ fn field_level(distance_m: f32) -> f32 {
     return clamp(log2(distance_m * frame.screen.z * 4.0 * 6.0), 0.0, 3.0);
 }
 
-// --- light ----------------------------------------------------------------------------------------------------------
-
-fn sky_color(direction: vec3<f32>) -> vec3<f32> {
-    let up = clamp(direction.y, 0.0, 1.0);
-    let toward_sun = max(dot(direction, frame.sun.xyz), 0.0);
-    let low_sun = 1.0 - smoothstep(0.1, 0.75, frame.sun.y);
-    let zenith = mix(vec3<f32>(0.075, 0.24, 0.66), vec3<f32>(0.10, 0.22, 0.52), low_sun);
-    let horizon = mix(vec3<f32>(0.60, 0.76, 0.92), vec3<f32>(0.86, 0.76, 0.64), low_sun);
-    var color = mix(horizon, zenith, pow(up, 0.48));
-    let glow = frame.sun_color.rgb * (0.10 * pow(toward_sun, 5.0) + 0.16 * pow(toward_sun, 40.0));
-    color += glow * (1.0 - 0.5 * up);
-    return mix(color, mix(vec3<f32>(0.34, 0.37, 0.40), vec3<f32>(0.22, 0.25, 0.29), pow(up, 0.5)), frame.screen.w);
-}
-
-fn hazed(color: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
-    let to = p - frame.eye.xyz;
-    let distance_m = length(to);
-    let direction = to / max(distance_m, 1e-3);
-    let share = 1.0 - exp(-distance_m / frame.sun_color.w);
-    let air = sky_color(normalize(vec3<f32>(direction.x, max(direction.y, 0.0) + 0.03, direction.z)));
-    return mix(color, air * 0.93, share);
-}
-
-// Light that clouds let through, as soft shadows that drift over the land.
-fn cloud_light(p: vec2<f32>) -> f32 {
-    let at = (p + frame.clouds.xy * 0.5) / 620.0;
-    let n = noise(at).r * 0.65 + noise(at * 2.7).a * 0.35;
-    return 1.0 - 0.62 * smoothstep(0.47, 0.66, n);
-}
-
-fn sun_visible(p: vec3<f32>) -> f32 {
-    let clip = frame.shadow_from_world * vec4<f32>(p, 1.0);
-    let uv = clip.xy * vec2<f32>(0.5, -0.5) + 0.5;
-    let inside = all(uv > vec2<f32>(0.01)) && all(uv < vec2<f32>(0.99)) && clip.z < 1.0 && clip.z > 0.0;
-    if !inside {
-        return 1.0;
-    }
-    var light = 0.0;
-    let texel = frame.sun.w;
-    for (var i = 0; i < 4; i++) {
-        let offset = vec2<f32>(f32(i & 1) - 0.5, f32(i >> 1) - 0.5) * texel * 1.7;
-        light += textureSampleCompareLevel(shadows, shadow_sampler, uv + offset, clip.z - 0.0015);
-    }
-    return light * 0.25;
-}
-
-fn ambient(normal: vec3<f32>) -> vec3<f32> {
-    let sky = mix(vec3<f32>(0.42, 0.50, 0.62), vec3<f32>(0.36, 0.52, 0.86), clamp(normal.y, 0.0, 1.0));
-    let bounce = vec3<f32>(0.20, 0.21, 0.10);
-    // Under a rainy sky all light is the sky's.
-    return mix(bounce, sky, 0.5 + 0.5 * normal.y) * mix(0.62, 1.15, frame.screen.w);
-}
-
-// Light on something thin and green: wrapped diffuse, light through it against the sun, a sheen along the blade
-// (Kajiya-Kay). `view` runs from the eye to the point; `occlusion` 0..1 darkens what stands deep in the grass.
-fn grass_light(
-    albedo: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>, sun_light: f32, occlusion: f32,
-) -> vec3<f32> {
-    let sun = frame.sun.xyz;
-    let facing = dot(normal, sun);
-    let diffuse = clamp((facing + 0.35) / 1.35, 0.0, 1.0);
-    let against = max(dot(view, sun), 0.0);
-    let through = (0.16 + 0.75 * against * against * against) * clamp(0.55 - 0.45 * facing, 0.0, 1.0);
-    let half_way = normalize(sun - view);
-    let along = dot(tangent, half_way);
-    let sheen = pow(max(1.0 - along * along, 0.0), 18.0) * 0.10;
-    let glow = albedo * vec3<f32>(1.12, 1.06, 0.60);
-    let direct = frame.sun_color.rgb * sun_light * (albedo * diffuse + glow * through + vec3<f32>(0.9, 1.0, 0.8) * sheen * diffuse);
-    // A little of the sky is mirrored by the waxy skin.
-    let mirrored = vec3<f32>(0.030, 0.036, 0.046) * (0.4 + 0.6 * sun_light);
-    return direct * mix(0.25, 1.0, occlusion) + (albedo * ambient(normal) + mirrored) * occlusion;
-}
+// --- colours of plants ----------------------------------------------------------------------------------------------
 
 // Grass that lies shows its pale undersides: a factor on its colour for a bend (rad).
 fn trodden(tilt: f32) -> vec3<f32> {

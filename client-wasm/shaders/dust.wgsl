@@ -97,7 +97,7 @@ fn blow(@builtin(global_invocation_id) id: vec3<u32>) {
         let sun_light = cloud_light(centre.xz) * sun_visible(centre);
         let toward_sun = dot(view, frame.sun.xyz);
         let direct = frame.sun_color.rgb * (sun_light * scattered(toward_sun) * select(2.2, 1.0, is_puff));
-        sprite.light = vec4<f32>(hazed(albedo * (direct + ambient(vec3<f32>(0.0, 1.0, 0.0)) * 0.6), centre), own);
+        sprite.light = vec4<f32>(hazed(albedo * (direct + ambient(vec3<f32>(0.0, 1.0, 0.0)) * 0.6 + lamps_on(centre, -view, 1.0)), centre), own);
         sprite.centre = vec4<f32>(centre, opacity);
     }
     drawn[index] = sprite;

@@ -1,5 +1,8 @@
 // Meshes made of triangles: vehicles, trees and stones; also as seen by the sun, for the shadow map.
 
+// How far the glass of a lamp is from its middle (m).
+const GLASS_M: f32 = 0.17;
+
 struct Instance {
     world_from_model: mat4x4<f32>,
     // Colour factor; sway of a tree in a wind of 10 m/s and above (rad), 0 of what stands still.
@@ -65,6 +68,18 @@ fn vs(vertex: Vertex, @builtin(instance_index) index: u32) -> Surface {
     return out;
 }
 
+// Light of the glass right before a lamp, where a solid turns with its beam.
+fn shining(p: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    var light = vec3<f32>(0.0);
+    for (var i = 0u; i < frame.tiling.w; i++) {
+        let lamp = frame.lights.lamps[i];
+        if distance(p, lamp.place.xyz) < GLASS_M {
+            light += lamp.rgb.rgb * (6.0 * smoothstep(0.2, 0.8, dot(normal, lamp.aim.xyz)));
+        }
+    }
+    return light;
+}
+
 @fragment
 fn fs(surface: Surface) -> @location(0) vec4<f32> {
     let leaf = textureSample(leaves, clamped, surface.leaf);
@@ -79,19 +94,21 @@ fn fs(surface: Surface) -> @location(0) vec4<f32> {
     var color: vec3<f32>;
     if is_leaf {
         let albedo = surface.color.rgb * (0.55 + 0.9 * leaf.r);
-        color = grass_light(albedo, normal, vec3<f32>(0.0, 1.0, 0.0), view, light, surface.color.a);
+        let upright = vec3<f32>(0.0, 1.0, 0.0);
+        color = grass_light(albedo, normal, upright, view, light, surface.color.a) + grass_lamps(albedo, normal, upright, view, surface.p, surface.color.a);
     } else {
         let albedo = surface.color.rgb;
         let gloss = surface.color.a;
         let diffuse = max(facing, 0.0);
-        color = albedo * (frame.sun_color.rgb * light * diffuse + ambient(normal));
+        color = albedo * (frame.sun_color.rgb * light * diffuse + ambient(normal) + lamps_on(surface.p, normal, 0.0));
         let half_way = normalize(frame.sun.xyz - view);
         let fresnel = pow(1.0 - max(dot(normal, -view), 0.0), 4.0);
         let mirrored = reflect(view, normal);
         let above = max(mirrored.y, 0.0);
-        let reflected = mix(vec3<f32>(0.10, 0.12, 0.05), sky_color(vec3<f32>(mirrored.x, above, mirrored.z)), smoothstep(-0.1, 0.15, mirrored.y));
+        let reflected = mix(ambient(vec3<f32>(0.0, -1.0, 0.0)), sky_color(vec3<f32>(mirrored.x, above, mirrored.z)), smoothstep(-0.1, 0.15, mirrored.y));
         let sharp = pow(max(dot(normal, half_way), 0.0), mix(12.0, 160.0, gloss));
         color += gloss * (reflected * (0.06 + 0.75 * fresnel) + frame.sun_color.rgb * light * sharp * 1.6);
+        color += shining(surface.p, normal);
     }
     return vec4<f32>(hazed(color, surface.p), 1.0);
 }
@@ -105,6 +122,14 @@ struct Shade {
 fn vs_shadow(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
     var out: Shade;
     out.position = frame.shadow_from_world * vec4<f32>(placed(vertex, instances[index]), 1.0);
+    out.leaf = vertex.leaf;
+    return out;
+}
+
+@vertex
+fn vs_shadow_far(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
+    var out: Shade;
+    out.position = frame.lights.far_shadow_from_world * vec4<f32>(placed(vertex, instances[index]), 1.0);
     out.leaf = vertex.leaf;
     return out;
 }

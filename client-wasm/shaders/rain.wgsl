@@ -56,6 +56,6 @@ fn vs(@builtin(vertex_index) index: u32) -> Streak {
 @fragment
 fn fs(streak: Streak) -> @location(0) vec4<f32> {
     let opacity = streak.opacity * (1.0 - streak.across * streak.across);
-    let light = vec3<f32>(0.80, 0.85, 0.90);
+    let light = ambient(vec3<f32>(0.0, 1.0, 0.0)) * 1.3;
     return vec4<f32>(light * opacity, opacity);
 }

@@ -1,9 +1,9 @@
 // What grass shows: a blade at a place on it, and all blades of a place together as they are seen from afar.
 
 // Light that a blade sends to the eye from a share `t` of its length, `height` of its kind's mean height above the ground, where it turns `normal` to the
-// eye; `view` runs from the eye, `light` is the share of the sun's light that reaches the grass there, `hue` runs from fresh to dry.
+// eye; `view` runs from the eye to `p`, `light` is the share of the sun's light that reaches the grass there, `hue` runs from fresh to dry.
 fn blade_color(
-    kind: Kind, tint: vec3<f32>, t: f32, height: f32, hue: f32, tilt: f32, normal: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>, light: f32,
+    kind: Kind, tint: vec3<f32>, t: f32, height: f32, hue: f32, tilt: f32, normal: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>, p: vec3<f32>, light: f32,
 ) -> vec3<f32> {
     var albedo = tint * plant_color(kind.root.rgb, kind.tip.rgb, t, hue);
     let straw = smoothstep(0.86, 0.99, hue) * 0.75;
@@ -14,8 +14,8 @@ fn blade_color(
     // Little light is lost on the way down into short grass.
     let deep = smoothstep(0.0, 0.60, kind.root.w);
     let occlusion = mix(mix(0.60, 0.16, deep), 1.0, smoothstep(0.0, 0.85, max(height, t * 0.75)));
-    let lit = light * mix(mix(0.75, 0.30, deep), 1.0, smoothstep(0.05, 0.75, max(height, t * 0.7)));
-    return grass_light(albedo, normal, tangent, view, lit, occlusion);
+    let lit = light * sun_in_grass(max(height, t * 0.7), kind.root.w);
+    return grass_light(albedo, normal, tangent, view, lit, occlusion) + grass_lamps(albedo, normal, tangent, view, p, height);
 }
 
 // Leaf area that a ray meets on its way through the whole sward, over the ground below it: half of the leaves' area, since they stand every way.
@@ -55,7 +55,7 @@ fn leafiness(kind: Kind) -> f32 {
 }
 
 // All blades of a place as they are seen from afar: the deeper a leaf is, the less of it; leaves' depths are those of equal shares of what is seen.
-fn sward_color(up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: vec2<f32>, view: vec3<f32>, light: f32) -> vec3<f32> {
+fn sward_color(p: vec3<f32>, up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: vec2<f32>, view: vec3<f32>, light: f32) -> vec3<f32> {
     let leaf_area = frame.sward.z * leafiness(kind);
     let free = clamp(-dot(view, up), 0.05, 1.0) / (SEEN * max(leaf_area, 0.05));
     let tilt = length(lean);
@@ -66,7 +66,7 @@ fn sward_color(up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: vec2<f32>, view
     for (var i = 0; i < 2; i++) {
         let height = max(1.0 - RAGGED - free * select(1.39, 0.29, i == 0), 0.0);
         let t = mix(height, 1.0, 0.35);
-        color += blade_color(kind, tint, t, height, select(0.65, 0.35, i == 0), tilt, facing, tangent, view, light);
+        color += blade_color(kind, tint, t, height, select(0.65, 0.35, i == 0), tilt, facing, tangent, view, p, light);
     }
     return 0.5 * color;
 }

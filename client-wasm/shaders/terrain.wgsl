@@ -57,15 +57,16 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     var color = vec3<f32>(0.0);
     if share < 1.0 {
         let direct = frame.sun_color.rgb * (sun_light * max(dot(normal, frame.sun.xyz), 0.0));
-        color = soil_at(p) * (direct + ambient(normal)) * (1.0 - share);
+        color = soil_at(p) * (direct + ambient(normal) + lamps_on(ground.p, normal, 0.0)) * (1.0 - share);
     }
     if share > 0.0 {
         // The grass as seen from afar, leaning as the blades do, where no blades hide the ground; between them it is dark.
         let kind = kinds_blended(p);
         let lean = lean_of_field(p, field_level(distance_m)) + ground.air.xy * kind.tip.w;
-        let afar = sward_color(normal, kind, ground.tint, lean, view, sun_light);
+        let afar = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light);
         let mottle = 0.80 + 0.5 * (noise(p / 2.9).g * 0.6 + 0.2);
-        let under = kind.root.rgb * 0.7 * (frame.sun_color.rgb * sun_light * 0.35 + ambient(normal) * 0.55);
+        let reached = frame.sun_color.rgb * sun_light * sun_in_grass(0.0, kind.root.w);
+        let under = kind.root.rgb * 0.7 * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
         let grass = afar * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
         color += mix(under, grass, bare_between(distance_m, kind, view, normal)) * share;
     }

@@ -155,7 +155,7 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     out.about = vec4<f32>(height, random3(vec2<i32>(i32(plant.site), 9), 17u).x, distance_m, plant.size);
     let up = ground_normal(plant.at);
     let view = normalize(root - frame.eye.xyz);
-    let afar = sward_color(up, kind, grass_tint(plant.at), lean, view, out.lean.z);
+    let afar = sward_color(root, up, kind, grass_tint(plant.at), lean, view, out.lean.z);
     out.sward = vec4<f32>(afar, bare_between(distance_m, kind, view, up) * grass_share(plant.at));
     stands_out[index] = out;
 
@@ -463,15 +463,15 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let up = clamp(dot(p - plant.root.xyz, normal_up) / max(plant.about.x, 0.05), 0.0, 1.0);
     let deep = smoothstep(0.0, 0.6, plant.about.x);
     let occlusion = mix(mix(0.62, 0.30, deep), 1.0, smoothstep(0.0, 0.8, up));
-    let light = plant.lean.z * mix(mix(0.8, 0.42, deep), 1.0, smoothstep(0.05, 0.7, up));
+    let light = plant.lean.z * sun_in_grass(0.2 + up, plant.about.x);
     var color: vec3<f32>;
     if stuff == PETAL {
         let sun_facing = dot(normal, frame.sun.xyz);
         let diffuse = clamp((abs(sun_facing) + 0.3) / 1.3, 0.0, 1.0);
         let through = 0.4 * max(dot(view, frame.sun.xyz), 0.0) * clamp(0.6 - sun_facing, 0.0, 1.0);
-        color = albedo * (frame.sun_color.rgb * light * (diffuse + through) * 0.8 + ambient(rounded));
+        color = albedo * (frame.sun_color.rgb * light * (diffuse + through) * 0.8 + ambient(rounded) + lamps_on(p, rounded, 0.3));
     } else {
-        color = grass_light(albedo, rounded, along, view, light, occlusion);
+        color = grass_light(albedo, rounded, along, view, light, occlusion) + grass_lamps(albedo, rounded, along, view, p, up);
     }
     let grass_m = kinds.list[u32(plant.feels.z) / (2u * VARIANTS)].root.w;
     out.color = hazed(among_grass(color, plant.sward, dot(p - plant.root.xyz, normal_up) / grass_m), p);

@@ -12,6 +12,7 @@
 //! - [`bend`]: the bend field of the grass, a 2-D continuum (Chen & Johan).
 //! - [`wind`]: which place of the wind's box blows where.
 //! - [`hash`]: random numbers by place.
+//! - [`light`]: where the sun stands, the sky, lamps, and how grass is lit.
 //! - [`lod`]: which grass grid is drawn how.
 //! - [`plant`]: blades and underbrush, how they bend, and where they grow.
 //! - [`outline`]: polygons on the ground and their convex parts.
@@ -22,6 +23,7 @@
 pub mod bend;
 pub mod grid;
 pub mod hash;
+pub mod light;
 pub mod lod;
 pub mod outline;
 pub mod plant;

@@ -11,7 +11,7 @@ struct Field {
 }
 
 /// Source files and, for each struct in them, the section that it describes.
-const SOURCES: [(&str, &[(&str, &str)]); 18] = [
+const SOURCES: [(&str, &[(&str, &str)]); 19] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
     ("terrain.rs", &[("TerrainMaps", "terrain")]),
@@ -40,6 +40,7 @@ const SOURCES: [(&str, &[(&str, &str)]); 18] = [
     ),
     ("drawn_wind.rs", &[("DrawnWind", "drawn_winds")]),
     ("picture.rs", &[("CameraStart", "camera"), ("Light", "light")]),
+    ("lamp.rs", &[("Lamp", "lights")]),
 ];
 
 /// Sections that may stand once.
@@ -111,7 +112,7 @@ fn complete() -> toml::Table {
     let text = minimal().to_string()
         + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n[[species]]\nname = 'a'\ncover = 1\n"
         + "[[underbrush]]\nname = 'a'\n[[underbrush.components]]\nname = 'a'\nkind = 'leaf'\n"
-        + "[[drawn_winds]]\nshape = 'swirl'\npath_m = [[1.0, 2.0]]\n";
+        + "[[drawn_winds]]\nshape = 'swirl'\npath_m = [[1.0, 2.0]]\n[[lights]]\nat_m = [1.0, 2.0, 3.0]\n";
     toml::Table::try_from(parse(&text).unwrap()).unwrap()
 }
 

@@ -116,7 +116,7 @@ impl Forces {
 }
 
 /// An `f32` as the bits of a half, rounded towards zero; what is too small is zero, what is too large the largest.
-fn half(value: f32) -> u16 {
+pub(super) fn half(value: f32) -> u16 {
     let bits = value.to_bits();
     let sign = (bits >> 16 & 0x8000) as u16;
     let exponent = (bits >> 23 & 0xff) as i32 - 112;

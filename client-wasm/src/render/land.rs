@@ -1,10 +1,12 @@
-//! What all passes sample: heights, normals, cover, bend atlas, wind, noise, shadow map, and the frame's uniform block.
+//! What all passes sample: heights, normals, cover, bend atlas, wind, noise, shadow map, sky, and the frame's uniform block.
 
 use super::atlas::Atlas;
 use super::gpu::Gpu;
 use super::kinds;
 use super::paint;
 use super::pipeline::{DEPTH, bind, sampled, sampler, texture, uniform};
+use super::quality::Quality;
+use super::sun::Daylight;
 use super::uniforms::Frame;
 use super::wind::WindTexture;
 use crate::state::Land;
@@ -16,12 +18,13 @@ use wgpu::{TextureFormat, TextureSampleType, TextureViewDimension};
 pub(super) struct FrameGroup {
     pub(super) layout: wgpu::BindGroupLayout,
     uniforms: wgpu::Buffer,
+    sky: wgpu::TextureView,
     noise: wgpu::TextureView,
     repeated: wgpu::Sampler,
     clamped: wgpu::Sampler,
     shadow_sampler: wgpu::Sampler,
-    shadows: wgpu::TextureView,
-    no_shadows: wgpu::TextureView,
+    shadows: wgpu::Texture,
+    no_shadows: wgpu::Texture,
 }
 
 /// A scene's own textures, and the bind groups made of all.
@@ -35,7 +38,7 @@ pub(super) struct LandTextures {
 }
 
 impl FrameGroup {
-    pub(super) fn new(gpu: &Gpu, shadow_px: u32) -> Self {
+    pub(super) fn new(gpu: &Gpu, quality: Quality, daylight: &Daylight) -> Self {
         let entries = [
             uniform(0),
             sampled(1, TextureSampleType::Float { filterable: false }, TextureViewDimension::D2),
@@ -46,10 +49,11 @@ impl FrameGroup {
             texture(6),
             sampler(7, wgpu::SamplerBindingType::Filtering),
             sampler(8, wgpu::SamplerBindingType::Filtering),
-            sampled(9, TextureSampleType::Depth, TextureViewDimension::D2),
+            sampled(9, TextureSampleType::Depth, TextureViewDimension::D2Array),
             sampler(10, wgpu::SamplerBindingType::Comparison),
             sampled(11, TextureSampleType::Uint, TextureViewDimension::D2),
             uniform(12),
+            texture(13),
         ];
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries: &entries });
         let linear = |mode, compare| {
@@ -68,12 +72,13 @@ impl FrameGroup {
         Self {
             layout,
             uniforms: gpu.empty_buffer("frame", size_of::<Frame>() as u64, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST),
+            sky: view(daylight.texture()),
             noise: view(&noise),
             repeated: linear(wgpu::AddressMode::Repeat, None),
             clamped: linear(wgpu::AddressMode::ClampToEdge, None),
             shadow_sampler: linear(wgpu::AddressMode::ClampToEdge, Some(wgpu::CompareFunction::LessEqual)),
-            shadows: depth_texture(gpu, shadow_px),
-            no_shadows: depth_texture(gpu, 1),
+            shadows: depth_texture(gpu, quality.shadow_px(), quality.shadow_layers()),
+            no_shadows: depth_texture(gpu, 1, 1),
         }
     }
 
@@ -81,23 +86,29 @@ impl FrameGroup {
         gpu.queue.write_buffer(&self.uniforms, 0, bytemuck::bytes_of(frame));
     }
 
-    pub(super) fn shadow_map(&self) -> &wgpu::TextureView {
-        &self.shadows
+    /// A layer of the shadow map.
+    pub(super) fn shadow_map(&self, layer: u32) -> wgpu::TextureView {
+        let descriptor = wgpu::TextureViewDescriptor {
+            dimension: Some(TextureViewDimension::D2),
+            base_array_layer: layer,
+            array_layer_count: Some(1),
+            ..Default::default()
+        };
+        self.shadows.create_view(&descriptor)
     }
 }
 
-fn depth_texture(gpu: &Gpu, side_px: u32) -> wgpu::TextureView {
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+fn depth_texture(gpu: &Gpu, side_px: u32, layers: u32) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("shadows"),
-        size: wgpu::Extent3d { width: side_px, height: side_px, depth_or_array_layers: 1 },
+        size: wgpu::Extent3d { width: side_px, height: side_px, depth_or_array_layers: layers },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: DEPTH,
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
-    });
-    view(&texture)
+    })
 }
 
 fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
@@ -116,12 +127,13 @@ impl LandTextures {
         let kinds = gpu.buffer("kinds", bytemuck::bytes_of(&kinds::table(land.scene())), wgpu::BufferUsages::UNIFORM);
         let atlas = Atlas::new(gpu, *land.layout(), land.scene());
         let wind = WindTexture::new(gpu, &land.scene().wind);
-        let group = |label, shadows| {
+        let group = |label, shadows: &wgpu::Texture| {
             use wgpu::BindingResource::{Sampler, TextureView};
             let views = [&height_texture, &normal_texture, &cover_texture, &wind.texture, &kind_texture].map(view);
             let [heights, normals, cover, winds, kind_map] = &views;
             let layers = wgpu::TextureViewDescriptor { dimension: Some(TextureViewDimension::D2Array), ..Default::default() };
             let bends = &atlas.texture.create_view(&layers);
+            let shadows = &shadows.create_view(&layers);
             let resources = [
                 frame.uniforms.as_entire_binding(),
                 TextureView(heights),
@@ -136,6 +148,7 @@ impl LandTextures {
                 Sampler(&frame.shadow_sampler),
                 TextureView(kind_map),
                 kinds.as_entire_binding(),
+                TextureView(&frame.sky),
             ];
             bind(gpu, label, &frame.layout, &resources)
         };

@@ -1,5 +1,7 @@
 //! Which of several ways each step of the picture goes.
 
+use shared::light::sun::Sun;
+
 /// How plants that are partly transparent are laid over each other (000 §5.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Order {
@@ -91,6 +93,8 @@ pub struct Look {
     pub far: Far,
     /// Whether what the view's edges or the land hide is left out; the picture is the same without.
     pub culls: bool,
+    /// Where the sun stands; none: where the scene has it.
+    pub sun: Option<Sun>,
 }
 
 impl Look {
@@ -113,7 +117,7 @@ impl Look {
 
 impl Default for Look {
     fn default() -> Self {
-        Self { order: Order::default(), far: Far::default(), culls: true }
+        Self { order: Order::default(), far: Far::default(), culls: true, sun: None }
     }
 }
 

@@ -15,6 +15,7 @@ mod flora;
 mod forces;
 mod gpu;
 mod kinds;
+mod lamps;
 mod land;
 mod look;
 mod mesh;
@@ -30,6 +31,7 @@ mod shaders;
 mod sky;
 mod sort;
 mod split;
+mod sun;
 mod terrain;
 mod tone;
 mod underbrush;
@@ -47,6 +49,7 @@ pub use look::{Far, Look, Order};
 pub use picture::Picture;
 pub use quality::{Quality, REFERENCE_M};
 pub use split::{Split, Way};
+pub use shared::light::sun::Sun;
 
 use crate::camera::Camera;
 use crate::state::Mirror;
@@ -63,6 +66,7 @@ use rain::RainPass;
 use shared::wire::ObjectPose;
 use sky::Sky;
 use split::Part;
+use sun::Daylight;
 use terrain::{Ground, Terrain};
 use tone::Tone;
 use underbrush::Underbrush;
@@ -97,6 +101,7 @@ pub struct Renderer {
     detail: Detail,
     size_px: [u32; 2],
     frame: FrameGroup,
+    daylight: Daylight,
     targets: Targets,
     tone: Tone,
     sky: Sky,
@@ -179,9 +184,11 @@ impl Renderer {
     /// A renderer for targets of `format` and `size_px` (at least 1 × 1).
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, size_px: [u32; 2], quality: Quality) -> Self {
         let size_px = size_px.map(|side| side.max(1));
-        let frame = FrameGroup::new(gpu, quality.shadow_px());
-        let maker = Maker { gpu, frame_layout: &frame.layout, samples: quality.samples(gpu.is_software) };
-        let targets = Targets::new(gpu, size_px, quality.samples(gpu.is_software));
+        let samples = quality.samples(gpu.is_software);
+        let daylight = Daylight::new(gpu);
+        let frame = FrameGroup::new(gpu, quality, &daylight);
+        let maker = Maker { gpu, frame_layout: &frame.layout, samples };
+        let targets = Targets::new(gpu, size_px, samples);
         Self {
             tone: Tone::new(&maker, format, targets.picture()),
             sky: Sky::new(&maker),
@@ -194,6 +201,7 @@ impl Renderer {
             size_px,
             targets,
             frame,
+            daylight,
             weighted: None,
             scene: None,
         }
@@ -280,8 +288,10 @@ impl Renderer {
         scene.textures.wind.follow(gpu, mirror.wind(), dt_secs);
         let Some(land) = mirror.land() else { return FrameStats::default() };
 
-        let view = View::new(camera, self.size_px, self.quality, self.detail, time_secs);
-        let frame = view.frame(land, &scene.textures.atlas, &poses);
+        let sun = self.look.sun.unwrap_or_else(|| land.scene().light.sun_at(mirror.time_secs()));
+        self.daylight.follow(gpu, sun);
+        let view = View::new(camera, self.size_px, self.quality, self.detail, time_secs, sun);
+        let frame = view.frame(land, &scene.textures.atlas, &self.daylight, &poses);
         self.frame.write(gpu, &frame);
         let frustum = if self.look.culls { Frustum::new(&view.projection_from_world) } else { Frustum::ALL };
         let tiles = scene.ground.tiles(camera.eye_m, &frustum);
@@ -316,9 +326,11 @@ impl Renderer {
             scene.blades.begin_turn(gpu, turn);
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
             if turn == 0 {
-                let mut pass = shadow_pass(&mut encoder, self.frame.shadow_map());
-                pass.set_bind_group(0, &scene.textures.shadow_group, &[]);
-                scene.objects.draw_shadows(&mut pass);
+                for layer in 0..self.quality.shadow_layers() {
+                    let mut pass = shadow_pass(&mut encoder, &self.frame.shadow_map(layer));
+                    pass.set_bind_group(0, &scene.textures.shadow_group, &[]);
+                    scene.objects.draw_shadows(&mut pass, layer as usize);
+                }
             }
             {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes: None });

@@ -20,8 +20,8 @@ use wgpu::BufferUsages;
 const INSTANCE_LIMIT: usize = 12_288;
 /// Distance beyond which trees are coarse, in their heights.
 const FINE_TREE_HEIGHTS: f32 = 7.0;
-/// Distance up to which things cast shadows (m).
-const SHADOW_REACH_M: f32 = 90.0;
+/// Distance up to which things cast shadows into the layers of the shadow map (m).
+const SHADOW_REACH_M: [f32; 2] = [90.0, 330.0];
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -39,7 +39,7 @@ struct MeshRange {
 
 pub(super) struct Objects {
     pipeline: wgpu::RenderPipeline,
-    shadow_pipeline: wgpu::RenderPipeline,
+    shadow_pipelines: [wgpu::RenderPipeline; 2],
     group: wgpu::BindGroup,
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
@@ -47,9 +47,9 @@ pub(super) struct Objects {
     meshes: Vec<MeshRange>,
     standing: Vec<Standing>,
     rolled_m: HashMap<ObjectId, f32>,
-    /// Mesh and instances of each draw, for the eye and for the sun.
+    /// Mesh and instances of each draw, for the eye and for the layers of the sun's map.
     seen: Vec<(usize, Range<u32>)>,
-    lit: Vec<(usize, Range<u32>)>,
+    lit: [Vec<(usize, Range<u32>)>; 2],
 }
 
 /// Order of the meshes: parts, fine trees, coarse trees, stones.
@@ -91,8 +91,10 @@ impl Objects {
         let draw =
             Draw { label: "objects", vertex: "vs", fragment: Some("fs"), buffers: &buffers, depth_write: true, cull: None, blend: None };
         let pipeline = maker.draw(&module, Some(&layout), &draw);
-        let shadow = Draw { label: "shadows", vertex: "vs_shadow", fragment: Some("fs_shadow"), ..draw };
-        let shadow_pipeline = maker.draw(&module, Some(&layout), &shadow);
+        let shadow_pipelines = ["vs_shadow", "vs_shadow_far"].map(|vertex| {
+            let shadow = Draw { label: "shadows", vertex, fragment: Some("fs_shadow"), ..draw };
+            maker.draw(&module, Some(&layout), &shadow)
+        });
         let size = (INSTANCE_LIMIT * size_of::<Instance>()) as u64;
         let instances = gpu.empty_buffer("instances", size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
         let leaves = gpu.texture("leaves", wgpu::TextureFormat::Rgba8Unorm, [paint::LEAF_PX; 2], &paint::leaves());
@@ -100,7 +102,7 @@ impl Objects {
         let resources = [instances.as_entire_binding(), wgpu::BindingResource::TextureView(&leaves)];
         Self {
             pipeline,
-            shadow_pipeline,
+            shadow_pipelines,
             group: bind(gpu, "objects", &layout, &resources),
             vertices: gpu.buffer("meshes", bytemuck::cast_slice(&vertices), BufferUsages::VERTEX),
             indices: gpu.buffer("mesh indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
@@ -109,7 +111,7 @@ impl Objects {
             standing,
             rolled_m: HashMap::new(),
             seen: Vec::new(),
-            lit: Vec::new(),
+            lit: Default::default(),
         }
     }
 
@@ -126,7 +128,7 @@ impl Objects {
         tree_reach_m: f32,
     ) {
         let mut by_mesh: Vec<Vec<Instance>> = vec![Vec::new(); self.meshes.len()];
-        let mut by_mesh_lit = by_mesh.clone();
+        let mut by_mesh_lit = [by_mesh.clone(), by_mesh.clone()];
         self.rolled_m.retain(|id, _| poses.iter().any(|pose| pose.id == *id));
         for pose in poses.iter().take(OBJECT_LIMIT) {
             let rotation = Quat::from_array(pose.rotation);
@@ -138,7 +140,7 @@ impl Objects {
                 let world_from_model = Mat4::from(body * place).to_cols_array();
                 let instance = Instance { world_from_model, tint: [1.0, 1.0, 1.0, 0.0] };
                 by_mesh[part_mesh(part)].push(instance);
-                by_mesh_lit[part_mesh(part)].push(instance);
+                by_mesh_lit.iter_mut().for_each(|lit| lit[part_mesh(part)].push(instance));
             }
         }
         let mut near: Vec<(f32, &Standing)> = self
@@ -148,8 +150,8 @@ impl Objects {
             .filter(|(distance_m, standing)| *distance_m < tree_reach_m * if standing.is_tree { 1.0 } else { 0.4 })
             .collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let room = INSTANCE_LIMIT - 12 * OBJECT_LIMIT.min(poses.len());
-        for (distance_m, standing) in near.into_iter().take(room / 2) {
+        let room = INSTANCE_LIMIT - 18 * OBJECT_LIMIT.min(poses.len());
+        for (distance_m, standing) in near.into_iter().take(room / 3) {
             let half = Vec3::new(0.6, 1.1, 0.6) * standing.size_m;
             let is_coarse = distance_m > FINE_TREE_HEIGHTS * standing.size_m;
             let mesh = |is_coarse| match standing.is_tree {
@@ -160,12 +162,15 @@ impl Objects {
             if frustum.sees_box(standing.position_m - half, standing.position_m + half) {
                 by_mesh[mesh(is_coarse)].push(instance);
             }
-            if distance_m < SHADOW_REACH_M {
-                by_mesh_lit[mesh(true)].push(instance);
+            for (lit, reach_m) in by_mesh_lit.iter_mut().zip(SHADOW_REACH_M) {
+                if distance_m < reach_m {
+                    lit[mesh(true)].push(instance);
+                }
             }
         }
         let mut all = Vec::new();
-        for (lists, draws) in [(&by_mesh, &mut self.seen), (&by_mesh_lit, &mut self.lit)] {
+        let [near, far] = &mut self.lit;
+        for (lists, draws) in [(&by_mesh, &mut self.seen), (&by_mesh_lit[0], near), (&by_mesh_lit[1], far)] {
             draws.clear();
             for (mesh, list) in lists.iter().enumerate().filter(|(_, list)| !list.is_empty()) {
                 let first = all.len() as u32;
@@ -186,9 +191,10 @@ impl Objects {
         self.draw_list(pass, &self.seen);
     }
 
-    pub(super) fn draw_shadows(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.shadow_pipeline);
-        self.draw_list(pass, &self.lit);
+    /// Draws what throws shadows into a layer of the map.
+    pub(super) fn draw_shadows(&self, pass: &mut wgpu::RenderPass<'_>, layer: usize) {
+        pass.set_pipeline(&self.shadow_pipelines[layer]);
+        self.draw_list(pass, &self.lit[layer]);
     }
 
     fn draw_list(&self, pass: &mut wgpu::RenderPass<'_>, list: &[(usize, Range<u32>)]) {

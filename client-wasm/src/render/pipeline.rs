@@ -74,7 +74,7 @@ impl Maker<'_> {
     }
 
     pub(super) fn draw(&self, module: &wgpu::ShaderModule, own: Option<&wgpu::BindGroupLayout>, draw: &Draw<'_>) -> wgpu::RenderPipeline {
-        let targets: &[_] = if draw.vertex == "vs_shadow" { &[] } else { &[target(COLOR, draw.blend)] };
+        let targets: &[_] = if draw.vertex.starts_with("vs_shadow") { &[] } else { &[target(COLOR, draw.blend)] };
         self.render(module, own, draw, targets, false)
     }
 
@@ -107,7 +107,7 @@ impl Maker<'_> {
         targets: &[Option<wgpu::ColorTargetState>],
         alpha_to_coverage_enabled: bool,
     ) -> wgpu::RenderPipeline {
-        let to_shadow = draw.vertex == "vs_shadow";
+        let to_shadow = draw.vertex.starts_with("vs_shadow");
         let compare = if to_shadow { wgpu::CompareFunction::Less } else { wgpu::CompareFunction::GreaterEqual };
         self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(draw.label),

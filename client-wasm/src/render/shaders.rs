@@ -59,7 +59,10 @@ pub(super) const SKY: &str = include_str!("../../shaders/sky.wgsl");
 /// Tone mapping.
 pub(super) const TONE: &str = include_str!("../../shaders/tone.wgsl");
 
+/// Light, after the shared bindings.
+const LIGHT: &str = include_str!("../../shaders/light.wgsl");
+
 /// A pass's whole module.
 pub(super) fn whole(source: &str) -> String {
-    format!("{COMMON}\n{source}")
+    format!("{COMMON}\n{LIGHT}\n{source}")
 }

@@ -1,7 +1,9 @@
 use super::picture::read;
 use super::pipeline::{Maker, bind, storage_rw};
 use super::shaders;
-use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Ordering, Plants, Shower, SortDigit, Squares, StripList, UnderbrushFrame};
+use super::uniforms::{
+    BrushList, Drift, Frame, Kind, Kinds, Lamp, Lights, Ordering, Plants, Shower, SortDigit, Squares, StripList, UnderbrushFrame,
+};
 use super::{Gpu, Look, Picture, Quality, blades};
 use crate::camera::Camera;
 use crate::state::Mirror;
@@ -18,6 +20,7 @@ use shared::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, omega_rad
 use shared::wire::{ObjectPose, ServerMessage, Shape, codec};
 use wgpu::naga;
 
+mod light;
 mod order;
 mod small;
 mod underbrush;
@@ -70,6 +73,8 @@ fn uniform_blocks_lie_as_their_twins() {
     assert_twins(&module, "Plants", Plants::LAYOUT, size_of::<Plants>());
     assert_twins(&module, "Kind", Kind::LAYOUT, size_of::<Kind>());
     assert_twins(&module, "Kinds", Kinds::LAYOUT, size_of::<Kinds>());
+    assert_twins(&module, "Lamp", Lamp::LAYOUT, size_of::<Lamp>());
+    assert_twins(&module, "Lights", Lights::LAYOUT, size_of::<Lights>());
     let underbrush = self::module(shaders::UNDERBRUSH);
     assert_twins(&underbrush, "UnderbrushFrame", UnderbrushFrame::LAYOUT, size_of::<UnderbrushFrame>());
     assert_twins(&underbrush, "BrushList", BrushList::LAYOUT, size_of::<BrushList>());

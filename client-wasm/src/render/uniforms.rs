@@ -44,7 +44,7 @@ uniform_block! {
         maps: [f32; 4],
         /// Extent of the wind's box (m); side of a patch (m) where each shows the box in its own place, else 0.
         wind_box: [f32; 4],
-        /// Seed of the patches' places in the wind's box; 1 where the box repeats along X; along Z; unused.
+        /// Seed of the patches' places in the wind's box; 1 where the box repeats along X; along Z; number of lamps.
         tiling: [u32; 4],
         /// Unit vector of the mean wind (x, z); its speed (m/s); distance the gusts have travelled (m).
         gust: [f32; 4],
@@ -63,6 +63,52 @@ uniform_block! {
         clouds: [f32; 4],
         /// Interaction spheres: centre and radius (m).
         spheres: [[f32; 4]; SPHERE_LIMIT],
+        /// Light of sky and lamps.
+        lights: Lights,
+    }
+}
+
+/// Most lamps in a frame; those nearest to the camera are kept.
+pub(super) const LAMP_LIMIT: usize = 16;
+
+uniform_block! {
+    /// A lamp; its twin is in `light.wgsl`.
+    Lamp {
+        /// Where it is (m); distance at which it ends (m).
+        place: [f32; 4],
+        /// Light at 1 m; cosine at which its cone ends.
+        rgb: [f32; 4],
+        /// Unit vector along its cone; cosine up to which that is full.
+        aim: [f32; 4],
+        /// Constant, linear (1/m) and quadratic (1/m²) term; unused.
+        attenuation: [f32; 4],
+    }
+}
+
+uniform_block! {
+    /// Light of sky and lamps, in the frame's block since Mesa 22's software Vulkan crashes on a third uniform buffer in a group; its twin is in
+    /// `light.wgsl`.
+    Lights {
+        /// World to the clip space of the shadow map's coarse layer.
+        far_shadow_from_world: [f32; 16],
+        /// Light of sky and land on a surface, mean of up and down; unused.
+        mean: [f32; 4],
+        /// What it is more straight up; unused.
+        up: [f32; 4],
+        /// What it is more on a level normal towards the sun's heading; unused.
+        toward_sun: [f32; 4],
+        /// The night's own sky; brightness of stars.
+        night: [f32; 4],
+        /// Colour of sunlight at the height of clouds; unused.
+        cloud_sun: [f32; 4],
+        /// Unit vector on the ground towards the sun; unused.
+        heading: [f32; 4],
+        /// Mist on the lowest land (1/m); height over which it is 1/e as dense (m); elevation of that land (m); unused.
+        mist: [f32; 4],
+        /// Side of a texel and depth of the shadow map's sharp layer (m), and of its coarse one.
+        shadow: [f32; 4],
+        /// Those beyond the last lamp are zero.
+        lamps: [Lamp; LAMP_LIMIT],
     }
 }
 

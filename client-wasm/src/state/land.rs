@@ -5,7 +5,7 @@ use super::{MirrorError, range, within};
 use shared::grid::PatchLayout;
 use shared::plant::flora::Flora;
 use shared::plant::growth::NutrientMap;
-use shared::scene::{Scene, VehicleKind, WIND_CELLS_LIMIT};
+use shared::scene::{LAMPS_LIMIT, Scene, VehicleKind, WIND_CELLS_LIMIT};
 use shared::terrain::{Cover, CoverMap, HeightMap, KindMap};
 use shared::wind::Tiles;
 use shared::wire::Mesh;
@@ -133,9 +133,28 @@ fn check(scene: &Scene) -> Result<(), MirrorError> {
     within("rain.rate_mm_per_h", scene.rain.rate_mm_per_h, 0.0, 200.0)?;
     within("objects.balls", scene.objects.balls as f32, 0.0, 64.0)?;
     within("objects.ball_radius_m", scene.objects.ball_radius_m, 0.1, 5.0)?;
-    within("light.sun_elevation_rad", scene.light.sun_elevation_rad, 0.02, 1.58)?;
-    within("light.sun_heading_rad", scene.light.sun_heading_rad, -100.0, 100.0)?;
-    within("light.haze_m", scene.light.haze_m, 10.0, 100_000.0)?;
+    let light = &scene.light;
+    within("light.sun_elevation_rad", light.sun_elevation_rad, -0.1, 1.58)?;
+    within("light.sun_heading_rad", light.sun_heading_rad, -100.0, 100.0)?;
+    within("light.hour", light.hour, -1.0, 24.0)?;
+    within("light.latitude_deg", light.latitude_deg, -90.0, 90.0)?;
+    within("light.day_of_year", light.day_of_year, 1.0, 366.0)?;
+    within("light.day_length_secs", light.day_length_secs, 0.0, 1_000_000.0)?;
+    within("light.haze_m", light.haze_m, 10.0, 100_000.0)?;
+    within("light.mist_m", light.mist_m, 0.0, 100_000.0)?;
+    within("light.mist_height_m", light.mist_height_m, 0.5, 200.0)?;
+    if scene.lights.len() > LAMPS_LIMIT {
+        return Err(range("number of lights", scene.lights.len(), format!("at most {LAMPS_LIMIT}")));
+    }
+    for lamp in &scene.lights {
+        for place in lamp.at_m {
+            within("lights.at_m", place, -100_000.0, 100_000.0)?;
+        }
+        within("lights.candela", lamp.candela, 0.0, 1_000_000.0)?;
+        for term in lamp.attenuation {
+            within("lights.attenuation", term, 0.0, 100.0)?;
+        }
+    }
     if scene.species.len() > 16 {
         return Err(range("number of species", scene.species.len(), "at most 16"));
     }

@@ -1,7 +1,7 @@
 use super::*;
 use glam::Vec3;
 use proptest::prelude::*;
-use shared::scene::{Component, ComponentKind, Patches, Scene, Species, TerrainMaps, Underbrush, VehicleKind, Wind};
+use shared::scene::{Component, ComponentKind, Lamp, Patches, Scene, Species, TerrainMaps, Underbrush, VehicleKind, Wind};
 use shared::terrain::grey_png;
 use shared::wire::quantise::{dust_code, theta_code, wind_code};
 use shared::wire::{BrokenPlant, Shape, codec, decode};
@@ -244,7 +244,9 @@ fn underbrush_that_the_client_cannot_hold_is_refused() {
     }
     assert_eq!(refused(|_| ()), None);
     type Change = fn(&mut Scene);
-    let cases: [(Change, &str); 12] = [
+    let cases: [(Change, &str); 14] = [
+        (|scene| scene.light.hour = f32::NAN, "light.hour is NaN; allowed: -1..=24"),
+        (|scene| scene.lights = vec![Lamp::new([0.0; 3]); 9], "number of lights is 9; allowed: at most 8"),
         (|scene| scene.plants.swing_hz = 0.0, "*.swing_hz is 0; allowed: 0.05..=50"),
         (|scene| scene.rain.rate_mm_per_h = f32::INFINITY, "rain.rate_mm_per_h is inf; allowed: 0..=200"),
         (|scene| scene.objects.balls = 65, "objects.balls is 65; allowed: 0..=64"),

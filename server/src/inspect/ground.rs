@@ -35,9 +35,7 @@ impl GroundMesh {
         let extent_m = layout.extent_m();
         let pixel_m = heights.pixel_m();
         let side: [u32; 2] = std::array::from_fn(|axis| ((extent_m[axis] / pixel_m[axis]).ceil() as u32 + 1).clamp(2, MESH_LIMIT));
-        let (sin, cos) = light.sun_heading_rad.sin_cos();
-        let (up, flat) = light.sun_elevation_rad.sin_cos();
-        let sun = Vec3::new(flat * sin, up, -flat * cos);
+        let sun = Vec3::from(light.sun_at(0.0).direction());
 
         let mut mesh = Self { positions_m: Vec::new(), texcoords: Vec::new(), shades: Vec::new(), triangles: Vec::new() };
         for j in 0..side[1] {
@@ -46,7 +44,7 @@ impl GroundMesh {
                 let [x, z] = [u * extent_m[0], v * extent_m[1]];
                 mesh.positions_m.push([x, heights.height_m(x, z), z]);
                 mesh.texcoords.push([u, v]);
-                let lit = heights.normal(x, z).dot(sun).max(0.0) / up.max(0.2);
+                let lit = heights.normal(x, z).dot(sun).max(0.0) / sun.y.max(0.2);
                 mesh.shades.push([(255.0 * (0.25 + 0.6 * lit).min(1.0)) as u8; 3]);
             }
         }

@@ -1,8 +1,8 @@
 //! What each field of a scene file may hold: the one table that parsing, the reference in the README and its tests share.
 
 use super::{
-    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, LagWay, PrimitiveKind, SPECIES_LIMIT, VehicleKind, WindAdvection,
-    WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, LAMPS_LIMIT, LagWay, PrimitiveKind, SPECIES_LIMIT, VehicleKind,
+    WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, Scheme, Seams};
 use crate::plant::underbrush::plan::SECTIONS_LIMIT;
@@ -28,7 +28,7 @@ pub enum Allowed {
 use Allowed::{Name, OneOf, Places, Range, Sections, Text};
 
 /// Every field by its path, in the order of the structs; in a list of sections, those of one section.
-pub const FIELDS: [(&str, Allowed); 181] = [
+pub const FIELDS: [(&str, Allowed); 192] = [
     ("summary", Text),
     ("seed", Range(0.0, i64::MAX as f64)),
     ("tick_hz", Range(10.0, 240.0)),
@@ -36,6 +36,7 @@ pub const FIELDS: [(&str, Allowed); 181] = [
     ("underbrush_file", Text),
     ("underbrush", Sections(0, SPECIES_LIMIT)),
     ("drawn_winds", Sections(0, 16)),
+    ("lights", Sections(0, LAMPS_LIMIT)),
     ("patches.count", Range(1.0, 2048.0)),
     ("patches.cells", Range(8.0, 256.0)),
     ("patches.cell_m", Range(0.05, 10.0)),
@@ -208,12 +209,22 @@ pub const FIELDS: [(&str, Allowed); 181] = [
     ("camera.heading_rad", Range(-6.3, 6.3)),
     ("camera.pitch_rad", Range(-1.5, 1.5)),
     ("light.sun_heading_rad", Range(-6.3, 6.3)),
-    ("light.sun_elevation_rad", Range(0.02, 1.57)),
+    ("light.sun_elevation_rad", Range(-0.1, 1.57)),
+    ("light.hour", Range(-1.0, 24.0)),
+    ("light.latitude_deg", Range(-90.0, 90.0)),
+    ("light.day_of_year", Range(1.0, 366.0)),
+    ("light.day_length_secs", Range(0.0, 1_000_000.0)),
     ("light.haze_m", Range(10.0, 100_000.0)),
+    ("light.mist_m", Range(0.0, 100_000.0)),
+    ("light.mist_height_m", Range(0.5, 200.0)),
+    ("lights.at_m", Range(-100_000.0, 100_000.0)),
+    ("lights.rgb", Range(0.0, 1.0)),
+    ("lights.candela", Range(0.0, 1_000_000.0)),
+    ("lights.attenuation", Range(0.0, 100.0)),
 ];
 
 /// Fields that a scene file must give; in a list of sections, each section of it.
-pub const REQUIRED: [&str; 16] = [
+pub const REQUIRED: [&str; 17] = [
     "summary",
     "terrain",
     "terrain.height_map",
@@ -230,6 +241,7 @@ pub const REQUIRED: [&str; 16] = [
     "underbrush.components.kind",
     "drawn_winds.shape",
     "drawn_winds.path_m",
+    "lights.at_m",
 ];
 
 /// What the field at `path` may hold; text for a path that is not in the table.

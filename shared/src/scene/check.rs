@@ -1,6 +1,6 @@
 //! Checks of values against each other; the range of each single value is in [`FIELDS`](super::FIELDS).
 
-use super::{Scene, drawn_wind, objects, swing, underbrush, wind};
+use super::{Scene, drawn_wind, lamp, objects, picture, swing, underbrush, wind};
 use crate::bend::{Scheme, Seams};
 
 /// Largest side of the world (m): up to here a coordinate in single precision resolves 1 cm.
@@ -72,6 +72,8 @@ pub(super) fn cross_checks(scene: &Scene, from_file: usize) -> Misfits {
     underbrush::check::check(scene, from_file, &mut misfits);
     objects::check(&scene.objects, &mut misfits);
     drawn_wind::check(scene, &mut misfits);
+    picture::check(&scene.light, &mut misfits);
+    lamp::check(&scene.lights, &mut misfits);
     misfits
 }
 

@@ -10,6 +10,7 @@ mod drawn_wind;
 mod fault;
 mod grass;
 mod growth;
+mod lamp;
 mod natural_wind;
 mod objects;
 mod parse;
@@ -32,6 +33,7 @@ pub use drawn_wind::{DrawnWind, WindShape};
 pub use fault::SceneFault;
 pub use grass::Grass;
 pub use growth::Growth;
+pub use lamp::{LAMPS_LIMIT, Lamp};
 pub use natural_wind::NaturalWind;
 pub use objects::{BallTread, CarTread, HelicopterTread, MonsterTread, Objects, SledTread, Tread, VehicleKind};
 pub use parse::{parse, parse_underbrush, parse_with};
@@ -112,9 +114,12 @@ pub struct Scene {
     /// Where a visitor's camera starts.
     #[serde(default)]
     pub camera: CameraStart,
-    /// Sun, sky and haze.
+    /// Sun, sky, haze and mist.
     #[serde(default)]
     pub light: Light,
+    /// Lamps that stand on the land, each a section `[[lights]]`. Default none, allowed at most 8.
+    #[serde(default)]
+    pub lights: Vec<Lamp>,
 }
 
 fn default_seed() -> u64 {
@@ -148,6 +153,7 @@ impl Scene {
             drawn_winds: Vec::new(),
             camera: CameraStart::default(),
             light: Light::default(),
+            lights: Vec::new(),
         }
     }
 

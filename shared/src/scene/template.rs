@@ -2,7 +2,7 @@
 
 use super::walk::Walk;
 use super::{
-    Component, ComponentKind, DrawnWind, Grass, Plants, Primitive, PrimitiveKind, Scene, Species, TerrainMaps, Underbrush, Wind,
+    Component, ComponentKind, DrawnWind, Grass, Lamp, Plants, Primitive, PrimitiveKind, Scene, Species, TerrainMaps, Underbrush, Wind,
     WindMethod, WindShape,
 };
 use serde::{Deserialize, Serialize};
@@ -29,6 +29,7 @@ pub(super) fn section(field: &str) -> Table {
         "underbrush" => table(Underbrush::new("", Vec::new())),
         "underbrush.components" => table(Component::new("", ComponentKind::Leaf)),
         "drawn_winds" => table(DrawnWind::new(WindShape::Outward, vec![[0.0; 2]])),
+        "lights" => table(Lamp::new([0.0; 3])),
         _ => Table::new(),
     }
 }

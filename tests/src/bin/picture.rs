@@ -3,7 +3,7 @@
 use anyhow::{Context as _, Result};
 use clap::Parser;
 use client_wasm::camera::Camera;
-use client_wasm::render::{Far, Gpu, Look, Order, Quality};
+use client_wasm::render::{Far, Gpu, Look, Order, Quality, Sun};
 use std::path::PathBuf;
 use std::time::Instant;
 use tests::picture::Picture;
@@ -34,9 +34,15 @@ struct Arguments {
     /// How plants are laid over each other: cut, coverage, sorted, precomputed or weighted
     #[arg(long, default_value = "cut")]
     order: String,
-    /// What stands for far plants: blades, clumps, shells or land
-    #[arg(long, default_value = "clumps")]
+    /// What stands for far plants: land, clumps or shells
+    #[arg(long, default_value = "land")]
     far: String,
+    /// Hour of the day (0 to 24) by which the sun stands, instead of the scene's own
+    #[arg(long)]
+    hour: Option<f32>,
+    /// Place of the sun instead: heading from north towards east and elevation (degrees)
+    #[arg(long, value_name = "HEADING,ELEVATION", allow_hyphen_values = true, conflicts_with = "hour")]
+    sun: Option<String>,
     /// Frames drawn, 1/30 s apart, so that the blades have found their motion; the last one is kept
     #[arg(long, default_value_t = 45)]
     frames: u32,
@@ -51,9 +57,10 @@ fn main() -> Result<()> {
     let size_px: [u32; 2] = [width.parse().context("--size: width")?, height.parse().context("--size: height")?];
     let quality = Quality::from_name(&arguments.quality).context("--quality: low, medium, high or ultra are allowed")?;
     let order = Order::from_name(&arguments.order).context("--order: cut, coverage, sorted, precomputed or weighted are allowed")?;
-    let far = Far::from_name(&arguments.far).context("--far: blades, clumps, shells or land are allowed")?;
+    let far = Far::from_name(&arguments.far).context("--far: land, clumps or shells are allowed")?;
     let mut stage = Stage::load(&arguments.scene)?;
     let scene = stage.scene();
+    let light = scene.light;
     let mut camera = match &arguments.camera {
         Some(hash) => Camera::from_hash(hash).context("--camera: five numbers are allowed: x,y,z,heading,pitch")?,
         None => Camera::start(&scene.camera, scene.extent_m(), |x, z| stage.ground_m(x, z)),
@@ -68,7 +75,9 @@ fn main() -> Result<()> {
 
     let gpu = Gpu::headless()?;
     let mut picture = client_wasm::render::Picture::new(&gpu, size_px, quality);
-    picture.set_look(Look { order, far, ..Look::default() });
+    let placed = arguments.sun.as_deref().map(sun_at).transpose()?;
+    let sun = placed.or(arguments.hour.map(|hour| light.sun_at_hour(hour)));
+    picture.set_look(Look { order, far, sun, ..Look::default() });
     const DT_SECS: f32 = 1.0 / 30.0;
     let mut stats = Default::default();
     let mut drawing_secs = 0.0;
@@ -82,4 +91,12 @@ fn main() -> Result<()> {
     println!("{}: {:.1} ms a frame, {stats:?}", gpu.adapter_name, drawing_secs * 1e3 / f64::from(arguments.frames.max(1)));
     println!("camera {}", camera.to_hash());
     Picture { width: size_px[0], height: size_px[1], rgba: picture.rgba() }.save(&arguments.out)
+}
+
+/// The sun at a heading and an elevation in degrees, with a comma between.
+fn sun_at(text: &str) -> Result<Sun> {
+    let parsed = text.split_once(',').and_then(|(heading, elevation)| Some((heading.parse::<f32>().ok()?, elevation.parse::<f32>().ok()?)));
+    let (heading, elevation) =
+        parsed.filter(|(_, elevation)| elevation.abs() <= 90.0).context("--sun: HEADING,ELEVATION in degrees, up to 90 up or down")?;
+    Ok(Sun { heading_rad: heading.to_radians(), elevation_rad: elevation.to_radians() })
 }
