@@ -11,7 +11,7 @@ struct Field {
 }
 
 /// Source files and, for each struct in them, the section that it describes.
-const SOURCES: [(&str, &[(&str, &str)]); 18] = [
+const SOURCES: [(&str, &[(&str, &str)]); 19] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
     ("terrain.rs", &[("TerrainMaps", "terrain")]),
@@ -24,6 +24,7 @@ const SOURCES: [(&str, &[(&str, &str)]); 18] = [
     ("bend.rs", &[("BendField", "bend")]),
     ("grass.rs", &[("Grass", "grass")]),
     ("plants.rs", &[("Plants", "plants")]),
+    ("shells.rs", &[("Shells", "shells")]),
     ("species.rs", &[("Species", "species")]),
     ("underbrush.rs", &[("Underbrush", "underbrush"), ("Component", "underbrush.components")]),
     ("growth.rs", &[("Growth", "growth")]),
@@ -43,7 +44,7 @@ const SOURCES: [(&str, &[(&str, &str)]); 18] = [
 ];
 
 /// Sections that may stand once.
-const SECTIONS: [&str; 19] = [
+const SECTIONS: [&str; 20] = [
     "patches",
     "terrain",
     "wind",
@@ -54,6 +55,7 @@ const SECTIONS: [&str; 19] = [
     "bend",
     "grass",
     "plants",
+    "shells",
     "growth",
     "objects",
     "objects.car",

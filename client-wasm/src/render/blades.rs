@@ -228,13 +228,17 @@ fn most_standing(mean: f32) -> u32 {
 
 /// Whether any plant of a grid may be in view.
 pub(super) fn grid_is_seen(land: &Land, grid: [i32; 2], grid_m: f32, frustum: &Frustum) -> bool {
-    let [x, z] = grid.map(|n| n as f32 * grid_m);
+    square_is_seen(land, grid.map(|n| n as f32 * grid_m), grid_m, frustum)
+}
+
+/// Whether any plant of a square from a corner on may be in view.
+pub(super) fn square_is_seen(land: &Land, [x, z]: [f32; 2], side_m: f32, frustum: &Frustum) -> bool {
     let h = land.heights();
     let corners = [(0.0, 0.0), (0.5, 0.5), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
-    let heights = corners.map(|(i, j)| h.height_m(x + i * grid_m, z + j * grid_m));
-    let low = heights.iter().copied().fold(f32::MAX, f32::min) - 0.1 * grid_m;
-    let high = heights.iter().copied().fold(f32::MIN, f32::max) + 0.1 * grid_m + 2.0 * land.scene().tallest_m();
-    frustum.sees_box(Vec3::new(x - 0.5, low, z - 0.5), Vec3::new(x + grid_m + 0.5, high, z + grid_m + 0.5))
+    let heights = corners.map(|(i, j)| h.height_m(x + i * side_m, z + j * side_m));
+    let low = heights.iter().copied().fold(f32::MAX, f32::min) - 0.1 * side_m;
+    let high = heights.iter().copied().fold(f32::MIN, f32::max) + 0.1 * side_m + 2.0 * land.scene().tallest_m();
+    frustum.sees_box(Vec3::new(x - 0.5, low, z - 0.5), Vec3::new(x + side_m + 0.5, high, z + side_m + 0.5))
 }
 
 /// Distance up to which every plant stands (m).

@@ -81,10 +81,12 @@ pub struct Look {
     pub far: Far,
     /// Whether what the view's edges or the land hide is left out; the picture is the same without.
     pub culls: bool,
+    /// Layers of shells near the camera, the ground among them, 1..=65; the scene's if none.
+    pub shell_layers: Option<u32>,
 }
 
 impl Default for Look {
     fn default() -> Self {
-        Self { order: Order::default(), far: Far::default(), culls: true }
+        Self { order: Order::default(), far: Far::default(), culls: true, shell_layers: None }
     }
 }

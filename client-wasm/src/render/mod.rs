@@ -7,6 +7,7 @@ mod atlas;
 mod billboards;
 mod blades;
 mod cull;
+mod dots;
 mod dust;
 mod flora;
 mod forces;
@@ -24,6 +25,7 @@ mod pipeline;
 mod quality;
 mod rain;
 mod shaders;
+mod shells;
 mod sky;
 mod terrain;
 mod tone;
@@ -51,7 +53,9 @@ use land::{FrameGroup, LandTextures};
 use objects::Objects;
 use pipeline::{COLOR, DEPTH, Maker};
 use rain::RainPass;
+use shared::scene::PlantCover;
 use shared::wire::ObjectPose;
+use shells::{Extent, Shells};
 use sky::Sky;
 use terrain::{Ground, Terrain};
 use tone::Tone;
@@ -68,6 +72,8 @@ pub struct FrameStats {
     pub blades: u32,
     /// Clumps of far plants.
     pub clumps: u32,
+    /// Layers of tiles of shells.
+    pub sheets: u32,
     /// Underbrush in the scene.
     pub underbrush: u32,
     /// Vertices of the ground.
@@ -99,6 +105,7 @@ struct SceneParts {
     textures: LandTextures,
     ground: Ground,
     blades: Blades,
+    shells: Shells,
     forces: Forces,
     underbrush: Option<Underbrush>,
     rain: Option<RainPass>,
@@ -198,10 +205,12 @@ impl Renderer {
             let heights = land.heights();
             let standing = flora::standing(land);
             let forces = Forces::new(&self.gpu, land, &standing);
+            let ground = Ground::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), scene.light.haze_m);
             SceneParts {
                 number: mirror.scene_number(),
                 textures: LandTextures::new(&self.gpu, &self.frame, land),
-                ground: Ground::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), scene.light.haze_m),
+                shells: Shells::new(&maker, land, &ground),
+                ground,
                 blades: Blades::new(&maker, self.quality, land),
                 underbrush: Underbrush::new(&maker, land, &forces, self.quality.underbrush_reach_m()),
                 forces,
@@ -231,9 +240,21 @@ impl Renderer {
         let frustum = Frustum::new(&view.projection_from_world);
         let tiles = scene.ground.tiles(camera.eye_m, &frustum);
         self.terrain.prepare(gpu, &tiles);
-        scene.blades.prepare(gpu, self.quality, land, camera.eye_m, &frustum, dt_secs);
-        let reach = Reach { from_m: 0.72 * frame.reach[0], several_m: SEVERAL_REACHES * frame.reach[1], to_m: frame.reach[3] };
-        self.billboards.prepare(gpu, land, camera.eye_m, &frustum, reach);
+        let shells = match (land.scene().plants.cover, self.look.far) {
+            (PlantCover::Shells, _) => Some(Extent::All),
+            (PlantCover::Blades, Far::Shells) => Some(Extent::Far),
+            _ => None,
+        };
+        let has_blades = shells != Some(Extent::All);
+        if has_blades {
+            scene.blades.prepare(gpu, self.quality, land, camera.eye_m, &frustum, dt_secs);
+        }
+        if let Some(extent) = shells {
+            scene.shells.prepare(gpu, land, camera.eye_m, &frustum, frame.reach, extent, self.look.shell_layers);
+        } else {
+            let reach = Reach { from_m: 0.72 * frame.reach[0], several_m: SEVERAL_REACHES * frame.reach[1], to_m: frame.reach[3] };
+            self.billboards.prepare(gpu, land, camera.eye_m, &frustum, reach);
+        }
         if let Some(underbrush) = &mut scene.underbrush {
             scene.forces.follow(gpu, land, &scene.textures.wind, &poses, [camera.eye_m.x, camera.eye_m.z], dt_secs);
             underbrush.show_broken(gpu, mirror.falls(), mirror.broken_count());
@@ -254,8 +275,14 @@ impl Renderer {
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes: None });
             pass.set_bind_group(0, &scene.textures.group, &[]);
-            scene.blades.bend(&mut pass);
-            self.billboards.bend(&mut pass);
+            if has_blades {
+                scene.blades.bend(&mut pass);
+            }
+            if shells.is_some() {
+                scene.shells.bend(&mut pass);
+            } else {
+                self.billboards.bend(&mut pass);
+            }
             if let Some(underbrush) = &scene.underbrush {
                 underbrush.bend(&mut pass);
             }
@@ -267,11 +294,17 @@ impl Renderer {
             let mut pass = main_pass(&mut encoder, &self.targets);
             pass.set_bind_group(0, &scene.textures.group, &[]);
             scene.objects.draw(&mut pass);
-            scene.blades.draw(&mut pass);
+            if has_blades {
+                scene.blades.draw(&mut pass);
+            }
             if let Some(underbrush) = &scene.underbrush {
                 underbrush.draw(&mut pass);
             }
-            self.billboards.draw(&mut pass);
+            if shells.is_some() {
+                scene.shells.draw(&mut pass);
+            } else {
+                self.billboards.draw(&mut pass);
+            }
             self.terrain.draw(&mut pass);
             self.sky.draw(&mut pass);
             if let Some(dust) = &scene.dust {
@@ -288,8 +321,9 @@ impl Renderer {
         }
         gpu.queue.submit([encoder.finish()]);
         FrameStats {
-            blades: scene.blades.simulated(),
-            clumps: self.billboards.count(),
+            blades: if has_blades { scene.blades.simulated() } else { 0 },
+            clumps: if shells.is_none() { self.billboards.count() } else { 0 },
+            sheets: if shells.is_some() { scene.shells.sheets() } else { 0 },
             underbrush: scene.underbrush.as_ref().map_or(0, Underbrush::plants),
             ground_vertices: self.terrain.vertices(),
             object_triangles: scene.objects.triangles(),

@@ -24,6 +24,8 @@ pub(super) const FLOWERS: &str = include_str!("../../shaders/flowers.wgsl");
 pub(super) const BILLBOARDS: &str = include_str!("../../shaders/billboards.wgsl");
 /// Motes and puffs of dust.
 pub(super) const DUST: &str = include_str!("../../shaders/dust.wgsl");
+/// Shells.
+pub(super) const SHELLS: &str = include_str!("../../shaders/shells.wgsl");
 /// Ground.
 pub(super) const TERRAIN: &str = include_str!("../../shaders/terrain.wgsl");
 /// Objects, trees and stones.

@@ -1,6 +1,7 @@
-//! Which grass grid is drawn how (000 §4.1 and §5.2), and how the segments of a plant follow each other (001 §4.5).
+//! Which grass grid is drawn how (000 §4.1 and §5.2), how the segments of a plant follow each other (001 §4.5), and how shells lean (003 §3.2).
 
 mod lag;
+pub mod shells;
 
 pub use lag::{Lag, PASTS, history_weights, joints_m};
 

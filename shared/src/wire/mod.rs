@@ -14,7 +14,7 @@ pub use codec::{CodecError, Shape};
 pub use message::{BrokenPlant, ClientMessage, Drive, Mesh, ObjectId, ObjectPose, Peer, Refusal, ServerMessage, WireError, decode, encode};
 
 /// Version of the protocol; both sides must agree.
-pub const PROTOCOL: u8 = 8;
+pub const PROTOCOL: u8 = 9;
 
 /// Largest message a client may send (bytes).
 pub const CLIENT_MESSAGE_LIMIT: usize = 4096;

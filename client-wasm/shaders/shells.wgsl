@@ -1,0 +1,240 @@
+// Shells (003): layers of one texture of cross-sections, that lean without changing the length of a blade. Between two layers the view's ray goes through
+// slices of them, so that flat views meet the blades which stand there.
+
+const TILE_CELLS: u32 = 16u;
+const TILE_VERTICES: u32 = 289u;
+const RIGHT_ANGLE: f32 = 1.5707963;
+// Time over which a gust that has passed still holds the grass (s): it comes suddenly and goes gently (003 §3.2).
+const RELEASE_SECS: f32 = 0.9;
+
+// Its twin is in `uniforms.rs`.
+struct ShellFrame {
+    // Segments of a blade; most slices between two layers; 1 where no single blades are drawn; unused.
+    counts: vec4<u32>,
+    // Side of the texture on the ground (m); of its texels (m); its last level; least share of light at the roots.
+    dots: vec4<f32>,
+}
+
+struct Tile {
+    // North-west corner (m), side (m), distance at which the next coarser grid takes over (m).
+    place: vec4<f32>,
+}
+
+// What all layers share at a place of the mesh.
+struct Turf {
+    // Place on the ground (m); height of the tallest blade (m).
+    root: vec4<f32>,
+    // Unit normal of the ground; tilt of the root (rad).
+    normal: vec4<f32>,
+    // Unit vector of the wind along the ground; its intensity.
+    wind: vec4<f32>,
+    // Colour at the root; share of sunlight.
+    low: vec4<f32>,
+    // Colour at the tip; share of its height that grass has there.
+    high: vec4<f32>,
+    // Share of the way to the next coarser tile's layers; unused.
+    merge: vec4<f32>,
+}
+
+@group(1) @binding(0) var<storage, read> tiles: array<Tile>;
+@group(1) @binding(1) var<uniform> shells: ShellFrame;
+@group(1) @binding(2) var<storage, read> turfs: array<Turf>;
+@group(1) @binding(3) var dots: texture_2d<f32>;
+// Tile and layer; segments down to the next layer and to the one after it, and whether that next one alone remains farther away.
+@group(1) @binding(4) var<storage, read> sheets: array<vec4<u32>>;
+@group(1) @binding(5) var<storage, read_write> settled: array<Turf>;
+
+// Layer `i` of a blade whose root is tilted and whom the wind bends, along the normal and along the wind, in its heights. Twin of `Tilt::layer` in
+// shared/src/lod/shells.rs.
+fn layer_place(root_rad: f32, intensity: f32, i: f32, segments: f32) -> vec2<f32> {
+    let half = 0.5 * RIGHT_ANGLE * intensity / segments;
+    let sum = select(i, sin(i * half) / sin(max(half, 1e-4)), half > 1e-4);
+    let middle = root_rad + (i + 1.0) * half;
+    return vec2<f32>(cos(middle), sin(middle)) * (sum / segments);
+}
+
+// Tilt of the root (rad) and wind intensity of a blade that leans by so much on the average (rad). Twin of `Tilt::of_lean`.
+fn tilt_of(lean_rad: f32) -> vec2<f32> {
+    let twice = 2.0 * clamp(lean_rad, 0.0, 1.5);
+    let root_rad = max(twice - RIGHT_ANGLE, 0.0);
+    return vec2<f32>(root_rad, (min(twice, RIGHT_ANGLE) - root_rad) / RIGHT_ANGLE);
+}
+
+// The gusts at a place as grass follows them: at once when they come, slowly when they go.
+fn gust_held(p: vec2<f32>) -> f32 {
+    let now = gust_at(p);
+    let back_m = frame.gust.xy * (frame.gust.z * 1.3 * RELEASE_SECS * 0.5);
+    return max(now, max(mix(now, gust_at(p + back_m), 0.61), mix(now, gust_at(p + 2.0 * back_m), 0.37)));
+}
+
+@compute @workgroup_size(64)
+fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= TILE_VERTICES {
+        return;
+    }
+    let place = tiles[id.y].place;
+    let row = TILE_CELLS + 1u;
+    let cell = vec2<f32>(f32(id.x % row), f32(id.x / row));
+    let spacing = place.z / f32(TILE_CELLS);
+    let flat_p = place.xy + cell * spacing;
+    let flat_m = length(vec3<f32>(flat_p.x, ground_height(flat_p), flat_p.y) - frame.eye.xyz);
+    let morph = smoothstep(0.70, 0.95, flat_m / place.w);
+    let odd = cell - 2.0 * floor(cell * 0.5);
+    let p = flat_p - odd * spacing * morph;
+    let ground = vec3<f32>(p.x, ground_height(p), p.y);
+    let distance_m = distance(ground, frame.eye.xyz);
+    let normal = ground_normal(p);
+    let kind = kinds_blended(p);
+
+    let height = kind.root.w * (1.0 + frame.blade.y) * mix(0.78, 1.16, noise(p / 14.0).a) * mix(0.86, 1.10, noise(p / 3.1).g);
+    let lean = lean_at(ground, field_level(distance_m), gust_held(p), kind.tip.w);
+    let lean_rad = length(lean);
+    let across = vec3<f32>(lean.x, 0.0, lean.y) / max(lean_rad, 1e-4);
+    let along = across - dot(across, normal) * normal;
+    let tilt = tilt_of(lean_rad);
+
+    var growth = smoothstep(0.05, 0.75, grass_share(p)) * (1.0 - smoothstep(frame.reach.z, frame.reach.w, distance_m));
+    if shells.counts.z == 0u {
+        growth *= smoothstep(frame.reach.x, frame.reach.y, distance_m);
+    }
+    let tint = grass_tint(p) * (0.94 + 0.30 * smoothstep(0.05, 0.45, lean_rad));
+    let light = cloud_light(p) * sun_visible(ground + normal * height * 0.6);
+    var turf: Turf;
+    turf.root = vec4<f32>(ground, height);
+    turf.normal = vec4<f32>(normal, tilt.x);
+    turf.wind = vec4<f32>(along / max(length(along), 1e-4), tilt.y);
+    turf.low = vec4<f32>(kind.root.rgb * tint, light);
+    turf.high = vec4<f32>(kind.tip.rgb * tint * trodden(lean_rad), growth);
+    turf.merge = vec4<f32>(morph, 0.0, 0.0, 0.0);
+    settled[id.y * TILE_VERTICES + id.x] = turf;
+}
+
+struct Sheet {
+    @builtin(position) position: vec4<f32>,
+    // Place (m); share of sunlight.
+    @location(0) p: vec4<f32>,
+    // X and Z of the root (m); height of the tallest blade (m); share of it that grass has there.
+    @location(1) root: vec4<f32>,
+    // From the next layer to this one (m); share of the way to fewer layers.
+    @location(2) segment: vec4<f32>,
+    @location(3) normal: vec3<f32>,
+    @location(4) low: vec3<f32>,
+    @location(5) high: vec3<f32>,
+    // Height of this layer, and how far the next is below it, over that of the tallest blade; the one after it, over the next; whether this one goes.
+    @location(6) @interpolate(flat) layer: vec4<f32>,
+}
+
+@vertex
+fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Sheet {
+    let sheet = sheets[instance];
+    let turf = turfs[(sheet.x >> 8u) * TILE_VERTICES + index];
+    let layer = f32(sheet.x & 255u);
+    let segments = f32(max(shells.counts.x, 1u));
+    let below = f32(sheet.y);
+    let at = layer_place(turf.normal.w, turf.wind.w, layer, segments);
+    let under = layer_place(turf.normal.w, turf.wind.w, layer - below, segments);
+    let normal = turf.normal.xyz;
+    let height = turf.root.w;
+    var p = turf.root.xyz + height * (at.x * normal + at.y * turf.wind.xyz);
+    // The one layer of the lowest setting lies just above the ground.
+    p.y += select(0.0, 0.004, sheet.x % 256u == 0u);
+    var out: Sheet;
+    out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
+    out.p = vec4<f32>(p, turf.low.w);
+    out.root = vec4<f32>(turf.root.xz, height, turf.high.w);
+    out.segment = vec4<f32>(height * ((at.x - under.x) * normal + (at.y - under.y) * turf.wind.xyz), turf.merge.x);
+    out.normal = normal;
+    out.low = turf.low.rgb;
+    out.high = turf.high.rgb;
+    out.layer = vec4<f32>(layer / segments, below / segments, f32(sheet.z) / max(below, 1.0), f32(sheet.w));
+    return out;
+}
+
+// The texture at a size on the ground: its coordinates at a place, how they run along a slice, the level to read and the share of its heights.
+struct Grain {
+    uv: vec2<f32>,
+    run: vec2<f32>,
+    level: f32,
+    share: f32,
+}
+
+// The texture doubled in size `times`, turned each time so that no two lie alike.
+fn grain_of(p: vec2<f32>, run: vec2<f32>, times: f32, level: f32, share: f32) -> Grain {
+    let angle = 2.4 * times;
+    let size = exp2(-times) / shells.dots.x;
+    let turn = mat2x2<f32>(vec2<f32>(cos(angle), sin(angle)), vec2<f32>(-sin(angle), cos(angle))) * size;
+    return Grain(turn * p, turn * run, level - times, share);
+}
+
+fn cross_section(grain: Grain, u: f32) -> vec4<f32> {
+    let found = textureSampleLevel(dots, repeated, grain.uv + grain.run * u, grain.level);
+    return vec4<f32>(found.rgb, found.a * grain.share);
+}
+
+// A pattern that spreads thresholds evenly over neighbouring pixels (Jimenez, interleaved gradient noise).
+fn dither(pixel: vec2<f32>) -> f32 {
+    return fract(52.9829189 * fract(dot(pixel, vec2<f32>(0.06711056, 0.00583715))));
+}
+
+// Light on a blade `up` of its way to the tip and `high` over the tallest, by its tangent alone: the normal is that of the blade's disc which faces the sun
+// most (003 §3.3, after Banks and Kajiya & Kay), the shadow of the grass on itself a ramp (003 §3.3.3).
+fn light_on(sheet: Sheet, dot_rgb: vec3<f32>, up: f32, high: f32, view: vec3<f32>) -> vec3<f32> {
+    let tangent = normalize(sheet.segment.xyz);
+    let sun = frame.sun.xyz;
+    let facing = sun - dot(tangent, sun) * tangent;
+    let normal = normalize(facing * 0.7 + sheet.normal * 0.6 - view * 0.25);
+    let shadow = mix(shells.dots.w, 1.0, high);
+    let albedo = plant_color(sheet.low, sheet.high, up, 0.5) * dot_rgb * 2.0;
+    return grass_light(albedo, normal, tangent, view, sheet.p.w, shadow);
+}
+
+@fragment
+fn fs(sheet: Sheet) -> @location(0) vec4<f32> {
+    let threshold = dither(sheet.position.xy);
+    let merges = threshold < sheet.segment.w;
+    if merges && sheet.layer.w > 0.5 {
+        discard;
+    }
+    let to = sheet.p.xyz - frame.eye.xyz;
+    let distance_m = length(to);
+    let view = to / distance_m;
+
+    // Where the ray meets the layers below: the root moves along the ground by `run` until the next.
+    let falls = dot(view, sheet.normal);
+    let slope = select(max(falls, 0.04), min(falls, -0.04), falls < 0.0);
+    let reach = select(1.0, sheet.layer.z, merges);
+    let run = (sheet.segment.xyz - view * (dot(sheet.segment.xyz, sheet.normal) / slope)).xz * reach;
+
+    let px_m = distance_m * frame.screen.z;
+    let level = max(log2(px_m / shells.dots.y), 0.0);
+    let over = max(level - shells.dots.z, 0.0);
+    let times = floor(over);
+    let next = smoothstep(0.4, 1.0, over - times);
+    let growth = sheet.root.w;
+    let fine = grain_of(sheet.root.xy, run, times, level, growth * min(2.0 - 2.0 * next, 1.0));
+    let coarse = grain_of(sheet.root.xy, run, times + 1.0, level, growth * min(2.0 * next, 1.0));
+
+    // A slice for each width of a blade that the ray passes.
+    let width_m = max(px_m, shells.dots.y * 2.5);
+    let slices = clamp(ceil(length(run) / width_m), 1.0, f32(shells.counts.y));
+    let jitter = select(0.0, threshold, slices > 1.0);
+    let falls_by = sheet.layer.y * reach;
+    var found = vec4<f32>(0.0);
+    var high = 0.0;
+    var is_hit = false;
+    for (var slice = 0.0; slice < slices && !is_hit; slice += 1.0) {
+        let u = (slice + jitter) / slices;
+        high = sheet.layer.x - falls_by * u;
+        found = cross_section(fine, u);
+        if next > 0.0 {
+            let other = cross_section(coarse, u);
+            found = select(found, other, vec4<bool>(other.a > found.a));
+        }
+        is_hit = found.a > max(high, 0.02);
+    }
+    if !is_hit {
+        discard;
+    }
+    let color = light_on(sheet, found.rgb, high / found.a, high, view);
+    return vec4<f32>(hazed(color, sheet.p.xyz), 1.0);
+}
