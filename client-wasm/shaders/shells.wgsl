@@ -1,15 +1,22 @@
-// Shells (003): layers of one texture of cross-sections, that lean without changing the length of a blade. Between two layers the view's ray goes through
-// slices of them, so that flat views meet the blades which stand there.
+// Shells (003): layers of one texture of cross-sections that lean without changing the length of a blade. Between two layers the view's ray goes through
+// slices, so that a flat view meets the blades that stand there.
 
 const TILE_CELLS: u32 = 16u;
 const TILE_VERTICES: u32 = 289u;
 const RIGHT_ANGLE: f32 = 1.5707963;
 // Time over which a gust that has passed still holds the grass (s): it comes suddenly and goes gently (003 §3.2).
+// Mean radius of a blade on the texture (px); `RADIUS_PX` in `dots.rs`.
+const BLADE_PX: f32 = 2.1;
+// Sides (m) of the pattern of clumps, and how far its blades bend aside of themselves in any wind, in heights of the tallest.
+const CLUMP_M: f32 = 1.3;
+const CROOK: f32 = 0.9;
+// Height (over the tallest) that stands for the light on all that a pixel shows far away.
+const MEAN_HEIGHT: f32 = 0.66;
 const RELEASE_SECS: f32 = 0.9;
 
 // Its twin is in `uniforms.rs`.
 struct ShellFrame {
-    // Segments of a blade; most slices between two layers; 1 where no single blades are drawn; unused.
+    // Segments of a blade; most slices between two layers; 1 where no single blades are drawn; samples of a pixel.
     counts: vec4<u32>,
     // Side of the texture on the ground (m); of its texels (m); its last level; least share of light at the roots.
     dots: vec4<f32>,
@@ -97,7 +104,7 @@ fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
     if shells.counts.z == 0u {
         growth *= smoothstep(frame.reach.x, frame.reach.y, distance_m);
     }
-    let tint = grass_tint(p) * (0.94 + 0.30 * smoothstep(0.05, 0.45, lean_rad));
+    let tint = grass_tint(p) * (0.80 + 0.42 * smoothstep(0.08, 0.55, lean_rad));
     let light = cloud_light(p) * sun_visible(ground + normal * height * 0.6);
     var turf: Turf;
     turf.root = vec4<f32>(ground, height);
@@ -150,24 +157,26 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     return out;
 }
 
-// The texture at a size on the ground: its coordinates at a place, how they run along a slice, the level to read and the share of its heights.
+// The texture at a size on the ground: its coordinates at a place and how far they run to the next layer, the level to read, the share of its heights, and how
+// far blades there, and at the next layer, bend aside at the height of the tallest.
 struct Grain {
     uv: vec2<f32>,
     run: vec2<f32>,
     level: f32,
     share: f32,
+    aside: vec4<f32>,
 }
 
 // The texture doubled in size `times`, turned each time so that no two lie alike.
-fn grain_of(p: vec2<f32>, run: vec2<f32>, times: f32, level: f32, share: f32) -> Grain {
+fn grain_of(p: vec2<f32>, run: vec2<f32>, aside: vec4<f32>, times: f32, level: f32, share: f32) -> Grain {
     let angle = 2.4 * times;
     let size = exp2(-times) / shells.dots.x;
     let turn = mat2x2<f32>(vec2<f32>(cos(angle), sin(angle)), vec2<f32>(-sin(angle), cos(angle))) * size;
-    return Grain(turn * p, turn * run, level - times, share);
+    return Grain(turn * p, turn * run, level - times + 0.8 * min(times, 1.0), share, vec4<f32>(turn * aside.xy, turn * aside.zw));
 }
 
-fn cross_section(grain: Grain, u: f32) -> vec4<f32> {
-    let found = textureSampleLevel(dots, repeated, grain.uv + grain.run * u, grain.level);
+fn cross_section(grain: Grain, u: f32, high: f32) -> vec4<f32> {
+    let found = textureSampleLevel(dots, repeated, grain.uv + grain.run * u + mix(grain.aside.xy, grain.aside.zw, u) * (high * high), grain.level);
     return vec4<f32>(found.rgb, found.a * grain.share);
 }
 
@@ -182,14 +191,29 @@ fn light_on(sheet: Sheet, dot_rgb: vec3<f32>, up: f32, high: f32, view: vec3<f32
     let tangent = normalize(sheet.segment.xyz);
     let sun = frame.sun.xyz;
     let facing = sun - dot(tangent, sun) * tangent;
-    let normal = normalize(facing * 0.7 + sheet.normal * 0.6 - view * 0.25);
+    let normal = normalize(facing * 0.5 + sheet.normal * 0.7 - view * 0.35);
     let shadow = mix(shells.dots.w, 1.0, high);
-    let albedo = plant_color(sheet.low, sheet.high, up, 0.5) * dot_rgb * 2.0;
+    let albedo = plant_color(sheet.low, sheet.high, up, 0.5) * dot_rgb * 1.8;
     return grass_light(albedo, normal, tangent, view, sheet.p.w, shadow);
 }
 
+struct Shade {
+    @location(0) color: vec4<f32>,
+    @builtin(sample_mask) samples: u32,
+}
+
+// Samples of a pixel of which a share is covered; where it has one, whether that is.
+fn mask_of(covered: f32, threshold: f32) -> u32 {
+    let count = shells.counts.w;
+    let filled = u32(clamp(covered, 0.0, 1.0) * f32(count) + 0.5);
+    let all = (1u << count) - 1u;
+    let turn = u32(threshold * f32(count));
+    let bits = (1u << filled) - 1u;
+    return ((bits << turn) | (bits >> (count - turn))) & all;
+}
+
 @fragment
-fn fs(sheet: Sheet) -> @location(0) vec4<f32> {
+fn fs(sheet: Sheet) -> Shade {
     let threshold = dither(sheet.position.xy);
     let merges = threshold < sheet.segment.w;
     if merges && sheet.layer.w > 0.5 {
@@ -206,35 +230,45 @@ fn fs(sheet: Sheet) -> @location(0) vec4<f32> {
     let run = (sheet.segment.xyz - view * (dot(sheet.segment.xyz, sheet.normal) / slope)).xz * reach;
 
     let px_m = distance_m * frame.screen.z;
-    let level = max(log2(px_m / shells.dots.y), 0.0);
+    let level = max(log2(1.4 * px_m / shells.dots.y), 0.0);
     let over = max(level - shells.dots.z, 0.0);
     let times = floor(over);
     let next = smoothstep(0.4, 1.0, over - times);
-    let growth = sheet.root.w;
-    let fine = grain_of(sheet.root.xy, run, times, level, growth * min(2.0 - 2.0 * next, 1.0));
-    let coarse = grain_of(sheet.root.xy, run, times + 1.0, level, growth * min(2.0 * next, 1.0));
+    let afar = smoothstep(1.0, 4.0, level);
+    let clump = noise(sheet.root.xy / CLUMP_M);
+    let clump_below = noise((sheet.root.xy + run) / CLUMP_M);
+    // Bare patches have ragged borders.
+    let growth = clamp(2.2 * sheet.root.w - 1.2 * clump.b, 0.0, 1.0);
+    let aside = (vec4<f32>(clump.rg, clump_below.rg) - 0.5) * (CROOK * sheet.root.z * (1.0 - afar));
+    let fine = grain_of(sheet.root.xy, run, aside, times, level, growth * min(2.0 - 2.0 * next, 1.0));
+    let coarse = grain_of(sheet.root.xy, run, aside, times + 1.0, level, growth * min(2.0 * next, 1.0));
 
     // A slice for each width of a blade that the ray passes.
     let width_m = max(px_m, shells.dots.y * 2.5);
     let slices = clamp(ceil(length(run) / width_m), 1.0, f32(shells.counts.y));
-    let jitter = select(0.0, threshold, slices > 1.0);
+    let jitter = select(0.0, 0.6 * threshold, slices > 1.0);
     let falls_by = sheet.layer.y * reach;
+    // A pixel over the way in which a blade tapers from its middle to its edge, in heights.
+    let sharpness = max(BLADE_PX * exp2(max(level - shells.dots.z, 0.0)) * shells.dots.y / px_m, 4.0);
     var found = vec4<f32>(0.0);
     var high = 0.0;
-    var is_hit = false;
-    for (var slice = 0.0; slice < slices && !is_hit; slice += 1.0) {
+    var covered = 0.0;
+    for (var slice = 0.0; slice < slices && covered <= 0.0; slice += 1.0) {
         let u = (slice + jitter) / slices;
         high = sheet.layer.x - falls_by * u;
-        found = cross_section(fine, u);
+        found = cross_section(fine, u, high);
         if next > 0.0 {
-            let other = cross_section(coarse, u);
+            let other = cross_section(coarse, u, high);
             found = select(found, other, vec4<bool>(other.a > found.a));
         }
-        is_hit = found.a > max(high, 0.02);
+        covered = select(0.0, 0.5 + (found.a - high) * sharpness, found.a > 0.03);
     }
-    if !is_hit {
+    let mask = mask_of(covered, threshold);
+    if mask == 0u {
         discard;
     }
-    let color = light_on(sheet, found.rgb, high / found.a, high, view);
-    return vec4<f32>(hazed(color, sheet.p.xyz), 1.0);
+    // What is too small to be seen singly is evened out.
+    let own = mix(found.rgb, vec3<f32>(0.5), 0.6 * afar) * (0.8 + 0.4 * clump.b);
+    let color = light_on(sheet, own, min(high / found.a, 1.0), mix(high, MEAN_HEIGHT, 0.85 * afar), view);
+    return Shade(vec4<f32>(hazed(color, sheet.p.xyz), 1.0), mask);
 }

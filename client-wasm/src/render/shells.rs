@@ -47,6 +47,7 @@ pub(super) struct Shells {
     ground: Ground,
     tile_count: u32,
     sheet_count: u32,
+    samples: u32,
 }
 
 impl Shells {
@@ -85,6 +86,7 @@ impl Shells {
             sheets,
             tile_count: 0,
             sheet_count: 0,
+            samples: maker.samples,
         }
     }
 
@@ -106,7 +108,7 @@ impl Shells {
         sheets.truncate(SHEET_LIMIT);
         let side_m = (DOTS as f32 / settings.blades_per_m2).sqrt();
         let frame = ShellFrame {
-            counts: [segments, settings.slices, u32::from(extent == Extent::All), 0],
+            counts: [segments, settings.slices, u32::from(extent == Extent::All), self.samples],
             dots: [side_m, side_m / DOTS_PX as f32, (dots::LEVELS - 1) as f32, settings.root_light],
         };
         gpu.queue.write_buffer(&self.tiles, 0, bytemuck::cast_slice(&tiles));

@@ -1,7 +1,7 @@
 use super::picture::read;
 use super::pipeline::{Maker, bind, storage_rw};
 use super::shaders;
-use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Plants, Shower, UnderbrushFrame};
+use super::uniforms::{BrushList, Drift, Frame, Kind, Kinds, Plants, ShellFrame, Shower, UnderbrushFrame};
 use super::{Gpu, Picture, Quality, blades};
 use crate::camera::Camera;
 use crate::state::Mirror;
@@ -18,6 +18,7 @@ use shared::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, omega_rad
 use shared::wire::{ObjectPose, ServerMessage, Shape, codec};
 use wgpu::naga;
 
+mod shells;
 mod underbrush;
 
 fn module(source: &str) -> naga::Module {
@@ -39,6 +40,7 @@ fn every_shader_is_valid_wgsl_without_extensions() {
         shaders::UNDERBRUSH,
         shaders::RAIN,
         shaders::BILLBOARDS,
+        shaders::SHELLS,
         shaders::DUST,
         shaders::TERRAIN,
         shaders::OBJECTS,
@@ -67,7 +69,10 @@ fn uniform_blocks_lie_as_their_twins() {
     let underbrush = self::module(shaders::UNDERBRUSH);
     assert_twins(&underbrush, "UnderbrushFrame", UnderbrushFrame::LAYOUT, size_of::<UnderbrushFrame>());
     assert_twins(&underbrush, "BrushList", BrushList::LAYOUT, size_of::<BrushList>());
+    let shells = self::module(shaders::SHELLS);
+    assert_twins(&shells, "ShellFrame", ShellFrame::LAYOUT, size_of::<ShellFrame>());
     for (of, name, bytes) in [
+        (&shells, "Turf", super::shells::TURF_BYTES as u32),
         (&module, "Sway", blades::SWAY_BYTES as u32),
         (&module, "Blade", blades::BLADE_BYTES as u32),
         (&underbrush, "Grown", 24),

@@ -12,7 +12,7 @@ use tests::chart::row::cells_text;
 use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
 use tests::chart::tables::with_tables;
-use tests::chart::{Problem, bend, plants, wind};
+use tests::chart::{Problem, bend, plants, shells, wind};
 
 /// Measures methods on problems whose answer is known: how long each takes for how small an error.
 ///
@@ -49,7 +49,14 @@ enum Model {
     /// Blades and underbrush: integrators, sections, tables of postures, the dynamic constraint, limits
     #[command(after_help = PLANTS_FILES)]
     Plants(Options),
+    /// Shells: frames a second against the number of layers, beside table 4.1 of 003
+    #[command(after_help = SHELLS_FILES)]
+    Shells(Options),
 }
+
+const SHELLS_FILES: &str = "\
+Files in DIR:
+  shells-layers.svg, .csv  frames a second against the number of layers, with and without slices between them, and 003's";
 
 const FILES: &str = "\
 Files in DIR, written anew as each problem is done:
@@ -95,6 +102,7 @@ fn main() -> Result<()> {
         Model::Wind { options, .. } => chart("wind", wind::problems(options.quick), &options),
         Model::Bend(options) => charts("bend", bend::problems(options.quick), &bend::FIGURES, &options),
         Model::Plants(options) => charts("plants", plants::problems(options.quick), &plants::FIGURES, &options),
+        Model::Shells(options) => charts("shells", Vec::new(), &shells::FIGURES, &options),
     }
 }
 

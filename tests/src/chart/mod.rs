@@ -7,6 +7,7 @@
 //! | [`wind`] | the runs of the wind |
 //! | [`bend`] | the runs of the bend field, and figures of their own kinds |
 //! | [`plants`] | those of blades and underbrush |
+//! | [`shells`] | what layers of shells cost |
 //! | [`figure`] | lines and fields of colour over two axes as SVG |
 //! | [`line`](mod@line) | one line per method, and reading between its points |
 //! | [`plot`], [`ticks`] | a log–log chart as SVG |
@@ -25,6 +26,7 @@ pub mod plants;
 pub mod plot;
 pub mod row;
 pub mod run;
+pub mod shells;
 pub mod summary;
 pub mod table;
 pub mod tables;

@@ -25,7 +25,7 @@ const KNOLLS: [(Point, f64, f64); 9] = [
 ];
 
 /// Worn places: centre (m) and radius (m).
-const WORN: [(Point, f64); 4] = [([70.5, 63.5], 1.3), ([53.0, 57.5], 0.9), ([79.0, 50.0], 1.6), ([47.0, 72.0], 1.1)];
+const WORN: [(Point, f64); 4] = [([71.5, 64.0], 0.7), ([53.0, 57.5], 0.6), ([79.0, 50.0], 1.1), ([47.0, 72.0], 0.8)];
 
 /// Height map and covering map.
 pub(super) fn maps() -> [GreyMap; 2] {
