@@ -54,7 +54,7 @@ fn frames_per_s(gpu: &Gpu, size_px: [u32; 2], mirror: &mut Mirror, layers: u32, 
 }
 
 fn draw(quick: bool, caption: &str) -> Result<Drawn> {
-    let (frames, shrink) = if quick { (2, 4) } else { (6, 1) };
+    let (frames, shrink) = if quick { (2, 4) } else { (4, 1) };
     let gpu = Gpu::headless()?;
     let mut csv = String::from("width_px,height_px,slices,layers,frames_per_s,frames_per_s_of_003\n");
     let mut curves = Vec::new();
