@@ -145,10 +145,12 @@ fn coarser(finer: &Level) -> Level {
     for at in 0..side * side {
         let first = at / side * 2 * finer.side + at % side * 2;
         let four = [first, first + 1, first + finer.side, first + finer.side + 1];
-        let label = four.iter().map(|&at| finer.labels[at]).find(|&label| {
-            label != GROUND && four.iter().filter(|&&at| finer.labels[at] == label).count() >= 2
-        });
-        let own: Vec<[u8; 4]> = four.iter().filter(|&&at| label.is_none_or(|label| finer.labels[at] == label)).map(|&at| finer.rgba[at]).collect();
+        let label = four
+            .iter()
+            .map(|&at| finer.labels[at])
+            .find(|&label| label != GROUND && four.iter().filter(|&&at| finer.labels[at] == label).count() >= 2);
+        let own: Vec<[u8; 4]> =
+            four.iter().filter(|&&at| label.is_none_or(|label| finer.labels[at] == label)).map(|&at| finer.rgba[at]).collect();
         let mean = |channel: usize| (own.iter().map(|texel| u32::from(texel[channel])).sum::<u32>() / own.len() as u32) as u8;
         let height = own.iter().map(|texel| texel[3]).max().filter(|_| label.is_some()).unwrap_or(0);
         level.labels.push(label.unwrap_or(GROUND));

@@ -92,7 +92,16 @@ impl Shells {
 
     /// Lists the layers in view, nearest tiles and topmost layers first, so that what they hide is not coloured. `reach` is that of the frame's uniforms;
     /// `layers`, the ground among them, are the scene's if none.
-    pub(super) fn prepare(&mut self, gpu: &Gpu, land: &Land, eye_m: Vec3, frustum: &Frustum, reach: [f32; 4], extent: Extent, layers: Option<u32>) {
+    pub(super) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        land: &Land,
+        eye_m: Vec3,
+        frustum: &Frustum,
+        reach: [f32; 4],
+        extent: Extent,
+        layers: Option<u32>,
+    ) {
         let settings = &land.scene().shells;
         let segments = layers.unwrap_or(settings.layers).clamp(1, LAYERS_LIMIT) - 1;
         let is_needed = |tile: &Tile| {
@@ -104,7 +113,8 @@ impl Shells {
         };
         let mut tiles: Vec<_> = self.ground.tiles(eye_m, frustum).into_iter().filter(is_needed).collect();
         tiles.truncate(TILE_LIMIT);
-        let mut sheets: Vec<Sheet> = (0..).zip(&tiles).flat_map(|(number, tile)| sheets_of(number, segments, (tile.side_m / FINEST_M) as u32)).collect();
+        let mut sheets: Vec<Sheet> =
+            (0..).zip(&tiles).flat_map(|(number, tile)| sheets_of(number, segments, (tile.side_m / FINEST_M) as u32)).collect();
         sheets.truncate(SHEET_LIMIT);
         let side_m = (DOTS as f32 / settings.blades_per_m2).sqrt();
         let frame = ShellFrame {

@@ -1,8 +1,8 @@
 //! What each field of a scene file may hold: the one table that parsing, the reference in the README and its tests share.
 
 use super::{
-    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, LagWay, PlantCover, PrimitiveKind, SPECIES_LIMIT, VehicleKind, WindAdvection,
-    WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, LagWay, PlantCover, PrimitiveKind, SPECIES_LIMIT, VehicleKind,
+    WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, Scheme, Seams};
 use crate::lod::shells::LAYERS_LIMIT;

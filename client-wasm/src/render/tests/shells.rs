@@ -36,7 +36,10 @@ fn layers_lie_where_their_twin_has_them() {
         let tilt = Tilt::of_lean(lean_rad);
         let [along_normal, along_wind] = tilt.layer(layer, segments as u32);
         let wanted = [along_normal, along_wind, tilt.root_rad, tilt.intensity];
-        assert!(wanted.iter().zip(found).all(|(a, b)| (a - b).abs() < 2e-5), "{lean_rad} rad, {layer} of {segments}: {found:?} instead of {wanted:?}");
+        assert!(
+            wanted.iter().zip(found).all(|(a, b)| (a - b).abs() < 2e-5),
+            "{lean_rad} rad, {layer} of {segments}: {found:?} instead of {wanted:?}"
+        );
     }
 }
 
