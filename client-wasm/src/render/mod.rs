@@ -55,7 +55,7 @@ use pipeline::{COLOR, DEPTH, Maker};
 use rain::RainPass;
 use shared::scene::PlantCover;
 use shared::wire::ObjectPose;
-use shells::{Extent, Shells};
+use shells::{Extent, Shells, Wanted};
 use sky::Sky;
 use terrain::{Ground, Terrain};
 use tone::Tone;
@@ -250,7 +250,8 @@ impl Renderer {
             scene.blades.prepare(gpu, self.quality, land, camera.eye_m, &frustum, dt_secs);
         }
         if let Some(extent) = shells {
-            scene.shells.prepare(gpu, land, camera.eye_m, &frustum, frame.reach, extent, self.look.shell_layers);
+            let wanted = Wanted { extent, reach_m: frame.reach, layers: self.look.shell_layers };
+            scene.shells.prepare(gpu, land, camera.eye_m, &frustum, wanted);
         } else {
             let reach = Reach { from_m: 0.72 * frame.reach[0], several_m: SEVERAL_REACHES * frame.reach[1], to_m: frame.reach[3] };
             self.billboards.prepare(gpu, land, camera.eye_m, &frustum, reach);

@@ -34,6 +34,16 @@ pub(super) enum Extent {
     Far,
 }
 
+/// What of the shells a frame shows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wanted {
+    pub(super) extent: Extent,
+    /// `reach` of the frame's uniforms (m).
+    pub(super) reach_m: [f32; 4],
+    /// Layers near the camera, the ground among them; the scene's if none.
+    pub(super) layers: Option<u32>,
+}
+
 pub(super) struct Shells {
     pipeline: wgpu::RenderPipeline,
     settle: wgpu::ComputePipeline,
@@ -90,18 +100,9 @@ impl Shells {
         }
     }
 
-    /// Lists the layers in view, nearest tiles and topmost layers first, so that what they hide is not coloured. `reach` is that of the frame's uniforms;
-    /// `layers`, the ground among them, are the scene's if none.
-    pub(super) fn prepare(
-        &mut self,
-        gpu: &Gpu,
-        land: &Land,
-        eye_m: Vec3,
-        frustum: &Frustum,
-        reach: [f32; 4],
-        extent: Extent,
-        layers: Option<u32>,
-    ) {
+    /// Lists the layers in view, nearest tiles and topmost layers first, so that what they hide is not coloured.
+    pub(super) fn prepare(&mut self, gpu: &Gpu, land: &Land, eye_m: Vec3, frustum: &Frustum, wanted: Wanted) {
+        let Wanted { extent, reach_m: reach, layers } = wanted;
         let settings = &land.scene().shells;
         let segments = layers.unwrap_or(settings.layers).clamp(1, LAYERS_LIMIT) - 1;
         let is_needed = |tile: &Tile| {
