@@ -60,15 +60,17 @@ fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     let mut curves = Vec::new();
     let mut said = String::new();
     for (n, size_px) in SIZES_PX.into_iter().enumerate() {
-        let [width, height] = size_px;
         let of_003 = TABLE.iter().map(|(layers, theirs)| [f64::from(*layers), theirs[n]]).collect();
+        let [width, height] = size_px;
         curves.push(Curve { name: format!("003, {width} × {height}"), points: of_003, marked: true, joined: true });
+        let size_px = size_px.map(|side| side / shrink);
+        let [width, height] = size_px;
         for slices in SLICES {
             let mut mirror = knolls(slices)?;
             let shown = mirror.land().map_or(0, |land| land.scene().shells.slices);
             let mut points = Vec::new();
             for (layers, theirs) in TABLE {
-                let found = frames_per_s(&gpu, size_px.map(|side| side / shrink), &mut mirror, layers, frames);
+                let found = frames_per_s(&gpu, size_px, &mut mirror, layers, frames);
                 writeln!(csv, "{width},{height},{shown},{layers},{found:.2},{}", theirs[n])?;
                 writeln!(said, "{width} × {height}, {layers} layers, slices up to {shown}: {found:.1} frames/s, 003 {}", theirs[n])?;
                 points.push([f64::from(layers), found]);
