@@ -24,6 +24,7 @@ const SOURCES: [(&str, &[(&str, &str)]); 19] = [
     ("bend.rs", &[("BendField", "bend")]),
     ("grass.rs", &[("Grass", "grass")]),
     ("plants.rs", &[("Plants", "plants")]),
+    ("shells.rs", &[("Shells", "shells")]),
     ("species.rs", &[("Species", "species")]),
     ("underbrush.rs", &[("Underbrush", "underbrush"), ("Component", "underbrush.components")]),
     ("growth.rs", &[("Growth", "growth")]),
@@ -44,7 +45,7 @@ const SOURCES: [(&str, &[(&str, &str)]); 19] = [
 ];
 
 /// Sections that may stand once.
-const SECTIONS: [&str; 19] = [
+const SECTIONS: [&str; 20] = [
     "patches",
     "terrain",
     "wind",
@@ -55,6 +56,7 @@ const SECTIONS: [&str; 19] = [
     "bend",
     "grass",
     "plants",
+    "shells",
     "growth",
     "objects",
     "objects.car",

@@ -74,3 +74,8 @@ fn underbrush_looks_as_stored() -> Result<()> {
 fn textured_blades_look_as_stored() -> Result<()> {
     compare("blades", "blades", Act::Wind)
 }
+
+#[test]
+fn shells_look_as_stored() -> Result<()> {
+    compare("shells", "shells", Act::Wind)
+}

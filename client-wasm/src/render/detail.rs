@@ -1,5 +1,7 @@
 //! How much of what grows is drawn: what the presets set, and what a frame budget steers between them.
 
+use super::Far;
+
 /// Detail of plants. What a renderer holds room for follows from its quality; this may change from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Detail {
@@ -50,6 +52,12 @@ impl Detail {
     pub(super) fn whole(reach_m: f32) -> Self {
         let most = LEVELS[LEVELS.len() - 1];
         Self { full_m: reach_m, fine_m: reach_m, blades_m: reach_m, far_m: reach_m, underbrush_m: reach_m, ..most }
+    }
+
+    /// The same where something else than the land stands for the plants that are far off: single blades end sooner.
+    pub(super) fn with(self, far: Far) -> Self {
+        let blades_m = if far == Far::Land { self.blades_m } else { self.blades_m * 0.35 };
+        Self { blades_m, ..self }
     }
 
     /// Factor on the width of blades, so that fewer still close the sward.

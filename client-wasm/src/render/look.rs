@@ -95,6 +95,8 @@ pub struct Look {
     pub culls: bool,
     /// Where the sun stands; none: where the scene has it.
     pub sun: Option<Sun>,
+    /// Layers of shells near the camera, the ground among them, 1..=65; the scene's if none.
+    pub shell_layers: Option<u32>,
 }
 
 impl Look {
@@ -117,7 +119,7 @@ impl Look {
 
 impl Default for Look {
     fn default() -> Self {
-        Self { order: Order::default(), far: Far::default(), culls: true, sun: None }
+        Self { order: Order::default(), far: Far::default(), culls: true, sun: None, shell_layers: None }
     }
 }
 
@@ -127,7 +129,7 @@ mod tests {
 
     #[test]
     fn every_way_has_a_name_of_its_own_and_changes_itself_alone() {
-        let own = Look { order: Order::Weighted, far: Far::Land, culls: true };
+        let own = Look { order: Order::Weighted, far: Far::Land, ..Look::default() };
         let names: Vec<_> = Look::ways().collect();
         for (at, name) in names.iter().enumerate() {
             assert!(!names[..at].contains(name), "{name}");

@@ -9,6 +9,7 @@ mod blades;
 mod clump_order;
 mod cull;
 mod detail;
+mod dots;
 mod dust;
 mod fit;
 mod flora;
@@ -28,6 +29,7 @@ mod pipeline;
 mod quality;
 mod rain;
 mod shaders;
+mod shells;
 mod sky;
 mod sort;
 mod split;
@@ -48,8 +50,8 @@ pub use look::{Far, Look, Order};
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::Picture;
 pub use quality::{Quality, REFERENCE_M};
-pub use split::{Split, Way};
 pub use shared::light::sun::Sun;
+pub use split::{Split, Way};
 
 use crate::camera::Camera;
 use crate::state::Mirror;
@@ -63,7 +65,9 @@ use land::{FrameGroup, LandTextures};
 use objects::Objects;
 use pipeline::{COLOR, DEPTH, Maker};
 use rain::RainPass;
+use shared::scene::PlantCover;
 use shared::wire::ObjectPose;
+use shells::{Extent, Shells, Wanted};
 use sky::Sky;
 use split::Part;
 use sun::Daylight;
@@ -83,6 +87,8 @@ pub struct FrameStats {
     pub blades: u32,
     /// Clumps of far plants.
     pub clumps: u32,
+    /// Layers of tiles of shells.
+    pub sheets: u32,
     /// Underbrush in the scene.
     pub underbrush: u32,
     /// Vertices of the ground.
@@ -118,6 +124,7 @@ struct SceneParts {
     textures: LandTextures,
     ground: Ground,
     blades: Blades,
+    shells: Shells,
     forces: Forces,
     underbrush: Option<Underbrush>,
     rain: Option<RainPass>,
@@ -127,11 +134,13 @@ struct SceneParts {
 
 impl SceneParts {
     /// Draws plants that are blended over what is opaque: far ones, then single ones.
-    fn draw_plants(&self, clumps: Option<&Billboards>, pass: &mut wgpu::RenderPass<'_>) {
+    fn draw_plants(&self, has_blades: bool, clumps: Option<&Billboards>, pass: &mut wgpu::RenderPass<'_>) {
         if let Some(clumps) = clumps {
             clumps.draw(pass);
         }
-        self.blades.draw(pass);
+        if has_blades {
+            self.blades.draw(pass);
+        }
     }
 
     /// Draws what is in the air.
@@ -248,10 +257,12 @@ impl Renderer {
             let heights = land.heights();
             let standing = flora::standing(land);
             let forces = Forces::new(&self.gpu, land, &standing);
+            let ground = Ground::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), scene.light.haze_m);
             SceneParts {
                 number: mirror.scene_number(),
                 textures: LandTextures::new(&self.gpu, &self.frame, land),
-                ground: Ground::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), scene.light.haze_m),
+                shells: Shells::new(&maker, land, &ground),
+                ground,
                 blades: Blades::new(&maker, self.quality, land),
                 underbrush: Underbrush::new(&maker, land, &forces, self.detail.underbrush_m),
                 forces,
@@ -290,7 +301,8 @@ impl Renderer {
 
         let sun = self.look.sun.unwrap_or_else(|| land.scene().light.sun_at(mirror.time_secs()));
         self.daylight.follow(gpu, sun);
-        let view = View::new(camera, self.size_px, self.quality, self.detail, time_secs, sun);
+        let detail = self.detail.with(self.look.far);
+        let view = View::new(camera, self.size_px, self.quality, detail, time_secs, sun);
         let frame = view.frame(land, &scene.textures.atlas, &self.daylight, &poses);
         self.frame.write(gpu, &frame);
         let frustum = if self.look.culls { Frustum::new(&view.projection_from_world) } else { Frustum::ALL };
@@ -303,10 +315,21 @@ impl Renderer {
         if order == Order::Weighted && self.weighted.is_none() {
             self.weighted = Some(Weighted::new(&maker, self.size_px));
         }
-        let from = Standpoint { eye_m: camera.eye_m, frustum: &frustum, detail: &self.detail, look: self.look, dt_secs };
-        scene.blades.prepare(gpu, land, &from);
-        let reach = Reach { from_m: frame.reach[0], several_m: SEVERAL_REACHES * frame.reach[1], to_m: frame.reach[3] };
-        if self.look.far == Far::Clumps {
+        let shells = match (land.scene().plants.cover, self.look.far) {
+            (PlantCover::Shells, _) => Some(Extent::All),
+            (PlantCover::Blades, Far::Shells) => Some(Extent::Far),
+            _ => None,
+        };
+        let has_blades = shells != Some(Extent::All);
+        if has_blades {
+            let from = Standpoint { eye_m: camera.eye_m, frustum: &frustum, detail: &detail, look: self.look, dt_secs };
+            scene.blades.prepare(gpu, land, &from);
+        }
+        if let Some(extent) = shells {
+            let wanted = Wanted { extent, reach_m: frame.reach, layers: self.look.shell_layers };
+            scene.shells.prepare(gpu, land, camera.eye_m, &frustum, wanted);
+        } else if self.look.far == Far::Clumps {
+            let reach = Reach { from_m: frame.reach[0], several_m: SEVERAL_REACHES * frame.reach[1], to_m: frame.reach[3] };
             self.billboards.prepare(gpu, land, camera.eye_m, &frustum, reach);
         }
         if let Some(underbrush) = &mut scene.underbrush {
@@ -320,10 +343,12 @@ impl Renderer {
         let reach_m = self.detail.trees_m;
         scene.objects.prepare(gpu, &poses, camera.eye_m, &frustum, time_secs as f32, dt_secs, reach_m);
 
-        let clumps = (self.look.far == Far::Clumps).then_some(&self.billboards);
-        let turns = scene.blades.turns();
+        let clumps = (self.look.far == Far::Clumps && has_blades).then_some(&self.billboards);
+        let turns = if has_blades { scene.blades.turns() } else { 1 };
         for turn in 0..turns {
-            scene.blades.begin_turn(gpu, turn);
+            if has_blades {
+                scene.blades.begin_turn(gpu, turn);
+            }
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
             if turn == 0 {
                 for layer in 0..self.quality.shadow_layers() {
@@ -335,8 +360,13 @@ impl Renderer {
             {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes: None });
                 pass.set_bind_group(0, &scene.textures.group, &[]);
-                scene.blades.bend(&mut pass);
+                if has_blades {
+                    scene.blades.bend(&mut pass);
+                }
                 if turn == 0 {
+                    if shells.is_some() {
+                        scene.shells.bend(&mut pass);
+                    }
                     if let Some(clumps) = clumps {
                         clumps.bend(&mut pass);
                     }
@@ -356,11 +386,16 @@ impl Renderer {
                 if turn == 0 {
                     scene.objects.draw(&mut pass);
                 }
-                if !order.blends() {
-                    scene.blades.draw(&mut pass);
+                if has_blades {
+                    if !order.blends() {
+                        scene.blades.draw(&mut pass);
+                    }
+                    scene.blades.draw_flowers(&mut pass);
                 }
-                scene.blades.draw_flowers(&mut pass);
                 if is_last {
+                    if shells.is_some() {
+                        scene.shells.draw(&mut pass);
+                    }
                     if let Some(underbrush) = &scene.underbrush {
                         underbrush.draw(&mut pass);
                     }
@@ -371,7 +406,7 @@ impl Renderer {
                     self.sky.draw(&mut pass);
                     if weighted.is_none() {
                         if order.blends() {
-                            scene.draw_plants(clumps, &mut pass);
+                            scene.draw_plants(has_blades, clumps, &mut pass);
                         }
                         scene.draw_weather(&mut pass);
                     }
@@ -381,7 +416,7 @@ impl Renderer {
                 {
                     let mut pass = weighted.pass(&mut encoder, &self.targets.depth);
                     pass.set_bind_group(0, &scene.textures.group, &[]);
-                    scene.draw_plants(clumps, &mut pass);
+                    scene.draw_plants(has_blades, clumps, &mut pass);
                 }
                 let mut pass = main_pass(&mut encoder, &self.targets, false, true);
                 pass.set_bind_group(0, &scene.textures.group, &[]);
@@ -397,8 +432,9 @@ impl Renderer {
             gpu.queue.submit([encoder.finish()]);
         }
         FrameStats {
-            blades: scene.blades.simulated(),
-            clumps: self.billboards.count(),
+            blades: if has_blades { scene.blades.simulated() } else { 0 },
+            clumps: clumps.map_or(0, Billboards::count),
+            sheets: if shells.is_some() { scene.shells.sheets() } else { 0 },
             underbrush: scene.underbrush.as_ref().map_or(0, Underbrush::plants),
             ground_vertices: self.terrain.vertices(),
             object_triangles: scene.objects.triangles(),

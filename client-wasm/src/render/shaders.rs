@@ -50,6 +50,8 @@ pub(super) const ORDER: &str = concat!(include_str!("../../shaders/nearness.wgsl
 pub(super) const COMPOSE: &str = include_str!("../../shaders/compose.wgsl");
 /// Sort of pairs by their keys.
 pub(super) const SORT: &str = include_str!("../../shaders/sort.wgsl");
+/// Shells.
+pub(super) const SHELLS: &str = include_str!("../../shaders/shells.wgsl");
 /// Ground.
 pub(super) const TERRAIN: &str = concat!(include_str!("../../shaders/sward.wgsl"), include_str!("../../shaders/terrain.wgsl"));
 /// Objects, trees and stones.

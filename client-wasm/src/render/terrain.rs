@@ -9,6 +9,8 @@ use glam::{Vec2, Vec3};
 
 /// Cells along one side of a tile; twin of `TILE_CELLS` in `terrain.wgsl`.
 const TILE_CELLS: u32 = 16;
+/// Vertices of a tile.
+pub(super) const TILE_VERTICES: u32 = (TILE_CELLS + 1).pow(2);
 /// Most tiles in a frame.
 const TILE_LIMIT: usize = 1024;
 /// A tile gives way to a coarser one at this many times its side.
@@ -18,9 +20,18 @@ const RANGE_SIDES: f32 = 2.6;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(super) struct Tile {
-    corner_m: [f32; 2],
-    side_m: f32,
+    pub(super) corner_m: [f32; 2],
+    pub(super) side_m: f32,
     range_m: f32,
+}
+
+impl Tile {
+    /// Least and greatest distance on the ground between it and a place (m).
+    pub(super) fn distances_m(&self, at_m: Vec3) -> [f32; 2] {
+        let low = Vec2::from(self.corner_m) - Vec2::new(at_m.x, at_m.z);
+        let high = low + self.side_m;
+        [low.max(-high).max(Vec2::ZERO).length(), low.abs().max(high.abs()).length()]
+    }
 }
 
 /// The square that the quadtree covers.
@@ -47,6 +58,11 @@ impl Ground {
         // On the grid of the finest tiles, so that the world's own corner is a vertex.
         let corner_m = (corner_m / finest_m).floor() * finest_m;
         Self { corner_m, side_m, finest_m, height_m: [height_m[0] - 90.0, height_m[1] + 160.0] }
+    }
+
+    /// The same square with tiles as fine as `finest_m` about the camera.
+    pub(super) fn finer(&self, finest_m: f32) -> Self {
+        Self { finest_m: finest_m.min(self.finest_m), ..*self }
     }
 
     /// Tiles that the view needs, nearest first.
@@ -116,7 +132,7 @@ impl Terrain {
 
     /// Vertices that [`draw`](Self::draw) feeds in.
     pub(super) fn vertices(&self) -> u64 {
-        u64::from(self.tile_count * (TILE_CELLS + 1).pow(2))
+        u64::from(self.tile_count * TILE_VERTICES)
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
@@ -128,7 +144,7 @@ impl Terrain {
 }
 
 /// Two triangles a cell, anticlockwise seen from above.
-fn tile_indices() -> Vec<u16> {
+pub(super) fn tile_indices() -> Vec<u16> {
     let row = TILE_CELLS as u16 + 1;
     let cells = (0..TILE_CELLS as u16).flat_map(|z| (0..TILE_CELLS as u16).map(move |x| z * row + x));
     cells.flat_map(|nw| [nw, nw + row, nw + 1, nw + 1, nw + row, nw + row + 1]).collect()

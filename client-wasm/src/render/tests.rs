@@ -2,7 +2,8 @@ use super::picture::read;
 use super::pipeline::{Maker, bind, storage_rw};
 use super::shaders;
 use super::uniforms::{
-    BrushList, Drift, Frame, Kind, Kinds, Lamp, Lights, Ordering, Plants, Shower, SortDigit, Squares, StripList, UnderbrushFrame,
+    BrushList, Drift, Frame, Kind, Kinds, Lamp, Lights, Ordering, Plants, ShellFrame, Shower, SortDigit, Squares, StripList,
+    UnderbrushFrame,
 };
 use super::{Gpu, Look, Picture, Quality, blades};
 use crate::camera::Camera;
@@ -22,6 +23,7 @@ use wgpu::naga;
 
 mod light;
 mod order;
+mod shells;
 mod small;
 mod underbrush;
 
@@ -45,6 +47,7 @@ fn every_shader_is_valid_wgsl_without_extensions() {
         shaders::UNDERBRUSH,
         shaders::RAIN,
         shaders::BILLBOARDS,
+        shaders::SHELLS,
         shaders::DUST,
         shaders::SORT,
         shaders::ORDER,
@@ -78,7 +81,10 @@ fn uniform_blocks_lie_as_their_twins() {
     let underbrush = self::module(shaders::UNDERBRUSH);
     assert_twins(&underbrush, "UnderbrushFrame", UnderbrushFrame::LAYOUT, size_of::<UnderbrushFrame>());
     assert_twins(&underbrush, "BrushList", BrushList::LAYOUT, size_of::<BrushList>());
+    let shells = self::module(shaders::SHELLS);
+    assert_twins(&shells, "ShellFrame", ShellFrame::LAYOUT, size_of::<ShellFrame>());
     for (of, name, bytes) in [
+        (&shells, "Turf", super::shells::TURF_BYTES as u32),
         (&module, "Sway", blades::SWAY_BYTES as u32),
         (&module, "Blade", blades::BLADE_BYTES as u32),
         (&underbrush, "Grown", 24),

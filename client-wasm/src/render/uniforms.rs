@@ -195,6 +195,16 @@ uniform_block! {
 }
 
 uniform_block! {
+    /// What the shells' passes know; its twin is in `shells.wgsl`.
+    ShellFrame {
+        /// Segments of a blade; most slices between two layers; 1 where no single blades are drawn; samples of a pixel.
+        counts: [u32; 4],
+        /// Side of the texture on the ground (m); of its texels (m); its last level; least share of light at the roots.
+        dots: [f32; 4],
+    }
+}
+
+uniform_block! {
     /// What the compute pass of the underbrush knows; its twin is in `underbrush.wgsl`.
     UnderbrushFrame {
         /// Number of the frame; unused.

@@ -17,7 +17,7 @@ macro_rules! file {
 }
 
 /// All of them, the default first.
-pub(super) const BUILT_IN: [BuiltIn; 7] = [
+pub(super) const BUILT_IN: [BuiltIn; 8] = [
     BuiltIn {
         name: "meadow",
         text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meadow.toml")),
@@ -52,6 +52,11 @@ pub(super) const BUILT_IN: [BuiltIn; 7] = [
         name: "blades",
         text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/blades.toml")),
         files: &[file!("blades-height.png"), file!("blades-covering.png")],
+    },
+    BuiltIn {
+        name: "shells",
+        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/shells.toml")),
+        files: &[file!("shells-height.png"), file!("shells-covering.png")],
     },
 ];
 

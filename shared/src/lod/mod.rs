@@ -1,7 +1,9 @@
-//! Which grass grid is drawn how (000 §4.1 and §5.2) and in what order (000 §5.4), and how the segments of a plant follow each other (001 §4.5).
+//! Which grass grid is drawn how (000 §4.1 and §5.2) and in what order (000 §5.4), how the segments of a plant follow each other (001 §4.5), and how shells
+//! lean (003 §3.2).
 
 mod lag;
 mod order;
+pub mod shells;
 
 pub use lag::{Lag, PASTS, history_weights, joints_m};
 pub use order::{Section, far_to_near};

@@ -1,10 +1,11 @@
 //! What each field of a scene file may hold: the one table that parsing, the reference in the README and its tests share.
 
 use super::{
-    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, LAMPS_LIMIT, LagWay, PrimitiveKind, SPECIES_LIMIT, VehicleKind,
-    WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, LAMPS_LIMIT, LagWay, PlantCover, PrimitiveKind, SPECIES_LIMIT,
+    VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, Scheme, Seams};
+use crate::lod::shells::LAYERS_LIMIT;
 use crate::plant::underbrush::plan::SECTIONS_LIMIT;
 use std::fmt;
 
@@ -28,7 +29,7 @@ pub enum Allowed {
 use Allowed::{Name, OneOf, Places, Range, Sections, Text};
 
 /// Every field by its path, in the order of the structs; in a list of sections, those of one section.
-pub const FIELDS: [(&str, Allowed); 192] = [
+pub const FIELDS: [(&str, Allowed); 197] = [
     ("summary", Text),
     ("seed", Range(0.0, i64::MAX as f64)),
     ("tick_hz", Range(10.0, 240.0)),
@@ -106,6 +107,7 @@ pub const FIELDS: [(&str, Allowed); 192] = [
     ("grass.recovery_lag_share", Range(0.0, 1.0)),
     ("grass.segments", Range(1.0, 6.0)),
     ("grass.laid_recovery_secs", Range(0.5, 86_400.0)),
+    ("plants.cover", OneOf(PlantCover::WORDS)),
     ("plants.grid_m", Range(1.0, 64.0)),
     ("plants.plants_per_side", Range(2.0, 256.0)),
     ("plants.height_m", Range(0.02, 5.0)),
@@ -121,6 +123,10 @@ pub const FIELDS: [(&str, Allowed); 192] = [
     ("plants.swing_hz", Range(0.05, 50.0)),
     ("plants.swing_damping", Range(0.005, 5.0)),
     ("plants.integrator", OneOf(BladeIntegrator::WORDS)),
+    ("shells.layers", Range(1.0, LAYERS_LIMIT as f64)),
+    ("shells.slices", Range(1.0, 32.0)),
+    ("shells.blades_per_m2", Range(100.0, 40_000.0)),
+    ("shells.root_light", Range(0.0, 1.0)),
     ("species.name", Name),
     ("species.cover", Range(1.0, 252.0)),
     ("species.height_m", Range(0.02, 5.0)),

@@ -18,6 +18,7 @@ mod patches;
 mod picture;
 mod plants;
 mod rain;
+mod shells;
 mod species;
 mod swing;
 mod template;
@@ -39,8 +40,9 @@ pub use objects::{BallTread, CarTread, HelicopterTread, MonsterTread, Objects, S
 pub use parse::{parse, parse_underbrush, parse_with};
 pub use patches::Patches;
 pub use picture::{CameraStart, Light};
-pub use plants::{BladeIntegrator, BladeShape, LagWay, Plants};
+pub use plants::{BladeIntegrator, BladeShape, LagWay, PlantCover, Plants};
 pub use rain::Rain;
+pub use shells::Shells;
 pub use species::Species;
 pub use swing::BLADE_STEPS_LIMIT;
 pub use terrain::TerrainMaps;
@@ -89,6 +91,9 @@ pub struct Scene {
     /// What grows: size and number of blades, flowers, trees and stones.
     #[serde(default)]
     pub plants: Plants,
+    /// Layers that stand for grass where it is drawn as shells (003).
+    #[serde(default)]
+    pub shells: Shells,
     /// Kinds of grass beside that of `[grass]` and `[plants]`, each a section `[[species]]`; with any, every ID of the covering map is that of a
     /// species, of a kind of underbrush, or 0, 253, 254 or 255. Default none, allowed at most 16.
     #[serde(default)]
@@ -145,6 +150,7 @@ impl Scene {
             bend: BendField::default(),
             grass: Grass::default(),
             plants: Plants::default(),
+            shells: Shells::default(),
             species: Vec::new(),
             underbrush_file: String::new(),
             underbrush: Vec::new(),

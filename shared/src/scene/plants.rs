@@ -14,6 +14,16 @@ words! {
 }
 
 words! {
+    /// How grass is drawn.
+    PlantCover {
+        /// As single blades near the camera (000 §3).
+        Blades = "blades",
+        /// As shells, near and far (003).
+        Shells = "shells",
+    }
+}
+
+words! {
     /// What a single blade looks like (000 Fig. 5).
     BladeShape {
         /// A strip that tapers to its tip (000 Fig. 5a).
@@ -39,6 +49,9 @@ words! {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Plants {
+    /// How grass is drawn: `blades`, single ones near the camera (000 §3), which bend and swing each by itself; `shells`, layers of cross-sections near and far
+    /// (003), for short grass that grows thick. Default `blades`.
+    pub cover: PlantCover,
     /// Side of a grass grid (m), the unit of level of detail (000 §3.1.2). Default 8, allowed 1..=64.
     pub grid_m: f32,
     /// Plants along one side of a grass grid, n of 000 Eq. (9): the levels of detail count with it, and near the camera so many blades stand at low quality,
@@ -77,6 +90,7 @@ pub struct Plants {
 impl Default for Plants {
     fn default() -> Self {
         Self {
+            cover: PlantCover::Blades,
             grid_m: 8.0,
             plants_per_side: 32,
             height_m: 0.8,

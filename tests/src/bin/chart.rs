@@ -15,7 +15,7 @@ use tests::chart::row::cells_text;
 use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
 use tests::chart::tables::with_tables;
-use tests::chart::{Problem, bend, plants, wind};
+use tests::chart::{Problem, bend, plants, shells, wind};
 use tests::still::Still;
 use tests::views::{VIEWS, View};
 
@@ -86,10 +86,17 @@ enum Model {
         #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = View::find)]
         views: Vec<&'static View>,
     },
+    /// Shells: frames a second against the number of layers, beside table 4.1 of 003
+    #[command(after_help = SHELLS_FILES)]
+    Shells(Options),
 }
 
 /// Folder that keeps references, in the one that charts are written to.
 const CACHE: &str = "target/charts/cache";
+
+const SHELLS_FILES: &str = "\
+Files in DIR:
+  shells-layers.svg, .csv  frames a second against the number of layers, with and without slices between them, and 003's";
 
 const FILES: &str = "\
 Files in DIR, written anew as each problem is done:
@@ -148,6 +155,7 @@ fn main() -> Result<()> {
         Model::Plants(options) => charts("plants", plants::problems(options.quick), &plants::FIGURES, &options),
         Model::Picture { options, size, views } => chart_picture(&options, size, &chosen(views)),
         Model::Gallery { out, cache, size, quality, views } => hang(&out, &cache, size, quality, &chosen(views)),
+        Model::Shells(options) => charts("shells", Vec::new(), &shells::FIGURES, &options),
     }
 }
 

@@ -9,6 +9,7 @@
 //! | [`plants`] | those of blades and underbrush |
 //! | [`picture`] | ways of drawing: time of a frame against likeness, and figures of their own kinds |
 //! | [`gallery`] | a page of pictures with their figures |
+//! | [`shells`] | what layers of shells cost |
 //! | [`figure`] | lines and fields of colour over two axes as SVG |
 //! | [`line`](mod@line) | one line per method, and reading between its points |
 //! | [`plot`], [`ticks`] | a log–log chart as SVG |
@@ -29,6 +30,7 @@ pub mod plants;
 pub mod plot;
 pub mod row;
 pub mod run;
+pub mod shells;
 pub mod summary;
 pub mod table;
 pub mod tables;

@@ -141,9 +141,12 @@ fn beyond_m(land: &Land) -> f32 {
 
 /// Corners of a box about all plants of a grid (m).
 pub(super) fn bounds_m(land: &Land, grid: [i32; 2], grid_m: f32) -> [Vec3; 2] {
+    square_bounds_m(land, grid.map(|n| n as f32 * grid_m), grid_m)
+}
+
+fn square_bounds_m(land: &Land, corner_m: [f32; 2], side_m: f32) -> [Vec3; 2] {
     let beyond_m = beyond_m(land);
-    let low = grid.map(|n| n as f32 * grid_m - beyond_m);
-    let high = grid.map(|n| (n + 1) as f32 * grid_m + beyond_m);
+    let (low, high) = (corner_m.map(|m| m - beyond_m), corner_m.map(|m| m + side_m + beyond_m));
     let [lowest, highest] = heights_within(land, low, high);
     [Vec3::new(low[0], lowest - beyond_m, low[1]), Vec3::new(high[0], highest + beyond_m, high[1])]
 }
@@ -179,6 +182,11 @@ fn hills_limit_m(outside_m: f32) -> f32 {
 
 /// Whether any plant of a grid may be in view.
 pub(in crate::render) fn grid_is_seen(land: &Land, grid: [i32; 2], grid_m: f32, frustum: &Frustum) -> bool {
-    let [low, high] = bounds_m(land, grid, grid_m);
+    square_is_seen(land, grid.map(|n| n as f32 * grid_m), grid_m, frustum)
+}
+
+/// Whether any plant of a square from a corner on may be in view.
+pub(in crate::render) fn square_is_seen(land: &Land, corner_m: [f32; 2], side_m: f32, frustum: &Frustum) -> bool {
+    let [low, high] = square_bounds_m(land, corner_m, side_m);
     frustum.sees_box(low, high)
 }

@@ -18,7 +18,7 @@ use super::{Look, Order, Quality};
 use crate::state::Land;
 use glam::Vec3;
 use grids::Grids;
-pub(super) use grids::grid_is_seen;
+pub(super) use grids::{grid_is_seen, square_is_seen};
 use laid::{Laid, Listed};
 use shared::scene::BLADE_STEPS_LIMIT;
 use std::f32::consts::{PI, TAU};

@@ -6,6 +6,7 @@ mod blades;
 mod continuum;
 mod dice;
 mod jacksboro;
+mod knolls;
 mod land;
 mod meadow;
 
@@ -49,6 +50,7 @@ pub fn generate() -> Vec<GreyMap> {
     maps.extend(meadow::maps());
     maps.extend(continuum::maps());
     maps.extend(blades::maps());
+    maps.extend(knolls::maps());
     maps
 }
 

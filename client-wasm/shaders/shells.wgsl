@@ -1,0 +1,274 @@
+// Shells (003): layers of one texture of cross-sections that lean without changing the length of a blade. Between two layers the view's ray goes through
+// slices, so that a flat view meets the blades that stand there.
+
+const TILE_CELLS: u32 = 16u;
+const TILE_VERTICES: u32 = 289u;
+const RIGHT_ANGLE: f32 = 1.5707963;
+// Time over which a gust that has passed still holds the grass (s): it comes suddenly and goes gently (003 §3.2).
+// Mean radius of a blade on the texture (px); `RADIUS_PX` in `dots.rs`.
+const BLADE_PX: f32 = 2.1;
+// Sides (m) of the pattern of clumps, and how far its blades bend aside of themselves in any wind, in heights of the tallest.
+const CLUMP_M: f32 = 1.3;
+const CROOK: f32 = 0.9;
+// Height (over the tallest) that stands for the light on all that a pixel shows far away.
+const MEAN_HEIGHT: f32 = 0.66;
+const RELEASE_SECS: f32 = 0.9;
+
+// Its twin is in `uniforms.rs`.
+struct ShellFrame {
+    // Segments of a blade; most slices between two layers; 1 where no single blades are drawn; samples of a pixel.
+    counts: vec4<u32>,
+    // Side of the texture on the ground (m); of its texels (m); its last level; least share of light at the roots.
+    dots: vec4<f32>,
+}
+
+struct Tile {
+    // North-west corner (m), side (m), distance at which the next coarser grid takes over (m).
+    place: vec4<f32>,
+}
+
+// What all layers share at a place of the mesh.
+struct Turf {
+    // Place on the ground (m); height of the tallest blade (m).
+    root: vec4<f32>,
+    // Unit normal of the ground; tilt of the root (rad).
+    normal: vec4<f32>,
+    // Unit vector of the wind along the ground; its intensity.
+    wind: vec4<f32>,
+    // Colour at the root; share of sunlight.
+    low: vec4<f32>,
+    // Colour at the tip; share of its height that grass has there.
+    high: vec4<f32>,
+    // Share of the way to the next coarser tile's layers; unused.
+    merge: vec4<f32>,
+}
+
+@group(1) @binding(0) var<storage, read> tiles: array<Tile>;
+@group(1) @binding(1) var<uniform> shells: ShellFrame;
+@group(1) @binding(2) var<storage, read> turfs: array<Turf>;
+@group(1) @binding(3) var dots: texture_2d<f32>;
+// Tile and layer; segments down to the next layer and to the one after it, and whether that next one alone remains farther away.
+@group(1) @binding(4) var<storage, read> sheets: array<vec4<u32>>;
+@group(1) @binding(5) var<storage, read_write> settled: array<Turf>;
+
+// Layer `i` of a blade whose root is tilted and whom the wind bends, along the normal and along the wind, in its heights. Twin of `Tilt::layer` in
+// shared/src/lod/shells.rs.
+fn layer_place(root_rad: f32, intensity: f32, i: f32, segments: f32) -> vec2<f32> {
+    let half = 0.5 * RIGHT_ANGLE * intensity / segments;
+    let sum = select(i, sin(i * half) / sin(max(half, 1e-4)), half > 1e-4);
+    let middle = root_rad + (i + 1.0) * half;
+    return vec2<f32>(cos(middle), sin(middle)) * (sum / segments);
+}
+
+// Tilt of the root (rad) and wind intensity of a blade that leans by so much on the average (rad). Twin of `Tilt::of_lean`.
+fn tilt_of(lean_rad: f32) -> vec2<f32> {
+    let twice = 2.0 * clamp(lean_rad, 0.0, 1.5);
+    let root_rad = max(twice - RIGHT_ANGLE, 0.0);
+    return vec2<f32>(root_rad, (min(twice, RIGHT_ANGLE) - root_rad) / RIGHT_ANGLE);
+}
+
+// The gusts at a place as grass follows them: at once when they come, slowly when they go.
+fn gust_held(p: vec2<f32>) -> f32 {
+    let now = gust_at(p);
+    let back_m = frame.gust.xy * (frame.gust.z * 1.3 * RELEASE_SECS * 0.5);
+    return max(now, max(mix(now, gust_at(p + back_m), 0.61), mix(now, gust_at(p + 2.0 * back_m), 0.37)));
+}
+
+@compute @workgroup_size(64)
+fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= TILE_VERTICES {
+        return;
+    }
+    let place = tiles[id.y].place;
+    let row = TILE_CELLS + 1u;
+    let cell = vec2<f32>(f32(id.x % row), f32(id.x / row));
+    let spacing = place.z / f32(TILE_CELLS);
+    let flat_p = place.xy + cell * spacing;
+    let flat_m = length(vec3<f32>(flat_p.x, ground_height(flat_p), flat_p.y) - frame.eye.xyz);
+    let morph = smoothstep(0.70, 0.95, flat_m / place.w);
+    let odd = cell - 2.0 * floor(cell * 0.5);
+    let p = flat_p - odd * spacing * morph;
+    let ground = vec3<f32>(p.x, ground_height(p), p.y);
+    let distance_m = distance(ground, frame.eye.xyz);
+    let normal = ground_normal(p);
+    let kind = kinds_blended(p);
+
+    let height = kind.root.w * (1.0 + frame.blade.y) * mix(0.78, 1.16, noise(p / 14.0).a) * mix(0.86, 1.10, noise(p / 3.1).g);
+    let lean = lean_at(ground, field_level(distance_m), gust_held(p), kind.tip.w);
+    let lean_rad = length(lean);
+    let across = vec3<f32>(lean.x, 0.0, lean.y) / max(lean_rad, 1e-4);
+    let along = across - dot(across, normal) * normal;
+    let tilt = tilt_of(lean_rad);
+
+    var growth = smoothstep(0.05, 0.75, grass_share(p)) * (1.0 - smoothstep(frame.reach.z, frame.reach.w, distance_m));
+    if shells.counts.z == 0u {
+        growth *= smoothstep(frame.reach.x, frame.reach.y, distance_m);
+    }
+    let tint = grass_tint(p) * (0.80 + 0.42 * smoothstep(0.08, 0.55, lean_rad));
+    let light = cloud_light(p) * sun_visible(ground + normal * height * 0.6);
+    var turf: Turf;
+    turf.root = vec4<f32>(ground, height);
+    turf.normal = vec4<f32>(normal, tilt.x);
+    turf.wind = vec4<f32>(along / max(length(along), 1e-4), tilt.y);
+    turf.low = vec4<f32>(kind.root.rgb * tint, light);
+    turf.high = vec4<f32>(kind.tip.rgb * tint * trodden(lean_rad), growth);
+    turf.merge = vec4<f32>(morph, 0.0, 0.0, 0.0);
+    settled[id.y * TILE_VERTICES + id.x] = turf;
+}
+
+struct Sheet {
+    @builtin(position) position: vec4<f32>,
+    // Place (m); share of sunlight.
+    @location(0) p: vec4<f32>,
+    // X and Z of the root (m); height of the tallest blade (m); share of it that grass has there.
+    @location(1) root: vec4<f32>,
+    // From the next layer to this one (m); share of the way to fewer layers.
+    @location(2) segment: vec4<f32>,
+    @location(3) normal: vec3<f32>,
+    @location(4) low: vec3<f32>,
+    @location(5) high: vec3<f32>,
+    // Height of this layer, and how far the next is below it, over that of the tallest blade; the one after it, over the next; whether this one goes.
+    @location(6) @interpolate(flat) layer: vec4<f32>,
+}
+
+@vertex
+fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Sheet {
+    let sheet = sheets[instance];
+    let turf = turfs[(sheet.x >> 8u) * TILE_VERTICES + index];
+    let layer = f32(sheet.x & 255u);
+    let segments = f32(max(shells.counts.x, 1u));
+    let below = f32(sheet.y);
+    let at = layer_place(turf.normal.w, turf.wind.w, layer, segments);
+    let under = layer_place(turf.normal.w, turf.wind.w, layer - below, segments);
+    let normal = turf.normal.xyz;
+    let height = turf.root.w;
+    var p = turf.root.xyz + height * (at.x * normal + at.y * turf.wind.xyz);
+    // The one layer of the lowest setting lies just above the ground.
+    p.y += select(0.0, 0.004, sheet.x % 256u == 0u);
+    var out: Sheet;
+    out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
+    out.p = vec4<f32>(p, turf.low.w);
+    out.root = vec4<f32>(turf.root.xz, height, turf.high.w);
+    out.segment = vec4<f32>(height * ((at.x - under.x) * normal + (at.y - under.y) * turf.wind.xyz), turf.merge.x);
+    out.normal = normal;
+    out.low = turf.low.rgb;
+    out.high = turf.high.rgb;
+    out.layer = vec4<f32>(layer / segments, below / segments, f32(sheet.z) / max(below, 1.0), f32(sheet.w));
+    return out;
+}
+
+// The texture at a size on the ground: its coordinates at a place and how far they run to the next layer, the level to read, the share of its heights, and how
+// far blades there, and at the next layer, bend aside at the height of the tallest.
+struct Grain {
+    uv: vec2<f32>,
+    run: vec2<f32>,
+    level: f32,
+    share: f32,
+    aside: vec4<f32>,
+}
+
+// The texture doubled in size `times`, turned each time so that no two lie alike.
+fn grain_of(p: vec2<f32>, run: vec2<f32>, aside: vec4<f32>, times: f32, level: f32, share: f32) -> Grain {
+    let angle = 2.4 * times;
+    let size = exp2(-times) / shells.dots.x;
+    let turn = mat2x2<f32>(vec2<f32>(cos(angle), sin(angle)), vec2<f32>(-sin(angle), cos(angle))) * size;
+    return Grain(turn * p, turn * run, level - times + 0.8 * min(times, 1.0), share, vec4<f32>(turn * aside.xy, turn * aside.zw));
+}
+
+fn cross_section(grain: Grain, u: f32, high: f32) -> vec4<f32> {
+    let found = textureSampleLevel(dots, repeated, grain.uv + grain.run * u + mix(grain.aside.xy, grain.aside.zw, u) * (high * high), grain.level);
+    return vec4<f32>(found.rgb, found.a * grain.share);
+}
+
+// A pattern that spreads thresholds evenly over neighbouring pixels (Jimenez, interleaved gradient noise).
+fn dither(pixel: vec2<f32>) -> f32 {
+    return fract(52.9829189 * fract(dot(pixel, vec2<f32>(0.06711056, 0.00583715))));
+}
+
+// Light on a blade `up` of its way to the tip and `high` over the tallest, by its tangent alone: the normal is that of the blade's disc which faces the sun
+// most (003 §3.3, after Banks and Kajiya & Kay), the shadow of the grass on itself a ramp (003 §3.3.3).
+fn light_on(sheet: Sheet, dot_rgb: vec3<f32>, up: f32, high: f32, view: vec3<f32>) -> vec3<f32> {
+    let tangent = normalize(sheet.segment.xyz);
+    let sun = frame.sun.xyz;
+    let facing = sun - dot(tangent, sun) * tangent;
+    let normal = normalize(facing * 0.5 + sheet.normal * 0.7 - view * 0.35);
+    let shadow = mix(shells.dots.w, 1.0, high);
+    let albedo = plant_color(sheet.low, sheet.high, up, 0.5) * dot_rgb * 1.8;
+    return grass_light(albedo, normal, tangent, view, sheet.p.w, shadow) + grass_lamps(albedo, normal, tangent, view, sheet.p.xyz, shadow);
+}
+
+struct Shade {
+    @location(0) color: vec4<f32>,
+    @builtin(sample_mask) samples: u32,
+}
+
+// Samples of a pixel of which a share is covered; where it has one, whether that is.
+fn mask_of(covered: f32, threshold: f32) -> u32 {
+    let count = shells.counts.w;
+    let filled = u32(clamp(covered, 0.0, 1.0) * f32(count) + 0.5);
+    let all = (1u << count) - 1u;
+    let turn = u32(threshold * f32(count));
+    let bits = (1u << filled) - 1u;
+    return ((bits << turn) | (bits >> (count - turn))) & all;
+}
+
+@fragment
+fn fs(sheet: Sheet) -> Shade {
+    let threshold = dither(sheet.position.xy);
+    let merges = threshold < sheet.segment.w;
+    if merges && sheet.layer.w > 0.5 {
+        discard;
+    }
+    let to = sheet.p.xyz - frame.eye.xyz;
+    let distance_m = length(to);
+    let view = to / distance_m;
+
+    // Where the ray meets the layers below: the root moves along the ground by `run` until the next.
+    let falls = dot(view, sheet.normal);
+    let slope = select(max(falls, 0.04), min(falls, -0.04), falls < 0.0);
+    let reach = select(1.0, sheet.layer.z, merges);
+    let run = (sheet.segment.xyz - view * (dot(sheet.segment.xyz, sheet.normal) / slope)).xz * reach;
+
+    let px_m = distance_m * frame.screen.z;
+    let level = max(log2(1.4 * px_m / shells.dots.y), 0.0);
+    let over = max(level - shells.dots.z, 0.0);
+    let times = floor(over);
+    let next = smoothstep(0.4, 1.0, over - times);
+    let afar = smoothstep(1.0, 4.0, level);
+    let clump = noise(sheet.root.xy / CLUMP_M);
+    let clump_below = noise((sheet.root.xy + run) / CLUMP_M);
+    // Bare patches have ragged borders.
+    let growth = clamp(2.2 * sheet.root.w - 1.2 * clump.b, 0.0, 1.0);
+    let aside = (vec4<f32>(clump.rg, clump_below.rg) - 0.5) * (CROOK * sheet.root.z * (1.0 - afar));
+    let fine = grain_of(sheet.root.xy, run, aside, times, level, growth * min(2.0 - 2.0 * next, 1.0));
+    let coarse = grain_of(sheet.root.xy, run, aside, times + 1.0, level, growth * min(2.0 * next, 1.0));
+
+    // A slice for each width of a blade that the ray passes.
+    let width_m = max(px_m, shells.dots.y * 2.5);
+    let slices = clamp(ceil(length(run) / width_m), 1.0, f32(shells.counts.y));
+    let jitter = select(0.0, 0.6 * threshold, slices > 1.0);
+    let falls_by = sheet.layer.y * reach;
+    // A pixel over the way in which a blade tapers from its middle to its edge, in heights.
+    let sharpness = max(BLADE_PX * exp2(max(level - shells.dots.z, 0.0)) * shells.dots.y / px_m, 4.0);
+    var found = vec4<f32>(0.0);
+    var high = 0.0;
+    var covered = 0.0;
+    for (var slice = 0.0; slice < slices && covered <= 0.0; slice += 1.0) {
+        let u = (slice + jitter) / slices;
+        high = sheet.layer.x - falls_by * u;
+        found = cross_section(fine, u, high);
+        if next > 0.0 {
+            let other = cross_section(coarse, u, high);
+            found = select(found, other, vec4<bool>(other.a > found.a));
+        }
+        covered = select(0.0, 0.5 + (found.a - high) * sharpness, found.a > 0.03);
+    }
+    let mask = mask_of(covered, threshold);
+    if mask == 0u {
+        discard;
+    }
+    // What is too small to be seen singly is evened out.
+    let own = mix(found.rgb, vec3<f32>(0.5), 0.6 * afar) * (0.8 + 0.4 * clump.b);
+    let color = light_on(sheet, own, min(high / found.a, 1.0), mix(high, MEAN_HEIGHT, 0.85 * afar), view);
+    return Shade(vec4<f32>(hazed(color, sheet.p.xyz), 1.0), mask);
+}

@@ -1,0 +1,154 @@
+//! Shells (003 §3): layers of a blade of grass that is cut across, and how they lean without changing its length.
+//!
+//! A blade of height `H` between the ground and the topmost of `N` layers is `N` segments of `S = H/N`. Segment `j`, of 1..=N, is tilted by
+//! `θ_j = θ₀ + (j/N)·(π/2)·I` from the normal towards the wind; layer `i` is the sum of the segments below it. 003 has `θ₀ = 0`; the root's own tilt lays
+//! down what is trodden flat, which the sums of 003 alone hold at 64 % of its height or more.
+
+use std::f32::consts::FRAC_PI_2;
+
+/// Most layers, the ground among them (003 §4.1).
+pub const LAYERS_LIMIT: u32 = 65;
+
+/// How the segments of a blade are tilted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tilt {
+    /// Tilt of the root, θ₀ (rad); 0 in 003.
+    pub root_rad: f32,
+    /// Wind intensity I, 0..=1; the topmost segment is tilted by a right angle more than the root at 1.
+    pub intensity: f32,
+}
+
+impl Tilt {
+    /// The tilt of a blade whose segments lean by `lean_rad` on the average, 0..=1.5 rad: as 003 has it up to π/4, where the tip lies level; beyond that the tip
+    /// stays level and the root goes down.
+    ///
+    /// ```
+    /// use shared::lod::shells::Tilt;
+    /// assert_eq!(Tilt::of_lean(0.0), Tilt { root_rad: 0.0, intensity: 0.0 });
+    /// let laid = Tilt::of_lean(1.5);
+    /// assert!(laid.root_rad > 1.4 && laid.intensity < 0.1);
+    /// ```
+    pub fn of_lean(lean_rad: f32) -> Self {
+        let twice = 2.0 * lean_rad.clamp(0.0, 1.5);
+        let root_rad = (twice - FRAC_PI_2).max(0.0);
+        Self { root_rad, intensity: (twice.min(FRAC_PI_2) - root_rad) / FRAC_PI_2 }
+    }
+
+    /// Tilt of segment `j` of `segments` (rad), θ_j of 003 §3.2.
+    pub fn of_segment_rad(&self, j: u32, segments: u32) -> f32 {
+        self.root_rad + j as f32 / segments as f32 * FRAC_PI_2 * self.intensity
+    }
+
+    /// How far layer `i` of `segments` lies from the root along the normal and along the wind, n_i and w_i of 003 §3.2, in heights of the blade. The sums are in
+    /// closed form (Dirichlet's kernel), `Σ_{j=1..i} cos(θ₀ + jφ) = sin(iφ/2)/sin(φ/2) · cos(θ₀ + (i+1)φ/2)`, so that a layer costs the same whatever is
+    /// below it. `i` may be a fraction.
+    ///
+    /// Its twin on the GPU is `layer_place` in `shells.wgsl`.
+    pub fn layer(&self, i: f32, segments: u32) -> [f32; 2] {
+        let half = 0.5 * FRAC_PI_2 * self.intensity / segments as f32;
+        let sum = if half > 1e-4 { (i * half).sin() / half.sin() } else { i };
+        let middle = self.root_rad + (i + 1.0) * half;
+        [middle.cos(), middle.sin()].map(|part| sum * part / segments as f32)
+    }
+}
+
+/// What of the wind `W` pushes a blade on ground of unit normal `N`: `W − (W·N)·N` (003 §3.2).
+pub fn along_ground(wind: [f32; 3], normal: [f32; 3]) -> [f32; 3] {
+    let across: f32 = (0..3).map(|axis| wind[axis] * normal[axis]).sum();
+    std::array::from_fn(|axis| wind[axis] - across * normal[axis])
+}
+
+/// Layers that are drawn of `segments`, from the topmost down, where only each `stride`-th is, and how many segments lie below each until the next.
+///
+/// ```
+/// let drawn: Vec<_> = shared::lod::shells::drawn_layers(16, 8).collect();
+/// assert_eq!(drawn, [(16, 8), (8, 8)]);
+/// ```
+pub fn drawn_layers(segments: u32, stride: u32) -> impl Iterator<Item = (u32, u32)> {
+    (1..=segments).rev().step_by(stride.max(1) as usize).map(move |layer| (layer, stride.max(1).min(layer)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tilts() -> impl Iterator<Item = Tilt> {
+        let over = (0..=40).map(|n| Tilt { root_rad: 0.0, intensity: n as f32 / 40.0 });
+        over.chain((0..=30).map(|n| Tilt::of_lean(n as f32 * 0.05)))
+    }
+
+    #[test]
+    fn closed_sums_are_the_sums_and_keep_the_length_of_each_segment() {
+        for tilt in tilts() {
+            for segments in [1, 2, 3, 8, 16, 32, 64] {
+                let [mut n, mut w] = [0.0_f64; 2];
+                for i in 1..=segments {
+                    let theta = f64::from(tilt.of_segment_rad(i, segments));
+                    n += theta.cos() / f64::from(segments);
+                    w += theta.sin() / f64::from(segments);
+                    let [found_n, found_w] = tilt.layer(i as f32, segments).map(f64::from);
+                    assert!((found_n - n).abs() < 1e-6 && (found_w - w).abs() < 1e-6, "{tilt:?}, {i} of {segments}: {found_n}, {found_w}");
+                }
+                let places: Vec<_> = (0..=segments).map(|i| tilt.layer(i as f32, segments)).collect();
+                let length: f32 = places.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).sum();
+                assert!((length - 1.0).abs() < 1e-5, "{tilt:?}: {length} with {segments}");
+            }
+        }
+    }
+
+    #[test]
+    fn blades_on_slopes_keep_their_length_in_space() {
+        let unit = |v: [f32; 3]| {
+            let length = v.iter().map(|x| x * x).sum::<f32>().sqrt();
+            v.map(|x| x / length)
+        };
+        for normal in [[0.0, 1.0, 0.0], [0.6, 0.8, 0.0], [-0.3, 0.9, 0.4]].map(unit) {
+            for wind in [[1.0, 0.0, 0.0], [0.3, -0.2, 0.9], [-0.8, 0.1, 0.1]].map(unit) {
+                let along = along_ground(wind, normal);
+                let across: f32 = (0..3).map(|axis| along[axis] * normal[axis]).sum();
+                assert!(across.abs() < 1e-6, "{across}");
+                let along = unit(along);
+                for tilt in tilts() {
+                    let place = |i: u32| -> [f32; 3] {
+                        let [n, w] = tilt.layer(i as f32, 16);
+                        std::array::from_fn(|axis| n * normal[axis] + w * along[axis])
+                    };
+                    let of_segment = |i: u32| {
+                        let (a, b) = (place(i), place(i + 1));
+                        (0..3).map(|axis| (b[axis] - a[axis]).powi(2)).sum::<f32>().sqrt()
+                    };
+                    assert!((0..16).all(|i| (of_segment(i) * 16.0 - 1.0).abs() < 1e-4), "{tilt:?}");
+                    let length: f32 = (0..16).map(of_segment).sum();
+                    assert!((length - 1.0).abs() < 2e-6, "{tilt:?}: {length}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn grass_lies_level_at_the_tip_in_a_full_wind_and_wholly_where_it_is_trodden() {
+        let full = Tilt::of_lean(std::f32::consts::FRAC_PI_4);
+        assert!(full.root_rad.abs() < 1e-6 && (full.of_segment_rad(64, 64) - FRAC_PI_2).abs() < 1e-6);
+        // A quarter of a circle is 2/π of its arc high.
+        assert!((full.layer(64.0, 64)[0] - 0.6366).abs() < 0.01);
+        assert!(Tilt::of_lean(1.45).layer(64.0, 64)[0] < 0.13);
+        for lean_rad in [0.1, 0.5, 0.8, 1.2, 1.5] {
+            let tilt = Tilt::of_lean(lean_rad);
+            let mean = (1..=64).map(|j| tilt.of_segment_rad(j, 64)).sum::<f32>() / 64.0;
+            assert!((mean - lean_rad).abs() < 0.015, "{mean} instead of {lean_rad}");
+        }
+    }
+
+    #[test]
+    fn drawn_layers_reach_from_the_tips_to_the_ground_without_a_gap() {
+        for segments in [1, 8, 16, 21, 64] {
+            for stride in [1, 2, 4, 8, 64] {
+                let layers: Vec<_> = drawn_layers(segments, stride).collect();
+                assert_eq!(layers[0].0, segments);
+                assert!(layers.windows(2).all(|pair| pair[0].0 - pair[0].1 == pair[1].0));
+                let (lowest, below) = layers[layers.len() - 1];
+                assert_eq!(lowest, below);
+            }
+        }
+    }
+}
