@@ -68,9 +68,10 @@ fn a_lamp_lights_the_dark_where_it_reaches() {
     let dark = Sun { heading_rad: 0.7, elevation_rad: -0.4 };
     let picture = drawn(&gpu, dark, vec![Lamp { rgb: [1.0, 0.5, 0.25], ..Lamp::new([32.0, 3.0, 32.0]) }]);
     let places = [[32.0, 0.0, 32.0, 0.0], [32.0, 0.0, 35.0, 0.0], [5000.0, 0.0, 32.0, 0.0]];
-    let [below, beside, far] = probe(&gpu, &picture, "return vec4<f32>(lamps_on(at.xyz, vec3<f32>(0.0, 1.0, 0.0), 0.0), 0.0);", &places)
-        .try_into()
-        .expect("as many as asked for");
+    let [below, beside, far]: [[f32; 4]; 3] =
+        probe(&gpu, &picture, "return vec4<f32>(lamps_on(at.xyz, vec3<f32>(0.0, 1.0, 0.0), 0.0), 0.0);", &places)
+            .try_into()
+            .expect("as many as asked for");
     // Three metres below; and aslant, half the square of the distance and the cosine of 45°.
     assert!(below[0] > 0.0 && (below[1] / below[0] - 0.5).abs() < 1e-3, "{below:?}");
     assert!((beside[0] / below[0] - 0.5 * 0.5_f32.sqrt()).abs() < 1e-3, "{beside:?} beside {below:?}");
