@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn every_way_has_a_name_of_its_own_and_changes_itself_alone() {
-        let own = Look { order: Order::Weighted, far: Far::Land, culls: true };
+        let own = Look { order: Order::Weighted, far: Far::Land, ..Look::default() };
         let names: Vec<_> = Look::ways().collect();
         for (at, name) in names.iter().enumerate() {
             assert!(!names[..at].contains(name), "{name}");
