@@ -48,8 +48,8 @@ pub use look::{Far, Look, Order};
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::Picture;
 pub use quality::{Quality, REFERENCE_M};
-pub use split::{Split, Way};
 pub use shared::light::sun::Sun;
+pub use split::{Split, Way};
 
 use crate::camera::Camera;
 use crate::state::Mirror;
