@@ -1,7 +1,7 @@
 //! One page's client: what arrives is mirrored, what hands do is sent, and each frame shows where things stand.
 
 use super::choices::{Automatic, Choices};
-use super::connection::{Connection, Standing};
+use super::connection::Connection;
 use super::fitting::Fitting;
 use super::input::{Input, Wish};
 use super::meter::Meter;
@@ -43,9 +43,9 @@ pub(super) struct Options {
     /// What `auto` means on this device.
     automatic: Automatic,
     /// The scene that the address names, if it names one.
-    scene: Option<String>,
+    pub(super) scene: Option<String>,
     /// Draw only when asked to.
-    paused: bool,
+    pub(super) paused: bool,
     /// What the browser says of its graphics adapter.
     pub(super) adapter: String,
 }
@@ -71,14 +71,14 @@ pub(super) struct App {
     /// Whether the device was behind since the last picture, and when that was drawn (s).
     waited: bool,
     drew_secs: f64,
-    losses_secs: Vec<f64>,
+    pub(super) losses_secs: Vec<f64>,
     wanted: Option<VehicleKind>,
     clock_secs: f64,
     drawn_secs: f64,
     link: (String, f64),
-    notice: Option<(String, f64)>,
-    welcomed_once: bool,
-    told: Option<(&'static str, String)>,
+    pub(super) notice: Option<(String, f64)>,
+    pub(super) welcomed_once: bool,
+    pub(super) told: Option<(&'static str, String)>,
 }
 
 /// Why the client stopped.
@@ -331,12 +331,6 @@ impl App {
         self.clock_secs = now_secs;
     }
 
-    /// The scene that the address names and the one that the server runs, where these are two.
-    fn other_scene(&self) -> Option<(&str, &str)> {
-        let (linked, running) = (self.options.scene.as_deref()?, self.scene_name.as_deref()?);
-        (linked != running).then_some((linked, running))
-    }
-
     fn fail(&mut self, reason: String) {
         self.failure.get_or_insert(Failure { kind: "failed", reason });
         self.connection.end(Close::BadMessage);
@@ -365,46 +359,6 @@ impl App {
         } else {
             self.stillness.wake();
             self.build_stage();
-        }
-    }
-
-    /// Shows the page's message for where things stand, when that has changed.
-    fn tell(&mut self) {
-        let now = self.message();
-        if self.told != now {
-            match &now {
-                Some((kind, detail)) => page::message(kind, detail),
-                None => page::clear(),
-            }
-            self.told = now;
-        }
-    }
-
-    fn message(&self) -> Option<(&'static str, String)> {
-        let words = |kind, detail: &str| Some((kind, detail.to_owned()));
-        if let Some(failure) = &self.failure {
-            return words(failure.kind, &failure.reason);
-        }
-        if let Some((linked, running)) = self.other_scene().filter(|_| self.connection.client().is_some()) {
-            let linked: String = linked.chars().take(64).collect();
-            let what = format!("The link names the scene {linked}; this server runs {running}.");
-            return words("other-scene", &format!("{what} To see the link, start the server with: prairie serve --scene {linked}"));
-        }
-        match self.connection.standing() {
-            Standing::Over(Close::Version) => return words("version", ""),
-            Standing::Over(_) => return words("refused", self.notice.as_ref().map_or("", |(reason, _)| reason)),
-            Standing::Away { why: Some(Close::ServerFull), .. } => return words("full", ""),
-            Standing::Away { attempts: 1.., .. } if self.welcomed_once => return words("server-gone", ""),
-            Standing::Away { attempts: 1.., .. } => return words("connecting", "The server does not answer yet; trying again…"),
-            Standing::Away { .. } if !self.welcomed_once => return words("connecting", ""),
-            _ => {}
-        }
-        match (&self.stage, self.mirror.land()) {
-            (None, _) if !self.losses_secs.is_empty() => words("device-back", ""),
-            (None, _) => words("preparing", "Asking for the graphics device…"),
-            (_, None) => words("preparing", "The land is on its way…"),
-            _ if self.meter.frames() == 0 && !self.options.paused => words("preparing", "Drawing the first picture…"),
-            _ => None,
         }
     }
 }

@@ -15,6 +15,7 @@ mod pointer;
 mod report;
 mod socket;
 mod stage;
+mod telling;
 
 use crate::render::{Far, Order, Quality, Way};
 use app::App;
