@@ -76,8 +76,8 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
     from_root += up * max(-dot(from_root, up), 0.0);
     let p = blade.root.xyz + from_root;
 
-    var normal = normalize(cross(wide, tangent));
-    normal = normal * -sign(dot(normal, view) + 1e-5);
+    var normal = cross(wide, tangent);
+    normal *= -sign(dot(normal, view) + 1e-5) / max(length(normal), 1e-3);
     let soft = normalize(normal * 0.62 + up * 0.75 + wide * (across * 0.35));
 
     let kind = kinds.list[u32(blade.points[1].w)];
@@ -164,7 +164,9 @@ struct Painted {
 }
 
 // Light of a tapered blade across: a fold along the middle, one half lighter than the other, the rib darker.
-fn fold(across: f32) -> f32 {
+fn fold(unclipped: f32) -> f32 {
+    // Not the number that it should be on strips that reach behind the eye.
+    let across = clamp(unclipped, -1.0, 1.0);
     return 1.0 + 0.10 * across - 0.16 * (1.0 - smoothstep(0.0, 0.35, abs(across)));
 }
 
@@ -175,12 +177,12 @@ fn grain(texel: vec4<f32>) -> f32 {
 
 @fragment
 fn fs(strip: Strip) -> @location(0) vec4<f32> {
-    let texel = textureSampleLevel(shapes, clamped, strip.shape, 0.0);
     // What stands for far plants is dithered by the same number.
     if strip.shown < 1.0 && strip.shown <= 0.99 - 0.98 * random3(vec2<i32>(strip.position.xy), 11u).x {
         discard;
     }
     if strip.shape.x >= 0.0 {
+        let texel = textureSampleLevel(shapes, clamped, strip.shape, 0.0);
         if texel.a < 0.5 {
             discard;
         }

@@ -483,6 +483,8 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
 @fragment
 fn fs(ribbon: Ribbon) -> @location(0) vec4<f32> {
     // A leaf is folded along its middle: one half lighter than the other, the rib darker.
-    let fold = 1.0 + 0.10 * ribbon.across - 0.18 * (1.0 - smoothstep(0.0, 0.25, abs(ribbon.across)));
-    return vec4<f32>(ribbon.color * select(fold, 1.0, abs(ribbon.across) > 1.5), 1.0);
+    // Not the number that it should be on ribbons that reach behind the eye.
+    let across = clamp(ribbon.across, -9.0, 9.0);
+    let fold = 1.0 + 0.10 * across - 0.18 * (1.0 - smoothstep(0.0, 0.25, abs(across)));
+    return vec4<f32>(ribbon.color * select(fold, 1.0, abs(across) > 1.5), 1.0);
 }

@@ -18,6 +18,7 @@ use broken::Broken;
 use fields::{Patches, WindFrames};
 use playback::Playback;
 use shared::grid::PatchIndex;
+use shared::scene::Scene;
 use shared::terrain::MapError;
 use shared::wire::{CodecError, ObjectId, ObjectPose, Peer, Refusal, ServerMessage};
 use thiserror::Error;
@@ -240,10 +241,12 @@ impl Mirror {
         self.patches.has_dirty()
     }
 
-    /// Whether nothing is in the air that moves by itself: no wind, no rain, no dust. True before the scene has come.
+    /// Whether nothing moves by itself: no wind, no rain, no dust, no sun. True before the scene has come.
     pub fn is_calm(&self) -> bool {
-        let scene_is_calm =
-            self.land.as_ref().is_none_or(|land| land.scene().wind.mean_m_per_s == [0.0; 2] && land.scene().rain.rate_mm_per_h <= 0.0);
+        let scene_is_calm = self.land.as_ref().is_none_or(|land| {
+            let Scene { wind, rain, light, .. } = land.scene();
+            wind.mean_m_per_s == [0.0; 2] && rain.rate_mm_per_h <= 0.0 && light.day_length_secs <= 0.0
+        });
         scene_is_calm && self.wind().is_none_or(WindCodes::is_calm)
     }
 

@@ -2,7 +2,7 @@
 // The view, #x,y,z,heading,pitch, is kept by the client itself.
 
 // What a link holds, in this order.
-const SHARED = ["scene", "quality", "budget", "order", "far", "compare", "at"];
+const SHARED = ["scene", "quality", "budget", "order", "far", "hour", "compare", "at"];
 
 const asked = new URLSearchParams(location.search);
 

@@ -30,6 +30,10 @@ export class Panel {
     for (const [id, ways] of [["order", order], ["far", far], ["left", compared], ["right", compared]]) {
       byId(id).append(...ways.map((way) => new Option(label(way), way)));
     }
+    if (ask("hour")) {
+      byId("hour").value = ask("hour");
+      this.clock(Number(ask("hour")));
+    }
     byId("ways").open = ["order", "far", "compare"].some((key) => ask(key) !== null);
     this.listen();
     setInterval(() => this.update(JSON.parse(client.state())), UPDATE_MS);
@@ -77,6 +81,13 @@ export class Panel {
     }
   }
 
+  // Says which hour the sun stands at; null where the scene has it.
+  clock(hour) {
+    const text = () => `${Math.floor(hour)}:${String(Math.round((hour % 1) * 60)).padStart(2, "0")}`;
+    byId("clock").textContent = hour === null ? "as in the scene" : text();
+    byId("clock").title = hour === null ? "" : "Double-click: as in the scene";
+  }
+
   toggle(shown = byId("panel").hidden) {
     this.show(shown);
     this.remember("panel", shown ? "1" : "0");
@@ -108,6 +119,16 @@ export class Panel {
         byId("view").focus();
       });
     }
+    byId("hour").addEventListener("input", ({ target }) => {
+      this.client.set_hour(Number(target.value));
+      this.clock(Number(target.value));
+      keep({ hour: target.value });
+    });
+    byId("clock").addEventListener("dblclick", () => {
+      this.client.set_hour(-1);
+      this.clock(null);
+      keep({ hour: null });
+    });
     byId("shoot").addEventListener("click", () => this.capture.picture());
     byId("film").addEventListener("click", () => this.capture.film());
     byId("share").addEventListener("click", () => this.share());

@@ -12,8 +12,8 @@
 //   link()                           the link to what is seen
 //   choose(vehicle)                  takes "car", "monster", "helicopter", "sled" or "ball"; "" gives it up
 //   draw(time)                       draws one picture for this time (s); settles when it is on the screen
-// The address may say ?scene=… (that it is a link to), ?quality=auto|low|medium|high|ultra, ?budget=… (ms a frame of automatic quality may take), ?order=…, ?far=… and
-// ?compare=…,…&at=… (ways of drawing, as client.ways() names them), ?name=…, ?panel=0 (nothing above the picture; P brings it), ?paused=1 (draws only when draw() asks).
+// The address may say ?scene=… (that it is a link to), ?quality=auto|low|medium|high|ultra, ?budget=… (ms a frame of automatic quality may take), ?order=…, ?far=…,
+// ?hour=… (of the day, 0 to 24, by which the sun stands), ?compare=…,…&at=… (ways of drawing, as client.ways() names them), ?name=…, ?panel=0 (nothing above the picture; P brings it), ?paused=1 (draws only when draw() asks).
 
 import { ask, keep, link } from "./address.js";
 import { Capture } from "./capture.js";
@@ -100,6 +100,7 @@ async function begin() {
   };
   client.start("view", JSON.stringify(options));
   client.set_look(ask("order") ?? "", ask("far") ?? "");
+  if (ask("hour")) client.set_hour(Number(ask("hour")));
   const { state } = window.prairie;
   const capture = new Capture(client, document.getElementById("view"), {
     state, tell: (text) => panel.tell(text), filming: (seconds) => panel.filming(seconds),

@@ -11,7 +11,7 @@ struct Field {
 }
 
 /// Source files and, for each struct in them, the section that it describes.
-const SOURCES: [(&str, &[(&str, &str)]); 19] = [
+const SOURCES: [(&str, &[(&str, &str)]); 20] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
     ("terrain.rs", &[("TerrainMaps", "terrain")]),

@@ -168,7 +168,8 @@ impl App {
             return false;
         }
         let Some(renderer) = stage.renderer(&self.mirror) else { return false };
-        let (look, split) = (self.choices.look(), self.choices.split());
+        let light = self.mirror.land().map(|land| land.scene().light);
+        let (look, split) = (self.choices.look(light.as_ref()), self.choices.split());
         renderer.set_look(look);
         renderer.set_level(self.choices.level());
         let quality = renderer.quality();

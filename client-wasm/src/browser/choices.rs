@@ -3,6 +3,7 @@
 use crate::budget::{Budget, FrameTime};
 use crate::render::{Far, Look, Order, Quality, Split, Way};
 use serde::Deserialize;
+use shared::scene::Light;
 
 /// Name of the quality that a budget of time steers.
 const AUTOMATIC: &str = "auto";
@@ -35,6 +36,7 @@ pub(super) struct Choices {
     quality: Quality,
     budget: Option<Budget>,
     look: Look,
+    hour: Option<f32>,
     compared: Option<Compared>,
 }
 
@@ -48,7 +50,7 @@ struct Compared {
 impl Choices {
     /// The quality of this name, or `auto`, and the default look.
     pub(super) fn new(quality: &str, automatic: Automatic) -> Result<Self, String> {
-        let mut choices = Self { automatic, quality: Quality::default(), budget: None, look: Look::default(), compared: None };
+        let mut choices = Self { automatic, quality: Quality::default(), budget: None, look: Look::default(), hour: None, compared: None };
         let is_known = choices.set_quality(quality);
         is_known.then_some(choices).ok_or_else(|| format!("quality `{quality}`: allowed are {AUTOMATIC}, {}", names()))
     }
@@ -97,8 +99,25 @@ impl Choices {
         self.look.far = Far::from_name(far).unwrap_or(self.look.far);
     }
 
-    pub(super) fn look(&self) -> Look {
+    /// Lets the sun stand as at an hour of the scene's day, 0 to 24; other numbers leave it where the scene has it.
+    pub(super) fn set_hour(&mut self, hour: f32) {
+        self.hour = Some(hour).filter(|hour| (0.0..=24.0).contains(hour));
+    }
+
+    /// The hour that the visitor wants, if any.
+    pub(super) fn hour(&self) -> Option<f32> {
+        self.hour
+    }
+
+    /// The look, in the light of a scene.
+    pub(super) fn look(&mut self, light: Option<&Light>) -> Look {
+        self.look.sun = self.hour.zip(light).map(|(hour, light)| light.sun_at_hour(hour));
         self.look
+    }
+
+    /// Names of how plants are laid over each other, and of what stands for those far away.
+    pub(super) fn names(&self) -> [&'static str; 2] {
+        [self.look.order.name(), self.look.far.name()]
     }
 
     /// Shows two ways side by side; unknown names show one picture.

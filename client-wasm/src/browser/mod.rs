@@ -177,6 +177,12 @@ pub fn set_look(order: &str, far: &str) {
     with_app(|app| app.choices.set_look(order, far));
 }
 
+/// Lets the sun stand as at an hour of the scene's day, 0 to 24; any other number leaves it where the scene has it.
+#[wasm_bindgen]
+pub fn set_hour(hour: f32) {
+    with_app(|app| app.choices.set_hour(hour));
+}
+
 /// Shows two ways side by side, with the border at a share of the width; one picture where a name is unknown.
 #[wasm_bindgen]
 pub fn compare(left: String, right: String, at: f32) {
