@@ -214,7 +214,7 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
     blade.about = about(plant, points[2].xz / plant.height, distance_m, light);
     if plant.is_flower {
         // Heads too small to be seen thin out, and those left are as large as can be seen.
-        let small = max(max(pixel_m * plants.time.w * 1.4 / HEAD_RADIUS_M, 0.5 * distance_m / plants.shape.y), 1.0);
+        let small = max(max(pixel_m * plants.time.w * 2.0 / HEAD_RADIUS_M, 0.5 * distance_m / plants.shape.y), 1.0);
         if fract(kind * 37.7) * small * small <= 1.0 {
             var head = blade;
             head.root.w = small;

@@ -20,6 +20,7 @@ struct Lights {
     night: vec4<f32>,
     cloud_sun: vec4<f32>,
     heading: vec4<f32>,
+    lit: vec4<f32>,
     mist: vec4<f32>,
     shadow: vec4<f32>,
     lamps: array<Lamp, 16>,
@@ -188,10 +189,16 @@ fn lamp_ray(lamp: Lamp, p: vec3<f32>) -> LampRay {
     return LampRay(toward, lamp.rgb.rgb * (attenuation(lamp.attenuation.xyz, distance_m) * cone * ending));
 }
 
+// Lamps that may reach a place. The count depends on the place, so that drivers which make a shader anew for each value of a uniform that decides its way
+// through the program do not.
+fn lamps_about(p: vec3<f32>) -> u32 {
+    return select(0u, frame.tiling.w, distance(p, frame.lights.lit.xyz) < frame.lights.lit.w);
+}
+
 // Light of all lamps on a surface, over π; `around` is how far light wraps around it: 0 of a solid.
 fn lamps_on(p: vec3<f32>, normal: vec3<f32>, around: f32) -> vec3<f32> {
     var light = vec3<f32>(0.0);
-    for (var i = 0u; i < frame.tiling.w; i++) {
+    for (var i = 0u; i < lamps_about(p); i++) {
         let ray = lamp_ray(frame.lights.lamps[i], p);
         light += ray.rgb * clamp((dot(normal, ray.toward) + around) / (1.0 + around), 0.0, 1.0);
     }
@@ -257,7 +264,7 @@ fn grass_light(
 // Light of all lamps on the same, at a share of the grass's height.
 fn grass_lamps(albedo: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>, p: vec3<f32>, height_share: f32) -> vec3<f32> {
     var light = vec3<f32>(0.0);
-    for (var i = 0u; i < frame.tiling.w; i++) {
+    for (var i = 0u; i < lamps_about(p); i++) {
         if distance(p, frame.lights.lamps[i].place.xyz) < frame.lights.lamps[i].place.w {
             let ray = lamp_ray(frame.lights.lamps[i], p);
             light += ray.rgb * leaf_light(albedo, normal, tangent, view, ray.toward);

@@ -71,7 +71,7 @@ fn vs(vertex: Vertex, @builtin(instance_index) index: u32) -> Surface {
 // Light of the glass right before a lamp, where a solid turns with its beam.
 fn shining(p: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     var light = vec3<f32>(0.0);
-    for (var i = 0u; i < frame.tiling.w; i++) {
+    for (var i = 0u; i < lamps_about(p); i++) {
         let lamp = frame.lights.lamps[i];
         if distance(p, lamp.place.xyz) < GLASS_M {
             light += lamp.rgb.rgb * (6.0 * smoothstep(0.2, 0.8, dot(normal, lamp.aim.xyz)));

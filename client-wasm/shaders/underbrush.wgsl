@@ -115,7 +115,7 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     }
     // What is but a few pixels tall thins out, and what is left is larger.
     let tall_px = tall / (distance_m * frame.screen.z);
-    let kept = clamp(tall_px / 7.0, 0.12, 1.0);
+    let kept = clamp(tall_px / 16.0, 0.06, 1.0);
     let lot = random3(vec2<i32>(i32(plant.site), 5), 91u).x;
     let left = clamp((kept - lot) / (0.2 * kept), 0.0, 1.0) * (1.0 - smoothstep(0.8, 1.0, distance_m / reach_m));
     if left <= 0.01 {
@@ -138,7 +138,7 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     lean *= min(1.0, 1.5 / max(tilt, 1e-5));
 
     let make = (plant.make >> 8u) % VARIANTS + select(0u, VARIANTS, fall != 0u);
-    let shown_size = plant.size * left * pow(kept, -0.5);
+    let shown_size = plant.size * left * pow(kept, -0.3);
     var spheres = 0u;
     for (var s = 0u; s < u32(frame.clouds.w); s++) {
         let sphere = frame.spheres[s];

@@ -20,6 +20,14 @@ const HEADLIGHT_RGB: Vec3 = Vec3::new(1.0, 0.90, 0.74);
 /// Brightness of the picture at which a lamp's light ends.
 const LEAST: f32 = 0.004;
 
+/// Centre and radius (m) of a sphere about all that lamps reach; its radius is below zero where there are none.
+pub(super) fn lit(lamps: &[Lamp]) -> [f32; 4] {
+    let places = || lamps.iter().map(|lamp| Vec4::from(lamp.place));
+    let centre = places().map(Vec4::truncate).sum::<Vec3>() / lamps.len().max(1) as f32;
+    let radius_m = places().map(|place| place.truncate().distance(centre) + place.w).fold(-1.0, f32::max);
+    centre.extend(radius_m).to_array()
+}
+
 /// The lamps nearest to the eye whose light is seen at a brightness of the picture for each cd/m².
 pub(super) fn lamps(scene: &Scene, heights: &HeightMap, poses: &[ObjectPose], sun_up_rad: f32, brightness: f32, eye_m: Vec3) -> Vec<Lamp> {
     let lit = |place_m: Vec3, rgb: Vec3, candela: f32, attenuation: [f32; 3]| {

@@ -340,8 +340,8 @@ impl Renderer {
         if let Some(dust) = &scene.dust {
             dust.prepare(gpu, dt_secs);
         }
-        let reach_m = self.detail.trees_m;
-        scene.objects.prepare(gpu, &poses, camera.eye_m, &frustum, time_secs as f32, dt_secs, reach_m);
+        let [reach_m, pixel_rad] = [self.detail.trees_m, frame.screen[2]];
+        scene.objects.prepare(gpu, &poses, camera.eye_m, &frustum, time_secs as f32, dt_secs, reach_m, pixel_rad);
 
         let clumps = (self.look.far == Far::Clumps && has_blades).then_some(&self.billboards);
         let turns = if has_blades { scene.blades.turns() } else { 1 };

@@ -18,8 +18,8 @@ use wgpu::BufferUsages;
 
 /// Most instances in a frame.
 const INSTANCE_LIMIT: usize = 12_288;
-/// Distance beyond which trees are coarse, in their heights.
-const FINE_TREE_HEIGHTS: f32 = 7.0;
+/// Height in the picture from which on trees are fine (px).
+const FINE_TREE_PX: f32 = 130.0;
 /// Distance up to which things cast shadows into the layers of the shadow map (m).
 const SHADOW_REACH_M: [f32; 2] = [90.0, 330.0];
 
@@ -126,6 +126,7 @@ impl Objects {
         time_secs: f32,
         dt_secs: f32,
         tree_reach_m: f32,
+        pixel_rad: f32,
     ) {
         let mut by_mesh: Vec<Vec<Instance>> = vec![Vec::new(); self.meshes.len()];
         let mut by_mesh_lit = [by_mesh.clone(), by_mesh.clone()];
@@ -153,7 +154,7 @@ impl Objects {
         let room = INSTANCE_LIMIT - 18 * OBJECT_LIMIT.min(poses.len());
         for (distance_m, standing) in near.into_iter().take(room / 3) {
             let half = Vec3::new(0.6, 1.1, 0.6) * standing.size_m;
-            let is_coarse = distance_m > FINE_TREE_HEIGHTS * standing.size_m;
+            let is_coarse = standing.size_m < FINE_TREE_PX * distance_m * pixel_rad;
             let mesh = |is_coarse| match standing.is_tree {
                 true => tree_mesh(standing.shape, is_coarse),
                 false => stone_mesh(standing.shape),

@@ -19,7 +19,7 @@ pub enum Quality {
 }
 
 /// Distance up to which [`Quality::Reference`] draws every plant (m).
-pub const REFERENCE_M: f32 = 160.0;
+pub const REFERENCE_M: f32 = 100.0;
 
 impl Quality {
     /// All levels that a visitor may choose, coarsest first.

@@ -103,6 +103,8 @@ uniform_block! {
         cloud_sun: [f32; 4],
         /// Unit vector on the ground towards the sun; unused.
         heading: [f32; 4],
+        /// A sphere about all that the lamps reach: centre and radius (m), below zero where there are none.
+        lit: [f32; 4],
         /// Mist on the lowest land (1/m); height over which it is 1/e as dense (m); elevation of that land (m); unused.
         mist: [f32; 4],
         /// Side of a texel and depth of the shadow map's sharp layer (m), and of its coarse one.

@@ -3,7 +3,7 @@
 use super::Quality;
 use super::atlas::Atlas;
 use super::detail::Detail;
-use super::lamps::lamps;
+use super::lamps::{lamps, lit};
 use super::sun::Daylight;
 use super::uniforms::{Frame, Lamp, Lights, SPHERE_LIMIT};
 use crate::camera::Camera;
@@ -127,6 +127,7 @@ impl<'a> View<'a> {
             night: wide(night, stars),
             cloud_sun: wide(cloud_sun, 0.0),
             heading: [sin, -cos, 0.0, 0.0],
+            lit: lit(lamps),
             mist: [if light.mist_m > 0.0 { 1.0 / light.mist_m } else { 0.0 }, light.mist_height_m, land.heights().range_m()[0], 0.0],
             shadow: [texel_m(0), 2.0 * SHADOW_DEPTH_M[0], texel_m(1), 2.0 * SHADOW_DEPTH_M[1]],
             lamps: std::array::from_fn(|i| lamps.get(i).copied().unwrap_or_else(Lamp::zeroed)),

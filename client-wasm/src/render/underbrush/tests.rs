@@ -72,7 +72,7 @@ impl Case {
         Self { root_m: ROOT_M, stand, pressure_pa, make: n % (2 * VARIANTS), spheres: 0 }
     }
 
-    fn packed(&self) -> [[f32; 4]; 4] {
+    fn packed(&self) -> [[f32; 4]; 5] {
         let [x, y, z] = self.root_m.to_array();
         let Stand { size, heading_rad, lean_rad: [lean_x, lean_z] } = self.stand;
         let [push_x, push_z] = self.pressure_pa;
@@ -81,6 +81,7 @@ impl Case {
             [lean_x, lean_z, 1.0, heading_rad],
             [push_x, push_z, self.make as f32, self.spheres as f32],
             [1.0, 0.0, 1.0, size],
+            [0.0; 4],
         ]
     }
 
@@ -414,7 +415,7 @@ fn the_compute_pass_says_how_each_plant_stands_and_lists_it_once() {
             // Its size, for what is taller than 7 px.
             let lot = hash3([plant.site, 5, 91])[0] >> 8;
             let fades = ((1.0 - lot as f32 / 16_777_216.0) / 0.2).min(1.0);
-            if tall_px > 7.0 && distance_m < 0.79 * 45.0 {
+            if tall_px > 16.0 && distance_m < 0.79 * 45.0 {
                 assert!((root[3] / (standing.size * fades) - 1.0).abs() < 1e-3, "{root:?} of {standing:?}");
             }
             // Its make, and whether it is broken.
