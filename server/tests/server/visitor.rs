@@ -55,7 +55,7 @@ impl<S: AsyncRead + AsyncWrite + Unpin> Visitor<S> {
         self.say(&ClientMessage::Hello { name: name.to_owned() }).await;
         let welcome = self.hear().await.unwrap();
         let ServerMessage::Welcome { client, scene_name, .. } = welcome else { panic!("{welcome:?}") };
-        assert_eq!(scene_name, "small");
+        assert!(!scene_name.is_empty());
         self.client = client;
         assert!(matches!(self.hear().await, Ok(ServerMessage::Scene { .. })));
         self.say(&ClientMessage::View { eye_m: [12.0, 2.0, 12.0], radius_m: 100.0 }).await;

@@ -62,11 +62,11 @@ fn names_and_files_that_are_not_there_are_told() {
     let told = |name: &str| load(name).unwrap_err().to_string();
     assert_eq!(
         told("medow"),
-        "no built-in scene and no file is called `medow`; did you mean `meadow`? Built-in scenes: meadow, jacksboro, devil, storm, continuum, underbrush, blades"
+        "no built-in scene and no file is called `medow`; did you mean `meadow`? Built-in scenes: meadow, jacksboro, devil, storm, continuum, underbrush, blades, shells"
     );
     assert_eq!(
         told("xyzzy"),
-        "no built-in scene and no file is called `xyzzy`. Built-in scenes: meadow, jacksboro, devil, storm, continuum, underbrush, blades"
+        "no built-in scene and no file is called `xyzzy`. Built-in scenes: meadow, jacksboro, devil, storm, continuum, underbrush, blades, shells"
     );
     assert!(told("scenes/none.toml").starts_with("scene file `scenes/none.toml` cannot be read: No such file"));
     assert_eq!(told("scenes/broken"), "scene file `scenes/broken` cannot be read: it is not a file");

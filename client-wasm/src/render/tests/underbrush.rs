@@ -86,7 +86,7 @@ fn plants_behind_a_boulder_feel_less_of_the_wind() {
         let mut mirror = meadow_of(windy, &covering);
         let land = mirror.land().expect("a scene");
         let stone = flora::standing(land).first().map(|standing| (standing.position_m, standing.size_m));
-        (felt(&mut Picture::new(&gpu, [128; 2], Quality::Low), &gpu, &mut mirror), stone)
+        (felt(&mut Picture::new(&gpu, [400; 2], Quality::Low), &gpu, &mut mirror), stone)
     };
     let ((open, _), (stony, stone)) = (run(false), run(true));
     let (at_m, size_m) = stone.expect("a boulder");

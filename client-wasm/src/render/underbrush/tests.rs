@@ -412,7 +412,7 @@ fn the_compute_pass_says_how_each_plant_stands_and_lists_it_once() {
             );
             assert!((about[0] / height_m - 1.0).abs() < 1e-4 && (about[2] / distance_m - 1.0).abs() < 1e-4 && about[3] == standing.size);
             assert!(lean[3] == standing.heading_rad && lean[..2] == [0.0; 2], "{lean:?}");
-            // Its size, for what is taller than 7 px.
+            // Its size, for what is taller than 16 px.
             let lot = hash3([plant.site, 5, 91])[0] >> 8;
             let fades = ((1.0 - lot as f32 / 16_777_216.0) / 0.2).min(1.0);
             if tall_px > 16.0 && distance_m < 0.79 * 45.0 {
@@ -455,11 +455,15 @@ fn the_compute_pass_says_how_each_plant_stands_and_lists_it_once() {
     assert!(levels.iter().all(|&count| count > 20) && touched > 20, "{levels:?} at the levels, {touched} touched");
     // All plants whose root is in the picture are listed, but for the few that thin out, and none behind the camera.
     for plant in flora.grown().plants() {
-        let [x, z] = flora.standing(plant).at_m;
+        let standing = flora.standing(plant);
+        let (own, [x, z]) = (&flora.species()[standing.species], standing.at_m);
         let clip = projection * Vec3::new(x, land.heights().height_m(x, z), z).extend(1.0);
         let is_within = clip.w > 0.2 && clip.x.abs() < clip.w && clip.y.abs() < clip.w;
         let lot = (hash3([plant.site, 5, 91])[0] >> 8) as f32 / 16_777_216.0;
-        if is_within && clip.w < 34.0 && lot < 0.9 {
+        // Of those less than 16 px tall as many as they are over that.
+        let tall_m = height_m(own).max(0.5 * flora::reach_m(own)) * standing.size;
+        let kept = (tall_m / (clip.w * px_rad) / 16.0).min(1.0);
+        if is_within && clip.w < 34.0 && lot < 0.75 * kept {
             assert!(seen.contains_key(&plant.site), "{plant:?} is not listed");
         }
         assert!(clip.w > -4.0 || !seen.contains_key(&plant.site), "{plant:?} is behind the camera");
