@@ -158,7 +158,8 @@ fn sheets_of(tile: u32, segments: u32, stride: u32) -> Vec<Sheet> {
     }
     let stride = stride.clamp(1, segments);
     let next = (2 * stride).min(segments);
-    let sheet = |(layer, below): (u32, u32)| [tile << 8 | layer, below, next.min(layer), u32::from((segments - layer) % next != 0)];
+    let sheet =
+        |(layer, below): (u32, u32)| [tile << 8 | layer, below, next.min(layer), u32::from(!(segments - layer).is_multiple_of(next))];
     drawn_layers(segments, stride).map(sheet).collect()
 }
 

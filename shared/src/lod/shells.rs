@@ -130,7 +130,7 @@ mod tests {
         let full = Tilt::of_lean(std::f32::consts::FRAC_PI_4);
         assert!(full.root_rad.abs() < 1e-6 && (full.of_segment_rad(64, 64) - FRAC_PI_2).abs() < 1e-6);
         // A quarter of a circle is 2/π of its arc high.
-        assert!((full.layer(64.0, 64)[0] - 0.6366).abs() < 0.01);
+        assert!((full.layer(64.0, 64)[0] - std::f32::consts::FRAC_2_PI).abs() < 0.01);
         assert!(Tilt::of_lean(1.45).layer(64.0, 64)[0] < 0.13);
         for lean_rad in [0.1, 0.5, 0.8, 1.2, 1.5] {
             let tilt = Tilt::of_lean(lean_rad);
