@@ -11,8 +11,8 @@ use crate::{SIZE_PX, gpu, view};
 /// Views that are compared, and the largest mean FLIP at any of the levels: a tenth over what was measured. The aim of 0.06 is missed: at so few pixels most of
 /// a picture of grass are of single blades, which stand elsewhere where fewer are drawn.
 const VIEWS: [(&str, f64); 3] = [("walking-calm", 0.31), ("walking-storm", 0.30), ("hill-calm", 0.13)];
-/// Levels between which automatic quality chooses, by tests of a few.
-const LEVELS: [f32; 3] = [0.0, 0.5, 1.5];
+/// Levels between which automatic quality chooses.
+const LEVELS: [f32; 2] = [0.0, 1.5];
 
 #[test]
 fn every_view_is_near_the_reference_at_every_level() -> Result<()> {

@@ -8,7 +8,7 @@ use tests::views::View;
 
 use crate::gpu;
 
-const FRAMES: u32 = 7;
+const FRAMES: u32 = 4;
 const STEP_M: f32 = 0.25;
 const SIZE_PX: [u32; 2] = [192, 108];
 /// Largest mean FLIP from one frame to the next that detail alone may cause.
