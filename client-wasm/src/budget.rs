@@ -1,7 +1,7 @@
 //! Automatic quality: a budget of time for a frame steers the level of detail, down at once and up by and by.
 //!
-//! What a frame costs is taken to grow by a factor e^s with each level. The slope s is learnt from the steps taken; a step aims at [`AIM`] of the
-//! budget, and within [`BAND`] nothing is changed.
+//! What a frame costs is taken to grow by a factor e^s with each level. The slope s is learnt from the steps taken; a step aims at `AIM` of the
+//! budget, and within `BAND` nothing is changed.
 
 use crate::damped::Damped;
 
