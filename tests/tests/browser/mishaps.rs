@@ -29,9 +29,10 @@ const KEEP_DEVICE: &str = "(() => {
     };
 })()";
 
-/// Draws until there is a picture.
+/// Draws until there is a picture that was not there before.
 async fn draws(browser: &Browser, time_secs: f64) -> Result<()> {
-    browser.until(&format!("window.prairie.draw({time_secs})")).await?;
+    browser.evaluate("window.drawn = window.prairie.state().frames").await?;
+    browser.until(&format!("(window.prairie.draw({time_secs}), window.prairie.state().frames > window.drawn)")).await?;
     Ok(())
 }
 
@@ -47,6 +48,7 @@ async fn a_lost_device_is_replaced_until_it_is_lost_too_often() -> Result<()> {
         draws(&browser, 1.0 + f64::from(loss)).await?;
         browser.until("document.getElementById('message').hidden").await?;
     }
+    draws(&browser, 1.0).await?;
     let difference = before.difference(&browser.canvas().await?)?;
     ensure!(difference.changed < 0.9, "after three losses the canvas shows something else: {difference:?}");
 
