@@ -32,6 +32,7 @@ fn changes(still: &mut Still, canvas: &mut Canvas) -> Result<Vec<f64>> {
 /// A flight changes a picture by itself. Of the same flight with every plant at full detail nothing else changes it; what a picture changes more than that is due to
 /// its detail.
 #[test]
+#[ignore = "draws four references, minutes; cargo nextest run --release --workspace --run-ignored only -E 'test(detail_alone)'"]
 fn detail_alone_changes_little_from_frame_to_frame() -> Result<()> {
     let gpu = gpu()?;
     let mut still = Still::of(View::find("walking-storm")?, SIZE_PX)?;
