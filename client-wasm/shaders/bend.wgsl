@@ -178,7 +178,7 @@ fn append(list: u32, blade: Blade) {
 fn is_blade_seen(root: vec3<f32>, points: array<vec3<f32>, 3>, width: f32) -> bool {
     let centre = 0.5 * points[2];
     let reach = max(length(centre), max(distance(centre, points[0]), distance(centre, points[1])));
-    return plants.counts.z == 0u || is_seen(root + centre, 1.1 * reach + width);
+    return (plants.counts.z == 0u) | is_seen(root + centre, 1.1 * reach + width);
 }
 
 // The grass about a plant as it is seen from afar, and how much of it shows between the plants that are drawn.
@@ -259,7 +259,8 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
         let lean = field_lean + lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w) * give;
         sway = still(plant, array<vec2<f32>, 3>(lean, lean, lean));
     }
-    for (var step = 0u; step < plants.steps.x; step++) {
+    let steps = plants.steps.x + u32(none_of(gust));
+    for (var step = 0u; step < steps; step++) {
         let points = points_of(sway, plant.height);
         let winds = array<vec2<f32>, 3>(
             blowing(plant.root + points[0], points[0].y, gust),
@@ -309,7 +310,7 @@ fn bend_far(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
     let plant = plant_at(grid, index, place, is_flower_at(grid, index));
     let distance_m = distance(plant.root, frame.eye.xyz);
     let grown = growth(index, distance_m);
-    if grown <= 0.01 || (plants.counts.z != 0u && !is_seen(plant.root, plant.height * 1.1 + 1.0)) {
+    if grown <= 0.01 || ((plants.counts.z != 0u) & !is_seen(plant.root, plant.height * 1.1 + 1.0)) {
         return;
     }
     let r = random3(grid, index + 47u);

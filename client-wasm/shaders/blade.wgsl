@@ -38,7 +38,8 @@ struct BladeNature {
 // What a step makes of distance x and rate v of a mode: (stay, glide, pull, brake).
 fn propagator(integrator: u32, omega: f32, gamma: f32, dt: f32) -> vec4<f32> {
     let omega2 = omega * omega;
-    if integrator == EULER || integrator == VERLET {
+    let way = integrator + u32(none_of(omega));
+    if way == EULER || way == VERLET {
         let pull = -omega2 * dt;
         let brake = -2.0 * gamma * dt;
         return select(vec4<f32>(pull * dt, dt + brake * dt, pull, brake), vec4<f32>(0.0, dt, pull, brake), integrator == EULER);
@@ -186,7 +187,7 @@ fn aside_of(along: vec3<f32>, below: vec3<f32>, link: f32, centre: vec3<f32>, ra
 // A blade above the ground and outside of the frame's spheres; the links above the first that meets a sphere go on in its direction.
 fn settle(sway: Sway, length_m: f32, normal: vec3<f32>, root: vec3<f32>) -> Sway {
     let link = length_m / 3.0;
-    let spheres = i32(frame.clouds.w);
+    let spheres = i32(frame.clouds.w + none_of(root.x));
     var settled = sway;
     var below = vec3<f32>(0.0);
     var tangent = vec3<f32>(0.0);

@@ -270,12 +270,15 @@ fn offset_cells(patch_place: vec2<i32>, cells: vec2<u32>) -> vec2<u32> {
     return (hash.xy >> vec2<u32>(8u)) % cells;
 }
 
+// Zero, which only the invocation finds: a branch on uniforms alone makes some drivers compile the shader anew for each draw.
+fn none_of(p: f32) -> f32 {
+    return min(abs(p), 0.0);
+}
+
 // The air so high above the ground at `p`, as the box covers the world; twin of `Tiles::taps` in shared/src/wind/tiling.rs.
 fn air_at(p: vec2<f32>, above_m: f32) -> vec4<f32> {
     let patch_m = frame.wind_box.w;
-    // Never above zero: a condition of uniforms alone makes some drivers compile a shader for each of their values.
-    let none = min(abs(p.x), 0.0);
-    if patch_m <= none {
+    if patch_m <= none_of(p.x) {
         return air_in_box(vec3<f32>(p.x, above_m, p.y));
     }
     let cells = textureDimensions(winds).xz;
@@ -334,7 +337,7 @@ fn lean_of_bend(bend: vec3<f32>) -> vec2<f32> {
 
 // Lean that the field had at a place so many seconds ago, where its newest state is `now`.
 fn earlier_lean(p: vec2<f32>, level: f32, now: vec3<f32>, kind: Kind, secs: f32) -> vec2<f32> {
-    if frame.past.w < min(abs(p.x), 0.0) {
+    if frame.past.w < none_of(p.x) {
         let speed = length(now.yz);
         if speed < 1e-6 {
             return vec2<f32>(0.0);

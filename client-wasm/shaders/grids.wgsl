@@ -79,7 +79,7 @@ fn lowest_within(low: vec2<f32>, high: vec2<f32>) -> f32 {
 fn is_hidden(low: vec3<f32>, high: vec3<f32>) -> bool {
     let eye = frame.eye.xyz;
     // An eye under the land sees through it.
-    if eye.y < ground_height(eye.xz) + DRAWN_LOWER_M {
+    if eye.y < ground_height(eye.xz + none_of(low.x)) + DRAWN_LOWER_M {
         return false;
     }
     let far = length(max(abs(low.xz - eye.xz), abs(high.xz - eye.xz)));
@@ -113,7 +113,11 @@ fn list_grids(@builtin(global_invocation_id) id: vec3<u32>) {
     let box_high = vec3<f32>(high.x + reach, range.y + reach, high.y + reach);
     let nearest = clamp(frame.eye.xyz, vec3<f32>(low.x, range.x, low.y), vec3<f32>(high.x, range.y, high.y));
     let distance_m = distance(nearest, frame.eye.xyz);
-    if distance_m >= squares.shape.z || (squares.window.w != 0 && (!is_box_seen(box_low, box_high) || is_hidden(box_low, box_high))) {
+    if distance_m >= squares.shape.z {
+        return;
+    }
+    let is_unseen = !is_box_seen(box_low, box_high) || is_hidden(box_low, box_high);
+    if is_unseen & (squares.window.w != 0) {
         return;
     }
     let count = u32(ceil(f32(squares.counts.x) * density(distance_m, squares.shape.y)));

@@ -60,7 +60,7 @@ fn key_blades(@builtin(global_invocation_id) id: vec3<u32>) {
     let root = blades[place].root.xyz;
     let near = nearness(distance(root, frame.eye.xyz));
     let is_fine = u32(id.x >= others);
-    if ordering.lists.z == 0u {
+    if ordering.lists.z + u32(none_of(root.x)) == 0u {
         pairs[id.x] = vec2<u32>((is_fine << 15u) | near, place);
     } else {
         pairs[id.x] = vec2<u32>((is_fine << 23u) | made_beforehand(root.xz, near), place);

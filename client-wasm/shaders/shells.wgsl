@@ -101,7 +101,7 @@ fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
     let tilt = tilt_of(lean_rad);
 
     var growth = smoothstep(0.05, 0.75, grass_share(p)) * (1.0 - smoothstep(frame.reach.z, frame.reach.w, distance_m));
-    if shells.counts.z == 0u {
+    if shells.counts.z + u32(none_of(height)) == 0u {
         growth *= smoothstep(frame.reach.x, frame.reach.y, distance_m);
     }
     let tint = grass_tint(p) * (0.80 + 0.42 * smoothstep(0.08, 0.55, lean_rad));

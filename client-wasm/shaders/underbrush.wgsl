@@ -140,7 +140,8 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     let make = (plant.make >> 8u) % VARIANTS + select(0u, VARIANTS, fall != 0u);
     let shown_size = plant.size * left * pow(kept, -0.3);
     var spheres = 0u;
-    for (var s = 0u; s < u32(frame.clouds.w); s++) {
+    let every = u32(frame.clouds.w + none_of(height));
+    for (var s = 0u; s < every; s++) {
         let sphere = frame.spheres[s];
         spheres |= select(0u, 1u << s, distance(sphere.xyz, root) < sphere.w + nature.z * shown_size);
     }
@@ -311,7 +312,7 @@ fn bent(host: Bent, limb: Limb, so_many: f32, last: u32, plant: Stand, normal: v
     let nodes = vec2<f32>(list.nodes.xy - 1u);
     let angle = arc_cosine(clamp(-dot(down, axis), -1.0, 1.0));
     let place = vec2<f32>(sqrt(angle * 2.0 / TAU), 1.0 - MIDDLE_LOAD / (size + MIDDLE_LOAD)) * nodes;
-    let is_nearest = list.which.z == 1u;
+    let is_nearest = list.which.z + u32(none_of(size)) == 1u;
     let node = min(vec2<u32>(place + select(0.0, 0.5, is_nearest)), list.nodes.xy - select(2u, 1u, is_nearest));
     let by = place - vec2<f32>(node);
     let to_load = limb.table.y;

@@ -30,8 +30,10 @@ const LINK_SECS: f64 = 0.5;
 /// How long a refusal stays in sight (s).
 const NOTICE_SECS: f64 = 6.0;
 
-/// Losses of the device within a minute that are mended without a word.
-const LOSSES: usize = 3;
+/// Losses of the device in a row that are mended without a word.
+const LOSSES: u32 = 3;
+/// How long a device holds that was not lost in a row with the one before (s).
+const HELD_SECS: f64 = 120.0;
 
 /// What the page starts its client with.
 #[derive(Debug, Deserialize)]
@@ -71,7 +73,8 @@ pub(super) struct App {
     /// Whether the device was behind since the last picture, and when that was drawn (s).
     waited: bool,
     drew_secs: f64,
-    pub(super) losses_secs: Vec<f64>,
+    pub(super) losses: u32,
+    lost_secs: f64,
     wanted: Option<VehicleKind>,
     clock_secs: f64,
     drawn_secs: f64,
@@ -123,7 +126,8 @@ impl App {
             keeps_drawing: false,
             waited: false,
             drew_secs: 0.0,
-            losses_secs: Vec::new(),
+            losses: 0,
+            lost_secs: 0.0,
             wanted: None,
             clock_secs: 0.0,
             drawn_secs: 0.0,
@@ -353,9 +357,9 @@ impl App {
         }
         let Some(reason) = self.stage.as_ref().and_then(Stage::lost).map(str::to_owned) else { return };
         self.stage = None;
-        self.losses_secs.retain(|at_secs| now_secs - at_secs < 60.0);
-        self.losses_secs.push(now_secs);
-        if self.losses_secs.len() > LOSSES {
+        self.losses = if now_secs - self.lost_secs < HELD_SECS { self.losses + 1 } else { 1 };
+        self.lost_secs = now_secs;
+        if self.losses > LOSSES {
             self.failure = Some(Failure { kind: "device-lost", reason });
         } else {
             self.stillness.wake();

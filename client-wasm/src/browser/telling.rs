@@ -44,7 +44,7 @@ impl App {
             _ => {}
         }
         match (&self.stage, self.mirror.land()) {
-            (None, _) if !self.losses_secs.is_empty() => words("device-back", ""),
+            (None, _) if self.losses > 0 => words("device-back", ""),
             (None, _) => words("preparing", "Asking for the graphics device…"),
             (_, None) => words("preparing", "The land is on its way…"),
             _ if self.meter.frames() == 0 && !self.options.paused => words("preparing", "Drawing the first picture…"),

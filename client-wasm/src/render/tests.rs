@@ -21,11 +21,32 @@ use shared::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, omega_rad
 use shared::wire::{ObjectPose, ServerMessage, Shape, codec};
 use wgpu::naga;
 
+mod branches;
 mod light;
 mod order;
 mod shells;
 mod small;
 mod underbrush;
+
+/// All passes.
+const SHADERS: [&str; 16] = [
+    shaders::BEND,
+    shaders::GRIDS,
+    shaders::BLADES,
+    shaders::FLOWERS,
+    shaders::UNDERBRUSH,
+    shaders::RAIN,
+    shaders::BILLBOARDS,
+    shaders::SHELLS,
+    shaders::DUST,
+    shaders::SORT,
+    shaders::ORDER,
+    shaders::COMPOSE,
+    shaders::TERRAIN,
+    shaders::OBJECTS,
+    shaders::SKY,
+    shaders::TONE,
+];
 
 fn module(source: &str) -> naga::Module {
     let text = shaders::whole(source);
@@ -39,24 +60,7 @@ fn module(source: &str) -> naga::Module {
 
 #[test]
 fn every_shader_is_valid_wgsl_without_extensions() {
-    for source in [
-        shaders::BEND,
-        shaders::GRIDS,
-        shaders::BLADES,
-        shaders::FLOWERS,
-        shaders::UNDERBRUSH,
-        shaders::RAIN,
-        shaders::BILLBOARDS,
-        shaders::SHELLS,
-        shaders::DUST,
-        shaders::SORT,
-        shaders::ORDER,
-        shaders::COMPOSE,
-        shaders::TERRAIN,
-        shaders::OBJECTS,
-        shaders::SKY,
-        shaders::TONE,
-    ] {
+    for source in SHADERS {
         module(source);
     }
 }
