@@ -114,7 +114,8 @@ const SUN_RAD: f32 = 0.014;
 const SOFTEST_PX: f32 = 4.0;
 
 // Light past what throws shadows into a layer of the map, at a place there. The half-shadow is as wide as the sun is seen wide from what throws it
-// (R. Fernando, "Percentage-closer soft shadows", 2005): four texels about the place say how far that is, four comparisons how much of the sun it hides.
+// (R. Fernando, "Percentage-closer soft shadows", 2005): four texels about the place say how far that is, four comparisons how much of the sun it hides; none where nothing is
+// before any of the texels.
 fn soft_shadow(place: vec3<f32>, layer: i32, depth_m: f32, texel_m: f32, turn: vec2<f32>) -> f32 {
     let size = vec2<f32>(textureDimensions(shadows));
     let depth = place.z - 0.6 * (0.2 + texel_m) / depth_m;
@@ -129,7 +130,10 @@ fn soft_shadow(place: vec3<f32>, layer: i32, depth_m: f32, texel_m: f32, turn: v
             found += 1.0;
         }
     }
-    let half_px = clamp(nearest_m / max(found, 1.0) * SUN_RAD * 0.5 / texel_m, 0.8, SOFTEST_PX);
+    if found == 0.0 {
+        return 1.0;
+    }
+    let half_px = clamp(nearest_m / found * SUN_RAD * 0.5 / texel_m, 0.8, SOFTEST_PX);
     var light = 0.0;
     for (var i = 0; i < 4; i++) {
         light += textureSampleCompareLevel(shadows, shadow_sampler, place.xy + spread(i, turn) * half_px / size, layer, depth);

@@ -45,6 +45,14 @@ fn soil_at(p: vec2<f32>) -> vec3<f32> {
     return mix(soil, vec3<f32>(0.16, 0.15, 0.055), smoothstep(0.45, 0.75, grain.a) * 0.55);
 }
 
+// Dead leaves between the roots, crosswise, which only an eye close to them tells apart.
+fn litter_at(p: vec2<f32>) -> vec3<f32> {
+    let along = noise(vec2<f32>(0.83 * p.x + 0.55 * p.y, 0.83 * p.y - 0.55 * p.x) / vec2<f32>(0.9, 0.13)).g;
+    let across = noise(vec2<f32>(0.34 * p.x - 0.94 * p.y, 0.34 * p.y + 0.94 * p.x) / vec2<f32>(0.7, 0.11)).b;
+    let leaves = max(along, across);
+    return mix(vec3<f32>(0.030, 0.026, 0.011), vec3<f32>(0.17, 0.145, 0.055), smoothstep(0.45, 0.75, leaves));
+}
+
 @fragment
 fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let p = ground.p.xz;
@@ -66,7 +74,8 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
         let afar = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light);
         let mottle = 0.80 + 0.5 * (noise(p / 2.9).g * 0.6 + 0.2);
         let reached = frame.sun_color.rgb * sun_light * sun_in_grass(0.0, kind.root.w);
-        let under = kind.root.rgb * 0.7 * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
+        let floor = mix(kind.root.rgb * 0.7, litter_at(p), 0.8 * (1.0 - smoothstep(0.3, 2.5, distance_m)));
+        let under = floor * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
         let grass = afar * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
         color += mix(under, grass, bare_between(distance_m, kind, view, normal)) * share;
     }

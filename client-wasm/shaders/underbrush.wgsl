@@ -88,6 +88,9 @@ fn followed(state: vec4<f32>, goal: vec2<f32>, settle_secs: f32, dt: f32) -> vec
     return vec4<f32>(value, off * (-taus / settle_secs * decay) + state.zw * ((1.0 - taus) * decay));
 }
 
+// Share of plants that is left at least where they are but a few pixels tall; twin of the constant in `underbrush/mod.rs`.
+const FEWEST: f32 = 0.06;
+
 // Pressure (Pa) on a plant that fell that way, in 255ths of a turn; 0: it stands. What is broken is bent there for good, as if pressed so; it lies at a fifth
 // of its height, where it feels the square root of that of the air.
 fn fallen(pressure: vec2<f32>, fall: u32) -> vec2<f32> {
@@ -110,12 +113,13 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     let tall = max(height, 0.5 * nature.z * plant.size);
     let distance_m = distance(root + vec3<f32>(0.0, 0.5 * tall, 0.0), frame.eye.xyz);
     let reach_m = brush.shape.y;
-    if distance_m > reach_m || !is_seen(root, nature.z * plant.size * 1.8) {
-        return;
-    }
     // What is but a few pixels tall thins out, and what is left is larger.
     let tall_px = tall / (distance_m * frame.screen.z);
-    let kept = clamp(tall_px / 16.0, 0.06, 1.0);
+    let kept = clamp(tall_px / 16.0, FEWEST, 1.0);
+    let larger = pow(kept, -0.3);
+    if distance_m > reach_m || !is_seen(root, nature.z * plant.size * larger * 1.8) {
+        return;
+    }
     let lot = random3(vec2<i32>(i32(plant.site), 5), 91u).x;
     let left = clamp((kept - lot) / (0.2 * kept), 0.0, 1.0) * (1.0 - smoothstep(0.8, 1.0, distance_m / reach_m));
     if left <= 0.01 {
@@ -138,7 +142,7 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     lean *= min(1.0, 1.5 / max(tilt, 1e-5));
 
     let make = (plant.make >> 8u) % VARIANTS + select(0u, VARIANTS, fall != 0u);
-    let shown_size = plant.size * left * pow(kept, -0.3);
+    let shown_size = plant.size * left * larger;
     var spheres = 0u;
     let every = u32(frame.clouds.w + none_of(height));
     for (var s = 0u; s < every; s++) {

@@ -22,6 +22,8 @@ use wgpu::BufferUsages;
 const CHUNK: u32 = 64;
 /// Side of the squares that are culled as one (m).
 const TILE_M: f32 = 8.0;
+/// Share of plants that is left at least where they are but a few pixels tall; those are larger by its power of -0.3. Twin of the constant in `underbrush.wgsl`.
+const FEWEST: f32 = 0.06;
 /// Vertices of an instance, about: many small plants are drawn as one.
 const INSTANCE_VERTICES: u32 = 2048;
 /// Bytes of a plant's feelings and of how it stands, as in `underbrush.wgsl`.
@@ -299,7 +301,7 @@ pub(super) fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
             let standing = flora.standing(plant);
             let make = standing.species as u32 | (standing.number % VARIANTS) << 8;
             let grown = Grown { at_m: standing.at_m, size: standing.size, make, heading_rad: standing.heading_rad, site: plant.site };
-            (standing.at_m.map(|m| (m / TILE_M) as i32), grown, reaches_m[standing.species] * standing.size)
+            (standing.at_m.map(|m| (m / TILE_M) as i32), grown, reaches_m[standing.species] * standing.size * FEWEST.powf(-0.3))
         })
         .collect();
     by_tile.sort_by_key(|&([x, z], ..)| [z, x]);
