@@ -88,8 +88,31 @@ pub(super) fn crown(shape: u32) -> Crown {
     Crown { low, high, wide }
 }
 
-/// A tree one metre tall; the coarse one has fewer and larger sprays of leaves.
-pub(super) fn tree(shape: u32, is_coarse: bool) -> Solid {
+/// How finely a tree is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum TreeDetail {
+    Fine,
+    /// Fewer and larger sprays of leaves.
+    Coarse,
+    /// One spray for a clump of leaves, and hardly a trunk.
+    Distant,
+}
+
+impl TreeDetail {
+    pub(super) const ALL: [Self; 3] = [Self::Fine, Self::Coarse, Self::Distant];
+
+    /// Sides of the trunk, its rings, and sprays of a clump of leaves.
+    fn counts(self) -> [usize; 3] {
+        match self {
+            Self::Fine => [9, 5, 11],
+            Self::Coarse => [5, 5, 3],
+            Self::Distant => [3, 1, 1],
+        }
+    }
+}
+
+/// A tree one metre tall.
+pub(super) fn tree(shape: u32, detail: TreeDetail) -> Solid {
     let mut random = Random::new(900 + u64::from(shape));
     let bark = Paint::new(0.105, 0.075, 0.050, 0.03);
     let mut tree = Solid::default();
@@ -103,11 +126,11 @@ pub(super) fn tree(shape: u32, is_coarse: bool) -> Solid {
     let is_cone = shape == 3;
     let bow = Vec3::new(random.between(-0.05, 0.05), 0.0, random.between(-0.05, 0.05));
     let trunk_top = if is_cone { 0.92 } else { crown_low + 0.45 * (crown_high - crown_low) };
-    let sides = if is_coarse { 5 } else { 9 };
+    let [sides, rings, cards] = detail.counts();
     let trunk = |t: f32| Vec3::new(bow.x * (t * 3.0).sin(), t * trunk_top, bow.z * (t * 2.2).sin());
-    let rings: Vec<_> = (0..=5)
+    let rings: Vec<_> = (0..=rings)
         .map(|i| {
-            let t = i as f32 / 5.0;
+            let t = i as f32 / rings as f32;
             (trunk(t), GIRTH * (1.15 - 0.85 * t) + 0.02 * (1.0 - 5.0 * t).max(0.0))
         })
         .collect();
@@ -127,20 +150,24 @@ pub(super) fn tree(shape: u32, is_coarse: bool) -> Solid {
         };
         let centre = Vec3::new(radius * angle.cos(), height, radius * angle.sin());
         clumps.push(centre);
-        if !is_coarse && !is_cone && i % 2 == 0 {
+        if detail == TreeDetail::Fine && !is_cone && i % 2 == 0 {
             let start = trunk(random.between(0.55, 0.98));
             let knee = start.lerp(centre, 0.55) - Vec3::Y * 0.02;
             tree.tube(&[(start, GIRTH * 0.38), (knee, GIRTH * 0.24), (centre, GIRTH * 0.08)], 5, bark);
         }
     }
-    let cards = if is_coarse { 3 } else { 11 };
     let clump_size = if is_cone { 0.13 } else { 0.17 } * if shape == 1 { 0.8 } else { 1.0 };
     for (i, &clump) in clumps.iter().enumerate() {
         for _ in 0..cards {
             let offset = Vec3::new(random.between(-1.0, 1.0), random.between(-0.8, 0.8), random.between(-1.0, 1.0));
             let shrink = if is_cone { 1.0 - 0.55 * (i as f32 / clumps.len() as f32) } else { 1.0 };
             let centre = clump + offset * clump_size * 0.55 * shrink;
-            let size = clump_size * shrink * if is_coarse { 1.05 } else { random.between(0.55, 0.80) };
+            let size = match detail {
+                TreeDetail::Fine => random.between(0.55, 0.80),
+                TreeDetail::Coarse => 1.05,
+                TreeDetail::Distant => 1.45,
+            };
+            let size = clump_size * shrink * size;
             let outward = ((centre - middle) / half).normalize_or(Vec3::Y);
             let tilt = Vec3::new(random.between(-1.0, 1.0), random.between(-0.6, 1.0), random.between(-1.0, 1.0));
             let face = (outward + tilt * 0.9).normalize_or(Vec3::Y);

@@ -1,7 +1,7 @@
 //! Everything made of meshes: vehicles, trees and stones; drawn for the eye and for the sun.
 
 use super::cull::Frustum;
-use super::flora::{self, STONE_SHAPES, Standing, TREE_SHAPES};
+use super::flora::{self, STONE_SHAPES, Standing, TREE_SHAPES, TreeDetail};
 use super::gpu::Gpu;
 use super::mesh::{Paint, Solid, VERTEX_ATTRIBUTES, Vertex};
 use super::paint;
@@ -18,8 +18,11 @@ use wgpu::BufferUsages;
 
 /// Most instances in a frame.
 const INSTANCE_LIMIT: usize = 12_288;
-/// Height in the picture from which on trees are fine (px).
+/// Heights in the picture from which on trees are fine, and below which they are distant (px).
 const FINE_TREE_PX: f32 = 130.0;
+const DISTANT_TREE_PX: f32 = 26.0;
+/// How finely trees are made that throw shadows into the layers of the shadow map.
+const SHADOW_DETAIL: [TreeDetail; 2] = [TreeDetail::Coarse, TreeDetail::Distant];
 /// Distance up to which things cast shadows into the layers of the shadow map (m).
 const SHADOW_REACH_M: [f32; 2] = [90.0, 330.0];
 
@@ -53,12 +56,12 @@ pub(super) struct Objects {
 }
 
 /// Order of the meshes: parts, fine trees, coarse trees, stones.
-fn tree_mesh(shape: u32, is_coarse: bool) -> usize {
-    Part::ALL.len() + (shape + if is_coarse { TREE_SHAPES } else { 0 }) as usize
+fn tree_mesh(shape: u32, detail: TreeDetail) -> usize {
+    Part::ALL.len() + (shape + detail as u32 * TREE_SHAPES) as usize
 }
 
 fn stone_mesh(shape: u32) -> usize {
-    Part::ALL.len() + (2 * TREE_SHAPES + shape) as usize
+    Part::ALL.len() + TreeDetail::ALL.len() * TREE_SHAPES as usize + shape as usize
 }
 
 fn part_mesh(part: Part) -> usize {
@@ -69,8 +72,8 @@ impl Objects {
     pub(super) fn new(maker: &Maker<'_>, land: &Land, standing: Vec<Standing>) -> Self {
         let gpu = maker.gpu;
         let mut solids: Vec<Solid> = Part::ALL.iter().map(|&part| part_solid(land, part)).collect();
-        solids.extend((0..TREE_SHAPES).map(|shape| flora::tree(shape, false)));
-        solids.extend((0..TREE_SHAPES).map(|shape| flora::tree(shape, true)));
+        let details = TreeDetail::ALL.into_iter();
+        solids.extend(details.flat_map(|detail| (0..TREE_SHAPES).map(move |shape| flora::tree(shape, detail))));
         solids.extend((0..STONE_SHAPES).map(flora::stone));
         let (mut vertices, mut indices, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
         for solid in &solids {
@@ -154,18 +157,23 @@ impl Objects {
         let room = INSTANCE_LIMIT - 18 * OBJECT_LIMIT.min(poses.len());
         for (distance_m, standing) in near.into_iter().take(room / 3) {
             let half = Vec3::new(0.6, 1.1, 0.6) * standing.size_m;
-            let is_coarse = standing.size_m < FINE_TREE_PX * distance_m * pixel_rad;
-            let mesh = |is_coarse| match standing.is_tree {
-                true => tree_mesh(standing.shape, is_coarse),
+            let tall_px = standing.size_m / (distance_m * pixel_rad);
+            let detail = match tall_px {
+                FINE_TREE_PX.. => TreeDetail::Fine,
+                DISTANT_TREE_PX.. => TreeDetail::Coarse,
+                _ => TreeDetail::Distant,
+            };
+            let mesh = |detail| match standing.is_tree {
+                true => tree_mesh(standing.shape, detail),
                 false => stone_mesh(standing.shape),
             };
             let instance = Instance { world_from_model: standing.world_from_model.to_cols_array(), tint: standing.tint };
             if frustum.sees_box(standing.position_m - half, standing.position_m + half) {
-                by_mesh[mesh(is_coarse)].push(instance);
+                by_mesh[mesh(detail)].push(instance);
             }
-            for (lit, reach_m) in by_mesh_lit.iter_mut().zip(SHADOW_REACH_M) {
+            for ((lit, reach_m), detail) in by_mesh_lit.iter_mut().zip(SHADOW_REACH_M).zip(SHADOW_DETAIL) {
                 if distance_m < reach_m {
-                    lit[mesh(true)].push(instance);
+                    lit[mesh(detail)].push(instance);
                 }
             }
         }
