@@ -47,10 +47,10 @@ fn soil_at(p: vec2<f32>) -> vec3<f32> {
 
 // Dead leaves between the roots, crosswise, which only an eye close to them tells apart.
 fn litter_at(p: vec2<f32>) -> vec3<f32> {
-    let along = noise(vec2<f32>(0.83 * p.x + 0.55 * p.y, 0.83 * p.y - 0.55 * p.x) / vec2<f32>(0.9, 0.13)).g;
-    let across = noise(vec2<f32>(0.34 * p.x - 0.94 * p.y, 0.34 * p.y + 0.94 * p.x) / vec2<f32>(0.7, 0.11)).b;
+    let along = noise(vec2<f32>(0.83 * p.x + 0.55 * p.y, 0.83 * p.y - 0.55 * p.x) / vec2<f32>(0.43, 0.057)).g;
+    let across = noise(vec2<f32>(0.34 * p.x - 0.94 * p.y, 0.34 * p.y + 0.94 * p.x) / vec2<f32>(0.35, 0.049)).b;
     let leaves = max(along, across);
-    return mix(vec3<f32>(0.030, 0.026, 0.011), vec3<f32>(0.17, 0.145, 0.055), smoothstep(0.45, 0.75, leaves));
+    return mix(vec3<f32>(0.034, 0.030, 0.012), vec3<f32>(0.14, 0.125, 0.045), smoothstep(0.45, 0.75, leaves));
 }
 
 @fragment
@@ -77,7 +77,9 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
         let floor = mix(kind.root.rgb * 0.7, litter_at(p), 0.8 * (1.0 - smoothstep(0.3, 2.5, distance_m)));
         let under = floor * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
         let grass = afar * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
-        color += mix(under, grass, bare_between(distance_m, kind, view, normal)) * share;
+        // An eye among the blades looks between them.
+        let bare = bare_between(distance_m, kind, view, normal) * smoothstep(0.1, 2.0, distance_m);
+        color += mix(under, grass, bare) * share;
     }
     return vec4<f32>(hazed(color, ground.p), 1.0);
 }

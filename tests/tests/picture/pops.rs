@@ -32,7 +32,6 @@ fn changes(still: &mut Still, canvas: &mut Canvas) -> Result<Vec<f64>> {
 /// A flight changes a picture by itself. Of the same flight with every plant at full detail nothing else changes it; what a picture changes more than that is due to
 /// its detail.
 #[test]
-#[ignore = "draws four references, minutes; cargo nextest run --release --workspace --run-ignored only -E 'test(detail_alone)'"]
 fn detail_alone_changes_little_from_frame_to_frame() -> Result<()> {
     let gpu = gpu()?;
     let mut still = Still::of(View::find("walking-storm")?, SIZE_PX)?;
@@ -46,5 +45,33 @@ fn detail_alone_changes_little_from_frame_to_frame() -> Result<()> {
         println!("{}: at most {most:.4} by detail alone, from frame {at}; {:.4} by the flight", quality.name(), by_flight[at]);
         ensure!(most < FLIP_LIMIT, "{}: {most:.4} from frame {at} on, {FLIP_LIMIT} is allowed", quality.name());
     }
+    Ok(())
+}
+
+/// Between the detail of low quality and that of high, in steps as of a frame budget that is steered by: largest mean FLIP of a step.
+const LEVELS: std::ops::Range<u32> = 0..100;
+const LEVEL_STEP: f32 = 0.02;
+const STEP_FLIP_LIMIT: f64 = 0.05;
+
+/// Neither camera nor time moves: what changes is detail alone.
+#[test]
+fn detail_changes_by_small_steps_as_its_level_does() -> Result<()> {
+    let gpu = gpu()?;
+    let mut still = Still::of(View::find("walking-storm")?, SIZE_PX)?;
+    let mut canvas = still.canvas(&gpu, Quality::Ultra);
+    let mut pictures = LEVELS.map(|step| {
+        canvas.set_level(step as f32 * LEVEL_STEP);
+        still.draw(&mut canvas).0
+    });
+    let mut before = pictures.next().expect("there are levels");
+    let mut steps = Vec::new();
+    for picture in pictures {
+        steps.push(Flip::of(&before, &picture)?.mean());
+        before = picture;
+    }
+    let (at, most) = steps.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
+    let mean = steps.iter().sum::<f64>() / steps.len() as f64;
+    println!("at most {most:.4} from level {:.2}, {mean:.4} on the average", at as f32 * LEVEL_STEP);
+    ensure!(most < STEP_FLIP_LIMIT, "{most:.4} from level {:.2}, {STEP_FLIP_LIMIT} is allowed", at as f32 * LEVEL_STEP);
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! No branch hangs on uniforms alone: Mesa's software driver (lavapipe, 22 to 25) compiles a shader that has one anew for every draw or dispatch, to put the
+//! No branch hangs on uniforms alone: Mesa's software driver (lavapipe of Mesa 22.3) compiles a shader that has one anew for every draw or dispatch, to put the
 //! uniforms' values in its place, which costs it up to a second each time.
 
 use super::{SHADERS, module};
