@@ -82,6 +82,13 @@ fn is_flower_at(grid: vec2<i32>, index: u32) -> bool {
     return is_flower(grid, index, plants.time.y, plants.time.z);
 }
 
+// Kind of a flower, of six, as a share; in drifts, where three of four are of one kind.
+fn flower_at(grid: vec2<i32>, index: u32, place: vec2<f32>) -> f32 {
+    let lot = random3(grid, index + 61u).yz;
+    let drift = floor(6.0 * fract(5.0 * noise(place / 37.0).b));
+    return select(lot.y, (drift + lot.y) / 6.0, lot.x < 0.75);
+}
+
 fn plant_at(grid: vec2<i32>, index: u32, place: vec2<f32>, is_flower: bool) -> Plant {
     let r = random3(grid, index + 7919u);
     let s = random3(grid, index + 15013u);
@@ -91,14 +98,13 @@ fn plant_at(grid: vec2<i32>, index: u32, place: vec2<f32>, is_flower: bool) -> P
     let centre = (vec2<f32>(tuft) + 0.25 + 0.5 * random3(tuft, 5u).xy) * 0.42;
     let p = mix(place, centre, 0.34 * r.x);
     let away = p - centre;
-    let meadow = noise(p / 14.0).a;
     var plant: Plant;
     plant.root = vec3<f32>(p.x, ground_height(p), p.y);
     plant.normal = ground_normal(p);
     // Kinds mingle where they meet.
     plant.kind = kind_at(p + (r.xz - 0.5) * 0.7);
     let kind = kinds.list[plant.kind];
-    let grown = mix(0.72, 1.22, meadow) * mix(0.78, 1.15, shared_by.x);
+    let grown = fed(p) * mix(0.78, 1.15, shared_by.x);
     plant.height = kind.root.w * (1.0 + frame.blade.y * (2.0 * r.y - 1.0)) * grown;
     plant.frequency = kind.shape.y * kind.root.w / plant.height;
     plant.width = frame.blade.z * kind.shape.w * mix(0.75, 1.3, r.z);
@@ -274,7 +280,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     let distance_m = distance(plant.root, frame.eye.xyz);
     let grown = growth(index, distance_m);
     if grown > 0.01 {
-        show(plant, points_of(sway, plant.height), grown, distance_m, random3(grid, index + 61u).z);
+        show(plant, points_of(sway, plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
     }
 }
 
@@ -317,7 +323,7 @@ fn bend_far(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
     let flutter = 1.0 + 0.065 * sin(frame.eye.w * mix(6.0, 9.0, r.x) + r.z * TAU);
     let leans = trailing_leans(plant, gust_at(plant.root.xz) * (0.9 + 0.2 * r.y) * flutter);
     let sway = settle(still(plant, leans), plant.height, plant.normal, plant.root);
-    show(plant, points_of(sway, plant.height), grown, distance_m, random3(grid, index + 61u).z);
+    show(plant, points_of(sway, plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
 }
 
 // Indirect draws of 64 plants an instance.

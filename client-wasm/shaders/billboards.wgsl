@@ -77,7 +77,7 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let share = grass_share(root);
     // Kinds mingle where they meet.
     let kind = kinds.list[kind_at(root + (vec2<f32>(clump.w, fract(clump.w * 7.3)) - 0.5) * 0.9)];
-    let height = kind.root.w * PATTERN_HEIGHT * mix(0.80, 1.18, noise(root / 14.0).a) * sqrt(share);
+    let height = kind.root.w * PATTERN_HEIGHT * fed(root) * sqrt(share);
     let ground = vec3<f32>(root.x, ground_height(root), root.y);
     let distance_m = distance(ground, frame.eye.xyz);
     let level = field_level(distance_m);

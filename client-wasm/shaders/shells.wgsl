@@ -93,7 +93,7 @@ fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
     let normal = ground_normal(p);
     let kind = kinds_blended(p);
 
-    let height = kind.root.w * (1.0 + frame.blade.y) * mix(0.78, 1.16, noise(p / 14.0).a) * mix(0.86, 1.10, noise(p / 3.1).g);
+    let height = kind.root.w * (1.0 + frame.blade.y) * fed(p) * mix(0.86, 1.10, noise(p / 3.1).g);
     let lean = lean_at(ground, field_level(distance_m), gust_held(p), kind.tip.w);
     let lean_rad = length(lean);
     let across = vec3<f32>(lean.x, 0.0, lean.y) / max(lean_rad, 1e-4);

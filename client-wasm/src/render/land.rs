@@ -10,8 +10,7 @@ use super::sun::Daylight;
 use super::uniforms::Frame;
 use super::wind::WindTexture;
 use crate::state::Land;
-use shared::scene::Scene;
-use shared::terrain::{Cover, CoverMap, HeightMap};
+use shared::terrain::{Cover, HeightMap};
 use wgpu::{TextureFormat, TextureSampleType, TextureViewDimension};
 
 /// Layout of bind group 0 and what outlives a scene.
@@ -122,7 +121,7 @@ impl LandTextures {
             gpu.texture("heights", TextureFormat::R32Float, heights.size_px(), &[bytemuck::cast_slice(heights.heights_m()).to_vec()]);
         let normal_texture = gpu.texture("normals", TextureFormat::Rgba8Snorm, heights.size_px(), &[normals(heights)]);
         let (cover, kind_map) = (land.cover(), land.kinds());
-        let cover_texture = gpu.texture("cover", TextureFormat::R8Unorm, cover.size_px(), &[grass(land.scene(), cover)]);
+        let cover_texture = gpu.texture("cover", TextureFormat::Rg8Unorm, cover.size_px(), &[grass(land)]);
         let kind_texture = gpu.texture("kinds", TextureFormat::R8Uint, kind_map.size_px(), &[kind_map.kinds().to_vec()]);
         let kinds = gpu.buffer("kinds", bytemuck::bytes_of(&kinds::table(land.scene())), wgpu::BufferUsages::UNIFORM);
         let atlas = Atlas::new(gpu, *land.layout(), land.scene());
@@ -178,13 +177,30 @@ fn normals(heights: &HeightMap) -> Vec<u8> {
     texels
 }
 
-/// Share of grass at the pixels; grass grows up to a tree's trunk.
-fn grass(scene: &Scene, cover: &CoverMap) -> Vec<u8> {
+/// At the pixels, the share of grass, which grows up to a tree's trunk, and what the soil holds of nutrients over twice the mean.
+fn grass(land: &Land) -> Vec<u8> {
+    let (scene, cover) = (land.scene(), land.cover());
     let share = |id: u8| match Cover::from(id) {
         cover if scene.is_grass(cover) => 255,
         Cover::Tree => 190,
         Cover::Stone => 110,
         _ => 0,
     };
-    cover.ids().iter().map(|&id| share(id)).collect()
+    let fed = fed(land);
+    cover.ids().iter().zip(fed).flat_map(|(&id, fed)| [share(id), fed]).collect()
+}
+
+/// Nutrients at the pixels of the covering map over twice their mean; a half where no underbrush grows and so no soil is known.
+fn fed(land: &Land) -> Vec<u8> {
+    let [width, depth] = land.cover().size_px();
+    let Some(flora) = land.flora() else { return vec![128; width as usize * depth as usize] };
+    let (soil, [columns, rows]) = (flora.grown().soil.levels(), flora.grown().sites.count());
+    let sums: Vec<u64> = soil.iter().map(|levels| levels.iter().map(|&level| u64::from(level)).sum()).collect();
+    let mean = (sums.iter().sum::<u64>() / sums.len() as u64).max(1);
+    let site = |x: u32, z: u32| {
+        (u64::from(z) * u64::from(rows) / u64::from(depth) * u64::from(columns) + u64::from(x) * u64::from(columns) / u64::from(width))
+            as usize
+    };
+    let share = |sum: u64| (128 * sum / mean).min(255) as u8;
+    (0..depth).flat_map(|z| (0..width).map(move |x| [x, z])).map(|[x, z]| share(sums[site(x, z)])).collect()
 }
