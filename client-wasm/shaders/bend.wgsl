@@ -265,7 +265,10 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
         let lean = field_lean + lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w) * give;
         sway = still(plant, array<vec2<f32>, 3>(lean, lean, lean));
     }
-    let steps = plants.steps.x + u32(none_of(gust));
+    // What is not drawn stays as it was.
+    let distance_m = distance(plant.root, frame.eye.xyz);
+    let grown = growth(index, distance_m);
+    let steps = select(0u, plants.steps.x, grown > 0.0);
     for (var step = 0u; step < steps; step++) {
         let points = points_of(sway, plant.height);
         let winds = array<vec2<f32>, 3>(
@@ -277,8 +280,6 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     sways[at] = sway;
 
-    let distance_m = distance(plant.root, frame.eye.xyz);
-    let grown = growth(index, distance_m);
     if grown > 0.01 {
         show(plant, points_of(sway, plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
     }

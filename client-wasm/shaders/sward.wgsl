@@ -31,12 +31,17 @@ fn drawn_leaf_area(distance_m: f32, kind: Kind) -> f32 {
     return frame.sward.x * sqrt(density(distance_m, frame.sward.y)) * shown * leafiness(kind);
 }
 
+// Distance from which on the grass about a plant is seen as from afar (m).
+const NEAR_M: f32 = 2.0;
+
 // How much of what would be seen from afar along `view` is seen between the blades that are drawn: what is between them is dark where they hide the ground, and
 // the more so the more of all blades they are.
 fn bare_between(distance_m: f32, kind: Kind, view: vec3<f32>, up: vec3<f32>) -> f32 {
     let drawn = drawn_leaf_area(distance_m, kind);
     let hidden = 1.0 - exp(-FACING * drawn / clamp(-dot(view, up), 0.3, 1.0));
-    return 1.0 - hidden * hidden * min(drawn / (frame.sward.z * leafiness(kind)), 1.0);
+    let bare = 1.0 - hidden * hidden * min(drawn / (frame.sward.z * leafiness(kind)), 1.0);
+    // An eye among the blades looks between them.
+    return bare * smoothstep(0.1, NEAR_M, distance_m);
 }
 
 // How much a single blade stands out: of several to a pixel what is seen is their mean, which varies as the root of their number.

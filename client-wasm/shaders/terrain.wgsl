@@ -77,9 +77,7 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
         let floor = mix(kind.root.rgb * 0.7, litter_at(p), 0.8 * (1.0 - smoothstep(0.3, 2.5, distance_m)));
         let under = floor * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
         let grass = afar * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
-        // An eye among the blades looks between them.
-        let bare = bare_between(distance_m, kind, view, normal) * smoothstep(0.1, 2.0, distance_m);
-        color += mix(under, grass, bare) * share;
+        color += mix(under, grass, bare_between(distance_m, kind, view, normal)) * share;
     }
     return vec4<f32>(hazed(color, ground.p), 1.0);
 }

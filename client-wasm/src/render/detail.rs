@@ -26,9 +26,12 @@ pub(super) struct Detail {
 const LEVELS: [Detail; 4] = [
     Detail { blades: 1.0, full_m: 10.0, fine_m: 2.5, blades_m: 55.0, far_m: 60.0, underbrush_m: 45.0, trees_m: 400.0 },
     Detail { blades: 2.0, full_m: 10.0, fine_m: 3.5, blades_m: 90.0, far_m: 100.0, underbrush_m: 110.0, trees_m: 800.0 },
-    Detail { blades: 3.3, full_m: 11.0, fine_m: 5.0, blades_m: 130.0, far_m: 150.0, underbrush_m: 180.0, trees_m: 2000.0 },
+    Detail { blades: 5.0, full_m: 7.3, fine_m: 5.0, blades_m: 130.0, far_m: 150.0, underbrush_m: 180.0, trees_m: 2000.0 },
     Detail { blades: 5.0, full_m: 11.0, fine_m: 8.0, blades_m: 180.0, far_m: 220.0, underbrush_m: 260.0, trees_m: 2000.0 },
 ];
+
+/// Blades along one side of a near grid, over what the scene says, that close the sward at their own width.
+const CLOSED: f32 = 3.3;
 
 impl Detail {
     /// At a level from 0, that of low quality, to 3, that of ultra; between two of them all numbers grow by equal factors.
@@ -62,7 +65,7 @@ impl Detail {
 
     /// Factor on the width of blades, so that fewer still close the sward.
     pub(super) fn width_factor(&self) -> f32 {
-        (LEVELS[2].blades / self.blades).max(1.0).powf(0.9)
+        (CLOSED / self.blades).max(1.0).powf(0.9)
     }
 
     /// Blades of a grid near the camera, where the scene has so many along one side.

@@ -603,7 +603,7 @@ fn near_grids_hold_the_blades_that_the_scene_says() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     // 000's own: 20 × 20 on each grid; more at higher quality.
     let lawn = |scene: &mut Scene| (scene.plants.grid_m, scene.plants.plants_per_side, scene.plants.flowers_per_m2) = (4.0, 20, 0.0);
-    for (quality, per_side) in [(Quality::Low, 20), (Quality::Medium, 40), (Quality::High, 66), (Quality::Ultra, 100)] {
+    for (quality, per_side) in [(Quality::Low, 20), (Quality::Medium, 40), (Quality::High, 100), (Quality::Ultra, 100)] {
         let mut picture = Picture::new(&gpu, [16, 16], quality);
         picture.set_look(Look { culls: false, ..Look::default() });
         let stats = picture.draw(&mut meadow_of(lawn, &[255; 16 * 16]), &Camera::default(), 0.0, 0.0);
