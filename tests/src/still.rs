@@ -58,11 +58,15 @@ impl Still {
         frame_secs(canvas, &mut self.stage.mirror, &self.camera, frames)
     }
 
-    /// The moment with every plant at full detail in exact order: drawn at twice the size, pixels averaged in linear light. What the view cannot show is culled, which
-    /// the test `culling` holds to change no pixel.
+    /// The moment with every plant at full detail in exact order. What the view cannot show is culled, which the test `culling` holds to change no pixel.
     pub fn reference(&mut self, gpu: &Gpu) -> Picture {
+        self.draw_finely(gpu, Quality::Reference)
+    }
+
+    /// The moment drawn at twice the size, pixels averaged in linear light. Between two such pictures nothing differs but their detail.
+    pub fn draw_finely(&mut self, gpu: &Gpu, quality: Quality) -> Picture {
         let size_px = self.size_px.map(|side| side * SUPERSAMPLED);
-        let mut canvas = Canvas::new(gpu, size_px, Quality::Reference);
+        let mut canvas = Canvas::new(gpu, size_px, quality);
         canvas.set_look(Look { order: Order::Cut, ..Look::default() });
         averaged(&self.draw_sized(&mut canvas, size_px).0, SUPERSAMPLED)
     }

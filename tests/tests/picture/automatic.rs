@@ -33,3 +33,25 @@ fn every_view_is_near_the_reference_at_every_level() -> Result<()> {
     ensure!(failures.is_empty(), "too far from the reference\n{}", failures.join("\n"));
     Ok(())
 }
+
+/// Mean FLIP that the detail of ultra and of high may cost by itself, where both pictures have 16 samples a pixel: the aim of 0.06, and a tenth over what was
+/// measured.
+const DETAIL_LIMITS: [(Quality, f64); 2] = [(Quality::Ultra, 0.06), (Quality::High, 0.10)];
+
+#[test]
+fn detail_by_itself_costs_little() -> Result<()> {
+    let gpu = gpu()?;
+    let mut failures = Vec::new();
+    for (name, _) in VIEWS {
+        let (mut still, reference) = view(&gpu, name, SIZE_PX)?;
+        for (quality, flip_limit) in DETAIL_LIMITS {
+            let likeness = Likeness::of(&reference, &still.draw_finely(&gpu, quality))?;
+            println!("{name}, {}: {likeness:?}", quality.name());
+            if likeness.flip_mean > flip_limit {
+                failures.push(format!("{name}, {}: {likeness:?}, mean FLIP up to {flip_limit} is allowed", quality.name()));
+            }
+        }
+    }
+    ensure!(failures.is_empty(), "too far from the reference\n{}", failures.join("\n"));
+    Ok(())
+}
