@@ -75,7 +75,7 @@ fn draw(quick: bool, caption: &str) -> Result<Drawn> {
                 writeln!(said, "{width} × {height}, {layers} layers, slices up to {shown}: {found:.1} frames/s, 003 {}", theirs[n])?;
                 points.push([f64::from(layers), found]);
             }
-            curves.push(Curve { name: format!("slices up to {shown}, {width} × {height}"), points, marked: true, joined: true });
+            curves.push(Curve { name: format!("{shown} slices, {width} × {height}"), points, marked: true, joined: true });
         }
     }
     let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]);
