@@ -1,4 +1,4 @@
-// Single plants: how each blade and flower stem stands in this frame, and which of them are seen.
+// Single plants: how each blade and flower stem that `sift.wgsl` has listed stands in this frame, and which of them are seen.
 //
 // Near plants (nine grids about the camera) keep the sway of their links from frame to frame and obey drag and stiffness (000
 // section 3.2, `blade.wgsl`); those farther away stand as the bend field and the wind of the moment would have them.
@@ -9,7 +9,7 @@ struct Plants {
     // Places for plants in a near grid; plants there at this level of detail; 1 to leave out what is not seen; 1 where blades narrower than a
     // pixel are drawn as wide as they are.
     counts: vec4<u32>,
-    // Capacities of the lists: fine blades, all others, flowers.
+    // Capacities of the lists: fine blades, all others, flowers; number of the frame.
     capacities: vec4<u32>,
     // Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), damping share of a blade.
     shape: vec4<f32>,
@@ -18,6 +18,8 @@ struct Plants {
     // Length of a step (s); lot of the first plant of a grid to be a flower, and the power with which that falls; least width that a blade is
     // drawn with (px).
     time: vec4<f32>,
+    // Most that a plant reaches beyond its place (m); unused.
+    reach: vec4<f32>,
 }
 
 struct Counters {
@@ -31,6 +33,13 @@ struct Counters {
 // Up to 64 plants each: grid (x, z), the first, and how many the grid has.
 @group(1) @binding(4) var<storage, read> chunks: array<vec4<i32>>;
 @group(1) @binding(5) var<storage, read_write> draws: array<u32>;
+// How many near plants are listed, and how many others; their places in `sways`; the others' chunks · 64 + places there.
+@group(1) @binding(6) var<storage, read> standing: array<u32>;
+// Number of the frame that has moved a near plant last, of those in which time passes.
+@group(1) @binding(7) var<storage, read_write> moved: array<u32>;
+
+// Where the list of the near plants begins.
+const LISTED: u32 = 2u;
 
 const FINE: u32 = 0u;
 const COARSE: u32 = 1u;
@@ -154,12 +163,10 @@ fn trailing_leans(plant: Plant, gust: f32) -> array<vec2<f32>, 3> {
     let share = field_share(p);
     let now = bend_at(p, 0.0, 0);
     let held = lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w) * give_of(plant);
-    var leans: array<vec2<f32>, 3>;
-    for (var i = 0; i < 3; i++) {
-        leans[i] = held;
-        if share > 0.0 {
-            leans[i] += trailing_lean(p, 0.0, now, kind, lag_secs * f32(i) * 0.5) * share;
-        }
+    var leans = array<vec2<f32>, 3>(held, held, held);
+    leans[0] += lean_of_bend(now) * share;
+    for (var i = 1; i < select(1, 3, share > 0.0); i++) {
+        leans[i] += trailing_lean(p, 0.0, now, kind, lag_secs * f32(i) * 0.5) * share;
     }
     return leans;
 }
@@ -168,15 +175,11 @@ fn append(list: u32, blade: Blade) {
     let number = atomicAdd(&counters.drawn[list], 1u);
     let fine = plants.capacities.x;
     let others = plants.capacities.y;
+    let capacity = array<u32, 4>(fine, others, others, plants.capacities.z)[list];
     // Blades of one segment fill the place of the coarse ones from its end.
-    if list == FINE && number < fine {
-        drawn[number] = blade;
-    } else if list == COARSE && number < others {
-        drawn[fine + number] = blade;
-    } else if list == SINGLE && number < others {
-        drawn[fine + others - 1u - number] = blade;
-    } else if list == FLOWER && number < plants.capacities.z {
-        drawn[fine + others + number] = blade;
+    let first = array<u32, 4>(0u, fine, fine + others - 1u, fine + others)[list];
+    if number < capacity {
+        drawn[select(first + number, first - number, list == SINGLE)] = blade;
     }
 }
 
@@ -187,15 +190,15 @@ fn is_blade_seen(root: vec3<f32>, points: array<vec3<f32>, 3>, width: f32) -> bo
     return (plants.counts.z == 0u) | is_seen(root + centre, 1.1 * reach + width);
 }
 
-// The grass about a plant as it is seen from afar, and how much of it shows between the plants that are drawn.
-fn about(plant: Plant, lean: vec2<f32>, distance_m: f32, light: f32) -> vec4<f32> {
+// The grass about a plant, whose colour has a tint, as it is seen from afar, and how much of it shows between the plants that are drawn.
+fn about(plant: Plant, tint: vec3<f32>, lean: vec2<f32>, distance_m: f32, light: f32) -> vec4<f32> {
     let kind = kinds.list[plant.kind];
     let view = normalize(plant.root - frame.eye.xyz);
     let between = bare_between(distance_m, kind, view, plant.normal);
     if between <= 0.02 && contrast(distance_m) >= 1.0 {
         return vec4<f32>(0.0);
     }
-    return vec4<f32>(sward_color(plant.root, plant.normal, kind, grass_tint(plant.root.xz), lean, view, light), between);
+    return vec4<f32>(sward_color(plant.root, plant.normal, kind, tint, lean, view, light), between);
 }
 
 fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, kind: f32) {
@@ -217,7 +220,10 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
     blade.points[0] = vec4<f32>(along[0], plant.side);
     blade.points[1] = vec4<f32>(along[1], f32(plant.kind) + plant.hue);
     blade.points[2] = vec4<f32>(along[2], light);
-    blade.about = about(plant, points[2].xz / plant.height, distance_m, light);
+    let drift = drift_at(plant.root.xz);
+    blade.about = about(plant, tint_of(drift), points[2].xz / plant.height, distance_m, light);
+    blade.place = vec4<f32>(drift, plant.normal.xz);
+    blade.air = air_before(p);
     if plant.is_flower {
         // Heads too small to be seen thin out, and those left are as large as can be seen.
         let small = max(max(pixel_m * plants.time.w * 2.0 / HEAD_RADIUS_M, 0.5 * distance_m / plants.shape.y), 1.0);
@@ -240,19 +246,16 @@ fn growth(index: u32, distance_m: f32) -> f32 {
 
 @compute @workgroup_size(64)
 fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
-    let index = id.x;
-    let slot = plants.slots[id.y];
-    if i32(index) >= slot.w {
+    if id.x >= standing[0] {
         return;
     }
+    let at = standing[LISTED + id.x];
+    let index = at % plants.counts.x;
+    let slot = plants.slots[at / plants.counts.x];
     let grid = slot.xy;
-    let place = plant_place(grid, index);
-    let share = grass_share(place);
-    if random3(grid, index + 31u).x > share * 1.02 - 0.02 {
-        return;
-    }
-    let plant = plant_at(grid, index, place, is_flower_at(grid, index));
-    let at = id.y * plants.counts.x + index;
+    let plant = plant_at(grid, index, plant_place(grid, index), is_flower_at(grid, index));
+    let distance_m = distance(plant.root, frame.eye.xyz);
+    let grown = growth(index, distance_m);
     let kind = kinds.list[plant.kind];
     let gust = gust_at(plant.root.xz) * (0.9 + 0.2 * random3(grid, index + 47u).y);
     let field_lean = lean_of_field(plant.root.xz, 0.0);
@@ -261,15 +264,12 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     let nature = BladeNature(plant.height, plant.frequency, plants.shape.w, kind.tip.w * 0.01 * give);
 
     var sway = sways[at];
-    if slot.z != 0 {
+    // What was not moved for a while stands still when it comes into view.
+    if slot.z != 0 || plants.capacities.w - moved[at] > 1u {
         let lean = field_lean + lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w) * give;
         sway = still(plant, array<vec2<f32>, 3>(lean, lean, lean));
     }
-    // What is not drawn stays as it was.
-    let distance_m = distance(plant.root, frame.eye.xyz);
-    let grown = growth(index, distance_m);
-    let steps = select(0u, plants.steps.x, grown > 0.0);
-    for (var step = 0u; step < steps; step++) {
+    for (var step = 0u; step < plants.steps.x; step++) {
         let points = points_of(sway, plant.height);
         let winds = array<vec2<f32>, 3>(
             blowing(plant.root + points[0], points[0].y, gust),
@@ -279,6 +279,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
         sway = settle(advance(sway, nature, held, winds, plants.steps.y, plants.time.x), plant.height, plant.normal, plant.root);
     }
     sways[at] = sway;
+    moved[at] = plants.capacities.w;
 
     if grown > 0.01 {
         show(plant, points_of(sway, plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
@@ -297,27 +298,18 @@ fn blowing(p: vec3<f32>, above_m: f32, gust: f32) -> vec2<f32> {
 }
 
 @compute @workgroup_size(64)
-fn bend_far(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    let chunk = chunks[group.x];
+fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= standing[1] {
+        return;
+    }
+    let listed = standing[LISTED + 9u * plants.counts.x + id.x];
+    let chunk = chunks[listed / 64u];
     let grid = chunk.xy;
-    let index = u32(chunk.z) + local;
-    if index >= u32(chunk.w) {
-        return;
-    }
-    let place = plant_place(grid, index);
-    let ground = vec3<f32>(place.x, ground_height(place), place.y);
-    // Tufts draw plants together by less than this.
-    if growth(index, distance(ground, frame.eye.xyz) - 0.5) <= 0.01 {
-        return;
-    }
-    let share = grass_share(place);
-    if random3(grid, index + 31u).x > share * 1.02 - 0.02 {
-        return;
-    }
-    let plant = plant_at(grid, index, place, is_flower_at(grid, index));
+    let index = u32(chunk.z) + listed % 64u;
+    let plant = plant_at(grid, index, plant_place(grid, index), is_flower_at(grid, index));
     let distance_m = distance(plant.root, frame.eye.xyz);
     let grown = growth(index, distance_m);
-    if grown <= 0.01 || ((plants.counts.z != 0u) & !is_seen(plant.root, plant.height * 1.1 + 1.0)) {
+    if grown <= 0.01 {
         return;
     }
     let r = random3(grid, index + 47u);

@@ -70,7 +70,8 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
     let centre = blade.root.xyz + offset;
     let view = normalize(centre - frame.eye.xyz);
     let wide = shown_side(side_at(tip, blade.points[0].w, t), tangent, view);
-    let up = ground_normal(blade.root.xz);
+    let slope = blade.place.zw;
+    let up = vec3<f32>(slope.x, sqrt(max(1.0 - dot(slope, slope), 0.0)), slope.y);
     // The backbone is above the ground, a wide strip's border need not be.
     var from_root = offset + wide * (across * width_share(t, is_textured) * blade.root.w * 0.5);
     from_root += up * max(-dot(from_root, up), 0.0);
@@ -84,10 +85,10 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
     let tilt = asin(min(length(lean) / max(length(tip), 1e-3), 1.0));
     let height = offset.y / kind.root.w;
     let own = blade_color(
-        kind, grass_tint(blade.root.xz), t, height, fract(blade.points[1].w), tilt, soft, tangent, view, p, blade.points[2].w,
+        kind, tint_of(blade.place.xy), t, height, fract(blade.points[1].w), tilt, soft, tangent, view, p, blade.points[2].w,
     );
     let color = among(own, blade.about, t, distance(blade.root.xyz, frame.eye.xyz));
-    out.color = hazed(color, p);
+    out.color = color * blade.air.a + blade.air.rgb;
     out.across = across;
     let shape = floor(fract(blade.points[1].w * 61.0) * SHAPES);
     out.shape = select(vec2<f32>(-1.0), vec2<f32>((shape + 0.5 + 0.48 * across) / SHAPES, 1.0 - t), is_textured);

@@ -57,6 +57,10 @@ struct Blade {
     points: array<vec4<f32>, 3>,
     // What the grass about it looks like from afar; how much of that it shows at its root.
     about: vec4<f32>,
+    // Drift of the grass's colour there, as `drift_at` has it; slope of the land, X and Z of its normal.
+    place: vec4<f32>,
+    // What the air before it adds to its colour, and the share of that which the air lets through.
+    air: vec4<f32>,
 }
 
 const TAU: f32 = 6.2831853;
@@ -119,12 +123,20 @@ fn ground_height(p: vec2<f32>) -> f32 {
     return height;
 }
 
+// Its normal, from four places 20 m about.
+fn far_normal(p: vec2<f32>, outside_m: f32) -> vec3<f32> {
+    var slope = vec2<f32>(0.0);
+    for (var i = 0u; i < select(0u, 4u, outside_m > 20.0); i++) {
+        let way = select(vec2<f32>(20.0, 0.0), vec2<f32>(0.0, 20.0), i > 1u) * select(1.0, -1.0, (i & 1u) == 1u);
+        slope += way * far_hills(p + way, outside_m);
+    }
+    return normalize(vec3<f32>(-slope.x, 800.0, -slope.y));
+}
+
 fn ground_normal(p: vec2<f32>) -> vec3<f32> {
     let outside_m = metres_outside(p);
     if outside_m > 20.0 {
-        let east = far_hills(p + vec2<f32>(20.0, 0.0), outside_m) - far_hills(p - vec2<f32>(20.0, 0.0), outside_m);
-        let south = far_hills(p + vec2<f32>(0.0, 20.0), outside_m) - far_hills(p - vec2<f32>(0.0, 20.0), outside_m);
-        return normalize(vec3<f32>(-east, 40.0, -south));
+        return far_normal(p, outside_m);
     }
     let uv = (p / frame.world.zw + 0.5) / frame.maps.xy;
     return normalize(textureSampleLevel(normals, clamped, uv, 0.0).xyz);
@@ -164,10 +176,14 @@ fn kinds_about(p: vec2<f32>) -> KindsAbout {
     let size = textureDimensions(kind_map);
     let px_m = frame.world.xy / vec2<f32>(size);
     // Ragged borders: a place is taken for one beside it, and the farther beyond the world's edge, the farther away.
-    let broad = vec2<f32>(noise(p / 13.0).r, noise(p / 13.0 + 0.37).r) - 0.5;
-    let fine = vec2<f32>(noise(p / 3.7).g, noise(p / 3.7 + 0.61).g) - 0.5;
-    let hilly = vec2<f32>(noise(p / 830.0).r, noise(p / 830.0 + 0.43).r) - 0.5;
-    let beside_m = (broad * 1.7 + fine * 0.8) * clamp(px_m, vec2<f32>(1.0), vec2<f32>(5.0)) + hilly * metres_outside(p);
+    let ragged_m = clamp(px_m, vec2<f32>(1.0), vec2<f32>(5.0));
+    let scales_m = array<vec2<f32>, 3>(1.7 * ragged_m, 0.8 * ragged_m, vec2<f32>(metres_outside(p)));
+    let sizes_m = vec3<f32>(13.0, 3.7, 830.0);
+    var beside_m = vec2<f32>(0.0);
+    for (var i = 0; i < select(3, 1, has_one_kind()); i++) {
+        let at = p / sizes_m[i];
+        beside_m += (vec2<f32>(noise(at).r, noise(at + 0.37).r) - 0.5) * scales_m[i];
+    }
     let at = (p + beside_m) / px_m - 0.5;
     let low = floor(at);
     let share = at - low;
@@ -283,23 +299,20 @@ fn none_of(p: f32) -> f32 {
 
 // The air so high above the ground at `p`, as the box covers the world; twin of `Tiles::taps` in shared/src/wind/tiling.rs.
 fn air_at(p: vec2<f32>, above_m: f32) -> vec4<f32> {
-    let patch_m = frame.wind_box.w;
-    if patch_m <= none_of(p.x) {
-        return air_in_box(vec3<f32>(p.x, above_m, p.y));
-    }
+    let is_one_box = frame.wind_box.w <= none_of(p.x);
+    let patch_m = max(frame.wind_box.w, 1.0);
     let cells = textureDimensions(winds).xz;
     let spacing_m = frame.wind_box.xz / vec2<f32>(cells);
     let at = p / patch_m - 0.5;
     let low = floor(at);
     let far = clamp((at - low - 0.5) * patch_m / spacing_m + 0.5, vec2<f32>(0.0), vec2<f32>(1.0));
     var air = vec4<f32>(0.0);
-    for (var i = 0; i < 4; i++) {
+    for (var i = 0; i < select(4, 1, is_one_box); i++) {
         let corner = vec2<i32>(i & 1, i >> 1u);
         let shares = select(1.0 - far, far, corner == vec2<i32>(1));
-        if shares.x * shares.y > 0.0 {
-            let moved = p + vec2<f32>(offset_cells(vec2<i32>(low) + corner, cells)) * spacing_m;
-            air += air_in_box(vec3<f32>(moved.x, above_m, moved.y)) * (shares.x * shares.y);
-        }
+        let moved = vec2<f32>(offset_cells(vec2<i32>(low) + corner, cells)) * spacing_m;
+        let at = p + select(moved, vec2<f32>(0.0), is_one_box);
+        air += air_in_box(vec3<f32>(at.x, above_m, at.y)) * select(shares.x * shares.y, 1.0, is_one_box);
     }
     return air;
 }
@@ -370,11 +383,16 @@ fn trailing_lean(p: vec2<f32>, level: f32, now: vec3<f32>, kind: Kind, secs: f32
     if secs <= 0.0 {
         return lean;
     }
-    let then = earlier_lean(p, level, now, kind, secs);
-    if dot(then, then) <= dot(lean, lean) {
-        return then;
+    var then = lean;
+    var back_secs = secs;
+    for (var i = 0; i < 2; i++) {
+        then = earlier_lean(p, level, now, kind, back_secs);
+        if dot(then, then) <= dot(lean, lean) {
+            break;
+        }
+        back_secs = secs * kind.lag.w;
     }
-    return earlier_lean(p, level, now, kind, secs * kind.lag.w);
+    return then;
 }
 
 // How much of the streamed field is shown at a place: none where the atlas ends.
@@ -415,12 +433,20 @@ fn plant_color(root_rgb: vec3<f32>, tip_rgb: vec3<f32>, up: f32, hue: f32) -> ve
     return mix(root_rgb, tip_rgb, up * 0.85 + up * up * 0.15) * own;
 }
 
-// Drift of colour over the land: lush, dry and reddish places, as a factor on the grass's colours.
-fn grass_tint(p: vec2<f32>) -> vec3<f32> {
+// Drift of colour over the land: how lush, and how dry and reddish a place is.
+fn drift_at(p: vec2<f32>) -> vec2<f32> {
     let broad = noise(p / 97.0).r;
     let middle = noise(p / 31.0).a;
     let fine = noise(p / 6.3).g;
-    let dry = smoothstep(0.40, 0.72, broad * 0.5 + middle * 0.35 + fine * 0.15);
-    let lush = mix(vec3<f32>(0.66, 0.84, 0.72), vec3<f32>(0.84, 0.93, 0.84), fine);
-    return mix(lush, vec3<f32>(1.28, 1.04, 1.12), dry * 0.85);
+    return vec2<f32>(fine, smoothstep(0.40, 0.72, broad * 0.5 + middle * 0.35 + fine * 0.15));
+}
+
+// The same as a factor on the grass's colours.
+fn tint_of(drift: vec2<f32>) -> vec3<f32> {
+    let lush = mix(vec3<f32>(0.66, 0.84, 0.72), vec3<f32>(0.84, 0.93, 0.84), drift.x);
+    return mix(lush, vec3<f32>(1.28, 1.04, 1.12), drift.y * 0.85);
+}
+
+fn grass_tint(p: vec2<f32>) -> vec3<f32> {
+    return tint_of(drift_at(p));
 }

@@ -95,7 +95,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let diffuse = clamp((facing + 0.3) / 1.3, 0.0, 1.0);
     let through = 0.35 * max(dot(view, frame.sun.xyz), 0.0) * clamp(0.5 - facing, 0.0, 1.0);
     let color = albedo * (frame.sun_color.rgb * light * (diffuse + through) * 0.85 + ambient(normal) + lamps_on(p, normal, 0.3));
-    out.color = hazed(color, p);
+    out.color = color * stem.air.a + stem.air.rgb;
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
     return out;
 }

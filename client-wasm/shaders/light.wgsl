@@ -75,8 +75,9 @@ fn thinned_depth(low: f32, rise: f32) -> f32 {
     return even * (1.0 - exp(-clamp(rise, -20.0, 60.0))) / rise;
 }
 
-// A colour seen through the air: haze that shows the sky behind it, warm and bright about the sun, and mist on low land, lit by all there is.
-fn hazed(color: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
+// What the air before a place adds to its colour, and the share of that which it lets through: haze that shows the sky behind it, warm and bright about the sun,
+// and mist on low land, lit by all there is.
+fn air_before(p: vec3<f32>) -> vec4<f32> {
     let to = p - frame.eye.xyz;
     let distance_m = length(to);
     let direction = to / max(distance_m, 1e-3);
@@ -86,14 +87,18 @@ fn hazed(color: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
     // When the sun has set, its glow is high up: the air between is lit by the whole sky.
     let around = frame.lights.mean.rgb + frame.lights.up.rgb * 0.6;
     let air = mix(around, behind, 0.3 + 0.7 * smoothstep(-0.04, 0.10, frame.sun.y));
-    let clear = mix(color, air * 0.93, 1.0 - exp(-depth));
-    let mist = 1.0 - exp(-distance_m * frame.lights.mist.x * thinned_depth(above_m / frame.lights.mist.y, to.y / frame.lights.mist.y));
-    if mist <= 0.0 {
-        return clear;
-    }
+    let through = exp(-depth);
+    let mist = exp(-distance_m * frame.lights.mist.x * thinned_depth(above_m / frame.lights.mist.y, to.y / frame.lights.mist.y));
     let ahead = max(dot(direction, frame.sun.xyz), 0.0);
-    let lit = (frame.lights.mean.rgb + frame.lights.up.rgb * 0.5) * 0.95 + frame.sun_color.rgb * (0.10 + 0.45 * pow(ahead, 6.0));
-    return mix(clear, lit, mist);
+    let ahead2 = ahead * ahead;
+    let lit = (frame.lights.mean.rgb + frame.lights.up.rgb * 0.5) * 0.95 + frame.sun_color.rgb * (0.10 + 0.45 * ahead2 * ahead2 * ahead2);
+    return vec4<f32>(mix(lit, air * (0.93 * (1.0 - through)), mist), through * mist);
+}
+
+// A colour seen through the air.
+fn hazed(color: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
+    let air = air_before(p);
+    return color * air.a + air.rgb;
 }
 
 // Height over which haze is 1/e as dense (m).
@@ -152,21 +157,27 @@ fn sun_visible(p: vec3<f32>) -> f32 {
     let angle = random3(vec2<i32>(floor(p.xz * 97.0)), bitcast<u32>(i32(floor(p.y * 97.0)))).x * TAU;
     let turn = vec2<f32>(cos(angle), sin(angle));
     let near = (frame.shadow_from_world * vec4<f32>(p, 1.0)).xyz;
-    let off = max(max(abs(near.x), abs(near.y)), abs(near.z * 2.0 - 1.0));
-    var light = 1.0;
-    if off < 0.98 {
-        light = soft_shadow(vec3<f32>(near.xy * vec2<f32>(0.5, -0.5) + 0.5, near.z), 0, frame.lights.shadow.y, frame.lights.shadow.x, turn);
-    }
-    if off < 0.88 || textureNumLayers(shadows) < 2u {
-        return light;
-    }
     let far = (frame.lights.far_shadow_from_world * vec4<f32>(p, 1.0)).xyz;
-    let far_off = max(max(abs(far.x), abs(far.y)), abs(far.z * 2.0 - 1.0));
-    if far_off >= 0.98 {
-        return light;
+    let off = border_of(near);
+    let far_off = border_of(far);
+    // Most places are in one layer alone.
+    let first = select(0, 1, off >= 0.98);
+    let last = select(1, 2, off >= 0.88 && far_off < 0.98 && textureNumLayers(shadows) > 1u);
+    var light = 1.0;
+    for (var layer = first; layer < last; layer++) {
+        let is_far = layer == 1;
+        let place = select(near, far, is_far);
+        let sizes_m = select(frame.lights.shadow.xy, frame.lights.shadow.zw, is_far);
+        let seen = soft_shadow(vec3<f32>(place.xy * vec2<f32>(0.5, -0.5) + 0.5, place.z), layer, sizes_m.y, sizes_m.x, turn);
+        let share = select(1.0, smoothstep(0.88, 0.98, off) * (1.0 - smoothstep(0.85, 0.98, far_off)), is_far);
+        light = mix(light, seen, share);
     }
-    let coarse = soft_shadow(vec3<f32>(far.xy * vec2<f32>(0.5, -0.5) + 0.5, far.z), 1, frame.lights.shadow.w, frame.lights.shadow.z, turn);
-    return mix(mix(light, coarse, smoothstep(0.88, 0.98, off)), 1.0, smoothstep(0.85, 0.98, far_off));
+    return light;
+}
+
+// How near a place on the shadow map is to its border: 1 there.
+fn border_of(place: vec3<f32>) -> f32 {
+    return max(max(abs(place.x), abs(place.y)), abs(place.z * 2.0 - 1.0));
 }
 
 // --- lamps ------------------------------------------------------------------------------------------------------------

@@ -48,14 +48,15 @@ fn vs(@builtin(vertex_index) index: u32) -> Streak {
     let rim = 1.0 - smoothstep(0.35, 0.5, max(abs(to.x), abs(to.z)) / side);
     let thin = HALF_WIDTH_M / half_width;
     let is_above = select(0.0, 1.0, centre.y > ground_height(centre.xz));
-    out.opacity = shower.shape.w * (0.25 + 0.75 * thin) * rim * is_above * smoothstep(0.2, 0.8, distance_m);
-    out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
+    out.opacity = shower.shape.w * (0.25 + 0.75 * thin) * rim * is_above * smoothstep(0.5, 1.0, distance_m);
+    out.position = select(vec4<f32>(0.0, 0.0, 0.0, 1.0), frame.projection_from_world * vec4<f32>(p, 1.0), out.opacity > 0.0);
     return out;
 }
 
 @fragment
 fn fs(streak: Streak) -> @location(0) vec4<f32> {
-    let opacity = streak.opacity * (1.0 - streak.across * streak.across);
+    // Not the number that it should be beside the border of a streak, where only some samples of a pixel are in it.
+    let opacity = streak.opacity * max(1.0 - streak.across * streak.across, 0.0);
     let light = ambient(vec3<f32>(0.0, 1.0, 0.0)) * 1.3;
     return vec4<f32>(light * opacity, opacity);
 }

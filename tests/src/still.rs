@@ -63,12 +63,13 @@ impl Still {
         self.draw_finely(gpu, Quality::Reference)
     }
 
-    /// The moment drawn at twice the size, pixels averaged in linear light. Between two such pictures nothing differs but their detail.
+    /// The moment drawn at twice the size, or by a quality that does so itself, pixels averaged in linear light. Between two such pictures nothing differs but their detail.
     pub fn draw_finely(&mut self, gpu: &Gpu, quality: Quality) -> Picture {
-        let size_px = self.size_px.map(|side| side * SUPERSAMPLED);
+        let finer = SUPERSAMPLED / quality.fineness(self.size_px, gpu.side_limit_px());
+        let size_px = self.size_px.map(|side| side * finer);
         let mut canvas = Canvas::new(gpu, size_px, quality);
         canvas.set_look(Look { order: Order::Cut, ..Look::default() });
-        averaged(&self.draw_sized(&mut canvas, size_px).0, SUPERSAMPLED)
+        averaged(&self.draw_sized(&mut canvas, size_px).0, finer)
     }
 
     /// The reference as a file keeps it; drawn anew where there is none, or one from before this program was built.

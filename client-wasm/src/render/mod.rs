@@ -83,7 +83,7 @@ const SEVERAL_REACHES: f32 = 1.6;
 /// What a frame drew.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStats {
-    /// Near plants whose posture was simulated.
+    /// Near plants, of which those in view were moved.
     pub blades: u32,
     /// Clumps of far plants.
     pub clumps: u32,
@@ -156,6 +156,9 @@ impl SceneParts {
 
 /// The pictures that the passes draw to.
 struct Targets {
+    size_px: [u32; 2],
+    /// Their pixels along either side of one that is shown.
+    fineness: u32,
     color: wgpu::TextureView,
     /// Where the samples of `color` go, if it has more than one.
     resolved: Option<wgpu::TextureView>,
@@ -163,7 +166,11 @@ struct Targets {
 }
 
 impl Targets {
-    fn new(gpu: &Gpu, size_px: [u32; 2], samples: u32) -> Self {
+    /// For a picture that is shown at `shown_px`.
+    fn new(gpu: &Gpu, shown_px: [u32; 2], quality: Quality) -> Self {
+        let samples = quality.samples(gpu.is_software);
+        let fineness = quality.fineness(shown_px, gpu.side_limit_px());
+        let size_px = shown_px.map(|side_px| side_px * fineness);
         let texture = |label, format, samples| {
             let descriptor = wgpu::TextureDescriptor {
                 label: Some(label),
@@ -178,6 +185,8 @@ impl Targets {
             gpu.device.create_texture(&descriptor).create_view(&Default::default())
         };
         Self {
+            size_px,
+            fineness,
             color: texture("color", COLOR, samples),
             resolved: (samples > 1).then(|| texture("resolved color", COLOR, 1)),
             depth: texture("depth", DEPTH, samples),
@@ -197,9 +206,9 @@ impl Renderer {
         let daylight = Daylight::new(gpu);
         let frame = FrameGroup::new(gpu, quality, &daylight);
         let maker = Maker { gpu, frame_layout: &frame.layout, samples };
-        let targets = Targets::new(gpu, size_px, samples);
+        let targets = Targets::new(gpu, size_px, quality);
         Self {
-            tone: Tone::new(&maker, format, targets.picture()),
+            tone: Tone::new(&maker, format, targets.picture(), targets.fineness),
             sky: Sky::new(&maker),
             terrain: Terrain::new(&maker),
             billboards: Billboards::new(&maker),
@@ -219,8 +228,8 @@ impl Renderer {
     /// Changes the size of the target.
     pub fn resize(&mut self, size_px: [u32; 2]) {
         self.size_px = size_px.map(|side| side.max(1));
-        self.targets = Targets::new(&self.gpu, self.size_px, self.quality.samples(self.gpu.is_software));
-        self.tone.set_picture(&self.gpu, self.targets.picture());
+        self.targets = Targets::new(&self.gpu, self.size_px, self.quality);
+        self.tone.set_picture(&self.gpu, self.targets.picture(), self.targets.fineness);
         self.weighted = None;
     }
 
@@ -302,7 +311,7 @@ impl Renderer {
         let sun = self.look.sun.unwrap_or_else(|| land.scene().light.sun_at(mirror.time_secs()));
         self.daylight.follow(gpu, sun);
         let detail = self.detail.with(self.look.far);
-        let view = View::new(camera, self.size_px, self.quality, detail, time_secs, sun);
+        let view = View::new(camera, self.targets.size_px, self.quality, detail, time_secs, sun);
         let frame = view.frame(land, &scene.textures.atlas, &self.daylight, &poses);
         self.frame.write(gpu, &frame);
         let frustum = if self.look.culls { Frustum::new(&view.projection_from_world) } else { Frustum::ALL };
@@ -313,7 +322,7 @@ impl Renderer {
         scene.blades.set_order(&maker, order);
         self.billboards.set_order(&maker, order);
         if order == Order::Weighted && self.weighted.is_none() {
-            self.weighted = Some(Weighted::new(&maker, self.size_px));
+            self.weighted = Some(Weighted::new(&maker, self.targets.size_px));
         }
         let shells = match (land.scene().plants.cover, self.look.far) {
             (PlantCover::Shells, _) => Some(Extent::All),
@@ -432,7 +441,7 @@ impl Renderer {
             gpu.queue.submit([encoder.finish()]);
         }
         FrameStats {
-            blades: if has_blades { scene.blades.simulated() } else { 0 },
+            blades: if has_blades { scene.blades.standing() } else { 0 },
             clumps: clumps.map_or(0, Billboards::count),
             sheets: if shells.is_some() { scene.shells.sheets() } else { 0 },
             underbrush: scene.underbrush.as_ref().map_or(0, Underbrush::plants),

@@ -12,7 +12,7 @@ pub enum Quality {
     Medium,
     /// 100 thousand.
     High,
-    /// 230 thousand.
+    /// 230 thousand, four pixels for each that is shown.
     Ultra,
     /// Every plant at full detail as far as [`REFERENCE_M`], whatever it costs: what the others are measured against.
     Reference,
@@ -85,6 +85,15 @@ impl Quality {
         }
     }
 
+    /// Pixels that are drawn along either side of one that is shown, in a picture of this size, none of whose sides may be longer than a limit.
+    pub fn fineness(self, size_px: [u32; 2], limit_px: u32) -> u32 {
+        /// Most pixels that are drawn finely; more of them are fine enough, and these take 0.5 GB.
+        const MOST_PX: u64 = 10_000_000;
+        let finely_px = size_px.map(|side_px| 2 * u64::from(side_px));
+        let fits = finely_px.iter().all(|&side_px| side_px <= u64::from(limit_px)) && finely_px[0] * finely_px[1] <= MOST_PX;
+        if self == Self::Ultra && fits { 2 } else { 1 }
+    }
+
     /// Side of the shadow map (px).
     pub(super) fn shadow_px(self) -> u32 {
         match self {
@@ -137,5 +146,19 @@ impl Quality {
             Self::High => 192.0,
             Self::Ultra | Self::Reference => 256.0,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ultra_draws_finely_what_is_not_fine_yet() {
+        assert_eq!(Quality::Ultra.fineness([1920, 1080], 8192), 2);
+        assert_eq!(Quality::Ultra.fineness([3840, 2160], 8192), 1);
+        assert_eq!(Quality::Ultra.fineness([1920, 1080], 2048), 1);
+        assert_eq!(Quality::Ultra.fineness([u32::MAX; 2], u32::MAX), 1);
+        assert_eq!(Quality::High.fineness([640, 360], 8192), 1);
     }
 }

@@ -3,12 +3,13 @@
 /// Shared bindings, the frame's uniform block, and what several passes compute.
 const COMMON: &str = include_str!("../../shaders/common.wgsl");
 
-/// Compute passes that bend single plants.
+/// Compute passes that list single plants and bend them.
 pub(super) const BEND: &str = concat!(
     include_str!("../../shaders/blade.wgsl"),
     include_str!("../../shaders/backbone.wgsl"),
     include_str!("../../shaders/sward.wgsl"),
-    include_str!("../../shaders/bend.wgsl")
+    include_str!("../../shaders/bend.wgsl"),
+    include_str!("../../shaders/sift.wgsl")
 );
 /// Compute pass that lists grass grids.
 pub(super) const GRIDS: &str = include_str!("../../shaders/grids.wgsl");

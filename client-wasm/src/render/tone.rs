@@ -15,13 +15,15 @@ pub(super) struct Tone {
 }
 
 impl Tone {
-    pub(super) fn new(maker: &Maker<'_>, target: wgpu::TextureFormat, picture: &wgpu::TextureView) -> Self {
+    /// `fineness` pixels of the picture along either side of one of the target.
+    pub(super) fn new(maker: &Maker<'_>, target: wgpu::TextureFormat, picture: &wgpu::TextureView, fineness: u32) -> Self {
         let device = &maker.gpu.device;
         let module = maker.gpu.shader("tone", shaders::TONE);
         let layout = maker.layout("tone", &[texture(0), uniform(1)]);
         let encodes = if target.is_srgb() { 1.0 } else { 0.0_f32 };
-        let contents: [f32; 4] = [encodes, EXPOSURE, 0.0, 0.0];
-        let settings = maker.gpu.buffer("tone", bytemuck::bytes_of(&contents), wgpu::BufferUsages::UNIFORM);
+        let contents: [f32; 4] = [encodes, EXPOSURE, fineness as f32, 0.0];
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let settings = maker.gpu.buffer("tone", bytemuck::bytes_of(&contents), usage);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("tone"),
             bind_group_layouts: &[Some(maker.frame_layout), Some(&layout)],
@@ -47,7 +49,8 @@ impl Tone {
         Self { pipeline, layout, settings, group }
     }
 
-    pub(super) fn set_picture(&mut self, gpu: &Gpu, picture: &wgpu::TextureView) {
+    pub(super) fn set_picture(&mut self, gpu: &Gpu, picture: &wgpu::TextureView, fineness: u32) {
+        gpu.queue.write_buffer(&self.settings, 8, bytemuck::bytes_of(&(fineness as f32)));
         self.group = group(gpu, &self.layout, picture, &self.settings);
     }
 

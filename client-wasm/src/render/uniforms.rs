@@ -158,7 +158,7 @@ uniform_block! {
         /// Places for plants in a near grid; plants there at this level of detail; 1 to leave out what is not seen; 1 where blades narrower than a pixel are
         /// drawn as wide as they are.
         counts: [u32; 4],
-        /// Capacities of the lists of fine blades, of all others, and of flowers.
+        /// Capacities of the lists of fine blades, of all others, and of flowers; number of the frame.
         capacities: [u32; 4],
         /// Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), damping share of a blade.
         shape: [f32; 4],
@@ -167,6 +167,8 @@ uniform_block! {
         /// Length of a step (s); lot of the first plant of a grid to be a flower, and the power with which that falls; least width that a blade is
         /// drawn with (px).
         time: [f32; 4],
+        /// Most that a plant reaches beyond its place (m); unused.
+        reach: [f32; 4],
     }
 }
 

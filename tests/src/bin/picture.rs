@@ -3,7 +3,7 @@
 use anyhow::{Context as _, Result};
 use clap::Parser;
 use client_wasm::camera::Camera;
-use client_wasm::render::{Far, Gpu, Look, Order, Quality, Sun};
+use client_wasm::render::{Far, Gpu, Look, Order, Quality, Split, Sun, Way};
 use std::path::PathBuf;
 use std::time::Instant;
 use tests::picture::Picture;
@@ -37,6 +37,9 @@ struct Arguments {
     /// What stands for far plants: land, clumps or shells
     #[arg(long, default_value = "land")]
     far: String,
+    /// Draw two ways side by side: names of orders, of what stands for far plants, or of qualities, such as low,high or cut,sorted
+    #[arg(long, value_name = "LEFT,RIGHT")]
+    compare: Option<String>,
     /// Hour of the day (0 to 24) by which the sun stands, instead of the scene's own
     #[arg(long)]
     hour: Option<f32>,
@@ -73,11 +76,18 @@ fn main() -> Result<()> {
         camera = chase(&pose, [away, above, aside], |x, z| stage.ground_m(x, z));
     }
 
-    let gpu = Gpu::headless()?;
-    let mut picture = client_wasm::render::Picture::new(&gpu, size_px, quality);
     let placed = arguments.sun.as_deref().map(sun_at).transpose()?;
     let sun = placed.or(arguments.hour.map(|hour| light.sun_at_hour(hour)));
-    picture.set_look(Look { order, far, sun, ..Look::default() });
+    let way = Way { look: Look { order, far, sun, ..Look::default() }, level: quality.level() };
+    let split = arguments.compare.as_deref().map(|names| compared(way, names)).transpose()?;
+    let finest = |split: &Split| {
+        let level = split.ways.iter().fold(quality.level(), |level, way| level.max(way.level));
+        Quality::ALL.into_iter().find(|quality| quality.level() >= level).unwrap_or(quality)
+    };
+
+    let gpu = Gpu::headless()?;
+    let mut picture = client_wasm::render::Picture::new(&gpu, size_px, split.as_ref().map_or(quality, finest));
+    picture.set_look(way.look);
     const DT_SECS: f32 = 1.0 / 30.0;
     let mut stats = Default::default();
     let mut drawing_secs = 0.0;
@@ -85,12 +95,24 @@ fn main() -> Result<()> {
         stage.run(DT_SECS);
         stage.show()?;
         let start = Instant::now();
-        stats = picture.draw(&mut stage.mirror, &camera, f64::from(frame) * f64::from(DT_SECS), DT_SECS);
+        let time_secs = f64::from(frame) * f64::from(DT_SECS);
+        stats = match &split {
+            Some(split) => picture.draw_split(&mut stage.mirror, &camera, time_secs, DT_SECS, split),
+            None => picture.draw(&mut stage.mirror, &camera, time_secs, DT_SECS),
+        };
         drawing_secs += start.elapsed().as_secs_f64();
     }
     println!("{}: {:.1} ms a frame, {stats:?}", gpu.adapter_name, drawing_secs * 1e3 / f64::from(arguments.frames.max(1)));
     println!("camera {}", camera.to_hash());
     Picture { width: size_px[0], height: size_px[1], rgba: picture.rgba() }.save(&arguments.out)
+}
+
+/// Two ways side by side, each like `own` but for what its name changes.
+fn compared(own: Way, names: &str) -> Result<Split> {
+    let allowed = || format!("--compare: two of {} are allowed, with a comma between", Way::names().collect::<Vec<_>>().join(", "));
+    let (left, right) = names.split_once(',').with_context(allowed)?;
+    let way = |name: &str| own.with(name.trim()).with_context(allowed);
+    Ok(Split { ways: [way(left)?, way(right)?], at: 0.5 })
 }
 
 /// The sun at a heading and an elevation in degrees, with a comma between.

@@ -28,9 +28,10 @@ pub(super) struct Grids {
     chunks: wgpu::Buffer,
     workgroups: wgpu::Buffer,
     grid_m: f32,
-    /// How far plants reach beyond their grid (m).
-    beyond_m: f32,
-    capacity: u32,
+    /// How far plants reach beyond their places (m).
+    pub(super) beyond_m: f32,
+    /// Most chunks that are listed.
+    pub(super) capacity: u32,
     /// Grids that are listed in one turn.
     of_turn: u32,
     frame: Squares,

@@ -1,10 +1,11 @@
-//! Single plants: compute passes bend them and list those in view, indirect draws make strips of the blades and one makes the flower heads. Nine grids
-//! about the camera keep their plants' postures; those of the grids beyond stand as the wind of the moment would have them.
+//! Single plants: compute passes sift those that stand in view, bend and list them; indirect draws make strips of the blades and one makes the flower heads.
+//! Nine grids about the camera keep their plants' postures; those of the grids beyond stand as the wind of the moment would have them.
 
 mod grids;
 mod horizon;
 mod laid;
 mod order;
+mod sift;
 mod strips;
 
 use super::cull::Frustum;
@@ -21,6 +22,7 @@ use grids::Grids;
 pub(super) use grids::{grid_is_seen, square_is_seen};
 use laid::{Laid, Listed};
 use shared::scene::BLADE_STEPS_LIMIT;
+use sift::Sift;
 use std::f32::consts::{PI, TAU};
 use strips::{flower_indices, strip_indices};
 use wgpu::BufferUsages;
@@ -28,7 +30,7 @@ use wgpu::BufferUsages;
 /// Plants in one instance of an indirect draw; twin of the constants in `blades.wgsl` and `flowers.wgsl`.
 const CHUNK: u32 = 64;
 /// Bytes of a drawn blade and of its sway, as in `common.wgsl` and `blade.wgsl`.
-pub(super) const BLADE_BYTES: u64 = 80;
+pub(super) const BLADE_BYTES: u64 = 112;
 pub(super) const SWAY_BYTES: u64 = 48;
 /// Most plants of a near grid.
 const PLANTS_LIMIT: f32 = 60_000.0;
@@ -47,6 +49,7 @@ const SINGLE: usize = 2;
 const FLOWERS: usize = 3;
 
 pub(super) struct Blades {
+    sift: Sift,
     near: wgpu::ComputePipeline,
     far: wgpu::ComputePipeline,
     finish: wgpu::ComputePipeline,
@@ -64,9 +67,11 @@ pub(super) struct Blades {
     by_turns: bool,
     /// Places for plants in each near grid.
     places: u32,
-    /// Plants that this frame moves.
-    simulated: u32,
+    /// Near plants that may stand in this frame.
+    standing: u32,
     near_workgroups: u32,
+    /// Number of the newest frame, of those in which time passes; the first is the second, so that nothing has been moved right before it.
+    frame: u32,
     /// Most blades drawn fine, most of all others, and most flower heads.
     pub(super) capacities: [u32; 3],
     thinnest_px: f32,
@@ -102,6 +107,7 @@ impl Blades {
         let storage_usage = BufferUsages::STORAGE;
         let plants = gpu.empty_buffer("plants", size_of::<Plants>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let sways = gpu.empty_buffer("sways", u64::from(places) * 9 * SWAY_BYTES, storage_usage | BufferUsages::COPY_SRC);
+        let moved = gpu.empty_buffer("moved", u64::from(places) * 9 * 4, storage_usage);
         let drawn_count = capacities.iter().sum::<u32>();
         let drawn = gpu.empty_buffer("drawn plants", u64::from(drawn_count) * BLADE_BYTES, storage_usage | BufferUsages::COPY_SRC);
         let counters = gpu.empty_buffer("counters", 4 * LISTS as u64, storage_usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
@@ -110,9 +116,19 @@ impl Blades {
         let draws = gpu.buffer("plant draws", bytemuck::cast_slice(&draw_args), storage_usage | BufferUsages::INDIRECT);
 
         let bend = gpu.shader("bend", shaders::BEND);
-        let compute_layout =
-            maker.layout("bend", &[uniform(0), storage_rw(1), storage_rw(2), storage_rw(3), storage_compute(4), storage_rw(5)]);
-        let buffers = [&plants, &sways, &drawn, &counters, grids.chunks(), &draws];
+        let sift = Sift::new(maker, &bend, &plants, &grids, places);
+        let entries = [
+            uniform(0),
+            storage_rw(1),
+            storage_rw(2),
+            storage_rw(3),
+            storage_compute(4),
+            storage_rw(5),
+            storage_compute(6),
+            storage_rw(7),
+        ];
+        let compute_layout = maker.layout("bend", &entries);
+        let buffers = [&plants, &sways, &drawn, &counters, grids.chunks(), &draws, sift.standing(), &moved];
         let compute_group = bind(gpu, "bend", &compute_layout, &buffers.map(|buffer| buffer.as_entire_binding()));
 
         let list_layout = list_layout(maker);
@@ -136,6 +152,7 @@ impl Blades {
         let listed = Listed { blades: drawn, counters, shapes, capacities: [fine, others], segments, grid_m };
         let compute = |entry| maker.compute(entry, &bend, entry, &compute_layout);
         Self {
+            sift,
             near: compute("bend_near"),
             far: compute("bend_far"),
             finish: compute("finish"),
@@ -152,8 +169,9 @@ impl Blades {
             grids,
             by_turns: all > TURN_LIMIT,
             places,
-            simulated: 0,
+            standing: 0,
             near_workgroups: 0,
+            frame: 2,
             capacities,
             thinnest_px: quality.thinnest_px(),
             longest_step_secs: land.scene().blade_step_secs(),
@@ -173,9 +191,9 @@ impl Blades {
         self.by_turns
     }
 
-    /// Plants whose posture the newest frame has moved.
-    pub(super) fn simulated(&self) -> u32 {
-        self.simulated
+    /// Near plants of the newest frame, of which those in view are moved.
+    pub(super) fn standing(&self) -> u32 {
+        self.standing
     }
 
     pub(super) fn prepare(&mut self, gpu: &Gpu, land: &Land, from: &Standpoint<'_>) {
@@ -184,7 +202,8 @@ impl Blades {
         let home = [from.eye_m.x, from.eye_m.z].map(|m| (m / self.listed.grid_m).floor() as i32);
         let mut slots = [[0; 4]; 9];
         let mut most = 0;
-        self.simulated = 0;
+        self.standing = 0;
+        self.frame = self.frame.wrapping_add(u32::from(from.dt_secs > 0.0));
         for dz in -1..=1 {
             for dx in -1..=1 {
                 let grid = [home[0] + dx, home[1] + dz];
@@ -194,9 +213,8 @@ impl Blades {
                 let distance_m = from.eye_m.distance(from.eye_m.clamp(bounds[0], bounds[1]));
                 let is_seen = !from.look.culls || from.frustum.sees_box(bounds[0], bounds[1]);
                 let stands = if is_seen { (plants_of_grid as f32 * density(distance_m, detail.full_m)).ceil() as u32 } else { 0 };
-                // What is not moved for a while stands still when it comes into view again.
-                self.slots[slot] = (stands > 0).then_some(grid);
-                self.simulated += stands;
+                self.slots[slot] = Some(grid);
+                self.standing += stands;
                 most = most.max(stands);
                 slots[slot] = [grid[0], grid[1], i32::from(is_new), stands as i32];
             }
@@ -208,10 +226,11 @@ impl Blades {
         let plants = Plants {
             slots,
             counts: [self.places, plants_of_grid, u32::from(from.look.culls), u32::from(self.laid.order() != Order::Cut)],
-            capacities: [self.capacities[0], self.capacities[1], self.capacities[2], 0],
+            capacities: [self.capacities[0], self.capacities[1], self.capacities[2], self.frame],
             shape: [self.listed.grid_m, detail.full_m, detail.fine_m, looks.swing_damping],
             steps: [steps, looks.integrator as u32, self.listed.segments[0], self.listed.segments[1]],
             time: [step_secs, flower_lot(flowers, plants_of_grid), FLOWER_POWER, self.thinnest_px],
+            reach: [self.grids.beyond_m, 0.0, 0.0, 0.0],
         };
         gpu.queue.write_buffer(&self.plants, 0, bytemuck::bytes_of(&plants));
         if let Some(ordered) = self.laid.ordered() {
@@ -225,24 +244,29 @@ impl Blades {
         self.grids.turns()
     }
 
+    #[cfg(test)]
+    pub(super) fn standing_list(&self) -> &wgpu::Buffer {
+        self.sift.standing()
+    }
+
     /// Lists the plants of this turn from now on.
     pub(super) fn begin_turn(&mut self, gpu: &Gpu, turn: u32) {
         if turn > 0 {
             self.near_workgroups = 0;
         }
         gpu.queue.write_buffer(&self.listed.counters, 0, &[0; 4 * LISTS]);
+        self.sift.begin_turn(gpu);
         self.grids.begin_turn(gpu, turn);
     }
 
     pub(super) fn bend(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.grids.list(pass);
+        self.sift.run(pass, self.near_workgroups, self.grids.workgroups());
         pass.set_bind_group(1, &self.compute_group, &[]);
-        if self.near_workgroups > 0 {
-            pass.set_pipeline(&self.near);
-            pass.dispatch_workgroups(self.near_workgroups, 9, 1);
+        for (list, bend) in [&self.near, &self.far].into_iter().enumerate() {
+            pass.set_pipeline(bend);
+            pass.dispatch_workgroups_indirect(self.sift.workgroups(), 12 * list as u64);
         }
-        pass.set_pipeline(&self.far);
-        pass.dispatch_workgroups_indirect(self.grids.workgroups(), 0);
         pass.set_pipeline(&self.finish);
         pass.dispatch_workgroups(1, 1, 1);
         if let Some(ordered) = self.laid.ordered() {

@@ -1,0 +1,51 @@
+//! Which plants are bent: those that stand in view, and those that come back into it anew.
+
+use super::*;
+
+/// Rates of the near plants (rad/s, all links), 0 where none has stood.
+fn rates(gpu: &Gpu, picture: &Picture) -> Vec<f32> {
+    let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").blades.sways);
+    let sways: &[[[f32; 4]; LINKS]] = bytemuck::cast_slice(&bytes);
+    sways.iter().map(|links| links.iter().map(|[.., x, z]| x.hypot(*z)).sum()).collect()
+}
+
+#[test]
+fn what_comes_into_view_again_stands_still_and_what_stayed_goes_on() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut mirror = meadow(6.0);
+    let mut picture = Picture::new(&gpu, [64, 36], Quality::Low);
+    let ahead = Camera { eye_m: Vec3::new(32.0, 1.6, 32.0), pitch_rad: -0.4, ..Camera::default() };
+    let aside = Camera { heading_rad: 0.5, ..ahead };
+    for frame in 0..30 {
+        picture.draw(&mut mirror, &ahead, f64::from(frame) / 30.0, 1.0 / 30.0);
+    }
+    let moving = rates(&gpu, &picture);
+    // A look aside in which no time passes changes nothing; one of two frames does.
+    picture.draw(&mut mirror, &aside, 1.0, 0.0);
+    picture.draw(&mut mirror, &ahead, 1.0, 0.0);
+    let seen = |rates: &[f32]| moving.iter().zip(rates).filter(|(moving, _)| **moving > 1e-4).map(|(a, b)| [*a, *b]).collect::<Vec<_>>();
+    assert!(seen(&rates(&gpu, &picture)).iter().all(|[before, after]| before == after));
+    for _ in 0..2 {
+        picture.draw(&mut mirror, &aside, 1.0, 1.0 / 30.0);
+    }
+    picture.draw(&mut mirror, &ahead, 1.0, 0.0);
+    let back = seen(&rates(&gpu, &picture));
+    let anew = back.iter().filter(|[_, after]| *after == 0.0).count();
+    assert!(back.len() - anew > 200 && anew > 200, "{anew} of {} stand still", back.len());
+}
+
+#[test]
+fn plants_out_of_view_are_not_bent() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let camera = Camera { eye_m: Vec3::new(32.0, 1.6, 32.0), pitch_rad: -0.4, fov_rad: 0.6, ..Camera::default() };
+    let standing = |culls: bool| {
+        let mut picture = Picture::new(&gpu, [64, 36], Quality::Low);
+        picture.set_look(Look { culls, ..Look::default() });
+        picture.draw(&mut meadow(0.0), &camera, 0.0, 0.0);
+        let counts: Vec<u32> = bytemuck::pod_collect_to_vec(&read(&gpu, picture.renderer.scene.as_ref().expect("a scene").blades.standing_list()));
+        [counts[0], counts[1]]
+    };
+    let ([near, far], [every_near, every_far]) = (standing(true), standing(false));
+    assert!(near > 300 && far > 300, "{near} near and {far} others in view");
+    assert!(3 * near < every_near && 3 * far < every_far, "{near} of {every_near} near, {far} of {every_far} others");
+}
