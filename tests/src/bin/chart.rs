@@ -77,7 +77,7 @@ enum Model {
         #[arg(long, value_name = "DIR", default_value = CACHE)]
         cache: PathBuf,
         /// Width and height of the pictures (px)
-        #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "640x360", value_parser = size_px)]
+        #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "960x540", value_parser = size_px)]
         size: [u32; 2],
         /// low, medium, high or ultra
         #[arg(long, default_value = "high", value_parser = quality)]
