@@ -55,7 +55,7 @@ pub struct Plants {
     /// Side of a grass grid (m), the unit of level of detail (000 §3.1.2). Default 8, allowed 1..=64.
     pub grid_m: f32,
     /// Plants along one side of a grass grid, n of 000 Eq. (9): the levels of detail count with it, and near the camera so many blades stand at low quality,
-    /// 2, 3.3 and 5 times as many a side at the others, up to 60 000 plants a grid. Default 32, allowed 2..=256.
+    /// 2 times as many a side at medium, 5 times at high and ultra, up to 60 000 plants a grid. Default 32, allowed 2..=256.
     pub plants_per_side: u32,
     /// Mean height of a blade (m). Default 0.8, allowed 0.02..=5.
     pub height_m: f32,
