@@ -51,6 +51,7 @@ pub(super) fn first_view(scene: &Scene, heights: &HeightMap) -> RecordingStreamR
         ("Kinetic energy of the wind (J/kg)", "health/wind/energy"),
         ("Energy of the bend field", "health/bend/energy"),
         ("Awake patches", "health/bend/awake_patches"),
+        ("Laid tiles, broken plants", "health/bend/laid_tiles health/bend/broken_plants"),
         ("Sub-steps, Courant number", "health/steps/**"),
         ("Clients, objects", "health/net/**"),
         ("Lost: log frames, patches, winds", "health/lost/**"),
@@ -60,7 +61,7 @@ pub(super) fn first_view(scene: &Scene, heights: &HeightMap) -> RecordingStreamR
     for (name, entities) in plots {
         let contents: Vec<String> = entities.split(' ').map(|entity| format!("+ /{entity}")).collect();
         let contents: Vec<&str> = contents.iter().map(String::as_str).collect();
-        let several = entities.contains('*');
+        let several = entities.contains(['*', ' ']);
         let legend = PlotLegend::new().with_corner(Corner2D::LeftTop).with_visible(several);
         plot_views.push(layout.view("TimeSeries", name, "health", &contents, &[("PlotLegend", &legend)])?);
     }
