@@ -110,13 +110,11 @@ export class Panel {
       this.client.set_quality(target.value);
       this.remember("quality", target.value);
       keep({ quality: target.value });
-      byId("view").focus();
     });
     for (const id of ["order", "far"]) {
       byId(id).addEventListener("change", ({ target }) => {
         this.client.set_look(byId("order").value, byId("far").value);
         keep({ [id]: target.value });
-        byId("view").focus();
       });
     }
     byId("hour").addEventListener("input", ({ target }) => {
@@ -142,14 +140,27 @@ export class Panel {
       for (const end of ["pointerup", "pointercancel", "pointerleave"]) button.addEventListener(end, () => this.client.hold_rise(0));
     }
     addEventListener("keydown", (event) => this.key(event));
+    this.giveKeysBack();
+  }
+
+  // What a pointer does in the panel gives the keys back to the prairie; whoever walks the panel by keyboard stays in it.
+  giveKeysBack() {
+    const panel = byId("panel");
+    let byPointer = false;
+    panel.addEventListener("pointerdown", () => { byPointer = true });
+    panel.addEventListener("keydown", () => { byPointer = false });
+    panel.addEventListener("click", ({ detail, target }) => {
+      if (detail > 0 && target.closest("button:not(#ask), summary, [type=range]")) byId("view").focus();
+    });
+    panel.addEventListener("change", ({ target }) => {
+      if (byPointer && target.matches("select, [type=range]")) byId("view").focus();
+    });
   }
 
   pressed(event, key, act) {
     const button = event.target.closest("button");
     if (!button) return;
     act(button.dataset[key]);
-    // A click gives the keys back to the prairie; whoever walks the panel by keyboard stays in it.
-    if (event.detail > 0) byId("view").focus();
     if (matchMedia("(max-width: 640px)").matches) this.show(false);
   }
 
