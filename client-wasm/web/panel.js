@@ -85,7 +85,7 @@ export class Panel {
   clock(hour) {
     const text = () => `${Math.floor(hour)}:${String(Math.round((hour % 1) * 60)).padStart(2, "0")}`;
     byId("clock").textContent = hour === null ? "as in the scene" : text();
-    byId("clock").title = hour === null ? "" : "Double-click: as in the scene";
+    byId("scene-hour").disabled = hour === null;
   }
 
   toggle(shown = byId("panel").hidden) {
@@ -122,10 +122,12 @@ export class Panel {
       this.clock(Number(target.value));
       keep({ hour: target.value });
     });
-    byId("clock").addEventListener("dblclick", () => {
+    byId("scene-hour").addEventListener("click", ({ detail }) => {
       this.client.set_hour(-1);
       this.clock(null);
       keep({ hour: null });
+      // Out of use, the button keeps no focus: whoever came by keyboard goes on at the slider.
+      byId(detail > 0 ? "view" : "hour").focus();
     });
     byId("shoot").addEventListener("click", () => this.capture.picture());
     byId("film").addEventListener("click", () => this.capture.film());
