@@ -76,7 +76,7 @@ const MESSAGES = {
   "device-lost": {
     tone: "stop",
     title: "The graphics device is gone",
-    text: "It was lost several times within a minute: the driver was reset, or the browser took it away.",
+    text: "It was lost four times, each within two minutes of the one before: the driver was reset, or the browser took it away.",
     button: RELOAD,
   },
   failed: { tone: "stop", title: "The client stopped", text: "It cannot go on; the line below says why.", button: RELOAD },

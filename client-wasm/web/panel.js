@@ -186,7 +186,7 @@ export class Panel {
     if (state.eye && ask("scene") !== state.scene_name) keep({ scene: state.scene_name });
     for (const id of ["order", "far"]) if (document.activeElement !== byId(id)) byId(id).value = state[id];
     write("work", state.cpu_ms === null ? "–" : `CPU ${state.cpu_ms.toFixed(1)} · GPU ${state.gpu_ms.toFixed(1)} ms`);
-    write("detail", state.automatic ? `${state.level.toFixed(1)} of 3 · ${state.budget_ms.toFixed(0)} ms` : state.quality);
+    write("detail", state.automatic ? `level ${state.level.toFixed(1)} of 3, aim ${state.budget_ms.toFixed(0)} ms` : state.quality);
     byId("fallback").hidden = !state.fallbacks.length;
     write("fallback", state.fallbacks.join(" "));
     write("frame", state.resting ? "at rest" : state.frame_ms ? `${state.frame_ms.toFixed(state.frame_ms < 100 ? 1 : 0)} ms · ${state.fps.toFixed(state.fps < 10 ? 1 : 0)}/s` : "–");

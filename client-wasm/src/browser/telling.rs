@@ -32,7 +32,8 @@ impl App {
         if let Some((linked, running)) = self.other_scene().filter(|_| self.connection.client().is_some()) {
             let linked: String = linked.chars().take(64).collect();
             let what = format!("The link names the scene {linked}; this server runs {running}.");
-            return words("other-scene", &format!("{what} To see the link, start the server with: prairie serve --scene {linked}"));
+            let how = format!("To see the link, start the server with that scene, or its file: prairie serve --scene {linked}");
+            return words("other-scene", &format!("{what} {how}"));
         }
         match self.connection.standing() {
             Standing::Over(Close::Version) => return words("version", ""),
