@@ -51,6 +51,8 @@ const HEAD_RADIUS_M: f32 = 0.04;
 
 // Height in the picture below which a blade is one segment (px).
 const SINGLE_PX: f32 = 12.0;
+// Share by which that, and the distance up to which a blade is fine, differ from one to another, up or down; twin of the constant in `blades/mod.rs`.
+const FINE_SPREAD: f32 = 0.15;
 
 // How high petals stand over the blade in whose place they are, and how much that varies (000 section 3.3).
 const PETALS_SHARE: f32 = 0.65;
@@ -78,7 +80,8 @@ struct Plant {
 fn plant_place(grid: vec2<i32>, index: u32) -> vec2<f32> {
     let start = random3(grid, 0u).xy;
     let jitter = random3(grid, index + 101u).xy - 0.5;
-    let share = fract(start + vec2<f32>(f32(index) * 0.7548776662, f32(index) * 0.5698402910));
+    let along = vec2<u32>(index * 3242174889u, index * 2447445414u);
+    let share = fract(start + vec2<f32>(along >> vec2<u32>(8u)) / 16777216.0);
     return (vec2<f32>(grid) + share) * plants.shape.x + jitter * 0.12;
 }
 
@@ -210,7 +213,8 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
         return;
     }
     let length_m = plant.height * grown;
-    let list = select(select(COARSE, SINGLE, length_m < SINGLE_PX * pixel_m), FINE, distance_m < plants.shape.z);
+    let own = 1.0 + FINE_SPREAD * (2.0 * fract(plant.hue * 97.0) - 1.0);
+    let list = select(select(COARSE, SINGLE, length_m < SINGLE_PX * own * pixel_m), FINE, distance_m < plants.shape.z * own);
     let segments = select(select(1u, plants.steps.w, list == COARSE), plants.steps.z, list == FINE);
     let along = drawn_out(points, length_m, segments);
     var blade: Blade;

@@ -92,6 +92,11 @@ fn noise(uv: vec2<f32>) -> vec4<f32> {
     return textureSampleLevel(noises, repeated, uv, 0.0);
 }
 
+// The same no finer than what a pixel spans of it.
+fn noise_over(uv: vec2<f32>, span: f32) -> vec4<f32> {
+    return textureSampleLevel(noises, repeated, uv, max(log2(span * f32(textureDimensions(noises).x)), 0.0));
+}
+
 // --- land -----------------------------------------------------------------------------------------------------------
 
 fn metres_outside(p: vec2<f32>) -> f32 {
@@ -142,9 +147,17 @@ fn ground_normal(p: vec2<f32>) -> vec3<f32> {
     return normalize(textureSampleLevel(normals, clamped, uv, 0.0).xyz);
 }
 
-// Share of grass at a place: 0 on bare ground, stones and at trunks, with a ragged border.
+// Share of grass at a place as the map has it, blurred: 0 on bare ground, stones and at trunks.
+fn soft_share(p: vec2<f32>) -> f32 {
+    return textureSampleLevel(cover, clamped, p / frame.world.xy, 0.0).r;
+}
+
+// The same with a ragged border.
 fn grass_share(p: vec2<f32>) -> f32 {
-    let soft = textureSampleLevel(cover, clamped, p / frame.world.xy, 0.0).r;
+    return ragged_share(p, soft_share(p));
+}
+
+fn ragged_share(p: vec2<f32>, soft: f32) -> f32 {
     if soft <= 0.0 || soft >= 1.0 {
         return soft;
     }
@@ -152,10 +165,11 @@ fn grass_share(p: vec2<f32>) -> f32 {
     return smoothstep(0.35, 0.65, soft + ragged * (1.0 - abs(2.0 * soft - 1.0)));
 }
 
-// Height of grass over that of its kind, 1 on the average: by the nutrients that underbrush leaves in the soil, and from one part of the meadow to the next.
+// Height of grass over that of its kind, 1 on the average: by the nutrients that underbrush leaves in the soil, and from one part of the meadow to the next;
+// low where it borders on bare ground.
 fn fed(p: vec2<f32>) -> f32 {
-    let nutrients = textureSampleLevel(cover, clamped, p / frame.world.xy, 0.0).g;
-    return mix(0.78, 1.22, nutrients) * mix(0.74, 1.20, noise(p / 14.0).a);
+    let covered = textureSampleLevel(cover, clamped, p / frame.world.xy, 0.0);
+    return mix(0.78, 1.22, covered.g) * mix(0.74, 1.20, noise(p / 14.0).a) * mix(0.35, 1.0, smoothstep(0.35, 0.85, covered.r));
 }
 
 // --- kinds of grass ---------------------------------------------------------------------------------------------------

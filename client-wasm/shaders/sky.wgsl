@@ -26,7 +26,7 @@ fn cloud_density(at: vec2<f32>) -> f32 {
     n += noise(at / 1700.0 + 0.37).a * 0.27;
     n += noise(at / 610.0).g * 0.12;
     n += noise(at / 190.0).r * 0.06;
-    return smoothstep(0.56 - 0.08 * frame.clouds.z, 0.80, n);
+    return smoothstep(0.52, 0.80, n);
 }
 
 // The disc, darker towards its limb (u = 0.6, as of the sun in green light).

@@ -37,12 +37,29 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     return out;
 }
 
-// Soil and litter under the plants.
-fn soil_at(p: vec2<f32>) -> vec3<f32> {
-    let grain = noise(p / 1.3);
+struct Soil {
+    albedo: vec3<f32>,
+    // Slope of its crumbs, X and Z.
+    slope: vec2<f32>,
+}
+
+// Bare soil where a pixel spans so much of it (m): crumbs, stones and dry litter.
+fn soil_at(p: vec2<f32>, span_m: f32) -> Soil {
     let coarse = noise(p / 5.1);
+    let grain = noise_over(vec2<f32>(0.8 * p.x + 0.6 * p.y, 0.8 * p.y - 0.6 * p.x) / 1.3, span_m / 1.3);
+    let crumbs = noise_over(p / 0.47, span_m / 0.47);
     let soil = mix(vec3<f32>(0.060, 0.042, 0.026), vec3<f32>(0.155, 0.118, 0.075), grain.r * 0.6 + coarse.g * 0.5);
-    return mix(soil, vec3<f32>(0.16, 0.15, 0.055), smoothstep(0.45, 0.75, grain.a) * 0.55);
+    let strewn = mix(soil, vec3<f32>(0.16, 0.15, 0.055), smoothstep(0.45, 0.75, grain.a) * 0.55);
+    let pebbles = smoothstep(0.70, 0.80, crumbs.g) * smoothstep(0.35, 0.60, coarse.a);
+    let albedo = mix(strewn * (0.55 + 0.9 * crumbs.b), vec3<f32>(0.23, 0.21, 0.18) * (0.6 + 0.6 * crumbs.r), pebbles * 0.7);
+    return Soil(albedo, 0.9 * (crumbs.rb - 0.5) + 0.5 * (grain.gb - 0.5));
+}
+
+// Mottle of grass seen from afar where a pixel spans so much of it (m): two patterns, turned to each other, so that neither is seen to repeat.
+fn mottle_at(p: vec2<f32>, span_m: f32) -> f32 {
+    let fine = noise_over(p / 2.9, span_m / 2.9).g;
+    let broad = noise_over(vec2<f32>(0.6 * p.x - 0.8 * p.y, 0.6 * p.y + 0.8 * p.x) / 11.3, span_m / 11.3).b;
+    return 1.05 + 0.22 * (fine - 0.5) + 0.22 * (broad - 0.5);
 }
 
 // Dead leaves between the roots, crosswise, which only an eye close to them tells apart.
@@ -60,19 +77,25 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let distance_m = length(to);
     let view = to / distance_m;
     let normal = ground_normal(p);
-    let share = grass_share(p);
+    let soft = soft_share(p);
+    let share = ragged_share(p, soft);
+    let span_m = distance_m * frame.screen.z * inverseSqrt(max(-dot(view, normal), 0.05));
     let sun_light = ground.air.z * sun_visible(ground.p + normal * 0.05);
     var color = vec3<f32>(0.0);
     if share < 1.0 {
-        let direct = frame.sun_color.rgb * (sun_light * max(dot(normal, frame.sun.xyz), 0.0));
-        color = soil_at(p) * (direct + ambient(normal) + lamps_on(ground.p, normal, 0.0)) * (1.0 - share);
+        let soil = soil_at(p, span_m);
+        let rough = normalize(normal + vec3<f32>(soil.slope.x, 0.0, soil.slope.y));
+        let direct = frame.sun_color.rgb * (sun_light * max(dot(rough, frame.sun.xyz), 0.0));
+        // The grass beside it takes some of its sky.
+        let open = 1.0 - 0.5 * smoothstep(0.0, 0.5, soft);
+        color = soil.albedo * (direct + ambient(rough) * open + lamps_on(ground.p, rough, 0.0)) * (1.0 - share);
     }
     if share > 0.0 {
         // The grass as seen from afar, leaning as the blades do, where no blades hide the ground; between them it is dark.
         let kind = kinds_blended(p);
         let lean = lean_of_field(p, field_level(distance_m)) + ground.air.xy * kind.tip.w;
         let afar = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light);
-        let mottle = 0.80 + 0.5 * (noise(p / 2.9).g * 0.6 + 0.2);
+        let mottle = mottle_at(p, span_m);
         let reached = frame.sun_color.rgb * sun_light * sun_in_grass(0.0, kind.root.w);
         let floor = mix(kind.root.rgb * 0.7, litter_at(p), 0.8 * (1.0 - smoothstep(0.3, 2.5, distance_m)));
         let under = floor * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);

@@ -1,7 +1,9 @@
-// Last pass: several pixels to one, exposure, tone curve (Hable-like filmic shoulder with a soft toe), a little less saturation, dither, encoding.
+// Last pass: samples to one pixel, exposure, tone curve (Hable-like filmic shoulder with a soft toe), a little less saturation, dither, encoding.
 
 @group(1) @binding(0) var picture: texture_2d<f32>;
 @group(1) @binding(1) var<uniform> tone: Tone;
+// Instead of `picture`, one of several samples a pixel.
+@group(1) @binding(2) var sampled: texture_multisampled_2d<f32>;
 
 struct Tone {
     // 1 when the target encodes sRGB by itself; exposure; pixels of the picture along either side of one of the target; unused.
@@ -25,20 +27,50 @@ fn encode(linear: vec3<f32>) -> vec3<f32> {
     return select(high, low, linear <= vec3<f32>(0.0031308));
 }
 
+// Exposure at a pixel of a target of some size.
+fn exposure_at(position: vec2<f32>, size: vec2<f32>) -> f32 {
+    let from_centre = position / size - 0.5;
+    return tone.target_encodes.y * (1.0 - 0.35 * dot(from_centre, from_centre));
+}
+
+// Pixels of the picture along either side of one of the target at a place.
+fn fineness_at(position: vec2<f32>) -> i32 {
+    return i32(tone.target_encodes.z + none_of(position.x));
+}
+
 @fragment
 fn fs(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let fineness = i32(tone.target_encodes.z + none_of(position.x));
-    let from_centre = position.xy * tone.target_encodes.z / vec2<f32>(textureDimensions(picture)) - 0.5;
-    let exposure = tone.target_encodes.y * (1.0 - 0.35 * dot(from_centre, from_centre));
+    let fineness = fineness_at(position.xy);
+    let exposure = exposure_at(position.xy * f32(fineness), vec2<f32>(textureDimensions(picture)));
     let first = vec2<i32>(position.xy) * fineness;
     var color = vec3<f32>(0.0);
     for (var i = 0; i < fineness * fineness; i++) {
         color += curve(textureLoad(picture, first + vec2<i32>(i % fineness, i / fineness), 0).rgb * exposure);
     }
-    color /= f32(fineness * fineness);
+    return shown(color / f32(fineness * fineness), position.xy);
+}
+
+// The mean of what samples look like: that of their light would leave edges before a bright sky as hard as those of one sample.
+@fragment
+fn fs_sampled(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let fineness = fineness_at(position.xy);
+    let exposure = exposure_at(position.xy * f32(fineness), vec2<f32>(textureDimensions(sampled)));
+    let first = vec2<i32>(position.xy) * fineness;
+    let samples = i32(textureNumSamples(sampled));
+    var color = vec3<f32>(0.0);
+    for (var i = 0; i < fineness * fineness; i++) {
+        for (var sample = 0; sample < samples; sample++) {
+            color += curve(textureLoad(sampled, first + vec2<i32>(i % fineness, i / fineness), sample).rgb * exposure);
+        }
+    }
+    return shown(color / f32(samples * fineness * fineness), position.xy);
+}
+
+// A colour after the curve as the target takes it.
+fn shown(linear: vec3<f32>, position: vec2<f32>) -> vec4<f32> {
+    var color = linear;
     let grey = dot(color, vec3<f32>(0.2126, 0.7152, 0.0722));
     color = clamp(mix(vec3<f32>(grey), color, 0.97), vec3<f32>(0.0), vec3<f32>(1.0));
-    let dither = (random3(vec2<i32>(position.xy), 7u).x - 0.5) / 255.0;
-    let shown = select(encode(color), color, tone.target_encodes.x > 0.5);
-    return vec4<f32>(shown + dither, 1.0);
+    let dither = (random3(vec2<i32>(position), 7u).x - 0.5) / 255.0;
+    return vec4<f32>(select(encode(color), color, tone.target_encodes.x > 0.5) + dither, 1.0);
 }

@@ -4,7 +4,7 @@ use glam::{Mat4, Vec3, Vec4};
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// Nearest distance that is drawn (m).
-pub const NEAR_M: f32 = 0.08;
+pub const NEAR_M: f32 = 0.02;
 
 /// Largest pitch up or down (rad).
 pub const PITCH_LIMIT_RAD: f32 = 1.5;

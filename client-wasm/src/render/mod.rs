@@ -160,8 +160,6 @@ struct Targets {
     /// Their pixels along either side of one that is shown.
     fineness: u32,
     color: wgpu::TextureView,
-    /// Where the samples of `color` go, if it has more than one.
-    resolved: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
 }
 
@@ -188,13 +186,8 @@ impl Targets {
             size_px,
             fineness,
             color: texture("color", COLOR, samples),
-            resolved: (samples > 1).then(|| texture("resolved color", COLOR, 1)),
             depth: texture("depth", DEPTH, samples),
         }
-    }
-
-    fn picture(&self) -> &wgpu::TextureView {
-        self.resolved.as_ref().unwrap_or(&self.color)
     }
 }
 
@@ -208,7 +201,7 @@ impl Renderer {
         let maker = Maker { gpu, frame_layout: &frame.layout, samples };
         let targets = Targets::new(gpu, size_px, quality);
         Self {
-            tone: Tone::new(&maker, format, targets.picture(), targets.fineness),
+            tone: Tone::new(&maker, format, &targets.color, targets.fineness),
             sky: Sky::new(&maker),
             terrain: Terrain::new(&maker),
             billboards: Billboards::new(&maker),
@@ -229,7 +222,7 @@ impl Renderer {
     pub fn resize(&mut self, size_px: [u32; 2]) {
         self.size_px = size_px.map(|side| side.max(1));
         self.targets = Targets::new(&self.gpu, self.size_px, self.quality);
-        self.tone.set_picture(&self.gpu, self.targets.picture(), self.targets.fineness);
+        self.tone.set_picture(&self.gpu, &self.targets.color, self.targets.fineness);
         self.weighted = None;
     }
 
@@ -470,18 +463,14 @@ fn shadow_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, depth: &wgpu::TextureV
 /// The pass that draws the picture: the first one begins it, the last one ends it.
 fn main_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, targets: &Targets, is_first: bool, is_last: bool) -> wgpu::RenderPass<'a> {
     use wgpu::{LoadOp, StoreOp};
-    let resolve_target = targets.resolved.as_ref().filter(|_| is_last);
     let keep = |is_kept| if is_kept { StoreOp::Store } else { StoreOp::Discard };
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("picture"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view: &targets.color,
             depth_slice: None,
-            resolve_target,
-            ops: wgpu::Operations {
-                load: if is_first { LoadOp::Clear(wgpu::Color::BLACK) } else { LoadOp::Load },
-                store: keep(!is_last || targets.resolved.is_none()),
-            },
+            resolve_target: None,
+            ops: wgpu::Operations { load: if is_first { LoadOp::Clear(wgpu::Color::BLACK) } else { LoadOp::Load }, store: StoreOp::Store },
         })],
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: &targets.depth,

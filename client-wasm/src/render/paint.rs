@@ -33,7 +33,7 @@ impl Random {
 }
 
 /// Four channels of tileable fractal value noise, each stretched to its full range: R from 4 periods, G from 8, B from 16,
-/// A from 4 with another seed.
+/// A from 4 with another seed; with all mip levels.
 pub(super) fn noise() -> Vec<Vec<u8>> {
     let side = NOISE_PX as usize;
     let channels = [(4, 1, 5), (8, 2, 4), (16, 3, 3), (4, 4, 5)].map(|(period, seed, octaves)| fractal(side, period, seed, octaves));
@@ -43,7 +43,7 @@ pub(super) fn noise() -> Vec<Vec<u8>> {
             texels[i * 4 + channel] = (value * 255.0 + 0.5) as u8;
         }
     }
-    vec![texels]
+    halved(texels, [NOISE_PX; 2], NOISE_PX.ilog2() as usize + 1)
 }
 
 fn fractal(side: usize, period: usize, seed: u64, octaves: u32) -> Vec<f32> {

@@ -5,14 +5,14 @@ use super::detail::Detail;
 /// Level of detail of the whole picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
-    /// 9 thousand simulated blades, one sample a pixel: for software rendering.
+    /// Few wide blades, one sample a pixel: for software rendering.
     Low,
-    /// 37 thousand, four samples.
+    /// Four times as many, four samples.
     #[default]
     Medium,
-    /// 100 thousand.
+    /// All that stand near the eye.
     High,
-    /// 230 thousand, four pixels for each that is shown.
+    /// The same farther off, four pixels for each that is shown.
     Ultra,
     /// Every plant at full detail as far as [`REFERENCE_M`], whatever it costs: what the others are measured against.
     Reference,

@@ -1,7 +1,7 @@
 //! Last pass: from light to the target's colours.
 
 use super::gpu::Gpu;
-use super::pipeline::{Maker, bind, texture, uniform};
+use super::pipeline::{Maker, uniform};
 use super::shaders;
 
 /// Exposure before the tone curve.
@@ -10,6 +10,8 @@ const EXPOSURE: f32 = 1.15;
 pub(super) struct Tone {
     pipeline: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
+    /// Where the picture is bound.
+    binding: u32,
     settings: wgpu::Buffer,
     group: wgpu::BindGroup,
 }
@@ -19,7 +21,8 @@ impl Tone {
     pub(super) fn new(maker: &Maker<'_>, target: wgpu::TextureFormat, picture: &wgpu::TextureView, fineness: u32) -> Self {
         let device = &maker.gpu.device;
         let module = maker.gpu.shader("tone", shaders::TONE);
-        let layout = maker.layout("tone", &[texture(0), uniform(1)]);
+        let (entry, binding) = if maker.samples > 1 { ("fs_sampled", 2) } else { ("fs", 0) };
+        let layout = maker.layout("tone", &[picture_entry(binding, maker.samples), uniform(1)]);
         let encodes = if target.is_srgb() { 1.0 } else { 0.0_f32 };
         let contents: [f32; 4] = [encodes, EXPOSURE, fineness as f32, 0.0];
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
@@ -38,20 +41,20 @@ impl Tone {
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &module,
-                entry_point: Some("fs"),
+                entry_point: Some(entry),
                 compilation_options: Default::default(),
                 targets: &[Some(target.into())],
             }),
             multiview_mask: None,
             cache: None,
         });
-        let group = group(maker.gpu, &layout, picture, &settings);
-        Self { pipeline, layout, settings, group }
+        let group = group(maker.gpu, &layout, binding, picture, &settings);
+        Self { pipeline, layout, binding, settings, group }
     }
 
     pub(super) fn set_picture(&mut self, gpu: &Gpu, picture: &wgpu::TextureView, fineness: u32) {
         gpu.queue.write_buffer(&self.settings, 8, bytemuck::bytes_of(&(fineness as f32)));
-        self.group = group(gpu, &self.layout, picture, &self.settings);
+        self.group = group(gpu, &self.layout, self.binding, picture, &self.settings);
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
@@ -61,6 +64,22 @@ impl Tone {
     }
 }
 
-fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, picture: &wgpu::TextureView, settings: &wgpu::Buffer) -> wgpu::BindGroup {
-    bind(gpu, "tone", layout, &[wgpu::BindingResource::TextureView(picture), settings.as_entire_binding()])
+fn picture_entry(binding: u32, samples: u32) -> wgpu::BindGroupLayoutEntry {
+    let sample_type = wgpu::TextureSampleType::Float { filterable: false };
+    let ty = wgpu::BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled: samples > 1 };
+    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
+}
+
+fn group(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    binding: u32,
+    picture: &wgpu::TextureView,
+    settings: &wgpu::Buffer,
+) -> wgpu::BindGroup {
+    let entries = [
+        wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(picture) },
+        wgpu::BindGroupEntry { binding: 1, resource: settings.as_entire_binding() },
+    ];
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("tone"), layout, entries: &entries })
 }

@@ -34,7 +34,7 @@ uniform_block! {
         shadow_from_world: [f32; 16],
         /// Camera position (m); time (s).
         eye: [f32; 4],
-        /// Unit vector towards the sun; 1 / size of the shadow map (1/px).
+        /// Unit vector towards the sun; unused.
         sun: [f32; 4],
         /// Colour of sunlight; haze distance (m).
         sun_color: [f32; 4],
@@ -59,7 +59,7 @@ uniform_block! {
         /// Leaf area over the ground below it, of blades of mean height as they stand near by; distance up to which they stand so (m); the same leaf area where
         /// every blade stands, and the width of a blade there (m).
         sward: [f32; 4],
-        /// Offset of the clouds (m, x and z); share of cloud; number of interaction spheres.
+        /// Offset of the clouds (m, x and z); unused; number of interaction spheres.
         clouds: [f32; 4],
         /// Interaction spheres: centre and radius (m).
         spheres: [[f32; 4]; SPHERE_LIMIT],

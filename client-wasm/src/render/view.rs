@@ -67,6 +67,7 @@ impl<'a> View<'a> {
         let plants = &scene.plants;
         let width_m = plants.width_m * self.detail.width_factor();
         let Detail { blades_m, far_m, .. } = self.detail;
+        let fades_from = if self.quality == Quality::Reference { 0.999 } else { 0.72 };
         let pixel_rad = self.camera.fov_rad / self.size_px[1] as f32;
         let lamps = lamps(scene, land.heights(), poses, self.sun.elevation_rad, daylight.brightness(), eye);
         let spheres = spheres(&scene.objects, poses, eye);
@@ -78,7 +79,7 @@ impl<'a> View<'a> {
             world_from_projection: world_from_projection.to_cols_array(),
             shadow_from_world: self.shadow_from_world(0).to_cols_array(),
             eye: [eye.x, eye.y, eye.z, (self.time_secs % 10_000.0) as f32],
-            sun: [sun.x, sun.y, sun.z, 1.0 / self.quality.shadow_px() as f32],
+            sun: [sun.x, sun.y, sun.z, 0.0],
             sun_color: [sun_rgb.x, sun_rgb.y, sun_rgb.z, scene.light.haze_m * (1.0 - 0.6 * rain_share)],
             world: [extent_x, extent_z, pixel_x, pixel_z],
             maps: [width, depth, atlas.window_m(), atlas.reach_m()],
@@ -88,9 +89,9 @@ impl<'a> View<'a> {
             past: atlas.past(),
             blade: [plants.flowers_per_m2, plants.height_variation, width_m, plants.blade_shape as u32 as f32],
             screen: [self.size_px[0] as f32, self.size_px[1] as f32, pixel_rad, rain_share],
-            reach: [blades_m * 0.72, blades_m, far_m * 0.6, far_m],
+            reach: [blades_m * fades_from, blades_m, far_m * 0.6, far_m],
             sward: self.sward(plants, width_m),
-            clouds: [drift * dir_x * mean, drift * dir_z * mean, 0.5, spheres.len() as f32],
+            clouds: [drift * dir_x * mean, drift * dir_z * mean, 0.0, spheres.len() as f32],
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_default()),
             lights: self.lights(land, daylight, &lamps),
         }

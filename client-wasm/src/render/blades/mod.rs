@@ -40,8 +40,13 @@ const STEP_LIMIT: f32 = 4.0 * BLADE_STEPS_LIMIT as f32;
 const EXACT_STEP_SECS: f32 = 0.1;
 /// A flower's lot by its place in the sequence of its grid falls with this power, so that flowers thin out more slowly than blades do.
 pub(super) const FLOWER_POWER: f32 = -0.8;
-/// Most blades that are listed at once where all of them are drawn; of more, they are drawn by turns.
-const TURN_LIMIT: u32 = 800_000;
+/// Most plants that are listed at once, as WebGPU lets a shader see 128 MiB of a buffer.
+const LISTED_LIMIT: u32 = ((128 << 20) / BLADE_BYTES) as u32;
+/// Most plants of a turn, and so of one list, where there would be more: then they are drawn by turns.
+const TURN_LIMIT: u32 = LISTED_LIMIT / 3;
+/// Share by which the distance up to which a blade is fine differs from one to another, up or down, so that no ring of them changes at once; twin of the
+/// constant in `bend.wgsl`.
+const FINE_SPREAD: f32 = 0.15;
 
 /// Lists that are drawn: fine blades, coarse ones, those of one segment, flower heads.
 const LISTS: usize = 4;
@@ -96,12 +101,15 @@ impl Blades {
         let grid_m = land.scene().plants.grid_m;
         let places = plants_of_grid(land, &detail);
         let plants_per_m2 = places as f32 / (grid_m * grid_m);
-        let most = |within_m: f32| most_standing(plants_per_m2 * full_area_m2(detail.full_m, within_m));
-        let all = most(detail.blades_m);
-        let grids = Grids::new(maker, land, &detail, places, all > TURN_LIMIT);
+        let stand = |within_m: f32| plants_per_m2 * full_area_m2(detail.full_m, within_m);
+        let all = stand(detail.blades_m);
+        let [surely_fine_m, fine_m] = [1.0 - FINE_SPREAD, 1.0 + FINE_SPREAD].map(|share| (share * detail.fine_m).min(detail.blades_m));
         let flowers_per_m2 = land.scene().plants.flowers_per_m2;
         let thinned = full_area_m2(detail.full_m * 2.0, detail.blades_m);
-        let capacities = [most(detail.fine_m), all, most_standing(flowers_per_m2 * thinned)].map(|count| count.min(TURN_LIMIT));
+        let wanted = [stand(fine_m), all - stand(surely_fine_m), flowers_per_m2 * thinned].map(most_standing);
+        let by_turns = wanted.iter().map(|&count| u64::from(count)).sum::<u64>() > u64::from(LISTED_LIMIT);
+        let capacities = if by_turns { wanted.map(|count| count.min(TURN_LIMIT)) } else { wanted };
+        let grids = Grids::new(maker, land, &detail, places, by_turns);
         let segments = quality.segments();
 
         let storage_usage = BufferUsages::STORAGE;
@@ -167,7 +175,7 @@ impl Blades {
             lists,
             indices: indices.map(|list| gpu.buffer("plant", bytemuck::cast_slice(&list), BufferUsages::INDEX)),
             grids,
-            by_turns: all > TURN_LIMIT,
+            by_turns,
             places,
             standing: 0,
             near_workgroups: 0,
