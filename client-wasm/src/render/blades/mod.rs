@@ -117,16 +117,8 @@ impl Blades {
 
         let bend = gpu.shader("bend", shaders::BEND);
         let sift = Sift::new(maker, &bend, &plants, &grids, places);
-        let entries = [
-            uniform(0),
-            storage_rw(1),
-            storage_rw(2),
-            storage_rw(3),
-            storage_compute(4),
-            storage_rw(5),
-            storage_compute(6),
-            storage_rw(7),
-        ];
+        let entries =
+            [uniform(0), storage_rw(1), storage_rw(2), storage_rw(3), storage_compute(4), storage_rw(5), storage_compute(6), storage_rw(7)];
         let compute_layout = maker.layout("bend", &entries);
         let buffers = [&plants, &sways, &drawn, &counters, grids.chunks(), &draws, sift.standing(), &moved];
         let compute_group = bind(gpu, "bend", &compute_layout, &buffers.map(|buffer| buffer.as_entire_binding()));

@@ -5,6 +5,7 @@ use super::super::{flora, underbrush};
 use super::*;
 use shared::plant::force_field::Mesh;
 use shared::scene::{Component, ComponentKind, Underbrush};
+use shared::wire::ObjectPose;
 use std::collections::HashMap;
 use std::f32::consts::FRAC_PI_2;
 
