@@ -2,7 +2,7 @@
 // tables of postures made beforehand (004 section 4.2), and widened to ribbons.
 
 struct UnderbrushFrame {
-    // Number of the frame; unused.
+    // Number of the frame, of those in which time passes; unused.
     counts: vec4<u32>,
     // Time since the frame before (s); distance at which plants have shrunk to nothing (m); height of the force field (m); unused.
     shape: vec4<f32>,
@@ -23,7 +23,7 @@ struct Grown {
     site: u32,
 }
 
-// What a plant feels, as it follows the force field (004 section 4.3): pressure (Pa) and its rate; the frame that it was last seen in.
+// What a plant feels, as it follows the force field (004 section 4.3): pressure (Pa) and its rate; the frame that it was last seen in, of those in which time passes.
 struct Felt {
     pressure: vec4<f32>,
     frame: u32,
@@ -129,12 +129,12 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     let fall = (broken[plant.site >> 2u] >> (8u * (plant.site & 3u))) & 255u;
     let goal = fallen(pressure_at(root, 0.5 * height), fall);
     var feels = felt[index];
-    if feels.frame + 1u != brush.counts.x {
+    if brush.counts.x - feels.frame > 1u {
         feels.pressure = vec4<f32>(goal, 0.0, 0.0);
     } else {
         feels.pressure = followed(feels.pressure, goal, nature.y, brush.shape.x);
     }
-    feels.frame = brush.counts.x;
+    feels.frame = select(feels.frame, brush.counts.x, brush.shape.x > 0.0);
     felt[index] = feels;
 
     var lean = lean_of_field(plant.at, 0.0);

@@ -274,7 +274,7 @@ impl Renderer {
                 shells: Shells::new(&maker, land, &ground),
                 ground,
                 blades: Blades::new(&maker, self.quality, land),
-                underbrush: Underbrush::new(&maker, land, &forces, self.detail.underbrush_m),
+                underbrush: Underbrush::new(&maker, land, &forces),
                 forces,
                 rain: RainPass::new(&maker, self.quality, land),
                 objects: Objects::new(&maker, land, standing),
@@ -331,8 +331,8 @@ impl Renderer {
             _ => None,
         };
         let has_blades = shells != Some(Extent::All);
+        let from = Standpoint { eye_m: camera.eye_m, frustum: &frustum, detail: &detail, look: self.look, dt_secs };
         if has_blades {
-            let from = Standpoint { eye_m: camera.eye_m, frustum: &frustum, detail: &detail, look: self.look, dt_secs };
             scene.blades.prepare(gpu, land, &from);
         }
         if let Some(extent) = shells {
@@ -345,7 +345,7 @@ impl Renderer {
         if let Some(underbrush) = &mut scene.underbrush {
             scene.forces.follow(gpu, land, &scene.textures.wind, &poses, [camera.eye_m.x, camera.eye_m.z], dt_secs);
             underbrush.show_broken(gpu, mirror.falls(), mirror.broken_count());
-            underbrush.prepare(gpu, &scene.forces, camera.eye_m, &frustum, dt_secs);
+            underbrush.prepare(gpu, &scene.forces, &from);
         }
         if let Some(dust) = &scene.dust {
             dust.prepare(gpu, dt_secs);

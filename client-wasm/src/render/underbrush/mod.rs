@@ -3,7 +3,7 @@
 
 mod bake;
 
-use super::cull::Frustum;
+use super::blades::Standpoint;
 use super::forces::Forces;
 use super::gpu::Gpu;
 use super::pipeline::{Draw, Maker, sampled, storage, storage_rw, uniform};
@@ -80,7 +80,7 @@ pub(super) struct Underbrush {
     tiles: Vec<Tile>,
     species: [[f32; 4]; SPECIES_LIMIT],
     places: [[u32; 4]; SPECIES_LIMIT],
-    reach_m: f32,
+    /// Number of the newest frame, of those in which time passes; the first is the second, so that nothing has been seen right before it.
     frame_number: u32,
     chunk_count: u32,
     plants: u32,
@@ -92,7 +92,7 @@ pub(super) struct Underbrush {
 
 impl Underbrush {
     /// Of a scene in which any grows.
-    pub(super) fn new(maker: &Maker<'_>, land: &Land, forces: &Forces, reach_m: f32) -> Option<Self> {
+    pub(super) fn new(maker: &Maker<'_>, land: &Land, forces: &Forces) -> Option<Self> {
         let flora = land.flora()?;
         let gpu = maker.gpu;
         let (grown, tiles) = tiles(land, flora);
@@ -194,8 +194,7 @@ impl Underbrush {
             tiles,
             species,
             places,
-            reach_m,
-            frame_number: 1,
+            frame_number: 2,
             chunk_count: 0,
             plants: grown.len() as u32,
             #[cfg(test)]
@@ -217,20 +216,21 @@ impl Underbrush {
     }
 
     /// Lists the plants of the squares that may be seen.
-    pub(super) fn prepare(&mut self, gpu: &Gpu, forces: &Forces, eye_m: Vec3, frustum: &Frustum, dt_secs: f32) {
+    pub(super) fn prepare(&mut self, gpu: &Gpu, forces: &Forces, from: &Standpoint<'_>) {
+        let (eye_m, reach_m) = (from.eye_m, from.detail.underbrush_m);
         let mut chunks: Vec<[u32; 2]> = Vec::new();
         for tile in &self.tiles {
             let nearest = eye_m.clamp(tile.low_m, tile.high_m);
-            if nearest.distance_squared(eye_m) < self.reach_m * self.reach_m && frustum.sees_box(tile.low_m, tile.high_m) {
+            if nearest.distance_squared(eye_m) < reach_m * reach_m && from.frustum.sees_box(tile.low_m, tile.high_m) {
                 let starts = (0..tile.count).step_by(CHUNK as usize);
                 chunks.extend(starts.map(|start| [tile.first + start, (tile.count - start).min(CHUNK)]));
             }
         }
         self.chunk_count = chunks.len() as u32;
-        self.frame_number = self.frame_number.wrapping_add(1);
+        self.frame_number = self.frame_number.wrapping_add(u32::from(from.dt_secs > 0.0));
         let frame = UnderbrushFrame {
             counts: [self.frame_number, 0, 0, 0],
-            shape: [dt_secs.max(0.0), self.reach_m, forces.height_m(), 0.0],
+            shape: [from.dt_secs.max(0.0), reach_m, forces.height_m(), 0.0],
             forces: forces.window_m(),
             species: self.species,
             places: self.places,
