@@ -2,7 +2,7 @@
 // tables of postures made beforehand (004 section 4.2), and widened to ribbons.
 
 struct UnderbrushFrame {
-    // Number of the frame, of those in which time passes; unused.
+    // Number of the frame, of those in which time passes; 1 to leave out what is not seen; unused.
     counts: vec4<u32>,
     // Time since the frame before (s); distance at which plants have shrunk to nothing (m); height of the force field (m); unused.
     shape: vec4<f32>,
@@ -117,7 +117,8 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     let tall_px = tall / (distance_m * frame.screen.z);
     let kept = clamp(tall_px / 16.0, FEWEST, 1.0);
     let larger = pow(kept, -0.3);
-    if distance_m > reach_m || !is_seen(root, nature.z * plant.size * larger * 1.8) {
+    let may_show = (brush.counts.y == 0u) | is_seen(root, nature.z * plant.size * larger * 1.8);
+    if (distance_m > reach_m) | !may_show {
         return;
     }
     let lot = random3(vec2<i32>(i32(plant.site), 5), 91u).x;

@@ -74,6 +74,20 @@ fn underbrush_ends_where_the_level_of_detail_has_it() {
     assert!(near > 100 && 10 * near < 9 * whole, "{near} within 45 m, {whole} within 64 m");
 }
 
+#[test]
+fn nothing_but_culling_leaves_out_what_is_behind_the_camera() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut mirror = meadow_of(|scene| scene.underbrush = grasses(), &[255; 16 * 16]);
+    let camera = Camera { eye_m: Vec3::new(32.0, 1.6, 32.0), ..Camera::default() };
+    let mut picture = Picture::new(&gpu, [256, 144], Quality::Low);
+    let [seen, all] = [true, false].map(|culls| {
+        picture.set_look(Look { culls, ..Look::default() });
+        picture.draw(&mut mirror, &camera, 0.0, 0.0);
+        picture.drawn_underbrush()
+    });
+    assert!(seen > 100 && 2 * seen < all, "{seen} in view of {all}");
+}
+
 /// Place of each plant (m) by its site, and what it feels (Pa), after a second and a half below a camera.
 fn felt(picture: &mut Picture, gpu: &Gpu, mirror: &mut Mirror) -> HashMap<u32, ([f32; 2], [f32; 2])> {
     let camera = Camera { eye_m: Vec3::new(32.0, 16.0, 32.0), pitch_rad: -1.57, fov_rad: 1.9, ..Camera::default() };
