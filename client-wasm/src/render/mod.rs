@@ -15,6 +15,7 @@ mod fit;
 mod flora;
 mod forces;
 mod gpu;
+mod grove;
 mod kept;
 mod kinds;
 mod lamps;

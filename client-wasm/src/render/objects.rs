@@ -3,6 +3,7 @@
 use super::cull::Frustum;
 use super::flora::{self, STONE_SHAPES, Standing, TREE_SHAPES, TreeDetail};
 use super::gpu::Gpu;
+use super::grove::Ball;
 use super::mesh::{Paint, Solid, VERTEX_ATTRIBUTES, Vertex};
 use super::paint;
 use super::pipeline::{Draw, Maker, bind, storage, texture};
@@ -48,7 +49,8 @@ pub(super) struct Objects {
     indices: wgpu::Buffer,
     instances: wgpu::Buffer,
     meshes: Vec<MeshRange>,
-    standing: Vec<Standing>,
+    /// Each with a bound.
+    standing: Vec<(Standing, Ball)>,
     rolled_m: HashMap<ObjectId, f32>,
     /// Mesh and instances of each draw, for the eye and for the layers of the sun's map.
     seen: Vec<(usize, Range<u32>)>,
@@ -82,6 +84,12 @@ impl Objects {
             vertices.extend_from_slice(&solid.vertices);
             indices.extend_from_slice(&solid.indices);
         }
+
+        let trees = (0..TREE_SHAPES).map(|shape| Ball::about(TreeDetail::ALL.iter().map(|&detail| &solids[tree_mesh(shape, detail)])));
+        let stones = (0..STONE_SHAPES).map(|shape| Ball::about([&solids[stone_mesh(shape)]].into_iter()));
+        let balls: Vec<Ball> = trees.chain(stones).collect();
+        let model = |standing: &Standing| balls[(standing.shape + if standing.is_tree { 0 } else { TREE_SHAPES }) as usize];
+        let standing = standing.into_iter().map(|standing| (standing, model(&standing).of(&standing))).collect();
 
         let module = gpu.shader("objects", shaders::OBJECTS);
         let layout = maker.layout("objects", &[storage(0), texture(1)]);
@@ -147,16 +155,15 @@ impl Objects {
                 by_mesh_lit.iter_mut().for_each(|lit| lit[part_mesh(part)].push(instance));
             }
         }
-        let mut near: Vec<(f32, &Standing)> = self
+        let mut near: Vec<(f32, &(Standing, Ball))> = self
             .standing
             .iter()
-            .map(|standing| (standing.position_m.distance(eye_m), standing))
-            .filter(|(distance_m, standing)| *distance_m < tree_reach_m * if standing.is_tree { 1.0 } else { 0.4 })
+            .map(|own| (own.0.position_m.distance(eye_m), own))
+            .filter(|(distance_m, (standing, _))| *distance_m < tree_reach_m * if standing.is_tree { 1.0 } else { 0.4 })
             .collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
         let room = INSTANCE_LIMIT - 18 * OBJECT_LIMIT.min(poses.len());
-        for (distance_m, standing) in near.into_iter().take(room / 3) {
-            let half = Vec3::new(0.6, 1.1, 0.6) * standing.size_m;
+        for (distance_m, (standing, ball)) in near.into_iter().take(room / 3) {
             let tall_px = standing.size_m / (distance_m * pixel_rad);
             let detail = match tall_px {
                 FINE_TREE_PX.. => TreeDetail::Fine,
@@ -168,7 +175,8 @@ impl Objects {
                 false => stone_mesh(standing.shape),
             };
             let instance = Instance { world_from_model: standing.world_from_model.to_cols_array(), tint: standing.tint };
-            if frustum.sees_box(standing.position_m - half, standing.position_m + half) {
+            let [low_m, high_m] = ball.corners_m();
+            if frustum.sees_box(low_m, high_m) {
                 by_mesh[mesh(detail)].push(instance);
             }
             for ((lit, reach_m), detail) in by_mesh_lit.iter_mut().zip(SHADOW_REACH_M).zip(SHADOW_DETAIL) {

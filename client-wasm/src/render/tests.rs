@@ -25,6 +25,7 @@ mod order;
 mod shells;
 mod small;
 mod standing;
+mod trees;
 mod twins;
 mod underbrush;
 
