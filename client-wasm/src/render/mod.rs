@@ -59,7 +59,7 @@ use crate::camera::Camera;
 use crate::state::Mirror;
 use billboards::{Billboards, Reach};
 use blades::{Blades, Standpoint};
-use cull::Frustum;
+use cull::{Beam, Frustum};
 use detail::Detail;
 use dust::Dust;
 use forces::Forces;
@@ -351,8 +351,9 @@ impl Renderer {
         if let Some(dust) = &scene.dust {
             dust.prepare(gpu, dt_secs);
         }
-        let [reach_m, pixel_rad] = [self.detail.trees_m, frame.screen[2]];
-        scene.objects.prepare(gpu, &poses, camera.eye_m, &frustum, time_secs as f32, dt_secs, reach_m, pixel_rad);
+        let beams = [&frame.shadow_from_world, &frame.lights.far_shadow_from_world].map(Beam::new);
+        let beams = &beams[..self.quality.shadow_layers() as usize];
+        scene.objects.prepare(gpu, &poses, &from, beams, time_secs as f32, frame.screen[2]);
 
         let clumps = (self.look.far == Far::Clumps && has_blades).then_some(&self.billboards);
         let turns = if has_blades { scene.blades.turns() } else { 1 };

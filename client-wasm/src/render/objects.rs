@@ -1,6 +1,7 @@
 //! Everything made of meshes: vehicles, trees and stones; drawn for the eye and for the sun.
 
-use super::cull::Frustum;
+use super::blades::Standpoint;
+use super::cull::Beam;
 use super::flora::{self, STONE_SHAPES, Standing, TREE_SHAPES, TreeDetail};
 use super::gpu::Gpu;
 use super::grove::Ball;
@@ -24,8 +25,6 @@ const FINE_TREE_PX: f32 = 130.0;
 const DISTANT_TREE_PX: f32 = 26.0;
 /// How finely trees are made that throw shadows into the layers of the shadow map.
 const SHADOW_DETAIL: [TreeDetail; 2] = [TreeDetail::Coarse, TreeDetail::Distant];
-/// Distance up to which things cast shadows into the layers of the shadow map (m).
-const SHADOW_REACH_M: [f32; 2] = [90.0, 330.0];
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -126,19 +125,17 @@ impl Objects {
         }
     }
 
-    /// Lists what is in view, and what throws shadows into the view.
-    #[allow(clippy::too_many_arguments, reason = "the frame's own numbers")]
+    /// Lists what is in view, and what throws shadows into the layers of the sun's map that are drawn.
     pub(super) fn prepare(
         &mut self,
         gpu: &Gpu,
         poses: &[ObjectPose],
-        eye_m: Vec3,
-        frustum: &Frustum,
+        from: &Standpoint<'_>,
+        beams: &[Beam],
         time_secs: f32,
-        dt_secs: f32,
-        tree_reach_m: f32,
         pixel_rad: f32,
     ) {
+        let (eye_m, tree_reach_m) = (from.eye_m, from.detail.trees_m);
         let mut by_mesh: Vec<Vec<Instance>> = vec![Vec::new(); self.meshes.len()];
         let mut by_mesh_lit = [by_mesh.clone(), by_mesh.clone()];
         self.rolled_m.retain(|id, _| poses.iter().any(|pose| pose.id == *id));
@@ -146,7 +143,7 @@ impl Objects {
             let rotation = Quat::from_array(pose.rotation);
             let forward = rotation * Vec3::NEG_Z;
             let rolled = self.rolled_m.entry(pose.id).or_default();
-            *rolled = (*rolled + Vec3::from(pose.velocity_m_per_s).dot(forward) * dt_secs) % 1000.0;
+            *rolled = (*rolled + Vec3::from(pose.velocity_m_per_s).dot(forward) * from.dt_secs) % 1000.0;
             let body = glam::Affine3A::from_rotation_translation(rotation, Vec3::from(pose.position_m));
             for (part, place) in vehicles::parts(pose, *rolled, time_secs) {
                 let world_from_model = Mat4::from(body * place).to_cols_array();
@@ -176,11 +173,11 @@ impl Objects {
             };
             let instance = Instance { world_from_model: standing.world_from_model.to_cols_array(), tint: standing.tint };
             let [low_m, high_m] = ball.corners_m();
-            if frustum.sees_box(low_m, high_m) {
+            if from.frustum.sees_box(low_m, high_m) {
                 by_mesh[mesh(detail)].push(instance);
             }
-            for ((lit, reach_m), detail) in by_mesh_lit.iter_mut().zip(SHADOW_REACH_M).zip(SHADOW_DETAIL) {
-                if distance_m < reach_m {
+            for ((lit, beam), detail) in by_mesh_lit.iter_mut().zip(beams).zip(SHADOW_DETAIL) {
+                if !from.look.culls || beam.meets_ball(ball.middle_m, ball.radius_m) {
                     lit[mesh(detail)].push(instance);
                 }
             }

@@ -1,9 +1,11 @@
-//! Trees: how far they reach as they sway.
+//! Trees: how far they reach as they sway, and how far their shadows do.
 
 use super::super::flora::{Standing, TREE_SHAPES, TreeDetail, tree};
 use super::super::grove::Ball;
 use super::*;
 use glam::Mat4;
+use shared::light::sun::Sun;
+use std::f32::consts::PI;
 
 #[test]
 fn no_tree_sways_out_of_the_ball_that_it_is_culled_by() {
@@ -40,4 +42,28 @@ fn no_tree_sways_out_of_the_ball_that_it_is_culled_by() {
         }
         assert!((0.7..=1.0).contains(&farthest), "{farthest} of the radius of shape {shape}");
     }
+}
+
+#[test]
+fn a_tree_far_towards_a_low_sun_throws_its_shadow_to_the_camera() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let wide = |scene: &mut Scene| {
+        (scene.patches.count, scene.terrain.pixel_m) = ([16, 16], [16.0; 2]);
+        (scene.plants.tree_m, scene.wind.mean_m_per_s) = (40.0, [0.0; 2]);
+    };
+    let mut covering = [255; 16 * 16];
+    // 3 m about (136, 88) m.
+    covering[8 + 16 * 5] = 253;
+    let mut mirror = meadow_of(wide, &covering);
+    let camera = Camera { eye_m: Vec3::new(136.0, 2.0, 200.0), heading_rad: PI, ..Camera::default() };
+    let places: Vec<_> = (0..81).map(|n| [132.0 + (n % 9) as f32, 0.5, 192.0 + 2.0 * (n / 9) as f32, 0.0]).collect();
+    // The sun in the north, behind the tree, and in the south.
+    let [darkest, lightest] = [0.0, PI].map(|heading_rad| {
+        let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+        picture.set_look(Look { sun: Some(Sun { heading_rad, elevation_rad: 0.2 }), ..Look::default() });
+        picture.draw(&mut mirror, &camera, 0.0, 0.0);
+        let light = probe(&gpu, &picture, "return vec4<f32>(sun_visible(at.xyz));", &places);
+        light.iter().map(|light| light[0]).fold(1.0, f32::min)
+    });
+    assert!(darkest < 0.3 && lightest == 1.0, "{darkest} behind the tree, {lightest} before it");
 }
