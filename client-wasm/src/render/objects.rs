@@ -4,7 +4,7 @@ use super::blades::Standpoint;
 use super::cull::Beam;
 use super::flora::{self, STONE_SHAPES, Standing, TREE_SHAPES, TreeDetail};
 use super::gpu::Gpu;
-use super::grove::Ball;
+use super::grove::{Ball, Grove};
 use super::mesh::{Paint, Solid, VERTEX_ATTRIBUTES, Vertex};
 use super::paint;
 use super::pipeline::{Draw, Maker, bind, storage, texture};
@@ -48,8 +48,7 @@ pub(super) struct Objects {
     indices: wgpu::Buffer,
     instances: wgpu::Buffer,
     meshes: Vec<MeshRange>,
-    /// Each with a bound.
-    standing: Vec<(Standing, Ball)>,
+    grove: Grove,
     rolled_m: HashMap<ObjectId, f32>,
     /// Mesh and instances of each draw, for the eye and for the layers of the sun's map.
     seen: Vec<(usize, Range<u32>)>,
@@ -88,7 +87,7 @@ impl Objects {
         let stones = (0..STONE_SHAPES).map(|shape| Ball::about([&solids[stone_mesh(shape)]].into_iter()));
         let balls: Vec<Ball> = trees.chain(stones).collect();
         let model = |standing: &Standing| balls[(standing.shape + if standing.is_tree { 0 } else { TREE_SHAPES }) as usize];
-        let standing = standing.into_iter().map(|standing| (standing, model(&standing).of(&standing))).collect();
+        let grove = Grove::new(standing.into_iter().map(|standing| (standing, model(&standing).of(&standing))).collect());
 
         let module = gpu.shader("objects", shaders::OBJECTS);
         let layout = maker.layout("objects", &[storage(0), texture(1)]);
@@ -118,7 +117,7 @@ impl Objects {
             indices: gpu.buffer("mesh indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
             instances,
             meshes,
-            standing,
+            grove,
             rolled_m: HashMap::new(),
             seen: Vec::new(),
             lit: Default::default(),
@@ -135,7 +134,6 @@ impl Objects {
         time_secs: f32,
         pixel_rad: f32,
     ) {
-        let (eye_m, tree_reach_m) = (from.eye_m, from.detail.trees_m);
         let mut by_mesh: Vec<Vec<Instance>> = vec![Vec::new(); self.meshes.len()];
         let mut by_mesh_lit = [by_mesh.clone(), by_mesh.clone()];
         self.rolled_m.retain(|id, _| poses.iter().any(|pose| pose.id == *id));
@@ -152,15 +150,14 @@ impl Objects {
                 by_mesh_lit.iter_mut().for_each(|lit| lit[part_mesh(part)].push(instance));
             }
         }
-        let mut near: Vec<(f32, &(Standing, Ball))> = self
-            .standing
-            .iter()
-            .map(|own| (own.0.position_m.distance(eye_m), own))
-            .filter(|(distance_m, (standing, _))| *distance_m < tree_reach_m * if standing.is_tree { 1.0 } else { 0.4 })
-            .collect();
-        near.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let room = INSTANCE_LIMIT - 18 * OBJECT_LIMIT.min(poses.len());
-        for (distance_m, (standing, ball)) in near.into_iter().take(room / 3) {
+        let is_seen = |ball: &Ball| {
+            let [low_m, high_m] = ball.corners_m();
+            from.frustum.sees_box(low_m, high_m)
+        };
+        let is_lit = |beam: &Beam, ball: &Ball| !from.look.culls || beam.meets_ball(ball.middle_m, ball.radius_m);
+        let may_show = |ball: &Ball| is_seen(ball) || beams.iter().any(|beam| is_lit(beam, ball));
+        let room = INSTANCE_LIMIT.saturating_sub(18 * OBJECT_LIMIT.min(poses.len()));
+        for (distance_m, (standing, ball)) in self.grove.near(from.eye_m, from.detail.trees_m, room / 3, may_show) {
             let tall_px = standing.size_m / (distance_m * pixel_rad);
             let detail = match tall_px {
                 FINE_TREE_PX.. => TreeDetail::Fine,
@@ -172,12 +169,11 @@ impl Objects {
                 false => stone_mesh(standing.shape),
             };
             let instance = Instance { world_from_model: standing.world_from_model.to_cols_array(), tint: standing.tint };
-            let [low_m, high_m] = ball.corners_m();
-            if from.frustum.sees_box(low_m, high_m) {
+            if is_seen(ball) {
                 by_mesh[mesh(detail)].push(instance);
             }
             for ((lit, beam), detail) in by_mesh_lit.iter_mut().zip(beams).zip(SHADOW_DETAIL) {
-                if !from.look.culls || beam.meets_ball(ball.middle_m, ball.radius_m) {
+                if is_lit(beam, ball) {
                     lit[mesh(detail)].push(instance);
                 }
             }
