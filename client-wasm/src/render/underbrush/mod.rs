@@ -50,6 +50,7 @@ pub(super) struct Grown {
 /// Plants of a square of the land.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tile {
+    row: i32,
     low_m: Vec3,
     high_m: Vec3,
     first: u32,
@@ -77,6 +78,7 @@ pub(super) struct Underbrush {
     pub(super) felt: wgpu::Buffer,
     compute_group: wgpu::BindGroup,
     lists: Vec<List>,
+    /// Row by row.
     tiles: Vec<Tile>,
     species: [[f32; 4]; SPECIES_LIMIT],
     places: [[u32; 4]; SPECIES_LIMIT],
@@ -219,7 +221,10 @@ impl Underbrush {
     pub(super) fn prepare(&mut self, gpu: &Gpu, forces: &Forces, from: &Standpoint<'_>) {
         let (eye_m, reach_m) = (from.eye_m, from.detail.underbrush_m);
         let mut chunks: Vec<[u32; 2]> = Vec::new();
-        for tile in &self.tiles {
+        // What is rooted on rows beyond is not drawn.
+        let first = self.tiles.partition_point(|tile| tile.row < number(eye_m.z - reach_m));
+        let end = self.tiles.partition_point(|tile| tile.row <= number(eye_m.z + reach_m));
+        for tile in &self.tiles[first..end] {
             let nearest = eye_m.clamp(tile.low_m, tile.high_m);
             if nearest.distance_squared(eye_m) < reach_m * reach_m && from.frustum.sees_box(tile.low_m, tile.high_m) {
                 let starts = (0..tile.count).step_by(CHUNK as usize);
@@ -289,7 +294,12 @@ fn numbered(
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
-/// All plants, square by square, and the squares.
+/// Number of the square along an axis.
+fn number(m: f32) -> i32 {
+    (m / TILE_M).floor() as i32
+}
+
+/// All plants, square by square, and the squares, row by row.
 pub(super) fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
     let reaches_m: Vec<f32> = flora.species().iter().map(flora::reach_m).collect();
     let mut by_tile: Vec<([i32; 2], Grown, f32)> = flora
@@ -301,7 +311,7 @@ pub(super) fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
             let standing = flora.standing(plant);
             let make = standing.species as u32 | (standing.number % VARIANTS) << 8;
             let grown = Grown { at_m: standing.at_m, size: standing.size, make, heading_rad: standing.heading_rad, site: plant.site };
-            (standing.at_m.map(|m| (m / TILE_M) as i32), grown, reaches_m[standing.species] * standing.size * FEWEST.powf(-0.3))
+            (standing.at_m.map(number), grown, reaches_m[standing.species] * standing.size * FEWEST.powf(-0.3))
         })
         .collect();
     by_tile.sort_by_key(|&([x, z], ..)| [z, x]);
@@ -315,7 +325,7 @@ pub(super) fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
             low_m = low_m.min(Vec3::new(x - reach_m, ground_m - 0.1, z - reach_m));
             high_m = high_m.max(Vec3::new(x + reach_m, ground_m + reach_m, z + reach_m));
         }
-        tiles.push(Tile { low_m, high_m, first, count: own.len() as u32 });
+        tiles.push(Tile { row: own[0].0[1], low_m, high_m, first, count: own.len() as u32 });
         first += own.len() as u32;
     }
     (by_tile.into_iter().map(|(_, plant, _)| plant).collect(), tiles)
