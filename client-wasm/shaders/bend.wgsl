@@ -190,7 +190,7 @@ fn append(list: u32, blade: Blade) {
 fn is_blade_seen(root: vec3<f32>, points: array<vec3<f32>, 3>, width: f32) -> bool {
     let centre = 0.5 * points[2];
     let reach = max(length(centre), max(distance(centre, points[0]), distance(centre, points[1])));
-    return (plants.counts.z == 0u) | is_seen(root + centre, 1.1 * reach + width);
+    return (plants.counts.z == 0u) | is_seen(root + centre, 1.1 * reach + 0.5 * WIDER * width);
 }
 
 // The grass about a plant, whose colour has a tint, as it is seen from afar, and how much of it shows between the plants that are drawn.

@@ -102,7 +102,8 @@ fn fs(surface: Surface) -> @location(0) vec4<f32> {
         let diffuse = max(facing, 0.0);
         color = albedo * (frame.sun_color.rgb * light * diffuse + ambient(normal) + lamps_on(surface.p, normal, 0.0));
         let half_way = normalize(frame.sun.xyz - view);
-        let fresnel = pow(1.0 - max(dot(normal, -view), 0.0), 4.0);
+        let grazing = 1.0 - clamp(dot(normal, -view), 0.0, 1.0);
+        let fresnel = grazing * grazing * grazing * grazing;
         let mirrored = reflect(view, normal);
         let above = max(mirrored.y, 0.0);
         let reflected = mix(ambient(vec3<f32>(0.0, -1.0, 0.0)), sky_color(vec3<f32>(mirrored.x, above, mirrored.z)), smoothstep(-0.1, 0.15, mirrored.y));

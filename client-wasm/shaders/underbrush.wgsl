@@ -2,7 +2,7 @@
 // tables of postures made beforehand (004 section 4.2), and widened to ribbons.
 
 struct UnderbrushFrame {
-    // Number of the frame; unused.
+    // Number of the frame, of those in which time passes; 1 to leave out what is not seen; unused.
     counts: vec4<u32>,
     // Time since the frame before (s); distance at which plants have shrunk to nothing (m); height of the force field (m); unused.
     shape: vec4<f32>,
@@ -23,7 +23,7 @@ struct Grown {
     site: u32,
 }
 
-// What a plant feels, as it follows the force field (004 section 4.3): pressure (Pa) and its rate; the frame that it was last seen in.
+// What a plant feels, as it follows the force field (004 section 4.3): pressure (Pa) and its rate; the frame that it was last seen in, of those in which time passes.
 struct Felt {
     pressure: vec4<f32>,
     frame: u32,
@@ -117,7 +117,8 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     let tall_px = tall / (distance_m * frame.screen.z);
     let kept = clamp(tall_px / 16.0, FEWEST, 1.0);
     let larger = pow(kept, -0.3);
-    if distance_m > reach_m || !is_seen(root, nature.z * plant.size * larger * 1.8) {
+    let may_show = (brush.counts.y == 0u) | is_seen(root, nature.z * plant.size * larger * 1.8);
+    if (distance_m > reach_m) | !may_show {
         return;
     }
     let lot = random3(vec2<i32>(i32(plant.site), 5), 91u).x;
@@ -129,12 +130,12 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     let fall = (broken[plant.site >> 2u] >> (8u * (plant.site & 3u))) & 255u;
     let goal = fallen(pressure_at(root, 0.5 * height), fall);
     var feels = felt[index];
-    if feels.frame + 1u != brush.counts.x {
+    if brush.counts.x - feels.frame > 1u {
         feels.pressure = vec4<f32>(goal, 0.0, 0.0);
     } else {
         feels.pressure = followed(feels.pressure, goal, nature.y, brush.shape.x);
     }
-    feels.frame = brush.counts.x;
+    feels.frame = select(feels.frame, brush.counts.x, brush.shape.x > 0.0);
     felt[index] = feels;
 
     var lean = lean_of_field(plant.at, 0.0);

@@ -14,8 +14,6 @@ const LINGERING_SECS: f32 = 1.0;
 const LONGEST_SECS: f32 = 60.0;
 /// Longest time that a frame lets blades swing for (s).
 const LONGEST_STEP_SECS: f32 = 0.1;
-/// Height of the tallest blades over the mean, before the random share of each; the taller, the slower.
-const TALLEST: f32 = 1.5;
 
 /// Least change of a place (m), of a quaternion's part and of an angle (rad) that counts as motion.
 const LEAST_MOTION: f32 = 1e-4;
@@ -88,7 +86,8 @@ fn rests(a: &ObjectPose, b: &ObjectPose) -> bool {
 fn settle_secs(scene: &Scene) -> f32 {
     let (plants, damping) = (&scene.plants, scene.plants.swing_damping);
     let slowest_hz = scene.kinds_of_plants().iter().map(|plants| plants.swing_hz).fold(f32::INFINITY, f32::min);
-    let omega = TAU * slowest_hz / (TALLEST * (1.0 + plants.height_variation));
+    // The taller, the slower.
+    let omega = TAU * slowest_hz / plants.most_grown();
     // Rate at which the slower solution of x'' + 2ζω·x' + ω²·x = 0 falls, or less.
     let rate_per_s = omega * if damping < 1.0 { damping } else { 0.5 / damping };
     let underbrush_secs = scene.underbrush.iter().map(|species| species.settle_secs).fold(LINGERING_SECS, f32::max);

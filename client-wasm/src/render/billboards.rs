@@ -4,6 +4,7 @@ use super::blades::grid_is_seen;
 use super::clump_order::{Cell, Laid};
 use super::cull::Frustum;
 use super::gpu::Gpu;
+use super::kept::Kept;
 use super::look::Order;
 use super::paint;
 use super::pipeline::{Maker, bind_as, storage, storage_rw, uniform};
@@ -55,7 +56,7 @@ struct List {
 }
 
 pub(super) struct Billboards {
-    laid: Laid,
+    pub(super) laid: Kept<Laid>,
     place: wgpu::ComputePipeline,
     place_group: wgpu::BindGroup,
     clumps: wgpu::Buffer,
@@ -85,14 +86,25 @@ impl Billboards {
         let place_group = bind_as(gpu, "billboard places", &place_layout, &[(0, &clumps), (1, &list), (4, &stands)]);
         let indices = std::array::from_fn(|i| gpu.buffer("clump", bytemuck::cast_slice(&clump_indices(i as u16 + 1)), BufferUsages::INDEX));
         let laid = Laid::new(maker, Order::default(), CLUMP_LIMIT as u32, [&clumps, &list, &stands], &tufts);
-        Self { laid, place, place_group, clumps, list, stands, tufts, indices, count: 0, several: 0, segments: 1 }
+        Self {
+            laid: Kept::new(Order::default(), laid),
+            place,
+            place_group,
+            clumps,
+            list,
+            stands,
+            tufts,
+            indices,
+            count: 0,
+            several: 0,
+            segments: 1,
+        }
     }
 
     /// Lays clumps in another order from now on.
     pub(super) fn set_order(&mut self, maker: &Maker<'_>, order: Order) {
-        if order != self.laid.order {
-            self.laid = Laid::new(maker, order, CLUMP_LIMIT as u32, [&self.clumps, &self.list, &self.stands], &self.tufts);
-        }
+        let lists = [&self.clumps, &self.list, &self.stands];
+        self.laid.set(order, || Laid::new(maker, order, CLUMP_LIMIT as u32, lists, &self.tufts));
     }
 
     /// Lists the clumps in view, nearest grids first.
@@ -141,7 +153,7 @@ impl Billboards {
         gpu.queue.write_buffer(&self.clumps, 0, bytemuck::cast_slice(&clumps));
         self.several = several.div_ceil(CHUNK as usize) as u32;
         let several = self.count.min(self.several * CHUNK);
-        self.laid.prepare(gpu, &cells, several as usize);
+        self.laid.get_mut().prepare(gpu, &cells, several as usize);
         self.segments = land.scene().kinds().iter().map(|grass| grass.segments as usize).max().unwrap_or(1).clamp(1, SEGMENT_LIMIT);
         // Every clump beyond the last ring with several segments is at least this far away.
         let straight_m = ((several_rings - 1) as f32 * grid_m).max(1.0);
@@ -161,13 +173,13 @@ impl Billboards {
             pass.set_pipeline(&self.place);
             pass.set_bind_group(1, &self.place_group, &[]);
             pass.dispatch_workgroups(self.count.div_ceil(64), 1, 1);
-            self.laid.run(pass, self.count);
+            self.laid.get().run(pass, self.count);
         }
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.laid.pipeline);
-        pass.set_bind_group(1, &self.laid.group, &[]);
+        pass.set_pipeline(&self.laid.get().pipeline);
+        pass.set_bind_group(1, &self.laid.get().group, &[]);
         for (rows, range) in self.instances() {
             pass.set_index_buffer(self.indices[rows - 1].slice(..), wgpu::IndexFormat::Uint16);
             pass.draw_indexed(0..CHUNK * 36 * rows as u32, 0, range);
@@ -176,7 +188,7 @@ impl Billboards {
 
     /// Rows of the instances in the order in which they are drawn: near ones first, or last where clumps are drawn far to near.
     fn instances(&self) -> [(usize, Range<u32>); 2] {
-        if self.laid.is_in_order() {
+        if self.laid.get().is_in_order() {
             let single = (self.count - self.count.min(self.several * CHUNK)).div_ceil(CHUNK);
             return [(1, 0..single), (self.segments, single..single + self.several)];
         }

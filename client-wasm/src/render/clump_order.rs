@@ -21,9 +21,8 @@ pub(super) struct Cell {
     pub(super) at: [u32; 2],
 }
 
-/// What the one order in use needs.
+/// What one order needs.
 pub(super) struct Laid {
-    pub(super) order: Order,
     pub(super) pipeline: wgpu::RenderPipeline,
     pub(super) group: wgpu::BindGroup,
     way: Way,
@@ -86,12 +85,7 @@ impl Laid {
             Order::Coverage | Order::Sorted | Order::Precomputed => "fs_soft",
         };
         let draw = Draw { label: "billboards", vertex, fragment: Some(fragment), buffers: &[], depth_write: true, cull: None, blend: None };
-        Self {
-            order,
-            pipeline: maker.draw_in_order(&module, Some(&layout), &draw, order),
-            group: gpu.device.create_bind_group(&descriptor),
-            way,
-        }
+        Self { pipeline: maker.draw_in_order(&module, Some(&layout), &draw, order), group: gpu.device.create_bind_group(&descriptor), way }
     }
 
     /// Whether clumps are drawn far to near.

@@ -1,4 +1,4 @@
-//! View-frustum culling of boxes (000 section 5.3): grids here, single plants in the compute passes.
+//! View-frustum culling of boxes (000 section 5.3): grids here, single plants in the compute passes; and what the sun's map shows.
 
 use glam::{Mat4, Vec3, Vec4, Vec4Swizzles};
 
@@ -25,6 +25,30 @@ impl Frustum {
             let farthest = Vec3::select(plane.xyz().cmpge(Vec3::ZERO), high_m, low_m);
             plane.xyz().dot(farthest) + plane.w >= 0.0
         })
+    }
+}
+
+/// What a layer of the sun's map shows: a box of parallel rays.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beam {
+    clip_from_world: Mat4,
+    /// Clip space's length of a metre along each of its axes.
+    per_m: Vec3,
+}
+
+impl Beam {
+    /// Of a parallel projection, column by column.
+    pub(super) fn new(clip_from_world: &[f32; 16]) -> Self {
+        let clip_from_world = Mat4::from_cols_array(clip_from_world);
+        let rows = clip_from_world.transpose();
+        let per_m = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.xyz().length());
+        Self { clip_from_world, per_m: per_m.into() }
+    }
+
+    /// Whether any part of a ball may be in it; never false for one that is.
+    pub(super) fn meets_ball(&self, middle_m: Vec3, radius_m: f32) -> bool {
+        let from_middle = self.clip_from_world.transform_point3(middle_m) - Vec3::new(0.0, 0.0, 0.5);
+        (from_middle.abs() - radius_m * self.per_m).cmple(Vec3::new(1.0, 1.0, 0.5)).all()
     }
 }
 
@@ -58,7 +82,39 @@ mod tests {
         assert!((40..90).contains(&seen), "{seen} of 256");
     }
 
+    /// A square of 104 m and 320 m deep, as the sun sees it.
+    fn beam(elevation_rad: f32) -> Mat4 {
+        let toward = Vec3::new(0.6 * elevation_rad.cos(), elevation_rad.sin(), -0.8 * elevation_rad.cos());
+        let light_from_world = glam::camera::rh::view::look_to_mat4(Vec3::ZERO, -toward, Vec3::Y);
+        Mat4::from_translation(Vec3::new(0.0, 0.0, 0.5))
+            * Mat4::from_scale(Vec3::new(1.0 / 52.0, 1.0 / 52.0, -1.0 / 320.0))
+            * light_from_world
+    }
+
+    #[test]
+    fn what_stands_far_towards_a_low_sun_is_in_its_beam() {
+        let beam = Beam::new(&beam(0.15).to_cols_array());
+        let meets = |along_m: f32, aside_m: f32| {
+            let at_m = along_m * Vec3::new(0.6, 0.0, -0.8) + aside_m * Vec3::new(0.8, 0.0, 0.6);
+            beam.meets_ball(at_m + 8.0 * Vec3::Y, 8.0)
+        };
+        assert!(meets(0.0, 0.0) && meets(140.0, 0.0) && meets(-140.0, 50.0) && meets(140.0, -59.0));
+        assert!(!meets(0.0, 62.0) && !meets(180.0, 0.0) && !meets(100.0, -62.0));
+    }
+
     proptest! {
+        #[test]
+        fn no_ball_that_reaches_into_a_beam_is_left_out(
+            elevation in 0.02_f32..1.5, middle in proptest::array::uniform3(-300.0_f32..300.0), radius in 0.1_f32..40.0,
+            towards in proptest::array::uniform3(-1.0_f32..1.0),
+        ) {
+            let (matrix, middle) = (beam(elevation), Vec3::from(middle));
+            let at = matrix.transform_point3(middle + Vec3::from(towards).clamp_length_max(1.0) * radius);
+            if at.x.abs() < 1.0 && at.y.abs() < 1.0 && (0.0..1.0).contains(&at.z) {
+                prop_assert!(Beam::new(&matrix.to_cols_array()).meets_ball(middle, radius));
+            }
+        }
+
         #[test]
         fn no_box_with_a_visible_point_is_culled(
             heading in 0.0_f32..6.2, pitch in -1.4_f32..1.4,

@@ -15,6 +15,8 @@ mod fit;
 mod flora;
 mod forces;
 mod gpu;
+mod grove;
+mod kept;
 mod kinds;
 mod lamps;
 mod land;
@@ -57,7 +59,7 @@ use crate::camera::Camera;
 use crate::state::Mirror;
 use billboards::{Billboards, Reach};
 use blades::{Blades, Standpoint};
-use cull::Frustum;
+use cull::{Beam, Frustum};
 use detail::Detail;
 use dust::Dust;
 use forces::Forces;
@@ -266,7 +268,7 @@ impl Renderer {
                 shells: Shells::new(&maker, land, &ground),
                 ground,
                 blades: Blades::new(&maker, self.quality, land),
-                underbrush: Underbrush::new(&maker, land, &forces, self.detail.underbrush_m),
+                underbrush: Underbrush::new(&maker, land, &forces),
                 forces,
                 rain: RainPass::new(&maker, self.quality, land),
                 objects: Objects::new(&maker, land, standing),
@@ -323,8 +325,8 @@ impl Renderer {
             _ => None,
         };
         let has_blades = shells != Some(Extent::All);
+        let from = Standpoint { eye_m: camera.eye_m, frustum: &frustum, detail: &detail, look: self.look, dt_secs };
         if has_blades {
-            let from = Standpoint { eye_m: camera.eye_m, frustum: &frustum, detail: &detail, look: self.look, dt_secs };
             scene.blades.prepare(gpu, land, &from);
         }
         if let Some(extent) = shells {
@@ -337,13 +339,14 @@ impl Renderer {
         if let Some(underbrush) = &mut scene.underbrush {
             scene.forces.follow(gpu, land, &scene.textures.wind, &poses, [camera.eye_m.x, camera.eye_m.z], dt_secs);
             underbrush.show_broken(gpu, mirror.falls(), mirror.broken_count());
-            underbrush.prepare(gpu, &scene.forces, camera.eye_m, &frustum, dt_secs);
+            underbrush.prepare(gpu, &scene.forces, &from);
         }
         if let Some(dust) = &scene.dust {
             dust.prepare(gpu, dt_secs);
         }
-        let [reach_m, pixel_rad] = [self.detail.trees_m, frame.screen[2]];
-        scene.objects.prepare(gpu, &poses, camera.eye_m, &frustum, time_secs as f32, dt_secs, reach_m, pixel_rad);
+        let beams = [&frame.shadow_from_world, &frame.lights.far_shadow_from_world].map(Beam::new);
+        let beams = &beams[..self.quality.shadow_layers() as usize];
+        scene.objects.prepare(gpu, &poses, &from, beams, time_secs as f32, frame.screen[2]);
 
         let clumps = (self.look.far == Far::Clumps && has_blades).then_some(&self.billboards);
         let turns = if has_blades { scene.blades.turns() } else { 1 };

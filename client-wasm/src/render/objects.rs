@@ -1,8 +1,10 @@
 //! Everything made of meshes: vehicles, trees and stones; drawn for the eye and for the sun.
 
-use super::cull::Frustum;
+use super::blades::Standpoint;
+use super::cull::Beam;
 use super::flora::{self, STONE_SHAPES, Standing, TREE_SHAPES, TreeDetail};
 use super::gpu::Gpu;
+use super::grove::{Ball, Grove};
 use super::mesh::{Paint, Solid, VERTEX_ATTRIBUTES, Vertex};
 use super::paint;
 use super::pipeline::{Draw, Maker, bind, storage, texture};
@@ -23,8 +25,6 @@ const FINE_TREE_PX: f32 = 130.0;
 const DISTANT_TREE_PX: f32 = 26.0;
 /// How finely trees are made that throw shadows into the layers of the shadow map.
 const SHADOW_DETAIL: [TreeDetail; 2] = [TreeDetail::Coarse, TreeDetail::Distant];
-/// Distance up to which things cast shadows into the layers of the shadow map (m).
-const SHADOW_REACH_M: [f32; 2] = [90.0, 330.0];
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -48,7 +48,7 @@ pub(super) struct Objects {
     indices: wgpu::Buffer,
     instances: wgpu::Buffer,
     meshes: Vec<MeshRange>,
-    standing: Vec<Standing>,
+    grove: Grove,
     rolled_m: HashMap<ObjectId, f32>,
     /// Mesh and instances of each draw, for the eye and for the layers of the sun's map.
     seen: Vec<(usize, Range<u32>)>,
@@ -83,6 +83,12 @@ impl Objects {
             indices.extend_from_slice(&solid.indices);
         }
 
+        let trees = (0..TREE_SHAPES).map(|shape| Ball::about(TreeDetail::ALL.iter().map(|&detail| &solids[tree_mesh(shape, detail)])));
+        let stones = (0..STONE_SHAPES).map(|shape| Ball::about([&solids[stone_mesh(shape)]].into_iter()));
+        let balls: Vec<Ball> = trees.chain(stones).collect();
+        let model = |standing: &Standing| balls[(standing.shape + if standing.is_tree { 0 } else { TREE_SHAPES }) as usize];
+        let grove = Grove::new(standing.into_iter().map(|standing| (standing, model(&standing).of(&standing))).collect());
+
         let module = gpu.shader("objects", shaders::OBJECTS);
         let layout = maker.layout("objects", &[storage(0), texture(1)]);
         let buffer = wgpu::VertexBufferLayout {
@@ -111,24 +117,21 @@ impl Objects {
             indices: gpu.buffer("mesh indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
             instances,
             meshes,
-            standing,
+            grove,
             rolled_m: HashMap::new(),
             seen: Vec::new(),
             lit: Default::default(),
         }
     }
 
-    /// Lists what is in view, and what throws shadows into the view.
-    #[allow(clippy::too_many_arguments, reason = "the frame's own numbers")]
+    /// Lists what is in view, and what throws shadows into the layers of the sun's map that are drawn.
     pub(super) fn prepare(
         &mut self,
         gpu: &Gpu,
         poses: &[ObjectPose],
-        eye_m: Vec3,
-        frustum: &Frustum,
+        from: &Standpoint<'_>,
+        beams: &[Beam],
         time_secs: f32,
-        dt_secs: f32,
-        tree_reach_m: f32,
         pixel_rad: f32,
     ) {
         let mut by_mesh: Vec<Vec<Instance>> = vec![Vec::new(); self.meshes.len()];
@@ -138,7 +141,7 @@ impl Objects {
             let rotation = Quat::from_array(pose.rotation);
             let forward = rotation * Vec3::NEG_Z;
             let rolled = self.rolled_m.entry(pose.id).or_default();
-            *rolled = (*rolled + Vec3::from(pose.velocity_m_per_s).dot(forward) * dt_secs) % 1000.0;
+            *rolled = (*rolled + Vec3::from(pose.velocity_m_per_s).dot(forward) * from.dt_secs) % 1000.0;
             let body = glam::Affine3A::from_rotation_translation(rotation, Vec3::from(pose.position_m));
             for (part, place) in vehicles::parts(pose, *rolled, time_secs) {
                 let world_from_model = Mat4::from(body * place).to_cols_array();
@@ -147,16 +150,14 @@ impl Objects {
                 by_mesh_lit.iter_mut().for_each(|lit| lit[part_mesh(part)].push(instance));
             }
         }
-        let mut near: Vec<(f32, &Standing)> = self
-            .standing
-            .iter()
-            .map(|standing| (standing.position_m.distance(eye_m), standing))
-            .filter(|(distance_m, standing)| *distance_m < tree_reach_m * if standing.is_tree { 1.0 } else { 0.4 })
-            .collect();
-        near.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let room = INSTANCE_LIMIT - 18 * OBJECT_LIMIT.min(poses.len());
-        for (distance_m, standing) in near.into_iter().take(room / 3) {
-            let half = Vec3::new(0.6, 1.1, 0.6) * standing.size_m;
+        let is_seen = |ball: &Ball| {
+            let [low_m, high_m] = ball.corners_m();
+            from.frustum.sees_box(low_m, high_m)
+        };
+        let is_lit = |beam: &Beam, ball: &Ball| !from.look.culls || beam.meets_ball(ball.middle_m, ball.radius_m);
+        let may_show = |ball: &Ball| is_seen(ball) || beams.iter().any(|beam| is_lit(beam, ball));
+        let room = INSTANCE_LIMIT.saturating_sub(18 * OBJECT_LIMIT.min(poses.len()));
+        for (distance_m, (standing, ball)) in self.grove.near(from.eye_m, from.detail.trees_m, room / 3, may_show) {
             let tall_px = standing.size_m / (distance_m * pixel_rad);
             let detail = match tall_px {
                 FINE_TREE_PX.. => TreeDetail::Fine,
@@ -168,11 +169,11 @@ impl Objects {
                 false => stone_mesh(standing.shape),
             };
             let instance = Instance { world_from_model: standing.world_from_model.to_cols_array(), tint: standing.tint };
-            if frustum.sees_box(standing.position_m - half, standing.position_m + half) {
+            if is_seen(ball) {
                 by_mesh[mesh(detail)].push(instance);
             }
-            for ((lit, reach_m), detail) in by_mesh_lit.iter_mut().zip(SHADOW_REACH_M).zip(SHADOW_DETAIL) {
-                if distance_m < reach_m {
+            for ((lit, beam), detail) in by_mesh_lit.iter_mut().zip(beams).zip(SHADOW_DETAIL) {
+                if is_lit(beam, ball) {
                     lit[mesh(detail)].push(instance);
                 }
             }

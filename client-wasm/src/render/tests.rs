@@ -25,6 +25,7 @@ mod order;
 mod shells;
 mod small;
 mod standing;
+mod trees;
 mod twins;
 mod underbrush;
 
@@ -416,6 +417,7 @@ fn petals_stand_at_065_of_the_height_of_the_blade_whose_place_they_take() {
     for [blade_m, flower_m, blade_rad_per_s, flower_rad_per_s] in &found {
         assert!((0.5999..0.7001).contains(&(flower_m / blade_m)), "{flower_m} m over {blade_m} m");
         assert!((flower_rad_per_s / blade_rad_per_s - 0.55_f32.sqrt()).abs() < 1e-4, "heavier, so slower");
+        assert!(*blade_m < plants.height_m * plants.most_grown(), "{blade_m} m");
         // As `Scene::blade_step_secs` has it.
         let least_m = plants.height_m * (1.0 - plants.height_variation) * 0.72 * 0.78;
         assert!(

@@ -211,7 +211,7 @@ uniform_block! {
 uniform_block! {
     /// What the compute pass of the underbrush knows; its twin is in `underbrush.wgsl`.
     UnderbrushFrame {
-        /// Number of the frame; unused.
+        /// Number of the frame, of those in which time passes; 1 to leave out what is not seen; unused.
         counts: [u32; 4],
         /// Time since the frame before (s); distance at which plants have shrunk to nothing (m); height of the force field (m); unused.
         shape: [f32; 4],

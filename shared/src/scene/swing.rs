@@ -1,7 +1,7 @@
-//! How short the steps of a scene's blades must be.
+//! How short the steps of a scene's blades must be, and how tall blades grow.
 
-use super::Scene;
 use super::check::Misfits;
+use super::{Plants, Scene};
 use crate::plant::blade::Blade;
 use crate::plant::blade::propagator::stable_dt_in_air_secs;
 use std::f32::consts::TAU;
@@ -13,11 +13,22 @@ pub const BLADE_STEPS_LIMIT: u32 = 8;
 /// `bend.wgsl`.
 const LEAST_GROWN: f32 = 0.72 * 0.78;
 
+/// Height of the tallest blades over their kind's mean, before the random share of each: most that the soil, the meadow and a tuft let grow; twin of `fed` in
+/// `common.wgsl` and of `plant_at` in `bend.wgsl`.
+const MOST_GROWN: f32 = 1.22 * 1.20 * 1.15;
+
 /// Fastest air past a blade that counts (m/s): of winds up to 10 m/s, and as much of its own swing.
 const PAST_M_PER_S: f32 = 20.0;
 
 /// Steps over the limit: drag, which is part of it, changes within a step.
 const MARGIN: f32 = 0.9;
+
+impl Plants {
+    /// Height of the tallest blades over their kind's mean.
+    pub fn most_grown(&self) -> f32 {
+        MOST_GROWN * (1.0 + self.height_variation)
+    }
+}
 
 impl Scene {
     /// Longest step (s) that the swing of every blade bears by `plants.integrator`; infinite for `exact`.

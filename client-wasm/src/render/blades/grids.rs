@@ -16,8 +16,6 @@ use wgpu::{BindingResource, BufferUsages, TextureSampleType, TextureViewDimensio
 
 /// Grids on each side of the camera's that are simulated, and so not listed.
 const NEAR_GRIDS: i32 = 1;
-/// How high plants stand over the mean height of the tallest kind, at most.
-const TALLEST: f32 = 2.0;
 /// Plants of a tuft draw together from beyond their grid's border (m).
 const BESIDE_M: f32 = 0.5;
 
@@ -137,7 +135,8 @@ fn square(reach: i32) -> impl Iterator<Item = [i32; 2]> {
 
 /// How far plants reach beyond their grid (m).
 fn beyond_m(land: &Land) -> f32 {
-    TALLEST * land.scene().tallest_m() + BESIDE_M
+    let scene = land.scene();
+    scene.plants.most_grown() * scene.tallest_m() + BESIDE_M
 }
 
 /// Corners of a box about all plants of a grid (m).

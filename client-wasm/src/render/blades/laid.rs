@@ -1,4 +1,4 @@
-//! How the strips of blades are laid over the picture: what the order in use needs, and no other.
+//! How the strips of blades are laid over the picture: what one order needs.
 
 use super::order::{Keys, Ordered};
 use super::strips::strip_indices;
@@ -24,7 +24,6 @@ pub(in crate::render) struct Listed {
 }
 
 pub(in crate::render) struct Laid {
-    order: Order,
     strips: wgpu::RenderPipeline,
     in_order: Option<InOrder>,
 }
@@ -57,15 +56,9 @@ impl Laid {
             Order::Cut | Order::Coverage | Order::Weighted => None,
         };
         Self {
-            order,
             strips: maker.draw_in_order(&module, Some(layout), &draw, order),
             in_order: keys.map(|keys| InOrder::new(maker, keys, &in_order_layout, listed)),
         }
-    }
-
-    /// The order that this is of.
-    pub(super) fn order(&self) -> Order {
-        self.order
     }
 
     /// What orders the blades, if they are drawn far to near.

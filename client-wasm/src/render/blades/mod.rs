@@ -11,6 +11,7 @@ mod strips;
 use super::cull::Frustum;
 use super::detail::Detail;
 use super::gpu::Gpu;
+use super::kept::Kept;
 use super::paint;
 use super::pipeline::{Draw, Maker, bind, storage, storage_rw, texture, uniform};
 use super::shaders;
@@ -58,7 +59,7 @@ pub(super) struct Blades {
     near: wgpu::ComputePipeline,
     far: wgpu::ComputePipeline,
     finish: wgpu::ComputePipeline,
-    pub(super) laid: Laid,
+    pub(super) laid: Kept<Laid>,
     pub(super) listed: Listed,
     heads: wgpu::RenderPipeline,
     plants: wgpu::Buffer,
@@ -125,16 +126,8 @@ impl Blades {
 
         let bend = gpu.shader("bend", shaders::BEND);
         let sift = Sift::new(maker, &bend, &plants, &grids, places);
-        let entries = [
-            uniform(0),
-            storage_rw(1),
-            storage_rw(2),
-            storage_rw(3),
-            storage_compute(4),
-            storage_rw(5),
-            storage_compute(6),
-            storage_rw(7),
-        ];
+        let entries =
+            [uniform(0), storage_rw(1), storage_rw(2), storage_rw(3), storage_compute(4), storage_rw(5), storage_compute(6), storage_rw(7)];
         let compute_layout = maker.layout("bend", &entries);
         let buffers = [&plants, &sways, &drawn, &counters, grids.chunks(), &draws, sift.standing(), &moved];
         let compute_group = bind(gpu, "bend", &compute_layout, &buffers.map(|buffer| buffer.as_entire_binding()));
@@ -164,7 +157,7 @@ impl Blades {
             near: compute("bend_near"),
             far: compute("bend_far"),
             finish: compute("finish"),
-            laid: Laid::new(maker, Order::default(), &listed),
+            laid: Kept::new(Order::default(), Laid::new(maker, Order::default(), &listed)),
             listed,
             heads,
             plants,
@@ -189,9 +182,7 @@ impl Blades {
 
     /// Lays blades in another order from now on.
     pub(super) fn set_order(&mut self, maker: &Maker<'_>, order: Order) {
-        if order != self.laid.order() {
-            self.laid = Laid::new(maker, order, &self.listed);
-        }
+        self.laid.set(order, || Laid::new(maker, order, &self.listed));
     }
 
     /// Whether a frame may need several turns.
@@ -241,7 +232,7 @@ impl Blades {
             reach: [self.grids.beyond_m, 0.0, 0.0, 0.0],
         };
         gpu.queue.write_buffer(&self.plants, 0, bytemuck::bytes_of(&plants));
-        if let Some(ordered) = self.laid.ordered() {
+        if let Some(ordered) = self.laid.get().ordered() {
             ordered.prepare(gpu, home);
         }
         self.grids.prepare(from, home, plants_of_grid);
@@ -277,14 +268,14 @@ impl Blades {
         }
         pass.set_pipeline(&self.finish);
         pass.dispatch_workgroups(1, 1, 1);
-        if let Some(ordered) = self.laid.ordered() {
+        if let Some(ordered) = self.laid.get().ordered() {
             ordered.run(pass);
         }
     }
 
     /// Draws the blades in the order that is set.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.laid.draw(pass, |pass| (0..FLOWERS).for_each(|list| self.draw_list(pass, list)));
+        self.laid.get().draw(pass, |pass| (0..FLOWERS).for_each(|list| self.draw_list(pass, list)));
     }
 
     pub(super) fn draw_flowers(&self, pass: &mut wgpu::RenderPass<'_>) {

@@ -1,7 +1,7 @@
 //! Plants laid over each other: blades far to near, borders that fade, orders that change from frame to frame.
 
 use super::super::blades::Blades;
-use super::super::{Look, Order};
+use super::super::{Far, Look, Order, Split, Way};
 use super::*;
 
 const SIZE_PX: [u32; 2] = [96, 64];
@@ -40,7 +40,7 @@ fn blades(picture: &Picture) -> &Blades {
 /// Roots (m) of the blades in the order in which they are drawn, and how many of them come before the fine ones.
 fn roots_in_order(gpu: &Gpu, picture: &Picture) -> (Vec<Vec3>, usize) {
     let blades = blades(picture);
-    let ordered = blades.laid.ordered().expect("blades in order");
+    let ordered = blades.laid.get().ordered().expect("blades in order");
     let spans: Vec<u32> = bytemuck::pod_collect_to_vec(&read(gpu, ordered.spans()));
     let pairs: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&read(gpu, ordered.pairs()));
     let listed: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read(gpu, &blades.listed.blades));
@@ -116,6 +116,22 @@ fn orders_change_from_frame_to_frame() {
     picture.renderer.resize([48, 32]);
     picture.renderer.resize(SIZE_PX);
     assert!(apart(&weighted, &pixels(&mut mirror, &mut picture, Order::Weighted)) < 0.02);
+}
+
+#[test]
+fn two_orders_side_by_side_are_made_once() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let (mut mirror, mut picture) = grown(&gpu, Quality::Low);
+    let ways =
+        [Order::Precomputed, Order::Sorted].map(|order| Way { look: Look { order, far: Far::Clumps, ..Look::default() }, level: 0.0 });
+    let mut draw = || {
+        picture.draw_split(&mut mirror, &camera(), 1.0, 0.0, &Split { ways, at: 0.5 });
+        // What the right part has just been drawn with.
+        let pairs = blades(&picture).laid.get().ordered().expect("blades in order").pairs().clone();
+        (pairs, picture.renderer.billboards.laid.get().pipeline.clone())
+    };
+    let first = draw();
+    assert!(draw() == first, "made anew");
 }
 
 #[test]

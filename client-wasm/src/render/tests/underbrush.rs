@@ -5,6 +5,7 @@ use super::super::{flora, underbrush};
 use super::*;
 use shared::plant::force_field::Mesh;
 use shared::scene::{Component, ComponentKind, Underbrush};
+use shared::wire::ObjectPose;
 use std::collections::HashMap;
 use std::f32::consts::FRAC_PI_2;
 
@@ -57,6 +58,34 @@ fn leaves_dip_by_the_drops_that_fall_on_them() {
 fn grasses() -> Vec<Underbrush> {
     let leaf = Component { count: 6, sections: 3, length_m: 1.2, stiffness_n_m2: 0.1, ..Component::new("leaf", ComponentKind::Leaf) };
     vec![Underbrush { room_m: 0.3, needs: [0.0; 3], uptake: [0.0; 3], light_need: 0.0, ..Underbrush::new("grass", vec![leaf]) }]
+}
+
+#[test]
+fn underbrush_ends_where_the_level_of_detail_has_it() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut mirror = meadow_of(|scene| scene.underbrush = grasses(), &[255; 16 * 16]);
+    let camera = Camera { eye_m: Vec3::new(32.0, 1.6, 64.0), ..Camera::default() };
+    let mut picture = Picture::new(&gpu, [256, 144], Quality::Medium);
+    let [near, whole] = [0.0, 1.0].map(|level| {
+        picture.set_level(level);
+        picture.draw(&mut mirror, &camera, 0.0, 0.0);
+        picture.drawn_underbrush()
+    });
+    assert!(near > 100 && 10 * near < 9 * whole, "{near} within 45 m, {whole} within 64 m");
+}
+
+#[test]
+fn nothing_but_culling_leaves_out_what_is_behind_the_camera() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut mirror = meadow_of(|scene| scene.underbrush = grasses(), &[255; 16 * 16]);
+    let camera = Camera { eye_m: Vec3::new(32.0, 1.6, 32.0), ..Camera::default() };
+    let mut picture = Picture::new(&gpu, [256, 144], Quality::Low);
+    let [seen, all] = [true, false].map(|culls| {
+        picture.set_look(Look { culls, ..Look::default() });
+        picture.draw(&mut mirror, &camera, 0.0, 0.0);
+        picture.drawn_underbrush()
+    });
+    assert!(seen > 100 && 2 * seen < all, "{seen} in view of {all}");
 }
 
 /// Place of each plant (m) by its site, and what it feels (Pa), after a second and a half below a camera.

@@ -3,7 +3,7 @@
 
 mod bake;
 
-use super::cull::Frustum;
+use super::blades::Standpoint;
 use super::forces::Forces;
 use super::gpu::Gpu;
 use super::pipeline::{Draw, Maker, sampled, storage, storage_rw, uniform};
@@ -50,6 +50,7 @@ pub(super) struct Grown {
 /// Plants of a square of the land.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tile {
+    row: i32,
     low_m: Vec3,
     high_m: Vec3,
     first: u32,
@@ -77,10 +78,11 @@ pub(super) struct Underbrush {
     pub(super) felt: wgpu::Buffer,
     compute_group: wgpu::BindGroup,
     lists: Vec<List>,
+    /// Row by row.
     tiles: Vec<Tile>,
     species: [[f32; 4]; SPECIES_LIMIT],
     places: [[u32; 4]; SPECIES_LIMIT],
-    reach_m: f32,
+    /// Number of the newest frame, of those in which time passes; the first is the second, so that nothing has been seen right before it.
     frame_number: u32,
     chunk_count: u32,
     plants: u32,
@@ -92,7 +94,7 @@ pub(super) struct Underbrush {
 
 impl Underbrush {
     /// Of a scene in which any grows.
-    pub(super) fn new(maker: &Maker<'_>, land: &Land, forces: &Forces, reach_m: f32) -> Option<Self> {
+    pub(super) fn new(maker: &Maker<'_>, land: &Land, forces: &Forces) -> Option<Self> {
         let flora = land.flora()?;
         let gpu = maker.gpu;
         let (grown, tiles) = tiles(land, flora);
@@ -194,8 +196,7 @@ impl Underbrush {
             tiles,
             species,
             places,
-            reach_m,
-            frame_number: 1,
+            frame_number: 2,
             chunk_count: 0,
             plants: grown.len() as u32,
             #[cfg(test)]
@@ -217,20 +218,24 @@ impl Underbrush {
     }
 
     /// Lists the plants of the squares that may be seen.
-    pub(super) fn prepare(&mut self, gpu: &Gpu, forces: &Forces, eye_m: Vec3, frustum: &Frustum, dt_secs: f32) {
+    pub(super) fn prepare(&mut self, gpu: &Gpu, forces: &Forces, from: &Standpoint<'_>) {
+        let (eye_m, reach_m) = (from.eye_m, from.detail.underbrush_m);
         let mut chunks: Vec<[u32; 2]> = Vec::new();
-        for tile in &self.tiles {
+        // What is rooted on rows beyond is not drawn.
+        let first = self.tiles.partition_point(|tile| tile.row < number(eye_m.z - reach_m));
+        let end = self.tiles.partition_point(|tile| tile.row <= number(eye_m.z + reach_m));
+        for tile in &self.tiles[first..end] {
             let nearest = eye_m.clamp(tile.low_m, tile.high_m);
-            if nearest.distance_squared(eye_m) < self.reach_m * self.reach_m && frustum.sees_box(tile.low_m, tile.high_m) {
+            if nearest.distance_squared(eye_m) < reach_m * reach_m && from.frustum.sees_box(tile.low_m, tile.high_m) {
                 let starts = (0..tile.count).step_by(CHUNK as usize);
                 chunks.extend(starts.map(|start| [tile.first + start, (tile.count - start).min(CHUNK)]));
             }
         }
         self.chunk_count = chunks.len() as u32;
-        self.frame_number = self.frame_number.wrapping_add(1);
+        self.frame_number = self.frame_number.wrapping_add(u32::from(from.dt_secs > 0.0));
         let frame = UnderbrushFrame {
-            counts: [self.frame_number, 0, 0, 0],
-            shape: [dt_secs.max(0.0), self.reach_m, forces.height_m(), 0.0],
+            counts: [self.frame_number, u32::from(from.look.culls), 0, 0],
+            shape: [from.dt_secs.max(0.0), reach_m, forces.height_m(), 0.0],
             forces: forces.window_m(),
             species: self.species,
             places: self.places,
@@ -289,7 +294,12 @@ fn numbered(
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
-/// All plants, square by square, and the squares.
+/// Number of the square along an axis.
+fn number(m: f32) -> i32 {
+    (m / TILE_M).floor() as i32
+}
+
+/// All plants, square by square, and the squares, row by row.
 pub(super) fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
     let reaches_m: Vec<f32> = flora.species().iter().map(flora::reach_m).collect();
     let mut by_tile: Vec<([i32; 2], Grown, f32)> = flora
@@ -301,7 +311,7 @@ pub(super) fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
             let standing = flora.standing(plant);
             let make = standing.species as u32 | (standing.number % VARIANTS) << 8;
             let grown = Grown { at_m: standing.at_m, size: standing.size, make, heading_rad: standing.heading_rad, site: plant.site };
-            (standing.at_m.map(|m| (m / TILE_M) as i32), grown, reaches_m[standing.species] * standing.size * FEWEST.powf(-0.3))
+            (standing.at_m.map(number), grown, reaches_m[standing.species] * standing.size * FEWEST.powf(-0.3))
         })
         .collect();
     by_tile.sort_by_key(|&([x, z], ..)| [z, x]);
@@ -315,7 +325,7 @@ pub(super) fn tiles(land: &Land, flora: &Flora) -> (Vec<Grown>, Vec<Tile>) {
             low_m = low_m.min(Vec3::new(x - reach_m, ground_m - 0.1, z - reach_m));
             high_m = high_m.max(Vec3::new(x + reach_m, ground_m + reach_m, z + reach_m));
         }
-        tiles.push(Tile { low_m, high_m, first, count: own.len() as u32 });
+        tiles.push(Tile { row: own[0].0[1], low_m, high_m, first, count: own.len() as u32 });
         first += own.len() as u32;
     }
     (by_tile.into_iter().map(|(_, plant, _)| plant).collect(), tiles)
