@@ -6,10 +6,10 @@
 struct Plants {
     // Grid (x, z) that lives in each of the nine slots; 1 in z when it has just moved in; plants of it that may stand.
     slots: array<vec4<i32>, 9>,
-    // Places for plants in a near grid; plants there at this level of detail; 1 to leave out what is not seen; 1 where blades narrower than a
-    // pixel are drawn as wide as they are.
+    // Plants of a near grid; 1 to leave out what is not seen; 1 where blades narrower than a pixel are drawn as wide as they are; number of the
+    // frame, of those in which time passes.
     counts: vec4<u32>,
-    // Capacities of the lists: fine blades, all others, flowers; number of the frame.
+    // Capacities of the lists: fine blades, all others, flowers; unused.
     capacities: vec4<u32>,
     // Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), damping share of a blade.
     shape: vec4<f32>,
@@ -190,7 +190,7 @@ fn append(list: u32, blade: Blade) {
 fn is_blade_seen(root: vec3<f32>, points: array<vec3<f32>, 3>, width: f32) -> bool {
     let centre = 0.5 * points[2];
     let reach = max(length(centre), max(distance(centre, points[0]), distance(centre, points[1])));
-    return (plants.counts.z == 0u) | is_seen(root + centre, 1.1 * reach + 0.5 * WIDER * width);
+    return (plants.counts.y == 0u) | is_seen(root + centre, 1.1 * reach + 0.5 * WIDER * width);
 }
 
 // The grass about a plant, whose colour has a tint, as it is seen from afar, and how much of it shows between the plants that are drawn.
@@ -207,7 +207,7 @@ fn about(plant: Plant, tint: vec3<f32>, lean: vec2<f32>, distance_m: f32, light:
 fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, kind: f32) {
     let pixel_m = distance_m * frame.screen.z;
     let thinned = inverseSqrt(density(distance_m, plants.shape.y));
-    let least_m = select(pixel_m * plants.time.w, 0.0, plants.counts.w != 0u);
+    let least_m = select(pixel_m * plants.time.w, 0.0, plants.counts.z != 0u);
     let width = max(plant.width * thinned, least_m) * min(grown * 2.0, 1.0);
     if !is_blade_seen(plant.root, points, width) {
         return;
@@ -243,7 +243,7 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
 
 // How far a plant has grown in where the density is thinning: 0 gone, 1 whole.
 fn growth(index: u32, distance_m: f32) -> f32 {
-    let kept = f32(plants.counts.y) * density(distance_m, plants.shape.y);
+    let kept = f32(plants.counts.x) * density(distance_m, plants.shape.y);
     let thinning = clamp((kept - f32(index)) / (0.18 * kept), 0.0, 1.0);
     return select(thinning, 0.0, distance_m >= frame.reach.y);
 }
@@ -269,7 +269,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
 
     var sway = sways[at];
     // What was not moved for a while stands still when it comes into view.
-    if slot.z != 0 || plants.capacities.w - moved[at] > 1u {
+    if slot.z != 0 || plants.counts.w - moved[at] > 1u {
         let lean = field_lean + lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w) * give;
         sway = still(plant, array<vec2<f32>, 3>(lean, lean, lean));
     }
@@ -283,11 +283,26 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
         sway = settle(advance(sway, nature, held, winds, plants.steps.y, plants.time.x), plant.height, plant.normal, plant.root);
     }
     sways[at] = sway;
-    moved[at] = plants.capacities.w;
+    moved[at] = plants.counts.w;
 
+    // On its way out of the near grids a plant comes to stand as those beyond do.
+    let away = abs(plant.root.xz - frame.eye.xz) / plants.shape.x;
+    let beyond = standing_far(plant, grid, index);
+    let share = smoothstep(0.6, 1.0, max(away.x, away.y));
+    for (var i = 0; i < LINKS; i++) {
+        sway.links[i] = mix(sway.links[i], beyond.links[i], share);
+    }
     if grown > 0.01 {
         show(plant, points_of(sway, plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
     }
+}
+
+// A plant of which nothing is remembered.
+fn standing_far(plant: Plant, grid: vec2<i32>, index: u32) -> Sway {
+    let r = random3(grid, index + 47u);
+    let flutter = 1.0 + 0.065 * sin(frame.eye.w * mix(6.0, 9.0, r.x) + r.z * TAU);
+    let leans = trailing_leans(plant, gust_at(plant.root.xz) * (0.9 + 0.2 * r.y) * flutter);
+    return settle(still(plant, leans), plant.height, plant.normal, plant.root);
 }
 
 // How much of a blade's lean a plant shows in the same wind.
@@ -316,11 +331,7 @@ fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
     if grown <= 0.01 {
         return;
     }
-    let r = random3(grid, index + 47u);
-    let flutter = 1.0 + 0.065 * sin(frame.eye.w * mix(6.0, 9.0, r.x) + r.z * TAU);
-    let leans = trailing_leans(plant, gust_at(plant.root.xz) * (0.9 + 0.2 * r.y) * flutter);
-    let sway = settle(still(plant, leans), plant.height, plant.normal, plant.root);
-    show(plant, points_of(sway, plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
+    show(plant, points_of(standing_far(plant, grid, index), plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
 }
 
 // Indirect draws of 64 plants an instance.

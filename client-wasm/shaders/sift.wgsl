@@ -14,7 +14,7 @@ fn may_stand(grid: vec2<i32>, index: u32) -> bool {
     let ground = vec3<f32>(place.x, ground_height(place), place.y);
     let is_grown = growth(index, max(distance(ground, frame.eye.xyz) - TUFT_M, 0.0)) > 0.01;
     let has_room = random3(grid, index + 31u).x <= grass_share(place) * 1.02 - 0.02;
-    return is_grown & has_room & ((plants.counts.z == 0u) | is_seen(ground, plants.reach.x));
+    return is_grown & has_room & ((plants.counts.y == 0u) | is_seen(ground, plants.reach.x));
 }
 
 // The next number of a list, for whose every 64 a workgroup follows.

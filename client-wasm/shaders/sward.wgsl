@@ -39,14 +39,14 @@ const NEAR_M: f32 = 2.0;
 fn bare_between(distance_m: f32, kind: Kind, view: vec3<f32>, up: vec3<f32>) -> f32 {
     let drawn = drawn_leaf_area(distance_m, kind);
     let hidden = 1.0 - exp(-FACING * drawn / clamp(-dot(view, up), 0.3, 1.0));
-    let bare = 1.0 - hidden * hidden * min(drawn / (frame.sward.z * leafiness(kind)), 1.0);
+    let bare = 1.0 - hidden * hidden * min(drawn / (frame.sward.x * leafiness(kind)), 1.0);
     // An eye among the blades looks between them.
     return bare * smoothstep(0.1, NEAR_M, distance_m);
 }
 
 // How much a single blade stands out: of several to a pixel what is seen is their mean, which varies as the root of their number.
 fn contrast(distance_m: f32) -> f32 {
-    return clamp(sqrt(1.5 * frame.sward.w / (distance_m * frame.screen.z)), 0.0, 1.0);
+    return clamp(sqrt(1.5 * frame.sward.z / (distance_m * frame.screen.z)), 0.0, 1.0);
 }
 
 // What is seen of a plant's part of a colour so far up in the grass (0 at the ground, 1 at its top), where `about` is what the grass about it looks like from
@@ -63,7 +63,7 @@ fn leafiness(kind: Kind) -> f32 {
 
 // All blades of a place as they are seen from afar: the deeper a leaf is, the less of it; leaves' depths are those of equal shares of what is seen.
 fn sward_color(p: vec3<f32>, up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: vec2<f32>, view: vec3<f32>, light: f32) -> vec3<f32> {
-    let leaf_area = frame.sward.z * leafiness(kind);
+    let leaf_area = frame.sward.x * leafiness(kind);
     let free = clamp(-dot(view, up), 0.05, 1.0) / (SEEN * max(leaf_area, 0.05));
     let tilt = length(lean);
     let tangent = normalize(up + vec3<f32>(lean.x, 0.0, lean.y) * 1.4);

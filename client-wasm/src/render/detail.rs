@@ -5,8 +5,6 @@ use super::Far;
 /// Detail of plants. What a renderer holds room for follows from its quality; this may change from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Detail {
-    /// Blades along one side of a near grid, over what the scene says.
-    pub(super) blades: f32,
     /// Distance up to which every blade stands (m); beyond, their density falls with the square of the distance, so that a patch of the picture shows as
     /// many wherever it is.
     pub(super) full_m: f32,
@@ -24,14 +22,14 @@ pub(super) struct Detail {
 
 /// Those of the levels 0, 1, 2, 3.
 const LEVELS: [Detail; 4] = [
-    Detail { blades: 1.0, full_m: 10.0, fine_m: 2.5, blades_m: 55.0, far_m: 60.0, underbrush_m: 45.0, trees_m: 400.0 },
-    Detail { blades: 2.0, full_m: 10.0, fine_m: 3.5, blades_m: 90.0, far_m: 100.0, underbrush_m: 110.0, trees_m: 800.0 },
-    Detail { blades: 5.0, full_m: 7.3, fine_m: 5.0, blades_m: 130.0, far_m: 150.0, underbrush_m: 180.0, trees_m: 2000.0 },
-    Detail { blades: 5.0, full_m: 11.0, fine_m: 8.0, blades_m: 180.0, far_m: 220.0, underbrush_m: 260.0, trees_m: 2000.0 },
+    Detail { full_m: 2.0, fine_m: 2.0, blades_m: 55.0, far_m: 60.0, underbrush_m: 45.0, trees_m: 400.0 },
+    Detail { full_m: 4.0, fine_m: 3.0, blades_m: 90.0, far_m: 100.0, underbrush_m: 110.0, trees_m: 800.0 },
+    Detail { full_m: 7.3, fine_m: 5.0, blades_m: 130.0, far_m: 150.0, underbrush_m: 180.0, trees_m: 2000.0 },
+    Detail { full_m: 11.0, fine_m: 8.0, blades_m: 180.0, far_m: 220.0, underbrush_m: 260.0, trees_m: 2000.0 },
 ];
 
-/// Blades along one side of a near grid, over what the scene says, that close the sward at their own width.
-const CLOSED: f32 = 3.3;
+/// Blades along one side of a grid over what the scene says, so that they close the sward; all levels draw the same ones near the eye.
+const DENSE: f32 = 5.0;
 
 impl Detail {
     /// At a level from 0, that of low quality, to 3, that of ultra; between two of them all numbers grow by equal factors.
@@ -41,7 +39,6 @@ impl Detail {
         let (a, b, share) = (LEVELS[below], LEVELS[below + 1], level - below as f32);
         let between = |a: f32, b: f32| if a == b { a } else { a * (b / a).powf(share) };
         Self {
-            blades: between(a.blades, b.blades),
             full_m: between(a.full_m, b.full_m),
             fine_m: between(a.fine_m, b.fine_m),
             blades_m: between(a.blades_m, b.blades_m),
@@ -63,15 +60,11 @@ impl Detail {
         Self { blades_m, ..self }
     }
 
-    /// Factor on the width of blades, so that fewer still close the sward.
-    pub(super) fn width_factor(&self) -> f32 {
-        (CLOSED / self.blades).max(1.0).powf(0.9)
-    }
+}
 
-    /// Blades of a grid near the camera, where the scene has so many along one side.
-    pub(super) fn blades_of_grid(&self, plants_per_side: u32) -> f32 {
-        (plants_per_side as f32 * self.blades).round().powi(2)
-    }
+/// Blades of a grid near the camera, where the scene has so many along one side.
+pub(super) fn blades_of_grid(plants_per_side: u32) -> f32 {
+    (plants_per_side as f32 * DENSE).round().powi(2)
 }
 
 #[cfg(test)]

@@ -88,7 +88,9 @@ impl Gpu {
             return Err(error);
         }
         let required_limits = wgpu::Limits::default().or_worse_values_from(allowed);
-        let descriptor = wgpu::DeviceDescriptor { label: Some("prairie"), required_limits, ..Default::default() };
+        // A clock of its own, where it has one.
+        let required_features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
+        let descriptor = wgpu::DeviceDescriptor { label: Some("prairie"), required_features, required_limits, ..Default::default() };
         let (device, queue) = adapter.request_device(&descriptor).await.map_err(|error| GpuError::NoDevice(error.to_string()))?;
         let info = adapter.get_info();
         let names = [&info.name, &info.driver, &info.driver_info].map(|name| name.to_lowercase());

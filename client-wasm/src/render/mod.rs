@@ -37,6 +37,7 @@ mod sort;
 mod split;
 mod sun;
 mod terrain;
+mod timing;
 mod tone;
 mod underbrush;
 mod uniforms;
@@ -54,6 +55,7 @@ pub use picture::Picture;
 pub use quality::{Quality, REFERENCE_M};
 pub use shared::light::sun::Sun;
 pub use split::{Split, Way};
+pub use timing::PassSecs;
 
 use crate::camera::Camera;
 use crate::state::Mirror;
@@ -74,6 +76,7 @@ use sky::Sky;
 use split::Part;
 use sun::Daylight;
 use terrain::{Ground, Terrain};
+use timing::{Pass, Timer};
 use tone::Tone;
 use underbrush::Underbrush;
 use view::View;
@@ -117,6 +120,8 @@ pub struct Renderer {
     billboards: Billboards,
     /// Made when first needed.
     weighted: Option<Weighted>,
+    /// Made by who wants to know.
+    timer: Option<Timer>,
     scene: Option<SceneParts>,
 }
 
@@ -216,6 +221,7 @@ impl Renderer {
             frame,
             daylight,
             weighted: None,
+            timer: None,
             scene: None,
         }
     }
@@ -357,13 +363,16 @@ impl Renderer {
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
             if turn == 0 {
                 for layer in 0..self.quality.shadow_layers() {
-                    let mut pass = shadow_pass(&mut encoder, &self.frame.shadow_map(layer));
+                    let (is_first, is_last) = (layer == 0, layer + 1 == self.quality.shadow_layers());
+                    let clock = self.timer.as_ref().and_then(|timer| timer.of_render(Pass::Shadows, is_first, is_last));
+                    let mut pass = shadow_pass(&mut encoder, &self.frame.shadow_map(layer), clock);
                     pass.set_bind_group(0, &scene.textures.shadow_group, &[]);
                     scene.objects.draw_shadows(&mut pass, layer as usize);
                 }
             }
             {
-                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes: None });
+                let timestamp_writes = self.timer.as_ref().map(|timer| timer.of_compute(Pass::Bend));
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes });
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 if has_blades {
                     scene.blades.bend(&mut pass);
@@ -386,7 +395,8 @@ impl Renderer {
             let weighted = self.weighted.as_ref().filter(|_| order == Order::Weighted);
             let is_last = turn + 1 == turns;
             {
-                let mut pass = main_pass(&mut encoder, &self.targets, turn == 0, is_last && weighted.is_none());
+                let clock = self.timer.as_ref().and_then(|timer| timer.of_render(Pass::Picture, turn == 0, is_last && weighted.is_none()));
+                let mut pass = main_pass(&mut encoder, &self.targets, turn == 0, is_last && weighted.is_none(), clock);
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 if turn == 0 {
                     scene.objects.draw(&mut pass);
@@ -423,16 +433,21 @@ impl Renderer {
                     pass.set_bind_group(0, &scene.textures.group, &[]);
                     scene.draw_plants(has_blades, clumps, &mut pass);
                 }
-                let mut pass = main_pass(&mut encoder, &self.targets, false, true);
+                let clock = self.timer.as_ref().and_then(|timer| timer.of_render(Pass::Picture, false, true));
+                let mut pass = main_pass(&mut encoder, &self.targets, false, true, clock);
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 weighted.compose(&mut pass);
                 scene.draw_weather(&mut pass);
             }
             if turn + 1 == turns {
-                let mut pass = tone_pass(&mut encoder, target, part.keeps);
+                let clock = self.timer.as_ref().and_then(|timer| timer.of_render(Pass::Tone, true, true));
+                let mut pass = tone_pass(&mut encoder, target, part.keeps, clock);
                 pass.set_scissor_rect(part.columns.start, 0, part.columns.len() as u32, self.size_px[1]);
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 self.tone.draw(&mut pass);
+            }
+            if let Some(timer) = self.timer.as_ref().filter(|_| is_last) {
+                timer.resolve(&mut encoder);
             }
             gpu.queue.submit([encoder.finish()]);
         }
@@ -448,7 +463,11 @@ impl Renderer {
     }
 }
 
-fn shadow_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, depth: &wgpu::TextureView) -> wgpu::RenderPass<'a> {
+fn shadow_pass<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    depth: &wgpu::TextureView,
+    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) -> wgpu::RenderPass<'a> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("shadows"),
         color_attachments: &[],
@@ -457,14 +476,20 @@ fn shadow_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, depth: &wgpu::TextureV
             depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
             stencil_ops: None,
         }),
-        timestamp_writes: None,
+        timestamp_writes,
         occlusion_query_set: None,
         multiview_mask: None,
     })
 }
 
 /// The pass that draws the picture: the first one begins it, the last one ends it.
-fn main_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, targets: &Targets, is_first: bool, is_last: bool) -> wgpu::RenderPass<'a> {
+fn main_pass<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    targets: &Targets,
+    is_first: bool,
+    is_last: bool,
+    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) -> wgpu::RenderPass<'a> {
     use wgpu::{LoadOp, StoreOp};
     let keep = |is_kept| if is_kept { StoreOp::Store } else { StoreOp::Discard };
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -480,13 +505,18 @@ fn main_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, targets: &Targets, is_fi
             depth_ops: Some(wgpu::Operations { load: if is_first { LoadOp::Clear(0.0) } else { LoadOp::Load }, store: keep(!is_last) }),
             stencil_ops: None,
         }),
-        timestamp_writes: None,
+        timestamp_writes,
         occlusion_query_set: None,
         multiview_mask: None,
     })
 }
 
-fn tone_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, target: &wgpu::TextureView, keeps: bool) -> wgpu::RenderPass<'a> {
+fn tone_pass<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    target: &wgpu::TextureView,
+    keeps: bool,
+    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) -> wgpu::RenderPass<'a> {
     let load = if keeps { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("tone"),
@@ -497,7 +527,7 @@ fn tone_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, target: &wgpu::TextureVi
             ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
         })],
         depth_stencil_attachment: None,
-        timestamp_writes: None,
+        timestamp_writes,
         occlusion_query_set: None,
         multiview_mask: None,
     })

@@ -1,6 +1,7 @@
 //! Pictures without a window.
 
-use super::{FrameStats, Gpu, Look, Quality, Renderer, Split};
+use super::timing::Timer;
+use super::{FrameStats, Gpu, Look, PassSecs, Quality, Renderer, Split};
 use crate::camera::Camera;
 use crate::state::Mirror;
 
@@ -31,7 +32,9 @@ impl Picture {
         });
         let size = u64::from(row_bytes(size_px[0])) * u64::from(size_px[1]);
         let buffer = gpu.empty_buffer("pixels", size, wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
-        Self { renderer: Renderer::new(gpu, format, size_px, quality), gpu: gpu.clone(), texture, buffer }
+        let mut renderer = Renderer::new(gpu, format, size_px, quality);
+        renderer.timer = Timer::new(gpu);
+        Self { renderer, gpu: gpu.clone(), texture, buffer }
     }
 
     /// How frames are drawn from now on.
@@ -58,6 +61,11 @@ impl Picture {
         let stats = self.renderer.draw_split(mirror, camera, time_secs, dt_secs, &view, split);
         self.wait();
         stats
+    }
+
+    /// How long the passes of the newest frame kept the device; none where it has no clock.
+    pub fn pass_secs(&self) -> Option<PassSecs> {
+        self.renderer.timer.as_ref().map(|timer| timer.read(&self.gpu))
     }
 
     /// Pixels of the newest frame: RGBA, row by row from the top.

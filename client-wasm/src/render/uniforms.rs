@@ -56,8 +56,7 @@ uniform_block! {
         screen: [f32; 4],
         /// Near blades fade out from (m), to (m); billboards end from (m), to (m).
         reach: [f32; 4],
-        /// Leaf area over the ground below it, of blades of mean height as they stand near by; distance up to which they stand so (m); the same leaf area where
-        /// every blade stands, and the width of a blade there (m).
+        /// Leaf area over the ground below it, of blades of mean height as they stand near by; distance up to which they stand so (m); width of a blade (m); unused.
         sward: [f32; 4],
         /// Offset of the clouds (m, x and z); unused; number of interaction spheres.
         clouds: [f32; 4],
@@ -155,10 +154,10 @@ uniform_block! {
     Plants {
         /// Grid (x, z) in each of the nine slots; third: 1 when it has just moved in; fourth: plants of it that may stand.
         slots: [[i32; 4]; 9],
-        /// Places for plants in a near grid; plants there at this level of detail; 1 to leave out what is not seen; 1 where blades narrower than a pixel are
-        /// drawn as wide as they are.
+        /// Plants of a near grid; 1 to leave out what is not seen; 1 where blades narrower than a pixel are drawn as wide as they are; number of the frame, of
+        /// those in which time passes.
         counts: [u32; 4],
-        /// Capacities of the lists of fine blades, of all others, and of flowers; number of the frame.
+        /// Capacities of the lists of fine blades, of all others, and of flowers; unused.
         capacities: [u32; 4],
         /// Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), damping share of a blade.
         shape: [f32; 4],

@@ -2,7 +2,7 @@
 
 use super::Quality;
 use super::atlas::Atlas;
-use super::detail::Detail;
+use super::detail::{Detail, blades_of_grid};
 use super::lamps::{lamps, lit};
 use super::sun::Daylight;
 use super::uniforms::{Frame, Lamp, Lights, SPHERE_LIMIT};
@@ -65,7 +65,6 @@ impl<'a> View<'a> {
         let travelled = (self.time_secs * f64::from(mean) * GUST_SPEED).rem_euclid(GUST_PERIOD_M) as f32;
         let drift = -(self.time_secs * CLOUD_SPEED) as f32;
         let plants = &scene.plants;
-        let width_m = plants.width_m * self.detail.width_factor();
         let Detail { blades_m, far_m, .. } = self.detail;
         let fades_from = if self.quality == Quality::Reference { 0.999 } else { 0.72 };
         let pixel_rad = self.camera.fov_rad / self.size_px[1] as f32;
@@ -87,10 +86,10 @@ impl<'a> View<'a> {
             tiling: [land.tiles().seed(), wraps_x, wraps_z, lamps.len() as u32],
             gust: [dir_x, dir_z, mean, travelled],
             past: atlas.past(),
-            blade: [plants.flowers_per_m2, plants.height_variation, width_m, plants.blade_shape as u32 as f32],
+            blade: [plants.flowers_per_m2, plants.height_variation, plants.width_m, plants.blade_shape as u32 as f32],
             screen: [self.size_px[0] as f32, self.size_px[1] as f32, pixel_rad, rain_share],
             reach: [blades_m * fades_from, blades_m, far_m * 0.6, far_m],
-            sward: self.sward(plants, width_m),
+            sward: self.sward(plants),
             clouds: [drift * dir_x * mean, drift * dir_z * mean, 0.0, spheres.len() as f32],
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_default()),
             lights: self.lights(land, daylight, &lamps),
@@ -98,14 +97,11 @@ impl<'a> View<'a> {
     }
 
     /// What stands near by and how it is drawn, as the ground under it has to know.
-    fn sward(&self, plants: &Plants, width_m: f32) -> [f32; 4] {
+    fn sward(&self, plants: &Plants) -> [f32; 4] {
         /// Area of a blade over its height and the width of its root.
         const LEAF_SHARE: f32 = 0.65;
-        let leaf_area = |detail: &Detail, width_m: f32| {
-            detail.blades_of_grid(plants.plants_per_side) / plants.grid_m.powi(2) * LEAF_SHARE * plants.height_m * width_m
-        };
-        let whole = Detail::whole(self.detail.far_m);
-        [leaf_area(&self.detail, width_m), self.detail.full_m, leaf_area(&whole, plants.width_m), plants.width_m]
+        let per_m2 = blades_of_grid(plants.plants_per_side) / plants.grid_m.powi(2);
+        [per_m2 * LEAF_SHARE * plants.height_m * plants.width_m, self.detail.full_m, plants.width_m, 0.0]
     }
 
     /// Light of sky and lamps.

@@ -9,7 +9,7 @@ mod sift;
 mod strips;
 
 use super::cull::Frustum;
-use super::detail::Detail;
+use super::detail::{Detail, blades_of_grid};
 use super::gpu::Gpu;
 use super::kept::Kept;
 use super::paint;
@@ -71,7 +71,7 @@ pub(super) struct Blades {
     indices: [wgpu::Buffer; LISTS],
     grids: Grids,
     by_turns: bool,
-    /// Places for plants in each near grid.
+    /// Plants of each near grid.
     places: u32,
     /// Near plants that may stand in this frame.
     standing: u32,
@@ -100,7 +100,7 @@ impl Blades {
         let gpu = maker.gpu;
         let detail = quality.detail();
         let grid_m = land.scene().plants.grid_m;
-        let places = plants_of_grid(land, &detail);
+        let places = plants_of_grid(land);
         let plants_per_m2 = places as f32 / (grid_m * grid_m);
         let stand = |within_m: f32| plants_per_m2 * full_area_m2(detail.full_m, within_m);
         let all = stand(detail.blades_m);
@@ -197,7 +197,6 @@ impl Blades {
 
     pub(super) fn prepare(&mut self, gpu: &Gpu, land: &Land, from: &Standpoint<'_>) {
         let detail = from.detail;
-        let plants_of_grid = plants_of_grid(land, detail).min(self.places);
         let home = [from.eye_m.x, from.eye_m.z].map(|m| (m / self.listed.grid_m).floor() as i32);
         let mut slots = [[0; 4]; 9];
         let mut most = 0;
@@ -211,7 +210,7 @@ impl Blades {
                 let bounds = grids::bounds_m(land, grid, self.listed.grid_m);
                 let distance_m = from.eye_m.distance(from.eye_m.clamp(bounds[0], bounds[1]));
                 let is_seen = !from.look.culls || from.frustum.sees_box(bounds[0], bounds[1]);
-                let stands = if is_seen { (plants_of_grid as f32 * density(distance_m, detail.full_m)).ceil() as u32 } else { 0 };
+                let stands = if is_seen { (self.places as f32 * density(distance_m, detail.full_m)).ceil() as u32 } else { 0 };
                 self.slots[slot] = Some(grid);
                 self.standing += stands;
                 most = most.max(stands);
@@ -224,18 +223,18 @@ impl Blades {
         let flowers = looks.flowers_per_m2 * self.listed.grid_m * self.listed.grid_m;
         let plants = Plants {
             slots,
-            counts: [self.places, plants_of_grid, u32::from(from.look.culls), u32::from(self.laid.order() != Order::Cut)],
-            capacities: [self.capacities[0], self.capacities[1], self.capacities[2], self.frame],
+            counts: [self.places, u32::from(from.look.culls), u32::from(self.laid.order() != Order::Cut), self.frame],
+            capacities: [self.capacities[0], self.capacities[1], self.capacities[2], 0],
             shape: [self.listed.grid_m, detail.full_m, detail.fine_m, looks.swing_damping],
             steps: [steps, looks.integrator as u32, self.listed.segments[0], self.listed.segments[1]],
-            time: [step_secs, flower_lot(flowers, plants_of_grid), FLOWER_POWER, self.thinnest_px],
+            time: [step_secs, flower_lot(flowers, self.places), FLOWER_POWER, self.thinnest_px],
             reach: [self.grids.beyond_m, 0.0, 0.0, 0.0],
         };
         gpu.queue.write_buffer(&self.plants, 0, bytemuck::bytes_of(&plants));
         if let Some(ordered) = self.laid.get().ordered() {
             ordered.prepare(gpu, home);
         }
-        self.grids.prepare(from, home, plants_of_grid);
+        self.grids.prepare(from, home, self.places);
     }
 
     /// Turns in which a frame's plants are listed and drawn: one, but where all of them are.
@@ -296,10 +295,10 @@ fn list_layout(maker: &Maker<'_>) -> wgpu::BindGroupLayout {
 }
 
 /// Plants of a grid near the camera, blades and flowers.
-fn plants_of_grid(land: &Land, detail: &Detail) -> u32 {
+fn plants_of_grid(land: &Land) -> u32 {
     let plants = &land.scene().plants;
     let flowers = plants.flowers_per_m2 * plants.grid_m * plants.grid_m;
-    (detail.blades_of_grid(plants.plants_per_side) + flowers).round().min(PLANTS_LIMIT) as u32
+    (blades_of_grid(plants.plants_per_side) + flowers).round().min(PLANTS_LIMIT) as u32
 }
 
 /// Share of plants that stand at a distance; twin of `density` in `common.wgsl`.
