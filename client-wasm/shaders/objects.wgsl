@@ -11,6 +11,9 @@ struct Instance {
 
 @group(1) @binding(0) var<storage, read> instances: array<Instance>;
 @group(1) @binding(1) var leaves: texture_2d<f32>;
+// How the wind holds each of them, as `sway_of` has it.
+@group(1) @binding(2) var<storage, read> sways: array<vec4<f32>>;
+@group(1) @binding(3) var<storage, read_write> sways_out: array<vec4<f32>>;
 
 struct Vertex {
     @location(0) position: vec3<f32>,
@@ -36,20 +39,34 @@ fn swayed(up: f32, height: f32, sway: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(aside.x, -dot(sway, sway) * (2.0 / 3.0) * up * up * up / (height * height), aside.y);
 }
 
-fn placed(vertex: Vertex, instance: Instance) -> vec3<f32> {
+// How the wind of the moment holds a tree: sway of its top (X, Z), and how far its leaves flutter (m); unused.
+fn sway_of(instance: Instance) -> vec4<f32> {
+    let most = instance.tint.a;
+    let foot = instance.world_from_model[3].xyz;
+    // Models are a metre tall.
+    let height = length(instance.world_from_model[1].xyz);
+    let held = lean_of_wind(wind_at(foot, 6.0).xz * gust_at(foot.xz), most);
+    // The taller, the slower.
+    let phase = frame.eye.w * 4.5 / sqrt(height) + foot.x * 0.7 + foot.z * 1.3;
+    let blown = length(held) / max(most, 1e-6);
+    return vec4<f32>(held * (0.7 + 0.3 * sin(phase)), 0.035 * min(6.0 * blown, 0.4 + 1.5 * blown), 0.0);
+}
+
+@compute @workgroup_size(64)
+fn blow(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x < arrayLength(&sways_out) {
+        sways_out[id.x] = sway_of(instances[id.x]);
+    }
+}
+
+fn placed(vertex: Vertex, instance: Instance, sway: vec4<f32>) -> vec3<f32> {
     var p = (instance.world_from_model * vec4<f32>(vertex.position, 1.0)).xyz;
-    let sway = instance.tint.a;
-    if sway > 0.0 {
+    if instance.tint.a > 0.0 {
         let foot = instance.world_from_model[3].xyz;
-        // Models are a metre tall.
         let height = length(instance.world_from_model[1].xyz);
-        let held = lean_of_wind(wind_at(foot, 6.0).xz * gust_at(foot.xz), sway);
-        // The taller, the slower.
-        let phase = frame.eye.w * 4.5 / sqrt(height) + foot.x * 0.7 + foot.z * 1.3;
-        p += swayed(max(p.y - foot.y, 0.0), height, held * (0.7 + 0.3 * sin(phase)));
+        p += swayed(max(p.y - foot.y, 0.0), height, sway.xy);
         if vertex.leaf.x > 0.0 {
-            let blown = length(held) / sway;
-            let flutter = sin(frame.eye.w * 5.3 + dot(vertex.position, vec3<f32>(5.1, 7.7, 3.9))) * 0.035 * min(6.0 * blown, 0.4 + 1.5 * blown);
+            let flutter = sin(frame.eye.w * 5.3 + dot(vertex.position, vec3<f32>(5.1, 7.7, 3.9))) * sway.z;
             p += vec3<f32>(flutter, flutter * 0.6, -flutter);
         }
     }
@@ -60,7 +77,7 @@ fn placed(vertex: Vertex, instance: Instance) -> vec3<f32> {
 fn vs(vertex: Vertex, @builtin(instance_index) index: u32) -> Surface {
     let instance = instances[index];
     var out: Surface;
-    out.p = placed(vertex, instance);
+    out.p = placed(vertex, instance, sways[index]);
     out.normal = (instance.world_from_model * vec4<f32>(vertex.normal.xyz, 0.0)).xyz;
     out.color = vec4<f32>(vertex.color.rgb * vertex.color.rgb * instance.tint.rgb, vertex.color.a);
     out.leaf = vertex.leaf;
@@ -122,7 +139,7 @@ struct Shade {
 @vertex
 fn vs_shadow(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
     var out: Shade;
-    out.position = frame.shadow_from_world * vec4<f32>(placed(vertex, instances[index]), 1.0);
+    out.position = frame.shadow_from_world * vec4<f32>(placed(vertex, instances[index], sways[index]), 1.0);
     out.leaf = vertex.leaf;
     return out;
 }
@@ -130,7 +147,7 @@ fn vs_shadow(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
 @vertex
 fn vs_shadow_far(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
     var out: Shade;
-    out.position = frame.lights.far_shadow_from_world * vec4<f32>(placed(vertex, instances[index]), 1.0);
+    out.position = frame.lights.far_shadow_from_world * vec4<f32>(placed(vertex, instances[index], sways[index]), 1.0);
     out.leaf = vertex.leaf;
     return out;
 }

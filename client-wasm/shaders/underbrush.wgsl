@@ -4,7 +4,8 @@
 struct UnderbrushFrame {
     // Number of the frame, of those in which time passes; 1 to leave out what is not seen; unused.
     counts: vec4<u32>,
-    // Time since the frame before (s); distance at which plants have shrunk to nothing (m); height of the force field (m); unused.
+    // Time since the frame before (s); distance at which plants have shrunk to nothing (m); height of the force field (m); factor on the heights in the
+    // picture below which plants are coarser.
     shape: vec4<f32>,
     // Corner of the force field and its extent, X and Z (m).
     forces: vec4<f32>,
@@ -165,7 +166,9 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     out.sward = vec4<f32>(afar, bare_between(distance_m, kind, view, up) * grass_share(plant.at));
     stands_out[index] = out;
 
-    let level = select(select(select(3u, 2u, tall_px > 26.0), 1u, tall_px > 90.0), 0u, tall_px > 300.0);
+    // Not all of those of a height change at once.
+    let fine_px = tall_px / (brush.shape.w * (0.85 + 0.3 * lot));
+    let level = select(select(select(3u, 2u, fine_px > 26.0), 1u, fine_px > 90.0), 0u, fine_px > 300.0);
     let list = species * LEVELS + level;
     let number = atomicAdd(&tally.drawn[list], 1u);
     let places = brush.places[species];

@@ -18,14 +18,16 @@ pub(super) struct Detail {
     pub(super) underbrush_m: f32,
     /// Distance up to which trees are drawn (m).
     pub(super) trees_m: f32,
+    /// Factor on the heights in the picture below which underbrush and trees are coarser.
+    pub(super) coarser: f32,
 }
 
 /// Those of the levels 0, 1, 2, 3.
 const LEVELS: [Detail; 4] = [
-    Detail { full_m: 2.0, fine_m: 2.0, blades_m: 55.0, far_m: 60.0, underbrush_m: 45.0, trees_m: 400.0 },
-    Detail { full_m: 4.0, fine_m: 3.0, blades_m: 90.0, far_m: 100.0, underbrush_m: 110.0, trees_m: 800.0 },
-    Detail { full_m: 7.3, fine_m: 5.0, blades_m: 130.0, far_m: 150.0, underbrush_m: 180.0, trees_m: 2000.0 },
-    Detail { full_m: 11.0, fine_m: 8.0, blades_m: 180.0, far_m: 220.0, underbrush_m: 260.0, trees_m: 2000.0 },
+    Detail { full_m: 2.0, fine_m: 2.0, blades_m: 55.0, far_m: 60.0, underbrush_m: 45.0, trees_m: 400.0, coarser: 2.0 },
+    Detail { full_m: 4.0, fine_m: 3.0, blades_m: 90.0, far_m: 100.0, underbrush_m: 110.0, trees_m: 800.0, coarser: 1.6 },
+    Detail { full_m: 7.3, fine_m: 5.0, blades_m: 130.0, far_m: 150.0, underbrush_m: 180.0, trees_m: 2000.0, coarser: 1.0 },
+    Detail { full_m: 11.0, fine_m: 8.0, blades_m: 180.0, far_m: 220.0, underbrush_m: 260.0, trees_m: 2000.0, coarser: 0.7 },
 ];
 
 /// Blades along one side of a grid over what the scene says, so that they close the sward; all levels draw the same ones near the eye.
@@ -45,6 +47,7 @@ impl Detail {
             far_m: between(a.far_m, b.far_m),
             underbrush_m: between(a.underbrush_m, b.underbrush_m),
             trees_m: between(a.trees_m, b.trees_m),
+            coarser: between(a.coarser, b.coarser),
         }
     }
 

@@ -362,6 +362,11 @@ impl Renderer {
             }
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
             if turn == 0 {
+                {
+                    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("blow"), timestamp_writes: None });
+                    pass.set_bind_group(0, &scene.textures.shadow_group, &[]);
+                    scene.objects.blow(&mut pass);
+                }
                 for layer in 0..self.quality.shadow_layers() {
                     let (is_first, is_last) = (layer == 0, layer + 1 == self.quality.shadow_layers());
                     let clock = self.timer.as_ref().and_then(|timer| timer.of_render(Pass::Shadows, is_first, is_last));

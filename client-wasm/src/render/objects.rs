@@ -7,7 +7,7 @@ use super::gpu::Gpu;
 use super::grove::{Ball, Grove};
 use super::mesh::{Paint, Solid, VERTEX_ATTRIBUTES, Vertex};
 use super::paint;
-use super::pipeline::{Draw, Maker, bind, storage, texture};
+use super::pipeline::{Draw, Maker, bind, storage, storage_rw, texture};
 use super::shaders;
 use super::vehicles::{self, Part};
 use crate::state::{Land, OBJECT_LIMIT};
@@ -20,7 +20,7 @@ use wgpu::BufferUsages;
 
 /// Most instances in a frame.
 const INSTANCE_LIMIT: usize = 12_288;
-/// Heights in the picture from which on trees are fine, and below which they are distant (px).
+/// Heights in the picture from which on trees are fine, and below which they are distant (px), at high quality.
 const FINE_TREE_PX: f32 = 130.0;
 const DISTANT_TREE_PX: f32 = 26.0;
 /// How finely trees are made that throw shadows into the layers of the shadow map.
@@ -44,9 +44,13 @@ pub(super) struct Objects {
     pipeline: wgpu::RenderPipeline,
     shadow_pipelines: [wgpu::RenderPipeline; 2],
     group: wgpu::BindGroup,
+    blow: wgpu::ComputePipeline,
+    blow_group: wgpu::BindGroup,
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
     instances: wgpu::Buffer,
+    /// Instances of the newest frame.
+    count: u32,
     meshes: Vec<MeshRange>,
     grove: Grove,
     rolled_m: HashMap<ObjectId, f32>,
@@ -90,7 +94,7 @@ impl Objects {
         let grove = Grove::new(standing.into_iter().map(|standing| (standing, model(&standing).of(&standing))).collect());
 
         let module = gpu.shader("objects", shaders::OBJECTS);
-        let layout = maker.layout("objects", &[storage(0), texture(1)]);
+        let layout = maker.layout("objects", &[storage(0), texture(1), storage(2)]);
         let buffer = wgpu::VertexBufferLayout {
             array_stride: size_of::<Vertex>() as u64,
             step_mode: wgpu::VertexStepMode::Vertex,
@@ -108,11 +112,20 @@ impl Objects {
         let instances = gpu.empty_buffer("instances", size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
         let leaves = gpu.texture("leaves", wgpu::TextureFormat::Rgba8Unorm, [paint::LEAF_PX; 2], &paint::leaves());
         let leaves = leaves.create_view(&Default::default());
-        let resources = [instances.as_entire_binding(), wgpu::BindingResource::TextureView(&leaves)];
+        let sways = gpu.empty_buffer("sways of objects", (INSTANCE_LIMIT * 16) as u64, BufferUsages::STORAGE);
+        let resources = [instances.as_entire_binding(), wgpu::BindingResource::TextureView(&leaves), sways.as_entire_binding()];
+        let blow_layout = maker.layout("blow", &[storage(0), storage_rw(3)]);
+        let entries = [(0, &instances), (3, &sways)]
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
+        let blow_group =
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("blow"), layout: &blow_layout, entries: &entries });
         Self {
             pipeline,
             shadow_pipelines,
             group: bind(gpu, "objects", &layout, &resources),
+            blow: maker.compute("blow", &module, "blow", &blow_layout),
+            blow_group,
+            count: 0,
             vertices: gpu.buffer("meshes", bytemuck::cast_slice(&vertices), BufferUsages::VERTEX),
             indices: gpu.buffer("mesh indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
             instances,
@@ -158,7 +171,7 @@ impl Objects {
         let may_show = |ball: &Ball| is_seen(ball) || beams.iter().any(|beam| is_lit(beam, ball));
         let room = INSTANCE_LIMIT.saturating_sub(18 * OBJECT_LIMIT.min(poses.len()));
         for (distance_m, (standing, ball)) in self.grove.near(from.eye_m, from.detail.trees_m, room / 3, may_show) {
-            let tall_px = standing.size_m / (distance_m * pixel_rad);
+            let tall_px = standing.size_m / (distance_m * pixel_rad * from.detail.coarser);
             let detail = match tall_px {
                 FINE_TREE_PX.. => TreeDetail::Fine,
                 DISTANT_TREE_PX.. => TreeDetail::Coarse,
@@ -188,12 +201,20 @@ impl Objects {
                 draws.push((mesh, first..all.len() as u32));
             }
         }
+        self.count = all.len() as u32;
         gpu.queue.write_buffer(&self.instances, 0, bytemuck::cast_slice(&all));
     }
 
     /// Triangles that [`draw`](Self::draw) feeds in.
     pub(super) fn triangles(&self) -> u64 {
         self.seen.iter().map(|(mesh, range)| u64::from((self.meshes[*mesh].indices.len() / 3) as u32) * range.len() as u64).sum()
+    }
+
+    /// Finds how the wind holds each of them, for all that is drawn in this frame.
+    pub(super) fn blow(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.set_pipeline(&self.blow);
+        pass.set_bind_group(1, &self.blow_group, &[]);
+        pass.dispatch_workgroups(self.count.div_ceil(64), 1, 1);
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {

@@ -479,8 +479,9 @@ fn trees_sway_as_they_are_tall_and_stay_as_long_as_they_are() {
     let body = "let height = at.x;
         let foot = vec4<f32>(32.0, 0.0, 32.0, 1.0);
         let scaled = mat4x4<f32>(vec4<f32>(height, 0.0, 0.0, 0.0), vec4<f32>(0.0, height, 0.0, 0.0), vec4<f32>(0.0, 0.0, height, 0.0), foot);
+        let tree = Instance(scaled, vec4<f32>(0.0, 0.0, 0.0, at.z));
         let vertex = Vertex(vec3<f32>(0.0, at.y, 0.0), vec4<f32>(0.0), vec4<f32>(0.0), vec2<f32>(0.0));
-        return vec4<f32>((placed(vertex, Instance(scaled, vec4<f32>(0.0, 0.0, 0.0, at.z))) - foot.xyz) / height, 0.0);";
+        return vec4<f32>((placed(vertex, tree, sway_of(tree)) - foot.xyz) / height, 0.0);";
     let source = shaders::OBJECTS.replace("@group(1) @binding(0) var<storage, read>", "@group(1) @binding(20) var<storage, read>");
     let sway_rad = 0.07;
     let tops = [0.0, 1.5].map(|grass_bend_rad| {

@@ -212,7 +212,8 @@ uniform_block! {
     UnderbrushFrame {
         /// Number of the frame, of those in which time passes; 1 to leave out what is not seen; unused.
         counts: [u32; 4],
-        /// Time since the frame before (s); distance at which plants have shrunk to nothing (m); height of the force field (m); unused.
+        /// Time since the frame before (s); distance at which plants have shrunk to nothing (m); height of the force field (m); factor on the heights in the
+        /// picture below which plants are coarser.
         shape: [f32; 4],
         /// Corner of the force field and its extent, X and Z (m).
         forces: [f32; 4],

@@ -19,7 +19,8 @@ fn no_tree_sways_out_of_the_ball_that_it_is_culled_by() {
         let scale = vec2<f32>({size_m:?}, {tall_m:?});
         let placing = mat4x4<f32>(vec4<f32>(scale.x, 0.0, 0.0, 0.0), vec4<f32>(0.0, scale.y, 0.0, 0.0), vec4<f32>(0.0, 0.0, scale.x, 0.0), foot);
         let vertex = Vertex(at.xyz, vec4<f32>(0.0), vec4<f32>(0.0), vec2<f32>(0.5));
-        return vec4<f32>(placed(vertex, Instance(placing, vec4<f32>(1.0, 1.0, 1.0, {sway_rad:?}))), 0.0);"
+        let tree = Instance(placing, vec4<f32>(1.0, 1.0, 1.0, {sway_rad:?}));
+        return vec4<f32>(placed(vertex, tree, sway_of(tree)), 0.0);"
     );
     let source = shaders::OBJECTS.replace("@group(1) @binding(0) var<storage, read>", "@group(1) @binding(20) var<storage, read>");
     for shape in 0..TREE_SHAPES {

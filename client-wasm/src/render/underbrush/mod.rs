@@ -235,7 +235,7 @@ impl Underbrush {
         self.frame_number = self.frame_number.wrapping_add(u32::from(from.dt_secs > 0.0));
         let frame = UnderbrushFrame {
             counts: [self.frame_number, u32::from(from.look.culls), 0, 0],
-            shape: [from.dt_secs.max(0.0), reach_m, forces.height_m(), 0.0],
+            shape: [from.dt_secs.max(0.0), reach_m, forces.height_m(), from.detail.coarser],
             forces: forces.window_m(),
             species: self.species,
             places: self.places,
