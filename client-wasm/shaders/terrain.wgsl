@@ -62,12 +62,21 @@ fn mottle_at(p: vec2<f32>, span_m: f32) -> f32 {
     return 1.05 + 0.22 * (fine - 0.5) + 0.22 * (broad - 0.5);
 }
 
-// Dead leaves between the roots, crosswise, which only an eye close to them tells apart.
+// Noise drawn out along a direction on the ground: how much of a strewn leaf of that length and width (m) is at a place.
+fn strewn_at(p: vec2<f32>, along: vec2<f32>, size_m: vec2<f32>) -> vec4<f32> {
+    return noise(vec2<f32>(dot(p, along), dot(p, vec2<f32>(-along.y, along.x))) / size_m);
+}
+
+// Dead leaves between the roots, every way, which only an eye close to them tells apart.
 fn litter_at(p: vec2<f32>) -> vec3<f32> {
-    let along = noise(vec2<f32>(0.83 * p.x + 0.55 * p.y, 0.83 * p.y - 0.55 * p.x) / vec2<f32>(0.43, 0.057)).g;
-    let across = noise(vec2<f32>(0.34 * p.x - 0.94 * p.y, 0.34 * p.y + 0.94 * p.x) / vec2<f32>(0.35, 0.049)).b;
-    let leaves = max(along, across);
-    return mix(vec3<f32>(0.034, 0.030, 0.012), vec3<f32>(0.14, 0.125, 0.045), smoothstep(0.45, 0.75, leaves));
+    let heap = noise(p / 0.83);
+    let leaves = vec3<f32>(
+        strewn_at(p, vec2<f32>(0.98, 0.19), vec2<f32>(0.53, 0.067)).g + 0.5 * heap.r,
+        strewn_at(p, vec2<f32>(0.34, -0.94), vec2<f32>(0.47, 0.059)).b + 0.5 * heap.a,
+        strewn_at(p, vec2<f32>(-0.71, 0.70), vec2<f32>(0.61, 0.073)).g + 0.5 * heap.g,
+    );
+    let top = max(max(leaves.x, leaves.y), leaves.z);
+    return mix(vec3<f32>(0.034, 0.030, 0.012), vec3<f32>(0.125, 0.105, 0.042), smoothstep(0.72, 1.18, top)) * (0.6 + 0.8 * heap.b);
 }
 
 @fragment
