@@ -4,7 +4,7 @@
 // section 3.2, `blade.wgsl`); those farther away stand as the bend field and the wind of the moment would have them.
 
 struct Plants {
-    // Grid (x, z) that lives in each of the nine slots; 1 in z when it has just moved in; plants of it that may stand.
+    // Grid (x, z) that lives in each of the nine slots; number of the frame in which it has moved in; plants of it that may stand.
     slots: array<vec4<i32>, 9>,
     // Plants of a near grid; 1 to leave out what is not seen; 1 where blades narrower than a pixel are drawn as wide as they are; number of the
     // frame, of those in which time passes.
@@ -269,7 +269,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
 
     var sway = sways[at];
     // What was not moved for a while stands still when it comes into view.
-    if slot.z != 0 || plants.counts.w - moved[at] > 1u {
+    if moved[at] < u32(slot.z) || plants.counts.w - moved[at] > 1u {
         let lean = field_lean + lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w) * give;
         sway = still(plant, array<vec2<f32>, 3>(lean, lean, lean));
     }

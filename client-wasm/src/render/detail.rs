@@ -62,7 +62,6 @@ impl Detail {
         let blades_m = if far == Far::Land { self.blades_m } else { self.blades_m * 0.35 };
         Self { blades_m, ..self }
     }
-
 }
 
 /// Blades of a grid near the camera, where the scene has so many along one side.

@@ -37,6 +37,7 @@ mod sort;
 mod split;
 mod sun;
 mod terrain;
+#[cfg_attr(target_arch = "wasm32", expect(dead_code, reason = "only pictures without a window are timed"))]
 mod timing;
 mod tone;
 mod underbrush;
@@ -189,12 +190,7 @@ impl Targets {
             };
             gpu.device.create_texture(&descriptor).create_view(&Default::default())
         };
-        Self {
-            size_px,
-            fineness,
-            color: texture("color", COLOR, samples),
-            depth: texture("depth", DEPTH, samples),
-        }
+        Self { size_px, fineness, color: texture("color", COLOR, samples), depth: texture("depth", DEPTH, samples) }
     }
 }
 

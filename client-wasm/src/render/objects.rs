@@ -115,8 +115,8 @@ impl Objects {
         let sways = gpu.empty_buffer("sways of objects", (INSTANCE_LIMIT * 16) as u64, BufferUsages::STORAGE);
         let resources = [instances.as_entire_binding(), wgpu::BindingResource::TextureView(&leaves), sways.as_entire_binding()];
         let blow_layout = maker.layout("blow", &[storage(0), storage_rw(3)]);
-        let entries = [(0, &instances), (3, &sways)]
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
+        let entries =
+            [(0, &instances), (3, &sways)].map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
         let blow_group =
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("blow"), layout: &blow_layout, entries: &entries });
         Self {

@@ -65,7 +65,7 @@ impl Picture {
 
     /// How long the passes of the newest frame kept the device; none where it has no clock.
     pub fn pass_secs(&self) -> Option<PassSecs> {
-        self.renderer.timer.as_ref().map(|timer| timer.read(&self.gpu))
+        self.renderer.timer.as_ref().map(|timer| Timer::secs(&self.gpu, &read(&self.gpu, timer.resolved())))
     }
 
     /// Pixels of the newest frame: RGBA, row by row from the top.

@@ -1,7 +1,6 @@
 //! How long the passes of a frame keep the device, by its own clock.
 
 use super::gpu::Gpu;
-use super::picture::read;
 use wgpu::{BufferUsages, ComputePassTimestampWrites, QuerySet, RenderPassTimestampWrites};
 
 /// A pass of a frame, or several of a kind.
@@ -50,7 +49,11 @@ impl Timer {
 
     pub(super) fn of_compute(&self, pass: Pass) -> ComputePassTimestampWrites<'_> {
         let [begin, end] = places(pass);
-        ComputePassTimestampWrites { query_set: &self.queries, beginning_of_pass_write_index: Some(begin), end_of_pass_write_index: Some(end) }
+        ComputePassTimestampWrites {
+            query_set: &self.queries,
+            beginning_of_pass_write_index: Some(begin),
+            end_of_pass_write_index: Some(end),
+        }
     }
 
     /// Of a render pass that is the first, or the last, of its kind.
@@ -68,9 +71,14 @@ impl Timer {
         encoder.resolve_query_set(&self.queries, 0..2 * PASSES, &self.resolved, 0);
     }
 
-    /// Times of the newest frame; waits for the device.
-    pub(super) fn read(&self, gpu: &Gpu) -> PassSecs {
-        let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(&read(gpu, &self.resolved));
+    /// Where the newest frame's times are: two ticks a pass.
+    pub(super) fn resolved(&self) -> &wgpu::Buffer {
+        &self.resolved
+    }
+
+    /// Times of a frame, of what was read from there.
+    pub(super) fn secs(gpu: &Gpu, resolved: &[u8]) -> PassSecs {
+        let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(resolved);
         let tick_secs = f64::from(gpu.queue.get_timestamp_period()) * 1e-9;
         let secs = |pass: Pass| match (ticks.get(places(pass)[0] as usize), ticks.get(places(pass)[1] as usize)) {
             (Some(begin), Some(end)) => end.saturating_sub(*begin) as f64 * tick_secs,

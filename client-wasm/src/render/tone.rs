@@ -70,13 +70,7 @@ fn picture_entry(binding: u32, samples: u32) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
 }
 
-fn group(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    binding: u32,
-    picture: &wgpu::TextureView,
-    settings: &wgpu::Buffer,
-) -> wgpu::BindGroup {
+fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, binding: u32, picture: &wgpu::TextureView, settings: &wgpu::Buffer) -> wgpu::BindGroup {
     let entries = [
         wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(picture) },
         wgpu::BindGroupEntry { binding: 1, resource: settings.as_entire_binding() },

@@ -152,7 +152,7 @@ uniform_block! {
 uniform_block! {
     /// What the compute passes know of the single plants; its twin is in `bend.wgsl`.
     Plants {
-        /// Grid (x, z) in each of the nine slots; third: 1 when it has just moved in; fourth: plants of it that may stand.
+        /// Grid (x, z) in each of the nine slots; third: number of the frame in which it has moved in; fourth: plants of it that may stand.
         slots: [[i32; 4]; 9],
         /// Plants of a near grid; 1 to leave out what is not seen; 1 where blades narrower than a pixel are drawn as wide as they are; number of the frame, of
         /// those in which time passes.

@@ -3,7 +3,7 @@
 use anyhow::{Context as _, Result};
 use clap::Parser;
 use client_wasm::camera::Camera;
-use client_wasm::render::{Far, Gpu, Look, Order, Quality, Split, Sun, Way};
+use client_wasm::render::{Far, Gpu, Look, Order, PassSecs, Quality, Split, Sun, Way};
 use std::path::PathBuf;
 use std::time::Instant;
 use tests::picture::Picture;
@@ -103,6 +103,10 @@ fn main() -> Result<()> {
         drawing_secs += start.elapsed().as_secs_f64();
     }
     println!("{}: {:.1} ms a frame, {stats:?}", gpu.adapter_name, drawing_secs * 1e3 / f64::from(arguments.frames.max(1)));
+    if let Some(PassSecs { shadows, bend, picture, tone }) = picture.pass_secs() {
+        let [shadows, bend, drawn, tone] = [shadows, bend, picture, tone].map(|secs| secs * 1e3);
+        println!("the last one on the device: shadows {shadows:.2} ms, culled and bent {bend:.2}, drawn {drawn:.2}, tone mapped {tone:.2}");
+    }
     println!("camera {}", camera.to_hash());
     Picture { width: size_px[0], height: size_px[1], rgba: picture.rgba() }.save(&arguments.out)
 }

@@ -76,14 +76,17 @@ pub(super) struct Blades {
     /// Near plants that may stand in this frame.
     standing: u32,
     near_workgroups: u32,
-    /// Number of the newest frame, of those in which time passes; the first is the second, so that nothing has been moved right before it.
+    /// Number of the newest frame, of those in which time passes or a grid moves in.
     frame: u32,
     /// Most blades drawn fine, most of all others, and most flower heads.
     pub(super) capacities: [u32; 3],
     thinnest_px: f32,
     /// Longest step that every blade bears (s).
     longest_step_secs: f32,
-    slots: [Option<[i32; 2]>; 9],
+    /// Grid of each slot, and the number of the frame in which it has moved in.
+    slots: [([i32; 2], u32); 9],
+    /// Lot of the first plant of a grid to be a flower.
+    first_flower: f32,
 }
 
 /// What a frame's plants depend on besides the land.
@@ -172,11 +175,12 @@ impl Blades {
             places,
             standing: 0,
             near_workgroups: 0,
-            frame: 2,
+            frame: 0,
             capacities,
             thinnest_px: quality.thinnest_px(),
             longest_step_secs: land.scene().blade_step_secs(),
-            slots: [None; 9],
+            slots: [([i32::MIN; 2], 0); 9],
+            first_flower: flower_lot(flowers_per_m2 * grid_m * grid_m, places),
         }
     }
 
@@ -201,33 +205,33 @@ impl Blades {
         let mut slots = [[0; 4]; 9];
         let mut most = 0;
         self.standing = 0;
-        self.frame = self.frame.wrapping_add(u32::from(from.dt_secs > 0.0));
-        for dz in -1..=1 {
-            for dx in -1..=1 {
-                let grid = [home[0] + dx, home[1] + dz];
-                let slot = (grid[0].rem_euclid(3) + 3 * grid[1].rem_euclid(3)) as usize;
-                let is_new = self.slots[slot] != Some(grid);
-                let bounds = grids::bounds_m(land, grid, self.listed.grid_m);
-                let distance_m = from.eye_m.distance(from.eye_m.clamp(bounds[0], bounds[1]));
-                let is_seen = !from.look.culls || from.frustum.sees_box(bounds[0], bounds[1]);
-                let stands = if is_seen { (self.places as f32 * density(distance_m, detail.full_m)).ceil() as u32 } else { 0 };
-                self.slots[slot] = Some(grid);
-                self.standing += stands;
-                most = most.max(stands);
-                slots[slot] = [grid[0], grid[1], i32::from(is_new), stands as i32];
+        let slot_of = |grid: [i32; 2]| (grid[0].rem_euclid(3) + 3 * grid[1].rem_euclid(3)) as usize;
+        let about = || (-1..=1).flat_map(|dz| (-1..=1).map(move |dx| [home[0] + dx, home[1] + dz]));
+        let any_moves_in = about().any(|grid| self.slots[slot_of(grid)].0 != grid);
+        self.frame = self.frame.wrapping_add(u32::from(from.dt_secs > 0.0 || any_moves_in));
+        for grid in about() {
+            let slot = slot_of(grid);
+            if self.slots[slot].0 != grid {
+                self.slots[slot] = (grid, self.frame);
             }
+            let bounds = grids::bounds_m(land, grid, self.listed.grid_m);
+            let distance_m = from.eye_m.distance(from.eye_m.clamp(bounds[0], bounds[1]));
+            let is_seen = !from.look.culls || from.frustum.sees_box(bounds[0], bounds[1]);
+            let stands = if is_seen { (self.places as f32 * density(distance_m, detail.full_m)).ceil() as u32 } else { 0 };
+            self.standing += stands;
+            most = most.max(stands);
+            slots[slot] = [grid[0], grid[1], self.slots[slot].1 as i32, stands as i32];
         }
         self.near_workgroups = most.div_ceil(CHUNK);
         let looks = &land.scene().plants;
         let (steps, step_secs) = steps(self.longest_step_secs, from.dt_secs);
-        let flowers = looks.flowers_per_m2 * self.listed.grid_m * self.listed.grid_m;
         let plants = Plants {
             slots,
             counts: [self.places, u32::from(from.look.culls), u32::from(self.laid.order() != Order::Cut), self.frame],
             capacities: [self.capacities[0], self.capacities[1], self.capacities[2], 0],
             shape: [self.listed.grid_m, detail.full_m, detail.fine_m, looks.swing_damping],
             steps: [steps, looks.integrator as u32, self.listed.segments[0], self.listed.segments[1]],
-            time: [step_secs, flower_lot(flowers, self.places), FLOWER_POWER, self.thinnest_px],
+            time: [step_secs, self.first_flower, FLOWER_POWER, self.thinnest_px],
             reach: [self.grids.beyond_m, 0.0, 0.0, 0.0],
         };
         gpu.queue.write_buffer(&self.plants, 0, bytemuck::bytes_of(&plants));
