@@ -48,6 +48,8 @@ const FLOWER: u32 = 3u;
 
 // About the radius of a flower's head (m).
 const HEAD_RADIUS_M: f32 = 0.04;
+// Distance from which on heads thin out, and those left are larger (m); twin of the constant in `blades/mod.rs`.
+const HEADS_M: f32 = 20.0;
 
 // Height in the picture below which a blade is one segment (px).
 const SINGLE_PX: f32 = 12.0;
@@ -213,7 +215,8 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
         return;
     }
     let length_m = plant.height * grown;
-    let own = 1.0 + FINE_SPREAD * (2.0 * fract(plant.hue * 97.0) - 1.0);
+    // Where they are laid over each other in order, all fine ones are nearer than the others.
+    let own = 1.0 + select(FINE_SPREAD, 0.0, plants.counts.z != 0u) * (2.0 * fract(plant.hue * 97.0) - 1.0);
     let list = select(select(COARSE, SINGLE, length_m < SINGLE_PX * own * pixel_m), FINE, distance_m < plants.shape.z * own);
     let segments = select(select(1u, plants.steps.w, list == COARSE), plants.steps.z, list == FINE);
     let along = drawn_out(points, length_m, segments);
@@ -230,7 +233,7 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
     blade.air = air_before(p);
     if plant.is_flower {
         // Heads too small to be seen thin out, and those left are as large as can be seen.
-        let small = max(max(pixel_m * plants.time.w * 2.0 / HEAD_RADIUS_M, 0.5 * distance_m / plants.shape.y), 1.0);
+        let small = max(max(pixel_m * plants.time.w * 2.0 / HEAD_RADIUS_M, distance_m / HEADS_M), 1.0);
         if fract(kind * 37.7) * small * small <= 1.0 {
             var head = blade;
             head.root.w = small;
@@ -241,10 +244,12 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
     append(list, blade);
 }
 
-// How far a plant has grown in where the density is thinning: 0 gone, 1 whole.
+// How far a plant has grown in where the density is thinning: 0 gone, 1 whole, as all are nearer than nine tenths of the distance of full density.
 fn growth(index: u32, distance_m: f32) -> f32 {
-    let kept = f32(plants.counts.x) * density(distance_m, plants.shape.y);
-    let thinning = clamp((kept - f32(index)) / (0.18 * kept), 0.0, 1.0);
+    let near = plants.shape.y / max(distance_m, 0.01);
+    let places = f32(plants.counts.x);
+    let kept = places * near * near;
+    let thinning = clamp((kept - f32(index)) / (0.18 * min(kept, places)), 0.0, 1.0);
     return select(thinning, 0.0, distance_m >= frame.reach.y);
 }
 
@@ -273,7 +278,8 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
         let lean = field_lean + lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w) * give;
         sway = still(plant, array<vec2<f32>, 3>(lean, lean, lean));
     }
-    for (var step = 0u; step < plants.steps.x; step++) {
+    let steps = plants.steps.x + u32(none_of(distance_m));
+    for (var step = 0u; step < steps; step++) {
         let points = points_of(sway, plant.height);
         let winds = array<vec2<f32>, 3>(
             blowing(plant.root + points[0], points[0].y, gust),

@@ -56,8 +56,8 @@ fn draw(gpu: &Gpu, mirror: &mut Mirror) -> Vec<u8> {
     let mut picture = Picture::new(gpu, SIZE_PX, Quality::Low);
     for frame in 0..3 {
         let stats = picture.draw(mirror, &camera(), f64::from(frame) / 30.0, 1.0 / 30.0);
-        // Of nine grids of 32 × 32 blades and 38 flowers those that the view shows, thinned out beyond 10 m.
-        assert!((3000..9558).contains(&stats.blades) && stats.ground_vertices > 0, "{stats:?}");
+        // Of nine grids of 160 × 160 blades and 38 flowers those that the view shows, thinned out beyond 2 m.
+        assert!((30_000..230_742).contains(&stats.blades) && stats.ground_vertices > 0, "{stats:?}");
     }
     picture.rgba()
 }

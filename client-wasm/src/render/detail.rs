@@ -1,6 +1,7 @@
 //! How much of what grows is drawn: what the presets set, and what a frame budget steers between them.
 
 use super::Far;
+use shared::scene::Plants;
 
 /// Detail of plants. What a renderer holds room for follows from its quality; this may change from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +31,8 @@ const LEVELS: [Detail; 4] = [
     Detail { full_m: 11.0, fine_m: 8.0, blades_m: 180.0, far_m: 220.0, underbrush_m: 260.0, trees_m: 2000.0, coarser: 0.7 },
 ];
 
+/// Most plants of a grid near the camera.
+pub(super) const PLANTS_LIMIT: f32 = 60_000.0;
 /// Blades along one side of a grid over what the scene says, so that they close the sward; all levels draw the same ones near the eye.
 const DENSE: f32 = 5.0;
 
@@ -51,6 +54,15 @@ impl Detail {
         }
     }
 
+    /// The same where plants grow densely: they thin out nearer, so that no more of them are drawn, but where all are.
+    pub(super) fn on(self, plants: &Plants) -> Self {
+        /// Plants on a square metre that the levels' distances are for.
+        const USUAL_PER_M2: f32 = 410.0;
+        let per_m2 = (blades_of_grid(plants.plants_per_side) / plants.grid_m.powi(2) + plants.flowers_per_m2).max(USUAL_PER_M2);
+        let nearer = if self.full_m < self.blades_m { (USUAL_PER_M2 / per_m2).sqrt() } else { 1.0 };
+        Self { full_m: self.full_m * nearer, fine_m: self.fine_m * nearer, ..self }
+    }
+
     /// Every plant as far as `reach_m`, with all its segments: what the other levels are measured against.
     pub(super) fn whole(reach_m: f32) -> Self {
         let most = LEVELS[LEVELS.len() - 1];
@@ -66,7 +78,7 @@ impl Detail {
 
 /// Blades of a grid near the camera, where the scene has so many along one side.
 pub(super) fn blades_of_grid(plants_per_side: u32) -> f32 {
-    (plants_per_side as f32 * DENSE).round().powi(2)
+    (plants_per_side as f32 * DENSE).round().powi(2).min(PLANTS_LIMIT)
 }
 
 #[cfg(test)]

@@ -307,7 +307,7 @@ impl Renderer {
 
         let sun = self.look.sun.unwrap_or_else(|| land.scene().light.sun_at(mirror.time_secs()));
         self.daylight.follow(gpu, sun);
-        let detail = self.detail.with(self.look.far);
+        let detail = self.detail.with(self.look.far).on(&land.scene().plants);
         let view = View::new(camera, self.targets.size_px, self.quality, detail, time_secs, sun);
         let frame = view.frame(land, &scene.textures.atlas, &self.daylight, &poses);
         self.frame.write(gpu, &frame);

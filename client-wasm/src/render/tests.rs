@@ -445,7 +445,7 @@ fn as_many_flowers_stand_as_the_scene_says_and_all_are_listed() {
         let [fine_limit, others_limit, heads_limit] = blades.capacities;
         assert!(fine <= fine_limit && coarse + single <= others_limit && heads <= heads_limit, "{bytes:?} of {:?}", blades.capacities);
         // All those within the distance of full density, and some of those beyond.
-        let near_m2 = std::f32::consts::PI * 100.0;
+        let near_m2 = std::f32::consts::PI * 4.0;
         assert!(heads as f32 > flowers_per_m2 * near_m2 * 1.1, "{heads} heads");
 
         let of_grid = 1024 + (flowers_per_m2 * 64.0).round() as u32;
@@ -461,16 +461,22 @@ fn as_many_flowers_stand_as_the_scene_says_and_all_are_listed() {
 }
 
 #[test]
-fn near_grids_hold_the_blades_that_the_scene_says() {
+fn every_quality_has_room_for_the_same_plants_near_by_and_draws_them_in_one_turn() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
-    // 000's own: 20 × 20 on each grid; more at higher quality.
     let lawn = |scene: &mut Scene| (scene.plants.grid_m, scene.plants.plants_per_side, scene.plants.flowers_per_m2) = (4.0, 20, 0.0);
-    for (quality, per_side) in [(Quality::Low, 20), (Quality::Medium, 40), (Quality::High, 100), (Quality::Ultra, 100)] {
+    let mut mirror = meadow_of(lawn, &[255; 16 * 16]);
+    for quality in Quality::ALL {
         let mut picture = Picture::new(&gpu, [16, 16], quality);
         picture.set_look(Look { culls: false, ..Look::default() });
-        let stats = picture.draw(&mut meadow_of(lawn, &[255; 16 * 16]), &Camera::default(), 0.0, 0.0);
-        assert_eq!(stats.blades, 9 * per_side * per_side, "{quality:?}");
+        picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
+        let blades = &picture.renderer.scene.as_ref().expect("a scene").blades;
+        assert_eq!(blades.sways.size(), 9 * (5 * 20) * (5 * 20) * blades::SWAY_BYTES, "{quality:?}");
+        assert!(!blades.by_turns(), "{quality:?}");
     }
+    // The scene's own defaults, too.
+    let mut picture = Picture::new(&gpu, [16, 16], Quality::Ultra);
+    picture.draw(&mut meadow(0.0), &Camera::default(), 0.0, 0.0);
+    assert!(!picture.renderer.scene.as_ref().expect("a scene").blades.by_turns());
 }
 
 #[test]

@@ -54,8 +54,8 @@ pub struct Plants {
     pub cover: PlantCover,
     /// Side of a grass grid (m), the unit of level of detail (000 §3.1.2). Default 8, allowed 1..=64.
     pub grid_m: f32,
-    /// Plants along one side of a grass grid, n of 000 Eq. (9): the levels of detail count with it, and near the camera so many blades stand at low quality,
-    /// 2 times as many a side at medium, 5 times at high and ultra, up to 60 000 plants a grid. Default 32, allowed 2..=256.
+    /// Plants along one side of a grass grid, n of 000 Eq. (9): the levels of detail count with it, and near the camera five times as
+    /// many blades stand along a side, up to 60 000 plants a grid. Default 32, allowed 2..=256.
     pub plants_per_side: u32,
     /// Mean height of a blade (m). Default 0.8, allowed 0.02..=5.
     pub height_m: f32,

@@ -79,8 +79,8 @@ enum Model {
         /// Width and height of the pictures (px)
         #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "960x540", value_parser = size_px)]
         size: [u32; 2],
-        /// low, medium, high or ultra
-        #[arg(long, default_value = "high", value_parser = quality)]
+        /// Quality of the pictures that are shown: low, medium, high or ultra; all are measured
+        #[arg(long, default_value = "ultra", value_parser = quality)]
         quality: Quality,
         /// Only these views, with commas between them
         #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = View::find)]

@@ -9,7 +9,7 @@ mod sift;
 mod strips;
 
 use super::cull::Frustum;
-use super::detail::{Detail, blades_of_grid};
+use super::detail::{Detail, PLANTS_LIMIT, blades_of_grid};
 use super::gpu::Gpu;
 use super::kept::Kept;
 use super::paint;
@@ -33,8 +33,6 @@ const CHUNK: u32 = 64;
 /// Bytes of a drawn blade and of its sway, as in `common.wgsl` and `blade.wgsl`.
 pub(super) const BLADE_BYTES: u64 = 112;
 pub(super) const SWAY_BYTES: u64 = 48;
-/// Most plants of a near grid.
-const PLANTS_LIMIT: f32 = 60_000.0;
 /// Most steps in a frame, of an integrator that needs several: as many as a scene may ask for in 1/15 s. In longer frames its blades move in slow motion.
 const STEP_LIMIT: f32 = 4.0 * BLADE_STEPS_LIMIT as f32;
 /// Longest step of the exact one (s): wind and obstacles stay as they are for a step.
@@ -48,6 +46,9 @@ const TURN_LIMIT: u32 = LISTED_LIMIT / 3;
 /// Share by which the distance up to which a blade is fine differs from one to another, up or down, so that no ring of them changes at once; twin of the
 /// constant in `bend.wgsl`.
 const FINE_SPREAD: f32 = 0.15;
+
+/// Distance from which on heads of flowers thin out (m); twin of the constant in `bend.wgsl`.
+const HEADS_M: f32 = 20.0;
 
 /// Lists that are drawn: fine blades, coarse ones, those of one segment, flower heads.
 const LISTS: usize = 4;
@@ -101,7 +102,7 @@ pub(super) struct Standpoint<'a> {
 impl Blades {
     pub(super) fn new(maker: &Maker<'_>, quality: Quality, land: &Land) -> Self {
         let gpu = maker.gpu;
-        let detail = quality.detail();
+        let detail = quality.detail().on(&land.scene().plants);
         let grid_m = land.scene().plants.grid_m;
         let places = plants_of_grid(land);
         let plants_per_m2 = places as f32 / (grid_m * grid_m);
@@ -109,7 +110,7 @@ impl Blades {
         let all = stand(detail.blades_m);
         let [surely_fine_m, fine_m] = [1.0 - FINE_SPREAD, 1.0 + FINE_SPREAD].map(|share| (share * detail.fine_m).min(detail.blades_m));
         let flowers_per_m2 = land.scene().plants.flowers_per_m2;
-        let thinned = full_area_m2(detail.full_m * 2.0, detail.blades_m);
+        let thinned = full_area_m2(HEADS_M, detail.blades_m);
         let wanted = [stand(fine_m), all - stand(surely_fine_m), flowers_per_m2 * thinned].map(most_standing);
         let by_turns = wanted.iter().map(|&count| u64::from(count)).sum::<u64>() > u64::from(LISTED_LIMIT);
         let capacities = if by_turns { wanted.map(|count| count.min(TURN_LIMIT)) } else { wanted };

@@ -1,3 +1,4 @@
+use super::super::detail::Detail;
 use super::super::picture::read;
 use super::super::tests::{meadow_of, probe};
 use super::super::{Picture, Quality};
@@ -404,17 +405,18 @@ fn the_compute_pass_says_how_each_plant_stands_and_lists_it_once() {
             let tall_m = height_m.max(0.5 * reach_m);
             let distance_m = Vec3::new(at_m[0], root[1] + 0.5 * tall_m, at_m[1]).distance(camera.eye_m);
             let tall_px = tall_m / (distance_m * px_rad);
-            let is_at = |px: &[f32]| px.iter().filter(|&&least| tall_px <= least).count();
+            let lot = (hash3([plant.site, 5, 91])[0] >> 8) as f32 / 16_777_216.0;
+            let fine_px = tall_px / (Detail::at(0.0).coarser * (0.85 + 0.3 * lot));
+            let is_at = |px: &[f32]| px.iter().filter(|&&least| fine_px <= least).count();
             let least_px = [300.0, 90.0, 26.0];
             assert!(
-                least_px.iter().any(|px| (tall_px / px - 1.0).abs() < 1e-3) || is_at(&least_px) == level,
-                "{tall_px} px at level {level}"
+                least_px.iter().any(|px| (fine_px / px - 1.0).abs() < 1e-3) || is_at(&least_px) == level,
+                "{fine_px} px at level {level}"
             );
             assert!((about[0] / height_m - 1.0).abs() < 1e-4 && (about[2] / distance_m - 1.0).abs() < 1e-4 && about[3] == standing.size);
             assert!(lean[3] == standing.heading_rad && lean[..2] == [0.0; 2], "{lean:?}");
             // Its size, for what is taller than 16 px.
-            let lot = hash3([plant.site, 5, 91])[0] >> 8;
-            let fades = ((1.0 - lot as f32 / 16_777_216.0) / 0.2).min(1.0);
+            let fades = ((1.0 - lot) / 0.2).min(1.0);
             if tall_px > 16.0 && distance_m < 0.79 * 45.0 {
                 assert!((root[3] / (standing.size * fades) - 1.0).abs() < 1e-3, "{root:?} of {standing:?}");
             }
