@@ -242,5 +242,5 @@ fn fs_soft(r: Rectangle) -> @location(0) vec4<f32> {
 @fragment
 fn fs_weighted(r: Rectangle) -> Weighted {
     let paint = painted(r);
-    return weighted(paint.rgb, paint.a, r.distance_m);
+    return weighted(paint.rgb, paint.a, r.distance_m, 1.0 - r.uv.y);
 }

@@ -22,7 +22,7 @@ struct Strip {
     @builtin(position) position: vec4<f32>,
     @location(0) color: vec3<f32>,
     @location(1) @interpolate(linear) across: f32,
-    // Place in the texture of shapes; below zero for a tapered blade.
+    // Place in the texture of shapes, from the tip down; X is below zero for a tapered blade.
     @location(2) shape: vec2<f32>,
     // Share that is shown where blades give way to what stands for far plants.
     @location(3) shown: f32,
@@ -91,7 +91,7 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
     out.color = color * blade.air.a + blade.air.rgb;
     out.across = across;
     let shape = floor(fract(blade.points[1].w * 61.0) * SHAPES);
-    out.shape = select(vec2<f32>(-1.0), vec2<f32>((shape + 0.5 + 0.48 * across) / SHAPES, 1.0 - t), is_textured);
+    out.shape = vec2<f32>(select(-1.0, (shape + 0.5 + 0.48 * across) / SHAPES, is_textured), 1.0 - t);
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
     out.distance_m = distance(p, frame.eye.xyz);
     out.shown = 1.0 - smoothstep(frame.reach.x, frame.reach.y, distance(blade.root.xyz, frame.eye.xyz));
@@ -211,5 +211,5 @@ fn fs_soft(strip: Strip) -> @location(0) vec4<f32> {
 @fragment
 fn fs_weighted(strip: Strip) -> Weighted {
     let paint = painted(strip);
-    return weighted(paint.color, paint.opacity, strip.distance_m);
+    return weighted(paint.color, paint.opacity, strip.distance_m, 1.0 - strip.shape.y);
 }

@@ -93,6 +93,13 @@ impl Picture {
         pixels.unwrap_or_default()
     }
 
+    /// Blades and flowers that the newest frame bent: those that stand in view, give or take what is at its edges.
+    pub fn bent_plants(&self) -> u32 {
+        let scene = self.renderer.scene.as_ref();
+        let counts = scene.map(|scene| bytemuck::pod_collect_to_vec::<u8, u32>(&read(&self.gpu, scene.blades.in_view())));
+        counts.map_or(0, |counts| counts.iter().take(2).sum())
+    }
+
     /// Plants of underbrush that the newest frame drew: those in view but for what thins out with distance.
     pub fn drawn_underbrush(&self) -> u32 {
         let underbrush = self.renderer.scene.as_ref().and_then(|scene| scene.underbrush.as_ref());

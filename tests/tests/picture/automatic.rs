@@ -9,8 +9,8 @@ use tests::likeness::Likeness;
 use crate::{SIZE_PX, gpu, view};
 
 /// Views that are compared, and the largest mean FLIP at any of the levels: a tenth over what was measured. The aim of 0.06 is missed: at so few pixels most of
-/// a picture of grass are of single blades, which stand elsewhere where fewer are drawn.
-const VIEWS: [(&str, f64); 3] = [("walking-calm", 0.31), ("walking-storm", 0.30), ("hill-calm", 0.13)];
+/// a picture of grass are of single blades, and beyond a few metres not all of them are drawn.
+const VIEWS: [(&str, f64); 3] = [("walking-calm", 0.25), ("walking-storm", 0.175), ("hill-calm", 0.13)];
 /// Levels between which automatic quality chooses.
 const LEVELS: [f32; 2] = [0.0, 1.5];
 
@@ -36,7 +36,7 @@ fn every_view_is_near_the_reference_at_every_level() -> Result<()> {
 
 /// Mean FLIP that the detail of ultra and of high may cost by itself, where both pictures have 16 samples a pixel: on foot ultra keeps to the aim of 0.06; the others
 /// are allowed a tenth over what was measured.
-const DETAIL_LIMITS: [(&str, f64, f64); 3] = [("walking-calm", 0.06, 0.10), ("walking-storm", 0.06, 0.065), ("hill-calm", 0.10, 0.10)];
+const DETAIL_LIMITS: [(&str, f64, f64); 3] = [("walking-calm", 0.06, 0.10), ("walking-storm", 0.06, 0.065), ("hill-calm", 0.10, 0.115)];
 
 #[test]
 fn detail_by_itself_costs_little() -> Result<()> {

@@ -228,7 +228,12 @@ impl Blades {
         let (steps, step_secs) = steps(self.longest_step_secs, from.dt_secs);
         let plants = Plants {
             slots,
-            counts: [self.places, u32::from(from.look.culls), u32::from(self.laid.order() != Order::Cut), self.frame],
+            counts: [
+                self.places,
+                u32::from(from.look.culls),
+                u32::from(!matches!(self.laid.order(), Order::Cut | Order::Weighted)),
+                self.frame,
+            ],
             capacities: [self.capacities[0], self.capacities[1], self.capacities[2], 0],
             shape: [self.listed.grid_m, detail.full_m, detail.fine_m, looks.swing_damping],
             steps: [steps, looks.integrator as u32, self.listed.segments[0], self.listed.segments[1]],
@@ -247,8 +252,8 @@ impl Blades {
         self.grids.turns()
     }
 
-    #[cfg(test)]
-    pub(super) fn standing_list(&self) -> &wgpu::Buffer {
+    /// How many plants stand in view, near ones and others, and the lists of both.
+    pub(super) fn in_view(&self) -> &wgpu::Buffer {
         self.sift.standing()
     }
 

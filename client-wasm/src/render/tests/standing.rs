@@ -43,7 +43,7 @@ fn plants_out_of_view_are_not_bent() {
         picture.set_look(Look { culls, ..Look::default() });
         picture.draw(&mut meadow(0.0), &camera, 0.0, 0.0);
         let counts: Vec<u32> =
-            bytemuck::pod_collect_to_vec(&read(&gpu, picture.renderer.scene.as_ref().expect("a scene").blades.standing_list()));
+            bytemuck::pod_collect_to_vec(&read(&gpu, picture.renderer.scene.as_ref().expect("a scene").blades.in_view()));
         [counts[0], counts[1]]
     };
     let ([near, far], [every_near, every_far]) = (standing(true), standing(false));

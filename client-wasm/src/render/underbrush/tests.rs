@@ -368,7 +368,7 @@ fn the_compute_pass_says_how_each_plant_stands_and_lists_it_once() {
     let broken = broken.into_iter().map(|site| BrokenPlant { site, fall }).collect();
     mirror.apply(ServerMessage::Broken { plants: broken }).expect("sound sites");
     let camera = Camera { eye_m: Vec3::new(32.0, 1.2, 60.0), ..Camera::default() };
-    let size_px = [320, 640];
+    let size_px = [640, 1280];
     let mut picture = Picture::new(&gpu, size_px, Quality::Low);
     picture.draw(&mut mirror, &camera, 3.0, 0.0);
 
