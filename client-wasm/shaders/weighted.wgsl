@@ -6,12 +6,12 @@ struct Weighted {
     @location(1) hidden: f32,
 }
 
-// A fragment of opacity `alpha`, `distance_m` from the eye, a share `up` of its plant's length above the root: the square of Eq. (7), and more the higher up, since
-// in grass what is near hides what is right behind it, and what is above what is below. Held within what sixteen bits bear of 50 such layers.
+// A fragment of opacity `alpha`, `distance_m` from the eye, a share `up` of its plant's length above the root: Eq. (7), and more the higher up, since in grass
+// what is above hides what is below. Held below what sixteen bits bear of 50 such layers.
 fn weighted(color: vec3<f32>, alpha: f32, distance_m: f32, up: f32) -> Weighted {
     let near = distance_m / 5.0;
     let far = distance_m / 200.0;
-    let by_distance = 10.0 / (1e-5 + near * near + pow(far, 6.0));
-    let weight = alpha * clamp(by_distance * by_distance * 0.005, 1e-3, 300.0) * mix(0.02, 1.0, up * up);
+    let by_distance = clamp(10.0 / (1e-5 + near * near + pow(far, 6.0)), 1e-2, 300.0);
+    let weight = alpha * by_distance * mix(0.02, 1.0, up * up);
     return Weighted(vec4<f32>(color * alpha, alpha) * weight, alpha);
 }

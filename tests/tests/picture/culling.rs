@@ -60,6 +60,6 @@ fn compare(gpu: &Gpu, name: &str, cameras: u32, dice: &mut Dice) -> Result<()> {
     ensure!(failures.is_empty(), "{} of {cameras}\n{}", failures.len(), failures.join("\n"));
     let [with, without] = bent;
     println!("{name}: {with} of {without} plants are bent");
-    ensure!(3 * with < without, "culling saves too little for the claim to mean anything: {with} of {without} plants are bent");
+    ensure!(2 * with < without, "culling saves too little for the claim to mean anything: {with} of {without} plants are bent");
     Ok(())
 }
