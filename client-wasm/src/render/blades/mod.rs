@@ -253,6 +253,7 @@ impl Blades {
     }
 
     /// How many plants stand in view, near ones and others, and the lists of both.
+    #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn in_view(&self) -> &wgpu::Buffer {
         self.sift.standing()
     }
