@@ -84,7 +84,7 @@ export class Panel {
   // Says which hour the sun stands at; null where the scene has it.
   clock(hour) {
     const text = () => `${Math.floor(hour)}:${String(Math.round((hour % 1) * 60)).padStart(2, "0")}`;
-    byId("clock").textContent = hour === null ? "as in the scene" : text();
+    byId("clock").textContent = hour === null ? "the scene’s" : text();
     byId("scene-hour").disabled = hour === null;
   }
 
