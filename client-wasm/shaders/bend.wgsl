@@ -9,7 +9,7 @@ struct Plants {
     // Plants of a near grid; 1 to leave out what is not seen; 1 where blades narrower than a pixel are drawn as wide as they are; number of the
     // frame, of those in which time passes.
     counts: vec4<u32>,
-    // Capacities of the lists: fine blades, all others, flowers; unused.
+    // Capacities of the lists: fine blades, all others, flower heads; unused.
     capacities: vec4<u32>,
     // Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), damping share of a blade.
     shape: vec4<f32>,
@@ -18,12 +18,12 @@ struct Plants {
     // Length of a step (s); lot of the first plant of a grid to be a flower, and the power with which that falls; least width that a blade is
     // drawn with (px).
     time: vec4<f32>,
-    // Most that a plant reaches beyond its place (m); unused.
+    // Most that a plant reaches beyond its place (m); distance from which on heads thin out, and those left are larger (m); unused.
     reach: vec4<f32>,
 }
 
 struct Counters {
-    drawn: array<atomic<u32>, 4>,
+    drawn: array<atomic<u32>, 5>,
 }
 
 @group(1) @binding(0) var<uniform> plants: Plants;
@@ -44,12 +44,13 @@ const LISTED: u32 = 2u;
 const FINE: u32 = 0u;
 const COARSE: u32 = 1u;
 const SINGLE: u32 = 2u;
-const FLOWER: u32 = 3u;
+const HEAD: u32 = 3u;
+const FAR_HEAD: u32 = 4u;
 
 // About the radius of a flower's head (m).
 const HEAD_RADIUS_M: f32 = 0.04;
-// Distance from which on heads thin out, and those left are larger (m); twin of the constant in `blades/mod.rs`.
-const HEADS_M: f32 = 20.0;
+// Radius in the picture below which one is drawn as a disc (px).
+const FAR_HEAD_PX: f32 = 4.0;
 
 // Height in the picture below which a blade is one segment (px).
 const SINGLE_PX: f32 = 12.0;
@@ -180,11 +181,12 @@ fn append(list: u32, blade: Blade) {
     let number = atomicAdd(&counters.drawn[list], 1u);
     let fine = plants.capacities.x;
     let others = plants.capacities.y;
-    let capacity = array<u32, 4>(fine, others, others, plants.capacities.z)[list];
-    // Blades of one segment fill the place of the coarse ones from its end.
-    let first = array<u32, 4>(0u, fine, fine + others - 1u, fine + others)[list];
+    let heads = plants.capacities.z;
+    let capacity = array<u32, 5>(fine, others, others, heads, heads)[list];
+    // Blades of one segment fill the place of the coarse ones from its end, far heads that of the near ones.
+    let first = array<u32, 5>(0u, fine, fine + others - 1u, fine + others, fine + others + heads - 1u)[list];
     if number < capacity {
-        drawn[select(first + number, first - number, list == SINGLE)] = blade;
+        drawn[select(first + number, first - number, list == SINGLE || list == FAR_HEAD)] = blade;
     }
 }
 
@@ -233,12 +235,12 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
     blade.air = air_before(p);
     if plant.is_flower {
         // Heads too small to be seen thin out, and those left are as large as can be seen.
-        let small = max(max(pixel_m * plants.time.w * 2.0 / HEAD_RADIUS_M, distance_m / HEADS_M), 1.0);
+        let small = max(max(pixel_m * plants.time.w / HEAD_RADIUS_M, distance_m / plants.reach.y), 1.0);
         if fract(kind * 37.7) * small * small <= 1.0 {
             var head = blade;
             head.root.w = small;
             head.points[1].w = kind;
-            append(FLOWER, head);
+            append(select(HEAD, FAR_HEAD, HEAD_RADIUS_M * small < FAR_HEAD_PX * own * pixel_m && plants.time.w > 0.0), head);
         }
     }
     append(list, blade);
@@ -341,10 +343,10 @@ fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // Indirect draws of 64 plants an instance.
-@compute @workgroup_size(4)
+@compute @workgroup_size(5)
 fn finish(@builtin(local_invocation_index) list: u32) {
-    if list < 4u {
-        let count = min(atomicLoad(&counters.drawn[list]), plants.capacities[array<u32, 4>(0u, 1u, 1u, 2u)[list]]);
+    if list < 5u {
+        let count = min(atomicLoad(&counters.drawn[list]), plants.capacities[array<u32, 5>(0u, 1u, 1u, 2u, 2u)[list]]);
         draws[list * 5u + 1u] = (count + 63u) / 64u;
     }
 }

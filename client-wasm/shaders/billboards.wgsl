@@ -224,7 +224,7 @@ fn painted(r: Rectangle) -> vec4<f32> {
 @fragment
 fn fs(r: Rectangle) -> @location(0) vec4<f32> {
     let paint = painted(r);
-    if paint.a <= random3(vec2<i32>(r.position.xy), 11u).x * 0.98 + 0.01 {
+    if paint.a <= dither_at(r.position.xy) {
         discard;
     }
     return vec4<f32>(paint.rgb, 1.0);

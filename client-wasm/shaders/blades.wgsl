@@ -15,6 +15,9 @@ struct StripList {
 // Keys and places of blades far to near.
 @group(1) @binding(4) var<storage, read> in_order: array<vec2<u32>>;
 
+// Whether blades have the shapes of a texture; else they taper. Known as the pipeline is made, since software drivers run what a branch leaves out.
+override is_textured: bool = false;
+
 // Shapes in the texture.
 const SHAPES: f32 = 5.0;
 
@@ -22,7 +25,7 @@ struct Strip {
     @builtin(position) position: vec4<f32>,
     @location(0) color: vec3<f32>,
     @location(1) @interpolate(linear) across: f32,
-    // Place in the texture of shapes, from the tip down; X is below zero for a tapered blade.
+    // Place in the texture of shapes, from the tip down.
     @location(2) shape: vec2<f32>,
     // Share that is shown where blades give way to what stands for far plants.
     @location(3) shown: f32,
@@ -60,7 +63,6 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
     var out: Strip;
     let t = corner.x;
     let across = corner.y;
-    let is_textured = frame.blade.w > 0.5;
 
     let points = array<vec3<f32>, 3>(blade.points[0].xyz, blade.points[1].xyz, blade.points[2].xyz);
     let tip = points[2];
@@ -91,7 +93,7 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
     out.color = color * blade.air.a + blade.air.rgb;
     out.across = across;
     let shape = floor(fract(blade.points[1].w * 61.0) * SHAPES);
-    out.shape = vec2<f32>(select(-1.0, (shape + 0.5 + 0.48 * across) / SHAPES, is_textured), 1.0 - t);
+    out.shape = vec2<f32>((shape + 0.5 + 0.48 * across) / SHAPES, 1.0 - t);
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
     out.distance_m = distance(p, frame.eye.xyz);
     out.shown = 1.0 - smoothstep(frame.reach.x, frame.reach.y, distance(blade.root.xyz, frame.eye.xyz));
@@ -179,10 +181,10 @@ fn grain(texel: vec4<f32>) -> f32 {
 @fragment
 fn fs(strip: Strip) -> @location(0) vec4<f32> {
     // What stands for far plants is dithered by the same number.
-    if strip.shown < 1.0 && strip.shown <= 0.99 - 0.98 * random3(vec2<i32>(strip.position.xy), 11u).x {
+    if strip.shown < 1.0 && strip.shown <= 1.0 - dither_at(strip.position.xy) {
         discard;
     }
-    if strip.shape.x >= 0.0 {
+    if is_textured {
         let texel = textureSampleLevel(shapes, clamped, strip.shape, 0.0);
         if texel.a < 0.5 {
             discard;
@@ -194,7 +196,6 @@ fn fs(strip: Strip) -> @location(0) vec4<f32> {
 
 fn painted(strip: Strip) -> Painted {
     let texel = textureSample(shapes, clamped, strip.shape);
-    let is_textured = strip.shape.x >= 0.0;
     let light = select(fold(strip.across), grain(texel), is_textured);
     return Painted(strip.color * light, covered(strip.border) * strip.shown * select(1.0, texel.a, is_textured));
 }

@@ -15,6 +15,9 @@ struct StripList {
 const PETALS: u32 = 12u;
 const PETAL_VERTICES: u32 = 5u;
 const VERTICES: u32 = 67u;
+const DISC_VERTICES: u32 = 7u;
+// Radius of a disc that covers what petals do, over their length.
+const DISC_SHARE: f32 = 0.8;
 
 struct Flower {
     // Petals, length (m), width as a share of the length, how far they rise (rad).
@@ -41,6 +44,31 @@ struct Petal {
     @location(0) color: vec3<f32>,
 }
 
+// Where a head is, and how it looks: up along its stem and a little towards the sun.
+struct Head {
+    at: vec3<f32>,
+    axis: vec3<f32>,
+    right: vec3<f32>,
+    ahead: vec3<f32>,
+    // Over that of its kind.
+    size: f32,
+}
+
+fn head_of(stem: Blade) -> Head {
+    var head: Head;
+    head.at = stem.root.xyz + stem.points[2].xyz;
+    let tangent = normalize(stem.points[2].xyz - stem.points[1].xyz);
+    head.axis = normalize(tangent + frame.sun.xyz * 0.45 + vec3<f32>(0.0, 0.35, 0.0));
+    head.right = normalize(cross(head.axis, vec3<f32>(0.31, 0.17, 0.93)));
+    head.ahead = cross(head.right, head.axis);
+    head.size = stem.root.w * 1.7 * (1.0 - smoothstep(frame.reach.x, frame.reach.y, distance(head.at, frame.eye.xyz)));
+    return head;
+}
+
+fn listed(number: u32) -> Blade {
+    return blades[u32(i32(list.range.x) + i32(number) * list.order.x)];
+}
+
 @vertex
 fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Petal {
     let number = instance * 64u + index / VERTICES;
@@ -50,15 +78,13 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
         out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
         return out;
     }
-    let stem = blades[u32(i32(list.range.x) + i32(number) * list.order.x)];
-    let head = stem.root.xyz + stem.points[2].xyz;
+    let stem = listed(number);
+    let head = head_of(stem);
     let kind = kind_of(clamp(stem.points[1].w, 0.0, 0.999));
-    let tangent = normalize(stem.points[2].xyz - stem.points[1].xyz);
-    // Heads look up along their stem and a little towards the sun.
-    let axis = normalize(tangent + frame.sun.xyz * 0.45 + vec3<f32>(0.0, 0.35, 0.0));
-    let right = normalize(cross(axis, vec3<f32>(0.31, 0.17, 0.93)));
-    let ahead = cross(right, axis);
-    let size = stem.root.w * 1.7 * (1.0 - smoothstep(frame.reach.x, frame.reach.y, distance(head, frame.eye.xyz)));
+    let axis = head.axis;
+    let right = head.right;
+    let ahead = head.ahead;
+    let size = head.size;
 
     var p: vec3<f32>;
     var normal = axis;
@@ -78,24 +104,53 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
         let curl = rise * (1.0 - 0.45 * t);
         let along = out_dir * cos(curl) + axis * sin(curl);
         let reach = select(0.0, kind.shape.y * size, is_there);
-        p = head + along * (reach * t) + across * (reach * w * kind.shape.z);
+        p = head.at + along * (reach * t) + across * (reach * w * kind.shape.z);
         normal = normalize(axis * cos(curl) - out_dir * sin(curl) + across * w * 0.6);
         albedo = mix(kind.base, kind.tip, t);
     } else {
         let rim = local - PETALS * PETAL_VERTICES;
         let radius = select(kind.disc.w * size, 0.0, rim == 0u);
         let angle = f32(rim) / 6.0 * TAU;
-        p = head + axis * (0.004 * size + select(0.0, kind.disc.w * 0.5 * size, rim == 0u));
+        p = head.at + axis * (0.004 * size + select(0.0, kind.disc.w * 0.5 * size, rim == 0u));
         p += (right * cos(angle) + ahead * sin(angle)) * radius;
         albedo = kind.disc.rgb;
     }
+    out.color = lit(stem, p, normal, albedo);
+    out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
+    return out;
+}
+
+// Light that a petal or a disc sends to the eye.
+fn lit(stem: Blade, p: vec3<f32>, normal: vec3<f32>, albedo: vec3<f32>) -> vec3<f32> {
     let view = normalize(p - frame.eye.xyz);
     let light = stem.points[2].w;
     let facing = dot(normal, frame.sun.xyz);
     let diffuse = clamp((facing + 0.3) / 1.3, 0.0, 1.0);
     let through = 0.35 * max(dot(view, frame.sun.xyz), 0.0) * clamp(0.5 - facing, 0.0, 1.0);
     let color = albedo * (frame.sun_color.rgb * light * (diffuse + through) * 0.85 + ambient(normal) + lamps_on(p, normal, 0.3));
-    out.color = color * stem.air.a + stem.air.rgb;
+    return color * stem.air.a + stem.air.rgb;
+}
+
+// A head of which no petal can be told from another: a centre and six on its rim.
+@vertex
+fn vs_disc(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Petal {
+    let number = instance * 64u + index / DISC_VERTICES;
+    let rim = index % DISC_VERTICES;
+    var out: Petal;
+    if number >= min(drawn[list.range.w], list.range.y) {
+        out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+        return out;
+    }
+    let stem = listed(number);
+    let head = head_of(stem);
+    let kind = kind_of(clamp(stem.points[1].w, 0.0, 0.999));
+    // The more the petals rise, the narrower and deeper a head is.
+    let reach = DISC_SHARE * kind.shape.y * head.size * select(cos(0.7 * kind.shape.w), 0.0, rim == 0u);
+    let rise = select(sin(0.7 * kind.shape.w) * DISC_SHARE * kind.shape.y * head.size, 0.0, rim == 0u);
+    let angle = f32(rim) / 6.0 * TAU;
+    let p = head.at + (head.right * cos(angle) + head.ahead * sin(angle)) * reach + head.axis * rise;
+    let albedo = select(mix(kind.base, kind.tip, 0.7), mix(kind.base, kind.disc.rgb, 0.6), rim == 0u);
+    out.color = lit(stem, p, head.axis, albedo);
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
     return out;
 }

@@ -79,6 +79,13 @@ fn litter_at(p: vec2<f32>) -> vec3<f32> {
     return mix(vec3<f32>(0.034, 0.030, 0.012), vec3<f32>(0.125, 0.105, 0.042), smoothstep(0.72, 1.18, top)) * (0.6 + 0.8 * heap.b);
 }
 
+// Share of grass half as far before a place as tall grass hides what is behind it from an eye that looks so steeply down.
+fn share_before(p: vec2<f32>, view: vec3<f32>, normal: vec3<f32>, kind: Kind) -> f32 {
+    let down = clamp(-dot(view, normal), 0.02, 1.0);
+    let hidden_m = kind.root.w * sqrt(1.0 - down * down) / down;
+    return grass_share(p - 0.5 * hidden_m * view.xz / max(length(view.xz), 1e-3));
+}
+
 @fragment
 fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let p = ground.p.xz;
@@ -87,7 +94,9 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let view = to / distance_m;
     let normal = ground_normal(p);
     let soft = soft_share(p);
-    let share = ragged_share(p, soft);
+    let kind = kinds_blended(p);
+    let between = bare_between(distance_m, kind, view, normal);
+    let share = max(ragged_share(p, soft), between * share_before(p, view, normal, kind));
     let span_m = distance_m * frame.screen.z * inverseSqrt(max(-dot(view, normal), 0.05));
     let sun_light = ground.air.z * sun_visible(ground.p + normal * 0.05);
     var color = vec3<f32>(0.0);
@@ -101,7 +110,6 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     }
     if share > 0.0 {
         // The grass as seen from afar, leaning as the blades do, where no blades hide the ground; between them it is dark.
-        let kind = kinds_blended(p);
         let lean = lean_of_field(p, field_level(distance_m)) + ground.air.xy * kind.tip.w;
         let afar = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light);
         let mottle = mottle_at(p, span_m);
@@ -109,7 +117,7 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
         let floor = mix(kind.root.rgb * 0.7, litter_at(p), 0.8 * (1.0 - smoothstep(0.3, 2.5, distance_m)));
         let under = floor * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
         let grass = afar * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
-        color += mix(under, grass, bare_between(distance_m, kind, view, normal)) * share;
+        color += mix(under, grass, between) * share;
     }
     return vec4<f32>(hazed(color, ground.p), 1.0);
 }

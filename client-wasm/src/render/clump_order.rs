@@ -84,7 +84,7 @@ impl Laid {
             Order::Weighted => "fs_weighted",
             Order::Coverage | Order::Sorted | Order::Precomputed => "fs_soft",
         };
-        let draw = Draw { label: "billboards", vertex, fragment: Some(fragment), buffers: &[], depth_write: true, cull: None, blend: None };
+        let draw = Draw { label: "billboards", vertex, fragment: Some(fragment), ..Draw::default() };
         Self { pipeline: maker.draw_in_order(&module, Some(&layout), &draw, order), group: gpu.device.create_bind_group(&descriptor), way }
     }
 

@@ -11,6 +11,8 @@ pub(super) struct Detail {
     pub(super) full_m: f32,
     /// Distance up to which blades have all their segments (m).
     pub(super) fine_m: f32,
+    /// Distance from which on heads of flowers thin out (m), and those left are larger.
+    pub(super) heads_m: f32,
     /// Distance at which the last single blades have melted into what stands for far plants (m).
     pub(super) blades_m: f32,
     /// Distance at which clumps or shells have melted into the land (m).
@@ -25,10 +27,10 @@ pub(super) struct Detail {
 
 /// Those of the levels 0, 1, 2, 3.
 const LEVELS: [Detail; 4] = [
-    Detail { full_m: 2.0, fine_m: 2.0, blades_m: 55.0, far_m: 60.0, underbrush_m: 45.0, trees_m: 400.0, coarser: 2.0 },
-    Detail { full_m: 4.0, fine_m: 3.0, blades_m: 90.0, far_m: 100.0, underbrush_m: 110.0, trees_m: 800.0, coarser: 1.6 },
-    Detail { full_m: 7.3, fine_m: 5.0, blades_m: 130.0, far_m: 150.0, underbrush_m: 180.0, trees_m: 2000.0, coarser: 1.0 },
-    Detail { full_m: 11.0, fine_m: 8.0, blades_m: 180.0, far_m: 220.0, underbrush_m: 260.0, trees_m: 2000.0, coarser: 0.7 },
+    Detail { full_m: 2.0, fine_m: 2.0, heads_m: 20.0, blades_m: 55.0, far_m: 60.0, underbrush_m: 45.0, trees_m: 400.0, coarser: 2.0 },
+    Detail { full_m: 3.4, fine_m: 3.0, heads_m: 30.0, blades_m: 90.0, far_m: 100.0, underbrush_m: 110.0, trees_m: 800.0, coarser: 1.6 },
+    Detail { full_m: 7.3, fine_m: 5.0, heads_m: 40.0, blades_m: 130.0, far_m: 150.0, underbrush_m: 180.0, trees_m: 2000.0, coarser: 1.0 },
+    Detail { full_m: 11.0, fine_m: 8.0, heads_m: 60.0, blades_m: 180.0, far_m: 220.0, underbrush_m: 260.0, trees_m: 2000.0, coarser: 0.7 },
 ];
 
 /// Most plants of a grid near the camera.
@@ -46,6 +48,7 @@ impl Detail {
         Self {
             full_m: between(a.full_m, b.full_m),
             fine_m: between(a.fine_m, b.fine_m),
+            heads_m: between(a.heads_m, b.heads_m),
             blades_m: between(a.blades_m, b.blades_m),
             far_m: between(a.far_m, b.far_m),
             underbrush_m: between(a.underbrush_m, b.underbrush_m),
@@ -60,13 +63,14 @@ impl Detail {
         const USUAL_PER_M2: f32 = 410.0;
         let per_m2 = (blades_of_grid(plants.plants_per_side) / plants.grid_m.powi(2) + plants.flowers_per_m2).max(USUAL_PER_M2);
         let nearer = if self.full_m < self.blades_m { (USUAL_PER_M2 / per_m2).sqrt() } else { 1.0 };
-        Self { full_m: self.full_m * nearer, fine_m: self.fine_m * nearer, ..self }
+        let rarer = if self.heads_m < self.blades_m { plants.flowers_per_m2.max(1.0).sqrt() } else { 1.0 };
+        Self { full_m: self.full_m * nearer, fine_m: self.fine_m * nearer, heads_m: self.heads_m / rarer, ..self }
     }
 
     /// Every plant as far as `reach_m`, with all its segments: what the other levels are measured against.
     pub(super) fn whole(reach_m: f32) -> Self {
         let most = LEVELS[LEVELS.len() - 1];
-        Self { full_m: reach_m, fine_m: reach_m, blades_m: reach_m, far_m: reach_m, underbrush_m: reach_m, ..most }
+        Self { full_m: reach_m, fine_m: reach_m, heads_m: reach_m, blades_m: reach_m, far_m: reach_m, underbrush_m: reach_m, ..most }
     }
 
     /// The same where something else than the land stands for the plants that are far off: single blades end sooner.

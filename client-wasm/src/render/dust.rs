@@ -59,15 +59,8 @@ impl Dust {
             [(0, &drift), (3, &sprites)].map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("dust"), layout: &layout, entries: &entries });
         let module = gpu.shader("dust", shaders::DUST);
-        let draw = Draw {
-            label: "dust",
-            vertex: "vs",
-            fragment: Some("fs"),
-            buffers: &[],
-            depth_write: false,
-            cull: None,
-            blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-        };
+        let draw =
+            Draw { label: "dust", depth_write: false, blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), ..Draw::default() };
         Self {
             pipeline: maker.draw(&module, Some(&layout), &draw),
             blow: maker.compute("dust drifts", &module, "blow", &blow_layout),

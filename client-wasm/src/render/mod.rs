@@ -11,6 +11,7 @@ mod cull;
 mod detail;
 mod dots;
 mod dust;
+mod far_shadows;
 mod fit;
 mod flora;
 mod forces;
@@ -65,6 +66,7 @@ use blades::{Blades, Standpoint};
 use cull::{Beam, Frustum};
 use detail::Detail;
 use dust::Dust;
+use far_shadows::{FarShadows, Seen};
 use forces::Forces;
 use land::{FrameGroup, LandTextures};
 use objects::Objects;
@@ -137,6 +139,7 @@ struct SceneParts {
     underbrush: Option<Underbrush>,
     rain: Option<RainPass>,
     objects: Objects,
+    far_shadows: FarShadows,
     dust: Option<Dust>,
 }
 
@@ -274,6 +277,7 @@ impl Renderer {
                 forces,
                 rain: RainPass::new(&maker, self.quality, land),
                 objects: Objects::new(&maker, land, standing),
+                far_shadows: FarShadows::default(),
                 dust: Dust::new(&maker, self.quality, land),
             }
         });
@@ -309,7 +313,10 @@ impl Renderer {
         self.daylight.follow(gpu, sun);
         let detail = self.detail.with(self.look.far).on(&land.scene().plants);
         let view = View::new(camera, self.targets.size_px, self.quality, detail, time_secs, sun);
-        let frame = view.frame(land, &scene.textures.atlas, &self.daylight, &poses);
+        let mut frame = view.frame(land, &scene.textures.atlas, &self.daylight, &poses);
+        let seen = Seen { eye_m: camera.eye_m, heading_rad: camera.heading_rad, sun };
+        let far_shadows_are_due = scene.far_shadows.follow(&mut frame.lights.far_shadow_from_world, seen, &poses, dt_secs);
+        let shadow_layers = if far_shadows_are_due { self.quality.shadow_layers() } else { 1 };
         self.frame.write(gpu, &frame);
         let frustum = if self.look.culls { Frustum::new(&view.projection_from_world) } else { Frustum::ALL };
         let tiles = scene.ground.tiles(camera.eye_m, &frustum);
@@ -347,7 +354,7 @@ impl Renderer {
             dust.prepare(gpu, dt_secs);
         }
         let beams = [&frame.shadow_from_world, &frame.lights.far_shadow_from_world].map(Beam::new);
-        let beams = &beams[..self.quality.shadow_layers() as usize];
+        let beams = &beams[..shadow_layers as usize];
         scene.objects.prepare(gpu, &poses, &from, beams, time_secs as f32, frame.screen[2]);
 
         let clumps = (self.look.far == Far::Clumps && has_blades).then_some(&self.billboards);
@@ -363,8 +370,8 @@ impl Renderer {
                     pass.set_bind_group(0, &scene.textures.shadow_group, &[]);
                     scene.objects.blow(&mut pass);
                 }
-                for layer in 0..self.quality.shadow_layers() {
-                    let (is_first, is_last) = (layer == 0, layer + 1 == self.quality.shadow_layers());
+                for layer in 0..shadow_layers {
+                    let (is_first, is_last) = (layer == 0, layer + 1 == shadow_layers);
                     let clock = self.timer.as_ref().and_then(|timer| timer.of_render(Pass::Shadows, is_first, is_last));
                     let mut pass = shadow_pass(&mut encoder, &self.frame.shadow_map(layer), clock);
                     pass.set_bind_group(0, &scene.textures.shadow_group, &[]);

@@ -101,8 +101,7 @@ impl Objects {
             attributes: &VERTEX_ATTRIBUTES,
         };
         let buffers = [Some(buffer)];
-        let draw =
-            Draw { label: "objects", vertex: "vs", fragment: Some("fs"), buffers: &buffers, depth_write: true, cull: None, blend: None };
+        let draw = Draw { label: "objects", buffers: &buffers, ..Draw::default() };
         let pipeline = maker.draw(&module, Some(&layout), &draw);
         let shadow_pipelines = ["vs_shadow", "vs_shadow_far"].map(|vertex| {
             let shadow = Draw { label: "shadows", vertex, fragment: Some("fs_shadow"), ..draw };

@@ -39,6 +39,15 @@ pub(super) struct Draw<'a> {
     pub(super) cull: Option<wgpu::Face>,
     /// How it is laid over what is there; none replaces that.
     pub(super) blend: Option<wgpu::BlendState>,
+    /// Values of the module's overrides.
+    pub(super) constants: &'a [(&'a str, f64)],
+}
+
+impl Default for Draw<'_> {
+    /// Opaque triangles of both faces, without vertex buffers.
+    fn default() -> Self {
+        Self { label: "", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None, constants: &[] }
+    }
 }
 
 pub(super) const ALL_STAGES: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT.union(wgpu::ShaderStages::COMPUTE);
@@ -108,6 +117,7 @@ impl Maker<'_> {
         alpha_to_coverage_enabled: bool,
     ) -> wgpu::RenderPipeline {
         let to_shadow = draw.vertex.starts_with("vs_shadow");
+        let compilation_options = wgpu::PipelineCompilationOptions { constants: draw.constants, ..Default::default() };
         let compare = if to_shadow { wgpu::CompareFunction::Less } else { wgpu::CompareFunction::GreaterEqual };
         self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(draw.label),
@@ -115,7 +125,7 @@ impl Maker<'_> {
             vertex: wgpu::VertexState {
                 module,
                 entry_point: Some(draw.vertex),
-                compilation_options: Default::default(),
+                compilation_options: compilation_options.clone(),
                 buffers: draw.buffers,
             },
             primitive: wgpu::PrimitiveState { cull_mode: draw.cull, ..Default::default() },
@@ -134,7 +144,7 @@ impl Maker<'_> {
             fragment: draw.fragment.map(|entry| wgpu::FragmentState {
                 module,
                 entry_point: Some(entry),
-                compilation_options: Default::default(),
+                compilation_options: compilation_options.clone(),
                 targets,
             }),
             multiview_mask: None,

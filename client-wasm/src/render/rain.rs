@@ -31,15 +31,8 @@ impl RainPass {
         let contents = Shower { counts: [drops, 0, 0, 0], shape: [SQUARE_M, TALL_M, DROP_M_PER_S, 0.75] };
         let shower = maker.gpu.buffer("shower", bytemuck::bytes_of(&contents), BufferUsages::UNIFORM);
         let layout = maker.layout("rain", &[uniform(0)]);
-        let draw = Draw {
-            label: "rain",
-            vertex: "vs",
-            fragment: Some("fs"),
-            buffers: &[],
-            depth_write: false,
-            cull: None,
-            blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-        };
+        let draw =
+            Draw { label: "rain", depth_write: false, blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), ..Draw::default() };
         let pipeline = maker.draw(&maker.gpu.shader("rain", shaders::RAIN), Some(&layout), &draw);
         Some(Self { pipeline, group: bind(maker.gpu, "rain", &layout, &[shower.as_entire_binding()]), drops })
     }

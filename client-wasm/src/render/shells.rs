@@ -66,7 +66,7 @@ impl Shells {
         let layout = maker.layout("shells", &[uniform(1), storage(2), texture(3), storage(4)]);
         let settle_layout = maker.layout("turf", &[storage(0), uniform(1), storage_rw(5)]);
         let module = gpu.shader("shells", shaders::SHELLS);
-        let draw = Draw { label: "shells", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None };
+        let draw = Draw { label: "shells", ..Draw::default() };
         let listed = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let tiles = gpu.empty_buffer("shell tiles", (TILE_LIMIT * size_of::<Tile>()) as u64, listed);
         let sheets = gpu.empty_buffer("shell sheets", (SHEET_LIMIT * size_of::<Sheet>()) as u64, listed);

@@ -10,7 +10,7 @@ pub(super) struct Sky {
 impl Sky {
     pub(super) fn new(maker: &Maker<'_>) -> Self {
         let module = maker.gpu.shader("sky", shaders::SKY);
-        let draw = Draw { label: "sky", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: false, cull: None, blend: None };
+        let draw = Draw { label: "sky", depth_write: false, ..Draw::default() };
         Self { pipeline: maker.draw(&module, None, &draw) }
     }
 

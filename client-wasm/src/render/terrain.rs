@@ -107,15 +107,7 @@ impl Terrain {
     pub(super) fn new(maker: &Maker<'_>) -> Self {
         let module = maker.gpu.shader("terrain", shaders::TERRAIN);
         let layout = maker.layout("terrain", &[storage(0)]);
-        let draw = Draw {
-            label: "terrain",
-            vertex: "vs",
-            fragment: Some("fs"),
-            buffers: &[],
-            depth_write: true,
-            cull: Some(wgpu::Face::Back),
-            blend: None,
-        };
+        let draw = Draw { label: "terrain", cull: Some(wgpu::Face::Back), ..Draw::default() };
         let pipeline = maker.draw(&module, Some(&layout), &draw);
         let indices = tile_indices();
         let size = (TILE_LIMIT * size_of::<Tile>()) as u64;

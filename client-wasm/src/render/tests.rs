@@ -441,7 +441,8 @@ fn as_many_flowers_stand_as_the_scene_says_and_all_are_listed() {
         picture.draw(&mut mirror, &camera, 0.0, 0.0);
         let blades = &picture.renderer.scene.as_ref().expect("a scene").blades;
         let bytes = read(&gpu, &blades.listed.counters);
-        let &[fine, coarse, single, heads] = bytemuck::cast_slice::<u8, u32>(&bytes) else { panic!("four lists") };
+        let &[fine, coarse, single, near_heads, far_heads] = bytemuck::cast_slice::<u8, u32>(&bytes) else { panic!("five lists") };
+        let heads = near_heads + far_heads;
         let [fine_limit, others_limit, heads_limit] = blades.capacities;
         assert!(fine <= fine_limit && coarse + single <= others_limit && heads <= heads_limit, "{bytes:?} of {:?}", blades.capacities);
         // All those within the distance of full density, and some of those beyond.

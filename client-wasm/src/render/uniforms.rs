@@ -50,7 +50,7 @@ uniform_block! {
         gust: [f32; 4],
         /// Ages of the atlas's layers of the past (s), youngest first; number of the youngest, or −1 where none is kept.
         past: [f32; 4],
-        /// Flowers per square metre; variation of the height of a blade; width of a blade (m); 1 where blades have textured shapes.
+        /// Flowers per square metre; variation of the height of a blade; width of a blade (m); unused.
         blade: [f32; 4],
         /// Pixels of the picture along X and Y; angle of a pixel (rad); how much it rains, 0..1.
         screen: [f32; 4],

@@ -86,7 +86,7 @@ impl<'a> View<'a> {
             tiling: [land.tiles().seed(), wraps_x, wraps_z, lamps.len() as u32],
             gust: [dir_x, dir_z, mean, travelled],
             past: atlas.past(),
-            blade: [plants.flowers_per_m2, plants.height_variation, plants.width_m, plants.blade_shape as u32 as f32],
+            blade: [plants.flowers_per_m2, plants.height_variation, plants.width_m, 0.0],
             screen: [self.size_px[0] as f32, self.size_px[1] as f32, pixel_rad, rain_share],
             reach: [blades_m * fades_from, blades_m, far_m * 0.6, far_m],
             sward: self.sward(plants),

@@ -57,7 +57,7 @@ impl Weighted {
         let gpu = maker.gpu;
         let layout = maker.layout("compose", &[texture(0), texture(1)]);
         let blend = Some(wgpu::BlendState::ALPHA_BLENDING);
-        let draw = Draw { label: "compose", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: false, cull: None, blend };
+        let draw = Draw { label: "compose", depth_write: false, blend, ..Draw::default() };
         let [sums, left] = [SUM, COVERED].map(|format| Target::new(gpu, format, size_px, maker.samples));
         let views = [sums.picture(), left.picture()].map(wgpu::BindingResource::TextureView);
         Self {

@@ -17,6 +17,8 @@ pub(in crate::render) struct Listed {
     pub(in crate::render) blades: wgpu::Buffer,
     pub(in crate::render) counters: wgpu::Buffer,
     pub(super) shapes: wgpu::TextureView,
+    /// Whether blades have them; else they taper.
+    pub(super) are_textured: bool,
     pub(in crate::render) capacities: [u32; 2],
     /// Segments of fine blades, and of others.
     pub(super) segments: [u32; 2],
@@ -49,7 +51,8 @@ impl Laid {
             Order::Weighted => "fs_weighted",
             Order::Coverage | Order::Sorted | Order::Precomputed => "fs_soft",
         };
-        let draw = Draw { label: "blades", vertex, fragment: Some(fragment), buffers: &[], depth_write: true, cull: None, blend: None };
+        let constants = [("is_textured", f64::from(u8::from(listed.are_textured)))];
+        let draw = Draw { label: "blades", vertex, fragment: Some(fragment), constants: &constants, ..Draw::default() };
         let keys = match order {
             Order::Sorted => Some(Keys::Distance),
             Order::Precomputed => Some(Keys::MadeBeforehand),

@@ -22,10 +22,10 @@ use glam::Vec3;
 use grids::Grids;
 pub(super) use grids::{grid_is_seen, square_is_seen};
 use laid::{Laid, Listed};
-use shared::scene::BLADE_STEPS_LIMIT;
+use shared::scene::{BLADE_STEPS_LIMIT, BladeShape};
 use sift::Sift;
 use std::f32::consts::{PI, TAU};
-use strips::{flower_indices, strip_indices};
+use strips::{disc_indices, head_indices, strip_indices};
 use wgpu::BufferUsages;
 
 /// Plants in one instance of an indirect draw; twin of the constants in `blades.wgsl` and `flowers.wgsl`.
@@ -47,13 +47,10 @@ const TURN_LIMIT: u32 = LISTED_LIMIT / 3;
 /// constant in `bend.wgsl`.
 const FINE_SPREAD: f32 = 0.15;
 
-/// Distance from which on heads of flowers thin out (m); twin of the constant in `bend.wgsl`.
-const HEADS_M: f32 = 20.0;
-
-/// Lists that are drawn: fine blades, coarse ones, those of one segment, flower heads.
-const LISTS: usize = 4;
+/// Lists that are drawn: fine blades, coarse ones, those of one segment, near flower heads, far ones.
+const LISTS: usize = 5;
 const SINGLE: usize = 2;
-const FLOWERS: usize = 3;
+const HEADS: [usize; 2] = [3, 4];
 
 pub(super) struct Blades {
     sift: Sift,
@@ -62,7 +59,7 @@ pub(super) struct Blades {
     finish: wgpu::ComputePipeline,
     pub(super) laid: Kept<Laid>,
     pub(super) listed: Listed,
-    heads: wgpu::RenderPipeline,
+    heads: [wgpu::RenderPipeline; 2],
     plants: wgpu::Buffer,
     #[cfg(test)]
     pub(super) sways: wgpu::Buffer,
@@ -110,7 +107,7 @@ impl Blades {
         let all = stand(detail.blades_m);
         let [surely_fine_m, fine_m] = [1.0 - FINE_SPREAD, 1.0 + FINE_SPREAD].map(|share| (share * detail.fine_m).min(detail.blades_m));
         let flowers_per_m2 = land.scene().plants.flowers_per_m2;
-        let thinned = full_area_m2(HEADS_M, detail.blades_m);
+        let thinned = full_area_m2(detail.heads_m, detail.blades_m);
         let wanted = [stand(fine_m), all - stand(surely_fine_m), flowers_per_m2 * thinned].map(most_standing);
         let by_turns = wanted.iter().map(|&count| u64::from(count)).sum::<u64>() > u64::from(LISTED_LIMIT);
         let capacities = if by_turns { wanted.map(|count| count.min(TURN_LIMIT)) } else { wanted };
@@ -124,7 +121,7 @@ impl Blades {
         let drawn_count = capacities.iter().sum::<u32>();
         let drawn = gpu.empty_buffer("drawn plants", u64::from(drawn_count) * BLADE_BYTES, storage_usage | BufferUsages::COPY_SRC);
         let counters = gpu.empty_buffer("counters", 4 * LISTS as u64, storage_usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
-        let indices = [strip_indices(segments[0]), strip_indices(segments[1]), strip_indices(1), flower_indices()];
+        let indices = [strip_indices(segments[0]), strip_indices(segments[1]), strip_indices(1), head_indices(), disc_indices()];
         let draw_args: Vec<u32> = indices.iter().flat_map(|list| [list.len() as u32, 0, 0, 0, 0]).collect();
         let draws = gpu.buffer("plant draws", bytemuck::cast_slice(&draw_args), storage_usage | BufferUsages::INDIRECT);
 
@@ -140,21 +137,26 @@ impl Blades {
         let shapes = gpu.texture("blades", wgpu::TextureFormat::Rgba8Unorm, paint::BLADE_PX, &paint::blades());
         let shapes = shapes.create_view(&Default::default());
         let [fine, others, heads] = capacities;
-        // Blades of one segment fill the place of the coarse ones from its end.
+        // Blades of one segment fill the place of the coarse ones from its end, far heads that of the near ones.
         let of_list = [
             StripList { range: [0, fine, segments[0], 0], order: [1, 0, 0, 0] },
             StripList { range: [fine, others, segments[1], 1], order: [1, 0, 0, 0] },
             StripList { range: [fine + others - 1, others, 1, SINGLE as u32], order: [-1, 0, 0, 0] },
-            StripList { range: [fine + others, heads, 0, FLOWERS as u32], order: [1, 0, 0, 0] },
+            StripList { range: [fine + others, heads, 0, HEADS[0] as u32], order: [1, 0, 0, 0] },
+            StripList { range: [fine + others + heads - 1, heads, 0, HEADS[1] as u32], order: [-1, 0, 0, 0] },
         ];
         let lists = of_list.map(|list| {
             let list = gpu.buffer("list", bytemuck::bytes_of(&list), BufferUsages::UNIFORM);
             let [drawn, counters, list] = [&drawn, &counters, &list].map(|buffer| buffer.as_entire_binding());
             bind(gpu, "plant list", &list_layout, &[drawn, counters, list, wgpu::BindingResource::TextureView(&shapes)])
         });
-        let draw = Draw { label: "flowers", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None };
-        let heads = maker.draw(&gpu.shader("flowers", shaders::FLOWERS), Some(&list_layout), &draw);
-        let listed = Listed { blades: drawn, counters, shapes, capacities: [fine, others], segments, grid_m };
+        let flowers = gpu.shader("flowers", shaders::FLOWERS);
+        let heads = ["vs", "vs_disc"].map(|vertex| {
+            let draw = Draw { label: "flowers", vertex, ..Draw::default() };
+            maker.draw(&flowers, Some(&list_layout), &draw)
+        });
+        let are_textured = land.scene().plants.blade_shape == BladeShape::Textured;
+        let listed = Listed { blades: drawn, counters, shapes, are_textured, capacities: [fine, others], segments, grid_m };
         let compute = |entry| maker.compute(entry, &bend, entry, &compute_layout);
         Self {
             sift,
@@ -238,7 +240,7 @@ impl Blades {
             shape: [self.listed.grid_m, detail.full_m, detail.fine_m, looks.swing_damping],
             steps: [steps, looks.integrator as u32, self.listed.segments[0], self.listed.segments[1]],
             time: [step_secs, self.first_flower, FLOWER_POWER, self.thinnest_px],
-            reach: [self.grids.beyond_m, 0.0, 0.0, 0.0],
+            reach: [self.grids.beyond_m, detail.heads_m, 0.0, 0.0],
         };
         gpu.queue.write_buffer(&self.plants, 0, bytemuck::bytes_of(&plants));
         if let Some(ordered) = self.laid.get().ordered() {
@@ -285,12 +287,14 @@ impl Blades {
 
     /// Draws the blades in the order that is set.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.laid.get().draw(pass, |pass| (0..FLOWERS).for_each(|list| self.draw_list(pass, list)));
+        self.laid.get().draw(pass, |pass| (0..HEADS[0]).for_each(|list| self.draw_list(pass, list)));
     }
 
     pub(super) fn draw_flowers(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.heads);
-        self.draw_list(pass, FLOWERS);
+        for (heads, list) in self.heads.iter().zip(HEADS) {
+            pass.set_pipeline(heads);
+            self.draw_list(pass, list);
+        }
     }
 
     fn draw_list(&self, pass: &mut wgpu::RenderPass<'_>, list: usize) {

@@ -2,8 +2,9 @@
 
 use super::CHUNK;
 
-/// Vertices of a flower head; twin of `VERTICES` in `flowers.wgsl`.
-const FLOWER_VERTICES: u32 = 67;
+/// Vertices of a flower head, and of one that is a disc; twins of `VERTICES` and `DISC_VERTICES` in `flowers.wgsl`.
+const HEAD_VERTICES: u32 = 67;
+const DISC_VERTICES: u32 = 7;
 
 /// Triangles of 64 blades of so many rectangles.
 pub(super) fn strip_indices(segments: u32) -> Vec<u16> {
@@ -18,20 +19,27 @@ pub(super) fn strip_indices(segments: u32) -> Vec<u16> {
 }
 
 /// Triangles of 64 flower heads: twelve petals of three triangles and a disc of six.
-pub(super) fn flower_indices() -> Vec<u16> {
+pub(super) fn head_indices() -> Vec<u16> {
     let mut indices = Vec::new();
     for head in 0..CHUNK {
-        let first = head * FLOWER_VERTICES;
+        let first = head * HEAD_VERTICES;
         for petal in 0..12 {
             let a = first + petal * 5;
             indices.extend([a, a + 1, a + 2, a + 1, a + 3, a + 2, a + 2, a + 3, a + 4].map(|i| i as u16));
         }
-        let centre = first + 60;
-        for i in 0..6 {
-            indices.extend([centre, centre + 1 + i, centre + 1 + (i + 1) % 6].map(|i| i as u16));
-        }
+        indices.extend(disc(first + 60));
     }
     indices
+}
+
+/// Triangles of 64 flower heads that are but discs.
+pub(super) fn disc_indices() -> Vec<u16> {
+    (0..CHUNK).flat_map(|head| disc(head * DISC_VERTICES)).collect()
+}
+
+/// A disc of six triangles: its centre is the vertex of that number, its rim those that follow.
+fn disc(centre: u32) -> impl Iterator<Item = u16> {
+    (0..6).flat_map(move |i| [centre, centre + 1 + i, centre + 1 + (i + 1) % 6].map(|i| i as u16))
 }
 
 #[cfg(test)]
@@ -50,7 +58,8 @@ mod tests {
 
     #[test]
     fn indices_stay_within_their_chunk() {
-        for (list, vertices) in [(strip_indices(7), 16), (strip_indices(3), 8), (flower_indices(), FLOWER_VERTICES)] {
+        let lists = [(strip_indices(7), 16), (strip_indices(3), 8), (head_indices(), HEAD_VERTICES), (disc_indices(), DISC_VERTICES)];
+        for (list, vertices) in lists {
             let largest = u32::from(*list.iter().max().expect("indices"));
             assert_eq!(largest, CHUNK * vertices - 1);
         }

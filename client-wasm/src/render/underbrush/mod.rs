@@ -136,8 +136,7 @@ impl Underbrush {
         let compute_layout = maker.layout("underbrush", &entries);
         let list_layout =
             maker.layout("underbrush list", &[storage(10), storage(11), storage(12), storage(13), storage(14), uniform(15), storage(16)]);
-        let draw =
-            Draw { label: "underbrush", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None };
+        let draw = Draw { label: "underbrush", ..Draw::default() };
         let pipeline = maker.draw(&module, Some(&list_layout), &draw);
 
         let mut draw_words = vec![0_u32; SPECIES_LIMIT * LEVELS * DRAW_WORDS];
