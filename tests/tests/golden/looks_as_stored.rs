@@ -3,6 +3,7 @@
 use crate::{Golden, Unlike};
 use anyhow::Result;
 use client_wasm::render::{Far, Look, Order, Quality, Split, Sun, Way};
+use shared::scene::Scene;
 use tests::stage::Act;
 use tests::views::{Eye, over};
 
@@ -36,12 +37,21 @@ golden!(track, Golden { shows: "a car's track", act: Act::Track, unlike: Unlike:
 golden!(species, Golden { scene: "scenes/species/species.toml", ..large() });
 golden!(underbrush, Golden { scene: "underbrush", ..large() });
 golden!(blades, Golden { scene: "blades", ..large() });
-golden!(shells, Golden { scene: "shells", ..large() });
+golden!(
+    shells,
+    Golden {
+        shows: "layers above the ground",
+        scene: "shells",
+        unlike: Unlike::Look(Look { shell_layers: Some(1), ..Look::default() }),
+        ..large()
+    }
+);
 
 // What stands for far plants.
 
+/// Above: clumps of one segment; below: of several.
 fn down_the_valley() -> Golden {
-    Golden { eye: over([128.0, 158.0], 5.0, 20.0, -10.0), ..Golden::default() }
+    Golden { eye: over([128.0, 158.0], 5.0, 20.0, -10.0), parts: &[[0, 58, 256, 11], [0, 70, 256, 14]], ..Golden::default() }
 }
 
 golden!(far_land, Golden { shows: "blades as far as they are told apart", unlike: Unlike::Stored("far_clumps"), ..down_the_valley() });
@@ -54,13 +64,17 @@ golden!(
         ..down_the_valley()
     }
 );
+// In grass so high that single clumps are seen.
 golden!(
     far_clumps_sorted,
     Golden {
         shows: "clumps blended far to near",
+        change: |scene| scene.plants.height_m = 2.0,
+        eye: over([128.0, 158.0], 6.0, 20.0, -10.0),
         look: look(Order::Sorted, Far::Clumps),
-        unlike: Unlike::Stored("far_clumps"),
-        ..down_the_valley()
+        parts: &[[0, 80, 256, 24]],
+        unlike: Unlike::Look(look(Order::Cut, Far::Clumps)),
+        ..Golden::default()
     }
 );
 golden!(
@@ -72,6 +86,7 @@ golden!(
     Golden {
         shows: "shells to the left and clumps to the right",
         split: Some(Split { ways: [Far::Shells, Far::Clumps].map(|far| Way { look: look(Order::Cut, far), level: 0.0 }), at: 0.5 }),
+        parts: &[[0, 60, 128, 26], [128, 60, 128, 26]],
         unlike: Unlike::Stored("far_land"),
         ..down_the_valley()
     }
@@ -148,29 +163,23 @@ golden!(
 
 // What is in the air.
 
+/// The sky is overcast from 10 mm/h on; what rains more differs in its streaks alone.
+fn rainy(change: fn(&mut Scene)) -> Golden {
+    Golden { scene: "storm", change, quality: Quality::Medium, parts: &[[0, 44, 256, 60]], ..Golden::default() }
+}
+
 golden!(
     rain,
-    Golden {
-        shows: "streaks of rain",
-        scene: "storm",
-        change: |scene| scene.rain.rate_mm_per_h = 30.0,
-        quality: Quality::Medium,
-        unlike: Unlike::Stored("dry_storm"),
-        ..Golden::default()
-    }
+    Golden { shows: "streaks of heavy rain", unlike: Unlike::Stored("light_rain"), ..rainy(|scene| scene.rain.rate_mm_per_h = 30.0) }
 );
 golden!(
-    dry_storm,
-    Golden {
-        shows: "a storm without rain",
-        scene: "storm",
-        change: |scene| scene.rain.rate_mm_per_h = 0.0,
-        quality: Quality::Medium,
-        unlike: Unlike::Stored("rain"),
-        ..Golden::default()
-    }
+    light_rain,
+    Golden { shows: "few streaks of rain", unlike: Unlike::Stored("rain"), ..rainy(|scene| scene.rain.rate_mm_per_h = 10.0) }
 );
-golden!(dust, Golden { shows: "a dust devil, and motes", scene: "devil", unlike: Unlike::Stored("clear_air"), ..Golden::default() });
+golden!(
+    dust,
+    Golden { shows: "a dust devil", scene: "devil", parts: &[[16, 32, 128, 48]], unlike: Unlike::Stored("clear_air"), ..Golden::default() }
+);
 golden!(
     clear_air,
     Golden {
@@ -186,7 +195,16 @@ golden!(
 
 const LAMPS: &str = "scenes/lamps.toml";
 
-golden!(lamps, Golden { shows: "the light of lamps", scene: LAMPS, unlike: Unlike::Stored("lamps_out"), ..Golden::default() });
+golden!(
+    lamps,
+    Golden {
+        shows: "the light of lamps",
+        scene: LAMPS,
+        parts: &[[0, 64, 176, 48]],
+        unlike: Unlike::Stored("lamps_out"),
+        ..Golden::default()
+    }
+);
 golden!(
     lamps_out,
     Golden {
@@ -204,6 +222,7 @@ golden!(
         act: Act::Track,
         eye: Eye::Chase([9.0, 3.0, 3.0]),
         look: sunlit(330.0, -5.0),
+        parts: &[[122, 34, 64, 28]],
         unlike: Unlike::Bare,
         ..Golden::default()
     }
@@ -240,10 +259,18 @@ golden!(
 );
 
 fn above_trees() -> Golden {
-    Golden { eye: over([124.0, 197.0], 10.0, 20.0, -12.0), quality: Quality::Medium, ..Golden::default() }
+    Golden { eye: over([150.0, 130.0], 14.0, 350.0, -14.0), look: sunlit(250.0, 14.0), quality: Quality::Medium, ..Golden::default() }
 }
 
-golden!(trees, Golden { shows: "trees, their shadows near and far", unlike: Unlike::Stored("saplings"), ..above_trees() });
+golden!(
+    trees,
+    Golden {
+        shows: "shadows, those near by and those of the coarse layer",
+        parts: &[[210, 62, 36, 20], [16, 47, 56, 9]],
+        unlike: Unlike::Stored("saplings"),
+        ..above_trees()
+    }
+);
 golden!(
     saplings,
     Golden {
@@ -256,16 +283,50 @@ golden!(
 
 // What moves through the grass.
 
-golden!(car, Golden { shows: "a car", act: Act::Track, eye: Eye::Chase([7.0, 2.2, 2.0]), unlike: Unlike::Bare, ..Golden::default() });
+golden!(
+    car,
+    Golden {
+        shows: "a car",
+        act: Act::Track,
+        eye: Eye::Chase([7.0, 2.2, 2.0]),
+        parts: &[[92, 52, 64, 56]],
+        unlike: Unlike::Bare,
+        ..Golden::default()
+    }
+);
 golden!(
     monster,
-    Golden { shows: "a monster", act: Act::Walk, eye: Eye::Chase([4.0, 1.2, 1.5]), unlike: Unlike::Bare, ..Golden::default() }
+    Golden {
+        shows: "a monster",
+        act: Act::Walk,
+        eye: Eye::Chase([4.0, 1.2, 1.5]),
+        parts: &[[108, 32, 52, 66]],
+        unlike: Unlike::Bare,
+        ..Golden::default()
+    }
 );
 golden!(
     helicopter,
-    Golden { shows: "a helicopter", act: Act::Wash, eye: Eye::Chase([8.0, 2.0, 5.0]), unlike: Unlike::Bare, ..Golden::default() }
+    Golden {
+        shows: "a helicopter",
+        act: Act::Wash,
+        eye: Eye::Chase([8.0, 2.0, 5.0]),
+        parts: &[[72, 46, 84, 50]],
+        unlike: Unlike::Bare,
+        ..Golden::default()
+    }
 );
-golden!(sled, Golden { shows: "a sled", act: Act::Drag, eye: Eye::Chase([6.0, 3.0, 2.0]), unlike: Unlike::Bare, ..Golden::default() });
+golden!(
+    sled,
+    Golden {
+        shows: "a sled",
+        act: Act::Drag,
+        eye: Eye::Chase([6.0, 3.0, 2.0]),
+        parts: &[[64, 44, 110, 72]],
+        unlike: Unlike::Bare,
+        ..Golden::default()
+    }
+);
 golden!(
     ball,
     Golden {
@@ -273,6 +334,7 @@ golden!(
         scene: "underbrush",
         act: Act::Roll,
         eye: Eye::Chase([2.8, 1.0, 0.8]),
+        parts: &[[104, 44, 56, 56]],
         unlike: Unlike::Bare,
         ..Golden::default()
     }
@@ -281,14 +343,14 @@ golden!(
 // What grows.
 
 fn between_blades() -> Golden {
-    Golden { eye: over([128.0, 158.7], 0.6, 20.0, -20.0), ..Golden::default() }
+    Golden { eye: over([128.0, 158.7], 1.5, 20.0, -35.0), ..Golden::default() }
 }
 
 golden!(
     flowers,
     Golden {
         shows: "flowers",
-        change: |scene| scene.plants.flowers_per_m2 = 12.0,
+        change: |scene| scene.plants.flowers_per_m2 = 30.0,
         unlike: Unlike::Stored("near_blades"),
         ..between_blades()
     }
@@ -319,7 +381,13 @@ golden!(
 );
 
 fn where_reeds_were_run_over() -> Golden {
-    Golden { scene: "underbrush", act: Act::Track, eye: over([121.5, 150.0], 1.0, 90.0, -10.0), ..Golden::default() }
+    Golden {
+        scene: "underbrush",
+        act: Act::Track,
+        eye: over([121.5, 150.0], 2.175, 90.0, -10.0),
+        parts: &[[112, 48, 32, 36]],
+        ..Golden::default()
+    }
 }
 
 golden!(broken_reeds, Golden { shows: "reeds that a car broke", unlike: Unlike::Stored("tough_reeds"), ..where_reeds_were_run_over() });
