@@ -4,7 +4,10 @@
 //! 3/255 and 6 % of the pixels visibly off. Each picture without what it is there to show would miss one of them. `PRAIRIE_BLESS=1 cargo nextest
 //! run --release -p tests --test golden` draws them anew.
 
-mod looks_as_stored;
+mod light;
+mod objects;
+mod scenes;
+mod ways;
 
 use anyhow::{Context as _, Result, ensure};
 use client_wasm::render::{Gpu, Look, Picture as Canvas, Quality, Split};
@@ -13,6 +16,17 @@ use std::path::PathBuf;
 use tests::picture::{Difference, Picture};
 use tests::stage::{Act, Stage};
 use tests::views::Eye;
+
+/// A test of its name, which is that of the file too.
+macro_rules! golden {
+    ($name:ident, $golden:expr) => {
+        #[test]
+        fn $name() -> Result<()> {
+            $golden.check(stringify!($name))
+        }
+    };
+}
+use golden;
 
 const DT_SECS: f32 = 1.0 / 30.0;
 const BOUNDS: Difference = Difference { mean: 3.0, changed: 0.06 };
@@ -80,7 +94,9 @@ impl Golden {
         if blesses {
             drawn.save(&path)?;
         }
-        for (place, difference) in self.differences(&drawn, &Picture::load(&path)?)? {
+        let differences = self.differences(&drawn, &Picture::load(&path)?)?;
+        println!("{name}, from what is stored: {differences:?}");
+        for (place, difference) in differences {
             if !is_within(difference) {
                 let seen = std::env::temp_dir().join(format!("prairie-{name}.png"));
                 drawn.save(&seen)?;
@@ -95,7 +111,7 @@ impl Golden {
         };
         if let Some(unlike) = unlike {
             let differences = self.differences(&drawn, &unlike)?;
-            println!("{name}: {differences:?}");
+            println!("{name}, from what it is unlike: {differences:?}");
             for (place, difference) in differences.iter().skip(self.parts.len().min(1)) {
                 ensure!(!is_within(*difference), "{name}: too little is seen of {}, {place}: {difference:?}", self.shows);
             }
