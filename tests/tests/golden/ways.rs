@@ -85,37 +85,20 @@ golden!(
         ..among_textured_blades()
     }
 );
+
+fn finely() -> Golden {
+    Golden { quality: Quality::High, size_px: [128, 72], frames: 1, ..among_textured_blades() }
+}
+
 golden!(
     high,
-    Golden {
-        shows: "edges that are cut, with four samples a pixel",
-        quality: Quality::High,
-        size_px: [128, 72],
-        frames: 2,
-        unlike: Unlike::Look(look(Order::Coverage, Far::Land)),
-        ..among_textured_blades()
-    }
+    Golden { shows: "edges that are cut, with four samples a pixel", unlike: Unlike::Look(look(Order::Coverage, Far::Land)), ..finely() }
 );
 golden!(
     coverage,
-    Golden {
-        shows: "opacity as a share of samples",
-        quality: Quality::High,
-        size_px: [128, 72],
-        frames: 2,
-        look: look(Order::Coverage, Far::Land),
-        unlike: Unlike::Stored("high"),
-        ..among_textured_blades()
-    }
+    Golden { shows: "opacity as a share of samples", look: look(Order::Coverage, Far::Land), unlike: Unlike::Stored("high"), ..finely() }
 );
 golden!(
     ultra,
-    Golden {
-        shows: "four pixels drawn for each, tone mapped to one",
-        quality: Quality::Ultra,
-        size_px: [128, 72],
-        frames: 2,
-        unlike: Unlike::Stored("high"),
-        ..among_textured_blades()
-    }
+    Golden { shows: "four pixels drawn for each, tone mapped to one", quality: Quality::Ultra, unlike: Unlike::Stored("high"), ..finely() }
 );
