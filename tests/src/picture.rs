@@ -47,7 +47,7 @@ impl Picture {
         Self::from_png(&png).with_context(|| path.display().to_string())
     }
 
-    /// Writes a PNG file, and the directory it lies in.
+    /// Writes a PNG file, of RGB where all is opaque, and the directory it lies in.
     ///
     /// # Errors
     /// When the file cannot be written.
@@ -57,10 +57,12 @@ impl Picture {
         }
         let file = File::create(path).with_context(|| path.display().to_string())?;
         let mut encoder = Encoder::new(BufWriter::new(file), self.width, self.height);
-        encoder.set_color(ColorType::Rgba);
+        let is_opaque = self.rgba.chunks_exact(4).all(|pixel| pixel[3] == u8::MAX);
+        encoder.set_color(if is_opaque { ColorType::Rgb } else { ColorType::Rgba });
         encoder.set_depth(BitDepth::Eight);
         let mut writer = encoder.write_header()?;
-        writer.write_image_data(&self.rgba)?;
+        let bytes = self.rgba.chunks_exact(4).flat_map(|pixel| &pixel[..if is_opaque { 3 } else { 4 }]);
+        writer.write_image_data(&bytes.copied().collect::<Vec<u8>>())?;
         Ok(writer.finish()?)
     }
 
@@ -73,6 +75,16 @@ impl Picture {
         assert!(x < self.width && y < self.height, "pixel ({x}, {y}) of a picture of {}x{}", self.width, self.height);
         let start = (y as usize * self.width as usize + x as usize) * 4;
         [self.rgba[start], self.rgba[start + 1], self.rgba[start + 2], self.rgba[start + 3]]
+    }
+
+    /// The part of it that is so many pixels from the left and the top, wide and high.
+    ///
+    /// # Panics
+    /// Where it reaches beyond the picture.
+    #[must_use]
+    pub fn part(&self, [left, top, width, height]: [u32; 4]) -> Self {
+        let places = (top..top + height).flat_map(|y| (left..left + width).map(move |x| [x, y]));
+        Self { width, height, rgba: places.flat_map(|[x, y]| self.pixel(x, y)).collect() }
     }
 
     /// How far this picture is from another of the same size.
@@ -126,8 +138,11 @@ mod tests {
     fn a_saved_picture_comes_back() -> Result<()> {
         let dir = tempfile::tempdir()?;
         let path = dir.path().join("new/gradient.png");
-        gradient().save(&path)?;
-        assert_eq!(Picture::load(&path)?, gradient());
+        let opaque = Picture { width: 1, height: 2, rgba: vec![1, 2, 3, 255, 4, 5, 6, 255] };
+        for picture in [gradient(), opaque] {
+            picture.save(&path)?;
+            assert_eq!(Picture::load(&path)?, picture);
+        }
         Ok(())
     }
 
@@ -140,6 +155,13 @@ mod tests {
         assert_eq!(difference.changed, 1.0 / 6.0);
         assert_eq!(difference.mean, 33.0 / 24.0);
         Ok(())
+    }
+
+    #[test]
+    fn a_part_is_cut_out() {
+        let part = gradient().part([1, 0, 2, 2]);
+        assert_eq!((part.width, part.height), (2, 2));
+        assert_eq!(part.rgba, [&gradient().rgba[4..12], &gradient().rgba[16..24]].concat());
     }
 
     #[test]

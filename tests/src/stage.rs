@@ -31,7 +31,16 @@ impl Stage {
     /// # Errors
     /// When the scene is faulty.
     pub fn load(name_or_path: &str) -> Result<Self> {
-        let loaded = scenes::load(name_or_path)?;
+        Self::changed(name_or_path, |_| {})
+    }
+
+    /// The same after a change of it.
+    ///
+    /// # Errors
+    /// When the scene is faulty.
+    pub fn changed(name_or_path: &str, change: impl FnOnce(&mut Scene)) -> Result<Self> {
+        let mut loaded = scenes::load(name_or_path)?;
+        change(&mut loaded.scene);
         let mut stage = Self {
             world: World::new(&loaded.scene, loaded.maps())?,
             mirror: Mirror::default(),
@@ -81,6 +90,15 @@ impl Stage {
     /// Puts hands on the controls of `client`'s vehicle.
     pub fn drive(&mut self, client: u32, drive: Drive) {
         self.tell(&[Command::Drive { client, drive }]);
+    }
+
+    /// Takes all objects from the mirror, which else stays as it is, until the world is shown again.
+    ///
+    /// # Errors
+    /// When the mirror refuses it.
+    pub fn show_bare(&mut self) -> Result<()> {
+        // What is told of an earlier time than before takes the place of all that was told.
+        self.bring(&ServerMessage::Poses { tick: 0, objects: Vec::new() })
     }
 
     fn tell(&mut self, commands: &[Command]) {

@@ -27,6 +27,8 @@ pub struct View {
 /// Where a camera is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Eye {
+    /// Where the scene's visitors start.
+    Start,
     /// Over a place on the land: X and Z (m), height above the ground (m), heading and pitch (degrees).
     Over {
         /// X and Z (m).
@@ -42,7 +44,8 @@ pub enum Eye {
     Chase([f32; 3]),
 }
 
-const fn over(at_m: [f32; 2], height_m: f32, heading_deg: f32, pitch_deg: f32) -> Eye {
+/// A camera so high above a place (m), its heading and pitch in degrees.
+pub const fn over(at_m: [f32; 2], height_m: f32, heading_deg: f32, pitch_deg: f32) -> Eye {
     Eye::Over { at_m, height_m, heading_deg, pitch_deg }
 }
 
@@ -146,25 +149,35 @@ impl View {
     /// When the scene is faulty or the act fails.
     pub fn play(&self) -> Result<(Stage, Camera)> {
         let mut stage = Stage::load(self.scene)?;
+        let camera = self.eye.watch(&mut stage, self.act).context(self.name)?;
+        Ok((stage, camera))
+    }
+}
+
+impl Eye {
+    /// Plays an act on a stage: the camera at its end.
+    ///
+    /// # Errors
+    /// When the act fails, or has no vehicle to be chased.
+    pub fn watch(self, stage: &mut Stage, act: Act) -> Result<Camera> {
         let start = Camera::start(&stage.scene().camera, stage.scene().extent_m(), |x, z| stage.ground_m(x, z));
-        let fixed = match self.eye {
-            Eye::Over { at_m: [x, z], height_m, heading_deg, pitch_deg } => Some(Camera {
+        let fixed = match self {
+            Self::Over { at_m: [x, z], height_m, heading_deg, pitch_deg } => Camera {
                 eye_m: Vec3::new(x, stage.ground_m(x, z) + height_m, z),
                 heading_rad: heading_deg.to_radians(),
                 pitch_rad: pitch_deg.to_radians(),
                 ..start
-            }),
-            Eye::Chase(_) => None,
+            },
+            Self::Start | Self::Chase(_) => start,
         };
-        let pose = play(&mut stage, self.act, fixed.unwrap_or(start).eye_m.to_array())?;
-        let camera = match (fixed, self.eye) {
-            (None, Eye::Chase(offset_m)) => {
-                let pose = pose.with_context(|| format!("{}: nothing to chase", self.name))?;
-                chase(&pose, offset_m, |x, z| stage.ground_m(x, z))
+        let pose = play(stage, act, fixed.eye_m.to_array())?;
+        match self {
+            Self::Chase(offset_m) => {
+                let pose = pose.context("nothing to chase")?;
+                Ok(chase(&pose, offset_m, |x, z| stage.ground_m(x, z)))
             }
-            (fixed, _) => fixed.unwrap_or(start),
-        };
-        Ok((stage, camera))
+            Self::Start | Self::Over { .. } => Ok(fixed),
+        }
     }
 }
 
