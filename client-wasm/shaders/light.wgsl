@@ -204,10 +204,13 @@ fn lamp_ray(lamp: Lamp, p: vec3<f32>) -> LampRay {
     return LampRay(toward, lamp.rgb.rgb * (attenuation(lamp.attenuation.xyz, distance_m) * cone * ending));
 }
 
+// Whether any lamp is lit. Known as a pipeline is made, since software drivers run the first turn of a loop even where there is none.
+override has_lamps: bool = true;
+
 // Lamps that may reach a place. The count depends on the place, so that drivers which make a shader anew for each value of a uniform that decides its way
 // through the program do not.
 fn lamps_about(p: vec3<f32>) -> u32 {
-    return select(0u, frame.tiling.w, distance(p, frame.lights.lit.xyz) < frame.lights.lit.w);
+    return select(0u, frame.tiling.w, has_lamps && distance(p, frame.lights.lit.xyz) < frame.lights.lit.w);
 }
 
 // Light of all lamps on a surface, over π; `around` is how far light wraps around it: 0 of a solid.

@@ -1,5 +1,8 @@
 // Meshes made of triangles: vehicles, trees and stones; also as seen by the sun, for the shadow map.
 
+// Whether what is drawn may be glossy, as vehicles are; known as the pipeline is made.
+override is_glossy: bool = true;
+
 // How far the glass of a lamp is from its middle (m).
 const GLASS_M: f32 = 0.17;
 
@@ -115,9 +118,11 @@ fn fs(surface: Surface) -> @location(0) vec4<f32> {
         color = grass_light(albedo, normal, upright, view, light, surface.color.a) + grass_lamps(albedo, normal, upright, view, surface.p, surface.color.a);
     } else {
         let albedo = surface.color.rgb;
-        let gloss = surface.color.a;
         let diffuse = max(facing, 0.0);
         color = albedo * (frame.sun_color.rgb * light * diffuse + ambient(normal) + lamps_on(surface.p, normal, 0.0));
+    }
+    if is_glossy && !is_leaf {
+        let gloss = surface.color.a;
         let half_way = normalize(frame.sun.xyz - view);
         let grazing = 1.0 - clamp(dot(normal, -view), 0.0, 1.0);
         let fresnel = grazing * grazing * grazing * grazing;

@@ -145,12 +145,12 @@ struct SceneParts {
 
 impl SceneParts {
     /// Draws plants that are blended over what is opaque: far ones, then single ones.
-    fn draw_plants(&self, has_blades: bool, clumps: Option<&Billboards>, pass: &mut wgpu::RenderPass<'_>) {
+    fn draw_plants(&self, has_blades: bool, clumps: Option<&Billboards>, has_lamps: bool, pass: &mut wgpu::RenderPass<'_>) {
         if let Some(clumps) = clumps {
             clumps.draw(pass);
         }
         if has_blades {
-            self.blades.draw(pass);
+            self.blades.draw(pass, has_lamps);
         }
     }
 
@@ -314,6 +314,7 @@ impl Renderer {
         let detail = self.detail.with(self.look.far).on(&land.scene().plants);
         let view = View::new(camera, self.targets.size_px, self.quality, detail, time_secs, sun);
         let mut frame = view.frame(land, &scene.textures.atlas, &self.daylight, &poses);
+        let has_lamps = frame.tiling[3] > 0;
         let seen = Seen { eye_m: camera.eye_m, heading_rad: camera.heading_rad, sun };
         let far_shadows_are_due = scene.far_shadows.follow(&mut frame.lights.far_shadow_from_world, seen, &poses, dt_secs);
         let shadow_layers = if far_shadows_are_due { self.quality.shadow_layers() } else { 1 };
@@ -383,7 +384,7 @@ impl Renderer {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes });
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 if has_blades {
-                    scene.blades.bend(&mut pass);
+                    scene.blades.bend(&mut pass, has_lamps);
                 }
                 if turn == 0 {
                     if shells.is_some() {
@@ -407,11 +408,11 @@ impl Renderer {
                 let mut pass = main_pass(&mut encoder, &self.targets, turn == 0, is_last && weighted.is_none(), clock);
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 if turn == 0 {
-                    scene.objects.draw(&mut pass);
+                    scene.objects.draw(&mut pass, has_lamps);
                 }
                 if has_blades {
                     if !order.blends() {
-                        scene.blades.draw(&mut pass);
+                        scene.blades.draw(&mut pass, has_lamps);
                     }
                     scene.blades.draw_flowers(&mut pass);
                 }
@@ -420,16 +421,16 @@ impl Renderer {
                         scene.shells.draw(&mut pass);
                     }
                     if let Some(underbrush) = &scene.underbrush {
-                        underbrush.draw(&mut pass);
+                        underbrush.draw(&mut pass, has_lamps);
                     }
                     if let Some(clumps) = clumps.filter(|_| !order.blends()) {
                         clumps.draw(&mut pass);
                     }
-                    self.terrain.draw(&mut pass);
+                    self.terrain.draw(&mut pass, has_lamps);
                     self.sky.draw(&mut pass);
                     if weighted.is_none() {
                         if order.blends() {
-                            scene.draw_plants(has_blades, clumps, &mut pass);
+                            scene.draw_plants(has_blades, clumps, has_lamps, &mut pass);
                         }
                         scene.draw_weather(&mut pass);
                     }
@@ -439,7 +440,7 @@ impl Renderer {
                 {
                     let mut pass = weighted.pass(&mut encoder, &self.targets.depth);
                     pass.set_bind_group(0, &scene.textures.group, &[]);
-                    scene.draw_plants(has_blades, clumps, &mut pass);
+                    scene.draw_plants(has_blades, clumps, has_lamps, &mut pass);
                 }
                 let clock = self.timer.as_ref().and_then(|timer| timer.of_render(Pass::Picture, false, true));
                 let mut pass = main_pass(&mut encoder, &self.targets, false, true, clock);

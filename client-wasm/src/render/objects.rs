@@ -7,7 +7,7 @@ use super::gpu::Gpu;
 use super::grove::{Ball, Grove};
 use super::mesh::{Paint, Solid, VERTEX_ATTRIBUTES, Vertex};
 use super::paint;
-use super::pipeline::{Draw, Maker, bind, storage, storage_rw, texture};
+use super::pipeline::{ByLamps, Draw, Maker, bind, storage, storage_rw, texture};
 use super::shaders;
 use super::vehicles::{self, Part};
 use crate::state::{Land, OBJECT_LIMIT};
@@ -41,7 +41,8 @@ struct MeshRange {
 }
 
 pub(super) struct Objects {
-    pipeline: wgpu::RenderPipeline,
+    /// Of what is matte, and of what may be glossy.
+    pipelines: ByLamps<[wgpu::RenderPipeline; 2]>,
     shadow_pipelines: [wgpu::RenderPipeline; 2],
     group: wgpu::BindGroup,
     blow: wgpu::ComputePipeline,
@@ -102,7 +103,9 @@ impl Objects {
         };
         let buffers = [Some(buffer)];
         let draw = Draw { label: "objects", buffers: &buffers, ..Draw::default() };
-        let pipeline = maker.draw(&module, Some(&layout), &draw);
+        let pipelines = ByLamps::new(|lamps| {
+            [0.0, 1.0].map(|gloss| maker.draw(&module, Some(&layout), &Draw { constants: &[lamps, ("is_glossy", gloss)], ..draw }))
+        });
         let shadow_pipelines = ["vs_shadow", "vs_shadow_far"].map(|vertex| {
             let shadow = Draw { label: "shadows", vertex, fragment: Some("fs_shadow"), ..draw };
             maker.draw(&module, Some(&layout), &shadow)
@@ -119,7 +122,7 @@ impl Objects {
         let blow_group =
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("blow"), layout: &blow_layout, entries: &entries });
         Self {
-            pipeline,
+            pipelines,
             shadow_pipelines,
             group: bind(gpu, "objects", &layout, &resources),
             blow: maker.compute("blow", &module, "blow", &blow_layout),
@@ -216,9 +219,14 @@ impl Objects {
         pass.dispatch_workgroups(self.count.div_ceil(64), 1, 1);
     }
 
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.pipeline);
-        self.draw_list(pass, &self.seen);
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
+        // The meshes of vehicles come first.
+        let vehicles = self.seen.partition_point(|&(mesh, _)| mesh < tree_mesh(0, TreeDetail::ALL[0]));
+        let [matte, glossy] = self.pipelines.of(has_lamps);
+        for (pipeline, list) in [(glossy, &self.seen[..vehicles]), (matte, &self.seen[vehicles..])] {
+            pass.set_pipeline(pipeline);
+            self.draw_list(pass, list);
+        }
     }
 
     /// Draws what throws shadows into a layer of the map.

@@ -50,6 +50,20 @@ impl Default for Draw<'_> {
     }
 }
 
+/// A pass of which lamps light what it shows: without any lit, and with. The constant is `has_lamps` of `light.wgsl`.
+pub(super) struct ByLamps<P>([P; 2]);
+
+impl<P> ByLamps<P> {
+    pub(super) fn new(make: impl Fn((&'static str, f64)) -> P) -> Self {
+        Self([0.0, 1.0].map(|has_lamps| make(("has_lamps", has_lamps))))
+    }
+
+    /// For a frame in which there are lamps, or none.
+    pub(super) fn of(&self, has_lamps: bool) -> &P {
+        &self.0[usize::from(has_lamps)]
+    }
+}
+
 pub(super) const ALL_STAGES: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT.union(wgpu::ShaderStages::COMPUTE);
 
 impl Maker<'_> {
@@ -72,12 +86,24 @@ impl Maker<'_> {
         entry: &str,
         own: &wgpu::BindGroupLayout,
     ) -> wgpu::ComputePipeline {
+        self.compute_with(label, module, entry, own, &[])
+    }
+
+    /// The same with values of the module's overrides.
+    pub(super) fn compute_with(
+        &self,
+        label: &str,
+        module: &wgpu::ShaderModule,
+        entry: &str,
+        own: &wgpu::BindGroupLayout,
+        constants: &[(&str, f64)],
+    ) -> wgpu::ComputePipeline {
         self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(label),
             layout: Some(&self.pipeline_layout(label, Some(own))),
             module,
             entry_point: Some(entry),
-            compilation_options: Default::default(),
+            compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
             cache: None,
         })
     }

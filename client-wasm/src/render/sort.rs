@@ -1,8 +1,8 @@
 //! Sorts pairs of a key and a number on the GPU, stably, as many as a counter there says.
 //!
 //! A radix sort from the lowest digit, eight bits at a time. For each digit a pair is read twice and written once, 24 bytes, and a tile of 1024 pairs
-//! reads and writes 5 KiB of counts; some 30 operations a pair, most of them on workgroup memory. By 16 bits 32 thousand pairs move 1.9 MB. One
-//! workgroup adds up the counts of all tiles, in time that grows with their number.
+//! reads and writes 5 KiB of counts; some 30 operations a pair, most of them on workgroup memory. By 16 bits 32 thousand pairs move 1.9 MB, a
+//! million 58 MB. What runs one after the other grows with a 64th of the number of tiles: 16 of them for a million pairs.
 
 use super::gpu::Gpu;
 use super::pipeline::{bind_as, storage, storage_rw, uniform};
@@ -12,6 +12,9 @@ use wgpu::BufferUsages;
 
 /// Pairs of a tile; twin of `TILE` in `sort.wgsl`.
 const TILE: u32 = 1024;
+/// Values of a digit, and the bytes of a count of each.
+const DIGITS: u32 = 256;
+const DIGITS_BYTES: u64 = 4 * DIGITS as u64;
 /// Bytes of a pair: key, number.
 pub(super) const PAIR_BYTES: u64 = 8;
 
@@ -71,7 +74,7 @@ impl Sort {
     pub(super) fn new(gpu: &Gpu, sorter: &Sorter, counters: &wgpu::Buffer, counter: u32, capacity: u32, digits: u32) -> Self {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
         let pairs = [(); 2].map(|()| gpu.empty_buffer("pairs", u64::from(capacity.max(1)) * PAIR_BYTES, usage));
-        let places = gpu.empty_buffer("sort places", u64::from(capacity.div_ceil(TILE).max(1)) * 1024, BufferUsages::STORAGE);
+        let places = gpu.empty_buffer("sort places", (u64::from(capacity.div_ceil(TILE)) + 1) * DIGITS_BYTES, BufferUsages::STORAGE);
         let tiles = gpu.empty_buffer("sort tiles", 12, BufferUsages::STORAGE | BufferUsages::INDIRECT);
         let shapes: Vec<wgpu::Buffer> = (0..digits)
             .map(|digit| SortDigit { shape: [8 * digit, counter, capacity, 0] })
@@ -110,7 +113,7 @@ impl Sort {
             pass.set_pipeline(&sorter.count);
             pass.dispatch_workgroups_indirect(&self.tiles, 0);
             pass.set_pipeline(&sorter.place);
-            pass.dispatch_workgroups(1, 1, 1);
+            pass.dispatch_workgroups(DIGITS, 1, 1);
             pass.set_pipeline(&sorter.shift);
             pass.dispatch_workgroups_indirect(&self.tiles, 0);
         }

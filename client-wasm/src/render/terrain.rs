@@ -2,7 +2,7 @@
 
 use super::cull::Frustum;
 use super::gpu::Gpu;
-use super::pipeline::{Draw, Maker, bind, storage};
+use super::pipeline::{ByLamps, Draw, Maker, bind, storage};
 use super::shaders;
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
@@ -95,7 +95,7 @@ impl Ground {
 }
 
 pub(super) struct Terrain {
-    pipeline: wgpu::RenderPipeline,
+    pipelines: ByLamps<wgpu::RenderPipeline>,
     indices: wgpu::Buffer,
     index_count: u32,
     tiles: wgpu::Buffer,
@@ -107,14 +107,16 @@ impl Terrain {
     pub(super) fn new(maker: &Maker<'_>) -> Self {
         let module = maker.gpu.shader("terrain", shaders::TERRAIN);
         let layout = maker.layout("terrain", &[storage(0)]);
-        let draw = Draw { label: "terrain", cull: Some(wgpu::Face::Back), ..Draw::default() };
-        let pipeline = maker.draw(&module, Some(&layout), &draw);
+        let pipelines = ByLamps::new(|lamps| {
+            let draw = Draw { label: "terrain", cull: Some(wgpu::Face::Back), constants: &[lamps], ..Draw::default() };
+            maker.draw(&module, Some(&layout), &draw)
+        });
         let indices = tile_indices();
         let size = (TILE_LIMIT * size_of::<Tile>()) as u64;
         let tiles = maker.gpu.empty_buffer("tiles", size, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST);
         let group = bind(maker.gpu, "terrain", &layout, &[tiles.as_entire_binding()]);
         let index_buffer = maker.gpu.buffer("tile", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
-        Self { pipeline, indices: index_buffer, index_count: indices.len() as u32, tiles, tile_count: 0, group }
+        Self { pipelines, indices: index_buffer, index_count: indices.len() as u32, tiles, tile_count: 0, group }
     }
 
     pub(super) fn prepare(&mut self, gpu: &Gpu, tiles: &[Tile]) {
@@ -127,8 +129,8 @@ impl Terrain {
         u64::from(self.tile_count * TILE_VERTICES)
     }
 
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.pipeline);
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
+        pass.set_pipeline(self.pipelines.of(has_lamps));
         pass.set_bind_group(1, &self.group, &[]);
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
         pass.draw_indexed(0..self.index_count, 0, 0..self.tile_count);

@@ -4,7 +4,7 @@ use super::order::{Keys, Ordered};
 use super::strips::strip_indices;
 use crate::render::gpu::Gpu;
 use crate::render::look::Order;
-use crate::render::pipeline::{Draw, Maker, bind, storage, texture, uniform};
+use crate::render::pipeline::{ByLamps, Draw, Maker, bind, storage, texture, uniform};
 use crate::render::shaders;
 use crate::render::uniforms::StripList;
 use wgpu::BufferUsages;
@@ -26,7 +26,7 @@ pub(in crate::render) struct Listed {
 }
 
 pub(in crate::render) struct Laid {
-    strips: wgpu::RenderPipeline,
+    strips: ByLamps<wgpu::RenderPipeline>,
     in_order: Option<InOrder>,
 }
 
@@ -51,17 +51,18 @@ impl Laid {
             Order::Weighted => "fs_weighted",
             Order::Coverage | Order::Sorted | Order::Precomputed => "fs_soft",
         };
-        let constants = [("is_textured", f64::from(u8::from(listed.are_textured)))];
-        let draw = Draw { label: "blades", vertex, fragment: Some(fragment), constants: &constants, ..Draw::default() };
+        let is_textured = ("is_textured", f64::from(u8::from(listed.are_textured)));
+        let strips = ByLamps::new(|lamps| {
+            let constants = [is_textured, lamps];
+            let draw = Draw { label: "blades", vertex, fragment: Some(fragment), constants: &constants, ..Draw::default() };
+            maker.draw_in_order(&module, Some(layout), &draw, order)
+        });
         let keys = match order {
             Order::Sorted => Some(Keys::Distance),
             Order::Precomputed => Some(Keys::MadeBeforehand),
             Order::Cut | Order::Coverage | Order::Weighted => None,
         };
-        Self {
-            strips: maker.draw_in_order(&module, Some(layout), &draw, order),
-            in_order: keys.map(|keys| InOrder::new(maker, keys, &in_order_layout, listed)),
-        }
+        Self { strips, in_order: keys.map(|keys| InOrder::new(maker, keys, &in_order_layout, listed)) }
     }
 
     /// What orders the blades, if they are drawn far to near.
@@ -70,8 +71,8 @@ impl Laid {
     }
 
     /// Draws all strips: in order, or else list by list as `lists` has them.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, lists: impl FnOnce(&mut wgpu::RenderPass<'_>)) {
-        pass.set_pipeline(&self.strips);
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool, lists: impl FnOnce(&mut wgpu::RenderPass<'_>)) {
+        pass.set_pipeline(self.strips.of(has_lamps));
         let Some(InOrder { ordered, groups, indices }) = &self.in_order else { return lists(pass) };
         for (span, group) in groups.iter().enumerate() {
             pass.set_bind_group(1, group, &[]);

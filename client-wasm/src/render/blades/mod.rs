@@ -13,7 +13,7 @@ use super::detail::{Detail, PLANTS_LIMIT, blades_of_grid};
 use super::gpu::Gpu;
 use super::kept::Kept;
 use super::paint;
-use super::pipeline::{Draw, Maker, bind, storage, storage_rw, texture, uniform};
+use super::pipeline::{ByLamps, Draw, Maker, bind, storage, storage_rw, texture, uniform};
 use super::shaders;
 use super::uniforms::{Plants, StripList};
 use super::{Look, Order, Quality};
@@ -54,8 +54,8 @@ const HEADS: [usize; 2] = [3, 4];
 
 pub(super) struct Blades {
     sift: Sift,
-    near: wgpu::ComputePipeline,
-    far: wgpu::ComputePipeline,
+    /// Of near plants, and of those beyond.
+    bend: ByLamps<[wgpu::ComputePipeline; 2]>,
     finish: wgpu::ComputePipeline,
     pub(super) laid: Kept<Laid>,
     pub(super) listed: Listed,
@@ -157,12 +157,12 @@ impl Blades {
         });
         let are_textured = land.scene().plants.blade_shape == BladeShape::Textured;
         let listed = Listed { blades: drawn, counters, shapes, are_textured, capacities: [fine, others], segments, grid_m };
-        let compute = |entry| maker.compute(entry, &bend, entry, &compute_layout);
         Self {
             sift,
-            near: compute("bend_near"),
-            far: compute("bend_far"),
-            finish: compute("finish"),
+            bend: ByLamps::new(|lamps| {
+                ["bend_near", "bend_far"].map(|entry| maker.compute_with(entry, &bend, entry, &compute_layout, &[lamps]))
+            }),
+            finish: maker.compute("finish", &bend, "finish", &compute_layout),
             laid: Kept::new(Order::default(), Laid::new(maker, Order::default(), &listed)),
             listed,
             heads,
@@ -270,11 +270,11 @@ impl Blades {
         self.grids.begin_turn(gpu, turn);
     }
 
-    pub(super) fn bend(&self, pass: &mut wgpu::ComputePass<'_>) {
+    pub(super) fn bend(&self, pass: &mut wgpu::ComputePass<'_>, has_lamps: bool) {
         self.grids.list(pass);
         self.sift.run(pass, self.near_workgroups, self.grids.workgroups());
         pass.set_bind_group(1, &self.compute_group, &[]);
-        for (list, bend) in [&self.near, &self.far].into_iter().enumerate() {
+        for (list, bend) in self.bend.of(has_lamps).iter().enumerate() {
             pass.set_pipeline(bend);
             pass.dispatch_workgroups_indirect(self.sift.workgroups(), 12 * list as u64);
         }
@@ -286,8 +286,8 @@ impl Blades {
     }
 
     /// Draws the blades in the order that is set.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.laid.get().draw(pass, |pass| (0..HEADS[0]).for_each(|list| self.draw_list(pass, list)));
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
+        self.laid.get().draw(pass, has_lamps, |pass| (0..HEADS[0]).for_each(|list| self.draw_list(pass, list)));
     }
 
     pub(super) fn draw_flowers(&self, pass: &mut wgpu::RenderPass<'_>) {

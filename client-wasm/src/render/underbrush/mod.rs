@@ -6,7 +6,7 @@ mod bake;
 use super::blades::Standpoint;
 use super::forces::Forces;
 use super::gpu::Gpu;
-use super::pipeline::{Draw, Maker, sampled, storage, storage_rw, uniform};
+use super::pipeline::{ByLamps, Draw, Maker, sampled, storage, storage_rw, uniform};
 use super::shaders;
 use super::uniforms::{BrushList, UnderbrushFrame};
 use crate::state::Land;
@@ -67,7 +67,7 @@ struct List {
 pub(super) struct Underbrush {
     stand: wgpu::ComputePipeline,
     finish: wgpu::ComputePipeline,
-    pipeline: wgpu::RenderPipeline,
+    pipelines: ByLamps<wgpu::RenderPipeline>,
     frame: wgpu::Buffer,
     chunks: wgpu::Buffer,
     broken: wgpu::Buffer,
@@ -136,8 +136,9 @@ impl Underbrush {
         let compute_layout = maker.layout("underbrush", &entries);
         let list_layout =
             maker.layout("underbrush list", &[storage(10), storage(11), storage(12), storage(13), storage(14), uniform(15), storage(16)]);
-        let draw = Draw { label: "underbrush", ..Draw::default() };
-        let pipeline = maker.draw(&module, Some(&list_layout), &draw);
+        let pipelines = ByLamps::new(|lamps| {
+            maker.draw(&module, Some(&list_layout), &Draw { label: "underbrush", constants: &[lamps], ..Draw::default() })
+        });
 
         let mut draw_words = vec![0_u32; SPECIES_LIMIT * LEVELS * DRAW_WORDS];
         let mut lists = Vec::new();
@@ -181,7 +182,7 @@ impl Underbrush {
         Some(Self {
             stand: maker.compute("stand", &module, "stand", &compute_layout),
             finish: maker.compute("finish", &module, "finish", &compute_layout),
-            pipeline,
+            pipelines,
             compute_group: numbered(gpu, "underbrush", &compute_layout, 0, &buffers, Some(forces)),
             frame,
             chunks,
@@ -262,11 +263,11 @@ impl Underbrush {
         pass.dispatch_workgroups(1, 1, 1);
     }
 
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
         if self.chunk_count == 0 {
             return;
         }
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(self.pipelines.of(has_lamps));
         for list in &self.lists {
             pass.set_bind_group(1, &list.group, &[]);
             pass.set_index_buffer(list.indices.slice(..), wgpu::IndexFormat::Uint32);
