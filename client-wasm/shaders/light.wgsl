@@ -162,7 +162,7 @@ fn sun_visible(p: vec3<f32>) -> f32 {
     let far_off = border_of(far);
     // Most places are in one layer alone.
     let first = select(0, 1, off >= 0.98);
-    let last = select(1, 2, off >= 0.88 && far_off < 0.98 && textureNumLayers(shadows) > 1u);
+    let last = select(1, 2, off >= 0.88 && far_off < 0.98);
     var light = 1.0;
     for (var layer = first; layer < last; layer++) {
         let is_far = layer == 1;

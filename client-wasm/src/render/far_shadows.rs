@@ -6,7 +6,7 @@ use shared::wire::ObjectPose;
 
 /// Frames that a drawing serves, in which time passes: trees sway in it that much more coarsely.
 const FRAMES: u32 = 4;
-/// Way of the eye after which it is drawn for another place (m); the layer reaches 16 times as far.
+/// Way of the eye after which it is drawn for another place (m), of the 270 m that it reaches.
 const WAY_M: f32 = 8.0;
 /// Turn of the eye, or of the sun, after which it is (rad).
 const TURN_RAD: f32 = 0.02;

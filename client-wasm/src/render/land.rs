@@ -8,6 +8,7 @@ use super::pipeline::{DEPTH, bind, sampled, sampler, texture, uniform};
 use super::quality::Quality;
 use super::sun::Daylight;
 use super::uniforms::Frame;
+use super::view::SHADOW_LAYERS;
 use super::wind::WindTexture;
 use crate::state::Land;
 use shared::terrain::{Cover, HeightMap};
@@ -76,7 +77,7 @@ impl FrameGroup {
             repeated: linear(wgpu::AddressMode::Repeat, None),
             clamped: linear(wgpu::AddressMode::ClampToEdge, None),
             shadow_sampler: linear(wgpu::AddressMode::ClampToEdge, Some(wgpu::CompareFunction::LessEqual)),
-            shadows: depth_texture(gpu, quality.shadow_px(), quality.shadow_layers()),
+            shadows: depth_texture(gpu, quality.shadow_px(), SHADOW_LAYERS),
             no_shadows: depth_texture(gpu, 1, 1),
         }
     }

@@ -82,7 +82,7 @@ use terrain::{Ground, Terrain};
 use timing::{Pass, Timer};
 use tone::Tone;
 use underbrush::Underbrush;
-use view::View;
+use view::{SHADOW_LAYERS, View};
 use weighted::Weighted;
 
 /// Distance up to which clumps of plants have several segments, over that at which single plants end.
@@ -317,7 +317,7 @@ impl Renderer {
         let has_lamps = frame.tiling[3] > 0;
         let seen = Seen { eye_m: camera.eye_m, heading_rad: camera.heading_rad, sun };
         let far_shadows_are_due = scene.far_shadows.follow(&mut frame.lights.far_shadow_from_world, seen, &poses, dt_secs);
-        let shadow_layers = if far_shadows_are_due { self.quality.shadow_layers() } else { 1 };
+        let shadow_layers = if far_shadows_are_due { SHADOW_LAYERS } else { 1 };
         self.frame.write(gpu, &frame);
         let frustum = if self.look.culls { Frustum::new(&view.projection_from_world) } else { Frustum::ALL };
         let tiles = scene.ground.tiles(camera.eye_m, &frustum);

@@ -103,11 +103,6 @@ impl Quality {
         }
     }
 
-    /// Layers of the shadow map: a sharp one near by, and a coarse one far off.
-    pub(super) fn shadow_layers(self) -> u32 {
-        if self == Self::Low { 1 } else { 2 }
-    }
-
     /// Streaks of heavy rain.
     pub(super) fn drops(self) -> u32 {
         match self {

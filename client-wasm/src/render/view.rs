@@ -20,6 +20,8 @@ const GUST_PERIOD_M: f64 = 1380.0;
 const GUST_SPEED: f64 = 1.3;
 /// Speed of the clouds over that of the mean wind near the ground.
 const CLOUD_SPEED: f64 = 1.6;
+/// Layers of the shadow map.
+pub(super) const SHADOW_LAYERS: u32 = SHADOW_HALF_M.len() as u32;
 /// Half the side of the squares that the layers of the shadow map cover (m), and half their depth: a sharp one, and a coarse one.
 const SHADOW_HALF_M: [f32; 2] = [52.0, 270.0];
 const SHADOW_DEPTH_M: [f32; 2] = [160.0, 450.0];
