@@ -25,7 +25,7 @@ const TILE_M: f32 = 8.0;
 /// Share of plants that is left at least where they are but a few pixels tall; those are larger by its power of -0.3. Twin of the constant in `underbrush.wgsl`.
 const FEWEST: f32 = 0.06;
 /// Vertices of an instance, about: many small plants are drawn as one.
-const INSTANCE_VERTICES: u32 = 2048;
+const INSTANCE_VERTICES: u32 = 512;
 /// Bytes of a plant's feelings and of how it stands, as in `underbrush.wgsl`.
 const FELT_BYTES: u64 = 32;
 const STAND_BYTES: u64 = 80;
