@@ -54,6 +54,19 @@ pub fn hills(scene: &Scene) -> World {
 /// # Errors
 /// When the client refuses it.
 pub fn flat_meadow(side_m: u32) -> Result<(Mirror, f64)> {
+    flat_land(side_m, 255)
+}
+
+/// The same land without a plant.
+///
+/// # Errors
+/// When the client refuses it.
+pub fn bare_land(side_m: u32) -> Result<Mirror> {
+    Ok(flat_land(side_m, 0)?.0)
+}
+
+/// With one ID all over the covering map.
+fn flat_land(side_m: u32, cover: u8) -> Result<(Mirror, f64)> {
     const PATCH_M: u32 = 8;
     let pixel_m = [PATCH_M as f32; 2];
     let terrain = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m, level_m: 0.0, base_m: 0.0 };
@@ -65,7 +78,7 @@ pub fn flat_meadow(side_m: u32) -> Result<(Mirror, f64)> {
     mirror.apply(ServerMessage::Scene {
         scene: Box::new(scene),
         height_png: grey_png([pixels; 2], &vec![0; (pixels * pixels) as usize]),
-        covering_png: grey_png([8; 2], &[255; 64]),
+        covering_png: grey_png([8; 2], &[cover; 64]),
         nutrient_png: Vec::new(),
         models: Vec::new(),
     })?;

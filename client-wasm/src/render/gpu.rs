@@ -88,8 +88,8 @@ impl Gpu {
             return Err(error);
         }
         let required_limits = wgpu::Limits::default().or_worse_values_from(allowed);
-        // A clock of its own, where it has one.
-        let required_features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
+        // A clock and counters of its own, where it has them; browsers offer no counters.
+        let required_features = adapter.features() & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::PIPELINE_STATISTICS_QUERY);
         let descriptor = wgpu::DeviceDescriptor { label: Some("prairie"), required_features, required_limits, ..Default::default() };
         let (device, queue) = adapter.request_device(&descriptor).await.map_err(|error| GpuError::NoDevice(error.to_string()))?;
         let info = adapter.get_info();

@@ -47,6 +47,8 @@ mod vehicles;
 mod view;
 mod weighted;
 mod wind;
+#[cfg_attr(target_arch = "wasm32", expect(dead_code, reason = "only pictures without a window are counted"))]
+mod work;
 
 pub use atlas::reach_m as bend_reach_m;
 pub use fit::fitting_px;
@@ -58,6 +60,7 @@ pub use quality::{Quality, REFERENCE_M};
 pub use shared::light::sun::Sun;
 pub use split::{Split, Way};
 pub use timing::PassSecs;
+pub use work::{PassWork, Work};
 
 use crate::camera::Camera;
 use crate::state::Mirror;
@@ -84,6 +87,7 @@ use tone::Tone;
 use underbrush::Underbrush;
 use view::{SHADOW_LAYERS, View};
 use weighted::Weighted;
+use work::{Counter, counted};
 
 /// Distance up to which clumps of plants have several segments, over that at which single plants end.
 const SEVERAL_REACHES: f32 = 1.6;
@@ -125,6 +129,8 @@ pub struct Renderer {
     weighted: Option<Weighted>,
     /// Made by who wants to know.
     timer: Option<Timer>,
+    /// The same.
+    counter: Option<Counter>,
     scene: Option<SceneParts>,
 }
 
@@ -221,6 +227,7 @@ impl Renderer {
             daylight,
             weighted: None,
             timer: None,
+            counter: None,
             scene: None,
         }
     }
@@ -360,7 +367,13 @@ impl Renderer {
 
         let clumps = (self.look.far == Far::Clumps && has_blades).then_some(&self.billboards);
         let turns = if has_blades { scene.blades.turns() } else { 1 };
+        if let Some(counter) = &mut self.counter {
+            counter.begin_frame(gpu, turns);
+        }
         for turn in 0..turns {
+            if let Some(counter) = &mut self.counter {
+                counter.begin_encoder();
+            }
             if has_blades {
                 scene.blades.begin_turn(gpu, turn);
             }
@@ -374,14 +387,16 @@ impl Renderer {
                 for layer in 0..shadow_layers {
                     let (is_first, is_last) = (layer == 0, layer + 1 == shadow_layers);
                     let clock = self.timer.as_ref().and_then(|timer| timer.of_render(Pass::Shadows, is_first, is_last));
-                    let mut pass = shadow_pass(&mut encoder, &self.frame.shadow_map(layer), clock);
+                    let pass = shadow_pass(&mut encoder, &self.frame.shadow_map(layer), clock);
+                    let mut pass = counted(&mut self.counter, Pass::Shadows, pass);
                     pass.set_bind_group(0, &scene.textures.shadow_group, &[]);
                     scene.objects.draw_shadows(&mut pass, layer as usize);
                 }
             }
             {
                 let timestamp_writes = self.timer.as_ref().map(|timer| timer.of_compute(Pass::Bend));
-                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes });
+                let pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes });
+                let mut pass = counted(&mut self.counter, Pass::Bend, pass);
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 if has_blades {
                     scene.blades.bend(&mut pass, has_lamps);
@@ -405,7 +420,8 @@ impl Renderer {
             let is_last = turn + 1 == turns;
             {
                 let clock = self.timer.as_ref().and_then(|timer| timer.of_render(Pass::Picture, turn == 0, is_last && weighted.is_none()));
-                let mut pass = main_pass(&mut encoder, &self.targets, turn == 0, is_last && weighted.is_none(), clock);
+                let pass = main_pass(&mut encoder, &self.targets, turn == 0, is_last && weighted.is_none(), clock);
+                let mut pass = counted(&mut self.counter, Pass::Picture, pass);
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 if turn == 0 {
                     scene.objects.draw(&mut pass, has_lamps);
@@ -438,25 +454,28 @@ impl Renderer {
             }
             if let Some(weighted) = weighted {
                 {
-                    let mut pass = weighted.pass(&mut encoder, &self.targets.depth);
+                    let mut pass = counted(&mut self.counter, Pass::Picture, weighted.pass(&mut encoder, &self.targets.depth));
                     pass.set_bind_group(0, &scene.textures.group, &[]);
                     scene.draw_plants(has_blades, clumps, has_lamps, &mut pass);
                 }
                 let clock = self.timer.as_ref().and_then(|timer| timer.of_render(Pass::Picture, false, true));
-                let mut pass = main_pass(&mut encoder, &self.targets, false, true, clock);
+                let mut pass = counted(&mut self.counter, Pass::Picture, main_pass(&mut encoder, &self.targets, false, true, clock));
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 weighted.compose(&mut pass);
                 scene.draw_weather(&mut pass);
             }
             if turn + 1 == turns {
                 let clock = self.timer.as_ref().and_then(|timer| timer.of_render(Pass::Tone, true, true));
-                let mut pass = tone_pass(&mut encoder, target, part.keeps, clock);
+                let mut pass = counted(&mut self.counter, Pass::Tone, tone_pass(&mut encoder, target, part.keeps, clock));
                 pass.set_scissor_rect(part.columns.start, 0, part.columns.len() as u32, self.size_px[1]);
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 self.tone.draw(&mut pass);
             }
             if let Some(timer) = self.timer.as_ref().filter(|_| is_last) {
                 timer.resolve(&mut encoder);
+            }
+            if let Some(counter) = &self.counter {
+                counter.resolve(&mut encoder);
             }
             gpu.queue.submit([encoder.finish()]);
         }

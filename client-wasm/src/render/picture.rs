@@ -1,7 +1,8 @@
 //! Pictures without a window.
 
 use super::timing::Timer;
-use super::{FrameStats, Gpu, Look, PassSecs, Quality, Renderer, Split};
+use super::work::Counter;
+use super::{FrameStats, Gpu, Look, PassSecs, PassWork, Quality, Renderer, Split};
 use crate::camera::Camera;
 use crate::state::Mirror;
 
@@ -34,6 +35,7 @@ impl Picture {
         let buffer = gpu.empty_buffer("pixels", size, wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
         let mut renderer = Renderer::new(gpu, format, size_px, quality);
         renderer.timer = Timer::new(gpu);
+        renderer.counter = Counter::new(gpu);
         Self { renderer, gpu: gpu.clone(), texture, buffer }
     }
 
@@ -66,6 +68,11 @@ impl Picture {
     /// How long the passes of the newest frame kept the device; none where it has no clock.
     pub fn pass_secs(&self) -> Option<PassSecs> {
         self.renderer.timer.as_ref().map(|timer| Timer::secs(&self.gpu, &read(&self.gpu, timer.resolved())))
+    }
+
+    /// What the device worked through in the passes of the newest frame, in its last part if it was split; none where it does not count.
+    pub fn pass_work(&self) -> Option<PassWork> {
+        self.renderer.counter.as_ref().map(|counter| counter.work(&read(&self.gpu, counter.resolved())))
     }
 
     /// Pixels of the newest frame: RGBA, row by row from the top.

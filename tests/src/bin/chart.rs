@@ -130,9 +130,11 @@ Files in DIR:
   picture.csv, .json       every figure: view, method, quality, level, ms, FLIP (mean, and what 1 % exceed), SSIM, counts
   picture-plants.svg, .csv time of a frame against the plants of the scene
   picture-height.svg, .csv time of a frame against the height of the view
+  picture-vertices.svg, .csv, .md
+                           time of the picture's pass per million vertices, as the device counts them
   cache/VIEW-SIZE.png      references, drawn anew when this program has been built anew
 
---only WORD picks ways of drawing (`clumps`, `sorted`) or one of the figures `plants` and `height`.";
+--only WORD picks ways of drawing (`clumps`, `sorted`) or one of the figures `plants`, `height` and `vertices`.";
 
 #[derive(Args)]
 struct Options {
@@ -247,7 +249,8 @@ fn draw_figures(model: &str, figures: &[&Figure], options: &Options) -> Result<(
         println!("\n{}", figure.title);
         let drawn = (figure.draw)(options.quick, &machine())?;
         println!("{}", drawn.said);
-        for (ending, text) in [("svg", drawn.svg), ("csv", drawn.csv)] {
+        for (ending, text) in [("svg", Some(drawn.svg)), ("csv", Some(drawn.csv)), ("md", drawn.tables)] {
+            let Some(text) = text else { continue };
             let path = options.out.join(format!("{model}-{}.{ending}", figure.name));
             std::fs::write(&path, text).with_context(|| format!("{} cannot be written", path.display()))?;
         }

@@ -3,7 +3,7 @@
 use anyhow::{Context as _, Result};
 use clap::Parser;
 use client_wasm::camera::Camera;
-use client_wasm::render::{Far, Gpu, Look, Order, PassSecs, Quality, Split, Sun, Way};
+use client_wasm::render::{Far, Gpu, Look, Order, PassSecs, PassWork, Quality, Split, Sun, Way, Work};
 use std::path::PathBuf;
 use std::time::Instant;
 use tests::picture::Picture;
@@ -107,8 +107,29 @@ fn main() -> Result<()> {
         let [shadows, bend, drawn, tone] = [shadows, bend, picture, tone].map(|secs| secs * 1e3);
         println!("the last one on the device: shadows {shadows:.2} ms, culled and bent {bend:.2}, drawn {drawn:.2}, tone mapped {tone:.2}");
     }
+    if let Some(PassWork { shadows, bend, picture: drawn, tone }) = picture.pass_work() {
+        println!(
+            "its work: shadows {}; culled and bent, {:.2} M compute invocations; drawn, {}; tone mapped, {:.2} M fragments",
+            worked(shadows),
+            millions(bend.compute_invocations),
+            worked(drawn),
+            millions(tone.fragments)
+        );
+        if let Some(secs) = picture.pass_secs().filter(|_| drawn.vertices > 0) {
+            println!("drawn in {:.1} ms per million vertices, fragments and all", secs.picture * 1e3 / millions(drawn.vertices));
+        }
+    }
     println!("camera {}", camera.to_hash());
     Picture { width: size_px[0], height: size_px[1], rgba: picture.rgba() }.save(&arguments.out)
+}
+
+fn millions(count: u64) -> f64 {
+    1e-6 * count as f64
+}
+
+fn worked(Work { vertices, triangles, fragments, .. }: Work) -> String {
+    let [vertices, triangles, fragments] = [vertices, triangles, fragments].map(millions);
+    format!("{vertices:.2} M vertices, {triangles:.2} M triangles, {fragments:.2} M fragments")
 }
 
 /// Two ways side by side, each like `own` but for what its name changes.

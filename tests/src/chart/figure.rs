@@ -25,6 +25,8 @@ pub struct Drawn {
     pub csv: String,
     /// What it says, in a few lines.
     pub said: String,
+    /// A page of Markdown tables, where one would rather look up than look.
+    pub tables: Option<String>,
 }
 
 /// One axis.
@@ -64,7 +66,7 @@ fn trimmed(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// A line, markers at its points, or both.
+/// A line, markers at its points, or both. One without a name belongs to the one before and shares its colour and its key.
 #[derive(Clone, Debug)]
 pub(super) struct Curve {
     pub(super) name: String,
@@ -139,7 +141,10 @@ pub(super) fn curves_svg(curves: &[Curve], axes: [Axis; 2], words: Words) -> Res
     headed(&root, words, HEIGHT_PX)?;
     let (frame, [x, y]) = (Frame { left: 100, top: 84, width: 640, height: 450 }, &axes);
     frame.draw_axes(&root, [x, y], [true; 2])?;
-    for (n, curve) in curves.iter().enumerate() {
+    let mut keys = 0;
+    for curve in curves {
+        keys += usize::from(!curve.name.is_empty());
+        let n = keys.saturating_sub(1);
         let (colour, corners) = look(n);
         let marker = Marker { corners, colour, hollow: false };
         let points: Vec<_> = curve.points.iter().map(|at| frame.place([x, y], *at)).collect();

@@ -86,7 +86,7 @@ fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     ];
     let subtitle = format!("scene shells, low quality, fastest of {} frames; {}; 003: GeForce 3, table 4.1", frames - 1, gpu.adapter_name);
     let svg = curves_svg(&curves, axes, Words { title: "What layers of shells cost", subtitle: &subtitle, caption })?;
-    Ok(Drawn { svg, csv, said })
+    Ok(Drawn { svg, csv, said, tables: None })
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ mod automatic;
 mod culling;
 mod likeness;
 mod pops;
+mod work;
 
 use std::path::Path;
 

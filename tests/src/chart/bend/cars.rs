@@ -89,7 +89,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
         caption,
     };
     let svg = curves_svg(&[measured, line], [axis("cars that move", most[0]), axis("time of a step (ms)", most[1])], words)?;
-    Ok(Drawn { svg, csv, said })
+    Ok(Drawn { svg, csv, said, tables: None })
 }
 
 #[cfg(test)]

@@ -100,5 +100,5 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     );
     let words = Words { title: "Where each scheme fails", subtitle: &subtitle, caption };
     let svg = panels_svg(&panels, &CLASSES, [axis("speed of the car (m/s)", SPEEDS_M_PER_S), axis("steps a second", RATES_PER_S)], words)?;
-    Ok(Drawn { svg, csv, said })
+    Ok(Drawn { svg, csv, said, tables: None })
 }

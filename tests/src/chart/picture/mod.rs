@@ -10,6 +10,8 @@
 //! | `plants` | time against the plants of the scene |
 //! | `height` | time against the height of the view |
 //! | `sweep` | times over one quantity, a line for each quality |
+//! | `vertices` | time per million vertices, over the views and the qualities |
+//! | `share` | what vertices and fragments take, told apart |
 
 mod budget;
 mod files;
@@ -17,8 +19,10 @@ mod height;
 mod method;
 mod plants;
 mod said;
+mod share;
 mod shot;
 mod sweep;
+mod vertices;
 
 pub use budget::{Bought, bought};
 pub use files::write_all;
@@ -29,9 +33,10 @@ pub use shot::{Shot, ViewShots, shots};
 use super::figure::Figure;
 
 /// All figures that are not of time against likeness.
-pub const FIGURES: [Figure; 2] = [
+pub const FIGURES: [Figure; 3] = [
     Figure { name: "plants", title: "Time of a frame against the plants of the scene", draw: plants::draw },
     Figure { name: "height", title: "Time of a frame against the height of the view", draw: height::draw },
+    Figure { name: "vertices", title: "Time of the picture's pass per million vertices", draw: vertices::draw },
 ];
 
 #[cfg(test)]

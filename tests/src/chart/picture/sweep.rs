@@ -60,5 +60,6 @@ pub(super) fn sweep(found: &Sweep, title: &str, over: &'static str, quick: bool,
     ];
     let [width, height] = if quick { QUICK_SIZE_PX } else { SIZE_PX };
     let subtitle = format!("{width} × {height} px; {}", gpu.adapter_name);
-    Ok(Drawn { svg: curves_svg(&curves, axes, Words { title, subtitle: &subtitle, caption })?, csv, said: said.trim_end().to_owned() })
+    let svg = curves_svg(&curves, axes, Words { title, subtitle: &subtitle, caption })?;
+    Ok(Drawn { svg, csv, said: said.trim_end().to_owned(), tables: None })
 }

@@ -51,5 +51,5 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     ];
     let subtitle = format!("a gust from {} to {} s, with a time constant τ of {SETTLE_SECS} s", GUST_SECS[0], GUST_SECS[1]);
     let svg = curves_svg(&curves, axes, Words { title: "The dynamic constraint", subtitle: &subtitle, caption })?;
-    Ok(Drawn { svg, csv, said })
+    Ok(Drawn { svg, csv, said, tables: None })
 }

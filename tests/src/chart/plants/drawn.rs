@@ -117,5 +117,5 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     ];
     let subtitle = format!("{} × {} px, ultra, least of {} frames; {}", size_px[0], size_px[1], frames - 1, gpu.adapter_name);
     let svg = curves_svg(&[measured, bare], axes, Words { title: "What underbrush costs to draw", subtitle: &subtitle, caption })?;
-    Ok(Drawn { svg, csv, said })
+    Ok(Drawn { svg, csv, said, tables: None })
 }

@@ -148,5 +148,5 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
         caption,
     };
     let svg = curves_svg(&curves, axes, words)?;
-    Ok(Drawn { svg, csv, said })
+    Ok(Drawn { svg, csv, said, tables: None })
 }

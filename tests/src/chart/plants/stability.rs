@@ -97,7 +97,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
         caption,
     };
     let svg = curves_svg(&curves, axes, words)?;
-    Ok(Drawn { svg, csv, said })
+    Ok(Drawn { svg, csv, said, tables: None })
 }
 
 #[cfg(test)]

@@ -1,0 +1,110 @@
+//! What the device counts is what there is to draw.
+
+use anyhow::{Result, ensure};
+use client_wasm::render::{Far, Gpu, Look, Order, PassWork, Picture as Canvas, Quality, Work};
+use tests::still::Still;
+use tests::views::View;
+use tests::worlds::{bare_land, flat_meadow, on_foot};
+
+use crate::gpu;
+
+const SIZE_PX: [u32; 2] = [192, 108];
+/// Side of the flat worlds (m).
+const SIDE_M: u32 = 64;
+
+/// Work of a frame; none, which is said, where the device does not count. Software Vulkan does.
+fn work(gpu: &Gpu, canvas: &Canvas) -> Result<Option<PassWork>> {
+    let work = canvas.pass_work();
+    ensure!(work.is_some() || !gpu.is_software, "{} should count", gpu.adapter_name);
+    if work.is_none() {
+        println!("not tested: {} does not count what it works through", gpu.adapter_name);
+    }
+    Ok(work)
+}
+
+fn view(name: &str) -> Result<Still> {
+    Still::of(View::find(name)?, SIZE_PX)
+}
+
+#[test]
+fn finer_plants_have_more_vertices() -> Result<()> {
+    let gpu = gpu()?;
+    let mut still = view("walking-calm")?;
+    let mut canvas = still.canvas(&gpu, Quality::Ultra);
+    let mut before = 0;
+    for level in [0.0, 1.0, 2.0, 3.0] {
+        canvas.set_level(level);
+        still.draw(&mut canvas);
+        let Some(PassWork { picture, .. }) = work(&gpu, &canvas)? else { return Ok(()) };
+        println!("level {level}: {picture:?}");
+        ensure!(picture.vertices > before + before / 10, "level {level}: {} vertices, {before} a level below", picture.vertices);
+        before = picture.vertices;
+    }
+    Ok(())
+}
+
+#[test]
+fn culling_saves_vertices_and_no_fragment_of_note() -> Result<()> {
+    let gpu = gpu()?;
+    let mut still = view("driving-calm")?;
+    let mut canvas = still.canvas(&gpu, Quality::Low);
+    let mut found = Vec::new();
+    for culls in [true, false] {
+        canvas.set_look(Look { culls, ..Look::default() });
+        still.draw(&mut canvas);
+        let Some(PassWork { picture, .. }) = work(&gpu, &canvas)? else { return Ok(()) };
+        found.push(picture);
+    }
+    let [with, without] = found[..] else { unreachable!("two looks") };
+    println!("with culling {with:?}, without {without:?}");
+    ensure!(2 * with.vertices < without.vertices, "{} of {} vertices are left", with.vertices, without.vertices);
+    ensure!(with.fragments.abs_diff(without.fragments) < without.fragments / 100, "{with:?} {without:?}");
+    Ok(())
+}
+
+#[test]
+fn plants_have_most_of_the_vertices() -> Result<()> {
+    let gpu = gpu()?;
+    let of = |mirror: &mut _| {
+        let mut canvas = Canvas::new(&gpu, SIZE_PX, Quality::Medium);
+        canvas.draw(mirror, &on_foot(SIDE_M), 0.0, 0.0);
+        work(&gpu, &canvas)
+    };
+    let (Some(grown), Some(bare)) = (of(&mut flat_meadow(SIDE_M)?.0)?, of(&mut bare_land(SIDE_M)?)?) else { return Ok(()) };
+    println!("grown {:?}, bare {:?}", grown.picture, bare.picture);
+    ensure!(bare.picture.vertices > 0 && grown.picture.vertices > 10 * bare.picture.vertices, "{grown:?} {bare:?}");
+    ensure!(grown.bend.compute_invocations > bare.bend.compute_invocations, "{grown:?} {bare:?}");
+    Ok(())
+}
+
+/// Each pass has work of its own kind and no other, in every way of drawing: the passes of a frame are not the same in all.
+#[test]
+fn each_pass_has_its_own_work() -> Result<()> {
+    let gpu = gpu()?;
+    let mut still = view("walking-storm")?;
+    for quality in [Quality::Low, Quality::High] {
+        let mut canvas = still.canvas(&gpu, quality);
+        for (order, far) in [(Order::Cut, Far::Land), (Order::Weighted, Far::Clumps)] {
+            canvas.set_look(Look { order, far, ..Look::default() });
+            still.draw(&mut canvas);
+            let Some(PassWork { shadows, bend, picture, tone }) = work(&gpu, &canvas)? else { return Ok(()) };
+            let name = format!("{}, {}, {}", quality.name(), order.name(), far.name());
+            ensure!(shadows.vertices > 0 && shadows.compute_invocations == 0, "{name}: shadows {shadows:?}");
+            ensure!(
+                bend == Work { compute_invocations: bend.compute_invocations, ..Work::default() } && bend != Work::default(),
+                "{name}: {bend:?}"
+            );
+            ensure!(
+                picture.fragments > pixels() && picture.triangles > 0 && picture.compute_invocations == 0,
+                "{name}: picture {picture:?}"
+            );
+            // One triangle over the whole picture; drivers that run blocks of fragments count some beyond its edges.
+            ensure!(tone.vertices == 3 && (pixels()..2 * pixels()).contains(&tone.fragments), "{name}: tone {tone:?}");
+        }
+    }
+    Ok(())
+}
+
+fn pixels() -> u64 {
+    SIZE_PX.map(u64::from).iter().product()
+}
