@@ -39,6 +39,12 @@ struct Stand {
     about: vec4<f32>,
     // What the grass about it looks like from afar, and how much of that shows between the plants that are drawn.
     sward: vec4<f32>,
+    // Tint of the grass there; unused.
+    tint: vec4<f32>,
+    // The land's normal; unused.
+    up: vec4<f32>,
+    // What the air before it adds to its colour, and the share of that which the air lets through.
+    air: vec4<f32>,
 }
 
 struct Tally {
@@ -162,8 +168,12 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     out.about = vec4<f32>(height, random3(vec2<i32>(i32(plant.site), 9), 17u).x, distance_m, plant.size);
     let up = ground_normal(plant.at);
     let view = normalize(root - frame.eye.xyz);
-    let afar = sward_color(root, up, kind, grass_tint(plant.at), lean, view, out.lean.z);
+    let tint = grass_tint(plant.at);
+    let afar = sward_color(root, up, kind, tint, lean, view, out.lean.z);
     out.sward = vec4<f32>(afar, bare_between(distance_m, kind, view, up) * grass_share(plant.at));
+    out.tint = vec4<f32>(tint, 0.0);
+    out.up = vec4<f32>(up, 0.0);
+    out.air = air_before(root + vec3<f32>(0.0, 0.5 * height, 0.0));
     stands_out[index] = out;
 
     // Not all of those of a height change at once.
@@ -224,6 +234,10 @@ struct Limb {
 @group(1) @binding(14) var<storage, read> rows: array<Row>;
 @group(1) @binding(15) var<uniform> list: BrushList;
 @group(1) @binding(16) var<storage, read> limbs: array<Limb>;
+
+// Whether any sphere is about, and whether leaves tremble in the rain; known as a pipeline is made.
+override meets_spheres: bool = true;
+override trembles: bool = true;
 
 const GRAVITY_M_PER_S2: f32 = 9.81;
 const MIDDLE_LOAD: f32 = 8.0;
@@ -342,7 +356,7 @@ fn bent(host: Bent, limb: Limb, so_many: f32, last: u32, plant: Stand, normal: v
         let turned = around * dot(side, around) + (towards * cos(step.x) - axis * sin(step.x)) * dot(side, towards);
         let height = dot(now.at, normal) / step_m;
         now.along = above_ground(free, cross(free, turned), normal, height);
-        if plant.feels.w > 0.0 {
+        if meets_spheres && plant.feels.w > 0.0 {
             // From the first that meets a sphere on they go on in its direction.
             let own = select(now.along, tangent, any(tangent != vec3<f32>(0.0)));
             let way = passing(own, now.at, step_m, plant, normal);
@@ -431,12 +445,12 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let stuff = look.x >> 16u;
     let size = plant.root.w;
     let distance_m = plant.about.z;
-    let normal_up = ground_normal(plant.root.xz);
+    let normal_up = plant.up.xyz;
     let bent = bent_row(plant, row, normal_up);
     let along = bent.along;
     var p = plant.root.xyz + bent.at;
     let own = limb_of(plant, row);
-    if list.rain.x * own.struck.z > 0.0 {
+    if trembles && list.rain.x * own.struck.z > 0.0 {
         let number = vec2<u32>(u32(plant.about.y * 16777216.0), look.z & 0xffffu);
         // The larger it is, the less the drop counts beside its mass.
         let speed = 1.0 / mix(1.0 / DROP_M_PER_S, 1.0 / own.struck.x, size * size * size);
@@ -467,7 +481,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     var albedo = root_color * root_color;
     let hue = plant.about.y;
     if stuff != PETAL {
-        albedo *= grass_tint(plant.root.xz) * mix(vec3<f32>(0.86, 0.98, 0.85), vec3<f32>(1.14, 1.03, 0.9), hue);
+        albedo *= plant.tint.rgb * mix(vec3<f32>(0.86, 0.98, 0.85), vec3<f32>(1.14, 1.03, 0.9), hue);
     }
     let up = clamp(dot(p - plant.root.xyz, normal_up) / max(plant.about.x, 0.05), 0.0, 1.0);
     let deep = smoothstep(0.0, 0.6, plant.about.x);
@@ -483,7 +497,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
         color = grass_light(albedo, rounded, along, view, light, occlusion) + grass_lamps(albedo, rounded, along, view, p, up);
     }
     let grass_m = kinds.list[u32(plant.feels.z) / (2u * VARIANTS)].root.w;
-    out.color = hazed(among_grass(color, plant.sward, dot(p - plant.root.xyz, normal_up) / grass_m), p);
+    out.color = among_grass(color, plant.sward, dot(p - plant.root.xyz, normal_up) / grass_m) * plant.air.a + plant.air.rgb;
     out.across = select(9.0, across, stuff != STALK && stuff != PETAL);
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
     return out;

@@ -321,7 +321,7 @@ impl Renderer {
         let detail = self.detail.with(self.look.far).on(&land.scene().plants);
         let view = View::new(camera, self.targets.size_px, self.quality, detail, time_secs, sun);
         let mut frame = view.frame(land, &scene.textures.atlas, &self.daylight, &poses);
-        let has_lamps = frame.tiling[3] > 0;
+        let (has_lamps, has_spheres) = (frame.tiling[3] > 0, frame.clouds[3] > 0.0);
         let seen = Seen { eye_m: camera.eye_m, heading_rad: camera.heading_rad, sun };
         let far_shadows_are_due = scene.far_shadows.follow(&mut frame.lights.far_shadow_from_world, seen, &poses, dt_secs);
         let shadow_layers = if far_shadows_are_due { SHADOW_LAYERS } else { 1 };
@@ -437,7 +437,7 @@ impl Renderer {
                         scene.shells.draw(&mut pass);
                     }
                     if let Some(underbrush) = &scene.underbrush {
-                        underbrush.draw(&mut pass, has_lamps);
+                        underbrush.draw(&mut pass, has_lamps, has_spheres);
                     }
                     if let Some(clumps) = clumps.filter(|_| !order.blends()) {
                         clumps.draw(&mut pass);

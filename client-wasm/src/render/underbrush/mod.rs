@@ -28,7 +28,7 @@ const FEWEST: f32 = 0.06;
 const INSTANCE_VERTICES: u32 = 512;
 /// Bytes of a plant's feelings and of how it stands, as in `underbrush.wgsl`.
 const FELT_BYTES: u64 = 32;
-const STAND_BYTES: u64 = 80;
+const STAND_BYTES: u64 = 128;
 /// Most plants that are drawn: as many stand in the 128 MiB that every device binds at once.
 const PLANT_LIMIT: usize = (128 << 20) / STAND_BYTES as usize;
 /// Levels whose leaves tremble in the rain; of coarser ones that is a pixel at most.
@@ -62,12 +62,18 @@ struct List {
     number: usize,
     indices: wgpu::Buffer,
     group: wgpu::BindGroup,
+    trembles: bool,
 }
+
+/// How lists are drawn: while no sphere is about, and while any is.
+type BySpheres = [ByLamps<wgpu::RenderPipeline>; 2];
 
 pub(super) struct Underbrush {
     stand: wgpu::ComputePipeline,
     finish: wgpu::ComputePipeline,
-    pipelines: ByLamps<wgpu::RenderPipeline>,
+    calm: BySpheres,
+    /// For leaves that tremble, where it rains.
+    trembling: Option<BySpheres>,
     frame: wgpu::Buffer,
     chunks: wgpu::Buffer,
     broken: wgpu::Buffer,
@@ -136,13 +142,19 @@ impl Underbrush {
         let compute_layout = maker.layout("underbrush", &entries);
         let list_layout =
             maker.layout("underbrush list", &[storage(10), storage(11), storage(12), storage(13), storage(14), uniform(15), storage(16)]);
-        let pipelines = ByLamps::new(|lamps| {
-            maker.draw(&module, Some(&list_layout), &Draw { label: "underbrush", constants: &[lamps], ..Draw::default() })
-        });
+        let rain_mm_per_h = land.scene().rain.rate_mm_per_h;
+        let pipelines = |trembles: f64| {
+            [0.0, 1.0].map(|spheres| {
+                ByLamps::new(|lamps| {
+                    let constants = [lamps, ("meets_spheres", spheres), ("trembles", trembles)];
+                    let draw = Draw { label: "underbrush", constants: &constants, ..Draw::default() };
+                    maker.draw(&module, Some(&list_layout), &draw)
+                })
+            })
+        };
 
         let mut draw_words = vec![0_u32; SPECIES_LIMIT * LEVELS * DRAW_WORDS];
         let mut lists = Vec::new();
-        let rain_mm_per_h = land.scene().rain.rate_mm_per_h;
         for (number, (own, plan)) in flora.species().iter().zip(flora.plans()).enumerate() {
             species[number] = [height_m(own), plan.settle_secs, flora::reach_m(own), 0.0];
             for level in 0..LEVELS {
@@ -154,11 +166,12 @@ impl Underbrush {
                 draw_words[list * DRAW_WORDS] = indices.len() as u32;
                 draw_words[list * DRAW_WORDS + 5] = held;
                 let nodes = plan.tables[0].nodes();
+                let trembles = rain_mm_per_h > 0.0 && level < TREMBLING_LEVELS;
                 let settings = BrushList {
                     rows: [rows, held, baked.limb_count(), 0],
                     which: [list as u32, places[number][0] + level as u32 * places[number][1], u32::from(level + 1 == LEVELS), 0],
                     nodes: [nodes.angles as u32, nodes.loads as u32, 0, 0],
-                    rain: [if level < TREMBLING_LEVELS { drops_per_m2_s(rain_mm_per_h) } else { 0.0 }, 0.0, 0.0, 0.0],
+                    rain: [if trembles { drops_per_m2_s(rain_mm_per_h) } else { 0.0 }, 0.0, 0.0, 0.0],
                 };
                 let steps = gpu.buffer("steps", bytemuck::cast_slice(&baked.steps), storage_usage);
                 let rows = gpu.buffer("rows", bytemuck::cast_slice(&baked.rows), storage_usage);
@@ -169,6 +182,7 @@ impl Underbrush {
                     number: list,
                     indices: gpu.buffer("underbrush indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
                     group: numbered(gpu, "underbrush list", &list_layout, 10, &buffers, None),
+                    trembles,
                 });
             }
         }
@@ -182,7 +196,8 @@ impl Underbrush {
         Some(Self {
             stand: maker.compute("stand", &module, "stand", &compute_layout),
             finish: maker.compute("finish", &module, "finish", &compute_layout),
-            pipelines,
+            calm: pipelines(0.0),
+            trembling: (rain_mm_per_h > 0.0).then(|| pipelines(1.0)),
             compute_group: numbered(gpu, "underbrush", &compute_layout, 0, &buffers, Some(forces)),
             frame,
             chunks,
@@ -263,12 +278,13 @@ impl Underbrush {
         pass.dispatch_workgroups(1, 1, 1);
     }
 
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool, has_spheres: bool) {
         if self.chunk_count == 0 {
             return;
         }
-        pass.set_pipeline(self.pipelines.of(has_lamps));
         for list in &self.lists {
+            let by_spheres = self.trembling.as_ref().filter(|_| list.trembles).unwrap_or(&self.calm);
+            pass.set_pipeline(by_spheres[usize::from(has_spheres)].of(has_lamps));
             pass.set_bind_group(1, &list.group, &[]);
             pass.set_index_buffer(list.indices.slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed_indirect(&self.draws, (list.number * DRAW_WORDS * 4) as u64);

@@ -73,7 +73,7 @@ impl Case {
         Self { root_m: ROOT_M, stand, pressure_pa, make: n % (2 * VARIANTS), spheres: 0 }
     }
 
-    fn packed(&self) -> [[f32; 4]; 5] {
+    fn packed(&self) -> [[f32; 4]; 8] {
         let [x, y, z] = self.root_m.to_array();
         let Stand { size, heading_rad, lean_rad: [lean_x, lean_z] } = self.stand;
         let [push_x, push_z] = self.pressure_pa;
@@ -83,6 +83,9 @@ impl Case {
             [push_x, push_z, self.make as f32, self.spheres as f32],
             [1.0, 0.0, 1.0, size],
             [0.0; 4],
+            [1.0; 4],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
         ]
     }
 
@@ -377,7 +380,7 @@ fn the_compute_pass_says_how_each_plant_stands_and_lists_it_once() {
     let words = |buffer: &wgpu::Buffer| bytemuck::cast_slice::<u8, u32>(&read(&gpu, buffer)).to_vec();
     let (stands, listed, tally) = (read(&gpu, &brush.stands), words(&brush.listed), words(&brush.tally));
     let draws = words(&brush.draws);
-    let stands: &[[[f32; 4]; 5]] = bytemuck::cast_slice(&stands);
+    let stands: &[[[f32; 4]; 8]] = bytemuck::cast_slice(&stands);
 
     let land = mirror.land().expect("a scene");
     let flora = land.flora().expect("plants");
@@ -394,7 +397,7 @@ fn the_compute_pass_says_how_each_plant_stands_and_lists_it_once() {
         let [instances, held] = [1, 5].map(|word| draws[(number * LEVELS + level) * DRAW_WORDS + word]);
         assert_eq!(instances, count.div_ceil(held), "instances of list {number}, {level}");
         for &index in &listed[places..places + count as usize] {
-            let [root, lean, feels, about, _] = stands[index as usize];
+            let [root, lean, feels, about, ..] = stands[index as usize];
             let at_m = [root[0], root[2]];
             let plant = plants[&place(at_m)];
             assert!(seen.insert(plant.site, level).is_none(), "{plant:?} is listed twice");
