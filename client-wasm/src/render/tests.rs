@@ -94,7 +94,7 @@ fn uniform_blocks_lie_as_their_twins() {
         (&module, "Blade", blades::BLADE_BYTES as u32),
         (&underbrush, "Grown", 24),
         (&underbrush, "Felt", 32),
-        (&underbrush, "Stand", 80),
+        (&underbrush, "Stand", super::underbrush::STAND_BYTES as u32),
     ] {
         let (_, found) = of.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("it is there");
         assert!(

@@ -28,7 +28,7 @@ const FEWEST: f32 = 0.06;
 const INSTANCE_VERTICES: u32 = 512;
 /// Bytes of a plant's feelings and of how it stands, as in `underbrush.wgsl`.
 const FELT_BYTES: u64 = 32;
-const STAND_BYTES: u64 = 128;
+pub(super) const STAND_BYTES: u64 = 128;
 /// Most plants that are drawn: as many stand in the 128 MiB that every device binds at once.
 const PLANT_LIMIT: usize = (128 << 20) / STAND_BYTES as usize;
 /// Levels whose leaves tremble in the rain; of coarser ones that is a pixel at most.
