@@ -90,7 +90,7 @@ fn main() -> Result<()> {
     picture.set_look(way.look);
     const DT_SECS: f32 = 1.0 / 30.0;
     let mut stats = Default::default();
-    let mut drawing_secs = 0.0;
+    let mut frame_secs = Vec::new();
     for frame in 0..arguments.frames.max(1) {
         stage.run(DT_SECS);
         stage.show()?;
@@ -100,9 +100,9 @@ fn main() -> Result<()> {
             Some(split) => picture.draw_split(&mut stage.mirror, &camera, time_secs, DT_SECS, split),
             None => picture.draw(&mut stage.mirror, &camera, time_secs, DT_SECS),
         };
-        drawing_secs += start.elapsed().as_secs_f64();
+        frame_secs.push(start.elapsed().as_secs_f64());
     }
-    println!("{}: {:.1} ms a frame, {stats:?}", gpu.adapter_name, drawing_secs * 1e3 / f64::from(arguments.frames.max(1)));
+    println!("{}: {}, {stats:?}", gpu.adapter_name, paces(&frame_secs));
     if let Some(PassSecs { shadows, bend, picture, tone }) = picture.pass_secs() {
         let [shadows, bend, drawn, tone] = [shadows, bend, picture, tone].map(|secs| secs * 1e3);
         println!("the last one on the device: shadows {shadows:.2} ms, culled and bent {bend:.2}, drawn {drawn:.2}, tone mapped {tone:.2}");
@@ -121,6 +121,20 @@ fn main() -> Result<()> {
     }
     println!("camera {}", camera.to_hash());
     Picture { width: size_px[0], height: size_px[1], rgba: picture.rgba() }.save(&arguments.out)
+}
+
+/// How long the first frame took, which makes all that is drawn and compiles the shaders, and how long those after it.
+fn paces(frame_secs: &[f64]) -> String {
+    let (first, rest) = (frame_secs[0] * 1e3, &frame_secs[1..]);
+    let mut sorted = rest.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    match sorted.get(sorted.len() / 2) {
+        Some(median) => {
+            let mean = rest.iter().sum::<f64>() / rest.len() as f64;
+            format!("{:.1} ms a frame (median {:.1}) after a first of {first:.0} ms", mean * 1e3, median * 1e3)
+        }
+        None => format!("{first:.0} ms for the only frame"),
+    }
 }
 
 fn millions(count: u64) -> f64 {
