@@ -16,7 +16,7 @@ struct Plants {
     // Steps of this frame; way of integration; segments of a fine blade, and of a coarse one.
     steps: vec4<u32>,
     // Length of a step (s); lot of the first plant of a grid to be a flower, and the power with which that falls; least width that a blade is
-    // drawn with (px).
+    // drawn with (px): 0 in the reference alone, where heads are no discs either.
     time: vec4<f32>,
     // Most that a plant reaches beyond its place (m); distance from which on heads thin out, and those left are larger (m); unused.
     reach: vec4<f32>,
@@ -240,7 +240,9 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
             var head = blade;
             head.root.w = small;
             head.points[1].w = kind;
-            append(select(HEAD, FAR_HEAD, HEAD_RADIUS_M * small < FAR_HEAD_PX * own * pixel_m && plants.time.w > 0.0), head);
+            let is_reference = plants.time.w == 0.0;
+            let is_far = HEAD_RADIUS_M * small < FAR_HEAD_PX * own * pixel_m;
+            append(select(HEAD, FAR_HEAD, is_far & !is_reference), head);
         }
     }
     append(list, blade);

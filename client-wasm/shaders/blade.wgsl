@@ -184,6 +184,9 @@ fn aside_of(along: vec3<f32>, below: vec3<f32>, link: f32, centre: vec3<f32>, ra
     return toward(out, to / distance_m, clamp(cosine, -1.0, 1.0));
 }
 
+// Whether any sphere is about; known as a pipeline is made, since software drivers run the first turn of a loop even where there is none.
+override meets_spheres: bool = true;
+
 // A blade above the ground and outside of the frame's spheres; the links above the first that meets a sphere go on in its direction.
 fn settle(sway: Sway, length_m: f32, normal: vec3<f32>, root: vec3<f32>) -> Sway {
     let link = length_m / 3.0;
@@ -195,12 +198,14 @@ fn settle(sway: Sway, length_m: f32, normal: vec3<f32>, root: vec3<f32>) -> Sway
         let own = direction_of(settled.links[i].xy);
         var along = select(own, tangent, dot(tangent, tangent) > 0.0);
         var is_turned = false;
-        for (var round = 0; round < 2; round++) {
-            for (var s = 0; s < spheres; s++) {
-                let sphere = frame.spheres[s];
-                let turned = aside_of(along, below, link, sphere.xyz - root, sphere.w);
-                is_turned = is_turned || any(turned != along);
-                along = turned;
+        if meets_spheres {
+            for (var round = 0; round < 2; round++) {
+                for (var s = 0; s < spheres; s++) {
+                    let sphere = frame.spheres[s];
+                    let turned = aside_of(along, below, link, sphere.xyz - root, sphere.w);
+                    is_turned = is_turned || any(turned != along);
+                    along = turned;
+                }
             }
         }
         if is_turned {

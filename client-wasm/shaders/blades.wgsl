@@ -1,16 +1,5 @@
 // Blades: cubic Bezier backbones, widened to strips. One instance is 64 blades as one indexed list.
 
-struct StripList {
-    // First of the list, capacity, segments of a blade, number of the list.
-    range: vec4<u32>,
-    // 1 where those that follow lie after the first, -1 where before it; unused.
-    order: vec4<i32>,
-}
-
-@group(1) @binding(0) var<storage, read> blades: array<Blade>;
-// Lengths of the lists; where blades are drawn far to near, their spans in that order, as `order.wgsl` has them.
-@group(1) @binding(1) var<storage, read> drawn: array<u32>;
-@group(1) @binding(2) var<uniform> list: StripList;
 @group(1) @binding(3) var shapes: texture_2d<f32>;
 // Keys and places of blades far to near.
 @group(1) @binding(4) var<storage, read> in_order: array<vec2<u32>>;
@@ -114,41 +103,37 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
     return out;
 }
 
-// Which blade of the list a vertex belongs to.
-fn number_of(index: u32, instance: u32) -> u32 {
-    return instance * 64u + index / (list.range.z * 2u + 2u);
+// Vertices of a blade of the list.
+fn vertices() -> u32 {
+    return list.range.z * 2u + 2u;
 }
 
 fn corner_at(index: u32) -> vec2<f32> {
-    return corner_of(index % (list.range.z * 2u + 2u), list.range.z);
+    return corner_of(index % vertices(), list.range.z);
 }
 
-fn listed(number: u32) -> Blade {
-    return blades[u32(i32(list.range.x) + i32(number) * list.order.x)];
+fn listed_strip(index: u32, instance: u32, has_soft_borders: bool) -> Strip {
+    let number = number_of(index, instance, vertices());
+    if !is_listed(number) {
+        return hidden();
+    }
+    return strip_of(listed(number), corner_at(index), has_soft_borders);
 }
 
 @vertex
 fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Strip {
-    let number = number_of(index, instance);
-    if number >= min(drawn[list.range.w], list.range.y) {
-        return hidden();
-    }
-    return strip_of(listed(number), corner_at(index), false);
+    return listed_strip(index, instance, false);
 }
 
 @vertex
 fn vs_soft(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Strip {
-    let number = number_of(index, instance);
-    if number >= min(drawn[list.range.w], list.range.y) {
-        return hidden();
-    }
-    return strip_of(listed(number), corner_at(index), true);
+    return listed_strip(index, instance, true);
 }
 
 // The list's number is that of its span.
 @vertex
 fn vs_in_order(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Strip {
-    let number = number_of(index, instance);
+    let number = number_of(index, instance, vertices());
     if number >= drawn[list.range.w + 1u] {
         return hidden();
     }

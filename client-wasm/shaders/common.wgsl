@@ -88,10 +88,15 @@ fn random3(place: vec2<i32>, number: u32) -> vec3<f32> {
     return vec3<f32>(h >> vec3<u32>(8u)) / 16777216.0;
 }
 
-// Threshold, within 0..1, of what fades by dither at a pixel: interleaved gradient noise (J. Jimenez, "Next generation post processing in Call of Duty: Advanced
-// Warfare", 2014), in which any few pixels side by side have thresholds far apart.
+// Interleaved gradient noise (J. Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", 2014): numbers in 0..1, far apart at any few
+// pixels side by side.
+fn gradient_noise(pixel: vec2<f32>) -> f32 {
+    return fract(52.9829189 * fract(dot(pixel, vec2<f32>(0.06711056, 0.00583715))));
+}
+
+// Threshold, within 0..1, of what fades by dither at a pixel.
 fn dither_at(pixel: vec2<f32>) -> f32 {
-    return 0.01 + 0.98 * fract(52.9829189 * fract(dot(floor(pixel), vec2<f32>(0.06711056, 0.00583715))));
+    return 0.01 + 0.98 * gradient_noise(floor(pixel));
 }
 
 fn noise(uv: vec2<f32>) -> vec4<f32> {

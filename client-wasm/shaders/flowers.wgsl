@@ -1,15 +1,4 @@
-// Flower heads of six kinds: a ring of petals about a disc. One instance is 16 heads as one indexed list.
-
-struct StripList {
-    // First of the list, capacity, segments of a blade, number of the list.
-    range: vec4<u32>,
-    // 1 where those that follow lie after the first, -1 where before it; unused.
-    order: vec4<i32>,
-}
-
-@group(1) @binding(0) var<storage, read> blades: array<Blade>;
-@group(1) @binding(1) var<storage, read> drawn: array<u32>;
-@group(1) @binding(2) var<uniform> list: StripList;
+// Flower heads of six kinds: near ones as a ring of petals about a disc, others as a disc alone. One instance is 64 heads as one indexed list.
 
 // Petals 0..12 of five vertices, then the disc: a centre and six on its rim.
 const PETALS: u32 = 12u;
@@ -52,6 +41,7 @@ struct Head {
     ahead: vec3<f32>,
     // Over that of its kind.
     size: f32,
+    kind: Flower,
 }
 
 fn head_of(stem: Blade) -> Head {
@@ -62,32 +52,33 @@ fn head_of(stem: Blade) -> Head {
     head.right = normalize(cross(head.axis, vec3<f32>(0.31, 0.17, 0.93)));
     head.ahead = cross(head.right, head.axis);
     head.size = stem.root.w * 1.7 * (1.0 - smoothstep(frame.reach.x, frame.reach.y, distance(head.at, frame.eye.xyz)));
+    head.kind = kind_of(clamp(stem.points[1].w, 0.0, 0.999));
     return head;
 }
 
-fn listed(number: u32) -> Blade {
-    return blades[u32(i32(list.range.x) + i32(number) * list.order.x)];
+fn hidden() -> Petal {
+    var out: Petal;
+    out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+    return out;
+}
+
+fn shown(stem: Blade, p: vec3<f32>, normal: vec3<f32>, albedo: vec3<f32>) -> Petal {
+    return Petal(frame.projection_from_world * vec4<f32>(p, 1.0), lit(stem, p, normal, albedo));
 }
 
 @vertex
 fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Petal {
-    let number = instance * 64u + index / VERTICES;
-    let local = index % VERTICES;
-    var out: Petal;
-    if number >= min(drawn[list.range.w], list.range.y) {
-        out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
-        return out;
+    let number = number_of(index, instance, VERTICES);
+    if !is_listed(number) {
+        return hidden();
     }
+    let local = index % VERTICES;
     let stem = listed(number);
     let head = head_of(stem);
-    let kind = kind_of(clamp(stem.points[1].w, 0.0, 0.999));
-    let axis = head.axis;
-    let right = head.right;
-    let ahead = head.ahead;
-    let size = head.size;
+    let kind = head.kind;
 
     var p: vec3<f32>;
-    var normal = axis;
+    var normal = head.axis;
     var albedo: vec3<f32>;
     if local < PETALS * PETAL_VERTICES {
         let petal = local / PETAL_VERTICES;
@@ -95,29 +86,27 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
         let petals = kind.shape.x;
         let is_there = f32(petal) < petals;
         let angle = (f32(petal) + stem.points[0].w) / petals * TAU;
-        let out_dir = right * cos(angle) + ahead * sin(angle);
-        let across = cross(axis, out_dir);
+        let out_dir = head.right * cos(angle) + head.ahead * sin(angle);
+        let across = cross(head.axis, out_dir);
         let rise = kind.shape.w;
         // Root, two at the middle, two at the end.
         let t = array<f32, 5>(0.0, 0.55, 0.55, 1.0, 1.0)[corner];
         let w = array<f32, 5>(0.0, -0.5, 0.5, -0.28, 0.28)[corner];
         let curl = rise * (1.0 - 0.45 * t);
-        let along = out_dir * cos(curl) + axis * sin(curl);
-        let reach = select(0.0, kind.shape.y * size, is_there);
+        let along = out_dir * cos(curl) + head.axis * sin(curl);
+        let reach = select(0.0, kind.shape.y * head.size, is_there);
         p = head.at + along * (reach * t) + across * (reach * w * kind.shape.z);
-        normal = normalize(axis * cos(curl) - out_dir * sin(curl) + across * w * 0.6);
+        normal = normalize(head.axis * cos(curl) - out_dir * sin(curl) + across * w * 0.6);
         albedo = mix(kind.base, kind.tip, t);
     } else {
         let rim = local - PETALS * PETAL_VERTICES;
-        let radius = select(kind.disc.w * size, 0.0, rim == 0u);
+        let radius = select(kind.disc.w * head.size, 0.0, rim == 0u);
         let angle = f32(rim) / 6.0 * TAU;
-        p = head.at + axis * (0.004 * size + select(0.0, kind.disc.w * 0.5 * size, rim == 0u));
-        p += (right * cos(angle) + ahead * sin(angle)) * radius;
+        p = head.at + head.axis * (head.size * (0.004 + select(0.0, kind.disc.w * 0.5, rim == 0u)));
+        p += (head.right * cos(angle) + head.ahead * sin(angle)) * radius;
         albedo = kind.disc.rgb;
     }
-    out.color = lit(stem, p, normal, albedo);
-    out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
-    return out;
+    return shown(stem, p, normal, albedo);
 }
 
 // Light that a petal or a disc sends to the eye.
@@ -134,25 +123,21 @@ fn lit(stem: Blade, p: vec3<f32>, normal: vec3<f32>, albedo: vec3<f32>) -> vec3<
 // A head of which no petal can be told from another: a centre and six on its rim.
 @vertex
 fn vs_disc(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Petal {
-    let number = instance * 64u + index / DISC_VERTICES;
-    let rim = index % DISC_VERTICES;
-    var out: Petal;
-    if number >= min(drawn[list.range.w], list.range.y) {
-        out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
-        return out;
+    let number = number_of(index, instance, DISC_VERTICES);
+    if !is_listed(number) {
+        return hidden();
     }
+    let rim = index % DISC_VERTICES;
     let stem = listed(number);
     let head = head_of(stem);
-    let kind = kind_of(clamp(stem.points[1].w, 0.0, 0.999));
+    let kind = head.kind;
     // The more the petals rise, the narrower and deeper a head is.
     let reach = DISC_SHARE * kind.shape.y * head.size * select(cos(0.7 * kind.shape.w), 0.0, rim == 0u);
     let rise = select(sin(0.7 * kind.shape.w) * DISC_SHARE * kind.shape.y * head.size, 0.0, rim == 0u);
     let angle = f32(rim) / 6.0 * TAU;
     let p = head.at + (head.right * cos(angle) + head.ahead * sin(angle)) * reach + head.axis * rise;
     let albedo = select(mix(kind.base, kind.tip, 0.7), mix(kind.base, kind.disc.rgb, 0.6), rim == 0u);
-    out.color = lit(stem, p, head.axis, albedo);
-    out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
-    return out;
+    return shown(stem, p, head.axis, albedo);
 }
 
 @fragment

@@ -180,11 +180,6 @@ fn cross_section(grain: Grain, u: f32, high: f32) -> vec4<f32> {
     return vec4<f32>(found.rgb, found.a * grain.share);
 }
 
-// A pattern that spreads thresholds evenly over neighbouring pixels (Jimenez, interleaved gradient noise).
-fn dither(pixel: vec2<f32>) -> f32 {
-    return fract(52.9829189 * fract(dot(pixel, vec2<f32>(0.06711056, 0.00583715))));
-}
-
 // Light on a blade `up` of its way to the tip and `high` over the tallest, by its tangent alone: the normal is that of the blade's disc which faces the sun
 // most (003 §3.3, after Banks and Kajiya & Kay), the shadow of the grass on itself a ramp (003 §3.3.3).
 fn light_on(sheet: Sheet, dot_rgb: vec3<f32>, up: f32, high: f32, view: vec3<f32>) -> vec3<f32> {
@@ -214,7 +209,7 @@ fn mask_of(covered: f32, threshold: f32) -> u32 {
 
 @fragment
 fn fs(sheet: Sheet) -> Shade {
-    let threshold = dither(sheet.position.xy);
+    let threshold = gradient_noise(sheet.position.xy);
     let merges = threshold < sheet.segment.w;
     if merges && sheet.layer.w > 0.5 {
         discard;

@@ -28,7 +28,7 @@ pub(super) struct Detail {
 /// Those of the levels 0, 1, 2, 3.
 const LEVELS: [Detail; 4] = [
     Detail { full_m: 2.0, fine_m: 2.0, heads_m: 20.0, blades_m: 55.0, far_m: 60.0, underbrush_m: 45.0, trees_m: 400.0, coarser: 2.0 },
-    Detail { full_m: 2.5, fine_m: 2.5, heads_m: 30.0, blades_m: 90.0, far_m: 100.0, underbrush_m: 85.0, trees_m: 800.0, coarser: 1.6 },
+    Detail { full_m: 3.4, fine_m: 3.0, heads_m: 30.0, blades_m: 90.0, far_m: 100.0, underbrush_m: 85.0, trees_m: 800.0, coarser: 1.6 },
     Detail { full_m: 7.3, fine_m: 5.0, heads_m: 40.0, blades_m: 130.0, far_m: 150.0, underbrush_m: 180.0, trees_m: 2000.0, coarser: 1.0 },
     Detail { full_m: 11.0, fine_m: 8.0, heads_m: 60.0, blades_m: 180.0, far_m: 220.0, underbrush_m: 260.0, trees_m: 2000.0, coarser: 0.7 },
 ];

@@ -114,7 +114,7 @@ impl TreeDetail {
 /// A tree one metre tall.
 pub(super) fn tree(shape: u32, detail: TreeDetail) -> Solid {
     let mut random = Random::new(900 + u64::from(shape));
-    let bark = Paint::new(0.105, 0.075, 0.050, 0.03);
+    let bark = Paint::new(0.105, 0.075, 0.050, 0.0);
     let mut tree = Solid::default();
     let Crown { low: crown_low, high: crown_high, wide: crown_wide } = crown(shape);
     let leaf = match shape {
@@ -223,7 +223,7 @@ pub(super) fn stone(shape: u32) -> Solid {
                 .collect()
         })
         .collect();
-    stone.skin(&rings, Paint::new(0.26, 0.25, 0.225, 0.02));
+    stone.skin(&rings, Paint::new(0.26, 0.25, 0.225, 0.0));
     for vertex in &mut stone.vertices {
         let moss = (f32::from(vertex.normal[1]) / 127.0 - 0.55).max(0.0) * 1.6 * random.between(0.3, 1.0);
         let grey = random.between(0.85, 1.12);

@@ -11,13 +11,13 @@ mod cull;
 mod detail;
 mod dots;
 mod dust;
-mod far_shadows;
 mod fit;
 mod flora;
 mod forces;
 mod gpu;
 mod grove;
 mod kept;
+mod kept_shadows;
 mod kinds;
 mod lamps;
 mod land;
@@ -69,8 +69,9 @@ use blades::{Blades, Standpoint};
 use cull::{Beam, Frustum};
 use detail::Detail;
 use dust::Dust;
-use far_shadows::{FarShadows, Seen};
 use forces::Forces;
+use glam::Vec3;
+use kept_shadows::{KeptShadows, Seen};
 use land::{FrameGroup, LandTextures};
 use objects::Objects;
 use pipeline::{COLOR, DEPTH, Maker};
@@ -145,7 +146,7 @@ struct SceneParts {
     underbrush: Option<Underbrush>,
     rain: Option<RainPass>,
     objects: Objects,
-    far_shadows: FarShadows,
+    kept_shadows: KeptShadows,
     dust: Option<Dust>,
 }
 
@@ -280,11 +281,11 @@ impl Renderer {
                 shells: Shells::new(&maker, land, &ground),
                 ground,
                 blades: Blades::new(&maker, self.quality, land),
-                underbrush: Underbrush::new(&maker, land, &forces),
+                underbrush: Underbrush::new(&maker, self.quality, land, &forces),
                 forces,
                 rain: RainPass::new(&maker, self.quality, land),
                 objects: Objects::new(&maker, land, standing),
-                far_shadows: FarShadows::default(),
+                kept_shadows: KeptShadows::default(),
                 dust: Dust::new(&maker, self.quality, land),
             }
         });
@@ -318,13 +319,15 @@ impl Renderer {
 
         let sun = self.look.sun.unwrap_or_else(|| land.scene().light.sun_at(mirror.time_secs()));
         self.daylight.follow(gpu, sun);
-        let detail = self.detail.with(self.look.far).on(&land.scene().plants);
+        let detail = self.detail.on(&land.scene().plants).with(self.look.far);
         let view = View::new(camera, self.targets.size_px, self.quality, detail, time_secs, sun);
         let mut frame = view.frame(land, &scene.textures.atlas, &self.daylight, &poses);
-        let (has_lamps, has_spheres) = (frame.tiling[3] > 0, frame.clouds[3] > 0.0);
-        let seen = Seen { eye_m: camera.eye_m, heading_rad: camera.heading_rad, sun };
-        let far_shadows_are_due = scene.far_shadows.follow(&mut frame.lights.far_shadow_from_world, seen, &poses, dt_secs);
-        let shadow_layers = if far_shadows_are_due { SHADOW_LAYERS } else { 1 };
+        let (has_lamps, has_spheres) = (frame.has_lamps(), frame.has_spheres());
+        let Camera { eye_m, heading_rad, .. } = *camera;
+        let seen = Seen { eye_m, heading_rad, sun, trees_m: detail.trees_m, culls: self.look.culls, time_secs };
+        let reach_m = |pose: &ObjectPose| Vec3::from(land.scene().objects.half_extents_m(pose.kind)).length();
+        let shadows_are_due = scene.kept_shadows.follow(&mut frame, seen, &poses, reach_m, dt_secs);
+        let shadow_layers: Vec<u32> = (0..SHADOW_LAYERS).filter(|&layer| shadows_are_due[layer as usize]).collect();
         self.frame.write(gpu, &frame);
         let frustum = if self.look.culls { Frustum::new(&view.projection_from_world) } else { Frustum::ALL };
         let tiles = scene.ground.tiles(camera.eye_m, &frustum);
@@ -361,8 +364,8 @@ impl Renderer {
         if let Some(dust) = &scene.dust {
             dust.prepare(gpu, dt_secs);
         }
-        let beams = [&frame.shadow_from_world, &frame.lights.far_shadow_from_world].map(Beam::new);
-        let beams = &beams[..shadow_layers as usize];
+        let projections = [&frame.shadow_from_world, &frame.lights.far_shadow_from_world];
+        let beams = std::array::from_fn(|layer| shadows_are_due[layer].then(|| Beam::new(projections[layer])));
         scene.objects.prepare(gpu, &poses, &from, beams, time_secs as f32, frame.screen[2]);
 
         let clumps = (self.look.far == Far::Clumps && has_blades).then_some(&self.billboards);
@@ -380,13 +383,14 @@ impl Renderer {
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
             if turn == 0 {
                 {
-                    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("blow"), timestamp_writes: None });
+                    let timestamp_writes = self.timer.as_ref().map(|timer| timer.of_compute(Pass::Shadows, shadow_layers.is_empty()));
+                    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("blow"), timestamp_writes });
                     pass.set_bind_group(0, &scene.textures.shadow_group, &[]);
                     scene.objects.blow(&mut pass);
                 }
-                for layer in 0..shadow_layers {
-                    let (is_first, is_last) = (layer == 0, layer + 1 == shadow_layers);
-                    let clock = self.timer.as_ref().and_then(|timer| timer.of_render(Pass::Shadows, is_first, is_last));
+                for &layer in &shadow_layers {
+                    let is_last = shadow_layers.last() == Some(&layer);
+                    let clock = self.timer.as_ref().and_then(|timer| timer.of_render(Pass::Shadows, false, is_last));
                     let pass = shadow_pass(&mut encoder, &self.frame.shadow_map(layer), clock);
                     let mut pass = counted(&mut self.counter, Pass::Shadows, pass);
                     pass.set_bind_group(0, &scene.textures.shadow_group, &[]);
@@ -394,12 +398,12 @@ impl Renderer {
                 }
             }
             {
-                let timestamp_writes = self.timer.as_ref().map(|timer| timer.of_compute(Pass::Bend));
+                let timestamp_writes = self.timer.as_ref().map(|timer| timer.of_compute(Pass::Bend, true));
                 let pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes });
                 let mut pass = counted(&mut self.counter, Pass::Bend, pass);
                 pass.set_bind_group(0, &scene.textures.group, &[]);
                 if has_blades {
-                    scene.blades.bend(&mut pass, has_lamps);
+                    scene.blades.bend(&mut pass, has_spheres, has_lamps);
                 }
                 if turn == 0 {
                     if shells.is_some() {
@@ -409,7 +413,7 @@ impl Renderer {
                         clumps.bend(&mut pass);
                     }
                     if let Some(underbrush) = &scene.underbrush {
-                        underbrush.bend(&mut pass);
+                        underbrush.bend(&mut pass, has_spheres, has_lamps);
                     }
                     if let Some(dust) = &scene.dust {
                         dust.blow(&mut pass);
@@ -430,14 +434,14 @@ impl Renderer {
                     if !order.blends() {
                         scene.blades.draw(&mut pass, has_lamps);
                     }
-                    scene.blades.draw_flowers(&mut pass);
+                    scene.blades.draw_flowers(&mut pass, has_lamps);
                 }
                 if is_last {
                     if shells.is_some() {
                         scene.shells.draw(&mut pass);
                     }
                     if let Some(underbrush) = &scene.underbrush {
-                        underbrush.draw(&mut pass, has_lamps, has_spheres);
+                        underbrush.draw(&mut pass);
                     }
                     if let Some(clumps) = clumps.filter(|_| !order.blends()) {
                         clumps.draw(&mut pass);

@@ -60,7 +60,7 @@ pub(super) struct Objects {
     lit: [Vec<(usize, Range<u32>)>; 2],
 }
 
-/// Order of the meshes: parts, fine trees, coarse trees, stones.
+/// Order of the meshes: parts, fine, coarse and distant trees, stones.
 fn tree_mesh(shape: u32, detail: TreeDetail) -> usize {
     Part::ALL.len() + (shape + detail as u32 * TREE_SHAPES) as usize
 }
@@ -139,13 +139,13 @@ impl Objects {
         }
     }
 
-    /// Lists what is in view, and what throws shadows into the layers of the sun's map that are drawn.
+    /// Lists what is in view, and what throws shadows into the layers of the sun's map that are drawn, whose beams these are.
     pub(super) fn prepare(
         &mut self,
         gpu: &Gpu,
         poses: &[ObjectPose],
         from: &Standpoint<'_>,
-        beams: &[Beam],
+        beams: [Option<Beam>; 2],
         time_secs: f32,
         pixel_rad: f32,
     ) {
@@ -169,7 +169,9 @@ impl Objects {
             let [low_m, high_m] = ball.corners_m();
             from.frustum.sees_box(low_m, high_m)
         };
-        let is_lit = |beam: &Beam, ball: &Ball| !from.look.culls || beam.meets_ball(ball.middle_m, ball.radius_m);
+        let is_lit = |beam: &Option<Beam>, ball: &Ball| {
+            beam.as_ref().is_some_and(|beam| !from.look.culls || beam.meets_ball(ball.middle_m, ball.radius_m))
+        };
         let may_show = |ball: &Ball| is_seen(ball) || beams.iter().any(|beam| is_lit(beam, ball));
         let room = INSTANCE_LIMIT.saturating_sub(18 * OBJECT_LIMIT.min(poses.len()));
         for (distance_m, (standing, ball)) in self.grove.near(from.eye_m, from.detail.trees_m, room / 3, may_show) {
@@ -187,7 +189,7 @@ impl Objects {
             if is_seen(ball) {
                 by_mesh[mesh(detail)].push(instance);
             }
-            for ((lit, beam), detail) in by_mesh_lit.iter_mut().zip(beams).zip(SHADOW_DETAIL) {
+            for ((lit, beam), detail) in by_mesh_lit.iter_mut().zip(&beams).zip(SHADOW_DETAIL) {
                 if is_lit(beam, ball) {
                     lit[mesh(detail)].push(instance);
                 }
@@ -221,7 +223,7 @@ impl Objects {
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
         // The meshes of vehicles come first.
-        let vehicles = self.seen.partition_point(|&(mesh, _)| mesh < tree_mesh(0, TreeDetail::ALL[0]));
+        let vehicles = self.seen.partition_point(|&(mesh, _)| mesh < Part::ALL.len());
         let [matte, glossy] = self.pipelines.of(has_lamps);
         for (pipeline, list) in [(glossy, &self.seen[..vehicles]), (matte, &self.seen[vehicles..])] {
             pass.set_pipeline(pipeline);

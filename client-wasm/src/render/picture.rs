@@ -1,6 +1,7 @@
 //! Pictures without a window.
 
 use super::timing::Timer;
+use super::underbrush::Underbrush;
 use super::work::Counter;
 use super::{FrameStats, Gpu, Look, PassSecs, PassWork, Quality, Renderer, Split};
 use crate::camera::Camera;
@@ -110,7 +111,7 @@ impl Picture {
     /// Plants of underbrush that the newest frame drew: those in view but for what thins out with distance.
     pub fn drawn_underbrush(&self) -> u32 {
         let underbrush = self.renderer.scene.as_ref().and_then(|scene| scene.underbrush.as_ref());
-        underbrush.map_or(0, |underbrush| bytemuck::pod_collect_to_vec::<u8, u32>(&read(&self.gpu, underbrush.tally())).iter().sum())
+        underbrush.map_or(0, |underbrush| Underbrush::drawn(&read(&self.gpu, underbrush.tally())))
     }
 
     fn wait(&self) {

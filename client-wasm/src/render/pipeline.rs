@@ -64,6 +64,20 @@ impl<P> ByLamps<P> {
     }
 }
 
+/// A pass of what spheres of objects push aside, too: the constants are those of [`ByLamps`] and `meets_spheres` of `blade.wgsl`.
+pub(super) struct BySpheres<P>([ByLamps<P>; 2]);
+
+impl<P> BySpheres<P> {
+    pub(super) fn new(make: impl Fn([(&'static str, f64); 2]) -> P) -> Self {
+        Self([0.0, 1.0].map(|spheres| ByLamps::new(|lamps| make([lamps, ("meets_spheres", spheres)]))))
+    }
+
+    /// For a frame in which there are spheres and lamps, or none.
+    pub(super) fn of(&self, has_spheres: bool, has_lamps: bool) -> &P {
+        self.0[usize::from(has_spheres)].of(has_lamps)
+    }
+}
+
 pub(super) const ALL_STAGES: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT.union(wgpu::ShaderStages::COMPUTE);
 
 impl Maker<'_> {

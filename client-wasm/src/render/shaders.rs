@@ -24,6 +24,7 @@ pub(super) const BLADES: &str = concat!(
     include_str!("../../shaders/backbone.wgsl"),
     include_str!("../../shaders/sward.wgsl"),
     include_str!("../../shaders/weighted.wgsl"),
+    include_str!("../../shaders/strip_list.wgsl"),
     include_str!("../../shaders/blades.wgsl")
 );
 /// Rain.
@@ -32,10 +33,11 @@ pub(super) const RAIN: &str = include_str!("../../shaders/rain.wgsl");
 pub(super) const UNDERBRUSH: &str = concat!(
     include_str!("../../shaders/blade.wgsl"),
     include_str!("../../shaders/sward.wgsl"),
-    include_str!("../../shaders/underbrush.wgsl")
+    include_str!("../../shaders/underbrush.wgsl"),
+    include_str!("../../shaders/ribbons.wgsl")
 );
 /// Flower heads.
-pub(super) const FLOWERS: &str = include_str!("../../shaders/flowers.wgsl");
+pub(super) const FLOWERS: &str = concat!(include_str!("../../shaders/strip_list.wgsl"), include_str!("../../shaders/flowers.wgsl"));
 /// Clumps of far plants.
 pub(super) const BILLBOARDS: &str = concat!(
     include_str!("../../shaders/sward.wgsl"),

@@ -95,6 +95,7 @@ fn uniform_blocks_lie_as_their_twins() {
         (&underbrush, "Grown", 24),
         (&underbrush, "Felt", 32),
         (&underbrush, "Stand", super::underbrush::STAND_BYTES as u32),
+        (&underbrush, "Border", super::underbrush::ROW_BYTES as u32 / 2),
     ] {
         let (_, found) = of.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("it is there");
         assert!(
@@ -411,7 +412,7 @@ fn petals_stand_at_065_of_the_height_of_the_blade_whose_place_they_take() {
         let flower = plant_at(grid, u32(at.z), place, true);
         return vec4<f32>(blade.height, flower.height, blade.frequency, flower.frequency);";
     let places: Vec<_> = (0..4000).map(|n| [(n % 8) as f32, (n / 8 % 8) as f32, (n / 64) as f32, 0.0]).collect();
-    let source = shaders::BEND.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(20) var<uniform>");
+    let source = shaders::BEND.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(40) var<uniform>");
     let found = probe_in(&gpu, &picture, &source, body, &places);
     let plants = mirror.land().expect("a scene").scene().plants;
     for [blade_m, flower_m, blade_rad_per_s, flower_rad_per_s] in &found {
@@ -454,7 +455,7 @@ fn as_many_flowers_stand_as_the_scene_says_and_all_are_listed() {
         let power = blades::FLOWER_POWER;
         let body = format!("return vec4<f32>(select(0.0, 1.0, is_flower(vec2<i32>(at.xy), u32(at.z), {lot:?}, {power:?})));");
         let places: Vec<_> = (0..of_grid * 15).map(|n| [(n / of_grid) as f32, 3.0, (n % of_grid) as f32, 0.0]).collect();
-        let source = shaders::BEND.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(20) var<uniform>");
+        let source = shaders::BEND.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(40) var<uniform>");
         let found = probe_in(&gpu, &picture, &source, &body, &places);
         let flowers = found.iter().map(|found| found[0]).sum::<f32>() / (15.0 * 64.0);
         assert!((flowers / flowers_per_m2 - 1.0).abs() < 0.03 + 4.0 / (flowers_per_m2 * 960.0).sqrt(), "{flowers} of {flowers_per_m2}");
@@ -536,7 +537,7 @@ fn underbrush_follows_the_force_as_its_twin_does() {
             if n % 2 == 0 { [a * 50.0, b * 50.0 - 25.0, c * 90.0, d * 90.0 - 45.0] } else { [a * 60.0, b * 60.0, 0.1 + c, d] }
         })
         .collect();
-    let source = shaders::UNDERBRUSH.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(20) var<uniform>");
+    let source = shaders::UNDERBRUSH.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(40) var<uniform>");
     let found = compute(&gpu, &picture, &format!("{source}\n{SOURCE}"), &inputs, 200);
     for (input, found) in inputs.chunks_exact(2).zip(found.chunks_exact(2)) {
         let ([x, z, dx, dz], [goal_x, goal_z, settle_secs, dt_secs]) = (input[0], input[1]);

@@ -18,7 +18,7 @@ const PASSES: u32 = 4;
 /// Time (s) for which each of a frame's passes kept the device. On one that draws by itself, passes may overlap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PassSecs {
-    /// What throws shadows, as the sun sees it.
+    /// How trees sway, and what throws shadows, as the sun sees it.
     pub shadows: f64,
     /// Culling, bending and sorting of all that grows, and dust.
     pub bend: f64,
@@ -47,12 +47,13 @@ impl Timer {
         })
     }
 
-    pub(super) fn of_compute(&self, pass: Pass) -> ComputePassTimestampWrites<'_> {
+    /// Of a compute pass that is the first of its kind, and perhaps the last.
+    pub(super) fn of_compute(&self, pass: Pass, is_last: bool) -> ComputePassTimestampWrites<'_> {
         let [begin, end] = places(pass);
         ComputePassTimestampWrites {
             query_set: &self.queries,
             beginning_of_pass_write_index: Some(begin),
-            end_of_pass_write_index: Some(end),
+            end_of_pass_write_index: is_last.then_some(end),
         }
     }
 

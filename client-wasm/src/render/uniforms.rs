@@ -70,6 +70,18 @@ uniform_block! {
 /// Most lamps in a frame; those nearest to the camera are kept.
 pub(super) const LAMP_LIMIT: usize = 16;
 
+impl Frame {
+    /// Whether any lamp is lit.
+    pub(super) fn has_lamps(&self) -> bool {
+        self.tiling[3] > 0
+    }
+
+    /// Whether there is any interaction sphere.
+    pub(super) fn has_spheres(&self) -> bool {
+        self.clouds[3] > 0.0
+    }
+}
+
 uniform_block! {
     /// A lamp; its twin is in `light.wgsl`.
     Lamp {
@@ -210,7 +222,7 @@ uniform_block! {
 uniform_block! {
     /// What the compute pass of the underbrush knows; its twin is in `underbrush.wgsl`.
     UnderbrushFrame {
-        /// Number of the frame, of those in which time passes; 1 to leave out what is not seen; unused.
+        /// Number of the frame, of those in which time passes; 1 to leave out what is not seen; plants and blocks of rows that there is room for.
         counts: [u32; 4],
         /// Time since the frame before (s); distance at which plants have shrunk to nothing (m); height of the force field (m); factor on the heights in the
         /// picture below which plants are coarser.
@@ -219,19 +231,17 @@ uniform_block! {
         forces: [f32; 4],
         /// Of each species: height (m), time constant (s), how far it reaches from its root at most (m), unused.
         species: [[f32; 4]; SPECIES_LIMIT],
-        /// First place of the species among the listed plants, places of each of its levels, unused.
-        places: [[u32; 4]; SPECIES_LIMIT],
     }
 }
 
 uniform_block! {
-    /// A species of underbrush at a level of detail, as it is drawn; its twin is in `underbrush.wgsl`.
+    /// A species of underbrush at a level of detail; its twin is in `underbrush.wgsl`.
     BrushList {
-        /// Rows of a plant; plants in an instance; components of a plant; unused.
+        /// Rows of a plant; plants in an instance; components of a plant; first of its rows among those of all lists.
         rows: [u32; 4],
-        /// Number of the list; first of the listed plants; 1 if the nearest posture will do; unused.
+        /// First of its components among those of all lists; first of the listed plants; 1 if the nearest posture will do; unused.
         which: [u32; 4],
-        /// Angles and loads of the tables; unused.
+        /// Angles and loads of the tables; first of their steps among those of all lists; unused.
         nodes: [u32; 4],
         /// Drops of rain that make leaves tremble (1/(m²·s)); unused.
         rain: [f32; 4],

@@ -23,7 +23,7 @@ const CLOUD_SPEED: f64 = 1.6;
 /// Layers of the shadow map.
 pub(super) const SHADOW_LAYERS: u32 = SHADOW_HALF_M.len() as u32;
 /// Half the side of the squares that the layers of the shadow map cover (m), and half their depth: a sharp one, and a coarse one.
-const SHADOW_HALF_M: [f32; 2] = [52.0, 270.0];
+pub(super) const SHADOW_HALF_M: [f32; 2] = [52.0, 270.0];
 const SHADOW_DEPTH_M: [f32; 2] = [160.0, 450.0];
 
 /// Least sine of the elevation from which shadows are thrown.

@@ -1,4 +1,4 @@
-//! Single plants: compute passes sift those that stand in view, bend and list them; indirect draws make strips of the blades and one makes the flower heads.
+//! Single plants: compute passes sift those that stand in view, bend and list them; indirect draws make strips of the blades, and the flower heads.
 //! Nine grids about the camera keep their plants' postures; those of the grids beyond stand as the wind of the moment would have them.
 
 mod grids;
@@ -13,7 +13,7 @@ use super::detail::{Detail, PLANTS_LIMIT, blades_of_grid};
 use super::gpu::Gpu;
 use super::kept::Kept;
 use super::paint;
-use super::pipeline::{ByLamps, Draw, Maker, bind, storage, storage_rw, texture, uniform};
+use super::pipeline::{ByLamps, BySpheres, Draw, Maker, bind, storage, storage_rw, texture, uniform};
 use super::shaders;
 use super::uniforms::{Plants, StripList};
 use super::{Look, Order, Quality};
@@ -55,11 +55,11 @@ const HEADS: [usize; 2] = [3, 4];
 pub(super) struct Blades {
     sift: Sift,
     /// Of near plants, and of those beyond.
-    bend: ByLamps<[wgpu::ComputePipeline; 2]>,
+    bend: BySpheres<[wgpu::ComputePipeline; 2]>,
     finish: wgpu::ComputePipeline,
     pub(super) laid: Kept<Laid>,
     pub(super) listed: Listed,
-    heads: [wgpu::RenderPipeline; 2],
+    heads: ByLamps<[wgpu::RenderPipeline; 2]>,
     plants: wgpu::Buffer,
     #[cfg(test)]
     pub(super) sways: wgpu::Buffer,
@@ -151,16 +151,18 @@ impl Blades {
             bind(gpu, "plant list", &list_layout, &[drawn, counters, list, wgpu::BindingResource::TextureView(&shapes)])
         });
         let flowers = gpu.shader("flowers", shaders::FLOWERS);
-        let heads = ["vs", "vs_disc"].map(|vertex| {
-            let draw = Draw { label: "flowers", vertex, ..Draw::default() };
-            maker.draw(&flowers, Some(&list_layout), &draw)
+        let heads = ByLamps::new(|lamps| {
+            ["vs", "vs_disc"].map(|vertex| {
+                let draw = Draw { label: "flowers", vertex, constants: &[lamps], ..Draw::default() };
+                maker.draw(&flowers, Some(&list_layout), &draw)
+            })
         });
         let are_textured = land.scene().plants.blade_shape == BladeShape::Textured;
         let listed = Listed { blades: drawn, counters, shapes, are_textured, capacities: [fine, others], segments, grid_m };
         Self {
             sift,
-            bend: ByLamps::new(|lamps| {
-                ["bend_near", "bend_far"].map(|entry| maker.compute_with(entry, &bend, entry, &compute_layout, &[lamps]))
+            bend: BySpheres::new(|constants| {
+                ["bend_near", "bend_far"].map(|entry| maker.compute_with(entry, &bend, entry, &compute_layout, &constants))
             }),
             finish: maker.compute("finish", &bend, "finish", &compute_layout),
             laid: Kept::new(Order::default(), Laid::new(maker, Order::default(), &listed)),
@@ -270,11 +272,11 @@ impl Blades {
         self.grids.begin_turn(gpu, turn);
     }
 
-    pub(super) fn bend(&self, pass: &mut wgpu::ComputePass<'_>, has_lamps: bool) {
+    pub(super) fn bend(&self, pass: &mut wgpu::ComputePass<'_>, has_spheres: bool, has_lamps: bool) {
         self.grids.list(pass);
         self.sift.run(pass, self.near_workgroups, self.grids.workgroups());
         pass.set_bind_group(1, &self.compute_group, &[]);
-        for (list, bend) in self.bend.of(has_lamps).iter().enumerate() {
+        for (list, bend) in self.bend.of(has_spheres, has_lamps).iter().enumerate() {
             pass.set_pipeline(bend);
             pass.dispatch_workgroups_indirect(self.sift.workgroups(), 12 * list as u64);
         }
@@ -290,8 +292,8 @@ impl Blades {
         self.laid.get().draw(pass, has_lamps, |pass| (0..HEADS[0]).for_each(|list| self.draw_list(pass, list)));
     }
 
-    pub(super) fn draw_flowers(&self, pass: &mut wgpu::RenderPass<'_>) {
-        for (heads, list) in self.heads.iter().zip(HEADS) {
+    pub(super) fn draw_flowers(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
+        for (heads, list) in self.heads.of(has_lamps).iter().zip(HEADS) {
             pass.set_pipeline(heads);
             self.draw_list(pass, list);
         }

@@ -36,7 +36,7 @@ impl<'a> Call<'a> {
     fn of(&self, handle: Handle<Expression>) -> Hangs {
         let most = |parts: &[Handle<Expression>]| parts.iter().map(|&part| self.of(part)).max().unwrap_or(Hangs::Constant);
         match &self.function.expressions[handle] {
-            Expression::Literal(_) | Expression::Constant(_) | Expression::ZeroValue(_) => Hangs::Constant,
+            Expression::Literal(_) | Expression::Constant(_) | Expression::Override(_) | Expression::ZeroValue(_) => Hangs::Constant,
             Expression::FunctionArgument(index) => self.arguments[*index as usize],
             Expression::LocalVariable(local) => self.locals[local],
             Expression::GlobalVariable(global) => match self.module.global_variables[*global].space {
@@ -166,7 +166,7 @@ fn no_branch_hangs_on_uniforms_alone() {
 #[test]
 fn branches_of_uniforms_are_found() {
     let found = |body: &str| {
-        let frame = "fn far(p: vec2<f32>) -> f32 { if p.x < 0.0 { return 1.0; } return p.y; }";
+        let frame = "override on: bool = true; fn far(p: vec2<f32>) -> f32 { if p.x < 0.0 { return 1.0; } return p.y; }";
         branches_of_uniforms(&format!(
             "{frame} @compute @workgroup_size(1) fn f(@builtin(global_invocation_id) id: vec3<u32>) {{ {body} }}"
         ))
@@ -179,4 +179,7 @@ fn branches_of_uniforms_are_found() {
     assert_eq!(found("var y = frame.eye.y; if f32(id.x) < 2.0 { y = f32(id.x); } if y < 1.0 {}"), 0);
     assert_eq!(found("if frame.eye.x > 0.0 && id.x > 1u {}"), 1);
     assert_eq!(found("if id.x > 1u && frame.eye.x > 0.0 {}"), 0);
+    assert_eq!(found("if on {}"), 0);
+    assert_eq!(found("if on && frame.eye.x > 0.0 {}"), 1);
+    assert_eq!(found("var y = frame.eye.y; if on { y = frame.eye.z; } if y < 1.0 {}"), 1);
 }

@@ -21,7 +21,7 @@ fn leaves_dip_by_the_drops_that_fall_on_them() {
     let mut mirror = meadow(0.0);
     let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
-    let source = shaders::UNDERBRUSH.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(20) var<uniform>");
+    let source = shaders::UNDERBRUSH.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(40) var<uniform>");
     let source = format!("{source}\n{SOURCE}");
     let dips = |per_s: f32, times: &[f32]| {
         let inputs: Vec<_> = times.iter().flat_map(|&secs| [[0.2, 0.1, per_s, secs]; 256]).collect();
@@ -96,7 +96,7 @@ fn felt(picture: &mut Picture, gpu: &Gpu, mirror: &mut Mirror) -> HashMap<u32, (
     });
     let land = mirror.land().expect("a scene");
     let (grown, _) = underbrush::tiles(land, land.flora().expect("underbrush"));
-    let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").underbrush.as_ref().expect("underbrush").felt);
+    let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").underbrush.as_ref().expect("underbrush").seen.felt);
     let felt: &[[f32; 8]] = bytemuck::cast_slice(&bytes);
     grown.iter().zip(felt).map(|(plant, felt)| (plant.site, (plant.at_m, [felt[0], felt[1]]))).collect()
 }

@@ -1,7 +1,9 @@
 use super::super::detail::Detail;
 use super::super::picture::read;
 use super::super::tests::{meadow_of, probe};
+use super::super::uniforms::BrushList;
 use super::super::{Picture, Quality};
+use super::bake::{Baked, LEVELS};
 use super::*;
 use crate::camera::Camera;
 use crate::state::Mirror;
@@ -100,7 +102,7 @@ impl Case {
 /// A row as the GPU bends it: where it is from the root (m), its direction and its side.
 type Found = [[f32; 4]; 3];
 
-/// Bends plants as the vertex shader does.
+/// Bends plants as `ribbons` does.
 struct Bender {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
@@ -109,18 +111,18 @@ struct Bender {
 impl Bender {
     fn new(gpu: &Gpu, picture: &Picture) -> Self {
         const SOURCE: &str = "
-            @group(1) @binding(17) var<storage, read_write> found: array<vec4<f32>>;
+            @group(1) @binding(30) var<storage, read_write> found: array<vec4<f32>>;
             @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
                 let plant = stands[id.y];
-                let row = rows[u32(plant.feels.z) % VARIANTS * list.rows.x + id.x];
-                let bent = bent_row(plant, row, vec3<f32>(0.0, 1.0, 0.0));
+                let list = lists.list[0];
+                let bent = bent_row(plant, row_of(plant, id.x, list), vec3<f32>(0.0, 1.0, 0.0), list);
                 let at = (id.y * list.rows.x + id.x) * 3u;
                 found[at] = vec4<f32>(bent.at, 0.0);
                 found[at + 1u] = vec4<f32>(bent.along, 0.0);
                 found[at + 2u] = vec4<f32>(bent.side, 0.0);
             }";
         let maker = Maker { gpu, frame_layout: &picture.renderer.frame.layout, samples: 1 };
-        let layout = maker.layout("bender", &[storage(10), storage(13), storage(14), uniform(15), storage(16), storage_rw(17)]);
+        let layout = maker.layout("bender", &[storage(10), storage(13), storage(14), uniform(15), storage(16), storage_rw(30)]);
         let module = gpu.shader("bender", &format!("{}\n{SOURCE}", shaders::UNDERBRUSH));
         Self { pipeline: maker.compute("bender", &module, "probe", &layout), layout }
     }
@@ -129,7 +131,8 @@ impl Bender {
     fn rows(&self, gpu: &Gpu, picture: &Picture, plan: &Plan, baked: &Baked, level: usize, cases: &[Case]) -> Vec<Found> {
         let rows = baked.ribbons.iter().sum::<u32>();
         let nodes = plan.tables[0].nodes();
-        let settings = BrushList {
+        let mut lists = [BrushList::zeroed(); LISTS];
+        lists[0] = BrushList {
             rows: [rows, 1, baked.limb_count(), 0],
             which: [0, 0, u32::from(level + 1 == LEVELS), 0],
             nodes: [nodes.angles as u32, nodes.loads as u32, 0, 0],
@@ -142,9 +145,9 @@ impl Bender {
             (10, &storage(bytemuck::cast_slice(&stands))),
             (13, &storage(bytemuck::cast_slice(&baked.steps))),
             (14, &storage(bytemuck::cast_slice(&baked.rows))),
-            (15, &gpu.buffer("list", bytemuck::bytes_of(&settings), BufferUsages::UNIFORM)),
+            (15, &gpu.buffer("lists", bytemuck::cast_slice(&lists), BufferUsages::UNIFORM)),
             (16, &storage(bytemuck::cast_slice(&baked.limbs))),
-            (17, &found),
+            (30, &found),
         ];
         let entries = buffers.map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &self.layout, entries: &entries });
@@ -378,7 +381,8 @@ fn the_compute_pass_says_how_each_plant_stands_and_lists_it_once() {
     let scene = picture.renderer.scene.as_ref().expect("a scene");
     let brush = scene.underbrush.as_ref().expect("underbrush");
     let words = |buffer: &wgpu::Buffer| bytemuck::cast_slice::<u8, u32>(&read(&gpu, buffer)).to_vec();
-    let (stands, listed, tally) = (read(&gpu, &brush.stands), words(&brush.listed), words(&brush.tally));
+    let (stands, listed, tally) = (read(&gpu, &brush.seen.stands), words(&brush.seen.listed), words(&brush.tally));
+    let owners = words(&brush.seen.owners);
     let draws = words(&brush.draws);
     let stands: &[[[f32; 4]; 8]] = bytemuck::cast_slice(&stands);
 
@@ -392,12 +396,15 @@ fn the_compute_pass_says_how_each_plant_stands_and_lists_it_once() {
     let (mut seen, mut touched, mut feeling) = (HashMap::new(), 0, Vec::new());
     for (number, level) in (0..flora.species().len()).flat_map(|number| (0..LEVELS).map(move |level| (number, level))) {
         let count = tally[number * LEVELS + level];
-        let [first, own, ..] = brush.places[number];
-        let places = (first + level as u32 * own) as usize;
-        let [instances, held] = [1, 5].map(|word| draws[(number * LEVELS + level) * DRAW_WORDS + word]);
+        let BrushList { rows: [rows, held, ..], which: [_, places, ..], .. } = brush.seen.lists[number * LEVELS + level];
+        let instances = draws[(number * LEVELS + level) * DRAW_WORDS + 1];
         assert_eq!(instances, count.div_ceil(held), "instances of list {number}, {level}");
-        for &index in &listed[places..places + count as usize] {
-            let [root, lean, feels, about, ..] = stands[index as usize];
+        for &block in &listed[places as usize..(places + count) as usize] {
+            // Its rows have blocks of their own.
+            let own_blocks = &owners[block as usize..(block + rows.div_ceil(BLOCK)) as usize];
+            assert!(own_blocks.iter().all(|owner| *owner == own_blocks[0]), "{own_blocks:?}");
+            let [root, lean, feels, about, _, tint, up, _] = stands[own_blocks[0] as usize];
+            assert_eq!([tint[3], up[3]], [(number * LEVELS + level) as f32, block as f32]);
             let at_m = [root[0], root[2]];
             let plant = plants[&place(at_m)];
             assert!(seen.insert(plant.site, level).is_none(), "{plant:?} is listed twice");
@@ -473,6 +480,112 @@ fn the_compute_pass_says_how_each_plant_stands_and_lists_it_once() {
         }
         assert!(clip.w > -4.0 || !seen.contains_key(&plant.site), "{plant:?} is behind the camera");
     }
+}
+
+/// A square full of the species that ship, seen by a camera, without wind.
+fn garden(change: impl FnOnce(&mut Scene)) -> (Mirror, Camera) {
+    let covering: Vec<u8> = (0..256).map(|at| if at % 16 < 8 { 20 } else { 21 }).collect();
+    let mirror = meadow_of(
+        |scene| {
+            scene.wind.mean_m_per_s = [0.0; 2];
+            scene.growth.richness = [1.0; 3];
+            scene.underbrush = species().into_iter().filter(|species| species.cover > 0).collect();
+            change(scene);
+        },
+        &covering,
+    );
+    (mirror, Camera { eye_m: Vec3::new(32.0, 1.2, 60.0), ..Camera::default() })
+}
+
+fn underbrush(picture: &Picture) -> &Underbrush {
+    picture.renderer.scene.as_ref().and_then(|scene| scene.underbrush.as_ref()).expect("underbrush")
+}
+
+/// Left borders of the rows of each plant that the newest frame drew (m), by its root and its list.
+fn left_borders(gpu: &Gpu, picture: &Picture) -> HashMap<([u32; 2], usize), Vec<[f32; 3]>> {
+    let brush = underbrush(picture);
+    let words = |buffer: &wgpu::Buffer| bytemuck::pod_collect_to_vec::<u8, u32>(&read(gpu, buffer));
+    let (stands, borders) = (read(gpu, &brush.seen.stands), read(gpu, &brush.seen.borders));
+    let (stands, borders): (&[[[f32; 4]; 8]], &[[f32; 8]]) = (bytemuck::cast_slice(&stands), bytemuck::cast_slice(&borders));
+    let (listed, tally, owners) = (words(&brush.seen.listed), words(&brush.tally), words(&brush.seen.owners));
+    let of_list = |list: usize| {
+        let BrushList { rows: [rows, ..], which: [_, first, ..], .. } = brush.seen.lists[list];
+        let blocks = listed[first as usize..(first + tally[list]) as usize].to_vec();
+        blocks.into_iter().map(move |block| (list, block, rows))
+    };
+    let plant = |(list, block, rows): (usize, u32, u32)| {
+        assert!(block + rows.div_ceil(BLOCK) <= brush.room[1], "block {block} is beyond the room");
+        let [root, ..] = stands[owners[block as usize] as usize];
+        let first = 2 * (block * BLOCK) as usize;
+        let own = borders[first..first + 2 * rows as usize].iter().step_by(2).map(|&[x, y, z, ..]| [x, y, z]);
+        (([root[0].to_bits(), root[2].to_bits()], list), own.collect())
+    };
+    (0..LISTS).flat_map(of_list).map(plant).collect()
+}
+
+#[test]
+fn leaves_tremble_where_it_rains_alone() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let trembling = |rate_mm_per_h: f32| {
+        let (mut mirror, camera) = garden(|scene| scene.rain.rate_mm_per_h = rate_mm_per_h);
+        let mut picture = Picture::new(&gpu, [320, 640], Quality::Low);
+        let [before, after] = [2.0, 2.3].map(|time_secs| {
+            picture.draw(&mut mirror, &camera, time_secs, 0.0);
+            left_borders(&gpu, &picture)
+        });
+        assert!(before.len() > 100 && before.len() == after.len(), "{} and {} plants", before.len(), after.len());
+        before.iter().filter(|(plant, rows)| after[*plant] != **rows).count()
+    };
+    assert_eq!(trembling(0.0), 0);
+    assert!(trembling(30.0) > 10);
+}
+
+#[test]
+fn plants_beside_an_object_are_pushed_aside_and_others_are_not() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    const MONSTERS_M: [[f32; 3]; 3] = [[29.0, 1.0, 54.0], [32.0, 1.0, 56.0], [35.0, 1.0, 53.0]];
+    let rows = |monsters_m: &[[f32; 3]]| {
+        let (mut mirror, camera) = garden(|_| ());
+        show(&mut mirror, monsters_m);
+        let mut picture = Picture::new(&gpu, [320, 640], Quality::Low);
+        picture.draw(&mut mirror, &camera, 2.0, 0.0);
+        left_borders(&gpu, &picture)
+    };
+    let (alone, beside) = (rows(&[]), rows(&MONSTERS_M));
+    let pushed = |is_near: bool| {
+        let own = alone.iter().filter(|((root, _), _)| {
+            let [x, z] = root.map(f32::from_bits);
+            MONSTERS_M.iter().any(|at_m| (x - at_m[0]).hypot(z - at_m[2]) < 6.0) == is_near
+        });
+        own.filter(|(plant, rows)| beside.get(*plant) != Some(*rows)).count()
+    };
+    assert!(pushed(true) > 10, "{} of {} plants", pushed(true), alone.len());
+    assert_eq!(pushed(false), 0);
+}
+
+#[test]
+fn where_rows_have_no_room_plants_are_drawn_more_coarsely_and_at_last_left_out() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let (mut mirror, camera) = garden(|_| ());
+    let mut picture = Picture::new(&gpu, [640, 1280], Quality::Low);
+    let mut drawn = |room: Option<u32>| {
+        let brush = picture.renderer.scene.as_mut().and_then(|scene| scene.underbrush.as_mut());
+        brush.into_iter().zip(room).for_each(|(brush, room)| brush.room[1] = room);
+        picture.draw(&mut mirror, &camera, 2.0, 0.0);
+        let plants = left_borders(&gpu, &picture);
+        let asked = bytemuck::pod_collect_to_vec::<u8, u32>(&read(&gpu, underbrush(&picture).tally()))[LISTS];
+        let levels: [usize; LEVELS] = std::array::from_fn(|level| plants.keys().filter(|(_, list)| list % LEVELS == level).count());
+        (plants.len(), levels, asked)
+    };
+    let (all, levels, asked) = drawn(None);
+    assert!(all > 200 && levels.iter().all(|&count| count > 10), "{levels:?}");
+    // A quarter of the room is for those which find none in the rest.
+    let (as_many, coarser, _) = drawn(Some(asked * 6 / 5));
+    assert_eq!(as_many, all);
+    assert!(coarser[..3].iter().sum::<usize>() < levels[..3].iter().sum() && coarser[3] > levels[3], "{coarser:?} instead of {levels:?}");
+    let (few, ..) = drawn(Some(20));
+    assert!((1..=20).contains(&few), "{few} plants in 20 blocks");
+    assert_eq!(drawn(Some(asked * 4 / 3 + 4)).1, levels);
 }
 
 #[test]
