@@ -1,8 +1,8 @@
 //! Sorts pairs of a key and a number on the GPU, stably, as many as a counter there says.
 //!
 //! A radix sort from the lowest digit, eight bits at a time. For each digit a pair is read twice and written once, 24 bytes, and a tile of 1024 pairs
-//! reads and writes 5 KiB of counts; some 30 operations a pair, most of them on workgroup memory. By 16 bits 32 thousand pairs move 1.9 MB, a
-//! million 58 MB. What runs one after the other grows with a 64th of the number of tiles: 16 of them for a million pairs.
+//! reads and writes 6 KiB of counts; some 30 operations a pair, most of them on workgroup memory. By 16 bits 32 thousand pairs move 1.9 MB, a
+//! million 60 MB. What runs one after the other grows with a 64th of the number of tiles: 16 of them for a million pairs.
 
 use super::gpu::Gpu;
 use super::pipeline::{bind_as, storage, storage_rw, uniform};

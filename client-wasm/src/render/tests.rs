@@ -5,7 +5,7 @@ use super::uniforms::{
     BrushList, Drift, Frame, Kind, Kinds, Lamp, Lights, Ordering, Plants, ShellFrame, Shower, SortDigit, Squares, StripList,
     UnderbrushFrame,
 };
-use super::{Gpu, Look, Picture, Quality, blades};
+use super::{Far, Gpu, Look, Picture, Quality, blades};
 use crate::camera::Camera;
 use crate::state::Mirror;
 use glam::Vec3;
@@ -434,11 +434,11 @@ fn petals_stand_at_065_of_the_height_of_the_blade_whose_place_they_take() {
 fn as_many_flowers_stand_as_the_scene_says_and_all_are_listed() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let camera = Camera { eye_m: Vec3::new(32.0, 1.0, 32.0), ..Camera::default() };
-    for flowers_per_m2 in [0.6, 8.0, 50.0] {
+    for (flowers_per_m2, far) in [(0.6, Far::Land), (8.0, Far::Land), (50.0, Far::Land), (50.0, Far::Clumps)] {
         let mut mirror = meadow_of(|scene| scene.plants.flowers_per_m2 = flowers_per_m2, &[255; 16 * 16]);
         // So tall that no head is too small to be seen.
         let mut picture = Picture::new(&gpu, [16, 2048], Quality::Low);
-        picture.set_look(Look { culls: false, ..Look::default() });
+        picture.set_look(Look { culls: false, far, ..Look::default() });
         picture.draw(&mut mirror, &camera, 0.0, 0.0);
         let blades = &picture.renderer.scene.as_ref().expect("a scene").blades;
         let bytes = read(&gpu, &blades.listed.counters);

@@ -169,16 +169,16 @@ uniform_block! {
         /// Plants of a near grid; 1 to leave out what is not seen; 1 where blades narrower than a pixel are drawn as wide as they are; number of the frame, of
         /// those in which time passes.
         counts: [u32; 4],
-        /// Capacities of the lists of fine blades, of all others, and of flowers; unused.
+        /// Capacities of the lists of fine blades, of all others, and of flower heads; unused.
         capacities: [u32; 4],
         /// Side of a grid (m), distance of full density (m), distance up to which blades are fine (m), damping share of a blade.
         shape: [f32; 4],
         /// Steps of this frame; way of integration, as the constants of `blade.wgsl`; segments of a fine blade, and of a coarse one.
         steps: [u32; 4],
         /// Length of a step (s); lot of the first plant of a grid to be a flower, and the power with which that falls; least width that a blade is
-        /// drawn with (px).
+        /// drawn with (px): 0 in the reference alone, where heads are no discs either.
         time: [f32; 4],
-        /// Most that a plant reaches beyond its place (m); unused.
+        /// Most that a plant reaches beyond its place (m); distance from which on heads thin out, and those left are larger (m); unused.
         reach: [f32; 4],
     }
 }

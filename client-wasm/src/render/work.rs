@@ -99,7 +99,7 @@ impl Counter {
         self.passes.push(Vec::new());
     }
 
-    /// The slot of a pass that begins; none outside a frame.
+    /// The slot of a pass that begins; none before the first frame.
     fn slot(&mut self, pass: Pass) -> Option<u32> {
         let passes = self.passes.last_mut()?;
         passes.push(pass);

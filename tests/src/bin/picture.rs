@@ -91,6 +91,7 @@ fn main() -> Result<()> {
     const DT_SECS: f32 = 1.0 / 30.0;
     let mut stats = Default::default();
     let mut frame_secs = Vec::new();
+    let mut pass_secs = Vec::new();
     for frame in 0..arguments.frames.max(1) {
         stage.run(DT_SECS);
         stage.show()?;
@@ -101,22 +102,26 @@ fn main() -> Result<()> {
             None => picture.draw(&mut stage.mirror, &camera, time_secs, DT_SECS),
         };
         frame_secs.push(start.elapsed().as_secs_f64());
+        pass_secs.extend(picture.pass_secs());
     }
     println!("{}: {}, {stats:?}", gpu.adapter_name, paces(&frame_secs));
-    if let Some(PassSecs { shadows, bend, picture, tone }) = picture.pass_secs() {
-        let [shadows, bend, drawn, tone] = [shadows, bend, picture, tone].map(|secs| secs * 1e3);
-        println!("the last one on the device: shadows {shadows:.2} ms, culled and bent {bend:.2}, drawn {drawn:.2}, tone mapped {tone:.2}");
+    let after_first = pass_secs.get(1..).filter(|rest| !rest.is_empty()).unwrap_or(&pass_secs);
+    let mean_ms = |of: fn(&PassSecs) -> f64| 1e3 * after_first.iter().map(of).sum::<f64>() / after_first.len() as f64;
+    if !pass_secs.is_empty() {
+        let [shadows, bend, drawn, tone] =
+            [mean_ms(|secs| secs.shadows), mean_ms(|secs| secs.bend), mean_ms(|secs| secs.picture), mean_ms(|secs| secs.tone)];
+        println!("on the device: shadows {shadows:.2} ms, culled and bent {bend:.2}, drawn {drawn:.2}, tone mapped {tone:.2}");
     }
     if let Some(PassWork { shadows, bend, picture: drawn, tone }) = picture.pass_work() {
         println!(
-            "its work: shadows {}; culled and bent, {:.2} M compute invocations; drawn, {}; tone mapped, {:.2} M fragments",
+            "work of the last: shadows {}; culled and bent, {:.2} M compute invocations; drawn, {}; tone mapped, {:.2} M fragments",
             worked(shadows),
             millions(bend.compute_invocations),
             worked(drawn),
             millions(tone.fragments)
         );
-        if let Some(secs) = picture.pass_secs().filter(|_| drawn.vertices > 0) {
-            println!("drawn in {:.1} ms per million vertices, fragments and all", secs.picture * 1e3 / millions(drawn.vertices));
+        if !pass_secs.is_empty() && drawn.vertices > 0 {
+            println!("drawn in {:.1} ms per million vertices, fragments and all", mean_ms(|secs| secs.picture) / millions(drawn.vertices));
         }
     }
     println!("camera {}", camera.to_hash());

@@ -49,6 +49,24 @@ golden!(
     }
 );
 
+fn above_blades() -> Golden {
+    Golden { eye: over([128.0, 158.7], 0.8, 20.0, -50.0), parts: &[[90, 48, 88, 56]], ..Golden::default() }
+}
+
+golden!(
+    petals,
+    Golden { shows: "petals", change: |scene| scene.plants.flowers_per_m2 = 30.0, unlike: Unlike::Stored("no_petals"), ..above_blades() }
+);
+golden!(
+    no_petals,
+    Golden {
+        shows: "blades without petals",
+        change: |scene| scene.plants.flowers_per_m2 = 0.0,
+        unlike: Unlike::Stored("petals"),
+        ..above_blades()
+    }
+);
+
 fn at_an_ants_height() -> Golden {
     Golden { scene: "underbrush", eye: over([145.1, 140.12], 0.09, 60.0, 6.0), ..Golden::default() }
 }

@@ -35,7 +35,7 @@ fn every_view_is_near_the_reference_at_every_level() -> Result<()> {
 }
 
 /// Mean FLIP that the detail of ultra and of high may cost by itself, where both pictures have 16 samples a pixel: on foot ultra keeps to the aim of 0.06; the others
-/// are allowed a tenth over what was measured.
+/// are allowed at most a tenth over what was measured.
 const DETAIL_LIMITS: [(&str, f64, f64); 3] = [("walking-calm", 0.06, 0.10), ("walking-storm", 0.06, 0.07), ("hill-calm", 0.10, 0.115)];
 
 #[test]

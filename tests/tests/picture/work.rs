@@ -83,8 +83,8 @@ fn each_pass_has_its_own_work() -> Result<()> {
     let gpu = gpu()?;
     let mut still = view("walking-storm")?;
     for quality in [Quality::Low, Quality::High] {
-        let mut canvas = still.canvas(&gpu, quality);
         for (order, far) in [(Order::Cut, Far::Land), (Order::Weighted, Far::Clumps)] {
+            let mut canvas = still.canvas(&gpu, quality);
             canvas.set_look(Look { order, far, ..Look::default() });
             still.draw(&mut canvas);
             let Some(PassWork { shadows, bend, picture, tone }) = work(&gpu, &canvas)? else { return Ok(()) };
@@ -100,6 +100,9 @@ fn each_pass_has_its_own_work() -> Result<()> {
             );
             // One triangle over the whole picture; drivers that run blocks of fragments count some beyond its edges.
             ensure!(tone.vertices == 3 && (pixels()..2 * pixels()).contains(&tone.fragments), "{name}: tone {tone:?}");
+            // What throws shadows has not moved.
+            still.draw(&mut canvas);
+            ensure!(work(&gpu, &canvas)?.is_some_and(|work| work.shadows == Work::default()), "{name}: shadows are drawn twice");
         }
     }
     Ok(())

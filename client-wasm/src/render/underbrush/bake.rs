@@ -1,6 +1,6 @@
 //! What the GPU bends the plants of a species with: their components, tables of postures (004 §4.2) and rows, for a level of detail.
 //!
-//! A row is a place on a component's axis from whose sides the borders stand half a width off, or one of a petal. The vertex shader walks to it from the root
+//! A row is a place on a component's axis from whose sides the borders stand half a width off, or one of a petal. `ribbons.wgsl` walks to it from the root
 //! along sections of fixed lengths, each turned as the tables say for the load on its own component: as [`posed`] does, whose twin it is. What is laid aside
 //! by spheres is the shader's alone.
 //!
@@ -29,7 +29,7 @@ pub(super) const LEVELS: usize = 4;
 pub(super) const EVERY: [usize; LEVELS] = [1, 2, 4, SECTIONS_LIMIT];
 /// Most leaves of a plant in the coarsest level.
 const COARSE_LEAVES: usize = 10;
-/// Half-widths are in units of this (m); twin of the constant in `underbrush.wgsl`.
+/// Half-widths are in units of this (m); twin of the constant in `ribbons.wgsl`.
 const WIDTH_UNIT_M: f32 = 1.0 / 16_384.0;
 /// Area of a leaf over its length times its width.
 const LEAF_SHARE: f32 = 0.73;
@@ -38,7 +38,7 @@ const FASTEST_SECS: f32 = 1.0 / 60.0;
 
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 
-/// What a row is of; twins of the constants in `underbrush.wgsl`.
+/// What a row is of; twins of the constants in `ribbons.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stuff {
     Leaf = 0,
@@ -46,7 +46,7 @@ enum Stuff {
     Petal = 2,
 }
 
-/// A row; its twin is in `underbrush.wgsl`.
+/// A row; its twin is in `ribbons.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(super) struct Row {
@@ -69,7 +69,7 @@ impl Row {
     }
 }
 
-/// A component of a plant; its twin is in `underbrush.wgsl`.
+/// A component of a plant; its twin is in `ribbons.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(super) struct Limb {

@@ -19,8 +19,9 @@ use shared::plant::flora::{self, Flora, height_m};
 use shared::plant::growth::SPECIES_LIMIT;
 use wgpu::BufferUsages;
 
-/// Plants of a workgroup.
+/// Plants of a workgroup, and the most workgroups of a dispatch that every device allows; of more plants within reach, the last rows' are left out.
 const CHUNK: u32 = 64;
+const CHUNKS_LIMIT: usize = 65_535;
 /// Rows that a plant takes at once; twin of the constant in `underbrush.wgsl`.
 const BLOCK: u32 = 8;
 /// Side of the squares that are culled as one (m).
@@ -126,7 +127,7 @@ impl Underbrush {
             *nature = [height_m(own), plan.settle_secs, flora::reach_m(own), 0.0];
         }
         let count = grown.len() as u64;
-        let room_bytes = quality.underbrush_bytes().min(gpu.device.limits().max_storage_buffer_binding_size.into());
+        let room_bytes = quality.underbrush_bytes().min(gpu.device.limits().max_storage_buffer_binding_size);
         let stand_room = count.min(room_bytes / STAND_BYTES);
         let most_blocks =
             (0..flora.species().len()).map(|number| u64::from(own[number]) * u64::from(lists.most_blocks(number))).sum::<u64>();
@@ -259,6 +260,7 @@ impl Underbrush {
                 chunks.extend(starts.map(|start| [tile.first + start, (tile.count - start).min(CHUNK)]));
             }
         }
+        chunks.truncate(CHUNKS_LIMIT);
         self.chunk_count = chunks.len() as u32;
         self.frame_number = self.frame_number.wrapping_add(u32::from(from.dt_secs > 0.0));
         let [stand_room, block_room] = self.room;

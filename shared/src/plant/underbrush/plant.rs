@@ -1,4 +1,4 @@
-//! How a plant stands under the forces that it feels; `bent_row` in client-wasm/shaders/underbrush.wgsl is its twin.
+//! How a plant stands under the forces that it feels; `bent_row` in client-wasm/shaders/ribbons.wgsl is its twin.
 
 use super::plan::{Placed, Plan, SECTIONS_LIMIT};
 use super::posture::Postures;
