@@ -18,7 +18,8 @@ struct Plants {
     // Length of a step (s); lot of the first plant of a grid to be a flower, and the power with which that falls; least width that a blade is
     // drawn with (px): 0 in the reference alone, where heads are no discs either.
     time: vec4<f32>,
-    // Most that a plant reaches beyond its place (m); distance from which on heads thin out, and those left are larger (m); unused.
+    // Most that a plant reaches beyond its place (m); distance from which on heads thin out, and those left are larger (m); 1 where plants shrink away towards
+    // where the last ones end, 0 where they fade into what stands for far plants; unused.
     reach: vec4<f32>,
 }
 
@@ -248,13 +249,15 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
     append(list, blade);
 }
 
-// How far a plant has grown in where the density is thinning: 0 gone, 1 whole, as all are nearer than nine tenths of the distance of full density.
+// How far a plant has grown in where the density is thinning, and where the last ones end: 0 gone, 1 whole, as all are nearer than nine tenths of the distance
+// of full density.
 fn growth(index: u32, distance_m: f32) -> f32 {
     let near = plants.shape.y / max(distance_m, 0.01);
     let places = f32(plants.counts.x);
     let kept = places * near * near;
     let thinning = clamp((kept - f32(index)) / (0.18 * min(kept, places)), 0.0, 1.0);
-    return select(thinning, 0.0, distance_m >= frame.reach.y);
+    let staying = 1.0 - plants.reach.z * smoothstep(frame.reach.x, frame.reach.y, distance_m);
+    return select(thinning * staying, 0.0, distance_m >= frame.reach.y);
 }
 
 @compute @workgroup_size(64)

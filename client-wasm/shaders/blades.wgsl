@@ -6,6 +6,8 @@
 
 // Whether blades have the shapes of a texture; else they taper. Known as the pipeline is made, since software drivers run what a branch leaves out.
 override is_textured: bool = false;
+// Whether blades fade into what stands for far plants. Where none does, no fragment is discarded for it, so that devices test depth before they shade.
+override fades: bool = true;
 
 // Shapes in the texture.
 const SHAPES: f32 = 5.0;
@@ -85,7 +87,7 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
     out.shape = vec2<f32>((shape + 0.5 + 0.48 * across) / SHAPES, 1.0 - t);
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
     out.distance_m = distance(p, frame.eye.xyz);
-    out.shown = 1.0 - smoothstep(frame.reach.x, frame.reach.y, distance(blade.root.xyz, frame.eye.xyz));
+    out.shown = select(1.0, 1.0 - smoothstep(frame.reach.x, frame.reach.y, distance(blade.root.xyz, frame.eye.xyz)), fades);
     // What is so near has no border to speak of.
     out.border = vec2<f32>(across, 1.0) * 100.0;
     let middle = frame.projection_from_world * vec4<f32>(centre, 1.0);
@@ -166,7 +168,7 @@ fn grain(texel: vec4<f32>) -> f32 {
 @fragment
 fn fs(strip: Strip) -> @location(0) vec4<f32> {
     // What stands for far plants is dithered by the same number.
-    if strip.shown < 1.0 && strip.shown <= 1.0 - dither_at(strip.position.xy) {
+    if fades && strip.shown < 1.0 && strip.shown <= 1.0 - dither_at(strip.position.xy) {
         discard;
     }
     if is_textured {

@@ -178,7 +178,8 @@ uniform_block! {
         /// Length of a step (s); lot of the first plant of a grid to be a flower, and the power with which that falls; least width that a blade is
         /// drawn with (px): 0 in the reference alone, where heads are no discs either.
         time: [f32; 4],
-        /// Most that a plant reaches beyond its place (m); distance from which on heads thin out, and those left are larger (m); unused.
+        /// Most that a plant reaches beyond its place (m); distance from which on heads thin out, and those left are larger (m); 1 where plants shrink away towards
+        /// where the last ones end, 0 where they fade into what stands for far plants; unused.
         reach: [f32; 4],
     }
 }

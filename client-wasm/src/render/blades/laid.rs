@@ -26,7 +26,8 @@ pub(in crate::render) struct Listed {
 }
 
 pub(in crate::render) struct Laid {
-    strips: ByLamps<wgpu::RenderPipeline>,
+    /// While blades shrink away where the last ones end, and while they fade into what stands for far plants.
+    strips: [ByLamps<wgpu::RenderPipeline>; 2],
     in_order: Option<InOrder>,
 }
 
@@ -52,10 +53,12 @@ impl Laid {
             Order::Coverage | Order::Sorted | Order::Precomputed => "fs_soft",
         };
         let is_textured = ("is_textured", f64::from(u8::from(listed.are_textured)));
-        let strips = ByLamps::new(|lamps| {
-            let constants = [is_textured, lamps];
-            let draw = Draw { label: "blades", vertex, fragment: Some(fragment), constants: &constants, ..Draw::default() };
-            maker.draw_in_order(&module, Some(layout), &draw, order)
+        let strips = [0.0, 1.0].map(|fades| {
+            ByLamps::new(|lamps| {
+                let constants = [is_textured, ("fades", fades), lamps];
+                let draw = Draw { label: "blades", vertex, fragment: Some(fragment), constants: &constants, ..Draw::default() };
+                maker.draw_in_order(&module, Some(layout), &draw, order)
+            })
         });
         let keys = match order {
             Order::Sorted => Some(Keys::Distance),
@@ -71,8 +74,14 @@ impl Laid {
     }
 
     /// Draws all strips: in order, or else list by list as `lists` has them.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool, lists: impl FnOnce(&mut wgpu::RenderPass<'_>)) {
-        pass.set_pipeline(self.strips.of(has_lamps));
+    pub(super) fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        fades: bool,
+        has_lamps: bool,
+        lists: impl FnOnce(&mut wgpu::RenderPass<'_>),
+    ) {
+        pass.set_pipeline(self.strips[usize::from(fades)].of(has_lamps));
         let Some(InOrder { ordered, groups, indices }) = &self.in_order else { return lists(pass) };
         for (span, group) in groups.iter().enumerate() {
             pass.set_bind_group(1, group, &[]);

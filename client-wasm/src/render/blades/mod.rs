@@ -16,7 +16,7 @@ use super::paint;
 use super::pipeline::{ByLamps, BySpheres, Draw, Maker, bind, storage, storage_rw, texture, uniform};
 use super::shaders;
 use super::uniforms::{Plants, StripList};
-use super::{Look, Order, Quality};
+use super::{Far, Look, Order, Quality};
 use crate::state::Land;
 use glam::Vec3;
 use grids::Grids;
@@ -69,6 +69,8 @@ pub(super) struct Blades {
     indices: [wgpu::Buffer; LISTS],
     grids: Grids,
     by_turns: bool,
+    /// Whether blades fade into what stands for far plants.
+    fades: bool,
     /// Plants of each near grid.
     places: u32,
     /// Near plants that may stand in this frame.
@@ -177,6 +179,7 @@ impl Blades {
             indices: indices.map(|list| gpu.buffer("plant", bytemuck::cast_slice(&list), BufferUsages::INDEX)),
             grids,
             by_turns,
+            fades: false,
             places,
             standing: 0,
             near_workgroups: 0,
@@ -206,6 +209,7 @@ impl Blades {
 
     pub(super) fn prepare(&mut self, gpu: &Gpu, land: &Land, from: &Standpoint<'_>) {
         let detail = from.detail;
+        self.fades = from.look.far != Far::Land;
         let home = [from.eye_m.x, from.eye_m.z].map(|m| (m / self.listed.grid_m).floor() as i32);
         let mut slots = [[0; 4]; 9];
         let mut most = 0;
@@ -242,7 +246,7 @@ impl Blades {
             shape: [self.listed.grid_m, detail.full_m, detail.fine_m, looks.swing_damping],
             steps: [steps, looks.integrator as u32, self.listed.segments[0], self.listed.segments[1]],
             time: [step_secs, self.first_flower, FLOWER_POWER, self.thinnest_px],
-            reach: [self.grids.beyond_m, detail.heads_m, 0.0, 0.0],
+            reach: [self.grids.beyond_m, detail.heads_m, f32::from(u8::from(!self.fades)), 0.0],
         };
         gpu.queue.write_buffer(&self.plants, 0, bytemuck::bytes_of(&plants));
         if let Some(ordered) = self.laid.get().ordered() {
@@ -289,7 +293,7 @@ impl Blades {
 
     /// Draws the blades in the order that is set.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
-        self.laid.get().draw(pass, has_lamps, |pass| (0..HEADS[0]).for_each(|list| self.draw_list(pass, list)));
+        self.laid.get().draw(pass, self.fades, has_lamps, |pass| (0..HEADS[0]).for_each(|list| self.draw_list(pass, list)));
     }
 
     pub(super) fn draw_flowers(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
