@@ -8,29 +8,34 @@ use glam::Vec3;
 use shared::wire::ObjectPose;
 
 const LAYERS: usize = SHADOW_LAYERS as usize;
-/// Frames that a drawing of each layer serves, in which time passes, and how many the first drawing has served already, so that the layers take turns. Trees
-/// sway in it that much more coarsely.
+/// Frames that a drawing of each layer serves, in which time passes, and which of them is the one that it is drawn in: layers take turns. Trees sway in it that
+/// much more coarsely.
 const FRAMES: [u32; LAYERS] = [2, 4];
-const SERVED: [u32; LAYERS] = [0, 1];
+const TURN: [u32; LAYERS] = [0, 3];
 /// Longest time that a drawing serves (s), for frames are drawn as seldom as one likes.
 const LONGEST_SECS: f64 = 0.5;
 /// Way of the eye after which a layer is drawn for another place, over half its side.
 const WAY: f32 = 0.03;
 /// Turn of the eye, or of the sun, after which it is (rad).
 const TURN_RAD: f32 = 0.02;
+/// Share by which the distance changes up to which trees are drawn, after which it is: the level of detail glides.
+const TREES: f32 = 0.05;
 /// Way of an object after which it is (m), and turn of it or of a part of it: any in the sharp layer; half a texel of the coarse one, in which none shows.
 const MOVED_M: [f32; LAYERS] = [0.0, 0.25];
 const TURNED_RAD: [f32; LAYERS] = [0.0, f32::INFINITY];
 
 /// What the newest drawing of each layer was made for.
 #[derive(Default)]
-pub(super) struct KeptShadows([Option<Drawn>; LAYERS]);
+pub(super) struct KeptShadows {
+    layers: [Option<Drawn>; LAYERS],
+    /// Frames so far in which time passed.
+    frames: u32,
+}
 
 struct Drawn {
     shadow_from_world: [f32; 16],
     seen: Seen,
     casters: Vec<ObjectPose>,
-    frames: u32,
 }
 
 /// What layers are drawn for.
@@ -52,7 +57,8 @@ impl Seen {
         self.eye_m.distance(other.eye_m) <= WAY * SHADOW_HALF_M[layer]
             && (self.heading_rad - other.heading_rad).abs() <= TURN_RAD
             && sun_turn_rad <= TURN_RAD
-            && (self.trees_m, self.culls) == (other.trees_m, other.culls)
+            && (self.trees_m / other.trees_m - 1.0).abs() <= TREES
+            && self.culls == other.culls
             && (self.time_secs - other.time_secs).abs() <= LONGEST_SECS
     }
 }
@@ -68,22 +74,22 @@ impl KeptShadows {
         reach_m: impl Fn(&ObjectPose) -> f32,
         dt_secs: f32,
     ) -> [bool; LAYERS] {
+        self.frames = self.frames.wrapping_add(u32::from(dt_secs > 0.0));
         let projections = [&mut frame.shadow_from_world, &mut frame.lights.far_shadow_from_world];
         let mut due = [false; LAYERS];
-        for (layer, ((due, projection), kept)) in due.iter_mut().zip(projections).zip(&mut self.0).enumerate() {
+        for (layer, ((due, projection), kept)) in due.iter_mut().zip(projections).zip(&mut self.layers).enumerate() {
             let beam = Beam::new(projection);
             let casters: Vec<ObjectPose> =
                 poses.iter().filter(|pose| beam.meets_ball(pose.position_m.into(), reach_m(pose))).copied().collect();
-            if let Some(drawn) = kept {
-                drawn.frames += u32::from(dt_secs > 0.0);
-                if drawn.frames < FRAMES[layer] && drawn.seen.is_like(&seen, layer) && stand_alike(&drawn.casters, &casters, layer) {
-                    *projection = drawn.shadow_from_world;
-                    continue;
+            let is_its_turn = dt_secs > 0.0 && self.frames % FRAMES[layer] == TURN[layer];
+            let serves = |drawn: &&Drawn| drawn.seen.is_like(&seen, layer) && stand_alike(&drawn.casters, &casters, layer);
+            match kept.as_ref().filter(serves).filter(|_| !is_its_turn) {
+                Some(drawn) => *projection = drawn.shadow_from_world,
+                None => {
+                    *kept = Some(Drawn { shadow_from_world: *projection, seen, casters });
+                    *due = true;
                 }
             }
-            let frames = if kept.is_none() { SERVED[layer] } else { 0 };
-            *kept = Some(Drawn { shadow_from_world: *projection, seen, casters, frames });
-            *due = true;
         }
         due
     }
@@ -144,9 +150,19 @@ mod tests {
     #[test]
     fn layers_take_turns_and_serve_frames_in_which_no_time_passes() {
         let mut shadows = KeptShadows::default();
+        assert_eq!(follow(&mut shadows, seen(), &[], 0.0), [true, true]);
+        // A look aside does not change whose turn it is.
+        let heading_rad = |frame| if frame < 11 { 0.0 } else { 0.5 };
+        let mut drawn: Vec<[bool; 2]> =
+            (0..20).map(|frame| follow(&mut shadows, Seen { heading_rad: heading_rad(frame), ..seen() }, &[], 0.02)).collect();
+        assert_eq!(drawn[11], [true, true]);
+        drawn.remove(11);
+        assert!(drawn.iter().all(|due| *due != [true, true]));
+        let mut shadows = KeptShadows::default();
+        assert_eq!(follow(&mut shadows, seen(), &[], 0.0), [true, true]);
         let drawn: Vec<[bool; 2]> = (0..8).map(|_| follow(&mut shadows, seen(), &[], 0.02)).collect();
-        assert_eq!(drawn.iter().map(|due| due[0]).collect::<Vec<_>>(), [true, false, true, false, true, false, true, false]);
-        assert_eq!(drawn.iter().map(|due| due[1]).collect::<Vec<_>>(), [true, false, false, true, false, false, false, true]);
+        assert_eq!(drawn.iter().map(|due| due[0]).collect::<Vec<_>>(), [false, true, false, true, false, true, false, true]);
+        assert_eq!(drawn.iter().map(|due| due[1]).collect::<Vec<_>>(), [false, false, true, false, false, false, true, false]);
         let mut shadows = KeptShadows::default();
         assert_eq!(follow(&mut shadows, seen(), &[], 0.0), [true, true]);
         assert!((0..9).all(|_| follow(&mut shadows, seen(), &[], 0.0) == [false, false]));
@@ -161,6 +177,7 @@ mod tests {
             (Seen { heading_rad: 0.1, ..seen() }, [true, true]),
             (Seen { sun: Sun { heading_rad: 1.0, elevation_rad: 0.6 }, ..seen() }, [true, true]),
             (Seen { trees_m: 800.0, ..seen() }, [true, true]),
+            (Seen { trees_m: 404.0, ..seen() }, [false, false]),
             (Seen { culls: false, ..seen() }, [true, true]),
             (Seen { eye_m: Vec3::X, ..seen() }, [false, false]),
         ];

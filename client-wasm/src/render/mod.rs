@@ -325,7 +325,8 @@ impl Renderer {
         let (has_lamps, has_spheres) = (frame.has_lamps(), frame.has_spheres());
         let Camera { eye_m, heading_rad, .. } = *camera;
         let seen = Seen { eye_m, heading_rad, sun, trees_m: detail.trees_m, culls: self.look.culls, time_secs };
-        let reach_m = |pose: &ObjectPose| Vec3::from(land.scene().objects.half_extents_m(pose.kind)).length();
+        // Rotors and models of one's own reach beyond the box that an object collides with.
+        let reach_m = |pose: &ObjectPose| 2.0 * Vec3::from(land.scene().objects.half_extents_m(pose.kind)).length();
         let shadows_are_due = scene.kept_shadows.follow(&mut frame, seen, &poses, reach_m, dt_secs);
         let shadow_layers: Vec<u32> = (0..SHADOW_LAYERS).filter(|&layer| shadows_are_due[layer as usize]).collect();
         self.frame.write(gpu, &frame);

@@ -162,7 +162,11 @@ impl Objects {
                 let world_from_model = Mat4::from(body * place).to_cols_array();
                 let instance = Instance { world_from_model, tint: [1.0, 1.0, 1.0, 0.0] };
                 by_mesh[part_mesh(part)].push(instance);
-                by_mesh_lit.iter_mut().for_each(|lit| lit[part_mesh(part)].push(instance));
+                by_mesh_lit
+                    .iter_mut()
+                    .zip(&beams)
+                    .filter(|(_, beam)| beam.is_some())
+                    .for_each(|(lit, _)| lit[part_mesh(part)].push(instance));
             }
         }
         let is_seen = |ball: &Ball| {

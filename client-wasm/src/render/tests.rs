@@ -463,6 +463,34 @@ fn as_many_flowers_stand_as_the_scene_says_and_all_are_listed() {
 }
 
 #[test]
+fn the_last_blades_shrink_away_where_nothing_stands_for_them() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let camera = Camera { eye_m: Vec3::new(32.0, 1.0, 32.0), ..Camera::default() };
+    // Mean length of blades at the end of their reach over that of those halfway.
+    let left = |far: Far, reach_m: f32| {
+        let mut mirror = meadow_of(|scene| scene.plants.flowers_per_m2 = 0.0, &[255; 16 * 16]);
+        let mut picture = Picture::new(&gpu, [64, 2048], Quality::Low);
+        picture.set_look(Look { culls: false, far, ..Look::default() });
+        picture.draw(&mut mirror, &camera, 0.0, 0.0);
+        let blades = &picture.renderer.scene.as_ref().expect("a scene").blades;
+        let listed: Vec<[f32; 28]> = bytemuck::pod_collect_to_vec(&read(&gpu, &blades.listed.blades));
+        let mean_m = |from: f32, to: f32| {
+            let lengths_m = listed.iter().filter_map(|blade| {
+                let away = Vec3::from_slice(blade).distance(camera.eye_m) / reach_m;
+                let tip = Vec3::new(blade[12], blade[13], blade[14]);
+                (tip != Vec3::ZERO && (from..to).contains(&away)).then(|| tip.length())
+            });
+            let (sum, count) = lengths_m.fold((0.0, 0), |(sum, count), length_m| (sum + length_m, count + 1));
+            assert!(count > 50, "{count} blades from {from} to {to} of {reach_m} m, {far:?}");
+            sum / count as f32
+        };
+        mean_m(0.95, 1.0) / mean_m(0.5, 0.7)
+    };
+    let (shrunk, faded) = (left(Far::Land, 55.0), left(Far::Clumps, 55.0 * 0.35));
+    assert!(shrunk < 0.3 && faded > 0.8, "{shrunk} and {faded}");
+}
+
+#[test]
 fn every_quality_has_room_for_the_same_plants_near_by_and_draws_them_in_one_turn() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let lawn = |scene: &mut Scene| (scene.plants.grid_m, scene.plants.plants_per_side, scene.plants.flowers_per_m2) = (4.0, 20, 0.0);

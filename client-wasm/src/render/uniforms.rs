@@ -201,7 +201,7 @@ uniform_block! {
 }
 
 uniform_block! {
-    /// A list of blades or flowers as it is drawn; its twin is in `blades.wgsl` and `flowers.wgsl`.
+    /// A list of blades or flowers as it is drawn; its twin is in `strip_list.wgsl`.
     StripList {
         /// First of the list, capacity, segments of a blade, number of the list.
         range: [u32; 4],

@@ -42,7 +42,7 @@ impl AddAssign for Work {
 /// What the device worked through in each of a frame's passes, which are those of [`PassSecs`](super::PassSecs).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PassWork {
-    /// What throws shadows, as the sun sees it, in all layers.
+    /// What throws shadows, as the sun sees it, in the layers that are drawn anew; without how trees sway.
     pub shadows: Work,
     /// Culling, bending and sorting of all that grows, and dust.
     pub bend: Work,

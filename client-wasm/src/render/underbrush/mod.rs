@@ -131,7 +131,7 @@ impl Underbrush {
         let stand_room = count.min(room_bytes / STAND_BYTES);
         let most_blocks =
             (0..flora.species().len()).map(|number| u64::from(own[number]) * u64::from(lists.most_blocks(number))).sum::<u64>();
-        let block_room = most_blocks.min(room_bytes / (ROW_BYTES * u64::from(BLOCK)));
+        let block_room = room_for(most_blocks).min(room_bytes / (ROW_BYTES * u64::from(BLOCK)));
         let chunk_limit = tiles.iter().map(|tile| u64::from(tile.count.div_ceil(CHUNK))).sum::<u64>().max(1);
 
         let storage_usage = BufferUsages::STORAGE;
@@ -314,6 +314,11 @@ impl Underbrush {
             pass.draw_indexed_indirect(&self.draws, (list.number * DRAW_WORDS * 4) as u64);
         }
     }
+}
+
+/// Room (blocks) in which so many find a place; a quarter of it is for what finds none in the rest, as `main_room` in `underbrush.wgsl` has it.
+fn room_for(blocks: u64) -> u64 {
+    (4 * blocks).div_ceil(3)
 }
 
 fn volumes(binding: u32) -> wgpu::BindGroupLayoutEntry {

@@ -557,10 +557,17 @@ fn plants_beside_an_object_are_pushed_aside_and_others_are_not() {
             let [x, z] = root.map(f32::from_bits);
             MONSTERS_M.iter().any(|at_m| (x - at_m[0]).hypot(z - at_m[2]) < 6.0) == is_near
         });
-        own.filter(|(plant, rows)| beside.get(*plant) != Some(*rows)).count()
+        let is_apart = |a: &[f32; 3], b: &[f32; 3]| Vec3::from(*a).distance(Vec3::from(*b)) > 1e-4;
+        let is_pushed = |plant, rows: &[[f32; 3]]| beside.get(plant).is_none_or(|then| rows.iter().zip(then).any(|(a, b)| is_apart(a, b)));
+        own.filter(|(plant, rows)| is_pushed(*plant, rows)).count()
     };
     assert!(pushed(true) > 10, "{} of {} plants", pushed(true), alone.len());
     assert_eq!(pushed(false), 0);
+}
+
+#[test]
+fn there_is_room_for_all_that_may_be_asked_for() {
+    assert!((0..2000).all(|blocks| room_for(blocks) - room_for(blocks) / 4 >= blocks));
 }
 
 #[test]
