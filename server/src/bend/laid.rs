@@ -118,7 +118,11 @@ impl Laid {
             tile.leans.iter_mut().flatten().for_each(|units| *units = (f32::from(*units) * share) as i16);
             (tile.since_secs, share) = (clock.now_secs, 1.0);
         }
-        let units = lean_rad.map(|rad| (rad / (share * QUANTUM_RAD)) as i16);
+        let units = lean_rad.map(|rad| {
+            let cut = (rad / (share * QUANTUM_RAD)) as i16;
+            // The quotient of a lean just short of a unit may round up to it.
+            if (units_rad(cut) * share).abs() > rad.abs() { cut - cut.signum() } else { cut }
+        });
         tile.leans[cell_at(i, j)] = units;
         units.map(|units| units_rad(units) * share)
     }
@@ -271,6 +275,16 @@ mod tests {
         assert_eq!(laid.dropped(), 375);
         let kept_m2 = laid.patches().map(|index| laid.distance2_m2(index, &views)).fold(0.0, f32::max);
         assert!(kept_m2 < 40.0 * 40.0, "the farthest that is kept lies {} m off", kept_m2.sqrt());
+    }
+
+    #[test]
+    fn a_lean_just_short_of_a_unit_is_cut_although_its_quotient_rounds_up() {
+        let short = [0.826_745, -0.922_142_3];
+        assert_eq!(short.map(|rad: f32| (rad / QUANTUM_RAD).fract()), [0.0; 2]);
+        let kept = Laid::new(LAYOUT, 30.0, 1000).lay(0, 2, 1, short);
+        for (kept, lean) in kept.into_iter().zip(short) {
+            assert!(kept.abs() < lean.abs() && (kept - lean).abs() <= QUANTUM_RAD, "{kept} of {lean}");
+        }
     }
 
     proptest! {
