@@ -9,6 +9,9 @@ override is_textured: bool = false;
 // Whether blades fade into what stands for far plants. Where none does, no fragment is discarded for it, so that devices test depth before they shade.
 override fades: bool = true;
 
+// Whether the last row is one vertex, since both would be in the same place.
+override are_pointed: bool = false;
+
 // Shapes in the texture.
 const SHAPES: f32 = 5.0;
 
@@ -107,7 +110,7 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
 
 // Vertices of a blade of the list.
 fn vertices() -> u32 {
-    return list.range.z * 2u + 2u;
+    return list.range.z * 2u + select(2u, 1u, are_pointed);
 }
 
 fn corner_at(index: u32) -> vec2<f32> {

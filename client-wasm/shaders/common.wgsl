@@ -108,15 +108,28 @@ fn noise_over(uv: vec2<f32>, span: f32) -> vec4<f32> {
     return textureSampleLevel(noises, repeated, uv, max(log2(span * f32(textureDimensions(noises).x)), 0.0));
 }
 
+// What is known as a pipeline is made, since software drivers run what a branch leaves out: whether places beyond the world's edge are asked for, and whether
+// more than one kind of grass grows.
+override reaches_beyond: bool = true;
+override has_kinds: bool = true;
+
 // --- land -----------------------------------------------------------------------------------------------------------
 
 fn metres_outside(p: vec2<f32>) -> f32 {
+    if !reaches_beyond {
+        return 0.0;
+    }
     return length(max(max(-p, p - frame.world.xy), vec2<f32>(0.0)));
 }
 
-// Rolling land beyond the world's edge, so that the horizon is no table.
+// Rolling land beyond the world's edge, so that the horizon is no table. Software drivers run what a branch leaves out, and of a loop its first turn alone: what is
+// rarely needed is in small turns, here as below.
 fn far_hills(p: vec2<f32>, outside_m: f32) -> f32 {
-    let n = noise(p / 2600.0).r * 0.7 + noise(p / 790.0).g * 0.3;
+    var n = 0.0;
+    for (var i = 0; i < select(0, 2, outside_m > 0.0); i++) {
+        let found = noise(p / select(2600.0, 790.0, i == 1));
+        n += select(found.r * 0.7, found.g * 0.3, i == 1);
+    }
     let rise = smoothstep(0.0, 900.0, outside_m);
     return rise * ((n - 0.42) * 150.0 + outside_m * 0.006);
 }
@@ -132,11 +145,7 @@ fn ground_height(p: vec2<f32>) -> f32 {
     let sw = textureLoad(heights, i + vec2<i32>(0, 1), 0).r;
     let se = textureLoad(heights, i + vec2<i32>(1, 1), 0).r;
     let height = mix(mix(nw, ne, share.x), mix(sw, se, share.x), share.y);
-    let outside_m = metres_outside(p);
-    if outside_m > 0.0 {
-        return height + far_hills(p, outside_m);
-    }
-    return height;
+    return height + far_hills(p, metres_outside(p));
 }
 
 // Its normal, from four places 20 m about.
@@ -169,11 +178,13 @@ fn grass_share(p: vec2<f32>) -> f32 {
 }
 
 fn ragged_share(p: vec2<f32>, soft: f32) -> f32 {
-    if soft <= 0.0 || soft >= 1.0 {
-        return soft;
+    let is_border = soft > 0.0 && soft < 1.0;
+    var ragged = 0.0;
+    for (var i = 0; i < select(0, 2, is_border); i++) {
+        let found = noise(p / select(7.0, 2.1, i == 1));
+        ragged += 0.3 * select(found.b, found.g, i == 1);
     }
-    let ragged = noise(p / 7.0).b * 0.3 + noise(p / 2.1).g * 0.3 - 0.3;
-    return smoothstep(0.35, 0.65, soft + ragged * (1.0 - abs(2.0 * soft - 1.0)));
+    return select(soft, smoothstep(0.35, 0.65, soft + (ragged - 0.3) * (1.0 - abs(2.0 * soft - 1.0))), is_border);
 }
 
 // Height of grass over that of its kind, 1 on the average: by the nutrients that underbrush leaves in the soil, and from one part of the meadow to the next;
@@ -205,7 +216,7 @@ fn kinds_about(p: vec2<f32>) -> KindsAbout {
     let scales_m = array<vec2<f32>, 3>(1.7 * ragged_m, 0.8 * ragged_m, vec2<f32>(metres_outside(p)));
     let sizes_m = vec3<f32>(13.0, 3.7, 830.0);
     var beside_m = vec2<f32>(0.0);
-    for (var i = 0; i < select(3, 1, has_one_kind()); i++) {
+    for (var i = 0; i < 3; i++) {
         let at = p / sizes_m[i];
         beside_m += (vec2<f32>(noise(at).r, noise(at + 0.37).r) - 0.5) * scales_m[i];
     }
@@ -227,14 +238,9 @@ fn kinds_about(p: vec2<f32>) -> KindsAbout {
     return about;
 }
 
-// A scene of one kind has a map of one pixel.
-fn has_one_kind() -> bool {
-    return textureDimensions(kind_map).x < 2u;
-}
-
 // Number of the kind that grows at a place: the one that counts most there.
 fn kind_at(p: vec2<f32>) -> u32 {
-    if has_one_kind() {
+    if !has_kinds {
         return 0u;
     }
     var about = kinds_about(p);
@@ -253,7 +259,7 @@ fn kind_at(p: vec2<f32>) -> u32 {
 
 // The kinds at a place blended: what is seen of them from afar.
 fn kinds_blended(p: vec2<f32>) -> Kind {
-    if has_one_kind() {
+    if !has_kinds {
         return kinds.list[0];
     }
     var about = kinds_about(p);

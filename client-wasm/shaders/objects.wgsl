@@ -76,8 +76,7 @@ fn placed(vertex: Vertex, instance: Instance, sway: vec4<f32>) -> vec3<f32> {
     return p;
 }
 
-@vertex
-fn vs(vertex: Vertex, @builtin(instance_index) index: u32) -> Surface {
+fn surface_of(vertex: Vertex, index: u32) -> Surface {
     let instance = instances[index];
     var out: Surface;
     out.p = placed(vertex, instance, sways[index]);
@@ -86,6 +85,11 @@ fn vs(vertex: Vertex, @builtin(instance_index) index: u32) -> Surface {
     out.leaf = vertex.leaf;
     out.position = frame.projection_from_world * vec4<f32>(out.p, 1.0);
     return out;
+}
+
+@vertex
+fn vs(vertex: Vertex, @builtin(instance_index) index: u32) -> Surface {
+    return surface_of(vertex, index);
 }
 
 // Light of the glass right before a lamp, where a solid turns with its beam.
@@ -100,6 +104,25 @@ fn shining(p: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     return light;
 }
 
+// Light of sun, sky and lamps on what has no gloss, of which `light` of the sun's comes there; `openness` is that of a leaf.
+fn matte(p: vec3<f32>, normal: vec3<f32>, view: vec3<f32>, albedo: vec3<f32>, openness: f32, is_leaf: bool, light: f32) -> vec3<f32> {
+    if is_leaf {
+        let upright = vec3<f32>(0.0, 1.0, 0.0);
+        return grass_light(albedo, normal, upright, view, light, openness) + grass_lamps(albedo, normal, upright, view, p, openness);
+    }
+    let diffuse = max(dot(normal, frame.sun.xyz), 0.0);
+    return albedo * (frame.sun_color.rgb * light * diffuse + ambient(normal) + lamps_on(p, normal, 0.0));
+}
+
+fn sun_light_at(p: vec3<f32>, normal: vec3<f32>) -> f32 {
+    return cloud_light(p.xz) * sun_visible(p + normal * 0.06);
+}
+
+// A leaf's texture as a factor on its colour.
+fn veins(texel: vec4<f32>) -> f32 {
+    return 0.55 + 0.9 * texel.r;
+}
+
 @fragment
 fn fs(surface: Surface) -> @location(0) vec4<f32> {
     let leaf = textureSample(leaves, clamped, surface.leaf);
@@ -109,18 +132,9 @@ fn fs(surface: Surface) -> @location(0) vec4<f32> {
     }
     let view = normalize(surface.p - frame.eye.xyz);
     let normal = normalize(surface.normal);
-    let light = cloud_light(surface.p.xz) * sun_visible(surface.p + normal * 0.06);
-    let facing = dot(normal, frame.sun.xyz);
-    var color: vec3<f32>;
-    if is_leaf {
-        let albedo = surface.color.rgb * (0.55 + 0.9 * leaf.r);
-        let upright = vec3<f32>(0.0, 1.0, 0.0);
-        color = grass_light(albedo, normal, upright, view, light, surface.color.a) + grass_lamps(albedo, normal, upright, view, surface.p, surface.color.a);
-    } else {
-        let albedo = surface.color.rgb;
-        let diffuse = max(facing, 0.0);
-        color = albedo * (frame.sun_color.rgb * light * diffuse + ambient(normal) + lamps_on(surface.p, normal, 0.0));
-    }
+    let light = sun_light_at(surface.p, normal);
+    let albedo = surface.color.rgb * select(1.0, veins(leaf), is_leaf);
+    var color = matte(surface.p, normal, view, albedo, surface.color.a, is_leaf, light);
     if is_glossy && !is_leaf {
         let gloss = surface.color.a;
         let half_way = normalize(frame.sun.xyz - view);
@@ -134,6 +148,42 @@ fn fs(surface: Surface) -> @location(0) vec4<f32> {
         color += shining(surface.p, normal);
     }
     return vec4<f32>(hazed(color, surface.p), 1.0);
+}
+
+// How far the corners of a spray of leaves stand out from what of it is seen, over the height of the tree: farther in they are in its own shadow.
+const SPRAY_SHARE: f32 = 0.14;
+
+// What is so small in the picture that its vertices are as close as its pixels are lit at those.
+struct Afar {
+    @builtin(position) position: vec4<f32>,
+    // Its colour as seen through the air: what goes with the texture, and what is added whatever that shows.
+    @location(0) diffuse: vec3<f32>,
+    @location(1) sheen: vec3<f32>,
+    @location(2) leaf: vec2<f32>,
+}
+
+@vertex
+fn vs_afar(vertex: Vertex, @builtin(instance_index) index: u32) -> Afar {
+    let surface = surface_of(vertex, index);
+    let is_leaf = surface.leaf.x > 0.0;
+    let view = normalize(surface.p - frame.eye.xyz);
+    let normal = normalize(surface.normal);
+    let height = length(instances[index].world_from_model[1].xyz);
+    let light = sun_light_at(surface.p - normal * select(0.0, SPRAY_SHARE * height, is_leaf), normal);
+    let black = matte(surface.p, normal, view, vec3<f32>(0.0), surface.color.a, is_leaf, light);
+    let plain = matte(surface.p, normal, view, surface.color.rgb, surface.color.a, is_leaf, light);
+    let air = air_before(surface.p);
+    return Afar(surface.position, (plain - black) * air.a, black * air.a + air.rgb, surface.leaf);
+}
+
+@fragment
+fn fs_afar(afar: Afar) -> @location(0) vec4<f32> {
+    let leaf = textureSample(leaves, clamped, afar.leaf);
+    let is_leaf = afar.leaf.x > 0.0;
+    if is_leaf && leaf.a < 0.5 {
+        discard;
+    }
+    return vec4<f32>(afar.diffuse * select(1.0, veins(leaf), is_leaf) + afar.sheen, 1.0);
 }
 
 struct Shade {

@@ -63,7 +63,7 @@ pub use timing::PassSecs;
 pub use work::{PassWork, Work};
 
 use crate::camera::Camera;
-use crate::state::Mirror;
+use crate::state::{Land, Mirror};
 use billboards::{Billboards, Reach};
 use blades::{Blades, Standpoint};
 use cull::{Beam, Frustum};
@@ -124,7 +124,6 @@ pub struct Renderer {
     targets: Targets,
     tone: Tone,
     sky: Sky,
-    terrain: Terrain,
     billboards: Billboards,
     /// Made when first needed.
     weighted: Option<Weighted>,
@@ -140,6 +139,7 @@ struct SceneParts {
     number: u32,
     textures: LandTextures,
     ground: Ground,
+    terrain: Terrain,
     blades: Blades,
     shells: Shells,
     forces: Forces,
@@ -211,12 +211,11 @@ impl Renderer {
         let samples = quality.samples(gpu.is_software);
         let daylight = Daylight::new(gpu);
         let frame = FrameGroup::new(gpu, quality, &daylight);
-        let maker = Maker { gpu, frame_layout: &frame.layout, samples };
+        let maker = Maker { gpu, frame_layout: &frame.layout, samples, has_kinds: true };
         let targets = Targets::new(gpu, size_px, quality);
         Self {
             tone: Tone::new(&maker, format, &targets.color, targets.fineness),
             sky: Sky::new(&maker),
-            terrain: Terrain::new(&maker),
             billboards: Billboards::new(&maker),
             gpu: gpu.clone(),
             quality,
@@ -269,8 +268,9 @@ impl Renderer {
     /// Loads the mirror's scene. [`draw`](Self::draw) does so by itself when a new scene has come.
     pub fn load_scene(&mut self, mirror: &Mirror) {
         self.scene = mirror.land().map(|land| {
-            let maker = Maker { gpu: &self.gpu, frame_layout: &self.frame.layout, samples: self.quality.samples(self.gpu.is_software) };
             let scene = land.scene();
+            let samples = self.quality.samples(self.gpu.is_software);
+            let maker = Maker { gpu: &self.gpu, frame_layout: &self.frame.layout, samples, has_kinds: has_kinds(land) };
             let heights = land.heights();
             let standing = flora::standing(land);
             let forces = Forces::new(&self.gpu, land, &standing);
@@ -280,11 +280,12 @@ impl Renderer {
                 textures: LandTextures::new(&self.gpu, &self.frame, land),
                 shells: Shells::new(&maker, land, &ground),
                 ground,
+                terrain: Terrain::new(&maker, scene.extent_m()),
                 blades: Blades::new(&maker, self.quality, land),
                 underbrush: Underbrush::new(&maker, self.quality, land, &forces),
                 forces,
                 rain: RainPass::new(&maker, self.quality, land),
-                objects: Objects::new(&maker, land, standing),
+                objects: Objects::new(&maker, self.quality, land, standing),
                 kept_shadows: KeptShadows::default(),
                 dust: Dust::new(&maker, self.quality, land),
             }
@@ -332,8 +333,9 @@ impl Renderer {
         self.frame.write(gpu, &frame);
         let frustum = if self.look.culls { Frustum::new(&view.projection_from_world) } else { Frustum::ALL };
         let tiles = scene.ground.tiles(camera.eye_m, &frustum);
-        self.terrain.prepare(gpu, &tiles);
-        let maker = Maker { gpu, frame_layout: &self.frame.layout, samples: self.quality.samples(gpu.is_software) };
+        scene.terrain.prepare(gpu, &tiles);
+        let samples = self.quality.samples(gpu.is_software);
+        let maker = Maker { gpu, frame_layout: &self.frame.layout, samples, has_kinds: has_kinds(land) };
         let order = self.look.order.at(maker.samples, scene.blades.by_turns());
         scene.blades.set_order(&maker, order);
         self.billboards.set_order(&maker, order);
@@ -447,7 +449,7 @@ impl Renderer {
                     if let Some(clumps) = clumps.filter(|_| !order.blends()) {
                         clumps.draw(&mut pass);
                     }
-                    self.terrain.draw(&mut pass, has_lamps);
+                    scene.terrain.draw(&mut pass, has_lamps);
                     self.sky.draw(&mut pass);
                     if weighted.is_none() {
                         if order.blends() {
@@ -489,11 +491,16 @@ impl Renderer {
             clumps: clumps.map_or(0, Billboards::count),
             sheets: if shells.is_some() { scene.shells.sheets() } else { 0 },
             underbrush: scene.underbrush.as_ref().map_or(0, Underbrush::plants),
-            ground_vertices: self.terrain.vertices(),
+            ground_vertices: scene.terrain.vertices(),
             object_triangles: scene.objects.triangles(),
             patches_written,
         }
     }
+}
+
+/// Whether more than one kind of grass grows: the map of a scene of one has one pixel.
+fn has_kinds(land: &Land) -> bool {
+    land.kinds().size_px() != [1, 1]
 }
 
 fn shadow_pass<'a>(

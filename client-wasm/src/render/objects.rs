@@ -8,6 +8,7 @@ use super::grove::{Ball, Grove};
 use super::mesh::{Paint, Solid, VERTEX_ATTRIBUTES, Vertex};
 use super::paint;
 use super::pipeline::{ByLamps, Draw, Maker, bind, storage, storage_rw, texture};
+use super::quality::Quality;
 use super::shaders;
 use super::vehicles::{self, Part};
 use crate::state::{Land, OBJECT_LIMIT};
@@ -40,9 +41,16 @@ struct MeshRange {
     base_vertex: i32,
 }
 
+struct Pipelines {
+    /// What may be glossy: vehicles.
+    glossy: wgpu::RenderPipeline,
+    matte: wgpu::RenderPipeline,
+    /// Trees that are not fine, lit at their vertices where the [quality](Quality::lights_trees_at_vertices) says so.
+    afar: wgpu::RenderPipeline,
+}
+
 pub(super) struct Objects {
-    /// Of what is matte, and of what may be glossy.
-    pipelines: ByLamps<[wgpu::RenderPipeline; 2]>,
+    pipelines: ByLamps<Pipelines>,
     shadow_pipelines: [wgpu::RenderPipeline; 2],
     group: wgpu::BindGroup,
     blow: wgpu::ComputePipeline,
@@ -74,7 +82,7 @@ fn part_mesh(part: Part) -> usize {
 }
 
 impl Objects {
-    pub(super) fn new(maker: &Maker<'_>, land: &Land, standing: Vec<Standing>) -> Self {
+    pub(super) fn new(maker: &Maker<'_>, quality: Quality, land: &Land, standing: Vec<Standing>) -> Self {
         let gpu = maker.gpu;
         let mut solids: Vec<Solid> = Part::ALL.iter().map(|&part| part_solid(land, part)).collect();
         let details = TreeDetail::ALL.into_iter();
@@ -104,7 +112,11 @@ impl Objects {
         let buffers = [Some(buffer)];
         let draw = Draw { label: "objects", buffers: &buffers, ..Draw::default() };
         let pipelines = ByLamps::new(|lamps| {
-            [0.0, 1.0].map(|gloss| maker.draw(&module, Some(&layout), &Draw { constants: &[lamps, ("is_glossy", gloss)], ..draw }))
+            let of = |gloss| maker.draw(&module, Some(&layout), &Draw { constants: &[lamps, ("is_glossy", gloss)], ..draw });
+            let matte = of(0.0);
+            let at_vertices = Draw { vertex: "vs_afar", fragment: Some("fs_afar"), constants: &[lamps], ..draw };
+            let afar = if quality.lights_trees_at_vertices() { maker.draw(&module, Some(&layout), &at_vertices) } else { matte.clone() };
+            Pipelines { glossy: of(1.0), matte, afar }
         });
         let shadow_pipelines = ["vs_shadow", "vs_shadow_far"].map(|vertex| {
             let shadow = Draw { label: "shadows", vertex, fragment: Some("fs_shadow"), ..draw };
@@ -226,10 +238,12 @@ impl Objects {
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
-        // The meshes of vehicles come first.
-        let vehicles = self.seen.partition_point(|&(mesh, _)| mesh < Part::ALL.len());
-        let [matte, glossy] = self.pipelines.of(has_lamps);
-        for (pipeline, list) in [(glossy, &self.seen[..vehicles]), (matte, &self.seen[vehicles..])] {
+        let Pipelines { glossy, matte, afar } = self.pipelines.of(has_lamps);
+        let ends = [Part::ALL.len(), tree_mesh(0, TreeDetail::Coarse), stone_mesh(0), usize::MAX];
+        let mut rest = self.seen.as_slice();
+        for (pipeline, end) in [glossy, matte, afar, matte].into_iter().zip(ends) {
+            let (list, others) = rest.split_at(rest.partition_point(|&(mesh, _)| mesh < end));
+            rest = others;
             pass.set_pipeline(pipeline);
             self.draw_list(pass, list);
         }

@@ -26,6 +26,8 @@ pub(super) struct Maker<'a> {
     pub(super) gpu: &'a Gpu,
     pub(super) frame_layout: &'a wgpu::BindGroupLayout,
     pub(super) samples: u32,
+    /// Whether more than one kind of grass grows; `has_kinds` of `common.wgsl`.
+    pub(super) has_kinds: bool,
 }
 
 /// How a pass of triangles differs from the others.
@@ -85,6 +87,11 @@ impl Maker<'_> {
         self.gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
     }
 
+    /// Values of a module's overrides with those that all modules have.
+    fn with_kinds<'b>(&self, constants: &[(&'b str, f64)]) -> Vec<(&'b str, f64)> {
+        constants.iter().copied().chain([("has_kinds", f64::from(u8::from(self.has_kinds)))]).collect()
+    }
+
     fn pipeline_layout(&self, label: &str, own: Option<&wgpu::BindGroupLayout>) -> wgpu::PipelineLayout {
         self.gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(label),
@@ -112,12 +119,13 @@ impl Maker<'_> {
         own: &wgpu::BindGroupLayout,
         constants: &[(&str, f64)],
     ) -> wgpu::ComputePipeline {
+        let constants = self.with_kinds(constants);
         self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(label),
             layout: Some(&self.pipeline_layout(label, Some(own))),
             module,
             entry_point: Some(entry),
-            compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
             cache: None,
         })
     }
@@ -157,7 +165,8 @@ impl Maker<'_> {
         alpha_to_coverage_enabled: bool,
     ) -> wgpu::RenderPipeline {
         let to_shadow = draw.vertex.starts_with("vs_shadow");
-        let compilation_options = wgpu::PipelineCompilationOptions { constants: draw.constants, ..Default::default() };
+        let constants = self.with_kinds(draw.constants);
+        let compilation_options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
         let compare = if to_shadow { wgpu::CompareFunction::Less } else { wgpu::CompareFunction::GreaterEqual };
         self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(draw.label),

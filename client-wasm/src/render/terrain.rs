@@ -32,6 +32,12 @@ impl Tile {
         let high = low + self.side_m;
         [low.max(-high).max(Vec2::ZERO).length(), low.abs().max(high.abs()).length()]
     }
+
+    /// Whether all of it is on land of an extent.
+    fn is_within(&self, extent_m: Vec2) -> bool {
+        let low = Vec2::from(self.corner_m);
+        low.cmpge(Vec2::ZERO).all() && (low + self.side_m).cmple(extent_m).all()
+    }
 }
 
 /// The square that the quadtree covers.
@@ -95,45 +101,58 @@ impl Ground {
 }
 
 pub(super) struct Terrain {
-    pipelines: ByLamps<wgpu::RenderPipeline>,
+    /// Of tiles on the map, and of those that reach beyond its edge.
+    pipelines: ByLamps<[wgpu::RenderPipeline; 2]>,
+    extent_m: Vec2,
     indices: wgpu::Buffer,
     index_count: u32,
     tiles: wgpu::Buffer,
-    tile_count: u32,
+    /// Tiles on the map, and all of them.
+    ends: [u32; 2],
     group: wgpu::BindGroup,
 }
 
 impl Terrain {
-    pub(super) fn new(maker: &Maker<'_>) -> Self {
+    /// For land of `extent_m`.
+    pub(super) fn new(maker: &Maker<'_>, extent_m: [f32; 2]) -> Self {
         let module = maker.gpu.shader("terrain", shaders::TERRAIN);
         let layout = maker.layout("terrain", &[storage(0)]);
         let pipelines = ByLamps::new(|lamps| {
-            let draw = Draw { label: "terrain", cull: Some(wgpu::Face::Back), constants: &[lamps], ..Draw::default() };
-            maker.draw(&module, Some(&layout), &draw)
+            [0.0, 1.0].map(|beyond| {
+                let constants = [lamps, ("reaches_beyond", beyond)];
+                let draw = Draw { label: "terrain", cull: Some(wgpu::Face::Back), constants: &constants, ..Draw::default() };
+                maker.draw(&module, Some(&layout), &draw)
+            })
         });
         let indices = tile_indices();
         let size = (TILE_LIMIT * size_of::<Tile>()) as u64;
         let tiles = maker.gpu.empty_buffer("tiles", size, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST);
         let group = bind(maker.gpu, "terrain", &layout, &[tiles.as_entire_binding()]);
         let index_buffer = maker.gpu.buffer("tile", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
-        Self { pipelines, indices: index_buffer, index_count: indices.len() as u32, tiles, tile_count: 0, group }
+        let index_count = indices.len() as u32;
+        Self { pipelines, extent_m: extent_m.into(), indices: index_buffer, index_count, tiles, ends: [0; 2], group }
     }
 
     pub(super) fn prepare(&mut self, gpu: &Gpu, tiles: &[Tile]) {
-        gpu.queue.write_buffer(&self.tiles, 0, bytemuck::cast_slice(tiles));
-        self.tile_count = tiles.len() as u32;
+        let (mut sorted, beyond): (Vec<Tile>, Vec<Tile>) = tiles.iter().partition(|tile| tile.is_within(self.extent_m));
+        self.ends = [sorted.len() as u32, tiles.len() as u32];
+        sorted.extend(beyond);
+        gpu.queue.write_buffer(&self.tiles, 0, bytemuck::cast_slice(&sorted));
     }
 
     /// Vertices that [`draw`](Self::draw) feeds in.
     pub(super) fn vertices(&self) -> u64 {
-        u64::from(self.tile_count * TILE_VERTICES)
+        u64::from(self.ends[1] * TILE_VERTICES)
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
-        pass.set_pipeline(self.pipelines.of(has_lamps));
         pass.set_bind_group(1, &self.group, &[]);
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
-        pass.draw_indexed(0..self.index_count, 0, 0..self.tile_count);
+        let [within, all] = self.ends;
+        for (pipeline, tiles) in self.pipelines.of(has_lamps).iter().zip([0..within, within..all]) {
+            pass.set_pipeline(pipeline);
+            pass.draw_indexed(0..self.index_count, 0, tiles);
+        }
     }
 }
 

@@ -258,7 +258,7 @@ fn probe_in(gpu: &Gpu, picture: &Picture, pass: &str, body: &str, places: &[[f32
 /// What so many invocations of `probe` in a WGSL source make of a storage buffer of `inputs`.
 fn compute(gpu: &Gpu, picture: &Picture, source: &str, inputs: &[[f32; 4]], invocations: u32) -> Vec<[f32; 4]> {
     let renderer = &picture.renderer;
-    let maker = Maker { gpu, frame_layout: &renderer.frame.layout, samples: 1 };
+    let maker = Maker { gpu, frame_layout: &renderer.frame.layout, samples: 1, has_kinds: true };
     let layout = maker.layout("probes", &[storage_rw(0)]);
     let pipeline = maker.compute("probe", &gpu.shader("probe", source), "probe", &layout);
     let probes = gpu.buffer("probes", bytemuck::cast_slice(inputs), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);

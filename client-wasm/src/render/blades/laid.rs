@@ -25,6 +25,13 @@ pub(in crate::render) struct Listed {
     pub(super) grid_m: f32,
 }
 
+impl Listed {
+    /// Whether an order draws blades whose tips are points: those that taper, and have no soft borders.
+    pub(super) fn are_pointed(&self, order: Order) -> bool {
+        order == Order::Cut && !self.are_textured
+    }
+}
+
 pub(in crate::render) struct Laid {
     /// While blades shrink away where the last ones end, and while they fade into what stands for far plants.
     strips: [ByLamps<wgpu::RenderPipeline>; 2],
@@ -52,10 +59,11 @@ impl Laid {
             Order::Weighted => "fs_weighted",
             Order::Coverage | Order::Sorted | Order::Precomputed => "fs_soft",
         };
-        let is_textured = ("is_textured", f64::from(u8::from(listed.are_textured)));
+        let flag = |is_set: bool| f64::from(u8::from(is_set));
+        let shape = [("is_textured", flag(listed.are_textured)), ("are_pointed", flag(listed.are_pointed(order)))];
         let strips = [0.0, 1.0].map(|fades| {
             ByLamps::new(|lamps| {
-                let constants = [is_textured, ("fades", fades), lamps];
+                let constants = [shape[0], shape[1], ("fades", fades), lamps];
                 let draw = Draw { label: "blades", vertex, fragment: Some(fragment), constants: &constants, ..Draw::default() };
                 maker.draw_in_order(&module, Some(layout), &draw, order)
             })
@@ -96,7 +104,7 @@ impl InOrder {
         let gpu: &Gpu = maker.gpu;
         let [fine, others] = listed.segments;
         let segments = [others, fine];
-        let indices = segments.map(strip_indices);
+        let indices = segments.map(|segments| strip_indices(segments, false));
         let counts = [0, 1].map(|span| indices[span].len() as u32);
         let ordered = Ordered::new(maker, keys, [&listed.blades, &listed.counters], listed.capacities, counts, listed.grid_m);
         let groups = [0, 1].map(|span| {

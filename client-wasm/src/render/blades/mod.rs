@@ -51,6 +51,8 @@ const FINE_SPREAD: f32 = 0.15;
 const LISTS: usize = 5;
 const SINGLE: usize = 2;
 const HEADS: [usize; 2] = [3, 4];
+/// Bytes of an indirect draw.
+const DRAW_BYTES: u64 = 20;
 
 pub(super) struct Blades {
     sift: Sift,
@@ -66,7 +68,11 @@ pub(super) struct Blades {
     draws: wgpu::Buffer,
     compute_group: wgpu::BindGroup,
     lists: [wgpu::BindGroup; LISTS],
-    indices: [wgpu::Buffer; LISTS],
+    /// Of blades that end broad, and of pointed ones.
+    strips: [[wgpu::Buffer; HEADS[0]]; 2],
+    head_indices: [wgpu::Buffer; 2],
+    /// Whether `draws` is of pointed blades.
+    are_pointed: bool,
     grids: Grids,
     by_turns: bool,
     /// Whether blades fade into what stands for far plants.
@@ -76,6 +82,8 @@ pub(super) struct Blades {
     /// Near plants that may stand in this frame.
     standing: u32,
     near_workgroups: u32,
+    /// Whether a grid has moved into a slot in this frame.
+    any_moves_in: bool,
     /// Number of the newest frame, of those in which time passes or a grid moves in.
     frame: u32,
     /// Most blades drawn fine, most of all others, and most flower heads.
@@ -123,9 +131,14 @@ impl Blades {
         let drawn_count = capacities.iter().sum::<u32>();
         let drawn = gpu.empty_buffer("drawn plants", u64::from(drawn_count) * BLADE_BYTES, storage_usage | BufferUsages::COPY_SRC);
         let counters = gpu.empty_buffer("counters", 4 * LISTS as u64, storage_usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
-        let indices = [strip_indices(segments[0]), strip_indices(segments[1]), strip_indices(1), head_indices(), disc_indices()];
-        let draw_args: Vec<u32> = indices.iter().flat_map(|list| [list.len() as u32, 0, 0, 0, 0]).collect();
-        let draws = gpu.buffer("plant draws", bytemuck::cast_slice(&draw_args), storage_usage | BufferUsages::INDIRECT);
+        let indices = |list: Vec<u16>| gpu.buffer("plant", bytemuck::cast_slice(&list), BufferUsages::INDEX);
+        let [fine_segments, coarse_segments] = segments;
+        let strips = [false, true]
+            .map(|are_pointed| [fine_segments, coarse_segments, 1].map(|segments| indices(strip_indices(segments, are_pointed))));
+        let head_indices = [head_indices(), disc_indices()].map(indices);
+        let draw_args: Vec<u32> = strips[0].iter().chain(&head_indices).flat_map(|list| [index_count(list), 0, 0, 0, 0]).collect();
+        let usage = storage_usage | BufferUsages::INDIRECT | BufferUsages::COPY_DST;
+        let draws = gpu.buffer("plant draws", bytemuck::cast_slice(&draw_args), usage);
 
         let bend = gpu.shader("bend", shaders::BEND);
         let sift = Sift::new(maker, &bend, &plants, &grids, places);
@@ -176,13 +189,16 @@ impl Blades {
             draws,
             compute_group,
             lists,
-            indices: indices.map(|list| gpu.buffer("plant", bytemuck::cast_slice(&list), BufferUsages::INDEX)),
+            strips,
+            head_indices,
+            are_pointed: false,
             grids,
             by_turns,
             fades: false,
             places,
             standing: 0,
             near_workgroups: 0,
+            any_moves_in: false,
             frame: 0,
             capacities,
             thinnest_px: quality.thinnest_px(),
@@ -195,6 +211,13 @@ impl Blades {
     /// Lays blades in another order from now on.
     pub(super) fn set_order(&mut self, maker: &Maker<'_>, order: Order) {
         self.laid.set(order, || Laid::new(maker, order, &self.listed));
+        let are_pointed = self.listed.are_pointed(order);
+        if are_pointed != self.are_pointed {
+            self.are_pointed = are_pointed;
+            for (list, indices) in self.strips[usize::from(are_pointed)].iter().enumerate() {
+                maker.gpu.queue.write_buffer(&self.draws, DRAW_BYTES * list as u64, bytemuck::bytes_of(&index_count(indices)));
+            }
+        }
     }
 
     /// Whether a frame may need several turns.
@@ -216,8 +239,8 @@ impl Blades {
         self.standing = 0;
         let slot_of = |grid: [i32; 2]| (grid[0].rem_euclid(3) + 3 * grid[1].rem_euclid(3)) as usize;
         let about = || (-1..=1).flat_map(|dz| (-1..=1).map(move |dx| [home[0] + dx, home[1] + dz]));
-        let any_moves_in = about().any(|grid| self.slots[slot_of(grid)].0 != grid);
-        self.frame = self.frame.wrapping_add(u32::from(from.dt_secs > 0.0 || any_moves_in));
+        self.any_moves_in = about().any(|grid| self.slots[slot_of(grid)].0 != grid);
+        self.frame = self.frame.wrapping_add(u32::from(from.dt_secs > 0.0 || self.any_moves_in));
         for grid in about() {
             let slot = slot_of(grid);
             if self.slots[slot].0 != grid {
@@ -270,6 +293,7 @@ impl Blades {
     pub(super) fn begin_turn(&mut self, gpu: &Gpu, turn: u32) {
         if turn > 0 {
             self.near_workgroups = 0;
+            self.any_moves_in = false;
         }
         gpu.queue.write_buffer(&self.listed.counters, 0, &[0; 4 * LISTS]);
         self.sift.begin_turn(gpu);
@@ -278,6 +302,9 @@ impl Blades {
 
     pub(super) fn bend(&self, pass: &mut wgpu::ComputePass<'_>, has_spheres: bool, has_lamps: bool) {
         self.grids.list(pass);
+        if self.any_moves_in {
+            self.sift.move_in(pass, self.places.div_ceil(CHUNK));
+        }
         self.sift.run(pass, self.near_workgroups, self.grids.workgroups());
         pass.set_bind_group(1, &self.compute_group, &[]);
         for (list, bend) in self.bend.of(has_spheres, has_lamps).iter().enumerate() {
@@ -293,21 +320,29 @@ impl Blades {
 
     /// Draws the blades in the order that is set.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
-        self.laid.get().draw(pass, self.fades, has_lamps, |pass| (0..HEADS[0]).for_each(|list| self.draw_list(pass, list)));
+        let strips = &self.strips[usize::from(self.are_pointed)];
+        self.laid.get().draw(pass, self.fades, has_lamps, |pass| {
+            strips.iter().enumerate().for_each(|(list, indices)| self.draw_list(pass, list, indices));
+        });
     }
 
     pub(super) fn draw_flowers(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
-        for (heads, list) in self.heads.of(has_lamps).iter().zip(HEADS) {
+        for ((heads, list), indices) in self.heads.of(has_lamps).iter().zip(HEADS).zip(&self.head_indices) {
             pass.set_pipeline(heads);
-            self.draw_list(pass, list);
+            self.draw_list(pass, list, indices);
         }
     }
 
-    fn draw_list(&self, pass: &mut wgpu::RenderPass<'_>, list: usize) {
+    fn draw_list(&self, pass: &mut wgpu::RenderPass<'_>, list: usize, indices: &wgpu::Buffer) {
         pass.set_bind_group(1, &self.lists[list], &[]);
-        pass.set_index_buffer(self.indices[list].slice(..), wgpu::IndexFormat::Uint16);
-        pass.draw_indexed_indirect(&self.draws, list as u64 * 20);
+        pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint16);
+        pass.draw_indexed_indirect(&self.draws, DRAW_BYTES * list as u64);
     }
+}
+
+/// How many indices a buffer of them has.
+fn index_count(indices: &wgpu::Buffer) -> u32 {
+    (indices.size() / size_of::<u16>() as u64) as u32
 }
 
 /// Bindings of a list of blades or flowers.

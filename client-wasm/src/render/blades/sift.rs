@@ -10,6 +10,7 @@ use wgpu::BufferUsages;
 const COUNTS: u64 = 2;
 
 pub(super) struct Sift {
+    root: wgpu::ComputePipeline,
     near: wgpu::ComputePipeline,
     far: wgpu::ComputePipeline,
     group: wgpu::BindGroup,
@@ -25,12 +26,13 @@ impl Sift {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let standing = gpu.empty_buffer("standing plants", 4 * (COUNTS + most), usage | BufferUsages::COPY_SRC);
         let workgroups = gpu.empty_buffer("workgroups of plants", 24, usage | BufferUsages::INDIRECT);
-        let layout = maker.layout("sift", &[uniform(0), storage_compute(4), storage_rw(8), storage_rw(9)]);
-        let entries = [(0, plants), (4, grids.chunks()), (8, &standing), (9, &workgroups)]
+        let grounds = gpu.empty_buffer("ground below near plants", 4 * 9 * u64::from(places), BufferUsages::STORAGE);
+        let layout = maker.layout("sift", &[uniform(0), storage_compute(4), storage_rw(8), storage_rw(9), storage_rw(10)]);
+        let entries = [(0, plants), (4, grids.chunks()), (8, &standing), (9, &workgroups), (10, &grounds)]
             .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("sift"), layout: &layout, entries: &entries });
         let compute = |entry| maker.compute(entry, shader, entry, &layout);
-        Self { near: compute("sift_near"), far: compute("sift_far"), group, standing, workgroups }
+        Self { root: compute("root_near"), near: compute("sift_near"), far: compute("sift_far"), group, standing, workgroups }
     }
 
     /// How many plants stand in view, near ones and others, and the lists of both.
@@ -47,6 +49,13 @@ impl Sift {
     pub(super) fn begin_turn(&self, gpu: &Gpu) {
         gpu.queue.write_buffer(&self.standing, 0, &[0; 4 * COUNTS as usize]);
         gpu.queue.write_buffer(&self.workgroups, 0, bytemuck::bytes_of(&[0_u32, 1, 1, 0, 1, 1]));
+    }
+
+    /// Finds the land below all plants, so many workgroups of them a grid, of the near grids that have moved in in this frame.
+    pub(super) fn move_in(&self, pass: &mut wgpu::ComputePass<'_>, workgroups: u32) {
+        pass.set_bind_group(1, &self.group, &[]);
+        pass.set_pipeline(&self.root);
+        pass.dispatch_workgroups(workgroups, 9, 1);
     }
 
     /// Lists what stands in view of the nine near grids and of as many chunks of others as an indirect dispatch says.

@@ -6,14 +6,17 @@ use super::CHUNK;
 const HEAD_VERTICES: u32 = 67;
 const DISC_VERTICES: u32 = 7;
 
-/// Triangles of 64 blades of so many rectangles.
-pub(super) fn strip_indices(segments: u32) -> Vec<u16> {
+/// Triangles of 64 blades of so many rectangles; of pointed ones the last is a triangle.
+pub(super) fn strip_indices(segments: u32, are_pointed: bool) -> Vec<u16> {
+    let point = u32::from(are_pointed);
     let mut indices = Vec::new();
     for blade in 0..CHUNK {
-        for segment in 0..segments {
-            let a = 2 * (blade * (segments + 1) + segment);
-            indices.extend([a, a + 1, a + 2, a + 2, a + 1, a + 3].map(|i| i as u16));
-        }
+        let first = blade * (2 * (segments + 1) - point);
+        let triangles = (0..segments).flat_map(|segment| {
+            let a = first + 2 * segment;
+            [[a, a + 1, a + 2], [a + 2, a + 1, a + 3]]
+        });
+        indices.extend(triangles.take((2 * segments - point) as usize).flatten().map(|i| i as u16));
     }
     indices
 }
@@ -49,7 +52,7 @@ mod tests {
     #[test]
     fn a_textured_blade_is_of_rectangles_up_to_its_tip() {
         for segments in [3, 7] {
-            let list = strip_indices(segments);
+            let list = strip_indices(segments, false);
             assert_eq!(list.len() as u32, CHUNK * segments * 6);
             let tip = [2 * segments, 2 * segments + 1].map(|i| i as u16);
             assert!(tip.iter().all(|corner| list[..segments as usize * 6].contains(corner)));
@@ -57,9 +60,21 @@ mod tests {
     }
 
     #[test]
+    fn a_pointed_blade_is_the_same_but_for_a_triangle_without_area() {
+        for segments in [1, 3, 7] {
+            let [pointed, whole] = [true, false].map(|are_pointed| strip_indices(segments, are_pointed));
+            let own = (6 * segments - 3) as usize;
+            assert_eq!(pointed[..own], whole[..own]);
+            assert_eq!(pointed.len(), CHUNK as usize * own);
+            assert_eq!(u32::from(pointed[own]), 2 * segments + 1, "the next one's first vertex");
+        }
+    }
+
+    #[test]
     fn indices_stay_within_their_chunk() {
-        let lists = [(strip_indices(7), 16), (strip_indices(3), 8), (head_indices(), HEAD_VERTICES), (disc_indices(), DISC_VERTICES)];
-        for (list, vertices) in lists {
+        let strips = [(strip_indices(7, false), 16), (strip_indices(3, false), 8), (strip_indices(7, true), 15)];
+        let heads = [(head_indices(), HEAD_VERTICES), (disc_indices(), DISC_VERTICES)];
+        for (list, vertices) in strips.into_iter().chain(heads) {
             let largest = u32::from(*list.iter().max().expect("indices"));
             assert_eq!(largest, CHUNK * vertices - 1);
         }
