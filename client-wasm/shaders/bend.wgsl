@@ -162,18 +162,37 @@ fn still(plant: Plant, leans_in: array<vec2<f32>, 3>) -> Sway {
     return Sway(array<vec4<f32>, 3>(vec4<f32>(leans[0], 0.0, 0.0), vec4<f32>(leans[1], 0.0, 0.0), vec4<f32>(leans[2], 0.0, 0.0)));
 }
 
-// How the thirds of a plant lean (rad) of which nothing is remembered: the upper ones trail the lowest (001 section 4.5).
-fn trailing_leans(plant: Plant, gust: f32) -> array<vec2<f32>, 3> {
-    let kind = kinds.list[plant.kind];
+// What bends a plant.
+struct Bent {
+    // Wind over the ground (m/s).
+    wind: vec2<f32>,
+    // Factor on it that neighbours share, and three numbers of its own, 0..1.
+    gust: f32,
+    own: vec3<f32>,
+    // State of the bend field, and how much of that is shown.
+    field: vec3<f32>,
+    share: f32,
+}
+
+fn bent_at(plant: Plant, grid: vec2<i32>, index: u32) -> Bent {
     let p = plant.root.xz;
+    return Bent(wind_at(plant.root, 0.0).xz, gust_at(p), random3(grid, index + 47u), bend_at(p, 0.0, 0), field_share(p));
+}
+
+// A plant's own factor on the wind.
+fn own_gust(bent: Bent) -> f32 {
+    return bent.gust * (0.9 + 0.2 * bent.own.y);
+}
+
+// How the thirds of a plant lean (rad) of which nothing is remembered: the upper ones trail the lowest (001 section 4.5).
+fn trailing_leans(plant: Plant, bent: Bent, gust: f32) -> array<vec2<f32>, 3> {
+    let kind = kinds.list[plant.kind];
     let lag_secs = select(0.0, kind.lag.z, kind.shape.x > 1.5);
-    let share = field_share(p);
-    let now = bend_at(p, 0.0, 0);
-    let held = lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w) * give_of(plant);
+    let held = lean_of_wind(bent.wind * gust, kind.tip.w) * give_of(plant);
     var leans = array<vec2<f32>, 3>(held, held, held);
-    leans[0] += lean_of_bend(now) * share;
-    for (var i = 1; i < select(1, 3, share > 0.0); i++) {
-        leans[i] += trailing_lean(p, 0.0, now, kind, lag_secs * f32(i) * 0.5) * share;
+    leans[0] += lean_of_bend(bent.field) * bent.share;
+    for (var i = 1; i < select(1, 3, bent.share > 0.0); i++) {
+        leans[i] += trailing_lean(plant.root.xz, 0.0, bent.field, kind, lag_secs * f32(i) * 0.5) * bent.share;
     }
     return leans;
 }
@@ -273,8 +292,9 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     let distance_m = distance(plant.root, frame.eye.xyz);
     let grown = growth(index, distance_m);
     let kind = kinds.list[plant.kind];
-    let gust = gust_at(plant.root.xz) * (0.9 + 0.2 * random3(grid, index + 47u).y);
-    let field_lean = lean_of_field(plant.root.xz, 0.0);
+    let bent = bent_at(plant, grid, index);
+    let gust = own_gust(bent);
+    let field_lean = lean_of_bend(bent.field) * bent.share;
     let held = leans_of(plant, array<vec2<f32>, 3>(field_lean, field_lean, field_lean));
     let give = give_of(plant);
     let nature = BladeNature(plant.height, plant.frequency, plants.shape.w, kind.tip.w * 0.01 * give);
@@ -282,7 +302,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     var sway = sways[at];
     // What was not moved for a while stands still when it comes into view.
     if moved[at] < u32(slot.z) || plants.counts.w - moved[at] > 1u {
-        let lean = field_lean + lean_of_wind(wind_at(plant.root, 0.0).xz * gust, kind.tip.w) * give;
+        let lean = field_lean + lean_of_wind(bent.wind * gust, kind.tip.w) * give;
         sway = still(plant, array<vec2<f32>, 3>(lean, lean, lean));
     }
     let steps = plants.steps.x + u32(none_of(distance_m));
@@ -300,7 +320,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
 
     // On its way out of the near grids a plant comes to stand as those beyond do.
     let away = abs(plant.root.xz - frame.eye.xz) / plants.shape.x;
-    let beyond = standing_far(plant, grid, index);
+    let beyond = standing_far(plant, bent);
     let share = smoothstep(0.6, 1.0, max(away.x, away.y));
     for (var i = 0; i < LINKS; i++) {
         sway.links[i] = mix(sway.links[i], beyond.links[i], share);
@@ -311,10 +331,9 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // A plant of which nothing is remembered.
-fn standing_far(plant: Plant, grid: vec2<i32>, index: u32) -> Sway {
-    let r = random3(grid, index + 47u);
-    let flutter = 1.0 + 0.065 * sin(frame.eye.w * mix(6.0, 9.0, r.x) + r.z * TAU);
-    let leans = trailing_leans(plant, gust_at(plant.root.xz) * (0.9 + 0.2 * r.y) * flutter);
+fn standing_far(plant: Plant, bent: Bent) -> Sway {
+    let flutter = 1.0 + 0.065 * sin(frame.eye.w * mix(6.0, 9.0, bent.own.x) + bent.own.z * TAU);
+    let leans = trailing_leans(plant, bent, own_gust(bent) * flutter);
     return settle(still(plant, leans), plant.height, plant.normal, plant.root);
 }
 
@@ -344,7 +363,7 @@ fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
     if grown <= 0.01 {
         return;
     }
-    show(plant, points_of(standing_far(plant, grid, index), plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
+    show(plant, points_of(standing_far(plant, bent_at(plant, grid, index)), plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
 }
 
 // Indirect draws of 64 plants an instance.
