@@ -39,7 +39,7 @@ fn side_at(tip: vec3<f32>, own: f32, t: f32) -> vec3<f32> {
     return vec3<f32>(cos(angle), 0.0, sin(angle));
 }
 
-// Share of the blade, and -1 or 1 across it, at a vertex of a strip: two a row, from the root's to the tip's.
+// Share of the blade, and -1 or 1 across it, at a vertex of a strip: two a row, from the root's to the tip's, where a pointed one has the first alone.
 fn corner_of(vertex: u32, segments: u32) -> vec2<f32> {
     return vec2<f32>(f32(vertex / 2u) / f32(segments), f32(vertex % 2u) * 2.0 - 1.0);
 }

@@ -7,7 +7,7 @@ struct Plants {
     // Grid (x, z) that lives in each of the nine slots; number of the frame in which it has moved in; plants of it that may stand.
     slots: array<vec4<i32>, 9>,
     // Plants of a near grid; 1 to leave out what is not seen; 1 where blades narrower than a pixel are drawn as wide as they are; number of the
-    // frame, of those in which time passes.
+    // frame, of those in which time passes or a grid moves in.
     counts: vec4<u32>,
     // Capacities of the lists: fine blades, all others, flower heads; unused.
     capacities: vec4<u32>,
@@ -36,7 +36,7 @@ struct Counters {
 @group(1) @binding(5) var<storage, read_write> draws: array<u32>;
 // How many near plants are listed, and how many others; their places in `sways`; the others' chunks · 64 + places there.
 @group(1) @binding(6) var<storage, read> standing: array<u32>;
-// Number of the frame that has moved a near plant last, of those in which time passes.
+// Number of the frame that has moved a near plant last, of those that are counted.
 @group(1) @binding(7) var<storage, read_write> moved: array<u32>;
 
 // Where the list of the near plants begins.
@@ -162,11 +162,11 @@ fn still(plant: Plant, leans_in: array<vec2<f32>, 3>) -> Sway {
     return Sway(array<vec4<f32>, 3>(vec4<f32>(leans[0], 0.0, 0.0), vec4<f32>(leans[1], 0.0, 0.0), vec4<f32>(leans[2], 0.0, 0.0)));
 }
 
-// What bends a plant.
-struct Bent {
+// What bends a plant that stands somewhere.
+struct Bending {
     // Wind over the ground (m/s).
     wind: vec2<f32>,
-    // Factor on it that neighbours share, and three numbers of its own, 0..1.
+    // Factor on it that neighbours share; three numbers of the plant's own, 0..1.
     gust: f32,
     own: vec3<f32>,
     // State of the bend field, and how much of that is shown.
@@ -174,25 +174,25 @@ struct Bent {
     share: f32,
 }
 
-fn bent_at(plant: Plant, grid: vec2<i32>, index: u32) -> Bent {
+fn bending_at(plant: Plant, grid: vec2<i32>, index: u32) -> Bending {
     let p = plant.root.xz;
-    return Bent(wind_at(plant.root, 0.0).xz, gust_at(p), random3(grid, index + 47u), bend_at(p, 0.0, 0), field_share(p));
+    return Bending(wind_at(plant.root, 0.0).xz, gust_at(p), random3(grid, index + 47u), bend_at(p, 0.0, 0), field_share(p));
 }
 
 // A plant's own factor on the wind.
-fn own_gust(bent: Bent) -> f32 {
-    return bent.gust * (0.9 + 0.2 * bent.own.y);
+fn own_gust(bending: Bending) -> f32 {
+    return bending.gust * (0.9 + 0.2 * bending.own.y);
 }
 
 // How the thirds of a plant lean (rad) of which nothing is remembered: the upper ones trail the lowest (001 section 4.5).
-fn trailing_leans(plant: Plant, bent: Bent, gust: f32) -> array<vec2<f32>, 3> {
+fn trailing_leans(plant: Plant, bending: Bending, gust: f32) -> array<vec2<f32>, 3> {
     let kind = kinds.list[plant.kind];
     let lag_secs = select(0.0, kind.lag.z, kind.shape.x > 1.5);
-    let held = lean_of_wind(bent.wind * gust, kind.tip.w) * give_of(plant);
+    let held = lean_of_wind(bending.wind * gust, kind.tip.w) * give_of(plant);
     var leans = array<vec2<f32>, 3>(held, held, held);
-    leans[0] += lean_of_bend(bent.field) * bent.share;
-    for (var i = 1; i < select(1, 3, bent.share > 0.0); i++) {
-        leans[i] += trailing_lean(plant.root.xz, 0.0, bent.field, kind, lag_secs * f32(i) * 0.5) * bent.share;
+    leans[0] += lean_of_bend(bending.field) * bending.share;
+    for (var i = 1; i < select(1, 3, bending.share > 0.0); i++) {
+        leans[i] += trailing_lean(plant.root.xz, 0.0, bending.field, kind, lag_secs * f32(i) * 0.5) * bending.share;
     }
     return leans;
 }
@@ -292,9 +292,9 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     let distance_m = distance(plant.root, frame.eye.xyz);
     let grown = growth(index, distance_m);
     let kind = kinds.list[plant.kind];
-    let bent = bent_at(plant, grid, index);
-    let gust = own_gust(bent);
-    let field_lean = lean_of_bend(bent.field) * bent.share;
+    let bending = bending_at(plant, grid, index);
+    let gust = own_gust(bending);
+    let field_lean = lean_of_bend(bending.field) * bending.share;
     let held = leans_of(plant, array<vec2<f32>, 3>(field_lean, field_lean, field_lean));
     let give = give_of(plant);
     let nature = BladeNature(plant.height, plant.frequency, plants.shape.w, kind.tip.w * 0.01 * give);
@@ -302,7 +302,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     var sway = sways[at];
     // What was not moved for a while stands still when it comes into view.
     if moved[at] < u32(slot.z) || plants.counts.w - moved[at] > 1u {
-        let lean = field_lean + lean_of_wind(bent.wind * gust, kind.tip.w) * give;
+        let lean = field_lean + lean_of_wind(bending.wind * gust, kind.tip.w) * give;
         sway = still(plant, array<vec2<f32>, 3>(lean, lean, lean));
     }
     let steps = plants.steps.x + u32(none_of(distance_m));
@@ -320,7 +320,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
 
     // On its way out of the near grids a plant comes to stand as those beyond do.
     let away = abs(plant.root.xz - frame.eye.xz) / plants.shape.x;
-    let beyond = standing_far(plant, bent);
+    let beyond = standing_far(plant, bending);
     let share = smoothstep(0.6, 1.0, max(away.x, away.y));
     for (var i = 0; i < LINKS; i++) {
         sway.links[i] = mix(sway.links[i], beyond.links[i], share);
@@ -331,9 +331,9 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // A plant of which nothing is remembered.
-fn standing_far(plant: Plant, bent: Bent) -> Sway {
-    let flutter = 1.0 + 0.065 * sin(frame.eye.w * mix(6.0, 9.0, bent.own.x) + bent.own.z * TAU);
-    let leans = trailing_leans(plant, bent, own_gust(bent) * flutter);
+fn standing_far(plant: Plant, bending: Bending) -> Sway {
+    let flutter = 1.0 + 0.065 * sin(frame.eye.w * mix(6.0, 9.0, bending.own.x) + bending.own.z * TAU);
+    let leans = trailing_leans(plant, bending, own_gust(bending) * flutter);
     return settle(still(plant, leans), plant.height, plant.normal, plant.root);
 }
 
@@ -363,7 +363,7 @@ fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
     if grown <= 0.01 {
         return;
     }
-    show(plant, points_of(standing_far(plant, bent_at(plant, grid, index)), plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
+    show(plant, points_of(standing_far(plant, bending_at(plant, grid, index)), plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
 }
 
 // Indirect draws of 64 plants an instance.

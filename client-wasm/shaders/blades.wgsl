@@ -8,8 +8,7 @@
 override is_textured: bool = false;
 // Whether blades fade into what stands for far plants. Where none does, no fragment is discarded for it, so that devices test depth before they shade.
 override fades: bool = true;
-
-// Whether the last row is one vertex, since both would be in the same place.
+// Whether blades taper and have no soft borders: then the tip is one vertex, since both would be in the same place.
 override are_pointed: bool = false;
 
 // Shapes in the texture.

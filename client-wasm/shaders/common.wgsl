@@ -108,12 +108,10 @@ fn noise_over(uv: vec2<f32>, span: f32) -> vec4<f32> {
     return textureSampleLevel(noises, repeated, uv, max(log2(span * f32(textureDimensions(noises).x)), 0.0));
 }
 
-// What is known as a pipeline is made, since software drivers run what a branch leaves out: whether places beyond the world's edge are asked for, and whether
-// more than one kind of grass grows.
-override reaches_beyond: bool = true;
-override has_kinds: bool = true;
-
 // --- land -----------------------------------------------------------------------------------------------------------
+
+// Whether places beyond the world's edge are asked for. Known as a pipeline is made, as all overrides are, since software drivers run what a branch leaves out.
+override reaches_beyond: bool = true;
 
 fn metres_outside(p: vec2<f32>) -> f32 {
     if !reaches_beyond {
@@ -122,8 +120,8 @@ fn metres_outside(p: vec2<f32>) -> f32 {
     return length(max(max(-p, p - frame.world.xy), vec2<f32>(0.0)));
 }
 
-// Rolling land beyond the world's edge, so that the horizon is no table. Software drivers run what a branch leaves out, and of a loop its first turn alone: what is
-// rarely needed is in small turns, here as below.
+// Rolling land beyond the world's edge, so that the horizon is no table. Of a loop that has no turn, software drivers run the first:
+// what is rarely needed is in small turns, here as below.
 fn far_hills(p: vec2<f32>, outside_m: f32) -> f32 {
     var n = 0.0;
     for (var i = 0; i < select(0, 2, outside_m > 0.0); i++) {
@@ -195,6 +193,9 @@ fn fed(p: vec2<f32>) -> f32 {
 }
 
 // --- kinds of grass ---------------------------------------------------------------------------------------------------
+
+// Whether more than one grows.
+override has_kinds: bool = true;
 
 // The four pixels of the map of kinds about a place, and how much each of them counts there.
 struct KindsAbout {

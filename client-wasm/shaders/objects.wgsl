@@ -153,7 +153,7 @@ fn fs(surface: Surface) -> @location(0) vec4<f32> {
 // How far the corners of a spray of leaves stand out from what of it is seen, over the height of the tree: farther in they are in its own shadow.
 const SPRAY_SHARE: f32 = 0.14;
 
-// What is so small in the picture that its vertices are as close as its pixels are lit at those.
+// What is lit at its vertices: most fragments of sprays of leaves are hidden or cut away.
 struct Afar {
     @builtin(position) position: vec4<f32>,
     // Its colour as seen through the air: what goes with the texture, and what is added whatever that shows.

@@ -39,7 +39,7 @@ fn next(list: u32) -> u32 {
 
 // Finds the land below the plants of near grids that have moved in in this frame.
 @compute @workgroup_size(64)
-fn root_near(@builtin(global_invocation_id) id: vec3<u32>) {
+fn find_ground(@builtin(global_invocation_id) id: vec3<u32>) {
     let slot = plants.slots[id.y];
     if id.x < plants.counts.x && u32(slot.z) == plants.counts.w {
         grounds[id.y * plants.counts.x + id.x] = ground_of(slot.xy, id.x);

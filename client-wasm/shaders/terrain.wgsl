@@ -66,11 +66,11 @@ fn mottle_at(p: vec2<f32>, span_m: f32) -> f32 {
 fn litter_at(p: vec2<f32>, is_told: bool) -> vec3<f32> {
     let heap = noise(p / 0.83);
     // Direction; length and width of a leaf (m).
-    let strewn = array<vec4<f32>, 3>(vec4<f32>(0.98, 0.19, 0.53, 0.067), vec4<f32>(0.34, -0.94, 0.47, 0.059), vec4<f32>(-0.71, 0.70, 0.61, 0.073));
+    let leaves = array<vec4<f32>, 3>(vec4<f32>(0.98, 0.19, 0.53, 0.067), vec4<f32>(0.34, -0.94, 0.47, 0.059), vec4<f32>(-0.71, 0.70, 0.61, 0.073));
     var top = 0.0;
     for (var i = 0; i < select(0, 3, is_told); i++) {
-        let along = strewn[i].xy;
-        let leaf = noise(vec2<f32>(dot(p, along), dot(p, vec2<f32>(-along.y, along.x))) / strewn[i].zw);
+        let along = leaves[i].xy;
+        let leaf = noise(vec2<f32>(dot(p, along), dot(p, vec2<f32>(-along.y, along.x))) / leaves[i].zw);
         top = max(top, select(leaf.g, leaf.b, i == 1) + 0.5 * heap.rag[i]);
     }
     return mix(vec3<f32>(0.034, 0.030, 0.012), vec3<f32>(0.125, 0.105, 0.042), smoothstep(0.72, 1.18, top)) * (0.6 + 0.8 * heap.b);
@@ -111,8 +111,8 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
         let afar = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light);
         let mottle = mottle_at(p, span_m);
         let reached = frame.sun_color.rgb * sun_light * sun_in_grass(0.0, kind.root.w);
-        let strewn = 0.8 * (1.0 - smoothstep(0.3, 2.5, distance_m));
-        let floor = mix(kind.root.rgb * 0.7, litter_at(p, strewn > 0.0), strewn);
+        let litter_share = 0.8 * (1.0 - smoothstep(0.3, 2.5, distance_m));
+        let floor = mix(kind.root.rgb * 0.7, litter_at(p, litter_share > 0.0), litter_share);
         let under = floor * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
         let grass = afar * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
         color += mix(under, grass, between) * share;

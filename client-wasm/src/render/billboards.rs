@@ -75,7 +75,7 @@ impl Billboards {
     pub(super) fn new(maker: &Maker<'_>) -> Self {
         let gpu = maker.gpu;
         let place_layout = maker.layout("billboard places", &[storage(0), uniform(1), storage_rw(4)]);
-        let module = gpu.shader("billboards", shaders::BILLBOARDS);
+        let module = maker.shader("billboards", shaders::BILLBOARDS, &[]);
         let place = maker.compute("place", &module, "place", &place_layout);
         let size = (CLUMP_LIMIT * size_of::<Clump>()) as u64;
         let clumps = gpu.empty_buffer("clumps", size, BufferUsages::STORAGE | BufferUsages::COPY_DST);

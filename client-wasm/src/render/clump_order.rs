@@ -52,7 +52,7 @@ impl Laid {
         tufts: &wgpu::TextureView,
     ) -> Self {
         let gpu = maker.gpu;
-        let module = gpu.shader("billboards", shaders::BILLBOARDS);
+        let module = maker.shader("billboards", shaders::BILLBOARDS, &[]);
         let way = match order {
             Order::Cut | Order::Coverage | Order::Weighted => Way::AsListed,
             Order::Sorted => Way::Sorted(Box::new(Sorted::new(maker, limit, &module, clumps, list))),

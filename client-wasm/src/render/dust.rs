@@ -58,7 +58,7 @@ impl Dust {
         let entries =
             [(0, &drift), (3, &sprites)].map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("dust"), layout: &layout, entries: &entries });
-        let module = gpu.shader("dust", shaders::DUST);
+        let module = maker.shader("dust", shaders::DUST, &[]);
         let draw =
             Draw { label: "dust", depth_write: false, blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), ..Draw::default() };
         Self {

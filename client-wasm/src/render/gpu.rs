@@ -1,6 +1,7 @@
 //! The device: a headless one natively, the canvas's in a browser.
 
 use super::fit;
+use super::shaders::{self, Constant};
 use thiserror::Error;
 use wgpu::util::DeviceExt;
 
@@ -142,9 +143,9 @@ impl Gpu {
         );
     }
 
-    /// A shader module of the shared pieces followed by one pass's own text.
-    pub(super) fn shader(&self, label: &str, source: &str) -> wgpu::ShaderModule {
-        let text = super::shaders::whole(source);
+    /// A shader module of the shared pieces followed by one pass's own text, with values of its overrides.
+    pub(super) fn shader(&self, label: &str, source: &str, constants: &[Constant]) -> wgpu::ShaderModule {
+        let text = shaders::with_constants(shaders::whole(source), constants);
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source: wgpu::ShaderSource::Wgsl(text.into()) })
     }
 }

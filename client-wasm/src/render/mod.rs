@@ -124,7 +124,6 @@ pub struct Renderer {
     targets: Targets,
     tone: Tone,
     sky: Sky,
-    billboards: Billboards,
     /// Made when first needed.
     weighted: Option<Weighted>,
     /// Made by who wants to know.
@@ -140,6 +139,7 @@ struct SceneParts {
     textures: LandTextures,
     ground: Ground,
     terrain: Terrain,
+    billboards: Billboards,
     blades: Blades,
     shells: Shells,
     forces: Forces,
@@ -216,7 +216,6 @@ impl Renderer {
         Self {
             tone: Tone::new(&maker, format, &targets.color, targets.fineness),
             sky: Sky::new(&maker),
-            billboards: Billboards::new(&maker),
             gpu: gpu.clone(),
             quality,
             look: Look::default(),
@@ -274,13 +273,15 @@ impl Renderer {
             let heights = land.heights();
             let standing = flora::standing(land);
             let forces = Forces::new(&self.gpu, land, &standing);
-            let ground = Ground::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), scene.light.haze_m);
+            let grass_m = scene.plants.most_grown() * scene.tallest_m();
+            let ground = Ground::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), grass_m, scene.light.haze_m);
             SceneParts {
                 number: mirror.scene_number(),
                 textures: LandTextures::new(&self.gpu, &self.frame, land),
                 shells: Shells::new(&maker, land, &ground),
                 ground,
                 terrain: Terrain::new(&maker, scene.extent_m()),
+                billboards: Billboards::new(&maker),
                 blades: Blades::new(&maker, self.quality, land),
                 underbrush: Underbrush::new(&maker, self.quality, land, &forces),
                 forces,
@@ -338,7 +339,7 @@ impl Renderer {
         let maker = Maker { gpu, frame_layout: &self.frame.layout, samples, has_kinds: has_kinds(land) };
         let order = self.look.order.at(maker.samples, scene.blades.by_turns());
         scene.blades.set_order(&maker, order);
-        self.billboards.set_order(&maker, order);
+        scene.billboards.set_order(&maker, order);
         if order == Order::Weighted && self.weighted.is_none() {
             self.weighted = Some(Weighted::new(&maker, self.targets.size_px));
         }
@@ -357,7 +358,7 @@ impl Renderer {
             scene.shells.prepare(gpu, land, camera.eye_m, &frustum, wanted);
         } else if self.look.far == Far::Clumps {
             let reach = Reach { from_m: frame.reach[0], several_m: SEVERAL_REACHES * frame.reach[1], to_m: frame.reach[3] };
-            self.billboards.prepare(gpu, land, camera.eye_m, &frustum, reach);
+            scene.billboards.prepare(gpu, land, camera.eye_m, &frustum, reach);
         }
         if let Some(underbrush) = &mut scene.underbrush {
             scene.forces.follow(gpu, land, &scene.textures.wind, &poses, [camera.eye_m.x, camera.eye_m.z], dt_secs);
@@ -371,7 +372,7 @@ impl Renderer {
         let beams = std::array::from_fn(|layer| shadows_are_due[layer].then(|| Beam::new(projections[layer])));
         scene.objects.prepare(gpu, &poses, &from, beams, time_secs as f32, frame.screen[2]);
 
-        let clumps = (self.look.far == Far::Clumps && has_blades).then_some(&self.billboards);
+        let clumps = (self.look.far == Far::Clumps && has_blades).then_some(&scene.billboards);
         let turns = if has_blades { scene.blades.turns() } else { 1 };
         if let Some(counter) = &mut self.counter {
             counter.begin_frame(gpu, turns);
@@ -498,9 +499,9 @@ impl Renderer {
     }
 }
 
-/// Whether more than one kind of grass grows: the map of a scene of one has one pixel.
+/// Whether more than one kind of grass grows.
 fn has_kinds(land: &Land) -> bool {
-    land.kinds().size_px() != [1, 1]
+    !land.scene().species.is_empty()
 }
 
 fn shadow_pass<'a>(

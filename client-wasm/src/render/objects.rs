@@ -102,7 +102,7 @@ impl Objects {
         let model = |standing: &Standing| balls[(standing.shape + if standing.is_tree { 0 } else { TREE_SHAPES }) as usize];
         let grove = Grove::new(standing.into_iter().map(|standing| (standing, model(&standing).of(&standing))).collect());
 
-        let module = gpu.shader("objects", shaders::OBJECTS);
+        let module = maker.shader("objects", shaders::OBJECTS, &[]);
         let layout = maker.layout("objects", &[storage(0), texture(1), storage(2)]);
         let buffer = wgpu::VertexBufferLayout {
             array_stride: size_of::<Vertex>() as u64,
@@ -112,11 +112,13 @@ impl Objects {
         let buffers = [Some(buffer)];
         let draw = Draw { label: "objects", buffers: &buffers, ..Draw::default() };
         let pipelines = ByLamps::new(|lamps| {
-            let of = |gloss| maker.draw(&module, Some(&layout), &Draw { constants: &[lamps, ("is_glossy", gloss)], ..draw });
-            let matte = of(0.0);
-            let at_vertices = Draw { vertex: "vs_afar", fragment: Some("fs_afar"), constants: &[lamps], ..draw };
-            let afar = if quality.lights_trees_at_vertices() { maker.draw(&module, Some(&layout), &at_vertices) } else { matte.clone() };
-            Pipelines { glossy: of(1.0), matte, afar }
+            let [with_gloss, without] =
+                [true, false].map(|gloss| maker.shader("objects", shaders::OBJECTS, &[lamps, ("is_glossy", gloss)]));
+            let [glossy, matte] = [&with_gloss, &without].map(|module| maker.draw(module, Some(&layout), &draw));
+            let at_vertices = Draw { vertex: "vs_afar", fragment: Some("fs_afar"), ..draw };
+            let is_at_vertices = quality.lights_trees_at_vertices(gpu.is_software);
+            let afar = if is_at_vertices { maker.draw(&without, Some(&layout), &at_vertices) } else { matte.clone() };
+            Pipelines { glossy, matte, afar }
         });
         let shadow_pipelines = ["vs_shadow", "vs_shadow_far"].map(|vertex| {
             let shadow = Draw { label: "shadows", vertex, fragment: Some("fs_shadow"), ..draw };

@@ -2,6 +2,7 @@
 
 use super::gpu::Gpu;
 use super::look::Order;
+use super::shaders::Constant;
 
 /// Format of the picture before tone mapping.
 pub(super) const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -41,14 +42,23 @@ pub(super) struct Draw<'a> {
     pub(super) cull: Option<wgpu::Face>,
     /// How it is laid over what is there; none replaces that.
     pub(super) blend: Option<wgpu::BlendState>,
-    /// Values of the module's overrides.
-    pub(super) constants: &'a [(&'a str, f64)],
+    /// Module of the fragments, where it is another one.
+    pub(super) fragment_module: Option<&'a wgpu::ShaderModule>,
 }
 
 impl Default for Draw<'_> {
     /// Opaque triangles of both faces, without vertex buffers.
     fn default() -> Self {
-        Self { label: "", vertex: "vs", fragment: Some("fs"), buffers: &[], depth_write: true, cull: None, blend: None, constants: &[] }
+        Self {
+            label: "",
+            vertex: "vs",
+            fragment: Some("fs"),
+            buffers: &[],
+            depth_write: true,
+            cull: None,
+            blend: None,
+            fragment_module: None,
+        }
     }
 }
 
@@ -56,8 +66,8 @@ impl Default for Draw<'_> {
 pub(super) struct ByLamps<P>([P; 2]);
 
 impl<P> ByLamps<P> {
-    pub(super) fn new(make: impl Fn((&'static str, f64)) -> P) -> Self {
-        Self([0.0, 1.0].map(|has_lamps| make(("has_lamps", has_lamps))))
+    pub(super) fn new(make: impl Fn(Constant) -> P) -> Self {
+        Self([false, true].map(|has_lamps| make(("has_lamps", has_lamps))))
     }
 
     /// For a frame in which there are lamps, or none.
@@ -70,8 +80,8 @@ impl<P> ByLamps<P> {
 pub(super) struct BySpheres<P>([ByLamps<P>; 2]);
 
 impl<P> BySpheres<P> {
-    pub(super) fn new(make: impl Fn([(&'static str, f64); 2]) -> P) -> Self {
-        Self([0.0, 1.0].map(|spheres| ByLamps::new(|lamps| make([lamps, ("meets_spheres", spheres)]))))
+    pub(super) fn new(make: impl Fn([Constant; 2]) -> P) -> Self {
+        Self([false, true].map(|spheres| ByLamps::new(|lamps| make([lamps, ("meets_spheres", spheres)]))))
     }
 
     /// For a frame in which there are spheres and lamps, or none.
@@ -87,9 +97,9 @@ impl Maker<'_> {
         self.gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
     }
 
-    /// Values of a module's overrides with those that all modules have.
-    fn with_kinds<'b>(&self, constants: &[(&'b str, f64)]) -> Vec<(&'b str, f64)> {
-        constants.iter().copied().chain([("has_kinds", f64::from(u8::from(self.has_kinds)))]).collect()
+    /// A pass's module with values of its overrides.
+    pub(super) fn shader(&self, label: &str, source: &str, constants: &[Constant]) -> wgpu::ShaderModule {
+        self.gpu.shader(label, source, &[constants, &[("has_kinds", self.has_kinds)]].concat())
     }
 
     fn pipeline_layout(&self, label: &str, own: Option<&wgpu::BindGroupLayout>) -> wgpu::PipelineLayout {
@@ -107,25 +117,12 @@ impl Maker<'_> {
         entry: &str,
         own: &wgpu::BindGroupLayout,
     ) -> wgpu::ComputePipeline {
-        self.compute_with(label, module, entry, own, &[])
-    }
-
-    /// The same with values of the module's overrides.
-    pub(super) fn compute_with(
-        &self,
-        label: &str,
-        module: &wgpu::ShaderModule,
-        entry: &str,
-        own: &wgpu::BindGroupLayout,
-        constants: &[(&str, f64)],
-    ) -> wgpu::ComputePipeline {
-        let constants = self.with_kinds(constants);
         self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(label),
             layout: Some(&self.pipeline_layout(label, Some(own))),
             module,
             entry_point: Some(entry),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+            compilation_options: Default::default(),
             cache: None,
         })
     }
@@ -165,8 +162,6 @@ impl Maker<'_> {
         alpha_to_coverage_enabled: bool,
     ) -> wgpu::RenderPipeline {
         let to_shadow = draw.vertex.starts_with("vs_shadow");
-        let constants = self.with_kinds(draw.constants);
-        let compilation_options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
         let compare = if to_shadow { wgpu::CompareFunction::Less } else { wgpu::CompareFunction::GreaterEqual };
         self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(draw.label),
@@ -174,7 +169,7 @@ impl Maker<'_> {
             vertex: wgpu::VertexState {
                 module,
                 entry_point: Some(draw.vertex),
-                compilation_options: compilation_options.clone(),
+                compilation_options: Default::default(),
                 buffers: draw.buffers,
             },
             primitive: wgpu::PrimitiveState { cull_mode: draw.cull, ..Default::default() },
@@ -191,9 +186,9 @@ impl Maker<'_> {
                 ..Default::default()
             },
             fragment: draw.fragment.map(|entry| wgpu::FragmentState {
-                module,
+                module: draw.fragment_module.unwrap_or(module),
                 entry_point: Some(entry),
-                compilation_options: compilation_options.clone(),
+                compilation_options: Default::default(),
                 targets,
             }),
             multiview_mask: None,

@@ -94,9 +94,10 @@ impl Quality {
         if self == Self::Ultra && fits { 2 } else { 1 }
     }
 
-    /// Whether trees that are not fine are lit at their vertices instead of at each fragment of their sprays, of which most are hidden or cut away.
-    pub(super) fn lights_trees_at_vertices(self) -> bool {
-        matches!(self, Self::Low | Self::Medium)
+    /// Whether trees that are not fine are lit at their vertices: a processor that draws takes long to light each fragment of their sprays, of which most are hidden
+    /// or cut away.
+    pub(super) fn lights_trees_at_vertices(self, is_software: bool) -> bool {
+        is_software && matches!(self, Self::Low | Self::Medium)
     }
 
     /// Side of the shadow map (px).

@@ -33,7 +33,7 @@ impl RainPass {
         let layout = maker.layout("rain", &[uniform(0)]);
         let draw =
             Draw { label: "rain", depth_write: false, blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), ..Draw::default() };
-        let pipeline = maker.draw(&maker.gpu.shader("rain", shaders::RAIN), Some(&layout), &draw);
+        let pipeline = maker.draw(&maker.shader("rain", shaders::RAIN, &[]), Some(&layout), &draw);
         Some(Self { pipeline, group: bind(maker.gpu, "rain", &layout, &[shower.as_entire_binding()]), drops })
     }
 

@@ -67,6 +67,19 @@ pub(super) const TONE: &str = include_str!("../../shaders/tone.wgsl");
 /// Light, after the shared bindings.
 const LIGHT: &str = include_str!("../../shaders/light.wgsl");
 
+/// Value of an `override` of a module.
+pub(super) type Constant = (&'static str, bool);
+
+/// A module whose overrides have these values from the start. Browsers differ in whether a pipeline may be given the value of an override that its entry points
+/// do not read.
+pub(super) fn with_constants(text: String, constants: &[Constant]) -> String {
+    constants.iter().fold(text, |text, (name, value)| {
+        let declared = [true, false].map(|usual| format!("override {name}: bool = {usual};"));
+        let found = declared.iter().find(|declared| text.contains(*declared)).unwrap_or_else(|| panic!("{name} is an override"));
+        text.replace(found, &format!("const {name}: bool = {value};"))
+    })
+}
+
 /// A pass's whole module.
 pub(super) fn whole(source: &str) -> String {
     format!("{COMMON}\n{LIGHT}\n{source}")

@@ -65,7 +65,7 @@ impl Shells {
         let gpu = maker.gpu;
         let layout = maker.layout("shells", &[uniform(1), storage(2), texture(3), storage(4)]);
         let settle_layout = maker.layout("turf", &[storage(0), uniform(1), storage_rw(5)]);
-        let module = gpu.shader("shells", shaders::SHELLS);
+        let module = maker.shader("shells", shaders::SHELLS, &[]);
         let draw = Draw { label: "shells", ..Draw::default() };
         let listed = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let tiles = gpu.empty_buffer("shell tiles", (TILE_LIMIT * size_of::<Tile>()) as u64, listed);

@@ -9,7 +9,7 @@ pub(super) struct Sky {
 
 impl Sky {
     pub(super) fn new(maker: &Maker<'_>) -> Self {
-        let module = maker.gpu.shader("sky", shaders::SKY);
+        let module = maker.shader("sky", shaders::SKY, &[]);
         let draw = Draw { label: "sky", depth_write: false, ..Draw::default() };
         Self { pipeline: maker.draw(&module, None, &draw) }
     }

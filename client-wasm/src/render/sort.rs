@@ -34,7 +34,7 @@ impl Sorter {
         let read = |binding| wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::COMPUTE, ..storage(binding) };
         let plan_layout = layout(&[read(0), uniform(1), storage_rw(2)]);
         let digit_layout = layout(&[read(0), uniform(1), read(3), storage_rw(4), storage_rw(5)]);
-        let module = gpu.shader("sort", shaders::SORT);
+        let module = gpu.shader("sort", shaders::SORT, &[]);
         let pipeline = |entry, own| {
             let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some("sort"),

@@ -5,7 +5,7 @@ use super::gpu::Gpu;
 use super::pipeline::{ByLamps, Draw, Maker, bind, storage};
 use super::shaders;
 use bytemuck::{Pod, Zeroable};
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec3Swizzles};
 
 /// Cells along one side of a tile; twin of `TILE_CELLS` in `terrain.wgsl`.
 const TILE_CELLS: u32 = 16;
@@ -13,6 +13,8 @@ const TILE_CELLS: u32 = 16;
 pub(super) const TILE_VERTICES: u32 = (TILE_CELLS + 1).pow(2);
 /// Most tiles in a frame.
 const TILE_LIMIT: usize = 1024;
+/// How far hills beyond the map's edge reach below and above its own land (m).
+const HILLS_M: [f32; 2] = [-90.0, 160.0];
 /// A tile gives way to a coarser one at this many times its side.
 const RANGE_SIDES: f32 = 2.6;
 
@@ -46,12 +48,16 @@ pub(super) struct Ground {
     corner_m: Vec2,
     side_m: f32,
     finest_m: f32,
+    extent_m: Vec2,
+    /// Lowest and highest of the map.
     height_m: [f32; 2],
+    /// Most that grass stands over it.
+    grass_m: f32,
 }
 
 impl Ground {
-    /// Land of `extent_m` with pixels of `pixel_m` and heights within `height_m`, and what is seen beyond its edge.
-    pub(super) fn new(extent_m: [f32; 2], pixel_m: [f32; 2], height_m: [f32; 2], haze_m: f32) -> Self {
+    /// Land of `extent_m` with pixels of `pixel_m`, heights within `height_m` and grass no taller than `grass_m`, and what is seen beyond its edge.
+    pub(super) fn new(extent_m: [f32; 2], pixel_m: [f32; 2], height_m: [f32; 2], grass_m: f32, haze_m: f32) -> Self {
         let pixel = pixel_m[0].min(pixel_m[1]).clamp(1.0, 16.0);
         let finest_m = TILE_CELLS as f32 * pixel.log2().round().exp2();
         let beyond_m = (4.0 * haze_m).clamp(500.0, 8_000.0);
@@ -63,7 +69,7 @@ impl Ground {
         let corner_m = 0.5 * (Vec2::from(extent_m) - Vec2::splat(side_m));
         // On the grid of the finest tiles, so that the world's own corner is a vertex.
         let corner_m = (corner_m / finest_m).floor() * finest_m;
-        Self { corner_m, side_m, finest_m, height_m: [height_m[0] - 90.0, height_m[1] + 160.0] }
+        Self { corner_m, side_m, finest_m, extent_m: extent_m.into(), height_m, grass_m }
     }
 
     /// The same square with tiles as fine as `finest_m` about the camera.
@@ -83,9 +89,12 @@ impl Ground {
     }
 
     fn collect(&self, corner: Vec2, side: f32, eye: Vec3, frustum: &Frustum, tiles: &mut Vec<Tile>) {
-        let low = Vec3::new(corner.x, self.height_m[0], corner.y);
-        let high = Vec3::new(corner.x + side, self.height_m[1], corner.y + side);
-        if !frustum.sees_box(low, high) {
+        let tile = Tile { corner_m: corner.into(), side_m: side, range_m: RANGE_SIDES * side };
+        let corners = |[lowest, highest]: [f32; 2]| [corner.extend(lowest).xzy(), (corner + side).extend(highest).xzy()];
+        let [lowest, highest] = self.height_m;
+        let [low, high] = corners([lowest + HILLS_M[0], highest + HILLS_M[1]]);
+        let [seen_low, seen_high] = if tile.is_within(self.extent_m) { corners([lowest, highest + self.grass_m]) } else { [low, high] };
+        if !frustum.sees_box(seen_low, seen_high) {
             return;
         }
         let nearest = eye.clamp(low, high);
@@ -95,7 +104,7 @@ impl Ground {
                 self.collect(corner + finer_side * Vec2::new(x, z), finer_side, eye, frustum, tiles);
             }
         } else {
-            tiles.push(Tile { corner_m: corner.into(), side_m: side, range_m: RANGE_SIDES * side });
+            tiles.push(tile);
         }
     }
 }
@@ -115,12 +124,13 @@ pub(super) struct Terrain {
 impl Terrain {
     /// For land of `extent_m`.
     pub(super) fn new(maker: &Maker<'_>, extent_m: [f32; 2]) -> Self {
-        let module = maker.gpu.shader("terrain", shaders::TERRAIN);
+        let module = maker.shader("terrain", shaders::TERRAIN, &[]);
         let layout = maker.layout("terrain", &[storage(0)]);
         let pipelines = ByLamps::new(|lamps| {
-            [0.0, 1.0].map(|beyond| {
-                let constants = [lamps, ("reaches_beyond", beyond)];
-                let draw = Draw { label: "terrain", cull: Some(wgpu::Face::Back), constants: &constants, ..Draw::default() };
+            [false, true].map(|beyond| {
+                // Both have the same vertices, to the bit: they meet at the map's edge.
+                let fragments = maker.shader("terrain", shaders::TERRAIN, &[lamps, ("reaches_beyond", beyond)]);
+                let draw = Draw { label: "terrain", cull: Some(wgpu::Face::Back), fragment_module: Some(&fragments), ..Draw::default() };
                 maker.draw(&module, Some(&layout), &draw)
             })
         });
@@ -169,9 +179,35 @@ mod tests {
     use crate::camera::Camera;
 
     #[test]
+    fn tiles_are_on_the_map_or_reach_beyond_its_edge() {
+        let extent_m = Vec2::new(100.0, 64.0);
+        let is_within = |x: f32, z: f32| Tile { corner_m: [x, z], side_m: 16.0, range_m: 0.0 }.is_within(extent_m);
+        assert!(is_within(0.0, 0.0) && is_within(80.0, 48.0) && is_within(84.0, 48.0), "on it, up to its edge");
+        assert!(!is_within(-16.0, 0.0) && !is_within(-1.0, 16.0) && !is_within(16.0, -1.0), "west and north of it");
+        assert!(
+            !is_within(96.0, 16.0) && !is_within(84.5, 16.0) && !is_within(16.0, 49.0) && !is_within(200.0, 16.0),
+            "east and south of it"
+        );
+    }
+
+    #[test]
+    fn tiles_of_the_map_are_seen_where_land_and_grass_are() {
+        let ground = Ground::new([256.0; 2], [1.0; 2], [0.0, 4.0], 1.0, 900.0);
+        // An eye high over the map that looks level sees none of it near by, and one that looks down some.
+        let seen = |pitch_rad: f32| {
+            let camera = Camera { eye_m: Vec3::new(128.0, 100.0, 250.0), pitch_rad, ..Camera::default() };
+            let tiles = ground.tiles(camera.eye_m, &Frustum::new(&camera.projection_from_world(1.7)));
+            let is_near = |tile: &&Tile| tile.is_within(Vec2::splat(256.0)) && tile.distances_m(camera.eye_m)[1] < 100.0;
+            tiles.iter().filter(is_near).count()
+        };
+        assert_eq!(seen(0.0), 0);
+        assert!(seen(-1.0) > 2, "{}", seen(-1.0));
+    }
+
+    #[test]
     fn tiles_in_view_cover_what_is_in_view_once() {
         for (extent, pixel) in [([256.0, 256.0], [1.0, 1.0]), ([30_000.0, 22_000.0], [74.0, 92.0])] {
-            let ground = Ground::new(extent, pixel, [0.0, 40.0], 900.0);
+            let ground = Ground::new(extent, pixel, [0.0, 40.0], 2.0, 900.0);
             let eye_m = Vec3::new(extent[0] * 0.4, 20.0, extent[1] * 0.6);
             let camera = Camera { eye_m, heading_rad: 0.8, ..Camera::default() };
             let matrix = camera.projection_from_world(1.7);

@@ -1,6 +1,6 @@
 use super::picture::read;
 use super::pipeline::{Maker, bind, storage_rw};
-use super::shaders;
+use super::shaders::{self, Constant};
 use super::uniforms::{
     BrushList, Drift, Frame, Kind, Kinds, Lamp, Lights, Ordering, Plants, ShellFrame, Shower, SortDigit, Squares, StripList,
     UnderbrushFrame,
@@ -20,6 +20,7 @@ use shared::wire::{ServerMessage, Shape, codec};
 use wgpu::naga;
 
 mod branches;
+mod constants;
 mod light;
 mod order;
 mod shells;
@@ -125,13 +126,18 @@ fn meadow_in(wind: Wind) -> Mirror {
 
 /// The same with a scene changed, over a covering map of 16 × 16 pixels.
 pub(super) fn meadow_of(change: impl FnOnce(&mut Scene), covering: &[u8]) -> Mirror {
+    meadow_over(&[0; 17 * 17], change, covering)
+}
+
+/// The same on land whose heights are 17 × 17 pixels.
+fn meadow_over(heights: &[u8], change: impl FnOnce(&mut Scene), covering: &[u8]) -> Mirror {
     let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 0.0, base_m: 0.0 };
     let mut scene = Scene { patches: Patches { count: [4, 4], ..Patches::default() }, ..Scene::new(maps) };
     change(&mut scene);
     let mut mirror = Mirror::default();
     let scene = ServerMessage::Scene {
         scene: Box::new(scene),
-        height_png: grey_png([17; 2], &[0; 17 * 17]),
+        height_png: grey_png([17; 2], heights),
         covering_png: grey_png([16; 2], covering),
         nutrient_png: Vec::new(),
         models: Vec::new(),
@@ -244,23 +250,32 @@ pub(super) fn probe(gpu: &Gpu, picture: &Picture, body: &str, places: &[[f32; 4]
     probe_in(gpu, picture, "", body, places)
 }
 
+/// The same with values of overrides.
+fn probe_with(gpu: &Gpu, picture: &Picture, constants: &[Constant], body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    compute(gpu, picture, &probing("", body), constants, places, places.len() as u32)
+}
+
 /// The same over a pass's WGSL, whose own binding 0 is out of the way.
 fn probe_in(gpu: &Gpu, picture: &Picture, pass: &str, body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
-    let source = format!(
+    compute(gpu, picture, &probing(pass, body), &[], places, places.len() as u32)
+}
+
+/// WGSL of a `probe` of the body of a function of `at`.
+fn probing(pass: &str, body: &str) -> String {
+    format!(
         "{pass}
         @group(1) @binding(0) var<storage, read_write> probes: array<vec4<f32>>;
         fn found(at: vec4<f32>) -> vec4<f32> {{ {body} }}
         @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {{ probes[id.x] = found(probes[id.x]); }}"
-    );
-    compute(gpu, picture, &source, places, places.len() as u32)
+    )
 }
 
-/// What so many invocations of `probe` in a WGSL source make of a storage buffer of `inputs`.
-fn compute(gpu: &Gpu, picture: &Picture, source: &str, inputs: &[[f32; 4]], invocations: u32) -> Vec<[f32; 4]> {
+/// What so many invocations of `probe` in a WGSL source, with values of its overrides, make of a storage buffer of `inputs`.
+fn compute(gpu: &Gpu, picture: &Picture, source: &str, constants: &[Constant], inputs: &[[f32; 4]], invocations: u32) -> Vec<[f32; 4]> {
     let renderer = &picture.renderer;
     let maker = Maker { gpu, frame_layout: &renderer.frame.layout, samples: 1, has_kinds: true };
     let layout = maker.layout("probes", &[storage_rw(0)]);
-    let pipeline = maker.compute("probe", &gpu.shader("probe", source), "probe", &layout);
+    let pipeline = maker.compute("probe", &gpu.shader("probe", source, constants), "probe", &layout);
     let probes = gpu.buffer("probes", bytemuck::cast_slice(inputs), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let group = bind(gpu, "probes", &layout, &[probes.as_entire_binding()]);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -566,7 +581,7 @@ fn underbrush_follows_the_force_as_its_twin_does() {
         })
         .collect();
     let source = shaders::UNDERBRUSH.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(40) var<uniform>");
-    let found = compute(&gpu, &picture, &format!("{source}\n{SOURCE}"), &inputs, 200);
+    let found = compute(&gpu, &picture, &format!("{source}\n{SOURCE}"), &[], &inputs, 200);
     for (input, found) in inputs.chunks_exact(2).zip(found.chunks_exact(2)) {
         let ([x, z, dx, dz], [goal_x, goal_z, settle_secs, dt_secs]) = (input[0], input[1]);
         let twin = Following { value: [x, 0.0, z], rate_per_s: [dx, 0.0, dz] }.followed([goal_x, 0.0, goal_z], settle_secs, dt_secs);

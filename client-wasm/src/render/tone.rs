@@ -20,7 +20,7 @@ impl Tone {
     /// `fineness` pixels of the picture along either side of one of the target.
     pub(super) fn new(maker: &Maker<'_>, target: wgpu::TextureFormat, picture: &wgpu::TextureView, fineness: u32) -> Self {
         let device = &maker.gpu.device;
-        let module = maker.gpu.shader("tone", shaders::TONE);
+        let module = maker.shader("tone", shaders::TONE, &[]);
         let (entry, binding) = if maker.samples > 1 { ("fs_sampled", 2) } else { ("fs", 0) };
         let layout = maker.layout("tone", &[picture_entry(binding, maker.samples), uniform(1)]);
         let encodes = if target.is_srgb() { 1.0 } else { 0.0_f32 };

@@ -167,7 +167,7 @@ uniform_block! {
         /// Grid (x, z) in each of the nine slots; third: number of the frame in which it has moved in; fourth: plants of it that may stand.
         slots: [[i32; 4]; 9],
         /// Plants of a near grid; 1 to leave out what is not seen; 1 where blades narrower than a pixel are drawn as wide as they are; number of the frame, of
-        /// those in which time passes.
+        /// those in which time passes or a grid moves in.
         counts: [u32; 4],
         /// Capacities of the lists of fine blades, of all others, and of flower heads; unused.
         capacities: [u32; 4],

@@ -61,7 +61,7 @@ impl Weighted {
         let [sums, left] = [SUM, COVERED].map(|format| Target::new(gpu, format, size_px, maker.samples));
         let views = [sums.picture(), left.picture()].map(wgpu::BindingResource::TextureView);
         Self {
-            compose: maker.draw(&gpu.shader("compose", shaders::COMPOSE), Some(&layout), &draw),
+            compose: maker.draw(&maker.shader("compose", shaders::COMPOSE, &[]), Some(&layout), &draw),
             group: bind(gpu, "compose", &layout, &views),
             sums,
             left,

@@ -61,7 +61,7 @@ impl Grids {
         let lowest = lowest.texture(gpu);
         let [own, listed, counted] = [&squares, &chunks, &workgroups].map(|buffer| buffer.as_entire_binding());
         let group = bind(gpu, "grids", &layout, &[own, listed, counted, BindingResource::TextureView(&lowest)]);
-        let list = maker.compute("list_grids", &gpu.shader("grids", shaders::GRIDS), "list_grids", &layout);
+        let list = maker.compute("list_grids", &maker.shader("grids", shaders::GRIDS, &[]), "list_grids", &layout);
         let beyond_m = beyond_m(land);
         let frame = Squares { cells: [cell_x_m, cell_z_m, 0.0, 0.0], ..bytemuck::Zeroable::zeroed() };
         Self { list, group, squares, chunks, workgroups, grid_m, beyond_m, capacity, of_turn, frame }

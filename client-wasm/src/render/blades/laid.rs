@@ -46,7 +46,6 @@ struct InOrder {
 
 impl Laid {
     pub(super) fn new(maker: &Maker<'_>, order: Order, listed: &Listed) -> Self {
-        let module = maker.gpu.shader("blades", shaders::BLADES);
         let list_layout = super::list_layout(maker);
         let in_order_layout = maker.layout("blades in order", &[storage(0), storage(1), uniform(2), texture(3), storage(4)]);
         let (layout, vertex) = match order {
@@ -59,12 +58,11 @@ impl Laid {
             Order::Weighted => "fs_weighted",
             Order::Coverage | Order::Sorted | Order::Precomputed => "fs_soft",
         };
-        let flag = |is_set: bool| f64::from(u8::from(is_set));
-        let shape = [("is_textured", flag(listed.are_textured)), ("are_pointed", flag(listed.are_pointed(order)))];
-        let strips = [0.0, 1.0].map(|fades| {
+        let shape = [("is_textured", listed.are_textured), ("are_pointed", listed.are_pointed(order))];
+        let strips = [false, true].map(|fades| {
             ByLamps::new(|lamps| {
-                let constants = [shape[0], shape[1], ("fades", fades), lamps];
-                let draw = Draw { label: "blades", vertex, fragment: Some(fragment), constants: &constants, ..Draw::default() };
+                let module = maker.shader("blades", shaders::BLADES, &[shape[0], shape[1], ("fades", fades), lamps]);
+                let draw = Draw { label: "blades", vertex, fragment: Some(fragment), ..Draw::default() };
                 maker.draw_in_order(&module, Some(layout), &draw, order)
             })
         });

@@ -51,6 +51,7 @@ const FINE_SPREAD: f32 = 0.15;
 const LISTS: usize = 5;
 const SINGLE: usize = 2;
 const HEADS: [usize; 2] = [3, 4];
+const STRIPS: usize = 3;
 /// Bytes of an indirect draw.
 const DRAW_BYTES: u64 = 20;
 
@@ -69,7 +70,7 @@ pub(super) struct Blades {
     compute_group: wgpu::BindGroup,
     lists: [wgpu::BindGroup; LISTS],
     /// Of blades that end broad, and of pointed ones.
-    strips: [[wgpu::Buffer; HEADS[0]]; 2],
+    strips: [[wgpu::Buffer; STRIPS]; 2],
     head_indices: [wgpu::Buffer; 2],
     /// Whether `draws` is of pointed blades.
     are_pointed: bool,
@@ -82,7 +83,7 @@ pub(super) struct Blades {
     /// Near plants that may stand in this frame.
     standing: u32,
     near_workgroups: u32,
-    /// Whether a grid has moved into a slot in this frame.
+    /// Whether a grid has moved into a slot in this turn.
     any_moves_in: bool,
     /// Number of the newest frame, of those in which time passes or a grid moves in.
     frame: u32,
@@ -140,7 +141,7 @@ impl Blades {
         let usage = storage_usage | BufferUsages::INDIRECT | BufferUsages::COPY_DST;
         let draws = gpu.buffer("plant draws", bytemuck::cast_slice(&draw_args), usage);
 
-        let bend = gpu.shader("bend", shaders::BEND);
+        let bend = maker.shader("bend", shaders::BEND, &[]);
         let sift = Sift::new(maker, &bend, &plants, &grids, places);
         let entries =
             [uniform(0), storage_rw(1), storage_rw(2), storage_rw(3), storage_compute(4), storage_rw(5), storage_compute(6), storage_rw(7)];
@@ -165,19 +166,20 @@ impl Blades {
             let [drawn, counters, list] = [&drawn, &counters, &list].map(|buffer| buffer.as_entire_binding());
             bind(gpu, "plant list", &list_layout, &[drawn, counters, list, wgpu::BindingResource::TextureView(&shapes)])
         });
-        let flowers = gpu.shader("flowers", shaders::FLOWERS);
         let heads = ByLamps::new(|lamps| {
+            let flowers = maker.shader("flowers", shaders::FLOWERS, &[lamps]);
             ["vs", "vs_disc"].map(|vertex| {
-                let draw = Draw { label: "flowers", vertex, constants: &[lamps], ..Draw::default() };
+                let draw = Draw { label: "flowers", vertex, ..Draw::default() };
                 maker.draw(&flowers, Some(&list_layout), &draw)
             })
         });
         let are_textured = land.scene().plants.blade_shape == BladeShape::Textured;
         let listed = Listed { blades: drawn, counters, shapes, are_textured, capacities: [fine, others], segments, grid_m };
-        Self {
+        let mut own = Self {
             sift,
             bend: BySpheres::new(|constants| {
-                ["bend_near", "bend_far"].map(|entry| maker.compute_with(entry, &bend, entry, &compute_layout, &constants))
+                let bend = maker.shader("bend", shaders::BEND, &constants);
+                ["bend_near", "bend_far"].map(|entry| maker.compute(entry, &bend, entry, &compute_layout))
             }),
             finish: maker.compute("finish", &bend, "finish", &compute_layout),
             laid: Kept::new(Order::default(), Laid::new(maker, Order::default(), &listed)),
@@ -205,7 +207,9 @@ impl Blades {
             longest_step_secs: land.scene().blade_step_secs(),
             slots: [([i32::MIN; 2], 0); 9],
             first_flower: flower_lot(flowers_per_m2 * grid_m * grid_m, places),
-        }
+        };
+        own.set_order(maker, Order::default());
+        own
     }
 
     /// Lays blades in another order from now on.
@@ -303,7 +307,7 @@ impl Blades {
     pub(super) fn bend(&self, pass: &mut wgpu::ComputePass<'_>, has_spheres: bool, has_lamps: bool) {
         self.grids.list(pass);
         if self.any_moves_in {
-            self.sift.move_in(pass, self.places.div_ceil(CHUNK));
+            self.sift.find_ground(pass, self.places.div_ceil(CHUNK));
         }
         self.sift.run(pass, self.near_workgroups, self.grids.workgroups());
         pass.set_bind_group(1, &self.compute_group, &[]);

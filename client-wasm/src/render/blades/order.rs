@@ -73,7 +73,7 @@ impl Ordered {
         let span_layout = maker.layout("spans", &[uniform(0), read(1), read(2), storage_rw(3), storage_rw(4)]);
         let key_layout = maker.layout("keys", &[uniform(0), read(1), read(2), storage_rw(3), storage_rw(5), read(6)]);
         let group = |layout, buffers: &[_]| bind_as(gpu, "order", layout, buffers);
-        let module = gpu.shader("order", shaders::ORDER);
+        let module = maker.shader("order", shaders::ORDER, &[]);
         Self {
             span: maker.compute("span_blades", &module, "span_blades", &span_layout),
             key: maker.compute("key_blades", &module, "key_blades", &key_layout),

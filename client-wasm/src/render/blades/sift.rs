@@ -10,7 +10,7 @@ use wgpu::BufferUsages;
 const COUNTS: u64 = 2;
 
 pub(super) struct Sift {
-    root: wgpu::ComputePipeline,
+    ground: wgpu::ComputePipeline,
     near: wgpu::ComputePipeline,
     far: wgpu::ComputePipeline,
     group: wgpu::BindGroup,
@@ -32,7 +32,7 @@ impl Sift {
             .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("sift"), layout: &layout, entries: &entries });
         let compute = |entry| maker.compute(entry, shader, entry, &layout);
-        Self { root: compute("root_near"), near: compute("sift_near"), far: compute("sift_far"), group, standing, workgroups }
+        Self { ground: compute("find_ground"), near: compute("sift_near"), far: compute("sift_far"), group, standing, workgroups }
     }
 
     /// How many plants stand in view, near ones and others, and the lists of both.
@@ -52,9 +52,9 @@ impl Sift {
     }
 
     /// Finds the land below all plants, so many workgroups of them a grid, of the near grids that have moved in in this frame.
-    pub(super) fn move_in(&self, pass: &mut wgpu::ComputePass<'_>, workgroups: u32) {
+    pub(super) fn find_ground(&self, pass: &mut wgpu::ComputePass<'_>, workgroups: u32) {
         pass.set_bind_group(1, &self.group, &[]);
-        pass.set_pipeline(&self.root);
+        pass.set_pipeline(&self.ground);
         pass.dispatch_workgroups(workgroups, 9, 1);
     }
 

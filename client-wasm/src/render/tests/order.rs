@@ -130,7 +130,7 @@ fn two_orders_side_by_side_are_made_once() {
         picture.draw_split(&mut mirror, &camera(), 1.0, 0.0, &Split { ways, at: 0.5 });
         // What the right part has just been drawn with.
         let pairs = blades(&picture).laid.get().ordered().expect("blades in order").pairs().clone();
-        (pairs, picture.renderer.billboards.laid.get().pipeline.clone())
+        (pairs, picture.renderer.scene.as_ref().expect("a scene").billboards.laid.get().pipeline.clone())
     };
     let first = draw();
     assert!(draw() == first, "made anew");

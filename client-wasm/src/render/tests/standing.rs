@@ -50,3 +50,24 @@ fn plants_out_of_view_are_not_bent() {
     assert!(near > 300 && far > 300, "{near} near and {far} others in view");
     assert!(2 * near < every_near && 3 * far < every_far, "{near} of {every_near} near, {far} of {every_far} others");
 }
+
+#[test]
+fn plants_stand_on_the_land_of_their_grid_wherever_the_eye_goes() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let heights: Vec<u8> = (0..17 * 17).map(|n| (hash3([n, 5, 3])[0] % 5) as u8).collect();
+    let mut mirror = meadow_over(&heights, |scene| scene.terrain.level_m = 1.0, &[255; 16 * 16]);
+    let grid_m = mirror.land().expect("land").scene().plants.grid_m;
+    let mut gone = Picture::new(&gpu, [96, 54], Quality::Low);
+    let mut pictures = Vec::new();
+    // Where the eye begins, one grid on, across a corner, far off, and back.
+    for [x, z] in [[0.0, 0.0], [1.0, 0.0], [2.0, 1.0], [-2.0, -1.0], [0.0, 0.0]] {
+        let eye_m = Vec3::new(32.0 + x * grid_m, 5.5, 32.0 + z * grid_m);
+        let camera = Camera { eye_m, pitch_rad: -0.4, ..Camera::default() };
+        gone.draw(&mut mirror, &camera, 0.0, 0.0);
+        let mut fresh = Picture::new(&gpu, [96, 54], Quality::Low);
+        fresh.draw(&mut mirror, &camera, 0.0, 0.0);
+        assert!(gone.rgba() == fresh.rgba(), "another picture at {eye_m}");
+        pictures.push(fresh.rgba());
+    }
+    assert!(pictures[0] == pictures[4] && pictures[0] != pictures[1], "the eye has moved");
+}

@@ -68,7 +68,7 @@ fn blades_move_as_their_twins_do() {
 
     let cases: Vec<_> = (0..600).map(blade_case).collect();
     let source = format!("{}\n{SOURCE}", shaders::BLADE);
-    let outputs = compute(&gpu, &picture, &source, cases.as_flattened(), cases.len() as u32);
+    let outputs = compute(&gpu, &picture, &source, &[], cases.as_flattened(), cases.len() as u32);
     let mut touching = 0;
     for (case, found) in cases.into_iter().zip(outputs.chunks_exact(9)) {
         let [l0, l1, l2, a0, a1, a2, [length_m, frequency_rad_per_s, damping_share, lean_per_wind2], root, [x, y, z, way]] = case;
@@ -115,7 +115,7 @@ fn blades_are_drawn_as_their_twins_are() {
         })
         .collect();
     let source = format!("{}\n{}\n{SOURCE}", shaders::BLADE, shaders::BACKBONE);
-    let outputs = compute(&gpu, &picture, &source, cases.as_flattened(), cases.len() as u32);
+    let outputs = compute(&gpu, &picture, &source, &[], cases.as_flattened(), cases.len() as u32);
     for ([l0, l1, l2, [length_m, side_rad, t, segments]], found) in cases.into_iter().zip(outputs.chunks_exact(4)) {
         let points_m = Sway::at_rest([l0, l1, l2].map(|[x, z, ..]| [x, z])).points_m(length_m);
         let [left, right] = segment_points_m(&drawn_out_m(&points_m, length_m, segments as u32), side_rad, t, 1.0).map(Vec3::from);

@@ -25,7 +25,7 @@ fn leaves_dip_by_the_drops_that_fall_on_them() {
     let source = format!("{source}\n{SOURCE}");
     let dips = |per_s: f32, times: &[f32]| {
         let inputs: Vec<_> = times.iter().flat_map(|&secs| [[0.2, 0.1, per_s, secs]; 256]).collect();
-        compute(&gpu, &picture, &source, &inputs, inputs.len() as u32).into_iter().map(|found| f64::from(found[0])).collect::<Vec<_>>()
+        compute(&gpu, &picture, &source, &[], &inputs, inputs.len() as u32).into_iter().map(|found| f64::from(found[0])).collect::<Vec<_>>()
     };
     // Campbell's theorem for n drops a span, each t·e^(−t) from its strike on with (3s² − s³)/2 of its force: mean n·⅜, variance n·(33/140)·¼.
     let unit_m = 0.2 * 0.1;

@@ -154,7 +154,8 @@ impl Underbrush {
         let ribbon_groups = gpu.empty_buffer("ribbon groups", 12, storage_usage | BufferUsages::INDIRECT);
         let borders = gpu.empty_buffer("borders of rows", block_room * u64::from(BLOCK) * ROW_BYTES, read_back);
 
-        let module = gpu.shader("underbrush", shaders::UNDERBRUSH);
+        let shader = |constants: &[shaders::Constant]| maker.shader("underbrush", shaders::UNDERBRUSH, constants);
+        let module = shader(&[]);
         let read = |binding| wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::COMPUTE, ..storage(binding) };
         let layout = |label, entries: &[_]| maker.layout(label, entries);
         let step = |entry, entries: &[_], buffers: &[_]| {
@@ -182,15 +183,14 @@ impl Underbrush {
             let entries: Vec<_> = whole.chain([forces]).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
             let group =
                 gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("stand"), layout: &layout, entries: &entries });
-            let pipeline = ByLamps::new(|lamps| maker.compute_with("stand", &module, "stand", &layout, &[lamps]));
+            let pipeline = ByLamps::new(|lamps| maker.compute("stand", &shader(&[lamps]), "stand", &layout));
             Step { pipeline, group }
         };
         let ribbons = {
             let layout = layout("ribbons", &[read(10), read(13), read(14), uniform(15), read(16), read(21), storage_rw(23)]);
-            let trembles = f64::from(u8::from(land.scene().rain.rate_mm_per_h > 0.0));
-            let pipeline = BySpheres::new(|[lamps, spheres]| {
-                maker.compute_with("ribbons", &module, "ribbons", &layout, &[lamps, spheres, ("trembles", trembles)])
-            });
+            let trembles = ("trembles", land.scene().rain.rate_mm_per_h > 0.0);
+            let pipeline =
+                BySpheres::new(|[lamps, spheres]| maker.compute("ribbons", &shader(&[lamps, spheres, trembles]), "ribbons", &layout));
             let [steps, rows, settings, limbs] = [&lists.steps, &lists.rows, &lists.settings, &lists.limbs];
             let buffers = [(10, &stands), (13, steps), (14, rows), (15, settings), (16, limbs), (21, &owners), (23, &borders)];
             Step { pipeline, group: bind_as(gpu, "ribbons", &layout, &buffers) }

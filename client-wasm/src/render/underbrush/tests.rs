@@ -125,7 +125,7 @@ impl Bender {
             }";
         let maker = Maker { gpu, frame_layout: &picture.renderer.frame.layout, samples: 1, has_kinds: true };
         let layout = maker.layout("bender", &[storage(10), storage(13), storage(14), uniform(15), storage(16), storage_rw(30)]);
-        let module = gpu.shader("bender", &format!("{}\n{SOURCE}", shaders::UNDERBRUSH));
+        let module = maker.shader("bender", &format!("{}\n{SOURCE}", shaders::UNDERBRUSH), &[]);
         Self { pipeline: maker.compute("bender", &module, "probe", &layout), layout }
     }
 
