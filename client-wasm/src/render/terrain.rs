@@ -88,15 +88,24 @@ impl Ground {
         tiles
     }
 
+    /// How far hills of a tile may reach below and above the map's own land (m), as `far_hills` in `common.wgsl` has them.
+    fn hills_m(&self, tile: &Tile) -> [f32; 2] {
+        let low = Vec2::from(tile.corner_m);
+        let outside_m = (-low).max(low + tile.side_m - self.extent_m).max(Vec2::ZERO).length();
+        let share = (outside_m / 900.0).min(1.0);
+        let rise = share * share * (3.0 - 2.0 * share);
+        [-63.0 * rise, (87.0 + 0.006 * outside_m) * rise]
+    }
+
     fn collect(&self, corner: Vec2, side: f32, eye: Vec3, frustum: &Frustum, tiles: &mut Vec<Tile>) {
         let tile = Tile { corner_m: corner.into(), side_m: side, range_m: RANGE_SIDES * side };
-        let corners = |[lowest, highest]: [f32; 2]| [corner.extend(lowest).xzy(), (corner + side).extend(highest).xzy()];
         let [lowest, highest] = self.height_m;
-        let [low, high] = corners([lowest + HILLS_M[0], highest + HILLS_M[1]]);
-        let [seen_low, seen_high] = if tile.is_within(self.extent_m) { corners([lowest, highest + self.grass_m]) } else { [low, high] };
-        if !frustum.sees_box(seen_low, seen_high) {
+        let between = |[below, above]: [f32; 2]| [corner.extend(lowest + below).xzy(), (corner + side).extend(highest + above).xzy()];
+        let [low, high] = between(self.hills_m(&tile));
+        if !frustum.sees_box(low, high + self.grass_m * Vec3::Y) {
             return;
         }
+        let [low, high] = between(HILLS_M);
         let nearest = eye.clamp(low, high);
         let finer_side = 0.5 * side;
         if side > self.finest_m && eye.distance(nearest) < RANGE_SIDES * finer_side {
