@@ -1,7 +1,7 @@
-//! Builds the browser client and embeds it, so that `cargo run` is the only command there is.
+//! Builds the browser client and embeds it, so that `cargo run` is the only command needed.
 //!
-//! The pages of `client-wasm/web`, the compiled client and its JavaScript bindings land in `OUT_DIR/client`; `OUT_DIR/client.rs`
-//! holds the table of them that `src/net/assets.rs` includes. `PRAIRIE_CLIENT=skip` builds no client and embeds a page that says so.
+//! The files of `client-wasm/web`, the compiled client and its JavaScript bindings go to `OUT_DIR/client`. `OUT_DIR/client.rs` is the
+//! table of these files that `src/net/assets.rs` includes. `PRAIRIE_CLIENT=skip` builds no client and embeds a placeholder page.
 
 #[path = "build/compile.rs"]
 mod compile;
@@ -32,17 +32,17 @@ fn build() -> Result<()> {
     match env::var("PRAIRIE_CLIENT").unwrap_or_default().as_str() {
         "skip" => copy(&server.join("build/without_client.html"), &client.join("index.html"))?,
         "" => {
-            let workspace = server.parent().ok_or("the server crate lies outside its workspace")?;
+            let workspace = server.parent().ok_or("the server package is outside its workspace")?;
             watch(workspace);
             compile::client(workspace, &compile::target_dir(&out), &client)?;
             copy_pages(&workspace.join("client-wasm/web"), &client)?;
         }
-        other => return Err(format!("PRAIRIE_CLIENT={other}: the only value is `skip`; leave it unset to build the client")),
+        other => return Err(format!("PRAIRIE_CLIENT is `{other}`; allowed: `skip`, or unset to build the client")),
     }
     embed::write_table(&client, &out.join("client.rs"))
 }
 
-/// Everything that the client is made of.
+/// Reruns the build when a source of the client changes.
 fn watch(workspace: &Path) {
     for source in ["client-wasm", "shared/src", "shared/Cargo.toml", "Cargo.toml", "Cargo.lock", "server/build"] {
         println!("cargo::rerun-if-changed={}", workspace.join(source).display());

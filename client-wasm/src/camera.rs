@@ -1,12 +1,12 @@
-//! The camera: where it is, what it sees, and how an address names it.
+//! The camera: position, direction, projection, and its text form in a link.
 
 use glam::{Mat4, Vec3, Vec4};
 use std::f32::consts::{FRAC_PI_2, TAU};
 
-/// Nearest distance that is drawn (m).
+/// Distance of the near plane (m).
 pub const NEAR_M: f32 = 0.02;
 
-/// Largest pitch up or down (rad).
+/// Maximum pitch up or down (rad).
 pub const PITCH_LIMIT_RAD: f32 = 1.5;
 
 /// A camera without roll.
@@ -29,20 +29,20 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// Unit vector of the view.
+    /// Unit vector of the viewing direction.
     pub fn forward(&self) -> Vec3 {
         let (sin_pitch, cos_pitch) = self.pitch_rad.sin_cos();
         let (sin_heading, cos_heading) = self.heading_rad.sin_cos();
         Vec3::new(sin_heading * cos_pitch, sin_pitch, -cos_heading * cos_pitch)
     }
 
-    /// Unit vector to the right, level.
+    /// Horizontal unit vector to the right.
     pub fn right(&self) -> Vec3 {
         let (sin_heading, cos_heading) = self.heading_rad.sin_cos();
         Vec3::new(cos_heading, 0.0, sin_heading)
     }
 
-    /// World to view: the view looks along −Z, Y up.
+    /// World to view space, which looks along −Z with Y up.
     pub fn view_from_world(&self) -> Mat4 {
         glam::camera::rh::view::look_to_mat4(self.eye_m, self.forward(), Vec3::Y)
     }
@@ -69,13 +69,13 @@ impl Camera {
         self.pitch_rad = (self.pitch_rad + up_rad).clamp(-PITCH_LIMIT_RAD, PITCH_LIMIT_RAD);
     }
 
-    /// Fragment of an address that names this view: `x,y,z,heading,pitch` in m and degrees, two decimals.
+    /// URL fragment of this view: `x,y,z,heading,pitch` in m and degrees, two decimals.
     pub fn to_hash(&self) -> String {
         let [x, y, z] = self.eye_m.to_array();
         format!("{x:.2},{y:.2},{z:.2},{:.2},{:.2}", self.heading_rad.to_degrees(), self.pitch_rad.to_degrees())
     }
 
-    /// The view that a fragment of an address names, with or without `#`; none when it names none.
+    /// Parses a URL fragment, with or without `#`; `None` if it is not a view.
     pub fn from_hash(hash: &str) -> Option<Self> {
         let mut numbers = hash.trim_start_matches('#').split(',').map(|part| part.trim().parse::<f32>().ok());
         let mut next = |limit: f32| numbers.next().flatten().filter(|value| value.abs() <= limit);
@@ -85,8 +85,8 @@ impl Camera {
         numbers.next().is_none().then_some(Self { eye_m, heading_rad: heading.to_radians().rem_euclid(TAU), pitch_rad, ..Self::default() })
     }
 
-    /// The view at which a scene starts, over land of height `ground_m`.
-    pub fn start(start: &shared::scene::CameraStart, extent_m: [f32; 2], ground_m: impl Fn(f32, f32) -> f32) -> Self {
+    /// Start view of a scene, where `ground_m` is the elevation of the ground at (x, z).
+    pub fn start(start: &prairie_core::scene::CameraStart, extent_m: [f32; 2], ground_m: impl Fn(f32, f32) -> f32) -> Self {
         let [x, z] = [start.at[0] * extent_m[0], start.at[1] * extent_m[1]];
         let pitch_rad = start.pitch_rad.clamp(-FRAC_PI_2, FRAC_PI_2);
         let eye_m = Vec3::new(x, ground_m(x, z) + start.height_m, z);
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_to_the_right_and_above_lands_there() {
+    fn a_point_up_right_projects_up_right() {
         let camera = Camera { heading_rad: 0.7, ..Camera::default() };
         let point = camera.eye_m + camera.forward() * 10.0 + camera.right() + Vec3::Y;
         let clip = camera.projection_from_world(1.0).project_point3(point);
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hash_names_its_view_again() {
+    fn a_url_fragment_restores_its_view() {
         let camera = Camera { eye_m: Vec3::new(12.25, 3.5, 99.75), heading_rad: 1.0, pitch_rad: -0.2, ..Camera::default() };
         let again = Camera::from_hash(&format!("#{}", camera.to_hash())).expect("a hash");
         assert!((again.eye_m - camera.eye_m).length() < 0.01);

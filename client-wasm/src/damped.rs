@@ -1,23 +1,23 @@
-//! A critically damped follower: the fastest approach that never swings past its goal.
+//! Critically damped smoothing: the fastest approach to a goal without overshoot.
 
 use std::f32::consts::{PI, TAU};
 
-/// A value that follows a goal as a critically damped spring, in closed form, so that any frame rate gives the same path
-/// and any step is stable: `x − goal = (A + B·t)·e^(−t/τ)`.
+/// A value that follows a goal like a critically damped spring: `x − goal = (A + B·t)·e^(−t/τ)`. The closed form is stable for any step and gives the same
+/// path at any frame rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Damped {
-    /// Where the value is now.
+    /// Current value.
     pub value: f32,
     rate: f32,
 }
 
 impl Damped {
-    /// At rest at `value`.
+    /// A follower at rest at `value`.
     pub fn at(value: f32) -> Self {
         Self { value, rate: 0.0 }
     }
 
-    /// Moves for `dt_secs` towards `goal` with time constant `tau_secs` (τ, more than 0) and returns the new value.
+    /// Advances by `dt_secs` towards `goal` with time constant `tau_secs` (τ > 0) and returns the new value.
     pub fn follow(&mut self, goal: f32, tau_secs: f32, dt_secs: f32) -> f32 {
         let a = self.value - goal;
         let b = self.rate + a / tau_secs;
@@ -28,14 +28,14 @@ impl Damped {
         self.value
     }
 
-    /// The same for an angle (rad), the short way round.
+    /// [`follow`](Self::follow) for an angle (rad), along the shorter arc.
     pub fn follow_angle(&mut self, goal_rad: f32, tau_secs: f32, dt_secs: f32) -> f32 {
         let goal_rad = self.value + wrap_angle(goal_rad - self.value);
         self.follow(goal_rad, tau_secs, dt_secs)
     }
 }
 
-/// The same angle within −π..=π (rad); one that lies there already comes back bit for bit.
+/// Wraps an angle to −π..=π (rad). An angle in that range is returned unchanged, bit for bit.
 pub fn wrap_angle(angle_rad: f32) -> f32 {
     if angle_rad.abs() <= PI { angle_rad } else { (angle_rad + PI).rem_euclid(TAU) - PI }
 }
@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn it_arrives_without_swinging_past() {
+    fn it_reaches_the_goal_without_overshoot() {
         let mut damped = Damped::at(1.0);
         for _ in 0..300 {
             assert!(damped.follow(0.0, 0.2, 0.01) >= 0.0);
@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn an_angle_takes_the_short_way() {
+    fn an_angle_takes_the_shorter_arc() {
         let mut damped = Damped::at(3.0);
         assert!(damped.follow_angle(-3.0, 0.2, 0.1) > 3.0);
         assert!((wrap_angle(7.0) - (7.0 - TAU)).abs() < 1e-6);

@@ -1,19 +1,26 @@
-//! The Prairie client: a wgpu renderer for the browser, and natively without a window.
+//! The Prairie client: mirrors a Prairie server's world and draws it with [wgpu], on WebGPU in a browser or natively without a window.
 //!
-//! - [`state`]: the mirror of the server that messages are applied to.
-//! - [`camera`]: where the picture is taken from; [`rig`]: what moves it.
-//! - [`stillness`]: whether a frame would differ from the last; [`budget`]: how fine it may be drawn.
-//! - [`controls`]: what hands ask for; [`damped`]: motion that never swings past its goal.
-//! - [`render`]: the passes that make the picture.
-//! - `browser`, in a page only: socket, hands, frame loop, and what the page's script calls.
+//! - [`state`]: the mirror of the server's world, to which its messages are applied.
+//! - [`render`]: the renderer.
+//! - [`camera`]: the camera; [`rig`]: its motion, free or behind a vehicle; [`damped`]: critically damped smoothing.
+//! - [`vehicle`]: table of vehicle kinds; [`bindings`]: keys and gamepad buttons; [`controls`]: control input and its meaning for a vehicle.
+//! - [`budget`]: automatic quality; [`redraw`]: detection of frames that need not be drawn.
+//! - `browser` (wasm only): page, socket, input devices and frame loop.
 
+pub mod bindings;
 #[cfg(target_arch = "wasm32")]
 pub mod browser;
 pub mod budget;
 pub mod camera;
 pub mod controls;
 pub mod damped;
+pub mod redraw;
 pub mod render;
 pub mod rig;
 pub mod state;
-pub mod stillness;
+pub mod vehicle;
+
+/// Runs the example of the README as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDocTests;

@@ -1,25 +1,24 @@
-//! A frame is drawn without a window on whatever Vulkan adapter there is, and its picture shows a prairie: sky above, grass
-//! below, and a track where the field is bent.
+//! Frames drawn without a window, on any Vulkan adapter, show a prairie: sky above, grass below, and a track where the bend field is not zero.
 
-use client_wasm::camera::Camera;
-use client_wasm::render::{Gpu, Picture, Quality};
-use client_wasm::state::Mirror;
-use client_wasm::stillness::Stillness;
 use glam::Vec3;
-use shared::scene::{Patches, Scene, TerrainMaps, Wind, WindDust};
-use shared::terrain::grey_png;
-use shared::wire::quantise::{dust_code, omega_code, theta_code};
-use shared::wire::{ServerMessage, Shape, codec};
+use prairie_client::camera::Camera;
+use prairie_client::redraw::RedrawTracker;
+use prairie_client::render::{Gpu, OffscreenRenderer, Quality};
+use prairie_client::state::Mirror;
+use prairie_core::scene::{Patches, Scene, TerrainMaps, Wind, WindDust};
+use prairie_core::terrain::grey_png;
+use prairie_core::wire::quantise::{dust_code, omega_code, theta_code};
+use prairie_core::wire::{ServerMessage, Shape, codec};
 
 const SIZE_PX: [u32; 2] = [192, 108];
 
 /// ID of a tree in a covering map.
 const TREE: u8 = 253;
 
-/// Time between two frames (s).
+/// Frame interval (s).
 const DT_SECS: f32 = 0.1;
 
-/// A flat meadow of 64 m, covered with `cover`.
+/// A flat meadow of 64 m × 64 m, covered with `cover` everywhere.
 fn meadow(cover: u8) -> Mirror {
     meadow_in(cover, Wind::default())
 }
@@ -44,7 +43,7 @@ fn meadow_with(covering: &[u8], change: impl FnOnce(&mut Scene)) -> Mirror {
         nutrient_png: Vec::new(),
         models: Vec::new(),
     };
-    mirror.apply(scene).expect("a sound scene");
+    mirror.apply(scene).expect("a valid scene");
     mirror
 }
 
@@ -53,10 +52,10 @@ fn camera() -> Camera {
 }
 
 fn draw(gpu: &Gpu, mirror: &mut Mirror) -> Vec<u8> {
-    let mut picture = Picture::new(gpu, SIZE_PX, Quality::Low);
+    let mut picture = OffscreenRenderer::new(gpu, SIZE_PX, Quality::Low);
     for frame in 0..3 {
         let stats = picture.draw(mirror, &camera(), f64::from(frame) / 30.0, 1.0 / 30.0);
-        // Of nine grids of 160 × 160 blades and 38 flowers those that the view shows, thinned out beyond 2 m.
+        // The visible part of nine grids of 160 × 160 blades and 38 flowers, thinned out beyond 2 m.
         assert!((30_000..230_742).contains(&stats.blades) && stats.ground_vertices > 0, "{stats:?}");
     }
     picture.rgba()
@@ -76,7 +75,7 @@ fn difference(a: &[u8], b: &[u8]) -> f32 {
 
 #[test]
 fn a_frame_shows_sky_grass_and_track() {
-    let gpu = Gpu::headless().expect("a Vulkan adapter; mesa-vulkan-drivers brings one in software");
+    let gpu = Gpu::headless().expect("a Vulkan adapter; the package mesa-vulkan-drivers contains a software one");
     let grass = draw(&gpu, &mut meadow(255));
     let [sky_red, _, sky_blue] = mean(&grass, 0, 15);
     assert!(sky_blue > sky_red + 5.0 && sky_blue > 120.0, "sky {sky_red} {sky_blue}");
@@ -88,30 +87,30 @@ fn a_frame_shows_sky_grass_and_track() {
     assert!(red > green, "bare soil {red} {green}");
 
     let again = draw(&gpu, &mut meadow(255));
-    assert!(difference(&grass, &again) < 0.5, "the same frames give the same picture");
+    assert!(difference(&grass, &again) < 0.5, "drawing the same frames again gives the same picture");
 
     let mut trodden = meadow(255);
     let plane = |code: i8| std::iter::repeat_n(code, 64 * 64);
     let codes: Vec<i8> = plane(theta_code(1.4)).chain(plane(omega_code(30.0))).chain(plane(omega_code(0.0))).collect();
     for patch in 0..16 {
         let payload = codec::encode(Shape::patch(64), &codes, None);
-        trodden.apply(ServerMessage::Patch { patch, seq: 1, key: true, payload }).expect("a sound patch");
+        trodden.apply(ServerMessage::Patch { patch, seq: 1, key: true, payload }).expect("a valid patch");
     }
     let trodden = draw(&gpu, &mut trodden);
     assert!(difference(&grass, &trodden) > 6.0, "trodden grass looks different: {}", difference(&grass, &trodden));
 }
 
 #[test]
-fn dust_is_seen_where_it_is_and_nowhere_else() {
-    let gpu = Gpu::headless().expect("a Vulkan adapter; mesa-vulkan-drivers brings one in software");
+fn dust_is_drawn_only_where_it_is() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter; the package mesa-vulkan-drivers contains a software one");
     let wind = Wind { dust: WindDust { release_per_s: 1.0, ..WindDust::default() }, ..Wind::default() };
-    // Still air over 32 × 8 × 32 cells of 8 m, and dust west of `edge_m`: what is interpolated and how wide a puff is bring it some 12 m on.
+    // Still air over 32 × 8 × 32 cells of 8 m, with dust west of `edge_m`. Interpolation and the width of puffs extend it by some 12 m.
     let picture = |edge_m: f32| {
         let mut mirror = meadow_in(255, wind.clone());
         let mut codes = vec![0; 3 * 8192];
         codes.extend((0..8192).map(|at| if (at % 32) as f32 * 8.0 < edge_m { dust_code(4.0) } else { 0 }));
         let payload = codec::encode(Shape::wind(32, true), &codes, None);
-        mirror.apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, payload }).expect("a sound wind");
+        mirror.apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, payload }).expect("a valid wind frame");
         draw(&gpu, &mut mirror)
     };
     let (clear, dusty) = (picture(0.0), picture(16.0));
@@ -128,22 +127,22 @@ fn dust_is_seen_where_it_is_and_nowhere_else() {
 }
 
 #[test]
-fn at_rest_a_frame_would_equal_the_last() {
-    let gpu = Gpu::headless().expect("a Vulkan adapter; mesa-vulkan-drivers brings one in software");
+fn a_skipped_frame_would_equal_the_previous_one() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter; the package mesa-vulkan-drivers contains a software one");
     let mut covering = [255; 16 * 16];
-    // A tree in view.
+    // A visible tree.
     covering[5 * 16 + 8] = TREE;
     let mut mirror = meadow_with(&covering, |scene| {
         scene.wind.mean_m_per_s = [0.0; 2];
         (scene.plants.plants_per_side, scene.plants.swing_damping) = (12, 0.5);
     });
-    let (mut picture, mut stillness) = (Picture::new(&gpu, [64, 36], Quality::Low), Stillness::default());
+    let (mut picture, mut redraw) = (OffscreenRenderer::new(&gpu, [64, 36], Quality::Low), RedrawTracker::default());
     let mut time_secs = 0.0;
-    while stillness.needs_frame(&mirror, &camera(), (), DT_SECS) {
+    while redraw.needs_frame(&mirror, &camera(), (), DT_SECS) {
         picture.draw(&mut mirror, &camera(), time_secs, DT_SECS);
         time_secs += f64::from(DT_SECS);
     }
-    assert!(time_secs > 2.0, "blades need time to come to rest: {time_secs} s");
+    assert!(time_secs > 2.0, "blades need time to settle: {time_secs} s");
     let rest = picture.rgba();
     picture.draw(&mut mirror, &camera(), time_secs + 37.0, DT_SECS);
     let changed = rest.iter().zip(picture.rgba()).filter(|(a, b)| a.abs_diff(*b) > 2).count();

@@ -1,30 +1,30 @@
-// The address: what it asks for, and what the page keeps in it, so that whoever opens a copy sees the same.
-// The view, #x,y,z,heading,pitch, is kept by the client itself.
+// The page's address: its parameters, and the settings stored in it, so that a copied link shows the same picture.
+// The client itself stores the view, #x,y,z,heading,pitch.
 
-// What a link holds, in this order.
+// Parameters of a shared link, in this order.
 const SHARED = ["scene", "quality", "budget", "order", "far", "hour", "compare", "at"];
 
-const asked = new URLSearchParams(location.search);
+const parameters = new URLSearchParams(location.search);
 
-// What the address asks for under a key; null for nothing.
-export const ask = (key) => asked.get(key);
+// Parameter of the address; null if it is absent.
+export const parameter = (key) => parameters.get(key);
 
-// Keeps values by their keys; null takes one away.
+// Stores parameters in the address; null removes one.
 export function keep(values) {
   for (const [key, value] of Object.entries(values)) {
-    if (value === null) asked.delete(key);
-    else asked.set(key, value);
+    if (value === null) parameters.delete(key);
+    else parameters.set(key, value);
   }
-  const own = [...asked.keys()].filter((key) => !SHARED.includes(key));
+  const own = [...parameters.keys()].filter((key) => !SHARED.includes(key));
   const address = query([...SHARED, ...own]) + location.hash;
-  // Some browsers refuse when the address changes often; the next change brings this one along.
-  try { history.replaceState(null, "", address) } catch { /* later */ }
+  // Some browsers reject frequent changes; the next change includes this one.
+  try { history.replaceState(null, "", address) } catch { /* included in the next change */ }
 }
 
-// The link to what is seen; `view` is x,y,z,heading,pitch.
+// Link to the current picture; `view` is x,y,z,heading,pitch.
 export const link = (view) => `${location.origin}${location.pathname}${query(SHARED)}#${view}`;
 
 function query(keys) {
-  const pairs = keys.filter((key) => asked.has(key)).map((key) => `${key}=${encodeURIComponent(asked.get(key)).replaceAll("%2C", ",")}`);
+  const pairs = keys.filter((key) => parameters.has(key)).map((key) => `${key}=${encodeURIComponent(parameters.get(key)).replaceAll("%2C", ",")}`);
   return `?${pairs.join("&")}`;
 }

@@ -1,21 +1,21 @@
-// Pictures and films of the canvas, saved as files that are named after scene and view.
+// Pictures and videos of the canvas, saved as files named after scene and view.
 
-// The first that the browser can record is taken.
-const FILMS = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
-const FILM_BITS_PER_S = 16e6;
-const FILM_FRAMES_PER_S = 60;
+// Video formats in order of preference.
+const FORMATS = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
+const VIDEO_BITS_PER_S = 16e6;
+const VIDEO_FRAMES_PER_S = 60;
 
 export class Capture {
-  // `state()` is the client's account of itself; `tell(text)` shows a line to the visitor; `filming(seconds)` is called about once a second, with null at the end.
-  constructor(client, canvas, { state, tell, filming }) {
-    Object.assign(this, { client, canvas, state, tell, filming });
+  // `state()` returns the client's state; `notify(text)` shows a line to the user; `recording(seconds)` is called twice a second, and with null at the end.
+  constructor(client, canvas, { state, notify, recording }) {
+    Object.assign(this, { client, canvas, state, notify, recording });
     this.recorder = null;
   }
 
-  // The canvas's newest picture in its full size: a PNG and its name.
+  // The newest frame at full size: a PNG and its file name.
   async shoot() {
     const name = this.name("png");
-    return { name, blob: await this.drawn() };
+    return { name, blob: await this.png() };
   }
 
   // Saves a picture.
@@ -24,47 +24,47 @@ export class Capture {
       const { name, blob } = await this.shoot();
       save(blob, name);
       const [width, height] = this.state().picture_px;
-      this.tell(`Picture saved: ${width} × ${height} px.`);
+      this.notify(`Picture saved: ${width} × ${height} px.`);
     } catch (error) {
-      this.tell(`No picture: ${error.message}`);
+      this.notify(`No picture saved: ${error.message}`);
     }
   }
 
-  // Begins a film, or ends and saves it.
-  film() {
+  // Starts a video, or ends and saves it.
+  video() {
     if (this.recorder) this.recorder.stop();
     else this.record();
   }
 
   record() {
-    const type = window.MediaRecorder && this.canvas.captureStream && FILMS.find((film) => MediaRecorder.isTypeSupported(film));
-    if (!type) return this.tell("This browser cannot film a canvas. Chrome, Edge and Firefox can.");
+    const type = window.MediaRecorder && this.canvas.captureStream && FORMATS.find((format) => MediaRecorder.isTypeSupported(format));
+    if (!type) return this.notify("This browser cannot record a canvas. Chrome, Edge and Firefox can.");
     const name = this.name(type.startsWith("video/mp4") ? "mp4" : "webm");
     const parts = [];
-    const begun = performance.now();
-    const recorder = new MediaRecorder(this.canvas.captureStream(FILM_FRAMES_PER_S), { mimeType: type, videoBitsPerSecond: FILM_BITS_PER_S });
-    const seconds = () => (performance.now() - begun) / 1000;
-    const counting = setInterval(() => this.filming(seconds()), 500);
+    const started = performance.now();
+    const recorder = new MediaRecorder(this.canvas.captureStream(VIDEO_FRAMES_PER_S), { mimeType: type, videoBitsPerSecond: VIDEO_BITS_PER_S });
+    const seconds = () => (performance.now() - started) / 1000;
+    const timer = setInterval(() => this.recording(seconds()), 500);
     recorder.ondataavailable = ({ data }) => data.size && parts.push(data);
-    recorder.onerror = ({ error }) => this.tell(`The film ended: ${error?.message ?? "the browser could not go on"}.`);
+    recorder.onerror = ({ error }) => this.notify(`The recording stopped: ${error?.message ?? "the browser gave no reason"}.`);
     recorder.onstop = () => {
-      clearInterval(counting);
+      clearInterval(timer);
       for (const track of recorder.stream.getTracks()) track.stop();
       this.recorder = null;
-      this.client.keep_drawing(false);
-      this.filming(null);
-      if (!parts.length) return this.tell("No film: the browser recorded nothing.");
+      this.client.draw_every_frame(false);
+      this.recording(null);
+      if (!parts.length) return this.notify("No video saved: the browser recorded nothing.");
       save(new Blob(parts, { type }), name);
-      this.tell(`Film saved: ${seconds().toFixed(1)} s.`);
+      this.notify(`Video saved: ${seconds().toFixed(1)} s.`);
     };
-    this.client.keep_drawing(true);
+    this.client.draw_every_frame(true);
     recorder.start(1000);
     this.recorder = recorder;
-    this.filming(0);
+    this.recording(0);
   }
 
-  // Draws, and takes the picture in the same task: later the canvas need not have it any more.
-  drawn() {
+  // Draws and reads the canvas in the same task, since the canvas may be cleared after it.
+  png() {
     return new Promise((resolve, reject) => {
       const attempt = () => {
         if (!this.client.redraw()) return requestAnimationFrame(attempt);

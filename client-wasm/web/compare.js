@@ -1,34 +1,34 @@
-// Two ways of drawing side by side, and the border between them, which is dragged or moved by keys.
+// Side-by-side comparison of two variants of the picture, with a border that is moved by dragging or by keys.
 
 const KEYS = { ArrowLeft: -0.02, ArrowDown: -0.02, ArrowRight: 0.02, ArrowUp: 0.02, PageDown: -0.1, PageUp: 0.1, Home: -1, End: 1 };
 
 const byId = (id) => document.getElementById(id);
 
 export class Comparison {
-  // `label(way)` is a way's name for people; `keep({ compare, at })` keeps what is chosen in the address.
-  constructor(client, { ways, label, keep }) {
+  // `variants` are the names to choose from; `label(name)` is the displayed name; `keep({ compare, at })` stores the comparison in the address.
+  constructor(client, { variants, label, keep }) {
     this.client = client;
     this.label = label;
     this.keep = keep;
-    this.known = ways;
-    this.ways = ["clumps", "shells"];
+    this.known = variants;
+    this.variants = ["clumps", "shells"];
     this.at = 0.5;
     this.shown = false;
     this.listen();
     this.apply();
   }
 
-  // Shows what an address says, such as "clumps,shells" and "0.5"; nothing when it names no two ways.
-  restore(ways, at) {
-    const asked = ways?.split(",") ?? [];
-    if (asked.length !== 2 || !asked.every((way) => this.known.includes(way))) return;
-    const share = at === null || at === "" ? NaN : Number(at);
-    if (share >= 0 && share <= 1) this.at = share;
-    this.show(asked);
+  // Restores a comparison from the address, such as "clumps,shells" and "0.5"; ignores unknown names.
+  restore(compare, at) {
+    const variants = compare?.split(",") ?? [];
+    if (variants.length !== 2 || !variants.every((name) => this.known.includes(name))) return;
+    const border = at === null || at === "" ? NaN : Number(at);
+    if (border >= 0 && border <= 1) this.at = border;
+    this.show(variants);
   }
 
-  show(ways) {
-    this.ways = ways;
+  show(variants) {
+    this.variants = variants;
     this.shown = true;
     this.apply();
     this.remember();
@@ -40,23 +40,23 @@ export class Comparison {
     this.remember();
   }
 
-  // Brings page and client to what is chosen.
+  // Updates page and client.
   apply() {
-    const [left, right] = this.shown ? this.ways : ["", ""];
+    const [left, right] = this.shown ? this.variants : ["", ""];
     this.client.compare(left, right, this.at);
     const border = byId("border");
     border.hidden = !this.shown;
     border.style.left = `${this.at * 100}%`;
     border.setAttribute("aria-valuenow", Math.round(this.at * 100));
-    border.setAttribute("aria-valuetext", `${Math.round(this.at * 100)} % ${this.label(this.ways[0])}, then ${this.label(this.ways[1])}`);
-    byId("left-name").textContent = this.label(this.ways[0]);
-    byId("right-name").textContent = this.label(this.ways[1]);
+    border.setAttribute("aria-valuetext", `${Math.round(this.at * 100)} % ${this.label(this.variants[0])}, then ${this.label(this.variants[1])}`);
+    byId("left-name").textContent = this.label(this.variants[0]);
+    byId("right-name").textContent = this.label(this.variants[1]);
     byId("comparing").setAttribute("aria-pressed", String(this.shown));
-    for (const [id, way] of [["left", this.ways[0]], ["right", this.ways[1]]]) byId(id).value = way;
+    for (const [index, id] of ["left", "right"].entries()) byId(id).value = this.variants[index];
   }
 
   remember() {
-    this.keep(this.shown ? { compare: this.ways.join(","), at: String(Number(this.at.toFixed(3))) } : { compare: null, at: null });
+    this.keep(this.shown ? { compare: this.variants.join(","), at: String(Number(this.at.toFixed(3))) } : { compare: null, at: null });
   }
 
   move(at) {
@@ -65,7 +65,7 @@ export class Comparison {
   }
 
   listen() {
-    byId("comparing").addEventListener("click", () => (this.shown ? this.hide() : this.show(this.ways)));
+    byId("comparing").addEventListener("click", () => (this.shown ? this.hide() : this.show(this.variants)));
     for (const id of ["left", "right"]) {
       byId(id).addEventListener("change", () => this.show([byId("left").value, byId("right").value]));
     }

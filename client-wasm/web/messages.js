@@ -1,8 +1,8 @@
-// What the page says when there is something to say instead of, or above, the prairie.
-// A message has a tone: `wait` and `stop` cover the page, `strip` leaves the last picture in sight.
+// Status messages of the page.
+// A message has a tone: `wait` and `stop` cover the page, `strip` leaves the last picture visible.
 
-// The start of the scene that runs here, whatever the address says.
-function elsewhere() {
+// Opens the server's own scene instead of the one in the address.
+function openServerScene() {
   const here = new URL(location.href);
   here.hash = "";
   here.searchParams.delete("scene");
@@ -16,16 +16,16 @@ const MESSAGES = {
   insecure: {
     tone: "stop",
     title: "This address is not a secure one",
-    text: "Browsers draw with WebGPU only on https addresses and on this very machine. Ask whoever runs the server for one of these:",
+    text: "Browsers allow WebGPU only on https addresses and on localhost. Ask the operator of the server for one of these:",
     items: [
-      "On the machine of the server, open <code>http://localhost:PORT</code>.",
+      "On the server's own machine, open <code>http://localhost:PORT</code>.",
       "From other machines, start the server with <code>--tls self</code> and open its <code>https://</code> address.",
     ],
   },
   unsupported: {
     tone: "stop",
     title: "This browser has no WebGPU",
-    text: "The prairie is drawn with WebGPU. Open this address in one of these:",
+    text: "Prairie needs WebGPU. Open this address in one of these browsers:",
     items: [
       "Chrome or Edge 113 or newer on Windows, macOS and ChromeOS; Android from 121.",
       "Firefox 141 or newer on Windows, 145 on macOS with Apple silicon.",
@@ -36,55 +36,55 @@ const MESSAGES = {
   "no-adapter": {
     tone: "stop",
     title: "WebGPU found no graphics adapter",
-    text: "This browser knows WebGPU, but no driver that it trusts.",
+    text: "This browser supports WebGPU, but accepts none of the installed graphics drivers.",
     items: [
-      "Update the graphics driver, and turn hardware acceleration on in the browser's settings.",
-      "Chrome and Chromium list what is off, and why, on <code>chrome://gpu</code>.",
+      "Update the graphics driver, and turn on hardware acceleration in the browser's settings.",
+      "Chrome and Chromium list disabled features, with reasons, on <code>chrome://gpu</code>.",
       "Linux: start the browser with <code>--enable-unsafe-webgpu --enable-features=Vulkan</code>.",
     ],
     button: RELOAD,
   },
-  loading: { tone: "wait", title: "The prairie is waking up", text: "Loading the client…" },
-  connecting: { tone: "wait", title: "The prairie is waking up", text: "Connecting to the server…" },
-  preparing: { tone: "wait", title: "The prairie is waking up", text: "Nearly there." },
-  full: { tone: "wait", title: "The prairie is full", text: "Every place on this server is taken. This page tries again by itself." },
-  "server-gone": { tone: "strip", title: "The server is gone", text: "Trying again until it is back…" },
+  loading: { tone: "wait", title: "Starting Prairie", text: "Loading the client…" },
+  connecting: { tone: "wait", title: "Starting Prairie", text: "Connecting to the server…" },
+  preparing: { tone: "wait", title: "Starting Prairie", text: "Almost ready." },
+  full: { tone: "wait", title: "The server is full", text: "All client slots of this server are taken. This page keeps trying." },
+  "server-gone": { tone: "strip", title: "Connection to the server lost", text: "Reconnecting…" },
   version: {
     tone: "stop",
-    title: "The server has moved on",
-    text: "This page and the server speak different versions of the protocol. Reload to get the page that belongs to the server.",
+    title: "This page is outdated",
+    text: "This page and the server use different versions of the protocol. Reload to get the server's version.",
     button: RELOAD,
   },
-  refused: { tone: "stop", title: "The server closed this connection", text: "It gave the reason below.", button: RELOAD },
+  refused: { tone: "stop", title: "The server closed this connection", text: "The reason is below.", button: RELOAD },
   "other-scene": {
     tone: "stop",
     title: "This link is to another scene",
     text: null,
-    button: ["Look at what runs here", elsewhere],
+    button: ["Open the server's scene", openServerScene],
   },
   limits: {
     tone: "stop",
-    title: "This graphics device is too small",
-    text: "Not even the coarsest picture fits into what it allows:",
+    title: "The limits of this graphics device are too low",
+    text: "Even the lowest quality exceeds them:",
     items: [
-      "Update the graphics driver, and turn hardware acceleration on in the browser's settings.",
-      "A machine with another graphics card, or another browser on this one, may allow more.",
+      "Update the graphics driver, and turn on hardware acceleration in the browser's settings.",
+      "Another browser, or a machine with another graphics card, may have higher limits.",
     ],
     button: RELOAD,
   },
-  "device-back": { tone: "strip", title: "The graphics device was lost", text: "Starting it again…" },
+  "device-back": { tone: "strip", title: "The graphics device was lost", text: "Restarting it…" },
   "device-lost": {
     tone: "stop",
-    title: "The graphics device is gone",
-    text: "It was lost four times, each within two minutes of the one before: the driver was reset, or the browser took it away.",
+    title: "The graphics device keeps failing",
+    text: "It was lost four times in a row, each within two minutes of the previous one: the driver was reset, or the browser withdrew the device.",
     button: RELOAD,
   },
-  failed: { tone: "stop", title: "The client stopped", text: "It cannot go on; the line below says why.", button: RELOAD },
+  failed: { tone: "stop", title: "The client stopped", text: "The reason is below.", button: RELOAD },
 };
 
-const place = document.getElementById("message");
+const container = document.getElementById("message");
 
-// Shows the message of this kind, with a plain-text detail of the moment below its text, or as its text where it has none.
+// Shows a message. `detail` is plain text below the message's own text, or instead of it if it has none.
 export function show(kind, detail = "") {
   const { tone, title, text, items = [], button } = MESSAGES[kind] ?? MESSAGES.failed;
   const section = document.createElement("section");
@@ -101,16 +101,16 @@ export function show(kind, detail = "") {
     press.addEventListener("click", act);
     section.append(press);
   }
-  place.dataset.kind = kind;
-  place.dataset.tone = tone;
-  place.replaceChildren(section);
-  place.hidden = false;
+  container.dataset.kind = kind;
+  container.dataset.tone = tone;
+  container.replaceChildren(section);
+  container.hidden = false;
 }
 
 export function hide() {
-  place.hidden = true;
-  delete place.dataset.kind;
-  place.replaceChildren();
+  container.hidden = true;
+  delete container.dataset.kind;
+  container.replaceChildren();
 }
 
 function element(name, text = "", className = "") {

@@ -1,87 +1,105 @@
-// The panel: what the visitor chooses, who is here, and how fast things go. It reads the client's own state a few times a second.
+// The panel: settings, connected clients and performance figures. It reads the client's state a few times a second.
 
-import { ask, keep, link } from "./address.js";
+import { keep, link, parameter } from "./address.js";
 
 const byId = (id) => document.getElementById(id);
 const UPDATE_MS = 250;
 const HINT_MS = 14_000;
-const TOLD_MS = 5_000;
+const NOTICE_MS = 5_000;
 
 const LABELS = {
-  land: "Land alone", clumps: "Clumps", shells: "Shells",
-  cut: "Cut out", coverage: "Coverage", sorted: "Sorted", precomputed: "Eight orders", weighted: "Weighted",
-  unculled: "Nothing culled",
-  low: "Low detail", medium: "Medium detail", high: "High detail", ultra: "Ultra detail",
+  auto: "Automatic", land: "Ground only", cut: "Alpha test", coverage: "Alpha to coverage", precomputed: "Precomputed orders", weighted: "Weighted blended",
+  unculled: "No culling",
 };
 
-// A way's name for people.
-export const label = (way) => LABELS[way] ?? way;
+// Displayed name of a choice.
+export const label = (name) => LABELS[name] ?? name[0].toUpperCase() + name.slice(1);
+
+// Displayed name of a variant in a comparison, where the names of qualities need a noun.
+export const variantLabel = ({ quality }, name) => (quality.includes(name) ? `${label(name)} quality` : label(name));
 
 export class Panel {
-  // `client` is the started client; `remember(key, value)` keeps a choice for the next visit; `capture` takes pictures and films.
-  constructor(client, { name, quality }, { remember, capture }) {
+  // `client` is the started client; `choices` what it offers; `remember(key, value)` stores a choice for the next visit; `capture` saves pictures and videos.
+  constructor(client, choices, { name, remember, capture }) {
     this.client = client;
+    this.choices = choices;
     this.remember = remember;
     this.capture = capture;
-    this.told = { text: "", until: 0 };
+    this.notice = { text: "", until: 0 };
     byId("name").value = name;
-    byId("quality").value = quality;
-    const { order, far, compared } = JSON.parse(client.ways());
-    for (const [id, ways] of [["order", order], ["far", far], ["left", compared], ["right", compared]]) {
-      byId(id).append(...ways.map((way) => new Option(label(way), way)));
+    this.fill(choices);
+    byId("quality").value = JSON.parse(client.state()).chosen_quality;
+    if (parameter("hour")) {
+      byId("hour").value = parameter("hour");
+      this.clock(Number(parameter("hour")));
     }
-    if (ask("hour")) {
-      byId("hour").value = ask("hour");
-      this.clock(Number(ask("hour")));
-    }
-    byId("ways").open = ["order", "far", "compare"].some((key) => ask(key) !== null);
+    byId("options").open = ["order", "far", "compare"].some((key) => parameter(key) !== null);
     this.listen();
     setInterval(() => this.update(JSON.parse(client.state())), UPDATE_MS);
   }
 
-  // Shows or hides the panel; hidden, a small button brings it back.
+  // Creates the buttons and the entries of the lists.
+  fill({ vehicles, heights, quality, order, far, compared }) {
+    byId("vehicles").prepend(...vehicles.map(({ name, label, key }) => vehicleButton(name, label, key)));
+    byId("heights").append(...heights.map((height) => {
+      const button = document.createElement("button");
+      Object.assign(button, { type: "button", textContent: `${height} m` });
+      button.dataset.height = height;
+      return button;
+    }));
+    for (const [id, names] of [["quality", quality], ["order", order], ["far", far]]) {
+      byId(id).append(...names.map((name) => new Option(label(name), name)));
+    }
+    for (const id of ["left", "right"]) {
+      byId(id).append(...compared.map((name) => new Option(variantLabel(this.choices, name), name)));
+    }
+  }
+
+  // Shows or hides the panel; while it is hidden, a small button brings it back.
   show(shown) {
     byId("panel").hidden = !shown;
     byId("open").hidden = shown;
   }
 
-  // Says once how to begin, until the visitor does.
+  // Shows a hint for new users until they begin.
   hint() {
+    const [{ label, key }] = this.choices.vehicles;
+    const vehicle = `a ${label.toLowerCase()}`;
     const touch = matchMedia("(pointer: coarse)").matches;
     const hint = byId("hint");
     hint.innerHTML = touch
-      ? "Left thumb walks, right thumb looks. The menu has a car."
-      : "Drag to look, <kbd>W</kbd> <kbd>A</kbd> <kbd>S</kbd> <kbd>D</kbd> to walk, <kbd>C</kbd> for a car, <kbd>?</kbd> for all keys.";
+      ? `The left thumb walks, the right thumb looks. The menu has ${vehicle}.`
+      : `Drag to look, <kbd>W</kbd> <kbd>A</kbd> <kbd>S</kbd> <kbd>D</kbd> to walk, <kbd>${key.toUpperCase()}</kbd> for ${vehicle}, <kbd>?</kbd> for all keys.`;
     hint.hidden = false;
     const gone = () => { hint.hidden = true };
     setTimeout(gone, HINT_MS);
     for (const kind of ["keydown", "pointerdown"]) addEventListener(kind, () => setTimeout(gone, 1500), { once: true });
   }
 
-  // Says a line for a while.
-  tell(text) {
-    this.told = { text, until: performance.now() + TOLD_MS };
+  // Shows a line for a while.
+  notify(text) {
+    this.notice = { text, until: performance.now() + NOTICE_MS };
     this.update(JSON.parse(this.client.state()));
   }
 
-  // Shows how long a film has run (s), or that there is none: null.
-  filming(seconds) {
+  // Shows the length of the video being recorded (s); null if none is.
+  recording(seconds) {
     const runs = seconds !== null;
-    byId("film").setAttribute("aria-pressed", String(runs));
-    write("film-label", runs ? `● ${Math.floor(seconds)} s` : "Film");
+    byId("video").setAttribute("aria-pressed", String(runs));
+    write("video-label", runs ? `● ${Math.floor(seconds)} s` : "Video");
   }
 
   async share() {
     const address = link(JSON.parse(this.client.state()).view);
     try {
       await navigator.clipboard.writeText(address);
-      this.tell("Link copied.");
+      this.notify("Link copied.");
     } catch {
-      this.tell(`The browser lets no page copy; this is the link: ${address}`);
+      this.notify(`The browser does not allow copying. This is the link: ${address}`);
     }
   }
 
-  // Says which hour the sun stands at; null where the scene has it.
+  // Shows the chosen hour of the day; null for the scene's own.
   clock(hour) {
     const text = () => `${Math.floor(hour)}:${String(Math.round((hour % 1) * 60)).padStart(2, "0")}`;
     byId("clock").textContent = hour === null ? "the scene’s" : text();
@@ -102,7 +120,7 @@ export class Panel {
   listen() {
     byId("open").addEventListener("click", () => this.toggle(true));
     byId("close").addEventListener("click", () => this.toggle(false));
-    byId("ask").addEventListener("click", () => this.help());
+    byId("show-help").addEventListener("click", () => this.help());
     byId("help").addEventListener("click", (event) => event.target === event.currentTarget && event.currentTarget.close());
     byId("vehicles").addEventListener("click", (event) => this.pressed(event, "vehicle", (name) => this.client.choose(name)));
     byId("heights").addEventListener("click", (event) => this.pressed(event, "height", (metres) => this.client.set_height(Number(metres))));
@@ -113,7 +131,7 @@ export class Panel {
     });
     for (const id of ["order", "far"]) {
       byId(id).addEventListener("change", ({ target }) => {
-        this.client.set_look(byId("order").value, byId("far").value);
+        this.client.set_options(byId("order").value, byId("far").value);
         keep({ [id]: target.value });
       });
     }
@@ -126,11 +144,11 @@ export class Panel {
       this.client.set_hour(-1);
       this.clock(null);
       keep({ hour: null });
-      // Out of use, the button keeps no focus: whoever came by keyboard goes on at the slider.
+      // A disabled button loses the focus: keyboard users continue at the slider.
       byId(detail > 0 ? "view" : "hour").focus();
     });
     byId("shoot").addEventListener("click", () => this.capture.picture());
-    byId("film").addEventListener("click", () => this.capture.film());
+    byId("video").addEventListener("click", () => this.capture.video());
     byId("share").addEventListener("click", () => this.share());
     byId("name").addEventListener("change", ({ target }) => {
       this.client.set_name(target.value.trim());
@@ -142,17 +160,17 @@ export class Panel {
       for (const end of ["pointerup", "pointercancel", "pointerleave"]) button.addEventListener(end, () => this.client.hold_rise(0));
     }
     addEventListener("keydown", (event) => this.key(event));
-    this.giveKeysBack();
+    this.returnFocus();
   }
 
-  // What a pointer does in the panel gives the keys back to the prairie; whoever walks the panel by keyboard stays in it.
-  giveKeysBack() {
+  // Returns the keyboard focus to the canvas after pointer input in the panel; keyboard users stay in the panel.
+  returnFocus() {
     const panel = byId("panel");
     let byPointer = false;
     panel.addEventListener("pointerdown", () => { byPointer = true });
     panel.addEventListener("keydown", () => { byPointer = false });
     panel.addEventListener("click", ({ detail, target }) => {
-      if (detail > 0 && target.closest("button:not(#ask), summary, [type=range]")) byId("view").focus();
+      if (detail > 0 && target.closest("button:not(#show-help), summary, [type=range]")) byId("view").focus();
     });
     panel.addEventListener("change", ({ target }) => {
       if (byPointer && target.matches("select, [type=range]")) byId("view").focus();
@@ -172,33 +190,33 @@ export class Panel {
     if (event.key === "?" || event.key === "F1") this.help();
     else if (once === "p") this.toggle();
     else if (once === "k") this.capture.picture();
-    else if (once === "v") this.capture.film();
+    else if (once === "v") this.capture.video();
     else return;
     event.preventDefault();
   }
 
   update(state) {
     if (!state) return;
-    const driven = state.vehicle ?? state.wanted ?? "";
-    for (const button of byId("vehicles").children) button.setAttribute("aria-pressed", String(button.dataset.vehicle === driven));
+    const vehicle = state.vehicle ?? state.wanted ?? "";
+    for (const button of byId("vehicles").children) button.setAttribute("aria-pressed", String(button.dataset.vehicle === vehicle));
     write("scene", state.scene ?? "");
     write("count", state.peers.length > 1 ? String(state.peers.length) : "");
-    if (state.eye && ask("scene") !== state.scene_name) keep({ scene: state.scene_name });
+    if (state.eye && parameter("scene") !== state.scene_name) keep({ scene: state.scene_name });
     for (const id of ["order", "far"]) if (document.activeElement !== byId(id)) byId(id).value = state[id];
     write("work", state.cpu_ms === null ? "–" : `CPU ${state.cpu_ms.toFixed(1)} · GPU ${state.gpu_ms.toFixed(1)} ms`);
-    write("detail", state.automatic ? `level ${state.level.toFixed(1)} of 3, aim ${state.budget_ms.toFixed(0)} ms` : state.quality);
+    write("detail", state.automatic ? `level ${state.level.toFixed(1)}/${state.highest_level}, target ${state.budget_ms.toFixed(0)} ms` : state.quality);
     byId("fallback").hidden = !state.fallbacks.length;
     write("fallback", state.fallbacks.join(" "));
-    write("frame", state.resting ? "at rest" : state.frame_ms ? `${state.frame_ms.toFixed(state.frame_ms < 100 ? 1 : 0)} ms · ${state.fps.toFixed(state.fps < 10 ? 1 : 0)}/s` : "–");
+    write("frame", state.resting ? "idle" : state.frame_ms ? `${state.frame_ms.toFixed(state.frame_ms < 100 ? 1 : 0)} ms · ${state.fps.toFixed(state.fps < 10 ? 1 : 0)}/s` : "–");
     write("stream", `${rate(state.bytes_per_s)}`);
     write("latency", state.latency_ms === null ? "–" : `${state.latency_ms.toFixed(state.latency_ms < 10 ? 1 : 0)} ms`);
-    this.people(state.peers);
-    const notice = state.notice ?? (performance.now() < this.told.until ? this.told.text : "");
+    this.showPeers(state.peers);
+    const notice = state.notice ?? (performance.now() < this.notice.until ? this.notice.text : "");
     byId("notice").hidden = !notice;
     write("notice", notice);
   }
 
-  people(peers) {
+  showPeers(peers) {
     const now = JSON.stringify(peers);
     if (now === this.peersShown) return;
     this.peersShown = now;
@@ -206,12 +224,23 @@ export class Panel {
       const item = document.createElement("li");
       item.style.setProperty("--hue", (client * 137.5) % 360);
       item.append(me ? `${name} (you)` : name);
-      const doing = document.createElement("span");
-      doing.textContent = vehicle ?? "looking";
-      item.append(doing);
+      const activity = document.createElement("span");
+      activity.textContent = vehicle ?? "looking";
+      item.append(activity);
       return item;
     }));
   }
+}
+
+function vehicleButton(name, label, key) {
+  const button = document.createElement("button");
+  const hint = document.createElement("kbd");
+  hint.textContent = key.toUpperCase();
+  button.type = "button";
+  button.dataset.vehicle = name;
+  button.setAttribute("aria-pressed", "false");
+  button.append(`${label} `, hint);
+  return button;
 }
 
 function write(id, text) {

@@ -1,4 +1,4 @@
-//! The client, compiled for the browser by a nested cargo.
+//! Compiles the client for the browser with a nested cargo.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -10,11 +10,11 @@ use crate::{Result, variable};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Cargo's own profile for the client, in the workspace's Cargo.toml.
+/// Cargo profile of the client, defined in the workspace's Cargo.toml.
 const PROFILE: &str = "wasm";
 
-/// What the outer cargo tells this script about the server's build; none of it holds for the client's.
-const OF_THE_SERVER: [&str; 8] = [
+/// Prefixes of environment variables that describe the server's build and must not reach the client's.
+const SERVER_BUILD_PREFIXES: [&str; 8] = [
     "CARGO_BUILD_",
     "CARGO_CFG_",
     "CARGO_ENCODED_RUSTFLAGS",
@@ -25,35 +25,35 @@ const OF_THE_SERVER: [&str; 8] = [
     "RUSTFLAGS",
 ];
 
-/// Compiles the crate `client-wasm` and writes `client_wasm.js` and `client_wasm_bg.wasm` to `out`.
+/// Compiles the package `prairie-client` and writes `prairie_client.js` and `prairie_client_bg.wasm` to `out`.
 ///
 /// # Errors
-/// Says what to install when the target is missing; otherwise what cargo or wasm-bindgen said.
+/// Installation instructions when the wasm target is missing; otherwise the message of cargo or wasm-bindgen.
 pub(crate) fn client(workspace: &Path, target_dir: &Path, out: &Path) -> Result<()> {
     ensure_target()?;
     let mut cargo = Command::new(variable("CARGO")?);
     for (name, _) in env::vars_os() {
-        if name.to_str().is_some_and(|name| OF_THE_SERVER.iter().any(|prefix| name.starts_with(prefix))) {
+        if name.to_str().is_some_and(|name| SERVER_BUILD_PREFIXES.iter().any(|prefix| name.starts_with(prefix))) {
             cargo.env_remove(name);
         }
     }
     cargo
         .current_dir(workspace)
         .env("CARGO_ENCODED_RUSTFLAGS", "-Ctarget-feature=+simd128")
-        .args(["build", "--package", "client-wasm", "--lib", "--profile", PROFILE, "--target", TARGET])
+        .args(["build", "--package", "prairie-client", "--lib", "--profile", PROFILE, "--target", TARGET])
         .arg("--target-dir")
         .arg(target_dir);
     let status = cargo.status().map_err(|e| format!("cargo did not start: {e}"))?;
     if !status.success() {
         return Err(
-            "the browser client did not compile (cargo's own words are above); `PRAIRIE_CLIENT=skip` builds the server without it".into()
+            "the browser client did not compile (see cargo's messages above); PRAIRIE_CLIENT=skip builds the server without it".into()
         );
     }
-    bind(&target_dir.join(TARGET).join(PROFILE).join("client_wasm.wasm"), out)
+    bind(&target_dir.join(TARGET).join(PROFILE).join("prairie_client.wasm"), out)
 }
 
-/// A target directory for the client beside the server's artifacts. Every variant of the server (with and without rerun, checked,
-/// tested, linted) shares it, and no cargo waits for the lock of the outer one.
+/// Target directory of the client, beside the server's artifacts. All variants of the server (with and without rerun, check, test, clippy)
+/// share it, and the nested cargo does not wait for the lock of the outer one.
 pub(crate) fn target_dir(out: &Path) -> PathBuf {
     let profile_dir = out.ancestors().find(|dir| dir.ends_with("build")).and_then(Path::parent);
     profile_dir.unwrap_or(out).join("client")
@@ -69,8 +69,8 @@ fn ensure_target() -> Result<()> {
         return Ok(());
     }
     Err(format!(
-        "The browser client needs Rust's target {TARGET}, and this toolchain lacks it. Install it with\n    rustup target add {TARGET}\n\
-         or, without rustup, from where this Rust came. `PRAIRIE_CLIENT=skip` builds the server without the page."
+        "The browser client needs the Rust target {TARGET}, which this toolchain lacks. Install it with\n    rustup target add {TARGET}\n\
+         or, without rustup, from the distributor of your Rust. PRAIRIE_CLIENT=skip builds the server without the page."
     ))
 }
 

@@ -1,4 +1,4 @@
-//! The table of embedded files: content type, bytes, gzip, entity tag.
+//! Writes the table of embedded files: content type, bytes, gzip, entity tag.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -10,10 +10,10 @@ use flate2::{Compression, write::GzEncoder};
 
 use crate::Result;
 
-/// Writes to `table` a Rust slice of `(path, Asset)`, sorted by path, of every file in `dir`; a `.gz` twin is put beside each.
+/// Writes to `table` a Rust slice of `(path, Asset)` for every file in `dir`, sorted by path, and a gzip-compressed copy beside each file.
 ///
 /// # Errors
-/// A file that cannot be read, or one whose extension has no content type here.
+/// When a file cannot be read, or its extension has no content type here.
 pub(crate) fn write_table(dir: &Path, table: &Path) -> Result<()> {
     let mut names = Vec::new();
     for entry in fs::read_dir(dir).map_err(|e| format!("{}: {e}", dir.display()))? {
@@ -65,6 +65,6 @@ fn content_type(name: &str) -> Result<&'static str> {
         Some("png") => Ok("image/png"),
         Some("svg") => Ok("image/svg+xml"),
         Some("wasm") => Ok("application/wasm"),
-        _ => Err(format!("client-wasm/web/{name}: no content type is known for this file; add one in server/build/embed.rs")),
+        _ => Err(format!("client-wasm/web/{name}: this file has no known content type; add one in server/build/embed.rs")),
     }
 }

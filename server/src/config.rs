@@ -1,4 +1,4 @@
-//! What a run of the server can be told.
+//! Configuration of a run.
 
 use crate::inspect::Target;
 use crate::net::Tls;
@@ -6,25 +6,25 @@ use crate::scenes::LoadedScene;
 use crate::stream::SendLimits;
 use std::time::Duration;
 
-/// Everything that a run needs but the socket it listens on.
+/// Configuration of a run: everything except the listening socket.
 #[derive(Clone, Debug)]
 pub struct Config {
     /// The scene with its maps.
     pub scene: LoadedScene,
-    /// Certificate and key for https; none: plain http.
+    /// Certificate and key for https; `None` for plain http.
     pub tls: Option<Tls>,
-    /// Where the fields are logged for the rerun viewer.
+    /// Destination of the recording for the rerun viewer; `None` for no recording.
     pub rerun: Option<Target>,
-    /// Threads of the simulation; none: one for each core.
+    /// Threads of the simulation; `None` for one per core.
     pub threads: Option<usize>,
     /// Snapshots per second (Hz). Default 20.
     pub publish_hz: f32,
-    /// Limits on clients and what they send and get.
+    /// Limits on clients and their traffic.
     pub limits: Limits,
 }
 
 impl Config {
-    /// A run of `scene` with every default.
+    /// The default configuration for `scene`.
     pub fn new(scene: LoadedScene) -> Self {
         Self { scene, tls: None, rerun: None, threads: None, publish_hz: 20.0, limits: Limits::default() }
     }
@@ -33,20 +33,20 @@ impl Config {
 /// Limits on clients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Most clients at once. Default 64.
+    /// Largest number of clients at once. Default 64.
     pub clients: usize,
-    /// Most connections that are no clients yet: pages being fetched, handshakes, hellos to come. Default 256.
-    pub connections: usize,
-    /// Time for a TLS handshake, for the headers of a request and for the hello. Default 5 s.
-    pub greeting: Duration,
-    /// Time after which a connection is closed that has not become a client's: long enough to fetch the page over a slow line. Default 30 s.
-    pub page: Duration,
-    /// Time that a client may take to read or acknowledge a frame. Default 15 s.
-    pub stall: Duration,
-    /// Messages per second that a client may send for long, hello, pings and pongs of the WebSocket included; twice as many may come at
-    /// once. Default 200.
-    pub messages_per_sec: f64,
-    /// What is sent to one client.
+    /// Largest number of connections that are not clients: page requests, handshakes, WebSockets before their hello. Default 256.
+    pub pending: usize,
+    /// Time limit for each of TLS handshake, request headers and hello. Default 5 s.
+    pub handshake_timeout: Duration,
+    /// Time limit for a connection that does not become a client; long enough to fetch the page over a slow line. Default 30 s.
+    pub http_timeout: Duration,
+    /// Time limit for a client to read or acknowledge a frame. Default 15 s.
+    pub stall_timeout: Duration,
+    /// Sustained rate of a client's messages (1/s), including hello and WebSocket pings and pongs; bursts of twice this number are
+    /// allowed. Default 200.
+    pub messages_per_s: f64,
+    /// Limits on the data sent to one client.
     pub send: SendLimits,
 }
 
@@ -54,11 +54,11 @@ impl Default for Limits {
     fn default() -> Self {
         Self {
             clients: 64,
-            connections: 256,
-            greeting: Duration::from_secs(5),
-            page: Duration::from_secs(30),
-            stall: Duration::from_secs(15),
-            messages_per_sec: 200.0,
+            pending: 256,
+            handshake_timeout: Duration::from_secs(5),
+            http_timeout: Duration::from_secs(30),
+            stall_timeout: Duration::from_secs(15),
+            messages_per_s: 200.0,
             send: SendLimits::default(),
         }
     }

@@ -1,10 +1,10 @@
-//! Reading files that someone else has written.
+//! Reading untrusted files.
 
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// The bytes of a file, or why it cannot be read: it is missing, no file, or larger than `limit` bytes.
+/// Contents of a file, or the reason why it cannot be read: it is missing, not a regular file, or larger than `limit` bytes.
 pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
     let is_file = std::fs::metadata(path).map_err(|error| error.to_string())?.is_file();
     if !is_file {

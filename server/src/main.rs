@@ -2,14 +2,15 @@
 
 use anyhow::Context as _;
 use clap::{Args, Parser, Subcommand};
-use server::inspect::Target;
-use server::net::{Tls, TlsChoice, bind};
-use server::{Config, Limits, scenes};
+use prairie::inspect::Target;
+use prairie::net::{Tls, TlsChoice, bind};
+use prairie::{Config, Limits, scenes};
+use std::io::IsTerminal as _;
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// A living grassland: wind, grass and vehicles, simulated here and shown in any browser with WebGPU.
+/// A streaming grassland simulator: wind, grass and vehicles, simulated here and drawn in any browser with WebGPU.
 #[derive(Debug, Parser)]
 #[command(version, args_conflicts_with_subcommands = true, after_help = EXAMPLES)]
 struct Cli {
@@ -24,11 +25,11 @@ Without a command, `prairie` means `prairie serve`.
 
 Examples:
   prairie                                    the scene `meadow` on http://127.0.0.1:8080
-  prairie --open                             the same, and opens the page
+  prairie --open                             the same, opened in the browser
   prairie serve --scene my/hills.toml        a scene of your own
   prairie serve --addr 0.0.0.0:8443 --tls self
-                                             for friends on other machines
-  prairie check my/hills.toml                what is wrong with it, with line and column";
+                                             for clients on other machines
+  prairie check my/hills.toml                its faults, with line and column";
 
 #[derive(Debug, Subcommand)]
 enum Action {
@@ -37,16 +38,16 @@ enum Action {
     Serve(Serve),
     /// List the built-in scenes
     Scenes,
-    /// Say what is wrong with a scene file, with line and column
-    #[command(after_help = "Example:\n  prairie check my/hills.toml\n\nThe exit status is 0 if the scene can be served, otherwise 1.")]
+    /// Check a scene file and report its faults with line and column
+    #[command(after_help = "Example:\n  prairie check my/hills.toml\n\nThe exit status is 0 if the scene is valid, otherwise 1.")]
     Check {
-        /// Scene file (TOML); its maps and models are checked too
+        /// Scene file (TOML), or a built-in scene; its maps and models are checked too
         #[arg(value_name = "FILE")]
         scene: String,
     },
-    /// Make the built-in scenes' maps anew, the same to the last pixel
+    /// Generate the maps of the built-in scenes; the result is always the same
     Maps {
-        /// Folder to write the PNG files to; it is made if it is missing
+        /// Folder for the PNG files; created if it does not exist
         #[arg(long, value_name = "FOLDER")]
         out: PathBuf,
     },
@@ -55,52 +56,57 @@ enum Action {
 const SERVE_EXAMPLES: &str = "\
 Examples:
   prairie serve                              the scene `meadow` on http://127.0.0.1:8080
-  prairie serve --addr 127.0.0.1:0           on any free port; the address is printed
+  prairie serve --addr 127.0.0.1:0           on any free port, which is printed
   prairie serve --addr 0.0.0.0:8443 --tls self
                                              on all addresses of this machine
-  prairie serve --tls cert.pem,key.pem       with a certificate of your own
-  prairie serve --rerun save=run.rrd         records wind and grass for the rerun viewer
+  prairie serve --tls cert.pem,key.pem       with your own certificate
+  prairie serve --rerun save=run.rrd         records the run for the rerun viewer
 
-Browsers give WebGPU only to pages from this machine or over https, so other machines need --tls.
-A scene of your own is read anew when you save it or a file that it names, and every page shows it.
-With `--tls self` the browser warns first: compare the fingerprint with the one printed here.
-The log goes to stderr; RUST_LOG=server=debug makes it talk more.";
+Browsers enable WebGPU only on pages from this machine or over https, so other machines need --tls.
+With `--tls self` the browser shows a warning: compare the fingerprint with the one printed here.
+A scene file is reloaded when you save it or a file that it names; all pages reconnect.
+The log goes to stderr; RUST_LOG=prairie=debug makes it more detailed.";
 
 #[derive(Debug, Args)]
 struct Serve {
-    /// Scene to serve: a built-in one by name (`prairie scenes` lists them), or a file
+    /// Scene to serve: a built-in scene (`prairie scenes` lists them) or a scene file
     #[arg(long, value_name = "NAME|FILE", default_value = "meadow")]
     scene: String,
-    /// Address to listen on; port 0 takes any free one
+    /// Address to listen on; port 0 picks a free port
     #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:8080")]
     addr: String,
     /// Open the page in the browser
     #[arg(long)]
     open: bool,
-    /// Serve https, with a certificate made on the spot (`self`) or with two PEM files
+    /// Serve https, with a generated self-signed certificate (`self`) or with two PEM files
     #[arg(long, value_name = "self|CERT,KEY")]
     tls: Option<TlsChoice>,
-    /// Log the fields for the rerun viewer: serve them to viewers, save a recording, or connect to a viewer
+    /// Record the run for the rerun viewer: serve it to viewers, save it to a file, or send it to a running viewer
     #[arg(long, value_name = "serve|save=FILE.rrd|connect=URL")]
     rerun: Option<Target>,
-    /// Threads of the simulation [default: one for each core]
+    /// Threads of the simulation [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Frames per second sent to browsers, 1 to 60
+    /// Frames per second sent to clients, 1 to 60
     #[arg(long, value_name = "HZ", default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..=60))]
     publish_hz: u16,
-    /// Most that one browser is sent (kbit/s); what is near its camera goes first
+    /// Data rate limit per client (kbit/s), 64 to 1000000; grass near the camera is sent first
     #[arg(long, value_name = "KBIT", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(64..=1_000_000))]
     client_kbit: u32,
-    /// Most browsers at once
+    /// Most clients at once, 1 to 4096
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u16).range(1..=4096))]
     max_clients: u16,
 }
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    let filter = tracing_subscriber::EnvFilter::try_from_default_env().unwrap_or_else(|_| "warn,server=info,prairie=info".into());
-    tracing_subscriber::fmt().with_env_filter(filter).with_target(false).with_writer(std::io::stderr).init();
+    let filter = tracing_subscriber::EnvFilter::try_from_default_env().unwrap_or_else(|_| "warn,prairie=info".into());
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_target(false)
+        .with_ansi(std::io::stderr().is_terminal())
+        .with_writer(std::io::stderr)
+        .init();
     let outcome = match cli.action.unwrap_or(Action::Serve(cli.serve)) {
         Action::Serve(arguments) => serve(arguments),
         Action::Scenes => {
@@ -122,7 +128,7 @@ fn main() -> ExitCode {
 }
 
 fn make_maps(folder: &Path) -> anyhow::Result<()> {
-    let written = scenes::maps::write(folder).with_context(|| format!("cannot write maps to {}", folder.display()))?;
+    let written = scenes::maps::write(folder).with_context(|| format!("cannot write the maps to {}", folder.display()))?;
     for path in written {
         println!("{}", path.display());
     }
@@ -132,7 +138,7 @@ fn make_maps(folder: &Path) -> anyhow::Result<()> {
 fn serve(arguments: Serve) -> anyhow::Result<()> {
     anyhow::ensure!(
         arguments.rerun.is_none() || cfg!(feature = "rerun"),
-        "--rerun: this binary was built without rerun; build it with `--features rerun`"
+        "--rerun: this binary was built without the cargo feature `rerun`; build it without `--no-default-features`"
     );
     let scene = scenes::load(&arguments.scene)?;
     tokio::runtime::Builder::new_multi_thread().enable_all().build()?.block_on(async {
@@ -140,7 +146,7 @@ fn serve(arguments: Serve) -> anyhow::Result<()> {
         let address = listener.local_addr()?;
         let tls = arguments.tls.as_ref().map(|choice| Tls::new(choice, address)).transpose()?;
         let mut limits = Limits { clients: usize::from(arguments.max_clients), ..Limits::default() };
-        limits.send.bytes_per_sec = f64::from(arguments.client_kbit) * 1000.0 / 8.0;
+        limits.send.bytes_per_s = f64::from(arguments.client_kbit) * 1000.0 / 8.0;
         let config = Config {
             tls: tls.clone(),
             rerun: arguments.rerun,
@@ -149,15 +155,15 @@ fn serve(arguments: Serve) -> anyhow::Result<()> {
             limits,
             ..Config::new(scene)
         };
-        let run_until_asked = async {
+        let shutdown = async {
             announce(address, tls.as_ref(), arguments.open);
-            asked_to_stop().await;
+            stop_signal().await;
         };
-        Ok(server::run_and_reload(config, listener, run_until_asked).await?)
+        Ok(prairie::run_and_reload(config, listener, shutdown).await?)
     })
 }
 
-/// Prints where the page is, and what a visitor has to know.
+/// Prints the address of the page and the certificate's fingerprint, and opens the browser on request.
 fn announce(address: SocketAddr, tls: Option<&Tls>, open: bool) {
     let scheme = if tls.is_some() { "https" } else { "http" };
     let local = match address.ip() {
@@ -167,10 +173,10 @@ fn announce(address: SocketAddr, tls: Option<&Tls>, open: bool) {
     };
     let page = format!("{scheme}://{local}");
     println!("Prairie is at {page}");
-    if let Some(ip) = server::net::reachable_ip(address).filter(|ip| !ip.is_loopback()) {
+    if let Some(ip) = prairie::net::reachable_ip(address).filter(|ip| !ip.is_loopback()) {
         println!("  from other machines: {scheme}://{}", SocketAddr::new(ip, address.port()));
         if tls.is_none() {
-            tracing::warn!("browsers give WebGPU only to https pages or to this machine's own; for other machines add --tls self");
+            tracing::warn!("browsers enable WebGPU only over https or on this machine; for other machines add --tls self");
         }
     }
     if let Some(tls) = tls {
@@ -181,13 +187,13 @@ fn announce(address: SocketAddr, tls: Option<&Tls>, open: bool) {
     }
 }
 
-/// Completes when the user or the system asks the program to stop.
-async fn asked_to_stop() {
+/// Completes on Ctrl-C or SIGTERM.
+async fn stop_signal() {
     let interrupt = tokio::signal::ctrl_c();
     #[cfg(unix)]
     {
         let mut terminate =
-            tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate()).expect("a handler of SIGTERM can be set");
+            tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate()).expect("a SIGTERM handler can be installed");
         tokio::select! {
             _ = interrupt => {}
             _ = terminate.recv() => {}

@@ -1,19 +1,20 @@
-//! A world that begins anew when its scene's files change, so that a species or a map is edited and looked at.
+//! Hot reload: restarts the world when a file of its scene changes.
 
+use crate::config::Config;
+use crate::run::{RunError, run};
 use crate::scenes::{self, LoadedScene, SceneError};
-use crate::{Config, RunError, run};
 use std::path::PathBuf;
 use std::pin::pin;
 use std::time::{Duration, SystemTime};
 use tokio::net::TcpListener;
 
-/// Time between two looks at the files.
-const LOOK_EVERY: Duration = Duration::from_millis(400);
+/// Time between two checks of the files.
+const POLL_PERIOD: Duration = Duration::from_millis(400);
 
-/// Serves a scene as [`run`] does, and anew whenever one of its files has changed and it is sound. Clients are told that the server stops, and find the new
-/// world on the same socket. What is wrong with a scene that is not sound goes to the log, and the old world goes on.
+/// Serves a scene like [`run`], and restarts whenever one of its files changes and the scene is still valid. Clients get a shutdown notice, and
+/// reconnect to the new world on the same socket. The faults of an invalid scene are logged, and the old world continues.
 ///
-/// A built-in scene has no files; a recording would begin anew, too, so a scene that is recorded is not looked at.
+/// A built-in scene has no files. A recorded scene is not watched, since the recording would restart too.
 ///
 /// # Errors
 /// As [`run`].
@@ -28,24 +29,24 @@ pub async fn run_and_reload(mut config: Config, listener: TcpListener, shutdown:
         let until = async {
             tokio::select! {
                 () = shutdown.as_mut() => {}
-                scene = next(&config.scene) => changed = Some(scene),
+                scene = changed_scene(&config.scene) => changed = Some(scene),
             }
         };
         let socket = listener.try_clone().and_then(TcpListener::from_std).map_err(RunError::Socket)?;
         run(config.clone(), socket, until).await?;
         let Some(scene) = changed else { return Ok(()) };
-        tracing::info!(file = %scene.files[0].display(), "the scene has changed: the world begins anew");
+        tracing::info!(file = %scene.files[0].display(), "the scene has changed; restarting the world");
         config.scene = scene;
     }
 }
 
-/// The scene once its files make another one that is sound.
-async fn next(now: &LoadedScene) -> LoadedScene {
-    // The first look reads them again, for they may have changed since they were read.
+/// Waits until the files have changed and are valid; returns the new scene.
+async fn changed_scene(now: &LoadedScene) -> LoadedScene {
+    // Empty, so that the first check reloads the scene: the files may have changed since they were read.
     let mut seen = Vec::new();
     loop {
-        tokio::time::sleep(LOOK_EVERY).await;
-        let newest = looks(&now.files);
+        tokio::time::sleep(POLL_PERIOD).await;
+        let newest = stamps(&now.files);
         if newest == seen {
             continue;
         }
@@ -53,18 +54,18 @@ async fn next(now: &LoadedScene) -> LoadedScene {
         match load(now.files[0].clone()).await {
             Ok(scene) if scene != *now => return scene,
             Ok(_) => {}
-            Err(error) => tracing::warn!("the scene has changed, and the old one goes on:\n{error}"),
+            Err(error) => tracing::warn!("the changed scene is invalid; the old one continues:\n{error}"),
         }
     }
 }
 
-/// What tells a file from its older self; none for one that is missing.
-fn looks(files: &[PathBuf]) -> Vec<Option<(SystemTime, u64)>> {
-    let look = |path: &PathBuf| {
+/// Modification time and length of each file; `None` for a missing one.
+fn stamps(files: &[PathBuf]) -> Vec<Option<(SystemTime, u64)>> {
+    let stamp = |path: &PathBuf| {
         let metadata = std::fs::metadata(path).ok()?;
         Some((metadata.modified().ok()?, metadata.len()))
     };
-    files.iter().map(look).collect()
+    files.iter().map(stamp).collect()
 }
 
 async fn load(scene: PathBuf) -> Result<LoadedScene, SceneError> {

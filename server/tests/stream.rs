@@ -1,14 +1,14 @@
-//! The stream: what clients hold is what the server has, whatever they miss; each grid is encoded once; nobody is sent too much.
+//! The stream: clients converge to the server's state whatever they miss, each grid is encoded once, and byte budgets hold.
 
 mod common;
 
-use common::Picture;
+use common::Replica;
+use prairie::runner::{Published, Request};
+use prairie::snapshot::{BentPatches, PatchCodes, Snapshot, WindFrame};
+use prairie::stream::{AreaOfInterest, Client, Clients, DEAD_BAND, Frame, SendLimits, Streamer, patches_near};
+use prairie_core::grid::PatchLayout;
+use prairie_core::wire::{BROKEN_LIMIT, BrokenPlant, PATCH_MEMORY, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, decode};
 use proptest::prelude::*;
-use server::runner::{Published, Request};
-use server::snapshot::{BentPatches, PatchCodes, Snapshot, WindFrame};
-use server::stream::{Client, Clients, DEAD_BAND, Frame, Gaze, SendLimits, Streamer, interest};
-use shared::grid::PatchLayout;
-use shared::wire::{BROKEN_LIMIT, BrokenPlant, PATCH_MEMORY, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, decode};
 use std::num::NonZeroU8;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -19,21 +19,21 @@ const LAYOUT: PatchLayout = PatchLayout { count: [3, 3], cells: 8, cell_m: 1.0 }
 const GRID: usize = 3 * 8 * 8;
 const WIND_CELLS: [u32; 3] = [4, 2, 4];
 const PUBLISH_HZ: f32 = 20.0;
-/// Publishes after which even the slowest grid has had a frame.
+/// Publications after which even the slowest grid has had a frame.
 const SETTLE: usize = 8;
 
-/// A world of nine patches whose codes the test sets.
-struct Prairie {
+/// A world of nine patches whose codes are set by the test.
+struct FakeWorld {
     snapshot: Snapshot,
     requests: std::collections::BTreeMap<u32, Request>,
 }
 
-impl Prairie {
+impl FakeWorld {
     fn at_rest() -> Self {
-        Self::in_a_wind_of(3)
+        Self::with_wind_planes(3)
     }
 
-    fn in_a_wind_of(planes: usize) -> Self {
+    fn with_wind_planes(planes: usize) -> Self {
         let wind = Arc::new(WindFrame { tick: 0, cells: WIND_CELLS, codes: vec![0; planes * 32] });
         let snapshot = Snapshot { wind, ..Snapshot::default() };
         Self { snapshot, requests: Default::default() }
@@ -60,39 +60,39 @@ impl Prairie {
     }
 }
 
-/// A client with the session's end of its channel.
-struct Visitor {
+/// A client, with the session's end of its frame queue.
+struct Viewer {
     client: Arc<Client>,
     frames: Receiver<Frame>,
-    picture: Picture,
+    replica: Replica,
 }
 
-impl Visitor {
+impl Viewer {
     fn join(clients: &Clients, limits: SendLimits, radius_m: f32) -> Self {
-        let (client, frames) = clients.join(clients.next_id(), "visitor".to_owned(), limits.in_flight as usize);
-        client.look(Gaze { eye_m: [12.0, 2.0, 12.0], radius_m });
-        Self { client, frames, picture: Picture::new(LAYOUT.cells as usize, WIND_CELLS, false) }
+        let (client, frames) = clients.join(clients.next_id(), "viewer".to_owned(), limits.in_flight as usize);
+        client.set_area_of_interest(AreaOfInterest { eye_m: [12.0, 2.0, 12.0], radius_m });
+        Self { client, frames, replica: Replica::new(LAYOUT.cells as usize, WIND_CELLS, false) }
     }
 
-    /// Takes every frame that waits; acknowledges the newest.
+    /// Reads and acknowledges every queued frame.
     fn read(&mut self) -> Vec<Frame> {
         let frames: Vec<_> = std::iter::from_fn(|| self.frames.try_recv().ok()).collect();
         for frame in &frames {
             for message in &frame.messages {
-                self.picture.apply(message);
+                self.replica.apply(message);
             }
             assert!(self.client.acknowledge(frame.number));
         }
         frames
     }
 
-    fn error_against(&self, prairie: &Prairie) -> u8 {
+    fn error_against(&self, prairie: &FakeWorld) -> u8 {
         self.error_over(0..LAYOUT.patches() as u32, prairie)
     }
 
-    fn error_over(&self, patches: impl IntoIterator<Item = u32>, prairie: &Prairie) -> u8 {
+    fn error_over(&self, patches: impl IntoIterator<Item = u32>, prairie: &FakeWorld) -> u8 {
         let patch_error = |patch: u32| {
-            let held = self.picture.patches.get(&patch).map_or_else(|| vec![0; GRID], |(_, codes)| codes.clone());
+            let held = self.replica.patches.get(&patch).map_or_else(|| vec![0; GRID], |(_, codes)| codes.clone());
             held.iter().zip(prairie.codes(patch as usize)).map(|(held, code)| held.abs_diff(code)).max().unwrap()
         };
         patches.into_iter().map(patch_error).max().unwrap()
@@ -103,14 +103,14 @@ impl Visitor {
 enum Event {
     /// Adds to some codes of a patch.
     Change { patch: usize, at: usize, count: usize, by: i8 },
-    /// A patch comes to rest.
+    /// Sets a patch to rest.
     Rest { patch: usize },
-    /// The wind turns.
+    /// Adds to the codes of the wind.
     Wind { by: i8 },
-    /// A snapshot is published.
+    /// Publishes a snapshot.
     Publish,
-    /// A client reads and acknowledges.
-    Read { visitor: usize },
+    /// One client reads and acknowledges.
+    Read { viewer: usize },
 }
 
 fn event() -> impl Strategy<Value = Event> {
@@ -119,27 +119,27 @@ fn event() -> impl Strategy<Value = Event> {
         1 => (0..9_usize).prop_map(|patch| Event::Rest { patch }),
         1 => (-9..=9_i8).prop_map(|by| Event::Wind { by }),
         4 => Just(Event::Publish),
-        3 => (0..3_usize).prop_map(|visitor| Event::Read { visitor }),
+        3 => (0..3_usize).prop_map(|viewer| Event::Read { viewer }),
     ]
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(200) })]
 
-    /// Whatever changes, whoever reads when, and however little anybody may be sent: once the world is still and all read, all hold its codes.
+    /// For any changes, order of reads and byte budget: once the world is at rest and all clients have read, they hold its codes.
     #[test]
-    fn every_history_ends_with_equal_grids(
+    fn all_clients_converge_to_the_world(
         events in prop::collection::vec(event(), 0..120),
-        bytes_per_sec in prop_oneof![Just(250_000.0), 200.0..2_000.0],
+        bytes_per_s in prop_oneof![Just(250_000.0), 200.0..2_000.0],
         has_dust: bool,
     ) {
-        let limits = SendLimits { in_flight: 2, bytes_per_sec };
+        let limits = SendLimits { in_flight: 2, bytes_per_s };
         let planes = if has_dust { 4 } else { 3 };
-        let (clients, mut prairie, mut now) = (Clients::default(), Prairie::in_a_wind_of(planes), Instant::now());
+        let (clients, mut prairie, mut now) = (Clients::default(), FakeWorld::with_wind_planes(planes), Instant::now());
         let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
-        let mut visitors: Vec<_> = (0..3).map(|_| Visitor::join(&clients, limits, 100.0)).collect();
-        for visitor in &mut visitors {
-            visitor.picture = Picture::new(LAYOUT.cells as usize, WIND_CELLS, has_dust);
+        let mut viewers: Vec<_> = (0..3).map(|_| Viewer::join(&clients, limits, 100.0)).collect();
+        for viewer in &mut viewers {
+            viewer.replica = Replica::new(LAYOUT.cells as usize, WIND_CELLS, has_dust);
         }
         for event in events {
             match event {
@@ -158,27 +158,27 @@ proptest! {
                     now += Duration::from_millis(50);
                     streamer.publish(&prairie.publish(), &clients.all(), now);
                 }
-                Event::Read { visitor } => drop(visitors[visitor].read()),
+                Event::Read { viewer } => drop(viewers[viewer].read()),
             }
         }
         for _ in 0..SETTLE + LAYOUT.patches() {
             now += Duration::from_secs(10);
             streamer.publish(&prairie.publish(), &clients.all(), now);
-            visitors.iter_mut().for_each(|visitor| drop(visitor.read()));
+            viewers.iter_mut().for_each(|viewer| drop(viewer.read()));
         }
-        for visitor in &visitors {
-            prop_assert_eq!(visitor.error_against(&prairie), 0);
-            prop_assert_eq!(&visitor.picture.wind.1, &prairie.snapshot.wind.codes);
+        for viewer in &viewers {
+            prop_assert_eq!(viewer.error_against(&prairie), 0);
+            prop_assert_eq!(&viewer.replica.wind.1, &prairie.snapshot.wind.codes);
         }
     }
 }
 
-/// A run in which patches 4 and 5 change at every publish; returns the encodings and what each visitor got last.
-fn busy_run(visitors: usize, publishes: i32) -> (u64, Vec<Vec<Frame>>) {
+/// A run in which patches 4 and 5 change at every publication; returns the number of encodings and the last frames of each client.
+fn busy_run(viewers: usize, publishes: i32) -> (u64, Vec<Vec<Frame>>) {
     let limits = SendLimits::default();
-    let (clients, mut prairie, mut now) = (Clients::default(), Prairie::at_rest(), Instant::now());
+    let (clients, mut prairie, mut now) = (Clients::default(), FakeWorld::at_rest(), Instant::now());
     let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
-    let mut visitors: Vec<_> = (0..visitors).map(|_| Visitor::join(&clients, limits, 100.0)).collect();
+    let mut viewers: Vec<_> = (0..viewers).map(|_| Viewer::join(&clients, limits, 100.0)).collect();
     let mut last = Vec::new();
     for publish in 0..publishes {
         for patch in [4, 5] {
@@ -186,53 +186,53 @@ fn busy_run(visitors: usize, publishes: i32) -> (u64, Vec<Vec<Frame>>) {
         }
         now += Duration::from_millis(50);
         streamer.publish(&prairie.publish(), &clients.all(), now);
-        last = visitors.iter_mut().map(Visitor::read).collect();
+        last = viewers.iter_mut().map(Viewer::read).collect();
     }
     let encodings = streamer.counters().encodings.load(Relaxed);
     (encodings, last)
 }
 
 #[test]
-fn a_grid_is_encoded_once_however_many_look() {
+fn a_grid_is_encoded_once_for_any_number_of_clients() {
     let (for_one, _) = busy_run(1, 50);
     let (for_eight, last) = busy_run(8, 50);
     assert!(for_one >= 100, "two patches changed 50 times, {for_one} encodings");
     assert_eq!(for_one, for_eight);
     let patches = |frames: &[Frame]| -> Vec<_> { frames[0].messages[1..frames[0].messages.len() - 1].iter().map(|m| m.as_ptr()).collect() };
     assert_eq!(patches(&last[0]).len(), 2);
-    assert!(last.iter().all(|frames| patches(frames) == patches(&last[0])), "all share the same bytes in memory");
+    assert!(last.iter().all(|frames| patches(frames) == patches(&last[0])), "all clients share the same bytes in memory");
 }
 
 #[test]
 fn a_slow_client_gets_the_newest_state_not_a_queue() {
     let limits = SendLimits::default();
-    let (clients, mut prairie, mut now) = (Clients::default(), Prairie::at_rest(), Instant::now());
+    let (clients, mut prairie, mut now) = (Clients::default(), FakeWorld::at_rest(), Instant::now());
     let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
-    let mut slow = Visitor::join(&clients, limits, 100.0);
-    let mut quick = Visitor::join(&clients, limits, 100.0);
-    let mut step = |prairie: &mut Prairie, level: i8| {
+    let mut slow = Viewer::join(&clients, limits, 100.0);
+    let mut quick = Viewer::join(&clients, limits, 100.0);
+    let mut step = |prairie: &mut FakeWorld, level: i8| {
         prairie.change_patch(4, |codes| codes.fill(level));
         now += Duration::from_millis(50);
         streamer.publish(&prairie.publish(), &clients.all(), now);
     };
     for level in 1..=100 {
         step(&mut prairie, level);
-        assert_eq!(quick.read().len(), 1, "the other client is served as ever");
+        assert_eq!(quick.read().len(), 1, "the other client is not affected");
     }
-    assert_eq!(slow.read().len(), limits.in_flight as usize, "no more than that waited");
+    assert_eq!(slow.read().len(), limits.in_flight as usize, "the queue is bounded");
     step(&mut prairie, 120);
     let newest = slow.read();
     assert_eq!(newest.len(), 1);
-    assert_eq!(slow.picture.tick, prairie.snapshot.tick);
+    assert_eq!(slow.replica.tick, prairie.snapshot.tick);
     assert_eq!(slow.error_against(&prairie), 0, "one key frame instead of 96 deltas");
 }
 
 #[test]
-fn a_client_is_sent_its_budget_and_the_nearest_patches_first() {
-    let limits = SendLimits { in_flight: 4, bytes_per_sec: 2_000.0 };
-    let (clients, mut prairie, start) = (Clients::default(), Prairie::at_rest(), Instant::now());
+fn a_client_gets_its_byte_budget_and_the_nearest_patches_first() {
+    let limits = SendLimits { in_flight: 4, bytes_per_s: 2_000.0 };
+    let (clients, mut prairie, start) = (Clients::default(), FakeWorld::at_rest(), Instant::now());
     let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
-    let mut visitor = Visitor::join(&clients, limits, 100.0);
+    let mut viewer = Viewer::join(&clients, limits, 100.0);
     let mut noise = 1_u32;
     let mut largest = 0;
     let mut served = [0; 9];
@@ -246,58 +246,58 @@ fn a_client_is_sent_its_budget_and_the_nearest_patches_first() {
             });
         }
         streamer.publish(&prairie.publish(), &clients.all(), start + Duration::from_millis(50 * publish));
-        let before = visitor.picture.patches.clone();
-        for frame in visitor.read() {
+        let before = viewer.replica.patches.clone();
+        for frame in viewer.read() {
             largest = frame.messages.iter().map(|message| message.len()).max().unwrap().max(largest);
         }
-        for (patch, held) in &visitor.picture.patches {
+        for (patch, held) in &viewer.replica.patches {
             served[*patch as usize] += u32::from(before.get(patch) != Some(held));
         }
     }
-    let allowed = (limits.bytes_per_sec * 20.0 + limits.bytes_per_sec) as usize + 2 * largest;
-    assert!(visitor.picture.bytes <= allowed, "{} bytes sent, {allowed} allowed", visitor.picture.bytes);
-    assert!(visitor.picture.bytes >= allowed / 2, "{} bytes sent, {allowed} allowed", visitor.picture.bytes);
-    assert!((0..9).all(|patch| served[4] >= served[patch]), "the camera's own patch comes first: {served:?}");
+    let allowed = (limits.bytes_per_s * 20.0 + limits.bytes_per_s) as usize + 2 * largest;
+    assert!(viewer.replica.bytes <= allowed, "{} bytes sent, {allowed} allowed", viewer.replica.bytes);
+    assert!(viewer.replica.bytes >= allowed / 2, "{} bytes sent, {allowed} allowed", viewer.replica.bytes);
+    assert!((0..9).all(|patch| served[4] >= served[patch]), "the camera's patch comes first: {served:?}");
 }
 
-/// The error bound of the slow frames: at most the dead band while a patch moves, reached, and nothing once it is still.
+/// Error bound of the slow frames: exactly the dead band while a patch moves, and zero once it is at rest.
 #[test]
 fn a_small_change_waits_within_the_dead_band() {
     let limits = SendLimits::default();
-    let (clients, mut prairie, mut now) = (Clients::default(), Prairie::at_rest(), Instant::now());
+    let (clients, mut prairie, mut now) = (Clients::default(), FakeWorld::at_rest(), Instant::now());
     let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
-    let mut visitor = Visitor::join(&clients, limits, 100.0);
+    let mut viewer = Viewer::join(&clients, limits, 100.0);
     let mut worst = 0;
     for publish in 0..200_i32 {
         prairie.change_patch(4, |codes| codes[7] = (publish * 7 % 5) as i8);
         now += Duration::from_millis(50);
         streamer.publish(&prairie.publish(), &clients.all(), now);
-        visitor.read();
-        worst = worst.max(visitor.error_against(&prairie));
+        viewer.read();
+        worst = worst.max(viewer.error_against(&prairie));
     }
     assert_eq!(worst, DEAD_BAND);
     for _ in 0..SETTLE {
         now += Duration::from_millis(50);
         streamer.publish(&prairie.publish(), &clients.all(), now);
-        visitor.read();
+        viewer.read();
     }
-    assert_eq!(visitor.error_against(&prairie), 0);
+    assert_eq!(viewer.error_against(&prairie), 0);
 }
 
 #[test]
-fn what_is_remembered_does_not_grow_with_the_way_flown() {
+fn memory_does_not_grow_with_the_distance_travelled() {
     const STRIP: PatchLayout = PatchLayout { count: [400, 12], cells: 8, cell_m: 1.0 };
     const RADIUS_M: f32 = 60.0;
-    let limits = SendLimits { bytes_per_sec: 1e9, ..SendLimits::default() };
-    let (clients, mut prairie, mut now) = (Clients::default(), Prairie::at_rest(), Instant::now());
+    let limits = SendLimits { bytes_per_s: 1e9, ..SendLimits::default() };
+    let (clients, mut prairie, mut now) = (Clients::default(), FakeWorld::at_rest(), Instant::now());
     let mut streamer = Streamer::new(STRIP, limits, PUBLISH_HZ);
-    let mut visitor = Visitor::join(&clients, limits, RADIUS_M);
+    let mut viewer = Viewer::join(&clients, limits, RADIUS_M);
     for patch in 0..STRIP.patches() {
         prairie.change_patch(patch, |codes| codes.fill(10 + (patch % 50) as i8));
     }
     let column = |x: u32| (0..STRIP.count[1]).map(move |z| (z * STRIP.count[0] + x) as usize);
     for x in (0..STRIP.count[0]).chain((0..STRIP.count[0]).rev()) {
-        // On the far side of the world some grass comes to rest and some bends the other way.
+        // On the far side of the world some grass comes to rest, and some bends the other way.
         for patch in column((x + STRIP.count[0] / 2) % STRIP.count[0]) {
             if patch.is_multiple_of(3) {
                 prairie.patches().remove(&(patch as u32));
@@ -306,44 +306,44 @@ fn what_is_remembered_does_not_grow_with_the_way_flown() {
             }
         }
         let eye_m = [(x as f32 + 0.5) * STRIP.patch_m(), 2.0, 48.0];
-        visitor.client.look(Gaze { eye_m, radius_m: RADIUS_M });
+        viewer.client.set_area_of_interest(AreaOfInterest { eye_m, radius_m: RADIUS_M });
         now += Duration::from_millis(50);
         streamer.publish(&prairie.publish(), &clients.all(), now);
-        visitor.read();
-        let near = interest(&STRIP, [eye_m[0], eye_m[2]], RADIUS_M);
-        assert_eq!(visitor.error_over(near, &prairie), 0, "at column {x}");
+        viewer.read();
+        let near = patches_near(&STRIP, [eye_m[0], eye_m[2]], RADIUS_M);
+        assert_eq!(viewer.error_over(near, &prairie), 0, "at column {x}");
         let counters = streamer.counters();
-        let (held, tracks) = (counters.held.load(Relaxed), counters.tracks.load(Relaxed));
-        assert!(held <= PATCH_MEMORY as u64, "{held} patches that a client holds");
-        assert!(tracks <= STRIP.patches() as u64 / 3, "{tracks} patches whose frames are kept");
+        let (held, cached) = (counters.held_patches.load(Relaxed), counters.cached_patches.load(Relaxed));
+        assert!(held <= PATCH_MEMORY as u64, "{held} patches held");
+        assert!(cached <= STRIP.patches() as u64 / 3, "{cached} patches cached");
     }
 }
 
 #[test]
-fn what_was_sent_to_those_who_left_stays_counted() {
+fn bytes_sent_to_departed_clients_stay_counted() {
     let clients = Clients::default();
     for bytes in [100, 20] {
-        let visitor = Visitor::join(&clients, SendLimits::default(), 1.0);
-        visitor.client.count_sent(bytes);
-        assert_eq!(visitor.client.sent_bytes(), bytes as u64);
-        clients.leave(visitor.client.id);
+        let viewer = Viewer::join(&clients, SendLimits::default(), 1.0);
+        viewer.client.count_sent(bytes);
+        assert_eq!(viewer.client.sent_bytes(), bytes as u64);
+        clients.leave(viewer.client.id);
     }
     assert_eq!((clients.count(), clients.sent_bytes()), (0, 120));
 }
 
 #[test]
-fn a_refused_vehicle_is_said_once() {
+fn a_refused_vehicle_is_reported_once() {
     let limits = SendLimits::default();
-    let (clients, mut prairie, now) = (Clients::default(), Prairie::at_rest(), Instant::now());
+    let (clients, mut prairie, now) = (Clients::default(), FakeWorld::at_rest(), Instant::now());
     let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
-    let mut visitor = Visitor::join(&clients, limits, 100.0);
-    prairie.requests.insert(visitor.client.id, Request { tick: 3, object: None });
+    let mut viewer = Viewer::join(&clients, limits, 100.0);
+    prairie.requests.insert(viewer.client.id, Request { tick: 3, object: None });
     let mut refusals = 0;
     for _ in 0..3 {
         streamer.publish(&prairie.publish(), &clients.all(), now);
-        for frame in std::iter::from_fn(|| visitor.frames.try_recv().ok()) {
+        for frame in std::iter::from_fn(|| viewer.frames.try_recv().ok()) {
             for message in &frame.messages {
-                let message = visitor.picture.apply(message);
+                let message = viewer.replica.apply(message);
                 refusals += usize::from(matches!(message, ServerMessage::Refused { refusal: Refusal::ObjectLimit, .. }));
             }
         }
@@ -351,12 +351,12 @@ fn a_refused_vehicle_is_said_once() {
     assert_eq!(refusals, 1);
 }
 
-/// A broken plant that fell its own way.
+/// A broken plant whose fall direction depends on its site.
 fn plant(site: u32) -> BrokenPlant {
     BrokenPlant { site, fall: NonZeroU8::new((site % 255) as u8 + 1).expect("above 0") }
 }
 
-/// Plants told of in frames, in the order of telling.
+/// Broken plants in each message of the frames.
 fn broken_in(frames: &[Frame]) -> Vec<Vec<BrokenPlant>> {
     let messages = frames.iter().flat_map(|frame| &frame.messages);
     let plants = |message: &bytes::Bytes| match decode(message, SERVER_MESSAGE_LIMIT) {
@@ -367,71 +367,71 @@ fn broken_in(frames: &[Frame]) -> Vec<Vec<BrokenPlant>> {
 }
 
 #[test]
-fn a_newcomer_is_told_of_all_broken_plants_in_bounded_messages() {
+fn a_new_client_gets_all_broken_plants_in_bounded_messages() {
     let limits = SendLimits::default();
-    let (clients, mut prairie, mut now) = (Clients::default(), Prairie::at_rest(), Instant::now());
+    let (clients, mut prairie, mut now) = (Clients::default(), FakeWorld::at_rest(), Instant::now());
     let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
-    // In an order of breaking that is not that of the sites.
+    // The order of breaking differs from that of the sites.
     let all: Vec<BrokenPlant> = (0..10_000_u32).map(|n| plant(n * 7919 % 10_007)).collect();
     prairie.snapshot.broken = all.iter().copied().collect();
-    let mut visitor = Visitor::join(&clients, limits, 100.0);
-    let mut told = Vec::new();
+    let mut viewer = Viewer::join(&clients, limits, 100.0);
+    let mut received = Vec::new();
     for publish in 0..6 {
         now += Duration::from_millis(50);
         streamer.publish(&prairie.publish(), &clients.all(), now);
-        let messages = broken_in(&visitor.read());
+        let messages = broken_in(&viewer.read());
         assert!(messages.len() <= 1 && (publish < 3) == (messages.len() == 1), "publish {publish}: {} messages", messages.len());
         assert!(messages.iter().all(|plants| plants.len() <= BROKEN_LIMIT && plants.is_sorted_by_key(|plant| plant.site)));
-        told.extend(messages.into_iter().flatten());
+        received.extend(messages.into_iter().flatten());
     }
     let sorted = |mut plants: Vec<BrokenPlant>| {
         plants.sort_unstable_by_key(|plant| plant.site);
         plants
     };
-    assert_eq!(sorted(told), sorted(all));
+    assert_eq!(sorted(received), sorted(all));
 }
 
-/// Plants that break while a client reads nothing, or has spent its budget, are told later: all of them, each once.
+/// Plants that break while a client does not read or is out of budget are sent later, each exactly once.
 #[test]
-fn a_client_that_lags_misses_no_broken_plant() {
-    let limits = SendLimits { in_flight: 2, bytes_per_sec: 1_000.0 };
-    let (clients, mut prairie, mut now) = (Clients::default(), Prairie::at_rest(), Instant::now());
+fn a_slow_client_misses_no_broken_plant() {
+    let limits = SendLimits { in_flight: 2, bytes_per_s: 1_000.0 };
+    let (clients, mut prairie, mut now) = (Clients::default(), FakeWorld::at_rest(), Instant::now());
     let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
-    let mut visitors: Vec<_> = (0..3).map(|_| Visitor::join(&clients, limits, 100.0)).collect();
-    let mut told = vec![Vec::new(); 3];
+    let mut viewers: Vec<_> = (0..3).map(|_| Viewer::join(&clients, limits, 100.0)).collect();
+    let mut received = vec![Vec::new(); 3];
     for publish in 0..400_u32 {
         if publish < 200 {
             (0..publish % 5).for_each(|n| prairie.snapshot.broken.push(plant(5 * publish + n)));
         }
         now += Duration::from_millis(50);
         streamer.publish(&prairie.publish(), &clients.all(), now);
-        for (n, visitor) in visitors.iter_mut().enumerate() {
+        for (n, viewer) in viewers.iter_mut().enumerate() {
             if publish.is_multiple_of([1, 7, 60][n]) || publish >= 300 {
-                told[n].extend(broken_in(&visitor.read()).into_iter().flatten());
+                received[n].extend(broken_in(&viewer.read()).into_iter().flatten());
             }
         }
     }
     assert_eq!(prairie.snapshot.broken.len(), 400);
-    for told in told {
-        assert_eq!(told.len(), 400, "each once");
-        assert!(prairie.snapshot.broken.iter().all(|plant| told.contains(plant)));
+    for received in received {
+        assert_eq!(received.len(), 400, "each once");
+        assert!(prairie.snapshot.broken.iter().all(|plant| received.contains(plant)));
     }
 }
 
 #[test]
-fn news_of_broken_plants_are_encoded_once_for_all() {
+fn broken_plants_are_encoded_once_for_all_clients() {
     let limits = SendLimits::default();
-    let (clients, mut prairie, now) = (Clients::default(), Prairie::at_rest(), Instant::now());
+    let (clients, mut prairie, now) = (Clients::default(), FakeWorld::at_rest(), Instant::now());
     let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
     prairie.snapshot.broken = [3, 1, 2].map(plant).into_iter().collect();
-    let mut visitors: Vec<_> = (0..4).map(|_| Visitor::join(&clients, limits, 100.0)).collect();
+    let mut viewers: Vec<_> = (0..4).map(|_| Viewer::join(&clients, limits, 100.0)).collect();
     streamer.publish(&prairie.publish(), &clients.all(), now);
-    let places = visitors.iter_mut().map(|visitor| {
-        let frames = visitor.read();
+    let addresses = viewers.iter_mut().map(|viewer| {
+        let frames = viewer.read();
         assert_eq!(broken_in(&frames), [[1, 2, 3].map(plant)]);
         let is_broken = |message: &&bytes::Bytes| matches!(decode(message, SERVER_MESSAGE_LIMIT), Ok(ServerMessage::Broken { .. }));
         frames[0].messages.iter().find(is_broken).expect("the message is there").as_ptr()
     });
-    let places: Vec<_> = places.collect();
-    assert!(places.iter().all(|place| *place == places[0]), "all share the same bytes in memory");
+    let addresses: Vec<_> = addresses.collect();
+    assert!(addresses.iter().all(|address| *address == addresses[0]), "all clients share the same bytes in memory");
 }

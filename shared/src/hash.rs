@@ -1,9 +1,8 @@
-//! Random numbers by place, the same on the GPU.
+//! Hashes of integer coordinates as random numbers, the same on the GPU.
 
-/// Three random numbers for a place and a number: an integer hash (pcg3d; Jarzynski & Olano, Hash Functions for GPU Rendering, JCGT 9(3),
-/// 2020), so that server, client and GPU agree to the bit.
+/// Three random numbers for integer coordinates: the hash pcg3d (Jarzynski & Olano 2020), so that server, client and GPU agree to the bit.
 ///
-/// Its twin on the GPU is `hash3` in `common.wgsl`.
+/// Its twin on the GPU is `hash3` in `inputs/random.wgsl`.
 pub fn hash3(place: [u32; 3]) -> [u32; 3] {
     let stir = |[mut x, mut y, mut z]: [u32; 3]| {
         x = x.wrapping_add(y.wrapping_mul(z));
@@ -15,7 +14,7 @@ pub fn hash3(place: [u32; 3]) -> [u32; 3] {
     stir(stir(scrambled).map(|v| v ^ (v >> 16)))
 }
 
-/// A seed in half its bits, as [`hash3`] takes it.
+/// A 64-bit seed folded into 32 bits, as [`hash3`] takes it.
 pub(crate) fn folded(seed: u64) -> u32 {
     (seed ^ (seed >> 32)) as u32
 }

@@ -1,24 +1,31 @@
-//! The pure core of Prairie: what the server computes with and the browser draws from.
+//! Simulation core of Prairie: scenes, terrain, the bend field of grass, plants, light and the wire format, shared by server and client.
 //!
 //! # Axes and units
-//! SI throughout (m, s, kg, rad). Y is up; X grows east and Z grows south, so that row 0 of a map is its northern edge.
+//! SI throughout (m, s, kg, rad). Y is up; X points east and Z south, so that row 0 of a map is its northern edge.
 //! The world's north-west corner is the origin; a world of `w × d` metres spans `0..w` in X and `0..d` in Z.
 //! A heading is an angle about +Y measured from −Z (north) towards +X (east), so a heading of 0 looks north.
 //!
-//! # Rooms
-//! - [`scene`]: what a scene file can say, with defaults and ranges.
+//! # Modules
+//! - [`scene`]: scene files, with the default and range of every field.
 //! - [`terrain`]: height map, covering map, normals.
-//! - [`grid`]: shapes, spacing, index and world coordinates, fields with a halo.
-//! - [`bend`]: the bend field of the grass, a 2-D continuum (Chen & Johan).
-//! - [`wind`]: which place of the wind's box blows where.
-//! - [`hash`]: random numbers by place.
-//! - [`light`]: where the sun stands, the sky, lamps, and how grass is lit.
-//! - [`lod`]: which grass grid is drawn how.
-//! - [`plant`]: blades and underbrush, how they bend, and where they grow.
+//! - [`grid`]: the grid of patches: indices and world coordinates.
+//! - [`bend`]: the bend field of the grass, a 2-D continuum (Chen & Johan 2010).
+//! - [`wind`]: tiling of the wind's box over the world, and trilinear sampling.
+//! - [`plant`]: mechanics of blades and underbrush, and where they grow.
+//! - [`light`]: position of the sun, sky, lamps, and the shading of grass.
+//! - [`lod`]: levels of detail and drawing order of grass grids.
 //! - [`outline`]: polygons on the ground and their convex parts.
-//! - [`wire`]: the messages between server and client, and the codec of the fields.
+//! - [`hash`] and [`random`]: random numbers by position and from a seed.
+//! - [`wire`]: messages between server and client, and the codec of the fields.
 //!
-//! Everything here builds for `wasm32` and is deterministic: only `+ − × ÷` and square roots where both sides must agree.
+//! # Features
+//! - `modal`: the bend field's scheme `modal`, exact in time. Off by default; it needs `rustfft`.
+//!
+//! # Determinism
+//! Nothing here reads a clock, a file or the network, and everything builds for `wasm32`. The hashes, the codec, the growth of underbrush, the motion of
+//! blades, and the bend field's schemes other than `modal` (given their coefficients) use only integers, `+ − × ÷` and square roots: their bits are the
+//! same on every machine. Functions such as `exp` and `sin` come from the platform's library: coefficients of a step, headings, the scheme `modal`,
+//! postures and light may differ in the last bits between platforms, so the server's results are authoritative.
 
 pub mod bend;
 pub mod grid;
@@ -27,7 +34,13 @@ pub mod light;
 pub mod lod;
 pub mod outline;
 pub mod plant;
+pub mod random;
 pub mod scene;
 pub mod terrain;
 pub mod wind;
 pub mod wire;
+
+/// Compiles and runs the examples of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeDoctests;

@@ -1,57 +1,57 @@
-//! Outlines seen from above: simple polygons, and the convex parts that they are made of (001 §6).
+//! Outlines seen from above: simple polygons, and their decomposition into convex parts (Chen & Johan §6).
 //!
-//! Ears are clipped off (Meisters, Amer. Math. Monthly 82, 1975), then triangles merge across every diagonal that leaves both its ends
-//! convex (Hertel & Mehlhorn, FCT 1983): at most four times as many parts as there must be.
+//! Triangulated by ear clipping (Meisters 1975); triangles are then merged across every diagonal whose ends both stay convex (Hertel & Mehlhorn
+//! 1983), which gives at most four times the smallest number of parts.
 
 use thiserror::Error;
 
-/// Least area of an outline (m²).
+/// Smallest area of an outline (m²).
 const LEAST_AREA_M2: f64 = 0.01;
 
-/// Why corners are no outline.
+/// Reasons why corners are not a valid outline.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum OutlineFault {
-    /// Too few corners to enclose anything.
-    #[error("has {0} corners, which is no footprint; allowed: 3 and more")]
+    /// Fewer than three corners.
+    #[error("has {0} corners, which enclose no area; allowed: 3 and more")]
     TooFew(usize),
-    /// A coordinate that is no number.
+    /// A coordinate that is NaN or infinite.
     #[error("has corner {number} at ({x_m}, {z_m}); allowed: finite numbers")]
     NotFinite {
-        /// Which corner, from 1.
+        /// Index of the corner, from 1.
         number: usize,
-        /// Its place (m).
+        /// X of the corner (m).
         x_m: f32,
-        /// Its place (m).
+        /// Z of the corner (m).
         z_m: f32,
     },
-    /// Two edges that meet elsewhere than in a common corner.
+    /// Two edges that cross or touch.
     #[error(
         "has edges that cross or touch, from corner {first} and from corner {second}; allowed: edges that meet at their common corners only"
     )]
     Crossing {
-        /// Corner that the one edge starts from, from 1.
+        /// Start corner of the first edge, from 1.
         first: usize,
-        /// Corner that the other edge starts from, from 1.
+        /// Start corner of the second edge, from 1.
         second: usize,
     },
-    /// As good as nothing inside.
-    #[error("encloses {0:.4} m², which is no footprint; allowed: at least 0.01")]
+    /// Too small an area.
+    #[error("encloses {0:.4} m²; allowed: at least 0.01")]
     NoArea(f64),
 }
 
-/// A convex part of an outline.
+/// Convex part of an outline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConvexPart {
     /// Corners in order, turning from +X towards +Z (m).
     pub corners_m: Vec<[f32; 2]>,
-    /// Whether the edge from each corner to the next lies inside the outline, where another part goes on.
+    /// Whether the edge from each corner to the next is interior, where another part continues.
     pub seams: Vec<bool>,
 }
 
-/// Whether corners, in either order, are the outline of something.
+/// Checks that corners, in either order, are a valid outline.
 ///
 /// # Errors
-/// [`OutlineFault`]: fewer than three corners, no numbers, edges that cross or touch, or less than 0.01 m² inside.
+/// [`OutlineFault`]: fewer than three corners, NaN or infinite coordinates, edges that cross or touch, or an area below 0.01 m².
 pub fn check(corners_m: &[[f32; 2]]) -> Result<(), OutlineFault> {
     let count = corners_m.len();
     if count < 3 {
@@ -81,7 +81,7 @@ pub fn check(corners_m: &[[f32; 2]]) -> Result<(), OutlineFault> {
     Ok(())
 }
 
-/// The convex parts of a sound outline ([`check`]), which cover it without overlap.
+/// Convex parts of a valid outline (see [`check`]), which cover it without overlap.
 pub fn convex_parts(corners_m: &[[f32; 2]]) -> Vec<ConvexPart> {
     let corners = without_straight_corners(corners_m);
     let mut parts = ears(&corners);
@@ -94,7 +94,7 @@ pub fn convex_parts(corners_m: &[[f32; 2]]) -> Vec<ConvexPart> {
     parts.into_iter().map(part).collect()
 }
 
-/// The corners at which the outline turns, turning from +X towards +Z on the whole.
+/// The corners at which the outline turns, in order from +X towards +Z.
 fn without_straight_corners(corners_m: &[[f32; 2]]) -> Vec<[f32; 2]> {
     let mut corners = corners_m.to_vec();
     if area_m2(&corners) < 0.0 {
@@ -118,7 +118,7 @@ fn ears(corners: &[[f32; 2]]) -> Vec<Vec<usize>> {
             let inside = |p: [f32; 2]| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
             turn(a, b, c) > 0.0 && left.iter().all(|other| ear.contains(other) || !inside(corners[*other]))
         };
-        // What remains of a sound outline always has an ear, unless rounding has made it a line.
+        // What remains of a valid outline always has an ear, unless rounding has made it a line.
         let Some(at) = (0..count).find(is_ear) else { break };
         triangles.push(around(at).to_vec());
         left.remove(at);
@@ -126,7 +126,7 @@ fn ears(corners: &[[f32; 2]]) -> Vec<Vec<usize>> {
     triangles
 }
 
-/// Merges parts across common diagonals while the result is convex.
+/// Merges parts across common diagonals while the result stays convex.
 fn merge(corners: &[[f32; 2]], parts: &mut Vec<Vec<usize>>) {
     let mut one = 0;
     while one < parts.len() {
@@ -141,7 +141,7 @@ fn merge(corners: &[[f32; 2]], parts: &mut Vec<Vec<usize>>) {
     }
 }
 
-/// Two parts with a common diagonal as one, if that is convex.
+/// Merges two parts with a common diagonal, if the result is convex.
 fn joined(corners: &[[f32; 2]], one: &[usize], other: &[usize]) -> Option<Vec<usize>> {
     let (n, m) = (one.len(), other.len());
     let (i, j) = (0..n).find_map(|i| {
@@ -164,13 +164,13 @@ fn area_m2(corners_m: &[[f32; 2]]) -> f64 {
     0.5 * corners_m.iter().zip(next).map(|(a, b)| f64::from(a[0]) * f64::from(b[1]) - f64::from(a[1]) * f64::from(b[0])).sum::<f64>()
 }
 
-/// Twice the area of a triangle: positive where a walk from `a` by `b` to `c` turns from +X towards +Z, 0 where it goes straight.
+/// Twice the signed area of a triangle: positive if the path `a`, `b`, `c` turns from +X towards +Z, 0 if it is straight.
 fn turn(a: [f32; 2], b: [f32; 2], c: [f32; 2]) -> f64 {
     let [[ax, az], [bx, bz], [cx, cz]] = [a, b, c].map(|point| point.map(f64::from));
     (bx - ax) * (cz - az) - (bz - az) * (cx - ax)
 }
 
-/// Whether the way from `a` to `b` and on to `c` stands still or goes back along itself.
+/// Whether the path from `a` to `b` to `c` stops or doubles back.
 fn folds(a: [f32; 2], b: [f32; 2], c: [f32; 2]) -> bool {
     let along = f64::from(b[0] - a[0]) * f64::from(c[0] - b[0]) + f64::from(b[1] - a[1]) * f64::from(c[1] - b[1]);
     a == b || b == c || turn(a, b, c) == 0.0 && along < 0.0
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn what_is_no_outline_is_told() {
         let told = |corners: &[[f32; 2]]| check(corners).map_err(|fault| fault.to_string()).unwrap_err();
-        assert!(told(&[]).starts_with("has 0 corners, which is no footprint"));
+        assert!(told(&[]).starts_with("has 0 corners, which enclose no area"));
         assert!(told(&U[..2]).starts_with("has 2 corners"));
         assert!(told(&[[0.0, 0.0], [1.0, f32::NAN], [1.0, 1.0]]).starts_with("has corner 2 at (1, NaN)"));
         assert!(told(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]).starts_with("encloses 0.0000 m²"));
@@ -253,7 +253,7 @@ mod tests {
     }
 
     proptest! {
-        /// Stars about the origin have any number of dents and never cross themselves.
+        /// Stars about the origin have any number of concave corners and never cross themselves.
         #[test]
         fn stars_are_made_of_their_parts(radii in prop::collection::vec(0.5f32..4.5, 3..24)) {
             let step = std::f32::consts::TAU / radii.len() as f32;

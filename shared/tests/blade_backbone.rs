@@ -1,10 +1,10 @@
-//! The curve through a blade's control points and the outline about it.
+//! Backbone curve of a blade's control points, and the outline about it.
 
+use prairie_core::plant::blade::backbone::{backbone_m, drawn_out_m, segment_points_m};
+use prairie_core::plant::blade::contact::settle;
+use prairie_core::plant::blade::modes::WIND_SHAPE;
+use prairie_core::plant::blade::{LINKS, Leans, Sway};
 use proptest::prelude::*;
-use shared::plant::blade::backbone::{backbone_m, drawn_out_m, segment_points_m};
-use shared::plant::blade::contact::settle;
-use shared::plant::blade::modes::WIND_SHAPE;
-use shared::plant::blade::{LINKS, Leans, Sway};
 
 fn lean([angle, heading]: [f32; 2]) -> [f32; 2] {
     [angle * heading.cos(), angle * heading.sin()]
@@ -14,7 +14,7 @@ fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f32>().sqrt()
 }
 
-/// Length of the curve of control points, as so many chords (m).
+/// Length of the curve of control points, measured with this many chords (m).
 fn curve_m(points_m: &[[f32; 3]; LINKS], chords: u32) -> f32 {
     let at = |n: u32| backbone_m(points_m, n as f32 / chords as f32);
     (0..chords).map(|n| distance(at(n), at(n + 1))).sum()
@@ -38,11 +38,11 @@ proptest! {
     }
 
     #[test]
-    fn however_links_are_thrown_about_what_is_drawn_is_as_long_as_the_blade(angles in angles(), length_m in 0.05_f32..3.0, segments in 2_u32..16) {
+    fn a_drawn_blade_keeps_its_length_for_any_leans(angles in angles(), length_m in 0.05_f32..3.0, segments in 2_u32..16) {
         let points_m = Sway::at_rest(angles.map(lean)).points_m(length_m);
         let drawn_m = drawn_out_m(&points_m, length_m, segments);
         prop_assert!((curve_m(&drawn_m, segments) / length_m - 1.0).abs() < 1e-5);
-        // By one factor: shapes stay, lengths change.
+        // One factor: shapes stay, lengths change.
         let factor = drawn_m[0][1] / points_m[0][1];
         prop_assert!(factor >= 1.0);
         for (drawn_m, point_m) in drawn_m.into_iter().zip(points_m) {
@@ -51,14 +51,14 @@ proptest! {
     }
 
     #[test]
-    fn what_wind_bends_is_drawn_where_it_stands(heading in 0.0_f32..6.3, mean in 0.0_f32..1.2) {
+    fn a_blade_bent_by_wind_is_drawn_at_its_control_points(heading in 0.0_f32..6.3, mean in 0.0_f32..1.2) {
         let leans: Leans = WIND_SHAPE.map(|share| lean([share * mean, heading]));
         let points_m = Sway::at_rest(leans).points_m(1.0);
         let turn = (WIND_SHAPE[2] - WIND_SHAPE[0]) * mean;
         for segments in [3, 7] {
             let drawn_m = drawn_out_m(&points_m, 1.0, segments);
             prop_assert!(distance(drawn_m[2], points_m[2]) < 0.06 * turn * turn + 1e-5, "{} after a turn of {turn}", distance(drawn_m[2], points_m[2]));
-            // The curve that the strip approximates, in length and in place.
+            // The curve that the strip approximates, in length and position.
             let longer = curve_m(&drawn_m, 256) - 1.0;
             prop_assert!(longer < 1.4 * (turn / segments as f32).powi(2) / 24.0 + 1e-5, "{longer}");
             let n = segments as f32;
@@ -81,7 +81,7 @@ proptest! {
     }
 
     #[test]
-    fn the_outline_turns_evenly_from_its_side_to_across_its_lean(angles in angles(), side_rad in -7.0_f32..7.0, width_m in 0.001_f32..0.1) {
+    fn the_outline_twists_evenly_from_its_side_to_across_its_lean(angles in angles(), side_rad in -7.0_f32..7.0, width_m in 0.001_f32..0.1) {
         const SEGMENTS: usize = 12;
         let points_m = Sway::at_rest(angles.map(lean)).points_m(1.0);
         let side = |n: usize| {

@@ -1,9 +1,9 @@
 //! A blade through a hundred thousand steps of gusts and hits: it keeps its length, stays out of the ground and of what hits it, and gives the same bits.
 
-use shared::hash::hash3;
-use shared::plant::blade::backbone::{backbone_m, drawn_out_m};
-use shared::plant::blade::contact::{Sphere, settle};
-use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, abreast, advance};
+use prairie_core::hash::hash3;
+use prairie_core::plant::blade::backbone::{backbone_m, drawn_out_m};
+use prairie_core::plant::blade::contact::{Sphere, settle};
+use prairie_core::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
 
 const DT_SECS: f32 = 1.0 / 60.0;
 
@@ -141,54 +141,6 @@ fn a_storm_of_gusts_and_hits_leaves_a_blade_whole() {
     assert!(cut < 800_000 / 200 && deepest_drawn < 0.2, "{cut} strips cut spheres, by up to {deepest_drawn} of the length");
     // The curve that seven segments approximate.
     assert!(longest < 1.01, "{longest} of the length");
-}
-
-/// Blades that are taken through a step at once; no multiple of what a register holds.
-const ABREAST: usize = 37;
-
-/// An array of each number of what is said of one blade.
-fn arrays<const M: usize>(of: impl Fn(u32) -> [f32; M]) -> [[f32; ABREAST]; M] {
-    let each: [[f32; M]; ABREAST] = std::array::from_fn(|n| of(n as u32));
-    std::array::from_fn(|m| each.map(|values| values[m]))
-}
-
-fn leans_abreast(of: impl Fn(u32) -> Leans) -> Leans<[f32; ABREAST]> {
-    std::array::from_fn(|link| arrays(|number| of(number)[link]))
-}
-
-#[test]
-fn many_abreast_have_the_bits_of_one() {
-    let [length_m, frequency_rad_per_s, damping_share, lean_per_wind2] = arrays(|number| {
-        let blade = grown(number).0;
-        [blade.length_m, blade.frequency_rad_per_s, blade.damping_share, blade.lean_per_wind2]
-    });
-    let blades = Blade { length_m, frequency_rad_per_s, damping_share, lean_per_wind2 };
-    let held = leans_abreast(|number| grown(number).2);
-    let root = |number: u32| [between(0.0, 8.0, [number, 8, 99]), between(0.0, 8.0, [number, 9, 99])];
-    for integrator in [Integrator::Euler, Integrator::Verlet, Integrator::Exact] {
-        // Short enough for Euler not to leave the numbers.
-        let dt_secs = if integrator == Integrator::Exact { DT_SECS } else { 1e-4 };
-        let mut alone: [Sway; ABREAST] = std::array::from_fn(|n| Sway::at_rest(grown(n as u32).2));
-        let mut together = Sway { lean_rad: held, rate_rad_per_s: [[[0.0; ABREAST]; 2]; LINKS] };
-        for step in 0..1000 {
-            for (number, sway) in (0..).zip(&mut alone) {
-                let (blade, _, held) = grown(number);
-                *sway = advance(sway, &blade, &held, &wind(number, step), integrator, dt_secs);
-            }
-            let winds = leans_abreast(|number| wind(number, step));
-            abreast::advance(&mut together, &blades, &held, &winds, integrator, dt_secs);
-        }
-        let mut points_m = [[[0.0; ABREAST]; 3]; LINKS];
-        abreast::find_points(&together.lean_rad, &blades.length_m, &arrays(root), &mut points_m);
-        for (n, sway) in alone.iter().enumerate() {
-            let of = |leans: &Leans<[f32; ABREAST]>| leans.map(|link| link.map(|part| part[n].to_bits()));
-            let wanted = [sway.lean_rad, sway.rate_rad_per_s].map(|leans| leans.map(|link| link.map(f32::to_bits)));
-            assert_eq!([of(&together.lean_rad), of(&together.rate_rad_per_s)], wanted, "{integrator:?}, blade {n}");
-            let [x, z] = root(n as u32);
-            let wanted = sway.points_m(length_m[n]).map(|[east, up, south]| [x + east, up, z + south].map(f32::to_bits));
-            assert_eq!(points_m.map(|point_m| point_m.map(|part| part[n].to_bits())), wanted, "{integrator:?}, blade {n}");
-        }
-    }
 }
 
 #[test]

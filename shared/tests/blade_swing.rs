@@ -1,18 +1,18 @@
-//! How a blade swings: its first frequency is the one that it is calibrated to, its decay what damping, each integrator and the air say; and wind holds it where
-//! the bend field has it.
+//! Swing of a blade: its first frequency is the calibrated one, its decay follows from damping, integrator and air, and its equilibrium in wind
+//! agrees with the bend field.
 
-use shared::bend::wind_lean_rad;
-use shared::plant::blade::modes::{BRAKES, CANTILEVER, FREQUENCIES, MODES, WIND_SHAPE, first_frequency_rad_per_s};
-use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
+use prairie_core::bend::wind_lean_rad;
+use prairie_core::plant::blade::modes::{BRAKES, CANTILEVER, FREQUENCIES, MODES, WIND_SHAPE, first_frequency_rad_per_s};
+use prairie_core::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
 use std::f64::consts::PI;
 use std::ops::Range;
 
 const CALM: Leans = [[0.0; 2]; LINKS];
 
-/// Zeros and peaks by which the higher modes have died.
+/// Zeros and peaks by which the higher modes have decayed.
 const LATE: Range<usize> = 20..50;
 
-/// Largest lean that a blade is released from (rad): so small that its tip moves along a line.
+/// Largest lean of a released blade (rad): so small that its tip moves along a line.
 const SMALL_RAD: f32 = 1e-3;
 
 fn blade(frequency_rad_per_s: f32, damping_share: f32) -> Blade {
@@ -27,7 +27,7 @@ fn in_mode(mode: usize) -> Leans {
 /// Leans under a force at the tip along X: the joints bend by the moments 3 : 2 : 1 over the stiffness 2 : 1 : 1.
 const UNDER_TIP_LOAD: Leans = [[SMALL_RAD * 0.5, 0.0], [SMALL_RAD * 7.0 / 6.0, 0.0], [SMALL_RAD * 1.5, 0.0]];
 
-/// A tip along one axis, step by step.
+/// Position of a tip along one axis, step by step.
 struct Swing {
     dt_secs: f64,
     tip_m: Vec<f64>,
@@ -43,14 +43,14 @@ impl Swing {
         Self { dt_secs: f64::from(dt_secs), tip_m: tip_m.collect() }
     }
 
-    /// Angular frequency (rad/s), from these of the zeros.
+    /// Angular frequency (rad/s), from a range of the zeros.
     fn frequency_rad_per_s(&self, of: Range<usize>) -> f64 {
         let zeros = self.tip_m.windows(2).enumerate().filter(|(_, pair)| pair[0] * pair[1] < 0.0);
         let zeros: Vec<f64> = zeros.map(|(step, pair)| step as f64 + pair[0] / (pair[0] - pair[1])).collect();
         PI * of.len() as f64 / ((zeros[of.end] - zeros[of.start]) * self.dt_secs)
     }
 
-    /// Rate at which the height of peaks falls (1/s), from these of them; a parabola through three steps finds a peak.
+    /// Decay rate of the peaks (1/s), from a range of them; a parabola through three steps locates a peak.
     fn decay_per_s(&self, of: Range<usize>) -> f64 {
         let peaks =
             self.tip_m.windows(3).enumerate().filter(|(_, three)| three[1].abs() > three[0].abs() && three[1].abs() >= three[2].abs());
@@ -64,8 +64,8 @@ impl Swing {
     }
 }
 
-/// Frequency and decay (1/s) of one mode through an integrator's steps, from the eigenvalues of its matrix: their product is 1 − 2γdt, with ω²dt² more for
-/// Euler, their sum 2 − 2γdt, with ω²dt² less for Verlet.
+/// Frequency and decay rate (1/s) of one mode under an integrator, from the eigenvalues of its matrix: their product is 1 − 2γdt, plus ω²dt² for
+/// Euler; their sum 2 − 2γdt, minus ω²dt² for Verlet.
 fn dispersion(integrator: Integrator, omega: f64, gamma: f64, dt_secs: f64) -> [f64; 2] {
     let (square, loss) = ((omega * dt_secs).powi(2), 2.0 * gamma * dt_secs);
     let (product, sum) = match integrator {
@@ -81,7 +81,7 @@ fn is_near(found: f64, wanted: f64, share: f64) -> bool {
 }
 
 #[test]
-fn a_blade_swings_at_the_first_frequency_that_it_is_calibrated_to() {
+fn a_blade_swings_at_its_calibrated_first_frequency() {
     let damping_share = 0.02;
     for (rigidity_n_m2, mass_kg_per_m, length_m) in
         [(0.0038, 0.0012, 0.8), (0.0038, 0.0012, 0.3), (0.015, 0.0012, 0.8), (0.0038, 0.006, 0.8), (0.4, 0.02, 2.0), (2e-5, 2e-4, 0.1)]
@@ -102,7 +102,7 @@ fn a_blade_swings_at_the_first_frequency_that_it_is_calibrated_to() {
 }
 
 #[test]
-fn higher_modes_swing_slower_than_a_cantilever_s_by_what_is_said_and_decay_at_their_own_rate() {
+fn higher_modes_are_slower_than_a_cantilevers_by_the_documented_amount_and_decay_at_their_own_rate() {
     let (rigidity_n_m2, mass_kg_per_m, length_m, damping_share) = (0.0038_f32, 0.0012_f32, 0.8_f32, 0.02_f32);
     let blade = Blade { length_m, ..blade(first_frequency_rad_per_s(rigidity_n_m2, mass_kg_per_m, length_m), damping_share) };
     let unit_rad_per_s = f64::from(rigidity_n_m2 / mass_kg_per_m).sqrt() / f64::from(length_m).powi(2);
@@ -140,7 +140,7 @@ fn each_integrator_has_the_frequency_and_the_decay_of_its_dispersion_relation() 
 
 #[test]
 fn euler_grows_by_its_dispersion_relation() {
-    // The highest mode, since what rounding puts into it outgrows the others.
+    // The highest mode, since its rounding errors outgrow the others.
     let omega = 9.74_f32;
     let highest = omega * FREQUENCIES[LINKS - 1];
     for (damping_share, step) in [(0.0_f32, 0.1_f32), (0.01, 0.05), (0.05, 0.2)] {
@@ -154,7 +154,7 @@ fn euler_grows_by_its_dispersion_relation() {
 }
 
 #[test]
-fn a_steady_wind_holds_a_blade_where_the_bend_field_has_it() {
+fn a_steady_wind_holds_a_blade_at_the_lean_of_the_bend_field() {
     for (bend_rad, wind_m_per_s) in [(0.5_f32, [3.0_f32, 4.0]), (0.5, [-10.0, 0.0]), (1.2, [0.7, -0.2]), (0.3, [0.0, 8.0])] {
         let blade = Blade { lean_per_wind2: bend_rad / 100.0, ..blade(9.74, 0.3) };
         for integrator in [Integrator::Euler, Integrator::Verlet, Integrator::Exact] {
@@ -175,7 +175,7 @@ fn a_steady_wind_holds_a_blade_where_the_bend_field_has_it() {
 }
 
 #[test]
-fn the_air_brakes_a_blade_once_across_the_wind_and_twice_along_it() {
+fn air_damps_a_blade_once_across_the_wind_and_twice_along_it() {
     let (omega, damping_share, bend_rad) = (9.74_f32, 0.02_f32, 0.5_f32);
     let blade = Blade { lean_per_wind2: bend_rad / 100.0, ..blade(omega, damping_share) };
     let across_of = |speed: f32| {
@@ -184,7 +184,7 @@ fn the_air_brakes_a_blade_once_across_the_wind_and_twice_along_it() {
     };
     for speed in [0.5_f32, 1.0, 2.0] {
         let wind: Leans = [[speed, 0.0]; LINKS];
-        // As the wind holds it, and a little off.
+        // In equilibrium with the wind, slightly displaced.
         let held = wind_lean_rad([speed, 0.0], bend_rad)[0];
         let start = |axis: usize| -> Leans {
             let mut start = WIND_SHAPE.map(|share| [share * held, 0.0]);

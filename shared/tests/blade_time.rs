@@ -1,12 +1,12 @@
-//! A whole blade through time by each integrator: the order of its error, and the longest step that it bears.
+//! Time integration of a whole blade: order of the error of each integrator, and its longest stable step.
 
-use shared::plant::blade::modes::{AMPLITUDES, FREQUENCIES, MODES};
-use shared::plant::blade::propagator::stable_dt_secs;
-use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
+use prairie_core::plant::blade::modes::{AMPLITUDES, FREQUENCIES, MODES};
+use prairie_core::plant::blade::propagator::stable_dt_secs;
+use prairie_core::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
 
 const CALM: Leans = [[0.0; 2]; LINKS];
 
-/// The shape under a force at the tip, in which all modes take part.
+/// The shape under a force at the tip, which contains all modes.
 const START: [f64; LINKS] = [0.5, 7.0 / 6.0, 1.5];
 
 fn blade(frequency_rad_per_s: f32, damping_share: f32) -> Blade {
@@ -30,12 +30,12 @@ fn exact(blade: &Blade, secs: f64) -> [[f64; 2]; LINKS] {
     links
 }
 
-/// Largest error of a lean after `secs` in so many steps, with the rates of `secs_before` the start.
+/// Largest error of a lean after `secs` in this many steps, with the rates of `secs_before` the start.
 fn error(blade: &Blade, integrator: Integrator, secs: f64, steps: u32, steps_before: f64) -> f64 {
     let dt_secs = secs / f64::from(steps);
     let (start, before) = (exact(blade, 0.0), exact(blade, -steps_before * dt_secs));
     let lean_rad = start.map(|[lean, _]| [lean as f32, 0.0]);
-    // The rate of a step before is that which led here.
+    // The rate of the step before is the one that led here.
     let rate_rad_per_s = [0, 1, 2].map(|link| {
         let led = (start[link][0] - before[link][0]) / (steps_before * dt_secs);
         [if steps_before > 0.0 { led } else { start[link][1] } as f32, 0.0]
@@ -65,7 +65,7 @@ fn each_integrator_has_its_order_and_the_exact_one_no_error() {
     for (name, (found, errors), wanted) in [
         ("Euler", fitted(&damped, Integrator::Euler, [800, 1600, 3200, 6400], 0.0), 1.0),
         ("Verlet, given the step before", fitted(&undamped, Integrator::Verlet, [120, 240, 480, 960], 1.0), 2.0),
-        // A start from rest is one whose step before is not known, and the damping is of the rate half a step ago.
+        // A start from rest does not know its previous step, and the damping is of the rate half a step ago.
         ("Verlet, from rest", fitted(&undamped, Integrator::Verlet, [480, 960, 1920, 3840], 0.0), 1.0),
         ("Verlet, damped", fitted(&damped, Integrator::Verlet, [120, 240, 480, 960], 1.0), 1.0),
     ] {
@@ -82,7 +82,7 @@ fn each_integrator_has_its_order_and_the_exact_one_no_error() {
 
 #[test]
 fn in_a_gust_every_integrator_is_of_first_order() {
-    // The drag of a step is that of its start.
+    // The drag of a step is that at its start.
     let blade = Blade { lean_per_wind2: 0.004, ..blade(8.0, 0.1) };
     let run = |integrator, steps: u32| {
         let dt_secs = 1.0 / steps as f32;
@@ -104,7 +104,7 @@ fn in_a_gust_every_integrator_is_of_first_order() {
     }
 }
 
-/// Whether a blade that is bent in all of its modes stays within a hundred times that for so many steps.
+/// Whether a blade bent in all of its modes stays within a hundred times that for this many steps.
 fn holds(blade: &Blade, wind: &Leans, integrator: Integrator, dt_secs: f32, steps: u32) -> bool {
     let mut sway = Sway::at_rest([[0.01, 0.0], [-0.01, 0.01], [0.01, -0.01]]);
     for step in 0..steps {
@@ -140,7 +140,7 @@ fn blades_fail_at_the_limit_of_their_integrator_whatever_their_stiffness() {
 }
 
 #[test]
-fn the_exact_integrator_bears_every_step() {
+fn the_exact_integrator_is_stable_for_every_step() {
     for frequency_rad_per_s in [1.0, 9.74, 120.0, 5000.0] {
         for damping_share in [0.0, 0.005, 0.1, 1.0, 5.0] {
             for dt_secs in [1e-3, 1.0 / 60.0, 0.5, 100.0] {

@@ -1,48 +1,10 @@
-//! What bends, beside the elastica: a beam of bending stiffness EI whose shape is exact however far it bends.
+//! Blades and components compared with the elastica: a beam of bending stiffness EI whose shape is exact at any bend.
 
-use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
-use shared::plant::underbrush::rest::{Load, balanced, joints};
-use shared::scene::parse_underbrush;
-use std::f64::consts::{FRAC_PI_2, PI};
-
-/// Steps of the integration along a beam.
-const STEPS: u32 = 1000;
-
-/// Tip of a beam of length 1 from its foot: how far aside, and how high against the load, where it stands `unbent_rad` off upright; its rigidity falls
-/// linearly to `tip_share` of EI at the tip.
-///
-/// `(EI·ψ')' = (P + Λ·t)·sin ψ` from the tip, ψ the angle from the load's direction, by Runge–Kutta steps; the tip's angle by bisection of its logarithm.
-fn elastica(tip_share: f64, load: Load, unbent_rad: f64) -> [f64; 2] {
-    let h = 1.0 / f64::from(STEPS);
-    // Angle, moment, place.
-    let rate = |t: f64, [angle, moment, ..]: [f64; 4]| {
-        let rigidity = tip_share + (1.0 - tip_share) * t;
-        [moment / rigidity, (load.tip + load.spread * t) * angle.sin(), angle.sin(), -angle.cos()]
-    };
-    // None once the beam is bent back beyond its clamp.
-    let shot = |tip_rad: f64| {
-        (0..STEPS).try_fold([tip_rad, 0.0, 0.0, 0.0], |y, step| {
-            let t = f64::from(step) * h;
-            let at = |k: [f64; 4], by: f64| std::array::from_fn(|n| y[n] + by * k[n]);
-            let first = rate(t, y);
-            let second = rate(t + h / 2.0, at(first, h / 2.0));
-            let third = rate(t + h / 2.0, at(second, h / 2.0));
-            let fourth = rate(t + h, at(third, h));
-            let next: [f64; 4] = std::array::from_fn(|n| y[n] + h / 6.0 * (first[n] + 2.0 * second[n] + 2.0 * third[n] + fourth[n]));
-            (next[0] <= PI - unbent_rad).then_some(next)
-        })
-    };
-    let (mut low, mut high, mut tip) = (1e-30_f64, PI - unbent_rad, [0.0; 2]);
-    for _ in 0..56 {
-        let middle = (low * high).sqrt();
-        if let Some([_, _, aside, up]) = shot(middle) {
-            (low, tip) = (middle, [aside, up]);
-        } else {
-            high = middle;
-        }
-    }
-    tip
-}
+use prairie_core::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
+use prairie_core::plant::underbrush::elastica;
+use prairie_core::plant::underbrush::rest::{Load, balanced, joints};
+use prairie_core::scene::parse_underbrush;
+use std::f64::consts::FRAC_PI_2;
 
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
@@ -50,15 +12,15 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 #[test]
 fn the_elastica_has_published_values() {
-    // Bisshopp & Drucker, Large deflection of cantilever beams, Quarterly of Applied Mathematics 3 (1945): deflection and shortening under a load at the tip.
+    // Bisshopp & Drucker 1945: deflection and shortening under a load at the tip.
     for (load, deflection, shortening) in
         [(1.0, 0.30172, 0.05643), (2.0, 0.49346, 0.16064), (5.0, 0.71379, 0.38763), (10.0, 0.81061, 0.55500)]
     {
-        let [aside, up] = elastica(1.0, Load { spread: 0.0, tip: load }, FRAC_PI_2);
+        let [aside, up] = elastica::tip(1.0, Load { spread: 0.0, tip: load }, FRAC_PI_2);
         assert!(distance([1.0 - aside, -up], [shortening, deflection]) < 8e-6, "{aside}, {up} at {load}");
     }
-    // A light beam that lies level droops by w·L⁴/(8·EI).
-    assert!((elastica(1.0, Load { spread: 0.01, tip: 0.0 }, FRAC_PI_2)[1] + 0.01 / 8.0).abs() < 1e-6);
+    // A light horizontal beam droops by w·L⁴/(8·EI).
+    assert!((elastica::tip(1.0, Load { spread: 0.01, tip: 0.0 }, FRAC_PI_2)[1] + 0.01 / 8.0).abs() < 1e-6);
 }
 
 /// Weights over EI/L² of components, and angles of their unbent axes from upright (rad).
@@ -66,18 +28,18 @@ const LIGHT: [f64; 7] = [0.1, 0.3, 1.0, 3.0, 6.0, 12.0, 25.0];
 const HEAVY: [f64; 3] = [50.0, 100.0, 200.0];
 const UNBENT_RAD: [f64; 11] = [0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.3, 1.6, 2.0, 2.5, 3.0];
 
-/// Weight, angle, rigidity of the tip, and where the tip is.
+/// Weight, angle, rigidity of the tip, and position of the tip.
 type Case = (f64, f64, f64, [f64; 2]);
 
 fn under_their_weight(weights: &[f64]) -> Vec<Case> {
     let angles = weights.iter().flat_map(|&weight| UNBENT_RAD.map(|unbent_rad| (weight, unbent_rad)));
-    // Upright ones that have buckled, too.
+    // Including upright ones that have buckled.
     let all = angles.chain(weights.iter().filter(|weight| **weight > 8.5).map(|&weight| (weight, 0.0)));
-    let exact = |tip_share, weight, unbent_rad| elastica(tip_share, Load { spread: weight, tip: 0.0 }, unbent_rad);
+    let exact = |tip_share, weight, unbent_rad| elastica::tip(tip_share, Load { spread: weight, tip: 0.0 }, unbent_rad);
     all.flat_map(|(weight, angle)| [1.0, 0.3].map(|tip_share| (weight, angle, tip_share, exact(tip_share, weight, angle)))).collect()
 }
 
-/// How far off the tip of a component of so many sections is, in each case.
+/// Error of the tip of a component with this many sections, in each case.
 fn errors(sections: usize, cases: &[Case]) -> Vec<f64> {
     let mut bends_rad = vec![0.0; sections];
     let error = |&(weight, unbent_rad, tip_share, exact): &Case| {
@@ -88,7 +50,7 @@ fn errors(sections: usize, cases: &[Case]) -> Vec<f64> {
     cases.iter().map(error).collect()
 }
 
-/// Slope of the line through the logarithms of counts and errors, turned upwards.
+/// Slope of the line through the logarithms of counts and errors, with the sign changed.
 fn order(errors: &[(usize, f64)]) -> f64 {
     let logs: Vec<[f64; 2]> = errors.iter().map(|&(count, error)| [(count as f64).ln(), error.ln()]).collect();
     let mean = |axis: usize| logs.iter().map(|at| at[axis]).sum::<f64>() / logs.len() as f64;
@@ -97,8 +59,8 @@ fn order(errors: &[(usize, f64)]) -> f64 {
 }
 
 #[test]
-fn at_every_angle_and_weight_a_component_is_as_near_as_its_sections_are_many() {
-    // Off by so much over n², with n sections.
+fn at_every_angle_and_weight_the_error_of_a_component_falls_with_the_square_of_its_sections() {
+    // Error times n², with n sections.
     for (weights, bound) in [(&LIGHT[..], 1.0), (&HEAVY, 4.0)] {
         let cases = under_their_weight(weights);
         let mut all = vec![];
@@ -115,11 +77,11 @@ fn at_every_angle_and_weight_a_component_is_as_near_as_its_sections_are_many() {
 }
 
 #[test]
-fn the_worked_edit_of_a_species_shows_what_the_readme_says() {
+fn the_worked_edit_of_a_species_gives_what_the_readme_says() {
     let species = parse_underbrush(include_str!("../../server/scenes/species.toml")).expect("the species that ship");
-    let tall_grass = species.iter().find(|species| species.name == "tall grass").expect("there is tall grass");
-    let leaf = tall_grass.components.iter().find(|component| component.name == "leaf").expect("it has leaves");
-    assert_eq!(leaf.stiffness_n_m2, 0.002, "as it ships");
+    let mut components = species.iter().flat_map(|species| &species.components);
+    let leaf =
+        components.find(|component| (component.length_m, component.stiffness_n_m2) == (0.75, 0.002)).expect("the leaf of the README");
     let (length_m, unbent_rad, sections) = (f64::from(leaf.length_m), f64::from(leaf.angle_rad), leaf.sections as usize);
     for (stiffness_n_m2, [weight, aside_m, up_m, top_m, off_upright]) in
         [(0.002, [3.9, 0.50, 0.55, 0.55, 54.0]), (0.008, [1.0, 0.28, 0.70, 0.70, 23.0]), (0.001, [7.7, 0.66, 0.07, 0.18, 113.0_f64])]
@@ -139,12 +101,12 @@ fn the_worked_edit_of_a_species_shows_what_the_readme_says() {
     }
 }
 
-/// EI of the blade's chain over that of a cantilever of the same first frequency.
+/// EI of the blade's chain relative to that of a cantilever of the same first frequency.
 const RIGIDITY: f64 = 1.104_39;
 /// Drag on its control points (in units of EI/L² of the chain) that holds a mean lean of 1.
 const DRAG: [f64; LINKS] = [3.233_53, 2.586_83, 0.970_06];
 
-/// Where wind that blows on each control point with a force (over EI/L²) holds the tip of a blade of 1 m, X and height, and its mean lean (rad).
+/// Equilibrium of the tip of a blade of 1 m, X and height, under a force on each control point (over EI/L²), and its mean lean (rad).
 fn held_tip(forces: [f64; LINKS]) -> ([f64; 2], f64) {
     let blade = Blade { length_m: 1.0, frequency_rad_per_s: 9.74, damping_share: 0.3, lean_per_wind2: 0.005 };
     let square = |link: usize| forces[link] / (RIGIDITY * DRAG[link] * f64::from(blade.lean_per_wind2));
@@ -154,19 +116,19 @@ fn held_tip(forces: [f64; LINKS]) -> ([f64; 2], f64) {
     ([x, height], sway.lean_rad.iter().map(|lean| f64::from(lean[0])).sum::<f64>() / LINKS as f64)
 }
 
-/// How loads lie along a blade: on its control points for a whole load of 1, and on a beam.
+/// Distribution of loads along a blade: on its control points for a total load of 1, and on a beam.
 const AT_TIP: ([f64; LINKS], Load) = ([0.0, 0.0, 1.0], Load { spread: 0.0, tip: 1.0 });
 const EVENLY: ([f64; LINKS], Load) = ([1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0], Load { spread: 1.0, tip: 0.0 });
 
 /// Tip of a blade and of the elastica under such a load, X and height, and the blade's mean lean (rad).
 fn tips((on_points, on_beam): ([f64; LINKS], Load), load: f64) -> ([f64; 2], [f64; 2], f64) {
-    let [height, back] = elastica(1.0, Load { spread: load * on_beam.spread, tip: load * on_beam.tip }, FRAC_PI_2);
+    let [height, back] = elastica::tip(1.0, Load { spread: load * on_beam.spread, tip: load * on_beam.tip }, FRAC_PI_2);
     let (tip, lean_rad) = held_tip(on_points.map(|share| load * share));
     (tip, [-back, height], lean_rad)
 }
 
 #[test]
-fn a_blade_lies_as_the_elastica_as_far_as_it_says() {
+fn a_blade_agrees_with_the_elastica_within_its_documented_range() {
     for (way, [near, far], farthest) in [(AT_TIP, [1.0, 1.5], 3.0), (EVENLY, [2.0, 3.6], 8.0)] {
         for step in 1..=20 {
             for (load, bound) in [(near, 0.01), (far, 0.05)] {
@@ -184,7 +146,7 @@ fn a_blade_lies_as_the_elastica_as_far_as_it_says() {
 }
 
 #[test]
-fn a_blade_is_a_little_stiff_under_a_load_at_its_tip_and_not_under_drag() {
+fn a_blade_is_slightly_stiff_under_a_load_at_its_tip_and_not_under_drag() {
     for (way, ratio) in [(AT_TIP, 0.956), (EVENLY, 1.006)] {
         let (found, exact, _) = tips(way, 0.1);
         assert!((found[0] / exact[0] - ratio).abs() < 0.002, "{found:?} for {exact:?}");

@@ -1,6 +1,6 @@
-//! The doc comments of the scene's structs, the table of allowed values, the defaults and the README say the same.
+//! The doc comments of the scene's structs, the table of allowed values, the defaults and the README agree.
 
-use shared::scene::{Allowed, FIELDS, REQUIRED, parse};
+use prairie_core::scene::{Allowed, FIELDS, REQUIRED, VehicleKind, WindAdvection, WindBoundary, parse};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -10,7 +10,7 @@ struct Field {
     doc: String,
 }
 
-/// Source files and, for each struct in them, the section that it describes.
+/// Source files and, for each struct in them, the section that it documents.
 const SOURCES: [(&str, &[(&str, &str)]); 20] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
@@ -28,24 +28,14 @@ const SOURCES: [(&str, &[(&str, &str)]); 20] = [
     ("species.rs", &[("Species", "species")]),
     ("underbrush.rs", &[("Underbrush", "underbrush"), ("Component", "underbrush.components")]),
     ("growth.rs", &[("Growth", "growth")]),
-    (
-        "objects.rs",
-        &[
-            ("Objects", "objects"),
-            ("CarTread", "objects.car"),
-            ("MonsterTread", "objects.monster"),
-            ("HelicopterTread", "objects.helicopter"),
-            ("SledTread", "objects.sled"),
-            ("BallTread", "objects.ball"),
-        ],
-    ),
+    ("objects.rs", &[("Objects", "objects")]),
     ("drawn_wind.rs", &[("DrawnWind", "drawn_winds")]),
     ("picture.rs", &[("CameraStart", "camera"), ("Light", "light")]),
     ("lamp.rs", &[("Lamp", "lights")]),
 ];
 
-/// Sections that may stand once.
-const SECTIONS: [&str; 20] = [
+/// Sections that may occur once, without those of [`tread_sections`].
+const SECTIONS: [&str; 15] = [
     "patches",
     "terrain",
     "wind",
@@ -59,36 +49,109 @@ const SECTIONS: [&str; 20] = [
     "shells",
     "growth",
     "objects",
-    "objects.car",
-    "objects.monster",
-    "objects.helicopter",
-    "objects.sled",
-    "objects.ball",
     "camera",
     "light",
 ];
 
+/// Structs whose fields a file writes directly in the section around them: field, file and name.
+const FLAT: [(&str, &str, &str); 2] = [("waves", "../bend/params.rs", "WaveParams"), ("grass", "grass.rs", "Grass")];
+
+/// The struct of each kind of vehicle's contact with the grass, and its section.
+fn tread_sections() -> impl Iterator<Item = (String, String)> {
+    VehicleKind::ALL.into_iter().map(|kind| (format!("{kind:?}Tread"), format!("objects.{}", kind.name())))
+}
+
+/// Sections that may occur once.
+fn sections() -> impl Iterator<Item = String> {
+    SECTIONS.into_iter().map(str::to_owned).chain(tread_sections().map(|(_, section)| section))
+}
+
+/// The documented fields of one struct, by their own names, in order.
+fn fields_of(file: &str, name: &str, section: &str) -> Vec<Field> {
+    let source = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scene").join(file)).unwrap();
+    let start = source.find(&format!("pub struct {name} {{")).unwrap();
+    let body = &source[start..start + source[start..].find("\n}").unwrap()];
+    let (mut fields, mut doc) = (Vec::new(), Vec::new());
+    for line in body.lines().map(str::trim) {
+        if let Some(text) = line.strip_prefix("///") {
+            doc.push(text.trim());
+        } else if let Some((key, _)) = line.strip_prefix("pub ").and_then(|line| line.split_once(": ")) {
+            let doc = std::mem::take(&mut doc).join(" ");
+            match FLAT.iter().find(|(part, ..)| *part == key && !section.is_empty()) {
+                Some((_, file, name)) => fields.extend(fields_of(file, name, section)),
+                None => fields.push(Field { path: key.to_owned(), doc }),
+            }
+        }
+    }
+    fields
+}
+
+/// Documentation of a field of `[grass]` as it reads in `[[species]]`.
+fn as_in_grass(doc: &str) -> String {
+    let (meaning, rest) = doc.split_once("Default ").unwrap();
+    let end = rest.find([' ', ',', ';']).unwrap();
+    format!("{meaning}Default {} or as in `[grass]`{}", &rest[..end], &rest[end..])
+}
+
 fn documented() -> Vec<Field> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scene");
     let mut fields = Vec::new();
     for (file, structs) in SOURCES {
-        let source = std::fs::read_to_string(folder.join(file)).unwrap();
         for (name, section) in structs {
-            let start = source.find(&format!("pub struct {name} {{")).unwrap();
-            let body = &source[start..start + source[start..].find("\n}").unwrap()];
-            let mut doc = Vec::new();
-            for line in body.lines().map(str::trim) {
-                if let Some(text) = line.strip_prefix("///") {
-                    doc.push(text.trim());
-                } else if let Some((key, _)) = line.strip_prefix("pub ").and_then(|line| line.split_once(": ")) {
-                    let path = if section.is_empty() { key.to_owned() } else { format!("{section}.{key}") };
-                    fields.push(Field { path, doc: std::mem::take(&mut doc).join(" ") });
+            let mut found = fields_of(file, name, section);
+            if *section == "species" {
+                found.retain(|field| field.path != "laid_recovery_secs");
+                found.iter_mut().filter(|field| field.doc.contains("Default") && !field.doc.contains("as in")).for_each(|field| {
+                    field.doc = as_in_grass(&field.doc);
+                });
+            }
+            if !section.is_empty() {
+                found.iter_mut().for_each(|field| field.path = format!("{section}.{}", field.path));
+            }
+            fields.extend(found);
+            if *section == "objects" {
+                for (name, section) in tread_sections() {
+                    let tread = fields_of(file, &name, &section);
+                    fields.extend(tread.into_iter().map(|Field { path, doc }| Field { path: format!("{section}.{path}"), doc }));
                 }
             }
         }
     }
-    fields.retain(|field| !SECTIONS.contains(&field.path.as_str()));
+    fields.retain(|field| !sections().any(|section| section == field.path));
     fields
+}
+
+/// Words that the README explains by the doc comments of their enum, with its source file and name. Doc comments of fields need not list them.
+const EXPLAINED: [(&[&str], &str, &str); 2] =
+    [(WindAdvection::WORDS, "wind/words.rs", "WindAdvection"), (WindBoundary::WORDS, "wind/faces.rs", "WindBoundary")];
+
+/// What the README says of the words of a field: their meanings at the first field that takes them, then the words alone.
+fn list(words: &'static [&'static str], explained: &mut Vec<&'static [&'static str]>) -> Option<String> {
+    let (_, file, name) = EXPLAINED.into_iter().find(|(known, ..)| *known == words)?;
+    if explained.contains(&words) {
+        return Some(format!(" One of {}.", words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")));
+    }
+    explained.push(words);
+    let source = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scene").join(file)).unwrap();
+    let start = source.find(&format!("    {name} {{\n")).unwrap();
+    let (mut text, mut doc) = (" One of".to_owned(), Vec::new());
+    for line in source[start..].lines().skip(1).map(str::trim).take_while(|line| *line != "}") {
+        if let Some(part) = line.strip_prefix("///") {
+            doc.push(part.trim());
+        } else if let Some((_, word)) = line.trim_end_matches(',').split_once(" = ") {
+            let meaning = std::mem::take(&mut doc).join(" ");
+            write!(text, "{} `{}`: {}", if text.ends_with("of") { "" } else { ";" }, word.trim_matches('"'), meaning.trim_end_matches('.'))
+                .unwrap();
+        }
+    }
+    Some(text + ".")
+}
+
+/// Whether [`FIELDS`] lists a field by itself, not with `[grass]` or `[plants]`.
+fn is_listed(field: &Field) -> bool {
+    match field.path.strip_prefix("species.") {
+        Some(name) => ["name", "cover"].contains(&name),
+        None => true,
+    }
 }
 
 /// The numbers in `text`, in order.
@@ -115,7 +178,7 @@ fn complete() -> toml::Table {
         + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n[[species]]\nname = 'a'\ncover = 1\n"
         + "[[underbrush]]\nname = 'a'\n[[underbrush.components]]\nname = 'a'\nkind = 'leaf'\n"
         + "[[drawn_winds]]\nshape = 'swirl'\npath_m = [[1.0, 2.0]]\n[[lights]]\nat_m = [1.0, 2.0, 3.0]\n";
-    toml::Table::try_from(parse(&text).unwrap()).unwrap()
+    parse(&text).unwrap().to_toml().parse().unwrap()
 }
 
 /// The section around the field at `path`, and the field's own name.
@@ -133,7 +196,7 @@ fn value_at<'t>(table: &'t mut toml::Table, path: &str) -> &'t mut toml::Value {
     &mut section[key]
 }
 
-/// Paths of all that is no section, those of a list of sections without places in it.
+/// Paths of all fields that are not sections, without indices in lists.
 fn paths_in(table: &toml::Table, section: &str) -> Vec<String> {
     let mut paths = Vec::new();
     for (key, value) in table {
@@ -147,7 +210,7 @@ fn paths_in(table: &toml::Table, section: &str) -> Vec<String> {
     paths
 }
 
-/// A path as the table of fields has it, without places in lists.
+/// A path without indices in lists, as in the table of fields.
 fn field_of(path: &str) -> String {
     path.split('[').map(|part| part.split_once(']').map_or(part, |(_, rest)| rest)).collect()
 }
@@ -162,10 +225,10 @@ fn with_number(value: &toml::Value, number: &toml::Value) -> toml::Value {
 
 #[test]
 fn every_field_is_in_the_table_once_and_in_order() {
-    let documented: Vec<_> = documented().into_iter().map(|field| field.path).collect();
-    assert_eq!(documented, FIELDS.map(|(path, _)| path.to_owned()));
+    let listed: Vec<_> = documented().into_iter().filter(is_listed).map(|field| field.path).collect();
+    assert_eq!(listed, FIELDS.map(|(path, _)| path.to_owned()));
     let mut serialised = paths_in(&complete(), "");
-    let mut fields = documented;
+    let mut fields: Vec<_> = documented().into_iter().map(|field| field.path).collect();
     serialised.sort();
     fields.sort();
     assert_eq!(serialised, fields);
@@ -174,7 +237,8 @@ fn every_field_is_in_the_table_once_and_in_order() {
 #[test]
 fn doc_comments_give_the_checked_range_and_the_true_default() {
     let mut scene = complete();
-    for (field, (path, allowed)) in documented().iter().zip(FIELDS) {
+    for field in documented() {
+        let (path, allowed) = (field.path.as_str(), Allowed::at(&field.path));
         if let Allowed::Range(low, high) = allowed {
             let stated = numbers(after(&field.doc, "allowed ").unwrap_or_else(|| panic!("{path} states no range")));
             assert_eq!(stated[..2], [low, high], "{path}: {}", field.doc);
@@ -192,7 +256,8 @@ fn doc_comments_give_the_checked_range_and_the_true_default() {
             assert!(field.doc.contains("not empty"), "{path}: {}", field.doc);
         }
         if let Allowed::OneOf(words) = allowed {
-            assert!(words.iter().all(|word| field.doc.contains(&format!("`{word}`"))), "{path}: {}", field.doc);
+            let known = EXPLAINED.iter().any(|(known, ..)| *known == words);
+            assert!(known || words.iter().all(|word| field.doc.contains(&format!("`{word}`"))), "{path}: {}", field.doc);
         }
         if REQUIRED.contains(&path) {
             assert!(field.doc.contains("Required"), "{path} does not say that it is required");
@@ -218,8 +283,9 @@ fn doc_comments_give_the_checked_range_and_the_true_default() {
 
 #[test]
 fn every_number_is_checked() {
-    for (path, allowed) in FIELDS {
-        let (Allowed::Range(low, high) | Allowed::Places(.., low, high)) = allowed else { continue };
+    for Field { path, .. } in documented() {
+        let path = path.as_str();
+        let (Allowed::Range(low, high) | Allowed::Places(.., low, high)) = Allowed::at(path) else { continue };
         let mut absurd =
             vec![f64::NAN.into(), f64::INFINITY.into(), f64::NEG_INFINITY.into(), (high * 2.0 + 1e6).into(), (low - 1e6).into()];
         absurd.push(toml::Value::Integer(i64::MIN));
@@ -237,7 +303,7 @@ fn every_number_is_checked() {
 }
 
 #[test]
-fn every_word_is_known_and_no_other() {
+fn listed_words_are_accepted_and_all_others_rejected() {
     for (path, allowed) in FIELDS {
         let Allowed::OneOf(words) = allowed else { continue };
         for word in words.iter().copied().chain(["wel", ""]) {
@@ -270,7 +336,9 @@ fn the_ends_of_every_range_pass_the_check_of_that_range() {
 
 #[test]
 fn exactly_the_required_fields_are_required() {
-    for path in FIELDS.iter().map(|(path, _)| *path).chain(SECTIONS) {
+    let fields = FIELDS.iter().map(|(path, _)| (*path).to_owned());
+    for path in fields.chain(sections()) {
+        let path = path.as_str();
         let mut scene = complete();
         let (section, key) = section_of(&mut scene, path);
         section.remove(key);
@@ -281,7 +349,7 @@ fn exactly_the_required_fields_are_required() {
 
 #[test]
 fn the_readme_shows_every_field() {
-    let mut tables = String::new();
+    let (mut tables, mut explained) = (String::new(), Vec::new());
     let mut section = None;
     for field in documented() {
         let (name, key) = field.path.rsplit_once('.').unwrap_or(("", &field.path));
@@ -295,7 +363,12 @@ fn the_readme_shows_every_field() {
             write!(tables, "\n{title}\n\n| Field | Meaning |\n|---|---|\n").unwrap();
             section = Some(name.to_owned());
         }
-        writeln!(tables, "| `{key}` | {} |", field.doc).unwrap();
+        let words = FIELDS.iter().find_map(|(path, allowed)| match allowed {
+            Allowed::OneOf(words) if *path == field.path => Some(*words),
+            _ => None,
+        });
+        let words = words.and_then(|words| list(words, &mut explained)).unwrap_or_default();
+        writeln!(tables, "| `{key}` | {}{words} |", field.doc).unwrap();
     }
 
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");

@@ -1,8 +1,8 @@
-//! How short the steps of a scene's blades must be: those that are taken hold, longer ones do not, and what needs too many is refused.
+//! Stability limit of a scene's blades: chosen steps are stable, longer ones are not, and too many steps are rejected.
 
-use shared::hash::hash3;
-use shared::plant::blade::{Blade, LINKS, Leans, Sway, advance};
-use shared::scene::{BladeIntegrator, Scene, parse};
+use prairie_core::hash::hash3;
+use prairie_core::plant::blade::{Blade, LINKS, Leans, Sway, advance};
+use prairie_core::scene::{BladeIntegrator, Scene, parse};
 use std::f32::consts::TAU;
 
 fn scene(more: &str) -> Result<Scene, Vec<String>> {
@@ -10,7 +10,7 @@ fn scene(more: &str) -> Result<Scene, Vec<String>> {
     parse(&format!("{maps}{more}")).map_err(|faults| faults.iter().map(ToString::to_string).collect())
 }
 
-/// The lowest blade of a scene: the meadow and its tuft let it grow least, and its own share is the least.
+/// The lowest blade of a scene: soil, tuft and random variation at their least.
 fn lowest(scene: &Scene) -> Blade {
     let least = 0.72 * 0.78 * (1.0 - scene.plants.height_variation);
     Blade {
@@ -39,7 +39,7 @@ fn most_rad(blade: &Blade, integrator: BladeIntegrator, dt_secs: f32) -> f32 {
 }
 
 #[test]
-fn blades_bear_the_steps_that_they_are_given_and_none_much_longer() {
+fn blades_are_stable_with_their_steps_and_not_with_much_longer_ones() {
     for more in [
         "[plants]\nintegrator = 'verlet'\n",
         "[grass]\nwind_bend_rad = 1.5\n[plants]\nintegrator = 'verlet'\nswing_damping = 0.02\nheight_m = 0.2\n",
@@ -57,7 +57,7 @@ fn blades_bear_the_steps_that_they_are_given_and_none_much_longer() {
 }
 
 #[test]
-fn blades_that_need_too_many_steps_are_refused() {
+fn blades_that_need_too_many_steps_are_rejected() {
     let told = |more: &str| scene(more).unwrap_err().join("\n");
     let euler = told("[plants]\nintegrator = 'euler'\n");
     assert!(

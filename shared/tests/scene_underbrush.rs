@@ -1,7 +1,7 @@
-//! What a scene file and an underbrush file say of the underbrush, and how their faults are told.
+//! Underbrush in scene files and underbrush files, and their faults.
 
+use prairie_core::scene::{Component, ComponentKind, Growth, Rain, Scene, SceneFault, Underbrush, parse, parse_underbrush, parse_with};
 use proptest::prelude::*;
-use shared::scene::{Component, ComponentKind, Growth, Rain, Scene, SceneFault, Underbrush, parse, parse_underbrush, parse_with};
 
 const MAPS: &str = "summary = 's'\n[terrain]\nheight_map = 'h.png'\ncovering_map = 'c.png'\npixel_m = [2, 2]\nlevel_m = 0.1\n";
 
@@ -23,7 +23,7 @@ fn fault(more: &str) -> String {
     faults.remove(0)
 }
 
-/// A species with these components, each its name, its kind and what else it says.
+/// A species with these components: each a name, a kind and further text.
 fn species(components: &[(&str, &str, &str)]) -> String {
     let component =
         |(name, kind, more): &(&str, &str, &str)| format!("[[underbrush.components]]\nname = '{name}'\nkind = '{kind}'\n{more}\n");
@@ -38,7 +38,7 @@ fn reed() -> Underbrush {
 }
 
 #[test]
-fn sections_within_sections_are_read_in_order() {
+fn nested_sections_are_read_in_order() {
     let scene = scene(&format!("{REED}[rain]\nrate_mm_per_h = 4\n{}[growth]\nshade = 0.25\n", species(&[("leaf", "leaf", "")]))).unwrap();
     assert_eq!(scene.underbrush, [reed(), Underbrush::new("a", vec![Component::new("leaf", ComponentKind::Leaf)])]);
     assert_eq!((scene.growth, scene.rain), (Growth { shade: 0.25, ..Growth::default() }, Rain { rate_mm_per_h: 4.0 }));
@@ -47,13 +47,13 @@ fn sections_within_sections_are_read_in_order() {
 }
 
 #[test]
-fn a_scene_with_underbrush_survives_being_written_and_read() {
+fn a_scene_with_underbrush_round_trips() {
     let scene = scene(REED).unwrap();
-    assert_eq!(parse(&toml::to_string(&scene).unwrap()).unwrap(), scene);
+    assert_eq!(parse(&scene.to_toml()).unwrap(), scene);
 }
 
 #[test]
-fn a_species_is_nothing_without_components() {
+fn a_species_without_components_is_rejected() {
     for more in ["", "components = []\n"] {
         let told = fault(&format!("[[underbrush]]\nname = 'a'\n{more}"));
         let why = if more.is_empty() {
@@ -73,7 +73,7 @@ fn a_species_is_nothing_without_components() {
 }
 
 #[test]
-fn a_component_stands_on_a_branch_before_it() {
+fn a_component_is_on_a_branch_before_it() {
     let (stem, twig) = (("stem", "branch", ""), ("twig", "branch", "on = 'stem'"));
     assert!(scene(&species(&[stem, twig, ("leaf", "leaf", "on = 'twig'")])).is_ok());
     let cases = [
@@ -111,61 +111,59 @@ fn a_component_stands_on_a_branch_before_it() {
     for (components, index, why) in cases {
         assert_eq!(fault(&species(&components)), format!("`underbrush[0].components[{index}].on` is {why}"));
     }
-    // A branch whose own name or kind is at fault is no reason for another.
+    // A branch whose own name or kind is at fault causes no second fault.
     assert_eq!(scene(&species(&[("stem", "brunch", ""), ("leaf", "leaf", "on = 'stem'")])).unwrap_err().len(), 1);
 }
 
 #[test]
-fn values_that_do_not_fit_each_other_are_told() {
+fn conflicting_values_are_reported() {
     assert_eq!(
         fault(&species(&[("leaf", "leaf", "from_share = 0.8\nto_share = 0.5")])),
         "`underbrush[0].components[0].from_share` is 0.8; allowed: up to its `to_share`, 0.5"
     );
     assert_eq!(
         fault(&species(&[("leaf", "leaf", ""), ("leaf", "flower", "")])),
-        "`underbrush[0].components[1].name` is \"leaf\", as that of `underbrush[0].components[0]`; allowed: a name of its own in its plant"
+        "`underbrush[0].components[1].name` is \"leaf\", already used by `underbrush[0].components[0]`; allowed: a unique name within the plant"
     );
     let spread = |more: &str| format!("[[underbrush]]\nname = 'a'\n{more}\n[[underbrush.components]]\nname = 'leaf'\nkind = 'leaf'\n");
     for (more, reach, room) in [("reach_m = 0.3", 0.3, 0.5), ("room_m = 1.5", 1.5, 1.5), ("reach_m = 2\nroom_m = 2.5", 2.0, 2.5)] {
         assert_eq!(
             fault(&spread(more)),
-            format!(
-                "`underbrush[0].reach_m` is {reach}; allowed: 0, it does not spread, or more than its `room_m`, {room}, in which none of its own comes up"
-            )
+            format!("`underbrush[0].reach_m` is {reach}; allowed: 0 (does not spread) or more than its `room_m`, {room}")
         );
     }
     assert!(scene(&spread("reach_m = 0")).is_ok() && scene(&spread("reach_m = 0.501")).is_ok());
     let other = REED.replace("cover = 5", "cover = 6");
     assert_eq!(
         fault(&format!("{REED}{other}")),
-        "`underbrush[1].name` is \"reed\", as that of `underbrush[0]`; allowed: a name of its own"
+        "`underbrush[1].name` is \"reed\", already used by `underbrush[0]`; allowed: a unique name"
     );
     let other = REED.replace("'reed'", "'cane'");
     assert_eq!(
         fault(&format!("{REED}{other}")),
-        "`underbrush[1].cover` is 5, as that of `underbrush[0]`, \"reed\"; allowed: 0, not painted, or an ID of its own, 1 to 252"
+        "`underbrush[1].cover` is 5, already used by `underbrush[0]`, \"reed\"; allowed: 0, not painted, or a unique ID, 1 to 252"
     );
     assert_eq!(
         fault(&format!("[[species]]\nname = 'bluestem'\ncover = 5\n{REED}")),
-        "`underbrush[0].cover` is 5, as that of `species[0]`, \"bluestem\"; allowed: 0, not painted, or an ID of its own, 1 to 252"
+        "`underbrush[0].cover` is 5, already used by `species[0]`, \"bluestem\"; allowed: 0, not painted, or a unique ID, 1 to 252"
     );
     // Species that are not painted need no ID.
     assert!(scene(&format!("{}{}", species(&[("leaf", "leaf", "")]), REED.replace("cover = 5", "cover = 0"))).is_ok());
 }
 
 #[test]
-fn nothing_is_without_a_name() {
+fn every_species_and_component_needs_a_name() {
     let told = "is \"\"; allowed: a name in quotes, not empty";
     assert_eq!(fault(&species(&[("stem", "branch", ""), ("", "leaf", "")])), format!("`underbrush[0].components[1].name` {told}"));
     assert_eq!(fault(&REED.replace("'reed'", "''")), format!("`underbrush[0].name` {told}"));
     assert_eq!(fault("[[species]]\nname = ''\ncover = 5\n"), format!("`species[0].name` {told}"));
     assert!(fault(&REED.replace("'reed'", "' '")).contains("is \" \"; allowed"));
-    // What stands on the ground isn't on a branch without a name.
+    // A component on the ground is not on a branch without a name.
     assert_eq!(scene(&species(&[("", "branch", ""), ("leaf", "leaf", "on = ''")])).unwrap_err().len(), 1);
 }
 
 #[test]
-fn masses_and_sections_are_above_zero() {
+fn masses_and_sections_must_be_above_zero() {
     let told = |more: &str| fault(&species(&[("leaf", "leaf", more)]));
     for mass in ["0", "0.0", "-0.001", "nan", "-inf", "1e-7"] {
         assert_eq!(told(&format!("mass_kg = {mass}")), format!("`underbrush[0].components[0].mass_kg` is {mass}; allowed: 0.000001 to 10"));
@@ -180,7 +178,7 @@ fn masses_and_sections_are_above_zero() {
 }
 
 #[test]
-fn a_plant_has_its_limit_of_leaves_branches_and_flowers() {
+fn the_number_of_components_of_a_plant_is_limited() {
     let shrub = |leaves: u32| {
         let (on_stem, on_twig) = ("on = 'stem'\ncount = 5", format!("on = 'twig'\ncount = {leaves}"));
         species(&[("stem", "branch", "count = 3"), ("twig", "branch", on_stem), ("leaf", "leaf", &on_twig)])
@@ -191,7 +189,7 @@ fn a_plant_has_its_limit_of_leaves_branches_and_flowers() {
         "`underbrush[0].components[2].count` is 4 on each of what it stands on, which makes 78 leaves, branches and flowers of a plant with those before \
          it; allowed: 64"
     );
-    // Sixteen generations of 32 are more than can be counted.
+    // Sixteen generations of 32 overflow a counter.
     let names: Vec<_> = (0..16).map(|i| i.to_string()).collect();
     let below: Vec<_> =
         (0..16).map(|i| format!("count = 32\n{}", if i == 0 { String::new() } else { format!("on = '{}'", i - 1) })).collect();
@@ -200,7 +198,7 @@ fn a_plant_has_its_limit_of_leaves_branches_and_flowers() {
 }
 
 #[test]
-fn sites_have_a_limit_where_there_is_underbrush() {
+fn the_number_of_sites_is_limited_where_there_is_underbrush() {
     assert_eq!(
         fault(&format!("{REED}[growth]\nspacing_m = 0.1\n")),
         "`growth.spacing_m` is 0.1, which makes 2560 × 2560 sites, 6553600 in all; allowed: 4194304 in all"
@@ -227,13 +225,13 @@ fn an_underbrush_file_comes_before_the_scenes_own() {
     assert_eq!(
         faults(&format!("{own}{REED}")),
         [
-            "15:8: `underbrush[1].name` is \"reed\", as that of `underbrush[0]` in `underbrush_file`; allowed: a name of its own",
-            "16:9: `underbrush[1].cover` is 5, as that of `underbrush[0]` in `underbrush_file`, \"reed\"; allowed: 0, not painted, or an ID of its own, 1 to 252",
+            "15:8: `underbrush[1].name` is \"reed\", already used by `underbrush[0]` in `underbrush_file`; allowed: a unique name",
+            "16:9: `underbrush[1].cover` is 5, already used by `underbrush[0]` in `underbrush_file`, \"reed\"; allowed: 0, not painted, or a unique ID, 1 to 252",
         ]
     );
     assert_eq!(
         faults("[[species]]\nname = 'bluestem'\ncover = 5\n"),
-        ["10:9: `species[0].cover` is 5, as that of `underbrush[0]` in `underbrush_file`, \"reed\"; allowed: an ID of its own, 1 to 252"]
+        ["10:9: `species[0].cover` is 5, already used by `underbrush[0]` in `underbrush_file`, \"reed\"; allowed: a unique ID, 1 to 252"]
     );
     assert_eq!(
         faults("[growth]\nspacing_m = 0.05\n"),
@@ -244,7 +242,7 @@ fn an_underbrush_file_comes_before_the_scenes_own() {
 }
 
 #[test]
-fn an_underbrush_file_holds_nothing_else() {
+fn an_underbrush_file_contains_nothing_else() {
     let told = |text: &str| told(parse_underbrush(text).unwrap_err());
     assert_eq!(told("[wind]\nsources = 3\n"), ["`wind` is no field of an underbrush file; known here: `underbrush`"]);
     assert_eq!(told("underbush = 3\n"), ["`underbush` is no field of an underbrush file; did you mean `underbrush`?"]);
@@ -252,7 +250,7 @@ fn an_underbrush_file_holds_nothing_else() {
         told(&format!("{REED}light_need = 0.5\n")),
         ["`underbrush[0].components[1].light_need` is no field of an underbrush file; did you mean `underbrush.light_need`?"]
     );
-    // What a scene may say elsewhere is not offered.
+    // Fields of a scene are not suggested.
     let elsewhere = told(&format!("{REED}haze_m = 2\n"));
     assert!(elsewhere[0].contains("is no field of an underbrush file; known here: `angle_rad`, "), "{elsewhere:?}");
     assert!(told("[[underbrush]\n")[0].starts_with("not TOML"));
@@ -260,7 +258,7 @@ fn an_underbrush_file_holds_nothing_else() {
 }
 
 proptest! {
-    /// A fault deep in nested sections is told by its path and at its line and column, whatever stands around it.
+    /// A fault deep in nested sections is reported by its path and at its line and column, whatever is around it.
     #[test]
     fn a_fault_in_nested_sections_has_its_place(counts in prop::collection::vec(1..6usize, 1..6), pick in any::<prop::sample::Index>(), indent in 0..5usize, blank in 0..3usize) {
         let places: Vec<_> = counts.iter().enumerate().flat_map(|(i, &count)| (0..count).map(move |j| (i, j))).collect();
@@ -282,7 +280,7 @@ proptest! {
         prop_assert_eq!((faults[0].line, faults[0].column, faults[0].length), (place, indent + 11, 4));
         let told = format!("`underbrush[{species}].components[{component}].mass_kg` is -0.5; allowed: 0.000001 to 10");
         prop_assert_eq!(faults[0].to_string(), told);
-        // What does not fit has its place by another way, through the text once more.
+        // Conflicts are located by another search through the text.
         let faults = parse_underbrush(&text.replace("mass_kg = -0.5", "on = 'none'")).unwrap_err();
         prop_assert_eq!((faults[0].line, faults[0].column, faults[0].length), (place, indent + 6, 6));
     }

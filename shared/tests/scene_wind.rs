@@ -1,6 +1,6 @@
-//! What a scene file says of its wind: what is left unsaid follows from the method, what goes together is taken, what does not is told.
+//! The wind in scene files: defaults follow from the method, valid combinations are accepted, others rejected.
 
-use shared::scene::{Primitive, PrimitiveKind, Scene, Wind, WindAdvection, WindBoundary, WindDust, WindMethod, WindPressure, parse};
+use prairie_core::scene::{Primitive, PrimitiveKind, Scene, Wind, WindAdvection, WindBoundary, WindDust, WindMethod, WindPressure, parse};
 
 fn scene(more: &str) -> Result<Scene, Vec<String>> {
     let maps = "summary = 's'\n[terrain]\nheight_map = 'h.png'\ncovering_map = 'c.png'\npixel_m = [2, 2]\nlevel_m = 0.1\n";
@@ -19,18 +19,18 @@ fn fault(more: &str) -> String {
 }
 
 #[test]
-fn what_is_left_unsaid_follows_from_the_method() {
+fn defaults_follow_from_the_method() {
     assert_eq!(wind(""), Wind::default());
     assert_eq!(wind("[wind]\nmethod = 'staggered'\n"), Wind::of(WindMethod::Staggered));
-    let of_000 = wind("[wind]\nmethod = 'stable-fluids'\n");
-    assert_eq!(of_000, Wind::of(WindMethod::StableFluids));
-    assert_eq!((of_000.advection, of_000.pressure), (WindAdvection::SemiLagrangian, WindPressure::GaussSeidel));
-    assert_eq!((of_000.pressure_sweeps, of_000.diffusion_sweeps, of_000.canopy_drag_per_m), (20, 20, 0.0));
-    assert_eq!(of_000.dust, WindDust { advection: WindAdvection::SemiLagrangian, ..WindDust::default() });
+    let of_zhang = wind("[wind]\nmethod = 'stable-fluids'\n");
+    assert_eq!(of_zhang, Wind::of(WindMethod::StableFluids));
+    assert_eq!((of_zhang.advection, of_zhang.pressure), (WindAdvection::SemiLagrangian, WindPressure::GaussSeidel));
+    assert_eq!((of_zhang.pressure_sweeps, of_zhang.diffusion_sweeps, of_zhang.canopy_drag_per_m), (20, 20, 0.0));
+    assert_eq!(of_zhang.dust, WindDust { advection: WindAdvection::SemiLagrangian, ..WindDust::default() });
 }
 
 #[test]
-fn the_method_of_000_may_be_given_its_own_words() {
+fn stable_fluids_may_be_given_its_own_words() {
     let own = "[wind]\nmethod = 'stable-fluids'\nadvection = 'semi-lagrangian'\ntime = 'split'\ndiffusion = 'gauss-seidel'\n\
                pressure = 'gauss-seidel'\nterrain = 'follow'\ncanopy_drag_per_m = 0\n[wind.faces]\ntop = 'reflect'\n\
                [wind.dust]\nadvection = 'semi-lagrangian'\n";
@@ -39,13 +39,13 @@ fn the_method_of_000_may_be_given_its_own_words() {
 }
 
 #[test]
-fn a_method_that_is_none_is_told_alone() {
+fn an_unknown_method_is_the_only_fault() {
     let unknown = "[wind]\nmethod = 'stable fluids'\nadvection = 'semi-lagrangian'\ntime = 'split'\n";
     assert_eq!(fault(unknown), "`wind.method` is \"stable fluids\"; allowed: \"staggered\" or \"stable-fluids\"");
 }
 
 #[test]
-fn faces_that_fit_are_taken() {
+fn compatible_faces_are_accepted() {
     for more in [
         "[wind.faces]\nwest = 'inflow'\neast = 'outflow'\nnorth = 'inflow'\nsouth = 'inflow'\ntop = 'outflow'\n",
         "[wind]\nmean_m_per_s = [-4, 0]\n[wind.faces]\nwest = 'outflow'\neast = 'inflow'\nnorth = 'no-slip'\nsouth = 'free-slip'\n",
@@ -60,7 +60,7 @@ fn faces_that_fit_are_taken() {
 }
 
 #[test]
-fn faces_that_do_not_fit_are_told() {
+fn incompatible_faces_are_rejected() {
     let alone = fault("[wind.faces]\nsouth = 'outflow'\n");
     assert!(alone.starts_with("`wind.faces.south` is \"outflow\", and `wind.faces.north` opposite is \"wrap\""), "{alone}");
     let blocked = fault("[wind.faces]\nwest = 'inflow'\neast = 'free-slip'\n");
@@ -77,7 +77,7 @@ fn faces_that_do_not_fit_are_told() {
 }
 
 #[test]
-fn tiling_and_terrain_that_fit_are_taken() {
+fn compatible_tiling_and_terrain_are_accepted() {
     for more in [
         "[wind]\ntiling = 'patch'\ncells = [8, 8, 16]\nspacing_m = [2, 2, 3]\n",
         "[wind]\ntiling = 'patch'\ncells = [160, 8, 160]\nspacing_m = [0.1, 1, 0.1]\n",
@@ -109,7 +109,7 @@ fn primitives_are_read_in_order() {
     assert_eq!(wind(list).primitives, [vortex, uniform]);
     assert_eq!(wind("[wind]\nprimitives = [{ kind = 'vortex', at_m = [1, 2, 3] }]\n").primitives, [vortex]);
     assert_eq!(wind("[wind]\nprimitives = []\n").primitives, []);
-    let written = toml::to_string(&scene(list).unwrap()).unwrap();
+    let written = scene(list).unwrap().to_toml();
     assert_eq!(parse(&written).unwrap(), scene(list).unwrap());
     let sent = postcard::to_stdvec(&scene(list).unwrap()).unwrap();
     assert_eq!(postcard::from_bytes::<Scene>(&sent).unwrap(), scene(list).unwrap());
@@ -126,4 +126,24 @@ fn primitives_have_a_limit_and_are_sections() {
     assert_eq!(text, "`wind.primitives` is text; expected at most 64 sections `[[wind.primitives]]`");
     let outside = fault("[[wind.primitives]]\nkind = 'sink'\nat_m = [1, 2, 256.5]\n");
     assert_eq!(outside, "`wind.primitives[0].at_m[2]` is 256.5; allowed: 0 to 256, the world's extent along Z");
+}
+
+#[test]
+fn faces_at_the_bottom_and_the_top_are_limited_to_the_listed_conditions() {
+    for (face, is_allowed) in [
+        ("bottom", WindBoundary::blocks_flow as fn(WindBoundary) -> bool),
+        ("top", |condition| condition.blocks_flow() || condition == WindBoundary::Outflow),
+    ] {
+        let allowed: Vec<_> =
+            WindBoundary::ALL.iter().filter(|condition| is_allowed(**condition)).map(|condition| condition.word()).collect();
+        for condition in WindBoundary::ALL {
+            let faults = scene(&format!("[wind.faces]\n{face} = '{}'\n", condition.word())).err().unwrap_or_default();
+            let found = faults.iter().find(|fault| fault.contains(&format!("`wind.faces.{face}` is")));
+            assert_eq!(found.is_none(), allowed.contains(&condition.word()), "{face} = {}: {faults:?}", condition.word());
+            if let Some(fault) = found {
+                let listed: Vec<_> = fault.split_once("allowed: ").unwrap().1.split('"').skip(1).step_by(2).collect();
+                assert_eq!(listed, allowed, "{fault}");
+            }
+        }
+    }
 }

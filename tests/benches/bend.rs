@@ -1,17 +1,17 @@
-//! The bend field alone: cell-steps per second of every scheme on 1, 25 and 225 patches of 120 × 120 cells, on one thread and on two, all of it awake; and
-//! one patch of which a twentieth moves.
+//! Benchmark of the bend field alone: cell-steps per second of every scheme on 1, 25 and 225 awake patches of 120 × 120 cells, on one thread and on
+//! two; and one patch with a twentieth of its cells moving.
 //!
-//! Beside them stands the bandwidth of the machine's memory: a sub-step must read both states and write one, 36 bytes a cell, once for all the
-//! sub-steps that a patch does while it lies in the cache. The best of several steps counts.
+//! For comparison it prints the memory bandwidth: a sub-step reads both states and writes one, 36 bytes per cell; further sub-steps of a patch find
+//! them in the cache. The fastest of several steps counts.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use prairie::bend::pool::Pool;
+use prairie_core::bend::{Bend, Field, HALO, Kinds, Report, Rest, Scheme, TILE, WaveParams};
+use prairie_core::grid::PatchLayout;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use server::bend::step::Pool;
-use shared::bend::{Bend, Field, HALO, Kinds, Report, Rest, Scheme, TILE, WaveParams};
-use shared::grid::PatchLayout;
 
 const CELLS: u32 = 120;
 const CELL_M: f32 = 0.4572;
@@ -20,11 +20,11 @@ const BYTES_PER_CELL: f64 = 36.0;
 /// Values in each array of the triad: 64 MiB, beyond any cache.
 const TRIAD_LEN: usize = 1 << 24;
 const TRIAD_RUNS: usize = 10;
-/// How long a case is timed, once it has run through the least number of steps.
+/// Timing duration of a case, after its minimum number of steps.
 const ENOUGH: Duration = Duration::from_millis(400);
 const FEWEST_STEPS: u32 = 4;
 
-/// Grass whose speed follows the bend, so that no term is left out; weakly damped, so that it moves to the end.
+/// Grass whose wave speed follows the bend, so that every term is exercised; weakly damped, so that it moves to the end.
 const GRASS: WaveParams = WaveParams {
     c0_m_per_s: 2.0,
     mu_m_per_rad: 0.05,
@@ -38,8 +38,8 @@ fn pool(threads: usize) -> ThreadPool {
     ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started")
 }
 
-/// `a = b + s·c` over three arrays: bytes per second, two read and one written.
-fn triad_bytes_per_sec() -> f64 {
+/// Bandwidth (bytes/s) of `a = b + s·c` over three arrays, two read and one written.
+fn triad_bytes_per_s() -> f64 {
     let (b, c) = (vec![1.0f32; TRIAD_LEN], vec![2.0f32; TRIAD_LEN]);
     let mut a = vec![0.0f32; TRIAD_LEN];
     let run = |a: &mut Vec<f32>| {
@@ -64,7 +64,7 @@ fn moving(side: u32, waves: WaveParams) -> Field {
     field
 }
 
-/// A scheme and the sub-steps that a step is to be cut into.
+/// A scheme and its number of sub-steps per step.
 #[derive(Clone, Copy)]
 struct Case {
     scheme: Scheme,
@@ -73,11 +73,11 @@ struct Case {
 
 impl Case {
     fn dt_secs(self, field: &Field) -> f32 {
-        // The sub-stepped scheme keeps 5 % below the limit; a little less than that cuts into as many as wanted.
+        // The sub-stepped scheme stays 5 % below the limit; a step a little shorter still is split into the required number.
         0.93 * f32::from(self.substeps as u16) * field.stable_dt_secs(self.scheme)
     }
 
-    /// Least time of a step (s), and what the last one reported.
+    /// Shortest time of a step (s), and the report of the last one.
     fn time(self, field: &mut Field) -> (f64, Report) {
         let (dt_secs, begun) = (self.dt_secs(field), Instant::now());
         let (mut best, mut last, mut steps) = (f64::INFINITY, Report::default(), 0);
@@ -92,15 +92,15 @@ impl Case {
 }
 
 fn main() {
-    // `cargo test` and `--test` run each benchmark once; this one says what it would do.
+    // `cargo test` and `--test` run each benchmark once; this one is skipped.
     if std::env::args().any(|argument| argument == "--test") {
         return;
     }
     let pools = [1, 2].map(|threads| (threads, pool(threads)));
     let bandwidth = pools.each_ref().map(|(threads, pool)| {
-        let bytes_per_sec = pool.install(triad_bytes_per_sec);
-        println!("triad, {threads} thread{}: {:.1} GB/s", if *threads == 1 { "" } else { "s" }, bytes_per_sec * 1e-9);
-        bytes_per_sec
+        let bytes_per_s = pool.install(triad_bytes_per_s);
+        println!("triad, {threads} thread{}: {:.1} GB/s", if *threads == 1 { "" } else { "s" }, bytes_per_s * 1e-9);
+        bytes_per_s
     });
     println!("\n| patches | scheme                  | threads | ms a step | 1e9 cell-steps/s | GB/s | of the triad |");
     println!("| ------: | ----------------------- | ------: | --------: | ---------------: | ---: | -----------: |");
@@ -112,7 +112,7 @@ fn main() {
             let mut field = moving(side, WaveParams { mu_m_per_rad, ..GRASS });
             for ((threads, pool), bandwidth) in pools.iter().zip(bandwidth) {
                 let (secs, report) = pool.install(|| Case { scheme, substeps }.time(&mut field));
-                assert_eq!((report.substeps, report.broken), (substeps, 0));
+                assert_eq!((report.substeps, report.reset_patches), (substeps, 0));
                 let cells = f64::from(side * side * CELLS * CELLS);
                 let rate = cells * f64::from(substeps) / secs;
                 let passes = f64::from(substeps.div_ceil(HALO as u32));
@@ -132,7 +132,7 @@ fn main() {
     few_tiles(&pools[0].1);
 }
 
-/// A patch in which two tiles beside each other move, so that twelve step, and nothing spreads.
+/// A patch with two adjacent moving tiles, for which twelve are stepped; nothing spreads.
 fn few_tiles(pool: &ThreadPool) {
     let still = WaveParams {
         c0_m_per_s: 0.0,

@@ -1,13 +1,13 @@
-//! Encoding and decoding one patch of 64 × 64 cells, beside deflate on the same differences.
+//! Encoding and decoding one patch of 64 × 64 cells, compared with deflate on the same differences.
 //!
-//! The patch is a real one: a disc is driven across a bend field that propagates and rises, and the frames are 50 ms apart.
-//! Payload sizes are printed first, since speed means nothing without them.
+//! The data are realistic: a disc is driven across a bend field that propagates and recovers, and the frames are 50 ms apart.
+//! Payload sizes are printed first, since speed is meaningless without them.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use shared::bend::{Alone, Bend, Field, Kinds, Scheme, WaveParams};
-use shared::grid::PatchLayout;
-use shared::scene::Grass;
-use shared::wire::{Shape, codec, quantise};
+use prairie_core::bend::{Alone, Bend, Field, Kinds, Scheme};
+use prairie_core::grid::PatchLayout;
+use prairie_core::scene::Grass;
+use prairie_core::wire::{Shape, codec, quantise};
 use std::hint::black_box;
 
 const SIDE: usize = 64;
@@ -18,7 +18,7 @@ const STEPS_PER_FRAME: usize = 3;
 
 /// Codes of consecutive frames while a disc of 1 m radius crosses the patch at 8 m/s.
 fn frames() -> Vec<Vec<i8>> {
-    let mut field = Field::new(LAYOUT, Kinds::one(WaveParams::from(&Grass::default())));
+    let mut field = Field::new(LAYOUT, Kinds::one(Grass::default().waves));
     let mut frames = Vec::new();
     for step in 0..120 {
         let x_m = 1.0 + 8.0 * step as f32 * DT_SECS;

@@ -1,9 +1,9 @@
-//! Frames in software rendering: by quality and by what stands for far plants, and by the plants of the scene.
+//! Frame times in software rendering by quality, representation of distant plants, and number of plants in the scene.
 //!
-//! First a table of medians, each beside how often low quality over bare land goes into it; then the same views under criterion.
+//! First a table of medians, each also relative to low quality over bare terrain; then the same views under criterion.
 
-use client_wasm::render::{Far, Gpu, Look, Picture as Canvas, Quality};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use prairie_client::render::{FarPlants, Gpu, OffscreenRenderer as Canvas, Quality, RenderOptions};
 use std::time::Duration;
 use tests::still::{Still, frame_secs};
 use tests::views::View;
@@ -11,10 +11,10 @@ use tests::worlds::{flat_meadow, on_foot};
 
 const SIZES_PX: [[u32; 2]; 2] = [[640, 360], [960, 540]];
 const VIEW: &str = "walking-storm";
-/// Frames that a median is of.
+/// Number of frames per median.
 const FRAMES: u32 = 7;
 const DT_SECS: f32 = 1.0 / 30.0;
-/// Sides of worlds (m) with 16 places for plants in each square metre: 1 k, 100 k and 10 M.
+/// Sides of worlds (m) with 16 plant sites per square metre: 1 k, 100 k and 10 M.
 const SIDES_M: [u32; 3] = [8, 80, 800];
 
 fn gpu() -> Gpu {
@@ -25,8 +25,8 @@ fn still(size_px: [u32; 2]) -> Still {
     View::find(VIEW).and_then(|view| Still::of(view, size_px)).expect("a built-in view can be played")
 }
 
-fn look(far: Far) -> Look {
-    Look { far, ..Look::default() }
+fn look(far: FarPlants) -> RenderOptions {
+    RenderOptions { far_plants: far, ..RenderOptions::default() }
 }
 
 fn ratios(_: &mut Criterion) {
@@ -37,8 +37,8 @@ fn ratios(_: &mut Criterion) {
         let mut least_ms = None;
         for quality in Quality::ALL {
             let mut canvas = still.canvas(&gpu, quality);
-            for far in Far::ALL {
-                canvas.set_look(look(far));
+            for far in FarPlants::ALL {
+                canvas.set_options(look(far));
                 let ms = 1e3 * still.frame_secs(&mut canvas, FRAMES);
                 let ratio = ms / *least_ms.get_or_insert(ms);
                 println!("| {}, {} | {ms:.1} | {ratio:.2} |", quality.name(), far.name());
@@ -61,8 +61,8 @@ fn frames(criterion: &mut Criterion) {
         let mut still = still(size_px);
         for quality in [Quality::Low, Quality::Medium, Quality::High] {
             let mut canvas = still.canvas(&gpu, quality);
-            for far in Far::ALL {
-                canvas.set_look(look(far));
+            for far in FarPlants::ALL {
+                canvas.set_options(look(far));
                 let mut time_secs = 0.0;
                 group.bench_function(BenchmarkId::new(quality.name(), far.name()), |bench| {
                     bench.iter(|| {

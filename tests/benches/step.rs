@@ -1,19 +1,20 @@
-//! One step of the world, and its snapshot: 16 × 16 patches of 64 × 64 cells, on one thread. And the bend field alone, every patch
-//! awake, in one sub-step; objects faster than 50 m/s make it two.
+//! One step of the world and its snapshot: 16 × 16 patches of 64 × 64 cells, on one thread; and the bend field alone with every patch
+//! awake, in one sub-step (two for objects faster than 50 m/s).
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use server::world::{Command, View, World};
-use shared::bend::{Alone, Bend, Field, Kinds, Scheme, WaveParams};
-use shared::grid::PatchLayout;
-use shared::scene::{Grass, Patches, VehicleKind};
-use shared::wire::Drive;
+use prairie::snapshot::PatchQuantiser;
+use prairie::world::{Camera, Command, World};
+use prairie_core::bend::{Alone, Bend, Field, Kinds, Scheme};
+use prairie_core::grid::PatchLayout;
+use prairie_core::scene::{Grass, Patches, VehicleKind};
+use prairie_core::wire::Drive;
 use std::time::Instant;
 use tests::worlds;
 
-/// A world in full swing: `objects` vehicles that have driven about for 2 s.
+/// A busy world: `objects` vehicles that have driven about for 2 s.
 fn busy(objects: u32) -> World {
     let mut world = worlds::hills(&worlds::scene(16));
-    let mut commands = vec![Command::Views(vec![View { client: 0, eye_m: [128.0, 2.0, 128.0] }])];
+    let mut commands = vec![Command::Cameras(vec![Camera { client: 0, eye_m: [128.0, 2.0, 128.0] }])];
     commands.extend((0..objects).map(|client| Command::Spawn { client, kind: VehicleKind::ALL[client as usize % 8 / 5] }));
     world.step(&commands);
     for tick in 0..120 {
@@ -32,7 +33,7 @@ fn step(criterion: &mut Criterion) {
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     for objects in [1, 64] {
         let mut world = one_thread.install(|| busy(objects));
-        let mut tick = 120;
+        let (mut tick, mut quantiser) = (120, PatchQuantiser::default());
         criterion.bench_function(&format!("step with {objects} objects"), |bench| {
             bench.iter(|| {
                 one_thread.install(|| world.step(&drives(objects, tick)));
@@ -44,19 +45,19 @@ fn step(criterion: &mut Criterion) {
                 tick += 1;
                 one_thread.install(|| {
                     world.step(&drives(objects, tick));
-                    world.snapshot()
+                    world.publish(&mut quantiser)
                 })
             });
         });
     }
 }
 
-/// Steps that the percentiles are taken of: a minute of simulated time.
+/// Number of steps for the percentiles: a minute of simulated time.
 const TIMED_STEPS: usize = 3600;
 
 /// A field of a million cells, all bent.
 fn awake_field() -> Field {
-    let mut field = Field::new(PatchLayout::from(&Patches::default()), Kinds::one(WaveParams::from(&Grass::default())));
+    let mut field = Field::new(PatchLayout::from(&Patches::default()), Kinds::one(Grass::default().waves));
     let layout = *field.layout();
     for index in 0..layout.patches() as u32 {
         let patch = field.wake(index);
@@ -73,7 +74,7 @@ fn bend(criterion: &mut Criterion) {
     criterion.bench_function("bend field, 1 M cells awake", |bench| bench.iter(|| field.step(Scheme::Substepped, 1.0 / 60.0, &Alone)));
 }
 
-/// What a mean hides: the wind steps on every third tick only, and a tick that is late is seen.
+/// Percentiles, which a mean hides: the wind steps only every third tick, and a late tick is visible.
 fn percentiles(_: &mut Criterion) {
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     for objects in [1, 64] {

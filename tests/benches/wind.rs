@@ -1,45 +1,47 @@
-//! Time of a step of the wind by each method, and of each projection beside the one of 000.
+//! Time of a wind step by each method, and of each projection, compared with Zhang's.
 //!
-//! Printed beside the times: the bandwidth of the machine's memory, the share of it that each step takes, and what each projection leaves of the divergence.
+//! It also prints the memory bandwidth, the fraction of it that each step uses, and the remaining divergence of each projection.
 
 use std::f32::consts::PI;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::{BatchSize, BenchmarkGroup, BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
+use prairie_wind::pressure::{self, Effort, IterativeMethod, Projection};
+use prairie_wind::stable_fluids::listing::SWEEPS;
+use prairie_wind::{
+    Advection, Air, Boundary, Config, Grid, Gusts, Location, Method, Pressure, Profile, StableFluids, TimeScheme, Velocity,
+};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use server::wind::pressure::{self, Effort, Method as Iteration, Projection};
-use server::wind::stable_fluids::listing::SWEEPS;
-use server::wind::{Advection, Air, Boundary, Config, Grid, Gusts, Method, Place, Pressure, Profile, StableFluids, TimeScheme, Velocity};
 
 const DT_SECS: f64 = 1.0 / 60.0;
-/// Steps before the first that is timed, so that gusts blow.
+/// Untimed steps at the start, so that gusts have developed.
 const STEPS_BEFORE: usize = 5;
 /// Values in each array of the triad: 64 MiB, beyond any cache.
 const TRIAD_LEN: usize = 1 << 24;
 const TRIAD_RUNS: usize = 10;
 
-/// A method of the benchmark, and how many bytes its step must move for each cell.
+/// A method of the benchmark, and the memory traffic of its step per cell.
 struct Candidate {
     name: &'static str,
     method: Method,
     advection: Advection,
     time: TimeScheme,
-    /// Each pass over the box reads every array it uses once and writes every result once; neighbours come from the cache. f32 but for the f64 of a direct
-    /// pressure. Default settings: explicit friction, no dust, no canopy, a mean wind that is kept along x and z.
+    /// Each pass over the box reads every array it uses once and writes every result once; neighbours come from the cache. f32 except for the f64 of a
+    /// direct pressure solve. Default settings: explicit diffusion, no dust, no canopy, relaxation to the mean wind along x and z.
     bytes_per_cell: usize,
 }
 
 /// Divergence 12 + 8, three passes of the transforms 3·16, gradient 3·(8 + 8).
 const DIRECT_PROJECTION: usize = 20 + 48 + 48;
-/// The mean wind of two components: sum 4, shift 8.
+/// Relaxation of two components to the mean wind: sum 4, shift 8.
 const MEAN_WIND: usize = 2 * 12;
-/// Velocity to centres, four numbers each: 12 + 16; measures 12.
+/// Velocity interpolated to centres, four numbers each: 12 + 16; diagnostics 12.
 const OBSERVATION: usize = 28 + 12;
-/// Velocity to centres 28, path back and ahead 16 + 2·16.
+/// Velocity to centres 28, trajectories backward and forward 16 + 2·16.
 const TRACE: usize = 28 + 48;
-/// Three components, there with their bounds 16 + 4 + 4 + 8, and back 16 + 4 + 4 + 8 + 4.
+/// Three components: the forward step with bounds 16 + 4 + 4 + 8, the step back 16 + 4 + 4 + 8 + 4.
 const MACCORMACK: usize = 3 * (32 + 36);
 
 const CANDIDATES: [Candidate; 4] = [
@@ -48,7 +50,8 @@ const CANDIDATES: [Candidate; 4] = [
         method: Method::Staggered,
         advection: Advection::Conservative,
         time: TimeScheme::RungeKutta3,
-        // Stages of three components, each with all of the velocity, the pull and the result, the later two with the start; the pull's gradient.
+        // Stages of three components, each with the whole velocity, the pressure gradient and the result, the later two also with the start; update of
+        // the pressure gradient.
         bytes_per_cell: 2 * MEAN_WIND + 3 * (20 + 24 + 24) + DIRECT_PROJECTION + 48 + OBSERVATION,
     },
     Candidate {
@@ -56,7 +59,7 @@ const CANDIDATES: [Candidate; 4] = [
         method: Method::Staggered,
         advection: Advection::SemiLagrangian,
         time: TimeScheme::Split,
-        // Three components along the path 16 + 4 + 4, friction 3·8.
+        // Three components along the trajectories 16 + 4 + 4, diffusion 3·8.
         bytes_per_cell: TRACE + 3 * 24 + MEAN_WIND + 24 + DIRECT_PROJECTION + OBSERVATION,
     },
     Candidate {
@@ -64,7 +67,7 @@ const CANDIDATES: [Candidate; 4] = [
         method: Method::Staggered,
         advection: Advection::MacCormack,
         time: TimeScheme::Reflection,
-        // Friction twice by midpoint 3·(8 + 12), a copy 3·8, the reflection 3·12.
+        // Diffusion twice by midpoint 3·(8 + 12), a copy 3·8, the reflection 3·12.
         bytes_per_cell: 2 * (MEAN_WIND + 60 + TRACE) + 3 * (MACCORMACK + DIRECT_PROJECTION) + 24 + 36 + OBSERVATION,
     },
     Candidate {
@@ -72,8 +75,8 @@ const CANDIDATES: [Candidate; 4] = [
         method: Method::StableFluids,
         advection: Advection::SemiLagrangian,
         time: TimeScheme::Split,
-        // The body force 3·8; diffusion of three components, a copy and 20 sweeps of 12; two projections, with divergence 16, an empty guess 4, 20 sweeps and
-        // the gradient 3·12; advection of three components 16; measures 12 + 8.
+        // The body force 3·8; diffusion of three components, a copy and 20 sweeps of 12; two projections, each with divergence 16, a zero initial guess
+        // 4, 20 sweeps and the gradient 3·12; advection of three components 16; diagnostics 12 + 8.
         bytes_per_cell: MEAN_WIND + 24 + 3 * (8 + 20 * 12) + 2 * (16 + 4 + 20 * 12 + 36) + 3 * 16 + 20,
     },
 ];
@@ -83,7 +86,7 @@ fn threads(number: usize) -> ThreadPool {
 }
 
 /// Bandwidth (bytes/s) of `a = b + s·c`, counted as two reads and a write, in the fastest of some runs.
-fn triad_bytes_per_sec(pool: &ThreadPool) -> f64 {
+fn triad_bytes_per_s(pool: &ThreadPool) -> f64 {
     let (mut a, b, c) = (vec![0.0f32; TRIAD_LEN], vec![1.0f32; TRIAD_LEN], vec![2.0f32; TRIAD_LEN]);
     let chunk = TRIAD_LEN / 16;
     let mut run = || {
@@ -112,12 +115,12 @@ fn step(criterion: &mut Criterion) {
     brief(&mut group);
     for number in [1, 2] {
         let pool = threads(number);
-        let triad = triad_bytes_per_sec(&pool);
+        let triad = triad_bytes_per_s(&pool);
         println!("triad on {number} threads: {:.1} GB/s", triad / 1e9);
         for cells in [[8, 8, 8], [16, 16, 16], [32, 32, 32], [64, 64, 64], [128, 32, 128]] {
             let [nx, ny, nz] = cells;
             group.throughput(Throughput::Elements((nx * ny * nz) as u64));
-            // 000 knows one thread only.
+            // Zhang's method is single-threaded.
             for candidate in CANDIDATES.iter().filter(|candidate| number == 1 || candidate.method == Method::Staggered) {
                 let config = Config { cells, advection: candidate.advection, time: candidate.time, ..Config::default() };
                 let mut air = Air::<f32>::new(candidate.method, &config).expect("allowed settings");
@@ -136,8 +139,8 @@ fn step(criterion: &mut Criterion) {
                     });
                 });
                 if fastest < Duration::MAX {
-                    let bytes_per_sec = (candidate.bytes_per_cell * nx * ny * nz) as f64 / fastest.as_secs_f64();
-                    let share = 100.0 * bytes_per_sec / triad;
+                    let bytes_per_s = (candidate.bytes_per_cell * nx * ny * nz) as f64 / fastest.as_secs_f64();
+                    let share = 100.0 * bytes_per_s / triad;
                     println!("{}: {} bytes per cell, {share:.0} % of the triad's bandwidth", candidate.name, candidate.bytes_per_cell);
                 }
             }
@@ -146,13 +149,13 @@ fn step(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// A smooth gradient, none of which a projection should leave.
+/// A smooth gradient field, which a projection should remove completely.
 fn smooth([x, y, z]: [f32; 3], n: usize) -> [f32; 3] {
     let k = PI / n as f32;
     [(k * x).sin() * (k * y).cos(), (k * x).cos() * (k * y).sin() + (2.0 * k * y).sin(), (3.0 * k * z).sin()]
 }
 
-/// What a projection of `velocity` leaves of the divergence, root mean square.
+/// Root mean square of the divergence that a projection of `velocity` leaves, relative to that before.
 fn share_left(grid: &Grid<f32>, velocity: &Velocity<f32>, projection: &mut Projection) -> f64 {
     let rms = |velocity: &Velocity<f32>| {
         let mut divergence = vec![0.0; grid.len()];
@@ -169,18 +172,24 @@ fn projection(criterion: &mut Criterion) {
     brief(&mut group);
     let pool = threads(1);
     let effort = Effort { tolerance: 1e-5, sweeps: 100_000 };
-    let methods = [Iteration::Multigrid, Iteration::ConjugateGradients, Iteration::Sor, Iteration::GaussSeidel, Iteration::Jacobi];
+    let methods = [
+        IterativeMethod::Multigrid,
+        IterativeMethod::ConjugateGradients,
+        IterativeMethod::Sor,
+        IterativeMethod::GaussSeidel,
+        IterativeMethod::Jacobi,
+    ];
     for n in [8, 16, 32, 64] {
         group.throughput(Throughput::Elements((n * n * n) as u64));
         let grid = Grid { cells: [n; 3], spacing_m: [1.0f32; 3], boundary: [[Boundary::FreeSlip; 2]; 3] };
-        // Zero on every face of the box, as the walls have it.
+        // Zero on every face of the box, as at walls.
         let mut velocity = Velocity::zeros(&grid);
         for (axis, field) in velocity.0.iter_mut().enumerate() {
             field.fill(&grid, |position| smooth(position, n)[axis]);
-            debug_assert_eq!(field.place, Place::Face(axis));
+            debug_assert_eq!(field.location, Location::Face(axis));
         }
-        // Methods that take n² sweeps take seconds at 32³.
-        let slow = |method: &Iteration| matches!(method, Iteration::GaussSeidel | Iteration::Jacobi);
+        // Methods that need n² sweeps take seconds at 32³.
+        let slow = |method: &IterativeMethod| matches!(method, IterativeMethod::GaussSeidel | IterativeMethod::Jacobi);
         let iterative = methods.into_iter().filter(|method| n <= 16 || !slow(method)).map(|method| Pressure::Iterative(method, effort));
         for pressure in std::iter::once(Pressure::Direct).chain(iterative) {
             let name = match pressure {
@@ -189,7 +198,7 @@ fn projection(criterion: &mut Criterion) {
             };
             let left = share_left(&grid, &velocity, &mut Projection::new(&grid, pressure, None));
             println!("{name} at {n}³ leaves {left:.1e} of the divergence");
-            // Each time anew: an iteration begins with the potential of the one before.
+            // Created anew each time: an iteration starts from the previous potential.
             let fresh = || (Projection::new(&grid, pressure, None), velocity.clone());
             group.bench_function(BenchmarkId::new(name, n), |bencher| {
                 pool.install(|| {
@@ -211,13 +220,13 @@ fn projection(criterion: &mut Criterion) {
         let mut air = StableFluids::<f32>::new(&config).expect("allowed settings");
         air.set_velocity(|position| smooth(position, n));
         let rms = |air: &StableFluids<f32>| {
-            let health = air.health();
-            health.divergence_rms_rel * health.kinetic_energy_m2_per_s2.sqrt()
+            let diagnostics = air.diagnostics();
+            diagnostics.divergence_rms_rel * diagnostics.kinetic_energy_m2_per_s2.sqrt()
         };
         let before = rms(&air);
         air.project(SWEEPS);
         println!("{SWEEPS} Gauss-Seidel sweeps at {n}³ leave {:.1e} of the divergence", rms(&air) / before);
-        group.bench_function(BenchmarkId::new("20 Gauss-Seidel sweeps of 000", n), |bencher| {
+        group.bench_function(BenchmarkId::new("Zhang: 20 Gauss-Seidel sweeps", n), |bencher| {
             bencher.iter(|| air.project(black_box(SWEEPS)))
         });
     }

@@ -1,15 +1,16 @@
-//! The world at the full scale of 001, 88 × 88 patches of 120 × 120 cells: at rest, with 64 cars, and against the number of cars.
+//! The world at the full scale of Chen & Johan, 88 × 88 patches of 120 × 120 cells: at rest, with 64 cars, and against the number of cars.
 //!
-//! The name of a part (`rest`, `minute` or `cars`) runs that alone; `PRAIRIE_QUICK=1` takes a tenth of the time, for a first look.
+//! An argument `rest`, `minute` or `cars` runs that part alone; `PRAIRIE_QUICK=1` takes a tenth of the time, for a quick look.
 
 use futures_util::{SinkExt, StreamExt};
-use server::objects::{Objects, Place};
-use server::scenes;
-use server::weather::Weather;
-use server::world::{Maps, World};
-use shared::scene::Scene;
-use shared::terrain::HeightMap;
-use shared::wire::{ClientMessage, SERVER_MESSAGE_LIMIT, ServerMessage, decode, encode};
+use prairie::objects::{Environment, Objects};
+use prairie::scenes;
+use prairie::snapshot::PatchQuantiser;
+use prairie::weather::Weather;
+use prairie::world::{Maps, World};
+use prairie_core::scene::Scene;
+use prairie_core::terrain::HeightMap;
+use prairie_core::wire::{ClientMessage, SERVER_MESSAGE_LIMIT, ServerMessage, decode, encode};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tests::prairie::Prairie;
@@ -17,26 +18,27 @@ use tests::worlds;
 use tokio::net::TcpStream;
 use tokio_tungstenite::tungstenite::Message;
 
-/// Steps from one snapshot to the next.
+/// Number of steps between snapshots.
 const PUBLISH_EVERY: u64 = 3;
 const THREADS: usize = 2;
 
-/// `secs`, or a tenth of them for a first look.
+/// `secs`, or a tenth of that for a quick look.
 fn sampled(secs: f32) -> f32 {
     if std::env::var_os("PRAIRIE_QUICK").is_some() { 0.1 * secs } else { secs }
 }
 
-/// The world, with twins of its objects and its wind that step beside it: so their share of a tick is known.
+/// The world, with copies of its objects and its wind that are stepped alongside to measure their part of a tick.
 struct Timed {
     scene: Scene,
     world: World,
     height: Arc<HeightMap>,
     objects: Objects,
     weather: Weather,
+    quantiser: PatchQuantiser,
     tick: u64,
 }
 
-/// What a tick took (ms); each part of a snapshot counts for the tick after which it is taken.
+/// Cost of a tick (ms); each part of a snapshot counts for the tick before it.
 #[derive(Clone, Copy, Default)]
 struct Cost {
     objects: f64,
@@ -61,28 +63,28 @@ impl Timed {
         scene.patches.awake_limit = awake_limit;
         let Maps { height, cover, .. } = maps.clone();
         let (height, cover) = (Arc::new(height), Arc::new(cover));
-        let place = Place { height: height.clone(), cover, extent_m: scene.extent_m() };
-        let objects = Objects::new(&scene, place);
-        let weather = Weather::new(&scene, &maps).expect("a built-in scene is sound");
+        let environment = Environment { height: height.clone(), cover, extent_m: scene.extent_m() };
+        let objects = Objects::new(&scene, environment);
+        let weather = Weather::new(&scene, &maps.height, &maps.cover).expect("a built-in scene is sound");
         let world = World::new(&scene, maps).expect("a built-in scene is sound");
-        Self { scene, world, height, objects, weather, tick: 0 }
+        Self { scene, world, height, objects, weather, quantiser: PatchQuantiser::default(), tick: 0 }
     }
 
-    /// One tick, and a snapshot where one is due.
+    /// Runs one tick, and takes a snapshot if one is due.
     fn tick(&mut self) -> Cost {
         self.tick += 1;
         let dt_secs = self.scene.dt_secs();
         let ((), objects) = timed_ms(|| self.objects.step(dt_secs, |_| [0.0; 3]));
         let motions = self.objects.motions();
-        let ((), wind) = timed_ms(|| self.weather.step(self.tick, &motions, &self.height, self.world.meadow().field()));
+        let ((), wind) = timed_ms(|| self.weather.step(self.tick, &motions, &self.height, self.world.bend().field()));
         let ((), step) = timed_ms(|| self.world.step(&[]));
         let snapshot = match self.tick % PUBLISH_EVERY {
             0 => {
-                let (shown, taken) = timed_ms(|| self.world.snapshot());
+                let (shown, taken) = timed_ms(|| self.world.publish(&mut self.quantiser));
                 assert_eq!(shown.objects, self.objects.poses(), "the twins do as the world does");
                 taken
             }
-            part => timed_ms(|| self.world.prepare([part, PUBLISH_EVERY])).1,
+            part => timed_ms(|| self.world.quantise_ahead(&mut self.quantiser, [part, PUBLISH_EVERY])).1,
         };
         Cost { objects, wind, step, snapshot }
     }
@@ -98,7 +100,7 @@ fn timed_ms<T>(act: impl FnOnce() -> T) -> (T, f64) {
     (done, begun.elapsed().as_secs_f64() * 1e3)
 }
 
-/// Runs `act` on as many threads as the aim allows.
+/// Runs `act` on two threads, as in the performance aim.
 fn on_two_threads<T: Send>(act: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(THREADS).build().expect("two threads can be started").install(act)
 }
@@ -148,7 +150,7 @@ async fn share_of_a_core(name: &str) {
     println!("{name}: {:.2} % of a core, {:.0} MB resident", 100.0 * share, resident_mb());
 }
 
-/// A visitor who looks at the middle of the world and takes every frame.
+/// A visitor who looks at the middle of the world and receives every frame.
 async fn visit(addr: String) {
     let stream = TcpStream::connect(&addr).await.expect("the server listens");
     let (mut socket, _) = tokio_tungstenite::client_async(format!("ws://{addr}/ws"), stream).await.expect("a socket opens");
@@ -163,7 +165,7 @@ async fn visit(addr: String) {
     }
 }
 
-/// Time that all threads of this process have had (s); 0 where the system does not tell.
+/// CPU time of all threads of this process (s); 0 if the system does not report it.
 fn cpu_secs() -> f64 {
     let tasks = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
     let nanos = tasks.filter_map(|task| {
@@ -173,26 +175,26 @@ fn cpu_secs() -> f64 {
     nanos.sum::<f64>() * 1e-9
 }
 
-/// Memory of this process that is resident (MB); 0 where the system does not tell.
+/// Resident memory of this process (MB); 0 if the system does not report it.
 fn resident_mb() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
     line.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok()).unwrap_or(0.0) * 1024e-6
 }
 
-/// A minute with 64 cars, as the scene limits the patches.
+/// A minute with 64 cars, with the scene's limit on awake patches.
 fn minute() {
     on_two_threads(|| {
         let mut timed = Timed::new(64, 200.0, 225);
         timed.ticks(2.0);
         println!("64 cars at 20 m/s, {THREADS} threads:");
         table(&timed.ticks(sampled(60.0)));
-        let health = timed.world.snapshot().health;
+        let health = timed.world.snapshot().diagnostics;
         println!("{} patches awake, {} let go, {:.0} MB resident", health.awake_patches, health.evicted_patches, resident_mb());
     });
 }
 
-/// What a car costs: as many as 256, each with a track of its own that no limit cuts.
+/// Cost of a car: up to 256 cars, each with a track of its own, without a limit on patches.
 fn cars() {
     let warm_up_secs = 9.0;
     println!("{:>6} {:>9} {:>9} {:>9}  mean ms of a tick, {THREADS} threads", "cars", "bend", "tick", "awake");
@@ -203,7 +205,7 @@ fn cars() {
             timed.ticks(sampled(warm_up_secs));
             let costs = timed.ticks(sampled(3.0));
             let mean = |part: fn(&Cost) -> f64| costs.iter().map(part).sum::<f64>() / costs.len() as f64;
-            (mean(Cost::bend), mean(Cost::tick), timed.world.snapshot().health.awake_patches)
+            (mean(Cost::bend), mean(Cost::tick), timed.world.snapshot().diagnostics.awake_patches)
         });
         println!("{cars:>6} {bend:>9.3} {tick:>9.3} {awake:>9}");
         points.push((f64::from(cars), bend, tick));
@@ -215,7 +217,7 @@ fn cars() {
     }
 }
 
-/// Line of least squares through points: value at 0, slope and R².
+/// Least-squares line through points: value at 0, slope and R².
 fn fit(points: &[(f64, f64)]) -> (f64, f64, f64) {
     let n = points.len() as f64;
     let mean = |part: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(part).sum::<f64>() / n;

@@ -13,10 +13,10 @@ use tokio::time::{Instant, sleep};
 use crate::chromedriver::{Chromedriver, chromium};
 use crate::picture::Picture;
 
-/// Size of the page that a [`Browser`] shows, width and height (CSS pixels, which are the picture's pixels too).
+/// Page size of a [`Browser`], width and height (CSS pixels, equal to the picture's pixels).
 pub const VIEW: (u32, u32) = (960, 540);
 
-/// How long a script, a page load or [`Browser::until`] may take before the test gives up.
+/// Timeout of a script, a page load and [`Browser::until`].
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
 const HEADLESS: [&str; 13] = [
@@ -35,16 +35,16 @@ const HEADLESS: [&str; 13] = [
     "--hide-scrollbars",
 ];
 
-/// WebGPU on SwiftShader. Without `Vulkan` the canvas stays blank and waits for the GPU never end.
+/// WebGPU on SwiftShader. Without `Vulkan` the canvas stays blank and the GPU never completes its work.
 const SOFTWARE_WEBGPU: [&str; 4] =
     ["--enable-unsafe-webgpu", "--enable-features=Vulkan", "--use-vulkan=swiftshader", "--use-angle=swiftshader"];
 
-/// What a browser is started with.
+/// Options of a browser.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Whether pages find a WebGPU adapter; default true.
+    /// Whether WebGPU offers an adapter; default true.
     pub webgpu: bool,
-    /// More of Chromium's command line; default none.
+    /// Additional command-line arguments of Chromium; default empty.
     pub arguments: Vec<String>,
 }
 
@@ -72,7 +72,7 @@ impl Browser {
         Ok(browser)
     }
 
-    /// Starts a browser with an empty page. A certificate that nobody signed is taken as it is.
+    /// Starts a browser with an empty page. Self-signed certificates are accepted.
     ///
     /// # Errors
     /// When Chromium or chromedriver is not installed (the message says what to install), or will not start.
@@ -117,7 +117,7 @@ impl Browser {
         value.with_context(|| format!("evaluating {expression}\nthe page's console:\n{}", self.console()))
     }
 
-    /// The client's own account of itself; null before it has started.
+    /// State that the client reports (`window.prairie.state()`); null before it has started.
     ///
     /// # Errors
     /// When the page is not Prairie's.
@@ -125,7 +125,7 @@ impl Browser {
         self.evaluate("window.prairie.state()").await
     }
 
-    /// Waits until a JavaScript expression is true in the sense of JavaScript, and gives its value.
+    /// Waits until a JavaScript expression is truthy and returns its value.
     ///
     /// # Errors
     /// When the expression throws, or is not true within [`PATIENCE`].
@@ -141,7 +141,7 @@ impl Browser {
         }
     }
 
-    /// What the first element that a CSS selector finds looks like, whatever lies above it included.
+    /// Screenshot of the first element that matches a CSS selector, with anything that overlaps it.
     ///
     /// # Errors
     /// When there is no such element.
@@ -150,7 +150,7 @@ impl Browser {
         Picture::from_png(&element.screenshot().await?)
     }
 
-    /// The canvas alone: panel and message are out of sight while the picture is taken.
+    /// Screenshot of the canvas alone; the panel and the message are hidden meanwhile.
     ///
     /// # Errors
     /// When the page has no canvas `#view`.
@@ -170,7 +170,7 @@ impl Browser {
         self.key(KeyAction::Down { value: key.into() }).await
     }
 
-    /// Lets a pressed key go.
+    /// Releases a key.
     ///
     /// # Errors
     /// When the browser is gone.
@@ -178,16 +178,16 @@ impl Browser {
         self.key(KeyAction::Up { value: key.into() }).await
     }
 
-    /// Clicks the first element that a CSS selector finds.
+    /// Clicks the first element that matches a CSS selector.
     ///
     /// # Errors
-    /// When there is no such element, or something covers it.
+    /// When there is no such element, or another covers it.
     pub async fn click(&self, selector: &str) -> Result<()> {
         let element = self.client.find(Locator::Css(selector)).await.with_context(|| format!("no element {selector}"))?;
         element.click().await.with_context(|| format!("clicking {selector}"))
     }
 
-    /// The lines of the page's console so far.
+    /// Console output of the page so far.
     #[must_use]
     pub fn console(&self) -> String {
         let log = self.driver.log();
@@ -195,7 +195,7 @@ impl Browser {
         lines.collect::<Vec<_>>().join("\n")
     }
 
-    /// WebDriver itself, for what has no name here.
+    /// The WebDriver client, for commands that have no method here.
     #[must_use]
     pub fn client(&self) -> &Client {
         &self.client

@@ -1,4 +1,4 @@
-//! A chromedriver and the Chromium it starts, ended together.
+//! A chromedriver process and its Chromium, which end together.
 
 use std::env;
 use std::fs::{self, File};
@@ -24,7 +24,7 @@ pub struct Chromedriver {
     process: Child,
     group: Pid,
     files: TempDir,
-    /// Where it listens, as in `http://127.0.0.1:34765`.
+    /// Its address, such as `http://127.0.0.1:34765`.
     pub url: String,
 }
 
@@ -32,7 +32,7 @@ impl Chromedriver {
     /// Starts chromedriver on a free port.
     ///
     /// # Errors
-    /// When chromedriver is not installed (the message says what to install), or names no port within a minute.
+    /// When chromedriver is not installed (the message says what to install), or reports no port within a minute.
     pub async fn start() -> Result<Self> {
         let files = tempfile::Builder::new().prefix("prairie-browser-").tempdir().context("no directory for the browser's profile")?;
         let log = File::create(files.path().join(LOG))?;
@@ -57,7 +57,7 @@ impl Chromedriver {
         self.files.path().join("profile")
     }
 
-    /// What chromedriver and Chromium have printed so far, the lines of the page's console among them.
+    /// Output of chromedriver and Chromium so far, including the console of the page.
     #[must_use]
     pub fn log(&self) -> String {
         read_log(&self.files.path().join(LOG))
@@ -66,13 +66,13 @@ impl Chromedriver {
 
 impl Drop for Chromedriver {
     fn drop(&mut self) {
-        // An empty group is all that can fail here, and that is what is wanted.
+        // The only possible failure is an empty group, which is the desired result.
         let _ = kill_process_group(self.group, Signal::KILL);
         let _ = self.process.try_wait();
     }
 }
 
-/// The Chromium or Chrome to drive.
+/// Path of Chromium or Chrome.
 ///
 /// # Errors
 /// When none is on the `PATH`; the message says what to install.

@@ -1,10 +1,10 @@
-//! What the tests, charts and pictures of Prairie share.
+//! Support code shared by the tests, charts, pictures and benchmarks of Prairie.
 
 pub mod air;
+pub mod arguments;
 pub mod browser;
 pub mod chart;
 pub mod chromedriver;
-pub mod likeness;
 pub mod limits;
 pub mod maps;
 pub mod norms;
@@ -14,6 +14,7 @@ pub mod picture;
 pub mod prairie;
 pub mod problems;
 pub mod random_winds;
+pub mod similarity;
 pub mod stage;
 pub mod still;
 pub mod synthetic;

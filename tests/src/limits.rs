@@ -1,28 +1,28 @@
-//! Where the wind's methods fail: the step at which each begins to grow, found by bisection, beside what theory says.
+//! Stability limits of the wind's methods, measured by bisection, beside theory.
 //!
-//! A trial runs a method on noise for some hundred steps and asks whether its norm grew in the second half of them. By then every mode that decays is gone or
-//! as good as gone, so that the answer changes where the fastest mode's amplification passes 1.
+//! A trial runs a method on noise for some hundred steps and tests whether its norm grew in the second half. By then decaying modes are negligible, so the
+//! result changes where the amplification of the fastest mode passes 1.
 
 use std::f64::consts::TAU;
 
-use server::wind::transport::{STAGES, Scratch, Stage, stable_dt_secs};
-use server::wind::{Boundary, Config, Field, Grid, Gusts, Place, Profile, Solver, Velocity, diffuse, health};
+use prairie_wind::transport::{STAGES, Stage, TransportScratch, stable_dt_secs};
+use prairie_wind::{Boundary, Config, Field, Grid, Gusts, Location, Profile, Solver, Velocity, diagnostics, diffuse};
 
 use crate::random_winds::Dice;
 
 const STEPS: usize = 400;
 const BISECTIONS: usize = 30;
 
-/// A limit as theory has it and as it was found.
+/// A stability limit in theory and as measured.
 #[derive(Clone, Debug)]
 pub struct Limit {
     /// The method.
     pub scheme: String,
-    /// The number that is limited.
+    /// Limited quantity.
     pub number: &'static str,
     /// Its limit in theory.
     pub theory: f64,
-    /// The largest value found to be stable.
+    /// Largest stable value, measured.
     pub measured: f64,
 }
 
@@ -33,7 +33,7 @@ impl Limit {
     }
 }
 
-/// The largest number up to which `stable` holds, between two.
+/// Largest number in an interval up to which `stable` holds, by bisection.
 fn bisect([mut low, mut high]: [f64; 2], stable: impl Fn(f64) -> bool) -> f64 {
     assert!(stable(low) && !stable(high), "stable at {low}, unstable at {high}");
     for _ in 0..BISECTIONS {
@@ -47,10 +47,10 @@ fn wrapped(cells: [usize; 3], spacing_m: [f64; 3]) -> Grid<f64> {
     Grid { cells, spacing_m, boundary: [[Boundary::Wrap; 2]; 3] }
 }
 
-/// Fills the ghosts of a field on a box that wraps all around.
+/// Fills the ghost cells of a field with periodic boundaries on all faces.
 fn wrap(grid: &Grid<f64>, field: &mut Field<f64>) {
     let padded = grid.padded();
-    let inner = |i: usize, axis: usize| (i + grid.cells[axis] * padded[axis] - server::wind::GHOST) % grid.cells[axis];
+    let inner = |i: usize, axis: usize| (i + grid.cells[axis] * padded[axis] - prairie_wind::GHOST) % grid.cells[axis];
     let values = field.data.clone();
     for k in 0..padded[2] {
         for j in 0..padded[1] {
@@ -61,8 +61,8 @@ fn wrap(grid: &Grid<f64>, field: &mut Field<f64>) {
     }
 }
 
-fn noise(grid: &Grid<f64>, place: Place) -> Field<f64> {
-    let (mut field, mut dice) = (Field::zeros(grid, place), Dice::new(7));
+fn noise(grid: &Grid<f64>, location: Location) -> Field<f64> {
+    let (mut field, mut dice) = (Field::zeros(grid, location), Dice::new(7));
     field.data.iter_mut().for_each(|value| *value = dice.unit());
     let mean = field.values(grid).sum::<f64>() / field.len() as f64;
     field.data.iter_mut().for_each(|value| *value -= mean);
@@ -74,9 +74,9 @@ fn norm(grid: &Grid<f64>, field: &Field<f64>) -> f64 {
     field.values(grid).map(|value| value * value).sum::<f64>().sqrt()
 }
 
-/// True if the norm of noise does not grow from the middle to the end of the trial, apart from rounding and what rounding left of the mean.
+/// Whether the norm of noise does not grow from the middle to the end of the trial, apart from rounding errors.
 fn holds(grid: &Grid<f64>, mut step: impl FnMut(&mut Field<f64>)) -> bool {
-    let mut field = noise(grid, Place::Face(0));
+    let mut field = noise(grid, Location::Face(0));
     let rounding = 1e-12 * norm(grid, &field);
     (0..STEPS / 2).for_each(|_| step(&mut field));
     let middle = norm(grid, &field);
@@ -84,12 +84,12 @@ fn holds(grid: &Grid<f64>, mut step: impl FnMut(&mut Field<f64>)) -> bool {
     norm(grid, &field) <= middle * (1.0 + 1e-9) + rounding
 }
 
-/// `ν·dt·Σ 1/h²`, over the axes with more than one cell, up to which an explicit diffusion holds: 1/2, which is `a = ν·dt/h² = 1/6` on cubes.
+/// Limit of explicit diffusion as `ν·dt·Σ 1/h²` over the axes with more than one cell: 1/2 in theory, which is `a = ν·dt/h² = 1/6` on cubes.
 pub fn explicit_diffusion(name: &str, cells: [usize; 3], spacing_m: [f64; 3], midpoint: bool) -> Limit {
     let grid = wrapped(cells, spacing_m);
     let per_m2: f64 = (0..3).filter(|&axis| cells[axis] > 1).map(|axis| spacing_m[axis].powi(-2)).sum();
     let stable = |number: f64| {
-        let mut next = [0; 2].map(|_| Field::zeros(&grid, Place::Face(0)));
+        let mut next = [0; 2].map(|_| Field::zeros(&grid, Location::Face(0)));
         holds(&grid, |field| {
             let [half, next] = &mut next;
             if midpoint {
@@ -107,23 +107,23 @@ pub fn explicit_diffusion(name: &str, cells: [usize; 3], spacing_m: [f64; 3], mi
     Limit { scheme, number: "nu dt sum 1/h^2", theory: 0.5, measured: bisect([0.25, 1.0], stable) }
 }
 
-/// Conservative transport by uniform air in a box that wraps all around.
+/// Conservative transport by uniform air in a periodic box.
 #[derive(Clone, Copy, Debug)]
 pub struct Transport {
     /// Cells along each axis.
     pub cells: [usize; 3],
     /// Size of a cell (m).
     pub spacing_m: [f64; 3],
-    /// The air (m/s).
+    /// Air velocity (m/s).
     pub air_m_per_s: [f64; 3],
     /// Diffusivity in the flux (m²/s).
     pub diffusivity_m2_per_s: f64,
-    /// Upwind share, 0 to 1.
+    /// Upwind fraction, 0 to 1.
     pub damping: f64,
 }
 
 impl Transport {
-    /// Largest amplification `|R(z)|` of a step, `R(z) = 1 + z + z²/2 + z³/6`, over `modes` wave numbers along each axis that has cells to hold them.
+    /// Largest amplification `|R(z)|` of a step, `R(z) = 1 + z + z²/2 + z³/6`, over `modes` wave numbers along each axis with more than one cell.
     pub fn amplification(&self, dt_secs: f64, modes: usize) -> f64 {
         let count = self.cells.map(|n| if n > 1 { modes } else { 1 });
         let mut largest = 0.0f64;
@@ -147,22 +147,22 @@ impl Transport {
 
     /// Longest stable step (s) by [`Transport::amplification`].
     pub fn theory_secs(&self, modes: usize) -> f64 {
-        // Up to four times what is allowed: a single cell along an axis diffuses nothing, but is counted.
+        // Searches up to four times the allowed step: that also counts diffusion along axes of a single cell, where there is none.
         let allowed = stable_dt_secs(&wrapped(self.cells, self.spacing_m), self.air_m_per_s.map(f64::abs), self.diffusivity_m2_per_s);
         bisect([0.5 * allowed, 4.0 * allowed], |dt_secs| self.amplification(dt_secs, modes) <= 1.0 + 1e-12)
     }
 
-    /// True if noise does not grow at a step.
+    /// Whether noise does not grow at this time step.
     fn holds(&self, dt_secs: f64) -> bool {
         let grid = wrapped(self.cells, self.spacing_m);
         let mut air = Velocity::zeros(&grid);
         air.0.iter_mut().zip(self.air_m_per_s).for_each(|(field, speed)| field.data.fill(speed));
-        let mut stages = [0; 2].map(|_| Field::zeros(&grid, Place::Face(0)));
-        let mut scratch = Scratch::new(&grid);
+        let mut stages = [0; 2].map(|_| Field::zeros(&grid, Location::Face(0)));
+        let mut scratch = TransportScratch::new(&grid);
         holds(&grid, |field| run(&grid, &air, field, &mut stages, &mut scratch, dt_secs, self.diffusivity_m2_per_s, self.damping))
     }
 
-    /// The longest stable step (s), in theory over the wave numbers the box holds, and found.
+    /// Longest stable step (s): in theory, over the wave numbers of the box, and measured.
     pub fn limit(&self, name: &str) -> Limit {
         let theory = self.theory_secs(self.cells.into_iter().max().unwrap_or(1));
         let measured = bisect([0.5 * theory, 2.0 * theory], |dt_secs| self.holds(dt_secs));
@@ -171,13 +171,13 @@ impl Transport {
 }
 
 /// One Runge–Kutta 3 step of a field in frozen air.
-#[allow(clippy::too_many_arguments, reason = "a kernel: a field, its scratch and numbers")]
+#[expect(clippy::too_many_arguments, reason = "a kernel: a field, its scratch and numbers")]
 fn run(
     grid: &Grid<f64>,
     air: &Velocity<f64>,
     field: &mut Field<f64>,
     [even, odd]: &mut [Field<f64>; 2],
-    scratch: &mut Scratch<f64>,
+    scratch: &mut TransportScratch<f64>,
     dt_secs: f64,
     diffusivity_m2_per_s: f64,
     damping: f64,
@@ -188,15 +188,16 @@ fn run(
             1 => (&*even, &mut *odd),
             _ => (&*odd, &mut *even),
         };
-        Stage { grid, air, carried, start: field, pull: None, dt_secs, share, diffusivity_m2_per_s, damping }.run(target, scratch);
+        Stage { grid, air, carried, start: field, pressure_gradient: None, dt_secs, share, diffusivity_m2_per_s, damping }
+            .run(target, scratch);
         wrap(grid, target);
     }
     std::mem::swap(field, even);
 }
 
-/// Sum over the axes of the largest Courant number on faces up to which limited transport keeps noise of dust between 0 and 1, in uniform air or in noise without
-/// divergence. Theory: 1/2, up to which every stage is a mean of old values (a face's value is within the cell's difference to the one upwind, so that at most
-/// twice the share that flows out leaves); it is enough, but need not be needed.
+/// Largest Courant number (summed over the axes, worst face) at which limited transport keeps noisy dust between 0 and 1, in uniform air or in divergence-free
+/// noise. Theory: 1/2. Up to there every stage is a weighted mean of old values, since a face value differs from the cell by at most the difference to the
+/// upwind cell, so at most twice the outflowing fraction leaves. The condition is sufficient, not necessary.
 pub fn dust_bounds(name: &str, cells: [usize; 3], uniform: bool) -> Limit {
     let config = Config {
         cells,
@@ -219,16 +220,16 @@ pub fn dust_bounds(name: &str, cells: [usize; 3], uniform: bool) -> Limit {
     if uniform {
         air.0.iter_mut().zip(cells).filter(|(_, n)| *n > 1).for_each(|(field, _)| field.data.fill(1.0));
     }
-    let courant_per_sec: f64 = health::fastest_to_be(&grid, &air, &air, 0.0).iter().sum();
+    let courant_per_s: f64 = diagnostics::largest_speeds(&grid, &air, &air, 0.0).iter().sum();
     let stable = |courant: f64| {
-        let mut dust = Field::zeros(&grid, Place::Centre);
+        let mut dust = Field::zeros(&grid, Location::Centre);
         let mut dice = Dice::new(11);
         dust.data.iter_mut().for_each(|value| *value = f64::from(u8::from(dice.one_in(2))));
         wrap(&grid, &mut dust);
         let mut stages = [dust.clone(), dust.clone()];
-        let mut scratch = Scratch::new(&grid);
+        let mut scratch = TransportScratch::new(&grid);
         (0..STEPS / 4).all(|_| {
-            run(&grid, &air, &mut dust, &mut stages, &mut scratch, courant / courant_per_sec, 0.0, 0.0);
+            run(&grid, &air, &mut dust, &mut stages, &mut scratch, courant / courant_per_s, 0.0, 0.0);
             dust.values(&grid).all(|density| (-1e-12..=1.0 + 1e-12).contains(&density))
         })
     };

@@ -1,11 +1,11 @@
-//! PNG files of every kind, sound maps or not.
+//! PNG files of any colour type and depth, valid as maps or not.
 
 use png::{BitDepth, ColorType, Encoder};
 
-/// A PNG file of `size_px` (width, height); each row of `bytes` begins with a whole byte, values of 16 bits with the higher one.
+/// Encodes a PNG of `size_px` (width, height). Each row of `bytes` starts on a byte boundary; 16-bit values are big-endian.
 ///
 /// # Panics
-/// When `bytes` are more or fewer than the picture holds.
+/// When the number of `bytes` does not match the picture.
 pub fn png(color: ColorType, depth: BitDepth, size_px: [u32; 2], bytes: &[u8]) -> Vec<u8> {
     let mut file = Vec::new();
     let mut encoder = Encoder::new(&mut file, size_px[0], size_px[1]);

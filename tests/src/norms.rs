@@ -1,6 +1,6 @@
-//! Sizes of an error, and the order in which it shrinks.
+//! Error norms, and the order of convergence.
 
-/// Norms of an error over the cells of a grid, each per cell, so that grids of different size compare.
+/// Norms of an error over the cells of a grid, averaged per cell so that grids of different size compare.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Norms {
     /// Mean of the absolute error.
@@ -12,7 +12,7 @@ pub struct Norms {
 }
 
 impl Norms {
-    /// Norms of the differences between pairs of found and exact values.
+    /// Norms of the differences between pairs of computed and exact values.
     pub fn of(pairs: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let (mut n, mut sum, mut squares, mut largest) = (0.0, 0.0, 0.0, 0.0f64);
         for (found, exact) in pairs {

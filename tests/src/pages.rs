@@ -1,4 +1,4 @@
-//! Plain HTTP on a free port of this machine, for pages that need no server of Prairie's.
+//! A plain HTTP server on a free local port, for pages that need no Prairie server.
 
 use std::io::Result;
 use std::net::SocketAddr;
@@ -13,13 +13,13 @@ pub type Page = (&'static str, &'static [u8]);
 /// Serves pages until it is dropped.
 #[derive(Debug)]
 pub struct Pages {
-    /// Where it listens.
+    /// Listening address.
     pub addr: SocketAddr,
     task: JoinHandle<()>,
 }
 
 impl Pages {
-    /// Answers each `GET` with what `find` gives for its path, and 404 where that is none.
+    /// Answers each `GET` with the page that `find` returns for its path, or 404.
     ///
     /// # Errors
     /// When this machine has no free port.
@@ -28,7 +28,7 @@ impl Pages {
         let addr = listener.local_addr()?;
         let task = tokio::spawn(async move {
             while let Ok((stream, _)) = listener.accept().await {
-                // A browser that hangs up in the middle is no concern of the page.
+                // A browser that hangs up midway is not an error of the page.
                 tokio::spawn(async move { answer(stream, find).await.unwrap_or_default() });
             }
         });

@@ -1,11 +1,14 @@
-//! Pictures as pixels.
+//! 8-bit RGBA pictures: reading, comparing, and writing them as PNG or JPEG.
 
-use std::fs::{self, File};
-use std::io::{BufWriter, Cursor};
+mod scale;
+mod store;
+
+use std::fs;
+use std::io::Cursor;
 use std::path::Path;
 
 use anyhow::{Context as _, Result, bail, ensure};
-use png::{BitDepth, ColorType, Decoder, Encoder, Transformations};
+use png::{ColorType, Decoder, Transformations};
 
 /// An 8-bit RGBA picture, rows from top to bottom.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,10 +22,10 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Decodes a PNG of any kind to 8-bit RGBA.
+    /// Decodes a PNG of any colour type to 8-bit RGBA.
     ///
     /// # Errors
-    /// When the bytes are no whole PNG.
+    /// When the bytes are not a complete PNG.
     pub fn from_png(png: &[u8]) -> Result<Self> {
         let mut decoder = Decoder::new(Cursor::new(png));
         decoder.set_transformations(Transformations::normalize_to_color8() | Transformations::ALPHA);
@@ -41,29 +44,10 @@ impl Picture {
     /// Reads a PNG file.
     ///
     /// # Errors
-    /// When the file cannot be read or is no PNG.
+    /// When the file cannot be read or is not a PNG.
     pub fn load(path: &Path) -> Result<Self> {
         let png = fs::read(path).with_context(|| path.display().to_string())?;
         Self::from_png(&png).with_context(|| path.display().to_string())
-    }
-
-    /// Writes a PNG file, of RGB where all is opaque, and the directory it lies in.
-    ///
-    /// # Errors
-    /// When the file cannot be written.
-    pub fn save(&self, path: &Path) -> Result<()> {
-        if let Some(dir) = path.parent() {
-            fs::create_dir_all(dir).with_context(|| dir.display().to_string())?;
-        }
-        let file = File::create(path).with_context(|| path.display().to_string())?;
-        let mut encoder = Encoder::new(BufWriter::new(file), self.width, self.height);
-        let is_opaque = self.rgba.chunks_exact(4).all(|pixel| pixel[3] == u8::MAX);
-        encoder.set_color(if is_opaque { ColorType::Rgb } else { ColorType::Rgba });
-        encoder.set_depth(BitDepth::Eight);
-        let mut writer = encoder.write_header()?;
-        let bytes = self.rgba.chunks_exact(4).flat_map(|pixel| &pixel[..if is_opaque { 3 } else { 4 }]);
-        writer.write_image_data(&bytes.copied().collect::<Vec<u8>>())?;
-        Ok(writer.finish()?)
     }
 
     /// The pixel at `x` from the left and `y` from the top.
@@ -77,17 +61,17 @@ impl Picture {
         [self.rgba[start], self.rgba[start + 1], self.rgba[start + 2], self.rgba[start + 3]]
     }
 
-    /// The part of it that is so many pixels from the left and the top, wide and high.
+    /// A rectangle of the picture: left, top, width and height (px).
     ///
     /// # Panics
-    /// Where it reaches beyond the picture.
+    /// When the rectangle reaches beyond the picture.
     #[must_use]
-    pub fn part(&self, [left, top, width, height]: [u32; 4]) -> Self {
-        let places = (top..top + height).flat_map(|y| (left..left + width).map(move |x| [x, y]));
-        Self { width, height, rgba: places.flat_map(|[x, y]| self.pixel(x, y)).collect() }
+    pub fn cropped(&self, [left, top, width, height]: [u32; 4]) -> Self {
+        let positions = (top..top + height).flat_map(|y| (left..left + width).map(move |x| [x, y]));
+        Self { width, height, rgba: positions.flat_map(|[x, y]| self.pixel(x, y)).collect() }
     }
 
-    /// How far this picture is from another of the same size.
+    /// Difference from another picture of the same size.
     ///
     /// # Errors
     /// When the sizes differ.
@@ -108,18 +92,26 @@ impl Picture {
     }
 }
 
-/// How far two pictures are apart.
+/// Difference between two pictures, pixel by pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
-    /// Mean absolute difference of a channel, 0 to 255.
+    /// Mean absolute difference of the channels, 0 to 255.
     pub mean: f64,
-    /// Share of pixels, 0 to 1, of which a channel differs by more than [`Difference::VISIBLE`].
+    /// Fraction of the pixels with a channel that differs by more than [`Difference::VISIBLE`].
     pub changed: f64,
 }
 
 impl Difference {
-    /// A channel's difference above which a pixel counts as changed, of 255.
+    /// Difference of a channel (of 255) above which a pixel counts as changed.
     pub const VISIBLE: u8 = 16;
+    /// Largest difference at which a stored picture is not rewritten: nobody sees it.
+    pub const INVISIBLE: Self = Self { mean: 0.5, changed: 0.001 };
+
+    /// Whether neither figure exceeds its bound.
+    #[must_use]
+    pub fn is_within(self, bound: Self) -> bool {
+        self.mean <= bound.mean && self.changed <= bound.changed
+    }
 }
 
 fn farthest(a: &[u8], b: &[u8]) -> u8 {
@@ -135,18 +127,6 @@ mod tests {
     }
 
     #[test]
-    fn a_saved_picture_comes_back() -> Result<()> {
-        let dir = tempfile::tempdir()?;
-        let path = dir.path().join("new/gradient.png");
-        let opaque = Picture { width: 1, height: 2, rgba: vec![1, 2, 3, 255, 4, 5, 6, 255] };
-        for picture in [gradient(), opaque] {
-            picture.save(&path)?;
-            assert_eq!(Picture::load(&path)?, picture);
-        }
-        Ok(())
-    }
-
-    #[test]
     fn difference_counts_visible_pixels() -> Result<()> {
         let mut other = gradient();
         other.rgba[4] += Difference::VISIBLE;
@@ -158,14 +138,14 @@ mod tests {
     }
 
     #[test]
-    fn a_part_is_cut_out() {
-        let part = gradient().part([1, 0, 2, 2]);
+    fn a_rectangle_is_cropped() {
+        let part = gradient().cropped([1, 0, 2, 2]);
         assert_eq!((part.width, part.height), (2, 2));
         assert_eq!(part.rgba, [&gradient().rgba[4..12], &gradient().rgba[16..24]].concat());
     }
 
     #[test]
-    fn sizes_must_agree() {
+    fn pictures_of_different_sizes_have_no_difference() {
         let narrow = Picture { width: 2, height: 3, rgba: vec![0; 24] };
         let error = gradient().difference(&narrow).expect_err("the sizes differ").to_string();
         assert_eq!(error, "a picture of 3x2 compared with one of 2x3");

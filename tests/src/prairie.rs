@@ -1,10 +1,10 @@
-//! A whole server in the test's own process.
+//! A complete server in the test's own process.
 
 use crate::browser::Browser;
 use anyhow::Result;
-use server::runner::Simulation;
-use server::scenes::LoadedScene;
-use server::{Config, run_simulation};
+use prairie::runner::Simulation;
+use prairie::scenes::LoadedScene;
+use prairie::{Config, run_simulation};
 use std::net::SocketAddr;
 use tokio::net::TcpListener;
 use tokio::sync::oneshot;
@@ -12,7 +12,7 @@ use tokio::sync::oneshot;
 /// A server on a free port; it stops when dropped.
 #[derive(Debug)]
 pub struct Prairie {
-    /// Where it listens.
+    /// Listening address.
     pub addr: SocketAddr,
     _stop: oneshot::Sender<()>,
 }
@@ -32,15 +32,16 @@ impl Prairie {
         Ok(Self { addr, _stop: stop })
     }
 
-    /// A browser that has the scene, the first frames and a device to draw with. It draws only when asked: software rendering would take all of a small machine.
+    /// Opens a browser and waits until it has the scene, the first frames and a GPU device. It draws only on request: continuous software rendering would
+    /// occupy all of a small machine.
     ///
     /// # Errors
-    /// When no browser can be started, or the page does not get that far.
+    /// When the browser does not start, or the page does not connect or draw.
     pub async fn visitor(&self, name: &str) -> Result<Browser> {
         self.visitor_at(&format!("?quality=low&panel=0&name={name}")).await
     }
 
-    /// The same at an address of one's own, from its `?` on.
+    /// The same with another query string, from its `?` on.
     ///
     /// # Errors
     /// As [`visitor`](Self::visitor).
@@ -51,7 +52,7 @@ impl Prairie {
         Ok(browser)
     }
 
-    /// An address on this server, from its `?` on, for a page that draws only when asked.
+    /// Address of a page that draws only on request, with this query string (from its `?` on).
     #[must_use]
     pub fn url(&self, address: &str) -> String {
         let query = address.trim_start_matches('?');

@@ -1,31 +1,28 @@
-//! Winds drawn at random from all that a solver can legally be told, the absurd included.
+//! Random wind configurations from everything that the solver accepts, absurd ones included.
 
-use server::wind::pressure::{Effort, Method};
-use server::wind::{
+use prairie_core::random::SplitMix64;
+use prairie_wind::pressure::{Effort, IterativeMethod};
+use prairie_wind::{
     Advection, Boundary, Canopy, Config, Diffusion, Dust, Gusts, Jet, Pressure, Primitive, Profile, Real, Shape, Solver, TimeScheme,
 };
 
-/// Random numbers from a seed (SplitMix64, Steele, Lea & Flood, OOPSLA 2014).
-pub struct Dice(u64);
+/// Random numbers from a seed.
+pub struct Dice(SplitMix64);
 
 impl Dice {
-    /// Dice that always fall the same way for one seed.
+    /// A generator whose numbers depend on the seed alone.
     pub fn new(seed: u64) -> Self {
-        Self(seed)
+        Self(SplitMix64::new(seed))
     }
 
     /// The next 64 bits.
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.next_u64()
     }
 
     /// Uniform in [0, 1).
     pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+        self.0.unit()
     }
 
     /// Uniform between two numbers.
@@ -33,43 +30,43 @@ impl Dice {
         low + (high - low) * self.unit()
     }
 
-    /// Between two positive numbers, each order of magnitude as likely as the next.
+    /// Log-uniform between two positive numbers.
     pub fn scale(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
 
-    /// True once in `n` throws.
+    /// True with probability 1/`n`.
     pub fn one_in(&mut self, n: u64) -> bool {
         self.bits().is_multiple_of(n)
     }
 
-    /// One of these.
+    /// One of the given values.
     pub fn of<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[(self.bits() % choices.len() as u64) as usize]
     }
 }
 
-/// A run: the solver's settings, what it starts from, and how it is stepped.
+/// A run: configuration, initial state and time step.
 #[derive(Clone, Debug)]
 pub struct RandomWind {
-    /// Settings, which [`Config::validate`] allows.
+    /// Configuration that [`Config::validate`] accepts.
     pub config: Config,
-    /// Largest speed (m/s) of the random air at the start, each component of each face by itself.
+    /// Largest initial speed (m/s); each face component is random.
     pub speed_m_per_s: f64,
-    /// Share of the cells that is solid; 0 where the methods do not allow any.
+    /// Fraction of solid cells; 0 where the methods do not support them.
     pub solid: f64,
-    /// Amplitude (m/s) of the waves that blow through faces of inflow; `None` for the mean wind.
+    /// Amplitude (m/s) of the waves on inflow faces; `None` for the mean wind.
     pub inflow_m_per_s: Option<f64>,
     /// Jets of every step.
     pub jets: Vec<Jet>,
-    /// The step (s).
+    /// Time step (s).
     pub dt_secs: f64,
-    /// Seed of the air at the start and of the solid cells.
+    /// Seed of the initial velocity and of the solid cells.
     pub seed: u64,
 }
 
 impl RandomWind {
-    /// The wind of a seed. Half of them are driven by nothing but what they start from.
+    /// The configuration of a seed. Half of them have no forcing.
     pub fn new(seed: u64) -> Self {
         let mut dice = Dice::new(seed);
         let driven = dice.one_in(2);
@@ -77,7 +74,7 @@ impl RandomWind {
         let finest_m = dice.scale(0.01, 100.0);
         let spacing_m = [0; 3].map(|_| (finest_m * dice.of(&[1.0, 1.0, 2.0, 10.0])) as f32);
         let boundary = [0, 1, 2].map(|axis| faces(&mut dice, axis, driven));
-        let (advection, time) = dice.of(&SCHEMES);
+        let (advection, time) = dice.of(&schemes());
         let config = Config {
             cells,
             spacing_m,
@@ -88,7 +85,7 @@ impl RandomWind {
             diffusion: diffusion(&mut dice),
             pressure: pressure(&mut dice),
             viscosity_m2_per_s: if dice.one_in(4) { 0.0 } else { dice.scale(1e-5, 1e4) as f32 },
-            relaxation_per_sec: 0.0,
+            relaxation_per_s: 0.0,
             mean_wind_m_per_s: [0.0; 3],
             profile: Profile::Uniform,
             gusts: Gusts { number: 0, ..Gusts::default() },
@@ -120,9 +117,9 @@ impl RandomWind {
         let somewhere = |dice: &mut Dice| extent_m.map(|extent| (dice.between(-0.5, 1.5) * extent) as f32);
         let radius_m = |dice: &mut Dice| dice.scale(1e-3, 3.0 * largest_m.max(1e-2)) as f32;
         let config = &mut self.config;
-        config.relaxation_per_sec = dice.of(&[0.0, 0.2, 1e4]);
+        config.relaxation_per_s = dice.of(&[0.0, 0.2, 1e4]);
         for axis in [0, 2] {
-            if !config.boundary[axis].iter().any(|face| face.is_closed()) {
+            if !config.boundary[axis].iter().any(|face| face.blocks_flow()) {
                 config.mean_wind_m_per_s[axis] = dice.between(-40.0, 40.0) as f32;
             }
         }
@@ -166,23 +163,23 @@ impl RandomWind {
                 position_m: somewhere(dice).into(),
                 radius_m: radius_m(dice),
                 velocity_m_per_s: velocity.into(),
-                rate_per_sec: dice.scale(0.1, 1e3) as f32,
+                rate_per_s: dice.scale(0.1, 1e3) as f32,
             }];
         }
     }
 
-    /// True where something may add energy to the air after the start.
+    /// Whether a forcing may add energy to the air.
     pub fn is_driven(&self) -> bool {
         let c = &self.config;
         let moving = |face: &Boundary| matches!(face, Boundary::Lid { .. } | Boundary::Inflow);
-        let pushed = c.gusts.number > 0 || !c.primitives.is_empty() || c.relaxation_per_sec > 0.0 || c.body_force_m_per_s2 != [0.0; 3];
+        let pushed = c.gusts.number > 0 || !c.primitives.is_empty() || c.relaxation_per_s > 0.0 || c.body_force_m_per_s2 != [0.0; 3];
         pushed || !self.jets.is_empty() || c.boundary.iter().flatten().any(moving)
     }
 
     /// A solver at the start of the run.
     ///
     /// # Errors
-    /// What [`Solver::new`] and [`Solver::set_solid`] refuse.
+    /// Those of [`Solver::new`] and [`Solver::set_solid`].
     pub fn solver<R: Real>(&self) -> anyhow::Result<Solver<R>> {
         let mut solver = Solver::new(&self.config)?;
         let at = |position: [R; 3], salt: u64| {
@@ -190,7 +187,7 @@ impl RandomWind {
             Dice::new(key).unit()
         };
         if let Some(speed) = self.inflow_m_per_s {
-            solver.prescribe(move |[x, y, z], t| [speed * (x + t).sin(), speed * (y - t).cos(), speed * (z + t).sin()]);
+            solver.set_inflow(move |[x, y, z], t| [speed * (x + t).sin(), speed * (y - t).cos(), speed * (z + t).sin()]);
         }
         if self.speed_m_per_s > 0.0 {
             solver.set_velocity(|position| [1, 2, 3].map(|salt| R::of(self.speed_m_per_s * (2.0 * at(position, salt) - 1.0))));
@@ -203,16 +200,11 @@ impl RandomWind {
     }
 }
 
-const SCHEMES: [(Advection, TimeScheme); 8] = [
-    (Advection::SemiLagrangian, TimeScheme::Split),
-    (Advection::SemiLagrangian, TimeScheme::Reflection),
-    (Advection::MacCormack, TimeScheme::Split),
-    (Advection::MacCormack, TimeScheme::Reflection),
-    (Advection::Bfecc, TimeScheme::Split),
-    (Advection::Bfecc, TimeScheme::Reflection),
-    (Advection::Conservative, TimeScheme::Split),
-    (Advection::Conservative, TimeScheme::RungeKutta3),
-];
+/// Every allowed pair of advection and time scheme.
+fn schemes() -> Vec<(Advection, TimeScheme)> {
+    let pairs = Advection::ALL.iter().flat_map(|&advection| TimeScheme::ALL.iter().map(move |&time| (advection, time)));
+    pairs.filter(|&(advection, time)| time.allows(advection)).collect()
+}
 
 /// Mostly some hundred cells, now and then thousands; flat and narrow boxes too.
 fn cells(dice: &mut Dice) -> [usize; 3] {
@@ -244,7 +236,13 @@ fn diffusion(dice: &mut Dice) -> Diffusion {
 }
 
 fn pressure(dice: &mut Dice) -> Pressure {
-    let methods = [Method::Jacobi, Method::GaussSeidel, Method::Sor, Method::ConjugateGradients, Method::Multigrid];
+    let methods = [
+        IterativeMethod::Jacobi,
+        IterativeMethod::GaussSeidel,
+        IterativeMethod::Sor,
+        IterativeMethod::ConjugateGradients,
+        IterativeMethod::Multigrid,
+    ];
     if dice.one_in(3) {
         return Pressure::Direct;
     }
@@ -253,9 +251,9 @@ fn pressure(dice: &mut Dice) -> Pressure {
 
 fn dust(dice: &mut Dice) -> Dust {
     Dust {
-        advection: dice.of(&[Advection::SemiLagrangian, Advection::MacCormack, Advection::Bfecc, Advection::Conservative]),
+        advection: dice.of(Advection::ALL),
         diffusivity_m2_per_s: dice.of(&[0.0, 0.2, 100.0]),
-        release_per_sec: dice.of(&[0.0, 1.0, 1e6]),
-        settling_per_sec: dice.of(&[0.0, 0.1, 1e6]),
+        release_per_s: dice.of(&[0.0, 1.0, 1e6]),
+        settling_per_s: dice.of(&[0.0, 0.1, 1e6]),
     }
 }

@@ -1,43 +1,44 @@
-//! A world and a client's mirror of it in one process: what a browser would be shown, without sockets or clocks.
+//! A world and a client's mirror of it in one process, without sockets or clocks.
 
 use anyhow::{Context as _, Result};
-use client_wasm::state::Mirror;
-use server::scenes;
-use server::snapshot::PatchCodes;
-use server::world::{Command, View, World};
-use shared::scene::{Scene, VehicleKind};
-use shared::terrain::HeightMap;
-use shared::wire::{self, Drive, ObjectPose, SERVER_MESSAGE_LIMIT, ServerMessage, Shape, codec};
+use prairie::scenes;
+use prairie::snapshot::{PatchCodes, PatchQuantiser};
+use prairie::world::{Camera, Command, World};
+use prairie_client::state::Mirror;
+use prairie_core::scene::{Scene, VehicleKind};
+use prairie_core::terrain::HeightMap;
+use prairie_core::wire::{self, Drive, ObjectPose, SERVER_MESSAGE_LIMIT, ServerMessage, Shape, codec};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// A world, stepped by hand, and the mirror that its snapshots are brought to as the bytes of messages.
+/// A world that is stepped by hand, and a client mirror that receives its snapshots as encoded messages.
 pub struct Stage {
     /// The world.
     pub world: World,
-    /// What a client knows of it.
+    /// A client's copy of the state.
     pub mirror: Mirror,
     scene: Scene,
     height: HeightMap,
+    quantiser: PatchQuantiser,
     sent: BTreeMap<u32, (u32, Arc<PatchCodes>)>,
-    told_broken: usize,
+    sent_broken: usize,
     frame: u32,
     time_secs: f64,
 }
 
 impl Stage {
-    /// The scene with this name, or in this file, at its start.
+    /// Loads a built-in scene by name, or a scene file, at its start.
     ///
     /// # Errors
-    /// When the scene is faulty.
+    /// When the scene is invalid.
     pub fn load(name_or_path: &str) -> Result<Self> {
         Self::changed(name_or_path, |_| {})
     }
 
-    /// The same after a change of it.
+    /// Loads a scene and changes it before the world is made.
     ///
     /// # Errors
-    /// When the scene is faulty.
+    /// When the scene is invalid.
     pub fn changed(name_or_path: &str, change: impl FnOnce(&mut Scene)) -> Result<Self> {
         let mut loaded = scenes::load(name_or_path)?;
         change(&mut loaded.scene);
@@ -46,12 +47,13 @@ impl Stage {
             mirror: Mirror::default(),
             scene: loaded.scene.clone(),
             height: loaded.height,
+            quantiser: PatchQuantiser::default(),
             sent: BTreeMap::new(),
-            told_broken: 0,
+            sent_broken: 0,
             frame: 0,
             time_secs: 0.0,
         };
-        stage.bring(&ServerMessage::Scene {
+        stage.send(&ServerMessage::Scene {
             scene: Box::new(loaded.scene),
             height_png: loaded.height_png,
             covering_png: loaded.covering_png,
@@ -61,8 +63,8 @@ impl Stage {
         Ok(stage)
     }
 
-    /// Brings a message to the mirror as the wire would.
-    fn bring(&mut self, message: &ServerMessage) -> Result<()> {
+    /// Sends a message to the mirror, encoded and decoded as on the wire.
+    fn send(&mut self, message: &ServerMessage) -> Result<()> {
         self.mirror.apply(wire::decode(&wire::encode(message), SERVER_MESSAGE_LIMIT)?)?;
         Ok(())
     }
@@ -72,36 +74,36 @@ impl Stage {
         &self.scene
     }
 
-    /// Height of the land (m).
+    /// Height of the terrain (m).
     pub fn ground_m(&self, x_m: f32, z_m: f32) -> f32 {
         self.height.height_m(x_m, z_m)
     }
 
-    /// Says where client 1 looks from: its vehicle appears there.
+    /// Sets the camera of client 1; its vehicle will appear there.
     pub fn look_from(&mut self, eye_m: [f32; 3]) {
-        self.tell(&[Command::Views(vec![View { client: 1, eye_m }])]);
+        self.command(&[Command::Cameras(vec![Camera { client: 1, eye_m }])]);
     }
 
-    /// Gives `client` a vehicle, near its camera.
+    /// Spawns a vehicle for `client` near its camera.
     pub fn spawn(&mut self, client: u32, kind: VehicleKind) {
-        self.tell(&[Command::Spawn { client, kind }]);
+        self.command(&[Command::Spawn { client, kind }]);
     }
 
-    /// Puts hands on the controls of `client`'s vehicle.
+    /// Sets the controls of `client`'s vehicle.
     pub fn drive(&mut self, client: u32, drive: Drive) {
-        self.tell(&[Command::Drive { client, drive }]);
+        self.command(&[Command::Drive { client, drive }]);
     }
 
-    /// Takes all objects from the mirror, which else stays as it is, until the world is shown again.
+    /// Removes all objects from the mirror until the next [`show`](Self::show).
     ///
     /// # Errors
-    /// When the mirror refuses it.
+    /// When the mirror rejects the message.
     pub fn show_bare(&mut self) -> Result<()> {
-        // What is told of an earlier time than before takes the place of all that was told.
-        self.bring(&ServerMessage::Poses { tick: 0, objects: Vec::new() })
+        // Poses of an earlier tick replace all that were sent before.
+        self.send(&ServerMessage::Poses { tick: 0, objects: Vec::new() })
     }
 
-    fn tell(&mut self, commands: &[Command]) {
+    fn command(&mut self, commands: &[Command]) {
         self.world.step(commands);
     }
 
@@ -112,29 +114,29 @@ impl Stage {
         }
     }
 
-    /// Brings the newest state to the mirror; returns the objects' poses.
+    /// Sends the newest state to the mirror; returns the poses of the objects.
     ///
     /// # Errors
-    /// When the mirror refuses what the world shows.
+    /// When the mirror rejects a message.
     pub fn show(&mut self) -> Result<Vec<ObjectPose>> {
-        let snapshot = self.world.snapshot();
-        self.bring(&ServerMessage::Poses { tick: snapshot.tick, objects: snapshot.objects.clone() })?;
+        let snapshot = self.world.publish(&mut self.quantiser);
+        self.send(&ServerMessage::Poses { tick: snapshot.tick, objects: snapshot.objects.clone() })?;
         self.frame += 1;
         let wind = &snapshot.wind;
         let payload = codec::encode(Shape::wind(wind.cells[0] as usize, wind.has_dust()), &wind.codes, None);
-        self.bring(&ServerMessage::Wind { tick: snapshot.tick, seq: self.frame, key: true, payload })?;
+        self.send(&ServerMessage::Wind { tick: snapshot.tick, seq: self.frame, key: true, payload })?;
         let shown: BTreeSet<u32> = self.sent.keys().chain(snapshot.patches.keys()).copied().collect();
         for patch in shown {
             self.show_patch(patch, snapshot.patches.get(&patch))?;
         }
-        while self.told_broken < snapshot.broken.len() {
-            let plants = snapshot.broken.after(self.told_broken).to_vec();
-            self.told_broken += plants.len();
-            self.bring(&ServerMessage::Broken { plants })?;
+        while self.sent_broken < snapshot.broken.len() {
+            let plants = snapshot.broken.after(self.sent_broken).to_vec();
+            self.sent_broken += plants.len();
+            self.send(&ServerMessage::Broken { plants })?;
         }
         let secs = snapshot.time_secs - self.time_secs;
         self.time_secs = snapshot.time_secs;
-        self.bring(&ServerMessage::FrameEnd { frame: self.frame, tick: snapshot.tick, time_secs: snapshot.time_secs })?;
+        self.send(&ServerMessage::FrameEnd { frame: self.frame, tick: snapshot.tick, time_secs: snapshot.time_secs })?;
         self.mirror.advance(secs);
         Ok(snapshot.objects)
     }
@@ -148,7 +150,7 @@ impl Stage {
         };
         let payload =
             codes.map_or_else(Vec::new, |codes| codec::encode(Shape::patch(self.scene.patches.cells as usize), &codes.codes, None));
-        self.bring(&ServerMessage::Patch { patch, seq, key: true, payload })?;
+        self.send(&ServerMessage::Patch { patch, seq, key: true, payload })?;
         match codes {
             Some(codes) => self.sent.insert(patch, (seq, Arc::clone(codes))),
             None => self.sent.remove(&patch),
@@ -157,12 +159,12 @@ impl Stage {
     }
 }
 
-/// What happens on a stage before its picture is taken.
+/// Events on a stage before its picture is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Act {
     /// Wind alone.
     Wind,
-    /// A car has driven across the view in a long bend.
+    /// A car has driven a long curve across the view.
     Track,
     /// A helicopter hovers low over the grass.
     Wash,
@@ -174,10 +176,10 @@ pub enum Act {
     Roll,
 }
 
-/// Plays an act in front of the eye and leaves the mirror at its end. Returns the pose of the act's own object.
+/// Plays an act in front of the camera and shows its end. Returns the pose of the act's object, if it has one.
 ///
 /// # Errors
-/// When the act's vehicle finds no room, or the mirror refuses the world.
+/// When there is no room for the act's vehicle, or the mirror rejects a message.
 pub fn play(stage: &mut Stage, act: Act, eye_m: [f32; 3]) -> Result<Option<ObjectPose>> {
     stage.look_from(eye_m);
     stage.run(4.0);
@@ -220,7 +222,7 @@ pub fn play(stage: &mut Stage, act: Act, eye_m: [f32; 3]) -> Result<Option<Objec
     match kind {
         Some(kind) => {
             let pose = object.and_then(|id| poses.into_iter().find(|pose| pose.id == id));
-            pose.map(Some).with_context(|| format!("the {} found no room", kind.name()))
+            pose.map(Some).with_context(|| format!("there was no room for the {}", kind.name()))
         }
         None => Ok(None),
     }

@@ -1,28 +1,28 @@
-//! A stage at a standstill: drawn in any way, timed, and as it would look with every plant drawn.
+//! A frozen moment of a scene: drawn with any render options, timed, and drawn as a reference with every plant.
 
 use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context as _, Result};
-use client_wasm::camera::Camera;
-use client_wasm::render::{FrameStats, Gpu, Look, Order, Picture as Canvas, Quality};
-use client_wasm::state::Mirror;
+use prairie_client::camera::Camera;
+use prairie_client::render::{BlendOrder, FrameStats, Gpu, OffscreenRenderer as Canvas, Quality, RenderOptions};
+use prairie_client::state::Mirror;
 
 use crate::picture::Picture;
 use crate::stage::Stage;
 use crate::views::View;
 
-/// Time that clouds and gusts stand at (s).
+/// Time of the clouds and gusts (s).
 const TIME_SECS: f64 = 5.0;
 const DT_SECS: f32 = 1.0 / 30.0;
-/// Pixels along one side of the reference that make one of a picture.
+/// Supersampling factor of the reference along each side.
 const SUPERSAMPLED: u32 = 2;
 
-/// A stage and the camera that looks at it; every picture shows the same moment.
+/// A stage and its camera; every picture shows the same moment.
 pub struct Still {
-    /// What is shown.
+    /// The scene at its moment.
     pub stage: Stage,
-    /// From where.
+    /// The camera.
     pub camera: Camera,
     /// Width and height of its pictures (px).
     pub size_px: [u32; 2],
@@ -32,18 +32,18 @@ impl Still {
     /// A view after its act.
     ///
     /// # Errors
-    /// When its scene is faulty or its act fails.
+    /// When the scene is invalid or the act fails.
     pub fn of(view: &View, size_px: [u32; 2]) -> Result<Self> {
         let (stage, camera) = view.play()?;
         Ok(Self { stage, camera, size_px })
     }
 
-    /// What its pictures are drawn on.
+    /// A renderer of the size of its pictures.
     pub fn canvas(&self, gpu: &Gpu, quality: Quality) -> Canvas {
         Canvas::new(gpu, self.size_px, quality)
     }
 
-    /// A picture of the moment on a canvas of its own, and what was drawn.
+    /// Draws the moment on a canvas; returns the picture and the frame statistics.
     pub fn draw(&mut self, canvas: &mut Canvas) -> (Picture, FrameStats) {
         self.draw_sized(canvas, self.size_px)
     }
@@ -58,21 +58,22 @@ impl Still {
         frame_secs(canvas, &mut self.stage.mirror, &self.camera, frames)
     }
 
-    /// The moment with every plant at full detail in exact order. What the view cannot show is culled, which the test `culling` holds to change no pixel.
+    /// Draws every plant at full detail in exact order. Only culling leaves plants out, which changes no pixel (test `culling`).
     pub fn reference(&mut self, gpu: &Gpu) -> Picture {
         self.draw_finely(gpu, Quality::Reference)
     }
 
-    /// The moment drawn at twice the size, or by a quality that does so itself, pixels averaged in linear light. Between two such pictures nothing differs but their detail.
+    /// Draws at twice the size, or at a quality with its own supersampling, and averages in linear light. Two such pictures differ only in their level
+    /// of detail.
     pub fn draw_finely(&mut self, gpu: &Gpu, quality: Quality) -> Picture {
-        let finer = SUPERSAMPLED / quality.fineness(self.size_px, gpu.side_limit_px());
+        let finer = SUPERSAMPLED / quality.supersampling(self.size_px, gpu.side_limit_px());
         let size_px = self.size_px.map(|side| side * finer);
         let mut canvas = Canvas::new(gpu, size_px, quality);
-        canvas.set_look(Look { order: Order::Cut, ..Look::default() });
-        averaged(&self.draw_sized(&mut canvas, size_px).0, finer)
+        canvas.set_options(RenderOptions { blend_order: BlendOrder::Cut, ..RenderOptions::default() });
+        self.draw_sized(&mut canvas, size_px).0.averaged(finer)
     }
 
-    /// The reference as a file keeps it; drawn anew where there is none, or one from before this program was built.
+    /// The reference, cached in a file; drawn again when the file is absent or older than this program.
     ///
     /// # Errors
     /// When the file cannot be read or written.
@@ -83,12 +84,12 @@ impl Still {
             return Picture::load(path);
         }
         let picture = self.reference(gpu);
-        picture.save(path).context("the reference cannot be kept")?;
+        picture.save(path).context("the reference cannot be written")?;
         Ok(picture)
     }
 }
 
-/// Median time of a frame (s) while clouds, wind and plants go on: of an odd number of `frames`, after one that fills buffers.
+/// Median frame time (s) while clouds, wind and plants move: of an odd number of `frames`, after one warm-up frame.
 pub fn frame_secs(canvas: &mut Canvas, mirror: &mut Mirror, camera: &Camera, frames: u32) -> f64 {
     let mut times: Vec<f64> = (0..=frames)
         .map(|frame| {
@@ -100,46 +101,4 @@ pub fn frame_secs(canvas: &mut Canvas, mirror: &mut Mirror, camera: &Camera, fra
         .collect();
     times.sort_by(f64::total_cmp);
     times[times.len() / 2]
-}
-
-/// A smaller picture, each pixel the mean of so many along each side, in linear light.
-fn averaged(picture: &Picture, times: u32) -> Picture {
-    let linear: Vec<f32> = (0..=255_u8).map(linear_of).collect();
-    let [width, height] = [picture.width / times, picture.height / times];
-    let mean = |x: u32, y: u32, channel: usize| {
-        let places = (0..times * times).map(|n| picture.pixel(x * times + n % times, y * times + n / times)[channel]);
-        level_of(places.map(|level| linear[usize::from(level)]).sum::<f32>() / (times * times) as f32)
-    };
-    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
-    Picture { width, height, rgba: pixels.flat_map(|[x, y]| [mean(x, y, 0), mean(x, y, 1), mean(x, y, 2), 255]).collect() }
-}
-
-/// Linear light, 0 to 1, of an sRGB level (IEC 61966-2-1).
-fn linear_of(level: u8) -> f32 {
-    let level = f32::from(level) / 255.0;
-    if level <= 0.04045 { level / 12.92 } else { ((level + 0.055) / 1.055).powf(2.4) }
-}
-
-/// Its inverse.
-fn level_of(linear: f32) -> u8 {
-    let level = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
-    (255.0 * level).round() as u8
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn levels_survive_linear_light() {
-        assert!((0..=255).all(|level| level_of(linear_of(level)) == level));
-    }
-
-    #[test]
-    fn pixels_are_averaged_as_light() {
-        let rgba = [[0, 255, 40, 255], [255, 255, 40, 255], [255, 0, 40, 255], [0, 0, 40, 255]].concat();
-        let one = averaged(&Picture { width: 2, height: 2, rgba }, 2);
-        // Half of the light of white is level 188.
-        assert_eq!((one.width, one.height, one.rgba), (1, 1, vec![188, 188, 40, 255]));
-    }
 }

@@ -1,24 +1,24 @@
-//! A small world without a server: hills, a covering map, gusts, a bent track, a helicopter's wash, some objects. It comes as
-//! the messages that a server would send, so that the whole path of the client is taken.
+//! A small world without a server: hills, a covering map, gusts, a bent track, a helicopter's downwash, some objects. It is made of
+//! the messages that a server would send, so that the client decodes and applies them as usual.
 
 use crate::maps;
-use client_wasm::state::Mirror;
 use glam::{Quat, Vec2, Vec3};
-use shared::grid::PatchLayout;
-use shared::scene::{Scene, TerrainMaps, VehicleKind};
-use shared::terrain::{HeightMap, grey_png};
-use shared::wire::quantise::{omega_code, theta_code, wind_code};
-use shared::wire::{ObjectPose, ServerMessage, Shape, codec};
+use prairie_client::state::Mirror;
+use prairie_core::grid::PatchLayout;
+use prairie_core::scene::{Objects, Scene, TerrainMaps, VehicleKind};
+use prairie_core::terrain::{HeightMap, grey_png};
+use prairie_core::wire::quantise::{omega_code, theta_code, wind_code};
+use prairie_core::wire::{ObjectPose, ServerMessage, Shape, codec};
 
 /// Pixels of both maps along X and Z, and the distance between those of the height map (m).
 const MAP_PX: u32 = 257;
 const PIXEL_M: f32 = 1.0;
 const LEVEL_M: f32 = 0.0004;
 
-/// A mirror that has been told of the whole world.
+/// A mirror that has received the whole world.
 ///
 /// # Panics
-/// When the mirror refuses a message: the world is sound by construction.
+/// When the mirror rejects a message; the world is valid by construction.
 pub fn mirror() -> Mirror {
     let mut mirror = Mirror::default();
     for message in messages() {
@@ -29,11 +29,11 @@ pub fn mirror() -> Mirror {
 
 /// Centre of the car's circular track (m) and its radius (m).
 pub const TRACK: ([f32; 2], f32) = ([128.0, 130.0], 22.0);
-/// Place of the car on the track (rad, from east towards south).
+/// Position of the car on the track (rad, from east towards south).
 pub const CAR_RAD: f32 = 0.9;
-/// Place over which the helicopter hovers (m).
+/// Position of the hovering helicopter (m).
 pub const HELICOPTER: [f32; 2] = [100.0, 128.0];
-/// Place of the monster (m).
+/// Position of the monster (m).
 pub const MONSTER: [f32; 2] = [136.0, 141.0];
 
 fn messages() -> Vec<ServerMessage> {
@@ -119,7 +119,7 @@ fn patch_message(layout: &PatchLayout, patch: u32) -> Option<ServerMessage> {
     is_bent.then(|| ServerMessage::Patch { patch, seq: 1, key: true, payload: codec::encode(Shape::patch(cells), &codes, None) })
 }
 
-/// Bend and its direction: two wheel tracks that rise with their age, and a wash that blows outward.
+/// Bending angle (rad) and direction: two wheel tracks that recover with age, and an outward downwash.
 fn bend_at(p: Vec2) -> (f32, Vec2) {
     let from_centre = p - Vec2::from(TRACK.0);
     let angle = from_centre.y.atan2(from_centre.x);
@@ -143,7 +143,7 @@ fn objects(heights: &HeightMap) -> Vec<ObjectPose> {
         ObjectPose {
             id,
             kind,
-            position_m: (foot + up * (kind.half_extents_m()[1] + above_m)).into(),
+            position_m: (foot + up * (Objects::default().half_extents_m(kind)[1] + above_m)).into(),
             rotation: rotation.into(),
             velocity_m_per_s: (rotation * Vec3::NEG_Z * speed).into(),
             part_rad,

@@ -1,22 +1,22 @@
-//! Air that turns in a closed box, and the dust it carries.
+//! Air that rotates in a closed box and carries dust.
 
-use server::wind::{Advection, Boundary, Config, Dust, Real, Solver};
+use prairie_wind::{Advection, Boundary, Config, Dust, Real, Solver};
 
 use crate::air::still_air;
 use crate::problems::Rotation;
 
-/// Share of the side within which, about the middle, air turns like a solid body.
+/// Radius of solid-body rotation about the middle, as a fraction of the side.
 pub const SOLID_RADIUS: f64 = 0.42;
-/// Share of the side beyond which it is at rest.
+/// Radius beyond which the air is at rest, as a fraction of the side.
 const STILL_RADIUS: f64 = 0.49;
 
-/// A square of `cells` × `cells` in x–z, closed all round, in which dust is carried by `advection`, and neither spreads nor settles.
+/// A closed square of `cells` × `cells` in x–z, in which `advection` carries dust that neither diffuses nor settles.
 ///
-/// Air turns as `rotation` says within [`SOLID_RADIUS`], and ever slower beyond: its stream function levels out before the walls. Differences of the stream
-/// function between the corners of the cells make the velocity, so that it is free of divergence, and linear where air turns like a solid body.
+/// Air follows `rotation` within [`SOLID_RADIUS`] and slows down beyond: the stream function levels out before the walls. The velocity is the difference of
+/// the stream function between the corners of each cell, hence free of divergence, and linear in the solid-body region.
 pub fn turntable<R: Real>(rotation: Rotation, advection: Advection, cells: usize) -> Solver<R> {
     let spacing_m = rotation.side_m / cells as f64;
-    let dust = Dust { advection, diffusivity_m2_per_s: 0.0, release_per_sec: 0.0, settling_per_sec: 0.0 };
+    let dust = Dust { advection, diffusivity_m2_per_s: 0.0, release_per_s: 0.0, settling_per_s: 0.0 };
     let closed = [Boundary::FreeSlip; 2];
     let config =
         Config { dust: Some(dust), ..still_air([cells, 1, cells], [spacing_m, 1.0, spacing_m], [closed, [Boundary::Wrap; 2], closed]) };

@@ -1,9 +1,9 @@
-//! Ten fixed views, from an ant's to an aircraft's, each in calm air and in a storm: what the ways of drawing are compared on.
+//! Ten fixed views, from an ant's to an aircraft's height, in calm air and in a storm, for comparing render options.
 
 use anyhow::{Context as _, Result};
-use client_wasm::camera::Camera;
 use glam::{Quat, Vec3};
-use shared::wire::ObjectPose;
+use prairie_client::camera::Camera;
+use prairie_core::wire::ObjectPose;
 
 use crate::stage::{Act, Stage, play};
 
@@ -14,22 +14,22 @@ pub struct View {
     pub name: &'static str,
     /// Built-in scene.
     pub scene: &'static str,
-    /// What happens before.
+    /// Events before the picture.
     pub act: Act,
-    /// Where the camera is.
+    /// Camera position.
     pub eye: Eye,
-    /// What there is to see.
+    /// Caption.
     pub shows: &'static str,
-    /// Figures of the source texts that it answers.
+    /// Figures in the literature that it corresponds to.
     pub answers: &'static str,
 }
 
 /// Where a camera is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Eye {
-    /// Where the scene's visitors start.
+    /// The starting view of the scene.
     Start,
-    /// Over a place on the land: X and Z (m), height above the ground (m), heading and pitch (degrees).
+    /// A fixed position above the terrain.
     Over {
         /// X and Z (m).
         at_m: [f32; 2],
@@ -40,11 +40,11 @@ pub enum Eye {
         /// Negative looks down.
         pitch_deg: f32,
     },
-    /// At the act's vehicle, from so far behind, above and right of it (m).
+    /// Looking at the act's vehicle from a distance behind, above and to the right of it (m).
     Chase([f32; 3]),
 }
 
-/// A camera so high above a place (m), its heading and pitch in degrees.
+/// A camera at a height above a position (m), heading and pitch in degrees.
 pub const fn over(at_m: [f32; 2], height_m: f32, heading_deg: f32, pitch_deg: f32) -> Eye {
     Eye::Over { at_m, height_m, heading_deg, pitch_deg }
 }
@@ -57,7 +57,7 @@ pub const VIEWS: [View; 10] = [
         act: Act::Wind,
         eye: over([145.1, 140.12], 0.09, 60.0, 6.0),
         shows: "an ant's view between stems and flowers",
-        answers: "003 Figure 3.3, 004 Figure 9",
+        answers: "Bakay 2003, Figure 3.3; Endo et al. 2003, Figure 9",
     },
     View {
         name: "ant-storm",
@@ -65,7 +65,7 @@ pub const VIEWS: [View; 10] = [
         act: Act::Wind,
         eye: over([128.0, 158.72], 0.3, 200.0, 16.0),
         shows: "blades against a stormy sky, from 0.3 m",
-        answers: "003 Figure 1.1",
+        answers: "Bakay 2003, Figure 1.1",
     },
     View {
         name: "walking-calm",
@@ -73,7 +73,7 @@ pub const VIEWS: [View; 10] = [
         act: Act::Walk,
         eye: Eye::Chase([6.0, 1.2, 1.5]),
         shows: "a monster wades through the grass",
-        answers: "000 Figures 22 and 23 (a, height 1)",
+        answers: "Zhang, Figures 22 and 23 (a, height 1)",
     },
     View {
         name: "walking-storm",
@@ -81,7 +81,7 @@ pub const VIEWS: [View; 10] = [
         act: Act::Wind,
         eye: over([128.0, 158.72], 1.7, 20.0, -6.0),
         shows: "gusts press the grass, rain drives across it",
-        answers: "004 Figure 8",
+        answers: "Endo et al. 2003, Figure 8",
     },
     View {
         name: "driving-calm",
@@ -89,7 +89,7 @@ pub const VIEWS: [View; 10] = [
         act: Act::Track,
         eye: Eye::Chase([7.0, 2.2, 0.0]),
         shows: "a car at speed and the track that it leaves",
-        answers: "001 Figure 10",
+        answers: "Chen & Johan 2010, Figure 10",
     },
     View {
         name: "driving-storm",
@@ -97,7 +97,7 @@ pub const VIEWS: [View; 10] = [
         act: Act::Drag,
         eye: Eye::Chase([8.0, 3.0, 0.0]),
         shows: "a sled, a concave object, through laid grass",
-        answers: "001 Figure 12",
+        answers: "Chen & Johan 2010, Figure 12",
     },
     View {
         name: "hill-calm",
@@ -105,7 +105,7 @@ pub const VIEWS: [View; 10] = [
         act: Act::Wind,
         eye: over([124.0, 197.0], 10.0, 20.0, -12.0),
         shows: "the valley from 10 m",
-        answers: "000 Figure 23 (b and c, heights 5 and 10), 003 Figure 1.2",
+        answers: "Zhang, Figure 23 (b and c, heights 5 and 10); Bakay 2003, Figure 1.2",
     },
     View {
         name: "hill-storm",
@@ -113,7 +113,7 @@ pub const VIEWS: [View; 10] = [
         act: Act::Wash,
         eye: Eye::Chase([16.0, 6.0, 4.0]),
         shows: "a helicopter's wash in wind-blown grass",
-        answers: "001 Figure 11",
+        answers: "Chen & Johan 2010, Figure 11",
     },
     View {
         name: "aircraft-calm",
@@ -121,7 +121,7 @@ pub const VIEWS: [View; 10] = [
         act: Act::Track,
         eye: Eye::Chase([90.0, 60.0, 20.0]),
         shows: "cars and drifts of four grasses from 60 m",
-        answers: "001 Figure 13, 000 Figure 23 (d, height 20)",
+        answers: "Chen & Johan 2010, Figure 13; Zhang, Figure 23 (d, height 20)",
     },
     View {
         name: "aircraft-storm",
@@ -129,7 +129,7 @@ pub const VIEWS: [View; 10] = [
         act: Act::Wind,
         eye: over([216.0, 60.0], 60.0, 225.0, -24.0),
         shows: "waves of wind over the valley from 60 m",
-        answers: "003 Figures 4.1 to 4.3",
+        answers: "Bakay 2003, Figures 4.1 to 4.3",
     },
 ];
 
@@ -137,16 +137,16 @@ impl View {
     /// The view of that name.
     ///
     /// # Errors
-    /// When there is none.
+    /// When no view has this name.
     pub fn find(name: &str) -> Result<&'static Self> {
         let known = || VIEWS.map(|view| view.name).join(", ");
         VIEWS.iter().find(|view| view.name == name).with_context(|| format!("no view is called `{name}`; allowed: {}", known()))
     }
 
-    /// Plays the act: the stage at its end, and the camera there.
+    /// Plays the act; returns the stage at its end and the camera.
     ///
     /// # Errors
-    /// When the scene is faulty or the act fails.
+    /// When the scene is invalid or the act fails.
     pub fn play(&self) -> Result<(Stage, Camera)> {
         let mut stage = Stage::load(self.scene)?;
         let camera = self.eye.watch(&mut stage, self.act).context(self.name)?;
@@ -155,10 +155,10 @@ impl View {
 }
 
 impl Eye {
-    /// Plays an act on a stage: the camera at its end.
+    /// Plays an act on a stage; returns the camera at its end.
     ///
     /// # Errors
-    /// When the act fails, or has no vehicle to be chased.
+    /// When the act fails, or has no vehicle to follow.
     pub fn watch(self, stage: &mut Stage, act: Act) -> Result<Camera> {
         let start = Camera::start(&stage.scene().camera, stage.scene().extent_m(), |x, z| stage.ground_m(x, z));
         let fixed = match self {
@@ -173,7 +173,7 @@ impl Eye {
         let pose = play(stage, act, fixed.eye_m.to_array())?;
         match self {
             Self::Chase(offset_m) => {
-                let pose = pose.context("nothing to chase")?;
+                let pose = pose.context("the act has no vehicle to follow")?;
                 Ok(chase(&pose, offset_m, |x, z| stage.ground_m(x, z)))
             }
             Self::Start | Self::Over { .. } => Ok(fixed),
@@ -181,7 +181,7 @@ impl Eye {
     }
 }
 
-/// A camera that looks at a vehicle from so far behind, above and right of it (m), above the land.
+/// A camera that looks at a vehicle from a distance behind, above and to the right of it (m), at least 0.3 m above the terrain.
 pub fn chase(pose: &ObjectPose, [away_m, above_m, aside_m]: [f32; 3], ground_m: impl Fn(f32, f32) -> f32) -> Camera {
     let rotation = Quat::from_array(pose.rotation);
     let level = |axis: Vec3| (rotation * axis).with_y(0.0).normalize_or(axis);
@@ -195,13 +195,13 @@ pub fn chase(pose: &ObjectPose, [away_m, above_m, aside_m]: [f32; 3], ground_m: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::scene::VehicleKind;
+    use prairie_core::scene::VehicleKind;
 
     #[test]
     fn views_have_names_of_their_own_and_built_in_scenes() -> Result<()> {
         for view in &VIEWS {
             assert_eq!(View::find(view.name)?, view);
-            assert!(server::scenes::list().any(|(name, _)| name == view.scene), "{}", view.scene);
+            assert!(prairie::scenes::list().any(|(name, _)| name == view.scene), "{}", view.scene);
         }
         for place in ["ant", "walking", "driving", "hill", "aircraft"] {
             assert!(["calm", "storm"].iter().all(|air| View::find(&format!("{place}-{air}")).is_ok()), "{place}");

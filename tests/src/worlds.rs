@@ -1,14 +1,14 @@
-//! Worlds to test with: small ones, made without files, and the largest that ships.
+//! Worlds for tests: small ones made without files, and the largest built-in one.
 
 use anyhow::Result;
-use client_wasm::camera::Camera;
-use client_wasm::state::Mirror;
 use glam::Vec3;
-use server::scenes;
-use server::world::{Maps, World};
-use shared::scene::{Patches, Scene, TerrainMaps};
-use shared::terrain::{CoverMap, HeightMap, grey_png};
-use shared::wire::ServerMessage;
+use prairie::scenes;
+use prairie::world::{Maps, World};
+use prairie_client::camera::Camera;
+use prairie_client::state::Mirror;
+use prairie_core::scene::{Patches, Scene, TerrainMaps};
+use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
+use prairie_core::wire::ServerMessage;
 
 /// A scene of `count × count` patches with the defaults of everything else.
 pub fn scene(count: u32) -> Scene {
@@ -18,7 +18,7 @@ pub fn scene(count: u32) -> Scene {
     scene
 }
 
-/// Land whose height is `height_m` of (x, z) in metres, known every 2 m, and whose covering ID is `cover` of the same.
+/// Maps sampled every 2 m: terrain height `height_m(x, z)` and covering ID `cover(x, z)`, x and z in metres.
 pub fn maps(scene: &Scene, height_m: impl Fn(f32, f32) -> f32, cover: impl Fn(f32, f32) -> u8) -> Maps {
     let [width, depth] = scene.extent_m().map(|extent| (extent / 2.0) as u32 + 1);
     let at = |i: u32| ((i % width) as f32 * 2.0, (i / width) as f32 * 2.0);
@@ -49,23 +49,23 @@ pub fn hills(scene: &Scene) -> World {
     World::new(scene, maps(scene, hills_m, cover)).expect("the default constants make a world")
 }
 
-/// What a client knows of a flat meadow with this side (m), a multiple of 8, in still air; and its places for plants, 16 a square metre.
+/// Client mirror of a flat meadow in still air, `side_m` (a multiple of 8) long, and its number of plant sites, 16 per square metre.
 ///
 /// # Errors
-/// When the client refuses it.
+/// When the mirror rejects the scene.
 pub fn flat_meadow(side_m: u32) -> Result<(Mirror, f64)> {
     flat_land(side_m, 255)
 }
 
-/// The same land without a plant.
+/// The same terrain without plants.
 ///
 /// # Errors
-/// When the client refuses it.
+/// When the mirror rejects the scene.
 pub fn bare_land(side_m: u32) -> Result<Mirror> {
     Ok(flat_land(side_m, 0)?.0)
 }
 
-/// With one ID all over the covering map.
+/// Flat terrain with one ID all over the covering map.
 fn flat_land(side_m: u32, cover: u8) -> Result<(Mirror, f64)> {
     const PATCH_M: u32 = 8;
     let pixel_m = [PATCH_M as f32; 2];
@@ -85,12 +85,12 @@ fn flat_land(side_m: u32, cover: u8) -> Result<(Mirror, f64)> {
     Ok((mirror, plants_per_m2 * f64::from(side_m).powi(2)))
 }
 
-/// On foot in such a meadow: from the middle of its southern edge northwards.
+/// Camera at eye height in such a meadow, looking north from the middle of its southern edge.
 pub fn on_foot(side_m: u32) -> Camera {
     Camera { eye_m: Vec3::new(side_m as f32 / 2.0, 1.7, side_m as f32), pitch_rad: -0.08, ..Camera::default() }
 }
 
-/// The built-in scene `continuum` with `cars` that drive themselves at 20 m/s and start about `apart_m` from each other, and its maps.
+/// The built-in scene `continuum` and its maps, with `cars` self-driving cars at 20 m/s that start about `apart_m` (m) apart.
 pub fn continuum(cars: u32, apart_m: f32) -> (Scene, Maps) {
     let loaded = scenes::load("continuum").expect("a built-in scene is sound");
     let (maps, mut scene) = (loaded.maps(), loaded.scene);

@@ -1,51 +1,51 @@
-//! The connection to the server: opened again whenever it breaks, and never spoken to more often than needed.
+//! The connection to the server: reconnects when it breaks, and limits the rate of messages.
 
 use super::socket::{Socket, SocketEvent};
 use glam::Vec3;
-use shared::scene::VehicleKind;
-use shared::wire::{self, ClientMessage, Close, Drive};
+use prairie_core::scene::VehicleKind;
+use prairie_core::wire::{self, ClientMessage, Close, Drive};
 
-/// Shortest time between two views (s).
+/// Minimum interval between two view messages (s).
 const VIEW_SECS: f64 = 0.125;
-/// Distance (m) that makes a new view worth sending.
+/// Movement (m) that triggers a new view message.
 const VIEW_STEP_M: f32 = 0.5;
-/// Shortest time between two drives (s).
+/// Minimum interval between two drive messages (s).
 const DRIVE_SECS: f64 = 1.0 / 30.0;
-/// Time between two pings (s).
+/// Interval between two pings (s).
 const PING_SECS: f64 = 2.0;
-/// Bytes waiting to be sent from which on nothing is added that a later message makes up for: a line that stalls would let it all go at once.
-const CLOGGED_BYTES: u32 = 512;
-/// First and longest wait before the socket is opened again (s).
+/// Back-pressure limit (bytes): with more bytes buffered, messages that a later one replaces are not sent.
+const BACK_PRESSURE_BYTES: u32 = 512;
+/// Reconnection delay (s): initial and maximum. It doubles with each attempt.
 const RETRY_SECS: [f64; 2] = [0.5, 8.0];
-/// Time over which the rate of arriving bytes is measured (s).
+/// Averaging period of the receive rate (s).
 const RATE_SECS: f64 = 1.0;
 
-/// How it stands with the server.
+/// State of the connection.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Standing {
-    /// The socket is opening for the first time, or again; so many attempts have failed.
-    Away {
-        /// Attempts since the last welcome.
+pub(super) enum ConnectionState {
+    /// Connecting for the first time, or reconnecting.
+    Connecting {
+        /// Failed attempts since the last welcome.
         attempts: u32,
-        /// Why the last one ended, if the server said so.
-        why: Option<Close>,
+        /// Reason that the server gave for ending the last one, if any.
+        reason: Option<Close>,
     },
-    /// The server has answered the hello with this number.
-    Here {
-        /// The client's number.
+    /// The server has accepted the client.
+    Connected {
+        /// Number of this client.
         client: u32,
     },
-    /// The server closed the connection in a way that trying again will not mend.
-    Over(Close),
+    /// Closed for a reason that reconnecting cannot solve.
+    Closed(Close),
 }
 
-/// The one connection of a page.
+/// The page's connection.
 pub(super) struct Connection {
     url: String,
     name: String,
-    hear: fn(SocketEvent),
+    handle: fn(SocketEvent),
     socket: Option<Socket>,
-    standing: Standing,
+    state: ConnectionState,
     retry_at_secs: f64,
     last_view: Option<(Vec3, f32)>,
     view_at_secs: f64,
@@ -66,15 +66,15 @@ struct Rate {
 }
 
 impl Connection {
-    /// A connection to be opened by the first [`tick`](Self::tick); `hear` gets the socket's events and hands them back to
+    /// A connection that the first [`tick`](Self::tick) opens. `handle` receives the socket's events and must pass them on to
     /// [`opened`](Self::opened), [`received`](Self::received) and [`closed`](Self::closed).
-    pub(super) fn new(url: String, name: String, hear: fn(SocketEvent)) -> Self {
+    pub(super) fn new(url: String, name: String, handle: fn(SocketEvent)) -> Self {
         Self {
             url,
             name,
-            hear,
+            handle,
             socket: None,
-            standing: Standing::Away { attempts: 0, why: None },
+            state: ConnectionState::Connecting { attempts: 0, reason: None },
             retry_at_secs: 0.0,
             last_view: None,
             view_at_secs: 0.0,
@@ -88,40 +88,40 @@ impl Connection {
         }
     }
 
-    pub(super) fn standing(&self) -> Standing {
-        self.standing
+    pub(super) fn state(&self) -> ConnectionState {
+        self.state
     }
 
-    /// The client's own number, while the server is there.
+    /// Number of this client, while connected.
     pub(super) fn client(&self) -> Option<u32> {
-        match self.standing {
-            Standing::Here { client } => Some(client),
+        match self.state {
+            ConnectionState::Connected { client } => Some(client),
             _ => None,
         }
     }
 
-    /// Time from a ping to its pong (s).
+    /// Round-trip time of the last ping (s).
     pub(super) fn latency_secs(&self) -> Option<f64> {
         self.latency_secs
     }
 
-    /// Bytes that arrive per second, over the last second or so.
+    /// Receive rate (bytes/s), over about a second.
     pub(super) fn bytes_per_s(&self) -> f64 {
         self.rate.bytes_per_s
     }
 
-    /// Bytes that have arrived since the page was opened.
+    /// Bytes received since the page was opened.
     pub(super) fn received_bytes(&self) -> u64 {
         self.received_bytes
     }
 
-    /// Opens the socket when it is time to, pings, and measures.
+    /// Opens the socket when a retry is due, sends pings, and measures the receive rate.
     pub(super) fn tick(&mut self, now_secs: f64) {
-        if self.socket.is_none() && now_secs >= self.retry_at_secs && !matches!(self.standing, Standing::Over(_)) {
-            self.socket = Socket::open(&self.url, self.hear).ok();
+        if self.socket.is_none() && now_secs >= self.retry_at_secs && !matches!(self.state, ConnectionState::Closed(_)) {
+            self.socket = Socket::open(&self.url, self.handle).ok();
             self.retry_at_secs = now_secs + RETRY_SECS[1];
         }
-        if self.is_open() && now_secs >= self.ping_at_secs {
+        if self.is_ready() && now_secs >= self.ping_at_secs {
             let nonce = self.ping.map_or(1, |(nonce, _)| nonce.wrapping_add(1));
             self.ping = Some((nonce, now_secs));
             self.ping_at_secs = now_secs + PING_SECS;
@@ -134,53 +134,53 @@ impl Connection {
         }
     }
 
-    /// The socket is open: says hello.
+    /// Handles an opened socket: sends the hello.
     pub(super) fn opened(&self) {
         self.send(&ClientMessage::Hello { name: self.name.clone() });
     }
 
-    /// Counts a message's bytes.
+    /// Counts the bytes of a received message.
     pub(super) fn received(&mut self, bytes: usize) {
         self.received_bytes += bytes as u64;
     }
 
-    /// The server has taken the client in.
+    /// Handles the server's welcome.
     pub(super) fn welcomed(&mut self, client: u32) {
-        self.standing = Standing::Here { client };
+        self.state = ConnectionState::Connected { client };
         self.last_view = None;
         self.view_at_secs = f64::NEG_INFINITY;
         self.last_drive = Drive::default();
         self.ping_at_secs = 0.0;
     }
 
-    /// The socket is closed: waits before the next attempt, or gives up where the code says that it is no use.
+    /// Handles a closed socket: schedules a reconnection, or gives up if the close code rules that out.
     pub(super) fn closed(&mut self, code: u16, now_secs: f64) {
-        let attempts = match self.standing {
-            Standing::Away { attempts, .. } => attempts + 1,
+        let attempts = match self.state {
+            ConnectionState::Connecting { attempts, .. } => attempts + 1,
             _ => 1,
         };
-        self.standing = match Close::from_code(code) {
-            Some(close @ (Close::Version | Close::BadMessage)) => Standing::Over(close),
-            why => Standing::Away { attempts, why },
+        self.state = match Close::from_code(code) {
+            Some(close @ (Close::Version | Close::BadMessage)) => ConnectionState::Closed(close),
+            reason => ConnectionState::Connecting { attempts, reason },
         };
         let [first_secs, longest_secs] = RETRY_SECS;
         let wait_secs = match Close::from_code(code) {
             Some(Close::RateLimit) => longest_secs,
             _ => (first_secs * f64::from(1 << (attempts - 1).min(8))).min(longest_secs),
         };
-        // Pages that lost the same server come back one after the other.
+        // Jitter spreads the reconnections of many clients of one server.
         self.retry_at_secs = now_secs + wait_secs * (0.75 + 0.5 * js_sys::Math::random());
         self.socket = None;
         self.latency_secs = None;
     }
 
-    /// Closes for good.
+    /// Closes permanently.
     pub(super) fn end(&mut self, close: Close) {
-        self.standing = Standing::Over(close);
+        self.state = ConnectionState::Closed(close);
         self.socket = None;
     }
 
-    /// Takes another name; a server that is away learns it by the next hello.
+    /// Changes the user's name. A disconnected server receives it with the next hello.
     pub(super) fn rename(&mut self, name: String) {
         if self.name != name {
             self.name.clone_from(&name);
@@ -197,37 +197,37 @@ impl Connection {
         self.send(&ClientMessage::Choose { vehicle });
     }
 
-    /// Takes the answer to the newest ping.
+    /// Handles the response to a ping.
     pub(super) fn ponged(&mut self, nonce: u32, now_secs: f64) {
-        if let Some((asked, at_secs)) = self.ping
-            && asked == nonce
+        if let Some((sent, at_secs)) = self.ping
+            && sent == nonce
         {
             self.latency_secs = Some(now_secs - at_secs);
         }
     }
 
-    /// Tells where the camera is, when it has moved and not too often.
-    pub(super) fn look_from(&mut self, eye_m: Vec3, radius_m: f32, now_secs: f64) {
+    /// Sends the camera position if it has moved, at a limited rate.
+    pub(super) fn send_view(&mut self, eye_m: Vec3, radius_m: f32, now_secs: f64) {
         let moved = self.last_view.is_none_or(|(eye, radius)| eye.distance(eye_m) > VIEW_STEP_M || radius != radius_m);
-        if self.is_open() && moved && now_secs - self.view_at_secs >= VIEW_SECS {
+        if self.is_ready() && moved && now_secs - self.view_at_secs >= VIEW_SECS {
             self.last_view = Some((eye_m, radius_m));
             self.view_at_secs = now_secs;
             self.send(&ClientMessage::View { eye_m: eye_m.into(), radius_m });
         }
     }
 
-    /// Tells what the hands do, when it has changed and not too often.
+    /// Sends the driving commands if they have changed, at a limited rate.
     pub(super) fn drive(&mut self, drive: Drive, now_secs: f64) {
-        if self.is_open() && drive != self.last_drive && now_secs - self.drive_at_secs >= DRIVE_SECS {
+        if self.is_ready() && drive != self.last_drive && now_secs - self.drive_at_secs >= DRIVE_SECS {
             self.last_drive = drive;
             self.drive_at_secs = now_secs;
             self.send(&ClientMessage::Drive(drive));
         }
     }
 
-    /// Whether the server is there and the line takes more.
-    fn is_open(&self) -> bool {
-        self.client().is_some() && self.socket.as_ref().is_some_and(|socket| socket.waiting_bytes() < CLOGGED_BYTES)
+    /// Whether the client is connected and the socket is below the back-pressure limit.
+    fn is_ready(&self) -> bool {
+        self.client().is_some() && self.socket.as_ref().is_some_and(|socket| socket.buffered_bytes() < BACK_PRESSURE_BYTES)
     }
 
     fn send(&self, message: &ClientMessage) {

@@ -1,14 +1,14 @@
 //! The first gamepad with the standard layout (W3C Gamepad, section 11).
 
-use super::input::Wish;
-use crate::controls::{Controls, without_slack};
-use shared::scene::VehicleKind;
+use crate::bindings::{Action, dpad_actions};
+use crate::controls::{Controls, without_dead_zone};
 use wasm_bindgen::prelude::*;
 use web_sys::{Gamepad as Pad, GamepadButton, GamepadMappingType};
 
-const SLACK: f32 = 0.14;
+/// Dead zone of the sticks, as a fraction of full deflection.
+const DEAD_ZONE: f32 = 0.14;
 
-/// Turn of the view at full deflection of the right stick (rad/s).
+/// Turn rate of the view at full deflection of the right stick (rad/s).
 const LOOK_RAD_PER_S: f32 = 2.4;
 
 /// Buttons of the standard layout.
@@ -17,15 +17,7 @@ const RIGHT: u32 = 1;
 const LEFT_TRIGGER: u32 = 6;
 const RIGHT_TRIGGER: u32 = 7;
 
-/// What the four directions of the cross ask for: buttons 12 to 15, up, down, left, right.
-const CROSS: [(u32, Wish); 4] = [
-    (12, Wish::Take(Some(VehicleKind::Helicopter))),
-    (13, Wish::Take(None)),
-    (14, Wish::Take(Some(VehicleKind::Car))),
-    (15, Wish::Take(Some(VehicleKind::Monster))),
-];
-
-/// What the gamepad said when it was read last.
+/// State of the gamepad at the last poll.
 #[derive(Default)]
 pub(super) struct Gamepad {
     controls: Controls,
@@ -39,18 +31,18 @@ impl Gamepad {
         self.controls
     }
 
-    /// Turn that the right stick asks for (rad/s, right and up).
+    /// Turn rate of the view from the right stick (rad/s, right and up).
     pub(super) fn look_rad_per_s(&self) -> [f32; 2] {
-        self.look.map(|share| share * LOOK_RAD_PER_S)
+        self.look.map(|deflection| deflection * LOOK_RAD_PER_S)
     }
 
-    /// Reads the gamepad; returns what a press of the cross since the last reading asks for.
-    pub(super) fn poll(&mut self) -> Option<Wish> {
+    /// Polls the gamepad; returns the action of a button of the cross pressed since the last poll.
+    pub(super) fn poll(&mut self) -> Option<Action> {
         let Some(pad) = standard() else {
             *self = Self::default();
             return None;
         };
-        let axis = |index: u32| without_slack(pad.axes().get(index).as_f64().unwrap_or(0.0) as f32, SLACK);
+        let axis = |index: u32| without_dead_zone(pad.axes().get(index).as_f64().unwrap_or(0.0) as f32, DEAD_ZONE);
         let button = |index: u32| pad.buttons().get(index).dyn_into::<GamepadButton>().map_or(0.0, |button| button.value() as f32);
         self.controls = Controls { turn: axis(0), forward: -axis(1), ..Default::default() }.with(Controls {
             forward: button(RIGHT_TRIGGER) - button(LEFT_TRIGGER),
@@ -58,9 +50,9 @@ impl Gamepad {
             ..Default::default()
         });
         self.look = [axis(2), -axis(3)];
-        let down = CROSS.iter().find(|(index, _)| button(*index) > 0.5);
-        let before = std::mem::replace(&mut self.cross, down.map(|(index, _)| *index));
-        down.filter(|(index, _)| before != Some(*index)).map(|(_, wish)| *wish)
+        let down = dpad_actions().into_iter().find(|(index, _)| button(*index) > 0.5);
+        let before = std::mem::replace(&mut self.cross, down.map(|(index, _)| index));
+        down.filter(|(index, _)| before != Some(*index)).and_then(|(_, action)| action)
     }
 }
 

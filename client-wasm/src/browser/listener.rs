@@ -1,9 +1,9 @@
-//! An event listener that goes with its owner.
+//! An event listener that is removed when it is dropped.
 
 use wasm_bindgen::prelude::*;
 use web_sys::{Event, EventTarget};
 
-/// Listens from its making until it is dropped.
+/// A registered event listener.
 pub(super) struct Listener {
     target: EventTarget,
     kind: &'static str,
@@ -11,10 +11,10 @@ pub(super) struct Listener {
 }
 
 impl Listener {
-    /// Calls `hear` with each event of this kind, such as `keydown`.
-    pub(super) fn new<E: JsCast>(target: &EventTarget, kind: &'static str, mut hear: impl FnMut(&E) + 'static) -> Self {
-        let closure = Closure::<dyn FnMut(Event)>::new(move |event: Event| hear(event.unchecked_ref()));
-        // Fails only for a name or a function that is null.
+    /// Calls `handle` with each event of this kind, such as `keydown`.
+    pub(super) fn new<E: JsCast>(target: &EventTarget, kind: &'static str, mut handle: impl FnMut(&E) + 'static) -> Self {
+        let closure = Closure::<dyn FnMut(Event)>::new(move |event: Event| handle(event.unchecked_ref()));
+        // Fails only if the name or the function is null.
         let _ = target.add_event_listener_with_callback(kind, closure.as_ref().unchecked_ref());
         Self { target: target.clone(), kind, closure }
     }

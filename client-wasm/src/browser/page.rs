@@ -1,13 +1,13 @@
-//! What the client asks of its page and its window.
+//! Access to the page and its window.
 
 use wasm_bindgen::prelude::*;
 use web_sys::{HtmlCanvasElement, Window};
 
 #[wasm_bindgen(js_namespace = ["window", "prairie"])]
 extern "C" {
-    /// Shows a message of `messages.js`, with a detail of the moment.
+    /// Shows a status message of `messages.js`, with a detail.
     pub(super) fn message(kind: &str, detail: &str);
-    /// Takes the page's message away.
+    /// Hides the status message.
     pub(super) fn clear();
 }
 
@@ -18,7 +18,7 @@ pub(super) fn canvas(window: &Window, id: &str) -> Result<HtmlCanvasElement, JsE
     canvas.ok_or_else(|| JsError::new(&format!("the page has no canvas with the id {id}")))
 }
 
-/// Where the page's own server takes sockets.
+/// WebSocket address of the page's own server.
 pub(super) fn socket_url(window: &Window) -> Result<String, String> {
     let location = window.location();
     let (Ok(protocol), Ok(host)) = (location.protocol(), location.host()) else {
@@ -32,8 +32,7 @@ pub(super) fn now_secs(window: &Window) -> f64 {
     window.performance().map_or(0.0, |performance| performance.now() / 1000.0)
 }
 
-/// Names the view in the page's address, without a step in its history. A browser that finds this too often says no; the next
-/// one will do.
+/// Sets the fragment of the page's address without a history entry. Browsers reject this when it happens too often; the next call makes up for it.
 pub(super) fn set_hash(window: &Window, hash: &str) {
     if let Ok(history) = window.history() {
         let _ = history.replace_state_with_url(&JsValue::NULL, "", Some(&format!("#{hash}")));

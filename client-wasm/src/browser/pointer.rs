@@ -1,25 +1,25 @@
-//! Mouse, pen and thumbs on the canvas: a drag looks around, the left thumb is a stick, the wheel zooms.
+//! Mouse, pen and touch on the canvas: dragging turns the view, a touch on the left is a virtual stick, the wheel zooms.
 
 use super::listener::Listener;
-use crate::controls::{Controls, without_slack};
+use crate::controls::{Controls, without_dead_zone};
 use std::cell::RefCell;
 use std::rc::Rc;
 use web_sys::{Element, HtmlCanvasElement, PointerEvent, WheelEvent};
 
-/// Turn of the view for each pixel of a drag (rad): a mouse's, a thumb's.
+/// Turn of the view per pixel of a drag (rad/px): for a mouse, for touch.
 const LOOK_RAD: [f32; 2] = [0.0035, 0.006];
 
-/// Share of the canvas's width, from the left, where a thumb is the stick.
-const STICK_SIDE: f32 = 0.45;
+/// Fraction of the canvas's width, from the left, where a touch is the virtual stick.
+const STICK_FRACTION: f32 = 0.45;
 
-/// Way of the stick's thumb that counts as full (px), and the share of it that counts as nothing.
+/// Displacement at full deflection of the virtual stick (px), and its dead zone as a fraction of that.
 const STICK_PX: f32 = 64.0;
-const STICK_SLACK: f32 = 0.12;
+const STICK_DEAD_ZONE: f32 = 0.12;
 
-/// Pixels of a wheel that make a notch.
+/// Scroll distance of one wheel notch (px).
 const NOTCH_PX: f32 = 100.0;
 
-/// What all pointers have done.
+/// All pointers on the canvas.
 pub(super) struct Pointers {
     state: Rc<RefCell<State>>,
     _listeners: [Listener; 5],
@@ -32,12 +32,12 @@ struct State {
     notches: f32,
 }
 
-/// A pointer that is down.
+/// A pointer held down.
 struct Drag {
     id: i32,
     origin_px: [f32; 2],
     at_px: [f32; 2],
-    /// Turn for each pixel (rad); none for the stick.
+    /// Turn per pixel (rad/px); `None` for the virtual stick.
     look_rad: Option<f32>,
 }
 
@@ -60,12 +60,12 @@ impl Pointers {
         Self { state, _listeners: listeners }
     }
 
-    /// Deflection of the stick under the left thumb.
+    /// Deflection of the virtual stick.
     pub(super) fn stick(&self) -> Controls {
         let state = self.state.borrow();
         let Some(drag) = state.drags.iter().find(|drag| drag.look_rad.is_none()) else { return Controls::default() };
-        let share = |axis: usize| without_slack((drag.at_px[axis] - drag.origin_px[axis]) / STICK_PX, STICK_SLACK);
-        Controls { forward: -share(1), turn: share(0), ..Default::default() }
+        let deflection = |axis: usize| without_dead_zone((drag.at_px[axis] - drag.origin_px[axis]) / STICK_PX, STICK_DEAD_ZONE);
+        Controls { forward: -deflection(1), turn: deflection(0), ..Default::default() }
     }
 
     /// Turn of the view since the last call (rad, right and up).
@@ -81,15 +81,15 @@ impl Pointers {
 
 impl State {
     fn press(&mut self, event: &PointerEvent, canvas: &HtmlCanvasElement) {
-        // The pointer may have gone in the meantime; then there is nothing to capture, nor to follow.
+        // Fails if the pointer has been released in the meantime.
         if canvas.set_pointer_capture(event.pointer_id()).is_err() {
             return;
         }
         let touch = event.pointer_type() == "touch";
-        let left = (event.client_x() as f32) < STICK_SIDE * canvas.client_width() as f32;
+        let left = (event.client_x() as f32) < STICK_FRACTION * canvas.client_width() as f32;
         let stick_is_free = self.drags.iter().all(|drag| drag.look_rad.is_some());
         let look_rad = (!(touch && left && stick_is_free)).then_some(LOOK_RAD[usize::from(touch)]);
-        let at_px = place_px(event);
+        let at_px = position_px(event);
         let drag = Drag { id: event.pointer_id(), origin_px: at_px, at_px, look_rad };
         show_stick(&drag);
         self.drags.retain(|other| other.id != drag.id);
@@ -98,7 +98,7 @@ impl State {
 
     fn follow(&mut self, event: &PointerEvent) {
         let Some(drag) = self.drags.iter_mut().find(|drag| drag.id == event.pointer_id()) else { return };
-        let from_px = std::mem::replace(&mut drag.at_px, place_px(event));
+        let from_px = std::mem::replace(&mut drag.at_px, position_px(event));
         if let Some(look_rad) = drag.look_rad {
             self.look_rad[0] += (drag.at_px[0] - from_px[0]) * look_rad;
             self.look_rad[1] -= (drag.at_px[1] - from_px[1]) * look_rad;
@@ -115,11 +115,11 @@ impl State {
     }
 }
 
-fn place_px(event: &PointerEvent) -> [f32; 2] {
+fn position_px(event: &PointerEvent) -> [f32; 2] {
     [event.client_x() as f32, event.client_y() as f32]
 }
 
-/// Shows the stick where the thumb came down, with its knob under the thumb.
+/// Shows the virtual stick where the touch began, with its knob under the finger.
 fn show_stick(drag: &Drag) {
     if drag.look_rad.is_none() {
         let [x, y] = drag.origin_px;
@@ -128,11 +128,11 @@ fn show_stick(drag: &Drag) {
     }
 }
 
-/// The stick is the page's element `#stick`; without one there is nothing to show.
+/// Sets an attribute of the page's element `#stick`, if there is one.
 fn set_stick(attribute: &str, value: &str) {
     let stick: Option<Element> = web_sys::window().and_then(|window| window.document()?.get_element_by_id("stick"));
     if let Some(stick) = stick {
-        // Fails only for a name that is no attribute's.
+        // Fails only for an invalid attribute name.
         let _ = stick.set_attribute(attribute, value);
         if attribute != "hidden" {
             let _ = stick.remove_attribute("hidden");

@@ -1,22 +1,23 @@
-//! The client's own account of itself.
+//! The client's state as JSON, for the page and for tests.
 
 use super::app::App;
-use super::connection::Standing;
+use super::connection::ConnectionState;
+use crate::render::Quality;
 use crate::rig::Rig;
 use serde_json::{Value, json};
 
 impl App {
-    /// Everything that the panel shows and a test may ask for. Places in m, angles in rad, times in s unless the name says ms.
+    /// The whole state. Positions in m, angles in rad, times in s unless the name says ms.
     pub(super) fn report(&self) -> Value {
-        let parts = [self.of_connection(), self.of_world(), self.of_drawing()];
+        let parts = [self.connection_report(), self.world_report(), self.drawing_report()];
         parts.into_iter().filter_map(|part| if let Value::Object(part) = part { Some(part) } else { None }).flatten().collect()
     }
 
-    fn of_connection(&self) -> Value {
+    fn connection_report(&self) -> Value {
         let client = self.connection.client();
         json!({
             "connected": client.is_some(),
-            "attempts": match self.connection.standing() { Standing::Away { attempts, .. } => attempts, _ => 0 },
+            "attempts": match self.connection.state() { ConnectionState::Connecting { attempts, .. } => attempts, _ => 0 },
             "client": client,
             "bytes_per_s": self.connection.bytes_per_s(),
             "bytes": self.connection.received_bytes(),
@@ -26,7 +27,7 @@ impl App {
         })
     }
 
-    fn of_world(&self) -> Value {
+    fn world_report(&self) -> Value {
         let camera = self.rig.as_ref().map(Rig::camera);
         let own = self.own_object();
         let client = self.connection.client();
@@ -39,9 +40,9 @@ impl App {
             "tick": self.mirror.tick(),
             "time_secs": self.mirror.time_secs(),
             "scene_name": self.scene_name,
-            "scene": self.mirror.land().map(|land| land.scene().summary.as_str()),
-            "extent_m": self.mirror.land().map(|land| land.scene().extent_m()),
-            "wanted": self.wanted().map(|kind| kind.name()),
+            "scene": self.mirror.decoded_scene().map(|decoded| decoded.scene().summary.as_str()),
+            "extent_m": self.mirror.decoded_scene().map(|decoded| decoded.scene().extent_m()),
+            "wanted": self.wanted.map(|kind| kind.name()),
             "object": own.map(|pose| pose.id),
             "vehicle": own.map(|pose| pose.kind.name()),
             "position": own.map(|pose| pose.position_m),
@@ -58,25 +59,27 @@ impl App {
         })
     }
 
-    fn of_drawing(&self) -> Value {
+    fn drawing_report(&self) -> Value {
         let frame_secs = self.meter.frame_secs();
         json!({
             "frames": self.meter.frames(),
             "frame_ms": frame_secs.map(|secs| secs * 1e3),
             "fps": frame_secs.map(|secs| 1.0 / secs),
             "cpu_ms": self.meter.cpu_secs().map(|secs| secs * 1e3),
-            "gpu_ms": self.stage.as_ref().map(|stage| stage.work_secs() * 1e3),
-            "resting": self.meter.is_resting(),
+            "gpu_ms": self.gpu.as_ref().map(|gpu| gpu.gpu_secs() * 1e3),
+            "resting": self.meter.is_idle(),
             "skipped": self.meter.skipped(),
-            "quality": self.fitting_quality().name(),
-            "automatic": self.choices.budget().is_some(),
-            "budget_ms": self.choices.budget().map(|budget| budget.budget_secs() * 1e3),
-            "level": self.choices.level(),
-            "order": self.choices.names()[0],
-            "far": self.choices.names()[1],
-            "hour": self.choices.hour(),
-            "compared": self.choices.compared().map(|(ways, _)| ways),
-            "at": self.choices.compared().map(|(_, at)| at),
+            "quality": self.supported_quality().name(),
+            "chosen_quality": self.settings.quality_name(),
+            "automatic": self.settings.budget().is_some(),
+            "budget_ms": self.settings.budget().map(|budget| budget.budget_secs() * 1e3),
+            "level": self.settings.level(),
+            "highest_level": Quality::FINEST.level(),
+            "order": self.settings.option_names()[0],
+            "far": self.settings.option_names()[1],
+            "hour": self.settings.hour(),
+            "compared": self.settings.compared().map(|(variants, _)| variants),
+            "at": self.settings.compared().map(|(_, border)| border),
             "fallbacks": self.fallbacks(),
             "picture_px": self.picture_px(),
             "adapter": self.options.adapter,

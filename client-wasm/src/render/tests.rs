@@ -1,22 +1,24 @@
-use super::picture::read;
-use super::pipeline::{Maker, bind, storage_rw};
-use super::shaders::{self, Constant};
-use super::uniforms::{
-    BrushList, Drift, Frame, Kind, Kinds, Lamp, Lights, Ordering, Plants, ShellFrame, Shower, SortDigit, Squares, StripList,
-    UnderbrushFrame,
-};
-use super::{Far, Gpu, Look, Picture, Quality, blades};
 use crate::camera::Camera;
+use crate::render::gpu::device::Gpu;
+use crate::render::gpu::pipeline::{PassFactory, bind, storage_rw};
+use crate::render::gpu::readback::read;
+use crate::render::gpu::shaders::tests::{linked, parsed};
+use crate::render::gpu::shaders::{self, Constant};
+use crate::render::offscreen::OffscreenRenderer;
+use crate::render::options::quality::Quality;
+use crate::render::options::render_options::{FarPlants, RenderOptions};
+use crate::render::plants::blades;
 use crate::state::Mirror;
 use glam::Vec3;
-use shared::hash::hash3;
-use shared::lod::Lag;
-use shared::plant::blade::{LINKS, Sway};
-use shared::plant::underbrush::constraint::Following;
-use shared::scene::{BladeIntegrator, Grass, LagWay, Patches, Scene, Species, TerrainMaps, VehicleKind, Wind, WindDust, WindTiling};
-use shared::terrain::grey_png;
-use shared::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, omega_rad_per_s, theta_code};
-use shared::wire::{ServerMessage, Shape, codec};
+use prairie_core::hash::hash3;
+use prairie_core::lod::Lag;
+use prairie_core::plant::blade::{LINKS, Sway};
+use prairie_core::plant::underbrush::constraint::Following;
+use prairie_core::scene::{BladeIntegrator, Grass, LagWay, Patches, Scene, Species, TerrainMaps, VehicleKind, Wind, WindDust, WindTiling};
+use prairie_core::terrain::grey_png;
+use prairie_core::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, omega_code, omega_rad_per_s, theta_code};
+use prairie_core::wire::{ServerMessage, Shape, codec};
+use std::fmt::Display;
 use wgpu::naga;
 
 mod branches;
@@ -30,73 +32,28 @@ mod trees;
 mod twins;
 mod underbrush;
 
-/// All passes.
-const SHADERS: [&str; 16] = [
-    shaders::BEND,
-    shaders::GRIDS,
-    shaders::BLADES,
-    shaders::FLOWERS,
-    shaders::UNDERBRUSH,
-    shaders::RAIN,
-    shaders::BILLBOARDS,
-    shaders::SHELLS,
-    shaders::DUST,
-    shaders::SORT,
-    shaders::ORDER,
-    shaders::COMPOSE,
-    shaders::TERRAIN,
-    shaders::OBJECTS,
-    shaders::SKY,
-    shaders::TONE,
-];
-
-fn module(source: &str) -> naga::Module {
-    let text = shaders::whole(source);
-    let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
-    let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
-    if let Err(error) = validator.validate(&module) {
-        panic!("{}", error.emit_to_string(&text));
-    }
-    module
+fn module(source: impl Display) -> naga::Module {
+    parsed(&source.to_string()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]
 fn every_shader_is_valid_wgsl_without_extensions() {
-    for source in SHADERS {
+    for source in shaders::ALL {
         module(source);
     }
 }
 
-fn assert_twins(module: &naga::Module, name: &str, layout: &[(&str, usize)], size: usize) {
-    let (_, twin) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("the twin is there");
-    let naga::TypeInner::Struct { members, span } = &twin.inner else { panic!("{name} is no struct") };
-    let found: Vec<_> = members.iter().map(|member| (member.name.as_deref().unwrap_or_default(), member.offset as usize)).collect();
-    assert_eq!(found, layout, "{name}");
-    assert_eq!(*span as usize, size, "{name}");
-}
-
 #[test]
-fn uniform_blocks_lie_as_their_twins() {
-    let module = module(shaders::BEND);
-    assert_twins(&module, "Frame", Frame::LAYOUT, size_of::<Frame>());
-    assert_twins(&module, "Plants", Plants::LAYOUT, size_of::<Plants>());
-    assert_twins(&module, "Kind", Kind::LAYOUT, size_of::<Kind>());
-    assert_twins(&module, "Kinds", Kinds::LAYOUT, size_of::<Kinds>());
-    assert_twins(&module, "Lamp", Lamp::LAYOUT, size_of::<Lamp>());
-    assert_twins(&module, "Lights", Lights::LAYOUT, size_of::<Lights>());
-    let underbrush = self::module(shaders::UNDERBRUSH);
-    assert_twins(&underbrush, "UnderbrushFrame", UnderbrushFrame::LAYOUT, size_of::<UnderbrushFrame>());
-    assert_twins(&underbrush, "BrushList", BrushList::LAYOUT, size_of::<BrushList>());
-    let shells = self::module(shaders::SHELLS);
-    assert_twins(&shells, "ShellFrame", ShellFrame::LAYOUT, size_of::<ShellFrame>());
+fn storage_structs_have_the_sizes_that_rust_gives_them() {
+    let [module, underbrush, shells] = [shaders::BEND, shaders::UNDERBRUSH, shaders::SHELLS].map(self::module);
     for (of, name, bytes) in [
-        (&shells, "Turf", super::shells::TURF_BYTES as u32),
+        (&shells, "Turf", crate::render::plants::shells::TURF_BYTES as u32),
         (&module, "Sway", blades::SWAY_BYTES as u32),
         (&module, "Blade", blades::BLADE_BYTES as u32),
         (&underbrush, "Grown", 24),
         (&underbrush, "Felt", 32),
-        (&underbrush, "Stand", super::underbrush::STAND_BYTES as u32),
-        (&underbrush, "Border", super::underbrush::ROW_BYTES as u32 / 2),
+        (&underbrush, "Stand", crate::render::plants::underbrush::STAND_BYTES as u32),
+        (&underbrush, "Border", crate::render::plants::underbrush::ROW_BYTES as u32 / 2),
     ] {
         let (_, found) = of.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("it is there");
         assert!(
@@ -105,14 +62,6 @@ fn uniform_blocks_lie_as_their_twins() {
             found.inner
         );
     }
-    assert_twins(&self::module(shaders::RAIN), "Shower", Shower::LAYOUT, size_of::<Shower>());
-    assert_twins(&self::module(shaders::GRIDS), "Squares", Squares::LAYOUT, size_of::<Squares>());
-    for strips in [shaders::BLADES, shaders::FLOWERS] {
-        assert_twins(&self::module(strips), "StripList", StripList::LAYOUT, size_of::<StripList>());
-    }
-    assert_twins(&self::module(shaders::DUST), "Drift", Drift::LAYOUT, size_of::<Drift>());
-    assert_twins(&self::module(shaders::SORT), "SortDigit", SortDigit::LAYOUT, size_of::<SortDigit>());
-    assert_twins(&self::module(shaders::ORDER), "Ordering", Ordering::LAYOUT, size_of::<Ordering>());
 }
 
 /// A flat meadow of 64 m in a wind towards the east.
@@ -124,12 +73,12 @@ fn meadow_in(wind: Wind) -> Mirror {
     meadow_of(|scene| scene.wind = wind, &[255; 16 * 16])
 }
 
-/// The same with a scene changed, over a covering map of 16 × 16 pixels.
+/// [`meadow`] with a modified scene, over a covering map of 16 × 16 pixels.
 pub(super) fn meadow_of(change: impl FnOnce(&mut Scene), covering: &[u8]) -> Mirror {
     meadow_over(&[0; 17 * 17], change, covering)
 }
 
-/// The same on land whose heights are 17 × 17 pixels.
+/// [`meadow_of`] on land whose heights are 17 × 17 pixels.
 fn meadow_over(heights: &[u8], change: impl FnOnce(&mut Scene), covering: &[u8]) -> Mirror {
     let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 0.0, base_m: 0.0 };
     let mut scene = Scene { patches: Patches { count: [4, 4], ..Patches::default() }, ..Scene::new(maps) };
@@ -151,7 +100,7 @@ fn stream_lean(mirror: &mut Mirror, theta_rad: f32) {
     stream(mirror, |_| theta_rad, 2.5 * theta_rad);
 }
 
-/// Streams a field that leans eastward by what `theta_rad` says of X (m), at one bending velocity.
+/// Streams a field that leans eastward by `theta_rad` of X (m), at a uniform bending velocity.
 fn stream(mirror: &mut Mirror, theta_rad: impl Fn(f32) -> f32, omega_rad_per_s: f32) {
     for patch in 0..16 {
         let west_m = (patch % 4) as f32 * 16.0;
@@ -163,16 +112,16 @@ fn stream(mirror: &mut Mirror, theta_rad: impl Fn(f32) -> f32, omega_rad_per_s: 
     }
 }
 
-/// Tips of the near blades after a second in a wind, as offsets from their roots in lengths of the blade.
+/// Tips of the near blades after a second in a wind, as offsets from their roots relative to the length of the blade.
 fn tips(gpu: &Gpu, wind_m_per_s: f32, streamed_rad: Option<f32>) -> Vec<Vec3> {
     let swayed = sways(gpu, &mut meadow(wind_m_per_s), streamed_rad);
     swayed.iter().map(|sway| Vec3::from(sway.points_m(1.0)[LINKS - 1])).collect()
 }
 
-/// The near blades that stand, after a second from upright.
+/// Sways of the near blades, one second after they stood upright.
 fn sways(gpu: &Gpu, mirror: &mut Mirror, streamed_rad: Option<f32>) -> Vec<Sway> {
-    let mut picture = Picture::new(gpu, [16, 16], Quality::Low);
-    picture.set_look(Look { culls: false, ..Look::default() });
+    let mut picture = OffscreenRenderer::new(gpu, [16, 16], Quality::Low);
+    picture.set_options(RenderOptions { culls: false, ..RenderOptions::default() });
     let camera = Camera { eye_m: Vec3::new(32.0, 2.2, 40.0), pitch_rad: -0.15, ..Camera::default() };
     for frame in 0..30 {
         if let Some(theta_rad) = streamed_rad.filter(|_| frame == 0) {
@@ -240,42 +189,49 @@ fn near_blades_swing_alike_by_verlet_and_exactly() {
     assert!(mean_rad < 0.03, "{mean_rad} rad apart");
 }
 
-/// What the shaders find in the air at places: X, height above the ground and Z (m).
-fn air(gpu: &Gpu, picture: &Picture, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
+/// Wind and dust as the shaders sample them at `places`: X, height above the ground and Z (m).
+fn air(gpu: &Gpu, picture: &OffscreenRenderer, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
     probe(gpu, picture, "let air = air_at(at.xz, at.y); return vec4<f32>(air.xyz, dust_of(air));", places)
 }
 
-/// What the body of a function of `at`, written in WGSL over the shared pieces, says of each of `places`.
-pub(super) fn probe(gpu: &Gpu, picture: &Picture, body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
+/// Results, one for each of `places`, of a WGSL function body with the argument `at`, linked with the shared modules.
+pub(super) fn probe(gpu: &Gpu, picture: &OffscreenRenderer, body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
     probe_in(gpu, picture, "", body, places)
 }
 
-/// The same with values of overrides.
-fn probe_with(gpu: &Gpu, picture: &Picture, constants: &[Constant], body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
+/// [`probe`] with values of overrides.
+fn probe_with(gpu: &Gpu, picture: &OffscreenRenderer, constants: &[Constant], body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
     compute(gpu, picture, &probing("", body), constants, places, places.len() as u32)
 }
 
-/// The same over a pass's WGSL, whose own binding 0 is out of the way.
-fn probe_in(gpu: &Gpu, picture: &Picture, pass: &str, body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
-    compute(gpu, picture, &probing(pass, body), &[], places, places.len() as u32)
+/// [`probe`] with the declarations of a file, such as `plants/bend`.
+fn probe_in(gpu: &Gpu, picture: &OffscreenRenderer, file: &str, body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    compute(gpu, picture, &probing(file, body), &[], places, places.len() as u32)
 }
 
-/// WGSL of a `probe` of the body of a function of `at`.
-fn probing(pass: &str, body: &str) -> String {
-    format!(
-        "{pass}
-        @group(1) @binding(0) var<storage, read_write> probes: array<vec4<f32>>;
+/// WGSL of a `probe` of a function body with the argument `at`, linked with the declarations that it uses from a file.
+fn probing(file: &str, body: &str) -> String {
+    let source = format!(
+        "@group(1) @binding(0) var<storage, read_write> probes: array<vec4<f32>>;
         fn found(at: vec4<f32>) -> vec4<f32> {{ {body} }}
         @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {{ probes[id.x] = found(probes[id.x]); }}"
-    )
+    );
+    linked(file, &source)
 }
 
-/// What so many invocations of `probe` in a WGSL source, with values of its overrides, make of a storage buffer of `inputs`.
-fn compute(gpu: &Gpu, picture: &Picture, source: &str, constants: &[Constant], inputs: &[[f32; 4]], invocations: u32) -> Vec<[f32; 4]> {
+/// Output of `invocations` of `probe` in a WGSL source, with values of its overrides, over a storage buffer of `inputs`.
+fn compute(
+    gpu: &Gpu,
+    picture: &OffscreenRenderer,
+    source: &str,
+    constants: &[Constant],
+    inputs: &[[f32; 4]],
+    invocations: u32,
+) -> Vec<[f32; 4]> {
     let renderer = &picture.renderer;
-    let maker = Maker { gpu, frame_layout: &renderer.frame.layout, samples: 1, has_kinds: true };
-    let layout = maker.layout("probes", &[storage_rw(0)]);
-    let pipeline = maker.compute("probe", &gpu.shader("probe", source, constants), "probe", &layout);
+    let factory = PassFactory { gpu, frame_layout: &renderer.bindings.layout, samples: 1, has_kinds: true };
+    let layout = factory.layout("probes", &[storage_rw(0)]);
+    let pipeline = factory.compute("probe", &gpu.shader("probe", source, constants), "probe", &layout);
     let probes = gpu.buffer("probes", bytemuck::cast_slice(inputs), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let group = bind(gpu, "probes", &layout, &[probes.as_entire_binding()]);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -295,32 +251,32 @@ fn patches_show_the_box_where_the_server_has_it() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let dust = WindDust { release_per_s: 1.0, ..WindDust::default() };
     let mut mirror = meadow_in(Wind { cells: [8, 2, 4], spacing_m: [2.0, 2.0, 4.0], tiling: WindTiling::Patch, dust, ..Wind::default() });
-    // Codes that tell each cell along X, Z and in height from all others.
+    // Codes that differ between all cells along X, along Z and in height.
     let plane = |code: fn(usize) -> usize| (0..64).map(move |at| code(at) as i8);
     let codes: Vec<i8> =
         plane(|at| 10 * (at % 8)).chain(plane(|at| at / 8 % 2 * 50)).chain(plane(|at| at / 16 * 30)).chain(plane(|at| at)).collect();
     let payload = codec::encode(Shape::wind(8, true), &codes, None);
     mirror.apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, payload }).expect("a sound wind");
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
-    // The middles of all cells of 6 × 6 patches, some beyond the world, and places where patches meet.
+    // The centres of all cells of 6 × 6 patches, some beyond the world, and places where patches meet.
     let middles = (0..48 * 24).map(|n| [(n % 48) as f32 * 2.0 - 15.0, 1.0, (n / 48) as f32 * 4.0 - 14.0, 0.0]);
     let seams = (0..40).map(|n| [16.0 * (n % 4) as f32, 3.0, 7.0 + 0.37 * n as f32, 0.0]);
     let places: Vec<_> = middles.chain(seams).collect();
-    let land = mirror.land().expect("a scene");
+    let decoded = mirror.decoded_scene().expect("a scene");
     let wind = &picture.renderer.scene.as_ref().expect("a scene").textures.wind;
     for (place, found) in places.iter().zip(air(&gpu, &picture, &places)) {
-        let wanted = land.tiles().blend([place[0], place[2]], |at_m| trilinear(&codes, [at_m[0], place[1], at_m[1]]));
+        let wanted = decoded.tiles().blend([place[0], place[2]], |at_m| trilinear(&codes, [at_m[0], place[1], at_m[1]]));
         let [u, v, w, root] = wanted.map(|code| code / 127.0);
         let wanted = [u * WIND_FULL_M_PER_S, v * WIND_FULL_M_PER_S, w * WIND_FULL_M_PER_S, root * root * DUST_FULL];
         // Filtering has 8 bits of fraction.
         assert!(wanted.iter().zip(found).all(|(a, b)| (a - b).abs() < 0.15), "{found:?} instead of {wanted:?} at {place:?}");
-        let twin = wind.at(land, [place[0], place[1], place[2]]);
+        let twin = wind.at(decoded, [place[0], place[1], place[2]]);
         assert!(wanted.iter().zip(twin).all(|(a, b)| (a - b).abs() < 1e-3), "{twin:?} instead of {wanted:?} at {place:?}");
     }
 }
 
-/// Codes (u, v, w, dust) of 8 × 2 × 4 cells of 2 × 2 × 4 m at a place, as a sampler mixes them.
+/// Codes (u, v, w, dust) of 8 × 2 × 4 cells of 2 × 2 × 4 m, interpolated at a place like a sampler does.
 fn trilinear(codes: &[i8], place_m: [f32; 3]) -> [f32; 4] {
     let at: [f32; 3] = std::array::from_fn(|axis| place_m[axis] / [2.0, 2.0, 4.0][axis] - 0.5);
     let mut sum = [0.0; 4];
@@ -339,23 +295,23 @@ fn trilinear(codes: &[i8], place_m: [f32; 3]) -> [f32; 4] {
     sum
 }
 
-/// Lean eastward (rad) of a segment that trails by `at.y` seconds at `at.xz`.
+/// Lean eastward (rad) of a segment that lags by `at.y` seconds at `at.xz`.
 const TRAILING: &str = "return vec4<f32>(trailing_lean(at.xz, 0.0, bend_at(at.xz, 0.0, 0), kinds.list[0], at.y), 0.0, 0.0);";
 
 #[test]
 fn segments_that_look_upwind_find_what_their_twin_finds() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow_of(
-        |scene| (scene.grass.c0_m_per_s, scene.grass.mu_m_per_rad, scene.grass.recovery_lag_share) = (6.0, 0.5, 0.3),
+        |scene| (scene.grass.waves.c0_m_per_s, scene.grass.waves.mu_m_per_rad, scene.grass.recovery_lag_share) = (6.0, 0.5, 0.3),
         &[255; 16 * 16],
     );
-    // Bends that fall and rise towards the east, slowly enough for bytes to follow.
+    // Bends that fall and rise towards the east, slowly enough for 8-bit codes.
     let theta_rad = |x_m: f32| 0.5 + 0.4 * (x_m * 0.3).sin();
     let omega = omega_rad_per_s(omega_code(1.2));
     stream(&mut mirror, theta_rad, omega);
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut mirror, &Camera { eye_m: Vec3::new(32.0, 2.0, 32.0), ..Camera::default() }, 0.0, 0.0);
-    let lag = Lag::from(&mirror.land().expect("a scene").scene().grass);
+    let lag = Lag::from(&mirror.decoded_scene().expect("a scene").scene().grass);
     let places: Vec<_> = (0..60).map(|n| [15.0 + 0.5 * n as f32, [0.0, 0.06, 0.12][n % 3], 20.0, 0.0]).collect();
     for (at, found) in places.iter().zip(probe(&gpu, &picture, TRAILING, &places)) {
         let wanted = lag.lean_rad(at[1], |secs| [theta_rad(at[0] + lag.reached_m([omega, 0.0], secs)[0]), 0.0]);
@@ -367,7 +323,7 @@ fn segments_that_look_upwind_find_what_their_twin_finds() {
 fn segments_that_look_back_find_what_was_streamed() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow_of(|scene| (scene.plants.lag, scene.grass.lag_secs) = (LagWay::History, 0.2), &[255; 16 * 16]);
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     let camera = Camera { eye_m: Vec3::new(32.0, 2.0, 32.0), ..Camera::default() };
     let mut stay = |mirror: &mut Mirror, secs: f32, lag_secs: f32| {
         (0..(secs / 0.02).round() as u32).for_each(|_| {
@@ -378,12 +334,12 @@ fn segments_that_look_back_find_what_was_streamed() {
     let near = |found: f32, wanted: f32| assert!((found - wanted).abs() < 0.02, "{found} instead of {wanted}");
     stream_lean(&mut mirror, 0.3);
     near(stay(&mut mirror, 0.5, 0.2), 0.3);
-    // The tip knows of a new bend when its lag has passed.
+    // The tip responds to a new bend after its lag.
     stream_lean(&mut mirror, 0.8);
     near(stay(&mut mirror, 0.04, 0.0), 0.8);
     near(stay(&mut mirror, 0.06, 0.2), 0.3);
     near(stay(&mut mirror, 0.30, 0.2), 0.8);
-    // It rises with 0.4 of that lag.
+    // It recovers with 0.4 of that lag.
     stream_lean(&mut mirror, 0.1);
     near(stay(&mut mirror, 0.02, 0.2), 0.8);
     near(stay(&mut mirror, 0.18, 0.2), 0.1);
@@ -396,14 +352,15 @@ fn places_have_the_kind_of_their_map() {
     let covering: Vec<u8> = (0..256).map(|at| if at % 16 < 8 { 7 } else { 9 }).collect();
     let species = |scene: &mut Scene| {
         let kind =
-            |name: &str, cover, bend_rad| Species { wind_bend_rad: bend_rad, ..Species::new(name, cover, &scene.grass, &scene.plants) };
+            |name: &str, cover, bend_rad| Species::new(name, cover, &Grass { wind_bend_rad: bend_rad, ..scene.grass }, &scene.plants);
         scene.species = vec![kind("stiff", 7, 0.2), kind("soft", 9, 1.0)];
     };
     let mut mirror = meadow_of(species, &covering);
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
     let places: Vec<_> = (0..64).map(|n| [n as f32 + 0.5, 0.0, 31.7, 0.0]).collect();
-    let body = "let kind = kind_at(at.xz); return vec4<f32>(f32(kind), kinds.list[kind].tip.w, kinds_blended(at.xz).tip.w, 0.0);";
+    let body =
+        "let kind = kind_at(at.xz); return vec4<f32>(f32(kind), kinds.list[kind].wind_bend_rad, kinds_blended(at.xz).wind_bend_rad, 0.0);";
     for (at, [kind, bend_rad, blended_rad, _]) in places.iter().zip(probe(&gpu, &picture, body, &places)) {
         assert_eq!(bend_rad, [0.5, 0.2, 1.0][kind as usize]);
         assert!((0.2 - 1e-6..=1.0 + 1e-6).contains(&blended_rad));
@@ -418,7 +375,7 @@ fn places_have_the_kind_of_their_map() {
 #[test]
 fn petals_stand_at_065_of_the_height_of_the_blade_whose_place_they_take() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     let mut mirror = meadow(0.0);
     picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
     let body = "let grid = vec2<i32>(at.xy);
@@ -427,14 +384,13 @@ fn petals_stand_at_065_of_the_height_of_the_blade_whose_place_they_take() {
         let flower = plant_at(grid, u32(at.z), place, true);
         return vec4<f32>(blade.height, flower.height, blade.frequency, flower.frequency);";
     let places: Vec<_> = (0..4000).map(|n| [(n % 8) as f32, (n / 8 % 8) as f32, (n / 64) as f32, 0.0]).collect();
-    let source = shaders::BEND.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(40) var<uniform>");
-    let found = probe_in(&gpu, &picture, &source, body, &places);
-    let plants = mirror.land().expect("a scene").scene().plants;
+    let found = probe_in(&gpu, &picture, "plants/bend", body, &places);
+    let plants = mirror.decoded_scene().expect("a scene").scene().plants;
     for [blade_m, flower_m, blade_rad_per_s, flower_rad_per_s] in &found {
         assert!((0.5999..0.7001).contains(&(flower_m / blade_m)), "{flower_m} m over {blade_m} m");
         assert!((flower_rad_per_s / blade_rad_per_s - 0.55_f32.sqrt()).abs() < 1e-4, "heavier, so slower");
         assert!(*blade_m < plants.height_m * plants.most_grown(), "{blade_m} m");
-        // As `Scene::blade_step_secs` has it.
+        // As in `Scene::blade_step_secs`.
         let least_m = plants.height_m * (1.0 - plants.height_variation) * 0.72 * 0.78;
         assert!(
             *blade_m > least_m
@@ -449,11 +405,11 @@ fn petals_stand_at_065_of_the_height_of_the_blade_whose_place_they_take() {
 fn as_many_flowers_stand_as_the_scene_says_and_all_are_listed() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let camera = Camera { eye_m: Vec3::new(32.0, 1.0, 32.0), ..Camera::default() };
-    for (flowers_per_m2, far) in [(0.6, Far::Land), (8.0, Far::Land), (50.0, Far::Land), (50.0, Far::Clumps)] {
+    for (flowers_per_m2, far) in [(0.6, FarPlants::Land), (8.0, FarPlants::Land), (50.0, FarPlants::Land), (50.0, FarPlants::Clumps)] {
         let mut mirror = meadow_of(|scene| scene.plants.flowers_per_m2 = flowers_per_m2, &[255; 16 * 16]);
-        // So tall that no head is too small to be seen.
-        let mut picture = Picture::new(&gpu, [16, 2048], Quality::Low);
-        picture.set_look(Look { culls: false, far, ..Look::default() });
+        // Tall enough for every head to be visible.
+        let mut picture = OffscreenRenderer::new(&gpu, [16, 2048], Quality::Low);
+        picture.set_options(RenderOptions { culls: false, far_plants: far, ..RenderOptions::default() });
         picture.draw(&mut mirror, &camera, 0.0, 0.0);
         let blades = &picture.renderer.scene.as_ref().expect("a scene").blades;
         let bytes = read(&gpu, &blades.listed.counters);
@@ -466,12 +422,11 @@ fn as_many_flowers_stand_as_the_scene_says_and_all_are_listed() {
         assert!(heads as f32 > flowers_per_m2 * near_m2 * 1.1, "{heads} heads");
 
         let of_grid = 1024 + (flowers_per_m2 * 64.0).round() as u32;
-        let lot = blades::flower_lot(flowers_per_m2 * 64.0, of_grid);
+        let lot = blades::flower_probability(flowers_per_m2 * 64.0, of_grid);
         let power = blades::FLOWER_POWER;
         let body = format!("return vec4<f32>(select(0.0, 1.0, is_flower(vec2<i32>(at.xy), u32(at.z), {lot:?}, {power:?})));");
         let places: Vec<_> = (0..of_grid * 15).map(|n| [(n / of_grid) as f32, 3.0, (n % of_grid) as f32, 0.0]).collect();
-        let source = shaders::BEND.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(40) var<uniform>");
-        let found = probe_in(&gpu, &picture, &source, &body, &places);
+        let found = probe_in(&gpu, &picture, "plants/bend", &body, &places);
         let flowers = found.iter().map(|found| found[0]).sum::<f32>() / (15.0 * 64.0);
         assert!((flowers / flowers_per_m2 - 1.0).abs() < 0.03 + 4.0 / (flowers_per_m2 * 960.0).sqrt(), "{flowers} of {flowers_per_m2}");
     }
@@ -481,11 +436,11 @@ fn as_many_flowers_stand_as_the_scene_says_and_all_are_listed() {
 fn the_last_blades_shrink_away_where_nothing_stands_for_them() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let camera = Camera { eye_m: Vec3::new(32.0, 1.0, 32.0), ..Camera::default() };
-    // Mean length of blades at the end of their reach over that of those halfway.
-    let left = |far: Far, reach_m: f32| {
+    // Mean length of blades near their maximum distance, relative to those halfway.
+    let left = |far: FarPlants, reach_m: f32| {
         let mut mirror = meadow_of(|scene| scene.plants.flowers_per_m2 = 0.0, &[255; 16 * 16]);
-        let mut picture = Picture::new(&gpu, [64, 2048], Quality::Low);
-        picture.set_look(Look { culls: false, far, ..Look::default() });
+        let mut picture = OffscreenRenderer::new(&gpu, [64, 2048], Quality::Low);
+        picture.set_options(RenderOptions { culls: false, far_plants: far, ..RenderOptions::default() });
         picture.draw(&mut mirror, &camera, 0.0, 0.0);
         let blades = &picture.renderer.scene.as_ref().expect("a scene").blades;
         let listed: Vec<[f32; 28]> = bytemuck::pod_collect_to_vec(&read(&gpu, &blades.listed.blades));
@@ -501,7 +456,7 @@ fn the_last_blades_shrink_away_where_nothing_stands_for_them() {
         };
         mean_m(0.95, 1.0) / mean_m(0.5, 0.7)
     };
-    let (shrunk, faded) = (left(Far::Land, 55.0), left(Far::Clumps, 55.0 * 0.35));
+    let (shrunk, faded) = (left(FarPlants::Land, 55.0), left(FarPlants::Clumps, 55.0 * 0.35));
     assert!(shrunk < 0.3 && faded > 0.8, "{shrunk} and {faded}");
 }
 
@@ -511,21 +466,21 @@ fn every_quality_has_room_for_the_same_plants_near_by_and_draws_them_in_one_turn
     let lawn = |scene: &mut Scene| (scene.plants.grid_m, scene.plants.plants_per_side, scene.plants.flowers_per_m2) = (4.0, 20, 0.0);
     let mut mirror = meadow_of(lawn, &[255; 16 * 16]);
     for quality in Quality::ALL {
-        let mut picture = Picture::new(&gpu, [16, 16], quality);
-        picture.set_look(Look { culls: false, ..Look::default() });
+        let mut picture = OffscreenRenderer::new(&gpu, [16, 16], quality);
+        picture.set_options(RenderOptions { culls: false, ..RenderOptions::default() });
         picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
         let blades = &picture.renderer.scene.as_ref().expect("a scene").blades;
         assert_eq!(blades.sways.size(), 9 * (5 * 20) * (5 * 20) * blades::SWAY_BYTES, "{quality:?}");
-        assert!(!blades.by_turns(), "{quality:?}");
+        assert!(!blades.by_batches(), "{quality:?}");
     }
     // The scene's own defaults, too.
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Ultra);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Ultra);
     picture.draw(&mut meadow(0.0), &Camera::default(), 0.0, 0.0);
-    assert!(!picture.renderer.scene.as_ref().expect("a scene").blades.by_turns());
+    assert!(!picture.renderer.scene.as_ref().expect("a scene").blades.by_batches());
 }
 
 #[test]
-fn trees_sway_as_they_are_tall_and_stay_as_long_as_they_are() {
+fn trees_sway_by_their_height_and_keep_their_length() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let body = "let height = at.x;
         let foot = vec4<f32>(32.0, 0.0, 32.0, 1.0);
@@ -533,7 +488,6 @@ fn trees_sway_as_they_are_tall_and_stay_as_long_as_they_are() {
         let tree = Instance(scaled, vec4<f32>(0.0, 0.0, 0.0, at.z));
         let vertex = Vertex(vec3<f32>(0.0, at.y, 0.0), vec4<f32>(0.0), vec4<f32>(0.0), vec2<f32>(0.0));
         return vec4<f32>((placed(vertex, tree, sway_of(tree)) - foot.xyz) / height, 0.0);";
-    let source = shaders::OBJECTS.replace("@group(1) @binding(0) var<storage, read>", "@group(1) @binding(20) var<storage, read>");
     let sway_rad = 0.07;
     let tops = [0.0, 1.5].map(|grass_bend_rad| {
         let mut mirror = meadow_of(
@@ -543,11 +497,12 @@ fn trees_sway_as_they_are_tall_and_stay_as_long_as_they_are() {
             },
             &[255; 16 * 16],
         );
-        let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+        let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
         picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
         [2.0, 7.0, 60.0].map(|height_m| {
             let trunk: Vec<_> = (0..=64).map(|i| [height_m, i as f32 / 64.0, sway_rad, 0.0]).collect();
-            let found: Vec<_> = probe_in(&gpu, &picture, &source, body, &trunk).iter().map(|at| Vec3::from_slice(&at[..3])).collect();
+            let found: Vec<_> =
+                probe_in(&gpu, &picture, "solids/objects", body, &trunk).iter().map(|at| Vec3::from_slice(&at[..3])).collect();
             let length: f32 = found.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
             assert!((length - 1.0).abs() < 2e-4, "{length} of the height of {height_m} m");
             assert!(found.iter().zip(&trunk).all(|(at, [_, up, ..])| at.y <= *up + 1e-6 && at.x >= -1e-6));
@@ -571,7 +526,7 @@ fn underbrush_follows_the_force_as_its_twin_does() {
         }";
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow(0.0);
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
     let inputs: Vec<[f32; 4]> = (0..400_u32)
         .map(|n| {
@@ -580,8 +535,7 @@ fn underbrush_follows_the_force_as_its_twin_does() {
             if n % 2 == 0 { [a * 50.0, b * 50.0 - 25.0, c * 90.0, d * 90.0 - 45.0] } else { [a * 60.0, b * 60.0, 0.1 + c, d] }
         })
         .collect();
-    let source = shaders::UNDERBRUSH.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(40) var<uniform>");
-    let found = compute(&gpu, &picture, &format!("{source}\n{SOURCE}"), &[], &inputs, 200);
+    let found = compute(&gpu, &picture, &linked("plants/underbrush", SOURCE), &[], &inputs, 200);
     for (input, found) in inputs.chunks_exact(2).zip(found.chunks_exact(2)) {
         let ([x, z, dx, dz], [goal_x, goal_z, settle_secs, dt_secs]) = (input[0], input[1]);
         let twin = Following { value: [x, 0.0, z], rate_per_s: [dx, 0.0, dz] }.followed([goal_x, 0.0, goal_z], settle_secs, dt_secs);

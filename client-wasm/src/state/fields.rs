@@ -1,23 +1,23 @@
-//! The streamed fields: 8-bit codes of patches and of the wind, kept in step with the server by key and sequence number.
+//! The streamed fields: 8-bit codes of patches and wind, synchronised with the server by key frames and sequence numbers.
 
-use super::{MirrorError, range};
-use shared::grid::{PatchIndex, PatchLayout};
-use shared::scene::Wind;
-use shared::wire::{PATCH_MEMORY, Shape, codec};
+use super::error::{MirrorError, range};
+use prairie_core::grid::{PatchIndex, PatchLayout};
+use prairie_core::scene::Wind;
+use prairie_core::wire::{PATCH_MEMORY, Shape, codec};
 use std::collections::{BTreeSet, HashMap};
 
-/// Most patches that are kept; the one not heard of for longest goes first. 4096 patches of 64² cells take 50 MB.
+/// Maximum number of patches stored; the least recently updated one is evicted. 4096 patches of 64² cells take 50 MB.
 pub const PATCH_LIMIT: usize = 4096;
-const _: () = assert!(PATCH_LIMIT >= PATCH_MEMORY, "the server counts on these");
+const _: () = assert!(PATCH_LIMIT >= PATCH_MEMORY, "the server relies on the client remembering this many patches");
 
-/// Codes of one patch: three planes (θ, ωx, ωz) of `cells × cells`, or none at rest.
+/// Codes of one patch: three planes (θ, ωx, ωz) of `cells × cells`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PatchCodes {
     planes: Vec<i8>,
 }
 
 impl PatchCodes {
-    /// Planes θ, ωx, ωz, each row by row from the north.
+    /// Planes θ, ωx, ωz, each in rows from north to south.
     pub fn planes(&self) -> [&[i8]; 3] {
         let plane = self.planes.len() / 3;
         std::array::from_fn(|i| &self.planes[i * plane..(i + 1) * plane])
@@ -27,11 +27,11 @@ impl PatchCodes {
 #[derive(Debug)]
 struct Entry {
     seq: u32,
-    heard: u64,
+    updated: u64,
     codes: Option<PatchCodes>,
 }
 
-/// All patches that have been heard of.
+/// All patches received.
 #[derive(Debug, Default)]
 pub(super) struct Patches {
     entries: HashMap<PatchIndex, Entry>,
@@ -66,10 +66,10 @@ impl Patches {
             Some(PatchCodes { planes })
         };
         self.clock += 1;
-        self.entries.insert(patch, Entry { seq, heard: self.clock, codes });
+        self.entries.insert(patch, Entry { seq, updated: self.clock, codes });
         self.dirty.insert(patch);
         if self.entries.len() > PATCH_LIMIT {
-            let oldest = self.entries.iter().min_by_key(|(_, entry)| entry.heard).map(|(&index, _)| index);
+            let oldest = self.entries.iter().min_by_key(|(_, entry)| entry.updated).map(|(&index, _)| index);
             if let Some(oldest) = oldest {
                 self.entries.remove(&oldest);
                 self.dirty.insert(oldest);
@@ -99,7 +99,7 @@ impl Patches {
     }
 }
 
-/// Codes of the wind: three planes (u, v, w), x fastest, then y, then z; in a scene with dust a fourth that tells how much.
+/// Codes of the wind: three planes (u, v, w), x fastest, then y, then z. A scene with dust has a fourth plane, its concentration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WindCodes {
     cells: [u32; 3],
@@ -109,17 +109,17 @@ pub struct WindCodes {
 }
 
 impl WindCodes {
-    /// Cells along X, Y and Z.
+    /// Number of cells along X, Y and Z.
     pub fn cells(&self) -> [u32; 3] {
         self.cells
     }
 
-    /// Number of this frame.
+    /// Sequence number of this frame.
     pub fn seq(&self) -> u32 {
         self.seq
     }
 
-    /// Whether no cell has any wind, nor any dust.
+    /// Whether all cells are free of wind and dust.
     pub fn is_calm(&self) -> bool {
         self.is_calm
     }
@@ -134,7 +134,7 @@ impl WindCodes {
         [0, 1, 2].map(|index| self.plane(index))
     }
 
-    /// The plane of dust, in a scene that has any.
+    /// Dust plane; `None` in a scene without dust.
     pub fn dust(&self) -> Option<&[i8]> {
         (self.planes.len() > 3 * volume(self.cells)).then(|| self.plane(3))
     }
@@ -144,7 +144,7 @@ fn volume(cells: [u32; 3]) -> usize {
     cells.iter().map(|&n| n as usize).product()
 }
 
-/// The newest wind.
+/// The newest wind frame, which is the base of the next delta.
 #[derive(Debug, Default)]
 pub(super) struct WindFrames {
     newest: Option<WindCodes>,

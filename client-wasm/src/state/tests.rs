@@ -1,10 +1,11 @@
 use super::*;
 use glam::Vec3;
+use prairie_core::scene::{Component, ComponentKind, Lamp, Patches, Scene, Species, TerrainMaps, Underbrush, VehicleKind, Wind};
+use prairie_core::terrain::grey_png;
+use prairie_core::wire::quantise::{dust_code, theta_code, wind_code};
+use prairie_core::wire::{BrokenPlant, Shape, codec, decode};
+use prairie_core::wire::{ObjectPose, ServerMessage};
 use proptest::prelude::*;
-use shared::scene::{Component, ComponentKind, Lamp, Patches, Scene, Species, TerrainMaps, Underbrush, VehicleKind, Wind};
-use shared::terrain::grey_png;
-use shared::wire::quantise::{dust_code, theta_code, wind_code};
-use shared::wire::{BrokenPlant, Shape, codec, decode};
 use std::num::NonZeroU8;
 
 fn scene() -> Scene {
@@ -42,13 +43,13 @@ fn theta(mirror: &Mirror) -> Option<i8> {
 }
 
 #[test]
-fn fields_before_the_scene_are_refused() {
+fn fields_before_the_scene_are_rejected() {
     let mut mirror = Mirror::default();
     assert!(matches!(mirror.apply(patch(1, true, None, &[1; 192])), Err(MirrorError::BeforeScene(_))));
 }
 
 #[test]
-fn a_delta_before_its_key_is_dropped() {
+fn a_delta_without_its_base_is_dropped() {
     let mut mirror = loaded();
     let (first, second) = ([5; 192], [9; 192]);
     mirror.apply(patch(2, false, Some(&first), &second)).unwrap();
@@ -63,7 +64,7 @@ fn a_delta_before_its_key_is_dropped() {
 }
 
 #[test]
-fn an_empty_payload_lays_a_patch_to_rest_and_is_the_base_of_the_next_delta() {
+fn an_empty_payload_resets_a_patch_and_is_the_base_of_the_next_delta() {
     let mut mirror = loaded();
     mirror.apply(patch(1, true, None, &[5; 192])).unwrap();
     mirror.apply(ServerMessage::Patch { patch: 1, seq: 2, key: true, payload: Vec::new() }).unwrap();
@@ -73,7 +74,7 @@ fn an_empty_payload_lays_a_patch_to_rest_and_is_the_base_of_the_next_delta() {
 }
 
 #[test]
-fn a_damaged_frame_leaves_the_mirror_as_it_was() {
+fn a_damaged_frame_leaves_the_mirror_unchanged() {
     let mut mirror = loaded();
     mirror.apply(patch(1, true, None, &[5; 192])).unwrap();
     let damaged = ServerMessage::Patch { patch: 1, seq: 2, key: false, payload: vec![1, 2, 3] };
@@ -85,7 +86,7 @@ fn a_damaged_frame_leaves_the_mirror_as_it_was() {
 }
 
 #[test]
-fn wind_deltas_follow_their_key() {
+fn wind_deltas_apply_to_their_key_frame() {
     let mut mirror = loaded();
     let (first, second) = (vec![3; 96], vec![-4; 96]);
     let delta = |seq| ServerMessage::Wind {
@@ -104,7 +105,7 @@ fn wind_deltas_follow_their_key() {
 }
 
 #[test]
-fn dust_comes_as_the_fourth_plane_of_a_wind_that_has_any() {
+fn dust_is_the_fourth_wind_plane() {
     let mut dusty = scene();
     dusty.wind.dust.release_per_s = 1.0;
     let mut mirror = Mirror::default();
@@ -116,14 +117,14 @@ fn dust_comes_as_the_fourth_plane_of_a_wind_that_has_any() {
     let clear = codec::encode(Shape::wind(4, true), &[0; 128], Some(codes.as_slice()));
     mirror.apply(ServerMessage::Wind { tick: 0, seq: 2, key: false, payload: clear }).unwrap();
     assert_eq!(mirror.wind().unwrap().dust(), Some([0; 32].as_slice()));
-    assert!(loaded().apply(ServerMessage::Wind { tick: 0, seq: 1, key: true, payload }).is_err(), "four planes in clear air");
+    assert!(loaded().apply(ServerMessage::Wind { tick: 0, seq: 1, key: true, payload }).is_err(), "four planes in a scene without dust");
 }
 
 #[test]
-fn a_wind_of_too_many_cells_is_refused() {
+fn too_many_wind_cells_are_rejected() {
     let mut bad = scene();
     bad.wind.cells = [256; 3];
-    assert!(matches!(Mirror::default().apply(scene_message(bad)), Err(MirrorError::Range { what: "cells of the wind in all", .. })));
+    assert!(matches!(Mirror::default().apply(scene_message(bad)), Err(MirrorError::Range { what: "total number of wind cells", .. })));
 }
 
 fn pose(id: u32, x_m: f32) -> ObjectPose {
@@ -138,7 +139,7 @@ fn pose(id: u32, x_m: f32) -> ObjectPose {
 }
 
 #[test]
-fn an_object_that_is_missing_has_left() {
+fn an_object_missing_from_a_pose_frame_is_removed() {
     let mut mirror = loaded();
     mirror.apply(ServerMessage::Poses { tick: 60, objects: vec![pose(1, 0.0)] }).unwrap();
     assert!(mirror.object(1).is_some());
@@ -149,7 +150,7 @@ fn an_object_that_is_missing_has_left() {
 }
 
 #[test]
-fn unsound_poses_are_refused() {
+fn invalid_poses_are_rejected() {
     let mut mirror = loaded();
     for bad in [ObjectPose { position_m: [f32::NAN, 0.0, 0.0], ..pose(1, 0.0) }, ObjectPose { rotation: [0.0; 4], ..pose(1, 0.0) }] {
         assert!(matches!(mirror.apply(ServerMessage::Poses { tick: 1, objects: vec![bad] }), Err(MirrorError::Range { what: "pose", .. })));
@@ -157,7 +158,7 @@ fn unsound_poses_are_refused() {
 }
 
 #[test]
-fn scenes_out_of_range_are_refused() {
+fn scenes_out_of_range_are_rejected() {
     let mut bad = scene();
     bad.plants.grid_m = f32::NAN;
     assert!(matches!(Mirror::default().apply(scene_message(bad)), Err(MirrorError::Range { what: "plants.grid_m", .. })));
@@ -168,9 +169,9 @@ fn scenes_out_of_range_are_refused() {
 
 proptest! {
     #[test]
-    fn no_bytes_make_the_mirror_panic(kind in 0_u8..11, bytes in proptest::collection::vec(any::<u8>(), 0..600)) {
+    fn arbitrary_bytes_never_make_the_mirror_panic(kind in 0_u8..11, bytes in proptest::collection::vec(any::<u8>(), 0..600)) {
         let mut mirror = loaded();
-        let mut message = vec![shared::wire::PROTOCOL, kind];
+        let mut message = vec![prairie_core::wire::PROTOCOL, kind];
         message.extend(bytes);
         if let Ok(message) = decode::<ServerMessage>(&message, 1 << 20) {
             let _ = mirror.apply(message);
@@ -180,7 +181,7 @@ proptest! {
     }
 
     #[test]
-    fn no_payload_makes_the_mirror_panic(patch in 0_u32..9, seq in any::<u32>(), key: bool, has_dust: bool, payload in proptest::collection::vec(any::<u8>(), 0..400)) {
+    fn arbitrary_payloads_never_make_the_mirror_panic(patch in 0_u32..9, seq in any::<u32>(), key: bool, has_dust: bool, payload in proptest::collection::vec(any::<u8>(), 0..400)) {
         let mut mirror = Mirror::default();
         let mut scene = scene();
         scene.wind.dust.release_per_s = if has_dust { 1.0 } else { 0.0 };
@@ -192,7 +193,7 @@ proptest! {
 }
 
 #[test]
-fn the_angle_of_grass_is_that_of_its_two_leans_together() {
+fn grass_angle_combines_wind_and_bend_field() {
     let mut scene = scene();
     scene.wind = Wind { cells: [2, 2, 2], ..Wind::default() };
     scene.grass.wind_bend_rad = 0.6;
@@ -203,35 +204,35 @@ fn the_angle_of_grass_is_that_of_its_two_leans_together() {
     let payload = codec::encode(Shape::wind(2, false), &codes, None);
     mirror.apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, payload }).unwrap();
     assert!((mirror.theta_at(3.0, 1.0) - 0.6).abs() < 1e-3, "{}", mirror.theta_at(3.0, 1.0));
-    for (seq, omega, together_rad) in [(1, [40, 0], 1.4), (2, [-40, 0], 0.2), (3, [0, 40], 1.0)] {
+    for (seq, omega, expected_rad) in [(1, [40, 0], 1.4), (2, [-40, 0], 0.2), (3, [0, 40], 1.0)] {
         let planes = [theta_code(0.8), omega[0], omega[1]];
         let codes: Vec<i8> = planes.into_iter().flat_map(|code| [code; 64]).collect();
         mirror.apply(patch(seq, true, None, &codes)).unwrap();
         let found_rad = mirror.theta_at(3.0, 1.0);
-        assert!((found_rad - together_rad).abs() < 0.015, "{found_rad} instead of {together_rad} where ω is {omega:?}");
+        assert!((found_rad - expected_rad).abs() < 0.015, "{found_rad} instead of {expected_rad} for ω = {omega:?}");
     }
 }
 
 #[test]
-fn a_species_that_the_client_cannot_hold_is_refused() {
-    let refused = |change: fn(&mut Species)| {
+fn grass_species_out_of_range_are_rejected() {
+    let error_of = |change: fn(&mut Species)| {
         let mut scene = scene();
         let mut species = Species::new("reed", 1, &scene.grass, &scene.plants);
         change(&mut species);
         scene.species = vec![species];
         Mirror::default().apply(scene_message(scene)).err().map(|error| error.to_string())
     };
-    assert_eq!(refused(|_| ()), None);
-    assert_eq!(refused(|species| species.segments = 7).as_deref(), Some("*.segments is 7; allowed: 1..=6"));
-    assert_eq!(refused(|species| species.height_m = f32::NAN).as_deref(), Some("*.height_m is NaN; allowed: 0.02..=5"));
+    assert_eq!(error_of(|_| ()), None);
+    assert_eq!(error_of(|species| species.grass.segments = 7).as_deref(), Some("*.segments is 7; allowed: 1..=6"));
+    assert_eq!(error_of(|species| species.height_m = f32::NAN).as_deref(), Some("*.height_m is NaN; allowed: 0.02..=5"));
     let mut many = scene();
     many.species = vec![Species::new("reed", 1, &many.grass, &many.plants); 17];
     assert!(Mirror::default().apply(scene_message(many)).is_err());
 }
 
 #[test]
-fn underbrush_that_the_client_cannot_hold_is_refused() {
-    let refused = |change: fn(&mut Scene)| {
+fn underbrush_out_of_range_is_rejected() {
+    let error_of = |change: fn(&mut Scene)| {
         let mut scene = scene();
         let stalk = Component::new("stalk", ComponentKind::Branch);
         let leaf = Component { on: "stalk".to_owned(), ..Component::new("leaf", ComponentKind::Leaf) };
@@ -242,7 +243,7 @@ fn underbrush_that_the_client_cannot_hold_is_refused() {
     fn leaf(scene: &mut Scene) -> &mut Component {
         &mut scene.underbrush[0].components[1]
     }
-    assert_eq!(refused(|_| ()), None);
+    assert_eq!(error_of(|_| ()), None);
     type Change = fn(&mut Scene);
     let cases: [(Change, &str); 14] = [
         (|scene| scene.light.hour = f32::NAN, "light.hour is NaN; allowed: -1..=24"),
@@ -257,21 +258,21 @@ fn underbrush_that_the_client_cannot_hold_is_refused() {
         (|scene| leaf(scene).mass_kg = -1.0, "mass_kg is -1; allowed: 0.000001..=10"),
         (|scene| leaf(scene).from_share = 1.5, "from_share is 1.5; allowed: 0..=1"),
         (|scene| leaf(scene).to_share = 0.5, "to_share is 0.5; allowed: 1..=1"),
-        (|scene| leaf(scene).on = "leaf".to_owned(), "what a component stands on is leaf; allowed: a branch before it, or nothing"),
+        (|scene| leaf(scene).on = "leaf".to_owned(), "parent of a component is leaf; allowed: an earlier branch, or empty"),
         (
             |scene| (scene.patches.count, scene.growth.spacing_m) = ([2048; 2], 0.1),
-            "number of sites is 1677721600; allowed: at most 4194304",
+            "number of plant sites is 1677721600; allowed: at most 4194304",
         ),
     ];
     for (change, message) in cases {
-        assert_eq!(refused(change).as_deref(), Some(message));
+        assert_eq!(error_of(change).as_deref(), Some(message));
     }
-    let many = refused(|scene| scene.underbrush[0].components.iter_mut().for_each(|component| component.count = 32));
-    assert_eq!(many.as_deref(), Some("parts of a plant is 1056; allowed: at most 64"));
+    let many = error_of(|scene| scene.underbrush[0].components.iter_mut().for_each(|component| component.count = 32));
+    assert_eq!(many.as_deref(), Some("number of parts of a plant is 1056; allowed: at most 64"));
 }
 
 #[test]
-fn the_map_of_nutrients_is_read_if_there_is_one() {
+fn the_nutrient_map_is_optional() {
     let plants_with = |png: Vec<u8>| {
         let mut own = scene();
         own.underbrush = vec![Underbrush::new("a", vec![Component::new("leaf", ComponentKind::Leaf)])];
@@ -280,32 +281,32 @@ fn the_map_of_nutrients_is_read_if_there_is_one() {
             *nutrient_png = png;
         }
         let mut mirror = Mirror::default();
-        mirror.apply(message).map(|_| mirror.land().and_then(Land::flora).map_or(0, |flora| flora.grown().plants().len()))
+        mirror.apply(message).map(|_| mirror.decoded_scene().and_then(DecodedScene::flora).map_or(0, |flora| flora.grown().plants().len()))
     };
     let [generated, rich, barren] =
-        [Vec::new(), grey_png([3, 2], &[255; 6]), grey_png([3, 2], &[7; 6])].map(|png| plants_with(png).expect("a sound map"));
+        [Vec::new(), grey_png([3, 2], &[255; 6]), grey_png([3, 2], &[7; 6])].map(|png| plants_with(png).expect("a valid map"));
     assert!(rich != generated && rich > 0 && generated > 0 && barren == 0, "{rich}, {generated} and {barren} plants");
-    assert!(matches!(plants_with(vec![1, 2, 3]), Err(MirrorError::Map { map: "map of nutrients", .. })));
+    assert!(matches!(plants_with(vec![1, 2, 3]), Err(MirrorError::Map { map: "nutrient map", .. })));
 }
 
-/// A mirror of a scene with underbrush on so many sites.
+/// A mirror of a scene with underbrush, and its number of plant sites.
 fn overgrown() -> (Mirror, u32) {
     let mut scene = scene();
     scene.underbrush = vec![Underbrush::new("sedge", vec![Component::new("leaf", ComponentKind::Leaf)])];
     let mut mirror = Mirror::default();
     mirror.apply(scene_message(scene)).unwrap();
-    let sites = mirror.land().and_then(Land::flora).expect("it grows").grown().sites.total();
+    let sites = mirror.decoded_scene().and_then(DecodedScene::flora).expect("it grows").grown().sites.total();
     (mirror, sites as u32)
 }
 
-/// News of broken plants: their sites and which way they fell.
+/// Message about broken plants: sites and heading codes.
 fn broken(plants: impl IntoIterator<Item = (u32, u8)>) -> ServerMessage {
     let plant = |(site, fall)| BrokenPlant { site, fall: NonZeroU8::new(fall).expect("above 0") };
     ServerMessage::Broken { plants: plants.into_iter().map(plant).collect() }
 }
 
 #[test]
-fn broken_plants_lie_as_they_fell_until_another_scene_comes() {
+fn broken_plants_keep_their_direction_until_the_next_scene() {
     let (mut mirror, sites) = overgrown();
     assert_eq!((mirror.falls().len(), mirror.broken_count()), (sites.next_multiple_of(4) as usize, 0));
     assert_eq!(mirror.apply(broken([(0, 1), (33, 90), (sites - 1, 255)])), Ok(None));
@@ -315,20 +316,20 @@ fn broken_plants_lie_as_they_fell_until_another_scene_comes() {
     assert_eq!(mirror.broken_count(), 4);
     mirror.apply(scene_message(scene())).unwrap();
     assert_eq!((mirror.falls(), mirror.broken_count()), ([].as_slice(), 0));
-    assert!(mirror.land().and_then(Land::flora).is_none());
+    assert!(mirror.decoded_scene().and_then(DecodedScene::flora).is_none());
 }
 
 #[test]
-fn broken_plants_beyond_the_sites_are_refused_and_change_nothing() {
+fn broken_plants_on_unknown_sites_are_rejected_and_change_nothing() {
     let (mut mirror, sites) = overgrown();
-    let refused = |mirror: &mut Mirror, message| mirror.apply(message).err().map(|error| error.to_string());
-    let beyond = refused(&mut mirror, broken([(1, 9), (sites, 9)]));
+    let error_of = |mirror: &mut Mirror, message| mirror.apply(message).err().map(|error| error.to_string());
+    let beyond = error_of(&mut mirror, broken([(1, 9), (sites, 9)]));
     assert_eq!(beyond, Some(format!("site of a broken plant is {sites}; allowed: below {sites}")));
-    assert!(refused(&mut mirror, broken([(u32::MAX, 9)])).is_some());
-    let many = refused(&mut mirror, broken(std::iter::repeat_n((1, 9), 4097)));
+    assert!(error_of(&mut mirror, broken([(u32::MAX, 9)])).is_some());
+    let many = error_of(&mut mirror, broken(std::iter::repeat_n((1, 9), 4097)));
     assert_eq!(many.as_deref(), Some("number of broken plants is 4097; allowed: at most 4096"));
     assert_eq!(mirror.broken_count(), 0);
     assert!(mirror.falls().iter().all(|fall| *fall == 0));
-    assert!(refused(&mut Mirror::default(), broken([(0, 9)])).is_some(), "before a scene");
-    assert!(refused(&mut loaded(), broken([(0, 9)])).is_some(), "where nothing grows");
+    assert!(error_of(&mut Mirror::default(), broken([(0, 9)])).is_some(), "before a scene");
+    assert!(error_of(&mut loaded(), broken([(0, 9)])).is_some(), "in a scene without underbrush");
 }

@@ -1,12 +1,15 @@
-//! Footprints: convex areas on the ground, and the cells in them.
+//! Convex footprints on the ground, and the cells within them.
 
-use shared::grid::PatchLayout;
+use prairie_core::grid::PatchLayout;
 
 /// A convex polygon on the ground, corners in order (m).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Footprint {
     corners_m: Vec<[f32; 2]>,
 }
+
+/// Relative difference up to which two widths of a footprint are equal.
+const EQUAL_WIDTHS: f32 = 1e-4;
 
 /// Cells of one row of the world's grid of cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,19 +44,21 @@ impl Footprint {
         Self { corners_m }
     }
 
-    /// The polygon of corners that are in order, turning from +X towards +Z, and all convex.
+    /// The polygon with these corners, which must be convex and in order from +X towards +Z.
     pub fn of(corners_m: Vec<[f32; 2]>) -> Self {
         Self { corners_m }
     }
 
-    /// The polygon widened to `least_m` across its narrowest and then across its next narrow direction; none where it is wide enough.
-    /// A strip as wide as a cell holds a chain of cells that touch at least at their corners, whatever its direction.
+    /// The polygon widened to `least_m` along its narrowest direction and then along the next, or `None` when it is wide enough. A strip as wide as a
+    /// cell contains a chain of cells that touch at least at their corners, in any direction. Among equally narrow directions the first side's counts,
+    /// so that rounding does not turn the widened polygon of a round object from one step to the next.
     pub fn widened(&self, least_m: f32) -> Option<Self> {
         let mut wide: Option<Self> = None;
         for _ in 0..2 {
             let polygon = wide.as_ref().unwrap_or(self);
             let across = |side: &Edge| polygon.corners_m.iter().map(|&corner| side.depth_m(corner)).fold(0.0, f32::max);
-            let narrowest = polygon.sides().into_iter().map(|side| (across(&side), side.normal)).min_by(|a, b| a.0.total_cmp(&b.0));
+            let widths = polygon.sides().into_iter().map(|side| (across(&side), side.normal));
+            let narrowest = widths.reduce(|least, next| if next.0 < least.0 * (1.0 - EQUAL_WIDTHS) { next } else { least });
             let Some((width_m, [x, z])) = narrowest.filter(|(width_m, _)| *width_m < least_m) else { break };
             let out = 0.5 * (least_m - width_m);
             let moved = |by: f32| polygon.corners_m.iter().map(move |corner| [corner[0] + x * by, corner[1] + z * by]);
@@ -80,11 +85,11 @@ impl Footprint {
         std::array::from_fn(|axis| self.corners_m.iter().map(|corner| corner[axis]).sum::<f32>() / count)
     }
 
-    /// The cells whose centres lie within, row by row, inside the world.
+    /// The cells of the world whose centres are inside, row by row.
     pub fn runs(&self, layout: &PatchLayout) -> Vec<Run> {
         let cells = layout.count.map(|n| i64::from(n) * i64::from(layout.cells));
         let [low, high] = self.bounds_m();
-        // A centre at (i + ½)·h lies at or beyond `m` from cell ⌈m/h − ½⌉ on.
+        // The first cell whose centre (i + ½)·h is at or beyond `m` is ⌈m/h − ½⌉.
         let first = |m: f32| (m / layout.cell_m - 0.5).ceil() as i64;
         let rows = first(low[1]).max(0)..first(high[1]).min(cells[1]);
         rows.filter_map(|row| {
@@ -95,7 +100,7 @@ impl Footprint {
         .collect()
     }
 
-    /// Where the line of constant `z_m` crosses the polygon (m).
+    /// Interval of X (m) in which the line of constant `z_m` crosses the polygon.
     fn span_m(&self, z_m: f32) -> Option<[f32; 2]> {
         let mut span = [f32::INFINITY, f32::NEG_INFINITY];
         for (a, b) in self.edges() {
@@ -130,12 +135,12 @@ impl Footprint {
 pub struct Edge {
     /// Unit normal, outward.
     pub normal: [f32; 2],
-    /// Where the side lies along its normal (m).
+    /// Distance from the origin along the normal (m).
     pub offset_m: f32,
 }
 
 impl Edge {
-    /// How far inside the side a point lies (m).
+    /// Distance of a point inside the side (m).
     pub fn depth_m(&self, [x, z]: [f32; 2]) -> f32 {
         self.offset_m - (self.normal[0] * x + self.normal[1] * z)
     }
@@ -161,7 +166,26 @@ mod tests {
     }
 
     #[test]
-    fn runs_are_the_cells_whose_centres_lie_within() {
+    fn rounding_does_not_turn_the_widened_polygon_of_a_round_object() {
+        let ring = |jitter: f32| {
+            let at = |n: usize| (n as f32 / 8.0 * std::f32::consts::TAU).sin_cos();
+            Footprint::of((0..8).map(|n| (at(n), 0.174 * if n % 4 == 2 { 1.0 - jitter } else { 1.0 })).map(|((sin, cos), r)| [r * cos, r * sin]).collect())
+        };
+        // Corners within rounding of a straight side may come and go, so supports in many directions are compared.
+        let support_m = |polygon: &Footprint, n: usize| {
+            let (sin, cos) = (n as f32 / 64.0 * std::f32::consts::TAU).sin_cos();
+            polygon.corners_m().iter().map(|[x, z]| x * cos + z * sin).fold(f32::NEG_INFINITY, f32::max)
+        };
+        let differs = |jitter: f32| {
+            let [wide, other] = [0.0, jitter].map(|jitter| ring(jitter).widened(1.0).unwrap());
+            (0..64).map(|n| (support_m(&wide, n) - support_m(&other, n)).abs()).fold(0.0, f32::max)
+        };
+        assert!(differs(1e-6) < 1e-5, "{}", differs(1e-6));
+        assert!(differs(0.05) > 1e-2, "a clearly narrower direction counts");
+    }
+
+    #[test]
+    fn runs_are_the_cells_whose_centres_are_within() {
         let hull = Footprint::around(vec![[1.1, 0.9], [6.2, 2.0], [3.3, 6.6], [0.4, 3.0]]);
         let runs = hull.runs(&LAYOUT);
         for row in 0..16 {

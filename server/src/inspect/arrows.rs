@@ -1,36 +1,36 @@
-//! The wind as arrows at their places above the ground.
+//! The wind as arrows above the terrain.
 
 use super::palette::{Rgb, wind_rgb};
 use crate::snapshot::WindFrame;
 use glam::Vec3;
-use shared::scene::Scene;
-use shared::terrain::HeightMap;
-use shared::wind::Tiles;
-use shared::wire::quantise::wind_m_per_s;
+use prairie_core::scene::Scene;
+use prairie_core::terrain::HeightMap;
+use prairie_core::wind::WindTiles;
+use prairie_core::wire::quantise::wind_m_per_s;
 
-/// Most arrows at once.
+/// Largest number of arrows.
 const ARROW_LIMIT: u32 = 1500;
 
-/// Length of an arrow for each metre per second (s): the way that the air goes in this time.
+/// Length of an arrow per speed (s): the air covers the arrow in this time.
 const ARROW_SECS: f32 = 1.2;
 
-/// A cell of the wind's box, and where its arrow starts.
+/// A cell of the wind's box, and the origin of its arrow.
 struct Site {
     cell: usize,
     origin_m: Vec3,
 }
 
-/// The places of the arrows; the same for the whole run.
+/// Origins of the arrows; constant during a run.
 pub(super) struct WindArrows {
     cells: [u32; 3],
     sites: Vec<Site>,
 }
 
 impl WindArrows {
-    /// Every n-th cell along each axis, n as small as the limit of 1500 arrows allows. A box that wraps is repeated
-    /// over the world, as the world sees it; where it blends two places of the box, the one that counts for more is shown.
+    /// Every n-th cell along each axis, n as small as the limit of 1500 arrows allows. A periodic box is repeated over the world, as in
+    /// the simulation; where the simulation blends several positions of the box, the one with the largest weight is shown.
     pub(super) fn new(scene: &Scene, heights: &HeightMap) -> Self {
-        let (wind, extent_m, tiles) = (&scene.wind, scene.extent_m(), Tiles::new(scene));
+        let (wind, extent_m, tiles) = (&scene.wind, scene.extent_m(), WindTiles::new(scene));
         let [nx, ny, nz] = wind.cells;
         let wraps = wind.faces.wraps();
         let across = |axis: usize, cells: u32| {
@@ -39,7 +39,7 @@ impl WindArrows {
         };
         let span = [across(0, nx), ny, across(2, nz)];
         let count = |step: u32| span.iter().map(|n| n.div_ceil(step) as u64).product::<u64>();
-        let step = (1..).find(|&step| count(step) <= u64::from(ARROW_LIMIT)).expect("one arrow is left at the largest step");
+        let step = (1..).find(|&step| count(step) <= u64::from(ARROW_LIMIT)).expect("the largest step leaves one arrow");
 
         let mut sites = Vec::new();
         for k in (step / 2..span[2]).step_by(step as usize) {
@@ -47,7 +47,7 @@ impl WindArrows {
                 for i in (step / 2..span[0]).step_by(step as usize) {
                     let [x, above, z] = [(0, i), (1, j), (2, k)].map(|(axis, n)| (n as f32 + 0.5) * wind.spacing_m[axis]);
                     let [tap, others @ ..] = tiles.taps([x, z]);
-                    let [in_x, in_z] = others.into_iter().fold(tap, |most, tap| if tap.share > most.share { tap } else { most }).at_m;
+                    let [in_x, in_z] = others.into_iter().fold(tap, |most, tap| if tap.weight > most.weight { tap } else { most }).at_m;
                     let [i, k] = [(in_x, 0, nx), (in_z, 2, nz)].map(|(m, axis, n)| (m / wind.spacing_m[axis]) as u32 % n);
                     let cell = ((k * ny + j) * nx + i) as usize;
                     sites.push(Site { cell, origin_m: Vec3::new(x, heights.height_m(x, z) + above, z) });
@@ -57,7 +57,7 @@ impl WindArrows {
         Self { cells: wind.cells, sites }
     }
 
-    /// Origins (m), vectors (m) and colours of the arrows of a frame; nothing for a frame of another shape.
+    /// Origins (m), vectors (m) and colours of the arrows of a frame; empty for a frame of another shape.
     pub(super) fn of(&self, frame: &WindFrame) -> (Vec<[f32; 3]>, Vec<[f32; 3]>, Vec<Rgb>) {
         let volume = self.cells.iter().product::<u32>() as usize;
         if frame.cells != self.cells || frame.codes.len() < 3 * volume {
@@ -80,8 +80,8 @@ impl WindArrows {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::scene::{Wind, WindBoundary, WindTiling};
-    use shared::wire::quantise::wind_code;
+    use prairie_core::scene::{Wind, WindBoundary, WindTiling};
+    use prairie_core::wire::quantise::wind_code;
 
     /// A world of `count × count` patches of 16 m.
     fn scene(wind: Wind, count: u32) -> Scene {
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn an_arrow_stands_at_its_cell_and_shows_its_wind() {
+    fn an_arrow_shows_the_wind_of_its_own_cell() {
         let mut wind = Wind { cells: [3, 2, 3], spacing_m: [4.0, 2.0, 5.0], ..Wind::default() };
         (wind.faces.west, wind.faces.north) = (WindBoundary::NoSlip, WindBoundary::NoSlip);
         let arrows = WindArrows::new(&scene(wind, 1), &flat(7.0));
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_that_wraps_covers_the_world_within_the_limit() {
+    fn a_periodic_box_covers_the_world_within_the_limit() {
         let wind = Wind { cells: [4, 2, 4], spacing_m: [8.0, 2.0, 8.0], ..Wind::default() };
         for count in [2, 16, 2500] {
             let extent_m = count as f32 * 16.0;
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_that_serves_every_patch_shows_each_its_own_cells() {
+    fn a_box_shared_by_all_patches_is_offset_in_each() {
         let wind = Wind { cells: [4, 2, 4], spacing_m: [4.0; 3], tiling: WindTiling::Patch, ..Wind::default() };
         let scene = scene(wind, 4);
         let arrows = WindArrows::new(&scene, &flat(0.0));
@@ -131,14 +131,14 @@ mod tests {
             .map(|patch| arrows.sites.iter().find(|site| site.origin_m == Vec3::new(patch as f32 * 16.0 + 6.0, 2.0, 6.0)).unwrap().cell)
             .collect();
         let moved = [0, 1, 2, 3].map(|patch| {
-            let [x, z] = shared::wind::offset_cells(scene.seed as u32, [patch, 0], [4, 4]);
+            let [x, z] = prairie_core::wind::offset_cells(scene.seed as u32, [patch, 0], [4, 4]);
             ((1 + x) % 4 + (1 + z) % 4 * 8) as usize
         });
         assert_eq!(shown, moved);
     }
 
     #[test]
-    fn a_frame_of_another_shape_shows_nothing() {
+    fn a_frame_of_another_shape_has_no_arrows() {
         let arrows = WindArrows::new(&scene(Wind::default(), 16), &flat(0.0));
         assert!(!arrows.sites.is_empty());
         assert!(arrows.of(&WindFrame::default()).0.is_empty());

@@ -1,6 +1,10 @@
-//! The first view: the land with the wind over it, the map of bends beside it, the scalars below.
+//! The initial layout of the viewer: terrain with wind arrows, the map of bending angles beside it, plots below.
 
+use super::connect::APPLICATION;
+use super::plots::PLOTS;
 use glam::Vec3;
+use prairie_core::scene::Scene;
+use prairie_core::terrain::HeightMap;
 use rerun::blueprint::components::{BackgroundKind, ContainerKind, Corner2D, IncludedContent, PanelState, PlayState, RootContainer};
 use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::external::re_sdk_types::blueprint::archetypes::{
@@ -10,15 +14,13 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 use rerun::external::re_sdk_types::datatypes::Uuid;
 use rerun::log::LogMsg;
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
-use shared::scene::Scene;
-use shared::terrain::HeightMap;
 
 /// A layout of the viewer, ready to be sent.
-pub(super) struct FirstView {
+pub(super) struct InitialLayout {
     messages: Vec<LogMsg>,
 }
 
-impl FirstView {
+impl InitialLayout {
     /// Makes it the active layout of a recording.
     pub(super) fn send(self, stream: &RecordingStream) {
         if let Some(blueprint_id) = self.messages.first().map(|message| message.store_id().clone()) {
@@ -27,13 +29,13 @@ impl FirstView {
     }
 }
 
-/// The layout for a scene; its camera looks at the place where a visitor starts.
-pub(super) fn first_view(scene: &Scene, heights: &HeightMap) -> RecordingStreamResult<FirstView> {
-    let (stream, storage) = RecordingStreamBuilder::new(super::recording::APPLICATION).blueprint().memory()?;
+/// The layout for a scene; its camera looks at the clients' starting point.
+pub(super) fn initial_layout(scene: &Scene, heights: &HeightMap) -> RecordingStreamResult<InitialLayout> {
+    let (stream, storage) = RecordingStreamBuilder::new(APPLICATION).blueprint().memory()?;
     stream.set_time_sequence("blueprint", 0);
     let mut layout = Layout { stream, next: 1 };
 
-    let land = layout.view(
+    let terrain = layout.view(
         "3D",
         "Wind and grass",
         "world",
@@ -45,28 +47,15 @@ pub(super) fn first_view(scene: &Scene, heights: &HeightMap) -> RecordingStreamR
         ],
     )?;
     let map = layout.view("2D", "Bending angle, from above", "map", &["$origin/**"], &[])?;
-    let plots = [
-        ("Duration of a step (ms)", "health/step/**"),
-        ("Divergence of the wind (1/s)", "health/wind/divergence"),
-        ("Kinetic energy of the wind (J/kg)", "health/wind/energy"),
-        ("Energy of the bend field", "health/bend/energy"),
-        ("Awake patches", "health/bend/awake_patches"),
-        ("Laid tiles, broken plants", "health/bend/laid_tiles health/bend/broken_plants"),
-        ("Sub-steps, Courant number", "health/steps/**"),
-        ("Clients, objects", "health/net/**"),
-        ("Lost: log frames, patches, winds", "health/lost/**"),
-        ("Sent to clients (kB/s)", "health/sent/kbyte_per_s"),
-    ];
     let mut plot_views = Vec::new();
-    for (name, entities) in plots {
-        let contents: Vec<String> = entities.split(' ').map(|entity| format!("+ /{entity}")).collect();
+    for plot in PLOTS {
+        let contents: Vec<String> = plot.curves.iter().map(|curve| format!("+ /{}", plot.entity(curve))).collect();
         let contents: Vec<&str> = contents.iter().map(String::as_str).collect();
-        let several = entities.contains(['*', ' ']);
-        let legend = PlotLegend::new().with_corner(Corner2D::LeftTop).with_visible(several);
-        plot_views.push(layout.view("TimeSeries", name, "health", &contents, &[("PlotLegend", &legend)])?);
+        let legend = PlotLegend::new().with_corner(Corner2D::LeftTop).with_visible(plot.curves.len() > 1);
+        plot_views.push(layout.view("TimeSeries", plot.title, "metrics", &contents, &[("PlotLegend", &legend)])?);
     }
 
-    let (_, top) = layout.container(ContainerKind::Horizontal, [land, map], |top| top.with_col_shares([1.9, 1.0]))?;
+    let (_, top) = layout.container(ContainerKind::Horizontal, [terrain, map], |top| top.with_col_shares([1.9, 1.0]))?;
     let (_, bottom) = layout.container(ContainerKind::Grid, plot_views, |grid| grid.with_grid_columns(5))?;
     let (root, _) = layout.container(ContainerKind::Vertical, [top, bottom], |root| root.with_row_shares([2.2, 1.0]))?;
 
@@ -77,10 +66,10 @@ pub(super) fn first_view(scene: &Scene, heights: &HeightMap) -> RecordingStreamR
     }
     let time = TimePanelBlueprint::new().with_state(PanelState::Collapsed).with_timeline("sim_time").with_play_state(PlayState::Following);
     layout.stream.log("time_panel", &time)?;
-    Ok(FirstView { messages: storage.take() })
+    Ok(InitialLayout { messages: storage.take() })
 }
 
-/// Looks down on the visitors' start from behind it, far enough back to hold a good part of the world.
+/// A camera that looks down on the clients' starting point from behind, far enough away to show a good part of the world.
 fn eye(scene: &Scene, heights: &HeightMap) -> EyeControls3D {
     let extent_m = scene.extent_m();
     let [x, z] = [0, 1].map(|axis| scene.camera.at[axis] * extent_m[axis]);
@@ -91,7 +80,7 @@ fn eye(scene: &Scene, heights: &HeightMap) -> EyeControls3D {
     EyeControls3D::new().with_position(eye.to_array()).with_look_target(target.to_array()).with_eye_up([0.0, 1.0, 0.0])
 }
 
-/// Writes the views and containers of a layout, numbering them.
+/// Writes and numbers the views and containers of a layout.
 struct Layout {
     stream: RecordingStream,
     next: u128,
@@ -126,7 +115,7 @@ impl Layout {
         Ok((RootContainer(id), path.as_str().into()))
     }
 
-    /// The next number as a UUID, and the entity that it names.
+    /// The next number as a UUID, and the entity named after it.
     fn path(&mut self, kind: &str) -> (Uuid, String) {
         let id = self.next;
         self.next += 1;

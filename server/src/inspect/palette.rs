@@ -1,9 +1,9 @@
-//! Colours of bends and speeds: ramps that are linear between stops.
+//! Colour ramps of bending angles and wind speeds, linear between stops.
 
 /// sRGB, 0..=255.
 pub(super) type Rgb = [u8; 3];
 
-/// Colour of a bending angle (degrees, 0..=90): green while upright, straw as it leans, red when it lies.
+/// Colour of a bending angle (degrees, 0..=90): green when upright, straw when leaning, red when flat.
 const BEND: [(f32, Rgb); 5] =
     [(0.0, [82, 116, 64]), (10.0, [136, 164, 76]), (30.0, [236, 214, 116]), (60.0, [232, 116, 44]), (90.0, [172, 24, 52])];
 
@@ -26,8 +26,8 @@ fn ramp(stops: &[(f32, Rgb)], at: f32) -> Rgb {
         return stops[above.min(stops.len() - 1)].1;
     }
     let ((low, from), (high, to)) = (stops[above - 1], stops[above]);
-    let share = (at - low) / (high - low);
-    std::array::from_fn(|i| (f32::from(from[i]) + (f32::from(to[i]) - f32::from(from[i])) * share).round() as u8)
+    let fraction = (at - low) / (high - low);
+    std::array::from_fn(|i| (f32::from(from[i]) + (f32::from(to[i]) - f32::from(from[i])) * fraction).round() as u8)
 }
 
 #[cfg(test)]
@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_ramp_meets_its_stops_and_holds_beyond_them() {
+    fn a_ramp_passes_through_its_stops_and_is_constant_beyond_them() {
         for (stop, rgb) in BEND {
             assert_eq!(bend_rgb(stop), rgb);
         }

@@ -1,110 +1,82 @@
-//! What is logged, and under which names.
+//! The logged entities.
 //!
-//! | entity | what |
+//! | entity | data |
 //! | --- | --- |
-//! | `world/ground` | the land (static), with the bending angles laid on it as a texture |
-//! | `world/wind` | wind arrows: length the way of the air in 1.2 s, colour the speed |
-//! | `world/objects`, `world/trails` | boxes with poses and labels; the ways they came |
-//! | `map/bend`, `map/objects`, `map/scale` | the bending angles from above, one class a code; the objects' places; the colours |
-//! | `health/…` | scalars |
+//! | `world/ground` | terrain mesh (static), textured with the bending angles |
+//! | `world/wind` | wind arrows: the length is the distance covered in 1.2 s, the colour is the speed |
+//! | `world/objects`, `world/trails` | boxes with poses and labels; trails of the last seconds |
+//! | `map/bend`, `map/objects`, `map/scale` | bending angles from above, one class per code; positions of the objects; colour scale |
+//! | `metrics/…` | the metrics of [`PLOTS`](super::plots::PLOTS) |
 
 use super::arrows::WindArrows;
-use super::ground::{BendMap, GroundMesh, degrees};
+use super::bend_map::{BendMap, degrees};
+use super::blueprint;
+use super::connect::{VIEWER_TIMEOUT, open_stream, sdk};
+use super::error::InspectError;
 use super::palette::bend_rgb;
-use super::trails::{Trails, kind_rgb};
-use super::{Frame, InspectError, Sink, Target, blueprint};
-use crate::bend::air::GroundWind;
+use super::plots::PLOTS;
+use super::sink::{Frame, Sink};
+use super::target::Target;
+use super::terrain_mesh::TerrainMesh;
+use super::trails::Trails;
+use crate::bend::ground_wind::GroundWind;
+use crate::objects::trail_rgb;
 use crate::snapshot::Snapshot;
+use prairie_core::grid::PatchLayout;
+use prairie_core::scene::{Objects, Scene};
+use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
+use prairie_core::wire::ObjectPose;
 use rerun::components::{FillMode, ImageFormat};
 use rerun::datatypes::ChannelDatatype;
-use rerun::external::re_uri::ProxyUri;
 use rerun::{
-    AnnotationContext, Arrows3D, AsComponents, Boxes3D, LineStrips2D, LineStrips3D, MemoryLimit, Mesh3D, Points2D, Quaternion, Radius,
-    RecordingStream, RecordingStreamBuilder, Rgba32, Scalars, SegmentationImage, SeriesLines, ServerOptions, ViewCoordinates,
+    AnnotationContext, Arrows3D, AsComponents, Boxes3D, LineStrips2D, LineStrips3D, Mesh3D, Points2D, Quaternion, Radius, RecordingStream,
+    Rgba32, Scalars, SegmentationImage, SeriesLines, ViewCoordinates,
 };
-use shared::grid::PatchLayout;
-use shared::scene::Scene;
-use shared::terrain::{CoverMap, HeightMap, KindMap};
-use shared::wire::ObjectPose;
-use std::fmt::Display;
-use std::net::{TcpListener, TcpStream, ToSocketAddrs};
-use std::time::Duration;
-
-/// Name of the program in the viewer's list of recordings.
-pub(super) const APPLICATION: &str = "prairie";
-
-/// History that is kept for viewers that connect later (bytes).
-const HISTORY_LIMIT_BYTES: u64 = 256 << 20;
 
 /// Radius of a wind arrow's shaft (m).
 const ARROW_RADIUS_M: f32 = 0.16;
 
-/// How long a viewer may take to answer at the start, and to take the last frames at the end.
-const VIEWER_LIMIT: Duration = Duration::from_secs(2);
-
-/// Steps of the bar that explains the colours of angles.
+/// Number of steps in the colour scale of the angles.
 const SCALE_STEPS: usize = 9;
 
-/// Scalars: entity, name in the plots, colour, and how to read it.
-#[expect(clippy::type_complexity, reason = "a table reads best as one literal")]
-const SCALARS: [(&str, &str, u32, fn(&Frame) -> f64); 19] = [
-    ("health/step/mean_ms", "mean", 0x4CAF_50FF, |frame| f64::from(frame.snapshot.health.step_secs) * 1e3),
-    ("health/step/longest_ms", "longest", 0xFF70_43FF, |frame| f64::from(frame.snapshot.health.step_max_secs) * 1e3),
-    ("health/wind/divergence", "rms divergence", 0x29B6_F6FF, |frame| f64::from(frame.snapshot.health.divergence_rms)),
-    ("health/wind/energy", "wind", 0x29B6_F6FF, |frame| frame.snapshot.health.wind_energy),
-    ("health/bend/energy", "bend", 0xFFCA_28FF, |frame| frame.snapshot.health.bend_energy),
-    ("health/bend/awake_patches", "awake patches", 0xFFCA_28FF, |frame| f64::from(frame.snapshot.health.awake_patches)),
-    ("health/bend/laid_tiles", "laid tiles", 0x8D6E_63FF, |frame| f64::from(frame.snapshot.health.laid_tiles)),
-    ("health/bend/broken_plants", "broken plants", 0xEF53_50FF, |frame| frame.snapshot.broken.len() as f64),
-    ("health/steps/substeps", "sub-steps", 0xAB47_BCFF, |frame| f64::from(frame.snapshot.health.substeps)),
-    ("health/steps/courant", "Courant number", 0xEC40_7AFF, |frame| f64::from(frame.snapshot.health.courant)),
-    ("health/net/clients", "clients", 0x26A6_9AFF, |frame| f64::from(frame.traffic.clients)),
-    ("health/net/objects", "objects", 0xFF70_43FF, |frame| frame.snapshot.objects.len() as f64),
-    ("health/sent/kbyte_per_s", "sent", 0x26A6_9AFF, |frame| frame.traffic.bytes_per_s / 1e3),
-    ("health/lost/log_frames", "log frames", 0xBDBD_BDFF, |frame| frame.dropped as f64),
-    ("health/lost/evicted_patches", "evicted patches", 0xFFCA_28FF, |frame| frame.snapshot.health.evicted_patches as f64),
-    ("health/lost/broken_patches", "broken patches", 0xAB47_BCFF, |frame| frame.snapshot.health.broken_patches as f64),
-    ("health/lost/tracks", "tracks let go", 0x8D6E_63FF, |frame| frame.snapshot.health.dropped_tracks as f64),
-    ("health/lost/motions", "motions refused", 0xEF53_50FF, |frame| frame.snapshot.health.refused_motions as f64),
-    ("health/lost/winds", "winds begun anew", 0x29B6_F6FF, |frame| frame.snapshot.health.wind_resets as f64),
-];
-
-/// One recording, open.
+/// An open recording.
 pub(super) struct Recording {
     stream: RecordingStream,
     address: String,
     to_file: bool,
     map: BendMap,
     arrows: WindArrows,
+    settings: Objects,
     wind_tick: Option<u64>,
     trails: Trails,
 }
 
 impl Recording {
-    /// Opens the target and logs what stays as it is.
+    /// Opens the target and logs the static data.
     pub(super) fn open(target: &Target, scene: &Scene, heights: &HeightMap, cover: &CoverMap) -> Result<Self, InspectError> {
         let (stream, address) = open_stream(target)?;
-        blueprint::first_view(scene, heights).map_err(sdk)?.send(&stream);
+        blueprint::initial_layout(scene, heights).map_err(sdk)?.send(&stream);
         let layout = PatchLayout::from(&scene.patches);
         let recording = Self {
             stream,
             address,
             to_file: matches!(target, Target::Save(_)),
-            map: BendMap::new(layout, GroundWind::still(scene).over(KindMap::new(scene, cover)), scene.tick_hz as u64),
+            map: BendMap::new(layout, GroundWind::still(scene).with_kinds(KindMap::new(scene, cover)), scene.tick_hz as u64),
             arrows: WindArrows::new(scene, heights),
+            settings: scene.objects.clone(),
             wind_tick: None,
             trails: Trails::default(),
         };
-        recording.write_static(&GroundMesh::new(&layout, heights, &scene.light))?;
+        recording.write_static(&TerrainMesh::new(&layout, heights, &scene.light))?;
         Ok(recording)
     }
 
-    /// Where it goes; for a served one, what a viewer connects to.
+    /// Path of the file, or URL for viewers.
     pub(super) fn address(&self) -> String {
         self.address.clone()
     }
 
-    fn write_static(&self, mesh: &GroundMesh) -> Result<(), InspectError> {
+    fn write_static(&self, mesh: &TerrainMesh) -> Result<(), InspectError> {
         let keep = |entity: &str, what: &dyn AsComponents| self.stream.log_static(entity, what).map_err(sdk);
         keep("world", &ViewCoordinates::RIGHT_HAND_Y_UP())?;
         let ground = Mesh3D::new(&mesh.positions_m)
@@ -117,23 +89,23 @@ impl Recording {
             (0..=127).map(|code| (u16::from(code), format!("{:.0}°", degrees(code)), Rgba32::from(bend_rgb(degrees(code))))).collect();
         keep("map", &AnnotationContext::new(names.iter().map(|(code, name, rgb)| (*code, name.as_str(), *rgb))))?;
         keep("map/scale", &self.scale())?;
-        for (entity, name, rgba, _) in SCALARS {
-            keep(entity, &SeriesLines::new().with_names([name]).with_colors([rgba]).with_widths([1.5]))?;
-        }
-        Ok(())
+        let series = PLOTS.iter().flat_map(|plot| plot.curves.iter().map(|curve| (plot.entity(curve), curve)));
+        series.into_iter().try_for_each(|(entity, curve)| {
+            keep(&entity, &SeriesLines::new().with_names([curve.label]).with_colors([curve.rgba]).with_widths([1.5]))
+        })
     }
 
-    /// The colours of the angles as a bar above the map.
+    /// The colour scale of the angles, a bar above the map.
     fn scale(&self) -> LineStrips2D {
         let width_px = self.map.size_px()[0] as f32;
         let radius_px = 0.015 * width_px;
         let step_px = (width_px - 2.0 * radius_px) / SCALE_STEPS as f32;
         let place = |i: usize| [radius_px + i as f32 * step_px, -2.0 * radius_px];
         let bars = (0..SCALE_STEPS).map(|i| [place(i), place(i + 1)]);
-        let middle_degrees: Vec<_> = (0..SCALE_STEPS).map(|i| 90.0 * (i as f32 + 0.5) / SCALE_STEPS as f32).collect();
+        let middles_deg: Vec<_> = (0..SCALE_STEPS).map(|i| 90.0 * (i as f32 + 0.5) / SCALE_STEPS as f32).collect();
         LineStrips2D::new(bars)
-            .with_colors(middle_degrees.iter().map(|&at| Rgba32::from(bend_rgb(at))))
-            .with_labels(middle_degrees.iter().map(|at| format!("{at:.0}°")))
+            .with_colors(middles_deg.iter().map(|&at| Rgba32::from(bend_rgb(at))))
+            .with_labels(middles_deg.iter().map(|at| format!("{at:.0}°")))
             .with_radii([radius_px])
     }
 
@@ -149,18 +121,7 @@ impl Recording {
 
     fn write_objects(&mut self, snapshot: &Snapshot) -> Result<(), InspectError> {
         let objects = &snapshot.objects;
-        let colours = || objects.iter().map(|object| Rgba32::from(kind_rgb(object.kind)));
-        let boxes = Boxes3D::from_centers_and_half_sizes(
-            objects.iter().map(|object| object.position_m),
-            objects.iter().map(|object| object.kind.half_extents_m()),
-        );
-        let boxes = boxes
-            .with_quaternions(objects.iter().map(|object| Quaternion::from_xyzw(object.rotation)))
-            .with_fill_mode(FillMode::TransparentFillMajorWireframe);
-        self.log(
-            "world/objects",
-            &boxes.with_colors(colours()).with_labels(objects.iter().map(label)).with_radii([Radius::new_ui_points(1.0)]),
-        )?;
+        self.log("world/objects", &boxes(objects, &self.settings))?;
 
         self.trails.update(objects);
         let (strips, trail_colours) = self.trails.strips();
@@ -169,7 +130,7 @@ impl Recording {
 
         let pixel_m = self.map.pixel_m();
         let places = objects.iter().map(|object| [object.position_m[0] / pixel_m, object.position_m[2] / pixel_m]);
-        self.log("map/objects", &Points2D::new(places).with_colors(colours()).with_radii([Radius::new_ui_points(4.0)]))
+        self.log("map/objects", &Points2D::new(places).with_colors(colours(objects)).with_radii([Radius::new_ui_points(4.0)]))
     }
 }
 
@@ -188,18 +149,34 @@ impl Sink for Recording {
             self.log("world/wind", &arrows.with_colors(colours.into_iter().map(Rgba32::from)).with_radii([ARROW_RADIUS_M]))?;
         }
         self.write_objects(snapshot)?;
-        SCALARS.iter().try_for_each(|(entity, _, _, read)| self.log(entity, &Scalars::single(read(frame))))
+        let series = PLOTS.iter().flat_map(|plot| plot.curves.iter().map(move |curve| (plot, curve)));
+        series.into_iter().try_for_each(|(plot, curve)| self.log(&plot.entity(curve), &Scalars::single(plot.scale * curve.value(frame))))
     }
 
-    /// A file is written to its footer, without which it does not verify; a viewer gets a moment to take what is left.
+    /// Completes a file with its footer, without which it fails verification; gives a viewer a moment to receive the last frames.
     fn finish(self) -> Result<(), InspectError> {
         if self.to_file {
             self.stream.flush_blocking().map_err(sdk)?;
             self.stream.disconnect();
             return Ok(());
         }
-        self.stream.flush_with_timeout(VIEWER_LIMIT).map_err(sdk)
+        self.stream.flush_with_timeout(VIEWER_TIMEOUT).map_err(sdk)
     }
+}
+
+/// The boxes of the objects, in the dimensions that the scene gives them.
+fn boxes(objects: &[ObjectPose], settings: &Objects) -> Boxes3D {
+    let half_extents_m = objects.iter().map(|object| settings.half_extents_m(object.kind));
+    Boxes3D::from_centers_and_half_sizes(objects.iter().map(|object| object.position_m), half_extents_m)
+        .with_quaternions(objects.iter().map(|object| Quaternion::from_xyzw(object.rotation)))
+        .with_fill_mode(FillMode::TransparentFillMajorWireframe)
+        .with_colors(colours(objects))
+        .with_labels(objects.iter().map(label))
+        .with_radii([Radius::new_ui_points(1.0)])
+}
+
+fn colours(objects: &[ObjectPose]) -> impl Iterator<Item = Rgba32> {
+    objects.iter().map(|object| Rgba32::from(trail_rgb(object.kind)))
 }
 
 /// "car 3, 14 m/s".
@@ -208,62 +185,20 @@ fn label(object: &ObjectPose) -> String {
     format!("{} {}, {speed_m_per_s:.0} m/s", object.kind.name(), object.id)
 }
 
-fn sdk(error: impl Display) -> InspectError {
-    InspectError::Sdk(error.to_string())
-}
-
-/// Opens the stream, and says where it goes. The SDK itself tells of a taken port or an absent viewer only late, if at all, so
-/// both are tried first.
-fn open_stream(target: &Target) -> Result<(RecordingStream, String), InspectError> {
-    let builder = RecordingStreamBuilder::new(APPLICATION);
-    let (stream, address) = match target {
-        Target::Serve(addr) => {
-            let taken = |reason| InspectError::Address { addr: *addr, reason };
-            let free = TcpListener::bind(addr).and_then(|listener| listener.local_addr()).map_err(taken)?;
-            let options = ServerOptions { memory_limit: MemoryLimit::from_bytes(HISTORY_LIMIT_BYTES), ..ServerOptions::default() };
-            let ip = if free.is_ipv6() { format!("[{}]", free.ip()) } else { free.ip().to_string() };
-            (builder.serve_grpc_opts(ip, free.port(), options), format!("rerun+http://{free}/proxy"))
-        }
-        Target::Save(path) => {
-            std::fs::File::create(path).map_err(|reason| InspectError::File { path: path.clone(), reason })?;
-            (builder.save(path), path.display().to_string())
-        }
-        Target::Connect(url) => {
-            let uri: ProxyUri = url.parse().map_err(sdk)?;
-            knock(&uri).map_err(|reason| InspectError::NoViewer { url: url.clone(), reason })?;
-            (builder.connect_grpc_opts(url.as_str()), url.clone())
-        }
-    };
-    let stream = stream.map_err(sdk)?;
-    stream.set_log_time_enabled(false);
-    Ok((stream, address))
-}
-
-/// Whether anything listens at the address of a viewer.
-fn knock(uri: &ProxyUri) -> std::io::Result<()> {
-    let mut last = std::io::Error::other("the name has no address");
-    for addr in (uri.origin.host.to_string(), uri.origin.port).to_socket_addrs()? {
-        match TcpStream::connect_timeout(&addr, VIEWER_LIMIT) {
-            Ok(_) => return Ok(()),
-            Err(error) => last = error,
-        }
-    }
-    Err(last)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::inspect::Inspector;
     use crate::snapshot::{PatchCodes, WindFrame};
+    use prairie_core::scene::VehicleKind;
+    use prairie_core::terrain::grey_png;
+    use prairie_core::wire::quantise::wind_code;
     use rerun::external::re_log_encoding::DecoderApp;
     use rerun::log::{Chunk, LogMsg};
-    use shared::scene::VehicleKind;
-    use shared::terrain::grey_png;
-    use shared::wire::quantise::wind_code;
     use std::collections::BTreeMap;
     use std::fs::File;
     use std::io::BufReader;
+    use std::net::TcpListener;
     use std::sync::Arc;
 
     fn scene() -> Scene {
@@ -282,22 +217,20 @@ mod tests {
         Inspector::start(target, &scene(), &flat(), &grass())
     }
 
+    fn pose(kind: VehicleKind, x_m: f32) -> ObjectPose {
+        let (rotation, velocity_m_per_s) = ([0.0, 0.0, 0.0, 1.0], [60.0, 0.0, 0.0]);
+        ObjectPose { id: 7, kind, position_m: [x_m, 4.0, 50.0], rotation, velocity_m_per_s, part_rad: 0.0 }
+    }
+
     fn driven(tick: u64) -> Snapshot {
-        let car = ObjectPose {
-            id: 7,
-            kind: VehicleKind::Car,
-            position_m: [40.0 + tick as f32, 4.0, 50.0],
-            rotation: [0.0, 0.0, 0.0, 1.0],
-            velocity_m_per_s: [60.0, 0.0, 0.0],
-            part_rad: 0.0,
-        };
+        let car = pose(VehicleKind::Car, 40.0 + tick as f32);
         let patches = Arc::new([(tick as u32 % 256, Arc::new(PatchCodes { tick, codes: vec![50; 3 * 64 * 64] }))].into());
         let wind = Arc::new(WindFrame { tick, cells: [32, 8, 32], codes: vec![wind_code(3.0); 3 * 32 * 8 * 32] });
         Snapshot { tick, time_secs: tick as f64 / 60.0, objects: vec![car], wind, patches, ..Snapshot::default() }
     }
 
     #[test]
-    fn a_file_is_whole_and_holds_every_entity() {
+    fn a_file_is_complete_and_contains_every_entity() {
         let path = std::env::temp_dir().join(format!("prairie-{}.rrd", std::process::id()));
         let inspector = open(&Target::Save(path.clone())).unwrap();
         for frame in 0..5 {
@@ -320,28 +253,38 @@ mod tests {
         }
         assert_eq!(messages.rrd_manifests().unwrap().len(), 2, "the footer lists the blueprint and the recording");
         let in_each_frame = ["/world/ground", "/world/wind", "/world/objects", "/world/trails", "/map/bend", "/map/objects"];
-        for entity in in_each_frame.into_iter().map(str::to_owned).chain(SCALARS.map(|(entity, ..)| format!("/{entity}"))) {
+        let metrics = PLOTS.iter().flat_map(|plot| plot.curves.iter().map(|curve| format!("/{}", plot.entity(curve))));
+        for entity in in_each_frame.into_iter().map(str::to_owned).chain(metrics) {
             assert_eq!(rows.get(&entity), Some(&kept), "{entity} in {rows:?}");
         }
         std::fs::remove_file(path).unwrap();
     }
 
     #[test]
-    fn a_taken_port_is_an_error() {
-        let taken = TcpListener::bind("127.0.0.1:0").unwrap();
-        let addr = taken.local_addr().unwrap();
+    fn a_port_in_use_is_an_error() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let addr = listener.local_addr().unwrap();
         let error = open(&Target::Serve(addr)).err().unwrap();
         assert!(matches!(error, InspectError::Address { .. }));
         assert!(error.to_string().contains(&addr.to_string()), "{error}");
     }
 
     #[test]
-    fn a_served_recording_says_where_it_is() {
+    fn a_served_recording_reports_its_address() {
         let inspector = open(&"serve=0".parse().unwrap()).unwrap();
         let addr = inspector.target().strip_prefix("rerun+http://").and_then(|rest| rest.strip_suffix("/proxy")).unwrap();
         assert!(addr.starts_with("127.0.0.1:") && !addr.ends_with(":0"), "{addr}");
         inspector.observe(&driven(0));
         inspector.finish().unwrap();
+    }
+
+    #[test]
+    fn the_boxes_have_the_dimensions_of_the_scene() {
+        let sled_outline_m = vec![[-3.0, -1.0], [0.5, -1.0], [0.0, 4.0]];
+        let settings = Objects { ball_radius_m: 2.5, sled_outline_m, ..Objects::default() };
+        let found = boxes(&[pose(VehicleKind::Ball, 1.0), pose(VehicleKind::Sled, 2.0)], &settings);
+        let [_, half_height_m, _] = Objects::default().half_extents_m(VehicleKind::Sled);
+        assert_eq!(found.half_sizes, Boxes3D::from_half_sizes([[2.5, 2.5, 2.5], [3.0, half_height_m, 4.0]]).half_sizes);
     }
 
     #[test]

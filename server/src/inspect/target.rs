@@ -1,4 +1,4 @@
-//! Where a recording goes, as `--rerun` says it.
+//! Destination of a recording: the value of `--rerun`.
 
 use std::fmt;
 use std::net::{Ipv4Addr, SocketAddr};
@@ -6,38 +6,38 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// Port that the viewer connects to unless told otherwise.
+/// Port that the viewer connects to by default.
 const DEFAULT_PORT: u16 = 9876;
 
-/// Schemes of a viewer's address.
+/// URL schemes of a viewer.
 const SCHEMES: [&str; 3] = ["rerun://", "rerun+http://", "rerun+https://"];
 
-/// Where a recording goes.
+/// Destination of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Target {
-    /// To viewers that connect to this address: `serve`, `serve=PORT` or `serve=IP:PORT`. Default 127.0.0.1:9876; port 0
-    /// takes a free one.
+    /// Viewers connect to this address: `serve`, `serve=PORT` or `serve=IP:PORT`. Default 127.0.0.1:9876; port 0 picks a free
+    /// one.
     Serve(SocketAddr),
-    /// To a file: `save=FILE.rrd`.
+    /// A file: `save=FILE.rrd`.
     Save(PathBuf),
-    /// To a viewer that runs already: `connect=rerun+http://HOST:PORT/proxy`.
+    /// A running viewer: `connect=rerun+http://HOST:PORT/proxy`.
     Connect(String),
 }
 
-/// Why a value of `--rerun` names no target.
+/// Reasons why a value of `--rerun` is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum TargetError {
     /// None of the three kinds.
-    #[error("`{0}` is none of serve, serve=PORT, serve=IP:PORT, save=FILE.rrd, connect=rerun+http://HOST:PORT/proxy")]
+    #[error("`{0}` is invalid; allowed: serve, serve=PORT, serve=IP:PORT, save=FILE.rrd, connect=rerun+http://HOST:PORT/proxy")]
     Kind(String),
-    /// `serve=` with something that is neither a port nor an address.
-    #[error("`{0}` is neither a port (0 to 65535) nor an address like 127.0.0.1:9876")]
+    /// `serve=` without a valid port or address.
+    #[error("`{0}` is neither a port (0 to 65535) nor an address such as 127.0.0.1:9876")]
     Address(String),
     /// `save` without a file.
     #[error("save needs a file: save=FILE.rrd")]
     NoFile,
-    /// `connect=` with something that is no address of a viewer.
-    #[error("`{0}` is no viewer's address; one reads rerun+http://127.0.0.1:9876/proxy")]
+    /// `connect=` without a viewer's URL.
+    #[error("`{0}` is not the URL of a viewer, such as rerun+http://127.0.0.1:9876/proxy")]
     Url(String),
 }
 
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_kind_is_read() {
+    fn every_kind_is_parsed() {
         let read = |text: &str| text.parse::<Target>().unwrap();
         assert_eq!(read("serve"), Target::Serve(local(9876)));
         assert_eq!(read("serve=0"), Target::Serve(local(0)));
@@ -95,14 +95,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read_back() {
+    fn a_displayed_target_parses_to_itself() {
         for text in ["serve=127.0.0.1:9876", "serve=[::1]:7", "save=a.rrd", "connect=rerun://h:1/proxy"] {
             assert_eq!(text.parse::<Target>().unwrap().to_string(), text);
         }
     }
 
     #[test]
-    fn each_mistake_has_its_own_error() {
+    fn every_mistake_has_its_own_error() {
         let error = |text: &str| text.parse::<Target>().unwrap_err();
         assert_eq!(error("spawn"), TargetError::Kind("spawn".to_owned()));
         assert_eq!(error(""), TargetError::Kind(String::new()));

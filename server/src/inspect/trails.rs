@@ -1,24 +1,25 @@
-//! The way that each object has come.
+//! Trails of the objects.
 
 use super::palette::Rgb;
-use shared::scene::VehicleKind;
-use shared::wire::{ObjectId, ObjectPose};
+use crate::objects::trail_rgb;
+use prairie_core::scene::VehicleKind;
+use prairie_core::wire::{ObjectId, ObjectPose};
 use std::collections::{BTreeMap, VecDeque};
 
-/// Points that a trail keeps: 6 s of a file, 9 s live.
+/// Largest number of points in a trail: 6 s in a file, 9 s live.
 const TRAIL_LIMIT: usize = 60;
 
-/// Least distance between points of a trail (m).
+/// Minimum distance between points of a trail (m).
 const TRAIL_STEP_M: f32 = 0.2;
 
-/// The newest part of the way of every object that is here.
+/// The most recent positions of every object.
 #[derive(Default)]
 pub(super) struct Trails {
     points_m: BTreeMap<ObjectId, (VehicleKind, VecDeque<[f32; 3]>)>,
 }
 
 impl Trails {
-    /// Takes over new poses; an object that is gone takes its trail with it.
+    /// Appends new poses; the trail of an object that is gone is removed.
     pub(super) fn update(&mut self, objects: &[ObjectPose]) {
         self.points_m.retain(|id, _| objects.iter().any(|object| object.id == *id));
         for object in objects {
@@ -35,18 +36,7 @@ impl Trails {
 
     /// The trails, oldest point first (m), with their colours.
     pub(super) fn strips(&self) -> (Vec<Vec<[f32; 3]>>, Vec<Rgb>) {
-        self.points_m.values().map(|(kind, points_m)| (points_m.iter().copied().collect(), kind_rgb(*kind))).unzip()
-    }
-}
-
-/// Colour of a kind of object.
-pub(super) fn kind_rgb(kind: VehicleKind) -> Rgb {
-    match kind {
-        VehicleKind::Car => [255, 84, 66],
-        VehicleKind::Monster => [186, 104, 255],
-        VehicleKind::Helicopter => [64, 196, 255],
-        VehicleKind::Sled => [255, 202, 40],
-        VehicleKind::Ball => [240, 240, 240],
+        self.points_m.values().map(|(kind, points_m)| (points_m.iter().copied().collect(), trail_rgb(*kind))).unzip()
     }
 }
 
@@ -67,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn a_trail_follows_its_object_and_goes_with_it() {
+    fn a_trail_follows_its_object_and_disappears_with_it() {
         let mut trails = Trails::default();
         for step in 0..1000 {
             trails.update(&[car(1, step as f32), car(2, 5.0)]);

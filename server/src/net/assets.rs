@@ -5,9 +5,9 @@
 pub struct Asset {
     /// Value of the `Content-Type` header.
     pub content_type: &'static str,
-    /// The file as it is.
+    /// The uncompressed file.
     pub bytes: &'static [u8],
-    /// The same bytes, gzip-compressed, for a request that accepts `gzip`.
+    /// The gzip-compressed file, for requests that accept `gzip`.
     pub gzip: &'static [u8],
     /// Value of the `ETag` header, quotes included: a hash of [`bytes`](Self::bytes).
     pub etag: &'static str,
@@ -15,7 +15,7 @@ pub struct Asset {
 
 const ASSETS: &[(&str, Asset)] = include!(concat!(env!("OUT_DIR"), "/client.rs"));
 
-/// The file behind the path of a request, with or without its leading slash; the bare `/` is `index.html`.
+/// The embedded file at the path of a request, with or without its leading slash; `/` is `index.html`.
 #[must_use]
 pub fn asset(path: &str) -> Option<&'static Asset> {
     let name = match path.strip_prefix('/').unwrap_or(path) {
@@ -30,21 +30,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_root_is_the_page() {
+    fn the_root_path_is_the_page() {
         let page = asset("/").expect("every build embeds a page");
         assert_eq!(page.content_type, "text/html; charset=utf-8");
         assert_eq!(page.etag, asset("/index.html").expect("the same page").etag);
     }
 
     #[test]
-    fn only_embedded_names_are_served() {
+    fn only_embedded_files_are_served() {
         for path in ["/nothing", "/../Cargo.toml", "/index.html.gz", "/index.html/"] {
             assert!(asset(path).is_none(), "{path}");
         }
     }
 
     #[test]
-    fn every_file_is_whole_and_has_its_own_tag() {
+    fn every_file_is_complete_and_has_a_unique_tag() {
         for (name, asset) in ASSETS {
             assert!(!asset.bytes.is_empty(), "{name}");
             assert_eq!(asset.gzip[..2], [0x1f, 0x8b], "{name}: gzip magic");

@@ -1,48 +1,48 @@
-//! Taking a port, with an error that says what to do.
+//! Opening the listening socket, with errors that suggest a remedy.
 
 use std::io;
 use std::net::SocketAddr;
 use thiserror::Error;
 use tokio::net::{TcpListener, lookup_host};
 
-/// Why an address cannot be listened on.
+/// Reasons why the server cannot listen on an address.
 #[derive(Debug, Error)]
 pub enum BindError {
     /// Not of the form `HOST:PORT`, or an unknown host.
-    #[error("`{address}` is no address to listen on ({reason}); give HOST:PORT, such as 127.0.0.1:8080 or 0.0.0.0:8080")]
+    #[error("cannot listen on `{address}` ({reason}); give HOST:PORT, such as 127.0.0.1:8080 or 0.0.0.0:8080")]
     Address {
-        /// The address given.
+        /// The requested address.
         address: String,
-        /// What the resolver says.
+        /// The resolver's reason.
         reason: io::Error,
     },
-    /// Another program listens there.
+    /// Another program listens on this address.
     #[error(
-        "{address} is in use by another program, perhaps another prairie; stop that one, or choose another port with \
-         --addr {host}:{next} (port 0 takes any free one)"
+        "{address} is in use by another program, perhaps another prairie; stop it, or choose another port with \
+         --addr {host}:{next} (port 0 picks a free one)"
     )]
     InUse {
-        /// The address given.
+        /// The requested address.
         address: String,
-        /// Its host.
+        /// The host of the address.
         host: String,
-        /// A port to try.
+        /// Another port to try.
         next: u16,
     },
-    /// The system refuses.
-    #[error("cannot listen on {address}: {reason}; ports below 1024 need privileges, and the host must be an address of this machine")]
+    /// The system refused.
+    #[error("cannot listen on {address}: {reason}; ports below 1024 need privileges, and the host must belong to this machine")]
     Refused {
-        /// The address given.
+        /// The requested address.
         address: String,
-        /// What the system says.
+        /// The system's reason.
         reason: io::Error,
     },
 }
 
-/// Listens on `address` (`HOST:PORT`); the first of its addresses that can be had.
+/// Listens on `address` (`HOST:PORT`); if the host has several addresses, on the first free one.
 ///
 /// # Errors
-/// [`BindError`], fit to be shown to whoever gave the address.
+/// [`BindError`], worded for the user who gave the address.
 pub async fn bind(address: &str) -> Result<TcpListener, BindError> {
     let unknown = |reason| BindError::Address { address: address.to_owned(), reason };
     let candidates: Vec<SocketAddr> = lookup_host(address).await.map_err(unknown)?.collect();
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn a_port_in_use_is_named_with_a_way_out() {
+    fn the_error_for_a_port_in_use_suggests_another() {
         block_on(async {
             let first = bind("127.0.0.1:0").await.unwrap();
             let address = first.local_addr().unwrap().to_string();
@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_is_no_address() {
+    fn invalid_addresses_are_errors() {
         block_on(async {
             for nonsense in ["", "8080", "127.0.0.1", "127.0.0.1:80800"] {
                 assert!(matches!(bind(nonsense).await, Err(BindError::Address { .. })), "{nonsense}");

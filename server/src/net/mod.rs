@@ -1,8 +1,9 @@
-//! The network side: sockets, TLS, HTTP and the sessions on `/ws`. The only part that knows axum.
+//! Network: sockets, TLS, HTTP and the sessions on `/ws`. The only part that depends on axum.
 //!
-//! What comes in is hostile until proven otherwise: connections, handshakes, headers, hellos, sizes and rates are bounded before anything
-//! is parsed, and whoever breaks a rule is closed with a code ([`shared::wire::Close`]), a reason and a log line.
+//! All input is untrusted: connections, handshakes, headers, hellos, sizes and rates are bounded before anything is parsed. A client that
+//! violates the protocol is disconnected with a code ([`prairie_core::wire::Close`]), a reason and a log line.
 
+mod app;
 pub mod assets;
 mod bind;
 mod routes;
@@ -10,7 +11,8 @@ mod serve;
 mod session;
 mod tls;
 
+pub(crate) use app::App;
 pub use bind::{BindError, bind};
-pub(crate) use routes::{App, router};
+pub(crate) use routes::router;
 pub(crate) use serve::serve;
 pub use tls::{Tls, TlsChoice, TlsError, reachable_ip};

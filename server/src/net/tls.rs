@@ -1,4 +1,4 @@
-//! Certificates: made on the spot or read from files.
+//! TLS certificates: self-signed or read from files.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
 use std::path::{Path, PathBuf};
@@ -10,14 +10,14 @@ use tokio_rustls::rustls::pki_types::pem::{self, PemObject};
 use tokio_rustls::rustls::pki_types::{CertificateDer, PrivateKeyDer, PrivatePkcs8KeyDer};
 use tokio_rustls::rustls::{self, ServerConfig};
 
-/// Where the certificate comes from.
+/// Source of the certificate.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TlsChoice {
-    /// Made at the start and gone at the end.
+    /// A self-signed certificate, generated at the start and never stored.
     SelfSigned,
     /// Two PEM files.
     Files {
-        /// The certificate, with the chain after it.
+        /// The certificate, followed by its chain.
         certificate: PathBuf,
         /// Its private key.
         key: PathBuf,
@@ -38,20 +38,20 @@ impl FromStr for TlsChoice {
     }
 }
 
-/// Why there is no TLS.
+/// Reasons why TLS cannot be set up.
 #[derive(Debug, Error)]
 pub enum TlsError {
-    /// A file is missing, unreadable or holds something else, or certificate and key do not go together.
+    /// A file is missing, unreadable or of another kind, or certificate and key do not match.
     #[error("{} {reason}", file.display())]
     File {
         /// The file.
         file: PathBuf,
-        /// Why it is of no use.
+        /// Reason why it cannot be used.
         reason: String,
     },
-    /// A certificate could not be made.
-    #[error("cannot make a certificate: {0}")]
-    Make(String),
+    /// A certificate could not be generated.
+    #[error("cannot generate a certificate: {0}")]
+    Generate(String),
 }
 
 /// A certificate with its key, ready for handshakes.
@@ -68,7 +68,7 @@ impl std::fmt::Debug for Tls {
 }
 
 impl Tls {
-    /// Reads or makes the certificate; one that is made names localhost and the addresses that `listening` can be reached at.
+    /// Reads or generates the certificate; a generated one is valid for localhost and the address at which `listening` is reachable.
     ///
     /// # Errors
     /// [`TlsError`], which names the file.
@@ -79,7 +79,7 @@ impl Tls {
         }
     }
 
-    /// SHA-256 of the certificate, as browsers show it: `AB:CD:…`.
+    /// SHA-256 fingerprint of the certificate, as browsers show it: `AB:CD:…`.
     pub fn fingerprint(&self) -> &str {
         &self.fingerprint
     }
@@ -99,10 +99,10 @@ impl Tls {
 fn self_signed(listening: SocketAddr) -> Result<Tls, TlsError> {
     let mut names = vec!["localhost".to_owned(), "127.0.0.1".to_owned(), "::1".to_owned()];
     names.extend(reachable_ip(listening).map(|ip| ip.to_string()));
-    let make = |error: rcgen::Error| TlsError::Make(error.to_string());
-    let made = rcgen::generate_simple_self_signed(names).map_err(make)?;
-    let key = PrivatePkcs8KeyDer::from(made.signing_key.serialize_der()).into();
-    Tls::from_parts(vec![made.cert.der().clone()], key).map_err(|error| TlsError::Make(error.to_string()))
+    let failed = |error: rcgen::Error| TlsError::Generate(error.to_string());
+    let generated = rcgen::generate_simple_self_signed(names).map_err(failed)?;
+    let key = PrivatePkcs8KeyDer::from(generated.signing_key.serialize_der()).into();
+    Tls::from_parts(vec![generated.cert.der().clone()], key).map_err(|error| TlsError::Generate(error.to_string()))
 }
 
 fn from_files(certificate: &Path, key: &Path) -> Result<Tls, TlsError> {
@@ -113,20 +113,20 @@ fn from_files(certificate: &Path, key: &Path) -> Result<Tls, TlsError> {
         return Err(in_chain(pem::Error::NoItemsFound));
     }
     let key = PrivateKeyDer::from_pem_file(key).map_err(|error| unusable(key, fault("private key", &error)))?;
-    Tls::from_parts(chain, key).map_err(|error| unusable(certificate, format!("cannot be served with that key: {error}")))
+    Tls::from_parts(chain, key).map_err(|error| unusable(certificate, format!("cannot be used with that key: {error}")))
 }
 
-/// What is wrong with a file that should hold `what`.
+/// Description of the fault in a file that should contain a `what`.
 fn fault(what: &str, error: &pem::Error) -> String {
     match error {
         pem::Error::Io(error) => format!("cannot be read: {error}"),
-        pem::Error::NoItemsFound => format!("holds no {what} in PEM form (`-----BEGIN …`)"),
-        damaged => format!("holds a damaged {what}: {damaged}"),
+        pem::Error::NoItemsFound => format!("contains no {what} in PEM format (`-----BEGIN …`)"),
+        damaged => format!("contains a damaged {what}: {damaged}"),
     }
 }
 
-/// The address at which other machines reach a listener, if they can: its own, or, if it listens on all, that of the
-/// interface towards the network (nothing is sent to find out).
+/// The address at which other machines can reach a listener: its own, or, if it listens on all addresses, that of the interface
+/// towards the network. Sends no packets.
 pub fn reachable_ip(listening: SocketAddr) -> Option<IpAddr> {
     if !listening.ip().is_unspecified() {
         return Some(listening.ip());
@@ -143,7 +143,7 @@ mod tests {
     const LISTENING: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0);
 
     #[test]
-    fn choices_are_read() {
+    fn tls_choices_are_parsed() {
         assert_eq!("self".parse(), Ok(TlsChoice::SelfSigned));
         assert_eq!("a.pem,b.pem".parse(), Ok(TlsChoice::Files { certificate: "a.pem".into(), key: "b.pem".into() }));
         for wrong in ["", "auto", ",", "a.pem,", ",b.pem"] {
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn every_certificate_made_is_another() {
+    fn generated_certificates_differ() {
         let make = || Tls::new(&TlsChoice::SelfSigned, LISTENING).unwrap();
         let (one, other) = (make(), make());
         assert_eq!(one.fingerprint().len(), 32 * 3 - 1);
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_files_are_named() {
+    fn errors_name_the_bad_file() {
         let folder = std::env::temp_dir().join(format!("prairie-tls-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let write = |name: &str, text: &str| {

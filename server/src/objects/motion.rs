@@ -1,19 +1,19 @@
-//! Where objects were and are, for the grass and the wind.
+//! Motion of objects in a step, as input to grass and wind.
 
 use glam::{Quat, Vec3};
-use shared::scene::VehicleKind;
+use prairie_core::scene::VehicleKind;
 use thiserror::Error;
 
 /// Position and orientation of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stand {
+pub struct BodyPose {
     /// Centre of the body's box (m).
     pub position_m: [f32; 3],
     /// Unit quaternion (x, y, z, w); the body's own axes are right +X, up +Y, forward −Z.
     pub rotation: [f32; 4],
 }
 
-impl Stand {
+impl BodyPose {
     /// Position on the ground (m).
     pub fn xz(&self) -> [f32; 2] {
         [self.position_m[0], self.position_m[2]]
@@ -25,70 +25,70 @@ impl Stand {
     }
 }
 
-/// What an object did in one step.
+/// Motion of an object in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
-    /// What it is.
+    /// Kind of the object.
     pub kind: VehicleKind,
-    /// Before the step.
-    pub from: Stand,
-    /// After it.
-    pub to: Stand,
-    /// Velocity after it (m/s), which moves the air; the grass goes by the way from one stand to the other.
+    /// Pose before the step.
+    pub from: BodyPose,
+    /// Pose after the step.
+    pub to: BodyPose,
+    /// Velocity after the step (m/s), which moves the air. Contact with the grass uses the two poses instead.
     pub velocity_m_per_s: [f32; 3],
-    /// Whether it has lain still for a while, until something moves it.
-    pub rests: bool,
+    /// Whether the physics has put the object to sleep.
+    pub is_at_rest: bool,
 }
 
-/// Farthest that an object moves in one step (m): the fastest one in the longest step goes 9 m.
-const WAY_LIMIT_M: f32 = 100.0;
-/// How far the square of a unit quaternion's length may be from 1.
-const UNIT_SLACK: f32 = 0.01;
+/// Largest displacement in one step (m). The fastest object moves 9 m in the longest step.
+const TRAVEL_LIMIT_M: f32 = 100.0;
+/// Tolerance of the squared length of a unit quaternion.
+const UNIT_TOLERANCE: f32 = 0.01;
 
-/// Why a motion is none.
+/// Reason why a motion is invalid.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum MotionError {
-    /// A vector that holds what is no number.
+    /// A value is NaN or infinite.
     #[error("`{field}` of a {} is {value:?}; allowed: finite numbers", .kind.name())]
     NotFinite {
-        /// What moves.
+        /// Kind of the object.
         kind: VehicleKind,
-        /// Which part of the motion, such as `velocity_m_per_s`.
+        /// Field of the motion, such as `velocity_m_per_s`.
         field: &'static str,
-        /// What it holds.
+        /// Its value.
         value: Vec<f32>,
     },
-    /// A rotation that is no unit quaternion.
+    /// A rotation is not a unit quaternion.
     #[error("`{field}` of a {} is {value:?}; allowed: a unit quaternion", .kind.name())]
     NotUnit {
-        /// What moves.
+        /// Kind of the object.
         kind: VehicleKind,
-        /// Which part of the motion.
+        /// Field of the motion.
         field: &'static str,
-        /// What it holds.
+        /// Its value.
         value: [f32; 4],
     },
-    /// A leap.
-    #[error("a {} moves {way_m:.1} m in one step; allowed: up to {WAY_LIMIT_M} m", .kind.name())]
+    /// The displacement is too large.
+    #[error("a {} moves {travel_m:.1} m in one step; allowed: up to {TRAVEL_LIMIT_M} m", .kind.name())]
     TooFar {
-        /// What moves.
+        /// Kind of the object.
         kind: VehicleKind,
-        /// How far (m).
-        way_m: f32,
+        /// Displacement (m).
+        travel_m: f32,
     },
 }
 
 impl Motion {
-    /// The same way without any turning.
-    pub fn unturned(&self) -> Self {
-        let unturned = |stand: Stand| Stand { rotation: Quat::IDENTITY.to_array(), ..stand };
-        Self { from: unturned(self.from), to: unturned(self.to), ..*self }
+    /// The same displacement without rotation.
+    pub fn without_rotation(&self) -> Self {
+        let level = |pose: BodyPose| BodyPose { rotation: Quat::IDENTITY.to_array(), ..pose };
+        Self { from: level(self.from), to: level(self.to), ..*self }
     }
 
-    /// Whether it is the motion of a body.
+    /// Checks the motion.
     ///
     /// # Errors
-    /// [`MotionError`]: numbers that are none, a rotation that is no unit quaternion, or more than 100 m in one step.
+    /// [`MotionError`] when a value is NaN or infinite, a rotation is not a unit quaternion, or the displacement exceeds 100 m.
     pub fn check(&self) -> Result<(), MotionError> {
         let Self { kind, from, to, velocity_m_per_s, .. } = *self;
         let vectors: [(&str, &[f32]); 5] = [
@@ -102,11 +102,11 @@ impl Motion {
             return Err(MotionError::NotFinite { kind, field, value: value.to_vec() });
         }
         for (field, value) in [("from.rotation", from.rotation), ("to.rotation", to.rotation)] {
-            if (Quat::from_array(value).length_squared() - 1.0).abs() > UNIT_SLACK {
+            if (Quat::from_array(value).length_squared() - 1.0).abs() > UNIT_TOLERANCE {
                 return Err(MotionError::NotUnit { kind, field, value });
             }
         }
-        let way_m = Vec3::from_array(from.position_m).distance(Vec3::from_array(to.position_m));
-        if way_m <= WAY_LIMIT_M { Ok(()) } else { Err(MotionError::TooFar { kind, way_m }) }
+        let travel_m = Vec3::from_array(from.position_m).distance(Vec3::from_array(to.position_m));
+        if travel_m <= TRAVEL_LIMIT_M { Ok(()) } else { Err(MotionError::TooFar { kind, travel_m }) }
     }
 }

@@ -1,31 +1,38 @@
-//! Where a new object is put.
+//! Free positions for new objects.
 
-use super::ground::Ground;
-use super::place::Place;
+use super::environment::Environment;
+use super::terrain_colliders::TerrainColliders;
 
-/// Candidates that are tried, along a spiral.
+/// Number of candidates along the spiral.
 const TRIES: u32 = 4096;
-/// Distance of the first candidate from the middle (m).
+/// Distance of the first candidate from the centre (m).
 const FIRST_M: f32 = 9.0;
-/// Distance from one candidate to the next where nothing asks for more, about (m).
+/// Default distance between candidates, approximately (m).
 pub(super) const NEAR_M: f32 = 4.0;
 /// Angle from one candidate to the next: the golden angle (rad).
 const GOLDEN_RAD: f32 = 2.399_963;
-/// Steepest land that an object is put on, as rise over run.
+/// Steepest terrain for a new object, as rise over run.
 const STEEP: f32 = 0.6;
 
-/// A circle on the ground.
+/// A circle on the terrain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Disc {
     pub(super) at_m: [f32; 2],
     pub(super) radius_m: f32,
 }
 
-/// The first place along a spiral around `middle_m`, whose turns and candidates lie about `apart_m` from each other, where a disc of `radius_m` meets no other object, tree, stone or edge; on
-/// gentle land if there is any.
-pub(super) fn find(middle_m: [f32; 2], apart_m: f32, radius_m: f32, taken: &[Disc], ground: &Ground, place: &Place) -> Option<[f32; 2]> {
-    let bounds = place.bounds_m();
-    let middle: [f32; 2] = std::array::from_fn(|axis| middle_m[axis].clamp(bounds[axis][0], bounds[axis][1]));
+/// The first position along a spiral around `center_m` where a disc of `radius_m` overlaps no object, tree, stone or edge; on gentle terrain if there is
+/// any. Turns and candidates of the spiral are about `spacing_m` apart.
+pub(super) fn find(
+    center_m: [f32; 2],
+    spacing_m: f32,
+    radius_m: f32,
+    taken: &[Disc],
+    terrain: &TerrainColliders,
+    environment: &Environment,
+) -> Option<[f32; 2]> {
+    let bounds = environment.bounds_m();
+    let center: [f32; 2] = std::array::from_fn(|axis| center_m[axis].clamp(bounds[axis][0], bounds[axis][1]));
     let is_clear = |&at: &[f32; 2]| {
         let inside = (0..2).all(|axis| (bounds[axis][0]..=bounds[axis][1]).contains(&at[axis]));
         let apart = taken.iter().all(|disc| {
@@ -33,19 +40,19 @@ pub(super) fn find(middle_m: [f32; 2], apart_m: f32, radius_m: f32, taken: &[Dis
             let reach = radius_m + disc.radius_m;
             x * x + z * z > reach * reach
         });
-        inside && apart && ground.is_free(at, radius_m)
+        inside && apart && terrain.is_free(at, radius_m)
     };
     let is_gentle = |at: &[f32; 2]| {
-        let [x, z] = ground.slope(*at);
+        let [x, z] = terrain.slope(*at);
         x * x + z * z < STEEP * STEEP
     };
-    let mut clear = (0..TRIES).map(|n| spiral(middle, apart_m, n)).filter(is_clear).peekable();
+    let mut clear = (0..TRIES).map(|n| spiral(center, spacing_m, n)).filter(is_clear).peekable();
     let steep = clear.peek().copied();
     clear.find(is_gentle).or(steep)
 }
 
-fn spiral(middle: [f32; 2], apart_m: f32, n: u32) -> [f32; 2] {
-    let radius = (FIRST_M * FIRST_M + apart_m * apart_m * n as f32).sqrt();
+fn spiral(center: [f32; 2], spacing_m: f32, n: u32) -> [f32; 2] {
+    let radius = (FIRST_M * FIRST_M + spacing_m * spacing_m * n as f32).sqrt();
     let (sin, cos) = (n as f32 * GOLDEN_RAD).sin_cos();
-    [middle[0] + radius * cos, middle[1] + radius * sin]
+    [center[0] + radius * cos, center[1] + radius * sin]
 }

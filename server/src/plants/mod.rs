@@ -1,108 +1,96 @@
-//! The underbrush that objects and the wind break, for good (004 §3.2).
+//! Permanent damage of the underbrush by objects and wind (Endo et al. 2003, §3.2).
 //!
-//! - Objects: a component that is pressed to lean by θ is bent over its lower half: the moment at its foot is then 2·θ·EI/L. What a moving object passes over
-//!   must lie below it: a plant of height H under a body that is c above the land leans by arccos(c/H), or by as much as the grass there if that is more. It
-//!   breaks when 2·θ exceeds the strength of any component that it stands on, and falls the way that it is pressed. The wash of a helicopter breaks nothing so.
-//! - Wind: a plant breaks when the air at half its height presses harder than its species [bears](shared::plant::underbrush::bearing::bears_pa), and falls
-//!   downwind. Each is looked at every two seconds; none while the wind is too weak anywhere for the weakest species.
+//! - Objects: a component that is pressed to lean by θ is bent over its lower half, so the moment at its foot is 2·θ·EI/L. A plant below a moving object must
+//!   fit under it: a plant of height H under a body at clearance c leans by arccos(c/H), or as much as the grass there if that is more. It breaks when 2·θ
+//!   exceeds the strength of any of its components on the ground, and falls in the direction of the lean. A helicopter's downwash breaks no plant in this way.
+//! - Wind: a plant breaks when the dynamic pressure at half its height exceeds the
+//!   [breaking pressure](prairie_core::plant::underbrush::bearing::bears_pa) of its species, and falls downwind. Each plant is checked every two seconds,
+//!   and none while the wind is everywhere too weak for the weakest species.
 
-mod broken;
-mod gale;
+mod broken_state;
+mod storm_damage;
 
-pub use broken::BrokenPlants;
-
-use crate::bend::Meadow;
-use crate::bend::contact::{STANDING_M_PER_S, length};
+use crate::bend::BendSimulation;
+use crate::bend::contact::STANDSTILL_M_PER_S;
+use crate::bend::vector::length;
+use crate::checksum::Checksum;
+use crate::snapshot::BrokenPlants;
 use crate::weather::Weather;
-use gale::Gale;
-use shared::plant::flora::{Flora, height_m};
-use shared::plant::underbrush::bearing::bears_rad;
-use shared::wire::BrokenPlant;
-use shared::wire::quantise::heading_code;
+use broken_state::BrokenState;
+use prairie_core::plant::flora::{Flora, height_m};
+use prairie_core::plant::underbrush::bearing::bears_rad;
+use storm_damage::StormDamage;
 
-/// The plants of a world, and which of them are broken.
-pub struct Plants {
+/// The underbrush of a world and its damage.
+pub struct PlantDamage {
     flora: Option<Flora>,
-    species: Vec<Bearing>,
+    species: Vec<BendLimit>,
     /// Height of the tallest plants (m).
     tallest_m: f32,
-    gale: Gale,
-    fallen: Fallen,
+    storm: StormDamage,
+    broken: BrokenState,
 }
 
-/// What the plants of a species bear.
-#[derive(Clone, Copy)]
-struct Bearing {
+/// Height and strength of a species.
+#[derive(Clone, Copy, Debug)]
+struct BendLimit {
     height_m: f32,
-    /// Bend beyond which they break (rad).
+    /// Bend above which its plants break (rad).
     bears_rad: f32,
 }
 
-/// What is broken.
-struct Fallen {
-    /// Whether the plant of each site is.
-    is_broken: Vec<bool>,
-    all: BrokenPlants,
-}
-
-impl Fallen {
-    fn is_broken(&self, site: u32) -> bool {
-        self.is_broken[site as usize]
-    }
-
-    /// Breaks a whole plant, which falls along a vector on the ground.
-    fn fell(&mut self, site: u32, along: [f32; 2]) {
-        self.is_broken[site as usize] = true;
-        self.all.push(BrokenPlant { site, fall: heading_code(along) });
-    }
-}
-
-impl Plants {
-    /// Whole plants in a world that goes by steps of `dt_secs`.
+impl PlantDamage {
+    /// Intact plants, in a world with steps of `dt_secs`.
     pub fn new(flora: Option<Flora>, dt_secs: f32) -> Self {
         let known = || flora.iter().flat_map(|flora| flora.species().iter().zip(flora.plans()));
         let sites = flora.as_ref().map_or(0, |flora| flora.grown().sites.total());
         Self {
-            species: known().map(|(species, plan)| Bearing { height_m: height_m(species), bears_rad: bears_rad(plan) }).collect(),
+            species: known().map(|(species, plan)| BendLimit { height_m: height_m(species), bears_rad: bears_rad(plan) }).collect(),
             tallest_m: known().map(|(species, _)| height_m(species) * (1.0 + species.size_variation)).fold(0.0, f32::max),
-            gale: Gale::new(flora.as_ref(), dt_secs),
-            fallen: Fallen { is_broken: vec![false; sites], all: BrokenPlants::default() },
+            storm: StormDamage::new(flora.as_ref(), dt_secs),
+            broken: BrokenState::new(sites),
             flora,
         }
     }
 
-    /// What grows; none where nothing does.
+    /// The underbrush, if the scene has any.
     pub fn flora(&self) -> Option<&Flora> {
         self.flora.as_ref()
     }
 
-    /// The broken plants, in one step those that objects broke before those that the wind did, in the order of the objects and of the sites.
+    /// Broken plants, oldest first. Within a step those broken by objects come first, in the order of the objects; then those broken by wind, in the order of
+    /// the sites.
     pub fn broken(&self) -> &BrokenPlants {
-        &self.fallen.all
+        self.broken.plants()
     }
 
-    /// Breaks what the newest step pressed too far. Costs something only where an object moves over the grass, and in a storm.
-    pub fn step(&mut self, tick: u64, dt_secs: f32, meadow: &Meadow, weather: &Weather) {
+    /// Breaks plants overloaded in the newest step. Takes time only where an object moves over the grass, and in a storm.
+    pub fn step(&mut self, tick: u64, dt_secs: f32, bend: &BendSimulation, weather: &Weather) {
         let Some(flora) = &self.flora else { return };
         let grown = flora.grown();
-        let passages = meadow.passages(self.tallest_m).filter(|(swath, _)| swath.way_m() > STANDING_M_PER_S * dt_secs);
-        for (swath, clearance_m) in passages {
-            for leg in swath.legs() {
+        let moving = bend.swept_below(self.tallest_m).filter(|(swept, _)| swept.travel_m() > STANDSTILL_M_PER_S * dt_secs);
+        for (swept, clearance_m) in moving {
+            for leg in swept.legs() {
                 let [low_m, high_m] = leg.cover().bounds_m();
                 for plant in grown.in_rectangle(low_m, high_m) {
                     let at_m = grown.sites.place_m(plant.site);
-                    let Some(passage) = leg.passage(at_m).filter(|_| !self.fallen.is_broken(plant.site)) else { continue };
-                    let Bearing { height_m, bears_rad } = self.species[usize::from(plant.species)];
-                    let below_rad = (clearance_m / (height_m * flora.standing(plant).size)).min(1.0).acos();
-                    let lean_rad = meadow.lean_rad(at_m, weather.ground());
+                    let Some(passage) = leg.passage(at_m).filter(|_| !self.broken.is_broken(plant.site)) else { continue };
+                    let BendLimit { height_m, bears_rad } = self.species[usize::from(plant.species)];
+                    let below_rad = (clearance_m / (height_m * flora.instance(plant).size)).min(1.0).acos();
+                    let lean_rad = bend.lean_rad(at_m, weather.ground_wind());
                     if below_rad.max(length(lean_rad)) > bears_rad {
                         let along = if length(lean_rad) > below_rad { lean_rad } else { passage.moves_m };
-                        self.fallen.fell(plant.site, along);
+                        self.broken.break_plant(plant.site, along);
                     }
                 }
             }
         }
-        let strongest_m_per_s = weather.strongest_m_per_s(self.gale.reach_m());
-        self.gale.blow(tick, flora, strongest_m_per_s, |at_m| weather.wind_m_per_s(at_m), &mut self.fallen);
+        let strongest_m_per_s = weather.strongest_m_per_s(self.storm.reach_m());
+        self.storm.step(tick, flora, strongest_m_per_s, |at_m| weather.wind_m_per_s(at_m), &mut self.broken);
+    }
+
+    /// Adds the broken plants to a checksum.
+    pub(crate) fn hash(&self, sum: &mut Checksum) {
+        sum.add(self.broken().iter().flat_map(|plant| [plant.site, plant.fall.get().into()]));
     }
 }

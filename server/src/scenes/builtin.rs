@@ -1,9 +1,9 @@
-//! The scenes that ship inside the program.
+//! The built-in scenes, embedded in the program.
 
-use shared::scene::{Scene, parse};
-use shared::terrain::HeightMap;
+use prairie_core::scene::{Scene, parse};
+use prairie_core::terrain::HeightMap;
 
-/// A scene whose files are part of the program.
+/// A scene whose files are embedded in the program.
 pub(super) struct BuiltIn {
     pub(super) name: &'static str,
     pub(super) text: &'static str,
@@ -16,7 +16,7 @@ macro_rules! file {
     };
 }
 
-/// All of them, the default first.
+/// All built-in scenes, the default first.
 pub(super) const BUILT_IN: [BuiltIn; 8] = [
     BuiltIn {
         name: "meadow",
@@ -65,21 +65,21 @@ impl BuiltIn {
         BUILT_IN.iter().find(|scene| scene.name == name)
     }
 
-    /// Bytes of a file that the scene names.
+    /// Contents of a file named by the scene.
     pub(super) fn file(&self, name: &str) -> Option<&'static [u8]> {
         self.files.iter().find(|(known, _)| *known == name).map(|&(_, bytes)| bytes)
     }
 
-    /// The scene; a test holds that every built-in one is sound.
+    /// The parsed scene; a test checks that every built-in scene is valid.
     pub(super) fn scene(&self) -> Scene {
         parse(self.text).unwrap_or_else(|faults| panic!("built-in scene `{}`: {faults:?}", self.name))
     }
 }
 
-/// Elevations and extent of the world (m) of `jacksboro`, which its covering map is made from.
-pub(super) fn jacksboro_land() -> (HeightMap, [f32; 2]) {
+/// Height map and extent of the world (m) of `jacksboro`, from which its covering map is generated.
+pub(super) fn jacksboro_terrain() -> (HeightMap, [f32; 2]) {
     let [_, jacksboro, ..] = &BUILT_IN;
     let scene = jacksboro.scene();
-    let png = jacksboro.file(&scene.terrain.height_map).expect("the scene names a file that ships with it");
+    let png = jacksboro.file(&scene.terrain.height_map).expect("the height map is embedded");
     (HeightMap::from_png(png, &scene.terrain).expect("the elevations are a grey PNG"), scene.extent_m())
 }

@@ -1,21 +1,21 @@
-//! What can be wrong with a scene, said so that it can be mended.
+//! Errors of scene files, with file, line and column.
 
-use shared::scene::SceneFault;
+use prairie_core::scene::SceneFault;
 use std::fmt;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Why a scene cannot be loaded.
+/// Reasons why a scene cannot be loaded.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum SceneError {
     /// Neither a built-in scene nor a file.
-    #[error("no built-in scene and no file is called `{name}`{} Built-in scenes: {}", meant(*.nearest), .known.join(", "))]
+    #[error("there is no built-in scene and no file called `{name}`{} Built-in scenes: {}", suggestion(*.nearest), .known.join(", "))]
     Unknown {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// The built-in scene whose name is most like it, if one is.
+        /// The built-in scene with the most similar name, if any is similar.
         nearest: Option<&'static str>,
-        /// All built-in scenes.
+        /// Names of all built-in scenes.
         known: Vec<&'static str>,
     },
     /// The scene file cannot be read.
@@ -23,28 +23,28 @@ pub enum SceneError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         reason: String,
     },
-    /// The file was read, and something in it or in a file that it names is wrong.
+    /// The file, or a file that it names, contains faults.
     #[error("{0}")]
     Faulty(FaultyScene),
 }
 
-fn meant(nearest: Option<&str>) -> String {
+fn suggestion(nearest: Option<&str>) -> String {
     nearest.map_or_else(|| ".".to_owned(), |name| format!("; did you mean `{name}`?"))
 }
 
-/// The text of a scene file, or of its underbrush file, with everything that is wrong in it.
+/// The text of a scene file, or of its underbrush file, with all its faults.
 ///
-/// Displayed over several lines: for each fault the place, what is wrong, the line of the file and carets below it.
+/// Displayed on several lines: for each fault its position, a description, the line of the file, and carets below it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FaultyScene {
-    /// The file: the scene's as it was named, that of the underbrush with its folder.
+    /// The file: the scene file as the user named it, or the underbrush file with its folder.
     pub file: String,
     /// Its text.
     pub text: String,
-    /// What is wrong, in the order of the lines; at least one fault.
+    /// The faults in the order of the lines; at least one.
     pub faults: Vec<SceneFault>,
 }
 

@@ -1,61 +1,62 @@
-//! From a scene's name or file to everything that the world needs.
+//! Loading of a scene with its maps and models.
 
 use super::builtin::{BUILT_IN, BuiltIn};
 use super::error::{FaultyScene, SceneError};
-use crate::bend::drawing::{Drawing, Drawings};
+use crate::bend::wind_drawing::{WindDrawing, WindDrawings};
 use crate::file;
-use crate::objects::model;
-use crate::world::{self, Maps, WorldError};
-use shared::plant::growth::NutrientMap;
-use shared::scene::{Scene, SceneFault, VehicleKind, WindShape, parse, parse_underbrush, parse_with};
-use shared::terrain::{Cover, CoverMap, HeightMap, MapError};
-use shared::wire::Mesh;
+use crate::objects::gltf;
+use crate::settings_error::SettingsError;
+use crate::world::{self, Maps};
+use prairie_core::plant::growth::NutrientMap;
+use prairie_core::scene::{Scene, SceneFault, VehicleKind, WindShape, parse, parse_underbrush, parse_with};
+use prairie_core::terrain::{Cover, CoverMap, HeightMap, MapError};
+use prairie_core::wire::Mesh;
 use std::cell::RefCell;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Largest scene file, and largest file of underbrush (bytes).
+/// Largest scene file and largest underbrush file (bytes).
 const SCENE_LIMIT: u64 = 1 << 20;
 
-/// Largest file of a map (bytes); three of them and two models fit into a message.
+/// Largest map file (bytes); three maps and two models fit into a message.
 pub(crate) const MAP_LIMIT: u64 = 24 << 20;
 
-/// Largest file of a drawn wind (bytes): more than the largest picture needs.
+/// Largest file of a drawn wind (bytes), more than the largest allowed picture needs.
 const DRAWING_LIMIT: u64 = 4 << 20;
 
-/// Lowest and highest land (m).
-const LAND_RANGE_M: [f32; 2] = [-20_000.0, 20_000.0];
+/// Lowest and highest allowed elevation (m).
+const ELEVATION_RANGE_M: [f32; 2] = [-20_000.0, 20_000.0];
 
-/// A checked scene with its maps and models, as the world, the server and its clients need it.
+/// A checked scene with its maps and models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadedScene {
-    /// Its name in links: a built-in scene's, or that of its file without folder and ending.
+    /// Name in links: that of a built-in scene, or of the scene file without folder and extension.
     pub name: String,
-    /// The scene, without paths: what a client is told.
+    /// The scene without paths, as sent to clients.
     pub scene: Scene,
-    /// Height map, the PNG file's bytes.
+    /// Height map (PNG file).
     pub height_png: Vec<u8>,
-    /// Covering map, the PNG file's bytes.
+    /// Covering map (PNG file).
     pub covering_png: Vec<u8>,
-    /// Map of the soil's nutrients, the PNG file's bytes; empty where they are generated.
+    /// Nutrient map (PNG file); empty if the nutrients are generated.
     pub nutrient_png: Vec<u8>,
-    /// Heights of the land.
+    /// Decoded height map.
     pub height: HeightMap,
-    /// What covers the land.
+    /// Decoded covering map.
     pub cover: CoverMap,
-    /// Nutrients of the soil; none where they are generated.
+    /// Decoded nutrient map; `None` if the nutrients are generated.
     pub nutrients: Option<Arc<NutrientMap>>,
-    /// The drawings of winds, by the numbers that stand for their files in the scene.
-    pub drawings: Drawings,
-    /// Models read from glTF files; kinds that are missing are drawn with the built-in one.
+    /// Pictures of the drawn winds, by the numbers that replace their file names in the scene.
+    pub drawings: WindDrawings,
+    /// Models from glTF files; other kinds use the built-in model.
     pub models: Vec<(VehicleKind, Mesh)>,
-    /// Files that all this was read from, the scene's own first; none where it ships with the program.
+    /// Files that were read, the scene file first; empty for a built-in scene.
     pub files: Vec<PathBuf>,
 }
 
 impl LoadedScene {
-    /// What a world of the scene is made from.
+    /// The maps from which the world is built.
     pub fn maps(&self) -> Maps {
         Maps { height: self.height.clone(), cover: self.cover.clone(), drawings: self.drawings.clone(), nutrients: self.nutrients.clone() }
     }
@@ -64,8 +65,8 @@ impl LoadedScene {
 /// Loads a built-in scene by name, or a scene file by path, with its maps and models.
 ///
 /// # Errors
-/// [`SceneError`]: the name is unknown, the file cannot be read, or something in it or in the files that it names is wrong;
-/// then every fault of the scene file, or else of its underbrush file, or else of its maps and models at once, each with its place.
+/// [`SceneError`]: the name is unknown, the file cannot be read, or it contains faults. All faults of the scene file are reported at once; if there
+/// are none, those of its underbrush file; if there are none, those of its maps and models.
 pub fn load(name_or_path: &str) -> Result<LoadedScene, SceneError> {
     if let Some(built_in) = BuiltIn::find(name_or_path) {
         return load_text(built_in.name, built_in.text, Source::BuiltIn(built_in));
@@ -92,10 +93,10 @@ fn unknown(name: &str) -> SceneError {
     SceneError::Unknown { name: name.to_owned(), nearest, known }
 }
 
-/// Where the files that a scene names are.
+/// Source of a scene's files.
 enum Source {
     BuiltIn(&'static BuiltIn),
-    /// A folder, and what has been read so far.
+    /// A folder, and the files read so far.
     Folder {
         folder: PathBuf,
         read: RefCell<Vec<PathBuf>>,
@@ -105,12 +106,12 @@ enum Source {
 impl Source {
     fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, String> {
         match self {
-            Self::BuiltIn(scene) => scene.file(name).map(<[u8]>::to_vec).ok_or_else(|| "does not ship with the program".to_owned()),
+            Self::BuiltIn(scene) => scene.file(name).map(<[u8]>::to_vec).ok_or_else(|| "it is not embedded in the program".to_owned()),
             Self::Folder { .. } => file::read(&self.path(name), limit),
         }
     }
 
-    /// Where a file is that is about to be read.
+    /// Returns and records the path of a file that is about to be read.
     fn path(&self, name: &str) -> PathBuf {
         match self {
             Self::BuiltIn(_) => PathBuf::from(name),
@@ -122,7 +123,7 @@ impl Source {
         }
     }
 
-    /// Files that have been read, each once.
+    /// Files that have been read, without duplicates.
     fn into_files(self) -> Vec<PathBuf> {
         match self {
             Self::BuiltIn(_) => Vec::new(),
@@ -134,14 +135,14 @@ impl Source {
     }
 }
 
-/// The error of a `file` with this `text` that has `faults`.
+/// The error for a file with `faults`, sorted by line.
 fn faulty(file: &str, text: &str, mut faults: Vec<SceneFault>) -> SceneError {
     faults.sort_by_key(|fault| (fault.line, fault.column));
     SceneError::Faulty(FaultyScene { file: file.to_owned(), text: text.to_owned(), faults })
 }
 
-/// The scene that `text` tells, with the species of the underbrush file that it names.
-fn scene_of(file: &str, text: &str, source: &Source) -> Result<Scene, SceneError> {
+/// Parses the scene with the species of its underbrush file.
+fn parse_scene(file: &str, text: &str, source: &Source) -> Result<Scene, SceneError> {
     let scene = parse(text).map_err(|faults| faulty(file, text, faults))?;
     let name = &scene.underbrush_file;
     if name.is_empty() {
@@ -158,27 +159,29 @@ fn scene_of(file: &str, text: &str, source: &Source) -> Result<Scene, SceneError
 }
 
 fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, SceneError> {
-    let mut scene = scene_of(file, text, &source)?;
+    let mut scene = parse_scene(file, text, &source)?;
     let mut faults = Vec::new();
     let mut note = |path: &str, message: String| faults.push(SceneFault::at(text, path, message));
 
-    for WorldError { field, message } in world::misfits(&scene) {
-        note(field, message);
+    for SettingsError { field, message } in world::check(&scene) {
+        note(&field, message);
     }
     let height = height_map(&scene, &source).map_err(|message| note("terrain.height_map", message)).ok();
     let cover = covering_map(&scene, &source).map_err(|message| note("terrain.covering_map", message)).ok();
     let nutrients = nutrient_map(&scene, &source).map_err(|message| note("growth.nutrient_map", message)).ok();
     let mut loaded_models = Vec::new();
-    for (kind, field) in [(VehicleKind::Car, &scene.objects.car_model), (VehicleKind::Monster, &scene.objects.monster_model)] {
+    for kind in VehicleKind::ALL {
+        // Clients get the models as meshes, without the file names.
+        let field = scene.objects.model_file_mut(kind).map(std::mem::take).unwrap_or_default();
         if field.is_empty() {
             continue;
         }
-        match model::read(&source.path(field), kind).map_err(|error| error.reason.to_string()) {
+        match gltf::read(&source.path(&field), scene.objects.half_extents_m(kind)).map_err(|error| error.reason.to_string()) {
             Ok(mesh) => loaded_models.push((kind, mesh)),
             Err(reason) => note(&format!("objects.{}_model", kind.name()), format!("names `{field}`, which {reason}")),
         }
     }
-    let mut drawings = Drawings::new();
+    let mut drawings = WindDrawings::new();
     for (path, shape) in wind_shapes(&mut scene) {
         let WindShape::Drawn(name) = shape else { continue };
         match drawing(name, &source) {
@@ -195,11 +198,8 @@ fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, Scen
     else {
         return Err(faulty(file, text, faults));
     };
-    let Scene { terrain, objects, growth, underbrush_file, .. } = &mut scene;
-    let of_objects = [&mut objects.car_model, &mut objects.monster_model];
-    for path in
-        [&mut terrain.height_map, &mut terrain.covering_map, &mut growth.nutrient_map, underbrush_file].into_iter().chain(of_objects)
-    {
+    let Scene { terrain, growth, underbrush_file, .. } = &mut scene;
+    for path in [&mut terrain.height_map, &mut terrain.covering_map, &mut growth.nutrient_map, underbrush_file] {
         path.clear();
     }
     Ok(LoadedScene {
@@ -217,19 +217,19 @@ fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, Scen
     })
 }
 
-/// Everything in a scene that may name a drawing, with its path.
+/// Every field of a scene that may name a picture of a wind, with its path.
 fn wind_shapes(scene: &mut Scene) -> Vec<(String, &mut WindShape)> {
     let winds = scene.drawn_winds.iter_mut().enumerate().map(|(i, wind)| (format!("drawn_winds[{i}].shape"), &mut wind.shape));
     let wash = ("objects.helicopter.wash_shape".to_owned(), &mut scene.objects.helicopter.wash_shape);
     winds.chain([wash]).collect()
 }
 
-fn drawing(name: &str, source: &Source) -> Result<Drawing, String> {
+fn drawing(name: &str, source: &Source) -> Result<WindDrawing, String> {
     let png = source.read(name, DRAWING_LIMIT).map_err(|reason| format!("cannot be read: {reason}"))?;
-    Drawing::from_png(&png).map_err(|error| error.to_string())
+    WindDrawing::from_png(&png).map_err(|error| error.to_string())
 }
 
-/// The bytes of a map's file, and what they `decode` to.
+/// Reads and decodes a map file.
 fn map<M>(name: &str, source: &Source, decode: impl FnOnce(&[u8]) -> Result<M, MapError>) -> Result<(Vec<u8>, M), String> {
     let png = source.read(name, MAP_LIMIT).map_err(|reason| format!("names `{name}`, which cannot be read: {reason}"))?;
     let map = decode(&png).map_err(|error| format!("names `{name}`, which {error}"))?;
@@ -241,19 +241,19 @@ fn height_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, HeightMap), St
     let (png, map) = map(name, source, |png| HeightMap::from_png(png, &scene.terrain))?;
 
     let [columns, rows] = map.size_px();
-    let reach_m = [columns as f32 * scene.terrain.pixel_m[0], rows as f32 * scene.terrain.pixel_m[1]];
+    let map_m = [columns as f32 * scene.terrain.pixel_m[0], rows as f32 * scene.terrain.pixel_m[1]];
     let world_m = scene.extent_m();
-    if reach_m[0] < world_m[0] || reach_m[1] < world_m[1] {
+    if map_m[0] < world_m[0] || map_m[1] < world_m[1] {
         return Err(format!(
-            "names `{name}`, which reaches over {} m × {} m ({columns} × {rows} pixels × pixel_m); allowed: at least over the world, {} m × {} m \
-             (patches: count × cells × cell_m). Take more pixels, a larger pixel_m or a smaller world",
-            reach_m[0], reach_m[1], world_m[0], world_m[1]
+            "names `{name}`, which covers {} m × {} m ({columns} × {rows} pixels × pixel_m); allowed: at least the size of the world, {} m × {} m \
+             (patches: count × cells × cell_m). Use more pixels, a larger pixel_m or a smaller world",
+            map_m[0], map_m[1], world_m[0], world_m[1]
         ));
     }
     let [low, high] = map.range_m();
-    if low < LAND_RANGE_M[0] || high > LAND_RANGE_M[1] {
-        let [lowest, highest] = LAND_RANGE_M;
-        return Err(format!("names `{name}`, which gives heights of {low} m to {high} m; allowed: {lowest} to {highest} m"));
+    if low < ELEVATION_RANGE_M[0] || high > ELEVATION_RANGE_M[1] {
+        let [lowest, highest] = ELEVATION_RANGE_M;
+        return Err(format!("names `{name}`, which has elevations from {low} m to {high} m; allowed: {lowest} to {highest} m"));
     }
     Ok((png, map))
 }
@@ -266,21 +266,21 @@ fn covering_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, CoverMap), S
         let underbrush = scene.underbrush.iter().filter(|species| species.cover > 0).map(|species| (species.cover, &species.name));
         let species: Vec<_> = grass.chain(underbrush).map(|(cover, name)| format!("{cover} ({name})")).collect();
         return Err(format!(
-            "names `{name}`, which has the ID {id} at column {column} of row {row}, a hole in the species table; allowed: 0 (gap), 253 (tree), 254 (stone), \
-             255 (grass) or that of a species, {}",
+            "names `{name}`, which has the ID {id} at column {column} of row {row}, and no species has this ID; allowed: 0 (gap), 253 (tree), 254 (stone), \
+             255 (grass) or the ID of a species: {}",
             species.join(", ")
         ));
     }
     Ok((png, map))
 }
 
-/// The bytes of the map of nutrients; none where they are generated.
+/// Reads the nutrient map; empty and `None` if the nutrients are generated.
 fn nutrient_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, Option<NutrientMap>), String> {
     let name = &scene.growth.nutrient_map;
     if name.is_empty() { Ok((Vec::new(), None)) } else { map(name, source, |png| NutrientMap::from_png(png).map(Some)) }
 }
 
-/// Whether nothing that a scene knows has this ID in its covering map.
+/// Whether an ID in the covering map has no meaning in the scene.
 fn is_unknown(scene: &Scene, id: u8) -> bool {
     let cover = Cover::from(id);
     matches!(cover, Cover::Free(_)) && !scene.is_grass(cover)

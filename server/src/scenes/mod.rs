@@ -1,4 +1,4 @@
-//! Scenes: the built-in ones, scene files, and the maps that the built-in ones are made of.
+//! Scenes: built-in scenes, scene files, and generators of the built-in maps.
 
 mod builtin;
 mod error;
@@ -20,23 +20,23 @@ pub fn list() -> impl Iterator<Item = (&'static str, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::scene::{FIELDS, parse};
-    use shared::terrain::Cover;
+    use prairie_core::scene::{FIELDS, parse};
+    use prairie_core::terrain::Cover;
 
     #[test]
-    fn built_in_scenes_are_sound_and_tell_clients_no_paths() {
+    fn built_in_scenes_are_valid_and_send_no_paths() {
         for (name, summary) in list() {
             let loaded = load(name).unwrap_or_else(|error| panic!("{error}"));
             assert!(!summary.is_empty() && loaded.scene.summary == summary && loaded.name == name);
             assert!(loaded.scene.terrain.height_map.is_empty() && loaded.scene.terrain.covering_map.is_empty());
             assert!(loaded.scene.growth.nutrient_map.is_empty() && loaded.scene.underbrush_file.is_empty());
-            assert!(check(name).unwrap().to_string().starts_with(&format!("{name}: sound\n")));
+            assert!(check(name).unwrap().to_string().starts_with(&format!("{name}: valid\n")));
         }
         assert_eq!(list().next().unwrap().0, "meadow");
     }
 
     #[test]
-    fn the_meadow_shows_every_field_and_its_examples_are_sound() {
+    fn meadow_toml_shows_every_field_and_its_examples_are_valid() {
         let text = builtin::BUILT_IN[0].text;
         for (path, _) in FIELDS {
             let key = path.rsplit('.').next().unwrap();
@@ -51,7 +51,7 @@ mod tests {
     }
 
     #[test]
-    fn stored_maps_are_what_the_generator_makes() {
+    fn stored_maps_equal_the_generated_ones() {
         for map in maps::generate() {
             let stored = std::fs::read(format!("{}/scenes/{}", env!("CARGO_MANIFEST_DIR"), map.name)).unwrap();
             let mut reader = png::Decoder::new(std::io::Cursor::new(stored)).read_info().unwrap();
@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn the_continuum_is_rolling_land_under_drifts_of_all_its_grasses() {
+    fn the_continuum_is_rolling_and_has_all_its_grasses() {
         let LoadedScene { scene, height, cover, .. } = load("continuum").unwrap();
         let [side_m, _] = scene.extent_m();
         assert!((side_m - 4828.032).abs() < 0.01 && scene.patches.awake_limit == 225);
@@ -77,14 +77,14 @@ mod tests {
         let steepest = places.map(|[x, z]| height.slope(x, z)).map(|[east, south]| east.hypot(south)).fold(0.0, f32::max);
         assert!(steepest < 0.3, "{steepest}");
         for (id, least, most) in [(1, 0.15, 0.4), (2, 0.2, 0.5), (3, 0.003, 0.03), (255, 0.25, 0.5)] {
-            let share = cover.ids().iter().filter(|&&found| found == id).count() as f32 / cover.ids().len() as f32;
-            assert!((least..most).contains(&share), "{share} of ID {id}");
+            let fraction = cover.ids().iter().filter(|&&found| found == id).count() as f32 / cover.ids().len() as f32;
+            assert!((least..most).contains(&fraction), "{fraction} of ID {id}");
         }
         assert_eq!(scene.species.iter().map(|species| species.cover).collect::<Vec<_>>(), [1, 2, 3]);
     }
 
     #[test]
-    fn the_meadow_has_an_open_middle_and_hills_around() {
+    fn the_meadow_is_open_in_the_middle_and_surrounded_by_hills() {
         let meadow = load("meadow").unwrap();
         let extent_m = meadow.scene.extent_m();
         for cover in [Cover::Tree, Cover::Stone] {

@@ -1,19 +1,19 @@
-//! What a sound scene holds, in a few lines.
+//! Summary of a valid scene for `prairie check`.
 
-use super::SceneError;
+use super::error::SceneError;
 use super::load::{LoadedScene, load};
-use shared::scene::VehicleKind;
-use shared::terrain::Cover;
+use prairie_core::scene::VehicleKind;
+use prairie_core::terrain::Cover;
 use std::fmt;
 
-/// The figures of a sound scene; displayed as a few lines.
+/// Summary of a valid scene; displayed on a few lines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     name: String,
     loaded: LoadedScene,
 }
 
-/// Loads a scene and reports what it holds.
+/// Loads and summarises a scene.
 ///
 /// # Errors
 /// As [`load`].
@@ -33,7 +33,7 @@ impl fmt::Display for Report {
         let percent = |count: usize| 100.0 * count as f64 / cover.ids().len() as f64;
         let grass = percent(cover.ids().iter().filter(|&&id| scene.is_grass(Cover::from(id))).count());
 
-        writeln!(f, "{}: sound", self.name)?;
+        writeln!(f, "{}: valid", self.name)?;
         writeln!(f, "  {}", scene.summary)?;
         writeln!(f, "  world     {width_m} m × {depth_m} m, {nx} × {nz} patches of {0} × {0} cells", scene.patches.cells)?;
         writeln!(f, "  heights   {low:.1} m to {high:.1} m, {height_x} × {height_z} pixels")?;

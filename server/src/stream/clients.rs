@@ -1,38 +1,38 @@
-//! Who is connected: what sessions and the streamer tell each other about a client.
+//! The connected clients: state shared between the sessions and the streamer.
 
-use crate::world::View;
+use crate::world::Camera;
 use bytes::Bytes;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::mpsc;
 
-/// One publish as one client gets it.
+/// One publication, as sent to one client.
 #[derive(Clone, Debug, Default)]
 pub struct Frame {
-    /// Number of the frame, per client, from 1.
+    /// Number of the frame for this client, from 1.
     pub number: u32,
     /// Messages in order; the last one ends the frame.
     pub messages: Vec<Bytes>,
 }
 
-/// Where a client looks.
+/// Area around a client's camera in which grass is streamed to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gaze {
+pub struct AreaOfInterest {
     /// Camera position (m).
     pub eye_m: [f32; 3],
-    /// Distance up to which the bend field is wanted (m).
+    /// Radius of the area (m).
     pub radius_m: f32,
 }
 
-/// A client that has said hello.
+/// A connected client, after its hello.
 #[derive(Debug)]
 pub struct Client {
     /// Number of the client, unique within a run.
     pub id: u32,
     name: Mutex<String>,
     outbox: mpsc::Sender<Frame>,
-    gaze: Mutex<Option<Gaze>>,
+    area: Mutex<Option<AreaOfInterest>>,
     handed_out: AtomicU32,
     acknowledged: AtomicU32,
     sent_bytes: AtomicU64,
@@ -40,52 +40,52 @@ pub struct Client {
 }
 
 impl Client {
-    /// Name to show to others.
+    /// Display name.
     pub fn name(&self) -> String {
         self.name.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Gives the client another name.
+    /// Changes the display name.
     pub fn rename(&self, name: String) {
         *self.name.lock().unwrap_or_else(PoisonError::into_inner) = name;
     }
 
-    /// Tells where the client looks.
-    pub fn look(&self, gaze: Gaze) {
-        *self.gaze.lock().unwrap_or_else(PoisonError::into_inner) = Some(gaze);
+    /// Sets the area of interest.
+    pub fn set_area_of_interest(&self, area: AreaOfInterest) {
+        *self.area.lock().unwrap_or_else(PoisonError::into_inner) = Some(area);
     }
 
-    /// Where the client looks; none until it has said so.
-    pub fn gaze(&self) -> Option<Gaze> {
-        *self.gaze.lock().unwrap_or_else(PoisonError::into_inner)
+    /// The area of interest; `None` before the first view message.
+    pub fn area_of_interest(&self) -> Option<AreaOfInterest> {
+        *self.area.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Its camera, as the world is told of it.
-    pub fn view(&self) -> Option<View> {
-        self.gaze().map(|gaze| View { client: self.id, eye_m: gaze.eye_m })
+    /// The camera, as a view for the world.
+    pub fn camera(&self) -> Option<Camera> {
+        self.area_of_interest().map(|area| Camera { client: self.id, eye_m: area.eye_m })
     }
 
-    /// Notes an acknowledgement; false if that frame was never sent.
+    /// Records an acknowledgement; false if that frame was never sent.
     pub fn acknowledge(&self, frame: u32) -> bool {
-        let possible = frame <= self.handed_out.load(Relaxed);
-        if possible {
+        let was_sent = frame <= self.handed_out.load(Relaxed);
+        if was_sent {
             self.acknowledged.fetch_max(frame, Relaxed);
         }
-        possible
+        was_sent
     }
 
-    /// Newest frame handed to the session, and newest frame acknowledged.
+    /// Numbers of the newest frame handed to the session and of the newest acknowledged one.
     pub fn progress(&self) -> (u32, u32) {
         (self.handed_out.load(Relaxed), self.acknowledged.load(Relaxed))
     }
 
-    /// Frames that are on their way: handed to the session and not acknowledged.
+    /// Number of frames in flight: handed to the session and not acknowledged.
     pub fn in_flight(&self) -> u32 {
         let (handed_out, acknowledged) = self.progress();
         handed_out.saturating_sub(acknowledged)
     }
 
-    /// Hands a frame to the session; false if it takes none, being full or gone.
+    /// Hands a frame to the session; false if the session is busy or gone.
     pub fn hand_out(&self, frame: Frame) -> bool {
         let number = frame.number;
         self.handed_out.store(number, Relaxed);
@@ -117,19 +117,19 @@ pub struct Clients {
 }
 
 impl Clients {
-    /// A number that no client has had.
+    /// An unused client number.
     pub fn next_id(&self) -> u32 {
         self.newest_id.fetch_add(1, Relaxed) + 1
     }
 
-    /// Adds a client, which from now on gets frames: at most `outbox_frames` wait for the session at once.
+    /// Adds a client, which gets frames from now on; at most `outbox_frames` of them are queued for its session.
     pub fn join(&self, id: u32, name: String, outbox_frames: usize) -> (Arc<Client>, mpsc::Receiver<Frame>) {
         let (outbox, frames) = mpsc::channel(outbox_frames);
         let client = Arc::new(Client {
             id,
             name: Mutex::new(name),
             outbox,
-            gaze: Mutex::default(),
+            area: Mutex::default(),
             handed_out: AtomicU32::default(),
             acknowledged: AtomicU32::default(),
             sent_bytes: AtomicU64::default(),
@@ -144,14 +144,19 @@ impl Clients {
         self.lock().remove(&id);
     }
 
-    /// Everyone who is here, in the order of coming.
+    /// All clients, in the order of joining.
     pub fn all(&self) -> Vec<Arc<Client>> {
         self.lock().values().cloned().collect()
     }
 
-    /// Bytes written so far to the sockets of all clients, those that have left included.
+    /// Bytes written so far to the sockets of all clients, including those that have left.
     pub fn sent_bytes(&self) -> u64 {
         self.sent_bytes.load(Relaxed)
+    }
+
+    /// Cameras of all clients, for the world.
+    pub fn cameras(&self) -> Vec<Camera> {
+        self.lock().values().filter_map(|client| client.camera()).collect()
     }
 
     /// Number of clients.

@@ -1,27 +1,27 @@
-//! From snapshots to frames: interest, encode once, share; pacing by acknowledgement.
+//! Streaming of snapshots to clients: areas of interest, shared encoding, and back-pressure by acknowledgement.
 //!
-//! Each grid (a patch of the bend field, the wind) is a [`Track`] of numbered frames. A frame is encoded at most twice, as a
-//! delta and as a key, when the first client needs it; all clients share the bytes. A client that holds the frame before gets the delta,
-//! any other the key, so a frame that a slow client misses costs it a key later and nobody else anything.
+//! Each grid (a patch of the bend field, or the wind) has a sequence of numbered frames, [`GridFrames`]. A frame is encoded at most
+//! twice, as a delta and as a key, when the first client needs it; all clients share the bytes. A client that holds the previous frame
+//! gets the delta, any other client the key. A slow client that misses a frame needs a key later, at no cost to the others.
 //!
-//! Broken plants are an ordered list that only grows: of each client the streamer remembers how many of them a frame has told it.
+//! Broken plants are an ordered list that only grows; the streamer remembers how many of them each client has been sent.
 //!
-//! What nobody looks at costs nothing: the frames of a patch that no client has asked for of late are dropped, and of a client the streamer
-//! remembers only the patches that it was sent last, no more than any client keeps. Any other patch it is sent as a key.
+//! Patches outside every area of interest cost nothing: their frames are dropped after a while. For each client the streamer remembers
+//! only the patches sent last, no more than any client keeps; other patches are sent as keys.
 //!
-//! A client has at most a few frames on their way ([`SendLimits`]); while they are not acknowledged it is skipped, and
-//! then gets the newest state: nothing queues.
+//! A client has at most a few unacknowledged frames in flight ([`SendLimits`]). Until it acknowledges one it is skipped, and then gets
+//! the newest state: nothing queues.
 
+mod area;
+mod client_state;
 mod clients;
 mod encoder;
-mod interest;
-mod pace;
+mod grid_frames;
 mod streamer;
-mod track;
 
-pub use clients::{Client, Clients, Frame, Gaze};
+pub use area::{PATCH_LIMIT, patches_near};
+pub use client_state::{ClientState, Publication, SendLimits};
+pub use clients::{AreaOfInterest, Client, Clients, Frame};
 pub use encoder::{DEAD_BAND, Encoder, SLOW_HZ, WIND_HZ};
-pub use interest::{PATCH_LIMIT, interest};
-pub use pace::{Common, Pace, SendLimits};
+pub use grid_frames::{FrameHeader, Grid, GridFrames, Pacing};
 pub use streamer::{Counters, Stream, Streamer, start};
-pub use track::{Grid, Numbering, Pacing, Track};

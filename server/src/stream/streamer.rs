@@ -1,14 +1,14 @@
-//! The thread that turns each published snapshot into frames for all clients.
+//! The streaming thread: turns each published snapshot into frames for all clients.
 
+use super::client_state::{ClientState, Publication, SendLimits};
 use super::clients::{Client, Clients};
 use super::encoder::Encoder;
-use super::pace::{Common, Pace, SendLimits};
 use crate::runner::Published;
 use crate::snapshot::Snapshot;
-use crate::world::{Command, View};
+use crate::world::{Camera, Command};
 use bytes::Bytes;
-use shared::grid::PatchLayout;
-use shared::wire::{self, Peer, Refusal, ServerMessage};
+use prairie_core::grid::PatchLayout;
+use prairie_core::wire::{self, Peer, Refusal, ServerMessage};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -16,30 +16,30 @@ use std::thread::JoinHandle;
 use std::time::Instant;
 use tokio::sync::{mpsc, oneshot, watch};
 
-/// What the streamer counts, for `/healthz`.
+/// Counters of the streamer, for `/healthz`.
 #[derive(Debug, Default)]
 pub struct Counters {
-    /// Grids encoded.
+    /// Number of grids encoded.
     pub encodings: AtomicU64,
-    /// Patches whose frames are kept.
-    pub tracks: AtomicU64,
-    /// Patches that the clients are known to hold, summed over them.
-    pub held: AtomicU64,
+    /// Patches whose frames are cached.
+    pub cached_patches: AtomicU64,
+    /// Patches that clients hold, summed over the clients.
+    pub held_patches: AtomicU64,
     /// Frames handed to sessions.
     pub frames: AtomicU64,
-    /// Frames not made because as much as allowed was on its way to the client.
-    pub skipped: AtomicU64,
+    /// Frames skipped because the client had too many unacknowledged.
+    pub skipped_frames: AtomicU64,
 }
 
-/// Serves all clients from each snapshot; knows no sockets and no clock but that of the budgets.
+/// Sends each snapshot to all clients. It uses no sockets, and no clock except for the budgets.
 #[derive(Debug)]
 pub struct Streamer {
     layout: PatchLayout,
     limits: SendLimits,
     encoder: Encoder,
-    paces: BTreeMap<u32, Pace>,
-    /// Step of the newest refusal that a client was told of.
-    told: BTreeMap<u32, u64>,
+    states: BTreeMap<u32, ClientState>,
+    /// Step of the newest refusal sent to each client.
+    notified: BTreeMap<u32, u64>,
     peers: Vec<Peer>,
     roster_version: u64,
     roster: Bytes,
@@ -47,14 +47,14 @@ pub struct Streamer {
 }
 
 impl Streamer {
-    /// A streamer of a world with this layout that is published `publish_hz` times a second.
+    /// A streamer for a world with this layout that is published `publish_hz` times per second.
     pub fn new(layout: PatchLayout, limits: SendLimits, publish_hz: f32) -> Self {
         Self {
             layout,
             limits,
             encoder: Encoder::new(publish_hz),
-            paces: BTreeMap::new(),
-            told: BTreeMap::new(),
+            states: BTreeMap::new(),
+            notified: BTreeMap::new(),
             peers: Vec::new(),
             roster_version: 0,
             roster: Bytes::new(),
@@ -62,17 +62,17 @@ impl Streamer {
         }
     }
 
-    /// The counters, to be read from anywhere.
+    /// The counters, readable from any thread.
     pub fn counters(&self) -> Arc<Counters> {
         self.counters.clone()
     }
 
-    /// Sends one published state to everyone who can take it; returns where they look.
-    pub fn publish(&mut self, published: &Published, clients: &[Arc<Client>], now: Instant) -> Vec<View> {
+    /// Sends one published state to every client that is ready for it; returns the clients' cameras.
+    pub fn publish(&mut self, published: &Published, clients: &[Arc<Client>], now: Instant) -> Vec<Camera> {
         self.encoder.begin();
-        self.forget_absent(clients);
-        self.call_the_roll(published, clients);
-        let common = Common {
+        self.remove_departed(clients);
+        self.update_roster(published, clients);
+        let publication = Publication {
             snapshot: &published.snapshot,
             layout: &self.layout,
             now,
@@ -83,27 +83,27 @@ impl Streamer {
         for client in clients {
             let refusal = self.refusal(published, client.id);
             let extra = refusal.is_some().then(|| no_vehicle(&published.snapshot));
-            let pace = self.paces.entry(client.id).or_insert_with(|| Pace::new(self.limits, now));
-            if pace.serve(client, &common, &mut self.encoder, extra) {
-                self.told.extend(refusal.map(|tick| (client.id, tick)));
+            let state = self.states.entry(client.id).or_insert_with(|| ClientState::new(self.limits, now));
+            if state.send_frame(client, &publication, &mut self.encoder, extra) {
+                self.notified.extend(refusal.map(|tick| (client.id, tick)));
                 self.counters.frames.fetch_add(1, Relaxed);
             } else {
-                self.counters.skipped.fetch_add(1, Relaxed);
+                self.counters.skipped_frames.fetch_add(1, Relaxed);
             }
         }
         self.counters.encodings.store(self.encoder.encodings(), Relaxed);
-        self.counters.tracks.store(self.encoder.tracks() as u64, Relaxed);
-        self.counters.held.store(self.paces.values().map(Pace::held_patches).sum::<usize>() as u64, Relaxed);
-        clients.iter().filter_map(|client| client.view()).collect()
+        self.counters.cached_patches.store(self.encoder.cached_patches() as u64, Relaxed);
+        self.counters.held_patches.store(self.states.values().map(ClientState::held_patches).sum::<usize>() as u64, Relaxed);
+        clients.iter().filter_map(|client| client.camera()).collect()
     }
 
-    fn forget_absent(&mut self, clients: &[Arc<Client>]) {
-        let here = |id: &u32| clients.binary_search_by_key(id, |client| client.id).is_ok();
-        self.paces.retain(|id, _| here(id));
-        self.told.retain(|id, _| here(id));
+    fn remove_departed(&mut self, clients: &[Arc<Client>]) {
+        let is_connected = |id: &u32| clients.binary_search_by_key(id, |client| client.id).is_ok();
+        self.states.retain(|id, _| is_connected(id));
+        self.notified.retain(|id, _| is_connected(id));
     }
 
-    fn call_the_roll(&mut self, published: &Published, clients: &[Arc<Client>]) {
+    fn update_roster(&mut self, published: &Published, clients: &[Arc<Client>]) {
         let object = |id| published.requests.get(&id).and_then(|request| request.object);
         let peers: Vec<Peer> =
             clients.iter().map(|client| Peer { client: client.id, name: client.name(), object: object(client.id) }).collect();
@@ -114,39 +114,39 @@ impl Streamer {
         }
     }
 
-    /// Step at which a client's wish for a vehicle was refused, if it has not been told.
+    /// Step at which a client's request for a vehicle was refused, if the client has not been notified.
     fn refusal(&self, published: &Published, client: u32) -> Option<u64> {
         let request = published.requests.get(&client).filter(|request| request.object.is_none())?;
-        (self.told.get(&client) != Some(&request.tick)).then_some(request.tick)
+        (self.notified.get(&client) != Some(&request.tick)).then_some(request.tick)
     }
 }
 
-/// Why a client gets no vehicle.
+/// The message that tells a client why it gets no vehicle.
 fn no_vehicle(snapshot: &Snapshot) -> Bytes {
     let (count, limit) = (snapshot.objects.len(), snapshot.object_limit);
     let reason = if count >= limit as usize {
-        format!("there are {count} objects, and the scene allows {limit}; wait until somebody gives a vehicle up")
+        format!("the scene has {count} objects and allows {limit}; wait until another client gives up a vehicle")
     } else {
-        "there is no free place near where you look from; look elsewhere and ask again".to_owned()
+        "there is no free space near your camera; move it and try again".to_owned()
     };
     wire::encode(&ServerMessage::Refused { refusal: Refusal::ObjectLimit, reason }).into()
 }
 
-/// The running thread.
+/// The running streaming thread.
 #[derive(Debug)]
 pub struct Stream {
     thread: JoinHandle<()>,
-    /// Closes with the thread, however that ends.
-    life: oneshot::Receiver<()>,
+    /// Closes when the thread ends, even by a panic.
+    alive: oneshot::Receiver<()>,
 }
 
 impl Stream {
     /// Completes when the thread has ended, or is about to.
     pub async fn ended(&mut self) {
-        let _ = (&mut self.life).await;
+        let _ = (&mut self.alive).await;
     }
 
-    /// Waits for the thread. False if it had panicked.
+    /// Waits for the thread; false if it panicked.
     pub fn join(self) -> bool {
         self.thread.join().is_ok()
     }
@@ -155,7 +155,7 @@ impl Stream {
 /// Starts the thread. It ends when the world's thread does.
 ///
 /// # Errors
-/// When the system gives no thread.
+/// When the system cannot start a thread.
 pub fn start(
     mut streamer: Streamer,
     mut published: watch::Receiver<Arc<Published>>,
@@ -163,15 +163,15 @@ pub fn start(
     commands: mpsc::Sender<Command>,
 ) -> std::io::Result<Stream> {
     let runtime = tokio::runtime::Handle::current();
-    let (alive, life) = oneshot::channel();
+    let (guard, alive) = oneshot::channel();
     let thread = std::thread::Builder::new().name("stream".to_owned()).spawn(move || {
-        let _alive: oneshot::Sender<()> = alive;
+        let _guard: oneshot::Sender<()> = guard;
         while runtime.block_on(published.changed()).is_ok() {
             let newest = published.borrow_and_update().clone();
-            let views = streamer.publish(&newest, &clients.all(), Instant::now());
-            // A full channel means that the world lags; the next publish brings newer views.
-            let _ = commands.try_send(Command::Views(views));
+            let cameras = streamer.publish(&newest, &clients.all(), Instant::now());
+            // A full channel means that the world lags; the next publication brings newer cameras.
+            let _ = commands.try_send(Command::Cameras(cameras));
         }
     })?;
-    Ok(Stream { thread, life })
+    Ok(Stream { thread, alive })
 }

@@ -1,31 +1,33 @@
-//! The wind of a scene: the solver, its rhythm, and what the rest of the world sees of it.
+//! The wind of a scene: the solver, its step interval, and the wind for other parts of the world.
 
-mod jets;
-mod land;
+mod box_terrain;
+mod canopy_cover;
 mod sample;
 mod settings;
-mod standing;
+mod vehicle_jets;
 
-use crate::bend::air::GroundWind;
+use crate::bend::ground_wind::GroundWind;
+use crate::checksum::Checksum;
 use crate::objects::Motion;
+use crate::settings_error::SettingsError;
 use crate::snapshot::WindFrame;
-use crate::wind::{Air, Config, ConfigError, Method, SolidError, StepError, StepReport};
-use crate::world::Maps;
+use box_terrain::BoxTerrain;
+use canopy_cover::CanopyCover;
 use glam::Vec3;
-use land::Land;
+use prairie_core::bend::Field;
+use prairie_core::scene::{Scene, WindTiling};
+use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
+use prairie_core::wind::{CellGrid, WindTiles};
+use prairie_core::wire::Shape;
+use prairie_core::wire::quantise::{dust_code, wind_code};
+use prairie_wind::state::MAX_SUBSTEPS;
+use prairie_wind::{Air, Config, ConfigError, Method, SolidError, StepError, StepReport};
 use settings::settings;
-use shared::bend::Field;
-use shared::scene::{Scene, WindTiling};
-use shared::terrain::{HeightMap, KindMap};
-use shared::wind::Tiles;
-use shared::wire::Shape;
-use shared::wire::quantise::{dust_code, wind_code};
-use standing::Standing;
 use std::sync::Arc;
 
-/// The solver takes the least number of ticks a step that is not shorter than this (s).
+/// Minimum duration of a solver step (s). A step is the smallest whole number of ticks that takes at least this long.
 const STEP_SECS: f32 = 0.05;
-/// Cell steps that the wind blows before the world starts, so that there are gusts from the beginning.
+/// Cell steps of the solver's warm-up, so that there are gusts from the start; and the largest number of warm-up steps.
 const WARM_UP_CELL_STEPS: usize = 1 << 20;
 const WARM_UP_STEPS: usize = 120;
 
@@ -35,67 +37,83 @@ pub struct Weather {
     method: Method,
     config: Config,
     tiling: WindTiling,
-    tiles: Tiles,
-    /// Whether the box wraps, by axis.
-    wraps: [bool; 3],
+    tiles: WindTiles,
+    grid: CellGrid,
     ticks_per_step: u64,
     step_secs: f64,
     report: StepReport,
     resets: u64,
-    land: Land,
-    standing: Option<Standing>,
+    terrain: BoxTerrain,
+    canopy: Option<CanopyCover>,
     ground: GroundWind,
-    /// Wind (m/s) in the middles of layers above the ground, x fastest, then y, then z.
+    /// Wind (m/s) at the centres of layers above the ground, x fastest, then y, then z.
     velocities: Vec<Vec3>,
     frame: Arc<WindFrame>,
 }
 
-/// Why a scene's wind cannot blow.
+/// Reason why the wind of a scene cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WeatherError {
-    /// A setting out of range, or at odds with another.
+    /// A setting is out of range, or incompatible with another.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// The settings do not fit the step.
+    /// The settings are incompatible with the solver's step.
     #[error(transparent)]
     Step(#[from] StepError),
-    /// The land does not fit the box.
+    /// The terrain does not fit into the box.
     #[error(transparent)]
     Solid(#[from] SolidError),
 }
 
-/// Whether a solver takes the settings of `scene`, asked without making one.
+/// Checks the wind settings of `scene` without creating a solver.
 ///
 /// # Errors
-/// As [`Weather::new`], but for a land that fills the box and a wind that is lost while it warms up.
+/// As [`Weather::new`], except for terrain that fills the box and a wind that diverges while it warms up.
 pub fn check(scene: &Scene) -> Result<(), WeatherError> {
     let (method, config) = settings(scene);
-    let (_, step_secs) = rhythm(scene);
+    let (_, step_secs) = step_interval(scene);
     Air::<f32>::check(method, &config)?;
     Ok(Air::<f32>::check_step(method, &config, step_secs)?)
 }
 
+impl WeatherError {
+    /// The error as one in the settings of `scene`.
+    pub fn in_settings(self, scene: &Scene) -> SettingsError {
+        match self {
+            Self::Step(StepError::TooLong { what: "viscosity_m2_per_s", dt_secs, needed, .. }) => {
+                let (viscosity, [x, y, z]) = (scene.wind.viscosity_m2_per_s, scene.wind.spacing_m);
+                let message = format!(
+                    "is {viscosity}, which needs {needed:.0} sub-steps of diffusion in the wind's step of {dt_secs:.3} s on cells of {x} × {y} × {z} m; \
+                     allowed: {MAX_SUBSTEPS}. Take a smaller value or a larger `wind.spacing_m`"
+                );
+                SettingsError { field: "wind.viscosity_m2_per_s".to_owned(), message }
+            }
+            other => SettingsError { field: "wind".to_owned(), message: format!("makes no wind: {other}") },
+        }
+    }
+}
+
 impl Weather {
-    /// The wind of `scene` over its land, which has blown for a while.
+    /// The wind of `scene` over its terrain, after a warm-up.
     ///
     /// # Errors
-    /// [`WeatherError`] when the solver refuses the scene's settings.
-    pub fn new(scene: &Scene, maps: &Maps) -> Result<Self, WeatherError> {
+    /// [`WeatherError`] when the solver rejects the scene's settings.
+    pub fn new(scene: &Scene, height: &HeightMap, cover: &CoverMap) -> Result<Self, WeatherError> {
         let (method, config) = settings(scene);
-        let land = Land::new(scene, &maps.height);
-        let mut air = begin(method, &config, &land)?;
-        let (ticks_per_step, step_secs) = rhythm(scene);
+        let terrain = BoxTerrain::new(scene, height);
+        let mut air = initial_air(method, &config, &terrain)?;
+        let (ticks_per_step, step_secs) = step_interval(scene);
         let cells: usize = config.cells.iter().product();
         let mut report = air.step(step_secs, &[])?;
         for _ in 1..(WARM_UP_CELL_STEPS / cells).clamp(1, WARM_UP_STEPS) {
             report = air.step(step_secs, &[])?;
         }
         let mut weather = Self {
-            standing: config.canopy.map(|canopy| Standing::new(scene, &maps.cover, canopy.height_m)),
+            canopy: config.canopy.map(|canopy| CanopyCover::new(scene, cover, canopy.height_m)),
             tiling: scene.wind.tiling,
-            tiles: Tiles::new(scene),
-            wraps: scene.wind.faces.wraps(),
-            ground: GroundWind::still(scene).over(KindMap::new(scene, &maps.cover)),
+            tiles: WindTiles::new(scene),
+            grid: CellGrid::from(&scene.wind),
+            ground: GroundWind::still(scene).with_kinds(KindMap::new(scene, cover)),
             frame: Arc::default(),
             velocities: Vec::new(),
             resets: 0,
@@ -105,56 +123,56 @@ impl Weather {
             ticks_per_step,
             step_secs,
             report,
-            land,
+            terrain,
         };
         weather.observe(0);
         Ok(weather)
     }
 
-    /// Blows on, every so many ticks, by as much time.
+    /// Advances the solver when a step of it is due at this tick.
     pub fn step(&mut self, tick: u64, motions: &[Motion], height: &HeightMap, grass: &Field) {
         if !tick.is_multiple_of(self.ticks_per_step) {
             return;
         }
-        // What an object does to a box that every patch shows would blow in all of them.
+        // In a box that is tiled by patch, a jet would appear in every patch.
         let motions = if self.tiling == WindTiling::Patch { &[] } else { motions };
         if self.tiling == WindTiling::Follow {
             self.follow(motions);
         }
-        if let (Some(standing), WindTiling::Box | WindTiling::Follow) = (&mut self.standing, self.tiling) {
-            self.air.set_cover(standing.shares(grass));
+        if let (Some(canopy), WindTiling::Box | WindTiling::Follow) = (&mut self.canopy, self.tiling) {
+            self.air.set_canopy_fraction(canopy.fractions(grass));
         }
         let jets: Vec<_> = motions
             .iter()
             .filter_map(|motion| {
                 let [x, _, z] = motion.to.position_m;
-                jets::jet(motion, self.land.zero_m(height.height_m(x, z)))
+                vehicle_jets::jet(motion, self.terrain.zero_m(height.height_m(x, z)))
             })
             .collect();
         match self.air.step(self.step_secs, &jets) {
             Ok(report) => self.report = report,
-            // The state is lost: the air starts anew from the mean wind.
+            // The state is invalid: the air restarts from the mean wind.
             Err(_) => {
-                self.air = begin(self.method, &self.config, &self.land).expect("the same settings were accepted before");
+                self.air = initial_air(self.method, &self.config, &self.terrain).expect("the same settings were accepted before");
                 self.resets += 1;
             }
         }
         self.observe(tick);
     }
 
-    /// Cuts the box on the far side of the middle of all objects.
+    /// Puts the seam of the periodic box on the side opposite to the centre of all objects.
     fn follow(&mut self, motions: &[Motion]) {
         let count = motions.len() as f64;
-        let seam_m = [0, 2].map(|axis| {
+        let sponge_m = [0, 2].map(|axis| {
             let side_m = self.config.cells[axis] as f64 * f64::from(self.config.spacing_m[axis]);
             let middle_m = motions.iter().map(|motion| f64::from(motion.to.position_m[axis])).sum::<f64>() / count;
             (middle_m + 0.5 * side_m).rem_euclid(side_m)
         });
-        self.air.set_seam((!motions.is_empty()).then_some(seam_m));
+        self.air.set_sponge((!motions.is_empty()).then_some(sponge_m));
     }
 
-    /// What the wind near the ground does to grass.
-    pub fn ground(&self) -> &GroundWind {
+    /// Bend of the grass in equilibrium with the wind near the ground.
+    pub fn ground_wind(&self) -> &GroundWind {
         &self.ground
     }
 
@@ -163,25 +181,31 @@ impl Weather {
         &self.frame
     }
 
-    /// What the newest step did.
+    /// Diagnostics of the newest step.
     pub fn report(&self) -> StepReport {
         self.report
     }
 
-    /// Times that a step failed and the wind began anew from its mean.
+    /// Number of restarts from the mean wind after a failed step.
     pub fn resets(&self) -> u64 {
         self.resets
     }
 
-    /// Wind (m/s) in the middles of layers above the ground, x fastest, then y, then z.
+    /// Wind (m/s) at the centres of layers above the ground, x fastest, then y, then z.
     pub fn velocities(&self) -> &[Vec3] {
         &self.velocities
     }
 
+    /// Adds the wind to a checksum.
+    pub(crate) fn hash(&self, sum: &mut Checksum) {
+        sum.add(self.velocities.iter().flat_map(|velocity| velocity.to_array().map(f32::to_bits)));
+    }
+
+    /// Samples the solver's state above the ground, for other parts of the world and for clients.
     fn observe(&mut self, tick: u64) {
         let [nx, ny, nz] = self.config.cells;
         let cells = nx * ny * nz;
-        self.velocities = self.land.above_ground(self.air.cell_velocities().collect(), Vec3::lerp);
+        self.velocities = self.terrain.above_ground(self.air.cell_velocities().collect(), Vec3::lerp);
         let mut codes = vec![0; Shape::wind(nx, self.config.dust.is_some()).planes * cells];
         for (at, velocity) in self.velocities.iter().enumerate() {
             for (plane, component) in velocity.to_array().into_iter().enumerate() {
@@ -189,25 +213,25 @@ impl Weather {
             }
         }
         if let Some(dust) = self.air.dust() {
-            let dust = self.land.above_ground(dust.collect(), |a, b, t| a + (b - a) * t);
+            let dust = self.terrain.above_ground(dust.collect(), |a, b, t| a + (b - a) * t);
             codes[3 * cells..].iter_mut().zip(dust).for_each(|(code, density)| *code = dust_code(density));
         }
-        self.ground.blow(ny, self.velocities.iter().map(|velocity| [velocity.x, velocity.z]));
+        self.ground.set_wind(ny, self.velocities.iter().map(|velocity| [velocity.x, velocity.z]));
         self.frame = Arc::new(WindFrame { tick, cells: [nx, ny, nz].map(|n| n as u32), codes });
     }
 }
 
-/// The air at its beginning, round the land where that is solid.
-fn begin(method: Method, config: &Config, land: &Land) -> Result<Air<f32>, WeatherError> {
+/// The solver in its initial state, with the terrain as obstacle where it is solid.
+fn initial_air(method: Method, config: &Config, terrain: &BoxTerrain) -> Result<Air<f32>, WeatherError> {
     let mut air = Air::new(method, config)?;
-    if land.is_solid() {
-        air.set_solid(|position_m| land.holds(position_m, config.spacing_m))?;
+    if terrain.is_solid() {
+        air.set_solid(|position_m| terrain.contains(position_m, config.spacing_m))?;
     }
     Ok(air)
 }
 
-/// Ticks from one step of the solver to the next, and the time that they take (s).
-fn rhythm(scene: &Scene) -> (u64, f64) {
+/// Ticks per solver step, and their duration (s).
+fn step_interval(scene: &Scene) -> (u64, f64) {
     let ticks = (STEP_SECS * scene.tick_hz).ceil().max(1.0);
     (ticks as u64, (ticks * scene.dt_secs()).into())
 }

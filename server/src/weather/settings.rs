@@ -1,8 +1,8 @@
-//! From what a scene says of its wind to the settings of a solver.
+//! Solver settings from a scene's wind settings.
 
-use crate::wind::pressure::{Effort, Method as Iteration};
-use crate::wind::{Advection, Boundary, Canopy, Config, Diffusion, Dust, Gusts, Method, Pressure, Primitive, Profile, Shape, TimeScheme};
-use shared::scene::{PrimitiveKind, Scene, Wind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTime};
+use prairie_core::scene::{PrimitiveKind, Scene, Wind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTime};
+use prairie_wind::pressure::{Effort, IterativeMethod};
+use prairie_wind::{Advection, Boundary, Canopy, Config, Diffusion, Dust, Gusts, Method, Pressure, Primitive, Profile, Shape, TimeScheme};
 
 /// Roughness length of grass (m), for the logarithmic profile.
 const ROUGHNESS_M: f32 = 0.05;
@@ -16,11 +16,7 @@ pub(super) fn settings(scene: &Scene) -> (Method, Config) {
         spacing_m: wind.spacing_m,
         boundary: wind.faces.pairs().map(|pair| pair.map(|face| boundary(face, wind.faces.lid_m_per_s))),
         advection: advection(wind.advection),
-        time: match wind.time {
-            WindTime::Split => TimeScheme::Split,
-            WindTime::Reflection => TimeScheme::Reflection,
-            WindTime::RungeKutta3 => TimeScheme::RungeKutta3,
-        },
+        time: time_scheme(wind.time),
         diffusion: match wind.diffusion {
             WindDiffusion::Explicit => Diffusion::Explicit,
             WindDiffusion::GaussSeidel => Diffusion::GaussSeidel { sweeps: wind.diffusion_sweeps },
@@ -31,7 +27,7 @@ pub(super) fn settings(scene: &Scene) -> (Method, Config) {
         viscosity_m2_per_s: wind.viscosity_m2_per_s,
         mean_wind_m_per_s: [wind.mean_m_per_s[0], 0.0, wind.mean_m_per_s[1]],
         profile: Profile::Log { roughness_m: ROUGHNESS_M, reference_m: 5.0 * hy },
-        relaxation_per_sec: wind.mean_rate_per_s,
+        relaxation_per_s: wind.mean_rate_per_s,
         body_force_m_per_s2: [wind.body_force_m_per_s2[0], 0.0, wind.body_force_m_per_s2[1]],
         gusts: Gusts {
             number: wind.sources as usize,
@@ -44,8 +40,8 @@ pub(super) fn settings(scene: &Scene) -> (Method, Config) {
         dust: wind.has_dust().then_some(Dust {
             advection: advection(wind.dust.advection),
             diffusivity_m2_per_s: wind.dust.diffusivity_m2_per_s,
-            release_per_sec: wind.dust.release_per_s,
-            settling_per_sec: wind.dust.settling_per_s,
+            release_per_s: wind.dust.release_per_s,
+            settling_per_s: wind.dust.settling_per_s,
         }),
         seed: scene.seed,
         ..Config::default()
@@ -57,41 +53,35 @@ pub(super) fn settings(scene: &Scene) -> (Method, Config) {
     (method, config)
 }
 
+/// The solver's boundary condition of the same name.
 fn boundary(face: WindBoundary, lid_m_per_s: [f32; 3]) -> Boundary {
-    match face {
-        WindBoundary::Wrap => Boundary::Wrap,
-        WindBoundary::FreeSlip => Boundary::FreeSlip,
-        WindBoundary::Reflect => Boundary::Reflect,
-        WindBoundary::NoSlip => Boundary::NoSlip,
-        WindBoundary::Lid => Boundary::Lid { velocity_m_per_s: lid_m_per_s },
-        WindBoundary::Inflow => Boundary::Inflow,
-        WindBoundary::Outflow => Boundary::Outflow,
-    }
+    Boundary::from_name(face.word(), lid_m_per_s).expect("the solver has every boundary condition of a scene")
 }
 
-fn advection(word: WindAdvection) -> Advection {
-    match word {
-        WindAdvection::SemiLagrangian => Advection::SemiLagrangian,
-        WindAdvection::MacCormack => Advection::MacCormack,
-        WindAdvection::Bfecc => Advection::Bfecc,
-        WindAdvection::Conservative => Advection::Conservative,
-    }
+/// The solver's advection scheme of the same name.
+fn advection(scheme: WindAdvection) -> Advection {
+    Advection::from_name(scheme.word()).expect("the solver has every advection scheme of a scene")
+}
+
+/// The solver's time scheme of the same name.
+fn time_scheme(scheme: WindTime) -> TimeScheme {
+    TimeScheme::from_name(scheme.word()).expect("the solver has every time scheme of a scene")
 }
 
 fn pressure(wind: &Wind) -> Pressure {
     let effort = Effort { tolerance: wind.pressure_tolerance.into(), sweeps: wind.pressure_sweeps };
     let iteration = match wind.pressure {
         WindPressure::Direct => return Pressure::Direct,
-        WindPressure::Jacobi => Iteration::Jacobi,
-        WindPressure::GaussSeidel => Iteration::GaussSeidel,
-        WindPressure::Sor => Iteration::Sor,
-        WindPressure::ConjugateGradients => Iteration::ConjugateGradients,
-        WindPressure::Multigrid => Iteration::Multigrid,
+        WindPressure::Jacobi => IterativeMethod::Jacobi,
+        WindPressure::GaussSeidel => IterativeMethod::GaussSeidel,
+        WindPressure::Sor => IterativeMethod::Sor,
+        WindPressure::ConjugateGradients => IterativeMethod::ConjugateGradients,
+        WindPressure::Multigrid => IterativeMethod::Multigrid,
     };
     Pressure::Iterative(iteration, effort)
 }
 
-fn primitive(scene: &shared::scene::Primitive) -> Primitive {
+fn primitive(scene: &prairie_core::scene::Primitive) -> Primitive {
     let (east, north) = scene.heading_rad.sin_cos();
     Primitive {
         shape: match scene.kind {
@@ -107,5 +97,34 @@ fn primitive(scene: &shared::scene::Primitive) -> Primitive {
         speed_m_per_s: scene.speed_m_per_s,
         direction: [east, -north],
         dust: scene.dust,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(words: &[&str]) -> Vec<String> {
+        let mut words: Vec<_> = words.iter().map(|word| (*word).to_owned()).collect();
+        words.sort();
+        words
+    }
+
+    #[test]
+    fn scenes_and_solver_have_the_same_names() {
+        let names = |names: Vec<&str>| words(&names);
+        assert_eq!(words(WindAdvection::WORDS), names(Advection::ALL.iter().map(|scheme| scheme.name()).collect()));
+        assert_eq!(words(WindTime::WORDS), names(TimeScheme::ALL.iter().map(|scheme| scheme.name()).collect()));
+        assert_eq!(words(WindBoundary::WORDS), names(Boundary::all([0.0; 3]).map(Boundary::name).to_vec()));
+        for &face in WindBoundary::ALL {
+            assert_eq!(face.blocks_flow(), boundary(face, [0.0; 3]).blocks_flow(), "{face:?}");
+        }
+    }
+
+    #[test]
+    fn scenes_and_solver_allow_the_same_combinations_of_schemes() {
+        for (&scheme, &time) in WindAdvection::ALL.iter().flat_map(|scheme| WindTime::ALL.iter().map(move |time| (scheme, time))) {
+            assert_eq!(time.allows(scheme), time_scheme(time).allows(advection(scheme)), "{scheme:?} {time:?}");
+        }
     }
 }

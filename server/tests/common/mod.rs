@@ -1,32 +1,31 @@
-//! What the tests of the server share: a client's picture of the world, kept as a real client keeps it.
+//! A client's replica of the world, updated like that of a real client.
 #![allow(dead_code, missing_docs, unreachable_pub, reason = "each test file uses its own part")]
 
-use shared::grid::PatchIndex;
-use shared::wire::{PATCH_MEMORY, SERVER_MESSAGE_LIMIT, ServerMessage, Shape, codec, decode};
+use prairie_core::grid::PatchIndex;
+use prairie_core::wire::{PATCH_MEMORY, SERVER_MESSAGE_LIMIT, ServerMessage, Shape, codec, decode};
 use std::collections::BTreeMap;
 
-/// Codes and number of the newest frame of each grid, applied strictly: a delta must follow the frame that is held. Keeps no more patches than
-/// a client must.
+/// Codes and number of the newest frame of each grid. Strict: a delta must follow the held frame. Keeps no more patches than a client must.
 #[derive(Debug, Default, PartialEq)]
-pub struct Picture {
-    /// Cells along a side of a patch and along the wind's axes; a scene message sets them.
+pub struct Replica {
+    /// Cells along a side of a patch and along the axes of the wind; set by the scene message.
     pub patch_cells: usize,
     pub wind_cells: [u32; 3],
     pub has_dust: bool,
     pub patches: BTreeMap<PatchIndex, (u32, Vec<i8>)>,
-    /// The patches, the one not heard of for longest first.
-    pub heard: Vec<PatchIndex>,
+    /// The patches, least recently updated first.
+    pub recent: Vec<PatchIndex>,
     pub wind: (u32, Vec<i8>),
     pub tick: u64,
     pub frame: u32,
     pub bytes: usize,
 }
 
-impl Picture {
+impl Replica {
     pub fn new(patch_cells: usize, wind_cells: [u32; 3], has_dust: bool) -> Self {
-        let mut picture = Self::default();
-        picture.shape(patch_cells, wind_cells, has_dust);
-        picture
+        let mut replica = Self::default();
+        replica.shape(patch_cells, wind_cells, has_dust);
+        replica
     }
 
     fn shape(&mut self, patch_cells: usize, wind_cells: [u32; 3], has_dust: bool) {
@@ -40,17 +39,17 @@ impl Picture {
 
     /// Applies a message.
     pub fn apply(&mut self, bytes: &[u8]) -> ServerMessage {
-        let message: ServerMessage = decode(bytes, SERVER_MESSAGE_LIMIT).expect("the server sends sound messages");
+        let message: ServerMessage = decode(bytes, SERVER_MESSAGE_LIMIT).expect("the server sends valid messages");
         self.bytes += bytes.len();
         match &message {
             ServerMessage::Patch { patch, seq, key, payload } => {
                 let rest = || (0, vec![0; 3 * self.patch_cells.pow(2)]);
                 let held = self.patches.entry(*patch).or_insert_with(rest);
                 update(held, Shape::patch(self.patch_cells), *seq, *key, payload);
-                self.heard.retain(|heard| heard != patch);
-                self.heard.push(*patch);
-                if self.heard.len() > PATCH_MEMORY {
-                    self.patches.remove(&self.heard.remove(0));
+                self.recent.retain(|recent| recent != patch);
+                self.recent.push(*patch);
+                if self.recent.len() > PATCH_MEMORY {
+                    self.patches.remove(&self.recent.remove(0));
                 }
             }
             ServerMessage::Wind { seq, key, payload, .. } => {
@@ -60,10 +59,15 @@ impl Picture {
             ServerMessage::Scene { scene, .. } => self.shape(scene.patches.cells as usize, scene.wind.cells, scene.wind.has_dust()),
             ServerMessage::FrameEnd { frame, tick, .. } => {
                 assert_eq!(*frame, self.frame + 1, "frames are numbered without gaps");
-                assert!(*tick >= self.tick, "time runs forwards");
+                assert!(*tick >= self.tick, "time never decreases");
                 (self.frame, self.tick) = (*frame, *tick);
             }
-            _ => {}
+            ServerMessage::Welcome { .. }
+            | ServerMessage::Roster { .. }
+            | ServerMessage::Poses { .. }
+            | ServerMessage::Broken { .. }
+            | ServerMessage::Pong { .. }
+            | ServerMessage::Refused { .. } => {}
         }
         message
     }
@@ -73,7 +77,7 @@ fn update(held: &mut (u32, Vec<i8>), shape: Shape, seq: u32, key: bool, payload:
     if key {
         held.1.fill(0);
     } else {
-        assert_eq!(held.0 + 1, seq, "a delta applies to the frame one less");
+        assert_eq!(held.0 + 1, seq, "a delta applies to the previous frame");
     }
     if !payload.is_empty() {
         codec::decode(shape, payload, &mut held.1).expect("the payload is a grid");

@@ -1,4 +1,4 @@
-//! The program as it is called.
+//! The command line.
 
 use std::process::{Command, Output};
 
@@ -11,16 +11,16 @@ fn text(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn a_check_tells_by_its_exit_status() {
-    let sound = prairie(&["check", "meadow"]);
-    assert!(sound.status.success() && text(&sound.stdout).starts_with("meadow: sound\n"), "{sound:?}");
+fn check_reports_by_its_exit_status() {
+    let valid = prairie(&["check", "meadow"]);
+    assert!(valid.status.success() && text(&valid.stdout).starts_with("meadow: valid\n"), "{valid:?}");
     let missing = prairie(&["check", "no/such/scene.toml"]);
     assert_eq!((missing.status.code(), text(&missing.stdout)), (Some(1), String::new()));
     assert!(text(&missing.stderr).starts_with("error: scene file `no/such/scene.toml` cannot be read"), "{missing:?}");
 }
 
 #[test]
-fn a_reason_is_told_once() {
+fn an_error_is_printed_once() {
     let nowhere = prairie(&["serve", "--addr", "nowhere"]);
     assert_eq!((nowhere.status.code(), text(&nowhere.stdout)), (Some(1), String::new()));
     assert_eq!(text(&nowhere.stderr).matches("invalid socket address").count(), 1, "{nowhere:?}");
@@ -28,10 +28,10 @@ fn a_reason_is_told_once() {
 
 #[cfg(feature = "rerun")]
 #[test]
-fn a_run_that_cannot_start_tells_no_address() {
+fn a_run_that_cannot_start_prints_no_address() {
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let taken = taken.local_addr().unwrap();
     let failed = prairie(&["serve", "--addr", "127.0.0.1:0", "--rerun", &format!("serve={taken}")]);
     assert_eq!((failed.status.code(), text(&failed.stdout)), (Some(1), String::new()));
-    assert!(text(&failed.stderr).contains(&format!("error: can't serve the recording at {taken}")), "{failed:?}");
+    assert!(text(&failed.stderr).contains(&format!("error: cannot serve the recording at {taken}")), "{failed:?}");
 }

@@ -1,14 +1,14 @@
-//! The server as its visitors meet it, on a free port: what good ones get, and that bad ones are closed with a reason and disturb nobody.
+//! The server as its clients see it, on a free port. Misbehaving clients are closed with a reason and do not disturb the others.
 
 #[path = "../common/mod.rs"]
 mod common;
 
-mod bad_visitors;
 mod command_line;
-mod encrypted;
-mod pages;
-mod reloading;
-mod running;
-mod sharing;
-mod small_world;
-mod visitor;
+mod http;
+mod misbehaving_clients;
+mod reload;
+mod shared_world;
+mod stand_in;
+mod test_client;
+mod test_server;
+mod tls;

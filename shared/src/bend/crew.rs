@@ -1,12 +1,12 @@
-//! Who does the work of a step: one thread, or as many as the caller has.
+//! Executors of the independent tasks of a step: on one thread, or on the caller's thread pool.
 
-/// Does independent tasks, in any order or at once. The tasks share nothing that they write, so the bits do not depend on the crew.
+/// Runs independent tasks in any order or in parallel. Tasks share no mutable data, so results do not depend on the implementation.
 pub trait Crew {
-    /// Does every task once.
+    /// Runs every task once.
     fn for_each<T: Send>(&self, tasks: Vec<T>, act: impl Fn(T) + Send + Sync);
 }
 
-/// The calling thread alone.
+/// Runs all tasks on the calling thread.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Alone;
 

@@ -1,4 +1,4 @@
-//! What patches tell each other: which tiles are loud, which step, and the cells along their borders.
+//! Coupling of patches: neighbours, ghost cells, and the ring of tiles around a patch.
 
 use super::patch::{HALO, Patch};
 use super::tiles::TILE;
@@ -7,28 +7,28 @@ use crate::scene::words;
 use serde::{Deserialize, Serialize};
 
 words! {
-    /// What lies beyond the edge of the world.
+    /// Boundary condition at the edge of the world.
     #[derive(Default)]
     Edges {
-        /// Grass at rest: waves are thrown back with their sign turned, as by a fixed end.
+        /// Grass at rest (Dirichlet): waves are reflected with opposite sign, as by a fixed end.
         #[default]
         Rest = "rest",
-        /// A mirror: waves are thrown back as by a free end.
+        /// Mirror image (Neumann): waves are reflected as by a free end.
         Free = "free",
-        /// The opposite edge.
+        /// Periodic: the world continues at the opposite edge.
         Wrapped = "wrapped",
     }
 }
 
 words! {
-    /// How patches meet.
+    /// Coupling of neighbouring patches.
     #[derive(Default)]
     Seams {
         /// Ghost cells are exchanged: a field of many patches equals one big grid, bit for bit.
         #[default]
         Exact = "exact",
-        /// As 001 §4.2: each patch simulates 4 cells more on every side, the last of them at rest, and hears nothing of its neighbours;
-        /// contact alone presses both.
+        /// The overlaps of Chen & Johan §4.2: each patch simulates 4 extra cells on every side, the outermost at rest, and exchanges nothing with its
+        /// neighbours; only contact changes both.
         Overlap = "overlap",
     }
 }
@@ -36,16 +36,16 @@ words! {
 /// The eight directions in which a patch has neighbours.
 pub(super) const AROUND: [[i64; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 
-/// Who lies beside a patch.
+/// Neighbour of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Neighbour {
     pub(super) index: PatchIndex,
-    /// Along which axes it is the mirror of itself.
+    /// Axes along which it is the patch's mirror image.
     mirrored: [bool; 2],
 }
 
 impl Neighbour {
-    /// Its own tile for one of ours toward it; `count` tiles a side.
+    /// Maps one of our ring tiles toward the neighbour to the neighbour's own tile; `count` tiles a side.
     pub(super) fn place(&self, tile: [i64; 2], toward: [i64; 2], count: i64) -> [i64; 2] {
         [0, 1].map(|axis| theirs(tile[axis], toward[axis], count, self.mirrored[axis]))
     }
@@ -69,7 +69,7 @@ pub(super) fn neighbour(layout: &PatchLayout, edges: Edges, patch: PatchIndex, t
     layout.index(to[0], to[1]).map(|index| Neighbour { index, mirrored })
 }
 
-/// The cell of the world that one beyond its edge stands for, along one axis of `count` cells; beyond edges at rest the outermost.
+/// Index of the cell that supplies the value beyond an edge of the world, along one axis of `count` cells; the outermost for edges at rest.
 pub(super) fn source(edges: Edges, at: i64, count: i64) -> i64 {
     match edges {
         Edges::Rest => at.clamp(0, count - 1),
@@ -80,7 +80,7 @@ pub(super) fn source(edges: Edges, at: i64, count: i64) -> i64 {
     }
 }
 
-/// Along one axis: the places from −`width` to `count + width` that lie toward −1, 0 or 1.
+/// Indices along one axis on the side `toward`: −`width..0` for −1, `0..count` for 0, `count..count + width` for 1.
 fn ghosts(toward: i64, count: i64, width: i64) -> std::ops::Range<i64> {
     match toward {
         -1 => -width..0,
@@ -89,7 +89,7 @@ fn ghosts(toward: i64, count: i64, width: i64) -> std::ops::Range<i64> {
     }
 }
 
-/// The neighbour's own place for one of ours beyond the border.
+/// Converts one of our indices beyond the border to the neighbour's own index.
 fn theirs(at: i64, toward: i64, count: i64, mirrored: bool) -> i64 {
     match (toward, mirrored) {
         (0, _) => at,
@@ -108,7 +108,7 @@ pub(super) fn ring(count: usize, toward: [i64; 2]) -> impl Iterator<Item = [i64;
 /// Tiles of the ring toward a neighbour, from the first to one past the last, along both axes.
 pub(super) type TileRun = [std::ops::Range<i64>; 2];
 
-/// Ghost cells of tiles of the ring, `rings` wide: our columns and rows.
+/// Ghost cells of ring tiles, `rings` wide: our columns and rows.
 fn cells(tiles: &TileRun, toward: [i64; 2], side: i64, rings: usize) -> [std::ops::Range<i64>; 2] {
     [0, 1].map(|axis| match toward[axis] {
         0 => tiles[axis].start * TILE as i64..tiles[axis].end * TILE as i64,
@@ -116,7 +116,7 @@ fn cells(tiles: &TileRun, toward: [i64; 2], side: i64, rings: usize) -> [std::op
     })
 }
 
-/// Fills the ghosts of tiles of the ring from the neighbour `from`: `rings` of the newest state and, where more than one, of the earlier.
+/// Fills the ghosts of ring tiles from the neighbour `from`: `rings` rings of the newest state and, if more than one, of the earlier state.
 pub(super) fn fetch(patches: &mut [Patch], own: usize, from: usize, toward: [i64; 2], tiles: &TileRun, neighbour: Neighbour, rings: usize) {
     let side = patches[own].side() as i64;
     let [columns, rows] = cells(tiles, toward, side, rings);
@@ -142,7 +142,7 @@ pub(super) fn fetch(patches: &mut [Patch], own: usize, from: usize, toward: [i64
         return;
     }
     let Ok([own, from]) = patches.get_disjoint_mut([own, from]) else { unreachable!("two patches of one field") };
-    // Plane by plane: steps of one length, which the processor foresees.
+    // Plane by plane: strides of constant length, which the processor prefetches.
     for (to, from) in own.planes_mut(states).zip(from.planes_mut(states)) {
         for &[source, target] in &places {
             copy(&from[source..source + width], &mut to[target..target + width]);
@@ -153,7 +153,7 @@ pub(super) fn fetch(patches: &mut [Patch], own: usize, from: usize, toward: [i64
     }
 }
 
-/// Copies a row of ghosts; those beside a patch are too few to be worth a call.
+/// Copies a row of ghosts; rows beside a patch are too short to be worth a call.
 fn copy(from: &[f32], to: &mut [f32]) {
     match (from, to) {
         ([from], [to]) => *to = *from,
@@ -162,9 +162,9 @@ fn copy(from: &[f32], to: &mut [f32]) {
     }
 }
 
-/// Puts the ghosts of tiles of the ring to rest.
-pub(super) fn quell(patch: &mut Patch, toward: [i64; 2], tiles: &TileRun) {
+/// Puts the ghosts of ring tiles to rest.
+pub(super) fn put_to_rest(patch: &mut Patch, toward: [i64; 2], tiles: &TileRun) {
     let [columns, rows] = cells(tiles, toward, patch.side() as i64, HALO);
     let size = [&columns, &rows].map(|range| (range.end - range.start) as usize);
-    patch.quell([columns.start, rows.start], size);
+    patch.put_to_rest([columns.start, rows.start], size);
 }

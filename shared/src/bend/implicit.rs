@@ -1,9 +1,8 @@
 //! Newmark's average acceleration (β = ¼) by alternating directions.
 //!
-//! With δ = θ⁺ − 2θ + θ⁻, r = c·dt/h and A = 1 + k·dt/2 + κ·dt²/4 the step of `θ'' + kθ' + κθ = c²·Lθ` is
-//! `A·δ − ¼r²·(Lx + Lz)·δ = r²·Lθ − κ·dt²·θ − k·dt·(θ − θ⁻)`. Factored into `(1 − a·Lx)(1 − a·Lz)·δ` with a = r²/(4A), which
-//! changes it by terms of second order, it asks for a tridiagonal system along each row, then along each column (Lees, Alternating
-//! direction methods for hyperbolic differential equations, J. SIAM 10, 1962). Stable for any step where c is constant.
+//! With δ = θ⁺ − 2θ + θ⁻, r = c·dt/h and A = 1 + k·dt/2 + κ·dt²/4 the step of `θ'' + kθ' + κθ = c²·Lθ` is `A·δ − ¼r²·(Lx + Lz)·δ = r²·Lθ − κ·dt²·θ −
+//! k·dt·(θ − θ⁻)`. The left-hand side over A is factored into `(1 − a·Lx)(1 − a·Lz)·δ` with a = r²/(4A), with a splitting error of second order, and
+//! solved as a tridiagonal system along each row, then along each column (Lees 1962). Stable for any step where c is constant.
 
 use super::halo::Edges;
 use super::patch::{CHANNELS, Patch, Planes};
@@ -12,9 +11,9 @@ use super::verlet::for_each_kind;
 use super::{Crew, Field, Report, WaveParams};
 use std::collections::BTreeMap;
 
-/// What a step multiplies with, of one kind of grass; θ first, then ω.
+/// Coefficients of a step for one kind of grass; θ first, then ω.
 struct Coefficients {
-    /// Courant numbers at rest, and of θ for each rad/s of bending speed.
+    /// Courant numbers at rest, and the increase of θ's per rad/s of bending velocity.
     r: [f32; 2],
     r_mu: f32,
     /// κ·dt².
@@ -40,7 +39,7 @@ impl Coefficients {
     }
 }
 
-/// What a step solves for, of a patch's own cells, row by row.
+/// Unknowns of a step for a patch's own cells, row by row.
 #[derive(Default)]
 struct Work {
     /// `a = r²/(4A)`, of θ and of ω.
@@ -53,7 +52,7 @@ struct Work {
 pub(super) fn step(field: &mut Field, dt_secs: f32, crew: &impl Crew) -> Report {
     let ratio = field.dt_secs.replace(dt_secs).map_or(1.0, |last| dt_secs / last);
     let kinds: Vec<_> = field.kinds.waves().iter().map(|waves| Coefficients::new(waves, field.layout.cell_m, dt_secs)).collect();
-    let refused = field.meet(1);
+    let refused = field.exchange(1);
     let mut works: Vec<Work> = field.patches.iter().map(|_| Work::default()).collect();
     let tasks: Vec<_> = field.patches.iter_mut().zip(&mut works).collect();
     crew.for_each(tasks, |(patch, work)| *work = begin(patch, &kinds, ratio));
@@ -67,8 +66,8 @@ pub(super) fn step(field: &mut Field, dt_secs: f32, crew: &impl Crew) -> Report 
     Report { substeps: 1, cell_steps: cells * field.patches.len() as u64, refused, ..Report::default() }
 }
 
-/// Weights and right-hand sides. Moves the earlier state if dt has changed, and where waves slow down, which then lose the motion that they can no
-/// longer carry, as in [`verlet`](super::verlet).
+/// Computes weights and right-hand sides. Adjusts the earlier state if dt has changed, and reduces the motion of waves that slow down, as in
+/// [`verlet`](super::verlet).
 fn begin(patch: &mut Patch, kinds: &[Coefficients], ratio: f32) -> Work {
     let (side, stride) = (patch.side(), patch.stride());
     let plane = || vec![0.0; side * side];
@@ -86,7 +85,7 @@ fn begin(patch: &mut Patch, kinds: &[Coefficients], ratio: f32) -> Work {
                 let r = courant(x[i], z[i]);
                 theta_weights[i] = 0.25 * r * r * k.inverse_mass[0];
                 if k.r_mu != 0.0 {
-                    // `min` drops what is no number: nothing over nothing is 1.
+                    // `min` drops NaN: 0/0 counts as 1.
                     let kept = (r / courant(x_before[i], z_before[i])).min(1.0);
                     theta_before[i] = theta[i] - (theta[i] - theta_before[i]) * kept;
                 }
@@ -127,14 +126,14 @@ fn take_on(patch: &mut Patch, changes: &Planes) {
     patch.measure();
 }
 
-/// Awake patches side by side along an axis.
+/// Awake patches in a row along an axis.
 struct Lined<'a> {
     side: usize,
     patches: Vec<&'a mut Work>,
     ends: [End; 2],
 }
 
-/// The awake patches in lines along an axis; a line ends where a patch sleeps.
+/// The awake patches grouped into lines along an axis; a line ends where a patch sleeps.
 fn lines<'a>(field: &Field, works: &'a mut [Work], axis: usize) -> Vec<Lined<'a>> {
     let mut rows: BTreeMap<u32, Vec<(u32, &mut Work)>> = BTreeMap::new();
     for (patch, work) in field.patches.iter().zip(works) {
@@ -145,7 +144,7 @@ fn lines<'a>(field: &Field, works: &'a mut [Work], axis: usize) -> Vec<Lined<'a>
     let mut lines = vec![];
     for mut row in rows.into_values() {
         if field.edges == Edges::Wrapped && row.len() < count as usize {
-            // Begins behind a patch that sleeps, so that no line goes on across the seam of the world.
+            // Starts after a sleeping patch, so that no line crosses the periodic edge of the world.
             let first = row.iter().enumerate().position(|(slot, item)| item.0 != slot as u32).unwrap_or(0);
             row.rotate_left(first);
         }
@@ -199,7 +198,7 @@ impl Lined<'_> {
     }
 }
 
-/// Places of eight cells abreast, `along` the line from the first.
+/// Indices of eight neighbouring cells, `along` cells from the start of their lines.
 fn abreast(side: usize, axis: usize, along: usize, first: usize) -> [usize; LANES] {
     std::array::from_fn(|lane| if axis == 0 { (first + lane) * side + along } else { along * side + first + lane })
 }

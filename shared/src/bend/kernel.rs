@@ -1,4 +1,4 @@
-//! What one sub-step makes of a block of cells of one kind of grass: the innermost loops.
+//! Innermost loops: one sub-step of a block of cells of one kind of grass.
 
 use super::Coefficients;
 use super::patch::{CHANNELS, Planes};
@@ -8,18 +8,18 @@ use multiversion::multiversion;
 /// A block of cells in the planes, all of one kind of grass.
 #[derive(Clone, Copy)]
 pub(super) struct Block<'a> {
-    /// Place of the north-western cell.
+    /// Index of the north-western cell.
     pub(super) first: usize,
-    /// Cells in a row.
+    /// Cells per row.
     pub(super) width: usize,
     pub(super) rows: usize,
     /// Distance between rows.
     pub(super) stride: usize,
-    /// Coefficients of its grass.
+    /// Coefficients of its kind of grass.
     pub(super) k: &'a Coefficients,
 }
 
-/// Puts the next state of a block in the place of the state before.
+/// Replaces the earlier state of a block by the next state.
 pub(super) fn advance(now: &Planes, before: &mut Planes, block: Block) {
     let advance = match speed(block.k) {
         STEADY => advance_block::<STEADY>,
@@ -30,7 +30,7 @@ pub(super) fn advance(now: &Planes, before: &mut Planes, block: Block) {
     advance(now, theta, x, z, block);
 }
 
-/// The same; raises `peaks`, the largest |θ| and |ω|² of each column as bits, to those at both times.
+/// As [`advance`]; also updates `peaks`, the largest |θ| and |ω|² of each column as bits, with both times.
 pub(super) fn advance_and_measure(now: &Planes, before: &mut Planes, block: Block, peaks: [&mut [u32]; 2]) {
     let advance = match speed(block.k) {
         STEADY => advance_and_measure_block::<STEADY>,
@@ -41,7 +41,7 @@ pub(super) fn advance_and_measure(now: &Planes, before: &mut Planes, block: Bloc
     advance(now, theta, x, z, block, theta_peaks, omega2_peaks);
 }
 
-/// Cells of a channel with those around them, all of one length.
+/// Cells of a channel with their four neighbours, all of one length.
 #[derive(Clone, Copy)]
 struct Stencil<'a> {
     center: &'a [f32],
@@ -64,13 +64,13 @@ impl<'a> Stencil<'a> {
     }
 }
 
-// Written out: from `map` the compiler does not learn that all are of one length.
+// Written out: with `map` the compiler does not see that all have the same length.
 #[inline(always)]
 fn stencils([theta, x, z]: &Planes, at: usize, width: usize, stride: usize) -> [Stencil<'_>; CHANNELS] {
     [Stencil::new(theta, at, width, stride), Stencil::new(x, at, width, stride), Stencil::new(z, at, width, stride)]
 }
 
-/// The speed of θ: one and the same; following the bend (Eq. 4); following it, and θ loses motion where it falls.
+/// Wave speed of θ: constant; varying with the bend (Eq. 4); the same, with loss of motion where the speed falls.
 const STEADY: u8 = 0;
 const FOLLOWING: u8 = 1;
 const LOSING: u8 = 2;
@@ -83,7 +83,7 @@ fn speed(k: &Coefficients) -> u8 {
     }
 }
 
-/// What a cell of θ, ωx, ωz becomes.
+/// Next state of a cell: θ, ωx, ωz.
 #[inline(always)]
 fn next_cell<const SPEED: u8>(row: &[Stencil; CHANNELS], i: usize, before: [f32; CHANNELS], k: &Coefficients) -> [f32; CHANNELS] {
     let [theta, x, z] = row;
@@ -92,7 +92,7 @@ fn next_cell<const SPEED: u8>(row: &[Stencil; CHANNELS], i: usize, before: [f32;
         let courant = |x: f32, z: f32| k.r0 + k.r_mu * (x * x + z * z).sqrt();
         r = courant(x.center[i], z.center[i]);
         if SPEED == LOSING {
-            // `min` drops what is no number: nothing over nothing is 1.
+            // `min` drops NaN: 0/0 counts as 1.
             theta_memory *= (r / courant(before[1], before[2])).min(1.0);
         }
     }
@@ -105,7 +105,7 @@ fn next_cell<const SPEED: u8>(row: &[Stencil; CHANNELS], i: usize, before: [f32;
     ]
 }
 
-// Slices that are arguments of their own are known not to overlap; put together, or inlined, they would not be, and the loops not made of vectors.
+// The compiler knows that slices passed as separate arguments do not overlap. Combined or inlined it does not, and the loops are not vectorised.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn advance_block<const SPEED: u8>(now: &Planes, theta: &mut [f32], x: &mut [f32], z: &mut [f32], block: Block) {
     let Block { first, width, rows, stride, k } = block;

@@ -1,11 +1,11 @@
-//! Which grass grows where: constants of the waves for each species, and the map of species.
+//! Kinds of grass: the wave constants of each, and the map of where each grows.
 
 use super::WaveParams;
 use crate::grid::PatchLayout;
 use crate::scene::Scene;
 use crate::terrain::{CoverMap, KindMap};
 
-/// The wave constants of each kind of grass, and where each grows.
+/// Wave constants of each kind of grass, and where each grows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kinds {
     waves: Vec<WaveParams>,
@@ -25,10 +25,10 @@ impl Kinds {
         Self { waves: vec![waves], map: None }
     }
 
-    /// Several kinds and a map of `size_px` pixels that is stretched over the world, row by row from the north; each names its kind by place.
+    /// Several kinds, and a map of `size_px` pixels stretched over the world, row by row from the north; each pixel is the index of its kind.
     ///
     /// # Panics
-    /// When a pixel names a kind that is not there, or the number of pixels is not that of the size.
+    /// When a pixel names a missing kind, or `kinds` is not of the given size.
     pub fn mapped(waves: Vec<WaveParams>, size_px: [usize; 2], kinds: Vec<u8>) -> Self {
         assert!(size_px[0] * size_px[1] == kinds.len() && kinds.iter().all(|&kind| usize::from(kind) < waves.len()));
         Self { waves, map: Some(Pixels { size_px, kinds }) }
@@ -36,7 +36,7 @@ impl Kinds {
 
     /// The kinds of a scene, over its covering map.
     pub fn of(scene: &Scene, cover: &CoverMap) -> Self {
-        let waves: Vec<_> = scene.kinds().iter().map(WaveParams::from).collect();
+        let waves: Vec<_> = scene.kinds().iter().map(|grass| grass.waves).collect();
         if waves.len() == 1 {
             return Self::one(waves[0]);
         }
@@ -49,19 +49,14 @@ impl Kinds {
         &self.waves
     }
 
-    /// Kind of a cell of the world; outside of it, that of the nearest.
+    /// Kind of a cell of the world; outside the world, that of the nearest cell.
     pub fn kind(&self, layout: &PatchLayout, cell: [i64; 2]) -> u8 {
         let Some(map) = &self.map else { return 0 };
         let pixel = |axis: usize| {
             let cells = i64::from(layout.count[axis]) * i64::from(layout.cells);
-            // In whole numbers, so that every machine finds the same pixel.
+            // In integers, so that every machine finds the same pixel.
             (cell[axis].clamp(0, cells - 1) * 2 + 1) as usize * map.size_px[axis] / (2 * cells as usize)
         };
         map.kinds[pixel(1) * map.size_px[0] + pixel(0)]
-    }
-
-    /// Whether one kind grows everywhere.
-    pub fn is_one(&self) -> bool {
-        self.map.is_none()
     }
 }

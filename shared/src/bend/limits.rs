@@ -1,39 +1,39 @@
-//! How long a sub-step may be.
+//! Stability limits of the explicit schemes.
 
 use super::{Coefficients, Damping, WaveParams};
 
-/// Most sub-steps that a step is divided into.
+/// Largest number of sub-steps in a step.
 pub const SUBSTEPS_LIMIT: u32 = 4096;
 
-/// Share of the Courant limit that [`substeps`] uses; the rest covers the growth of |ω| within a step.
+/// Fraction of the Courant limit that [`substeps`] uses; the rest covers the growth of |ω| within a step.
 const SAFETY: f32 = 0.95;
 
 /// Largest Courant number for damping λ and restoring term `κ·dt²`: `r ≤ √((4 − 2λ − κ·dt²)/8)`.
 ///
-/// Derived from the checkerboard mode, the first to fail: its step has the polynomial `g² − (2 − λ − 8r² − κdt²)·g + (1 − λ)`,
-/// whose roots stay within the unit circle iff `8r² + κdt² ≤ 4 − 2λ`. For κ = 0 this is `√((2 − λ)/4)`: 0.707 undamped, 0.5 at
-/// λ = 1; more damping makes the scheme less stable. Zero when no step of this length is stable. Where the speed varies in space the
-/// largest speed counts: the scheme's matrix is similar to a symmetric one whose norm it bounds.
+/// Derived from the checkerboard mode, the first to fail: its step has the polynomial `g² − (2 − λ − 8r² − κdt²)·g + (1 − λ)`, whose roots stay
+/// within the unit circle iff `8r² + κdt² ≤ 4 − 2λ`. For κ = 0 this is `√((2 − λ)/4)`: 0.707 undamped, 0.5 at λ = 1; more damping makes the scheme
+/// less stable. Zero when no step of this length is stable. Where the wave speed varies in space, the largest counts: the scheme's matrix is similar
+/// to a symmetric one whose norm it bounds.
 pub fn courant_limit(lambda: f32, restoring: f32) -> f32 {
     ((4.0 - 2.0 * lambda - restoring) / 8.0).max(0.0).sqrt()
 }
 
-/// Courant number of a sub-step, over its limit: the scheme is stable up to 1.
+/// Courant number of a sub-step relative to its limit: the scheme is stable up to 1.
 pub fn courant_share(k: &Coefficients, omega_max_rad_per_s: f32) -> f32 {
     let theta = (k.r0 + k.r_mu * omega_max_rad_per_s) / courant_limit(k.lambda_theta, k.restoring[0]);
     let omega = k.r2_omega.sqrt() / courant_limit(k.lambda_omega, k.restoring[1]);
-    // Not `max`, which would drop what is no number.
+    // Not `max`, which would drop NaN.
     if theta >= omega { theta } else { omega }
 }
 
-/// Least number of equal sub-steps of `dt_secs` that keeps every cell within the limit, when no bending speed exceeds
-/// `omega_max_rad_per_s`; none if that takes more than [`SUBSTEPS_LIMIT`].
+/// Smallest number of equal sub-steps of `dt_secs` that keeps every cell within the limit as long as no bending velocity exceeds
+/// `omega_max_rad_per_s`; `None` if that takes more than [`SUBSTEPS_LIMIT`].
 pub fn substeps(waves: &[WaveParams], cell_m: f32, dt_secs: f32, omega_max_rad_per_s: f32, damping: Damping) -> Option<u32> {
     let fits = |count: u32| {
         let share = |params| courant_share(&Coefficients::new(params, cell_m, dt_secs / count as f32, damping), omega_max_rad_per_s);
         waves.iter().all(|params| share(params) <= SAFETY)
     };
-    // All terms shrink with the step, so doubling then bisecting finds the least count.
+    // All terms shrink with the step, so doubling and then bisecting finds the smallest count.
     let mut enough = 1;
     while !fits(enough) {
         enough *= 2;

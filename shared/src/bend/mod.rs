@@ -2,24 +2,24 @@
 //!
 //! A cell holds one cluster of grass: its bending angle θ (rad; 0 at rest) and its bending velocity ω = (ωx, ωz)
 //! (rad/s), whose direction is the direction in which the cluster leans. Contact sets both ([`Field::press`]); the
-//! damped wave equations (2)–(6), with a restoring rate κ, carry them on and let them rise again: with the Laplacian L,
-//! `θ'' + k_θ·θ' + κ·θ = (c₀ + μ·|ω|)²·Lθ` and `ω'' + k_ω·ω' + κ·ω = c_ω²·Lω`. A [`Scheme`] says how.
+//! damped wave equations (2)–(6), with a restoring rate κ, propagate them and return them to rest: with the Laplacian L,
+//! `θ'' + k_θ·θ' + κ·θ = (c₀ + μ·|ω|)²·Lθ` and `ω'' + k_ω·ω' + κ·ω = c_ω²·Lω`. A [`Scheme`] integrates them in time.
 //!
 //! A [`Field`] is made of patches with a halo of ghost cells. The ghosts are filled before they are needed, so a field
-//! of many patches equals one big grid bit for bit. A patch that sleeps holds no memory and counts as at rest; in one that is awake only
-//! the 8 × 8 tiles are stepped in or beside which something moves.
+//! of many patches equals one big grid bit for bit. A sleeping patch uses no memory and counts as at rest; in an awake one, only
+//! 8 × 8 tiles that contain motion, and their neighbours, are stepped.
 //!
-//! The field holds how grass departs from where the wind alone would hold it, [`wind_lean_rad`]: both leans add up as vectors on the
-//! ground. So the wind, which is known at the nodes of a coarse grid, wakes no patch and crosses no wire twice; a gust passes over a
-//! track without wiping it out, and grass that rises again rises to where the wind holds it.
+//! The field is the deviation from the equilibrium lean in the wind, [`wind_lean_rad`]; both leans add up as vectors on the ground. So
+//! the wind, known at the nodes of a coarse grid, wakes no patch and is not sent twice; a gust passes over a track without erasing it,
+//! and grass recovers to its lean in the wind.
 //!
 //! # Example
 //!
 //! A standing wave between free edges, over 2 × 2 patches, is back after one period:
 //!
 //! ```
-//! use shared::bend::{Alone, Bend, Edges, Field, Kinds, Scheme, WaveParams};
-//! use shared::grid::PatchLayout;
+//! use prairie_core::bend::{Alone, Bend, Edges, Field, Kinds, Scheme, WaveParams};
+//! use prairie_core::grid::PatchLayout;
 //! use std::f32::consts::PI;
 //!
 //! let layout = PatchLayout { count: [2, 2], cells: 32, cell_m: 0.25 };
@@ -46,20 +46,23 @@
 //!     let cell_m = ((x_m / 0.25_f32).floor() + 0.5) * 0.25;
 //!     assert!((theta - 0.5 * wave(cell_m, 0.0)).abs() < 1e-3 && omega == [0.0; 2]);
 //! }
-//! # Ok::<(), shared::bend::StepError>(())
+//! # Ok::<(), prairie_core::bend::StepError>(())
 //! ```
 
 mod crew;
+mod exchange;
 mod field;
 mod halo;
 mod implicit;
 mod kernel;
 mod kinds;
 pub mod limits;
+#[cfg(feature = "modal")]
 mod modal;
 mod params;
 mod patch;
 mod scheme;
+mod step;
 mod tiles;
 mod tridiagonal;
 mod verlet;
@@ -73,4 +76,4 @@ pub use params::{Coefficients, Damping, WaveParams};
 pub use patch::{Bend, CHANNELS, HALO, Patch};
 pub use scheme::{Report, Scheme, StepError};
 pub use tiles::{Rest, TILE};
-pub use wind::wind_lean_rad;
+pub use wind::{BEND_SATURATES_M_PER_S, wind_lean_rad};

@@ -1,9 +1,8 @@
-//! Exact propagation in time, mode by mode, of the whole grid (needs one constant speed).
+//! Exact propagation in time of the whole grid, mode by mode (needs one constant speed).
 //!
 //! In space the equation is that of the other schemes, `θ'' + kθ' + κθ = c²·Lθ` with the five-point Laplacian L. Its modes are those of a Fourier
-//! transform over the grid, extended by its mirror images to what repeats: oddly beyond edges at rest, evenly beyond free ones. A mode of
-//! wave number K oscillates at Ω² = c²K² + κ − k²/4, and three states dt apart obey, exactly,
-//! `θ⁺ = 2·exp(−k·dt/2)·cos(Ω·dt)·θ − exp(−k·dt)·θ⁻`.
+//! transform over the grid, extended to a periodic one by its mirror images: odd beyond edges at rest, even beyond free ones. A mode of wave number K
+//! oscillates at Ω² = c²K² + κ − k²/4, and three states dt apart obey exactly `θ⁺ = 2·exp(−k·dt/2)·cos(Ω·dt)·θ − exp(−k·dt)·θ⁻`.
 
 use super::halo::Edges;
 use super::patch::CHANNELS;
@@ -12,7 +11,7 @@ use rustfft::num_complex::Complex;
 use rustfft::{FftDirection, FftPlannerScalar};
 use std::f64::consts::PI;
 
-/// Damping rate (1/s), speed (m/s), stiffness (1/s²) of a channel.
+/// Damping rate (1/s), speed (m/s) and stiffness (1/s²) of a channel.
 struct Oscillation {
     damping_per_s: f64,
     speed_m_per_s: f64,
@@ -27,7 +26,7 @@ impl Oscillation {
         if omega2 >= 0.0 {
             return 2.0 * (-0.5 * k * dt_secs).exp() * (omega2.sqrt() * dt_secs).cos();
         }
-        // Overdamped: exp(−k·dt/2) goes into the hyperbolic cosine, which alone would overflow.
+        // Overdamped: exp(−k·dt/2) is multiplied into the hyperbolic cosine, which alone would overflow.
         let rate = (-omega2).sqrt();
         ((rate - 0.5 * k) * dt_secs).exp() + ((-rate - 0.5 * k) * dt_secs).exp()
     }
@@ -53,7 +52,7 @@ pub(super) fn step(field: &mut Field, dt_secs: f32) -> Result<Report, StepError>
     };
     let theta = oscillation(c0_m_per_s, theta_damping_per_s);
     let omega = oscillation(c_omega_m_per_s, omega_damping_per_s);
-    // Both components of ω obey one equation: they travel as one complex number.
+    // Both components of ω obey one equation, so they are transformed as one complex number.
     propagate(field, [Some(0), None], &theta, dt_secs, ratio);
     propagate(field, [Some(1), Some(2)], &omega, dt_secs, ratio);
     for patch in &mut field.patches {
@@ -112,7 +111,7 @@ fn propagate(field: &mut Field, channels: [Option<usize>; 2], oscillation: &Osci
     });
 }
 
-/// Calls back for every row of every patch, with the place of its first cell in the planes and in the world.
+/// Calls `act` for every row of every patch, with the index of its first cell in the planes and its position in the world.
 fn for_each_row(field: &mut Field, mut act: impl FnMut(&mut Patch, usize, [usize; 2])) {
     let (layout, side) = (field.layout, field.layout.cells as usize);
     for patch in &mut field.patches {
@@ -124,7 +123,7 @@ fn for_each_row(field: &mut Field, mut act: impl FnMut(&mut Patch, usize, [usize
     }
 }
 
-/// Places of a cell and of its mirror image in the period, with their signs.
+/// Positions of a cell and of its mirror image in the period, with their signs.
 fn images(edges: Edges, cell: usize, period: usize) -> impl Iterator<Item = (usize, f64)> {
     let (own, image) = match edges {
         Edges::Rest => (cell + 1, Some((period - cell - 1, -1.0))),

@@ -1,51 +1,53 @@
-//! Constants of the wave equations, and what one sub-step makes of them.
+//! Constants of the wave equations, and the coefficients of one sub-step.
 
-use crate::scene::Grass;
+use serde::{Deserialize, Serialize};
 
-/// Constants of 001 Eqs (2)–(6) in units that do not depend on the time step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Constants of the wave equations, Chen & Johan Eqs (2)–(6): speeds in m/s and damping as a rate in 1/s, so that results do not depend on the time
+/// step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct WaveParams {
-    /// Base speed of θ, c₀ (m/s).
+    /// Base wave speed c₀ of the bending angle θ (m/s), Chen & Johan Eq. (4). Default 1, allowed 0..=50; Chen & Johan use 1..=10.
     pub c0_m_per_s: f32,
-    /// Growth of that speed with the bending speed, μ (m/rad), Eq. (4).
+    /// Growth μ of that speed with the bending velocity (m/rad), Chen & Johan Eq. (4). Default 0.05, allowed 0..=10; Chen & Johan use 0..=1.5.
     pub mu_m_per_rad: f32,
-    /// Speed of ω, c_ω (m/s).
+    /// Wave speed c_ω of the bending velocity ω (m/s), Chen & Johan Eq. (3). Default 1, allowed 0..=50.
     pub c_omega_m_per_s: f32,
-    /// Damping rate of θ (1/s).
+    /// Damping rate k_θ of θ (1/s): Chen & Johan's λ_θ = 1 − exp(−k_θ·dt). Default 6, allowed 0..=200.
     pub theta_damping_per_s: f32,
-    /// Damping rate of ω (1/s).
+    /// Damping rate k_ω of ω (1/s). Default 6, allowed 0..=200.
     pub omega_damping_per_s: f32,
-    /// Restoring rate κ (1/s²).
+    /// Restoring rate κ (1/s²): adds −κ·θ to Eq. (2) and −κ·ω to Eq. (3), so that bent grass rises even where no wave carries the bend away. The slow
+    /// time constant is k/κ; stiffer plants also droop less. Default 1.2 (tracks rise in about 5 s), allowed 0..=10000; Chen & Johan have 0.
     pub stiffness_per_s2: f32,
 }
 
-impl From<&Grass> for WaveParams {
-    fn from(grass: &Grass) -> Self {
+impl Default for WaveParams {
+    fn default() -> Self {
         Self {
-            c0_m_per_s: grass.c0_m_per_s,
-            mu_m_per_rad: grass.mu_m_per_rad,
-            c_omega_m_per_s: grass.c_omega_m_per_s,
-            theta_damping_per_s: grass.theta_damping_per_s,
-            omega_damping_per_s: grass.omega_damping_per_s,
-            stiffness_per_s2: grass.stiffness_per_s2,
+            c0_m_per_s: 1.0,
+            mu_m_per_rad: 0.05,
+            c_omega_m_per_s: 1.0,
+            theta_damping_per_s: 6.0,
+            omega_damping_per_s: 6.0,
+            stiffness_per_s2: 1.2,
         }
     }
 }
 
-/// How a sub-step takes the damping rate k.
+/// Discretisation of the damping rate k in a sub-step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Damping {
-    /// 001 Eqs (5)–(6) as they stand, with λ = 1 − exp(−k·dt): the force counts in full, and a wave that slows down keeps its motion. First
-    /// order in time.
+    /// Chen & Johan Eqs (5)–(6) as published, with λ = 1 − exp(−k·dt): the force counts in full, and a wave that slows down keeps its motion.
+    /// First order in time.
     Plain,
-    /// The velocity decays by 1 − λ and gains the force times (1 − exp(−k·dt))/k, as it would exactly under a steady force.
-    /// Second order in time. A wave that slows down by Eq. (4) loses the motion that it can no longer carry, so that no change of its speed adds
-    /// energy.
+    /// The velocity decays by 1 − λ and gains the force times (1 − exp(−k·dt))/k, which is exact under a steady force. Second order in time. A wave
+    /// that slows down by Eq. (4) loses the motion that it can no longer carry, so that no change of speed adds energy.
     Exact,
 }
 
-/// What a sub-step of `dt` seconds multiplies with. Speeds and stiffness hold the root or the whole of the share φ in which the force
-/// counts: 1 for [`Damping::Plain`], λ/(k·dt) for [`Damping::Exact`].
+/// Coefficients of a sub-step of `dt` seconds. φ is the fraction of the force that counts: 1 for [`Damping::Plain`], λ/(k·dt) for
+/// [`Damping::Exact`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
     /// λ_θ = 1 − exp(−k_θ·dt).
@@ -54,13 +56,13 @@ pub struct Coefficients {
     pub lambda_omega: f32,
     /// √φ·c₀·dt/h: Courant number of θ at rest.
     pub r0: f32,
-    /// √φ·μ·dt/h (s/rad): Courant number added for each rad/s of bending speed.
+    /// √φ·μ·dt/h (s/rad): increase of that Courant number per rad/s of bending velocity.
     pub r_mu: f32,
     /// φ·(c_ω·dt/h)².
     pub r2_omega: f32,
-    /// φ·κ·dt², of θ and of ω.
+    /// φ·κ·dt², for θ and for ω.
     pub restoring: [f32; 2],
-    /// Whether θ keeps all its motion where its speed falls by Eq. (4).
+    /// Whether θ keeps all its motion where its wave speed falls by Eq. (4).
     pub keeps_motion: bool,
 }
 
@@ -69,9 +71,10 @@ impl Coefficients {
     pub fn new(params: &WaveParams, cell_m: f32, dt_secs: f32, damping: Damping) -> Self {
         let theta = Decay::new(params.theta_damping_per_s, dt_secs, damping);
         let omega = Decay::new(params.omega_damping_per_s, dt_secs, damping);
-        let courant = |speed: f32, decay: &Decay| (decay.share.sqrt() * f64::from(speed) * f64::from(dt_secs) / f64::from(cell_m)) as f32;
+        let courant =
+            |speed: f32, decay: &Decay| (decay.force_fraction.sqrt() * f64::from(speed) * f64::from(dt_secs) / f64::from(cell_m)) as f32;
         let r_omega = courant(params.c_omega_m_per_s, &omega);
-        let restoring = |decay: &Decay| (decay.share * f64::from(params.stiffness_per_s2) * f64::from(dt_secs).powi(2)) as f32;
+        let restoring = |decay: &Decay| (decay.force_fraction * f64::from(params.stiffness_per_s2) * f64::from(dt_secs).powi(2)) as f32;
         Self {
             lambda_theta: theta.lambda as f32,
             lambda_omega: omega.lambda as f32,
@@ -84,17 +87,17 @@ impl Coefficients {
     }
 }
 
-/// λ and φ, in f64 so that small rates keep their digits.
+/// λ and φ in f64, so that small rates keep their digits.
 struct Decay {
     lambda: f64,
-    share: f64,
+    force_fraction: f64,
 }
 
 impl Decay {
     fn new(rate_per_s: f32, dt_secs: f32, damping: Damping) -> Self {
         let exponent = f64::from(rate_per_s) * f64::from(dt_secs);
         let lambda = -f64::exp_m1(-exponent);
-        let share = if damping == Damping::Plain || exponent == 0.0 { 1.0 } else { lambda / exponent };
-        Self { lambda, share }
+        let force_fraction = if damping == Damping::Plain || exponent == 0.0 { 1.0 } else { lambda / exponent };
+        Self { lambda, force_fraction }
     }
 }

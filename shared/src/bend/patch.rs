@@ -6,7 +6,7 @@ use crate::grid::PatchIndex;
 /// State of one cluster of grass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bend {
-    /// Bending angle (rad), 0 where the wind alone would hold the grass.
+    /// Bending angle (rad); 0 at equilibrium with the wind.
     pub theta: f32,
     /// Bending velocity along X and Z (rad/s); its direction is the direction of the bend.
     pub omega: [f32; 2],
@@ -15,15 +15,15 @@ pub struct Bend {
 /// Number of channels: θ, ωx, ωz.
 pub const CHANNELS: usize = 3;
 
-/// Width of the ghosts around a patch (cells), that of 001's overlaps; also the most sub-steps between two exchanges.
+/// Width of the halo around a patch (cells), that of Chen & Johan's overlaps; also the largest number of sub-steps between two exchanges.
 pub const HALO: usize = 4;
 
-/// Values that follow each plane, never read: planes a multiple of 4 KiB apart would contend for the same places in the cache.
+/// Padding after each plane, never read: planes a multiple of 4 KiB apart would contend for the same cache sets.
 const STAGGER: usize = 32;
 
 pub(super) type Planes = [Vec<f32>; CHANNELS];
 
-/// A square patch of `side × side` cells (a multiple of 8) inside a halo; row-major from the north-west, `(side + 8)²` values a channel.
+/// Square patch of `side × side` cells (a multiple of 8) inside a halo; row-major from the north-west, `(side + 8)²` values a channel.
 #[derive(Clone, Debug)]
 pub struct Patch {
     index: PatchIndex,
@@ -33,10 +33,10 @@ pub struct Patch {
     /// Channels one sub-step earlier.
     pub(super) before: Planes,
     pub(super) tiles: Tiles,
-    pub(super) ground: Ground,
+    pub(super) ground: PatchKinds,
 }
 
-/// Two patches are equal if their own cells are: ghosts and what has changed are matters of how they came to be.
+/// Two patches are equal if their own cells are: ghosts and revisions depend on their history.
 impl PartialEq for Patch {
     fn eq(&self, other: &Self) -> bool {
         let is_alike = (self.index, self.side, &self.ground) == (other.index, other.side, &other.ground);
@@ -44,9 +44,9 @@ impl PartialEq for Patch {
     }
 }
 
-/// What grows in a patch and its halo.
+/// Kinds of grass in a patch and its halo.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Ground {
+pub(super) enum PatchKinds {
     /// One kind.
     One(u8),
     /// The kind of each cell.
@@ -55,24 +55,24 @@ pub(super) enum Ground {
 
 impl Patch {
     /// A patch at rest, with the kinds that grow in it and its halo, row by row.
-    pub(super) fn new(index: PatchIndex, side: usize, kind: impl Fn([i64; 2]) -> u8) -> Self {
+    pub(super) fn new(index: PatchIndex, side: usize, revision: u64, kind: impl Fn([i64; 2]) -> u8) -> Self {
         let stride = side + 2 * HALO;
         let zeros = || vec![0.0; stride * stride + STAGGER];
         let halo = HALO as i64;
         let cells = (0..stride * stride).map(|at| [(at % stride) as i64 - halo, (at / stride) as i64 - halo]);
         let kinds: Vec<u8> = cells.map(kind).collect();
-        let ground = if kinds.iter().all(|kind| *kind == kinds[0]) { Ground::One(kinds[0]) } else { Ground::Map(kinds) };
+        let ground = if kinds.iter().all(|kind| *kind == kinds[0]) { PatchKinds::One(kinds[0]) } else { PatchKinds::Map(kinds) };
         Self {
             index,
             side,
             now: std::array::from_fn(|_| zeros()),
             before: std::array::from_fn(|_| zeros()),
-            tiles: Tiles::new(side),
+            tiles: Tiles::new(side, revision),
             ground,
         }
     }
 
-    /// Which patch.
+    /// Index of the patch.
     pub fn index(&self) -> PatchIndex {
         self.index
     }
@@ -87,7 +87,7 @@ impl Patch {
         self.side + 2 * HALO
     }
 
-    /// Place in the planes of cell `(i, j)`, ghosts included.
+    /// Index in the planes of cell `(i, j)`, ghosts included.
     pub(super) fn at(&self, i: i64, j: i64) -> usize {
         let halo = HALO as i64;
         debug_assert!([i, j].into_iter().all(|n| (-halo..self.side as i64 + halo).contains(&n)));
@@ -104,19 +104,19 @@ impl Patch {
         read(&self.before, self.at(i as i64, j as i64))
     }
 
-    /// Sets the state of cell `(i, j)` as contact does (001 Eqs 1 and 12): the values at both times move together, so that
-    /// the object, not the integrator's memory, decides how fast the cluster moves while it is touched.
+    /// Sets the state of cell `(i, j)` as contact does (Chen & Johan Eqs 1 and 12): the values at both times move together, so that the object, not
+    /// the integrator's memory, decides how fast the cluster moves while it is touched.
     pub fn press(&mut self, i: usize, j: usize, bend: Bend) {
         self.set(i, j, bend, bend);
     }
 
-    /// Sets the state of cell `(i, j)` at both times, and so any motion.
+    /// Sets the state of cell `(i, j)` at both times, and thereby its motion.
     pub fn set(&mut self, i: usize, j: usize, now: Bend, before: Bend) {
         assert!(i < self.side && j < self.side, "cell ({i}, {j}) of a patch of {} × {}", self.side, self.side);
         self.set_ghost(i as i64, j as i64, now, before);
     }
 
-    /// [`set`](Self::set) for any cell, ghosts included; a ghost makes the nearest own tile step.
+    /// [`set`](Self::set) for any cell, ghosts included; a ghost activates the nearest own tile.
     pub(super) fn set_ghost(&mut self, i: i64, j: i64, now: Bend, before: Bend) {
         let at = self.at(i, j);
         write(&mut self.now, at, now);
@@ -130,7 +130,7 @@ impl Patch {
         (0..self.side).map(|j| self.row(j))
     }
 
-    /// Rows one sub-step earlier; with [`rows`](Self::rows) the whole state of a patch.
+    /// Rows one sub-step earlier; with [`rows`](Self::rows) the complete state of a patch.
     pub fn rows_before(&self) -> impl Iterator<Item = [&[f32]; CHANNELS]> {
         (0..self.side).map(|j| self.row_of(&self.before, j))
     }
@@ -148,24 +148,24 @@ impl Patch {
         planes.each_ref().map(|plane| &plane[(j + HALO) * self.stride() + HALO..][..self.side])
     }
 
-    /// Largest |θ| (rad) of the newest two times.
+    /// Largest |θ| (rad) of the last two times.
     pub fn theta_max_rad(&self) -> f32 {
         self.tiles.theta_max_rad()
     }
 
-    /// Largest |ω| (rad/s) of the newest two times.
+    /// Largest |ω| (rad/s) of the last two times.
     pub fn omega_max_rad_per_s(&self) -> f32 {
         self.tiles.omega_max_rad_per_s()
     }
 
-    /// Sum of θ² + ω² over the cells (mixed units): how far from rest the patch is.
+    /// Sum of θ² + ω² over the cells (mixed units), a measure of distance from rest.
     pub fn activity(&self) -> f64 {
         let tiles = (0..self.tiles.count()).flat_map(|z| (0..self.tiles.count()).map(move |x| (x, z)));
         // The sum of nothing would be −0.
         tiles.filter(|&(x, z)| self.tiles.holds(x, z)).fold(0.0, |sum, (x, z)| sum + f64::from(self.tile_activity(x, z)))
     }
 
-    /// The same of one tile; column by column, in vectors.
+    /// The same for one tile, column by column, vectorised.
     fn tile_activity(&self, x: usize, z: usize) -> f32 {
         let mut columns = [0.0_f32; TILE];
         for row in 0..TILE {
@@ -177,26 +177,21 @@ impl Patch {
         columns.iter().sum()
     }
 
-    /// Tiles of 8 × 8 cells that have changed since they were last taken, row by row.
-    pub fn changed_tiles(&self) -> &[bool] {
-        self.tiles.changed()
+    /// Whether each tile of 8 × 8 cells may have changed since the field had this [revision](super::Field::revision), row by row.
+    pub fn changed_since(&self, revision: u64) -> impl Iterator<Item = bool> {
+        self.tiles.changed_in().iter().map(move |changed_in| *changed_in >= revision)
     }
 
-    /// Takes the tiles that have changed as seen.
-    pub fn forget_changes(&mut self) {
-        self.tiles.forget_changes();
-    }
-
-    /// Bytes of memory that the patch holds.
+    /// Memory held by the patch (bytes).
     pub fn memory_bytes(&self) -> usize {
         let kinds = match &self.ground {
-            Ground::One(_) => 0,
-            Ground::Map(kinds) => kinds.len(),
+            PatchKinds::One(_) => 0,
+            PatchKinds::Map(kinds) => kinds.len(),
         };
         self.now.iter().chain(&self.before).map(|plane| plane.len() * size_of::<f32>()).sum::<usize>() + kinds + self.tiles.memory_bytes()
     }
 
-    /// Finds anew how far each tile is from rest.
+    /// Recomputes the peaks of each tile.
     pub(super) fn measure(&mut self) {
         let count = self.tiles.count();
         for (x, z) in (0..count).flat_map(|z| (0..count).map(move |x| (x, z))) {
@@ -215,13 +210,13 @@ impl Patch {
         }
     }
 
-    /// Planes of the newest state, and of the earlier one if there are to be two `states`.
+    /// Planes of the newest state and, if `states` is 2, of the earlier one.
     pub(super) fn planes_mut(&mut self, states: usize) -> impl Iterator<Item = &mut [f32]> {
         self.now.iter_mut().chain(&mut self.before).take(states * CHANNELS).map(Vec::as_mut_slice)
     }
 
-    /// Puts `width × depth` cells from `(i, j)` on, ghosts included, to rest.
-    pub(super) fn quell(&mut self, [i, j]: [i64; 2], [width, depth]: [usize; 2]) {
+    /// Puts `width × depth` cells from `(i, j)` on to rest, ghosts included.
+    pub(super) fn put_to_rest(&mut self, [i, j]: [i64; 2], [width, depth]: [usize; 2]) {
         for row in 0..depth as i64 {
             let at = self.at(i, j + row);
             self.planes_mut(2).for_each(|plane| plane[at..at + width].fill(0.0));

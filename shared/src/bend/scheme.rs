@@ -1,68 +1,63 @@
-//! The schemes that carry the waves on, and what a step reports.
+//! Time-integration schemes, and the report of a step.
 
 use crate::scene::words;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 words! {
-    /// How the waves (001 Eqs 2–3) are carried on in time.
+    /// Time-integration scheme of the wave equations (Chen & Johan Eqs 2–3).
     #[derive(Default)]
     Scheme {
-        /// 001 Eqs (5)–(6), one step however long: explicit, first order in time where damped, and beyond
-        /// [`courant_limit`](super::limits::courant_limit) it blows up.
+        /// Chen & Johan Eqs (5)–(6) in one step of any length: explicit, first order in time with damping, unstable beyond
+        /// [`courant_limit`](super::limits::courant_limit).
         Verlet = "verlet",
-        /// The same in as many equal sub-steps as the limit asks for, the damping integrated exactly: second order.
+        /// The same in as many equal sub-steps as the limit requires, with exact damping: second order.
         #[default]
         Substepped = "substepped",
-        /// Newmark's average acceleration (β = ¼) by alternating directions (Lees 1962): one step however long, second order, stable for any
-        /// step where the speed is constant.
+        /// Newmark's average acceleration (β = ¼) by alternating directions (Lees 1962): one step of any length, second order, stable for any step
+        /// where the speed is constant.
         Implicit = "implicit",
-        /// Each mode of the whole grid by its exact solution (in time; in space the same differences as the others). Needs one constant speed
-        /// (μ = 0, one kind of grass) and every patch awake.
+        /// Exact in time for each mode of the whole grid, with the same finite differences in space as the others. Needs one constant speed (μ = 0,
+        /// one kind of grass), every patch awake, and the feature `modal`.
         Modal = "modal",
     }
 }
 
-impl Scheme {
-    /// All schemes.
-    pub const ALL: [Self; 4] = [Self::Verlet, Self::Substepped, Self::Implicit, Self::Modal];
-}
-
-/// What a step took.
+/// Statistics of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
     /// Number of sub-steps.
     pub substeps: u32,
-    /// Largest Courant number of a sub-step, over its limit: an explicit scheme is stable up to 1.
+    /// Largest Courant number of a sub-step relative to its limit: an explicit scheme is stable up to 1.
     pub courant_share: f32,
-    /// Cells stepped, times sub-steps; ghosts do not count.
+    /// Cells stepped, times sub-steps, without ghosts.
     pub cell_steps: u64,
-    /// Patches put to rest because a value in them was no number.
-    pub broken: u32,
-    /// Patches that energy reached and that stayed asleep, because as many as allowed are awake.
+    /// Patches put to rest because they held a NaN or infinite value.
+    pub reset_patches: u32,
+    /// Patches that energy reached but that stayed asleep because of the limit on awake patches.
     pub refused: u32,
 }
 
-/// Why a field cannot be stepped; it is as it was.
+/// Reasons why a field cannot be stepped; it is then unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum StepError {
-    /// The time step is no length.
+    /// The time step is not a positive finite number.
     #[error("a step of {dt_secs} s; allowed: a finite number above 0")]
     NoStep {
-        /// The step asked for (s).
+        /// The requested step (s).
         dt_secs: f32,
     },
     /// Too many sub-steps.
     #[error("grass that bends at {omega_rad_per_s} rad/s needs more than {allowed} sub-steps in {dt_secs} s")]
     TooFast {
-        /// Largest bending speed (rad/s).
+        /// Largest bending velocity (rad/s).
         omega_rad_per_s: f32,
-        /// Sub-steps allowed.
+        /// Largest allowed number of sub-steps.
         allowed: u32,
-        /// The step asked for (s).
+        /// The requested step (s).
         dt_secs: f32,
     },
-    /// The modal scheme where the speed is not constant.
+    /// The modal scheme with a variable speed.
     #[error(
         "the modal scheme needs one constant speed of θ; here are {kinds} kinds of grass and μ up to {mu_m_per_rad} m/rad; allowed: 1 and 0"
     )]
@@ -72,12 +67,15 @@ pub enum StepError {
         /// Largest μ (m/rad).
         mu_m_per_rad: f32,
     },
-    /// The modal scheme on a part of the grid.
+    /// The modal scheme in a build without it.
+    #[error("the modal scheme is not in this build; allowed: another scheme, or a build of prairie-core with the feature `modal`")]
+    Unavailable,
+    /// The modal scheme on part of the grid.
     #[error("the modal scheme needs the whole grid; {awake} of {patches} patches are awake, with {seams} seams")]
     NotWhole {
-        /// Patches awake.
+        /// Number of awake patches.
         awake: usize,
-        /// Patches that there are.
+        /// Number of patches in the world.
         patches: usize,
         /// Name of the seams.
         seams: &'static str,

@@ -1,32 +1,32 @@
-//! Tridiagonal systems `(1 − a·L)·δ = f` along a line of cells, eight lines abreast.
+//! Tridiagonal systems `(1 − a·L)·δ = f` along a line of cells, eight lines at once.
 
-/// Lines abreast.
+/// Number of lines solved at once.
 pub(super) const LANES: usize = 8;
 /// One value of each line.
 pub(super) type Lanes = [f32; LANES];
 
-/// What lies beyond the end of a line.
+/// Boundary condition at the end of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum End {
-    /// No change.
+    /// No change (homogeneous Dirichlet).
     Rest,
-    /// The mirror of the line.
+    /// Mirror image (homogeneous Neumann).
     Free,
-    /// The other end.
+    /// Joined to the other end (periodic).
     Joined,
 }
 
-/// Eight lines of one length: Thomas' algorithm, and for a ring Sherman and Morrison's formula.
+/// Eight lines of equal length, solved by the Thomas algorithm; periodic ones with the Sherman–Morrison formula.
 pub(super) struct Line {
     ends: [End; 2],
     /// a of each cell.
     pub(super) weights: Vec<Lanes>,
-    /// Right-hand side; then the solution.
+    /// Right-hand side, then the solution.
     pub(super) values: Vec<Lanes>,
-    /// Over the diagonal after elimination: 1, and a.
+    /// Reciprocal of the diagonal after elimination, times 1 and times a.
     inverse: Vec<Lanes>,
     upper: Vec<Lanes>,
-    /// A ring's answer to its joint.
+    /// Solution for the Sherman–Morrison vector u of a periodic line.
     joint: Vec<Lanes>,
 }
 
@@ -36,7 +36,7 @@ impl Line {
         Self { ends, weights: lanes(), values: lanes(), inverse: lanes(), upper: lanes(), joint: lanes() }
     }
 
-    /// Eliminates the lower diagonal. Every row is diagonally dominant: no pivot is needed.
+    /// Eliminates the lower diagonal. Every row is diagonally dominant, so no pivoting is needed.
     pub(super) fn factorise(&mut self) {
         let last = self.weights.len() - 1;
         self.inverse.clear();
@@ -51,7 +51,7 @@ impl Line {
                         _ if at != cell => 0.0,
                         End::Rest => 0.0,
                         End::Free => -a,
-                        // The joint's own two entries, shared out to both ends.
+                        // The two corner entries of the periodic matrix are compensated at both ends.
                         End::Joined => a,
                     };
                 }
@@ -73,13 +73,13 @@ impl Line {
         }
     }
 
-    /// Turns the right-hand side into the solution.
+    /// Replaces the right-hand side by the solution.
     pub(super) fn solve(&mut self) {
         let mut values = std::mem::take(&mut self.values);
         self.substitute(&mut values);
         if self.ends[0] == End::Joined {
             let last = values.len() - 1;
-            // The matrix is the eliminated one plus u·vᵗ, u = (−a₀, 0, …, −aₙ) and v = (1, 0, …, 0, 1).
+            // The periodic matrix is the factorised one plus u·vᵗ, with u = (−a₀, 0, …, −aₙ) and v = (1, 0, …, 0, 1).
             let share: Lanes =
                 std::array::from_fn(|lane| (values[0][lane] + values[last][lane]) / (1.0 + self.joint[0][lane] + self.joint[last][lane]));
             for (values, joint) in values.iter_mut().zip(&self.joint) {
@@ -107,7 +107,7 @@ impl Line {
 mod tests {
     use super::*;
 
-    /// The product of the matrix with a solution is the right-hand side again.
+    /// The matrix times the solution gives the right-hand side.
     #[test]
     fn solutions_fulfil_their_systems() {
         for ends in

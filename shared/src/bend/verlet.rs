@@ -1,35 +1,34 @@
-//! Explicit Verlet propagation (001 Eqs 2–6).
+//! Explicit Verlet integration (Chen & Johan Eqs 2–6).
 //!
-//! With λ = 1 − exp(−k·dt) and r = c·dt/h a cell becomes
-//! `θ⁺ = θ + (1 − λ)·(θ − θ⁻) + r²·(Σ neighbours − 4θ) − κ·dt²·θ`, likewise for both components of ω. When dt changes,
-//! θ⁻ is moved first, to keep (θ − θ⁻)/dt.
+//! With λ = 1 − exp(−k·dt) and r = c·dt/h a cell becomes `θ⁺ = θ + (1 − λ)·(θ − θ⁻) + r²·(Σ neighbours − 4θ) − κ·dt²·θ`, likewise for both components
+//! of ω. When dt changes, θ⁻ is adjusted first, to keep (θ − θ⁻)/dt.
 //!
-//! Where the bend slows down, so does the wave (Eq. 4), from c⁻ to c: its motion θ − θ⁻ then is kept by c/c⁻ only. A wave's energy is
-//! `(θ'/c)² + |∇θ|²`: were the motion kept whole, each fall of c would add to it, and |ω|, which swings, would drive θ up without end, however short
-//! the steps (Hill's equation; 250 000 rad in one of 5000 random draws). [`Damping::Plain`](super::Damping) keeps it whole, as 001 does.
+//! Where the bend slows down, so does the wave (Eq. 4), from c⁻ to c: its motion θ − θ⁻ is then scaled by c/c⁻. A wave's energy is `(θ'/c)² + |∇θ|²`.
+//! If the motion were kept whole, each fall of c would add energy, and the oscillating |ω| would drive θ up without end, however short the steps
+//! (Hill's equation; 250 000 rad in one of 5000 random draws). [`Damping::Plain`](super::Damping) keeps it whole, as Chen & Johan do.
 //!
-//! A patch does up to [`HALO`] sub-steps while it lies in the cache: its halo then holds as many rings of its neighbours' cells, of which each
-//! sub-step uses up one. Its neighbours compute these cells, too, with the same bits.
+//! A patch does up to [`HALO`] sub-steps while it is in the cache: its halo then contains as many rings of its neighbours' cells, and each sub-step
+//! uses up one. The neighbours compute these cells, too, with the same bits.
 
 use super::Coefficients;
 use super::kernel::{self, Block};
-use super::patch::{Ground, HALO, Patch};
+use super::patch::{HALO, Patch, PatchKinds};
 use super::tiles::TILE;
 
-/// What a patch does between two exchanges.
+/// Sub-steps of a patch between two exchanges.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pass<'a> {
     /// Coefficients of each kind of grass.
     pub(super) kinds: &'a [Coefficients],
-    /// Sub-steps, at most [`HALO`].
+    /// Number of sub-steps, at most [`HALO`].
     pub(super) substeps: usize,
-    /// Length of a sub-step over that of the last one.
+    /// Length of a sub-step relative to the last one.
     pub(super) ratio: f32,
-    /// Rings of the halo that each sub-step advances; none for as many as the later ones need.
+    /// Rings of the halo that each sub-step advances; `None` for as many as the later ones need.
     pub(super) rings: Option<usize>,
 }
 
-/// Advances the tiles of a patch that step. Returns the number of cells stepped.
+/// Advances the active tiles of a patch. Returns the number of cells stepped.
 pub(super) fn advance(patch: &mut Patch, pass: &Pass<'_>) -> u64 {
     let bands = -1..=patch.tiles.count() as i64;
     let (mut cells, mut spans) = (0, vec![]);
@@ -41,7 +40,7 @@ pub(super) fn advance(patch: &mut Patch, pass: &Pass<'_>) -> u64 {
     }
     for substep in 1..=pass.substeps {
         let rings = pass.rings.unwrap_or(pass.substeps - substep) as i64;
-        // Rows of whole vectors: the ghosts beyond the rings become whatever they become; only such ghosts read them before they are fetched anew.
+        // Rows of whole SIMD vectors: ghosts beyond the rings get arbitrary values, which only other such ghosts read before the next exchange.
         let columns = if pass.rings.is_none() && rings > 0 { HALO as i64 } else { rings };
         let is_last = substep == pass.substeps;
         for band in bands.clone() {
@@ -55,7 +54,7 @@ pub(super) fn advance(patch: &mut Patch, pass: &Pass<'_>) -> u64 {
                 advance_span(patch, pass.kinds, band, rings, *span, peaks.as_mut());
             }
             if let Some(peaks) = peaks {
-                peaks.tell(patch, band);
+                peaks.record(patch, band);
             }
         }
         std::mem::swap(&mut patch.now, &mut patch.before);
@@ -63,16 +62,16 @@ pub(super) fn advance(patch: &mut Patch, pass: &Pass<'_>) -> u64 {
     cells
 }
 
-/// Whether cells of the patch and ghosts go into one span.
+/// Whether cells of the patch and ghosts form one span.
 #[derive(Clone, Copy, PartialEq)]
 enum Join {
-    /// Yes.
+    /// Cells and ghosts together.
     Ghosts,
-    /// No: only the patch's own are measured.
+    /// Only the patch's own cells, the only ones measured.
     Own,
 }
 
-/// Cells of a tile along one axis, with so many `rings` of the halo.
+/// Cells of a tile along one axis, with `rings` rings of the halo.
 fn extent(patch: &Patch, tile: i64, rings: i64) -> [i64; 2] {
     match tile {
         -1 => [-rings, 0],
@@ -81,7 +80,7 @@ fn extent(patch: &Patch, tile: i64, rings: i64) -> [i64; 2] {
     }
 }
 
-/// Spans of columns of the tiles that step in a band of tiles, with so many `columns` and `rows` of the halo; bands −1 and `count` lie in it.
+/// Spans of columns of the stepping tiles in a band of tiles, with `columns` and `rows` of the halo; bands −1 and `count` are in the halo.
 fn find_spans(patch: &Patch, band: i64, [columns, rows]: [i64; 2], join: Join, spans: &mut Vec<[i64; 2]>) {
     let count = patch.tiles.count() as i64;
     spans.clear();
@@ -99,13 +98,13 @@ fn find_spans(patch: &Patch, band: i64, [columns, rows]: [i64; 2], join: Join, s
     }
 }
 
-/// Cells of a span of columns in a band that are no ghosts.
+/// Number of cells of a span of columns in a band that are not ghosts.
 fn own_cells(patch: &Patch, band: i64, [from, to]: [i64; 2]) -> u64 {
     let is_own = (0..patch.tiles.count() as i64).contains(&band);
     if is_own { TILE as u64 * (to.min(patch.side() as i64) - from.max(0)).max(0) as u64 } else { 0 }
 }
 
-/// Moves the earlier state of a span of columns along the line through both, so that every rate of change stays.
+/// Moves the earlier state of a span of columns along the line through both states, so that rates of change are preserved.
 fn retime(patch: &mut Patch, band: i64, [from, to]: [i64; 2], ratio: f32) {
     let [first, last] = extent(patch, band, HALO as i64);
     for row in first..last {
@@ -123,7 +122,7 @@ struct Peaks {
     omega2: [u32; SIDE_LIMIT],
 }
 
-/// Most cells along a side.
+/// Largest number of cells along a side.
 pub(super) const SIDE_LIMIT: usize = 256;
 
 impl Default for Peaks {
@@ -133,7 +132,7 @@ impl Default for Peaks {
 }
 
 impl Peaks {
-    fn tell(&self, patch: &mut Patch, band: i64) {
+    fn record(&self, patch: &mut Patch, band: i64) {
         let count = patch.tiles.count();
         if !(0..count as i64).contains(&band) {
             return;
@@ -149,7 +148,7 @@ impl Peaks {
 fn advance_span(patch: &mut Patch, kinds: &[Coefficients], band: i64, rings: i64, [from, to]: [i64; 2], mut peaks: Option<&mut Peaks>) {
     let (side, stride) = (patch.side() as i64, patch.stride());
     let [first, last] = extent(patch, band, rings);
-    // Ghosts have no peaks: their own patch tells them.
+    // Ghosts have no peaks; their own patch reports them.
     let is_own = 0 <= from && to <= side;
     let (start, width) = (patch.at(from, first), (to - from) as usize);
     let (now, before) = (&patch.now, &mut patch.before);
@@ -165,8 +164,8 @@ fn advance_span(patch: &mut Patch, kinds: &[Coefficients], band: i64, rings: i64
     };
     let rows = (last - first) as usize;
     match &patch.ground {
-        Ground::One(kind) => advance(Block { first: start, width, rows, stride, k: &kinds[usize::from(*kind)] }),
-        Ground::Map(_) => {
+        PatchKinds::One(kind) => advance(Block { first: start, width, rows, stride, k: &kinds[usize::from(*kind)] }),
+        PatchKinds::Map(_) => {
             for first in (0..rows).map(|row| start + row * stride) {
                 for_each_kind(&patch.ground, first, first + width, |kind, from, to| {
                     advance(Block { first: from, width: to - from, rows: 1, stride, k: &kinds[usize::from(kind)] });
@@ -177,10 +176,10 @@ fn advance_span(patch: &mut Patch, kinds: &[Coefficients], band: i64, rings: i64
 }
 
 /// Splits cells `first..last` of the planes into runs of one kind.
-pub(super) fn for_each_kind(ground: &Ground, first: usize, last: usize, mut act: impl FnMut(u8, usize, usize)) {
+pub(super) fn for_each_kind(ground: &PatchKinds, first: usize, last: usize, mut act: impl FnMut(u8, usize, usize)) {
     match ground {
-        Ground::One(kind) => act(*kind, first, last),
-        Ground::Map(kinds) => {
+        PatchKinds::One(kind) => act(*kind, first, last),
+        PatchKinds::Map(kinds) => {
             let mut from = first;
             for run in kinds[first..last].chunk_by(|a, b| a == b) {
                 act(run[0], from, from + run.len());

@@ -1,9 +1,9 @@
-//! Shapes and coordinates of the 2-D patch grid.
+//! Shapes and coordinates of the 2-D grid of patches.
 
 use crate::scene::Patches;
 use serde::{Deserialize, Serialize};
 
-/// The grid of patches that the bend field lives on: how cells, patches and metres relate.
+/// Grid of the bend field's patches: conversion between cells, patches and metres.
 ///
 /// Cell `(i, j)` of a patch covers `[i, i+1) × [j, j+1)` cells from the patch's north-west corner; its value belongs to
 /// its centre, `((i + ½)·cell_m, (j + ½)·cell_m)` from that corner.
@@ -42,13 +42,13 @@ impl PatchLayout {
         self.count[0] as usize * self.count[1] as usize
     }
 
-    /// Index of patch `(x, z)`, or none outside the world.
+    /// Index of patch `(x, z)`; `None` outside the world.
     pub fn index(&self, x: i64, z: i64) -> Option<PatchIndex> {
         let inside = x >= 0 && z >= 0 && x < i64::from(self.count[0]) && z < i64::from(self.count[1]);
         inside.then(|| x as u32 + z as u32 * self.count[0])
     }
 
-    /// Place `(x, z)` of a patch in the grid of patches.
+    /// Position `(x, z)` of a patch in the grid of patches.
     pub fn place(&self, patch: PatchIndex) -> [u32; 2] {
         [patch % self.count[0], patch / self.count[0]]
     }
@@ -63,13 +63,13 @@ impl PatchLayout {
         self.corner_m(patch).map(|m| m + 0.5 * self.patch_m())
     }
 
-    /// The patch that holds the point `(x_m, z_m)`, or none outside the world.
+    /// The patch that contains the point `(x_m, z_m)`; `None` outside the world.
     pub fn patch_at(&self, x_m: f32, z_m: f32) -> Option<PatchIndex> {
         let side = self.patch_m();
         self.index((x_m / side).floor() as i64, (z_m / side).floor() as i64)
     }
 
-    /// Patches that a rectangle from `low_m` to `high_m` touches, in index order.
+    /// Patches that the rectangle from `low_m` to `high_m` touches, in index order.
     pub fn patches_touching(&self, low_m: [f32; 2], high_m: [f32; 2]) -> impl Iterator<Item = PatchIndex> + use<> {
         let side = self.patch_m();
         let range = |axis: usize| {

@@ -1,40 +1,40 @@
-//! The air: what it takes from light on its way.
+//! Atmosphere: scattering and absorption of light.
 //!
-//! A ball of ground in shells of air that thins out with height. Red, green and blue stand for 680, 550 and 440 nm, as in S. Hillaire, "A scalable and
-//! production ready sky and atmosphere rendering technique" (EGSR 2020), Table 1, whose coefficients of molecules and ozone these are.
+//! The planet is a sphere; the density of the air depends on height only. Red, green and blue stand for 680, 550 and 440 nm; the coefficients of
+//! molecules and ozone are those of Hillaire 2020, Table 1.
 
 use super::Rgb;
 
-/// Radius of the ground (m), and of the top of the air.
+/// Radius of the ground (m).
 pub const GROUND_M: f64 = 6_360_000.0;
-/// Radius of the top of the air (m).
+/// Radius of the top of the atmosphere (m).
 pub const TOP_M: f64 = 6_460_000.0;
-/// Scattering by molecules at sea level (1/m), after Rayleigh, and the height over which it falls to 1/e (m).
+/// Rayleigh scattering by molecules at sea level (1/m), and the height over which it falls to 1/e (m).
 const RAYLEIGH_PER_M: [f64; 3] = [5.802e-6, 13.558e-6, 33.1e-6];
 const RAYLEIGH_HEIGHT_M: f64 = 8000.0;
-/// Optical depth of haze straight up at 550 nm: clean country air; 0.02 is a mountain top, 0.4 a hazy summer day.
+/// Vertical optical depth of haze at 550 nm: clean country air; 0.02 is a mountain top, 0.4 a hazy summer day.
 const HAZE_DEPTH: f64 = 0.075;
 const HAZE_HEIGHT_M: f64 = 1200.0;
-/// Haze at the three wavelengths over that at 550 nm, with an Ångström exponent of 1.2.
+/// Haze at the three wavelengths relative to 550 nm, with an Ångström exponent of 1.2.
 const HAZE_COLOUR: [f64; 3] = [0.775, 1.0, 1.307];
-/// Share of what haze takes that it scatters.
+/// Single-scattering albedo of haze.
 const HAZE_ALBEDO: f64 = 0.93;
-/// Absorption by ozone at its densest, 25 km up (1/m); none 15 km above and below.
+/// Absorption by ozone at its densest, 25 km up (1/m); zero 15 km above and below.
 const OZONE_PER_M: [f64; 3] = [0.650e-6, 1.881e-6, 0.085e-6];
 
-/// What air at a height does to light, per metre.
+/// Optical properties of the air at a height, per metre.
 #[derive(Clone, Copy, Debug)]
 pub struct Density {
-    /// Scattered by molecules (1/m).
+    /// Scattering by molecules (1/m).
     pub rayleigh: [f64; 3],
-    /// Scattered by haze (1/m).
+    /// Scattering by haze (1/m).
     pub haze: [f64; 3],
-    /// Scattered and absorbed, by all (1/m).
+    /// Total scattering and absorption (1/m).
     pub extinction: [f64; 3],
 }
 
 impl Density {
-    /// Air so high above sea level (m).
+    /// Properties at a height above sea level (m).
     pub fn at(height_m: f64) -> Self {
         let molecules = (-height_m / RAYLEIGH_HEIGHT_M).exp();
         let haze = HAZE_DEPTH / HAZE_HEIGHT_M * (-height_m / HAZE_HEIGHT_M).exp();
@@ -46,18 +46,18 @@ impl Density {
     }
 }
 
-/// Share of light that molecules scatter towards an angle of which this is the cosine, per steradian.
+/// Phase function of molecules (1/sr) at the cosine of a scattering angle.
 pub fn rayleigh_phase(cosine: f64) -> f64 {
     3.0 / (16.0 * std::f64::consts::PI) * (1.0 + cosine * cosine)
 }
 
-/// The same of haze: L. G. Henyey and J. L. Greenstein, "Diffuse radiation in the galaxy" (1941); twin of `haze_phase` in `light.wgsl`.
+/// Phase function of haze (Henyey & Greenstein 1941); twin of `haze_phase` in the light shaders.
 pub fn haze_phase(cosine: f32) -> f32 {
     let g = HAZE_FORWARD;
     (1.0 - g * g) / (4.0 * std::f32::consts::PI * (1.0 + g * g - 2.0 * g * cosine).powf(1.5))
 }
 
-/// Mean cosine of the angle by which haze turns light.
+/// Asymmetry of haze: mean cosine of its scattering angle.
 pub const HAZE_FORWARD: f32 = 0.76;
 
 /// Height after `distance_m` along a ray (m).
@@ -66,26 +66,26 @@ pub(super) fn height_along_m(height_m: f64, up: f64, distance_m: f64) -> f64 {
     (radius * radius + distance_m * distance_m + 2.0 * radius * up * distance_m).sqrt() - GROUND_M
 }
 
-/// Distance along a ray to a sphere about the ground's middle that it leaves (m).
+/// Distance along a ray to the point where it leaves a sphere about the ground's centre (m).
 pub(super) fn to_sphere_m(height_m: f64, up: f64, sphere_m: f64) -> f64 {
     let radius = GROUND_M + height_m;
     let under_root = radius * radius * (up * up - 1.0) + sphere_m * sphere_m;
     -radius * up + under_root.max(0.0).sqrt()
 }
 
-/// Cosine to the zenith below which rays from a height meet the ground.
+/// Cosine of the zenith angle below which rays from a height meet the ground.
 pub(super) fn horizon(height_m: f64) -> f64 {
     let share = GROUND_M / (GROUND_M + height_m);
     -(1.0 - share * share).max(0.0).sqrt()
 }
 
-/// Optical depth from a height to the top of the air, along a ray with this cosine to the zenith that meets no ground.
+/// Optical depth from a height to the top of the atmosphere, along a ray at this cosine of the zenith angle that does not meet the ground.
 pub fn optical_depth(height_m: f64, up: f64) -> [f64; 3] {
     const STEPS: u32 = 64;
     let length_m = to_sphere_m(height_m, up, TOP_M);
     let mut depth = [0.0; 3];
     for step in 0..STEPS {
-        // Steps that grow with distance, since the air is densest at the start.
+        // Steps grow with distance, since the air is densest at the start.
         let [near, far] = [step, step + 1].map(|n| (f64::from(n) / f64::from(STEPS)).powi(2) * length_m);
         let extinction = Density::at(height_along_m(height_m, up, 0.5 * (near + far))).extinction;
         (0..3).for_each(|i| depth[i] += extinction[i] * (far - near));
@@ -93,8 +93,8 @@ pub fn optical_depth(height_m: f64, up: f64) -> [f64; 3] {
     depth
 }
 
-/// Share of sunlight that comes through the air to a height, from a sun of which this is the elevation's sine; none from below the horizon, and part
-/// of it while the disc, half a degree wide, sets.
+/// Transmittance of sunlight to a height, from a sun with this sine of elevation; 0 from below the horizon, and partial while the disc, half a degree
+/// wide, sets.
 pub fn transmittance(height_m: f64, up: f64) -> Rgb {
     const DISC_RAD: f64 = 0.009_3;
     let above = up - horizon(height_m);
@@ -103,17 +103,16 @@ pub fn transmittance(height_m: f64, up: f64) -> Rgb {
     depth.map(|depth| (shown * (-depth).exp()) as f32)
 }
 
-/// Air that sunlight passes over that on its way straight down: F. Kasten and A. T. Young, "Revised optical air mass tables and approximation
-/// formula" (Applied Optics 28, 1989), for an elevation of 0 to 90°.
-pub fn air_mass(elevation_rad: f64) -> f64 {
-    1.0 / (elevation_rad.sin() + 0.50572 * (elevation_rad.to_degrees() + 6.07995).powf(-1.6364))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Table values of Kasten and Young (1989).
+    /// Relative optical air mass for an elevation of 0 to 90° (Kasten & Young 1989).
+    fn air_mass(elevation_rad: f64) -> f64 {
+        1.0 / (elevation_rad.sin() + 0.50572 * (elevation_rad.to_degrees() + 6.07995).powf(-1.6364))
+    }
+
+    /// Table values of Kasten & Young 1989.
     #[test]
     fn air_mass_is_as_tabled() {
         for (elevation_deg, tabled) in
@@ -124,7 +123,7 @@ mod tests {
         }
     }
 
-    /// The integral along the ray, in blue, which molecules scatter most, follows the air mass: to 1 % above 10° of elevation, to 6 % at 2°.
+    /// In blue, where molecules scatter most, the integral along the ray follows the air mass: to 1 % above 10° of elevation, to 6 % at 2°.
     #[test]
     fn optical_depth_grows_with_the_air_mass() {
         let straight = optical_depth(0.0, 1.0)[2];
@@ -136,8 +135,7 @@ mod tests {
         }
     }
 
-    /// B. A. Bodhaine et al., "On Rayleigh optical depth calculations" (1999): 0.0973 at 550 nm and 0.2430 at 440 nm; ozone of this column takes 0.028
-    /// at 550 nm.
+    /// Bodhaine et al. 1999: 0.0973 at 550 nm and 0.2430 at 440 nm; ozone of this column absorbs 0.028 at 550 nm.
     #[test]
     fn clear_air_is_as_deep_as_measured() {
         let [_, green, blue] = optical_depth(0.0, 1.0);

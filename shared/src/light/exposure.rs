@@ -1,17 +1,16 @@
-//! How brightly an eye sees a scene.
+//! Exposure of a scene by an adapted eye.
 
-/// Share of light that a meadow throws back, about.
+/// Approximate reflectance of a meadow.
 const REFLECTANCE: f32 = 0.18;
 
-/// Brightness that the eye gives to the mean luminance (cd/m²) of what it sees, by G. Krawczyk, K. Myszkowski and H.-P. Seidel ("Perceptual
-/// effects in real-time tone mapping", SCCG 2005, Eq. (11)): `1.03 − 2 / (2 + log10(L + 1))`. A fully adapted eye would give one value to all; this
-/// one leaves dusk darker than day, and night darker still.
+/// Key value of a mean luminance (cd/m²) by Krawczyk et al. 2005, Eq. (11): `1.03 − 2 / (2 + log10(L + 1))`. For a fully adapted eye it would be
+/// constant; here dusk stays darker than day, and night darker still.
 pub fn key(luminance_cd_per_m2: f32) -> f32 {
     1.03 - 2.0 / (2.0 + (luminance_cd_per_m2 + 1.0).log10())
 }
 
-/// Picture's brightness for each cd/m² (m²/cd), seen by an eye that has adapted to the mean of land and sky under so much light (lx): on the land, mean of
-/// what lies level and of what stands up towards the sun, and from the sky on level ground.
+/// Exposure (m²/cd) of an eye adapted to the mean of land and sky. `land_lx` is the mean illuminance (lx) of a horizontal surface and one that faces
+/// the sun, `sky_lx` the sky's illuminance of a horizontal surface.
 pub fn exposure(land_lx: f32, sky_lx: f32) -> f32 {
     let adapted = (0.5 * (land_lx * REFLECTANCE + sky_lx) / std::f32::consts::PI).max(1e-4);
     key(adapted) / adapted
@@ -21,7 +20,7 @@ pub fn exposure(land_lx: f32, sky_lx: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// Values read off the paper's Fig. 1: 0.03 for the darkest night, about a half at 100 cd/m², near 0.7 in daylight.
+    /// Values read off Krawczyk et al. 2005, Fig. 1: 0.03 for the darkest night, about 0.5 at 100 cd/m², near 0.7 in daylight.
     #[test]
     fn the_key_rises_from_night_to_day() {
         for (luminance, value) in [(0.0, 0.03), (100.0, 0.531), (10_000.0, 0.697)] {

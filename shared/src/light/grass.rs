@@ -1,28 +1,26 @@
-//! How a blade of grass is lit: a very thin cylinder with normals all around it, that stands among others. Twins in `light.wgsl`.
+//! Shading of a blade of grass among others: a thin cylinder with normals all around it. The light shaders have twins of these functions.
 
-/// Extinction of leaves that face every way alike, over their area (J. Ross, "The Radiation Regime and Architecture of Plant Stands", 1981).
+/// Extinction coefficient of leaves with uniformly distributed orientation, per leaf area (Ross 1981).
 pub const LEAF_EXTINCTION: f32 = 0.5;
 
-/// Cosine between the direction towards a light and the nearest of a blade's normals, given the cosine between that direction and the
-/// blade's tangent: 003 §3.3.1, the length of `N_l = L − (T·L) T`.
+/// Minimum sine of the sun's elevation in grass, so that a sun at the horizon still lights the tips.
+pub const LEAST_SUN_SINE: f32 = 0.12;
+
+/// Cosine between the direction to a light and the nearest of a blade's normals, given the cosine between that direction and the blade's tangent:
+/// Bakay §3.3.1, the length of `N_l = L − (T·L) T`.
 pub fn diffuse(along: f32) -> f32 {
     (1.0 - along * along).max(0.0).sqrt()
 }
 
-/// Highlight of a blade, given the cosine between its tangent and the half-way vector: 003 §3.3.2, the length of `N_h = H − (T·H) T` to a power.
-pub fn specular(along: f32, exponent: f32) -> f32 {
-    diffuse(along).powf(exponent)
-}
-
-/// Share of a lamp's light that reaches so high in the grass (share of its height): 003 §3.3.3, `S = D/D_max · (1 − S_min) + S_min`.
+/// Fraction of a lamp's light that reaches a relative height in the grass: Bakay §3.3.3, `S = D/D_max · (1 − S_min) + S_min`.
 pub fn self_shadow(height_share: f32, least: f32) -> f32 {
     height_share.clamp(0.0, 1.0) * (1.0 - least) + least
 }
 
-/// Share of the sun's light that comes so deep into grass without meeting a leaf, by Beer and Lambert: `exp(−0.5 · LAI · depth / sin(elevation))`, with
-/// the area of leaves over that of ground, `LAI`, and the depth as a share of the grass's height.
+/// Fraction of sunlight that reaches a depth in the grass without meeting a leaf, by the Beer–Lambert law: `exp(−0.5 · LAI · depth /
+/// sin(elevation))`, with the leaf area index `LAI` and the depth relative to the grass's height.
 pub fn sun_through_leaves(leaf_area_index: f32, depth_share: f32, sine_of_elevation: f32) -> f32 {
-    (-LEAF_EXTINCTION * leaf_area_index * depth_share.max(0.0) / sine_of_elevation.max(0.12)).exp()
+    (-LEAF_EXTINCTION * leaf_area_index * depth_share.max(0.0) / sine_of_elevation.max(LEAST_SUN_SINE)).exp()
 }
 
 #[cfg(test)]
@@ -33,7 +31,7 @@ mod tests {
         (0..3).map(|i| a[i] * b[i]).sum()
     }
 
-    /// What the source says in vectors: project the light on the disc of normals, take the cosine between the two.
+    /// The same with vectors, as in the source: projects the light on the disc of normals and takes the cosine between the two.
     #[test]
     fn diffuse_is_the_cosine_to_the_projected_normal() {
         let tangent = [0.6, 0.8, 0.0];
@@ -45,6 +43,11 @@ mod tests {
             assert!((diffuse(along) - cosine).abs() < 1e-6);
         }
         assert_eq!(diffuse(1.0), 0.0);
+    }
+
+    /// Highlight of a blade, given the cosine between its tangent and the half-way vector: Bakay §3.3.2, the length of `N_h = H − (T·H) T` to a power.
+    fn specular(along: f32, exponent: f32) -> f32 {
+        diffuse(along).powf(exponent)
     }
 
     #[test]

@@ -1,13 +1,13 @@
-//! Lamps: points that shine, whose light falls off with distance.
+//! Lamps: point lights with attenuation.
 
-/// Share of a lamp's intensity (cd) that is its illuminance (lx) at a distance (m): 003 §3.3.4, the reciprocal of a constant, a linear (1/m) and a
-/// quadratic (1/m²) term. [0, 0, 1] is the inverse square of physics; nearer than 0.1 m counts as 0.1 m.
+/// Attenuation, illuminance (lx) per luminous intensity (cd) at a distance (m): Bakay §3.3.4, the reciprocal of the sum of a constant, a linear (1/m)
+/// and a quadratic (1/m²) term. [0, 0, 1] is the inverse-square law; distances below 0.1 m count as 0.1 m.
 pub fn attenuation([constant, linear, quadratic]: [f32; 3], distance_m: f32) -> f32 {
     let d = distance_m.max(0.1);
     1.0 / (constant + linear * d + quadratic * d * d)
 }
 
-/// Distance at which a lamp's illuminance has fallen to `least_lx` (m); beyond it the lamp is left out.
+/// Distance at which a lamp's illuminance has fallen to `least_lx` (m); beyond it the lamp is not drawn.
 pub fn reach_m(candela: f32, [constant, linear, quadratic]: [f32; 3], least_lx: f32) -> f32 {
     let missing = constant - candela / least_lx;
     let most_m = 1000.0;
@@ -15,7 +15,7 @@ pub fn reach_m(candela: f32, [constant, linear, quadratic]: [f32; 3], least_lx: 
         return 0.0;
     }
     let reach = if quadratic > 0.0 {
-        // The positive root of q d² + l d + (c − I/E), in the form that loses no digits where l is large.
+        // The positive root of q d² + l d + (c − I/E), in the form without cancellation where l is large.
         -2.0 * missing / (linear + (linear * linear - 4.0 * quadratic * missing).sqrt())
     } else if linear > 0.0 {
         -missing / linear

@@ -1,7 +1,7 @@
-//! Light: where the sun stands, what the air does to its light, lamps, and how grass is lit.
+//! Light: position of the sun, atmosphere, lamps, and shading of grass.
 //!
-//! Light is photometric: illuminance in lux and luminance in cd/m², each as linear RGB, where the sun above the air is white.
-//! What the shaders compute too has its twin in `light.wgsl`.
+//! Light is photometric: illuminance in lux and luminance in cd/m², each as linear RGB, in which the sun above the atmosphere is white. Functions
+//! that are also needed on the GPU have twins in the light shaders.
 
 pub mod air;
 pub mod exposure;
@@ -13,7 +13,7 @@ pub mod sun;
 /// Linear red, green and blue.
 pub type Rgb = [f32; 3];
 
-/// Share of each of linear red, green and blue in luminance (Rec. 709).
+/// Weights of linear red, green and blue in luminance (Rec. 709).
 pub const LUMINANCE: Rgb = [0.2126, 0.7152, 0.0722];
 
 /// Luminance of a colour, in the colour's own unit.

@@ -1,34 +1,34 @@
-//! The sky: sunlight that the air has scattered once, and, about, what it has scattered more often.
+//! Sky: single scattering of sunlight in the air, and an approximation of multiple scattering.
 //!
-//! S. Hillaire, "A scalable and production ready sky and atmosphere rendering technique" (EGSR 2020): rays through the air gather what is scattered into
-//! them; light that was scattered before counts as alike from all sides, `Ψ = L₂ / (1 − f)` (Eqs. (5) to (10)).
+//! After Hillaire 2020: in-scattered light is integrated along rays through the air; multiply scattered light is treated as isotropic, `Ψ = L₂ / (1 −
+//! f)` (Eqs 5 to 10).
 
 use super::air::{self, Density};
 use super::exposure::exposure;
 use super::{Rgb, luminance};
 use std::f64::consts::{PI, TAU};
 
-/// Illuminance that the sun throws above the air (lx).
+/// Illuminance by the sun above the atmosphere (lx).
 pub const SUN_LX: f32 = 128_000.0;
-/// Luminance of the sky of a night with a moon behind thin cloud (cd/m²), by which one still sees: 0.1 lx on the ground in all.
+/// Luminance of the sky on a night with a moon behind thin cloud (cd/m²), still visible: 0.1 lx on the ground in total.
 pub const NIGHT_CD_PER_M2: Rgb = [0.024, 0.031, 0.047];
-/// Share of light that the land throws back: grass, a little red and little blue.
+/// Albedo of the land: grass, a little red and little blue.
 pub const GROUND_ALBEDO: Rgb = [0.10, 0.13, 0.06];
-/// Height of the eye in the model of the air, and of the clouds that the sun lights (m).
+/// Height of the eye in the atmosphere model, and of the clouds that the sun lights (m).
 const EYE_M: f64 = 300.0;
 const CLOUDS_M: f64 = 6000.0;
 
-/// Places of the table of a sky: by the heading from the sun, and by the elevation.
+/// Columns of the table of a sky, by heading from the sun.
 pub const HEADINGS: usize = 32;
-/// Rows of the table of a sky.
+/// Rows of the table of a sky, by elevation.
 pub const ELEVATIONS: usize = 40;
 
-/// What of the air does not depend on where the sun stands, tabled.
+/// Tables of the atmosphere that do not depend on the position of the sun.
 #[derive(Clone, Debug)]
 pub struct Air {
-    /// Share of sunlight that comes to a height (rows) from an elevation (columns).
+    /// Transmittance of sunlight to a height (rows) from an elevation (columns).
     transmittance: Table,
-    /// Light scattered more than once there, for a sun of 1 (1/sr).
+    /// Multiply scattered light there, for a sun of illuminance 1 (1/sr).
     scattered: Table,
 }
 
@@ -38,7 +38,7 @@ impl Default for Air {
     }
 }
 
-/// Colours over the sine of the sun's elevation and the height in the air.
+/// Colours over the sine of the sun's elevation and the height in the atmosphere.
 #[derive(Clone, Debug)]
 struct Table {
     columns: usize,
@@ -46,14 +46,14 @@ struct Table {
     texels: Vec<Rgb>,
 }
 
-/// Least sine of an elevation in the tables; a sun below it lights no air.
+/// Smallest sine of an elevation in the tables; a lower sun lights no air.
 const LOWEST_UP: f64 = -0.25;
 
 impl Table {
     fn new(columns: usize, rows: usize, of: impl Fn(f64, f64) -> Rgb) -> Self {
         let texels = (0..columns * rows).map(|at| {
             let along = |n: usize, count: usize| n as f64 / (count - 1) as f64;
-            // Denser about the horizon and near the ground, where most changes.
+            // Denser near the horizon and near the ground, where colours change most.
             let x = along(at % columns, columns) * 2.0 - 1.0;
             let up = if x < 0.0 { -x * x * -LOWEST_UP } else { x * x };
             of(along(at / columns, rows).powi(2) * (air::TOP_M - air::GROUND_M), up)
@@ -79,8 +79,8 @@ impl Table {
     }
 }
 
-/// Goes along a ray in steps that grow; tells at each the height, the distance, the air, and the light gained in the step per
-/// unit of source: the integral of the transmittance over the step (m). Gives back the share of light that comes from the end.
+/// Marches along a ray in growing steps; passes `visit` the height, the distance, the air, and the integral of the transmittance over the step (m),
+/// which is the light gained per unit of source. Returns the transmittance to the end.
 fn march(height_m: f64, up: f64, length_m: f64, steps: u32, mut visit: impl FnMut(f64, f64, Density, [f64; 3])) -> [f64; 3] {
     let mut left = [1.0; 3];
     for step in 0..steps {
@@ -100,14 +100,14 @@ fn march(height_m: f64, up: f64, length_m: f64, steps: u32, mut visit: impl FnMu
 }
 
 impl Air {
-    /// Tables of the air (some 10 ms).
+    /// Computes the tables of the atmosphere (some 10 ms).
     pub fn new() -> Self {
         let transmittance = Table::new(96, 24, air::transmittance);
         let scattered = Table::new(32, 8, |height_m, up| scattered_often(&transmittance, height_m.clamp(10.0, 99_000.0), up));
         Self { transmittance, scattered }
     }
 
-    /// Sunlight at a height above the sea: linear RGB (lx), on what faces the sun.
+    /// Sunlight at a height above the sea on a surface that faces the sun: linear RGB (lx).
     fn sunlight_lx(&self, height_m: f64, up: f64) -> Rgb {
         self.transmittance.at(height_m, up).map(|share| share as f32 * SUN_LX)
     }
@@ -136,7 +136,8 @@ impl Air {
         sky
     }
 
-    /// What a ray gathers whose heading differs from the sun's by the angle of this cosine: molecules' and repeated scattering, and haze without its phase.
+    /// Light gathered by a ray whose heading differs from the sun's by the angle with this cosine: scattering by molecules and multiple scattering,
+    /// and haze without its phase function.
     fn gathered(&self, up: f64, heading_cosine: f64, sun_up: f64) -> [Rgb; 2] {
         let level = |up: f64| (1.0 - up * up).max(0.0).sqrt();
         let toward_sun = up * sun_up + level(up) * level(sun_up) * heading_cosine;
@@ -144,7 +145,7 @@ impl Air {
         let length_m = air::to_sphere_m(EYE_M, up, air::TOP_M);
         let mut light = [[0.0; 3]; 2];
         march(EYE_M, up, length_m, 28, |height, middle, density, gain| {
-            // The sun's elevation as it is seen from there, over a ball.
+            // The sun's elevation as seen from there, on a sphere.
             let sun_there = ((air::GROUND_M + EYE_M) * sun_up + middle * toward_sun) / (air::GROUND_M + height);
             let (sun, often) = (self.transmittance.at(height, sun_there), self.scattered.at(height, sun_there));
             for i in 0..3 {
@@ -157,12 +158,12 @@ impl Air {
     }
 }
 
-/// Light that comes to a place in the air after more than one scattering, alike from all sides, for a sun of 1 (1/sr).
+/// Multiply scattered, isotropic light at a point of the atmosphere, for a sun of illuminance 1 (1/sr).
 fn scattered_often(transmittance: &Table, height_m: f64, sun_up: f64) -> Rgb {
     const DIRECTIONS: u32 = 48;
     let (mut second, mut passed_on) = ([0.0; 3], [0.0; 3]);
     for n in 0..DIRECTIONS {
-        // Directions spread evenly over the sphere, by the golden angle.
+        // Directions distributed evenly over the sphere, by the golden angle.
         let up = 1.0 - 2.0 * (f64::from(n) + 0.5) / f64::from(DIRECTIONS);
         let heading = f64::from(n) * 2.399_963;
         let toward_sun = up * sun_up + (1.0 - up * up).sqrt() * (1.0 - sun_up * sun_up).max(0.0).sqrt() * heading.cos();
@@ -192,33 +193,33 @@ fn scattered_often(transmittance: &Table, height_m: f64, sun_up: f64) -> Rgb {
     std::array::from_fn(|i| (second[i] / count / (1.0 - passed_on[i] / count)) as f32)
 }
 
-/// The sky with the sun at some elevation.
+/// The sky for one elevation of the sun.
 #[derive(Clone, Debug)]
 pub struct Sky {
     /// Elevation of the sun (rad).
     pub elevation_rad: f32,
-    /// Sunlight on what faces the sun (lx).
+    /// Sunlight on a surface that faces the sun (lx).
     pub sun_lx: Rgb,
-    /// The same at the height of clouds, which the sun still lights when it has set below.
+    /// The same at the height of clouds, which the sun lights after it has set on the ground.
     pub cloud_sun_lx: Rgb,
-    /// Luminance (cd/m²) by elevation (rows: its sine is the square of the row's share) and heading from the sun (columns: the sine of its half);
-    /// first what molecules scatter, second that of haze over its phase.
+    /// Luminance (cd/m²) by elevation (rows: its sine is the square of the relative row) and heading from the sun (columns: the sine of its half);
+    /// first the part scattered by molecules, second that of haze divided by its phase function.
     texels: Vec<[Rgb; 2]>,
-    /// Light on a surface over π: the mean of up and down, and what it is more up and towards the sun's heading (cd/m²).
+    /// Irradiance over π: the mean over all normals (cd/m²).
     pub mean: Rgb,
-    /// What it is more for a normal straight up (cd/m²).
+    /// Increase for a normal straight up (cd/m²).
     pub up: Rgb,
-    /// What it is more for a level normal towards the sun's heading (cd/m²).
+    /// Increase for a horizontal normal towards the sun's heading (cd/m²).
     pub toward_sun: Rgb,
 }
 
 impl Sky {
-    /// The table: rows of [`HEADINGS`] texels, lowest first; see [`Sky::luminance`]. Without the night's light.
+    /// The table: rows of [`HEADINGS`] texels, lowest first; see [`Sky::luminance`]. Without night light.
     pub fn texels(&self) -> &[[Rgb; 2]] {
         &self.texels
     }
 
-    /// Luminance at an elevation of this sine, in a heading that differs from the sun's by the angle of this cosine (cd/m²).
+    /// Luminance at an elevation with this sine, in a heading that differs from the sun's by the angle with this cosine (cd/m²).
     pub fn luminance(&self, up: f32, heading_cosine: f32) -> Rgb {
         let place = |share: f32, count: usize| {
             let at = share.clamp(0.0, 1.0) * (count - 1) as f32;
@@ -239,27 +240,26 @@ impl Sky {
         })
     }
 
-    /// Light that falls on a surface from sky and ground, over π (cd/m²), for a normal with X towards the sun's heading and Y up: linear in the normal, as the first
-    /// order of spherical harmonics (R. Ramamoorthi and P. Hanrahan, "An efficient representation for irradiance environment maps", 2001), and exact for normals
-    /// straight up and down.
+    /// Illuminance of a surface by sky and ground, over π (cd/m²), for a normal with X towards the sun's heading and Y up: linear in the normal, as
+    /// the first order of spherical harmonics (Ramamoorthi & Hanrahan 2001), and exact for normals straight up and down.
     pub fn ambient(&self, normal: [f32; 3]) -> Rgb {
         std::array::from_fn(|i| self.mean[i] + self.toward_sun[i] * normal[0] + self.up[i] * normal[1])
     }
 
-    /// Light on level ground from sun and sky together (lx).
+    /// Illuminance of level ground by sun and sky together (lx).
     pub fn illuminance_lx(&self) -> f32 {
         let direct = self.elevation_rad.sin().max(0.0);
         luminance(self.sun_lx) * direct + luminance(self.ambient([0.0, 1.0, 0.0])) * std::f32::consts::PI
     }
 
-    /// Picture's brightness for each cd/m², to an adapted eye: see [`exposure`].
+    /// Exposure for an adapted eye (m²/cd): see [`exposure`].
     pub fn exposure(&self) -> f32 {
         let (sin, cos) = self.elevation_rad.sin_cos();
         let sky_lx = luminance(self.ambient([0.0, 1.0, 0.0])) * std::f32::consts::PI;
         exposure(luminance(self.sun_lx) * 0.5 * (sin + cos) + sky_lx, sky_lx)
     }
 
-    /// Sums the sky over its half of the sphere, and the ground, which sun and sky light, over the other.
+    /// Integrates the sky over the upper hemisphere, and the ground, lit by sun and sky, over the lower.
     fn gather(&mut self) {
         const ROWS: usize = 16;
         const COLUMNS: usize = 24;
@@ -294,8 +294,9 @@ mod tests {
         Air::new().sky(elevation_deg.to_radians())
     }
 
-    /// Daylight of a clear sky: IES RP-21-84, "Recommended practice for the calculation of daylight availability": the sun's 127.5 klx · exp(−0.21/sin h) and
-    /// 0.8 + 15.5 √(sin h) klx of the sky. The end of civil twilight has 3.4 lx (Explanatory Supplement to the Astronomical Almanac).
+    /// Daylight of a clear sky (IES RP-21-84, "Recommended practice for the calculation of daylight availability"): the sun's 127.5 klx ·
+    /// exp(−0.21/sin h) and 0.8 + 15.5 √(sin h) klx of the sky. The end of civil twilight has 3.4 lx (Explanatory Supplement to the Astronomical
+    /// Almanac).
     #[test]
     fn the_ground_is_as_bright_as_measured() {
         let air = Air::new();
@@ -329,7 +330,7 @@ mod tests {
         assert!(set.cloud_sun_lx[0] > 500.0, "{:?}", set.cloud_sun_lx);
     }
 
-    /// Level ground gathers what the sky's table sums to over the upper half.
+    /// Illuminance of level ground equals the sum of the sky's table over the upper hemisphere.
     #[test]
     fn ambient_light_is_that_of_the_sky() {
         for elevation_deg in [50.0, 15.0, -2.0] {
@@ -344,7 +345,7 @@ mod tests {
         }
     }
 
-    /// All that falls on the ground is less than the sun sends.
+    /// The ground receives less light than the sun emits.
     #[test]
     fn the_air_adds_no_light() {
         let air = Air::new();

@@ -1,20 +1,20 @@
-//! Where the sun stands by place, day and hour.
+//! Position of the sun by latitude, day and hour.
 
 use std::f64::consts::TAU;
 
-/// A place of the sun in the sky.
+/// Position of the sun in the sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
     /// Heading (rad), from north towards east.
     pub heading_rad: f32,
-    /// Elevation of its middle above the horizon (rad); negative when it is down.
+    /// Elevation of its centre above the horizon (rad); negative when it is down.
     pub elevation_rad: f32,
 }
 
 impl Sun {
-    /// The sun over a latitude (degrees, north positive) at an hour (0..24, of local mean solar time) of a day (1 is 1 January): declination and
-    /// equation of time by J. W. Spencer's series ("Fourier series representation of the position of the sun", Search 2(5), 1971), then the
-    /// spherical triangle of pole, zenith and sun. Within 0.1° of almanacs; without refraction, which lifts a setting sun by 0.5°.
+    /// The sun at a latitude (degrees, north positive) and an hour (0..24, local mean solar time) of a day (1 is 1 January): declination and equation
+    /// of time by Spencer 1971, then the spherical triangle of pole, zenith and sun. Within 0.1° of almanacs; without refraction, which raises a
+    /// setting sun by 0.5°.
     pub fn at_hour(latitude_deg: f32, day_of_year: f32, hour: f32) -> Self {
         let hour = f64::from(hour);
         let year = TAU / 365.0 * (f64::from(day_of_year) - 1.0 + (hour - 12.0) / 24.0);
@@ -30,7 +30,7 @@ impl Sun {
         Self { heading_rad: east.atan2(north) as f32, elevation_rad: up.clamp(-1.0, 1.0).asin() as f32 }
     }
 
-    /// Unit vector towards it.
+    /// Unit vector towards the sun.
     pub fn direction(self) -> [f32; 3] {
         let level = self.elevation_rad.cos();
         [self.heading_rad.sin() * level, self.elevation_rad.sin(), -self.heading_rad.cos() * level]
@@ -49,14 +49,13 @@ mod tests {
         assert!((elevation - elevation_deg).abs() < 0.5, "elevation {elevation}° instead of {elevation_deg}°");
     }
 
-    /// The example of I. Reda and A. Andreas, "Solar position algorithm for solar radiation applications" (NREL/TP-560-34302): Golden, Colorado,
-    /// 17 October 2003, 12:30:30 at UTC − 7 h, 105.1786° west, so 12.4964 h of local mean time.
+    /// Example of Reda & Andreas: Golden, Colorado, 17 October 2003, 12:30:30 at UTC − 7 h, 105.1786° west, so 12.4964 h of local mean time.
     #[test]
     fn stands_where_the_nrel_algorithm_has_it() {
         assert_stands(Sun::at_hour(39.742476, 290.0, 12.4964), 194.340, 90.0 - 50.112);
     }
 
-    /// At true noon the elevation is 90° less latitude plus declination: ±23.44° at the solstices, 0° at the equinoxes.
+    /// At true noon the elevation is 90° minus latitude plus declination: ±23.44° at the solstices, 0° at the equinoxes.
     #[test]
     fn culminates_by_the_declination_of_the_season() {
         for (latitude_deg, day, hour, heading_deg, elevation_deg) in [

@@ -1,23 +1,23 @@
-//! How the upper segments of a plant follow the lowest (001 §4.5): they bend as it did a while ago, and rise with less delay.
+//! Delay of a plant's upper segments (Chen & Johan §4.5): they follow the lowest segment's bend with a lag, which is shorter while the grass rises.
 
 use crate::scene::Grass;
 use std::f32::consts::FRAC_PI_2;
 
-/// Earlier pictures of the field that [`LagWay::History`](crate::scene::LagWay::History) keeps.
+/// Number of earlier states of the field that [`LagWay::History`](crate::scene::LagWay::History) keeps.
 pub const PASTS: usize = 3;
 
-/// How one kind of grass trails behind itself. Its twin on the GPU is in `common.wgsl`.
+/// Delay of one kind of grass. Its twin on the GPU is in the common shaders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lag {
     /// γ of the topmost segment (s).
     pub tip_secs: f32,
-    /// Share of γ while the grass rises.
+    /// Fraction of γ while the grass rises.
     pub recovery_share: f32,
-    /// Segments, at least 1.
+    /// Number of segments, at least 1.
     pub segments: u32,
-    /// Speed of θ in still grass, c₀ (m/s), 001 Eq. (4).
+    /// Speed of θ in still grass, c₀ (m/s), Chen & Johan Eq. (4).
     pub c0_m_per_s: f32,
-    /// Growth of that speed with the bending speed, μ (m/rad).
+    /// Increase of that speed with the bending velocity, μ (m/rad).
     pub mu_m_per_rad: f32,
 }
 
@@ -27,28 +27,28 @@ impl From<&Grass> for Lag {
             tip_secs: grass.lag_secs,
             recovery_share: grass.recovery_lag_share,
             segments: grass.segments.max(1),
-            c0_m_per_s: grass.c0_m_per_s,
-            mu_m_per_rad: grass.mu_m_per_rad,
+            c0_m_per_s: grass.waves.c0_m_per_s,
+            mu_m_per_rad: grass.waves.mu_m_per_rad,
         }
     }
 }
 
 impl Lag {
-    /// γ of a segment (s), counted from 0 at the root: none for the lowest, the most for the topmost, evenly between.
+    /// γ of a segment (s), counted from 0 at the root: 0 for the lowest, largest for the topmost, evenly spaced between.
     pub fn secs(&self, segment: u32) -> f32 {
         self.tip_secs * segment as f32 / (self.segments - 1).max(1) as f32
     }
 
-    /// Lean (rad, as a vector on the ground) of a segment with the lag `lag_secs`, where `earlier` is the lean of the lowest so many seconds ago (001
-    /// Eq. 7). A lean that was larger then has been falling since: the segment follows with the smaller lag.
+    /// Lean (rad, as a vector on the ground) of a segment with the lag `lag_secs`, where `earlier` gives the lean of the lowest segment that many
+    /// seconds ago (Chen & Johan Eq. 7). If the lean was larger then, the grass is rising, and the segment follows with the smaller lag.
     pub fn lean_rad(&self, lag_secs: f32, earlier: impl Fn(f32) -> [f32; 2]) -> [f32; 2] {
         let square = |[x, z]: [f32; 2]| x * x + z * z;
         let then = earlier(lag_secs);
         if square(then) <= square(earlier(0.0)) { then } else { earlier(lag_secs * self.recovery_share) }
     }
 
-    /// How far a bend at bending velocity `omega_rad_per_s` has got in `lag_secs` (m, as a vector on the ground), 001 Eq. (9): what the root had then is
-    /// found there now. The lag is at most π/(2|ω|), the range of 001; nothing has got anywhere where nothing moves.
+    /// Distance that a bend with bending velocity `omega_rad_per_s` has travelled in `lag_secs` (m, as a vector on the ground), Chen & Johan Eq. (9):
+    /// the state that the root had then is there now. The lag is at most π/(2|ω|), the range of the paper; at ω = 0 the distance is 0.
     pub fn reached_m(&self, omega_rad_per_s: [f32; 2], lag_secs: f32) -> [f32; 2] {
         let [x, z] = omega_rad_per_s;
         let speed = (x * x + z * z).sqrt();
@@ -61,11 +61,11 @@ impl Lag {
     }
 }
 
-/// Weights of the newest state and of [`PASTS`] earlier ones, whose ages (s) grow, for the state `lag_secs` ago: linear between the two about it; older than
-/// the oldest is the oldest.
+/// Weights of the newest state and of [`PASTS`] earlier ones with increasing ages (s) for the state `lag_secs` ago: linear interpolation between the
+/// two nearest; beyond the oldest, the oldest.
 ///
 /// ```
-/// use shared::lod::history_weights;
+/// use prairie_core::lod::history_weights;
 /// assert_eq!(history_weights([0.125, 0.25, 0.5], 0.0), [1.0, 0.0, 0.0, 0.0]);
 /// assert_eq!(history_weights([0.125, 0.25, 0.5], 0.3125), [0.0, 0.0, 0.75, 0.25]);
 /// assert_eq!(history_weights([0.125, 0.25, 0.5], 9.0), [0.0, 0.0, 0.0, 1.0]);
@@ -85,8 +85,9 @@ pub fn history_weights(ages_secs: [f32; PASTS], lag_secs: f32) -> [f32; PASTS + 
     weights
 }
 
-/// Joints of a plant (m, X, height and Z from its root) above the lowest, the root: the tops of its segments, all of one length, each leaning by its own
-/// `leans_rad` from upright (001 Fig. 5). A joint below the ground, which is `ground_m` above that at the root at a place from there, is put onto it.
+/// Joints of a plant (m: X, height and Z relative to its root) above the root: the tops of its segments, all of equal length, each with its own lean
+/// of `leans_rad` from upright (Chen & Johan Fig. 5). `ground_m` is the height of the ground at a position relative to that at the root; joints below
+/// the ground are moved up to it.
 pub fn joints_m<const N: usize>(height_m: f32, leans_rad: [[f32; 2]; N], ground_m: impl Fn([f32; 2]) -> f32) -> [[f32; 3]; N] {
     let length_m = height_m / N as f32;
     let mut at = [0.0_f32; 3];
@@ -108,7 +109,7 @@ mod tests {
         Lag { tip_secs: 0.3, recovery_share: 0.4, segments: 4, c0_m_per_s: 3.0, mu_m_per_rad: 0.5 }
     }
 
-    /// Lean of a bump of 0.8 rad and some 2 m that travels along `direction` at the speed that grass of `lag` bending at 0.6 rad/s carries it.
+    /// Lean of a bump of 0.8 rad and some 2 m that travels along `direction` at the wave speed of grass of `lag` bending at 0.6 rad/s.
     fn wave(lag: &Lag, direction: [f32; 2], [x, z]: [f32; 2], t_secs: f32) -> [f32; 2] {
         let c_m_per_s = lag.c0_m_per_s + lag.mu_m_per_rad * 0.6;
         let along_m = x * direction[0] + z * direction[1] - c_m_per_s * t_secs;
@@ -149,7 +150,7 @@ mod tests {
     fn upper_segments_trail_and_rising_ones_trail_less() {
         let lag = lag();
         assert_eq!([0, 1, 3].map(|segment| lag.secs(segment)), [0.0, 0.1, 0.3]);
-        // A lean that grows, or falls, by 1 rad/s.
+        // A lean that grows or falls by 1 rad/s.
         let lean = |rate: f32| lag.lean_rad(0.3, |secs| [0.5 - rate * secs, 0.0])[0];
         assert!((lean(1.0) - 0.2).abs() < 1e-6 && (lean(-1.0) - 0.62).abs() < 1e-6);
     }

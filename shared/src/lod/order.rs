@@ -1,22 +1,22 @@
-//! Draw orders made beforehand (000 §5.4): which plants of a grass grid come first, and which grids, so that what is farther is drawn before what hides it.
+//! Precomputed drawing orders (Zhang §5.4) of plants in a grass grid and of grids, so that farther ones are drawn before those that hide them.
 //!
-//! A grid is n × n cells of `s` metres with a plant in each, anywhere in the middle share `q` of its cell (0: on the lattice; 1: anywhere). What holds of
-//! the orders here, for a camera anywhere in its own grid (the tests compare all pairs with a full sort):
-//! - Where a plant A is drawn before a plant B of its grid although A is nearer, the line of sight to B, seen from above, passes A at (1 − q)·s or more;
-//!   where B is in another grid, at half that or more, which it comes down to when the camera is at its grid's border. So plants no wider than that, an
-//!   angle of (1 − q)·s over A's distance, never hide each other wrongly.
-//! - The exception are two plants in one row of a straight section ([`Section::Forward`], [`Section::Backward`]; one column of [`Section::Left`],
-//!   [`Section::Right`]): seen at an angle φ from the section's axis the bound is only (1 − q)·s·cos φ − q·s·sin φ, since which end of a row is nearer
-//!   depends on the camera's column. A grid two or more away is seen within 45°.
-//! - Diagonal sections drawn by the [`simplified`](Section::simplified) sequences of 000 §5.4.2 keep the first bound in full: there one end of every
-//!   row is the nearer for every camera, and the rows of the four straight sequences run so that it comes last.
+//! A grid is n × n cells of `s` metres with a plant in each, anywhere in the central fraction `q` of its cell (0: on the lattice; 1: anywhere).
+//! Guarantees of the orders here, for a camera anywhere in its own grid (the tests compare all pairs with a full sort):
+//! - Where a plant A is drawn before a plant B of its grid although A is nearer, the line of sight to B, seen from above, passes A at (1 − q)·s or
+//!   more; if B is in another grid, at half that or more, reached when the camera is at its grid's border. So plants no wider than that, an angle of
+//!   (1 − q)·s over A's distance, never hide each other wrongly.
+//! - The exception is two plants in one row of a straight section ([`GridSection::Forward`], [`GridSection::Backward`]; one column of
+//!   [`GridSection::Left`], [`GridSection::Right`]): seen at an angle φ from the section's axis the bound is only (1 − q)·s·cos φ − q·s·sin φ, since
+//!   which end of a row is nearer depends on the camera's column. A grid two or more away is seen within 45°.
+//! - Diagonal sections drawn by the [`simplified`](GridSection::simplified) sequences of Zhang §5.4.2 keep the first bound in full: there one end of
+//!   every row is nearer for every camera, and the rows of the four straight sequences run so that it comes last.
 
 use std::cmp::Reverse;
 
-/// Where a grid lies from the camera's, one of the nine sections of 000 Fig. 17, named as in its Table 1: forward is +Z, right is +X.
+/// Section of a grid relative to the camera's, one of the nine of Zhang Fig. 17, named as in Zhang's Table 1: forward is +Z, right is +X.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Section {
-    /// The camera's own grid; no order made beforehand is right in it.
+pub enum GridSection {
+    /// The camera's own grid; no precomputed order is valid in it.
     Camera,
     /// (0, +Z).
     Forward,
@@ -36,7 +36,7 @@ pub enum Section {
     BackwardLeft,
 }
 
-impl Section {
+impl GridSection {
     /// The eight sections about the camera's grid, in the order of Table 1.
     pub const AROUND: [Self; 8] = [
         Self::Forward,
@@ -49,12 +49,12 @@ impl Section {
         Self::BackwardLeft,
     ];
 
-    /// The section of a grid so many grids along X and Z from the camera's.
+    /// The section of a grid at an offset from the camera's, in grids along X and Z.
     ///
     /// ```
-    /// use shared::lod::Section;
-    /// assert_eq!(Section::of([-3, 1]), Section::ForwardLeft);
-    /// assert_eq!(Section::of([0, -2]), Section::Backward);
+    /// use prairie_core::lod::GridSection;
+    /// assert_eq!(GridSection::of([-3, 1]), GridSection::ForwardLeft);
+    /// assert_eq!(GridSection::of([0, -2]), GridSection::Backward);
     /// ```
     pub fn of([x, z]: [i32; 2]) -> Self {
         match (x.signum(), z.signum()) {
@@ -70,7 +70,7 @@ impl Section {
         }
     }
 
-    /// The straight section whose sequence serves this one as well (000 §5.4.2); itself where it is straight.
+    /// The straight section whose sequence can be used for this one (Zhang §5.4.2); itself if it is straight.
     pub fn simplified(self) -> Self {
         match self {
             Self::ForwardLeft => Self::Forward,
@@ -81,8 +81,8 @@ impl Section {
         }
     }
 
-    /// Cells (column along X, row along Z) of a grid of `side` × `side`, far to near: the sequences of Table 1 and Fig. 16. Straight sections go row by
-    /// row, diagonal ones diagonal by diagonal. For [`Section::Camera`], as the lattice lies.
+    /// Cells (column along X, row along Z) of a grid of `side` × `side`, far to near: the sequences of Zhang's Table 1 and Fig. 16. Straight sections
+    /// go row by row, diagonal ones diagonal by diagonal; for [`GridSection::Camera`] in lattice order.
     pub fn sequence(self, side: u32) -> Vec<[u32; 2]> {
         let mut cells: Vec<[u32; 2]> = (0..side).flat_map(|row| (0..side).map(move |column| [column, row])).collect();
         cells.sort_by_key(|&[column, row]| {
@@ -103,8 +103,8 @@ impl Section {
     }
 }
 
-/// Orders grids far to near by the square of their offset from the camera's grid (000 §5.4.2). Along any line of sight that square grows from grid to
-/// grid, so this is exact between grids.
+/// Sorts grids far to near by the squared offset from the camera's grid (Zhang §5.4.2). Along any line of sight that square grows from grid to grid,
+/// so this is exact between grids.
 pub fn far_to_near(grids: &mut [[i32; 2]], camera: [i32; 2]) {
     grids.sort_by_key(|&[x, z]| Reverse((x - camera[0]).pow(2) + (z - camera[1]).pow(2)));
 }
@@ -114,10 +114,10 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Most cells along the side of a grid in the tests.
+    /// Largest number of cells along the side of a grid in the tests.
     const SIDE_LIMIT: u32 = 5;
 
-    /// A plant: its grid, cell and place, in cells from the north-west corner of the camera's grid.
+    /// A plant: its grid, cell and position, in cells from the north-west corner of the camera's grid.
     #[derive(Clone, Copy, Debug)]
     struct Plant {
         grid: [i32; 2],
@@ -125,7 +125,7 @@ mod tests {
         at: [f64; 2],
     }
 
-    /// A plant in each cell of a grid, off the middle by a lot within the share `jitter`.
+    /// A plant in each cell of a grid, at a random offset from the centre within the fraction `jitter`.
     fn plants(grid: [i32; 2], sequence: &[[u32; 2]], side: u32, jitter: f64, lots: &[f64]) -> Vec<Plant> {
         let stand = |&cell: &[u32; 2]| {
             let lot = (cell[0] + side * cell[1]) as usize * 2 + (grid[0] * 7 + grid[1] * 13).unsigned_abs() as usize;
@@ -141,8 +141,8 @@ mod tests {
         [plant.at[0] - eye[0], plant.at[1] - eye[1]]
     }
 
-    /// For each plant that is drawn before a farther one: both, and how far from it (cells) the line of sight to the farther passes; what is seen in other
-    /// directions is left out.
+    /// For each plant that is drawn before a farther one: both, and the distance (cells) at which the line of sight to the farther passes; pairs in
+    /// other directions are omitted.
     fn mistakes(drawn: &[Plant], eye: [f64; 2]) -> Vec<(Plant, Plant, f64)> {
         let mut found = Vec::new();
         for (at, near) in drawn.iter().enumerate() {
@@ -158,14 +158,14 @@ mod tests {
         found
     }
 
-    /// How far the line of sight to the farther passes by at least (cells): less between grids, and in a row of a straight section.
+    /// Smallest distance at which the line of sight to the farther passes (cells): less between grids, and in a row of a straight section.
     fn bound(near: &Plant, far: &Plant, eye: [f64; 2], jitter: f64) -> f64 {
         if near.grid != far.grid {
             return 0.5 * (1.0 - jitter);
         }
-        let axis = match Section::of(near.grid) {
-            Section::Forward | Section::Backward => 1,
-            Section::Left | Section::Right => 0,
+        let axis = match GridSection::of(near.grid) {
+            GridSection::Forward | GridSection::Backward => 1,
+            GridSection::Left | GridSection::Right => 0,
             _ => return 1.0 - jitter,
         };
         if near.cell[axis] != far.cell[axis] {
@@ -186,8 +186,8 @@ mod tests {
             side in 2..=SIDE_LIMIT, eye in [0.0..1.0, 0.0..1.0], offset in [-3..=3, -3..=3], jitter in 0.0..1.0, lots in lots(),
         ) {
             let eye = eye.map(|share: f64| share * f64::from(side));
-            let section = Section::of(offset);
-            prop_assume!(section != Section::Camera);
+            let section = GridSection::of(offset);
+            prop_assume!(section != GridSection::Camera);
             for sequence in [section.sequence(side), section.simplified().sequence(side)] {
                 for (near, far, passes) in mistakes(&plants(offset, &sequence, side, jitter, &lots), eye) {
                     prop_assert!(passes >= bound(&near, &far, eye, jitter) - 1e-9, "{near:?} before {far:?}: {passes}");
@@ -204,9 +204,9 @@ mod tests {
             far_to_near(&mut grids, [0, 0]);
             let mut drawn = Vec::new();
             for grid in grids {
-                let section = if simplified { Section::of(grid).simplified() } else { Section::of(grid) };
+                let section = if simplified { GridSection::of(grid).simplified() } else { GridSection::of(grid) };
                 let mut own = plants(grid, &section.sequence(side), side, jitter, &lots);
-                if section == Section::Camera {
+                if section == GridSection::Camera {
                     let distance = |plant: &Plant| from_eye(plant, eye).map(|v| v * v).iter().sum::<f64>();
                     own.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
                 }
@@ -220,7 +220,7 @@ mod tests {
 
         #[test]
         fn every_sequence_draws_each_cell_once(side in 1_u32..20) {
-            for section in Section::AROUND {
+            for section in GridSection::AROUND {
                 let mut cells = section.sequence(side);
                 cells.sort_unstable();
                 cells.dedup();
@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn the_sequences_of_figure_16_begin_far_and_end_near() {
-        let ends = Section::AROUND.map(|section| {
+        let ends = GridSection::AROUND.map(|section| {
             let cells = section.sequence(3);
             (cells[0], cells[8])
         });
@@ -246,7 +246,7 @@ mod tests {
     #[test]
     fn a_sequence_of_the_wrong_section_is_caught() {
         let grid = [0, 1];
-        let drawn = plants(grid, &Section::Backward.sequence(4), 4, 0.0, &[0.5]);
+        let drawn = plants(grid, &GridSection::Backward.sequence(4), 4, 0.0, &[0.5]);
         assert!(mistakes(&drawn, [2.0, 2.0]).iter().any(|(near, far, passes)| *passes < bound(near, far, [2.0, 2.0], 0.0) - 1e-9));
     }
 

@@ -1,29 +1,29 @@
-//! Shells (003 §3): layers of a blade of grass that is cut across, and how they lean without changing its length.
+//! Shells (Bakay §3): cross-section layers of a blade of grass, and their tilt, which preserves its length.
 //!
-//! A blade of height `H` between the ground and the topmost of `N` layers is `N` segments of `S = H/N`. Segment `j`, of 1..=N, is tilted by
-//! `θ_j = θ₀ + (j/N)·(π/2)·I` from the normal towards the wind; layer `i` is the sum of the segments below it. 003 has `θ₀ = 0`; the root's own tilt lays
-//! down what is trodden flat, which the sums of 003 alone hold at 64 % of its height or more.
+//! A blade of height `H` between the ground and the topmost of `N` layers is `N` segments of `S = H/N`. Segment `j`, of 1..=N, is tilted from the normal
+//! towards the wind by `θ_j = θ₀ + (j/N)·(π/2)·I`; layer `i` is the sum of the segments below it. Bakay has `θ₀ = 0`, so that trodden grass would keep
+//! at least 64 % of its height; the tilt θ₀ of the root lays it flat.
 
 use std::f32::consts::FRAC_PI_2;
 
-/// Most layers, the ground among them (003 §4.1).
+/// Largest number of layers, including the ground (Bakay §4.1).
 pub const LAYERS_LIMIT: u32 = 65;
 
-/// How the segments of a blade are tilted.
+/// Tilt of a blade's segments.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tilt {
-    /// Tilt of the root, θ₀ (rad); 0 in 003.
+    /// Tilt of the root, θ₀ (rad); 0 for Bakay.
     pub root_rad: f32,
     /// Wind intensity I, 0..=1; the topmost segment is tilted by a right angle more than the root at 1.
     pub intensity: f32,
 }
 
 impl Tilt {
-    /// The tilt of a blade whose segments lean by `lean_rad` on the average, 0..=1.5 rad: as 003 has it up to π/4, where the tip lies level; beyond that the tip
-    /// stays level and the root goes down.
+    /// Tilt of a blade whose segments lean by `lean_rad` on average, 0..=1.5 rad: Bakay's up to π/4, where the tip is horizontal; beyond that the tip
+    /// stays horizontal and the root tilts.
     ///
     /// ```
-    /// use shared::lod::shells::Tilt;
+    /// use prairie_core::lod::shells::Tilt;
     /// assert_eq!(Tilt::of_lean(0.0), Tilt { root_rad: 0.0, intensity: 0.0 });
     /// let laid = Tilt::of_lean(1.5);
     /// assert!(laid.root_rad > 1.4 && laid.intensity < 0.1);
@@ -34,16 +34,16 @@ impl Tilt {
         Self { root_rad, intensity: (twice.min(FRAC_PI_2) - root_rad) / FRAC_PI_2 }
     }
 
-    /// Tilt of segment `j` of `segments` (rad), θ_j of 003 §3.2.
+    /// Tilt of segment `j` of `segments` (rad), θ_j of Bakay §3.2.
     pub fn of_segment_rad(&self, j: u32, segments: u32) -> f32 {
         self.root_rad + j as f32 / segments as f32 * FRAC_PI_2 * self.intensity
     }
 
-    /// How far layer `i` of `segments` lies from the root along the normal and along the wind, n_i and w_i of 003 §3.2, in heights of the blade. The sums are in
-    /// closed form (Dirichlet's kernel), `Σ_{j=1..i} cos(θ₀ + jφ) = sin(iφ/2)/sin(φ/2) · cos(θ₀ + (i+1)φ/2)`, so that a layer costs the same whatever is
-    /// below it. `i` may be a fraction.
+    /// Position of layer `i` of `segments` relative to the root along the normal and along the wind, n_i and w_i of Bakay §3.2, in heights of the
+    /// blade. The sums are in closed form (Dirichlet's kernel), `Σ_{j=1..i} cos(θ₀ + jφ) = sin(iφ/2)/sin(φ/2) · cos(θ₀ + (i+1)φ/2)`, so that a layer
+    /// costs the same at any height. `i` may be fractional.
     ///
-    /// Its twin on the GPU is `layer_place` in `shells.wgsl`.
+    /// Its twin on the GPU is `layer_place` in the shells' shader.
     pub fn layer(&self, i: f32, segments: u32) -> [f32; 2] {
         let half = 0.5 * FRAC_PI_2 * self.intensity / segments as f32;
         let sum = if half > 1e-4 { (i * half).sin() / half.sin() } else { i };
@@ -52,16 +52,10 @@ impl Tilt {
     }
 }
 
-/// What of the wind `W` pushes a blade on ground of unit normal `N`: `W − (W·N)·N` (003 §3.2).
-pub fn along_ground(wind: [f32; 3], normal: [f32; 3]) -> [f32; 3] {
-    let across: f32 = (0..3).map(|axis| wind[axis] * normal[axis]).sum();
-    std::array::from_fn(|axis| wind[axis] - across * normal[axis])
-}
-
-/// Layers that are drawn of `segments`, from the topmost down, where only each `stride`-th is, and how many segments lie below each until the next.
+/// Drawn layers of `segments`, from the topmost down, if only each `stride`-th is drawn, and the number of segments from each down to the next.
 ///
 /// ```
-/// let drawn: Vec<_> = shared::lod::shells::drawn_layers(16, 8).collect();
+/// let drawn: Vec<_> = prairie_core::lod::shells::drawn_layers(16, 8).collect();
 /// assert_eq!(drawn, [(16, 8), (8, 8)]);
 /// ```
 pub fn drawn_layers(segments: u32, stride: u32) -> impl Iterator<Item = (u32, u32)> {
@@ -94,6 +88,12 @@ mod tests {
                 assert!((length - 1.0).abs() < 1e-5, "{tilt:?}: {length} with {segments}");
             }
         }
+    }
+
+    /// Component of the wind `W` along ground with the unit normal `N`: `W − (W·N)·N` (Bakay §3.2).
+    fn along_ground(wind: [f32; 3], normal: [f32; 3]) -> [f32; 3] {
+        let across: f32 = (0..3).map(|axis| wind[axis] * normal[axis]).sum();
+        std::array::from_fn(|axis| wind[axis] - across * normal[axis])
     }
 
     #[test]

@@ -1,6 +1,6 @@
-//! All underbrush of a world: what grew, and how each plant is made.
+//! Underbrush of a world: its plants, and how each is built.
 
-use super::growth::{Ground, Grown, NutrientMap, Plant, Sites, Soil, grow};
+use super::growth::{Grown, NutrientMap, Permission, Plant, Sites, Soil, grow};
 use super::underbrush::plan::Plan;
 use super::underbrush::posture::Nodes;
 use crate::hash::{folded, hash3};
@@ -8,7 +8,7 @@ use crate::scene::{Component, Scene, Underbrush};
 use crate::terrain::CoverMap;
 use std::f32::consts::TAU;
 
-/// The underbrush of a world, the same for everyone who has its scene and maps.
+/// Underbrush of a world, the same for everyone who has its scene and maps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flora {
     grown: Grown,
@@ -17,23 +17,23 @@ pub struct Flora {
     seed: u32,
 }
 
-/// How one plant stands.
+/// Position, size and orientation of one plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Standing {
-    /// Place on the ground, X and Z (m).
+pub struct PlantInstance {
+    /// Position on the ground, X and Z (m).
     pub at_m: [f32; 2],
     /// Index of its species.
     pub species: usize,
-    /// Size over that of its species: by lot within `size_variation`, and down to 0.6 of that where it is badly fed.
+    /// Size relative to its species: random within `size_variation`, reduced to as little as 0.6 of that where it is badly fed.
     pub size: f32,
     /// Heading of its first turn (rad).
     pub heading_rad: f32,
-    /// Number that its components are drawn by.
+    /// Number that seeds the random draws of its components.
     pub number: u32,
 }
 
 impl Flora {
-    /// Lets the underbrush of a scene grow; none if it has none, with `nutrients` where the soil is a map.
+    /// Grows the underbrush of a scene, with `nutrients` if the soil is a map; `None` if the scene has no underbrush.
     pub fn new(scene: &Scene, cover: &CoverMap, nutrients: Option<&NutrientMap>) -> Option<Self> {
         if scene.underbrush.is_empty() {
             return None;
@@ -45,14 +45,14 @@ impl Flora {
         let heights_m: Vec<f32> = species.iter().map(height_m).collect();
         let ground = |[x_m, z_m]: [f32; 2]| {
             let cover = cover.at(x_m, z_m, extent_m);
-            Ground::new(cover, scene.is_grass(cover), &species)
+            Permission::new(cover, scene.is_grass(cover), &species)
         };
         let grown = grow(sites, soil, &species, &heights_m, scene.growth.shade, ground);
         let plans = species.iter().map(|species| Plan::new(species, Nodes::default())).collect();
         Some(Self { grown, species, plans, seed: folded(scene.seed) })
     }
 
-    /// What grew.
+    /// The plants that grew.
     pub fn grown(&self) -> &Grown {
         &self.grown
     }
@@ -62,28 +62,28 @@ impl Flora {
         &self.species
     }
 
-    /// How each species is made, in that order.
+    /// Plan of each species, in that order.
     pub fn plans(&self) -> &[Plan] {
         &self.plans
     }
 
-    /// A number that differs when any plant differs in its site, species or vigour, or in any bit of how it stands (FNV-1a): for server and client to compare.
+    /// Checksum (FNV-1a) of the site, species, vigour and every bit of the instance of all plants, for server and client to compare.
     pub fn checksum(&self) -> u64 {
         let words = self.grown.plants().iter().flat_map(|plant| {
-            let Standing { at_m: [x, z], size, heading_rad, number, .. } = self.standing(plant);
+            let PlantInstance { at_m: [x, z], size, heading_rad, number, .. } = self.instance(plant);
             let kind = u32::from(plant.species) << 8 | u32::from(plant.vigour);
             [plant.site, kind, number].into_iter().chain([x, z, size, heading_rad].map(f32::to_bits))
         });
         words.fold(0xcbf2_9ce4_8422_2325, |sum, word| (sum ^ u64::from(word)).wrapping_mul(0x0100_0000_01b3))
     }
 
-    /// How a plant stands.
-    pub fn standing(&self, plant: &Plant) -> Standing {
+    /// Position, size and orientation of a plant.
+    pub fn instance(&self, plant: &Plant) -> PlantInstance {
         let [size, heading, number] = hash3([plant.site, 0x5a, self.seed]);
         let share = |random: u32| (random >> 8) as f32 / (1_u32 << 24) as f32;
         let species = usize::from(plant.species);
         let by_lot = 1.0 + self.species[species].size_variation * (2.0 * share(size) - 1.0);
-        Standing {
+        PlantInstance {
             at_m: self.grown.sites.place_m(plant.site),
             species,
             size: by_lot * (0.6 + 0.4 * f32::from(plant.vigour) / 255.0),
@@ -93,8 +93,8 @@ impl Flora {
     }
 }
 
-/// Height of a species' unbent plants (m): that of the highest tip where all components have their mean angles and lengths; shade goes by it. Only
-/// `+ − × ÷` and roots, since server and client must agree.
+/// Height of a species' unbent plants (m): that of the highest tip if all components have their mean angles and lengths; used for shading. Only `+ −
+/// × ÷` and roots, since server and client must agree.
 pub fn height_m(species: &Underbrush) -> f32 {
     let mut tips_m: Vec<f32> = Vec::new();
     for (index, component) in species.components.iter().enumerate() {
@@ -105,7 +105,7 @@ pub fn height_m(species: &Underbrush) -> f32 {
     tips_m.into_iter().fold(0.01, f32::max)
 }
 
-/// How far a species' plants reach from their root at most (m), however they lean: the longest way along components that stand on each other.
+/// Largest distance of a species' components from their root (m), at any lean: the longest chain of components that carry each other.
 pub fn reach_m(species: &Underbrush) -> f32 {
     let mut ways_m: Vec<f32> = Vec::new();
     for (index, component) in species.components.iter().enumerate() {
@@ -115,7 +115,7 @@ pub fn reach_m(species: &Underbrush) -> f32 {
     ways_m.into_iter().fold(0.01, f32::max)
 }
 
-/// How far a component rises from its foot (m): its length by the cosine of its angle.
+/// Height of a component's tip above its base (m): its length times the cosine of its angle.
 fn rise_m(component: &Component) -> f32 {
     component.length_m * super::blade::lean::direction([component.angle_rad, 0.0])[1]
 }
@@ -137,7 +137,7 @@ mod tests {
         let (scene, cover) = meadow();
         let [one, other] = [(); 2].map(|()| Flora::new(&scene, &cover, None).expect("a scene with underbrush"));
         assert_eq!(one, other);
-        let all: Vec<Standing> = one.grown().plants().iter().map(|plant| one.standing(plant)).collect();
+        let all: Vec<PlantInstance> = one.grown().plants().iter().map(|plant| one.instance(plant)).collect();
         assert!(all.len() > 500, "{} plants", all.len());
         let extent_m = scene.extent_m();
         assert!(all.iter().all(|one| (0..2).all(|axis| (0.0..extent_m[axis]).contains(&one.at_m[axis]))));

@@ -1,4 +1,4 @@
-//! Plants: blades of grass (000 chapter 3), underbrush of leaves, branches and flowers (004), and where they grow.
+//! Plants: blades of grass (Zhang chapter 3), underbrush of leaves, branches and flowers (Endo et al. 2003), and where they grow.
 
 pub mod blade;
 pub mod flora;

@@ -1,8 +1,9 @@
-//! What each field of a scene file may hold: the one table that parsing, the reference in the README and its tests share.
+//! Allowed values of every field of a scene file, in one table for the parser, the reference in the README and its tests.
 
+use super::objects::OBJECT_FIELDS;
 use super::{
     BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, LAMPS_LIMIT, LagWay, PlantCover, PrimitiveKind, SPECIES_LIMIT,
-    VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, Scheme, Seams};
 use crate::lod::shells::LAYERS_LIMIT;
@@ -20,16 +21,20 @@ pub enum Allowed {
     Range(f64, f64),
     /// One of these words.
     OneOf(&'static [&'static str]),
-    /// A list of so many to so many sections.
+    /// A list with a number of sections in this range.
     Sections(usize, usize),
-    /// A list of so many to so many places [x, z], each number from the third to the fourth.
+    /// A list of points [x, z]: range of their number, then range of each coordinate.
     Places(usize, usize, f64, f64),
 }
 
 use Allowed::{Name, OneOf, Places, Range, Sections, Text};
 
-/// Every field by its path, in the order of the structs; in a list of sections, those of one section.
-pub const FIELDS: [(&str, Allowed); 197] = [
+/// Every field by its path, in the order of the structs; for a list of sections, the fields of one section. For `species` only its own fields are
+/// listed; the others are as in `grass` and `plants`, see [`Allowed::at`].
+pub const FIELDS: [(&str, Allowed); BEFORE_OBJECTS.len() + OBJECT_FIELDS.len() + AFTER_OBJECTS.len()] =
+    joined(&[BEFORE_OBJECTS, OBJECT_FIELDS, AFTER_OBJECTS]);
+
+const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("summary", Text),
     ("seed", Range(0.0, i64::MAX as f64)),
     ("tick_hz", Range(10.0, 240.0)),
@@ -129,21 +134,6 @@ pub const FIELDS: [(&str, Allowed); 197] = [
     ("shells.root_light", Range(0.0, 1.0)),
     ("species.name", Name),
     ("species.cover", Range(1.0, 252.0)),
-    ("species.height_m", Range(0.02, 5.0)),
-    ("species.root_rgb", Range(0.0, 1.0)),
-    ("species.tip_rgb", Range(0.0, 1.0)),
-    ("species.swing_hz", Range(0.05, 50.0)),
-    ("species.c0_m_per_s", Range(0.0, 50.0)),
-    ("species.mu_m_per_rad", Range(0.0, 10.0)),
-    ("species.c_omega_m_per_s", Range(0.0, 50.0)),
-    ("species.theta_damping_per_s", Range(0.0, 200.0)),
-    ("species.omega_damping_per_s", Range(0.0, 200.0)),
-    ("species.stiffness_per_s2", Range(0.0, 10000.0)),
-    ("species.theta_max_rad", Range(0.1, 1.57)),
-    ("species.wind_bend_rad", Range(0.0, 1.5)),
-    ("species.lag_secs", Range(0.0, 1.0)),
-    ("species.recovery_lag_share", Range(0.0, 1.0)),
-    ("species.segments", Range(1.0, 6.0)),
     ("underbrush.name", Name),
     ("underbrush.cover", Range(0.0, 252.0)),
     ("underbrush.settle_secs", Range(0.0, 10.0)),
@@ -180,27 +170,9 @@ pub const FIELDS: [(&str, Allowed); 197] = [
     ("growth.patch_m", Range(1.0, 1000.0)),
     ("growth.spacing_m", Range(0.05, 20.0)),
     ("growth.shade", Range(0.0, 1.0)),
-    ("objects.limit", Range(0.0, 1024.0)),
-    ("objects.car_model", Text),
-    ("objects.monster_model", Text),
-    ("objects.self_driving", Range(0.0, 1024.0)),
-    ("objects.self_driving_m_per_s", Range(1.0, 60.0)),
-    ("objects.self_driving_apart_m", Range(1.0, 1000.0)),
-    ("objects.self_driving_kind", OneOf(VehicleKind::WORDS)),
-    ("objects.balls", Range(0.0, 64.0)),
-    ("objects.ball_radius_m", Range(0.1, 5.0)),
-    ("objects.sled_outline_m", Places(3, 64, -20.0, 20.0)),
-    ("objects.car.strike_height_m", Range(0.05, 5.0)),
-    ("objects.car.lays_share", Range(0.0, 1.0)),
-    ("objects.monster.strike_height_m", Range(0.05, 5.0)),
-    ("objects.monster.lays_share", Range(0.0, 1.0)),
-    ("objects.helicopter.strike_height_m", Range(0.05, 5.0)),
-    ("objects.helicopter.lays_share", Range(0.0, 1.0)),
-    ("objects.helicopter.wash_shape", Text),
-    ("objects.sled.strike_height_m", Range(0.05, 5.0)),
-    ("objects.sled.lays_share", Range(0.0, 1.0)),
-    ("objects.ball.strike_height_m", Range(0.05, 5.0)),
-    ("objects.ball.lays_share", Range(0.0, 1.0)),
+];
+
+const AFTER_OBJECTS: &[(&str, Allowed)] = &[
     ("drawn_winds.shape", Text),
     ("drawn_winds.path_m", Places(1, 64, 0.0, 100_000.0)),
     ("drawn_winds.travel_m_per_s", Range(0.0, 60.0)),
@@ -229,7 +201,7 @@ pub const FIELDS: [(&str, Allowed); 197] = [
     ("lights.attenuation", Range(0.0, 100.0)),
 ];
 
-/// Fields that a scene file must give; in a list of sections, each section of it.
+/// Fields that a scene file must contain; for a list of sections, each section of it.
 pub const REQUIRED: [&str; 17] = [
     "summary",
     "terrain",
@@ -250,13 +222,33 @@ pub const REQUIRED: [&str; 17] = [
     "lights.at_m",
 ];
 
-/// What the field at `path` may hold; text for a path that is not in the table.
-pub(super) fn allowed_at(path: &str) -> Allowed {
-    FIELDS.iter().find(|(known, _)| *known == path).map_or(Text, |&(_, allowed)| allowed)
+/// The tables one after another.
+const fn joined<const N: usize>(tables: &[&[(&'static str, Allowed)]]) -> [(&'static str, Allowed); N] {
+    let mut all = [("", Text); N];
+    let (mut table, mut row, mut n) = (0, 0, 0);
+    while n < N {
+        if row < tables[table].len() {
+            all[n] = tables[table][row];
+            (row, n) = (row + 1, n + 1);
+        } else {
+            (table, row) = (table + 1, 0);
+        }
+    }
+    all
 }
 
 impl Allowed {
-    /// What an element of a list may hold.
+    /// Allowed values of the field at `path`; text for an unknown path. Fields that `species` shares with `grass` and `plants` have the same range.
+    pub fn at(path: &str) -> Self {
+        let listed = |path: &str| FIELDS.iter().find(|(known, _)| *known == path).map(|&(_, allowed)| allowed);
+        let shared = || {
+            let field = path.strip_prefix("species.")?;
+            ["grass", "plants"].iter().find_map(|section| listed(&format!("{section}.{field}")))
+        };
+        listed(path).or_else(shared).unwrap_or(Text)
+    }
+
+    /// Allowed values of an element of a list.
     pub(super) fn of_element(self) -> Self {
         match self {
             Places(_, _, low, high) => Range(low, high),
@@ -264,12 +256,12 @@ impl Allowed {
         }
     }
 
-    /// Whether a number is in the range; never for what is no range.
+    /// Whether a number is in the range; false for anything but a range.
     pub(super) fn contains(self, value: f64) -> bool {
         matches!(self, Range(low, high) if (low..=high).contains(&value))
     }
 
-    /// Whether a text may stand there.
+    /// Whether a text is allowed.
     pub(super) fn admits(self, text: &str) -> bool {
         match self {
             OneOf(words) => words.contains(&text),
@@ -294,7 +286,7 @@ impl fmt::Display for Allowed {
             }
             Sections(0, most) => write!(f, "at most {most}"),
             Sections(least, most) => write!(f, "{least} to {most}"),
-            Places(least, most, low, high) => write!(f, "{least} to {most} places [x, z], each number {low} to {high}"),
+            Places(least, most, low, high) => write!(f, "{least} to {most} points [x, z], each coordinate {low} to {high}"),
         }
     }
 }

@@ -1,22 +1,22 @@
-//! A fault of a scene file, and the place in the text that it is about.
+//! Faults of a scene file, with their position in the text.
 
 use std::fmt;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Something wrong in a scene file.
+/// A fault of a scene file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneFault {
     /// Line, from 1.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// Characters on that line that the fault is about, at least 1.
+    /// Number of characters on that line that the fault is about, at least 1.
     pub length: usize,
-    /// Path of the field, such as `wind.cells[1]`; empty where the text is no TOML.
+    /// Path of the field, such as `wind.cells[1]`; empty for a syntax error.
     pub path: String,
-    /// What is wrong, with the value and what is allowed; reads on after the path.
+    /// The value and what is allowed; continues the sentence after the path.
     pub message: String,
 }
 
@@ -30,14 +30,14 @@ impl fmt::Display for SceneFault {
 }
 
 impl SceneFault {
-    /// A fault of the field at `path` of a scene file's `text`; points to the nearest enclosing section where the file
-    /// does not name the field itself, or to the start of the file.
+    /// A fault of the field at `path` of a scene file's `text`. Points to the nearest enclosing section if the file does not contain the field, or to
+    /// the start of the file.
     pub fn at(text: &str, path: &str, message: impl Into<String>) -> Self {
         let root = DeTable::parse(text).unwrap_or_else(|_| Spanned::new(0..0, DeTable::new()));
         Self::spanning(text, span_of(root.get_ref(), path), path, message)
     }
 
-    /// A fault of the bytes `span` of `text`.
+    /// A fault of the byte range `span` of `text`.
     pub(super) fn spanning(text: &str, span: Range<usize>, path: &str, message: impl Into<String>) -> Self {
         let start = floor_char(text, span.start);
         let line_start = text[..start].rfind('\n').map_or(0, |at| at + 1);
@@ -57,7 +57,7 @@ fn floor_char(text: &str, at: usize) -> usize {
     (0..=at.min(text.len())).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0)
 }
 
-/// Bytes of the value at `path`, or of the nearest section around it.
+/// Byte range of the value at `path`, or of the nearest section around it.
 fn span_of(root: &DeTable<'_>, path: &str) -> Range<usize> {
     let mut table = root;
     let mut span = 0..0;

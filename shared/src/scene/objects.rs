@@ -1,7 +1,7 @@
 //! Cars, monsters, helicopters, sleds and balls.
 
 use super::WindShape;
-use crate::outline;
+use super::allowed::Allowed::{self, OneOf, Places, Range, Text};
 use serde::{Deserialize, Serialize};
 
 /// What a visitor can drive.
@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 pub enum VehicleKind {
     /// Four wheels, a box of a body; leaves two-track traces at speed.
     Car,
-    /// A walking creature; grass leans away from its sphere (000 §6.2).
+    /// A walking creature; grass leans away from its sphere (Zhang §6.2).
     Monster,
-    /// Flies; its downwash bends the grass like an object, weaker with height (001 §5.3).
+    /// Flies; its downwash bends the grass like an object, weaker with height (Chen & Johan §5.3).
     Helicopter,
-    /// A frame of any outline that glides over the land and lays the grass; concave outlines are split (001 §6).
+    /// A frame of any outline that glides over the land and lays the grass; concave outlines are split (Chen & Johan §6).
     Sled,
     /// A light sphere that whatever touches it sends off; rolls and presses the grass.
     Ball,
@@ -31,18 +31,6 @@ impl VehicleKind {
     pub fn name(self) -> &'static str {
         Self::WORDS[self as usize]
     }
-
-    /// Half extents of the body's box along its own right, up and back axes (m); of a sled and a ball, those of the default size,
-    /// while [`Objects::half_extents_m`] knows the scene's.
-    pub fn half_extents_m(self) -> [f32; 3] {
-        match self {
-            Self::Car => [0.95, 0.7, 2.2],
-            Self::Monster => [0.6, 0.9, 0.6],
-            Self::Helicopter => [1.1, 1.3, 3.4],
-            Self::Sled => [2.0, SLED_HALF_HEIGHT_M, 2.5],
-            Self::Ball => [BALL_RADIUS_M; 3],
-        }
-    }
 }
 
 /// Half the height of a sled's frame (m).
@@ -51,54 +39,54 @@ const SLED_HALF_HEIGHT_M: f32 = 0.25;
 /// Radius of a ball of the default size (m).
 const BALL_RADIUS_M: f32 = 0.5;
 
-/// How an object of some kind meets the grass.
+/// Contact of an object's kind with the grass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tread {
-    /// Height h above the ground at which the object strikes the grass (m), 001 Eq. (12).
+    /// Height h above the ground of its contact with the grass (m), Chen & Johan Eq. (12).
     pub strike_height_m: f32,
-    /// Share of the bend below its weight that stays for a while.
+    /// Fraction of the bend under its weight that stays for a while.
     pub lays_share: f32,
 }
 
-/// Limits and models of the objects, and how they meet the grass.
+/// Limits and models of the objects, and their contact with the grass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Objects {
-    /// Most objects at once. Default 64, allowed 0..=1024.
+    /// Largest number of objects at once. Default 64, allowed 0..=1024.
     pub limit: u32,
-    /// glTF file (`.glb` or `.gltf`; at most 32 MiB, 65536 vertices and 1048576 indices) drawn for a car, relative to the scene
-    /// file; empty for the built-in model. Default "".
+    /// glTF file (`.glb` or `.gltf`; at most 32 MiB, 65536 vertices and 1048576 indices) of a car's model, relative to the scene file; empty for the
+    /// built-in model. Default "".
     pub car_model: String,
-    /// glTF file drawn for a monster, relative to the scene file; empty for the built-in model. Default "".
+    /// glTF file of a monster's model, relative to the scene file; empty for the built-in model. Default "".
     pub monster_model: String,
-    /// Vehicles that drive by themselves in circles, so that an empty prairie shows tracks. Default 0, allowed
-    /// 0..=1024 and at most `limit`.
+    /// Number of vehicles that drive in circles by themselves, so that an empty prairie shows tracks. Default 0, allowed 0..=1024 and at most
+    /// `limit`.
     pub self_driving: u32,
-    /// Speed that these cars keep (m/s); they circle as narrowly as their grip lets them, some 50 m wide at the default and 180 m at 20. Default
-    /// 11, allowed 1..=60; no car goes faster than 32.
+    /// Speed of these vehicles (m/s); they circle as tightly as their grip allows, some 50 m wide at the default and 180 m at 20. Default 11, allowed
+    /// 1..=60; no car goes faster than 32.
     pub self_driving_m_per_s: f32,
-    /// Distance at which they start from each other, about (m): the n-th stands √n times as far from the middle of the world. Default 4, allowed
+    /// Approximate distance between their start positions (m): the n-th starts √n times as far from the centre of the world. Default 4, allowed
     /// 1..=1000.
     pub self_driving_apart_m: f32,
-    /// What those are: `car`, `monster`, `helicopter`, `sled` or `ball`. Default `car`.
+    /// Their kind: `car`, `monster`, `helicopter`, `sled` or `ball`. Default `car`.
     pub self_driving_kind: VehicleKind,
-    /// Balls that lie about near where visitors first stand, for anyone to kick. Default 0, allowed 0..=64 and with `self_driving` at most `limit`.
+    /// Number of balls near the start position of the camera, for anyone to kick. Default 0, allowed 0..=64 and with `self_driving` at most `limit`.
     pub balls: u32,
     /// Radius of a ball (m). Default 0.5, allowed 0.1..=5.
     pub ball_radius_m: f32,
-    /// Outline of a sled seen from above: corners [x, z] in order, x to the right and z to the back of its middle (m). It may be
-    /// concave; its edges must not cross and must enclose at least 0.01 m². Default the U (−2, −2.5), (−1.2, −2.5), (−1.2, 1.7),
-    /// (1.2, 1.7), (1.2, −2.5), (2, −2.5), (2, 2.5), (−2, 2.5); allowed 3..=64 corners, −20..=20 each.
+    /// Outline of a sled seen from above: corners [x, z] in order, x to the right and z to the back of its centre (m). It may be concave; its edges
+    /// must not cross and must enclose at least 0.01 m². Default the U (−2, −2.5), (−1.2, −2.5), (−1.2, 1.7), (1.2, 1.7), (1.2, −2.5), (2, −2.5), (2,
+    /// 2.5), (−2, 2.5); allowed 3..=64 corners, −20..=20 each.
     pub sled_outline_m: Vec<[f32; 2]>,
-    /// How a car meets the grass.
+    /// Contact of a car with the grass.
     pub car: CarTread,
-    /// How a monster meets the grass.
+    /// Contact of a monster with the grass.
     pub monster: MonsterTread,
-    /// How a helicopter meets the grass.
+    /// Contact of a helicopter with the grass.
     pub helicopter: HelicopterTread,
-    /// How a sled meets the grass.
+    /// Contact of a sled with the grass.
     pub sled: SledTread,
-    /// How a ball meets the grass.
+    /// Contact of a ball with the grass.
     pub ball: BallTread,
 }
 
@@ -125,7 +113,7 @@ impl Default for Objects {
 }
 
 impl Objects {
-    /// How an object of `kind` meets the grass.
+    /// Contact of an object of `kind` with the grass.
     pub fn tread(&self, kind: VehicleKind) -> Tread {
         let (strike_height_m, lays_share) = match kind {
             VehicleKind::Car => (self.car.strike_height_m, self.car.lays_share),
@@ -137,20 +125,42 @@ impl Objects {
         Tread { strike_height_m, lays_share }
     }
 
-    /// Half extents of the body's box of `kind` along its own right, up and back axes (m).
+    /// File of the scene's own model of `kind`, for kinds that can have one.
+    pub fn model_file_mut(&mut self, kind: VehicleKind) -> Option<&mut String> {
+        match kind {
+            VehicleKind::Car => Some(&mut self.car_model),
+            VehicleKind::Monster => Some(&mut self.monster_model),
+            VehicleKind::Helicopter | VehicleKind::Sled | VehicleKind::Ball => None,
+        }
+    }
+
+    /// Resets the tread of `kind` to its default.
+    pub fn reset_tread(&mut self, kind: VehicleKind) {
+        match kind {
+            VehicleKind::Car => self.car = CarTread::default(),
+            VehicleKind::Monster => self.monster = MonsterTread::default(),
+            VehicleKind::Helicopter => self.helicopter = HelicopterTread::default(),
+            VehicleKind::Sled => self.sled = SledTread::default(),
+            VehicleKind::Ball => self.ball = BallTread::default(),
+        }
+    }
+
+    /// Half extents of the box of `kind` along its own right, up and back axes (m).
     pub fn half_extents_m(&self, kind: VehicleKind) -> [f32; 3] {
         match kind {
+            VehicleKind::Car => [0.95, 0.7, 2.2],
+            VehicleKind::Monster => [0.6, 0.9, 0.6],
+            VehicleKind::Helicopter => [1.1, 1.3, 3.4],
             VehicleKind::Sled => {
                 let reach = |axis: usize| self.sled_outline_m.iter().map(|corner| corner[axis].abs()).fold(0.0, f32::max);
                 [reach(0), SLED_HALF_HEIGHT_M, reach(1)]
             }
             VehicleKind::Ball => [self.ball_radius_m; 3],
-            other => other.half_extents_m(),
         }
     }
 
-    /// Sphere of `kind` that pushes near blades aside (000 §6.2): the height of its centre above the body's, and its radius (m). A ball's is the ball, the
-    /// others' sit at the foot; none for a sled, which is no round thing.
+    /// Sphere of `kind` that pushes near blades aside (Zhang §6.2): the height of its centre above the body's, and its radius (m). For a ball it is the ball
+    /// itself, for the other kinds it is at the foot; none for a sled, which is not round.
     pub fn interaction_sphere_m(&self, kind: VehicleKind) -> Option<[f32; 2]> {
         let radius_m = match kind {
             VehicleKind::Car => 1.3,
@@ -164,13 +174,38 @@ impl Objects {
     }
 }
 
-/// How a car meets the grass: its wheels, and its floor above them.
+/// Allowed values of the fields of `objects`, in the order of the structs.
+pub(super) const OBJECT_FIELDS: &[(&str, Allowed)] = &[
+    ("objects.limit", Range(0.0, 1024.0)),
+    ("objects.car_model", Text),
+    ("objects.monster_model", Text),
+    ("objects.self_driving", Range(0.0, 1024.0)),
+    ("objects.self_driving_m_per_s", Range(1.0, 60.0)),
+    ("objects.self_driving_apart_m", Range(1.0, 1000.0)),
+    ("objects.self_driving_kind", OneOf(VehicleKind::WORDS)),
+    ("objects.balls", Range(0.0, 64.0)),
+    ("objects.ball_radius_m", Range(0.1, 5.0)),
+    ("objects.sled_outline_m", Places(3, 64, -20.0, 20.0)),
+    ("objects.car.strike_height_m", Range(0.05, 5.0)),
+    ("objects.car.lays_share", Range(0.0, 1.0)),
+    ("objects.monster.strike_height_m", Range(0.05, 5.0)),
+    ("objects.monster.lays_share", Range(0.0, 1.0)),
+    ("objects.helicopter.strike_height_m", Range(0.05, 5.0)),
+    ("objects.helicopter.lays_share", Range(0.0, 1.0)),
+    ("objects.helicopter.wash_shape", Text),
+    ("objects.sled.strike_height_m", Range(0.05, 5.0)),
+    ("objects.sled.lays_share", Range(0.0, 1.0)),
+    ("objects.ball.strike_height_m", Range(0.05, 5.0)),
+    ("objects.ball.lays_share", Range(0.0, 1.0)),
+];
+
+/// Contact of a car with the grass: its wheels, and its floor above them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CarTread {
-    /// Height h above the ground at which it strikes the grass (m), 001 Eq. (12). Default 0.3, allowed 0.05..=5.
+    /// Height h above the ground of its contact with the grass (m), Chen & Johan Eq. (12). Default 0.3, allowed 0.05..=5.
     pub strike_height_m: f32,
-    /// Share of the bend below the wheels that stays, and rises with `grass.laid_recovery_secs`. Default 0.5, allowed 0..=1.
+    /// Fraction of the bend under the wheels that stays, and rises with `grass.laid_recovery_secs`. Default 0.5, allowed 0..=1.
     pub lays_share: f32,
 }
 
@@ -180,13 +215,13 @@ impl Default for CarTread {
     }
 }
 
-/// How a monster meets the grass.
+/// Contact of a monster with the grass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MonsterTread {
-    /// Height h above the ground at which it strikes the grass (m), 001 Eq. (12). Default 0.4, allowed 0.05..=5.
+    /// Height h above the ground of its contact with the grass (m), Chen & Johan Eq. (12). Default 0.4, allowed 0.05..=5.
     pub strike_height_m: f32,
-    /// Share of the bend below its feet that stays, and rises with `grass.laid_recovery_secs`. Default 0.3, allowed 0..=1.
+    /// Fraction of the bend under its feet that stays, and rises with `grass.laid_recovery_secs`. Default 0.3, allowed 0..=1.
     pub lays_share: f32,
 }
 
@@ -196,13 +231,13 @@ impl Default for MonsterTread {
     }
 }
 
-/// How a helicopter meets the grass: its skids and hull on the ground, and its wash from above.
+/// Contact of a helicopter with the grass: its skids and hull on the ground, and its wash from above.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HelicopterTread {
-    /// Height h above the ground at which it strikes the grass (m), 001 Eq. (12). Default 0.5, allowed 0.05..=5.
+    /// Height h above the ground of its contact with the grass (m), Chen & Johan Eq. (12). Default 0.5, allowed 0.05..=5.
     pub strike_height_m: f32,
-    /// Share of the bend below the skids that stays, and rises with `grass.laid_recovery_secs`. Default 0.5, allowed 0..=1.
+    /// Fraction of the bend under the skids that stays, and rises with `grass.laid_recovery_secs`. Default 0.5, allowed 0..=1.
     pub lays_share: f32,
     /// Directions of the wash: `outward`, `swirl` or a drawn PNG file, as `drawn_winds.shape`. Default `outward`.
     pub wash_shape: WindShape,
@@ -214,13 +249,13 @@ impl Default for HelicopterTread {
     }
 }
 
-/// How a sled meets the grass.
+/// Contact of a sled with the grass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SledTread {
-    /// Height h above the ground at which it strikes the grass (m), 001 Eq. (12). Default 0.3, allowed 0.05..=5.
+    /// Height h above the ground of its contact with the grass (m), Chen & Johan Eq. (12). Default 0.3, allowed 0.05..=5.
     pub strike_height_m: f32,
-    /// Share of the bend below its frame that stays, and rises with `grass.laid_recovery_secs`. Default 0.8, allowed 0..=1.
+    /// Fraction of the bend under its frame that stays, and rises with `grass.laid_recovery_secs`. Default 0.8, allowed 0..=1.
     pub lays_share: f32,
 }
 
@@ -230,37 +265,18 @@ impl Default for SledTread {
     }
 }
 
-/// How a ball meets the grass.
+/// Contact of a ball with the grass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BallTread {
-    /// Height h above the ground at which it strikes the grass (m), 001 Eq. (12). Default 0.3, allowed 0.05..=5.
+    /// Height h above the ground of its contact with the grass (m), Chen & Johan Eq. (12). Default 0.3, allowed 0.05..=5.
     pub strike_height_m: f32,
-    /// Share of the bend below it that stays, and rises with `grass.laid_recovery_secs`. Default 0.1, allowed 0..=1.
+    /// Fraction of the bend under it that stays, and rises with `grass.laid_recovery_secs`. Default 0.1, allowed 0..=1.
     pub lays_share: f32,
 }
 
 impl Default for BallTread {
     fn default() -> Self {
         Self { strike_height_m: 0.3, lays_share: 0.1 }
-    }
-}
-
-/// Notes what does not fit together in the objects of `scene`.
-pub(super) fn check(objects: &Objects, misfits: &mut super::check::Misfits) {
-    if objects.self_driving > objects.limit {
-        let message = format!("is {}; allowed: up to `objects.limit`, {}", objects.self_driving, objects.limit);
-        misfits.note(&["objects.self_driving", "objects.limit"], message);
-    }
-    let room = objects.limit.saturating_sub(objects.self_driving);
-    if objects.balls > room {
-        let message = format!("is {}; allowed: up to `objects.limit` less `objects.self_driving`, {room}", objects.balls);
-        misfits.note(&["objects.balls", "objects.limit", "objects.self_driving"], message);
-    }
-    if let Err(fault) = outline::check(&objects.sled_outline_m) {
-        misfits.note(&["objects.sled_outline_m"], fault.to_string());
-    }
-    if let Some(message) = objects.helicopter.wash_shape.fault() {
-        misfits.note(&["objects.helicopter.wash_shape"], message);
     }
 }

@@ -1,27 +1,26 @@
-//! From the text of a scene file to a checked [`Scene`], or to everything that is wrong with it.
+//! Parser of scene files: from text to a checked [`Scene`], or to a list of every fault.
 
-use super::check::{Misfits, cross_checks};
-use super::underbrush::check::check_species;
+use super::checks::{Conflicts, check_underbrush_species, cross_checks};
 use super::walk::Walk;
-use super::{Scene, SceneFault, Underbrush, template};
+use super::{Scene, SceneFault, Underbrush, flat, template};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use toml::de::DeTable;
 use toml::{Spanned, Table, Value};
 
-/// Reads a scene file's text and checks every value; of `underbrush_file` it takes the name alone.
+/// Parses the text of a scene file and checks every value; `underbrush_file` is only a name here.
 ///
 /// # Errors
-/// Every fault of the text at once, in the order of its lines: what is no TOML; or else unknown fields (with the nearest
-/// known name), fields that are missing, wrong kinds of value, values out of range, and values that do not fit each other.
+/// All faults of the text at once, ordered by line: syntax errors; or else unknown fields (with the nearest known name), missing fields, wrong types,
+/// values out of range, and values that conflict with each other.
 pub fn parse(text: &str) -> Result<Scene, Vec<SceneFault>> {
     parse_with(text, Vec::new())
 }
 
-/// Reads a scene file's text as [`parse`] does, and puts the species of its `underbrush_file` before its own.
+/// As [`parse`], with the species of its `underbrush_file` put before its own.
 ///
 /// # Errors
-/// As [`parse`]; and what does not fit together with those species.
+/// As [`parse`], and conflicts with those species.
 pub fn parse_with(text: &str, underbrush: Vec<Underbrush>) -> Result<Scene, Vec<SceneFault>> {
     let root = root(text)?;
     let mut values = template::scene(root.get_ref());
@@ -29,6 +28,7 @@ pub fn parse_with(text: &str, underbrush: Vec<Underbrush>) -> Result<Scene, Vec<
     let mut walk = Walk::new(text, "a scene", &values).with_species(species);
     walk.table(&mut values, root.get_ref(), root.span(), "");
 
+    flat::nest(&mut values);
     let mut scene: Scene = made_of(values, text)?;
     let from_file = underbrush.len();
     scene.underbrush.splice(0..0, underbrush);
@@ -36,12 +36,12 @@ pub fn parse_with(text: &str, underbrush: Vec<Underbrush>) -> Result<Scene, Vec<
     Ok(scene)
 }
 
-/// Reads the text of an underbrush file, which holds nothing but sections `[[underbrush]]`.
+/// Parses the text of an underbrush file, which contains only sections `[[underbrush]]`.
 ///
 /// # Errors
 /// As [`parse`].
 pub fn parse_underbrush(text: &str) -> Result<Vec<Underbrush>, Vec<SceneFault>> {
-    /// What the file holds.
+    /// Contents of the file.
     #[derive(Deserialize)]
     struct File {
         underbrush: Vec<Underbrush>,
@@ -53,19 +53,19 @@ pub fn parse_underbrush(text: &str) -> Result<Vec<Underbrush>, Vec<SceneFault>> 
     walk.table(&mut values, root.get_ref(), root.span(), "");
 
     let File { underbrush } = made_of(values, text)?;
-    let mut misfits = Misfits::default();
-    check_species(&underbrush, 0, &mut misfits);
-    walk.judge(misfits)?;
+    let mut conflicts = Conflicts::default();
+    check_underbrush_species(&underbrush, 0, &mut conflicts);
+    walk.judge(conflicts)?;
     Ok(underbrush)
 }
 
-/// The values of a text with their places.
+/// Parses TOML into values with their positions.
 fn root(text: &str) -> Result<Spanned<DeTable<'_>>, Vec<SceneFault>> {
     let (root, errors) = DeTable::parse_recoverable(text);
     if errors.is_empty() { Ok(root) } else { Err(syntax_faults(text, &errors)) }
 }
 
-/// The first error of each line; what follows on the same line is seldom more than its echo.
+/// The first error of each line; later ones on the same line are seldom more than consequences.
 fn syntax_faults(text: &str, errors: &[toml::de::Error]) -> Vec<SceneFault> {
     let mut faults: Vec<_> = errors
         .iter()
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn all_faults_are_told_at_once_in_the_order_of_the_lines() {
+    fn all_faults_are_reported_at_once_in_the_order_of_the_lines() {
         let faults = faults_of(
             "[wind]\ncells = [32, 8]\ntiling = \"bix\"\nviscosity_m2_per_s = nan\nsorces = 3\ntree_m = 4\n[objects]\nlimit = 2.5\n",
         );
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn values_that_do_not_fit_each_other_are_told() {
+    fn conflicting_values_are_reported() {
         let only = |more: &str| {
             let faults = faults_of(more);
             assert_eq!(faults.len(), 1, "{faults:?}");
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn text_that_is_no_toml_is_told_with_its_place() {
+    fn syntax_errors_are_reported_with_their_position() {
         let faults = parse("summary = \"s\"\n[terrain\nheight_map = \"h.png\"\n").unwrap_err();
         assert_eq!(faults[0].line, 2);
         assert!(faults[0].message.starts_with("not TOML"), "{}", faults[0].message);
@@ -151,7 +151,7 @@ mod tests {
         fn a_scene_survives_being_written_and_read(seed in 0..i64::MAX as u64, tick in 10.0f32..240.0, spacing in 0.1f32..1000.0) {
             let mut scene = parse(MINIMAL).unwrap();
             (scene.seed, scene.tick_hz, scene.wind.spacing_m[1]) = (seed, tick, spacing);
-            prop_assert_eq!(parse(&toml::to_string(&scene).unwrap()).unwrap(), scene);
+            prop_assert_eq!(parse(&scene.to_toml()).unwrap(), scene);
         }
     }
 }

@@ -1,15 +1,13 @@
-//! Where the visitor stands and what light falls on the scene.
+//! Start position of the camera, and light.
 
-use super::check::Misfits;
 use crate::light::sun::Sun;
 use serde::{Deserialize, Serialize};
 
-/// Where a visitor's camera starts.
+/// Start position of the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CameraStart {
-    /// Place over the ground as a share of the world's extent along X and Z. Default (0.5, 0.62), allowed
-    /// 0..=1 each.
+    /// Position over the ground as a fraction of the world's extent along X and Z. Default (0.5, 0.62), allowed 0..=1 each.
     pub at: [f32; 2],
     /// Height above the ground (m). Default 2.2, allowed 0.02..=2000.
     pub height_m: f32,
@@ -29,25 +27,25 @@ impl Default for CameraStart {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Light {
-    /// Heading of the sun (rad), from north towards east, where no hour is given. Default 0.9, allowed −6.3..=6.3.
+    /// Heading of the sun (rad), from north towards east; used without an `hour`. Default 0.9, allowed −6.3..=6.3.
     pub sun_heading_rad: f32,
-    /// Elevation of the sun above the horizon (rad), where no hour is given; below 0 it is dusk. Default 0.55, allowed −0.1..=1.57.
+    /// Elevation of the sun above the horizon (rad), used without an `hour`; below 0 it is dusk. Default 0.55, allowed −0.1..=1.57.
     pub sun_elevation_rad: f32,
-    /// Hour of local mean solar time at which the scene begins; the sun's place follows from it. Default −1, the sun stands by its heading and
-    /// elevation; allowed −1..=24.
+    /// Hour of local mean solar time at which the scene starts; it determines the position of the sun. Default −1, the sun is at the given heading
+    /// and elevation; allowed −1..=24.
     pub hour: f32,
-    /// Latitude (degrees), north positive, for the sun's place at an hour. Default 41, allowed −90..=90.
+    /// Latitude (degrees), north positive, for the position of the sun at an hour. Default 41, allowed −90..=90.
     pub latitude_deg: f32,
-    /// Day of the year for that, 1 is 1 January. Default 172, the summer solstice; allowed 1..=366.
+    /// Day of the year for the position of the sun; 1 is 1 January. Default 172, the summer solstice; allowed 1..=366.
     pub day_of_year: f32,
-    /// Time of the scene in which 24 hours pass (s), the same for all visitors; 0: the sun stands still. Needs an `hour`. Default 0, allowed
+    /// Simulated time in which 24 hours pass (s), the same for all clients; 0: the sun does not move. Needs an `hour`. Default 0, allowed
     /// 0..=1000000.
     pub day_length_secs: f32,
-    /// Distance at which haze has taken 63 % of a colour (m). Default 900, allowed 10..=100000.
+    /// Distance at which haze has absorbed 63 % of a colour (m). Default 900, allowed 10..=100000.
     pub haze_m: f32,
-    /// The same of mist on the lowest land (m); 0: none. Default 0, allowed 0..=100000.
+    /// The same for mist on the lowest land (m); 0: no mist. Default 0, allowed 0..=100000.
     pub mist_m: f32,
-    /// Height above the lowest land at which mist is 1/e as dense (m). Default 6, allowed 0.5..=200.
+    /// Height above the lowest land at which the density of mist has fallen to 1/e (m). Default 6, allowed 0.5..=200.
     pub mist_height_m: f32,
 }
 
@@ -68,12 +66,12 @@ impl Default for Light {
 }
 
 impl Light {
-    /// The sun at an hour (0..24) over the scene's latitude on its day.
+    /// Position of the sun at an hour (0..24), at the scene's latitude and day.
     pub fn sun_at_hour(&self, hour: f32) -> Sun {
         Sun::at_hour(self.latitude_deg, self.day_of_year, hour)
     }
 
-    /// The sun when so much time has passed in the scene (s).
+    /// Position of the sun at a simulated time (s).
     pub fn sun_at(&self, time_secs: f64) -> Sun {
         if self.hour < 0.0 {
             return Sun { heading_rad: self.sun_heading_rad, elevation_rad: self.sun_elevation_rad };
@@ -83,20 +81,12 @@ impl Light {
     }
 }
 
-/// Notes what does not fit together in the light of a scene.
-pub(super) fn check(light: &Light, misfits: &mut Misfits) {
-    if light.day_length_secs > 0.0 && light.hour < 0.0 {
-        let message = format!("is {}; allowed without `light.hour`: 0, for the sun stands still", light.day_length_secs);
-        misfits.note(&["light.day_length_secs", "light.hour"], message);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_day_passes_in_its_length_and_begins_anew() {
+    fn a_day_ends_after_its_length_and_repeats() {
         let light = Light { hour: 20.0, day_length_secs: 1200.0, ..Light::default() };
         assert_eq!(light.sun_at(0.0), light.sun_at_hour(20.0));
         assert_eq!(light.sun_at(600.0), light.sun_at_hour(8.0));

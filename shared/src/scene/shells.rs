@@ -1,19 +1,19 @@
-//! How grass is drawn as shells.
+//! Shell rendering of grass: the section `[shells]`.
 
 use serde::{Deserialize, Serialize};
 
-/// Layers of cross-sections that stand for grass (003), where `plants.cover` or a picture's far field asks for them.
+/// Cross-section layers that replace blades of grass (Bakay), where `plants.cover` or the render options ask for them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Shells {
-    /// Layers near the camera, the ground among them (003 §4.1); half as many each time the distance doubles. Default 17, allowed 1..=65.
+    /// Number of layers near the camera, including the ground (Bakay §4.1); it halves each time the distance doubles. Default 17, allowed 1..=65.
     pub layers: u32,
-    /// Most slices between two layers in which a flat view looks for blades, so that it does not see through between them; 1 is 003's own way. Default 8, allowed
-    /// 1..=32.
+    /// Largest number of slices searched for blades between two layers in a grazing view, so that it does not see through the gaps; 1 is Bakay's
+    /// original method. Default 8, allowed 1..=32.
     pub slices: u32,
-    /// Blades on a square metre near the camera. Default 5000, allowed 100..=40000.
+    /// Blades per square metre near the camera. Default 5000, allowed 100..=40000.
     pub blades_per_m2: f32,
-    /// Least share of the light that reaches the roots, S_min of 003 §3.3.3. Default 0.25, allowed 0..=1.
+    /// Smallest fraction of the light that reaches the roots, S_min of Bakay §3.3.3. Default 0.25, allowed 0..=1.
     pub root_light: f32,
 }
 

@@ -1,5 +1,6 @@
-//! What a file's values are put in the place of: all fields with their defaults, so that their names and kinds need no second list.
+//! Templates that a file's values overwrite: every field with its default, so that no second list of names and types is needed.
 
+use super::flat::{flatten, flatten_species, nest_grass};
 use super::walk::Walk;
 use super::{
     Component, ComponentKind, DrawnWind, Grass, Lamp, Plants, Primitive, PrimitiveKind, Scene, Species, TerrainMaps, Underbrush, Wind,
@@ -9,10 +10,12 @@ use serde::{Deserialize, Serialize};
 use toml::de::DeTable;
 use toml::{Table, Value};
 
-/// A scene with all its fields; what the file at `root` leaves unsaid of the wind follows from its method.
+/// A scene with all its fields; the defaults of the wind follow from the method that the file at `root` names.
 pub(super) fn scene(root: &DeTable<'_>) -> Table {
     let terrain = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [1.0; 2], level_m: 0.1, base_m: 0.0 };
-    table(Scene { wind: Wind::of(wind_method(root)), ..Scene::new(terrain) })
+    let mut scene = table(Scene { wind: Wind::of(wind_method(root)), ..Scene::new(terrain) });
+    flatten(&mut scene);
+    scene
 }
 
 /// The wind's method that a file names.
@@ -22,7 +25,7 @@ fn wind_method(root: &DeTable<'_>) -> WindMethod {
     word.and_then(|word| Value::from(word).try_into().ok()).unwrap_or(WindMethod::Staggered)
 }
 
-/// One section of the list of sections `field`, with all its fields; of `[[species]]` see [`species`].
+/// One section of the list of sections `field`, with all its fields; for `[[species]]` see [`species`].
 pub(super) fn section(field: &str) -> Table {
     match field {
         "wind.primitives" => table(Primitive::new(PrimitiveKind::Uniform, [0.0; 3])),
@@ -34,9 +37,9 @@ pub(super) fn section(field: &str) -> Table {
     }
 }
 
-/// One section `[[species]]` with all its fields: what it leaves unsaid is as in a file's own `[grass]` and `[plants]`.
+/// One section `[[species]]` with all its fields; its defaults are the file's own `[grass]` and `[plants]`.
 pub(super) fn species(text: &str, scene: &Table, root: &DeTable<'_>) -> Table {
-    // Faults in those two sections are told when the file itself is walked through.
+    // Faults in those two sections are reported by the walk through the file itself.
     let mut walk = Walk::new(text, "a scene", scene);
     let mut section = |name: &str| {
         let mut section = scene[name].clone();
@@ -45,9 +48,13 @@ pub(super) fn species(text: &str, scene: &Table, root: &DeTable<'_>) -> Table {
         }
         section
     };
-    let grass = Grass::deserialize(section("grass")).unwrap_or_default();
+    let mut grass = section("grass");
+    grass.as_table_mut().into_iter().for_each(nest_grass);
+    let grass = Grass::deserialize(grass).unwrap_or_default();
     let plants = Plants::deserialize(section("plants")).unwrap_or_default();
-    table(Species::new("", 1, &grass, &plants))
+    let mut species = table(Species::new("", 1, &grass, &plants));
+    flatten_species(&mut species);
+    species
 }
 
 fn table(fields: impl Serialize) -> Table {

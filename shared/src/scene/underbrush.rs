@@ -1,76 +1,71 @@
-//! Species of underbrush: plants made of leaves, branches and flowers (004 §3).
-
-pub(super) mod check;
-
-pub use check::{COMPONENTS_LIMIT, PARTS_LIMIT, SITES_LIMIT, SPECIES_LIMIT};
+//! Species of underbrush: plants made of leaves, branches and flowers (Endo et al. 2003, §3).
 
 use super::wind::words;
 use serde::{Deserialize, Serialize};
 
 words! {
-    /// What a component of a plant is.
+    /// Kind of a component of a plant.
     ComponentKind {
-        /// A blade: two borders about its axis, widest in its lower half.
+        /// A leaf: two edges about its axis, widest in its lower half.
         Leaf = "leaf",
-        /// A stalk that other components stand on.
+        /// A stalk that carries other components.
         Branch = "branch",
-        /// A ring of petals on a stalk of its own.
+        /// A ring of petals on its own stalk.
         Flower = "flower",
     }
 }
 
-/// Leaves, branches or flowers of one kind: their number, where they stand, and what they are made of.
+/// Leaves, branches or flowers of one kind: their number, position and material.
 ///
-/// Unbent they are straight; gravity and their stiffness give them their shape at rest, section by section (004 §3.2).
+/// Unbent they are straight; gravity and stiffness determine their shape at rest, section by section (Endo et al. 2003, §3.2).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Component {
-    /// Name, one for each in its plant, not empty. Required.
+    /// Unique name within the plant, not empty. Required.
     pub name: String,
     /// `leaf`, `branch` or `flower`. Required.
     pub kind: ComponentKind,
-    /// Name of the branch that it stands on, which comes before it; empty for the ground. Default empty.
+    /// Name of the branch that carries it, which must come before it; empty for the ground. Default empty.
     pub on: String,
-    /// How many stand on the ground or on each of those branches. Default 1, allowed 1..=32, and at most 64 on a plant of all components.
+    /// Number on the ground or on each of those branches. Default 1, allowed 1..=32, and at most 64 components on a plant in all.
     pub count: u32,
-    /// Where the lowest of them stands, as a share of the branch's length. Default 1, allowed 0..=1.
+    /// Position of the lowest, as a fraction of the branch's length. Default 1, allowed 0..=1.
     pub from_share: f32,
-    /// Where the highest stands; those between stand evenly. Default 1, allowed 0..=1.
+    /// Position of the highest; the others are evenly spaced between. Default 1, allowed 0..=1.
     pub to_share: f32,
     /// Length (m). Default 0.4, allowed 0.005..=5.
     pub length_m: f32,
-    /// Random share of the length, plus or minus. Default 0.2, allowed 0..=0.9.
+    /// Random fraction of the length, plus or minus. Default 0.2, allowed 0..=0.9.
     pub length_variation: f32,
-    /// Width of a leaf where it is widest, diameter of a branch at its foot, or diameter of a flower's ring of petals (m). Default 0.01, allowed 0.0005..=1.
+    /// Largest width of a leaf, diameter of a branch at its base, or diameter of a flower's ring of petals (m). Default 0.01, allowed 0.0005..=1.
     pub width_m: f32,
-    /// Petals of a flower. Default 6, allowed 3..=16.
+    /// Number of petals of a flower. Default 6, allowed 3..=16.
     pub petals: u32,
-    /// Straight sections that it bends in; of 8 the tip is 0.3 % of the length at most off that of a smooth shape, of 16 it is 0.08 %. Default 8, allowed
-    /// 1..=16.
+    /// Number of straight sections; with 8 the tip is off by at most 0.3 % of the length from that of a smooth shape, with 16 by 0.08 %. Default 8,
+    /// allowed 1..=16.
     pub sections: u32,
-    /// Mass (kg); of a flower with its petals. Default 0.001, allowed 0.000001..=10.
+    /// Mass (kg); of a flower including its petals. Default 0.001, allowed 0.000001..=10.
     pub mass_kg: f32,
-    /// Flexural rigidity EI at its foot (N·m²). Default 0.001, allowed 0.000000001..=1000.
+    /// Flexural rigidity EI at its base (N·m²). Default 0.001, allowed 0.000000001..=1000.
     pub stiffness_n_m2: f32,
-    /// Rigidity at its tip as a share of that at its foot; linear between. Default 0.5, allowed 0.01..=1.
+    /// Rigidity at its tip as a fraction of that at its base; linear between. Default 0.5, allowed 0.01..=1.
     pub tip_stiffness_share: f32,
-    /// Bending moment at which it breaks for good (N·m); 0: never. Default 0, allowed 0..=10000.
+    /// Bending moment at which it breaks for good (N·m); 0: it never breaks. Default 0, allowed 0..=10000.
     pub strength_n_m: f32,
-    /// Angle of its unbent axis from what it stands on (rad): from upright on the ground, from the branch's own direction on a branch. Default 0.3, allowed
-    /// 0..=3.1.
+    /// Angle of its unbent axis (rad): from vertical on the ground, from the branch's direction on a branch. Default 0.3, allowed 0..=3.1.
     pub angle_rad: f32,
     /// Random part of that angle, plus or minus (rad). Default 0.1, allowed 0..=1.5.
     pub angle_variation_rad: f32,
-    /// Turn about what it stands on from each to the next (rad). Default 2.4, the golden angle; allowed −6.3..=6.3.
+    /// Rotation from each to the next about what carries them (rad). Default 2.4, the golden angle; allowed −6.3..=6.3.
     pub turn_rad: f32,
-    /// Colour at its foot, linear RGB. Default (0.04, 0.09, 0.02), allowed 0..=1 each.
+    /// Colour at its base, linear RGB. Default (0.04, 0.09, 0.02), allowed 0..=1 each.
     pub root_rgb: [f32; 3],
-    /// Colour at its tip, or of petals, linear RGB. Default (0.2, 0.33, 0.07), allowed 0..=1 each.
+    /// Colour at its tip, or of its petals, linear RGB. Default (0.2, 0.33, 0.07), allowed 0..=1 each.
     pub tip_rgb: [f32; 3],
 }
 
 impl Component {
-    /// A component that differs from the defaults in its name and its kind alone.
+    /// A component with the defaults of all but its name and kind.
     pub fn new(name: &str, kind: ComponentKind) -> Self {
         Self {
             name: name.to_owned(),
@@ -97,38 +92,38 @@ impl Component {
     }
 }
 
-/// A species of underbrush: what its plants are made of, and what they need to grow (004 §5.2).
+/// A species of underbrush: the components of its plants, and what they need to grow (Endo et al. 2003, §5.2).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Underbrush {
-    /// Name, one for each, not empty. Required.
+    /// Unique name, not empty. Required.
     pub name: String,
-    /// ID in the covering map of places that are painted with it, where it alone grows; 0: it is not painted. Default 0, allowed 0..=252.
+    /// ID in the covering map of areas painted with it, where it alone grows; 0: it is not painted. Default 0, allowed 0..=252.
     pub cover: u8,
-    /// Time constant τ with which its plants follow a force (s), 004 Eq. (5); 0: 1/ω₁ of the longest component on the ground, from its rigidity, mass and
-    /// length and what it carries. What comes out below 0.01 is 0.01, above 10 it is 10. Default 0, allowed 0..=10.
+    /// Time constant τ with which its plants follow a force (s), Endo et al. 2003, Eq. (5); 0: 1/ω₁ of the longest component on the ground, from its
+    /// rigidity, mass, length and load, limited to 0.01..=10. Default 0, allowed 0..=10.
     pub settle_secs: f32,
-    /// Share of its unbent size that plants differ by, plus or minus. Default 0.25, allowed 0..=0.9.
+    /// Random variation of the unbent size, plus or minus, as a fraction. Default 0.25, allowed 0..=0.9.
     pub size_variation: f32,
-    /// Distance that it keeps from plants of its own species (m); from others half the sum of both. Default 0.5, allowed 0.05..=20.
+    /// Smallest distance between plants of this species (m); to another species half the sum of both. Default 0.5, allowed 0.05..=20.
     pub room_m: f32,
-    /// How far from a plant its offspring come up at most (m). Default 1.5, allowed 0..=50, and more than `room_m`, in which none of its own comes up; 0: it
+    /// Largest distance of offspring from a plant (m). Default 1.5, allowed 0..=50, and more than `room_m`, within which no offspring comes up; 0: it
     /// does not spread.
     pub reach_m: f32,
-    /// Places from which it spreads, drawn by lot from those that suit it. Default 40, allowed 0..=10000.
+    /// Number of points from which it spreads, drawn at random from those that suit it. Default 40, allowed 0..=10000.
     pub propagation_points: u32,
     /// Concentration of each of the three nutrients that it needs to come up. Default (0.2, 0.2, 0.2), allowed 0..=1 each.
     pub needs: [f32; 3],
-    /// What a plant takes up of each. Default (0.1, 0.1, 0.1), allowed 0..=1 each.
+    /// Uptake of each nutrient by a plant. Default (0.1, 0.1, 0.1), allowed 0..=1 each.
     pub uptake: [f32; 3],
-    /// Light that it needs to come up, as a share of open daylight; taller neighbours shade it. Default 0.3, allowed 0..=1.
+    /// Light that it needs to come up, as a fraction of open daylight; taller neighbours shade it. Default 0.3, allowed 0..=1.
     pub light_need: f32,
     /// Its leaves, branches and flowers, each a section `[[underbrush.components]]`. Required, allowed 1..=16 sections.
     pub components: Vec<Component>,
 }
 
 impl Underbrush {
-    /// A species of `components` that differs from the defaults in its name alone.
+    /// A species of `components` with the defaults of all but its name.
     pub fn new(name: &str, components: Vec<Component>) -> Self {
         Self {
             name: name.to_owned(),
@@ -145,7 +140,7 @@ impl Underbrush {
         }
     }
 
-    /// Index of the branch that the component at `index` stands on, which comes before it; none on the ground, and where there is no such branch.
+    /// Index of the branch that carries the component at `index`, which comes before it; `None` on the ground, or if there is no such branch.
     ///
     /// # Panics
     /// When there is no such component.
@@ -155,7 +150,7 @@ impl Underbrush {
         if on.is_empty() { None } else { self.components[..index].iter().position(is_it) }
     }
 
-    /// How many of each component a plant has: its `count` times the number of the branch that it stands on.
+    /// Number of each component on a plant: its `count` times the number of the branch that carries it.
     pub fn parts(&self) -> Vec<u64> {
         let mut parts = Vec::with_capacity(self.components.len());
         for (index, component) in self.components.iter().enumerate() {

@@ -1,41 +1,42 @@
-//! The walk through a file's values, which keeps all that is wrong with each.
+//! Walk through the values of a file, which collects every fault.
 
-use super::allowed::{Allowed, FIELDS, REQUIRED, allowed_at};
-use super::check::{Misfit, Misfits};
+use super::allowed::{Allowed, FIELDS, REQUIRED};
+use super::checks::{Conflict, Conflicts};
 use super::{SceneFault, template};
 use std::ops::Range;
 use toml::de::{DeArray, DeTable, DeValue};
 use toml::{Table, Value};
 
-/// Puts a file's values in the place of the template's, and keeps what does not agree with it or with [`FIELDS`].
+/// Overwrites the template's values by the file's, and collects faults against the template and [`FIELDS`].
 pub(super) struct Walk<'t> {
     text: &'t str,
-    /// What the file is.
+    /// Description of the file, such as "a scene".
     file: &'static str,
-    /// Names of all that may stand at its top.
+    /// Names of the top-level fields.
     top: Vec<String>,
-    /// A section `[[species]]` that says nothing.
+    /// An empty section `[[species]]` with its defaults.
     species: Table,
     faults: Vec<SceneFault>,
 }
 
 impl<'t> Walk<'t> {
-    /// A walk through `text`, a `file` with the fields of `template`.
+    /// Starts a walk through `text`, a `file` with the fields of `template`.
     pub(super) fn new(text: &'t str, file: &'static str, template: &Table) -> Self {
         Self { text, file, top: template.keys().cloned().collect(), species: Table::new(), faults: Vec::new() }
     }
 
-    /// The same with a section `[[species]]` that says nothing.
+    /// Sets the defaults of a section `[[species]]`.
     pub(super) fn with_species(self, species: Table) -> Self {
         Self { species, ..self }
     }
 
-    /// Nothing if all is well, or every fault in the order of the lines: those found on the way, and of `misfits` those whose values are sound by
-    /// themselves.
-    pub(super) fn judge(mut self, misfits: Misfits) -> Result<(), Vec<SceneFault>> {
-        let is_sound = |misfit: &Misfit| !self.faults.iter().any(|fault| misfit.fields.iter().any(|field| overlap(&fault.path, field)));
-        let told: Vec<_> = misfits.0.into_iter().filter(is_sound).collect();
-        self.faults.extend(told.into_iter().map(|misfit| SceneFault::at(self.text, &misfit.fields[0], misfit.message)));
+    /// Succeeds if there are no faults; otherwise returns all, ordered by line: those found during the walk, and conflicts between fields that are
+    /// valid by themselves.
+    pub(super) fn judge(mut self, conflicts: Conflicts) -> Result<(), Vec<SceneFault>> {
+        let is_sound =
+            |conflict: &Conflict| !self.faults.iter().any(|fault| conflict.fields.iter().any(|field| overlap(&fault.path, field)));
+        let told: Vec<_> = conflicts.0.into_iter().filter(is_sound).collect();
+        self.faults.extend(told.into_iter().map(|conflict| SceneFault::at(self.text, &conflict.fields[0], conflict.message)));
         self.faults.sort_by_key(|fault| (fault.line, fault.column));
         if self.faults.is_empty() { Ok(()) } else { Err(self.faults) }
     }
@@ -44,7 +45,7 @@ impl<'t> Walk<'t> {
         self.faults.push(SceneFault::spanning(self.text, span, path, message));
     }
 
-    /// Puts what is found in a section in the place of `values`.
+    /// Overwrites `values` by the fields of a section.
     pub(super) fn table(&mut self, values: &mut Table, found: &DeTable<'_>, span: Range<usize>, path: &str) {
         for (key, value) in found {
             let path = join(path, key.get_ref());
@@ -61,7 +62,7 @@ impl<'t> Walk<'t> {
         }
     }
 
-    /// Puts a section in `places` for each of `items`.
+    /// Reads a list of sections.
     fn sections(&mut self, places: &mut Vec<Value>, items: &DeArray<'_>, allowed: Allowed, span: Range<usize>, path: &str) {
         let Allowed::Sections(least, most) = allowed else { return };
         if !(least..=most).contains(&items.len()) {
@@ -74,12 +75,12 @@ impl<'t> Walk<'t> {
         }
     }
 
-    /// Puts a pair of numbers in `places` for each of `items`.
+    /// Reads a list of points.
     fn places(&mut self, places: &mut Vec<Value>, items: &DeArray<'_>, allowed: Allowed, span: Range<usize>, path: &str) {
         let Allowed::Places(least, most, ..) = allowed else { return };
         if !(least..=most).contains(&items.len()) {
-            let why = if least == 3 && items.len() < 3 { ", since fewer are no footprint" } else { "" };
-            return self.fault(span, path, format!("has {} places; allowed: {least} to {most}{why}", items.len()));
+            let why = if least == 3 && items.len() < 3 { ", since fewer enclose no area" } else { "" };
+            return self.fault(span, path, format!("has {} points; allowed: {least} to {most}{why}", items.len()));
         }
         places.clear();
         places.resize(items.len(), Value::Array(vec![Value::Float(0.0); 2]));
@@ -88,7 +89,7 @@ impl<'t> Walk<'t> {
         }
     }
 
-    /// Puts what is found in the place of a value.
+    /// Overwrites one value.
     pub(super) fn value(&mut self, place: &mut Value, found: &DeValue<'_>, span: Range<usize>, path: &str) {
         let allowed = allowed_of(path);
         match (place, found) {
@@ -121,7 +122,7 @@ impl<'t> Walk<'t> {
             (place, _) => self.fault(span, path, format!("is {}; expected {}", kind_of(found), expectation(place, path))),
         }
     }
-    /// Names the field that was probably meant: in the same section by likeness, or the same name in another section.
+    /// Suggests the field that was probably meant: a similar name in the same section, or the same name in another.
     fn unknown_field(&self, key: &str, path: &str, values: &Table) -> String {
         let (file, field) = (self.file, field_of(path));
         let like = |known: &&str| strsim::jaro_winkler(key, known);
@@ -137,18 +138,18 @@ impl<'t> Walk<'t> {
     }
 }
 
-/// What the field at `path` may hold, or where `path` ends with a place in a list, an element of it.
+/// Allowed values of the field at `path`, or of its element if `path` ends with an index.
 fn allowed_of(path: &str) -> Allowed {
-    let allowed = allowed_at(&field_of(path));
+    let allowed = Allowed::at(&field_of(path));
     if path.ends_with(']') { allowed.of_element() } else { allowed }
 }
 
-/// The path of a field without places in lists: `wind.primitives.at_m` of `wind.primitives[2].at_m[0]`.
+/// The path of a field without indices: `wind.primitives.at_m` for `wind.primitives[2].at_m[0]`.
 fn field_of(path: &str) -> String {
     path.split('[').map(|part| part.split_once(']').map_or(part, |(_, rest)| rest)).collect()
 }
 
-/// Whether one of two paths is the other or leads into it.
+/// Whether one of two paths equals the other or leads into it.
 fn overlap(one: &str, other: &str) -> bool {
     let leads = |short: &str, long: &str| long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
     leads(one, other) || leads(other, one)

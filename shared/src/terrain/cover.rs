@@ -1,8 +1,8 @@
-//! The covering map: what stands where (000 §5.5.2, Table 2).
+//! Covering map: gap, tree, stone, grass or species by position (Zhang §5.5.2, Table 2).
 
 use super::{MapError, decode_grey};
 
-/// What covers a pixel.
+/// Cover of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cover {
     /// Bare ground (ID 0).
@@ -13,7 +13,7 @@ pub enum Cover {
     Stone,
     /// Grass (ID 255).
     Grass,
-    /// Any other ID: a species of grass or of underbrush where the scene [names it](crate::scene::Scene::is_grass), else bare ground.
+    /// Any other ID: a species of grass or of underbrush if the scene [names it](crate::scene::Scene::is_grass), else bare ground.
     Free(u8),
 }
 
@@ -41,7 +41,7 @@ impl CoverMap {
     /// Reads an 8-bit grey PNG.
     ///
     /// # Errors
-    /// [`MapError`] when the bytes are no PNG of that kind or its sides are out of range.
+    /// [`MapError`] when the bytes are not a PNG of that kind, or its sides are out of range.
     pub fn from_png(png_bytes: &[u8]) -> Result<Self, MapError> {
         let image = decode_grey(png_bytes, false)?;
         let ids = image.levels.iter().map(|&level| level as u8).collect();
@@ -58,7 +58,7 @@ impl CoverMap {
         &self.ids
     }
 
-    /// What covers the point `(x_m, z_m)` of a world of `extent_m`; gap outside the world.
+    /// Cover at the point `(x_m, z_m)` of a world of `extent_m`; gap outside the world.
     pub fn at(&self, x_m: f32, z_m: f32, extent_m: [f32; 2]) -> Cover {
         let px = (x_m / extent_m[0] * self.width_px as f32).floor();
         let pz = (z_m / extent_m[1] * self.depth_px as f32).floor();
@@ -68,14 +68,14 @@ impl CoverMap {
         Cover::from(self.ids[pz as usize * self.width_px as usize + px as usize])
     }
 
-    /// The first pixel, row by row from the north-west, whose ID `is_meant` says: its column and row, and the ID.
+    /// The first pixel, row by row from the north-west, whose ID satisfies `is_meant`: its column and row, and the ID.
     pub fn find(&self, is_meant: impl Fn(u8) -> bool) -> Option<([u32; 2], u8)> {
         let index = self.ids.iter().position(|&id| is_meant(id))?;
         let width = self.width_px as usize;
         Some(([(index % width) as u32, (index / width) as u32], self.ids[index]))
     }
 
-    /// Pixels that hold `cover`, as the world coordinates of their centres (m).
+    /// World coordinates of the centres of the pixels with this `cover` (m).
     pub fn places_m(&self, cover: Cover, extent_m: [f32; 2]) -> impl Iterator<Item = [f32; 2]> + '_ {
         let pixel_m = [extent_m[0] / self.width_px as f32, extent_m[1] / self.depth_px as f32];
         let width = self.width_px as usize;

@@ -1,10 +1,10 @@
-//! The height map: bilinear heights and normals anywhere (000 §5.5.1, Eqs 11–13).
+//! Height map: bilinear heights and normals at any position (Zhang §5.5.1, Eqs 11–13).
 
 use super::{MapError, decode_grey};
 use crate::scene::TerrainMaps;
 use glam::Vec3;
 
-/// Heights of the land, bilinear between pixels; outside the map the edge value holds.
+/// Heights of the land, bilinear between pixels and constant outside the map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightMap {
     width_px: u32,
@@ -17,7 +17,7 @@ impl HeightMap {
     /// Reads a grey PNG of 8 or 16 bits with the scale of `maps`.
     ///
     /// # Errors
-    /// [`MapError`] when the bytes are no PNG of that kind or its sides are out of range.
+    /// [`MapError`] when the bytes are not a PNG of that kind, or its sides are out of range.
     pub fn from_png(png_bytes: &[u8], maps: &TerrainMaps) -> Result<Self, MapError> {
         let image = decode_grey(png_bytes, true)?;
         debug_assert!(image.bits == 8 || image.bits == 16);
@@ -25,7 +25,7 @@ impl HeightMap {
         Ok(Self { width_px: image.width, depth_px: image.height, pixel_m: maps.pixel_m, heights_m })
     }
 
-    /// A map of heights given directly: `width_px × depth_px` values in metres, row by row from the north.
+    /// A map from heights: `width_px × depth_px` values in metres, row by row from the north.
     ///
     /// # Panics
     /// When the number of heights is not `width_px · depth_px`, or a side is less than 2.
@@ -49,7 +49,7 @@ impl HeightMap {
         &self.heights_m
     }
 
-    /// Lowest and highest point (m).
+    /// Lowest and highest height (m).
     pub fn range_m(&self) -> [f32; 2] {
         self.heights_m.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &h| [low.min(h), high.max(h)])
     }
@@ -63,7 +63,7 @@ impl HeightMap {
         north + (south - north) * fz
     }
 
-    /// Slope of the land (∂h/∂x, ∂h/∂z) at `(x_m, z_m)`, that of the bilinear surface.
+    /// Slope of the bilinear surface (∂h/∂x, ∂h/∂z) at `(x_m, z_m)`.
     pub fn slope(&self, x_m: f32, z_m: f32) -> [f32; 2] {
         let ([nw, ne, sw, se], fx, fz) = self.cell(x_m, z_m);
         let east = (ne - nw) + ((se - sw) - (ne - nw)) * fz;
@@ -87,7 +87,7 @@ impl HeightMap {
     }
 }
 
-/// Lower pixel and share towards the next one, clamped so that both pixels exist.
+/// Lower pixel and fraction towards the next one, clamped so that both pixels exist.
 fn split(at_px: f32, count_px: u32) -> (usize, f32) {
     let at_px = at_px.clamp(0.0, (count_px - 1) as f32);
     let low = (at_px as usize).min(count_px as usize - 2);

@@ -1,11 +1,12 @@
-//! Which kind of grass grows where.
+//! Map of the kinds of grass.
 
 use super::{Cover, CoverMap};
 use crate::scene::Scene;
 
-/// Kinds of grass over the whole world, as indices in [`Scene::kinds`], one for each pixel of the covering map; nearest pixel.
+/// Kinds of grass over the whole world, as indices in [`Scene::kinds`], one per pixel of the covering map; nearest pixel.
 ///
-/// Painted underbrush stands in the kind of `[grass]`. Bare ground, trees and stones take the kind that grows beside them, so that what reaches over their border is of one kind with it.
+/// Painted underbrush has the kind of `[grass]`. Bare ground, trees and stones take the kind of the grass beside them, so that grass leaning over
+/// their border is of one kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KindMap {
     size_px: [u32; 2],
@@ -14,11 +15,11 @@ pub struct KindMap {
     px_per_m: [f32; 2],
 }
 
-/// Pixels up to which a kind reaches into bare ground.
+/// Distance that a kind extends into bare ground (pixels).
 const FRINGE_PX: u32 = 2;
 
 impl KindMap {
-    /// The kinds of a scene over its covering map; one pixel where it has but one kind.
+    /// The kinds of a scene over its covering map; a single pixel if there is only one kind.
     pub fn new(scene: &Scene, cover: &CoverMap) -> Self {
         if scene.species.is_empty() {
             return Self::uniform();
@@ -52,13 +53,13 @@ impl KindMap {
 
     /// The kind at `(x_m, z_m)`; beyond the world's edge that of the edge.
     pub fn at(&self, x_m: f32, z_m: f32) -> u8 {
-        // A cast takes what is below zero to zero.
+        // Casts saturate at 0.
         let pixel = |axis: usize, m: f32| ((m * self.px_per_m[axis]) as usize).min(self.size_px[axis] as usize - 1);
         self.kinds[pixel(1, z_m) * self.size_px[0] as usize + pixel(0, x_m)]
     }
 }
 
-/// Lets the kinds grow by one pixel where there is none; of several neighbours the first counts, nearer ones before those at the corners.
+/// Extends the kinds by one pixel into free ones; of several neighbours the first counts, direct ones before diagonal ones.
 fn spread(kinds: &[Option<u8>], [width, depth]: [u32; 2]) -> Vec<Option<u8>> {
     const AROUND: [[i64; 2]; 8] = [[0, -1], [-1, 0], [1, 0], [0, 1], [-1, -1], [1, -1], [-1, 1], [1, 1]];
     let (width, depth) = (i64::from(width), i64::from(depth));

@@ -1,4 +1,4 @@
-//! The land: heights, what covers it, its normals.
+//! Terrain: heights, normals and cover.
 
 mod cover;
 mod height;
@@ -10,13 +10,13 @@ pub use kinds::KindMap;
 
 use thiserror::Error;
 
-/// Why a map could not be read. The caller adds the file's name.
+/// Reasons why a map could not be read. The caller adds the name of the file.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum MapError {
     /// Not a PNG, or a damaged one.
     #[error("is not a readable PNG: {0}")]
     Unreadable(String),
-    /// A kind of PNG that holds no single grey channel of 8 (or, for heights, 16) bits.
+    /// A PNG that is not one grey channel of 8 (or, for heights, 16) bits.
     #[error("is a PNG of kind {found}; allowed: {allowed}")]
     Kind {
         /// The kind found, such as `Rgba 8 bits`.
@@ -36,18 +36,18 @@ pub enum MapError {
     },
 }
 
-/// Largest side of a map in pixels; the smallest limit on textures that WebGPU guarantees.
+/// Largest side of a map in pixels; the smallest texture limit that WebGPU guarantees.
 pub const MAP_LIMIT_PX: u32 = 8192;
 
-/// A grey PNG file of 8 bits a pixel; `levels` row by row from the top left. The same levels give the same bytes.
+/// Encodes a grey PNG of 8 bits a pixel; `levels` are row by row from the top left. The same levels give the same bytes.
 ///
 /// # Panics
-/// When there is not one level for each pixel, or no pixel.
+/// When there are no pixels, or `levels` has another length.
 pub fn grey_png(size_px: [u32; 2], levels: &[u8]) -> Vec<u8> {
     encode_grey(size_px, png::BitDepth::Eight, levels)
 }
 
-/// A grey PNG file of 16 bits a pixel, as [`grey_png`].
+/// Encodes a grey PNG of 16 bits a pixel, as [`grey_png`].
 ///
 /// # Panics
 /// As [`grey_png`].
@@ -94,11 +94,11 @@ fn decode_grey(png_bytes: &[u8], allow_16_bits: bool) -> Result<GreyImage, MapEr
 pub(crate) struct Decoded {
     pub(crate) size_px: [u32; 2],
     pub(crate) kind: (png::ColorType, png::BitDepth),
-    /// Pixels row by row from the top left, as the file holds them.
+    /// Pixels row by row from the top left, as in the file.
     pub(crate) bytes: Vec<u8>,
 }
 
-/// Reads a PNG of one of these `kinds`, which `allowed` names, of 8 or 16 bits a channel. Kind and sides are checked before anything is decoded.
+/// Decodes a PNG of one of these `kinds`, described by `allowed`, of 8 or 16 bits a channel. Kind and sides are checked before anything is decoded.
 pub(crate) fn decode(png_bytes: &[u8], kinds: &[(png::ColorType, png::BitDepth)], allowed: &'static str) -> Result<Decoded, MapError> {
     let unreadable = |error: png::DecodingError| MapError::Unreadable(error.to_string());
     let mut decoder = png::Decoder::new(std::io::Cursor::new(png_bytes));

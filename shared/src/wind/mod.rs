@@ -1,18 +1,17 @@
-//! The wind as both sides read it: which place of the solver's box blows where, how it is read between cells and near the ground, and whether there
-//! is dust in it.
+//! Reading the wind on server and client: mapping from the world to the solver's box, trilinear sampling between cells, and the profile near the ground.
 
 mod ground;
 mod sample;
 mod tiling;
 
-pub use ground::share_near_ground;
-pub use sample::WindCells;
-pub use tiling::{Tap, Tiles, offset_cells};
+pub use ground::{FREE_WIND_M, LEAST_WIND_HEIGHT, near_ground_fraction};
+pub use sample::CellGrid;
+pub use tiling::{Tap, WindTiles, offset_cells};
 
 use crate::scene::Wind;
 
 impl Wind {
-    /// Whether anything releases dust, so that the wind carries it over the wire too.
+    /// Whether the scene releases dust, which is then part of every wind frame on the wire.
     pub fn has_dust(&self) -> bool {
         self.dust.release_per_s > 0.0
     }

@@ -1,6 +1,6 @@
-//! Why a connection ends: close codes of the WebSocket.
+//! Close codes of the WebSocket.
 
-/// Why the server closes a connection. Codes 4000 and up are Prairie's own (RFC 6455, section 7.4.2).
+/// Reasons why the server closes a connection. Codes 4000 and up are Prairie's own (RFC 6455, section 7.4.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Close {
     /// The server is stopping (1001); try again later.
@@ -11,7 +11,7 @@ pub enum Close {
     BadMessage,
     /// Too many messages (4003).
     RateLimit,
-    /// No seat is free (4004); try again later.
+    /// The server is full (4004); try again later.
     ServerFull,
     /// No hello came in time (4005).
     NoHello,
@@ -20,7 +20,7 @@ pub enum Close {
 }
 
 impl Close {
-    /// Every reason.
+    /// All reasons.
     pub const ALL: [Self; 7] =
         [Self::Stopping, Self::Version, Self::BadMessage, Self::RateLimit, Self::ServerFull, Self::NoHello, Self::Stalled];
 
@@ -37,7 +37,7 @@ impl Close {
         }
     }
 
-    /// The reason behind a code; none for a code that Prairie does not send.
+    /// The reason of a close code; `None` for a code that Prairie does not send.
     pub fn from_code(code: u16) -> Option<Self> {
         Self::ALL.into_iter().find(|close| close.code() == code)
     }

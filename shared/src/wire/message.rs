@@ -1,4 +1,4 @@
-//! The messages, and how they become bytes.
+//! Messages, and their encoding.
 
 use super::PROTOCOL;
 use crate::grid::PatchIndex;
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::num::NonZeroU8;
 use thiserror::Error;
 
-/// Number of an object, unique within a run.
+/// Object ID, unique within a run.
 pub type ObjectId = u32;
 
-/// What a driver's hands do, each −1..=1.
+/// Driving controls, each −1..=1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Drive {
     /// Forward (+) or backward (−).
@@ -31,60 +31,60 @@ impl Drive {
     }
 }
 
-/// What a client says.
+/// Messages from client to server.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ClientMessage {
     /// First message of a connection.
     Hello {
-        /// Name to show to others; at most 32 characters, control characters are dropped.
+        /// Display name; at most 32 characters, control characters are dropped.
         name: String,
     },
-    /// Where the camera is; decides which patches are streamed.
+    /// Camera position; decides which patches are streamed.
     View {
         /// Camera position (m).
         eye_m: [f32; 3],
-        /// Distance up to which the bend field is wanted (m), 0..=512.
+        /// Distance up to which the bend field is streamed (m), 0..=512.
         radius_m: f32,
     },
-    /// Take a vehicle (the one held before is given up), or none.
+    /// Takes a vehicle in place of the previous one, or gives it up.
     Choose {
         /// The vehicle to drive.
         vehicle: Option<VehicleKind>,
     },
-    /// Hands on the controls of one's own vehicle.
+    /// Controls of one's own vehicle.
     Drive(Drive),
-    /// The newest frame that has arrived whole.
+    /// Acknowledges the newest frame that has arrived completely.
     Ack {
         /// Number from [`ServerMessage::FrameEnd`].
         frame: u32,
     },
-    /// Asks for a [`ServerMessage::Pong`].
+    /// Requests a [`ServerMessage::Pong`].
     Ping {
-        /// Comes back unchanged.
+        /// Returned unchanged.
         nonce: u32,
     },
-    /// Takes another name.
+    /// Changes the display name.
     Rename {
         /// As in [`Hello`](Self::Hello).
         name: String,
     },
 }
 
-/// What a server says.
+/// Messages from server to client.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ServerMessage {
-    /// Answer to a valid hello.
+    /// Reply to a valid hello.
     Welcome {
-        /// The client's own number in [`ServerMessage::Roster`].
+        /// The client's own ID in [`ServerMessage::Roster`].
         client: u32,
         /// Version of the server's package.
         server_version: String,
-        /// Name of the scene that the server runs, as a link to it says it: a built-in scene's, or that of the scene file without its ending.
+        /// Name of the running scene as used in links: that of a built-in scene, or of the scene file without its extension.
         scene_name: String,
     },
-    /// Everything that stays as it is for the run.
+    /// Everything that is constant during the run.
     Scene {
-        /// The scene, checked.
+        /// The checked scene.
         scene: Box<Scene>,
         /// Height map, the PNG file's bytes.
         #[serde(with = "serde_bytes")]
@@ -92,84 +92,83 @@ pub enum ServerMessage {
         /// Covering map, the PNG file's bytes.
         #[serde(with = "serde_bytes")]
         covering_png: Vec<u8>,
-        /// Map of the soil's nutrients, the PNG file's bytes; empty: the nutrients are generated from the seed.
+        /// Nutrient map, the PNG file's bytes; empty if nutrients are generated from the seed.
         #[serde(with = "serde_bytes")]
         nutrient_png: Vec<u8>,
-        /// Models read from glTF files; kinds that are missing are drawn with the built-in one.
+        /// Models read from glTF files; all other kinds are drawn with the built-in model.
         models: Vec<(VehicleKind, Mesh)>,
     },
-    /// Poses of all objects, newest state.
+    /// Newest poses of all objects.
     Poses {
-        /// Step of the world.
+        /// Tick of the world.
         tick: u64,
-        /// Every object; one that is missing has left.
+        /// All objects; one that is missing has left.
         objects: Vec<ObjectPose>,
     },
-    /// Wind at the cells' centres: three planes (u, v, w), each `nx × (ny·nz)`, x fastest, then y, then z. In a scene with dust a fourth
-    /// holds how much of it there is.
+    /// Wind at the cell centres: three planes (u, v, w), each `nx × (ny·nz)`, x fastest, then y, then z. In a scene with dust a fourth plane holds
+    /// its concentration.
     Wind {
-        /// Step of the world.
+        /// Tick of the world.
         tick: u64,
-        /// Number of this wind frame; a delta applies to the frame one less.
+        /// Sequence number of this wind frame; a delta frame applies to the previous one.
         seq: u32,
-        /// Whether the payload is coded against zero.
+        /// Whether this is a key frame, coded against zero.
         key: bool,
         /// [`codec`](super::codec) payload.
         #[serde(with = "serde_bytes")]
         payload: Vec<u8>,
     },
-    /// Bend field of one patch: three planes (θ, ωx, ωz) of `cells × cells`, of how the grass departs from
-    /// [where the wind holds it](crate::bend::wind_lean_rad). A client keeps at least the [`PATCH_MEMORY`](super::PATCH_MEMORY)
-    /// patches that came last.
+    /// Bend field of one patch: three planes (θ, ωx, ωz) of `cells × cells`, relative to [the lean in the wind](crate::bend::wind_lean_rad). A client
+    /// keeps at least the [`PATCH_MEMORY`](super::PATCH_MEMORY) most recently received patches.
     Patch {
-        /// Which patch.
+        /// Index of the patch.
         patch: PatchIndex,
-        /// Number of this frame of the patch; a delta applies to the frame one less.
+        /// Sequence number of this frame of the patch; a delta frame applies to the previous one.
         seq: u32,
-        /// Whether the payload is coded against zero.
+        /// Whether this is a key frame, coded against zero.
         key: bool,
         /// [`codec`](super::codec) payload; empty: the patch is at rest.
         #[serde(with = "serde_bytes")]
         payload: Vec<u8>,
     },
-    /// Who is here.
+    /// The connected clients.
     Roster {
-        /// Every client.
+        /// All clients.
         peers: Vec<Peer>,
     },
-    /// Plants of the underbrush that are broken, for good: those that the client was not told of before, at most [`BROKEN_LIMIT`](super::BROKEN_LIMIT);
-    /// any that are left come with the next frames.
+    /// Underbrush plants that are broken for good: those not sent to this client before, at most [`BROKEN_LIMIT`](super::BROKEN_LIMIT); any others
+    /// follow with the next frames.
     Broken {
         /// Ascending by site; 2 to 6 bytes each, 4 where sites have numbers from 2^14 to 2^21.
         plants: Vec<BrokenPlant>,
     },
-    /// All of a frame has been sent; to be acknowledged.
+    /// End of a frame; to be acknowledged.
     FrameEnd {
-        /// Number of the frame, per client, from 1.
+        /// Frame number, per client, from 1.
         frame: u32,
-        /// Step of the world that the frame shows.
+        /// Tick of the world that the frame shows.
         tick: u64,
         /// Simulated time (s).
         time_secs: f64,
     },
-    /// A request was not carried out, or the connection is about to be closed.
+    /// A request was rejected, or the connection is about to be closed.
     Refused {
-        /// Why, for the program.
+        /// Machine-readable reason.
         refusal: Refusal,
-        /// Why, for the person.
+        /// Human-readable reason.
         reason: String,
     },
-    /// Answer to a ping.
+    /// Reply to a ping.
     Pong {
-        /// The ping's.
+        /// The nonce of the ping.
         nonce: u32,
     },
 }
 
-/// Kinds of refusal.
+/// Reasons of a [`ServerMessage::Refused`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Refusal {
-    /// The scene's limit of objects is reached; the connection stays.
+    /// The scene's limit on objects is reached; the connection stays open.
     ObjectLimit,
     /// The server is full; the connection is closed.
     ServerFull,
@@ -181,14 +180,14 @@ pub enum Refusal {
     Stopping,
 }
 
-/// Someone who is here.
+/// A connected client.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Peer {
-    /// The client's number.
+    /// The client's ID.
     pub client: u32,
-    /// The name given.
+    /// Its display name.
     pub name: String,
-    /// The object driven, if any.
+    /// The object that it drives, if any.
     pub object: Option<ObjectId>,
 }
 
@@ -197,16 +196,16 @@ pub struct Peer {
 pub struct BrokenPlant {
     /// Its site, as numbered in [`Sites`](crate::plant::growth::Sites).
     pub site: u32,
-    /// Which way it fell: [heading code](super::quantise::heading_code).
+    /// Direction in which it fell: [heading code](super::quantise::heading_code).
     pub fall: NonZeroU8,
 }
 
-/// Where an object is and what it does.
+/// Pose and motion of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObjectPose {
-    /// Number of the object.
+    /// Object ID.
     pub id: ObjectId,
-    /// What it is.
+    /// Kind of object.
     pub kind: VehicleKind,
     /// Centre of the body's box (m).
     pub position_m: [f32; 3],
@@ -214,37 +213,37 @@ pub struct ObjectPose {
     pub rotation: [f32; 4],
     /// Velocity (m/s).
     pub velocity_m_per_s: [f32; 3],
-    /// Steering of the front wheels (rad, + right), the rotor's or the walk's phase, or where a ball's driver looks (rad).
+    /// Angle of a moving part (rad): steering of the front wheels (+ right), phase of the rotor or of the walk, or heading of a ball's driver.
     pub part_rad: f32,
 }
 
-/// A triangle mesh with a colour at each vertex; at most [`Mesh::VERTEX_LIMIT`] vertices and [`Mesh::INDEX_LIMIT`] indices.
+/// Triangle mesh with a colour per vertex; at most [`Mesh::VERTEX_LIMIT`] vertices and [`Mesh::INDEX_LIMIT`] indices.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Mesh {
-    /// Positions (m) in the body's axes, origin at the centre of its box.
+    /// Positions (m) in the body's axes, relative to the centre of its box.
     pub positions_m: Vec<[f32; 3]>,
     /// Unit normals.
     pub normals: Vec<[f32; 3]>,
     /// Linear RGB, 0..=255.
     pub rgb: Vec<[u8; 3]>,
-    /// Three indices a triangle, anticlockwise seen from outside.
+    /// Three indices per triangle, anticlockwise seen from outside.
     pub indices: Vec<u32>,
 }
 
 impl Mesh {
-    /// Most vertices: as many as 16 bits can number.
+    /// Largest number of vertices: indices fit 16 bits.
     pub const VERTEX_LIMIT: usize = 1 << 16;
-    /// Most indices; two such meshes and three maps of 24 MiB fit into [`SERVER_MESSAGE_LIMIT`](super::SERVER_MESSAGE_LIMIT).
+    /// Largest number of indices; two such meshes and three maps of 24 MiB fit into [`SERVER_MESSAGE_LIMIT`](super::SERVER_MESSAGE_LIMIT).
     pub const INDEX_LIMIT: usize = 1 << 20;
 }
 
-/// Why bytes are no message.
+/// Reasons why bytes cannot be decoded.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum WireError {
-    /// No bytes at all.
+    /// The message is empty.
     #[error("the message is empty")]
     Empty,
-    /// The other side speaks another version.
+    /// The other side uses another protocol version.
     #[error("protocol version {found}; this side speaks {PROTOCOL}")]
     Version {
         /// The version found.
@@ -258,7 +257,7 @@ pub enum WireError {
         /// Bytes allowed.
         limit: usize,
     },
-    /// The bytes after the version make no message.
+    /// The bytes after the version are not a message.
     #[error("the message is malformed: {0}")]
     Malformed(String),
     /// Bytes are left over after the message.
@@ -269,7 +268,7 @@ pub enum WireError {
 /// Encodes a message with its version byte.
 ///
 /// # Panics
-/// Never: the messages hold nothing that postcard cannot write.
+/// Never: postcard can write every message.
 pub fn encode<M: Serialize>(message: &M) -> Vec<u8> {
     postcard::to_extend(message, vec![PROTOCOL]).expect("messages hold only what postcard can write")
 }
@@ -277,7 +276,7 @@ pub fn encode<M: Serialize>(message: &M) -> Vec<u8> {
 /// Decodes a message of at most `limit` bytes; the length is checked before anything is parsed.
 ///
 /// # Errors
-/// [`WireError`] when the bytes are not one whole message of this version.
+/// [`WireError`] when the bytes are not exactly one message of this version.
 pub fn decode<M: DeserializeOwned>(bytes: &[u8], limit: usize) -> Result<M, WireError> {
     if bytes.len() > limit {
         return Err(WireError::TooLarge { found: bytes.len(), limit });
@@ -334,7 +333,7 @@ mod tests {
         assert_eq!(decode(&whole, 100), Ok(message));
         *whole.last_mut().expect("it has bytes") = 0;
         assert!(matches!(decode::<ServerMessage>(&whole, 100), Err(WireError::Malformed(_))));
-        // A number of plants that the bytes do not hold takes no memory.
+        // A count without the plants to match allocates nothing.
         let boast = [&encoded(&[])[..2], &[255, 255, 255, 255, 15]].concat();
         assert!(matches!(decode::<ServerMessage>(&boast, 100), Err(WireError::Malformed(_))));
     }

@@ -1,13 +1,13 @@
-//! Fields as 8-bit values, with their error bounds.
+//! Quantisation of the fields to 8 bits, with error bounds.
 //!
-//! θ is linear; ω and dust are companded by a square root, so that weak bends keep their direction and thin dust stays; wind is linear.
+//! θ and wind are linear. ω and dust are companded by a square root, so that weak bends keep their direction and thin dust is kept.
 
 use multiversion::multiversion;
 use std::f32::consts::TAU;
 use std::num::NonZeroU8;
 
-/// θ at code ±127 (rad). The field holds a bend less the wind's lean: grass that lies one way where the wind would hold it the other way
-/// departs by up to a right angle and [`wind_bend_rad`](crate::scene::Grass::wind_bend_rad), 3.07 rad.
+/// θ at code ±127 (rad). The field is the bend minus the wind's lean: grass laid against the wind deviates by up to a right angle plus
+/// [`wind_bend_rad`](crate::scene::Grass::wind_bend_rad), 3.07 rad.
 pub const THETA_FULL_RAD: f32 = std::f32::consts::PI;
 
 /// |ω| of a component at code ±127 (rad/s); larger values saturate.
@@ -64,7 +64,7 @@ pub fn wind_m_per_s(code: i8) -> f32 {
     linear_value(code, WIND_FULL_M_PER_S)
 }
 
-/// Concentration of dust at code 127; more saturates, less than none is none. A gust that releases 1/s leaves about 2 where it is thickest.
+/// Concentration of dust at code 127; more saturates, and negative values count as 0. A gust that releases 1/s leaves about 2 where it is thickest.
 pub const DUST_FULL: f32 = 16.0;
 
 /// Code of a concentration of dust, 0..=127: `127·√(c/full)`, rounded. The error of c is at most `full·(code + ¼)/127²` within
@@ -74,14 +74,14 @@ pub fn dust_code(concentration: f32) -> i8 {
     rounded((concentration.max(0.0) * (127.0 * 127.0 / DUST_FULL)).sqrt())
 }
 
-/// Concentration of dust of a code; none below 0.
+/// Concentration of dust of a code; 0 for negative codes.
 pub fn dust(code: i8) -> f32 {
     let share = f32::from(code.max(0)) / 127.0;
     share * share * DUST_FULL
 }
 
-/// Code of the heading of a vector on the ground (X and Z), in 255ths of a turn from +X towards +Z; 255 is a whole turn, so that 0 is left for none. Error
-/// at most τ/510 (0.0124 rad). A vector without a heading gets that of +X.
+/// Code of the heading of a vector on the ground (X and Z), in 255ths of a turn from +X towards +Z; a whole turn is 255, so that 0 is free to mean
+/// "none". Error at most τ/510 (0.0124 rad). The zero vector gets the heading of +X.
 pub fn heading_code([x, z]: [f32; 2]) -> NonZeroU8 {
     let steps = (z.atan2(x) * (255.0 / TAU)).round().rem_euclid(255.0);
     NonZeroU8::new(steps as u8).unwrap_or(NonZeroU8::MAX)
@@ -97,8 +97,8 @@ fn linear_code(value: f32, full: f32) -> i8 {
     rounded(value * (127.0 / full))
 }
 
-/// The nearest whole number within ±127, ties to even; −127 for what is no number. Without branches or library calls, so that loops over cells become
-/// vector instructions: adding 1.5·2²³ leaves the whole number in the lowest bits of the sum.
+/// The nearest integer within ±127, ties to even; −127 for NaN. Without branches or library calls, so that loops over cells vectorise: adding 1.5·2²³
+/// leaves the integer in the lowest bits of the sum.
 #[inline(always)]
 fn rounded(value: f32) -> i8 {
     const SHIFT: f32 = 12_582_912.0;

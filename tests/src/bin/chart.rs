@@ -1,11 +1,12 @@
-//! Measures methods: wall time against error, as files and as a summary on the screen; and the tables of the documents.
+//! Measures methods (wall time against error), writes charts and a summary, and updates the tables of the documents.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, ensure};
 use clap::{Args, Parser, Subcommand};
-use client_wasm::render::{Gpu, Quality};
 use indicatif::{ProgressBar, ProgressStyle};
+use prairie_client::render::{Gpu, Quality};
+use tests::arguments::quality;
 use tests::chart::figure::Figure;
 use tests::chart::files::write_all;
 use tests::chart::gallery::{self, reference_path};
@@ -19,10 +20,10 @@ use tests::chart::{Problem, bend, plants, shells, wind};
 use tests::still::Still;
 use tests::views::{VIEWS, View};
 
-/// Measures methods on problems whose answer is known: how long each takes for how small an error.
+/// Measures methods on problems with known solutions: wall time against error.
 ///
-/// Every method solves every problem on grids from coarse to fine. Each run is repeated and its least time kept, in seconds of wall time per simulated second.
-/// Printed is which method wins where. Times are only worth something on a machine that does nothing else.
+/// Every method solves every problem on grids from coarse to fine. Each run is repeated and its shortest time kept, in seconds of wall time per simulated second.
+/// A summary names the fastest method for each error. Times are meaningful only on an idle machine.
 #[derive(Parser)]
 #[command(after_help = EXAMPLES)]
 struct Arguments {
@@ -41,22 +42,22 @@ Examples:
 
 #[derive(Subcommand)]
 enum Model {
-    /// The solvers of the wind, on flows that are known exactly
+    /// Wind solvers on flows with exact solutions
     #[command(after_help = FILES)]
     Wind {
         #[command(flatten)]
         options: Options,
-        /// No charts: write the tables of fitted orders and limits in this document anew
+        /// Instead of charts: measure orders and limits, and replace their tables in this document
         #[arg(long, value_name = "FILE", conflicts_with_all = ["out", "quick", "only"])]
         tables: Option<PathBuf>,
     },
-    /// The schemes of the bend field: error against time, cost against cars, where each fails, the loose overlap
+    /// Bend field schemes: error against time, cost against cars, stability, error of the loose overlap
     #[command(after_help = BEND_FILES)]
     Bend(Options),
-    /// Blades and underbrush: integrators, sections, tables of postures, the dynamic constraint, limits
+    /// Blades and underbrush: integrators, sections, posture tables, the dynamic constraint, stability limits
     #[command(after_help = PLANTS_FILES)]
     Plants(Options),
-    /// Ways of drawing the picture: time of a frame against what one sees missing, on ten views
+    /// Render options: frame time against visible error, on ten views
     #[command(after_help = PICTURE_FILES)]
     Picture {
         #[command(flatten)]
@@ -64,84 +65,84 @@ enum Model {
         /// Width and height of the pictures (px); default 960x540, with --quick 320x180
         #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size_px)]
         size: Option<[u32; 2]>,
-        /// Only these views, with commas between them
+        /// Only these views, separated by commas
         #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = View::find)]
         views: Vec<&'static View>,
     },
-    /// A page of the ten views with their times, likeness and the figures of the source texts that they answer
+    /// The gallery: a page of the ten views with frame times, similarity to a reference, and figures in the literature
     Gallery {
         /// Folder of the page
         #[arg(long, value_name = "DIR", default_value = "tests/results/gallery")]
         out: PathBuf,
-        /// Folder that keeps references
+        /// Cache folder of references
         #[arg(long, value_name = "DIR", default_value = CACHE)]
         cache: PathBuf,
         /// Width and height of the pictures (px)
         #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "960x540", value_parser = size_px)]
         size: [u32; 2],
-        /// Quality of the pictures that are shown: low, medium, high or ultra; all are measured
-        #[arg(long, default_value = "ultra", value_parser = quality)]
+        /// Quality of the pictures on the page; all are measured
+        #[arg(long, default_value = "ultra", value_parser = quality())]
         quality: Quality,
-        /// Only these views, with commas between them
+        /// Only these views, separated by commas
         #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = View::find)]
         views: Vec<&'static View>,
     },
-    /// Shells: frames a second against the number of layers, beside table 4.1 of 003
+    /// Shells: frames per second against the number of layers, beside Bakay 2003, table 4.1
     #[command(after_help = SHELLS_FILES)]
     Shells(Options),
 }
 
-/// Folder that keeps references, in the one that charts are written to.
+/// Cache folder of references, within the folder of the charts.
 const CACHE: &str = "target/charts/cache";
 
 const SHELLS_FILES: &str = "\
 Files in DIR:
-  shells-layers.svg, .csv  frames a second against the number of layers, with and without slices between them, and 003's";
+  shells-layers.svg, .csv  frames per second against the number of layers, with and without slices between them, and Bakay's";
 
 const FILES: &str = "\
-Files in DIR, written anew as each problem is done:
+Files in DIR, updated after each problem:
   wind-PROBLEM.svg   error across, time up, both logarithmic; one line per method, further left
                      and down is better; the Pareto front, which nothing beats, is highlighted
   wind.csv, .json    every figure: model, problem, method, cells, dt_secs, norm (l1, l2 = root mean
-                     square, linf), error, seconds (wall time per simulated second or projection)
+                     square, linf), error, wall_secs (wall time per simulated second or projection)
 
-On the screen, for each problem and a few errors: the method that gets there in the least time, read
-from its line between two runs, and by how much the best of another family takes longer.";
+Printed for each problem and a few errors: the fastest method, interpolated between two runs, and how
+much longer the best of another family takes.";
 
 const BEND_FILES: &str = "\
 Files in DIR:
   bend-PROBLEM.svg        error across, time up, as for the wind; bend.csv and bend.json hold the figures
-  bend-cars.svg, .csv     time of a step against the number of cars that move, with a straight line through it
-  bend-failures.svg, .csv where each scheme is fine, inaccurate or blows up: speed of a car against steps a second
-  bend-overlap.svg, .csv  error of 001's loose overlap against the speed of the waves, for three rates of damping";
+  bend-cars.svg, .csv     time of a step against the number of moving cars, with a straight line through it
+  bend-failures.svg, .csv where each scheme is accurate, inaccurate or blows up: speed of a car against steps per second
+  bend-overlap.svg, .csv  error of the loose overlap of Chen & Johan against wave speed, for three damping rates";
 
 const PLANTS_FILES: &str = "\
 Files in DIR:
   plants-PROBLEM.svg         error across, time up, as for the wind: a blade's integrators in a recorded gust, and the
                              sections of a component under its weight; plants.csv and plants.json hold the figures
-  plants-postures.svg, .csv  error of the tip against the size of a table of postures, and what a look-up takes
-  plants-constraint.svg, .csv what a plant feels after a gust, with and without the velocity term of the constraint
-  plants-stability.svg, .csv longest steps of a blade against its damping, measured and in theory";
+  plants-postures.svg, .csv  error of the tip against the size of a posture table, and look-up times
+  plants-constraint.svg, .csv force on a plant after a gust, with and without the velocity term of the constraint
+  plants-stability.svg, .csv longest stable time step of a blade against its stiffness, measured and in theory";
 
 const PICTURE_FILES: &str = "\
 Files in DIR:
-  picture-VIEW.svg         mean FLIP across, time of a frame up, both logarithmic; one line per way of drawing, whose points
-                           are the qualities; picture-all-views.svg has the means of the views
-  picture.csv, .json       every figure: view, method, quality, level, ms, FLIP (mean, and what 1 % exceed), SSIM, counts
+  picture-VIEW.svg         mean FLIP (x) and frame time (y), both logarithmic; one line per method, whose points
+                           are the qualities; picture-all-views.svg has the means over the views
+  picture.csv, .json       every figure: view, method, quality, level, ms, FLIP (mean and 99th percentile), SSIM, counts
   picture-plants.svg, .csv time of a frame against the plants of the scene
   picture-height.svg, .csv time of a frame against the height of the view
   picture-vertices.svg, .csv, .md
-                           time of the picture's pass per million vertices, as the device counts them
-  cache/VIEW-SIZE.png      references, drawn anew when this program has been built anew
+                           time of the main pass per million vertices, as counted by the GPU
+  cache/VIEW-SIZE.png      references, drawn again after this program is rebuilt
 
---only WORD picks ways of drawing (`clumps`, `sorted`) or one of the figures `plants`, `height` and `vertices`.";
+--only WORD picks methods (`clumps`, `sorted`) or one of the figures `plants`, `height` and `vertices`.";
 
 #[derive(Args)]
 struct Options {
-    /// Folder the files are written to
+    /// Output folder
     #[arg(long, value_name = "DIR", default_value = "target/charts")]
     out: PathBuf,
-    /// Coarse grids and few repeats: less than a minute, for a look
+    /// Coarse grids and few repetitions: less than a minute, for a quick look
     #[arg(long)]
     quick: bool,
     /// Only problems and methods with this word in their name
@@ -156,7 +157,7 @@ fn main() -> Result<()> {
         Model::Bend(options) => charts("bend", bend::problems(options.quick), &bend::FIGURES, &options),
         Model::Plants(options) => charts("plants", plants::problems(options.quick), &plants::FIGURES, &options),
         Model::Picture { options, size, views } => chart_picture(&options, size, &chosen(views)),
-        Model::Gallery { out, cache, size, quality, views } => hang(&out, &cache, size, quality, &chosen(views)),
+        Model::Gallery { out, cache, size, quality, views } => draw_gallery(&out, &cache, size, quality, &chosen(views)),
         Model::Shells(options) => charts("shells", Vec::new(), &shells::FIGURES, &options),
     }
 }
@@ -168,11 +169,7 @@ fn size_px(text: &str) -> Result<[u32; 2]> {
         .context("WIDTHxHEIGHT is allowed, each 16 to 4096, such as 960x540")
 }
 
-fn quality(name: &str) -> Result<Quality> {
-    Quality::from_name(name).context("low, medium, high or ultra are allowed")
-}
-
-/// The views that are asked for; all where none is.
+/// The requested views; all by default.
 fn chosen(views: Vec<&'static View>) -> Vec<&'static View> {
     if views.is_empty() { VIEWS.iter().collect() } else { views }
 }
@@ -182,12 +179,12 @@ fn progress(steps: usize) -> ProgressBar {
     ProgressBar::new(steps as u64).with_style(style)
 }
 
-/// Every way of drawing on every view; files are written after each view, so that what is cut short keeps what it has.
+/// Measures every method on every view; files are written after each view, so that an interrupted run keeps its results.
 fn chart_picture(options: &Options, size: Option<[u32; 2]>, views: &[&View]) -> Result<()> {
     let is_asked = |name: &str| options.only.as_ref().is_none_or(|word| name.to_lowercase().contains(&word.to_lowercase()));
     let methods: Vec<Method> = METHODS.into_iter().filter(|method| is_asked(&method.name())).collect();
     let figures: Vec<&Figure> = picture::FIGURES.iter().filter(|figure| is_asked(figure.name)).collect();
-    ensure!(!methods.is_empty() || !figures.is_empty(), "--only: no way of drawing and no figure has this in its name");
+    ensure!(!methods.is_empty() || !figures.is_empty(), "--only: no method and no figure has this in its name");
     if !methods.is_empty() {
         let qualities = if options.quick { vec![Quality::Low, Quality::Medium] } else { Quality::ALL.to_vec() };
         let size_px = size.unwrap_or(if options.quick { [320, 180] } else { [960, 540] });
@@ -208,14 +205,14 @@ fn chart_picture(options: &Options, size: Option<[u32; 2]>, views: &[&View]) -> 
             files = picture::write_all(&shots, &about, &options.out)?;
         }
         bar.finish_and_clear();
-        println!("picture: means over {} views\n{about}\n\n{}", views.len(), picture::said(&shots));
+        println!("picture: means over {} views\n{about}\n\n{}", views.len(), picture::summary(&shots));
         println!("{} files in {}", files.len(), options.out.display());
     }
     draw_figures("picture", &figures, options)
 }
 
-/// The page of the gallery.
-fn hang(out: &Path, cache: &Path, size_px: [u32; 2], quality: Quality, views: &[&View]) -> Result<()> {
+/// Draws the gallery.
+fn draw_gallery(out: &Path, cache: &Path, size_px: [u32; 2], quality: Quality, views: &[&View]) -> Result<()> {
     let gpu = Gpu::headless()?;
     let bar = progress(views.len());
     let mut plates = Vec::new();
@@ -232,7 +229,7 @@ fn hang(out: &Path, cache: &Path, size_px: [u32; 2], quality: Quality, views: &[
     Ok(())
 }
 
-/// Error against time as for the wind, then the figures of the model's own.
+/// Error against time as for the wind, then the other figures of the model.
 fn charts(model: &str, problems: Vec<Problem>, figures: &[Figure], options: &Options) -> Result<()> {
     let is_asked = |name: &str| options.only.as_ref().is_none_or(|word| name.to_lowercase().contains(&word.to_lowercase()));
     let figures: Vec<_> = figures.iter().filter(|figure| is_asked(figure.name)).collect();
@@ -248,7 +245,7 @@ fn draw_figures(model: &str, figures: &[&Figure], options: &Options) -> Result<(
     for figure in figures {
         println!("\n{}", figure.title);
         let drawn = (figure.draw)(options.quick, &machine())?;
-        println!("{}", drawn.said);
+        println!("{}", drawn.summary);
         for (ending, text) in [("svg", Some(drawn.svg)), ("csv", Some(drawn.csv)), ("md", drawn.tables)] {
             let Some(text) = text else { continue };
             let path = options.out.join(format!("{model}-{}.{ending}", figure.name));
@@ -264,7 +261,7 @@ fn write_tables(document: &Path) -> Result<()> {
     std::fs::write(document, text).with_context(|| format!("{} cannot be written", document.display()))
 }
 
-/// Measures, and writes the files after each problem, so that what is cut short keeps what it has.
+/// Measures, and writes the files after each problem, so that an interrupted run keeps its results.
 fn chart(model: &str, mut problems: Vec<Problem>, options: &Options) -> Result<()> {
     if let Some(word) = &options.only {
         let has = |name: &str| name.to_lowercase().contains(&word.to_lowercase());
@@ -291,7 +288,7 @@ fn chart(model: &str, mut problems: Vec<Problem>, options: &Options) -> Result<(
     println!("{model}: the fastest method for an error\n{machine}\n");
     println!("{}", summary(&problems, &rows, "l2"));
     println!(
-        "Wall time is per simulated second; of a projection it is the whole. Next best is the best of another family, and how much longer it takes."
+        "Wall time is per simulated second, or of a single projection. 'Next best' is the best of another family, and how much longer it takes."
     );
     failures.iter().for_each(|failure| println!("failed: {failure}"));
     println!("{} files in {}", files.len(), options.out.display());

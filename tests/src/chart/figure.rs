@@ -1,4 +1,4 @@
-//! Figures of their own kinds: lines over two axes, linear or logarithmic, and fields of colour, as SVG.
+//! Line charts with linear or logarithmic axes, and coloured fields, as SVG.
 
 use anyhow::{Result, ensure};
 use plotters::prelude::*;
@@ -7,46 +7,46 @@ use plotters::style::text_anchor::HPos;
 use super::plot::{Area, FAINT_INK, GRID, INK, Marker, look, text_style, write};
 use super::ticks::ticks;
 
-/// A figure of its own kind.
+/// A figure that is not error against time.
 pub struct Figure {
-    /// Its name in a file's.
+    /// Name within the file name.
     pub name: &'static str,
-    /// Its headline.
+    /// Title.
     pub title: &'static str,
-    /// Measures and draws it: coarsely or not, with a caption.
+    /// Measures and draws the figure, quickly or thoroughly, with a caption.
     pub draw: fn(quick: bool, caption: &str) -> Result<Drawn>,
 }
 
-/// What became of a figure.
+/// A drawn figure.
 pub struct Drawn {
-    /// The picture.
+    /// The chart.
     pub svg: String,
-    /// What is in it (RFC 4180).
+    /// Its data as CSV (RFC 4180).
     pub csv: String,
-    /// What it says, in a few lines.
-    pub said: String,
-    /// A page of Markdown tables, where one would rather look up than look.
+    /// Summary of a few lines.
+    pub summary: String,
+    /// Markdown tables of the data, for some figures.
     pub tables: Option<String>,
 }
 
 /// One axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axis {
-    /// What it measures, with its unit.
+    /// Quantity with its unit.
     pub(super) name: &'static str,
-    /// Least and greatest value.
+    /// Smallest and largest value.
     pub(super) range: [f64; 2],
     pub(super) logarithmic: bool,
 }
 
 impl Axis {
-    /// Share of the axis at a value.
+    /// Position of a value as a fraction of the axis.
     fn share(&self, value: f64) -> f64 {
         let [least, most] = self.range;
         if self.logarithmic { (value / least).ln() / (most / least).ln() } else { (value - least) / (most - least) }
     }
 
-    /// Values with a line, and what is written there.
+    /// Values of the grid lines with their labels.
     fn ticks(&self) -> Vec<(f64, String)> {
         let [least, most] = self.range;
         if self.logarithmic {
@@ -66,7 +66,7 @@ fn trimmed(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// A line, markers at its points, or both. One without a name belongs to the one before and shares its colour and its key.
+/// A line, markers, or both. A curve without a name continues the previous one and shares its colour and legend entry.
 #[derive(Clone, Debug)]
 pub(super) struct Curve {
     pub(super) name: String,
@@ -75,7 +75,7 @@ pub(super) struct Curve {
     pub(super) joined: bool,
 }
 
-/// What stands around a picture.
+/// Texts around a chart.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Words<'a> {
     pub(super) title: &'a str,
@@ -90,7 +90,7 @@ fn headed(root: &Area, words: Words, height_px: u32) -> Result<()> {
     write(root, words.caption, (24, height_px as i32 - 18), 15, FAINT_INK, HPos::Left)
 }
 
-/// A rectangle of pixels with its axes drawn around it.
+/// A rectangle of pixels with axes around it.
 struct Frame {
     left: i32,
     top: i32,
@@ -131,7 +131,7 @@ impl Frame {
     }
 }
 
-/// Draws curves, with a legend beside.
+/// Draws curves with a legend.
 pub(super) fn curves_svg(curves: &[Curve], axes: [Axis; 2], words: Words) -> Result<String> {
     ensure!(curves.iter().any(|curve| !curve.points.is_empty()), "no point to draw");
     const HEIGHT_PX: u32 = 640;
@@ -163,7 +163,7 @@ pub(super) fn curves_svg(curves: &[Curve], axes: [Axis; 2], words: Words) -> Res
     Ok(text)
 }
 
-/// One field of colour: of each column from left to right the classes from below.
+/// A coloured field: columns from left to right, in each the classes from bottom to top.
 #[derive(Clone, Debug)]
 pub(super) struct Panel {
     pub(super) name: String,

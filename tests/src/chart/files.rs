@@ -1,4 +1,4 @@
-//! The files of a model's charts.
+//! Files of a model's charts.
 
 use std::path::{Path, PathBuf};
 
@@ -9,8 +9,8 @@ use super::plot::{Labels, svg};
 use super::row::{csv, json};
 use super::{Problem, Row};
 
-/// Writes `MODEL.csv`, `MODEL.json` and `MODEL-PROBLEM.svg` for each problem that has rows into a folder, which is made where it is
-/// missing. Charts are of the root mean square error; `machine` says on what it was measured.
+/// Writes `MODEL.csv`, `MODEL.json` and `MODEL-PROBLEM.svg` for each problem that has rows into a folder, which is created if
+/// needed. Charts show the root mean square error; `machine` describes the machine.
 ///
 /// # Errors
 /// When the folder or a file cannot be written.
@@ -23,7 +23,7 @@ pub fn write_all(model: &str, problems: &[Problem], rows: &[Row], machine: &str,
             continue;
         }
         let labels =
-            Labels { title: &format!("{name}: what accuracy costs"), error, time: &format!("wall time per {per} (s)"), caption: machine };
+            Labels { title: &format!("{name}: cost of accuracy"), error, time: &format!("wall time per {per} (s)"), caption: machine };
         files.push((format!("{model}-{}.svg", file_name(name)), svg(&lines, labels)?));
     }
     let write = |(name, text): (String, String)| {
@@ -34,7 +34,7 @@ pub fn write_all(model: &str, problems: &[Problem], rows: &[Row], machine: &str,
     files.into_iter().map(write).collect()
 }
 
-/// A problem's name in a file's: `Taylor–Green` becomes `taylor-green`, `Projection, 32³` becomes `projection-32`.
+/// File name of a problem: `Taylor–Green` becomes `taylor-green`, `Projection, 32³` becomes `projection-32`.
 fn file_name(problem: &str) -> String {
     let words = problem.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     words.map(str::to_lowercase).collect::<Vec<_>>().join("-")

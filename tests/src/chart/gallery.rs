@@ -1,12 +1,12 @@
-//! A page of pictures: each view with what it costs, how near it comes to the reference, and which figures of the source texts it answers.
+//! The gallery: a page of views with frame times, similarity to a reference, and the corresponding figures in the literature.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
 use anyhow::{Context as _, Result};
-use client_wasm::render::{Gpu, Look, Quality};
+use prairie_client::render::{Gpu, Quality, RenderOptions};
 
-use crate::likeness::Likeness;
+use crate::similarity::Similarity;
 use crate::still::Still;
 use crate::views::View;
 
@@ -17,35 +17,35 @@ pub struct Plate {
     shots: Vec<Shot>,
 }
 
-/// The view as a visitor with some quality sees it.
+/// A view at one quality.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shot {
     quality: Quality,
     ms: f64,
-    likeness: Likeness,
+    similarity: Similarity,
 }
 
-/// Measures a view in all qualities and draws it into `folder` in one of them. References are kept in `cache`.
+/// Measures a view in all qualities and draws it into `folder` in one of them. References are cached in `cache`.
 ///
 /// # Errors
-/// When the view cannot be played or a file cannot be written.
+/// When the view cannot be drawn or a file cannot be written.
 pub fn plate(gpu: &Gpu, view: &View, size_px: [u32; 2], quality: Quality, folder: &Path, cache: &Path) -> Result<Plate> {
     let mut still = Still::of(view, size_px)?;
     let reference = still.kept_reference(gpu, &reference_path(cache, view, size_px))?;
     let mut shots = Vec::new();
     for of in Quality::ALL {
         let mut canvas = still.canvas(gpu, of);
-        canvas.set_look(Look::default());
+        canvas.set_options(RenderOptions::default());
         let (picture, _) = still.draw(&mut canvas);
-        shots.push(Shot { quality: of, ms: 1e3 * still.frame_secs(&mut canvas, 3), likeness: Likeness::of(&reference, &picture)? });
+        shots.push(Shot { quality: of, ms: 1e3 * still.frame_secs(&mut canvas, 3), similarity: Similarity::of(&reference, &picture)? });
         if of == quality {
-            picture.save(&folder.join(format!("{}.png", view.name)))?;
+            picture.save(&folder.join(format!("{}.jpg", view.name)))?;
         }
     }
     Ok(Plate { view: *view, shots })
 }
 
-/// Where the reference of a view is kept.
+/// Cache file of the reference of a view.
 pub fn reference_path(cache: &Path, view: &View, [width, height]: [u32; 2]) -> std::path::PathBuf {
     cache.join(format!("{}-{width}x{height}.png", view.name))
 }
@@ -53,30 +53,30 @@ pub fn reference_path(cache: &Path, view: &View, [width, height]: [u32; 2]) -> s
 /// Writes `README.md` beside the pictures.
 ///
 /// # Errors
-/// When it cannot be written.
+/// When the file cannot be written.
 pub fn write(plates: &[Plate], [width, height]: [u32; 2], quality: Quality, machine: &str, folder: &Path) -> Result<()> {
     let path = folder.join("README.md");
     let (size, quality) = (format!("{width}x{height}"), quality.name());
     let mut text = format!(
-        "# Gallery\n\nTen views, from an ant's to an aircraft's, in calm air and in a storm, at {size} px and {quality} quality. Beside each, for every quality: the median time of a\n\
-         frame in software rendering, mean FLIP and SSIM against a reference that draws every plant at full detail ([how they are measured](../../README.md#the-picture)), and the figures of the source\n\
-         texts that it answers: 000 Zhang Xia's prairie, 001 the continuum grass of Chen & Johan, 003 Bakay's shells, 004 the underbrush of Endo, Morimoto & Fabris.\n\n\
+        "# Gallery\n\nTen views, from an ant's to an aircraft's height, in calm air and in a storm, at {size} px and {quality} quality. Each states, for every quality, the median\n\
+         frame time in software rendering, and the mean FLIP and SSIM against a reference that draws every plant at full detail ([method](../../README.md#the-picture)).\n\
+         It also names the corresponding figures in the literature ([bibliography](../../../shared/README.md#bibliography)). [More pictures](../README.md)\n\n\
          {machine}\n\n```sh\ncargo run --release -p tests --bin chart -- gallery --size {size} --quality {quality}\n```\n"
     );
     for Plate { view, shots } in plates {
         let View { name, scene, shows, answers, .. } = view;
         let rows: String = shots
             .iter()
-            .map(|Shot { quality, ms, likeness: Likeness { flip_mean, ssim, .. } }| {
+            .map(|Shot { quality, ms, similarity: Similarity { flip_mean, ssim, .. } }| {
                 format!("| {} | {ms:.0} ms | {flip_mean:.4} | {ssim:.4} |\n", quality.name())
             })
             .collect();
         writeln!(
             text,
-            "\n## {name}\n\n![{shows}]({name}.png)\n\nScene `{scene}`: {shows}. Answers {answers}.\n\n| quality | time of a frame | mean FLIP | SSIM |\n|---|---:|---:|---:|\n\
+            "\n## {name}\n\n![{shows}]({name}.jpg)\n\nScene `{scene}`: {shows}. Compare {answers}.\n\n| quality | frame time | mean FLIP | SSIM |\n|---|---:|---:|---:|\n\
              {rows}\n```sh\ncargo run --release -p tests --bin chart -- gallery --size {size} --quality {quality} --views {name}\n```"
         )
-        .expect("a string takes all");
+        .expect("writing to a string cannot fail");
     }
     std::fs::write(&path, text).with_context(|| format!("{} cannot be written", path.display()))
 }
@@ -89,15 +89,15 @@ mod tests {
     #[test]
     fn the_page_shows_every_plate_with_its_figures() -> Result<()> {
         let folder = tempfile::tempdir()?;
-        let likeness = Likeness { flip_mean: 0.0412, flip_worst: 0.3, ssim: 0.871 };
-        let shots = Quality::ALL.map(|quality| Shot { quality, ms: 123.4, likeness }).to_vec();
+        let similarity = Similarity { flip_mean: 0.0412, flip_worst: 0.3, ssim: 0.871 };
+        let shots = Quality::ALL.map(|quality| Shot { quality, ms: 123.4, similarity }).to_vec();
         let plates = VIEWS.map(|view| Plate { view, shots: shots.clone() });
         write(&plates, [640, 360], Quality::High, "made-up machine", folder.path())?;
         let page = std::fs::read_to_string(folder.path().join("README.md"))?;
         for view in VIEWS {
             let section = page.split("\n## ").find(|section| section.starts_with(&format!("{}\n", view.name)));
             let section = section.with_context(|| format!("{} is missing", view.name))?;
-            assert!(section.contains(&format!("({}.png)", view.name)) && section.contains(view.answers), "{section}");
+            assert!(section.contains(&format!("({}.jpg)", view.name)) && section.contains(view.answers), "{section}");
             assert!(section.contains("| medium | 123 ms | 0.0412 | 0.8710 |\n| high | 123 ms |"), "{section}");
         }
         assert!(page.contains("made-up machine"));

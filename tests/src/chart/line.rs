@@ -1,4 +1,4 @@
-//! One line per method, and reading between its points.
+//! A line per method, with interpolation between its points.
 
 use super::Row;
 
@@ -7,11 +7,11 @@ use super::Row;
 pub struct Line<'a> {
     /// The method.
     pub method: &'a str,
-    /// Its rows, in the order of the runs: from coarse to fine, whether the error falls or not.
+    /// Its rows in the order of the runs, from coarse to fine.
     pub rows: Vec<&'a Row>,
 }
 
-/// What occurs in rows, each once, in the order in which it first does.
+/// Distinct values in order of first occurrence.
 pub fn distinct<'a>(rows: impl IntoIterator<Item = &'a Row>, word: impl Fn(&'a Row) -> &'a str) -> Vec<&'a str> {
     let mut found = Vec::new();
     for row in rows {
@@ -22,39 +22,39 @@ pub fn distinct<'a>(rows: impl IntoIterator<Item = &'a Row>, word: impl Fn(&'a R
     found
 }
 
-/// The lines of one problem in one norm, in the order in which the methods first occur. Rows without a positive, finite error and time have no place on a
-/// logarithmic chart and are left out.
+/// The lines of one problem in one norm, in the order in which the methods first occur. Rows without a positive, finite error and time cannot be drawn on
+/// logarithmic axes and are left out.
 pub fn lines<'a>(rows: &'a [Row], problem: &str, norm: &str) -> Vec<Line<'a>> {
     let positive = |x: f64| x > 0.0 && x.is_finite();
-    let fits = |row: &&Row| row.problem == problem && row.norm == norm && positive(row.error) && positive(row.seconds);
+    let fits = |row: &&Row| row.problem == problem && row.norm == norm && positive(row.error) && positive(row.wall_secs);
     let rows: Vec<&Row> = rows.iter().filter(fits).collect();
     let line = |method| Line { method, rows: rows.iter().copied().filter(|row| row.method == method).collect() };
     distinct(rows.iter().copied(), |row| &row.method).into_iter().map(line).collect()
 }
 
-/// The methods that differ only in what follows their last comma, such as `, Courant 2`, by what comes before.
+/// Family of a method: its name up to the last comma. Members differ in a parameter such as `, Courant 2`.
 pub fn family(method: &str) -> &str {
     method.rsplit_once(", ").map_or(method, |(family, _)| family)
 }
 
 impl Line<'_> {
-    /// Wall time (s, as in [`Row::seconds`]) in which the method gets to `error` or below: the cheapest of its runs that do, or less where its line, straight in the
-    /// logarithms of both, crosses `error` between two runs. `None` where no run gets there: lines are not extended.
-    pub fn seconds_at(&self, error: f64) -> Option<f64> {
-        let reached = self.rows.iter().filter(|row| row.error <= error).map(|row| row.seconds);
+    /// Wall time (s, as in [`Row::wall_secs`]) for the method to reach `error` or less: that of its cheapest such run, or less if its line, interpolated
+    /// logarithmically, crosses `error` between two runs. `None` if no run reaches it: lines are not extrapolated.
+    pub fn wall_secs_at(&self, error: f64) -> Option<f64> {
+        let reached = self.rows.iter().filter(|row| row.error <= error).map(|row| row.wall_secs);
         let crossed = self.rows.windows(2).filter(|pair| pair[0].error > error && error >= pair[1].error).map(|pair| {
             let [a, b] = [pair[0], pair[1]];
             let share = (a.error / error).ln() / (a.error / b.error).ln();
-            a.seconds * (b.seconds / a.seconds).powf(share)
+            a.wall_secs * (b.wall_secs / a.wall_secs).powf(share)
         });
         reached.chain(crossed).min_by(f64::total_cmp)
     }
 }
 
-/// The Pareto front: the rows that no other beats in both error and time, by falling error.
+/// The Pareto front: the rows that no other row beats in both error and time, by falling error.
 pub fn front<'a>(lines: &[Line<'a>]) -> Vec<&'a Row> {
     let mut rows: Vec<&Row> = lines.iter().flat_map(|line| line.rows.iter().copied()).collect();
-    rows.sort_by(|a, b| a.seconds.total_cmp(&b.seconds).then(a.error.total_cmp(&b.error)));
+    rows.sort_by(|a, b| a.wall_secs.total_cmp(&b.wall_secs).then(a.error.total_cmp(&b.error)));
     let mut best = f64::INFINITY;
     rows.retain(|row| {
         let better = row.error < best;
@@ -74,18 +74,18 @@ mod tests {
         let rows = [row("p", "a", 16, 1e-2, 1.0), row("p", "a", 32, 1e-4, 100.0), row("q", "a", 8, 1.0, 1.0)];
         let [line] = lines(&rows, "p", "l2").try_into().unwrap();
         let near = |found: Option<f64>, exact: f64| (found.unwrap() / exact - 1.0).abs() < 1e-12;
-        assert!(near(line.seconds_at(1e-3), 10.0));
-        assert!(near(line.seconds_at(1e-4), 100.0));
-        assert!(near(line.seconds_at(0.5), 1.0), "the coarsest run is good enough");
-        assert_eq!(line.seconds_at(0.9e-4), None);
+        assert!(near(line.wall_secs_at(1e-3), 10.0));
+        assert!(near(line.wall_secs_at(1e-4), 100.0));
+        assert!(near(line.wall_secs_at(0.5), 1.0), "the coarsest run is good enough");
+        assert_eq!(line.wall_secs_at(0.9e-4), None);
     }
 
     #[test]
-    fn a_line_that_turns_back_counts_its_cheapest_way() {
+    fn a_line_that_turns_back_counts_its_cheapest_run() {
         let rows =
             [row("p", "a", 16, 1e-2, 1.0), row("p", "a", 32, 1e-3, 50.0), row("p", "a", 64, 1e-4, 2.0), row("p", "a", 128, 1e-1, 9.0)];
         let [line] = lines(&rows, "p", "l2").try_into().unwrap();
-        assert_eq!(line.seconds_at(1e-3), Some(2.0));
+        assert_eq!(line.wall_secs_at(1e-3), Some(2.0));
         assert_eq!(line.rows.iter().map(|row| row.cells[0]).collect::<Vec<_>>(), [16, 32, 64, 128]);
     }
 
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn the_front_holds_what_nothing_beats() {
+    fn the_front_holds_the_runs_that_no_other_beats() {
         let rows = [
             row("p", "a", 8, 1e-1, 1.0),
             row("p", "a", 16, 1e-2, 10.0),

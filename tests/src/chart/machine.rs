@@ -1,10 +1,10 @@
-//! What figures were measured on.
+//! Description of the machine that figures were measured on.
 
 use std::process::Command;
 
-/// Machine and versions in a line, for a caption: model and number of cores of the processor, system, compiler, package.
+/// Machine and versions in one line, for captions: processor model and number of cores, system, compiler, package.
 ///
-/// The compiler is the one found now, which is the one that built this under `cargo run`.
+/// The compiler is the one on the `PATH`, which built this program under `cargo run`.
 pub fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let system = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);

@@ -1,23 +1,23 @@
-//! Speed against accuracy: runs of methods on problems, timed, and written so that one sees which method wins where.
+//! Speed against accuracy: timed runs of methods on problems, and charts that show which method wins where.
 //!
 //! | module | what it does |
 //! |---|---|
 //! | [`row`] | one measured figure; CSV and JSON |
-//! | [`run`] | what is run, and its timing |
+//! | [`run`] | a run and its timing |
 //! | [`wind`] | the runs of the wind |
-//! | [`bend`] | the runs of the bend field, and figures of their own kinds |
-//! | [`plants`] | those of blades and underbrush |
-//! | [`picture`] | ways of drawing: time of a frame against likeness, and figures of their own kinds |
-//! | [`gallery`] | a page of pictures with their figures |
-//! | [`shells`] | what layers of shells cost |
-//! | [`figure`] | lines and fields of colour over two axes as SVG |
-//! | [`line`](mod@line) | one line per method, and reading between its points |
+//! | [`bend`] | the runs of the bend field, and figures of other kinds |
+//! | [`plants`] | the runs of blades and underbrush |
+//! | [`picture`] | render options: frame time against similarity, and figures of other kinds |
+//! | [`gallery`] | the gallery page |
+//! | [`shells`] | cost of shell layers |
+//! | [`figure`] | line charts and coloured fields as SVG |
+//! | [`line`](mod@line) | a line per method, with interpolation |
 //! | [`plot`], [`ticks`] | a log–log chart as SVG |
-//! | [`summary`] | which method wins where, on one screen |
-//! | [`table`] | Markdown tables, and putting them into a document |
+//! | [`summary`] | the fastest method per problem and error, as text |
+//! | [`table`] | Markdown tables and their insertion into a document |
 //! | [`tables`] | the tables of the documents: orders and limits |
 //! | [`files`] | all files of a model |
-//! | [`machine`] | what the figures were measured on |
+//! | [`machine`] | description of the machine |
 
 pub mod bend;
 pub mod figure;

@@ -8,14 +8,14 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::line::{Line, family, front};
 use super::ticks::ticks;
 
-/// What is written around the lines.
+/// Texts around the lines.
 #[derive(Clone, Copy, Debug)]
 pub struct Labels<'a> {
-    /// The headline.
+    /// Title.
     pub title: &'a str,
-    /// What the error is, with its unit.
+    /// Quantity of the error, with its unit.
     pub error: &'a str,
-    /// What the time is, with its unit.
+    /// Quantity of the time, with its unit.
     pub time: &'a str,
     /// Machine and versions.
     pub caption: &'a str,
@@ -26,7 +26,7 @@ type Plane<'a> = DrawingArea<SVGBackend<'a>, Cartesian2d<LogCoord<f64>, LogCoord
 
 const PLOT_PX: u32 = 790;
 const HEIGHT_PX: u32 = 680;
-/// Room for a letter of the legend, on average.
+/// Average width of a letter of the legend (px).
 const LETTER_PX: usize = 8;
 const FONT: &str = "Helvetica, Arial, sans-serif";
 pub(super) const INK: RGBColor = RGBColor(32, 36, 42);
@@ -34,7 +34,7 @@ pub(super) const FAINT_INK: RGBColor = RGBColor(96, 102, 110);
 pub(super) const GRID: RGBColor = RGBColor(208, 212, 217);
 const FAINT_GRID: RGBColor = RGBColor(236, 238, 241);
 const FRONT: RGBColor = RGBColor(255, 229, 153);
-/// Told apart with any colour vision, together with the markers: Okabe & Ito's palette without its yellow, then darker ones of Tol's.
+/// Distinguishable with any colour vision, together with the markers: the palette of Okabe & Ito without yellow, then darker colours of Tol's.
 pub(super) const COLOURS: [RGBColor; 11] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -58,15 +58,15 @@ const MARKERS: [&[(i32, i32)]; 6] = [
     &[(-2, -6), (2, -6), (2, -2), (6, -2), (6, 2), (2, 2), (2, 6), (-2, 6), (-2, 2), (-6, 2), (-6, -2), (-2, -2)],
 ];
 
-/// Draws error on x and time on y, a line with markers for each method, the Pareto front behind them and a legend beside. Methods of one [`family`] share
-/// colour and marker, given out in the order of the lines; markers are full in the first of them, hollow in the others.
+/// Draws time (y) against error (x): a line with markers for each method, the Pareto front, and a legend. Methods of one [`family`] share
+/// colour and marker; the first of a family has solid markers, the others hollow ones.
 ///
 /// # Errors
 /// When no line has a point.
 pub fn svg(lines: &[Line], labels: Labels) -> Result<String> {
     let points = || lines.iter().flat_map(|line| &line.rows);
     let errors = range(points().map(|row| row.error)).context("no point to draw")?;
-    let times = range(points().map(|row| row.seconds)).context("no point to draw")?;
+    let times = range(points().map(|row| row.wall_secs)).context("no point to draw")?;
 
     let longest = lines.iter().map(|line| line.method.chars().count()).fold(24, usize::max);
     let size_px = (PLOT_PX + 80 + (LETTER_PX * longest) as u32, HEIGHT_PX);
@@ -85,7 +85,7 @@ pub fn svg(lines: &[Line], labels: Labels) -> Result<String> {
     let plane: &Plane = chart.plotting_area();
     draw_axes(&root, plane, errors, times, labels)?;
 
-    let pixels = |rows: &[&super::Row]| rows.iter().map(|row| plane.map_coordinate(&(row.error, row.seconds))).collect::<Vec<_>>();
+    let pixels = |rows: &[&super::Row]| rows.iter().map(|row| plane.map_coordinate(&(row.error, row.wall_secs))).collect::<Vec<_>>();
     let best = pixels(&front(lines));
     best.iter().try_for_each(|&at| root.draw(&Circle::new(at, 11, FRONT.filled())))?;
     root.draw(&PathElement::new(best, FRONT.stroke_width(14)))?;
@@ -112,7 +112,7 @@ pub fn svg(lines: &[Line], labels: Labels) -> Result<String> {
     Ok(text)
 }
 
-/// Grid lines, numbers and names of both axes.
+/// Grid lines, numbers and titles of both axes.
 fn draw_axes(root: &Area, plane: &Plane, errors: (f64, f64), times: (f64, f64), labels: Labels) -> Result<()> {
     let (x, y) = plane.get_pixel_range();
     // Faint lines first, so that the others run over them.
@@ -136,7 +136,7 @@ fn draw_axes(root: &Area, plane: &Plane, errors: (f64, f64), times: (f64, f64), 
     Ok(())
 }
 
-/// A line of the legend, without its marker.
+/// A legend entry without its marker.
 fn draw_key(legend: &Area, y: i32, name: &str, stroke: ShapeStyle) -> Result<()> {
     legend.draw(&PathElement::new([(16, y), (52, y)], stroke))?;
     write(legend, name, (64, y), 17, INK, HPos::Left)
@@ -161,7 +161,7 @@ pub(super) fn text_style<'a>(size_px: u32, colour: RGBColor, horizontal: HPos) -
     (FONT, size_px).into_font().color(&colour).pos(Pos::new(horizontal, VPos::Center))
 }
 
-/// Text whose start, middle or end, at half its height, is at `at`. None for no text.
+/// Writes text, vertically centred at `at`, aligned by its start, middle or end.
 pub(super) fn write(area: &Area, text: &str, at: (i32, i32), size_px: u32, colour: RGBColor, horizontal: HPos) -> Result<()> {
     if !text.is_empty() {
         area.draw(&Text::new(text.to_owned(), at, text_style(size_px, colour, horizontal)))?;
@@ -169,13 +169,13 @@ pub(super) fn write(area: &Area, text: &str, at: (i32, i32), size_px: u32, colou
     Ok(())
 }
 
-/// Colour and marker of the family at a place in the list: each pair once in the first 66.
+/// Colour and marker of the n-th family; the first 66 pairs differ.
 pub(super) fn look(style: usize) -> (RGBColor, &'static [(i32, i32)]) {
     let (round, place) = (style / COLOURS.len(), style % COLOURS.len());
     (COLOURS[place], MARKERS[(place + round) % MARKERS.len()])
 }
 
-/// Least and greatest value with some room around; `None` without values.
+/// Smallest and largest value with a margin; `None` without values.
 fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let (least, most) = values.fold((f64::INFINITY, 0.0f64), |(least, most), value| (least.min(value), most.max(value)));
     (least <= most).then(|| (least / 1.5, most * 1.5))

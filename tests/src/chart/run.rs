@@ -1,4 +1,4 @@
-//! What is run, and its timing.
+//! Runs of methods on problems, and their timing.
 
 use std::time::{Duration, Instant};
 
@@ -7,13 +7,13 @@ use anyhow::{Result, ensure};
 use super::Row;
 use crate::norms::Norms;
 
-/// A problem whose answer is known, and all that solves it.
+/// A problem with a known solution, and the runs that solve it.
 pub struct Problem {
     /// Its name, as in [`Row::problem`].
     pub name: &'static str,
-    /// What is wrong by how much, with its unit, for an axis.
+    /// Error quantity with its unit, for an axis.
     pub error: &'static str,
-    /// What wall time is counted per: a simulated second, or what is done once.
+    /// Unit of work of the wall time: a simulated second, or a single operation.
     pub per: &'static str,
     /// The methods, each from coarse to fine.
     pub runs: Vec<Run>,
@@ -25,42 +25,42 @@ pub struct Run {
     pub method: String,
     /// Cells along x, y and z.
     pub cells: [usize; 3],
-    /// Time step (s); 0 where nothing steps.
+    /// Time step (s); 0 where there is none.
     pub dt_secs: f64,
-    /// Solves the problem from its start. The same every time, save for the time it takes.
+    /// Solves the problem from its start; repeatable except for its duration.
     pub solve: Box<dyn Fn() -> Result<Outcome>>,
 }
 
-/// What came of a run.
+/// Result of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Outcome {
     /// Error at the end.
     pub error: Norms,
-    /// Time simulated (s); 1 where what is timed is done once.
+    /// Simulated time (s); 1 for a single operation.
     pub simulated_secs: f64,
-    /// Time the steps took; setting up and comparing are not counted.
+    /// Time of the steps, without setup and comparison.
     pub wall: Duration,
 }
 
-/// How often a run is repeated. The least time counts: all that disturbs a run makes it longer.
+/// Number of repetitions of a run. The shortest time counts, since disturbances only lengthen it.
 #[derive(Clone, Copy, Debug)]
 pub struct Repeats {
-    /// At least so often; 1 or more.
+    /// Minimum, 1 or more.
     pub least: u32,
-    /// At most so often.
+    /// Maximum.
     pub most: u32,
-    /// No further once all repeats together took this long.
+    /// Total time after which no further repetition starts.
     pub enough: Duration,
 }
 
 impl Repeats {
-    /// For figures that are kept: 2 to 200 times, until half a second has passed.
+    /// For published figures: 2 to 200 times, until half a second has passed.
     pub const THOROUGH: Self = Self { least: 2, most: 200, enough: Duration::from_millis(500) };
-    /// For a look: 2 to 5 times, until a twentieth of a second has passed.
+    /// For a quick look: 2 to 5 times, until a twentieth of a second has passed.
     pub const QUICK: Self = Self { least: 2, most: 5, enough: Duration::from_millis(50) };
 }
 
-/// Runs and times: a row for each norm.
+/// Runs and times a method; returns a row for each norm.
 ///
 /// # Errors
 /// When the run fails, ends in an error that is not finite, or differs from one repeat to the next.
@@ -86,7 +86,7 @@ pub fn measure(model: &str, problem: &str, run: &Run, repeats: Repeats) -> Resul
         dt_secs: run.dt_secs,
         norm: norm.to_owned(),
         error,
-        seconds: wall.as_secs_f64() / first.simulated_secs,
+        wall_secs: wall.as_secs_f64() / first.simulated_secs,
     };
     Ok([("l1", l1), ("l2", l2), ("linf", linf)].map(row).to_vec())
 }
@@ -115,12 +115,12 @@ mod tests {
             Ok(outcome(3.0, time))
         });
         let rows = measure("wind", "made-up", &made_up, Repeats { least: 3, most: 3, enough: Duration::ZERO }).unwrap();
-        let figures: Vec<(&str, f64, f64)> = rows.iter().map(|row| (row.norm.as_str(), row.error, row.seconds)).collect();
+        let figures: Vec<(&str, f64, f64)> = rows.iter().map(|row| (row.norm.as_str(), row.error, row.wall_secs)).collect();
         assert_eq!(figures, [("l1", 1.0, 0.5), ("l2", 2.0, 0.5), ("linf", 3.0, 0.5)]);
     }
 
     #[test]
-    fn what_is_not_finite_or_not_repeatable_is_refused() {
+    fn runs_that_are_not_finite_or_not_repeatable_are_rejected() {
         assert!(measure("wind", "made-up", &run(|| Ok(outcome(f64::NAN, 1.0))), Repeats::QUICK).is_err());
         let calls = Cell::new(0.0);
         let restless = run(move || {

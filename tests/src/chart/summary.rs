@@ -1,4 +1,4 @@
-//! Which method wins where, on one screen.
+//! The fastest method per problem and error, as text.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ use super::{Problem, Row};
 /// Error levels shown for a problem.
 const LEVELS: usize = 3;
 
-/// For each problem, at a few levels of error: the fastest method, its wall time, and by how much the best of another family takes longer.
+/// Lists, for each problem and a few error levels, the fastest method, its wall time, and how much longer the best of another family takes.
 pub fn summary(problems: &[Problem], rows: &[Row], norm: &str) -> String {
     let name_width = problems.iter().map(|problem| problem.name.chars().count()).fold(8, usize::max);
     let method_width = rows.iter().map(|row| row.method.chars().count()).fold(8, usize::max);
@@ -18,37 +18,38 @@ pub fn summary(problems: &[Problem], rows: &[Row], norm: &str) -> String {
         let errors = || lines.iter().flat_map(|line| &line.rows).map(|row| row.error);
         let levels = levels(errors().fold(f64::INFINITY, f64::min), errors().fold(0.0, f64::max));
         for (error, name) in levels.into_iter().zip([problem.name].into_iter().chain(std::iter::repeat(""))) {
-            let Some(Winner { method, seconds, next }) = winner(&lines, error) else { continue };
+            let Some(Winner { method, wall_secs, next }) = winner(&lines, error) else { continue };
             let next = match next {
                 Some((next, slower)) => format!("{next}: {slower:.1}×"),
-                None => "no other gets there".into(),
+                None => "no other reaches it".into(),
             };
-            let (error, time) = (format!("{error:.0e}"), time_text(seconds));
-            writeln!(text, "{name:<name_width$}  {error:<7}  {method:<method_width$}  {time:>9}  {next}").expect("a string takes all");
+            let (error, time) = (format!("{error:.0e}"), time_text(wall_secs));
+            writeln!(text, "{name:<name_width$}  {error:<7}  {method:<method_width$}  {time:>9}  {next}")
+                .expect("writing to a string cannot fail");
         }
     }
     text
 }
 
-/// The fastest method at a level of error, and the next of another family.
+/// The fastest method at an error level, and the next of another family.
 struct Winner<'a> {
     method: &'a str,
-    seconds: f64,
+    wall_secs: f64,
     /// Its name, and its time over that of the fastest.
     next: Option<(&'a str, f64)>,
 }
 
 fn winner<'a>(lines: &[Line<'a>], error: f64) -> Option<Winner<'a>> {
-    let mut times: Vec<(f64, &str)> = lines.iter().filter_map(|line| Some((line.seconds_at(error)?, line.method))).collect();
+    let mut times: Vec<(f64, &str)> = lines.iter().filter_map(|line| Some((line.wall_secs_at(error)?, line.method))).collect();
     times.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let &(seconds, method) = times.first()?;
-    let next = times.iter().find(|(_, next)| family(next) != family(method)).map(|&(slower, next)| (next, slower / seconds));
-    Some(Winner { method, seconds, next })
+    let &(wall_secs, method) = times.first()?;
+    let next = times.iter().find(|(_, next)| family(next) != family(method)).map(|&(slower, next)| (next, slower / wall_secs));
+    Some(Winner { method, wall_secs, next })
 }
 
-/// Wall time in three digits.
-pub fn time_text(seconds: f64) -> String {
-    let (value, unit) = match seconds {
+/// Wall time with three significant digits.
+pub fn time_text(wall_secs: f64) -> String {
+    let (value, unit) = match wall_secs {
         s if s < 1e-3 => (s * 1e6, "µs"),
         s if s < 1.0 => (s * 1e3, "ms"),
         s => (s, "s"),
@@ -57,13 +58,13 @@ pub fn time_text(seconds: f64) -> String {
     format!("{value:.digits$} {unit}")
 }
 
-/// Round errors (1, 2 or 5 times a power of ten) from `coarsest` down to `finest`, both ends of the scale among them, at most [`LEVELS`].
+/// Round errors (1, 2 or 5 times a power of ten) from `coarsest` down to `finest`, including both ends of the scale, at most [`LEVELS`].
 fn levels(finest: f64, coarsest: f64) -> Vec<f64> {
     if finest > coarsest {
         return Vec::new();
     }
     let decades = (finest.log10().floor() as i32..=coarsest.log10().ceil() as i32).rev();
-    // Parsed, so that each is the number nearest to what is printed.
+    // Parsed, so that each number is the one nearest to its printed form.
     let round = decades.flat_map(|decade| [5, 2, 1].map(|digit| format!("{digit}e{decade}").parse::<f64>().expect("a number")));
     let round: Vec<f64> = round.filter(|level| (finest..=coarsest).contains(level)).collect();
     if round.len() <= LEVELS {
@@ -92,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn the_winner_changes_with_the_error_asked_for() {
+    fn the_fastest_method_depends_on_the_error() {
         let rows = [
             row("vortex", "cheap, Courant 1", 8, 1e-1, 1e-3),
             row("vortex", "cheap, Courant 1", 16, 1e-2, 1e-1),
@@ -109,7 +110,7 @@ mod tests {
             [
                 vec!["vortex", "1e-1", "cheap, Courant 1", "1.00 ms", "fine: 10.0×"],
                 vec!["1e-2", "fine", "13.3 ms", "cheap, Courant 1: 7.5×"],
-                vec!["1e-3", "fine", "20.0 ms", "no other gets there"],
+                vec!["1e-3", "fine", "20.0 ms", "no other reaches it"],
             ],
             "{text}"
         );

@@ -1,8 +1,8 @@
-//! Markdown tables, and putting them into a document.
+//! Markdown tables, and their insertion into a document.
 
 use std::fmt::Write as _;
 
-/// A Markdown table, its columns padded so that it reads as text too. Cells that look like numbers are set right, others left, by column.
+/// A Markdown table with padded columns. Columns of numbers are aligned right, others left.
 ///
 /// # Panics
 /// When a row has more or fewer cells than the header.
@@ -39,7 +39,7 @@ fn is_number(cell: &str) -> bool {
     cell.starts_with(|c: char| c.is_ascii_digit() || "+-−–<>".contains(c))
 }
 
-/// A document with what stands between `<!-- NAME -->` and `<!-- /NAME -->` replaced by `text`; `None` without exactly one such pair.
+/// Replaces the text between `<!-- NAME -->` and `<!-- /NAME -->` in a document; `None` without exactly one such pair.
 pub fn splice(document: &str, name: &str, text: &str) -> Option<String> {
     let (opening, closing) = (format!("<!-- {name} -->\n"), format!("<!-- /{name} -->"));
     let (before, rest) = document.split_once(&opening)?;

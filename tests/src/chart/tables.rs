@@ -1,4 +1,4 @@
-//! The tables of the documents: fitted orders, and where methods fail.
+//! The tables of the documents: fitted orders and stability limits.
 
 use anyhow::{Context as _, Result};
 
@@ -23,7 +23,7 @@ pub fn orders_table(rows: &[Order]) -> String {
     markdown(&["problem", "scheme", "refined, norm", "formal", "fitted", "least error"], &rows.iter().map(cells).collect::<Vec<_>>())
 }
 
-/// Every kind of method that has a limit, at its limit.
+/// Stability limits of all conditionally stable methods.
 pub fn all_limits() -> Vec<Limit> {
     let line = Transport { cells: [16, 1, 1], spacing_m: [1.0; 3], air_m_per_s: [1.0, 0.0, 0.0], diffusivity_m2_per_s: 0.0, damping: 0.0 };
     let cube = Transport { cells: [8; 3], spacing_m: [1.0, 0.5, 2.0], air_m_per_s: [1.0, -0.7, 0.5], ..line };
@@ -51,7 +51,7 @@ pub fn limits_table(rows: &[Limit]) -> String {
     markdown(&["scheme", "number", "limit in theory", "measured", "ratio"], &rows.iter().map(cells).collect::<Vec<_>>())
 }
 
-/// A document with its tables of orders and limits written anew; takes minutes.
+/// Measures orders and limits again and replaces their tables in a document; takes minutes.
 ///
 /// # Errors
 /// When the document lacks the marks of a table.
@@ -66,7 +66,7 @@ pub fn with_tables(document: &str) -> Result<String> {
 mod tests {
     use super::*;
 
-    /// The first cells of each row of a table, which name it: figures differ with the size.
+    /// The first cells of each row of a table, its key.
     fn names<'a>(document: &'a str, table: &str) -> Vec<Vec<&'a str>> {
         let (_, rest) = document.split_once(&format!("<!-- {table} -->")).unwrap();
         let (rows, _) = rest.split_once("<!-- /").unwrap();

@@ -1,16 +1,16 @@
-//! Where a logarithmic axis has its lines, and what is written at them.
+//! Grid lines and labels of a logarithmic axis.
 
-/// A place on an axis.
+/// A grid line of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// The value there.
+    /// Value.
     pub value: f64,
-    /// What is written; `None` for a faint line between.
+    /// Label; `None` for a minor line.
     pub label: Option<String>,
 }
 
-/// Multiples of the powers of ten in a range; on the longest axes the powers alone. On long axes only these are labelled, on shorter ones 2 and 5 times them too,
-/// on the shortest every multiple.
+/// Multiples of the powers of ten in a range; on the longest axes only the powers. Long axes label the powers, shorter ones also 2 and 5 times them, the
+/// shortest every multiple.
 pub fn ticks((least, most): (f64, f64)) -> Vec<Tick> {
     let decades = (most / least).log10();
     let labelled: &[i32] = match decades {
@@ -21,7 +21,7 @@ pub fn ticks((least, most): (f64, f64)) -> Vec<Tick> {
     let powers = least.log10().floor() as i32..=most.log10().floor() as i32;
     let all = powers.flat_map(|power| {
         (1..if decades > 8.0 { 2 } else { 10 }).map(move |digit| {
-            // Parsed, so that each is the number nearest to what is printed.
+            // Parsed, so that each number is the one nearest to its printed form.
             let value = format!("{digit}e{power}").parse().expect("a number");
             Tick { value, label: labelled.contains(&digit).then(|| label(digit, power)) }
         })
@@ -29,7 +29,7 @@ pub fn ticks((least, most): (f64, f64)) -> Vec<Tick> {
     all.filter(|tick| (least..=most).contains(&tick.value)).collect()
 }
 
-/// Plain from 0.001 to below 1000, else `2·10⁻⁴`.
+/// Plain number from 0.001 to below 1000, otherwise like `2·10⁻⁴`.
 fn label(digit: i32, power: i32) -> String {
     match power {
         -3..=-1 => format!("0.{}{digit}", "0".repeat((-1 - power) as usize)),

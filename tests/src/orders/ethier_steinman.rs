@@ -1,8 +1,8 @@
 //! Orders on the flow of Ethier & Steinman.
 
-use server::wind::Advection::{Bfecc, Conservative, MacCormack, SemiLagrangian};
-use server::wind::TimeScheme::{Reflection, RungeKutta3, Split};
-use server::wind::{Advection, Boundary, Config, Solver, TimeScheme};
+use prairie_wind::Advection::{Bfecc, Conservative, MacCormack, SemiLagrangian};
+use prairie_wind::TimeScheme::{Reflection, RungeKutta3, Split};
+use prairie_wind::{Advection, Boundary, Config, Solver, TimeScheme};
 
 use super::Order;
 use crate::air::{run, still_air, velocity_error};
@@ -10,10 +10,10 @@ use crate::problems::EthierSteinman;
 
 const NAME: &str = "Ethier–Steinman";
 const SECS: f64 = 6.0;
-/// Speed of the problem times the step over the spacing. The air is up to 3.5 times as fast.
+/// Courant number of the problem's reference speed. The air is up to 3.5 times as fast.
 const COURANT: f64 = 0.1;
 
-/// A scheme, its formal order, and where it is tried.
+/// A scheme, its formal order, and its test parameters.
 struct Trial {
     advection: Advection,
     time: TimeScheme,
@@ -22,7 +22,7 @@ struct Trial {
     cells: &'static [usize],
 }
 
-/// The flow in a box whose side the numbers of cells tried divide without rounding.
+/// The flow in a box whose side is divisible by all tested numbers of cells without rounding.
 fn flow(viscosity_m2_per_s: f64) -> EthierSteinman {
     EthierSteinman { side_m: 48.0, speed_m_per_s: 1.0, viscosity_m2_per_s }
 }
@@ -37,16 +37,16 @@ fn error_l2(trial: &Trial, cells: usize) -> f64 {
         ..still_air([cells; 3], [spacing_m; 3], [[Boundary::Inflow; 2]; 3])
     };
     let mut air = Solver::<f64>::new(&config).expect("settings are allowed");
-    air.prescribe(move |position, time_secs| problem.velocity(position, time_secs));
+    air.set_inflow(move |position, time_secs| problem.velocity(position, time_secs));
     air.set_velocity(|position| problem.velocity(position, 0.0));
     run(&mut air, SECS, (SECS * problem.speed_m_per_s / (COURANT * spacing_m)).round() as usize);
     velocity_error(&air, |position| problem.velocity(position, SECS)).l2
 }
 
-/// Each scheme in a box on all six faces of which the velocity is prescribed, time step in proportion to the spacing.
+/// Each scheme in a box with the velocity prescribed on all six faces, time step in proportion to the spacing.
 ///
-/// The numerical viscosity of semi-Lagrangian advection, `|u|·h/2`, must be small beside the flow's own before its order shows: that takes thick air and fine
-/// grids.
+/// The numerical viscosity of semi-Lagrangian advection, `|u|·h/2`, must be small compared with the flow's own for the order to show: this needs a high
+/// viscosity and fine grids.
 pub fn beltrami() -> Vec<Order> {
     let trial = |advection, time, formal, viscosity_m2_per_s, cells| Trial { advection, time, formal, viscosity_m2_per_s, cells };
     let trials = [

@@ -1,4 +1,4 @@
-//! Fitted orders of accuracy of the wind, beside the orders theory gives.
+//! Fitted orders of accuracy of the wind solver beside the formal ones.
 //!
 //! Each function runs its problem and returns a row per scheme; the tests assert the rows, and a document can show the same rows as a table.
 
@@ -19,23 +19,23 @@ pub fn all() -> Vec<Order> {
     [advection_and_time, space, time, beltrami, rotating_gaussian, heat_space, heat_time].into_iter().flat_map(|rows| rows()).collect()
 }
 
-/// How far a fitted order may be from the formal one.
+/// Largest allowed difference between a fitted order and the formal one.
 pub const TOLERANCE: f64 = 0.1;
 
-/// The order at which the error of one scheme shrinks.
+/// Order of convergence of one scheme.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Order {
-    /// What was solved, such as `Taylor–Green`.
+    /// Problem, such as `Taylor–Green`.
     pub problem: &'static str,
     /// The scheme.
     pub scheme: String,
-    /// What was refined, and the norm of the error.
+    /// Refined quantity and norm of the error.
     pub quantity: &'static str,
-    /// What theory gives.
+    /// Order in theory.
     pub formal: f64,
     /// Slope of the least-squares line through the logarithms of `errors`.
     pub fitted: f64,
-    /// What was refined (m or s), and the error that was left, coarse to fine.
+    /// Refined quantity (m or s) and remaining error, coarse to fine.
     pub errors: Vec<(f64, f64)>,
 }
 
@@ -45,7 +45,7 @@ impl Order {
         Self { problem, scheme: scheme.into(), quantity, formal, fitted: fitted_order(&errors), errors }
     }
 
-    /// True where the fitted order is the formal one, to [`TOLERANCE`].
+    /// Whether the fitted order is the formal one within [`TOLERANCE`].
     pub fn is_formal(&self) -> bool {
         (self.fitted - self.formal).abs() <= TOLERANCE
     }

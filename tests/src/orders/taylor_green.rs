@@ -1,34 +1,29 @@
 //! Orders on the decaying Taylor–Green vortex.
 
-use server::wind::Advection::{Bfecc, Conservative, MacCormack, SemiLagrangian};
-use server::wind::TimeScheme::{Reflection, RungeKutta3, Split};
-use server::wind::{Advection, Boundary, Config, Diffusion, Solver, TimeScheme};
+use prairie_wind::TimeScheme::{Reflection, RungeKutta3, Split};
+use prairie_wind::{Advection, Boundary, Config, Diffusion, Solver, TimeScheme};
 
 use super::Order;
 use crate::air::{run, still_air, velocity_difference, velocity_error};
 use crate::norms::Norms;
 use crate::problems::TaylorGreen;
 
-/// Its side is one that the numbers of cells tried divide without rounding.
+/// The side is divisible by all tested numbers of cells without rounding.
 const PROBLEM: TaylorGreen = TaylorGreen { side_m: 48.0, speed_m_per_s: 1.0, drift_m_per_s: [0.5, 0.25], viscosity_m2_per_s: 0.1875 };
-/// A viscosity (m²/s) at which the error of friction in time shows.
+/// A viscosity (m²/s) large enough for the time error of diffusion to show.
 const THICK_M2_PER_S: f64 = 3.0;
 const NAME: &str = "Taylor–Green";
 const SECS: f64 = 6.0;
 /// Largest sum of the speeds along both axes (m/s).
 const FASTEST_M_PER_S: f64 = 1.75;
 
-/// Every advection with every time scheme it is allowed with, and its formal order.
-const SCHEMES: [(Advection, TimeScheme, f64); 8] = [
-    (SemiLagrangian, Split, 1.0),
-    (MacCormack, Split, 1.0),
-    (Bfecc, Split, 1.0),
-    (Conservative, Split, 1.0),
-    (SemiLagrangian, Reflection, 1.0),
-    (MacCormack, Reflection, 2.0),
-    (Bfecc, Reflection, 2.0),
-    (Conservative, RungeKutta3, 2.0),
-];
+/// Every allowed pair of advection and time scheme, with its formal order.
+fn schemes() -> impl Iterator<Item = (Advection, TimeScheme, u32)> {
+    let pairs = TimeScheme::ALL.iter().flat_map(|&time| Advection::ALL.iter().map(move |&advection| (advection, time)));
+    pairs
+        .filter(|&(advection, time)| time.allows(advection))
+        .map(|(advection, time)| (advection, time, advection.order().min(time.order())))
+}
 
 fn config(cells: usize) -> Config {
     let spacing_m = PROBLEM.side_m / cells as f64;
@@ -45,7 +40,7 @@ fn vortex(config: &Config, steps: usize) -> Solver<f64> {
     air
 }
 
-/// Steps to the end at a Courant number.
+/// Number of steps at a Courant number.
 fn steps(cells: usize, courant: f64) -> usize {
     (SECS * FASTEST_M_PER_S * cells as f64 / (PROBLEM.side_m * courant)).round() as usize
 }
@@ -56,20 +51,20 @@ fn error_at_end(config: &Config, steps: usize) -> Norms {
 
 /// Every advection with every time scheme, time step in proportion to the spacing.
 ///
-/// The error of the semi-Lagrangian family mixes powers of the spacing and the step, `h²/dt` among them, so that it has an order only along such a line. Split
-/// schemes run at a Courant number of 0.4, at which their first-order error shows on coarse grids, others at 0.25. MacCormack and BFECC of second order fall back
-/// to first next to extrema: the error of that is of higher order in the mean, but stands in the way on coarse grids.
+/// The error of the semi-Lagrangian family mixes powers of the spacing and the time step, `h²/dt` among them, so it has an order only along such a line.
+/// Split schemes run at a Courant number of 0.4, where their first-order error shows on coarse grids, others at 0.25. MacCormack and BFECC fall back to first
+/// order next to extrema; the resulting error is of higher order in the mean but visible on coarse grids.
 pub fn advection_and_time() -> Vec<Order> {
     let mut rows = Vec::new();
-    for (advection, time, formal) in SCHEMES {
+    for (advection, time, formal) in schemes() {
         let courant = if time == Split { 0.4 } else { 0.25 };
-        let cells = if time == Reflection && formal == 2.0 { [96, 128, 192] } else { [48, 64, 96] };
-        let dampings: &[f32] = if advection == Conservative { &[1.0, 0.0] } else { &[1.0] };
+        let cells = if time == Reflection && formal == 2 { [96, 128, 192] } else { [48, 64, 96] };
+        let dampings: &[f32] = if advection.uses_fluxes() { &[1.0, 0.0] } else { &[1.0] };
         for &damping in dampings {
             let error = |n: usize| error_at_end(&Config { advection, time, damping, ..config(n) }, steps(n, courant)).l1;
             let errors = cells.map(|n| (PROBLEM.side_m / n as f64, error(n)));
-            let note = if advection == Conservative { format!(", damping {damping}") } else { String::new() };
-            rows.push(Order::fit(NAME, format!("{advection:?} {time:?}{note}"), "dt ∝ h, L1", formal, errors.to_vec()));
+            let note = if advection.uses_fluxes() { format!(", damping {damping}") } else { String::new() };
+            rows.push(Order::fit(NAME, format!("{advection:?} {time:?}{note}"), "dt ∝ h, L1", formal.into(), errors.to_vec()));
         }
     }
     rows

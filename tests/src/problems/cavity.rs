@@ -2,7 +2,7 @@
 
 use crate::norms::Norms;
 
-/// Seventeen places along a centreline and the velocity there, both ends included.
+/// Velocity at seventeen positions along a centreline, both ends included.
 pub type Centreline = [(f64, f64); 17];
 
 /// Published velocities of the steady flow in a square whose lid slides, with side and lid speed 1: the lid is y = 1 and moves towards positive x.
@@ -19,7 +19,7 @@ pub struct Cavity {
 }
 
 impl Cavity {
-    /// How far u(y) on x = 1/2 and v(x) on y = 1/2, both as shares of the lid speed, are from the table.
+    /// Norms of the differences from the table of u(y) on x = 1/2 and v(x) on y = 1/2, relative to the lid speed.
     pub fn compare(&self, u_at: impl Fn(f64) -> f64, v_at: impl Fn(f64) -> f64) -> [Norms; 2] {
         let vertical = self.vertical.iter().map(|&(y, u)| (u_at(y), u));
         let horizontal = self.horizontal.iter().map(|&(x, v)| (v_at(x), v));
@@ -27,10 +27,10 @@ impl Cavity {
     }
 }
 
-/// Ghia, Ghia & Shin (J. Comput. Phys. 48, 1982), tables I and II, Re = 100.
+/// Ghia et al. 1982, tables I and II, Re = 100.
 ///
-/// The table's own error: a second-order stream-function solution, extrapolated from 129 × 129 and 257 × 257 nodes, is 0.24 % (u) and 0.48 % (v) of the lid
-/// speed away in root mean square. u(0.0703) = −0.04775 looks like a misprint: that solution has −0.0466, and agrees with the places beside it to 1e-4.
+/// The table's own error: a second-order stream-function solution, extrapolated from 129 × 129 and 257 × 257 nodes, is 0.24 % (u) and 0.48 % (v) of the
+/// lid speed away in root mean square. u(0.0703) = −0.04775 looks like a misprint: that solution has −0.0466, and agrees with the neighbouring values to 1e-4.
 #[rustfmt::skip]
 pub const GHIA_RE_100: Cavity = Cavity {
     reynolds: 100.0,
@@ -46,11 +46,11 @@ pub const GHIA_RE_100: Cavity = Cavity {
     ],
 };
 
-/// Ghia, Ghia & Shin (J. Comput. Phys. 48, 1982), tables I and II, Re = 1000.
+/// Ghia et al. 1982, tables I and II, Re = 1000.
 ///
-/// Some copies have −0.31996 for v(0.8047); most have −0.31966, as here, which lies beside the −0.32021 of [`BOTELLA_PEYRET_RE_1000`]. The table's own error
-/// is as large as 1.85 % of the lid speed near the right wall: 0.35 % (u) and 0.94 % (v) in root mean square beside the spectral solution, which is what a
-/// perfect solver differs by.
+/// Some copies have −0.31996 for v(0.8047); most have −0.31966, as here, close to the −0.32021 of [`BOTELLA_PEYRET_RE_1000`]. The table's own error is
+/// up to 1.85 % of the lid speed near the right wall: 0.35 % (u) and 0.94 % (v) in root mean square against the spectral solution. A perfect solver
+/// differs from the table by as much.
 #[rustfmt::skip]
 pub const GHIA_RE_1000: Cavity = Cavity {
     reynolds: 1000.0,
@@ -66,7 +66,7 @@ pub const GHIA_RE_1000: Cavity = Cavity {
     ],
 };
 
-/// Botella & Peyret (Computers & Fluids 27, 1998), tables 9 and 10, Re = 1000: a spectral solution, with the corner singularities subtracted, to seven
+/// Botella & Peyret 1998, tables 9 and 10, Re = 1000: a spectral solution, with the corner singularities subtracted, to seven
 /// digits. Their lid moves towards negative x; mirrored here.
 #[rustfmt::skip]
 pub const BOTELLA_PEYRET_RE_1000: Cavity = Cavity {
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn the_places_are_nodes_of_a_grid_of_129() {
+    fn positions_are_nodes_of_a_grid_of_129() {
         for cavity in TABLES {
             for (place, _) in cavity.vertical.into_iter().chain(cavity.horizontal) {
                 let node = (place * 128.0).round() / 128.0;
@@ -113,9 +113,9 @@ mod tests {
         }
     }
 
-    /// Net flow across a centreline is none: a misprint in one of few places would tip the integral.
+    /// The net flow across a centreline is zero; a misprint in one of the few positions would change the integral.
     #[test]
-    fn as_much_air_comes_as_goes() {
+    fn the_net_flow_across_each_centreline_is_zero() {
         for cavity in TABLES {
             for line in [cavity.vertical, cavity.horizontal] {
                 let through: f64 = line.windows(2).map(|w| 0.5 * (w[0].1 + w[1].1) * (w[1].0 - w[0].0)).sum();
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tables_differ_by_what_their_documentation_says() {
+    fn the_tables_differ_by_their_documented_errors() {
         let (a, b) = (GHIA_RE_1000, BOTELLA_PEYRET_RE_1000);
         let at = |line: Centreline| move |place: f64| line.iter().find(|point| point.0 == place).expect("the same places").1;
         let [u, v] = a.compare(at(b.vertical), at(b.horizontal));

@@ -1,4 +1,4 @@
-//! Finite differences of eighth order, with which the formulas of this folder are tried.
+//! Finite differences of eighth order, to verify the formulas of this folder.
 
 /// Weights of the first derivative for offsets 1 to 4; odd.
 const FIRST: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
@@ -30,7 +30,7 @@ pub(super) fn laplacian(f: impl Fn([f64; 3]) -> f64, position: [f64; 3], step: f
     (curvature(0) + curvature(1) + curvature(2)) / (step * step)
 }
 
-/// What an incompressible flow leaves of its equations at a place and time.
+/// Residuals of an incompressible flow at a position and time.
 pub(super) struct Residual {
     /// ∇·u (1/s).
     pub(super) divergence: f64,

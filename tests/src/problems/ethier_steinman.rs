@@ -1,8 +1,8 @@
-//! A flow in three dimensions that is known exactly.
+//! An exact solution of the Navier–Stokes equations in three dimensions.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-/// The decaying Beltrami flow of Ethier & Steinman (Int. J. Numer. Methods Fluids 19, 1994), with their a = π/4 and d = π/2: its vorticity is along its
+/// The decaying Beltrami flow of Ethier & Steinman 1994, with their a = π/4 and d = π/2: its vorticity is along its
 /// velocity, so that the pressure balances advection and viscosity alone makes it decay.
 ///
 /// The paper's cube [−1, 1]³ becomes the box [0, side]³: positions are shifted by, and measured in, half the side, which keeps the solution exact at any
@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 pub struct EthierSteinman {
     /// Side of the box (m). The paper's cube has 2.
     pub side_m: f64,
-    /// What the paper's velocities are multiplied with (m/s); the largest speed in the box at the start, on its surface, is 3.5 times as much.
+    /// Factor of the paper's velocities (m/s). The largest initial speed, on the surface of the box, is 3.5 times as much.
     pub speed_m_per_s: f64,
     /// Kinematic viscosity (m²/s). The paper has 1 for its dimensionless flow.
     pub viscosity_m2_per_s: f64,
@@ -94,7 +94,7 @@ mod tests {
 
     /// The paper's own formula for u, written out, at one corner of its cube.
     #[test]
-    fn it_is_the_flow_of_the_paper() {
+    fn velocity_matches_the_published_formula() {
         let flow = EthierSteinman { side_m: 2.0, speed_m_per_s: 1.0, viscosity_m2_per_s: 1.0 };
         let ([x, y, z], t) = ([0.25, -0.5, 0.75], 0.2);
         let u = -A * ((A * x).exp() * (A * y + D * z).sin() + (A * z).exp() * (A * x + D * y).cos()) * (-D * D * t).exp();

@@ -2,14 +2,14 @@
 
 use std::f64::consts::PI;
 
-/// What a point of heat becomes: the exact solution of `∂ρ/∂t = κ∇²ρ` in a box that wraps, as the sum of the kernels of all its images.
+/// Exact solution of `∂ρ/∂t = κ∇²ρ` for a point source in a periodic box: the sum of the kernels of all periodic images.
 ///
-/// It is a product over the axes; an axis that is left out is one along which nothing changes, so that one to three dimensions can be tried.
+/// The solution is a product over the axes. Nothing changes along an axis that is left out, so one to three dimensions can be tested.
 #[derive(Clone, Copy, Debug)]
 pub struct HeatKernel {
-    /// Sides of the box (m) that wraps; `None` for an axis along which the heat is spread evenly from the start.
+    /// Sides of the box (m); `None` for an axis along which the heat is uniform.
     pub side_m: [Option<f64>; 3],
-    /// Where the point is (m).
+    /// Position of the source (m).
     pub centre_m: [f64; 3],
     /// Diffusivity κ (m²/s).
     pub diffusivity_m2_per_s: f64,
@@ -18,7 +18,7 @@ pub struct HeatKernel {
 impl HeatKernel {
     /// Density (1/m per axis that is not left out; its integral over the box is 1) at a position (m) and time (s) above 0.
     ///
-    /// Images are summed until what is left out is below rounding, so late times, when heat has gone round the box many times, cost more.
+    /// Images are summed until the remainder is below rounding. Late times need more images and cost more.
     pub fn density(&self, position_m: [f64; 3], time_secs: f64) -> f64 {
         let spread = 4.0 * self.diffusivity_m2_per_s * time_secs;
         let along = |axis: usize, side: f64| {
@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn it_wraps_keeps_its_heat_and_spreads_evenly_in_the_end() {
+    fn it_is_periodic_conserves_heat_and_becomes_uniform() {
         for side_m in SIDES_M {
             let (kernel, volume) = (kernel(side_m), side_m.iter().flatten().product::<f64>());
             let [x, y, z] = side_m.map(|side| side.unwrap_or(1.0));

@@ -1,11 +1,11 @@
-//! Problems with exact solutions, and published tables: what a solver's answer is compared with.
+//! Reference solutions: exact solutions and published tables.
 //!
-//! Positions are metres from the lower corner of a box, y up; what lies in a plane lies in x–z, save for the cavity, whose lid is on top. Velocities are
+//! Positions are metres from the lower corner of a box, y up; plane problems are in x–z, except the cavity, whose lid is on top. Velocities are
 //! m/s; pressures are those over the density (m²/s²), up to a constant.
 //!
-//! | problem | what it tries |
+//! | problem | tested part |
 //! |---|---|
-//! | [`TaylorGreen`] | the whole solver in two dimensions, on a box that wraps |
+//! | [`TaylorGreen`] | the whole solver in two dimensions, in a periodic box |
 //! | [`EthierSteinman`] | the whole solver in three dimensions, with prescribed velocity on every face |
 //! | [`Cavity`] | no-slip walls and a moving lid, against three published tables |
 //! | [`SlottedDisc`], [`RotatingGaussian`], [`drifting_hill`] | advection alone: sharp edges, a smooth hill on curved and on straight paths |

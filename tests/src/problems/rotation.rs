@@ -1,10 +1,10 @@
-//! What turns without changing.
+//! Solid-body rotation of a scalar: Zalesak's disc and a Gaussian hill.
 
 use std::f64::consts::TAU;
 
-/// Air that turns like a solid body about the middle of a square in the x–z plane: what it carries is back where it was after each period.
+/// Solid-body rotation about the middle of a square in the x–z plane: after each period, a carried scalar is back at its start.
 ///
-/// It flows through the faces of the box, so they need [`Rotation::velocity`] prescribed, or what is carried must stay in the circle that the box holds.
+/// Air flows through the faces of the box. Either [`Rotation::velocity`] is prescribed there, or the scalar stays within the inscribed circle.
 #[derive(Clone, Copy, Debug)]
 pub struct Rotation {
     /// Side of the square (m).
@@ -20,7 +20,7 @@ impl Rotation {
         [omega * (centre - z), 0.0, omega * (x - centre)]
     }
 
-    /// Where the air at a position (m) was at time 0, as shares of the side along x and z.
+    /// Position at time 0 of the air now at a position (m), in units of the side along x and z.
     fn origin(&self, [x, _, z]: [f64; 3], time_secs: f64) -> [f64; 2] {
         let (x, z) = (x / self.side_m - 0.5, z / self.side_m - 0.5);
         let (sin, cos) = (TAU * time_secs / self.period_secs).sin_cos();
@@ -28,7 +28,7 @@ impl Rotation {
     }
 }
 
-/// The slotted disc of Zalesak (J. Comput. Phys. 31, 1979): on a square of 100, a disc of radius 15 about (50, 75) with a slot 5 wide and 25 long from its
+/// The slotted disc of Zalesak 1979: on a square of 100, a disc of radius 15 about (50, 75) with a slot 5 wide and 25 long from its
 /// lower rim; density 1 inside, 0 outside. It is turned once, in 628 steps at unit spacing.
 #[derive(Clone, Copy, Debug)]
 pub struct SlottedDisc(pub Rotation);
@@ -42,8 +42,8 @@ impl SlottedDisc {
         if in_disc && !in_slot { 1.0 } else { 0.0 }
     }
 
-    /// Mean density over a cell about a position (m) of `cell_m` along x and z, from `samples` × `samples` points in it: what a scheme that conserves
-    /// should start from and end with.
+    /// Mean density of the cell of `cell_m` (m) along x and z around a position (m), from `samples` × `samples` points: the initial and final value of a
+    /// conservative scheme.
     pub fn mean_density(&self, [x, y, z]: [f64; 3], cell_m: [f64; 2], samples: usize, time_secs: f64) -> f64 {
         let offset = |n: usize, size: f64| ((n as f64 + 0.5) / samples as f64 - 0.5) * size;
         let points = (0..samples * samples).map(|n| [x + offset(n % samples, cell_m[0]), y, z + offset(n / samples, cell_m[1])]);
@@ -55,9 +55,9 @@ impl SlottedDisc {
 /// advection alone.
 #[derive(Clone, Copy, Debug)]
 pub struct RotatingGaussian {
-    /// What turns it.
+    /// Its rotation.
     pub rotation: Rotation,
-    /// Its standard deviation as a share of the side. Up to 0.04 it is below 1e-8 outside of the circle that the square holds.
+    /// Standard deviation as a fraction of the side. Up to 0.04, the density outside the inscribed circle is below 1e-8.
     pub width: f64,
 }
 
@@ -78,7 +78,7 @@ mod tests {
     const ROTATION: Rotation = Rotation { side_m: 100.0, period_secs: 628.0 };
 
     #[test]
-    fn the_hill_is_carried_and_nothing_else() {
+    fn the_hill_solves_the_advection_equation() {
         let hill = RotatingGaussian { rotation: ROTATION, width: 0.05 };
         for position in [[50.0, 0.0, 70.0], [47.0, 0.0, 78.0], [30.0, 0.0, 60.0]] {
             for time in [0.0, 37.0] {
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn the_slot_is_where_zalesak_cut_it() {
+    fn the_slot_has_zalesaks_position_and_size() {
         let disc = SlottedDisc(ROTATION);
         let inside = [[36.0, 0.0, 75.0], [50.0, 0.0, 85.1], [52.6, 0.0, 70.0], [47.4, 0.0, 61.0], [50.0, 0.0, 89.9]];
         let outside = [[34.9, 0.0, 75.0], [50.0, 0.0, 84.9], [52.4, 0.0, 70.0], [47.6, 0.0, 61.0], [50.0, 0.0, 90.1]];
@@ -109,9 +109,9 @@ mod tests {
         assert!(outside.iter().all(|&x| disc.density(x, 0.0) == 0.0));
     }
 
-    /// Disc without slot: π·15². The slot takes a rectangle 5 by 25 from 60 to 85, less the two slivers by which it leaves the disc at the rim.
+    /// Disc without slot: π·15². The slot removes a rectangle 5 by 25 from 60 to 85, except for the two slivers outside the disc at the rim.
     #[test]
-    fn its_area_is_kept_as_it_turns() {
+    fn the_area_of_the_disc_is_conserved() {
         let disc = SlottedDisc(ROTATION);
         let chord = 15.0 * 15.0 * (2.5f64 / 15.0).asin() + 2.5 * (15.0f64 * 15.0 - 2.5 * 2.5).sqrt();
         let exact = std::f64::consts::PI * 15.0 * 15.0 - (5.0 * 10.0 + chord);

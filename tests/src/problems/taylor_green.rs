@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-/// The decaying Taylor–Green vortex (Taylor & Green, Proc. R. Soc. A 158, 1937) in the x–z plane of a box that wraps, over a uniform mean wind:
+/// The decaying Taylor–Green vortex (Taylor & Green 1937) in the x–z plane of a periodic box, with a uniform mean wind:
 /// an exact solution of the Navier–Stokes equations at any viscosity.
 #[derive(Clone, Copy, Debug)]
 pub struct TaylorGreen {
@@ -10,7 +10,7 @@ pub struct TaylorGreen {
     pub side_m: f64,
     /// Speed of the vortices at the start (m/s).
     pub speed_m_per_s: f64,
-    /// Velocity (m/s) along x and z the vortices drift with.
+    /// Drift velocity of the vortices along x and z (m/s).
     pub drift_m_per_s: [f64; 2],
     /// Kinematic viscosity (m²/s).
     pub viscosity_m2_per_s: f64,
@@ -30,7 +30,7 @@ impl TaylorGreen {
         0.25 * speed * speed * ((2.0 * x).cos() + (2.0 * z).cos())
     }
 
-    /// Speed that is left, and the phase at a position.
+    /// Remaining speed, and the phase at a position.
     fn at(&self, [x, _, z]: [f64; 3], time_secs: f64) -> (f64, [f64; 2]) {
         let k = TAU / self.side_m;
         let [drift_x, drift_z] = self.drift_m_per_s;

@@ -1,15 +1,15 @@
-//! What objects do to the grass: Eqs (1), (10)–(12) of 001, tracks without holes, recovery, whatever the tick rate.
+//! Contact of objects with grass: Chen & Johan, Eqs. (1) and (10)–(12), tracks without holes, recovery, independence of the tick rate.
 
 use glam::Quat;
-use server::bend::air::GroundWind;
-use server::bend::contact::{bend_after_rad, bending_speed_rad_per_s, direction, terrain_limit_rad};
-use server::bend::footprint::Footprint;
-use server::bend::{Meadow, View};
-use server::objects::{Motion, MotionError, Stand};
-use shared::bend::{Bend, Patch};
-use shared::scene::{Scene, VehicleKind};
-use shared::terrain::{CoverMap, HeightMap, grey_png};
-use shared::wire::quantise::{THETA_FULL_RAD, theta_code, theta_rad};
+use prairie::bend::bending::{bend_after_rad, bending_speed_rad_per_s, direction, terrain_limit_rad};
+use prairie::bend::footprint::Footprint;
+use prairie::bend::ground_wind::GroundWind;
+use prairie::bend::{BendSimulation, Camera};
+use prairie::objects::{BodyPose, Motion, MotionError};
+use prairie_core::bend::{Bend, Patch};
+use prairie_core::scene::{Objects, Scene, VehicleKind};
+use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
+use prairie_core::wire::quantise::{THETA_FULL_RAD, theta_code, theta_rad};
 use std::sync::Arc;
 use tests::worlds;
 
@@ -19,43 +19,43 @@ fn still_air() -> GroundWind {
     GroundWind::still(&worlds::scene(1))
 }
 
-/// Wind that blows east everywhere.
+/// A uniform wind to the east.
 fn wind(scene: &Scene, m_per_s: f32) -> GroundWind {
     let mut wind = GroundWind::still(scene);
-    wind.blow(1, std::iter::repeat([m_per_s, 0.0]));
+    wind.set_wind(1, std::iter::repeat([m_per_s, 0.0]));
     wind
 }
 
-fn meadow(scene: &Scene) -> Meadow {
+fn meadow(scene: &Scene) -> BendSimulation {
     let flat = HeightMap::from_heights(2, 2, [1000.0; 2], vec![0.0; 4]);
     let grass = CoverMap::from_png(&grey_png([2; 2], &[255; 4])).expect("a grey PNG");
-    Meadow::new(scene, Arc::new(flat), &grass)
+    BendSimulation::new(scene, Arc::new(flat), &grass)
 }
 
-/// A scene in which nothing stays bent but what the field holds.
+/// A scene without laid grass: only the field bends.
 fn springy(count: u32) -> Scene {
     let mut scene = worlds::scene(count);
     scene.objects.car.lays_share = 0.0;
     scene
 }
 
-/// A step of a car that heads along `(sin, −cos)` of a heading at a speed.
+/// Motion of a car in a step along `(sin, −cos)` of a heading at a speed.
 fn drive(from_m: [f32; 2], heading_rad: f32, speed_m_per_s: f32) -> Motion {
     drive_for(VehicleKind::Car, from_m, heading_rad, speed_m_per_s, DT_SECS)
 }
 
 fn drive_for(kind: VehicleKind, from_m: [f32; 2], heading_rad: f32, speed_m_per_s: f32, dt_secs: f32) -> Motion {
     let (sin, cos) = heading_rad.sin_cos();
-    let foot_m = kind.half_extents_m()[1];
-    let stand = |[x, z]: [f32; 2]| Stand { position_m: [x, foot_m, z], rotation: Quat::from_rotation_y(-heading_rad).to_array() };
+    let foot_m = Objects::default().half_extents_m(kind)[1];
+    let stand = |[x, z]: [f32; 2]| BodyPose { position_m: [x, foot_m, z], rotation: Quat::from_rotation_y(-heading_rad).to_array() };
     let moved = speed_m_per_s * dt_secs;
     let to_m = [from_m[0] + sin * moved, from_m[1] - cos * moved];
     let velocity_m_per_s = [sin * speed_m_per_s, 0.0, -cos * speed_m_per_s];
-    Motion { kind, from: stand(from_m), to: stand(to_m), velocity_m_per_s, rests: false }
+    Motion { kind, from: stand(from_m), to: stand(to_m), velocity_m_per_s, is_at_rest: false }
 }
 
 #[test]
-fn the_bending_speed_is_that_of_eq_12() {
+fn the_bending_speed_follows_eq_12() {
     // A car at 20 m/s that strikes upright grass at 0.3 m; the same grass at 60° has cos² = 1/4.
     assert!((bending_speed_rad_per_s(20.0, 0.0, 0.3) - 66.6667).abs() < 1e-3);
     assert!((bending_speed_rad_per_s(20.0, std::f32::consts::FRAC_PI_3, 0.3) - 16.6667).abs() < 1e-3);
@@ -63,7 +63,7 @@ fn the_bending_speed_is_that_of_eq_12() {
 }
 
 #[test]
-fn the_bend_is_eq_1_with_the_speed_of_eq_12_in_steps_of_any_length() {
+fn the_bend_follows_eqs_1_and_12_at_any_step_length() {
     // tan θ = s·t/h: 20 m/s for 1/60 s at 0.3 m is 1.1111, an angle of 48.01°.
     assert!((bend_after_rad(0.0, 20.0, 0.3, DT_SECS) - 0.837_98).abs() < 1e-5);
     assert!((bend_after_rad(std::f32::consts::FRAC_PI_4, 3.0, 0.3, 0.1) - 2.0_f32.atan()).abs() < 1e-6);
@@ -79,7 +79,7 @@ fn the_bend_is_eq_1_with_the_speed_of_eq_12_in_steps_of_any_length() {
 }
 
 #[test]
-fn directions_are_those_of_fig_7() {
+fn directions_match_fig_7() {
     let hull = Footprint::around(vec![[0.0, 0.0], [4.0, 0.0], [4.0, 8.0], [0.0, 8.0]]);
     let at = |x: f32, z: f32| direction([0.0, -1.0], [x, z], &hull.sides(), 1.0);
     let half = std::f32::consts::FRAC_1_SQRT_2;
@@ -103,7 +103,7 @@ fn grass_bends_less_uphill() {
 }
 
 #[test]
-fn a_fast_car_leaves_no_hole_in_its_track() {
+fn a_fast_car_leaves_no_holes_in_its_track() {
     for heading_rad in [0.0, 0.4, std::f32::consts::FRAC_PI_4, 1.2, 2.9] {
         let scene = springy(6);
         let mut meadow = meadow(&scene);
@@ -127,11 +127,11 @@ fn a_fast_car_leaves_no_hole_in_its_track() {
 }
 
 #[test]
-fn a_track_rises_again_within_its_time_constant() {
+fn a_track_recovers_within_its_time_constant() {
     let mut scene = springy(3);
-    // Bends that spread would hide the rise that is measured.
-    scene.grass.c0_m_per_s = 0.0;
-    scene.grass.mu_m_per_rad = 0.0;
+    // Spreading waves would hide the recovery to be measured.
+    scene.grass.waves.c0_m_per_s = 0.0;
+    scene.grass.waves.mu_m_per_rad = 0.0;
     let mut meadow = meadow(&scene);
     let car = drive([24.0, 24.0], 0.0, 0.0);
     for _ in 0..600 {
@@ -147,7 +147,7 @@ fn a_track_rises_again_within_its_time_constant() {
         assert!(secs < 60.0, "the track does not rise");
     }
     // The slow root of s² + k·s + κ.
-    let (k, kappa) = (scene.grass.theta_damping_per_s, scene.grass.stiffness_per_s2);
+    let (k, kappa) = (scene.grass.waves.theta_damping_per_s, scene.grass.waves.stiffness_per_s2);
     let slow_per_s = 0.5 * (k - (k * k - 4.0 * kappa).sqrt());
     let expected = std::f32::consts::LN_10 / slow_per_s;
     assert!((secs / expected - 1.0).abs() < 0.05, "rose to a tenth in {secs} s, expected {expected} s");
@@ -160,7 +160,7 @@ fn a_track_rises_again_within_its_time_constant() {
     assert_eq!(theta_code(last_rad), 0, "the last patch that fell asleep was bent by {last_rad} rad, which is seen");
 }
 
-/// Where a car that heads along [`CROSSING_RAD`] at 20 m/s is after `secs` (m).
+/// Position (m) of a car on heading [`CROSSING_RAD`] at 20 m/s after `secs`.
 fn crossing_m(secs: f64) -> [f32; 2] {
     let (sin, cos) = CROSSING_RAD.sin_cos();
     let way_m = (20.0 * secs) as f32;
@@ -169,14 +169,14 @@ fn crossing_m(secs: f64) -> [f32; 2] {
 
 const CROSSING_RAD: f32 = 0.7;
 
-/// The grass when such a car has gone 24 m, in steps of `1/hz`: θ (rad) of every cell, and how far behind the car's middle it lies (m).
+/// Grass after such a car has driven 24 m in steps of `1/hz`: θ (rad) of every cell, and its distance behind the car's middle (m).
 fn crossed(scene: &Scene, hz: u32) -> Vec<(f32, f32)> {
     let mut meadow = meadow(scene);
     let (ticks, dt_secs) = (hz * 6 / 5, 1.0 / hz as f32);
     for tick in 0..ticks {
         let [from, to] = [tick, tick + 1].map(|tick| crossing_m(f64::from(tick) / f64::from(hz)));
         let motion = drive_for(VehicleKind::Car, from, CROSSING_RAD, 20.0, dt_secs);
-        let to = Stand { position_m: [to[0], motion.to.position_m[1], to[1]], ..motion.to };
+        let to = BodyPose { position_m: [to[0], motion.to.position_m[1], to[1]], ..motion.to };
         meadow.step(dt_secs, &[Motion { to, ..motion }], &[], &still_air());
     }
     let ([x_m, z_m], (sin, cos)) = (crossing_m(1.2), CROSSING_RAD.sin_cos());
@@ -185,20 +185,20 @@ fn crossed(scene: &Scene, hz: u32) -> Vec<(f32, f32)> {
     cells.map(|[x, z]| (meadow.field().bend_at(x, z).theta, cos * (z - z_m) - sin * (x - x_m))).collect()
 }
 
-/// Largest difference of θ (rad) between two fields, on the track that the car has left and anywhere.
+/// Largest difference of θ (rad) between two fields, on the track that the car has left, and anywhere.
 fn differences_rad(a: &[(f32, f32)], b: &[(f32, f32)]) -> [f32; 2] {
     let largest = |on: fn(f32) -> bool| a.iter().zip(b).filter(|(a, _)| on(a.1)).map(|(a, b)| (a.0 - b.0).abs()).fold(0.0, f32::max);
     [largest(|behind_m| (3.0..21.0).contains(&behind_m)), largest(|_| true)]
 }
 
-/// The track is the same to rounding. Where the car set out two of its parts are over the same grass at once, one after the other in
-/// each step; there, and where waves have carried the bend on, the difference is of the order of the step.
+/// The track is the same to rounding. At the start, two parts of the car cover the same grass, one after the other in each step; there, and where
+/// waves have moved the bend, the difference is of the order of the step.
 #[test]
 fn a_crossing_leaves_the_same_bend_at_any_tick_rate() {
     let mut still = springy(3);
     // Contact alone: nothing spreads and nothing rises.
-    (still.grass.c0_m_per_s, still.grass.mu_m_per_rad, still.grass.c_omega_m_per_s) = (0.0, 0.0, 0.0);
-    (still.grass.stiffness_per_s2, still.grass.omega_damping_per_s) = (0.0, 0.0);
+    (still.grass.waves.c0_m_per_s, still.grass.waves.mu_m_per_rad, still.grass.waves.c_omega_m_per_s) = (0.0, 0.0, 0.0);
+    (still.grass.waves.stiffness_per_s2, still.grass.waves.omega_damping_per_s) = (0.0, 0.0);
     let contact = [20, 60, 120].map(|hz| crossed(&still, hz));
     assert!(contact[0].iter().filter(|(theta, _)| *theta > 1.0).count() > 500, "the car leaves a track");
     for (n, hz, bound_rad) in [(0, 20, 0.15), (1, 60, 0.05)] {
@@ -216,10 +216,10 @@ fn a_crossing_leaves_the_same_bend_at_any_tick_rate() {
 }
 
 #[test]
-fn inside_a_concave_object_the_grass_stands() {
+fn grass_inside_a_concave_object_stays_upright() {
     let mut scene = worlds::scene(3);
     // Contact alone: nothing spreads.
-    (scene.grass.c0_m_per_s, scene.grass.mu_m_per_rad) = (0.0, 0.0);
+    (scene.grass.waves.c0_m_per_s, scene.grass.waves.mu_m_per_rad) = (0.0, 0.0);
     let mut meadow = meadow(&scene);
     for _ in 0..300 {
         meadow.step(DT_SECS, &[drive_for(VehicleKind::Sled, [24.0, 24.0], 0.4, 0.0, DT_SECS)], &[], &still_air());
@@ -240,7 +240,7 @@ fn inside_a_concave_object_the_grass_stands() {
 }
 
 #[test]
-fn what_is_no_motion_is_refused_and_touches_nothing() {
+fn invalid_motions_are_rejected_and_touch_nothing() {
     let scene = worlds::scene(4);
     let (mut told, mut spared) = (meadow(&scene), meadow(&scene));
     let sound = drive([20.0, 30.0], 0.3, 12.0);
@@ -250,10 +250,10 @@ fn what_is_no_motion_is_refused_and_touches_nothing() {
             Motion { velocity_m_per_s: [f32::NAN, 0.0, 1.0], ..sound },
             "`velocity_m_per_s` of a car is [NaN, 0.0, 1.0]; allowed: finite numbers",
         ),
-        (Motion { from: Stand { position_m: [f32::INFINITY, 0.0, 0.0], ..sound.from }, ..sound }, "`from.position_m` of a car is [inf"),
-        (Motion { to: Stand { rotation: [f32::NAN; 4], ..sound.to }, ..sound }, "`to.rotation` of a car is [NaN"),
+        (Motion { from: BodyPose { position_m: [f32::INFINITY, 0.0, 0.0], ..sound.from }, ..sound }, "`from.position_m` of a car is [inf"),
+        (Motion { to: BodyPose { rotation: [f32::NAN; 4], ..sound.to }, ..sound }, "`to.rotation` of a car is [NaN"),
         (
-            Motion { to: Stand { rotation: [0.0; 4], ..sound.to }, ..sound },
+            Motion { to: BodyPose { rotation: [0.0; 4], ..sound.to }, ..sound },
             "`to.rotation` of a car is [0.0, 0.0, 0.0, 0.0]; allowed: a unit quaternion",
         ),
         (far, "a car moves 200.0 m in one step; allowed: up to 100 m"),
@@ -261,20 +261,23 @@ fn what_is_no_motion_is_refused_and_touches_nothing() {
     for (motion, expected) in broken {
         told.step(DT_SECS, &[motion, sound], &[], &still_air());
         spared.step(DT_SECS, &[sound], &[], &still_air());
-        let reasons: Vec<_> = told.refused().iter().map(MotionError::to_string).collect();
+        let reasons: Vec<_> = told.rejected().iter().map(MotionError::to_string).collect();
         assert!(reasons.len() == 1 && reasons[0].starts_with(expected), "{reasons:?}");
     }
-    assert_eq!((told.refused_count(), spared.refused_count()), (5, 0));
-    assert!(told.field() == spared.field() && told.laid().words().eq(spared.laid().words()), "the sound motion was felt, the others not");
+    assert_eq!((told.rejected_count(), spared.rejected_count()), (5, 0));
+    assert!(
+        told.field() == spared.field() && told.flattened().words().eq(spared.flattened().words()),
+        "the sound motion was felt, the others not"
+    );
     let mut alone = meadow(&scene);
     alone.step(DT_SECS, &[far], &[], &still_air());
-    assert_eq!((alone.field().awake_count(), alone.laid().tiles()), (0, 0));
+    assert_eq!((alone.field().awake_count(), alone.flattened().tiles()), (0, 0));
 }
 
 #[test]
-fn wind_wakes_no_patch_and_wipes_no_track_out() {
+fn wind_wakes_no_patch_and_erases_no_track() {
     let mut scene = springy(4);
-    scene.grass.mu_m_per_rad = 0.0;
+    scene.grass.waves.mu_m_per_rad = 0.0;
     let track = |wind: &GroundWind| {
         let mut meadow = meadow(&scene);
         for _ in 0..60 {
@@ -285,7 +288,7 @@ fn wind_wakes_no_patch_and_wipes_no_track_out() {
         for _ in 0..300 {
             meadow.step(DT_SECS, &[car], &[], wind);
         }
-        // What the field holds and what the wind does add up to how far the wheel presses, in any wind.
+        // The bends of the field and of the wind add up to the angle pressed by the wheel, in any wind.
         let field = meadow.field().bend_at(32.0, 32.8);
         let along = field.omega.map(|omega| omega / (field.omega[0] * field.omega[0] + field.omega[1] * field.omega[1]).sqrt());
         let [lean_x, lean_z] = wind.lean_rad([32.0, 32.8]);
@@ -302,14 +305,14 @@ fn wind_wakes_no_patch_and_wipes_no_track_out() {
 }
 
 #[test]
-fn no_more_patches_are_awake_than_allowed_and_the_farthest_go_first() {
+fn the_limit_of_awake_patches_holds_and_the_farthest_sleep_first() {
     let mut scene = springy(12);
     scene.patches.awake_limit = 9;
     let mut meadow = meadow(&scene);
     let mut at = [20.0, 20.0];
     for _ in 0..400 {
         let motion = drive(at, 2.0, 25.0);
-        let view = View { client: 0, eye_m: [at[0], 2.0, at[1]] };
+        let view = Camera { client: 0, eye_m: [at[0], 2.0, at[1]] };
         meadow.step(DT_SECS, &[motion], &[view], &still_air());
         assert!(meadow.field().awake_count() <= 9);
         at = motion.to.xz();
@@ -320,7 +323,7 @@ fn no_more_patches_are_awake_than_allowed_and_the_farthest_go_first() {
 }
 
 #[test]
-fn the_wire_has_room_for_grass_that_lies_against_the_strongest_wind() {
+fn the_wire_format_holds_grass_pressed_against_the_strongest_wind() {
     let mut scene = springy(4);
     scene.grass.wind_bend_rad = 1.5;
     let mut meadow = meadow(&scene);

@@ -1,8 +1,8 @@
-//! Where the explicit scheme of 001 fails: by bisection, for constant speeds and for speeds that vary in space; and at road speed.
+//! Stability limit of the explicit scheme of Chen & Johan, by bisection: constant speeds, varying speeds, road speed.
 
-use shared::bend::limits::courant_limit;
-use shared::bend::{Alone, Bend, Edges, Field, Kinds, Scheme, WaveParams};
-use shared::grid::PatchLayout;
+use prairie_core::bend::limits::courant_limit;
+use prairie_core::bend::{Alone, Bend, Edges, Field, Kinds, Scheme, WaveParams};
+use prairie_core::grid::PatchLayout;
 use tests::problems::bend::{Striker, size};
 
 const DT_SECS: f32 = 0.01;
@@ -10,7 +10,7 @@ const COUNT: usize = 32;
 const STEPS: u32 = 2000;
 const BISECTIONS: u32 = 11;
 
-/// Courant number of each cell over the largest, row by row.
+/// Courant number of each cell relative to the largest, row by row.
 type Pattern = Vec<f32>;
 
 fn pattern(of: impl Fn(usize, usize) -> f32) -> Pattern {
@@ -33,16 +33,16 @@ fn wave(c0_m_per_s: f32, damping_per_s: f32, stiffness_per_s2: f32) -> WaveParam
     }
 }
 
-/// Four patches between wrapped edges, of cells of a metre.
+/// Four patches with periodic edges and cells of 1 m.
 fn field(kinds: Kinds) -> Field {
     Field::new(PatchLayout { count: [2, 2], cells: COUNT as u32 / 2, cell_m: 1.0 }, kinds).with_edges(Edges::Wrapped)
 }
 
-/// Whether noise stays bounded at a Courant number of at most `r`: a mode that grows by a thousandth in a step is seen.
+/// Whether noise stays bounded at a Courant number of at most `r`; detects modes that grow by 0.1 % per step.
 fn is_bounded(mut field: Field, omega: impl Fn(usize) -> f32) -> bool {
     field.start(DT_SECS, |[x, z]| {
         let (i, j) = (x as usize, z as usize);
-        // The checkerboard is the first mode to fail; noise holds all others.
+        // The checkerboard is the first mode to fail; noise contains all others.
         let theta = 1e-3 * (random(i, j) as f32 / 2.0f32.powi(24) - 0.5) + if (i + j) % 2 == 0 { 1e-3 } else { -1e-3 };
         [Bend { theta, omega: [omega(j * COUNT + i), 0.0] }; 2]
     });
@@ -52,12 +52,12 @@ fn is_bounded(mut field: Field, omega: impl Fn(usize) -> f32) -> bool {
     })
 }
 
-/// How the Courant number is made to vary.
+/// Cause of a varying Courant number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Cause {
-    /// Kinds of grass with speeds of their own.
+    /// Kinds of grass with different speeds.
     Kinds,
-    /// μ|ω| over an ω that stays as it is.
+    /// μ|ω| with a fixed ω.
     Bending,
 }
 
@@ -73,7 +73,7 @@ fn holds(r: f32, pattern: &Pattern, cause: Cause, [damping, stiffness]: [f32; 2]
             is_bounded(field(Kinds::mapped(waves, [COUNT; 2], kinds)), |_| 0.0)
         }
         Cause::Bending => {
-            // c₀ is a fifth of the largest speed. κ would move ω, too.
+            // c₀ is a fifth of the largest speed. κ would change ω, too.
             assert_eq!(stiffness, 0.0);
             let least = 0.2 * speed;
             let waves = WaveParams { mu_m_per_rad: 1.0, ..wave(least, damping, 0.0) };
@@ -92,8 +92,8 @@ fn bisect(holds: impl Fn(f32) -> bool) -> f32 {
     bounded
 }
 
-/// Largest eigenvalue of `−D·L` over the square of the largest Courant number, D the squares of those of the cells, by power iteration: 8 where all
-/// are the same. `D·L` is similar to the symmetric `D^½·L·D^½`.
+/// Largest eigenvalue of `−D·L` over the square of the largest Courant number, by power iteration, with D the squared Courant numbers of the cells: 8 where
+/// all are equal. `D·L` is similar to the symmetric `D^½·L·D^½`.
 fn spectral_radius(pattern: &Pattern) -> f64 {
     let mut vector: Vec<f64> = (0..COUNT * COUNT).map(|n| f64::from(random(n % COUNT, n / COUNT)) - 8e6).collect();
     let root: Vec<f64> = pattern.iter().map(|share| f64::from(*share)).collect();
@@ -112,13 +112,13 @@ fn spectral_radius(pattern: &Pattern) -> f64 {
     radius
 }
 
-/// k (1/s) that makes λ in a step; at λ = 1 nothing is left of the speed.
+/// Damping rate k (1/s) for λ per step; λ = 1 removes the whole velocity.
 fn damping_per_s(lambda: f32) -> f32 {
     if lambda < 1.0 { -(1.0 - lambda).ln() / DT_SECS } else { 1e6 }
 }
 
 #[test]
-fn constant_speeds_fail_at_the_bound() {
+fn constant_speeds_become_unstable_at_the_bound() {
     let even = pattern(|_, _| 1.0);
     for lambda in [0.0, 0.1, 0.5, 1.0] {
         for restoring in [0.0, 0.3] {
@@ -133,9 +133,9 @@ fn constant_speeds_fail_at_the_bound() {
     }
 }
 
-/// With the largest speed the bound is safe for any pattern; how far from sharp it is, the spectral radius of the pattern says.
+/// The bound with the largest speed is safe for any pattern; the spectral radius of the pattern gives its margin.
 #[test]
-fn speeds_that_vary_in_space_fail_where_their_spectral_radius_says_and_never_below_the_bound() {
+fn varying_speeds_become_unstable_at_their_spectral_radius_and_never_below_the_bound() {
     let low = 0.3;
     let two = |is_high: bool| if is_high { 1.0 } else { low };
     let patterns = [
@@ -166,7 +166,7 @@ fn speeds_that_vary_in_space_fail_where_their_spectral_radius_says_and_never_bel
 
 /// A car at 20 m/s bends grass struck at 0.3 m at 67 rad/s: by Eq. (4) the wave runs at over 100 m/s, four times as fast as a step of a 60th allows.
 #[test]
-fn at_road_speed_001_blows_up_and_sub_steps_survive() {
+fn at_road_speed_the_original_scheme_blows_up_and_sub_steps_do_not() {
     const TICK_SECS: f32 = 1.0 / 60.0;
     let grass = WaveParams {
         c0_m_per_s: 5.0,
@@ -178,21 +178,21 @@ fn at_road_speed_001_blows_up_and_sub_steps_survive() {
     };
     let drive = |scheme: Scheme| {
         let mut field = Field::new(PatchLayout { count: [4, 4], cells: 16, cell_m: 0.4572 }, Kinds::one(grass));
-        let (mut broken, mut most) = (0, 0.0f32);
+        let (mut reset, mut most) = (0, 0.0f32);
         for step in 0..60 {
             let at_m = [-10.0 + 20.0 * TICK_SECS * step as f32, 1.0];
             let car = Striker { at_m, velocity_m_per_s: [20.0, 0.0], radius_m: 1.0, strike_height_m: 0.3 };
             car.press(&mut field, TICK_SECS);
-            broken += field.step(scheme, TICK_SECS, &Alone).unwrap().broken;
+            reset += field.step(scheme, TICK_SECS, &Alone).unwrap().reset_patches;
             most = field.awake().map(|patch| patch.theta_max_rad()).fold(most, f32::max);
         }
         assert_eq!(size(&field), [64; 2]);
-        (broken, most)
+        (reset, most)
     };
-    let (broken, most) = drive(Scheme::Verlet);
-    println!("Verlet: {broken} patches broken, θ up to {most:.1e} rad");
-    assert!(broken > 0 || most > 1e3, "001's own parameters blow up: {most}");
-    let (broken, most) = drive(Scheme::Substepped);
-    println!("sub-stepped: {broken} patches broken, θ up to {most:.2} rad");
-    assert!(broken == 0 && most < 3.0 * std::f32::consts::FRAC_PI_2, "{most}");
+    let (reset, most) = drive(Scheme::Verlet);
+    println!("Verlet: {reset} patches reset, θ up to {most:.1e} rad");
+    assert!(reset > 0 || most > 1e3, "the original parameters must blow up: {most}");
+    let (reset, most) = drive(Scheme::Substepped);
+    println!("sub-stepped: {reset} patches reset, θ up to {most:.2} rad");
+    assert!(reset == 0 && most < 3.0 * std::f32::consts::FRAC_PI_2, "{most}");
 }

@@ -1,4 +1,4 @@
-//! The bend field: accuracy, order, limits, seams, and what presses the grass.
+//! The bend field: accuracy, order, limits, seams, and contact.
 
 mod contact;
 mod limits;

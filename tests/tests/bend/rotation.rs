@@ -1,9 +1,9 @@
-//! The world turned by quarters: the field turns with it.
+//! Quarter turns of the world rotate the field with it.
 
 use std::f32::consts::TAU;
 
-use shared::bend::{Bend, Edges, Field, Kinds, Rest, Scheme, WaveParams};
-use shared::grid::PatchLayout;
+use prairie_core::bend::{Bend, Edges, Field, Kinds, Rest, Scheme, WaveParams};
+use prairie_core::grid::PatchLayout;
 use tests::problems::bend::{Striker, Threads, channels, size};
 
 const DT_SECS: f32 = 1.0 / 60.0;
@@ -11,10 +11,10 @@ const STEPS: u32 = 120;
 /// Radius of the circle (m): that of the corners around the middle one of 4 × 4 patches, over which the cars pass.
 const CIRCLE_M: f32 = 16.0 * 0.4572 * std::f32::consts::SQRT_2;
 const SPEED_M_PER_S: f32 = 15.0;
-/// Five: no quarter turn maps the circle onto itself.
+/// Number of cars; with five, no quarter turn maps the circle onto itself.
 const CARS: u32 = 5;
 
-/// Cars on a circle about the world's centre, at the end of a step. The world turns, not the formula: cars of a turned world are the turned cars.
+/// Cars on a circle about the centre of the world at the end of a step, rotated with the world by quarter turns.
 fn cars(step: u32, quarters: usize) -> impl Iterator<Item = Striker> {
     (0..CARS).map(move |car| {
         let angle = (step + 1) as f32 * DT_SECS * SPEED_M_PER_S / CIRCLE_M + car as f32 * TAU / CARS as f32;
@@ -50,7 +50,7 @@ fn circle(scheme: Scheme, edges: Edges, rest: Rest, quarters: usize) -> Field {
     field
 }
 
-/// The state of every cell, turned back by so many quarters, row by row.
+/// The state of every cell, rotated back by quarter turns, row by row.
 fn turned_back(field: &Field, quarters: usize) -> Vec<Bend> {
     let side = size(field)[0] as i64;
     let cells = (0..side * side).map(|n| [n % side, n / side]);
@@ -63,9 +63,9 @@ fn turned_back(field: &Field, quarters: usize) -> Vec<Bend> {
     cells.map(state).collect()
 }
 
-/// Every sum is of opposite pairs, whichever way the world lies.
+/// Sums are over opposite pairs in any orientation.
 #[test]
-fn the_explicit_field_of_a_circle_of_cars_turns_bit_for_bit() {
+fn the_explicit_field_rotates_bit_for_bit() {
     for scheme in [Scheme::Verlet, Scheme::Substepped] {
         for edges in [Edges::Rest, Edges::Free, Edges::Wrapped] {
             for rest in [Rest::EXACT, Rest { theta_rad: 0.01, omega_rad_per_s: 0.2 }] {
@@ -83,9 +83,9 @@ fn the_explicit_field_of_a_circle_of_cars_turns_bit_for_bit() {
     }
 }
 
-/// These sum along lines, from one end to the other.
+/// These schemes sum along lines from one end to the other.
 #[test]
-fn the_implicit_and_the_modal_field_turn_to_within_rounding() {
+fn the_implicit_and_modal_fields_rotate_within_rounding() {
     for scheme in [Scheme::Implicit, Scheme::Modal] {
         let straight = turned_back(&circle(scheme, Edges::Free, Rest::EXACT, 0), 0);
         for quarters in 1..4 {

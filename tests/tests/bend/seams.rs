@@ -1,17 +1,17 @@
-//! Patches against one big grid, tiles at rest against none, the loose overlap against exact seams.
+//! Patches against a single grid, resting tiles against fully stepped ones, the loose overlap against exact seams.
 
 use std::ops::Range;
 
+use prairie_core::bend::{Alone, Bend, Crew, Damping, Edges, Field, Kinds, Report, Rest, Scheme, Seams, TILE, WaveParams};
+use prairie_core::grid::PatchLayout;
 use proptest::prelude::*;
 use rayon::prelude::*;
-use shared::bend::{Alone, Bend, Crew, Damping, Edges, Field, Kinds, Report, Rest, Scheme, Seams, TILE, WaveParams};
-use shared::grid::PatchLayout;
 use tests::problems::bend::{OneGrid, Striker, Threads, cells, channels, largest_difference, size};
 use tests::random_winds::Dice;
 
 const EDGES: [Edges; 3] = [Edges::Rest, Edges::Free, Edges::Wrapped];
 
-/// Two kinds of grass, one with a speed that the bend drives up, so that steps are cut into many.
+/// Two kinds of grass; in one the wave speed grows with the bend, so that steps are subdivided.
 const GRASS: [WaveParams; 2] = [
     WaveParams {
         c0_m_per_s: 3.0,
@@ -31,16 +31,16 @@ const GRASS: [WaveParams; 2] = [
     },
 ];
 
-/// A world, what happens in it, and how it is divided.
+/// A world, its events, and its division into patches.
 #[derive(Clone, Debug)]
 struct Case {
     count: [u32; 2],
     cells: u32,
     edges: Edges,
     rest: Rest,
-    /// Pixels of a map of kinds; none for one kind.
+    /// Pixels of a map of kinds; empty for one kind.
     map: Option<([usize; 2], Vec<u8>)>,
-    /// Before each step: its length (s), and what is pressed.
+    /// Length of each step (s), and the presses before it.
     steps: Vec<(f32, Vec<Press>)>,
     /// Shuffles the order in which patches wake.
     order: Vec<u32>,
@@ -48,7 +48,7 @@ struct Case {
 
 #[derive(Clone, Debug)]
 struct Press {
-    /// Where in the world, as shares of its extent.
+    /// Position in the world, as fractions of its extent.
     at: [f32; 2],
     bend: Bend,
 }
@@ -121,7 +121,7 @@ impl Case {
         [0, 1].map(|axis| (press.at[axis] * (self.count[axis] * self.cells) as f32) as usize)
     }
 
-    /// Runs a field to the end; only patches that are pressed are woken.
+    /// Runs a field to the end; only pressed patches are woken.
     fn run(&self, mut field: Field, scheme: Scheme, crew: &impl Crew) -> (Field, Vec<Report>) {
         let step = |(dt_secs, presses): &(f32, Vec<Press>)| {
             for press in presses {
@@ -136,7 +136,7 @@ impl Case {
         (field, reports)
     }
 
-    /// The same on one grid, with the sub-steps that a field took.
+    /// Runs a single grid with the sub-steps of a field.
     fn run_on_one_grid(&self, damping: Damping, reports: &[Report]) -> OneGrid<f32> {
         let mut grid = OneGrid::like(&self.field(), self.edges);
         for ((dt_secs, presses), report) in self.steps.iter().zip(reports) {
@@ -168,12 +168,12 @@ fn first_difference_from_grid(field: &Field, grid: &OneGrid<f32>) -> Option<([us
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
-    /// With no tolerance: however the world is divided, whichever patches wake first, on any number of threads.
+    /// Without a tolerance: for any division of the world, any waking order, and any number of threads.
     #[test]
     fn many_patches_equal_one_grid_bit_for_bit(case in a_case(), woken in 0..17usize) {
         let case = Case { rest: Rest::EXACT, ..case };
         for (scheme, damping) in [(Scheme::Verlet, Damping::Plain), (Scheme::Substepped, Damping::Exact)] {
-            // Verlet fails where it must, with numbers that are none: as long as these last.
+            // Verlet becomes unstable where theory says so, and its values NaN: only the first steps are compared.
             let length = if scheme == Scheme::Verlet { 3 } else { case.steps.len() };
             let case = Case { steps: case.steps[..length.min(case.steps.len())].to_vec(), ..case.clone() };
             let (slept, reports) = case.run(case.field(), scheme, &Alone);
@@ -189,9 +189,9 @@ proptest! {
         }
     }
 
-    /// With a tolerance the tiles decide what rests, and tiles do not ask where patches end.
+    /// With a tolerance, resting is decided by tile, independently of patch borders.
     #[test]
-    fn patches_of_any_size_put_the_same_grass_to_rest(case in a_case(), woken in 0..17usize) {
+    fn patches_of_any_size_let_the_same_grass_rest(case in a_case(), woken in 0..17usize) {
         let (coarse, reports) = case.run(case.field(), Scheme::Substepped, &Alone);
         let mut field = case.divided();
         case.shuffled(&field).into_iter().take(woken).for_each(|patch| { field.wake(patch); });
@@ -201,7 +201,7 @@ proptest! {
         prop_assert_eq!(substeps(&reports), substeps(&fine_reports));
     }
 
-    /// The implicit scheme solves along whole lines: where every patch is awake the lines do not ask where patches end.
+    /// The implicit scheme solves along whole lines: where every patch is awake, patch borders do not matter.
     #[test]
     fn implicit_lines_run_through_patches_bit_for_bit(case in a_case()) {
         let run = |mut field: Field, crew: &dyn Fn(&Case, Field) -> Field| {
@@ -215,7 +215,7 @@ proptest! {
 }
 
 #[test]
-fn steps_in_the_seam_tests_are_cut_into_more_than_the_halo_holds() {
+fn the_seam_tests_take_more_sub_steps_than_the_halo_is_wide() {
     let case = Case {
         count: [2, 2],
         cells: 16,
@@ -226,11 +226,11 @@ fn steps_in_the_seam_tests_are_cut_into_more_than_the_halo_holds() {
         order: vec![0],
     };
     let (field, reports) = case.run(case.field(), Scheme::Substepped, &Alone);
-    assert!(reports.iter().all(|report| report.substeps > 2 * shared::bend::HALO as u32), "{reports:?}");
+    assert!(reports.iter().all(|report| report.substeps > 2 * prairie_core::bend::HALO as u32), "{reports:?}");
     assert_eq!(field.awake_count(), 4, "the press woke one patch, the wave the others");
 }
 
-/// A car-like striker on its way, at the start of each step.
+/// A car-like striker at the start of each step.
 fn drive(from_m: [f32; 2], velocity_m_per_s: [f32; 2], steps: Range<u32>, dt_secs: f32) -> impl Iterator<Item = Striker> {
     steps.map(move |step| {
         let secs = (step + 1) as f32 * dt_secs;
@@ -268,14 +268,14 @@ fn calm(c0_m_per_s: f32, damping_per_s: f32) -> WaveParams {
     }
 }
 
-/// Largest difference of θ at any time, between two runs.
+/// Largest difference of θ between two runs at any time.
 fn farthest(a: &[Field], b: &[Field]) -> f32 {
     a.iter().zip(b).map(|(a, b)| largest_difference(a, b)[1]).fold(0.0, f32::max)
 }
 
-/// What a patch hears of a wave that crosses its border ends with the overlap: the error is bounded by what the wave carries, and grows with its speed.
+/// A patch sees a wave beyond its border only within the overlap: the error is bounded by the amplitude and grows with the wave speed.
 #[test]
-fn the_loose_overlap_errs_the_more_the_faster_waves_are() {
+fn the_error_of_the_loose_overlap_grows_with_wave_speed() {
     let errors = [0.5, 1.0, 2.0, 4.0, 8.0].map(|c0| {
         let waves = calm(c0, 3.0);
         let [exact, loose] = [Seams::Exact, Seams::Overlap].map(|seams| crossing(waves, Scheme::Substepped, seams, [0.0; 2]));
@@ -287,9 +287,9 @@ fn the_loose_overlap_errs_the_more_the_faster_waves_are() {
     assert!(errors[0] > 1e-4 && errors[4] < std::f32::consts::FRAC_PI_2, "{errors:?}");
 }
 
-/// A patch that sleeps is a wall to an implicit line until energy wakes it, a step later: less than what was allowed to rest.
+/// A sleeping patch is a wall to an implicit line until energy wakes it a step later: the error is below the resting tolerance.
 #[test]
-fn implicit_lines_that_end_at_sleeping_patches_err_little() {
+fn implicit_lines_that_end_at_sleeping_patches_have_a_small_error() {
     let layout = PatchLayout { count: [5, 5], cells: 16, cell_m: 0.4572 };
     let run = |is_woken: bool| {
         let mut field = Field::new(layout, Kinds::one(calm(4.0, 3.0)));
@@ -309,8 +309,8 @@ fn implicit_lines_that_end_at_sleeping_patches_err_little() {
     assert!(error < 1e-6, "{error}");
 }
 
-/// A drive of a second and a half over grass at random, with a tolerance and without; watched for six seconds. Returns by how many times the tolerance θ was
-/// off at most, and the share of the cells that was stepped.
+/// A random drive of 1.5 s over grass, with and without a tolerance, compared for six seconds. Returns the largest error of θ in units of the tolerance,
+/// and the fraction of stepped cells.
 fn tolerance_error(seed: u64, rest: Rest, damping_per_s: Range<f64>) -> [f64; 2] {
     let mut dice = Dice::new(seed);
     let mut between = |low: f64, high: f64| dice.between(low, high) as f32;
@@ -344,7 +344,7 @@ fn tolerance_error(seed: u64, rest: Rest, damping_per_s: Range<f64>) -> [f64; 2]
 }
 
 #[test]
-fn what_is_put_to_rest_within_the_tolerance_is_missed_by_no_more() {
+fn resting_within_the_tolerance_costs_about_the_tolerance() {
     let rest = Rest { theta_rad: 0.01, omega_rad_per_s: 0.2 };
     for (damping_per_s, allowed) in [(1.0..12.0, 1.25), (0.0..1.0, 2.0)] {
         let runs: Vec<_> = (0..16).into_par_iter().map(|seed| tolerance_error(seed, rest, damping_per_s.clone())).collect();

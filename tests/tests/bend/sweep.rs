@@ -1,16 +1,15 @@
-//! The cells that a moving object touches are those that it passes over, however fast it goes and turns and whatever the tick rate.
+//! A moving object touches exactly the cells that it passes over, at any speed, turn rate and tick rate.
 
 use glam::Quat;
+use prairie::bend::footprint::Footprint;
+use prairie::bend::swept_footprint::SweptFootprint;
+use prairie::objects::{BodyPose, Motion, Prism, prisms};
+use prairie_core::grid::PatchLayout;
+use prairie_core::scene::{Objects, VehicleKind};
 use proptest::prelude::*;
-use server::bend::footprint::Footprint;
-use server::bend::parts::{Part, parts};
-use server::bend::swath::Swath;
-use server::objects::{Motion, Stand};
-use shared::grid::PatchLayout;
-use shared::scene::{Objects, VehicleKind};
 use std::collections::BTreeSet;
 
-/// Steps that are driven, and stands between two of them that the reference looks at.
+/// Number of steps, and of positions per step that the reference samples.
 const STEPS: u32 = 4;
 const FINE: u32 = 100;
 
@@ -24,7 +23,7 @@ struct Drive {
 }
 
 impl Drive {
-    /// Heading and place after `ticks`, from the middle of a world of 60 m.
+    /// Heading and position after `ticks`, from the middle of a world of 60 m.
     fn stand(&self, ticks: f32) -> (f32, [f32; 2]) {
         let (secs, turn) = (ticks / self.hz, self.turn_rad_per_s);
         let heading = self.heading_rad + turn * secs;
@@ -38,22 +37,22 @@ impl Drive {
     fn motion(&self, kind: VehicleKind, tick: u32) -> Motion {
         let stand = |ticks: u32| {
             let (heading, [x, z]) = self.stand(ticks as f32);
-            Stand { position_m: [x, 1.0, z], rotation: Quat::from_rotation_y(-heading).to_array() }
+            BodyPose { position_m: [x, 1.0, z], rotation: Quat::from_rotation_y(-heading).to_array() }
         };
-        Motion { kind, from: stand(tick), to: stand(tick + 1), velocity_m_per_s: [0.0; 3], rests: false }
+        Motion { kind, from: stand(tick), to: stand(tick + 1), velocity_m_per_s: [0.0; 3], is_at_rest: false }
     }
 
-    /// How far the reference and the swath may differ (m): an eighth of a cell, and what an arc departs from its chord in a step.
+    /// Allowed difference between reference and swept footprint (m): an eighth of a cell, plus the sagitta of the arc in a step.
     fn margin_m(&self, cell_m: f32) -> f32 {
         cell_m / 8.0 + self.speed_m_per_s * self.turn_rad_per_s.abs() / (8.0 * self.hz * self.hz) + 1e-3
     }
 }
 
-/// All cells that the part is said to touch.
-fn touched(part: &Part, kind: VehicleKind, drive: &Drive, layout: &PatchLayout) -> BTreeSet<[i64; 2]> {
+/// All cells that the prism touches.
+fn touched(prism: &Prism, kind: VehicleKind, drive: &Drive, layout: &PatchLayout) -> BTreeSet<[i64; 2]> {
     let mut cells = BTreeSet::new();
     for tick in 0..STEPS {
-        for leg in Swath::new(part, &drive.motion(kind, tick), layout.cell_m).legs() {
+        for leg in SweptFootprint::new(prism, &drive.motion(kind, tick), layout.cell_m).legs() {
             for run in leg.cover().runs(layout) {
                 let center = |at: i64| (at as f32 + 0.5) * layout.cell_m;
                 cells.extend((run.from..run.to).map(|i| [i, run.row]).filter(|&[i, j]| leg.passage([center(i), center(j)]).is_some()));
@@ -63,7 +62,7 @@ fn touched(part: &Part, kind: VehicleKind, drive: &Drive, layout: &PatchLayout) 
     cells
 }
 
-/// How deep a place ever lies within the part (m), by looking at many stands; negative outside.
+/// Largest depth of a position within the part (m) over many sampled positions; negative outside.
 fn depth_m(outline: &Footprint, drive: &Drive, [x, z]: [f32; 2]) -> f32 {
     let sides = outline.sides();
     let at = |n: u32| {
@@ -76,7 +75,7 @@ fn depth_m(outline: &Footprint, drive: &Drive, [x, z]: [f32; 2]) -> f32 {
     (0..=STEPS * FINE).map(at).fold(f32::NEG_INFINITY, f32::max)
 }
 
-/// Number of groups of cells of which each touches the next, at a corner at least if `by_corners`.
+/// Number of connected groups of cells; corners connect if `by_corners`.
 fn groups(cells: &BTreeSet<[i64; 2]>, by_corners: bool) -> usize {
     let mut left = cells.clone();
     let mut count = 0;
@@ -98,7 +97,7 @@ fn groups(cells: &BTreeSet<[i64; 2]>, by_corners: bool) -> usize {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(192))]
     #[test]
-    fn a_swath_is_what_a_fine_sweep_finds(
+    fn a_swath_equals_a_finely_sampled_sweep(
         speed_m_per_s in 0.0f32..60.0,
         heading_rad in 0.0f32..std::f32::consts::TAU,
         turn_rad_per_s in -3.0f32..3.0,
@@ -109,11 +108,11 @@ proptest! {
     ) {
         let layout = PatchLayout { count: [1, 1], cells: (60.0 / cell_m) as u32, cell_m };
         let drive = Drive { speed_m_per_s, heading_rad, turn_rad_per_s, hz };
-        let parts = parts(kind, &Objects::default());
-        let part = &parts[which % parts.len()];
-        let cells = touched(part, kind, &drive, &layout);
+        let prisms = prisms(kind, &Objects::default());
+        let prism = &prisms[which % prisms.len()];
+        let cells = touched(prism, kind, &drive, &layout);
 
-        let shape = Footprint::of(part.outline_m.clone());
+        let shape = Footprint::of(prism.outline_m.clone());
         let shape = shape.widened(cell_m).unwrap_or(shape);
         let margin_m = drive.margin_m(cell_m);
         let reach = (0..=STEPS).map(|tick| drive.stand(tick as f32).1);
@@ -129,12 +128,12 @@ proptest! {
             for i in range(0) {
                 let depth_m = depth_m(&shape, &drive, [i, j].map(|at| (at as f32 + 0.5) * cell_m));
                 let is_touched = cells.contains(&[i, j]);
-                prop_assert!(depth_m <= margin_m || is_touched, "{part:?}: cell {i}, {j} is {depth_m} m deep within and not touched");
-                prop_assert!(depth_m >= -margin_m || !is_touched, "{part:?}: cell {i}, {j} is {depth_m} m off and touched");
+                prop_assert!(depth_m <= margin_m || is_touched, "{prism:?}: cell {i}, {j} is {depth_m} m deep within and not touched");
+                prop_assert!(depth_m >= -margin_m || !is_touched, "{prism:?}: cell {i}, {j} is {depth_m} m off and touched");
             }
         }
 
-        // Between the middles of large cells there is room for a small thing that stands.
+        // Between the centres of large cells there is room for a small object at rest.
         let least = usize::from(speed_m_per_s * STEPS as f32 / hz > 1.5 * cell_m);
         prop_assert!((least..=1).contains(&groups(&cells, true)), "the track is connected");
         let around: BTreeSet<_> = range(1).flat_map(|j| range(0).map(move |i| [i, j])).filter(|cell| !cells.contains(cell)).collect();

@@ -1,11 +1,11 @@
 //! The waves of the bend field against exact solutions: standing modes, a spreading pulse, frequency and decay, energy.
 //!
-//! Everything is asked of a field of several patches, of all three channels.
+//! All tests use a field of several patches and check all three channels.
 
 use std::f64::consts::TAU;
 
-use shared::bend::{Alone, CHANNELS, Edges, Field, Kinds, Scheme};
-use shared::grid::PatchLayout;
+use prairie_core::bend::{Alone, CHANNELS, Edges, Field, Kinds, Scheme};
+use prairie_core::grid::PatchLayout;
 use tests::norms::{Norms, fitted_order};
 use tests::problems::bend::{
     Energy, FACTORS, Mode, Oscillation, Pulse, Recurrence, Steps, alike, cells, channels, largest_difference, start,
@@ -15,7 +15,7 @@ const WIDTH_M: f64 = 16.0;
 const SPEED_M_PER_S: f32 = 2.0;
 const EDGES: [Edges; 3] = [Edges::Rest, Edges::Free, Edges::Wrapped];
 
-/// Damping rate (1/s) and stiffness (1/s²): none, the one, the other, both.
+/// Damping rate (1/s) and stiffness (1/s²): neither, either, both.
 const CONSTANTS: [[f32; 2]; 4] = [[0.0, 0.0], [0.8, 0.0], [0.0, 1.5], [0.8, 1.5]];
 
 /// A square world of 4 patches at least, all awake.
@@ -31,7 +31,7 @@ fn oscillation(wave_number2_per_m2: f64, [damping, stiffness]: [f32; 2]) -> Osci
     Oscillation { damping_per_s: damping.into(), stiffness_per_s2: speed * speed * wave_number2_per_m2 + f64::from(stiffness) }
 }
 
-/// Where a standing wave's exact answer comes from.
+/// Reference solution of a standing wave.
 #[derive(Clone, Copy, PartialEq)]
 enum Exact {
     Continuum,
@@ -39,8 +39,8 @@ enum Exact {
     Grid,
 }
 
-/// Error of a standing wave in all channels after so many turns, over what the damping has left of it. A quarter of a turn at the end shows what is
-/// wrong with the phase best.
+/// Error of a standing wave in all channels after a number of periods, relative to the damped amplitude. A quarter period at the end is most sensitive to
+/// the phase.
 fn mode_error(scheme: Scheme, mode: Mode, count: usize, constants: [f32; 2], exact: Exact, [turns, longest_dt_secs]: [f64; 2]) -> Norms {
     let (size, cell_m) = ([count; 2], mode.cell_m(WIDTH_M, count));
     let wave_number2 = match exact {
@@ -93,7 +93,7 @@ fn standing_waves_converge_at_second_order_in_space_and_time() {
 }
 
 #[test]
-fn the_modal_scheme_errs_in_space_alone_at_second_order() {
+fn the_modal_scheme_has_only_a_spatial_error_of_second_order() {
     for edges in EDGES {
         let mode = Mode { edges, waves: if edges == Edges::Wrapped { [2, 1] } else { [3, 2] } };
         // One long step to the end.
@@ -109,7 +109,7 @@ fn standing_waves_converge_in_time_on_a_fixed_grid() {
     let mode = Mode { edges: Edges::Rest, waves: [3, 2] };
     for constants in CONSTANTS {
         for scheme in [Scheme::Verlet, Scheme::Substepped, Scheme::Implicit] {
-            // 001 counts the force in full where the damping has already slowed the motion: an error of first order.
+            // Chen & Johan apply the full force although damping has already slowed the motion: an error of first order.
             let formal = if scheme == Scheme::Verlet && constants[0] > 0.0 { 1.0 } else { 2.0 };
             let error = |dt_secs| (dt_secs, mode_error(scheme, mode, 16, constants, Exact::Grid, [1.25, dt_secs]));
             assert_order(&format!("{scheme:?}, {constants:?}, dt"), formal, &[0.15, 0.075, 0.0375].map(error));
@@ -123,7 +123,7 @@ fn the_modal_scheme_is_exact_in_time() {
         for waves in [[1, 1], [5, 3], [13, 11]] {
             let mode = Mode { edges, waves: if edges == Edges::Wrapped { waves.map(|n| n / 2 + 1) } else { waves } };
             for constants in CONSTANTS {
-                // In one step, in long ones, in short ones, of which the rounding adds up.
+                // In a single step, in long ones, and in short ones, whose rounding errors add up.
                 for (longest_dt_secs, allowed) in [(f64::INFINITY, 1e-5), (0.7, 1e-5), (1.0 / 60.0, 5e-5)] {
                     let Norms { l2, linf, .. } = mode_error(Scheme::Modal, mode, 24, constants, Exact::Grid, [2.25, longest_dt_secs]);
                     println!("{edges:?}, {waves:?}, {constants:?}, steps of at most {longest_dt_secs} s: rms {l2:.1e}, largest {linf:.1e}");
@@ -134,7 +134,7 @@ fn the_modal_scheme_is_exact_in_time() {
     }
 }
 
-/// A heap of grass in the middle of a field that ends far from it.
+/// Error of a pulse in the middle of a field, far from its edges.
 fn pulse_error(scheme: Scheme, pulse: &Pulse, count: usize, [end_secs, dt_secs]: [f64; 2], exact: &[f64]) -> Norms {
     let cell_m = WIDTH_M / count as f64;
     let layout = PatchLayout { count: [4; 2], cells: count as u32 / 4, cell_m: cell_m as f32 };
@@ -195,7 +195,7 @@ fn a_pulse_converges_in_time_to_the_exact_modes_of_its_grid() {
     }
 }
 
-/// Steps of a mode, from its own recurrence, and what they look like.
+/// Exact recurrence of a mode, and those fitted to the measured channels.
 fn measured(scheme: Scheme, mode: Mode, count: usize, constants: [f32; 2], dt_secs: f64) -> [Recurrence; 1 + CHANNELS] {
     let (size, cell_m) = ([count; 2], mode.cell_m(WIDTH_M, count));
     let steps = Steps {
@@ -206,7 +206,7 @@ fn measured(scheme: Scheme, mode: Mode, count: usize, constants: [f32; 2], dt_se
     };
     let exact = Recurrence::of(scheme, &steps);
     let mut field = field(mode, count, constants);
-    // Moves from the start on: a(−1) = cos φ.
+    // In motion from the start: a(−1) = cos φ.
     start(&mut field, dt_secs, |cell| [1.0, exact.phase_rad().cos()].map(|amplitude| amplitude * mode.shape(size, cell)));
     let norm: f64 = cells(&field).map(|(cell, _)| mode.shape(size, cell).powi(2)).sum();
     let mut series = [const { vec![] }; CHANNELS];
@@ -222,7 +222,7 @@ fn measured(scheme: Scheme, mode: Mode, count: usize, constants: [f32; 2], dt_se
 }
 
 #[test]
-fn frequency_and_decay_are_those_of_the_discrete_dispersion_relation() {
+fn frequency_and_decay_match_the_discrete_dispersion_relation() {
     const COUNT: usize = 16;
     // Along an axis, oblique, the shortest along one axis, the checkerboard; whole waves between wrapped edges, half ones between others.
     let wrapped = [[1, 0], [2, 0], [0, 3], [1, 1], [2, 1], [3, 5], [4, 4], [7, 2], [8, 0], [0, 8], [8, 3], [8, 8]];
@@ -230,9 +230,9 @@ fn frequency_and_decay_are_those_of_the_discrete_dispersion_relation() {
     let modes = modes.chain([[1, 1], [5, 2], [16, 16]].map(|waves| Mode { edges: Edges::Rest, waves }));
     let modes: Vec<_> = modes.chain([[1, 0], [7, 4], [15, 15]].map(|waves| Mode { edges: Edges::Free, waves })).collect();
     println!("{:<8} {:<10} {:<9} {:>9} {:>9} {:>9} {:>9}", "edges", "scheme", "waves", "ω (rad/s)", "off by", "k/2 (1/s)", "off by");
-    for scheme in Scheme::ALL {
+    for &scheme in Scheme::ALL {
         for &mode in &modes {
-            // Explicit below the limit; the others at twice that length of step and more.
+            // Explicit schemes below the limit; the others at more than twice that step.
             let dt_secs = if matches!(scheme, Scheme::Verlet | Scheme::Substepped) { 0.3 } else { 0.8 };
             let [exact, found @ ..] = measured(scheme, mode, COUNT, [0.4, 1.5], dt_secs);
             let rates = |recurrence: &Recurrence| [recurrence.phase_rad() / dt_secs, recurrence.decay() / dt_secs];
@@ -254,7 +254,7 @@ fn frequency_and_decay_are_those_of_the_discrete_dispersion_relation() {
     }
 }
 
-/// Noise that is the same everywhere this runs.
+/// Reproducible noise.
 fn noise([i, j]: [usize; 2]) -> f64 {
     let mixed = ((i as u32 * 0x9E37_79B1) ^ (j as u32 * 0x85EB_CA77)).wrapping_mul(0xC2B2_AE3D);
     f64::from(mixed ^ (mixed >> 15)) / f64::from(u32::MAX) - 0.5
@@ -270,7 +270,7 @@ fn undamped_energy_is_constant_over_ten_thousand_steps() {
             let courant_dt_secs = courant * field.layout().cell_m / SPEED_M_PER_S;
             let dt_secs = f64::from(courant_dt_secs);
             let energy = Energy { courant: f64::from(courant), restoring: f64::from(stiffness) * dt_secs * dt_secs, edges };
-            // Without a mean speed, with which free grass would go round and round.
+            // Without a mean speed, which would turn free grass round and round.
             let mean: f64 = (0..256).map(|n| noise([n % 16, n / 16]) - noise([n / 16 + 99, n % 16])).sum::<f64>() / 256.0;
             start(&mut field, dt_secs, |cell| [noise(cell) - mean, noise([cell[1] + 99, cell[0]])]);
             let first = energy.of(&field, scheme);

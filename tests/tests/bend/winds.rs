@@ -1,42 +1,43 @@
-//! Wind as an object (001 §5.3): the wash of a helicopter, cyclones, winds drawn by hand.
+//! Wind as an object (Chen & Johan, §5.3): helicopter downwash, cyclones, drawn winds.
 
 use png::{BitDepth, ColorType};
-use server::bend::air::GroundWind;
-use server::bend::drawing::Drawing;
-use server::bend::drawn::{Blow, Pattern};
-use server::bend::laid::Laid;
-use server::bend::sward::{Growth, Sward};
-use server::scenes;
-use server::world::World;
-use shared::bend::{Bend, Field, Kinds, Patch, WaveParams};
-use shared::grid::PatchLayout;
-use shared::scene::{DrawnWind, Grass, WindShape};
-use shared::terrain::{CoverMap, HeightMap, grey_png};
+use prairie::bend::flattened::FlattenedGrass;
+use prairie::bend::grass_properties::GrassProperties;
+use prairie::bend::grass_state::GrassState;
+use prairie::bend::ground_wind::GroundWind;
+use prairie::bend::prescribed_wind::{Pattern, PrescribedWind};
+use prairie::bend::wind_drawing::WindDrawing;
+use prairie::scenes;
+use prairie::world::World;
+use prairie_core::bend::{Bend, Field, Kinds, Patch};
+use prairie_core::grid::PatchLayout;
+use prairie_core::scene::{DrawnWind, Grass, WindShape};
+use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
 use std::sync::Arc;
 use tests::{maps, worlds};
 
 const DT_SECS: f32 = 1.0 / 60.0;
 const LAYOUT: PatchLayout = PatchLayout { count: [2, 2], cells: 64, cell_m: 0.25 };
 
-/// A field of 32 m after two seconds of a blow.
-fn blown(blow: &Blow) -> Field {
-    let mut field = Field::new(LAYOUT, Kinds::one(WaveParams::from(&Grass::default())));
+/// A field of 32 m after two seconds of a prescribed wind.
+fn blown(wind: &PrescribedWind) -> Field {
+    let mut field = Field::new(LAYOUT, Kinds::one(Grass::default().waves));
     (0..4).for_each(|index| {
         field.wake(index);
     });
-    let mut laid = Laid::new(LAYOUT, 60.0, 0);
+    let mut flattened = FlattenedGrass::new(LAYOUT, 60.0, 0);
     let flat = HeightMap::from_heights(2, 2, [1000.0; 2], vec![0.0; 4]);
-    let wind = GroundWind::still(&worlds::scene(1));
+    let ground_wind = GroundWind::still(&worlds::scene(1));
     let grass = CoverMap::from_png(&grey_png([2; 2], &[255; 4])).expect("a grey PNG");
-    let growth = Growth::new(&worlds::scene(1), &grass);
-    let mut sward = Sward { field: &mut field, laid: &mut laid, wind: &wind, height: &flat, growth: &growth };
+    let properties = GrassProperties::new(&worlds::scene(1), &grass);
+    let mut state = GrassState { field: &mut field, flattened: &mut flattened, wind: &ground_wind, height: &flat, properties: &properties };
     for _ in 0..120 {
-        blow.press(&mut sward);
+        wind.press(&mut state);
     }
     field
 }
 
-/// Directions of the bend around the middle: east, south, west and north of it.
+/// Directions of the bend east, south, west and north of the middle.
 fn around(field: &Field) -> [[f32; 2]; 4] {
     [[20.0, 16.1], [15.9, 20.0], [12.0, 15.9], [16.1, 12.0]].map(|[x, z]| {
         let Bend { theta, omega } = field.bend_at(x, z);
@@ -50,9 +51,9 @@ fn close(found: [[f32; 2]; 4], expected: [[f32; 2]; 4]) -> bool {
 }
 
 #[test]
-fn the_higher_the_source_the_weaker_and_smaller_what_it_does() {
+fn the_effect_of_a_source_falls_with_its_height() {
     let bent = |height_m: f32| {
-        let field = Blow::wash(Pattern::Outward, [16.0, 16.0], height_m, DT_SECS).map(|blow| blown(&blow))?;
+        let field = PrescribedWind::downwash(Pattern::Outward, [16.0, 16.0], height_m, DT_SECS).map(|wind| blown(&wind))?;
         let cells = field.awake().flat_map(Patch::rows).flat_map(|[theta, _, _]| theta).filter(|theta| **theta > 0.02).count();
         Some((cells, field.awake().map(Patch::theta_max_rad).fold(0.0, f32::max)))
     };
@@ -65,15 +66,15 @@ fn the_higher_the_source_the_weaker_and_smaller_what_it_does() {
 }
 
 #[test]
-fn outward_swirl_and_drawn_winds_blow_their_ways() {
-    let wash = |pattern| blown(&Blow::wash(pattern, [16.0, 16.0], 0.0, DT_SECS).unwrap());
+fn outward_swirling_and_drawn_winds_have_their_directions() {
+    let wash = |pattern| blown(&PrescribedWind::downwash(pattern, [16.0, 16.0], 0.0, DT_SECS).unwrap());
     let (east, south, west, north) = ([1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]);
     assert!(close(around(&wash(Pattern::Outward)), [east, south, west, north]));
     assert!(close(around(&wash(Pattern::Swirl)), [south, west, north, east]), "{:?}", around(&wash(Pattern::Swirl)));
 
     // Eastward in the northern half, southward in the southern.
     let pixels = [[255, 128, 200], [255, 128, 200], [128, 255, 200], [128, 255, 200]].concat();
-    let drawing = Drawing::from_png(&maps::png(ColorType::Rgb, BitDepth::Eight, [2, 2], &pixels)).unwrap();
+    let drawing = WindDrawing::from_png(&maps::png(ColorType::Rgb, BitDepth::Eight, [2, 2], &pixels)).unwrap();
     let pattern = Pattern::Drawn(Arc::new(drawing));
     let at = |field: &Field, x: f32, z: f32| {
         field.bend_at(x, z).omega.map(|d| d / field.bend_at(x, z).omega[0].hypot(field.bend_at(x, z).omega[1]))
@@ -81,21 +82,24 @@ fn outward_swirl_and_drawn_winds_blow_their_ways() {
     let straight = wash(pattern.clone());
     assert!(at(&straight, 16.0, 9.0)[0] > 0.99 && at(&straight, 12.0, 23.0)[1] > 0.99);
     // A quarter turn takes north to east and east to south.
-    let turned = blown(&Blow { turned_rad: std::f32::consts::FRAC_PI_2, ..Blow::wash(pattern, [16.0, 16.0], 0.0, DT_SECS).unwrap() });
+    let turned = blown(&PrescribedWind {
+        rotation_rad: std::f32::consts::FRAC_PI_2,
+        ..PrescribedWind::downwash(pattern, [16.0, 16.0], 0.0, DT_SECS).unwrap()
+    });
     assert!(at(&turned, 23.0, 16.0)[1] > 0.99 && at(&turned, 9.0, 16.0)[0] < -0.99);
 }
 
 #[test]
-fn a_cyclone_travels_along_its_path_and_leaves_nothing_laid() {
+fn a_cyclone_follows_its_path_and_leaves_no_laid_grass() {
     let mut scene = worlds::scene(8);
     let mut cyclone = DrawnWind::new(WindShape::Swirl, vec![[30.0, 40.0], [90.0, 40.0]]);
     (cyclone.radius_m, cyclone.travel_m_per_s) = (8.0, 5.0);
     scene.drawn_winds = vec![cyclone];
-    // Grass that rises fast shows where the wind is.
-    (scene.grass.stiffness_per_s2, scene.grass.mu_m_per_rad) = (25.0, 0.0);
+    // Grass that rises fast shows the present wind.
+    (scene.grass.waves.stiffness_per_s2, scene.grass.waves.mu_m_per_rad) = (25.0, 0.0);
     let mut world = worlds::flat(&scene);
     let middle = |world: &World| {
-        let field = world.meadow().field();
+        let field = world.bend().field();
         let cell = |n: u32| (n as f32 + 0.5) * 0.25;
         let bent = (0..512 * 512).map(|n| [cell(n % 512), cell(n / 512)]).filter(|[x, z]| field.bend_at(*x, *z).theta > 0.5);
         let (sum, count) = bent.fold(([0.0; 2], 0.0), |(sum, count), [x, z]| ([sum[0] + x, sum[1] + z], count + 1.0));
@@ -106,12 +110,12 @@ fn a_cyclone_travels_along_its_path_and_leaves_nothing_laid() {
         let found = middle(&world);
         assert!((found[0] - x_m).abs() < 2.0 && (found[1] - 40.0).abs() < 1.0, "{found:?}, and it is at {x_m}");
     }
-    assert_eq!(world.meadow().laid().tiles(), 0);
-    assert!(world.snapshot().health.awake_patches < 30);
+    assert_eq!(world.bend().flattened().tiles(), 0);
+    assert!(world.snapshot().diagnostics.awake_patches < 30);
 }
 
 #[test]
-fn a_drawing_travels_from_the_scene_file_to_the_grass() {
+fn a_drawn_wind_from_a_scene_file_bends_the_grass() {
     let folder = tempfile::tempdir().unwrap();
     let west = maps::png(ColorType::Rgb, BitDepth::Eight, [2, 2], &[1, 128, 255].repeat(4));
     std::fs::write(folder.path().join("west.png"), west).unwrap();
@@ -125,9 +129,9 @@ fn a_drawing_travels_from_the_scene_file_to_the_grass() {
     assert_eq!(loaded.scene.drawn_winds[0].shape, WindShape::Drawn("1.png".to_owned()), "clients are told no paths");
     let mut world = World::new(&loaded.scene, loaded.maps()).unwrap();
     (0..120).for_each(|_| world.step(&[]));
-    let Bend { theta, omega } = world.meadow().field().bend_at(32.0, 32.0);
+    let Bend { theta, omega } = world.bend().field().bend_at(32.0, 32.0);
     assert!(theta > 0.5 && omega[0] < 0.0 && omega[1].abs() < 0.1 * -omega[0], "{theta} rad along {omega:?}");
 
-    let bare = World::new(&loaded.scene, server::world::Maps { drawings: Default::default(), ..loaded.maps() });
+    let bare = World::new(&loaded.scene, prairie::world::Maps { drawings: Default::default(), ..loaded.maps() });
     assert_eq!(bare.err().unwrap().to_string(), "`drawn_winds` names the drawing `1.png`, which is not among the maps");
 }

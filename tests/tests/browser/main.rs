@@ -1,8 +1,8 @@
 //! The page in a real browser, and the world behind it.
 
-mod hands;
-mod mishaps;
+mod failures;
+mod input;
 mod page;
 mod prairie;
-mod share;
+mod sharing;
 mod webgpu;

@@ -1,7 +1,7 @@
-//! The embedded page in a real browser: it starts the client, or says why it cannot.
+//! The embedded page in a real browser: it starts the client, or reports why it cannot.
 
 use anyhow::Result;
-use server::net::assets::asset;
+use prairie::net::assets::asset;
 use tests::browser::{Browser, Options};
 use tests::pages::{Page, Pages};
 
@@ -9,7 +9,7 @@ fn embedded(path: &str) -> Option<Page> {
     asset(path).map(|asset| (asset.content_type, asset.bytes))
 }
 
-/// Opens the embedded page under a host name, waits for a message of the page, and gives its title.
+/// Opens the embedded page under a host name, waits for a message, and returns its title.
 async fn title_of_message(host: &str, kind: &str, options: &Options) -> Result<String> {
     let pages = Pages::serve(embedded).await?;
     let mut options = options.clone();
@@ -22,14 +22,14 @@ async fn title_of_message(host: &str, kind: &str, options: &Options) -> Result<S
 }
 
 #[tokio::test]
-async fn an_insecure_address_is_named() -> Result<()> {
+async fn the_page_reports_an_insecure_address() -> Result<()> {
     let title = title_of_message("prairie.test", "insecure", &Options::default()).await?;
     assert_eq!(title, "This address is not a secure one");
     Ok(())
 }
 
 #[tokio::test]
-async fn a_browser_without_webgpu_is_told_what_to_do() -> Result<()> {
+async fn without_webgpu_the_page_explains_how_to_get_it() -> Result<()> {
     let options = Options { webgpu: false, ..Options::default() };
     let title = title_of_message("localhost", "no-adapter", &options).await?;
     assert_eq!(title, "WebGPU found no graphics adapter");

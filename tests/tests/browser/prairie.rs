@@ -1,16 +1,16 @@
-//! The whole prairie: two real browsers join one server, one drives, and both see the same track open and rise again.
+//! End to end: two real browsers join one server, one drives, and both see the same track open and recover.
 //!
-//! What is asserted comes from the clients' own mirrors (what the stream brought) and from the pixels (what was drawn).
+//! Assertions use the clients' mirrors (the received state) and the pixels (the drawn state).
 
 use anyhow::{Context as _, Result, bail, ensure};
+use prairie::runner::Simulation;
+use prairie::scenes::{self, LoadedScene};
+use prairie::snapshot::{PatchQuantiser, Snapshot};
+use prairie::world::{Command, World};
+use prairie_core::plant::growth::NutrientMap;
+use prairie_core::terrain::grey_png;
+use prairie_core::wire::ObjectId;
 use serde_json::Value;
-use server::runner::Simulation;
-use server::scenes::{self, LoadedScene};
-use server::snapshot::Snapshot;
-use server::world::{Command, World};
-use shared::plant::growth::NutrientMap;
-use shared::terrain::grey_png;
-use shared::wire::ObjectId;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -18,11 +18,11 @@ use tests::browser::Browser;
 use tests::picture::Picture;
 use tokio::time::sleep;
 
-/// Bend (rad) above which a place counts as track, and below which it counts as risen.
+/// Bending angles (rad): above the first a position counts as track, below the second as recovered.
 const OPEN_RAD: f64 = 0.6;
 const RISEN_RAD: f64 = 0.05;
 
-/// The world, which stands still while it is held: software rendering takes seconds for a picture, and a track rises meanwhile.
+/// The world, which can be paused: software rendering takes seconds per picture, and a track would recover meanwhile.
 struct Held {
     world: World,
     held: Arc<AtomicBool>,
@@ -37,8 +37,8 @@ impl Simulation for Held {
         }
     }
 
-    fn snapshot(&mut self) -> Snapshot {
-        self.world.snapshot()
+    fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot {
+        self.world.publish(quantiser)
     }
 
     fn object_of(&self, client: u32) -> Option<ObjectId> {
@@ -46,11 +46,11 @@ impl Simulation for Held {
     }
 }
 
-/// A server whose world can be held still.
+/// A server whose world can be paused.
 struct Prairie {
     server: tests::prairie::Prairie,
     held: Arc<AtomicBool>,
-    /// Checksum of the plants in its world, as the page says it.
+    /// Checksum of the plants in its world, in the format of the page.
     plants: String,
 }
 
@@ -63,12 +63,12 @@ impl Prairie {
         Ok(Self { server: tests::prairie::Prairie::serve(scene, world).await?, held, plants })
     }
 
-    /// Holds the world, or lets it go on.
+    /// Pauses or resumes the world.
     fn hold(&self, held: bool) {
         self.held.store(held, Ordering::Relaxed);
     }
 
-    /// A visitor who has drawn a first picture.
+    /// A client that has drawn its first picture.
     async fn visitor(&self, name: &str) -> Result<Browser> {
         let browser = self.server.visitor(name).await?;
         picture(&browser, 0.0).await?;
@@ -82,7 +82,7 @@ async fn numbers(browser: &Browser, expression: &str) -> Result<Vec<f64>> {
     Ok(list.iter().filter_map(Value::as_f64).collect())
 }
 
-/// Bend angles (rad), of wind and bend field together, in a client's mirror at 8 × 8 places around `(x, z)`, 8 m apart.
+/// Bend angles (rad) of wind and bend field together, in a client's mirror, at 8 × 8 positions around `(x, z)`, 8 m apart.
 async fn bends_around(browser: &Browser, x: f64, z: f64) -> Result<Vec<f64>> {
     let at = |middle: f64, step: &str| format!("{middle} + 8 * ({step} - 3.5)");
     let theta = format!("window.prairie.theta({}, {})", at(x, "i % 8"), at(z, "Math.floor(i / 8)"));
@@ -93,7 +93,7 @@ fn strongest(bends: &[f64]) -> f64 {
     bends.iter().fold(0.0, |most, bend| f64::max(most, bend.abs()))
 }
 
-/// Waits until two visitors of a held world know the same, newest state.
+/// Waits until two clients of a paused world have the newest state.
 async fn both_up_to_date(a: &Browser, b: &Browser) -> Result<()> {
     let ticks = async || tokio::try_join!(a.evaluate("window.prairie.state().tick"), b.evaluate("window.prairie.state().tick"));
     let mut before = ticks().await?;
@@ -117,7 +117,7 @@ async fn picture(browser: &Browser, time_secs: f64) -> Result<Picture> {
     browser.canvas().await
 }
 
-/// The meadow on a day without wind: nothing but the track moves, and what weight lays rises within a test's patience.
+/// The meadow without wind: only the track moves, and laid grass recovers within the timeout of a test.
 fn still_meadow() -> Result<LoadedScene> {
     let mut meadow = scenes::load("meadow")?;
     meadow.scene.wind.mean_m_per_s = [0.0; 2];
@@ -126,7 +126,7 @@ fn still_meadow() -> Result<LoadedScene> {
     Ok(meadow)
 }
 
-/// The meadow over soil that a map draws.
+/// The meadow with a nutrient map.
 fn meadow_on_drawn_soil() -> Result<LoadedScene> {
     let mut meadow = scenes::load("meadow")?;
     let levels: Vec<u8> = (0..=255).collect();
@@ -135,14 +135,14 @@ fn meadow_on_drawn_soil() -> Result<LoadedScene> {
     Ok(meadow)
 }
 
-/// A car driven by the first visitor has made a track; this is the middle of it (m) and the way the car went (unit vector).
+/// The track of a car driven by the first client: its middle (m) and the direction of the car (unit vector).
 struct Track {
     middle: [f64; 3],
     along: [f64; 2],
 }
 
 impl Track {
-    /// Drives, and gives the car up at the track's end; returns when both visitors know that it is gone.
+    /// Drives, and leaves the car at the end of the track; returns when the car is gone in both clients.
     async fn drive(driver: &Browser, watcher: &Browser) -> Result<Self> {
         driver.press('c').await?;
         driver.release('c').await?;
@@ -167,14 +167,14 @@ impl Track {
         numbers(browser, &self.across()).await
     }
 
-    /// Waits until the grass has risen in a client's mirror.
+    /// Waits until the grass has recovered in a client's mirror.
     async fn risen(&self, browser: &Browser) -> Result<()> {
         browser.until(&format!("Math.max(...{}.map(Math.abs)) < {RISEN_RAD}", self.across())).await?;
         Ok(())
     }
 
-    /// What a visitor sees who looks down at the track from its side. Looking elsewhere in between lets the blades start anew from
-    /// where the client's mirror has them, so that none is on its way.
+    /// Screenshot of the track from its side, looking down. Looking elsewhere in between restarts the blades from the mirror's state, so
+    /// that none is in motion.
     async fn picture(&self, browser: &Browser, time_secs: f64) -> Result<Picture> {
         let ([x, y, z], [dx, dz]) = (self.middle, self.along);
         let heading_rad = dz.atan2(dx);
@@ -193,7 +193,7 @@ impl Track {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn the_server_s_plants_grow_in_the_page_and_the_wind_moves_the_grass_in_the_mirror_and_in_the_pixels() -> Result<()> {
+async fn the_page_grows_the_servers_plants_and_draws_grass_that_moves_in_the_wind() -> Result<()> {
     let prairie = Prairie::serve(meadow_on_drawn_soil()?).await?;
     let visitor = prairie.visitor("Ada").await?;
     let plants = visitor.evaluate("window.prairie.plants()").await?;
@@ -216,7 +216,7 @@ async fn the_server_s_plants_grow_in_the_page_and_the_wind_moves_the_grass_in_th
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn two_visitors_see_one_track_that_opens_and_rises() -> Result<()> {
+async fn two_clients_see_the_same_track_open_and_recover() -> Result<()> {
     let prairie = Prairie::serve(still_meadow()?).await?;
     let (driver, watcher) = (prairie.visitor("Ada").await?, prairie.visitor("Bert").await?);
     let track = Track::drive(&driver, &watcher).await?;

@@ -1,4 +1,4 @@
-//! The browsers of the tests have WebGPU, and their pictures are what the GPU drew.
+//! The test browsers support WebGPU, and their screenshots show the pixels of the GPU.
 
 use anyhow::Result;
 use serde_json::json;
@@ -36,7 +36,7 @@ fn page(path: &str) -> Option<Page> {
 }
 
 #[tokio::test]
-async fn two_browsers_show_what_their_gpu_drew() -> Result<()> {
+async fn two_browsers_show_the_pixels_of_their_gpu() -> Result<()> {
     let pages = Pages::serve(page).await?;
     let url = format!("http://{}/", pages.addr);
     let (left, right) = tokio::try_join!(Browser::open(&url), Browser::open(&url))?;
@@ -63,7 +63,7 @@ async fn a_held_key_stays_down_until_it_is_released() -> Result<()> {
 }
 
 #[tokio::test]
-async fn a_script_that_throws_says_what_it_said() -> Result<()> {
+async fn an_exception_of_a_script_is_reported() -> Result<()> {
     let pages = Pages::serve(page).await?;
     let browser = Browser::open(&format!("http://{}/", pages.addr)).await?;
     let error = browser.evaluate("(() => { throw new Error('no such meadow') })()").await.expect_err("it throws");

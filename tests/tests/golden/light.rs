@@ -1,16 +1,16 @@
-//! Light, shadow, and what is in the air.
+//! Light, shadows, rain and dust.
 
 use crate::{Golden, Unlike, golden};
 use anyhow::Result;
-use client_wasm::render::{Look, Quality, Sun};
-use shared::scene::Scene;
+use prairie_client::render::{Quality, RenderOptions, Sun};
+use prairie_core::scene::Scene;
 use tests::stage::Act;
 use tests::views::{Eye, over};
 
-/// The light of a sun at a heading and an elevation (degrees).
-fn sunlit(heading_deg: f32, elevation_deg: f32) -> Look {
+/// Render options with the sun at a heading and an elevation (degrees).
+fn sunlit(heading_deg: f32, elevation_deg: f32) -> RenderOptions {
     let sun = Sun { heading_rad: heading_deg.to_radians(), elevation_rad: elevation_deg.to_radians() };
-    Look { sun: Some(sun), ..Look::default() }
+    RenderOptions { sun: Some(sun), ..RenderOptions::default() }
 }
 
 const LAMPS: &str = "scenes/lamps.toml";
@@ -53,7 +53,7 @@ golden!(
         shows: "dusk",
         eye: over([128.0, 158.7], 0.9, -20.0, -3.0),
         look: sunlit(330.0, -2.0),
-        unlike: Unlike::Look(Look::default()),
+        unlike: Unlike::RenderOptions(RenderOptions::default()),
         ..Golden::default()
     }
 );
@@ -63,7 +63,7 @@ golden!(
         shows: "blades lit from behind",
         eye: over([128.0, 158.7], 0.9, 20.0, -3.0),
         look: sunlit(20.0, 12.0),
-        unlike: Unlike::Look(Look::default()),
+        unlike: Unlike::RenderOptions(RenderOptions::default()),
         ..Golden::default()
     }
 );
@@ -73,7 +73,7 @@ golden!(
         shows: "stars and clouds",
         eye: over([128.0, 158.7], 2.0, 20.0, 30.0),
         look: sunlit(330.0, -12.0),
-        unlike: Unlike::Look(sunlit(330.0, 5.0)),
+        unlike: Unlike::RenderOptions(sunlit(330.0, 5.0)),
         ..Golden::default()
     }
 );
@@ -101,7 +101,7 @@ golden!(
     }
 );
 
-/// The sky is overcast from 10 mm/h on; what rains more differs in its streaks alone.
+/// The sky is overcast from 10 mm/h on; heavier rain differs only in its streaks.
 fn rainy(change: fn(&mut Scene)) -> Golden {
     Golden { scene: "storm", change, quality: Quality::Medium, parts: &[[0, 44, 256, 60]], ..Golden::default() }
 }

@@ -1,23 +1,23 @@
 //! The renderer against stored pictures: the same world, camera and frames, drawn without a window.
 //!
 //! The pictures were drawn by Mesa's lavapipe. Other drivers round differently, so the bounds are loose: a mean difference of
-//! 3/255 and 6 % of the pixels visibly off. Each picture without what it is there to show would miss one of them. `PRAIRIE_BLESS=1 cargo nextest
-//! run --release -p tests --test golden` draws them anew.
+//! 3/255, and 6 % of the pixels visibly changed. A picture that lacks its subject exceeds one of them. `PRAIRIE_BLESS=1 cargo nextest
+//! run --release -p tests --test golden` rewrites those that have visibly changed.
 
 mod light;
 mod objects;
+mod options;
 mod scenes;
-mod ways;
 
 use anyhow::{Context as _, Result, ensure};
-use client_wasm::render::{Gpu, Look, Picture as Canvas, Quality, Split};
-use shared::scene::Scene;
+use prairie_client::render::{Gpu, OffscreenRenderer as Canvas, Quality, RenderOptions, Split};
+use prairie_core::scene::Scene;
 use std::path::PathBuf;
 use tests::picture::{Difference, Picture};
 use tests::stage::{Act, Stage};
 use tests::views::Eye;
 
-/// A test of its name, which is that of the file too.
+/// A test with the name of its stored picture.
 macro_rules! golden {
     ($name:ident, $golden:expr) => {
         #[test]
@@ -31,37 +31,37 @@ use golden;
 const DT_SECS: f32 = 1.0 / 30.0;
 const BOUNDS: Difference = Difference { mean: 3.0, changed: 0.06 };
 
-/// A stored picture: what it shows, and how it is drawn.
+/// A stored picture: its subject, and how to draw it.
 #[derive(Clone, Debug)]
 struct Golden {
-    /// What is missing in the picture that it is unlike.
+    /// Subject, which is missing from the picture it must differ from.
     shows: &'static str,
-    /// Built-in scene, or file of one.
+    /// Built-in scene, or scene file.
     scene: &'static str,
-    /// How the scene differs from that.
+    /// Change of that scene.
     change: fn(&mut Scene),
     act: Act,
     eye: Eye,
     quality: Quality,
-    look: Look,
-    /// Two ways side by side instead of that look.
+    look: RenderOptions,
+    /// Two render options side by side instead.
     split: Option<Split>,
     size_px: [u32; 2],
     frames: u32,
-    /// Parts in which a pass shows that covers little of the picture: left, top, width and height (px). The bounds hold in each of them, too.
+    /// Rectangles for a pass that covers only little of the picture: left, top, width and height (px). The bounds apply in each of them, too.
     parts: &'static [[u32; 4]],
     unlike: Unlike,
 }
 
-/// A picture beyond the bounds, in each of the parts: what would be drawn if a pass did nothing.
+/// A picture that must exceed the bounds in each part, like one with a pass that draws nothing.
 #[derive(Clone, Copy, Debug)]
 enum Unlike {
-    /// None.
+    /// No such picture.
     Nothing,
     /// Another stored picture.
     Stored(&'static str),
-    /// The same moment in another look.
-    Look(Look),
+    /// The same moment with other render options.
+    RenderOptions(RenderOptions),
     /// The same moment without objects.
     Bare,
 }
@@ -75,7 +75,7 @@ impl Default for Golden {
             act: Act::Wind,
             eye: Eye::Start,
             quality: Quality::Low,
-            look: Look::default(),
+            look: RenderOptions::default(),
             split: None,
             size_px: [256, 144],
             frames: 3,
@@ -86,46 +86,46 @@ impl Default for Golden {
 }
 
 impl Golden {
-    /// Holds the picture of that name to what is stored, or stores it anew.
+    /// Compares the picture with the stored one of this name, or rewrites the stored one.
     fn check(&self, name: &str) -> Result<()> {
         let blesses = std::env::var_os("PRAIRIE_BLESS").is_some();
         let (drawn, unlike) = self.draw()?;
         let path = stored(name);
-        if blesses {
-            drawn.save(&path)?;
+        if blesses && drawn.save_if_visibly_changed(&path, self.parts)? {
+            println!("{name}: rewritten");
         }
         let differences = self.differences(&drawn, &Picture::load(&path)?)?;
-        println!("{name}, from what is stored: {differences:?}");
+        println!("{name}, from the stored picture: {differences:?}");
         for (place, difference) in differences {
-            if !is_within(difference) {
+            if !difference.is_within(BOUNDS) {
                 let seen = std::env::temp_dir().join(format!("prairie-{name}.png"));
                 drawn.save(&seen)?;
                 ensure!(false, "{} differs from {}, {place}: {difference:?}", seen.display(), path.display());
             }
         }
         let unlike = match self.unlike {
-            // It may not have been drawn yet.
+            // That picture may not have been drawn yet.
             Unlike::Stored(_) if blesses => None,
             Unlike::Stored(other) => Some(Picture::load(&stored(other))?),
             _ => unlike,
         };
         if let Some(unlike) = unlike {
             let differences = self.differences(&drawn, &unlike)?;
-            println!("{name}, from what it is unlike: {differences:?}");
+            println!("{name}, from the picture it must differ from: {differences:?}");
             for (place, difference) in differences.iter().skip(self.parts.len().min(1)) {
-                ensure!(!is_within(*difference), "{name}: too little is seen of {}, {place}: {difference:?}", self.shows);
+                ensure!(!difference.is_within(BOUNDS), "{name}: {} is hardly visible, {place}: {difference:?}", self.shows);
             }
         }
         Ok(())
     }
 
-    /// The picture, and the one that it must be unlike if it is not stored.
+    /// Draws the picture, and the one it must differ from unless that is stored.
     fn draw(&self) -> Result<(Picture, Option<Picture>)> {
         let mut stage = Stage::changed(self.scene, self.change)?;
         let camera = self.eye.watch(&mut stage, self.act)?;
         let gpu = Gpu::headless().context("no Vulkan driver: install mesa-vulkan-drivers")?;
         let mut canvas = Canvas::new(&gpu, self.size_px, self.quality);
-        canvas.set_look(self.look);
+        canvas.set_options(self.look);
         let [width, height] = self.size_px;
         let seen = |canvas: &Canvas| Picture { width, height, rgba: canvas.rgba() };
         let time_secs = |frame: u32| f64::from(frame) * f64::from(DT_SECS);
@@ -140,23 +140,19 @@ impl Golden {
         let drawn = seen(&canvas);
         match self.unlike {
             Unlike::Nothing | Unlike::Stored(_) => return Ok((drawn, None)),
-            Unlike::Look(look) => canvas.set_look(look),
+            Unlike::RenderOptions(look) => canvas.set_options(look),
             Unlike::Bare => stage.show_bare()?,
         }
         canvas.draw(&mut stage.mirror, &camera, time_secs(self.frames - 1), 0.0);
         Ok((drawn, Some(seen(&canvas))))
     }
 
-    /// How far two pictures are apart as a whole, and in each part.
+    /// Differences of two pictures as a whole and in each part.
     fn differences(&self, a: &Picture, b: &Picture) -> Result<Vec<(String, Difference)>> {
         let whole = [("as a whole".to_owned(), a.difference(b)?)];
-        let parts = self.parts.iter().map(|&part| Ok((format!("in {part:?}"), a.part(part).difference(&b.part(part))?)));
+        let parts = self.parts.iter().map(|&part| Ok((format!("in {part:?}"), a.cropped(part).difference(&b.cropped(part))?)));
         whole.into_iter().map(Ok).chain(parts).collect()
     }
-}
-
-fn is_within(difference: Difference) -> bool {
-    difference.mean <= BOUNDS.mean && difference.changed <= BOUNDS.changed
 }
 
 fn stored(name: &str) -> PathBuf {

@@ -1,4 +1,4 @@
-//! What moves through the grass.
+//! Vehicles in the grass.
 
 use crate::{Golden, Unlike, golden};
 use anyhow::Result;

@@ -1,12 +1,12 @@
-//! Whole scenes, and what grows in them.
+//! Whole scenes and their plants.
 
 use crate::{Golden, Unlike, golden};
 use anyhow::Result;
-use client_wasm::render::Look;
+use prairie_client::render::RenderOptions;
 use tests::stage::Act;
 use tests::views::over;
 
-/// Seen as pictures were before there were so many.
+/// A larger picture, for whole scenes.
 fn large() -> Golden {
     Golden { size_px: [480, 270], frames: 12, ..Golden::default() }
 }
@@ -21,7 +21,7 @@ golden!(
     Golden {
         shows: "layers above the ground",
         scene: "shells",
-        unlike: Unlike::Look(Look { shell_layers: Some(1), ..Look::default() }),
+        unlike: Unlike::RenderOptions(RenderOptions { shell_layers: Some(1), ..RenderOptions::default() }),
         ..large()
     }
 );

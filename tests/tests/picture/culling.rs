@@ -1,20 +1,20 @@
-//! Culling leaves out nothing that is seen.
+//! Culling leaves out nothing visible.
 
 use anyhow::{Result, ensure};
-use client_wasm::camera::Camera;
-use client_wasm::render::{Gpu, Look, Quality};
 use glam::Vec3;
+use prairie_client::camera::Camera;
+use prairie_client::render::{Gpu, Quality, RenderOptions};
 use tests::random_winds::Dice;
 use tests::still::Still;
 use tests::views::View;
 
 use crate::gpu;
 
-/// Views whose scenes are looked at, and from how many places.
+/// Views whose scenes are drawn, and number of cameras.
 const VIEWS: [(&str, u32); 2] = [("driving-calm", 140), ("ant-calm", 60)];
 const SIZE_PX: [u32; 2] = [96, 54];
 
-/// Anywhere over a scene's hills: among the blades or 40 m above, looking anywhere but straight up or down.
+/// A random camera over a scene's hills: from among the blades to 40 m above, in any direction except straight up or down.
 fn camera(dice: &mut Dice, still: &Still) -> Camera {
     let [width, depth] = still.stage.scene().extent_m().map(f64::from);
     let [x, z] = [dice.between(4.0, width - 4.0), dice.between(4.0, depth - 4.0)].map(|m| m as f32);
@@ -28,7 +28,7 @@ fn camera(dice: &mut Dice, still: &Still) -> Camera {
 }
 
 #[test]
-fn pictures_are_the_same_with_and_without() -> Result<()> {
+fn culling_changes_no_pixel() -> Result<()> {
     let gpu = gpu()?;
     let mut dice = Dice::new(6);
     for (name, cameras) in VIEWS {
@@ -41,7 +41,7 @@ fn compare(gpu: &Gpu, name: &str, cameras: u32, dice: &mut Dice) -> Result<()> {
     let mut still = Still::of(View::find(name)?, SIZE_PX)?;
     let [mut culled, mut whole] = [true, false].map(|culls| {
         let mut canvas = still.canvas(gpu, Quality::Low);
-        canvas.set_look(Look { culls, ..Look::default() });
+        canvas.set_options(RenderOptions { culls, ..RenderOptions::default() });
         canvas
     });
     let mut bent = [0_u64; 2];

@@ -1,15 +1,15 @@
-//! The picture: how near each way of drawing comes to every plant drawn, and what may not be seen to change.
+//! The picture: similarity to a reference that draws every plant, culling, and popping.
 
 mod automatic;
 mod culling;
-mod likeness;
-mod pops;
-mod work;
+mod pipeline_statistics;
+mod popping;
+mod similarity;
 
 use std::path::Path;
 
 use anyhow::{Context as _, Result};
-use client_wasm::render::Gpu;
+use prairie_client::render::Gpu;
 use tests::picture::Picture;
 use tests::still::Still;
 use tests::views::View;
@@ -21,7 +21,7 @@ fn gpu() -> Result<Gpu> {
     Gpu::headless().context("no Vulkan driver: install mesa-vulkan-drivers")
 }
 
-/// A view and its reference, which tests of one build share.
+/// A view and its reference, which is cached for all tests of a build.
 fn view(gpu: &Gpu, name: &str, size_px: [u32; 2]) -> Result<(Still, Picture)> {
     let view = View::find(name)?;
     let mut still = Still::of(view, size_px)?;

@@ -1,12 +1,12 @@
-//! A meadow slows the wind in it, and the profile turns over at its top.
+//! A canopy slows the wind, with an inflection of the profile at its top.
 //!
-//! Over and in a uniform canopy, driven by an acceleration G and slowed by an eddy viscosity ν, the steady profile is known: above, `ν·U″ = −G`; inside,
+//! Over and in a uniform canopy, driven by an acceleration G and slowed by an eddy viscosity ν, the steady profile has a closed form: above, `ν·U″ = −G`; inside,
 //! `ν·U″ = C_d·a·U² − G`. Deep in the canopy `U = U_b = √(G / C_d·a)`; one integration gives
 //! `ν/2·U′² = C_d·a/3·(U − U_b)²·(U + 2U_b)`, another `U = U_b·(3·coth²θ − 2)`, with θ linear in depth.
 //!
-//! The shear layer at canopy height has the length `U/U′`. Where U is far above U_b, so that G does not count, it is `√(3ν / (2·C_d·a·U))`.
+//! The shear layer at canopy height has the length `U/U′`. Where U is far above U_b, so that G is negligible, it is `√(3ν / (2·C_d·a·U))`.
 
-use server::wind::{Boundary, Canopy, Config, Solver};
+use prairie_wind::{Boundary, Canopy, Config, Solver};
 use tests::air::still_air;
 use tests::norms::Norms;
 use tests::orders::{Order, assert_formal};
@@ -21,17 +21,17 @@ struct Profile {
     canopy_m: f64,
     deep_m_per_s: f64,
     top_m_per_s: f64,
-    /// θ at canopy height, and what it grows by per metre of depth.
+    /// θ at canopy height, and its gradient with depth (1/m).
     theta: [f64; 2],
 }
 
 impl Profile {
     fn new(canopy_m: f64) -> Self {
         let deep_m_per_s = (FORCE_M_PER_S2 / DRAG_PER_M).sqrt();
-        // The slope at canopy height carries all of the force on the air above.
-        let slope_per_sec = FORCE_M_PER_S2 * (TOP_M - canopy_m) / VISCOSITY_M2_PER_S;
+        // The slope at canopy height transmits the whole force on the air above.
+        let slope_per_s = FORCE_M_PER_S2 * (TOP_M - canopy_m) / VISCOSITY_M2_PER_S;
         let cubic = |u: f64| {
-            DRAG_PER_M / 3.0 * (u - deep_m_per_s).powi(2) * (u + 2.0 * deep_m_per_s) - 0.5 * VISCOSITY_M2_PER_S * slope_per_sec.powi(2)
+            DRAG_PER_M / 3.0 * (u - deep_m_per_s).powi(2) * (u + 2.0 * deep_m_per_s) - 0.5 * VISCOSITY_M2_PER_S * slope_per_s.powi(2)
         };
         let [mut low, mut high] = [deep_m_per_s, 1000.0];
         for _ in 0..100 {
@@ -59,11 +59,11 @@ impl Profile {
     }
 }
 
-/// Heights (m) of the layers of cells, and the steady wind (m/s) there.
+/// Steady wind (m/s) by height (m) of the cell layers.
 fn profile(canopy_m: f64, layers: usize) -> Vec<(f64, f64)> {
     let spacing_m = TOP_M / layers as f64;
     let exact = Profile::new(canopy_m);
-    // The ground moves with the air at its height, so that the canopy seems to go on below.
+    // The ground moves with the air at its height, as if the canopy continued below.
     let ground = Boundary::Lid { velocity_m_per_s: [exact.at(0.0) as f32, 0.0, 0.0] };
     let config = Config {
         viscosity_m2_per_s: VISCOSITY_M2_PER_S as f32,
@@ -90,7 +90,7 @@ fn profile(canopy_m: f64, layers: usize) -> Vec<(f64, f64)> {
 const CANOPIES_M: [f64; 3] = [4.0, 6.0, 8.0];
 
 #[test]
-fn the_profile_is_the_exact_one_to_second_order() {
+fn the_profile_converges_to_the_exact_one_at_second_order() {
     let row = |canopy_m: f64| {
         let exact = Profile::new(canopy_m);
         let errors = [16, 32, 64].map(|layers| {
@@ -103,7 +103,7 @@ fn the_profile_is_the_exact_one_to_second_order() {
 }
 
 #[test]
-fn the_inflection_is_at_canopy_height_and_the_shear_layer_as_thick_as_theory_gives() {
+fn inflection_height_and_shear_layer_thickness_match_theory() {
     for canopy_m in CANOPIES_M {
         let spacing_m = TOP_M / 32.0;
         let found = profile(canopy_m, 32);

@@ -1,12 +1,12 @@
-//! What the conservative scheme keeps: momentum, dust, and, but for the error in time, kinetic energy.
+//! The conservative scheme conserves momentum, dust and, up to the time error, kinetic energy.
 
-use server::wind::{Boundary, Config, Diffusion, Dust, Real, Solver, TimeScheme};
+use prairie_wind::{Boundary, Config, Diffusion, Dust, Real, Solver, TimeScheme};
 use tests::air::{noise, still_air};
 use tests::orders::{Order, assert_formal};
 
 const WRAP: [[Boundary; 2]; 3] = [[Boundary::Wrap; 2]; 3];
 
-/// Rough air without divergence or friction in a cube of 16 cells that wraps, over a mean wind of 0.3 m/s along x.
+/// Rough, divergence-free, inviscid air in a periodic cube of 16 cells, with a mean wind of 0.3 m/s along x.
 fn rough_air<R: Real>(damping: f32, dust: Option<Dust>) -> Solver<R> {
     rough_air_of(&rough_config(damping, dust))
 }
@@ -25,7 +25,7 @@ fn rough_air_of<R: Real>(config: &Config) -> Solver<R> {
     air
 }
 
-/// Mean of u²/2 (m²/s²) on the faces: what central fluxes keep.
+/// Mean of u²/2 (m²/s²) on the faces, conserved by central fluxes.
 fn energy<R: Real>(air: &Solver<R>) -> f64 {
     (0..3).map(|axis| air.samples(axis).map(|(_, u)| 0.5 * u.wide() * u.wide()).sum::<f64>()).sum::<f64>() / air.grid().len() as f64
 }
@@ -35,14 +35,14 @@ fn momentum<R: Real>(air: &Solver<R>) -> [f64; 3] {
     [0, 1, 2].map(|axis| air.samples(axis).map(|(_, u)| u.wide()).sum::<f64>() / air.grid().len() as f64)
 }
 
-/// Air whose pressure has settled, and the time step (s) of a Courant number, summed over the axes, in it.
+/// Air after the pressure has settled, and its time step (s) at a Courant number summed over the axes.
 fn settled<R: Real>(mut air: Solver<R>, courant: f64) -> (Solver<R>, f64) {
     let dt_secs = 0.01;
-    let fastest_per_sec = (0..10).map(|_| air.step(dt_secs, &[]).expect("within the limits").courant / dt_secs).last().unwrap_or(1.0);
-    (air, courant / fastest_per_sec)
+    let fastest_per_s = (0..10).map(|_| air.step(dt_secs, &[]).expect("within the limits").courant / dt_secs).last().unwrap_or(1.0);
+    (air, courant / fastest_per_s)
 }
 
-/// Time step (s), and the share of its energy that rough air without damping gains in so many steps.
+/// Time step (s), and the relative energy gain of undamped rough air over a number of steps.
 fn gain(courant: f64, steps: usize) -> (f64, f64) {
     let (mut air, dt_secs) = settled(rough_air::<f64>(0.0, None), courant);
     let before = energy(&air);
@@ -51,7 +51,7 @@ fn gain(courant: f64, steps: usize) -> (f64, f64) {
 }
 
 #[test]
-fn without_damping_energy_is_kept_but_for_the_error_in_time() {
+fn without_damping_energy_changes_only_by_the_time_error() {
     for (courant, bound) in [(0.5, 0.02), (0.25, 0.0015)] {
         let (_, gain) = gain(courant, 1000);
         println!("Courant {courant}: energy changes by {:.4} % in 1000 steps", 100.0 * gain);
@@ -62,7 +62,7 @@ fn without_damping_energy_is_kept_but_for_the_error_in_time() {
 }
 
 #[test]
-fn with_damping_energy_only_falls() {
+fn with_damping_energy_never_grows() {
     let (mut air, dt_secs) = settled(rough_air::<f64>(1.0, None), 0.5);
     let start = energy(&air);
     let mut before = start;
@@ -75,7 +75,7 @@ fn with_damping_energy_only_falls() {
     println!("damping 1, Courant 0.5: {:.2} % of the energy are left after 1000 steps", 100.0 * before / start);
 }
 
-/// Largest change of the mean velocity over 200 steps, as a share of the rms speed.
+/// Largest change of the mean velocity over 200 steps, relative to the rms speed.
 fn momentum_change<R: Real>(choose: impl Fn(&mut Config)) -> f64 {
     let mut config = rough_config(1.0, None);
     choose(&mut config);
@@ -87,7 +87,7 @@ fn momentum_change<R: Real>(choose: impl Fn(&mut Config)) -> f64 {
 }
 
 #[test]
-fn a_box_that_wraps_keeps_its_momentum_to_rounding() {
+fn a_periodic_box_conserves_momentum_to_rounding() {
     type Choose = fn(&mut Config);
     let schemes: [(&str, Choose); 4] = [
         ("Runge–Kutta 3", |_| {}),
@@ -107,8 +107,8 @@ fn a_box_that_wraps_keeps_its_momentum_to_rounding() {
 }
 
 #[test]
-fn dust_is_kept_to_rounding() {
-    let settings = Dust { diffusivity_m2_per_s: 0.125, release_per_sec: 0.0, settling_per_sec: 0.0, ..Dust::default() };
+fn dust_is_conserved_to_rounding() {
+    let settings = Dust { diffusivity_m2_per_s: 0.125, release_per_s: 0.0, settling_per_s: 0.0, ..Dust::default() };
     let (mut air, dt_secs) = settled(rough_air::<f32>(1.0, Some(settings)), 0.5);
     air.set_dust(|[x, y, _]| if x < 8.0 && y < 8.0 { 1.0 } else { 0.0 });
     let amount = |air: &Solver<f32>| air.dust_samples().map(|(_, density)| f64::from(density)).sum::<f64>();

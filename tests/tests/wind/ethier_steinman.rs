@@ -3,6 +3,6 @@
 use tests::orders::{self, assert_formal};
 
 #[test]
-fn schemes_have_their_order_where_velocity_is_prescribed_on_every_face() {
+fn schemes_have_their_order_with_prescribed_velocity_on_every_face() {
     assert_formal(&orders::beltrami());
 }

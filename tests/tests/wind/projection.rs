@@ -1,24 +1,24 @@
-//! Projection leaves no divergence but rounding; iterative solvers leave what they were told to, and air that comes in goes out.
+//! Direct projection leaves no divergence beyond rounding; iterative solvers meet their tolerance; inflow equals outflow.
 
 use std::f64::consts::TAU;
 
-use server::wind::pressure::{Effort, Method, Projection, divergence};
-use server::wind::{Boundary, Config, Grid, Pressure, Solver, Velocity, boundary::Walls};
+use prairie_wind::pressure::{Effort, IterativeMethod, Projection, divergence};
+use prairie_wind::{Boundary, Config, Grid, Pressure, Solver, Velocity, boundary::BoundaryConditions};
 use tests::air::{noise, still_air};
 
 const WRAP: [[Boundary; 2]; 3] = [[Boundary::Wrap; 2]; 3];
 const CLOSED: [[Boundary; 2]; 3] = [[Boundary::NoSlip; 2], [Boundary::NoSlip, Boundary::FreeSlip], [Boundary::Reflect; 2]];
 const OPEN: [[Boundary; 2]; 3] = [[Boundary::Inflow, Boundary::Outflow], [Boundary::FreeSlip, Boundary::Outflow], [Boundary::Wrap; 2]];
 
-/// Rms divergence that the default projection leaves in single precision, over that before.
+/// Remaining rms divergence of the default projection in single precision, relative to that before.
 fn left(cells: [usize; 3], boundary: [[Boundary; 2]; 3], flow: impl Fn([f32; 3], usize) -> f32) -> f64 {
     let grid = Grid { cells, spacing_m: [2.0, 1.0, 1.5], boundary };
-    let walls = Walls::new(&grid, Box::new(|_, _| [1.0, 0.0, 0.0]));
+    let walls = BoundaryConditions::new(&grid, Box::new(|_, _| [1.0, 0.0, 0.0]));
     let mut velocity = Velocity::zeros(&grid);
     for (axis, field) in velocity.0.iter_mut().enumerate() {
         field.fill(&grid, |position| flow(position, axis));
     }
-    walls.close(&mut velocity);
+    walls.apply(&mut velocity);
     let rms = |velocity: &Velocity<f32>| {
         let mut per_cell = vec![0.0; grid.len()];
         divergence(&grid, velocity, 1.0, &mut per_cell);
@@ -26,16 +26,16 @@ fn left(cells: [usize; 3], boundary: [[Boundary; 2]; 3], flow: impl Fn([f32; 3],
     };
     let before = rms(&velocity);
     Projection::new(&grid, Pressure::default(), None).project(&grid, &mut velocity, &[], None);
-    walls.close(&mut velocity);
+    walls.apply(&mut velocity);
     rms(&velocity) / before
 }
 
 #[test]
-fn the_default_leaves_at_most_a_hundred_thousandth_of_the_divergence() {
+fn the_default_projection_leaves_at_most_1e_5_of_the_divergence() {
     let shapes = [[8; 3], [16; 3], [32; 3], [64; 3], [128; 3], [64, 32, 64], [12, 7, 30], [128, 32, 128]];
     for cells in shapes {
         for (name, boundary) in [("wraps", WRAP), ("closed", CLOSED), ("open", OPEN)] {
-            // One wave across the box has the least divergence for its speed, so that rounding shows most.
+            // One wave across the box has the least divergence for its speed, so rounding shows most.
             let extent_m = [2.0 * cells[0] as f32, cells[1] as f32, 1.5 * cells[2] as f32];
             let wave = left(cells, boundary, |position, axis| {
                 let phase: f64 = (0..3).map(|a| f64::from(position[a] / extent_m[a]) * TAU).sum();
@@ -51,11 +51,17 @@ fn the_default_leaves_at_most_a_hundred_thousandth_of_the_divergence() {
     }
 }
 
-/// Air through a box with a block in it: 4 m/s come in at one end.
+/// Air flows through a box around a block, with an inflow of 4 m/s.
 #[test]
-fn iterative_solvers_meet_their_tolerance_round_a_block_and_mass_is_kept() {
+fn iterative_solvers_meet_their_tolerance_around_a_block_and_conserve_mass() {
     let tolerance = 1e-6;
-    for method in [Method::Jacobi, Method::GaussSeidel, Method::Sor, Method::ConjugateGradients, Method::Multigrid] {
+    for method in [
+        IterativeMethod::Jacobi,
+        IterativeMethod::GaussSeidel,
+        IterativeMethod::Sor,
+        IterativeMethod::ConjugateGradients,
+        IterativeMethod::Multigrid,
+    ] {
         let faces = [[Boundary::Inflow, Boundary::Outflow], [Boundary::NoSlip, Boundary::FreeSlip], [Boundary::FreeSlip; 2]];
         let sweeps = 20_000;
         let config = Config {

@@ -1,16 +1,16 @@
-//! Whatever legal scene is drawn, the wind refuses it by name or stays finite, and gains no energy that nothing gave it.
+//! Random valid scenes: the wind rejects them with a named error or stays finite, and gains no energy without forcing.
 
-use server::wind::{Advection, Boundary, Diffusion, Place, Pressure, Real, Solver, StepError};
+use prairie_wind::{Advection, Boundary, Diffusion, Location, Pressure, Real, Solver, StepError};
 use tests::random_winds::RandomWind;
 
 const WINDS: u64 = 2000;
 const STEPS: usize = 4;
 
-/// Growth of kinetic energy taken for rounding.
+/// Relative growth of kinetic energy attributed to rounding.
 const ENERGY_TOLERANCE: f64 = 1e-3;
-/// Largest growth of kinetic energy where the pressure is iterated for so few sweeps that air is still compressed: advection through such air gathers it.
+/// Largest growth of kinetic energy where the pressure iteration is too short to remove the divergence: advection by a divergent flow can add energy.
 const COMPRESSED_GROWTH: f64 = 2.0;
-/// Residual of the pressure from which on air counts as compressed.
+/// Residual of the pressure above which the flow counts as divergent.
 const COMPRESSED: f64 = 0.01;
 /// Rounding of dust in single precision.
 const DUST_TOLERANCE: f32 = 1e-4;
@@ -24,7 +24,7 @@ enum Outcome {
 fn energy<R: Real>(solver: &Solver<R>) -> f64 {
     let grid = solver.grid();
     let of_component = |axis: usize| {
-        let n = grid.shape(Place::Face(axis));
+        let n = grid.shape(Location::Face(axis));
         let values = solver.velocity().0[axis].values(grid).enumerate();
         let on_surface = move |at: usize| {
             let index = [at % n[0], at / n[0] % n[1], at / (n[0] * n[1])][axis];
@@ -38,7 +38,7 @@ fn energy<R: Real>(solver: &Solver<R>) -> f64 {
 /// Steps a wind.
 ///
 /// # Errors
-/// What is wrong with it.
+/// A violated property.
 fn run<R: Real>(wind: &RandomWind) -> Result<Outcome, String> {
     let Ok(mut solver) = wind.solver::<R>() else { return Ok(Outcome::Refused) };
     let (start, config) = (energy(&solver), &wind.config);
@@ -58,7 +58,7 @@ fn run<R: Real>(wind: &RandomWind) -> Result<Outcome, String> {
         }
         compressed |= report.pressure_residual > COMPRESSED;
         let most = start * if compressed { COMPRESSED_GROWTH } else { 1.0 + ENERGY_TOLERANCE };
-        // Through a face of outflow air may come in, and brings what energy it has.
+        // Through an outflow face air may enter, with any energy.
         if !wind.is_driven() && !open && now > most {
             return Err(format!("step {step}: energy {now:e}, at the start {start:e}; {report:?}"));
         }
@@ -66,7 +66,7 @@ fn run<R: Real>(wind: &RandomWind) -> Result<Outcome, String> {
         if !(low.is_finite() && high.is_finite()) {
             return Err(format!("step {step}: dust from {low} to {high}"));
         }
-        // Crank–Nicolson makes new extrema from edges; fluxes do where air is compressed.
+        // Crank–Nicolson makes new extrema next to edges; fluxes do where air is compressed.
         let fluxes = config.dust.is_some_and(|dust| dust.advection == Advection::Conservative) && config.pressure != Pressure::Direct;
         let bounded = config.diffusion != Diffusion::CrankNicolson && !fluxes && !wind.is_driven();
         if bounded && (low < -DUST_TOLERANCE || high > 1.0 + DUST_TOLERANCE) {
@@ -82,7 +82,7 @@ fn dust_range<R: Real>(solver: &Solver<R>) -> [f32; 2] {
 }
 
 #[test]
-fn two_thousand_random_winds_are_refused_or_stay_finite() {
+fn two_thousand_random_winds_are_rejected_or_stay_finite() {
     let (mut refused, mut failed) = (0, Vec::new());
     for seed in 0..WINDS {
         let wind = RandomWind::new(seed);

@@ -1,9 +1,9 @@
-//! The wind's methods fail where theory says they do, and those that should never fail do not.
+//! The wind's methods become unstable at their theoretical limits; those without a limit never do.
 
-use server::wind::diffuse::{Implicit, Portion, spread};
-use server::wind::pressure::{Effort, Method};
-use server::wind::{
-    Advection, Boundary, Config, Diffusion, Dust, Field, Grid, Gusts, Place, Pressure, Profile, Solver, StepError, TimeScheme,
+use prairie_wind::diffuse::{Implicit, Portion, diffuse};
+use prairie_wind::pressure::{Effort, IterativeMethod};
+use prairie_wind::{
+    Advection, Boundary, Config, Diffusion, Dust, Field, Grid, Gusts, Location, Pressure, Profile, Solver, StepError, TimeScheme,
 };
 use tests::limits::{Limit, Transport, dust_bounds, explicit_diffusion};
 use tests::random_winds::Dice;
@@ -20,7 +20,7 @@ fn report(limit: &Limit) {
 }
 
 #[test]
-fn explicit_diffusion_fails_where_the_checkerboard_grows() {
+fn explicit_diffusion_becomes_unstable_at_its_limit() {
     let boxes = [
         ("cubes", [8, 8, 8], [1.0; 3]),
         ("flat cells", [8, 8, 8], [4.0, 1.0, 2.0]),
@@ -60,7 +60,7 @@ fn transports() -> Vec<(&'static str, Transport)> {
 }
 
 #[test]
-fn transport_fails_where_its_amplification_passes_1() {
+fn transport_becomes_unstable_where_its_amplification_exceeds_1() {
     for (name, transport) in transports() {
         let limit = transport.limit(name);
         report(&limit);
@@ -68,13 +68,13 @@ fn transport_fails_where_its_amplification_passes_1() {
     }
     let [line, _, cube] = [0, 1, 2].map(|n| transports()[n].1);
     assert!((line.limit("").measured / 3.0f64.sqrt() - 1.0).abs() < 0.03);
-    let courant_per_sec: f64 = (0..3).map(|axis| cube.air_m_per_s[axis].abs() / cube.spacing_m[axis]).sum();
-    assert!((cube.limit("").measured * courant_per_sec / 3.0f64.sqrt() - 1.0).abs() < 0.03);
+    let courant_per_s: f64 = (0..3).map(|axis| cube.air_m_per_s[axis].abs() / cube.spacing_m[axis]).sum();
+    assert!((cube.limit("").measured * courant_per_s / 3.0f64.sqrt() - 1.0).abs() < 0.03);
 }
 
-/// What `transport::stable_dt_secs` allows is never beyond the true limit, over all wave numbers and mixtures; `left` is how far it stays below.
+/// The limit by `transport::stable_dt_secs` never exceeds the true one, over all wave numbers and mixtures; `left` is the margin.
 #[test]
-fn the_stable_step_of_transport_is_safe() {
+fn the_stable_step_of_transport_never_exceeds_the_limit() {
     let mut left = [f64::INFINITY, 0.0];
     let mut dice = Dice::new(5);
     for _ in 0..300 {
@@ -87,10 +87,10 @@ fn the_stable_step_of_transport_is_safe() {
         };
         let air = [transport.air_m_per_s[0], transport.air_m_per_s[1], 0.0];
         let transport = Transport { air_m_per_s: air, ..transport };
-        // A single cell along z, made so wide that it counts for nothing.
+        // A single cell along z, so wide that it has no effect.
         let spacing_m = [transport.spacing_m[0], transport.spacing_m[1], 1e9];
         let grid = Grid { cells: transport.cells, spacing_m, boundary: [[Boundary::Wrap; 2]; 3] };
-        let allowed = server::wind::transport::stable_dt_secs(&grid, air.map(f64::abs), transport.diffusivity_m2_per_s);
+        let allowed = prairie_wind::transport::stable_dt_secs(&grid, air.map(f64::abs), transport.diffusivity_m2_per_s);
         if allowed.is_finite() {
             let amplification = transport.amplification(allowed, 64);
             assert!(amplification <= 1.0 + 1e-9, "{transport:?}: {amplification} at {allowed} s");
@@ -105,9 +105,9 @@ fn the_stable_step_of_transport_is_safe() {
     assert!(left[1] < 2.0);
 }
 
-/// The theory's 1/2 is enough for any air without divergence; what is found may lie above, since no noise need be the worst case.
+/// Theory's 1/2 suffices for any divergence-free flow; the measured limit may be higher, since the noise is not the worst case.
 #[test]
-fn limited_dust_keeps_its_bounds_up_to_half_a_cell() {
+fn limited_dust_stays_bounded_up_to_a_courant_number_of_one_half() {
     for (name, cells, uniform) in [
         ("uniform air, line", [64, 1, 1], true),
         ("uniform air, square", [24, 24, 1], true),
@@ -121,21 +121,21 @@ fn limited_dust_keeps_its_bounds_up_to_half_a_cell() {
     }
 }
 
-/// Largest growth of the norm of noise after a step to that before, over steps of friction.
+/// Largest growth factor of the norm of noise per diffusion step.
 fn growth(scheme: Diffusion, portion: Portion, number: f64) -> f64 {
     let grid = Grid { cells: [8; 3], spacing_m: [1.0; 3], boundary: [[Boundary::NoSlip; 2]; 3] };
-    let walls = server::wind::boundary::Walls::new(&grid, Box::new(|_, _| [0.0; 3]));
-    let mut field = Field::<f64>::zeros(&grid, Place::Face(0));
+    let walls = prairie_wind::boundary::BoundaryConditions::new(&grid, Box::new(|_, _| [0.0; 3]));
+    let mut field = Field::<f64>::zeros(&grid, Location::Face(0));
     let mut dice = Dice::new(3);
     field.data.iter_mut().for_each(|value| *value = dice.between(-1.0, 1.0));
-    walls.close_component(&mut field);
+    walls.apply_to_component(&mut field);
     let (mut even, mut odd, mut implicit) = (field.clone(), field.clone(), Implicit::new(&grid));
     let norm = |field: &Field<f64>| field.values(&grid).map(|value| value * value).sum::<f64>();
     let mut largest = 0.0f64;
     for _ in 0..50 {
         let before = norm(&field);
-        spread(scheme, portion, &grid, 1.0, number, &mut field, [&mut even, &mut odd], Some(&mut implicit), |field| {
-            walls.close_component(field)
+        diffuse(scheme, portion, &grid, 1.0, number, &mut field, [&mut even, &mut odd], Some(&mut implicit), |field| {
+            walls.apply_to_component(field)
         });
         let after = norm(&field);
         if before > 1e-200 {
@@ -163,13 +163,13 @@ fn implicit_friction_never_grows() {
     }
 }
 
-/// Turbulent air over a uniform wind of 1 m/s in a box of 6³ cells of 1 m.
+/// Turbulent air with a uniform wind of 1 m/s in a box of 6³ cells of 1 m.
 fn turbulent(config: Config) -> Solver<f32> {
     let config = Config {
         cells: [6; 3],
         spacing_m: [1.0; 3],
         mean_wind_m_per_s: [0.0; 3],
-        relaxation_per_sec: 0.0,
+        relaxation_per_s: 0.0,
         profile: Profile::Uniform,
         gusts: Gusts { number: 0, ..Gusts::default() },
         ..config
@@ -186,11 +186,11 @@ fn energy(solver: &Solver<f32>) -> f64 {
     solver.velocity().0.iter().flat_map(|field| field.values(solver.grid())).map(|speed| f64::from(speed) * f64::from(speed)).sum()
 }
 
-/// 1 000 steps; 10 000 with `PRAIRIE_LARGE` set. The steps do not shrink with the air's speed, so that a uniform wind of 1 m/s keeps the Courant number.
+/// 1 000 steps; 10 000 with `PRAIRIE_LARGE` set. The time step stays fixed, so that a uniform wind of 1 m/s has the stated Courant number.
 #[test]
-fn methods_without_a_limit_hold_at_any_courant_number() {
+fn methods_without_a_limit_are_stable_at_any_courant_number() {
     let steps = if std::env::var_os("PRAIRIE_LARGE").is_some() { 10_000 } else { 1_000 };
-    for advection in [Advection::SemiLagrangian, Advection::MacCormack, Advection::Bfecc] {
+    for &advection in Advection::ALL.iter().filter(|advection| !advection.uses_fluxes()) {
         for time in [TimeScheme::Split, TimeScheme::Reflection] {
             let mut growth = [0.0f64; 4];
             for diffusion in [Diffusion::Implicit, Diffusion::CrankNicolson, Diffusion::GaussSeidel { sweeps: 5 }] {
@@ -212,7 +212,7 @@ fn methods_without_a_limit_hold_at_any_courant_number() {
 }
 
 #[test]
-fn a_step_too_long_is_cut_or_refused_and_never_clamped() {
+fn too_long_a_step_is_subdivided_or_rejected_and_never_clamped() {
     let explicit = |viscosity_m2_per_s| Config { viscosity_m2_per_s, ..Config::default() };
     let mut solver = turbulent(explicit(0.2));
     let report = solver.step(10.0, &[]).expect("some parts");
@@ -239,9 +239,9 @@ fn a_step_too_long_is_cut_or_refused_and_never_clamped() {
     assert!(solver.state() == before);
 }
 
-/// Forces that would throw the air out of its Courant limit within a step cut it, or have it refused, before they do.
+/// Forces that would exceed the Courant limit within a step cause substeps or a rejection beforehand.
 #[test]
-fn strong_forces_cut_the_step() {
+fn strong_forces_subdivide_the_step() {
     let still = |force: f32| {
         let config = Config { body_force_m_per_s2: [force, 0.0, 0.0], viscosity_m2_per_s: 0.0, ..Config::default() };
         let mut solver = turbulent(config);
@@ -257,10 +257,16 @@ fn strong_forces_cut_the_step() {
     assert!(energy(&solver).is_finite());
 }
 
-/// Few sweeps from the potential of another flow put no energy into the air, and boxes that wrap an odd number of cells converge.
+/// A few sweeps from the potential of another flow add no energy, and periodic boxes with an odd number of cells converge.
 #[test]
-fn an_unfinished_projection_takes_energy_only() {
-    for method in [Method::Jacobi, Method::GaussSeidel, Method::Sor, Method::ConjugateGradients, Method::Multigrid] {
+fn an_unconverged_projection_never_adds_energy() {
+    for method in [
+        IterativeMethod::Jacobi,
+        IterativeMethod::GaussSeidel,
+        IterativeMethod::Sor,
+        IterativeMethod::ConjugateGradients,
+        IterativeMethod::Multigrid,
+    ] {
         let pressure = Pressure::Iterative(method, Effort { tolerance: 1e-12, sweeps: 1 });
         let mut solver = turbulent(Config { pressure, damping: 0.0, viscosity_m2_per_s: 0.0, ..Config::default() });
         solver.set_velocity(|[x, y, _]| [(0.7 * x).sin(), (1.1 * y).cos(), 0.0]);
@@ -273,7 +279,7 @@ fn an_unfinished_projection_takes_energy_only() {
         }
     }
     for cells in [[3, 18, 1], [1, 9, 28], [5, 5, 5], [3, 3, 3], [2, 12, 13]] {
-        for method in [Method::ConjugateGradients, Method::Multigrid, Method::Sor] {
+        for method in [IterativeMethod::ConjugateGradients, IterativeMethod::Multigrid, IterativeMethod::Sor] {
             let pressure = Pressure::Iterative(method, Effort { tolerance: 1e-9, sweeps: 500 });
             let config = Config { pressure, boundary: [[Boundary::Wrap; 2]; 3], profile: Profile::Uniform, ..Config::default() };
             let mut solver = Solver::<f64>::new(&Config { cells, spacing_m: [1.0; 3], ..config }).expect("a legal box");

@@ -1,4 +1,4 @@
-//! On the decaying Taylor–Green vortex, drifting through a box that wraps, every scheme has its formal order.
+//! On the decaying Taylor–Green vortex, drifting through a periodic box, every scheme has its formal order.
 
 use tests::orders::{self, assert_formal};
 

@@ -1,4 +1,4 @@
-//! Which crate may depend on which, and which file may name which library.
+//! Dependencies between the packages, and the only folders that use certain libraries.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,11 +8,12 @@ use anyhow::{Context as _, Result, ensure};
 
 const BROWSER: &[&str] = &["--target", "wasm32-unknown-unknown"];
 
-fn workspace() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("tests lies in the workspace")
+/// Root folder of the workspace.
+pub(super) fn workspace() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("tests is a folder of the workspace")
 }
 
-/// Names of all packages that a package is built from, itself included.
+/// Names of all packages in the dependency tree of a package, itself included.
 fn dependencies(package: &str, options: &[&str]) -> Result<Vec<String>> {
     let mut tree = Command::new(env!("CARGO"));
     tree.current_dir(workspace()).args(["tree", "--locked", "--package", package, "--edges", "normal,build"]);
@@ -31,27 +32,40 @@ fn assert_free_of(package: &str, dependencies: &[String], forbidden: &[&str]) {
 }
 
 #[test]
-fn shared_is_pure() -> Result<()> {
+fn prairie_core_is_pure() -> Result<()> {
     for options in [&[], BROWSER] {
-        let forbidden = ["server", "client-wasm", "tests", "tokio", "axum", "wgpu", "rerun", "wasm-bindgen"];
-        assert_free_of("shared", &dependencies("shared", options)?, &forbidden);
+        let forbidden = ["prairie", "prairie-client", "tests", "tokio", "axum", "wgpu", "rerun", "wasm-bindgen"];
+        assert_free_of("prairie-core", &dependencies("prairie-core", options)?, &forbidden);
     }
     Ok(())
 }
 
 #[test]
-fn server_and_client_never_see_each_other() -> Result<()> {
-    assert_free_of("server", &dependencies("server", &[])?, &["client-wasm", "wgpu-core"]);
+fn prairie_wind_depends_on_neither_server_nor_client() -> Result<()> {
+    let forbidden = ["prairie", "prairie-client", "tests", "tokio", "axum", "wgpu", "rerun"];
+    assert_free_of("prairie-wind", &dependencies("prairie-wind", &[])?, &forbidden);
+    Ok(())
+}
+
+#[test]
+#[should_panic(expected = "tests depends on prairie-client")]
+fn a_forbidden_dependency_is_found() {
+    assert_free_of("tests", &dependencies("tests", &[]).expect("cargo tree"), &["prairie-client"]);
+}
+
+#[test]
+fn server_and_client_never_depend_on_each_other() -> Result<()> {
+    assert_free_of("prairie", &dependencies("prairie", &[])?, &["prairie-client", "wgpu-core"]);
     for options in [&[], BROWSER] {
-        assert_free_of("client-wasm", &dependencies("client-wasm", options)?, &["server", "tests", "tokio", "axum", "rerun"]);
+        assert_free_of("prairie-client", &dependencies("prairie-client", options)?, &["prairie", "tests", "tokio", "axum", "rerun"]);
     }
     Ok(())
 }
 
 #[test]
-fn tests_see_all() -> Result<()> {
+fn tests_depend_on_every_package() -> Result<()> {
     let all = dependencies("tests", &[])?;
-    for name in ["shared", "server", "client-wasm"] {
+    for name in ["prairie-core", "prairie", "prairie-wind", "prairie-client"] {
         assert!(all.iter().any(|dependency| dependency == name), "tests does not depend on {name}");
     }
     Ok(())
@@ -69,8 +83,8 @@ fn rust_files(dir: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
     Ok(())
 }
 
-/// Whether Rust source reaches into a crate by its name, outside of comments.
-fn names(source: &str, library: &str) -> bool {
+/// Whether Rust source uses a library by its name, outside of comments.
+fn uses(source: &str, library: &str) -> bool {
     let path = format!("{library}::");
     source.lines().map(|line| line.split("//").next().unwrap_or(line)).any(|line| {
         let reached =
@@ -79,15 +93,15 @@ fn names(source: &str, library: &str) -> bool {
     })
 }
 
-/// Files of the product that name a library, as paths below the workspace.
-fn files_naming(library: &str) -> Result<Vec<PathBuf>> {
+/// Source files of the product that use a library, as paths below the workspace.
+fn files_using(library: &str) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
-    for package in ["shared/src", "server/src", "client-wasm/src"] {
+    for package in ["shared/src", "server/src", "server/wind/src", "client-wasm/src"] {
         rust_files(&workspace().join(package), &mut files)?;
     }
     let mut found = Vec::new();
     for file in files {
-        if names(&fs::read_to_string(&file)?, library) {
+        if uses(&fs::read_to_string(&file)?, library) {
             found.push(file.strip_prefix(workspace())?.to_path_buf());
         }
     }
@@ -95,28 +109,27 @@ fn files_naming(library: &str) -> Result<Vec<PathBuf>> {
 }
 
 #[test]
-fn only_net_names_axum() -> Result<()> {
-    for file in files_naming("axum")? {
-        assert!(file.starts_with("server/src/net"), "{} names axum", file.display());
+fn only_net_uses_axum() -> Result<()> {
+    for file in files_using("axum")? {
+        assert!(file.starts_with("server/src/net"), "{} uses axum", file.display());
     }
     Ok(())
 }
 
 #[test]
-fn only_inspect_names_rerun() -> Result<()> {
-    for file in files_naming("rerun")? {
-        let inspect = file == Path::new("server/src/inspect.rs") || file.starts_with("server/src/inspect");
-        assert!(inspect, "{} names rerun", file.display());
+fn only_inspect_uses_rerun() -> Result<()> {
+    for file in files_using("rerun")? {
+        assert!(file.starts_with("server/src/inspect"), "{} uses rerun", file.display());
     }
     Ok(())
 }
 
 #[test]
-fn naming_a_library_is_seen() {
+fn uses_of_a_library_are_found() {
     for source in ["use rerun::Vec3D;", "let x = rerun::init();", "use rerun;", "pub use rerun as viewer;", "Vec<rerun::Color>"] {
-        assert!(names(source, "rerun"), "{source}");
+        assert!(uses(source, "rerun"), "{source}");
     }
     for source in ["/// `rerun::Vec3D`", "crate::rerun::start()", "my_rerun::x", "#[cfg(feature = \"rerun\")]", "rerun: Option<Rerun>"] {
-        assert!(!names(source, "rerun"), "{source}");
+        assert!(!uses(source, "rerun"), "{source}");
     }
 }

@@ -1,17 +1,17 @@
-//! Balls lie still, are kicked by whatever drives or walks into them, roll, come to rest again, and press the grass.
+//! Balls rest, are kicked by vehicles and monsters, roll, come to rest again, and press the grass.
 
-use server::bend::air::GroundWind;
-use server::objects::{Objects, Place};
-use server::world::{Command, View, World};
-use shared::scene::Scene;
-use shared::scene::VehicleKind::{self, Ball, Car, Helicopter, Monster, Sled};
-use shared::wire::{Drive, ObjectPose};
+use prairie::bend::ground_wind::GroundWind;
+use prairie::objects::{Environment, Objects};
+use prairie::world::{Camera, Command, World};
+use prairie_core::scene::Scene;
+use prairie_core::scene::VehicleKind::{self, Ball, Car, Helicopter, Monster, Sled};
+use prairie_core::wire::{Drive, ObjectPose};
 use std::sync::Arc;
 use tests::worlds;
 
 const AHEAD: Drive = Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 };
 
-/// A scene of `count × count` patches with so many balls.
+/// A scene of `count × count` patches with the given number of balls.
 fn with_balls(count: u32, balls: u32) -> Scene {
     let mut scene = worlds::scene(count);
     scene.objects.balls = balls;
@@ -42,12 +42,12 @@ fn run(world: &mut World, ticks: u32) {
     (0..ticks).for_each(|_| world.step(&[]));
 }
 
-/// Puts a vehicle of client 1 about 11 m before the first ball and lets it head for it, until the ball moves; returns how fast that goes off.
+/// Drives a vehicle of client 1 at the first ball from about 11 m until the ball moves; returns the speed of the ball (m/s).
 fn kick(world: &mut World, kind: VehicleKind) -> f32 {
     run(world, 60);
     let [x, _, z] = balls(world)[0].position_m;
-    // The first place that is tried lies 9 m east of the camera, and what is put there looks away from it.
-    world.step(&[Command::Views(vec![View { client: 1, eye_m: [x - 20.0, 2.0, z] }])]);
+    // The first site to be tried lies 9 m east of the camera, and a vehicle put there faces away from the camera.
+    world.step(&[Command::Cameras(vec![Camera { client: 1, eye_m: [x - 20.0, 2.0, z] }])]);
     world.step(&[Command::Spawn { client: 1, kind }, Command::Drive { client: 1, drive: AHEAD }]);
     assert!(world.object_of(1).is_some(), "no room for a {}", kind.name());
     let mut fastest = 0.0_f32;
@@ -63,7 +63,7 @@ fn kick(world: &mut World, kind: VehicleKind) -> f32 {
 }
 
 #[test]
-fn balls_lie_apart_near_where_visitors_first_stand_and_stay_at_rest() {
+fn balls_start_apart_near_the_first_view_and_stay_at_rest() {
     let mut scene = with_balls(12, 20);
     scene.camera.at = [0.6, 0.4];
     let mut world = worlds::flat(&scene);
@@ -83,7 +83,7 @@ fn balls_lie_apart_near_where_visitors_first_stand_and_stay_at_rest() {
 }
 
 #[test]
-fn whatever_drives_into_a_ball_sends_it_off_and_it_comes_to_rest_again() {
+fn every_vehicle_kicks_a_ball_which_comes_to_rest_again() {
     for kind in [Car, Monster, Sled, Ball] {
         let mut world = worlds::flat(&with_balls(16, 1));
         run(&mut world, 60);
@@ -95,7 +95,7 @@ fn whatever_drives_into_a_ball_sends_it_off_and_it_comes_to_rest_again() {
         world.step(&[Command::Remove { client: 1 }]);
         run(&mut world, 1800);
         let end = balls(&mut world)[0];
-        // One ball gives another backspin, which soon stops it.
+        // Contact with another ball gives it backspin, which soon stops it.
         let least_m = if kind == Ball { 0.5 } else { 3.0 };
         assert!(distance(&start, &end) > least_m, "a {} sends it {} m far", kind.name(), distance(&start, &end));
         assert!(speed(&end) < 0.01 && (end.position_m[1] - 0.5).abs() < 0.05, "{end:?}");
@@ -116,7 +116,7 @@ fn balls_of_every_size_are_kicked_by_cars_and_monsters() {
 }
 
 #[test]
-fn a_ball_rolls_downhill_without_slipping_and_lies_still_on_a_gentle_slope() {
+fn a_ball_rolls_downhill_without_slipping_and_rests_on_a_gentle_slope() {
     let on_a_slope = |slope: f32| {
         let scene = calm(with_balls(16, 1));
         let mut world = World::new(&scene, worlds::maps(&scene, |x, _| slope * x, |_, _| 255)).expect("a sound scene");
@@ -132,7 +132,7 @@ fn a_ball_rolls_downhill_without_slipping_and_lies_still_on_a_gentle_slope() {
 }
 
 #[test]
-fn a_visitor_rolls_a_ball_and_steers_it() {
+fn a_client_rolls_and_steers_a_ball() {
     let mut world = worlds::flat(&worlds::scene(24));
     world.step(&[Command::Spawn { client: 1, kind: Ball }]);
     let mut drive = |drive: Drive, ticks: u32| {
@@ -154,7 +154,7 @@ fn a_visitor_rolls_a_ball_and_steers_it() {
 }
 
 #[test]
-fn a_ball_presses_the_grass_where_it_rolls_the_more_the_deeper_it_sits() {
+fn a_rolling_ball_presses_the_grass_by_its_depth() {
     let pressed = |radius_m: f32| {
         let mut scene = worlds::scene(8);
         scene.objects.ball_radius_m = radius_m;
@@ -162,12 +162,12 @@ fn a_ball_presses_the_grass_where_it_rolls_the_more_the_deeper_it_sits() {
         world.step(&[Command::Spawn { client: 1, kind: Ball }, Command::Drive { client: 1, drive: AHEAD }]);
         run(&mut world, 90);
         let [x, _, z] = balls(&mut world)[0].position_m;
-        let field = world.meadow().field();
+        let field = world.bend().field();
         let cells = (-160..160).flat_map(|j| (-160..160).map(move |i| [i, j].map(|n| n as f32 * 0.05)));
         let bent = |[dx, dz]: [f32; 2]| field.bend_at(x + dx, z + dz).theta;
-        // Just below it, and how much ground is bent within 0.8 m.
+        // Just below the ball, and the area of bent ground within 0.8 m.
         let area_m2 = cells.filter(|&[dx, dz]| dx.hypot(dz) < 0.8 && bent([dx, dz]) > 0.5).count() as f32 * 0.05 * 0.05;
-        let behind = world.meadow().laid().tiles();
+        let behind = world.bend().flattened().tiles();
         (bent([0.0, 0.0]), area_m2, behind)
     };
     let (small, large) = (pressed(0.15), pressed(0.8));
@@ -186,15 +186,15 @@ fn balls_count_among_the_objects() {
     assert_eq!(world.snapshot().objects.len(), 6);
 }
 
-/// A ball of that radius alone on flat grass, in a wind (m/s) that blows everywhere alike: its speed after each step.
+/// Velocity after each step (m/s) of a single ball on flat grass in a uniform wind.
 fn blown(radius_m: f32, wind_m_per_s: [f32; 2], ticks: u32) -> Vec<[f32; 2]> {
     let mut scene = with_balls(24, 1);
     (scene.objects.ball_radius_m, scene.camera.at) = (radius_m, [0.2, 0.2]);
     let maps = worlds::maps(&scene, |_, _| 0.0, |_, _| 255);
-    let place = Place { height: Arc::new(maps.height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
-    let mut objects = Objects::new(&scene, place);
+    let environment = Environment { height: Arc::new(maps.height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
+    let mut objects = Objects::new(&scene, environment);
     let [east, south] = wind_m_per_s;
-    // It drops 5 cm first.
+    // First it drops 5 cm.
     (0..240).for_each(|_| objects.step(scene.dt_secs(), |_| [0.0; 3]));
     let mut step = || {
         objects.step(scene.dt_secs(), |_| [east, 0.0, south]);
@@ -204,17 +204,17 @@ fn blown(radius_m: f32, wind_m_per_s: [f32; 2], ticks: u32) -> Vec<[f32; 2]> {
     (0..ticks).map(|_| step()).collect()
 }
 
-/// Mass of a ball over the drag that it feels in a wind of 1 m/s (m): 8 kg/m³, at least 1 kg, and a drag coefficient of 0.47.
+/// Ratio of the mass of a ball to its drag in a wind of 1 m/s (m): 8 kg/m³, at least 1 kg, drag coefficient 0.47.
 fn drag_length_m(radius_m: f32) -> f32 {
     let mass_kg = (8.0 * 4.0 / 3.0 * std::f32::consts::PI * radius_m.powi(3)).max(1.0);
     mass_kg / (0.5 * 1.2 * 0.47 * std::f32::consts::PI * radius_m * radius_m)
 }
 
 #[test]
-fn a_ball_comes_up_to_the_speed_at_which_the_wind_s_drag_is_the_grass_s() {
+fn a_ball_reaches_the_speed_at_which_wind_and_grass_drag_balance() {
     for (radius_m, wind_m_per_s) in [(0.5, 12.0), (0.3, 9.0), (1.0, 20.0)] {
         let speeds = blown(radius_m, [0.6 * wind_m_per_s, 0.8 * wind_m_per_s], 900);
-        // Rolling, it has the inertia of 7/5 of its mass. With u its speed below the wind's, u' = 0.8 − k·u², so that u = c·coth(√(0.8·k)·t + arcoth(U/c)).
+        // A rolling ball has the inertia of 7/5 of its mass. With u its speed below the wind's, u' = 0.8 − k·u², so that u = c·coth(√(0.8·k)·t + arcoth(U/c)).
         let k_per_m = 1.0 / (1.4 * drag_length_m(radius_m));
         let slowest = (0.8 / k_per_m).sqrt();
         let start = 0.5 * ((wind_m_per_s + slowest) / (wind_m_per_s - slowest)).ln();
@@ -235,9 +235,9 @@ fn a_ball_comes_up_to_the_speed_at_which_the_wind_s_drag_is_the_grass_s() {
 }
 
 #[test]
-fn a_resting_ball_stays_in_a_breeze_and_rolls_off_in_a_gale() {
+fn a_resting_ball_stays_in_a_breeze_and_rolls_in_a_gale() {
     for radius_m in [0.2, 0.5, 1.0] {
-        // What the grass holds: 0.8 m/s² of a rolling ball.
+        // Rolling resistance of the grass: 0.8 m/s².
         let holds_m_per_s = (0.8 * 1.4 * drag_length_m(radius_m)).sqrt();
         let fastest =
             |wind_m_per_s: f32| blown(radius_m, [wind_m_per_s, 0.0], 600).into_iter().map(|[x, z]| x.hypot(z)).fold(0.0, f32::max);
@@ -248,26 +248,26 @@ fn a_resting_ball_stays_in_a_breeze_and_rolls_off_in_a_gale() {
 }
 
 #[test]
-fn the_grass_below_a_ball_at_rest_stays_pressed_while_its_patch_sleeps() {
+fn grass_under_a_resting_ball_stays_pressed_while_its_patch_sleeps() {
     let scene = calm(with_balls(8, 1));
     let mut world = worlds::flat(&scene);
     let lean_rad = |world: &World, [x, z]: [f32; 2]| {
-        let [x, z] = world.meadow().lean_rad([x, z], &GroundWind::still(&scene));
+        let [x, z] = world.bend().lean_rad([x, z], &GroundWind::still(&scene));
         x.hypot(z)
     };
     run(&mut world, 900);
     let [x, _, z] = balls(&mut world)[0].position_m;
     let below = [[0.0, 0.0], [0.25, 0.0], [0.0, -0.25]].map(|[dx, dz]| [x + dx, z + dz]);
     let pressed_rad = below.map(|at_m| lean_rad(&world, at_m));
-    assert_eq!(world.meadow().field().awake_count(), 0);
+    assert_eq!(world.bend().field().awake_count(), 0);
     assert!(pressed_rad.iter().all(|&rad| rad > 0.8), "{pressed_rad:?}");
     // Two time constants of laid grass.
     run(&mut world, 7200);
-    assert_eq!(world.meadow().field().awake_count(), 0);
+    assert_eq!(world.bend().field().awake_count(), 0);
     let later_rad = below.map(|at_m| lean_rad(&world, at_m));
     assert!(pressed_rad.iter().zip(later_rad).all(|(before, after)| (before - after).abs() < 0.15), "{pressed_rad:?}, then {later_rad:?}");
     kick(&mut world, Car);
-    assert!(world.meadow().field().awake_count() > 0);
+    assert!(world.bend().field().awake_count() > 0);
     world.step(&[Command::Remove { client: 1 }]);
     run(&mut world, 7200);
     assert!(below.iter().all(|&at_m| lean_rad(&world, at_m) < 0.35), "where it lay the grass rises");

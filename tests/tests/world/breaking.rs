@@ -1,25 +1,24 @@
-//! Underbrush that objects pass over, or that a storm blows over, breaks for good and lies the way that it was broken.
+//! Underbrush breaks permanently under objects and in storms, and falls in the direction of the load.
 
-use client_wasm::state::Mirror;
-use server::bend::air::GroundWind;
-use server::plants::BrokenPlants;
-use server::scenes;
-use server::world::{Command, View, World};
-use shared::plant::flora::Flora;
-use shared::scene::{Primitive, PrimitiveKind, Scene, VehicleKind, parse_underbrush};
-use shared::terrain::{CoverMap, grey_png};
-use shared::wire::quantise::{heading_rad, wind_m_per_s};
-use shared::wire::{BrokenPlant, Drive, SERVER_MESSAGE_LIMIT, ServerMessage, decode, encode};
+use prairie::bend::ground_wind::GroundWind;
+use prairie::scenes;
+use prairie::snapshot::BrokenPlants;
+use prairie::world::{Camera, Command, World};
+use prairie_client::state::Mirror;
+use prairie_core::plant::flora::Flora;
+use prairie_core::scene::{Primitive, PrimitiveKind, Scene, VehicleKind, parse_underbrush};
+use prairie_core::terrain::{CoverMap, grey_png};
+use prairie_core::wire::quantise::{heading_rad, wind_m_per_s};
+use prairie_core::wire::{BrokenPlant, Drive, SERVER_MESSAGE_LIMIT, ServerMessage, decode, encode};
 use std::f32::consts::{PI, TAU};
 use tests::worlds;
 
 const AHEAD: Drive = Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 };
 
-/// A scene of `count × count` patches where the reed that ships grows all over, painted on flat land.
+/// A scene of `count × count` patches of flat terrain, covered with reeds.
 fn reeds(count: u32) -> Scene {
-    let species = include_str!("../../../server/scenes/species.toml");
-    let mut reed =
-        parse_underbrush(species).expect("sound species").into_iter().find(|species| species.name == "reed").expect("there is a reed");
+    let species = parse_underbrush(include_str!("../../scenes/plants/reed-and-fern.toml")).expect("valid species");
+    let mut reed = species.into_iter().next().expect("the first is the reed");
     (reed.needs, reed.light_need, reed.cover) = ([0.0; 3], 0.0, 0);
     (reed.propagation_points, reed.reach_m) = (400, 3.0);
     let mut scene = worlds::scene(count);
@@ -37,7 +36,7 @@ fn sites(broken: &BrokenPlants) -> Vec<u32> {
     broken.iter().map(|plant| plant.site).collect()
 }
 
-/// Which way a plant fell, as a vector of length 1 along X and Z.
+/// Direction in which a plant fell, as a unit vector along X and Z.
 fn fall(plant: &BrokenPlant) -> [f32; 2] {
     let (sine, cosine) = heading_rad(plant.fall).sin_cos();
     [cosine, sine]
@@ -47,9 +46,9 @@ fn run(world: &mut World, ticks: u32) {
     (0..ticks).for_each(|_| world.step(&[]));
 }
 
-/// A car of client 1 that drives eastward for so many steps; where it was after each.
+/// Drives a vehicle of client 1 eastward for `ticks` steps; returns its position after each.
 fn drive(world: &mut World, kind: VehicleKind, ticks: u32) -> Vec<[f32; 2]> {
-    world.step(&[Command::Views(vec![View { client: 1, eye_m: [30.0, 2.0, 64.0] }])]);
+    world.step(&[Command::Cameras(vec![Camera { client: 1, eye_m: [30.0, 2.0, 64.0] }])]);
     world.step(&[Command::Spawn { client: 1, kind }, Command::Drive { client: 1, drive: AHEAD }]);
     let id = world.object_of(1).expect("there is room");
     let mut place = || {
@@ -61,7 +60,7 @@ fn drive(world: &mut World, kind: VehicleKind, ticks: u32) -> Vec<[f32; 2]> {
 }
 
 #[test]
-fn a_car_through_reeds_leaves_broken_ones_behind_for_good() {
+fn a_car_breaks_reeds_permanently() {
     let scene = reeds(8);
     let (mut world, flora) = (worlds::flat(&scene), flora(&scene));
     let way = drive(&mut world, VehicleKind::Car, 300);
@@ -76,7 +75,7 @@ fn a_car_through_reeds_leaves_broken_ones_behind_for_good() {
         assert!(flora.grown().plant_at(site).is_some(), "a plant grows at site {site}");
         assert!(from_way_m(site) < 2.6, "site {site} lies {} m from the way", from_way_m(site));
     }
-    // Below the wheels, where the grass is pressed the most, none is left.
+    // Below the wheels, where the grass is pressed most, no plant is left.
     let below_wheels = |at: [f32; 2]| {
         let passed = way[30..270].iter().any(|place| (place[0] - at[0]).abs() < 0.5);
         let across_m = (at[1] - way[0][1]).abs();
@@ -104,7 +103,7 @@ fn calm(mut scene: Scene) -> Scene {
     scene
 }
 
-/// A client that has been told of the scene, on flat land that is all grass.
+/// A client mirror of the scene on flat terrain, covered with grass.
 fn mirror(scene: &Scene) -> Mirror {
     let pixels = scene.extent_m().map(|extent| (extent / scene.terrain.pixel_m[0]) as u32 + 1);
     let map = |level: u8| grey_png(pixels, &vec![level; (pixels[0] * pixels[1]) as usize]);
@@ -121,7 +120,7 @@ fn mirror(scene: &Scene) -> Mirror {
 }
 
 #[test]
-fn plants_fall_the_way_that_a_car_presses_them_and_a_client_sees_them_lie_so() {
+fn broken_plants_fall_in_the_direction_of_the_car_and_so_they_do_in_the_mirror() {
     let scene = calm(reeds(8));
     let (mut world, flora, still) = (worlds::flat(&scene), flora(&scene), GroundWind::still(&scene));
     drive(&mut world, VehicleKind::Car, 20);
@@ -130,9 +129,10 @@ fn plants_fall_the_way_that_a_car_presses_them_and_a_client_sees_them_lie_so() {
     for _ in 0..240 {
         world.step(&[]);
         let broken = world.snapshot().broken;
-        // What broke in this step lies the way that the car goes, or as the grass there leans, where that leans further than the car's floor asks.
+        // Plants broken in this step lie in the car's direction of travel or, where the grass leans further than the car's floor presses it, in the
+        // direction of that lean.
         for plant in broken.iter().skip(known) {
-            let [x, z] = world.meadow().lean_rad(flora.grown().sites.place_m(plant.site), &still);
+            let [x, z] = world.bend().lean_rad(flora.grown().sites.place_m(plant.site), &still);
             let off_rad = (heading_rad(plant.fall) - z.atan2(x) + PI).rem_euclid(TAU) - PI;
             let is_ahead = fall(plant)[0] > 0.999;
             assert!(is_ahead || off_rad.abs() <= TAU / 510.0 + 1e-5, "{plant:?} fell {off_rad} rad beside the lean of {x}, {z}");
@@ -145,14 +145,14 @@ fn plants_fall_the_way_that_a_car_presses_them_and_a_client_sees_them_lie_so() {
     assert!(told.len() > 20 && mirror.broken_count() as usize == told.len(), "{} broken", told.len());
     assert!(told.iter().all(|plant| mirror.falls()[plant.site as usize] == plant.fall.get()));
     assert_eq!(mirror.falls().iter().filter(|fall| **fall != 0).count(), told.len());
-    // The car drives eastward; what its corners meet it pushes aside.
+    // The car drives eastward; its corners push aside the plants they meet.
     assert!(told.iter().all(|plant| fall(plant)[0] > 0.2), "none falls against the way");
     let ahead = told.iter().filter(|plant| fall(plant)[0] > 0.9).count();
     assert!(2 * ahead > told.len(), "{ahead} of {} fall ahead", told.len());
 }
 
 #[test]
-fn neither_a_gale_nor_wash_breaks_any() {
+fn neither_gales_nor_downwash_break_plants() {
     let mut scene = reeds(6);
     // 21 m/s at a height of 10 m.
     scene.wind.mean_m_per_s = [20.0, 7.0];
@@ -167,11 +167,11 @@ fn neither_a_gale_nor_wash_breaks_any() {
     let lifted = world.snapshot().broken;
     world.step(&[Command::Drive { client: 1, drive: AHEAD }]);
     run(&mut world, 300);
-    assert!(world.meadow().field().awake_count() > 0, "the wash bends the grass");
+    assert!(world.bend().field().awake_count() > 0, "the wash bends the grass");
     assert_eq!(world.snapshot().broken, lifted, "a wash");
 }
 
-/// A cyclone that travels eastward along z = 64 m, over land without any other wind.
+/// A cyclone that travels eastward along z = 64 m, without any other wind.
 fn cyclone(scene: Scene) -> Scene {
     let mut scene = calm(scene);
     (scene.wind.cells, scene.wind.spacing_m) = ([32, 8, 32], [4.0, 2.0, 4.0]);
@@ -181,7 +181,7 @@ fn cyclone(scene: Scene) -> Scene {
 }
 
 #[test]
-fn a_cyclone_that_travels_leaves_a_trail_of_broken_reeds() {
+fn a_moving_cyclone_leaves_a_trail_of_broken_reeds() {
     let scene = cyclone(reeds(8));
     let (mut world, flora) = (worlds::flat(&scene), flora(&scene));
     let places = |broken: &[BrokenPlant]| broken.iter().map(|plant| flora.grown().sites.place_m(plant.site)).collect::<Vec<_>>();
@@ -199,7 +199,7 @@ fn a_cyclone_that_travels_leaves_a_trail_of_broken_reeds() {
     }
     let [from_m, to_m] = [early, late].map(|broken| mean(|at| at[0], &places(broken)));
     assert!(to_m > from_m + 15.0, "broken about {from_m} m first, then about {to_m} m");
-    // It turns against the clock seen from above: eastward in the south.
+    // The cyclone turns anticlockwise seen from above: eastward in the south.
     let eastward = |south: f32| {
         let there = all.iter().zip(places(&all)).filter(|(_, at)| south * (at[1] - 64.0) > 4.0);
         let falls: Vec<f32> = there.map(|(plant, _)| fall(plant)[0]).collect();
@@ -209,7 +209,7 @@ fn a_cyclone_that_travels_leaves_a_trail_of_broken_reeds() {
 }
 
 #[test]
-fn plants_without_a_strength_never_break_and_a_ball_breaks_the_weak() {
+fn plants_without_a_strength_never_break_and_a_ball_breaks_weak_ones() {
     let mut scene = reeds(8);
     scene.underbrush[0].components.iter_mut().for_each(|component| component.strength_n_m = 0.0);
     let mut world = worlds::flat(&scene);
@@ -240,14 +240,14 @@ fn the_same_plants_break_on_any_number_of_threads() {
 }
 
 #[test]
-fn the_wind_of_the_scene_that_ships_with_underbrush_breaks_nothing() {
+fn the_wind_of_the_underbrush_scene_breaks_nothing() {
     let mut loaded = scenes::load("underbrush").expect("a built-in scene is sound");
-    // They lie down on plants.
+    // Balls lie on plants.
     loaded.scene.objects.balls = 0;
     let mut world = World::new(&loaded.scene, loaded.maps()).expect("a world");
     run(&mut world, 1200);
     assert!(world.snapshot().broken.is_empty());
-    // Far from the 16 m/s that break the first poppy.
+    // Far below the 16 m/s that break the first poppy.
     let wind = world.snapshot().wind;
     let [nx, ny, _] = wind.cells.map(|n| n as usize);
     let lowest = |at: &usize| (at / nx).is_multiple_of(ny);

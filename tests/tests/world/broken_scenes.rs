@@ -1,8 +1,8 @@
-//! Every broken scene is told apart, with everything that is wrong in it and where.
+//! Every broken scene is reported with all its errors and their positions.
 
 use png::{BitDepth, ColorType};
-use server::scenes::{SceneError, check, load};
-use shared::terrain::grey_png;
+use prairie::scenes::{SceneError, check, load};
+use prairie_core::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
@@ -44,9 +44,9 @@ const BROKEN: [&str; 35] = [
     "drawn-winds-too-hard",
 ];
 
-/// The message for a broken scene equals the stored text beside it; `PRAIRIE_UPDATE=1` stores it anew.
+/// The message for a broken scene equals the stored text beside it; `PRAIRIE_UPDATE=1` rewrites the stored text.
 #[test]
-fn broken_scenes_are_told_as_stored() {
+fn broken_scenes_have_their_stored_messages() {
     for name in BROKEN {
         let error = load(&format!("scenes/broken/{name}.toml")).expect_err(name).to_string();
         let stored = format!("scenes/broken/{name}.txt");
@@ -58,29 +58,29 @@ fn broken_scenes_are_told_as_stored() {
 }
 
 #[test]
-fn names_and_files_that_are_not_there_are_told() {
+fn missing_names_and_files_are_reported() {
     let told = |name: &str| load(name).unwrap_err().to_string();
     assert_eq!(
         told("medow"),
-        "no built-in scene and no file is called `medow`; did you mean `meadow`? Built-in scenes: meadow, jacksboro, devil, storm, continuum, underbrush, blades, shells"
+        "there is no built-in scene and no file called `medow`; did you mean `meadow`? Built-in scenes: meadow, jacksboro, devil, storm, continuum, underbrush, blades, shells"
     );
     assert_eq!(
         told("xyzzy"),
-        "no built-in scene and no file is called `xyzzy`. Built-in scenes: meadow, jacksboro, devil, storm, continuum, underbrush, blades, shells"
+        "there is no built-in scene and no file called `xyzzy`. Built-in scenes: meadow, jacksboro, devil, storm, continuum, underbrush, blades, shells"
     );
     assert!(told("scenes/none.toml").starts_with("scene file `scenes/none.toml` cannot be read: No such file"));
     assert_eq!(told("scenes/broken"), "scene file `scenes/broken` cannot be read: it is not a file");
     assert!(told("scenes/broken/no-model.glb").contains("not TOML"));
 }
 
-/// A PNG file of one level all over.
+/// A PNG file of uniform level.
 fn even(bits: BitDepth, colour: ColorType, [width, height]: [u32; 2], level: u8) -> Vec<u8> {
     let row_bytes = (width as usize * colour.samples() * bits as usize).div_ceil(8);
     maps::png(colour, bits, [width, height], &vec![level; row_bytes * height as usize])
 }
 
-/// What is said of a scene whose height map is `height_png`.
-fn told_of_height_map(folder: &Path, height_png: &[u8]) -> Result<(), String> {
+/// Message for a scene whose height map is `height_png`.
+fn message_for_height_map(folder: &Path, height_png: &[u8]) -> Result<(), String> {
     let text = "summary = \"s\"\n[terrain]\nheight_map = \"h.png\"\ncovering_map = \"c.png\"\npixel_m = [2, 2]\nlevel_m = 1\n";
     std::fs::write(folder.join("s.toml"), text).unwrap();
     std::fs::write(folder.join("h.png"), height_png).unwrap();
@@ -97,9 +97,9 @@ fn told_of_height_map(folder: &Path, height_png: &[u8]) -> Result<(), String> {
 }
 
 #[test]
-fn height_maps_of_other_kinds_and_sizes_are_refused() {
+fn height_maps_of_other_formats_and_sizes_are_rejected() {
     let folder = tempfile::tempdir().unwrap();
-    let told = |png: &[u8]| told_of_height_map(folder.path(), png);
+    let told = |png: &[u8]| message_for_height_map(folder.path(), png);
     let good = even(BitDepth::Eight, ColorType::Grayscale, [128, 128], 0);
     assert_eq!(told(&good), Ok(()));
     assert_eq!(told(&even(BitDepth::Sixteen, ColorType::Grayscale, [129, 128], 0)), Ok(()));
@@ -117,14 +117,14 @@ fn height_maps_of_other_kinds_and_sizes_are_refused() {
     }
     let message = |png: &[u8]| told(png).unwrap_err();
     assert!(message(&even(BitDepth::Eight, ColorType::Grayscale, [1, 128], 0)).contains("is 1 × 128 pixels; allowed: 2 × 2 to"));
-    assert!(message(&even(BitDepth::Eight, ColorType::Grayscale, [127, 128], 0)).contains("reaches over 254 m × 256 m"));
-    assert!(message(&even(BitDepth::Sixteen, ColorType::Grayscale, [128, 128], 255)).contains("heights of 65535 m"));
+    assert!(message(&even(BitDepth::Eight, ColorType::Grayscale, [127, 128], 0)).contains("covers 254 m × 256 m"));
+    assert!(message(&even(BitDepth::Sixteen, ColorType::Grayscale, [128, 128], 255)).contains("elevations from 65535 m"));
     assert!(message(&good[..good.len() / 2]).contains("is not a readable PNG"));
     assert!(message(b"").contains("is not a readable PNG"));
 }
 
 #[test]
-fn maps_of_nutrients_are_grey_or_coloured() {
+fn nutrient_maps_are_grey_or_coloured() {
     let folder = tempfile::tempdir().unwrap();
     let scene = |nutrients: &[u8]| {
         let text = "summary = \"s\"\n[terrain]\nheight_map = \"h.png\"\ncovering_map = \"c.png\"\npixel_m = [2, 2]\nlevel_m = 1\n\
@@ -151,7 +151,7 @@ fn maps_of_nutrients_are_grey_or_coloured() {
 }
 
 #[test]
-fn the_species_of_a_file_come_before_those_of_the_scene() {
+fn species_of_a_file_come_before_those_of_the_scene() {
     let folder = tempfile::tempdir().unwrap();
     let species = |name: &str| format!("[[underbrush]]\nname = \"{name}\"\n[[underbrush.components]]\nname = \"leaf\"\nkind = \"leaf\"\n");
     let text = "underbrush_file = \"u.toml\"\nsummary = \"s\"\n[terrain]\nheight_map = \"h.png\"\ncovering_map = \"c.png\"\npixel_m = [2, 2]\nlevel_m = 1\n";

@@ -1,13 +1,13 @@
-//! The same scene and the same commands give the same bits, on any number of threads.
+//! The same scene and commands give the same bits on any number of threads.
 
-use server::world::{Command, View};
-use shared::scene::VehicleKind;
-use shared::wire::Drive;
+use prairie::world::{Camera, Command};
+use prairie_core::scene::VehicleKind;
+use prairie_core::wire::Drive;
 use tests::worlds;
 
 const CLIENTS: u32 = 6;
 
-/// What visitors do at a tick: all kinds of vehicle, driven about; a camera that wanders; one leaves, and comes back.
+/// Commands of a tick: all kinds of vehicles drive about, a camera moves, one client leaves and returns.
 fn commands(tick: u32) -> Vec<Command> {
     let mut commands = vec![];
     if tick == 0 {
@@ -16,7 +16,7 @@ fn commands(tick: u32) -> Vec<Command> {
     }
     if tick.is_multiple_of(30) {
         let eye_m = [40.0 + 0.05 * tick as f32, 2.0, 60.0];
-        commands.push(Command::Views(vec![View { client: 0, eye_m }]));
+        commands.push(Command::Cameras(vec![Camera { client: 0, eye_m }]));
         let swing = |client: u32| ((tick / 30 * 7 + client * 3) % 11) as f32 / 5.0 - 1.0;
         commands.extend((0..CLIENTS).map(|client| {
             let drive = Drive { throttle: 1.0, steer: swing(client), lift: swing(client + 1), brake: 0.0 };
@@ -50,7 +50,7 @@ fn run(threads: usize) -> Vec<u64> {
 }
 
 #[test]
-fn two_runs_and_any_number_of_threads_agree() {
+fn two_runs_agree_on_any_number_of_threads() {
     let once = run(1);
     assert!(once.windows(2).all(|pair| pair[0] != pair[1]), "the world moves");
     assert_eq!(once, run(1), "a second run");

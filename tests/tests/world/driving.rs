@@ -1,10 +1,10 @@
-//! Objects stay on the land, in the world and apart, and do as they are told.
+//! Vehicles stay on the terrain, in the world and apart, and follow their controls.
 
-use server::objects::{Objects, Place};
-use server::world::{Command, View, World};
-use shared::scene::VehicleKind::{Ball, Car, Helicopter, Monster, Sled};
-use shared::scene::{Scene, VehicleKind};
-use shared::wire::{Drive, ObjectPose};
+use prairie::objects::{Environment, Objects};
+use prairie::world::{Camera, Command, World};
+use prairie_core::scene::VehicleKind::{Ball, Car, Helicopter, Monster, Sled};
+use prairie_core::scene::{Scene, VehicleKind};
+use prairie_core::wire::{Drive, ObjectPose};
 use std::sync::Arc;
 use tests::worlds;
 
@@ -32,7 +32,7 @@ fn speed(pose: &ObjectPose) -> f32 {
 const AHEAD: Drive = Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 };
 
 #[test]
-fn a_car_stands_speeds_up_steers_and_brakes() {
+fn a_car_rests_accelerates_steers_and_brakes() {
     let mut world = worlds::flat(&worlds::scene(30));
     spawn(&mut world, 1, Car);
     let standing = drive(&mut world, 1, Drive::default(), 120);
@@ -51,10 +51,10 @@ fn a_car_climbs_a_hill() {
     let scene = worlds::scene(12);
     let maps = worlds::maps(&scene, |_, z| (0.25 * (90.0 - z)).clamp(0.0, 15.0), |_, _| 255);
     let mut world = World::new(&scene, maps).expect("a sound scene");
-    let view = View { client: 1, eye_m: [96.0, 2.0, 120.0] };
-    world.step(&[Command::Views(vec![view])]);
+    let view = Camera { client: 1, eye_m: [96.0, 2.0, 120.0] };
+    world.step(&[Command::Cameras(vec![view])]);
     spawn(&mut world, 1, Car);
-    // Turn until it heads north, then climb.
+    // Turn until heading north, then climb.
     for _ in 0..1200 {
         let [_, y, _, w] = pose(&mut world, 1).rotation;
         let heading = -2.0 * y.atan2(w);
@@ -66,7 +66,7 @@ fn a_car_climbs_a_hill() {
 }
 
 #[test]
-fn a_minute_of_wild_driving_stays_on_the_land_and_in_the_world() {
+fn a_minute_of_wild_driving_stays_on_the_terrain_and_in_the_world() {
     for seed in 1..=3_u32 {
         let scene = Scene { seed: seed.into(), ..worlds::scene(10) };
         let mut world = worlds::hills(&scene);
@@ -105,8 +105,8 @@ fn a_minute_of_wild_driving_stays_on_the_land_and_in_the_world() {
 }
 
 #[test]
-fn an_overturned_car_comes_back_onto_its_wheels() {
-    // A steep dam to fall off sideways.
+fn an_overturned_car_rights_itself() {
+    // A steep dam for falling off sideways.
     let scene = worlds::scene(8);
     let maps = worlds::maps(&scene, |x, _| if (60.0..68.0).contains(&x) { 5.0 } else { 0.0 }, |_, _| 255);
     let mut world = World::new(&scene, maps).expect("a sound scene");
@@ -124,7 +124,7 @@ fn an_overturned_car_comes_back_onto_its_wheels() {
 }
 
 #[test]
-fn a_monster_walks_on_the_land() {
+fn a_monster_walks_on_the_terrain() {
     let scene = worlds::scene(10);
     let mut world = worlds::hills(&scene);
     spawn(&mut world, 1, Monster);
@@ -136,7 +136,7 @@ fn a_monster_walks_on_the_land() {
 }
 
 #[test]
-fn a_sled_glides_over_the_land_and_tilts_with_it() {
+fn a_sled_glides_over_the_terrain_and_tilts_with_it() {
     let scene = worlds::scene(24);
     let mut world = worlds::hills(&scene);
     spawn(&mut world, 1, Sled);
@@ -154,6 +154,14 @@ fn a_sled_glides_over_the_land_and_tilts_with_it() {
     assert!((10.0..16.0).contains(&fastest), "{fastest} m/s");
     let stopped = drive(&mut world, 1, Drive { brake: 1.0, ..Drive::default() }, 240);
     assert!(speed(&stopped) < 0.3, "after 4 s of braking: {} m/s", speed(&stopped));
+}
+
+/// Serde itself lists the variants of the enum: a kind missing from `ALL` or `WORDS` is found.
+#[test]
+fn every_kind_of_vehicle_is_listed_with_its_name() {
+    let error = serde_json::from_str::<VehicleKind>("\"submarine\"").expect_err("there is no such kind").to_string();
+    let variants: Vec<&str> = error.split('`').skip(3).step_by(2).collect();
+    assert_eq!(variants, VehicleKind::ALL.map(VehicleKind::name), "{error}");
 }
 
 #[test]
@@ -190,8 +198,8 @@ fn objects_start_apart_and_never_exceed_the_limit() {
     let mut scene = worlds::scene(16);
     scene.objects.limit = 40;
     let mut world = worlds::hills(&scene);
-    let view = View { client: 7, eye_m: [100.0, 2.0, 60.0] };
-    let mut commands = vec![Command::Views(vec![view])];
+    let view = Camera { client: 7, eye_m: [100.0, 2.0, 60.0] };
+    let mut commands = vec![Command::Cameras(vec![view])];
     commands.extend((0..50).map(|client| Command::Spawn { client, kind: VehicleKind::ALL[client as usize % VehicleKind::ALL.len()] }));
     world.step(&commands);
     assert_eq!((0..50).filter(|&client| world.object_of(client).is_none()).count(), 10);
@@ -199,7 +207,7 @@ fn objects_start_apart_and_never_exceed_the_limit() {
     assert_eq!(objects.len(), 40);
     for (n, a) in objects.iter().enumerate() {
         for b in &objects[..n] {
-            let reach: f32 = [a, b].map(|pose| pose.kind.half_extents_m()).iter().map(|[x, _, z]| x.max(*z)).sum();
+            let reach: f32 = [a, b].map(|pose| scene.objects.half_extents_m(pose.kind)).iter().map(|[x, _, z]| x.max(*z)).sum();
             let [x, z] = [a.position_m[0] - b.position_m[0], a.position_m[2] - b.position_m[2]];
             assert!(x.hypot(z) > reach, "{a:?} in {b:?}");
         }
@@ -213,11 +221,11 @@ fn objects_start_apart_and_never_exceed_the_limit() {
 }
 
 #[test]
-fn absurd_land_and_constants_give_numbers() {
+fn absurd_terrain_and_constants_give_finite_poses() {
     let mut scene = worlds::scene(4);
-    scene.grass.c0_m_per_s = 50.0;
-    scene.grass.theta_damping_per_s = 200.0;
-    scene.grass.stiffness_per_s2 = 10_000.0;
+    scene.grass.waves.c0_m_per_s = 50.0;
+    scene.grass.waves.theta_damping_per_s = 200.0;
+    scene.grass.waves.stiffness_per_s2 = 10_000.0;
     scene.objects.self_driving = 4;
     let spikes = |x: f32, z: f32| if ((x + z) / 2.0) as i32 % 2 == 0 { 40.0 } else { 0.0 };
     let mut world = World::new(&scene, worlds::maps(&scene, spikes, |_, _| 253)).expect("a sound scene");
@@ -228,27 +236,27 @@ fn absurd_land_and_constants_give_numbers() {
         world.step(&[]);
     }
     let snapshot = world.snapshot();
-    assert!(snapshot.health.bend_energy.is_finite() && snapshot.health.wind_energy.is_finite());
+    assert!(snapshot.diagnostics.bend_activity.is_finite() && snapshot.diagnostics.wind_energy.is_finite());
     for pose in snapshot.objects {
         assert!(pose.position_m.iter().chain(&pose.rotation).chain(&pose.velocity_m_per_s).all(|v| v.is_finite()), "{pose:?}");
     }
-    scene.grass.mu_m_per_rad = 10.0;
+    scene.grass.waves.mu_m_per_rad = 10.0;
     let maps = worlds::maps(&scene, spikes, |_, _| 255);
     let refused = World::new(&scene, maps).err().expect("too many sub-steps").to_string();
     assert!(refused.contains("mu_m_per_rad = 10") && refused.contains("allowed: 64"), "{refused}");
 }
 
-/// Objects of the scene `continuum`: nothing but these cars, which drive themselves at 20 m/s.
+/// The scene `continuum` with only the given self-driving cars, at 20 m/s.
 fn self_driving(cars: u32, apart_m: f32) -> (Scene, Objects) {
     let (scene, maps) = worlds::continuum(cars, apart_m);
-    let place = Place { height: Arc::new(maps.height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
-    let objects = Objects::new(&scene, place);
+    let environment = Environment { height: Arc::new(maps.height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
+    let objects = Objects::new(&scene, environment);
     assert_eq!(objects.poses().len(), cars as usize);
     (scene, objects)
 }
 
 #[test]
-fn cars_that_drive_themselves_start_as_far_apart_as_asked() {
+fn self_driving_cars_start_at_the_requested_distance() {
     for (cars, apart_m) in [(64, 200.0), (256, 140.0)] {
         let (scene, objects) = self_driving(cars, apart_m);
         let poses = objects.poses();
@@ -263,7 +271,7 @@ fn cars_that_drive_themselves_start_as_far_apart_as_asked() {
 }
 
 #[test]
-fn cars_that_drive_themselves_hold_their_speed_on_wide_circles() {
+fn self_driving_cars_hold_their_speed_on_wide_circles() {
     let (scene, mut objects) = self_driving(64, 200.0);
     let starts = objects.poses();
     for tick in 1..=2400 {
@@ -273,7 +281,7 @@ fn cars_that_drive_themselves_hold_their_speed_on_wide_circles() {
             let [x, z] = [0, 2].map(|axis| pose.position_m[axis] - start.position_m[axis]);
             assert!(x.hypot(z) < 300.0, "tick {tick}: car {} has gone {} m from where it started", pose.id, x.hypot(z));
         }
-        // One that has struck a stone, a tree or another car backs off and comes up to speed again.
+        // A car that has hit a stone, a tree or another car backs off and regains its speed.
         let delayed: Vec<_> = poses.iter().filter(|pose| (speed(pose) - 20.0).abs() > 1.5).map(|pose| (pose.id, speed(pose))).collect();
         assert!(tick < 600 || delayed.len() <= 6, "tick {tick}: {delayed:?}");
     }

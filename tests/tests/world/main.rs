@@ -1,9 +1,14 @@
-//! The world as a whole, the scenes that it is made from, and how its crates stand to each other.
+//! The world as a whole, its scenes, and the structure of the packages.
 
 mod architecture;
 mod balls;
 mod breaking;
 mod broken_scenes;
 mod determinism;
+mod documents;
 mod driving;
+mod functions;
+mod imports;
+mod pictures;
 mod same_plants;
+mod shipped_species;

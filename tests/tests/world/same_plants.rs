@@ -1,18 +1,18 @@
-//! Server and client grow the same underbrush from a scene that went over the wire; no plant is streamed.
+//! Server and client grow the same underbrush from a scene sent over the wire; plants are not streamed.
 
 use anyhow::{Context as _, Result};
 use png::{BitDepth, ColorType};
-use server::scenes::{self, LoadedScene};
-use shared::plant::flora::Flora;
-use shared::terrain::grey_png;
+use prairie::scenes::{self, LoadedScene};
+use prairie_core::plant::flora::Flora;
+use prairie_core::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 use tests::stage::Stage;
 
-/// Plants of a scene that server and client agree on, in number and to the bit.
+/// Checks that server and client grow identical plants; returns their number and checksum.
 fn same_plants(name_or_path: &str) -> Result<(usize, u64)> {
     let stage = Stage::load(name_or_path)?;
-    let mirrored = stage.mirror.land().and_then(|land| land.flora());
+    let mirrored = stage.mirror.decoded_scene().and_then(|land| land.flora());
     let (server, client) = (stage.world.flora().context("the server grows nothing")?, mirrored.context("the client grows nothing")?);
     assert_eq!(server.grown().plants(), client.grown().plants(), "{name_or_path}");
     assert_eq!(server.checksum(), client.checksum(), "{name_or_path}");
@@ -29,7 +29,7 @@ fn plants_of_built_in_scenes_are_the_same_on_both_sides() -> Result<()> {
     Ok(())
 }
 
-/// A scene with the species that ship, over soil that a map draws richer towards the east.
+/// A scene with the built-in species and a nutrient map that is richer towards the east.
 fn drawn_soil(folder: &Path, brightest: u8) -> Result<String> {
     let text = "summary = 's'\nunderbrush_file = 'species.toml'\npatches = { count = [8, 8] }\n[terrain]\nheight_map = 'h.png'\n\
         covering_map = 'c.png'\npixel_m = [2, 2]\nlevel_m = 0.1\n[growth]\nnutrient_map = 'n.png'\n";
@@ -50,7 +50,7 @@ fn plants_on_drawn_soil_are_the_same_on_both_sides() -> Result<()> {
     let (plants, checksum) = same_plants(&path)?;
     assert!(plants > 1000, "{plants} plants");
 
-    // The map matters: another one grows others, and so does none.
+    // The map matters: another map gives other plants, and so does none.
     let other = same_plants(&drawn_soil(folder.path(), 160)?)?;
     let LoadedScene { scene, cover, .. } = scenes::load(&path)?;
     let generated = Flora::new(&scene, &cover, None).context("a scene with underbrush")?;

@@ -1,13 +1,13 @@
-//! No branch hangs on uniforms alone: Mesa's software driver (lavapipe of Mesa 22.3) compiles a shader that has one anew for every draw or dispatch, to put the
-//! uniforms' values in its place, which costs it up to a second each time.
+//! No branch depends on uniforms alone: Mesa's software driver (lavapipe of Mesa 22.3) recompiles a shader that has one for every draw or dispatch, with the
+//! values of the uniforms inserted, which takes up to a second each time.
 
-use super::{SHADERS, module};
-use crate::render::shaders;
+use super::{linked, module};
+use crate::render::gpu::shaders;
 use naga::{AddressSpace, Block, Expression, Function, Handle, LocalVariable, Module, Statement};
 use std::collections::HashMap;
 use wgpu::naga;
 
-/// What a value hangs on.
+/// Dependency of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Hangs {
     Constant,
@@ -15,7 +15,7 @@ enum Hangs {
     Invocation,
 }
 
-/// One call of a function: what its arguments and its local variables hang on.
+/// One call of a function: the dependencies of its arguments and local variables.
 struct Call<'a> {
     module: &'a Module,
     function: &'a Function,
@@ -43,7 +43,7 @@ impl<'a> Call<'a> {
                 AddressSpace::Uniform => Hangs::Uniforms,
                 _ => Hangs::Invocation,
             },
-            // An element that is found only as the shader runs has no value before.
+            // The value of a dynamically indexed element is not known before the shader runs.
             Expression::Access { base, index } => match self.of(*index) {
                 Hangs::Constant => self.of(*base),
                 _ => Hangs::Invocation,
@@ -64,7 +64,7 @@ impl<'a> Call<'a> {
         }
     }
 
-    /// Walks a block under conditions that hang on so much; gives what a value returned from it hangs on.
+    /// Walks a block under conditions with the dependency `under`; returns that of a value returned from it.
     fn walk(&mut self, block: &Block, under: Hangs, source: &str, found: &mut Vec<String>) -> Hangs {
         let mut returned = Hangs::Constant;
         for statement in block {
@@ -82,7 +82,7 @@ impl<'a> Call<'a> {
                     &[]
                 }
                 Statement::Loop { body, continuing, break_if } => {
-                    // What a loop changes is known only after its body was seen once; what its condition finds then counts.
+                    // The variables that a loop changes are known only after a first walk of its body; only findings after that count.
                     self.walk(body, under, source, &mut Vec::new());
                     if let Some(condition) = break_if {
                         self.branch(*condition, source, found);
@@ -143,13 +143,13 @@ impl<'a> Call<'a> {
     }
 }
 
-fn branches_of_uniforms(source: &str) -> Vec<String> {
-    let (module, text) = (module(source), shaders::whole(source));
+fn branches_of_uniforms(text: &str) -> Vec<String> {
+    let module = module(text);
     let mut found = Vec::new();
     for entry in &module.entry_points {
         let arguments = entry.function.arguments.iter().map(|_| Hangs::Invocation).collect();
         let mut of_entry = Vec::new();
-        Call::new(&module, &entry.function, arguments).walk(&entry.function.body, Hangs::Constant, &text, &mut of_entry);
+        Call::new(&module, &entry.function, arguments).walk(&entry.function.body, Hangs::Constant, text, &mut of_entry);
         found.extend(of_entry.into_iter().map(|branch| format!("{}: {branch}", entry.name)));
     }
     found.sort();
@@ -158,8 +158,8 @@ fn branches_of_uniforms(source: &str) -> Vec<String> {
 }
 
 #[test]
-fn no_branch_hangs_on_uniforms_alone() {
-    let found: Vec<String> = SHADERS.into_iter().flat_map(branches_of_uniforms).collect();
+fn no_branch_depends_on_uniforms_alone() {
+    let found: Vec<String> = shaders::ALL.iter().flat_map(|shader| branches_of_uniforms(&shader.to_string())).collect();
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
@@ -167,19 +167,20 @@ fn no_branch_hangs_on_uniforms_alone() {
 fn branches_of_uniforms_are_found() {
     let found = |body: &str| {
         let frame = "override on: bool = true; fn far(p: vec2<f32>) -> f32 { if p.x < 0.0 { return 1.0; } return p.y; }";
-        branches_of_uniforms(&format!(
-            "{frame} @compute @workgroup_size(1) fn f(@builtin(global_invocation_id) id: vec3<u32>) {{ {body} }}"
+        branches_of_uniforms(&linked(
+            "",
+            &format!("{frame} @compute @workgroup_size(1) fn f(@builtin(global_invocation_id) id: vec3<u32>) {{ {body} }}"),
         ))
         .len()
     };
     assert_eq!(found("let p = far(vec2<f32>(id.xy));"), 0);
-    assert_eq!(found("let p = far(frame.eye.xz);"), 1);
-    assert_eq!(found("for (var i = 0u; i < u32(frame.eye.x); i++) {}"), 1);
+    assert_eq!(found("let p = far(frame.eye_m.xz);"), 1);
+    assert_eq!(found("for (var i = 0u; i < u32(frame.eye_m.x); i++) {}"), 1);
     assert_eq!(found("for (var i = 0u; i < id.x; i++) {}"), 0);
-    assert_eq!(found("var y = frame.eye.y; if f32(id.x) < 2.0 { y = f32(id.x); } if y < 1.0 {}"), 0);
-    assert_eq!(found("if frame.eye.x > 0.0 && id.x > 1u {}"), 1);
-    assert_eq!(found("if id.x > 1u && frame.eye.x > 0.0 {}"), 0);
+    assert_eq!(found("var y = frame.eye_m.y; if f32(id.x) < 2.0 { y = f32(id.x); } if y < 1.0 {}"), 0);
+    assert_eq!(found("if frame.eye_m.x > 0.0 && id.x > 1u {}"), 1);
+    assert_eq!(found("if id.x > 1u && frame.eye_m.x > 0.0 {}"), 0);
     assert_eq!(found("if on {}"), 0);
-    assert_eq!(found("if on && frame.eye.x > 0.0 {}"), 1);
-    assert_eq!(found("var y = frame.eye.y; if on { y = frame.eye.z; } if y < 1.0 {}"), 1);
+    assert_eq!(found("if on && frame.eye_m.x > 0.0 {}"), 1);
+    assert_eq!(found("var y = frame.eye_m.y; if on { y = frame.eye_m.z; } if y < 1.0 {}"), 1);
 }

@@ -1,9 +1,9 @@
-//! Values of overrides: what a scene does not have may be left out of its shaders, and nothing else changes.
+//! Values of overrides: shaders without the features that a scene does not use give the same results.
 
 use super::*;
-use crate::render::shaders::with_constants;
+use crate::render::gpu::shaders::with_constants;
 
-/// Places all over the map, at its edge too.
+/// Positions all over the map, including its edge.
 fn places() -> Vec<[f32; 4]> {
     let [x, z] = [0_u32, 1].map(|axis| move |n: u32| 64.0 * (hash3([n, axis, 4])[0] >> 8) as f32 / 16_777_216.0);
     let inside = (0..200).map(|n| [x(n), 0.0, z(n), 0.0]);
@@ -11,15 +11,15 @@ fn places() -> Vec<[f32; 4]> {
 }
 
 #[test]
-fn land_of_one_kind_is_the_same_without_kinds_and_without_what_is_beyond_the_map() {
+fn land_of_one_kind_needs_neither_the_code_for_kinds_nor_that_beyond_the_map() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let heights: Vec<u8> = (0..17 * 17).map(|n| (hash3([n, 7, 2])[0] % 9) as u8).collect();
     let mut mirror = meadow_over(&heights, |scene| scene.terrain.level_m = 1.0, &[255; 16 * 16]);
-    let mut picture = Picture::new(&gpu, [16, 9], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 9], Quality::Low);
     picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
     for body in [
         "return vec4<f32>(ground_normal(at.xz), ground_height(at.xz));",
-        "let kind = kinds_blended(at.xz); return vec4<f32>(f32(kind_at(at.xz)), kind.root.w, kind.tip.w, kind.shape.w);",
+        "let kind = kinds_blended(at.xz); return vec4<f32>(f32(kind_at(at.xz)), kind.height_m, kind.wind_bend_rad, kind.width);",
     ] {
         let [whole, reduced] =
             [true, false].map(|value| probe_with(&gpu, &picture, &[("has_kinds", value), ("reaches_beyond", value)], body, &places()));

@@ -1,17 +1,21 @@
 use super::{meadow_of, probe};
 use crate::camera::Camera;
-use crate::render::{Gpu, Look, Picture, Quality, Sun};
+use crate::render::gpu::device::Gpu;
+use crate::render::offscreen::OffscreenRenderer;
+use crate::render::options::quality::Quality;
+use crate::render::options::render_options::RenderOptions;
 use glam::Vec3;
-use shared::light::air::haze_phase;
-use shared::light::sky::{Air, NIGHT_CD_PER_M2};
-use shared::light::{grass, lamp};
-use shared::scene::Lamp;
+use prairie_core::light::air::haze_phase;
+use prairie_core::light::sky::{Air, NIGHT_CD_PER_M2};
+use prairie_core::light::sun::Sun;
+use prairie_core::light::{grass, lamp};
+use prairie_core::scene::Lamp;
 
 const CAMERA: Camera = Camera { eye_m: Vec3::new(32.0, 2.2, 40.0), heading_rad: 0.0, pitch_rad: -0.15, fov_rad: 1.0 };
 
-fn drawn(gpu: &Gpu, sun: Sun, lamps: Vec<Lamp>) -> Picture {
-    let mut picture = Picture::new(gpu, [32, 32], Quality::Low);
-    picture.set_look(Look { sun: Some(sun), ..Look::default() });
+fn drawn(gpu: &Gpu, sun: Sun, lamps: Vec<Lamp>) -> OffscreenRenderer {
+    let mut picture = OffscreenRenderer::new(gpu, [32, 32], Quality::Low);
+    picture.set_options(RenderOptions { sun: Some(sun), ..RenderOptions::default() });
     picture.draw(&mut meadow_of(|scene| scene.lights = lamps, &[255; 256]), &CAMERA, 0.0, 0.0);
     picture
 }
@@ -19,7 +23,7 @@ fn drawn(gpu: &Gpu, sun: Sun, lamps: Vec<Lamp>) -> Picture {
 const NOON: Sun = Sun { heading_rad: 0.7, elevation_rad: 0.9 };
 
 #[test]
-fn formulas_of_grass_and_lamps_are_as_their_twins() {
+fn formulas_of_grass_and_lamps_equal_their_cpu_twins() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let picture = drawn(&gpu, NOON, Vec::new());
     let places: Vec<[f32; 4]> =
@@ -38,9 +42,9 @@ fn formulas_of_grass_and_lamps_are_as_their_twins() {
     }
 }
 
-/// The sky's table as the shaders read it: within the 2 % of halves and of filtering by 8 bits.
+/// The sky's table as the shaders sample it: correct to 2 %, given half precision and filtering with 8 bits.
 #[test]
-fn the_sky_is_as_its_twin() {
+fn the_sky_equals_its_cpu_twin() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     for elevation_rad in [0.9, 0.1, -0.05] {
         let sky = Air::new().sky(elevation_rad);
@@ -53,7 +57,7 @@ fn the_sky_is_as_its_twin() {
                 [heading.sin() * level, up, -heading.cos() * level, heading]
             })
             .collect();
-        let found = probe(&gpu, &picture, "return vec4<f32>(sky_color(at.xyz), frame.lights.night.r);", &directions);
+        let found = probe(&gpu, &picture, "return vec4<f32>(sky_color(at.xyz), frame.lights.night_rgb.r);", &directions);
         for (at, found) in directions.iter().zip(found) {
             let brightness = found[3] / NIGHT_CD_PER_M2[0];
             let wanted = sky.luminance(at[1], (at[3] - sun.heading_rad).cos()).map(|light| light * brightness);
@@ -72,7 +76,7 @@ fn a_lamp_lights_the_dark_where_it_reaches() {
         probe(&gpu, &picture, "return vec4<f32>(lamps_on(at.xyz, vec3<f32>(0.0, 1.0, 0.0), 0.0), 0.0);", &places)
             .try_into()
             .expect("as many as asked for");
-    // Three metres below; and aslant, half the square of the distance and the cosine of 45°.
+    // Three metres below the lamp; and at 45°: half by the inverse square of the distance, times the cosine.
     assert!(below[0] > 0.0 && (below[1] / below[0] - 0.5).abs() < 1e-3, "{below:?}");
     assert!((beside[0] / below[0] - 0.5 * 0.5_f32.sqrt()).abs() < 1e-3, "{beside:?} beside {below:?}");
     assert_eq!(far[0], 0.0);

@@ -1,46 +1,47 @@
-//! Plants laid over each other: blades far to near, borders that fade, orders that change from frame to frame.
+//! Blend orders: sorting far to near, soft borders, switching between frames.
 
-use super::super::blades::Blades;
-use super::super::{Far, Look, Order, Split, Way};
 use super::*;
+use crate::render::options::render_options::{BlendOrder, FarPlants, RenderOptions};
+use crate::render::options::split::{SideOptions, Split};
+use crate::render::plants::blades::Blades;
 
 const SIZE_PX: [u32; 2] = [96, 64];
 
-/// A meadow, and a picture of it whose blades have found their posture.
-fn grown(gpu: &Gpu, quality: Quality) -> (Mirror, Picture) {
+/// A meadow, and a picture of it whose blades have settled.
+fn grown(gpu: &Gpu, quality: Quality) -> (Mirror, OffscreenRenderer) {
     let mut mirror = meadow(4.0);
-    let mut picture = Picture::new(gpu, SIZE_PX, quality);
+    let mut picture = OffscreenRenderer::new(gpu, SIZE_PX, quality);
     for _ in 0..3 {
         picture.draw(&mut mirror, &camera(), 1.0, 0.03);
     }
     (mirror, picture)
 }
 
-/// Off the middle of its grid, and not along its sides.
+/// A camera off the centre of its grid, not aligned with its sides.
 fn camera() -> Camera {
     Camera { eye_m: Vec3::new(33.1, 1.1, 38.7), heading_rad: 0.7, pitch_rad: -0.2, ..Camera::default() }
 }
 
 /// The same moment drawn in an order.
-fn pixels(mirror: &mut Mirror, picture: &mut Picture, order: Order) -> Vec<u8> {
-    picture.set_look(Look { order, ..Look::default() });
+fn pixels(mirror: &mut Mirror, picture: &mut OffscreenRenderer, order: BlendOrder) -> Vec<u8> {
+    picture.set_options(RenderOptions { blend_order: order, ..RenderOptions::default() });
     picture.draw(mirror, &camera(), 1.0, 0.0);
     picture.rgba()
 }
 
-/// Mean of the absolute differences of two pictures, of 255.
+/// Mean absolute difference of two pictures, of 255.
 fn apart(a: &[u8], b: &[u8]) -> f64 {
     a.iter().zip(b).map(|(&a, &b)| f64::from(a.abs_diff(b))).sum::<f64>() / a.len() as f64
 }
 
-fn blades(picture: &Picture) -> &Blades {
+fn blades(picture: &OffscreenRenderer) -> &Blades {
     &picture.renderer.scene.as_ref().expect("a scene").blades
 }
 
 /// Roots (m) of the blades in the order in which they are drawn, and how many of them come before the fine ones.
-fn roots_in_order(gpu: &Gpu, picture: &Picture) -> (Vec<Vec3>, usize) {
+fn roots_in_order(gpu: &Gpu, picture: &OffscreenRenderer) -> (Vec<Vec3>, usize) {
     let blades = blades(picture);
-    let ordered = blades.laid.get().ordered().expect("blades in order");
+    let ordered = blades.strip_pipelines.get().ordered().expect("blades in order");
     let spans: Vec<u32> = bytemuck::pod_collect_to_vec(&read(gpu, ordered.spans()));
     let pairs: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&read(gpu, ordered.pairs()));
     let listed: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read(gpu, &blades.listed.blades));
@@ -61,7 +62,7 @@ fn roots_in_order(gpu: &Gpu, picture: &Picture) -> (Vec<Vec3>, usize) {
 fn sorted_blades_are_drawn_far_to_near() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let (mut mirror, mut picture) = grown(&gpu, Quality::Low);
-    pixels(&mut mirror, &mut picture, Order::Sorted);
+    pixels(&mut mirror, &mut picture, BlendOrder::Sorted);
     let (roots, others) = roots_in_order(&gpu, &picture);
     assert!(others > 500 && roots.len() - others > 50, "{others} and {} fine blades", roots.len() - others);
     let distances: Vec<f32> = roots.iter().map(|root| root.distance(camera().eye_m)).collect();
@@ -73,10 +74,10 @@ fn sorted_blades_are_drawn_far_to_near() {
 }
 
 #[test]
-fn blades_in_the_order_made_beforehand_hide_none_that_comes_later() {
+fn precomputed_orders_draw_no_blade_behind_an_earlier_one() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let (mut mirror, mut picture) = grown(&gpu, Quality::Low);
-    pixels(&mut mirror, &mut picture, Order::Precomputed);
+    pixels(&mut mirror, &mut picture, BlendOrder::Precomputed);
     let (roots, others) = roots_in_order(&gpu, &picture);
     let eye = [camera().eye_m.x, camera().eye_m.z];
     let flat: Vec<[f32; 2]> = roots.iter().map(|root| [root.x - eye[0], root.z - eye[1]]).collect();
@@ -86,7 +87,7 @@ fn blades_in_the_order_made_beforehand_hide_none_that_comes_later() {
         for (at, a) in span.iter().enumerate() {
             for b in &span[at + 1..] {
                 let [near, far] = [a[0].hypot(a[1]), b[0].hypot(b[1])];
-                // Within the width of a blade of the line of sight to the farther.
+                // Within one blade width of the line of sight to the farther one.
                 let passes = (a[0] * b[1] - a[1] * b[0]).abs() / near.max(far);
                 if passes < 0.005 && a[0] * b[0] + a[1] * b[1] > 0.0 {
                     overlapping += 1;
@@ -100,13 +101,13 @@ fn blades_in_the_order_made_beforehand_hide_none_that_comes_later() {
 }
 
 #[test]
-fn orders_change_from_frame_to_frame() {
+fn blend_orders_may_change_between_frames() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let (mut mirror, mut picture) = grown(&gpu, Quality::High);
     let mut draw = |order| pixels(&mut mirror, &mut picture, order);
-    let [cut, coverage, sorted, precomputed, weighted] = Order::ALL.map(&mut draw);
-    assert!(apart(&cut, &draw(Order::Cut)) < 0.02, "nothing is left of the others");
-    assert!(apart(&sorted, &draw(Order::Sorted)) < 0.02);
+    let [cut, coverage, sorted, precomputed, weighted] = BlendOrder::ALL.map(&mut draw);
+    assert!(apart(&cut, &draw(BlendOrder::Cut)) < 0.02, "nothing is left of the others");
+    assert!(apart(&sorted, &draw(BlendOrder::Sorted)) < 0.02);
     let same = apart(&sorted, &precomputed);
     assert!(same < 0.6, "{same} between sorted and precomputed");
     for (other, least, most) in [(&cut, 0.3, 12.0), (&coverage, 0.1, 12.0), (&weighted, 0.3, 40.0)] {
@@ -115,46 +116,48 @@ fn orders_change_from_frame_to_frame() {
     }
     picture.renderer.resize([48, 32]);
     picture.renderer.resize(SIZE_PX);
-    let again = apart(&weighted, &pixels(&mut mirror, &mut picture, Order::Weighted));
-    // The device lists blades in any order, and sums of sixteen bits are rounded in that order.
+    let again = apart(&weighted, &pixels(&mut mirror, &mut picture, BlendOrder::Weighted));
+    // The device lists blades in any order, and the rounding of 16-bit sums depends on it.
     assert!(again < 0.04, "{again} after other sizes");
 }
 
 #[test]
-fn two_orders_side_by_side_are_made_once() {
+fn resources_of_two_orders_side_by_side_are_created_once() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let (mut mirror, mut picture) = grown(&gpu, Quality::Low);
-    let ways =
-        [Order::Precomputed, Order::Sorted].map(|order| Way { look: Look { order, far: Far::Clumps, ..Look::default() }, level: 0.0 });
+    let ways = [BlendOrder::Precomputed, BlendOrder::Sorted].map(|order| SideOptions {
+        options: RenderOptions { blend_order: order, far_plants: FarPlants::Clumps, ..RenderOptions::default() },
+        level: 0.0,
+    });
     let mut draw = || {
-        picture.draw_split(&mut mirror, &camera(), 1.0, 0.0, &Split { ways, at: 0.5 });
-        // What the right part has just been drawn with.
-        let pairs = blades(&picture).laid.get().ordered().expect("blades in order").pairs().clone();
-        (pairs, picture.renderer.scene.as_ref().expect("a scene").billboards.laid.get().pipeline.clone())
+        picture.draw_split(&mut mirror, &camera(), 1.0, 0.0, &Split { sides: ways, border: 0.5 });
+        // The pairs that the right side has just been drawn with.
+        let pairs = blades(&picture).strip_pipelines.get().ordered().expect("blades in order").pairs().clone();
+        (pairs, picture.renderer.scene.as_ref().expect("a scene").billboards.pipelines.get().pipeline.clone())
     };
     let first = draw();
     assert!(draw() == first, "made anew");
 }
 
 #[test]
-fn coverage_of_one_sample_is_cut() {
+fn coverage_with_one_sample_equals_cut() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let (mut mirror, mut picture) = grown(&gpu, Quality::Low);
-    let [cut, coverage, ..] = Order::ALL.map(|order| pixels(&mut mirror, &mut picture, order));
+    let [cut, coverage, ..] = BlendOrder::ALL.map(|order| pixels(&mut mirror, &mut picture, order));
     assert!(apart(&cut, &coverage) < 0.02);
 }
 
 #[test]
-fn a_strip_covers_as_much_of_all_pixels_as_it_is_wide() {
+fn strips_cover_pixels_in_proportion_to_their_width() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow(0.0);
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
     let strips: Vec<[f32; 4]> = (0..40).map(|i| [0.05 * i as f32, 0.11 * i as f32 % 1.0, 0.0, 0.0]).collect();
     let body = "var sum = 0.0;
         for (var pixel = -6; pixel <= 6; pixel++) { sum += covered(vec2<f32>(f32(pixel) + at.y, at.x)); }
         return vec4<f32>(sum, covered(vec2<f32>(at.x + 0.5, at.x)), covered(vec2<f32>(0.0, at.x)), 0.0);";
-    for ([half_px, ..], [sum, beside, middle, _]) in strips.iter().zip(probe_in(&gpu, &picture, shaders::BACKBONE, body, &strips)) {
+    for ([half_px, ..], [sum, beside, middle, _]) in strips.iter().zip(probe_in(&gpu, &picture, "plants/backbone", body, &strips)) {
         assert!((sum - 2.0 * half_px).abs() < 1e-5, "{sum} of a strip of {} px", 2.0 * half_px);
         assert_eq!((beside, middle), (0.0, (2.0 * half_px).min(1.0)));
     }

@@ -1,11 +1,11 @@
-//! Shells: their sums on the GPU, what is drawn where, and what slices are worth.
+//! Shells: their sums on the GPU, where they are drawn, and the benefit of slices.
 
-use super::super::look::{Far, Look};
 use super::*;
-use shared::lod::shells::Tilt;
-use shared::scene::PlantCover;
+use crate::render::options::render_options::{FarPlants, RenderOptions};
+use prairie_core::lod::shells::Tilt;
+use prairie_core::scene::PlantCover;
 
-/// A flat lawn of 64 m in a light wind, as shells of so many slices.
+/// A flat lawn of 64 m in a light wind, drawn as shells with this number of slices.
 fn lawn(slices: u32) -> Mirror {
     let change = |scene: &mut Scene| {
         scene.wind = Wind { mean_m_per_s: [4.0, 0.0], ..Wind::default() };
@@ -15,12 +15,11 @@ fn lawn(slices: u32) -> Mirror {
 }
 
 #[test]
-fn layers_lie_where_their_twin_has_them() {
+fn layers_are_positioned_as_in_the_core() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow(0.0);
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
-    let source = shaders::SHELLS.replace("@group(1) @binding(0) var<storage, read>", "@group(1) @binding(20) var<storage, read>");
     let cases: Vec<[f32; 4]> = (0..500_u32)
         .map(|n| {
             let [a, b, c] = hash3([n, 1, 8]).map(|v| (v >> 8) as f32 / 16_777_216.0);
@@ -31,7 +30,7 @@ fn layers_lie_where_their_twin_has_them() {
         })
         .collect();
     let body = "let tilt = tilt_of(at.x); return vec4<f32>(layer_place(tilt.x, tilt.y, at.y, at.z), tilt);";
-    let found = probe_in(&gpu, &picture, &source, body, &cases);
+    let found = probe_in(&gpu, &picture, "plants/shells", body, &cases);
     for ([lean_rad, layer, segments, _], found) in cases.into_iter().zip(found) {
         let tilt = Tilt::of_lean(lean_rad);
         let [along_normal, along_wind] = tilt.layer(layer, segments as u32);
@@ -44,22 +43,22 @@ fn layers_lie_where_their_twin_has_them() {
 }
 
 #[test]
-fn shells_stand_for_all_plants_or_for_those_far_away() {
+fn shells_replace_all_plants_or_only_far_ones() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let camera = Camera { eye_m: Vec3::new(32.0, 2.0, 60.0), ..Camera::default() };
     let drawn = |mirror: &mut Mirror, far, shell_layers| {
-        let mut picture = Picture::new(&gpu, [32, 16], Quality::Low);
-        picture.set_look(Look { far, shell_layers, ..Look::default() });
+        let mut picture = OffscreenRenderer::new(&gpu, [32, 16], Quality::Low);
+        picture.set_options(RenderOptions { far_plants: far, shell_layers, ..RenderOptions::default() });
         let stats = picture.draw(mirror, &camera, 0.0, 0.0);
-        [stats.blades, stats.clumps, stats.sheets]
+        [stats.blades, stats.clumps, stats.shell_layers]
     };
-    let [blades, clumps, sheets] = drawn(&mut lawn(4), Far::Clumps, None);
+    let [blades, clumps, sheets] = drawn(&mut lawn(4), FarPlants::Clumps, None);
     assert!(blades == 0 && clumps == 0 && sheets > 20, "{blades}, {clumps}, {sheets}");
-    let [fewest, fewer, more] = [1, 17, 65].map(|layers| drawn(&mut lawn(4), Far::Clumps, Some(layers))[2]);
+    let [fewest, fewer, more] = [1, 17, 65].map(|layers| drawn(&mut lawn(4), FarPlants::Clumps, Some(layers))[2]);
     assert!(fewest < fewer && fewer == sheets && 2 * fewer < more, "{fewest}, {fewer}, {more}");
-    let [blades, clumps, far_sheets] = drawn(&mut meadow(4.0), Far::Shells, None);
+    let [blades, clumps, far_sheets] = drawn(&mut meadow(4.0), FarPlants::Shells, None);
     assert!(blades > 0 && clumps == 0 && far_sheets > 0 && far_sheets < sheets, "{blades}, {clumps}, {far_sheets}");
-    let [blades, clumps, sheets] = drawn(&mut meadow(4.0), Far::Clumps, None);
+    let [blades, clumps, sheets] = drawn(&mut meadow(4.0), FarPlants::Clumps, None);
     assert!(blades > 0 && clumps > 0 && sheets == 0, "{blades}, {clumps}, {sheets}");
 }
 
@@ -69,13 +68,13 @@ fn difference(a: &[u8], b: &[u8]) -> f64 {
 }
 
 #[test]
-fn slices_show_at_a_flat_view_what_many_more_layers_would() {
+fn slices_look_like_many_more_layers_at_grazing_angles() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
-    // Where sixteen layers are drawn, 10° below the level.
+    // In a region with sixteen layers, 10° below the horizontal.
     let camera = Camera { eye_m: Vec3::new(32.0, 1.0, 40.0), pitch_rad: -0.42, ..Camera::default() };
     let drawn = |slices, layers| {
-        let mut picture = Picture::new(&gpu, [192, 108], Quality::Low);
-        picture.set_look(Look { shell_layers: Some(layers), ..Look::default() });
+        let mut picture = OffscreenRenderer::new(&gpu, [192, 108], Quality::Low);
+        picture.set_options(RenderOptions { shell_layers: Some(layers), ..RenderOptions::default() });
         picture.draw(&mut lawn(slices), &camera, 0.0, 0.0);
         picture.rgba()
     };

@@ -1,13 +1,19 @@
-//! Devices that can do little, and pictures in two parts.
+//! Devices with low limits, and split pictures.
 
-use super::super::fit::needed;
-use super::super::{GpuError, Look, Renderer, Split, Way, fitting_px};
 use super::{meadow_of, module};
 use crate::camera::Camera;
-use crate::render::{Gpu, Picture, Quality, shaders};
+use crate::render::Renderer;
+use crate::render::gpu::device::Gpu;
+use crate::render::gpu::error::GpuError;
+use crate::render::gpu::limits::{fit_within_px, needed};
+use crate::render::gpu::shaders;
+use crate::render::offscreen::OffscreenRenderer;
+use crate::render::options::quality::Quality;
+use crate::render::options::render_options::RenderOptions;
+use crate::render::options::split::{SideOptions, Split};
 use crate::state::Mirror;
 use glam::Vec3;
-use shared::scene::Scene;
+use prairie_core::scene::Scene;
 
 fn device(allowed: &wgpu::Limits) -> Result<Gpu, GpuError> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
@@ -20,7 +26,7 @@ fn meadow(change: impl FnOnce(&mut Scene)) -> Mirror {
 }
 
 fn fits(gpu: &Gpu, quality: Quality, mirror: &Mirror) -> Result<(), GpuError> {
-    let (_, verdict) = Renderer::fitted(gpu, wgpu::TextureFormat::Rgba8UnormSrgb, [64, 36], quality, mirror);
+    let (_, verdict) = Renderer::with_scene(gpu, wgpu::TextureFormat::Rgba8UnormSrgb, [64, 36], quality, mirror);
     pollster::block_on(verdict)
 }
 
@@ -29,16 +35,16 @@ fn camera() -> Camera {
 }
 
 #[test]
-fn a_small_device_draws_a_smaller_and_coarser_picture() {
+fn a_device_with_low_limits_draws_smaller_and_coarser() {
     let gpu = device(&needed()).expect("no more is needed");
     let mut mirror = meadow(|_| {});
     let finest = Quality::ALL.into_iter().rev().find(|&quality| fits(&gpu, quality, &mirror) == Ok(()));
     let quality = finest.expect("the coarsest picture fits into what is needed");
     assert_ne!(quality, Quality::Ultra);
 
-    let size_px = fitting_px([96, 4096], gpu.side_limit_px());
+    let size_px = fit_within_px([96, 4096], gpu.side_limit_px());
     assert_eq!(size_px, [48, 2048]);
-    let mut picture = Picture::new(&gpu, size_px, quality);
+    let mut picture = OffscreenRenderer::new(&gpu, size_px, quality);
     picture.draw(&mut mirror, &camera(), 0.0, 0.0);
     let rgba = picture.rgba();
     let sum = |row: usize, channel: usize| rgba[row * 48 * 4..][..48 * 4].chunks_exact(4).map(|px| u32::from(px[channel])).sum::<u32>();
@@ -46,7 +52,7 @@ fn a_small_device_draws_a_smaller_and_coarser_picture() {
 }
 
 #[test]
-fn what_no_quality_makes_fit_is_named_with_its_limit() {
+fn scenes_that_fit_at_no_quality_are_rejected_with_the_limit() {
     let few = wgpu::Limits { max_storage_buffers_per_shader_stage: 4, ..wgpu::Limits::default() };
     let error = device(&few).expect_err("bend alone needs more");
     assert_eq!(error.to_string(), "the graphics adapter allows max_storage_buffers_per_shader_stage up to 4; the prairie needs 8");
@@ -64,7 +70,7 @@ fn what_no_quality_makes_fit_is_named_with_its_limit() {
 }
 
 #[test]
-fn shaders_stay_within_what_is_needed() {
+fn shaders_stay_within_the_minimum_limits() {
     let most = needed().max_compute_invocations_per_workgroup;
     for source in [shaders::BEND, shaders::BILLBOARDS, shaders::UNDERBRUSH, shaders::DUST] {
         for entry in module(source).entry_points {
@@ -74,14 +80,14 @@ fn shaders_stay_within_what_is_needed() {
 }
 
 #[test]
-fn the_two_parts_of_a_picture_are_those_of_two_pictures() {
+fn a_split_picture_equals_its_sides_drawn_alone() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow(|_| {});
-    let own = Way { look: Look::default(), level: 0.0 };
+    let own = SideOptions { options: RenderOptions::default(), level: 0.0 };
     let ways = ["low", "medium"].map(|name| own.with("land").and_then(|way| way.with(name)).expect("a way"));
     let [low, medium] = ways.map(|way| {
-        let mut picture = Picture::new(&gpu, SPLIT_PX, Quality::Medium);
-        picture.set_look(way.look);
+        let mut picture = OffscreenRenderer::new(&gpu, SPLIT_PX, Quality::Medium);
+        picture.set_options(way.options);
         picture.renderer.set_level(way.level);
         picture.draw(&mut mirror, &camera(), 1.0, 0.0);
         picture.rgba()
@@ -89,23 +95,23 @@ fn the_two_parts_of_a_picture_are_those_of_two_pictures() {
     let apart = differing(&low, &medium, 0..SPLIT_PX[0]);
     assert!(apart > 0.2, "the ways hardly differ: {apart}");
     for at in [0.0, 0.25, 1.0] {
-        let split = Split { ways, at };
-        let mut picture = Picture::new(&gpu, SPLIT_PX, Quality::Medium);
+        let split = Split { sides: ways, border: at };
+        let mut picture = OffscreenRenderer::new(&gpu, SPLIT_PX, Quality::Medium);
         picture.draw_split(&mut mirror, &camera(), 1.0, 0.0, &split);
         let rgba = picture.rgba();
         let [left, right] = split.columns(SPLIT_PX[0]);
-        // Which of two plants at the same depth is seen is left to the order in which they are listed.
+        // Which of two plants at the same depth is visible depends on the order in which they are listed.
         for (whole, columns) in [(&low, left), (&medium, right)] {
             let apart = differing(&rgba, whole, columns.clone());
             assert!(apart < 0.02, "{apart} of columns {columns:?} at {at}");
         }
-        assert_eq!(picture.renderer.look(), Look::default());
+        assert_eq!(picture.renderer.options(), RenderOptions::default());
     }
 }
 
 const SPLIT_PX: [u32; 2] = [96, 54];
 
-/// Share of the pixels in some columns that differ between two pictures.
+/// Fraction of the pixels in some columns that differ between two pictures.
 fn differing(a: &[u8], b: &[u8], columns: std::ops::Range<u32>) -> f32 {
     let pixels = a.chunks_exact(4).zip(b.chunks_exact(4)).enumerate();
     let inside = pixels.filter(|(at, _)| columns.contains(&(*at as u32 % SPLIT_PX[0])));

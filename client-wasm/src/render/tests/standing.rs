@@ -1,26 +1,26 @@
-//! Which plants are bent: those that stand in view, and those that come back into it anew.
+//! Selection of the plants that are bent: those in view, and those that return into view.
 
 use super::*;
 
-/// Rates of the near plants (rad/s, all links), 0 where none has stood.
-fn rates(gpu: &Gpu, picture: &Picture) -> Vec<f32> {
+/// Rates of the near plants (rad/s, all links), 0 where there was none.
+fn rates(gpu: &Gpu, picture: &OffscreenRenderer) -> Vec<f32> {
     let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").blades.sways);
     let sways: &[[[f32; 4]; LINKS]] = bytemuck::cast_slice(&bytes);
     sways.iter().map(|links| links.iter().map(|[.., x, z]| x.hypot(*z)).sum()).collect()
 }
 
 #[test]
-fn what_comes_into_view_again_stands_still_and_what_stayed_goes_on() {
+fn plants_that_return_into_view_start_at_rest_and_others_keep_moving() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow(6.0);
-    let mut picture = Picture::new(&gpu, [64, 36], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [64, 36], Quality::Low);
     let ahead = Camera { eye_m: Vec3::new(32.0, 1.6, 32.0), pitch_rad: -0.4, ..Camera::default() };
     let aside = Camera { heading_rad: 0.5, ..ahead };
     for frame in 0..30 {
         picture.draw(&mut mirror, &ahead, f64::from(frame) / 30.0, 1.0 / 30.0);
     }
     let moving = rates(&gpu, &picture);
-    // A look aside in which no time passes changes nothing; one of two frames does.
+    // Looking aside without time passing changes nothing; looking aside for two frames does.
     picture.draw(&mut mirror, &aside, 1.0, 0.0);
     picture.draw(&mut mirror, &ahead, 1.0, 0.0);
     let seen = |rates: &[f32]| moving.iter().zip(rates).filter(|(moving, _)| **moving > 1e-4).map(|(a, b)| [*a, *b]).collect::<Vec<_>>();
@@ -39,8 +39,8 @@ fn plants_out_of_view_are_not_bent() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let camera = Camera { eye_m: Vec3::new(32.0, 1.6, 32.0), pitch_rad: -0.4, fov_rad: 0.6, ..Camera::default() };
     let standing = |culls: bool| {
-        let mut picture = Picture::new(&gpu, [64, 36], Quality::Low);
-        picture.set_look(Look { culls, ..Look::default() });
+        let mut picture = OffscreenRenderer::new(&gpu, [64, 36], Quality::Low);
+        picture.set_options(RenderOptions { culls, ..RenderOptions::default() });
         picture.draw(&mut meadow(0.0), &camera, 0.0, 0.0);
         let counts: Vec<u32> =
             bytemuck::pod_collect_to_vec(&read(&gpu, picture.renderer.scene.as_ref().expect("a scene").blades.in_view()));
@@ -52,19 +52,19 @@ fn plants_out_of_view_are_not_bent() {
 }
 
 #[test]
-fn plants_stand_on_the_land_of_their_grid_wherever_the_eye_goes() {
+fn plants_stay_on_the_ground_as_the_camera_moves() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let heights: Vec<u8> = (0..17 * 17).map(|n| (hash3([n, 5, 3])[0] % 5) as u8).collect();
     let mut mirror = meadow_over(&heights, |scene| scene.terrain.level_m = 1.0, &[255; 16 * 16]);
-    let grid_m = mirror.land().expect("land").scene().plants.grid_m;
-    let mut gone = Picture::new(&gpu, [96, 54], Quality::Low);
+    let grid_m = mirror.decoded_scene().expect("land").scene().plants.grid_m;
+    let mut gone = OffscreenRenderer::new(&gpu, [96, 54], Quality::Low);
     let mut pictures = Vec::new();
-    // Where the eye begins, one grid on, across a corner, far off, and back.
+    // The initial position, one grid on, across a corner, far away, and back.
     for [x, z] in [[0.0, 0.0], [1.0, 0.0], [2.0, 1.0], [-2.0, -1.0], [0.0, 0.0]] {
         let eye_m = Vec3::new(32.0 + x * grid_m, 5.5, 32.0 + z * grid_m);
         let camera = Camera { eye_m, pitch_rad: -0.4, ..Camera::default() };
         gone.draw(&mut mirror, &camera, 0.0, 0.0);
-        let mut fresh = Picture::new(&gpu, [96, 54], Quality::Low);
+        let mut fresh = OffscreenRenderer::new(&gpu, [96, 54], Quality::Low);
         fresh.draw(&mut mirror, &camera, 0.0, 0.0);
         assert!(gone.rgba() == fresh.rgba(), "another picture at {eye_m}");
         pictures.push(fresh.rgba());

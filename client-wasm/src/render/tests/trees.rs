@@ -1,16 +1,16 @@
-//! Trees: how far they reach as they sway, and how far their shadows do.
+//! Trees: extent while swaying, and reach of their shadows.
 
-use super::super::flora::{Standing, TREE_SHAPES, TreeDetail, tree};
-use super::super::grove::Ball;
 use super::*;
+use crate::render::solids::bounding_sphere::BoundingSphere;
+use crate::render::solids::trees_and_stones::{PlacedModel, TREE_SHAPES, TreeDetail, tree};
 use glam::Mat4;
-use shared::light::sun::Sun;
+use prairie_core::light::sun::Sun;
 use std::f32::consts::PI;
 
 #[test]
-fn no_tree_sways_out_of_the_ball_that_it_is_culled_by() {
+fn swaying_trees_stay_within_their_bounding_spheres() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     // Even the lulls between gusts blow with more than 10 m/s.
     picture.draw(&mut meadow(28.0), &Camera::default(), 1.0, 0.0);
     let [size_m, tall_m, sway_rad] = [7.0, 7.4, 0.07];
@@ -22,46 +22,45 @@ fn no_tree_sways_out_of_the_ball_that_it_is_culled_by() {
         let tree = Instance(placing, vec4<f32>(1.0, 1.0, 1.0, {sway_rad:?}));
         return vec4<f32>(placed(vertex, tree, sway_of(tree)), 0.0);"
     );
-    let source = shaders::OBJECTS.replace("@group(1) @binding(0) var<storage, read>", "@group(1) @binding(20) var<storage, read>");
     for shape in 0..TREE_SHAPES {
         let solids = TreeDetail::ALL.map(|detail| tree(shape, detail));
-        let model = Ball::about(solids.iter());
+        let model = BoundingSphere::around_meshes(solids.iter());
         let ball = |x: f32| {
             let position_m = Vec3::new(x, 0.0, 32.0);
             let placing = Mat4::from_translation(position_m) * Mat4::from_scale(Vec3::new(size_m, tall_m, size_m));
             let tint = [1.0, 1.0, 1.0, sway_rad];
-            model.of(&Standing { position_m, shape, is_tree: true, size_m, world_from_model: placing, tint })
+            model.placed(&PlacedModel { position_m, shape, is_tree: true, size_m, world_from_model: placing, tint })
         };
         let vertices = solids.iter().flat_map(|solid| &solid.vertices).enumerate();
         let places: Vec<[f32; 4]> = vertices
             .map(|(number, vertex)| [vertex.position[0], vertex.position[1], vertex.position[2], 20.0 + (number % 24) as f32])
             .collect();
         let mut farthest = 0.0_f32;
-        for ([.., x], found) in places.iter().zip(probe_in(&gpu, &picture, &source, &body, &places)) {
+        for ([.., x], found) in places.iter().zip(probe_in(&gpu, &picture, "solids/objects", &body, &places)) {
             let ball = ball(*x);
-            farthest = farthest.max(Vec3::from_slice(&found[..3]).distance(ball.middle_m) / ball.radius_m);
+            farthest = farthest.max(Vec3::from_slice(&found[..3]).distance(ball.centre_m) / ball.radius_m);
         }
         assert!((0.7..=1.0).contains(&farthest), "{farthest} of the radius of shape {shape}");
     }
 }
 
 #[test]
-fn a_tree_far_towards_a_low_sun_throws_its_shadow_to_the_camera() {
+fn a_distant_tree_towards_a_low_sun_casts_its_shadow_near_the_camera() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let wide = |scene: &mut Scene| {
         (scene.patches.count, scene.terrain.pixel_m) = ([16, 16], [16.0; 2]);
         (scene.plants.tree_m, scene.wind.mean_m_per_s) = (40.0, [0.0; 2]);
     };
     let mut covering = [255; 16 * 16];
-    // 3 m about (136, 88) m.
+    // A tree within 3 m of (136, 88) m.
     covering[8 + 16 * 5] = 253;
     let mut mirror = meadow_of(wide, &covering);
     let camera = Camera { eye_m: Vec3::new(136.0, 2.0, 200.0), heading_rad: PI, ..Camera::default() };
     let places: Vec<_> = (0..81).map(|n| [132.0 + (n % 9) as f32, 0.5, 192.0 + 2.0 * (n / 9) as f32, 0.0]).collect();
     // The sun in the north, behind the tree, and in the south.
     let [darkest, lightest] = [0.0, PI].map(|heading_rad| {
-        let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
-        picture.set_look(Look { sun: Some(Sun { heading_rad, elevation_rad: 0.2 }), ..Look::default() });
+        let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
+        picture.set_options(RenderOptions { sun: Some(Sun { heading_rad, elevation_rad: 0.2 }), ..RenderOptions::default() });
         picture.draw(&mut mirror, &camera, 0.0, 0.0);
         let light = probe(&gpu, &picture, "return vec4<f32>(sun_visible(at.xyz));", &places);
         light.iter().map(|light| light[0]).fold(1.0, f32::min)

@@ -1,12 +1,12 @@
-//! Blades move and are drawn as their twins on the CPU are.
+//! Blades move, and are drawn, like their twins on the CPU.
 
 use super::*;
-use shared::plant::blade::backbone::{drawn_out_m, segment_points_m};
-use shared::plant::blade::contact::{Sphere, settle};
-use shared::plant::blade::{Blade, advance};
-use shared::wire::ObjectPose;
+use prairie_core::plant::blade::backbone::{drawn_out_m, segment_points_m};
+use prairie_core::plant::blade::contact::{Sphere, settle};
+use prairie_core::plant::blade::{Blade, advance};
+use prairie_core::wire::ObjectPose;
 
-/// What a blade of the comparison is like and where it starts: links, what acts on them, blade, root, normal, as `Case` in the WGSL below.
+/// Inputs of a blade of the comparison: links, what acts on them, blade, root, normal, as `Case` in the WGSL below.
 fn blade_case(n: u32) -> [[f32; 4]; 9] {
     let random = |k: u32| hash3([n, k, 77]).map(|v| (v >> 8) as f32 / 16_777_216.0);
     let link = |i: u32| {
@@ -19,7 +19,7 @@ fn blade_case(n: u32) -> [[f32; 4]; 9] {
     };
     let [a, b, c] = random(20);
     let [x, z, way] = random(22);
-    // Steps that the schemes with a limit can take.
+    // Steps within the stability limit of the schemes that have one.
     let (fastest, longest_secs) = if way < 2.0 / 3.0 { (6.0, 0.004) } else { (44.0, 0.032) };
     let blade = [0.1 + 1.5 * a, 4.0 + (fastest - 4.0) * b, 0.1 + c, 0.004 * a];
     let [rx, rz, t] = random(21);
@@ -30,7 +30,7 @@ fn blade_case(n: u32) -> [[f32; 4]; 9] {
 }
 
 #[test]
-fn blades_move_as_their_twins_do() {
+fn blades_move_as_their_cpu_twins() {
     const SOURCE: &str = "
         struct Case { links: array<vec4<f32>, 3>, acts: array<vec4<f32>, 3>, blade: vec4<f32>, root: vec4<f32>, normal: vec4<f32> }
         @group(1) @binding(0) var<storage, read_write> cases: array<Case>;
@@ -59,15 +59,16 @@ fn blades_move_as_their_twins_do() {
     mirror
         .apply(ServerMessage::Poses { tick: 1, objects: vec![pose(1, [31.0, 1.0, 31.5]), pose(2, [34.0, 1.5, 33.0])] })
         .expect("sound poses");
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut mirror, &Camera { eye_m: Vec3::new(32.0, 2.0, 32.0), ..Camera::default() }, 0.0, 0.0);
-    let count = probe(&gpu, &picture, "return vec4<f32>(frame.clouds.w);", &[[0.0; 4]])[0][0] as usize;
+    let count = probe(&gpu, &picture, "return vec4<f32>(f32(frame.sphere_count));", &[[0.0; 4]])[0][0] as usize;
     let numbers: Vec<_> = (0..count).map(|i| [i as f32, 0.0, 0.0, 0.0]).collect();
-    let spheres = probe(&gpu, &picture, "return frame.spheres[u32(at.x)];", &numbers);
+    let spheres =
+        probe(&gpu, &picture, "let sphere = frame.spheres[u32(at.x)]; return vec4<f32>(sphere.centre_m, sphere.radius_m);", &numbers);
     assert!(count >= 2, "the monsters' feet push plants aside");
 
     let cases: Vec<_> = (0..600).map(blade_case).collect();
-    let source = format!("{}\n{SOURCE}", shaders::BLADE);
+    let source = linked("plants/blade", SOURCE);
     let outputs = compute(&gpu, &picture, &source, &[], cases.as_flattened(), cases.len() as u32);
     let mut touching = 0;
     for (case, found) in cases.into_iter().zip(outputs.chunks_exact(9)) {
@@ -95,7 +96,7 @@ fn blades_move_as_their_twins_do() {
 }
 
 #[test]
-fn blades_are_drawn_as_their_twins_are() {
+fn blades_are_drawn_as_by_their_cpu_twins() {
     const SOURCE: &str = "
         struct Case { links: array<vec4<f32>, 3>, how: vec4<f32> }
         @group(1) @binding(0) var<storage, read_write> cases: array<Case>;
@@ -106,7 +107,7 @@ fn blades_are_drawn_as_their_twins_are() {
             cases[id.x].links[1] = vec4<f32>(side_at(points[2], input.how.y, input.how.z), 0.0);
         }";
     let gpu = Gpu::headless().expect("a Vulkan adapter");
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut meadow(0.0), &Camera::default(), 0.0, 0.0);
     let cases: Vec<_> = (0..400)
         .map(|n| {
@@ -114,14 +115,14 @@ fn blades_are_drawn_as_their_twins_are() {
             [l0, l1, l2, [blade[0], root[0] * 3.0 - 100.0, (n % 11) as f32 * 0.1, (2 + n % 7) as f32]]
         })
         .collect();
-    let source = format!("{}\n{}\n{SOURCE}", shaders::BLADE, shaders::BACKBONE);
+    let source = linked("plants/blade", SOURCE);
     let outputs = compute(&gpu, &picture, &source, &[], cases.as_flattened(), cases.len() as u32);
     for ([l0, l1, l2, [length_m, side_rad, t, segments]], found) in cases.into_iter().zip(outputs.chunks_exact(4)) {
         let points_m = Sway::at_rest([l0, l1, l2].map(|[x, z, ..]| [x, z])).points_m(length_m);
         let [left, right] = segment_points_m(&drawn_out_m(&points_m, length_m, segments as u32), side_rad, t, 1.0).map(Vec3::from);
         let [at, side] = [Vec3::from_slice(&found[0][..3]), Vec3::from_slice(&found[1][..3])];
         assert!(at.distance(0.5 * (left + right)) < 1e-4 * length_m, "{at} instead of {} at {t}", 0.5 * (left + right));
-        // Where the lean is along the side, either turn is the lesser.
+        // Where the lean is along the side, both turns are equally small.
         let is_even =
             (points_m[2][0] * side_rad.cos() + points_m[2][2] * side_rad.sin()).abs() > 0.9999 * points_m[2][0].hypot(points_m[2][2]);
         assert!(is_even || side.distance(right - left) < 1e-3, "{side} instead of {} at {t}", right - left);
@@ -131,12 +132,12 @@ fn blades_are_drawn_as_their_twins_are() {
 #[test]
 fn textured_blades_are_wide_up_to_their_tips_and_tapered_ones_end_in_a_point() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut meadow(0.0), &Camera::default(), 0.0, 0.0);
     let body =
         "let corner = corner_of(u32(at.x), 7u); return vec4<f32>(corner, width_share(corner.x, false), width_share(corner.x, true));";
     let vertices: Vec<_> = [0, 1, 14, 15].map(|vertex| [vertex as f32, 0.0, 0.0, 0.0]).to_vec();
-    let found = probe_in(&gpu, &picture, shaders::BACKBONE, body, &vertices);
+    let found = probe_in(&gpu, &picture, "plants/backbone", body, &vertices);
     let wide = found[0][3];
     assert!(wide > 1.0, "{found:?}");
     for ([t, across, tapered, textured], wanted) in

@@ -1,16 +1,17 @@
-//! What underbrush feels and how it trembles.
+//! Pressure on underbrush, and its trembling in the rain.
 
-use super::super::obstacles::{Still, of_pose};
-use super::super::{flora, underbrush};
 use super::*;
-use shared::plant::force_field::Mesh;
-use shared::scene::{Component, ComponentKind, Underbrush};
-use shared::wire::ObjectPose;
+use crate::render::plants::obstacles::{StaticObstacles, of_pose};
+use crate::render::plants::underbrush;
+use crate::render::solids::trees_and_stones;
+use prairie_core::plant::force_field::VolumeMesh;
+use prairie_core::scene::{Component, ComponentKind, Underbrush};
+use prairie_core::wire::ObjectPose;
 use std::collections::HashMap;
 use std::f32::consts::FRAC_PI_2;
 
 #[test]
-fn leaves_dip_by_the_drops_that_fall_on_them() {
+fn leaves_dip_under_raindrops() {
     const SOURCE: &str = "
         @group(1) @binding(0) var<storage, read_write> cases: array<vec4<f32>>;
         @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -19,15 +20,14 @@ fn leaves_dip_by_the_drops_that_fall_on_them() {
         }";
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow(0.0);
-    let mut picture = Picture::new(&gpu, [16, 16], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
-    let source = shaders::UNDERBRUSH.replace("@group(1) @binding(0) var<uniform>", "@group(1) @binding(40) var<uniform>");
-    let source = format!("{source}\n{SOURCE}");
+    let source = linked("plants/ribbons", SOURCE);
     let dips = |per_s: f32, times: &[f32]| {
         let inputs: Vec<_> = times.iter().flat_map(|&secs| [[0.2, 0.1, per_s, secs]; 256]).collect();
         compute(&gpu, &picture, &source, &[], &inputs, inputs.len() as u32).into_iter().map(|found| f64::from(found[0])).collect::<Vec<_>>()
     };
-    // Campbell's theorem for n drops a span, each t·e^(−t) from its strike on with (3s² − s³)/2 of its force: mean n·⅜, variance n·(33/140)·¼.
+    // Campbell's theorem for n drops per span, each t·e^(−t) from its strike on with (3s² − s³)/2 of its force: mean n·⅜, variance n·(33/140)·¼.
     let unit_m = 0.2 * 0.1;
     for per_s in [0.5, 4.0, 60.0_f32] {
         let found = dips(per_s, &(0..100).map(|i| 7.0 + 1.13 * i as f32).collect::<Vec<_>>());
@@ -38,7 +38,7 @@ fn leaves_dip_by_the_drops_that_fall_on_them() {
         assert!((mean / (0.375 * n) - 1.0).abs() < 0.05, "{mean} on average of {n} drops");
         assert!((0.8..1.02).contains(&(deviation / wanted)), "{deviation} instead of {wanted} for {n} drops");
     }
-    // A single one sets off at once, is farthest after its time, and comes back without a swing.
+    // The effect of a single drop starts at once, peaks after its time constant, and decays without oscillation.
     let times: Vec<f32> = (0..200).map(|i| 50.0 + 0.01 * i as f32).collect();
     let rare = dips(0.05, &times);
     let series = (0..256).map(|plant| rare.iter().skip(plant).step_by(256).copied().collect::<Vec<_>>());
@@ -61,11 +61,11 @@ fn grasses() -> Vec<Underbrush> {
 }
 
 #[test]
-fn underbrush_ends_where_the_level_of_detail_has_it() {
+fn underbrush_ends_at_the_distance_of_its_level_of_detail() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow_of(|scene| scene.underbrush = grasses(), &[255; 16 * 16]);
     let camera = Camera { eye_m: Vec3::new(32.0, 1.6, 64.0), ..Camera::default() };
-    let mut picture = Picture::new(&gpu, [256, 144], Quality::Medium);
+    let mut picture = OffscreenRenderer::new(&gpu, [256, 144], Quality::Medium);
     let [near, whole] = [0.0, 1.0].map(|level| {
         picture.set_level(level);
         picture.draw(&mut mirror, &camera, 0.0, 0.0);
@@ -75,34 +75,34 @@ fn underbrush_ends_where_the_level_of_detail_has_it() {
 }
 
 #[test]
-fn nothing_but_culling_leaves_out_what_is_behind_the_camera() {
+fn plants_behind_the_camera_are_drawn_without_culling() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow_of(|scene| scene.underbrush = grasses(), &[255; 16 * 16]);
     let camera = Camera { eye_m: Vec3::new(32.0, 1.6, 32.0), ..Camera::default() };
-    let mut picture = Picture::new(&gpu, [256, 144], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [256, 144], Quality::Low);
     let [seen, all] = [true, false].map(|culls| {
-        picture.set_look(Look { culls, ..Look::default() });
+        picture.set_options(RenderOptions { culls, ..RenderOptions::default() });
         picture.draw(&mut mirror, &camera, 0.0, 0.0);
         picture.drawn_underbrush()
     });
     assert!(seen > 100 && 2 * seen < all, "{seen} in view of {all}");
 }
 
-/// Place of each plant (m) by its site, and what it feels (Pa), after a second and a half below a camera.
-fn felt(picture: &mut Picture, gpu: &Gpu, mirror: &mut Mirror) -> HashMap<u32, ([f32; 2], [f32; 2])> {
+/// Position of each plant (m) and pressure on it (Pa), by its site, after a second and a half below a camera.
+fn felt(picture: &mut OffscreenRenderer, gpu: &Gpu, mirror: &mut Mirror) -> HashMap<u32, ([f32; 2], [f32; 2])> {
     let camera = Camera { eye_m: Vec3::new(32.0, 16.0, 32.0), pitch_rad: -1.57, fov_rad: 1.9, ..Camera::default() };
     (0..15).for_each(|_| {
         picture.draw(mirror, &camera, 0.0, 0.1);
     });
-    let land = mirror.land().expect("a scene");
-    let (grown, _) = underbrush::tiles(land, land.flora().expect("underbrush"));
+    let decoded = mirror.decoded_scene().expect("a scene");
+    let (grown, _) = underbrush::tiles(decoded, decoded.flora().expect("underbrush"));
     let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").underbrush.as_ref().expect("underbrush").seen.felt);
     let felt: &[[f32; 8]] = bytemuck::cast_slice(&bytes);
     grown.iter().zip(felt).map(|(plant, felt)| (plant.site, (plant.at_m, [felt[0], felt[1]]))).collect()
 }
 
 #[test]
-fn plants_behind_a_boulder_feel_less_of_the_wind() {
+fn plants_behind_a_boulder_are_sheltered_from_the_wind() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let run = |is_stony: bool| {
         let mut covering = [255; 16 * 16];
@@ -113,9 +113,9 @@ fn plants_behind_a_boulder_feel_less_of_the_wind() {
             (scene.wind.mean_m_per_s, scene.plants.stone_m, scene.underbrush) = ([8.0, 0.0], 6.0, grasses());
         };
         let mut mirror = meadow_of(windy, &covering);
-        let land = mirror.land().expect("a scene");
-        let stone = flora::standing(land).first().map(|standing| (standing.position_m, standing.size_m));
-        (felt(&mut Picture::new(&gpu, [400; 2], Quality::Low), &gpu, &mut mirror), stone)
+        let decoded = mirror.decoded_scene().expect("a scene");
+        let stone = trees_and_stones::placed_models(decoded).first().map(|stone| (stone.position_m, stone.size_m));
+        (felt(&mut OffscreenRenderer::new(&gpu, [400; 2], Quality::Low), &gpu, &mut mirror), stone)
     };
     let ((open, _), (stony, stone)) = (run(false), run(true));
     let (at_m, size_m) = stone.expect("a boulder");
@@ -138,7 +138,7 @@ fn plants_behind_a_boulder_feel_less_of_the_wind() {
 }
 
 #[test]
-fn plants_feel_what_rushes_past_them_in_still_air_whatever_the_gusts() {
+fn passing_objects_push_plants_in_still_air() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow_of(|scene| (scene.wind.mean_m_per_s, scene.underbrush) = ([0.0; 2], grasses()), &[255; 16 * 16]);
     let car = ObjectPose {
@@ -150,9 +150,9 @@ fn plants_feel_what_rushes_past_them_in_still_air_whatever_the_gusts() {
         part_rad: 0.0,
     };
     mirror.apply(ServerMessage::Poses { tick: 1, objects: vec![car] }).expect("a sound pose");
-    let mut picture = Picture::new(&gpu, [128; 2], Quality::Low);
+    let mut picture = OffscreenRenderer::new(&gpu, [128; 2], Quality::Low);
     let felt = felt(&mut picture, &gpu, &mut mirror);
-    let field = &picture.renderer.scene.as_ref().expect("a scene").forces.field;
+    let field = &picture.renderer.scene.as_ref().expect("a scene").force_field.field;
     let [west, _, north] = field.mesh().center_m([0; 3]);
     let (mut compared, mut strongest) = (0, 0.0_f32);
     for ([x, z], [east_pa, south_pa]) in felt.values().copied() {
@@ -179,19 +179,19 @@ fn plants_feel_what_rushes_past_them_in_still_air_whatever_the_gusts() {
 }
 
 #[test]
-fn what_stands_near_the_mesh_is_in_its_way() {
+fn obstacles_near_the_mesh_are_included() {
     let covering: Vec<u8> = (0..256).map(|at| if at % 5 == 0 { 253 } else { 254 }).collect();
     let mirror = meadow_of(|scene| (scene.plants.stone_m, scene.plants.tree_m) = (0.9, 8.0), &covering);
-    let land = mirror.land().expect("a scene");
-    let standing = flora::standing(land);
-    let still = Still::new(land, &standing);
-    let mesh = Mesh { count: [8, 4, 6], spacing_m: [2.0, 0.75, 2.0], corner: [8, 10] };
+    let decoded = mirror.decoded_scene().expect("a scene");
+    let placed = trees_and_stones::placed_models(decoded);
+    let still = StaticObstacles::new(decoded, &placed);
+    let mesh = VolumeMesh { count: [8, 4, 6], spacing_m: [2.0, 0.75, 2.0], corner: [8, 10] };
     let near: Vec<_> = still.near(mesh).collect();
     let is_inside = |x: f32, z: f32| (16.0..32.0).contains(&x) && (20.0..32.0).contains(&z);
-    for standing in standing.iter().filter(|standing| is_inside(standing.position_m.x, standing.position_m.z)) {
-        let own = near.iter().filter(|obstacle| [obstacle.at_m[0], obstacle.at_m[2]] == [standing.position_m.x, standing.position_m.z]);
+    for model in placed.iter().filter(|model| is_inside(model.position_m.x, model.position_m.z)) {
+        let own = near.iter().filter(|obstacle| [obstacle.at_m[0], obstacle.at_m[2]] == [model.position_m.x, model.position_m.z]);
         let own: Vec<_> = own.collect();
-        if standing.is_tree {
+        if model.is_tree {
             let [trunk, crown] = own[..] else { panic!("{} parts of a tree", own.len()) };
             let (trunk, crown) = if trunk.stops > crown.stops { (trunk, crown) } else { (crown, trunk) };
             assert!(trunk.stops == 1.0 && trunk.half_m[0] < 0.4 && crown.stops < 0.5 && crown.half_m[0] > 1.0);
@@ -202,7 +202,7 @@ fn what_stands_near_the_mesh_is_in_its_way() {
         }
     }
     assert!(near.iter().all(|obstacle| (8.0..40.0).contains(&obstacle.at_m[0]) && (12.0..40.0).contains(&obstacle.at_m[2])));
-    // A car across the wind is so much wider.
+    // The obstacle of a car turns with the car.
     let car = |turn_rad: f32| ObjectPose {
         id: 1,
         kind: VehicleKind::Car,
@@ -212,8 +212,11 @@ fn what_stands_near_the_mesh_is_in_its_way() {
         part_rad: 0.0,
     };
     for (turn_rad, along) in [(0.0, [1.0, 0.0]), (FRAC_PI_2, [0.0, -1.0])] {
-        let obstacle = of_pose(land, &car(turn_rad));
+        let obstacle = of_pose(decoded, &car(turn_rad));
         assert!(obstacle.along.iter().zip(along).all(|(found, wanted)| (found - wanted).abs() < 1e-5), "{obstacle:?}");
-        assert_eq!((obstacle.at_m, obstacle.half_m), ([33.0, 0.9, 33.0], VehicleKind::Car.half_extents_m()));
+        assert_eq!(
+            (obstacle.at_m, obstacle.half_m),
+            ([33.0, 0.9, 33.0], prairie_core::scene::Objects::default().half_extents_m(VehicleKind::Car))
+        );
     }
 }

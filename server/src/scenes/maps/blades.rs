@@ -1,14 +1,14 @@
-//! The lawn of `blades`: 16 × 16 grass grids on gentle waves, with a bare ring, a few stones and two trees.
+//! Maps of `blades`: a gently rolling lawn with a bare ring, a few stones and two trees.
 
-use super::land::{Noise, Point, distance, smooth_step};
-use super::{GreyMap, Levels};
+use super::grey_map::{GreyMap, Levels};
+use super::landforms::{Noise, Point, distance, smooth_step};
 
-/// Height map: pixels a side, metres between them, metres per grey level.
+/// Height map: pixels per side, spacing (m), metres per grey level.
 const HEIGHT_PX: u32 = 65;
 const PIXEL_M: f64 = 1.0;
 const LEVEL_M: f64 = 0.02;
 
-/// Covering map: pixels a side over the same 64 m.
+/// Covering map: pixels per side over the same 64 m.
 const COVER_PX: u32 = 128;
 
 const TREES: [[u32; 2]; 2] = [[24, 30], [104, 40]];

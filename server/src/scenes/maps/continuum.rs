@@ -1,18 +1,18 @@
-//! The rolling prairie of `continuum`: long swells cut by draws, a shallow valley with a creek, and drifts of three grasses.
+//! Maps of `continuum`: rolling prairie with draws, a shallow valley with a creek, and stands of three grasses.
 
-use super::dice::Dice;
-use super::land::{Noise, Point, scatter, smooth_step};
-use super::{GreyMap, Levels};
+use super::grey_map::{GreyMap, Levels};
+use super::landforms::{Noise, Point, scatter, smooth_step};
+use prairie_core::random::SplitMix64;
 
-/// The world of 001: 88 patches of 120 cells of 1.5 feet a side.
+/// Side of the world of Chen & Johan: 88 patches of 120 cells of 1.5 feet (m).
 const EXTENT_M: f64 = 88.0 * 120.0 * 0.4572;
 
-/// Height map: pixels a side, the last one on the far edge; metres per grey level.
+/// Height map: pixels per side, the last one on the far edge; spacing (m); metres per grey level.
 const HEIGHT_PX: u32 = 1025;
 const PIXEL_M: f64 = EXTENT_M / (HEIGHT_PX - 1) as f64;
 const LEVEL_M: f64 = 0.01;
 
-/// Covering map: pixels a side.
+/// Covering map: pixels per side.
 const COVER_PX: u32 = 2048;
 
 /// Covering IDs of the scene's species.
@@ -23,24 +23,24 @@ const CORDGRASS: u8 = 3;
 const TREES: usize = 420;
 const STONES: usize = 260;
 
-/// Elevation of the creek where it enters in the west, and how far it falls on its way east (m).
+/// Elevation of the creek at the western edge, and its fall towards the east (m).
 const SPRING_M: f64 = 24.0;
 const FALL_M: f64 = 12.0;
 
 /// Height map and covering map.
 pub(super) fn maps() -> [GreyMap; 2] {
-    let land = Land::new();
+    let land = Continuum::new();
     let heights = pixels(HEIGHT_PX, PIXEL_M, 0.0).map(|at| (land.height_m(at) / LEVEL_M).round().clamp(0.0, 65_535.0) as u16);
     let height = GreyMap { name: "continuum-height.png", size_px: [HEIGHT_PX; 2], levels: Levels::Sixteen(heights.collect()) };
     [height, land.covering()]
 }
 
-/// Points of a square map's pixels, row by row; `offset` is that of the first in pixels.
+/// Positions of a square map's pixels, row by row; `offset` is that of the first, in pixels.
 fn pixels(side_px: u32, pixel_m: f64, offset: f64) -> impl Iterator<Item = Point> {
     (0..side_px).flat_map(move |row| (0..side_px).map(move |column| [column, row].map(|i| (f64::from(i) + offset) * pixel_m)))
 }
 
-struct Land {
+struct Continuum {
     course: Noise,
     meander: Noise,
     swell: Noise,
@@ -52,7 +52,7 @@ struct Land {
     wear: Noise,
 }
 
-impl Land {
+impl Continuum {
     fn new() -> Self {
         Self {
             course: Noise::smooth(31, 2300.0, 1, 0.5),
@@ -67,12 +67,12 @@ impl Land {
         }
     }
 
-    /// Z of the valley's middle line at an X (m).
+    /// Z of the valley's centre line at an X (m).
     fn valley_z_m(&self, x: f64) -> f64 {
         0.56 * EXTENT_M + 900.0 * self.course.at([x, 900.0])
     }
 
-    /// Z of the creek at an X (m): it meanders within the valley.
+    /// Z of the creek at an X (m); it meanders within the valley.
     fn creek_z_m(&self, x: f64) -> f64 {
         self.valley_z_m(x) + 190.0 * self.meander.at([x, 150.0])
     }
@@ -81,12 +81,12 @@ impl Land {
         distance_from(|x| self.creek_z_m(x), at)
     }
 
-    /// How much upland a place is: 0 on the valley's floor, 1 above its slopes.
+    /// Weight of the upland: 0 on the valley floor, 1 above its slopes.
     fn upland(&self, at: Point) -> f64 {
         smooth_step(50.0, 560.0, distance_from(|x| self.valley_z_m(x), at))
     }
 
-    /// How deep in a draw a place lies: 0 outside, 1 at the bottom.
+    /// Depth within a draw: 0 outside, 1 at the bottom.
     fn draw(&self, at: Point) -> f64 {
         1.0 - smooth_step(0.0, 0.3, self.draws.at(at).abs())
     }
@@ -110,14 +110,14 @@ impl Land {
                 levels[(z / pixel_m) as usize * COVER_PX as usize + (x / pixel_m) as usize] = id;
             }
         };
-        let mut dice = Dice(2012);
-        put(253, scatter(&mut dice, [EXTENT_M; 2], TREES, 7.0, |at| self.tree_chance(at)));
-        put(254, scatter(&mut dice, [EXTENT_M; 2], STONES, 12.0, |at| self.stone_chance(at)));
+        let mut random = SplitMix64::new(2012);
+        put(253, scatter(&mut random, [EXTENT_M; 2], TREES, 7.0, |at| self.tree_chance(at)));
+        put(254, scatter(&mut random, [EXTENT_M; 2], STONES, 12.0, |at| self.stone_chance(at)));
         GreyMap { name: "continuum-covering.png", size_px: [COVER_PX; 2], levels: Levels::Eight(levels) }
     }
 
-    /// What grows at a place: cordgrass along the creek, bluestem where water gathers, buffalo grass on dry swells, a mixture between; gravel in the creek
-    /// and here and there a worn patch bear nothing.
+    /// Covering ID at a position: cordgrass along the creek, bluestem in wet hollows, buffalo grass on dry swells, a mixture between; the creek bed and a
+    /// few worn patches are bare.
     fn grass(&self, at: Point) -> u8 {
         let (drift, wear) = (self.drift.at(at), self.wear.at(at));
         let creek_distance_m = self.creek_distance_m(at);
@@ -137,7 +137,7 @@ impl Land {
         }
     }
 
-    /// Groves beside the creek, a lone tree in a draw.
+    /// Groves beside the creek, and a few single trees in the draws.
     fn tree_chance(&self, at: Point) -> f64 {
         let creek_distance_m = self.creek_distance_m(at);
         let bank = smooth_step(7.0, 12.0, creek_distance_m) * (1.0 - smooth_step(30.0, 75.0, creek_distance_m));
@@ -145,14 +145,14 @@ impl Land {
         bank * (0.04 + grove) + 0.0006 * smooth_step(0.5, 0.9, self.draw(at))
     }
 
-    /// Outcrops where the swells are highest.
+    /// Outcrops on the highest swells.
     fn stone_chance(&self, at: Point) -> f64 {
         let crest = smooth_step(29.0, 38.0, self.swell_m(at)) * self.upland(at);
         0.002 + crest * smooth_step(0.2, 0.5, self.wear.at(at))
     }
 }
 
-/// Distance of a place from the curve `z_m` of X (m), to first order: across the slope of the curve at that X.
+/// Distance of a point from the curve `z_m(x)` (m), to first order: perpendicular to the curve's slope at that X.
 fn distance_from(z_m: impl Fn(f64) -> f64, [x, z]: Point) -> f64 {
     const STEP_M: f64 = 2.0;
     let here = z_m(x);

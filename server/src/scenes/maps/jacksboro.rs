@@ -1,12 +1,12 @@
-//! What covers the real land of `jacksboro`: woods on steep and high land, rocks where it is steepest.
+//! Covering map of the real terrain of `jacksboro`: woods on steep and high ground, rocks on the steepest.
 
-use super::dice::Dice;
-use super::land::{Noise, Point, scatter, smooth_step};
-use super::{GreyMap, Levels};
+use super::grey_map::{GreyMap, Levels};
+use super::landforms::{Noise, Point, scatter, smooth_step};
 use crate::scenes::builtin;
-use shared::terrain::HeightMap;
+use prairie_core::random::SplitMix64;
+use prairie_core::terrain::HeightMap;
 
-/// Covering map: pixels a side.
+/// Covering map: pixels per side.
 const COVER_PX: u32 = 2048;
 
 const TREES: usize = 24_000;
@@ -14,9 +14,9 @@ const STONES: usize = 3000;
 
 /// Covering map for the stored elevations.
 pub(super) fn covering() -> GreyMap {
-    let (height, extent_m) = builtin::jacksboro_land();
+    let (height, extent_m) = builtin::jacksboro_terrain();
     let extent_m = extent_m.map(f64::from);
-    let land = Land { height, groves: Noise::new(21, 1400.0, 4, 0.55), wear: Noise::new(22, 420.0, 3, 0.6) };
+    let terrain = Jacksboro { height, groves: Noise::new(21, 1400.0, 4, 0.55), wear: Noise::new(22, 420.0, 3, 0.6) };
     let pixel_m = extent_m.map(|side| side / f64::from(COVER_PX));
     let index = |[x, z]: Point| (z / pixel_m[1]) as usize * COVER_PX as usize + (x / pixel_m[0]) as usize;
 
@@ -24,28 +24,28 @@ pub(super) fn covering() -> GreyMap {
     for row in 0..COVER_PX {
         for column in 0..COVER_PX {
             let at = [(f64::from(column) + 0.5) * pixel_m[0], (f64::from(row) + 0.5) * pixel_m[1]];
-            if land.is_bare(at) {
+            if terrain.is_bare(at) {
                 levels[index(at)] = 0;
             }
         }
     }
-    let mut dice = Dice(1963);
+    let mut random = SplitMix64::new(1963);
     for (id, count, apart_m) in [(253, TREES, 40.0), (254, STONES, 60.0)] {
-        let chance = |at| if id == 253 { land.tree_chance(at) } else { land.stone_chance(at) };
-        for at in scatter(&mut dice, extent_m, count, apart_m, chance) {
+        let chance = |at| if id == 253 { terrain.tree_chance(at) } else { terrain.stone_chance(at) };
+        for at in scatter(&mut random, extent_m, count, apart_m, chance) {
             levels[index(at)] = id;
         }
     }
     GreyMap { name: "jacksboro-covering.png", size_px: [COVER_PX; 2], levels: Levels::Eight(levels) }
 }
 
-struct Land {
+struct Jacksboro {
     height: HeightMap,
     groves: Noise,
     wear: Noise,
 }
 
-impl Land {
+impl Jacksboro {
     fn steepness(&self, at: Point) -> f64 {
         let [east, south] = self.height.slope(at[0] as f32, at[1] as f32).map(f64::from);
         (east * east + south * south).sqrt()

@@ -1,14 +1,14 @@
-//! The grassy knolls of `shells`: close round hills of short grass, with some bare patches where the slopes are worn.
+//! Maps of `shells`: round hills of short grass, with some bare patches on the slopes.
 
-use super::land::{Noise, Point, bump, smooth_step};
-use super::{GreyMap, Levels};
+use super::grey_map::{GreyMap, Levels};
+use super::landforms::{Noise, Point, bump, smooth_step};
 
-/// Height map: pixels a side, metres between them, metres per grey level.
+/// Height map: pixels per side, spacing (m), metres per grey level.
 const HEIGHT_PX: u32 = 129;
 const PIXEL_M: f64 = 1.0;
 const LEVEL_M: f64 = 0.001;
 
-/// Covering map: pixels a side over the same 128 m.
+/// Covering map: pixels per side over the same 128 m.
 const COVER_PX: u32 = 512;
 
 /// Knolls: centre (m), radius (m), height (m).
@@ -24,7 +24,7 @@ const KNOLLS: [(Point, f64, f64); 9] = [
     ([96.0, 22.0], 14.0, 5.2),
 ];
 
-/// Worn places: centre (m) and radius (m).
+/// Bare patches: centre (m) and radius (m).
 const WORN: [(Point, f64); 4] = [([71.5, 64.0], 0.7), ([53.0, 57.5], 0.6), ([79.0, 50.0], 1.1), ([47.0, 72.0], 0.8)];
 
 /// Height map and covering map.

@@ -1,26 +1,26 @@
-//! Contact: a blade that would pass through the ground or a sphere is laid along it, link by link from the root (000 sections 3.2.4 and 6.2).
+//! Contact: a blade that would penetrate the ground or a sphere is laid along it, link by link from the root (Zhang §§3.2.4 and 6.2).
 
 use super::lean::{direction, lean_of};
 use super::{LINKS, Sway};
 
-/// Height above the ground's plane that control points keep (m), where the blade is long enough for it.
+/// Smallest height of control points above the ground plane (m), if the blade is long enough for it.
 pub const CLEARANCE_M: f32 = 0.015;
 
-/// A sphere that pushes plants aside.
+/// Sphere that pushes plants aside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// Centre from the blade's root (m): X, height, Z.
+    /// Centre relative to the blade's root (m): X, height, Z.
     pub centre_m: [f32; 3],
     /// Radius (m).
     pub radius_m: f32,
 }
 
-/// Mends a blade of `length_m` after a step: every link keeps its length, ends above the ground's plane through the root with the unit normal `normal`, and
-/// passes outside of every sphere.
+/// Resolves the contacts of a blade of `length_m` after a step: every link keeps its length, ends above the ground plane through the root with the
+/// unit normal `normal`, and passes outside of every sphere.
 ///
-/// The lowest link that meets a sphere is turned until it is tangent to it, or ends on it where it is shorter than the tangent; the links above go on in its
-/// direction, as a beam does that nothing else touches (000 §6.2). A link that hangs over a sphere's middle turns away from that middle, any other the nearest
-/// way. Where ground and spheres leave no room, the ground wins. What a link moves towards an obstacle is taken from its rate.
+/// The lowest link that meets a sphere is turned until it is tangent to it, or ends on it if it is shorter than the tangent; the links above continue
+/// in its direction, like a beam without other contacts (Zhang §6.2). A link that hangs over a sphere's centre turns away from that centre, any other
+/// in the shortest direction. Where ground and spheres leave no room, the ground wins. The component of a link's rate towards an obstacle is removed.
 pub fn settle(sway: &Sway, length_m: f32, normal: [f32; 3], spheres: &[Sphere]) -> Sway {
     let link_m = length_m / LINKS as f32;
     let mut mended = *sway;
@@ -28,7 +28,7 @@ pub fn settle(sway: &Sway, length_m: f32, normal: [f32; 3], spheres: &[Sphere]) 
     for link in 0..LINKS {
         let free = tangent.unwrap_or_else(|| direction(sway.lean_rad[link]));
         let mut along = free;
-        // A sphere may push the link into another: twice round settles two.
+        // A sphere may push the link into another: two passes settle two spheres.
         for _ in 0..2 {
             for sphere in spheres {
                 along = aside(along, below, link_m, sphere);
@@ -48,14 +48,14 @@ pub fn settle(sway: &Sway, length_m: f32, normal: [f32; 3], spheres: &[Sphere]) 
     mended
 }
 
-/// Direction of a link from `below` that ends no deeper than [`CLEARANCE_M`] above the ground, as near to `along` as can be.
+/// Direction of a link from `below` that ends at least [`CLEARANCE_M`] above the ground, as close to `along` as possible.
 fn above_ground(along: [f32; 3], below: [f32; 3], link_m: f32, normal: [f32; 3]) -> [f32; 3] {
     let rise = dot(along, normal);
     let needed = ((CLEARANCE_M - dot(below, normal)) / link_m).min(1.0);
     if rise >= needed { along } else { toward(along, normal, needed) }
 }
 
-/// Direction of a link from `below` that passes outside of a sphere, as near to `along` as can be.
+/// Direction of a link from `below` that passes outside of a sphere, as close to `along` as possible.
 fn aside(along: [f32; 3], below: [f32; 3], link_m: f32, sphere: &Sphere) -> [f32; 3] {
     let to = add(sphere.centre_m, below, -1.0);
     let (distance2, radius2) = (dot(to, to), sphere.radius_m * sphere.radius_m);
@@ -63,7 +63,7 @@ fn aside(along: [f32; 3], below: [f32; 3], link_m: f32, sphere: &Sphere) -> [f32
     let tangent2 = distance2 - radius2;
     let ahead = dot(along, to);
     let cosine = if tangent2 <= 0.0 {
-        // From the surface along it; from within the more steeply out, the deeper.
+        // Tangent to the sphere from its surface; from inside, more steeply outward with depth.
         -(-tangent2).sqrt() / distance_m
     } else {
         let entry2 = ahead * ahead - tangent2;
@@ -82,11 +82,11 @@ fn aside(along: [f32; 3], below: [f32; 3], link_m: f32, sphere: &Sphere) -> [f32
     toward(out, centre, cosine.clamp(-1.0, 1.0))
 }
 
-/// Unit vector whose part along the unit vector `axis` is `share`, and whose rest points as that of `from` does.
+/// Unit vector with the component `share` along the unit vector `axis`, and its remainder in the direction of that of `from`.
 fn toward(from: [f32; 3], axis: [f32; 3], share: f32) -> [f32; 3] {
     let mut rest = add(from, axis, -dot(from, axis));
     if dot(rest, rest) < 1e-12 {
-        // Any way round: the one across the axis that is farthest from it.
+        // Any direction will do: take the coordinate axis most nearly perpendicular.
         let least = if axis[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 0.0, 1.0] };
         rest = add(least, axis, -dot(least, axis));
     }
@@ -94,7 +94,7 @@ fn toward(from: [f32; 3], axis: [f32; 3], share: f32) -> [f32; 3] {
     [0, 1, 2].map(|i| axis[i] * share + rest[i] * across)
 }
 
-/// A link's rate without what takes it back to where it was moved from.
+/// A link's rate without its component back from the corrected lean `to` towards `from`.
 fn without_approach(rate: [f32; 2], from: [f32; 2], to: [f32; 2]) -> [f32; 2] {
     let moved = [to[0] - from[0], to[1] - from[1]];
     let square = moved[0] * moved[0] + moved[1] * moved[1];
@@ -118,7 +118,7 @@ mod tests {
 
     const UP: [f32; 3] = [0.0, 1.0, 0.0];
 
-    /// Deepest that the links of a blade of 1 m lie in a sphere (m).
+    /// Largest depth of the links of a blade of 1 m in a sphere (m).
     fn depth_m(sway: &Sway, sphere: &Sphere) -> f32 {
         let mut below = [0.0; 3];
         let mut deepest = f32::NEG_INFINITY;
@@ -151,7 +151,7 @@ mod tests {
 
         #[test]
         fn links_are_tangent_to_what_they_touch(heading in 0.0_f32..6.3, away_m in 0.1_f32..0.6) {
-            // Upright blades under a ball whose middle is within reach.
+            // Upright blades under a ball whose centre is within reach.
             let sphere = Sphere { centre_m: [away_m * heading.cos(), 0.75, away_m * heading.sin()], radius_m: 0.7 };
             let sway = settle(&Sway::default(), 1.0, UP, &[sphere]);
             prop_assert!(depth_m(&sway, &sphere).abs() < 2e-3, "{} m deep", depth_m(&sway, &sphere));

@@ -1,4 +1,5 @@
-//! From the lean of a link to its direction and back. Polynomials in place of the trigonometric functions, so that every machine finds the same bits.
+//! Conversion between the lean of a link and its direction. Uses polynomials instead of trigonometric functions, so that every machine gets the same
+//! bits.
 
 use std::f32::consts::PI;
 
@@ -40,7 +41,8 @@ fn polynomial<const N: usize>(coefficients: &[f32; N], t: f32) -> f32 {
     sum
 }
 
-/// Unit vector (X, up, Z) of a link that leans by a vector on the ground (rad): upright at 0, level at π/2, hanging at π and beyond. Within 2e-6 of exact.
+/// Unit vector (X, up, Z) of a link with a lean given as a vector on the ground (rad): upright at 0, level at π/2, hanging at π and beyond. Error at
+/// most 2e-6.
 #[inline(always)]
 pub fn direction(lean_rad: [f32; 2]) -> [f32; 3] {
     let [x, z] = lean_rad;
@@ -49,12 +51,12 @@ pub fn direction(lean_rad: [f32; 2]) -> [f32; 3] {
     [x * aside, polynomial(&COS, t), z * aside]
 }
 
-/// Lean (rad) of a unit vector, the inverse of [`direction`]; within 1e-5 of exact. What hangs straight down leans by π along X.
+/// Lean (rad) of a unit vector, the inverse of [`direction`]; error at most 1e-5. A vector straight down gives a lean of π along X.
 #[inline(always)]
 pub fn lean_of(direction: [f32; 3]) -> [f32; 2] {
     let [x, up, z] = direction;
     let aside = (x * x + z * z).sqrt();
-    // The tangent of half the angle, by the quotient in which nothing cancels; then of an eighth of it.
+    // Tangent of half the angle, by the quotient without cancellation; then of an eighth of it.
     let mut tangent = if up < 0.0 { (1.0 - up) / aside.max(1e-9) } else { aside / (1.0 + up) };
     for _ in 0..2 {
         tangent /= 1.0 + (1.0 + tangent * tangent).sqrt();

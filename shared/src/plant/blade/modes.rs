@@ -1,28 +1,28 @@
-//! The modes of a blade: a chain of three rigid links of one length and mass, with a rotational spring EI/l between links and 2EI/l at the root, where
-//! the curvature of half a link is gathered.
+//! Modes of a blade: a chain of three rigid links of equal length and mass, with a rotational spring EI/l between links and 2EI/l at the root, where
+//! half a link's curvature is lumped.
 //!
-//! In units of length L, rigidity EI and mass per length μ its equations for small leans q are `M q̈ + K q = Q`. All numbers below follow from M and K; the
-//! tests derive them anew.
+//! In units of length L, rigidity EI and mass per length μ its equations for small leans q are `M q̈ + K q = Q`. All constants below follow from M
+//! and K; the tests derive them.
 //!
 //! # Calibration
-//! As it is the chain swings at 3.346, 18.89 and 47.03·√(EI/(μL⁴)), 4.8, 14.3 and 23.8 % below a uniform cantilever's 3.516, 22.03 and 61.70; chains of more
-//! links near these with the square of their number. The rigidity of the blade is scaled by 1.104, so that its first frequency is exact *by calibration*, not
-//! by the model; its second (19.85) and third (49.42) are then 9.9 and 19.9 % low. Each mode decays at ζ·ω of its own.
+//! The uncalibrated chain swings at 3.346, 18.89 and 47.03·√(EI/(μL⁴)), 4.8, 14.3 and 23.8 % below a uniform cantilever's 3.516, 22.03 and 61.70; the
+//! error falls with the square of the number of links. The rigidity of the blade is scaled by 1.104, so that its first frequency is exact *by
+//! calibration*, not by the model; its second (19.85) and third (49.42) are then 9.9 and 19.9 % low. Each mode decays at its own ζ·ω.
 //!
 //! # Length
-//! [`first_frequency_rad_per_s`] falls with the square of the length of a blade whose section is given. Among the blades of one species the longer is also the
-//! thicker: with a thickness in proportion to L, EI/μ grows with L² and ω falls with 1/L. That is the law by which a scene's `swing_hz`, that of a blade of mean
-//! height, becomes that of every other blade.
+//! [`first_frequency_rad_per_s`] falls with the square of the length of a blade of given cross-section. Within one species longer blades are also
+//! thicker: with a thickness proportional to L, EI/μ grows with L² and ω falls with 1/L. By that law a scene's `swing_hz`, given for a blade of mean
+//! height, determines the frequency of every other blade.
 
 use super::LINKS;
 
-/// ω₁ of a uniform cantilever over √(EI/(μL⁴)): the square of the least root of cos x · cosh x = −1.
+/// ω₁ of a uniform cantilever over √(EI/(μL⁴)): the square of the smallest root of cos x · cosh x = −1.
 pub const CANTILEVER: f32 = 3.516_015_3;
 
-/// Frequencies of the modes over the lowest.
+/// Frequencies of the modes relative to the lowest.
 pub const FREQUENCIES: [f32; LINKS] = [1.0, 5.644_860_5, 14.056_431];
 
-/// Leans of the links in each mode, scaled so that the mode's mass is 1: row m is mode m.
+/// Leans of the links in each mode, normalised to unit modal mass: row m is mode m.
 pub const MODES: [[f32; LINKS]; LINKS] =
     [[1.067_929_6, 2.221_555_2, 2.567_097_4], [-4.402_434, 1.821_226_6, 8.255_183], [4.805_568, -10.494_4, 10.881_903]];
 
@@ -33,25 +33,26 @@ pub const AMPLITUDES: [[f32; LINKS]; LINKS] = [
     [0.033_790_49, -0.049_749_267, 0.028_995_734],
 ];
 
-/// Static amplitude of each mode for drag on each control point, where drag shares of 1 at all three give a mean lean of 1: the points' silhouettes are as
-/// 1 : 0.8 : 0.3, since a blade tapers.
+/// Static amplitude of each mode for drag on each control point, normalised so that a relative drag of 1 at all three gives a mean lean of 1. The
+/// silhouettes of the points are as 1 : 0.8 : 0.3, since a blade tapers.
 pub const PUSHES: [[f32; LINKS]; LINKS] = [
     [0.102_832_17, 0.253_398_63, 0.169_181_12],
     [-0.013_303_711, -0.006_240_119, 0.005_143_855],
     [0.002_341_968, -0.002_217_938, 0.000_759_244_7],
 ];
 
-/// Damping rate of each mode by drag on each control point, over `ω₁²·κ·L·|u − v|` with κ the lean per squared wind and |u − v| the speed of the air past it.
+/// Damping rate of each mode by drag on each control point, over `ω₁²·κ·L·|u − v|` with κ the lean per squared wind and |u − v| the speed of the air
+/// relative to it.
 pub const BRAKES: [[f32; LINKS]; LINKS] =
     [[0.036_605_84, 0.277_850_3, 0.330_274_4], [0.622_086_6, 0.171_080_67, 0.309_999_75], [0.741_232_8, 0.831_000_7, 0.259_677_8]];
 
-/// How the links share a lean that a steady wind sustains, with a mean of 1.
+/// Relative lean of each link in a steady wind, with a mean of 1.
 pub const WIND_SHAPE: [f32; LINKS] = [0.628_742_5, 1.131_736_5, 1.239_521];
 
-/// First natural frequency of a uniform blade (rad/s), that of a cantilever, from its flexural rigidity EI (N·m²), its mass per length (kg/m) and its length (m).
+/// First natural frequency of a uniform blade (rad/s), a cantilever, from its flexural rigidity EI (N·m²), mass per length (kg/m) and length (m).
 ///
 /// ```
-/// use shared::plant::blade::modes::first_frequency_rad_per_s;
+/// use prairie_core::plant::blade::modes::first_frequency_rad_per_s;
 /// let twice_as_long = first_frequency_rad_per_s(0.004, 0.001, 1.6) / first_frequency_rad_per_s(0.004, 0.001, 0.8);
 /// assert!((twice_as_long - 0.25).abs() < 1e-6);
 /// ```
@@ -95,7 +96,7 @@ mod tests {
         a.iter().zip(b).map(|(a, b)| a * b).sum()
     }
 
-    /// Leans of a chain of N links under generalised forces: each joint bears what acts above it.
+    /// Leans of a chain of N links under generalised forces: each joint carries the sum of those above it.
     fn bent<const N: usize>(forces: [f64; N]) -> [f64; N] {
         let (mut leans, mut lean) = ([0.0; N], 0.0);
         for link in 0..N {
@@ -105,7 +106,7 @@ mod tests {
         leans
     }
 
-    /// The three lowest frequencies of a chain of N links, over √(EI/(μL⁴)): inverse iteration, each mode kept across those below.
+    /// The three lowest frequencies of a chain of N links, over √(EI/(μL⁴)): inverse iteration, each mode orthogonalised against those below.
     fn frequencies<const N: usize>() -> [f64; 3] {
         let (mass, _) = chain::<N>();
         let mut below: Vec<[f64; N]> = vec![];

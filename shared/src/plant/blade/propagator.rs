@@ -1,4 +1,4 @@
-//! How one mode is taken through a step: `ẍ + 2γẋ + ω²x = 0`, x the distance from where it is held.
+//! Time integrators of one mode: `ẍ + 2γẋ + ω²x = 0`, x the distance from equilibrium.
 
 use super::Blade;
 use super::modes::{BRAKES, FREQUENCIES};
@@ -8,22 +8,22 @@ pub use crate::scene::BladeIntegrator as Integrator;
 /// Squarings of the exponential of an eighth of a step.
 const SQUARINGS: u32 = 3;
 
-/// What a step makes of distance x and rate v: `x' = x + stay·x + glide·v`, `v' = v + pull·x + brake·v`. Changes are kept apart from what they add to, so
-/// that rounding is relative to the changes.
+/// Linear map of a step on distance x and rate v: `x' = x + stay·x + glide·v`, `v' = v + pull·x + brake·v`. Increments are kept separate from x and v,
+/// so that rounding is relative to the increments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Propagator {
-    /// Change of x over x.
+    /// Increment of x per x.
     pub stay: f32,
-    /// Change of x over v (s).
+    /// Increment of x per v (s).
     pub glide: f32,
-    /// Change of v over x (1/s).
+    /// Increment of v per x (1/s).
     pub pull: f32,
-    /// Change of v over v.
+    /// Increment of v per v.
     pub brake: f32,
 }
 
 impl Propagator {
-    /// Of a step of `dt_secs` for a mode with frequency ω (rad/s) and damping rate γ (1/s), both at least 0.
+    /// The map of a step of `dt_secs` for a mode with frequency ω (rad/s) and damping rate γ (1/s), both at least 0.
     #[inline(always)]
     pub fn new(integrator: Integrator, omega_rad_per_s: f32, gamma_per_s: f32, dt_secs: f32) -> Self {
         match integrator {
@@ -33,14 +33,14 @@ impl Propagator {
         }
     }
 
-    /// 000 Eq. (6): position and velocity by their rates at the start of the step.
+    /// Explicit Euler, Zhang Eq. (6).
     #[inline(always)]
     fn euler(omega_rad_per_s: f32, gamma_per_s: f32, dt_secs: f32) -> Self {
         let pull = -(omega_rad_per_s * omega_rad_per_s * dt_secs);
         Self { stay: 0.0, glide: dt_secs, pull, brake: -2.0 * gamma_per_s * dt_secs }
     }
 
-    /// 000 Eq. (7), `x' = 2x − x'' + a·dt²`, with v for (x − x'')/dt and the damping of that v.
+    /// Verlet, Zhang Eq. (7), `x' = 2x − x'' + a·dt²`, with v = (x − x'')/dt, which also gives the damping.
     #[inline(always)]
     fn verlet(omega_rad_per_s: f32, gamma_per_s: f32, dt_secs: f32) -> Self {
         let Self { pull, brake, .. } = Self::euler(omega_rad_per_s, gamma_per_s, dt_secs);
@@ -66,20 +66,20 @@ impl Propagator {
         Self { stay: e, glide: p, pull: -(omega2 * p), brake: e - gamma2 * p }
     }
 
-    /// What a step adds to distance and rate.
+    /// Increments of distance and rate in a step.
     #[inline(always)]
     pub fn change(&self, x: f32, v: f32) -> [f32; 2] {
         [self.stay * x + self.glide * v, self.pull * x + self.brake * v]
     }
 }
 
-/// Longest step (s) over which the highest mode of a blade stays bounded: its lowest frequency ω₁ (rad/s), the damping share of each mode.
+/// Longest step (s) at which the highest mode of a blade stays bounded, from its lowest frequency ω₁ (rad/s) and the damping ratio of each mode.
 ///
 /// Euler's amplification of a mode is |λ|² = 1 − 2γ·dt + ω²·dt², so `dt ≤ 2ζ/ω`; Verlet's with the damping of the old velocity has
 /// `ω·dt ≤ 2·(√(1 + ζ²) − ζ)`; the exponential has no limit.
 ///
 /// ```
-/// use shared::plant::blade::{Integrator, propagator::stable_dt_secs};
+/// use prairie_core::plant::blade::{Integrator, propagator::stable_dt_secs};
 /// assert_eq!(stable_dt_secs(Integrator::Exact, 10.0, 0.1), f32::INFINITY);
 /// assert_eq!(stable_dt_secs(Integrator::Euler, 10.0, 0.0), 0.0);
 /// ```
@@ -87,11 +87,11 @@ pub fn stable_dt_secs(integrator: Integrator, frequency_rad_per_s: f32, damping_
     mode_dt_secs(integrator, frequency_rad_per_s * FREQUENCIES[FREQUENCIES.len() - 1], damping_share)
 }
 
-/// Longest step (s) over which all modes of a blade stay bounded in air that passes its control points at any speed up to `past_m_per_s`, whose drag brakes
-/// them as [`advance`](super::advance) has it.
+/// Longest step (s) at which all modes of a blade stay bounded in air that passes its control points at up to `past_m_per_s`, whose drag damps them
+/// as in [`advance`](super::advance).
 ///
 /// ```
-/// use shared::plant::blade::{Blade, Integrator, propagator::{stable_dt_in_air_secs, stable_dt_secs}};
+/// use prairie_core::plant::blade::{Blade, Integrator, propagator::{stable_dt_in_air_secs, stable_dt_secs}};
 /// let blade = Blade { length_m: 0.8, frequency_rad_per_s: 10.0, damping_share: 0.1, lean_per_wind2: 0.005 };
 /// let [calm, blown] = [0.0, 20.0].map(|past_m_per_s| stable_dt_in_air_secs(Integrator::Verlet, &blade, past_m_per_s));
 /// assert_eq!(calm, stable_dt_secs(Integrator::Verlet, 10.0, 0.1));
@@ -102,13 +102,13 @@ pub fn stable_dt_in_air_secs(integrator: Integrator, blade: &Blade, past_m_per_s
     let braked = 0.5 * blade.length_m * omega * omega * blade.lean_per_wind2 * past_m_per_s;
     let modes = FREQUENCIES.iter().zip(BRAKES).flat_map(|(&times, brakes)| {
         let drag_share = braked * brakes.iter().sum::<f32>() / (omega * times);
-        // Limits rise up to critical damping and fall beyond it, so that the least is at an end.
+        // Limits rise up to critical damping and fall beyond it, so the smallest is at an end.
         [0.0, drag_share].map(|drag_share| mode_dt_secs(integrator, omega * times, blade.damping_share + drag_share))
     });
     modes.fold(f32::INFINITY, f32::min)
 }
 
-/// Longest step (s) over which one mode stays bounded.
+/// Longest step (s) at which one mode stays bounded.
 fn mode_dt_secs(integrator: Integrator, omega_rad_per_s: f32, damping_share: f32) -> f32 {
     match integrator {
         Integrator::Euler if damping_share < 1.0 => 2.0 * damping_share / omega_rad_per_s,

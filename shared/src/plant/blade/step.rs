@@ -1,13 +1,14 @@
-//! One step of a blade: where wind and stiffness hold it, and how it swings about that.
+//! One step of a blade: its equilibrium in wind and stiffness, and its swing about that.
 
 use super::modes::{AMPLITUDES, BRAKES, FREQUENCIES, MODES, PUSHES};
 use super::propagator::{Integrator, Propagator};
 use super::{Blade, LINKS, Leans, Sway};
 
-/// Takes a blade through `dt_secs`, held in `held_rad` without wind, in a wind over the ground of `wind_m_per_s` at its three control points above the root.
+/// Advances a blade by `dt_secs`. Without wind it is in equilibrium at `held_rad`; `wind_m_per_s` is the wind over the ground at its three control
+/// points above the root.
 ///
-/// Drag is ½ρC_dA·|u − v|(u − v) across the blade at each of them, with the speed |u − v| as at the start of the step: its share in u moves the lean in which the
-/// blade is held, its share in v brakes each mode. Contacts are for [`contact`](super::contact) to mend after the step.
+/// Drag is ½ρC_dA·|u − v|(u − v) across the blade at each point, with the speed |u − v| at the start of the step: the term in u shifts the
+/// equilibrium, the term in v damps each mode. Resolve contacts after the step with [`contact`](super::contact).
 #[inline(always)]
 pub fn advance(sway: &Sway, blade: &Blade, held_rad: &Leans, wind_m_per_s: &Leans, integrator: Integrator, dt_secs: f32) -> Sway {
     let link_m = blade.length_m * (1.0 / LINKS as f32);
@@ -28,26 +29,26 @@ pub fn advance(sway: &Sway, blade: &Blade, held_rad: &Leans, wind_m_per_s: &Lean
         pull.drag[j] = [wind_m_per_s[j][0] * pull.past[j], wind_m_per_s[j][1] * pull.past[j]];
     }
     let mut swung = *sway;
-    // Written out: of a loop, the compiler makes no vectors in the loop over many blades.
+    // Written out: with a loop here the compiler does not vectorise the loop over many blades.
     swing(0, &mut swung, sway, blade, &pull, integrator, dt_secs);
     swing(1, &mut swung, sway, blade, &pull, integrator, dt_secs);
     swing(2, &mut swung, sway, blade, &pull, integrator, dt_secs);
     swung
 }
 
-/// What moves a blade.
+/// Forces on a blade.
 struct Pull {
-    /// Leans less those in which it is held (rad).
+    /// Leans relative to equilibrium without wind (rad).
     apart_rad: Leans,
-    /// Lean that drag would sustain by itself at each control point (rad).
+    /// Lean that drag alone would sustain at each control point (rad).
     drag: Leans,
     /// Speed of the air past each control point times the lean per squared wind (rad·s/m).
     past: [f32; LINKS],
-    /// Damping rate (1/s) of a mode for a weighted sum of `past` of 1.
+    /// Damping rate (1/s) of a mode per unit of the weighted sum of `past`.
     braked: f32,
 }
 
-/// Adds to a blade what mode `m` does in a step.
+/// Adds the increment of mode `m` in a step.
 #[inline(always)]
 fn swing(m: usize, swung: &mut Sway, sway: &Sway, blade: &Blade, pull: &Pull, integrator: Integrator, dt_secs: f32) {
     let omega = blade.frequency_rad_per_s * FREQUENCIES[m];

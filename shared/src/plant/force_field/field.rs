@@ -1,39 +1,39 @@
-//! The mesh, and its step.
+//! The mesh of volumes, and its step.
 
 use super::Obstacle;
 use super::kernel::{self, Rows};
 use std::ops::Range;
 
-/// Volumes of a force field and where they lie.
+/// Mesh of volumes: number, size and position.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mesh {
-    /// Volumes along X, up and along Z; 1 or more each.
+pub struct VolumeMesh {
+    /// Number of volumes along X, up and along Z; 1 or more each.
     pub count: [usize; 3],
     /// Size of a volume along X, up and along Z (m); above 0.
     pub spacing_m: [f32; 3],
-    /// Volumes that its north-west corner lies from the world's, along X and Z.
+    /// Position of its north-west corner relative to the world's, in volumes along X and Z.
     pub corner: [i32; 2],
 }
 
-impl Mesh {
+impl VolumeMesh {
     /// Centre of a volume: X, height above the land, and Z (m).
     pub fn center_m(&self, volume: [usize; 3]) -> [f32; 3] {
         let corner = [self.corner[0], 0, self.corner[1]];
         std::array::from_fn(|axis| (corner[axis] as f32 + volume[axis] as f32 + 0.5) * self.spacing_m[axis])
     }
 
-    /// The mesh with whole volumes whose middle is nearest to a place (m, X and Z).
+    /// The mesh moved by whole volumes to centre it on a point (m, X and Z).
     pub fn about(self, at_m: [f32; 2]) -> Self {
         let corner = |axis: usize, at_m: f32| (at_m / self.spacing_m[axis] - 0.5 * self.count[axis] as f32).round() as i32;
         Self { corner: [corner(0, at_m[0]), corner(2, at_m[1])], ..self }
     }
 
-    /// Volumes whose centres are no farther from a point than `reach_m` along each axis.
+    /// Volumes whose centres are within `reach_m` of a point along each axis.
     pub(super) fn within(&self, at_m: [f32; 3], reach_m: [f32; 3]) -> [Range<usize>; 3] {
         let first_m = self.center_m([0; 3]);
         std::array::from_fn(|axis| {
             let index = |at_m: f32| (at_m - first_m[axis]) / self.spacing_m[axis];
-            // Casts take what is below zero to zero.
+            // Casts saturate at 0.
             let (low, high) = (index(at_m[axis] - reach_m[axis]).ceil(), index(at_m[axis] + reach_m[axis]).floor() + 1.0);
             low as usize..(high as usize).min(self.count[axis])
         })
@@ -45,7 +45,7 @@ impl Mesh {
         [row, row * (self.count[2] + 2)]
     }
 
-    /// Place of a volume in the planes: rows along X, then Z, then upwards, with a ring of one volume around.
+    /// Index of a volume in the planes: rows along X, then Z, then upwards, with a ring of one volume around.
     pub(super) fn place(&self, [x, y, z]: [usize; 3]) -> usize {
         let [row, layer] = self.strides();
         (x + 1) + (z + 1) * row + (y + 1) * layer
@@ -60,73 +60,73 @@ impl Mesh {
         self.strides()[1] * (self.count[1] + 2)
     }
 
-    /// Rows of volumes along X, by their place upwards and along Z, in the order of the planes.
+    /// Rows of volumes along X, by height and Z, in the order of the planes.
     fn layers_and_rows(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let [_, layers, rows] = self.count;
         (0..layers).flat_map(move |y| (0..rows).map(move |z| (y, z)))
     }
 }
 
-/// How long impulses linger and how far they spread.
+/// Spread and decay of impulses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lingering {
-    /// Diffusivity κ (m²/s): after t seconds an impulse has spread √(2κt) along each axis. 0 or more.
+    /// Diffusivity κ (m²/s): after t seconds an impulse has spread by √(2κt) along each axis. 0 or more.
     pub spread_m2_per_s: f32,
-    /// Decay k (1/s). Above 0.
+    /// Decay rate k (1/s). Above 0.
     pub decay_per_s: f32,
 }
 
-/// Share of its force that a volume gives to its neighbours in a sub-step, at most. The checkerboard, the mode that fails first, is multiplied by
-/// 1 − 2·share: up to 1 the step is stable and no force turns round, up to a half no mode swings.
+/// Largest fraction of its force that a volume gives to its neighbours in a sub-step. The checkerboard, the first mode to fail, is multiplied by 1 −
+/// 2·fraction: up to 1 the step is stable, up to 0.5 no mode oscillates.
 const SHARE_LIMIT: f32 = 0.5;
 
 impl Lingering {
-    /// Longest step (s) of one sweep on `mesh`: κ·dt·Σ 2/h² ≤ ½, half of what is stable. [`ForceField::step`] divides longer ones.
-    pub fn stable_dt_secs(&self, mesh: &Mesh) -> f32 {
+    /// Longest step (s) of one sweep on `mesh`: κ·dt·Σ 2/h² ≤ ½, half the stability limit. [`ForceField::step`] divides longer ones.
+    pub fn stable_dt_secs(&self, mesh: &VolumeMesh) -> f32 {
         let share_per_s: f32 = mesh.spacing_m.iter().map(|h| 2.0 * self.spread_m2_per_s / (h * h)).sum();
         SHARE_LIMIT / share_per_s
     }
 }
 
-/// One number for each volume, along three axes.
+/// One number per volume, along three axes.
 type Planes = [Vec<f32>; 3];
 
-/// The force (Pa) on a silhouette in a volume, as of [`shelter`](ForceField::shelter).
+/// Force (Pa) on a silhouette in a volume, after [`shelter`](ForceField::shelter).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Force {
-    /// That of the wind which arrives there.
+    /// Force of the wind that arrives there.
     pub wind_pa: [f32; 3],
-    /// What lingers of impulses.
+    /// Remainder of impulses.
     pub lasting_pa: [f32; 3],
 }
 
-/// The force field; 14 numbers of 4 bytes for each volume. A frame reads: [move](Self::move_to), and if that was somewhere else say what
-/// [stands](Self::stand) there; [step](Self::step), say what [gets in the way](Self::obstruct), let the wind [blow](Self::blow) and all else
-/// [strike](Self::strike), then [shelter](Self::shelter).
+/// Force field; 14 numbers of 4 bytes per volume. A frame consists of: [move](Self::move_to) the mesh, and if it moved, set the
+/// [standing](Self::stand) obstacles; [step](Self::step); set the [moving](Self::obstruct) obstacles, the [wind](Self::blow) and the
+/// [impulses](Self::strike); [shelter](Self::shelter).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForceField {
-    mesh: Mesh,
+    mesh: VolumeMesh,
     lingering: Lingering,
     /// w, the wind's force in the open.
     wind: Planes,
-    /// 1 − s, the share of it that obstacles keep away.
+    /// 1 − s, the fraction of it that obstacles keep away.
     lee: Vec<f32>,
-    /// What arrives of it.
+    /// The part of it that arrives.
     blown: Planes,
-    /// r, what lingers of impulses.
+    /// r, the remainder of impulses.
     lasting: Planes,
     next: Vec<f32>,
-    /// Share of a force that a volume lets through, and the same with nothing but what stands.
+    /// Fraction of a force that a volume lets through, with all obstacles and with the standing ones only.
     open: Vec<f32>,
     standing: Vec<f32>,
 }
 
 impl ForceField {
-    /// A field of no force and no obstacles.
+    /// A field without forces or obstacles.
     ///
     /// # Panics
     /// When the mesh has no volume.
-    pub fn new(mesh: Mesh, lingering: Lingering) -> Self {
+    pub fn new(mesh: VolumeMesh, lingering: Lingering) -> Self {
         assert!(mesh.count.iter().all(|&count| count > 0), "{:?} volumes", mesh.count);
         let plane = |value: f32| vec![value; mesh.plane_len()];
         let planes = || std::array::from_fn(|_| plane(0.0));
@@ -134,13 +134,13 @@ impl ForceField {
         Self { mesh, lingering, wind: planes(), lee, blown: planes(), lasting: planes(), next, open, standing }
     }
 
-    /// Shape and place.
-    pub fn mesh(&self) -> &Mesh {
+    /// The mesh.
+    pub fn mesh(&self) -> &VolumeMesh {
         &self.mesh
     }
 
-    /// Moves the mesh by whole volumes to another corner. What lingers and the lee of obstacles stay where they are in the world; volumes that come in hold
-    /// neither. Wind and obstacles are to be said anew.
+    /// Moves the mesh by whole volumes to another corner. Remainders and lees stay where they are in the world; new volumes have neither. Set wind
+    /// and obstacles again afterwards.
     pub fn move_to(&mut self, corner: [i32; 2]) {
         let moved = [0, 1].map(|axis| i64::from(corner[axis]) - i64::from(self.mesh.corner[axis]));
         self.mesh.corner = corner;
@@ -149,7 +149,7 @@ impl ForceField {
         }
         let mesh = self.mesh;
         let [nx, _, nz] = mesh.count.map(|count| count as i64);
-        // Columns that stay in, as they are numbered now.
+        // Columns that remain, by their present index.
         let (from, to) = ((-moved[0]).clamp(0, nx), (nx - moved[0]).clamp(0, nx));
         let stays = |z: usize| from < to && (0..nz).contains(&(z as i64 + moved[1]));
         let mut shift = |plane: &mut [f32]| {
@@ -169,14 +169,14 @@ impl ForceField {
         shift(&mut self.lee);
     }
 
-    /// Says which obstacles stand where they are, in place of those said before.
+    /// Sets the standing obstacles.
     pub fn stand(&mut self, obstacles: impl IntoIterator<Item = Obstacle>) {
         self.standing.fill(1.0);
         obstacles.into_iter().for_each(|obstacle| obstacle.close(&self.mesh, &mut self.standing));
         self.obstruct([]);
     }
 
-    /// Says which obstacles there are now beside those that stand, in place of those said before.
+    /// Sets the moving obstacles, in addition to the standing ones.
     pub fn obstruct(&mut self, obstacles: impl IntoIterator<Item = Obstacle>) {
         self.open.copy_from_slice(&self.standing);
         obstacles.into_iter().for_each(|obstacle| obstacle.close(&self.mesh, &mut self.open));
@@ -194,7 +194,7 @@ impl ForceField {
         }
     }
 
-    /// Gives volumes impulses (Pa·s), those of a step of `dt_secs` (s), above 0.
+    /// Adds impulses (Pa·s) to volumes, those of a step of `dt_secs` (s), above 0.
     pub fn strike(&mut self, impulses_pa_s: impl IntoIterator<Item = ([usize; 3], [f32; 3])>, dt_secs: f32) {
         let rate_per_s = -(-self.lingering.decay_per_s * dt_secs).exp_m1() / dt_secs;
         for (volume, impulse) in impulses_pa_s {
@@ -203,10 +203,10 @@ impl ForceField {
         }
     }
 
-    /// Takes the lee of the obstacles on by a volume, and the wind's force to what arrives behind and before them.
+    /// Propagates the lee of the obstacles by one volume, and computes the wind's force that arrives behind and before them.
     pub fn shelter(&mut self) {
         let (rows, [row, layer]) = (self.mesh.rows(), self.mesh.strides());
-        // Below the ground there is as much as above it.
+        // Mirrored at the ground.
         self.lee.copy_within(layer..2 * layer, 0);
         let wind = self.wind.each_ref().map(Vec::as_slice);
         kernel::shelter(&self.lee, &mut self.next, &self.open, wind, rows, self.mesh.spacing_m);
@@ -216,10 +216,10 @@ impl ForceField {
         }
     }
 
-    /// Lets what lingers spread and decay for `dt_secs` (s), 0 or more; in sub-steps where [`Lingering::stable_dt_secs`] asks for them.
+    /// Spreads and decays remainders for `dt_secs` (s), 0 or more; in sub-steps if [`Lingering::stable_dt_secs`] requires them.
     ///
-    /// The sum of all force falls by e^(−k·dt) exactly and its variance in space grows by 2κ·dt exactly, whatever dt is, as far as neither border nor
-    /// solid is near.
+    /// The sum of all force falls by e^(−k·dt) exactly and its variance in space grows by 2κ·dt exactly, whatever dt is, as long as it is far from
+    /// borders and solids.
     pub fn step(&mut self, dt_secs: f32) {
         let substeps = (dt_secs / self.lingering.stable_dt_secs(&self.mesh)).ceil().max(1.0);
         let dt_secs = dt_secs / substeps;
@@ -228,7 +228,7 @@ impl ForceField {
         let (rows, layer) = (self.mesh.rows(), self.mesh.strides()[1]);
         for lasting in &mut self.lasting {
             for _ in 0..substeps as u32 {
-                // Below the ground there is as much as above it, so that nothing goes through.
+                // Mirrored at the ground, so that nothing passes through it.
                 lasting.copy_within(layer..2 * layer, 0);
                 kernel::spread(lasting, &mut self.next, &self.open, rows, shares, keep);
                 std::mem::swap(lasting, &mut self.next);

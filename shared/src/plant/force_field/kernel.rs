@@ -1,11 +1,11 @@
-//! The innermost loops: how a step spreads what lingers, and what arrives of the wind.
+//! Innermost loops: spread of impulses, and the wind's force that arrives.
 
 use multiversion::multiversion;
 
 /// Rows of the mesh in planes with a ring of one volume around it.
 #[derive(Clone, Copy)]
 pub(super) struct Rows {
-    /// Place of the first volume, volumes in a row, and rows along z and y.
+    /// Index of the first volume, volumes per row, and number of rows along z and y.
     pub(super) first: usize,
     pub(super) width: usize,
     pub(super) count: [usize; 2],
@@ -36,11 +36,12 @@ impl<'a> Stencil<'a> {
     }
 }
 
-/// What lingers below this is gone (Pa): numbers so small that they lose digits would make a step five times as long.
+/// Smallest remainder (Pa); a smaller one is set to 0, since denormal numbers would make a step five times as long.
 const LEAST_PA: f32 = 1e-20;
 
-/// One sub-step: each volume exchanges the share `shares` (x, y, z) of the difference with its neighbours as far as both are `open`; `keep` of all is left.
-// Slices that are arguments of their own are known not to overlap.
+/// One sub-step: each volume exchanges the fraction `shares` (x, y, z) of the difference with its neighbours as far as both are `open`; the fraction
+/// `keep` is left.
+// Slices passed as separate arguments are known not to overlap.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 pub(super) fn spread(now: &[f32], next: &mut [f32], open: &[f32], rows: Rows, shares: [f32; 3], keep: f32) {
     let [x, y, z] = shares;
@@ -56,17 +57,17 @@ pub(super) fn spread(now: &[f32], next: &mut [f32], open: &[f32], rows: Rows, sh
     }
 }
 
-/// Mixing length ℓ (m) by which air from beside and above comes into a lee, the eddies' diffusivity over the wind's speed: κ·u*·z/u at z = 2 m over grass whose
-/// roughness is 5 cm, by the logarithmic profile.
+/// Mixing length ℓ (m) by which air from the sides and above enters a lee, eddy diffusivity over wind speed: κ·u*·z/u at z = 2 m over grass with a
+/// roughness of 5 cm, by the logarithmic profile.
 pub(super) const MIXING_M: f32 = 0.087;
 
-/// Force over length (Pa/m) below which the wind has no direction, and nothing a lee.
+/// Force over length (Pa/m) below which the wind has no direction, and there is no lee.
 const CALM_PA_PER_M: f32 = 1e-6;
 
-/// Lee below which there is none, lest far off it loses digits and takes long.
+/// Smallest lee; a smaller one is set to 0, to avoid denormal numbers far away.
 const LEAST_LEE: f32 = 1e-6;
 
-/// One sweep of the lee l along the wind n, implicit upwind: n·∇l = ℓ·∇²l, where each volume lets its `open` share of what comes with the wind through, and air
+/// One sweep of the lee l along the wind n, implicit upwind: n·∇l = ℓ·∇²l, where each volume lets the fraction `open` of the wind through, and air
 /// mixes as far as both volumes are open.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 pub(super) fn shelter(lee: &[f32], next: &mut [f32], open: &[f32], wind: [&[f32]; 3], rows: Rows, spacing_m: [f32; 3]) {
@@ -79,7 +80,7 @@ pub(super) fn shelter(lee: &[f32], next: &mut [f32], open: &[f32], wind: [&[f32]
         for (i, next) in next.iter_mut().enumerate() {
             let (x, y, z) = (east[i], up[i], south[i]);
             let size = (x * x + y * y + z * z).sqrt();
-            // From each side: what the wind carries in, and what mixes in.
+            // From each side: advected, and mixed in.
             let carried = |axis: usize, force: f32| along[axis] * force.max(0.0);
             let carried = [carried(0, x), carried(0, -x), carried(1, y), carried(1, -y), carried(2, z), carried(2, -z)];
             let mixed = |side: usize| across[side / 2] * size * open.sides[side][i];
@@ -96,8 +97,8 @@ pub(super) fn shelter(lee: &[f32], next: &mut [f32], open: &[f32], wind: [&[f32]
     }
 }
 
-/// What arrives of the wind's force along one axis, with `stride` between neighbours: less in a lee, and of what points into a neighbour the share that it
-/// lets through.
+/// The wind's force that arrives along one axis, with `stride` between neighbours: reduced in a lee, and towards a neighbour by the fraction that the
+/// neighbour stops.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 pub(super) fn arrive(wind: &[f32], lee: &[f32], open: &[f32], blown: &mut [f32], rows: Rows, stride: usize) {
     for at in rows.starts() {

@@ -1,35 +1,36 @@
-//! What gets in the way of the wind.
+//! Obstacles to the wind.
 
-use super::Mesh;
+use super::VolumeMesh;
 
-/// A body that keeps the wind away from what is behind it: a box that stands upright.
+/// An upright box that shelters the space behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obstacle {
     /// Its centre: X, height above the land, Z (m).
     pub at_m: [f32; 3],
-    /// Half its extents along its own axes, the second of them upright (m); above 0.
+    /// Half extents along its own axes, the second of them vertical (m); above 0.
     pub half_m: [f32; 3],
-    /// Direction of its first axis on the ground, X and Z; of length 1.
+    /// Unit vector of its first axis on the ground, X and Z.
     pub along: [f32; 2],
-    /// Share of a force that a volume full of it stops, 0..=1: 1 for what is solid.
+    /// Fraction of a force that a volume full of it stops, 0..=1: 1 if solid.
     pub stops: f32,
 }
 
-/// Half the side of a square as large as a circle of radius 1: √π/2.
+/// Half the side of a square of the area of a unit circle: √π/2.
 const HALF_SIDE_OF_ROUND: f32 = 0.886_227;
 
 impl Obstacle {
-    /// A solid ellipsoid, as the box of the same silhouettes.
+    /// A solid ellipsoid, as the box with the same silhouettes.
     pub fn round(at_m: [f32; 3], radii_m: [f32; 3]) -> Self {
         Self { at_m, half_m: radii_m.map(|radius_m| HALF_SIDE_OF_ROUND * radius_m), along: [1.0, 0.0], stops: 1.0 }
     }
 
-    /// Takes the share that it stops from what each volume lets through, by how much of the volume it fills.
+    /// Reduces the fraction that each volume lets through, according to the fraction of the volume that the obstacle fills.
     ///
-    /// One narrower than a volume is widened to it, and stops the less the more its silhouette grows (level, the mean of its two). So up to the size of a
-    /// volume it takes its silhouette from the wind, the pressure that a drag coefficient of 1 is about, to 16 % wherever it is, and its lee goes with it and
-    /// not by leaps; larger ones take up to 1.4 times theirs, and a long one astride of two rows of volumes 1.9 times. A volume counts as turned as the body is.
-    pub(super) fn close(&self, mesh: &Mesh, open: &mut [f32]) {
+    /// An obstacle narrower than a volume is widened to it, and stops less in proportion to the growth of its silhouette (horizontally, the mean of
+    /// two). So up to the size of a volume it takes its silhouette from the wind, about the pressure of a drag coefficient of 1, to 16 % at any
+    /// position, and its lee moves continuously. Larger ones take up to 1.4 times theirs, and a long one between two rows of volumes 1.9 times. A
+    /// volume is treated as rotated with the body.
+    pub(super) fn close(&self, mesh: &VolumeMesh, open: &mut [f32]) {
         let [x_m, height_m, z_m] = mesh.spacing_m;
         let [c, s] = self.along;
         let cell_m = [(c * x_m).hypot(s * z_m), height_m, (s * x_m).hypot(c * z_m)];

@@ -1,17 +1,17 @@
-//! What gives the field its forces: air that flows, and balls that fly or roll.
+//! Sources of force: moving air, and balls that fly or roll.
 
 use super::ForceField;
 
 /// Density of air (kg/m³), dry at 20 °C.
 pub const AIR_KG_PER_M3: f32 = 1.2;
 
-/// Dynamic pressure of air that flows at a velocity (m/s), along it: ½ρ|u|u (Pa).
+/// Dynamic pressure of air with a velocity (m/s), along it: ½ρ|u|u (Pa).
 pub fn dynamic_pressure_pa([x, y, z]: [f32; 3]) -> [f32; 3] {
     let half = 0.5 * AIR_KG_PER_M3 * (x * x + y * y + z * z).sqrt();
     [half * x, half * y, half * z]
 }
 
-/// A ball that flies or rolls, and the air that it pushes along.
+/// A moving ball, and the air that it displaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
     /// Its centre: X, height above the land, Z (m).
@@ -22,14 +22,14 @@ pub struct Ball {
     pub velocity_m_per_s: [f32; 3],
 }
 
-/// Radii from the centre of a ball beyond which the air it moves is left out; its pressure there is 1/729 of that at the ball.
+/// Distance from the centre of a ball, in radii, beyond which the displaced air is neglected; its pressure there is 1/729 of that at the ball.
 const BALL_REACH: f32 = 3.0;
 
 impl Ball {
-    /// The force (Pa) of the air that the ball moves, at an offset from its centre (m).
+    /// Force (Pa) of the displaced air at an offset from the ball's centre (m).
     ///
-    /// The air flows as a perfect fluid about a sphere (Lamb, Hydrodynamics §92): within the ball with it, outside as the dipole
-    /// u = ½(a/d)³·(3(v·n)n − v), n = offset/d. So it is pushed along in front, outwards beside the front, back at the waist, and follows behind.
+    /// Potential flow about a sphere (Lamb, Hydrodynamics, §92): the ball's velocity within it, outside the dipole u = ½(a/d)³·(3(v·n)n − v), n =
+    /// offset/d. So air is pushed forward in front, outwards beside the front, back at the waist, and follows behind.
     pub fn force_pa(&self, offset_m: [f32; 3]) -> [f32; 3] {
         let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let (velocity, distance2) = (self.velocity_m_per_s, dot(offset_m, offset_m));
@@ -41,10 +41,10 @@ impl Ball {
         dynamic_pressure_pa(std::array::from_fn(|axis| 0.5 * fall * (along * offset_m[axis] - velocity[axis])))
     }
 
-    /// Gives the field the impulse of a step of `dt_secs` (s), above 0.
+    /// Adds the impulse of a step of `dt_secs` (s), above 0, to the field.
     ///
-    /// A ball smaller than a volume is widened to half the volume's diagonal and its force lowered by the cube of that, so that no ball falls between the
-    /// volumes and a small one does little.
+    /// A ball smaller than a volume is widened to half the volume's diagonal and its force reduced by the cube of that factor, so that no ball is lost
+    /// between the volume centres and a small one has little effect.
     pub fn push(&self, field: &mut ForceField, dt_secs: f32) {
         let mesh = *field.mesh();
         let half_diagonal_m = 0.5 * mesh.spacing_m.iter().map(|h| h * h).sum::<f32>().sqrt();

@@ -1,9 +1,9 @@
-//! What the force field claims.
+//! Tests of the force field.
 
 use super::*;
 use proptest::prelude::*;
 
-const MESH: Mesh = Mesh { count: [24, 5, 20], spacing_m: [1.0, 0.5, 1.5], corner: [0, 0] };
+const MESH: VolumeMesh = VolumeMesh { count: [24, 5, 20], spacing_m: [1.0, 0.5, 1.5], corner: [0, 0] };
 const LINGERING: Lingering = Lingering { spread_m2_per_s: 0.8, decay_per_s: 3.0 };
 const MIDDLE: [usize; 3] = [12, 2, 10];
 const DT_SECS: f32 = 1.0 / 60.0;
@@ -13,17 +13,17 @@ fn field() -> ForceField {
 }
 
 /// All volumes, in the order of the forces.
-fn volumes(mesh: &Mesh) -> impl Iterator<Item = [usize; 3]> + use<> {
+fn volumes(mesh: &VolumeMesh) -> impl Iterator<Item = [usize; 3]> + use<> {
     let [width, layers, rows] = mesh.count;
     (0..layers).flat_map(move |y| (0..rows).flat_map(move |z| (0..width).map(move |x| [x, y, z])))
 }
 
-/// What lingers.
+/// Remainder of impulses.
 fn forces(field: &ForceField) -> Vec<[f32; 3]> {
     field.forces().map(|force| force.lasting_pa).collect()
 }
 
-/// What arrives of the wind.
+/// The part of the wind's force that arrives.
 fn winds(field: &ForceField) -> Vec<[f32; 3]> {
     field.forces().map(|force| force.wind_pa).collect()
 }
@@ -32,9 +32,9 @@ fn total(field: &ForceField) -> [f64; 3] {
     forces(field).iter().fold([0.0; 3], |sum, force| std::array::from_fn(|axis| sum[axis] + f64::from(force[axis])))
 }
 
-/// A tall mesh of small volumes, far from whose sides an impulse has been given.
+/// A tall mesh of small volumes with an impulse far from the sides.
 fn wide(lingering: Lingering) -> ForceField {
-    let mut field = ForceField::new(Mesh { count: [41, 41, 41], spacing_m: [0.5, 0.4, 0.6], corner: [0, 0] }, lingering);
+    let mut field = ForceField::new(VolumeMesh { count: [41, 41, 41], spacing_m: [0.5, 0.4, 0.6], corner: [0, 0] }, lingering);
     field.strike([([20; 3], [60.0, -30.0, 12.0])], DT_SECS);
     field
 }
@@ -92,7 +92,7 @@ fn what_lingers_is_gone_in_the_end() {
 fn two_half_steps_are_nearly_one() {
     let after = |steps: usize, step_secs: f32| {
         let mut field = wide(LINGERING);
-        // So far that the impulse is no longer in one volume alone.
+        // Long enough for the impulse to leave its volume.
         field.step(0.2);
         (0..steps).for_each(|_| field.step(step_secs));
         forces(&field)
@@ -115,7 +115,7 @@ fn long_steps_are_divided_at_the_limit() {
     assert!((limit_secs - by_hand).abs() < 1e-6);
     let run = |steps: usize, dt_secs: f32| {
         let mut field = field();
-        // The checkerboard is what fails first.
+        // The checkerboard is the first mode to fail.
         field.strike(volumes(&MESH).map(|volume| (volume, [if volume.iter().sum::<usize>() % 2 == 0 { 1.0 } else { -1.0 }; 3])), DT_SECS);
         (0..steps).for_each(|_| field.step(dt_secs));
         forces(&field)
@@ -162,7 +162,7 @@ fn force_leaves_by_the_sides_and_the_top_and_not_through_the_ground() {
     );
 }
 
-/// A wall across the mesh of that thickness along X, and far beyond its sides and top.
+/// A wall across the mesh, `2·half_m` thick along X, which extends far beyond its sides and top.
 fn wall(x_m: f32, half_m: f32) -> Obstacle {
     Obstacle { at_m: [x_m, 0.0, 15.0], half_m: [half_m, 100.0, 100.0], along: [1.0, 0.0], stops: 1.0 }
 }
@@ -181,7 +181,7 @@ fn impulses_spread_as_far_as_volumes_are_open() {
         "nor lets it through"
     );
     assert!(field.force([13, 1, 11]).lasting_pa[2] > 0.0);
-    // Half closed, half as much goes from it; and half of that comes into a second one.
+    // A half-open wall lets half through, and a second one half of that.
     let given = |stops: f32, walls: &[f32]| {
         let mut field = ForceField::new(MESH, Lingering { decay_per_s: 1e-6, ..LINGERING });
         field.stand(walls.iter().map(|&x_m| Obstacle { stops, ..wall(x_m, 0.5) }));
@@ -193,8 +193,8 @@ fn impulses_spread_as_far_as_volumes_are_open() {
     assert!((half / all - 0.5).abs() < 1e-5 && (quarter / all - 0.25).abs() < 1e-5, "{all}, {half}, {quarter}");
 }
 
-/// A field in which a wind (Pa) has blown for so long that all lees are as they will be.
-fn blown(mesh: Mesh, wind_pa: [f32; 3], obstacles: &[Obstacle]) -> ForceField {
+/// A field in which a wind (Pa) has blown until all lees are steady.
+fn blown(mesh: VolumeMesh, wind_pa: [f32; 3], obstacles: &[Obstacle]) -> ForceField {
     let mut field = ForceField::new(mesh, LINGERING);
     field.obstruct(obstacles.iter().copied());
     field.blow(|_| wind_pa);
@@ -222,7 +222,7 @@ fn solids_shelter_what_is_before_and_behind_them() {
 
 #[test]
 fn a_lee_fills_up_by_what_mixes_in_from_above() {
-    let mesh = Mesh { count: [120, 8, 5], spacing_m: [0.5, 0.4, 40.0], corner: [0, 0] };
+    let mesh = VolumeMesh { count: [120, 8, 5], spacing_m: [0.5, 0.4, 40.0], corner: [0, 0] };
     for wind_pa in [0.5, 40.0] {
         let field = blown(
             mesh,
@@ -241,14 +241,14 @@ fn a_lee_fills_up_by_what_mixes_in_from_above() {
 
 #[test]
 fn an_obstacle_takes_its_silhouette_from_the_wind_wherever_it_is() {
-    // What the wind has lost over the whole section behind it, in square metres.
-    let mesh = Mesh { count: [12, 12, 12], spacing_m: [2.0, 0.75, 2.0], corner: [0, 0] };
+    // Loss of wind over the whole section behind the obstacle, in square metres.
+    let mesh = VolumeMesh { count: [12, 12, 12], spacing_m: [2.0, 0.75, 2.0], corner: [0, 0] };
     let taken_m2 = |obstacle: Obstacle| {
         let field = blown(mesh, [4.0, 0.0, 0.0], &[obstacle]);
         let lost = |y: usize, z: usize| f64::from(1.0 - field.force([9, y, z]).wind_pa[0] / 4.0) * 1.5;
         (0..12).flat_map(|y| (0..12).map(move |z| (y, z))).map(|(y, z)| lost(y, z)).sum::<f64>()
     };
-    // Wider ones take more: they stop the wind in each of several volumes, whichever they are astride of.
+    // Wider ones take more: they stop the wind in each of the several volumes that they overlap.
     for (radius_m, allowed) in [(0.15, 0.98..1.02), (0.5, 0.93..1.02), (1.0, 0.84..1.02), (3.0, 1.1..1.4)] {
         let silhouette_m2 = std::f64::consts::PI * f64::from(radius_m) * f64::from(radius_m);
         for i in 0..12 {
@@ -274,7 +274,7 @@ fn a_ball_pushes_ahead_outwards_and_draws_behind() {
     assert!((waist[0] / full_pa + 0.25).abs() < 1e-3, "half the speed, back: {waist:?}");
     let [south, north] = [[1.0, 0.0, 1.0], [1.0, 0.0, -1.0]].map(|at| ball.force_pa(at));
     assert!(south[2] > 1.0 && north[2] < -1.0 && south[0] > 0.0, "{south:?}, {north:?}");
-    // One that stays where it is makes the field as strong as its own force.
+    // In steady state without spread the field is as strong as the ball's own force.
     let mut field = ForceField::new(MESH, Lingering { spread_m2_per_s: 0.0, ..LINGERING });
     for _ in 0..600 {
         field.step(DT_SECS);

@@ -1,20 +1,20 @@
-//! Which squares a disc about a site may touch.
+//! Discs in the lattice: the squares that a disc about a site may touch.
 
 use super::sites::STEPS;
 
-/// A disc about a site: what is nearer than its radius. However the sites lie in their squares, those within are in its rows.
+/// Disc about a site: everything nearer than its radius. Its rows contain all sites within, wherever sites are in their squares.
 #[derive(Clone, Debug)]
 pub(super) struct Disc {
     radius2: i64,
-    /// Columns to either side, by the rows away from the middle.
+    /// Number of columns to either side, indexed by rows from the centre.
     half_widths: Vec<i64>,
 }
 
 impl Disc {
-    /// A disc of `radius_steps`.
+    /// A disc with a radius in steps.
     pub(super) fn new(radius_steps: f64) -> Self {
         let radius2 = square_steps(radius_steps);
-        // Sites so many squares apart are at least so far from each other.
+        // Sites this many squares apart are at least this far from each other.
         let nearest = |squares: i64| (squares * STEPS - (STEPS - 1)).max(0);
         let holds = |columns: i64, rows: i64| nearest(columns) * nearest(columns) + nearest(rows) * nearest(rows) < radius2;
         let mut half_width = 0;
@@ -31,23 +31,23 @@ impl Disc {
         Self { radius2, half_widths }
     }
 
-    /// Least square of a distance (steps²) that is outside.
+    /// Smallest squared distance (steps²) that is outside.
     pub(super) fn radius2(&self) -> i64 {
         self.radius2
     }
 
-    /// Rows to the north and to the south.
+    /// Number of rows to the north and to the south.
     pub(super) fn rows(&self) -> i64 {
         self.half_widths.len() as i64 - 1
     }
 
-    /// Columns to the west and to the east, `row` rows away from the middle.
+    /// Number of columns to the west and to the east, `row` rows from the centre.
     pub(super) fn half_width(&self, row: i64) -> i64 {
         self.half_widths[row.unsigned_abs() as usize]
     }
 }
 
-/// Least whole square that is not nearer than `steps`; above zero.
+/// Smallest integer that is at least `steps`; above zero.
 pub(super) fn square_steps(steps: f64) -> i64 {
     ((steps * steps).ceil() as i64).max(1)
 }

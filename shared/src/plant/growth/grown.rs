@@ -1,29 +1,29 @@
-//! What has grown, and how to find it.
+//! The grown plants, and queries for them.
 
 use super::{Sites, Soil};
 
-/// A plant of the underbrush. Its place is that of its [site](Sites::place_m).
+/// A plant of the underbrush, at the position of its [site](Sites::place_m).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plant {
     /// Number of its site.
     pub site: u32,
     /// Index of its species.
     pub species: u8,
-    /// How well it is fed: 255 when it got all that it takes up, 0 when it got nothing of what it is most short of.
+    /// Nutrition: 255 if it got all that it takes up, 0 if it got nothing of its scarcest nutrient.
     pub vigour: u8,
 }
 
-/// The plants of a world, and what they left in the soil. 8 bytes a plant beside the sites and the soil (8 bytes a site).
+/// Plants of a world, and the soil that they left. 8 bytes a plant in addition to the sites and the soil (8 bytes a site).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grown {
-    /// The places that plants may take.
+    /// The sites of plants.
     pub sites: Sites,
-    /// The soil after all have taken up their share.
+    /// The soil after all plants have taken up nutrients.
     pub soil: Soil,
-    /// What all plants together took up of each nutrient, in the unit of [`Soil`].
+    /// Total uptake of each nutrient by all plants, in the unit of [`Soil`].
     pub taken: [u64; 3],
     plants: Vec<Plant>,
-    /// Index of the first plant in each row of sites, and the number of all.
+    /// Index of the first plant in each row of sites, then the number of plants.
     row_starts: Vec<u32>,
 }
 
@@ -41,13 +41,13 @@ impl Grown {
         &self.plants
     }
 
-    /// The plant at a site.
+    /// The plant at a site, if any.
     pub fn plant_at(&self, site: u32) -> Option<&Plant> {
         let found = self.plants.binary_search_by_key(&site, |plant| plant.site);
         found.ok().map(|index| &self.plants[index])
     }
 
-    /// Plants whose place is in the rectangle from `low_m` to before `high_m` (m, X and Z), ascending by site.
+    /// Plants in the rectangle from `low_m` to before `high_m` (m, X and Z), ascending by site.
     pub fn in_rectangle(&self, low_m: [f32; 2], high_m: [f32; 2]) -> impl Iterator<Item = &Plant> {
         let (low, high) = (self.sites.square_at(low_m), self.sites.square_at(high_m));
         let [columns, rows] = self.sites.count().map(i64::from);
@@ -65,7 +65,7 @@ impl Grown {
         })
     }
 
-    /// Plants nearer than `radius_m` to a place (m, X and Z), ascending by site.
+    /// Plants nearer than `radius_m` to a point (m, X and Z), ascending by site.
     pub fn near(&self, at_m: [f32; 2], radius_m: f32) -> impl Iterator<Item = &Plant> {
         let [low_m, high_m] = [-radius_m, radius_m].map(|reach_m| at_m.map(|m| m + reach_m));
         self.in_rectangle(low_m, high_m).filter(move |plant| {

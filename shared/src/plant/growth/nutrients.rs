@@ -1,4 +1,4 @@
-//! Nutrients in the soil (004 §5.2): three concentrations for each site, drawn in a picture or generated.
+//! Soil nutrients (Endo et al. 2003, §5.2): three concentrations for each site, from a picture or generated.
 
 use super::{Lot, Sites};
 use crate::hash::hash3;
@@ -6,13 +6,13 @@ use crate::scene::Growth;
 use crate::terrain::{Decoded, MapError, decode};
 use png::{BitDepth, ColorType};
 
-/// Three nutrients over the whole world; the map is stretched to the world's extent, bilinear between the pixels' centres.
+/// Map of three nutrients, stretched over the world and bilinear between pixel centres.
 ///
-/// Takes 1 byte a pixel where it is grey and 3 where it is RGB, 201 MB at most, and no more while it is read.
+/// Takes 1 byte a pixel if it is grey and 3 if it is RGB, 201 MB at most, and no more while it is read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NutrientMap {
     size_px: [u32; 2],
-    /// Levels of a pixel: 1 for all nutrients alike, or 3.
+    /// Channels per pixel: 1 for all nutrients alike, or 3.
     channels: usize,
     levels: Vec<u8>,
 }
@@ -21,20 +21,20 @@ impl NutrientMap {
     /// Reads a PNG of 8 bits: RGB for one nutrient each, or grey for all three alike; 255 is a concentration of 1.
     ///
     /// # Errors
-    /// [`MapError`] when the bytes are no PNG of that kind or its sides are out of range.
+    /// [`MapError`] when the bytes are not a PNG of that kind, or its sides are out of range.
     pub fn from_png(png_bytes: &[u8]) -> Result<Self, MapError> {
         let kinds = [(ColorType::Grayscale, BitDepth::Eight), (ColorType::Rgb, BitDepth::Eight)];
         let Decoded { size_px, kind, bytes } = decode(png_bytes, &kinds, "grey or RGB without alpha, 8 bits")?;
         Ok(Self { size_px, channels: kind.0.samples(), levels: bytes })
     }
 
-    /// Concentrations at a place given as a share of the world along X and Z; those of the edge outside.
+    /// Concentrations at a position given as a fraction of the world along X and Z; outside the world those of the edge.
     fn at(&self, share: [f64; 2]) -> [u16; 3] {
         let [(x, east), (z, south)] = [0, 1].map(|axis| {
             let pixels = self.size_px[axis];
             let at = (share[axis] * f64::from(pixels) - 0.5).clamp(0.0, f64::from(pixels - 1));
             let low = (at as u32).min(pixels - 2);
-            // In parts of 256, so that the sum below is exact.
+            // In 256ths, so that the sum below is exact.
             (low as usize, ((at - f64::from(low)) * 256.0) as u32)
         });
         let row = self.size_px[0] as usize;
@@ -49,15 +49,15 @@ impl NutrientMap {
     }
 }
 
-/// What the soil of each site holds of three nutrients; 65535 is a concentration of 1. 6 bytes a site.
+/// Content of three nutrients in the soil of each site; 65535 is a concentration of 1. 6 bytes a site.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Soil(Vec<[u16; 3]>);
 
-/// Octaves of generated soil: the patches, and finer ones in them, each half as large and half as strong as the one before.
+/// Octaves of generated soil, each half as large and half as strong as the one before.
 const OCTAVES: u32 = 4;
 
 impl Soil {
-    /// The soil that a map draws over a world of `extent_m` (m, X and Z).
+    /// Soil from a map over a world of `extent_m` (m, X and Z).
     pub fn of_map(map: &NutrientMap, sites: &Sites, extent_m: [f32; 2]) -> Self {
         let share = |at_m: [f32; 2]| [0, 1].map(|axis| f64::from(at_m[axis]) / f64::from(extent_m[axis]));
         Self((0..sites.total() as u32).map(|site| map.at(share(sites.place_m(site)))).collect())
@@ -65,7 +65,7 @@ impl Soil {
 
     /// Soil from the seed of the sites: value noise of mean `growth.richness`, in patches of `growth.patch_m`.
     ///
-    /// A mean up to a half spreads the noise from 0 to twice the mean, a higher one from as far below it as 1 lies above, to 1.
+    /// A mean up to 0.5 spreads the noise from 0 to twice the mean; a higher mean spreads it up to 1 and as far below the mean.
     pub fn generated(growth: &Growth, sites: &Sites) -> Self {
         let richness = growth.richness.map(f64::from);
         let mut octaves: Vec<_> = (0..OCTAVES).map(|octave| Octave::new(octave, growth.patch_m, sites.seed())).collect();
@@ -84,7 +84,7 @@ impl Soil {
         Self((0..sites.total() as u32).map(&mut concentrations).collect())
     }
 
-    /// What each site holds, in the order of the sites.
+    /// Content of each site, in the order of the sites.
     pub fn levels(&self) -> &[[u16; 3]] {
         &self.0
     }
@@ -93,23 +93,23 @@ impl Soil {
         &mut self.0
     }
 
-    /// What all sites together hold of each nutrient.
+    /// Total content of each nutrient over all sites.
     pub fn total(&self) -> [u64; 3] {
         self.0.iter().fold([0; 3], |sum, levels| std::array::from_fn(|nutrient| sum[nutrient] + u64::from(levels[nutrient])))
     }
 }
 
-/// A concentration in parts of 65535, rounded.
+/// A concentration in units of 1/65535, rounded.
 pub(super) fn level(concentration: f64) -> u16 {
     (concentration * f64::from(u16::MAX) + 0.5) as u16
 }
 
-/// Three smooth noises of one size, each 0..=1 and a half on average.
+/// Three smooth noises of one scale, each 0..=1 with a mean of 0.5.
 struct Octave {
     weight: f64,
     size_m: f64,
     seed: u32,
-    /// The cell that was asked for last, and the noises at its corners.
+    /// The most recently used cell, and the noises at its corners.
     cell: [u32; 2],
     corners: [[f64; 3]; 4],
 }
@@ -122,7 +122,7 @@ impl Octave {
         Self { weight, size_m: f64::from(patch_m) / halvings, seed, cell: [u32::MAX; 2], corners: [[0.0; 3]; 4] }
     }
 
-    /// The noises at a place (m), cubic between the corners of cells.
+    /// The noises at a position (m), cubic between the corners of cells.
     fn at(&mut self, at_m: [f64; 2]) -> [f64; 3] {
         let at = at_m.map(|m| m / self.size_m);
         let cell = at.map(|at| at as u32);

@@ -1,30 +1,30 @@
-//! The sites that plants may take: one in each square of a lattice, at a random place within it.
+//! Plant sites: one in each square of a lattice, at a random position within it.
 
 use super::Lot;
 use super::disc::Disc;
 use crate::hash::hash3;
 
-/// Most sites that [`Sites`] takes; four times what a scene may ask for.
+/// Largest number of sites that [`Sites`] accepts; four times the limit of a scene.
 pub const SITES_LIMIT: usize = 1 << 24;
 
-/// Steps that the side of a square is divided into: the places of sites are whole numbers of them, so that distances are exact.
+/// Steps along the side of a square: positions of sites are multiples, so that distances are exact.
 pub(super) const STEPS: i64 = 256;
 
-/// A lattice of squares over the world, each with one site. Sites are numbered row by row from the north-west; 2 bytes each.
+/// Lattice of squares over the world, each with one site. Sites are numbered row by row from the north-west; 2 bytes each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sites {
     count: [u32; 2],
     spacing_m: f32,
     seed: u64,
-    /// Place within the square (steps).
+    /// Position within the square (steps).
     offsets: Vec<[u8; 2]>,
 }
 
 impl Sites {
-    /// The sites of a world of `extent_m` (m, X and Z), `spacing_m` apart. Where the last squares lie partly outside the world, so may their sites.
+    /// The sites of a world of `extent_m` (m, X and Z), `spacing_m` apart. If the last squares are partly outside the world, their sites may be, too.
     ///
     /// # Panics
-    /// When an extent or the spacing is not above zero, or there are more than [`SITES_LIMIT`] sites.
+    /// When an extent or the spacing is not positive, or there are more than [`SITES_LIMIT`] sites.
     pub fn new(extent_m: [f32; 2], spacing_m: f32, seed: u64) -> Self {
         let count = extent_m.map(|m| (f64::from(m) / f64::from(spacing_m)).ceil());
         let total = count[0] * count[1];
@@ -38,7 +38,7 @@ impl Sites {
         Self { count: [columns, rows], spacing_m, seed, offsets: (0..columns * rows).map(offset).collect() }
     }
 
-    /// Sites along X and Z.
+    /// Number of sites along X and Z.
     pub fn count(&self) -> [u32; 2] {
         self.count
     }
@@ -58,7 +58,7 @@ impl Sites {
         self.seed
     }
 
-    /// Where a site lies (m, X and Z).
+    /// Position of a site (m, X and Z).
     ///
     /// # Panics
     /// When there is no such site.
@@ -66,7 +66,7 @@ impl Sites {
         self.point(site as usize).map(|steps| (self.metres(steps as f64)) as f32)
     }
 
-    /// Column and row of the square at a place (m, X and Z); those outside the lattice count on.
+    /// Column and row of the square at a position (m, X and Z); outside the lattice the count continues.
     pub(super) fn square_at(&self, at_m: [f32; 2]) -> [i64; 2] {
         at_m.map(|m| (f64::from(m) / f64::from(self.spacing_m)).floor() as i64)
     }
@@ -94,19 +94,19 @@ impl Sites {
         is_inside.then_some((column + row * columns) as usize)
     }
 
-    /// Where a site lies (steps).
+    /// Position of a site (steps).
     pub(super) fn point(&self, site: usize) -> [i64; 2] {
         let ([column, row], [x, z]) = (self.square(site), self.offsets[site]);
         [column * STEPS + i64::from(x), row * STEPS + i64::from(z)]
     }
 
-    /// Square of the distance between two sites (steps²).
+    /// Squared distance between two sites (steps²).
     pub(super) fn distance2(&self, one: usize, other: usize) -> i64 {
         let ([x, z], [other_x, other_z]) = (self.point(one), self.point(other));
         (x - other_x) * (x - other_x) + (z - other_z) * (z - other_z)
     }
 
-    /// Sites in a disc about a site, itself among them, row by row, with the square of their distance (steps²).
+    /// Sites in a disc about a site, including itself, row by row, with their squared distance (steps²).
     pub(super) fn within<'a>(&'a self, disc: &'a Disc, center: usize) -> impl Iterator<Item = (usize, i64)> + 'a {
         let ([column, row], [x, z]) = (self.square(center), self.point(center));
         let [columns, rows] = self.count.map(i64::from);

@@ -1,17 +1,17 @@
-//! How species spread over the sites, from their propagation points outward (004 §5.2).
+//! Spread of species over the sites, outward from their propagation points (Endo et al. 2003, §5.2).
 //!
-//! Painted places come first: there a species comes up wherever it has room, whatever the soil and the light. Then each species draws its propagation
-//! points by lot from the sites that suit it, and all take turns: in its turn a species puts up one plant, on the richest site that it has reached.
+//! Painted areas come first: there a species comes up wherever it has room, whatever the soil and the light. Then each species draws its propagation
+//! points at random from the sites that suit it, and the species take turns: each places one plant, on the richest site that it has reached.
 //! A plant that comes up
-//! - takes up nutrients: from the soil of each site nearer than its room, its own among them, `uptake` of each nutrient or what is left;
-//! - closes the sites that are too near for others;
-//! - shades shorter species: from one of height h at the distance d a plant of height H and room r takes the share `shade · 2·(1 − h/H) · (2 − d/r)` of
-//!   daylight. That is `shade` for half the height at the distance of its room, and falls off linearly to nothing at twice the room. Shades add up;
-//! - scatters [`SEEDS`] seeds evenly over the square about it, of which those within its reach make sites candidates.
+//! - takes up nutrients: from the soil of each site nearer than its room, including its own, `uptake` of each nutrient or what is left;
+//! - closes the sites that are too near to other species;
+//! - shades shorter species: a plant of height H and room r takes the fraction `shade · 2·(1 − h/H) · (2 − d/r)` of daylight from one of height h at
+//!   the distance d. That is `shade` for half the height at the distance of its room, and falls linearly to zero at twice the room. Shades add up;
+//! - scatters [`SEEDS`] seeds evenly over the square about it; those within its reach make sites candidates.
 //!
-//! The candidates of a species wait in a queue, the richest first: the one whose soil exceeds its needs the most in what is scarcest, and by lot between
-//! equals. As soil only gets poorer, a candidate that others have drained since it was put in is found at its turn, and goes back in with what is left;
-//! so the first one is always the richest as the soil is now.
+//! The candidates of a species wait in a priority queue, ordered by the surplus of the scarcest nutrient over the need, at random between equals. As
+//! soil only gets poorer, a candidate drained by others since it was queued is detected at its turn and queued again with its present surplus; so the
+//! one that is taken is always the richest at present.
 
 use super::habit::Habit;
 use super::sites::STEPS;
@@ -21,25 +21,25 @@ use crate::scene::Underbrush;
 use crate::terrain::Cover;
 use std::collections::BinaryHeap;
 
-/// Seeds that a plant scatters.
+/// Number of seeds that a plant scatters.
 pub const SEEDS: u32 = 32;
 
-/// Most species that grow together.
+/// Largest number of species that grow together.
 pub const SPECIES_LIMIT: usize = 16;
 
-/// What may grow at a place.
+/// Permission to grow at a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ground {
-    /// Nothing: bare ground, a tree, a stone, or a place outside the world.
+pub enum Permission {
+    /// Nothing grows: bare ground, a tree, a stone, or outside the world.
     Closed,
-    /// Any species.
+    /// Any species may grow.
     Open,
-    /// The species of this index alone.
+    /// Only the species of this index may grow.
     Painted(u8),
 }
 
-impl Ground {
-    /// The ground where the covering map says `cover`, which grass covers or not.
+impl Permission {
+    /// The permission where the covering map says `cover`.
     pub fn new(cover: Cover, is_grass: bool, species: &[Underbrush]) -> Self {
         let painted = match cover {
             Cover::Free(id) => species.iter().position(|species| species.cover == id),
@@ -53,44 +53,51 @@ impl Ground {
     }
 }
 
-/// Lets `species` of these heights (m) grow on `soil`. `shade` is that of [`Growth`](crate::scene::Growth); `ground` says what may grow at a place (m, X
-/// and Z), nothing outside the world.
+/// Grows `species` of these heights (m) on `soil`. `shade` is that of [`Growth`](crate::scene::Growth); `ground` gives the permission at a position
+/// (m, X and Z), [`Closed`](Permission::Closed) outside the world.
 ///
-/// Takes 5 bytes a site while it runs, 2 more for each species that others shade, and 8 for each candidate that waits.
+/// Takes 5 bytes a site while it runs, 2 more for each species that others shade, and 8 for each waiting candidate.
 ///
 /// # Panics
-/// When there are more than [`SPECIES_LIMIT`] species, not one height for each, or not one soil for each site; or when `ground` names
-/// a species that is not among them.
-pub fn grow(sites: Sites, soil: Soil, species: &[Underbrush], heights_m: &[f32], shade: f32, ground: impl Fn([f32; 2]) -> Ground) -> Grown {
+/// When there are more than [`SPECIES_LIMIT`] species, not one height for each, or not one soil for each site; or when `ground` names an unknown
+/// species.
+pub fn grow(
+    sites: Sites,
+    soil: Soil,
+    species: &[Underbrush],
+    heights_m: &[f32],
+    shade: f32,
+    ground: impl Fn([f32; 2]) -> Permission,
+) -> Grown {
     assert!(species.len() <= SPECIES_LIMIT && species.len() == heights_m.len() && soil.levels().len() == sites.total());
     let habits = Habit::of_all(species, heights_m, shade, &sites);
-    let mut land = Land::new(sites, soil, &habits);
-    let painted = land.lay_out(ground, habits.len());
+    let mut lattice = Lattice::new(sites, soil, &habits);
+    let painted = lattice.lay_out(ground, habits.len());
     let mut queues = vec![BinaryHeap::new(); habits.len()];
     for ((species, habit), places) in habits.iter().enumerate().zip(painted) {
-        for site in land.draw(places.into_iter(), species, usize::MAX) {
-            if land.is_open(site, species) && land.has_room(site, habit) {
-                land.come_up(site, species, habit, &mut queues[species]);
+        for site in lattice.draw(places.into_iter(), species, usize::MAX) {
+            if lattice.is_open(site, species) && lattice.has_room(site, habit) {
+                lattice.come_up(site, species, habit, &mut queues[species]);
             }
         }
     }
     for (species, habit) in habits.iter().enumerate() {
-        let suited =
-            (0..land.sites.total()).filter(|&site| land.is_open(site, species) && habit.surplus(land.soil.levels()[site]).is_some());
-        let points = land.draw(suited, species, habit.propagation_points);
-        points.into_iter().for_each(|site| land.reach(site, species, habit, &mut queues[species]));
+        let suited = (0..lattice.sites.total())
+            .filter(|&site| lattice.is_open(site, species) && habit.surplus(lattice.soil.levels()[site]).is_some());
+        let points = lattice.draw(suited, species, habit.propagation_points);
+        points.into_iter().for_each(|site| lattice.reach(site, species, habit, &mut queues[species]));
     }
     let mut is_growing = true;
     while is_growing {
         is_growing = false;
         for (species, habit) in habits.iter().enumerate() {
-            is_growing |= land.take_turn(species, habit, &mut queues[species]);
+            is_growing |= lattice.take_turn(species, habit, &mut queues[species]);
         }
     }
-    Grown::new(land.sites, land.soil, land.taken, land.plants)
+    Grown::new(lattice.sites, lattice.soil, lattice.taken, lattice.plants)
 }
 
-/// A site that a species has reached: by its surplus of nutrients (16 bits), then by lot (24 bits), then by number (24 bits).
+/// A site that a species has reached, ordered by its surplus of nutrients (16 bits), then a random number (24 bits), then its number (24 bits).
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Candidate(u64);
 
@@ -107,32 +114,32 @@ impl Candidate {
         (self.0 >> 48) as u16
     }
 
-    /// The same with less.
+    /// The same candidate with a smaller surplus.
     fn with_surplus(self, surplus: u16) -> Self {
         Self(self.0 & 0xffff_ffff_ffff | u64::from(surplus) << 48)
     }
 }
 
-/// A queue of candidates, the richest first.
+/// Priority queue of candidates, the richest first.
 type Queue = BinaryHeap<Candidate>;
 
-/// The sites while species spread over them.
-struct Land {
+/// State of the sites while species spread over them.
+struct Lattice {
     sites: Sites,
     soil: Soil,
     taken: [u64; 3],
     plants: Vec<Plant>,
-    /// Bits of the species to which a site is closed.
+    /// Bits of the species to which each site is closed.
     closed: Vec<u16>,
-    /// Bits of the species that have reached a site.
+    /// Bits of the species that have reached each site.
     reached: Vec<u16>,
-    /// Index of the species that stands at a site, plus 1; 0 where none does.
+    /// Index of the species at each site, plus 1; 0 for none.
     standing: Vec<u8>,
-    /// Light that is left at each site for each species; empty for those that nothing shades.
+    /// Remaining light at each site for each species; empty for species that are never shaded.
     light: Vec<Vec<u16>>,
 }
 
-impl Land {
+impl Lattice {
     fn new(sites: Sites, soil: Soil, habits: &[Habit]) -> Self {
         let total = sites.total();
         let is_shaded = |species: usize| habits.iter().any(|habit| habit.shades.iter().any(|&(other, _)| other == species));
@@ -149,14 +156,14 @@ impl Land {
         }
     }
 
-    /// Closes sites to species that the ground keeps out. Returns the sites that are painted with each species.
-    fn lay_out(&mut self, ground: impl Fn([f32; 2]) -> Ground, species: usize) -> Vec<Vec<usize>> {
+    /// Closes sites to species that the ground excludes. Returns the sites painted with each species.
+    fn lay_out(&mut self, ground: impl Fn([f32; 2]) -> Permission, species: usize) -> Vec<Vec<usize>> {
         let mut painted = vec![vec![]; species];
         for site in 0..self.sites.total() {
             match ground(self.sites.place_m(site as u32)) {
-                Ground::Open => {}
-                Ground::Closed => self.closed[site] = u16::MAX,
-                Ground::Painted(index) => {
+                Permission::Open => {}
+                Permission::Closed => self.closed[site] = u16::MAX,
+                Permission::Painted(index) => {
                     self.closed[site] = !(1 << index);
                     self.reached[site] = 1 << index;
                     painted[usize::from(index)].push(site);
@@ -166,12 +173,12 @@ impl Land {
         painted
     }
 
-    /// A random number of a site for a species.
+    /// Random number of a site for a species.
     fn lot(&self, site: usize, species: usize) -> u32 {
         hash3([site as u32, species as u32, Lot::Point.seed(self.sites.seed())])[0]
     }
 
-    /// Draws `count` of these sites by lot for a species, or all if there are fewer.
+    /// Draws `count` of these sites at random for a species, or all if there are fewer.
     fn draw(&self, sites: impl Iterator<Item = usize>, species: usize, count: usize) -> Vec<usize> {
         let mut lots: Vec<_> = sites.map(|site| (self.lot(site, species), site as u32)).collect();
         if count < lots.len() {
@@ -197,7 +204,7 @@ impl Land {
         }
     }
 
-    /// Puts up the next plant of a species. Returns whether there was room for one.
+    /// Places the next plant of a species. Returns whether there was room for one.
     fn take_turn(&mut self, species: usize, habit: &Habit, queue: &mut Queue) -> bool {
         while let Some(candidate) = queue.pop() {
             let site = candidate.site();
@@ -215,7 +222,7 @@ impl Land {
         false
     }
 
-    /// Whether no plant of a species of less room stands too near; those of more room have closed the site.
+    /// Whether no plant of a species with less room is too near; those with more room have closed the site.
     fn has_room(&self, site: usize, habit: &Habit) -> bool {
         let is_too_near = |(other, distance2): (usize, i64)| match self.standing[other] {
             0 => false,
@@ -259,7 +266,7 @@ impl Land {
             let fall = 2.0 - (distance2 as f32).sqrt() / habit.room_steps;
             for &(species, taken) in &habit.shades {
                 let light = &mut self.light[species][other];
-                // A cast takes what is more than all light to all.
+                // The cast saturates: a shade beyond full daylight takes all of it.
                 *light = light.saturating_sub((taken * fall) as u16);
             }
         });

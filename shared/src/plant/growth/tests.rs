@@ -1,11 +1,11 @@
-//! What growing plants claim of each other, of the soil and of the light.
+//! Tests of growth: competition for room, nutrients and light.
 
 use super::*;
 use crate::scene::{Growth, Underbrush};
 use crate::terrain::{Cover, CoverMap, grey_png};
 use proptest::prelude::*;
 
-/// A species that needs half of what generated soil holds on average, of a room of 0.6 m.
+/// A species that needs half of the mean generated soil, with a room of 0.6 m.
 fn species(name: &str) -> Underbrush {
     Underbrush { room_m: 0.6, reach_m: 1.5, needs: [0.25; 3], uptake: [0.1; 3], light_need: 0.0, ..Underbrush::new(name, vec![]) }
 }
@@ -23,8 +23,8 @@ fn mixed() -> (Vec<Underbrush>, Vec<f32>) {
     (all, vec![0.15, 0.6, 0.9, 1.8])
 }
 
-/// What grows on generated soil over a square of `side_m`, on sites half a metre apart.
-fn grown(side_m: f32, seed: u64, species: &[Underbrush], heights_m: &[f32], ground: impl Fn([f32; 2]) -> Ground) -> Grown {
+/// Plants on generated soil over a square of `side_m`, on sites half a metre apart.
+fn grown(side_m: f32, seed: u64, species: &[Underbrush], heights_m: &[f32], ground: impl Fn([f32; 2]) -> Permission) -> Grown {
     grown_on(&Growth::default(), side_m, seed, species, heights_m, ground)
 }
 
@@ -34,7 +34,7 @@ fn grown_on(
     seed: u64,
     species: &[Underbrush],
     heights_m: &[f32],
-    ground: impl Fn([f32; 2]) -> Ground,
+    ground: impl Fn([f32; 2]) -> Permission,
 ) -> Grown {
     let sites = Sites::new([side_m; 2], growth.spacing_m, seed);
     let soil = Soil::generated(growth, &sites);
@@ -49,7 +49,7 @@ fn count_of(grown: &Grown, species: u8) -> usize {
     grown.plants().iter().filter(|plant| plant.species == species).count()
 }
 
-/// How much nearer two plants stand than their rooms ask, at worst (m); looks at all pairs whose northings may matter.
+/// Largest violation of the distance between two plants (m); checks all pairs that may be near.
 fn worst_crowding_m(grown: &Grown, species: &[Underbrush]) -> f64 {
     let widest_m = species.iter().fold(0.0, |widest: f32, species| widest.max(species.room_m));
     let mut places: Vec<_> = grown.plants().iter().map(|plant| (grown.sites.place_m(plant.site), plant.species)).collect();
@@ -65,7 +65,7 @@ fn worst_crowding_m(grown: &Grown, species: &[Underbrush]) -> f64 {
     worst_m
 }
 
-/// FNV-1a over the plants and the soil that they leave.
+/// FNV-1a of the plants and the soil that they leave.
 fn checksum(grown: &Grown) -> u64 {
     let plants = grown.plants().iter().flat_map(|plant| [plant.site, plant.species.into(), plant.vigour.into()]);
     let soil = grown.soil.levels().iter().flatten().map(|&level| u32::from(level));
@@ -76,7 +76,7 @@ fn checksum(grown: &Grown) -> u64 {
 fn plants_keep_their_rooms() {
     let (species, heights_m) = mixed();
     for seed in 0..8 {
-        let grown = grown(64.0, seed, &species, &heights_m, |_| Ground::Open);
+        let grown = grown(64.0, seed, &species, &heights_m, |_| Permission::Open);
         for kind in 0..4 {
             assert!(count_of(&grown, kind) > 20, "{} of species {kind}", count_of(&grown, kind));
         }
@@ -89,7 +89,7 @@ fn plants_keep_their_rooms() {
 #[test]
 fn a_whole_world_grows_and_keeps_its_rooms() {
     let (species, heights_m) = mixed();
-    let grown = grown(256.0, 5, &species, &heights_m, |_| Ground::Open);
+    let grown = grown(256.0, 5, &species, &heights_m, |_| Permission::Open);
     assert_eq!(grown.sites.total(), 512 * 512);
     assert!(grown.plants().len() > 20_000, "{} plants", grown.plants().len());
     assert!(worst_crowding_m(&grown, &species) <= 2e-5);
@@ -100,7 +100,7 @@ fn plants_come_up_only_where_the_soil_has_what_they_need() {
     let (species, heights_m) = mixed();
     let sites = Sites::new([64.0; 2], 0.5, 3);
     let soil = Soil::generated(&Growth::default(), &sites);
-    let grown = grow(sites, soil.clone(), &species, &heights_m, 0.5, |_| Ground::Open);
+    let grown = grow(sites, soil.clone(), &species, &heights_m, 0.5, |_| Permission::Open);
     for plant in grown.plants() {
         let needs = species[usize::from(plant.species)].needs;
         for (level, need) in soil.levels()[plant.site as usize].into_iter().zip(needs) {
@@ -113,7 +113,7 @@ fn plants_come_up_only_where_the_soil_has_what_they_need() {
         &species,
         &heights_m,
         0.5,
-        |_| Ground::Open,
+        |_| Permission::Open,
     );
     assert_eq!(starved.plants().len(), 0, "of one nutrient there is too little everywhere");
 }
@@ -124,7 +124,7 @@ fn richer_soil_gets_more_plants() {
         .map(|step| {
             let richness = 0.2 + 0.05 * f32::from(step);
             let growth = Growth { richness: [richness; 3], patch_m: 8.0, ..Growth::default() };
-            let grown = grown_on(&growth, 96.0, 2, &[species("grass")], &[0.5], |_| Ground::Open);
+            let grown = grown_on(&growth, 96.0, 2, &[species("grass")], &[0.5], |_| Permission::Open);
             (f64::from(richness), grown.plants().len() as f64)
         })
         .collect();
@@ -139,12 +139,12 @@ fn richer_soil_gets_more_plants() {
 
 #[test]
 fn a_gap_wider_than_the_reach_is_not_crossed() {
-    // One point, so that only one side has any; over seeds it is now the one side, now the other.
+    // A single propagation point, so that only one side has any plants; which one depends on the seed.
     let sides = |gap_m: f32| {
         let grass = Underbrush { propagation_points: 1, reach_m: 1.5, needs: [0.0; 3], uptake: [0.0; 3], ..species("grass") };
         (0..6).map(move |seed| {
             let grown = grown(40.0, seed, std::slice::from_ref(&grass), &[0.5], |[x_m, _]| {
-                if (x_m - 20.0).abs() < 0.5 * gap_m { Ground::Closed } else { Ground::Open }
+                if (x_m - 20.0).abs() < 0.5 * gap_m { Permission::Closed } else { Permission::Open }
             });
             let west = grown.plants().iter().filter(|plant| grown.sites.place_m(plant.site)[0] < 20.0).count();
             [west, grown.plants().len() - west]
@@ -162,17 +162,17 @@ fn a_gap_wider_than_the_reach_is_not_crossed() {
 #[test]
 fn without_propagation_points_nothing_grows_but_where_it_is_painted() {
     let grass = Underbrush { propagation_points: 0, reach_m: 0.0, ..species("grass") };
-    assert_eq!(grown(40.0, 1, std::slice::from_ref(&grass), &[0.5], |_| Ground::Open).plants(), []);
-    let painted = grown(40.0, 1, &[grass], &[0.5], |[x_m, _]| if x_m < 10.0 { Ground::Painted(0) } else { Ground::Open });
+    assert_eq!(grown(40.0, 1, std::slice::from_ref(&grass), &[0.5], |_| Permission::Open).plants(), []);
+    let painted = grown(40.0, 1, &[grass], &[0.5], |[x_m, _]| if x_m < 10.0 { Permission::Painted(0) } else { Permission::Open });
     assert!(painted.plants().len() > 500);
     assert!(painted.plants().iter().all(|plant| painted.sites.place_m(plant.site)[0] < 10.0));
 }
 
 #[test]
 fn taller_plants_keep_out_those_that_need_light() {
-    // A tall plant every 8 m, in a painted square of its own; where those do not shade, the low ones grow.
+    // A tall plant every 8 m, in its own painted square; low ones grow outside its shade.
     let tall = Underbrush { propagation_points: 0, room_m: 2.0, reach_m: 0.0, ..species("tall") };
-    let ground = |at_m: [f32; 2]| if at_m.iter().all(|m| m % 8.0 < 0.5) { Ground::Painted(0) } else { Ground::Open };
+    let ground = |at_m: [f32; 2]| if at_m.iter().all(|m| m % 8.0 < 0.5) { Permission::Painted(0) } else { Permission::Open };
     let low = |light_need: f32, heights_m: [f32; 2]| {
         let low = Underbrush { needs: [0.0; 3], uptake: [0.0; 3], light_need, ..species("low") };
         let grown = grown(48.0, 4, &[tall.clone(), low], &heights_m, ground);
@@ -200,7 +200,7 @@ fn a_greedy_species_starves_another() {
     let beside = |uptake: f32| {
         let other =
             Underbrush { uptake: [uptake; 3], needs: [0.1; 3], propagation_points: 150, room_m: 3.0, reach_m: 0.0, ..species("other") };
-        count_of(&grown(64.0, 6, &[modest.clone(), other], &[0.5, 0.5], |_| Ground::Open), 0)
+        count_of(&grown(64.0, 6, &[modest.clone(), other], &[0.5, 0.5], |_| Permission::Open), 0)
     };
     let [fed, starved] = [beside(0.0), beside(0.6)];
     assert!(starved * 3 < fed * 2, "{starved} beside a greedy species, {fed} beside a modest one");
@@ -210,7 +210,7 @@ fn a_greedy_species_starves_another() {
 fn vigour_follows_what_a_plant_got() {
     let vigour = |richness: f32| {
         let growth = Growth { richness: [richness, 1.0, 1.0], patch_m: 8.0, ..Growth::default() };
-        let painted = grown_on(&growth, 40.0, 2, &[species("grass")], &[0.5], |_| Ground::Painted(0));
+        let painted = grown_on(&growth, 40.0, 2, &[species("grass")], &[0.5], |_| Permission::Painted(0));
         painted.plants().iter().map(|plant| f64::from(plant.vigour)).sum::<f64>() / painted.plants().len() as f64
     };
     let [none, poor, rich] = [0.0, 0.1, 1.0].map(vigour);
@@ -228,7 +228,7 @@ fn painted_places_are_for_one_species_alone_whatever_the_soil() {
         CoverMap::from_png(&grey_png([4, 4], &[255, 255, 255, 255, 255, 9, 255, 255, 0, 255, 253, 254, 255, 255, 255, 77])).unwrap();
     let ground = |[x_m, z_m]: [f32; 2]| {
         let cover = cover.at(x_m, z_m, [40.0; 2]);
-        Ground::new(cover, cover == Cover::Grass, &all)
+        Permission::new(cover, cover == Cover::Grass, &all)
     };
     let grown = grown_on(&Growth { richness: [0.9; 3], ..Growth::default() }, 40.0, 8, &all, &[0.5, 2.0], ground);
     let mut painted = 0;
@@ -242,7 +242,7 @@ fn painted_places_are_for_one_species_alone_whatever_the_soil() {
             cover => assert_eq!(cover, Cover::Grass),
         }
     }
-    // As dense as plants of a room of 0.6 m come to stand on random sites.
+    // The density of plants with a room of 0.6 m on random sites.
     assert!((120..280).contains(&painted), "{painted} plants on 100 m²");
     assert_eq!(count_of(&grown, 0), painted, "it needs more than there is where it is not painted");
     assert!(count_of(&grown, 1) > 800, "{} of the other", count_of(&grown, 1));
@@ -252,7 +252,7 @@ fn painted_places_are_for_one_species_alone_whatever_the_soil() {
 fn painted_places_keep_others_out_where_there_is_room_for_them() {
     let reed = Underbrush { room_m: 3.0, reach_m: 0.0, propagation_points: 0, ..species("reed") };
     let moss = Underbrush { room_m: 0.2, needs: [0.0; 3], uptake: [0.0; 3], ..species("moss") };
-    let ground = |[x_m, _]: [f32; 2]| if x_m < 20.0 { Ground::Painted(0) } else { Ground::Open };
+    let ground = |[x_m, _]: [f32; 2]| if x_m < 20.0 { Permission::Painted(0) } else { Permission::Open };
     let grown = grown(40.0, 3, &[reed, moss], &[0.5; 2], ground);
     assert!(count_of(&grown, 0) > 10 && count_of(&grown, 1) > 1000);
     assert!(grown.plants().iter().all(|plant| (grown.sites.place_m(plant.site)[0] < 20.0) == (plant.species == 0)));
@@ -261,7 +261,7 @@ fn painted_places_keep_others_out_where_there_is_room_for_them() {
 #[test]
 fn plants_are_found_by_site_and_by_place() {
     let (species, heights_m) = mixed();
-    let grown = grown(32.0, 3, &species, &heights_m, |_| Ground::Open);
+    let grown = grown(32.0, 3, &species, &heights_m, |_| Permission::Open);
     assert!(grown.plants().is_sorted_by_key(|plant| plant.site));
     assert!(grown.plants().iter().all(|plant| grown.plant_at(plant.site) == Some(plant)));
     let free = (0..grown.sites.total() as u32).find(|site| grown.plants().iter().all(|plant| plant.site != *site)).unwrap();
@@ -284,9 +284,9 @@ fn plants_are_found_by_site_and_by_place() {
 fn the_same_seed_grows_the_same_bits_and_another_others() {
     let (species, heights_m) = mixed();
     let painted = |[x_m, z_m]: [f32; 2]| match () {
-        () if (x_m - 20.0) * (x_m - 20.0) + (z_m - 30.0) * (z_m - 30.0) < 60.0 => Ground::Painted(2),
-        () if x_m > 40.0 && z_m < 12.0 => Ground::Closed,
-        () => Ground::Open,
+        () if (x_m - 20.0) * (x_m - 20.0) + (z_m - 30.0) * (z_m - 30.0) < 60.0 => Permission::Painted(2),
+        () if x_m > 40.0 && z_m < 12.0 => Permission::Closed,
+        () => Permission::Open,
     };
     let of = |seed| grown(64.0, seed, &species, &heights_m, painted);
     assert!(of(11) == of(11));
@@ -316,9 +316,9 @@ proptest! {
         let soil = Soil::generated(&Growth::default(), &sites);
         let before = soil.total();
         let ground = |[x_m, z_m]: [f32; 2]| match all.len() {
-            _ if x_m >= extent_m[0] || z_m >= extent_m[1] => Ground::Closed,
-            count if count > 0 && x_m < 3.0 => Ground::Painted((count - 1) as u8),
-            _ => Ground::Open,
+            _ if x_m >= extent_m[0] || z_m >= extent_m[1] => Permission::Closed,
+            count if count > 0 && x_m < 3.0 => Permission::Painted((count - 1) as u8),
+            _ => Permission::Open,
         };
         let grown = grow(sites, soil, &all, &heights_m, shade, ground);
         let after = grown.soil.total();

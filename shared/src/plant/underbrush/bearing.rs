@@ -1,4 +1,4 @@
-//! What a species bears before one of the components that it stands on breaks: how far it is pressed, and how hard the wind blows (004 §3.2, §4).
+//! Breaking loads of a species: the bend and the wind pressure at which one of its components on the ground breaks (Endo et al. 2003, §§3.2, 4).
 
 use super::plan::{Part, Plan, chain};
 use super::rest::Load;
@@ -6,20 +6,20 @@ use super::strength::breaks;
 use std::f64::consts::PI;
 
 const GRAVITY_M_PER_S2: f64 = 9.81;
-/// Pressure that is tried at most (Pa), that of a wind of 1300 m/s.
+/// Largest pressure considered (Pa), that of a wind of 1300 m/s.
 const MOST_PA: f64 = 1e6;
-/// Halvings of the pressures between which a component breaks, down to the rounding of an `f32`.
+/// Number of bisections of the breaking pressure, down to the rounding of an `f32`.
 const HALVINGS: u32 = 40;
 
-/// Bend beyond which the weakest component on the ground breaks (rad); infinite where none does. What is pressed to lean by θ is bent over its lower half,
-/// with the moment 2·θ·EI/L at its foot.
+/// Bend at which the weakest component on the ground breaks (rad); infinite if none does. A component pressed to a lean of θ is bent over its lower
+/// half, with the moment 2·θ·EI/L at its base.
 pub fn bears_rad(plan: &Plan) -> f32 {
     on_ground(plan).map(|part| 0.5 * part.strength).fold(f32::INFINITY, f32::min)
 }
 
-/// Dynamic pressure of the air (Pa) in which the weakest component on the ground breaks under its weight and the drag, at its own size; infinite where none
-/// does. It leans by its mean angle, with the wind or against it, whichever breaks it sooner: of those that stand about a plant some do either. A stiff one
-/// breaks sooner with the wind, as its weight helps; a limp one against it, as it is bent over further.
+/// Dynamic pressure of the air (Pa) at which the weakest component on the ground breaks under its weight and the drag, at unit size; infinite if none
+/// does. It leans by its mean angle, with the wind or against it, whichever breaks it sooner, as both occur around a plant. A stiff one breaks sooner
+/// with the wind, helped by its weight; a limp one against it, as it is bent over further.
 pub fn bears_pa(plan: &Plan) -> f32 {
     on_ground(plan).map(component_bears_pa).fold(f32::INFINITY, f32::min)
 }
@@ -32,7 +32,7 @@ fn on_ground(plan: &Plan) -> impl Iterator<Item = &Part> {
 fn component_bears_pa(part: &Part) -> f32 {
     let (joints, shares) = chain(&part.component);
     let lean_rad = f64::from(part.component.angle_rad);
-    let weight = f64::from(part.weight_secs2_per_m) * GRAVITY_M_PER_S2;
+    let weight = f64::from(part.weight_s2_per_m) * GRAVITY_M_PER_S2;
     let is_broken = |pressure_pa: f64| {
         let drag = f64::from(part.drag_per_pa) * pressure_pa;
         let (load, load_rad) = (Load { spread: weight.hypot(drag), tip: 0.0 }, drag.atan2(weight));
@@ -84,13 +84,13 @@ mod tests {
 
     #[test]
     fn a_stiff_stalk_bears_twice_its_strength_over_the_drag() {
-        // One that hardly bends: half of the drag at the arm of its length, C·q·S·L/2 = M.
+        // A component that hardly bends: its drag acts at half its length, C·q·S·L/2 = M.
         let component = Component { angle_rad: 0.0, mass_kg: 1e-6, width_m: 0.01, ..stalk("stalk", "", 0.02) };
         let silhouette_m2 = 1.1 * 0.75 * component.length_m * component.width_m;
         let wanted_pa = 0.02 * 2.0 / (silhouette_m2 * component.length_m);
         let found_pa = bears_pa(&plan(vec![component.clone()]));
         assert!((found_pa / wanted_pa - 1.0).abs() < 1e-3, "{found_pa} Pa instead of {wanted_pa}");
-        // At an angle its weight, 1 N here, takes its share: W·L/2·sin a, and the drag acts on less of an arm, L/2·cos a.
+        // At an angle its weight, 1 N here, contributes W·L/2·sin a, and the drag has a shorter arm, L/2·cos a.
         let leaning = Component { angle_rad: 0.3, mass_kg: 0.001 / 9.81, ..component };
         let wanted_pa = (0.02 - 0.001 * 0.3f32.sin()) / (silhouette_m2 * 0.3f32.cos());
         let found_pa = bears_pa(&plan(vec![leaning]));
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn what_yields_to_any_wind_bears_it() {
-        // All sections along the wind: the moment at the foot is at most its joint's, 16·EI/L times a right angle, over the ¾ of its load that turn it.
+        // All sections along the wind: the moment at the foot is at most its joint's, 16·EI/L times a right angle, over the ¾ of its load that rotate it.
         let limp = |strength_n_m| bears_pa(&plan(vec![Component { angle_rad: 0.0, ..stalk("stalk", "", strength_n_m) }]));
         assert!(limp(2.0 * 33.6) == f32::INFINITY && limp(2.0 * 28.0).is_finite());
     }

@@ -1,9 +1,9 @@
-//! How what a plant feels follows the force field: the dynamic constraint (004 §4.3, after Barzel & Barr 1988).
+//! Dynamic constraint: the force that a plant feels follows the force field with a delay (Endo et al. 2003, §4.3, after Barzel & Barr 1988).
 //!
-//! `F = −F_E − (2/τ)·m·v − (1/τ²)·m·(X − X₀)` together with the force F_E itself is a critically damped spring towards X₀:
-//! `X − X₀ = (A + B·t)·e^(−t/τ)`. In this closed form a step of any length is exact, and two steps are one.
+//! `F = −F_E − (2/τ)·m·v − (1/τ²)·m·(X − X₀)` together with the force F_E itself is a critically damped spring towards X₀: `X − X₀ = (A +
+//! B·t)·e^(−t/τ)`. In this closed form a step of any length is exact, and two half steps equal a whole one.
 
-/// A value that follows another, and how fast it changes (1/s).
+/// A value that follows a target, and its rate of change.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Following {
     /// The value.
@@ -13,20 +13,21 @@ pub struct Following {
 }
 
 impl Following {
-    /// The state `dt_secs` ≥ 0 later, where `target` stays as it is; τ, `settle_secs` > 0, is the time constant. It comes to rest without a swing.
+    /// The state after `dt_secs` ≥ 0 with a constant `target` and the time constant τ = `settle_secs` > 0; approaches it without overshoot.
     pub fn followed(&self, target: [f32; 3], settle_secs: f32, dt_secs: f32) -> Self {
         let taus = dt_secs / settle_secs;
         let decay = (-taus).exp();
         self.turned(target, [(1.0 + taus) * decay, dt_secs * decay], [-taus / settle_secs * decay, (1.0 - taus) * decay])
     }
 
-    /// The state `dt_secs` ≥ 0 later as 004 Eq. (5) has it, without the velocity term: it swings about its target for ever, with period 2π·τ.
+    /// The state after `dt_secs` ≥ 0 by Endo et al. 2003, Eq. (5), without the velocity term: an undamped oscillation about the target, with
+    /// period 2π·τ.
     pub fn swung(&self, target: [f32; 3], settle_secs: f32, dt_secs: f32) -> Self {
         let (sine, cosine) = (dt_secs / settle_secs).sin_cos();
         self.turned(target, [cosine, settle_secs * sine], [-sine / settle_secs, cosine])
     }
 
-    /// The state made of these shares of the deviation and of the rate.
+    /// A linear combination of deviation and rate.
     fn turned(&self, target: [f32; 3], value: [f32; 2], rate: [f32; 2]) -> Self {
         let mix = |i: usize, [of_deviation, of_rate]: [f32; 2]| of_deviation * (self.value[i] - target[i]) + of_rate * self.rate_per_s[i];
         Self { value: std::array::from_fn(|i| target[i] + mix(i, value)), rate_per_s: std::array::from_fn(|i| mix(i, rate)) }

@@ -1,39 +1,40 @@
-//! How drops of rain make leaves and flowers tremble (004 §1).
+//! Raindrops that make leaves and flowers tremble (Endo et al. 2003, §1).
 //!
-//! As a pressure rain is nothing: 50 mm/h stop with 0.09 Pa. But a drop that strikes a leaf gives it all its momentum at once, and sets it off by
-//! millimetres. The component is Rayleigh's cantilever: where a force at its tip bends it by 1 there, it bends it by (3s² − s³)/2 at the share s of its
-//! length, moves as 33/140 of its mass would at the tip, and has the stiffness 3EI/L³ there. It comes back without a swing, as
-//! [`constraint`](super::constraint) has it, but in its own time 1/ω: t seconds after a strike at its tip that is off by `speed_m_per_s`·t·e^(−t/`settle_secs`).
+//! As a steady pressure rain is negligible: 50 mm/h is 0.09 Pa. But a drop that strikes a leaf transfers its momentum at once, and moves the tip by
+//! millimetres. The component is modelled as Rayleigh's cantilever: a force at its tip that moves the tip by 1 moves the point at the fraction s of
+//! its length by (3s² − s³)/2; it has the effective mass 33/140 at the tip and the stiffness 3EI/L³ there. It returns without overshoot, as in
+//! [`constraint`](super::constraint), but with its own time constant 1/ω: t seconds after a strike its tip is displaced by
+//! `speed_m_per_s`·t·e^(−t/`settle_secs`).
 
 use crate::scene::Component;
 
-/// Mass of a drop of rain (kg): a sphere of water 2 mm across. In heavy rain, 50 mm/h, half of the water falls in larger ones (Marshall & Palmer 1948).
+/// Mass of a raindrop (kg): a sphere of water 2 mm across. In heavy rain, 50 mm/h, half of the water falls in larger ones (Marshall & Palmer 1948).
 pub const DROP_KG: f32 = 4.19e-6;
 
-/// Speed at which such a drop falls (m/s; Gunn & Kinzer 1949).
+/// Terminal speed of such a drop (m/s; Gunn & Kinzer 1949).
 pub const DROP_M_PER_S: f32 = 6.49;
 
-/// Drops that fall on a square metre (1/(m²·s)) where it rains at a rate (mm/h): 3300 at 50 mm/h.
+/// Drops per square metre and second (1/(m²·s)) at a rainfall rate (mm/h): 3300 at 50 mm/h.
 pub fn drops_per_m2_s(rate_mm_per_h: f32) -> f32 {
-    // A millimetre is a kilogram on a square metre.
+    // A millimetre of rain is a kilogram per square metre.
     rate_mm_per_h / 3600.0 / DROP_KG
 }
 
-/// How a component answers a drop that strikes its tip.
+/// Response of a component to a drop that strikes its tip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Struck {
-    /// Speed at which the tip sets off (m/s).
+    /// Initial speed of the tip (m/s).
     pub speed_m_per_s: f32,
-    /// Time in which it is as far off as it gets (s).
+    /// Time of the largest displacement (s).
     pub settle_secs: f32,
 }
 
 impl Struck {
-    /// Of a component of a size: a share of its length, whose third power its mass goes with, and whose fourth its rigidity. The drop stays on it.
+    /// Response of a component at a relative size: length scales with it, mass with its third power, rigidity with its fourth. The drop stays on it.
     pub fn new(component: &Component, size: f32) -> Self {
         let (length_m, mass_kg) = (component.length_m * size, component.mass_kg * size.powi(3));
         let moved_kg = 33.0 / 140.0 * mass_kg;
-        // The bend of a force at the tip weighs rigidities by (1 − s)², on average at a quarter of the length.
+        // A force at the tip weighs rigidities by (1 − s)², on average at a quarter of the length.
         let rigidity_n_m2 = component.stiffness_n_m2 * size.powi(4) * (0.75 + 0.25 * component.tip_stiffness_share);
         let stiffness_n_per_m = 3.0 * rigidity_n_m2 / length_m.powi(3);
         Self { speed_m_per_s: DROP_KG * DROP_M_PER_S / (moved_kg + DROP_KG), settle_secs: (moved_kg / stiffness_n_per_m).sqrt() }

@@ -1,4 +1,4 @@
-//! What a species of underbrush is made of, worked out beforehand, and which components each of its plants has.
+//! Plan of a species of underbrush: precomputed postures, and the components of each of its plants.
 
 use super::posture::{Nodes, Postures};
 use super::rest::joints;
@@ -7,59 +7,59 @@ use crate::hash::hash3;
 use crate::scene::{Component, ComponentKind, Underbrush};
 use std::f32::consts::TAU;
 
-/// Most components of one plant; a species that asks for more has the first of them, in the order of its sections. One bit each tells which are broken.
+/// Largest number of components of one plant; further ones are dropped, in the order of the sections. A bit mask records which are broken.
 pub const COMPONENTS_LIMIT: usize = 64;
 
-/// Most sections of a component.
+/// Largest number of sections of a component.
 pub const SECTIONS_LIMIT: usize = 16;
 
-/// Shortest and longest time constant with which a species follows a force (s).
+/// Shortest and longest time constant of a species (s).
 const SETTLE_SECS: [f32; 2] = [0.01, 10.0];
 
-/// Diameter of a flower's stalk over that of its ring of petals.
+/// Diameter of a flower's stalk relative to that of its ring of petals.
 pub(super) const STALK_SHARE: f32 = 0.06;
 
-/// Mean width of a component over its greatest, by its outline in [`vectors`](super::vectors).
+/// Mean width of a component relative to its largest, by its outline in [`vectors`](super::vectors).
 const LEAF_MEAN_WIDTH: f32 = 0.73;
 const BRANCH_MEAN_WIDTH: f32 = 0.75;
 
-/// Drag coefficients on the greatest silhouette. A stalk is a cylinder across the wind (1.1, at the Reynolds numbers 1e3 to 1e5 of stalks); leaves and
-/// petals turn their edge to the wind and stream in it (reconfiguration; Vogel, Journal of Experimental Botany 40, 1989), which leaves them the less the
-/// more they bend; 0.25 is a middle.
+/// Drag coefficients on the largest silhouette. A stalk is a cylinder across the wind (1.1, at the Reynolds numbers 1e3 to 1e5 of stalks). Leaves and
+/// petals turn their edge to the wind and stream in it (reconfiguration; Vogel 1989), which lowers the coefficient the more they bend; 0.25 is an
+/// average.
 const LEAF_DRAG: f32 = 0.25;
 const STALK_DRAG: f32 = 1.1;
 
-/// A kind of component of a species, with what its bending needs.
+/// A kind of component of a species, with the constants of its bending.
 ///
-/// Plants and components of other sizes are of the same shape: at size s their mass goes with s³, their rigidity with s⁴, their strength with s³. So the load
-/// Λ = |R|·L²/EI that a component feels is that of `weight_secs2_per_m·s` times the force per mass and of `drag_per_pa` times the pressure of the air. A
-/// branch doesn't feel what stands on it: its own mass stands for that too.
+/// Plants and components of other sizes have the same shape: at size s their mass scales with s³, their rigidity with s⁴, their strength with s³. So
+/// the load Λ = |R|·L²/EI on a component is `weight_s2_per_m·s` times the force per mass plus `drag_per_pa` times the pressure of the air. A
+/// branch does not feel the components that it carries: its own mass includes them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// As in the scene.
+    /// The component as in the scene.
     pub component: Component,
-    /// Index of the part that it stands on, before it; none for the ground.
+    /// Index of the part that carries it, which comes before it; `None` for the ground.
     pub on: Option<usize>,
     /// Λ per force per mass at size 1, m·L²/EI (s²/m).
-    pub weight_secs2_per_m: f32,
+    pub weight_s2_per_m: f32,
     /// Λ per dynamic pressure at any size, C·S·L²/EI (1/Pa), with the silhouette S and its drag coefficient C.
     pub drag_per_pa: f32,
-    /// Greatest moment that its foot bears, in units of EI/L; 0 if it never breaks.
+    /// Moment at which its base breaks, in units of EI/L; 0 if it never breaks.
     pub strength: f32,
     /// Index of its postures among the tables of the plan.
     pub whole: usize,
-    /// Index of its postures once it is broken; none if it never breaks.
+    /// Index of its postures once it is broken; `None` if it never breaks.
     pub broken: Option<usize>,
 }
 
-/// A species of underbrush, ready to be posed.
+/// A species of underbrush with its posture tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Its kinds of component, those that others stand on before them.
+    /// Its kinds of component; carriers come before the components that they carry.
     pub parts: Vec<Part>,
-    /// Tables of postures; kinds that bend alike share one.
+    /// Posture tables; kinds that bend alike share one.
     pub tables: Vec<Postures>,
-    /// Time constant τ with which it follows a force (s), 0.01..=10: as the scene has it, or 1/ω₁ of the longest component on the ground, by
+    /// Time constant τ with which it follows a force (s), 0.01..=10: as in the scene, or 1/ω₁ of the longest component on the ground, from
     /// [`frequency_rad_per_s`].
     pub settle_secs: f32,
 }
@@ -69,20 +69,20 @@ pub struct Plan {
 pub struct Placed {
     /// Index among the parts of the plan.
     pub part: usize,
-    /// Index of the component that it stands on, before it in the plant; none for the ground.
+    /// Index of the component that carries it, which comes before it in the plant; `None` for the ground.
     pub on: Option<usize>,
-    /// Where it stands, as a share of the length of that.
+    /// Position along the carrier, as a fraction of its length.
     pub at_share: f32,
-    /// Its length over that of its part.
+    /// Its length relative to its part's.
     pub size: f32,
-    /// Angle of its unbent axis from the direction of what it stands on (rad).
+    /// Angle of its unbent axis from the direction of its carrier (rad).
     pub angle_rad: f32,
-    /// Turn about that direction (rad).
+    /// Rotation about that direction (rad).
     pub turn_rad: f32,
 }
 
 impl Plan {
-    /// Works out how the components of `species` bend. A component whose `on` names no branch before it stands on the ground.
+    /// Precomputes the bending of the components of `species`. A component whose `on` names no earlier branch is on the ground.
     pub fn new(species: &Underbrush, nodes: Nodes) -> Self {
         let mut tables = Tables { chains: Vec::new(), tables: Vec::new(), nodes };
         let mut parts: Vec<Part> = Vec::with_capacity(species.components.len());
@@ -93,10 +93,10 @@ impl Plan {
         Self { parts, tables: tables.tables, settle_secs: settle_secs.clamp(SETTLE_SECS[0], SETTLE_SECS[1]) }
     }
 
-    /// Components of the plant of that number, those that others stand on before them: the same for the same number.
+    /// Components of the plant with this number, carriers first: the same for the same number.
     ///
-    /// Angles and lengths are drawn evenly from their ranges. Turns about a branch begin at its right side, so that two rows of leaflets lie in the plane of a
-    /// frond; the first turn of each part on the ground is drawn too.
+    /// Angles and lengths are uniform in their ranges. Rotations about a branch start at its right side, so that two rows of leaflets are in the
+    /// plane of a frond; the first rotation of each part on the ground is random, too.
     pub fn placed(&self, number: u32) -> Vec<Placed> {
         let mut placed: Vec<Placed> = Vec::new();
         for (index, part) in self.parts.iter().enumerate() {
@@ -128,31 +128,31 @@ impl Plan {
     }
 }
 
-/// Where the nth of a component stands, as a share of the length of its branch.
+/// Position of the nth of a component, as a fraction of the length of its branch.
 fn at_share(component: &Component, nth: u32) -> f32 {
     let Component { count, from_share, to_share, .. } = *component;
     let along = if count > 1 { nth as f32 / (count - 1) as f32 } else { 1.0 };
     from_share + (to_share - from_share) * along
 }
 
-/// First natural frequency ω₁ (rad/s) of a component that is clamped at its foot and moves a mass at its tip as well.
+/// First natural frequency ω₁ (rad/s) of a component that is clamped at its base and carries a mass at its tip.
 ///
-/// Dunkerley's rule, `1/ω₁² = (m/12.36 + M/3)·L³/EI`, is exact for the bare uniform cantilever, 3.516·√(EI/(m·L³)), and for the mass alone, and 0.3 % low
-/// at worst between them. A rigidity that falls to the share t at the tip is taken to soften it to (3 + t)/4; with both it is within 4 %.
+/// Dunkerley's rule, `1/ω₁² = (m/12.36 + M/3)·L³/EI`, is exact for the bare uniform cantilever, 3.516·√(EI/(m·L³)), and for the mass alone, and at
+/// worst 0.3 % low between them. A rigidity that falls to the fraction t at the tip is taken to soften it to (3 + t)/4; with both it is within 4 %.
 pub fn frequency_rad_per_s(component: &Component, tip_kg: f32) -> f32 {
     let Component { length_m, stiffness_n_m2, mass_kg, tip_stiffness_share, .. } = *component;
     let moved_kg = mass_kg / (3.516 * 3.516) + tip_kg / 3.0;
     (0.25 * (3.0 + tip_stiffness_share) * stiffness_n_m2 / (length_m * length_m * length_m * moved_kg)).sqrt()
 }
 
-/// Frequency ω₁ of the longest component on the ground (rad/s), with what stands on it: a mass at a share s of its length moves with the tip as the square of
-/// `(3s² − s³)/2`, the shape in which a load at the tip bends it.
+/// Frequency ω₁ of the longest component on the ground (rad/s), including carried components: a mass at the fraction s of its length counts at the tip
+/// with the square of `(3s² − s³)/2`, the shape under a load at the tip.
 fn slowest_rad_per_s(parts: &[Part]) -> f32 {
     let on_ground = parts.iter().enumerate().filter(|(_, part)| part.on.is_none());
     let Some((longest, host)) = on_ground.max_by(|(_, a), (_, b)| a.component.length_m.total_cmp(&b.component.length_m)) else {
         return 1.0;
     };
-    // Of each kind the mass of one with all that stands on it: they come after what they stand on.
+    // Mass of one of each kind, including the components that it carries, which come after it.
     let mut whole_kg: Vec<f32> = parts.iter().map(|part| part.component.mass_kg).collect();
     let mut tip_kg = 0.0;
     for (index, Part { component, on, .. }) in parts.iter().enumerate().rev() {
@@ -166,12 +166,12 @@ fn slowest_rad_per_s(parts: &[Part]) -> f32 {
     frequency_rad_per_s(&host.component, tip_kg)
 }
 
-/// A random number as a share, 0 to under 1.
+/// A random number as a fraction, 0 to under 1.
 fn share(random: u32) -> f32 {
     (random >> 8) as f32 / (1_u32 << 24) as f32
 }
 
-/// Tables made so far, and the chains of joints they are for.
+/// Tables made so far, and the joints that they belong to.
 struct Tables {
     chains: Vec<Vec<f64>>,
     tables: Vec<Postures>,
@@ -196,7 +196,7 @@ fn part(component: &Component, on: Option<usize>, tables: &mut Tables) -> Part {
     Part {
         component: component.clone(),
         on,
-        weight_secs2_per_m: component.mass_kg * square_per_rigidity,
+        weight_s2_per_m: component.mass_kg * square_per_rigidity,
         drag_per_pa: drag_m2(component) * square_per_rigidity,
         strength,
         whole: tables.index_of(joints, &shares),
@@ -204,7 +204,7 @@ fn part(component: &Component, on: Option<usize>, tables: &mut Tables) -> Part {
     }
 }
 
-/// The stiffness of the joints of a component, and what they bear as shares of what its foot does; both as in [`rest`](super::rest) and
+/// Stiffness of the joints of a component, and their strength relative to the base; both as in [`rest`](super::rest) and
 /// [`strength`](super::strength).
 pub(super) fn chain(component: &Component) -> (Vec<f64>, Vec<f64>) {
     let sections = (component.sections as usize).clamp(1, SECTIONS_LIMIT);
@@ -212,7 +212,7 @@ pub(super) fn chain(component: &Component) -> (Vec<f64>, Vec<f64>) {
     (joints(sections, tip_share), shares(sections, tip_share))
 }
 
-/// Silhouette times drag coefficient (m²): length, width and a factor for the shape; of a flower its stalk and its ring of petals.
+/// Silhouette times drag coefficient (m²): length, width and a shape factor; for a flower its stalk and its ring of petals.
 fn drag_m2(component: &Component) -> f32 {
     let Component { length_m, width_m, .. } = *component;
     match component.kind {
@@ -285,7 +285,7 @@ mod tests {
     #[test]
     fn load_and_strength_are_in_units_of_the_stiffness() {
         let part = Plan::new(&bush(), NODES).parts.remove(2);
-        assert!((part.weight_secs2_per_m - 0.001 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
+        assert!((part.weight_s2_per_m - 0.001 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
         assert!((part.drag_per_pa - 0.25 * 0.73 * 0.4 * 0.01 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
         assert!((part.strength - 0.01 * 0.4 / 0.001).abs() < 1e-6);
         let drag_per_pa = |kind| Plan::new(&Underbrush::new("one", vec![Component::new("one", kind)]), NODES).parts[0].drag_per_pa;
@@ -311,13 +311,13 @@ mod tests {
         }
     }
 
-    /// First natural frequency of a chain of `count` sections whose masses are in their middles, and of one at the tip, in units of √(EI/(m·L³)): the shape
-    /// that its own inertia bends, over and over.
+    /// First natural frequency of a chain of `count` sections with their masses in the middle and a mass at the tip, in units of √(EI/(m·L³)): power
+    /// iteration on the shape bent by its own inertia.
     fn chain_frequency(tip_share: f64, tip_mass: f64) -> f64 {
         let count = 80;
         let section = 1.0 / f64::from(count);
         let joints = crate::plant::underbrush::rest::joints(count as usize, tip_share);
-        // In units of how far the tip moves.
+        // In units of the tip's displacement.
         let (mut shape, mut square) = (vec![0.5; count as usize], 0.0);
         for _ in 0..30 {
             let (mut force, mut moment) = (tip_mass, 0.0);
@@ -351,9 +351,9 @@ mod tests {
         let settle_secs = |components: Vec<Component>| Plan::new(&Underbrush::new("reed", components), NODES).settle_secs;
         let mut leaf = Component::new("leaf", ComponentKind::Leaf);
         leaf.length_m = 0.3;
-        // The published value of a bare uniform cantilever; what is shorter doesn't count.
+        // The published value of a bare uniform cantilever; shorter components have no effect.
         assert!((settle_secs(vec![leaf.clone(), reed.clone()]) * 3.516 * unit_rad_per_s - 1.0).abs() < 0.01);
-        // Four times as stiff is twice as fast; what it carries makes it slower.
+        // Four times as stiff is twice as fast; carried components make it slower.
         let stiffer = Component { stiffness_n_m2: 8.0, ..reed.clone() };
         assert!((settle_secs(vec![stiffer]) / settle_secs(vec![reed.clone()]) - 0.5).abs() < 1e-5);
         let plume = Component { on: "reed".into(), count: 3, mass_kg: 0.02, ..leaf };

@@ -1,33 +1,33 @@
-//! How a plant stands under the forces that it feels; `bent_row` in client-wasm/shaders/ribbons.wgsl is its twin.
+//! Posed plants: the shape of a plant under given forces; `bent_row` in `client-wasm/shaders` is its twin.
 
 use super::plan::{Placed, Plan, SECTIONS_LIMIT};
 use super::posture::Postures;
 use glam::{Quat, Vec3};
 
-/// How postures are looked up (004 §4.2).
+/// Lookup of postures (Endo et al. 2003, §4.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LookUp {
-    /// The nearest one of the table; for plants far away.
+    /// The nearest node of the table; for distant plants.
     Nearest,
-    /// Between those about it; for plants near by.
+    /// Interpolated between nodes; for near plants.
     Interpolated,
 }
 
-/// How a plant stands on the ground.
+/// Position and orientation of a plant on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stand {
-    /// Size over that of its species.
+    /// Size relative to its species.
     pub size: f32,
-    /// Heading of its first turn (rad).
+    /// Heading at which rotations start (rad).
     pub heading_rad: f32,
-    /// Lean of what grows there (rad, as a vector along X and Z), which turns the plant's foot.
+    /// Lean of the surrounding grass (rad, as a vector along X and Z), which tilts the base of the plant.
     pub lean_rad: [f32; 2],
 }
 
-/// What a plant feels.
+/// Forces on a plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forces {
-    /// Force per mass (m/s²): gravity, and what acts as it does.
+    /// Force per mass (m/s²): gravity and other body forces.
     pub per_mass_m_per_s2: Vec3,
     /// Dynamic pressure of the air, ½·ρ·|u|·u (Pa).
     pub pressure_pa: Vec3,
@@ -36,40 +36,40 @@ pub struct Forces {
 /// A bent section.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Section {
-    /// Its upper end (m, from the plant's root).
+    /// Its upper end (m, relative to the plant's root).
     pub end_m: Vec3,
-    /// From its lower to its upper end, of length 1.
+    /// Unit vector from its lower to its upper end.
     pub direction: Vec3,
-    /// To its right, across the direction, of length 1.
+    /// Unit vector to its right, across the direction.
     pub side: Vec3,
 }
 
-/// A component as it is bent.
+/// A component with its bent sections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Posed {
     /// Index among the parts of the plan.
     pub part: usize,
-    /// Its size over that of its part.
+    /// Its size relative to its part.
     pub size: f32,
-    /// Its foot (m, from the plant's root).
+    /// Its base (m, relative to the plant's root).
     pub foot_m: Vec3,
-    /// Its unbent axis, of length 1.
+    /// Unit vector along its unbent axis.
     pub axis: Vec3,
-    /// Across the axis, towards the load, of length 1: it bends in the plane of both.
+    /// Unit vector across the axis, towards the load: it bends in the plane of both.
     pub towards: Vec3,
-    /// Largest moment over what it bears; it breaks above 1. 0 if it never does.
+    /// Largest moment relative to the strength; it breaks above 1. 0 if it never breaks.
     pub strain: f32,
     count: usize,
     sections: [Section; SECTIONS_LIMIT],
 }
 
 impl Posed {
-    /// Its sections, foot first.
+    /// Its sections, from the base.
     pub fn sections(&self) -> &[Section] {
         &self.sections[..self.count]
     }
 
-    /// A place along it, as a share of its length, and the section it is on.
+    /// Position at a fraction of its length, and the section that contains it.
     fn at(&self, share: f32) -> (Vec3, Section) {
         let along = share.clamp(0.0, 1.0) * self.count as f32;
         let index = (along as usize).min(self.count - 1);
@@ -79,8 +79,8 @@ impl Posed {
     }
 }
 
-/// Poses the components of a plant, each on the bent shape of what it stands on; they are as [`Plan::placed`] gives them. Bit i of `broken` says that the
-/// one at i is broken.
+/// Poses the components of a plant as [`Plan::placed`] gives them, each on the bent shape of its carrier. Bit i of `broken` marks component i as
+/// broken.
 ///
 /// No section goes below the level of the plant's root: it lies on the ground there.
 pub fn posed(plan: &Plan, placed: &[Placed], stand: Stand, forces: Forces, look_up: LookUp, broken: u64) -> Vec<Posed> {
@@ -90,7 +90,7 @@ pub fn posed(plan: &Plan, placed: &[Placed], stand: Stand, forces: Forces, look_
         let part = &plan.parts[one.part];
         let (foot_m, frame) = one.on.map_or((Vec3::ZERO, ground), |on| posed[on].at(one.at_share));
         let unbent = unbent(foot_m, frame, one);
-        let load = forces.per_mass_m_per_s2 * (part.weight_secs2_per_m * one.size * stand.size) + forces.pressure_pa * part.drag_per_pa;
+        let load = forces.per_mass_m_per_s2 * (part.weight_s2_per_m * one.size * stand.size) + forces.pressure_pa * part.drag_per_pa;
         let is_broken = broken >> index & 1 == 1;
         let table = &plan.tables[part.broken.filter(|_| is_broken).unwrap_or(part.whole)];
         let (towards, node) = posture(table, &unbent, load, look_up);
@@ -110,7 +110,7 @@ pub fn posed(plan: &Plan, placed: &[Placed], stand: Stand, forces: Forces, look_
     posed
 }
 
-/// Upright, turned by the lean of the ground: direction of what stands there, and the side where turns begin.
+/// Frame at the plant's root: the vertical, tilted by the lean of the grass, and the side at which rotations start.
 fn ground_frame(stand: Stand) -> Section {
     let [lean_x, lean_z] = stand.lean_rad;
     let lean = Quat::from_scaled_axis(Vec3::new(lean_z, 0.0, -lean_x));
@@ -126,7 +126,7 @@ struct Unbent {
     side: Vec3,
 }
 
-/// A component on what is directed as `frame`. Leaves hold their faces up: their width is level, or, where the axis is upright, across the turn.
+/// A component on a carrier with the direction `frame`. Leaves face up: their width is level, or, if the axis is vertical, across the rotation.
 fn unbent(foot_m: Vec3, frame: Section, one: &Placed) -> Unbent {
     let other = frame.direction.cross(frame.side);
     let (turn_sine, turn_cosine) = one.turn_rad.sin_cos();
@@ -137,13 +137,13 @@ fn unbent(foot_m: Vec3, frame: Section, one: &Placed) -> Unbent {
     Unbent { foot_m, axis, side: square(axis.cross(Vec3::Y) + across * 1e-3, axis).normalize_or(across) }
 }
 
-/// What of a vector is across a direction of length 1.
+/// Component of a vector perpendicular to a unit vector.
 fn square(vector: Vec3, direction: Vec3) -> Vec3 {
     vector - direction * vector.dot(direction)
 }
 
-/// The posture of a component under a load, and the direction across its axis in which it bends: towards the load, or, where the axis is exactly against the
-/// load or along it, outward.
+/// The posture of a component under a load, and the direction across its axis in which it bends: towards the load, or outward if the axis is parallel
+/// to the load.
 fn posture(table: &Postures, unbent: &Unbent, load: Vec3, look_up: LookUp) -> (Vec3, [f32; SECTIONS_LIMIT + 1]) {
     let &Unbent { axis, side, .. } = unbent;
     let size = load.length();
@@ -158,7 +158,7 @@ fn posture(table: &Postures, unbent: &Unbent, load: Vec3, look_up: LookUp) -> (V
     (square(square(direction, axis) + outward * 1e-6, axis).normalize_or(outward), node)
 }
 
-/// The sections of a component of that length, each turned by its angle from the unbent axis, and their number.
+/// The sections of a component of that length, each rotated by its angle from the unbent axis, and their number.
 fn bent(unbent: &Unbent, towards: Vec3, length_m: f32, bends_rad: &[f32]) -> ([Section; SECTIONS_LIMIT], usize) {
     let &Unbent { foot_m, axis, side, .. } = unbent;
     let section_m = length_m / bends_rad.len() as f32;
@@ -172,13 +172,13 @@ fn bent(unbent: &Unbent, towards: Vec3, length_m: f32, bends_rad: &[f32]) -> ([S
         let direction = above_ground(free, free.cross(turned), end_m.y / section_m);
         end_m += direction * section_m;
         let side = square(turned, direction).normalize_or(turned);
-        // Once more, as little is left, of few digits, of a side that the ground has laid the section along.
+        // Normalised again: if the ground has laid the section along its side, the remainder is small and imprecise.
         *section = Section { end_m, direction, side: square(side, direction).normalize_or(side) };
     }
     (sections, bends_rad.len())
 }
 
-/// The direction of a section that begins `height` of its lengths above the ground: as it is, or just as steep that it ends on the ground. One that falls
+/// Direction of a section that starts `height` of its lengths above the ground: unchanged, or just steep enough to end on the ground. One that falls
 /// straight down lies down towards `front`.
 fn above_ground(direction: Vec3, front: Vec3, height: f32) -> Vec3 {
     let up = direction.y.max(-height.max(0.0));

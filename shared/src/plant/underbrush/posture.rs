@@ -1,25 +1,25 @@
-//! Postures of a component, worked out beforehand for every direction and size of the load that it feels (004 §4.2).
+//! Posture tables of a component for every direction and size of its load (Endo et al. 2003, §4.2).
 
 use super::rest::{Load, balanced, moments};
 use super::strength::weakest;
 use std::f64::consts::PI;
 
-/// Load Λ = |R|·L²/EI in the middle of a table's axis of loads; a component bends most for its load about there, as upright ones buckle at 7.8.
+/// Load Λ = |R|·L²/EI in the middle of a table's load axis; bending per load is largest near it, as upright components buckle at 7.8.
 pub const MIDDLE_LOAD: f32 = 8.0;
 
-/// Load of the first nodes of a table: so light that it bends no whole component (by 1e-4 rad), and enough for what is broken to hang.
+/// Load of the first nodes of a table: so light that it bends no intact component (by 1e-4 rad), and enough for a broken one to hang.
 const LEAST_LOAD: f64 = 1e-3;
 
-/// How many nodes a table has.
+/// Size of a posture table.
 ///
-/// At the default, over all angles and loads up to 200, the tip is off by 0.2 % of the length (root mean square; 95 of 100 tips by less than that) where it
-/// is interpolated, and by 2.4 % at the nearest node. Half as many loads make that 0.5 % and 3.8 %, half as many angles 0.3 % and 4 %. The largest error
-/// between nodes, 12 %, is at one place: all but upright at the load at which it buckles, where the shape has a cusp.
+/// With the default, over all angles and loads up to 200, the tip is off by 0.2 % of the length (root mean square; 95 % of tips by less) if
+/// interpolated, and by 2.4 % at the nearest node. With half as many loads that is 0.5 % and 3.8 %, with half as many angles 0.3 % and 4 %. The
+/// largest interpolation error, 12 %, is at one point: nearly upright at the buckling load, where the shape has a cusp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nodes {
-    /// Angles φ between the unbent axis and the direction against the load, at least 2. Default 33.
+    /// Number of angles φ between the unbent axis and the direction against the load, at least 2. Default 33.
     pub angles: usize,
-    /// Loads, at least 2. Default 33.
+    /// Number of loads, at least 2. Default 33.
     pub loads: usize,
 }
 
@@ -29,15 +29,16 @@ impl Default for Nodes {
     }
 }
 
-/// Postures in the plane of the unbent axis and the load, by the angle φ between that axis and the direction against the load, and by the load.
+/// Postures in the plane of the unbent axis and the load, tabulated over the angle φ between that axis and the direction against the load, and over
+/// the load.
 ///
 /// # Layout
-/// Node `(a, l)` begins at `(a·loads + l)·stride`; it has the angle of each section from the unbent axis towards the load's direction (rad), foot first, and
-/// then a lever: the largest moment at a joint over that joint's share of the strength is Λ times the lever (in units of EI/L); so `stride` is the
-/// number of sections and one. Angles turn sections, so that a posture between nodes keeps its length exactly.
+/// Node `(a, l)` starts at `(a·loads + l)·stride`. It has the angle of each section from the unbent axis towards the load (rad), from the base, and
+/// then a lever: the largest moment at a joint relative to that joint's strength is Λ times the lever (in units of EI/L). So `stride` is the number
+/// of sections plus one. Angles rotate sections, so an interpolated posture keeps its length exactly.
 ///
-/// Angles φ are at `π·(a/(angles − 1))²`, denser near upright, loads at `Λ/(Λ + 8) = l/(loads − 1)`: the last is without bound, and lays all sections along
-/// the load. As φ ≥ 0, there is one side to fall to, and nothing is interpolated across upright: what is a little off upright falls its own way.
+/// Angles φ are `π·(a/(angles − 1))²`, denser near upright, and loads `Λ/(Λ + 8) = l/(loads − 1)`: the last is infinite, and aligns all sections with
+/// the load. As φ ≥ 0, there is only one side to fall to, and nothing is interpolated across upright.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Postures {
     nodes: Nodes,
@@ -46,8 +47,8 @@ pub struct Postures {
 }
 
 impl Postures {
-    /// Postures of a chain of `joints`, whose strength is `strength_shares` of that of the foot (both as in [`rest`](super::rest) and
-    /// [`strength`](super::strength)), in full balance.
+    /// Balanced postures of a chain of `joints` whose strength relative to the base is `strength_shares` (both as in [`rest`](super::rest) and
+    /// [`strength`](super::strength)).
     pub fn new(joints: &[f64], strength_shares: &[f64], nodes: Nodes) -> Self {
         let sections = joints.len();
         let (mut bends_rad, mut found) = (vec![0.0; sections], vec![0.0; sections]);
@@ -69,22 +70,22 @@ impl Postures {
         Self { nodes, stride: sections + 1, values }
     }
 
-    /// How many nodes there are.
+    /// Number of nodes.
     pub fn nodes(&self) -> Nodes {
         self.nodes
     }
 
-    /// Numbers of a node.
+    /// Numbers per node.
     pub fn stride(&self) -> usize {
         self.stride
     }
 
-    /// All nodes, as in the layout above.
+    /// All nodes, in the layout above.
     pub fn values(&self) -> &[f32] {
         &self.values
     }
 
-    /// Place of an angle and a load among the nodes, in steps.
+    /// Position of an angle and a load in the table, in nodes.
     fn place(&self, cosine: f32, load: f32) -> [f32; 2] {
         let angle = (acos(cosine.clamp(-1.0, 1.0)) * std::f32::consts::FRAC_1_PI).sqrt();
         let load = 1.0 - MIDDLE_LOAD / (load + MIDDLE_LOAD);
@@ -96,13 +97,13 @@ impl Postures {
         &self.values[start..start + self.stride]
     }
 
-    /// The node nearest to the angle φ of that cosine and to the load Λ ≥ 0; for plants far away.
+    /// The node nearest to the angle φ with that cosine and the load Λ ≥ 0; for distant plants.
     pub fn nearest(&self, cosine: f32, load: f32) -> &[f32] {
         let [angle, load] = self.place(cosine, load);
         self.node(((angle + 0.5) as usize).min(self.nodes.angles - 1), ((load + 0.5) as usize).min(self.nodes.loads - 1))
     }
 
-    /// Writes what lies between the four nodes about the angle φ of that cosine and the load Λ ≥ 0, linear in both of the table's axes.
+    /// Writes the bilinear interpolation between the four nodes about the angle φ with that cosine and the load Λ ≥ 0.
     pub fn interpolated(&self, cosine: f32, load: f32, node: &mut [f32]) {
         let place = self.place(cosine, load);
         let [a, l] = [(place[0] as usize).min(self.nodes.angles - 2), (place[1] as usize).min(self.nodes.loads - 2)];
@@ -115,7 +116,7 @@ impl Postures {
     }
 }
 
-/// Angle (rad) of a cosine in -1..=1, to 7e-5: Abramowitz & Stegun 4.4.45.
+/// Angle (rad) of a cosine in −1..=1, with an error of 7e-5: Abramowitz & Stegun 1964, 4.4.45.
 fn acos(cosine: f32) -> f32 {
     let size = cosine.abs();
     let angle = (1.0 - size).sqrt() * (1.570_728_8 + size * (-0.212_114_4 + size * (0.074_261 - size * 0.018_729_3)));
@@ -136,7 +137,7 @@ mod tests {
         bends_rad.take(8).fold([0.0; 2], |[x, y], bend| [x + (unbent_rad + bend).sin() / 8.0, y + (unbent_rad + bend).cos() / 8.0])
     }
 
-    /// Distance of a tip that is looked up from where it is in balance, in lengths.
+    /// Distance of a looked-up tip from its balanced position, in lengths.
     fn off(tip_share: f64, unbent_rad: f64, load: f64, node: &[f32]) -> f64 {
         let mut exact = [0.0; 8];
         balanced(&joints(8, tip_share), Load { spread: load, tip: 0.0 }, unbent_rad, &mut exact);

@@ -1,22 +1,14 @@
-//! How far one section bends under the weight of what is above it (004 §3.2).
+//! Bend of one section under the weight of everything above it (Endo et al. 2003, §3.2).
 //!
-//! With φ the angle of the unbent section from upright, d the distance from its joint to the centre of mass m of all that is above the joint, and a spring
-//! k between where that centre is and where it was, the balance is `k·d·sin α = m·g·sin(φ + α)`. It is one of vectors: the bent section points along
-//! `k·d·a + m·g`, a the unbent axis. Of upright sections (φ = 0) those with m·g > k·d buckle, and as this spring has no torque left at half a turn they hang
-//! straight down; which side they fall to is not said. A section that hangs already (φ = π) doesn't bend.
+//! With φ the angle of the unbent section from upright, d the distance from its joint to the centre of the mass m above the joint, and a spring k
+//! between that centre's unbent and bent position, the balance is `k·d·sin α = m·g·sin(φ + α)`. As vectors: the bent section points along `k·d·a +
+//! m·g`, a the unbent axis. Upright sections (φ = 0) with m·g > k·d buckle, and as this spring exerts no torque at half a turn they hang straight
+//! down, to an undetermined side. A section that already hangs (φ = π) does not bend.
 
-/// Angle α by which a section bends (rad, 0..=π) that is `unbent_rad` (φ, 0..=π) off upright, where `stiffness` is k·d/(m·g): the stable one of the two
-/// balances, which is reached without a jump as the load grows. 004 Eq. (1) with its quadrant.
+/// Bend α of a section (rad, 0..=π) that is `unbent_rad` (φ, 0..=π) off upright, with `stiffness` = k·d/(m·g): the stable one of the two balances,
+/// which is reached continuously as the load grows. Endo et al. 2003, Eq. (1) with the right quadrant.
 pub fn bend_rad(unbent_rad: f64, stiffness: f64) -> f64 {
     unbent_rad.sin().atan2(stiffness - unbent_rad.cos())
-}
-
-/// The angle as 004 Eq. (1) has it, by an arcsine. It is right up to a quarter turn, that is while k·d ≥ m·g·cos φ; a section that bends further is taken to
-/// bend by the supplement, back towards upright. At φ = 0 it never bends.
-pub fn bend_by_arcsine_rad(unbent_rad: f64, stiffness: f64) -> f64 {
-    let (sine, ahead) = (unbent_rad.sin(), stiffness - unbent_rad.cos());
-    let square = sine * sine;
-    if square == 0.0 { 0.0 } else { (square / (ahead * ahead + square)).sqrt().asin() }
 }
 
 #[cfg(test)]
@@ -25,12 +17,20 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
+    /// Bend by the arcsine of Endo et al. 2003, Eq. (1). It is right up to a quarter turn, that is if k·d ≥ m·g·cos φ; beyond, it gives the
+    /// supplement, back towards upright. At φ = 0 it never bends.
+    fn bend_by_arcsine_rad(unbent_rad: f64, stiffness: f64) -> f64 {
+        let (sine, ahead) = (unbent_rad.sin(), stiffness - unbent_rad.cos());
+        let square = sine * sine;
+        if square == 0.0 { 0.0 } else { (square / (ahead * ahead + square)).sqrt().asin() }
+    }
+
     /// Torque towards the unbent angle, over m·g·d.
     fn torque(unbent_rad: f64, stiffness: f64, bend_rad: f64) -> f64 {
         stiffness * bend_rad.sin() - (unbent_rad + bend_rad).sin()
     }
 
-    /// The balance between unbent, where the load alone pulls, and hanging, where the spring alone does.
+    /// The balance between unbent, where only the load pulls, and hanging, where only the spring does.
     fn bisected_rad(unbent_rad: f64, stiffness: f64) -> f64 {
         let (mut low, mut high) = (0.0, PI - unbent_rad);
         for _ in 0..200 {
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn the_arcsine_lifts_a_limp_section() {
-        // Nearly upright and with hardly any stiffness: it hangs, and the arcsine has it a little off upright.
+        // Nearly upright and with hardly any stiffness: it hangs, but by the arcsine it is only a little off upright.
         let (unbent, stiffness) = (0.1, 0.1);
         assert!(bend_rad(unbent, stiffness) > FRAC_PI_2 + 1.4);
         let arcsine = bend_by_arcsine_rad(unbent, stiffness);

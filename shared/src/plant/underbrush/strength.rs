@@ -1,26 +1,26 @@
-//! Which load breaks a component, and where (004 §3.2: beyond a greatest elastic force it breaks).
+//! Breaking load of a component, and the joint that breaks (Endo et al. 2003, §3.2: it breaks beyond a largest elastic force).
 
 use super::rest::{Load, balanced, moments};
 use std::f64::consts::FRAC_PI_2;
 
-/// Share of its stiffness that a broken joint keeps: what is above it hangs, however light it is.
+/// Fraction of its stiffness that a broken joint keeps: everything above it hangs, however light.
 const BROKEN_STIFFNESS: f64 = 1e-6;
 
-/// Bending moment that each joint of `sections` bears, as a share of what the foot bears, where the rigidity falls linearly to `tip_share` at the tip. Of a
-/// round stalk of one stuff the rigidity goes with the fourth power of the diameter and the strength with the third.
+/// Strength of each joint of `sections` relative to the base, with a rigidity that falls linearly to `tip_share` at the tip. For a round stalk of one
+/// material rigidity scales with the fourth power of the diameter and strength with the third.
 pub fn shares(sections: usize, tip_share: f64) -> Vec<f64> {
     let rigidity = |joint: usize| 1.0 - (1.0 - tip_share) * joint as f64 / sections as f64;
     (0..sections).map(|joint| rigidity(joint).sqrt() * rigidity(joint).sqrt().sqrt()).collect()
 }
 
-/// The joint with the largest moment for its strength, and that moment over its share of the strength (in units of EI/L).
+/// The joint with the largest moment relative to its strength, and that moment over its relative strength (in units of EI/L).
 pub(super) fn weakest(shares: &[f64], moments: &[f64]) -> (usize, f64) {
     let strains = moments.iter().zip(shares).map(|(moment, share)| moment / share).enumerate();
     strains.fold((0, 0.0), |most, joint| if joint.1 > most.1 { joint } else { most })
 }
 
-/// The joint at which a load breaks a component whose foot bears the moment `strength` (in units of EI/L); none if it bears the load, or never breaks
-/// because `strength` is 0. `unbent_rad` is the angle of the unbent axis from upright, 0..=π.
+/// The joint at which a load breaks a component whose base breaks at the moment `strength` (in units of EI/L); `None` if it withstands the load, or
+/// never breaks because `strength` is 0. `unbent_rad` is the angle of the unbent axis from upright, 0..=π.
 pub fn breaks(joints: &[f64], shares: &[f64], strength: f64, load: Load, unbent_rad: f64) -> Option<usize> {
     let (mut bends_rad, mut found) = (vec![0.0; joints.len()], vec![0.0; joints.len()]);
     balanced(joints, load, unbent_rad, &mut bends_rad);
@@ -29,7 +29,7 @@ pub fn breaks(joints: &[f64], shares: &[f64], strength: f64, load: Load, unbent_
     (strength > 0.0 && most > strength).then_some(joint)
 }
 
-/// The joints of a component that a growing load across it has broken; none if no load across it does.
+/// The joints of a component that a growing load across it has broken; `None` if no load across it breaks it.
 pub(super) fn broken_across(joints: &[f64], shares: &[f64], strength: f64) -> Option<Vec<f64>> {
     let loads = (-8..40).map(|twofold| Load { spread: 2f64.powi(twofold), tip: 0.0 });
     let joint = loads.into_iter().find_map(|load| breaks(joints, shares, strength, load, FRAC_PI_2))?;

@@ -1,26 +1,26 @@
-//! The outline of a bent component as vectors (004 §3.1): along its axis, and to its left and right borders.
+//! Outline of a bent component as vectors (Endo et al. 2003, §3.1): along its axis, and to its left and right edges.
 
 use super::plan::{Part, STALK_SHARE};
 use super::plant::Posed;
 use crate::scene::ComponentKind;
 use glam::Vec3;
 
-/// Angle at which petals stand off their flower's stalk (rad).
+/// Angle of petals from their flower's stalk (rad).
 pub const PETAL_RAD: f32 = 1.15;
 
 /// One vector of each of the three sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vectors {
-    /// Along the axis (m), from the end of the one before.
+    /// Along the axis (m), from the end of the previous one.
     pub axis_m: Vec3,
-    /// From the end of that to the left border (m), across it.
+    /// From that end to the left edge (m), across the axis.
     pub left_m: Vec3,
-    /// And to the right border.
+    /// From that end to the right edge (m), across the axis.
     pub right_m: Vec3,
 }
 
-/// Vectors of a component up from its foot, one for every `every` sections (004 §5.1: fewer, further away) and always one to its tip. The first
-/// is the foot: it has no axis, and its borders are across the next.
+/// Vectors of a component from its base up, one for every `every` sections (Endo et al. 2003, §5.1: fewer at a distance) and always one to its tip.
+/// The first is the base: it has no axis, and its edges are across the next.
 pub fn vectors(part: &Part, posed: &Posed, every: usize) -> Vec<Vectors> {
     let sections = posed.sections();
     let every = every.max(1);
@@ -44,8 +44,8 @@ pub fn vectors(part: &Part, posed: &Posed, every: usize) -> Vec<Vectors> {
     out
 }
 
-/// Width of a component's outline (m) at a share of its length. A leaf is widest at 0.425 of it, 0.45 as wide at its foot, and pointed; a branch, or the
-/// stalk of a flower, is half as thick at its tip.
+/// Width of a component's outline (m) at a fraction of its length. A leaf is widest at 0.425 of it, 0.45 as wide at its base, and pointed; a branch,
+/// or the stalk of a flower, is half as thick at its tip.
 fn width_m(part: &Part, size: f32, share: f32) -> f32 {
     let width_m = part.component.width_m * size;
     match part.component.kind {
@@ -55,7 +55,7 @@ fn width_m(part: &Part, size: f32, share: f32) -> f32 {
     }
 }
 
-/// Vectors of the petals of a flower, each from the tip of its stalk to its own tip, with borders at its middle; none of what is no flower.
+/// Vectors of the petals of a flower, each from the tip of its stalk to its own tip, with edges at its middle; none for other components.
 pub fn petals(part: &Part, posed: &Posed) -> Vec<Vectors> {
     let (ComponentKind::Flower, Some(tip)) = (part.component.kind, posed.sections().last()) else {
         return Vec::new();
@@ -67,7 +67,7 @@ pub fn petals(part: &Part, posed: &Posed) -> Vec<Vectors> {
     let petal = |nth: u32| {
         let (sine, cosine) = (step_rad * nth as f32).sin_cos();
         let outward = tip.side * cosine + other * sine;
-        // As wide at its middle as its share of the ring there.
+        // At its middle, a petal is as wide as its share of the ring there.
         let right_m = (other * cosine - tip.side * sine) * (0.25 * step_rad * radius_m);
         Vectors { axis_m: (tip.direction * open_cosine + outward * open_sine) * radius_m, left_m: -right_m, right_m }
     };

@@ -1,71 +1,79 @@
-//! What does not fit together in a scene's wind.
+//! Consistency checks of a scene's wind.
 
-use super::{Wind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime};
+use super::{Wind, WindBoundary, WindDiffusion, WindFaces, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime};
 use crate::scene::Scene;
-use crate::scene::check::{Misfits, WIND_CELLS_LIMIT};
-use WindBoundary::{FreeSlip, Inflow, Lid, NoSlip, Outflow, Reflect, Wrap};
+use crate::scene::checks::conflict::Conflicts;
+use crate::scene::checks::limits::WIND_CELLS_LIMIT;
+use WindBoundary::{FreeSlip, Inflow, Lid, Outflow, Reflect, Wrap};
 
 /// Paths of the faces across X, Y and Z, in the order of [`WindFaces::pairs`](super::WindFaces::pairs).
 const FACES: [[&str; 2]; 3] =
     [["wind.faces.west", "wind.faces.east"], ["wind.faces.bottom", "wind.faces.top"], ["wind.faces.north", "wind.faces.south"]];
 
-/// The level axes: place among the box's three, place among the world's two, name, path of the mean wind along it.
+/// Horizontal axes: index in the box, index in the world, name, path of the mean wind along it.
 const LEVEL: [(usize, usize, &str, &str); 2] = [(0, 0, "X", "wind.mean_m_per_s[0]"), (2, 1, "Z", "wind.mean_m_per_s[1]")];
 
-/// Notes what does not fit together in the wind of `scene`.
-pub(in crate::scene) fn check(scene: &Scene, misfits: &mut Misfits) {
+/// Reports inconsistent settings of the wind of `scene`.
+pub(in crate::scene) fn check(scene: &Scene, conflicts: &mut Conflicts) {
     let wind = &scene.wind;
-    numbers(wind, misfits);
-    ground_and_sky(wind, misfits);
-    sides(wind, misfits);
-    mean_wind(wind, misfits);
-    lids(wind, misfits);
-    extent(scene, misfits);
+    numbers(wind, conflicts);
+    bottom_and_top(wind, conflicts);
+    sides(wind, conflicts);
+    mean_wind(wind, conflicts);
+    lids(wind, conflicts);
+    extent(scene, conflicts);
     match wind.method {
-        WindMethod::Staggered => schemes(wind, misfits),
-        WindMethod::StableFluids => stable_fluids(wind, misfits),
+        WindMethod::Staggered => schemes(wind, conflicts),
+        WindMethod::StableFluids => stable_fluids(wind, conflicts),
     }
-    primitives(scene, misfits);
+    primitives(scene, conflicts);
 }
 
-fn numbers(wind: &Wind, misfits: &mut Misfits) {
+fn numbers(wind: &Wind, conflicts: &mut Conflicts) {
     let cells = wind.cells.map(u64::from).iter().product();
     if cells > WIND_CELLS_LIMIT {
-        misfits.note(&["wind.cells"], format!("has {cells} cells in all; allowed: {WIND_CELLS_LIMIT}"));
+        conflicts.note(&["wind.cells"], format!("has {cells} cells in all; allowed: {WIND_CELLS_LIMIT}"));
     }
     if u64::from(wind.sources) > cells {
-        misfits.note(&["wind.sources", "wind.cells"], format!("is {}, more than the {cells} cells of the wind's box", wind.sources));
+        conflicts.note(&["wind.sources", "wind.cells"], format!("is {}, more than the {cells} cells of the wind's box", wind.sources));
     }
     let [east, south] = wind.mean_m_per_s.map(f64::from);
     let speed = (east * east + south * south).sqrt();
     if speed > 40.0 {
-        misfits.note(&["wind.mean_m_per_s"], format!("has a length of {speed:.1} m/s; allowed: up to 40"));
+        conflicts.note(&["wind.mean_m_per_s"], format!("has a length of {speed:.1} m/s; allowed: up to 40"));
     }
 }
 
-fn ground_and_sky(wind: &Wind, misfits: &mut Misfits) {
-    let why = match wind.faces.bottom {
-        Wrap | Inflow | Outflow => Some("since the ground is there"),
-        _ => None,
-    };
-    if let Some(why) = why {
-        let message = format!("is \"{}\"; allowed: \"free-slip\", \"reflect\", \"no-slip\" or \"lid\", {why}", wind.faces.bottom.word());
-        misfits.note(&["wind.faces.bottom"], message);
+fn bottom_and_top(wind: &Wind, conflicts: &mut Conflicts) {
+    let WindFaces { bottom, top, .. } = wind.faces;
+    let closed = || WindBoundary::ALL.iter().filter(|face| face.blocks_flow());
+    if !bottom.blocks_flow() {
+        let allowed = quoted(closed().map(|face| face.word()));
+        conflicts.note(&["wind.faces.bottom"], format!("is \"{}\"; allowed: {allowed}, since the ground is there", bottom.word()));
     }
-    let why = match wind.faces.top {
+    let why = match top {
         Wrap => Some("since the ground is opposite"),
         Inflow => Some("since the mean wind is level and enters by the sides"),
         _ => None,
     };
     if let Some(why) = why {
-        let message =
-            format!("is \"{}\"; allowed: \"free-slip\", \"reflect\", \"no-slip\", \"lid\" or \"outflow\", {why}", wind.faces.top.word());
-        misfits.note(&["wind.faces.top"], message);
+        let allowed = quoted(closed().chain([&Outflow]).map(|face| face.word()));
+        conflicts.note(&["wind.faces.top"], format!("is \"{}\"; allowed: {allowed}, {why}", top.word()));
     }
 }
 
-/// Faces and what they ask of the face opposite.
-fn sides(wind: &Wind, misfits: &mut Misfits) {
+/// Words in quotes, as a list that ends in "or".
+fn quoted<'a>(words: impl Iterator<Item = &'a str>) -> String {
+    let words: Vec<_> = words.map(|word| format!("\"{word}\"")).collect();
+    match words.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+        None => String::new(),
+    }
+}
+
+/// Checks faces against the face opposite.
+fn sides(wind: &Wind, conflicts: &mut Conflicts) {
     let pairs = wind.faces.pairs();
     for (axis, ..) in LEVEL {
         for side in [0, 1] {
@@ -76,46 +84,46 @@ fn sides(wind: &Wind, misfits: &mut Misfits) {
                     "is \"{word}\", and `{opposite_path}` opposite is \"wrap\"; allowed: \"wrap\" on both or on neither, since what leaves \
                      through one enters through the other"
                 );
-                misfits.note(&[path, opposite_path], message);
+                conflicts.note(&[path, opposite_path], message);
             }
-            if face == Inflow && is_closed(opposite) {
+            if face == Inflow && opposite.blocks_flow() {
                 let message = format!(
                     "is \"inflow\", and `{opposite_path}` opposite is \"{}\"; allowed there: \"inflow\" or \"outflow\", since what enters \
                      must leave",
                     opposite.word()
                 );
-                misfits.note(&[path, opposite_path], message);
+                conflicts.note(&[path, opposite_path], message);
             }
         }
     }
 }
 
-/// The prevailing wind blows through no closed face, and in through no outflow.
-fn mean_wind(wind: &Wind, misfits: &mut Misfits) {
+/// The prevailing wind must not blow through a closed face, nor in through an outflow.
+fn mean_wind(wind: &Wind, conflicts: &mut Conflicts) {
     let pairs = wind.faces.pairs();
     for (axis, level_axis, _, path) in LEVEL {
         let mean = wind.mean_m_per_s[level_axis];
         let [low, high] = pairs[axis];
-        // What is wrong with the faces themselves is told by `sides`.
-        if mean == 0.0 || low == Wrap || high == Wrap || is_closed(low) && high == Inflow || is_closed(high) && low == Inflow {
+        // Inconsistent faces are reported by `sides`.
+        if mean == 0.0 || low == Wrap || high == Wrap || low.blocks_flow() && high == Inflow || high.blocks_flow() && low == Inflow {
             continue;
         }
         let windward = usize::from(mean < 0.0);
-        if let Some(side) = [0, 1].into_iter().find(|&side| is_closed(pairs[axis][side])) {
+        if let Some(side) = [0, 1].into_iter().find(|&side| pairs[axis][side].blocks_flow()) {
             let (word, face) = (pairs[axis][side].word(), FACES[axis][side]);
             let message = format!("is {mean}, and `{face}` is \"{word}\"; allowed: 0, since nothing blows through such a face");
-            misfits.note(&[path, face], message);
+            conflicts.note(&[path, face], message);
         } else if pairs[axis][windward] == Outflow {
             let (sign, face) = (["at most", "at least"][windward], FACES[axis][windward]);
             let message = format!(
                 "is {mean}, which enters at `{face}`, an \"outflow\"; allowed: {sign} 0, or \"inflow\" there, since an outflow does not know what enters"
             );
-            misfits.note(&[path, face], message);
+            conflicts.note(&[path, face], message);
         }
     }
 }
 
-fn lids(wind: &Wind, misfits: &mut Misfits) {
+fn lids(wind: &Wind, conflicts: &mut Conflicts) {
     const LID: [&str; 3] = ["wind.faces.lid_m_per_s[0]", "wind.faces.lid_m_per_s[1]", "wind.faces.lid_m_per_s[2]"];
     for (axis, pair) in wind.faces.pairs().into_iter().enumerate() {
         let across = wind.faces.lid_m_per_s[axis];
@@ -124,13 +132,13 @@ fn lids(wind: &Wind, misfits: &mut Misfits) {
             let face = FACES[axis][side];
             let message =
                 format!("is {across}, and `{face}` is \"lid\"; allowed: 0, since a lid slides along itself and lets nothing through");
-            misfits.note(&[LID[axis], face], message);
+            conflicts.note(&[LID[axis], face], message);
         }
     }
 }
 
-/// The box has room for the world, or for its patches.
-fn extent(scene: &Scene, misfits: &mut Misfits) {
+/// The box must cover the world, or a whole number of patches.
+fn extent(scene: &Scene, conflicts: &mut Conflicts) {
     let (wind, patch_m) = (&scene.wind, scene.patches.patch_m());
     let pairs = wind.faces.pairs();
     for (axis, level_axis, name, _) in LEVEL {
@@ -144,24 +152,24 @@ fn extent(scene: &Scene, misfits: &mut Misfits) {
                     "is \"patch\", and cells × spacing_m is {box_m} m along {name}; allowed: a whole number of patches of {patch_m} m, since one \
                      box serves every patch"
                 );
-                misfits.note(&["wind.tiling", "wind.cells", "wind.spacing_m", "patches.cells", "patches.cell_m"], message);
+                conflicts.note(&["wind.tiling", "wind.cells", "wind.spacing_m", "patches.cells", "patches.cell_m"], message);
             }
         } else if pairs[axis].contains(&Wrap) {
-            // A face that wraps alone is told by `sides`.
+            // A single `wrap` face is reported by `sides`.
         } else if wind.tiling != WindTiling::Box {
             let message = format!(
                 "is \"{}\", and `{low}` is \"{}\"; allowed: \"wrap\" on all four sides, since the box repeats over the world",
                 wind.tiling.word(),
                 pairs[axis][0].word()
             );
-            misfits.note(&["wind.tiling", low, high], message);
+            conflicts.note(&["wind.tiling", low, high], message);
         } else if box_m < world_m {
             let message = format!(
                 "is \"{}\", which needs a box that covers the world: {world_m} m along {name}, and cells × spacing_m is {box_m} m; make it larger or \
                  use \"wrap\"",
                 pairs[axis][0].word()
             );
-            misfits.note(
+            conflicts.note(
                 &[low, high, "wind.tiling", "wind.cells", "wind.spacing_m", "patches.count", "patches.cells", "patches.cell_m"],
                 message,
             );
@@ -169,20 +177,18 @@ fn extent(scene: &Scene, misfits: &mut Misfits) {
     }
 }
 
-/// Schemes of the staggered method that go with each other and with the terrain.
-fn schemes(wind: &Wind, misfits: &mut Misfits) {
-    let (fits, why) = match wind.advection {
-        WindAdvection::Conservative => ([WindTime::Split, WindTime::RungeKutta3], "reflection is for what traces the air back"),
-        _ => ([WindTime::Split, WindTime::Reflection], "Runge–Kutta stages need fluxes, and this way traces the air back"),
-    };
-    if !fits.contains(&wind.time) {
-        let [first, second] = fits.map(WindTime::word);
+/// Checks the schemes of the staggered solver against each other and the terrain.
+fn schemes(wind: &Wind, conflicts: &mut Conflicts) {
+    if !wind.time.allows(wind.advection) {
+        let why = if wind.advection.uses_fluxes() { "reflection needs" } else { "Runge–Kutta stages need" };
+        let family = if wind.advection.uses_fluxes() { "semi-Lagrangian advection" } else { "fluxes through cell faces" };
         let message = format!(
-            "is \"{}\"; allowed with `advection = \"{}\"`: \"{first}\" or \"{second}\", since {why}",
+            "is \"{}\"; allowed with `advection = \"{}\"`: {}, since {why} {family}",
             wind.time.word(),
-            wind.advection.word()
+            wind.advection.word(),
+            quoted(WindTime::ALL.iter().filter(|time| time.allows(wind.advection)).map(|time| time.word()))
         );
-        misfits.note(&["wind.time", "wind.advection"], message);
+        conflicts.note(&["wind.time", "wind.advection"], message);
     }
     if wind.terrain != WindTerrain::Obstacle {
         return;
@@ -190,26 +196,26 @@ fn schemes(wind: &Wind, misfits: &mut Misfits) {
     if wind.pressure == WindPressure::Direct {
         let message = "is \"direct\"; allowed with `terrain = \"obstacle\"`: \"multigrid\", \"conjugate-gradients\", \"sor\", \"gauss-seidel\" or \
                        \"jacobi\", since transforms know no solid cells";
-        misfits.note(&["wind.pressure", "wind.terrain"], message.to_owned());
+        conflicts.note(&["wind.pressure", "wind.terrain"], message.to_owned());
     }
     if matches!(wind.diffusion, WindDiffusion::Implicit | WindDiffusion::CrankNicolson) {
         let message = format!(
             "is \"{}\"; allowed with `terrain = \"obstacle\"`: \"explicit\" or \"gauss-seidel\", since transforms know no solid cells",
             wind.diffusion.word()
         );
-        misfits.note(&["wind.diffusion", "wind.terrain"], message);
+        conflicts.note(&["wind.diffusion", "wind.terrain"], message);
     }
     if wind.tiling != WindTiling::Box {
         let message = format!(
             "is \"{}\"; allowed with `terrain = \"obstacle\"`: \"box\", since the land differs from place to place",
             wind.tiling.word()
         );
-        misfits.note(&["wind.tiling", "wind.terrain"], message);
+        conflicts.note(&["wind.tiling", "wind.terrain"], message);
     }
 }
 
-/// The method of 000 has one scheme for each part. What a file leaves unsaid follows the method, so what differs was given.
-fn stable_fluids(wind: &Wind, misfits: &mut Misfits) {
+/// The method `stable-fluids` has one scheme of each kind, the default of omitted fields, so a field that differs was given in the file.
+fn stable_fluids(wind: &Wind, conflicts: &mut Conflicts) {
     let own = Wind::of(WindMethod::StableFluids);
     let words = [
         ("wind.advection", wind.advection.word(), own.advection.word()),
@@ -222,7 +228,7 @@ fn stable_fluids(wind: &Wind, misfits: &mut Misfits) {
     for (path, word, own) in words {
         if word != own {
             let message = format!("is \"{word}\"; allowed with `method = \"stable-fluids\"`: \"{own}\", the only one that method has");
-            misfits.note(&[path, "wind.method"], message);
+            conflicts.note(&[path, "wind.method"], message);
         }
     }
     for (axis, pair) in wind.faces.pairs().into_iter().enumerate() {
@@ -231,19 +237,19 @@ fn stable_fluids(wind: &Wind, misfits: &mut Misfits) {
             if !matches!(face, Wrap | FreeSlip | Reflect) {
                 let word = face.word();
                 let message = format!("is \"{word}\"; allowed with `method = \"stable-fluids\"`: {known}, the only ones that method has");
-                misfits.note(&[path, "wind.method"], message);
+                conflicts.note(&[path, "wind.method"], message);
             }
         }
     }
     if wind.canopy_drag_per_m != 0.0 {
         let message =
             format!("is {}; allowed with `method = \"stable-fluids\"`: 0, since that method has no canopy", wind.canopy_drag_per_m);
-        misfits.note(&["wind.canopy_drag_per_m", "wind.method"], message);
+        conflicts.note(&["wind.canopy_drag_per_m", "wind.method"], message);
     }
 }
 
-/// Primitives stand in the world and within the height of the box.
-fn primitives(scene: &Scene, misfits: &mut Misfits) {
+/// Primitives must be inside the world and the height of the box.
+fn primitives(scene: &Scene, conflicts: &mut Conflicts) {
     let [width_m, depth_m] = scene.extent_m();
     let (world, air) = (["patches.count", "patches.cells", "patches.cell_m"], ["wind.cells", "wind.spacing_m"]);
     let limits = [
@@ -256,13 +262,8 @@ fn primitives(scene: &Scene, misfits: &mut Misfits) {
             let at_m = primitive.at_m[axis];
             if at_m > limit_m {
                 let path = format!("wind.primitives[{i}].at_m[{axis}]");
-                misfits.note(&[&[path.as_str()], set_by].concat(), format!("is {at_m}; allowed: 0 to {limit_m}, {what}"));
+                conflicts.note(&[&[path.as_str()], set_by].concat(), format!("is {at_m}; allowed: 0 to {limit_m}, {what}"));
             }
         }
     }
-}
-
-/// Whether no air passes through a face.
-fn is_closed(face: WindBoundary) -> bool {
-    matches!(face, FreeSlip | Reflect | NoSlip | Lid)
 }

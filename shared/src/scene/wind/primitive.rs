@@ -6,39 +6,39 @@ use serde::{Deserialize, Serialize};
 words! {
     /// Kinds of flow primitive (Wejchert & Haumann, SIGGRAPH 1991).
     PrimitiveKind {
-        /// Blows one way.
+        /// Blows in one direction.
         Uniform = "uniform",
         /// Blows away from its centre.
         Source = "source",
-        /// Draws towards its centre.
+        /// Blows towards its centre.
         Sink = "sink",
-        /// Turns about an upright axis.
+        /// Rotates about a vertical axis.
         Vortex = "vortex",
-        /// A vortex that draws in near the ground and lifts at its heart (001 §5.3).
+        /// A vortex with inflow near the ground and an updraught in its core (Chen & Johan §5.3).
         Cyclone = "cyclone",
     }
 }
 
-/// One flow primitive; all of a scene are superposed and push the wind towards their sum.
+/// A flow primitive. Those of a scene are superposed and drive the wind towards their sum.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Primitive {
-    /// `uniform` blows one way, `source` away from its centre, `sink` towards it, `vortex` about an upright axis, and `cyclone` is
-    /// a vortex that draws in and lifts (Wejchert & Haumann 1991; 001 §5.3). Required.
+    /// `uniform` blows in one direction, `source` away from its centre, `sink` towards it, `vortex` about a vertical axis, and `cyclone`
+    /// is a vortex with inflow and updraught (Wejchert & Haumann 1991; Chen & Johan §5.3). Required.
     pub kind: PrimitiveKind,
     /// Centre: X, height above the ground and Z (m); within the world and the height of the wind's box. Required, allowed
     /// 0..=100000 each.
     pub at_m: [f32; 3],
     /// Radius within which it acts (m). Default 20, allowed 0.1..=100000.
     pub radius_m: f32,
-    /// Greatest speed that it gives (m/s). Default 8, allowed 0..=40.
+    /// Maximum speed (m/s). Default 8, allowed 0..=40.
     pub speed_m_per_s: f32,
     /// Heading of `uniform` (rad), from north towards east. Default 0, allowed −6.3..=6.3.
     pub heading_rad: f32,
-    /// Velocity at which the centre travels along X and Z (m/s); at the world's edge it comes in again on the other side. Default
+    /// Velocity at which the centre travels along X and Z (m/s); at the edge of the world it re-enters on the other side. Default
     /// (0, 0), allowed −40..=40 each.
     pub drift_m_per_s: [f32; 2],
-    /// Share of `wind.dust.release_per_s` that it releases at its centre. Default 0, allowed 0..=1.
+    /// Dust that it releases at its centre, relative to `wind.dust.release_per_s`. Default 0, allowed 0..=1.
     pub dust: f32,
 }
 

@@ -1,8 +1,8 @@
-//! The words that choose how the wind is solved: methods, schemes, tiling and terrain.
+//! Choices of the wind solver in a scene file: methods, schemes, tiling and terrain.
 
 use serde::{Deserialize, Serialize};
 
-/// An enum of the words that a field of a scene file takes, each variant with its word.
+/// Declares an enum for a field of a scene file, with the word of each variant.
 macro_rules! words {
     ($(#[$meta:meta])* $name:ident { $($(#[$doc:meta])* $variant:ident = $word:literal,)+ }) => {
         $(#[$meta])*
@@ -12,10 +12,13 @@ macro_rules! words {
         }
 
         impl $name {
+            /// Every variant.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+
             /// Every word, in the order of the variants.
             pub const WORDS: &'static [&'static str] = &[$($word),+];
 
-            /// The word that a scene file writes.
+            /// The word in a scene file.
             pub fn word(self) -> &'static str {
                 match self {
                     $(Self::$variant => $word,)+
@@ -27,65 +30,86 @@ macro_rules! words {
 pub(crate) use words;
 
 words! {
-    /// Which solver computes the wind.
+    /// Wind solver.
     WindMethod {
-        /// Velocities on the faces of cells, pressure and dust at their centres (Harlow & Welch, Phys. Fluids 8, 1965).
+        /// Staggered grid: velocities on cell faces, pressure and dust at cell centres (Harlow & Welch, Phys. Fluids 8, 1965).
         Staggered = "staggered",
-        /// The method of 000, chapter 2: everything at the centres of cells, 20 Gauss–Seidel sweeps (after Stam, SIGGRAPH 1999).
+        /// Collocated grid, 20 Gauss–Seidel sweeps (Zhang, chapter 2, after Stam, SIGGRAPH 1999).
         StableFluids = "stable-fluids",
     }
 }
 
 words! {
-    /// How the wind carries itself, or dust, along.
+    /// Advection scheme of the wind or of dust.
     WindAdvection {
-        /// Traces back and reads between cells linearly (000 §2.3); first order, loses energy.
+        /// Linear interpolation at the departure point (Zhang §2.3); first order, dissipative.
         SemiLagrangian = "semi-lagrangian",
-        /// Semi-Lagrangian there and back, half the error taken off, limited (Selle et al., J. Sci. Comput. 35, 2008); second order.
+        /// Semi-Lagrangian forward and back, half the error subtracted, limited (Selle et al., J. Sci. Comput. 35, 2008); second order.
         MacCormack = "mac-cormack",
         /// Back and forth error compensation and correction (Dupont & Liu, J. Comput. Phys. 190, 2003); second order.
         Bfecc = "bfecc",
-        /// Fluxes through the faces of cells; second order, keeps momentum.
+        /// Fluxes through cell faces; second order, conserves momentum.
         Conservative = "conservative",
     }
 }
 
-words! {
-    /// How the parts of a step follow each other.
-    WindTime {
-        /// One after the other; first order in time.
-        Split = "split",
-        /// Projects by reflection half-way (Zehnder, Narain & Thomaszewski, SIGGRAPH 2018); second order, for the semi-Lagrangian family.
-        Reflection = "reflection",
-        /// Three Runge–Kutta stages; second order with the pressure, for conservative advection.
-        RungeKutta3 = "runge-kutta-3",
+impl WindAdvection {
+    /// Whether the scheme computes fluxes through cell faces, rather than tracing trajectories back.
+    pub fn uses_fluxes(self) -> bool {
+        match self {
+            Self::SemiLagrangian | Self::MacCormack | Self::Bfecc => false,
+            Self::Conservative => true,
+        }
     }
 }
 
 words! {
-    /// How viscosity spreads momentum.
+    /// Time scheme of the wind.
+    WindTime {
+        /// One sub-step after the other; first order in time.
+        Split = "split",
+        /// Advection–reflection (Narain, Zehnder & Thomaszewski, Proc. ACM Comput. Graph. Interact. Tech. 2, 2019); second order, for the semi-Lagrangian family.
+        Reflection = "reflection",
+        /// Three Runge–Kutta stages with pressure correction; second order, for conservative advection.
+        RungeKutta3 = "runge-kutta-3",
+    }
+}
+
+impl WindTime {
+    /// Whether the scheme can be combined with an advection scheme of the wind.
+    pub fn allows(self, advection: WindAdvection) -> bool {
+        match self {
+            Self::Split => true,
+            Self::Reflection => !advection.uses_fluxes(),
+            Self::RungeKutta3 => advection.uses_fluxes(),
+        }
+    }
+}
+
+words! {
+    /// Diffusion scheme of the wind.
     WindDiffusion {
-        /// Forward in time, sub-stepped within its limit (a = ν·dt/h² up to 1/6 in cubic cells).
+        /// Forward Euler, with substeps within its limit (ν·dt/h² up to 1/6 in cubic cells).
         Explicit = "explicit",
-        /// Implicit, by Gauss–Seidel sweeps (000 §2.3).
+        /// Backward Euler by Gauss–Seidel sweeps (Zhang §2.3).
         GaussSeidel = "gauss-seidel",
-        /// Implicit Euler, solved directly; first order in time.
+        /// Backward Euler, solved directly; first order in time.
         Implicit = "implicit",
-        /// Mean of explicit and implicit, solved directly; second order in time.
+        /// Crank–Nicolson, solved directly; second order in time.
         CrankNicolson = "crank-nicolson",
     }
 }
 
 words! {
-    /// How the pressure that makes the wind free of divergence is found.
+    /// Solver of the pressure equation.
     WindPressure {
-        /// By transforms, to rounding; needs a box without obstacles.
+        /// Transforms, exact to rounding; needs a box without obstacles.
         Direct = "direct",
-        /// Jacobi's sweeps, from the last iterate.
+        /// Jacobi sweeps.
         Jacobi = "jacobi",
-        /// Gauss–Seidel sweeps (000 §2.3).
+        /// Gauss–Seidel sweeps (Zhang §2.3).
         GaussSeidel = "gauss-seidel",
-        /// Successive over-relaxation, red and black.
+        /// Red–black successive over-relaxation.
         Sor = "sor",
         /// Conjugate gradients.
         ConjugateGradients = "conjugate-gradients",
@@ -95,21 +119,21 @@ words! {
 }
 
 words! {
-    /// How the box serves a world larger than itself.
+    /// How the wind's box covers the world.
     WindTiling {
-        /// One box over the scene, repeated where it wraps.
+        /// One box over the scene, repeated where it is periodic.
         Box = "box",
-        /// One small box serves every patch, moved at random per patch (000 §5.1).
+        /// One small box that serves every patch, with a random offset per patch (Zhang §5.1).
         Patch = "patch",
-        /// The box goes where the action is.
+        /// A box that follows the objects.
         Follow = "follow",
     }
 }
 
 words! {
-    /// What the land is to the wind.
+    /// How the wind treats the land.
     WindTerrain {
-        /// The floor of the box follows the land; heights in the box count from the ground.
+        /// The floor of the box follows the land; heights in the box are above the ground.
         Follow = "follow",
         /// The land is solid cells in a box of absolute height.
         Obstacle = "obstacle",

@@ -1,19 +1,23 @@
 //! Binary arithmetic coder: a 32-bit interval, split by an adaptive probability for each bit.
 
-use super::model::Coder;
+/// Either side of the arithmetic coder: an encoder writes the given bit, a decoder reads it.
+pub(super) trait Coder {
+    /// Codes one bit with its adaptive probability.
+    fn code(&mut self, probability: &mut Probability, bit: Option<bool>) -> bool;
+}
 
-/// Probability that a bit is set, in 1/65536, learnt as the running mean of the bits seen, from [`SETTLED`] bits on as their
-/// moving mean. Payloads are short, so the first bits must count.
+/// Probability that a bit is set, in 1/65536: the mean of the bits seen so far, and after [`SETTLED`] bits their exponential moving average.
+/// Payloads are short, so the first bits must count.
 #[derive(Clone, Copy)]
 pub(super) struct Probability {
     set: u16,
     seen: u8,
 }
 
-/// Number of bits after which a probability forgets as fast as it learns.
+/// Number of bits after which the adaptation rate stays constant.
 const SETTLED: usize = 48;
 
-/// Share by which the n-th bit moves the estimate, in 1/65536: 1/(n + 1.6).
+/// Adaptation rate at the n-th bit, in 1/65536: 1/(n + 1.6).
 const RATE: [u32; SETTLED] = {
     let mut rate = [0; SETTLED];
     let mut seen = 0;
@@ -31,7 +35,7 @@ impl Default for Probability {
 }
 
 impl Probability {
-    /// Where to split an interval of `range`: the lower part stands for a set bit. At least 1, less than `range`.
+    /// Split point of an interval of `range`; the lower part stands for a set bit. At least 1, less than `range`.
     fn split(self, range: u32) -> u32 {
         let set = u32::from(self.set).clamp(48, (1 << 16) - 48);
         ((u64::from(range) * u64::from(set)) >> 16) as u32
@@ -48,7 +52,7 @@ impl Probability {
     }
 }
 
-/// Writes bits into an interval `low..=high`; leading bytes that both ends share are done.
+/// Encoder: narrows the interval `low..=high` by each bit and emits the leading bytes that both ends share.
 pub(super) struct Encoder {
     low: u32,
     high: u32,
@@ -62,7 +66,7 @@ impl Default for Encoder {
 }
 
 impl Encoder {
-    /// Ends the payload with the fewest bytes that, followed by zeros, lie in the interval.
+    /// Ends the payload with the fewest bytes that, followed by zeros, are in the interval.
     pub(super) fn finish(mut self) -> Vec<u8> {
         let (value, kept) = shortest(self.low, self.high);
         self.bytes.extend(&value.to_be_bytes()[..kept]);
@@ -101,7 +105,7 @@ impl Coder for Encoder {
     }
 }
 
-/// Reads the bits back; past the payload's end it reads zeros.
+/// Decoder; past the end of the payload it reads zeros.
 pub(super) struct Decoder<'a> {
     low: u32,
     high: u32,
@@ -125,7 +129,7 @@ impl<'a> Decoder<'a> {
         self.taken += 1;
     }
 
-    /// Whether the payload ends just as an encoder would have ended it here.
+    /// Whether the payload ends exactly where an encoder would have ended it.
     pub(super) fn is_exhausted_exactly(&self) -> bool {
         let (value, kept) = shortest(self.low, self.high);
         self.value == value && self.payload.len() == self.taken - 4 + kept

@@ -1,28 +1,31 @@
 //! Lossless codec of the streamed fields: adaptive binary arithmetic coding of small 8-bit grids.
 //!
-//! A grid has a few planes of rows of codes ([`Shape`]). It is coded against a base of the same shape (delta) or against
-//! zero (key), so one path serves both. Per tile of 8 × 8 cells and plane:
+//! A grid has a few planes of rows of codes ([`Shape`]). It is coded as differences from a base of the same shape (delta frame) or from
+//! zero (key frame), so one code path serves both. Per plane and tile of 8 × 8 cells:
 //!
-//! 1. One bit says whether anything differs from the base; a tile at rest costs a small fraction of a bit.
-//! 2. One bit chooses how the differences `d` are predicted: not at all (noise of one code), or by the median edge
-//!    detector of the three neighbours already coded (smooth motion, key frames), as in JPEG-LS (Weinberger, Seroussi & Sapiro 2000).
-//! 3. The residual goes as zero flag, sign and exp-Golomb magnitude, each binary decision with its own adaptive
-//!    probability, chosen by the size of the neighbours' residuals.
+//! 1. One bit says whether the tile differs from the base; a tile at rest costs a small fraction of a bit.
+//! 2. One bit chooses the prediction of the differences: none (noise of one code), or the median edge detector on three neighbours
+//!    already coded (smooth motion, key frames), as in JPEG-LS (Weinberger et al. 2000).
+//! 3. The residual is coded as zero flag, sign and exp-Golomb magnitude. Each binary decision has its own adaptive probability, chosen by the
+//!    size of the neighbours' residuals.
 //!
-//! Everything is integer arithmetic, hence the same on every machine. Decoding does a bounded amount of work for any bytes.
+//! All arithmetic is on integers, so results are the same on every machine. Decoding takes bounded time for any bytes.
 
 mod arithmetic;
 mod model;
+mod tile;
 
-use model::{Coder, Model};
+use arithmetic::Coder;
+use model::Model;
 use thiserror::Error;
+use tile::{median_edge, predicts_better, tiles};
 
-/// How the codes of a grid lie: some planes, one after the other, of rows of `width` codes.
+/// Memory layout of a grid: `planes` planes, one after the other, each of rows of `width` codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
     /// Codes in one row.
     pub width: usize,
-    /// Planes: what each stands for is the message's affair. The first has statistics of its own, so has the fourth; others share theirs.
+    /// Number of planes; their meaning is up to the message. The first and the fourth have separate statistics, all others share theirs.
     pub planes: usize,
 }
 
@@ -32,7 +35,7 @@ impl Shape {
         Self { width: cells, planes: 3 }
     }
 
-    /// Planes u, v, w, and the dust where there is any, of a wind of `width` cells along X.
+    /// Planes u, v, w and, with `has_dust`, dust, of a wind of `width` cells along X.
     pub const fn wind(width: usize, has_dust: bool) -> Self {
         Self { width, planes: if has_dust { 4 } else { 3 } }
     }
@@ -43,24 +46,21 @@ impl Shape {
     }
 }
 
-/// Side of a tile (cells).
-const TILE: usize = 8;
-
-/// Why a payload is no grid.
+/// Reasons why a payload cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum CodecError {
-    /// The payload ends before the grid is whole, or holds more than the grid.
-    #[error("the payload's length does not fit its grid")]
+    /// The payload ends before the grid is complete, or is longer than the grid.
+    #[error("the payload's length does not match its grid")]
     Length,
-    /// A value leaves −127..=127.
+    /// A value is outside −127..=127.
     #[error("the payload holds a value outside -127..=127")]
     Range,
 }
 
-/// Codes `codes` against `base` of the same shape, or against zero.
+/// Encodes `codes` as differences from `base` of the same shape, or from zero.
 ///
 /// # Panics
-/// When the shapes do not fit: `codes.len()` must be a multiple of `planes · width` and equal to the base's length.
+/// When `codes.len()` is not a multiple of `planes · width`, or differs from the base's length.
 pub fn encode(shape: Shape, codes: &[i8], base: Option<&[i8]>) -> Vec<u8> {
     shape.assert_fits(codes);
     let Shape { width, planes } = shape;
@@ -92,7 +92,7 @@ pub fn encode(shape: Shape, codes: &[i8], base: Option<&[i8]>) -> Vec<u8> {
     encoder.finish()
 }
 
-/// Decodes a payload in place: `codes` holds the base (all zero for a key) and becomes the grid.
+/// Decodes a payload in place: `codes` holds the base (all zero for a key frame) and is overwritten by the grid.
 ///
 /// # Errors
 /// [`CodecError`] when the payload is damaged; `codes` is then unspecified.
@@ -132,55 +132,6 @@ pub fn decode(shape: Shape, payload: &[u8], codes: &mut [i8]) -> Result<(), Code
     if decoder.is_exhausted_exactly() { Ok(()) } else { Err(CodecError::Length) }
 }
 
-/// A rectangle of cells, clipped to the grid.
-struct Tile {
-    x: std::ops::Range<usize>,
-    y: std::ops::Range<usize>,
-}
-
-impl Tile {
-    fn cells(&self, width: usize) -> impl Iterator<Item = usize> + use<> {
-        let columns = self.x.clone();
-        self.y.clone().flat_map(move |y| columns.clone().map(move |x| y * width + x))
-    }
-}
-
-fn tiles(width: usize, rows: usize) -> impl Iterator<Item = Tile> {
-    (0..rows)
-        .step_by(TILE)
-        .flat_map(move |y| (0..width).step_by(TILE).map(move |x| Tile { x: x..(x + TILE).min(width), y: y..(y + TILE).min(rows) }))
-}
-
-/// Values to the left, above, and above left of a cell; zero outside the plane.
-fn neighbours(values: &[i16], width: usize, at: usize) -> [i16; 3] {
-    let left_inside = !at.is_multiple_of(width);
-    let left = if left_inside { values[at - 1] } else { 0 };
-    let above = if at >= width { values[at - width] } else { 0 };
-    let above_left = if left_inside && at >= width { values[at - width - 1] } else { 0 };
-    [left, above, above_left]
-}
-
-fn median_edge(values: &[i16], width: usize, at: usize) -> i16 {
-    let [left, above, above_left] = neighbours(values, width, at);
-    let (low, high) = if left < above { (left, above) } else { (above, left) };
-    if above_left >= high {
-        low
-    } else if above_left <= low {
-        high
-    } else {
-        left + above - above_left
-    }
-}
-
-fn predicts_better(tile: &Tile, width: usize, differences: &[i16]) -> bool {
-    let (mut plain, mut predicted) = (0_i32, 0_i32);
-    for at in tile.cells(width) {
-        plain += i32::from(differences[at].abs());
-        predicted += i32::from((differences[at] - median_edge(differences, width, at)).abs());
-    }
-    predicted < plain
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -199,7 +150,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn key_and_delta_come_back(
+        fn key_and_delta_frames_round_trip(
             (shape, base, codes) in (shapes(), 1_usize..20).prop_flat_map(|(shape, rows)| (Just(shape), grid(shape, rows), grid(shape, rows)))
         ) {
             let mut decoded = vec![0; codes.len()];
@@ -211,7 +162,7 @@ mod tests {
         }
 
         #[test]
-        fn any_bytes_are_a_grid_or_an_error(bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
+        fn arbitrary_bytes_decode_or_give_an_error(bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
             for shape in [Shape::patch(16), Shape::wind(16, true)] {
                 let mut codes = vec![0; shape.planes * 16 * 16];
                 if decode(shape, &bytes, &mut codes).is_ok() {
@@ -222,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn longer_and_shorter_payloads_are_refused() {
+    fn payloads_of_the_wrong_length_are_rejected() {
         let codes: Vec<i8> = (0..PATCH_LEN).map(|i| ((i * 7919) % 255) as u8 as i8).map(|c| c.max(-127)).collect();
         let whole = encode(PATCH, &codes, None);
         for length in [0, whole.len() / 2, whole.len() + 1, whole.len() + 3] {
@@ -255,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_more_leaves_the_others_as_cheap() {
+    fn an_extra_plane_does_not_raise_the_cost_of_the_others() {
         let three: Vec<i8> = (0..PATCH_LEN).map(|i| ((i % 64) as i8 - 32) / 5).collect();
         let four = [three.as_slice(), &[0; 64 * 64]].concat();
         let [without, with] = [encode(PATCH, &three, None).len(), encode(Shape::wind(64, true), &four, None).len()];

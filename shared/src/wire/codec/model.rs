@@ -1,17 +1,11 @@
-//! The adaptive probabilities and the contexts that choose among them.
+//! Adaptive probabilities, and the contexts that select them.
 
-use super::arithmetic::Probability;
-use super::{Tile, neighbours};
+use super::arithmetic::{Coder, Probability};
+use super::tile::{Tile, neighbours};
 
-/// One side of the arithmetic coder: an encoder writes the bit it is given, a decoder finds it.
-pub(super) trait Coder {
-    /// Codes one bit with its adaptive probability.
-    fn code(&mut self, probability: &mut Probability, bit: Option<bool>) -> bool;
-}
-
-/// θ or u has statistics of its own, so has dust; ωx and ωz, or v and w, share theirs.
+/// Sets of statistics: one for θ or u, one shared by ωx and ωz (or v and w), one for dust.
 const KINDS: usize = 3;
-/// Sizes of the neighbours' residuals told apart.
+/// Number of size classes of the neighbours' residuals.
 const SIZES: usize = 6;
 /// Longest exp-Golomb prefix: magnitudes up to 2¹⁰ − 1.
 const PREFIX: usize = 10;
@@ -46,8 +40,8 @@ impl Model {
         &mut self.predicted[kind(plane)]
     }
 
-    /// Codes the residual of cell `at`, keeps it in `residuals` and returns it.
-    #[allow(clippy::too_many_arguments, reason = "a cell's context is the tile's mode and its place")]
+    /// Codes the residual of cell `at`, stores it in `residuals` and returns it.
+    #[expect(clippy::too_many_arguments, reason = "the context of a cell is its tile's mode and its position")]
     pub(super) fn code_residual(
         &mut self,
         coder: &mut impl Coder,
@@ -73,7 +67,7 @@ impl Model {
         residual
     }
 
-    /// Exp-Golomb code of a magnitude of at least 1: the place of its top bit in unary, then the bits below it.
+    /// Exp-Golomb code of a magnitude of at least 1: the position of its top bit in unary, then the bits below it.
     fn code_magnitude(&mut self, coder: &mut impl Coder, kind: usize, size: usize, magnitude: Option<u16>) -> i16 {
         let top = magnitude.map(|m| m.ilog2() as usize);
         let mut length = 0;

@@ -1,13 +1,13 @@
-//! Cost against the number of cars that move: the bend field alone.
+//! Cost of the bend field against the number of moving cars.
 
 use std::f32::consts::TAU;
 use std::fmt::Write as _;
 use std::time::Instant;
 
 use anyhow::Result;
-use shared::bend::{Alone, Field, Kinds, Rest, Scheme, WaveParams};
-use shared::grid::PatchLayout;
-use shared::scene::Grass;
+use prairie_core::bend::{Alone, Field, Kinds, Rest, Scheme};
+use prairie_core::grid::PatchLayout;
+use prairie_core::scene::Grass;
 
 use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
 use crate::problems::bend::Striker;
@@ -18,11 +18,11 @@ const CIRCLE_M: f32 = 20.0;
 /// Circles along one side of the world, around corners where four patches meet.
 const SIDE: u32 = 16;
 
-/// So many cars on circles of their own: the least time of a step (s) once their tracks are as long as they get, and the mean number of cells stepped. All that
-/// disturbs a step makes it longer.
+/// Cars on separate circles: the shortest time of a step (s) once their tracks have full length, since disturbances only lengthen it, and the mean number of
+/// stepped cells.
 fn cost(cars: u32, [before, timed]: [u32; 2]) -> Result<[f64; 2]> {
     let layout = PatchLayout { count: [SIDE + 1; 2], cells: 120, cell_m: 0.4572 };
-    let grass = WaveParams::from(&Grass::default());
+    let grass = Grass::default().waves;
     let mut field = Field::new(layout, Kinds::one(grass)).with_rest(Rest { theta_rad: 0.01, omega_rad_per_s: 0.2 });
     let half_m = layout.extent_m()[0] / 2.0;
     let (mut secs, mut cells) = (f64::INFINITY, 0);
@@ -50,7 +50,7 @@ fn cost(cars: u32, [before, timed]: [u32; 2]) -> Result<[f64; 2]> {
     Ok([secs, cells as f64 / f64::from(timed)])
 }
 
-/// Least-squares line through points: its value at 0, its slope, and the share R² of the variance that it explains.
+/// Least-squares line through points: its value at 0, its slope, and the coefficient of determination R².
 fn fit(points: &[[f64; 2]]) -> [f64; 3] {
     let n = points.len() as f64;
     let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / n;
@@ -80,16 +80,16 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
         marked: false,
         joined: true,
     };
-    let said = format!("a step of the bend field takes {}", line.name);
+    let summary = format!("a step of the bend field takes {}", line.name);
     let measured = Curve { name: "measured".into(), points, marked: true, joined: true };
     let axis = |name, most: f64| Axis { name, range: [0.0, 1.05 * most], logarithmic: false };
     let words = Words {
-        title: "What moving cars cost",
-        subtitle: "bend field alone, one thread, least of 60 steps; cars at 20 m/s on circles of their own; sub-stepped, 60 steps a second",
+        title: "Cost of moving cars",
+        subtitle: "bend field alone, one thread, least of 60 steps; each car circles at 20 m/s; sub-stepped, 60 steps per second",
         caption,
     };
-    let svg = curves_svg(&[measured, line], [axis("cars that move", most[0]), axis("time of a step (ms)", most[1])], words)?;
-    Ok(Drawn { svg, csv, said, tables: None })
+    let svg = curves_svg(&[measured, line], [axis("moving cars", most[0]), axis("time of a step (ms)", most[1])], words)?;
+    Ok(Drawn { svg, csv, summary, tables: None })
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
-//! Where each scheme is fine, inaccurate or blows up: speed of a car against steps a second.
+//! Where each scheme is accurate, inaccurate or blows up: speed of a car against steps per second.
 
 use std::fmt::Write as _;
 
 use anyhow::Result;
 use plotters::style::RGBColor;
-use shared::bend::{Alone, Field, Kinds, Rest, Scheme, WaveParams};
-use shared::grid::PatchLayout;
+use prairie_core::bend::{Alone, Field, Kinds, Rest, Scheme, WaveParams};
+use prairie_core::grid::PatchLayout;
 
 use super::super::figure::{Axis, Drawn, Panel, Words, panels_svg};
 use crate::problems::bend::{Striker, cells};
@@ -14,9 +14,9 @@ const SPEEDS_M_PER_S: [f64; 2] = [0.0, 60.0];
 const RATES_PER_S: [f64; 2] = [20.0, 120.0];
 /// Steps into which each tick of the reference is divided.
 const FINER: u32 = 8;
-/// Root mean square of the error, over that of θ, up to which a run is fine.
+/// Bound of the relative root-mean-square error of θ for an accurate run.
 const FINE: f64 = 0.25;
-/// |θ| (rad) beyond which a run counts as blown up: many times what contact can bend.
+/// |θ| (rad) beyond which a run counts as blown up: many times the largest bend by contact.
 const BLOWN_UP_RAD: f32 = 50.0;
 
 const CLASSES: [(&str, RGBColor); 3] = [
@@ -25,7 +25,7 @@ const CLASSES: [(&str, RGBColor); 3] = [
     ("blown up", RGBColor(136, 34, 85)),
 ];
 
-/// In the middle of 001's ranges.
+/// Parameters in the middle of the ranges of Chen & Johan.
 const GRASS: WaveParams = WaveParams {
     c0_m_per_s: 3.0,
     mu_m_per_rad: 0.2,
@@ -35,7 +35,7 @@ const GRASS: WaveParams = WaveParams {
     stiffness_per_s2: 0.0,
 };
 
-/// A second in which a car crosses the field, pressing once a tick; none if it blew up.
+/// A second in which a car crosses the field, pressing once a tick; `None` if it blew up.
 fn cross(scheme: Scheme, speed_m_per_s: f32, rate_per_s: f32, steps: u32) -> Option<Field> {
     let layout = PatchLayout { count: [2; 2], cells: 16, cell_m: 0.4572 };
     let mut field = Field::new(layout, Kinds::one(GRASS)).with_rest(Rest::EXACT);
@@ -50,8 +50,8 @@ fn cross(scheme: Scheme, speed_m_per_s: f32, rate_per_s: f32, steps: u32) -> Opt
         for _ in 0..steps {
             let report = field.step(scheme, dt_secs / steps as f32, &Alone).ok()?;
             let theta = field.awake().map(|patch| patch.theta_max_rad()).fold(0.0, f32::max);
-            // What is no number counts as broken one step later.
-            if report.broken > 0 || theta.is_nan() || theta > BLOWN_UP_RAD {
+            // The report counts patches with NaN only one step later.
+            if report.reset_patches > 0 || theta.is_nan() || theta > BLOWN_UP_RAD {
                 return None;
             }
         }
@@ -59,7 +59,7 @@ fn cross(scheme: Scheme, speed_m_per_s: f32, rate_per_s: f32, steps: u32) -> Opt
     Some(field)
 }
 
-/// Error of a run over the size of its reference; none where either blew up.
+/// Error of a run relative to its reference; `None` if either blew up.
 fn error(run: Option<&Field>, reference: Option<&Field>) -> Option<f64> {
     let (run, reference) = (run?, reference?);
     let (mut apart, mut size) = (0.0, 0.0);
@@ -73,7 +73,7 @@ fn error(run: Option<&Field>, reference: Option<&Field>) -> Option<f64> {
 pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     let [across, up] = if quick { [9, 7] } else { [20, 16] };
     let middle = |[low, high]: [f64; 2], n: usize, count: usize| (low + (high - low) * (n as f64 + 0.5) / count as f64) as f32;
-    let schemes = [("Verlet (001)", Scheme::Verlet), ("sub-stepped", Scheme::Substepped), ("implicit", Scheme::Implicit)];
+    let schemes = [("Chen & Johan", Scheme::Verlet), ("sub-stepped", Scheme::Substepped), ("implicit", Scheme::Implicit)];
     let mut panels = schemes.map(|(name, _)| Panel { name: name.into(), columns: vec![vec![0; up]; across] });
     let mut csv = String::from("scheme,speed_m_per_s,steps_per_s,class,error\n");
     let mut counts = [[0; 3]; 3];
@@ -88,10 +88,10 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
             writeln!(csv, "{name},{speed},{rate},{},{}", ["fine", "inaccurate", "blown up"][class], error.unwrap_or(f64::NAN))?;
         }
     }
-    let mut said = String::new();
+    let mut summary = String::new();
     for ((name, _), [fine, inaccurate, blown_up]) in schemes.into_iter().zip(counts) {
         let share = |count: usize| 100.0 * count as f64 / (across * up) as f64;
-        writeln!(said, "{name}: {:.0} % fine, {:.0} % inaccurate, {:.0} % blown up", share(fine), share(inaccurate), share(blown_up))?;
+        writeln!(summary, "{name}: {:.0} % fine, {:.0} % inaccurate, {:.0} % blown up", share(fine), share(inaccurate), share(blown_up))?;
     }
     let axis = |name, range| Axis { name, range, logarithmic: false };
     let subtitle = format!(
@@ -99,6 +99,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
         GRASS.c0_m_per_s, GRASS.mu_m_per_rad, GRASS.theta_damping_per_s
     );
     let words = Words { title: "Where each scheme fails", subtitle: &subtitle, caption };
-    let svg = panels_svg(&panels, &CLASSES, [axis("speed of the car (m/s)", SPEEDS_M_PER_S), axis("steps a second", RATES_PER_S)], words)?;
-    Ok(Drawn { svg, csv, said, tables: None })
+    let svg =
+        panels_svg(&panels, &CLASSES, [axis("speed of the car (m/s)", SPEEDS_M_PER_S), axis("steps per second", RATES_PER_S)], words)?;
+    Ok(Drawn { svg, csv, summary, tables: None })
 }

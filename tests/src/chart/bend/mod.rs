@@ -1,11 +1,11 @@
 //! The runs and figures of the bend field.
 //!
-//! | file | what it draws |
+//! | file | chart |
 //! |---|---|
 //! | `waves` | error against time: a standing wave, a pulse, a car with a speed that follows the bend |
-//! | `cars` | cost against the number of cars that move |
-//! | `failures` | where each scheme is fine, inaccurate or blows up |
-//! | `overlap` | error of 001's loose overlap |
+//! | `cars` | cost against the number of moving cars |
+//! | `failures` | where each scheme is accurate, inaccurate or blows up |
+//! | `overlap` | error of the loose overlap of Chen & Johan |
 
 mod cars;
 mod failures;
@@ -15,11 +15,11 @@ mod waves;
 use super::Problem;
 use super::figure::Figure;
 
-/// All figures that are not of error against time.
+/// All figures other than error against time.
 pub const FIGURES: [Figure; 3] = [
-    Figure { name: "cars", title: "What moving cars cost", draw: cars::draw },
+    Figure { name: "cars", title: "Cost of moving cars", draw: cars::draw },
     Figure { name: "failures", title: "Where each scheme fails", draw: failures::draw },
-    Figure { name: "overlap", title: "What the loose overlap misses", draw: overlap::draw },
+    Figure { name: "overlap", title: "Error of the loose overlap", draw: overlap::draw },
 ];
 
 /// Problems of error against time; `quick` leaves out the finest grids.

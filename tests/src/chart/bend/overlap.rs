@@ -1,10 +1,10 @@
-//! Error of 001's loose overlap, against the speed of the waves.
+//! Error of the loose overlap of Chen & Johan against the wave speed.
 
 use std::fmt::Write as _;
 
 use anyhow::Result;
-use shared::bend::{Alone, Field, Kinds, Scheme, Seams, WaveParams};
-use shared::grid::PatchLayout;
+use prairie_core::bend::{Alone, Field, Kinds, Scheme, Seams, WaveParams};
+use prairie_core::grid::PatchLayout;
 
 use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
 use crate::problems::bend::{Striker, largest_difference};
@@ -58,16 +58,16 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     }
     let errors = || curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]);
     let [least, most] = [errors().fold(f64::INFINITY, f64::min), errors().fold(0.0, f64::max)];
-    let said = format!("the overlap is off by {least:.1e} to {most:.2} rad, of at most π/2 = 1.57");
+    let summary = format!("the overlap is off by {least:.1e} to {most:.2} rad, of at most π/2 = 1.57");
     let axes = [
-        Axis { name: "speed of the waves c (m/s)", range: [0.45, 11.0], logarithmic: true },
+        Axis { name: "wave speed c (m/s)", range: [0.45, 11.0], logarithmic: true },
         Axis { name: "largest error of θ (rad)", range: [least / 1.5, most * 1.5], logarithmic: true },
     ];
     let words = Words {
-        title: "What the loose overlap misses",
-        subtitle: "a car at 12 m/s across a border between patches; against exact seams, by the rate of damping",
+        title: "Error of the loose overlap",
+        subtitle: "a car at 12 m/s across a border between patches; against exact seams, by damping rate",
         caption,
     };
     let svg = curves_svg(&curves, axes, words)?;
-    Ok(Drawn { svg, csv, said, tables: None })
+    Ok(Drawn { svg, csv, summary, tables: None })
 }

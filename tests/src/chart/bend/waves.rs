@@ -4,9 +4,9 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result};
-use shared::bend::limits::substeps;
-use shared::bend::{Alone, Damping, Edges, Field, Kinds, Rest, Scheme, WaveParams};
-use shared::grid::PatchLayout;
+use prairie_core::bend::limits::substeps;
+use prairie_core::bend::{Alone, Damping, Edges, Field, Kinds, Rest, Scheme, WaveParams};
+use prairie_core::grid::PatchLayout;
 
 use super::super::{Outcome, Problem, Run};
 use crate::norms::Norms;
@@ -17,11 +17,11 @@ const SPEED_M_PER_S: f64 = 2.0;
 const DAMPING_PER_S: f64 = 0.8;
 const STIFFNESS_PER_S2: f64 = 1.5;
 
-/// A scheme and the Courant number of its steps; none for one step to the end.
+/// A scheme and the Courant number of its steps; `None` for a single step to the end.
 type Method = (&'static str, Scheme, Option<f64>);
 
 const METHODS: [Method; 6] = [
-    ("Verlet (001), r = 0.6", Scheme::Verlet, Some(0.6)),
+    ("Chen & Johan, r = 0.6", Scheme::Verlet, Some(0.6)),
     ("sub-stepped, r = 0.6", Scheme::Substepped, Some(0.6)),
     ("sub-stepped, r = 2.4", Scheme::Substepped, Some(2.4)),
     ("implicit, r = 0.6", Scheme::Implicit, Some(0.6)),
@@ -29,7 +29,7 @@ const METHODS: [Method; 6] = [
     ("modal, one step", Scheme::Modal, None),
 ];
 
-/// Runs of every method on every grid; `error` makes a start and compares the end.
+/// Runs of every method on every grid; `error` sets the initial state and compares the end.
 fn runs(counts: &'static [usize], end_secs: f64, error: fn(usize, Scheme, [f64; 2]) -> Result<Outcome>) -> Vec<Run> {
     let run = |(name, scheme, courant): Method, count: usize| {
         let longest_secs = courant.map_or(end_secs, |r| r * WIDTH_M / count as f64 / SPEED_M_PER_S);
@@ -40,7 +40,7 @@ fn runs(counts: &'static [usize], end_secs: f64, error: fn(usize, Scheme, [f64; 
     METHODS.into_iter().flat_map(|method| counts.iter().map(move |&count| run(method, count))).collect()
 }
 
-/// Takes all steps and compares θ with the exact values, row by row.
+/// Runs all steps and compares θ with the exact values, row by row.
 fn outcome(mut field: Field, scheme: Scheme, [end_secs, dt_secs]: [f64; 2], exact: impl Fn([usize; 2]) -> f64) -> Result<Outcome> {
     let steps = (end_secs / dt_secs).round() as u32;
     let begun = Instant::now();
@@ -52,7 +52,7 @@ fn outcome(mut field: Field, scheme: Scheme, [end_secs, dt_secs]: [f64; 2], exac
     Ok(Outcome { error, simulated_secs: end_secs, wall })
 }
 
-/// Time between the two states that a field starts with (s): that of the sub-steps, so that none has to be moved.
+/// Time between the two initial states of a field (s): one sub-step, so that no state has to be shifted.
 fn start_secs(field: &Field, scheme: Scheme, dt_secs: f64) -> Result<f64> {
     let count = match scheme {
         Scheme::Substepped => substeps(field.kinds().waves(), field.layout().cell_m, dt_secs as f32, 0.0, Damping::Exact),
@@ -66,7 +66,7 @@ fn field(count: usize, cell_m: f64, edges: Edges) -> Field {
     Field::new(layout, Kinds::one(alike(SPEED_M_PER_S as f32, DAMPING_PER_S as f32, STIFFNESS_PER_S2 as f32))).with_edges(edges)
 }
 
-/// A damped, stiff standing wave between free edges, for a turn and a quarter.
+/// A damped, stiff standing wave between free edges, for 1.25 periods.
 pub(super) fn standing(quick: bool) -> Problem {
     const MODE: Mode = Mode { edges: Edges::Free, waves: [3, 2] };
     const WAVE: fn() -> Oscillation = || {
@@ -85,7 +85,7 @@ pub(super) fn standing(quick: bool) -> Problem {
     Problem { name: "Standing wave", error: "rms error of θ (rad)", per: "simulated second", runs: runs(counts, end_secs, error) }
 }
 
-/// A heap that spreads, far from any edge.
+/// A pulse that spreads far from any edge.
 pub(super) fn pulse(quick: bool) -> Problem {
     let error = |count: usize, scheme: Scheme, times: [f64; 2]| {
         let pulse = Pulse {
@@ -109,7 +109,7 @@ pub(super) fn pulse(quick: bool) -> Problem {
 const TICK_SECS: f64 = 1.0 / 60.0;
 const TICKS: u32 = 60;
 
-/// Grass whose waves follow the bend: up to 16 m/s at 67 rad/s.
+/// Grass whose wave speed follows the bend: up to 16 m/s at 67 rad/s.
 const FOLLOWING: WaveParams = WaveParams {
     c0_m_per_s: 2.0,
     mu_m_per_rad: 0.2,
@@ -131,9 +131,9 @@ fn meadow() -> Field {
     field
 }
 
-/// A car at 20 m/s that presses 60 times a second, against the same in double precision and very short steps.
+/// A car at 20 m/s that presses 60 times a second, against a run in double precision with very short steps.
 pub(super) fn car(quick: bool) -> Problem {
-    let methods = [("Verlet (001)", Scheme::Verlet), ("sub-stepped", Scheme::Substepped), ("implicit", Scheme::Implicit)];
+    let methods = [("Chen & Johan", Scheme::Verlet), ("sub-stepped", Scheme::Substepped), ("implicit", Scheme::Implicit)];
     let counts: &[u32] = if quick { &[1, 2, 4] } else { &[1, 2, 4, 8, 16] };
     let run = |(name, scheme): (&str, Scheme), steps: u32| {
         let solve = Box::new(move || {
@@ -156,7 +156,7 @@ pub(super) fn car(quick: bool) -> Problem {
     Problem { name: "Car, speed by Eq 4", error: "rms error in time of θ (rad)", per: "simulated second", runs }
 }
 
-/// The car in very short steps; computed once.
+/// The reference run with very short steps; computed once.
 fn reference(quick: bool) -> &'static OneGrid<f64> {
     static REFERENCE: OnceLock<OneGrid<f64>> = OnceLock::new();
     REFERENCE.get_or_init(|| {

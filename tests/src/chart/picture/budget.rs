@@ -1,18 +1,18 @@
-//! The level of detail that a frame budget buys, read between what was measured.
+//! Level of detail within a frame budget, interpolated between measurements.
 
 use super::Shot;
 
-/// What a budget buys.
+/// Quality within a budget.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bought {
-    /// Level of detail, from 0, that of low quality, to 3, that of ultra.
+    /// Level of detail, from 0 (low quality) to 3 (ultra).
     pub level: f64,
     /// Mean FLIP there.
     pub flip: f64,
 }
 
-/// The highest level whose frames keep to `budget_ms`, of one way on one view, coarsest first; none where not even the coarsest does. Between two levels time
-/// grows by equal factors and FLIP by equal steps.
+/// The highest level within `budget_ms`, for one method on one view, coarsest first; `None` where even the coarsest exceeds it. Between two levels, time is
+/// interpolated logarithmically and FLIP linearly.
 pub fn bought(shots: &[&Shot], budget_ms: f64) -> Option<Bought> {
     let last = shots.iter().rposition(|shot| shot.ms <= budget_ms)?;
     let here = shots[last];
@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_budget_buys_what_keeps_to_it() {
+    fn the_best_level_within_a_budget_is_interpolated() {
         let shots = [made_up("v", "m", 0, 10.0, 0.08), made_up("v", "m", 1, 40.0, 0.04), made_up("v", "m", 2, 160.0, 0.02)];
         let shots: Vec<&Shot> = shots.iter().collect();
         assert_eq!(bought(&shots, 9.0), None);

@@ -1,4 +1,4 @@
-//! The files of all that was measured.
+//! The files of all measurements.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -13,8 +13,8 @@ use super::Shot;
 /// The chart of all views: means over them.
 pub(super) const ALL: &str = "all views";
 
-/// Writes `picture.csv`, `picture.json` and a chart of FLIP against time for each view and of the means over all, to a folder, which is made where it is
-/// missing; `about` says how large the pictures are and on what it was measured.
+/// Writes `picture.csv`, `picture.json` and a chart of FLIP against time for each view and of the means over all, to a folder, which is created if
+/// needed; `about` states the size of the pictures and the machine.
 ///
 /// # Errors
 /// When the folder or a file cannot be written.
@@ -38,8 +38,8 @@ pub fn write_all(shots: &[Shot], about: &str, out: &Path) -> Result<Vec<PathBuf>
         if lines.is_empty() {
             continue;
         }
-        let title = format!("{view}: what a likeness costs");
-        let labels = Labels { title: &title, error: "mean FLIP to the reference", time: "time of a frame (s)", caption: about };
+        let title = format!("{view}: cost of similarity");
+        let labels = Labels { title: &title, error: "mean FLIP to the reference", time: "frame time (s)", caption: about };
         files.push((format!("picture-{}.svg", view.replace(' ', "-")), svg(&lines, labels)?));
     }
     let write = |(name, text): (String, String)| {
@@ -61,11 +61,11 @@ fn row(shot: &Shot) -> Row {
         dt_secs: 0.0,
         norm: NORM.to_owned(),
         error: shot.flip,
-        seconds: shot.ms * 1e-3,
+        wall_secs: shot.ms * 1e-3,
     }
 }
 
-/// Means over the views, of each way and quality that was measured on all of them.
+/// Means over the views, for each method and quality measured on all of them.
 pub(super) fn means(shots: &[Shot], views: usize) -> Vec<Shot> {
     let mut means: Vec<Shot> = Vec::new();
     for shot in shots {
@@ -90,7 +90,7 @@ pub(super) fn means(shots: &[Shot], views: usize) -> Vec<Shot> {
     means
 }
 
-/// RFC 4180.
+/// Measurements as CSV (RFC 4180).
 fn csv(shots: &[Shot]) -> String {
     let mut text = String::from("view,method,quality,level,ms,flip,flip_worst,ssim,blades,clumps\n");
     for Shot { view, method, quality, level, ms, flip, flip_worst, ssim, blades, clumps } in shots {
@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn means_are_of_what_all_views_have() {
+    fn means_only_cover_methods_measured_in_all_views() {
         let shots = [made_up("a", "m", 0, 10.0, 0.1), made_up("b", "m", 0, 30.0, 0.2), made_up("a", "m", 1, 50.0, 0.1)];
         let [mean] = means(&shots, 2).try_into().unwrap();
         assert_eq!((mean.view.as_str(), mean.ms, mean.level), (ALL, 20.0, 0.0));

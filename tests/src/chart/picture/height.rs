@@ -1,9 +1,9 @@
-//! Time of a frame against the height of the view: from among the blades to an aircraft's (000 Figure 23 has heights 1, 5, 10 and 20).
+//! Frame time against the height of the view: from among the blades to an aircraft's (Zhang, Figure 23: heights 1, 5, 10 and 20).
 
 use anyhow::Result;
-use client_wasm::camera::Camera;
-use client_wasm::render::Gpu;
 use glam::Vec3;
+use prairie_client::camera::Camera;
+use prairie_client::render::Gpu;
 
 use super::super::figure::Drawn;
 use super::sweep::{Sweep, qualities, sweep};
@@ -12,7 +12,7 @@ use crate::stage::{Act, Stage, play};
 /// Heights above the ground (m).
 const HEIGHTS_M: [f32; 8] = [1.0, 2.0, 5.0, 10.0, 20.0, 35.0, 60.0, 100.0];
 const QUICK_HEIGHTS_M: [f32; 3] = [1.0, 10.0, 100.0];
-/// Where the view rises (m), over the valley of the meadow.
+/// Horizontal position of the camera (m), over the valley of the meadow.
 const AT_M: [f32; 2] = [128.0, 200.0];
 
 pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
@@ -29,5 +29,5 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
             found.time(&gpu, quick, *quality, height_m.into(), &mut stage.mirror, &camera);
         }
     }
-    sweep(&found, "Time of a frame against the height of the view", "height above the ground (m)", quick, caption, &gpu)
+    sweep(&found, "Frame time against the height of the view", "height above the ground (m)", quick, caption, &gpu)
 }

@@ -1,40 +1,40 @@
-//! The ways of drawing that are compared.
+//! The compared render options.
 
-use client_wasm::render::{Far, Look, Order};
+use prairie_client::render::{BlendOrder, FarPlants, RenderOptions};
 
-/// What stands for far plants, in one order of laying plants over each other.
+/// A representation of distant plants with a transparency order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Method {
-    /// What stands for far plants.
-    pub far: Far,
-    /// The order.
-    pub order: Order,
+    /// Representation of distant plants.
+    pub far: FarPlants,
+    /// Transparency order.
+    pub order: BlendOrder,
 }
 
-const fn method(far: Far, order: Order) -> Method {
+const fn method(far: FarPlants, order: BlendOrder) -> Method {
     Method { far, order }
 }
 
-/// Every way for far plants without an order, the default first, and every order with clumps, which have the most that is partly transparent.
+/// Every representation of distant plants with the default order, the default first; and every order with clumps, which have the most transparency.
 pub const METHODS: [Method; 7] = [
-    method(Far::Land, Order::Cut),
-    method(Far::Clumps, Order::Cut),
-    method(Far::Shells, Order::Cut),
-    method(Far::Clumps, Order::Coverage),
-    method(Far::Clumps, Order::Sorted),
-    method(Far::Clumps, Order::Precomputed),
-    method(Far::Clumps, Order::Weighted),
+    method(FarPlants::Land, BlendOrder::Cut),
+    method(FarPlants::Clumps, BlendOrder::Cut),
+    method(FarPlants::Shells, BlendOrder::Cut),
+    method(FarPlants::Clumps, BlendOrder::Coverage),
+    method(FarPlants::Clumps, BlendOrder::Sorted),
+    method(FarPlants::Clumps, BlendOrder::Precomputed),
+    method(FarPlants::Clumps, BlendOrder::Weighted),
 ];
 
 impl Method {
-    /// Such as `clumps, cut`.
+    /// Name, such as `clumps, cut`.
     pub fn name(self) -> String {
         format!("{}, {}", self.far.name(), self.order.name())
     }
 
-    /// How a renderer draws it.
-    pub fn look(self) -> Look {
-        Look { order: self.order, far: self.far, ..Look::default() }
+    /// The render options.
+    pub fn look(self) -> RenderOptions {
+        RenderOptions { blend_order: self.order, far_plants: self.far, ..RenderOptions::default() }
     }
 }
 
@@ -43,11 +43,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_way_is_there_once() {
+    fn every_option_is_measured_and_no_method_twice() {
         let has = |is: &dyn Fn(&Method) -> bool| METHODS.iter().any(is);
-        assert!(Far::ALL.iter().all(|far| has(&|method| method.far == *far)));
-        assert!(Order::ALL.iter().all(|order| has(&|method| method.order == *order)));
-        assert_eq!(METHODS[0].look(), Look::default());
+        assert!(FarPlants::ALL.iter().all(|far| has(&|method| method.far == *far)));
+        assert!(BlendOrder::ALL.iter().all(|order| has(&|method| method.order == *order)));
+        assert_eq!(METHODS[0].look(), RenderOptions::default());
         assert!(METHODS.iter().enumerate().all(|(n, method)| !METHODS[..n].contains(method)));
     }
 }

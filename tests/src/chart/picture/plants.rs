@@ -1,13 +1,13 @@
-//! Time of a frame against the plants of the scene, which grow in number with the world: what the view cannot show should cost nothing.
+//! Frame time against the plants of the scene, which grow in number with the world: plants out of view should cost nothing.
 
 use anyhow::Result;
-use client_wasm::render::Gpu;
+use prairie_client::render::Gpu;
 
 use super::super::figure::Drawn;
 use super::sweep::{Sweep, qualities, sweep};
 use crate::worlds::{flat_meadow, on_foot};
 
-/// Sides of the worlds (m), which hold 16 places for plants in each square metre: 1 k to 10 M.
+/// Sides of the worlds (m), with 16 plant sites per square metre: 1 k to 10 M sites.
 const SIDES_M: [u32; 5] = [8, 24, 80, 256, 800];
 const QUICK_SIDES_M: [u32; 3] = [8, 40, 160];
 
@@ -21,7 +21,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
             found.time(&gpu, quick, *quality, plants, &mut mirror, &on_foot(side_m));
         }
     }
-    sweep(&found, "Time of a frame against the plants of the scene", "places for plants in the scene", quick, caption, &gpu)
+    sweep(&found, "Frame time against the plants of the scene", "plant sites in the scene", quick, caption, &gpu)
 }
 
 #[cfg(test)]
@@ -29,7 +29,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn worlds_hold_what_the_chart_is_of() {
+    fn worlds_hold_from_a_thousand_to_ten_million_plants() {
         let counts = SIDES_M.map(|side_m| flat_meadow(side_m).unwrap().1);
         assert!(counts[0] < 1.1e3 && counts[4] > 1e7, "{counts:?}");
     }

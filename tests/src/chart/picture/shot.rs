@@ -1,51 +1,51 @@
-//! One way of drawing on one view at one quality.
+//! A measurement: one method on one view at one quality.
 
 use anyhow::Result;
-use client_wasm::render::{Gpu, Quality};
+use prairie_client::render::{Gpu, Quality};
 use serde::Serialize;
 
 use super::Method;
-use crate::likeness::Likeness;
 use crate::picture::Picture;
+use crate::similarity::Similarity;
 use crate::still::Still;
 
-/// What one way of drawing costs, and how near it comes.
+/// Cost and similarity of one method on one view at one quality.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shot {
     /// The view, as in [`View::name`](crate::views::View::name).
     pub view: String,
-    /// The way, as in [`Method::name`].
+    /// The method, as in [`Method::name`].
     pub method: String,
     /// The quality's name.
     pub quality: String,
     /// Level of detail of that quality, from 0.
     pub level: f64,
-    /// Median time of a frame (ms).
+    /// Median frame time (ms).
     pub ms: f64,
     /// Mean FLIP.
     pub flip: f64,
-    /// FLIP that one pixel in a hundred exceeds.
+    /// 99th percentile of FLIP over the pixels.
     pub flip_worst: f64,
     /// Mean SSIM.
     pub ssim: f64,
-    /// Near plants whose posture was simulated.
+    /// Simulated near plants.
     pub blades: u32,
-    /// Clumps of far plants.
+    /// Drawn clumps of distant plants.
     pub clumps: u32,
 }
 
-/// What is measured on each view.
+/// Measurements to take on each view.
 #[derive(Clone, Debug)]
 pub struct ViewShots {
-    /// The ways.
+    /// The methods.
     pub methods: Vec<Method>,
-    /// The qualities that each is drawn at, coarsest first.
+    /// The qualities, coarsest first.
     pub qualities: Vec<Quality>,
-    /// Frames that a time is the median of; an odd number.
+    /// Number of timed frames (odd); the median counts.
     pub frames: u32,
 }
 
-/// Measures all ways on a view whose reference is known; says each before it begins.
+/// Measures all methods on a view against its reference; calls back before each.
 ///
 /// # Errors
 /// When the reference has another size.
@@ -62,9 +62,9 @@ pub fn shots(
         let mut canvas = still.canvas(gpu, quality);
         for method in &wanted.methods {
             say(&format!("{name}, {}, {}", method.name(), quality.name()));
-            canvas.set_look(method.look());
+            canvas.set_options(method.look());
             let (picture, stats) = still.draw(&mut canvas);
-            let likeness = Likeness::of(reference, &picture)?;
+            let similarity = Similarity::of(reference, &picture)?;
             let ms = 1e3 * still.frame_secs(&mut canvas, wanted.frames);
             found.push(Shot {
                 view: name.to_owned(),
@@ -72,9 +72,9 @@ pub fn shots(
                 quality: quality.name().to_owned(),
                 level: quality.level().into(),
                 ms,
-                flip: likeness.flip_mean,
-                flip_worst: likeness.flip_worst,
-                ssim: likeness.ssim,
+                flip: similarity.flip_mean,
+                flip_worst: similarity.flip_worst,
+                ssim: similarity.ssim,
                 blades: stats.blades,
                 clumps: stats.clumps,
             });

@@ -1,11 +1,11 @@
-//! Times of frames over one quantity, a line for each quality.
+//! Frame times against one quantity, a line for each quality.
 
 use std::fmt::Write as _;
 
 use anyhow::Result;
-use client_wasm::camera::Camera;
-use client_wasm::render::{Gpu, Picture as Canvas, Quality};
-use client_wasm::state::Mirror;
+use prairie_client::camera::Camera;
+use prairie_client::render::{Gpu, OffscreenRenderer as Canvas, Quality};
+use prairie_client::state::Mirror;
 
 use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
 use crate::still::frame_secs;
@@ -18,7 +18,7 @@ pub(super) fn qualities(quick: bool) -> &'static [Quality] {
     if quick { &[Quality::Low, Quality::Medium] } else { &[Quality::Low, Quality::Medium, Quality::High] }
 }
 
-/// What was timed: quality, the quantity, ms a frame, plants simulated, clumps drawn.
+/// A measured row: quality, quantity, frame time (ms), simulated plants, drawn clumps.
 #[derive(Default)]
 pub(super) struct Sweep {
     timed: Vec<(Quality, f64, f64, u32, u32)>,
@@ -45,21 +45,19 @@ pub(super) fn sweep(found: &Sweep, title: &str, over: &'static str, quick: bool,
         joined: true,
     };
     let curves: Vec<Curve> = qualities(quick).iter().map(|quality| curve(*quality)).collect();
-    let mut said = String::new();
+    let mut summary = String::new();
     for curve in &curves {
         let (Some([from, first]), Some([to, last])) = (curve.points.first(), curve.points.last()) else { continue };
-        writeln!(said, "{}: {first:.0} ms at {from:.0}, {last:.0} ms at {to:.0}", curve.name)?;
+        writeln!(summary, "{}: {first:.0} ms at {from:.0}, {last:.0} ms at {to:.0}", curve.name)?;
     }
     let range = |axis: usize| {
         let values = curves.iter().flat_map(|curve| &curve.points).map(move |point| point[axis]);
         [values.clone().fold(f64::INFINITY, f64::min) / 1.3, values.fold(0.0, f64::max) * 1.3]
     };
-    let axes = [
-        Axis { name: over, range: range(0), logarithmic: true },
-        Axis { name: "time of a frame (ms)", range: range(1), logarithmic: true },
-    ];
+    let axes =
+        [Axis { name: over, range: range(0), logarithmic: true }, Axis { name: "frame time (ms)", range: range(1), logarithmic: true }];
     let [width, height] = if quick { QUICK_SIZE_PX } else { SIZE_PX };
     let subtitle = format!("{width} × {height} px; {}", gpu.adapter_name);
     let svg = curves_svg(&curves, axes, Words { title, subtitle: &subtitle, caption })?;
-    Ok(Drawn { svg, csv, said: said.trim_end().to_owned(), tables: None })
+    Ok(Drawn { svg, csv, summary: summary.trim_end().to_owned(), tables: None })
 }

@@ -1,27 +1,27 @@
-//! Time of the picture's pass per million vertices, over the views and the qualities.
+//! Time of the main pass per million vertices, over the views and the qualities.
 
 use std::fmt::Write as _;
 use std::time::Instant;
 
 use anyhow::{Context as _, Result};
-use client_wasm::render::{Gpu, Picture as Canvas, Quality, Work};
+use prairie_client::render::{Gpu, OffscreenRenderer as Canvas, PipelineStatistics, Quality};
 
 use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
 use super::super::table::markdown;
-use super::share::{Shares, Timed};
+use super::regression::{Shares, Timed};
 use crate::still::Still;
 use crate::views::VIEWS;
 
-/// What is measured.
+/// Measurements to take.
 struct Wanted {
-    /// Sizes of the pictures (px). The smaller ones, with fewer fragments to a vertex, tell the two apart; whole passes are shown of the first.
+    /// Sizes of the pictures (px). The smaller ones, with fewer fragments to a vertex, separate the two; the chart shows whole passes at the first.
     sizes_px: [[u32; 2]; 3],
     qualities: &'static [Quality],
-    /// One view of so many.
+    /// Every n-th view is measured.
     view_step: usize,
-    /// Rounds of frames that a time is the least of, as all that disturbs one makes it longer.
+    /// Rounds of frames; the shortest time counts, since disturbances only lengthen it.
     rounds: u32,
-    /// Time that a picture may take frames of in a round (s); it has one at least.
+    /// Time for the frames of a picture in a round (s); at least one frame is drawn.
     round_secs: f64,
 }
 
@@ -36,22 +36,22 @@ const QUICK: Wanted = Wanted {
 };
 /// Points of a line on the chart.
 const LINE_POINTS: u32 = 60;
-const TITLE: &str = "Time of the picture's pass per million vertices";
+const TITLE: &str = "Time of the main pass per million vertices";
 
-/// The picture's pass of one view in one quality and size.
+/// The main pass of one view at one quality and size.
 #[derive(Clone, Debug)]
 struct Shot {
     view: &'static str,
     quality: Quality,
     size_px: [u32; 2],
-    /// Pixels that are drawn, of which one that is shown may have several.
+    /// Drawn pixels, including supersamples.
     pixels: u64,
-    work: Work,
+    work: PipelineStatistics,
     ms: f64,
 }
 
 impl Shot {
-    /// All of the pass's time over its vertices, and all of it over its fragments (ms per million).
+    /// Total time of the pass per million vertices, and per million fragments (ms).
     fn per_million(&self) -> [f64; 2] {
         [self.work.vertices, self.work.fragments].map(|count| self.ms / millions(count))
     }
@@ -61,7 +61,7 @@ fn millions(count: u64) -> f64 {
     1e-6 * count as f64
 }
 
-/// Draws the same moment on every canvas in turn, again and again, so that what disturbs for a while disturbs none of them in every round.
+/// Draws the same moment on every canvas in turn, repeatedly, so that a disturbance does not affect one canvas in all rounds.
 fn shots(gpu: &Gpu, wanted: &Wanted) -> Result<Vec<Shot>> {
     let mut shots = Vec::new();
     for view in VIEWS.iter().step_by(wanted.view_step) {
@@ -69,9 +69,9 @@ fn shots(gpu: &Gpu, wanted: &Wanted) -> Result<Vec<Shot>> {
         let sized = wanted.sizes_px.iter().flat_map(|size_px| wanted.qualities.iter().map(|quality| (*size_px, *quality)));
         let mut canvases: Vec<_> = sized
             .map(|(size_px, quality)| {
-                let fineness = quality.fineness(size_px, gpu.side_limit_px());
-                let pixels = size_px.iter().map(|side| u64::from(side * fineness)).product();
-                let shot = Shot { view: view.name, quality, size_px, pixels, work: Work::default(), ms: f64::INFINITY };
+                let supersampling = quality.supersampling(size_px, gpu.side_limit_px());
+                let pixels = size_px.iter().map(|side| u64::from(side * supersampling)).product();
+                let shot = Shot { view: view.name, quality, size_px, pixels, work: PipelineStatistics::default(), ms: f64::INFINITY };
                 (shot, Canvas::new(gpu, size_px, quality))
             })
             .collect();
@@ -91,7 +91,7 @@ fn shots(gpu: &Gpu, wanted: &Wanted) -> Result<Vec<Shot>> {
                         break;
                     }
                 }
-                shot.work = canvas.pass_work().context("the device does not count vertices")?.picture;
+                shot.work = canvas.pass_statistics().context("the device does not count vertices")?.picture;
             }
         }
         shots.extend(canvases.into_iter().map(|(shot, _)| shot));
@@ -104,7 +104,7 @@ fn of(shots: &[Shot], quality: Quality) -> impl Iterator<Item = &Shot> {
     shots.iter().filter(move |shot| shot.quality == quality)
 }
 
-/// What a million vertices take, and a million of what else is counted.
+/// Times per million vertices and per million of the other quantity.
 fn shares<'a>(shots: impl IntoIterator<Item = &'a Shot>, other: fn(&Shot) -> u64) -> Result<Shares> {
     let timed = |shot: &Shot| Timed { work: [shot.work.vertices, other(shot)].map(millions), ms: shot.ms };
     Shares::of(&shots.into_iter().map(timed).collect::<Vec<_>>()).context("the sizes do not tell vertices from the rest")
@@ -123,7 +123,7 @@ fn cells(Shares { ms: [vertices, other], errors, residual }: Shares) -> Vec<Stri
     shares.into_iter().chain([format!("{:.0} %", 100.0 * residual)]).collect()
 }
 
-/// What a million takes, both ways: over all views and sizes of each quality, then over all of a view.
+/// Both fits: over all views and sizes of each quality, then over all of a view.
 fn shares_table(shots: &[Shot], qualities: &[Quality]) -> Result<String> {
     let by_quality = qualities.iter().map(|quality| (quality.name(), of(shots, *quality).collect::<Vec<_>>()));
     let by_view = shots.chunk_by(|a, b| a.view == b.view).map(|part| (part[0].view, part.iter().collect()));
@@ -135,10 +135,10 @@ fn shares_table(shots: &[Shot], qualities: &[Quality]) -> Result<String> {
     Ok(markdown(&["quality or view", "vertices", "fragments", "residual", "or: vertices", "pixels", "residual"], &rows))
 }
 
-/// Every view in every quality at the first size.
+/// Every view at every quality, at the first size.
 fn shots_table(shots: &[Shot]) -> String {
     let row = |shot: &Shot| {
-        let Work { vertices, triangles, fragments, .. } = shot.work;
+        let PipelineStatistics { vertices, triangles, fragments, .. } = shot.work;
         let counts = [vertices, triangles, fragments].map(|count| format!("{:.2}", millions(count)));
         let [by_vertices, by_fragments] = shot.per_million();
         let times = [shot.ms, by_vertices, by_fragments].map(|ms| format!("{ms:.1}"));
@@ -158,13 +158,14 @@ fn shots_table(shots: &[Shot]) -> String {
     markdown(&header, &largest.map(row).collect::<Vec<_>>())
 }
 
-/// RFC 4180.
+/// Figures as CSV (RFC 4180).
 fn csv(shots: &[Shot]) -> String {
     let mut text = String::from(
         "view,quality,width_px,height_px,pixels,vertices,triangles,fragments,ms,ms_per_million_vertices,ms_per_million_fragments\n",
     );
     for shot in shots {
-        let Shot { view, quality, size_px: [width, height], pixels, work: Work { vertices, triangles, fragments, .. }, ms } = shot;
+        let Shot { view, quality, size_px: [width, height], pixels, work: PipelineStatistics { vertices, triangles, fragments, .. }, ms } =
+            shot;
         let ([by_vertices, by_fragments], quality) = (shot.per_million(), quality.name());
         write!(text, "{view},{quality},{width},{height},{pixels},{vertices},{triangles},{fragments},").expect("a string takes all");
         writeln!(text, "{ms:.3},{by_vertices:.3},{by_fragments:.3}").expect("a string takes all");
@@ -214,7 +215,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
         sizes[0],
         shots_table(&shots)
     );
-    Ok(Drawn { svg, csv: csv(&shots), said: format!("ms that a million takes\n{}", shares.trim_end()), tables: Some(tables) })
+    Ok(Drawn { svg, csv: csv(&shots), summary: format!("ms that a million takes\n{}", shares.trim_end()), tables: Some(tables) })
 }
 
 #[cfg(test)]
@@ -233,13 +234,13 @@ mod tests {
             quality: Quality::Low,
             size_px,
             pixels: size_px.map(u64::from).iter().product(),
-            work: Work { vertices, triangles: 1_000_000, fragments, compute_invocations: 0 },
+            work: PipelineStatistics { vertices, triangles: 1_000_000, fragments, compute_invocations: 0 },
             ms: 50.0 * millions(vertices) + 20.0 * millions(fragments),
         };
         passes.map(shot).into()
     }
 
-    /// Rows of a Markdown table, their cells without what pads them.
+    /// Rows of a Markdown table, cells trimmed.
     fn rows(table: &str) -> Vec<Vec<&str>> {
         table.lines().skip(2).map(|line| line.trim_matches('|').split('|').map(str::trim).collect()).collect()
     }

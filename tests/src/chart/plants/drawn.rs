@@ -1,49 +1,49 @@
-//! What underbrush costs to draw: time of a frame against the number of plants that it draws, on this machine's Vulkan driver.
+//! Cost of drawing underbrush: frame time against the number of drawn plants, on this machine's Vulkan driver.
 
 use std::fmt::Write as _;
 use std::time::Instant;
 
 use anyhow::{Result, ensure};
-use client_wasm::camera::Camera;
-use client_wasm::render::{Gpu, Picture, Quality};
-use client_wasm::state::Mirror;
 use glam::Vec3;
-use shared::scene::{Patches, Scene, TerrainMaps, parse_underbrush};
-use shared::terrain::grey_png;
-use shared::wire::ServerMessage;
+use prairie_client::camera::Camera;
+use prairie_client::render::{Gpu, OffscreenRenderer, Quality};
+use prairie_client::state::Mirror;
+use prairie_core::scene::{Patches, Scene, TerrainMaps, parse_underbrush};
+use prairie_core::terrain::grey_png;
+use prairie_core::wire::ServerMessage;
 
 use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
 
-/// The species that ship, all of which are drawn, mixed.
+/// The built-in species, all drawn in a mixture.
 const SPECIES: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../server/scenes/species.toml"));
-/// ID that paints the first of them; the others follow.
+/// Covering ID of the first species; the others follow.
 const COVER: u8 = 20;
-/// Pixels along a side of the covering map: species change from one to the next.
+/// Pixels along a side of the covering map; each pixel has another species.
 const COVER_PX: u32 = 64;
-/// A flat world, the same whatever grows there (m).
+/// Side of the flat world (m).
 const EXTENT_M: f32 = 128.0;
 /// Size of the picture (px), and of a quick one.
 const SIZE_PX: [u32; 2] = [1280, 720];
 const QUICK_SIZE_PX: [u32; 2] = [480, 270];
 const DT_SECS: f32 = 1.0 / 30.0;
-/// Plants that the fullest picture draws at least.
+/// Least number of plants in the fullest picture.
 const MOST_DRAWN: u32 = 200_000;
 
-/// The world with so many places for plants, or none.
+/// The world with this number of plant sites, possibly 0.
 fn meadow(places: u32) -> Result<Mirror> {
     let terrain = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [8.0; 2], level_m: 0.0, base_m: 0.0 };
     let mut scene = Scene { patches: Patches { count: [8, 8], ..Patches::default() }, ..Scene::new(terrain) };
     scene.plants.height_m = 0.05;
     let mut covering = vec![255; (COVER_PX * COVER_PX) as usize];
     if places > 0 {
-        scene.underbrush = parse_underbrush(SPECIES).map_err(|faults| anyhow::anyhow!("the species that ship: {faults:?}"))?;
+        scene.underbrush = parse_underbrush(SPECIES).map_err(|faults| anyhow::anyhow!("the built-in species: {faults:?}"))?;
         scene.growth.spacing_m = EXTENT_M / (places as f32).sqrt();
         for (species, cover) in scene.underbrush.iter_mut().zip(COVER..) {
             (species.cover, species.room_m) = (cover, 0.05);
         }
         let kinds = scene.underbrush.len() as u32;
         for (pixel, cover) in (0..).zip(&mut covering) {
-            // Three columns on in each row, so that neighbours differ both ways.
+            // Shifted by three columns per row, so that neighbours differ in both directions.
             *cover = COVER + ((pixel % COVER_PX + 3 * (pixel / COVER_PX)) % kinds) as u8;
         }
     }
@@ -58,9 +58,9 @@ fn meadow(places: u32) -> Result<Mirror> {
     Ok(mirror)
 }
 
-/// Least time of a frame (s), as all that disturbs one makes it longer, and the plants that it draws.
+/// Shortest frame time (s), since disturbances only lengthen it, and the number of drawn plants.
 fn frame(gpu: &Gpu, size_px: [u32; 2], mirror: &mut Mirror, camera: &Camera, frames: u32) -> (f64, u32) {
-    let mut picture = Picture::new(gpu, size_px, Quality::Ultra);
+    let mut picture = OffscreenRenderer::new(gpu, size_px, Quality::Ultra);
     let times = (0..frames).map(|frame| {
         let begun = Instant::now();
         picture.draw(mirror, camera, f64::from(frame) * f64::from(DT_SECS), DT_SECS);
@@ -83,14 +83,14 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     for &places in counts {
         let mut mirror = meadow(places)?;
         let (secs, drawn) = frame(&gpu, size_px, &mut mirror, &camera, frames);
-        let grown = mirror.land().and_then(|land| land.flora()).map_or(0, |flora| flora.grown().plants().len());
+        let grown = mirror.decoded_scene().and_then(|land| land.flora()).map_or(0, |flora| flora.grown().plants().len());
         ensure!(drawn > 0 && drawn as usize <= grown, "{drawn} of {grown} plants are drawn");
         writeln!(csv, "{grown},{drawn},{:.2},{:.2}", 1e3 * secs, 1e3 * bare_secs)?;
         points.push([f64::from(drawn), 1e3 * secs]);
     }
     ensure!(quick || points.iter().any(|point| point[0] >= f64::from(MOST_DRAWN)), "no picture draws {MOST_DRAWN} plants");
     let last = points[points.len() - 1];
-    let said = format!(
+    let summary = format!(
         "{} plants drawn: {:.0} ms a frame, {:.0} ms without, {:.2} µs a plant ({})",
         last[0],
         last[1],
@@ -105,17 +105,17 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     let [least, most] = [range(|v| v / 1.3, 0)[0], range(|v| v * 1.3, 0)[1]];
     let top = range(|v| v * 1.5, 1)[1];
     let bare = Curve {
-        name: "the same without underbrush".into(),
+        name: "without underbrush".into(),
         points: vec![[least, 1e3 * bare_secs], [most, 1e3 * bare_secs]],
         marked: false,
         joined: true,
     };
-    let measured = Curve { name: "with the eight species that ship".into(), points, marked: true, joined: true };
+    let measured = Curve { name: "with all built-in species".into(), points, marked: true, joined: true };
     let axes = [
         Axis { name: "plants drawn", range: [least, most], logarithmic: true },
-        Axis { name: "time of a frame (ms)", range: [1e3 * bare_secs / 1.5, top], logarithmic: true },
+        Axis { name: "frame time (ms)", range: [1e3 * bare_secs / 1.5, top], logarithmic: true },
     ];
     let subtitle = format!("{} × {} px, ultra, least of {} frames; {}", size_px[0], size_px[1], frames - 1, gpu.adapter_name);
-    let svg = curves_svg(&[measured, bare], axes, Words { title: "What underbrush costs to draw", subtitle: &subtitle, caption })?;
-    Ok(Drawn { svg, csv, said, tables: None })
+    let svg = curves_svg(&[measured, bare], axes, Words { title: "Cost of drawing underbrush", subtitle: &subtitle, caption })?;
+    Ok(Drawn { svg, csv, summary, tables: None })
 }

@@ -1,13 +1,13 @@
 //! The runs and figures of blades and underbrush.
 //!
-//! | file | what it draws |
+//! | file | chart |
 //! |---|---|
 //! | `gust` | a blade's integrators in a recorded gust: error against time |
-//! | `sections` | a component under its weight, 004's way and in balance: error against time |
+//! | `sections` | a component under its weight, in one pass (Endo et al. 2003) and in balance: error against time |
 //! | `postures` | tables of postures: error against time, and against size |
-//! | `constraint` | what a plant feels after a gust, with and without the velocity term |
-//! | `drawn` | what underbrush costs to draw, against the number of plants |
-//! | `stability` | the longest steps of a blade |
+//! | `constraint` | force on a plant after a gust, with and without the velocity term |
+//! | `drawn` | frame time against the number of underbrush plants |
+//! | `stability` | longest stable time step of a blade |
 
 mod constraint;
 mod drawn;
@@ -19,12 +19,12 @@ mod stability;
 use super::Problem;
 use super::figure::Figure;
 
-/// All figures that are not of error against time.
+/// All figures other than error against time.
 pub const FIGURES: [Figure; 4] = [
-    Figure { name: "postures", title: "What a table of postures costs", draw: postures::draw },
+    Figure { name: "postures", title: "Cost of a posture table", draw: postures::draw },
     Figure { name: "constraint", title: "The dynamic constraint", draw: constraint::draw },
-    Figure { name: "drawn", title: "What underbrush costs to draw", draw: drawn::draw },
-    Figure { name: "stability", title: "How long steps of a blade may be", draw: stability::draw },
+    Figure { name: "drawn", title: "Cost of drawing underbrush", draw: drawn::draw },
+    Figure { name: "stability", title: "Longest stable time step of a blade", draw: stability::draw },
 ];
 
 /// Problems of error against time; `quick` leaves out the finest.
@@ -37,7 +37,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_finest_run_of_each_problem_gets_near_the_answer_and_nearer_than_the_coarsest() {
+    fn the_finest_run_of_each_problem_converges_beyond_the_coarsest() {
         for Problem { name, runs, .. } in problems(true) {
             let last = runs.iter().rposition(|run| run.method == runs[runs.len() - 1].method).unwrap();
             let first = runs.iter().position(|run| run.method == runs[last].method).unwrap();
@@ -50,7 +50,7 @@ mod tests {
     fn every_figure_has_its_data() {
         for figure in &FIGURES {
             let drawn = (figure.draw)(true, "caption").unwrap();
-            assert!(drawn.svg.contains("caption") && drawn.csv.lines().count() > 5 && !drawn.said.is_empty(), "{}", figure.name);
+            assert!(drawn.svg.contains("caption") && drawn.csv.lines().count() > 5 && !drawn.summary.is_empty(), "{}", figure.name);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Tables of postures: error of the tip against the time of a look-up, and against the size of the table.
+//! Posture tables: error of the tip against look-up time, and against the size of the table.
 
 use std::cell::LazyCell;
 use std::f64::consts::PI;
@@ -8,9 +8,9 @@ use std::sync::OnceLock;
 use std::time::Instant;
 
 use anyhow::Result;
-use shared::plant::underbrush::posture::{Nodes, Postures};
-use shared::plant::underbrush::rest::{Load, balanced, joints};
-use shared::plant::underbrush::strength::shares;
+use prairie_core::plant::underbrush::posture::{Nodes, Postures};
+use prairie_core::plant::underbrush::rest::{Load, balanced, joints};
+use prairie_core::plant::underbrush::strength::shares;
 
 use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
 use super::super::summary::time_text;
@@ -21,9 +21,9 @@ const SECTIONS: usize = 8;
 const TIP_SHARE: f64 = 0.5;
 /// Nodes along each axis of a table.
 const SIZES: [usize; 6] = [5, 9, 17, 33, 65, 129];
-/// Angles and loads that are looked up, each.
+/// Number of angles and of loads that are looked up.
 const SAMPLES: usize = 60;
-/// Times that all are looked up, for the clock.
+/// Repetitions for timing.
 const REPEATS: usize = 20;
 
 type Node = [f32; SECTIONS + 1];
@@ -42,7 +42,7 @@ fn interpolated(table: &Postures, cosine: f32, load: f32) -> Node {
     node
 }
 
-/// An angle and a load that are looked up, and the tip in balance.
+/// An angle and a load to look up, and the tip in balance.
 struct Sample {
     unbent_rad: f64,
     load: f64,
@@ -68,7 +68,7 @@ fn samples() -> &'static [Sample] {
             balanced(&joints, Load { spread: load, tip: 0.0 }, unbent_rad, &mut bends_rad);
             Sample { unbent_rad, load, tip: tip(unbent_rad, bends_rad.into_iter()) }
         };
-        // In no order that a cache could profit from.
+        // In an order that gains nothing from caches.
         (0..SAMPLES * SAMPLES).map(|n| sample(n * 1237 % (SAMPLES * SAMPLES))).collect()
     })
 }
@@ -85,7 +85,7 @@ pub(super) fn problem(quick: bool) -> Problem {
     let sizes = &SIZES[..SIZES.len() - if quick { 2 } else { 0 }];
     Problem {
         name: "Postures looked up",
-        error: "error of the tip (share of the length, root mean square)",
+        error: "error of the tip (fraction of the length, root mean square)",
         per: "look-up",
         runs: WAYS.into_iter().flat_map(|way| sizes.iter().map(move |&size| run(way, size))).collect(),
     }
@@ -110,7 +110,7 @@ fn look_up(table: &Postures, way: Way) -> Outcome {
 pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     let sizes = &SIZES[..SIZES.len() - if quick { 2 } else { 0 }];
     let mut csv = String::from("look_up,nodes,bytes,error_rms,error_max,look_up_secs\n");
-    let (mut said, mut curves) = (String::new(), vec![]);
+    let (mut summary, mut curves) = (String::new(), vec![]);
     for (name, way) in WAYS {
         let mut curve = Curve { name: name.into(), points: vec![], marked: true, joined: true };
         let mut times = vec![];
@@ -125,7 +125,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
             times.push(secs);
         }
         let [least, most] = [times.iter().copied().fold(f64::INFINITY, f64::min), times.iter().copied().fold(0.0, f64::max)];
-        writeln!(said, "{name}: {} to {} a look-up, from the smallest table to the largest", time_text(least), time_text(most))?;
+        writeln!(summary, "{name}: {} to {} a look-up, from the smallest table to the largest", time_text(least), time_text(most))?;
         curves.push(curve);
     }
     let joints = joints(SECTIONS, TIP_SHARE);
@@ -134,19 +134,19 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
         balanced(&joints, Load { spread: sample.load, tip: 0.0 }, sample.unbent_rad, &mut bends_rad);
         black_box(&bends_rad);
     }
-    writeln!(said, "the balance itself: {}", time_text(begun.elapsed().as_secs_f64() / samples().len() as f64))?;
+    writeln!(summary, "the balance itself: {}", time_text(begun.elapsed().as_secs_f64() / samples().len() as f64))?;
     let errors = || curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]);
     let [least, most] = [errors().fold(f64::INFINITY, f64::min), errors().fold(0.0, f64::max)];
     let bytes = |size: usize| (size * size * (SECTIONS + 1) * size_of::<f32>()) as f64;
     let axes = [
         Axis { name: "size of the table (bytes)", range: [0.7 * bytes(sizes[0]), 1.4 * bytes(sizes[sizes.len() - 1])], logarithmic: true },
-        Axis { name: "error of the tip (share of the length)", range: [least / 1.5, most * 1.5], logarithmic: true },
+        Axis { name: "error of the tip (fraction of the length)", range: [least / 1.5, most * 1.5], logarithmic: true },
     ];
     let words = Words {
-        title: "What a table of postures costs",
+        title: "Cost of a posture table",
         subtitle: "root mean square over all angles and loads of 0.1 to 200 EI/L², against the balance of eight sections",
         caption,
     };
     let svg = curves_svg(&curves, axes, words)?;
-    Ok(Drawn { svg, csv, said, tables: None })
+    Ok(Drawn { svg, csv, summary, tables: None })
 }

@@ -1,38 +1,38 @@
-//! A component under its weight: error of its tip against the time of its shape, by the number of sections.
+//! A component under its weight: error of its tip against computing time, by number of sections.
 
 use std::hint::black_box;
 use std::sync::OnceLock;
 use std::time::Instant;
 
 use anyhow::Result;
-use shared::plant::underbrush::rest::{Load, balanced, joints, one_pass};
+use prairie_core::plant::underbrush::rest::{Load, balanced, joints, one_pass};
 
 use super::super::{Outcome, Problem, Run};
 use crate::norms::Norms;
-use crate::problems::plants::heavy_elastica;
+use prairie_core::plant::underbrush::elastica::heavy_tip;
 
 type Way = fn(&[f64], Load, f64, &mut [f64]);
 
-const WAYS: [(&str, Way); 2] = [("one pass (004)", one_pass), ("balance", balanced)];
+const WAYS: [(&str, Way); 2] = [("one pass (Endo et al.)", one_pass), ("balance", balanced)];
 const SECTIONS: [usize; 6] = [1, 2, 4, 8, 16, 32];
 
-/// Rigidity at the tip over that at the foot.
+/// Ratio of the rigidity at the tip to that at the foot.
 const TIP_SHARE: f64 = 0.5;
 /// Weights over EI/L², and angles of the unbent axis from upright (rad).
 const WEIGHTS: [f64; 4] = [1.0, 3.0, 10.0, 30.0];
 const UNBENT_RAD: [f64; 3] = [0.3, 1.0, 1.57];
 
-/// Times that each shape is worked out, for the clock.
+/// Repetitions for timing.
 const REPEATS: usize = 50;
 
 fn cases() -> impl Iterator<Item = (f64, f64)> {
     WEIGHTS.into_iter().flat_map(|weight| UNBENT_RAD.map(|unbent_rad| (weight, unbent_rad)))
 }
 
-/// Tips of the cases as continuous beams.
+/// Exact tips of the cases, as continuous beams.
 fn exact() -> &'static [[f64; 2]] {
     static TIPS: OnceLock<Vec<[f64; 2]>> = OnceLock::new();
-    TIPS.get_or_init(|| cases().map(|(weight, unbent_rad)| heavy_elastica(TIP_SHARE, weight, unbent_rad)).collect())
+    TIPS.get_or_init(|| cases().map(|(weight, unbent_rad)| heavy_tip(TIP_SHARE, weight, unbent_rad)).collect())
 }
 
 pub(super) fn problem(quick: bool) -> Problem {
@@ -45,7 +45,7 @@ pub(super) fn problem(quick: bool) -> Problem {
     let counts = &SECTIONS[..SECTIONS.len() - usize::from(quick)];
     Problem {
         name: "Sections under their weight",
-        error: "error of the tip (share of the length, root mean square)",
+        error: "error of the tip (fraction of the length, root mean square)",
         per: "shape",
         runs: WAYS.into_iter().flat_map(|way| counts.iter().map(move |&sections| run(way, sections))).collect(),
     }

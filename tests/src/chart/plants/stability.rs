@@ -1,24 +1,24 @@
-//! The longest steps that a blade bears, against its stiffness.
+//! Longest stable time step of a blade against its stiffness.
 
 use std::fmt::Write as _;
 
 use anyhow::{Result, ensure};
-use shared::plant::blade::modes::{FREQUENCIES, first_frequency_rad_per_s};
-use shared::plant::blade::propagator::stable_dt_secs;
-use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
+use prairie_core::plant::blade::modes::{FREQUENCIES, first_frequency_rad_per_s};
+use prairie_core::plant::blade::propagator::stable_dt_secs;
+use prairie_core::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
 
 use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
 
 /// Length of the blade (m) and its mass per length (kg/m): 0.96 g.
 const LENGTH_M: f32 = 0.8;
 const MASS_KG_PER_M: f32 = 0.0012;
-/// Rigidities of it (N·m²), from those of hair to those of cane.
+/// Range of rigidities (N·m²), from hair to cane.
 const RIGIDITIES_N_M2: [f32; 2] = [1e-6, 1.0];
-/// Steps (s) between which the limit is looked for, whatever theory says, and how closely.
+/// Interval of the bisection (s), independent of theory, and its tolerance.
 const STEPS_SECS: [f32; 2] = [1e-6, 100.0];
 const CLOSE: f32 = 1.005;
 
-/// What is measured: an integrator, a damping share, and the limit in theory, ω that of the highest mode.
+/// Integrator, damping ratio, and theoretical limit; ω is that of the highest mode.
 const CASES: [(Integrator, f32, &str); 5] = [
     (Integrator::Verlet, 0.0, "Verlet, ζ = 0: 2/ω"),
     (Integrator::Verlet, 0.1, "Verlet, ζ = 0.1: 2(√(1 + ζ²) − ζ)/ω"),
@@ -31,10 +31,10 @@ fn frequency_rad_per_s(rigidity_n_m2: f32) -> f32 {
     first_frequency_rad_per_s(rigidity_n_m2, MASS_KG_PER_M, LENGTH_M)
 }
 
-/// Whether a blade that is bent in all of its modes stays within a hundred times that.
+/// Whether the deflection of a blade, excited in all modes, stays below a hundred times its initial value.
 fn holds(integrator: Integrator, frequency_rad_per_s: f32, damping_share: f32, dt_secs: f32) -> bool {
     let blade = Blade { length_m: LENGTH_M, frequency_rad_per_s, damping_share, lean_per_wind2: 0.0 };
-    // Half a hundredth beyond its limit Euler grows by 0.01·ζ² a step; enough of them for e⁶.
+    // Half a percent beyond its limit Euler grows by 0.01·ζ² per step; enough steps for a factor of e⁶.
     let steps = (600.0 / (damping_share * damping_share)).clamp(2e4, 1e5) as u32;
     let calm = Leans::default();
     let mut sway = Sway::at_rest([[0.01, 0.0], [-0.01, 0.01], [0.01, -0.01]]);
@@ -44,7 +44,7 @@ fn holds(integrator: Integrator, frequency_rad_per_s: f32, damping_share: f32, d
     })
 }
 
-/// The longest step (s) that holds.
+/// The longest stable step (s) that holds.
 fn measured_secs(integrator: Integrator, frequency_rad_per_s: f32, damping_share: f32) -> Result<f32> {
     let [mut low, mut high] = STEPS_SECS;
     let holds = |dt_secs| holds(integrator, frequency_rad_per_s, damping_share, dt_secs);
@@ -61,7 +61,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     let [softest, stiffest] = RIGIDITIES_N_M2;
     let rigidity = |n: f32| softest * (stiffest / softest).powf(n);
     let mut csv = String::from("integrator,damping_share,rigidity_n_m2,highest_rad_per_s,theory_secs,measured_secs\n");
-    let (mut said, mut curves) = (String::new(), vec![]);
+    let (mut summary, mut curves) = (String::new(), vec![]);
     for (integrator, share, formula) in CASES {
         let theory_secs = |rigidity_n_m2: f32| stable_dt_secs(integrator, frequency_rad_per_s(rigidity_n_m2), share);
         let line = [softest, stiffest].map(|rigidity_n_m2| [rigidity_n_m2, theory_secs(rigidity_n_m2)].map(f64::from));
@@ -76,7 +76,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
             writeln!(csv, "{integrator:?},{share},{rigidity_n_m2:e},{highest_rad_per_s},{theory},{measured}")?;
             found.points.push([rigidity_n_m2, measured].map(f64::from));
         }
-        writeln!(said, "{integrator:?}, ζ = {share}: fails at {least:.3} to {most:.3} of its limit")?;
+        writeln!(summary, "{integrator:?}, ζ = {share}: fails at {least:.3} to {most:.3} of its limit")?;
         curves.push(found);
     }
     let holds_all = RIGIDITIES_N_M2.map(frequency_rad_per_s).into_iter().all(|frequency_rad_per_s| {
@@ -84,20 +84,20 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
         let cases = [0.0, 0.1, 0.5].into_iter().flat_map(|share| [1.0, 100.0, 1e5].map(|step| (share, step / highest_rad_per_s)));
         cases.into_iter().all(|(share, dt_secs)| holds(Integrator::Exact, frequency_rad_per_s, share, dt_secs))
     });
-    writeln!(said, "exact: {} at ω·dt of 1, 100 and 100 000", if holds_all { "holds" } else { "fails" })?;
+    writeln!(summary, "exact: {} at ω·dt of 1, 100 and 100 000", if holds_all { "holds" } else { "fails" })?;
     let steps = curves.iter().flat_map(|curve| curve.points.iter().map(|point| point[1]));
     let [shortest, longest] = [steps.clone().fold(f64::INFINITY, f64::min) / 1.5, steps.fold(0.0, f64::max) * 1.5];
     let axes = [
         Axis { name: "flexural rigidity EI (N·m²)", range: RIGIDITIES_N_M2.map(f64::from), logarithmic: true },
-        Axis { name: "longest step (s)", range: [shortest, longest], logarithmic: true },
+        Axis { name: "longest stable step (s)", range: [shortest, longest], logarithmic: true },
     ];
     let words = Words {
-        title: "How long steps of a blade may be",
-        subtitle: "0.8 m, 1.2 g/m; below its line an integrator is stable, lines are theory; the exact one is so everywhere",
+        title: "Longest stable time step of a blade",
+        subtitle: "0.8 m, 1.2 g/m; an integrator is stable below its line (theory); the exact one is stable everywhere",
         caption,
     };
     let svg = curves_svg(&curves, axes, words)?;
-    Ok(Drawn { svg, csv, said, tables: None })
+    Ok(Drawn { svg, csv, summary, tables: None })
 }
 
 #[cfg(test)]
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn blades_of_any_stiffness_fail_where_theory_says() {
+    fn blades_of_any_stiffness_become_unstable_at_the_theoretical_limit() {
         for rigidity_n_m2 in RIGIDITIES_N_M2 {
             let frequency_rad_per_s = frequency_rad_per_s(rigidity_n_m2);
             let highest_rad_per_s = frequency_rad_per_s * FREQUENCIES[LINKS - 1];

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
-use server::wind::{Boundary, Config, Solver};
+use prairie_wind::{Boundary, Config, Solver};
 
 use super::super::{Outcome, Problem, Run};
 use super::{COURANT, Choice, METHODS};
@@ -13,10 +13,10 @@ use crate::problems::Cavity;
 
 /// Largest change of a velocity in a second (m/s; the lid's is 1) at which the flow counts as steady.
 const STEADY_M_PER_S: f64 = 2e-4;
-/// Longest time (s) that a flow gets to become steady: some of the methods never do.
+/// Time limit (s) for reaching the steady state; some methods never do.
 const LONGEST_SECS: f64 = 40.0;
 
-/// The flow in a square of 1 m under a lid of 1 m/s, once it is steady, against a table on both centrelines. Errors below those of the table mean nothing.
+/// The flow in a square of 1 m under a lid of 1 m/s, once it is steady, against a table on both centrelines. Errors below those of the table are not meaningful.
 pub(super) fn cavity(name: &'static str, table: &'static Cavity, cells: &[usize]) -> Problem {
     let mut runs = Vec::new();
     for choice in METHODS {
@@ -27,17 +27,17 @@ pub(super) fn cavity(name: &'static str, table: &'static Cavity, cells: &[usize]
     Problem { name, error: "rms difference from the table (of the lid's speed)", per: "simulated second", runs }
 }
 
-/// Begins each grid from the steady flow on the one before; only the last is timed.
+/// Starts each grid from the steady flow on the previous one; only the last is timed.
 fn run(table: &'static Cavity, (name, choose): Choice, grids: Vec<usize>, courant: f64) -> Run {
     let finest = grids.last().copied().unwrap_or(1);
-    let steps_per_sec = move |n: usize| (n as f64 / courant).ceil();
+    let steps_per_s = move |n: usize| (n as f64 / courant).ceil();
     let solve = move || {
         let mut coarser: Option<Settled> = None;
         for &n in &grids {
             let mut config = still_air([n, n, 1], [1.0 / n as f64; 3], faces());
             config.viscosity_m2_per_s = (1.0 / table.reynolds) as f32;
             choose(&mut config);
-            coarser = Some(settle(&config, steps_per_sec(n), coarser.as_ref().map(|settled| &settled.air))?);
+            coarser = Some(settle(&config, steps_per_s(n), coarser.as_ref().map(|settled| &settled.air))?);
         }
         let Settled { air, simulated_secs, wall } = coarser.expect("there is a grid");
         let at = |x: f64, y: f64| air.velocity_at([x, y, 0.5 / finest as f64]);
@@ -48,7 +48,7 @@ fn run(table: &'static Cavity, (name, choose): Choice, grids: Vec<usize>, couran
     Run {
         method: format!("{name}, Courant {courant}"),
         cells: [finest, finest, 1],
-        dt_secs: steps_per_sec(finest).recip(),
+        dt_secs: steps_per_s(finest).recip(),
         solve: Box::new(solve),
     }
 }
@@ -58,22 +58,22 @@ fn faces() -> [[Boundary; 2]; 3] {
     [[Boundary::NoSlip; 2], [Boundary::NoSlip, lid], [Boundary::Wrap; 2]]
 }
 
-/// A flow that no longer changes, and what it took.
+/// A steady flow, and the time to reach it.
 struct Settled {
     air: Solver<f64>,
     simulated_secs: f64,
     wall: Duration,
 }
 
-fn settle(config: &Config, steps_per_sec: f64, guess: Option<&Solver<f64>>) -> Result<Settled> {
+fn settle(config: &Config, steps_per_s: f64, guess: Option<&Solver<f64>>) -> Result<Settled> {
     let mut air = Solver::<f64>::new(config)?;
     air.set_velocity(|position| guess.map_or([0.0; 3], |air| air.velocity_at(position)));
     let values = |air: &Solver<f64>| (0..2).flat_map(|axis| air.samples(axis).map(|(_, speed)| speed)).collect::<Vec<_>>();
     let (mut before, mut wall, mut simulated_secs) = (values(&air), Duration::ZERO, 0.0);
     loop {
         let start = Instant::now();
-        for _ in 0..steps_per_sec as usize {
-            air.step(steps_per_sec.recip(), &[])?;
+        for _ in 0..steps_per_s as usize {
+            air.step(steps_per_s.recip(), &[])?;
         }
         wall += start.elapsed();
         simulated_secs += 1.0;

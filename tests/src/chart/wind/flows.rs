@@ -1,6 +1,6 @@
-//! Flows that are known exactly.
+//! Flows with exact solutions.
 
-use server::wind::{Air, Boundary, Config, Method, Solver};
+use prairie_wind::{Air, Boundary, Config, Method, Solver};
 
 use super::super::{Outcome, Problem, Run};
 use super::{COURANT, Choice, METHODS, Steps};
@@ -14,12 +14,12 @@ const VORTEX_FASTEST_M_PER_S: f64 = 1.5;
 const BELTRAMI: EthierSteinman = EthierSteinman { side_m: 2.0, speed_m_per_s: 1.0, viscosity_m2_per_s: 0.05 };
 const BELTRAMI_FASTEST_M_PER_S: f64 = 3.5;
 
-/// A drifting vortex in a box that wraps, over 2 s; by the method of 000 too.
+/// A drifting vortex in a periodic box, over 2 s; also by Zhang's method.
 pub(super) fn taylor_green(cells: &[usize]) -> Problem {
     let staggered = METHODS.map(|choice| (Method::Staggered, choice));
-    let as_in_000: (Method, Choice) = (Method::StableFluids, ("method of 000", |_| ()));
+    let as_in_zhang: (Method, Choice) = (Method::StableFluids, ("Zhang", |_| ()));
     let mut runs = Vec::new();
-    for (method, (name, choose)) in staggered.into_iter().chain([as_in_000]) {
+    for (method, (name, choose)) in staggered.into_iter().chain([as_in_zhang]) {
         for courant in COURANT {
             runs.extend(cells.iter().map(|&n| vortex(method, name, choose, n, courant)));
         }
@@ -44,7 +44,7 @@ fn vortex(method: Method, name: &str, choose: fn(&mut Config), n: usize, courant
     Run { method: format!("{name}, Courant {courant}"), cells, dt_secs: steps.dt_secs, solve: Box::new(solve) }
 }
 
-/// A flow in three dimensions through all faces of a box, over half a second.
+/// A three-dimensional flow through all faces of a box, over half a second.
 pub(super) fn ethier_steinman(cells: &[usize]) -> Problem {
     let mut runs = Vec::new();
     for choice in METHODS {
@@ -63,7 +63,7 @@ fn beltrami((name, choose): Choice, n: usize, courant: f64) -> Run {
     let steps = Steps::new(0.5, courant * spacing_m / BELTRAMI_FASTEST_M_PER_S);
     let solve = move || {
         let mut air = Solver::<f64>::new(&config)?;
-        air.prescribe(|position, time_secs| BELTRAMI.velocity(position, time_secs));
+        air.set_inflow(|position, time_secs| BELTRAMI.velocity(position, time_secs));
         air.set_velocity(|position| BELTRAMI.velocity(position, 0.0));
         let wall = steps.take(|dt_secs| air.step(dt_secs, &[]))?;
         let error = velocity_error(&air, |position| BELTRAMI.velocity(position, steps.simulated_secs()));

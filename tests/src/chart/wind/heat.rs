@@ -1,8 +1,8 @@
-//! The heat kernel, by each diffusion.
+//! The heat kernel, by each diffusion scheme.
 
-use server::wind::boundary::Walls;
-use server::wind::diffuse::{Implicit, Portion, spread};
-use server::wind::{Boundary, Diffusion, Field, Grid, Place};
+use prairie_wind::boundary::BoundaryConditions;
+use prairie_wind::diffuse::{Implicit, Portion, diffuse};
+use prairie_wind::{Boundary, Diffusion, Field, Grid, Location};
 
 use super::super::{Outcome, Problem, Run};
 use super::Steps;
@@ -11,12 +11,12 @@ use crate::problems::HeatKernel;
 
 const KERNEL: HeatKernel = HeatKernel { side_m: [Some(8.0), None, Some(8.0)], centre_m: [3.3, 0.0, 4.6], diffusivity_m2_per_s: 0.125 };
 const SIDE_M: f64 = 8.0;
-/// From when to when (s) heat is watched.
+/// Start and end of the run (s).
 const WATCHED_SECS: [f64; 2] = [2.0, 4.0];
-/// Diffusion numbers `a = κ·dt/h²`, the same on all grids: error in time shrinks as that in space does. The explicit limit is 1/6.
+/// Diffusion numbers `a = κ·dt/h²`, the same on all grids: the errors in time and space then shrink together. The explicit limit is 1/6.
 const NUMBERS: [f64; 2] = [0.1, 2.0];
 
-/// A scheme, and the portions of a step it is done in.
+/// A scheme, and its number of sub-steps.
 type Scheme = (&'static str, Diffusion, &'static [Portion]);
 
 const SCHEMES: [Scheme; 5] = [
@@ -27,7 +27,7 @@ const SCHEMES: [Scheme; 5] = [
     ("Crank–Nicolson", Diffusion::CrankNicolson, &[Portion::Whole]),
 ];
 
-/// Heat that spreads in a square that wraps, for two seconds. Explicit steps beyond their limit are cut into parts.
+/// Heat that spreads in a periodic square for two seconds. Explicit steps beyond the stability limit are subdivided.
 pub(super) fn heat_kernel(cells: &[usize]) -> Problem {
     let mut runs = Vec::new();
     for scheme in SCHEMES {
@@ -45,15 +45,15 @@ fn run((name, diffusion, portions): Scheme, n: usize, number: f64) -> Run {
     let diffusivity = KERNEL.diffusivity_m2_per_s;
     let steps = Steps::new(to - from, number * spacing_m * spacing_m / diffusivity);
     let solve = move || {
-        let walls = Walls::new(&grid, Box::new(|_, _| [0.0; 3]));
-        let close = |field: &mut Field<f64>| walls.close_concentration(field);
-        let [mut heat, mut even, mut odd] = [0; 3].map(|_| Field::zeros(&grid, Place::Centre));
+        let walls = BoundaryConditions::new(&grid, Box::new(|_, _| [0.0; 3]));
+        let close = |field: &mut Field<f64>| walls.apply_to_concentration(field);
+        let [mut heat, mut even, mut odd] = [0; 3].map(|_| Field::zeros(&grid, Location::Centre));
         let mut implicit = Implicit::new(&grid);
         heat.fill(&grid, |position| KERNEL.density(position, from));
         close(&mut heat);
         let wall = steps.take(|dt_secs| {
             for &portion in portions {
-                spread(diffusion, portion, &grid, diffusivity, dt_secs, &mut heat, [&mut even, &mut odd], Some(&mut implicit), close);
+                diffuse(diffusion, portion, &grid, diffusivity, dt_secs, &mut heat, [&mut even, &mut odd], Some(&mut implicit), close);
             }
             Ok(())
         })?;

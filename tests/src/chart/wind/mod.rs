@@ -1,15 +1,15 @@
-//! The runs of the wind: methods on problems with known answers, from coarse to fine.
+//! Runs of the wind solver: methods on problems with known solutions, from coarse to fine.
 //!
 //! | file | problems |
 //! |---|---|
 //! | `flows` | Taylor–Green, Ethier–Steinman: the whole solver |
 //! | `cavity` | the lid-driven cavity at Re = 100 and 1000 |
-//! | `dust` | Zalesak's disc and a rotating Gaussian: each advection of dust |
-//! | `heat` | the heat kernel: each diffusion |
-//! | `projection` | time against the divergence left over: each pressure method |
+//! | `dust` | Zalesak's disc and a rotating Gaussian: each advection scheme of dust |
+//! | `heat` | the heat kernel: each diffusion scheme |
+//! | `projection` | each pressure method: time against the remaining divergence |
 //!
-//! All in double precision, so that rounding hides nothing. The method of 000 has neither moving lids nor prescribed faces: it takes part in Taylor–Green and
-//! in the projection.
+//! All runs are in double precision, so that rounding hides nothing. Zhang's method supports neither moving lids nor prescribed faces: it takes part in
+//! Taylor–Green and in the projection.
 
 mod cavity;
 mod dust;
@@ -20,12 +20,12 @@ mod projection;
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
-use server::wind::{Advection, Config, StepError, TimeScheme};
+use prairie_wind::{Advection, Config, StepError, TimeScheme};
 
 use super::Problem;
 use crate::problems::{BOTELLA_PEYRET_RE_1000, GHIA_RE_100};
 
-/// Settings by name: how they differ from the default.
+/// A named change of the default configuration.
 type Choice = (&'static str, fn(&mut Config));
 
 /// Methods for the whole solver. The last but one is the default.
@@ -38,7 +38,7 @@ const METHODS: [Choice; 6] = [
     ("conservative, damping 0", |config| config.damping = 0.0),
 ];
 
-/// Courant numbers, of the largest speed at the start, that each method is tried at.
+/// Courant numbers of each method, by the largest initial speed.
 const COURANT: [f64; 2] = [0.5, 2.0];
 
 /// All problems; `quick` leaves out the finest grids.
@@ -60,7 +60,7 @@ pub fn problems(quick: bool) -> Vec<Problem> {
     problems
 }
 
-/// Equal steps that end at a given time.
+/// Equal time steps up to a given time.
 #[derive(Clone, Copy)]
 struct Steps {
     number: usize,
@@ -73,7 +73,7 @@ impl Steps {
         Self { number: number as usize, dt_secs: end_secs / number }
     }
 
-    /// Takes them, and says how long they took.
+    /// Runs the steps and returns the elapsed time.
     fn take<T>(self, mut step: impl FnMut(f64) -> Result<T, StepError>) -> Result<Duration> {
         let start = Instant::now();
         for _ in 0..self.number {
@@ -98,7 +98,7 @@ mod tests {
         for Problem { name, runs, .. } in problems(false) {
             let names: HashSet<String> = runs.iter().map(|run| format!("{} {:?} {:e}", run.method, run.cells, run.dt_secs)).collect();
             assert!(!runs.is_empty());
-            // The runs of a pressure method differ in how far they go.
+            // Runs of one pressure method differ in tolerance or number of sweeps.
             assert!(names.len() == runs.len() || name.starts_with("Projection"), "{name}");
         }
         let names: HashSet<&str> = problems(false).iter().map(|problem| problem.name).collect();

@@ -1,42 +1,46 @@
-//! One projection, by each pressure method: time against the divergence that is left over.
+//! A single projection by each pressure method: time against the remaining divergence.
 
 use std::f64::consts::TAU;
 use std::time::Instant;
 
 use anyhow::Result;
-use server::wind::boundary::Walls;
-use server::wind::pressure::{Effort, Method, Projection, divergence};
-use server::wind::{Boundary, Grid, Pressure, StableFluids, Velocity};
+use prairie_wind::boundary::BoundaryConditions;
+use prairie_wind::pressure::{Effort, IterativeMethod, Projection, divergence};
+use prairie_wind::{Boundary, Grid, Pressure, StableFluids, Velocity};
 
 use super::super::{Outcome, Problem, Run};
 use crate::air::still_air;
 use crate::norms::Norms;
 
-/// Relative residuals at which the methods that get there stop.
+/// Tolerances (relative residual) of the methods that reach them.
 const TOLERANCES: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
-/// Numbers of sweeps of those that only get there after thousands.
+/// Numbers of sweeps of the slowly converging methods.
 const SWEEPS: [u32; 4] = [10, 30, 100, 300];
-/// Sweeps in 000's listings.
+/// Number of sweeps in Zhang's listings.
 const SWEEPS_OF_000: u32 = 20;
-/// More than any method needs for a tolerance.
+/// Iteration limit, more than any method needs.
 const MOST_SWEEPS: u32 = 100_000;
 
 const CLOSED: [[Boundary; 2]; 3] = [[Boundary::FreeSlip; 2]; 3];
 
-/// Air with waves of every octave in a closed cube of `n`³ cells, projected once from a first guess of 0.
+/// Air with waves of every octave in a closed cube of `n`³ cells, projected once with an initial guess of 0.
 pub(super) fn projection(name: &'static str, n: usize) -> Problem {
     let upto = |method| TOLERANCES.map(|tolerance| Pressure::Iterative(method, Effort { tolerance, sweeps: MOST_SWEEPS }));
     let swept = |method| SWEEPS.map(|sweeps| Pressure::Iterative(method, Effort { tolerance: 0.0, sweeps }));
     let mut runs = vec![run("direct", n, move || staggered(n, Pressure::Direct))];
-    let methods = [("multigrid", Method::Multigrid), ("conjugate gradients", Method::ConjugateGradients), ("red–black SOR", Method::Sor)];
+    let methods = [
+        ("multigrid", IterativeMethod::Multigrid),
+        ("conjugate gradients", IterativeMethod::ConjugateGradients),
+        ("red–black SOR", IterativeMethod::Sor),
+    ];
     for (name, method) in methods {
         runs.extend(upto(method).map(|pressure| run(name, n, move || staggered(n, pressure))));
     }
-    for (name, method) in [("Gauss–Seidel", Method::GaussSeidel), ("Jacobi", Method::Jacobi)] {
+    for (name, method) in [("Gauss–Seidel", IterativeMethod::GaussSeidel), ("Jacobi", IterativeMethod::Jacobi)] {
         runs.extend(swept(method).map(|pressure| run(name, n, move || staggered(n, pressure))));
     }
-    runs.push(run("20 sweeps of 000", n, move || as_in_000(n)));
-    Problem { name, error: "divergence left over (of the rms before)", per: "projection", runs }
+    runs.push(run("Zhang, 20 sweeps", n, move || as_in_zhang(n)));
+    Problem { name, error: "remaining divergence (relative to rms before)", per: "projection", runs }
 }
 
 fn run(method: &str, n: usize, solve: impl Fn() -> Result<Outcome> + 'static) -> Run {
@@ -54,7 +58,7 @@ fn octaves(n: usize, position: [f64; 3]) -> [f64; 3] {
     })
 }
 
-/// Norms of what is left, over the root mean square before.
+/// Norms of the remaining divergence, relative to the root mean square before.
 fn left_over(before: &[f64], after: &[f64]) -> Norms {
     let norms = |divergence: &[f64]| Norms::of(divergence.iter().map(|&d| (d, 0.0)));
     let (rms, left) = (norms(before).l2, norms(after));
@@ -63,14 +67,14 @@ fn left_over(before: &[f64], after: &[f64]) -> Norms {
 
 fn staggered(n: usize, pressure: Pressure) -> Result<Outcome> {
     let grid = Grid { cells: [n; 3], spacing_m: [1.0; 3], boundary: CLOSED };
-    let walls = Walls::new(&grid, Box::new(|_, _| [0.0; 3]));
+    let walls = BoundaryConditions::new(&grid, Box::new(|_, _| [0.0; 3]));
     let mut given = Velocity::zeros(&grid);
     for (axis, field) in given.0.iter_mut().enumerate() {
         field.fill(&grid, |position| octaves(n, position)[axis]);
     }
-    walls.close(&mut given);
+    walls.apply(&mut given);
     let mut projection = Projection::new(&grid, pressure, None);
-    // Once before, so that all memory has been touched; still air sets the first guess back to 0.
+    // A warm-up run, so that all memory has been touched; still air then resets the initial guess to 0.
     let mut air = given.clone();
     projection.project(&grid, &mut air, &[], None);
     projection.project(&grid, &mut Velocity::zeros(&grid), &[], None);
@@ -87,7 +91,7 @@ fn staggered(n: usize, pressure: Pressure) -> Result<Outcome> {
     Ok(Outcome { error: left_over(&before, &after), simulated_secs: 1.0, wall })
 }
 
-fn as_in_000(n: usize) -> Result<Outcome> {
+fn as_in_zhang(n: usize) -> Result<Outcome> {
     let mut air = StableFluids::<f64>::new(&still_air([n; 3], [1.0; 3], CLOSED))?;
     air.set_velocity(|position| octaves(n, position));
     air.project(SWEEPS_OF_000);
@@ -99,7 +103,7 @@ fn as_in_000(n: usize) -> Result<Outcome> {
     Ok(Outcome { error: left_over(&before, &central_divergence(&air)), simulated_secs: 1.0, wall })
 }
 
-/// Divergence (1/s) of each cell of unit size as 000 has it, by central differences.
+/// Divergence (1/s) of each unit cell by central differences, as in Zhang.
 fn central_divergence(air: &StableFluids<f64>) -> Vec<f64> {
     let (grid, velocity) = (air.grid(), air.velocity());
     let strides = grid.strides();

@@ -1,46 +1,46 @@
-//! Grass and objects drawn at random from the ranges of 001.
+//! Random grass and objects from the ranges of Chen & Johan.
 
 use std::f32::consts::TAU;
 
-use shared::bend::{Alone, Field, Kinds, Rest, Scheme, WaveParams};
-use shared::grid::PatchLayout;
+use prairie_core::bend::{Alone, Field, Kinds, Rest, Scheme, WaveParams};
+use prairie_core::grid::PatchLayout;
 
 use super::Striker;
 use crate::random_winds::Dice;
 
-/// Steps in which objects strike; then they are gone.
+/// Number of steps with objects; afterwards they are gone.
 pub(super) const STRIKING_STEPS: u32 = 150;
-/// Steps of a run.
+/// Number of steps of a run.
 pub(super) const STEPS: u32 = 600;
 /// Half of the world's side (m).
 const HALF_M: f32 = 12.0 * 0.4572;
 
-/// One drawing: grass, objects and a length of step.
+/// A random draw: grass, objects and time step.
 #[derive(Clone, Debug)]
 pub struct Draw {
     /// c₀ and c_ω 1–10 m/s, μ 0–1.5 m/rad, λ 0.01–1 in a step of a 60th of a second, as a rate; no stiffness.
     pub waves: WaveParams,
-    /// A 20th to a 120th of a second.
+    /// 1/120 to 1/20 s.
     pub dt_secs: f32,
-    /// One or two objects of up to 60 m/s, in a field of 24 × 24 cells in which they run to and fro.
+    /// One or two objects of up to 60 m/s, which bounce to and fro in a field of 24 × 24 cells.
     pub objects: Vec<Striker>,
 }
 
-/// What came of a drawing.
+/// Result of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Course {
     /// Largest |θ| at any time (rad).
     pub theta_max_rad: f32,
-    /// Sum of the squares of θ once the objects have gone, at its largest since, and at the end (rad²).
+    /// Sum of θ² when the objects have gone, its largest value since, and its value at the end (rad²).
     pub squares: [f64; 3],
-    /// Patches put to rest because a value was no number.
-    pub broken: u32,
+    /// Patches reset because a value was NaN or infinite.
+    pub reset_patches: u32,
     /// Sub-steps taken.
     pub substeps: u32,
 }
 
 impl Draw {
-    /// The drawing of a number.
+    /// The draw with this number.
     pub fn new(number: u64) -> Self {
         let mut dice = Dice::new(number);
         let mut between = |low: f64, high: f64| dice.between(low, high) as f32;
@@ -68,10 +68,10 @@ impl Draw {
         Self { waves, dt_secs, objects }
     }
 
-    /// Runs it: on one patch or, to the same bits, on nine.
+    /// Runs the draw on one patch or on nine; the bits are the same.
     ///
     /// # Panics
-    /// When the scheme refuses to step.
+    /// When the scheme rejects the step.
     pub fn run(&self, scheme: Scheme, rest: Rest, patches: u32) -> Course {
         let layout = PatchLayout { count: [patches; 2], cells: 24 / patches, cell_m: 0.4572 };
         let mut field = Field::new(layout, Kinds::one(self.waves)).with_rest(rest);
@@ -79,7 +79,7 @@ impl Draw {
             field.wake_all();
         }
         let mut objects = self.objects.clone();
-        let mut course = Course { theta_max_rad: 0.0, squares: [0.0; 3], broken: 0, substeps: 0 };
+        let mut course = Course { theta_max_rad: 0.0, squares: [0.0; 3], reset_patches: 0, substeps: 0 };
         for step in 0..STEPS {
             if step < STRIKING_STEPS {
                 objects.iter_mut().for_each(|object| {
@@ -88,7 +88,7 @@ impl Draw {
                 });
             }
             let report = field.step(scheme, self.dt_secs, &Alone).expect("the step is of some length and can be divided");
-            course.broken += report.broken;
+            course.reset_patches += report.reset_patches;
             course.substeps += report.substeps;
             course.theta_max_rad = field.awake().map(|patch| patch.theta_max_rad()).fold(course.theta_max_rad, f32::max);
             if step >= STRIKING_STEPS && (step.is_multiple_of(10) || step == STEPS - 1) {

@@ -1,13 +1,13 @@
-//! What the schemes keep where nothing damps.
+//! Discrete energy of the undamped schemes.
 
-use shared::bend::{CHANNELS, Edges, Field, Scheme};
+use prairie_core::bend::{CHANNELS, Edges, Field, Scheme};
 
 use super::{cells, channels, size};
 
-/// Twice the discrete energy of each channel, over that of a cell: `⟨v, M·v⟩ + ⟨a, K·a⁻⟩` with `v = a − a⁻`.
+/// Twice the discrete energy of each channel, per cell: `⟨v, M·v⟩ + ⟨a, K·a⁻⟩` with `v = a − a⁻`.
 ///
 /// From `M·(a⁺ − 2a + a⁻) = −K·a` with symmetric M and K that do not change: its product with `a⁺ − a⁻` is the change of this sum. Explicit, M is 1;
-/// by alternating directions `A·(1 − b·Lx)(1 − b·Lz)`; K is `−r²·L + κ·dt²` (Hairer, Lubich & Wanner, Geometric Numerical Integration, I.5).
+/// by alternating directions `A·(1 − b·Lx)(1 − b·Lz)`; K is `−r²·L + κ·dt²` (Hairer et al. 2006, I.5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Energy {
     /// Courant number c·dt/h.
@@ -19,7 +19,7 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// That of θ, ωx and ωz, by the explicit or the implicit scheme.
+    /// Energies of θ, ωx and ωz under the explicit or the implicit scheme.
     ///
     /// # Panics
     /// When a patch sleeps.

@@ -1,14 +1,14 @@
-//! The bend field: what its schemes must give, known from formulas alone.
+//! Reference solutions of the bend field.
 //!
-//! | problem | what it tries |
+//! | problem | tested property |
 //! |---|---|
-//! | [`Mode`] | one standing wave between any edges: orders, frequency and decay |
-//! | [`Recurrence`] | how a scheme carries a mode on, exactly |
-//! | [`Pulse`] | a round heap of bent grass that spreads: the continuum's own answer |
-//! | [`Energy`] | what a scheme without damping keeps |
-//! | [`OneGrid`] | the explicit scheme on one grid, as its formula stands: what patches and tiles must equal |
-//! | [`Striker`] | round objects that strike the grass (001 Eqs 1 and 10–12) |
-//! | [`Draw`] | grass and objects drawn at random from 001's ranges |
+//! | [`Mode`] | a standing wave between any edges: orders, frequency and decay |
+//! | [`Recurrence`] | the exact recurrence of a mode under a scheme |
+//! | [`Pulse`] | a round pulse that spreads, in the continuum |
+//! | [`Energy`] | the discrete energy, conserved without damping |
+//! | [`OneGrid`] | the explicit scheme on one grid, straight from its formula: patches and tiles must equal it |
+//! | [`Striker`] | round objects that strike the grass (Chen & Johan, Eqs. 1 and 10–12) |
+//! | [`Draw`] | random grass and objects from the ranges of Chen & Johan |
 
 mod draw;
 mod energy;
@@ -28,7 +28,7 @@ pub use recurrence::{Recurrence, Steps};
 pub use striker::Striker;
 pub use threads::Threads;
 
-use shared::bend::{Bend, CHANNELS, Field, WaveParams};
+use prairie_core::bend::{Bend, CHANNELS, Field, WaveParams};
 
 /// The same speed (m/s), damping rate (1/s) and stiffness (1/s²) for θ and ω, and no μ: all three channels then obey one equation.
 pub fn alike(speed_m_per_s: f32, damping_per_s: f32, stiffness_per_s2: f32) -> WaveParams {
@@ -42,7 +42,7 @@ pub fn alike(speed_m_per_s: f32, damping_per_s: f32, stiffness_per_s2: f32) -> W
     }
 }
 
-/// A state whose three channels hold one value, each with a factor of its own.
+/// A state with one value in all three channels, each multiplied by its own factor.
 pub fn in_all_channels(value: f64) -> Bend {
     let [theta, x, z] = FACTORS.map(|factor| (factor * value) as f32);
     Bend { theta, omega: [x, z] }
@@ -61,7 +61,7 @@ pub fn size(field: &Field) -> [usize; 2] {
     field.layout().count.map(|count| count as usize * field.layout().cells as usize)
 }
 
-/// Every cell of the awake patches: its place in the world, its state and that one sub-step earlier.
+/// Every cell of the awake patches: its indices in the world, its state, and its state one sub-step earlier.
 pub fn cells(field: &Field) -> impl Iterator<Item = ([usize; 2], [Bend; 2])> {
     field.awake().flat_map(|patch| {
         let side = patch.side();
@@ -85,7 +85,7 @@ pub fn largest_difference(a: &Field, b: &Field) -> [f32; 2] {
     [most, there.max(back)]
 }
 
-/// Sets every cell of the world: for its place the state now and `dt_secs` ago, in all channels.
+/// Sets every cell of the world from its indices: the state now and `dt_secs` ago, in all channels.
 pub fn start(field: &mut Field, dt_secs: f64, value: impl Fn([usize; 2]) -> [f64; 2]) {
     let cell_m = field.layout().cell_m;
     field.start(dt_secs as f32, |at_m| value(at_m.map(|m| (m / cell_m) as usize)).map(in_all_channels));

@@ -2,19 +2,19 @@
 
 use std::f64::consts::PI;
 
-use shared::bend::Edges;
+use prairie_core::bend::Edges;
 
-/// A wave that stands between the edges of the world: a product of sines or cosines along both axes.
+/// A standing wave between the edges of the world: a product of sines or cosines along both axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
     /// What lies beyond the world's edge.
     pub edges: Edges,
-    /// Half waves along each axis; between wrapped edges whole ones.
+    /// Number of half waves along each axis; of whole waves between periodic edges.
     pub waves: [u32; 2],
 }
 
 impl Mode {
-    /// Cells of what side (m) fill a width: grass at rest lies one cell beyond the outermost centres, mirrors half a cell.
+    /// Side of the cells (m) that fill a width: resting grass begins one cell beyond the outermost centres, mirrors are half a cell beyond.
     pub fn cell_m(&self, width_m: f64, cells: usize) -> f64 {
         width_m / if self.edges == Edges::Rest { cells as f64 + 1.0 } else { cells as f64 }
     }
@@ -37,13 +37,13 @@ impl Mode {
         let along = |axis: usize| match self.edges {
             Edges::Rest => (phase[axis] * (cell[axis] as f64 + 1.0)).sin(),
             Edges::Free => (phase[axis] * (cell[axis] as f64 + 0.5)).cos(),
-            // Off the symmetric places, where the shortest wave would vanish.
+            // Offset from symmetric positions, where the shortest wave would vanish.
             Edges::Wrapped => (phase[axis] * cell[axis] as f64).cos(),
         };
         along(0) * along(1)
     }
 
-    /// What `−Lx` and `−Lz`, the differences along each axis, multiply it with: `4·sin²(phase/2)`.
+    /// Eigenvalues of `−Lx` and `−Lz`, the second differences along each axis: `4·sin²(phase/2)`.
     pub fn differences(&self, cells: [usize; 2]) -> [f64; 2] {
         self.phase_rad(cells).map(|phase| 4.0 * (0.5 * phase).sin().powi(2))
     }
@@ -53,7 +53,7 @@ impl Mode {
         self.phase_rad(cells).iter().map(|phase| (phase / cell_m).powi(2)).sum()
     }
 
-    /// The same as the five-point differences see it.
+    /// Square of the wave number (1/m²) under the five-point stencil.
     pub fn grid_wave_number2_per_m2(&self, cells: [usize; 2], cell_m: f64) -> f64 {
         self.differences(cells).iter().sum::<f64>() / cell_m.powi(2)
     }
@@ -79,7 +79,7 @@ impl Oscillation {
         (-0.5 * self.damping_per_s * secs).exp() * (self.frequency_rad_per_s() * secs).cos()
     }
 
-    /// What was let go at rest at a distance of 1: `e^(−kt/2)·(cos(Ωt) + k/(2Ω)·sin(Ωt))`, overdamped or not.
+    /// Amplitude after release at rest from 1: `e^(−kt/2)·(cos(Ωt) + k/(2Ω)·sin(Ωt))`, overdamped or not.
     pub fn released(&self, secs: f64) -> f64 {
         let half = 0.5 * self.damping_per_s;
         let square = self.stiffness_per_s2 - half * half;

@@ -1,12 +1,12 @@
-//! The explicit scheme on one grid, cell by cell as its formula stands.
+//! The explicit scheme on one grid, cell by cell, straight from its formula.
 
 use std::ops::{Add, Div, Mul, Sub};
 
-use shared::bend::{Bend, CHANNELS, Coefficients, Damping, Edges, Field, WaveParams};
+use prairie_core::bend::{Bend, CHANNELS, Coefficients, Damping, Edges, Field, WaveParams};
 
 use super::{channels, size};
 
-/// The numbers that a grid computes with.
+/// Floating-point type of a grid.
 pub trait Real: Copy + From<f32> + PartialOrd + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
     /// The positive root.
     fn root(self) -> Self;
@@ -34,8 +34,8 @@ impl Real for f64 {
     }
 }
 
-/// All cells of a world in one grid, without patches, halos or tiles; the arithmetic of [`shared::bend`]'s explicit schemes, in the same order. In f32
-/// their very bits; in f64 what they would be without rounding, which steps shorter than a millisecond suffer from.
+/// All cells of a world in one grid, without patches, halos or tiles: the arithmetic of the explicit schemes in [`prairie_core::bend`], in the same order. f32
+/// gives identical bits; f64 shows the results without rounding errors, which dominate at steps shorter than a millisecond.
 #[derive(Clone, Debug)]
 pub struct OneGrid<T> {
     size: [usize; 2],
@@ -92,7 +92,7 @@ impl<T: Real> OneGrid<T> {
         Bend { theta, omega: [x, z] }
     }
 
-    /// Advances by `dt_secs` in so many equal sub-steps.
+    /// Advances by `dt_secs` in `substeps` equal sub-steps.
     pub fn step(&mut self, damping: Damping, substeps: u32, dt_secs: f32) {
         let substep_secs = dt_secs / substeps as f32;
         let ratio = self.dt_secs.replace(substep_secs).map_or(1.0, |last| substep_secs / last);
@@ -123,7 +123,7 @@ impl<T: Real> OneGrid<T> {
         let courant = |[_, x, z]: &[Vec<T>; CHANNELS]| r0 + r_mu * (x[n] * x[n] + z[n] * z[n]).root();
         let (r, r_before) = (courant(&self.now), courant(&self.before));
         let slowed = r / r_before;
-        // A quotient that is no number, where no wave runs, lets all be kept.
+        // A NaN quotient, where no wave runs, keeps the full motion.
         let kept = if !k.keeps_motion && slowed < one { slowed } else { one };
         let [theta, x, z] = self.now.each_ref().map(|plane| [plane[n], laplacian(plane)]);
         let before = self.before.each_ref().map(|plane| plane[n]);

@@ -1,4 +1,4 @@
-//! A round heap of bent grass that is let go and spreads over an endless plain.
+//! A round pulse of bent grass that spreads over an unbounded plain.
 
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -24,8 +24,8 @@ pub struct Pulse {
 const INTERVALS: usize = 240;
 
 impl Pulse {
-    /// θ at a distance from the centre (m): the Hankel transform `∫ A·σ²·e^(−K²σ²/2)·a(K, t)·J₀(Kr)·K dK`, in which every wave number is let go
-    /// on its own. Simpson's rule, to seven digits.
+    /// θ at a distance from the centre (m): the Hankel transform `∫ A·σ²·e^(−K²σ²/2)·a(K, t)·J₀(Kr)·K dK`, in which every wave number evolves
+    /// independently. Simpson's rule, to seven digits.
     pub fn theta_rad(&self, distance_m: f64, secs: f64) -> f64 {
         // e^(−K²σ²/2) is 1e-11 there.
         let last = 7.2 / self.width_m;
@@ -43,7 +43,7 @@ impl Pulse {
 
     /// θ at every cell of a square grid around the centre, row by row.
     pub fn on_grid(&self, cells: usize, cell_m: f64, secs: f64) -> Vec<f64> {
-        // Cells at one distance share its value.
+        // Cells at equal distance share a value.
         let mut known = HashMap::new();
         let odd = |n: usize| (2 * n as i64 + 1 - cells as i64).pow(2);
         let places = (0..cells * cells).map(|n| odd(n % cells) + odd(n / cells));
@@ -51,7 +51,7 @@ impl Pulse {
     }
 }
 
-/// Bessel function of the first kind, `(1/π)·∫₀^π cos(x·sin τ) dτ`; the trapezoidal rule of what repeats errs less than any power of its step.
+/// Bessel function of the first kind, `(1/π)·∫₀^π cos(x·sin τ) dτ`; the trapezoidal rule converges faster than any power of its step on a periodic integrand.
 fn bessel_j0(x: f64) -> f64 {
     let points = 12 + (0.7 * x.abs()) as usize;
     (0..points).map(|n| (x * (PI * (n as f64 + 0.5) / points as f64).sin()).cos()).sum::<f64>() / points as f64

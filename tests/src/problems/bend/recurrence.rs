@@ -1,8 +1,8 @@
-//! How each scheme carries a mode of the grid on: exactly, from its formula.
+//! Exact recurrence of a grid mode under each scheme, from its formula.
 
-use shared::bend::Scheme;
+use prairie_core::bend::Scheme;
 
-/// `a⁺ = p·a − q·a⁻`: what a scheme makes of the amplitude of a mode in each step.
+/// Two-step recurrence `a⁺ = p·a − q·a⁻` of a mode's amplitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recurrence {
     /// Sum of the roots g of `g² − p·g + q`.
@@ -11,7 +11,7 @@ pub struct Recurrence {
     pub q: f64,
 }
 
-/// A mode of the grid in numbers without units.
+/// A grid mode in dimensionless numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steps {
     /// Damping k·dt.
@@ -20,15 +20,15 @@ pub struct Steps {
     pub restoring: f64,
     /// Courant number c·dt/h.
     pub courant: f64,
-    /// What the differences along each axis multiply it with.
+    /// Eigenvalues of the negative second differences along each axis.
     pub differences: [f64; 2],
 }
 
 impl Recurrence {
-    /// That of a scheme, from:
-    /// - explicit (001 Eqs 5–6): `p = 2 − λ − K`, `q = 1 − λ`, `K = r²·s + κ·dt²`, with λ = 1 − e^(−k·dt); sub-stepped, K times λ/(k·dt);
+    /// The recurrence of a scheme:
+    /// - explicit (Chen & Johan, Eqs. 5–6): `p = 2 − λ − K`, `q = 1 − λ`, `K = r²·s + κ·dt²`, with λ = 1 − e^(−k·dt); sub-stepped, K times λ/(k·dt);
     /// - implicit (Lees 1962): `M·(a⁺ − 2a + a⁻) = −K·a − k·dt·(a − a⁻)`, `M = A·(1 + b·s_x)(1 + b·s_z)`, `A = 1 + k·dt/2 + κ·dt²/4`, `b = r²/4A`;
-    /// - modal: the equation's own solution.
+    /// - modal: the exact solution.
     pub fn of(scheme: Scheme, steps: &Steps) -> Self {
         let Steps { damping, restoring, courant, differences: [x, z] } = *steps;
         let (r2, lambda) = (courant * courant, -f64::exp_m1(-damping));
@@ -52,7 +52,7 @@ impl Recurrence {
         }
     }
 
-    /// The one that fits a series of amplitudes best (least squares).
+    /// The least-squares fit to a series of amplitudes.
     pub fn fitted(series: &[f64]) -> Self {
         let mut sums = [[0.0; 2]; 2];
         let mut right = [0.0; 2];
@@ -69,12 +69,12 @@ impl Recurrence {
         Self { p, q }
     }
 
-    /// Change of phase in a step (rad, 0 to π); not a number where both roots are real and apart.
+    /// Phase change per step (rad, 0 to π); NaN where both roots are real and distinct.
     pub fn phase_rad(&self) -> f64 {
         (0.5 * self.p / self.q.sqrt()).acos()
     }
 
-    /// Decay in a step, −ln|g|.
+    /// Decay per step, −ln|g|.
     pub fn decay(&self) -> f64 {
         -0.5 * self.q.ln()
     }

@@ -1,17 +1,17 @@
-//! Round objects that strike the grass (001 Eqs 1 and 10–12).
+//! Round objects that strike the grass (Chen & Johan, Eqs. 1 and 10–12).
 
 use std::f32::consts::FRAC_PI_2;
 
-use shared::bend::{Bend, Field};
+use prairie_core::bend::{Bend, Field};
 
 use super::{OneGrid, Real};
 
-/// A round object that moves straight on for a step. Places are metres from the centre of the world.
+/// A round object that moves in a straight line during a step. Positions are metres from the centre of the world.
 ///
-/// Every sum is of two terms, so that turning the world by a quarter only exchanges and negates what is computed: no bit of a result changes.
+/// Every sum has two terms, so a quarter turn of the world only swaps and negates the operands, and the results keep their bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Striker {
-    /// Where its centre is at the end of the step (m).
+    /// Position of the centre at the end of the step (m).
     pub at_m: [f32; 2],
     /// Velocity (m/s).
     pub velocity_m_per_s: [f32; 2],
@@ -22,18 +22,18 @@ pub struct Striker {
 }
 
 impl Striker {
-    /// The same, turned by so many quarters about the world's centre.
+    /// The object turned by a number of quarter turns about the centre of the world.
     pub fn turned(self, quarters: usize) -> Self {
         let turn = |vector: [f32; 2]| (0..quarters).fold(vector, |[x, z], _| [-z, x]);
         Self { at_m: turn(self.at_m), velocity_m_per_s: turn(self.velocity_m_per_s), ..self }
     }
 
-    /// What contact makes of a cell at `center_m` (m from the world's centre): none where it does not touch. Eq. (1), with θ at most π/2, and Eq. (12) in
+    /// State of a cell at `center_m` (m from the centre of the world) after contact; `None` without contact. Eq. (1), with θ at most π/2, and Eq. (12) in
     /// the direction of Eq. (11).
     pub fn strike(&self, center_m: [f32; 2], theta_rad: f32, dt_secs: f32) -> Option<Bend> {
         let [u, w] = self.velocity_m_per_s;
         let speed = (u * u + w * w).sqrt();
-        // Where along the way of this step, counted back from its end, the object comes closest.
+        // Time of closest approach in this step, counted back from its end.
         let behind = [self.at_m[0] - center_m[0], self.at_m[1] - center_m[1]];
         let along = if speed > 0.0 { (behind[0] * u + behind[1] * w) / (speed * speed) } else { 0.0 };
         let back_secs = along.clamp(0.0, dt_secs);
@@ -57,7 +57,7 @@ impl Striker {
         Some(Bend { theta, omega: direction.map(|part| part * omega) })
     }
 
-    /// Presses every cell of a field that it touches in a step, waking their patches.
+    /// Presses every touched cell of a field in a step and wakes its patch.
     pub fn press(&self, field: &mut Field, dt_secs: f32) {
         for (cell, center_m) in self.within_reach(super::size(field), field.layout().cell_m, dt_secs) {
             let cell = cell.map(|n| n as i64);
@@ -70,7 +70,7 @@ impl Striker {
         }
     }
 
-    /// The same on one grid.
+    /// Presses every touched cell of a single grid.
     pub fn press_grid<T: Real>(&self, grid: &mut OneGrid<T>, dt_secs: f32) {
         for (cell, center_m) in self.within_reach(grid.size(), grid.cell_m(), dt_secs) {
             if let Some(bend) = self.strike(center_m, grid.bend(cell).theta, dt_secs) {
@@ -79,7 +79,7 @@ impl Striker {
         }
     }
 
-    /// Cells that it might touch in a step, with their centres (m from the world's).
+    /// Cells within reach in a step, with their centres (m from the centre of the world).
     fn within_reach(&self, size: [usize; 2], cell_m: f32, dt_secs: f32) -> impl Iterator<Item = ([usize; 2], [f32; 2])> {
         let reach_m = |axis: usize| self.radius_m + self.velocity_m_per_s[axis].abs() * dt_secs + cell_m;
         let range = |axis: usize| {

@@ -1,8 +1,8 @@
-//! Tasks dealt out to several threads.
+//! A scoped thread pool for tests of determinism.
 
-use shared::bend::Crew;
+use prairie_core::bend::Crew;
 
-/// So many threads, started anew each time; tasks are dealt out like cards, so that neighbours meet in different threads.
+/// A number of threads, started for each call. Tasks are dealt round-robin, so that neighbouring tasks run on different threads.
 #[derive(Clone, Copy, Debug)]
 pub struct Threads(pub usize);
 

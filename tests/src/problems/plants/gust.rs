@@ -1,24 +1,21 @@
-//! Blades in a gust that the wind's solver blew.
+//! Blades in a gust recorded from the wind solver.
 
 use std::sync::OnceLock;
 
 use anyhow::Result;
-use server::wind::{Air, Config, Method};
-use shared::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
+use prairie_core::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
+use prairie_wind::{Air, Config, Method};
 
-/// Places where the wind is recorded, each with a blade.
+/// Number of positions where the wind is recorded, each with a blade.
 pub const PLACES: usize = 64;
 
-/// Blades that are stepped at once.
-pub const ABREAST: usize = 16;
-
-/// Frames of the record in its second.
+/// Frames of the record, which lasts a second.
 const FRAMES: usize = 60;
 
-/// Steps of the wind before the record begins, so that gusts blow.
+/// Wind steps before the record begins, so that gusts have developed.
 const FRAMES_BEFORE: usize = 240;
 
-/// Steps that the reference takes (1/s).
+/// Step rate of the reference (1/s).
 const FINEST_PER_SEC: usize = 30_720;
 
 /// A blade of the default scene.
@@ -30,7 +27,7 @@ pub struct Gust {
 }
 
 impl Gust {
-    /// The wind of the default scene over land, read where upright blades have their control points; recorded once.
+    /// The wind of the default scene, sampled at the control points of upright blades; recorded once per process.
     pub fn recorded() -> &'static Self {
         static GUST: OnceLock<Gust> = OnceLock::new();
         GUST.get_or_init(|| {
@@ -59,17 +56,12 @@ impl Gust {
         std::array::from_fn(|link| std::array::from_fn(|axis| from[link][axis] + (to[link][axis] - from[link][axis]) * part))
     }
 
-    /// Wind at [`ABREAST`] blades, in all steps of the second: for the first of them in all steps, then for the next.
-    pub fn abreast(&self, steps: usize) -> Vec<Leans<[f32; ABREAST]>> {
-        let groups = (0..PLACES / ABREAST).flat_map(|group| (0..steps).map(move |step| (group, step)));
-        let winds = groups.map(|(group, step)| {
-            let each: [Leans; ABREAST] = std::array::from_fn(|n| self.wind_m_per_s(ABREAST * group + n, step, steps));
-            std::array::from_fn(|link| std::array::from_fn(|axis| each.map(|wind| wind[link][axis])))
-        });
-        winds.collect()
+    /// Wind at each blade in all `steps` of the second.
+    pub fn winds_m_per_s(&self, steps: usize) -> Vec<Vec<Leans>> {
+        (0..PLACES).map(|place| (0..steps).map(|step| self.wind_m_per_s(place, step, steps)).collect()).collect()
     }
 
-    /// Tips of the blades after the second (m from the root), from steps so short that no integrator matters.
+    /// Tips of the blades after the second (m from the root), from time steps so short that the choice of integrator does not matter.
     pub fn tips_m(&self) -> &'static [[f32; 3]] {
         static TIPS: OnceLock<Vec<[f32; 3]>> = OnceLock::new();
         TIPS.get_or_init(|| {
@@ -85,7 +77,7 @@ impl Gust {
         })
     }
 
-    /// Whether the record blows at all.
+    /// Checks that the record is not still.
     ///
     /// # Errors
     /// When it is still.

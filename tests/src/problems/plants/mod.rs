@@ -1,7 +1,5 @@
-//! What plants are compared with: blades in a gust of the wind's own, components by the heavy elastica.
+//! Reference solutions for plants: blades in a recorded gust, components as heavy elasticas.
 
-mod elastica;
 mod gust;
 
-pub use elastica::heavy_elastica;
-pub use gust::{ABREAST, BLADE, Gust, PLACES};
+pub use gust::{BLADE, Gust, PLACES};

@@ -1,10 +1,11 @@
+use super::super::elastica;
 use super::*;
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
 type Way = fn(&[f64], Load, f64, &mut [f64]);
 
-/// Tip from the foot: how far aside, and how high against the load.
+/// Tip relative to the base: distance aside, and height against the load.
 fn tip(way: Way, sections: usize, tip_share: f64, load: Load, unbent_rad: f64) -> [f64; 2] {
     let mut bends_rad = vec![0.0; sections];
     way(&joints(sections, tip_share), load, unbent_rad, &mut bends_rad);
@@ -24,14 +25,14 @@ fn integral(f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     (0..=steps).map(|i| weight(i) * f(from + i as f64 * step)).sum::<f64>() * step / 3.0
 }
 
-/// Deflection δ/L and shortening Δ/L of a clamped beam whose tip bears P·L²/EI across it: Bisshopp & Drucker, Large deflection of cantilever beams,
-/// Quarterly of Applied Mathematics 3 (1945), by elliptic integrals of modulus p between θ₁ and π/2.
+/// Deflection δ/L and shortening Δ/L of a clamped beam with the load P·L²/EI across its tip (Bisshopp & Drucker 1945), by elliptic integrals of
+/// modulus p between θ₁ and π/2.
 fn bisshopp_drucker(load: f64) -> [f64; 2] {
     let between = |p: f64, f: &dyn Fn(f64) -> f64| {
         let first = (1.0 / (p * 2f64.sqrt())).min(1.0).asin();
         integral(|theta| f((1.0 - (p * theta.sin()).powi(2)).sqrt()), first, FRAC_PI_2)
     };
-    // The modulus for which the beam has the length that it has.
+    // The modulus for which the beam has its length.
     let (mut low, mut high) = (0.5f64.sqrt(), 1.0 - 1e-9);
     for _ in 0..100 {
         let p = 0.5 * (low + high);
@@ -40,41 +41,6 @@ fn bisshopp_drucker(load: f64) -> [f64; 2] {
     let p = 0.5 * (low + high);
     let tip_slope_sine = 2.0 * p * p - 1.0;
     [1.0 - 2.0 / load.sqrt() * between(p, &|root| root), 1.0 - (2.0 * tip_slope_sine / load).sqrt()]
-}
-
-/// Tip of a component under its own weight: the elastica `(EI·θ')' = −Λ·(1 − s)·sin θ`, by Runge–Kutta steps from the tip to the foot, and the tip's angle
-/// by bisection.
-fn heavy_elastica(tip_share: f64, weight: f64, unbent_rad: f64) -> [f64; 2] {
-    let steps = 4000;
-    // θ, moment, place; along t from the tip.
-    let rate = |t: f64, [theta, moment, _, _]: [f64; 4]| {
-        let rigidity = tip_share + (1.0 - tip_share) * t;
-        [-moment / rigidity, weight * t * theta.sin(), theta.sin(), theta.cos()]
-    };
-    let shoot = |tip_rad: f64| {
-        let h = 1.0 / steps as f64;
-        let mut y = [tip_rad, 0.0, 0.0, 0.0];
-        for i in 0..steps {
-            let t = i as f64 * h;
-            let at = |k: [f64; 4], by: f64| std::array::from_fn(|n| y[n] + by * k[n]);
-            let k1 = rate(t, y);
-            let k2 = rate(t + h / 2.0, at(k1, h / 2.0));
-            let k3 = rate(t + h / 2.0, at(k2, h / 2.0));
-            let k4 = rate(t + h, at(k3, h));
-            y = std::array::from_fn(|n| y[n] + h / 6.0 * (k1[n] + 2.0 * k2[n] + 2.0 * k3[n] + k4[n]));
-            if y[0] < unbent_rad {
-                return (false, y);
-            }
-        }
-        (true, y)
-    };
-    let (mut low, mut high) = (unbent_rad, PI);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if shoot(middle).0 { high = middle } else { low = middle }
-    }
-    let [_, _, aside, up] = shoot(high).1;
-    [aside, up]
 }
 
 /// Order in 1/n between the first and the last of errors at 8, 16, 32 and 64 sections.
@@ -126,7 +92,7 @@ fn a_component_lies_under_its_weight_as_the_heavy_elastica() {
         (1.0, 12.0, 0.0, 0.8),
         (0.3, 20.0, 2.6, 0.13),
     ] {
-        let exact = heavy_elastica(tip_share, weight, unbent_rad);
+        let exact = elastica::heavy_tip(tip_share, weight, unbent_rad);
         for (sections, square) in [8, 16, 32, 64].into_iter().zip(&mut squares) {
             let error = distance(tip(balanced, sections, tip_share, Load { spread: weight, tip: 0.0 }, unbent_rad), exact);
             let count = sections as f64;
@@ -142,7 +108,7 @@ fn a_component_lies_under_its_weight_as_the_heavy_elastica() {
 fn the_paper_s_pass_is_good_for_small_loads_alone() {
     let far = |sections, weight: f64, unbent_rad: f64| {
         let found = tip(one_pass, sections, 0.5, Load { spread: weight, tip: 0.0 }, unbent_rad);
-        distance(found, heavy_elastica(0.5, weight, unbent_rad))
+        distance(found, elastica::heavy_tip(0.5, weight, unbent_rad))
     };
     let light = Load { spread: 0.0, tip: 0.05 };
     assert!(
@@ -150,7 +116,7 @@ fn the_paper_s_pass_is_good_for_small_loads_alone() {
         "what hangs at the tip pulls the same way"
     );
     assert!(far(8, 0.5, 0.3) < 0.001 && far(8, 2.0, 0.3) < 0.015);
-    // What it leaves out doesn't go away with more sections.
+    // The model error doesn't vanish with more sections.
     assert!(far(8, 6.0, 0.3) > 0.2 && far(64, 6.0, 0.3) > 0.2);
     assert!(far(8, 6.0, 1.2) > 0.04 && far(64, 6.0, 1.2) > 0.04);
 }
@@ -166,7 +132,7 @@ fn an_upright_component_buckles_at_the_load_of_greenhill() {
     }
 }
 
-/// What the springs and the load of a chain hold.
+/// Potential energy of a chain's springs and load.
 fn energy(joints: &[f64], load: Load, unbent_rad: f64, bends_rad: &[f64]) -> f64 {
     let count = joints.len();
     let mut below_rad = 0.0;
@@ -221,7 +187,7 @@ proptest! {
             let mut bends = vec![f64::NAN; sections];
             way(&joints, load, unbent, &mut bends);
             prop_assert!(bends.iter().all(|bend| (-1e-12..=PI - unbent + 1e-12).contains(bend)), "{bends:?}");
-            // An upper bound of what bends little: the moment at the clamp at all joints.
+            // An upper bound for small bends: the moment at the clamp, applied at all joints.
             let most = if unbent > 0.1 { load.spread / tip_share } else { PI };
             prop_assert!(bends.iter().all(|&bend| bend < most + 1e-12), "{bends:?}");
         }

@@ -1,0 +1,136 @@
+// Ground: tiles of a quadtree. Odd vertices morph onto the next coarser grid before it takes over.
+
+import package::constants::TILE_CELLS;
+import package::inputs::bend_atlas::{field_level, lean_of_field};
+import package::inputs::frame::frame;
+import package::inputs::grass_kinds::kinds_blended;
+import package::inputs::lamps::lamps_on;
+import package::inputs::noise::{noise, noise_over};
+import package::inputs::shadows::sun_visible;
+import package::inputs::wind::{gust_at, lean_of_wind, wind_at};
+import package::land_and_sky::clouds::cloud_light;
+import package::land_and_sky::grass_color::grass_tint;
+import package::land_and_sky::grass_light::sun_in_grass;
+import package::land_and_sky::ground::{grass_share, ground_height, ground_normal, ragged_share, soft_share};
+import package::land_and_sky::haze::hazed;
+import package::land_and_sky::sky_light::ambient;
+import package::land_and_sky::sward::{bare_between, sward_color};
+import package::uniforms::Kind;
+
+struct Tile {
+    // North-west corner (m), side (m), distance at which the next coarser grid takes over (m).
+    place: vec4<f32>,
+}
+
+@group(1) @binding(0) var<storage, read> tiles: array<Tile>;
+
+struct Ground {
+    @builtin(position) position: vec4<f32>,
+    @location(0) p: vec3<f32>,
+    // Slowly varying values: lean by the wind (rad), sunlight below the clouds; tint of the grass.
+    @location(1) air: vec3<f32>,
+    @location(2) tint: vec3<f32>,
+}
+
+@vertex
+fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Ground {
+    let place = tiles[instance].place;
+    let row = TILE_CELLS + 1u;
+    let cell = vec2<f32>(f32(index % row), f32(index / row));
+    let spacing = place.z / f32(TILE_CELLS);
+    let flat_p = place.xy + cell * spacing;
+    let distance_m = length(vec3<f32>(flat_p.x, ground_height(flat_p), flat_p.y) - frame.eye_m);
+    let morph = smoothstep(0.70, 0.95, distance_m / place.w);
+    let odd = cell - 2.0 * floor(cell * 0.5);
+    let p = flat_p - odd * spacing * morph;
+    var out: Ground;
+    out.p = vec3<f32>(p.x, ground_height(p), p.y);
+    let wind = wind_at(out.p, 0.0).xz * gust_at(p);
+    out.air = vec3<f32>(lean_of_wind(wind, 1.0), cloud_light(p));
+    out.tint = grass_tint(p);
+    out.position = frame.projection_from_world * vec4<f32>(out.p, 1.0);
+    return out;
+}
+
+struct Soil {
+    albedo: vec3<f32>,
+    // Slope of its crumbs, X and Z.
+    slope: vec2<f32>,
+}
+
+// Bare soil with crumbs, stones and dry litter, where a pixel spans `span_m`.
+fn soil_at(p: vec2<f32>, span_m: f32) -> Soil {
+    let coarse = noise(p / 5.1);
+    let grain = noise_over(vec2<f32>(0.8 * p.x + 0.6 * p.y, 0.8 * p.y - 0.6 * p.x) / 1.3, span_m / 1.3);
+    let crumbs = noise_over(p / 0.47, span_m / 0.47);
+    let soil = mix(vec3<f32>(0.060, 0.042, 0.026), vec3<f32>(0.155, 0.118, 0.075), grain.r * 0.6 + coarse.g * 0.5);
+    let strewn = mix(soil, vec3<f32>(0.16, 0.15, 0.055), smoothstep(0.45, 0.75, grain.a) * 0.55);
+    let pebbles = smoothstep(0.70, 0.80, crumbs.g) * smoothstep(0.35, 0.60, coarse.a);
+    let albedo = mix(strewn * (0.55 + 0.9 * crumbs.b), vec3<f32>(0.23, 0.21, 0.18) * (0.6 + 0.6 * crumbs.r), pebbles * 0.7);
+    return Soil(albedo, 0.9 * (crumbs.rb - 0.5) + 0.5 * (grain.gb - 0.5));
+}
+
+// Mottle of grass seen from afar, where a pixel spans `span_m`: two patterns at an angle, which hides their repetition.
+fn mottle_at(p: vec2<f32>, span_m: f32) -> f32 {
+    let fine = noise_over(p / 2.9, span_m / 2.9).g;
+    let broad = noise_over(vec2<f32>(0.6 * p.x - 0.8 * p.y, 0.6 * p.y + 0.8 * p.x) / 11.3, span_m / 11.3).b;
+    return 1.05 + 0.22 * (fine - 0.5) + 0.22 * (broad - 0.5);
+}
+
+// Dead leaves between the roots, resolved only near the eye: noise stretched along three directions.
+fn litter_at(p: vec2<f32>, is_told: bool) -> vec3<f32> {
+    let heap = noise(p / 0.83);
+    // Direction; length and width of a leaf (m).
+    let leaves = array<vec4<f32>, 3>(vec4<f32>(0.98, 0.19, 0.53, 0.067), vec4<f32>(0.34, -0.94, 0.47, 0.059), vec4<f32>(-0.71, 0.70, 0.61, 0.073));
+    var top = 0.0;
+    for (var i = 0; i < select(0, 3, is_told); i++) {
+        let along = leaves[i].xy;
+        let leaf = noise(vec2<f32>(dot(p, along), dot(p, vec2<f32>(-along.y, along.x))) / leaves[i].zw);
+        top = max(top, select(leaf.g, leaf.b, i == 1) + 0.5 * heap.rag[i]);
+    }
+    return mix(vec3<f32>(0.034, 0.030, 0.012), vec3<f32>(0.125, 0.105, 0.042), smoothstep(0.72, 1.18, top)) * (0.6 + 0.8 * heap.b);
+}
+
+// Grass cover in front of a position, at half the distance that tall grass hides at this viewing angle.
+fn share_before(p: vec2<f32>, view: vec3<f32>, normal: vec3<f32>, kind: Kind) -> f32 {
+    let down = clamp(-dot(view, normal), 0.02, 1.0);
+    let hidden_m = kind.height_m * sqrt(1.0 - down * down) / down;
+    return grass_share(p - 0.5 * hidden_m * view.xz / max(length(view.xz), 1e-3));
+}
+
+@fragment
+fn fs(ground: Ground) -> @location(0) vec4<f32> {
+    let p = ground.p.xz;
+    let to = ground.p - frame.eye_m;
+    let distance_m = length(to);
+    let view = to / distance_m;
+    let normal = ground_normal(p);
+    let soft = soft_share(p);
+    let kind = kinds_blended(p);
+    let between = bare_between(distance_m, kind, view, normal);
+    let share = max(ragged_share(p, soft), between * share_before(p, view, normal, kind));
+    let span_m = distance_m * frame.pixel_rad * inverseSqrt(max(-dot(view, normal), 0.05));
+    let sun_light = ground.air.z * sun_visible(ground.p + normal * 0.05);
+    var color = vec3<f32>(0.0);
+    if share < 1.0 {
+        let soil = soil_at(p, span_m);
+        let rough = normalize(normal + vec3<f32>(soil.slope.x, 0.0, soil.slope.y));
+        let direct = frame.sun_rgb * (sun_light * max(dot(rough, frame.toward_sun), 0.0));
+        // Nearby grass hides part of the sky.
+        let open = 1.0 - 0.5 * smoothstep(0.0, 0.5, soft);
+        color = soil.albedo * (direct + ambient(rough) * open + lamps_on(ground.p, rough, 0.0)) * (1.0 - share);
+    }
+    if share > 0.0 {
+        // Far look of the grass, leaning like the blades, where no blades hide the ground; dark between blades.
+        let lean = lean_of_field(p, field_level(distance_m)) + ground.air.xy * kind.wind_bend_rad;
+        let afar = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light);
+        let mottle = mottle_at(p, span_m);
+        let reached = frame.sun_rgb * sun_light * sun_in_grass(0.0, kind.height_m);
+        let litter_share = 0.8 * (1.0 - smoothstep(0.3, 2.5, distance_m));
+        let floor = mix(kind.root_rgb * 0.7, litter_at(p, litter_share > 0.0), litter_share);
+        let under = floor * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
+        let grass = afar * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
+        color += mix(under, grass, between) * share;
+    }
+    return vec4<f32>(hazed(color, ground.p), 1.0);
+}

@@ -1,0 +1,253 @@
+// Clumps of far plants: six rectangles about a vertical axis (Zhang, section 4.1). One instance is 32 clumps.
+
+import package::constants::{CLUMP_FADE_SPREAD_M, CLUMP_SEGMENT_LIMIT, CLUMPS, TAU};
+import package::inputs::bend_atlas::{bend_at, field_level, field_share, lean_of_bend, lean_of_field, trailing_lean};
+import package::inputs::frame::{frame, repeated};
+import package::inputs::grass_kinds::{kind_at, kinds};
+import package::inputs::lamps::lamps_on;
+import package::inputs::random::dither_at;
+import package::inputs::shadows::sun_visible;
+import package::inputs::wind::{gust_at, lean_of_wind, wind_at};
+import package::land_and_sky::clouds::cloud_light;
+import package::land_and_sky::grass_color::grass_tint;
+import package::land_and_sky::ground::{fed, grass_share, ground_height, ground_normal};
+import package::land_and_sky::haze::hazed;
+import package::land_and_sky::sky_light::ambient;
+import package::land_and_sky::sward::{blade_color, contrast, sward_color};
+import package::plants::nearness::nearness;
+import package::plants::opacity::LEAST_OPACITY;
+import package::plants::weighted::{Weighted, weighted};
+import package::uniforms::{ClumpList, Kind};
+
+struct Clump {
+    // X and Z of the axis (m), length of a rectangle (m), random number 0..1.
+    place: vec4<f32>,
+}
+
+// Pose of a clump, the same for all its vertices.
+struct Stand {
+    // Height of its pattern (m), segments, fraction of the clump that is shown, unused.
+    pose: vec4<f32>,
+    // Tops of the segments, from the foot (m).
+    joints: array<vec4<f32>, CLUMP_SEGMENT_LIMIT>,
+    // Lit colours of the plants' roots and tips; petals' light.
+    root_color: vec4<f32>,
+    tip_color: vec4<f32>,
+    petal_light: vec4<f32>,
+}
+
+@group(1) @binding(0) var<storage, read> clumps: array<Clump>;
+@group(1) @binding(1) var<uniform> list: ClumpList;
+@group(1) @binding(2) var tufts: texture_2d<f32>;
+@group(1) @binding(3) var<storage, read> stands: array<Stand>;
+@group(1) @binding(4) var<storage, read_write> placed: array<Stand>;
+// Keys and numbers of clumps far to near, those of one segment first: input and output of the sort.
+@group(1) @binding(5) var<storage, read_write> keyed: array<vec2<u32>>;
+@group(1) @binding(6) var<storage, read> in_order: array<vec2<u32>>;
+
+// Width and height of the texture's pattern (m per m of mean blade height).
+const PATTERN_WIDTH: f32 = 4.0;
+const PATTERN_HEIGHT: f32 = 1.25;
+
+// Tops of the segments of a clump, relative to `ground` (m). Wind and bend field tilt the lowest, and those above follow its past (Chen &
+// Johan, section 4.5); with distance they straighten into one line. None is below the ground.
+fn joints_of(ground: vec3<f32>, kind: Kind, segments: u32, height: f32, level: f32, wind_lean: vec2<f32>, straight: f32) -> array<vec4<f32>, CLUMP_SEGMENT_LIMIT> {
+    let p = ground.xz;
+    let share = field_share(p);
+    let now = bend_at(p, level, 0);
+    let lowest = wind_lean + lean_of_bend(now) * share;
+    let curl = (1.0 - straight) * (1.0 - smoothstep(0.5, 1.3, length(lowest)));
+    var joints: array<vec4<f32>, CLUMP_SEGMENT_LIMIT>;
+    var at = vec3<f32>(0.0);
+    for (var i = 0u; i < segments; i++) {
+        var lean = lowest;
+        if i > 0u && share > 0.0 && straight < 1.0 {
+            let secs = kind.lag_secs * f32(i) / f32(segments - 1u);
+            lean = mix(wind_lean + trailing_lean(p, level, now, kind, secs) * share, lowest, straight);
+        }
+        if segments > 1u {
+            lean *= 1.0 + curl * (0.7 * f32(i) / f32(segments - 1u) - 0.35);
+        }
+        let tilt = min(length(lean), 1.45);
+        let aside = lean / max(length(lean), 1e-4) * sin(tilt);
+        at += vec3<f32>(aside.x, cos(tilt), aside.y) * (height / f32(segments));
+        at.y = max(at.y, ground_height(p + at.xz) - ground.y);
+        joints[i] = vec4<f32>(at, 0.0);
+    }
+    return joints;
+}
+
+@compute @workgroup_size(64)
+fn place(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= list.count {
+        return;
+    }
+    let clump = clumps[id.x].place;
+    let root = clump.xy;
+    let share = grass_share(root);
+    // Kinds mix where they meet.
+    let kind = kinds.list[kind_at(root + (vec2<f32>(clump.w, fract(clump.w * 7.3)) - 0.5) * 0.9)];
+    let height = kind.height_m * PATTERN_HEIGHT * fed(root) * sqrt(share);
+    let ground = vec3<f32>(root.x, ground_height(root), root.y);
+    let distance_m = distance(ground, frame.eye_m);
+    let level = field_level(distance_m);
+    let wind_lean = lean_of_wind(wind_at(ground, 0.0).xz * gust_at(root), kind.wind_bend_rad);
+    let lean = lean_of_field(root, level) + wind_lean;
+    // Clumps fade in as single plants fade out (Zhang, section 6.1).
+    let fade_in = smoothstep(frame.blades_fade_from_m, frame.blades_end_m, distance_m + (clump.w - 0.5) * (2.0 * CLUMP_FADE_SPREAD_M));
+    let fade_out = 1.0 - smoothstep(frame.far_fade_from_m, frame.far_end_m, distance_m);
+    var stand: Stand;
+    let light = cloud_light(root) * sun_visible(ground + vec3<f32>(0.0, height * 0.6, 0.0));
+    // Seen from above, sparse clumps would look like stars: the colour of the ground replaces them.
+    let down = smoothstep(0.09, 0.22, dot(frame.eye_m - ground, ground_normal(root)) / max(distance_m, 1e-3));
+    let flat_share = down * smoothstep(frame.blades_end_m * 0.9, frame.blades_end_m * 1.6, distance_m);
+    let risen = mix(0.35, 1.0, fade_out) * (1.0 - flat_share);
+    let segments = select(1u, u32(kind.segments), id.x / CLUMPS < list.several_instances);
+    let straight = smoothstep(list.straightens_m, list.straight_m, distance_m);
+    stand.pose = vec4<f32>(kind.height_m, f32(segments), fade_in * min(fade_out * 4.0, 1.0) * step(0.1, share) * step(0.05, risen), 0.0);
+    if stand.pose.z > 0.0 {
+        stand.joints = joints_of(ground, kind, segments, height * risen, level, wind_lean, straight);
+    }
+    let p = ground + vec3<f32>(0.0, height * risen * 0.5, 0.0);
+    let view = normalize(p - frame.eye_m);
+    let normal = normalize(ground_normal(root) - view * 0.45 + vec3<f32>(lean.x, 0.0, lean.y) * 0.7);
+    let tangent = normalize(vec3<f32>(lean.x, 1.0, lean.y));
+    let tilt = min(length(lean), 1.45);
+    let tint = grass_tint(root);
+    // Near its root a clump has the colour of the grass around it.
+    let afar = sward_color(ground, ground_normal(root), kind, tint, lean, view, light);
+    stand.root_color = vec4<f32>(hazed(afar, p), 0.0);
+    let top = blade_color(kind, tint, 0.95, 0.9, 0.5, tilt, normal, tangent, view, p, light);
+    stand.tip_color = vec4<f32>(hazed(mix(afar, top, 0.35 + 0.65 * contrast(distance_m)), p), 0.0);
+    stand.petal_light = vec4<f32>(frame.sun_rgb * light * 0.6 + ambient(normal) + lamps_on(p, normal, 0.3), 0.0);
+    placed[id.x] = stand;
+}
+
+@compute @workgroup_size(64)
+fn key_clumps(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x < list.count {
+        let root = clumps[id.x].place.xy;
+        let near = nearness(distance(vec3<f32>(root.x, ground_height(root), root.y), frame.eye_m));
+        keyed[id.x] = vec2<u32>((u32(id.x < list.several) << 15u) | near, id.x);
+    }
+}
+
+struct Rectangle {
+    @builtin(position) position: vec4<f32>,
+    @location(0) uv: vec2<f32>,
+    // As in `Stand`; fraction that is shown.
+    @location(1) root_color: vec3<f32>,
+    @location(2) tip_color: vec3<f32>,
+    @location(3) petal_light: vec3<f32>,
+    @location(4) shown: f32,
+    // From the eye (m).
+    @location(5) distance_m: f32,
+}
+
+// Corner of one of the six rectangles of a clump: two per row, lowest row first.
+fn corner_of(number: u32, side: u32, corner: u32) -> Rectangle {
+    var out: Rectangle;
+    out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+    if stands[number].pose.z <= 0.0 {
+        return out;
+    }
+    let place = clumps[number].place;
+    let pose = stands[number].pose;
+    let outward = f32(corner & 1u);
+    // Rows above the topmost segment collapse onto its top.
+    let row = min(corner >> 1u, u32(pose.y));
+    let angle = (f32(side) / 6.0 + place.w) * TAU;
+    let direction = vec2<f32>(cos(angle), sin(angle));
+    let root = place.xy + direction * place.z * outward;
+    var p = vec3<f32>(root.x, ground_height(root) - 0.03, root.y);
+    if row > 0u {
+        p += stands[number].joints[row - 1u].xyz;
+    }
+    let upward = f32(row) / pose.y;
+    out.root_color = stands[number].root_color.rgb;
+    out.tip_color = stands[number].tip_color.rgb;
+    out.petal_light = stands[number].petal_light.rgb;
+    out.shown = pose.z;
+    out.uv = vec2<f32>(
+        place.w * 7.0 + f32(side) * 0.37 + outward * place.z / (PATTERN_WIDTH * pose.x),
+        1.0 - upward,
+    );
+    out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
+    out.distance_m = distance(p, frame.eye_m);
+    return out;
+}
+
+fn hidden() -> Rectangle {
+    var out: Rectangle;
+    out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+    return out;
+}
+
+@vertex
+fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Rectangle {
+    let rows = select(1u, list.several_segments, instance < list.several_instances);
+    let corners = 2u * (rows + 1u);
+    let number = instance * CLUMPS + index / (6u * corners);
+    if number >= list.count {
+        return hidden();
+    }
+    return corner_of(number, index / corners % 6u, index % corners);
+}
+
+// Instances of clumps of one segment come first.
+@vertex
+fn vs_in_order(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Rectangle {
+    let single = list.count - list.several;
+    let single_instances = (single + CLUMPS - 1u) / CLUMPS;
+    let is_single = instance < single_instances;
+    let rows = select(list.several_segments, 1u, is_single);
+    let corners = 2u * (rows + 1u);
+    let first = select(single + (instance - single_instances) * CLUMPS, instance * CLUMPS, is_single);
+    let at = first + index / (6u * corners);
+    if at >= select(list.count, single, is_single) {
+        return hidden();
+    }
+    let number = in_order[at].y;
+    // First the rectangle that points away from the eye, then those on both sides of it, and so on.
+    let place = clumps[number].place;
+    let away = place.xy - frame.eye_m.xz;
+    let farthest = round((atan2(away.y, away.x) / TAU - place.w) * 6.0);
+    let aside = array<f32, 6>(0.0, 1.0, -1.0, 2.0, -2.0, 3.0)[index / corners % 6u];
+    return corner_of(number, u32(farthest + aside + 18.0) % 6u, index % corners);
+}
+
+fn painted(r: Rectangle) -> vec4<f32> {
+    // Texture: height along the plant, hue, fraction of petals, coverage.
+    let texel = textureSample(tufts, repeated, vec2<f32>(r.uv.x, clamp(r.uv.y, 0.01, 0.99)));
+    let alpha = clamp((texel.a - 0.5) / max(fwidth(texel.a), 0.0001) + 0.5, 0.0, 1.0);
+    let up = 1.0 - r.uv.y;
+    let t = texel.r * smoothstep(-0.15, 0.75, up);
+    let color = mix(r.root_color, r.tip_color, t * t);
+    let petal = select(vec3<f32>(0.85, 0.80, 0.72), vec3<f32>(0.80, 0.58, 0.06), texel.g > 0.5);
+    let flowers = texel.b * step(0.01, frame.flowers_per_m2);
+    return vec4<f32>(mix(color, petal * r.petal_light, flowers), alpha * r.shown);
+}
+
+@fragment
+fn fs(r: Rectangle) -> @location(0) vec4<f32> {
+    let paint = painted(r);
+    if paint.a <= dither_at(r.position.xy) {
+        discard;
+    }
+    return vec4<f32>(paint.rgb, 1.0);
+}
+
+@fragment
+fn fs_soft(r: Rectangle) -> @location(0) vec4<f32> {
+    let paint = painted(r);
+    if paint.a < LEAST_OPACITY {
+        discard;
+    }
+    return paint;
+}
+
+@fragment
+fn fs_weighted(r: Rectangle) -> Weighted {
+    let paint = painted(r);
+    return weighted(paint.rgb, paint.a, r.distance_m, 1.0 - r.uv.y);
+}

@@ -1,0 +1,212 @@
+// Simulation of a blade: three links, their modes and contacts. Twin of shared/src/plant/blade, with the same constants and order of
+// operations.
+
+import package::constants::{AMPLITUDES, BRAKES, CLEARANCE_M, EULER, FREQUENCIES, LINKS, MODES, PUSHES, VERLET};
+import package::inputs::frame::{frame, runtime_zero};
+
+// Lean of a link (rad) in xy, its rate (rad/s) in zw.
+struct Sway {
+    links: array<vec4<f32>, 3>,
+}
+
+// Length (m), lowest natural frequency (rad/s), damping ratio, lean by a wind of 1 m/s (rad s²/m²).
+struct BladeNature {
+    length: f32,
+    frequency: f32,
+    damping: f32,
+    lean_per_wind2: f32,
+}
+
+// Propagator of a mode over a step, on distance x and rate v: x' = x + stay·x + glide·v, v' = v + pull·x + brake·v.
+fn propagator(integrator: u32, omega: f32, gamma: f32, dt: f32) -> vec4<f32> {
+    let omega2 = omega * omega;
+    let way = integrator + u32(runtime_zero(omega));
+    if way == EULER || way == VERLET {
+        let pull = -omega2 * dt;
+        let brake = -2.0 * gamma * dt;
+        return select(vec4<f32>(pull * dt, dt + brake * dt, pull, brake), vec4<f32>(0.0, dt, pull, brake), integrator == EULER);
+    }
+    let h = dt / 8.0;
+    let twelfth = h * h / 12.0;
+    let gamma2 = 2.0 * gamma;
+    let a = 1.0 - omega2 * twelfth;
+    let down = -(0.5 * h + gamma2 * twelfth);
+    let norm = a * a - gamma2 * a * down + omega2 * down * down;
+    var e = omega2 * down * h / norm;
+    var p = a * h / norm;
+    for (var i = 0; i < 3; i++) {
+        let squared = 2.0 * e + e * e - omega2 * p * p;
+        p = p * (2.0 + 2.0 * e - gamma2 * p);
+        e = squared;
+    }
+    return vec4<f32>(e, p, -omega2 * p, e - gamma2 * p);
+}
+
+fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_per_s: array<vec2<f32>, 3>, integrator: u32, dt: f32) -> Sway {
+    var old = sway;
+    var held_in = held;
+    var winds_in = winds_m_per_s;
+    let link = blade.length / 3.0;
+    var own = vec2<f32>(0.0);
+    var past = vec3<f32>(0.0);
+    var drag_x = vec3<f32>(0.0);
+    var drag_z = vec3<f32>(0.0);
+    for (var j = 0; j < LINKS; j++) {
+        own += link * old.links[j].zw;
+        past[j] = length(winds_in[j] - own) * blade.lean_per_wind2;
+        drag_x[j] = winds_in[j].x * past[j];
+        drag_z[j] = winds_in[j].y * past[j];
+    }
+    let braked = 0.5 * blade.length * blade.frequency * blade.frequency;
+    let lean_x = vec3<f32>(old.links[0].x, old.links[1].x, old.links[2].x) - vec3<f32>(held_in[0].x, held_in[1].x, held_in[2].x);
+    let lean_z = vec3<f32>(old.links[0].y, old.links[1].y, old.links[2].y) - vec3<f32>(held_in[0].y, held_in[1].y, held_in[2].y);
+    let rate_x = vec3<f32>(old.links[0].z, old.links[1].z, old.links[2].z);
+    let rate_z = vec3<f32>(old.links[0].w, old.links[1].w, old.links[2].w);
+    var to = sway;
+    for (var m = 0; m < LINKS; m++) {
+        var frequencies = FREQUENCIES;
+        var modes = MODES;
+        var amplitudes = AMPLITUDES;
+        var pushes = PUSHES;
+        var brakes = BRAKES;
+        let omega = blade.frequency * frequencies[m];
+        let step = propagator(integrator, omega, blade.damping * omega + braked * dot(brakes[m], past), dt);
+        let x = vec2<f32>(dot(amplitudes[m], lean_x) - dot(pushes[m], drag_x), dot(amplitudes[m], lean_z) - dot(pushes[m], drag_z));
+        let v = vec2<f32>(dot(amplitudes[m], rate_x), dot(amplitudes[m], rate_z));
+        let change = vec4<f32>(step.x * x + step.y * v, step.z * x + step.w * v);
+        for (var i = 0; i < LINKS; i++) {
+            to.links[i] += modes[m][i] * change;
+        }
+    }
+    return to;
+}
+
+// Unit vector of a link with a lean (rad, as a vector on the ground): Taylor polynomials, as in the twin.
+fn direction_of(lean: vec2<f32>) -> vec3<f32> {
+    let t = min(dot(lean, lean), 9.8696044);
+    var up = 1.0 / 20922789888000.0;
+    up = up * t - 1.0 / 87178291200.0;
+    up = up * t + 1.0 / 479001600.0;
+    up = up * t - 1.0 / 3628800.0;
+    up = up * t + 1.0 / 40320.0;
+    up = up * t - 1.0 / 720.0;
+    up = up * t + 1.0 / 24.0;
+    up = up * t - 0.5;
+    up = up * t + 1.0;
+    var aside = 1.0 / 355687428096000.0;
+    aside = aside * t - 1.0 / 1307674368000.0;
+    aside = aside * t + 1.0 / 6227020800.0;
+    aside = aside * t - 1.0 / 39916800.0;
+    aside = aside * t + 1.0 / 362880.0;
+    aside = aside * t - 1.0 / 5040.0;
+    aside = aside * t + 1.0 / 120.0;
+    aside = aside * t - 1.0 / 6.0;
+    aside = aside * t + 1.0;
+    return vec3<f32>(lean.x * aside, up, lean.y * aside);
+}
+
+fn lean_of(direction: vec3<f32>) -> vec2<f32> {
+    let aside = length(direction.xz);
+    let hangs = direction.y < 0.0;
+    var tangent = select(aside, 1.0 - direction.y, hangs) / select(1.0 + direction.y, max(aside, 1e-9), hangs);
+    tangent /= 1.0 + sqrt(1.0 + tangent * tangent);
+    tangent /= 1.0 + sqrt(1.0 + tangent * tangent);
+    let t = tangent * tangent;
+    var angle = 1.0 / 13.0;
+    angle = angle * t - 1.0 / 11.0;
+    angle = angle * t + 1.0 / 9.0;
+    angle = angle * t - 1.0 / 7.0;
+    angle = angle * t + 1.0 / 5.0;
+    angle = angle * t - 1.0 / 3.0;
+    angle = (angle * t + 1.0) * 8.0 * tangent;
+    return select(direction.xz * (angle / max(aside, 1e-9)), vec2<f32>(angle, 0.0), hangs && aside < 1e-9);
+}
+
+// Offsets of the control points above the root from it (m).
+fn points_of(sway: Sway, length_m: f32) -> array<vec3<f32>, 3> {
+    var old = sway;
+    var points: array<vec3<f32>, 3>;
+    var at = vec3<f32>(0.0);
+    for (var i = 0; i < LINKS; i++) {
+        at += direction_of(old.links[i].xy) * (length_m / 3.0);
+        points[i] = at;
+    }
+    return points;
+}
+
+// Unit vector whose component along `axis` is `share`, turned from `out`.
+fn toward(out: vec3<f32>, axis: vec3<f32>, share: f32) -> vec3<f32> {
+    var rest = out - axis * dot(out, axis);
+    if dot(rest, rest) < 1e-12 {
+        let least = select(vec3<f32>(0.0, 0.0, 1.0), vec3<f32>(1.0, 0.0, 0.0), abs(axis.x) < 0.6);
+        rest = least - axis * dot(least, axis);
+    }
+    return axis * share + rest * sqrt(max(1.0 - share * share, 0.0) / dot(rest, rest));
+}
+
+// Direction of a link from `below` that passes outside a sphere around `centre` (both from the root), as near to `along` as possible.
+fn aside_of(along: vec3<f32>, below: vec3<f32>, link: f32, centre: vec3<f32>, radius: f32) -> vec3<f32> {
+    let to = centre - below;
+    let distance_m = max(length(to), 1e-6);
+    let tangent2 = dot(to, to) - radius * radius;
+    let ahead = dot(along, to);
+    var cosine = -sqrt(max(-tangent2, 0.0)) / distance_m;
+    if tangent2 > 0.0 {
+        let entry2 = ahead * ahead - tangent2;
+        if ahead <= 0.0 || entry2 <= 0.0 || ahead - sqrt(max(entry2, 0.0)) >= link {
+            return along;
+        }
+        let tangent = sqrt(tangent2);
+        cosine = select(0.5 * (link + tangent2 / link), tangent, link >= tangent) / distance_m;
+    }
+    if ahead <= cosine * distance_m {
+        return along;
+    }
+    let out = select(along, vec3<f32>(-to.x, 0.0, -to.z), dot(to.xz, to.xz) < radius * radius);
+    return toward(out, to / distance_m, clamp(cosine, -1.0, 1.0));
+}
+
+// Whether there are interaction spheres. Fixed at pipeline creation, since software drivers execute one iteration even of an empty
+// loop.
+override meets_spheres: bool = true;
+
+// Resolves contacts of a blade with the ground and the interaction spheres; links above the first that meets a sphere continue in its
+// direction.
+fn settle(sway: Sway, length_m: f32, normal: vec3<f32>, root: vec3<f32>) -> Sway {
+    let link = length_m / 3.0;
+    let spheres = i32(frame.sphere_count) + i32(runtime_zero(root.x));
+    var settled = sway;
+    var below = vec3<f32>(0.0);
+    var tangent = vec3<f32>(0.0);
+    for (var i = 0; i < LINKS; i++) {
+        let own = direction_of(settled.links[i].xy);
+        var along = select(own, tangent, dot(tangent, tangent) > 0.0);
+        var is_turned = false;
+        if meets_spheres {
+            for (var round = 0; round < 2; round++) {
+                for (var s = 0; s < spheres; s++) {
+                    let sphere = frame.spheres[s];
+                    let turned = aside_of(along, below, link, sphere.centre_m - root, sphere.radius_m);
+                    is_turned = is_turned || any(turned != along);
+                    along = turned;
+                }
+            }
+        }
+        if is_turned {
+            tangent = along;
+        }
+        let needed = min((CLEARANCE_M - dot(below, normal)) / link, 1.0);
+        if dot(along, normal) < needed {
+            along = toward(along, normal, needed);
+        }
+        if any(along != own) {
+            let lean = lean_of(along);
+            let moved = lean - settled.links[i].xy;
+            let rate = settled.links[i].zw;
+            let approach = min(dot(rate, moved), 0.0) / max(dot(moved, moved), 1e-20);
+            settled.links[i] = vec4<f32>(lean, rate - approach * moved);
+        }
+        below += along * link;
+    }
+    return settled;
+}

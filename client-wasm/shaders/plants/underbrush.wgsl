@@ -1,0 +1,261 @@
+// Underbrush: culling, force and level of detail of each plant.
+
+import package::constants::{
+    BLOCK_ROWS, DRAW_WORDS, FALL_PA, FEWEST, FREE_WIND_M, LEAST_WIND_HEIGHT, TAU, UNDERBRUSH_LEVELS, UNDERBRUSH_LISTS, VARIANTS,
+};
+import package::inputs::bend_atlas::lean_of_field;
+import package::inputs::frame::{clamped, frame, runtime_zero};
+import package::inputs::frustum::is_seen;
+import package::inputs::grass_kinds::{kind_at, kinds};
+import package::inputs::random::random3;
+import package::inputs::shadows::sun_visible;
+import package::inputs::wind::{gust_at, wind_at};
+import package::land_and_sky::clouds::cloud_light;
+import package::land_and_sky::grass_color::grass_tint;
+import package::land_and_sky::ground::{grass_share, ground_height, ground_normal};
+import package::land_and_sky::haze::air_before;
+import package::land_and_sky::sward::{bare_between, sward_color};
+import package::plants::ribbons::{fs, ribbons, vs};
+import package::plants::stand::{Stand, lists, NOBODY};
+import package::uniforms::UnderbrushFrame;
+
+// A plant: position (m), size, species in the low byte of `make` and its variant in the next, its site in the upper half of `site`.
+struct Grown {
+    at: vec2<f32>,
+    size: f32,
+    make: u32,
+    heading: f32,
+    site: u32,
+}
+
+// Response of a plant to the force field (Endo et al. 2003, section 4.3): pressure (Pa) and its rate; the simulated frame in which
+// it was last in view.
+struct Felt {
+    pressure: vec4<f32>,
+    frame: u32,
+}
+
+// Plants of each list; blocks of rows requested at the levels of the plants, and those requested at the coarsest level for lack of room.
+struct Tally {
+    drawn: array<atomic<u32>, UNDERBRUSH_LISTS>,
+    blocks: atomic<u32>,
+    spare: atomic<u32>,
+}
+
+@group(1) @binding(0) var<uniform> brush: UnderbrushFrame;
+@group(1) @binding(1) var<storage, read> grown: array<Grown>;
+@group(1) @binding(2) var<storage, read> chunks: array<vec2<u32>>;
+@group(1) @binding(3) var<storage, read_write> felt: array<Felt>;
+@group(1) @binding(4) var<storage, read_write> stands_out: array<Stand>;
+@group(1) @binding(5) var<storage, read_write> tally: Tally;
+@group(1) @binding(6) var<storage, read_write> listed: array<u32>;
+// Direction in which the plant of each site fell, a byte each.
+@group(1) @binding(7) var<storage, read> broken: array<u32>;
+@group(1) @binding(8) var<storage, read_write> brush_draws: array<u32>;
+@group(1) @binding(9) var forces: texture_3d<f32>;
+// Number of plants that may be in view, and their indices.
+@group(1) @binding(17) var<storage, read_write> sifted: array<atomic<u32>>;
+// Number of their workgroups, for an indirect dispatch.
+@group(1) @binding(18) var<storage, read_write> sifted_groups: array<atomic<u32>, 3>;
+@group(1) @binding(19) var<storage, read> candidates: array<u32>;
+// The plant of each block of rows.
+@group(1) @binding(20) var<storage, read_write> owners_out: array<u32>;
+// Number of workgroups of `ribbons`, for an indirect dispatch.
+@group(1) @binding(22) var<storage, read_write> ribbon_groups: array<u32, 3>;
+
+const GROUP_BLOCKS: u32 = 64u / BLOCK_ROWS;
+
+// Force on a silhouette (Pa, X and Z) at a height above the root: from the force field, and beyond it from the wind alone.
+fn pressure_at(root: vec3<f32>, above_m: f32) -> vec2<f32> {
+    let at = (root.xz - brush.field_corner_m) / brush.field_extent_m;
+    let inside = 1.0 - smoothstep(0.40, 0.49, max(abs(at.x - 0.5), abs(at.y - 0.5)));
+    // Force of the wind, and of lingering impulses.
+    var force = vec4<f32>(0.0);
+    if inside > 0.0 {
+        force = textureSampleLevel(forces, clamped, vec3<f32>(at, above_m / brush.field_height_m), 0.0) * inside;
+    }
+    if inside < 1.0 {
+        let wind = wind_at(root, above_m);
+        force += vec4<f32>(wind.xz * (0.6 * length(wind) * (1.0 - inside)), 0.0, 0.0);
+    }
+    // Gusts, and shelter among the plants: a quarter-power law of the height, as in `near_ground_fraction` of shared/src/wind/ground.rs.
+    let gust = gust_at(root.xz);
+    return force.xy * (gust * gust * sqrt(clamp(above_m / FREE_WIND_M, LEAST_WIND_HEIGHT, 1.0))) + force.zw;
+}
+
+// Critically damped response of a value to a target, in closed form. Twin of `Following` in shared/src/plant/underbrush/constraint.rs.
+fn followed(state: vec4<f32>, goal: vec2<f32>, settle_secs: f32, dt: f32) -> vec4<f32> {
+    let taus = dt / settle_secs;
+    let decay = exp(-taus);
+    let off = state.xy - goal;
+    let value = goal + off * ((1.0 + taus) * decay) + state.zw * (dt * decay);
+    return vec4<f32>(value, off * (-taus / settle_secs * decay) + state.zw * ((1.0 - taus) * decay));
+}
+
+// Pressure (Pa) on a plant that fell in direction `fall`, in 255ths of a turn; 0: standing. A broken plant stays bent, as if pressed; it lies
+// at a fifth of its height, where it feels the square root of the wind's pressure.
+fn fallen(pressure: vec2<f32>, fall: u32) -> vec2<f32> {
+    let heading = f32(fall) * (TAU / 255.0);
+    return select(pressure, 0.45 * pressure + FALL_PA * vec2<f32>(cos(heading), sin(heading)), fall != 0u);
+}
+
+// Display size of a plant: root and height of its box (m), distance (m), screen height (px), a random number, enlargement over its
+// true size, and the fraction that remains.
+struct Shown {
+    root: vec3<f32>,
+    tall: f32,
+    distance_m: f32,
+    tall_px: f32,
+    lot: f32,
+    larger: f32,
+    left: f32,
+}
+
+fn shown_of(plant: Grown) -> Shown {
+    let nature = brush.species[plant.make & 255u];
+    var shown: Shown;
+    shown.root = vec3<f32>(plant.at.x, ground_height(plant.at), plant.at.y);
+    shown.tall = max(nature.height_m, 0.5 * nature.reach_m) * plant.size;
+    shown.distance_m = distance(shown.root + vec3<f32>(0.0, 0.5 * shown.tall, 0.0), frame.eye_m);
+    // Plants of a few pixels thin out, and the rest are larger.
+    shown.tall_px = shown.tall / (shown.distance_m * frame.pixel_rad);
+    let kept = clamp(shown.tall_px / 16.0, FEWEST, 1.0);
+    shown.larger = pow(kept, -0.3);
+    shown.lot = random3(vec2<i32>(i32(plant.site), 5), 91u).x;
+    let reach_m = brush.reach_m;
+    let stays = clamp((kept - shown.lot) / (0.2 * kept), 0.0, 1.0) * (1.0 - smoothstep(0.8, 1.0, shown.distance_m / reach_m));
+    shown.left = select(stays, 0.0, shown.distance_m > reach_m);
+    return shown;
+}
+
+@compute @workgroup_size(64)
+fn sift(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    let chunk = chunks[group.x];
+    if local >= chunk.y {
+        return;
+    }
+    let index = chunk.x + local;
+    let plant = grown[index];
+    let shown = shown_of(plant);
+    let reach_m = brush.species[plant.make & 255u].reach_m * plant.size * shown.larger * 1.8;
+    if (shown.left > 0.01) & ((brush.culls == 0u) | is_seen(shown.root, reach_m)) {
+        let number = atomicAdd(&sifted[0], 1u);
+        atomicStore(&sifted[1u + number], index);
+        if number % 64u == 0u {
+            atomicAdd(&sifted_groups[0], 1u);
+        }
+    }
+}
+
+// Blocks for plants at their own levels; the rest is for plants that found none, at the coarsest level.
+fn main_room() -> u32 {
+    return brush.block_limit - brush.block_limit / 4u;
+}
+
+fn blocks_of(list: u32) -> u32 {
+    return (lists.list[list].rows + BLOCK_ROWS - 1u) / BLOCK_ROWS;
+}
+
+// Claims blocks below `end` for a plant; returns whether all of them were free.
+fn claim(first: u32, blocks: u32, end: u32, number: u32) -> bool {
+    let is_room = first + blocks <= end;
+    for (var block = first; block < min(first + blocks, end); block++) {
+        owners_out[block] = select(NOBODY, number, is_room);
+    }
+    return is_room;
+}
+
+// Allocates the rows of plant `number`: the level at which it is drawn (`UNDERBRUSH_LEVELS` if there is no room) and its first block.
+fn room(species: u32, finest: u32, number: u32) -> vec2<u32> {
+    let blocks = blocks_of(species * UNDERBRUSH_LEVELS + finest);
+    let first = atomicAdd(&tally.blocks, blocks);
+    if claim(first, blocks, main_room(), number) {
+        return vec2<u32>(finest, first);
+    }
+    let few = blocks_of(species * UNDERBRUSH_LEVELS + UNDERBRUSH_LEVELS - 1u);
+    let spare = main_room() + atomicAdd(&tally.spare, few);
+    return vec2<u32>(select(UNDERBRUSH_LEVELS, UNDERBRUSH_LEVELS - 1u, claim(spare, few, brush.block_limit, number)), spare);
+}
+
+@compute @workgroup_size(64)
+fn stand(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= min(candidates[0], brush.plant_limit) {
+        return;
+    }
+    let index = candidates[1u + id.x];
+    let plant = grown[index];
+    let species = plant.make & 255u;
+    let nature = brush.species[species];
+    let height = nature.height_m * plant.size;
+    let shown = shown_of(plant);
+    let root = shown.root;
+    let distance_m = shown.distance_m;
+
+    let fall = (broken[plant.site >> 2u] >> (8u * (plant.site & 3u))) & 255u;
+    let goal = fallen(pressure_at(root, 0.5 * height), fall);
+    var feels = felt[index];
+    if brush.frame_number - feels.frame > 1u {
+        feels.pressure = vec4<f32>(goal, 0.0, 0.0);
+    } else {
+        feels.pressure = followed(feels.pressure, goal, nature.settle_secs, brush.step_secs);
+    }
+    feels.frame = select(feels.frame, brush.frame_number, brush.step_secs > 0.0);
+    felt[index] = feels;
+
+    var lean = lean_of_field(plant.at, 0.0);
+    let tilt = length(lean);
+    lean *= min(1.0, 1.5 / max(tilt, 1e-5));
+
+    let make = (plant.make >> 8u) % VARIANTS + select(0u, VARIANTS, fall != 0u);
+    let shown_size = plant.size * shown.left * shown.larger;
+    var spheres = 0u;
+    let every = frame.sphere_count + u32(runtime_zero(height));
+    for (var s = 0u; s < every; s++) {
+        let sphere = frame.spheres[s];
+        spheres |= select(0u, 1u << s, distance(sphere.centre_m, root) < sphere.radius_m + nature.reach_m * shown_size);
+    }
+
+    var out: Stand;
+    out.root = vec4<f32>(root, shown_size);
+    let lit = root + vec3<f32>(0.0, 0.6 * height, 0.0);
+    out.lean = vec4<f32>(lean, cloud_light(plant.at) * sun_visible(lit), plant.heading);
+    let kind_number = kind_at(plant.at);
+    let kind = kinds.list[kind_number];
+    out.feels = vec4<f32>(feels.pressure.xy, f32(make + 2u * VARIANTS * kind_number), f32(spheres));
+    out.about = vec4<f32>(height, random3(vec2<i32>(i32(plant.site), 9), 17u).x, distance_m, plant.size);
+    let up = ground_normal(plant.at);
+    let view = normalize(root - frame.eye_m);
+    let tint = grass_tint(plant.at);
+    let afar = sward_color(root, up, kind, tint, lean, view, out.lean.z);
+    out.sward = vec4<f32>(afar, bare_between(distance_m, kind, view, up) * grass_share(plant.at));
+    out.air = air_before(root + vec3<f32>(0.0, 0.5 * height, 0.0));
+
+    // Plants of one height change level at different distances.
+    let fine_px = shown.tall_px / (brush.coarseness * (0.85 + 0.3 * shown.lot));
+    let finest = select(select(select(3u, 2u, fine_px > 26.0), 1u, fine_px > 90.0), 0u, fine_px > 300.0);
+    let place = room(species, finest, id.x);
+    if place.x == UNDERBRUSH_LEVELS {
+        return;
+    }
+    let list = species * UNDERBRUSH_LEVELS + place.x;
+    out.tint = vec4<f32>(tint, f32(list));
+    out.up = vec4<f32>(up, f32(place.y));
+    stands_out[id.x] = out;
+    listed[lists.list[list].first_listed + atomicAdd(&tally.drawn[list], 1u)] = place.y;
+}
+
+// Arguments of the indirect draws and of the dispatch of `ribbons`.
+@compute @workgroup_size(64)
+fn finish(@builtin(local_invocation_index) list: u32) {
+    let held = lists.list[list].instance_plants;
+    brush_draws[list * DRAW_WORDS + 1u] = (atomicLoad(&tally.drawn[list]) + held - 1u) / max(held, 1u);
+    let spare = min(atomicLoad(&tally.spare), brush.block_limit - main_room());
+    let blocks = min(atomicLoad(&tally.blocks), main_room()) + spare;
+    let groups = (blocks + GROUP_BLOCKS - 1u) / GROUP_BLOCKS;
+    if list < groups * GROUP_BLOCKS - blocks {
+        owners_out[blocks + list] = NOBODY;
+    }
+    if list < 3u {
+        ribbon_groups[list] = select(1u, groups, list == 0u);
+    }
+}

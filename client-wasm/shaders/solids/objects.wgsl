@@ -1,0 +1,226 @@
+// Triangle meshes: vehicles, trees and stones, in the picture and in the shadow map.
+
+import package::constants::FLUTTER_M;
+import package::inputs::frame::{clamped, frame};
+import package::inputs::lamps::{lamps_about, lamps_on};
+import package::inputs::shadows::sun_visible;
+import package::inputs::wind::{gust_at, lean_of_wind, wind_at};
+import package::land_and_sky::clouds::cloud_light;
+import package::land_and_sky::grass_light::{grass_lamps, grass_light};
+import package::land_and_sky::haze::{air_before, hazed};
+import package::land_and_sky::sky_light::{ambient, sky_color};
+
+// Whether the mesh may be glossy, as vehicles are. Fixed at pipeline creation.
+override is_glossy: bool = true;
+
+// Distance from a lamp to its glass (m).
+const GLASS_M: f32 = 0.17;
+
+struct Instance {
+    world_from_model: mat4x4<f32>,
+    // Colour factor; sway of a tree in a wind of 10 m/s and above (rad), 0 for rigid objects.
+    tint: vec4<f32>,
+}
+
+@group(1) @binding(0) var<storage, read> instances: array<Instance>;
+@group(1) @binding(1) var leaves: texture_2d<f32>;
+// Sway of each instance, from `sway_of`.
+@group(1) @binding(2) var<storage, read> sways: array<vec4<f32>>;
+@group(1) @binding(3) var<storage, read_write> sways_out: array<vec4<f32>>;
+
+struct Vertex {
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec4<f32>,
+    // Square root of the linear colour; gloss, or openness of a leaf.
+    @location(2) color: vec4<f32>,
+    // Coordinates in the leaf texture; (0, 0) is solid.
+    @location(3) leaf: vec2<f32>,
+}
+
+struct Surface {
+    @builtin(position) position: vec4<f32>,
+    @location(0) p: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) color: vec4<f32>,
+    @location(3) leaf: vec2<f32>,
+}
+
+// Displacement of a point `up` metres above the foot of a tree by a sway (rad, as a vector on the ground: displacement of the top over the
+// height): sideways with the square of the height, as a beam bends, and downwards so that the trunk keeps its length.
+fn swayed(up: f32, height: f32, sway: vec2<f32>) -> vec3<f32> {
+    let aside = sway * (up * up / height);
+    return vec3<f32>(aside.x, -dot(sway, sway) * (2.0 / 3.0) * up * up * up / (height * height), aside.y);
+}
+
+// Response of a tree to the wind: sway of its top (X, Z), flutter of its leaves (m), unused.
+fn sway_of(instance: Instance) -> vec4<f32> {
+    let most = instance.tint.a;
+    let foot = instance.world_from_model[3].xyz;
+    // Models are a metre tall.
+    let height = length(instance.world_from_model[1].xyz);
+    let held = lean_of_wind(wind_at(foot, 6.0).xz * gust_at(foot.xz), most);
+    // Taller trees sway more slowly.
+    let phase = frame.time_secs * 4.5 / sqrt(height) + foot.x * 0.7 + foot.z * 1.3;
+    let blown = length(held) / max(most, 1e-6);
+    return vec4<f32>(held * (0.7 + 0.3 * sin(phase)), FLUTTER_M * min(6.0 * blown, 0.4 + 1.5 * blown), 0.0);
+}
+
+@compute @workgroup_size(64)
+fn blow(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x < arrayLength(&sways_out) {
+        sways_out[id.x] = sway_of(instances[id.x]);
+    }
+}
+
+fn placed(vertex: Vertex, instance: Instance, sway: vec4<f32>) -> vec3<f32> {
+    var p = (instance.world_from_model * vec4<f32>(vertex.position, 1.0)).xyz;
+    if instance.tint.a > 0.0 {
+        let foot = instance.world_from_model[3].xyz;
+        let height = length(instance.world_from_model[1].xyz);
+        p += swayed(max(p.y - foot.y, 0.0), height, sway.xy);
+        if vertex.leaf.x > 0.0 {
+            let flutter = sin(frame.time_secs * 5.3 + dot(vertex.position, vec3<f32>(5.1, 7.7, 3.9))) * sway.z;
+            p += vec3<f32>(flutter, flutter * 0.6, -flutter);
+        }
+    }
+    return p;
+}
+
+fn surface_of(vertex: Vertex, index: u32) -> Surface {
+    let instance = instances[index];
+    var out: Surface;
+    out.p = placed(vertex, instance, sways[index]);
+    out.normal = (instance.world_from_model * vec4<f32>(vertex.normal.xyz, 0.0)).xyz;
+    out.color = vec4<f32>(vertex.color.rgb * vertex.color.rgb * instance.tint.rgb, vertex.color.a);
+    out.leaf = vertex.leaf;
+    out.position = frame.projection_from_world * vec4<f32>(out.p, 1.0);
+    return out;
+}
+
+@vertex
+fn vs(vertex: Vertex, @builtin(instance_index) index: u32) -> Surface {
+    return surface_of(vertex, index);
+}
+
+// Light of the glass in front of a lamp, which turns with its beam.
+fn shining(p: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    var light = vec3<f32>(0.0);
+    for (var i = 0u; i < lamps_about(p); i++) {
+        let lamp = frame.lights.lamps[i];
+        if distance(p, lamp.position_m) < GLASS_M {
+            light += lamp.rgb * (6.0 * smoothstep(0.2, 0.8, dot(normal, lamp.direction)));
+        }
+    }
+    return light;
+}
+
+// Light of sun, sky and lamps on a surface without gloss. `light` is the fraction of unshadowed sunlight; `openness` is that of a leaf.
+fn matte(p: vec3<f32>, normal: vec3<f32>, view: vec3<f32>, albedo: vec3<f32>, openness: f32, is_leaf: bool, light: f32) -> vec3<f32> {
+    if is_leaf {
+        let upright = vec3<f32>(0.0, 1.0, 0.0);
+        return grass_light(albedo, normal, upright, view, light, openness) + grass_lamps(albedo, normal, upright, view, p, openness);
+    }
+    let diffuse = max(dot(normal, frame.toward_sun), 0.0);
+    return albedo * (frame.sun_rgb * light * diffuse + ambient(normal) + lamps_on(p, normal, 0.0));
+}
+
+fn sun_light_at(p: vec3<f32>, normal: vec3<f32>) -> f32 {
+    return cloud_light(p.xz) * sun_visible(p + normal * 0.06);
+}
+
+// Factor on the colour of a leaf by its texture.
+fn veins(texel: vec4<f32>) -> f32 {
+    return 0.55 + 0.9 * texel.r;
+}
+
+@fragment
+fn fs(surface: Surface) -> @location(0) vec4<f32> {
+    let leaf = textureSample(leaves, clamped, surface.leaf);
+    let is_leaf = surface.leaf.x > 0.0;
+    if is_leaf && leaf.a < 0.5 {
+        discard;
+    }
+    let view = normalize(surface.p - frame.eye_m);
+    let normal = normalize(surface.normal);
+    let light = sun_light_at(surface.p, normal);
+    let albedo = surface.color.rgb * select(1.0, veins(leaf), is_leaf);
+    var color = matte(surface.p, normal, view, albedo, surface.color.a, is_leaf, light);
+    if is_glossy && !is_leaf {
+        let gloss = surface.color.a;
+        let half_way = normalize(frame.toward_sun - view);
+        let grazing = 1.0 - clamp(dot(normal, -view), 0.0, 1.0);
+        let fresnel = grazing * grazing * grazing * grazing;
+        let mirrored = reflect(view, normal);
+        let above = max(mirrored.y, 0.0);
+        let reflected = mix(ambient(vec3<f32>(0.0, -1.0, 0.0)), sky_color(vec3<f32>(mirrored.x, above, mirrored.z)), smoothstep(-0.1, 0.15, mirrored.y));
+        let sharp = pow(max(dot(normal, half_way), 0.0), mix(12.0, 160.0, gloss));
+        color += gloss * (reflected * (0.06 + 0.75 * fresnel) + frame.sun_rgb * light * sharp * 1.6);
+        color += shining(surface.p, normal);
+    }
+    return vec4<f32>(hazed(color, surface.p), 1.0);
+}
+
+// Depth below the corners of a spray of leaves at which their shadow is sampled, relative to the height of the tree; farther in they would be
+// in their own shadow.
+const SPRAY_SHARE: f32 = 0.14;
+
+// Surface lit at its vertices: most fragments of sprays of leaves are hidden or cut away.
+struct Afar {
+    @builtin(position) position: vec4<f32>,
+    // Colour as seen through the air: the part that the texture multiplies, and the rest.
+    @location(0) diffuse: vec3<f32>,
+    @location(1) sheen: vec3<f32>,
+    @location(2) leaf: vec2<f32>,
+}
+
+@vertex
+fn vs_afar(vertex: Vertex, @builtin(instance_index) index: u32) -> Afar {
+    let surface = surface_of(vertex, index);
+    let is_leaf = surface.leaf.x > 0.0;
+    let view = normalize(surface.p - frame.eye_m);
+    let normal = normalize(surface.normal);
+    let height = length(instances[index].world_from_model[1].xyz);
+    let light = sun_light_at(surface.p - normal * select(0.0, SPRAY_SHARE * height, is_leaf), normal);
+    let black = matte(surface.p, normal, view, vec3<f32>(0.0), surface.color.a, is_leaf, light);
+    let plain = matte(surface.p, normal, view, surface.color.rgb, surface.color.a, is_leaf, light);
+    let air = air_before(surface.p);
+    return Afar(surface.position, (plain - black) * air.a, black * air.a + air.rgb, surface.leaf);
+}
+
+@fragment
+fn fs_afar(afar: Afar) -> @location(0) vec4<f32> {
+    let leaf = textureSample(leaves, clamped, afar.leaf);
+    let is_leaf = afar.leaf.x > 0.0;
+    if is_leaf && leaf.a < 0.5 {
+        discard;
+    }
+    return vec4<f32>(afar.diffuse * select(1.0, veins(leaf), is_leaf) + afar.sheen, 1.0);
+}
+
+struct Shade {
+    @builtin(position) position: vec4<f32>,
+    @location(0) leaf: vec2<f32>,
+}
+
+@vertex
+fn vs_shadow(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
+    var out: Shade;
+    out.position = frame.shadow_from_world * vec4<f32>(placed(vertex, instances[index], sways[index]), 1.0);
+    out.leaf = vertex.leaf;
+    return out;
+}
+
+@vertex
+fn vs_shadow_far(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
+    var out: Shade;
+    out.position = frame.lights.far_shadow_from_world * vec4<f32>(placed(vertex, instances[index], sways[index]), 1.0);
+    out.leaf = vertex.leaf;
+    return out;
+}
+
+@fragment
+fn fs_shadow(shade: Shade) {
+    if shade.leaf.x > 0.0 && textureSampleLevel(leaves, clamped, shade.leaf, 0.0).a < 0.5 {
+        discard;
+    }
+}

@@ -1,0 +1,79 @@
+//! Handling of socket events and of the server's messages.
+
+use super::app::{App, with_app};
+use super::page;
+use super::socket::SocketEvent;
+use crate::camera::Camera;
+use crate::rig::Rig;
+use crate::state::Event;
+use prairie_core::wire::{self, Close, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, WireError};
+
+/// How long a refusal is shown (s).
+const NOTICE_SECS: f64 = 6.0;
+
+/// Passes a socket event to the page's client.
+pub(super) fn handle(event: SocketEvent) {
+    with_app(|app| app.handle(event));
+}
+
+impl App {
+    fn handle(&mut self, event: SocketEvent) {
+        let now_secs = page::now_secs(&self.window);
+        match event {
+            SocketEvent::Open => self.connection.opened(),
+            SocketEvent::Closed(code) => self.connection.closed(code, now_secs),
+            SocketEvent::Message(bytes) => {
+                self.connection.received(bytes.len());
+                match wire::decode::<ServerMessage>(&bytes, SERVER_MESSAGE_LIMIT) {
+                    Ok(message) => self.receive(message, now_secs),
+                    Err(WireError::Version { .. }) => self.connection.end(Close::Version),
+                    Err(error) => self.fail(format!("A message from the server could not be decoded: {error}.")),
+                }
+            }
+        }
+    }
+
+    fn receive(&mut self, message: ServerMessage, now_secs: f64) {
+        self.run_clock(now_secs);
+        match self.mirror.apply(message) {
+            Ok(Some(Event::Welcome { client, scene_name, .. })) => {
+                self.connection.welcomed(client);
+                self.scene_name = Some(scene_name);
+                self.was_welcomed = true;
+            }
+            Ok(Some(Event::Scene)) => {
+                self.place_camera();
+                self.resume(now_secs);
+            }
+            Ok(Some(Event::FrameEnd { frame })) => self.connection.acknowledge(frame),
+            Ok(Some(Event::Pong { nonce })) => self.connection.ponged(nonce, now_secs),
+            Ok(Some(Event::Refused { refusal, reason })) => {
+                if refusal == Refusal::ObjectLimit {
+                    self.wanted = None;
+                }
+                self.notice = Some((reason, now_secs + NOTICE_SECS));
+            }
+            Ok(Some(Event::Roster) | None) => {}
+            Err(error) => self.fail(format!("A message from the server is invalid: {error}.")),
+        }
+    }
+
+    /// Places the camera in a newly received scene: at the view in the address, or at the scene's start view.
+    fn place_camera(&mut self) {
+        let Some(decoded) = self.mirror.decoded_scene().filter(|_| self.rig.is_none() && self.other_scene().is_none()) else { return };
+        let linked = self.window.location().hash().ok().and_then(|hash| Camera::from_hash(&hash));
+        let ground_m = |x_m: f32, z_m: f32| decoded.heights().height_m(x_m, z_m);
+        let camera = linked.unwrap_or_else(|| Camera::start(&decoded.scene().camera, decoded.scene().extent_m(), ground_m));
+        self.set_camera(camera);
+    }
+
+    /// Resumes after a reconnection: sends the camera position, which the server must know first, and takes the same kind of vehicle again.
+    fn resume(&mut self, now_secs: f64) {
+        if let Some(camera) = self.rig.as_ref().map(Rig::camera) {
+            self.send_view(camera, now_secs);
+        }
+        if self.wanted.is_some() {
+            self.connection.choose(self.wanted);
+        }
+    }
+}

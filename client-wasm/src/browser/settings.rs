@@ -1,0 +1,165 @@
+//! Render settings chosen by the user: quality, render options, hour of the day, and side-by-side comparison.
+
+use crate::budget::{FrameBudget, FrameTime};
+use crate::render::{BlendOrder, FarPlants, Quality, RenderOptions, SideOptions, Split};
+use prairie_core::scene::Light;
+use serde::Deserialize;
+
+/// Name of automatic quality, which a frame time budget controls.
+pub(super) const AUTOMATIC: &str = "auto";
+
+/// Frame time budget of automatic quality (ms): on a GPU, and on a software adapter.
+const BUDGET_MS: [f32; 2] = [16.7, 100.0];
+
+/// Kind of device, as far as the page can tell. It decides what automatic quality means.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(super) struct Device {
+    /// Whether the graphics adapter is a software renderer.
+    is_software: bool,
+    /// Whether the primary pointer is a finger.
+    is_touch: bool,
+    /// Frame time budget from the address (ms), 1 to 1000, instead of the usual one.
+    budget_ms: Option<f32>,
+}
+
+impl Device {
+    /// Highest quality that automatic quality uses, and its initial level.
+    fn automatic(self) -> (Quality, f32) {
+        match self {
+            Self { is_software: true, .. } => (Quality::Medium, 0.0),
+            Self { is_touch: true, .. } => (Quality::High, 1.0),
+            _ => (Quality::FINEST, 1.5),
+        }
+    }
+
+    fn budget_secs(self) -> f32 {
+        let budget_ms = self.budget_ms.filter(|budget_ms| (1.0..=1000.0).contains(budget_ms));
+        budget_ms.unwrap_or(BUDGET_MS[usize::from(self.is_software)]) / 1e3
+    }
+}
+
+/// All render settings.
+#[derive(Clone, Debug)]
+pub(super) struct Settings {
+    device: Device,
+    quality: Quality,
+    budget: Option<FrameBudget>,
+    options: RenderOptions,
+    hour: Option<f32>,
+    comparison: Option<Comparison>,
+}
+
+/// Two variants, left and right of a border.
+#[derive(Clone, Debug, PartialEq)]
+struct Comparison {
+    variants: [String; 2],
+    border: f32,
+}
+
+impl Settings {
+    /// The first quality of `names` that exists, automatic quality if none does, and default render options.
+    pub(super) fn new(names: &[Option<String>], device: Device) -> Self {
+        let mut settings =
+            Self { device, quality: Quality::default(), budget: None, options: RenderOptions::default(), hour: None, comparison: None };
+        let _is_chosen = names.iter().flatten().any(|name| settings.set_quality(name)) || settings.set_quality(AUTOMATIC);
+        settings
+    }
+
+    /// Names of all qualities, automatic quality first.
+    pub(super) fn qualities() -> impl Iterator<Item = &'static str> {
+        [AUTOMATIC].into_iter().chain(Quality::ALL.map(Quality::name))
+    }
+
+    /// Sets the quality by name, [`AUTOMATIC`] included. An unknown name changes nothing and returns false.
+    pub(super) fn set_quality(&mut self, name: &str) -> bool {
+        let (quality, budget) = match Quality::from_name(name) {
+            Some(quality) => (quality, None),
+            None if name == AUTOMATIC => {
+                let (quality, level) = self.device.automatic();
+                (quality, Some(FrameBudget::new(self.device.budget_secs(), level, quality.level())))
+            }
+            None => return false,
+        };
+        (self.quality, self.budget) = (quality, budget);
+        true
+    }
+
+    /// Name of the chosen quality, [`AUTOMATIC`] included.
+    pub(super) fn quality_name(&self) -> &'static str {
+        if self.budget.is_some() { AUTOMATIC } else { self.quality.name() }
+    }
+
+    /// Quality that the renderer must support: the chosen one, or a higher one that is compared.
+    pub(super) fn quality(&self) -> Quality {
+        let compared = self.comparison.iter().flat_map(|comparison| &comparison.variants).filter_map(|name| Quality::from_name(name));
+        compared.fold(self.quality, |highest, quality| if quality.level() > highest.level() { quality } else { highest })
+    }
+
+    /// Controller of automatic quality; `None` for a fixed quality.
+    pub(super) fn budget(&self) -> Option<&FrameBudget> {
+        self.budget.as_ref()
+    }
+
+    /// Reports a drawn frame to the controller. If no level keeps the budget, switches to the next lower quality, with fewer samples and pixels.
+    pub(super) fn record(&mut self, frame: FrameTime) {
+        let Some(budget) = &mut self.budget else { return };
+        budget.record(frame);
+        if let Some(lower) = self.quality.lower().filter(|_| budget.is_exhausted()) {
+            *budget = FrameBudget::new(budget.budget_secs(), 0.0, lower.level());
+            self.quality = lower;
+        }
+    }
+
+    /// Current level of detail.
+    pub(super) fn level(&self) -> f32 {
+        self.budget.as_ref().map_or(self.quality.level(), FrameBudget::level)
+    }
+
+    /// Sets render options by name; an unknown name changes nothing.
+    pub(super) fn set_options(&mut self, order: &str, far: &str) {
+        self.options.blend_order = BlendOrder::from_name(order).unwrap_or(self.options.blend_order);
+        self.options.far_plants = FarPlants::from_name(far).unwrap_or(self.options.far_plants);
+    }
+
+    /// Sets the hour of the day, 0 to 24, that determines the sun; any other number restores the scene's own hour.
+    pub(super) fn set_hour(&mut self, hour: f32) {
+        self.hour = Some(hour).filter(|hour| (0.0..=24.0).contains(hour));
+    }
+
+    /// Hour chosen by the user; `None` for the scene's own.
+    pub(super) fn hour(&self) -> Option<f32> {
+        self.hour
+    }
+
+    /// Render options, with the sun of the chosen hour in a scene with this light.
+    pub(super) fn options(&mut self, light: Option<&Light>) -> RenderOptions {
+        self.options.sun = self.hour.zip(light).map(|(hour, light)| light.sun_at_hour(hour));
+        self.options
+    }
+
+    /// Names of the current transparency order and of the current representation of far plants.
+    pub(super) fn option_names(&self) -> [&'static str; 2] {
+        [self.options.blend_order.name(), self.options.far_plants.name()]
+    }
+
+    /// Compares two variants side by side; an unknown name ends the comparison.
+    pub(super) fn compare(&mut self, variants: [String; 2], border: f32) {
+        let is_known = border.is_finite() && variants.iter().all(|name| self.current().with(name).is_some());
+        self.comparison = is_known.then(|| Comparison { variants, border: border.clamp(0.0, 1.0) });
+    }
+
+    /// Names of the compared variants, and the position of the border as a fraction of the width.
+    pub(super) fn compared(&self) -> Option<(&[String; 2], f32)> {
+        self.comparison.as_ref().map(|comparison| (&comparison.variants, comparison.border))
+    }
+
+    fn current(&self) -> SideOptions {
+        SideOptions { options: self.options, level: self.level() }
+    }
+
+    /// The two variants to draw side by side, if a comparison is on.
+    pub(super) fn split(&self) -> Option<Split> {
+        let Comparison { variants: [left, right], border } = self.comparison.as_ref()?;
+        Some(Split { sides: [self.current().with(left)?, self.current().with(right)?], border: *border })
+    }
+}

@@ -1,0 +1,199 @@
+//! Command encoder of a frame. Most frames have one; where more plants are drawn than a buffer holds, each batch of them has its own.
+
+use crate::render::frame::moment::OutputRegion;
+use crate::render::frame::prepare::FramePlan;
+use crate::render::gpu::pipeline_statistics::{Counted, counted};
+use crate::render::gpu::timestamps::Pass;
+use crate::render::options::render_options::BlendOrder;
+use crate::render::renderer::Renderer;
+use crate::render::scene_resources::SceneResources;
+use crate::render::targets::{shadow_pass, tone_pass};
+
+type RenderPass = Counted<wgpu::RenderPass<'static>>;
+
+/// The passes of one batch of plants. Shadows and everything but plants are drawn in the first or the last one.
+pub(super) struct Batch<'a> {
+    renderer: &'a mut Renderer,
+    scene: &'a SceneResources,
+    plan: &'a FramePlan,
+    is_first: bool,
+    is_last: bool,
+    encoder: wgpu::CommandEncoder,
+}
+
+impl<'a> Batch<'a> {
+    pub(super) fn begin(renderer: &'a mut Renderer, scene: &'a mut SceneResources, plan: &'a FramePlan, number: u32) -> Self {
+        let (is_first, is_last) = (number == 0, number + 1 == plan.batches);
+        if let Some(statistics) = &mut renderer.statistics {
+            if is_first {
+                statistics.begin_frame(&renderer.gpu, plan.batches);
+            }
+            statistics.begin_encoder();
+        }
+        if plan.has_blades {
+            scene.blades.begin_batch(&renderer.gpu, number);
+        }
+        let encoder = renderer.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        Self { renderer, scene, plan, is_first, is_last, encoder }
+    }
+
+    /// Sways the trees and draws the shadow cascades that are due.
+    pub(super) fn shadows(&mut self) {
+        if !self.is_first {
+            return;
+        }
+        let cascades = &self.plan.due_cascades;
+        let group = &self.scene.textures.shadow_group;
+        {
+            let timestamp_writes = self.renderer.timestamps.as_ref().map(|queries| queries.of_compute(Pass::Shadows, cascades.is_empty()));
+            let descriptor = wgpu::ComputePassDescriptor { label: Some("sway"), timestamp_writes };
+            let mut pass = self.encoder.begin_compute_pass(&descriptor);
+            pass.set_bind_group(0, group, &[]);
+            self.scene.objects.sway(&mut pass);
+        }
+        for &cascade in cascades {
+            let is_last = cascades.last() == Some(&cascade);
+            let clock = self.renderer.timestamps.as_ref().and_then(|queries| queries.of_render(Pass::Shadows, false, is_last));
+            let pass = shadow_pass(&mut self.encoder, &self.renderer.bindings.shadow_map(cascade), clock);
+            let mut pass = counted(&mut self.renderer.statistics, Pass::Shadows, pass);
+            pass.set_bind_group(0, group, &[]);
+            self.scene.objects.draw_shadows(&mut pass, cascade as usize);
+        }
+    }
+
+    /// Culls, bends and sorts the plants.
+    pub(super) fn bend(&mut self) {
+        let &FramePlan { has_blades, has_spheres, has_lamps, .. } = self.plan;
+        let scene = self.scene;
+        let timestamp_writes = self.renderer.timestamps.as_ref().map(|queries| queries.of_compute(Pass::Bend, true));
+        let pass = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes });
+        let mut pass = counted(&mut self.renderer.statistics, Pass::Bend, pass);
+        pass.set_bind_group(0, &scene.textures.group, &[]);
+        if has_blades {
+            scene.blades.bend(&mut pass, has_spheres, has_lamps);
+        }
+        if !self.is_first {
+            return;
+        }
+        if self.plan.shells.is_some() {
+            scene.shells.bend(&mut pass);
+        }
+        if let Some(clumps) = self.plan.clumps(scene) {
+            clumps.bend(&mut pass);
+        }
+        if let Some(underbrush) = &scene.underbrush {
+            underbrush.bend(&mut pass, has_spheres, has_lamps);
+        }
+        if let Some(dust) = &scene.dust {
+            dust.drift(&mut pass);
+        }
+    }
+
+    /// Draws everything opaque, roughly near to far, and returns the pass for [`blended`](Self::blended).
+    pub(super) fn opaque(&mut self) -> RenderPass {
+        let &FramePlan { has_blades, has_lamps, order, .. } = self.plan;
+        let scene = self.scene;
+        let ends_picture = self.is_last && !self.is_weighted();
+        let mut pass = self.picture_pass(self.is_first, ends_picture);
+        if self.is_first {
+            scene.objects.draw(&mut pass, has_lamps);
+        }
+        if has_blades {
+            if !order.blends() {
+                scene.blades.draw(&mut pass, has_lamps);
+            }
+            scene.blades.draw_flowers(&mut pass, has_lamps);
+        }
+        if self.is_last {
+            if self.plan.shells.is_some() {
+                scene.shells.draw(&mut pass);
+            }
+            if let Some(underbrush) = &scene.underbrush {
+                underbrush.draw(&mut pass);
+            }
+            if let Some(clumps) = self.plan.clumps(scene).filter(|_| !order.blends()) {
+                clumps.draw(&mut pass);
+            }
+            scene.terrain.draw(&mut pass, has_lamps);
+            self.renderer.sky.draw(&mut pass);
+        }
+        pass
+    }
+
+    /// Draws blended plants and the weather over the opaque picture.
+    pub(super) fn blended(&mut self, mut picture: RenderPass) {
+        if !self.is_weighted() {
+            if self.is_last {
+                if self.plan.order.blends() {
+                    self.draw_blended_plants(&mut picture);
+                }
+                self.draw_weather(&mut picture);
+            }
+            return;
+        }
+        drop(picture);
+        let Some(weighted) = &self.renderer.weighted else { return };
+        let pass = weighted.pass(&mut self.encoder, &self.renderer.targets.depth);
+        let mut pass = counted(&mut self.renderer.statistics, Pass::Picture, pass);
+        pass.set_bind_group(0, &self.scene.textures.group, &[]);
+        self.draw_blended_plants(&mut pass);
+        drop(pass);
+        let mut picture = self.picture_pass(false, true);
+        self.renderer.weighted.iter().for_each(|weighted| weighted.compose(&mut picture));
+        self.draw_weather(&mut picture);
+    }
+
+    /// Maps light to the colours of the target.
+    pub(super) fn tone(&mut self, target: &wgpu::TextureView, region: &OutputRegion) {
+        if !self.is_last {
+            return;
+        }
+        let clock = self.renderer.timestamps.as_ref().and_then(|queries| queries.of_render(Pass::Tone, true, true));
+        let pass = tone_pass(&mut self.encoder, target, region.keeps_rest, clock);
+        let mut pass = counted(&mut self.renderer.statistics, Pass::Tone, pass);
+        pass.set_scissor_rect(region.columns.start, 0, region.columns.len() as u32, self.renderer.size_px[1]);
+        pass.set_bind_group(0, &self.scene.textures.group, &[]);
+        self.renderer.tone.draw(&mut pass);
+    }
+
+    pub(super) fn submit(mut self) {
+        if let Some(timestamps) = self.renderer.timestamps.as_ref().filter(|_| self.is_last) {
+            timestamps.resolve(&mut self.encoder);
+        }
+        if let Some(statistics) = &self.renderer.statistics {
+            statistics.resolve(&mut self.encoder);
+        }
+        self.renderer.gpu.queue.submit([self.encoder.finish()]);
+    }
+
+    fn picture_pass(&mut self, is_first: bool, is_last: bool) -> RenderPass {
+        let clock = self.renderer.timestamps.as_ref().and_then(|queries| queries.of_render(Pass::Picture, is_first, is_last));
+        let pass = self.renderer.targets.picture_pass(&mut self.encoder, [is_first, is_last], clock);
+        let mut pass = counted(&mut self.renderer.statistics, Pass::Picture, pass);
+        pass.set_bind_group(0, &self.scene.textures.group, &[]);
+        pass
+    }
+
+    /// Whether plants are blended by weighted order-independent transparency.
+    fn is_weighted(&self) -> bool {
+        self.plan.order == BlendOrder::Weighted
+    }
+
+    fn draw_blended_plants(&self, pass: &mut wgpu::RenderPass<'_>) {
+        if let Some(clumps) = self.plan.clumps(self.scene) {
+            clumps.draw(pass);
+        }
+        if self.plan.has_blades {
+            self.scene.blades.draw(pass, self.plan.has_lamps);
+        }
+    }
+
+    fn draw_weather(&self, pass: &mut wgpu::RenderPass<'_>) {
+        if let Some(dust) = &self.scene.dust {
+            dust.draw(pass);
+        }
+        if let Some(rain) = &self.scene.rain {
+            rain.draw(pass);
+        }
+    }
+}

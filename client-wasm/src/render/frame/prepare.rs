@@ -1,0 +1,171 @@
+//! First step of a frame: updates textures and uniforms, and builds the draw lists.
+
+use crate::render::frame::moment::Moment;
+use crate::render::gpu::device::Gpu;
+use crate::render::gpu::pipeline::PassFactory;
+use crate::render::gpu::uniforms::Frame;
+use crate::render::inputs::cascades::SHADOW_CASCADES;
+use crate::render::inputs::frustum::{CascadeVolume, Frustum};
+use crate::render::inputs::view::View;
+use crate::render::inputs::viewpoint::Viewpoint;
+use crate::render::options::render_options::{BlendOrder, FarPlants};
+use crate::render::plants::billboards::{Billboards, ClumpRange};
+use crate::render::plants::shells::{ShellExtent, ShellRequest};
+use crate::render::plants::weighted_oit::WeightedOit;
+use crate::render::renderer::Renderer;
+use crate::render::scene_resources::SceneResources;
+use crate::render::solids::shadow_cache::ShadowView;
+use crate::render::solids::vehicles::headlights;
+use crate::state::{DecodedScene, Mirror};
+use glam::{Mat4, Vec3};
+use prairie_core::scene::PlantCover;
+use prairie_core::wire::ObjectPose;
+
+/// Distance up to which clumps of plants have several segments, relative to that at which single plants end.
+const SEVERAL_SEGMENTS_REACH: f32 = 1.6;
+
+/// Decisions of [`Renderer::prepare`] that the passes of the frame follow.
+#[derive(Default)]
+pub(super) struct FramePlan {
+    pub(super) order: BlendOrder,
+    pub(super) has_blades: bool,
+    pub(super) has_clumps: bool,
+    pub(super) shells: Option<ShellExtent>,
+    pub(super) has_lamps: bool,
+    pub(super) has_spheres: bool,
+    /// Shadow cascades that are redrawn.
+    pub(super) due_cascades: Vec<u32>,
+    /// Batches in which plants are listed and drawn, at least 1.
+    pub(super) batches: u32,
+    pub(super) patches_written: u32,
+}
+
+impl FramePlan {
+    /// The clumps, if the frame shows any.
+    pub(super) fn clumps<'a>(&self, scene: &'a SceneResources) -> Option<&'a Billboards> {
+        self.has_clumps.then_some(&scene.billboards)
+    }
+}
+
+impl Renderer {
+    pub(super) fn prepare(&mut self, scene: &mut SceneResources, mirror: &mut Mirror, moment: &Moment<'_>) -> FramePlan {
+        let &Moment { camera, time_secs, dt_secs } = moment;
+        let poses: Vec<ObjectPose> = mirror.objects().collect();
+        let eye_xz_m = [camera.eye_m.x, camera.eye_m.z];
+        let patches_written = scene.textures.atlas.update(&self.gpu, mirror, eye_xz_m, dt_secs);
+        scene.textures.wind.update(&self.gpu, mirror.wind(), dt_secs);
+        let Some(decoded) = mirror.decoded_scene() else { return FramePlan::default() };
+
+        let sun = self.options.sun.unwrap_or_else(|| decoded.scene().light.sun_at(mirror.time_secs()));
+        self.daylight.update(&self.gpu, sun);
+        let detail = self.detail.on(&decoded.scene().plants).with(self.options.far_plants);
+        let view = View::new(camera, self.targets.size_px, self.quality, detail, time_secs, sun);
+        let mut frame = view.frame(decoded, &scene.textures.atlas, &self.daylight, &poses, &headlights(&poses));
+        let (eye_m, heading_rad) = (camera.eye_m, camera.heading_rad);
+        let shadow_view = ShadowView { eye_m, heading_rad, sun, trees_m: detail.trees_m, culls: self.options.culls, time_secs };
+        let cascades = update_cascades(scene, decoded, &mut frame, shadow_view, &poses, dt_secs);
+        self.bindings.write(&self.gpu, &frame);
+
+        let frustum = self.frustum(&view.projection_from_world);
+        let viewpoint = Viewpoint { eye_m, frustum: &frustum, detail: &detail, options: self.options, dt_secs };
+        let mut plan = self.plan(decoded, &frame, &cascades, patches_written);
+        self.set_blend_order(scene, &mut plan);
+        scene.prepare_land(&self.gpu, &viewpoint);
+        scene.prepare_grass(&self.gpu, decoded, &viewpoint, &frame, &plan);
+        scene.prepare_underbrush(&self.gpu, mirror, decoded, &viewpoint, &poses);
+        scene.objects.prepare(&self.gpu, &poses, &viewpoint, cascades, time_secs as f32, frame.pixel_rad);
+        if plan.has_blades {
+            plan.batches = scene.blades.batches();
+        }
+        plan
+    }
+
+    fn frustum(&self, projection_from_world: &Mat4) -> Frustum {
+        if self.options.culls { Frustum::new(projection_from_world) } else { Frustum::ALL }
+    }
+
+    /// Which plants are drawn by which method.
+    fn plan(&self, decoded: &DecodedScene, frame: &Frame, cascades: &Cascades, patches_written: u32) -> FramePlan {
+        let far_plants = self.options.far_plants;
+        let shells = match (decoded.scene().plants.cover, far_plants) {
+            (PlantCover::Shells, _) => Some(ShellExtent::All),
+            (PlantCover::Blades, FarPlants::Shells) => Some(ShellExtent::BeyondBlades),
+            _ => None,
+        };
+        let has_blades = shells != Some(ShellExtent::All);
+        FramePlan {
+            order: self.options.blend_order,
+            has_blades,
+            has_clumps: far_plants == FarPlants::Clumps && has_blades,
+            shells,
+            has_lamps: frame.has_lamps(),
+            has_spheres: frame.has_spheres(),
+            due_cascades: (0..).zip(cascades).filter_map(|(cascade, volume)| volume.map(|_| cascade)).collect(),
+            batches: 1,
+            patches_written,
+        }
+    }
+
+    /// Replaces an order that this scene or target does not support, and creates what the order needs.
+    fn set_blend_order(&mut self, scene: &mut SceneResources, plan: &mut FramePlan) {
+        let samples = self.quality.samples(self.gpu.is_software);
+        let factory = PassFactory { gpu: &self.gpu, frame_layout: &self.bindings.layout, samples, has_kinds: scene.has_kinds };
+        plan.order = plan.order.supported(samples, scene.blades.by_batches());
+        scene.blades.set_order(&factory, plan.order);
+        scene.billboards.set_order(&factory, plan.order);
+        if plan.order == BlendOrder::Weighted && self.weighted.is_none() {
+            self.weighted = Some(WeightedOit::new(&factory, self.targets.size_px));
+        }
+    }
+}
+
+/// Volumes of the shadow cascades that are redrawn.
+type Cascades = [Option<CascadeVolume>; SHADOW_CASCADES as usize];
+
+/// Decides which cascades are redrawn, and gives the others the projections of their cached drawings.
+fn update_cascades(
+    scene: &mut SceneResources,
+    decoded: &DecodedScene,
+    frame: &mut Frame,
+    shadow_view: ShadowView,
+    poses: &[ObjectPose],
+    dt_secs: f32,
+) -> Cascades {
+    // Rotors and custom models reach beyond the collision box.
+    let reach_m = |pose: &ObjectPose| 2.0 * Vec3::from(decoded.scene().objects.half_extents_m(pose.kind)).length();
+    let is_due = scene.shadow_cache.update(frame, shadow_view, poses, reach_m, dt_secs);
+    let projections = [&frame.shadow_from_world, &frame.lights.far_shadow_from_world];
+    std::array::from_fn(|cascade| is_due[cascade].then(|| CascadeVolume::new(projections[cascade])))
+}
+
+impl SceneResources {
+    fn prepare_land(&mut self, gpu: &Gpu, from: &Viewpoint<'_>) {
+        let tiles = self.quadtree.tiles(from.eye_m, from.frustum);
+        self.terrain.prepare(gpu, &tiles);
+        if let Some(dust) = &self.dust {
+            dust.prepare(gpu, from.dt_secs);
+        }
+    }
+
+    fn prepare_grass(&mut self, gpu: &Gpu, decoded: &DecodedScene, from: &Viewpoint<'_>, frame: &Frame, plan: &FramePlan) {
+        if plan.has_blades {
+            self.blades.prepare(gpu, decoded, from);
+        }
+        if let Some(extent) = plan.shells {
+            let request =
+                ShellRequest { extent, from_m: frame.blades_fade_from_m, end_m: frame.far_end_m, layers: from.options.shell_layers };
+            self.shells.prepare(gpu, decoded, from.eye_m, from.frustum, request);
+        } else if plan.has_clumps {
+            let several_m = SEVERAL_SEGMENTS_REACH * frame.blades_end_m;
+            let range = ClumpRange { from_m: frame.blades_fade_from_m, several_m, to_m: frame.far_end_m };
+            self.billboards.prepare(gpu, decoded, from.eye_m, from.frustum, range);
+        }
+    }
+
+    fn prepare_underbrush(&mut self, gpu: &Gpu, mirror: &Mirror, decoded: &DecodedScene, from: &Viewpoint<'_>, poses: &[ObjectPose]) {
+        let Some(underbrush) = &mut self.underbrush else { return };
+        self.force_field.update(gpu, decoded, &self.textures.wind, poses, [from.eye_m.x, from.eye_m.z], from.dt_secs);
+        underbrush.show_broken(gpu, mirror.falls(), mirror.broken_count());
+        underbrush.prepare(gpu, &self.force_field, from);
+    }
+}

@@ -1,0 +1,161 @@
+//! Constants shared by shaders and Rust. A WGSL file imports them from `package::constants`, where they have the values declared here.
+
+use std::fmt;
+
+use prairie_core::lod;
+use prairie_core::plant::blade::{self, Integrator};
+use prairie_core::plant::underbrush::{drops, posture};
+
+pub(crate) use prairie_core::bend::BEND_SATURATES_M_PER_S;
+pub(crate) use prairie_core::light::air::HAZE_FORWARD;
+pub(crate) use prairie_core::light::grass::{LEAF_EXTINCTION, LEAST_SUN_SINE};
+pub(crate) use prairie_core::plant::blade::contact::CLEARANCE_M;
+pub(crate) use prairie_core::plant::blade::modes::{AMPLITUDES, BRAKES, FREQUENCIES, MODES, PUSHES, WIND_SHAPE};
+pub(crate) use prairie_core::scene::{GROWTH_BY_COVER, GROWTH_BY_MEADOW, GROWTH_BY_SOIL, GROWTH_BY_TUFT};
+pub(crate) use prairie_core::wind::{FREE_WIND_M, LEAST_WIND_HEIGHT};
+pub(crate) use prairie_core::wire::quantise::{DUST_FULL, OMEGA_FULL_RAD_PER_S, THETA_FULL_RAD, WIND_FULL_M_PER_S};
+pub(crate) use std::f32::consts::TAU;
+
+/// Gravitational acceleration (m/s²).
+pub(crate) const GRAVITY_M_PER_S2: f32 = 9.81;
+
+// --- wind ---
+
+/// Periods of the gust patterns (m): the broad and the fine one along the wind, then both across it.
+pub(crate) const BROAD_GUST_M: f32 = 60.0;
+pub(crate) const FINE_GUST_M: f32 = 23.0;
+pub(crate) const BROAD_GUST_ACROSS_M: f32 = 120.0;
+pub(crate) const FINE_GUST_ACROSS_M: f32 = 60.0;
+/// Speed of the gust fronts relative to the mean wind.
+pub(crate) const GUST_SPEED: f64 = 1.3;
+
+// --- bend field ---
+
+/// Mip levels of the bend atlas. The side of a patch is a multiple of 8 cells, so that no level mixes two patches.
+pub(crate) const BEND_ATLAS_LEVELS: u32 = 4;
+/// Earlier states of the bend field in the atlas.
+pub(crate) const PASTS: i32 = lod::PASTS as i32;
+
+// --- blades and flowers ---
+
+/// Links of a blade.
+pub(crate) const LINKS: i32 = blade::LINKS as i32;
+/// Codes of the integrators.
+pub(crate) const EULER: u32 = Integrator::Euler as u32;
+pub(crate) const VERLET: u32 = Integrator::Verlet as u32;
+/// Simulated grids around the camera.
+pub(crate) const NEAR_SLOTS: u32 = 9;
+/// Maximum displacement of a plant by its tuft, also across the border of its grid (m).
+pub(crate) const TUFT_REACH_M: f32 = 0.5;
+/// Words of the arguments of an indirect draw.
+pub(crate) const DRAW_WORDS: u32 = 5;
+/// Plants in one instance of an indirect draw, and in one workgroup.
+pub(crate) const CHUNK: u32 = 64;
+/// Lists of single plants: fine blades, coarse ones, those of one segment, near flower heads, far ones.
+pub(crate) const FINE_LIST: u32 = 0;
+pub(crate) const COARSE_LIST: u32 = 1;
+pub(crate) const SINGLE_LIST: u32 = 2;
+pub(crate) const HEAD_LIST: u32 = 3;
+pub(crate) const FAR_HEAD_LIST: u32 = 4;
+pub(crate) const PLANT_LISTS: u32 = 5;
+/// Jitter (±, relative) from blade to blade of the distance up to which they are fine, so that no ring of them changes at once.
+pub(crate) const FINE_SPREAD: f32 = 0.15;
+/// Shapes in the texture of blades, side by side.
+pub(crate) const BLADE_SHAPES: u32 = 5;
+/// Vertices of a flower head, and of one that is drawn as a disc.
+pub(crate) const HEAD_VERTICES: u32 = 67;
+pub(crate) const DISC_VERTICES: u32 = 7;
+/// Cells along the side of a grid whose order is precomputed.
+pub(crate) const ORDER_CELLS: u32 = 64;
+
+// --- clumps and shells ---
+
+/// Clumps in one instance.
+pub(crate) const CLUMPS: u32 = 32;
+/// Maximum number of segments of a clump.
+pub(crate) const CLUMP_SEGMENT_LIMIT: u32 = 6;
+/// Half the range of distances (m) over which clumps fade in.
+pub(crate) const CLUMP_FADE_SPREAD_M: f32 = 1.0;
+/// Mean radius of the blades on the texture of shells (px).
+pub(crate) const SHELL_BLADE_PX: f32 = 2.1;
+
+// --- underbrush ---
+
+/// Plant variants of each species.
+pub(crate) const VARIANTS: u32 = 4;
+/// Levels of detail of a species.
+pub(crate) const UNDERBRUSH_LEVELS: u32 = 4;
+/// Lists of plants: one for each species and level.
+pub(crate) const UNDERBRUSH_LISTS: u32 = prairie_core::plant::growth::SPECIES_LIMIT as u32 * UNDERBRUSH_LEVELS;
+/// Rows per allocation block of a plant.
+pub(crate) const BLOCK_ROWS: u32 = 8;
+/// Minimum fraction of plants that remain when they are few pixels tall; the remaining ones are larger by its power of -0.3.
+pub(crate) const FEWEST: f32 = 0.06;
+/// Pressure (Pa) that bends a fallen plant.
+pub(crate) const FALL_PA: f32 = 8.0;
+/// Unit of half-widths (m).
+pub(crate) const WIDTH_UNIT_M: f32 = 1.0 / 16_384.0;
+/// Materials of a row; leaves are 0.
+pub(crate) const STALK: u32 = 1;
+pub(crate) const PETAL: u32 = 2;
+pub(crate) const MIDDLE_LOAD: f32 = posture::MIDDLE_LOAD;
+pub(crate) const DROP_M_PER_S: f32 = drops::DROP_M_PER_S;
+
+// --- ground, objects and sorting ---
+
+/// Hills beyond the edge of the world: range of their heights (m), their mean as a fraction of it, slope of the land away from the edge, and distance from
+/// the edge at which they have their full height (m).
+pub(crate) const HILLS_RANGE_M: f32 = 150.0;
+pub(crate) const HILLS_MEAN: f32 = 0.42;
+pub(crate) const HILLS_SLOPE: f32 = 0.006;
+pub(crate) const HILLS_FULL_M: f32 = 900.0;
+/// Cells along one side of a ground tile, and vertices of the tile.
+pub(crate) const TILE_CELLS: u32 = 16;
+pub(crate) const TILE_VERTICES: u32 = (TILE_CELLS + 1).pow(2);
+/// Maximum flutter of tree leaves (m along X).
+pub(crate) const FLUTTER_M: f32 = 0.035;
+/// Pairs per tile of a sort.
+pub(crate) const SORT_TILE: u32 = 1024;
+/// Number of values of a digit of a sort.
+pub(crate) const DIGITS: u32 = 256;
+
+/// Value that can be declared as a constant in WGSL.
+pub(crate) trait Constant: fmt::Debug + Sync {
+    /// WGSL declaration of a constant of that name.
+    fn declaration(&self, name: &str) -> String;
+}
+
+macro_rules! constants {
+    ($($type:ident)*) => {
+        $(impl Constant for $type {
+            fn declaration(&self, name: &str) -> String {
+                format!("const {name}: {} = {self:?};", stringify!($type))
+            }
+        })*
+    };
+}
+
+constants! { f32 u32 i32 }
+
+impl Constant for f64 {
+    fn declaration(&self, name: &str) -> String {
+        format!("const {name}: f32 = {self:?};")
+    }
+}
+
+impl<const N: usize> Constant for [f32; N] {
+    fn declaration(&self, name: &str) -> String {
+        format!("const {name} = array<f32, {N}>({});", listed(self))
+    }
+}
+
+impl<const N: usize> Constant for [[f32; 3]; N] {
+    fn declaration(&self, name: &str) -> String {
+        let rows: Vec<_> = self.iter().map(|row| format!("vec3<f32>({})", listed(row))).collect();
+        format!("const {name} = array<vec3<f32>, {N}>({});", rows.join(", "))
+    }
+}
+
+fn listed(values: &[f32]) -> String {
+    values.iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,224 @@
+//! Helpers that create bind groups and pipelines.
+
+use crate::render::gpu::device::Gpu;
+use crate::render::gpu::shaders::Constant;
+use std::fmt::Display;
+
+/// Format of the picture before tone mapping.
+pub(crate) const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Format of depth, reversed: 0 is infinitely far.
+pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Creates the pipelines and bind group layouts of passes.
+pub(crate) struct PassFactory<'a> {
+    pub(crate) gpu: &'a Gpu,
+    pub(crate) frame_layout: &'a wgpu::BindGroupLayout,
+    pub(crate) samples: u32,
+    /// Whether more than one kind of grass grows; override `has_kinds` in WGSL.
+    pub(crate) has_kinds: bool,
+}
+
+/// Settings of a render pipeline.
+pub(crate) struct DrawDescriptor<'a> {
+    pub(crate) label: &'a str,
+    pub(crate) vertex: &'a str,
+    /// `None` draws depth only, for the shadow map.
+    pub(crate) fragment: Option<&'a str>,
+    pub(crate) buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    pub(crate) depth_write: bool,
+    pub(crate) cull: Option<wgpu::Face>,
+    /// `None` replaces the target.
+    pub(crate) blend: Option<wgpu::BlendState>,
+    /// Module of the fragment shader, if it differs from that of the vertex shader.
+    pub(crate) fragment_module: Option<&'a wgpu::ShaderModule>,
+}
+
+impl Default for DrawDescriptor<'_> {
+    /// Opaque, two-sided triangles without vertex buffers.
+    fn default() -> Self {
+        Self {
+            label: "",
+            vertex: "vs",
+            fragment: Some("fs"),
+            buffers: &[],
+            depth_write: true,
+            cull: None,
+            blend: None,
+            fragment_module: None,
+        }
+    }
+}
+
+/// Two variants of a pipeline, without and with lamps; override `has_lamps` in WGSL.
+pub(crate) struct LampVariants<P>([P; 2]);
+
+impl<P> LampVariants<P> {
+    pub(crate) fn new(make: impl Fn(Constant) -> P) -> Self {
+        Self([false, true].map(|has_lamps| make(("has_lamps", has_lamps))))
+    }
+
+    /// The variant for a frame with or without lamps.
+    pub(crate) fn of(&self, has_lamps: bool) -> &P {
+        &self.0[usize::from(has_lamps)]
+    }
+}
+
+/// Variants without and with interaction spheres, each with its [`LampVariants`]; overrides `meets_spheres` and `has_lamps` in WGSL.
+pub(crate) struct SphereVariants<P>([LampVariants<P>; 2]);
+
+impl<P> SphereVariants<P> {
+    pub(crate) fn new(make: impl Fn([Constant; 2]) -> P) -> Self {
+        Self([false, true].map(|spheres| LampVariants::new(|lamps| make([lamps, ("meets_spheres", spheres)]))))
+    }
+
+    /// The variant for a frame with or without spheres and lamps.
+    pub(crate) fn of(&self, has_spheres: bool, has_lamps: bool) -> &P {
+        self.0[usize::from(has_spheres)].of(has_lamps)
+    }
+}
+
+pub(crate) const ALL_STAGES: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT.union(wgpu::ShaderStages::COMPUTE);
+
+impl PassFactory<'_> {
+    pub(crate) fn layout(&self, label: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
+        self.gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+    }
+
+    /// A pass's module with values of its overrides.
+    pub(crate) fn shader(&self, label: &str, source: impl Display, constants: &[Constant]) -> wgpu::ShaderModule {
+        self.gpu.shader(label, source, &[constants, &[("has_kinds", self.has_kinds)]].concat())
+    }
+
+    fn pipeline_layout(&self, label: &str, own: Option<&wgpu::BindGroupLayout>) -> wgpu::PipelineLayout {
+        self.gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(label),
+            bind_group_layouts: &[Some(self.frame_layout), own],
+            immediate_size: 0,
+        })
+    }
+
+    pub(crate) fn compute(
+        &self,
+        label: &str,
+        module: &wgpu::ShaderModule,
+        entry: &str,
+        own: &wgpu::BindGroupLayout,
+    ) -> wgpu::ComputePipeline {
+        self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(label),
+            layout: Some(&self.pipeline_layout(label, Some(own))),
+            module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            cache: None,
+        })
+    }
+
+    pub(crate) fn draw(
+        &self,
+        module: &wgpu::ShaderModule,
+        own: Option<&wgpu::BindGroupLayout>,
+        draw: &DrawDescriptor<'_>,
+    ) -> wgpu::RenderPipeline {
+        let targets: &[_] = if draw.vertex.starts_with("vs_shadow") { &[] } else { &[color_target(COLOR, draw.blend)] };
+        self.render_pipeline(module, own, draw, targets, false)
+    }
+
+    pub(crate) fn render_pipeline(
+        &self,
+        module: &wgpu::ShaderModule,
+        own: Option<&wgpu::BindGroupLayout>,
+        draw: &DrawDescriptor<'_>,
+        targets: &[Option<wgpu::ColorTargetState>],
+        alpha_to_coverage_enabled: bool,
+    ) -> wgpu::RenderPipeline {
+        let to_shadow = draw.vertex.starts_with("vs_shadow");
+        let compare = if to_shadow { wgpu::CompareFunction::Less } else { wgpu::CompareFunction::GreaterEqual };
+        self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(draw.label),
+            layout: Some(&self.pipeline_layout(draw.label, own)),
+            vertex: wgpu::VertexState {
+                module,
+                entry_point: Some(draw.vertex),
+                compilation_options: Default::default(),
+                buffers: draw.buffers,
+            },
+            primitive: wgpu::PrimitiveState { cull_mode: draw.cull, ..Default::default() },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH,
+                depth_write_enabled: Some(draw.depth_write),
+                depth_compare: Some(compare),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: wgpu::MultisampleState {
+                count: if to_shadow { 1 } else { self.samples },
+                alpha_to_coverage_enabled,
+                ..Default::default()
+            },
+            fragment: draw.fragment.map(|entry| wgpu::FragmentState {
+                module: draw.fragment_module.unwrap_or(module),
+                entry_point: Some(entry),
+                compilation_options: Default::default(),
+                targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+pub(crate) fn color_target(format: wgpu::TextureFormat, blend: Option<wgpu::BlendState>) -> Option<wgpu::ColorTargetState> {
+    Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })
+}
+
+pub(crate) fn uniform(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    buffer(binding, ALL_STAGES, wgpu::BufferBindingType::Uniform)
+}
+
+pub(crate) fn storage(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    buffer(binding, ALL_STAGES, wgpu::BufferBindingType::Storage { read_only: true })
+}
+
+pub(crate) fn storage_rw(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    buffer(binding, wgpu::ShaderStages::COMPUTE, wgpu::BufferBindingType::Storage { read_only: false })
+}
+
+pub(crate) fn texture(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    sampled(binding, wgpu::TextureSampleType::Float { filterable: true }, wgpu::TextureViewDimension::D2)
+}
+
+pub(crate) fn sampled(
+    binding: u32,
+    sample_type: wgpu::TextureSampleType,
+    view_dimension: wgpu::TextureViewDimension,
+) -> wgpu::BindGroupLayoutEntry {
+    let ty = wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false };
+    wgpu::BindGroupLayoutEntry { binding, visibility: ALL_STAGES, ty, count: None }
+}
+
+pub(crate) fn sampler(binding: u32, kind: wgpu::SamplerBindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry { binding, visibility: ALL_STAGES, ty: wgpu::BindingType::Sampler(kind), count: None }
+}
+
+fn buffer(binding: u32, visibility: wgpu::ShaderStages, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntry {
+    let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
+}
+
+/// A bind group of resources with bindings 0, 1, …
+pub(crate) fn bind(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
+    let entries: Vec<_> = resources
+        .iter()
+        .enumerate()
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource: resource.clone() })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+/// A bind group of buffers, each with its binding.
+pub(crate) fn bind_as(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {
+    let entries: Vec<_> =
+        buffers.iter().map(|&(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }).collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}

@@ -1,0 +1,202 @@
+//! Fills the uniforms of a frame from camera, light and scene.
+
+use crate::camera::Camera;
+use crate::render::gpu::constants::{BROAD_GUST_M, FINE_GUST_M, GUST_SPEED};
+use crate::render::gpu::uniforms::{Frame, Lamp, Lights, SPHERE_LIMIT, Sphere};
+use crate::render::inputs::bend_atlas::BendAtlas;
+use crate::render::inputs::cascades;
+use crate::render::inputs::daylight::Daylight;
+use crate::render::inputs::lamps::{SpotLight, lamps, lit_sphere};
+use crate::render::options::detail::{Detail, blades_per_grid};
+use crate::render::options::quality::Quality;
+use crate::state::DecodedScene;
+use bytemuck::Zeroable;
+use glam::{Mat4, Vec3};
+use prairie_core::light::sun::Sun;
+use prairie_core::scene::{Objects, Plants};
+use prairie_core::wire::ObjectPose;
+
+/// Period of all patterns of gusts (m).
+const GUST_PERIOD_M: f64 = (BROAD_GUST_M * FINE_GUST_M) as f64;
+/// Speed of the clouds relative to the mean wind near the ground.
+const CLOUD_SPEED: f64 = 1.6;
+/// Rain rate at which the sky is overcast (mm/h).
+const OVERCAST_MM_PER_H: f32 = 10.0;
+
+pub(crate) struct View<'a> {
+    camera: &'a Camera,
+    size_px: [u32; 2],
+    quality: Quality,
+    detail: Detail,
+    time_secs: f64,
+    sun: Sun,
+    pub(crate) projection_from_world: Mat4,
+}
+
+/// Mean wind of a scene, which carries gust fronts and clouds.
+struct MeanWind {
+    direction: [f32; 2],
+    speed_m_per_s: f32,
+}
+
+impl MeanWind {
+    fn of([x, z]: [f32; 2]) -> Self {
+        let speed_m_per_s = x.hypot(z);
+        let direction = if speed_m_per_s > 1e-3 { [x / speed_m_per_s, z / speed_m_per_s] } else { [1.0, 0.0] };
+        Self { direction, speed_m_per_s }
+    }
+
+    /// Distance travelled by the gust fronts, within their period.
+    fn gust_travel_m(&self, time_secs: f64) -> f32 {
+        (time_secs * f64::from(self.speed_m_per_s) * GUST_SPEED).rem_euclid(GUST_PERIOD_M) as f32
+    }
+
+    fn cloud_offset_m(&self, time_secs: f64) -> [f32; 2] {
+        let drift = -(time_secs * CLOUD_SPEED) as f32;
+        self.direction.map(|direction| drift * direction * self.speed_m_per_s)
+    }
+}
+
+impl<'a> View<'a> {
+    pub(crate) fn new(camera: &'a Camera, size_px: [u32; 2], quality: Quality, detail: Detail, time_secs: f64, sun: Sun) -> Self {
+        let aspect = size_px[0] as f32 / size_px[1] as f32;
+        let projection_from_world = camera.projection_from_world(aspect);
+        Self { camera, size_px, quality, detail, time_secs, sun, projection_from_world }
+    }
+
+    pub(crate) fn frame(
+        &self,
+        decoded: &DecodedScene,
+        atlas: &BendAtlas,
+        daylight: &Daylight,
+        poses: &[ObjectPose],
+        headlights: &[SpotLight],
+    ) -> Frame {
+        let scene = decoded.scene();
+        let eye = self.camera.eye_m;
+        let overcast = overcast(decoded);
+        let [wraps_x, _, wraps_z] = scene.wind.faces.wraps().map(u32::from);
+        let mean_wind = MeanWind::of(scene.wind.mean_m_per_s);
+        let [past_ages_secs @ .., youngest_past] = atlas.past();
+        let fades_from = if self.quality == Quality::Reference { 0.999 } else { 0.72 };
+        let lamps = lamps(scene, decoded.heights(), headlights, self.sun.elevation_rad, daylight.brightness(), eye);
+        let spheres = spheres(&scene.objects, poses, eye);
+        Frame {
+            projection_from_world: self.projection_from_world.to_cols_array(),
+            world_from_projection: self.direction_from_projection().to_cols_array(),
+            shadow_from_world: self.shadow_from_world(0).to_cols_array(),
+            eye_m: eye.to_array(),
+            time_secs: (self.time_secs % 10_000.0) as f32,
+            toward_sun: self.sun.direction(),
+            overcast,
+            sun_rgb: (daylight.sunlight()[0] * (1.0 - 0.75 * overcast)).to_array(),
+            haze_distance_m: scene.light.haze_m * (1.0 - 0.6 * overcast),
+            world_extent_m: scene.extent_m(),
+            height_spacing_m: decoded.heights().pixel_m(),
+            heights_px: decoded.heights().size_px().map(|px| px as f32),
+            bend_window_m: atlas.window_m(),
+            bend_reach_m: atlas.reach_m(),
+            wind_box_m: scene.wind.box_m(),
+            wind_patch_m: if decoded.tiles().by_patch() { decoded.layout().patch_m() } else { 0.0 },
+            wind_repeats: [wraps_x, wraps_z],
+            patch_seed: decoded.tiles().seed(),
+            lamp_count: lamps.len() as u32,
+            wind_direction: mean_wind.direction,
+            mean_wind_m_per_s: mean_wind.speed_m_per_s,
+            gust_travel_m: mean_wind.gust_travel_m(self.time_secs),
+            past_ages_secs,
+            youngest_past,
+            screen_px: self.size_px.map(|px| px as f32),
+            pixel_rad: self.camera.fov_rad / self.size_px[1] as f32,
+            flowers_per_m2: scene.plants.flowers_per_m2,
+            height_variation: scene.plants.height_variation,
+            blade_width_m: scene.plants.width_m,
+            leaf_area: leaf_area(&scene.plants),
+            full_density_m: self.detail.full_m,
+            blades_fade_from_m: self.detail.blades_m * fades_from,
+            blades_end_m: self.detail.blades_m,
+            far_fade_from_m: self.detail.far_m * 0.6,
+            far_end_m: self.detail.far_m,
+            cloud_offset_m: mean_wind.cloud_offset_m(self.time_secs),
+            sphere_count: spheres.len() as u32,
+            _pad: [0; 4],
+            spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_else(Sphere::zeroed)),
+            lights: self.lights(decoded, daylight, &lamps),
+        }
+    }
+
+    /// Matrix from normalised device coordinates to directions in the world.
+    fn direction_from_projection(&self) -> Mat4 {
+        let rays = Mat4::from_mat3(glam::Mat3::from_mat4(glam::camera::rh::view::look_to_mat4(Vec3::ZERO, self.camera.forward(), Vec3::Y)));
+        let aspect = self.size_px[0] as f32 / self.size_px[1] as f32;
+        (self.camera.projection_from_view(aspect) * rays).inverse()
+    }
+
+    fn shadow_from_world(&self, cascade: usize) -> Mat4 {
+        cascades::shadow_from_world(self.camera, self.sun, self.quality.shadow_px(), cascade)
+    }
+
+    /// Uniforms of sky and lamps.
+    fn lights(&self, decoded: &DecodedScene, daylight: &Daylight, lamps: &[Lamp]) -> Lights {
+        let scene = decoded.scene();
+        let light = &scene.light;
+        let overcast = overcast(decoded);
+        let [_, cloud_sun] = daylight.sunlight();
+        // Rain clouds transmit a fifth of the daylight, all of it diffuse.
+        let [mean, up, toward_sun] = daylight.ambient();
+        let (night, star_brightness) = daylight.night();
+        let texel_m = |cascade| cascades::texel_m(cascade, self.quality.shadow_px());
+        let (lit_centre_m, lit_radius_m) = lit_sphere(lamps);
+        let (sin, cos) = self.sun.heading_rad.sin_cos();
+        Lights {
+            far_shadow_from_world: self.shadow_from_world(1).to_cols_array(),
+            mean_rgb: (mean * (1.0 + 0.6 * overcast)).to_array(),
+            star_brightness,
+            up_rgb: (up * (1.0 + 0.6 * overcast)).to_array(),
+            mist_per_m: if light.mist_m > 0.0 { 1.0 / light.mist_m } else { 0.0 },
+            toward_sun_rgb: (toward_sun * (1.0 - overcast)).to_array(),
+            mist_height_m: light.mist_height_m,
+            night_rgb: night.to_array(),
+            mist_ground_m: decoded.heights().range_m()[0],
+            cloud_sun_rgb: cloud_sun.to_array(),
+            _pad: [0; 4],
+            sun_heading: [sin, -cos],
+            near_texel_m: texel_m(0),
+            near_depth_m: cascades::depth_m(0),
+            far_texel_m: texel_m(1),
+            far_depth_m: cascades::depth_m(1),
+            _pad_2: [0; 8],
+            lit_centre_m: lit_centre_m.to_array(),
+            lit_radius_m,
+            lamps: std::array::from_fn(|i| lamps.get(i).copied().unwrap_or_else(Lamp::zeroed)),
+        }
+    }
+}
+
+/// Leaf area index of blades of mean height at full density.
+fn leaf_area(plants: &Plants) -> f32 {
+    /// Area of a blade relative to its height times the width of its root.
+    const LEAF_FRACTION: f32 = 0.65;
+    let per_m2 = blades_per_grid(plants.plants_per_side) / plants.grid_m.powi(2);
+    per_m2 * LEAF_FRACTION * plants.height_m * plants.width_m
+}
+
+/// Overcast fraction of the sky, 0..1.
+fn overcast(decoded: &DecodedScene) -> f32 {
+    (decoded.scene().rain.rate_mm_per_h / OVERCAST_MM_PER_H).min(1.0)
+}
+
+/// Interaction spheres of the objects (Zhang, section 6.2), nearest first.
+fn spheres(objects: &Objects, poses: &[ObjectPose], eye: Vec3) -> Vec<Sphere> {
+    let mut spheres: Vec<(f32, Sphere)> = poses
+        .iter()
+        .filter_map(|pose| {
+            let [x, y, z] = pose.position_m;
+            let [above_m, radius_m] = objects.interaction_sphere_m(pose.kind)?;
+            Some((Vec3::from(pose.position_m).distance(eye), Sphere { centre_m: [x, y + above_m, z], radius_m }))
+        })
+        .collect();
+    spheres.sort_by(|a, b| a.0.total_cmp(&b.0));
+    spheres.truncate(SPHERE_LIMIT);
+    spheres.into_iter().map(|(_, sphere)| sphere).collect()
+}

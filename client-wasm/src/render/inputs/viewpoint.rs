@@ -1,0 +1,15 @@
+//! Viewpoint of a frame.
+
+use crate::render::inputs::frustum::Frustum;
+use crate::render::options::detail::Detail;
+use crate::render::options::render_options::RenderOptions;
+use glam::Vec3;
+
+/// Camera position, frustum and options that the drawn plants depend on.
+pub(crate) struct Viewpoint<'a> {
+    pub(crate) eye_m: Vec3,
+    pub(crate) frustum: &'a Frustum,
+    pub(crate) detail: &'a Detail,
+    pub(crate) options: RenderOptions,
+    pub(crate) dt_secs: f32,
+}

@@ -1,0 +1,77 @@
+//! Culling of single plants: compute passes list those in view, so that only these are bent.
+
+use super::far_grids::FarGrids;
+use super::layout::{CHUNK, storage_compute};
+use crate::render::gpu::device::Gpu;
+use crate::render::gpu::pipeline::{PassFactory, storage_rw, uniform};
+use wgpu::BufferUsages;
+
+/// Counters before the lists.
+const COUNTS: u64 = 2;
+
+pub(super) struct PlantCulling {
+    ground: wgpu::ComputePipeline,
+    near: wgpu::ComputePipeline,
+    far: wgpu::ComputePipeline,
+    group: wgpu::BindGroup,
+    standing: wgpu::Buffer,
+    workgroups: wgpu::Buffer,
+}
+
+impl PlantCulling {
+    /// Passes for `places` plants per near grid.
+    pub(super) fn new(
+        factory: &PassFactory<'_>,
+        shader: &wgpu::ShaderModule,
+        plants: &wgpu::Buffer,
+        grids: &FarGrids,
+        places: u32,
+    ) -> Self {
+        let gpu = factory.gpu;
+        let most = u64::from(places) * 9 + u64::from(grids.capacity) * u64::from(CHUNK);
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
+        let standing = gpu.empty_buffer("standing plants", 4 * (COUNTS + most), usage | BufferUsages::COPY_SRC);
+        let workgroups = gpu.empty_buffer("workgroups of plants", 24, usage | BufferUsages::INDIRECT);
+        let grounds = gpu.empty_buffer("ground below near plants", 4 * 9 * u64::from(places), BufferUsages::STORAGE);
+        let layout = factory.layout("sift", &[uniform(0), storage_compute(4), storage_rw(8), storage_rw(9), storage_rw(10)]);
+        let entries = [(0, plants), (4, grids.chunks()), (8, &standing), (9, &workgroups), (10, &grounds)]
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("sift"), layout: &layout, entries: &entries });
+        let compute = |entry| factory.compute(entry, shader, entry, &layout);
+        Self { ground: compute("find_ground"), near: compute("sift_near"), far: compute("sift_far"), group, standing, workgroups }
+    }
+
+    /// Numbers of the near and of the far plants in view, followed by both lists.
+    pub(super) fn standing(&self) -> &wgpu::Buffer {
+        &self.standing
+    }
+
+    /// Workgroups of the near and of the far plants, for indirect dispatches.
+    pub(super) fn workgroups(&self) -> &wgpu::Buffer {
+        &self.workgroups
+    }
+
+    /// Clears the lists.
+    pub(super) fn begin_batch(&self, gpu: &Gpu) {
+        gpu.queue.write_buffer(&self.standing, 0, &[0; 4 * COUNTS as usize]);
+        gpu.queue.write_buffer(&self.workgroups, 0, bytemuck::bytes_of(&[0_u32, 1, 1, 0, 1, 1]));
+    }
+
+    /// Computes the ground height below all plants of the near grids that moved in in this frame, with `workgroups` per grid.
+    pub(super) fn find_ground(&self, pass: &mut wgpu::ComputePass<'_>, workgroups: u32) {
+        pass.set_bind_group(1, &self.group, &[]);
+        pass.set_pipeline(&self.ground);
+        pass.dispatch_workgroups(workgroups, 9, 1);
+    }
+
+    /// Lists the plants in view of the nine near grids, and of the chunks of far ones, whose number is read from a buffer.
+    pub(super) fn run(&self, pass: &mut wgpu::ComputePass<'_>, near_workgroups: u32, chunks: &wgpu::Buffer) {
+        pass.set_bind_group(1, &self.group, &[]);
+        if near_workgroups > 0 {
+            pass.set_pipeline(&self.near);
+            pass.dispatch_workgroups(near_workgroups, 9, 1);
+        }
+        pass.set_pipeline(&self.far);
+        pass.dispatch_workgroups_indirect(chunks, 0);
+    }
+}

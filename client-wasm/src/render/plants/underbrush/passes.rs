@@ -1,0 +1,233 @@
+//! Buffers, pipelines and bind groups of the underbrush.
+
+use super::layout::{BLOCK, CHUNK, FELT_BYTES, ROW_BYTES, STAND_BYTES, TALLY_BYTES};
+use super::lists::Lists;
+use super::tiles::PlantInstance;
+use crate::render::gpu::device::Gpu;
+use crate::render::gpu::pipeline::{
+    DrawDescriptor, LampVariants, PassFactory, SphereVariants, bind_as, sampled, storage, storage_rw, uniform,
+};
+use crate::render::gpu::shaders;
+use crate::render::gpu::uniforms::DrawnList;
+use crate::render::gpu::uniforms::UnderbrushFrame;
+use crate::render::plants::force_field::CameraForceField;
+use prairie_core::plant::flora::Flora;
+use wgpu::BufferUsages;
+
+pub(super) struct UnderbrushBuffers {
+    pub(super) frame: wgpu::Buffer,
+    plants: wgpu::Buffer,
+    /// Ranges of plants that may be visible, one per workgroup.
+    pub(super) chunks: wgpu::Buffer,
+    /// Number of visible plants, and their list; and their workgroups, for an indirect dispatch.
+    pub(super) sifted: wgpu::Buffer,
+    pub(super) sifted_groups: wgpu::Buffer,
+    /// Forces on the plants.
+    pub(super) felt: wgpu::Buffer,
+    /// Postures of the visible plants.
+    pub(super) stands: wgpu::Buffer,
+    /// Visible plants by list.
+    pub(super) listed: wgpu::Buffer,
+    /// Direction in which the plant of each site fell.
+    pub(super) broken: wgpu::Buffer,
+    pub(super) tally: wgpu::Buffer,
+    /// Plant of each block of rows.
+    pub(super) owners: wgpu::Buffer,
+    /// Workgroups of the rows, for an indirect dispatch.
+    ribbon_groups: wgpu::Buffer,
+    /// Left and right border of each row.
+    pub(super) borders: wgpu::Buffer,
+}
+
+impl UnderbrushBuffers {
+    /// Buffers with this capacity in plants and in blocks of rows.
+    pub(super) fn new(
+        gpu: &Gpu,
+        grown: &[PlantInstance],
+        flora: &Flora,
+        lists: &Lists,
+        [stand_room, block_room]: [u64; 2],
+        chunk_limit: u64,
+    ) -> Self {
+        let count = grown.len() as u64;
+        let storage = BufferUsages::STORAGE;
+        let written = storage | BufferUsages::COPY_DST;
+        let read_back = storage | BufferUsages::COPY_SRC;
+        let uniforms = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
+        let sites = flora.grown().sites.total() as u64;
+        // A multiple of the blocks per workgroup.
+        let owner_room = block_room.next_multiple_of(u64::from(CHUNK / BLOCK));
+        Self {
+            frame: gpu.empty_buffer("underbrush frame", size_of::<UnderbrushFrame>() as u64, uniforms),
+            plants: gpu.buffer("underbrush", bytemuck::cast_slice(grown), storage),
+            chunks: gpu.empty_buffer("underbrush chunks", chunk_limit * 8, written),
+            sifted: gpu.empty_buffer("sifted underbrush", (1 + count) * 4, written),
+            sifted_groups: gpu.empty_buffer("sifted groups", 12, written | BufferUsages::INDIRECT),
+            felt: gpu.empty_buffer("felt", count * FELT_BYTES, read_back),
+            stands: gpu.empty_buffer("underbrush stands", stand_room * STAND_BYTES, read_back),
+            listed: gpu.empty_buffer("listed underbrush", u64::from(lists.places) * 4, read_back),
+            broken: gpu.empty_buffer("broken plants", sites.next_multiple_of(4), written),
+            tally: gpu.empty_buffer("underbrush tally", TALLY_BYTES as u64, written | BufferUsages::COPY_SRC),
+            owners: gpu.empty_buffer("owners of rows", owner_room * 4, read_back),
+            ribbon_groups: gpu.empty_buffer("ribbon groups", 12, storage | BufferUsages::INDIRECT),
+            borders: gpu.empty_buffer("borders of rows", block_room * u64::from(BLOCK) * ROW_BYTES, read_back),
+        }
+    }
+}
+
+/// A draw list: a species at a level of detail.
+pub(super) struct SpeciesDrawList {
+    pub(super) number: usize,
+    pub(super) indices: wgpu::Buffer,
+    pub(super) group: wgpu::BindGroup,
+}
+
+/// A compute pass with its bind group.
+struct Step<P> {
+    pipeline: P,
+    group: wgpu::BindGroup,
+}
+
+pub(super) struct Passes {
+    sift: Step<wgpu::ComputePipeline>,
+    stand: Step<LampVariants<wgpu::ComputePipeline>>,
+    finish: Step<wgpu::ComputePipeline>,
+    ribbons: Step<SphereVariants<wgpu::ComputePipeline>>,
+    pub(super) drawing: wgpu::RenderPipeline,
+    list_layout: wgpu::BindGroupLayout,
+}
+
+impl Passes {
+    pub(super) fn new(
+        factory: &PassFactory<'_>,
+        buffers: &UnderbrushBuffers,
+        lists: &Lists,
+        force_field: &CameraForceField,
+        rains: bool,
+    ) -> Self {
+        let module = factory.shader("underbrush", shaders::UNDERBRUSH, &[]);
+        let step = |entry, entries: &[_], resources: &[_]| {
+            let layout = factory.layout(entry, entries);
+            Step { pipeline: factory.compute(entry, &module, entry, &layout), group: bind_as(factory.gpu, entry, &layout, resources) }
+        };
+        let UnderbrushBuffers { frame, plants, chunks, sifted, sifted_groups, tally, owners, ribbon_groups, .. } = buffers;
+        let list_layout = factory.layout("underbrush list", &[storage(11), storage(12), uniform(15), storage(24), uniform(25)]);
+        Self {
+            sift: step(
+                "sift",
+                &[uniform(0), read(1), read(2), storage_rw(17), storage_rw(18)],
+                &[(0, frame), (1, plants), (2, chunks), (17, sifted), (18, sifted_groups)],
+            ),
+            finish: step(
+                "finish",
+                &[uniform(0), storage_rw(5), storage_rw(8), uniform(15), storage_rw(20), storage_rw(22)],
+                &[(0, frame), (5, tally), (8, &lists.draws), (15, &lists.settings), (20, owners), (22, ribbon_groups)],
+            ),
+            stand: stand_step(factory, buffers, lists, force_field),
+            ribbons: ribbon_step(factory, buffers, lists, rains),
+            drawing: factory.draw(&module, Some(&list_layout), &DrawDescriptor { label: "underbrush", ..DrawDescriptor::default() }),
+            list_layout,
+        }
+    }
+
+    /// The draw lists of all species and levels of detail that have plants.
+    pub(super) fn draw_lists(&self, gpu: &Gpu, buffers: &UnderbrushBuffers, lists: &Lists) -> Vec<SpeciesDrawList> {
+        let list = |(number, indices): &(usize, wgpu::Buffer)| {
+            let drawn = gpu.buffer(
+                "underbrush list",
+                bytemuck::bytes_of(&DrawnList { number: *number as u32, _pad: [0; 12] }),
+                BufferUsages::UNIFORM,
+            );
+            let UnderbrushBuffers { listed, tally, borders, .. } = buffers;
+            let resources = [(11, listed), (12, tally), (15, &lists.settings), (24, borders), (25, &drawn)];
+            SpeciesDrawList {
+                number: *number,
+                indices: indices.clone(),
+                group: bind_as(gpu, "underbrush list", &self.list_layout, &resources),
+            }
+        };
+        lists.indices.iter().map(list).collect()
+    }
+
+    /// Culls the plants of `chunk_count` chunks and bends the visible ones.
+    pub(super) fn bend(
+        &self,
+        pass: &mut wgpu::ComputePass<'_>,
+        buffers: &UnderbrushBuffers,
+        chunk_count: u32,
+        has_spheres: bool,
+        has_lamps: bool,
+    ) {
+        pass.set_pipeline(&self.sift.pipeline);
+        pass.set_bind_group(1, &self.sift.group, &[]);
+        pass.dispatch_workgroups(chunk_count, 1, 1);
+        pass.set_pipeline(self.stand.pipeline.of(has_lamps));
+        pass.set_bind_group(1, &self.stand.group, &[]);
+        pass.dispatch_workgroups_indirect(&buffers.sifted_groups, 0);
+        pass.set_pipeline(&self.finish.pipeline);
+        pass.set_bind_group(1, &self.finish.group, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
+        pass.set_pipeline(self.ribbons.pipeline.of(has_spheres, has_lamps));
+        pass.set_bind_group(1, &self.ribbons.group, &[]);
+        pass.dispatch_workgroups_indirect(&buffers.ribbon_groups, 0);
+    }
+}
+
+/// The pass that computes forces and postures, and lists the plants.
+fn stand_step(
+    factory: &PassFactory<'_>,
+    buffers: &UnderbrushBuffers,
+    lists: &Lists,
+    force_field: &CameraForceField,
+) -> Step<LampVariants<wgpu::ComputePipeline>> {
+    let UnderbrushBuffers { frame, plants, sifted, felt, stands, listed, broken, tally, owners, .. } = buffers;
+    let rest = [read(1), storage_rw(3), storage_rw(4), storage_rw(5), storage_rw(6), read(7), read(19), storage_rw(20)];
+    let entries: Vec<_> = rest.into_iter().chain([uniform(0), volumes(9), uniform(15)]).collect();
+    let layout = factory.layout("stand", &entries);
+    let resources = [
+        (1, plants),
+        (3, felt),
+        (4, stands),
+        (5, tally),
+        (6, listed),
+        (7, broken),
+        (19, sifted),
+        (20, owners),
+        (0, frame),
+        (15, &lists.settings),
+    ];
+    let resources = resources.map(|(binding, buffer)| (binding, buffer.as_entire_binding()));
+    let forces = (9, wgpu::BindingResource::TextureView(&force_field.view));
+    let entries: Vec<_> =
+        resources.into_iter().chain([forces]).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+    let descriptor = wgpu::BindGroupDescriptor { label: Some("stand"), layout: &layout, entries: &entries };
+    let group = factory.gpu.device.create_bind_group(&descriptor);
+    let shader = |lamps| factory.shader("underbrush", shaders::UNDERBRUSH, &[lamps]);
+    Step { pipeline: LampVariants::new(|lamps| factory.compute("stand", &shader(lamps), "stand", &layout)), group }
+}
+
+/// The pass that bends and lights the rows of the ribbons.
+fn ribbon_step(
+    factory: &PassFactory<'_>,
+    buffers: &UnderbrushBuffers,
+    lists: &Lists,
+    rains: bool,
+) -> Step<SphereVariants<wgpu::ComputePipeline>> {
+    let layout = factory.layout("ribbons", &[read(10), read(13), read(14), uniform(15), read(16), read(21), storage_rw(23)]);
+    let pipeline = SphereVariants::new(|[lamps, spheres]| {
+        let module = factory.shader("underbrush", shaders::UNDERBRUSH, &[lamps, spheres, ("trembles", rains)]);
+        factory.compute("ribbons", &module, "ribbons", &layout)
+    });
+    let Lists { steps, rows, settings, limbs, .. } = lists;
+    let UnderbrushBuffers { stands, owners, borders, .. } = buffers;
+    let resources = [(10, stands), (13, steps), (14, rows), (15, settings), (16, limbs), (21, owners), (23, borders)];
+    Step { pipeline, group: bind_as(factory.gpu, "ribbons", &layout, &resources) }
+}
+
+fn read(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::COMPUTE, ..storage(binding) }
+}
+
+fn volumes(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    sampled(binding, wgpu::TextureSampleType::Float { filterable: true }, wgpu::TextureViewDimension::D3)
+}

@@ -1,0 +1,69 @@
+//! Underbrush plants by squares of the land, which are culled as one.
+
+use super::bake::VARIANTS;
+use crate::state::DecodedScene;
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use prairie_core::plant::flora::{self, Flora};
+
+/// Side of the squares that are culled as one (m).
+const TILE_M: f32 = 8.0;
+use crate::render::gpu::constants::FEWEST as MIN_FRACTION;
+
+/// A plant of `underbrush.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct PlantInstance {
+    pub(crate) at_m: [f32; 2],
+    size: f32,
+    pub(super) make: u32,
+    heading_rad: f32,
+    pub(crate) site: u32,
+}
+
+/// Plants of a square of the land.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlantTile {
+    pub(super) row: i32,
+    pub(super) low_m: Vec3,
+    pub(super) high_m: Vec3,
+    pub(super) first: u32,
+    pub(super) count: u32,
+}
+
+/// Number of a square along an axis.
+pub(super) fn tile_number(m: f32) -> i32 {
+    (m / TILE_M).floor() as i32
+}
+
+/// All plants sorted by square, and the squares sorted by row.
+pub(crate) fn tiles(decoded: &DecodedScene, flora: &Flora) -> (Vec<PlantInstance>, Vec<PlantTile>) {
+    let reaches_m: Vec<f32> = flora.species().iter().map(flora::reach_m).collect();
+    let mut by_tile: Vec<([i32; 2], PlantInstance, f32)> = flora
+        .grown()
+        .plants()
+        .iter()
+        .map(|plant| {
+            let instance = flora.instance(plant);
+            let make = instance.species as u32 | (instance.number % VARIANTS) << 8;
+            let grown =
+                PlantInstance { at_m: instance.at_m, size: instance.size, make, heading_rad: instance.heading_rad, site: plant.site };
+            (instance.at_m.map(tile_number), grown, reaches_m[instance.species] * instance.size * MIN_FRACTION.powf(-0.3))
+        })
+        .collect();
+    by_tile.sort_by_key(|&([x, z], ..)| [z, x]);
+    let mut tiles = Vec::new();
+    let mut first = 0;
+    for own in by_tile.chunk_by(|a, b| a.0 == b.0) {
+        let (mut low_m, mut high_m) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for (_, plant, reach_m) in own {
+            let [x, z] = plant.at_m;
+            let ground_m = decoded.heights().height_m(x, z);
+            low_m = low_m.min(Vec3::new(x - reach_m, ground_m - 0.1, z - reach_m));
+            high_m = high_m.max(Vec3::new(x + reach_m, ground_m + reach_m, z + reach_m));
+        }
+        tiles.push(PlantTile { row: own[0].0[1], low_m, high_m, first, count: own.len() as u32 });
+        first += own.len() as u32;
+    }
+    (by_tile.into_iter().map(|(_, plant, _)| plant).collect(), tiles)
+}

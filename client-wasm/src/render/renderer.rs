@@ -1,0 +1,138 @@
+//! The renderer: its state between frames, and its settings.
+
+use crate::render::gpu::device::Gpu;
+use crate::render::gpu::error::GpuError;
+use crate::render::gpu::pipeline::PassFactory;
+use crate::render::gpu::pipeline_statistics::StatisticsQueries;
+use crate::render::gpu::timestamps::TimestampQueries;
+use crate::render::inputs::daylight::Daylight;
+use crate::render::inputs::frame_bindings::FrameBindings;
+use crate::render::land_and_sky::sky::Sky;
+use crate::render::land_and_sky::tone::ToneMapping;
+use crate::render::options::detail::Detail;
+use crate::render::options::quality::Quality;
+use crate::render::options::render_options::RenderOptions;
+use crate::render::plants::weighted_oit::WeightedOit;
+use crate::render::scene_resources::SceneResources;
+use crate::render::targets::Targets;
+use crate::state::Mirror;
+
+/// Draws a [`Mirror`] as a [`Camera`](crate::camera::Camera) sees it.
+pub struct Renderer {
+    pub(super) gpu: Gpu,
+    pub(super) quality: Quality,
+    pub(super) options: RenderOptions,
+    pub(super) detail: Detail,
+    pub(super) size_px: [u32; 2],
+    pub(super) bindings: FrameBindings,
+    pub(super) daylight: Daylight,
+    pub(super) targets: Targets,
+    pub(super) tone: ToneMapping,
+    pub(super) sky: Sky,
+    /// Created when first needed.
+    pub(super) weighted: Option<WeightedOit>,
+    /// Times the passes, if set.
+    pub(super) timestamps: Option<TimestampQueries>,
+    /// Counts what the passes process, if set.
+    pub(super) statistics: Option<StatisticsQueries>,
+    pub(super) scene: Option<Box<SceneResources>>,
+}
+
+impl Renderer {
+    /// A renderer for targets of `format` and `size_px` (at least 1 × 1).
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, size_px: [u32; 2], quality: Quality) -> Self {
+        let size_px = size_px.map(|side| side.max(1));
+        let daylight = Daylight::new(gpu);
+        let bindings = FrameBindings::new(gpu, quality, &daylight);
+        let samples = quality.samples(gpu.is_software);
+        let factory = PassFactory { gpu, frame_layout: &bindings.layout, samples, has_kinds: true };
+        let targets = Targets::new(gpu, size_px, quality);
+        Self {
+            tone: ToneMapping::new(&factory, format, &targets.color, targets.supersampling),
+            sky: Sky::new(&factory),
+            gpu: gpu.clone(),
+            quality,
+            options: RenderOptions::default(),
+            detail: quality.detail(),
+            size_px,
+            targets,
+            bindings,
+            daylight,
+            weighted: None,
+            timestamps: None,
+            statistics: None,
+            scene: None,
+        }
+    }
+
+    /// A renderer with the mirror's scene loaded, and a future that resolves once the device has reported whether all of it fits.
+    /// After an error the renderer draws garbage; a [lower](Quality::lower) quality may fit.
+    ///
+    /// # Errors
+    /// The future resolves to [`GpuError::DoesNotFit`].
+    pub fn with_scene(
+        gpu: &Gpu,
+        format: wgpu::TextureFormat,
+        size_px: [u32; 2],
+        quality: Quality,
+        mirror: &Mirror,
+    ) -> (Self, impl Future<Output = Result<(), GpuError>> + use<>) {
+        let memory = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let validity = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let mut renderer = Self::new(gpu, format, size_px, quality);
+        renderer.load_scene(mirror);
+        let found = [validity.pop(), memory.pop()];
+        let verdict = async move {
+            for error in found {
+                if let Some(error) = error.await {
+                    return Err(GpuError::does_not_fit(quality.name(), &error));
+                }
+            }
+            Ok(())
+        };
+        (renderer, verdict)
+    }
+
+    /// Changes the size of the target.
+    pub fn resize(&mut self, size_px: [u32; 2]) {
+        self.size_px = size_px.map(|side| side.max(1));
+        self.targets = Targets::new(&self.gpu, self.size_px, self.quality);
+        self.tone.set_picture(&self.gpu, &self.targets.color, self.targets.supersampling);
+        self.weighted = None;
+    }
+
+    /// Size of the target (px).
+    pub fn size_px(&self) -> [u32; 2] {
+        self.size_px
+    }
+
+    /// Sets the options of the following frames.
+    pub fn set_options(&mut self, options: RenderOptions) {
+        self.options = options;
+    }
+
+    /// Current render options.
+    pub fn options(&self) -> RenderOptions {
+        self.options
+    }
+
+    /// Sets the level of detail of plants from 0 (low quality) to 3 (ultra), limited to this renderer's own quality.
+    pub fn set_level(&mut self, level: f32) {
+        self.detail = Quality::detail_at(level.min(self.quality.level()));
+    }
+
+    /// Quality that this renderer was created for.
+    pub fn quality(&self) -> Quality {
+        self.quality
+    }
+
+    /// Loads the mirror's scene. [`draw`](Self::draw) does so by itself when the scene has changed.
+    pub fn load_scene(&mut self, mirror: &Mirror) {
+        let samples = self.quality.samples(self.gpu.is_software);
+        self.scene = mirror.decoded_scene().map(|decoded| {
+            let has_kinds = !decoded.scene().species.is_empty();
+            let factory = PassFactory { gpu: &self.gpu, frame_layout: &self.bindings.layout, samples, has_kinds };
+            Box::new(SceneResources::new(&factory, &self.bindings, self.quality, mirror.scene_number(), decoded))
+        });
+    }
+}

@@ -1,0 +1,11 @@
+//! Vehicles, trees and stones, and their shadows.
+
+pub(crate) mod bounding_sphere;
+pub(crate) mod leaf_texture;
+pub(crate) mod mesh;
+pub(crate) mod model_meshes;
+pub(crate) mod objects;
+pub(crate) mod shadow_cache;
+pub(crate) mod spatial_index;
+pub(crate) mod trees_and_stones;
+pub(crate) mod vehicles;

@@ -1,0 +1,150 @@
+//! Meshes of all vehicles, trees and stones in one vertex and one index buffer.
+
+use crate::render::gpu::device::Gpu;
+use crate::render::solids::bounding_sphere::BoundingSphere;
+use crate::render::solids::mesh::{Paint, Solid};
+use crate::render::solids::trees_and_stones::{self, PlacedModel, STONE_SHAPES, TREE_SHAPES, TreeDetail};
+use crate::render::solids::vehicles::vehicle_model;
+use crate::state::DecodedScene;
+use glam::{Vec2, Vec3};
+use prairie_core::scene::VehicleKind;
+use prairie_core::wire::Mesh;
+use std::ops::Range;
+use wgpu::BufferUsages;
+
+/// Position of a mesh in the shared buffers.
+struct MeshRange {
+    indices: Range<u32>,
+    base_vertex: i32,
+}
+
+/// The meshes: parts of vehicles by kind, then fine, coarse and distant trees, then stones.
+pub(crate) struct ModelMeshes {
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    ranges: Vec<MeshRange>,
+    /// First mesh of each kind of vehicle.
+    first_part: [usize; VehicleKind::ALL.len()],
+    first_tree: usize,
+    /// Bounding spheres of the tree shapes, then of the stone shapes.
+    bounds: Vec<BoundingSphere>,
+}
+
+impl ModelMeshes {
+    pub(crate) fn new(gpu: &Gpu, decoded: &DecodedScene) -> Self {
+        let mut solids: Vec<Solid> = Vec::new();
+        let first_part = VehicleKind::ALL.map(|kind| {
+            let first = solids.len();
+            solids.extend(vehicle_parts(decoded, kind));
+            first
+        });
+        let first_tree = solids.len();
+        let details = TreeDetail::ALL.into_iter();
+        solids.extend(details.flat_map(|detail| (0..TREE_SHAPES).map(move |shape| trees_and_stones::tree(shape, detail))));
+        solids.extend((0..STONE_SHAPES).map(trees_and_stones::stone));
+        let (mut vertices, mut indices, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
+        for solid in &solids {
+            let first = indices.len() as u32;
+            ranges.push(MeshRange { base_vertex: vertices.len() as i32, indices: first..first + solid.indices.len() as u32 });
+            vertices.extend_from_slice(&solid.vertices);
+            indices.extend_from_slice(&solid.indices);
+        }
+        let mut meshes = Self {
+            vertices: gpu.buffer("meshes", bytemuck::cast_slice(&vertices), BufferUsages::VERTEX),
+            indices: gpu.buffer("mesh indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
+            ranges,
+            first_part,
+            first_tree,
+            bounds: Vec::new(),
+        };
+        let of_tree = |shape| TreeDetail::ALL.map(|detail| &solids[meshes.tree(shape, detail)]);
+        let trees = (0..TREE_SHAPES).map(|shape| BoundingSphere::around_meshes(of_tree(shape).into_iter()));
+        let stones = (0..STONE_SHAPES).map(|shape| BoundingSphere::around_meshes([&solids[meshes.stone(shape)]].into_iter()));
+        meshes.bounds = trees.chain(stones).collect();
+        meshes
+    }
+
+    /// Bounding sphere of a placed model, swaying included.
+    pub(crate) fn bounds_of(&self, placed: &PlacedModel) -> BoundingSphere {
+        let first = if placed.is_tree { 0 } else { TREE_SHAPES };
+        self.bounds[(first + placed.shape) as usize].placed(placed)
+    }
+
+    /// Mesh of a part of a vehicle.
+    pub(crate) fn part(&self, kind: VehicleKind, part: usize) -> usize {
+        self.first_part[kind as usize] + part
+    }
+
+    /// Mesh of a tree shape.
+    pub(crate) fn tree(&self, shape: u32, detail: TreeDetail) -> usize {
+        self.first_tree + (shape + detail as u32 * TREE_SHAPES) as usize
+    }
+
+    /// Mesh of a stone shape.
+    pub(crate) fn stone(&self, shape: u32) -> usize {
+        self.first_tree + TreeDetail::ALL.len() * TREE_SHAPES as usize + shape as usize
+    }
+
+    /// Number of meshes.
+    pub(crate) fn count(&self) -> usize {
+        self.ranges.len()
+    }
+
+    /// Triangles of a mesh.
+    pub(crate) fn triangles(&self, mesh: usize) -> u64 {
+        self.ranges[mesh].indices.len() as u64 / 3
+    }
+
+    /// Draws the listed meshes, each with its instances.
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, list: &[(usize, Range<u32>)]) {
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        for (mesh, instances) in list {
+            let range = &self.ranges[*mesh];
+            pass.draw_indexed(range.indices.clone(), range.base_vertex, instances.clone());
+        }
+    }
+}
+
+/// The built-in parts of a vehicle. A custom model of the scene replaces the first; the others are then empty.
+fn vehicle_parts(decoded: &DecodedScene, kind: VehicleKind) -> Vec<Solid> {
+    let mut parts = (vehicle_model(kind).parts)(&decoded.scene().objects);
+    if let Some((_, mesh)) = decoded.models().iter().find(|(own, _)| *own == kind) {
+        parts.fill(Solid::default());
+        parts[0] = custom_model(mesh);
+    }
+    parts
+}
+
+fn custom_model(mesh: &Mesh) -> Solid {
+    let mut solid = Solid::default();
+    for ((position, normal), rgb) in mesh.positions_m.iter().zip(&mesh.normals).zip(&mesh.rgb) {
+        let [r, g, b] = rgb.map(|v| f32::from(v) / 255.0);
+        solid.vertex(Vec3::from(*position), Vec3::from(*normal), Paint::new(r, g, b, 0.15), Vec2::ZERO);
+    }
+    solid.indices.clone_from(&mesh.indices);
+    solid
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_vehicle_has_a_body_and_places_only_parts_that_it_has() {
+        use crate::render::solids::vehicles::Motion;
+        use prairie_core::scene::Objects;
+        use prairie_core::wire::ObjectPose;
+
+        for kind in VehicleKind::ALL {
+            let model = vehicle_model(kind);
+            let parts = (model.parts)(&Objects::default());
+            assert!(parts.iter().all(|part| !part.indices.is_empty()), "{kind:?}");
+            let (position_m, rotation) = ([0.0; 3], [0.0, 0.0, 0.0, 1.0]);
+            let pose = ObjectPose { id: 1, kind, position_m, rotation, velocity_m_per_s: [0.0; 3], part_rad: 0.3 };
+            let placed = (model.place)(&pose, Motion { rolled_m: 1.0, time_secs: 2.0 });
+            assert!((0..parts.len()).all(|part| placed.iter().any(|(number, _)| *number == part)), "{kind:?}");
+            assert!(placed.iter().all(|(number, _)| *number < parts.len()), "{kind:?}");
+        }
+    }
+}

@@ -1,0 +1,266 @@
+//! Draws vehicles, trees and stones, in the picture and in the shadow map.
+
+use crate::render::gpu::device::Gpu;
+use crate::render::gpu::pipeline::{DrawDescriptor, LampVariants, PassFactory, bind, bind_as, storage, storage_rw, texture};
+use crate::render::gpu::shaders;
+use crate::render::inputs::frustum::CascadeVolume;
+use crate::render::inputs::viewpoint::Viewpoint;
+use crate::render::options::quality::Quality;
+use crate::render::solids::bounding_sphere::BoundingSphere;
+use crate::render::solids::leaf_texture::{LEAF_PX, leaves};
+use crate::render::solids::mesh::{VERTEX_ATTRIBUTES, Vertex};
+use crate::render::solids::model_meshes::ModelMeshes;
+use crate::render::solids::spatial_index::SpatialIndex;
+use crate::render::solids::trees_and_stones::{PlacedModel, TreeDetail};
+use crate::render::solids::vehicles::{Motion, vehicle_model};
+use crate::state::{DecodedScene, OBJECT_LIMIT};
+use bytemuck::{Pod, Zeroable};
+use glam::{Affine3A, Mat4, Quat, Vec3};
+use prairie_core::wire::{ObjectId, ObjectPose};
+use std::collections::HashMap;
+use std::ops::Range;
+use wgpu::BufferUsages;
+
+/// Maximum number of instances in a frame.
+const INSTANCE_LIMIT: usize = 12_288;
+/// Instances reserved for each vehicle: six parts, in the picture and in two cascades.
+const VEHICLE_INSTANCES: usize = 18;
+/// Bytes of a tree's sway in `objects.wgsl`.
+const SWAY_BYTES: usize = 16;
+/// Height on screen above which trees are fine, and below which they are distant (px), at high quality.
+const FINE_TREE_PX: f32 = 130.0;
+const DISTANT_TREE_PX: f32 = 26.0;
+/// Detail of the trees in each shadow cascade.
+const SHADOW_DETAIL: [TreeDetail; 2] = [TreeDetail::Coarse, TreeDetail::Distant];
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Instance {
+    world_from_model: [f32; 16],
+    tint: [f32; 4],
+}
+
+/// Instances by mesh: in the picture, and in each cascade.
+struct InstanceLists {
+    picture: Vec<Vec<Instance>>,
+    cascades: [Vec<Vec<Instance>>; 2],
+}
+
+/// Meshes to draw, each with its range of instances.
+type DrawList = Vec<(usize, Range<u32>)>;
+
+struct Pipelines {
+    /// Pipeline for vehicles, which may be glossy.
+    glossy: wgpu::RenderPipeline,
+    matte: wgpu::RenderPipeline,
+    /// Pipeline for coarse and distant trees; lights them [per vertex](Quality::lights_trees_at_vertices) where the quality does so.
+    coarse_trees: wgpu::RenderPipeline,
+}
+
+pub(crate) struct Objects {
+    pipelines: LampVariants<Pipelines>,
+    shadow_pipelines: [wgpu::RenderPipeline; 2],
+    group: wgpu::BindGroup,
+    sway: wgpu::ComputePipeline,
+    sway_group: wgpu::BindGroup,
+    instances: wgpu::Buffer,
+    /// Instances of the newest frame.
+    count: u32,
+    meshes: ModelMeshes,
+    index: SpatialIndex,
+    /// Distance that each vehicle has travelled forward (m).
+    rolled_m: HashMap<ObjectId, f32>,
+    picture_list: DrawList,
+    cascade_lists: [DrawList; 2],
+}
+
+impl Objects {
+    pub(crate) fn new(factory: &PassFactory<'_>, quality: Quality, decoded: &DecodedScene, placed: Vec<PlacedModel>) -> Self {
+        let gpu = factory.gpu;
+        let meshes = ModelMeshes::new(gpu, decoded);
+        let index = SpatialIndex::new(placed.into_iter().map(|placed| (placed, meshes.bounds_of(&placed))).collect());
+        let module = factory.shader("objects", shaders::OBJECTS, &[]);
+        let layout = factory.layout("objects", &[storage(0), texture(1), storage(2)]);
+        let size = (INSTANCE_LIMIT * size_of::<Instance>()) as u64;
+        let instances = gpu.empty_buffer("instances", size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
+        let leaves = gpu.texture("leaves", wgpu::TextureFormat::Rgba8Unorm, [LEAF_PX; 2], &leaves());
+        let leaves = leaves.create_view(&Default::default());
+        let sways = gpu.empty_buffer("sways of objects", (INSTANCE_LIMIT * SWAY_BYTES) as u64, BufferUsages::STORAGE);
+        let resources = [instances.as_entire_binding(), wgpu::BindingResource::TextureView(&leaves), sways.as_entire_binding()];
+        let sway_layout = factory.layout("blow", &[storage(0), storage_rw(3)]);
+        Self {
+            pipelines: pipelines(factory, quality, &layout),
+            shadow_pipelines: shadow_pipelines(factory, &module, &layout),
+            group: bind(gpu, "objects", &layout, &resources),
+            sway: factory.compute("blow", &module, "blow", &sway_layout),
+            sway_group: bind_as(gpu, "blow", &sway_layout, &[(0, &instances), (3, &sways)]),
+            count: 0,
+            instances,
+            meshes,
+            index,
+            rolled_m: HashMap::new(),
+            picture_list: Vec::new(),
+            cascade_lists: Default::default(),
+        }
+    }
+
+    /// Lists the models in view, and the shadow casters of the cascades that are redrawn.
+    pub(crate) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        poses: &[ObjectPose],
+        from: &Viewpoint<'_>,
+        cascades: [Option<CascadeVolume>; 2],
+        time_secs: f32,
+        pixel_rad: f32,
+    ) {
+        let by_mesh = vec![Vec::new(); self.meshes.count()];
+        let mut lists = InstanceLists { cascades: [by_mesh.clone(), by_mesh.clone()], picture: by_mesh };
+        self.list_vehicles(&mut lists, poses, from.dt_secs, &cascades, time_secs);
+        let room = INSTANCE_LIMIT.saturating_sub(VEHICLE_INSTANCES * OBJECT_LIMIT.min(poses.len()));
+        self.list_trees_and_stones(&mut lists, from, &cascades, room / 3, pixel_rad);
+        let mut all = Vec::new();
+        self.picture_list = join(&lists.picture, &mut all);
+        self.cascade_lists = lists.cascades.map(|list| join(&list, &mut all));
+        self.count = all.len() as u32;
+        gpu.queue.write_buffer(&self.instances, 0, bytemuck::cast_slice(&all));
+    }
+
+    fn list_vehicles(
+        &mut self,
+        lists: &mut InstanceLists,
+        poses: &[ObjectPose],
+        dt_secs: f32,
+        cascades: &[Option<CascadeVolume>; 2],
+        time_secs: f32,
+    ) {
+        self.rolled_m.retain(|id, _| poses.iter().any(|pose| pose.id == *id));
+        for pose in poses.iter().take(OBJECT_LIMIT) {
+            let rotation = Quat::from_array(pose.rotation);
+            let forward = rotation * Vec3::NEG_Z;
+            let rolled_m = self.rolled_m.entry(pose.id).or_default();
+            *rolled_m = (*rolled_m + Vec3::from(pose.velocity_m_per_s).dot(forward) * dt_secs) % 1000.0;
+            let body = Affine3A::from_rotation_translation(rotation, Vec3::from(pose.position_m));
+            let motion = Motion { rolled_m: *rolled_m, time_secs };
+            for (part, body_from_part) in (vehicle_model(pose.kind).place)(pose, motion) {
+                let mesh = self.meshes.part(pose.kind, part);
+                let world_from_model = Mat4::from(body * body_from_part).to_cols_array();
+                let instance = Instance { world_from_model, tint: [1.0, 1.0, 1.0, 0.0] };
+                lists.picture[mesh].push(instance);
+                for (list, _) in lists.cascades.iter_mut().zip(cascades).filter(|(_, cascade)| cascade.is_some()) {
+                    list[mesh].push(instance);
+                }
+            }
+        }
+    }
+
+    /// Lists at most `limit` trees and stones.
+    fn list_trees_and_stones(
+        &self,
+        lists: &mut InstanceLists,
+        from: &Viewpoint<'_>,
+        cascades: &[Option<CascadeVolume>; 2],
+        limit: usize,
+        pixel_rad: f32,
+    ) {
+        let is_seen = |bounds: &BoundingSphere| {
+            let [low_m, high_m] = bounds.corners_m();
+            from.frustum.sees_box(low_m, high_m)
+        };
+        let casts = |cascade: &Option<CascadeVolume>, bounds: &BoundingSphere| {
+            cascade.as_ref().is_some_and(|cascade| !from.options.culls || cascade.meets_sphere(bounds.centre_m, bounds.radius_m))
+        };
+        let may_show = |bounds: &BoundingSphere| is_seen(bounds) || cascades.iter().any(|cascade| casts(cascade, bounds));
+        for (distance_m, (placed, bounds)) in self.index.near(from.eye_m, from.detail.trees_m, limit, may_show) {
+            let tall_px = placed.size_m / (distance_m * pixel_rad * from.detail.coarser);
+            let detail = match tall_px {
+                FINE_TREE_PX.. => TreeDetail::Fine,
+                DISTANT_TREE_PX.. => TreeDetail::Coarse,
+                _ => TreeDetail::Distant,
+            };
+            let mesh = |detail| match placed.is_tree {
+                true => self.meshes.tree(placed.shape, detail),
+                false => self.meshes.stone(placed.shape),
+            };
+            let instance = Instance { world_from_model: placed.world_from_model.to_cols_array(), tint: placed.tint };
+            if is_seen(bounds) {
+                lists.picture[mesh(detail)].push(instance);
+            }
+            for ((list, cascade), detail) in lists.cascades.iter_mut().zip(cascades).zip(SHADOW_DETAIL) {
+                if casts(cascade, bounds) {
+                    list[mesh(detail)].push(instance);
+                }
+            }
+        }
+    }
+
+    /// Triangles that [`draw`](Self::draw) submits.
+    pub(crate) fn triangles(&self) -> u64 {
+        self.picture_list.iter().map(|(mesh, instances)| self.meshes.triangles(*mesh) * instances.len() as u64).sum()
+    }
+
+    /// Computes the sway of each instance of this frame.
+    pub(crate) fn sway(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.set_pipeline(&self.sway);
+        pass.set_bind_group(1, &self.sway_group, &[]);
+        pass.dispatch_workgroups(self.count.div_ceil(64), 1, 1);
+    }
+
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
+        let Pipelines { glossy, matte, coarse_trees } = self.pipelines.of(has_lamps);
+        let ends = [self.meshes.tree(0, TreeDetail::Fine), self.meshes.tree(0, TreeDetail::Coarse), self.meshes.stone(0), usize::MAX];
+        let mut rest = self.picture_list.as_slice();
+        for (pipeline, end) in [glossy, matte, coarse_trees, matte].into_iter().zip(ends) {
+            let (list, others) = rest.split_at(rest.partition_point(|&(mesh, _)| mesh < end));
+            rest = others;
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(1, &self.group, &[]);
+            self.meshes.draw(pass, list);
+        }
+    }
+
+    /// Draws the shadow casters of a cascade.
+    pub(crate) fn draw_shadows(&self, pass: &mut wgpu::RenderPass<'_>, cascade: usize) {
+        pass.set_pipeline(&self.shadow_pipelines[cascade]);
+        pass.set_bind_group(1, &self.group, &[]);
+        self.meshes.draw(pass, &self.cascade_lists[cascade]);
+    }
+}
+
+/// Appends the instances of all meshes to `all`, as far as there is room, and returns the range of each mesh.
+fn join(by_mesh: &[Vec<Instance>], all: &mut Vec<Instance>) -> DrawList {
+    let mut list = Vec::new();
+    for (mesh, instances) in by_mesh.iter().enumerate().filter(|(_, instances)| !instances.is_empty()) {
+        let first = all.len() as u32;
+        all.extend_from_slice(&instances[..instances.len().min(INSTANCE_LIMIT - all.len())]);
+        list.push((mesh, first..all.len() as u32));
+    }
+    list
+}
+
+const VERTEX_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 1] = [Some(wgpu::VertexBufferLayout {
+    array_stride: size_of::<Vertex>() as u64,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &VERTEX_ATTRIBUTES,
+})];
+
+fn pipelines(factory: &PassFactory<'_>, quality: Quality, layout: &wgpu::BindGroupLayout) -> LampVariants<Pipelines> {
+    let draw = DrawDescriptor { label: "objects", buffers: &VERTEX_BUFFERS, ..DrawDescriptor::default() };
+    LampVariants::new(|lamps| {
+        let [glossy_module, matte_module] =
+            [true, false].map(|gloss| factory.shader("objects", shaders::OBJECTS, &[lamps, ("is_glossy", gloss)]));
+        let [glossy, matte] = [&glossy_module, &matte_module].map(|module| factory.draw(module, Some(layout), &draw));
+        let per_vertex = DrawDescriptor { vertex: "vs_afar", fragment: Some("fs_afar"), ..draw };
+        let is_per_vertex = quality.lights_trees_at_vertices(factory.gpu.is_software);
+        let coarse_trees = if is_per_vertex { factory.draw(&matte_module, Some(layout), &per_vertex) } else { matte.clone() };
+        Pipelines { glossy, matte, coarse_trees }
+    })
+}
+
+fn shadow_pipelines(factory: &PassFactory<'_>, module: &wgpu::ShaderModule, layout: &wgpu::BindGroupLayout) -> [wgpu::RenderPipeline; 2] {
+    ["vs_shadow", "vs_shadow_far"].map(|vertex| {
+        let shadow =
+            DrawDescriptor { label: "shadows", vertex, fragment: Some("fs_shadow"), buffers: &VERTEX_BUFFERS, ..DrawDescriptor::default() };
+        factory.draw(module, Some(layout), &shadow)
+    })
+}

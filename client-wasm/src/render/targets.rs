@@ -1,0 +1,88 @@
+//! Textures that the passes of a frame draw to, and the descriptions of those passes.
+
+use crate::render::gpu::device::Gpu;
+use crate::render::gpu::pipeline::{COLOR, DEPTH};
+use crate::render::options::quality::Quality;
+use wgpu::{LoadOp, StoreOp};
+
+/// Colour and depth of the picture before tone mapping.
+pub(super) struct Targets {
+    pub(super) size_px: [u32; 2],
+    /// Rendered pixels along each side of an output pixel.
+    pub(super) supersampling: u32,
+    pub(super) color: wgpu::TextureView,
+    pub(super) depth: wgpu::TextureView,
+}
+
+impl Targets {
+    /// Targets for an output of `output_px`.
+    pub(super) fn new(gpu: &Gpu, output_px: [u32; 2], quality: Quality) -> Self {
+        let samples = quality.samples(gpu.is_software);
+        let supersampling = quality.supersampling(output_px, gpu.side_limit_px());
+        let size_px = output_px.map(|side_px| side_px * supersampling);
+        let texture = |label, format| gpu.render_target(label, format, size_px, samples);
+        Self { size_px, supersampling, color: texture("color", COLOR), depth: texture("depth", DEPTH) }
+    }
+
+    /// Begins or resumes the pass that draws the picture. The first one clears both textures; the last one discards depth.
+    pub(super) fn picture_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        [is_first, is_last]: [bool; 2],
+        timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'static> {
+        let color_load = if is_first { LoadOp::Clear(wgpu::Color::BLACK) } else { LoadOp::Load };
+        let depth_load = if is_first { LoadOp::Clear(0.0) } else { LoadOp::Load };
+        let depth_store = if is_last { StoreOp::Discard } else { StoreOp::Store };
+        let descriptor = wgpu::RenderPassDescriptor {
+            label: Some("picture"),
+            color_attachments: &[color_attachment(&self.color, color_load)],
+            depth_stencil_attachment: depth_attachment(&self.depth, depth_load, depth_store),
+            timestamp_writes,
+            ..Default::default()
+        };
+        encoder.begin_render_pass(&descriptor).forget_lifetime()
+    }
+}
+
+/// Begins the pass that draws a cascade of the shadow map.
+pub(super) fn shadow_pass(
+    encoder: &mut wgpu::CommandEncoder,
+    depth: &wgpu::TextureView,
+    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) -> wgpu::RenderPass<'static> {
+    let descriptor = wgpu::RenderPassDescriptor {
+        label: Some("shadows"),
+        depth_stencil_attachment: depth_attachment(depth, LoadOp::Clear(1.0), StoreOp::Store),
+        timestamp_writes,
+        ..Default::default()
+    };
+    encoder.begin_render_pass(&descriptor).forget_lifetime()
+}
+
+/// Begins the tone mapping pass; `keeps` preserves what the output already shows.
+pub(super) fn tone_pass(
+    encoder: &mut wgpu::CommandEncoder,
+    output: &wgpu::TextureView,
+    keeps: bool,
+    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) -> wgpu::RenderPass<'static> {
+    let load = if keeps { LoadOp::Load } else { LoadOp::Clear(wgpu::Color::BLACK) };
+    let descriptor = wgpu::RenderPassDescriptor {
+        label: Some("tone"),
+        color_attachments: &[color_attachment(output, load)],
+        timestamp_writes,
+        ..Default::default()
+    };
+    encoder.begin_render_pass(&descriptor).forget_lifetime()
+}
+
+fn color_attachment(view: &wgpu::TextureView, load: LoadOp<wgpu::Color>) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    let ops = wgpu::Operations { load, store: StoreOp::Store };
+    Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
+}
+
+fn depth_attachment(view: &wgpu::TextureView, load: LoadOp<f32>, store: StoreOp) -> Option<wgpu::RenderPassDepthStencilAttachment<'_>> {
+    let depth_ops = Some(wgpu::Operations { load, store });
+    Some(wgpu::RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None })
+}

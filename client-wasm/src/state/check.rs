@@ -1,0 +1,126 @@
+//! Range checks of a received scene and its models.
+
+use super::check_underbrush::check_underbrush;
+use super::error::{MirrorError, range, within};
+use prairie_core::scene::{LAMPS_LIMIT, Scene, WIND_CELLS_LIMIT};
+use prairie_core::wire::Mesh;
+
+/// Checks all settings that the client relies on.
+pub(super) fn check(scene: &Scene) -> Result<(), MirrorError> {
+    check_grids(scene)?;
+    check_world(scene)?;
+    check_light(scene)?;
+    check_grass(scene)?;
+    check_underbrush(scene)
+}
+
+fn check_grids(scene: &Scene) -> Result<(), MirrorError> {
+    let cells = scene.patches.cells;
+    if !(8..=256).contains(&cells) || !cells.is_multiple_of(8) {
+        return Err(range("patches.cells", cells, "8..=256, a multiple of 8"));
+    }
+    for count in scene.patches.count {
+        within("patches.count", count as f32, 1.0, 2048.0)?;
+    }
+    for cells in scene.wind.cells {
+        within("wind.cells", cells as f32, 2.0, 256.0)?;
+    }
+    let wind_cells = scene.wind.cells.iter().map(|&n| u64::from(n)).product::<u64>();
+    if wind_cells > WIND_CELLS_LIMIT {
+        return Err(range("total number of wind cells", wind_cells, format!("0..={WIND_CELLS_LIMIT}")));
+    }
+    for spacing in scene.wind.spacing_m {
+        within("wind.spacing_m", spacing, 0.1, 1000.0)?;
+    }
+    for mean in scene.wind.mean_m_per_s {
+        within("wind.mean_m_per_s", mean, -40.0, 40.0)?;
+    }
+    Ok(())
+}
+
+fn check_world(scene: &Scene) -> Result<(), MirrorError> {
+    for pixel in scene.terrain.pixel_m {
+        within("terrain.pixel_m", pixel, 0.01, 1000.0)?;
+    }
+    let plants = &scene.plants;
+    within("tick_hz", scene.tick_hz, 10.0, 240.0)?;
+    within("patches.cell_m", scene.patches.cell_m, 0.05, 10.0)?;
+    within("terrain.level_m", scene.terrain.level_m, 0.0, 1000.0)?;
+    within("terrain.base_m", scene.terrain.base_m, -20_000.0, 20_000.0)?;
+    within("plants.grid_m", plants.grid_m, 1.0, 64.0)?;
+    within("plants.plants_per_side", plants.plants_per_side as f32, 2.0, 256.0)?;
+    within("plants.height_variation", plants.height_variation, 0.0, 0.9)?;
+    within("plants.width_m", plants.width_m, 0.001, 0.5)?;
+    within("plants.flowers_per_m2", plants.flowers_per_m2, 0.0, 50.0)?;
+    within("plants.tree_m", plants.tree_m, 0.5, 60.0)?;
+    within("plants.stone_m", plants.stone_m, 0.05, 20.0)?;
+    within("plants.swing_damping", plants.swing_damping, 0.005, 5.0)?;
+    within("rain.rate_mm_per_h", scene.rain.rate_mm_per_h, 0.0, 200.0)?;
+    within("objects.balls", scene.objects.balls as f32, 0.0, 64.0)?;
+    within("objects.ball_radius_m", scene.objects.ball_radius_m, 0.1, 5.0)?;
+    Ok(())
+}
+
+fn check_light(scene: &Scene) -> Result<(), MirrorError> {
+    let light = &scene.light;
+    within("light.sun_elevation_rad", light.sun_elevation_rad, -0.1, 1.58)?;
+    within("light.sun_heading_rad", light.sun_heading_rad, -100.0, 100.0)?;
+    within("light.hour", light.hour, -1.0, 24.0)?;
+    within("light.latitude_deg", light.latitude_deg, -90.0, 90.0)?;
+    within("light.day_of_year", light.day_of_year, 1.0, 366.0)?;
+    within("light.day_length_secs", light.day_length_secs, 0.0, 1_000_000.0)?;
+    within("light.haze_m", light.haze_m, 10.0, 100_000.0)?;
+    within("light.mist_m", light.mist_m, 0.0, 100_000.0)?;
+    within("light.mist_height_m", light.mist_height_m, 0.5, 200.0)?;
+    if scene.lights.len() > LAMPS_LIMIT {
+        return Err(range("number of lights", scene.lights.len(), format!("at most {LAMPS_LIMIT}")));
+    }
+    for lamp in &scene.lights {
+        for coordinate in lamp.at_m {
+            within("lights.at_m", coordinate, -100_000.0, 100_000.0)?;
+        }
+        within("lights.candela", lamp.candela, 0.0, 1_000_000.0)?;
+        for term in lamp.attenuation {
+            within("lights.attenuation", term, 0.0, 100.0)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_grass(scene: &Scene) -> Result<(), MirrorError> {
+    if scene.species.len() > 16 {
+        return Err(range("number of species", scene.species.len(), "at most 16"));
+    }
+    for grass in scene.kinds() {
+        within("*.c0_m_per_s", grass.waves.c0_m_per_s, 0.0, 50.0)?;
+        within("*.mu_m_per_rad", grass.waves.mu_m_per_rad, 0.0, 10.0)?;
+        within("*.stiffness_per_s2", grass.waves.stiffness_per_s2, 0.0, 10_000.0)?;
+        within("*.wind_bend_rad", grass.wind_bend_rad, 0.0, 1.5)?;
+        within("*.lag_secs", grass.lag_secs, 0.0, 1.0)?;
+        within("*.recovery_lag_share", grass.recovery_lag_share, 0.0, 1.0)?;
+        within("*.segments", grass.segments as f32, 1.0, 6.0)?;
+    }
+    for plants in scene.kinds_of_plants() {
+        within("*.height_m", plants.height_m, 0.02, 5.0)?;
+        within("*.swing_hz", plants.swing_hz, 0.05, 50.0)?;
+        for channel in plants.root_rgb.into_iter().chain(plants.tip_rgb) {
+            within("*_rgb", channel, 0.0, 1.0)?;
+        }
+    }
+    Ok(())
+}
+
+/// Checks the sizes and indices of a vehicle model.
+pub(super) fn check_mesh(mesh: &Mesh) -> Result<(), MirrorError> {
+    let vertices = mesh.positions_m.len();
+    if vertices > Mesh::VERTEX_LIMIT || mesh.normals.len() != vertices || mesh.rgb.len() != vertices {
+        return Err(range("vertices of a model", vertices, "at most 65536, each with a normal and a colour"));
+    }
+    if mesh.indices.len() > Mesh::INDEX_LIMIT || !mesh.indices.len().is_multiple_of(3) {
+        return Err(range("indices of a model", mesh.indices.len(), "at most 1048576, a multiple of 3"));
+    }
+    match mesh.indices.iter().find(|&&index| index as usize >= vertices) {
+        Some(index) => Err(range("index of a model", index, format!("0..{vertices}"))),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,220 @@
+//! The mirror itself: applies messages, and answers the renderer.
+
+use super::broken_plants::BrokenPlants;
+use super::error::{MirrorError, range};
+use super::fields::{PatchCodes, Patches, WindCodes, WindFrames};
+use super::playback::Playback;
+use super::scene::DecodedScene;
+use prairie_core::grid::PatchIndex;
+use prairie_core::scene::Scene;
+use prairie_core::wire::{ObjectId, ObjectPose, Peer, Refusal, ServerMessage};
+
+/// Maximum number of peers stored; the server's list is truncated to it.
+pub const PEER_LIMIT: usize = 4096;
+
+/// Consequence of a message that the page has to act on.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Event {
+    /// The server accepted the client.
+    Welcome {
+        /// Number that identifies this client.
+        client: u32,
+        /// Version of the server's package.
+        server_version: String,
+        /// Name of the scene that the server runs.
+        scene_name: String,
+    },
+    /// A new scene arrived; the renderer must load it.
+    Scene,
+    /// A frame is complete and must be acknowledged.
+    FrameEnd {
+        /// Frame number.
+        frame: u32,
+    },
+    /// The list of peers changed.
+    Roster,
+    /// A request was refused, or the connection is about to close.
+    Refused {
+        /// Machine-readable reason.
+        refusal: Refusal,
+        /// Explanation for the user.
+        reason: String,
+    },
+    /// Response to a ping.
+    Pong {
+        /// Nonce of that ping.
+        nonce: u32,
+    },
+}
+
+/// The client's copy of the server's world.
+#[derive(Debug, Default)]
+pub struct Mirror {
+    scene: Option<DecodedScene>,
+    scene_number: u32,
+    patches: Patches,
+    wind: WindFrames,
+    poses: Playback,
+    broken: BrokenPlants,
+    peers: Vec<Peer>,
+    tick: u64,
+    time_secs: f64,
+}
+
+impl Mirror {
+    /// Applies a message. A delta whose base is missing is dropped, without an error, until the next key frame.
+    ///
+    /// # Errors
+    /// [`MirrorError`] if the message is malformed or out of range.
+    pub fn apply(&mut self, message: ServerMessage) -> Result<Option<Event>, MirrorError> {
+        Ok(match message {
+            ServerMessage::Welcome { client, server_version, scene_name } => Some(Event::Welcome { client, server_version, scene_name }),
+            ServerMessage::Scene { scene, height_png, covering_png, nutrient_png, models } => {
+                let decoded = DecodedScene::new(*scene, &height_png, &covering_png, &nutrient_png, models)?;
+                self.broken = BrokenPlants::new(decoded.flora().map_or(0, |flora| flora.grown().sites.total()));
+                self.scene = Some(decoded);
+                self.scene_number = self.scene_number.wrapping_add(1);
+                self.patches = Patches::default();
+                self.wind = WindFrames::default();
+                self.poses = Playback::default();
+                Some(Event::Scene)
+            }
+            ServerMessage::Poses { tick, objects } => {
+                self.poses.push(tick as f64 / f64::from(self.tick_hz()), objects)?;
+                None
+            }
+            ServerMessage::Wind { seq, key, payload, .. } => {
+                let decoded = self.scene.as_ref().ok_or(MirrorError::BeforeScene("wind frame"))?;
+                self.wind.apply(&decoded.scene().wind, seq, key, &payload)?;
+                None
+            }
+            ServerMessage::Patch { patch, seq, key, payload } => {
+                let decoded = self.scene.as_ref().ok_or(MirrorError::BeforeScene("patch frame"))?;
+                self.patches.apply(decoded.layout(), patch, seq, key, &payload)?;
+                None
+            }
+            ServerMessage::Roster { mut peers } => {
+                peers.truncate(PEER_LIMIT);
+                self.peers = peers;
+                Some(Event::Roster)
+            }
+            ServerMessage::Broken { plants } => {
+                self.broken.record(&plants)?;
+                None
+            }
+            ServerMessage::FrameEnd { frame, tick, time_secs } => {
+                if !time_secs.is_finite() {
+                    return Err(range("time_secs", time_secs, "a finite number"));
+                }
+                (self.tick, self.time_secs) = (tick, time_secs);
+                Some(Event::FrameEnd { frame })
+            }
+            ServerMessage::Refused { refusal, reason } => Some(Event::Refused { refusal, reason }),
+            ServerMessage::Pong { nonce } => Some(Event::Pong { nonce }),
+        })
+    }
+
+    /// Advances the client's clock by `dt_secs`, so that objects move on.
+    pub fn advance(&mut self, dt_secs: f64) {
+        self.poses.advance(dt_secs);
+    }
+
+    fn tick_hz(&self) -> f32 {
+        self.scene.as_ref().map_or(60.0, |decoded| decoded.scene().tick_hz)
+    }
+
+    /// The scene with its decoded maps; `None` before it has arrived.
+    pub fn decoded_scene(&self) -> Option<&DecodedScene> {
+        self.scene.as_ref()
+    }
+
+    /// Number of scenes received so far. When it changes, the renderer must reload the scene.
+    pub fn scene_number(&self) -> u32 {
+        self.scene_number
+    }
+
+    /// Interpolated poses of all objects, about 0.1 s behind the server.
+    pub fn objects(&self) -> impl Iterator<Item = ObjectPose> + use<> {
+        self.poses.interpolated().into_iter()
+    }
+
+    /// Interpolated pose of one object.
+    pub fn object(&self, id: ObjectId) -> Option<ObjectPose> {
+        self.objects().find(|pose| pose.id == id)
+    }
+
+    /// Newest received poses of all objects.
+    pub fn newest_objects(&self) -> &[ObjectPose] {
+        self.poses.newest()
+    }
+
+    /// All connected clients.
+    pub fn peers(&self) -> &[Peer] {
+        &self.peers
+    }
+
+    /// Object driven by a client.
+    pub fn object_of(&self, client: u32) -> Option<ObjectId> {
+        self.peers.iter().find(|peer| peer.client == client)?.object
+    }
+
+    /// World step of the newest complete frame.
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// Simulated time of the newest complete frame (s).
+    pub fn time_secs(&self) -> f64 {
+        self.time_secs
+    }
+
+    /// Codes of a patch; `None` if it is at rest or unknown.
+    pub fn patch(&self, patch: PatchIndex) -> Option<&PatchCodes> {
+        self.patches.codes(patch)
+    }
+
+    /// Patches that are not at rest.
+    pub fn bent_patches(&self) -> impl Iterator<Item = PatchIndex> + '_ {
+        self.patches.bent()
+    }
+
+    /// Number of patches received, bent or at rest.
+    pub fn known_patches(&self) -> usize {
+        self.patches.known()
+    }
+
+    /// Patches changed since the previous call.
+    pub fn take_dirty_patches(&mut self) -> Vec<PatchIndex> {
+        self.patches.take_dirty()
+    }
+
+    /// Whether any patch changed since [`take_dirty_patches`](Self::take_dirty_patches).
+    pub fn has_dirty_patches(&self) -> bool {
+        self.patches.has_dirty()
+    }
+
+    /// Whether nothing moves by itself: no wind, rain, dust or moving sun. True before the scene has arrived.
+    pub fn is_calm(&self) -> bool {
+        let scene_is_calm = self.scene.as_ref().is_none_or(|decoded| {
+            let Scene { wind, rain, light, .. } = decoded.scene();
+            wind.mean_m_per_s == [0.0; 2] && rain.rate_mm_per_h <= 0.0 && light.day_length_secs <= 0.0
+        });
+        scene_is_calm && self.wind().is_none_or(WindCodes::is_calm)
+    }
+
+    /// Direction in which the plant of each underbrush site fell, as a [heading code](prairie_core::wire::quantise::heading_code); 0 for an unbroken plant.
+    /// Padded with zeros to a multiple of four bytes.
+    pub fn falls(&self) -> &[u8] {
+        self.broken.falls()
+    }
+
+    /// Number of broken plants. Broken plants never heal, so it only grows until the next scene.
+    pub fn broken_count(&self) -> u32 {
+        self.broken.count()
+    }
+
+    /// Newest wind frame.
+    pub fn wind(&self) -> Option<&WindCodes> {
+        self.wind.codes()
+    }
+}

@@ -1,0 +1,23 @@
+//! The client's mirror of the server: every [`ServerMessage`](prairie_core::wire::ServerMessage) is applied to it, and the renderer reads it.
+//!
+//! Messages come from the network and are not trusted: lengths, indices and numbers are checked before anything is stored. Memory is bounded by
+//! [`PATCH_LIMIT`], [`OBJECT_LIMIT`], [`PEER_LIMIT`] and the number of plant sites.
+
+mod broken_plants;
+mod check;
+mod check_underbrush;
+mod error;
+mod fields;
+mod mirror;
+mod playback;
+mod sample;
+mod scene;
+
+pub use error::MirrorError;
+pub use fields::{PATCH_LIMIT, PatchCodes, WindCodes};
+pub use mirror::{Event, Mirror, PEER_LIMIT};
+pub use playback::OBJECT_LIMIT;
+pub use scene::DecodedScene;
+
+#[cfg(test)]
+mod tests;

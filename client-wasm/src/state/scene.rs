@@ -1,0 +1,92 @@
+//! The scene as the client holds it: settings, decoded maps, underbrush and models. Constant until the next scene.
+
+use super::check::{check, check_mesh};
+use super::error::MirrorError;
+use prairie_core::grid::PatchLayout;
+use prairie_core::plant::flora::Flora;
+use prairie_core::plant::growth::NutrientMap;
+use prairie_core::scene::{Scene, VehicleKind};
+use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
+use prairie_core::wind::WindTiles;
+use prairie_core::wire::Mesh;
+
+/// A scene with its decoded maps.
+#[derive(Clone, Debug)]
+pub struct DecodedScene {
+    scene: Scene,
+    layout: PatchLayout,
+    heights: HeightMap,
+    cover: CoverMap,
+    kinds: KindMap,
+    flora: Option<Flora>,
+    models: Vec<(VehicleKind, Mesh)>,
+    tiles: WindTiles,
+}
+
+impl DecodedScene {
+    /// Validates the scene, decodes its maps and grows its underbrush.
+    ///
+    /// # Errors
+    /// [`MirrorError`] if a map cannot be decoded or a value is out of range.
+    pub fn new(
+        scene: Scene,
+        height_png: &[u8],
+        covering_png: &[u8],
+        nutrient_png: &[u8],
+        models: Vec<(VehicleKind, Mesh)>,
+    ) -> Result<Self, MirrorError> {
+        check(&scene)?;
+        let heights = HeightMap::from_png(height_png, &scene.terrain);
+        let heights = heights.map_err(|error| MirrorError::Map { map: "height map", error })?;
+        let cover = CoverMap::from_png(covering_png).map_err(|error| MirrorError::Map { map: "covering map", error })?;
+        let nutrients = (!nutrient_png.is_empty()).then(|| NutrientMap::from_png(nutrient_png));
+        let nutrients = nutrients.transpose().map_err(|error| MirrorError::Map { map: "nutrient map", error })?;
+        for (_, mesh) in &models {
+            check_mesh(mesh)?;
+        }
+        let layout = PatchLayout::from(&scene.patches);
+        let (tiles, kinds) = (WindTiles::new(&scene), KindMap::new(&scene, &cover));
+        let flora = Flora::new(&scene, &cover, nutrients.as_ref());
+        Ok(Self { scene, layout, heights, cover, kinds, flora, models, tiles })
+    }
+
+    /// Settings of the scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Layout of the patch grid.
+    pub fn layout(&self) -> &PatchLayout {
+        &self.layout
+    }
+
+    /// Tiling of the world by the wind domain.
+    pub fn tiles(&self) -> &WindTiles {
+        &self.tiles
+    }
+
+    /// The height map.
+    pub fn heights(&self) -> &HeightMap {
+        &self.heights
+    }
+
+    /// The covering map.
+    pub fn cover(&self) -> &CoverMap {
+        &self.cover
+    }
+
+    /// Map of grass kinds.
+    pub fn kinds(&self) -> &KindMap {
+        &self.kinds
+    }
+
+    /// The underbrush; `None` if the scene has none.
+    pub fn flora(&self) -> Option<&Flora> {
+        self.flora.as_ref()
+    }
+
+    /// Vehicle models that replace the built-in ones.
+    pub fn models(&self) -> &[(VehicleKind, Mesh)] {
+        &self.models
+    }
+}

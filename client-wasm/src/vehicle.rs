@@ -1,0 +1,130 @@
+//! Vehicle kinds as the client presents them: one table of names, keys, controls and camera positions.
+//!
+//! A new [`VehicleKind`] needs one more arm in [`profile`]; the page's buttons and help are generated from it. Its model is in
+//! a file of its own in `render/solids/vehicles/`.
+
+use prairie_core::scene::VehicleKind;
+
+/// How the client offers one kind of vehicle to the user.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VehicleProfile {
+    /// Label of the page's button.
+    pub label: &'static str,
+    /// Letter key that takes such a vehicle, lower case. Must differ from the keys of other vehicles and of the page (`a d e f k p q s v w`).
+    pub key: char,
+    /// Direction of the gamepad's cross that takes such a vehicle, if any. Down is taken: it gives the vehicle up.
+    pub dpad: Option<Dpad>,
+    /// Position of the chase camera when the vehicle is taken.
+    pub chase: ChaseOffset,
+    /// Effect of the up and down controls.
+    pub vertical: VerticalControl,
+    /// Source of the vehicle's heading.
+    pub heading: HeadingSource,
+    /// Whether parts move even while the vehicle stands still, so that every frame has to be drawn.
+    pub moves_at_rest: bool,
+}
+
+/// A direction of the gamepad's cross (directional pad).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dpad {
+    /// Up.
+    Up,
+    /// Left.
+    Left,
+    /// Right.
+    Right,
+}
+
+impl Dpad {
+    /// Arrow for the page's help.
+    pub fn arrow(self) -> char {
+        match self {
+            Self::Up => '↑',
+            Self::Left => '←',
+            Self::Right => '→',
+        }
+    }
+}
+
+/// Position of a chase camera relative to the vehicle's centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChaseOffset {
+    /// Horizontal distance behind the centre (m).
+    pub distance_m: f32,
+    /// Height above the centre (m).
+    pub height_m: f32,
+}
+
+/// Effect of the up and down controls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VerticalControl {
+    /// Climb and sink.
+    Lift,
+    /// Brake, whichever of the two is held.
+    Brake,
+}
+
+/// Source of a vehicle's heading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeadingSource {
+    /// The body's orientation.
+    Rotation,
+    /// The pose's `part_rad`, for a body that rolls.
+    PartAngle,
+}
+
+/// Entry of a kind. A kind without an entry does not compile.
+pub fn profile(kind: VehicleKind) -> VehicleProfile {
+    let car = VehicleProfile {
+        label: "Car",
+        key: 'c',
+        dpad: Some(Dpad::Left),
+        chase: ChaseOffset { distance_m: 8.0, height_m: 2.8 },
+        vertical: VerticalControl::Brake,
+        heading: HeadingSource::Rotation,
+        moves_at_rest: false,
+    };
+    match kind {
+        VehicleKind::Car => car,
+        VehicleKind::Monster => VehicleProfile {
+            label: "Monster",
+            key: 'm',
+            dpad: Some(Dpad::Right),
+            chase: ChaseOffset { distance_m: 5.0, height_m: 2.0 },
+            ..car
+        },
+        VehicleKind::Helicopter => VehicleProfile {
+            label: "Helicopter",
+            key: 'h',
+            dpad: Some(Dpad::Up),
+            chase: ChaseOffset { distance_m: 15.0, height_m: 4.5 },
+            vertical: VerticalControl::Lift,
+            moves_at_rest: true,
+            ..car
+        },
+        VehicleKind::Sled => {
+            VehicleProfile { label: "Sled", key: 'l', dpad: None, chase: ChaseOffset { distance_m: 10.0, height_m: 4.0 }, ..car }
+        }
+        VehicleKind::Ball => VehicleProfile {
+            label: "Ball",
+            key: 'b',
+            dpad: None,
+            chase: ChaseOffset { distance_m: 7.0, height_m: 2.4 },
+            heading: HeadingSource::PartAngle,
+            ..car
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_chase_camera_is_behind_and_above() {
+        for kind in VehicleKind::ALL {
+            let ChaseOffset { distance_m, height_m } = profile(kind).chase;
+            assert!(distance_m > height_m && height_m > 0.0, "{kind:?}");
+        }
+    }
+}

@@ -1,0 +1,21 @@
+// Rows of the help dialog that depend on the client's choices.
+
+const keys = (names) => names.map((name) => `<kbd>${name}</kbd>`).join(" ");
+const list = (items) => items.join(", ");
+
+// Fills the rows from the client's vehicles and camera heights.
+export function fillHelp({ vehicles, heights }) {
+  const named = vehicles.map(({ label }) => `a ${label.toLowerCase()}`);
+  const flying = vehicles.filter(({ flies }) => flies).map(({ label }) => label.toLowerCase());
+  const arrows = vehicles.filter(({ arrow }) => arrow).map(({ arrow, label }) => `${arrow} ${label.toLowerCase()}`);
+  row("help-vehicles", keys(vehicles.map(({ key }) => key.toUpperCase())), `take ${list(named)}`);
+  row("help-rise", null, flying.length ? `${list(flying)}: up, down; all others: brake` : "brake");
+  row("help-heights", keys(heights.map((_, index) => index + 1)), `view from ${list(heights)} m`);
+  row("help-dpad", null, `${list(arrows)}, ↓ get out`);
+}
+
+function row(id, head, text) {
+  const row = document.getElementById(id);
+  if (head !== null) row.querySelector("th").innerHTML = head;
+  row.querySelector("td").textContent = text;
+}

@@ -1,0 +1,85 @@
+//! Natural wind as noise near the cameras (Chen & Johan, §5.3, second approach).
+
+use super::camera::Camera;
+use noise::{NoiseFn, Perlin};
+use prairie_core::bend::{Bend, Field, TILE};
+use prairie_core::grid::{PatchIndex, PatchLayout};
+use prairie_core::scene::{NaturalWind, Scene};
+
+/// Rate at which gusts change while they travel (1/s).
+const CHANGE_PER_S: f64 = 0.15;
+
+/// Gusts of Perlin noise that travel over the terrain.
+pub(super) struct GustNoise {
+    noise: Perlin,
+    settings: NaturalWind,
+    /// Unit vector along which the grass is pushed.
+    along: [f32; 2],
+    time_secs: f64,
+}
+
+impl GustNoise {
+    /// The natural wind of a scene, if its strength is not zero.
+    pub(super) fn new(scene: &Scene) -> Option<Self> {
+        let settings = scene.natural_wind;
+        let [x, z] = settings.drift_m_per_s;
+        let speed = (x * x + z * z).sqrt();
+        let along = if speed > 0.0 { [x / speed, z / speed] } else { [1.0, 0.0] };
+        (settings.strength_rad_per_s2 > 0.0).then(|| Self { noise: Perlin::new(scene.seed as u32), settings, along, time_secs: 0.0 })
+    }
+
+    /// Patches whose centre is within reach of a camera.
+    pub(super) fn patches(&self, layout: &PatchLayout, cameras: &[Camera]) -> Vec<PatchIndex> {
+        let reach_m = self.settings.reach_m;
+        let near = |camera: &Camera| {
+            let [x, z] = camera.xz();
+            let within = move |patch: &PatchIndex| {
+                let [dx, dz] = [layout.center_m(*patch)[0] - x, layout.center_m(*patch)[1] - z];
+                dx * dx + dz * dz < reach_m * reach_m
+            };
+            layout.patches_touching([x - reach_m, z - reach_m], [x + reach_m, z + reach_m]).filter(within)
+        };
+        let mut patches: Vec<_> = cameras.iter().flat_map(near).collect();
+        patches.sort_unstable();
+        patches.dedup();
+        patches
+    }
+
+    /// Pushes the grass of the awake ones among `patches` for `dt_secs`.
+    pub(super) fn push(&mut self, field: &mut Field, patches: &[PatchIndex], dt_secs: f32) {
+        self.time_secs += f64::from(dt_secs);
+        let layout = *field.layout();
+        for &index in patches {
+            let pushes = self.pushes_rad(&layout, index, dt_secs);
+            let Some(patch) = field.patch_mut(index) else { continue };
+            let side = patch.side();
+            let corners = side / TILE + 1;
+            for (i, j) in (0..side).flat_map(|j| (0..side).map(move |i| (i, j))) {
+                let corner = j / TILE * corners + i / TILE;
+                let [u, v] = [i, j].map(|n| ((n % TILE) as f32 + 0.5) / TILE as f32);
+                let mix = |a: f32, b: f32, weight: f32| a + (b - a) * weight;
+                let north = mix(pushes[corner], pushes[corner + 1], u);
+                let push = mix(north, mix(pushes[corner + corners], pushes[corner + corners + 1], u), v);
+                let (now, before) = (patch.bend(i, j), patch.bend_before(i, j));
+                // Only the newer state is displaced. That is an acceleration, which the waves propagate.
+                let [x, z] = [0, 1].map(|axis| now.omega[axis] + self.along[axis] * push / dt_secs);
+                patch.set(i, j, Bend { theta: now.theta + push, omega: [x, z] }, before);
+            }
+        }
+    }
+
+    /// Displacement of the grass (rad) at the corners of a patch's tiles, row by row.
+    fn pushes_rad(&self, layout: &PatchLayout, patch: PatchIndex, dt_secs: f32) -> Vec<f32> {
+        let [corner_x, corner_z] = layout.corner_m(patch);
+        let (tile_m, corners) = (TILE as f32 * layout.cell_m, layout.cells as usize / TILE + 1);
+        let scale_m = f64::from(self.settings.scale_m);
+        let most = self.settings.strength_rad_per_s2 * dt_secs * dt_secs;
+        let push = |n: usize| {
+            let at_m = [(n % corners) as f32 * tile_m + corner_x, (n / corners) as f32 * tile_m + corner_z];
+            let [x, z] =
+                [0, 1].map(|axis| (f64::from(at_m[axis]) - f64::from(self.settings.drift_m_per_s[axis]) * self.time_secs) / scale_m);
+            most * (self.noise.get([x, z, self.time_secs * CHANGE_PER_S]) as f32).max(0.0)
+        };
+        (0..corners * corners).map(push).collect()
+    }
+}

@@ -1,0 +1,205 @@
+//! The bend field and the forces on it; a step is active regions, contact, wind, and propagation.
+
+use super::bodies::Bodies;
+use super::camera::Camera;
+use super::contact::Contact;
+use super::flattened::{self, FlattenedGrass};
+use super::grass_properties::GrassProperties;
+use super::grass_state::{self, GrassState};
+use super::ground_wind::GroundWind;
+use super::gust_noise::GustNoise;
+use super::pool::Pool;
+use super::prescribed_wind::{PrescribedWind, PrescribedWinds};
+use super::regions::Regions;
+use super::swept_footprint::SweptFootprint;
+use super::wind_drawing::WindDrawings;
+use crate::checksum::Checksum;
+use crate::objects::{Motion, MotionError};
+use prairie_core::bend::{Field, Kinds, Patch, Report, Scheme, StepError};
+use prairie_core::grid::{PatchIndex, PatchLayout};
+use prairie_core::scene::Scene;
+use prairie_core::terrain::{CoverMap, HeightMap};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Margin around contacts within which patches are woken (m).
+const MARGIN_M: f32 = 1.0;
+
+/// The bend field and everything that acts on it.
+pub struct BendSimulation {
+    field: Field,
+    scheme: Scheme,
+    height: Arc<HeightMap>,
+    properties: GrassProperties,
+    gusts: Option<GustNoise>,
+    bodies: Bodies,
+    winds: PrescribedWinds,
+    flattened: FlattenedGrass,
+    motions: Vec<Motion>,
+    rejected: Vec<MotionError>,
+    rejected_count: u64,
+    reset_count: u64,
+    regions: Regions,
+    report: Report,
+}
+
+impl BendSimulation {
+    /// Grass at rest, without hand-drawn winds.
+    pub fn new(scene: &Scene, height: Arc<HeightMap>, cover: &CoverMap) -> Self {
+        Self::with_drawings(scene, height, cover, &WindDrawings::new())
+    }
+
+    /// Grass at rest. A wind whose drawing is not among `drawings` is left out.
+    pub fn with_drawings(scene: &Scene, height: Arc<HeightMap>, cover: &CoverMap, drawings: &WindDrawings) -> Self {
+        let (layout, settings, limit) = (PatchLayout::from(&scene.patches), scene.bend, scene.patches.awake_limit as usize);
+        let field = Field::new(layout, Kinds::of(scene, cover))
+            .with_edges(settings.edges)
+            .with_seams(settings.seams)
+            .with_rest(settings.rest())
+            .with_awake_limit(limit);
+        // As many tiles as in all awake patches together.
+        let tile_limit = limit * (layout.cells as usize / flattened::TILE).pow(2);
+        Self {
+            field,
+            scheme: settings.scheme,
+            height,
+            properties: GrassProperties::new(scene, cover),
+            gusts: GustNoise::new(scene),
+            bodies: Bodies::new(&scene.objects),
+            winds: PrescribedWinds::new(scene, drawings),
+            flattened: FlattenedGrass::new(layout, scene.grass.laid_recovery_secs, tile_limit),
+            motions: vec![],
+            rejected: vec![],
+            rejected_count: 0,
+            reset_count: 0,
+            regions: Regions::new(limit),
+            report: Report::default(),
+        }
+    }
+
+    /// The bend field.
+    pub fn field(&self) -> &Field {
+        &self.field
+    }
+
+    /// Diagnostics of the newest step.
+    pub fn report(&self) -> Report {
+        self.report
+    }
+
+    /// Sum of θ² + ω² over all cells (mixed units).
+    pub fn activity(&self) -> f64 {
+        let patches: Vec<_> = self.field.awake().collect();
+        let activities: Vec<_> = patches.par_iter().map(|patch| patch.activity()).collect();
+        // `sum` of an empty list would be −0.
+        activities.into_iter().fold(0.0, |sum, activity| sum + activity)
+    }
+
+    /// Number of patches so far that were put to sleep because of the limit of awake patches.
+    pub fn evicted(&self) -> u64 {
+        self.regions.evicted()
+    }
+
+    /// Number of patches so far that were put to rest because their grass moved faster than the scheme can follow, or was NaN or infinite.
+    pub fn reset_count(&self) -> u64 {
+        self.reset_count
+    }
+
+    /// Grass that stays bent below the weight of objects.
+    pub fn flattened(&self) -> &FlattenedGrass {
+        &self.flattened
+    }
+
+    /// Areas swept by prisms of objects in the newest step at less than `below_m` above the terrain, with their clearance (m).
+    pub fn swept_below(&self, below_m: f32) -> impl Iterator<Item = (SweptFootprint, f32)> {
+        let cell_m = self.field.layout().cell_m;
+        self.motions.iter().flat_map(move |motion| self.bodies.swept_below(motion, &self.height, below_m, cell_m))
+    }
+
+    /// Total lean of the grass at a position (rad, as a vector along X and Z): wind, flattened grass and bend field together.
+    pub fn lean_rad(&self, at_m: [f32; 2], wind: &GroundWind) -> [f32; 2] {
+        grass_state::total_lean_rad(&self.field, &self.flattened, wind, at_m)
+    }
+
+    /// Motions that the newest step rejected as invalid. They have no effect on the grass.
+    pub fn rejected(&self) -> &[MotionError] {
+        &self.rejected
+    }
+
+    /// Number of motions rejected so far.
+    pub fn rejected_count(&self) -> u64 {
+        self.rejected_count
+    }
+
+    /// Advances the grass by one step: active regions, contact, prescribed wind, gusts, propagation. Invalid motions are [rejected](Self::rejected).
+    pub fn step(&mut self, dt_secs: f32, motions: &[Motion], cameras: &[Camera], wind: &GroundWind) {
+        let motions = self.validated(motions);
+        let cell_m = self.field.layout().cell_m;
+        let (bodies, height, properties) = (&self.bodies, &*self.height, &self.properties);
+        let contacts: Vec<_> = motions.iter().flat_map(|motion| bodies.contacts(motion, height, properties, cell_m)).collect();
+        let winds = self.winds.step(&motions, &self.height, dt_secs);
+        let gusty = self.gusts.as_ref().map(|gusts| gusts.patches(self.field.layout(), cameras)).unwrap_or_default();
+        if self.scheme == Scheme::Modal {
+            // Broken patches are woken again at rest.
+            self.field.wake_all();
+        } else {
+            let touched = [self.touched(&contacts, &winds), gusty.clone()].concat();
+            self.regions.update(&mut self.field, &touched, cameras);
+        }
+        let (field, flattened) = (&mut self.field, &mut self.flattened);
+        let mut grass = GrassState { field, flattened, wind, height: &self.height, properties: &self.properties };
+        contacts.iter().for_each(|contact| contact.press(&mut grass, dt_secs));
+        winds.iter().for_each(|wind| wind.press(&mut grass));
+        if let Some(gusts) = &mut self.gusts {
+            gusts.push(&mut self.field, &gusty, dt_secs);
+        }
+        self.motions = motions;
+        self.flattened.step(dt_secs, cameras);
+        self.report = self.propagate(dt_secs);
+        self.reset_count += u64::from(self.report.reset_patches);
+    }
+
+    /// Adds the bend field and the flattened grass to a checksum.
+    pub(crate) fn hash(&self, sum: &mut Checksum) {
+        for patch in self.field.awake() {
+            sum.add([patch.index()]);
+            for row in patch.rows().chain(patch.rows_before()) {
+                sum.add(row.into_iter().flatten().map(|v| v.to_bits()));
+            }
+        }
+        sum.add(self.flattened.words());
+    }
+
+    /// Propagates the waves. Grass that needs more sub-steps than allowed is put to rest and counts as reset.
+    fn propagate(&mut self, dt_secs: f32) -> Report {
+        let mut reset_patches = 0;
+        loop {
+            match self.field.step(self.scheme, dt_secs, &Pool) {
+                Ok(report) => return Report { reset_patches: report.reset_patches + reset_patches, ..report },
+                Err(StepError::TooFast { omega_rad_per_s, .. }) => {
+                    let is_fastest = |patch: &&Patch| patch.omega_max_rad_per_s() >= omega_rad_per_s;
+                    let fastest: Vec<_> = self.field.awake().filter(is_fastest).map(Patch::index).collect();
+                    reset_patches += fastest.len() as u32;
+                    fastest.into_iter().for_each(|patch| self.field.sleep(patch));
+                }
+                // Other errors cannot occur in a checked scene: the step is positive, and the modal scheme suits the scene.
+                Err(_) => return Report { reset_patches, ..Report::default() },
+            }
+        }
+    }
+
+    /// The valid motions. The errors of the others are kept.
+    fn validated(&mut self, motions: &[Motion]) -> Vec<Motion> {
+        self.rejected = motions.iter().filter_map(|motion| motion.check().err()).collect();
+        self.rejected_count += self.rejected.len() as u64;
+        motions.iter().filter(|motion| motion.check().is_ok()).copied().collect()
+    }
+
+    /// Patches near moving objects and prescribed winds.
+    fn touched(&self, contacts: &[Contact], winds: &[PrescribedWind]) -> Vec<PatchIndex> {
+        let layout = self.field.layout();
+        let around = |[low, high]: [[f32; 2]; 2]| layout.patches_touching(low.map(|m| m - MARGIN_M), high.map(|m| m + MARGIN_M));
+        let bodies = contacts.iter().filter(|contact| !contact.is_at_rest).flat_map(|contact| around(contact.swept.bounds_m()));
+        bodies.chain(winds.iter().flat_map(|wind| around(wind.footprint().bounds_m()))).collect()
+    }
+}

@@ -1,0 +1,48 @@
+//! State shared by all requests and sessions.
+
+use crate::config::Limits;
+use crate::metrics::ServerStats;
+use crate::runner::Published;
+use crate::stream::{Clients, Counters};
+use crate::world::Command;
+use bytes::Bytes;
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+use std::time::Instant;
+use tokio::sync::{Semaphore, mpsc, watch};
+
+/// State shared by all requests and sessions.
+#[derive(Debug)]
+pub(crate) struct App {
+    pub(crate) clients: Arc<Clients>,
+    pub(crate) counters: Arc<Counters>,
+    pub(crate) published: watch::Receiver<Arc<Published>>,
+    pub(crate) commands: mpsc::Sender<Command>,
+    pub(crate) scene_name: String,
+    /// The encoded scene message, the same for all clients.
+    pub(crate) scene: Bytes,
+    pub(crate) limits: Limits,
+    /// One permit per additional client.
+    pub(crate) client_slots: Arc<Semaphore>,
+    /// One permit per additional WebSocket before its hello.
+    pub(crate) pending_slots: Arc<Semaphore>,
+    /// True as soon as the server stops.
+    pub(crate) stopping: watch::Receiver<bool>,
+    pub(crate) started: Instant,
+}
+
+impl App {
+    /// The server's own metrics.
+    pub(crate) fn stats(&self, dropped_secs: f64) -> ServerStats {
+        ServerStats {
+            uptime_secs: self.started.elapsed().as_secs_f64(),
+            dropped_secs,
+            sent_bytes: self.clients.sent_bytes(),
+            encodings: self.counters.encodings.load(Relaxed),
+            cached_patches: self.counters.cached_patches.load(Relaxed),
+            held_patches: self.counters.held_patches.load(Relaxed),
+            frames: self.counters.frames.load(Relaxed),
+            skipped_frames: self.counters.skipped_frames.load(Relaxed),
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Interface between the physics and a kind of vehicle.
+
+use super::prism::Prism;
+use super::terrain_colliders::TerrainColliders;
+use prairie_core::scene::Objects;
+use prairie_core::wire::Drive;
+use rapier3d::prelude::*;
+
+/// Definition of a kind of vehicle on the server. Each kind has one file in [`kinds`](super::kinds).
+pub(super) struct VehicleDynamics {
+    /// Rigid body and colliders, for the scene's settings.
+    pub(super) body: fn(&Objects) -> (RigidBodyBuilder, Vec<ColliderBuilder>),
+    /// Controller of a body that has just been placed with a heading (rad).
+    pub(super) controller: fn(RigidBodyHandle, &Objects, f32) -> Box<dyn Controller>,
+    /// Prisms that can touch grass, higher ones first. A lower prism presses the grass that a higher one has bent.
+    pub(super) prisms: fn(&Objects) -> Vec<Prism>,
+    /// Effect on the air.
+    pub(super) airflow: Airflow,
+    /// Whether its floor follows the terrain below its centre. Others start on the highest terrain below them.
+    pub(super) follows_terrain: bool,
+    /// Whether its rotation has no effect on the grass.
+    pub(super) is_round: bool,
+    /// Colour of its trail in recordings.
+    pub(super) trail_rgb: [u8; 3],
+}
+
+/// Effect of a vehicle on the air.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Airflow {
+    /// A rotor blows air down.
+    Downwash,
+    /// The vehicle drags air along.
+    Wake,
+    /// Too little air to matter.
+    Negligible,
+}
+
+/// Surroundings of a vehicle in one step.
+pub(super) struct ControlStep<'a> {
+    pub(super) dt_secs: f32,
+    pub(super) physics: &'a mut PhysicsWorld,
+    pub(super) terrain: &'a TerrainColliders,
+    /// Wind (m/s) at a position (m).
+    pub(super) wind_m_per_s: &'a dyn Fn([f32; 3]) -> [f32; 3],
+}
+
+/// Moves one vehicle.
+pub(super) trait Controller: Send {
+    /// Turns the driver's input into forces or velocities of the body.
+    fn control(&mut self, drive: Drive, step: &mut ControlStep<'_>);
+
+    /// Angle of the moving part (rad), as in [`ObjectPose`](prairie_core::wire::ObjectPose).
+    fn part_rad(&self) -> f32 {
+        0.0
+    }
+}

@@ -1,0 +1,123 @@
+//! Vehicle models from glTF files.
+//!
+//! Files are not trusted: sizes, counts and offsets are checked before use.
+
+mod assemble;
+mod source;
+#[cfg(test)]
+mod tests;
+
+use glam::Vec3;
+use prairie_core::wire::Mesh;
+use source::Source;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Largest model file, and largest total size of a model's buffers (bytes).
+pub const FILE_LIMIT: u64 = 32 << 20;
+
+/// Largest number of mesh primitives that the nodes of a model refer to.
+pub const PART_LIMIT: usize = 65_536;
+
+/// Error in a model file.
+#[derive(Debug, Error)]
+#[error("model {} {reason}", path.display())]
+pub struct ModelError {
+    /// The file.
+    pub path: PathBuf,
+    /// Problem; continues the sentence after the file's name.
+    pub reason: ModelFault,
+}
+
+/// Problem of a model file.
+#[derive(Debug, Error)]
+pub enum ModelFault {
+    /// The file cannot be read.
+    #[error("cannot be read: {0}")]
+    Unreadable(String),
+    /// The file is not valid glTF.
+    #[error("is no sound glTF 2.0 file (.glb or .gltf): {0}")]
+    NotGltf(String),
+    /// A buffer cannot be read.
+    #[error("keeps its data in `{uri}`, which {reason}")]
+    Buffer {
+        /// Location of the buffer.
+        uri: String,
+        /// Problem of the buffer.
+        reason: String,
+    },
+    /// A node is its own ancestor, or has two parents.
+    #[error("places node {0} more than once; each node may have one parent, and none may be its own ancestor")]
+    NodeTwice(usize),
+    /// The model has no triangles.
+    #[error("holds no triangles; at least one mesh of triangles with positions is needed")]
+    Empty,
+    /// The model is too large.
+    #[error("has more than {limit} {what}; at most {limit} are allowed")]
+    TooLarge {
+        /// Counted items.
+        what: &'static str,
+        /// Allowed number.
+        limit: usize,
+    },
+    /// Values of the wrong type.
+    #[error("holds {what} as {found}; allowed: {allowed}")]
+    Kind {
+        /// Role of the values.
+        what: &'static str,
+        /// Shape and type in the file.
+        found: String,
+        /// Allowed shapes and types.
+        allowed: String,
+    },
+    /// Values outside the data, missing, or sparse.
+    #[error("holds {0} values that do not lie one after the other within its data")]
+    Outside(&'static str),
+    /// Positions that are NaN, infinite or too far apart.
+    #[error("has positions that are not finite numbers, or too far apart to be measured")]
+    NotFinite,
+    /// An index out of range.
+    #[error("refers to vertex {index} of a mesh that has {vertices}")]
+    Index {
+        /// The index.
+        index: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+}
+
+/// Reads a `.glb` or `.gltf` file as a vehicle's model.
+///
+/// The mesh consists of the triangles of all meshes of the default scene, normals (computed from the faces where the file has none), and base colours of
+/// materials times vertex colours. It is scaled uniformly to fit the box with these half extents (m) and put on its floor. glTF models face +Z; the
+/// result faces −Z. At most [`Mesh::VERTEX_LIMIT`] vertices and [`Mesh::INDEX_LIMIT`] indices.
+///
+/// # Errors
+/// [`ModelError`] names the file and its problem.
+pub fn read(path: &Path, half_extents_m: [f32; 3]) -> Result<Mesh, ModelError> {
+    let source = Source::open(path);
+    source
+        .and_then(|source| source.mesh())
+        .and_then(|mesh| fitted(mesh, half_extents_m))
+        .map_err(|reason| ModelError { path: path.to_owned(), reason })
+}
+
+/// The mesh turned to face −Z, scaled into a box and put on its floor.
+fn fitted(mut mesh: Mesh, half_extents_m: [f32; 3]) -> Result<Mesh, ModelFault> {
+    let turned = |[x, y, z]: [f32; 3]| Vec3::new(-x, y, -z);
+    let bounds = |(low, high): (Vec3, Vec3), &position: &[f32; 3]| (low.min(turned(position)), high.max(turned(position)));
+    let (low, high) = mesh.positions_m.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), bounds);
+    if !(mesh.positions_m.iter().flatten().all(|v| v.is_finite()) && (high - low).is_finite() && (high + low).is_finite()) {
+        return Err(ModelFault::NotFinite);
+    }
+    let half = Vec3::from_array(half_extents_m);
+    let scale = (2.0 * half / (high - low).max(Vec3::splat(1e-6))).min_element();
+    let foot = Vec3::new(0.5 * (low.x + high.x), low.y, 0.5 * (low.z + high.z));
+    for position in &mut mesh.positions_m {
+        *position = ((turned(*position) - foot) * scale - Vec3::Y * half.y).to_array();
+    }
+    for normal in &mut mesh.normals {
+        *normal = turned(*normal).to_array();
+    }
+    Ok(mesh)
+}

@@ -1,0 +1,102 @@
+//! A glTF file with its buffers, and checks that the `gltf` readers leave to their callers.
+
+use super::{FILE_LIMIT, ModelFault};
+use crate::file;
+use gltf::accessor::{DataType, Dimensions};
+use gltf::{Accessor, Document, Gltf, binary, buffer};
+use std::path::Path;
+
+/// A document and its buffers.
+pub(super) struct Source {
+    pub(super) document: Document,
+    pub(super) buffers: Vec<Vec<u8>>,
+}
+
+/// Allowed types of an attribute or of indices.
+pub(super) struct Role {
+    name: &'static str,
+    shapes: &'static [Dimensions],
+    types: &'static [DataType],
+}
+
+pub(super) const POSITION: Role = Role { name: "POSITION", shapes: &[Dimensions::Vec3], types: &[DataType::F32] };
+pub(super) const NORMAL: Role = Role { name: "NORMAL", shapes: &[Dimensions::Vec3], types: &[DataType::F32] };
+pub(super) const COLOUR: Role =
+    Role { name: "COLOR_0", shapes: &[Dimensions::Vec3, Dimensions::Vec4], types: &[DataType::F32, DataType::U8, DataType::U16] };
+pub(super) const INDICES: Role =
+    Role { name: "indices", shapes: &[Dimensions::Scalar], types: &[DataType::U8, DataType::U16, DataType::U32] };
+
+impl Source {
+    pub(super) fn open(path: &Path) -> Result<Self, ModelFault> {
+        let bytes = file::read(path, FILE_LIMIT).map_err(ModelFault::Unreadable)?;
+        let Gltf { document, mut blob } = Gltf::from_slice(&bytes).map_err(not_gltf)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut buffers = Vec::new();
+        let mut held = 0;
+        for buffer in document.buffers() {
+            let bytes = match buffer.source() {
+                buffer::Source::Bin => blob.take().ok_or_else(|| ModelFault::NotGltf("it has no binary part".to_owned()))?,
+                buffer::Source::Uri(uri) => at_uri(uri, folder)?,
+            };
+            if bytes.len() < buffer.length() {
+                return Err(not_gltf(gltf::Error::BufferLength { buffer: buffer.index(), expected: buffer.length(), actual: bytes.len() }));
+            }
+            held += bytes.len() as u64;
+            if held > FILE_LIMIT {
+                return Err(ModelFault::TooLarge { what: "bytes in its buffers", limit: FILE_LIMIT as usize });
+            }
+            buffers.push(bytes);
+        }
+        Ok(Self { document, buffers })
+    }
+
+    /// Number of the accessor's values, after checking them. The readers of `gltf` panic for unknown types and for a stride shorter than a value, so
+    /// this must come first.
+    pub(super) fn count(&self, role: &Role, accessor: Option<Accessor<'_>>) -> Result<Option<usize>, ModelFault> {
+        let Some(accessor) = accessor else { return Ok(None) };
+        let (shape, data_type) = (accessor.dimensions(), accessor.data_type());
+        if !(role.shapes.contains(&shape) && role.types.contains(&data_type)) {
+            let found = format!("{shape:?} of {data_type:?}");
+            let allowed = format!("{} of {}", any_of(role.shapes), any_of(role.types));
+            return Err(ModelFault::Kind { what: role.name, found, allowed });
+        }
+        if accessor.sparse().is_none() && self.holds(&accessor) { Ok(Some(accessor.count())) } else { Err(ModelFault::Outside(role.name)) }
+    }
+
+    /// Whether all values are within the accessor's view, and the view within its buffer.
+    fn holds(&self, accessor: &Accessor<'_>) -> bool {
+        let Some(view) = accessor.view() else { return false };
+        let stride = view.stride().unwrap_or(accessor.size());
+        let end = |start: usize, length: usize| start.checked_add(length);
+        let last = accessor.count().checked_sub(1).and_then(|before| before.checked_mul(stride)).and_then(|at| end(at, accessor.offset()));
+        stride >= accessor.size()
+            && last.and_then(|last| end(last, accessor.size())).is_some_and(|end| end <= view.length())
+            && end(view.offset(), view.length()).is_some_and(|end| end <= self.buffers[view.buffer().index()].len())
+    }
+}
+
+fn at_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, ModelFault> {
+    let unfit = |uri: &str, reason: String| ModelFault::Buffer { uri: uri.to_owned(), reason };
+    if uri.starts_with("data:") {
+        let data = buffer::Data::from_source(buffer::Source::Uri(uri), None);
+        return data.map(|data| data.0).map_err(|error| unfit("data:…", format!("is no base64: {error}")));
+    }
+    let name = urlencoding::decode(uri).map_err(|error| unfit(uri, format!("is no name of a file: {error}")))?;
+    if name.contains("://") {
+        return Err(unfit(uri, "is elsewhere; allowed: a path relative to the model, or data within it".to_owned()));
+    }
+    file::read(&folder.join(name.as_ref()), FILE_LIMIT).map_err(|reason| unfit(uri, format!("cannot be read: {reason}")))
+}
+
+fn not_gltf(error: gltf::Error) -> ModelFault {
+    use binary::Error::{ChunkLength, Io, Length};
+    ModelFault::NotGltf(match error {
+        gltf::Error::Io(_) | gltf::Error::Binary(Io(_) | Length { .. } | ChunkLength { .. }) => "it ends too early".to_owned(),
+        gltf::Error::Validation(errors) => errors.first().map_or_else(String::new, |(path, error)| format!("{path} is wrong ({error})")),
+        other => other.to_string(),
+    })
+}
+
+fn any_of(kinds: &[impl std::fmt::Debug]) -> String {
+    kinds.iter().map(|kind| format!("{kind:?}")).collect::<Vec<_>>().join(" or ")
+}

@@ -1,0 +1,182 @@
+//! Colliders of terrain, tree trunks and stones, which exist only near the objects.
+
+use super::environment::Environment;
+use prairie_core::scene::Plants;
+use prairie_core::terrain::{Cover, HeightMap};
+use rapier3d::parry::utils::Array2;
+use rapier3d::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// Collision group of the terrain. Vehicles that follow the terrain themselves exclude it.
+pub(super) const TERRAIN: Group = Group::GROUP_2;
+
+/// Minimum side of a tile (m).
+const TILE_M: f32 = 24.0;
+/// Finest and coarsest distance between the heights of a tile (m).
+const SPACING_M: [f32; 2] = [0.1, 2.0];
+/// A tile is created when an object is within this distance (m), and removed when no object is within [`KEEP_M`].
+const CREATE_M: f32 = 12.0;
+const KEEP_M: f32 = 30.0;
+/// Largest number of trees and stones in a tile that are obstacles; any others can be driven through.
+const OBSTACLES_PER_TILE: usize = 256;
+/// Radius of a trunk relative to the tree's height.
+const TRUNK_RADIUS: f32 = 0.03;
+
+type TileIndex = [i32; 2];
+
+/// A tree or a stone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Obstacle {
+    pub(super) at_m: [f32; 2],
+    pub(super) radius_m: f32,
+    pub(super) half_height_m: Option<f32>,
+}
+
+/// Colliders of terrain, trunks and stones.
+pub(super) struct TerrainColliders {
+    height: Arc<HeightMap>,
+    spacing_m: [f32; 2],
+    tile_m: [f32; 2],
+    obstacles: BTreeMap<TileIndex, Vec<Obstacle>>,
+    created: BTreeMap<TileIndex, Vec<ColliderHandle>>,
+}
+
+impl TerrainColliders {
+    pub(super) fn new(environment: &Environment, plants: &Plants) -> Self {
+        let height = environment.height.clone();
+        let spacing_m = height.pixel_m().map(spacing_m);
+        let tile_m = spacing_m.map(|spacing| (TILE_M / spacing).ceil() * spacing);
+        let mut colliders = Self { height, spacing_m, tile_m, obstacles: BTreeMap::new(), created: BTreeMap::new() };
+        let tree = |at_m| Obstacle { at_m, radius_m: plants.tree_m * TRUNK_RADIUS, half_height_m: Some(0.5 * plants.tree_m) };
+        let stone = |at_m| Obstacle { at_m, radius_m: 0.5 * plants.stone_m, half_height_m: None };
+        environment.cover.places_m(Cover::Tree, environment.extent_m).for_each(|at_m| colliders.put(tree(at_m)));
+        environment.cover.places_m(Cover::Stone, environment.extent_m).for_each(|at_m| colliders.put(stone(at_m)));
+        colliders
+    }
+
+    /// Height of the terrain (m).
+    pub(super) fn height_m(&self, at_m: [f32; 2]) -> f32 {
+        self.height.height_m(at_m[0], at_m[1])
+    }
+
+    /// Slope of the terrain (∂h/∂x, ∂h/∂z).
+    pub(super) fn slope(&self, at_m: [f32; 2]) -> [f32; 2] {
+        self.height.slope(at_m[0], at_m[1])
+    }
+
+    /// Whether there is no tree or stone within `radius_m`.
+    pub(super) fn is_free(&self, at_m: [f32; 2], radius_m: f32) -> bool {
+        self.tiles_around(at_m, radius_m + TILE_M).all(|tile| {
+            self.obstacles.get(&tile).is_none_or(|obstacles| {
+                obstacles.iter().all(|obstacle| {
+                    let reach = radius_m + obstacle.radius_m;
+                    squared_distance(obstacle.at_m, at_m) > reach * reach
+                })
+            })
+        })
+    }
+
+    /// Whether there are no colliders.
+    pub(super) fn is_empty(&self) -> bool {
+        self.created.is_empty()
+    }
+
+    /// Creates the tiles near `objects_m` and removes those far from all.
+    pub(super) fn follow(&mut self, objects_m: &[[f32; 2]], physics: &mut PhysicsWorld) {
+        let around = |reach_m| objects_m.iter().flat_map(|&at_m| self.tiles_around(at_m, reach_m)).collect::<BTreeSet<_>>();
+        let (create, keep) = (around(CREATE_M), around(KEEP_M));
+        self.created.retain(|tile, colliders| {
+            let stays = keep.contains(tile);
+            if !stays {
+                for &collider in colliders.iter() {
+                    physics.remove_collider(collider);
+                }
+            }
+            stays
+        });
+        for tile in create {
+            if !self.created.contains_key(&tile) {
+                let colliders = self.colliders(tile).into_iter().map(|collider| physics.insert_collider(collider, None)).collect();
+                self.created.insert(tile, colliders);
+            }
+        }
+    }
+
+    fn put(&mut self, obstacle: Obstacle) {
+        let obstacles = self.obstacles.entry(self.tile_at(obstacle.at_m)).or_default();
+        if obstacles.len() < OBSTACLES_PER_TILE {
+            obstacles.push(obstacle);
+        }
+    }
+
+    fn tile_at(&self, at_m: [f32; 2]) -> TileIndex {
+        std::array::from_fn(|axis| (at_m[axis] / self.tile_m[axis]).floor() as i32)
+    }
+
+    fn tiles_around(&self, at_m: [f32; 2], reach_m: f32) -> impl Iterator<Item = TileIndex> + use<> {
+        let [x0, z0] = self.tile_at(at_m.map(|m| m - reach_m));
+        let [x1, z1] = self.tile_at(at_m.map(|m| m + reach_m));
+        (z0..=z1).flat_map(move |z| (x0..=x1).map(move |x| [x, z]))
+    }
+
+    fn colliders(&self, tile: TileIndex) -> Vec<ColliderBuilder> {
+        let groups = InteractionGroups::new(TERRAIN, Group::ALL, InteractionTestMode::And);
+        let mut colliders = vec![self.terrain(tile).collision_groups(groups)];
+        for obstacle in self.obstacles.get(&tile).into_iter().flatten() {
+            let [x, z] = obstacle.at_m;
+            let foot = self.height_m(obstacle.at_m);
+            colliders.push(match obstacle.half_height_m {
+                Some(half) => ColliderBuilder::cylinder(half, obstacle.radius_m).translation(Vector::new(x, foot + half, z)),
+                None => ColliderBuilder::ball(obstacle.radius_m).translation(Vector::new(x, foot, z)),
+            });
+        }
+        colliders
+    }
+
+    /// The terrain of a tile. The height map is bilinear between pixels, the collider piecewise linear between its nodes. They differ by at most a
+    /// quarter of the twist of a cell of the collider.
+    fn terrain(&self, tile: TileIndex) -> ColliderBuilder {
+        let [columns, rows] = std::array::from_fn(|axis| (self.tile_m[axis] / self.spacing_m[axis]).round() as usize + 1);
+        let corner: [f32; 2] = std::array::from_fn(|axis| tile[axis] as f32 * self.tile_m[axis]);
+        let mut heights = Array2::zeros(rows, columns);
+        for row in 0..rows {
+            for column in 0..columns {
+                let x = corner[0] + column as f32 * self.spacing_m[0];
+                let z = corner[1] + row as f32 * self.spacing_m[1];
+                heights[(row, column)] = self.height_m([x, z]);
+            }
+        }
+        let center = Vector::new(corner[0] + 0.5 * self.tile_m[0], 0.0, corner[1] + 0.5 * self.tile_m[1]);
+        let scale = Vector::new(self.tile_m[0], 1.0, self.tile_m[1]);
+        // Without this flag a ball that rolls over flat terrain bounces off the edges of the triangles.
+        let flags = HeightFieldFlags::FIX_INTERNAL_EDGES;
+        ColliderBuilder::heightfield_with_flags(heights, scale, flags).translation(center).friction(0.8)
+    }
+}
+
+/// Distance between the heights of a tile: a fraction or a multiple of the map's pixels, which keeps the creases of the terrain.
+fn spacing_m(pixel_m: f32) -> f32 {
+    let [fine, coarse] = SPACING_M;
+    if pixel_m >= coarse { pixel_m / (pixel_m / coarse).ceil() } else { pixel_m * (fine / pixel_m).ceil() }
+}
+
+fn squared_distance(a: [f32; 2], b: [f32; 2]) -> f32 {
+    let [x, z] = [a[0] - b[0], a[1] - b[1]];
+    x * x + z * z
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_coincide_with_pixels() {
+        for pixel_m in [0.01, 0.07, 0.1, 0.5, 1.9, 2.0, 7.3, 75.0] {
+            let spacing = spacing_m(pixel_m);
+            let ratio = if spacing > pixel_m { spacing / pixel_m } else { pixel_m / spacing };
+            assert!((ratio - ratio.round()).abs() < 1e-4, "{pixel_m}: {spacing}");
+            assert!((0.0999..=2.0001).contains(&spacing), "{pixel_m}: {spacing}");
+        }
+    }
+}

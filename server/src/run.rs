@@ -1,0 +1,152 @@
+//! One run of the server: from opening the recording to the shutdown notices.
+
+use crate::config::{Config, Limits};
+use crate::inspect::{InspectError, Inspector};
+use crate::net::{self, App};
+use crate::runner::{Published, Runner, Simulation, Timing};
+use crate::settings_error::SettingsError;
+use crate::stream::{self, Clients, Streamer};
+use crate::world::World;
+use prairie_core::grid::PatchLayout;
+use prairie_core::wire::{self, ServerMessage};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use thiserror::Error;
+use tokio::net::TcpListener;
+use tokio::sync::{Semaphore, watch};
+use tokio::time::timeout;
+
+/// Time limit for the shutdown notices to all clients.
+const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(2);
+
+/// Reasons why a run did not start, or ended early.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The system refused to start a thread.
+    #[error("cannot start the threads of the simulation: {0}")]
+    Threads(#[from] std::io::Error),
+    /// The listening socket failed.
+    #[error("the listening socket failed: {0}")]
+    Socket(std::io::Error),
+    /// The scene's constants contradict each other.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The recording cannot be opened.
+    #[error(transparent)]
+    Inspect(#[from] InspectError),
+    /// The world's thread panicked, which is a bug.
+    #[error("the simulation stopped unexpectedly; the log says where")]
+    WorldStopped,
+    /// The streaming thread panicked, which is a bug.
+    #[error("the stream to the clients stopped unexpectedly; the log says where")]
+    StreamStopped,
+}
+
+/// Serves the scene on `listener` until `shutdown` completes; then notifies the clients and joins every thread.
+///
+/// `shutdown` is first polled after the world is built, the recording opened and every thread started, so it may begin by printing
+/// the address of the page.
+///
+/// # Errors
+/// [`RunError`] when the world cannot be built, or one of the threads fails.
+pub async fn run(mut config: Config, listener: TcpListener, shutdown: impl Future<Output = ()>) -> Result<(), RunError> {
+    let maps = config.scene.maps();
+    // Only needed to grow the plants, and possibly large.
+    config.scene.nutrients = None;
+    let world = World::new(&config.scene.scene, maps)?;
+    run_simulation(world, config, listener, shutdown).await
+}
+
+/// [`run`] with another simulation instead of the world.
+///
+/// # Errors
+/// As [`run`].
+pub async fn run_simulation(
+    simulation: impl Simulation,
+    config: Config,
+    listener: TcpListener,
+    shutdown: impl Future<Output = ()>,
+) -> Result<(), RunError> {
+    let scene = &config.scene.scene;
+    let layout = PatchLayout::from(&scene.patches);
+    let timing = Timing { tick_hz: scene.tick_hz, publish_hz: config.publish_hz, threads: config.threads };
+    let inspector =
+        config.rerun.as_ref().map(|target| Inspector::start(target, scene, &config.scene.height, &config.scene.cover)).transpose()?;
+    let runner = Runner::start(simulation, timing)?;
+    let mut published = runner.published();
+    let clients = Arc::new(Clients::default());
+    let streamer = Streamer::new(layout, config.limits.send, timing.published_hz());
+    let counters = streamer.counters();
+    let mut stream = stream::start(streamer, runner.published(), clients.clone(), runner.commands())?;
+    let (stop, stopping) = watch::channel(false);
+    let Limits { clients: client_limit, pending: pending_limit, .. } = config.limits;
+    let (client_slots, pending_slots) = (Arc::new(Semaphore::new(client_limit)), Arc::new(Semaphore::new(pending_limit)));
+    let app = Arc::new(App {
+        clients: clients.clone(),
+        counters,
+        published: runner.published(),
+        commands: runner.commands(),
+        scene_name: config.scene.name.clone(),
+        scene: scene_message(&config),
+        limits: config.limits,
+        client_slots: client_slots.clone(),
+        pending_slots: pending_slots.clone(),
+        stopping,
+        started: Instant::now(),
+    });
+    let recording = inspector.map(|inspector| tokio::spawn(record(inspector, runner.published(), clients.clone())));
+    let world_stopped = async { while published.changed().await.is_ok() {} };
+    let outcome = tokio::select! {
+        () = net::serve(listener, config.tls.clone(), net::router(app), config.limits) => Ok(()),
+        () = world_stopped => Err(RunError::WorldStopped),
+        () = stream.ended() => Err(RunError::StreamStopped),
+        () = shutdown => Ok(()),
+    };
+    stop.send_replace(true);
+    // Every session holds a slot until it has ended.
+    let sessions_ended =
+        async { (client_slots.acquire_many(client_limit as u32).await, pending_slots.acquire_many(pending_limit as u32).await) };
+    if timeout(SHUTDOWN_TIMEOUT, sessions_ended).await.is_err() {
+        tracing::warn!("some clients were disconnected without a shutdown notice");
+    }
+    let joined = tokio::task::spawn_blocking(move || (runner.stop(), stream.join())).await;
+    if let Some(recording) = recording
+        && let Ok(Err(error)) = recording.await
+    {
+        tracing::warn!(%error, "the recording is incomplete");
+    }
+    match joined {
+        Ok((true, true)) => outcome,
+        Ok((true, false)) => Err(RunError::StreamStopped),
+        _ => Err(RunError::WorldStopped),
+    }
+}
+
+/// Passes every published snapshot and the traffic to the inspector; closes the recording when the runner ends.
+async fn record(inspector: Inspector, mut published: watch::Receiver<Arc<Published>>, clients: Arc<Clients>) -> Result<(), InspectError> {
+    tracing::info!(target = inspector.target(), "recording for the rerun viewer");
+    let (mut since, mut sent_before) = (Instant::now(), 0);
+    while published.changed().await.is_ok() {
+        if since.elapsed() >= Duration::from_secs(1) {
+            let sent = clients.sent_bytes();
+            let sent_bytes_per_s = (sent - sent_before) as f64 / since.elapsed().as_secs_f64();
+            inspector.observe_traffic(clients.count() as u32, sent_bytes_per_s);
+            (since, sent_before) = (Instant::now(), sent);
+        }
+        let newest = Arc::clone(&published.borrow_and_update());
+        inspector.observe(&newest.snapshot);
+    }
+    tokio::task::spawn_blocking(move || inspector.finish()).await.unwrap_or_else(|panic| Err(InspectError::Sdk(panic.to_string())))
+}
+
+fn scene_message(config: &Config) -> bytes::Bytes {
+    let loaded = &config.scene;
+    let message = ServerMessage::Scene {
+        scene: Box::new(loaded.scene.clone()),
+        height_png: loaded.height_png.clone(),
+        covering_png: loaded.covering_png.clone(),
+        nutrient_png: loaded.nutrient_png.clone(),
+        models: loaded.models.clone(),
+    };
+    wire::encode(&message).into()
+}

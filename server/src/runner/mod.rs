@@ -1,0 +1,296 @@
+//! The simulation thread: owns the world, steps it in real time with the clients' commands, and publishes snapshots. It never waits for a reader.
+
+mod clock;
+mod counter_log;
+
+pub use clock::CATCH_UP_STEPS;
+
+use crate::snapshot::{PatchQuantiser, Snapshot};
+use crate::world::{Command, World};
+use clock::Clock;
+use counter_log::CounterLog;
+use prairie_core::wire::ObjectId;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+use tokio::sync::{mpsc, watch};
+
+/// Capacity of the command queue.
+const COMMAND_CAPACITY: usize = 1024;
+
+/// Number of steps over which the encoding of a snapshot is spread. Patches in a snapshot are up to `SNAPSHOT_STEPS − 1` steps old.
+pub const SNAPSHOT_STEPS: u64 = 3;
+
+/// Longest sleep of an idle world (s).
+const IDLE_SLEEP_SECS: f64 = 0.05;
+
+/// Interface of a simulation to the runner: the world, or a stand-in for tests.
+pub trait Simulation: Send + 'static {
+    /// Advances by one fixed step after carrying out `commands` in order.
+    fn step(&mut self, commands: &[Command]);
+    /// Encodes one part of the next snapshot, `[index, count]`, after a step without a snapshot. This spreads the cost over the steps.
+    fn quantise_ahead(&self, _quantiser: &mut PatchQuantiser, _part: [u64; 2]) {}
+    /// The state after the newest step. `quantiser` is the same at every call.
+    fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot;
+    /// The object that a client drives.
+    fn object_of(&self, client: u32) -> Option<ObjectId>;
+    /// Whether nothing but the wind moves. The runner then does all steps up to the next snapshot at once, which wakes the processor less often.
+    fn is_idle(&self) -> bool {
+        false
+    }
+}
+
+impl Simulation for World {
+    fn step(&mut self, commands: &[Command]) {
+        Self::step(self, commands);
+    }
+
+    fn quantise_ahead(&self, quantiser: &mut PatchQuantiser, part: [u64; 2]) {
+        Self::quantise_ahead(self, quantiser, part);
+    }
+
+    fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot {
+        Self::publish(self, quantiser)
+    }
+
+    fn object_of(&self, client: u32) -> Option<ObjectId> {
+        Self::object_of(self, client)
+    }
+
+    fn is_idle(&self) -> bool {
+        Self::is_idle(self)
+    }
+}
+
+/// The newest state, with information from the runner.
+#[derive(Clone, Debug, Default)]
+pub struct Published {
+    /// The world's state.
+    pub snapshot: Snapshot,
+    /// Outcome of each client's newest request for a vehicle.
+    pub requests: BTreeMap<u32, Request>,
+    /// Simulated time that was dropped because the machine is too slow (s).
+    pub dropped_secs: f64,
+}
+
+/// A client's request for a vehicle, granted or refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Request {
+    /// Step that decided it.
+    pub tick: u64,
+    /// The object, or `None` when the request was refused.
+    pub object: Option<ObjectId>,
+}
+
+/// Rates and threads of the runner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Timing {
+    /// Fixed steps per second (Hz).
+    pub tick_hz: f32,
+    /// Snapshots per second (Hz): one every `tick_hz / publish_hz` steps, rounded, and at least 1.
+    pub publish_hz: f32,
+    /// Threads of the world, including its own; by default one per core.
+    pub threads: Option<usize>,
+}
+
+impl Timing {
+    /// Steps between snapshots.
+    pub fn steps_per_publish(&self) -> u64 {
+        (self.tick_hz / self.publish_hz).round().max(1.0) as u64
+    }
+
+    /// Resulting snapshots per second (Hz).
+    pub fn published_hz(&self) -> f32 {
+        self.tick_hz / self.steps_per_publish() as f32
+    }
+}
+
+/// A running world.
+#[derive(Debug)]
+pub struct Runner {
+    commands: mpsc::Sender<Command>,
+    published: watch::Receiver<Arc<Published>>,
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Runner {
+    /// Starts the thread and publishes the state before the first step.
+    ///
+    /// # Errors
+    /// When the threads cannot be started.
+    pub fn start(simulation: impl Simulation, timing: Timing) -> std::io::Result<Self> {
+        let (commands, inbox) = mpsc::channel(COMMAND_CAPACITY);
+        let mut quantiser = PatchQuantiser::default();
+        let first = Published { snapshot: simulation.publish(&mut quantiser), ..Published::default() };
+        let (sender, published) = watch::channel(Arc::new(first));
+        let stop = Arc::new(AtomicBool::new(false));
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(timing.threads.unwrap_or(0))
+            .thread_name(|index| format!("world-{index}"))
+            .build()
+            .map_err(std::io::Error::other)?;
+        let stopped = stop.clone();
+        let thread = std::thread::Builder::new().name("world".to_owned()).spawn(move || {
+            pool.install(|| Loop::new(simulation, quantiser, timing, inbox, sender).run(&stopped));
+        })?;
+        Ok(Self { commands, published, stop, thread: Some(thread) })
+    }
+
+    /// Queue of commands to the world. It is bounded: use `try_send` for commands that may be lost.
+    pub fn commands(&self) -> mpsc::Sender<Command> {
+        self.commands.clone()
+    }
+
+    /// The newest state. The channel closes when the thread ends.
+    pub fn published(&self) -> watch::Receiver<Arc<Published>> {
+        self.published.clone()
+    }
+
+    /// Stops after the present step and waits for the thread. Returns whether it ended without a panic.
+    pub fn stop(mut self) -> bool {
+        self.stop.store(true, Relaxed);
+        self.thread.take().is_none_or(|thread| thread.join().is_ok())
+    }
+}
+
+impl Drop for Runner {
+    fn drop(&mut self) {
+        self.stop.store(true, Relaxed);
+    }
+}
+
+struct Loop<S> {
+    simulation: S,
+    quantiser: PatchQuantiser,
+    inbox: mpsc::Receiver<Command>,
+    sender: watch::Sender<Arc<Published>>,
+    clock: Clock,
+    steps_per_publish: u64,
+    tick: u64,
+    requests: BTreeMap<u32, Request>,
+    step_times: Vec<Duration>,
+    dropped: CounterLog,
+    evicted: CounterLog,
+    reset: CounterLog,
+}
+
+impl<S: Simulation> Loop<S> {
+    fn new(
+        simulation: S,
+        quantiser: PatchQuantiser,
+        timing: Timing,
+        inbox: mpsc::Receiver<Command>,
+        sender: watch::Sender<Arc<Published>>,
+    ) -> Self {
+        Self {
+            simulation,
+            quantiser,
+            inbox,
+            sender,
+            clock: Clock::new(f64::from(timing.tick_hz)),
+            steps_per_publish: timing.steps_per_publish(),
+            tick: 0,
+            requests: BTreeMap::new(),
+            step_times: Vec::new(),
+            dropped: CounterLog::default(),
+            evicted: CounterLog::default(),
+            reset: CounterLog::default(),
+        }
+    }
+
+    fn run(mut self, stop: &AtomicBool) {
+        let start = Instant::now();
+        while !stop.load(Relaxed) {
+            for _ in 0..self.clock.due(start.elapsed()) {
+                self.step();
+            }
+            if self.dropped.increase(self.clock.dropped).is_some() {
+                tracing::warn!(dropped_secs = self.clock.dropped_secs(), "the world is slower than real time; simulated time is dropped");
+            }
+            std::thread::sleep(self.clock.until(self.steps_at_once(), start.elapsed()));
+        }
+    }
+
+    /// Number of steps to do at once after the next sleep.
+    fn steps_at_once(&self) -> u64 {
+        if !self.simulation.is_idle() {
+            return 1;
+        }
+        let in_a_sleep = (IDLE_SLEEP_SECS * self.clock.tick_hz) as u64;
+        let to_publish = self.steps_per_publish - self.tick % self.steps_per_publish;
+        to_publish.min(in_a_sleep).clamp(1, CATCH_UP_STEPS / 2)
+    }
+
+    /// Steps until the next snapshot, 0 when it is due now.
+    fn steps_to_publish(&self) -> u64 {
+        (self.steps_per_publish - self.tick % self.steps_per_publish) % self.steps_per_publish
+    }
+
+    fn step(&mut self) {
+        let commands: Vec<Command> = std::iter::from_fn(|| self.inbox.try_recv().ok()).collect();
+        let begun = Instant::now();
+        self.simulation.step(&commands);
+        self.step_times.push(begun.elapsed());
+        self.tick += 1;
+        self.note_requests(&commands);
+        let parts = self.steps_per_publish.min(SNAPSHOT_STEPS);
+        match self.steps_to_publish() {
+            0 => self.publish(),
+            left if left < parts => self.simulation.quantise_ahead(&mut self.quantiser, [parts - left, parts]),
+            _ => {}
+        }
+    }
+
+    /// Notes the outcome of requests for vehicles.
+    fn note_requests(&mut self, commands: &[Command]) {
+        for command in commands {
+            match *command {
+                Command::Spawn { client, .. } => {
+                    let object = self.simulation.object_of(client);
+                    self.requests.insert(client, Request { tick: self.tick, object });
+                }
+                Command::Remove { client } => {
+                    self.requests.remove(&client);
+                }
+                Command::Drive { .. } | Command::Cameras(_) => {}
+            }
+        }
+    }
+
+    fn publish(&mut self) {
+        let mut snapshot = self.simulation.publish(&mut self.quantiser);
+        let total: Duration = self.step_times.iter().sum();
+        snapshot.diagnostics.step_secs = total.as_secs_f32() / self.step_times.len() as f32;
+        snapshot.diagnostics.step_max_secs = self.step_times.iter().max().map_or(0.0, Duration::as_secs_f32);
+        self.step_times.clear();
+        let resets = snapshot.diagnostics.wind_resets;
+        if resets > self.sender.borrow().snapshot.diagnostics.wind_resets {
+            tracing::warn!(resets, "the wind solver failed and restarted from the mean wind");
+        }
+        if let Some(patches) = self.evicted.increase(snapshot.diagnostics.evicted_patches) {
+            let awake = snapshot.diagnostics.awake_patches;
+            tracing::warn!(patches, awake, "patches far from all cameras were put to sleep: `patches.awake_limit` is reached");
+        }
+        if let Some(patches) = self.reset.increase(snapshot.diagnostics.reset_patches) {
+            tracing::warn!(patches, "grass moved faster than the scheme can follow, or was NaN or infinite, and was put to rest");
+        }
+        let published = Published { snapshot, requests: self.requests.clone(), dropped_secs: self.clock.dropped_secs() };
+        self.sender.send_replace(Arc::new(published));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn publish_rates_divide_the_step_rate() {
+        let timing = |tick_hz, publish_hz| Timing { tick_hz, publish_hz, threads: None };
+        assert_eq!(timing(60.0, 20.0).steps_per_publish(), 3);
+        assert_eq!(timing(60.0, 25.0).published_hz(), 30.0);
+        assert_eq!(timing(10.0, 60.0).steps_per_publish(), 1);
+    }
+}

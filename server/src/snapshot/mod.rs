@@ -1,0 +1,89 @@
+//! Published snapshots: the state of the world after a step, quantised for the wire (`prairie_core::wire::quantise`).
+//!
+//! A snapshot is cheap to keep and to share: unchanged parts are the same `Arc` as in the previous one.
+
+mod broken_plants;
+mod patches;
+
+pub use broken_plants::BrokenPlants;
+pub use patches::{BentPatches, PatchCodes, PatchQuantiser};
+
+use prairie_core::wire::ObjectPose;
+use std::sync::Arc;
+
+/// The state of the world after a step.
+#[derive(Clone, Debug, Default)]
+pub struct Snapshot {
+    /// Number of steps so far.
+    pub tick: u64,
+    /// Simulated time (s).
+    pub time_secs: f64,
+    /// Poses of all objects.
+    pub objects: Vec<ObjectPose>,
+    /// Limit of the number of objects.
+    pub object_limit: u32,
+    /// The wind.
+    pub wind: Arc<WindFrame>,
+    /// The bend field.
+    pub patches: Arc<BentPatches>,
+    /// Broken plants of the underbrush, oldest first.
+    pub broken: BrokenPlants,
+    /// Step diagnostics.
+    pub diagnostics: Diagnostics,
+}
+
+/// The wind at the cell centres.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WindFrame {
+    /// Step of the wind.
+    pub tick: u64,
+    /// Cells along X, Y and Z.
+    pub cells: [u32; 3],
+    /// Three planes (u, v, w) of wind codes, x fastest, then y, then z. A scene with dust has a fourth plane of dust codes.
+    pub codes: Vec<i8>,
+}
+
+impl WindFrame {
+    /// Number of cells, which is the number of codes in a plane.
+    pub fn volume(&self) -> usize {
+        self.cells.iter().map(|&n| n as usize).product()
+    }
+
+    /// Whether there is a plane of dust codes.
+    pub fn has_dust(&self) -> bool {
+        self.codes.len() > 3 * self.volume()
+    }
+}
+
+/// Step diagnostics.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Diagnostics {
+    /// Mean duration of the steps since the previous snapshot (s), wall-clock time; set by the runner.
+    pub step_secs: f32,
+    /// Longest of those steps (s).
+    pub step_max_secs: f32,
+    /// Relative divergence of the wind after projection: root mean square of the divergence, divided by that of `|u|/h`.
+    pub divergence_rms: f32,
+    /// Mean kinetic energy of the wind (J/kg).
+    pub wind_energy: f64,
+    /// Number of wind restarts from the mean wind after a failed step, since the start.
+    pub wind_resets: u64,
+    /// Sum of θ² + ω² over the bend field (mixed units).
+    pub bend_activity: f64,
+    /// Awake patches.
+    pub awake_patches: u32,
+    /// Patches put to sleep because of the limit of awake patches, since the start.
+    pub evicted_patches: u64,
+    /// Patches put to rest because their grass moved faster than the scheme can follow, or was NaN or infinite, since the start.
+    pub reset_patches: u64,
+    /// Tiles of 8 × 8 cells with flattened grass.
+    pub laid_tiles: u32,
+    /// Patches whose flattened grass was dropped because of the limit, since the start.
+    pub dropped_tracks: u64,
+    /// Motions of objects rejected as invalid (NaN, infinite or out of range), since the start.
+    pub rejected_motions: u64,
+    /// Sub-steps of the bend field in the newest step.
+    pub substeps: u32,
+    /// Largest Courant number of a sub-step of the bend field.
+    pub courant: f32,
+}

@@ -1,0 +1,161 @@
+//! The streamer's state of one client: the frames known to the client, its byte budget, and the frames in flight.
+
+use super::area::{PATCH_LIMIT, patches_near};
+use super::clients::{AreaOfInterest, Client, Frame};
+use super::encoder::Encoder;
+use crate::snapshot::Snapshot;
+use crate::token_bucket::TokenBucket;
+use bytes::Bytes;
+use prairie_core::grid::{PatchIndex, PatchLayout};
+use prairie_core::wire::{self, PATCH_MEMORY, ServerMessage};
+use std::collections::HashMap;
+use std::time::Instant;
+
+/// Limits on the data sent to one client.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SendLimits {
+    /// Largest number of unacknowledged frames in flight. Default 4: at 20 frames per second, a client with a round trip of 200 ms still
+    /// gets all of them.
+    pub in_flight: u32,
+    /// Mean data rate (bytes/s); bursts of one second are allowed. Default 250 000.
+    pub bytes_per_s: f64,
+}
+
+impl Default for SendLimits {
+    fn default() -> Self {
+        Self { in_flight: 4, bytes_per_s: 250_000.0 }
+    }
+}
+
+/// A publication: the data that the frames of all clients share.
+#[derive(Debug)]
+pub struct Publication<'a> {
+    /// The published state.
+    pub snapshot: &'a Snapshot,
+    /// Layout of the patches.
+    pub layout: &'a PatchLayout,
+    /// Time of the publication, for the budgets.
+    pub now: Instant,
+    /// The encoded poses message.
+    pub poses: Bytes,
+    /// Version of the roster.
+    pub roster_version: u64,
+    /// The encoded roster message.
+    pub roster: Bytes,
+}
+
+const _: () = assert!(PATCH_LIMIT <= PATCH_MEMORY, "a client can hold its whole area of interest");
+
+/// The frame of a patch that a client holds.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    seq: u32,
+    /// Number of the patch message that contained it, per client.
+    message: u64,
+}
+
+/// The streamer's state of one client.
+#[derive(Debug)]
+pub struct ClientState {
+    limits: SendLimits,
+    budget: TokenBucket,
+    frame: u32,
+    /// The patches sent last, at most [`PATCH_MEMORY`]: the client certainly holds these.
+    held: HashMap<PatchIndex, Held>,
+    patch_messages: u64,
+    held_wind: Option<u32>,
+    held_roster: u64,
+    /// Number of broken plants sent, in the order of breaking.
+    sent_broken: usize,
+    area: Option<AreaOfInterest>,
+    /// The patches of `area`, nearest first.
+    wanted: Vec<PatchIndex>,
+}
+
+impl ClientState {
+    /// The state of a client that holds nothing yet.
+    pub fn new(limits: SendLimits, now: Instant) -> Self {
+        Self {
+            limits,
+            budget: TokenBucket::new(limits.bytes_per_s, limits.bytes_per_s, now),
+            frame: 0,
+            held: HashMap::new(),
+            patch_messages: 0,
+            held_wind: None,
+            held_roster: 0,
+            sent_broken: 0,
+            area: None,
+            wanted: Vec::new(),
+        }
+    }
+
+    /// Sends the newest state to a client; false if too many frames are in flight. Poses are always sent; broken plants, wind and patches
+    /// (nearest first) as far as the budget allows, the rest with a later frame. `extra` is a message for this client alone.
+    pub fn send_frame(&mut self, client: &Client, publication: &Publication<'_>, encoder: &mut Encoder, extra: Option<Bytes>) -> bool {
+        if client.in_flight() >= self.limits.in_flight {
+            return false;
+        }
+        let snapshot = publication.snapshot;
+        self.budget.fill(publication.now);
+        self.set_area(client.area_of_interest(), publication.layout);
+        let mut messages = vec![publication.poses.clone()];
+        messages.extend(extra);
+        if self.held_roster != publication.roster_version {
+            messages.push(publication.roster.clone());
+        }
+        self.budget.charge(messages.iter().map(Bytes::len).sum::<usize>() as f64);
+        let broken = encoder.broken(snapshot, self.sent_broken);
+        let broken = broken.filter(|(_, message)| self.budget.try_overdraw(message.len() as f64));
+        messages.extend(broken.iter().map(|(_, message)| message.clone()));
+        let wind = encoder.wind(snapshot, self.held_wind).filter(|(_, message)| self.budget.try_overdraw(message.len() as f64));
+        let mut patches = Vec::new();
+        for &patch in &self.wanted {
+            let held = self.held.get(&patch).map(|held| held.seq);
+            let Some((seq, message)) = encoder.patch(snapshot, patch, held) else { continue };
+            if !self.budget.try_overdraw(message.len() as f64) {
+                break;
+            }
+            messages.push(message);
+            patches.push((patch, seq));
+        }
+        messages.extend(wind.iter().map(|(_, message)| message.clone()));
+        let number = self.frame + 1;
+        let end = ServerMessage::FrameEnd { frame: number, tick: snapshot.tick, time_secs: snapshot.time_secs };
+        let end: Bytes = wire::encode(&end).into();
+        self.budget.charge(end.len() as f64);
+        messages.push(end);
+        if !client.hand_out(Frame { number, messages }) {
+            return false;
+        }
+        self.frame = number;
+        self.held_roster = publication.roster_version;
+        self.sent_broken = broken.map_or(self.sent_broken, |(count, _)| count);
+        self.held_wind = wind.map(|(seq, _)| seq).or(self.held_wind);
+        self.hold(patches);
+        true
+    }
+
+    /// Number of patches that the client certainly holds.
+    pub fn held_patches(&self) -> usize {
+        self.held.len()
+    }
+
+    fn hold(&mut self, sent: Vec<(PatchIndex, u32)>) {
+        for (patch, seq) in sent {
+            self.patch_messages += 1;
+            self.held.insert(patch, Held { seq, message: self.patch_messages });
+        }
+        if let Some(surplus) = self.held.len().checked_sub(PATCH_MEMORY + 1) {
+            let mut messages: Vec<u64> = self.held.values().map(|held| held.message).collect();
+            let newest_forgotten = *messages.select_nth_unstable(surplus).1;
+            self.held.retain(|_, held| held.message > newest_forgotten);
+        }
+    }
+
+    fn set_area(&mut self, area: Option<AreaOfInterest>, layout: &PatchLayout) {
+        if area != self.area {
+            self.area = area;
+            self.wanted = area.map_or_else(Vec::new, |area| patches_near(layout, [area.eye_m[0], area.eye_m[2]], area.radius_m));
+        }
+    }
+}

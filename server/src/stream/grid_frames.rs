@@ -1,0 +1,120 @@
+//! The numbered frames of one streamed grid, each encoded at most once per kind.
+
+use crate::snapshot::{PatchCodes, WindFrame};
+use bytes::Bytes;
+use prairie_core::wire::codec::{self, Shape};
+use std::sync::Arc;
+
+/// A grid of codes.
+pub trait Grid {
+    /// Dimensions of the grid.
+    fn shape(&self) -> Shape;
+    /// The codes, plane after plane.
+    fn codes(&self) -> &[i8];
+}
+
+impl Grid for WindFrame {
+    fn shape(&self) -> Shape {
+        Shape::wind(self.cells[0] as usize, self.has_dust())
+    }
+    fn codes(&self) -> &[i8] {
+        &self.codes
+    }
+}
+
+impl Grid for PatchCodes {
+    fn shape(&self) -> Shape {
+        Shape::patch((self.codes.len() / 3).isqrt())
+    }
+    fn codes(&self) -> &[i8] {
+        &self.codes
+    }
+}
+
+/// Timing of a changed grid's next frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pacing {
+    /// Largest change of any code that may wait (codes); a larger change gets a frame at the next publication.
+    pub dead_band: u8,
+    /// Longest wait of a change within the dead band (publications).
+    pub slow_every: u64,
+}
+
+/// Header of an encoded frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameHeader {
+    /// Number of the frame.
+    pub seq: u32,
+    /// Whether the frame is encoded against zero (key) rather than against the previous frame (delta).
+    pub key: bool,
+}
+
+/// The frames of one grid, numbered from the publication at which this state was created. There is at most one frame per publication, so a
+/// state that is dropped and created again never reuses a number.
+#[derive(Debug)]
+pub struct GridFrames<G> {
+    seq: u32,
+    now: Option<Arc<G>>,
+    before: Option<Arc<G>>,
+    offered_at: u64,
+    slow_at: u64,
+    delta: Option<Bytes>,
+    key: Option<Bytes>,
+}
+
+impl<G: Grid> GridFrames<G> {
+    /// Frames that start with the newest grid (`None`: at rest). The first slow frame is due at publication `slow_at`; choose different
+    /// values, so that the slow frames of many grids do not coincide.
+    pub fn new(publish: u64, newest: Option<&Arc<G>>, slow_at: u64) -> Self {
+        Self { seq: publish as u32, now: newest.cloned(), before: None, offered_at: publish, slow_at, delta: None, key: None }
+    }
+
+    /// The last publication at which a grid was offered.
+    pub fn offered_at(&self) -> u64 {
+        self.offered_at
+    }
+
+    /// Offers the newest grid (`None`: at rest); decides once per publication whether it becomes the next frame. The newest frame then differs
+    /// from the newest grid by at most `pacing.dead_band` in any code, and not at all after `pacing.slow_every` publications without a change.
+    pub fn offer(&mut self, publish: u64, newest: Option<&Arc<G>>, pacing: Pacing) {
+        if self.offered_at == publish {
+            return;
+        }
+        self.offered_at = publish;
+        let difference = difference(self.now.as_ref(), newest);
+        let due = publish >= self.slow_at;
+        if difference > pacing.dead_band || (difference > 0 && due) {
+            self.before = std::mem::replace(&mut self.now, newest.cloned());
+            (self.delta, self.key) = (None, None);
+            self.seq = self.seq.wrapping_add(1);
+            self.slow_at = publish + pacing.slow_every;
+        }
+    }
+
+    /// The message that updates a client from frame `held` (`None`: no frame) to the newest one, and the number of that frame; `None` if the
+    /// client is up to date. `write` builds the message from a payload; it is called only for the first client that needs this message.
+    pub fn message(&mut self, held: Option<u32>, write: impl FnOnce(FrameHeader, Vec<u8>) -> Bytes) -> Option<(u32, Bytes)> {
+        if held == Some(self.seq) {
+            return None;
+        }
+        let follows = held.is_some_and(|held| held.wrapping_add(1) == self.seq);
+        let base = self.before.as_ref().filter(|_| follows && self.now.is_some());
+        let slot = if base.is_some() { &mut self.delta } else { &mut self.key };
+        let header = FrameHeader { seq: self.seq, key: base.is_none() };
+        let message = slot.get_or_insert_with(|| {
+            let payload = self.now.as_ref().map(|now| codec::encode(now.shape(), now.codes(), base.map(|base| base.codes())));
+            write(header, payload.unwrap_or_default())
+        });
+        Some((self.seq, message.clone()))
+    }
+}
+
+/// Largest difference of any code; a missing grid is all zero.
+fn difference<G: Grid>(a: Option<&Arc<G>>, b: Option<&Arc<G>>) -> u8 {
+    match (a, b) {
+        (None, None) => 0,
+        (Some(a), Some(b)) if Arc::ptr_eq(a, b) => 0,
+        (Some(a), Some(b)) => a.codes().iter().zip(b.codes()).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0),
+        (Some(one), None) | (None, Some(one)) => one.codes().iter().map(|code| code.unsigned_abs()).max().unwrap_or(0),
+    }
+}

@@ -1,0 +1,31 @@
+//! Commands from clients to the world.
+
+use crate::bend::Camera;
+use prairie_core::scene::VehicleKind;
+use prairie_core::wire::Drive;
+
+/// A request from outside the world, carried out before the next step.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Gives a client a vehicle in place of its previous one, near its camera.
+    Spawn {
+        /// Number of the client.
+        client: u32,
+        /// Kind of the vehicle.
+        kind: VehicleKind,
+    },
+    /// Removes a client's vehicle.
+    Remove {
+        /// Number of the client.
+        client: u32,
+    },
+    /// Sets the input of a client's vehicle, which stays until the next one.
+    Drive {
+        /// Number of the client.
+        client: u32,
+        /// The driver's input.
+        drive: Drive,
+    },
+    /// Replaces the cameras of all clients.
+    Cameras(Vec<Camera>),
+}

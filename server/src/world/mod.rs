@@ -1,0 +1,188 @@
+//! The world: one fixed step after another. It has no clock, input or output; the same commands give the same bits.
+
+mod command;
+
+pub use crate::bend::Camera;
+pub use command::Command;
+
+use crate::bend::wind_drawing::WindDrawings;
+use crate::bend::{self, BendSimulation};
+use crate::checksum::Checksum;
+use crate::objects::{Environment, Objects};
+use crate::plants::PlantDamage;
+use crate::settings_error::SettingsError;
+use crate::snapshot::{Diagnostics, PatchQuantiser, Snapshot};
+use crate::weather::Weather;
+use prairie_core::plant::flora::Flora;
+use prairie_core::plant::growth::NutrientMap;
+use prairie_core::scene::Scene;
+use prairie_core::terrain::{CoverMap, HeightMap};
+use prairie_core::wire::ObjectId;
+use std::sync::Arc;
+
+/// The maps of a scene.
+#[derive(Clone, Debug)]
+pub struct Maps {
+    /// Terrain heights.
+    pub height: HeightMap,
+    /// Covering map: grass, species, tree, stone or gap at each position.
+    pub cover: CoverMap,
+    /// Hand-drawn winds by their names in the scene.
+    pub drawings: WindDrawings,
+    /// Nutrients of the soil, unless they are generated.
+    pub nutrients: Option<Arc<NutrientMap>>,
+}
+
+/// Objects, wind, grass and underbrush.
+pub struct World {
+    dt_secs: f32,
+    tick: u64,
+    height: Arc<HeightMap>,
+    extent_m: [f32; 2],
+    objects: Objects,
+    weather: Weather,
+    bend: BendSimulation,
+    plants: PlantDamage,
+    cameras: Vec<Camera>,
+}
+
+impl World {
+    /// The initial state of a checked scene: at rest except for the wind.
+    ///
+    /// # Errors
+    /// [`SettingsError`] when settings that are each in range are incompatible with each other.
+    pub fn new(scene: &Scene, maps: Maps) -> Result<Self, SettingsError> {
+        bend::stability::check(scene)?;
+        bend::prescribed_wind::check(scene, &maps.drawings)?;
+        let weather = Weather::new(scene, &maps.height, &maps.cover).map_err(|error| error.in_settings(scene))?;
+        let height = Arc::new(maps.height);
+        let environment = Environment { height: Arc::clone(&height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
+        let plants = PlantDamage::new(Flora::new(scene, &environment.cover, maps.nutrients.as_deref()), scene.dt_secs());
+        let bend = BendSimulation::with_drawings(scene, Arc::clone(&height), &environment.cover, &maps.drawings);
+        Ok(Self {
+            dt_secs: scene.dt_secs(),
+            tick: 0,
+            height,
+            extent_m: scene.extent_m(),
+            objects: Objects::new(scene, environment),
+            weather,
+            bend,
+            plants,
+            cameras: vec![],
+        })
+    }
+
+    /// Advances by one fixed step: commands, objects, wind, bend field, underbrush.
+    pub fn step(&mut self, commands: &[Command]) {
+        for command in commands {
+            self.execute(command);
+        }
+        self.tick += 1;
+        let (weather, height) = (&self.weather, &self.height);
+        self.objects.step(self.dt_secs, |[x, y, z]| weather.wind_m_per_s([x, y - height.height_m(x, z), z]));
+        let motions = self.objects.motions();
+        self.weather.step(self.tick, &motions, &self.height, self.bend.field());
+        self.bend.step(self.dt_secs, &motions, &self.cameras, self.weather.ground_wind());
+        self.plants.step(self.tick, self.dt_secs, &self.bend, &self.weather);
+    }
+
+    /// Quantises the patches of one of `count` parts ahead of the next [`publish`](Self::publish), which then uses them as they are now. The part is given as
+    /// `[index, count]`.
+    pub fn quantise_ahead(&self, quantiser: &mut PatchQuantiser, part: [u64; 2]) {
+        quantiser.quantise_part(self.tick, &self.bend, part);
+    }
+
+    /// The present state, for clients. `quantiser` keeps the codes of the bend field and encodes only changes since its last use.
+    pub fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot {
+        Snapshot {
+            tick: self.tick,
+            time_secs: self.tick as f64 * f64::from(self.dt_secs),
+            objects: self.objects.poses(),
+            object_limit: self.objects.limit(),
+            wind: Arc::clone(self.weather.frame()),
+            patches: quantiser.quantise(self.tick, &self.bend, &self.cameras),
+            broken: self.plants.broken().clone(),
+            diagnostics: self.diagnostics(),
+        }
+    }
+
+    /// The present state, encoded completely. [`publish`](Self::publish) is faster for repeated use.
+    pub fn snapshot(&self) -> Snapshot {
+        self.publish(&mut PatchQuantiser::default())
+    }
+
+    /// Whether nothing but the wind moves: there are no objects, and all patches sleep.
+    pub fn is_idle(&self) -> bool {
+        self.objects.is_empty() && self.bend.field().awake_count() == 0
+    }
+
+    /// The vehicle of a client.
+    pub fn object_of(&self, client: u32) -> Option<ObjectId> {
+        self.objects.object_of(client)
+    }
+
+    /// The bend field and everything that acts on it.
+    pub fn bend(&self) -> &BendSimulation {
+        &self.bend
+    }
+
+    /// The underbrush as it has grown, if the scene has any.
+    pub fn flora(&self) -> Option<&Flora> {
+        self.plants.flora()
+    }
+
+    /// Checksum of the state of objects, wind, bend field and underbrush.
+    pub fn checksum(&self) -> u64 {
+        let mut sum = Checksum::default();
+        self.objects.hash(&mut sum);
+        self.weather.hash(&mut sum);
+        self.bend.hash(&mut sum);
+        self.plants.hash(&mut sum);
+        sum.value()
+    }
+
+    fn execute(&mut self, command: &Command) {
+        match command {
+            Command::Spawn { client, kind } => {
+                // A refusal is visible in `object_of`.
+                self.objects.spawn(*client, *kind, self.spawn_center_m(*client));
+            }
+            Command::Remove { client } => self.objects.remove(*client),
+            Command::Drive { client, drive } => self.objects.drive(*client, *drive),
+            Command::Cameras(cameras) => self.cameras.clone_from(cameras),
+        }
+    }
+
+    /// Position around which a client's vehicles appear: below its camera, or the centre of the world.
+    fn spawn_center_m(&self, client: u32) -> [f32; 2] {
+        let eye = self.cameras.iter().find(|camera| camera.client == client).map(Camera::xz);
+        eye.filter(|eye| (0..2).all(|axis| (0.0..=self.extent_m[axis]).contains(&eye[axis])))
+            .unwrap_or(self.extent_m.map(|extent| 0.5 * extent))
+    }
+
+    fn diagnostics(&self) -> Diagnostics {
+        let (wind, bend) = (self.weather.report(), self.bend.report());
+        Diagnostics {
+            step_secs: 0.0,
+            step_max_secs: 0.0,
+            divergence_rms: wind.divergence_rms_rel as f32,
+            wind_energy: wind.kinetic_energy_m2_per_s2,
+            bend_activity: self.bend.activity(),
+            awake_patches: self.bend.field().awake_count() as u32,
+            evicted_patches: self.bend.evicted(),
+            reset_patches: self.bend.reset_count(),
+            laid_tiles: self.bend.flattened().tiles() as u32,
+            dropped_tracks: self.bend.flattened().dropped(),
+            rejected_motions: self.bend.rejected_count(),
+            wind_resets: self.weather.resets(),
+            substeps: bend.substeps,
+            courant: bend.courant_share,
+        }
+    }
+}
+
+/// All incompatibilities among the settings of `scene`, found without creating a world.
+pub fn check(scene: &Scene) -> Vec<SettingsError> {
+    let wind = crate::weather::check(scene).map_err(|error| error.in_settings(scene));
+    bend::stability::check(scene).err().into_iter().chain(wind.err()).collect()
+}

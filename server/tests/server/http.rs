@@ -1,0 +1,101 @@
+//! HTTP: pages, `/healthz`, the origin check, and how a run ends.
+
+use crate::stand_in::StandInWorld;
+use crate::test_client::PlainClient;
+use crate::test_server::{Server, within};
+use prairie::{Limits, RunError};
+use prairie_core::wire::{ClientMessage, Close, Refusal, ServerMessage};
+use std::io::Read as _;
+use std::time::Duration;
+use tokio::net::TcpStream;
+use tokio_tungstenite::tungstenite;
+use tokio_tungstenite::tungstenite::client::IntoClientRequest;
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn clients_are_notified_when_the_server_stops() {
+    let server = Server::start(Limits::default()).await;
+    let mut client = PlainClient::join(&server, "client").await;
+    client.frame().await;
+    server.stop().await;
+    assert_eq!(client.closed().await.0, Close::Stopping.code());
+    assert_eq!(client.refusals, [Refusal::Stopping]);
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_run_ends_after_all_shutdown_notices() {
+    let server = Server::start(Limits::default()).await;
+    let silent = PlainClient::connect(&server).await;
+    let mut client = PlainClient::join(&server, "client").await;
+    client.frame().await;
+    server.stop().await;
+    for client in [silent, client] {
+        // Neither client closes; the server has closed after its last message.
+        let mut stream = client.socket.into_inner().into_std().unwrap();
+        let mut rest = Vec::new();
+        stream.read_to_end(&mut rest).expect("nothing is left open");
+        let code = Close::Stopping.code().to_be_bytes();
+        assert!(rest.windows(2).any(|pair| pair == code), "{rest:?}");
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_panic_in_the_stream_ends_the_run_with_an_error() {
+    let (server, _) = Server::start_with(StandInWorld::misshapen_at(40), Limits::default(), None).await;
+    let mut client = PlainClient::join(&server, "client").await;
+    while let Ok(message) = client.receive().await {
+        if let ServerMessage::FrameEnd { frame, .. } = message {
+            client.send_message(&ClientMessage::Ack { frame }).await;
+        }
+    }
+    assert!(matches!(within(server.outcome).await.unwrap(), Err(RunError::StreamStopped)));
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_panic_in_the_world_ends_the_run_with_an_error() {
+    let world = StandInWorld::failing_at(20);
+    let (server, _) = Server::start_with(world, Limits::default(), None).await;
+    assert!(matches!(within(server.outcome).await.unwrap(), Err(RunError::WorldStopped)));
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn pages_health_and_origins_are_served() {
+    let server = Server::start(Limits::default()).await;
+    let text = |response: Vec<u8>| String::from_utf8_lossy(&response).into_owned();
+    let page = text(server.http("GET / HTTP/1.1").await);
+    assert!(page.starts_with("HTTP/1.1 200") && page.contains("text/html"), "{page}");
+    let etag = page.lines().find_map(|line| line.strip_prefix("etag: ")).expect("a tag").trim().to_owned();
+    assert!(text(server.http(&format!("GET / HTTP/1.1\r\nif-none-match: {etag}")).await).starts_with("HTTP/1.1 304"));
+    let packed = server.http("GET / HTTP/1.1\r\naccept-encoding: gzip").await;
+    assert!(text(packed.clone()).contains("content-encoding: gzip") && packed.windows(2).any(|pair| pair == [0x1f, 0x8b]));
+    assert!(text(server.http("GET /../Cargo.toml HTTP/1.1").await).starts_with("HTTP/1.1 404"));
+    assert!(text(server.http("POST / HTTP/1.1").await).starts_with("HTTP/1.1 405"));
+    assert!(text(server.http("nonsense").await).starts_with("HTTP/1.1 400"));
+
+    let mut client = PlainClient::join(&server, "client").await;
+    client.frame().await;
+    // The first frame may show the world before its first step, and may be counted after it has arrived.
+    within(async {
+        loop {
+            let health = text(server.http("GET /healthz HTTP/1.1").await);
+            let report: serde_json::Value = serde_json::from_str(health.split("\r\n\r\n").nth(1).unwrap()).unwrap();
+            assert_eq!((&report["status"], &report["scene"]), (&"ok".into(), &"small".into()));
+            if report["tick"].as_u64().unwrap() > 0 && report["clients"][0]["sent_bytes"].as_u64().unwrap() > 0 {
+                break;
+            }
+            tokio::time::sleep(Duration::from_millis(10)).await;
+        }
+    })
+    .await;
+
+    for (origin, allowed) in [(format!("http://{}", server.address), true), ("http://elsewhere.example".to_owned(), false)] {
+        let mut request = format!("ws://{}/ws", server.address).into_client_request().unwrap();
+        request.headers_mut().insert("origin", origin.parse().unwrap());
+        let stream = TcpStream::connect(server.address).await.unwrap();
+        match within(tokio_tungstenite::client_async(request, stream)).await {
+            Ok(_) => assert!(allowed, "{origin}"),
+            Err(tungstenite::Error::Http(response)) => assert!(!allowed && response.status() == 403, "{origin}: {}", response.status()),
+            Err(other) => panic!("{origin}: {other}"),
+        }
+    }
+    server.stop().await;
+}

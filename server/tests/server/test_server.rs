@@ -1,0 +1,75 @@
+//! A server on a free port.
+
+use crate::stand_in::{StandInWorld, scene};
+use prairie::net::{Tls, TlsChoice, bind};
+use prairie::{Config, Limits, RunError, run, run_and_reload, run_simulation, scenes};
+use std::net::SocketAddr;
+use std::path::Path;
+use std::time::Duration;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
+use tokio::sync::oneshot;
+use tokio::task::JoinHandle;
+
+/// Time limit of every operation of a test.
+const TIMEOUT: Duration = Duration::from_secs(20);
+
+pub(crate) struct Server {
+    pub(crate) address: SocketAddr,
+    pub(crate) stop: oneshot::Sender<()>,
+    pub(crate) outcome: JoinHandle<Result<(), RunError>>,
+}
+
+impl Server {
+    pub(crate) async fn start(limits: Limits) -> Self {
+        Self::start_with(StandInWorld::default(), limits, None).await.0
+    }
+
+    pub(crate) async fn start_with(world: StandInWorld, limits: Limits, tls: Option<TlsChoice>) -> (Self, Option<Tls>) {
+        let listener = bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        let tls = tls.map(|choice| Tls::new(&choice, address).unwrap());
+        let config = Config { tls: tls.clone(), limits, threads: Some(1), ..Config::new(scene()) };
+        let (stop, stopped) = oneshot::channel();
+        let shutdown = async { drop(stopped.await) };
+        let outcome = tokio::spawn(run_simulation(world, config, listener, shutdown));
+        (Self { address, stop, outcome }, tls)
+    }
+
+    /// Serves the default scene with the real world.
+    pub(crate) async fn start_meadow() -> Self {
+        let listener = bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        let (stop, stopped) = oneshot::channel();
+        let config = Config::new(scenes::load("meadow").unwrap());
+        Self { address, stop, outcome: tokio::spawn(run(config, listener, async { drop(stopped.await) })) }
+    }
+
+    /// Serves a scene file with hot reload, like the program.
+    pub(crate) async fn start_file(scene: &Path) -> Self {
+        let listener = bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        let (stop, stopped) = oneshot::channel();
+        let config = Config::new(scenes::load(scene.to_str().unwrap()).unwrap());
+        Self { address, stop, outcome: tokio::spawn(run_and_reload(config, listener, async { drop(stopped.await) })) }
+    }
+
+    pub(crate) async fn stop(self) {
+        self.stop.send(()).unwrap();
+        within(self.outcome).await.unwrap().unwrap();
+    }
+
+    /// Sends a request and returns the whole response.
+    pub(crate) async fn http(&self, request: &str) -> Vec<u8> {
+        let mut stream = TcpStream::connect(self.address).await.unwrap();
+        let host = self.address;
+        stream.write_all(format!("{request}\r\nhost: {host}\r\nconnection: close\r\n\r\n").as_bytes()).await.unwrap();
+        let mut response = Vec::new();
+        within(stream.read_to_end(&mut response)).await.unwrap();
+        response
+    }
+}
+
+pub(crate) async fn within<T>(future: impl Future<Output = T>) -> T {
+    tokio::time::timeout(TIMEOUT, future).await.expect("the operation timed out")
+}

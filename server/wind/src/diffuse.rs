@@ -1,0 +1,169 @@
+//! Diffusion schemes.
+//!
+//! With cells of metres, ν·dt/h² is far below the limit of the explicit scheme, which costs one sweep with seven reads per cell, a small part of an
+//! implicit solve.
+
+mod implicit;
+
+pub use implicit::Implicit;
+
+use super::field::for_each_plane;
+use super::{Diffusion, Field, Grid, Real};
+
+/// Longest stable step (s) of [`explicit`]: `1 / (2·ν·Σ 1/h²)`, which is `a = ν·dt/h² = 1/6` on cubes. Above it the checkerboard mode grows.
+///
+/// Infinite for a diffusivity of 0.
+pub fn stable_dt_secs<R: Real>(grid: &Grid<R>, diffusivity_m2_per_s: f64) -> f64 {
+    let curvature: f64 = grid.spacing_m.iter().map(|h| (h.wide() * h.wide()).recip()).sum();
+    (2.0 * diffusivity_m2_per_s * curvature).recip()
+}
+
+/// Writes `start + ν·dt·∇²field` (central differences, second order in h) into the interior values of `target`. The ghosts of `field` must be filled.
+///
+/// With `start` equal to `field` this is the explicit step: forward Euler, first order in dt.
+pub fn explicit<R: Real>(
+    grid: &Grid<R>,
+    diffusivity_m2_per_s: f64,
+    dt_secs: f64,
+    start: &Field<R>,
+    field: &Field<R>,
+    target: &mut Field<R>,
+) {
+    let strides = grid.strides();
+    let weight = grid.spacing_m.map(|h| R::of(diffusivity_m2_per_s * dt_secs) / (h * h));
+    let location = field.location;
+    let (xs, ys) = (grid.free(location, 0), grid.free(location, 1));
+    for_each_plane(grid, grid.free(location, 2), &mut target.data, |k, plane| {
+        for j in ys.clone() {
+            let at = grid.at([xs.start, j, k]);
+            let row = |at: usize| &field.data[at..][..xs.len()];
+            let (here, start) = (row(at), &start.data[at..][..xs.len()]);
+            let [x, y, z] = strides.map(|s| [row(at - s), row(at + s)]);
+            let out = &mut plane[at % strides[2]..][..xs.len()];
+            for i in 0..out.len() {
+                let twice = here[i] + here[i];
+                out[i] = start[i]
+                    + weight[0] * (x[0][i] + x[1][i] - twice)
+                    + weight[1] * (y[0][i] + y[1][i] - twice)
+                    + weight[2] * (z[0][i] + z[1][i] - twice);
+            }
+        }
+    });
+}
+
+/// Backward Euler by Gauss–Seidel sweeps (Zhang §2.3.2, corrected: `a = ν·dt/h²`, and parentheses): relaxes `field` towards the solution of
+/// `(1 − ν·dt·∇²)·field = start`, and returns the largest change in the last sweep. `boundaries` applies the boundary conditions after each sweep.
+///
+/// Stable at any step; the deviation from the implicit solution depends on the number of sweeps.
+pub fn gauss_seidel<R: Real>(
+    grid: &Grid<R>,
+    diffusivity_m2_per_s: f64,
+    dt_secs: f64,
+    sweeps: u32,
+    start: &Field<R>,
+    field: &mut Field<R>,
+    boundaries: impl Fn(&mut Field<R>),
+) -> f64 {
+    let strides = grid.strides();
+    let weight = grid.spacing_m.map(|h| R::of(diffusivity_m2_per_s * dt_secs) / (h * h));
+    let two = R::of(2.0);
+    let per = (R::one() + two * (weight[0] + weight[1] + weight[2])).recip();
+    let location = field.location;
+    let mut change = R::zero();
+    for _ in 0..sweeps {
+        change = R::zero();
+        for k in grid.free(location, 2) {
+            for j in grid.free(location, 1) {
+                for i in grid.free(location, 0) {
+                    let at = grid.at([i, j, k]);
+                    let data = &field.data;
+                    let around =
+                        (0..3).fold(R::zero(), |sum, axis| sum + weight[axis] * (data[at - strides[axis]] + data[at + strides[axis]]));
+                    let value = (start.data[at] + around) * per;
+                    change = change.max((value - field.data[at]).abs());
+                    field.data[at] = value;
+                }
+            }
+        }
+        boundaries(field);
+    }
+    change.wide()
+}
+
+/// Portion of a step's diffusion: all of it, or the halves before and after the other sub-steps of a second-order scheme (Strang splitting).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Portion {
+    /// The whole step.
+    Whole,
+    /// The first half.
+    First,
+    /// The second half.
+    Second,
+}
+
+/// Diffuses `field` over a portion of a step of `dt_secs` (s). Its ghosts must be filled before, and are filled again afterwards. `boundaries`
+/// applies the boundary conditions to a field; `even` and `odd` are work arrays.
+///
+/// Halves of the explicit scheme are midpoint steps (Runge–Kutta 2), with substeps within the limit. Those of Crank–Nicolson are Crank–Nicolson steps
+/// of half the length with one solve each, since an explicit half before and an implicit half after other sub-steps would not be second order.
+/// First-order schemes diffuse entirely in the second half.
+#[expect(clippy::too_many_arguments, reason = "a kernel: numbers, a field and its scratch")]
+pub fn diffuse<R: Real>(
+    scheme: Diffusion,
+    portion: Portion,
+    grid: &Grid<R>,
+    diffusivity_m2_per_s: f64,
+    dt_secs: f64,
+    field: &mut Field<R>,
+    [even, odd]: [&mut Field<R>; 2],
+    implicit: Option<&mut Implicit>,
+    boundaries: impl Fn(&mut Field<R>),
+) {
+    if diffusivity_m2_per_s == 0.0 {
+        return;
+    }
+    let substeps = |secs: f64| (secs / stable_dt_secs(grid, diffusivity_m2_per_s)).ceil().max(1.0);
+    let mut euler = |field: &mut Field<R>, secs: f64| {
+        explicit(grid, diffusivity_m2_per_s, secs, field, field, even);
+        std::mem::swap(&mut field.data, &mut even.data);
+        boundaries(field);
+    };
+    match (scheme, portion) {
+        (Diffusion::Explicit, Portion::Whole) => {
+            let n = substeps(dt_secs);
+            (0..n as u32).for_each(|_| euler(field, dt_secs / n));
+        }
+        (Diffusion::Explicit, _) => {
+            let n = substeps(0.5 * dt_secs);
+            let secs = 0.5 * dt_secs / n;
+            for _ in 0..n as u32 {
+                explicit(grid, diffusivity_m2_per_s, 0.5 * secs, field, field, even);
+                boundaries(even);
+                explicit(grid, diffusivity_m2_per_s, secs, field, even, odd);
+                std::mem::swap(&mut field.data, &mut odd.data);
+                boundaries(field);
+            }
+        }
+        (Diffusion::CrankNicolson, portion) => {
+            let secs = if portion == Portion::Whole { dt_secs } else { 0.5 * dt_secs };
+            if let Some(implicit) = implicit {
+                even.data.copy_from_slice(&field.data);
+                implicit.step(grid, diffusivity_m2_per_s, 0.5 * secs, field);
+                // The implicit half ends in mid-step; the explicit half adds the same change again.
+                field.data.iter_mut().zip(&even.data).for_each(|(value, &start)| *value = *value + *value - start);
+                boundaries(field);
+            }
+        }
+        (Diffusion::Implicit | Diffusion::GaussSeidel { .. }, Portion::First) => {}
+        (Diffusion::Implicit, _) => {
+            if let Some(implicit) = implicit {
+                implicit.step(grid, diffusivity_m2_per_s, dt_secs, field);
+                boundaries(field);
+            }
+        }
+        (Diffusion::GaussSeidel { sweeps }, _) => {
+            even.data.copy_from_slice(&field.data);
+            gauss_seidel(grid, diffusivity_m2_per_s, dt_secs, sweeps, even, field, boundaries);
+        }
+    }
+}

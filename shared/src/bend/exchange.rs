@@ -1,0 +1,137 @@
+//! Exchange between patches before a step: wakes patches, chooses the tiles to step, and fills the ghost cells.
+
+use super::halo::{AROUND, Neighbour, Seams, TileRun, fetch, neighbour, put_to_rest, ring};
+use super::tiles::TILE;
+use super::{Crew, Field, Patch};
+
+impl Field {
+    /// Applies `act` to every patch with an active tile; returns the sum of its results.
+    pub(super) fn advance(&mut self, crew: &impl Crew, act: impl Fn(&mut Patch) -> u64 + Send + Sync) -> u64 {
+        let mut counts = vec![0; self.patches.len()];
+        let tasks: Vec<_> = self.patches.iter_mut().zip(&mut counts).filter(|(patch, _)| patch.tiles.any_active()).collect();
+        crew.for_each(tasks, |(patch, count)| *count = act(patch));
+        counts.iter().sum()
+    }
+
+    /// Prepares up to `substeps` sub-steps: wakes patches that energy reaches, chooses the tiles to step, and fills the ghosts. Returns the number of
+    /// patches that stayed asleep because of the limit.
+    pub(super) fn exchange(&mut self, substeps: usize) -> u32 {
+        self.patches.iter_mut().for_each(|patch| patch.tiles.find_active(self.rest));
+        let refused = if self.seams == Seams::Exact { self.wake_reached() } else { 0 };
+        let around = self.neighbours();
+        if self.seams == Seams::Exact {
+            self.mark_active_neighbours(&around);
+        }
+        self.patches.iter_mut().for_each(choose_tiles);
+        for (own, around) in around.iter().enumerate() {
+            for (toward, met) in AROUND.into_iter().zip(*around) {
+                self.exchange_with(own, toward, met, substeps);
+            }
+        }
+        refused
+    }
+
+    /// The awake neighbours of each awake patch, with their slots.
+    fn neighbours(&self) -> Vec<[Option<(usize, Neighbour)>; 8]> {
+        let met = |patch: &Patch| {
+            AROUND.map(|toward| {
+                let neighbour = neighbour(&self.layout, self.edges, patch.index(), toward)?;
+                Some((self.slot(neighbour.index)?, neighbour))
+            })
+        };
+        self.patches.iter().map(met).collect()
+    }
+
+    /// Wakes the neighbours that active tiles touch, in ascending order, up to the limit.
+    fn wake_reached(&mut self) -> u32 {
+        let mut reached = vec![];
+        for patch in &self.patches {
+            if !patch.tiles.any_active() {
+                continue;
+            }
+            let last = patch.tiles.count() as i64 - 1;
+            for toward in AROUND {
+                let border = toward.map(|toward| match toward {
+                    -1 => 0..=0,
+                    0 => 0..=last,
+                    _ => last..=last,
+                });
+                let [columns, rows] = border;
+                let is_active = rows.into_iter().any(|z| columns.clone().any(|x| patch.tiles.is_active(x, z)));
+                if let (true, Some(neighbour)) = (is_active, neighbour(&self.layout, self.edges, patch.index(), toward)) {
+                    reached.push(neighbour.index);
+                }
+            }
+        }
+        reached.sort_unstable();
+        reached.dedup();
+        reached.retain(|&patch| self.slot(patch).is_none());
+        let free = self.awake_limit.saturating_sub(self.patches.len());
+        reached.iter().take(free).for_each(|&patch| {
+            self.wake(patch);
+        });
+        reached.len().saturating_sub(free) as u32
+    }
+
+    /// Marks which tiles are active beyond each patch's border.
+    fn mark_active_neighbours(&mut self, around: &[[Option<(usize, Neighbour)>; 8]]) {
+        for (own, around) in around.iter().enumerate() {
+            for (toward, met) in AROUND.into_iter().zip(*around) {
+                let Some((from, neighbour)) = met else { continue };
+                let count = self.patches[own].tiles.count();
+                for [x, z] in ring(count, toward) {
+                    let [their_x, their_z] = neighbour.place([x, z], toward, count as i64);
+                    let active = self.patches[from].tiles.is_active(their_x, their_z);
+                    self.patches[own].tiles.set_active(x, z, active);
+                }
+            }
+        }
+    }
+
+    /// Fills the ghosts toward one neighbour where its tiles step, and puts to rest those where they no longer do.
+    fn exchange_with(&mut self, own: usize, toward: [i64; 2], met: Option<(usize, Neighbour)>, rings: usize) {
+        let count = self.patches[own].tiles.count() as i64;
+        let steps_beyond = |patches: &[Patch], [x, z]: [i64; 2]| match (self.seams, met) {
+            (Seams::Overlap, _) => patches[own].tiles.steps(x.clamp(0, count - 1), z.clamp(0, count - 1)),
+            (Seams::Exact, None) => false,
+            (Seams::Exact, Some((from, neighbour))) => {
+                let [x, z] = neighbour.place([x, z], toward, count);
+                patches[from].tiles.steps(x, z)
+            }
+        };
+        let mut runs: Vec<(bool, TileRun)> = vec![];
+        for [x, z] in ring(count as usize, toward) {
+            let steps = steps_beyond(&self.patches, [x, z]);
+            let stepped = self.patches[own].tiles.steps(x, z);
+            self.patches[own].tiles.set_steps(x, z, steps);
+            if !steps && !stepped {
+                continue;
+            }
+            match runs.last_mut() {
+                Some((last, tiles)) if *last == steps && tiles[0].end == x && tiles[1].start == z => tiles[0].end += 1,
+                Some((last, tiles)) if *last == steps && tiles[1].end == z && tiles[0].start == x => tiles[1].end += 1,
+                _ => runs.push((steps, [x..x + 1, z..z + 1])),
+            }
+        }
+        for (steps, tiles) in runs {
+            match (steps, met, self.seams) {
+                (true, Some((from, neighbour)), Seams::Exact) => fetch(&mut self.patches, own, from, toward, &tiles, neighbour, rings),
+                (true, ..) => {}
+                (false, ..) => put_to_rest(&mut self.patches[own], toward, &tiles),
+            }
+        }
+    }
+}
+
+/// Marks active tiles and their neighbours to step; puts the others to rest.
+fn choose_tiles(patch: &mut Patch) {
+    let count = patch.tiles.count();
+    for (x, z) in (0..count).flat_map(|z| (0..count).map(move |x| (x, z))) {
+        let steps = patch.tiles.is_near_active(x, z);
+        patch.tiles.set_steps(x as i64, z as i64, steps);
+        if !steps && patch.tiles.holds(x, z) {
+            patch.put_to_rest([x, z].map(|n| (n * TILE) as i64), [TILE; 2]);
+            patch.tiles.set_peaks(x, z, [0; 2]);
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Failures beneath a running page, in a real browser: it reports them and recovers where possible.
+
+use anyhow::{Result, ensure};
+use prairie::scenes;
+use prairie::world::World;
+use tests::browser::Browser;
+use tests::prairie::Prairie;
+
+async fn visited_meadow() -> Result<(Prairie, Browser)> {
+    let mut meadow = scenes::load("meadow")?;
+    // The test draws many frames, and without underbrush each takes half the time.
+    meadow.scene.underbrush.clear();
+    let world = World::new(&meadow.scene, meadow.maps())?;
+    let prairie = Prairie::serve(meadow, world).await?;
+    let browser = prairie.visitor("Ada").await?;
+    Ok((prairie, browser))
+}
+
+fn message_is(kind: &str) -> String {
+    format!("document.getElementById('message').dataset.kind === '{kind}'")
+}
+
+/// Stores the GPU device as `window.device`.
+const KEEP_DEVICE: &str = "(() => {
+    const begin = GPUDevice.prototype.createCommandEncoder;
+    GPUDevice.prototype.createCommandEncoder = function (...rest) {
+        window.device = this;
+        return begin.apply(this, rest);
+    };
+})()";
+
+/// Draws until a new picture appears.
+async fn draws(browser: &Browser, time_secs: f64) -> Result<()> {
+    browser.evaluate("window.drawn = window.prairie.state().frames").await?;
+    browser.until(&format!("(window.prairie.draw({time_secs}), window.prairie.state().frames > window.drawn)")).await?;
+    Ok(())
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_lost_device_is_replaced_until_it_is_lost_too_often() -> Result<()> {
+    let (_prairie, browser) = visited_meadow().await?;
+    browser.evaluate(KEEP_DEVICE).await?;
+    draws(&browser, 1.0).await?;
+    let before = browser.canvas().await?;
+    for loss in 1..=3 {
+        browser.evaluate("(window.lost = window.device, window.device.destroy())").await?;
+        browser.until("window.prairie.state().picture_px[0] === 0 || (window.prairie.draw(1), window.device !== window.lost)").await?;
+        draws(&browser, 1.0 + f64::from(loss)).await?;
+        browser.until("document.getElementById('message').hidden").await?;
+    }
+    draws(&browser, 1.0).await?;
+    let difference = before.difference(&browser.canvas().await?)?;
+    ensure!(difference.changed < 0.9, "after three losses the canvas shows something else: {difference:?}");
+
+    browser.evaluate("window.device.destroy()").await?;
+    browser.until(&message_is("device-lost")).await?;
+    Ok(())
+}
+
+/// Makes the page use another protocol version and reconnect.
+const SPEAK_ANOTHER_VERSION: &str = "(() => {
+    const send = WebSocket.prototype.send;
+    let first;
+    WebSocket.prototype.send = function (bytes) {
+        first ??= this;
+        if (this === first) return this.close();
+        const changed = Uint8Array.from(bytes);
+        changed[0] += 1;
+        send.call(this, changed);
+    };
+})()";
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_page_with_another_protocol_version_asks_for_a_reload() -> Result<()> {
+    let (_prairie, browser) = visited_meadow().await?;
+    browser.evaluate(SPEAK_ANOTHER_VERSION).await?;
+    browser.until(&message_is("version")).await?;
+    let title = browser.evaluate("document.querySelector('#message h1').innerText").await?;
+    ensure!(title == "This page is outdated", "the page says {title}");
+    Ok(())
+}
