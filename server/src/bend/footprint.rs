@@ -169,7 +169,12 @@ mod tests {
     fn rounding_does_not_turn_the_widened_polygon_of_a_round_object() {
         let ring = |jitter: f32| {
             let at = |n: usize| (n as f32 / 8.0 * std::f32::consts::TAU).sin_cos();
-            Footprint::of((0..8).map(|n| (at(n), 0.174 * if n % 4 == 2 { 1.0 - jitter } else { 1.0 })).map(|((sin, cos), r)| [r * cos, r * sin]).collect())
+            Footprint::of(
+                (0..8)
+                    .map(|n| (at(n), 0.174 * if n % 4 == 2 { 1.0 - jitter } else { 1.0 }))
+                    .map(|((sin, cos), r)| [r * cos, r * sin])
+                    .collect(),
+            )
         };
         // Corners within rounding of a straight side may come and go, so supports in many directions are compared.
         let support_m = |polygon: &Footprint, n: usize| {
