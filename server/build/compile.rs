@@ -10,8 +10,9 @@ use crate::{Result, variable};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Cargo profile of the client, defined in the workspace's Cargo.toml.
+/// Cargo profiles of the client, defined in the workspace's Cargo.toml: quick to build, and for distributed binaries.
 const PROFILE: &str = "wasm";
+const DIST_PROFILE: &str = "wasm-dist";
 
 /// Prefixes of environment variables that describe the server's build and must not reach the client's.
 const SERVER_BUILD_PREFIXES: [&str; 8] = [
@@ -31,6 +32,7 @@ const SERVER_BUILD_PREFIXES: [&str; 8] = [
 /// Installation instructions when the wasm target is missing; otherwise the message of cargo or wasm-bindgen.
 pub(crate) fn client(workspace: &Path, target_dir: &Path, out: &Path) -> Result<()> {
     ensure_target()?;
+    let profile = if target_dir.parent().is_some_and(|dir| dir.ends_with("dist")) { DIST_PROFILE } else { PROFILE };
     let mut cargo = Command::new(variable("CARGO")?);
     for (name, _) in env::vars_os() {
         if name.to_str().is_some_and(|name| SERVER_BUILD_PREFIXES.iter().any(|prefix| name.starts_with(prefix))) {
@@ -40,7 +42,7 @@ pub(crate) fn client(workspace: &Path, target_dir: &Path, out: &Path) -> Result<
     cargo
         .current_dir(workspace)
         .env("CARGO_ENCODED_RUSTFLAGS", "-Ctarget-feature=+simd128")
-        .args(["build", "--package", "prairie-client", "--lib", "--profile", PROFILE, "--target", TARGET])
+        .args(["build", "--package", "prairie-client", "--lib", "--profile", profile, "--target", TARGET])
         .arg("--target-dir")
         .arg(target_dir);
     let status = cargo.status().map_err(|e| format!("cargo did not start: {e}"))?;
@@ -49,7 +51,7 @@ pub(crate) fn client(workspace: &Path, target_dir: &Path, out: &Path) -> Result<
             "the browser client did not compile (see cargo's messages above); PRAIRIE_CLIENT=skip builds the server without it".into()
         );
     }
-    bind(&target_dir.join(TARGET).join(PROFILE).join("prairie_client.wasm"), out)
+    bind(&target_dir.join(TARGET).join(profile).join("prairie_client.wasm"), out)
 }
 
 /// Target directory of the client, beside the server's artifacts. All variants of the server (with and without rerun, check, test, clippy)

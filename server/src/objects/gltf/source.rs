@@ -2,6 +2,7 @@
 
 use super::{FILE_LIMIT, ModelFault};
 use crate::file;
+use data_encoding::BASE64_NOPAD;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::{Accessor, Document, Gltf, binary, buffer};
 use std::path::Path;
@@ -39,7 +40,8 @@ impl Source {
                 buffer::Source::Uri(uri) => at_uri(uri, folder)?,
             };
             if bytes.len() < buffer.length() {
-                return Err(not_gltf(gltf::Error::BufferLength { buffer: buffer.index(), expected: buffer.length(), actual: bytes.len() }));
+                let (index, stated) = (buffer.index(), buffer.length());
+                return Err(ModelFault::NotGltf(format!("buffer {index} is stated to have {stated} bytes and has {}", bytes.len())));
             }
             held += bytes.len() as u64;
             if held > FILE_LIMIT {
@@ -77,9 +79,9 @@ impl Source {
 
 fn at_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, ModelFault> {
     let unfit = |uri: &str, reason: String| ModelFault::Buffer { uri: uri.to_owned(), reason };
-    if uri.starts_with("data:") {
-        let data = buffer::Data::from_source(buffer::Source::Uri(uri), None);
-        return data.map(|data| data.0).map_err(|error| unfit("data:…", format!("is no base64: {error}")));
+    if let Some(data) = uri.strip_prefix("data:") {
+        let digits = data.split_once(";base64,").map_or(data, |(_media_type, digits)| digits).trim_end_matches('=');
+        return BASE64_NOPAD.decode(digits.as_bytes()).map_err(|error| unfit("data:…", format!("is no base64: {error}")));
     }
     let name = urlencoding::decode(uri).map_err(|error| unfit(uri, format!("is no name of a file: {error}")))?;
     if name.contains("://") {
