@@ -3,6 +3,8 @@
 //! The files of `client-wasm/web`, the compiled client and its JavaScript bindings go to `OUT_DIR/client`. `OUT_DIR/client.rs` is the
 //! table of these files that `src/net/assets.rs` includes. `PRAIRIE_CLIENT=skip` builds no client and embeds a placeholder page.
 
+#[path = "build/commit.rs"]
+mod commit;
 #[path = "build/compile.rs"]
 mod compile;
 #[path = "build/embed.rs"]
@@ -27,12 +29,13 @@ fn build() -> Result<()> {
     let server = PathBuf::from(variable("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(variable("OUT_DIR")?);
     let client = out.join("client");
+    let workspace = server.parent().ok_or("the server package is outside its workspace")?;
+    commit::locate(workspace, &out)?;
     clear(&client)?;
 
     match env::var("PRAIRIE_CLIENT").unwrap_or_default().as_str() {
         "skip" => copy(&server.join("build/without_client.html"), &client.join("index.html"))?,
         "" => {
-            let workspace = server.parent().ok_or("the server package is outside its workspace")?;
             watch(workspace);
             compile::client(workspace, &compile::target_dir(&out), &client)?;
             copy_pages(&workspace.join("client-wasm/web"), &client)?;

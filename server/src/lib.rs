@@ -9,6 +9,7 @@
 pub mod bend;
 mod checksum;
 mod config;
+pub mod escaped;
 mod file;
 pub mod inspect;
 pub mod metrics;

@@ -1,6 +1,7 @@
 //! Hot reload: restarts the world when a file of its scene changes.
 
 use crate::config::Config;
+use crate::escaped::escaped;
 use crate::run::{RunError, run};
 use crate::scenes::{self, LoadedScene, SceneError};
 use std::path::PathBuf;
@@ -35,7 +36,7 @@ pub async fn run_and_reload(mut config: Config, listener: TcpListener, shutdown:
         let socket = listener.try_clone().and_then(TcpListener::from_std).map_err(RunError::Socket)?;
         run(config.clone(), socket, until).await?;
         let Some(scene) = changed else { return Ok(()) };
-        tracing::info!(file = %scene.files[0].display(), "the scene has changed; restarting the world");
+        tracing::info!(file = escaped(&scene.files[0]), "the scene has changed; restarting the world");
         config.scene = scene;
     }
 }
@@ -69,6 +70,6 @@ fn stamps(files: &[PathBuf]) -> Vec<Option<(SystemTime, u64)>> {
 }
 
 async fn load(scene: PathBuf) -> Result<LoadedScene, SceneError> {
-    let loading = tokio::task::spawn_blocking(move || scenes::load(&scene.to_string_lossy()));
+    let loading = tokio::task::spawn_blocking(move || scenes::load(&scene));
     loading.await.unwrap_or_else(|panic| std::panic::resume_unwind(panic.into_panic()))
 }

@@ -28,6 +28,7 @@
 //! postures and light may differ in the last bits between platforms, so the server's results are authoritative.
 
 pub mod bend;
+pub mod escape;
 pub mod grid;
 pub mod hash;
 pub mod light;

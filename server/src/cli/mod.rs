@@ -1,20 +1,42 @@
-//! The command line: arguments, and one file per command.
+//! The command line: what all commands share, and one file per command.
 
+mod announce;
+mod check;
+mod completions;
 mod log;
+mod manual;
+mod maps;
+mod number;
+mod print;
+mod scenes;
 mod serve;
+mod unknown_word;
+mod usage;
+mod version;
 
-use anyhow::Context as _;
+use check::Check;
 use clap::{Parser, Subcommand};
-use prairie::scenes;
+use completions::Completions;
+use log::LogFormat;
+use manual::Manual;
+use maps::Maps;
+pub(crate) use print::complain;
+use scenes::Scenes;
 use serve::Serve;
-use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 /// A streaming grassland simulator: wind, grass and vehicles, simulated here and drawn in any browser with WebGPU.
 #[derive(Debug, Parser)]
-#[command(version, args_conflicts_with_subcommands = true, after_help = EXAMPLES)]
-pub(crate) struct Cli {
+#[command(
+    name = "prairie",
+    version = version::SHORT,
+    long_version = version::LONG.as_str(),
+    args_conflicts_with_subcommands = true,
+    after_help = EXAMPLES
+)]
+struct Cli {
     #[command(subcommand)]
-    action: Option<Action>,
+    command: Option<Command>,
     #[command(flatten)]
     serve: Serve,
 }
@@ -25,56 +47,56 @@ Without a command, `prairie` means `prairie serve`.
 Examples:
   prairie                                    the scene `meadow` on http://127.0.0.1:8080
   prairie --open                             the same, opened in the browser
-  prairie serve --scene my/hills.toml        a scene of your own
-  prairie serve --addr 0.0.0.0:8443 --tls self
-                                             for clients on other machines
-  prairie check my/hills.toml                its faults, with line and column";
+  prairie storm                              another built-in scene
+  prairie my/hills.toml                      a scene of your own
+  prairie --addr 0.0.0.0:8443 --tls self     for clients on other machines
+  prairie check my/hills.toml                its faults, with line and column
+
+A scene that is called like a command is meant by `--scene NAME`.";
 
 #[derive(Debug, Subcommand)]
-enum Action {
+enum Command {
     /// Simulate a scene and serve it to browsers
     #[command(after_help = serve::EXAMPLES)]
-    Serve(Serve),
+    Serve(Box<Serve>),
     /// List the built-in scenes
-    Scenes,
-    /// Check a scene file and report its faults with line and column
-    #[command(after_help = "Example:\n  prairie check my/hills.toml\n\nThe exit status is 0 if the scene is valid, otherwise 1.")]
-    Check {
-        /// Scene file (TOML), or a built-in scene; its maps and models are checked too
-        #[arg(value_name = "FILE")]
-        scene: String,
-    },
+    #[command(after_help = scenes::EXAMPLES)]
+    Scenes(Scenes),
+    /// Check scenes and report their faults with line and column
+    #[command(after_help = check::EXAMPLES)]
+    Check(Check),
     /// Generate the maps of the built-in scenes; the result is always the same
-    Maps {
-        /// Folder for the PNG files; created if it does not exist
-        #[arg(long, value_name = "FOLDER")]
-        out: PathBuf,
-    },
+    #[command(after_help = maps::EXAMPLES)]
+    Maps(Maps),
+    /// Print the script that completes commands, options and files in a shell
+    #[command(after_help = completions::EXAMPLES)]
+    Completions(Completions),
+    /// Print the manual page of Prairie or of one of its commands
+    #[command(after_help = manual::EXAMPLES)]
+    Man(Manual),
 }
 
-/// Runs the command.
+/// Parses the arguments and runs the command. Returns the exit status: 0, 1 if a scene is invalid, or 2 for wrong usage.
 ///
 /// # Errors
 /// Those of the command, for `main` to print.
-pub(crate) fn run(cli: Cli) -> anyhow::Result<()> {
-    log::start()?;
-    match cli.action.unwrap_or(Action::Serve(cli.serve)) {
-        Action::Serve(arguments) => serve::serve(arguments),
-        Action::Scenes => {
-            for (name, summary) in scenes::list() {
-                println!("{name:12} {summary}");
-            }
-            Ok(())
-        }
-        Action::Check { scene } => scenes::check(&scene).map(|report| println!("{report}")).map_err(Into::into),
-        Action::Maps { out } => make_maps(&out),
+pub(crate) fn run() -> anyhow::Result<ExitCode> {
+    let cli = match usage::parse() {
+        Ok(cli) => cli,
+        Err(error) => return usage::report(&error),
+    };
+    let is_named = cli.command.is_some();
+    let command = cli.command.unwrap_or_else(|| Command::Serve(Box::new(cli.serve)));
+    let format = if let Command::Serve(serve) = &command { serve.log_format } else { LogFormat::default() };
+    log::start(format)?;
+    let done = |()| ExitCode::SUCCESS;
+    match command {
+        Command::Serve(serve) if is_named => serve.run().map(done),
+        Command::Serve(serve) => serve.run().map(done).map_err(unknown_word::suggest_commands),
+        Command::Scenes(scenes) => scenes.run().map(done),
+        Command::Check(check) => check.run(),
+        Command::Maps(maps) => maps.run().map(done),
+        Command::Completions(completions) => completions.run().map(done),
+        Command::Man(manual) => manual.run().map(done),
     }
-}
-
-fn make_maps(folder: &Path) -> anyhow::Result<()> {
-    let written = scenes::maps::write(folder).with_context(|| format!("cannot write the maps to {}", folder.display()))?;
-    for path in written {
-        println!("{}", path.display());
-    }
-    Ok(())
 }

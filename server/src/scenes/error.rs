@@ -1,6 +1,8 @@
 //! Errors of scene files, with file, line and column.
 
+use crate::escaped::escaped;
 use prairie_core::scene::SceneFault;
+use std::ffi::OsString;
 use std::fmt;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -9,17 +11,17 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum SceneError {
     /// Neither a built-in scene nor a file.
-    #[error("there is no built-in scene and no file called `{name}`{} Built-in scenes: {}", suggestion(*.nearest), .known.join(", "))]
+    #[error("there is no built-in scene and no file called `{}`{} Built-in scenes: {}", escaped(.name), suggestion(*.nearest), .known.join(", "))]
     Unknown {
         /// The requested name.
-        name: String,
+        name: OsString,
         /// The built-in scene with the most similar name, if any is similar.
         nearest: Option<&'static str>,
         /// Names of all built-in scenes.
         known: Vec<&'static str>,
     },
     /// The scene file cannot be read.
-    #[error("scene file `{}` cannot be read: {reason}", .path.display())]
+    #[error("scene file `{}` cannot be read: {reason}", escaped(.path))]
     Unreadable {
         /// The file.
         path: PathBuf,

@@ -3,6 +3,7 @@
 use super::builtin::{BUILT_IN, BuiltIn};
 use super::error::{FaultyScene, SceneError};
 use crate::bend::wind_drawing::{WindDrawing, WindDrawings};
+use crate::escaped::escaped;
 use crate::file;
 use crate::objects::gltf;
 use crate::settings_error::SettingsError;
@@ -13,6 +14,7 @@ use prairie_core::terrain::{Cover, CoverMap, HeightMap, MapError};
 use prairie_core::wire::Mesh;
 use std::cell::RefCell;
 use std::collections::HashSet;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -67,30 +69,38 @@ impl LoadedScene {
 /// # Errors
 /// [`SceneError`]: the name is unknown, the file cannot be read, or it contains faults. All faults of the scene file are reported at once; if there
 /// are none, those of its underbrush file; if there are none, those of its maps and models.
-pub fn load(name_or_path: &str) -> Result<LoadedScene, SceneError> {
-    if let Some(built_in) = BuiltIn::find(name_or_path) {
+pub fn load(name_or_path: impl AsRef<OsStr>) -> Result<LoadedScene, SceneError> {
+    let name = name_or_path.as_ref();
+    if let Some(built_in) = name.to_str().and_then(BuiltIn::find) {
         return load_text(built_in.name, built_in.text, Source::BuiltIn(built_in));
     }
-    let path = Path::new(name_or_path);
+    let path = Path::new(name);
     let looks_like_a_file = path.extension().is_some() || path.components().count() > 1 || path.exists();
     if !looks_like_a_file {
-        return Err(unknown(name_or_path));
+        return Err(unknown(name));
     }
     let unreadable = |reason: String| SceneError::Unreadable { path: path.to_owned(), reason };
     let text = file::read(path, SCENE_LIMIT).and_then(utf8).map_err(unreadable)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    load_text(name_or_path, &text, Source::Folder { folder, read: RefCell::new(vec![path.to_owned()]) })
+    let source = Source::Folder { folder, read: RefCell::new(vec![path.to_owned()]) };
+    let loaded = load_text(&escaped(name), &text, source)?;
+    Ok(LoadedScene { name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(), ..loaded })
 }
 
 fn utf8(bytes: Vec<u8>) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|error| format!("it is not UTF-8 text: {error}"))
 }
 
-fn unknown(name: &str) -> SceneError {
+fn unknown(name: &OsStr) -> SceneError {
     let known: Vec<_> = BUILT_IN.iter().map(|scene| scene.name).collect();
-    let like = |scene: &&str| strsim::jaro_winkler(scene, name);
-    let nearest = known.iter().copied().filter(|scene| like(scene) > 0.7).max_by(|a, b| like(a).total_cmp(&like(b)));
-    SceneError::Unknown { name: name.to_owned(), nearest, known }
+    SceneError::Unknown { name: name.to_owned(), nearest: most_similar(name, known.iter().copied()), known }
+}
+
+/// The word among those `known` that was probably meant by `word`; `None` if none is similar.
+pub fn most_similar<'k>(word: &OsStr, known: impl Iterator<Item = &'k str>) -> Option<&'k str> {
+    let word = word.to_string_lossy();
+    let similar = known.map(|known| (strsim::jaro_winkler(known, &word), known)).filter(|(likeness, _)| *likeness > 0.7);
+    similar.max_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, known)| known)
 }
 
 /// Source of a scene's files.
@@ -153,7 +163,7 @@ fn parse_scene(file: &str, text: &str, source: &Source) -> Result<Scene, SceneEr
         faulty(file, text, vec![SceneFault::at(text, "underbrush_file", message)])
     };
     let species_text = source.read(name, SCENE_LIMIT).and_then(utf8).map_err(unreadable)?;
-    let species_file = source.path(name).display().to_string();
+    let species_file = escaped(source.path(name));
     let species = parse_underbrush(&species_text).map_err(|faults| faulty(&species_file, &species_text, faults))?;
     parse_with(text, species).map_err(|faults| faulty(file, text, faults))
 }
@@ -203,7 +213,7 @@ fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, Scen
         path.clear();
     }
     Ok(LoadedScene {
-        name: Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        name: file.to_owned(),
         scene,
         height_png,
         covering_png,

@@ -9,7 +9,7 @@ mod report;
 pub use error::{FaultyScene, SceneError};
 #[cfg(test)]
 pub(crate) use load::MAP_LIMIT;
-pub use load::{LoadedScene, load};
+pub use load::{LoadedScene, load, most_similar};
 pub use report::{Report, check};
 
 /// Names and summaries of the built-in scenes, the default first.

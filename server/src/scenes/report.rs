@@ -2,8 +2,10 @@
 
 use super::error::SceneError;
 use super::load::{LoadedScene, load};
+use crate::escaped::escaped;
 use prairie_core::scene::VehicleKind;
 use prairie_core::terrain::Cover;
+use std::ffi::OsStr;
 use std::fmt;
 
 /// Summary of a valid scene; displayed on a few lines.
@@ -17,8 +19,8 @@ pub struct Report {
 ///
 /// # Errors
 /// As [`load`].
-pub fn check(name_or_path: &str) -> Result<Report, SceneError> {
-    Ok(Report { name: name_or_path.to_owned(), loaded: load(name_or_path)? })
+pub fn check(name_or_path: impl AsRef<OsStr>) -> Result<Report, SceneError> {
+    Ok(Report { name: escaped(&name_or_path), loaded: load(name_or_path)? })
 }
 
 impl fmt::Display for Report {
