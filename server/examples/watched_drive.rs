@@ -45,7 +45,7 @@ fn main() -> anyhow::Result<()> {
         if !step.is_multiple_of(STEPS_PER_PUBLISH) {
             continue;
         }
-        let published = Published { snapshot: world.publish(&mut quantiser), ..Published::default() };
+        let published = Published::new(world.publish(&mut quantiser));
         if let Some(car) = published.snapshot.objects.first() {
             let [x, y, z] = car.position_m;
             client.set_area_of_interest(AreaOfInterest { eye_m: [x, y + 3.0, z + 8.0], radius_m });

@@ -11,6 +11,7 @@ mod checksum;
 mod config;
 pub mod escaped;
 mod file;
+pub mod histogram;
 pub mod inspect;
 pub mod metrics;
 pub mod net;

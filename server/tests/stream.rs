@@ -56,7 +56,7 @@ impl FakeWorld {
 
     fn publish(&mut self) -> Published {
         self.snapshot.tick += 3;
-        Published { snapshot: self.snapshot.clone(), requests: self.requests.clone(), dropped_secs: 0.0 }
+        Published { requests: self.requests.clone(), ..Published::new(self.snapshot.clone()) }
     }
 }
 

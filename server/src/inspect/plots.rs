@@ -98,8 +98,9 @@ impl Curve {
     pub(super) fn value(&self, frame: &Frame) -> f64 {
         match metrics::find(self.metric).map(|metric| metric.source) {
             Some(Source::World(read)) => read(&frame.snapshot).as_f64(),
+            Some(Source::Clients(read)) => read(frame.stats.clients).as_f64(),
             Some(Source::Recording(read)) => read(&frame.stats).as_f64(),
-            Some(Source::Server(_)) | None => f64::NAN,
+            Some(Source::Server(_) | Source::Distribution(_)) | None => f64::NAN,
         }
     }
 }
@@ -112,14 +113,14 @@ mod tests {
     fn every_curve_names_a_metric_of_recordings() {
         for curve in PLOTS.iter().flat_map(|plot| plot.curves) {
             let metric = metrics::find(curve.metric).unwrap_or_else(|| panic!("there is no metric `{}`", curve.metric));
-            assert!(!matches!(metric.source, Source::Server(_)), "{} is not in recordings", metric.name);
+            assert!(metric.is_recorded(), "{} is not in recordings", metric.name);
         }
     }
 
     #[test]
     fn every_metric_of_recordings_has_a_curve() {
         let without = ["tick", "time_secs"];
-        for metric in metrics::METRICS.iter().filter(|metric| !matches!(metric.source, Source::Server(_))) {
+        for metric in metrics::METRICS.iter().filter(|metric| metric.is_recorded()) {
             let is_shown = PLOTS.iter().flat_map(|plot| plot.curves).any(|curve| curve.metric == metric.name);
             assert_ne!(is_shown, without.contains(&metric.name), "{}", metric.name);
         }

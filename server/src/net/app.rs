@@ -33,16 +33,19 @@ pub(crate) struct App {
 
 impl App {
     /// The server's own metrics.
-    pub(crate) fn stats(&self, dropped_secs: f64) -> ServerStats {
+    pub(crate) fn stats(&self, published: &Published) -> ServerStats {
         ServerStats {
+            clients: self.clients.count() as u32,
             uptime_secs: self.started.elapsed().as_secs_f64(),
-            dropped_secs,
+            dropped_secs: published.dropped_secs,
             sent_bytes: self.clients.sent_bytes(),
             encodings: self.counters.encodings.load(Relaxed),
             cached_patches: self.counters.cached_patches.load(Relaxed),
             held_patches: self.counters.held_patches.load(Relaxed),
             frames: self.counters.frames.load(Relaxed),
             skipped_frames: self.counters.skipped_frames.load(Relaxed),
+            step_secs: published.step_secs.clone(),
+            frame_bytes: self.counters.frame_bytes(),
         }
     }
 }

@@ -6,6 +6,7 @@
 mod app;
 pub mod assets;
 mod bind;
+mod health;
 mod routes;
 mod serve;
 mod session;

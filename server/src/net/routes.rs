@@ -1,8 +1,7 @@
-//! HTTP routes: `/ws`, `/healthz` and the client's files.
+//! HTTP routes: `/ws`, the reports on the server, and the client's files.
 
 use super::app::App;
-use super::{assets, session};
-use crate::metrics;
+use super::{assets, health, session};
 use axum::Router;
 use axum::extract::State;
 use axum::extract::ws::WebSocketUpgrade;
@@ -10,11 +9,16 @@ use axum::http::{HeaderMap, StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{any, get};
 use prairie_core::wire::CLIENT_MESSAGE_LIMIT;
-use serde_json::{Map, Value, json};
 use std::sync::Arc;
 
 pub(crate) fn router(app: Arc<App>) -> Router {
-    Router::new().route("/ws", any(socket)).route("/healthz", get(health)).fallback(get(asset)).with_state(app)
+    Router::new()
+        .route("/ws", any(socket))
+        .route("/healthz", get(health::health))
+        .route("/readyz", get(health::readiness))
+        .route("/metrics", get(health::metrics))
+        .fallback(get(asset))
+        .with_state(app)
 }
 
 async fn socket(State(app): State<Arc<App>>, headers: HeaderMap, upgrade: WebSocketUpgrade) -> Response {
@@ -40,20 +44,6 @@ fn same_origin(headers: &HeaderMap) -> bool {
     let origin_host = origin.to_str().ok().and_then(|origin| origin.split_once("://")).map(|(_, host)| host);
     let host = headers.get(header::HOST).and_then(|host| host.to_str().ok());
     matches!((origin_host, host), (Some(origin), Some(host)) if origin.eq_ignore_ascii_case(host))
-}
-
-async fn health(State(app): State<Arc<App>>) -> impl IntoResponse {
-    let published = app.published.borrow().clone();
-    let clients: Vec<_> =
-        app.clients.all().iter().map(|client| json!({ "client": client.id, "sent_bytes": client.sent_bytes() })).collect();
-    let stats = app.stats(published.dropped_secs);
-    let metrics = metrics::report(&published.snapshot, &stats);
-    let mut report: Map<String, Value> = metrics.map(|(name, value)| (name.to_owned(), json!(value))).collect();
-    report.insert("status".to_owned(), "ok".into());
-    report.insert("version".to_owned(), env!("CARGO_PKG_VERSION").into());
-    report.insert("scene".to_owned(), app.scene_name.as_str().into());
-    report.insert("clients".to_owned(), clients.into());
-    ([(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")], format!("{}\n", Value::Object(report)))
 }
 
 async fn asset(uri: Uri, headers: HeaderMap) -> Response {

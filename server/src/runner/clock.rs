@@ -1,5 +1,6 @@
 //! Fixed-step clock: number of steps due in real time.
 
+use super::recent_drops::RecentDrops;
 use std::time::Duration;
 
 /// Largest number of overdue steps done at once; simulated time beyond them is dropped.
@@ -12,11 +13,12 @@ pub(super) struct Clock {
     accounted: u64,
     /// Steps dropped.
     pub(super) dropped: u64,
+    recent: RecentDrops,
 }
 
 impl Clock {
     pub(super) fn new(tick_hz: f64) -> Self {
-        Self { tick_hz, accounted: 0, dropped: 0 }
+        Self { tick_hz, accounted: 0, dropped: 0, recent: RecentDrops::default() }
     }
 
     /// Number of steps to do now, at most [`CATCH_UP_STEPS`]. Steps beyond are dropped.
@@ -24,6 +26,7 @@ impl Clock {
         let newly_due = (elapsed.as_secs_f64() * self.tick_hz) as u64 - self.accounted;
         let steps = newly_due.min(CATCH_UP_STEPS);
         self.dropped += newly_due - steps;
+        self.recent.note(elapsed, newly_due - steps);
         self.accounted += newly_due;
         steps
     }
@@ -37,6 +40,11 @@ impl Clock {
     /// Simulated time that was dropped (s).
     pub(super) fn dropped_secs(&self) -> f64 {
         self.dropped as f64 / self.tick_hz
+    }
+
+    /// Simulated time that was dropped within the last minute (s).
+    pub(super) fn dropped_recently_secs(&mut self, elapsed: Duration) -> f64 {
+        self.recent.steps(elapsed) as f64 / self.tick_hz
     }
 }
 
@@ -61,5 +69,7 @@ mod tests {
         assert_eq!(clock.dropped, 600 - CATCH_UP_STEPS);
         assert_eq!(clock.due(Duration::from_secs(10)), 0);
         assert_eq!(clock.due(Duration::from_secs(11)) + clock.due(Duration::from_secs_f64(11.017)), CATCH_UP_STEPS + 1);
+        assert_eq!(clock.dropped_recently_secs(Duration::from_secs(70)), clock.dropped_secs());
+        assert_eq!(clock.dropped_recently_secs(Duration::from_secs(72)), 0.0);
     }
 }

@@ -2,9 +2,12 @@
 
 mod clock;
 mod counter_log;
+mod recent_drops;
 
 pub use clock::CATCH_UP_STEPS;
+pub use recent_drops::RECENT;
 
+use crate::histogram::Histogram;
 use crate::snapshot::{PatchQuantiser, Snapshot};
 use crate::world::{Command, World};
 use clock::Clock;
@@ -25,6 +28,9 @@ pub const SNAPSHOT_STEPS: u64 = 3;
 
 /// Longest sleep of an idle world (s).
 const IDLE_SLEEP_SECS: f64 = 0.05;
+
+/// Bounds of the histogram of step durations (s).
+const STEP_BOUNDS_SECS: [f64; 12] = [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064, 0.125, 0.25, 0.5, 1.0];
 
 /// Interface of a simulation to the runner: the world, or a stand-in for tests.
 pub trait Simulation: Send + 'static {
@@ -65,7 +71,7 @@ impl Simulation for World {
 }
 
 /// The newest state, with information from the runner.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Published {
     /// The world's state.
     pub snapshot: Snapshot,
@@ -73,6 +79,26 @@ pub struct Published {
     pub requests: BTreeMap<u32, Request>,
     /// Simulated time that was dropped because the machine is too slow (s).
     pub dropped_secs: f64,
+    /// The part of it that was dropped within the last minute, [`RECENT`] (s).
+    pub dropped_recently_secs: f64,
+    /// Durations of all steps so far (s), wall-clock time.
+    pub step_secs: Histogram,
+    /// Time of the publication.
+    pub at: Instant,
+}
+
+impl Published {
+    /// A state without requests and losses, published now.
+    pub fn new(snapshot: Snapshot) -> Self {
+        Self {
+            snapshot,
+            requests: BTreeMap::new(),
+            dropped_secs: 0.0,
+            dropped_recently_secs: 0.0,
+            step_secs: Histogram::new(&STEP_BOUNDS_SECS),
+            at: Instant::now(),
+        }
+    }
 }
 
 /// A client's request for a vehicle, granted or refused.
@@ -124,7 +150,7 @@ impl Runner {
     pub fn start(simulation: impl Simulation, timing: Timing) -> std::io::Result<Self> {
         let (commands, inbox) = mpsc::channel(COMMAND_CAPACITY);
         let mut quantiser = PatchQuantiser::default();
-        let first = Published { snapshot: simulation.publish(&mut quantiser), ..Published::default() };
+        let first = Published::new(simulation.publish(&mut quantiser));
         let (sender, published) = watch::channel(Arc::new(first));
         let stop = Arc::new(AtomicBool::new(false));
         let pool = rayon::ThreadPoolBuilder::new()
@@ -172,6 +198,8 @@ struct Loop<S> {
     tick: u64,
     requests: BTreeMap<u32, Request>,
     step_times: Vec<Duration>,
+    step_secs: Histogram,
+    start: Instant,
     dropped: CounterLog,
     evicted: CounterLog,
     reset: CounterLog,
@@ -195,6 +223,8 @@ impl<S: Simulation> Loop<S> {
             tick: 0,
             requests: BTreeMap::new(),
             step_times: Vec::new(),
+            step_secs: Histogram::new(&STEP_BOUNDS_SECS),
+            start: Instant::now(),
             dropped: CounterLog::default(),
             evicted: CounterLog::default(),
             reset: CounterLog::default(),
@@ -202,15 +232,14 @@ impl<S: Simulation> Loop<S> {
     }
 
     fn run(mut self, stop: &AtomicBool) {
-        let start = Instant::now();
         while !stop.load(Relaxed) {
-            for _ in 0..self.clock.due(start.elapsed()) {
+            for _ in 0..self.clock.due(self.start.elapsed()) {
                 self.step();
             }
             if self.dropped.increase(self.clock.dropped).is_some() {
                 tracing::warn!(dropped_secs = self.clock.dropped_secs(), "the world is slower than real time; simulated time is dropped");
             }
-            std::thread::sleep(self.clock.until(self.steps_at_once(), start.elapsed()));
+            std::thread::sleep(self.clock.until(self.steps_at_once(), self.start.elapsed()));
         }
     }
 
@@ -233,7 +262,9 @@ impl<S: Simulation> Loop<S> {
         let commands: Vec<Command> = std::iter::from_fn(|| self.inbox.try_recv().ok()).collect();
         let begun = Instant::now();
         self.simulation.step(&commands);
-        self.step_times.push(begun.elapsed());
+        let duration = begun.elapsed();
+        self.step_times.push(duration);
+        self.step_secs.observe(duration.as_secs_f64());
         self.tick += 1;
         self.note_requests(&commands);
         let parts = self.steps_per_publish.min(SNAPSHOT_STEPS);
@@ -277,7 +308,13 @@ impl<S: Simulation> Loop<S> {
         if let Some(patches) = self.reset.increase(snapshot.diagnostics.reset_patches) {
             tracing::warn!(patches, "grass moved faster than the scheme can follow, or was NaN or infinite, and was put to rest");
         }
-        let published = Published { snapshot, requests: self.requests.clone(), dropped_secs: self.clock.dropped_secs() };
+        let published = Published {
+            requests: self.requests.clone(),
+            dropped_secs: self.clock.dropped_secs(),
+            dropped_recently_secs: self.clock.dropped_recently_secs(self.start.elapsed()),
+            step_secs: self.step_secs.clone(),
+            ..Published::new(snapshot)
+        };
         self.sender.send_replace(Arc::new(published));
     }
 }

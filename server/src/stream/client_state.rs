@@ -89,11 +89,17 @@ impl ClientState {
         }
     }
 
-    /// Sends the newest state to a client; false if too many frames are in flight. Poses are always sent; broken plants, wind and patches
+    /// Sends the newest state to a client; returns the bytes of the frame, or `None` if too many frames are in flight. Poses are always sent; broken plants, wind and patches
     /// (nearest first) as far as the budget allows, the rest with a later frame. `extra` is a message for this client alone.
-    pub fn send_frame(&mut self, client: &Client, publication: &Publication<'_>, encoder: &mut Encoder, extra: Option<Bytes>) -> bool {
+    pub fn send_frame(
+        &mut self,
+        client: &Client,
+        publication: &Publication<'_>,
+        encoder: &mut Encoder,
+        extra: Option<Bytes>,
+    ) -> Option<usize> {
         if client.in_flight() >= self.limits.in_flight {
-            return false;
+            return None;
         }
         let snapshot = publication.snapshot;
         self.budget.fill(publication.now);
@@ -124,15 +130,16 @@ impl ClientState {
         let end: Bytes = wire::encode(&end).into();
         self.budget.charge(end.len() as f64);
         messages.push(end);
+        let bytes = messages.iter().map(Bytes::len).sum();
         if !client.hand_out(Frame { number, messages }) {
-            return false;
+            return None;
         }
         self.frame = number;
         self.held_roster = publication.roster_version;
         self.sent_broken = broken.map_or(self.sent_broken, |(count, _)| count);
         self.held_wind = wind.map(|(seq, _)| seq).or(self.held_wind);
         self.hold(patches);
-        true
+        Some(bytes)
     }
 
     /// Number of patches that the client certainly holds.

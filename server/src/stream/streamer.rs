@@ -3,6 +3,7 @@
 use super::client_state::{ClientState, Publication, SendLimits};
 use super::clients::{Client, Clients};
 use super::encoder::Encoder;
+use crate::histogram::Histogram;
 use crate::runner::Published;
 use crate::snapshot::Snapshot;
 use crate::world::{Camera, Command};
@@ -10,15 +11,20 @@ use bytes::Bytes;
 use prairie_core::grid::PatchLayout;
 use prairie_core::wire::{self, Peer, Refusal, ServerMessage};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Instant;
 use tokio::sync::{mpsc, oneshot, watch};
 
-/// Counters of the streamer, for `/healthz`.
-#[derive(Debug, Default)]
+/// Bounds of the histogram of frame sizes (bytes).
+const FRAME_BOUNDS_BYTES: [f64; 9] = [64.0, 256.0, 1024.0, 4096.0, 8192.0, 16_384.0, 32_768.0, 65_536.0, 262_144.0];
+
+/// Counters of the streamer, for `/healthz` and `/metrics`.
+#[derive(Debug)]
 pub struct Counters {
+    /// Publications handled.
+    pub publications: AtomicU64,
     /// Number of grids encoded.
     pub encodings: AtomicU64,
     /// Patches whose frames are cached.
@@ -29,6 +35,32 @@ pub struct Counters {
     pub frames: AtomicU64,
     /// Frames skipped because the client had too many unacknowledged.
     pub skipped_frames: AtomicU64,
+    frame_bytes: Mutex<Histogram>,
+}
+
+impl Default for Counters {
+    fn default() -> Self {
+        Self {
+            publications: AtomicU64::default(),
+            encodings: AtomicU64::default(),
+            cached_patches: AtomicU64::default(),
+            held_patches: AtomicU64::default(),
+            frames: AtomicU64::default(),
+            skipped_frames: AtomicU64::default(),
+            frame_bytes: Mutex::new(Histogram::new(&FRAME_BOUNDS_BYTES)),
+        }
+    }
+}
+
+impl Counters {
+    /// Bytes of each frame handed to a session.
+    pub fn frame_bytes(&self) -> Histogram {
+        self.lock().clone()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Histogram> {
+        self.frame_bytes.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// Sends each snapshot to all clients. It uses no sockets, and no clock except for the budgets.
@@ -84,13 +116,15 @@ impl Streamer {
             let refusal = self.refusal(published, client.id);
             let extra = refusal.is_some().then(|| no_vehicle(&published.snapshot));
             let state = self.states.entry(client.id).or_insert_with(|| ClientState::new(self.limits, now));
-            if state.send_frame(client, &publication, &mut self.encoder, extra) {
+            if let Some(bytes) = state.send_frame(client, &publication, &mut self.encoder, extra) {
+                self.counters.lock().observe(bytes as f64);
                 self.notified.extend(refusal.map(|tick| (client.id, tick)));
                 self.counters.frames.fetch_add(1, Relaxed);
             } else {
                 self.counters.skipped_frames.fetch_add(1, Relaxed);
             }
         }
+        self.counters.publications.fetch_add(1, Relaxed);
         self.counters.encodings.store(self.encoder.encodings(), Relaxed);
         self.counters.cached_patches.store(self.encoder.cached_patches() as u64, Relaxed);
         self.counters.held_patches.store(self.states.values().map(ClientState::held_patches).sum::<usize>() as u64, Relaxed);

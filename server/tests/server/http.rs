@@ -78,7 +78,7 @@ async fn pages_health_and_origins_are_served() {
         loop {
             let health = text(server.http("GET /healthz HTTP/1.1").await);
             let report: serde_json::Value = serde_json::from_str(health.split("\r\n\r\n").nth(1).unwrap()).unwrap();
-            assert_eq!((&report["status"], &report["scene"]), (&"ok".into(), &"small".into()));
+            assert_eq!(report["scene"], "small");
             if report["tick"].as_u64().unwrap() > 0 && report["clients"][0]["sent_bytes"].as_u64().unwrap() > 0 {
                 break;
             }

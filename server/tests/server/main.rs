@@ -6,6 +6,7 @@ mod common;
 mod command_line;
 mod http;
 mod misbehaving_clients;
+mod monitoring;
 mod reload;
 mod shared_world;
 mod stand_in;
