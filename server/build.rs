@@ -1,7 +1,10 @@
 //! Builds the browser client and embeds it, so that `cargo run` is the only command needed.
 //!
 //! The files of `client-wasm/web`, the compiled client and its JavaScript bindings go to `OUT_DIR/client`. `OUT_DIR/client.rs` is the
-//! table of these files that `src/net/assets.rs` includes. `PRAIRIE_CLIENT=skip` builds no client and embeds a placeholder page.
+//! table of these files that `src/net/assets.rs` includes. A copy of the files stays in `target/PROFILE/client/page`.
+//!
+//! `PRAIRIE_CLIENT=skip` builds no client and embeds a placeholder page; `PRAIRIE_CLIENT=FOLDER` embeds a client built before, such as that
+//! copy. A relative folder starts at the workspace. The server of docs.rs, which has no wasm target, gets the placeholder.
 
 #[path = "build/commit.rs"]
 mod commit;
@@ -9,6 +12,8 @@ mod commit;
 mod compile;
 #[path = "build/embed.rs"]
 mod embed;
+#[path = "build/prebuilt.rs"]
+mod prebuilt;
 
 use std::path::{Path, PathBuf};
 use std::{env, fs, process};
@@ -33,16 +38,35 @@ fn build() -> Result<()> {
     commit::locate(workspace, &out)?;
     clear(&client)?;
 
-    match env::var("PRAIRIE_CLIENT").unwrap_or_default().as_str() {
-        "skip" => copy(&server.join("build/without_client.html"), &client.join("index.html"))?,
-        "" => {
-            watch(workspace);
-            compile::client(workspace, &compile::target_dir(&out), &client)?;
-            copy_pages(&workspace.join("client-wasm/web"), &client)?;
+    let choice = env::var("PRAIRIE_CLIENT").unwrap_or_default();
+    match choice.as_str() {
+        "" if env::var_os("DOCS_RS").is_none() => build_client(workspace, &out, &client)?,
+        "" | "skip" => copy(&server.join("build/without_client.html"), &client.join("index.html"))?,
+        folder => {
+            let folder = workspace.join(folder);
+            println!("cargo::rerun-if-changed={}", folder.display());
+            prebuilt::copy(&folder, &client)?;
         }
-        other => return Err(format!("PRAIRIE_CLIENT is `{other}`; allowed: `skip`, or unset to build the client")),
     }
     embed::write_table(&client, &out.join("client.rs"))
+}
+
+fn build_client(workspace: &Path, out: &Path, client: &Path) -> Result<()> {
+    let web = workspace.join("client-wasm/web");
+    if !web.is_dir() {
+        return Err(format!(
+            "{}: the sources of the browser client are missing, since this package lies outside its workspace. PRAIRIE_CLIENT=FOLDER embeds a \
+             client built before, PRAIRIE_CLIENT=skip builds the server without the page.",
+            web.display()
+        ));
+    }
+    watch(workspace);
+    let target = compile::target_dir(out);
+    compile::client(workspace, &target, client)?;
+    copy_files(&web, client)?;
+    let page = target.join("page");
+    clear(&page)?;
+    copy_files(client, &page)
 }
 
 /// Reruns the build when a source of the client changes.
@@ -52,10 +76,10 @@ fn watch(workspace: &Path) {
     }
 }
 
-fn copy_pages(web: &Path, client: &Path) -> Result<()> {
-    for entry in fs::read_dir(web).map_err(|e| format!("{}: {e}", web.display()))? {
-        let page = entry.map_err(|e| format!("{}: {e}", web.display()))?;
-        copy(&page.path(), &client.join(page.file_name()))?;
+fn copy_files(from: &Path, to: &Path) -> Result<()> {
+    for entry in fs::read_dir(from).map_err(|e| format!("{}: {e}", from.display()))? {
+        let file = entry.map_err(|e| format!("{}: {e}", from.display()))?;
+        copy(&file.path(), &to.join(file.file_name()))?;
     }
     Ok(())
 }

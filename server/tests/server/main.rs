@@ -7,6 +7,7 @@ mod command_line;
 mod http;
 mod misbehaving_clients;
 mod monitoring;
+mod prebuilt_client;
 mod reload;
 mod shared_world;
 mod stand_in;
