@@ -9,6 +9,7 @@ mod documents;
 mod driving;
 mod functions;
 mod imports;
+mod licences;
 mod pictures;
 mod same_plants;
 mod shipped_species;
