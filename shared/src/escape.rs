@@ -1,6 +1,20 @@
-//! Escapes for text from outside that is printed in messages.
+//! Text from outside that is printed in messages: escapes, and a bound on its length.
 
 use std::borrow::Cow;
+
+/// Longest text from outside that a message repeats (characters).
+pub const EXCERPT_LIMIT: usize = 1000;
+
+/// The text without its middle if it is longer than [`EXCERPT_LIMIT`], so that its beginning and its end are still shown, and with invisible characters
+/// escaped.
+pub fn excerpt(text: &str) -> String {
+    const HALF: usize = EXCERPT_LIMIT / 2;
+    let Some((head, _)) = text.char_indices().nth(HALF).filter(|_| text.chars().nth(EXCERPT_LIMIT).is_some()) else {
+        return escape_invisible(text).into_owned();
+    };
+    let tail = text.char_indices().rev().nth(HALF - 1).map_or(text.len(), |(at, _)| at);
+    format!("{}…{}", escape_invisible(&text[..head]), escape_invisible(&text[tail..]))
+}
 
 /// The text with invisible characters replaced by escapes such as `\u{1b}`: control characters, which may drive a terminal, and those that turn or hide
 /// the text around them.
@@ -24,6 +38,15 @@ fn is_invisible(character: char) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_long_text_keeps_its_ends() {
+        let told = excerpt(&format!("is \"{}\"; allowed: a name", "é".repeat(10_000)));
+        assert!(told.starts_with("is \"éé") && told.ends_with("éé\"; allowed: a name") && told.contains("é…é"), "{told}");
+        assert_eq!(told.chars().count(), EXCERPT_LIMIT + 1);
+        let fits = "ü".repeat(EXCERPT_LIMIT);
+        assert_eq!(excerpt(&fits), fits);
+    }
 
     #[test]
     fn only_what_cannot_be_seen_is_escaped() {

@@ -16,6 +16,17 @@ fn species(stiffness_n_m2: &str) -> String {
     )
 }
 
+/// A model of one triangle, whose positions are those of an accessor.
+fn model(accessor: u32) -> String {
+    format!(
+        r#"{{ "asset": {{ "version": "2.0" }}, "scenes": [{{ "nodes": [0] }}], "nodes": [{{ "mesh": 0 }}],
+        "meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": {accessor} }} }}] }}],
+        "buffers": [{{ "byteLength": 36, "uri": "data:;base64,{}" }}], "bufferViews": [{{ "buffer": 0, "byteLength": 36 }}],
+        "accessors": [{{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [0, 0, 0] }}] }}"#,
+        "AAAA".repeat(12)
+    )
+}
+
 fn write(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) {
     std::fs::write(folder.join(name), bytes).unwrap();
 }
@@ -53,5 +64,27 @@ async fn an_edited_species_grows_in_a_new_world() {
     let (mut client, stiffness_n_m2) = join(&server).await;
     assert_eq!(stiffness_n_m2, 0.5);
     client.frame().await;
+    server.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_broken_model_leaves_the_old_world_running() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "scene.toml", format!("{SCENE}[objects]\ncar_model = 'car.gltf'\n"));
+    write(folder.path(), "land.png", grey_png([3; 2], &[255; 9]));
+    write(folder.path(), "species.toml", species("2.0"));
+    write(folder.path(), "car.gltf", model(0));
+    let server = Server::start_file(&folder.path().join("scene.toml")).await;
+    let (mut client, _) = join(&server).await;
+
+    write(folder.path(), "car.gltf", model(7));
+    let before = client.frame().await;
+    // Longer than the server takes to detect and reject the file.
+    while client.frame().await < before + 90 {}
+    write(folder.path(), "species.toml", species("0.5"));
+    write(folder.path(), "car.gltf", model(0));
+    assert_eq!(client.closed().await.0, Close::Stopping.code());
+    let (_, stiffness_n_m2) = join(&server).await;
+    assert_eq!(stiffness_n_m2, 0.5);
     server.stop().await;
 }

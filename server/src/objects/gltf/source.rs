@@ -4,8 +4,14 @@ use super::{FILE_LIMIT, ModelFault};
 use crate::file;
 use data_encoding::BASE64_NOPAD;
 use gltf::accessor::{DataType, Dimensions};
-use gltf::{Accessor, Document, Gltf, binary, buffer};
+use gltf::json::Index;
+use gltf::json::validation::Checked;
+use gltf::{Accessor, Document, Gltf, Semantic, binary, buffer};
+use prairie_core::escape::excerpt;
 use std::path::Path;
+
+/// Length of a binary file's header (bytes).
+const HEADER_BYTES: u32 = 12;
 
 /// A document and its buffers.
 pub(super) struct Source {
@@ -30,7 +36,7 @@ pub(super) const INDICES: Role =
 impl Source {
     pub(super) fn open(path: &Path) -> Result<Self, ModelFault> {
         let bytes = file::read(path, FILE_LIMIT).map_err(ModelFault::Unreadable)?;
-        let Gltf { document, mut blob } = Gltf::from_slice(&bytes).map_err(not_gltf)?;
+        let (document, mut blob) = parse(&bytes)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut buffers = Vec::new();
         let mut held = 0;
@@ -77,8 +83,35 @@ impl Source {
     }
 }
 
+/// Parses and validates a file, after checks of the two places where `gltf` itself panics.
+fn parse(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), ModelFault> {
+    if let Some(length) = stated_length(bytes).filter(|&length| length < HEADER_BYTES) {
+        return Err(ModelFault::NotGltf(format!("its header states a length of {length} bytes; allowed: at least {HEADER_BYTES}")));
+    }
+    let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(not_gltf)?;
+    let root = document.into_json();
+    let accessors = root.accessors.len();
+    for (m, mesh) in root.meshes.iter().enumerate() {
+        for (p, primitive) in mesh.primitives.iter().enumerate() {
+            let position = primitive.attributes.get(&Checked::Valid(Semantic::Positions)).map(Index::value);
+            if let Some(index) = position.filter(|&index| index >= accessors) {
+                return Err(ModelFault::NotGltf(format!(
+                    "meshes[{m}].primitives[{p}].attributes.POSITION is {index}, and there are {accessors} accessors, numbered from 0"
+                )));
+            }
+        }
+    }
+    Ok((Document::from_json(root).map_err(not_gltf)?, blob))
+}
+
+/// Length that the header of a binary file states (bytes).
+fn stated_length(bytes: &[u8]) -> Option<u32> {
+    let length = bytes.strip_prefix(b"glTF")?.get(4..8)?;
+    Some(u32::from_le_bytes(length.try_into().ok()?))
+}
+
 fn at_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, ModelFault> {
-    let unfit = |uri: &str, reason: String| ModelFault::Buffer { uri: uri.to_owned(), reason };
+    let unfit = |uri: &str, reason: String| ModelFault::Buffer { uri: excerpt(uri), reason };
     if let Some(data) = uri.strip_prefix("data:") {
         let digits = data.split_once(";base64,").map_or(data, |(_media_type, digits)| digits).trim_end_matches('=');
         return BASE64_NOPAD.decode(digits.as_bytes()).map_err(|error| unfit("data:…", format!("is no base64: {error}")));
@@ -94,8 +127,11 @@ fn not_gltf(error: gltf::Error) -> ModelFault {
     use binary::Error::{ChunkLength, Io, Length};
     ModelFault::NotGltf(match error {
         gltf::Error::Io(_) | gltf::Error::Binary(Io(_) | Length { .. } | ChunkLength { .. }) => "it ends too early".to_owned(),
-        gltf::Error::Validation(errors) => errors.first().map_or_else(String::new, |(path, error)| format!("{path} is wrong ({error})")),
-        other => other.to_string(),
+        gltf::Error::Validation(errors) => {
+            errors.first().map_or_else(String::new, |(path, error)| format!("{} is wrong ({error})", excerpt(path.as_str())))
+        }
+        // Errors of JSON may quote a value of any length.
+        other => excerpt(&other.to_string()),
     })
 }
 

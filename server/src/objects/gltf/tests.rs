@@ -93,6 +93,34 @@ fn invalid_gltf_is_rejected() {
 }
 
 #[test]
+fn an_accessor_of_positions_that_does_not_exist_is_rejected() {
+    let fault = |index: u32| fault_of(move |gltf| gltf["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(index));
+    let told = "is no sound glTF 2.0 file (.glb or .gltf): meshes[0].primitives[0].attributes.POSITION is ";
+    assert_eq!(fault(2), format!("{told}2, and there are 2 accessors, numbered from 0"));
+    assert_eq!(fault(u32::MAX), format!("{told}4294967295, and there are 2 accessors, numbered from 0"));
+}
+
+#[test]
+fn a_binary_file_shorter_than_its_header_is_rejected() {
+    let told = |length: u32| {
+        let bytes = [b"glTF".as_slice(), &2_u32.to_le_bytes(), &length.to_le_bytes(), &[0; 8]].concat();
+        read_bytes(&bytes, VehicleKind::Car).expect_err("no glTF").reason.to_string()
+    };
+    assert_eq!(told(11), "is no sound glTF 2.0 file (.glb or .gltf): its header states a length of 11 bytes; allowed: at least 12");
+    assert_eq!(told(40), "is no sound glTF 2.0 file (.glb or .gltf): it ends too early");
+}
+
+#[test]
+fn messages_do_not_repeat_long_values() {
+    let long = "x".repeat(100_000);
+    let uri = long.clone();
+    let buffer = fault_of(move |gltf| gltf["buffers"][0]["uri"] = json!(uri));
+    assert!(buffer.len() < 2000 && buffer.contains("x…x") && buffer.contains("which cannot be read: "), "{buffer}");
+    let value = fault_of(move |gltf| gltf["meshes"] = json!(long));
+    assert!(value.len() < 2000 && value.contains("is no sound glTF"), "{value}");
+}
+
+#[test]
 fn nodes_with_two_parents_or_in_a_cycle_are_rejected() {
     let twice = |node: usize| format!("places node {node} more than once; each node may have one parent, and none may be its own ancestor");
     assert_eq!(fault_of(|gltf| gltf["nodes"][0]["children"] = json!([0])), twice(0));
