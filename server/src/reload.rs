@@ -2,18 +2,21 @@
 
 use crate::config::Config;
 use crate::escaped::escaped;
-use crate::run::{RunError, run};
+use crate::run::{RunError, run, run_simulation};
 use crate::scenes::{self, LoadedScene, SceneError};
+use crate::world::World;
 use std::path::PathBuf;
 use std::pin::pin;
 use std::time::{Duration, SystemTime};
 use tokio::net::TcpListener;
+use tokio::task::JoinError;
 
 /// Time between two checks of the files.
 const POLL_PERIOD: Duration = Duration::from_millis(400);
 
 /// Serves a scene like [`run`], and restarts whenever one of its files changes and the scene is still valid. Clients get a shutdown notice, and
-/// reconnect to the new world on the same socket. The faults of an invalid scene are logged, and the old world continues.
+/// reconnect to the new world on the same socket. The new world is built while the old one runs. The faults of an invalid scene are logged, and the old
+/// world continues; so it does after a panic while a scene is loaded or a world built.
 ///
 /// A built-in scene has no files. A recorded scene is not watched, since the recording would restart too.
 ///
@@ -25,24 +28,28 @@ pub async fn run_and_reload(mut config: Config, listener: TcpListener, shutdown:
     }
     let listener = listener.into_std().map_err(RunError::Socket)?;
     let mut shutdown = pin!(shutdown);
+    let mut world = World::new(&config.scene.scene, config.scene.maps())?;
     loop {
         let mut changed = None;
         let until = async {
             tokio::select! {
                 () = shutdown.as_mut() => {}
-                scene = changed_scene(&config.scene) => changed = Some(scene),
+                new = changed_scene(&config.scene, scenes::load) => changed = Some(new),
             }
         };
         let socket = listener.try_clone().and_then(TcpListener::from_std).map_err(RunError::Socket)?;
-        run(config.clone(), socket, until).await?;
-        let Some(scene) = changed else { return Ok(()) };
+        run_simulation(world, config.clone(), socket, until).await?;
+        let Some((scene, new)) = changed else { return Ok(()) };
         tracing::info!(file = escaped(&scene.files[0]), "the scene has changed; restarting the world");
-        config.scene = scene;
+        (config.scene, world) = (scene, new);
     }
 }
 
-/// Waits until the files have changed and are valid; returns the new scene.
-async fn changed_scene(now: &LoadedScene) -> LoadedScene {
+/// Waits until the files have changed and are valid; returns the new scene and its world.
+async fn changed_scene<Load>(now: &LoadedScene, load: Load) -> (LoadedScene, World)
+where
+    Load: Fn(PathBuf) -> Result<LoadedScene, SceneError> + Copy + Send + 'static,
+{
     // Empty, so that the first check reloads the scene: the files may have changed since they were read.
     let mut seen = Vec::new();
     loop {
@@ -52,12 +59,40 @@ async fn changed_scene(now: &LoadedScene) -> LoadedScene {
             continue;
         }
         seen = newest;
-        match load(now.files[0].clone()).await {
-            Ok(scene) if scene != *now => return scene,
-            Ok(_) => {}
-            Err(error) => tracing::warn!("the changed scene is invalid; the old one continues:\n{error}"),
+        let path = now.files[0].clone();
+        match tokio::task::spawn_blocking(move || load(path)).await {
+            Ok(Ok(scene)) if scene != *now => {
+                if let Some(new) = with_world(scene).await {
+                    return new;
+                }
+            }
+            Ok(Ok(_)) => {}
+            Ok(Err(error)) => tracing::warn!("the changed scene is invalid; the old one continues:\n{error}"),
+            Err(error) => log_panic(error, "loaded"),
         }
     }
+}
+
+/// Builds the world of a scene; logs why that fails.
+async fn with_world(scene: LoadedScene) -> Option<(LoadedScene, World)> {
+    let build = move || World::new(&scene.scene, scene.maps()).map(|world| (scene, world));
+    match tokio::task::spawn_blocking(build).await {
+        Ok(Ok(new)) => Some(new),
+        Ok(Err(error)) => {
+            tracing::warn!("the changed scene is invalid; the old one continues: {error}");
+            None
+        }
+        Err(error) => {
+            log_panic(error, "built");
+            None
+        }
+    }
+}
+
+fn log_panic(error: JoinError, done: &str) {
+    let Ok(payload) = error.try_into_panic() else { return };
+    let text = payload.downcast_ref::<&str>().copied().or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    tracing::error!("the changed scene cannot be {done} because of a bug in Prairie ({}); the old one continues", text.unwrap_or("panic"));
 }
 
 /// Modification time and length of each file; `None` for a missing one.
@@ -69,7 +104,33 @@ fn stamps(files: &[PathBuf]) -> Vec<Option<(SystemTime, u64)>> {
     files.iter().map(stamp).collect()
 }
 
-async fn load(scene: PathBuf) -> Result<LoadedScene, SceneError> {
-    let loading = tokio::task::spawn_blocking(move || scenes::load(&scene));
-    loading.await.unwrap_or_else(|panic| std::panic::resume_unwind(panic.into_panic()))
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    static LOADS: AtomicU32 = AtomicU32::new(0);
+
+    /// Panics at first, and then loads another scene.
+    fn load_with_a_bug(_: PathBuf) -> Result<LoadedScene, SceneError> {
+        match LOADS.fetch_add(1, Ordering::SeqCst) {
+            0 => panic!("index out of bounds"),
+            _ => scenes::load("blades"),
+        }
+    }
+
+    #[tokio::test]
+    async fn a_panic_while_a_scene_is_loaded_ends_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("scene.toml");
+        let now = LoadedScene { files: vec![file.clone()], ..scenes::load("shells").unwrap() };
+        let edit = async {
+            while LOADS.load(Ordering::SeqCst) == 0 {
+                tokio::task::yield_now().await;
+            }
+            std::fs::write(&file, "changed").unwrap();
+        };
+        let (changed, ()) = tokio::join!(changed_scene(&now, load_with_a_bug), edit);
+        assert_eq!((changed.0.name.as_str(), LOADS.load(Ordering::SeqCst)), ("blades", 2));
+    }
 }
