@@ -57,6 +57,10 @@ pub use wind::{
 
 use serde::{Deserialize, Serialize};
 
+/// JSON Schema (draft 2020-12) of a scene file, for completion and checks in editors: types, ranges, words, defaults and descriptions with units. It is
+/// generated from [`FIELDS`], [`REQUIRED`], the defaults and the doc comments of the fields. Conflicts between values are found by [`parse`] alone.
+pub const SCHEMA: &str = include_str!("../../scene.schema.json");
+
 /// A whole scene, as a scene file describes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
