@@ -6,9 +6,11 @@ mod completions;
 mod log;
 mod manual;
 mod maps;
+mod new;
 mod number;
 mod print;
 mod scenes;
+mod schema;
 mod serve;
 mod unknown_word;
 mod usage;
@@ -20,8 +22,10 @@ use completions::Completions;
 use log::LogFormat;
 use manual::Manual;
 use maps::Maps;
+use new::New;
 pub(crate) use print::complain;
 use scenes::Scenes;
+use schema::Schema;
 use serve::Serve;
 use std::process::ExitCode;
 
@@ -50,6 +54,7 @@ Examples:
   prairie storm                              another built-in scene
   prairie my/hills.toml                      a scene of your own
   prairie --addr 0.0.0.0:8443 --tls self     for clients on other machines
+  prairie new my                             a scene to start from, my/scene.toml
   prairie check my/hills.toml                its faults, with line and column
 
 A scene that is called like a command is meant by `--scene NAME`.";
@@ -65,6 +70,12 @@ enum Command {
     /// Check scenes and report their faults with line and column
     #[command(after_help = check::EXAMPLES)]
     Check(Check),
+    /// Write a scene to start from, with its maps, into a folder of its own
+    #[command(after_help = new::EXAMPLES)]
+    New(New),
+    /// Print the JSON Schema of scene files, for editors
+    #[command(after_help = schema::EXAMPLES)]
+    Schema(Schema),
     /// Generate the maps of the built-in scenes; the result is always the same
     #[command(after_help = maps::EXAMPLES)]
     Maps(Maps),
@@ -95,6 +106,8 @@ pub(crate) fn run() -> anyhow::Result<ExitCode> {
         Command::Serve(serve) => serve.run().map(done).map_err(unknown_word::suggest_commands),
         Command::Scenes(scenes) => scenes.run().map(done),
         Command::Check(check) => check.run(),
+        Command::New(new) => new.run().map(done),
+        Command::Schema(schema) => schema.run().map(done),
         Command::Maps(maps) => maps.run().map(done),
         Command::Completions(completions) => completions.run().map(done),
         Command::Man(manual) => manual.run().map(done),

@@ -7,7 +7,8 @@ use prairie_core::terrain::HeightMap;
 pub(super) struct BuiltIn {
     pub(super) name: &'static str,
     pub(super) text: &'static str,
-    files: &'static [(&'static str, &'static [u8])],
+    /// The files that it names, with their contents.
+    pub(super) files: &'static [(&'static str, &'static [u8])],
 }
 
 macro_rules! file {
@@ -63,6 +64,11 @@ pub(super) const BUILT_IN: [BuiltIn; 8] = [
 impl BuiltIn {
     pub(super) fn find(name: &str) -> Option<&'static Self> {
         BUILT_IN.iter().find(|scene| scene.name == name)
+    }
+
+    /// Names of all built-in scenes.
+    pub(super) fn names() -> Vec<&'static str> {
+        BUILT_IN.iter().map(|scene| scene.name).collect()
     }
 
     /// Contents of a file named by the scene.

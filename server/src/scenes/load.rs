@@ -1,6 +1,6 @@
 //! Loading of a scene with its maps and models.
 
-use super::builtin::{BUILT_IN, BuiltIn};
+use super::builtin::BuiltIn;
 use super::error::{FaultyScene, SceneError};
 use crate::bend::wind_drawing::{WindDrawing, WindDrawings};
 use crate::escaped::escaped;
@@ -92,7 +92,7 @@ fn utf8(bytes: Vec<u8>) -> Result<String, String> {
 }
 
 fn unknown(name: &OsStr) -> SceneError {
-    let known: Vec<_> = BUILT_IN.iter().map(|scene| scene.name).collect();
+    let known = BuiltIn::names();
     SceneError::Unknown { name: name.to_owned(), nearest: most_similar(name, known.iter().copied()), known }
 }
 

@@ -1,11 +1,13 @@
 //! Scenes: built-in scenes, scene files, and generators of the built-in maps.
 
 mod builtin;
+mod create;
 mod error;
 mod load;
 pub mod maps;
 mod report;
 
+pub use create::{CreateError, create};
 pub use error::{FaultyScene, SceneError};
 #[cfg(test)]
 pub(crate) use load::MAP_LIMIT;

@@ -147,7 +147,7 @@ fn the_stored_schema_is_the_generated_one() {
 #[test]
 fn every_valid_scene_validates() {
     let (schema, mut count) = (compiled(), 0);
-    for path in ["server/scenes", "tests/scenes", "tests/scenes/species"].into_iter().flat_map(files) {
+    for path in ["server/scenes", "server/scenes/starter", "tests/scenes", "tests/scenes/species"].into_iter().flat_map(files) {
         let text = std::fs::read_to_string(&path).unwrap();
         // All others are files of species only.
         if text.contains("\n[terrain]\n") {
@@ -155,7 +155,7 @@ fn every_valid_scene_validates() {
             count += 1;
         }
     }
-    assert!(count >= 12, "only {count} scenes were found");
+    assert!(count >= 13, "only {count} scenes were found");
     validate(&complete().to_string(), &schema).unwrap();
 }
 

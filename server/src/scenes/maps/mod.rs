@@ -9,13 +9,14 @@ mod jacksboro;
 mod knolls;
 mod landforms;
 mod meadow;
+mod starter;
 
 pub use grey_map::{GreyMap, Levels};
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Generates every map.
+/// Generates every map of the built-in scenes.
 pub fn generate() -> Vec<GreyMap> {
     let mut maps = vec![jacksboro::covering()];
     maps.extend(meadow::maps());
@@ -23,6 +24,11 @@ pub fn generate() -> Vec<GreyMap> {
     maps.extend(blades::maps());
     maps.extend(knolls::maps());
     maps
+}
+
+/// Height map and covering map of the scene that `prairie new` writes; they are not among those of [`generate`].
+pub fn starter() -> [GreyMap; 2] {
+    starter::maps()
 }
 
 /// Generates every map and writes it into `folder`; returns the files.
