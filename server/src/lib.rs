@@ -13,6 +13,7 @@ pub mod escaped;
 mod file;
 pub mod histogram;
 pub mod inspect;
+mod log_limit;
 pub mod metrics;
 pub mod net;
 pub mod objects;

@@ -2,11 +2,12 @@
 
 use super::tls::Tls;
 use crate::config::Limits;
+use crate::log_limit::LogLimit;
 use axum::Router;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
@@ -15,13 +16,10 @@ use tokio::time::timeout;
 /// Pause after a failed accept, the symptom of running out of file descriptors.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(200);
 
-/// Shortest time between two log lines about too many connections.
-const FULL_LOG_PERIOD: Duration = Duration::from_secs(10);
-
 /// Serves connections forever. At most `limits.pending` connections that are not clients are open at once; others wait in the system's queue, for at
 /// most `limits.http_timeout`.
 pub(crate) async fn serve(listener: TcpListener, tls: Option<Tls>, router: Router, limits: Limits) {
-    let mut slots = Slots { free: Arc::new(Semaphore::new(limits.pending)), warned: None };
+    let slots = Slots { free: Arc::new(Semaphore::new(limits.pending)), warning: LogLimit::default() };
     loop {
         let slot = slots.take().await;
         let stream = match listener.accept().await {
@@ -43,14 +41,13 @@ pub(crate) async fn serve(listener: TcpListener, tls: Option<Tls>, router: Route
 /// Free slots for connections that are not clients yet.
 struct Slots {
     free: Arc<Semaphore>,
-    warned: Option<Instant>,
+    warning: LogLimit,
 }
 
 impl Slots {
-    async fn take(&mut self) -> OwnedSemaphorePermit {
-        if self.free.available_permits() == 0 && self.warned.is_none_or(|at| at.elapsed() > FULL_LOG_PERIOD) {
+    async fn take(&self) -> OwnedSemaphorePermit {
+        if self.free.available_permits() == 0 && self.warning.due().is_some() {
             tracing::warn!("too many connections without a client; new ones wait");
-            self.warned = Some(Instant::now());
         }
         self.free.clone().acquire_owned().await.expect("the semaphore is never closed")
     }
