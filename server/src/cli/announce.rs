@@ -1,11 +1,12 @@
 //! The address of the page, as `prairie serve` prints it.
 
 use super::print::print_exactly;
+use prairie::escaped::escaped;
 use prairie::net::{Tls, reachable_ip};
 use std::fmt::Write as _;
 use std::net::{IpAddr, SocketAddr};
 
-/// Prints the address of the page and the certificate's fingerprint, and opens the browser on request.
+/// Prints the address of the page and the certificate's fingerprint and folder, and opens the browser on request.
 pub(super) fn announce(address: SocketAddr, tls: Option<&Tls>, open: bool) {
     let scheme = if tls.is_some() { "https" } else { "http" };
     let local = match address.ip() {
@@ -21,8 +22,11 @@ pub(super) fn announce(address: SocketAddr, tls: Option<&Tls>, open: bool) {
             tracing::warn!("browsers enable WebGPU only over https or on this machine; for other machines add --tls self");
         }
     }
-    if let Some(tls) = tls {
-        let _ = writeln!(text, "  certificate SHA-256: {}", tls.fingerprint());
+    if let Some(fingerprint) = tls.and_then(Tls::fingerprint) {
+        let _ = writeln!(text, "  certificate SHA-256: {fingerprint}");
+    }
+    if let Some(folder) = tls.and_then(Tls::folder) {
+        let _ = writeln!(text, "  certificate kept in: {}", escaped(folder));
     }
     // Clients need no stdout, so the server goes on without.
     if let Err(error) = print_exactly(text) {

@@ -12,6 +12,7 @@ mod print;
 mod scenes;
 mod schema;
 mod serve;
+mod tls;
 mod unknown_word;
 mod usage;
 mod version;

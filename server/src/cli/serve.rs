@@ -3,10 +3,11 @@
 use super::announce::announce;
 use super::log::LogFormat;
 use super::number::whole;
+use super::tls::TlsArguments;
 use anyhow::Context as _;
 use clap::{Args, ValueHint};
 use prairie::inspect::Target;
-use prairie::net::{Tls, TlsChoice, bind};
+use prairie::net::bind;
 use prairie::{Config, Limits, scenes};
 use std::ffi::{OsStr, OsString};
 
@@ -18,6 +19,8 @@ Examples:
   prairie serve --addr 0.0.0.0:8443 --tls self
                                              on all addresses of this machine
   prairie serve --tls cert.pem,key.pem       with your own certificate
+  prairie serve --allow-origin https://play.example
+                                             behind a proxy that serves https://play.example
   prairie serve --rerun save=run.rrd         records the run for the rerun viewer
 
 Browsers enable WebGPU only on pages from this machine or over https, so other machines need --tls.
@@ -43,9 +46,8 @@ pub(super) struct Serve {
     /// Open the page in the browser
     #[arg(long, env = "PRAIRIE_OPEN", value_parser = yes_or_no)]
     open: bool,
-    /// Serve https, with a generated self-signed certificate (`self`) or with two PEM files
-    #[arg(long, env = "PRAIRIE_TLS", value_name = "self|CERT,KEY")]
-    tls: Option<TlsChoice>,
+    #[command(flatten)]
+    tls: TlsArguments,
     /// Record the run for the rerun viewer: serve it to viewers, save it to a file, or send it to a running viewer
     #[arg(long, env = "PRAIRIE_RERUN", value_name = "serve|save=FILE.rrd|connect=URL")]
     rerun: Option<Target>,
@@ -81,7 +83,7 @@ impl Serve {
         tokio::runtime::Builder::new_multi_thread().enable_all().build()?.block_on(async {
             let listener = bind(&self.addr).await.context("--addr")?;
             let address = listener.local_addr()?;
-            let tls = self.tls.as_ref().map(|choice| Tls::new(choice, address)).transpose().context("--tls")?;
+            let tls = self.tls.open(address)?;
             let mut limits = Limits { clients: usize::from(self.max_clients), ..Limits::default() };
             limits.send.bytes_per_s = f64::from(self.client_kbit) * 1000.0 / 8.0;
             let config = Config {

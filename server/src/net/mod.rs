@@ -3,17 +3,21 @@
 //! All input is untrusted: connections, handshakes, headers, hellos, sizes and rates are bounded before anything is parsed. A client that
 //! violates the protocol is disconnected with a code ([`prairie_core::wire::Close`]), a reason and a log line.
 
+mod addresses;
 mod app;
 pub mod assets;
 mod bind;
 mod health;
+mod host_name;
 mod routes;
 mod serve;
 mod session;
 mod tls;
 
+pub use addresses::reachable_ip;
 pub(crate) use app::App;
 pub use bind::{BindError, bind};
+pub use host_name::{HostName, Origin};
 pub(crate) use routes::router;
 pub(crate) use serve::serve;
-pub use tls::{Tls, TlsChoice, TlsError, reachable_ip};
+pub use tls::{AcmeService, LETS_ENCRYPT, Tls, TlsChoice, TlsError, TlsSettings};

@@ -57,8 +57,9 @@ async fn connection(stream: TcpStream, tls: Option<Tls>, router: Router, limits:
     // Frames are written as a whole, so Nagle's algorithm would only delay them.
     let _ = stream.set_nodelay(true);
     let Some(tls) = tls else { return http(stream, router, limits).await };
-    match timeout(limits.handshake_timeout, tls.acceptor.accept(stream)).await {
-        Ok(Ok(stream)) => http(stream, router, limits).await,
+    match timeout(limits.handshake_timeout, tls.accept(stream)).await {
+        Ok(Ok(Some(stream))) => http(stream, router, limits).await,
+        Ok(Ok(None)) => tracing::debug!("the ACME service checked a domain"),
         Ok(Err(error)) => tracing::debug!(%error, "TLS handshake failed"),
         Err(_) => tracing::debug!("TLS handshake timed out"),
     }

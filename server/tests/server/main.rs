@@ -3,6 +3,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+#[cfg(feature = "acme")]
+mod acme;
 mod command_line;
 mod http;
 mod misbehaving_clients;

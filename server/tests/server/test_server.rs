@@ -1,13 +1,13 @@
 //! A server on a free port.
 
 use crate::stand_in::{StandInWorld, scene};
-use prairie::net::{Tls, TlsChoice, bind};
+use prairie::net::{Tls, TlsSettings, bind};
 use prairie::{Config, Limits, RunError, run, run_and_reload, run_simulation, scenes};
 use std::net::SocketAddr;
 use std::path::Path;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
-use tokio::net::TcpStream;
+use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::oneshot;
 use tokio::task::JoinHandle;
 
@@ -25,15 +25,20 @@ impl Server {
         Self::start_with(StandInWorld::default(), limits, None).await.0
     }
 
-    pub(crate) async fn start_with(world: StandInWorld, limits: Limits, tls: Option<TlsChoice>) -> (Self, Option<Tls>) {
+    pub(crate) async fn start_with(world: StandInWorld, limits: Limits, tls: Option<TlsSettings>) -> (Self, Option<Tls>) {
         let listener = bind("127.0.0.1:0").await.unwrap();
+        let tls = tls.map(|settings| Tls::new(&settings, listener.local_addr().unwrap()).unwrap());
+        let config = Config { tls: tls.clone(), limits, ..Config::new(scene()) };
+        (Self::start_config(world, config, listener), tls)
+    }
+
+    /// Serves a stand-in world with any configuration of the scene [`scene`].
+    pub(crate) fn start_config(world: StandInWorld, config: Config, listener: TcpListener) -> Self {
         let address = listener.local_addr().unwrap();
-        let tls = tls.map(|choice| Tls::new(&choice, address).unwrap());
-        let config = Config { tls: tls.clone(), limits, threads: Some(1), ..Config::new(scene()) };
         let (stop, stopped) = oneshot::channel();
         let shutdown = async { drop(stopped.await) };
-        let outcome = tokio::spawn(run_simulation(world, config, listener, shutdown));
-        (Self { address, stop, outcome }, tls)
+        let config = Config { threads: Some(1), ..config };
+        Self { address, stop, outcome: tokio::spawn(run_simulation(world, config, listener, shutdown)) }
     }
 
     /// Serves the default scene with the real world.
@@ -61,8 +66,12 @@ impl Server {
 
     /// Sends a request and returns the whole response.
     pub(crate) async fn http(&self, request: &str) -> Vec<u8> {
+        self.http_at(&self.address.to_string(), request).await
+    }
+
+    /// Sends a request for a host and returns the whole response.
+    pub(crate) async fn http_at(&self, host: &str, request: &str) -> Vec<u8> {
         let mut stream = TcpStream::connect(self.address).await.unwrap();
-        let host = self.address;
         stream.write_all(format!("{request}\r\nhost: {host}\r\nconnection: close\r\n\r\n").as_bytes()).await.unwrap();
         let mut response = Vec::new();
         within(stream.read_to_end(&mut response)).await.unwrap();
