@@ -1,7 +1,7 @@
 //! Configuration of a run.
 
 use crate::inspect::Target;
-use crate::net::Tls;
+use crate::net::{HostName, Origin, Tls};
 use crate::scenes::LoadedScene;
 use crate::stream::SendLimits;
 use std::time::Duration;
@@ -13,6 +13,10 @@ pub struct Config {
     pub scene: LoadedScene,
     /// Certificate and key for https; `None` for plain http.
     pub tls: Option<Tls>,
+    /// Origins of pages that may open the WebSocket, besides those of this server; their hosts are allowed, too. Default none.
+    pub allow_origins: Vec<Origin>,
+    /// Host names that requests may name, besides those of this machine and its certificate. Default none.
+    pub allow_hosts: Vec<HostName>,
     /// Destination of the recording for the rerun viewer; `None` for no recording.
     pub rerun: Option<Target>,
     /// Threads of the simulation; `None` for one per core.
@@ -26,7 +30,16 @@ pub struct Config {
 impl Config {
     /// The default configuration for `scene`.
     pub fn new(scene: LoadedScene) -> Self {
-        Self { scene, tls: None, rerun: None, threads: None, publish_hz: 20.0, limits: Limits::default() }
+        Self {
+            scene,
+            tls: None,
+            allow_origins: Vec::new(),
+            allow_hosts: Vec::new(),
+            rerun: None,
+            threads: None,
+            publish_hz: 20.0,
+            limits: Limits::default(),
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::config::{Config, Limits};
 use crate::inspect::{InspectError, Inspector};
-use crate::net::{self, App};
+use crate::net::{self, Access, App};
 use crate::runner::{Published, Runner, Simulation, Timing};
 use crate::settings_error::SettingsError;
 use crate::stream::{self, Clients, Streamer};
@@ -89,6 +89,7 @@ pub async fn run_simulation(
         scene_name: config.scene.name.clone(),
         scene: scene_message(&config),
         limits: config.limits,
+        access: Access::new(&config.allow_origins, &config.allow_hosts, config.tls.clone()),
         client_slots: client_slots.clone(),
         pending_slots: pending_slots.clone(),
         stopping,

@@ -88,6 +88,8 @@ impl Serve {
             limits.send.bytes_per_s = f64::from(self.client_kbit) * 1000.0 / 8.0;
             let config = Config {
                 tls: tls.clone(),
+                allow_origins: self.tls.allow_origin,
+                allow_hosts: self.tls.allow_host,
                 rerun: self.rerun,
                 threads: self.threads.map(usize::from),
                 publish_hz: f32::from(self.publish_hz),

@@ -2,7 +2,7 @@
 
 use anyhow::Context as _;
 use clap::{Args, ValueHint};
-use prairie::net::{AcmeService, HostName, LETS_ENCRYPT, Tls, TlsChoice, TlsSettings};
+use prairie::net::{AcmeService, HostName, LETS_ENCRYPT, Origin, Tls, TlsChoice, TlsSettings};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
@@ -27,6 +27,9 @@ pub(super) struct TlsArguments {
     /// Name by which browsers reach this server, besides `localhost`, the host name and the names in the certificate; repeatable
     #[arg(long, env = "PRAIRIE_ALLOW_HOST", value_name = "NAME", value_delimiter = ',')]
     pub(super) allow_host: Vec<HostName>,
+    /// Origin of pages that may connect, such as `https://play.example` behind a proxy; repeatable
+    #[arg(long, env = "PRAIRIE_ALLOW_ORIGIN", value_name = "ORIGIN", value_delimiter = ',')]
+    pub(super) allow_origin: Vec<Origin>,
 }
 
 impl TlsArguments {

@@ -1,5 +1,6 @@
 //! State shared by all requests and sessions.
 
+use super::origin::Access;
 use crate::config::Limits;
 use crate::metrics::ServerStats;
 use crate::runner::Published;
@@ -22,6 +23,8 @@ pub(crate) struct App {
     /// The encoded scene message, the same for all clients.
     pub(crate) scene: Bytes,
     pub(crate) limits: Limits,
+    /// Hosts and origins that requests may name.
+    pub(crate) access: Access,
     /// One permit per additional client.
     pub(crate) client_slots: Arc<Semaphore>,
     /// One permit per additional WebSocket before its hello.

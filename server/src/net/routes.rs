@@ -3,9 +3,10 @@
 use super::app::App;
 use super::{assets, health, session};
 use axum::Router;
-use axum::extract::State;
 use axum::extract::ws::WebSocketUpgrade;
+use axum::extract::{Request, State};
 use axum::http::{HeaderMap, StatusCode, Uri, header};
+use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{any, get};
 use prairie_core::wire::CLIENT_MESSAGE_LIMIT;
@@ -18,14 +19,21 @@ pub(crate) fn router(app: Arc<App>) -> Router {
         .route("/readyz", get(health::readiness))
         .route("/metrics", get(health::metrics))
         .fallback(get(asset))
+        .layer(middleware::from_fn_with_state(app.clone(), own_host))
         .with_state(app)
 }
 
+/// Answers only requests for a host of this server.
+async fn own_host(State(app): State<Arc<App>>, request: Request, next: Next) -> Response {
+    match app.access.check_host(request.headers(), request.version()) {
+        Ok(()) => next.run(request).await,
+        Err(rejection) => rejection.into_response(),
+    }
+}
+
 async fn socket(State(app): State<Arc<App>>, headers: HeaderMap, upgrade: WebSocketUpgrade) -> Response {
-    if !same_origin(&headers) {
-        let origin = headers.get(header::ORIGIN).map(|origin| String::from_utf8_lossy(origin.as_bytes()).into_owned());
-        tracing::warn!(origin, "rejected a WebSocket from another origin");
-        return (StatusCode::FORBIDDEN, "only pages of this server may open the WebSocket\n").into_response();
+    if let Err(rejection) = app.access.check_origin(&headers) {
+        return rejection.into_response();
     }
     let Ok(slot) = app.pending_slots.clone().try_acquire_owned() else {
         return (StatusCode::SERVICE_UNAVAILABLE, "too many connections without a hello; try again later\n").into_response();
@@ -35,15 +43,6 @@ async fn socket(State(app): State<Arc<App>>, headers: HeaderMap, upgrade: WebSoc
         .max_frame_size(CLIENT_MESSAGE_LIMIT)
         .read_buffer_size(2 * CLIENT_MESSAGE_LIMIT)
         .on_upgrade(move |socket| session::run(socket, app, slot))
-}
-
-/// Whether a request comes from a page of this server, or from a program other than a browser (without an origin).
-/// Without this check any page in the user's browser could control a server on the same machine.
-fn same_origin(headers: &HeaderMap) -> bool {
-    let Some(origin) = headers.get(header::ORIGIN) else { return true };
-    let origin_host = origin.to_str().ok().and_then(|origin| origin.split_once("://")).map(|(_, host)| host);
-    let host = headers.get(header::HOST).and_then(|host| host.to_str().ok());
-    matches!((origin_host, host), (Some(origin), Some(host)) if origin.eq_ignore_ascii_case(host))
 }
 
 async fn asset(uri: Uri, headers: HeaderMap) -> Response {
@@ -62,29 +61,5 @@ async fn asset(uri: Uri, headers: HeaderMap) -> Response {
         (common, [(header::CONTENT_ENCODING, "gzip")], asset.gzip).into_response()
     } else {
         (common, asset.bytes).into_response()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn headers(pairs: &[(header::HeaderName, &str)]) -> HeaderMap {
-        pairs.iter().map(|(name, value)| (name.clone(), value.parse().unwrap())).collect()
-    }
-
-    #[test]
-    fn only_own_pages_and_programs_may_open_the_web_socket() {
-        let host = (header::HOST, "prairie.example:8080");
-        assert!(same_origin(&headers(std::slice::from_ref(&host))));
-        for (origin, allowed) in [
-            ("http://prairie.example:8080", true),
-            ("https://Prairie.example:8080", true),
-            ("http://prairie.example", false),
-            ("http://elsewhere.example:8080", false),
-            ("null", false),
-        ] {
-            assert_eq!(same_origin(&headers(&[host.clone(), (header::ORIGIN, origin)])), allowed, "{origin}");
-        }
     }
 }

@@ -100,6 +100,7 @@ fn wrong_arguments_of_tls_are_named() {
         (&["--acme-root", &file], "error: --acme-root needs --tls acme:DOMAIN"),
         (&["--acme-email", "me"], "'me' for '--acme-email <ADDRESS>': expected an e-mail address"),
         (&["--acme-directory", "acme.example"], "'acme.example' for '--acme-directory <URL>': expected the URL"),
+        (&["--allow-origin", "play.example"], "'play.example' for '--allow-origin <ORIGIN>': expected scheme, host and port"),
         (&["--allow-host", "play.example:8443"], "'play.example:8443' for '--allow-host <NAME>': expected a name without a port"),
     ] {
         let failed = prairie(&[&["serve", "--addr", "127.0.0.1:0"], arguments].concat());

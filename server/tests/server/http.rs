@@ -1,9 +1,10 @@
-//! HTTP: pages, `/healthz`, the origin check, and how a run ends.
+//! HTTP: pages, `/healthz`, the checks of host and origin, and how a run ends.
 
-use crate::stand_in::StandInWorld;
+use crate::stand_in::{StandInWorld, scene};
 use crate::test_client::PlainClient;
 use crate::test_server::{Server, within};
-use prairie::{Limits, RunError};
+use prairie::net::bind;
+use prairie::{Config, Limits, RunError};
 use prairie_core::wire::{ClientMessage, Close, Refusal, ServerMessage};
 use std::io::Read as _;
 use std::time::Duration;
@@ -87,15 +88,56 @@ async fn pages_health_and_origins_are_served() {
     })
     .await;
 
-    for (origin, allowed) in [(format!("http://{}", server.address), true), ("http://elsewhere.example".to_owned(), false)] {
-        let mut request = format!("ws://{}/ws", server.address).into_client_request().unwrap();
-        request.headers_mut().insert("origin", origin.parse().unwrap());
-        let stream = TcpStream::connect(server.address).await.unwrap();
-        match within(tokio_tungstenite::client_async(request, stream)).await {
-            Ok(_) => assert!(allowed, "{origin}"),
-            Err(tungstenite::Error::Http(response)) => assert!(!allowed && response.status() == 403, "{origin}: {}", response.status()),
-            Err(other) => panic!("{origin}: {other}"),
-        }
+    let address = server.address.to_string();
+    assert_eq!(open_web_socket(&server, &address, &format!("http://{address}")).await, 101);
+    assert_eq!(open_web_socket(&server, &address, "http://elsewhere.example").await, 403);
+    server.stop().await;
+}
+
+/// The status of the response to a WebSocket request with these headers.
+async fn open_web_socket(server: &Server, host: &str, origin: &str) -> u16 {
+    let mut request = format!("ws://{host}/ws").into_client_request().unwrap();
+    request.headers_mut().insert("origin", origin.parse().unwrap());
+    let stream = TcpStream::connect(server.address).await.unwrap();
+    match within(tokio_tungstenite::client_async(request, stream)).await {
+        Ok((_, response)) => response.status().as_u16(),
+        Err(tungstenite::Error::Http(response)) => response.status().as_u16(),
+        Err(other) => panic!("{host}, {origin}: {other}"),
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn requests_for_other_hosts_are_rejected() {
+    let server = Server::start(Limits::default()).await;
+    for path in ["/", "/ws", "/healthz", "/nothing"] {
+        let response = server.http_at("elsewhere.example", &format!("GET {path} HTTP/1.1")).await;
+        let response = String::from_utf8(response).unwrap();
+        assert!(response.starts_with("HTTP/1.1 421") && response.contains("`elsewhere.example`"), "{path}: {response}");
+    }
+    let rebound = open_web_socket(&server, "elsewhere.example", "http://elsewhere.example").await;
+    assert_eq!(rebound, 421, "a page whose name leads here");
+    server.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn allowed_hosts_and_origins_of_proxies_are_served() {
+    let listener = bind("127.0.0.1:0").await.unwrap();
+    let address = listener.local_addr().unwrap().to_string();
+    let config = Config {
+        allow_hosts: vec!["prairie.example".parse().unwrap()],
+        allow_origins: vec!["https://play.example".parse().unwrap()],
+        ..Config::new(scene())
+    };
+    let server = Server::start_config(StandInWorld::default(), config, listener);
+    assert!(server.http_at("prairie.example", "GET / HTTP/1.1").await.starts_with(b"HTTP/1.1 200"));
+    for (host, origin, status) in [
+        (address.as_str(), "https://play.example", 101),
+        ("play.example", "https://play.example", 101),
+        ("prairie.example", "https://prairie.example", 101),
+        ("prairie.example", "https://elsewhere.example", 403),
+        ("elsewhere.example", "https://play.example", 421),
+    ] {
+        assert_eq!(open_web_socket(&server, host, origin).await, status, "{host}, {origin}");
     }
     server.stop().await;
 }

@@ -127,6 +127,27 @@ pub(crate) fn trusting(certificate: CertificateDer<'static>) -> Arc<dyn ServerCe
     WebPkiServerVerifier::builder_with_provider(Arc::new(roots), Arc::new(rustls::crypto::ring::default_provider())).build().unwrap()
 }
 
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn names_in_the_certificate_are_served() {
+    let folder = tempfile::tempdir().unwrap();
+    let [certificate, key] = ["cert.pem", "key.pem"].map(|name| folder.path().join(name));
+    let generated = rcgen::generate_simple_self_signed(["play.example".to_owned(), "*.meadow.example".to_owned()]).unwrap();
+    std::fs::write(&certificate, generated.cert.pem()).unwrap();
+    std::fs::write(&key, generated.signing_key.serialize_pem()).unwrap();
+    let settings = TlsSettings::new(TlsChoice::Files { certificate, key });
+    let (server, tls) = Server::start_with(StandInWorld::default(), Limits::default(), Some(settings)).await;
+    assert_eq!(tls.unwrap().folder(), None, "the server keeps nothing");
+    let trusted = trusting(generated.cert.der().clone());
+    for (name, status) in [("play.example", "200"), ("a.meadow.example", "200"), ("elsewhere.example", "421")] {
+        let mut stream = handshake(server.address, "play.example", trusted.clone()).await.unwrap();
+        stream.write_all(format!("GET / HTTP/1.0\r\nhost: {name}\r\n\r\n").as_bytes()).await.unwrap();
+        let mut response = [0; 12];
+        within(stream.read_exact(&mut response)).await.unwrap();
+        assert_eq!(&response[9..], status.as_bytes(), "{name}");
+    }
+    server.stop().await;
+}
+
 #[tokio::test]
 async fn a_generated_certificate_names_the_machine_and_the_names_given() {
     let folder = tempfile::tempdir().unwrap();
