@@ -1,5 +1,17 @@
 //! Hashes of integer coordinates as random numbers, the same on the GPU.
 
+/// Multiplier and increment of the linear congruential step of [`hash3`].
+pub const HASH_MULTIPLIER: u32 = 1_664_525;
+pub const HASH_INCREMENT: u32 = 1_013_904_223;
+
+/// Number of values of [`unit`]: those that an `f32` distinguishes evenly.
+pub const UNIT_STEPS: f32 = 16_777_216.0;
+
+/// Random bits as a number in 0..1, 1 excluded; uses the upper 24 bits.
+pub fn unit(bits: u32) -> f32 {
+    (bits >> 8) as f32 / UNIT_STEPS
+}
+
 /// Three random numbers for integer coordinates: the hash pcg3d (Jarzynski & Olano 2020), so that server, client and GPU agree to the bit.
 ///
 /// Its twin on the GPU is `hash3` in `inputs/random.wgsl`.
@@ -10,7 +22,7 @@ pub fn hash3(place: [u32; 3]) -> [u32; 3] {
         z = z.wrapping_add(x.wrapping_mul(y));
         [x, y, z]
     };
-    let scrambled = place.map(|v| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+    let scrambled = place.map(|v| v.wrapping_mul(HASH_MULTIPLIER).wrapping_add(HASH_INCREMENT));
     stir(stir(scrambled).map(|v| v ^ (v >> 16)))
 }
 

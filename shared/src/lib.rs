@@ -41,6 +41,9 @@ pub mod terrain;
 pub mod wind;
 pub mod wire;
 
+/// Gravitational acceleration (m/s²).
+pub const GRAVITY_M_PER_S2: f64 = 9.81;
+
 /// Compiles and runs the examples of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -86,7 +86,7 @@ fn the_worked_edit_of_a_species_gives_what_the_readme_says() {
     for (stiffness_n_m2, [weight, aside_m, up_m, top_m, off_upright]) in
         [(0.002, [3.9, 0.50, 0.55, 0.55, 54.0]), (0.008, [1.0, 0.28, 0.70, 0.70, 23.0]), (0.001, [7.7, 0.66, 0.07, 0.18, 113.0_f64])]
     {
-        let load = f64::from(leaf.mass_kg) * 9.81 * length_m * length_m / stiffness_n_m2;
+        let load = f64::from(leaf.mass_kg) * prairie_core::GRAVITY_M_PER_S2 * length_m * length_m / stiffness_n_m2;
         let mut bends_rad = vec![0.0; sections];
         balanced(&joints(sections, leaf.tip_stiffness_share.into()), Load { spread: load, tip: 0.0 }, unbent_rad, &mut bends_rad);
         let (mut at_m, mut highest_m) = ([0.0_f64; 2], 0.0_f64);

@@ -238,7 +238,10 @@ fn flora() -> (Times, Flora) {
 
 fn underbrush() {
     let (growing, flora) = flora();
-    let forces = Forces { per_mass_m_per_s2: Vec3::Y * -9.81, pressure_pa: dynamic_pressure_pa([5.0, 0.0, 1.5]).into() };
+    let forces = Forces {
+        per_mass_m_per_s2: Vec3::Y * -prairie_core::GRAVITY_M_PER_S2 as f32,
+        pressure_pa: dynamic_pressure_pa([5.0, 0.0, 1.5]).into(),
+    };
     heading("underbrush, a component posed", "slower");
     for (species, plan) in flora.species().iter().zip(flora.plans()) {
         let plants: Vec<_> = (0..64).map(|number| plan.placed(number)).collect();

@@ -1,8 +1,10 @@
 // Random numbers and dither.
 
+import package::constants::{HASH_INCREMENT, HASH_MULTIPLIER, UNIT_STEPS};
+
 // Integer hash pcg3d (Jarzynski & Olano 2020). Twin of `hash3` in shared/src/hash.rs.
 fn hash3(v_in: vec3<u32>) -> vec3<u32> {
-    var v = v_in * 1664525u + 1013904223u;
+    var v = v_in * HASH_MULTIPLIER + HASH_INCREMENT;
     v.x += v.y * v.z;
     v.y += v.z * v.x;
     v.z += v.x * v.y;
@@ -16,7 +18,7 @@ fn hash3(v_in: vec3<u32>) -> vec3<u32> {
 // Three random numbers in 0..1 for a cell and a number.
 fn random3(place: vec2<i32>, number: u32) -> vec3<f32> {
     let h = hash3(vec3<u32>(bitcast<u32>(place.x), bitcast<u32>(place.y), number));
-    return vec3<f32>(h >> vec3<u32>(8u)) / 16777216.0;
+    return vec3<f32>(h >> vec3<u32>(8u)) / UNIT_STEPS;
 }
 
 // Interleaved gradient noise (Jimenez 2014, "Next generation post processing in Call of Duty: Advanced Warfare"): numbers in 0..1 that

@@ -1,6 +1,6 @@
 // Light of sky and land. Colours are in picture units: illuminance divided by π, or luminance, times the exposure.
 
-import package::constants::{HAZE_FORWARD, TAU};
+import package::constants::{HAZE_FORWARD, LUMINANCE, TAU};
 import package::inputs::frame::{clamped, frame};
 
 @group(0) @binding(13) var sky_table: texture_2d<f32>;
@@ -27,7 +27,7 @@ fn sky_color(direction: vec3<f32>) -> vec3<f32> {
     let haze = textureSampleLevel(sky_table, clamped, uv + vec2<f32>(0.0, 0.5), 0.0).rgb;
     let clear = molecules + haze * haze_phase(dot(direction, frame.toward_sun)) + frame.lights.night_rgb;
     // Rain clouds are grey in all directions, a little brighter at the horizon.
-    let grey = dot(frame.lights.mean_rgb + frame.lights.up_rgb, vec3<f32>(0.2126, 0.7152, 0.0722));
+    let grey = dot(frame.lights.mean_rgb + frame.lights.up_rgb, LUMINANCE);
     let overcast = vec3<f32>(0.94, 0.99, 1.06) * (grey * mix(1.0, 0.68, sqrt(up)));
     return mix(clear, overcast, frame.overcast);
 }

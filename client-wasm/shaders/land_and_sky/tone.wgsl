@@ -1,5 +1,6 @@
 // Tone mapping: resolves samples, then exposure, filmic tone curve, slight desaturation, dither and encoding.
 
+import package::constants::LUMINANCE;
 import package::inputs::frame::runtime_zero;
 import package::inputs::random::random3;
 import package::uniforms::Tone;
@@ -68,7 +69,7 @@ fn fs_sampled(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> 
 // Encoded colour of the target, dithered.
 fn shown(linear: vec3<f32>, position: vec2<f32>) -> vec4<f32> {
     var color = linear;
-    let grey = dot(color, vec3<f32>(0.2126, 0.7152, 0.0722));
+    let grey = dot(color, LUMINANCE);
     color = clamp(mix(vec3<f32>(grey), color, 0.97), vec3<f32>(0.0), vec3<f32>(1.0));
     let dither = (random3(vec2<i32>(position), 7u).x - 0.5) / 255.0;
     return vec4<f32>(select(encode(color), color, tone.target_encodes > 0.5) + dither, 1.0);

@@ -1,7 +1,9 @@
 // Simulation of a blade: three links, their modes and contacts. Twin of shared/src/plant/blade, with the same constants and order of
 // operations.
 
-import package::constants::{AMPLITUDES, BRAKES, CLEARANCE_M, EULER, FREQUENCIES, LINKS, MODES, PUSHES, VERLET};
+import package::constants::{
+    AMPLITUDES, ARCTANGENT, BRAKES, CLEARANCE_M, COSINE, EULER, FREQUENCIES, HANGING_RAD2, LINKS, MODES, PUSHES, SINC, VERLET,
+};
 import package::inputs::frame::{frame, runtime_zero};
 
 // Lean of a link (rad) in xy, its rate (rad/s) in zw.
@@ -83,25 +85,25 @@ fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_pe
 
 // Unit vector of a link with a lean (rad, as a vector on the ground): Taylor polynomials, as in the twin.
 fn direction_of(lean: vec2<f32>) -> vec3<f32> {
-    let t = min(dot(lean, lean), 9.8696044);
-    var up = 1.0 / 20922789888000.0;
-    up = up * t - 1.0 / 87178291200.0;
-    up = up * t + 1.0 / 479001600.0;
-    up = up * t - 1.0 / 3628800.0;
-    up = up * t + 1.0 / 40320.0;
-    up = up * t - 1.0 / 720.0;
-    up = up * t + 1.0 / 24.0;
-    up = up * t - 0.5;
-    up = up * t + 1.0;
-    var aside = 1.0 / 355687428096000.0;
-    aside = aside * t - 1.0 / 1307674368000.0;
-    aside = aside * t + 1.0 / 6227020800.0;
-    aside = aside * t - 1.0 / 39916800.0;
-    aside = aside * t + 1.0 / 362880.0;
-    aside = aside * t - 1.0 / 5040.0;
-    aside = aside * t + 1.0 / 120.0;
-    aside = aside * t - 1.0 / 6.0;
-    aside = aside * t + 1.0;
+    let t = min(dot(lean, lean), HANGING_RAD2);
+    var up = COSINE[8];
+    up = up * t + COSINE[7];
+    up = up * t + COSINE[6];
+    up = up * t + COSINE[5];
+    up = up * t + COSINE[4];
+    up = up * t + COSINE[3];
+    up = up * t + COSINE[2];
+    up = up * t + COSINE[1];
+    up = up * t + COSINE[0];
+    var aside = SINC[8];
+    aside = aside * t + SINC[7];
+    aside = aside * t + SINC[6];
+    aside = aside * t + SINC[5];
+    aside = aside * t + SINC[4];
+    aside = aside * t + SINC[3];
+    aside = aside * t + SINC[2];
+    aside = aside * t + SINC[1];
+    aside = aside * t + SINC[0];
     return vec3<f32>(lean.x * aside, up, lean.y * aside);
 }
 
@@ -112,13 +114,13 @@ fn lean_of(direction: vec3<f32>) -> vec2<f32> {
     tangent /= 1.0 + sqrt(1.0 + tangent * tangent);
     tangent /= 1.0 + sqrt(1.0 + tangent * tangent);
     let t = tangent * tangent;
-    var angle = 1.0 / 13.0;
-    angle = angle * t - 1.0 / 11.0;
-    angle = angle * t + 1.0 / 9.0;
-    angle = angle * t - 1.0 / 7.0;
-    angle = angle * t + 1.0 / 5.0;
-    angle = angle * t - 1.0 / 3.0;
-    angle = (angle * t + 1.0) * 8.0 * tangent;
+    var angle = ARCTANGENT[6];
+    angle = angle * t + ARCTANGENT[5];
+    angle = angle * t + ARCTANGENT[4];
+    angle = angle * t + ARCTANGENT[3];
+    angle = angle * t + ARCTANGENT[2];
+    angle = angle * t + ARCTANGENT[1];
+    angle = (angle * t + ARCTANGENT[0]) * 8.0 * tangent;
     return select(direction.xz * (angle / max(aside, 1e-9)), vec2<f32>(angle, 0.0), hangs && aside < 1e-9);
 }
 

@@ -1,5 +1,6 @@
 // Plants of grass grids: where they are, and how far they have grown at a distance.
 
+import package::constants::UNIT_STEPS;
 import package::inputs::frame::frame;
 import package::inputs::random::random3;
 import package::plants::chunk::Chunk;
@@ -16,7 +17,7 @@ fn plant_place(grid: vec2<i32>, index: u32) -> vec2<f32> {
     let start = random3(grid, 0u).xy;
     let jitter = random3(grid, index + 101u).xy - 0.5;
     let along = vec2<u32>(index * 3242174889u, index * 2447445414u);
-    let share = fract(start + vec2<f32>(along >> vec2<u32>(8u)) / 16777216.0);
+    let share = fract(start + vec2<f32>(along >> vec2<u32>(8u)) / UNIT_STEPS);
     return (vec2<f32>(grid) + share) * plants.grid_m + jitter * 0.12;
 }
 

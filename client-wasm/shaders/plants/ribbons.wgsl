@@ -1,7 +1,9 @@
 // Underbrush as ribbons: the components of visible plants, bent by precomputed tables of postures (Endo et al. 2003, section 4.2),
 // widened and lit. One invocation computes both borders of a row, which are then drawn.
 
-import package::constants::{BLOCK_ROWS, DROP_M_PER_S, GRAVITY_M_PER_S2, MIDDLE_LOAD, PETAL, STALK, TAU, VARIANTS, WIDTH_UNIT_M};
+import package::constants::{
+    ARC_COSINE, BLOCK_ROWS, DROP_M_PER_S, GRAVITY_M_PER_S2, MIDDLE_LOAD, PETAL, STALK, TAU, UNIT_STEPS, VARIANTS, WIDTH_UNIT_M,
+};
 import package::inputs::frame::frame;
 import package::inputs::grass_kinds::kinds;
 import package::inputs::lamps::lamps_on;
@@ -81,10 +83,10 @@ fn unit_or(v: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
     return select(other, v / max(size, 1e-30), size > 1e-30);
 }
 
-// Angle (rad) of a cosine, to 7e-5: Abramowitz & Stegun 4.4.45.
+// Angle (rad) of a cosine, to 7e-5: Abramowitz & Stegun 4.4.45. Twin of `acos` in shared/src/plant/underbrush/posture.rs.
 fn arc_cosine(cosine: f32) -> f32 {
     let size = abs(cosine);
-    let angle = sqrt(max(1.0 - size, 0.0)) * (1.5707288 + size * (-0.2121144 + size * (0.074261 - size * 0.0187293)));
+    let angle = sqrt(max(1.0 - size, 0.0)) * (ARC_COSINE[0] + size * (ARC_COSINE[1] + size * (ARC_COSINE[2] + size * ARC_COSINE[3])));
     return select(angle, 0.5 * TAU - angle, cosine < 0.0);
 }
 
@@ -264,7 +266,7 @@ fn ribbons(@builtin(global_invocation_id) id: vec3<u32>) {
     var p = plant.root.xyz + bent.at;
     let own = limb_of(plant, row, list);
     if trembles && list.drops_per_m2_s * own.struck.z > 0.0 {
-        let number = vec2<u32>(u32(plant.about.y * 16777216.0), look.z & 0xffffu);
+        let number = vec2<u32>(u32(plant.about.y * UNIT_STEPS), look.z & 0xffffu);
         // The larger the component, the less the mass of the drop counts.
         let speed = 1.0 / mix(1.0 / DROP_M_PER_S, 1.0 / own.struck.x, size * size * size);
         let dip = dip_m(speed, own.struck.y * size, own.struck.z * size * size * list.drops_per_m2_s, number, frame.time_secs);

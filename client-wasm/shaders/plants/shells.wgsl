@@ -1,7 +1,7 @@
 // Shells (Bakay): layers of one texture of cross-sections that lean without changing the length of a blade. Between two layers the view ray
 // is sampled in slices, so that it meets blades there at grazing angles.
 
-import package::constants::{GUST_SPEED, SHELL_BLADE_PX, TILE_CELLS, TILE_VERTICES};
+import package::constants::{GUST_SPEED, RIGHT_ANGLE, SHELL_BLADE_PX, TILE_CELLS, TILE_VERTICES};
 import package::inputs::bend_atlas::{field_level, lean_at};
 import package::inputs::frame::{frame, runtime_zero, repeated};
 import package::inputs::grass_kinds::kinds_blended;
@@ -16,7 +16,6 @@ import package::land_and_sky::ground::{fed, grass_share, ground_height, ground_n
 import package::land_and_sky::haze::hazed;
 import package::uniforms::ShellFrame;
 
-const RIGHT_ANGLE: f32 = 1.5707963;
 // Size of the pattern of clumps (m), and maximum deflection of its blades without wind, relative to the height of the tallest.
 const CLUMP_M: f32 = 1.3;
 const CROOK: f32 = 0.9;

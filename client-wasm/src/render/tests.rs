@@ -10,7 +10,7 @@ use crate::render::options::render_options::{FarPlants, RenderOptions};
 use crate::render::plants::blades;
 use crate::state::Mirror;
 use glam::Vec3;
-use prairie_core::hash::hash3;
+use prairie_core::hash::{hash3, unit};
 use prairie_core::lod::Lag;
 use prairie_core::plant::blade::{LINKS, Sway};
 use prairie_core::plant::underbrush::constraint::Following;
@@ -530,8 +530,8 @@ fn underbrush_follows_the_force_as_its_twin_does() {
     picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
     let inputs: Vec<[f32; 4]> = (0..400_u32)
         .map(|n| {
-            let [a, b, c] = hash3([n, 3, 5]).map(|v| (v >> 8) as f32 / 16_777_216.0);
-            let [d, ..] = hash3([n, 4, 5]).map(|v| (v >> 8) as f32 / 16_777_216.0);
+            let [a, b, c] = hash3([n, 3, 5]).map(unit);
+            let [d, ..] = hash3([n, 4, 5]).map(unit);
             if n % 2 == 0 { [a * 50.0, b * 50.0 - 25.0, c * 90.0, d * 90.0 - 45.0] } else { [a * 60.0, b * 60.0, 0.1 + c, d] }
         })
         .collect();

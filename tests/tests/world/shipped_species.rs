@@ -12,7 +12,7 @@ use prairie_core::wind::near_ground_fraction;
 use std::sync::LazyLock;
 
 const FILE: &str = include_str!("../../../server/scenes/species.toml");
-const GRAVITY_M_PER_S2: f32 = 9.81;
+const GRAVITY_M_PER_S2: f32 = prairie_core::GRAVITY_M_PER_S2 as f32;
 const UPRIGHT: Stand = Stand { size: 1.0, heading_rad: 0.0, lean_rad: [0.0; 2] };
 
 /// Wind at 2 m (m/s) in which a species without a stated breaking wind must not break.

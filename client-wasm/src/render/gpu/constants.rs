@@ -2,22 +2,27 @@
 
 use std::fmt;
 
+use glam::Vec3;
 use prairie_core::lod;
 use prairie_core::plant::blade::{self, Integrator};
 use prairie_core::plant::underbrush::{drops, posture};
 
 pub(crate) use prairie_core::bend::BEND_SATURATES_M_PER_S;
+pub(crate) use prairie_core::hash::{HASH_INCREMENT, HASH_MULTIPLIER, UNIT_STEPS};
 pub(crate) use prairie_core::light::air::HAZE_FORWARD;
 pub(crate) use prairie_core::light::grass::{LEAF_EXTINCTION, LEAST_SUN_SINE};
 pub(crate) use prairie_core::plant::blade::contact::CLEARANCE_M;
+pub(crate) use prairie_core::plant::blade::lean::{ARCTANGENT, COSINE, HANGING_RAD2, SINC};
 pub(crate) use prairie_core::plant::blade::modes::{AMPLITUDES, BRAKES, FREQUENCIES, MODES, PUSHES, WIND_SHAPE};
 pub(crate) use prairie_core::scene::{GROWTH_BY_COVER, GROWTH_BY_MEADOW, GROWTH_BY_SOIL, GROWTH_BY_TUFT};
 pub(crate) use prairie_core::wind::{FREE_WIND_M, LEAST_WIND_HEIGHT};
 pub(crate) use prairie_core::wire::quantise::{DUST_FULL, OMEGA_FULL_RAD_PER_S, THETA_FULL_RAD, WIND_FULL_M_PER_S};
-pub(crate) use std::f32::consts::TAU;
+pub(crate) use std::f32::consts::{FRAC_PI_2 as RIGHT_ANGLE, TAU};
 
 /// Gravitational acceleration (m/s²).
-pub(crate) const GRAVITY_M_PER_S2: f32 = 9.81;
+pub(crate) const GRAVITY_M_PER_S2: f32 = prairie_core::GRAVITY_M_PER_S2 as f32;
+/// Weights of linear red, green and blue in luminance.
+pub(crate) const LUMINANCE: Vec3 = Vec3::from_array(prairie_core::light::LUMINANCE);
 
 // --- wind ---
 
@@ -99,6 +104,7 @@ pub(crate) const WIDTH_UNIT_M: f32 = 1.0 / 16_384.0;
 pub(crate) const STALK: u32 = 1;
 pub(crate) const PETAL: u32 = 2;
 pub(crate) const MIDDLE_LOAD: f32 = posture::MIDDLE_LOAD;
+pub(crate) const ARC_COSINE: [f32; 4] = posture::ARC_COSINE;
 pub(crate) const DROP_M_PER_S: f32 = drops::DROP_M_PER_S;
 
 // --- ground, objects and sorting ---
@@ -140,6 +146,12 @@ constants! { f32 u32 i32 }
 impl Constant for f64 {
     fn declaration(&self, name: &str) -> String {
         format!("const {name}: f32 = {self:?};")
+    }
+}
+
+impl Constant for Vec3 {
+    fn declaration(&self, name: &str) -> String {
+        format!("const {name} = vec3<f32>({});", listed(&self.to_array()))
     }
 }
 

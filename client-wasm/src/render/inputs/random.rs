@@ -1,6 +1,6 @@
 //! Random numbers that are the same on every machine.
 
-use prairie_core::hash::hash3;
+use prairie_core::hash::{hash3, unit};
 use prairie_core::random::SplitMix64;
 
 /// Generator of random numbers in 0..1 from a seed, the same on every machine.
@@ -12,7 +12,7 @@ impl Random {
     }
 
     pub(crate) fn next(&mut self) -> f32 {
-        (self.0.next_u64() >> 40) as f32 / (1 << 24) as f32
+        unit((self.0.next_u64() >> 32) as u32)
     }
 
     pub(crate) fn between(&mut self, low: f32, high: f32) -> f32 {
@@ -22,7 +22,7 @@ impl Random {
 
 /// Three random numbers in 0..1 for a grid cell and a number; same as `random3` in WGSL.
 pub(crate) fn random3(place: [i32; 2], number: u32) -> [f32; 3] {
-    hash3([place[0] as u32, place[1] as u32, number]).map(|v| (v >> 8) as f32 / 16_777_216.0)
+    hash3([place[0] as u32, place[1] as u32, number]).map(unit)
 }
 
 #[cfg(test)]

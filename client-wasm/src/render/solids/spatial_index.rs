@@ -80,10 +80,10 @@ fn square_number(m: f32) -> i32 {
 mod tests {
     use super::*;
     use glam::Mat4;
-    use prairie_core::hash::hash3;
+    use prairie_core::hash::{hash3, unit};
 
     fn placed(n: u32) -> (PlacedModel, BoundingSphere) {
-        let [x, z, random] = hash3([n, 2, 6]).map(|v| (v >> 8) as f32 / 16_777_216.0);
+        let [x, z, random] = hash3([n, 2, 6]).map(unit);
         let position_m = Vec3::new(400.0 * x - 40.0, 3.0 * random, 300.0 * z - 40.0);
         let world_from_model = Mat4::from_translation(position_m);
         let placed = PlacedModel { position_m, shape: 0, is_tree: random < 0.7, size_m: 5.0, world_from_model, tint: [0.0; 4] };

@@ -5,7 +5,7 @@ use crate::render::gpu::shaders::with_constants;
 
 /// Positions all over the map, including its edge.
 fn places() -> Vec<[f32; 4]> {
-    let [x, z] = [0_u32, 1].map(|axis| move |n: u32| 64.0 * (hash3([n, axis, 4])[0] >> 8) as f32 / 16_777_216.0);
+    let [x, z] = [0_u32, 1].map(|axis| move |n: u32| 64.0 * unit(hash3([n, axis, 4])[0]));
     let inside = (0..200).map(|n| [x(n), 0.0, z(n), 0.0]);
     inside.chain([[0.0, 0.0, 0.0, 0.0], [64.0, 0.0, 64.0, 0.0], [64.0, 0.0, 30.0, 0.0]]).collect()
 }

@@ -22,7 +22,7 @@ fn layers_are_positioned_as_in_the_core() {
     picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
     let cases: Vec<[f32; 4]> = (0..500_u32)
         .map(|n| {
-            let [a, b, c] = hash3([n, 1, 8]).map(|v| (v >> 8) as f32 / 16_777_216.0);
+            let [a, b, c] = hash3([n, 1, 8]).map(unit);
             let segments = 1 + (b * 64.0) as u32;
             // Calm, full wind and trodden grass are among them.
             let lean_rad = [0.0, std::f32::consts::FRAC_PI_4, 1.5, 1.7 * a][n as usize % 4];

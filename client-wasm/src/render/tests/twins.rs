@@ -8,7 +8,7 @@ use prairie_core::wire::ObjectPose;
 
 /// Inputs of a blade of the comparison: links, what acts on them, blade, root, normal, as `Case` in the WGSL below.
 fn blade_case(n: u32) -> [[f32; 4]; 9] {
-    let random = |k: u32| hash3([n, k, 77]).map(|v| (v >> 8) as f32 / 16_777_216.0);
+    let random = |k: u32| hash3([n, k, 77]).map(unit);
     let link = |i: u32| {
         let [a, b, c] = random(i);
         [a * 2.0 - 1.0, b * 2.0 - 1.0, c * 8.0 - 4.0, 4.0 * a - 2.0]

@@ -8,7 +8,7 @@ use rapier3d::prelude::*;
 use std::f32::consts::TAU;
 
 const MASS_KG: f32 = 1100.0;
-const GRAVITY_M_PER_S2: f32 = 9.81;
+const GRAVITY_M_PER_S2: f32 = prairie_core::GRAVITY_M_PER_S2 as f32;
 const FORWARD_M_PER_S: f32 = 28.0;
 const CLIMB_M_PER_S: f32 = 7.0;
 const TURN_RAD_PER_S: f32 = 1.2;

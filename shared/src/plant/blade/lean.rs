@@ -3,8 +3,11 @@
 
 use std::f32::consts::PI;
 
+/// Square of the lean (rad²) of a link that hangs straight down; larger ones count as this.
+pub const HANGING_RAD2: f32 = PI * PI;
+
 /// Taylor coefficients of cos √t.
-const COS: [f32; 9] = [
+pub const COSINE: [f32; 9] = [
     1.0,
     -1.0 / 2.0,
     1.0 / 24.0,
@@ -17,7 +20,7 @@ const COS: [f32; 9] = [
 ];
 
 /// Taylor coefficients of sin √t / √t.
-const SINC: [f32; 9] = [
+pub const SINC: [f32; 9] = [
     1.0,
     -1.0 / 6.0,
     1.0 / 120.0,
@@ -30,7 +33,7 @@ const SINC: [f32; 9] = [
 ];
 
 /// Taylor coefficients of atan √t / √t.
-const ATAN: [f32; 7] = [1.0, -1.0 / 3.0, 1.0 / 5.0, -1.0 / 7.0, 1.0 / 9.0, -1.0 / 11.0, 1.0 / 13.0];
+pub const ARCTANGENT: [f32; 7] = [1.0, -1.0 / 3.0, 1.0 / 5.0, -1.0 / 7.0, 1.0 / 9.0, -1.0 / 11.0, 1.0 / 13.0];
 
 #[inline(always)]
 fn polynomial<const N: usize>(coefficients: &[f32; N], t: f32) -> f32 {
@@ -46,9 +49,9 @@ fn polynomial<const N: usize>(coefficients: &[f32; N], t: f32) -> f32 {
 #[inline(always)]
 pub fn direction(lean_rad: [f32; 2]) -> [f32; 3] {
     let [x, z] = lean_rad;
-    let t = (x * x + z * z).min(PI * PI);
+    let t = (x * x + z * z).min(HANGING_RAD2);
     let aside = polynomial(&SINC, t);
-    [x * aside, polynomial(&COS, t), z * aside]
+    [x * aside, polynomial(&COSINE, t), z * aside]
 }
 
 /// Lean (rad) of a unit vector, the inverse of [`direction`]; error at most 1e-5. A vector straight down gives a lean of π along X.
@@ -61,7 +64,7 @@ pub fn lean_of(direction: [f32; 3]) -> [f32; 2] {
     for _ in 0..2 {
         tangent /= 1.0 + (1.0 + tangent * tangent).sqrt();
     }
-    let angle = 8.0 * tangent * polynomial(&ATAN, tangent * tangent);
+    let angle = 8.0 * tangent * polynomial(&ARCTANGENT, tangent * tangent);
     if aside < 1e-9 && up < 0.0 {
         return [angle, 0.0];
     }

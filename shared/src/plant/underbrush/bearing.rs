@@ -3,9 +3,9 @@
 use super::plan::{Part, Plan, chain};
 use super::rest::Load;
 use super::strength::breaks;
+use crate::GRAVITY_M_PER_S2;
 use std::f64::consts::PI;
 
-const GRAVITY_M_PER_S2: f64 = 9.81;
 /// Largest pressure considered (Pa), that of a wind of 1300 m/s.
 const MOST_PA: f64 = 1e6;
 /// Number of bisections of the breaking pressure, down to the rounding of an `f32`.
@@ -91,7 +91,7 @@ mod tests {
         let found_pa = bears_pa(&plan(vec![component.clone()]));
         assert!((found_pa / wanted_pa - 1.0).abs() < 1e-3, "{found_pa} Pa instead of {wanted_pa}");
         // At an angle its weight, 1 N here, contributes W·L/2·sin a, and the drag has a shorter arm, L/2·cos a.
-        let leaning = Component { angle_rad: 0.3, mass_kg: 0.001 / 9.81, ..component };
+        let leaning = Component { angle_rad: 0.3, mass_kg: 0.001 / GRAVITY_M_PER_S2 as f32, ..component };
         let wanted_pa = (0.02 - 0.001 * 0.3f32.sin()) / (silhouette_m2 * 0.3f32.cos());
         let found_pa = bears_pa(&plan(vec![leaning]));
         assert!((found_pa / wanted_pa - 1.0).abs() < 3e-3, "{found_pa} Pa instead of {wanted_pa}");
@@ -116,7 +116,7 @@ mod tests {
             };
             let plan = plan(vec![component]);
             let strain = |pressure_pa: f32| {
-                let forces = Forces { per_mass_m_per_s2: Vec3::Y * -9.81, pressure_pa: Vec3::X * pressure_pa };
+                let forces = Forces { per_mass_m_per_s2: Vec3::Y * -GRAVITY_M_PER_S2 as f32, pressure_pa: Vec3::X * pressure_pa };
                 let stand = Stand { size: 1.0, heading_rad: 0.0, lean_rad: [0.0; 2] };
                 let all = (0..8).flat_map(|number| posed(&plan, &plan.placed(number), stand, forces, LookUp::Interpolated, 0));
                 all.map(|one: Posed| one.strain).fold(0.0, f32::max)

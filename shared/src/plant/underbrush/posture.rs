@@ -116,10 +116,14 @@ impl Postures {
     }
 }
 
+/// Coefficients of √(1 − x)·(c₀ + c₁x + c₂x² + c₃x³) for the angle of a cosine x ≥ 0.
+pub const ARC_COSINE: [f32; 4] = [1.570_728_8, -0.212_114_4, 0.074_261, -0.018_729_3];
+
 /// Angle (rad) of a cosine in −1..=1, with an error of 7e-5: Abramowitz & Stegun 1964, 4.4.45.
 fn acos(cosine: f32) -> f32 {
+    let [c0, c1, c2, c3] = ARC_COSINE;
     let size = cosine.abs();
-    let angle = (1.0 - size).sqrt() * (1.570_728_8 + size * (-0.212_114_4 + size * (0.074_261 - size * 0.018_729_3)));
+    let angle = (1.0 - size).sqrt() * (c0 + size * (c1 + size * (c2 + size * c3)));
     if cosine < 0.0 { std::f32::consts::PI - angle } else { angle }
 }
 

@@ -150,69 +150,156 @@ fn uniform_blocks_are_laid_out_as_in_wgsl() {
     assert!(count > 15, "only {count} blocks");
 }
 
-/// Constants of all Rust sources in a folder and its subfolders: name, and value if it is distinctive.
-fn constants_of(folder: &Path) -> Vec<(String, Option<f64>)> {
+/// Numbers and names of Rust that a shader must not repeat.
+#[derive(Default)]
+struct FromRust {
+    /// Constants: name, and value if it is a literal.
+    constants: Vec<(String, Option<f64>)>,
+    /// Literals anywhere in the code.
+    literals: BTreeSet<u64>,
+}
+
+impl FromRust {
+    /// Reads all sources in a folder and its subfolders, without their tests.
+    fn read(&mut self, folder: &Path) {
+        for entry in std::fs::read_dir(folder).expect("a folder of sources") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() && !path.ends_with("tests") {
+                self.read(&path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") && !path.ends_with("tests.rs") {
+                let text = std::fs::read_to_string(&path).expect("a source");
+                let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+                self.constants.extend(code.split("const ").skip(1).filter_map(|rest| {
+                    let (name, declared) = rest.split_once(':')?;
+                    Some((name.to_owned(), value_of(declared.split_once('=')?.1.split(';').next()?.trim())))
+                }));
+                self.literals.extend(numbers(code).filter_map(|(_, number)| Some(value_of(number)?.to_bits())));
+            }
+        }
+    }
+
+    /// What a number repeats, if it is unlikely to coincide by chance: a constant with at least three digits that is no power of two, a literal
+    /// with at least four, or a constant of mathematics.
+    fn repeated(&self, number: &str) -> Option<String> {
+        let value = value_of(number)?;
+        let digits = significant_digits(number);
+        let is_power = value > 0.0 && value.log2().fract() == 0.0;
+        let constant = self.constants.iter().find(|(_, of_rust)| *of_rust == Some(value)).filter(|_| digits >= 3 && !is_power);
+        let constant = constant.map(|(name, _)| format!("`{name}` in Rust"));
+        let of_mathematics = MATHEMATICS.iter().find(|(_, exact)| digits >= 4 && (value - exact).abs() < 1e-5 * exact);
+        let of_mathematics = of_mathematics.map(|(name, _)| format!("`{name}` of mathematics"));
+        let is_literal = digits >= 4 && (!is_power || digits > 5) && self.literals.contains(&value.to_bits());
+        constant.or(of_mathematics).or_else(|| is_literal.then(|| format!("the literal `{number}` in Rust")))
+    }
+}
+
+/// Constants of mathematics, and simple multiples of them.
+const MATHEMATICS: [(&str, f64); 8] = {
+    use std::f64::consts::{E, FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, LN_2, PI, SQRT_2, TAU};
+    [("π", PI), ("2π", TAU), ("π/2", FRAC_PI_2), ("π/4", FRAC_PI_4), ("1/π", FRAC_1_PI), ("√2", SQRT_2), ("e", E), ("ln 2", LN_2)]
+};
+
+/// Value of a literal of Rust or WGSL, without its suffix.
+fn value_of(literal: &str) -> Option<f64> {
+    let literal = literal.replace('_', "");
+    let suffixes = ["u32", "i32", "u64", "i64", "f32", "f64", "usize", "u8", "u", "i", "f"];
+    suffixes.iter().find_map(|suffix| literal.strip_suffix(suffix)).unwrap_or(&literal).parse().ok()
+}
+
+fn significant_digits(literal: &str) -> usize {
+    let number = literal.split(['e', 'u', 'i', 'f']).next().unwrap_or_default();
+    let digits: String = number.chars().filter(char::is_ascii_digit).collect();
+    let digits = digits.trim_start_matches('0');
+    // Zeros after a point do not count, but those of a large whole number do.
+    if number.contains('.') { digits.trim_end_matches('0').len() } else { digits.len() }
+}
+
+/// Number literals of a text of Rust or WGSL, each with its line counted from 0. Line comments have none.
+fn numbers(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+    text.lines().enumerate().flat_map(move |(at, line)| {
+        let code = line.split("//").next().unwrap_or_default();
+        let mut rest = code;
+        std::iter::from_fn(move || {
+            loop {
+                rest = rest.trim_start_matches(|c| !is_part(c));
+                if rest.is_empty() {
+                    return None;
+                }
+                let mut length = rest.find(|c| !is_part(c)).unwrap_or(rest.len());
+                // The sign of an exponent.
+                if rest.starts_with(|c: char| c.is_ascii_digit()) && rest[..length].ends_with('e') && rest[length..].starts_with(['+', '-'])
+                {
+                    length += 1 + rest[length + 1..].find(|c| !is_part(c)).unwrap_or(rest.len() - length - 1);
+                }
+                let (word, after) = rest.split_at(length);
+                rest = after;
+                if word.starts_with(|c: char| c.is_ascii_digit()) {
+                    return Some((at, word));
+                }
+            }
+        })
+    })
+}
+
+/// Names and numbers of WGSL files that Rust has, too.
+fn written_twice(library: &Library) -> Vec<String> {
+    let mut of_rust = FromRust::default();
+    ["src", "../shared/src"].iter().for_each(|folder| of_rust.read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)));
+    let has = |name: &str| of_rust.constants.iter().any(|(other, _)| other == name);
+    assert!(has("WIND_FULL_M_PER_S") && has("SORT_TILE"), "constants of both crates");
     let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).expect("a folder of sources") {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() {
-            found.extend(constants_of(&path));
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            let text = std::fs::read_to_string(&path).expect("a source");
-            found.extend(text.split("const ").skip(1).filter_map(|rest| {
-                let (name, declared) = rest.split_once(':')?;
-                Some((name.to_owned(), distinctive(declared.split_once('=')?.1.split(';').next()?)))
+    for (path, file) in &library.0 {
+        for one in &file.declarations {
+            if one.text.starts_with("const ") && has(&one.name) {
+                found.push(format!("{path}.wgsl:{}: `{}` is also declared in Rust: import it from package::constants", one.line, one.name));
+            }
+            found.extend(numbers(&one.text).filter_map(|(at, number)| {
+                let repeated = of_rust.repeated(number)?;
+                Some(format!("{path}.wgsl:{}: {number} is {repeated}: import it from package::constants", one.line + at))
             }));
         }
     }
     found
 }
 
-/// Value of a literal that is unlikely to coincide with another by chance: one of at least three significant digits that is no power of two.
-fn distinctive(literal: &str) -> Option<f64> {
-    let literal = literal.trim().replace('_', "");
-    let number =
-        ["u32", "i32", "f32", "f64", "usize", "u", "i", "f"].iter().find_map(|suffix| literal.strip_suffix(suffix)).unwrap_or(&literal);
-    let value: f64 = number.parse().ok()?;
-    let digits: String = number.split('e').next()?.chars().filter(char::is_ascii_digit).collect();
-    (digits.trim_matches('0').len() >= 3 && value.abs().log2().fract() != 0.0).then_some(value)
-}
-
-/// Constants of WGSL files that Rust has, too, by name or by value.
-fn written_twice(library: &Library) -> Vec<String> {
-    let of_rust: Vec<_> =
-        ["src", "../shared/src"].iter().flat_map(|folder| constants_of(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder))).collect();
-    let has = |name: &str| of_rust.iter().any(|(other, _)| other == name);
-    assert!(has("WIND_FULL_M_PER_S") && has("SORT_TILE"), "constants of both crates");
-    let mut found = Vec::new();
-    for (path, file) in &library.0 {
-        for one in file.declarations.iter().filter(|one| one.text.starts_with("const ")) {
-            let value = one.text.trim_end_matches(';').split_once('=').and_then(|(_, value)| distinctive(value));
-            let same = of_rust.iter().find(|(name, of_rust)| *name == one.name || value.is_some() && value == *of_rust);
-            found.extend(
-                same.map(|(name, _)| {
-                    format!("{path}.wgsl:{}: {} is `{name}` in Rust: import it from package::constants", one.line, one.name)
-                }),
-            );
-        }
-    }
-    found
-}
-
 #[test]
-fn no_constant_is_written_in_wgsl_and_in_rust() {
+fn no_number_is_written_in_wgsl_and_in_rust() {
     let library = Library::new(texts()).expect("sound shaders");
     assert_eq!(written_twice(&library), Vec::<String>::new());
 }
 
 #[test]
-fn a_copied_constant_is_found_by_name_or_value() {
-    let planted = ["SORT_TILE: u32 = 7u", "FALL: f32 = 9.810", "TINY: f32 = 4.19e-6", "HALF: f32 = 0.5", "MANY: u32 = 1024u"];
-    let planted = planted.map(|one| format!("const {one};")).concat();
-    let library = Library::new([("gpu/planted".to_owned(), planted)]).expect("sound declarations");
+fn a_copied_number_is_found_by_name_or_value() {
+    let planted = [
+        "const SORT_TILE: u32 = 7u;",
+        "const FALL: f32 = 9.810;",
+        "const TINY: f32 = 4.19e-6;",
+        "const HALF: f32 = 0.5;",
+        "const MANY: u32 = 1024u;",
+        "fn weight(x: f32) -> f32 {\n    // 0.7152\n    return x * 9.81;\n}",
+        "fn grey(rgb: vec3<f32>) -> f32 {\n    return dot(rgb, vec3<f32>(0.2126, 0.5, 0.25));\n}",
+        "fn stir(v: u32) -> u32 { return v * 1664525u + 3u; }",
+        "fn unit(v: u32) -> f32 { return f32(v) / 16777216.0; }",
+        "fn turned(x: f32) -> f32 { return x * 1.5707963 + 1.25; }",
+    ];
+    let library = Library::new([("gpu/planted".to_owned(), planted.join("\n"))]).expect("sound declarations");
     let found = written_twice(&library);
-    let names: Vec<_> = found.iter().filter_map(|message| message.split_once(" is `")?.1.split('`').next()).collect();
-    assert_eq!(names, ["SORT_TILE", "GRAVITY_M_PER_S2", "DROP_KG"], "{found:?}");
+    let found: Vec<_> = found.iter().filter_map(|message| message.strip_prefix("gpu/planted.wgsl:")?.split_once(": import")).collect();
+    let found: Vec<_> = found.iter().map(|(found, _)| *found).collect();
+    assert_eq!(
+        found,
+        [
+            "1: `SORT_TILE` is also declared in Rust",
+            "2: 9.810 is `GRAVITY_M_PER_S2` in Rust",
+            "3: 4.19e-6 is `DROP_KG` in Rust",
+            "8: 9.81 is `GRAVITY_M_PER_S2` in Rust",
+            "11: 0.2126 is the literal `0.2126` in Rust",
+            "13: 1664525u is `HASH_MULTIPLIER` in Rust",
+            "14: 16777216.0 is the literal `16777216.0` in Rust",
+            "15: 1.5707963 is `π/2` of mathematics",
+        ]
+    );
 }
 
 /// Folders of shaders, each importing only from itself and those before it, as in `src/render`.

@@ -12,7 +12,7 @@ use crate::render::tests::{meadow_of, probe};
 use crate::state::{DecodedScene, Mirror};
 use bytemuck::Zeroable;
 use glam::Vec3;
-use prairie_core::hash::hash3;
+use prairie_core::hash::{hash3, unit};
 use prairie_core::plant::underbrush::plan::Plan;
 use prairie_core::plant::underbrush::plant::{LookUp, Posed, Stand, posed};
 use prairie_core::plant::underbrush::posture::Nodes;
@@ -34,7 +34,7 @@ fn species() -> Vec<Species> {
 
 /// Three random numbers in 0..1.
 fn random(n: u32, number: u32) -> [f32; 3] {
-    hash3([n, number, 31]).map(|v| (v >> 8) as f32 / 16_777_216.0)
+    hash3([n, number, 31]).map(unit)
 }
 
 /// Body of a probe that returns centre and radius of an interaction sphere (m).
@@ -104,8 +104,10 @@ impl Case {
 
     fn posed(&self, plan: &Plan, look_up: LookUp) -> Vec<Posed> {
         let [x, z] = self.pressure_pa;
-        let forces =
-            prairie_core::plant::underbrush::plant::Forces { per_mass_m_per_s2: Vec3::Y * -9.81, pressure_pa: Vec3::new(x, 0.0, z) };
+        let forces = prairie_core::plant::underbrush::plant::Forces {
+            per_mass_m_per_s2: Vec3::Y * -prairie_core::GRAVITY_M_PER_S2 as f32,
+            pressure_pa: Vec3::new(x, 0.0, z),
+        };
         let broken = if self.make < VARIANTS { 0 } else { u64::MAX };
         posed(plan, &plan.placed(self.make % VARIANTS), self.stand, forces, look_up, broken)
     }
@@ -430,7 +432,7 @@ fn the_compute_pass_computes_each_posture_and_lists_each_plant_once() {
             let tall_m = height_m.max(0.5 * reach_m);
             let distance_m = Vec3::new(at_m[0], root[1] + 0.5 * tall_m, at_m[1]).distance(camera.eye_m);
             let tall_px = tall_m / (distance_m * px_rad);
-            let lot = (hash3([plant.site, 5, 91])[0] >> 8) as f32 / 16_777_216.0;
+            let lot = unit(hash3([plant.site, 5, 91])[0]);
             let fine_px = tall_px / (Quality::detail_at(0.0).coarser * (0.85 + 0.3 * lot));
             let is_at = |px: &[f32]| px.iter().filter(|&&least| fine_px <= least).count();
             let least_px = [300.0, 90.0, 26.0];
@@ -486,7 +488,7 @@ fn the_compute_pass_computes_each_posture_and_lists_each_plant_once() {
         let (own, [x, z]) = (&flora.species()[instance.species], instance.at_m);
         let clip = projection * Vec3::new(x, decoded.heights().height_m(x, z), z).extend(1.0);
         let is_within = clip.w > 0.2 && clip.x.abs() < clip.w && clip.y.abs() < clip.w;
-        let lot = (hash3([plant.site, 5, 91])[0] >> 8) as f32 / 16_777_216.0;
+        let lot = unit(hash3([plant.site, 5, 91])[0]);
         // Of plants less than 16 px tall, only the fraction height / 16 px is listed.
         let tall_m = height_m(own).max(0.5 * flora::reach_m(own)) * instance.size;
         let kept = (tall_m / (clip.w * px_rad) / 16.0).min(1.0);

@@ -5,7 +5,7 @@ use crate::scene::{Component, ComponentKind, Underbrush};
 use proptest::prelude::*;
 use std::sync::LazyLock;
 
-const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
+const GRAVITY: Vec3 = Vec3::new(0.0, -crate::GRAVITY_M_PER_S2 as f32, 0.0);
 const UPRIGHT: Stand = Stand { size: 1.0, heading_rad: 0.0, lean_rad: [0.0; 2] };
 const CALM: Forces = Forces { per_mass_m_per_s2: GRAVITY, pressure_pa: Vec3::ZERO };
 
