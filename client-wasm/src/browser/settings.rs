@@ -1,7 +1,7 @@
 //! Render settings chosen by the user: quality, render options, hour of the day, and side-by-side comparison.
 
 use crate::budget::{FrameBudget, FrameTime};
-use crate::render::{BlendOrder, FarPlants, Quality, RenderOptions, SideOptions, Split};
+use crate::render::{BlendOrder, DeviceClass, FarPlants, Quality, RenderOptions, SideOptions, Split};
 use prairie_core::scene::Light;
 use serde::Deserialize;
 
@@ -25,11 +25,12 @@ pub(super) struct Device {
 impl Device {
     /// Highest quality that automatic quality uses, and its initial level.
     fn automatic(self) -> (Quality, f32) {
-        match self {
-            Self { is_software: true, .. } => (Quality::Medium, 0.0),
-            Self { is_touch: true, .. } => (Quality::High, 1.0),
-            _ => (Quality::FINEST, 1.5),
-        }
+        let (class, level) = match self {
+            Self { is_software: true, .. } => (DeviceClass::Software, 0.0),
+            Self { is_touch: true, .. } => (DeviceClass::Touch, 1.0),
+            _ => (DeviceClass::Desktop, 1.5),
+        };
+        (Quality::automatic(class), level)
     }
 
     fn budget_secs(self) -> f32 {

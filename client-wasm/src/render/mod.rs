@@ -31,7 +31,7 @@ pub use gpu::timestamps::PassSecs;
 pub use inputs::bend_atlas::reach_m as bend_reach_m;
 #[cfg(not(target_arch = "wasm32"))]
 pub use offscreen::OffscreenRenderer;
-pub use options::quality::{Quality, REFERENCE_REACH_M};
+pub use options::quality::{DeviceClass, Quality, REFERENCE_REACH_M};
 pub use options::render_options::{BlendOrder, FarPlants, RenderOptions};
 pub use options::split::{SideOptions, Split};
 pub use prairie_core::light::sun::Sun;

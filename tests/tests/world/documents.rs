@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail, ensure};
 
+use prairie_client::render::Quality;
+use prairie_core::scene::VehicleKind;
+
 use super::architecture::workspace;
 use super::pictures::files;
 
@@ -67,6 +70,47 @@ fn links_of_documents_lead_to_existing_files_and_headings() -> Result<()> {
         bail!("broken links:\n{}", broken.join("\n"));
     }
     Ok(())
+}
+
+/// Documents that describe the present product.
+const READMES: [&str; 4] = ["README.md", "server/README.md", "client-wasm/README.md", "shared/README.md"];
+
+/// Sentences and table cells of a document that name at least three of some words, in any case or with a plural s, and those that each leaves out.
+fn lists<'a>(document: &str, words: &[&'a str]) -> Vec<(String, Vec<&'a str>)> {
+    let prose = prose(document);
+    let sentences = prose.lines().flat_map(|line| line.split(['|', ';']).flat_map(|part| part.split(". ")));
+    let named = |sentence: &str, word: &str| {
+        let mut found = sentence.split(|c: char| !c.is_alphanumeric());
+        found.any(|one| one.eq_ignore_ascii_case(word) || one.strip_suffix('s').is_some_and(|one| one.eq_ignore_ascii_case(word)))
+    };
+    let lists = sentences.map(|sentence| (sentence, words.iter().copied().filter(|word| !named(sentence, word)).collect::<Vec<_>>()));
+    lists.filter(|(_, missing)| missing.len() + 3 <= words.len()).map(|(sentence, missing)| (sentence.trim().to_owned(), missing)).collect()
+}
+
+#[test]
+fn lists_of_vehicles_and_presets_are_complete() -> Result<()> {
+    let mut incomplete = Vec::new();
+    for (words, least) in [(VehicleKind::ALL.map(VehicleKind::name).to_vec(), 3), (Quality::ALL.map(Quality::name).to_vec(), 2)] {
+        let mut count = 0;
+        for document in READMES {
+            let lists = lists(&fs::read_to_string(workspace().join(document))?, &words);
+            count += lists.len();
+            let short = lists.into_iter().filter(|(_, missing)| !missing.is_empty());
+            incomplete.extend(short.map(|(sentence, missing)| format!("{document}: {} missing in: {sentence}", missing.join(", "))));
+        }
+        ensure!(count >= least, "only {count} lists of {}", words.join(", "));
+    }
+    ensure!(incomplete.is_empty(), "{}", incomplete.join("\n"));
+    Ok(())
+}
+
+#[test]
+fn an_incomplete_list_is_found() {
+    let document = "Cars, sleds and a Ball. A car hits a sled.\n| low, `high` | monsters, cars, balls; helicopter, sled |\n";
+    let words = ["car", "monster", "sled", "ball"];
+    let found = lists(document, &words);
+    let found: Vec<_> = found.iter().map(|(sentence, missing)| (sentence.as_str(), missing.as_slice())).collect();
+    assert_eq!(found, [("Cars, sleds and a Ball", &["monster"][..]), ("monsters, cars, balls", &["sled"][..])]);
 }
 
 #[test]

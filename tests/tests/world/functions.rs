@@ -1,10 +1,11 @@
-//! Lengths of the client's functions, whose passes and frame are meant to be read at a glance.
+//! Lengths of the product's functions, which are meant to be read at a glance.
 
 use std::path::Path;
 
 use anyhow::{Result, ensure};
 
 use super::architecture::workspace;
+use super::imports::PACKAGES;
 use super::pictures::files;
 
 /// Maximum number of lines of a function, from its name to its closing brace.
@@ -48,9 +49,13 @@ fn too_long(dir: &Path) -> Result<(Vec<String>, usize)> {
 }
 
 #[test]
-fn functions_of_the_client_are_short() -> Result<()> {
-    let (found, count) = too_long(&workspace().join("client-wasm/src"))?;
-    ensure!(count > 500, "only {count} functions were found");
+fn functions_are_short() -> Result<()> {
+    let mut found = Vec::new();
+    for package in PACKAGES {
+        let (long, count) = too_long(&workspace().join(package))?;
+        ensure!(count > 100, "{package}: only {count} functions were found");
+        found.extend(long);
+    }
     ensure!(found.is_empty(), "functions of more than {LIMIT} lines:\n{}", found.join("\n"));
     Ok(())
 }

@@ -18,14 +18,27 @@ pub enum Quality {
     Reference,
 }
 
-/// Distance up to which [`Quality::Reference`] draws every plant (m).
+/// Maximum distance at which [`Quality::Reference`] draws every plant (m).
 pub const REFERENCE_REACH_M: f32 = 100.0;
+
+/// Class of a device by its graphics performance, slowest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DeviceClass {
+    /// A software renderer.
+    Software,
+    /// A device with a touch screen, such as a phone.
+    Touch,
+    /// Any other device.
+    Desktop,
+}
 
 /// All settings of a quality.
 struct Preset {
     quality: Quality,
     /// Name in addresses, on the page and on the command line.
     name: &'static str,
+    /// Slowest class of device on which automatic quality may use it.
+    automatic_from: DeviceClass,
     detail: Detail,
     /// Segments of a fine and of a coarse blade, one less than the backbone points of Zhang, section 3.1.1. With n segments that share a turn θ evenly, a
     /// blade of length L departs from its backbone by θ·L/(8n²); for θ = 1: 0.26 % of L with 7 segments, 1.4 % with 3, 0.13 % with 10.
@@ -51,7 +64,7 @@ struct Preset {
     /// Buffer for the underbrush in view, and again for its rows (bytes): four times what the shipped scenes fill at 960 × 540. Where rows do not fit, plants
     /// are drawn more coarsely and finally left out.
     underbrush_bytes: u64,
-    /// Distance up to which the client requests the bend field (m).
+    /// Radius of the bend field that the client requests (m).
     bend_radius_m: f32,
 }
 
@@ -60,6 +73,7 @@ const PRESETS: [Preset; 5] = [
     Preset {
         quality: Quality::Low,
         name: "low",
+        automatic_from: DeviceClass::Software,
         detail: Detail {
             full_m: 2.0,
             fine_m: 2.0,
@@ -86,6 +100,7 @@ const PRESETS: [Preset; 5] = [
     Preset {
         quality: Quality::Medium,
         name: "medium",
+        automatic_from: DeviceClass::Software,
         detail: Detail {
             full_m: 3.4,
             fine_m: 3.0,
@@ -112,6 +127,7 @@ const PRESETS: [Preset; 5] = [
     Preset {
         quality: Quality::High,
         name: "high",
+        automatic_from: DeviceClass::Touch,
         detail: Detail {
             full_m: 7.3,
             fine_m: 5.0,
@@ -157,6 +173,7 @@ const PRESETS: [Preset; 5] = [
 const ULTRA: Preset = Preset {
     quality: Quality::Ultra,
     name: "ultra",
+    automatic_from: DeviceClass::Desktop,
     detail: Detail {
         full_m: 11.0,
         fine_m: 8.0,
@@ -207,6 +224,12 @@ impl Quality {
 
     /// The finest preset that a user may choose.
     pub const FINEST: Self = Self::ALL[OFFERED - 1];
+
+    /// The finest preset that automatic quality may use on a class of device.
+    pub fn automatic(class: DeviceClass) -> Self {
+        let usable = |quality: &Self| quality.preset().automatic_from as u8 <= class as u8;
+        Self::ALL.into_iter().rev().find(usable).unwrap_or_default()
+    }
 
     const fn preset(self) -> &'static Preset {
         &PRESETS[self as usize]
@@ -304,7 +327,7 @@ impl Quality {
         self.preset().underbrush_bytes
     }
 
-    /// Distance up to which the client requests the bend field (m).
+    /// Radius of the bend field that the client requests (m).
     pub fn bend_radius_m(self) -> f32 {
         self.preset().bend_radius_m
     }
@@ -345,6 +368,16 @@ mod tests {
             readme.contains(&format!("`?quality=auto`{values}")),
             "client-wasm/README.md does not list the values of ?quality=: `auto`{values}"
         );
+        let [software, touch] = [DeviceClass::Software, DeviceClass::Touch].map(|class| Quality::automatic(class).name());
+        let most = format!("draw `{software}` at most, touch devices `{touch}`");
+        assert!(readme.contains(&most), "client-wasm/README.md does not say of automatic quality that software adapters {most}");
+    }
+
+    #[test]
+    fn automatic_quality_may_use_any_preset_on_a_desktop() {
+        assert_eq!(Quality::automatic(DeviceClass::Desktop), Quality::FINEST);
+        let levels = [DeviceClass::Software, DeviceClass::Touch, DeviceClass::Desktop].map(|class| Quality::automatic(class).level());
+        assert!(levels.is_sorted(), "{levels:?}");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::super::Real;
 use super::super::parallel::{for_each_chunk, for_each_chunk_pair};
 use super::coloured::{Coloured, Layout};
 use super::kernels;
+use std::ops::Range;
 
 /// Interpolation weights of children towards the neighbours of their parent, along a coarsened axis.
 #[derive(Clone, Debug)]
@@ -30,6 +31,11 @@ pub(super) struct Transfer<R> {
     parts: Vec<R>,
 }
 
+/// Cells of a row of a plane, by linear index within the plane.
+fn row(layout: &Layout, y: usize) -> Range<usize> {
+    layout.linear([1, y, 0])..layout.linear([1 + layout.cells[0], y, 0])
+}
+
 impl<R: Real> Transfer<R> {
     /// Creates the transfer between two layouts; cells are halved along the axes of `leans`.
     pub(super) fn new(fine: Layout, coarse: Layout, leans: Vec<Lean<R>>) -> Self {
@@ -40,15 +46,25 @@ impl<R: Real> Transfer<R> {
 
     /// Restricts a residual of the fine grid, 0 in ghosts, to a right-hand side on the coarse one.
     pub(super) fn restrict(&mut self, r: &Coloured<R>, b: &mut Coloured<R>) {
-        let Self { fine, coarse, leans, natural, parts } = self;
+        self.part_residuals(r);
+        self.sum_parts();
+        let (natural, plane_len) = (&self.natural[..], self.coarse.stride[2]);
+        let (red, black) = b.split_at_mut(1);
+        for_each_chunk_pair(&mut red[0], plane_len, &mut black[0], plane_len, |chunk, red, black| {
+            kernels::deal(&natural[2 * plane_len * chunk..][..2 * plane_len], red, black);
+        });
+    }
+
+    /// Sums the residuals of each parent's children into the part that stays with the parent and those for its neighbours.
+    fn part_residuals(&mut self, r: &Coloured<R>) {
+        let Self { fine, coarse, leans, parts, .. } = self;
         let (fine, coarse, leans) = (*fine, *coarse, &leans[..]);
-        let ([nx, ny, nz], plane_len) = (coarse.cells, coarse.stride[2]);
-        let each_plane = (1 + 2 * leans.len()) * plane_len;
-        let row = |y: usize| coarse.linear([1, y, 0])..coarse.linear([1 + nx, y, 0]);
+        let ([_, ny, nz], plane_len) = (coarse.cells, coarse.stride[2]);
+        let row = |y: usize| row(&coarse, y);
         let halved = |axis: usize| leans.iter().any(|lean| lean.axis == axis);
         let children = |i: usize, axis: usize| if halved(axis) { 2 * i - 1..(2 * i).min(fine.cells[axis]) + 1 } else { i..i + 1 };
 
-        for_each_chunk(parts, each_plane, |z, parts| {
+        for_each_chunk(parts, (1 + 2 * leans.len()) * plane_len, |z, parts| {
             if !(1..=nz).contains(&z) {
                 return;
             }
@@ -81,12 +97,18 @@ impl<R: Real> Transfer<R> {
                 }
             }
         });
+    }
 
-        let parts = &parts[..];
-        let part = |part: usize, y: usize, z: usize| &parts[z * each_plane + part * plane_len..][row(y)];
+    /// Sums the parts that reach each coarse cell.
+    fn sum_parts(&mut self) {
+        let Self { coarse, leans, natural, parts, .. } = self;
+        let (coarse, leans, parts) = (*coarse, &leans[..], &parts[..]);
+        let ([nx, ny, nz], plane_len) = (coarse.cells, coarse.stride[2]);
+        let each_plane = (1 + 2 * leans.len()) * plane_len;
+        let part = |part: usize, y: usize, z: usize| &parts[z * each_plane + part * plane_len..][row(&coarse, y)];
         for_each_chunk(natural, plane_len, |z, natural| {
             for y in (1..=ny).filter(|_| (1..=nz).contains(&z)) {
-                let b = &mut natural[row(y)];
+                let b = &mut natural[row(&coarse, y)];
                 b.copy_from_slice(part(0, y, z));
                 for (slot, lean) in leans.iter().enumerate() {
                     let (down, up) = (1 + 2 * slot, 2 + 2 * slot);
@@ -105,12 +127,6 @@ impl<R: Real> Transfer<R> {
                     below.into_iter().for_each(|[y, z]| kernels::add(b, part(up, y, z)));
                 }
             }
-        });
-
-        let natural = &natural[..];
-        let (red, black) = b.split_at_mut(1);
-        for_each_chunk_pair(&mut red[0], plane_len, &mut black[0], plane_len, |chunk, red, black| {
-            kernels::deal(&natural[2 * plane_len * chunk..][..2 * plane_len], red, black);
         });
     }
 

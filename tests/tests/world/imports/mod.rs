@@ -12,32 +12,45 @@ use circles::{Graph, circles};
 use modules::Modules;
 
 /// Source folders of the product's packages.
-const PACKAGES: [&str; 4] = ["shared/src", "server/src", "server/wind/src", "client-wasm/src"];
+pub(super) const PACKAGES: [&str; 4] = ["shared/src", "server/src", "server/wind/src", "client-wasm/src"];
 
-/// The files of a package and what each imports.
-fn imports(package: &str) -> Result<Graph> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(package);
-    let root = root.canonicalize()?;
-    let graph = Modules::of_crate(&mut |path| std::fs::read_to_string(root.join(path)).ok())?.graph();
-    ensure!(graph.files.len() > 5, "{package}: only {} files were read", graph.files.len());
-    Ok(graph)
+/// Roots of the crates of a package: its library, and its binary if it has one.
+const ROOTS: [&str; 2] = ["lib.rs", "main.rs"];
+
+/// The import graphs of a package's files, one for each crate.
+fn imports(package: &str) -> Result<Vec<Graph>> {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(package);
+    let src = src.canonicalize()?;
+    let graph = |root: &&str| Ok(Modules::of_crate(root, &mut |path| std::fs::read_to_string(src.join(path)).ok())?.graph());
+    let graphs = ROOTS.iter().filter(|root| src.join(root).exists()).map(graph).collect::<Result<Vec<_>>>()?;
+    let read: usize = graphs.iter().map(|graph| graph.files.len()).sum();
+    ensure!(read > 5, "{package}: only {read} files were read");
+    Ok(graphs)
 }
 
 /// The graph of sources given as text, by path below `src`.
 fn graph_of(sources: &[(&str, &str)]) -> Graph {
     let read = &mut |path: &str| sources.iter().find(|(name, _)| *name == path).map(|(_, text)| (*text).to_owned());
-    Modules::of_crate(read).expect("the sources parse").graph()
+    Modules::of_crate("lib.rs", read).expect("the sources parse").graph()
 }
 
 #[test]
 fn imports_make_no_circles() -> Result<()> {
     let mut found = Vec::new();
     for package in PACKAGES {
-        let graph = imports(package)?;
-        println!("{package}: {}", graph.figures());
-        found.extend(circles(&graph).iter().map(|circle| format!("{package}: {}", circle.join(" -> "))));
+        for graph in imports(package)? {
+            println!("{package}/{}: {}", graph.files[0], graph.figures());
+            found.extend(circles(&graph).iter().map(|circle| format!("{package}: {}", circle.join(" -> "))));
+        }
     }
     ensure!(found.is_empty(), "circles of imports:\n{}", found.join("\n"));
+    Ok(())
+}
+
+#[test]
+fn the_command_line_is_read() -> Result<()> {
+    let files: Vec<_> = imports("server/src")?.into_iter().flat_map(|graph| graph.files).collect();
+    ensure!(files.iter().filter(|file| file.starts_with("cli/")).count() > 2, "{files:?}");
     Ok(())
 }
 

@@ -32,10 +32,11 @@ pub(super) struct Modules {
 }
 
 impl Modules {
-    /// Reads `lib.rs` and every module below it. `read` gives the text of a file by its path below `src`, if it exists.
-    pub(super) fn of_crate(read: &mut dyn FnMut(&str) -> Option<String>) -> Result<Self> {
-        let root = Declared::parse(&read("lib.rs").context("lib.rs is missing")?).context("lib.rs")?;
-        let mut modules = Self { files: vec!["lib.rs".to_owned()], modules: Vec::new() };
+    /// Reads the root of a crate, such as `lib.rs`, and every module below it. `read` gives the text of a file by its path below `src`, if it exists.
+    pub(super) fn of_crate(root: &str, read: &mut dyn FnMut(&str) -> Option<String>) -> Result<Self> {
+        let text = read(root).with_context(|| format!("{root} is missing"))?;
+        let mut modules = Self { files: vec![root.to_owned()], modules: Vec::new() };
+        let root = Declared::parse(&text).with_context(|| root.to_owned())?;
         modules.add(root, 0, 0, "", read)?;
         Ok(modules)
     }
