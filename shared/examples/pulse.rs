@@ -4,7 +4,7 @@
 //! cargo run --release -p prairie-core --example pulse
 //! ```
 
-use prairie_core::bend::{Alone, Bend, Edges, Field, Kinds, Scheme, StepError, WaveParams};
+use prairie_core::bend::{Bend, Edges, Field, Kinds, Scheme, Serial, StepError, WaveParams};
 use prairie_core::grid::PatchLayout;
 
 /// Largest bend of the pulse (rad).
@@ -23,7 +23,7 @@ fn main() -> Result<(), StepError> {
     for frame in 0..4 {
         draw(&field, frame as f32 * 1.25);
         for _ in 0..75 {
-            field.step(Scheme::Substepped, dt_secs, &Alone)?;
+            field.step(Scheme::Substepped, dt_secs, &Serial)?;
         }
     }
     Ok(())

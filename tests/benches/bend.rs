@@ -153,7 +153,7 @@ fn few_tiles(pool: &ThreadPool) {
         let (mut best, begun) = (f64::INFINITY, Instant::now());
         while begun.elapsed() < ENOUGH {
             let step = Instant::now();
-            field.step(Scheme::Substepped, 1.0 / 60.0, &Pool).expect("one sub-step is enough for what stands still");
+            field.step(Scheme::Substepped, 1.0 / 60.0, &Pool).expect("one sub-step is enough at rest");
             best = best.min(step.elapsed().as_secs_f64());
         }
         best * 1e6

@@ -4,7 +4,7 @@
 //! Payload sizes are printed first, since speed is meaningless without them.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use prairie_core::bend::{Alone, Bend, Field, Kinds, Scheme};
+use prairie_core::bend::{Bend, Field, Kinds, Scheme, Serial};
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::Grass;
 use prairie_core::wire::{Shape, codec, quantise};
@@ -32,7 +32,7 @@ fn frames() -> Vec<Vec<i8>> {
                 }
             }
         }
-        field.step(Scheme::Substepped, DT_SECS, &Alone).expect("a step of some length");
+        field.step(Scheme::Substepped, DT_SECS, &Serial).expect("a step of some length");
         if step % STEPS_PER_FRAME == 0 {
             let patch = field.patch(0).expect("awake");
             let own = |channel: usize, code: fn(f32) -> i8| -> Vec<i8> {

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use prairie_wind::transport::{STAGES, Stage, TransportScratch, stable_dt_secs};
 use prairie_wind::{Boundary, Config, Field, Grid, Gusts, Location, Profile, Solver, Velocity, diagnostics, diffuse};
 
-use crate::random_winds::Dice;
+use crate::random_winds::Random;
 
 const STEPS: usize = 400;
 const BISECTIONS: usize = 30;
@@ -62,8 +62,8 @@ fn wrap(grid: &Grid<f64>, field: &mut Field<f64>) {
 }
 
 fn noise(grid: &Grid<f64>, location: Location) -> Field<f64> {
-    let (mut field, mut dice) = (Field::zeros(grid, location), Dice::new(7));
-    field.data.iter_mut().for_each(|value| *value = dice.unit());
+    let (mut field, mut random) = (Field::zeros(grid, location), Random::new(7));
+    field.data.iter_mut().for_each(|value| *value = random.unit());
     let mean = field.values(grid).sum::<f64>() / field.len() as f64;
     field.data.iter_mut().for_each(|value| *value -= mean);
     wrap(grid, &mut field);
@@ -211,9 +211,9 @@ pub fn dust_bounds(name: &str, cells: [usize; 3], uniform: bool) -> Limit {
     let mut solver = Solver::<f64>::new(&config).expect("a legal box");
     if !uniform {
         solver.set_velocity(|position| {
-            let seed = position.iter().fold(3, |seed, x| Dice::new(seed ^ x.to_bits()).bits());
-            let mut dice = Dice::new(seed);
-            [0; 3].map(|_| dice.between(-1.0, 1.0))
+            let seed = position.iter().fold(3, |seed, x| Random::new(seed ^ x.to_bits()).bits());
+            let mut random = Random::new(seed);
+            [0; 3].map(|_| random.between(-1.0, 1.0))
         });
     }
     let (grid, mut air) = (*solver.grid(), solver.velocity().clone());
@@ -223,8 +223,8 @@ pub fn dust_bounds(name: &str, cells: [usize; 3], uniform: bool) -> Limit {
     let courant_per_s: f64 = diagnostics::largest_speeds(&grid, &air, &air, 0.0).iter().sum();
     let stable = |courant: f64| {
         let mut dust = Field::zeros(&grid, Location::Centre);
-        let mut dice = Dice::new(11);
-        dust.data.iter_mut().for_each(|value| *value = f64::from(u8::from(dice.one_in(2))));
+        let mut random = Random::new(11);
+        dust.data.iter_mut().for_each(|value| *value = f64::from(u8::from(random.one_in(2))));
         wrap(&grid, &mut dust);
         let mut stages = [dust.clone(), dust.clone()];
         let mut scratch = TransportScratch::new(&grid);

@@ -7,9 +7,9 @@ use prairie_wind::{
 };
 
 /// Random numbers from a seed.
-pub struct Dice(SplitMix64);
+pub struct Random(SplitMix64);
 
-impl Dice {
+impl Random {
     /// A generator whose numbers depend on the seed alone.
     pub fn new(seed: u64) -> Self {
         Self(SplitMix64::new(seed))
@@ -68,102 +68,104 @@ pub struct RandomWind {
 impl RandomWind {
     /// The configuration of a seed. Half of them have no forcing.
     pub fn new(seed: u64) -> Self {
-        let mut dice = Dice::new(seed);
-        let driven = dice.one_in(2);
-        let cells = cells(&mut dice);
-        let finest_m = dice.scale(0.01, 100.0);
-        let spacing_m = [0; 3].map(|_| (finest_m * dice.of(&[1.0, 1.0, 2.0, 10.0])) as f32);
-        let boundary = [0, 1, 2].map(|axis| faces(&mut dice, axis, driven));
-        let (advection, time) = dice.of(&schemes());
+        let mut random = Random::new(seed);
+        let driven = random.one_in(2);
+        let cells = cells(&mut random);
+        let finest_m = random.scale(0.01, 100.0);
+        let spacing_m = [0; 3].map(|_| (finest_m * random.of(&[1.0, 1.0, 2.0, 10.0])) as f32);
+        let boundary = [0, 1, 2].map(|axis| faces(&mut random, axis, driven));
+        let (advection, time) = random.of(&schemes());
         let config = Config {
             cells,
             spacing_m,
             boundary,
             advection,
-            damping: dice.of(&[0.0, 0.5, 1.0]),
+            damping: random.of(&[0.0, 0.5, 1.0]),
             time,
-            diffusion: diffusion(&mut dice),
-            pressure: pressure(&mut dice),
-            viscosity_m2_per_s: if dice.one_in(4) { 0.0 } else { dice.scale(1e-5, 1e4) as f32 },
+            diffusion: diffusion(&mut random),
+            pressure: pressure(&mut random),
+            viscosity_m2_per_s: if random.one_in(4) { 0.0 } else { random.scale(1e-5, 1e4) as f32 },
             relaxation_per_s: 0.0,
             mean_wind_m_per_s: [0.0; 3],
             profile: Profile::Uniform,
             gusts: Gusts { number: 0, ..Gusts::default() },
-            canopy: dice.one_in(3).then(|| Canopy { height_m: dice.scale(0.01, 100.0) as f32, drag_per_m: dice.scale(1e-3, 1e3) as f32 }),
-            dust: dice.one_in(2).then(|| dust(&mut dice)),
-            seed: dice.bits(),
+            canopy: random
+                .one_in(3)
+                .then(|| Canopy { height_m: random.scale(0.01, 100.0) as f32, drag_per_m: random.scale(1e-3, 1e3) as f32 }),
+            dust: random.one_in(2).then(|| dust(&mut random)),
+            seed: random.bits(),
             ..Config::default()
         };
         let may_be_solid =
             config.pressure != Pressure::Direct && matches!(config.diffusion, Diffusion::Explicit | Diffusion::GaussSeidel { .. });
         let mut wind = Self {
-            speed_m_per_s: if dice.one_in(4) { 0.0 } else { dice.scale(1e-3, 100.0) },
-            solid: if may_be_solid { dice.of(&[0.0, 0.0, 0.1, 0.6]) } else { 0.0 },
+            speed_m_per_s: if random.one_in(4) { 0.0 } else { random.scale(1e-3, 100.0) },
+            solid: if may_be_solid { random.of(&[0.0, 0.0, 0.1, 0.6]) } else { 0.0 },
             inflow_m_per_s: None,
             jets: Vec::new(),
-            dt_secs: dice.scale(1e-3, 100.0),
-            seed: dice.bits(),
+            dt_secs: random.scale(1e-3, 100.0),
+            seed: random.bits(),
             config,
         };
         if driven {
-            wind.drive(&mut dice);
+            wind.drive(&mut random);
         }
         wind
     }
 
-    fn drive(&mut self, dice: &mut Dice) {
+    fn drive(&mut self, random: &mut Random) {
         let extent_m: [f64; 3] = std::array::from_fn(|axis| self.config.cells[axis] as f64 * f64::from(self.config.spacing_m[axis]));
         let largest_m = extent_m.into_iter().fold(0.0, f64::max);
-        let somewhere = |dice: &mut Dice| extent_m.map(|extent| (dice.between(-0.5, 1.5) * extent) as f32);
-        let radius_m = |dice: &mut Dice| dice.scale(1e-3, 3.0 * largest_m.max(1e-2)) as f32;
+        let somewhere = |random: &mut Random| extent_m.map(|extent| (random.between(-0.5, 1.5) * extent) as f32);
+        let radius_m = |random: &mut Random| random.scale(1e-3, 3.0 * largest_m.max(1e-2)) as f32;
         let config = &mut self.config;
-        config.relaxation_per_s = dice.of(&[0.0, 0.2, 1e4]);
+        config.relaxation_per_s = random.of(&[0.0, 0.2, 1e4]);
         for axis in [0, 2] {
             if !config.boundary[axis].iter().any(|face| face.blocks_flow()) {
-                config.mean_wind_m_per_s[axis] = dice.between(-40.0, 40.0) as f32;
+                config.mean_wind_m_per_s[axis] = random.between(-40.0, 40.0) as f32;
             }
         }
         if config.boundary[1][0] != Boundary::Wrap {
-            let reference_m = dice.scale(0.1, 100.0) as f32;
-            config.profile = dice.of(&[
+            let reference_m = random.scale(0.1, 100.0) as f32;
+            config.profile = random.of(&[
                 Profile::Uniform,
                 Profile::Log { roughness_m: 0.05, reference_m },
                 Profile::Power { exponent: 1.0 / 7.0, reference_m },
             ]);
         }
-        if dice.one_in(4) {
-            config.body_force_m_per_s2 = [0; 3].map(|_| dice.between(-100.0, 100.0) as f32);
+        if random.one_in(4) {
+            config.body_force_m_per_s2 = [0; 3].map(|_| random.between(-100.0, 100.0) as f32);
         }
         config.gusts = Gusts {
-            number: dice.of(&[0, 1, 24]),
-            strength_m_per_s: dice.scale(0.1, 1e3) as f32,
-            life_secs: dice.scale(1e-2, 100.0) as f32,
-            attack: dice.between(0.01, 0.99) as f32,
-            radius_m: [0; 3].map(|_| radius_m(dice)),
+            number: random.of(&[0, 1, 24]),
+            strength_m_per_s: random.scale(0.1, 1e3) as f32,
+            life_secs: random.scale(1e-2, 100.0) as f32,
+            attack: random.between(0.01, 0.99) as f32,
+            radius_m: [0; 3].map(|_| radius_m(random)),
         };
-        let number = dice.of(&[0, 0, 1, 3]);
+        let number = random.of(&[0, 0, 1, 3]);
         config.primitives = (0..number)
             .map(|_| {
-                let angle = dice.between(0.0, std::f64::consts::TAU);
+                let angle = random.between(0.0, std::f64::consts::TAU);
                 Primitive {
-                    shape: dice.of(&[Shape::Uniform, Shape::Source, Shape::Sink, Shape::Vortex, Shape::Cyclone]),
-                    position_m: somewhere(dice),
-                    drift_m_per_s: [0; 2].map(|_| dice.between(-200.0, 200.0) as f32),
-                    radius_m: radius_m(dice),
-                    speed_m_per_s: dice.scale(0.1, 200.0) as f32,
+                    shape: random.of(&[Shape::Uniform, Shape::Source, Shape::Sink, Shape::Vortex, Shape::Cyclone]),
+                    position_m: somewhere(random),
+                    drift_m_per_s: [0; 2].map(|_| random.between(-200.0, 200.0) as f32),
+                    radius_m: radius_m(random),
+                    speed_m_per_s: random.scale(0.1, 200.0) as f32,
                     direction: [angle.cos() as f32, angle.sin() as f32],
-                    dust: dice.unit() as f32,
+                    dust: random.unit() as f32,
                 }
             })
             .collect();
-        self.inflow_m_per_s = dice.one_in(2).then(|| dice.scale(0.1, 100.0));
-        if dice.one_in(4) {
-            let velocity = [0; 3].map(|_| dice.between(-100.0, 100.0) as f32);
+        self.inflow_m_per_s = random.one_in(2).then(|| random.scale(0.1, 100.0));
+        if random.one_in(4) {
+            let velocity = [0; 3].map(|_| random.between(-100.0, 100.0) as f32);
             self.jets = vec![Jet {
-                position_m: somewhere(dice).into(),
-                radius_m: radius_m(dice),
+                position_m: somewhere(random).into(),
+                radius_m: radius_m(random),
                 velocity_m_per_s: velocity.into(),
-                rate_per_s: dice.scale(0.1, 1e3) as f32,
+                rate_per_s: random.scale(0.1, 1e3) as f32,
             }];
         }
     }
@@ -183,8 +185,8 @@ impl RandomWind {
     pub fn solver<R: Real>(&self) -> anyhow::Result<Solver<R>> {
         let mut solver = Solver::new(&self.config)?;
         let at = |position: [R; 3], salt: u64| {
-            let key = position.into_iter().fold(self.seed ^ salt, |key, x| Dice::new(key ^ x.wide().to_bits()).bits());
-            Dice::new(key).unit()
+            let key = position.into_iter().fold(self.seed ^ salt, |key, x| Random::new(key ^ x.wide().to_bits()).bits());
+            Random::new(key).unit()
         };
         if let Some(speed) = self.inflow_m_per_s {
             solver.set_inflow(move |[x, y, z], t| [speed * (x + t).sin(), speed * (y - t).cos(), speed * (z + t).sin()]);
@@ -207,35 +209,35 @@ fn schemes() -> Vec<(Advection, TimeScheme)> {
 }
 
 /// Mostly some hundred cells, now and then thousands; flat and narrow boxes too.
-fn cells(dice: &mut Dice) -> [usize; 3] {
-    let most = if dice.one_in(40) { 16_000 } else { 500 };
+fn cells(random: &mut Random) -> [usize; 3] {
+    let most = if random.one_in(40) { 16_000 } else { 500 };
     loop {
-        let cells = [0; 3].map(|_| if dice.one_in(4) { 1 } else { dice.scale(1.0, 41.0) as usize });
+        let cells = [0; 3].map(|_| if random.one_in(4) { 1 } else { random.scale(1.0, 41.0) as usize });
         if cells.iter().product::<usize>() <= most {
             return cells;
         }
     }
 }
 
-fn faces(dice: &mut Dice, axis: usize, driven: bool) -> [Boundary; 2] {
-    if dice.one_in(3) {
+fn faces(random: &mut Random, axis: usize, driven: bool) -> [Boundary; 2] {
+    if random.one_in(3) {
         return [Boundary::Wrap; 2];
     }
     [0, 1].map(|_| {
-        let mut lid = [0; 3].map(|_| dice.between(-40.0, 40.0) as f32);
+        let mut lid = [0; 3].map(|_| random.between(-40.0, 40.0) as f32);
         lid[axis] = 0.0;
         let still = [Boundary::FreeSlip, Boundary::Reflect, Boundary::NoSlip, Boundary::Outflow];
         let moving = [Boundary::Lid { velocity_m_per_s: lid }, Boundary::Inflow];
-        if driven && dice.one_in(2) { dice.of(&moving) } else { dice.of(&still) }
+        if driven && random.one_in(2) { random.of(&moving) } else { random.of(&still) }
     })
 }
 
-fn diffusion(dice: &mut Dice) -> Diffusion {
-    let sweeps = dice.scale(1.0, 30.0) as u32;
-    dice.of(&[Diffusion::Explicit, Diffusion::GaussSeidel { sweeps }, Diffusion::Implicit, Diffusion::CrankNicolson])
+fn diffusion(random: &mut Random) -> Diffusion {
+    let sweeps = random.scale(1.0, 30.0) as u32;
+    random.of(&[Diffusion::Explicit, Diffusion::GaussSeidel { sweeps }, Diffusion::Implicit, Diffusion::CrankNicolson])
 }
 
-fn pressure(dice: &mut Dice) -> Pressure {
+fn pressure(random: &mut Random) -> Pressure {
     let methods = [
         IterativeMethod::Jacobi,
         IterativeMethod::GaussSeidel,
@@ -243,17 +245,17 @@ fn pressure(dice: &mut Dice) -> Pressure {
         IterativeMethod::ConjugateGradients,
         IterativeMethod::Multigrid,
     ];
-    if dice.one_in(3) {
+    if random.one_in(3) {
         return Pressure::Direct;
     }
-    Pressure::Iterative(dice.of(&methods), Effort { tolerance: dice.scale(1e-10, 0.1), sweeps: dice.scale(1.0, 60.0) as u32 })
+    Pressure::Iterative(random.of(&methods), Effort { tolerance: random.scale(1e-10, 0.1), sweeps: random.scale(1.0, 60.0) as u32 })
 }
 
-fn dust(dice: &mut Dice) -> Dust {
+fn dust(random: &mut Random) -> Dust {
     Dust {
-        advection: dice.of(Advection::ALL),
-        diffusivity_m2_per_s: dice.of(&[0.0, 0.2, 100.0]),
-        release_per_s: dice.of(&[0.0, 1.0, 1e6]),
-        settling_per_s: dice.of(&[0.0, 0.1, 1e6]),
+        advection: random.of(Advection::ALL),
+        diffusivity_m2_per_s: random.of(&[0.0, 0.2, 100.0]),
+        release_per_s: random.of(&[0.0, 1.0, 1e6]),
+        settling_per_s: random.of(&[0.0, 0.1, 1e6]),
     }
 }

@@ -42,13 +42,13 @@ pub fn sources_at<R: Real>(config: &Config, grid: &Grid<R>, mean: &MeanWind, tim
     let (life, attack) = (f64::from(life_secs), f64::from(attack));
     let peak = f64::from(strength_m_per_s) / (life * envelope_area(attack));
     (0..number).map(move |n| {
-        let lives = time_secs / life + Dice::new([config.seed, n as u64, u64::MAX]).unit();
+        let lives = time_secs / life + Random::new([config.seed, n as u64, u64::MAX]).unit();
         let age = lives.fract();
-        let mut dice = Dice::new([config.seed, n as u64, lives as u64]);
-        let birth: [f64; 3] = std::array::from_fn(|axis| dice.unit() * grid.extent_m(axis).wide());
+        let mut random = Random::new([config.seed, n as u64, lives as u64]);
+        let birth: [f64; 3] = std::array::from_fn(|axis| random.unit() * grid.extent_m(axis).wide());
         let drift = mean.at(birth[1]).map(|speed| speed * age * life);
         let level = envelope(age, attack);
-        let [x, z] = dice.in_disc();
+        let [x, z] = random.in_disc();
         Source {
             position_m: [birth[0] + drift[0], birth[1], birth[2] + drift[2]],
             push_m_per_s2: [x * peak * level, 0.0, z * peak * level],
@@ -110,10 +110,10 @@ pub fn release<R: Real>(
     footprint.for_each(grid, dust, |density, weight, _| *density = *density + weight * gain);
 }
 
-/// SplitMix64 generator seeded from a key (Steele, Lea & Flood 2014).
-struct Dice(SplitMix64);
+/// SplitMix64 generator seeded from a key (Steele et al. 2014).
+struct Random(SplitMix64);
 
-impl Dice {
+impl Random {
     fn new(key: [u64; 3]) -> Self {
         Self(SplitMix64::seed_from_u64(key.into_iter().fold(0, |bits, part| SplitMix64::seed_from_u64(bits ^ part).next_u64())))
     }
@@ -163,7 +163,7 @@ mod tests {
         let config = Config { gusts: Gusts { number: 1, ..Gusts::default() }, ..Config::default() };
         let (grid, mean) = (config.grid::<f32>(), MeanWind::new(&config));
         let life = f64::from(config.gusts.life_secs);
-        let start = life * (1.0 - Dice::new([config.seed, 0, u64::MAX]).unit());
+        let start = life * (1.0 - Random::new([config.seed, 0, u64::MAX]).unit());
         let n = 10_000;
         let dt = life / n as f64;
         let gained = (0..n).fold([0.0; 2], |sum: [f64; 2], i| {
@@ -171,11 +171,11 @@ mod tests {
             [sum[0] + source.push_m_per_s2[0] * dt, sum[1] + source.push_m_per_s2[2] * dt]
         });
         let speed = (gained[0] * gained[0] + gained[1] * gained[1]).sqrt();
-        let mut dice = Dice::new([config.seed, 0, 1]);
+        let mut random = Random::new([config.seed, 0, 1]);
         for _ in 0..3 {
-            dice.unit();
+            random.unit();
         }
-        let [x, z] = dice.in_disc();
+        let [x, z] = random.in_disc();
         assert!((speed - f64::from(config.gusts.strength_m_per_s) * (x * x + z * z).sqrt()).abs() < 1e-3, "{speed}");
     }
 }

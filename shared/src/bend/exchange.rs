@@ -2,14 +2,14 @@
 
 use super::halo::{AROUND, Neighbour, Seams, TileRun, fetch, neighbour, put_to_rest, ring};
 use super::tiles::TILE;
-use super::{Crew, Field, Patch};
+use super::{Executor, Field, Patch};
 
 impl Field {
     /// Applies `act` to every patch with an active tile; returns the sum of its results.
-    pub(super) fn advance(&mut self, crew: &impl Crew, act: impl Fn(&mut Patch) -> u64 + Send + Sync) -> u64 {
+    pub(super) fn advance(&mut self, executor: &impl Executor, act: impl Fn(&mut Patch) -> u64 + Send + Sync) -> u64 {
         let mut counts = vec![0; self.patches.len()];
         let tasks: Vec<_> = self.patches.iter_mut().zip(&mut counts).filter(|(patch, _)| patch.tiles.any_active()).collect();
-        crew.for_each(tasks, |(patch, count)| *count = act(patch));
+        executor.for_each(tasks, |(patch, count)| *count = act(patch));
         counts.iter().sum()
     }
 

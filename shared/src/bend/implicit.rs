@@ -8,7 +8,7 @@ use super::halo::Edges;
 use super::patch::{CHANNELS, Patch, Planes};
 use super::tridiagonal::{End, LANES, Lanes, Line};
 use super::verlet::for_each_kind;
-use super::{Crew, Field, Report, WaveParams};
+use super::{Executor, Field, Report, WaveParams};
 use std::collections::BTreeMap;
 
 /// Coefficients of a step for one kind of grass; θ first, then ω.
@@ -49,19 +49,19 @@ struct Work {
 }
 
 /// Advances all awake patches by one step of `dt_secs`.
-pub(super) fn step(field: &mut Field, dt_secs: f32, crew: &impl Crew) -> Report {
+pub(super) fn step(field: &mut Field, dt_secs: f32, executor: &impl Executor) -> Report {
     let ratio = field.dt_secs.replace(dt_secs).map_or(1.0, |last| dt_secs / last);
     let kinds: Vec<_> = field.kinds.waves().iter().map(|waves| Coefficients::new(waves, field.layout.cell_m, dt_secs)).collect();
     let refused = field.exchange(1);
     let mut works: Vec<Work> = field.patches.iter().map(|_| Work::default()).collect();
     let tasks: Vec<_> = field.patches.iter_mut().zip(&mut works).collect();
-    crew.for_each(tasks, |(patch, work)| *work = begin(patch, &kinds, ratio));
+    executor.for_each(tasks, |(patch, work)| *work = begin(patch, &kinds, ratio));
     for axis in [0, 1] {
         let lines = lines(field, &mut works, axis);
-        crew.for_each(lines, |mut line| line.solve(axis));
+        executor.for_each(lines, |mut line| line.solve(axis));
     }
     let tasks: Vec<_> = field.patches.iter_mut().zip(&works).collect();
-    crew.for_each(tasks, |(patch, work)| take_on(patch, &work.changes));
+    executor.for_each(tasks, |(patch, work)| take_on(patch, &work.changes));
     let cells = u64::from(field.layout.cells).pow(2);
     Report { substeps: 1, cell_steps: cells * field.patches.len() as u64, refused, ..Report::default() }
 }

@@ -105,7 +105,7 @@ fn next_cell<const SPEED: u8>(row: &[Stencil; CHANNELS], i: usize, before: [f32;
     ]
 }
 
-// The compiler knows that slices passed as separate arguments do not overlap. Combined or inlined it does not, and the loops are not vectorised.
+// Slices are separate arguments so that the compiler may assume that they do not overlap; combined or inlined, the loops would not be vectorised.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn advance_block<const SPEED: u8>(now: &Planes, theta: &mut [f32], x: &mut [f32], z: &mut [f32], block: Block) {
     let Block { first, width, rows, stride, k } = block;

@@ -18,7 +18,7 @@
 //! A standing wave between free edges, over 2 × 2 patches, is back after one period:
 //!
 //! ```
-//! use prairie_core::bend::{Alone, Bend, Edges, Field, Kinds, Scheme, WaveParams};
+//! use prairie_core::bend::{Serial, Bend, Edges, Field, Kinds, Scheme, WaveParams};
 //! use prairie_core::grid::PatchLayout;
 //! use std::f32::consts::PI;
 //!
@@ -39,7 +39,7 @@
 //! field.start(dt_secs, |[x_m, _]| [0.0, -dt_secs].map(|secs| Bend { theta: 0.5 * wave(x_m, secs), omega: [0.0; 2] }));
 //! assert!(dt_secs < field.stable_dt_secs(Scheme::Substepped));
 //! for _ in 0..steps {
-//!     field.step(Scheme::Substepped, dt_secs, &Alone)?;
+//!     field.step(Scheme::Substepped, dt_secs, &Serial)?;
 //! }
 //! for x_m in [0.1, 3.0, 12.0] {
 //!     let Bend { theta, omega } = field.bend_at(x_m, 5.0);
@@ -49,8 +49,8 @@
 //! # Ok::<(), prairie_core::bend::StepError>(())
 //! ```
 
-mod crew;
 mod exchange;
+mod executor;
 mod field;
 mod halo;
 mod implicit;
@@ -68,7 +68,7 @@ mod tridiagonal;
 mod verlet;
 mod wind;
 
-pub use crew::{Alone, Crew};
+pub use executor::{Executor, Serial};
 pub use field::Field;
 pub use halo::{Edges, Seams};
 pub use kinds::Kinds;

@@ -3,7 +3,7 @@
 use super::halo::Seams;
 use super::limits::{SUBSTEPS_LIMIT, courant_share, substeps};
 use super::verlet::{self, Pass};
-use super::{Coefficients, Crew, Damping, Field, HALO, Report, Scheme, StepError, implicit};
+use super::{Coefficients, Damping, Executor, Field, HALO, Report, Scheme, StepError, implicit};
 
 impl Field {
     /// Advances the field by `dt_secs`.
@@ -11,7 +11,7 @@ impl Field {
     /// # Errors
     /// [`StepError`] when the scheme cannot be used here or would need too many sub-steps. The field is then unchanged, except that patches with a
     /// NaN or infinite value have been put to rest.
-    pub fn step(&mut self, scheme: Scheme, dt_secs: f32, crew: &impl Crew) -> Result<Report, StepError> {
+    pub fn step(&mut self, scheme: Scheme, dt_secs: f32, executor: &impl Executor) -> Result<Report, StepError> {
         if !(dt_secs.is_finite() && dt_secs > 0.0) {
             return Err(StepError::NoStep { dt_secs });
         }
@@ -19,9 +19,9 @@ impl Field {
         self.patches.retain(|patch| patch.theta_max_rad().is_finite() && patch.omega_max_rad_per_s().is_finite());
         let reset_patches = (awake - self.patches.len()) as u32;
         let report = match scheme {
-            Scheme::Verlet => self.explicit(1, Damping::Plain, dt_secs, crew),
-            Scheme::Substepped => self.explicit(self.substeps(dt_secs)?, Damping::Exact, dt_secs, crew),
-            Scheme::Implicit => implicit::step(self, dt_secs, crew),
+            Scheme::Verlet => self.explicit(1, Damping::Plain, dt_secs, executor),
+            Scheme::Substepped => self.explicit(self.substeps(dt_secs)?, Damping::Exact, dt_secs, executor),
+            Scheme::Implicit => implicit::step(self, dt_secs, executor),
             Scheme::Modal => self.modal(dt_secs)?,
         };
         self.revision.0 += 1;
@@ -49,7 +49,7 @@ impl Field {
         })
     }
 
-    fn explicit(&mut self, count: u32, damping: Damping, dt_secs: f32, crew: &impl Crew) -> Report {
+    fn explicit(&mut self, count: u32, damping: Damping, dt_secs: f32, executor: &impl Executor) -> Report {
         let substep_secs = dt_secs / count as f32;
         let coefficients = |waves| Coefficients::new(waves, self.layout.cell_m, substep_secs, damping);
         let kinds: Vec<_> = self.kinds.waves().iter().map(coefficients).collect();
@@ -66,7 +66,7 @@ impl Field {
             report.refused += self.exchange(substeps);
             let rings = (self.seams == Seams::Overlap).then_some(HALO - 1);
             let pass = Pass { kinds: &kinds, substeps, ratio, rings };
-            report.cell_steps += self.advance(crew, |patch| verlet::advance(patch, &pass));
+            report.cell_steps += self.advance(executor, |patch| verlet::advance(patch, &pass));
             (left, ratio) = (left - substeps, 1.0);
         }
         report

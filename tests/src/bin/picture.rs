@@ -19,7 +19,7 @@ struct Arguments {
     /// Name of a built-in scene, or a scene file
     #[arg(long, default_value = "meadow")]
     scene: String,
-    /// What happens before the picture is taken
+    /// Action before the picture is taken
     #[arg(long, value_enum, default_value = "wind")]
     act: Act,
     /// Camera as in the page's address: x,y,z,heading,pitch; default: the scene's starting view

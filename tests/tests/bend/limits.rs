@@ -1,7 +1,7 @@
 //! Stability limit of the explicit scheme of Chen & Johan, by bisection: constant speeds, varying speeds, road speed.
 
 use prairie_core::bend::limits::courant_limit;
-use prairie_core::bend::{Alone, Bend, Edges, Field, Kinds, Scheme, WaveParams};
+use prairie_core::bend::{Bend, Edges, Field, Kinds, Scheme, Serial, WaveParams};
 use prairie_core::grid::PatchLayout;
 use tests::problems::bend::{Striker, size};
 
@@ -47,7 +47,7 @@ fn is_bounded(mut field: Field, omega: impl Fn(usize) -> f32) -> bool {
         [Bend { theta, omega: [omega(j * COUNT + i), 0.0] }; 2]
     });
     (0..STEPS).all(|_| {
-        field.step(Scheme::Verlet, DT_SECS, &Alone).unwrap();
+        field.step(Scheme::Verlet, DT_SECS, &Serial).unwrap();
         field.awake().all(|patch| patch.theta_max_rad() < 1.0) && field.awake_count() == 4
     })
 }
@@ -183,7 +183,7 @@ fn at_road_speed_the_original_scheme_blows_up_and_sub_steps_do_not() {
             let at_m = [-10.0 + 20.0 * TICK_SECS * step as f32, 1.0];
             let car = Striker { at_m, velocity_m_per_s: [20.0, 0.0], radius_m: 1.0, strike_height_m: 0.3 };
             car.press(&mut field, TICK_SECS);
-            reset += field.step(scheme, TICK_SECS, &Alone).unwrap().reset_patches;
+            reset += field.step(scheme, TICK_SECS, &Serial).unwrap().reset_patches;
             most = field.awake().map(|patch| patch.theta_max_rad()).fold(most, f32::max);
         }
         assert_eq!(size(&field), [64; 2]);

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use prairie_core::bend::{Alone, Bend, Crew, Damping, Edges, Field, Kinds, Report, Rest, Scheme, Seams, TILE, WaveParams};
+use prairie_core::bend::{Bend, Damping, Edges, Executor, Field, Kinds, Report, Rest, Scheme, Seams, Serial, TILE, WaveParams};
 use prairie_core::grid::PatchLayout;
 use proptest::prelude::*;
 use rayon::prelude::*;
 use tests::problems::bend::{OneGrid, Striker, Threads, cells, channels, largest_difference, size};
-use tests::random_winds::Dice;
+use tests::random_winds::Random;
 
 const EDGES: [Edges; 3] = [Edges::Rest, Edges::Free, Edges::Wrapped];
 
@@ -122,7 +122,7 @@ impl Case {
     }
 
     /// Runs a field to the end; only pressed patches are woken.
-    fn run(&self, mut field: Field, scheme: Scheme, crew: &impl Crew) -> (Field, Vec<Report>) {
+    fn run(&self, mut field: Field, scheme: Scheme, executor: &impl Executor) -> (Field, Vec<Report>) {
         let step = |(dt_secs, presses): &(f32, Vec<Press>)| {
             for press in presses {
                 let cell = self.cell(press).map(|n| n as i64);
@@ -130,7 +130,7 @@ impl Case {
                 field.wake(patch);
                 field.press(cell, press.bend);
             }
-            field.step(scheme, *dt_secs, crew).unwrap()
+            field.step(scheme, *dt_secs, executor).unwrap()
         };
         let reports = self.steps.iter().map(step).collect();
         (field, reports)
@@ -176,7 +176,7 @@ proptest! {
             // Verlet becomes unstable where theory says so, and its values NaN: only the first steps are compared.
             let length = if scheme == Scheme::Verlet { 3 } else { case.steps.len() };
             let case = Case { steps: case.steps[..length.min(case.steps.len())].to_vec(), ..case.clone() };
-            let (slept, reports) = case.run(case.field(), scheme, &Alone);
+            let (slept, reports) = case.run(case.field(), scheme, &Serial);
             let grid = case.run_on_one_grid(damping, &reports);
             prop_assert_eq!(first_difference_from_grid(&slept, &grid), None);
 
@@ -192,7 +192,7 @@ proptest! {
     /// With a tolerance, resting is decided by tile, independently of patch borders.
     #[test]
     fn patches_of_any_size_let_the_same_grass_rest(case in a_case(), woken in 0..17usize) {
-        let (coarse, reports) = case.run(case.field(), Scheme::Substepped, &Alone);
+        let (coarse, reports) = case.run(case.field(), Scheme::Substepped, &Serial);
         let mut field = case.divided();
         case.shuffled(&field).into_iter().take(woken).for_each(|patch| { field.wake(patch); });
         let (fine, fine_reports) = case.run(field, Scheme::Substepped, &Threads(2));
@@ -204,11 +204,11 @@ proptest! {
     /// The implicit scheme solves along whole lines: where every patch is awake, patch borders do not matter.
     #[test]
     fn implicit_lines_run_through_patches_bit_for_bit(case in a_case()) {
-        let run = |mut field: Field, crew: &dyn Fn(&Case, Field) -> Field| {
+        let run = |mut field: Field, executor: &dyn Fn(&Case, Field) -> Field| {
             case.shuffled(&field).into_iter().for_each(|patch| { field.wake(patch); });
-            crew(&case, field)
+            executor(&case, field)
         };
-        let coarse = run(case.field(), &|case, field| case.run(field, Scheme::Implicit, &Alone).0);
+        let coarse = run(case.field(), &|case, field| case.run(field, Scheme::Implicit, &Serial).0);
         let fine = run(case.divided(), &|case, field| case.run(field, Scheme::Implicit, &Threads(2)).0);
         prop_assert_eq!(first_difference(&coarse, &fine), None);
     }
@@ -225,7 +225,7 @@ fn the_seam_tests_take_more_sub_steps_than_the_halo_is_wide() {
         steps: vec![(0.05, vec![Press { at: [0.45, 0.5], bend: Bend { theta: 1.0, omega: [50.0, 30.0] } }]); 2],
         order: vec![0],
     };
-    let (field, reports) = case.run(case.field(), Scheme::Substepped, &Alone);
+    let (field, reports) = case.run(case.field(), Scheme::Substepped, &Serial);
     assert!(reports.iter().all(|report| report.substeps > 2 * prairie_core::bend::HALO as u32), "{reports:?}");
     assert_eq!(field.awake_count(), 4, "the press woke one patch, the wave the others");
 }
@@ -251,7 +251,7 @@ fn crossing(waves: WaveParams, scheme: Scheme, seams: Seams, shift_m: [f32; 2]) 
     let start_m = [-8.0 + shift_m[0], 3.0 + shift_m[1]];
     let step = |striker: Striker| {
         striker.press(&mut field, DT_SECS);
-        field.step(scheme, DT_SECS, &Alone).unwrap();
+        field.step(scheme, DT_SECS, &Serial).unwrap();
         field.clone()
     };
     drive(start_m, [12.0, 3.0], 0..90, DT_SECS).map(step).collect()
@@ -299,7 +299,7 @@ fn implicit_lines_that_end_at_sleeping_patches_have_a_small_error() {
         drive([-6.0, 2.0], [12.0, 3.0], 0..90, DT_SECS)
             .map(|striker| {
                 striker.press(&mut field, DT_SECS);
-                field.step(Scheme::Implicit, DT_SECS, &Alone).unwrap();
+                field.step(Scheme::Implicit, DT_SECS, &Serial).unwrap();
                 field.clone()
             })
             .collect::<Vec<_>>()
@@ -312,8 +312,8 @@ fn implicit_lines_that_end_at_sleeping_patches_have_a_small_error() {
 /// A random drive of 1.5 s over grass, with and without a tolerance, compared for six seconds. Returns the largest error of θ in units of the tolerance,
 /// and the fraction of stepped cells.
 fn tolerance_error(seed: u64, rest: Rest, damping_per_s: Range<f64>) -> [f64; 2] {
-    let mut dice = Dice::new(seed);
-    let mut between = |low: f64, high: f64| dice.between(low, high) as f32;
+    let mut random = Random::new(seed);
+    let mut between = |low: f64, high: f64| random.between(low, high) as f32;
     let grass = WaveParams {
         c0_m_per_s: between(0.5, 6.0),
         mu_m_per_rad: between(0.0, 0.2),
@@ -332,7 +332,7 @@ fn tolerance_error(seed: u64, rest: Rest, damping_per_s: Range<f64>) -> [f64; 2]
         let car = car.next();
         let reports = fields.each_mut().map(|field| {
             car.iter().for_each(|car| car.press(field, DT_SECS));
-            field.step(Scheme::Substepped, DT_SECS, &Alone).unwrap()
+            field.step(Scheme::Substepped, DT_SECS, &Serial).unwrap()
         });
         stepped += reports[1].cell_steps;
         all += u64::from(reports[1].substeps) * (6 * 32 * 6 * 32);

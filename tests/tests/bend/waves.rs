@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-use prairie_core::bend::{Alone, CHANNELS, Edges, Field, Kinds, Scheme};
+use prairie_core::bend::{CHANNELS, Edges, Field, Kinds, Scheme, Serial};
 use prairie_core::grid::PatchLayout;
 use tests::norms::{Norms, fitted_order};
 use tests::problems::bend::{
@@ -54,7 +54,7 @@ fn mode_error(scheme: Scheme, mode: Mode, count: usize, constants: [f32; 2], exa
     let dt_secs = end_secs / steps;
     start(&mut field, dt_secs, |cell| [0.0, -dt_secs].map(|secs| mode.shape(size, cell) * wave.at(secs)));
     for _ in 0..steps as u32 {
-        let report = field.step(scheme, dt_secs as f32, &Alone).unwrap();
+        let report = field.step(scheme, dt_secs as f32, &Serial).unwrap();
         assert_eq!(report.substeps, 1, "the step itself is refined");
     }
     let left = (-0.5 * wave.damping_per_s * end_secs).exp();
@@ -145,7 +145,7 @@ fn pulse_error(scheme: Scheme, pulse: &Pulse, count: usize, [end_secs, dt_secs]:
     let states = [0.0, -dt_secs].map(|secs| pulse.on_grid(count, cell_m, secs));
     start(&mut field, dt_secs, |[i, j]| states.each_ref().map(|state| state[j * count + i]));
     for _ in 0..steps as u32 {
-        assert_eq!(field.step(scheme, dt_secs as f32, &Alone).unwrap().substeps, 1);
+        assert_eq!(field.step(scheme, dt_secs as f32, &Serial).unwrap().substeps, 1);
     }
     Norms::of(cells(&field).flat_map(|([i, j], [now, _])| {
         let exact = exact[j * count + i];
@@ -181,7 +181,7 @@ fn a_pulse_converges_in_time_to_the_exact_modes_of_its_grid() {
         let dt_secs = END_SECS / f64::from(steps);
         let far_m = |[i, j]: [usize; 2]| (0.4 * i as f64 - 5.0).hypot(0.4 * j as f64 - 7.0);
         start(&mut field, dt_secs, |cell| [(-0.5 * far_m(cell).powi(2)).exp(); 2]);
-        (0..steps).for_each(|_| assert_eq!(field.step(scheme, dt_secs as f32, &Alone).unwrap().substeps, 1));
+        (0..steps).for_each(|_| assert_eq!(field.step(scheme, dt_secs as f32, &Serial).unwrap().substeps, 1));
         field
     };
     for scheme in SCHEMES {
@@ -215,7 +215,7 @@ fn measured(scheme: Scheme, mode: Mode, count: usize, constants: [f32; 2], dt_se
             let project = |(cell, [now, _]): (_, [_; 2])| f64::from(channels(now)[channel]) * mode.shape(size, cell);
             series.push(cells(&field).map(project).sum::<f64>() / norm);
         }
-        assert_eq!(field.step(scheme, dt_secs as f32, &Alone).unwrap().substeps, 1);
+        assert_eq!(field.step(scheme, dt_secs as f32, &Serial).unwrap().substeps, 1);
     }
     let [theta, x, z] = series.map(|series| Recurrence::fitted(&series));
     [exact, theta, x, z]
@@ -276,7 +276,7 @@ fn undamped_energy_is_constant_over_ten_thousand_steps() {
             let first = energy.of(&field, scheme);
             let mut farthest = [0.0f64; CHANNELS];
             for step in 1..=10_000 {
-                assert_eq!(field.step(scheme, courant_dt_secs, &Alone).unwrap().substeps, 1);
+                assert_eq!(field.step(scheme, courant_dt_secs, &Serial).unwrap().substeps, 1);
                 if step % 100 == 0 {
                     let now = energy.of(&field, scheme);
                     (0..CHANNELS).for_each(|n| farthest[n] = farthest[n].max((now[n] / first[n] - 1.0).abs()));

@@ -4,7 +4,7 @@ use anyhow::{Result, ensure};
 use glam::Vec3;
 use prairie_client::camera::Camera;
 use prairie_client::render::{Gpu, Quality, RenderOptions};
-use tests::random_winds::Dice;
+use tests::random_winds::Random;
 use tests::still::Still;
 use tests::views::View;
 
@@ -15,14 +15,14 @@ const VIEWS: [(&str, u32); 2] = [("driving-calm", 140), ("ant-calm", 60)];
 const SIZE_PX: [u32; 2] = [96, 54];
 
 /// A random camera over a scene's hills: from among the blades to 40 m above, in any direction except straight up or down.
-fn camera(dice: &mut Dice, still: &Still) -> Camera {
+fn camera(random: &mut Random, still: &Still) -> Camera {
     let [width, depth] = still.stage.scene().extent_m().map(f64::from);
-    let [x, z] = [dice.between(4.0, width - 4.0), dice.between(4.0, depth - 4.0)].map(|m| m as f32);
-    let above_m = dice.scale(0.05, 40.0) as f32;
+    let [x, z] = [random.between(4.0, width - 4.0), random.between(4.0, depth - 4.0)].map(|m| m as f32);
+    let above_m = random.scale(0.05, 40.0) as f32;
     Camera {
         eye_m: Vec3::new(x, still.stage.ground_m(x, z) + above_m, z),
-        heading_rad: dice.between(0.0, std::f64::consts::TAU) as f32,
-        pitch_rad: dice.between(-1.3, 0.5) as f32,
+        heading_rad: random.between(0.0, std::f64::consts::TAU) as f32,
+        pitch_rad: random.between(-1.3, 0.5) as f32,
         ..Camera::default()
     }
 }
@@ -30,14 +30,14 @@ fn camera(dice: &mut Dice, still: &Still) -> Camera {
 #[test]
 fn culling_changes_no_pixel() -> Result<()> {
     let gpu = gpu()?;
-    let mut dice = Dice::new(6);
+    let mut random = Random::new(6);
     for (name, cameras) in VIEWS {
-        compare(&gpu, name, cameras, &mut dice)?;
+        compare(&gpu, name, cameras, &mut random)?;
     }
     Ok(())
 }
 
-fn compare(gpu: &Gpu, name: &str, cameras: u32, dice: &mut Dice) -> Result<()> {
+fn compare(gpu: &Gpu, name: &str, cameras: u32, random: &mut Random) -> Result<()> {
     let mut still = Still::of(View::find(name)?, SIZE_PX)?;
     let [mut culled, mut whole] = [true, false].map(|culls| {
         let mut canvas = still.canvas(gpu, Quality::Low);
@@ -47,7 +47,7 @@ fn compare(gpu: &Gpu, name: &str, cameras: u32, dice: &mut Dice) -> Result<()> {
     let mut bent = [0_u64; 2];
     let mut failures = Vec::new();
     for number in 0..cameras {
-        still.camera = camera(dice, &still);
+        still.camera = camera(random, &still);
         let [with, without] = [&mut culled, &mut whole].map(|canvas| still.draw(canvas).0);
         for (sum, canvas) in bent.iter_mut().zip([&culled, &whole]) {
             *sum += u64::from(canvas.bent_plants());

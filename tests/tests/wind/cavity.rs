@@ -9,7 +9,7 @@ use tests::problems::{Cavity, GHIA_RE_100, GHIA_RE_1000};
 /// Side of the box (m), and the speed of its lid (m/s): the unit of time is a second.
 const SIDE_M: f64 = 16.0;
 /// Change per second, relative to the lid's speed, below which the flow counts as steady.
-const STEADY_PER_SEC: f64 = 1e-4;
+const STEADY_PER_S: f64 = 1e-4;
 
 /// The steady flow on `cells` × `cells`, started from `guess`.
 fn steady(reynolds: f64, cells: usize, guess: Option<&Solver<f32>>) -> Solver<f32> {
@@ -35,7 +35,7 @@ fn steady(reynolds: f64, cells: usize, guess: Option<&Solver<f32>>) -> Solver<f3
         for _ in 0..steps_per_s {
             air.step((steps_per_s as f64).recip(), &[]).expect("within the limits");
         }
-        if velocity_difference(&air, &before).linf < STEADY_PER_SEC * SIDE_M {
+        if velocity_difference(&air, &before).linf < STEADY_PER_S * SIDE_M {
             println!("Re {reynolds}, {cells}²: steady after {second} s of {steps_per_s} steps");
             return air;
         }

@@ -6,7 +6,7 @@ use prairie_wind::{
     Advection, Boundary, Config, Diffusion, Dust, Field, Grid, Gusts, Location, Pressure, Profile, Solver, StepError, TimeScheme,
 };
 use tests::limits::{Limit, Transport, dust_bounds, explicit_diffusion};
-use tests::random_winds::Dice;
+use tests::random_winds::Random;
 
 fn report(limit: &Limit) {
     println!(
@@ -76,14 +76,14 @@ fn transport_becomes_unstable_where_its_amplification_exceeds_1() {
 #[test]
 fn the_stable_step_of_transport_never_exceeds_the_limit() {
     let mut left = [f64::INFINITY, 0.0];
-    let mut dice = Dice::new(5);
+    let mut random = Random::new(5);
     for _ in 0..300 {
         let transport = Transport {
             cells: [16, 16, 1],
-            spacing_m: [0; 3].map(|_| dice.scale(0.1, 10.0)),
-            air_m_per_s: [0; 3].map(|_| dice.of(&[0.0, 1.0, -1.0]) * dice.scale(0.01, 10.0)),
-            diffusivity_m2_per_s: dice.of(&[0.0, 1.0]) * dice.scale(1e-3, 1e2),
-            damping: dice.of(&[0.0, 0.5, 1.0]),
+            spacing_m: [0; 3].map(|_| random.scale(0.1, 10.0)),
+            air_m_per_s: [0; 3].map(|_| random.of(&[0.0, 1.0, -1.0]) * random.scale(0.01, 10.0)),
+            diffusivity_m2_per_s: random.of(&[0.0, 1.0]) * random.scale(1e-3, 1e2),
+            damping: random.of(&[0.0, 0.5, 1.0]),
         };
         let air = [transport.air_m_per_s[0], transport.air_m_per_s[1], 0.0];
         let transport = Transport { air_m_per_s: air, ..transport };
@@ -126,8 +126,8 @@ fn growth(scheme: Diffusion, portion: Portion, number: f64) -> f64 {
     let grid = Grid { cells: [8; 3], spacing_m: [1.0; 3], boundary: [[Boundary::NoSlip; 2]; 3] };
     let walls = prairie_wind::boundary::BoundaryConditions::new(&grid, Box::new(|_, _| [0.0; 3]));
     let mut field = Field::<f64>::zeros(&grid, Location::Face(0));
-    let mut dice = Dice::new(3);
-    field.data.iter_mut().for_each(|value| *value = dice.between(-1.0, 1.0));
+    let mut random = Random::new(3);
+    field.data.iter_mut().for_each(|value| *value = random.between(-1.0, 1.0));
     walls.apply_to_component(&mut field);
     let (mut even, mut odd, mut implicit) = (field.clone(), field.clone(), Implicit::new(&grid));
     let norm = |field: &Field<f64>| field.values(&grid).map(|value| value * value).sum::<f64>();
@@ -176,8 +176,8 @@ fn turbulent(config: Config) -> Solver<f32> {
     };
     let mut solver = Solver::new(&config).expect("a legal box");
     solver.set_velocity(|position: [f32; 3]| {
-        let mut dice = Dice::new(position.iter().fold(9, |seed, x| Dice::new(seed ^ u64::from(x.to_bits())).bits()));
-        [1.0 + dice.between(-1.0, 1.0) as f32, dice.between(-1.0, 1.0) as f32, 1.0 + dice.between(-1.0, 1.0) as f32]
+        let mut random = Random::new(position.iter().fold(9, |seed, x| Random::new(seed ^ u64::from(x.to_bits())).bits()));
+        [1.0 + random.between(-1.0, 1.0) as f32, random.between(-1.0, 1.0) as f32, 1.0 + random.between(-1.0, 1.0) as f32]
     });
     solver
 }

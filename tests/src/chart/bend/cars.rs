@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::time::Instant;
 
 use anyhow::Result;
-use prairie_core::bend::{Alone, Field, Kinds, Rest, Scheme};
+use prairie_core::bend::{Field, Kinds, Rest, Scheme, Serial};
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::Grass;
 
@@ -41,7 +41,7 @@ fn cost(cars: u32, [before, timed]: [u32; 2]) -> Result<[f64; 2]> {
             striker.press(&mut field, DT_SECS);
         }
         let begun = Instant::now();
-        let report = field.step(Scheme::Substepped, DT_SECS, &Alone)?;
+        let report = field.step(Scheme::Substepped, DT_SECS, &Serial)?;
         if step >= before {
             secs = secs.min(begun.elapsed().as_secs_f64());
             cells += report.cell_steps;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use anyhow::Result;
 use plotters::style::RGBColor;
-use prairie_core::bend::{Alone, Field, Kinds, Rest, Scheme, WaveParams};
+use prairie_core::bend::{Field, Kinds, Rest, Scheme, Serial, WaveParams};
 use prairie_core::grid::PatchLayout;
 
 use super::super::figure::{Axis, Drawn, Panel, Words, panels_svg};
@@ -48,7 +48,7 @@ fn cross(scheme: Scheme, speed_m_per_s: f32, rate_per_s: f32, steps: u32) -> Opt
             Striker { at_m, velocity_m_per_s: [speed_m_per_s, 0.0], radius_m: 1.0, strike_height_m: 0.3 }.press(&mut field, dt_secs);
         }
         for _ in 0..steps {
-            let report = field.step(scheme, dt_secs / steps as f32, &Alone).ok()?;
+            let report = field.step(scheme, dt_secs / steps as f32, &Serial).ok()?;
             let theta = field.awake().map(|patch| patch.theta_max_rad()).fold(0.0, f32::max);
             // The report counts patches with NaN only one step later.
             if report.reset_patches > 0 || theta.is_nan() || theta > BLOWN_UP_RAD {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use anyhow::Result;
-use prairie_core::bend::{Alone, Field, Kinds, Scheme, Seams, WaveParams};
+use prairie_core::bend::{Field, Kinds, Scheme, Seams, Serial, WaveParams};
 use prairie_core::grid::PatchLayout;
 
 use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
@@ -34,7 +34,7 @@ fn error_rad(c0_m_per_s: f32, damping_per_s: f32) -> Result<f32> {
             if step < 90 {
                 car.press(field, DT_SECS);
             }
-            field.step(Scheme::Substepped, DT_SECS, &Alone)?;
+            field.step(Scheme::Substepped, DT_SECS, &Serial)?;
         }
         largest = largest.max(largest_difference(&fields[0], &fields[1])[1]);
     }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result};
 use prairie_core::bend::limits::substeps;
-use prairie_core::bend::{Alone, Damping, Edges, Field, Kinds, Rest, Scheme, WaveParams};
+use prairie_core::bend::{Damping, Edges, Field, Kinds, Rest, Scheme, Serial, WaveParams};
 use prairie_core::grid::PatchLayout;
 
 use super::super::{Outcome, Problem, Run};
@@ -45,7 +45,7 @@ fn outcome(mut field: Field, scheme: Scheme, [end_secs, dt_secs]: [f64; 2], exac
     let steps = (end_secs / dt_secs).round() as u32;
     let begun = Instant::now();
     for _ in 0..steps {
-        field.step(scheme, dt_secs as f32, &Alone)?;
+        field.step(scheme, dt_secs as f32, &Serial)?;
     }
     let wall = begun.elapsed();
     let error = Norms::of(cells(&field).map(|(cell, [now, _])| (f64::from(now.theta), exact(cell))));
@@ -142,7 +142,7 @@ pub(super) fn car(quick: bool) -> Problem {
                 car_at(tick).press(&mut field, TICK_SECS as f32);
                 let begun = Instant::now();
                 for _ in 0..steps {
-                    field.step(scheme, TICK_SECS as f32 / steps as f32, &Alone)?;
+                    field.step(scheme, TICK_SECS as f32 / steps as f32, &Serial)?;
                 }
                 wall += begun.elapsed();
             }

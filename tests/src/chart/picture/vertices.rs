@@ -208,7 +208,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     let shares = shares_table(&shots, wanted.qualities)?;
     let tables = format!(
         "# {TITLE}\n\n{subtitle}; {caption}\n\n```sh\ncargo run --release -p tests --bin chart -- picture --only vertices --out tests/results\n```\n\n\
-         [The tests' README](../README.md#the-picture) says how to read this page.\n\n## What a million takes (ms)\n\n\
+         [The tests' README](../README.md#the-picture) says how to read this page.\n\n## Cost per million (ms)\n\n\
          Least squares over all views and sizes, or all qualities and sizes, with standard errors; the residual is the root of the mean square of the difference, as a share of the time. First of\n\
          vertices and fragments; then of vertices and the pixels of the picture.\n\n{shares}\n\
          ## Whole passes\n\nAt {} px, as the device counts and times them: all of a pass's time over its vertices, and all of it over its fragments.\n\n{}",

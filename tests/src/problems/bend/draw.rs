@@ -2,11 +2,11 @@
 
 use std::f32::consts::TAU;
 
-use prairie_core::bend::{Alone, Field, Kinds, Rest, Scheme, WaveParams};
+use prairie_core::bend::{Field, Kinds, Rest, Scheme, Serial, WaveParams};
 use prairie_core::grid::PatchLayout;
 
 use super::Striker;
-use crate::random_winds::Dice;
+use crate::random_winds::Random;
 
 /// Number of steps with objects; afterwards they are gone.
 pub(super) const STRIKING_STEPS: u32 = 150;
@@ -42,8 +42,8 @@ pub struct Course {
 impl Draw {
     /// The draw with this number.
     pub fn new(number: u64) -> Self {
-        let mut dice = Dice::new(number);
-        let mut between = |low: f64, high: f64| dice.between(low, high) as f32;
+        let mut random = Random::new(number);
+        let mut between = |low: f64, high: f64| random.between(low, high) as f32;
         let rate = |share: f32| -60.0 * (1.0 - share).ln();
         let waves = WaveParams {
             c0_m_per_s: between(1.0, 10.0),
@@ -87,7 +87,7 @@ impl Draw {
                     object.press(&mut field, self.dt_secs);
                 });
             }
-            let report = field.step(scheme, self.dt_secs, &Alone).expect("the step is of some length and can be divided");
+            let report = field.step(scheme, self.dt_secs, &Serial).expect("the step is of some length and can be divided");
             course.reset_patches += report.reset_patches;
             course.substeps += report.substeps;
             course.theta_max_rad = field.awake().map(|patch| patch.theta_max_rad()).fold(course.theta_max_rad, f32::max);

@@ -7,7 +7,7 @@ use prairie_core::bend::Edges;
 /// A standing wave between the edges of the world: a product of sines or cosines along both axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
-    /// What lies beyond the world's edge.
+    /// Boundary condition at the edges of the world.
     pub edges: Edges,
     /// Number of half waves along each axis; of whole waves between periodic edges.
     pub waves: [u32; 2],

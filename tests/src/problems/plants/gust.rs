@@ -16,7 +16,7 @@ const FRAMES: usize = 60;
 const FRAMES_BEFORE: usize = 240;
 
 /// Step rate of the reference (1/s).
-const FINEST_PER_SEC: usize = 30_720;
+const FINEST_PER_S: usize = 30_720;
 
 /// A blade of the default scene.
 pub const BLADE: Blade = Blade { length_m: 0.8, frequency_rad_per_s: 9.74, damping_share: 0.1, lean_per_wind2: 0.005 };
@@ -67,9 +67,9 @@ impl Gust {
         TIPS.get_or_init(|| {
             let still = Leans::default();
             let tip = |place: usize| {
-                let dt_secs = 1.0 / FINEST_PER_SEC as f32;
-                let sway = (0..FINEST_PER_SEC).fold(Sway::default(), |sway, step| {
-                    advance(&sway, &BLADE, &still, &self.wind_m_per_s(place, step, FINEST_PER_SEC), Integrator::Exact, dt_secs)
+                let dt_secs = 1.0 / FINEST_PER_S as f32;
+                let sway = (0..FINEST_PER_S).fold(Sway::default(), |sway, step| {
+                    advance(&sway, &BLADE, &still, &self.wind_m_per_s(place, step, FINEST_PER_S), Integrator::Exact, dt_secs)
                 });
                 sway.points_m(BLADE.length_m)[LINKS - 1]
             };
