@@ -7,7 +7,7 @@ use prairie_core::scene::VehicleKind;
 /// Effect of a single press.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
-    /// Takes a vehicle, or gives up the current one.
+    /// Selects a vehicle, or leaves the current one.
     Take(Option<VehicleKind>),
     /// Moves the camera to a height (m) above the ground, or above the vehicle.
     SetHeight(f32),

@@ -10,11 +10,11 @@ use prairie_core::scene::VehicleKind;
 pub struct VehicleProfile {
     /// Label of the page's button.
     pub label: &'static str,
-    /// Letter key that takes such a vehicle, lower case. Must differ from the keys of other vehicles and of the page (`a d e f k p q s v w`).
+    /// Letter key that selects this kind, lower case. Must differ from the keys of other vehicles and of the page (`a d e f k p q s v w`).
     pub key: char,
-    /// Direction of the gamepad's cross that takes such a vehicle, if any. Down is taken: it gives the vehicle up.
+    /// Direction of the gamepad's cross that selects this kind; `None` for none. Down is reserved for leaving the vehicle.
     pub dpad: Option<Dpad>,
-    /// Position of the chase camera when the vehicle is taken.
+    /// Position of the chase camera when the user enters the vehicle.
     pub chase: ChaseOffset,
     /// Effect of the up and down controls.
     pub vertical: VerticalControl,
@@ -60,7 +60,7 @@ pub struct ChaseOffset {
 pub enum VerticalControl {
     /// Climb and sink.
     Lift,
-    /// Brake, whichever of the two is held.
+    /// Both act as a brake.
     Brake,
 }
 

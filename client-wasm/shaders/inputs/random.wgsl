@@ -21,7 +21,7 @@ fn random3(place: vec2<i32>, number: u32) -> vec3<f32> {
     return vec3<f32>(h >> vec3<u32>(8u)) / UNIT_STEPS;
 }
 
-// Interleaved gradient noise (Jimenez 2014, "Next generation post processing in Call of Duty: Advanced Warfare"): numbers in 0..1 that
+// Interleaved gradient noise (Jimenez 2014): numbers in 0..1 that
 // differ widely between neighbouring pixels.
 fn gradient_noise(pixel: vec2<f32>) -> f32 {
     return fract(52.9829189 * fract(dot(pixel, vec2<f32>(0.06711056, 0.00583715))));

@@ -12,19 +12,31 @@ import package::land_and_sky::haze::hazed;
 import package::land_and_sky::sky_light::ambient;
 import package::uniforms::Drift;
 
+// Place of a mote or a puff.
+struct DustPlace {
+    // X, height above the ground, Z (m).
+    at_m: vec3<f32>,
+    // Random number 0..1.
+    random: f32,
+}
+
 // A mote or a puff to be drawn.
 struct Sprite {
-    // Centre (m); opacity.
-    centre: vec4<f32>,
-    // Half-length (m, as a vector); half-width (m).
-    along: vec4<f32>,
-    // Lit colour; random number 0..1.
-    light: vec4<f32>,
+    // Centre (m).
+    centre_m: vec3<f32>,
+    opacity: f32,
+    // Half-length, as a vector (m).
+    half_length_m: vec3<f32>,
+    half_width_m: f32,
+    // Lit colour.
+    color: vec3<f32>,
+    // Random number 0..1.
+    random: f32,
 }
 
 @group(1) @binding(0) var<uniform> drift: Drift;
-// Puffs, then motes: X, height above the ground, Z (m); random number 0..1.
-@group(1) @binding(1) var<storage, read_write> places: array<vec4<f32>>;
+// Puffs, then motes.
+@group(1) @binding(1) var<storage, read_write> places: array<DustPlace>;
 @group(1) @binding(2) var<storage, read_write> drawn: array<Sprite>;
 @group(1) @binding(3) var<storage, read> sprites: array<Sprite>;
 
@@ -57,15 +69,15 @@ fn blow(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let is_puff = index < drift.puffs;
-    var place = places[index];
-    let own = place.w;
+    var place = places[index].at_m;
+    let own = places[index].random;
     let side_m = select(drift.mote_square_m, drift.puff_square_m, is_puff);
     let size_m = select(MOTE_M * (0.5 + own), PUFF_M * (0.7 + 0.6 * own), is_puff);
 
     // Advection by the wind, between ground and top and within the square.
-    let wind = wind_at(place.xyz, place.y);
+    let wind = wind_at(place, place.y);
     let velocity = wind + select(flutter(wind, own), vec3<f32>(0.0), is_puff);
-    place += vec4<f32>(velocity * drift.step_secs, 0.0);
+    place += velocity * drift.step_secs;
     let low = select(0.1, 0.25 * PUFF_M, is_puff);
     let top = max(drift.top_m, low + 1.0);
     place.y = clamp(top - abs(top - (low + abs(place.y - low))), low, top);
@@ -73,7 +85,7 @@ fn blow(@builtin(global_invocation_id) id: vec3<u32>) {
     let offset = from_eye - side_m * round(from_eye / side_m);
     place.x = frame.eye_m.x + offset.x;
     place.z = frame.eye_m.z + offset.y;
-    places[index] = place;
+    places[index].at_m = place;
 
     var sprite: Sprite;
     let air = air_at(place.xz, place.y);
@@ -98,13 +110,16 @@ fn blow(@builtin(global_invocation_id) id: vec3<u32>) {
         let streak_m = half_m + 0.5 * length(across) * MOTE_STREAK_SECS;
         let level = normalize(cross(view, vec3<f32>(0.0, 1.0, 0.0)) + vec3<f32>(1e-5, 0.0, 0.0));
         let streak = select(level, across / max(length(across), 1e-3), length(across) > 0.05);
-        sprite.along = select(vec4<f32>(streak * streak_m, half_m), vec4<f32>(level * size_m * 1.5, size_m * 0.7), is_puff);
+        sprite.half_length_m = select(streak * streak_m, level * size_m * 1.5, is_puff);
+        sprite.half_width_m = select(half_m, size_m * 0.7, is_puff);
         let albedo = select(vec3<f32>(1.0, 0.94, 0.80), vec3<f32>(0.95, 0.78, 0.52), is_puff);
         let sun_light = cloud_light(centre.xz) * sun_visible(centre);
         let toward_sun = dot(view, frame.toward_sun);
         let direct = frame.sun_rgb * (sun_light * scattered(toward_sun) * select(2.2, 1.0, is_puff));
-        sprite.light = vec4<f32>(hazed(albedo * (direct + ambient(vec3<f32>(0.0, 1.0, 0.0)) * 0.6 + lamps_on(centre, -view, 1.0)), centre), own);
-        sprite.centre = vec4<f32>(centre, opacity);
+        sprite.color = hazed(albedo * (direct + ambient(vec3<f32>(0.0, 1.0, 0.0)) * 0.6 + lamps_on(centre, -view, 1.0)), centre);
+        sprite.random = own;
+        sprite.centre_m = centre;
+        sprite.opacity = opacity;
     }
     drawn[index] = sprite;
 }
@@ -126,16 +141,16 @@ fn vs(@builtin(vertex_index) vertex: u32) -> Speck {
     let sprite = sprites[index];
     var out: Speck;
     out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
-    if sprite.centre.w <= 0.0 {
+    if sprite.opacity <= 0.0 {
         return out;
     }
     out.uv = vec2<f32>(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
-    let view = normalize(sprite.centre.xyz - frame.eye_m);
-    let across = normalize(cross(sprite.along.xyz, view)) * sprite.along.w;
-    let p = sprite.centre.xyz + sprite.along.xyz * out.uv.x + across * out.uv.y;
+    let view = normalize(sprite.centre_m - frame.eye_m);
+    let across = normalize(cross(sprite.half_length_m, view)) * sprite.half_width_m;
+    let p = sprite.centre_m + sprite.half_length_m * out.uv.x + across * out.uv.y;
     let is_puff = index < drift.puffs;
-    out.color = vec4<f32>(sprite.light.rgb, sprite.centre.w);
-    out.soft = vec3<f32>(p.y - ground_height(p.xz), sprite.light.w, f32(is_puff));
+    out.color = vec4<f32>(sprite.color, sprite.opacity);
+    out.soft = vec3<f32>(p.y - ground_height(p.xz), sprite.random, f32(is_puff));
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
     return out;
 }

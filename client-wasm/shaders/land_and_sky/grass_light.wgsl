@@ -20,15 +20,15 @@ fn sun_through_leaves(leaf_area_index: f32, depth_share: f32, sine_of_elevation:
     return exp(-LEAF_EXTINCTION * leaf_area_index * max(depth_share, 0.0) / max(sine_of_elevation, LEAST_SUN_SINE));
 }
 
-// Leaf area index of grass 0.6 m tall and more, reduced by clumping; and the fraction of light that leaves pass on among themselves.
+// Leaf area index of grass 0.6 m tall and more, reduced by clumping.
 const LEAF_AREA_INDEX: f32 = 1.25;
-
-const PASSED_ON: f32 = 0.10;
+// Fraction of light that leaves transmit to those below.
+const LEAF_TRANSMISSION: f32 = 0.10;
 
 // Fraction of sunlight at a relative height in grass of a given height, after its shadow on itself.
 fn sun_in_grass(height_share: f32, grass_m: f32) -> f32 {
     let index = LEAF_AREA_INDEX * smoothstep(0.0, 0.6, grass_m);
-    return mix(sun_through_leaves(index, 1.0 - height_share, frame.toward_sun.y), 1.0, PASSED_ON);
+    return mix(sun_through_leaves(index, 1.0 - height_share, frame.toward_sun.y), 1.0, LEAF_TRANSMISSION);
 }
 
 // Reflectance of a blade: diffuse reflection from a partly rounded strip (its own normal, and Kajiya & Kay), transmission mostly straight

@@ -26,9 +26,9 @@ fn blade_color(
 }
 
 // Extinction coefficient of visible leaves: less than `LEAF_EXTINCTION`, since blades in tufts hide each other.
-const SEEN: f32 = 0.3;
+const VISIBLE_LEAF_EXTINCTION: f32 = 0.3;
 // Depth below the tallest blades at which a level view ray ends on blades, relative to their height.
-const RAGGED: f32 = 0.1;
+const CANOPY_TOP_DEPTH: f32 = 0.1;
 
 // Density of plants at a distance, relative to the full density up to `full_m`; the number per pixel is constant beyond.
 fn density(distance_m: f32, full_m: f32) -> f32 {
@@ -75,14 +75,14 @@ fn leafiness(kind: Kind) -> f32 {
 // Colour of a sward seen from afar: two layers of leaves, each with half of the visible leaf area; deeper leaves show less.
 fn sward_color(p: vec3<f32>, up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: vec2<f32>, view: vec3<f32>, light: f32) -> vec3<f32> {
     let leaf_area = frame.leaf_area * leafiness(kind);
-    let free = clamp(-dot(view, up), 0.05, 1.0) / (SEEN * max(leaf_area, 0.05));
+    let free = clamp(-dot(view, up), 0.05, 1.0) / (VISIBLE_LEAF_EXTINCTION * max(leaf_area, 0.05));
     let tilt = length(lean);
     let tangent = normalize(up + vec3<f32>(lean.x, 0.0, lean.y) * 1.4);
     // Blades point in all directions, and those that face the eye are seen.
     let facing = normalize(up * 0.75 - (view - up * dot(view, up)) * 0.45 + vec3<f32>(lean.x, 0.0, lean.y) * 0.3);
     var color = vec3<f32>(0.0);
     for (var i = 0; i < 2; i++) {
-        let height = max(1.0 - RAGGED - free * select(1.39, 0.29, i == 0), 0.0);
+        let height = max(1.0 - CANOPY_TOP_DEPTH - free * select(1.39, 0.29, i == 0), 0.0);
         let t = mix(height, 1.0, 0.35);
         color += blade_color(kind, tint, t, height, select(0.65, 0.35, i == 0), tilt, facing, tangent, view, p, light);
     }

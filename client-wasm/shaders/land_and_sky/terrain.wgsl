@@ -12,17 +12,13 @@ import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
 import package::land_and_sky::grass_light::sun_in_grass;
 import package::land_and_sky::ground::{grass_share, ground_height, ground_normal, ragged_share, soft_share};
+import package::land_and_sky::ground_tile::GroundTile;
 import package::land_and_sky::haze::hazed;
 import package::land_and_sky::sky_light::ambient;
 import package::land_and_sky::sward::{bare_between, sward_color};
 import package::uniforms::Kind;
 
-struct Tile {
-    // North-west corner (m), side (m), distance at which the next coarser grid takes over (m).
-    place: vec4<f32>,
-}
-
-@group(1) @binding(0) var<storage, read> tiles: array<Tile>;
+@group(1) @binding(0) var<storage, read> tiles: array<GroundTile>;
 
 struct Ground {
     @builtin(position) position: vec4<f32>,
@@ -34,13 +30,13 @@ struct Ground {
 
 @vertex
 fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Ground {
-    let place = tiles[instance].place;
+    let tile = tiles[instance];
     let row = TILE_CELLS + 1u;
     let cell = vec2<f32>(f32(index % row), f32(index / row));
-    let spacing = place.z / f32(TILE_CELLS);
-    let flat_p = place.xy + cell * spacing;
+    let spacing = tile.side_m / f32(TILE_CELLS);
+    let flat_p = tile.corner_m + cell * spacing;
     let distance_m = length(vec3<f32>(flat_p.x, ground_height(flat_p), flat_p.y) - frame.eye_m);
-    let morph = smoothstep(0.70, 0.95, distance_m / place.w);
+    let morph = smoothstep(0.70, 0.95, distance_m / tile.coarser_from_m);
     let odd = cell - 2.0 * floor(cell * 0.5);
     let p = flat_p - odd * spacing * morph;
     var out: Ground;

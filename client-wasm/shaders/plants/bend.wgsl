@@ -21,7 +21,7 @@ import package::land_and_sky::ground::{fed, ground_height, ground_normal};
 import package::land_and_sky::haze::air_before;
 import package::land_and_sky::sward::{density, bare_between, contrast, sward_color};
 import package::plants::backbone::{drawn_out, WIDER};
-import package::plants::blade::{advance, BladeNature, points_of, settle, Sway};
+import package::plants::blade::{advance, BladeNature, Link, points_of, settle, Sway};
 import package::plants::drawn_blade::Blade;
 import package::plants::grid_plants::{plants, chunks, LISTED, plant_place, growth};
 import package::plants::sift::{find_ground, sift_far, sift_near};
@@ -88,7 +88,7 @@ fn flower_at(grid: vec2<i32>, index: u32, place: vec2<f32>) -> f32 {
 fn plant_at(grid: vec2<i32>, index: u32, place: vec2<f32>, is_flower: bool) -> Plant {
     let r = random3(grid, index + 7919u);
     let s = random3(grid, index + 15013u);
-    // Tufts: plants draw together and share height, colour and lean.
+    // Plants of a tuft are moved towards its centre and share height, colour and lean.
     let tuft = vec2<i32>(floor(place / 0.42));
     let shared_by = random3(tuft, 3u);
     let centre = (vec2<f32>(tuft) + 0.25 + 0.5 * random3(tuft, 5u).xy) * 0.42;
@@ -139,18 +139,21 @@ fn leans_of(plant: Plant, leans_in: array<vec2<f32>, 3>) -> array<vec2<f32>, 3> 
 // A plant at rest with given leans.
 fn still(plant: Plant, leans_in: array<vec2<f32>, 3>) -> Sway {
     var leans = leans_of(plant, leans_in);
-    return Sway(array<vec4<f32>, 3>(vec4<f32>(leans[0], 0.0, 0.0), vec4<f32>(leans[1], 0.0, 0.0), vec4<f32>(leans[2], 0.0, 0.0)));
+    let at_rest = vec2<f32>(0.0);
+    return Sway(array<Link, 3>(Link(leans[0], at_rest), Link(leans[1], at_rest), Link(leans[2], at_rest)));
 }
 
 // Wind and bend field at a plant.
 struct Bending {
     // Wind over the ground (m/s).
     wind: vec2<f32>,
-    // Gust factor shared with neighbours; three random numbers of the plant, 0..1.
+    // Gust factor shared with neighbours.
     gust: f32,
+    // Three random numbers of the plant, 0..1.
     own: vec3<f32>,
-    // State of the bend field, and its weight.
+    // State of the bend field: θ (rad) and ω (rad/s).
     field: vec3<f32>,
+    // Weight of the bend field.
     share: f32,
 }
 
@@ -223,23 +226,28 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
     let segments = select(select(1u, plants.coarse_segments, list == COARSE_LIST), plants.fine_segments, list == FINE_LIST);
     let along = drawn_out(points, length_m, segments);
     var blade: Blade;
-    blade.root = vec4<f32>(plant.root, width);
+    blade.root_m = plant.root;
+    blade.width = width;
     let p = plant.root + points[1];
     let light = cloud_light(p.xz) * sun_visible(p);
-    blade.points[0] = vec4<f32>(along[0], plant.side);
-    blade.points[1] = vec4<f32>(along[1], f32(plant.kind) + plant.hue);
-    blade.points[2] = vec4<f32>(along[2], light);
+    blade.low_m = along[0];
+    blade.side_rad = plant.side;
+    blade.middle_m = along[1];
+    blade.kind_and_hue = f32(plant.kind) + plant.hue;
+    blade.tip_m = along[2];
+    blade.sunlight = light;
     let drift = drift_at(plant.root.xz);
     blade.about = about(plant, tint_of(drift), points[2].xz / plant.height, distance_m, light);
-    blade.place = vec4<f32>(drift, plant.normal.xz);
+    blade.drift = drift;
+    blade.slope = plant.normal.xz;
     blade.air = air_before(p);
     if plant.is_flower {
         // Heads too small to be visible thin out, and the remaining ones are enlarged until they are visible.
         let small = max(max(pixel_m * plants.thinnest_px / HEAD_RADIUS_M, distance_m / plants.heads_thin_m), 1.0);
         if fract(kind * 37.7) * small * small <= 1.0 {
             var head = blade;
-            head.root.w = small;
-            head.points[1].w = kind;
+            head.width = small;
+            head.kind_and_hue = kind;
             let is_reference = plants.thinnest_px == 0.0;
             let is_far = HEAD_RADIUS_M * small < FAR_HEAD_PX * own * pixel_m;
             append(select(HEAD_LIST, FAR_HEAD_LIST, is_far & !is_reference), head);
@@ -292,7 +300,8 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     let beyond = standing_far(plant, bending);
     let share = smoothstep(0.6, 1.0, max(away.x, away.y));
     for (var i = 0; i < LINKS; i++) {
-        sway.links[i] = mix(sway.links[i], beyond.links[i], share);
+        sway.links[i].lean_rad = mix(sway.links[i].lean_rad, beyond.links[i].lean_rad, share);
+        sway.links[i].rate_rad_per_s = mix(sway.links[i].rate_rad_per_s, beyond.links[i].rate_rad_per_s, share);
     }
     if grown > 0.01 {
         show(plant, points_of(sway, plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));

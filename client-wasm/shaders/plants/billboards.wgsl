@@ -20,27 +20,37 @@ import package::plants::weighted::{Weighted, weighted};
 import package::uniforms::{ClumpList, Kind};
 
 struct Clump {
-    // X and Z of the axis (m), length of a rectangle (m), random number 0..1.
-    place: vec4<f32>,
+    // Axis, X and Z (m).
+    axis_m: vec2<f32>,
+    // Length of a rectangle (m).
+    length_m: f32,
+    // Random number 0..1.
+    random: f32,
 }
 
 // Pose of a clump, the same for all its vertices.
-struct Stand {
-    // Height of its pattern (m), segments, fraction of the clump that is shown, unused.
-    pose: vec4<f32>,
+struct ClumpPose {
+    // Mean height of its blades (m).
+    height_m: f32,
+    // Number of segments.
+    segments: f32,
+    // Opacity of the clump, 0..1.
+    shown: f32,
     // Tops of the segments, from the foot (m).
-    joints: array<vec4<f32>, CLUMP_SEGMENT_LIMIT>,
-    // Lit colours of the plants' roots and tips; petals' light.
-    root_color: vec4<f32>,
-    tip_color: vec4<f32>,
-    petal_light: vec4<f32>,
+    joints_m: array<vec3<f32>, CLUMP_SEGMENT_LIMIT>,
+    // Lit colour of the plants' roots.
+    root_color: vec3<f32>,
+    // Lit colour of their tips.
+    tip_color: vec3<f32>,
+    // Light on petals.
+    petal_light: vec3<f32>,
 }
 
 @group(1) @binding(0) var<storage, read> clumps: array<Clump>;
 @group(1) @binding(1) var<uniform> list: ClumpList;
 @group(1) @binding(2) var tufts: texture_2d<f32>;
-@group(1) @binding(3) var<storage, read> stands: array<Stand>;
-@group(1) @binding(4) var<storage, read_write> placed: array<Stand>;
+@group(1) @binding(3) var<storage, read> poses: array<ClumpPose>;
+@group(1) @binding(4) var<storage, read_write> poses_out: array<ClumpPose>;
 // Keys and numbers of clumps far to near, those of one segment first: input and output of the sort.
 @group(1) @binding(5) var<storage, read_write> keyed: array<vec2<u32>>;
 @group(1) @binding(6) var<storage, read> in_order: array<vec2<u32>>;
@@ -49,15 +59,15 @@ struct Stand {
 const PATTERN_WIDTH: f32 = 4.0;
 const PATTERN_HEIGHT: f32 = 1.25;
 
-// Tops of the segments of a clump, relative to `ground` (m). Wind and bend field tilt the lowest, and those above follow its past (Chen &
-// Johan, section 4.5); with distance they straighten into one line. None is below the ground.
-fn joints_of(ground: vec3<f32>, kind: Kind, segments: u32, height: f32, level: f32, wind_lean: vec2<f32>, straight: f32) -> array<vec4<f32>, CLUMP_SEGMENT_LIMIT> {
+// Tops of the segments of a clump, relative to `ground` (m). Wind and bend field tilt the lowest segment; the upper ones follow its earlier
+// leans (Chen & Johan, section 4.5). With distance all straighten into one line. Tops stay above the ground.
+fn joints_of(ground: vec3<f32>, kind: Kind, segments: u32, height: f32, level: f32, wind_lean: vec2<f32>, straight: f32) -> array<vec3<f32>, CLUMP_SEGMENT_LIMIT> {
     let p = ground.xz;
     let share = field_share(p);
     let now = bend_at(p, level, 0);
     let lowest = wind_lean + lean_of_bend(now) * share;
     let curl = (1.0 - straight) * (1.0 - smoothstep(0.5, 1.3, length(lowest)));
-    var joints: array<vec4<f32>, CLUMP_SEGMENT_LIMIT>;
+    var joints: array<vec3<f32>, CLUMP_SEGMENT_LIMIT>;
     var at = vec3<f32>(0.0);
     for (var i = 0u; i < segments; i++) {
         var lean = lowest;
@@ -72,7 +82,7 @@ fn joints_of(ground: vec3<f32>, kind: Kind, segments: u32, height: f32, level: f
         let aside = lean / max(length(lean), 1e-4) * sin(tilt);
         at += vec3<f32>(aside.x, cos(tilt), aside.y) * (height / f32(segments));
         at.y = max(at.y, ground_height(p + at.xz) - ground.y);
-        joints[i] = vec4<f32>(at, 0.0);
+        joints[i] = at;
     }
     return joints;
 }
@@ -82,11 +92,11 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= list.count {
         return;
     }
-    let clump = clumps[id.x].place;
-    let root = clump.xy;
+    let clump = clumps[id.x];
+    let root = clump.axis_m;
     let share = grass_share(root);
     // Kinds mix where they meet.
-    let kind = kinds.list[kind_at(root + (vec2<f32>(clump.w, fract(clump.w * 7.3)) - 0.5) * 0.9)];
+    let kind = kinds.list[kind_at(root + (vec2<f32>(clump.random, fract(clump.random * 7.3)) - 0.5) * 0.9)];
     let height = kind.height_m * PATTERN_HEIGHT * fed(root) * sqrt(share);
     let ground = vec3<f32>(root.x, ground_height(root), root.y);
     let distance_m = distance(ground, frame.eye_m);
@@ -94,9 +104,9 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let wind_lean = lean_of_wind(wind_at(ground, 0.0).xz * gust_at(root), kind.wind_bend_rad);
     let lean = lean_of_field(root, level) + wind_lean;
     // Clumps fade in as single plants fade out (Zhang, section 6.1).
-    let fade_in = smoothstep(frame.blades_fade_from_m, frame.blades_end_m, distance_m + (clump.w - 0.5) * (2.0 * CLUMP_FADE_SPREAD_M));
+    let fade_in = smoothstep(frame.blades_fade_from_m, frame.blades_end_m, distance_m + (clump.random - 0.5) * (2.0 * CLUMP_FADE_SPREAD_M));
     let fade_out = 1.0 - smoothstep(frame.far_fade_from_m, frame.far_end_m, distance_m);
-    var stand: Stand;
+    var pose: ClumpPose;
     let light = cloud_light(root) * sun_visible(ground + vec3<f32>(0.0, height * 0.6, 0.0));
     // Seen from above, sparse clumps would look like stars: the colour of the ground replaces them.
     let down = smoothstep(0.09, 0.22, dot(frame.eye_m - ground, ground_normal(root)) / max(distance_m, 1e-3));
@@ -104,9 +114,11 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let risen = mix(0.35, 1.0, fade_out) * (1.0 - flat_share);
     let segments = select(1u, u32(kind.segments), id.x / CLUMPS < list.several_instances);
     let straight = smoothstep(list.straightens_m, list.straight_m, distance_m);
-    stand.pose = vec4<f32>(kind.height_m, f32(segments), fade_in * min(fade_out * 4.0, 1.0) * step(0.1, share) * step(0.05, risen), 0.0);
-    if stand.pose.z > 0.0 {
-        stand.joints = joints_of(ground, kind, segments, height * risen, level, wind_lean, straight);
+    pose.height_m = kind.height_m;
+    pose.segments = f32(segments);
+    pose.shown = fade_in * min(fade_out * 4.0, 1.0) * step(0.1, share) * step(0.05, risen);
+    if pose.shown > 0.0 {
+        pose.joints_m = joints_of(ground, kind, segments, height * risen, level, wind_lean, straight);
     }
     let p = ground + vec3<f32>(0.0, height * risen * 0.5, 0.0);
     let view = normalize(p - frame.eye_m);
@@ -116,17 +128,17 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let tint = grass_tint(root);
     // Near its root a clump has the colour of the grass around it.
     let afar = sward_color(ground, ground_normal(root), kind, tint, lean, view, light);
-    stand.root_color = vec4<f32>(hazed(afar, p), 0.0);
+    pose.root_color = hazed(afar, p);
     let top = blade_color(kind, tint, 0.95, 0.9, 0.5, tilt, normal, tangent, view, p, light);
-    stand.tip_color = vec4<f32>(hazed(mix(afar, top, 0.35 + 0.65 * contrast(distance_m)), p), 0.0);
-    stand.petal_light = vec4<f32>(frame.sun_rgb * light * 0.6 + ambient(normal) + lamps_on(p, normal, 0.3), 0.0);
-    placed[id.x] = stand;
+    pose.tip_color = hazed(mix(afar, top, 0.35 + 0.65 * contrast(distance_m)), p);
+    pose.petal_light = frame.sun_rgb * light * 0.6 + ambient(normal) + lamps_on(p, normal, 0.3);
+    poses_out[id.x] = pose;
 }
 
 @compute @workgroup_size(64)
 fn key_clumps(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x < list.count {
-        let root = clumps[id.x].place.xy;
+        let root = clumps[id.x].axis_m;
         let near = nearness(distance(vec3<f32>(root.x, ground_height(root), root.y), frame.eye_m));
         keyed[id.x] = vec2<u32>((u32(id.x < list.several) << 15u) | near, id.x);
     }
@@ -135,7 +147,7 @@ fn key_clumps(@builtin(global_invocation_id) id: vec3<u32>) {
 struct Rectangle {
     @builtin(position) position: vec4<f32>,
     @location(0) uv: vec2<f32>,
-    // As in `Stand`; fraction that is shown.
+    // As in `ClumpPose`.
     @location(1) root_color: vec3<f32>,
     @location(2) tip_color: vec3<f32>,
     @location(3) petal_light: vec3<f32>,
@@ -148,28 +160,28 @@ struct Rectangle {
 fn corner_of(number: u32, side: u32, corner: u32) -> Rectangle {
     var out: Rectangle;
     out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
-    if stands[number].pose.z <= 0.0 {
+    if poses[number].shown <= 0.0 {
         return out;
     }
-    let place = clumps[number].place;
-    let pose = stands[number].pose;
+    let clump = clumps[number];
+    let segments = poses[number].segments;
     let outward = f32(corner & 1u);
     // Rows above the topmost segment collapse onto its top.
-    let row = min(corner >> 1u, u32(pose.y));
-    let angle = (f32(side) / 6.0 + place.w) * TAU;
+    let row = min(corner >> 1u, u32(segments));
+    let angle = (f32(side) / 6.0 + clump.random) * TAU;
     let direction = vec2<f32>(cos(angle), sin(angle));
-    let root = place.xy + direction * place.z * outward;
+    let root = clump.axis_m + direction * clump.length_m * outward;
     var p = vec3<f32>(root.x, ground_height(root) - 0.03, root.y);
     if row > 0u {
-        p += stands[number].joints[row - 1u].xyz;
+        p += poses[number].joints_m[row - 1u];
     }
-    let upward = f32(row) / pose.y;
-    out.root_color = stands[number].root_color.rgb;
-    out.tip_color = stands[number].tip_color.rgb;
-    out.petal_light = stands[number].petal_light.rgb;
-    out.shown = pose.z;
+    let upward = f32(row) / segments;
+    out.root_color = poses[number].root_color;
+    out.tip_color = poses[number].tip_color;
+    out.petal_light = poses[number].petal_light;
+    out.shown = poses[number].shown;
     out.uv = vec2<f32>(
-        place.w * 7.0 + f32(side) * 0.37 + outward * place.z / (PATTERN_WIDTH * pose.x),
+        clump.random * 7.0 + f32(side) * 0.37 + outward * clump.length_m / (PATTERN_WIDTH * poses[number].height_m),
         1.0 - upward,
     );
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
@@ -209,9 +221,9 @@ fn vs_in_order(@builtin(vertex_index) index: u32, @builtin(instance_index) insta
     }
     let number = in_order[at].y;
     // First the rectangle that points away from the eye, then those on both sides of it, and so on.
-    let place = clumps[number].place;
-    let away = place.xy - frame.eye_m.xz;
-    let farthest = round((atan2(away.y, away.x) / TAU - place.w) * 6.0);
+    let clump = clumps[number];
+    let away = clump.axis_m - frame.eye_m.xz;
+    let farthest = round((atan2(away.y, away.x) / TAU - clump.random) * 6.0);
     let aside = array<f32, 6>(0.0, 1.0, -1.0, 2.0, -2.0, 3.0)[index / corners % 6u];
     return corner_of(number, u32(farthest + aside + 18.0) % 6u, index % corners);
 }

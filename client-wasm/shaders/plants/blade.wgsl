@@ -6,16 +6,28 @@ import package::constants::{
 };
 import package::inputs::frame::{frame, runtime_zero};
 
-// Lean of a link (rad) in xy, its rate (rad/s) in zw.
-struct Sway {
-    links: array<vec4<f32>, 3>,
+// State of a link, as vectors on the ground.
+struct Link {
+    // Lean from upright (rad).
+    lean_rad: vec2<f32>,
+    // Its rate of change (rad/s).
+    rate_rad_per_s: vec2<f32>,
 }
 
-// Length (m), lowest natural frequency (rad/s), damping ratio, lean by a wind of 1 m/s (rad s²/m²).
+// State of a blade.
+struct Sway {
+    links: array<Link, 3>,
+}
+
+// Mechanical properties of a blade.
 struct BladeNature {
+    // Length (m).
     length: f32,
+    // Lowest natural frequency (rad/s).
     frequency: f32,
+    // Damping ratio.
     damping: f32,
+    // Lean by a wind of 1 m/s (rad s²/m²).
     lean_per_wind2: f32,
 }
 
@@ -54,16 +66,16 @@ fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_pe
     var drag_x = vec3<f32>(0.0);
     var drag_z = vec3<f32>(0.0);
     for (var j = 0; j < LINKS; j++) {
-        own += link * old.links[j].zw;
+        own += link * old.links[j].rate_rad_per_s;
         past[j] = length(winds_in[j] - own) * blade.lean_per_wind2;
         drag_x[j] = winds_in[j].x * past[j];
         drag_z[j] = winds_in[j].y * past[j];
     }
     let braked = 0.5 * blade.length * blade.frequency * blade.frequency;
-    let lean_x = vec3<f32>(old.links[0].x, old.links[1].x, old.links[2].x) - vec3<f32>(held_in[0].x, held_in[1].x, held_in[2].x);
-    let lean_z = vec3<f32>(old.links[0].y, old.links[1].y, old.links[2].y) - vec3<f32>(held_in[0].y, held_in[1].y, held_in[2].y);
-    let rate_x = vec3<f32>(old.links[0].z, old.links[1].z, old.links[2].z);
-    let rate_z = vec3<f32>(old.links[0].w, old.links[1].w, old.links[2].w);
+    let lean_x = vec3<f32>(old.links[0].lean_rad.x, old.links[1].lean_rad.x, old.links[2].lean_rad.x) - vec3<f32>(held_in[0].x, held_in[1].x, held_in[2].x);
+    let lean_z = vec3<f32>(old.links[0].lean_rad.y, old.links[1].lean_rad.y, old.links[2].lean_rad.y) - vec3<f32>(held_in[0].y, held_in[1].y, held_in[2].y);
+    let rate_x = vec3<f32>(old.links[0].rate_rad_per_s.x, old.links[1].rate_rad_per_s.x, old.links[2].rate_rad_per_s.x);
+    let rate_z = vec3<f32>(old.links[0].rate_rad_per_s.y, old.links[1].rate_rad_per_s.y, old.links[2].rate_rad_per_s.y);
     var to = sway;
     for (var m = 0; m < LINKS; m++) {
         var frequencies = FREQUENCIES;
@@ -75,9 +87,11 @@ fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_pe
         let step = propagator(integrator, omega, blade.damping * omega + braked * dot(brakes[m], past), dt);
         let x = vec2<f32>(dot(amplitudes[m], lean_x) - dot(pushes[m], drag_x), dot(amplitudes[m], lean_z) - dot(pushes[m], drag_z));
         let v = vec2<f32>(dot(amplitudes[m], rate_x), dot(amplitudes[m], rate_z));
-        let change = vec4<f32>(step.x * x + step.y * v, step.z * x + step.w * v);
+        let moved = step.x * x + step.y * v;
+        let faster = step.z * x + step.w * v;
         for (var i = 0; i < LINKS; i++) {
-            to.links[i] += modes[m][i] * change;
+            to.links[i].lean_rad += modes[m][i] * moved;
+            to.links[i].rate_rad_per_s += modes[m][i] * faster;
         }
     }
     return to;
@@ -130,7 +144,7 @@ fn points_of(sway: Sway, length_m: f32) -> array<vec3<f32>, 3> {
     var points: array<vec3<f32>, 3>;
     var at = vec3<f32>(0.0);
     for (var i = 0; i < LINKS; i++) {
-        at += direction_of(old.links[i].xy) * (length_m / 3.0);
+        at += direction_of(old.links[i].lean_rad) * (length_m / 3.0);
         points[i] = at;
     }
     return points;
@@ -181,7 +195,7 @@ fn settle(sway: Sway, length_m: f32, normal: vec3<f32>, root: vec3<f32>) -> Sway
     var below = vec3<f32>(0.0);
     var tangent = vec3<f32>(0.0);
     for (var i = 0; i < LINKS; i++) {
-        let own = direction_of(settled.links[i].xy);
+        let own = direction_of(settled.links[i].lean_rad);
         var along = select(own, tangent, dot(tangent, tangent) > 0.0);
         var is_turned = false;
         if meets_spheres {
@@ -203,10 +217,10 @@ fn settle(sway: Sway, length_m: f32, normal: vec3<f32>, root: vec3<f32>) -> Sway
         }
         if any(along != own) {
             let lean = lean_of(along);
-            let moved = lean - settled.links[i].xy;
-            let rate = settled.links[i].zw;
+            let moved = lean - settled.links[i].lean_rad;
+            let rate = settled.links[i].rate_rad_per_s;
             let approach = min(dot(rate, moved), 0.0) / max(dot(moved, moved), 1e-20);
-            settled.links[i] = vec4<f32>(lean, rate - approach * moved);
+            settled.links[i] = Link(lean, rate - approach * moved);
         }
         below += along * link;
     }

@@ -68,39 +68,39 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
     let t = corner.x;
     let across = corner.y;
 
-    let points = array<vec3<f32>, 3>(blade.points[0].xyz, blade.points[1].xyz, blade.points[2].xyz);
-    let tip = points[2];
+    let points = array<vec3<f32>, 3>(blade.low_m, blade.middle_m, blade.tip_m);
+    let tip = blade.tip_m;
     let lean = tip.xz;
     let offset = backbone_at(points, t);
     let tangent = tangent_at(points, t);
-    let centre = blade.root.xyz + offset;
+    let centre = blade.root_m + offset;
     let view = normalize(centre - frame.eye_m);
-    let wide = shown_side(side_at(tip, blade.points[0].w, t), tangent, view);
-    let slope = blade.place.zw;
+    let wide = shown_side(side_at(tip, blade.side_rad, t), tangent, view);
+    let slope = blade.slope;
     let up = vec3<f32>(slope.x, sqrt(max(1.0 - dot(slope, slope), 0.0)), slope.y);
     // The backbone is above the ground; the border of a wide strip need not be.
-    var from_root = offset + wide * (across * width_share(t, is_textured) * blade.root.w * 0.5);
+    var from_root = offset + wide * (across * width_share(t, is_textured) * blade.width * 0.5);
     from_root += up * max(-dot(from_root, up), 0.0);
-    let p = blade.root.xyz + from_root;
+    let p = blade.root_m + from_root;
 
     var normal = cross(wide, tangent);
     normal *= -sign(dot(normal, view) + 1e-5) / max(length(normal), 1e-3);
     let soft = normalize(normal * 0.62 + up * 0.75 + wide * (across * 0.35));
 
-    let kind = kinds.list[u32(blade.points[1].w)];
+    let kind = kinds.list[u32(blade.kind_and_hue)];
     let tilt = asin(min(length(lean) / max(length(tip), 1e-3), 1.0));
     let height = offset.y / kind.height_m;
     let own = blade_color(
-        kind, tint_of(blade.place.xy), t, height, fract(blade.points[1].w), tilt, soft, tangent, view, p, blade.points[2].w,
+        kind, tint_of(blade.drift), t, height, fract(blade.kind_and_hue), tilt, soft, tangent, view, p, blade.sunlight,
     );
-    let color = among(own, blade.about, t, distance(blade.root.xyz, frame.eye_m));
+    let color = among(own, blade.about, t, distance(blade.root_m, frame.eye_m));
     out.color = color * blade.air.a + blade.air.rgb;
     out.across = across;
-    let shape = floor(fract(blade.points[1].w * 61.0) * f32(BLADE_SHAPES));
+    let shape = floor(fract(blade.kind_and_hue * 61.0) * f32(BLADE_SHAPES));
     out.shape = vec2<f32>((shape + 0.5 + 0.48 * across) / f32(BLADE_SHAPES), 1.0 - t);
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
     out.distance_m = distance(p, frame.eye_m);
-    out.shown = select(1.0, 1.0 - smoothstep(frame.blades_fade_from_m, frame.blades_end_m, distance(blade.root.xyz, frame.eye_m)), fades);
+    out.shown = select(1.0, 1.0 - smoothstep(frame.blades_fade_from_m, frame.blades_end_m, distance(blade.root_m, frame.eye_m)), fades);
     // Very near strips need no soft border.
     out.border = vec2<f32>(across, 1.0) * 100.0;
     let middle = frame.projection_from_world * vec4<f32>(centre, 1.0);

@@ -19,10 +19,11 @@ struct Workgroups {
 
 @group(1) @binding(3) var lowest: texture_2d<f32>;
 
-// Steps of a ray along the land, and maximum depth of the drawn land below the map (m, and per metre of distance), since tiles get coarser
-// with distance.
-const LOOKS: u32 = 24u;
+// Samples of the horizon along a ray.
+const HORIZON_SAMPLES: u32 = 24u;
+// Maximum depth of the drawn land below the height map near the eye (m).
 const DRAWN_LOWER_M: f32 = 0.3;
+// Growth of that depth with distance (m/m), since tiles get coarser.
 const DRAWN_LOWER: f32 = 0.004;
 
 // Maximum difference of the hills beyond the edge of the world from a few samples of them (m).
@@ -65,8 +66,8 @@ fn lowest_within(low: vec2<f32>, high: vec2<f32>) -> f32 {
     return found;
 }
 
-// Whether the land certainly hides a box from the eye: at some fraction of the distance, all rays to it pass one rectangle, where none is
-// higher than the ray to the top of the box.
+// Conservative horizon test: true if the land hides a box from the eye. At some fraction of the distance, all rays to the box cross one
+// rectangle, whose lowest ground is above the ray to the top of the box.
 fn is_hidden(low: vec3<f32>, high: vec3<f32>) -> bool {
     let eye = frame.eye_m;
     // An eye below the ground sees through it.
@@ -74,8 +75,8 @@ fn is_hidden(low: vec3<f32>, high: vec3<f32>) -> bool {
         return false;
     }
     let far = length(max(abs(low.xz - eye.xz), abs(high.xz - eye.xz)));
-    for (var i = 1u; i < LOOKS; i++) {
-        let share = f32(i) / f32(LOOKS);
+    for (var i = 1u; i < HORIZON_SAMPLES; i++) {
+        let share = f32(i) / f32(HORIZON_SAMPLES);
         let ground = lowest_within(mix(eye.xz, low.xz, share), mix(eye.xz, high.xz, share));
         if ground - DRAWN_LOWER_M - DRAWN_LOWER * far * share > mix(eye.y, high.y, share) {
             return true;

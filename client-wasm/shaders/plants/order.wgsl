@@ -47,7 +47,7 @@ fn key_blades(@builtin(global_invocation_id) id: vec3<u32>) {
         // Blades of one segment are at the end of the buffer.
         place = ordering.fine_capacity + ordering.other_capacity - 1u - (id.x - coarse);
     }
-    let root = blades[place].root.xyz;
+    let root = blades[place].root_m;
     let near = nearness(distance(root, frame.eye_m));
     let is_fine = u32(id.x >= others);
     if ordering.is_precomputed + u32(runtime_zero(root.x)) == 0u {

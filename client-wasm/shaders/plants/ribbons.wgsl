@@ -11,32 +11,64 @@ import package::inputs::random::random3;
 import package::land_and_sky::grass_light::{grass_lamps, grass_light, sun_in_grass};
 import package::land_and_sky::sky_light::ambient;
 import package::plants::blade::{aside_of, meets_spheres};
-import package::plants::stand::{lists, NOBODY, Stand};
+import package::plants::visible_plant::{FREE_BLOCK, kind_around, lists, variant_of, VisiblePlant};
 import package::uniforms::{BrushList, DrawnList};
 
 // Colour of a part at a height in the grass that hides it (1 at the mean height of the grass).
-fn among_grass(color: vec3<f32>, sward: vec4<f32>, up: f32) -> vec3<f32> {
-    return mix(color, sward.rgb, sward.w * (1.0 - smoothstep(0.3, 1.1, up)));
+fn among_grass(color: vec3<f32>, plant: VisiblePlant, up: f32) -> vec3<f32> {
+    return mix(color, plant.grass_rgb, plant.grass_fraction * (1.0 - smoothstep(0.3, 1.1, up)));
 }
 
-// A row: half-width and material, colour, its component and the number of steps below it there, unused; for a petal, distance from the tip
-// of the stalk (m), cosine and sine of its rotation around the stalk, and sine of its angle from the stalk.
+// A row of a ribbon.
 struct Row {
-    look: vec4<u32>,
-    petal: vec4<f32>,
+    // Half-width (`WIDTH_UNIT_M`) in the low half, material in the high half.
+    width_and_material: u32,
+    // Square root of the linear colour, a byte for each of red, green and blue.
+    rgb: u32,
+    // Number of its component in the low half, number of steps below it there in the high half.
+    limb_and_steps: u32,
+    unused: u32,
+    // For a petal: distance from the tip of the stalk (m).
+    petal_m: f32,
+    // Cosine and sine of the petal's rotation around the stalk.
+    petal_turn_cosine: f32,
+    petal_turn_sine: f32,
+    // Sine of its angle from the stalk.
+    petal_sine: f32,
 }
 
-// A component: cosine and sine of its angle from its parent (host) and of its rotation around it; load per force per mass (s²/m) and per
-// pressure (1/Pa), length (m), and attachment in steps of the host; first step of its table, number of steps, host, and depth in the chain
-// of hosts; speed (m/s) and time constant (s) of its response to a drop of rain, area that drops strike (m²), unused.
+// A component of a plant of size 1. Its host is the component that it is attached to.
 struct Limb {
-    turns: vec4<f32>,
-    nature: vec4<f32>,
-    table: vec4<u32>,
-    struck: vec4<f32>,
+    // Cosine and sine of its angle from its host.
+    angle: vec2<f32>,
+    // Cosine and sine of its rotation around the host.
+    turn: vec2<f32>,
+    // Load per force per mass (s²/m).
+    load_s2_per_m: f32,
+    // Load per pressure (1/Pa).
+    load_per_pa: f32,
+    // Length (m).
+    length_m: f32,
+    // Position on its host (steps of the host).
+    host_steps: f32,
+    // First step of its table.
+    first_step: u32,
+    // Number of its steps.
+    steps: u32,
+    // Number of its host.
+    host: u32,
+    // Number of its hosts, down to the ground.
+    depth: u32,
+    // Initial speed of its tip when a drop of rain strikes it (m/s).
+    drop_m_per_s: f32,
+    // Time to the maximum deflection (s).
+    drop_secs: f32,
+    // Area that drops strike (m²); 0 if it does not tremble.
+    drop_m2: f32,
+    unused: f32,
 }
 
-@group(1) @binding(10) var<storage, read> stands: array<Stand>;
+@group(1) @binding(10) var<storage, read> visible_plants: array<VisiblePlant>;
 @group(1) @binding(11) var<storage, read> shown: array<u32>;
 @group(1) @binding(12) var<storage, read> counted: array<u32>;
 @group(1) @binding(13) var<storage, read> steps: array<vec2<f32>>;
@@ -53,10 +85,13 @@ override trembles: bool = true;
 // Maximum dip of a component relative to its length; at that point its own weight has bent it completely.
 const FARTHEST_DIP: f32 = 0.25;
 
-// Border of a row to be drawn: position (m) and coordinate across its ribbon; colour, unused.
+// Border of a row to be drawn.
 struct Border {
-    place: vec4<f32>,
-    color: vec4<f32>,
+    // Position (m).
+    position_m: vec3<f32>,
+    // Coordinate across its ribbon, as in `Ribbon`.
+    across: f32,
+    color: vec3<f32>,
 }
 
 struct Ribbon {
@@ -90,11 +125,11 @@ fn arc_cosine(cosine: f32) -> f32 {
     return select(angle, 0.5 * TAU - angle, cosine < 0.0);
 }
 
-// Axes of an upright plant, turned by its heading and tipped by the lean of the ground.
-fn ground_frame(plant: Stand) -> Bent {
-    let side = vec3<f32>(sin(plant.lean.w), 0.0, -cos(plant.lean.w));
-    let angle = length(plant.lean.xy);
-    let axis = vec3<f32>(plant.lean.y, 0.0, -plant.lean.x) / max(angle, 1e-9);
+// Axes of an upright plant, turned by its heading and tipped by the lean of the bend field.
+fn ground_frame(plant: VisiblePlant) -> Bent {
+    let side = vec3<f32>(sin(plant.heading_rad), 0.0, -cos(plant.heading_rad));
+    let angle = length(plant.lean_rad);
+    let axis = vec3<f32>(plant.lean_rad.y, 0.0, -plant.lean_rad.x) / max(angle, 1e-9);
     let up = vec3<f32>(0.0, cos(angle), 0.0) + cross(axis, vec3<f32>(0.0, 1.0, 0.0)) * sin(angle);
     let across = side * cos(angle) + cross(axis, side) * sin(angle) + axis * (dot(axis, side) * (1.0 - cos(angle)));
     return Bent(vec3<f32>(0.0), up, across);
@@ -111,13 +146,13 @@ fn above_ground(direction: vec3<f32>, front: vec3<f32>, normal: vec3<f32>, heigh
 
 // Direction of a step from `below` that passes outside the spheres, as for links of blades; where the nearest one leads through the ground,
 // the one above the spheres.
-fn passing(along: vec3<f32>, below: vec3<f32>, length_m: f32, plant: Stand, normal: vec3<f32>) -> vec3<f32> {
+fn passing(along: vec3<f32>, below: vec3<f32>, length_m: f32, plant: VisiblePlant, normal: vec3<f32>) -> vec3<f32> {
     var way = along;
     let steepest = -max(dot(below, normal), 0.0) / length_m;
     for (var round = 0; round < 2; round++) {
-        for (var left = u32(plant.feels.w); left != 0u; left &= left - 1u) {
+        for (var left = plant.spheres; left != 0u; left &= left - 1u) {
             let sphere = frame.spheres[firstTrailingBit(left)];
-            let centre = sphere.centre_m - plant.root.xyz;
+            let centre = sphere.centre_m - plant.root_m;
             let nearest = aside_of(way, below, length_m, centre, sphere.radius_m);
             let above = aside_of(normalize(way + normal), below, length_m, centre, sphere.radius_m);
             way = select(nearest, above, any(nearest != way) && dot(nearest, normal) < steepest);
@@ -128,14 +163,14 @@ fn passing(along: vec3<f32>, below: vec3<f32>, length_m: f32, plant: Stand, norm
 
 // Position on a component after `so_many` steps from its host, and axes of step `last`. Twin of `posed` in
 // shared/src/plant/underbrush/plant.rs, with contacts with spheres.
-fn bent(host: Bent, limb: Limb, so_many: f32, last: u32, plant: Stand, normal: vec3<f32>, list: BrushList) -> Bent {
-    let outward = host.side * limb.turns.z - cross(host.along, host.side) * limb.turns.w;
-    let axis = normalize(host.along * limb.turns.x + outward * limb.turns.y);
+fn bent(host: Bent, limb: Limb, so_many: f32, last: u32, plant: VisiblePlant, normal: vec3<f32>, list: BrushList) -> Bent {
+    let outward = host.side * limb.turn.x - cross(host.along, host.side) * limb.turn.y;
+    let axis = normalize(host.along * limb.angle.x + outward * limb.angle.y);
     let across = cross(outward, host.along);
     let side = unit_or(square(cross(axis, vec3<f32>(0.0, 1.0, 0.0)) + across * 1e-3, axis), across);
 
-    let pressure = plant.feels.xy * limb.nature.y;
-    let load = vec3<f32>(pressure.x, -GRAVITY_M_PER_S2 * limb.nature.x * plant.about.w, pressure.y);
+    let pressure = plant.pressure_pa * limb.load_per_pa;
+    let load = vec3<f32>(pressure.x, -GRAVITY_M_PER_S2 * limb.load_s2_per_m * plant.size, pressure.y);
     let size = length(load);
     let down = load / max(size, 1e-30);
     let away = cross(axis, side);
@@ -148,11 +183,11 @@ fn bent(host: Bent, limb: Limb, so_many: f32, last: u32, plant: Stand, normal: v
     let is_nearest = list.is_nearest == 1u;
     let node = min(vec2<u32>(place + select(0.0, 0.5, is_nearest)), list.nodes - select(2u, 1u, is_nearest));
     let by = place - vec2<f32>(node);
-    let to_load = limb.table.y;
+    let to_load = limb.steps;
     let to_angle = list.nodes.y * to_load;
-    let first = list.first_step + limb.table.x + node.x * to_angle + node.y * to_load;
+    let first = list.first_step + limb.first_step + node.x * to_angle + node.y * to_load;
 
-    let length_m = limb.nature.z * plant.root.w;
+    let length_m = limb.length_m * plant.shown_size;
     var now = Bent(host.at, axis, side);
     var tangent = vec3<f32>(0.0);
     for (var i = 0u; i <= last; i++) {
@@ -167,7 +202,7 @@ fn bent(host: Bent, limb: Limb, so_many: f32, last: u32, plant: Stand, normal: v
         let turned = around * dot(side, around) + (towards * cos(step.x) - axis * sin(step.x)) * dot(side, towards);
         let height = dot(now.at, normal) / step_m;
         now.along = above_ground(free, cross(free, turned), normal, height);
-        if meets_spheres && plant.feels.w > 0.0 {
+        if meets_spheres && plant.spheres != 0u {
             // Steps after the first contact with a sphere continue in its direction.
             let own = select(now.along, tangent, any(tangent != vec3<f32>(0.0)));
             let way = passing(own, now.at, step_m, plant, normal);
@@ -180,39 +215,39 @@ fn bent(host: Bent, limb: Limb, so_many: f32, last: u32, plant: Stand, normal: v
     return now;
 }
 
-fn first_limb(plant: Stand, list: BrushList) -> u32 {
-    return list.first_limb + (u32(plant.feels.z) % (2u * VARIANTS)) * list.limbs;
+fn first_limb(plant: VisiblePlant, list: BrushList) -> u32 {
+    return list.first_limb + variant_of(plant) * list.limbs;
 }
 
-fn limb_of(plant: Stand, row: Row, list: BrushList) -> Limb {
-    return limbs[first_limb(plant, list) + (row.look.z & 0xffffu)];
+fn limb_of(plant: VisiblePlant, row: Row, list: BrushList) -> Limb {
+    return limbs[first_limb(plant, list) + (row.limb_and_steps & 0xffffu)];
 }
 
-fn row_of(plant: Stand, number: u32, list: BrushList) -> Row {
-    return rows[list.first_row + u32(plant.feels.z) % VARIANTS * list.rows + number];
+fn row_of(plant: VisiblePlant, number: u32, list: BrushList) -> Row {
+    return rows[list.first_row + plant.variant_and_kind % VARIANTS * list.rows + number];
 }
 
 // Position of a row of a plant on ground with that normal: bends the chain of components from the root on.
-fn bent_row(plant: Stand, row: Row, normal: vec3<f32>, list: BrushList) -> Bent {
+fn bent_row(plant: VisiblePlant, row: Row, normal: vec3<f32>, list: BrushList) -> Bent {
     let limb_0 = first_limb(plant, list);
     let own = limb_of(plant, row, list);
     var now = ground_frame(plant);
-    for (var above = own.table.w; above > 0u; above--) {
+    for (var above = own.depth; above > 0u; above--) {
         // Host at that depth of the chain.
         var next = own;
         for (var i = 1u; i < above; i++) {
-            next = limbs[limb_0 + next.table.z];
+            next = limbs[limb_0 + next.host];
         }
-        let limb = limbs[limb_0 + next.table.z];
-        now = bent(now, limb, next.nature.w, min(u32(next.nature.w), limb.table.y - 1u), plant, normal, list);
+        let limb = limbs[limb_0 + next.host];
+        now = bent(now, limb, next.host_steps, min(u32(next.host_steps), limb.steps - 1u), plant, normal, list);
     }
-    let so_many = row.look.z >> 16u;
+    let so_many = row.limb_and_steps >> 16u;
     now = bent(now, own, f32(so_many), max(so_many, 1u) - 1u, plant, normal, list);
-    if row.look.x >> 16u == PETAL {
+    if row.width_and_material >> 16u == PETAL {
         let other = cross(now.along, now.side);
-        let outward = now.side * row.petal.y + other * row.petal.z;
-        let along = now.along * sqrt(1.0 - row.petal.w * row.petal.w) + outward * row.petal.w;
-        now = Bent(now.at + along * (row.petal.x * plant.root.w), along, other * row.petal.y - now.side * row.petal.z);
+        let outward = now.side * row.petal_turn_cosine + other * row.petal_turn_sine;
+        let along = now.along * sqrt(1.0 - row.petal_sine * row.petal_sine) + outward * row.petal_sine;
+        now = Bent(now.at + along * (row.petal_m * plant.shown_size), along, other * row.petal_turn_cosine - now.side * row.petal_turn_sine);
     }
     return now;
 }
@@ -247,46 +282,45 @@ fn bow(share: f32) -> f32 {
 @compute @workgroup_size(64)
 fn ribbons(@builtin(global_invocation_id) id: vec3<u32>) {
     let owner = owners[id.x / BLOCK_ROWS];
-    if owner == NOBODY {
+    if owner == FREE_BLOCK {
         return;
     }
-    let plant = stands[owner];
-    let list = lists.list[u32(plant.tint.w)];
-    let number = id.x - u32(plant.up.w) * BLOCK_ROWS;
+    let plant = visible_plants[owner];
+    let list = lists.list[plant.list];
+    let number = id.x - plant.first_block * BLOCK_ROWS;
     if number >= list.rows {
         return;
     }
     let row = row_of(plant, number, list);
-    let look = row.look;
-    let stuff = look.x >> 16u;
-    let size = plant.root.w;
-    let normal_up = plant.up.xyz;
+    let material = row.width_and_material >> 16u;
+    let size = plant.shown_size;
+    let normal_up = plant.normal;
     let bent = bent_row(plant, row, normal_up, list);
     let along = bent.along;
-    var p = plant.root.xyz + bent.at;
+    var p = plant.root_m + bent.at;
     let own = limb_of(plant, row, list);
-    if trembles && list.drops_per_m2_s * own.struck.z > 0.0 {
-        let number = vec2<u32>(u32(plant.about.y * UNIT_STEPS), look.z & 0xffffu);
+    if trembles && list.drops_per_m2_s * own.drop_m2 > 0.0 {
+        let number = vec2<u32>(u32(plant.hue * UNIT_STEPS), row.limb_and_steps & 0xffffu);
         // The larger the component, the less the mass of the drop counts.
-        let speed = 1.0 / mix(1.0 / DROP_M_PER_S, 1.0 / own.struck.x, size * size * size);
-        let dip = dip_m(speed, own.struck.y * size, own.struck.z * size * size * list.drops_per_m2_s, number, frame.time_secs);
+        let speed = 1.0 / mix(1.0 / DROP_M_PER_S, 1.0 / own.drop_m_per_s, size * size * size);
+        let dip = dip_m(speed, own.drop_secs * size, own.drop_m2 * size * size * list.drops_per_m2_s, number, frame.time_secs);
         // The leaf does not yield along its axis.
         let down = vec3<f32>(0.0, 1.0, 0.0) - along * along.y;
-        p -= down * (min(dip, FARTHEST_DIP * own.nature.z * size) * bow(f32(look.z >> 16u) / f32(own.table.y)));
+        p -= down * (min(dip, FARTHEST_DIP * own.length_m * size) * bow(f32(row.limb_and_steps >> 16u) / f32(own.steps)));
     }
     let view = normalize(p - frame.eye_m);
     let toward = cross(along, view);
     let facing_side = toward / max(length(toward), 1e-3);
     var side = bent.side;
-    if stuff == STALK {
+    if material == STALK {
         side = facing_side;
-    } else if stuff != PETAL {
+    } else if material != PETAL {
         // A leaf seen edge on still shows part of its width.
         side = normalize(side + facing_side * (0.35 * sign(dot(facing_side, side) + 1e-4)));
     }
-    let width = look.x & 0xffffu;
-    let half = max(f32(width) * WIDTH_UNIT_M * size, select(0.0, 0.45 * plant.about.z * frame.pixel_rad, width > 0u));
-    let lit = Lit(p, along, side, half, view, stuff, look.y);
+    let width = row.width_and_material & 0xffffu;
+    let half = max(f32(width) * WIDTH_UNIT_M * size, select(0.0, 0.45 * plant.distance_m * frame.pixel_rad, width > 0u));
+    let lit = Lit(p, along, side, half, view, material, row.rgb);
     borders_out[2u * id.x] = lit_border(plant, lit, -1.0);
     borders_out[2u * id.x + 1u] = lit_border(plant, lit, 1.0);
 }
@@ -298,31 +332,31 @@ struct Lit {
     side: vec3<f32>,
     half: f32,
     view: vec3<f32>,
-    stuff: u32,
+    material: u32,
     rgb: u32,
 }
 
 // Left (-1) or right (1) border of a row.
-fn lit_border(plant: Stand, row: Lit, across: f32) -> Border {
-    let normal_up = plant.up.xyz;
+fn lit_border(plant: VisiblePlant, row: Lit, across: f32) -> Border {
+    let normal_up = plant.normal;
     var p = row.at + row.side * (across * row.half);
-    p += normal_up * max(0.012 - dot(p - plant.root.xyz, normal_up), 0.0);
+    p += normal_up * max(0.012 - dot(p - plant.root_m, normal_up), 0.0);
     var normal = normalize(cross(row.side, row.along));
     normal *= -sign(dot(normal, row.view) + 1e-5);
-    let is_stalk = row.stuff == STALK;
+    let is_stalk = row.material == STALK;
     let rounded = normalize(normal * select(0.8, 0.55, is_stalk) + row.side * (across * select(0.25, 0.8, is_stalk)) + normal_up * 0.35);
     let root_color = unpack4x8unorm(row.rgb).rgb;
     var albedo = root_color * root_color;
-    if row.stuff != PETAL {
-        albedo *= plant.tint.rgb * mix(vec3<f32>(0.86, 0.98, 0.85), vec3<f32>(1.14, 1.03, 0.9), plant.about.y);
+    if row.material != PETAL {
+        albedo *= plant.tint * mix(vec3<f32>(0.86, 0.98, 0.85), vec3<f32>(1.14, 1.03, 0.9), plant.hue);
     }
-    let above = dot(p - plant.root.xyz, normal_up);
-    let up = clamp(above / max(plant.about.x, 0.05), 0.0, 1.0);
-    let deep = smoothstep(0.0, 0.6, plant.about.x);
+    let above = dot(p - plant.root_m, normal_up);
+    let up = clamp(above / max(plant.height_m, 0.05), 0.0, 1.0);
+    let deep = smoothstep(0.0, 0.6, plant.height_m);
     let occlusion = mix(mix(0.62, 0.30, deep), 1.0, smoothstep(0.0, 0.8, up));
-    let light = plant.lean.z * sun_in_grass(0.2 + up, plant.about.x);
+    let light = plant.sunlight * sun_in_grass(0.2 + up, plant.height_m);
     var color: vec3<f32>;
-    if row.stuff == PETAL {
+    if row.material == PETAL {
         let sun_facing = dot(normal, frame.toward_sun);
         let diffuse = clamp((abs(sun_facing) + 0.3) / 1.3, 0.0, 1.0);
         let through = 0.4 * max(dot(row.view, frame.toward_sun), 0.0) * clamp(0.6 - sun_facing, 0.0, 1.0);
@@ -330,10 +364,10 @@ fn lit_border(plant: Stand, row: Lit, across: f32) -> Border {
     } else {
         color = grass_light(albedo, rounded, row.along, row.view, light, occlusion) + grass_lamps(albedo, rounded, row.along, row.view, p, up);
     }
-    let grass_m = kinds.list[u32(plant.feels.z) / (2u * VARIANTS)].height_m;
-    let seen = among_grass(color, plant.sward, above / grass_m) * plant.air.a + plant.air.rgb;
-    let is_folded = !is_stalk & (row.stuff != PETAL);
-    return Border(vec4<f32>(p, select(9.0, across, is_folded)), vec4<f32>(seen, 0.0));
+    let grass_m = kinds.list[kind_around(plant)].height_m;
+    let seen = among_grass(color, plant, above / grass_m) * plant.air.a + plant.air.rgb;
+    let is_folded = !is_stalk & (row.material != PETAL);
+    return Border(p, select(9.0, across, is_folded), seen);
 }
 
 @vertex
@@ -346,9 +380,9 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
         return out;
     }
     let border = borders[2u * BLOCK_ROWS * shown[list.first_listed + number] + index % (2u * list.rows)];
-    out.color = border.color.rgb;
-    out.across = border.place.w;
-    out.position = frame.projection_from_world * vec4<f32>(border.place.xyz, 1.0);
+    out.color = border.color;
+    out.across = border.across;
+    out.position = frame.projection_from_world * vec4<f32>(border.position_m, 1.0);
     return out;
 }
 

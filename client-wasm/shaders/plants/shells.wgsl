@@ -13,44 +13,62 @@ import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::{grass_tint, plant_color, trodden};
 import package::land_and_sky::grass_light::{grass_lamps, grass_light};
 import package::land_and_sky::ground::{fed, grass_share, ground_height, ground_normal};
+import package::land_and_sky::ground_tile::GroundTile;
 import package::land_and_sky::haze::hazed;
 import package::uniforms::ShellFrame;
 
-// Size of the pattern of clumps (m), and maximum deflection of its blades without wind, relative to the height of the tallest.
+// Size of the pattern of clumps (m).
 const CLUMP_M: f32 = 1.3;
-const CROOK: f32 = 0.9;
+// Maximum deflection of blades without wind, relative to the height of the tallest.
+const REST_DEFLECTION: f32 = 0.9;
 // Relative height whose light represents all heights within a far pixel.
 const MEAN_HEIGHT: f32 = 0.66;
 // Decay time of the effect of a gust on grass (s): it sets in at once and fades slowly (Bakay, section 3.2).
 const RELEASE_SECS: f32 = 0.9;
 
-struct Tile {
-    // North-west corner (m), side (m), distance at which the next coarser grid takes over (m).
-    place: vec4<f32>,
-}
-
 // State of a vertex of the mesh, shared by all layers.
 struct Turf {
-    // Position on the ground (m); height of the tallest blade (m).
-    root: vec4<f32>,
-    // Unit normal of the ground; tilt of the root (rad).
-    normal: vec4<f32>,
-    // Unit vector of the wind along the ground; its intensity.
-    wind: vec4<f32>,
-    // Colour at the root; fraction of sunlight.
-    low: vec4<f32>,
-    // Colour at the tip; fraction of its height that grass has there.
-    high: vec4<f32>,
-    // Morph factor to the layers of the next coarser tile; unused.
-    merge: vec4<f32>,
+    // Position on the ground (m).
+    root_m: vec3<f32>,
+    // Height of the tallest blade (m).
+    height_m: f32,
+    // Unit normal of the ground.
+    normal: vec3<f32>,
+    // Tilt of the root (rad).
+    tilt_rad: f32,
+    // Unit vector of the wind along the ground.
+    wind_direction: vec3<f32>,
+    // Wind intensity of `tilt_of`.
+    wind_intensity: f32,
+    // Colour at the root.
+    root_rgb: vec3<f32>,
+    // Fraction of unshadowed sunlight.
+    sunlight: f32,
+    // Colour at the tip.
+    tip_rgb: vec3<f32>,
+    // Fraction of its full height that grass has there.
+    growth: f32,
+    // Progress of the morph to the next coarser tile, 0..1.
+    @size(16) morph: f32,
 }
 
-@group(1) @binding(0) var<storage, read> tiles: array<Tile>;
+// A layer of a tile to be drawn.
+struct TileLayer {
+    // Number of the layer in the low byte, number of the tile above it.
+    tile_and_layer: u32,
+    // Segments down to the next layer.
+    to_next: u32,
+    // Segments down to the layer after that one.
+    to_second: u32,
+    // 1 if the layer ends where the next coarser tiles begin.
+    ends: u32,
+}
+
+@group(1) @binding(0) var<storage, read> tiles: array<GroundTile>;
 @group(1) @binding(1) var<uniform> shells: ShellFrame;
 @group(1) @binding(2) var<storage, read> turfs: array<Turf>;
 @group(1) @binding(3) var dots: texture_2d<f32>;
-// Tile and layer; segments down to the next layer and to the one after it; 1 if the layer ends where the next coarser tiles begin.
-@group(1) @binding(4) var<storage, read> sheets: array<vec4<u32>>;
+@group(1) @binding(4) var<storage, read> sheets: array<TileLayer>;
 @group(1) @binding(5) var<storage, read_write> settled: array<Turf>;
 
 // Position of layer `i` of a blade with a tilted root in the wind, along the normal and along the wind, in blade heights. Twin of
@@ -81,13 +99,13 @@ fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= TILE_VERTICES {
         return;
     }
-    let place = tiles[id.y].place;
+    let tile = tiles[id.y];
     let row = TILE_CELLS + 1u;
     let cell = vec2<f32>(f32(id.x % row), f32(id.x / row));
-    let spacing = place.z / f32(TILE_CELLS);
-    let flat_p = place.xy + cell * spacing;
+    let spacing = tile.side_m / f32(TILE_CELLS);
+    let flat_p = tile.corner_m + cell * spacing;
     let flat_m = length(vec3<f32>(flat_p.x, ground_height(flat_p), flat_p.y) - frame.eye_m);
-    let morph = smoothstep(0.70, 0.95, flat_m / place.w);
+    let morph = smoothstep(0.70, 0.95, flat_m / tile.coarser_from_m);
     let odd = cell - 2.0 * floor(cell * 0.5);
     let p = flat_p - odd * spacing * morph;
     let ground = vec3<f32>(p.x, ground_height(p), p.y);
@@ -109,12 +127,17 @@ fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
     let tint = grass_tint(p) * (0.80 + 0.42 * smoothstep(0.08, 0.55, lean_rad));
     let light = cloud_light(p) * sun_visible(ground + normal * height * 0.6);
     var turf: Turf;
-    turf.root = vec4<f32>(ground, height);
-    turf.normal = vec4<f32>(normal, tilt.x);
-    turf.wind = vec4<f32>(along / max(length(along), 1e-4), tilt.y);
-    turf.low = vec4<f32>(kind.root_rgb * tint, light);
-    turf.high = vec4<f32>(kind.tip_rgb * tint * trodden(lean_rad), growth);
-    turf.merge = vec4<f32>(morph, 0.0, 0.0, 0.0);
+    turf.root_m = ground;
+    turf.height_m = height;
+    turf.normal = normal;
+    turf.tilt_rad = tilt.x;
+    turf.wind_direction = along / max(length(along), 1e-4);
+    turf.wind_intensity = tilt.y;
+    turf.root_rgb = kind.root_rgb * tint;
+    turf.sunlight = light;
+    turf.tip_rgb = kind.tip_rgb * tint * trodden(lean_rad);
+    turf.growth = growth;
+    turf.morph = morph;
     settled[id.y * TILE_VERTICES + id.x] = turf;
 }
 
@@ -136,26 +159,26 @@ struct Sheet {
 @vertex
 fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Sheet {
     let sheet = sheets[instance];
-    let turf = turfs[(sheet.x >> 8u) * TILE_VERTICES + index];
-    let layer = f32(sheet.x & 255u);
+    let turf = turfs[(sheet.tile_and_layer >> 8u) * TILE_VERTICES + index];
+    let layer = f32(sheet.tile_and_layer & 255u);
     let segments = f32(max(shells.segments, 1u));
-    let below = f32(sheet.y);
-    let at = layer_place(turf.normal.w, turf.wind.w, layer, segments);
-    let under = layer_place(turf.normal.w, turf.wind.w, layer - below, segments);
-    let normal = turf.normal.xyz;
-    let height = turf.root.w;
-    var p = turf.root.xyz + height * (at.x * normal + at.y * turf.wind.xyz);
+    let below = f32(sheet.to_next);
+    let at = layer_place(turf.tilt_rad, turf.wind_intensity, layer, segments);
+    let under = layer_place(turf.tilt_rad, turf.wind_intensity, layer - below, segments);
+    let normal = turf.normal;
+    let height = turf.height_m;
+    var p = turf.root_m + height * (at.x * normal + at.y * turf.wind_direction);
     // The single layer of the lowest setting is just above the ground.
-    p.y += select(0.0, 0.004, sheet.x % 256u == 0u);
+    p.y += select(0.0, 0.004, sheet.tile_and_layer % 256u == 0u);
     var out: Sheet;
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
-    out.p = vec4<f32>(p, turf.low.w);
-    out.root = vec4<f32>(turf.root.xz, height, turf.high.w);
-    out.segment = vec4<f32>(height * ((at.x - under.x) * normal + (at.y - under.y) * turf.wind.xyz), turf.merge.x);
+    out.p = vec4<f32>(p, turf.sunlight);
+    out.root = vec4<f32>(turf.root_m.xz, height, turf.growth);
+    out.segment = vec4<f32>(height * ((at.x - under.x) * normal + (at.y - under.y) * turf.wind_direction), turf.morph);
     out.normal = normal;
-    out.low = turf.low.rgb;
-    out.high = turf.high.rgb;
-    out.layer = vec4<f32>(layer / segments, below / segments, f32(sheet.z) / max(below, 1.0), f32(sheet.w));
+    out.low = turf.root_rgb;
+    out.high = turf.tip_rgb;
+    out.layer = vec4<f32>(layer / segments, below / segments, f32(sheet.to_second) / max(below, 1.0), f32(sheet.ends));
     return out;
 }
 
@@ -236,7 +259,7 @@ fn fs(sheet: Sheet) -> Shade {
     let clump_below = noise((sheet.root.xy + run) / CLUMP_M);
     // Bare patches have ragged borders.
     let growth = clamp(2.2 * sheet.root.w - 1.2 * clump.b, 0.0, 1.0);
-    let aside = (vec4<f32>(clump.rg, clump_below.rg) - 0.5) * (CROOK * sheet.root.z * (1.0 - afar));
+    let aside = (vec4<f32>(clump.rg, clump_below.rg) - 0.5) * (REST_DEFLECTION * sheet.root.z * (1.0 - afar));
     let fine = grain_of(sheet.root.xy, run, aside, times, level, growth * min(2.0 - 2.0 * next, 1.0));
     let coarse = grain_of(sheet.root.xy, run, aside, times + 1.0, level, growth * min(2.0 * next, 1.0));
 

@@ -14,14 +14,14 @@ import package::plants::grid_plants::{chunks, growth, LISTED, plant_place, plant
 // Height of the land at each near plant (m), from `ground_of`.
 @group(1) @binding(10) var<storage, read_write> grounds: array<f32>;
 
-// Marks a position without room for a plant, in place of its height.
-const NO_ROOM: f32 = -1e9;
+// Height in place of the land's where no plant stands (m).
+const NO_PLANT_M: f32 = -1e9;
 
-// Height of the land at a plant (m), or `NO_ROOM`.
+// Height of the land at a plant (m), or `NO_PLANT_M`.
 fn ground_of(grid: vec2<i32>, index: u32) -> f32 {
     let place = plant_place(grid, index);
     let has_room = random3(grid, index + 31u).x <= grass_share(place) * 1.02 - 0.02;
-    return select(NO_ROOM, ground_height(place), has_room);
+    return select(NO_PLANT_M, ground_height(place), has_room);
 }
 
 // Whether a plant on land of that height may be in view.
@@ -29,7 +29,7 @@ fn may_stand(grid: vec2<i32>, index: u32, height: f32) -> bool {
     let place = plant_place(grid, index);
     let ground = vec3<f32>(place.x, height, place.y);
     let is_grown = growth(index, max(distance(ground, frame.eye_m) - TUFT_REACH_M, 0.0)) > 0.01;
-    return (height > NO_ROOM) & is_grown & ((plants.culls == 0u) | is_seen(ground, plants.plant_reach_m));
+    return (height > NO_PLANT_M) & is_grown & ((plants.culls == 0u) | is_seen(ground, plants.plant_reach_m));
 }
 
 // Reserves the next index of a list; every 64 entries add a workgroup.

@@ -1,7 +1,7 @@
 // Underbrush: culling, force and level of detail of each plant.
 
 import package::constants::{
-    BLOCK_ROWS, DRAW_WORDS, FALL_PA, FEWEST, FREE_WIND_M, LEAST_WIND_HEIGHT, TAU, UNDERBRUSH_LEVELS, UNDERBRUSH_LISTS, VARIANTS,
+    BLOCK_ROWS, DRAW_WORDS, FALL_PA, MIN_KEPT_FRACTION, FREE_WIND_M, LEAST_WIND_HEIGHT, TAU, UNDERBRUSH_LEVELS, UNDERBRUSH_LISTS, VARIANTS,
 };
 import package::inputs::bend_atlas::lean_of_field;
 import package::inputs::frame::{clamped, frame, runtime_zero};
@@ -16,38 +16,47 @@ import package::land_and_sky::ground::{grass_share, ground_height, ground_normal
 import package::land_and_sky::haze::air_before;
 import package::land_and_sky::sward::{bare_between, sward_color};
 import package::plants::ribbons::{fs, ribbons, vs};
-import package::plants::stand::{Stand, lists, NOBODY};
+import package::plants::visible_plant::{FREE_BLOCK, lists, VisiblePlant};
 import package::uniforms::UnderbrushFrame;
 
-// A plant: position (m), size, species in the low byte of `make` and its variant in the next, its site in the upper half of `site`.
-struct Grown {
-    at: vec2<f32>,
+// A plant of the scene.
+struct UnderbrushPlant {
+    // X and Z (m).
+    at_m: vec2<f32>,
+    // Size relative to the species.
     size: f32,
-    make: u32,
-    heading: f32,
+    // Species in the low byte, variant in the next.
+    species_and_variant: u32,
+    heading_rad: f32,
+    // Number of its site.
     site: u32,
 }
 
-// Response of a plant to the force field (Endo et al. 2003, section 4.3): pressure (Pa) and its rate; the simulated frame in which
-// it was last in view.
-struct Felt {
-    pressure: vec4<f32>,
-    frame: u32,
+// Response of a plant to the force field (Endo et al. 2003, section 4.3).
+struct ForceResponse {
+    // Pressure, X and Z (Pa).
+    pressure_pa: vec2<f32>,
+    // Its rate of change (Pa/s).
+    rate_pa_per_s: vec2<f32>,
+    // Number of the frame in which the plant was last in view; counts frames in which time advances.
+    @size(16) frame: u32,
 }
 
-// Plants of each list; blocks of rows requested at the levels of the plants, and those requested at the coarsest level for lack of room.
-struct Tally {
+struct Counters {
+    // Plants of each list.
     drawn: array<atomic<u32>, UNDERBRUSH_LISTS>,
+    // Blocks of rows requested at the levels of the plants.
     blocks: atomic<u32>,
+    // Blocks requested at the coarsest level for lack of room.
     spare: atomic<u32>,
 }
 
 @group(1) @binding(0) var<uniform> brush: UnderbrushFrame;
-@group(1) @binding(1) var<storage, read> grown: array<Grown>;
+@group(1) @binding(1) var<storage, read> brush_plants: array<UnderbrushPlant>;
 @group(1) @binding(2) var<storage, read> chunks: array<vec2<u32>>;
-@group(1) @binding(3) var<storage, read_write> felt: array<Felt>;
-@group(1) @binding(4) var<storage, read_write> stands_out: array<Stand>;
-@group(1) @binding(5) var<storage, read_write> tally: Tally;
+@group(1) @binding(3) var<storage, read_write> responses: array<ForceResponse>;
+@group(1) @binding(4) var<storage, read_write> visible_out: array<VisiblePlant>;
+@group(1) @binding(5) var<storage, read_write> counters: Counters;
 @group(1) @binding(6) var<storage, read_write> listed: array<u32>;
 // Direction in which the plant of each site fell, a byte each.
 @group(1) @binding(7) var<storage, read> broken: array<u32>;
@@ -84,42 +93,47 @@ fn pressure_at(root: vec3<f32>, above_m: f32) -> vec2<f32> {
 }
 
 // Critically damped response of a value to a target, in closed form. Twin of `Following` in shared/src/plant/underbrush/constraint.rs.
-fn followed(state: vec4<f32>, goal: vec2<f32>, settle_secs: f32, dt: f32) -> vec4<f32> {
+fn followed(state: ForceResponse, goal: vec2<f32>, settle_secs: f32, dt: f32) -> ForceResponse {
     let taus = dt / settle_secs;
     let decay = exp(-taus);
-    let off = state.xy - goal;
-    let value = goal + off * ((1.0 + taus) * decay) + state.zw * (dt * decay);
-    return vec4<f32>(value, off * (-taus / settle_secs * decay) + state.zw * ((1.0 - taus) * decay));
+    let off = state.pressure_pa - goal;
+    let value = goal + off * ((1.0 + taus) * decay) + state.rate_pa_per_s * (dt * decay);
+    return ForceResponse(value, off * (-taus / settle_secs * decay) + state.rate_pa_per_s * ((1.0 - taus) * decay), state.frame);
 }
 
-// Pressure (Pa) on a plant that fell in direction `fall`, in 255ths of a turn; 0: standing. A broken plant stays bent, as if pressed; it lies
-// at a fifth of its height, where it feels the square root of the wind's pressure.
+// Pressure (Pa) on a plant under the wind's `pressure`. `fall` is the direction in which the plant fell, in 255ths of a turn, or 0 if it
+// stands. A constant pressure keeps a fallen plant bent. It lies at a fifth of its height, where the quarter-power law leaves 0.45 of the
+// wind's pressure.
 fn fallen(pressure: vec2<f32>, fall: u32) -> vec2<f32> {
     let heading = f32(fall) * (TAU / 255.0);
     return select(pressure, 0.45 * pressure + FALL_PA * vec2<f32>(cos(heading), sin(heading)), fall != 0u);
 }
 
-// Display size of a plant: root and height of its box (m), distance (m), screen height (px), a random number, enlargement over its
-// true size, and the fraction that remains.
-struct Shown {
+struct DisplaySize {
+    // Root of the plant (m).
     root: vec3<f32>,
+    // Height of its box (m).
     tall: f32,
     distance_m: f32,
+    // Height on the screen (px).
     tall_px: f32,
+    // Random number 0..1 of the plant.
     lot: f32,
+    // Enlargement over its true size, where plants thin out.
     larger: f32,
+    // Factor on its size where plants end or thin out: 0 gone, 1 full.
     left: f32,
 }
 
-fn shown_of(plant: Grown) -> Shown {
-    let nature = brush.species[plant.make & 255u];
-    var shown: Shown;
-    shown.root = vec3<f32>(plant.at.x, ground_height(plant.at), plant.at.y);
+fn display_size(plant: UnderbrushPlant) -> DisplaySize {
+    let nature = brush.species[plant.species_and_variant & 255u];
+    var shown: DisplaySize;
+    shown.root = vec3<f32>(plant.at_m.x, ground_height(plant.at_m), plant.at_m.y);
     shown.tall = max(nature.height_m, 0.5 * nature.reach_m) * plant.size;
     shown.distance_m = distance(shown.root + vec3<f32>(0.0, 0.5 * shown.tall, 0.0), frame.eye_m);
     // Plants of a few pixels thin out, and the rest are larger.
     shown.tall_px = shown.tall / (shown.distance_m * frame.pixel_rad);
-    let kept = clamp(shown.tall_px / 16.0, FEWEST, 1.0);
+    let kept = clamp(shown.tall_px / 16.0, MIN_KEPT_FRACTION, 1.0);
     shown.larger = pow(kept, -0.3);
     shown.lot = random3(vec2<i32>(i32(plant.site), 5), 91u).x;
     let reach_m = brush.reach_m;
@@ -135,9 +149,9 @@ fn sift(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         return;
     }
     let index = chunk.x + local;
-    let plant = grown[index];
-    let shown = shown_of(plant);
-    let reach_m = brush.species[plant.make & 255u].reach_m * plant.size * shown.larger * 1.8;
+    let plant = brush_plants[index];
+    let shown = display_size(plant);
+    let reach_m = brush.species[plant.species_and_variant & 255u].reach_m * plant.size * shown.larger * 1.8;
     if (shown.left > 0.01) & ((brush.culls == 0u) | is_seen(shown.root, reach_m)) {
         let number = atomicAdd(&sifted[0], 1u);
         atomicStore(&sifted[1u + number], index);
@@ -160,7 +174,7 @@ fn blocks_of(list: u32) -> u32 {
 fn claim(first: u32, blocks: u32, end: u32, number: u32) -> bool {
     let is_room = first + blocks <= end;
     for (var block = first; block < min(first + blocks, end); block++) {
-        owners_out[block] = select(NOBODY, number, is_room);
+        owners_out[block] = select(FREE_BLOCK, number, is_room);
     }
     return is_room;
 }
@@ -168,12 +182,12 @@ fn claim(first: u32, blocks: u32, end: u32, number: u32) -> bool {
 // Allocates the rows of plant `number`: the level at which it is drawn (`UNDERBRUSH_LEVELS` if there is no room) and its first block.
 fn room(species: u32, finest: u32, number: u32) -> vec2<u32> {
     let blocks = blocks_of(species * UNDERBRUSH_LEVELS + finest);
-    let first = atomicAdd(&tally.blocks, blocks);
+    let first = atomicAdd(&counters.blocks, blocks);
     if claim(first, blocks, main_room(), number) {
         return vec2<u32>(finest, first);
     }
     let few = blocks_of(species * UNDERBRUSH_LEVELS + UNDERBRUSH_LEVELS - 1u);
-    let spare = main_room() + atomicAdd(&tally.spare, few);
+    let spare = main_room() + atomicAdd(&counters.spare, few);
     return vec2<u32>(select(UNDERBRUSH_LEVELS, UNDERBRUSH_LEVELS - 1u, claim(spare, few, brush.block_limit, number)), spare);
 }
 
@@ -183,30 +197,30 @@ fn stand(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let index = candidates[1u + id.x];
-    let plant = grown[index];
-    let species = plant.make & 255u;
+    let plant = brush_plants[index];
+    let species = plant.species_and_variant & 255u;
     let nature = brush.species[species];
     let height = nature.height_m * plant.size;
-    let shown = shown_of(plant);
+    let shown = display_size(plant);
     let root = shown.root;
     let distance_m = shown.distance_m;
 
     let fall = (broken[plant.site >> 2u] >> (8u * (plant.site & 3u))) & 255u;
     let goal = fallen(pressure_at(root, 0.5 * height), fall);
-    var feels = felt[index];
-    if brush.frame_number - feels.frame > 1u {
-        feels.pressure = vec4<f32>(goal, 0.0, 0.0);
+    var response = responses[index];
+    if brush.frame_number - response.frame > 1u {
+        response = ForceResponse(goal, vec2<f32>(0.0), response.frame);
     } else {
-        feels.pressure = followed(feels.pressure, goal, nature.settle_secs, brush.step_secs);
+        response = followed(response, goal, nature.settle_secs, brush.step_secs);
     }
-    feels.frame = select(feels.frame, brush.frame_number, brush.step_secs > 0.0);
-    felt[index] = feels;
+    response.frame = select(response.frame, brush.frame_number, brush.step_secs > 0.0);
+    responses[index] = response;
 
-    var lean = lean_of_field(plant.at, 0.0);
+    var lean = lean_of_field(plant.at_m, 0.0);
     let tilt = length(lean);
     lean *= min(1.0, 1.5 / max(tilt, 1e-5));
 
-    let make = (plant.make >> 8u) % VARIANTS + select(0u, VARIANTS, fall != 0u);
+    let variant = (plant.species_and_variant >> 8u) % VARIANTS + select(0u, VARIANTS, fall != 0u);
     let shown_size = plant.size * shown.left * shown.larger;
     var spheres = 0u;
     let every = frame.sphere_count + u32(runtime_zero(height));
@@ -215,19 +229,28 @@ fn stand(@builtin(global_invocation_id) id: vec3<u32>) {
         spheres |= select(0u, 1u << s, distance(sphere.centre_m, root) < sphere.radius_m + nature.reach_m * shown_size);
     }
 
-    var out: Stand;
-    out.root = vec4<f32>(root, shown_size);
+    var out: VisiblePlant;
+    out.root_m = root;
+    out.shown_size = shown_size;
     let lit = root + vec3<f32>(0.0, 0.6 * height, 0.0);
-    out.lean = vec4<f32>(lean, cloud_light(plant.at) * sun_visible(lit), plant.heading);
-    let kind_number = kind_at(plant.at);
+    out.lean_rad = lean;
+    out.sunlight = cloud_light(plant.at_m) * sun_visible(lit);
+    out.heading_rad = plant.heading_rad;
+    let kind_number = kind_at(plant.at_m);
     let kind = kinds.list[kind_number];
-    out.feels = vec4<f32>(feels.pressure.xy, f32(make + 2u * VARIANTS * kind_number), f32(spheres));
-    out.about = vec4<f32>(height, random3(vec2<i32>(i32(plant.site), 9), 17u).x, distance_m, plant.size);
-    let up = ground_normal(plant.at);
+    out.pressure_pa = response.pressure_pa;
+    out.variant_and_kind = variant + 2u * VARIANTS * kind_number;
+    out.spheres = spheres;
+    out.height_m = height;
+    out.hue = random3(vec2<i32>(i32(plant.site), 9), 17u).x;
+    out.distance_m = distance_m;
+    out.size = plant.size;
+    let up = ground_normal(plant.at_m);
     let view = normalize(root - frame.eye_m);
-    let tint = grass_tint(plant.at);
-    let afar = sward_color(root, up, kind, tint, lean, view, out.lean.z);
-    out.sward = vec4<f32>(afar, bare_between(distance_m, kind, view, up) * grass_share(plant.at));
+    let tint = grass_tint(plant.at_m);
+    let afar = sward_color(root, up, kind, tint, lean, view, out.sunlight);
+    out.grass_rgb = afar;
+    out.grass_fraction = bare_between(distance_m, kind, view, up) * grass_share(plant.at_m);
     out.air = air_before(root + vec3<f32>(0.0, 0.5 * height, 0.0));
 
     // Plants of one height change level at different distances.
@@ -238,22 +261,24 @@ fn stand(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let list = species * UNDERBRUSH_LEVELS + place.x;
-    out.tint = vec4<f32>(tint, f32(list));
-    out.up = vec4<f32>(up, f32(place.y));
-    stands_out[id.x] = out;
-    listed[lists.list[list].first_listed + atomicAdd(&tally.drawn[list], 1u)] = place.y;
+    out.tint = tint;
+    out.list = list;
+    out.normal = up;
+    out.first_block = place.y;
+    visible_out[id.x] = out;
+    listed[lists.list[list].first_listed + atomicAdd(&counters.drawn[list], 1u)] = place.y;
 }
 
 // Arguments of the indirect draws and of the dispatch of `ribbons`.
 @compute @workgroup_size(64)
 fn finish(@builtin(local_invocation_index) list: u32) {
     let held = lists.list[list].instance_plants;
-    brush_draws[list * DRAW_WORDS + 1u] = (atomicLoad(&tally.drawn[list]) + held - 1u) / max(held, 1u);
-    let spare = min(atomicLoad(&tally.spare), brush.block_limit - main_room());
-    let blocks = min(atomicLoad(&tally.blocks), main_room()) + spare;
+    brush_draws[list * DRAW_WORDS + 1u] = (atomicLoad(&counters.drawn[list]) + held - 1u) / max(held, 1u);
+    let spare = min(atomicLoad(&counters.spare), brush.block_limit - main_room());
+    let blocks = min(atomicLoad(&counters.blocks), main_room()) + spare;
     let groups = (blocks + GROUP_BLOCKS - 1u) / GROUP_BLOCKS;
     if list < groups * GROUP_BLOCKS - blocks {
-        owners_out[blocks + list] = NOBODY;
+        owners_out[blocks + list] = FREE_BLOCK;
     }
     if list < 3u {
         ribbon_groups[list] = select(1u, groups, list == 0u);

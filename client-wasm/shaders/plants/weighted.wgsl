@@ -1,4 +1,4 @@
-// Weighted blended order-independent transparency (McGuire & Bavoil, J. Comput. Graph. Tech. 2(2), 2013).
+// Weighted blended order-independent transparency (McGuire & Bavoil 2013).
 
 struct Weighted {
     @location(0) sum: vec4<f32>,

@@ -18,15 +18,26 @@ const GLASS_M: f32 = 0.17;
 
 struct Instance {
     world_from_model: mat4x4<f32>,
-    // Colour factor; sway of a tree in a wind of 10 m/s and above (rad), 0 for rigid objects.
-    tint: vec4<f32>,
+    // Colour factor.
+    tint: vec3<f32>,
+    // Sway of a tree in a wind of 10 m/s and above (rad), 0 for rigid objects.
+    sway_rad: f32,
+}
+
+// Response of a tree to the wind.
+struct TreeSway {
+    // Sway of its top, X and Z (rad).
+    top_rad: vec2<f32>,
+    // Flutter of its leaves (m).
+    flutter_m: f32,
+    unused: f32,
 }
 
 @group(1) @binding(0) var<storage, read> instances: array<Instance>;
 @group(1) @binding(1) var leaves: texture_2d<f32>;
-// Sway of each instance, from `sway_of`.
-@group(1) @binding(2) var<storage, read> sways: array<vec4<f32>>;
-@group(1) @binding(3) var<storage, read_write> sways_out: array<vec4<f32>>;
+// Response of each instance, from `sway_of`.
+@group(1) @binding(2) var<storage, read> sways: array<TreeSway>;
+@group(1) @binding(3) var<storage, read_write> sways_out: array<TreeSway>;
 
 struct Vertex {
     @location(0) position: vec3<f32>,
@@ -52,9 +63,8 @@ fn swayed(up: f32, height: f32, sway: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(aside.x, -dot(sway, sway) * (2.0 / 3.0) * up * up * up / (height * height), aside.y);
 }
 
-// Response of a tree to the wind: sway of its top (X, Z), flutter of its leaves (m), unused.
-fn sway_of(instance: Instance) -> vec4<f32> {
-    let most = instance.tint.a;
+fn sway_of(instance: Instance) -> TreeSway {
+    let most = instance.sway_rad;
     let foot = instance.world_from_model[3].xyz;
     // Models are a metre tall.
     let height = length(instance.world_from_model[1].xyz);
@@ -62,7 +72,7 @@ fn sway_of(instance: Instance) -> vec4<f32> {
     // Taller trees sway more slowly.
     let phase = frame.time_secs * 4.5 / sqrt(height) + foot.x * 0.7 + foot.z * 1.3;
     let blown = length(held) / max(most, 1e-6);
-    return vec4<f32>(held * (0.7 + 0.3 * sin(phase)), FLUTTER_M * min(6.0 * blown, 0.4 + 1.5 * blown), 0.0);
+    return TreeSway(held * (0.7 + 0.3 * sin(phase)), FLUTTER_M * min(6.0 * blown, 0.4 + 1.5 * blown), 0.0);
 }
 
 @compute @workgroup_size(64)
@@ -72,14 +82,14 @@ fn blow(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-fn placed(vertex: Vertex, instance: Instance, sway: vec4<f32>) -> vec3<f32> {
+fn placed(vertex: Vertex, instance: Instance, sway: TreeSway) -> vec3<f32> {
     var p = (instance.world_from_model * vec4<f32>(vertex.position, 1.0)).xyz;
-    if instance.tint.a > 0.0 {
+    if instance.sway_rad > 0.0 {
         let foot = instance.world_from_model[3].xyz;
         let height = length(instance.world_from_model[1].xyz);
-        p += swayed(max(p.y - foot.y, 0.0), height, sway.xy);
+        p += swayed(max(p.y - foot.y, 0.0), height, sway.top_rad);
         if vertex.leaf.x > 0.0 {
-            let flutter = sin(frame.time_secs * 5.3 + dot(vertex.position, vec3<f32>(5.1, 7.7, 3.9))) * sway.z;
+            let flutter = sin(frame.time_secs * 5.3 + dot(vertex.position, vec3<f32>(5.1, 7.7, 3.9))) * sway.flutter_m;
             p += vec3<f32>(flutter, flutter * 0.6, -flutter);
         }
     }
@@ -91,7 +101,7 @@ fn surface_of(vertex: Vertex, index: u32) -> Surface {
     var out: Surface;
     out.p = placed(vertex, instance, sways[index]);
     out.normal = (instance.world_from_model * vec4<f32>(vertex.normal.xyz, 0.0)).xyz;
-    out.color = vec4<f32>(vertex.color.rgb * vertex.color.rgb * instance.tint.rgb, vertex.color.a);
+    out.color = vec4<f32>(vertex.color.rgb * vertex.color.rgb * instance.tint, vertex.color.a);
     out.leaf = vertex.leaf;
     out.position = frame.projection_from_world * vec4<f32>(out.p, 1.0);
     return out;

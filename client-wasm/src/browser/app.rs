@@ -245,7 +245,7 @@ impl App {
         self.mirror.object(self.mirror.object_of(self.connection.client()?)?)
     }
 
-    /// Takes a vehicle, or gives up the current one.
+    /// Selects a vehicle, or leaves the current one.
     pub(super) fn take(&mut self, vehicle: Option<VehicleKind>) {
         self.wanted = vehicle;
         self.connection.choose(vehicle);

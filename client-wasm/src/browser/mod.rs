@@ -140,7 +140,7 @@ pub fn set_camera(eye_m: &[f32], heading_rad: f32, pitch_rad: f32) -> bool {
     app::camera(eye_m, heading_rad, pitch_rad).is_some_and(|camera| with_app(|app| app.set_camera(camera)).is_some())
 }
 
-/// Takes a vehicle by its name; any other word gives up the current one.
+/// Selects a vehicle by its name; any other word leaves the current one.
 #[wasm_bindgen]
 pub fn choose(vehicle: &str) {
     let kind = VehicleKind::ALL.into_iter().find(|kind| kind.name() == vehicle);

@@ -117,7 +117,7 @@ impl OffscreenRenderer {
     /// Number of underbrush plants that the newest frame drew: those in view, thinned out with distance.
     pub fn drawn_underbrush(&self) -> u32 {
         let underbrush = self.renderer.scene.as_ref().and_then(|scene| scene.underbrush.as_ref());
-        underbrush.map_or(0, |underbrush| Underbrush::drawn(&read(&self.gpu, underbrush.tally())))
+        underbrush.map_or(0, |underbrush| Underbrush::drawn(&read(&self.gpu, underbrush.counters())))
     }
 
     fn wait(&self) {

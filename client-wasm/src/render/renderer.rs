@@ -33,7 +33,7 @@ pub struct Renderer {
     pub(super) weighted: Option<WeightedOit>,
     /// Times the passes, if set.
     pub(super) timestamps: Option<TimestampQueries>,
-    /// Counts what the passes process, if set.
+    /// Counts the vertices, primitives and invocations of the passes, if set.
     pub(super) statistics: Option<StatisticsQueries>,
     pub(super) scene: Option<Box<SceneResources>>,
 }

@@ -60,7 +60,7 @@ pub(super) fn shadow_pass(
     encoder.begin_render_pass(&descriptor).forget_lifetime()
 }
 
-/// Begins the tone mapping pass; `keeps` preserves what the output already shows.
+/// Begins the tone mapping pass; `keeps` preserves the previous contents of the output.
 pub(super) fn tone_pass(
     encoder: &mut wgpu::CommandEncoder,
     output: &wgpu::TextureView,

@@ -46,13 +46,24 @@ fn every_shader_is_valid_wgsl_without_extensions() {
 #[test]
 fn storage_structs_have_the_sizes_that_rust_gives_them() {
     let [module, underbrush, shells] = [shaders::BEND, shaders::UNDERBRUSH, shaders::SHELLS].map(self::module);
+    let [billboards, dust, objects] = [shaders::BILLBOARDS, shaders::DUST, shaders::OBJECTS].map(self::module);
     for (of, name, bytes) in [
         (&shells, "Turf", crate::render::plants::shells::TURF_BYTES as u32),
         (&module, "Sway", blades::SWAY_BYTES as u32),
         (&module, "Blade", blades::BLADE_BYTES as u32),
-        (&underbrush, "Grown", 24),
-        (&underbrush, "Felt", 32),
-        (&underbrush, "Stand", crate::render::plants::underbrush::STAND_BYTES as u32),
+        (&shells, "GroundTile", 16),
+        (&shells, "TileLayer", 16),
+        (&billboards, "Clump", 16),
+        (&billboards, "ClumpPose", 160),
+        (&dust, "DustPlace", 16),
+        (&dust, "Sprite", 48),
+        (&objects, "Instance", 80),
+        (&objects, "TreeSway", 16),
+        (&underbrush, "Row", 32),
+        (&underbrush, "Limb", 64),
+        (&underbrush, "UnderbrushPlant", 24),
+        (&underbrush, "ForceResponse", 32),
+        (&underbrush, "VisiblePlant", crate::render::plants::underbrush::VISIBLE_PLANT_BYTES as u32),
         (&underbrush, "Border", crate::render::plants::underbrush::ROW_BYTES as u32 / 2),
     ] {
         let (_, found) = of.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("it is there");
@@ -485,7 +496,7 @@ fn trees_sway_by_their_height_and_keep_their_length() {
     let body = "let height = at.x;
         let foot = vec4<f32>(32.0, 0.0, 32.0, 1.0);
         let scaled = mat4x4<f32>(vec4<f32>(height, 0.0, 0.0, 0.0), vec4<f32>(0.0, height, 0.0, 0.0), vec4<f32>(0.0, 0.0, height, 0.0), foot);
-        let tree = Instance(scaled, vec4<f32>(0.0, 0.0, 0.0, at.z));
+        let tree = Instance(scaled, vec3<f32>(0.0), at.z);
         let vertex = Vertex(vec3<f32>(0.0, at.y, 0.0), vec4<f32>(0.0), vec4<f32>(0.0), vec2<f32>(0.0));
         return vec4<f32>((placed(vertex, tree, sway_of(tree)) - foot.xyz) / height, 0.0);";
     let sway_rad = 0.07;
@@ -522,7 +533,9 @@ fn underbrush_follows_the_force_as_its_twin_does() {
         @group(1) @binding(0) var<storage, read_write> cases: array<vec4<f32>>;
         @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
             let goal = cases[id.x * 2u + 1u];
-            cases[id.x * 2u] = followed(cases[id.x * 2u], goal.xy, goal.z, goal.w);
+            let state = cases[id.x * 2u];
+            let next = followed(ForceResponse(state.xy, state.zw, 0u), goal.xy, goal.z, goal.w);
+            cases[id.x * 2u] = vec4<f32>(next.pressure_pa, next.rate_pa_per_s);
         }";
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow(0.0);

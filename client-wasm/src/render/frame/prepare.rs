@@ -21,7 +21,7 @@ use glam::{Mat4, Vec3};
 use prairie_core::scene::PlantCover;
 use prairie_core::wire::ObjectPose;
 
-/// Distance up to which clumps of plants have several segments, relative to that at which single plants end.
+/// Maximum distance of clumps with several segments, relative to that of the last single plants.
 const SEVERAL_SEGMENTS_REACH: f32 = 1.6;
 
 /// Decisions of [`Renderer::prepare`] that the passes of the frame follow.

@@ -63,7 +63,7 @@ pub(crate) const SINGLE_LIST: u32 = 2;
 pub(crate) const HEAD_LIST: u32 = 3;
 pub(crate) const FAR_HEAD_LIST: u32 = 4;
 pub(crate) const PLANT_LISTS: u32 = 5;
-/// Jitter (±, relative) from blade to blade of the distance up to which they are fine, so that no ring of them changes at once.
+/// Relative jitter (±) of the maximum distance of fine blades, so that blades do not change in a visible ring.
 pub(crate) const FINE_SPREAD: f32 = 0.15;
 /// Shapes in the texture of blades, side by side.
 pub(crate) const BLADE_SHAPES: u32 = 5;
@@ -94,8 +94,8 @@ pub(crate) const UNDERBRUSH_LEVELS: u32 = 4;
 pub(crate) const UNDERBRUSH_LISTS: u32 = prairie_core::plant::growth::SPECIES_LIMIT as u32 * UNDERBRUSH_LEVELS;
 /// Rows per allocation block of a plant.
 pub(crate) const BLOCK_ROWS: u32 = 8;
-/// Minimum fraction of plants that remain when they are few pixels tall; the remaining ones are larger by its power of -0.3.
-pub(crate) const FEWEST: f32 = 0.06;
+/// Minimum fraction of plants kept when they are only a few pixels tall. A kept fraction f enlarges the plants by f^-0.3.
+pub(crate) const MIN_KEPT_FRACTION: f32 = 0.06;
 /// Pressure (Pa) that bends a fallen plant.
 pub(crate) const FALL_PA: f32 = 8.0;
 /// Unit of half-widths (m).
@@ -109,11 +109,13 @@ pub(crate) const DROP_M_PER_S: f32 = drops::DROP_M_PER_S;
 
 // --- ground, objects and sorting ---
 
-/// Hills beyond the edge of the world: range of their heights (m), their mean as a fraction of it, slope of the land away from the edge, and distance from
-/// the edge at which they have their full height (m).
+/// Range of the heights of the hills beyond the edge of the world (m).
 pub(crate) const HILLS_RANGE_M: f32 = 150.0;
+/// Mean height of these hills, relative to the range.
 pub(crate) const HILLS_MEAN: f32 = 0.42;
+/// Slope of the land away from the edge.
 pub(crate) const HILLS_SLOPE: f32 = 0.006;
+/// Distance from the edge at which the hills reach their full height (m).
 pub(crate) const HILLS_FULL_M: f32 = 900.0;
 /// Cells along one side of a ground tile, and vertices of the tile.
 pub(crate) const TILE_CELLS: u32 = 16;

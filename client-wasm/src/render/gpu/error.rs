@@ -9,7 +9,7 @@ pub enum GpuError {
     #[error("no graphics adapter: {0}")]
     NoAdapter(String),
     /// A limit of the adapter is below the minimum.
-    #[error("the graphics adapter allows {name} up to {found}; the prairie needs {needed}")]
+    #[error("the graphics adapter allows {name} up to {found}; Prairie needs {needed}")]
     Limit {
         /// Name of the limit in WebGPU.
         name: &'static str,
@@ -19,7 +19,7 @@ pub enum GpuError {
         needed: u64,
     },
     /// The scene does not fit into the device at this quality.
-    #[error("the device cannot hold the picture in {quality} quality: {reason}")]
+    #[error("the GPU cannot hold the scene in {quality} quality: {reason}")]
     DoesNotFit {
         /// Name of the quality.
         quality: &'static str,

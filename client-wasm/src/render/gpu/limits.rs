@@ -47,7 +47,7 @@ mod tests {
         let few = wgpu::Limits { max_storage_buffers_per_shader_stage: 4, ..wgpu::Limits::default() };
         let error = lacking(&few).expect("too few");
         assert_eq!(error, GpuError::Limit { name: "max_storage_buffers_per_shader_stage", found: 4, needed: 8 });
-        assert_eq!(error.to_string(), "the graphics adapter allows max_storage_buffers_per_shader_stage up to 4; the prairie needs 8");
+        assert_eq!(error.to_string(), "the graphics adapter allows max_storage_buffers_per_shader_stage up to 4; Prairie needs 8");
         let small = wgpu::Limits { max_texture_dimension_2d: 1024, ..wgpu::Limits::default() };
         assert!(matches!(lacking(&small), Some(GpuError::Limit { name: "max_texture_dimension_2d", found: 1024, needed: 2048 })));
     }

@@ -74,7 +74,7 @@ uniform_block! {
         blade_width_m: f32,
         /// Leaf area index (leaf area per ground area) of blades of mean height at full density.
         leaf_area: f32,
-        /// Distance up to which plants stand at full density (m).
+        /// Maximum distance of plants at full density (m).
         full_density_m: f32,
         /// Distances at which near blades begin to fade out, and end (m).
         blades_fade_from_m: f32,
@@ -269,14 +269,15 @@ uniform_block! {
         grid_m: f32,
         /// Distance of full density (m).
         full_density_m: f32,
-        /// Distance up to which blades are fine (m).
+        /// Maximum distance of fine blades (m).
         fine_m: f32,
         /// Damping ratio of a blade.
         damping: f32,
         /// Length of a step (s).
         step_secs: f32,
-        /// Probability that the first plant of a grid is a flower, and the exponent with which it falls along the grid's sequence.
+        /// Probability that the first plant of a grid is a flower.
         first_flower: f32,
+        /// Exponent of that probability along the sequence of the grid's plants.
         flower_power: f32,
         /// Minimum width of a drawn blade (px); 0 only in the reference, which does not draw heads as discs either.
         thinnest_px: f32,

@@ -17,7 +17,7 @@ fn side(layout: &PatchLayout) -> u32 {
     (SIDE_LIMIT / layout.cells).max(2)
 }
 
-/// Distance from the camera along X or Z up to which the bend field fits into the atlas (m).
+/// Maximum distance from the camera along X or Z that fits into the atlas (m).
 pub fn reach_m(layout: &PatchLayout) -> f32 {
     (0.5 * side(layout) as f32 - 1.0) * layout.patch_m()
 }

@@ -7,10 +7,10 @@ use prairie_core::scene::Plants;
 /// renderer's quality.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Detail {
-    /// Distance up to which every blade is drawn (m). Beyond, density falls with the square of the distance, so that blades per area of the picture stay
+    /// Maximum distance at which every blade is drawn (m). Beyond, density falls with the square of the distance, so that blades per area of the picture stay
     /// constant.
     pub(crate) full_m: f32,
-    /// Distance up to which blades have all their segments (m).
+    /// Maximum distance of blades with all their segments (m).
     pub(crate) fine_m: f32,
     /// Distance from which flower heads thin out (m); the remaining ones are larger.
     pub(crate) heads_m: f32,
@@ -20,7 +20,7 @@ pub(crate) struct Detail {
     pub(crate) far_m: f32,
     /// Distance at which underbrush has faded into the grass (m).
     pub(crate) underbrush_m: f32,
-    /// Distance up to which trees are drawn (m).
+    /// Maximum distance of trees (m).
     pub(crate) trees_m: f32,
     /// Factor on the heights on screen below which underbrush and trees are drawn coarsely.
     pub(crate) coarser: f32,

@@ -57,7 +57,7 @@ impl BlendOrder {
 /// Representation of plants beyond the single blades.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FarPlants {
-    /// Only the ground, in the colours of its grass. Single blades are drawn as far as they can be told apart.
+    /// Only the ground, in the colours of its grass. Single blades are drawn up to the distance at which they become indistinguishable.
     #[default]
     Land,
     /// Clumps of six rectangles (Zhang, chapter 4).
@@ -110,7 +110,7 @@ impl RenderOptions {
         far_plants.chain(orders).chain([Self::UNCULLED])
     }
 
-    /// These options with the one of this name set; `None` for an unknown name.
+    /// A copy of the options with the named one set; `None` if the name is unknown.
     pub fn with(self, name: &str) -> Option<Self> {
         let far_plants = FarPlants::from_name(name).map(|far_plants| Self { far_plants, ..self });
         let order = BlendOrder::from_name(name).map(|blend_order| Self { blend_order, ..self });

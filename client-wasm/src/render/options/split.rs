@@ -19,7 +19,7 @@ impl SideOptions {
         RenderOptions::names().chain(Quality::ALL.map(Quality::name))
     }
 
-    /// These options with the one of this name set: a [render option](RenderOptions::names), or a quality, which sets the level; `None` for an unknown name.
+    /// A copy of the options with the named one set: a [render option](RenderOptions::names), or a quality, which sets the level; `None` if the name is unknown.
     pub fn with(self, name: &str) -> Option<Self> {
         let level = Quality::from_name(name).map(|quality| Self { level: quality.level(), ..self });
         level.or(self.options.with(name).map(|options| Self { options, ..self }))

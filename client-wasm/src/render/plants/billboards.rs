@@ -21,8 +21,8 @@ use wgpu::BufferUsages;
 
 /// Maximum number of clumps in a frame.
 const CLUMP_LIMIT: usize = 32_768;
-/// Bytes of the pose of a clump, `Stand` in `billboards.wgsl`.
-const STAND_BYTES: u64 = 160;
+/// Bytes of `ClumpPose` in `billboards.wgsl`.
+const POSE_BYTES: u64 = 160;
 /// Maximum number of segments of a plant.
 const SEGMENT_LIMIT: usize = CLUMP_SEGMENT_LIMIT as usize;
 /// Rings of grids that get the clumps of the nearest ring, as plants thin out there.
@@ -50,7 +50,7 @@ pub(crate) struct Billboards {
     place_group: wgpu::BindGroup,
     clumps: wgpu::Buffer,
     list: wgpu::Buffer,
-    stands: wgpu::Buffer,
+    poses: wgpu::Buffer,
     tufts: wgpu::TextureView,
     /// Index buffers of instances whose rectangles have 1, 2, … rows.
     indices: [wgpu::Buffer; SEGMENT_LIMIT],
@@ -71,17 +71,17 @@ impl Billboards {
         let list = gpu.empty_buffer("clump list", size_of::<ClumpList>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let tufts = gpu.texture("tufts", wgpu::TextureFormat::Rgba8Unorm, TUFT_PX, &tufts());
         let tufts = tufts.create_view(&Default::default());
-        let stands = gpu.empty_buffer("stands", (CLUMP_LIMIT as u64) * STAND_BYTES, BufferUsages::STORAGE);
-        let place_group = bind_as(gpu, "billboard places", &place_layout, &[(0, &clumps), (1, &list), (4, &stands)]);
+        let poses = gpu.empty_buffer("poses", (CLUMP_LIMIT as u64) * POSE_BYTES, BufferUsages::STORAGE);
+        let place_group = bind_as(gpu, "billboard places", &place_layout, &[(0, &clumps), (1, &list), (4, &poses)]);
         let indices = std::array::from_fn(|i| gpu.buffer("clump", bytemuck::cast_slice(&clump_indices(i as u16 + 1)), BufferUsages::INDEX));
-        let pipelines = ClumpPipelines::new(factory, BlendOrder::default(), CLUMP_LIMIT as u32, [&clumps, &list, &stands], &tufts);
+        let pipelines = ClumpPipelines::new(factory, BlendOrder::default(), CLUMP_LIMIT as u32, [&clumps, &list, &poses], &tufts);
         Self {
             pipelines: PerBlendOrder::new(BlendOrder::default(), pipelines),
             place,
             place_group,
             clumps,
             list,
-            stands,
+            poses,
             tufts,
             indices,
             count: 0,
@@ -92,7 +92,7 @@ impl Billboards {
 
     /// Sets the blend order of the following frames.
     pub(crate) fn set_order(&mut self, factory: &PassFactory<'_>, order: BlendOrder) {
-        let lists = [&self.clumps, &self.list, &self.stands];
+        let lists = [&self.clumps, &self.list, &self.poses];
         self.pipelines.set(order, || ClumpPipelines::new(factory, order, CLUMP_LIMIT as u32, lists, &self.tufts));
     }
 

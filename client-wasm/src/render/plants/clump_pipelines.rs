@@ -45,12 +45,12 @@ struct Sorted {
 }
 
 impl ClumpPipelines {
-    /// Creates pipelines for at most `limit` clumps with poses `stands`.
+    /// Creates pipelines for at most `limit` clumps with poses `poses`.
     pub(crate) fn new(
         factory: &PassFactory<'_>,
         order: BlendOrder,
         limit: u32,
-        [clumps, list, stands]: [&wgpu::Buffer; 3],
+        [clumps, list, poses]: [&wgpu::Buffer; 3],
         tufts: &wgpu::TextureView,
     ) -> Self {
         let gpu = factory.gpu;
@@ -70,7 +70,7 @@ impl ClumpPipelines {
             DrawSequence::Precomputed { pairs, .. } => Some(pairs),
         };
         let mut layout = vec![storage(0), uniform(1), texture(2), storage(3)];
-        let mut entries = vec![(0, clumps), (1, list), (3, stands)];
+        let mut entries = vec![(0, clumps), (1, list), (3, poses)];
         if let Some(pairs) = pairs {
             layout.push(storage(6));
             entries.push((6, pairs));

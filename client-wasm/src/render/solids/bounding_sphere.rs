@@ -25,7 +25,7 @@ impl BoundingSphere {
         Self { centre_m, radius_m: positions.iter().map(|at| at.distance(centre_m)).fold(0.0, f32::max) }
     }
 
-    /// This sphere of a model around a placed copy, wherever the wind moves it.
+    /// The sphere around an instance of the model, including its sway in the wind.
     pub(crate) fn placed(self, placed: &PlacedModel) -> Self {
         let matrix = &placed.world_from_model;
         let [wide_m, tall_m, deep_m] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| axis.length());

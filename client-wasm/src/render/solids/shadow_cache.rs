@@ -18,7 +18,7 @@ const MAX_AGE_SECS: f64 = 0.5;
 const MAX_CAMERA_SHIFT: f32 = 0.03;
 /// Rotation of the camera, or movement of the sun, that invalidates a cascade (rad).
 const MAX_TURN_RAD: f32 = 0.02;
-/// Relative change of the distance up to which trees are drawn that invalidates a cascade; the level of detail changes gradually.
+/// Relative change of the maximum distance of trees that invalidates a cascade; the level of detail changes gradually.
 const MAX_TREES_CHANGE: f32 = 0.05;
 /// Object movement (m) and rotation (rad), of the whole or of a part, that invalidates a cascade: any in the sharp one; in the coarse one half a texel, and
 /// no rotation, which would not be visible.
@@ -45,7 +45,7 @@ pub(crate) struct ShadowView {
     pub(crate) eye_m: Vec3,
     pub(crate) heading_rad: f32,
     pub(crate) sun: Sun,
-    /// Distance up to which trees are drawn (m).
+    /// Maximum distance of trees (m).
     pub(crate) trees_m: f32,
     /// Whether models that cast no shadow into a cascade are culled.
     pub(crate) culls: bool,

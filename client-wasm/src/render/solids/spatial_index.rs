@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// Side of a square (m).
 const SQUARE_M: f32 = 32.0;
-/// Distance up to which stones are drawn, relative to that of trees.
+/// Maximum distance of stones, relative to that of trees.
 const STONE_REACH: f32 = 0.4;
 
 /// The models on a square of the land.

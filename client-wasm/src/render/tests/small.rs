@@ -55,14 +55,14 @@ fn a_device_with_low_limits_draws_smaller_and_coarser() {
 fn scenes_that_fit_at_no_quality_are_rejected_with_the_limit() {
     let few = wgpu::Limits { max_storage_buffers_per_shader_stage: 4, ..wgpu::Limits::default() };
     let error = device(&few).expect_err("bend alone needs more");
-    assert_eq!(error.to_string(), "the graphics adapter allows max_storage_buffers_per_shader_stage up to 4; the prairie needs 8");
+    assert_eq!(error.to_string(), "the graphics adapter allows max_storage_buffers_per_shader_stage up to 4; Prairie needs 8");
 
     let gpu = device(&needed()).expect("no more is needed");
     let crowded = meadow(|scene| scene.plants.plants_per_side = 256);
     let error = fits(&gpu, Quality::Low, &crowded).expect_err("nine times 65536 blades are more than the buffers hold");
     let said = error.to_string();
     let numbers = said.split(|c: char| !c.is_ascii_digit()).filter_map(|digits| digits.parse::<u64>().ok());
-    assert!(said.starts_with("the device cannot hold the picture in low quality: "), "{said}");
+    assert!(said.starts_with("the GPU cannot hold the scene in low quality: "), "{said}");
     assert!(
         numbers.clone().any(|number| number == 16 << 20) && numbers.max() > Some(16 << 20),
         "neither the limit nor what is needed: {said}"

@@ -32,7 +32,7 @@ fn blade_case(n: u32) -> [[f32; 4]; 9] {
 #[test]
 fn blades_move_as_their_cpu_twins() {
     const SOURCE: &str = "
-        struct Case { links: array<vec4<f32>, 3>, acts: array<vec4<f32>, 3>, blade: vec4<f32>, root: vec4<f32>, normal: vec4<f32> }
+        struct Case { links: array<Link, 3>, acts: array<vec4<f32>, 3>, blade: vec4<f32>, root: vec4<f32>, normal: vec4<f32> }
         @group(1) @binding(0) var<storage, read_write> cases: array<Case>;
         @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
             let input = cases[id.x];
@@ -98,13 +98,15 @@ fn blades_move_as_their_cpu_twins() {
 #[test]
 fn blades_are_drawn_as_by_their_cpu_twins() {
     const SOURCE: &str = "
-        struct Case { links: array<vec4<f32>, 3>, how: vec4<f32> }
+        struct Case { links: array<Link, 3>, how: vec4<f32> }
         @group(1) @binding(0) var<storage, read_write> cases: array<Case>;
         @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
             let input = cases[id.x];
             let points = drawn_out(points_of(Sway(input.links), input.how.x), input.how.x, u32(input.how.w));
-            cases[id.x].links[0] = vec4<f32>(backbone_at(points, input.how.z), 0.0);
-            cases[id.x].links[1] = vec4<f32>(side_at(points[2], input.how.y, input.how.z), 0.0);
+            let at = backbone_at(points, input.how.z);
+            let side = side_at(points[2], input.how.y, input.how.z);
+            cases[id.x].links[0] = Link(at.xy, vec2<f32>(at.z, 0.0));
+            cases[id.x].links[1] = Link(side.xy, vec2<f32>(side.z, 0.0));
         }";
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);

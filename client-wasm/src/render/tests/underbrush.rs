@@ -96,9 +96,9 @@ fn felt(picture: &mut OffscreenRenderer, gpu: &Gpu, mirror: &mut Mirror) -> Hash
     });
     let decoded = mirror.decoded_scene().expect("a scene");
     let (grown, _) = underbrush::tiles(decoded, decoded.flora().expect("underbrush"));
-    let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").underbrush.as_ref().expect("underbrush").seen.felt);
-    let felt: &[[f32; 8]] = bytemuck::cast_slice(&bytes);
-    grown.iter().zip(felt).map(|(plant, felt)| (plant.site, (plant.at_m, [felt[0], felt[1]]))).collect()
+    let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").underbrush.as_ref().expect("underbrush").seen.responses);
+    let responses: &[[f32; 8]] = bytemuck::cast_slice(&bytes);
+    grown.iter().zip(responses).map(|(plant, response)| (plant.site, (plant.at_m, [response[0], response[1]]))).collect()
 }
 
 #[test]

@@ -178,8 +178,8 @@ impl FromRust {
         }
     }
 
-    /// What a number repeats, if it is unlikely to coincide by chance: a constant with at least three digits that is no power of two, a literal
-    /// with at least four, or a constant of mathematics.
+    /// The Rust value that a number repeats, unless they may coincide by chance. Counted are constants of at least three digits other than powers of
+    /// two, literals of at least four, and constants of mathematics.
     fn repeated(&self, number: &str) -> Option<String> {
         let value = value_of(number)?;
         let digits = significant_digits(number);

@@ -38,7 +38,7 @@ use strip_pipelines::{BladeDrawList, StripPipelines};
 const STEP_LIMIT: f32 = 4.0 * BLADE_STEPS_LIMIT as f32;
 /// Longest step of the exact integrator (s): wind and obstacles are constant during a step.
 const EXACT_STEP_SECS: f32 = 0.1;
-/// Power with which the probability of being a flower falls with the number of a plant in its grid, so that flowers thin out more slowly than blades.
+/// Exponent of the probability of a flower along the sequence of a grid's plants: with it flowers thin out more slowly than blades.
 pub(crate) const FLOWER_POWER: f32 = -0.8;
 
 /// Bytes of an indirect draw.

@@ -5,11 +5,13 @@
 //! aside.
 //!
 //! # Accuracy
-//! Over the shipped species, all headings, winds up to 11 m/s, leans and sizes 0.4 to 1.35, with every section: lengths are exact (to 1e-5, rounding); tips
-//! are off those of [`posed`] by 2e-4 of the component's length at most, root mean square (all but upright ones by 5e-3 at most, where it is a matter of
-//! rounding which side they fall to), and off those of the balance itself by 0.25 % (99 of 100 by less than 0.5 %, the worst by 8 %). With every second
-//! section, every fourth and one, by 0.2 %, 0.6 % and 2 % of the plant's reach (at worst 4 %, 8 % and 15 %): components are then attached to straight steps, and
-//! with one section use the nearest posture.
+//! Errors over the shipped species, all headings, winds up to 11 m/s, leans, and sizes of 0.4 to 1.35:
+//! - Lengths with every section: at most 1e-5, by rounding.
+//! - Tips with every section, against [`posed`]: at most 2e-4 of the component's length, root mean square. Single tips differ by at most 5e-3, except those of
+//!   upright components, which rounding lets fall to either side.
+//! - Tips with every section, against the balance of moments itself: 0.25 %, root mean square; 99 of 100 differ by less than 0.5 %, the worst by 8 %.
+//! - Tips with every second section, every fourth, and one section: 0.2 %, 0.6 % and 2 % of the plant's reach, at worst 4 %, 8 % and 15 %. Components are then
+//!   attached to straight steps, and with one section use the nearest posture.
 
 pub(super) use crate::render::gpu::constants::VARIANTS;
 use crate::render::gpu::constants::{GRAVITY_M_PER_S2, PETAL, STALK, UNDERBRUSH_LEVELS, WIDTH_UNIT_M};
@@ -48,22 +50,40 @@ enum RowMaterial {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(super) struct Row {
-    /// Half its width and material; colour; component and number of steps below it; unused.
-    look: [u32; 4],
-    /// For a petal: distance from the tip of the stalk (m), cosine and sine of its rotation around the stalk, and sine of its angle from the stalk.
-    petal: [f32; 4],
+    /// Half its width in the low half, material in the high half.
+    width_and_material: u32,
+    /// Square root of its linear colour, a byte per channel.
+    rgb: u32,
+    /// Number of its component in the low half, number of steps below it there in the high half.
+    limb_and_steps: u32,
+    _unused: u32,
+    /// Place in its petal; zero for other rows.
+    petal: PetalPlace,
+}
+
+/// Place of a row in a petal.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+struct PetalPlace {
+    /// Distance from the tip of the stalk (m).
+    from_stalk_m: f32,
+    /// Cosine and sine of the petal's rotation around the stalk.
+    turn_cosine: f32,
+    turn_sine: f32,
+    /// Sine of its angle from the stalk.
+    sine: f32,
 }
 
 #[cfg(test)]
 impl Row {
     /// Whether it belongs to a petal.
     pub(super) fn is_petal(&self) -> bool {
-        self.look[0] >> 16 == RowMaterial::Petal as u32
+        self.width_and_material >> 16 == RowMaterial::Petal as u32
     }
 
     /// Number of its component in the plant.
     pub(super) fn limb(&self) -> usize {
-        (self.look[2] & 0xffff) as usize
+        (self.limb_and_steps & 0xffff) as usize
     }
 }
 
@@ -71,15 +91,41 @@ impl Row {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(super) struct Limb {
-    /// Cosine and sine of its angle from its parent component, and of its rotation around it.
-    turns: [f32; 4],
-    /// Load Λ per force per mass (s²/m) and per pressure (1/Pa); length (m); position along its parent (steps). All for a plant of size 1.
-    nature: [f32; 4],
-    /// First step of its table; number of steps; parent component; depth in the hierarchy.
-    table: [u32; 4],
-    /// Initial speed of its tip after the impact of a drop of rain (m/s), time to the maximum deflection (s), area exposed to rain (m²; 0 if it does not
-    /// tremble); unused.
-    struck: [f32; 4],
+    /// Cosine and sine of its angle from its parent component.
+    angle: [f32; 2],
+    /// Cosine and sine of its rotation around the parent.
+    turn: [f32; 2],
+    /// Load Λ per force per mass (s²/m), of a plant of size 1 as all that follows.
+    load_s2_per_m: f32,
+    /// Load Λ per pressure (1/Pa).
+    load_per_pa: f32,
+    /// Length (m).
+    length_m: f32,
+    /// Position along its parent (steps).
+    host_steps: f32,
+    /// First step of its table.
+    first_step: u32,
+    /// Number of steps.
+    steps: u32,
+    /// Number of its parent component.
+    host: u32,
+    /// Depth in the hierarchy.
+    depth: u32,
+    /// Response to rain.
+    drop: DropResponse,
+}
+
+/// Response of a component to a drop of rain.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+struct DropResponse {
+    /// Initial speed of its tip after the impact (m/s).
+    speed_m_per_s: f32,
+    /// Time to the maximum deflection (s).
+    settle_secs: f32,
+    /// Area exposed to rain (m²); 0 if it does not tremble.
+    area_m2: f32,
+    _unused: f32,
 }
 
 /// A species at a level of detail.
@@ -128,8 +174,8 @@ impl Baked {
             for placed in &makes {
                 let calm = Forces { per_mass_m_per_s2: GRAVITY, pressure_pa: Vec3::ZERO };
                 let calm = posed(plan, placed, Stand { size: 1.0, heading_rad: 0.0, lean_rad: [0.0; 2] }, calm, LookUp::Nearest, 0);
-                let struck = |index: usize| struck(&plan.parts[placed[index].part], &calm[index]);
-                let limb = |index: usize| Limb { struck: struck(index), ..limb(plan, &tables, placed, index, every, is_broken) };
+                let drop = |index: usize| drop_response(&plan.parts[placed[index].part], &calm[index]);
+                let limb = |index: usize| Limb { drop: drop(index), ..limb(plan, &tables, placed, index, every, is_broken) };
                 baked.limbs.extend((0..placed.len()).map(limb));
             }
         }
@@ -184,19 +230,26 @@ fn limb(plan: &Plan, tables: &[u32], placed: &[Placed], index: usize, every: usi
     let depth = std::iter::successors(one.on, |&on| placed[on].on).count();
     let ((sine, cosine), (turn_sine, turn_cosine)) = (one.angle_rad.sin_cos(), one.turn_rad.sin_cos());
     Limb {
-        turns: [cosine, sine, turn_cosine, turn_sine],
-        nature: [part.weight_s2_per_m * one.size, part.drag_per_pa, part.component.length_m * one.size, at_step],
-        table: [tables[table], sections(table).div_ceil(every) as u32, one.on.unwrap_or(0) as u32, depth as u32],
-        struck: [0.0; 4],
+        angle: [cosine, sine],
+        turn: [turn_cosine, turn_sine],
+        load_s2_per_m: part.weight_s2_per_m * one.size,
+        load_per_pa: part.drag_per_pa,
+        length_m: part.component.length_m * one.size,
+        host_steps: at_step,
+        first_step: tables[table],
+        steps: sections(table).div_ceil(every) as u32,
+        host: one.on.unwrap_or(0) as u32,
+        depth: depth as u32,
+        drop: DropResponse::default(),
     }
 }
 
-/// Response of a component to rain, as in [`Limb`]. Leaves catch drops with their area as seen from above, flowers with the disc of their petals; stalks are
+/// Response of a component to a drop of rain. Leaves catch drops with their area as seen from above, flowers with the disc of their petals; stalks are
 /// stiff.
-fn struck(part: &Part, calm: &Posed) -> [f32; 4] {
+fn drop_response(part: &Part, calm: &Posed) -> DropResponse {
     let component = &part.component;
     let Struck { speed_m_per_s, settle_secs } = Struck::new(component, calm.size);
-    let catches_m2 = match component.kind {
+    let area_m2 = match component.kind {
         _ if settle_secs < FASTEST_SECS => 0.0,
         ComponentKind::Branch => 0.0,
         ComponentKind::Flower => FRAC_PI_4 * (component.width_m * calm.size).powi(2),
@@ -209,7 +262,7 @@ fn struck(part: &Part, calm: &Posed) -> [f32; 4] {
             LEAF_AREA * component.width_m * component.length_m * calm.size * calm.size * seen_share
         }
     };
-    [speed_m_per_s, settle_secs, catches_m2, 0.0]
+    DropResponse { speed_m_per_s, settle_secs, area_m2, _unused: 0.0 }
 }
 
 /// Components that a level shows, with a factor on their width that preserves coverage. The coarsest level omits thin stalks and most leaves.
@@ -239,22 +292,28 @@ fn ribbons(part: &Part, one: &Posed, index: usize, level: usize, wider: f32) -> 
     let (root, tip) = (Vec3::from(component.root_rgb), Vec3::from(component.tip_rgb));
     let outline = vectors(part, one, EVERY[level]);
     let steps = outline.len() - 1;
-    let row = |step: usize, half_m: f32, rgb: Vec3, stuff: RowMaterial, petal: [f32; 4]| {
+    let row = |step: usize, half_m: f32, rgb: Vec3, material: RowMaterial, petal: PetalPlace| {
         let half = (half_m / WIDTH_UNIT_M).round().clamp(0.0, 65_535.0) as u32;
         // The square root keeps dark colours apart in 8 bits.
         let [r, g, b] = rgb.to_array().map(|v| (v.clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u32);
-        Row { look: [half | (stuff as u32) << 16, r | g << 8 | b << 16, index as u32 | (step as u32) << 16, 0], petal }
+        Row {
+            width_and_material: half | (material as u32) << 16,
+            rgb: r | g << 8 | b << 16,
+            limb_and_steps: index as u32 | (step as u32) << 16,
+            _unused: 0,
+            petal,
+        }
     };
     // A coarse outline cuts off the belly of a leaf, so it is widened to the same area.
     let halves: Vec<f32> = outline.iter().map(|vector| vector.right_m.length()).collect();
     let area: f32 = halves.windows(2).map(|pair| pair[0] + pair[1]).sum::<f32>() / steps.max(1) as f32;
     let whole = if component.kind == ComponentKind::Leaf { LEAF_AREA * component.width_m * one.size } else { area };
     let fill = if area > 0.0 { whole / area } else { 1.0 };
-    let stuff = if component.kind == ComponentKind::Leaf { RowMaterial::Leaf } else { RowMaterial::Stalk };
+    let material = if component.kind == ComponentKind::Leaf { RowMaterial::Leaf } else { RowMaterial::Stalk };
     let own = halves.iter().enumerate().map(|(step, half_m)| {
         let share = step as f32 / steps.max(1) as f32;
         let color = if component.kind == ComponentKind::Flower { root } else { root.lerp(tip, share) };
-        row(step, half_m * fill * wider, color, stuff, [0.0; 4])
+        row(step, half_m * fill * wider, color, material, PetalPlace::default())
     });
     let mut all = vec![own.collect::<Vec<_>>()];
     if component.kind != ComponentKind::Flower {
@@ -263,7 +322,8 @@ fn ribbons(part: &Part, one: &Posed, index: usize, level: usize, wider: f32) -> 
     let radius_m = 0.5 * component.width_m * one.size;
     if level + 1 == LEVELS {
         // A single face for all petals.
-        all.push([-1.0, 1.0].map(|sign| row(steps, 0.8 * radius_m, tip, RowMaterial::Petal, [sign * radius_m, 0.0, 1.0, 1.0])).to_vec());
+        let across = |sign: f32| PetalPlace { from_stalk_m: sign * radius_m, turn_cosine: 0.0, turn_sine: 1.0, sine: 1.0 };
+        all.push([-1.0, 1.0].map(|sign| row(steps, 0.8 * radius_m, tip, RowMaterial::Petal, across(sign))).to_vec());
         return all;
     }
     let step_rad = TAU / component.petals as f32;
@@ -271,7 +331,8 @@ fn ribbons(part: &Part, one: &Posed, index: usize, level: usize, wider: f32) -> 
         let (sine, cosine) = (step_rad * nth as f32).sin_cos();
         let petal = |share: f32, wide: f32| {
             let half_m = 0.25 * step_rad * radius_m * wide;
-            row(steps, half_m, tip * (0.7 + 0.3 * share), RowMaterial::Petal, [share * radius_m, cosine, sine, PETAL_RAD.sin()])
+            let place = PetalPlace { from_stalk_m: share * radius_m, turn_cosine: cosine, turn_sine: sine, sine: PETAL_RAD.sin() };
+            row(steps, half_m, tip * (0.7 + 0.3 * share), RowMaterial::Petal, place)
         };
         all.push(vec![petal(0.0, 0.25), petal(0.55, 1.0), petal(1.0, 0.55)]);
     }
@@ -356,7 +417,7 @@ mod tests {
         let area = |level: usize| {
             let baked = Baked::new(&plan, level);
             let halves: Vec<f32> =
-                baked.rows[..baked.ribbons[0] as usize].iter().map(|row| (row.look[0] & 0xffff) as f32 * WIDTH_UNIT_M).collect();
+                baked.rows[..baked.ribbons[0] as usize].iter().map(|row| (row.width_and_material & 0xffff) as f32 * WIDTH_UNIT_M).collect();
             halves.windows(2).map(|pair| pair[0] + pair[1]).sum::<f32>() / (halves.len() - 1) as f32
         };
         for level in 0..LEVELS {
@@ -375,7 +436,7 @@ mod tests {
         };
         let catches_m2 = |component: Component| {
             let plan = Plan::new(&Underbrush::new("one", vec![component]), Nodes::default());
-            Baked::new(&plan, 0).limbs[0].struck[2]
+            Baked::new(&plan, 0).limbs[0].drop.area_m2
         };
         let level_m2 = catches_m2(component(ComponentKind::Leaf, 1.5));
         assert!((level_m2 / (0.73 * 0.4 * 0.01) - 1.0).abs() < 0.05, "{level_m2}");

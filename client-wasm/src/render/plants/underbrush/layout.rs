@@ -9,8 +9,8 @@ pub(super) const LISTS: usize = UNDERBRUSH_LISTS as usize;
 pub(super) const CHUNK: u32 = 64;
 pub(super) const CHUNKS_LIMIT: usize = 65_535;
 /// Bytes of the forces on a plant, of its posture and of the borders of a row in `underbrush.wgsl` and `ribbons.wgsl`.
-pub(super) const FELT_BYTES: u64 = 32;
-pub(crate) const STAND_BYTES: u64 = 128;
+pub(super) const RESPONSE_BYTES: u64 = 32;
+pub(crate) const VISIBLE_PLANT_BYTES: u64 = 128;
 pub(crate) const ROW_BYTES: u64 = 64;
 /// Bytes of the lengths of all lists and of the numbers of requested blocks.
-pub(super) const TALLY_BYTES: usize = (LISTS + 2) * 4;
+pub(super) const COUNTER_BYTES: usize = (LISTS + 2) * 4;

@@ -14,8 +14,8 @@ use crate::render::inputs::viewpoint::Viewpoint;
 use crate::render::options::quality::Quality;
 use crate::render::plants::force_field::CameraForceField;
 use crate::state::DecodedScene;
-use layout::{BLOCK, CHUNK, CHUNKS_LIMIT, TALLY_BYTES};
-pub(crate) use layout::{ROW_BYTES, STAND_BYTES};
+use layout::{BLOCK, CHUNK, CHUNKS_LIMIT, COUNTER_BYTES};
+pub(crate) use layout::{ROW_BYTES, VISIBLE_PLANT_BYTES};
 use lists::{DRAW_WORDS, Lists};
 use passes::{Passes, SpeciesDrawList, UnderbrushBuffers};
 use prairie_core::plant::flora::{self, Flora, height_m};
@@ -46,8 +46,8 @@ pub(crate) struct Underbrush {
 /// Results of the compute passes, for tests.
 #[cfg(test)]
 pub(crate) struct TestBuffers {
-    pub(crate) felt: wgpu::Buffer,
-    stands: wgpu::Buffer,
+    pub(crate) responses: wgpu::Buffer,
+    visible_plants: wgpu::Buffer,
     listed: wgpu::Buffer,
     owners: wgpu::Buffer,
     borders: wgpu::Buffer,
@@ -64,7 +64,7 @@ impl Underbrush {
             return None;
         }
         let mut counts = [0_u32; SPECIES_LIMIT];
-        grown.iter().for_each(|plant| counts[(plant.make & 255) as usize] += 1);
+        grown.iter().for_each(|plant| counts[(plant.species_and_variant & 255) as usize] += 1);
         let rain_mm_per_h = decoded.scene().rain.rate_mm_per_h;
         let lists = Lists::new(gpu, flora, &counts, rain_mm_per_h);
         let mut species = [<Nature as bytemuck::Zeroable>::zeroed(); SPECIES_LIMIT];
@@ -89,8 +89,8 @@ impl Underbrush {
             plants: grown.len() as u32,
             #[cfg(test)]
             seen: TestBuffers {
-                felt: buffers.felt.clone(),
-                stands: buffers.stands.clone(),
+                responses: buffers.responses.clone(),
+                visible_plants: buffers.visible_plants.clone(),
                 listed: buffers.listed.clone(),
                 owners: buffers.owners.clone(),
                 borders: buffers.borders.clone(),
@@ -107,14 +107,14 @@ impl Underbrush {
 
     /// Number of plants that the newest frame drew of each species at each level of detail, and numbers of requested blocks of rows.
     #[cfg(not(target_arch = "wasm32"))]
-    pub(crate) fn tally(&self) -> &wgpu::Buffer {
-        &self.buffers.tally
+    pub(crate) fn counters(&self) -> &wgpu::Buffer {
+        &self.buffers.counters
     }
 
-    /// Number of drawn plants in a tally.
+    /// Number of drawn plants by these counters.
     #[cfg(not(target_arch = "wasm32"))]
-    pub(crate) fn drawn(tally: &[u8]) -> u32 {
-        let counts: Vec<u32> = bytemuck::pod_collect_to_vec(tally);
+    pub(crate) fn drawn(counters: &[u8]) -> u32 {
+        let counts: Vec<u32> = bytemuck::pod_collect_to_vec(counters);
         counts[..layout::LISTS].iter().sum()
     }
 
@@ -135,12 +135,12 @@ impl Underbrush {
         chunks.truncate(CHUNKS_LIMIT);
         self.chunk_count = chunks.len() as u32;
         self.frame_number = self.frame_number.wrapping_add(u32::from(from.dt_secs > 0.0));
-        let [stand_room, block_room] = self.room;
+        let [plant_room, block_room] = self.room;
         let [corner_x_m, corner_z_m, extent_x_m, extent_z_m] = forces.window_m();
         let frame = UnderbrushFrame {
             frame_number: self.frame_number,
             culls: u32::from(from.options.culls),
-            plant_limit: stand_room,
+            plant_limit: plant_room,
             block_limit: block_room,
             step_secs: from.dt_secs.max(0.0),
             reach_m,
@@ -154,7 +154,7 @@ impl Underbrush {
         gpu.queue.write_buffer(&self.buffers.chunks, 0, bytemuck::cast_slice(&chunks));
         gpu.queue.write_buffer(&self.buffers.sifted, 0, &[0; 4]);
         gpu.queue.write_buffer(&self.buffers.sifted_groups, 0, bytemuck::bytes_of(&[0_u32, 1, 1]));
-        gpu.queue.write_buffer(&self.buffers.tally, 0, &[0; TALLY_BYTES]);
+        gpu.queue.write_buffer(&self.buffers.counters, 0, &[0; COUNTER_BYTES]);
     }
 
     /// Sets the direction in which the plant of each site fell, 0 for an upright one, and the number of broken plants.
@@ -190,7 +190,7 @@ fn room(gpu: &Gpu, quality: Quality, flora: &Flora, lists: &Lists, counts: &[u32
     let bytes = quality.underbrush_bytes().min(gpu.device.limits().max_storage_buffer_binding_size);
     let blocks = |species: usize| u64::from(counts[species]) * u64::from(lists.most_blocks(species));
     let all_blocks = (0..flora.species().len()).map(blocks).sum::<u64>();
-    [plants.min(bytes / STAND_BYTES), room_for(all_blocks).min(bytes / (ROW_BYTES * u64::from(BLOCK)))]
+    [plants.min(bytes / VISIBLE_PLANT_BYTES), room_for(all_blocks).min(bytes / (ROW_BYTES * u64::from(BLOCK)))]
 }
 
 /// Blocks to reserve so that `blocks` fit; a quarter is a reserve for those that do not fit elsewhere, as in `main_room` of `underbrush.wgsl`.

@@ -1,6 +1,6 @@
 //! Buffers, pipelines and bind groups of the underbrush.
 
-use super::layout::{BLOCK, CHUNK, FELT_BYTES, ROW_BYTES, STAND_BYTES, TALLY_BYTES};
+use super::layout::{BLOCK, CHUNK, COUNTER_BYTES, RESPONSE_BYTES, ROW_BYTES, VISIBLE_PLANT_BYTES};
 use super::lists::Lists;
 use super::tiles::PlantInstance;
 use crate::render::gpu::device::Gpu;
@@ -23,14 +23,14 @@ pub(super) struct UnderbrushBuffers {
     pub(super) sifted: wgpu::Buffer,
     pub(super) sifted_groups: wgpu::Buffer,
     /// Forces on the plants.
-    pub(super) felt: wgpu::Buffer,
+    pub(super) responses: wgpu::Buffer,
     /// Postures of the visible plants.
-    pub(super) stands: wgpu::Buffer,
+    pub(super) visible_plants: wgpu::Buffer,
     /// Visible plants by list.
     pub(super) listed: wgpu::Buffer,
     /// Direction in which the plant of each site fell.
     pub(super) broken: wgpu::Buffer,
-    pub(super) tally: wgpu::Buffer,
+    pub(super) counters: wgpu::Buffer,
     /// Plant of each block of rows.
     pub(super) owners: wgpu::Buffer,
     /// Workgroups of the rows, for an indirect dispatch.
@@ -46,7 +46,7 @@ impl UnderbrushBuffers {
         grown: &[PlantInstance],
         flora: &Flora,
         lists: &Lists,
-        [stand_room, block_room]: [u64; 2],
+        [plant_room, block_room]: [u64; 2],
         chunk_limit: u64,
     ) -> Self {
         let count = grown.len() as u64;
@@ -63,11 +63,11 @@ impl UnderbrushBuffers {
             chunks: gpu.empty_buffer("underbrush chunks", chunk_limit * 8, written),
             sifted: gpu.empty_buffer("sifted underbrush", (1 + count) * 4, written),
             sifted_groups: gpu.empty_buffer("sifted groups", 12, written | BufferUsages::INDIRECT),
-            felt: gpu.empty_buffer("felt", count * FELT_BYTES, read_back),
-            stands: gpu.empty_buffer("underbrush stands", stand_room * STAND_BYTES, read_back),
+            responses: gpu.empty_buffer("responses", count * RESPONSE_BYTES, read_back),
+            visible_plants: gpu.empty_buffer("underbrush visible_plants", plant_room * VISIBLE_PLANT_BYTES, read_back),
             listed: gpu.empty_buffer("listed underbrush", u64::from(lists.places) * 4, read_back),
             broken: gpu.empty_buffer("broken plants", sites.next_multiple_of(4), written),
-            tally: gpu.empty_buffer("underbrush tally", TALLY_BYTES as u64, written | BufferUsages::COPY_SRC),
+            counters: gpu.empty_buffer("underbrush counters", COUNTER_BYTES as u64, written | BufferUsages::COPY_SRC),
             owners: gpu.empty_buffer("owners of rows", owner_room * 4, read_back),
             ribbon_groups: gpu.empty_buffer("ribbon groups", 12, storage | BufferUsages::INDIRECT),
             borders: gpu.empty_buffer("borders of rows", block_room * u64::from(BLOCK) * ROW_BYTES, read_back),
@@ -110,7 +110,7 @@ impl Passes {
             let layout = factory.layout(entry, entries);
             Step { pipeline: factory.compute(entry, &module, entry, &layout), group: bind_as(factory.gpu, entry, &layout, resources) }
         };
-        let UnderbrushBuffers { frame, plants, chunks, sifted, sifted_groups, tally, owners, ribbon_groups, .. } = buffers;
+        let UnderbrushBuffers { frame, plants, chunks, sifted, sifted_groups, counters, owners, ribbon_groups, .. } = buffers;
         let list_layout = factory.layout("underbrush list", &[storage(11), storage(12), uniform(15), storage(24), uniform(25)]);
         Self {
             sift: step(
@@ -121,7 +121,7 @@ impl Passes {
             finish: step(
                 "finish",
                 &[uniform(0), storage_rw(5), storage_rw(8), uniform(15), storage_rw(20), storage_rw(22)],
-                &[(0, frame), (5, tally), (8, &lists.draws), (15, &lists.settings), (20, owners), (22, ribbon_groups)],
+                &[(0, frame), (5, counters), (8, &lists.draws), (15, &lists.settings), (20, owners), (22, ribbon_groups)],
             ),
             stand: stand_step(factory, buffers, lists, force_field),
             ribbons: ribbon_step(factory, buffers, lists, rains),
@@ -138,8 +138,8 @@ impl Passes {
                 bytemuck::bytes_of(&DrawnList { number: *number as u32, _pad: [0; 12] }),
                 BufferUsages::UNIFORM,
             );
-            let UnderbrushBuffers { listed, tally, borders, .. } = buffers;
-            let resources = [(11, listed), (12, tally), (15, &lists.settings), (24, borders), (25, &drawn)];
+            let UnderbrushBuffers { listed, counters, borders, .. } = buffers;
+            let resources = [(11, listed), (12, counters), (15, &lists.settings), (24, borders), (25, &drawn)];
             SpeciesDrawList {
                 number: *number,
                 indices: indices.clone(),
@@ -180,15 +180,15 @@ fn stand_step(
     lists: &Lists,
     force_field: &CameraForceField,
 ) -> Step<LampVariants<wgpu::ComputePipeline>> {
-    let UnderbrushBuffers { frame, plants, sifted, felt, stands, listed, broken, tally, owners, .. } = buffers;
+    let UnderbrushBuffers { frame, plants, sifted, responses, visible_plants, listed, broken, counters, owners, .. } = buffers;
     let rest = [read(1), storage_rw(3), storage_rw(4), storage_rw(5), storage_rw(6), read(7), read(19), storage_rw(20)];
     let entries: Vec<_> = rest.into_iter().chain([uniform(0), volumes(9), uniform(15)]).collect();
     let layout = factory.layout("stand", &entries);
     let resources = [
         (1, plants),
-        (3, felt),
-        (4, stands),
-        (5, tally),
+        (3, responses),
+        (4, visible_plants),
+        (5, counters),
         (6, listed),
         (7, broken),
         (19, sifted),
@@ -219,8 +219,8 @@ fn ribbon_step(
         factory.compute("ribbons", &module, "ribbons", &layout)
     });
     let Lists { steps, rows, settings, limbs, .. } = lists;
-    let UnderbrushBuffers { stands, owners, borders, .. } = buffers;
-    let resources = [(10, stands), (13, steps), (14, rows), (15, settings), (16, limbs), (21, owners), (23, borders)];
+    let UnderbrushBuffers { visible_plants, owners, borders, .. } = buffers;
+    let resources = [(10, visible_plants), (13, steps), (14, rows), (15, settings), (16, limbs), (21, owners), (23, borders)];
     Step { pipeline, group: bind_as(factory.gpu, "ribbons", &layout, &resources) }
 }
 

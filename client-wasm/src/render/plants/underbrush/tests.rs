@@ -64,13 +64,38 @@ fn show(mirror: &mut Mirror, monsters_m: &[[f32; 3]]) {
     mirror.apply(ServerMessage::Poses { tick: 1, objects }).expect("sound poses");
 }
 
+/// A plant as in `visible_plant.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+struct VisiblePlant {
+    root_m: [f32; 3],
+    shown_size: f32,
+    lean_rad: [f32; 2],
+    sunlight: f32,
+    heading_rad: f32,
+    pressure_pa: [f32; 2],
+    variant_and_kind: u32,
+    spheres: u32,
+    height_m: f32,
+    hue: f32,
+    distance_m: f32,
+    size: f32,
+    grass_rgb: [f32; 3],
+    grass_fraction: f32,
+    tint: [f32; 3],
+    list: u32,
+    normal: [f32; 3],
+    first_block: u32,
+    air: [f32; 4],
+}
+
 /// Input of the ribbon pass: a plant as the previous compute pass leaves it.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     root_m: Vec3,
     stand: Stand,
     pressure_pa: [f32; 2],
-    make: u32,
+    variant: u32,
     spheres: u32,
 }
 
@@ -83,23 +108,28 @@ impl Case {
         let pressure_pa = [cosine, sine].map(|share| share * 0.6 * speed_m_per_s * speed_m_per_s);
         let lean_rad = if n.is_multiple_of(2) { [0.0; 2] } else { [x - 0.5, z - 0.5] };
         let stand = Stand { size: 0.4 + 0.95 * size, heading_rad: std::f32::consts::TAU * heading, lean_rad };
-        Self { root_m: ROOT_M, stand, pressure_pa, make: n % (2 * VARIANTS), spheres: 0 }
+        Self { root_m: ROOT_M, stand, pressure_pa, variant: n % (2 * VARIANTS), spheres: 0 }
     }
 
-    fn packed(&self) -> [[f32; 4]; 8] {
-        let [x, y, z] = self.root_m.to_array();
-        let Stand { size, heading_rad, lean_rad: [lean_x, lean_z] } = self.stand;
-        let [push_x, push_z] = self.pressure_pa;
-        [
-            [x, y, z, size],
-            [lean_x, lean_z, 1.0, heading_rad],
-            [push_x, push_z, self.make as f32, self.spheres as f32],
-            [1.0, 0.0, 1.0, size],
-            [0.0; 4],
-            [1.0; 4],
-            [0.0, 1.0, 0.0, 0.0],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
+    fn visible(&self) -> VisiblePlant {
+        let Stand { size, heading_rad, lean_rad } = self.stand;
+        VisiblePlant {
+            root_m: self.root_m.to_array(),
+            shown_size: size,
+            lean_rad,
+            sunlight: 1.0,
+            heading_rad,
+            pressure_pa: self.pressure_pa,
+            variant_and_kind: self.variant,
+            spheres: self.spheres,
+            height_m: 1.0,
+            distance_m: 1.0,
+            size,
+            tint: [1.0; 3],
+            normal: [0.0, 1.0, 0.0],
+            air: [0.0, 0.0, 0.0, 1.0],
+            ..VisiblePlant::zeroed()
+        }
     }
 
     fn posed(&self, plan: &Plan, look_up: LookUp) -> Vec<Posed> {
@@ -108,8 +138,8 @@ impl Case {
             per_mass_m_per_s2: Vec3::Y * -prairie_core::GRAVITY_M_PER_S2 as f32,
             pressure_pa: Vec3::new(x, 0.0, z),
         };
-        let broken = if self.make < VARIANTS { 0 } else { u64::MAX };
-        posed(plan, &plan.placed(self.make % VARIANTS), self.stand, forces, look_up, broken)
+        let broken = if self.variant < VARIANTS { 0 } else { u64::MAX };
+        posed(plan, &plan.placed(self.variant % VARIANTS), self.stand, forces, look_up, broken)
     }
 }
 
@@ -127,7 +157,7 @@ impl Bender {
         const SOURCE: &str = "
             @group(1) @binding(30) var<storage, read_write> found: array<vec4<f32>>;
             @compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
-                let plant = stands[id.y];
+                let plant = visible_plants[id.y];
                 let list = lists.list[0];
                 let bent = bent_row(plant, row_of(plant, id.x, list), vec3<f32>(0.0, 1.0, 0.0), list);
                 let at = (id.y * list.rows + id.x) * 3u;
@@ -154,11 +184,11 @@ impl Bender {
             nodes: [nodes.angles as u32, nodes.loads as u32],
             ..BrushList::zeroed()
         };
-        let stands: Vec<_> = cases.iter().map(Case::packed).collect();
+        let visible: Vec<_> = cases.iter().map(Case::visible).collect();
         let storage = |contents: &[u8]| gpu.buffer("cases", contents, BufferUsages::STORAGE);
         let found = gpu.empty_buffer("found", 48 * u64::from(rows) * cases.len() as u64, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
         let buffers = [
-            (10, &storage(bytemuck::cast_slice(&stands))),
+            (10, &storage(bytemuck::cast_slice(&visible))),
             (13, &storage(bytemuck::cast_slice(&baked.steps))),
             (14, &storage(bytemuck::cast_slice(&baked.rows))),
             (15, &gpu.buffer("lists", bytemuck::cast_slice(&lists), BufferUsages::UNIFORM)),
@@ -226,7 +256,7 @@ fn plants_bend_as_in_the_core_and_keep_their_lengths() {
         for (case, found) in cases.iter().zip(found.chunks_exact(rows)) {
             let (axes, wanted) = (axes(&baked, found), case.posed(&plan, LookUp::Interpolated));
             tips.extend(tips_off(&plan, &axes, &wanted));
-            if case.make < VARIANTS {
+            if case.variant < VARIANTS {
                 balanced.extend(tips_off(&plan, &axes, &case.posed(&balance, LookUp::Interpolated)));
             }
             for (limb, rows) in axes {
@@ -254,7 +284,7 @@ fn coarse_levels_bend_like_the_finest() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let (picture, _) = meadow(&gpu, &[]);
     let bender = Bender::new(&gpu, &picture);
-    let cases: Vec<Case> = (0..80).map(|n| Case { make: n % VARIANTS, ..Case::new(n) }).collect();
+    let cases: Vec<Case> = (0..80).map(|n| Case { variant: n % VARIANTS, ..Case::new(n) }).collect();
     let mut off: [Vec<f32>; LEVELS] = Default::default();
     for species in species() {
         let plan = Plan::new(&species, Nodes::default());
@@ -304,7 +334,7 @@ fn plants_are_tangent_to_touching_spheres() {
             .map(|n| {
                 let [x, z, y] = random(n, 3);
                 let root_m = Vec3::new(29.5 + 6.5 * x, 0.1 * y, 30.0 + 4.0 * z);
-                Case { root_m, spheres: 3, make: n % VARIANTS, ..Case::new(n) }
+                Case { root_m, spheres: 3, variant: n % VARIANTS, ..Case::new(n) }
             })
             .collect();
         for level in 0..LEVELS {
@@ -350,7 +380,7 @@ fn plants_inside_a_sphere_lean_away_from_its_centre() {
     let cases: Vec<Case> = (0..=60)
         .map(|step| {
             let root_m = Vec3::new(x + 0.02 * radius_m * step as f32, 0.0, z);
-            Case { root_m, stand: calm, pressure_pa: [0.0; 2], make: 0, spheres: 1 }
+            Case { root_m, stand: calm, pressure_pa: [0.0; 2], variant: 0, spheres: 1 }
         })
         .collect();
     for level in 0..LEVELS {
@@ -398,10 +428,10 @@ fn the_compute_pass_computes_each_posture_and_lists_each_plant_once() {
     let scene = picture.renderer.scene.as_ref().expect("a scene");
     let brush = scene.underbrush.as_ref().expect("underbrush");
     let words = |buffer: &wgpu::Buffer| bytemuck::cast_slice::<u8, u32>(&read(&gpu, buffer)).to_vec();
-    let (stands, listed, tally) = (read(&gpu, &brush.seen.stands), words(&brush.seen.listed), words(brush.tally()));
+    let (visible, listed, counters) = (read(&gpu, &brush.seen.visible_plants), words(&brush.seen.listed), words(brush.counters()));
     let owners = words(&brush.seen.owners);
     let draws = words(&brush.draws);
-    let stands: &[[[f32; 4]; 8]] = bytemuck::cast_slice(&stands);
+    let visible: &[VisiblePlant] = bytemuck::cast_slice(&visible);
 
     let decoded = mirror.decoded_scene().expect("a scene");
     let flora = decoded.flora().expect("plants");
@@ -412,7 +442,7 @@ fn the_compute_pass_computes_each_posture_and_lists_each_plant_once() {
     let spheres = probe(&gpu, &picture, SPHERE, &[[0.0; 4]]);
     let (mut seen, mut touched, mut feeling) = (HashMap::new(), 0, Vec::new());
     for (number, level) in (0..flora.species().len()).flat_map(|number| (0..LEVELS).map(move |level| (number, level))) {
-        let count = tally[number * LEVELS + level];
+        let count = counters[number * LEVELS + level];
         let BrushList { rows, instance_plants: held, first_listed: places, .. } = brush.seen.lists[number * LEVELS + level];
         let instances = draws[(number * LEVELS + level) * DRAW_WORDS + 1];
         assert_eq!(instances, count.div_ceil(held), "instances of list {number}, {level}");
@@ -420,9 +450,10 @@ fn the_compute_pass_computes_each_posture_and_lists_each_plant_once() {
             // Its rows have their own blocks.
             let own_blocks = &owners[block as usize..(block + rows.div_ceil(BLOCK)) as usize];
             assert!(own_blocks.iter().all(|owner| *owner == own_blocks[0]), "{own_blocks:?}");
-            let [root, lean, feels, about, _, tint, up, _] = stands[own_blocks[0] as usize];
-            assert_eq!([tint[3], up[3]], [(number * LEVELS + level) as f32, block as f32]);
-            let at_m = [root[0], root[2]];
+            let found = visible[own_blocks[0] as usize];
+            assert_eq!([found.list as usize, found.first_block as usize], [number * LEVELS + level, block as usize]);
+            let [x, y, z] = found.root_m;
+            let at_m = [x, z];
             let plant = plants[&place(at_m)];
             assert!(seen.insert(plant.site, level).is_none(), "{plant:?} is listed twice");
             let (instance, own): (_, &Species) = (flora.instance(plant), &flora.species()[number]);
@@ -430,7 +461,7 @@ fn the_compute_pass_computes_each_posture_and_lists_each_plant_once() {
             // Its level of detail matches its height in pixels.
             let (height_m, reach_m): (f32, f32) = (height_m(own) * instance.size, flora::reach_m(own) * instance.size);
             let tall_m = height_m.max(0.5 * reach_m);
-            let distance_m = Vec3::new(at_m[0], root[1] + 0.5 * tall_m, at_m[1]).distance(camera.eye_m);
+            let distance_m = Vec3::new(x, y + 0.5 * tall_m, z).distance(camera.eye_m);
             let tall_px = tall_m / (distance_m * px_rad);
             let lot = unit(hash3([plant.site, 5, 91])[0]);
             let fine_px = tall_px / (Quality::detail_at(0.0).coarser * (0.85 + 0.3 * lot));
@@ -440,22 +471,22 @@ fn the_compute_pass_computes_each_posture_and_lists_each_plant_once() {
                 least_px.iter().any(|px| (fine_px / px - 1.0).abs() < 1e-3) || is_at(&least_px) == level,
                 "{fine_px} px at level {level}"
             );
-            assert!((about[0] / height_m - 1.0).abs() < 1e-4 && (about[2] / distance_m - 1.0).abs() < 1e-4 && about[3] == instance.size);
-            assert!(lean[3] == instance.heading_rad && lean[..2] == [0.0; 2], "{lean:?}");
+            assert!((found.height_m / height_m - 1.0).abs() < 1e-4 && (found.distance_m / distance_m - 1.0).abs() < 1e-4, "{found:?}");
+            assert_eq!((found.size, found.heading_rad, found.lean_rad), (instance.size, instance.heading_rad, [0.0; 2]), "{found:?}");
             // Its size, if it is taller than 16 px.
             let fades = ((1.0 - lot) / 0.2).min(1.0);
             if tall_px > 16.0 && distance_m < 0.79 * 45.0 {
-                assert!((root[3] / (instance.size * fades) - 1.0).abs() < 1e-3, "{root:?} of {instance:?}");
+                assert!((found.shown_size / (instance.size * fades) - 1.0).abs() < 1e-3, "{found:?} of {instance:?}");
             }
             // Its variant, and whether it is broken.
-            let make = instance.number % VARIANTS + if plant.site % 3 == 0 { VARIANTS } else { 0 };
-            assert_eq!(feels[2], make as f32, "{plant:?}");
-            let apart_m = Vec3::new(root[0], root[1], root[2]).distance(Vec3::from_slice(&spheres[0]));
-            let reaches_m = spheres[0][3] + reach_m * root[3] / instance.size;
+            let variant = instance.number % VARIANTS + if plant.site % 3 == 0 { VARIANTS } else { 0 };
+            assert_eq!(found.variant_and_kind, variant, "{plant:?}");
+            let apart_m = Vec3::from(found.root_m).distance(Vec3::from_slice(&spheres[0]));
+            let reaches_m = spheres[0][3] + reach_m * found.shown_size / instance.size;
             if (apart_m / reaches_m - 1.0).abs() > 1e-3 {
-                assert_eq!(feels[3], f32::from(u8::from(apart_m < reaches_m)), "{plant:?}");
+                assert_eq!(found.spheres, u32::from(apart_m < reaches_m), "{plant:?}");
             }
-            touched += u32::from(feels[3] > 0.0);
+            touched += u32::from(found.spheres != 0);
             // In front of the object and in its lee the wind is weaker.
             let [aside_m, beyond_m] = [at_m[0] - 32.0, at_m[1] - 56.0];
             if 0.8 * aside_m + 0.6 * beyond_m > -8.0 && (0.8 * beyond_m - 0.6 * aside_m).abs() < 8.0 {
@@ -464,7 +495,7 @@ fn the_compute_pass_computes_each_posture_and_lists_each_plant_once() {
             let wind = scene.textures.wind.at(decoded, [at_m[0], 0.5 * height_m, at_m[1]]);
             let still: f32 = (0.25 * height_m).clamp(0.02, 1.0).sqrt();
             let pressure_pa = [wind[0], wind[2]].map(|speed| 0.6 * speed * wind[0].hypot(wind[2]) * still);
-            feeling.push(([at_m[0], 0.0, at_m[1], 0.0], pressure_pa, plant.site % 3 == 0, [feels[0], feels[1]]));
+            feeling.push(([at_m[0], 0.0, at_m[1], 0.0], pressure_pa, plant.site % 3 == 0, found.pressure_pa));
         }
     }
     // Expected pressure: the wind's dynamic pressure at half its height, times the square of the gust; for a broken plant less of it, plus that of its fall.

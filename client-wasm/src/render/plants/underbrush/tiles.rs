@@ -1,4 +1,4 @@
-//! Underbrush plants by squares of the land, which are culled as one.
+//! Grid squares of underbrush plants, each culled as a unit.
 
 use super::bake::VARIANTS;
 use crate::state::DecodedScene;
@@ -6,9 +6,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use prairie_core::plant::flora::{self, Flora};
 
-/// Side of the squares that are culled as one (m).
+/// Side of a square (m).
 const TILE_M: f32 = 8.0;
-use crate::render::gpu::constants::FEWEST as MIN_FRACTION;
+use crate::render::gpu::constants::MIN_KEPT_FRACTION;
 
 /// A plant of `underbrush.wgsl`.
 #[repr(C)]
@@ -16,7 +16,7 @@ use crate::render::gpu::constants::FEWEST as MIN_FRACTION;
 pub(crate) struct PlantInstance {
     pub(crate) at_m: [f32; 2],
     size: f32,
-    pub(super) make: u32,
+    pub(super) species_and_variant: u32,
     heading_rad: f32,
     pub(crate) site: u32,
 }
@@ -45,10 +45,15 @@ pub(crate) fn tiles(decoded: &DecodedScene, flora: &Flora) -> (Vec<PlantInstance
         .iter()
         .map(|plant| {
             let instance = flora.instance(plant);
-            let make = instance.species as u32 | (instance.number % VARIANTS) << 8;
-            let grown =
-                PlantInstance { at_m: instance.at_m, size: instance.size, make, heading_rad: instance.heading_rad, site: plant.site };
-            (instance.at_m.map(tile_number), grown, reaches_m[instance.species] * instance.size * MIN_FRACTION.powf(-0.3))
+            let species_and_variant = instance.species as u32 | (instance.number % VARIANTS) << 8;
+            let grown = PlantInstance {
+                at_m: instance.at_m,
+                size: instance.size,
+                species_and_variant,
+                heading_rad: instance.heading_rad,
+                site: plant.site,
+            };
+            (instance.at_m.map(tile_number), grown, reaches_m[instance.species] * instance.size * MIN_KEPT_FRACTION.powf(-0.3))
         })
         .collect();
     by_tile.sort_by_key(|&([x, z], ..)| [z, x]);

@@ -25,20 +25,20 @@ fn underbrush(picture: &OffscreenRenderer) -> &Underbrush {
 fn left_borders(gpu: &Gpu, picture: &OffscreenRenderer) -> HashMap<([u32; 2], usize), Vec<[f32; 3]>> {
     let brush = underbrush(picture);
     let words = |buffer: &wgpu::Buffer| bytemuck::pod_collect_to_vec::<u8, u32>(&read(gpu, buffer));
-    let (stands, borders) = (read(gpu, &brush.seen.stands), read(gpu, &brush.seen.borders));
-    let (stands, borders): (&[[[f32; 4]; 8]], &[[f32; 8]]) = (bytemuck::cast_slice(&stands), bytemuck::cast_slice(&borders));
-    let (listed, tally, owners) = (words(&brush.seen.listed), words(brush.tally()), words(&brush.seen.owners));
+    let (visible, borders) = (read(gpu, &brush.seen.visible_plants), read(gpu, &brush.seen.borders));
+    let (visible, borders): (&[VisiblePlant], &[[f32; 8]]) = (bytemuck::cast_slice(&visible), bytemuck::cast_slice(&borders));
+    let (listed, counters, owners) = (words(&brush.seen.listed), words(brush.counters()), words(&brush.seen.owners));
     let of_list = |list: usize| {
         let BrushList { rows, first_listed: first, .. } = brush.seen.lists[list];
-        let blocks = listed[first as usize..(first + tally[list]) as usize].to_vec();
+        let blocks = listed[first as usize..(first + counters[list]) as usize].to_vec();
         blocks.into_iter().map(move |block| (list, block, rows))
     };
     let plant = |(list, block, rows): (usize, u32, u32)| {
         assert!(block + rows.div_ceil(BLOCK) <= brush.room[1], "block {block} is beyond the room");
-        let [root, ..] = stands[owners[block as usize] as usize];
+        let [x, _, z] = visible[owners[block as usize] as usize].root_m;
         let first = 2 * (block * BLOCK) as usize;
         let own = borders[first..first + 2 * rows as usize].iter().step_by(2).map(|&[x, y, z, ..]| [x, y, z]);
-        (([root[0].to_bits(), root[2].to_bits()], list), own.collect())
+        (([x.to_bits(), z.to_bits()], list), own.collect())
     };
     (0..LISTS).flat_map(of_list).map(plant).collect()
 }
@@ -100,7 +100,7 @@ fn without_room_for_rows_plants_are_drawn_coarsely_or_left_out() {
         brush.into_iter().zip(room).for_each(|(brush, room)| brush.room[1] = room);
         picture.draw(&mut mirror, &camera, 2.0, 0.0);
         let plants = left_borders(&gpu, &picture);
-        let asked = bytemuck::pod_collect_to_vec::<u8, u32>(&read(&gpu, underbrush(&picture).tally()))[LISTS];
+        let asked = bytemuck::pod_collect_to_vec::<u8, u32>(&read(&gpu, underbrush(&picture).counters()))[LISTS];
         let levels: [usize; LEVELS] = std::array::from_fn(|level| plants.keys().filter(|(_, list)| list % LEVELS == level).count());
         (plants.len(), levels, asked)
     };
