@@ -31,7 +31,7 @@ const INITIAL_SLOPE: f32 = 1.0;
 const SLOPE_SMOOTHING: f32 = 0.5;
 /// Minimum change of level from which a slope is measured.
 const MIN_SLOPE_STEP: f32 = 0.05;
-/// Factor by which a step up is shortened, so that it ends below the budget.
+/// Factor that shortens a step up, so that it ends below the budget.
 const STEP_UP_CAUTION: f32 = 1.5;
 
 /// Back-off after a step up that exceeded the budget (s): initial and maximum. It doubles each time.

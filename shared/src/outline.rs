@@ -118,7 +118,7 @@ fn ears(corners: &[[f32; 2]]) -> Vec<Vec<usize>> {
             let inside = |p: [f32; 2]| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
             turn(a, b, c) > 0.0 && left.iter().all(|other| ear.contains(other) || !inside(corners[*other]))
         };
-        // What remains of a valid outline always has an ear, unless rounding has made it a line.
+        // The remaining polygon of a valid outline always has an ear, unless rounding has made it a line.
         let Some(at) = (0..count).find(is_ear) else { break };
         triangles.push(around(at).to_vec());
         left.remove(at);

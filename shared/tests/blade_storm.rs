@@ -1,4 +1,4 @@
-//! A blade through a hundred thousand steps of gusts and hits: it keeps its length, stays out of the ground and of what hits it, and gives the same bits.
+//! A blade through a hundred thousand steps of gusts and hits: it keeps its length, stays out of the ground and of the objects that hit it, and gives the same bits.
 
 use prairie_core::hash::hash3;
 use prairie_core::plant::blade::backbone::{backbone_m, drawn_out_m};
@@ -137,7 +137,7 @@ fn a_storm_of_gusts_and_hits_leaves_a_blade_whole() {
     }
     assert!(hits > 20_000, "{hits} hits");
     assert!(deepest < 0.01, "{deepest} of the length deep");
-    // What is drawn rounds the corners that links make at spheres: deeper than that in one strip of 200.
+    // The drawn curve rounds the corners between links that touch a sphere: one strip of 200 enters a sphere by more than that.
     assert!(cut < 800_000 / 200 && deepest_drawn < 0.2, "{cut} strips cut spheres, by up to {deepest_drawn} of the length");
     // The curve that seven segments approximate.
     assert!(longest < 1.01, "{longest} of the length");

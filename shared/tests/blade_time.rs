@@ -35,7 +35,7 @@ fn error(blade: &Blade, integrator: Integrator, secs: f64, steps: u32, steps_bef
     let dt_secs = secs / f64::from(steps);
     let (start, before) = (exact(blade, 0.0), exact(blade, -steps_before * dt_secs));
     let lean_rad = start.map(|[lean, _]| [lean as f32, 0.0]);
-    // The rate of the step before is the one that led here.
+    // The rate at the start is the mean rate over the step before it, if there is one.
     let rate_rad_per_s = [0, 1, 2].map(|link| {
         let led = (start[link][0] - before[link][0]) / (steps_before * dt_secs);
         [if steps_before > 0.0 { led } else { start[link][1] } as f32, 0.0]

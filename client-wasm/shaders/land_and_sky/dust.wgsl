@@ -40,14 +40,17 @@ struct Sprite {
 @group(1) @binding(2) var<storage, read_write> drawn: array<Sprite>;
 @group(1) @binding(3) var<storage, read> sprites: array<Sprite>;
 
-// Half-width of a mote (m) and of a puff.
+// Half-width of a mote (m).
 const MOTE_M: f32 = 0.010;
+// Half-width of a puff (m).
 const PUFF_M: f32 = 4.2;
 // Exposure time of the streak of a mote (s).
 const MOTE_STREAK_SECS: f32 = 0.011;
-// Concentration at which every mote is shown; concentration at which a puff has 63 % of its maximum opacity, and that opacity.
+// Concentration at which every mote is shown.
 const FULL_DUST: f32 = 0.9;
+// Concentration at which a puff has 63 % of its maximum opacity.
 const THICK_DUST: f32 = 1.5;
+// Maximum opacity of a puff.
 const PUFF_OPACITY: f32 = 0.42;
 
 // Turbulence finer than the wind's cells, for motes (m/s).

@@ -18,7 +18,7 @@ const CLOCK_JUMP_SECS: f64 = 0.5;
 /// Smoothing factor of the measured clock offset.
 const CLOCK_SMOOTHING: f64 = 0.08;
 
-/// Distance (m), beyond the one that its velocity explains, above which an object counts as teleported and is not interpolated.
+/// Minimum displacement (m), in excess of the velocity's, that counts as a teleport and is not interpolated.
 const TELEPORT_M: f32 = 4.0;
 
 const SNAPSHOT_LIMIT: usize = 32;

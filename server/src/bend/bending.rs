@@ -4,7 +4,7 @@ use super::footprint::Edge;
 use super::vector::unit;
 use std::f32::consts::FRAC_PI_2;
 
-/// Minimum bending speed of pressed grass (rad/s). The bend's direction is stored as that of ω, which must not vanish when the motion ends.
+/// Minimum bending speed of pressed grass (rad/s). ω also stores the direction of the bend, so it stays above zero when the motion ends.
 pub(super) const HELD_RAD_PER_S: f32 = 0.5;
 /// Sine of the largest angle (10°) at which a side faces backward and still counts as parallel to the motion. The sides of the swept area are
 /// parallel to the motion even when the object slips.

@@ -8,7 +8,7 @@ pub struct Footprint {
     corners_m: Vec<[f32; 2]>,
 }
 
-/// Relative difference up to which two widths of a footprint are equal.
+/// Relative tolerance for equal widths of a footprint.
 const EQUAL_WIDTHS: f32 = 1e-4;
 
 /// Cells of one row of the world's grid of cells.

@@ -141,8 +141,8 @@ mod tests {
         [plant.at[0] - eye[0], plant.at[1] - eye[1]]
     }
 
-    /// For each plant that is drawn before a farther one: both, and the distance (cells) at which the line of sight to the farther passes; pairs in
-    /// other directions are omitted.
+    /// Pairs of a plant and a farther one that is drawn later, each with the distance (cells) of the plant from the line of sight to the farther one; pairs
+    /// in other directions are omitted.
     fn mistakes(drawn: &[Plant], eye: [f64; 2]) -> Vec<(Plant, Plant, f64)> {
         let mut found = Vec::new();
         for (at, near) in drawn.iter().enumerate() {

@@ -16,7 +16,7 @@ pub struct SceneFault {
     pub length: usize,
     /// Path of the field, such as `wind.cells[1]`; empty for a syntax error.
     pub path: String,
-    /// The value and what is allowed; continues the sentence after the path.
+    /// The value and the allowed range; continues the sentence after the path.
     pub message: String,
 }
 

@@ -4,7 +4,7 @@ use super::WindShape;
 use super::allowed::Allowed::{self, OneOf, Places, Range, Text};
 use serde::{Deserialize, Serialize};
 
-/// What a visitor can drive.
+/// Kind of vehicle that a user can drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VehicleKind {

@@ -43,10 +43,10 @@ pub enum ClientMessage {
     View {
         /// Camera position (m).
         eye_m: [f32; 3],
-        /// Distance up to which the bend field is streamed (m), 0..=512.
+        /// Radius of the streamed bend field (m), 0..=512.
         radius_m: f32,
     },
-    /// Takes a vehicle in place of the previous one, or gives it up.
+    /// Selects a vehicle in place of the previous one, or leaves it.
     Choose {
         /// The vehicle to drive.
         vehicle: Option<VehicleKind>,

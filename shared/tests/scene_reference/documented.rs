@@ -131,7 +131,7 @@ pub(crate) fn with_sections() -> Vec<Field> {
 pub(crate) const EXPLAINED: [(&[&str], &str, &str); 2] =
     [(WindAdvection::WORDS, "wind/words.rs", "WindAdvection"), (WindBoundary::WORDS, "wind/faces.rs", "WindBoundary")];
 
-/// What the README says of the words of a field: their meanings at the first field that takes them, then the words alone.
+/// The README's description of a field's words: their meanings at the first field that takes them, then the words alone.
 pub(crate) fn list(words: &'static [&'static str], explained: &mut Vec<&'static [&'static str]>) -> Option<String> {
     let (_, file, name) = EXPLAINED.into_iter().find(|(known, ..)| *known == words)?;
     if explained.contains(&words) {

@@ -15,7 +15,10 @@ fn down_the_valley() -> Golden {
     Golden { eye: over([128.0, 158.0], 5.0, 20.0, -10.0), parts: &[[0, 58, 256, 11], [0, 70, 256, 14]], ..Golden::default() }
 }
 
-golden!(far_land, Golden { shows: "blades as far as they are told apart", unlike: Unlike::Stored("far_clumps"), ..down_the_valley() });
+golden!(
+    far_land,
+    Golden { shows: "single blades up to where they are indistinguishable", unlike: Unlike::Stored("far_clumps"), ..down_the_valley() }
+);
 golden!(
     far_clumps,
     Golden {

@@ -86,7 +86,7 @@ fn two_thousand_random_winds_are_rejected_or_stay_finite() {
     let (mut refused, mut failed) = (0, Vec::new());
     for seed in 0..WINDS {
         let wind = RandomWind::new(seed);
-        assert_eq!(wind.config.validate(), Ok(()), "winds are drawn from what is legal");
+        assert_eq!(wind.config.validate(), Ok(()), "only valid winds are drawn");
         let outcome = if seed % 2 == 0 { run::<f32>(&wind) } else { run::<f64>(&wind) };
         match outcome {
             Ok(Outcome::Refused) => refused += 1,

@@ -349,8 +349,9 @@ uniform_block! {
         several_instances: u32,
         several_segments: u32,
         several: u32,
-        /// Distances from which clumps begin to bend as a whole, and beyond which all do (m).
+        /// Distance from which clumps begin to bend as a whole (m).
         straightens_m: f32,
+        /// Distance beyond which all do (m).
         straight_m: f32,
         _pad: [u8; 8],
     }

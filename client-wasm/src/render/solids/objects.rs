@@ -27,7 +27,7 @@ const INSTANCE_LIMIT: usize = 12_288;
 const VEHICLE_INSTANCES: usize = 18;
 /// Bytes of a tree's sway in `objects.wgsl`.
 const SWAY_BYTES: usize = 16;
-/// Height on screen above which trees are fine, and below which they are distant (px), at high quality.
+/// Minimum height on screen of fine trees, and maximum of distant ones (px), at high quality.
 const FINE_TREE_PX: f32 = 130.0;
 const DISTANT_TREE_PX: f32 = 26.0;
 /// Detail of the trees in each shadow cascade.

@@ -35,7 +35,7 @@ pub enum InflowGhosts {
     /// Linear extrapolation from the two nearest interior values: for an intermediate velocity, before the pressure gradient is applied. Prescribed
     /// values include that gradient and would be off by `dt·∇p`.
     Extrapolated,
-    /// Left as they are.
+    /// Ghost values are not changed.
     Unchanged,
 }
 

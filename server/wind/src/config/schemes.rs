@@ -9,10 +9,10 @@ named_enum! {
         /// One after the other (Zhang §2.3.5). With any advection scheme.
         Split = "split",
         /// Advection–reflection: two half steps of advection by the mid-step velocity, with a reflection about the projected velocity between them, and forces and
-        /// diffusion in halves before and after (Narain, Zehnder & Thomaszewski, Proc. ACM Comput. Graph. Interact. Tech. 2, 2019). Three projections. With the semi-Lagrangian family.
+        /// diffusion in halves before and after (Narain et al. 2019). Three projections. With the semi-Lagrangian family.
         Reflection = "reflection",
         /// Incremental pressure correction: Runge–Kutta 3 with the pressure gradient of the previous step, corrected by one projection at the end
-        /// (Van Kan, SIAM J. Sci. Stat. Comput. 7, 1986). With conservative advection.
+        /// (Van Kan 1986). With conservative advection.
         RungeKutta3 = "runge-kutta-3",
     }
 }

@@ -13,7 +13,7 @@ const WEAK: f64 = 4.0;
 /// Fraction of the strongest coupling along an axis below which a face counts as closed.
 const SHUT: f64 = 0.1;
 
-/// Groups of cells whose pressure is shifted as one, to satisfy the sum of their equations.
+/// Groups of cells that receive a common pressure offset, so that the residuals of each group sum to zero.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Islands {
     /// Linear indices of the cells of all islands, one island after the other.
@@ -47,60 +47,19 @@ impl Islands {
         islands
     }
 
-    /// True if there are none.
+    /// Whether there is no island.
     pub(super) fn is_empty(&self) -> bool {
         self.islands.is_empty()
     }
 
     /// Adds the islands of the lines or planes along the axes `strong`: all connected groups but the largest in each.
     fn add(&mut self, operator: &Operator<f64>, outlets: &[Coloured<f64>; 3], strong: &[usize], strongest: [f64; 3]) {
-        let layout = operator.layout;
-        let mut labels = vec![0u32; layout.padded_len()];
-        let mut groups: Vec<Vec<u32>> = vec![];
-        let mut largest = vec![0usize; layout.padded_len()];
-        // The line or plane of a cell, identified by its first cell.
-        let slice = |mut cell: [usize; 3]| {
-            strong.iter().for_each(|&axis| cell[axis] = 1);
-            layout.linear(cell)
-        };
-        let neighbours = |l: usize, axis: usize| {
-            let (n, i) = (layout.cells[axis], coordinate(&layout.stride, l, axis));
-            let (stride, across) = (layout.stride[axis], layout.stride[axis] * (layout.cells[axis] - 1));
-            let below = if i > 1 { l - stride } else { l + across };
-            let above = if i < n { l + stride } else { l - across };
-            [(below, at(&operator.lower[axis], l)), (above, at(&operator.lower[axis], l + stride))]
-        };
-        for cell in layout.coordinates() {
-            let seed = layout.linear(cell);
-            if labels[seed] > 0 || at(&operator.diagonal, seed) == 0.0 {
-                continue;
-            }
-            let label = groups.len() as u32 + 1;
-            let mut group = vec![seed as u32];
-            labels[seed] = label;
-            let mut next = 0;
-            while let Some(&l) = group.get(next) {
-                next += 1;
-                for (axis, (neighbour, coupling)) in strong.iter().flat_map(|&axis| neighbours(l as usize, axis).map(|link| (axis, link))) {
-                    if coupling > SHUT * strongest[axis] && labels[neighbour] == 0 {
-                        labels[neighbour] = label;
-                        group.push(neighbour as u32);
-                    }
-                }
-            }
-            let slice = slice(cell);
-            if largest[slice] == 0 || groups[largest[slice] - 1].len() < group.len() {
-                largest[slice] = label as usize;
-            }
-            groups.push(group);
-        }
-        largest.iter().filter(|&&label| label > 0).for_each(|&label| groups[label - 1].clear());
-
-        for group in groups.iter().filter(|group| !group.is_empty()) {
+        let (labels, groups) = groups(operator, strong, strongest);
+        for group in &groups {
             let first = self.links.len();
             for &l in group {
                 for (axis, outlets) in outlets.iter().enumerate() {
-                    let outside = neighbours(l as usize, axis)
+                    let outside = neighbours(operator, l as usize, axis)
                         .into_iter()
                         .filter(|&(neighbour, c)| c > 0.0 && labels[neighbour] != labels[l as usize]);
                     self.links.extend(outside.map(|(neighbour, c)| (l, neighbour as u32, c as f32)));
@@ -136,6 +95,59 @@ impl Islands {
             }
         }
     }
+}
+
+/// Number of the group of each cell, and the connected groups along the axes `strong` except the largest of each line or plane. Cells of the largest
+/// groups have a number, too.
+fn groups(operator: &Operator<f64>, strong: &[usize], strongest: [f64; 3]) -> (Vec<u32>, Vec<Vec<u32>>) {
+    let layout = operator.layout;
+    let mut labels = vec![0u32; layout.padded_len()];
+    let mut groups: Vec<Vec<u32>> = vec![];
+    let mut largest = vec![0usize; layout.padded_len()];
+    // The line or plane of a cell, identified by its first cell.
+    let slice = |mut cell: [usize; 3]| {
+        strong.iter().for_each(|&axis| cell[axis] = 1);
+        layout.linear(cell)
+    };
+    for cell in layout.coordinates() {
+        let seed = layout.linear(cell);
+        if labels[seed] > 0 || at(&operator.diagonal, seed) == 0.0 {
+            continue;
+        }
+        let label = groups.len() as u32 + 1;
+        let mut group = vec![seed as u32];
+        labels[seed] = label;
+        let mut next = 0;
+        while let Some(&l) = group.get(next) {
+            next += 1;
+            for (axis, (neighbour, coupling)) in
+                strong.iter().flat_map(|&axis| neighbours(operator, l as usize, axis).map(|link| (axis, link)))
+            {
+                if coupling > SHUT * strongest[axis] && labels[neighbour] == 0 {
+                    labels[neighbour] = label;
+                    group.push(neighbour as u32);
+                }
+            }
+        }
+        let slice = slice(cell);
+        if largest[slice] == 0 || groups[largest[slice] - 1].len() < group.len() {
+            largest[slice] = label as usize;
+        }
+        groups.push(group);
+    }
+    largest.iter().filter(|&&label| label > 0).for_each(|&label| groups[label - 1].clear());
+    groups.retain(|group| !group.is_empty());
+    (labels, groups)
+}
+
+/// The neighbours of a cell along an axis, across the edges of a periodic box, with their couplings.
+fn neighbours(operator: &Operator<f64>, l: usize, axis: usize) -> [(usize, f64); 2] {
+    let layout = operator.layout;
+    let (n, i) = (layout.cells[axis], coordinate(&layout.stride, l, axis));
+    let (stride, across) = (layout.stride[axis], layout.stride[axis] * (n - 1));
+    let below = if i > 1 { l - stride } else { l + across };
+    let above = if i < n { l + stride } else { l - across };
+    [(below, at(&operator.lower[axis], l)), (above, at(&operator.lower[axis], l + stride))]
 }
 
 /// Padded coordinate of a linear index along an axis.

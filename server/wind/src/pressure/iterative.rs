@@ -42,7 +42,7 @@ pub enum IterativeMethod {
 /// Stopping criterion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
-    /// Root mean square of the residual, relative to that of the right-hand side, at which to stop. Values down to 1e-12 can be reached; 0 uses all
+    /// Tolerance: root mean square of the residual relative to that of the right-hand side. Values down to 1e-12 can be reached; 0 uses all
     /// sweeps.
     pub tolerance: f64,
     /// Maximum number of sweeps, iterations or cycles.

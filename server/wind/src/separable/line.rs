@@ -2,7 +2,7 @@
 //!
 //! Every basis costs one complex Fourier transform of two real lines, which are permuted on input and separated by symmetry on output. Cosines:
 //! Makhoul, "A fast cosine transform in one and two dimensions", IEEE Trans. ASSP 28 (1980); the quarter-wave ones follow in the same way from
-//! frequencies shifted by one half; sines between nodes: Press et al., "Numerical Recipes", 3rd ed., §12.4.
+//! frequencies shifted by one half; sines between nodes: Press et al. 2007, §12.4.
 
 use std::f64::consts::PI;
 

@@ -87,7 +87,7 @@ pub fn stable_dt_secs(integrator: Integrator, frequency_rad_per_s: f32, damping_
     mode_dt_secs(integrator, frequency_rad_per_s * FREQUENCIES[FREQUENCIES.len() - 1], damping_share)
 }
 
-/// Longest step (s) at which all modes of a blade stay bounded in air that passes its control points at up to `past_m_per_s`, whose drag damps them
+/// Longest step (s) for which all modes of a blade stay bounded. Air passes its control points at up to `past_m_per_s`, and its drag damps the modes
 /// as in [`advance`](super::advance).
 ///
 /// ```

@@ -152,7 +152,7 @@ fn slowest_rad_per_s(parts: &[Part]) -> f32 {
     let Some((longest, host)) = on_ground.max_by(|(_, a), (_, b)| a.component.length_m.total_cmp(&b.component.length_m)) else {
         return 1.0;
     };
-    // Mass of one of each kind, including the components that it carries, which come after it.
+    // Mass (kg) of one component of each kind, including those that it carries, which follow it in the list.
     let mut whole_kg: Vec<f32> = parts.iter().map(|part| part.component.mass_kg).collect();
     let mut tip_kg = 0.0;
     for (index, Part { component, on, .. }) in parts.iter().enumerate().rev() {

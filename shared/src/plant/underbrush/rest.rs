@@ -62,8 +62,8 @@ pub fn one_pass(joints: &[f64], load: Load, unbent_rad: f64, bends_rad: &mut [f6
     }
 }
 
-/// Rest shape in which every joint balances the moment of everything above it in the bent position: the stable shape that is reached continuously as
-/// the load grows. Writes the rotation of each section from the unbent axis towards the load (rad). `unbent_rad` is the angle of that axis from
+/// Rest shape: every joint balances the moment of everything above it in the bent position. Of several such shapes, it is the stable one that the
+/// component reaches as the load grows from zero. Writes the rotation of each section from the unbent axis towards the load (rad). `unbent_rad` is the angle of that axis from
 /// upright, 0..=π; an upright component that buckles takes the bent shape.
 ///
 /// For a load of up to 10 across it at its tip, the tip is at most 0.2/n² of the length from that of a continuous beam, with n ≥ 6 sections: 0.3 %

@@ -4,7 +4,7 @@
 pub(in crate::scene) struct Conflict {
     /// Paths of the fields that take part; the message is about the first.
     pub(in crate::scene) fields: Vec<String>,
-    /// The first field's value and what is allowed.
+    /// The first field's value and the allowed ones.
     pub(in crate::scene) message: String,
 }
 

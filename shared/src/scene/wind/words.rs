@@ -68,7 +68,7 @@ words! {
     WindTime {
         /// One sub-step after the other; first order in time.
         Split = "split",
-        /// Advection–reflection (Narain, Zehnder & Thomaszewski, Proc. ACM Comput. Graph. Interact. Tech. 2, 2019); second order, for the semi-Lagrangian family.
+        /// Advection–reflection (Narain et al. 2019); second order, for the semi-Lagrangian family.
         Reflection = "reflection",
         /// Three Runge–Kutta stages with pressure correction; second order, for conservative advection.
         RungeKutta3 = "runge-kutta-3",
