@@ -52,7 +52,7 @@ proptest! {
 
     #[test]
     fn a_blade_bent_by_wind_is_drawn_at_its_control_points(heading in 0.0_f32..6.3, mean in 0.0_f32..1.2) {
-        let leans: Leans = WIND_SHAPE.map(|share| lean([share * mean, heading]));
+        let leans: Leans = WIND_SHAPE.map(|fraction| lean([fraction * mean, heading]));
         let points_m = Sway::at_rest(leans).points_m(1.0);
         let turn = (WIND_SHAPE[2] - WIND_SHAPE[0]) * mean;
         for segments in [3, 7] {

@@ -8,12 +8,12 @@ use prairie_core::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance}
 const DT_SECS: f32 = 1.0 / 60.0;
 
 /// A random number from 0 to under 1.
-fn share(place: [u32; 3]) -> f32 {
+fn fraction(place: [u32; 3]) -> f32 {
     (hash3(place)[0] >> 8) as f32 / (1 << 24) as f32
 }
 
 fn between(low: f32, high: f32, place: [u32; 3]) -> f32 {
-    low + (high - low) * share(place)
+    low + (high - low) * fraction(place)
 }
 
 /// Wind at the control points (m/s) that drifts from one random value to the next every half a second, up to 10 m/s along each axis, and gusts by a third.
@@ -22,7 +22,7 @@ fn wind(number: u32, step: u32) -> Leans {
     std::array::from_fn(|link| {
         std::array::from_fn(|axis| {
             let [from, to] = [beat, beat + 1].map(|beat| between(-10.0, 10.0, [number, beat, axis as u32]));
-            (from + (to - from) * part) * (1.0 + 0.3 * (share([number, step, 16 + link as u32]) - 0.5)) * (0.6 + 0.2 * link as f32)
+            (from + (to - from) * part) * (1.0 + 0.3 * (fraction([number, step, 16 + link as u32]) - 0.5)) * (0.6 + 0.2 * link as f32)
         })
     })
 }
@@ -66,8 +66,8 @@ fn depth_m(points_m: &[[f32; 3]], sphere: &Sphere) -> f32 {
     let nearest_m = ends.map(|(from, to)| {
         let (along, aside) = ([0, 1, 2].map(|i| to[i] - from[i]), [0, 1, 2].map(|i| sphere.centre_m[i] - from[i]));
         let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        let share = (dot(along, aside) / dot(along, along)).clamp(0.0, 1.0);
-        length([0, 1, 2].map(|i| aside[i] - share * along[i]))
+        let fraction = (dot(along, aside) / dot(along, along)).clamp(0.0, 1.0);
+        length([0, 1, 2].map(|i| aside[i] - fraction * along[i]))
     });
     sphere.radius_m - nearest_m.fold(f32::INFINITY, f32::min)
 }
@@ -90,11 +90,11 @@ fn grown(number: u32) -> (Blade, [f32; 3], Leans) {
     let blade = Blade {
         length_m: random(0.2, 1.5, 2),
         frequency_rad_per_s: random(4.0, 25.0, 3),
-        damping_share: random(0.02, 0.5, 4),
+        damping_ratio: random(0.02, 0.5, 4),
         lean_per_wind2: random(0.001, 0.01, 5),
     };
     let droop = [random(-0.4, 0.4, 6), random(-0.4, 0.4, 7)];
-    (blade, [-slope[0] / long, 1.0 / long, -slope[1] / long], [0.6, 1.0, 1.4].map(|share| droop.map(|lean| share * lean)))
+    (blade, [-slope[0] / long, 1.0 / long, -slope[1] / long], [0.6, 1.0, 1.4].map(|fraction| droop.map(|lean| fraction * lean)))
 }
 
 #[test]

@@ -15,13 +15,13 @@ const LATE: Range<usize> = 20..50;
 /// Largest lean of a released blade (rad): so small that its tip moves along a line.
 const SMALL_RAD: f32 = 1e-3;
 
-fn blade(frequency_rad_per_s: f32, damping_share: f32) -> Blade {
-    Blade { length_m: 0.8, frequency_rad_per_s, damping_share, lean_per_wind2: 0.0 }
+fn blade(frequency_rad_per_s: f32, damping_ratio: f32) -> Blade {
+    Blade { length_m: 0.8, frequency_rad_per_s, damping_ratio, lean_per_wind2: 0.0 }
 }
 
 /// Leans in one mode along X.
 fn in_mode(mode: usize) -> Leans {
-    MODES[mode].map(|share| [SMALL_RAD * share, 0.0])
+    MODES[mode].map(|fraction| [SMALL_RAD * fraction, 0.0])
 }
 
 /// Leans under a force at the tip along X: the joints bend by the moments 3 : 2 : 1 over the stiffness 2 : 1 : 1.
@@ -76,50 +76,50 @@ fn dispersion(integrator: Integrator, omega: f64, gamma: f64, dt_secs: f64) -> [
     [(0.5 * sum / product.sqrt()).acos() / dt_secs, -product.ln() / (2.0 * dt_secs)]
 }
 
-fn is_near(found: f64, wanted: f64, share: f64) -> bool {
-    (found - wanted).abs() <= share * wanted.abs()
+fn is_near(found: f64, wanted: f64, fraction: f64) -> bool {
+    (found - wanted).abs() <= fraction * wanted.abs()
 }
 
 #[test]
 fn a_blade_swings_at_its_calibrated_first_frequency() {
-    let damping_share = 0.02;
+    let damping_ratio = 0.02;
     for (rigidity_n_m2, mass_kg_per_m, length_m) in
         [(0.0038, 0.0012, 0.8), (0.0038, 0.0012, 0.3), (0.015, 0.0012, 0.8), (0.0038, 0.006, 0.8), (0.4, 0.02, 2.0), (2e-5, 2e-4, 0.1)]
     {
         let frequency_rad_per_s = first_frequency_rad_per_s(rigidity_n_m2, mass_kg_per_m, length_m);
-        let blade = Blade { length_m, ..blade(frequency_rad_per_s, damping_share) };
+        let blade = Blade { length_m, ..blade(frequency_rad_per_s, damping_ratio) };
         let dt_secs = 0.03 / frequency_rad_per_s;
         let cantilever = f64::from(CANTILEVER) * f64::from(rigidity_n_m2 / mass_kg_per_m).sqrt() / f64::from(length_m).powi(2);
-        let (omega, share) = (f64::from(frequency_rad_per_s), f64::from(damping_share));
+        let (omega, fraction) = (f64::from(frequency_rad_per_s), f64::from(damping_ratio));
         for start in [in_mode(0), UNDER_TIP_LOAD] {
             let swing = Swing::released(start, &blade, &CALM, Integrator::Exact, dt_secs, 5500, 0);
             let (found, decay) = (swing.frequency_rad_per_s(LATE), swing.decay_per_s(LATE));
             assert!(is_near(found, cantilever, 0.01), "{found} for {cantilever}");
-            assert!(is_near(found, omega * (1.0 - share * share).sqrt(), 1e-4), "{found} for {omega}");
-            assert!(is_near(decay, share * omega, 1e-4), "{decay} for {}", share * omega);
+            assert!(is_near(found, omega * (1.0 - fraction * fraction).sqrt(), 1e-4), "{found} for {omega}");
+            assert!(is_near(decay, fraction * omega, 1e-4), "{decay} for {}", fraction * omega);
         }
     }
 }
 
 #[test]
 fn higher_modes_are_slower_than_a_cantilevers_by_the_documented_amount_and_decay_at_their_own_rate() {
-    let (rigidity_n_m2, mass_kg_per_m, length_m, damping_share) = (0.0038_f32, 0.0012_f32, 0.8_f32, 0.02_f32);
-    let blade = Blade { length_m, ..blade(first_frequency_rad_per_s(rigidity_n_m2, mass_kg_per_m, length_m), damping_share) };
+    let (rigidity_n_m2, mass_kg_per_m, length_m, damping_ratio) = (0.0038_f32, 0.0012_f32, 0.8_f32, 0.02_f32);
+    let blade = Blade { length_m, ..blade(first_frequency_rad_per_s(rigidity_n_m2, mass_kg_per_m, length_m), damping_ratio) };
     let unit_rad_per_s = f64::from(rigidity_n_m2 / mass_kg_per_m).sqrt() / f64::from(length_m).powi(2);
     for (mode, (continuum, low)) in [(3.516_015, 0.0), (22.034_492, 0.099_3), (61.697_214, 0.199_0)].into_iter().enumerate() {
         let cantilever = continuum * unit_rad_per_s;
         let swing = Swing::released(in_mode(mode), &blade, &CALM, Integrator::Exact, (0.03 / cantilever) as f32, 3000, 0);
         let (found, decay) = (swing.frequency_rad_per_s(2..16), swing.decay_per_s(2..16));
-        let damped = (1.0 - f64::from(damping_share).powi(2)).sqrt();
+        let damped = (1.0 - f64::from(damping_ratio).powi(2)).sqrt();
         assert!((found / damped / cantilever - 1.0 + low).abs() < 5e-4, "mode {mode}: {found} for {cantilever}");
-        assert!(is_near(decay, f64::from(damping_share) * (1.0 - low) * cantilever, 2e-3), "mode {mode}: {decay}");
+        assert!(is_near(decay, f64::from(damping_ratio) * (1.0 - low) * cantilever, 2e-3), "mode {mode}: {decay}");
     }
 }
 
 #[test]
 fn each_integrator_has_the_frequency_and_the_decay_of_its_dispersion_relation() {
     // Euler holds where the highest mode does, up to 2ζ/14.06; Verlet is off by 1.3e-3 and 0.5 % at its step.
-    for (integrator, damping_share, step) in [
+    for (integrator, damping_ratio, step) in [
         (Integrator::Euler, 0.1_f32, 0.012_f32),
         (Integrator::Euler, 0.05, 0.006),
         (Integrator::Verlet, 0.02, 0.1),
@@ -127,11 +127,11 @@ fn each_integrator_has_the_frequency_and_the_decay_of_its_dispersion_relation() 
         (Integrator::Exact, 0.02, 0.1),
     ] {
         let omega = 9.74_f32;
-        let blade = blade(omega, damping_share);
+        let blade = blade(omega, damping_ratio);
         let dt_secs = step / omega;
         let steps = (30.0 * std::f32::consts::TAU / step) as usize;
         let swing = Swing::released(in_mode(0), &blade, &CALM, integrator, dt_secs, steps, 0);
-        let [frequency, decay] = dispersion(integrator, f64::from(omega), f64::from(damping_share * omega), f64::from(dt_secs));
+        let [frequency, decay] = dispersion(integrator, f64::from(omega), f64::from(damping_ratio * omega), f64::from(dt_secs));
         let (found, fallen) = (swing.frequency_rad_per_s(LATE), swing.decay_per_s(LATE));
         assert!(is_near(found, frequency, 1e-4), "{integrator:?}: {found} for {frequency}");
         assert!(is_near(fallen, decay, 1e-3), "{integrator:?}: {fallen} for {decay}");
@@ -143,10 +143,10 @@ fn euler_grows_by_its_dispersion_relation() {
     // The highest mode, since its rounding errors outgrow the others.
     let omega = 9.74_f32;
     let highest = omega * FREQUENCIES[LINKS - 1];
-    for (damping_share, step) in [(0.0_f32, 0.1_f32), (0.01, 0.05), (0.05, 0.2)] {
+    for (damping_ratio, step) in [(0.0_f32, 0.1_f32), (0.01, 0.05), (0.05, 0.2)] {
         let dt_secs = step / highest;
-        let swing = Swing::released(in_mode(LINKS - 1), &blade(omega, damping_share), &CALM, Integrator::Euler, dt_secs, 1500, 0);
-        let [frequency, decay] = dispersion(Integrator::Euler, f64::from(highest), f64::from(damping_share * highest), f64::from(dt_secs));
+        let swing = Swing::released(in_mode(LINKS - 1), &blade(omega, damping_ratio), &CALM, Integrator::Euler, dt_secs, 1500, 0);
+        let [frequency, decay] = dispersion(Integrator::Euler, f64::from(highest), f64::from(damping_ratio * highest), f64::from(dt_secs));
         let (found, grown) = (swing.frequency_rad_per_s(2..16), swing.decay_per_s(2..16));
         assert!(is_near(found, frequency, 2e-3), "{found} for {frequency}");
         assert!(decay < 0.0 && is_near(grown, decay, 0.01), "{grown} for {decay}");
@@ -166,8 +166,8 @@ fn a_steady_wind_holds_a_blade_at_the_lean_of_the_bend_field() {
             for axis in 0..2 {
                 let mean = sway.lean_rad.iter().map(|lean| lean[axis]).sum::<f32>() / LINKS as f32;
                 assert!((mean - wanted[axis]).abs() < 2e-5, "{integrator:?}: {mean} for {}", wanted[axis]);
-                for (lean, share) in sway.lean_rad.iter().zip(WIND_SHAPE) {
-                    assert!((lean[axis] - share * wanted[axis]).abs() < 3e-5);
+                for (lean, fraction) in sway.lean_rad.iter().zip(WIND_SHAPE) {
+                    assert!((lean[axis] - fraction * wanted[axis]).abs() < 3e-5);
                 }
             }
         }
@@ -176,29 +176,29 @@ fn a_steady_wind_holds_a_blade_at_the_lean_of_the_bend_field() {
 
 #[test]
 fn air_damps_a_blade_once_across_the_wind_and_twice_along_it() {
-    let (omega, damping_share, bend_rad) = (9.74_f32, 0.02_f32, 0.5_f32);
-    let blade = Blade { lean_per_wind2: bend_rad / 100.0, ..blade(omega, damping_share) };
+    let (omega, damping_ratio, bend_rad) = (9.74_f32, 0.02_f32, 0.5_f32);
+    let blade = Blade { lean_per_wind2: bend_rad / 100.0, ..blade(omega, damping_ratio) };
     let across_of = |speed: f32| {
-        let shares: f32 = BRAKES[0].iter().sum();
-        f64::from(0.5 * blade.length_m * omega * omega * blade.lean_per_wind2 * speed * shares)
+        let fractions: f32 = BRAKES[0].iter().sum();
+        f64::from(0.5 * blade.length_m * omega * omega * blade.lean_per_wind2 * speed * fractions)
     };
     for speed in [0.5_f32, 1.0, 2.0] {
         let wind: Leans = [[speed, 0.0]; LINKS];
         // In equilibrium with the wind, slightly displaced.
         let held = wind_lean_rad([speed, 0.0], bend_rad)[0];
         let start = |axis: usize| -> Leans {
-            let mut start = WIND_SHAPE.map(|share| [share * held, 0.0]);
+            let mut start = WIND_SHAPE.map(|fraction| [fraction * held, 0.0]);
             (0..LINKS).for_each(|link| start[link][axis] += SMALL_RAD * MODES[0][link]);
             start
         };
-        let rest_m = f64::from(Sway::at_rest(WIND_SHAPE.map(|share| [share * held, 0.0])).points_m(blade.length_m)[LINKS - 1][0]);
+        let rest_m = f64::from(Sway::at_rest(WIND_SHAPE.map(|fraction| [fraction * held, 0.0])).points_m(blade.length_m)[LINKS - 1][0]);
         let dt_secs = 1.0 / 3840.0;
         for (axis, times, tolerance) in [(1, 1.0, 2e-3), (0, 2.0, 0.02)] {
             let mut swing = Swing::released(start(axis), &blade, &wind, Integrator::Exact, dt_secs, 15_000, axis);
             if axis == 0 {
                 swing.tip_m.iter_mut().for_each(|tip_m| *tip_m -= rest_m);
             }
-            let calm = f64::from(damping_share * omega);
+            let calm = f64::from(damping_ratio * omega);
             let found = swing.decay_per_s(1..9) - calm;
             let wanted = times * across_of(speed);
             assert!(is_near(found, wanted, tolerance), "axis {axis} in {speed} m/s: {found} for {wanted}");

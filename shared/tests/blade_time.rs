@@ -9,8 +9,8 @@ const CALM: Leans = [[0.0; 2]; LINKS];
 /// The shape under a force at the tip, which contains all modes.
 const START: [f64; LINKS] = [0.5, 7.0 / 6.0, 1.5];
 
-fn blade(frequency_rad_per_s: f32, damping_share: f32) -> Blade {
-    Blade { length_m: 0.8, frequency_rad_per_s, damping_share, lean_per_wind2: 0.0 }
+fn blade(frequency_rad_per_s: f32, damping_ratio: f32) -> Blade {
+    Blade { length_m: 0.8, frequency_rad_per_s, damping_ratio, lean_per_wind2: 0.0 }
 }
 
 /// Lean and rate of each link along one axis, released from [`START`] at time 0, in closed form.
@@ -19,12 +19,12 @@ fn exact(blade: &Blade, secs: f64) -> [[f64; 2]; LINKS] {
     for m in 0..LINKS {
         let amplitude: f64 = (0..LINKS).map(|link| f64::from(AMPLITUDES[m][link]) * START[link]).sum();
         let omega = f64::from(blade.frequency_rad_per_s * FREQUENCIES[m]);
-        let gamma = f64::from(blade.damping_share) * omega;
+        let gamma = f64::from(blade.damping_ratio) * omega;
         let swing = (omega * omega - gamma * gamma).sqrt();
         let (decay, cosine, sine) = ((-gamma * secs).exp(), (swing * secs).cos(), (swing * secs).sin() / swing);
-        for (link, share) in links.iter_mut().zip(MODES[m]) {
-            link[0] += f64::from(share) * amplitude * decay * (cosine + gamma * sine);
-            link[1] -= f64::from(share) * amplitude * decay * omega * omega * sine;
+        for (link, fraction) in links.iter_mut().zip(MODES[m]) {
+            link[0] += f64::from(fraction) * amplitude * decay * (cosine + gamma * sine);
+            link[1] -= f64::from(fraction) * amplitude * decay * omega * omega * sine;
         }
     }
     links
@@ -57,7 +57,7 @@ fn order(errors: &[(u32, f64)]) -> f64 {
 
 #[test]
 fn each_integrator_has_its_order_and_the_exact_one_no_error() {
-    let [undamped, damped] = [0.0, 0.1].map(|damping_share| blade(8.0, damping_share));
+    let [undamped, damped] = [0.0, 0.1].map(|damping_ratio| blade(8.0, damping_ratio));
     let fitted = |blade: &Blade, integrator, steps: [u32; 4], before| {
         let errors = steps.map(|steps| (steps, error(blade, integrator, 0.4, steps, before)));
         (order(&errors), errors)
@@ -120,19 +120,19 @@ fn holds(blade: &Blade, wind: &Leans, integrator: Integrator, dt_secs: f32, step
 fn blades_fail_at_the_limit_of_their_integrator_whatever_their_stiffness() {
     for integrator in [Integrator::Euler, Integrator::Verlet] {
         for frequency_rad_per_s in [1.0, 9.74, 120.0] {
-            for damping_share in [0.1, 0.3, 0.8] {
-                let blade = blade(frequency_rad_per_s, damping_share);
-                let limit = stable_dt_secs(integrator, frequency_rad_per_s, damping_share);
+            for damping_ratio in [0.1, 0.3, 0.8] {
+                let blade = blade(frequency_rad_per_s, damping_ratio);
+                let limit = stable_dt_secs(integrator, frequency_rad_per_s, damping_ratio);
                 let (mut low, mut high) = (0.5 * limit, 2.0 * limit);
                 assert!(holds(&blade, &CALM, integrator, low, 40_000) && !holds(&blade, &CALM, integrator, high, 40_000));
                 while high / low > 1.002 {
                     let middle = 0.5 * (low + high);
                     if holds(&blade, &CALM, integrator, middle, 40_000) { low = middle } else { high = middle }
                 }
-                let share = low / limit;
+                let fraction = low / limit;
                 assert!(
-                    (0.99..1.02).contains(&share),
-                    "{integrator:?}, {frequency_rad_per_s} rad/s, {damping_share}: {share} of the limit"
+                    (0.99..1.02).contains(&fraction),
+                    "{integrator:?}, {frequency_rad_per_s} rad/s, {damping_ratio}: {fraction} of the limit"
                 );
             }
         }
@@ -142,12 +142,12 @@ fn blades_fail_at_the_limit_of_their_integrator_whatever_their_stiffness() {
 #[test]
 fn the_exact_integrator_is_stable_for_every_step() {
     for frequency_rad_per_s in [1.0, 9.74, 120.0, 5000.0] {
-        for damping_share in [0.0, 0.005, 0.1, 1.0, 5.0] {
+        for damping_ratio in [0.0, 0.005, 0.1, 1.0, 5.0] {
             for dt_secs in [1e-3, 1.0 / 60.0, 0.5, 100.0] {
-                let blade = blade(frequency_rad_per_s, damping_share);
+                let blade = blade(frequency_rad_per_s, damping_ratio);
                 assert!(
                     holds(&blade, &CALM, Integrator::Exact, dt_secs, 2000),
-                    "{frequency_rad_per_s} rad/s, {damping_share}, {dt_secs} s"
+                    "{frequency_rad_per_s} rad/s, {damping_ratio}, {dt_secs} s"
                 );
             }
         }

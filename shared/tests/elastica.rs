@@ -35,15 +35,16 @@ fn under_their_weight(weights: &[f64]) -> Vec<Case> {
     let angles = weights.iter().flat_map(|&weight| UNBENT_RAD.map(|unbent_rad| (weight, unbent_rad)));
     // Including upright ones that have buckled.
     let all = angles.chain(weights.iter().filter(|weight| **weight > 8.5).map(|&weight| (weight, 0.0)));
-    let exact = |tip_share, weight, unbent_rad| elastica::tip(tip_share, Load { spread: weight, tip: 0.0 }, unbent_rad);
-    all.flat_map(|(weight, angle)| [1.0, 0.3].map(|tip_share| (weight, angle, tip_share, exact(tip_share, weight, angle)))).collect()
+    let exact = |tip_fraction, weight, unbent_rad| elastica::tip(tip_fraction, Load { spread: weight, tip: 0.0 }, unbent_rad);
+    all.flat_map(|(weight, angle)| [1.0, 0.3].map(|tip_fraction| (weight, angle, tip_fraction, exact(tip_fraction, weight, angle))))
+        .collect()
 }
 
 /// Error of the tip of a component with this many sections, in each case.
 fn errors(sections: usize, cases: &[Case]) -> Vec<f64> {
     let mut bends_rad = vec![0.0; sections];
-    let error = |&(weight, unbent_rad, tip_share, exact): &Case| {
-        balanced(&joints(sections, tip_share), Load { spread: weight, tip: 0.0 }, unbent_rad, &mut bends_rad);
+    let error = |&(weight, unbent_rad, tip_fraction, exact): &Case| {
+        balanced(&joints(sections, tip_fraction), Load { spread: weight, tip: 0.0 }, unbent_rad, &mut bends_rad);
         let sum = |part: fn(f64) -> f64| bends_rad.iter().map(|bend_rad| part(unbent_rad + bend_rad)).sum::<f64>() / sections as f64;
         distance([sum(f64::sin), sum(f64::cos)], exact)
     };
@@ -108,7 +109,7 @@ const DRAG: [f64; LINKS] = [3.233_53, 2.586_83, 0.970_06];
 
 /// Equilibrium of the tip of a blade of 1 m, X and height, under a force on each control point (over EI/L²), and its mean lean (rad).
 fn held_tip(forces: [f64; LINKS]) -> ([f64; 2], f64) {
-    let blade = Blade { length_m: 1.0, frequency_rad_per_s: 9.74, damping_share: 0.3, lean_per_wind2: 0.005 };
+    let blade = Blade { length_m: 1.0, frequency_rad_per_s: 9.74, damping_ratio: 0.3, lean_per_wind2: 0.005 };
     let square = |link: usize| forces[link] / (RIGIDITY * DRAG[link] * f64::from(blade.lean_per_wind2));
     let wind: Leans = [0, 1, 2].map(|link| [square(link).sqrt() as f32, 0.0]);
     let sway = (0..1500).fold(Sway::default(), |sway, _| advance(&sway, &blade, &Leans::default(), &wind, Integrator::Exact, 1.0 / 60.0));
@@ -123,7 +124,7 @@ const EVENLY: ([f64; LINKS], Load) = ([1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0], Load { 
 /// Tip of a blade and of the elastica under such a load, X and height, and the blade's mean lean (rad).
 fn tips((on_points, on_beam): ([f64; LINKS], Load), load: f64) -> ([f64; 2], [f64; 2], f64) {
     let [height, back] = elastica::tip(1.0, Load { spread: load * on_beam.spread, tip: load * on_beam.tip }, FRAC_PI_2);
-    let (tip, lean_rad) = held_tip(on_points.map(|share| load * share));
+    let (tip, lean_rad) = held_tip(on_points.map(|fraction| load * fraction));
     (tip, [-back, height], lean_rad)
 }
 

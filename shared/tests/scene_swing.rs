@@ -16,7 +16,7 @@ fn lowest(scene: &Scene) -> Blade {
     Blade {
         length_m: scene.plants.height_m * least,
         frequency_rad_per_s: TAU * scene.plants.swing_hz / least,
-        damping_share: scene.plants.swing_damping,
+        damping_ratio: scene.plants.swing_damping,
         lean_per_wind2: 0.01 * scene.grass.wind_bend_rad,
     }
 }

@@ -21,7 +21,7 @@ use prairie_core::plant::force_field::{ForceField, Lingering, Obstacle, VolumeMe
 use prairie_core::plant::underbrush::plant::{Forces, LookUp, Stand, posed};
 use prairie_core::plant::underbrush::posture::{Nodes, Postures};
 use prairie_core::plant::underbrush::rest::{Load, balanced, joints};
-use prairie_core::plant::underbrush::strength::shares;
+use prairie_core::plant::underbrush::strength::fractions;
 use prairie_core::scene::parse;
 use prairie_core::terrain::{CoverMap, grey_png};
 use prairie_core::wind::CellGrid;
@@ -73,7 +73,7 @@ fn heading(of: &str, than: &str) {
     println!("| {} | -------: | -------: | ------------ | -----: |", "-".repeat(58));
 }
 
-fn share(place: [u32; 3]) -> f32 {
+fn fraction(place: [u32; 3]) -> f32 {
     (hash3(place)[0] >> 8) as f32 / (1 << 24) as f32
 }
 
@@ -85,14 +85,14 @@ struct Grown {
 }
 
 fn grown(number: usize) -> Grown {
-    let random = |low: f32, high: f32, what: u32| low + (high - low) * share([number as u32, what, 7]);
+    let random = |low: f32, high: f32, what: u32| low + (high - low) * fraction([number as u32, what, 7]);
     let (grid, within) = (number / GRID_PLANTS, [random(0.0, GRID_M, 0), random(0.0, GRID_M, 1)]);
     let corner = [grid % 3, grid / 3].map(|n| CORNER_M + GRID_M * n as f32);
     let length_m = random(0.5, 1.1, 2);
     let droop = [random(-0.2, 0.2, 3), random(-0.2, 0.2, 4)];
     Grown {
         root_m: [corner[0] + within[0], corner[1] + within[1]],
-        blade: Blade { length_m, frequency_rad_per_s: 9.74 * 0.8 / length_m, damping_share: 0.1, lean_per_wind2: 0.005 },
+        blade: Blade { length_m, frequency_rad_per_s: 9.74 * 0.8 / length_m, damping_ratio: 0.1, lean_per_wind2: 0.005 },
         held_rad: [0.6, 1.0, 1.4].map(|part| droop.map(|lean| part * lean)),
     }
 }
@@ -192,10 +192,10 @@ fn near_plants() {
 }
 
 fn postures() {
-    let (joints, shares) = (joints(8, 0.5), shares(8, 0.5));
-    let table = Postures::new(&joints, &shares, Nodes::default());
+    let (joints, fractions) = (joints(8, 0.5), fractions(8, 0.5));
+    let table = Postures::new(&joints, &fractions, Nodes::default());
     let asked: Vec<[f32; 2]> = (0..4096)
-        .map(|n| [share([n, 1, 2]) * std::f32::consts::PI, 0.1 * 2000.0_f32.powf(share([n, 2, 2]))])
+        .map(|n| [fraction([n, 1, 2]) * std::f32::consts::PI, 0.1 * 2000.0_f32.powf(fraction([n, 2, 2]))])
         .map(|[angle, load]| [angle.cos(), load])
         .collect();
     let balance = time(|| {

@@ -89,7 +89,7 @@ fn percentiles(_: &mut Criterion) {
             timed.collect::<Vec<_>>()
         });
         times_ms.sort_by(f64::total_cmp);
-        let at = |share: f64| times_ms[(share * (TIMED_STEPS - 1) as f64) as usize];
+        let at = |fraction: f64| times_ms[(fraction * (TIMED_STEPS - 1) as f64) as usize];
         println!(
             "step with {objects} objects: median {:.2} ms, 90 % {:.2} ms, 99 % {:.2} ms, longest {:.2} ms of {TIMED_STEPS}",
             at(0.5),

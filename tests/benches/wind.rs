@@ -140,8 +140,8 @@ fn step(criterion: &mut Criterion) {
                 });
                 if fastest < Duration::MAX {
                     let bytes_per_s = (candidate.bytes_per_cell * nx * ny * nz) as f64 / fastest.as_secs_f64();
-                    let share = 100.0 * bytes_per_s / triad;
-                    println!("{}: {} bytes per cell, {share:.0} % of the triad's bandwidth", candidate.name, candidate.bytes_per_cell);
+                    let fraction = 100.0 * bytes_per_s / triad;
+                    println!("{}: {} bytes per cell, {fraction:.0} % of the triad's bandwidth", candidate.name, candidate.bytes_per_cell);
                 }
             }
         }
@@ -156,7 +156,7 @@ fn smooth([x, y, z]: [f32; 3], n: usize) -> [f32; 3] {
 }
 
 /// Root mean square of the divergence that a projection of `velocity` leaves, relative to that before.
-fn share_left(grid: &Grid<f32>, velocity: &Velocity<f32>, projection: &mut Projection) -> f64 {
+fn fraction_left(grid: &Grid<f32>, velocity: &Velocity<f32>, projection: &mut Projection) -> f64 {
     let rms = |velocity: &Velocity<f32>| {
         let mut divergence = vec![0.0; grid.len()];
         pressure::divergence(grid, velocity, 1.0, &mut divergence);
@@ -196,7 +196,7 @@ fn projection(criterion: &mut Criterion) {
                 Pressure::Direct => "Direct".to_owned(),
                 Pressure::Iterative(method, _) => format!("{method:?} to 1e-5"),
             };
-            let left = share_left(&grid, &velocity, &mut Projection::new(&grid, pressure, None));
+            let left = fraction_left(&grid, &velocity, &mut Projection::new(&grid, pressure, None));
             println!("{name} at {n}³ leaves {left:.1e} of the divergence");
             // Created anew each time: an iteration starts from the previous potential.
             let fresh = || (Projection::new(&grid, pressure, None), velocity.clone());

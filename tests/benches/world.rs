@@ -118,7 +118,7 @@ fn table(costs: &[Cost]) {
     for (name, part) in parts {
         let mut times: Vec<f64> = costs.iter().map(part).collect();
         times.sort_by(f64::total_cmp);
-        let at = |share: f64| times[(share * (times.len() - 1) as f64) as usize];
+        let at = |fraction: f64| times[(fraction * (times.len() - 1) as f64) as usize];
         let mean = times.iter().sum::<f64>() / times.len() as f64;
         println!("{name:>10} {mean:>9.3} {:>9.3} {:>9.3} {:>9.3} {:>9.3}", at(0.5), at(0.9), at(0.99), at(1.0));
     }
@@ -146,8 +146,8 @@ async fn share_of_a_core(name: &str) {
     tokio::time::sleep(Duration::from_secs(2)).await;
     let (begun, used_secs) = (Instant::now(), cpu_secs());
     tokio::time::sleep(period).await;
-    let share = (cpu_secs() - used_secs) / begun.elapsed().as_secs_f64();
-    println!("{name}: {:.2} % of a core, {:.0} MB resident", 100.0 * share, resident_mb());
+    let fraction = (cpu_secs() - used_secs) / begun.elapsed().as_secs_f64();
+    println!("{name}: {:.2} % of a core, {:.0} MB resident", 100.0 * fraction, resident_mb());
 }
 
 /// A visitor who looks at the middle of the world and receives every frame.

@@ -182,13 +182,13 @@ fn run(
     diffusivity_m2_per_s: f64,
     damping: f64,
 ) {
-    for (number, share) in STAGES.into_iter().enumerate() {
+    for (number, fraction) in STAGES.into_iter().enumerate() {
         let (carried, target) = match number {
             0 => (&*field, &mut *even),
             1 => (&*even, &mut *odd),
             _ => (&*odd, &mut *even),
         };
-        Stage { grid, air, carried, start: field, pressure_gradient: None, dt_secs, share, diffusivity_m2_per_s, damping }
+        Stage { grid, air, carried, start: field, pressure_gradient: None, dt_secs, fraction, diffusivity_m2_per_s, damping }
             .run(target, scratch);
         wrap(grid, target);
     }

@@ -57,8 +57,8 @@ impl Flip {
     }
 
     /// Value exceeded by this fraction (0 to 1) of the pixels.
-    pub fn exceeded_by(&self, share: f64) -> f64 {
-        let rank = ((1.0 - share) * self.sorted.len() as f64) as usize;
+    pub fn exceeded_by(&self, fraction: f64) -> f64 {
+        let rank = ((1.0 - fraction) * self.sorted.len() as f64) as usize;
         self.sorted.get(rank.min(self.sorted.len().saturating_sub(1))).copied().unwrap_or(0.0).into()
     }
 
@@ -144,8 +144,8 @@ mod tests {
     fn noisy(amplitude: f64) -> Picture {
         let mut picture = filled([128; 3]);
         for (n, pixel) in (0..).zip(picture.rgba.chunks_exact_mut(4)) {
-            let share = f64::from(hash3([n, 7, 1])[0]) / f64::from(u32::MAX);
-            pixel[..3].fill((128.0 + amplitude * (2.0 * share - 1.0)).round() as u8);
+            let fraction = f64::from(hash3([n, 7, 1])[0]) / f64::from(u32::MAX);
+            pixel[..3].fill((128.0 + amplitude * (2.0 * fraction - 1.0)).round() as u8);
         }
         picture
     }
@@ -159,7 +159,7 @@ mod tests {
         let xyz = [[0.412_456, 0.357_576, 0.180_437], [0.212_673, 0.715_152, 0.072_175], [0.019_334, 0.119_192, 0.950_304]].map(
             |row: [f64; 3]| {
                 let [of_white, of_color] =
-                    [[1.0; 3], linear].map(|color| row.iter().zip(color).map(|(share, light)| share * light).sum::<f64>());
+                    [[1.0; 3], linear].map(|color| row.iter().zip(color).map(|(fraction, light)| fraction * light).sum::<f64>());
                 let t: f64 = of_color / of_white;
                 if t > 0.008_856 { t.cbrt() } else { 7.787 * t + 16.0 / 116.0 }
             },

@@ -60,18 +60,18 @@ fn trailing_lean(p: vec2<f32>, level: f32, now: vec3<f32>, kind: Kind, secs: f32
 }
 
 // Weight of the bend field at a position: it fades to 0 where the atlas ends.
-fn field_share(p: vec2<f32>) -> f32 {
+fn field_fraction(p: vec2<f32>) -> f32 {
     let from_eye = abs(p - frame.eye_m.xz);
     return 1.0 - smoothstep(0.8, 1.0, max(from_eye.x, from_eye.y) / frame.bend_reach_m);
 }
 
 // Lean (rad) of the bend field at a position: the deviation of the grass from its pose in the wind alone.
 fn lean_of_field(p: vec2<f32>, level: f32) -> vec2<f32> {
-    let share = field_share(p);
-    if share <= 0.0 {
+    let fraction = field_fraction(p);
+    if fraction <= 0.0 {
         return vec2<f32>(0.0);
     }
-    return lean_of_bend(bend_at(p, level, 0)) * share;
+    return lean_of_bend(bend_at(p, level, 0)) * fraction;
 }
 
 // Lean (rad) of a plant at `ground` in the local wind times `gust`, for a plant that a wind of 10 m/s bends by `bend_rad`.

@@ -14,7 +14,7 @@ override has_kinds: bool = true;
 // The four nearest pixels of the map of kinds, and their weights.
 struct KindsAbout {
     kinds: vec4<u32>,
-    shares: vec4<f32>,
+    fractions: vec4<f32>,
 }
 
 // Pixel of a map that repeats by mirroring at its edges.
@@ -37,7 +37,7 @@ fn kinds_about(p: vec2<f32>) -> KindsAbout {
     }
     let at = (p + beside_m) / px_m - 0.5;
     let low = floor(at);
-    let share = at - low;
+    let fraction = at - low;
     let nw = mirrored(vec2<i32>(low), vec2<i32>(size));
     let se = mirrored(vec2<i32>(low) + 1, vec2<i32>(size));
     var about: KindsAbout;
@@ -47,9 +47,9 @@ fn kinds_about(p: vec2<f32>) -> KindsAbout {
         textureLoad(kind_map, vec2<i32>(nw.x, se.y), 0).r,
         textureLoad(kind_map, se, 0).r,
     );
-    let west = 1.0 - share.x;
-    let north = 1.0 - share.y;
-    about.shares = vec4<f32>(west * north, share.x * north, west * share.y, share.x * share.y);
+    let west = 1.0 - fraction.x;
+    let north = 1.0 - fraction.y;
+    about.fractions = vec4<f32>(west * north, fraction.x * north, west * fraction.y, fraction.x * fraction.y);
     return about;
 }
 
@@ -62,7 +62,7 @@ fn kind_at(p: vec2<f32>) -> u32 {
     var found = 0u;
     var most = 0.0;
     for (var i = 0; i < 4; i++) {
-        let same = select(vec4<f32>(0.0), about.shares, about.kinds == vec4<u32>(about.kinds[i]));
+        let same = select(vec4<f32>(0.0), about.fractions, about.kinds == vec4<u32>(about.kinds[i]));
         let counts = dot(same, vec4<f32>(1.0));
         if counts > most {
             most = counts;
@@ -81,19 +81,19 @@ fn kinds_blended(p: vec2<f32>) -> Kind {
     var blend: Kind;
     for (var i = 0; i < 4; i++) {
         let kind = kinds.list[about.kinds[i]];
-        let share = about.shares[i];
-        blend.root_rgb += kind.root_rgb * share;
-        blend.height_m += kind.height_m * share;
-        blend.tip_rgb += kind.tip_rgb * share;
-        blend.wind_bend_rad += kind.wind_bend_rad * share;
-        blend.bend_m_per_s += kind.bend_m_per_s * share;
-        blend.bend_m_per_rad += kind.bend_m_per_rad * share;
-        blend.lag_secs += kind.lag_secs * share;
-        blend.rising_lag += kind.rising_lag * share;
-        blend.segments += kind.segments * share;
-        blend.frequency_rad_per_s += kind.frequency_rad_per_s * share;
-        blend.droop += kind.droop * share;
-        blend.width += kind.width * share;
+        let fraction = about.fractions[i];
+        blend.root_rgb += kind.root_rgb * fraction;
+        blend.height_m += kind.height_m * fraction;
+        blend.tip_rgb += kind.tip_rgb * fraction;
+        blend.wind_bend_rad += kind.wind_bend_rad * fraction;
+        blend.bend_m_per_s += kind.bend_m_per_s * fraction;
+        blend.bend_m_per_rad += kind.bend_m_per_rad * fraction;
+        blend.lag_secs += kind.lag_secs * fraction;
+        blend.rising_lag += kind.rising_lag * fraction;
+        blend.segments += kind.segments * fraction;
+        blend.frequency_rad_per_s += kind.frequency_rad_per_s * fraction;
+        blend.droop += kind.droop * fraction;
+        blend.width += kind.width * fraction;
     }
     return blend;
 }

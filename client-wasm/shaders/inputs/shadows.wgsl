@@ -65,8 +65,8 @@ fn sun_visible(p: vec3<f32>) -> f32 {
         let texel_m = select(frame.lights.near_texel_m, frame.lights.far_texel_m, is_far);
         let depth_m = select(frame.lights.near_depth_m, frame.lights.far_depth_m, is_far);
         let seen = soft_shadow(vec3<f32>(place.xy * vec2<f32>(0.5, -0.5) + 0.5, place.z), layer, depth_m, texel_m, turn);
-        let share = select(1.0, smoothstep(0.88, 0.98, off) * (1.0 - smoothstep(0.85, 0.98, far_off)), is_far);
-        light = mix(light, seen, share);
+        let fraction = select(1.0, smoothstep(0.88, 0.98, off) * (1.0 - smoothstep(0.85, 0.98, far_off)), is_far);
+        light = mix(light, seen, fraction);
     }
     return light;
 }

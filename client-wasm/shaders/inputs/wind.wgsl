@@ -36,10 +36,10 @@ fn air_at(p: vec2<f32>, above_m: f32) -> vec4<f32> {
     var air = vec4<f32>(0.0);
     for (var i = 0; i < select(4, 1, is_one_box); i++) {
         let corner = vec2<i32>(i & 1, i >> 1u);
-        let shares = select(1.0 - far, far, corner == vec2<i32>(1));
+        let fractions = select(1.0 - far, far, corner == vec2<i32>(1));
         let moved = vec2<f32>(offset_cells(vec2<i32>(low) + corner, cells)) * spacing_m;
         let at = p + select(moved, vec2<f32>(0.0), is_one_box);
-        air += air_in_box(vec3<f32>(at.x, above_m, at.y)) * select(shares.x * shares.y, 1.0, is_one_box);
+        air += air_in_box(vec3<f32>(at.x, above_m, at.y)) * select(fractions.x * fractions.y, 1.0, is_one_box);
     }
     return air;
 }
@@ -66,6 +66,6 @@ fn gust_at(p: vec2<f32>) -> f32 {
 // Twin of `wind_lean_rad` in shared/src/bend/wind.rs.
 fn lean_of_wind(wind: vec2<f32>, bend_rad: f32) -> vec2<f32> {
     let speed = length(wind);
-    let share = min(speed, BEND_SATURATES_M_PER_S) * (1.0 / BEND_SATURATES_M_PER_S);
-    return wind / max(speed, 1e-3) * (bend_rad * share * share);
+    let fraction = min(speed, BEND_SATURATES_M_PER_S) * (1.0 / BEND_SATURATES_M_PER_S);
+    return wind / max(speed, 1e-3) * (bend_rad * fraction * fraction);
 }

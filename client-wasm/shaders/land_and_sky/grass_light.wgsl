@@ -11,13 +11,13 @@ fn nearest_normal(along: f32) -> f32 {
 }
 
 // Twin of `self_shadow` in shared/src/light/grass.rs.
-fn self_shadow(height_share: f32, least: f32) -> f32 {
-    return clamp(height_share, 0.0, 1.0) * (1.0 - least) + least;
+fn self_shadow(height_fraction: f32, least: f32) -> f32 {
+    return clamp(height_fraction, 0.0, 1.0) * (1.0 - least) + least;
 }
 
 // Twin of `sun_through_leaves` in shared/src/light/grass.rs.
-fn sun_through_leaves(leaf_area_index: f32, depth_share: f32, sine_of_elevation: f32) -> f32 {
-    return exp(-LEAF_EXTINCTION * leaf_area_index * max(depth_share, 0.0) / max(sine_of_elevation, LEAST_SUN_SINE));
+fn sun_through_leaves(leaf_area_index: f32, depth_fraction: f32, sine_of_elevation: f32) -> f32 {
+    return exp(-LEAF_EXTINCTION * leaf_area_index * max(depth_fraction, 0.0) / max(sine_of_elevation, LEAST_SUN_SINE));
 }
 
 // Leaf area index of grass 0.6 m tall and more, reduced by clumping.
@@ -26,9 +26,9 @@ const LEAF_AREA_INDEX: f32 = 1.25;
 const LEAF_TRANSMISSION: f32 = 0.10;
 
 // Fraction of sunlight at a relative height in grass of a given height, after its shadow on itself.
-fn sun_in_grass(height_share: f32, grass_m: f32) -> f32 {
+fn sun_in_grass(height_fraction: f32, grass_m: f32) -> f32 {
     let index = LEAF_AREA_INDEX * smoothstep(0.0, 0.6, grass_m);
-    return mix(sun_through_leaves(index, 1.0 - height_share, frame.toward_sun.y), 1.0, LEAF_TRANSMISSION);
+    return mix(sun_through_leaves(index, 1.0 - height_fraction, frame.toward_sun.y), 1.0, LEAF_TRANSMISSION);
 }
 
 // Reflectance of a blade: diffuse reflection from a partly rounded strip (its own normal, and Kajiya & Kay), transmission mostly straight
@@ -60,7 +60,7 @@ fn grass_light(
 }
 
 // Light of all lamps on thin leaves, at a relative height in the grass.
-fn grass_lamps(albedo: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>, p: vec3<f32>, height_share: f32) -> vec3<f32> {
+fn grass_lamps(albedo: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>, p: vec3<f32>, height_fraction: f32) -> vec3<f32> {
     var light = vec3<f32>(0.0);
     for (var i = 0u; i < lamps_about(p); i++) {
         if distance(p, frame.lights.lamps[i].position_m) < frame.lights.lamps[i].reach_m {
@@ -68,5 +68,5 @@ fn grass_lamps(albedo: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>, view: v
             light += ray.rgb * leaf_light(albedo, normal, tangent, view, ray.toward);
         }
     }
-    return light * self_shadow(height_share, 0.3);
+    return light * self_shadow(height_fraction, 0.3);
 }

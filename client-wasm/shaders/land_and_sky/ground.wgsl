@@ -25,13 +25,13 @@ fn ground_height(p: vec2<f32>) -> f32 {
     let size = frame.heights_px;
     let at = clamp(p / frame.height_spacing_m, vec2<f32>(0.0), size - 1.001);
     let low = floor(at);
-    let share = at - low;
+    let fraction = at - low;
     let i = vec2<i32>(low);
     let nw = textureLoad(heights, i, 0).r;
     let ne = textureLoad(heights, i + vec2<i32>(1, 0), 0).r;
     let sw = textureLoad(heights, i + vec2<i32>(0, 1), 0).r;
     let se = textureLoad(heights, i + vec2<i32>(1, 1), 0).r;
-    let height = mix(mix(nw, ne, share.x), mix(sw, se, share.x), share.y);
+    let height = mix(mix(nw, ne, fraction.x), mix(sw, se, fraction.x), fraction.y);
     return height + far_hills(p, metres_outside(p));
 }
 
@@ -55,16 +55,16 @@ fn ground_normal(p: vec2<f32>) -> vec3<f32> {
 }
 
 // Smooth grass cover from the map: 0 on bare ground, stones and at trunks.
-fn soft_share(p: vec2<f32>) -> f32 {
+fn soft_fraction(p: vec2<f32>) -> f32 {
     return textureSampleLevel(cover, clamped, p / frame.world_extent_m, 0.0).r;
 }
 
 // Grass cover with ragged borders.
-fn grass_share(p: vec2<f32>) -> f32 {
-    return ragged_share(p, soft_share(p));
+fn grass_fraction(p: vec2<f32>) -> f32 {
+    return ragged_fraction(p, soft_fraction(p));
 }
 
-fn ragged_share(p: vec2<f32>, soft: f32) -> f32 {
+fn ragged_fraction(p: vec2<f32>, soft: f32) -> f32 {
     let is_border = soft > 0.0 && soft < 1.0;
     var ragged = 0.0;
     for (var i = 0; i < select(0, 2, is_border); i++) {

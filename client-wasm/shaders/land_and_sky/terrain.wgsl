@@ -11,7 +11,7 @@ import package::inputs::wind::{gust_at, lean_of_wind, wind_at};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
 import package::land_and_sky::grass_light::sun_in_grass;
-import package::land_and_sky::ground::{grass_share, ground_height, ground_normal, ragged_share, soft_share};
+import package::land_and_sky::ground::{grass_fraction, ground_height, ground_normal, ragged_fraction, soft_fraction};
 import package::land_and_sky::ground_tile::GroundTile;
 import package::land_and_sky::haze::hazed;
 import package::land_and_sky::sky_light::ambient;
@@ -88,10 +88,10 @@ fn litter_at(p: vec2<f32>, is_told: bool) -> vec3<f32> {
 }
 
 // Grass cover in front of a position, at half the distance that tall grass hides at this viewing angle.
-fn share_before(p: vec2<f32>, view: vec3<f32>, normal: vec3<f32>, kind: Kind) -> f32 {
+fn fraction_before(p: vec2<f32>, view: vec3<f32>, normal: vec3<f32>, kind: Kind) -> f32 {
     let down = clamp(-dot(view, normal), 0.02, 1.0);
     let hidden_m = kind.height_m * sqrt(1.0 - down * down) / down;
-    return grass_share(p - 0.5 * hidden_m * view.xz / max(length(view.xz), 1e-3));
+    return grass_fraction(p - 0.5 * hidden_m * view.xz / max(length(view.xz), 1e-3));
 }
 
 @fragment
@@ -101,32 +101,32 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let distance_m = length(to);
     let view = to / distance_m;
     let normal = ground_normal(p);
-    let soft = soft_share(p);
+    let soft = soft_fraction(p);
     let kind = kinds_blended(p);
     let between = bare_between(distance_m, kind, view, normal);
-    let share = max(ragged_share(p, soft), between * share_before(p, view, normal, kind));
+    let fraction = max(ragged_fraction(p, soft), between * fraction_before(p, view, normal, kind));
     let span_m = distance_m * frame.pixel_rad * inverseSqrt(max(-dot(view, normal), 0.05));
     let sun_light = ground.air.z * sun_visible(ground.p + normal * 0.05);
     var color = vec3<f32>(0.0);
-    if share < 1.0 {
+    if fraction < 1.0 {
         let soil = soil_at(p, span_m);
         let rough = normalize(normal + vec3<f32>(soil.slope.x, 0.0, soil.slope.y));
         let direct = frame.sun_rgb * (sun_light * max(dot(rough, frame.toward_sun), 0.0));
         // Nearby grass hides part of the sky.
         let open = 1.0 - 0.5 * smoothstep(0.0, 0.5, soft);
-        color = soil.albedo * (direct + ambient(rough) * open + lamps_on(ground.p, rough, 0.0)) * (1.0 - share);
+        color = soil.albedo * (direct + ambient(rough) * open + lamps_on(ground.p, rough, 0.0)) * (1.0 - fraction);
     }
-    if share > 0.0 {
+    if fraction > 0.0 {
         // Far look of the grass, leaning like the blades, where no blades hide the ground; dark between blades.
         let lean = lean_of_field(p, field_level(distance_m)) + ground.air.xy * kind.wind_bend_rad;
         let afar = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light);
         let mottle = mottle_at(p, span_m);
         let reached = frame.sun_rgb * sun_light * sun_in_grass(0.0, kind.height_m);
-        let litter_share = 0.8 * (1.0 - smoothstep(0.3, 2.5, distance_m));
-        let floor = mix(kind.root_rgb * 0.7, litter_at(p, litter_share > 0.0), litter_share);
+        let litter_fraction = 0.8 * (1.0 - smoothstep(0.3, 2.5, distance_m));
+        let floor = mix(kind.root_rgb * 0.7, litter_at(p, litter_fraction > 0.0), litter_fraction);
         let under = floor * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
         let grass = afar * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
-        color += mix(under, grass, between) * share;
+        color += mix(under, grass, between) * fraction;
     }
     return vec4<f32>(hazed(color, ground.p), 1.0);
 }

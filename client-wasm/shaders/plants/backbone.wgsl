@@ -49,7 +49,7 @@ fn corner_of(vertex: u32, segments: u32) -> vec2<f32> {
 
 // Width at a fraction of the blade, relative to the root width of a tapered one, whose last row is one point (Zhang, Fig. 5a); textured ones
 // are rectangles up to the tip (Fig. 5b).
-fn width_share(t: f32, is_textured: bool) -> f32 {
+fn width_fraction(t: f32, is_textured: bool) -> f32 {
     return select((1.0 - t * t) * (0.80 + 0.55 * t), WIDER, is_textured);
 }
 

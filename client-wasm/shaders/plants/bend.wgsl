@@ -7,7 +7,7 @@ import package::constants::{
     BEND_SATURATES_M_PER_S, CHUNK, COARSE_LIST, DRAW_WORDS, FAR_HEAD_LIST, FINE_LIST, FINE_SPREAD, GROWTH_BY_TUFT, HEAD_LIST, LINKS, NEAR_SLOTS,
     PLANT_LISTS, SINGLE_LIST, TAU, WIND_SHAPE,
 };
-import package::inputs::bend_atlas::{bend_at, field_share, lean_of_bend, trailing_lean};
+import package::inputs::bend_atlas::{bend_at, field_fraction, lean_of_bend, trailing_lean};
 import package::inputs::frame::{frame, runtime_zero};
 import package::inputs::frustum::is_seen;
 import package::inputs::grass_kinds::{kind_at, kinds};
@@ -123,14 +123,14 @@ fn plant_at(grid: vec2<i32>, index: u32, place: vec2<f32>, is_flower: bool) -> P
 // one below, except for plants of one segment.
 fn leans_of(plant: Plant, leans_in: array<vec2<f32>, 3>) -> array<vec2<f32>, 3> {
     var pressed = leans_in;
-    var shares = WIND_SHAPE;
+    var fractions = WIND_SHAPE;
     var leans: array<vec2<f32>, 3>;
     let is_stiff = kinds.list[plant.kind].segments < 1.5;
-    let flat_share = smoothstep(0.5, 1.3, length(pressed[0]));
+    let flat_fraction = smoothstep(0.5, 1.3, length(pressed[0]));
     for (var i = 0; i < LINKS; i++) {
-        let share = (f32(i) + 1.0) / 3.0;
-        let bend = select(mix(shares[i], 1.0 + 0.06 * share, flat_share), 1.0, is_stiff);
-        let v = pressed[i] * bend + plant.droop * share * (1.6 - 1.1 * flat_share);
+        let fraction = (f32(i) + 1.0) / 3.0;
+        let bend = select(mix(fractions[i], 1.0 + 0.06 * fraction, flat_fraction), 1.0, is_stiff);
+        let v = pressed[i] * bend + plant.droop * fraction * (1.6 - 1.1 * flat_fraction);
         leans[i] = v * min(1.0, 1.55 / max(length(v), 1e-5));
     }
     return leans;
@@ -154,12 +154,12 @@ struct Bending {
     // State of the bend field: θ (rad) and ω (rad/s).
     field: vec3<f32>,
     // Weight of the bend field.
-    share: f32,
+    fraction: f32,
 }
 
 fn bending_at(plant: Plant, grid: vec2<i32>, index: u32) -> Bending {
     let p = plant.root.xz;
-    return Bending(wind_at(plant.root, 0.0).xz, gust_at(p), random3(grid, index + 47u), bend_at(p, 0.0, 0), field_share(p));
+    return Bending(wind_at(plant.root, 0.0).xz, gust_at(p), random3(grid, index + 47u), bend_at(p, 0.0, 0), field_fraction(p));
 }
 
 // Gust factor of a plant.
@@ -173,9 +173,9 @@ fn trailing_leans(plant: Plant, bending: Bending, gust: f32) -> array<vec2<f32>,
     let lag_secs = select(0.0, kind.lag_secs, kind.segments > 1.5);
     let held = lean_of_wind(bending.wind * gust, kind.wind_bend_rad) * give_of(plant);
     var leans = array<vec2<f32>, 3>(held, held, held);
-    leans[0] += lean_of_bend(bending.field) * bending.share;
-    for (var i = 1; i < select(1, 3, bending.share > 0.0); i++) {
-        leans[i] += trailing_lean(plant.root.xz, 0.0, bending.field, kind, lag_secs * f32(i) * 0.5) * bending.share;
+    leans[0] += lean_of_bend(bending.field) * bending.fraction;
+    for (var i = 1; i < select(1, 3, bending.fraction > 0.0); i++) {
+        leans[i] += trailing_lean(plant.root.xz, 0.0, bending.field, kind, lag_secs * f32(i) * 0.5) * bending.fraction;
     }
     return leans;
 }
@@ -271,7 +271,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     let kind = kinds.list[plant.kind];
     let bending = bending_at(plant, grid, index);
     let gust = own_gust(bending);
-    let field_lean = lean_of_bend(bending.field) * bending.share;
+    let field_lean = lean_of_bend(bending.field) * bending.fraction;
     let held = leans_of(plant, array<vec2<f32>, 3>(field_lean, field_lean, field_lean));
     let give = give_of(plant);
     let nature = BladeNature(plant.height, plant.frequency, plants.damping, kind.wind_bend_rad * 0.01 * give);
@@ -298,10 +298,10 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     // Towards the border of the near grids, a plant blends into the pose of those beyond.
     let away = abs(plant.root.xz - frame.eye_m.xz) / plants.grid_m;
     let beyond = standing_far(plant, bending);
-    let share = smoothstep(0.6, 1.0, max(away.x, away.y));
+    let fraction = smoothstep(0.6, 1.0, max(away.x, away.y));
     for (var i = 0; i < LINKS; i++) {
-        sway.links[i].lean_rad = mix(sway.links[i].lean_rad, beyond.links[i].lean_rad, share);
-        sway.links[i].rate_rad_per_s = mix(sway.links[i].rate_rad_per_s, beyond.links[i].rate_rad_per_s, share);
+        sway.links[i].lean_rad = mix(sway.links[i].lean_rad, beyond.links[i].lean_rad, fraction);
+        sway.links[i].rate_rad_per_s = mix(sway.links[i].rate_rad_per_s, beyond.links[i].rate_rad_per_s, fraction);
     }
     if grown > 0.01 {
         show(plant, points_of(sway, plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));

@@ -1,7 +1,7 @@
 // Clumps of far plants: six rectangles about a vertical axis (Zhang, section 4.1). One instance is 32 clumps.
 
 import package::constants::{CLUMP_FADE_SPREAD_M, CLUMP_SEGMENT_LIMIT, CLUMPS, TAU};
-import package::inputs::bend_atlas::{bend_at, field_level, field_share, lean_of_bend, lean_of_field, trailing_lean};
+import package::inputs::bend_atlas::{bend_at, field_level, field_fraction, lean_of_bend, lean_of_field, trailing_lean};
 import package::inputs::frame::{frame, repeated};
 import package::inputs::grass_kinds::{kind_at, kinds};
 import package::inputs::lamps::lamps_on;
@@ -10,7 +10,7 @@ import package::inputs::shadows::sun_visible;
 import package::inputs::wind::{gust_at, lean_of_wind, wind_at};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
-import package::land_and_sky::ground::{fed, grass_share, ground_height, ground_normal};
+import package::land_and_sky::ground::{fed, grass_fraction, ground_height, ground_normal};
 import package::land_and_sky::haze::hazed;
 import package::land_and_sky::sky_light::ambient;
 import package::land_and_sky::sward::{blade_color, contrast, sward_color};
@@ -63,17 +63,17 @@ const PATTERN_HEIGHT: f32 = 1.25;
 // leans (Chen & Johan, section 4.5). With distance all straighten into one line. Tops stay above the ground.
 fn joints_of(ground: vec3<f32>, kind: Kind, segments: u32, height: f32, level: f32, wind_lean: vec2<f32>, straight: f32) -> array<vec3<f32>, CLUMP_SEGMENT_LIMIT> {
     let p = ground.xz;
-    let share = field_share(p);
+    let fraction = field_fraction(p);
     let now = bend_at(p, level, 0);
-    let lowest = wind_lean + lean_of_bend(now) * share;
+    let lowest = wind_lean + lean_of_bend(now) * fraction;
     let curl = (1.0 - straight) * (1.0 - smoothstep(0.5, 1.3, length(lowest)));
     var joints: array<vec3<f32>, CLUMP_SEGMENT_LIMIT>;
     var at = vec3<f32>(0.0);
     for (var i = 0u; i < segments; i++) {
         var lean = lowest;
-        if i > 0u && share > 0.0 && straight < 1.0 {
+        if i > 0u && fraction > 0.0 && straight < 1.0 {
             let secs = kind.lag_secs * f32(i) / f32(segments - 1u);
-            lean = mix(wind_lean + trailing_lean(p, level, now, kind, secs) * share, lowest, straight);
+            lean = mix(wind_lean + trailing_lean(p, level, now, kind, secs) * fraction, lowest, straight);
         }
         if segments > 1u {
             lean *= 1.0 + curl * (0.7 * f32(i) / f32(segments - 1u) - 0.35);
@@ -94,10 +94,10 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let clump = clumps[id.x];
     let root = clump.axis_m;
-    let share = grass_share(root);
+    let fraction = grass_fraction(root);
     // Kinds mix where they meet.
     let kind = kinds.list[kind_at(root + (vec2<f32>(clump.random, fract(clump.random * 7.3)) - 0.5) * 0.9)];
-    let height = kind.height_m * PATTERN_HEIGHT * fed(root) * sqrt(share);
+    let height = kind.height_m * PATTERN_HEIGHT * fed(root) * sqrt(fraction);
     let ground = vec3<f32>(root.x, ground_height(root), root.y);
     let distance_m = distance(ground, frame.eye_m);
     let level = field_level(distance_m);
@@ -110,13 +110,13 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let light = cloud_light(root) * sun_visible(ground + vec3<f32>(0.0, height * 0.6, 0.0));
     // Seen from above, sparse clumps would look like stars: the colour of the ground replaces them.
     let down = smoothstep(0.09, 0.22, dot(frame.eye_m - ground, ground_normal(root)) / max(distance_m, 1e-3));
-    let flat_share = down * smoothstep(frame.blades_end_m * 0.9, frame.blades_end_m * 1.6, distance_m);
-    let risen = mix(0.35, 1.0, fade_out) * (1.0 - flat_share);
+    let flat_fraction = down * smoothstep(frame.blades_end_m * 0.9, frame.blades_end_m * 1.6, distance_m);
+    let risen = mix(0.35, 1.0, fade_out) * (1.0 - flat_fraction);
     let segments = select(1u, u32(kind.segments), id.x / CLUMPS < list.several_instances);
     let straight = smoothstep(list.straightens_m, list.straight_m, distance_m);
     pose.height_m = kind.height_m;
     pose.segments = f32(segments);
-    pose.shown = fade_in * min(fade_out * 4.0, 1.0) * step(0.1, share) * step(0.05, risen);
+    pose.shown = fade_in * min(fade_out * 4.0, 1.0) * step(0.1, fraction) * step(0.05, risen);
     if pose.shown > 0.0 {
         pose.joints_m = joints_of(ground, kind, segments, height * risen, level, wind_lean, straight);
     }

@@ -150,14 +150,14 @@ fn points_of(sway: Sway, length_m: f32) -> array<vec3<f32>, 3> {
     return points;
 }
 
-// Unit vector whose component along `axis` is `share`, turned from `out`.
-fn toward(out: vec3<f32>, axis: vec3<f32>, share: f32) -> vec3<f32> {
+// Unit vector whose component along `axis` is `fraction`, turned from `out`.
+fn toward(out: vec3<f32>, axis: vec3<f32>, fraction: f32) -> vec3<f32> {
     var rest = out - axis * dot(out, axis);
     if dot(rest, rest) < 1e-12 {
         let least = select(vec3<f32>(0.0, 0.0, 1.0), vec3<f32>(1.0, 0.0, 0.0), abs(axis.x) < 0.6);
         rest = least - axis * dot(least, axis);
     }
-    return axis * share + rest * sqrt(max(1.0 - share * share, 0.0) / dot(rest, rest));
+    return axis * fraction + rest * sqrt(max(1.0 - fraction * fraction, 0.0) / dot(rest, rest));
 }
 
 // Direction of a link from `below` that passes outside a sphere around `centre` (both from the root), as near to `along` as possible.

@@ -32,8 +32,8 @@ struct Flower {
     disc_m: f32,
 }
 
-fn kind_of(share: f32) -> Flower {
-    switch u32(share * 6.0) {
+fn kind_of(fraction: f32) -> Flower {
+    switch u32(fraction * 6.0) {
         case 0u: { return Flower(12.0, 0.026, 0.34, 0.18, vec3<f32>(0.80, 0.80, 0.76), vec3<f32>(0.95, 0.95, 0.93), vec3<f32>(0.85, 0.52, 0.03), 0.010); }
         case 1u: { return Flower(5.0, 0.030, 1.05, 0.75, vec3<f32>(0.28, 0.015, 0.01), vec3<f32>(0.86, 0.075, 0.02), vec3<f32>(0.03, 0.02, 0.02), 0.008); }
         case 2u: { return Flower(9.0, 0.024, 0.50, 0.45, vec3<f32>(0.09, 0.08, 0.42), vec3<f32>(0.16, 0.25, 0.88), vec3<f32>(0.18, 0.05, 0.30), 0.009); }

@@ -17,8 +17,8 @@ fn plant_place(grid: vec2<i32>, index: u32) -> vec2<f32> {
     let start = random3(grid, 0u).xy;
     let jitter = random3(grid, index + 101u).xy - 0.5;
     let along = vec2<u32>(index * 3242174889u, index * 2447445414u);
-    let share = fract(start + vec2<f32>(along >> vec2<u32>(8u)) / UNIT_STEPS);
-    return (vec2<f32>(grid) + share) * plants.grid_m + jitter * 0.12;
+    let fraction = fract(start + vec2<f32>(along >> vec2<u32>(8u)) / UNIT_STEPS);
+    return (vec2<f32>(grid) + fraction) * plants.grid_m + jitter * 0.12;
 }
 
 // Growth factor of a plant where the density falls, and where the last plants end: 0 gone, 1 full size, as for all plants nearer than nine

@@ -76,9 +76,9 @@ fn is_hidden(low: vec3<f32>, high: vec3<f32>) -> bool {
     }
     let far = length(max(abs(low.xz - eye.xz), abs(high.xz - eye.xz)));
     for (var i = 1u; i < HORIZON_SAMPLES; i++) {
-        let share = f32(i) / f32(HORIZON_SAMPLES);
-        let ground = lowest_within(mix(eye.xz, low.xz, share), mix(eye.xz, high.xz, share));
-        if ground - DRAWN_LOWER_M - DRAWN_LOWER * far * share > mix(eye.y, high.y, share) {
+        let fraction = f32(i) / f32(HORIZON_SAMPLES);
+        let ground = lowest_within(mix(eye.xz, low.xz, fraction), mix(eye.xz, high.xz, fraction));
+        if ground - DRAWN_LOWER_M - DRAWN_LOWER * far * fraction > mix(eye.y, high.y, fraction) {
             return true;
         }
     }

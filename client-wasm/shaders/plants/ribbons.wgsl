@@ -275,8 +275,8 @@ fn dip_m(speed: f32, settle: f32, per_s: f32, number: vec2<u32>, secs: f32) -> f
 }
 
 // Deflection of a cantilever with a force at its tip, normalised to 1 at the tip.
-fn bow(share: f32) -> f32 {
-    return share * share * (1.5 - 0.5 * share);
+fn bow(fraction: f32) -> f32 {
+    return fraction * fraction * (1.5 - 0.5 * fraction);
 }
 
 @compute @workgroup_size(64)

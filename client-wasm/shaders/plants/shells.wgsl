@@ -12,7 +12,7 @@ import package::inputs::wind::gust_at;
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::{grass_tint, plant_color, trodden};
 import package::land_and_sky::grass_light::{grass_lamps, grass_light};
-import package::land_and_sky::ground::{fed, grass_share, ground_height, ground_normal};
+import package::land_and_sky::ground::{fed, grass_fraction, ground_height, ground_normal};
 import package::land_and_sky::ground_tile::GroundTile;
 import package::land_and_sky::haze::hazed;
 import package::uniforms::ShellFrame;
@@ -120,7 +120,7 @@ fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
     let along = across - dot(across, normal) * normal;
     let tilt = tilt_of(lean_rad);
 
-    var growth = smoothstep(0.05, 0.75, grass_share(p)) * (1.0 - smoothstep(frame.far_fade_from_m, frame.far_end_m, distance_m));
+    var growth = smoothstep(0.05, 0.75, grass_fraction(p)) * (1.0 - smoothstep(frame.far_fade_from_m, frame.far_end_m, distance_m));
     if shells.is_alone + u32(runtime_zero(height)) == 0u {
         growth *= smoothstep(frame.blades_fade_from_m, frame.blades_end_m, distance_m);
     }
@@ -188,21 +188,21 @@ struct Grain {
     uv: vec2<f32>,
     run: vec2<f32>,
     level: f32,
-    share: f32,
+    fraction: f32,
     aside: vec4<f32>,
 }
 
 // The texture enlarged by 2^`times`, turned each time so that no two scales look alike.
-fn grain_of(p: vec2<f32>, run: vec2<f32>, aside: vec4<f32>, times: f32, level: f32, share: f32) -> Grain {
+fn grain_of(p: vec2<f32>, run: vec2<f32>, aside: vec4<f32>, times: f32, level: f32, fraction: f32) -> Grain {
     let angle = 2.4 * times;
     let size = exp2(-times) / shells.texture_m;
     let turn = mat2x2<f32>(vec2<f32>(cos(angle), sin(angle)), vec2<f32>(-sin(angle), cos(angle))) * size;
-    return Grain(turn * p, turn * run, level - times + 0.8 * min(times, 1.0), share, vec4<f32>(turn * aside.xy, turn * aside.zw));
+    return Grain(turn * p, turn * run, level - times + 0.8 * min(times, 1.0), fraction, vec4<f32>(turn * aside.xy, turn * aside.zw));
 }
 
 fn cross_section(grain: Grain, u: f32, high: f32) -> vec4<f32> {
     let found = textureSampleLevel(dots, repeated, grain.uv + grain.run * u + mix(grain.aside.xy, grain.aside.zw, u) * (high * high), grain.level);
-    return vec4<f32>(found.rgb, found.a * grain.share);
+    return vec4<f32>(found.rgb, found.a * grain.fraction);
 }
 
 // Light on a blade at fraction `up` of its length and relative height `high`, from its tangent alone: the normal is the one across the

@@ -5,7 +5,7 @@ import package::constants::{NEAR_SLOTS, TUFT_REACH_M};
 import package::inputs::frame::frame;
 import package::inputs::frustum::is_seen;
 import package::inputs::random::random3;
-import package::land_and_sky::ground::{grass_share, ground_height};
+import package::land_and_sky::ground::{grass_fraction, ground_height};
 import package::plants::grid_plants::{chunks, growth, LISTED, plant_place, plants};
 
 @group(1) @binding(8) var<storage, read_write> sifted: array<atomic<u32>>;
@@ -20,7 +20,7 @@ const NO_PLANT_M: f32 = -1e9;
 // Height of the land at a plant (m), or `NO_PLANT_M`.
 fn ground_of(grid: vec2<i32>, index: u32) -> f32 {
     let place = plant_place(grid, index);
-    let has_room = random3(grid, index + 31u).x <= grass_share(place) * 1.02 - 0.02;
+    let has_room = random3(grid, index + 31u).x <= grass_fraction(place) * 1.02 - 0.02;
     return select(NO_PLANT_M, ground_height(place), has_room);
 }
 

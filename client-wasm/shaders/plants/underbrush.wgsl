@@ -12,7 +12,7 @@ import package::inputs::shadows::sun_visible;
 import package::inputs::wind::{gust_at, wind_at};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
-import package::land_and_sky::ground::{grass_share, ground_height, ground_normal};
+import package::land_and_sky::ground::{grass_fraction, ground_height, ground_normal};
 import package::land_and_sky::haze::air_before;
 import package::land_and_sky::sward::{bare_between, sward_color};
 import package::plants::ribbons::{fs, ribbons, vs};
@@ -250,7 +250,7 @@ fn stand(@builtin(global_invocation_id) id: vec3<u32>) {
     let tint = grass_tint(plant.at_m);
     let afar = sward_color(root, up, kind, tint, lean, view, out.sunlight);
     out.grass_rgb = afar;
-    out.grass_fraction = bare_between(distance_m, kind, view, up) * grass_share(plant.at_m);
+    out.grass_fraction = bare_between(distance_m, kind, view, up) * grass_fraction(plant.at_m);
     out.air = air_before(root + vec3<f32>(0.0, 0.5 * height, 0.0));
 
     // Plants of one height change level at different distances.

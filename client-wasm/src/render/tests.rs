@@ -292,16 +292,16 @@ fn trilinear(codes: &[i8], place_m: [f32; 3]) -> [f32; 4] {
     let at: [f32; 3] = std::array::from_fn(|axis| place_m[axis] / [2.0, 2.0, 4.0][axis] - 0.5);
     let mut sum = [0.0; 4];
     for corner in 0..8 {
-        let (mut cell, mut share) = ([0; 3], 1.0);
+        let (mut cell, mut fraction) = ([0; 3], 1.0);
         for axis in 0..3 {
             let (far, count) = (corner >> axis & 1, [8, 2, 4][axis]);
             let part = at[axis] - at[axis].floor();
-            share *= if far == 1 { part } else { 1.0 - part };
+            fraction *= if far == 1 { part } else { 1.0 - part };
             let index = at[axis].floor() as i32 + far;
             cell[axis] = if axis == 1 { index.clamp(0, 1) } else { index.rem_euclid(count) };
         }
         let index = (cell[0] + 8 * (cell[1] + 2 * cell[2])) as usize;
-        sum.iter_mut().enumerate().for_each(|(plane, sum)| *sum += f32::from(codes[64 * plane + index]) * share);
+        sum.iter_mut().enumerate().for_each(|(plane, sum)| *sum += f32::from(codes[64 * plane + index]) * fraction);
     }
     sum
 }

@@ -7,8 +7,8 @@ use prairie_core::scene::{COMPONENTS_LIMIT, Component, Growth, PARTS_LIMIT, SITE
 /// Checks the underbrush species of a scene and the growth settings.
 pub(super) fn check_underbrush(scene: &Scene) -> Result<(), MirrorError> {
     let Growth { richness, patch_m, spacing_m, shade, .. } = scene.growth;
-    for share in richness.into_iter().chain([shade]) {
-        within("growth.*", share, 0.0, 1.0)?;
+    for fraction in richness.into_iter().chain([shade]) {
+        within("growth.*", fraction, 0.0, 1.0)?;
     }
     within("growth.patch_m", patch_m, 1.0, 1000.0)?;
     within("growth.spacing_m", spacing_m, 0.05, 20.0)?;
@@ -28,8 +28,8 @@ fn check_species(species: &Underbrush) -> Result<(), MirrorError> {
     within("underbrush.room_m", species.room_m, 0.05, 20.0)?;
     within("underbrush.reach_m", species.reach_m, 0.0, 50.0)?;
     within("underbrush.propagation_points", species.propagation_points as f32, 0.0, 10_000.0)?;
-    for share in species.needs.into_iter().chain(species.uptake).chain([species.light_need]) {
-        within("needs of underbrush", share, 0.0, 1.0)?;
+    for fraction in species.needs.into_iter().chain(species.uptake).chain([species.light_need]) {
+        within("needs of underbrush", fraction, 0.0, 1.0)?;
     }
     within("number of components", species.components.len() as f32, 1.0, COMPONENTS_LIMIT as f32)?;
     for (index, component) in species.components.iter().enumerate() {

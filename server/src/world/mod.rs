@@ -176,7 +176,7 @@ impl World {
             rejected_motions: self.bend.rejected_count(),
             wind_resets: self.weather.resets(),
             substeps: bend.substeps,
-            courant: bend.courant_share,
+            courant: bend.courant_fraction,
         }
     }
 }

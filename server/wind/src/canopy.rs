@@ -26,7 +26,7 @@ impl Canopy {
     }
 
     /// Fraction of the layer from `low_m` to `high_m` above the ground that is inside the grass.
-    fn share(&self, low_m: f64, high_m: f64) -> f64 {
+    fn fraction(&self, low_m: f64, high_m: f64) -> f64 {
         ((f64::from(self.height_m) - low_m) / (high_m - low_m)).clamp(0.0, 1.0)
     }
 }
@@ -46,11 +46,11 @@ pub fn drag<R: Real>(grid: &Grid<R>, canopy: &Canopy, cover: &[R], dt_secs: f64,
         let target = &mut slowed.0[axis];
         for j in grid.free(location, 1) {
             let middle_m = (j as f64 + offset) * layer_m;
-            let share = canopy.share((middle_m - 0.5 * layer_m).max(0.0), middle_m + 0.5 * layer_m);
-            if share == 0.0 {
+            let fraction = canopy.fraction((middle_m - 0.5 * layer_m).max(0.0), middle_m + 0.5 * layer_m);
+            if fraction == 0.0 {
                 break;
             }
-            let rate = R::of(dt_secs * share * f64::from(canopy.drag_per_m));
+            let rate = R::of(dt_secs * fraction * f64::from(canopy.drag_per_m));
             for k in grid.free(location, 2) {
                 for i in grid.free(location, 0) {
                     let at = grid.at([i, j, k]);
@@ -77,7 +77,7 @@ pub fn drag<R: Real>(grid: &Grid<R>, canopy: &Canopy, cover: &[R], dt_secs: f64,
         let (from, to) = (&slowed.0[axis], &mut velocity.0[axis]);
         for j in grid
             .free(location, 1)
-            .take_while(|&j| canopy.share(((j as f64 + offset - 0.5) * layer_m).max(0.0), (j as f64 + offset + 0.5) * layer_m) > 0.0)
+            .take_while(|&j| canopy.fraction(((j as f64 + offset - 0.5) * layer_m).max(0.0), (j as f64 + offset + 0.5) * layer_m) > 0.0)
         {
             for k in grid.free(location, 2) {
                 let xs = grid.free(location, 0);

@@ -62,14 +62,23 @@ impl<R: Real> Solver<R> {
         let [even, odd] = &mut self.dust_stages;
         let dt_secs = dt_secs / f64::from(substeps);
         for _ in 0..substeps {
-            for (number, share) in STAGES.into_iter().enumerate() {
+            for (number, fraction) in STAGES.into_iter().enumerate() {
                 let (carried, target) = match number {
                     0 => (&*dust, &mut *even),
                     1 => (&*even, &mut *odd),
                     _ => (&*odd, &mut *even),
                 };
-                let stage =
-                    Stage { grid, air, carried, start: dust, pressure_gradient: None, dt_secs, share, diffusivity_m2_per_s, damping: 0.0 };
+                let stage = Stage {
+                    grid,
+                    air,
+                    carried,
+                    start: dust,
+                    pressure_gradient: None,
+                    dt_secs,
+                    fraction,
+                    diffusivity_m2_per_s,
+                    damping: 0.0,
+                };
                 stage.run(target, &mut self.transport);
                 self.boundaries.apply_to_concentration(target);
             }

@@ -29,12 +29,12 @@ impl Jet {
 /// Applies a jet by a backward Euler step, which never overshoots: `u += w·(v − u)·rate·dt / (1 + rate·dt)`, w the weight of the footprint.
 pub fn drive<R: Real>(grid: &Grid<R>, jet: &Jet, dt_secs: f64, velocity: &mut Velocity<R>, footprint: &mut Footprint<R>) {
     let reach = f64::from(jet.rate_per_s) * dt_secs;
-    let share = R::of(reach / (1.0 + reach));
+    let fraction = R::of(reach / (1.0 + reach));
     let centre = jet.position_m.to_array().map(|x| R::of(x.into()));
     let radius = [R::of(jet.radius_m.into()); 3];
     for (field, target) in velocity.0.iter_mut().zip(jet.velocity_m_per_s.to_array()) {
         let target = R::of(target.into());
         footprint.put(grid, field.location, centre, radius);
-        footprint.for_each(grid, field, |speed, weight, _| *speed = *speed + weight * share * (target - *speed));
+        footprint.for_each(grid, field, |speed, weight, _| *speed = *speed + weight * fraction * (target - *speed));
     }
 }

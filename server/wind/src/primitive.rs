@@ -79,15 +79,15 @@ impl Primitive {
     fn target(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let speed = f64::from(self.speed_m_per_s);
         let core_m = 0.5 * f64::from(self.radius_m);
-        let share = (x * x + z * z).sqrt() / core_m;
+        let fraction = (x * x + z * z).sqrt() / core_m;
         // Angular speed of a smooth vortex, which is fastest at the edge of the core.
-        let spin = 2.0 * speed / (core_m * (1.0 + share * share));
+        let spin = 2.0 * speed / (core_m * (1.0 + fraction * fraction));
         match self.shape {
             Shape::Uniform => [f64::from(self.direction[0]) * speed, 0.0, f64::from(self.direction[1]) * speed],
             Shape::Vortex => [spin * z, 0.0, -spin * x],
             Shape::Cyclone => {
                 let inwards = if y < 0.0 { INWARDS * spin } else { 0.0 };
-                let lift = UPWARDS * speed / (1.0 + share * share * share * share);
+                let lift = UPWARDS * speed / (1.0 + fraction * fraction * fraction * fraction);
                 [spin * z - inwards * x, lift, -spin * x - inwards * z]
             }
             Shape::Source | Shape::Sink => [0.0; 3],
@@ -104,7 +104,7 @@ impl Primitive {
         if self.shape == Shape::Source {
             return;
         }
-        let share = R::of(RATE_PER_S * dt_secs / (1.0 + RATE_PER_S * dt_secs));
+        let fraction = R::of(RATE_PER_S * dt_secs / (1.0 + RATE_PER_S * dt_secs));
         let gone = R::of(self.divergence_per_s() * dt_secs);
         for (axis, field) in velocity.0.iter_mut().enumerate() {
             footprint.put(grid, field.location, self.centre_m(time_secs), [R::of(self.radius_m.into()); 3]);
@@ -115,7 +115,7 @@ impl Primitive {
                     return;
                 }
                 let target = R::of(self.target(offset_m.map(R::wide))[axis]);
-                *speed = *speed + weight * share * (target - *speed);
+                *speed = *speed + weight * fraction * (target - *speed);
             });
         }
     }

@@ -22,8 +22,8 @@ impl MeanWind {
 
     /// Velocity (m/s) at a height above the ground (m).
     pub fn at(&self, height_m: f64) -> [f64; 3] {
-        let share = self.profile.fraction_at(height_m);
-        self.velocity_m_per_s.map(|speed| speed * share)
+        let fraction = self.profile.fraction_at(height_m);
+        self.velocity_m_per_s.map(|speed| speed * fraction)
     }
 }
 
@@ -49,16 +49,16 @@ impl<R: Real> Relaxation<R> {
     ///
     /// A uniform shift has no divergence. Applied along periodic axes only.
     pub fn apply(&mut self, grid: &Grid<R>, rate_per_s: f64, dt_secs: f64, velocity: &mut Velocity<R>) {
-        let share = rate_per_s * dt_secs / (1.0 + rate_per_s * dt_secs);
+        let fraction = rate_per_s * dt_secs / (1.0 + rate_per_s * dt_secs);
         for (axis, targets) in [0, 2].into_iter().zip(&self.targets) {
-            if !grid.wraps(axis) || share == 0.0 {
+            if !grid.wraps(axis) || fraction == 0.0 {
                 continue;
             }
             let field = &mut velocity.0[axis];
             layer_sums(grid, field, &mut self.sums);
             let per_layer = (field.shape[0] * field.shape[2]) as f64;
             for ((gain, &target), &sum) in self.gains.iter_mut().zip(targets).zip(&self.sums) {
-                *gain = R::of(share * (target - sum / per_layer));
+                *gain = R::of(fraction * (target - sum / per_layer));
             }
             for (row, &gain) in field.rows(grid).zip(self.gains.iter().cycle()) {
                 field.data[row..][..field.shape[0]].iter_mut().for_each(|speed| *speed = *speed + gain);
@@ -71,7 +71,7 @@ impl<R: Real> Relaxation<R> {
 ///
 /// In a periodic box that follows moving objects it keeps disturbances from re-entering on the other side.
 pub fn sponge<R: Real>(grid: &Grid<R>, mean: &MeanWind, sponge_m: [f64; 2], dt_secs: f64, velocity: &mut Velocity<R>) {
-    let share = R::of(SPONGE_PER_S * dt_secs / (1.0 + SPONGE_PER_S * dt_secs));
+    let fraction = R::of(SPONGE_PER_S * dt_secs / (1.0 + SPONGE_PER_S * dt_secs));
     for (axis, field) in velocity.0.iter_mut().enumerate() {
         for (across, sponge_m) in [(0, sponge_m[0]), (2, sponge_m[1])] {
             let n = grid.cells[across] as i64;
@@ -85,7 +85,7 @@ pub fn sponge<R: Real>(grid: &Grid<R>, mean: &MeanWind, sponge_m: [f64; 2], dt_s
                         let mut cell = [0, j, 0];
                         (cell[across], cell[other]) = (index, along);
                         let speed = &mut field.data[grid.at(cell)];
-                        *speed = *speed + share * (target - *speed);
+                        *speed = *speed + fraction * (target - *speed);
                     }
                 }
             }

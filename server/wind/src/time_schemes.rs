@@ -89,7 +89,7 @@ impl<R: Real> Solver<R> {
         }
         let reads_ghosts =
             self.config.canopy.is_some() || self.config.diffusion != Diffusion::Explicit || self.config.time == TimeScheme::Split;
-        for (number, share) in STAGES.into_iter().enumerate() {
+        for (number, fraction) in STAGES.into_iter().enumerate() {
             let [even, odd] = &mut self.stages;
             let (air, target) = match number {
                 0 => (&self.velocity, even),
@@ -104,7 +104,7 @@ impl<R: Real> Solver<R> {
                     start: &self.velocity.0[axis],
                     pressure_gradient: Some(&self.pressure_gradient.0[axis]),
                     dt_secs,
-                    share,
+                    fraction,
                     diffusivity_m2_per_s: viscosity_m2_per_s,
                     damping: self.config.damping.into(),
                 };

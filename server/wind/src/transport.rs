@@ -79,7 +79,7 @@ pub struct Stage<'a, R> {
     /// The step (s).
     pub dt_secs: f64,
     /// Weight of this stage's Euler step; see [`STAGES`].
-    pub share: f64,
+    pub fraction: f64,
     /// Diffusivity (m²/s) included in the fluxes; 0 for none.
     pub diffusivity_m2_per_s: f64,
     /// Upwind damping relative to that of the third-order upwind scheme, 0 to 1. 0 conserves kinetic energy.
@@ -109,7 +109,7 @@ struct Numbers<R> {
     diffusion: [R; 3],
     damping: R,
     dt: R,
-    share: R,
+    fraction: R,
 }
 
 impl<R: Real> Numbers<R> {
@@ -120,7 +120,7 @@ impl<R: Real> Numbers<R> {
             diffusion: per_m.map(|per_m| R::of(stage.diffusivity_m2_per_s) * per_m),
             damping: R::of(FULL_DAMPING * stage.damping),
             dt: R::of(stage.dt_secs),
-            share: R::of(stage.share),
+            fraction: R::of(stage.fraction),
         }
     }
 }
@@ -158,7 +158,7 @@ fn advance<R: Real, const LIMITED: bool>(stage: &Stage<'_, R>, numbers: &Numbers
             let [here, start] = [stage.carried, stage.start].map(|field| &field.data[at..][..n]);
             let [px, py, pz] = numbers.per_m;
             // As an increment on the start value: a mean weighted by rounded thirds would let the field grow by 3e-8 per step.
-            let toward = |start: R, end: R| start + numbers.share * (end - start);
+            let toward = |start: R, end: R| start + numbers.fraction * (end - start);
             let (west, east) = (&along_x[..n], &along_x[1..]);
             let (south, north) = (&along_y[..n], &along_y[row..]);
             let euler = |i: usize| {

@@ -1,7 +1,7 @@
 //! The field: awake patches and their state.
 
 use super::halo::{AROUND, Edges, Seams, neighbour, source};
-use super::limits::courant_share;
+use super::limits::courant_fraction;
 use super::tiles::{Rest, TILE};
 use super::verlet::SIDE_LIMIT;
 use super::{Bend, Coefficients, Damping, HALO, Kinds, Patch, Scheme};
@@ -223,17 +223,17 @@ impl Field {
     pub fn stable_dt_secs(&self, scheme: Scheme) -> f32 {
         let omega_max = self.omega_max_rad_per_s();
         let damping = if scheme == Scheme::Verlet { Damping::Plain } else { Damping::Exact };
-        let share = |dt_secs: f32| {
-            let k = |waves| courant_share(&Coefficients::new(waves, self.layout.cell_m, dt_secs, damping), omega_max);
+        let fraction = |dt_secs: f32| {
+            let k = |waves| courant_fraction(&Coefficients::new(waves, self.layout.cell_m, dt_secs, damping), omega_max);
             self.kinds.waves().iter().map(k).fold(0.0, f32::max)
         };
         let (mut stable, mut unstable) = (0.0, 1.0);
-        while share(unstable) <= 1.0 && unstable < 1e6 {
+        while fraction(unstable) <= 1.0 && unstable < 1e6 {
             (stable, unstable) = (unstable, 2.0 * unstable);
         }
         for _ in 0..24 {
             let middle = 0.5 * (stable + unstable);
-            if share(middle) <= 1.0 { stable = middle } else { unstable = middle }
+            if fraction(middle) <= 1.0 { stable = middle } else { unstable = middle }
         }
         stable
     }

@@ -19,7 +19,7 @@ pub fn courant_limit(lambda: f32, restoring: f32) -> f32 {
 }
 
 /// Courant number of a sub-step relative to its limit: the scheme is stable up to 1.
-pub fn courant_share(k: &Coefficients, omega_max_rad_per_s: f32) -> f32 {
+pub fn courant_fraction(k: &Coefficients, omega_max_rad_per_s: f32) -> f32 {
     let theta = (k.r0 + k.r_mu * omega_max_rad_per_s) / courant_limit(k.lambda_theta, k.restoring[0]);
     let omega = k.r2_omega.sqrt() / courant_limit(k.lambda_omega, k.restoring[1]);
     // Not `max`, which would drop NaN.
@@ -30,8 +30,8 @@ pub fn courant_share(k: &Coefficients, omega_max_rad_per_s: f32) -> f32 {
 /// `omega_max_rad_per_s`; `None` if that takes more than [`SUBSTEPS_LIMIT`].
 pub fn substeps(waves: &[WaveParams], cell_m: f32, dt_secs: f32, omega_max_rad_per_s: f32, damping: Damping) -> Option<u32> {
     let fits = |count: u32| {
-        let share = |params| courant_share(&Coefficients::new(params, cell_m, dt_secs / count as f32, damping), omega_max_rad_per_s);
-        waves.iter().all(|params| share(params) <= SAFETY)
+        let fraction = |params| courant_fraction(&Coefficients::new(params, cell_m, dt_secs / count as f32, damping), omega_max_rad_per_s);
+        waves.iter().all(|params| fraction(params) <= SAFETY)
     };
     // All terms shrink with the step, so doubling and then bisecting finds the smallest count.
     let mut enough = 1;

@@ -29,7 +29,7 @@ pub struct Report {
     /// Number of sub-steps.
     pub substeps: u32,
     /// Largest Courant number of a sub-step relative to its limit: an explicit scheme is stable up to 1.
-    pub courant_share: f32,
+    pub courant_fraction: f32,
     /// Cells stepped, times sub-steps, without ghosts.
     pub cell_steps: u64,
     /// Patches put to rest because they held a NaN or infinite value.

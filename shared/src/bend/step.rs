@@ -1,7 +1,7 @@
 //! One time step of the field, by the scheme that the caller chooses.
 
 use super::halo::Seams;
-use super::limits::{SUBSTEPS_LIMIT, courant_share, substeps};
+use super::limits::{SUBSTEPS_LIMIT, courant_fraction, substeps};
 use super::verlet::{self, Pass};
 use super::{Coefficients, Damping, Executor, Field, HALO, Report, Scheme, StepError, implicit};
 
@@ -56,7 +56,7 @@ impl Field {
         let omega_max = self.omega_max_rad_per_s();
         let mut report = Report {
             substeps: count,
-            courant_share: kinds.iter().map(|k| courant_share(k, omega_max)).fold(0.0, f32::max),
+            courant_fraction: kinds.iter().map(|k| courant_fraction(k, omega_max)).fold(0.0, f32::max),
             ..Report::default()
         };
         let mut ratio = self.dt_secs.replace(substep_secs).map_or(1.0, |last| substep_secs / last);

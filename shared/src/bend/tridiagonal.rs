@@ -80,10 +80,10 @@ impl Line {
         if self.ends[0] == End::Joined {
             let last = values.len() - 1;
             // The periodic matrix is the factorised one plus u·vᵗ, with u = (−a₀, 0, …, −aₙ) and v = (1, 0, …, 0, 1).
-            let share: Lanes =
+            let fraction: Lanes =
                 std::array::from_fn(|lane| (values[0][lane] + values[last][lane]) / (1.0 + self.joint[0][lane] + self.joint[last][lane]));
             for (values, joint) in values.iter_mut().zip(&self.joint) {
-                *values = std::array::from_fn(|lane| values[lane] - share[lane] * joint[lane]);
+                *values = std::array::from_fn(|lane| values[lane] - fraction[lane] * joint[lane]);
             }
         }
         self.values = values;

@@ -10,8 +10,8 @@ pub const BEND_SATURATES_M_PER_S: f32 = 10.0;
 pub fn wind_lean_rad(wind_m_per_s: [f32; 2], bend_rad: f32) -> [f32; 2] {
     let [u, w] = wind_m_per_s;
     let speed = (u * u + w * w).sqrt();
-    let share = speed.min(BEND_SATURATES_M_PER_S) / BEND_SATURATES_M_PER_S;
-    let per_speed = bend_rad * share * share / speed.max(1e-3);
+    let fraction = speed.min(BEND_SATURATES_M_PER_S) / BEND_SATURATES_M_PER_S;
+    let per_speed = bend_rad * fraction * fraction / speed.max(1e-3);
     [u * per_speed, w * per_speed]
 }
 

@@ -75,8 +75,8 @@ pub(super) fn to_sphere_m(height_m: f64, up: f64, sphere_m: f64) -> f64 {
 
 /// Cosine of the zenith angle below which rays from a height meet the ground.
 pub(super) fn horizon(height_m: f64) -> f64 {
-    let share = GROUND_M / (GROUND_M + height_m);
-    -(1.0 - share * share).max(0.0).sqrt()
+    let fraction = GROUND_M / (GROUND_M + height_m);
+    -(1.0 - fraction * fraction).max(0.0).sqrt()
 }
 
 /// Optical depth from a height to the top of the atmosphere, along a ray at this cosine of the zenith angle that does not meet the ground.

@@ -13,14 +13,14 @@ pub fn diffuse(along: f32) -> f32 {
 }
 
 /// Fraction of a lamp's light that reaches a relative height in the grass: Bakay §3.3.3, `S = D/D_max · (1 − S_min) + S_min`.
-pub fn self_shadow(height_share: f32, least: f32) -> f32 {
-    height_share.clamp(0.0, 1.0) * (1.0 - least) + least
+pub fn self_shadow(height_fraction: f32, least: f32) -> f32 {
+    height_fraction.clamp(0.0, 1.0) * (1.0 - least) + least
 }
 
 /// Fraction of sunlight that reaches a depth in the grass without meeting a leaf, by the Beer–Lambert law: `exp(−0.5 · LAI · depth /
 /// sin(elevation))`, with the leaf area index `LAI` and the depth relative to the grass's height.
-pub fn sun_through_leaves(leaf_area_index: f32, depth_share: f32, sine_of_elevation: f32) -> f32 {
-    (-LEAF_EXTINCTION * leaf_area_index * depth_share.max(0.0) / sine_of_elevation.max(LEAST_SUN_SINE)).exp()
+pub fn sun_through_leaves(leaf_area_index: f32, depth_fraction: f32, sine_of_elevation: f32) -> f32 {
+    (-LEAF_EXTINCTION * leaf_area_index * depth_fraction.max(0.0) / sine_of_elevation.max(LEAST_SUN_SINE)).exp()
 }
 
 #[cfg(test)]

@@ -31,14 +31,14 @@ mod tests {
 
     #[test]
     fn falls_off_with_the_inverse_square_or_as_the_weights_say() {
-        for (weights, distance_m, share) in [
+        for (weights, distance_m, fraction) in [
             ([0.0, 0.0, 1.0], 1.0, 1.0),
             ([0.0, 0.0, 1.0], 5.0, 0.04),
             ([0.0, 0.0, 1.0], 0.0, 100.0),
             ([1.0, 0.0, 0.0], 70.0, 1.0),
             ([1.0, 0.5, 0.25], 4.0, 1.0 / 7.0),
         ] {
-            assert!((attenuation(weights, distance_m) - share).abs() < 1e-5 * share, "{weights:?} at {distance_m} m");
+            assert!((attenuation(weights, distance_m) - fraction).abs() < 1e-5 * fraction, "{weights:?} at {distance_m} m");
         }
     }
 

@@ -63,8 +63,8 @@ impl Table {
 
     fn at(&self, height_m: f64, up: f64) -> [f64; 3] {
         let x = if up < 0.0 { -(up / LOWEST_UP).min(1.0).sqrt() } else { up.min(1.0).sqrt() };
-        let place = |share: f64, count: usize| {
-            let at = share.clamp(0.0, 1.0) * (count - 1) as f64;
+        let place = |fraction: f64, count: usize| {
+            let at = fraction.clamp(0.0, 1.0) * (count - 1) as f64;
             let low = (at as usize).min(count - 2);
             (low, at - low as f64)
         };
@@ -109,7 +109,7 @@ impl Air {
 
     /// Sunlight at a height above the sea on a surface that faces the sun: linear RGB (lx).
     fn sunlight_lx(&self, height_m: f64, up: f64) -> Rgb {
-        self.transmittance.at(height_m, up).map(|share| share as f32 * SUN_LX)
+        self.transmittance.at(height_m, up).map(|fraction| fraction as f32 * SUN_LX)
     }
 
     /// The sky over the eye with the sun at this elevation (some 2 ms).
@@ -221,8 +221,8 @@ impl Sky {
 
     /// Luminance at an elevation with this sine, in a heading that differs from the sun's by the angle with this cosine (cd/m²).
     pub fn luminance(&self, up: f32, heading_cosine: f32) -> Rgb {
-        let place = |share: f32, count: usize| {
-            let at = share.clamp(0.0, 1.0) * (count - 1) as f32;
+        let place = |fraction: f32, count: usize| {
+            let at = fraction.clamp(0.0, 1.0) * (count - 1) as f32;
             let low = (at as usize).min(count - 2);
             (low, at - low as f32)
         };

@@ -12,7 +12,7 @@ pub struct Lag {
     /// γ of the topmost segment (s).
     pub tip_secs: f32,
     /// Fraction of γ while the grass rises.
-    pub recovery_share: f32,
+    pub recovery_fraction: f32,
     /// Number of segments, at least 1.
     pub segments: u32,
     /// Speed of θ in still grass, c₀ (m/s), Chen & Johan Eq. (4).
@@ -25,7 +25,7 @@ impl From<&Grass> for Lag {
     fn from(grass: &Grass) -> Self {
         Self {
             tip_secs: grass.lag_secs,
-            recovery_share: grass.recovery_lag_share,
+            recovery_fraction: grass.recovery_lag_share,
             segments: grass.segments.max(1),
             c0_m_per_s: grass.waves.c0_m_per_s,
             mu_m_per_rad: grass.waves.mu_m_per_rad,
@@ -44,7 +44,7 @@ impl Lag {
     pub fn lean_rad(&self, lag_secs: f32, earlier: impl Fn(f32) -> [f32; 2]) -> [f32; 2] {
         let square = |[x, z]: [f32; 2]| x * x + z * z;
         let then = earlier(lag_secs);
-        if square(then) <= square(earlier(0.0)) { then } else { earlier(lag_secs * self.recovery_share) }
+        if square(then) <= square(earlier(0.0)) { then } else { earlier(lag_secs * self.recovery_fraction) }
     }
 
     /// Distance that a bend with bending velocity `omega_rad_per_s` has travelled in `lag_secs` (m, as a vector on the ground), Chen & Johan Eq. (9):
@@ -75,8 +75,8 @@ pub fn history_weights(ages_secs: [f32; PASTS], lag_secs: f32) -> [f32; PASTS + 
     let mut younger_secs = 0.0;
     for (i, age_secs) in ages_secs.into_iter().enumerate() {
         if lag_secs <= age_secs {
-            let share = (lag_secs - younger_secs) / (age_secs - younger_secs).max(1e-6);
-            (weights[i], weights[i + 1]) = (1.0 - share, share);
+            let fraction = (lag_secs - younger_secs) / (age_secs - younger_secs).max(1e-6);
+            (weights[i], weights[i + 1]) = (1.0 - fraction, fraction);
             return weights;
         }
         younger_secs = age_secs;
@@ -106,7 +106,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn lag() -> Lag {
-        Lag { tip_secs: 0.3, recovery_share: 0.4, segments: 4, c0_m_per_s: 3.0, mu_m_per_rad: 0.5 }
+        Lag { tip_secs: 0.3, recovery_fraction: 0.4, segments: 4, c0_m_per_s: 3.0, mu_m_per_rad: 0.5 }
     }
 
     /// Lean of a bump of 0.8 rad and some 2 m that travels along `direction` at the wave speed of grass of `lag` bending at 0.6 rad/s.

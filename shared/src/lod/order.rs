@@ -185,7 +185,7 @@ mod tests {
         fn the_order_made_for_a_section_is_exact_from_every_place_of_the_cameras_grid(
             side in 2..=SIDE_LIMIT, eye in [0.0..1.0, 0.0..1.0], offset in [-3..=3, -3..=3], jitter in 0.0..1.0, lots in lots(),
         ) {
-            let eye = eye.map(|share: f64| share * f64::from(side));
+            let eye = eye.map(|fraction: f64| fraction * f64::from(side));
             let section = GridSection::of(offset);
             prop_assume!(section != GridSection::Camera);
             for sequence in [section.sequence(side), section.simplified().sequence(side)] {
@@ -199,7 +199,7 @@ mod tests {
         fn nine_sections_and_grids_far_to_near_are_exact_together(
             side in 2_u32..=3, eye in [0.0..1.0, 0.0..1.0], jitter in 0.0..1.0, simplified: bool, lots in lots(),
         ) {
-            let eye = eye.map(|share: f64| share * f64::from(side));
+            let eye = eye.map(|fraction: f64| fraction * f64::from(side));
             let mut grids: Vec<[i32; 2]> = (-2..=2).flat_map(|z| (-2..=2).map(move |x| [x, z])).collect();
             far_to_near(&mut grids, [0, 0]);
             let mut drawn = Vec::new();

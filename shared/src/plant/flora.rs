@@ -80,14 +80,14 @@ impl Flora {
     /// Position, size and orientation of a plant.
     pub fn instance(&self, plant: &Plant) -> PlantInstance {
         let [size, heading, number] = hash3([plant.site, 0x5a, self.seed]);
-        let share = |random: u32| (random >> 8) as f32 / (1_u32 << 24) as f32;
+        let fraction = |random: u32| (random >> 8) as f32 / (1_u32 << 24) as f32;
         let species = usize::from(plant.species);
-        let by_lot = 1.0 + self.species[species].size_variation * (2.0 * share(size) - 1.0);
+        let by_lot = 1.0 + self.species[species].size_variation * (2.0 * fraction(size) - 1.0);
         PlantInstance {
             at_m: self.grown.sites.place_m(plant.site),
             species,
             size: by_lot * (0.6 + 0.4 * f32::from(plant.vigour) / 255.0),
-            heading_rad: TAU * share(heading),
+            heading_rad: TAU * fraction(heading),
             number,
         }
     }

@@ -50,7 +50,7 @@ impl Scene {
         let lowest = Blade {
             length_m: plants.height_m * least,
             frequency_rad_per_s: TAU * plants.swing_hz / least,
-            damping_share: plants.swing_damping,
+            damping_ratio: plants.swing_damping,
             lean_per_wind2: 0.01 * grass.wind_bend_rad,
         };
         MARGIN * stable_dt_in_air_secs(plants.integrator, &lowest, PAST_M_PER_S)

@@ -49,8 +49,8 @@ pub fn omega_codes(omegas_rad_per_s: &[f32], codes: &mut [i8]) {
 
 /// Component of the bending velocity of a code (rad/s).
 pub fn omega_rad_per_s(code: i8) -> f32 {
-    let share = f32::from(code) / 127.0;
-    share * share.abs() * OMEGA_FULL_RAD_PER_S
+    let fraction = f32::from(code) / 127.0;
+    fraction * fraction.abs() * OMEGA_FULL_RAD_PER_S
 }
 
 /// Code of a wind component; error at most 0.125 m/s within ±[`WIND_FULL_M_PER_S`].
@@ -76,8 +76,8 @@ pub fn dust_code(concentration: f32) -> i8 {
 
 /// Concentration of dust of a code; 0 for negative codes.
 pub fn dust(code: i8) -> f32 {
-    let share = f32::from(code.max(0)) / 127.0;
-    share * share * DUST_FULL
+    let fraction = f32::from(code.max(0)) / 127.0;
+    fraction * fraction * DUST_FULL
 }
 
 /// Code of the heading of a vector on the ground (X and Z), in 255ths of a turn from +X towards +Z; a whole turn is 255, so that 0 is free to mean
@@ -123,8 +123,8 @@ mod tests {
         }
 
         #[test]
-        fn omega_stays_within_its_bound(share in -1.0_f32..=1.0) {
-            let omega = share * share.abs() * OMEGA_FULL_RAD_PER_S;
+        fn omega_stays_within_its_bound(fraction in -1.0_f32..=1.0) {
+            let omega = fraction * fraction.abs() * OMEGA_FULL_RAD_PER_S;
             let code = omega_code(omega);
             let bound = OMEGA_FULL_RAD_PER_S * (f32::from(code).abs() + 0.25) / (127.0 * 127.0);
             prop_assert!((omega_rad_per_s(code) - omega).abs() <= bound * 1.001, "{omega} -> {code}");
@@ -136,8 +136,8 @@ mod tests {
         }
 
         #[test]
-        fn dust_stays_within_its_bound(share in 0.0_f32..=1.0) {
-            let concentration = share * share * DUST_FULL;
+        fn dust_stays_within_its_bound(fraction in 0.0_f32..=1.0) {
+            let concentration = fraction * fraction * DUST_FULL;
             let code = dust_code(concentration);
             let bound = DUST_FULL * (f32::from(code) + 0.25) / (127.0 * 127.0);
             prop_assert!((dust(code) - concentration).abs() <= bound * 1.001, "{concentration} -> {code}");

@@ -41,7 +41,7 @@ pub(super) struct Axis {
 
 impl Axis {
     /// Position of a value as a fraction of the axis.
-    fn share(&self, value: f64) -> f64 {
+    fn fraction(&self, value: f64) -> f64 {
         let [least, most] = self.range;
         if self.logarithmic { (value / least).ln() / (most / least).ln() } else { (value - least) / (most - least) }
     }
@@ -100,8 +100,8 @@ struct Frame {
 
 impl Frame {
     fn place(&self, axes: [&Axis; 2], at: [f64; 2]) -> (i32, i32) {
-        let x = f64::from(self.left) + axes[0].share(at[0]) * f64::from(self.width);
-        let y = f64::from(self.top + self.height) - axes[1].share(at[1]) * f64::from(self.height);
+        let x = f64::from(self.left) + axes[0].fraction(at[0]) * f64::from(self.width);
+        let y = f64::from(self.top + self.height) - axes[1].fraction(at[1]) * f64::from(self.height);
         (x.round() as i32, y.round() as i32)
     }
 

@@ -44,8 +44,8 @@ impl Line<'_> {
         let reached = self.rows.iter().filter(|row| row.error <= error).map(|row| row.wall_secs);
         let crossed = self.rows.windows(2).filter(|pair| pair[0].error > error && error >= pair[1].error).map(|pair| {
             let [a, b] = [pair[0], pair[1]];
-            let share = (a.error / error).ln() / (a.error / b.error).ln();
-            a.wall_secs * (b.wall_secs / a.wall_secs).powf(share)
+            let fraction = (a.error / error).ln() / (a.error / b.error).ln();
+            a.wall_secs * (b.wall_secs / a.wall_secs).powf(fraction)
         });
         reached.chain(crossed).min_by(f64::total_cmp)
     }

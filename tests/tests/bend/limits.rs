@@ -65,11 +65,11 @@ fn holds(r: f32, pattern: &Pattern, cause: Cause, [damping, stiffness]: [f32; 2]
     let speed = r / DT_SECS;
     match cause {
         Cause::Kinds => {
-            let mut shares: Vec<f32> = pattern.clone();
-            shares.sort_by(f32::total_cmp);
-            shares.dedup();
-            let kinds = pattern.iter().map(|share| shares.iter().position(|other| other == share).unwrap() as u8).collect();
-            let waves = shares.iter().map(|share| wave(share * speed, damping, stiffness)).collect();
+            let mut fractions: Vec<f32> = pattern.clone();
+            fractions.sort_by(f32::total_cmp);
+            fractions.dedup();
+            let kinds = pattern.iter().map(|fraction| fractions.iter().position(|other| other == fraction).unwrap() as u8).collect();
+            let waves = fractions.iter().map(|fraction| wave(fraction * speed, damping, stiffness)).collect();
             is_bounded(field(Kinds::mapped(waves, [COUNT; 2], kinds)), |_| 0.0)
         }
         Cause::Bending => {
@@ -96,7 +96,7 @@ fn bisect(holds: impl Fn(f32) -> bool) -> f32 {
 /// all are equal. `D·L` is similar to the symmetric `D^½·L·D^½`.
 fn spectral_radius(pattern: &Pattern) -> f64 {
     let mut vector: Vec<f64> = (0..COUNT * COUNT).map(|n| f64::from(random(n % COUNT, n / COUNT)) - 8e6).collect();
-    let root: Vec<f64> = pattern.iter().map(|share| f64::from(*share)).collect();
+    let root: Vec<f64> = pattern.iter().map(|fraction| f64::from(*fraction)).collect();
     let mut radius = 0.0;
     for _ in 0..2000 {
         let scaled: Vec<f64> = vector.iter().zip(&root).map(|(v, d)| v * d).collect();

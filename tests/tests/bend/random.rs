@@ -17,9 +17,9 @@ fn run(draw: &Draw, number: u64, scheme: Scheme) -> Course {
     draw.run(scheme, rest, if number % 8 == 7 { 3 } else { 1 })
 }
 
-fn print_shares(what: &str, mut values: Vec<f64>) {
+fn print_fractions(what: &str, mut values: Vec<f64>) {
     values.sort_by(f64::total_cmp);
-    let at = |share: f64| values[(share * (values.len() - 1) as f64) as usize];
+    let at = |fraction: f64| values[(fraction * (values.len() - 1) as f64) as usize];
     println!(
         "{what}: half of the draws below {:.3}, 90 % below {:.3}, 99 % below {:.3}, all below {:.3}",
         at(0.5),
@@ -32,10 +32,10 @@ fn print_shares(what: &str, mut values: Vec<f64>) {
 /// Asserts that every run stays within a multiple of the largest bend by contact, and prints statistics.
 fn assert_courses(scheme: Scheme, courses: &[(u64, Draw, Course)], overshoot: f32) {
     println!("{scheme:?}, {} draws, {:.2} sub-steps a step", courses.len(), mean(courses, |course| f64::from(course.substeps) / 600.0));
-    let shares = |what: &str, of: fn(&Course) -> f64| print_shares(what, courses.iter().map(|(_, _, course)| of(course)).collect());
-    shares("largest |θ| over π/2", |course| f64::from(course.theta_max_rad / FRAC_PI_2));
-    shares("growth of Σθ² once the objects have gone", |course| course.squares[1] / course.squares[0].max(1e-9));
-    shares("Σθ² at the end over that once the objects have gone", |course| course.squares[2] / course.squares[0].max(1e-9));
+    let fractions = |what: &str, of: fn(&Course) -> f64| print_fractions(what, courses.iter().map(|(_, _, course)| of(course)).collect());
+    fractions("largest |θ| over π/2", |course| f64::from(course.theta_max_rad / FRAC_PI_2));
+    fractions("growth of Σθ² once the objects have gone", |course| course.squares[1] / course.squares[0].max(1e-9));
+    fractions("Σθ² at the end over that once the objects have gone", |course| course.squares[2] / course.squares[0].max(1e-9));
     for (number, draw, course) in courses {
         let Course { theta_max_rad, squares: [gone, most, end], reset_patches, .. } = *course;
         assert!(reset_patches == 0, "draw {number}: {reset_patches} patches held NaN or infinite values: {draw:?}");

@@ -349,13 +349,13 @@ fn resting_within_the_tolerance_costs_about_the_tolerance() {
     for (damping_per_s, allowed) in [(1.0..12.0, 1.25), (0.0..1.0, 2.0)] {
         let runs: Vec<_> = (0..16).into_par_iter().map(|seed| tolerance_error(seed, rest, damping_per_s.clone())).collect();
         let largest = runs.iter().map(|run| run[0]).fold(0.0, f64::max);
-        let share = runs.iter().map(|run| run[1]).sum::<f64>() / runs.len() as f64;
+        let fraction = runs.iter().map(|run| run[1]).sum::<f64>() / runs.len() as f64;
         println!(
             "damping {damping_per_s:?} /s: θ off by {largest:.2} times the tolerance at most, {:.0} % of the cells stepped",
-            100.0 * share
+            100.0 * fraction
         );
         assert!(largest > 0.1, "the tolerance puts something to rest");
         assert!(largest < allowed, "damping {damping_per_s:?} /s: {largest} times the tolerance");
-        assert!(share < 0.4, "{share} of the cells are stepped");
+        assert!(fraction < 0.4, "{fraction} of the cells are stepped");
     }
 }

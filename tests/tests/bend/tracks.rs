@@ -81,11 +81,11 @@ fn a_track_fades_by_its_own_time_constant() {
     assert!(at_first.len() > 200);
     for second in 1..=40 {
         run(&mut world, 1.0);
-        let share = (-f64::from(second) / 20.0).exp() as f32;
+        let fraction = (-f64::from(second) / 20.0).exp() as f32;
         for (patch, [i, j], lean_rad) in &at_first {
             let found = world.bend().flattened().lean_rad(*patch, *i, *j);
             for axis in 0..2 {
-                let off_rad = (found[axis] - lean_rad[axis] * share).abs();
+                let off_rad = (found[axis] - lean_rad[axis] * fraction).abs();
                 assert!(off_rad <= 2.0 * QUANTUM_RAD, "after {second} s {off_rad} rad off");
             }
         }

@@ -31,8 +31,8 @@ async fn goes_far(browser: &Browser) -> Result<()> {
 }
 
 /// Puts a thumb down at a fraction of the page's width, halfway up, moves it by an offset (px) and holds it there.
-async fn put_thumb(browser: &Browser, share: f64, by_px: [f64; 2]) -> Result<()> {
-    let [x, y] = [share * f64::from(VIEW.0), 0.5 * f64::from(VIEW.1)];
+async fn put_thumb(browser: &Browser, fraction: f64, by_px: [f64; 2]) -> Result<()> {
+    let [x, y] = [fraction * f64::from(VIEW.0), 0.5 * f64::from(VIEW.1)];
     let duration = Some(Duration::from_millis(100));
     let actions = TouchActions::new("thumb".into())
         .then(PointerAction::MoveTo { duration: None, x, y })

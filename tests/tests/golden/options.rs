@@ -107,7 +107,7 @@ golden!(
 golden!(
     coverage,
     Golden {
-        shows: "opacity as a share of samples",
+        shows: "opacity as a fraction of samples",
         look: look(BlendOrder::Coverage, FarPlants::Land),
         unlike: Unlike::Stored("high"),
         ..finely()

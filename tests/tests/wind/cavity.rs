@@ -51,7 +51,7 @@ fn differences(table: &Cavity, finest: usize) -> [f64; 2] {
         .fold(None, |guess: Option<Solver<f32>>, coarser| Some(steady(table.reynolds, finest / coarser, guess.as_ref())));
     let at = |[x, y]: [f64; 2]| {
         air.as_ref()
-            .map_or([0.0; 3], |air| air.velocity_at([x, y, 0.5].map(|share| (share * SIDE_M) as f32)))
+            .map_or([0.0; 3], |air| air.velocity_at([x, y, 0.5].map(|fraction| (fraction * SIDE_M) as f32)))
             .map(|u| f64::from(u) / SIDE_M)
     };
     let norms = table.compare(|y| at([0.5, y])[0], |x| at([x, 0.5])[1]);

@@ -56,10 +56,10 @@ impl Canvas {
 
     /// Box-filtered mip levels. Alpha is scaled so that the fraction of texels above one half stays that of the finest level.
     pub(crate) fn with_mips(self) -> Vec<Vec<u8>> {
-        let share = |texels: &[u8], scale: f32| {
+        let fraction = |texels: &[u8], scale: f32| {
             texels.chunks_exact(4).filter(|t| f32::from(t[3]) * scale >= 127.5).count() as f32 / (texels.len() / 4) as f32
         };
-        let cover = share(&self.texels, 1.0);
+        let cover = fraction(&self.texels, 1.0);
         let mut levels = vec![self.texels];
         let (mut width, mut height) = (self.width, self.height);
         while width > 8 && height > 8 {
@@ -91,7 +91,7 @@ impl Canvas {
             let (mut low, mut high) = (0.5_f32, 4.0);
             for _ in 0..12 {
                 let middle = 0.5 * (low + high);
-                if share(level, middle) < cover { low = middle } else { high = middle }
+                if fraction(level, middle) < cover { low = middle } else { high = middle }
             }
             for texel in level.chunks_exact_mut(4) {
                 texel[3] = (f32::from(texel[3]) * low).min(255.0) as u8;

@@ -47,10 +47,10 @@ impl WindTexture {
         if self.seq == Some(newest.seq()) && self.settled {
             return;
         }
-        let share = if self.seq.is_none() { 1.0 } else { 1.0 - (-dt_secs / FOLLOW_SECS).exp() };
+        let fraction = if self.seq.is_none() { 1.0 } else { 1.0 - (-dt_secs / FOLLOW_SECS).exp() };
         let mut rest = 0.0_f32;
         for (shown, &code) in self.shown.iter_mut().zip(newest.planes().into_iter().chain(newest.dust()).flatten()) {
-            *shown += (f32::from(code) - *shown) * share;
+            *shown += (f32::from(code) - *shown) * fraction;
             rest = rest.max((f32::from(code) - *shown).abs());
         }
         self.seq = Some(newest.seq());

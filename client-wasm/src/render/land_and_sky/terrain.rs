@@ -224,8 +224,8 @@ mod tests {
             let matrix = camera.projection_from_world(1.7);
             let tiles = ground.tiles(eye_m, &Frustum::new(&matrix));
             assert!(tiles.len() < 300, "{} tiles", tiles.len());
-            for share in [0.01, 0.05, 0.2, 0.7] {
-                let p = eye_m + camera.forward() * extent[0] * share;
+            for fraction in [0.01, 0.05, 0.2, 0.7] {
+                let p = eye_m + camera.forward() * extent[0] * fraction;
                 let holds = |tile: &&TerrainTile| {
                     let [x, z] = tile.corner_m;
                     (x..x + tile.side_m).contains(&p.x) && (z..z + tile.side_m).contains(&p.z)

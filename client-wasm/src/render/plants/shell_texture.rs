@@ -43,8 +43,8 @@ impl Dot {
         let around = (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| [x.floor() as i32 + dx, y.floor() as i32 + dy]));
         around.filter_map(move |[i, j]| {
             let away = [i as f32 + 0.5 - x, j as f32 + 0.5 - y].map(|v| v / self.radius_px);
-            let share = away[0] * away[0] + away[1] * away[1];
-            (share < 1.0).then(|| (wrapped(j) * side + wrapped(i), share))
+            let fraction = away[0] * away[0] + away[1] * away[1];
+            (fraction < 1.0).then(|| (wrapped(j) * side + wrapped(i), fraction))
         })
     }
 }
@@ -120,8 +120,8 @@ fn color(random: &mut Random) -> [f32; 3] {
     let light = random.between(0.70, 1.22);
     let dry = if random.next() < 0.06 { [1.55, 1.18, 0.95] } else { [0.84, 0.98, 0.70] };
     let fresh = [1.02, 1.02, 0.92];
-    let share = random.next();
-    std::array::from_fn(|channel| light * (fresh[channel] + (dry[channel] - fresh[channel]) * share))
+    let fraction = random.next();
+    std::array::from_fn(|channel| light * (fresh[channel] + (dry[channel] - fresh[channel]) * fraction))
 }
 
 impl Level {
@@ -132,8 +132,8 @@ impl Level {
         for (at, _) in about.texels(self.side).filter(|&(at, _)| self.labels[at] == GROUND).collect::<Vec<_>>() {
             self.rgba[at][..3].copy_from_slice(&rgb);
         }
-        for (at, share) in dot.texels(self.side) {
-            let alpha = (height * (1.0 - (1.0 - EDGE_HEIGHT) * share) * 255.0).clamp(1.0, 255.0);
+        for (at, fraction) in dot.texels(self.side) {
+            let alpha = (height * (1.0 - (1.0 - EDGE_HEIGHT) * fraction) * 255.0).clamp(1.0, 255.0);
             self.labels[at] = label;
             self.rgba[at] = [rgb[0], rgb[1], rgb[2], alpha as u8];
         }

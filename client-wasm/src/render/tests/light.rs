@@ -27,7 +27,7 @@ fn formulas_of_grass_and_lamps_equal_their_cpu_twins() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let picture = drawn(&gpu, NOON, Vec::new());
     let places: Vec<[f32; 4]> =
-        (0..40).map(|n| n as f32 / 39.0).map(|share| [share, 2.0 * share - 1.0, 0.05 + share, 40.0 * share]).collect();
+        (0..40).map(|n| n as f32 / 39.0).map(|fraction| [fraction, 2.0 * fraction - 1.0, 0.05 + fraction, 40.0 * fraction]).collect();
     let body = "return vec4<f32>(nearest_normal(at.y), self_shadow(at.x, 0.3), sun_through_leaves(2.5, at.x, at.z), attenuation(vec3<f32>(0.2, 0.1, 0.7), at.w));";
     for (at, found) in places.iter().zip(probe(&gpu, &picture, body, &places)) {
         let wanted = [

@@ -72,9 +72,9 @@ fn blades_move_as_their_cpu_twins() {
     let outputs = compute(&gpu, &picture, &source, &[], cases.as_flattened(), cases.len() as u32);
     let mut touching = 0;
     for (case, found) in cases.into_iter().zip(outputs.chunks_exact(9)) {
-        let [l0, l1, l2, a0, a1, a2, [length_m, frequency_rad_per_s, damping_share, lean_per_wind2], root, [x, y, z, way]] = case;
+        let [l0, l1, l2, a0, a1, a2, [length_m, frequency_rad_per_s, damping_ratio, lean_per_wind2], root, [x, y, z, way]] = case;
         let (links, acts) = ([l0, l1, l2], [a0, a1, a2]);
-        let blade = Blade { length_m, frequency_rad_per_s, damping_share, lean_per_wind2 };
+        let blade = Blade { length_m, frequency_rad_per_s, damping_ratio, lean_per_wind2 };
         let integrator = [BladeIntegrator::Euler, BladeIntegrator::Verlet, BladeIntegrator::Exact][way as usize];
         let about =
             spheres.iter().map(|s| Sphere { centre_m: std::array::from_fn(|i| s[i] - root[i]), radius_m: s[3] }).collect::<Vec<_>>();

@@ -119,7 +119,7 @@ fn plants_behind_a_boulder_are_sheltered_from_the_wind() {
     };
     let ((open, _), (stony, stone)) = (run(false), run(true));
     let (at_m, size_m) = stone.expect("a boulder");
-    let share = |is_there: fn(f32, f32) -> bool| {
+    let fraction = |is_there: fn(f32, f32) -> bool| {
         let both = stony.iter().filter_map(|(site, (plant_m, felt))| {
             let [x, z] = [plant_m[0] - at_m.x, plant_m[1] - at_m.z];
             (is_there(x, z)).then_some((felt[0], open.get(site)?.1[0])).filter(|(_, open)| *open > 0.01)
@@ -128,9 +128,9 @@ fn plants_behind_a_boulder_are_sheltered_from_the_wind() {
         assert!(count > 10, "{count} plants");
         felt / open
     };
-    let behind = share(|x, z| (2.5..6.0).contains(&x) && z.abs() < 1.0);
-    let farther = share(|x, z| (12.0..18.0).contains(&x) && z.abs() < 1.0);
-    let beside = share(|x, z| x.abs() < 6.0 && (6.0..12.0).contains(&z.abs()));
+    let behind = fraction(|x, z| (2.5..6.0).contains(&x) && z.abs() < 1.0);
+    let farther = fraction(|x, z| (12.0..18.0).contains(&x) && z.abs() < 1.0);
+    let beside = fraction(|x, z| x.abs() < 6.0 && (6.0..12.0).contains(&z.abs()));
     assert!(
         behind < 0.6 && farther > behind && farther < 0.97 && beside > 0.97,
         "of the wind {behind} behind a boulder of {size_m} m, {farther} farther behind, {beside} beside"
@@ -160,7 +160,7 @@ fn passing_objects_push_plants_in_still_air() {
         let of = |y: usize, axis: usize| {
             let [(i, u), (k, v)] = at.map(|at| (at as usize, at.fract()));
             let force = |i: usize, k: usize| field.force([i, y, k]).lasting_pa[axis];
-            let mix = |a: f32, b: f32, share: f32| a + (b - a) * share;
+            let mix = |a: f32, b: f32, fraction: f32| a + (b - a) * fraction;
             mix(mix(force(i, k), force(i + 1, k), u), mix(force(i, k + 1), force(i + 1, k + 1), u), v)
         };
         // Plants are not seen where they have thinned out.

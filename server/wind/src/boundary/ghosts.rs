@@ -69,7 +69,7 @@ fn images<R: Real>(grid: &Grid<R>, location: Location, axis: usize, rules: [Rule
     for (side, rule) in rules.into_iter().enumerate().filter(|_| on_faces) {
         let node = GHOST + side * n;
         match rule {
-            Rule::MirrorPlane { .. } => add(Image { to: node, from: node, sign: zero, doubled: zero, plane: Some(side), share: half }),
+            Rule::MirrorPlane { .. } => add(Image { to: node, from: node, sign: zero, doubled: zero, plane: Some(side), fraction: half }),
             Rule::Mirror { .. } if grid.boundary[axis][side].blocks_flow() => add(Image { to: node, from: node, ..Image::default() }),
             Rule::Mirror { .. } | Rule::Wrap | Rule::Keep => {}
         }
@@ -81,14 +81,14 @@ fn images<R: Real>(grid: &Grid<R>, location: Location, axis: usize, rules: [Rule
                 Rule::Keep => continue,
                 Rule::Wrap => Image { to, from, sign: R::one(), ..Image::default() },
                 Rule::Mirror { sign, doubled } => Image { to, from, sign, doubled, ..Image::default() },
-                Rule::MirrorPlane { sign, .. } => Image { to, from, sign, plane: Some(side), share: R::one(), ..Image::default() },
+                Rule::MirrorPlane { sign, .. } => Image { to, from, sign, plane: Some(side), fraction: R::one(), ..Image::default() },
             });
         }
     }
     (images, used)
 }
 
-/// Assignment of one value on a line from another: `sign·(value from) + doubled + share·(value of the plane)`.
+/// Assignment of one value on a line from another: `sign·(value from) + doubled + fraction·(value of the plane)`.
 #[derive(Clone, Copy, Default)]
 struct Image<R> {
     to: usize,
@@ -96,17 +96,17 @@ struct Image<R> {
     sign: R,
     doubled: R,
     plane: Option<usize>,
-    share: R,
+    fraction: R,
 }
 
 /// Applies `images` to a block of lines with `stride` values between neighbours on a line; the block's first value has number `first` in the planes.
 #[inline(always)]
 fn apply<R: Real>(images: &[Image<R>], planes: [&[R]; 2], block: &mut [R], stride: usize, first: usize) {
-    for &Image { to, from, sign, doubled, plane, share } in images {
+    for &Image { to, from, sign, doubled, plane, fraction } in images {
         let [to, from] = [to * stride, from * stride];
         if let Some(side) = plane {
             for inner in 0..stride {
-                block[to + inner] = sign * block[from + inner] + share * planes[side][first + inner];
+                block[to + inner] = sign * block[from + inner] + fraction * planes[side][first + inner];
             }
         } else if sign == R::zero() {
             block[to..to + stride].fill(doubled);

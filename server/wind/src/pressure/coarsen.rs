@@ -105,7 +105,7 @@ impl CoarseningGrid {
     fn lean(&self, coarse: &Self, axis: usize) -> Lean<f32> {
         let layout = coarse.operator.layout;
         let (fine_along, along) = (&self.axes[axis], &coarse.axes[axis]);
-        let mut share = [vec![0.0; layout.padded_len()], vec![0.0; layout.padded_len()]];
+        let mut fraction = [vec![0.0; layout.padded_len()], vec![0.0; layout.padded_len()]];
         for cell in layout.coordinates() {
             let (l, i) = (layout.linear(cell), cell[axis]);
             let area_m2: f64 = (0..3).filter(|&other| other != axis).map(|other| coarse.axes[other].widths_m[cell[other]]).product();
@@ -121,9 +121,9 @@ impl CoarseningGrid {
             // A child's centre is half its sibling's width away from its parent's.
             let [lower_m, upper_m] =
                 [2 * i - 1, 2 * i].map(|child| if child <= fine_along.cells { fine_along.widths_m[child] } else { 0.0 });
-            share[0][l] = (0.5 * upper_m / below_m * openness(lower, below_m)) as f32;
-            share[1][l] = (0.5 * lower_m / above_m * openness(upper, above_m)) as f32;
+            fraction[0][l] = (0.5 * upper_m / below_m * openness(lower, below_m)) as f32;
+            fraction[1][l] = (0.5 * lower_m / above_m * openness(upper, above_m)) as f32;
         }
-        Lean { axis, share }
+        Lean { axis, fraction }
     }
 }

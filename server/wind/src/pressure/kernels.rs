@@ -164,7 +164,7 @@ pub(super) fn add<R: Real>(y: &mut [R], x: &[R]) {
 
 /// Moves the fraction `weight` of `x` out of `kept`, in place: `x = weight x`, `kept = kept − x`.
 #[multiversion(targets("x86_64+avx2"))]
-pub(super) fn take_share<R: Real>(kept: &mut [R], x: &mut [R], weight: &[R]) {
+pub(super) fn take_fraction<R: Real>(kept: &mut [R], x: &mut [R], weight: &[R]) {
     let len = x.len();
     let (kept, weight) = (&mut kept[..len], &weight[..len]);
     for i in 0..len {

@@ -56,8 +56,8 @@ impl RelaxationSweep {
                 let high = if odd && cell[axis] == n { at(&operator.lower[axis], l + layout.stride[axis]) } else { 0.0 };
                 low + high
             };
-            let share = (seam(0) + seam(1) + seam(2)) * at(&operator.inverse, l);
-            if share > 0.0 { omega.min(SEAM_MARGIN * 2.0 / (1.0 + share)) } else { omega }
+            let fraction = (seam(0) + seam(1) + seam(2)) * at(&operator.inverse, l);
+            if fraction > 0.0 { omega.min(SEAM_MARGIN * 2.0 / (1.0 + fraction)) } else { omega }
         })
     }
 

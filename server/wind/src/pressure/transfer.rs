@@ -11,13 +11,13 @@ use std::ops::Range;
 pub(super) struct Lean<R> {
     pub(super) axis: usize,
     /// Weight of the lower and of the upper child of each coarse cell, by its linear index; 0 where no face is open.
-    pub(super) share: [Vec<R>; 2],
+    pub(super) fraction: [Vec<R>; 2],
 }
 
 /// Linear interpolation between the centres of coarse cells (prolongation), and its transpose (restriction).
 ///
-/// A cell takes its parent's value e and adds, for each coarsened axis separately, `share (e_neighbour − e)` for the parent's neighbour on its side
-/// (after Wesseling, SIAM J. Sci. Stat. Comput. 9, 1988). The share is the distance between the centres of cell and parent over that between the two
+/// A cell takes its parent's value e and adds, for each coarsened axis separately, `fraction (e_neighbour − e)` for the parent's neighbour on its side
+/// (after Wesseling, SIAM J. Sci. Stat. Comput. 9, 1988). The fraction is the distance between the centres of cell and parent over that between the two
 /// coarse centres, 1/4 on a regular grid, times the open fraction of the face between them; a neighbour beyond an open edge of the box has value 0.
 #[derive(Clone, Debug)]
 pub(super) struct Transfer<R> {
@@ -91,9 +91,9 @@ impl<R: Real> Transfer<R> {
                     }
                 }
                 let start = coarse.linear([1, y, z]);
-                let shares = leans.iter().flat_map(|lean| &lean.share);
-                for (share, leant) in shares.zip(leant.chunks_mut(plane_len)) {
-                    kernels::take_share(kept, &mut leant[row(y)], &share[start..]);
+                let fractions = leans.iter().flat_map(|lean| &lean.fraction);
+                for (fraction, leant) in fractions.zip(leant.chunks_mut(plane_len)) {
+                    kernels::take_fraction(kept, &mut leant[row(y)], &fraction[start..]);
                 }
             }
         });
@@ -154,7 +154,7 @@ impl<R: Real> Transfer<R> {
                 for lean in leans {
                     let stride = coarse.stride[lean.axis];
                     let (below, above) = (&natural[l - stride..][..nx], &natural[l + stride..][..nx]);
-                    let [down, up] = lean.share.each_ref().map(|share| &share[l..][..nx]);
+                    let [down, up] = lean.fraction.each_ref().map(|fraction| &fraction[l..][..nx]);
                     match lean.axis {
                         0 => {
                             kernels::lean(&mut odd[..nx], down, below, e);
@@ -162,8 +162,8 @@ impl<R: Real> Transfer<R> {
                         }
                         axis => {
                             let lower = [y, z][axis - 1] % 2 == 1;
-                            let (share, x) = if lower { (down, below) } else { (up, above) };
-                            scatter_lean(odd, even, [share, x, e], halved);
+                            let (fraction, x) = if lower { (down, below) } else { (up, above) };
+                            scatter_lean(odd, even, [fraction, x, e], halved);
                         }
                     }
                 }
@@ -199,12 +199,12 @@ fn scatter<R: Real>(odd: &mut [R], even: &mut [R], parents: &[R], halved: bool) 
 }
 
 /// Interpolates a row of children from their parents `e` towards `x`.
-fn scatter_lean<R: Real>(odd: &mut [R], even: &mut [R], [share, x, e]: [&[R]; 3], halved: bool) {
+fn scatter_lean<R: Real>(odd: &mut [R], even: &mut [R], [fraction, x, e]: [&[R]; 3], halved: bool) {
     if halved {
-        kernels::lean(&mut odd[..e.len()], share, x, e);
-        kernels::lean(&mut even[..e.len()], share, x, e);
+        kernels::lean(&mut odd[..e.len()], fraction, x, e);
+        kernels::lean(&mut even[..e.len()], fraction, x, e);
     } else {
-        kernels::lean_alternate(odd, even, [share, x, e]);
+        kernels::lean_alternate(odd, even, [fraction, x, e]);
     }
 }
 

@@ -181,7 +181,7 @@ fn mode(config: &Config) -> impl Fn([f64; 3]) -> [f64; 3] {
 }
 
 /// Fraction of the divergence of [`mode`] that remains after a projection.
-fn share_left(config: &Config, sweeps: u32) -> f64 {
+fn fraction_left(config: &Config, sweeps: u32) -> f64 {
     let smallest_m = config.spacing_m.into_iter().fold(f32::INFINITY, f32::min).into();
     let mut air = StableFluids::<f64>::new(config).unwrap();
     air.set_velocity(mode(config));
@@ -192,9 +192,9 @@ fn share_left(config: &Config, sweeps: u32) -> f64 {
 
 #[test]
 fn the_sweeps_of_zhang_leave_most_of_the_divergence() {
-    for (n, sweeps, share) in [(8, 20, 0.22), (16, 20, 0.64), (32, 20, 0.89), (8, 1000, 0.04)] {
-        let found = share_left(&quiet([n; 3], [1.0; 3], Boundary::Reflect), sweeps);
-        assert!((found - share).abs() < 0.005, "{sweeps} sweeps at {n}³ leave {found}");
+    for (n, sweeps, fraction) in [(8, 20, 0.22), (16, 20, 0.64), (32, 20, 0.89), (8, 1000, 0.04)] {
+        let found = fraction_left(&quiet([n; 3], [1.0; 3], Boundary::Reflect), sweeps);
+        assert!((found - fraction).abs() < 0.005, "{sweeps} sweeps at {n}³ leave {found}");
     }
 }
 
@@ -206,7 +206,7 @@ fn the_projection_stalls_where_theory_says_on_any_cells() {
             (0..2).map(|axis| symbol(PI / cells[axis] as f64) / f64::from(spacing_m[axis]).powi(2)).sum()
         };
         let expected = 1.0 - sum(|angle| angle.sin().powi(2)) / sum(|angle| 2.0 - 2.0 * angle.cos());
-        let found = share_left(&quiet(cells, spacing_m, Boundary::Reflect), 3000);
+        let found = fraction_left(&quiet(cells, spacing_m, Boundary::Reflect), 3000);
         assert!((found - expected).abs() < 1e-9, "{cells:?}: {found}, in theory {expected}");
     }
 }

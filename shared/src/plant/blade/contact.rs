@@ -82,16 +82,16 @@ fn aside(along: [f32; 3], below: [f32; 3], link_m: f32, sphere: &Sphere) -> [f32
     toward(out, centre, cosine.clamp(-1.0, 1.0))
 }
 
-/// Unit vector with the component `share` along the unit vector `axis`, and its remainder in the direction of that of `from`.
-fn toward(from: [f32; 3], axis: [f32; 3], share: f32) -> [f32; 3] {
+/// Unit vector with the component `fraction` along the unit vector `axis`, and its remainder in the direction of that of `from`.
+fn toward(from: [f32; 3], axis: [f32; 3], fraction: f32) -> [f32; 3] {
     let mut rest = add(from, axis, -dot(from, axis));
     if dot(rest, rest) < 1e-12 {
         // Any direction will do: take the coordinate axis most nearly perpendicular.
         let least = if axis[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 0.0, 1.0] };
         rest = add(least, axis, -dot(least, axis));
     }
-    let across = ((1.0 - share * share).max(0.0) / dot(rest, rest)).sqrt();
-    [0, 1, 2].map(|i| axis[i] * share + rest[i] * across)
+    let across = ((1.0 - fraction * fraction).max(0.0) / dot(rest, rest)).sqrt();
+    [0, 1, 2].map(|i| axis[i] * fraction + rest[i] * across)
 }
 
 /// A link's rate without its component back from the corrected lean `to` towards `from`.
@@ -124,8 +124,8 @@ mod tests {
         let mut deepest = f32::NEG_INFINITY;
         for point in sway.points_m(1.0) {
             for step in 0..=32 {
-                let share = step as f32 / 32.0;
-                let at = [0, 1, 2].map(|i| below[i] + share * (point[i] - below[i]) - sphere.centre_m[i]);
+                let fraction = step as f32 / 32.0;
+                let at = [0, 1, 2].map(|i| below[i] + fraction * (point[i] - below[i]) - sphere.centre_m[i]);
                 deepest = deepest.max(sphere.radius_m - dot(at, at).sqrt());
             }
             below = point;

@@ -44,7 +44,7 @@ pub struct Blade {
     /// First natural frequency ω₁ (rad/s), from [`modes::first_frequency_rad_per_s`] or measured.
     pub frequency_rad_per_s: f32,
     /// Damping ratio of each mode (1 is critical damping).
-    pub damping_share: f32,
+    pub damping_ratio: f32,
     /// Mean lean that the drag of a wind of 1 m/s sustains (rad s²/m²); drag is proportional to the square of the speed.
     pub lean_per_wind2: f32,
 }

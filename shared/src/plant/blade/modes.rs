@@ -115,8 +115,8 @@ mod tests {
             let mut square = 0.0;
             for _ in 0..100 {
                 for other in &below {
-                    let share = dot(mode, times(&mass, *other));
-                    (0..N).for_each(|link| mode[link] -= share * other[link]);
+                    let fraction = dot(mode, times(&mass, *other));
+                    (0..N).for_each(|link| mode[link] -= fraction * other[link]);
                 }
                 let size = dot(mode, times(&mass, mode)).sqrt();
                 mode = mode.map(|lean| lean / size);

@@ -83,8 +83,8 @@ impl Propagator {
 /// assert_eq!(stable_dt_secs(Integrator::Exact, 10.0, 0.1), f32::INFINITY);
 /// assert_eq!(stable_dt_secs(Integrator::Euler, 10.0, 0.0), 0.0);
 /// ```
-pub fn stable_dt_secs(integrator: Integrator, frequency_rad_per_s: f32, damping_share: f32) -> f32 {
-    mode_dt_secs(integrator, frequency_rad_per_s * FREQUENCIES[FREQUENCIES.len() - 1], damping_share)
+pub fn stable_dt_secs(integrator: Integrator, frequency_rad_per_s: f32, damping_ratio: f32) -> f32 {
+    mode_dt_secs(integrator, frequency_rad_per_s * FREQUENCIES[FREQUENCIES.len() - 1], damping_ratio)
 }
 
 /// Longest step (s) for which all modes of a blade stay bounded. Air passes its control points at up to `past_m_per_s`, and its drag damps the modes
@@ -92,7 +92,7 @@ pub fn stable_dt_secs(integrator: Integrator, frequency_rad_per_s: f32, damping_
 ///
 /// ```
 /// use prairie_core::plant::blade::{Blade, Integrator, propagator::{stable_dt_in_air_secs, stable_dt_secs}};
-/// let blade = Blade { length_m: 0.8, frequency_rad_per_s: 10.0, damping_share: 0.1, lean_per_wind2: 0.005 };
+/// let blade = Blade { length_m: 0.8, frequency_rad_per_s: 10.0, damping_ratio: 0.1, lean_per_wind2: 0.005 };
 /// let [calm, blown] = [0.0, 20.0].map(|past_m_per_s| stable_dt_in_air_secs(Integrator::Verlet, &blade, past_m_per_s));
 /// assert_eq!(calm, stable_dt_secs(Integrator::Verlet, 10.0, 0.1));
 /// assert!(blown < calm);
@@ -101,19 +101,19 @@ pub fn stable_dt_in_air_secs(integrator: Integrator, blade: &Blade, past_m_per_s
     let omega = blade.frequency_rad_per_s;
     let braked = 0.5 * blade.length_m * omega * omega * blade.lean_per_wind2 * past_m_per_s;
     let modes = FREQUENCIES.iter().zip(BRAKES).flat_map(|(&times, brakes)| {
-        let drag_share = braked * brakes.iter().sum::<f32>() / (omega * times);
+        let drag_fraction = braked * brakes.iter().sum::<f32>() / (omega * times);
         // Limits rise up to critical damping and fall beyond it, so the smallest is at an end.
-        [0.0, drag_share].map(|drag_share| mode_dt_secs(integrator, omega * times, blade.damping_share + drag_share))
+        [0.0, drag_fraction].map(|drag_fraction| mode_dt_secs(integrator, omega * times, blade.damping_ratio + drag_fraction))
     });
     modes.fold(f32::INFINITY, f32::min)
 }
 
 /// Longest step (s) at which one mode stays bounded.
-fn mode_dt_secs(integrator: Integrator, omega_rad_per_s: f32, damping_share: f32) -> f32 {
+fn mode_dt_secs(integrator: Integrator, omega_rad_per_s: f32, damping_ratio: f32) -> f32 {
     match integrator {
-        Integrator::Euler if damping_share < 1.0 => 2.0 * damping_share / omega_rad_per_s,
-        Integrator::Euler => 2.0 * (damping_share - (damping_share * damping_share - 1.0).sqrt()) / omega_rad_per_s,
-        Integrator::Verlet => 2.0 * ((1.0 + damping_share * damping_share).sqrt() - damping_share) / omega_rad_per_s,
+        Integrator::Euler if damping_ratio < 1.0 => 2.0 * damping_ratio / omega_rad_per_s,
+        Integrator::Euler => 2.0 * (damping_ratio - (damping_ratio * damping_ratio - 1.0).sqrt()) / omega_rad_per_s,
+        Integrator::Verlet => 2.0 * ((1.0 + damping_ratio * damping_ratio).sqrt() - damping_ratio) / omega_rad_per_s,
         Integrator::Exact => f32::INFINITY,
     }
 }
@@ -143,18 +143,18 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_exponential_is_exact(omega in 0.0_f32..200.0, share in 0.0_f32..1.0, step in 0.0_f32..1.5, x in -1.0_f32..1.0, v in -1.0_f32..1.0) {
+        fn the_exponential_is_exact(omega in 0.0_f32..200.0, fraction in 0.0_f32..1.0, step in 0.0_f32..1.5, x in -1.0_f32..1.0, v in -1.0_f32..1.0) {
             let dt = step / omega.max(1.0);
             let v = v * omega.max(1.0);
-            let found = after(&Propagator::exact(omega, share * omega, dt), [x, v]);
-            let wanted = closed(f64::from(omega), f64::from(share * omega), f64::from(dt), [f64::from(x), f64::from(v)]);
+            let found = after(&Propagator::exact(omega, fraction * omega, dt), [x, v]);
+            let wanted = closed(f64::from(omega), f64::from(fraction * omega), f64::from(dt), [f64::from(x), f64::from(v)]);
             let scale = [1.0, f64::from(omega.max(1.0))];
             prop_assert!((0..2).all(|i| (f64::from(found[i]) - wanted[i]).abs() < 4e-6 * scale[i]), "{found:?} instead of {wanted:?}");
         }
 
         #[test]
-        fn no_step_is_too_long_for_the_exponential(omega in 0.1_f32..1e4, share in 0.0_f32..10.0, dt in 1e-4_f32..10.0) {
-            let step = Propagator::exact(omega, share * omega, dt);
+        fn no_step_is_too_long_for_the_exponential(omega in 0.1_f32..1e4, fraction in 0.0_f32..10.0, dt in 1e-4_f32..10.0) {
+            let step = Propagator::exact(omega, fraction * omega, dt);
             let [mut x, mut v] = [1.0_f32, 0.0];
             for _ in 0..200 {
                 [x, v] = after(&step, [x, v]);
@@ -163,11 +163,11 @@ mod tests {
         }
 
         #[test]
-        fn limits_are_where_amplitudes_start_to_grow(verlet in any::<bool>(), omega in 1.0_f32..50.0, share in 0.02_f32..0.9) {
+        fn limits_are_where_amplitudes_start_to_grow(verlet in any::<bool>(), omega in 1.0_f32..50.0, fraction in 0.02_f32..0.9) {
             let integrator = if verlet { Integrator::Verlet } else { Integrator::Euler };
             let highest = omega * FREQUENCIES[2];
             let grows = |dt: f32| {
-                let step = Propagator::new(integrator, highest, share * highest, dt);
+                let step = Propagator::new(integrator, highest, fraction * highest, dt);
                 let scale = f64::from(highest);
                 let mut many = [
                     [1.0 + f64::from(step.stay), scale * f64::from(step.glide)],
@@ -188,7 +188,7 @@ mod tests {
                 let middle = 0.5 * (low + high);
                 if grows(middle) { high = middle } else { low = middle }
             }
-            let limit = stable_dt_secs(integrator, omega, share);
+            let limit = stable_dt_secs(integrator, omega, fraction);
             prop_assert!((low / limit - 1.0).abs() < 0.01, "{low} for {limit}");
         }
     }

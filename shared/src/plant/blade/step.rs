@@ -52,14 +52,14 @@ struct Pull {
 #[inline(always)]
 fn swing(m: usize, swung: &mut Sway, sway: &Sway, blade: &Blade, pull: &Pull, integrator: Integrator, dt_secs: f32) {
     let omega = blade.frequency_rad_per_s * FREQUENCIES[m];
-    let step = Propagator::new(integrator, omega, blade.damping_share * omega + pull.braked * weighted(&BRAKES[m], pull.past), dt_secs);
+    let step = Propagator::new(integrator, omega, blade.damping_ratio * omega + pull.braked * weighted(&BRAKES[m], pull.past), dt_secs);
     for axis in 0..2 {
         let of = |[low, middle, high]: &Leans| [low[axis], middle[axis], high[axis]];
         let x = weighted(&AMPLITUDES[m], of(&pull.apart_rad)) - weighted(&PUSHES[m], of(&pull.drag));
         let [dx, dv] = step.change(x, weighted(&AMPLITUDES[m], of(&sway.rate_rad_per_s)));
-        for (link, share) in MODES[m].iter().enumerate() {
-            swung.lean_rad[link][axis] += share * dx;
-            swung.rate_rad_per_s[link][axis] += share * dv;
+        for (link, fraction) in MODES[m].iter().enumerate() {
+            swung.lean_rad[link][axis] += fraction * dx;
+            swung.rate_rad_per_s[link][axis] += fraction * dv;
         }
     }
 }

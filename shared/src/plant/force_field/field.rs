@@ -83,8 +83,8 @@ const SHARE_LIMIT: f32 = 0.5;
 impl Lingering {
     /// Longest step (s) of one sweep on `mesh`: κ·dt·Σ 2/h² ≤ ½, half the stability limit. [`ForceField::step`] divides longer ones.
     pub fn stable_dt_secs(&self, mesh: &VolumeMesh) -> f32 {
-        let share_per_s: f32 = mesh.spacing_m.iter().map(|h| 2.0 * self.spread_m2_per_s / (h * h)).sum();
-        SHARE_LIMIT / share_per_s
+        let fraction_per_s: f32 = mesh.spacing_m.iter().map(|h| 2.0 * self.spread_m2_per_s / (h * h)).sum();
+        SHARE_LIMIT / fraction_per_s
     }
 }
 
@@ -224,13 +224,13 @@ impl ForceField {
         let substeps = (dt_secs / self.lingering.stable_dt_secs(&self.mesh)).ceil().max(1.0);
         let dt_secs = dt_secs / substeps;
         let keep = (-self.lingering.decay_per_s * dt_secs).exp();
-        let shares = self.mesh.spacing_m.map(|h| self.lingering.spread_m2_per_s * dt_secs / (h * h));
+        let fractions = self.mesh.spacing_m.map(|h| self.lingering.spread_m2_per_s * dt_secs / (h * h));
         let (rows, layer) = (self.mesh.rows(), self.mesh.strides()[1]);
         for lasting in &mut self.lasting {
             for _ in 0..substeps as u32 {
                 // Mirrored at the ground, so that nothing passes through it.
                 lasting.copy_within(layer..2 * layer, 0);
-                kernel::spread(lasting, &mut self.next, &self.open, rows, shares, keep);
+                kernel::spread(lasting, &mut self.next, &self.open, rows, fractions, keep);
                 std::mem::swap(lasting, &mut self.next);
             }
         }

@@ -39,12 +39,12 @@ impl<'a> Stencil<'a> {
 /// Smallest remainder (Pa); a smaller one is set to 0, since denormal numbers would make a step five times as long.
 const LEAST_PA: f32 = 1e-20;
 
-/// One sub-step: each volume exchanges the fraction `shares` (x, y, z) of the difference with its neighbours as far as both are `open`; the fraction
+/// One sub-step: each volume exchanges the fraction `fractions` (x, y, z) of the difference with its neighbours as far as both are `open`; the fraction
 /// `keep` is left.
 // Slices passed as separate arguments are known not to overlap.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-pub(super) fn spread(now: &[f32], next: &mut [f32], open: &[f32], rows: Rows, shares: [f32; 3], keep: f32) {
-    let [x, y, z] = shares;
+pub(super) fn spread(now: &[f32], next: &mut [f32], open: &[f32], rows: Rows, fractions: [f32; 3], keep: f32) {
+    let [x, y, z] = fractions;
     for at in rows.starts() {
         let (r, open) = (Stencil::new(now, at, rows.width, rows.strides), Stencil::new(open, at, rows.width, rows.strides));
         let next = &mut next[at..][..rows.width];

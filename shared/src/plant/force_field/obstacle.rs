@@ -47,8 +47,8 @@ impl Obstacle {
                 for x in xs.clone() {
                     let center_m = mesh.center_m([x, y, z]);
                     let [east, rise, south]: [f32; 3] = std::array::from_fn(|axis| center_m[axis] - self.at_m[axis]);
-                    let share = filled(0, c * east + s * south) * filled(1, rise) * filled(2, c * south - s * east);
-                    open[mesh.place([x, y, z])] *= 1.0 - stops * share;
+                    let fraction = filled(0, c * east + s * south) * filled(1, rise) * filled(2, c * south - s * east);
+                    open[mesh.place([x, y, z])] *= 1.0 - stops * fraction;
                 }
             }
         }

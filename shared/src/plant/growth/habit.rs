@@ -69,7 +69,7 @@ impl Habit {
 
     /// Vigour of a plant that got `got` from this many sites.
     pub(super) fn vigour(&self, got: [u64; 3], sites: u64) -> u8 {
-        let share = |nutrient: usize| (got[nutrient] * 255).checked_div(u64::from(self.uptake[nutrient]) * sites);
-        (0..3).filter_map(share).min().unwrap_or(255) as u8
+        let fraction = |nutrient: usize| (got[nutrient] * 255).checked_div(u64::from(self.uptake[nutrient]) * sites);
+        (0..3).filter_map(fraction).min().unwrap_or(255) as u8
     }
 }

@@ -29,10 +29,10 @@ impl NutrientMap {
     }
 
     /// Concentrations at a position given as a fraction of the world along X and Z; outside the world those of the edge.
-    fn at(&self, share: [f64; 2]) -> [u16; 3] {
+    fn at(&self, fraction: [f64; 2]) -> [u16; 3] {
         let [(x, east), (z, south)] = [0, 1].map(|axis| {
             let pixels = self.size_px[axis];
-            let at = (share[axis] * f64::from(pixels) - 0.5).clamp(0.0, f64::from(pixels - 1));
+            let at = (fraction[axis] * f64::from(pixels) - 0.5).clamp(0.0, f64::from(pixels - 1));
             let low = (at as u32).min(pixels - 2);
             // In 256ths, so that the sum below is exact.
             (low as usize, ((at - f64::from(low)) * 256.0) as u32)
@@ -59,8 +59,8 @@ const OCTAVES: u32 = 4;
 impl Soil {
     /// Soil from a map over a world of `extent_m` (m, X and Z).
     pub fn of_map(map: &NutrientMap, sites: &Sites, extent_m: [f32; 2]) -> Self {
-        let share = |at_m: [f32; 2]| [0, 1].map(|axis| f64::from(at_m[axis]) / f64::from(extent_m[axis]));
-        Self((0..sites.total() as u32).map(|site| map.at(share(sites.place_m(site)))).collect())
+        let fraction = |at_m: [f32; 2]| [0, 1].map(|axis| f64::from(at_m[axis]) / f64::from(extent_m[axis]));
+        Self((0..sites.total() as u32).map(|site| map.at(fraction(sites.place_m(site)))).collect())
     }
 
     /// Soil from the seed of the sites: value noise of mean `growth.richness`, in patches of `growth.patch_m`.

@@ -30,7 +30,7 @@ fn on_ground(plan: &Plan) -> impl Iterator<Item = &Part> {
 
 /// By bisection, as the strain grows with the pressure.
 fn component_bears_pa(part: &Part) -> f32 {
-    let (joints, shares) = chain(&part.component);
+    let (joints, fractions) = chain(&part.component);
     let lean_rad = f64::from(part.component.angle_rad);
     let weight = f64::from(part.weight_s2_per_m) * GRAVITY_M_PER_S2;
     let is_broken = |pressure_pa: f64| {
@@ -38,7 +38,7 @@ fn component_bears_pa(part: &Part) -> f32 {
         let (load, load_rad) = (Load { spread: weight.hypot(drag), tip: 0.0 }, drag.atan2(weight));
         [lean_rad, -lean_rad].iter().any(|lean_rad| {
             let unbent_rad = (lean_rad + load_rad).abs().min(PI);
-            breaks(&joints, &shares, part.strength.into(), load, unbent_rad).is_some()
+            breaks(&joints, &fractions, part.strength.into(), load, unbent_rad).is_some()
         })
     };
     if !is_broken(MOST_PA) {

@@ -75,16 +75,16 @@ mod tests {
 
     #[test]
     fn a_tapered_leaf_is_as_stiff_as_its_bend_says() {
-        for share in [0.1_f32, 0.3, 1.0] {
+        for fraction in [0.1_f32, 0.3, 1.0] {
             // Compliance at the tip: ∫ (1 − s)²/EI(s) ds.
             let n = 10_000;
             let compliance: f64 = (0..n)
                 .map(|i| {
                     let s = (f64::from(i) + 0.5) / f64::from(n);
-                    (1.0 - s).powi(2) / (1.0 - (1.0 - f64::from(share)) * s) / f64::from(n)
+                    (1.0 - s).powi(2) / (1.0 - (1.0 - f64::from(fraction)) * s) / f64::from(n)
                 })
                 .sum();
-            let tapered = Struck::new(&Component { tip_stiffness_share: share, ..leaf() }, 1.0);
+            let tapered = Struck::new(&Component { tip_stiffness_share: fraction, ..leaf() }, 1.0);
             let exact_secs = Struck::new(&leaf(), 1.0).settle_secs * (3.0 * compliance).sqrt() as f32;
             assert!((tapered.settle_secs / exact_secs - 1.0).abs() < 0.05, "{} for {exact_secs} s", tapered.settle_secs);
         }

@@ -7,15 +7,15 @@ use std::f64::consts::PI;
 const STEPS: u32 = 1000;
 
 /// Tip of a clamped beam of length 1, relative to its foot: distance aside, and height against the load's direction. The unbent beam is `unbent_rad` off
-/// upright; its rigidity falls linearly from EI at the foot to `tip_share`·EI at the tip.
+/// upright; its rigidity falls linearly from EI at the foot to `tip_fraction`·EI at the tip.
 ///
 /// Integrates `(EI·ψ')' = (P + Λ·t)·sin ψ` from the tip, ψ the angle from the load's direction, by Runge–Kutta steps; finds the tip's angle by bisection of
 /// its logarithm. Slow; a reference for [`balanced`](super::rest::balanced).
-pub fn tip(tip_share: f64, load: Load, unbent_rad: f64) -> [f64; 2] {
+pub fn tip(tip_fraction: f64, load: Load, unbent_rad: f64) -> [f64; 2] {
     let h = 1.0 / f64::from(STEPS);
     // Angle, moment, position.
     let rate = |t: f64, [angle, moment, ..]: [f64; 4]| {
-        let rigidity = tip_share + (1.0 - tip_share) * t;
+        let rigidity = tip_fraction + (1.0 - tip_fraction) * t;
         [moment / rigidity, (load.tip + load.spread * t) * angle.sin(), angle.sin(), -angle.cos()]
     };
     // `None` once the beam is bent back beyond its clamp.
@@ -44,8 +44,8 @@ pub fn tip(tip_share: f64, load: Load, unbent_rad: f64) -> [f64; 2] {
 }
 
 /// Tip of a beam under its own weight alone, as [`tip`] gives it: `weight` is in units of EI/L².
-pub fn heavy_tip(tip_share: f64, weight: f64, unbent_rad: f64) -> [f64; 2] {
-    tip(tip_share, Load { spread: weight, tip: 0.0 }, unbent_rad)
+pub fn heavy_tip(tip_fraction: f64, weight: f64, unbent_rad: f64) -> [f64; 2] {
+    tip(tip_fraction, Load { spread: weight, tip: 0.0 }, unbent_rad)
 }
 
 #[cfg(test)]

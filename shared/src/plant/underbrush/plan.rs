@@ -2,7 +2,7 @@
 
 use super::posture::{Nodes, Postures};
 use super::rest::joints;
-use super::strength::{broken_across, shares};
+use super::strength::{broken_across, fractions};
 use crate::hash::hash3;
 use crate::scene::{Component, ComponentKind, Underbrush};
 use std::f32::consts::TAU;
@@ -72,7 +72,7 @@ pub struct Placed {
     /// Index of the component that carries it, which comes before it in the plant; `None` for the ground.
     pub on: Option<usize>,
     /// Position along the carrier, as a fraction of its length.
-    pub at_share: f32,
+    pub at_fraction: f32,
     /// Its length relative to its part's.
     pub size: f32,
     /// Angle of its unbent axis from the direction of its carrier (rad).
@@ -107,16 +107,16 @@ impl Plan {
             };
             for host in hosts {
                 let first = host.map_or(0, |host| host as u32 + 1) * count;
-                let first_turn_rad = if host.is_none() { TAU * share(hash3([number, index as u32, first])[2]) } else { 0.0 };
+                let first_turn_rad = if host.is_none() { TAU * fraction(hash3([number, index as u32, first])[2]) } else { 0.0 };
                 for nth in 0..count {
                     if placed.len() == COMPONENTS_LIMIT {
                         return placed;
                     }
-                    let [angle, length, _] = hash3([number, index as u32, first + nth]).map(|random| 2.0 * share(random) - 1.0);
+                    let [angle, length, _] = hash3([number, index as u32, first + nth]).map(|random| 2.0 * fraction(random) - 1.0);
                     placed.push(Placed {
                         part: index,
                         on: host,
-                        at_share: at_share(&part.component, nth),
+                        at_fraction: at_fraction(&part.component, nth),
                         size: 1.0 + length_variation * length,
                         angle_rad: (angle_rad + angle_variation_rad * angle).abs(),
                         turn_rad: first_turn_rad + turn_rad * nth as f32,
@@ -129,7 +129,7 @@ impl Plan {
 }
 
 /// Position of the nth of a component, as a fraction of the length of its branch.
-fn at_share(component: &Component, nth: u32) -> f32 {
+fn at_fraction(component: &Component, nth: u32) -> f32 {
     let Component { count, from_share, to_share, .. } = *component;
     let along = if count > 1 { nth as f32 / (count - 1) as f32 } else { 1.0 };
     from_share + (to_share - from_share) * along
@@ -159,7 +159,7 @@ fn slowest_rad_per_s(parts: &[Part]) -> f32 {
         let Some(on) = *on else { continue };
         whole_kg[on] += component.count as f32 * whole_kg[index];
         if on == longest {
-            let moves = (0..component.count).map(|nth| at_share(component, nth)).map(|s| 0.5 * s * s * (3.0 - s));
+            let moves = (0..component.count).map(|nth| at_fraction(component, nth)).map(|s| 0.5 * s * s * (3.0 - s));
             tip_kg += whole_kg[index] * moves.map(|by| by * by).sum::<f32>();
         }
     }
@@ -167,7 +167,7 @@ fn slowest_rad_per_s(parts: &[Part]) -> f32 {
 }
 
 /// A random number as a fraction, 0 to under 1.
-fn share(random: u32) -> f32 {
+fn fraction(random: u32) -> f32 {
     (random >> 8) as f32 / (1_u32 << 24) as f32
 }
 
@@ -179,9 +179,9 @@ struct Tables {
 }
 
 impl Tables {
-    fn index_of(&mut self, joints: Vec<f64>, strength_shares: &[f64]) -> usize {
+    fn index_of(&mut self, joints: Vec<f64>, strength_fractions: &[f64]) -> usize {
         self.chains.iter().position(|chain| *chain == joints).unwrap_or_else(|| {
-            self.tables.push(Postures::new(&joints, strength_shares, self.nodes));
+            self.tables.push(Postures::new(&joints, strength_fractions, self.nodes));
             self.chains.push(joints);
             self.chains.len() - 1
         })
@@ -189,18 +189,18 @@ impl Tables {
 }
 
 fn part(component: &Component, on: Option<usize>, tables: &mut Tables) -> Part {
-    let (joints, shares) = chain(component);
+    let (joints, fractions) = chain(component);
     let square_per_rigidity = component.length_m * component.length_m / component.stiffness_n_m2;
     let strength = component.strength_n_m * component.length_m / component.stiffness_n_m2;
-    let broken = broken_across(&joints, &shares, f64::from(strength));
+    let broken = broken_across(&joints, &fractions, f64::from(strength));
     Part {
         component: component.clone(),
         on,
         weight_s2_per_m: component.mass_kg * square_per_rigidity,
         drag_per_pa: drag_m2(component) * square_per_rigidity,
         strength,
-        whole: tables.index_of(joints, &shares),
-        broken: broken.map(|joints| tables.index_of(joints, &shares)),
+        whole: tables.index_of(joints, &fractions),
+        broken: broken.map(|joints| tables.index_of(joints, &fractions)),
     }
 }
 
@@ -208,8 +208,8 @@ fn part(component: &Component, on: Option<usize>, tables: &mut Tables) -> Part {
 /// [`strength`](super::strength).
 pub(super) fn chain(component: &Component) -> (Vec<f64>, Vec<f64>) {
     let sections = (component.sections as usize).clamp(1, SECTIONS_LIMIT);
-    let tip_share = f64::from(component.tip_stiffness_share);
-    (joints(sections, tip_share), shares(sections, tip_share))
+    let tip_fraction = f64::from(component.tip_stiffness_share);
+    (joints(sections, tip_fraction), fractions(sections, tip_fraction))
 }
 
 /// Silhouette times drag coefficient (m²): length, width and a shape factor; for a flower its stalk and its ring of petals.
@@ -255,7 +255,7 @@ mod tests {
             assert_eq!(one.on.map(|on| placed[on].part), plan.parts[one.part].on);
             assert!(one.on.is_none_or(|on| on < index));
         }
-        let leaves: Vec<f32> = placed.iter().filter(|one| one.part == 2).map(|one| one.at_share).collect();
+        let leaves: Vec<f32> = placed.iter().filter(|one| one.part == 2).map(|one| one.at_fraction).collect();
         assert_eq!(leaves[..3], [0.5, 0.75, 1.0]);
         let mut sizes: Vec<f32> = placed.iter().filter(|one| one.part == 2).map(|one| one.size).collect();
         sizes.sort_by(f32::total_cmp);
@@ -313,10 +313,10 @@ mod tests {
 
     /// First natural frequency of a chain of `count` sections with their masses in the middle and a mass at the tip, in units of √(EI/(m·L³)): power
     /// iteration on the shape bent by its own inertia.
-    fn chain_frequency(tip_share: f64, tip_mass: f64) -> f64 {
+    fn chain_frequency(tip_fraction: f64, tip_mass: f64) -> f64 {
         let count = 80;
         let section = 1.0 / f64::from(count);
-        let joints = crate::plant::underbrush::rest::joints(count as usize, tip_share);
+        let joints = crate::plant::underbrush::rest::joints(count as usize, tip_fraction);
         // In units of the tip's displacement.
         let (mut shape, mut square) = (vec![0.5; count as usize], 0.0);
         for _ in 0..30 {
@@ -371,17 +371,18 @@ mod tests {
 
     #[test]
     fn the_frequency_is_as_close_to_that_of_a_chain_as_it_says() {
-        for (tip_share, within) in [(1.0_f32, 0.004), (0.5, 0.04), (0.2, 0.04), (0.1, 0.04)] {
+        for (tip_fraction, within) in [(1.0_f32, 0.004), (0.5, 0.04), (0.2, 0.04), (0.1, 0.04)] {
             for tip_mass in [0.0_f32, 0.1, 0.5, 2.0, 100.0] {
                 let rod = Component {
                     length_m: 1.0,
                     mass_kg: 1.0,
                     stiffness_n_m2: 1.0,
-                    tip_stiffness_share: tip_share,
+                    tip_stiffness_share: tip_fraction,
                     ..Component::new("a", ComponentKind::Leaf)
                 };
-                let off = f64::from(frequency_rad_per_s(&rod, tip_mass)) / chain_frequency(f64::from(tip_share), f64::from(tip_mass)) - 1.0;
-                assert!(off.abs() < within, "{off} at {tip_share} and {tip_mass}");
+                let off =
+                    f64::from(frequency_rad_per_s(&rod, tip_mass)) / chain_frequency(f64::from(tip_fraction), f64::from(tip_mass)) - 1.0;
+                assert!(off.abs() < within, "{off} at {tip_fraction} and {tip_mass}");
             }
         }
     }

@@ -70,8 +70,8 @@ impl Posed {
     }
 
     /// Position at a fraction of its length, and the section that contains it.
-    fn at(&self, share: f32) -> (Vec3, Section) {
-        let along = share.clamp(0.0, 1.0) * self.count as f32;
+    fn at(&self, fraction: f32) -> (Vec3, Section) {
+        let along = fraction.clamp(0.0, 1.0) * self.count as f32;
         let index = (along as usize).min(self.count - 1);
         let start_m = if index == 0 { self.foot_m } else { self.sections[index - 1].end_m };
         let section = self.sections[index];
@@ -88,7 +88,7 @@ pub fn posed(plan: &Plan, placed: &[Placed], stand: Stand, forces: Forces, look_
     let mut posed: Vec<Posed> = Vec::with_capacity(placed.len());
     for (index, one) in placed.iter().enumerate() {
         let part = &plan.parts[one.part];
-        let (foot_m, frame) = one.on.map_or((Vec3::ZERO, ground), |on| posed[on].at(one.at_share));
+        let (foot_m, frame) = one.on.map_or((Vec3::ZERO, ground), |on| posed[on].at(one.at_fraction));
         let unbent = unbent(foot_m, frame, one);
         let load = forces.per_mass_m_per_s2 * (part.weight_s2_per_m * one.size * stand.size) + forces.pressure_pa * part.drag_per_pa;
         let is_broken = broken >> index & 1 == 1;

@@ -47,22 +47,22 @@ pub struct Postures {
 }
 
 impl Postures {
-    /// Balanced postures of a chain of `joints` whose strength relative to the base is `strength_shares` (both as in [`rest`](super::rest) and
+    /// Balanced postures of a chain of `joints` whose strength relative to the base is `strength_fractions` (both as in [`rest`](super::rest) and
     /// [`strength`](super::strength)).
-    pub fn new(joints: &[f64], strength_shares: &[f64], nodes: Nodes) -> Self {
+    pub fn new(joints: &[f64], strength_fractions: &[f64], nodes: Nodes) -> Self {
         let sections = joints.len();
         let (mut bends_rad, mut found) = (vec![0.0; sections], vec![0.0; sections]);
         let mut values = Vec::with_capacity(nodes.angles * nodes.loads * (sections + 1));
         for angle in 0..nodes.angles {
-            let share = angle as f64 / (nodes.angles - 1) as f64;
-            let unbent_rad = PI * share * share;
+            let fraction = angle as f64 / (nodes.angles - 1) as f64;
+            let unbent_rad = PI * fraction * fraction;
             for step in 0..nodes.loads - 1 {
-                let share = step as f64 / (nodes.loads - 1) as f64;
-                let load = (f64::from(MIDDLE_LOAD) * share / (1.0 - share)).max(LEAST_LOAD);
+                let fraction = step as f64 / (nodes.loads - 1) as f64;
+                let load = (f64::from(MIDDLE_LOAD) * fraction / (1.0 - fraction)).max(LEAST_LOAD);
                 balanced(joints, Load { spread: load, tip: 0.0 }, unbent_rad, &mut bends_rad);
                 moments(Load { spread: 1.0, tip: 0.0 }, unbent_rad, &bends_rad, &mut found);
                 values.extend(bends_rad.iter().map(|&bend_rad| bend_rad as f32));
-                values.push(weakest(strength_shares, &found).1 as f32);
+                values.push(weakest(strength_fractions, &found).1 as f32);
             }
             values.extend(std::iter::repeat_n((PI - unbent_rad) as f32, sections));
             values.push(0.0);
@@ -129,12 +129,12 @@ fn acos(cosine: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{rest::joints, strength::shares};
+    use super::super::{rest::joints, strength::fractions};
     use super::*;
     use proptest::prelude::*;
 
-    fn table(tip_share: f64, nodes: Nodes) -> Postures {
-        Postures::new(&joints(8, tip_share), &shares(8, tip_share), nodes)
+    fn table(tip_fraction: f64, nodes: Nodes) -> Postures {
+        Postures::new(&joints(8, tip_fraction), &fractions(8, tip_fraction), nodes)
     }
 
     fn tip(unbent_rad: f64, bends_rad: impl Iterator<Item = f64>) -> [f64; 2] {
@@ -142,9 +142,9 @@ mod tests {
     }
 
     /// Distance of a looked-up tip from its balanced position, in lengths.
-    fn off(tip_share: f64, unbent_rad: f64, load: f64, node: &[f32]) -> f64 {
+    fn off(tip_fraction: f64, unbent_rad: f64, load: f64, node: &[f32]) -> f64 {
         let mut exact = [0.0; 8];
-        balanced(&joints(8, tip_share), Load { spread: load, tip: 0.0 }, unbent_rad, &mut exact);
+        balanced(&joints(8, tip_fraction), Load { spread: load, tip: 0.0 }, unbent_rad, &mut exact);
         let [a, b] = [tip(unbent_rad, node.iter().map(|&v| f64::from(v))), tip(unbent_rad, exact.into_iter())];
         (a[0] - b[0]).hypot(a[1] - b[1])
     }
@@ -157,8 +157,8 @@ mod tests {
 
     #[test]
     fn the_default_table_is_as_close_as_it_says() {
-        for tip_share in [0.1, 0.5, 1.0] {
-            let table = table(tip_share, Nodes::default());
+        for tip_fraction in [0.1, 0.5, 1.0] {
+            let table = table(tip_fraction, Nodes::default());
             let mut errors = Vec::new();
             for i in 0..60 {
                 for k in 0..60 {
@@ -166,8 +166,8 @@ mod tests {
                     let load = 10f64.powf(-1.0 + 3.3 * (f64::from(k) + 0.41) / 60.0);
                     let nearest = table.nearest(unbent_rad.cos() as f32, load as f32);
                     errors.push([
-                        off(tip_share, unbent_rad, load, &between(&table, unbent_rad, load)),
-                        off(tip_share, unbent_rad, load, nearest),
+                        off(tip_fraction, unbent_rad, load, &between(&table, unbent_rad, load)),
+                        off(tip_fraction, unbent_rad, load, nearest),
                     ]);
                 }
             }

@@ -32,14 +32,14 @@ impl Load {
 /// that half: a quarter of the section is below.
 const FOOT_LOAD_SHARE: f64 = 0.75;
 
-/// Rotational stiffness of the joints at the lower ends of `sections` sections, from the base, with a rigidity that falls linearly to `tip_share` at
+/// Rotational stiffness of the joints at the lower ends of `sections` sections, from the base, with a rigidity that falls linearly to `tip_fraction` at
 /// the tip.
 ///
 /// A joint's stiffness is the rigidity there over the distance between the centres of the sections that it joins. The base is clamped, so its joint
 /// bends over half a section only and is twice as stiff: this makes the shape second-order accurate in the number of sections instead of first-order.
-pub fn joints(sections: usize, tip_share: f64) -> Vec<f64> {
+pub fn joints(sections: usize, tip_fraction: f64) -> Vec<f64> {
     let count = sections as f64;
-    let rigidity = |joint: usize| 1.0 - (1.0 - tip_share) * joint as f64 / count;
+    let rigidity = |joint: usize| 1.0 - (1.0 - tip_fraction) * joint as f64 / count;
     (0..sections).map(|joint| count * rigidity(joint) * if joint == 0 { 2.0 } else { 1.0 }).collect()
 }
 

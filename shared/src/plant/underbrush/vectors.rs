@@ -33,7 +33,7 @@ pub fn vectors(part: &Part, posed: &Posed, every: usize) -> Vec<Vectors> {
         let axis_m = section.end_m - from_m;
         let along = axis_m.normalize_or(section.direction);
         let side = (section.side - along * section.side.dot(along)).normalize_or(section.side);
-        let border = |share: f32| side * (0.5 * width_m(part, posed.size, share));
+        let border = |fraction: f32| side * (0.5 * width_m(part, posed.size, fraction));
         if out.is_empty() {
             out.push(Vectors { axis_m: Vec3::ZERO, left_m: -border(0.0), right_m: border(0.0) });
         }
@@ -46,12 +46,12 @@ pub fn vectors(part: &Part, posed: &Posed, every: usize) -> Vec<Vectors> {
 
 /// Width of a component's outline (m) at a fraction of its length. A leaf is widest at 0.425 of it, 0.45 as wide at its base, and pointed; a branch,
 /// or the stalk of a flower, is half as thick at its tip.
-fn width_m(part: &Part, size: f32, share: f32) -> f32 {
+fn width_m(part: &Part, size: f32, fraction: f32) -> f32 {
     let width_m = part.component.width_m * size;
     match part.component.kind {
-        ComponentKind::Leaf => width_m * (share + 0.15) * (1.0 - share) / (0.575 * 0.575),
-        ComponentKind::Branch => width_m * (1.0 - 0.5 * share),
-        ComponentKind::Flower => width_m * STALK_SHARE * (1.0 - 0.5 * share),
+        ComponentKind::Leaf => width_m * (fraction + 0.15) * (1.0 - fraction) / (0.575 * 0.575),
+        ComponentKind::Branch => width_m * (1.0 - 0.5 * fraction),
+        ComponentKind::Flower => width_m * STALK_SHARE * (1.0 - 0.5 * fraction),
     }
 }
 

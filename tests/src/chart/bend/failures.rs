@@ -90,8 +90,14 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     }
     let mut summary = String::new();
     for ((name, _), [fine, inaccurate, blown_up]) in schemes.into_iter().zip(counts) {
-        let share = |count: usize| 100.0 * count as f64 / (across * up) as f64;
-        writeln!(summary, "{name}: {:.0} % fine, {:.0} % inaccurate, {:.0} % blown up", share(fine), share(inaccurate), share(blown_up))?;
+        let fraction = |count: usize| 100.0 * count as f64 / (across * up) as f64;
+        writeln!(
+            summary,
+            "{name}: {:.0} % fine, {:.0} % inaccurate, {:.0} % blown up",
+            fraction(fine),
+            fraction(inaccurate),
+            fraction(blown_up)
+        )?;
     }
     let axis = |name, range| Axis { name, range, logarithmic: false };
     let subtitle = format!(

@@ -17,8 +17,8 @@ pub fn bought(shots: &[&Shot], budget_ms: f64) -> Option<Bought> {
     let last = shots.iter().rposition(|shot| shot.ms <= budget_ms)?;
     let here = shots[last];
     let Some(next) = shots.get(last + 1) else { return Some(Bought { level: here.level, flip: here.flip }) };
-    let share = (budget_ms / here.ms).ln() / (next.ms / here.ms).ln();
-    let between = |a: f64, b: f64| a + share * (b - a);
+    let fraction = (budget_ms / here.ms).ln() / (next.ms / here.ms).ln();
+    let between = |a: f64, b: f64| a + fraction * (b - a);
     Some(Bought { level: between(here.level, next.level), flip: between(here.flip, next.flip) })
 }
 

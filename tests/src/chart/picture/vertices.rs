@@ -105,7 +105,7 @@ fn of(shots: &[Shot], quality: Quality) -> impl Iterator<Item = &Shot> {
 }
 
 /// Times per million vertices and per million of the other quantity.
-fn shares<'a>(shots: impl IntoIterator<Item = &'a Shot>, other: fn(&Shot) -> u64) -> Result<Shares> {
+fn fractions<'a>(shots: impl IntoIterator<Item = &'a Shot>, other: fn(&Shot) -> u64) -> Result<Shares> {
     let timed = |shot: &Shot| Timed { work: [shot.work.vertices, other(shot)].map(millions), ms: shot.ms };
     Shares::of(&shots.into_iter().map(timed).collect::<Vec<_>>()).context("the sizes do not tell vertices from the rest")
 }
@@ -119,8 +119,8 @@ fn pixels(shot: &Shot) -> u64 {
 }
 
 fn cells(Shares { ms: [vertices, other], errors, residual }: Shares) -> Vec<String> {
-    let shares = [(vertices, errors[0]), (other, errors[1])].map(|(ms, error)| format!("{ms:.0} ± {error:.0}"));
-    shares.into_iter().chain([format!("{:.0} %", 100.0 * residual)]).collect()
+    let fractions = [(vertices, errors[0]), (other, errors[1])].map(|(ms, error)| format!("{ms:.0} ± {error:.0}"));
+    fractions.into_iter().chain([format!("{:.0} %", 100.0 * residual)]).collect()
 }
 
 /// Both fits: over all views and sizes of each quality, then over all of a view.
@@ -129,7 +129,7 @@ fn shares_table(shots: &[Shot], qualities: &[Quality]) -> Result<String> {
     let by_view = shots.chunk_by(|a, b| a.view == b.view).map(|part| (part[0].view, part.iter().collect()));
     let mut rows = Vec::new();
     for (name, part) in by_quality.chain(by_view).chain([("all", shots.iter().collect())]) {
-        let [of_fragments, of_pixels] = [fragments, pixels].map(|other| shares(part.iter().copied(), other));
+        let [of_fragments, of_pixels] = [fragments, pixels].map(|other| fractions(part.iter().copied(), other));
         rows.push([vec![name.to_owned()], cells(of_fragments?), cells(of_pixels?)].concat());
     }
     Ok(markdown(&["quality or view", "vertices", "fragments", "residual", "or: vertices", "pixels", "residual"], &rows))
@@ -183,7 +183,7 @@ fn chart(shots: &[Shot], qualities: &[Quality], words: Words) -> Result<String> 
     let [across, up] = [0, 1].map(range);
     let mut curves = Vec::new();
     for quality in qualities {
-        let Shares { ms: [vertices_ms, pixels_ms], .. } = shares(of(shots, *quality), pixels)?;
+        let Shares { ms: [vertices_ms, pixels_ms], .. } = fractions(of(shots, *quality), pixels)?;
         let name = format!("{}: {vertices_ms:.0} ms + {pixels_ms:.0} ms · x", quality.name());
         curves.push(Curve { name, points: of(shots, *quality).map(at).collect(), marked: true, joined: false });
         let places = (0..=LINE_POINTS).map(|n| across[0] * (across[1] / across[0]).powf(f64::from(n) / f64::from(LINE_POINTS)));
@@ -205,17 +205,17 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     let views = VIEWS.iter().step_by(wanted.view_step).count();
     let subtitle = format!("{views} views at {} px, least of {} or more frames; {}", sizes.join(", "), wanted.rounds, gpu.adapter_name);
     let svg = chart(&shots, wanted.qualities, Words { title: TITLE, subtitle: &subtitle, caption })?;
-    let shares = shares_table(&shots, wanted.qualities)?;
+    let fractions = shares_table(&shots, wanted.qualities)?;
     let tables = format!(
         "# {TITLE}\n\n{subtitle}; {caption}\n\n```sh\ncargo run --release -p tests --bin chart -- picture --only vertices --out tests/results\n```\n\n\
          [The tests' README](../README.md#the-picture) says how to read this page.\n\n## Cost per million (ms)\n\n\
-         Least squares over all views and sizes, or all qualities and sizes, with standard errors; the residual is the root of the mean square of the difference, as a share of the time. First of\n\
-         vertices and fragments; then of vertices and the pixels of the picture.\n\n{shares}\n\
+         Least squares over all views and sizes, or all qualities and sizes, with standard errors; the residual is the root of the mean square of the difference, as a fraction of the time. First of\n\
+         vertices and fragments; then of vertices and the pixels of the picture.\n\n{fractions}\n\
          ## Whole passes\n\nAt {} px, as the device counts and times them: all of a pass's time over its vertices, and all of it over its fragments.\n\n{}",
         sizes[0],
         shots_table(&shots)
     );
-    Ok(Drawn { svg, csv: csv(&shots), summary: format!("ms that a million takes\n{}", shares.trim_end()), tables: Some(tables) })
+    Ok(Drawn { svg, csv: csv(&shots), summary: format!("ms that a million takes\n{}", fractions.trim_end()), tables: Some(tables) })
 }
 
 #[cfg(test)]
@@ -248,9 +248,9 @@ mod tests {
     #[test]
     fn tables_say_what_was_measured() {
         let shots = made_up();
-        let shares = shares_table(&shots, &[Quality::Low]).unwrap();
+        let fractions = shares_table(&shots, &[Quality::Low]).unwrap();
         assert_eq!(
-            rows(&shares).iter().map(|row| &row[..4]).collect::<Vec<_>>(),
+            rows(&fractions).iter().map(|row| &row[..4]).collect::<Vec<_>>(),
             ["low", "ant-calm", "all"].map(|name| [name, "50 ± 0", "20 ± 0", "0 %"])
         );
         assert_eq!(rows(&shots_table(&shots)), [["ant-calm", "low", "2.00", "1.00", "8.00", "260.0", "130.0", "32.5"]]);

@@ -26,7 +26,7 @@ pub(super) fn problem(quick: bool) -> Problem {
     };
     // Drag adds damping, which lowers Verlet's limit below that of a blade in still air.
     let bears = |integrator: Integrator, steps: usize| {
-        let limit_secs = stable_dt_secs(integrator, BLADE.frequency_rad_per_s, BLADE.damping_share);
+        let limit_secs = stable_dt_secs(integrator, BLADE.frequency_rad_per_s, BLADE.damping_ratio);
         1.0 / steps as f32 <= 0.9 * limit_secs && (steps <= 960 || integrator == Integrator::Euler)
     };
     let counts = &STEPS[..STEPS.len() - usize::from(quick)];

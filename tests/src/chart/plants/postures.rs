@@ -10,7 +10,7 @@ use std::time::Instant;
 use anyhow::Result;
 use prairie_core::plant::underbrush::posture::{Nodes, Postures};
 use prairie_core::plant::underbrush::rest::{Load, balanced, joints};
-use prairie_core::plant::underbrush::strength::shares;
+use prairie_core::plant::underbrush::strength::fractions;
 
 use super::super::figure::{Axis, Curve, Drawn, Words, curves_svg};
 use super::super::summary::time_text;
@@ -74,7 +74,7 @@ fn samples() -> &'static [Sample] {
 }
 
 fn table(size: usize) -> Postures {
-    Postures::new(&joints(SECTIONS, TIP_SHARE), &shares(SECTIONS, TIP_SHARE), Nodes { angles: size, loads: size })
+    Postures::new(&joints(SECTIONS, TIP_SHARE), &fractions(SECTIONS, TIP_SHARE), Nodes { angles: size, loads: size })
 }
 
 pub(super) fn problem(quick: bool) -> Problem {

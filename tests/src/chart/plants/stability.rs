@@ -32,10 +32,10 @@ fn frequency_rad_per_s(rigidity_n_m2: f32) -> f32 {
 }
 
 /// Whether the deflection of a blade, excited in all modes, stays below a hundred times its initial value.
-fn holds(integrator: Integrator, frequency_rad_per_s: f32, damping_share: f32, dt_secs: f32) -> bool {
-    let blade = Blade { length_m: LENGTH_M, frequency_rad_per_s, damping_share, lean_per_wind2: 0.0 };
+fn holds(integrator: Integrator, frequency_rad_per_s: f32, damping_ratio: f32, dt_secs: f32) -> bool {
+    let blade = Blade { length_m: LENGTH_M, frequency_rad_per_s, damping_ratio, lean_per_wind2: 0.0 };
     // Half a percent beyond its limit Euler grows by 0.01·ζ² per step; enough steps for a factor of e⁶.
-    let steps = (600.0 / (damping_share * damping_share)).clamp(2e4, 1e5) as u32;
+    let steps = (600.0 / (damping_ratio * damping_ratio)).clamp(2e4, 1e5) as u32;
     let calm = Leans::default();
     let mut sway = Sway::at_rest([[0.01, 0.0], [-0.01, 0.01], [0.01, -0.01]]);
     (0..steps).all(|step| {
@@ -45,9 +45,9 @@ fn holds(integrator: Integrator, frequency_rad_per_s: f32, damping_share: f32, d
 }
 
 /// The longest stable step (s) that holds.
-fn measured_secs(integrator: Integrator, frequency_rad_per_s: f32, damping_share: f32) -> Result<f32> {
+fn measured_secs(integrator: Integrator, frequency_rad_per_s: f32, damping_ratio: f32) -> Result<f32> {
     let [mut low, mut high] = STEPS_SECS;
-    let holds = |dt_secs| holds(integrator, frequency_rad_per_s, damping_share, dt_secs);
+    let holds = |dt_secs| holds(integrator, frequency_rad_per_s, damping_ratio, dt_secs);
     ensure!(holds(low) && !holds(high), "{integrator:?} has no limit between {low} and {high} s");
     while high / low > CLOSE {
         let middle = (low * high).sqrt();
@@ -62,27 +62,27 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     let rigidity = |n: f32| softest * (stiffest / softest).powf(n);
     let mut csv = String::from("integrator,damping_share,rigidity_n_m2,highest_rad_per_s,theory_secs,measured_secs\n");
     let (mut summary, mut curves) = (String::new(), vec![]);
-    for (integrator, share, formula) in CASES {
-        let theory_secs = |rigidity_n_m2: f32| stable_dt_secs(integrator, frequency_rad_per_s(rigidity_n_m2), share);
+    for (integrator, fraction, formula) in CASES {
+        let theory_secs = |rigidity_n_m2: f32| stable_dt_secs(integrator, frequency_rad_per_s(rigidity_n_m2), fraction);
         let line = [softest, stiffest].map(|rigidity_n_m2| [rigidity_n_m2, theory_secs(rigidity_n_m2)].map(f64::from));
         curves.push(Curve { name: formula.into(), points: line.to_vec(), marked: false, joined: true });
         let mut found = Curve { name: "measured".into(), points: vec![], marked: true, joined: false };
         let (mut least, mut most) = (f32::INFINITY, 0.0_f32);
         for rigidity_n_m2 in (0..places).map(|n| rigidity(n as f32 / (places - 1) as f32)) {
             let (frequency_rad_per_s, theory) = (frequency_rad_per_s(rigidity_n_m2), theory_secs(rigidity_n_m2));
-            let measured = measured_secs(integrator, frequency_rad_per_s, share)?;
+            let measured = measured_secs(integrator, frequency_rad_per_s, fraction)?;
             (least, most) = (least.min(measured / theory), most.max(measured / theory));
             let highest_rad_per_s = frequency_rad_per_s * FREQUENCIES[LINKS - 1];
-            writeln!(csv, "{integrator:?},{share},{rigidity_n_m2:e},{highest_rad_per_s},{theory},{measured}")?;
+            writeln!(csv, "{integrator:?},{fraction},{rigidity_n_m2:e},{highest_rad_per_s},{theory},{measured}")?;
             found.points.push([rigidity_n_m2, measured].map(f64::from));
         }
-        writeln!(summary, "{integrator:?}, ζ = {share}: fails at {least:.3} to {most:.3} of its limit")?;
+        writeln!(summary, "{integrator:?}, ζ = {fraction}: fails at {least:.3} to {most:.3} of its limit")?;
         curves.push(found);
     }
     let holds_all = RIGIDITIES_N_M2.map(frequency_rad_per_s).into_iter().all(|frequency_rad_per_s| {
         let highest_rad_per_s = frequency_rad_per_s * FREQUENCIES[LINKS - 1];
-        let cases = [0.0, 0.1, 0.5].into_iter().flat_map(|share| [1.0, 100.0, 1e5].map(|step| (share, step / highest_rad_per_s)));
-        cases.into_iter().all(|(share, dt_secs)| holds(Integrator::Exact, frequency_rad_per_s, share, dt_secs))
+        let cases = [0.0, 0.1, 0.5].into_iter().flat_map(|fraction| [1.0, 100.0, 1e5].map(|step| (fraction, step / highest_rad_per_s)));
+        cases.into_iter().all(|(fraction, dt_secs)| holds(Integrator::Exact, frequency_rad_per_s, fraction, dt_secs))
     });
     writeln!(summary, "exact: {} at ω·dt of 1, 100 and 100 000", if holds_all { "holds" } else { "fails" })?;
     let steps = curves.iter().flat_map(|curve| curve.points.iter().map(|point| point[1]));
@@ -109,12 +109,12 @@ mod tests {
         for rigidity_n_m2 in RIGIDITIES_N_M2 {
             let frequency_rad_per_s = frequency_rad_per_s(rigidity_n_m2);
             let highest_rad_per_s = frequency_rad_per_s * FREQUENCIES[LINKS - 1];
-            for (integrator, share, formula) in CASES {
+            for (integrator, fraction, formula) in CASES {
                 let limit = match integrator {
-                    Integrator::Verlet => 2.0 * ((1.0 + share * share).sqrt() - share),
-                    _ => 2.0 * share,
+                    Integrator::Verlet => 2.0 * ((1.0 + fraction * fraction).sqrt() - fraction),
+                    _ => 2.0 * fraction,
                 } / highest_rad_per_s;
-                let found = measured_secs(integrator, frequency_rad_per_s, share).unwrap() / limit;
+                let found = measured_secs(integrator, frequency_rad_per_s, fraction).unwrap() / limit;
                 assert!((0.99..1.01).contains(&found), "{formula}, {rigidity_n_m2} N·m²: {found} of the limit");
             }
         }

@@ -44,7 +44,7 @@ impl Draw {
     pub fn new(number: u64) -> Self {
         let mut random = Random::new(number);
         let mut between = |low: f64, high: f64| random.between(low, high) as f32;
-        let rate = |share: f32| -60.0 * (1.0 - share).ln();
+        let rate = |fraction: f32| -60.0 * (1.0 - fraction).ln();
         let waves = WaveParams {
             c0_m_per_s: between(1.0, 10.0),
             mu_m_per_rad: between(0.0, 1.5),

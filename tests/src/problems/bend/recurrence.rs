@@ -36,8 +36,8 @@ impl Recurrence {
         match scheme {
             Scheme::Verlet => Self { p: 2.0 - lambda - force, q: 1.0 - lambda },
             Scheme::Substepped => {
-                let share = if damping == 0.0 { 1.0 } else { lambda / damping };
-                Self { p: 2.0 - lambda - share * force, q: 1.0 - lambda }
+                let fraction = if damping == 0.0 { 1.0 } else { lambda / damping };
+                Self { p: 2.0 - lambda - fraction * force, q: 1.0 - lambda }
             }
             Scheme::Implicit => {
                 let inertia = 1.0 + 0.5 * damping + 0.25 * restoring;

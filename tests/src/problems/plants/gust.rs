@@ -19,7 +19,7 @@ const FRAMES_BEFORE: usize = 240;
 const FINEST_PER_S: usize = 30_720;
 
 /// A blade of the default scene.
-pub const BLADE: Blade = Blade { length_m: 0.8, frequency_rad_per_s: 9.74, damping_share: 0.1, lean_per_wind2: 0.005 };
+pub const BLADE: Blade = Blade { length_m: 0.8, frequency_rad_per_s: 9.74, damping_ratio: 0.1, lean_per_wind2: 0.005 };
 
 /// A second of wind at the control points of [`PLACES`] blades, linear between its frames.
 pub struct Gust {

@@ -222,7 +222,7 @@ fn limb(plan: &Plan, tables: &[u32], placed: &[Placed], index: usize, every: usi
     let sections = |table: usize| plan.tables[table].stride() - 1;
     let at_step = one.on.map_or(0.0, |on| {
         let sections = sections(plan.parts[placed[on].part].whole);
-        let at = one.at_share.clamp(0.0, 1.0) * sections as f32;
+        let at = one.at_fraction.clamp(0.0, 1.0) * sections as f32;
         let step = (at as usize).min(sections - 1) / every;
         let held = every.min(sections - step * every);
         step as f32 + (at - (step * every) as f32) / held as f32
@@ -258,8 +258,8 @@ fn drop_response(part: &Part, calm: &Posed) -> DropResponse {
             let area = |length_m: fn(Vec3) -> f32| -> f32 {
                 outline.windows(2).map(|pair| (pair[0].right_m.length() + pair[1].right_m.length()) * length_m(pair[1].axis_m)).sum()
             };
-            let seen_share = area(|axis_m| axis_m.with_y(0.0).length()) / area(Vec3::length);
-            LEAF_AREA * component.width_m * component.length_m * calm.size * calm.size * seen_share
+            let seen_fraction = area(|axis_m| axis_m.with_y(0.0).length()) / area(Vec3::length);
+            LEAF_AREA * component.width_m * component.length_m * calm.size * calm.size * seen_fraction
         }
     };
     DropResponse { speed_m_per_s, settle_secs, area_m2, _unused: 0.0 }
@@ -311,8 +311,8 @@ fn ribbons(part: &Part, one: &Posed, index: usize, level: usize, wider: f32) -> 
     let fill = if area > 0.0 { whole / area } else { 1.0 };
     let material = if component.kind == ComponentKind::Leaf { RowMaterial::Leaf } else { RowMaterial::Stalk };
     let own = halves.iter().enumerate().map(|(step, half_m)| {
-        let share = step as f32 / steps.max(1) as f32;
-        let color = if component.kind == ComponentKind::Flower { root } else { root.lerp(tip, share) };
+        let fraction = step as f32 / steps.max(1) as f32;
+        let color = if component.kind == ComponentKind::Flower { root } else { root.lerp(tip, fraction) };
         row(step, half_m * fill * wider, color, material, PetalPlace::default())
     });
     let mut all = vec![own.collect::<Vec<_>>()];
@@ -329,10 +329,10 @@ fn ribbons(part: &Part, one: &Posed, index: usize, level: usize, wider: f32) -> 
     let step_rad = TAU / component.petals as f32;
     for nth in 0..component.petals {
         let (sine, cosine) = (step_rad * nth as f32).sin_cos();
-        let petal = |share: f32, wide: f32| {
+        let petal = |fraction: f32, wide: f32| {
             let half_m = 0.25 * step_rad * radius_m * wide;
-            let place = PetalPlace { from_stalk_m: share * radius_m, turn_cosine: cosine, turn_sine: sine, sine: PETAL_RAD.sin() };
-            row(steps, half_m, tip * (0.7 + 0.3 * share), RowMaterial::Petal, place)
+            let place = PetalPlace { from_stalk_m: fraction * radius_m, turn_cosine: cosine, turn_sine: sine, sine: PETAL_RAD.sin() };
+            row(steps, half_m, tip * (0.7 + 0.3 * fraction), RowMaterial::Petal, place)
         };
         all.push(vec![petal(0.0, 0.25), petal(0.55, 1.0), petal(1.0, 0.55)]);
     }

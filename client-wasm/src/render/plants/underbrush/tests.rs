@@ -105,7 +105,7 @@ impl Case {
         let ([heading, size, wind], [towards, x, z]) = (random(n, 1), random(n, 2));
         let speed_m_per_s = 11.0 * wind;
         let (sine, cosine) = (std::f32::consts::TAU * towards).sin_cos();
-        let pressure_pa = [cosine, sine].map(|share| share * 0.6 * speed_m_per_s * speed_m_per_s);
+        let pressure_pa = [cosine, sine].map(|fraction| fraction * 0.6 * speed_m_per_s * speed_m_per_s);
         let lean_rad = if n.is_multiple_of(2) { [0.0; 2] } else { [x - 0.5, z - 0.5] };
         let stand = Stand { size: 0.4 + 0.95 * size, heading_rad: std::f32::consts::TAU * heading, lean_rad };
         Self { root_m: ROOT_M, stand, pressure_pa, variant: n % (2 * VARIANTS), spheres: 0 }

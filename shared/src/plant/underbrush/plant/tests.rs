@@ -62,7 +62,7 @@ proptest! {
                         nodes.extend(host.sections().iter().map(|section| section.end_m));
                         let off = |ends: &[Vec3]| (one.foot_m - ends[0]).length() + (one.foot_m - ends[1]).length() - (ends[1] - ends[0]).length();
                         prop_assert!(nodes.windows(2).map(off).fold(f32::MAX, f32::min) < 1e-6);
-                        prop_assert!((place.at_share < 1.0) || one.foot_m == nodes[nodes.len() - 1]);
+                        prop_assert!((place.at_fraction < 1.0) || one.foot_m == nodes[nodes.len() - 1]);
                     }
                 }
             }

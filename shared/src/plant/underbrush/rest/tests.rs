@@ -6,9 +6,9 @@ use std::f64::consts::FRAC_PI_2;
 type Way = fn(&[f64], Load, f64, &mut [f64]);
 
 /// Tip relative to the base: distance aside, and height against the load.
-fn tip(way: Way, sections: usize, tip_share: f64, load: Load, unbent_rad: f64) -> [f64; 2] {
+fn tip(way: Way, sections: usize, tip_fraction: f64, load: Load, unbent_rad: f64) -> [f64; 2] {
     let mut bends_rad = vec![0.0; sections];
-    way(&joints(sections, tip_share), load, unbent_rad, &mut bends_rad);
+    way(&joints(sections, tip_fraction), load, unbent_rad, &mut bends_rad);
     let sum = |part: fn(f64) -> f64| bends_rad.iter().map(|bend_rad| part(unbent_rad + bend_rad)).sum::<f64>() / sections as f64;
     [sum(f64::sin), sum(f64::cos)]
 }
@@ -84,7 +84,7 @@ fn a_cantilever_lies_as_in_bisshopp_and_drucker() {
 #[test]
 fn a_component_lies_under_its_weight_as_the_heavy_elastica() {
     let mut squares = [0.0; 4];
-    for (tip_share, weight, unbent_rad, bound) in [
+    for (tip_fraction, weight, unbent_rad, bound) in [
         (1.0, 2.0, 0.3, 0.016),
         (0.5, 6.0, 0.6, 0.09),
         (0.1, 6.0, 0.3, 0.09),
@@ -92,9 +92,9 @@ fn a_component_lies_under_its_weight_as_the_heavy_elastica() {
         (1.0, 12.0, 0.0, 0.8),
         (0.3, 20.0, 2.6, 0.13),
     ] {
-        let exact = elastica::heavy_tip(tip_share, weight, unbent_rad);
+        let exact = elastica::heavy_tip(tip_fraction, weight, unbent_rad);
         for (sections, square) in [8, 16, 32, 64].into_iter().zip(&mut squares) {
-            let error = distance(tip(balanced, sections, tip_share, Load { spread: weight, tip: 0.0 }, unbent_rad), exact);
+            let error = distance(tip(balanced, sections, tip_fraction, Load { spread: weight, tip: 0.0 }, unbent_rad), exact);
             let count = sections as f64;
             assert!(error * count * count < bound, "{sections} sections of weight {weight}: {error}");
             *square += error * error;
@@ -148,10 +148,10 @@ fn energy(joints: &[f64], load: Load, unbent_rad: f64, bends_rad: &[f64]) -> f64
 proptest! {
     #[test]
     fn every_joint_is_in_balance_and_the_balance_is_stable(
-        sections in 1_usize..20, tip_share in 0.01..1.0f64, spread in 0.0..60.0f64, at_tip in 0.0..20.0f64, unbent in 0.01..PI,
+        sections in 1_usize..20, tip_fraction in 0.01..1.0f64, spread in 0.0..60.0f64, at_tip in 0.0..20.0f64, unbent in 0.01..PI,
         stir in proptest::array::uniform20(-1.0..1.0f64),
     ) {
-        let (joints, load) = (joints(sections, tip_share), Load { spread, tip: at_tip });
+        let (joints, load) = (joints(sections, tip_fraction), Load { spread, tip: at_tip });
         let mut bends = vec![0.0; sections];
         balanced(&joints, load, unbent, &mut bends);
         let mut found = vec![0.0; sections];
@@ -168,8 +168,8 @@ proptest! {
     }
 
     #[test]
-    fn the_shape_grows_with_the_load_without_a_jump(tip_share in 0.05..1.0f64, unbent in 0.1..3.1f64) {
-        let joints = joints(8, tip_share);
+    fn the_shape_grows_with_the_load_without_a_jump(tip_fraction in 0.05..1.0f64, unbent in 0.1..3.1f64) {
+        let joints = joints(8, tip_fraction);
         let mut before = [0.0; 8];
         for step in 0..400 {
             let mut bends = [0.0; 8];
@@ -180,15 +180,15 @@ proptest! {
     }
 
     #[test]
-    fn no_load_is_too_large_or_too_small(sections in 1_usize..9, tip_share in 0.01..1.0f64, tenfold in -30.0..30.0f64, unbent in 0.0..=PI) {
-        let joints = joints(sections, tip_share);
+    fn no_load_is_too_large_or_too_small(sections in 1_usize..9, tip_fraction in 0.01..1.0f64, tenfold in -30.0..30.0f64, unbent in 0.0..=PI) {
+        let joints = joints(sections, tip_fraction);
         let load = Load { spread: 10f64.powf(tenfold), tip: 0.0 };
         for way in [one_pass, balanced] {
             let mut bends = vec![f64::NAN; sections];
             way(&joints, load, unbent, &mut bends);
             prop_assert!(bends.iter().all(|bend| (-1e-12..=PI - unbent + 1e-12).contains(bend)), "{bends:?}");
             // An upper bound for small bends: the moment at the clamp, applied at all joints.
-            let most = if unbent > 0.1 { load.spread / tip_share } else { PI };
+            let most = if unbent > 0.1 { load.spread / tip_fraction } else { PI };
             prop_assert!(bends.iter().all(|&bend| bend < most + 1e-12), "{bends:?}");
         }
     }
