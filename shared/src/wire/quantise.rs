@@ -6,7 +6,7 @@ use multiversion::multiversion;
 use std::f32::consts::TAU;
 use std::num::NonZeroU8;
 
-/// θ at code ±127 (rad). The field is the bend minus the wind's lean: grass laid against the wind deviates by up to a right angle plus
+/// θ at code ±127 (rad). The field is the bend minus the wind's lean: grass flattened against the wind deviates by up to a right angle plus
 /// [`wind_bend_rad`](crate::scene::Grass::wind_bend_rad), 3.07 rad.
 pub const THETA_FULL_RAD: f32 = std::f32::consts::PI;
 

@@ -32,7 +32,7 @@ fn meadow(scene: &Scene) -> BendSimulation {
     BendSimulation::new(scene, Arc::new(flat), &grass)
 }
 
-/// A scene without laid grass: only the field bends.
+/// A scene without flattened grass: only the field bends.
 fn springy(count: u32) -> Scene {
     let mut scene = worlds::scene(count);
     scene.objects.car.lays_share = 0.0;

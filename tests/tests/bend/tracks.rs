@@ -31,7 +31,7 @@ fn driven(scene: &Scene) -> World {
 }
 
 #[test]
-fn an_awake_cell_with_its_laid_grass_takes_at_most_32_bytes() {
+fn an_awake_cell_with_its_flattened_grass_takes_at_most_32_bytes() {
     let layout = PatchLayout { count: [3; 2], cells: 120, cell_m: 0.4572 };
     let mut field = Field::new(layout, Kinds::one(Grass::default().waves));
     assert_eq!(field.memory_bytes(), 0, "grass that sleeps holds none");
@@ -49,11 +49,11 @@ fn shown(world: &mut World) -> (usize, f32) {
 }
 
 #[test]
-fn a_track_stays_only_where_weight_has_laid_the_grass() {
+fn a_track_stays_only_where_weight_has_flattened_the_grass() {
     let mut scene = worlds::scene(16);
     let mut world = driven(&scene);
     run(&mut world, 30.0);
-    assert_eq!(world.bend().field().awake_count(), 0, "what only is laid costs no step");
+    assert_eq!(world.bend().field().awake_count(), 0, "flattened grass at rest costs no step");
     let (cells, largest_rad) = shown(&mut world);
     // Half of 1.45 rad, less half a time constant.
     assert!(cells > 200 && (0.35..0.5).contains(&largest_rad), "{cells} cells, up to {largest_rad} rad");
@@ -71,13 +71,13 @@ fn a_track_fades_by_its_own_time_constant() {
     scene.grass.laid_recovery_secs = 20.0;
     let mut world = driven(&scene);
     run(&mut world, 1.0);
-    let laid = |world: &World| {
-        let laid = world.bend().flattened();
-        laid.patches()
-            .flat_map(|patch| laid.cells(patch).map(move |(cell, lean)| (patch, cell, lean)).collect::<Vec<_>>())
+    let flattened = |world: &World| {
+        let flattened = world.bend().flattened();
+        flattened.patches()
+            .flat_map(|patch| flattened.cells(patch).map(move |(cell, lean)| (patch, cell, lean)).collect::<Vec<_>>())
             .collect::<Vec<_>>()
     };
-    let at_first = laid(&world);
+    let at_first = flattened(&world);
     assert!(at_first.len() > 200);
     for second in 1..=40 {
         run(&mut world, 1.0);
@@ -115,7 +115,7 @@ fn tracks_are_sent_only_near_cameras_and_only_when_changed() {
 }
 
 #[test]
-fn the_sent_direction_is_that_of_the_laid_grass() {
+fn the_sent_direction_is_that_of_the_flattened_grass() {
     let mut world = driven(&worlds::scene(16));
     run(&mut world, 20.0);
     let snapshot = world.snapshot();
@@ -127,7 +127,7 @@ fn the_sent_direction_is_that_of_the_laid_grass() {
             let (bend_rad, omega) = (theta_rad(patch.codes[at]), [plane, 2 * plane].map(|start| omega_rad_per_s(patch.codes[start + at])));
             let speed = omega[0].hypot(omega[1]);
             let along = (omega[0] * x + omega[1] * z) / (speed * x.hypot(z));
-            assert!((bend_rad - x.hypot(z)).abs() < 0.02 && along > 0.95, "shown {bend_rad} rad along {omega:?}, laid {x}, {z}");
+            assert!((bend_rad - x.hypot(z)).abs() < 0.02 && along > 0.95, "shown {bend_rad} rad along {omega:?}, flattened {x}, {z}");
             agree += 1;
         }
     }

@@ -90,7 +90,7 @@ fn outward_swirling_and_drawn_winds_have_their_directions() {
 }
 
 #[test]
-fn a_cyclone_follows_its_path_and_leaves_no_laid_grass() {
+fn a_cyclone_follows_its_path_and_leaves_no_flattened_grass() {
     let mut scene = worlds::scene(8);
     let mut cyclone = DrawnWind::new(WindShape::Swirl, vec![[30.0, 40.0], [90.0, 40.0]]);
     (cyclone.radius_m, cyclone.travel_m_per_s) = (8.0, 5.0);

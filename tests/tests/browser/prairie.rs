@@ -117,7 +117,7 @@ async fn picture(browser: &Browser, time_secs: f64) -> Result<Picture> {
     browser.canvas().await
 }
 
-/// The meadow without wind: only the track moves, and laid grass recovers within the timeout of a test.
+/// The meadow without wind: only the track moves, and flattened grass recovers within the timeout of a test.
 fn still_meadow() -> Result<LoadedScene> {
     let mut meadow = scenes::load("meadow")?;
     meadow.scene.wind.mean_m_per_s = [0.0; 2];

@@ -261,7 +261,7 @@ fn grass_under_a_resting_ball_stays_pressed_while_its_patch_sleeps() {
     let pressed_rad = below.map(|at_m| lean_rad(&world, at_m));
     assert_eq!(world.bend().field().awake_count(), 0);
     assert!(pressed_rad.iter().all(|&rad| rad > 0.8), "{pressed_rad:?}");
-    // Two time constants of laid grass.
+    // Two time constants of flattened grass.
     run(&mut world, 7200);
     assert_eq!(world.bend().field().awake_count(), 0);
     let later_rad = below.map(|at_m| lean_rad(&world, at_m));

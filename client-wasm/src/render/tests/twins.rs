@@ -137,7 +137,7 @@ fn textured_blades_are_wide_up_to_their_tips_and_tapered_ones_end_in_a_point() {
     let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut meadow(0.0), &Camera::default(), 0.0, 0.0);
     let body =
-        "let corner = corner_of(u32(at.x), 7u); return vec4<f32>(corner, width_share(corner.x, false), width_share(corner.x, true));";
+        "let corner = corner_of(u32(at.x), 7u); return vec4<f32>(corner, width_fraction(corner.x, false), width_fraction(corner.x, true));";
     let vertices: Vec<_> = [0, 1, 14, 15].map(|vertex| [vertex as f32, 0.0, 0.0, 0.0]).to_vec();
     let found = probe_in(&gpu, &picture, "plants/backbone", body, &vertices);
     let wide = found[0][3];
