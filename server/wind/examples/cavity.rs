@@ -1,4 +1,4 @@
-//! The lid-driven cavity at Re = 100: the horizontal velocity on the vertical centreline, compared with Ghia, Ghia & Shin (J. Comput. Phys. 48, 1982).
+//! The lid-driven cavity at Re = 100: the horizontal velocity on the vertical centreline, compared with Ghia et al. 1982.
 //!
 //! `cargo run --release -p prairie-wind --example cavity [PICTURE.ppm]` prints the profile, and writes the speed as a picture if a file is named.
 

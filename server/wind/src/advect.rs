@@ -10,12 +10,12 @@ use super::{Field, GHOST, Grid, Location, Real};
 named_enum! {
     /// Advection scheme of velocity or dust.
     Advection {
-        /// The value at the departure point, interpolated linearly (Stam, Stable Fluids, SIGGRAPH 1999; Zhang §2.3.3). Its numerical diffusivity is `|u|·h/2` at
+        /// The value at the departure point, interpolated linearly (Stam 1999; Zhang §2.3.3). Its numerical diffusivity is `|u|·h/2` at
         /// small Courant numbers.
         SemiLagrangian = "semi-lagrangian",
-        /// A semi-Lagrangian step forward and back, corrected by half the round-trip error, with a limiter (Selle et al., J. Sci. Comput. 35, 2008).
+        /// A semi-Lagrangian step forward and back, corrected by half the round-trip error, with a limiter (Selle et al. 2008).
         MacCormack = "mac-cormack",
-        /// Back and forth error compensation and correction (Dupont & Liu, J. Comput. Phys. 190, 2003): half the round-trip error is subtracted before the
+        /// Back and forth error compensation and correction (Dupont & Liu 2003): half the round-trip error is subtracted before the
         /// semi-Lagrangian step. With a limiter.
         Bfecc = "bfecc",
         /// Fluxes through cell faces by Runge–Kutta 3: central with upwind damping for velocity, limited for dust (see [`transport`](super::transport)).

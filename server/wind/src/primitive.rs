@@ -1,4 +1,4 @@
-//! Flow primitives: uniform flow, source, sink, vortex (Wejchert & Haumann, SIGGRAPH 1991) and cyclone (Chen & Johan §5.3).
+//! Flow primitives: uniform flow, source, sink, vortex (Wejchert & Haumann 1991) and cyclone (Chen & Johan §5.3).
 
 use super::config::error::{ConfigError, above_zero, at_least_zero, check};
 use super::footprint::Footprint;

@@ -1,4 +1,4 @@
-//! Stable fluids (Stam, SIGGRAPH 1999; Real-Time Fluid Dynamics for Games, GDC 2003) on a collocated grid, as in chapter 2 of Zhang: the baseline for
+//! Stable fluids (Stam 1999; Real-Time Fluid Dynamics for Games, GDC 2003) on a collocated grid, as in chapter 2 of Zhang: the baseline for
 //! comparisons.
 
 pub mod listing;

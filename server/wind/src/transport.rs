@@ -1,9 +1,9 @@
 //! Conservative transport by fluxes through cell faces: the flux out of a cell is exactly the flux into its neighbour.
 //!
 //! Momentum has central fluxes on the staggered grid (Harlow & Welch 1965), second order, which conserve kinetic energy in divergence-free air, plus
-//! an upwind fourth difference that damps waves of two cells. Concentrations have limited linear reconstruction (van Leer, J. Comput. Phys. 32, 1979;
+//! an upwind fourth difference that damps waves of two cells. Concentrations have limited linear reconstruction (van Leer 1979;
 //! monotonised central limiter), second order where smooth, without new extrema. Time integration is the third-order Runge–Kutta scheme of Shu &
-//! Osher (J. Comput. Phys. 77, 1988).
+//! Osher 1988.
 //!
 //! A stage of a component takes about 50 operations and 13 reads from cache per value. Several rows, with the ghosts between them, are processed as one long line of
 //! memory, so that short rows cost no more than long ones. Values written into ghosts are overwritten by the boundary conditions.

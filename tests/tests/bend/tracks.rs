@@ -73,7 +73,8 @@ fn a_track_fades_by_its_own_time_constant() {
     run(&mut world, 1.0);
     let flattened = |world: &World| {
         let flattened = world.bend().flattened();
-        flattened.patches()
+        flattened
+            .patches()
             .flat_map(|patch| flattened.cells(patch).map(move |(cell, lean)| (patch, cell, lean)).collect::<Vec<_>>())
             .collect::<Vec<_>>()
     };

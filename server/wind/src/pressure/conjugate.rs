@@ -16,7 +16,7 @@ pub(super) enum Preconditioner {
 }
 
 /// Conjugate gradients (Hestenes & Stiefel, J. Res. NBS 49, 1952) with the Polak–Ribière direction, which tolerates a preconditioner that is
-/// symmetric only to single precision (Golub & Ye, SIAM J. Sci. Comput. 21, 1999).
+/// symmetric only to single precision (Golub & Ye 1999).
 #[derive(Clone, Debug)]
 pub(super) struct Conjugate {
     preconditioner: Preconditioner,

@@ -4,7 +4,7 @@ use super::words::words;
 use serde::{Deserialize, Serialize};
 
 words! {
-    /// Kinds of flow primitive (Wejchert & Haumann, SIGGRAPH 1991).
+    /// Kinds of flow primitive (Wejchert & Haumann 1991).
     PrimitiveKind {
         /// Blows in one direction.
         Uniform = "uniform",

@@ -32,9 +32,9 @@ pub(crate) use words;
 words! {
     /// Wind solver.
     WindMethod {
-        /// Staggered grid: velocities on cell faces, pressure and dust at cell centres (Harlow & Welch, Phys. Fluids 8, 1965).
+        /// Staggered grid: velocities on cell faces, pressure and dust at cell centres (Harlow & Welch 1965).
         Staggered = "staggered",
-        /// Collocated grid, 20 Gauss–Seidel sweeps (Zhang, chapter 2, after Stam, SIGGRAPH 1999).
+        /// Collocated grid, 20 Gauss–Seidel sweeps (Zhang, chapter 2, after Stam 1999).
         StableFluids = "stable-fluids",
     }
 }
@@ -44,9 +44,9 @@ words! {
     WindAdvection {
         /// Linear interpolation at the departure point (Zhang §2.3); first order, dissipative.
         SemiLagrangian = "semi-lagrangian",
-        /// Semi-Lagrangian forward and back, half the error subtracted, limited (Selle et al., J. Sci. Comput. 35, 2008); second order.
+        /// Semi-Lagrangian forward and back, half the error subtracted, limited (Selle et al. 2008); second order.
         MacCormack = "mac-cormack",
-        /// Back and forth error compensation and correction (Dupont & Liu, J. Comput. Phys. 190, 2003); second order.
+        /// Back and forth error compensation and correction (Dupont & Liu 2003); second order.
         Bfecc = "bfecc",
         /// Fluxes through cell faces; second order, conserves momentum.
         Conservative = "conservative",
