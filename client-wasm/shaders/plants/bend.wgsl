@@ -26,13 +26,13 @@ import package::plants::drawn_blade::Blade;
 import package::plants::grid_plants::{plants, chunks, LISTED, plant_place, growth};
 import package::plants::sift::{find_ground, sift_far, sift_near};
 
-struct Counters {
+struct BladeCounters {
     drawn: array<atomic<u32>, PLANT_LISTS>,
 }
 
 @group(1) @binding(1) var<storage, read_write> sways: array<Sway>;
 @group(1) @binding(2) var<storage, read_write> drawn: array<Blade>;
-@group(1) @binding(3) var<storage, read_write> counters: Counters;
+@group(1) @binding(3) var<storage, read_write> counters: BladeCounters;
 @group(1) @binding(5) var<storage, read_write> draws: array<u32>;
 // Numbers of near and of far plants that are listed; indices of the near ones in `sways`; chunk · 64 + index in the chunk of the far ones.
 @group(1) @binding(6) var<storage, read> standing: array<u32>;

@@ -42,7 +42,7 @@ struct ForceResponse {
     @size(16) frame: u32,
 }
 
-struct Counters {
+struct UnderbrushCounters {
     // Plants of each list.
     drawn: array<atomic<u32>, UNDERBRUSH_LISTS>,
     // Blocks of rows requested at the levels of the plants.
@@ -56,7 +56,7 @@ struct Counters {
 @group(1) @binding(2) var<storage, read> chunks: array<vec2<u32>>;
 @group(1) @binding(3) var<storage, read_write> responses: array<ForceResponse>;
 @group(1) @binding(4) var<storage, read_write> visible_out: array<VisiblePlant>;
-@group(1) @binding(5) var<storage, read_write> counters: Counters;
+@group(1) @binding(5) var<storage, read_write> counters: UnderbrushCounters;
 @group(1) @binding(6) var<storage, read_write> listed: array<u32>;
 // Direction in which the plant of each site fell, a byte each.
 @group(1) @binding(7) var<storage, read> broken: array<u32>;

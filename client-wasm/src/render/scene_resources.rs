@@ -11,7 +11,7 @@ use crate::render::plants::blades::Blades;
 use crate::render::plants::force_field::CameraForceField;
 use crate::render::plants::shells::Shells;
 use crate::render::plants::underbrush::Underbrush;
-use crate::render::solids::objects::Objects;
+use crate::render::solids::objects::ObjectPasses;
 use crate::render::solids::shadow_cache::ShadowCache;
 use crate::render::solids::trees_and_stones;
 use crate::state::DecodedScene;
@@ -30,7 +30,7 @@ pub(super) struct SceneResources {
     pub(super) force_field: CameraForceField,
     pub(super) underbrush: Option<Underbrush>,
     pub(super) rain: Option<Rain>,
-    pub(super) objects: Objects,
+    pub(super) objects: ObjectPasses,
     pub(super) shadow_cache: ShadowCache,
     pub(super) dust: Option<Dust>,
 }
@@ -55,7 +55,7 @@ impl SceneResources {
             underbrush: Underbrush::new(factory, quality, decoded, &force_field),
             force_field,
             rain: Rain::new(factory, quality, decoded),
-            objects: Objects::new(factory, quality, decoded, placed),
+            objects: ObjectPasses::new(factory, quality, decoded, placed),
             shadow_cache: ShadowCache::default(),
             dust: Dust::new(factory, quality, decoded),
         }

@@ -33,13 +33,13 @@ struct Entry {
 
 /// All patches received.
 #[derive(Debug, Default)]
-pub(super) struct Patches {
+pub(super) struct PatchFields {
     entries: HashMap<PatchIndex, Entry>,
     dirty: BTreeSet<PatchIndex>,
     clock: u64,
 }
 
-impl Patches {
+impl PatchFields {
     pub(super) fn apply(
         &mut self,
         layout: &PatchLayout,

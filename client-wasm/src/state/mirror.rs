@@ -2,7 +2,7 @@
 
 use super::broken_plants::BrokenPlants;
 use super::error::{MirrorError, range};
-use super::fields::{PatchCodes, Patches, WindCodes, WindFrames};
+use super::fields::{PatchCodes, PatchFields, WindCodes, WindFrames};
 use super::playback::Playback;
 use super::scene::DecodedScene;
 use prairie_core::grid::PatchIndex;
@@ -52,7 +52,7 @@ pub enum Event {
 pub struct Mirror {
     scene: Option<DecodedScene>,
     scene_number: u32,
-    patches: Patches,
+    patches: PatchFields,
     wind: WindFrames,
     poses: Playback,
     broken: BrokenPlants,
@@ -74,7 +74,7 @@ impl Mirror {
                 self.broken = BrokenPlants::new(decoded.flora().map_or(0, |flora| flora.grown().sites.total()));
                 self.scene = Some(decoded);
                 self.scene_number = self.scene_number.wrapping_add(1);
-                self.patches = Patches::default();
+                self.patches = PatchFields::default();
                 self.wind = WindFrames::default();
                 self.poses = Playback::default();
                 Some(Event::Scene)

@@ -27,7 +27,7 @@ const SNAPSHOT_LIMIT: usize = 32;
 pub const OBJECT_LIMIT: usize = 1024;
 
 #[derive(Debug)]
-struct Snapshot {
+struct TimedPoses {
     time_secs: f64,
     objects: Vec<ObjectPose>,
 }
@@ -35,7 +35,7 @@ struct Snapshot {
 /// The latest snapshots and the playback clock.
 #[derive(Debug, Default)]
 pub(super) struct Playback {
-    snapshots: VecDeque<Snapshot>,
+    snapshots: VecDeque<TimedPoses>,
     clock_secs: f64,
     /// Client clock minus server clock (s).
     clock_offset_secs: Option<f64>,
@@ -64,7 +64,7 @@ impl Playback {
             Some(offset) if (measured - offset).abs() < CLOCK_JUMP_SECS => offset + CLOCK_SMOOTHING * (measured - offset),
             _ => measured,
         });
-        self.snapshots.push_back(Snapshot { time_secs, objects });
+        self.snapshots.push_back(TimedPoses { time_secs, objects });
         if self.snapshots.len() > SNAPSHOT_LIMIT {
             self.snapshots.pop_front();
         }
@@ -105,7 +105,7 @@ fn is_valid(pose: &ObjectPose) -> bool {
     numbers.into_iter().all(|value| value.abs() <= 1e6) && (0.9..=1.1).contains(&unit)
 }
 
-fn extrapolate(snapshot: &Snapshot, secs: f32) -> Vec<ObjectPose> {
+fn extrapolate(snapshot: &TimedPoses, secs: f32) -> Vec<ObjectPose> {
     let moved = |pose: &ObjectPose| {
         let position = Vec3::from(pose.position_m) + Vec3::from(pose.velocity_m_per_s) * secs;
         ObjectPose { position_m: position.into(), ..*pose }
@@ -113,7 +113,7 @@ fn extrapolate(snapshot: &Snapshot, secs: f32) -> Vec<ObjectPose> {
     snapshot.objects.iter().map(moved).collect()
 }
 
-fn between(last: &Snapshot, next: &Snapshot, time_secs: f64) -> Vec<ObjectPose> {
+fn between(last: &TimedPoses, next: &TimedPoses, time_secs: f64) -> Vec<ObjectPose> {
     let span_secs = (next.time_secs - last.time_secs) as f32;
     let fraction = (time_secs - last.time_secs) as f32 / span_secs;
     let pose_at = |from: &ObjectPose| match next.objects.iter().find(|to| to.id == from.id) {

@@ -20,11 +20,12 @@ pub struct Tap {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindTiles {
     /// `None` where world and box coordinates are the same.
-    patches: Option<Patches>,
+    patches: Option<PatchOffsets>,
 }
 
+/// Offsets of the wind's box in the patches.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Patches {
+struct PatchOffsets {
     seed: u32,
     patch_m: f32,
     cells: [u32; 2],
@@ -36,7 +37,7 @@ impl WindTiles {
     pub fn new(scene: &Scene) -> Self {
         let ([nx, _, nz], [dx, _, dz]) = (scene.wind.cells, scene.wind.spacing_m);
         let patch_m = PatchLayout::from(&scene.patches).patch_m();
-        let patches = Patches { seed: folded(scene.seed), patch_m, cells: [nx, nz], spacing_m: [dx, dz] };
+        let patches = PatchOffsets { seed: folded(scene.seed), patch_m, cells: [nx, nz], spacing_m: [dx, dz] };
         Self { patches: (scene.wind.tiling == WindTiling::Patch).then_some(patches) }
     }
 
@@ -74,7 +75,7 @@ impl WindTiles {
     }
 }
 
-impl Patches {
+impl PatchOffsets {
     /// The lower of the two nearest patches along an axis, and the weight of the upper one.
     fn between(&self, axis: usize, at_m: f32) -> (i32, f32) {
         let at = at_m / self.patch_m - 0.5;
@@ -102,7 +103,7 @@ mod tests {
     use proptest::prelude::*;
     use std::collections::HashSet;
 
-    const PATCHES: Patches = Patches { seed: 7, patch_m: 16.0, cells: [8, 4], spacing_m: [2.0, 4.0] };
+    const PATCHES: PatchOffsets = PatchOffsets { seed: 7, patch_m: 16.0, cells: [8, 4], spacing_m: [2.0, 4.0] };
     const TILES: WindTiles = WindTiles { patches: Some(PATCHES) };
 
     #[test]

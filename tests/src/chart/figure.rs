@@ -91,14 +91,14 @@ fn headed(root: &Area, words: Words, height_px: u32) -> Result<()> {
 }
 
 /// A rectangle of pixels with axes around it.
-struct Frame {
+struct PlotArea {
     left: i32,
     top: i32,
     width: i32,
     height: i32,
 }
 
-impl Frame {
+impl PlotArea {
     fn place(&self, axes: [&Axis; 2], at: [f64; 2]) -> (i32, i32) {
         let x = f64::from(self.left) + axes[0].fraction(at[0]) * f64::from(self.width);
         let y = f64::from(self.top + self.height) - axes[1].fraction(at[1]) * f64::from(self.height);
@@ -139,7 +139,7 @@ pub(super) fn curves_svg(curves: &[Curve], axes: [Axis; 2], words: Words) -> Res
     let mut text = String::new();
     let root = SVGBackend::with_string(&mut text, (840 + 8 * longest as u32, HEIGHT_PX)).into_drawing_area();
     headed(&root, words, HEIGHT_PX)?;
-    let (frame, [x, y]) = (Frame { left: 100, top: 84, width: 640, height: 450 }, &axes);
+    let (frame, [x, y]) = (PlotArea { left: 100, top: 84, width: 640, height: 450 }, &axes);
     frame.draw_axes(&root, [x, y], [true; 2])?;
     let mut keys = 0;
     for curve in curves {
@@ -178,7 +178,7 @@ pub(super) fn panels_svg(panels: &[Panel], classes: &[(&str, RGBColor)], axes: [
     let root = SVGBackend::with_string(&mut text, (130 + (WIDE_PX as u32 + 30) * panels.len() as u32, HEIGHT_PX)).into_drawing_area();
     headed(&root, words, HEIGHT_PX)?;
     for (n, panel) in panels.iter().enumerate() {
-        let frame = Frame { left: 100 + n as i32 * (WIDE_PX + 30), top: 120, width: WIDE_PX, height: 330 };
+        let frame = PlotArea { left: 100 + n as i32 * (WIDE_PX + 30), top: 120, width: WIDE_PX, height: 330 };
         frame.draw_axes(&root, [&axes[0], &axes[1]], [true, n == 0])?;
         write(&root, &panel.name, (frame.left, frame.top - 16), 19, INK, HPos::Left)?;
         for (i, column) in panel.columns.iter().enumerate() {

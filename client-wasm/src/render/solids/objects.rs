@@ -57,7 +57,7 @@ struct Pipelines {
     coarse_trees: wgpu::RenderPipeline,
 }
 
-pub(crate) struct Objects {
+pub(crate) struct ObjectPasses {
     pipelines: LampVariants<Pipelines>,
     shadow_pipelines: [wgpu::RenderPipeline; 2],
     group: wgpu::BindGroup,
@@ -74,7 +74,7 @@ pub(crate) struct Objects {
     cascade_lists: [DrawList; 2],
 }
 
-impl Objects {
+impl ObjectPasses {
     pub(crate) fn new(factory: &PassFactory<'_>, quality: Quality, decoded: &DecodedScene, placed: Vec<PlacedModel>) -> Self {
         let gpu = factory.gpu;
         let meshes = ModelMeshes::new(gpu, decoded);

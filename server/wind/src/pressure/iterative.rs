@@ -71,7 +71,7 @@ impl Convergence {
 #[derive(Clone, Debug)]
 pub struct Iterative {
     system: System,
-    solver: Solver,
+    solver: LinearSolver,
     /// Right-hand side in natural order.
     natural: Vec<f64>,
     b: Coloured<f64>,
@@ -84,7 +84,7 @@ pub struct Iterative {
 }
 
 #[derive(Clone, Debug)]
-enum Solver {
+enum LinearSolver {
     Relaxation(RelaxationSweep),
     Conjugate(Conjugate),
 }
@@ -93,12 +93,12 @@ impl Iterative {
     /// Creates a solver of `system` by `method`.
     pub fn new(system: System, method: IterativeMethod) -> Self {
         let solver = match method {
-            IterativeMethod::Jacobi => Solver::Relaxation(RelaxationSweep::jacobi(&system)),
-            IterativeMethod::GaussSeidel => Solver::Relaxation(RelaxationSweep::gauss_seidel(&system)),
-            IterativeMethod::Sor => Solver::Relaxation(RelaxationSweep::successive_over_relaxation(&system)),
-            IterativeMethod::ConjugateGradients => Solver::Conjugate(Conjugate::new(&system, Preconditioner::Jacobi)),
+            IterativeMethod::Jacobi => LinearSolver::Relaxation(RelaxationSweep::jacobi(&system)),
+            IterativeMethod::GaussSeidel => LinearSolver::Relaxation(RelaxationSweep::gauss_seidel(&system)),
+            IterativeMethod::Sor => LinearSolver::Relaxation(RelaxationSweep::successive_over_relaxation(&system)),
+            IterativeMethod::ConjugateGradients => LinearSolver::Conjugate(Conjugate::new(&system, Preconditioner::Jacobi)),
             IterativeMethod::Multigrid => {
-                Solver::Conjugate(Conjugate::new(&system, Preconditioner::Multigrid(Box::new(Multigrid::new(&system)))))
+                LinearSolver::Conjugate(Conjugate::new(&system, Preconditioner::Multigrid(Box::new(Multigrid::new(&system)))))
             }
         };
         let layout = system.operator.layout;
@@ -151,8 +151,8 @@ impl Iterative {
         }
 
         let convergence = match solver {
-            Solver::Conjugate(conjugate) => conjugate.solve(system, [coloured, r], b, b_norm, partial, effort),
-            Solver::Relaxation(relaxation) => {
+            LinearSolver::Conjugate(conjugate) => conjugate.solve(system, [coloured, r], b, b_norm, partial, effort),
+            LinearSolver::Relaxation(relaxation) => {
                 let mut sweeps = 0;
                 loop {
                     let residual = system.operator.residual_sum(coloured, b, r, partial).sqrt() / b_norm;

@@ -36,12 +36,12 @@ pub enum Pressure {
 
 /// Projection of a velocity (Helmholtz–Hodge; Zhang §2.3.6). The result is divergence-free to rounding, or to the tolerance of an iterative method.
 pub struct Projection {
-    solver: Solver,
+    solver: PressureSolver,
     potential: Vec<f64>,
     divergence: Vec<f64>,
 }
 
-enum Solver {
+enum PressureSolver {
     Direct(Box<Separable>),
     Iterative(Box<Iterative>, Effort),
 }
@@ -58,11 +58,11 @@ impl Projection {
         let solver = match pressure {
             Pressure::Direct => {
                 let bases = edges.map(|edges| edges.map_or(Basis::Wrap, Basis::Centres));
-                Solver::Direct(Box::new(Separable::new(grid.cells, spacing_m, bases)))
+                PressureSolver::Direct(Box::new(Separable::new(grid.cells, spacing_m, bases)))
             }
             Pressure::Iterative(method, effort) => {
                 let system = System::new(grid.cells, spacing_m, edges, solid).expect("a grid and its solid cells fit");
-                Solver::Iterative(Box::new(Iterative::new(system, method)), effort)
+                PressureSolver::Iterative(Box::new(Iterative::new(system, method)), effort)
             }
         };
         Self { solver, potential: vec![0.0; grid.len()], divergence: vec![0.0; grid.len()] }
@@ -80,15 +80,15 @@ impl Projection {
         pressure_gradient: Option<(&mut Velocity<R>, f64)>,
     ) -> Convergence {
         let Self { solver, potential, divergence: source } = self;
-        let sign = if matches!(solver, Solver::Direct(_)) { -1.0 } else { 1.0 };
+        let sign = if matches!(solver, PressureSolver::Direct(_)) { -1.0 } else { 1.0 };
         divergence(grid, velocity, sign, source);
         source.iter_mut().zip(inflow).for_each(|(source, &inflow)| *source -= sign * inflow);
         let (potential, convergence) = match solver {
-            Solver::Direct(separable) => {
+            PressureSolver::Direct(separable) => {
                 separable.solve(0.0, source);
                 (&*source, Convergence { residual: 0.0, sweeps: 0, tolerance: 0.0 })
             }
-            Solver::Iterative(iterative, effort) => {
+            PressureSolver::Iterative(iterative, effort) => {
                 let convergence = iterative.solve(source, potential, *effort);
                 (&*potential, convergence)
             }
