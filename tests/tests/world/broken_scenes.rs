@@ -48,7 +48,7 @@ const BROKEN: [&str; 35] = [
 #[test]
 fn broken_scenes_have_their_stored_messages() {
     for name in BROKEN {
-        let error = load(&format!("scenes/broken/{name}.toml")).expect_err(name).to_string();
+        let error = load(format!("scenes/broken/{name}.toml")).expect_err(name).to_string();
         let stored = format!("scenes/broken/{name}.txt");
         if std::env::var_os("PRAIRIE_UPDATE").is_some() {
             std::fs::write(&stored, &error).unwrap();
