@@ -125,7 +125,7 @@ fn is_small(LoadedScene { scene, .. }: &LoadedScene) -> bool {
     let cells = scene.wind.cells.iter().product::<u32>();
     let [nx, nz] = scene.patches.count;
     let [sites_x, sites_z] = scene.growth.sites(scene.extent_m());
-    cells <= 4096 && nx * nz * scene.patches.cells.pow(2) <= 1 << 16 && sites_x * sites_z <= 10_000 && scene.objects.self_driving <= 8
+    cells <= 512 && nx * nz * scene.patches.cells.pow(2) <= 1 << 16 && sites_x * sites_z <= 10_000 && scene.objects.self_driving <= 8
 }
 
 fn load_and_step(text: &[u8]) {
