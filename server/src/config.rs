@@ -48,17 +48,34 @@ impl Config {
 pub struct Limits {
     /// Largest number of clients at once. Default 64.
     pub clients: usize,
+    /// Largest number of clients with the same address: an IPv4 address, or the /64 of an IPv6 address. Connections that are not clients may be four times
+    /// as many. Default 32: a class behind one router, and half of all places, so that no address can take them all.
+    pub clients_per_address: usize,
     /// Largest number of connections that are not clients: page requests, handshakes, WebSockets before their hello. Default 256.
     pub pending: usize,
     /// Time limit for each of TLS handshake, request headers and hello. Default 5 s.
     pub handshake_timeout: Duration,
     /// Time limit for a connection that does not become a client; long enough to fetch the page over a slow line. Default 30 s.
     pub http_timeout: Duration,
-    /// Time limit for a client to read or acknowledge a frame. Default 15 s.
+    /// Time limit for a client that accepts no byte of a message, or acknowledges no frame after the first. Default 15 s.
     pub stall_timeout: Duration,
+    /// Time limit from the last byte of the scene to the first acknowledged frame, in which a client builds the scene and compiles its shaders. Default
+    /// 120 s: without a graphics card this takes 20 s, several times that on a busy machine.
+    pub load_timeout: Duration,
     /// Sustained rate of a client's messages (1/s), including hello and WebSocket pings and pongs; bursts of twice this number are
-    /// allowed. Default 200.
+    /// allowed. A client that sends more is closed. Default 200.
     pub messages_per_s: f64,
+    /// Sustained rate of the bytes that a connection sends (bytes/s), TLS, HTTP and the headers of WebSocket frames included; bursts of four times this
+    /// number are allowed. A connection that sends more is closed. Default 32 768, at least three times what `messages_per_s` messages of the page take.
+    pub bytes_per_s: f64,
+    /// Views that are carried out (1/s). Of more, only the newest counts; so with choices and names. Default 30.
+    pub views_per_s: f64,
+    /// Choices of a vehicle that are carried out (1/s). Default 2.
+    pub choices_per_s: f64,
+    /// New names that are carried out (1/s). Default 0.5.
+    pub renames_per_s: f64,
+    /// Pings that are answered (1/s). Default 5.
+    pub pings_per_s: f64,
     /// Limits on the data sent to one client.
     pub send: SendLimits,
 }
@@ -67,11 +84,18 @@ impl Default for Limits {
     fn default() -> Self {
         Self {
             clients: 64,
+            clients_per_address: 32,
             pending: 256,
             handshake_timeout: Duration::from_secs(5),
             http_timeout: Duration::from_secs(30),
             stall_timeout: Duration::from_secs(15),
+            load_timeout: Duration::from_secs(120),
             messages_per_s: 200.0,
+            bytes_per_s: 32_768.0,
+            views_per_s: 30.0,
+            choices_per_s: 2.0,
+            renames_per_s: 0.5,
+            pings_per_s: 5.0,
             send: SendLimits::default(),
         }
     }

@@ -140,6 +140,10 @@ pub struct ServerStats {
     pub frames: u64,
     /// Frames skipped because the client had too many unacknowledged.
     pub skipped_frames: u64,
+    /// Connections rejected because of too many from the same address.
+    pub rejected_connections: u64,
+    /// Connections closed because they sent too much.
+    pub rate_limited_connections: u64,
     /// Durations of the steps (s), wall-clock time.
     pub step_secs: Histogram,
     /// Bytes of each frame handed to a session.
@@ -230,6 +234,12 @@ pub const METRICS: &[Metric] = &[
     server("skipped_frames", Counter, Unit::Count, "frames skipped because the client had too many unacknowledged", |s| {
         s.skipped_frames.into()
     }),
+    server("rejected_connections", Counter, Unit::Count, "connections rejected because of too many from the same address", |s| {
+        s.rejected_connections.into()
+    }),
+    server("rate_limited_connections", Counter, Unit::Count, "connections closed because they sent too much", |s| {
+        s.rate_limited_connections.into()
+    }),
     distribution("step_duration_secs", Unit::Seconds, "duration of a step", |s| &s.step_secs),
     distribution("frame_bytes", Unit::Bytes, "bytes of a frame handed to a session", |s| &s.frame_bytes),
     recording("sent_bytes_per_s", Gauge, Unit::BytesPerSecond, "rate of the bytes sent to all clients", |s| s.sent_bytes_per_s.into()),
@@ -303,6 +313,8 @@ fn stats_for_tests() -> ServerStats {
         held_patches: 0,
         frames: 0,
         skipped_frames: 0,
+        rejected_connections: 0,
+        rate_limited_connections: 0,
         step_secs: Histogram::new(&[0.002, 0.004]),
         frame_bytes: Histogram::new(&[1e3]),
     }

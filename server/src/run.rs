@@ -2,7 +2,7 @@
 
 use crate::config::{Config, Limits};
 use crate::inspect::{InspectError, Inspector};
-use crate::net::{self, Access, App};
+use crate::net::{self, Access, Admission, App};
 use crate::runner::{Published, Runner, Simulation, Timing};
 use crate::settings_error::SettingsError;
 use crate::stream::{self, Clients, Streamer};
@@ -81,6 +81,7 @@ pub async fn run_simulation(
     let (stop, stopping) = watch::channel(false);
     let Limits { clients: client_limit, pending: pending_limit, .. } = config.limits;
     let (client_slots, pending_slots) = (Arc::new(Semaphore::new(client_limit)), Arc::new(Semaphore::new(pending_limit)));
+    let admission = Arc::new(Admission::new(config.limits.clients_per_address));
     let app = Arc::new(App {
         clients: clients.clone(),
         counters,
@@ -90,6 +91,7 @@ pub async fn run_simulation(
         scene: scene_message(&config),
         limits: config.limits,
         access: Access::new(&config.allow_origins, &config.allow_hosts, config.tls.clone()),
+        admission: admission.clone(),
         client_slots: client_slots.clone(),
         pending_slots: pending_slots.clone(),
         stopping,
@@ -98,7 +100,7 @@ pub async fn run_simulation(
     let recording = inspector.map(|inspector| tokio::spawn(record(inspector, runner.published(), clients.clone())));
     let world_stopped = async { while published.changed().await.is_ok() {} };
     let outcome = tokio::select! {
-        () = net::serve(listener, config.tls.clone(), net::router(app), config.limits) => Ok(()),
+        () = net::serve(listener, config.tls.clone(), net::router(app), config.limits, admission) => Ok(()),
         () = world_stopped => Err(RunError::WorldStopped),
         () = stream.ended() => Err(RunError::StreamStopped),
         () = shutdown => Ok(()),

@@ -1,6 +1,6 @@
 //! A token bucket: a mean rate with room for bursts.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A token bucket: it fills at a constant rate up to its capacity.
 #[derive(Clone, Copy, Debug)]
@@ -36,11 +36,21 @@ impl TokenBucket {
     /// Takes `amount` if the bucket is not in debt, even if that leaves a debt. Over any period the sum taken exceeds the tokens gained by
     /// at most the capacity plus one amount.
     pub(crate) fn try_overdraw(&mut self, amount: f64) -> bool {
-        let solvent = self.level > 0.0;
+        let solvent = self.is_solvent();
         if solvent {
             self.level -= amount;
         }
         solvent
+    }
+
+    /// Whether the bucket is not in debt.
+    pub(crate) fn is_solvent(&self) -> bool {
+        self.level > 0.0
+    }
+
+    /// Time from the last filling until the bucket holds `amount`; [`Duration::MAX`] if it never will.
+    pub(crate) fn wait(&self, amount: f64) -> Duration {
+        Duration::try_from_secs_f64((amount - self.level).max(0.0) / self.rate_per_s).unwrap_or(Duration::MAX)
     }
 
     /// Takes `amount` unconditionally.
@@ -52,7 +62,6 @@ impl TokenBucket {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Duration;
 
     #[test]
     fn a_burst_is_followed_by_the_mean_rate() {
@@ -75,5 +84,15 @@ mod tests {
         assert!(!bucket.try_overdraw(1.0));
         bucket.fill(start + Duration::from_secs(100));
         assert!(bucket.try_overdraw(1.0));
+    }
+
+    #[test]
+    fn the_wait_ends_when_the_bucket_holds_the_amount() {
+        let start = Instant::now();
+        let mut bucket = TokenBucket::new(8.0, 2.0, start);
+        assert_eq!(bucket.wait(8.0), Duration::ZERO);
+        bucket.charge(8.0);
+        assert_eq!(bucket.wait(3.0), Duration::from_millis(1500));
+        assert_eq!(TokenBucket::new(0.0, 0.0, start).wait(1.0), Duration::MAX);
     }
 }

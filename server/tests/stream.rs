@@ -435,3 +435,31 @@ fn broken_plants_are_encoded_once_for_all_clients() {
     let addresses: Vec<_> = addresses.collect();
     assert!(addresses.iter().all(|address| *address == addresses[0]), "all clients share the same bytes in memory");
 }
+
+/// Rosters take at most a tenth of the data rate, and a burst of a second of that, however often clients change their names.
+#[test]
+fn a_client_that_renames_itself_often_costs_the_others_little() {
+    const SECS: u32 = 10;
+    let limits = SendLimits { bytes_per_s: 20_000.0, ..SendLimits::default() };
+    let (clients, mut prairie, mut now) = (Clients::default(), FakeWorld::at_rest(), Instant::now());
+    let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
+    let mut viewers: Vec<_> = (0..50).map(|_| Viewer::join(&clients, limits, 100.0)).collect();
+    let (mut bytes, mut largest, mut name, mut shown) = (0, 0, String::new(), String::new());
+    for publish in 0..SECS * PUBLISH_HZ as u32 + 40 {
+        if publish < SECS * PUBLISH_HZ as u32 {
+            name = format!("number {publish}");
+            viewers[0].client.rename(name.clone());
+        }
+        now += Duration::from_millis(50);
+        streamer.publish(&prairie.publish(), &clients.all(), now);
+        for message in viewers.iter_mut().map(Viewer::read).next_back().unwrap().iter().flat_map(|frame| &frame.messages) {
+            if let Ok(ServerMessage::Roster { peers }) = decode(message, SERVER_MESSAGE_LIMIT) {
+                (bytes, largest) = (bytes + message.len(), largest.max(message.len()));
+                shown.clone_from(&peers[0].name);
+            }
+        }
+    }
+    assert_eq!(shown, name, "the newest name comes last");
+    let allowed = 0.1 * limits.bytes_per_s * (f64::from(SECS) + 2.0 + 1.0) + largest as f64;
+    assert!(bytes > largest && bytes as f64 <= allowed, "{bytes} bytes of rosters, allowed {allowed}");
+}

@@ -1,5 +1,6 @@
 //! State shared by all requests and sessions.
 
+use super::admission::Admission;
 use super::origin::Access;
 use crate::config::Limits;
 use crate::metrics::ServerStats;
@@ -25,6 +26,8 @@ pub(crate) struct App {
     pub(crate) limits: Limits,
     /// Hosts and origins that requests may name.
     pub(crate) access: Access,
+    /// Limits per remote address.
+    pub(crate) admission: Arc<Admission>,
     /// One permit per additional client.
     pub(crate) client_slots: Arc<Semaphore>,
     /// One permit per additional WebSocket before its hello.
@@ -47,6 +50,8 @@ impl App {
             held_patches: self.counters.held_patches.load(Relaxed),
             frames: self.counters.frames.load(Relaxed),
             skipped_frames: self.counters.skipped_frames.load(Relaxed),
+            rejected_connections: self.admission.rejected_connections.load(Relaxed),
+            rate_limited_connections: self.admission.rate_limited_connections.load(Relaxed),
             step_secs: published.step_secs.clone(),
             frame_bytes: self.counters.frame_bytes(),
         }

@@ -4,18 +4,28 @@
 //! violates the protocol is disconnected with a code ([`prairie_core::wire::Close`]), a reason and a log line.
 
 mod addresses;
+mod admission;
 mod app;
 pub mod assets;
 mod bind;
+mod connection;
+mod end;
 mod health;
 mod host_name;
+mod inputs;
+mod name;
+mod newest;
 mod origin;
+mod reader;
 mod routes;
 mod serve;
 mod session;
 mod tls;
+mod upgrade;
+mod writer;
 
 pub use addresses::reachable_ip;
+pub(crate) use admission::Admission;
 pub(crate) use app::App;
 pub use bind::{BindError, bind};
 pub use host_name::{HostName, Origin};

@@ -1,15 +1,15 @@
 //! HTTP routes: `/ws`, the reports on the server, and the client's files.
 
 use super::app::App;
+use super::connection::Connection;
+use super::upgrade::upgrade;
 use super::{assets, health, session};
-use axum::Router;
-use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, StatusCode, Uri, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{any, get};
-use prairie_core::wire::CLIENT_MESSAGE_LIMIT;
+use axum::{Extension, Router};
 use std::sync::Arc;
 
 pub(crate) fn router(app: Arc<App>) -> Router {
@@ -31,18 +31,19 @@ async fn own_host(State(app): State<Arc<App>>, request: Request, next: Next) -> 
     }
 }
 
-async fn socket(State(app): State<Arc<App>>, headers: HeaderMap, upgrade: WebSocketUpgrade) -> Response {
+async fn socket(
+    State(app): State<Arc<App>>,
+    Extension(connection): Extension<Arc<Connection>>,
+    headers: HeaderMap,
+    request: Request,
+) -> Response {
     if let Err(rejection) = app.access.check_origin(&headers) {
         return rejection.into_response();
     }
     let Ok(slot) = app.pending_slots.clone().try_acquire_owned() else {
         return (StatusCode::SERVICE_UNAVAILABLE, "too many connections without a hello; try again later\n").into_response();
     };
-    upgrade
-        .max_message_size(CLIENT_MESSAGE_LIMIT)
-        .max_frame_size(CLIENT_MESSAGE_LIMIT)
-        .read_buffer_size(2 * CLIENT_MESSAGE_LIMIT)
-        .on_upgrade(move |socket| session::run(socket, app, slot))
+    upgrade(request, move |socket| session::run(socket, app, connection, slot))
 }
 
 async fn asset(uri: Uri, headers: HeaderMap) -> Response {

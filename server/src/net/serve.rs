@@ -1,11 +1,14 @@
 //! Accepting connections: limits on their number and duration, TLS, then HTTP.
 
+use super::admission::Admission;
+use super::connection::{Connection, Metered};
 use super::tls::Tls;
 use crate::config::Limits;
 use crate::log_limit::LogLimit;
-use axum::Router;
+use axum::{Extension, Router};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
+use socket2::SockRef;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite};
@@ -16,23 +19,39 @@ use tokio::time::timeout;
 /// Pause after a failed accept, the symptom of running out of file descriptors.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(200);
 
+/// Largest amount of unsent data in the system's buffers (bytes). The system's own limit is megabytes: a slow client would take that much memory, get
+/// states that are old by as many seconds, and seem to accept nothing until a third of it was sent.
+const UNSENT_BYTES: u32 = 64 << 10;
+
 /// Serves connections forever. At most `limits.pending` connections that are not clients are open at once; others wait in the system's queue, for at
-/// most `limits.http_timeout`.
-pub(crate) async fn serve(listener: TcpListener, tls: Option<Tls>, router: Router, limits: Limits) {
+/// most `limits.http_timeout`. Those of an address that has too many are closed at once.
+pub(crate) async fn serve(listener: TcpListener, tls: Option<Tls>, router: Router, limits: Limits, admission: Arc<Admission>) {
     let slots = Slots { free: Arc::new(Semaphore::new(limits.pending)), warning: LogLimit::default() };
+    let rejection_warning = LogLimit::default();
     loop {
         let slot = slots.take().await;
-        let stream = match listener.accept().await {
-            Ok((stream, _)) => stream,
+        let (stream, remote) = match listener.accept().await {
+            Ok(accepted) => accepted,
             Err(error) => {
                 tracing::warn!(%error, "cannot accept a connection");
                 tokio::time::sleep(ACCEPT_PAUSE).await;
                 continue;
             }
         };
+        let Some(place) = admission.admit(remote.ip()) else {
+            if rejection_warning.due().is_some() {
+                tracing::warn!(address = %remote.ip(), "too many connections from one address; new ones are closed");
+            }
+            continue;
+        };
         let (tls, router) = (tls.clone(), router.clone());
         tokio::spawn(async move {
-            connection(stream, tls, router, limits).await;
+            let connection = Arc::new(Connection::new(place));
+            tokio::select! {
+                () = serve_connection(stream, connection.clone(), tls, router, limits) => {}
+                // A WebSocket's session sends the reason; before that, the client is not told.
+                () = connection.flooded() => connection.place.count_rate_limited(),
+            }
             drop(slot);
         });
     }
@@ -53,15 +72,30 @@ impl Slots {
     }
 }
 
-async fn connection(stream: TcpStream, tls: Option<Tls>, router: Router, limits: Limits) {
+async fn serve_connection(stream: TcpStream, connection: Arc<Connection>, tls: Option<Tls>, router: Router, limits: Limits) {
     // Frames are written as a whole, so Nagle's algorithm would only delay them.
     let _ = stream.set_nodelay(true);
+    limit_unsent(&stream);
+    let stream = Metered::new(stream, connection.clone(), limits.bytes_per_s);
+    let router = router.layer(Extension(connection));
     let Some(tls) = tls else { return http(stream, router, limits).await };
     match timeout(limits.handshake_timeout, tls.accept(stream)).await {
         Ok(Ok(Some(stream))) => http(stream, router, limits).await,
         Ok(Ok(None)) => tracing::debug!("the ACME service checked a domain"),
         Ok(Err(error)) => tracing::debug!(%error, "TLS handshake failed"),
         Err(_) => tracing::debug!("TLS handshake timed out"),
+    }
+}
+
+/// Bounds the unsent data in the system's buffers. Where the system has no such limit, it bounds all data that is not acknowledged.
+fn limit_unsent(stream: &TcpStream) {
+    let socket = SockRef::from(stream);
+    #[cfg(any(target_os = "android", target_os = "linux"))]
+    let limited = socket.set_tcp_notsent_lowat(UNSENT_BYTES);
+    #[cfg(not(any(target_os = "android", target_os = "linux")))]
+    let limited = socket.set_send_buffer_size(4 * UNSENT_BYTES as usize);
+    if let Err(error) = limited {
+        tracing::debug!(%error, "cannot limit the send buffer");
     }
 }
 

@@ -25,6 +25,17 @@ pub struct AreaOfInterest {
     pub radius_m: f32,
 }
 
+/// Numbers of frames, per client.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// Newest frame handed to the session.
+    pub handed_out: u32,
+    /// Newest frame written to the socket completely.
+    pub written: u32,
+    /// Newest acknowledged frame.
+    pub acknowledged: u32,
+}
+
 /// A connected client, after its hello.
 #[derive(Debug)]
 pub struct Client {
@@ -34,6 +45,7 @@ pub struct Client {
     outbox: mpsc::Sender<Frame>,
     area: Mutex<Option<AreaOfInterest>>,
     handed_out: AtomicU32,
+    written: AtomicU32,
     acknowledged: AtomicU32,
     sent_bytes: AtomicU64,
     sent_bytes_to_all: Arc<AtomicU64>,
@@ -74,15 +86,23 @@ impl Client {
         was_sent
     }
 
-    /// Numbers of the newest frame handed to the session and of the newest acknowledged one.
-    pub fn progress(&self) -> (u32, u32) {
-        (self.handed_out.load(Relaxed), self.acknowledged.load(Relaxed))
+    /// Notes that a frame has been written to the socket.
+    pub fn note_written(&self, frame: u32) {
+        self.written.store(frame, Relaxed);
+    }
+
+    /// The newest frames.
+    pub fn progress(&self) -> Progress {
+        Progress {
+            handed_out: self.handed_out.load(Relaxed),
+            written: self.written.load(Relaxed),
+            acknowledged: self.acknowledged.load(Relaxed),
+        }
     }
 
     /// Number of frames in flight: handed to the session and not acknowledged.
     pub fn in_flight(&self) -> u32 {
-        let (handed_out, acknowledged) = self.progress();
-        handed_out.saturating_sub(acknowledged)
+        self.handed_out.load(Relaxed).saturating_sub(self.acknowledged.load(Relaxed))
     }
 
     /// Hands a frame to the session; false if the session is busy or gone.
@@ -131,6 +151,7 @@ impl Clients {
             outbox,
             area: Mutex::default(),
             handed_out: AtomicU32::default(),
+            written: AtomicU32::default(),
             acknowledged: AtomicU32::default(),
             sent_bytes: AtomicU64::default(),
             sent_bytes_to_all: self.sent_bytes.clone(),

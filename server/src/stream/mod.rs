@@ -21,7 +21,7 @@ mod streamer;
 
 pub use area::{PATCH_LIMIT, patches_near};
 pub use client_state::{ClientState, Publication, SendLimits};
-pub use clients::{AreaOfInterest, Client, Clients, Frame};
+pub use clients::{AreaOfInterest, Client, Clients, Frame, Progress};
 pub use encoder::{DEAD_BAND, Encoder, SLOW_HZ, WIND_HZ};
 pub use grid_frames::{FrameHeader, Grid, GridFrames, Pacing};
 pub use streamer::{Counters, Stream, Streamer, start};

@@ -6,6 +6,7 @@ use super::encoder::Encoder;
 use crate::histogram::Histogram;
 use crate::runner::Published;
 use crate::snapshot::Snapshot;
+use crate::token_bucket::TokenBucket;
 use crate::world::{Camera, Command};
 use bytes::Bytes;
 use prairie_core::grid::PatchLayout;
@@ -16,6 +17,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Instant;
 use tokio::sync::{mpsc, oneshot, watch};
+
+/// Share of a client's data rate that rosters may take. All clients get each roster, so one client that changes its name would cost much.
+const ROSTER_SHARE: f64 = 0.1;
 
 /// Bounds of the histogram of frame sizes (bytes).
 const FRAME_BOUNDS_BYTES: [f64; 9] = [64.0, 256.0, 1024.0, 4096.0, 8192.0, 16_384.0, 32_768.0, 65_536.0, 262_144.0];
@@ -75,6 +79,8 @@ pub struct Streamer {
     peers: Vec<Peer>,
     roster_version: u64,
     roster: Bytes,
+    /// Bytes of rosters that each client may be sent; filled from the first publication on.
+    roster_budget: Option<TokenBucket>,
     counters: Arc<Counters>,
 }
 
@@ -90,6 +96,7 @@ impl Streamer {
             peers: Vec::new(),
             roster_version: 0,
             roster: Bytes::new(),
+            roster_budget: None,
             counters: Arc::default(),
         }
     }
@@ -103,7 +110,7 @@ impl Streamer {
     pub fn publish(&mut self, published: &Published, clients: &[Arc<Client>], now: Instant) -> Vec<Camera> {
         self.encoder.begin();
         self.remove_departed(clients);
-        self.update_roster(published, clients);
+        self.update_roster(published, clients, now);
         let publication = Publication {
             snapshot: &published.snapshot,
             layout: &self.layout,
@@ -137,13 +144,21 @@ impl Streamer {
         self.notified.retain(|id, _| is_connected(id));
     }
 
-    fn update_roster(&mut self, published: &Published, clients: &[Arc<Client>]) {
+    /// Encodes the roster again if it has changed and the budget allows; otherwise the change waits.
+    fn update_roster(&mut self, published: &Published, clients: &[Arc<Client>], now: Instant) {
+        let bytes_per_s = ROSTER_SHARE * self.limits.bytes_per_s;
+        let budget = self.roster_budget.get_or_insert_with(|| TokenBucket::new(bytes_per_s, bytes_per_s, now));
+        budget.fill(now);
+        if !budget.is_solvent() {
+            return;
+        }
         let object = |id| published.requests.get(&id).and_then(|request| request.object);
         let peers: Vec<Peer> =
             clients.iter().map(|client| Peer { client: client.id, name: client.name(), object: object(client.id) }).collect();
         if peers != self.peers {
             self.roster_version += 1;
             self.roster = wire::encode(&ServerMessage::Roster { peers: peers.clone() }).into();
+            budget.charge(self.roster.len() as f64);
             self.peers = peers;
         }
     }

@@ -5,13 +5,16 @@ mod common;
 
 #[cfg(feature = "acme")]
 mod acme;
+mod addresses;
 mod command_line;
+mod floods;
 mod http;
 mod misbehaving_clients;
 mod monitoring;
 mod prebuilt_client;
 mod reload;
 mod shared_world;
+mod slow_clients;
 mod stand_in;
 mod test_client;
 mod test_server;

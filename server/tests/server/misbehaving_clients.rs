@@ -131,7 +131,8 @@ async fn a_message_flood_is_closed() {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_client_that_never_reads_or_acknowledges_is_closed() {
-    let limits = Limits { stall_timeout: Duration::from_millis(400), ..Limits::default() };
+    let timeout = Duration::from_millis(400);
+    let limits = Limits { stall_timeout: timeout, load_timeout: timeout, ..Limits::default() };
     let server = Server::start(limits).await;
     let mut witness = PlainClient::join(&server, "witness").await;
     let mut deaf = PlainClient::join(&server, "deaf").await;

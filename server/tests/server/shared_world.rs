@@ -50,7 +50,7 @@ async fn two_clients_see_the_same_world() {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn renaming_changes_only_the_name() {
-    let server = Server::start(Limits::default()).await;
+    let server = Server::start(Limits { renames_per_s: 100.0, ..Limits::default() }).await;
     let (mut ada, mut bob) = (PlainClient::join(&server, "Ada").await, PlainClient::join(&server, "Bob").await);
     ada.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Monster) }).await;
     let object = Some(100 + ada.id);
@@ -79,7 +79,7 @@ async fn a_vehicle_appears_below_the_latest_camera() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn the_newest_input_reaches_a_lagging_world() {
     let halted = Arc::new(AtomicBool::new(false));
-    let limits = Limits { messages_per_s: 1e6, ..Limits::default() };
+    let limits = Limits { messages_per_s: 1e6, bytes_per_s: 1e9, ..Limits::default() };
     let (server, _) = Server::start_with(StandInWorld::halting(halted.clone()), limits, None).await;
     let mut driver = PlainClient::join(&server, "driver").await;
     driver.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;

@@ -9,7 +9,7 @@ use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
 use prairie_core::wire::{ObjectId, ObjectPose};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -27,6 +27,8 @@ pub(crate) struct StandInWorld {
     fails_at: Option<u64>,
     misshapen_at: Option<u64>,
     halted: Arc<AtomicBool>,
+    /// Requests for vehicles so far.
+    pub(crate) requests: Arc<AtomicU64>,
 }
 
 impl StandInWorld {
@@ -53,6 +55,8 @@ impl Simulation for StandInWorld {
         }
         self.tick += 1;
         assert_ne!(Some(self.tick), self.fails_at, "the test makes this step fail");
+        let requests = commands.iter().filter(|command| matches!(command, Command::Spawn { .. })).count();
+        self.requests.fetch_add(requests as u64, Relaxed);
         for command in commands {
             match *command {
                 Command::Spawn { client, kind } if self.objects.len() < OBJECT_LIMIT => {

@@ -5,7 +5,7 @@ use crate::test_server::{Server, within};
 use futures_util::{SinkExt, StreamExt};
 use prairie_core::wire::{ClientMessage, ObjectId, ObjectPose, Refusal, ServerMessage, encode};
 use tokio::io::{AsyncRead, AsyncWrite};
-use tokio::net::TcpStream;
+use tokio::net::{TcpSocket, TcpStream};
 use tokio_tungstenite::WebSocketStream;
 use tokio_tungstenite::tungstenite::Message;
 
@@ -27,6 +27,15 @@ impl PlainClient {
     /// Opens the WebSocket without a hello.
     pub(crate) async fn connect(server: &Server) -> Self {
         Self::over(TcpStream::connect(server.address).await.unwrap(), &format!("ws://{}/ws", server.address)).await
+    }
+
+    /// Opens the WebSocket from another address of this machine, with a small receive buffer.
+    pub(crate) async fn connect_from(server: &Server, source: [u8; 4]) -> Self {
+        let socket = TcpSocket::new_v4().unwrap();
+        socket.set_recv_buffer_size(4096).unwrap();
+        socket.bind((source, 0).into()).unwrap();
+        let stream = socket.connect(server.address).await.unwrap();
+        Self::over(stream, &format!("ws://{}/ws", server.address)).await
     }
 
     /// Opens the WebSocket, sends the hello and waits for the scene.
@@ -52,7 +61,17 @@ impl<S: AsyncRead + AsyncWrite + Unpin> TestClient<S> {
     }
 
     pub(crate) async fn say_hello(&mut self, name: &str) {
+        self.ask_to_join(name).await;
+        self.welcome().await;
+    }
+
+    /// Sends the hello.
+    pub(crate) async fn ask_to_join(&mut self, name: &str) {
         self.send_message(&ClientMessage::Hello { name: name.to_owned() }).await;
+    }
+
+    /// Waits for welcome and scene, then sends a view.
+    pub(crate) async fn welcome(&mut self) {
         let welcome = self.receive().await.unwrap();
         let ServerMessage::Welcome { client, scene_name, .. } = welcome else { panic!("{welcome:?}") };
         assert!(!scene_name.is_empty());

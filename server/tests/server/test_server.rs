@@ -2,6 +2,7 @@
 
 use crate::stand_in::{StandInWorld, scene};
 use prairie::net::{Tls, TlsSettings, bind};
+use prairie::scenes::LoadedScene;
 use prairie::{Config, Limits, RunError, run, run_and_reload, run_simulation, scenes};
 use std::net::SocketAddr;
 use std::path::Path;
@@ -30,6 +31,13 @@ impl Server {
         let tls = tls.map(|settings| Tls::new(&settings, listener.local_addr().unwrap()).unwrap());
         let config = Config { tls: tls.clone(), limits, ..Config::new(scene()) };
         (Self::start_config(world, config, listener), tls)
+    }
+
+    /// Serves a scene whose height map has this many bytes, which a client must receive before anything else.
+    pub(crate) async fn start_large(map_bytes: usize, limits: Limits) -> Self {
+        let listener = bind("127.0.0.1:0").await.unwrap();
+        let scene = LoadedScene { height_png: vec![7; map_bytes], ..scene() };
+        Self::start_config(StandInWorld::default(), Config { limits, ..Config::new(scene) }, listener)
     }
 
     /// Serves a stand-in world with any configuration of the scene [`scene`].

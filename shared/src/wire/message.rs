@@ -36,7 +36,7 @@ impl Drive {
 pub enum ClientMessage {
     /// First message of a connection.
     Hello {
-        /// Display name; at most 32 characters, control characters are dropped.
+        /// Display name; at most 32 visible characters, others are dropped.
         name: String,
     },
     /// Camera position; decides which patches are streamed.

@@ -4,7 +4,7 @@ use crate::net::host_name::HostName;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use tokio::net::TcpStream;
+use tokio::io::{AsyncRead, AsyncWrite};
 #[cfg(feature = "acme")]
 use tokio::task::AbortHandle;
 use tokio_rustls::TlsAcceptor;
@@ -80,7 +80,7 @@ impl Tls {
     }
 
     /// Performs the handshake; `None` for a connection by which an ACME service checked a domain.
-    pub(in crate::net) async fn accept(&self, stream: TcpStream) -> io::Result<Option<TlsStream<TcpStream>>> {
+    pub(in crate::net) async fn accept<S: AsyncRead + AsyncWrite + Unpin>(&self, stream: S) -> io::Result<Option<TlsStream<S>>> {
         let stream = self.acceptor.accept(stream).await?;
         let is_challenge = stream.get_ref().1.alpn_protocol() == Some(ACME_CHALLENGE);
         Ok((!is_challenge).then_some(stream))
