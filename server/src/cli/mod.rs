@@ -12,6 +12,7 @@ mod print;
 mod scenes;
 mod schema;
 mod serve;
+mod stop_signal;
 mod tls;
 mod unknown_word;
 mod usage;

@@ -3,6 +3,7 @@
 use super::announce::announce;
 use super::log::LogFormat;
 use super::number::whole;
+use super::stop_signal::StopSignal;
 use super::tls::TlsArguments;
 use anyhow::Context as _;
 use clap::{Args, ValueHint};
@@ -63,6 +64,9 @@ pub(super) struct Serve {
     /// Most clients at once, 1 to 4096
     #[arg(long, env = "PRAIRIE_MAX_CLIENTS", value_name = "N", default_value_t = 64, value_parser = whole(1_u16..=4096))]
     max_clients: u16,
+    /// Most clients at once with the same IP address (IPv6: the same /64), 1 to 4096
+    #[arg(long, env = "PRAIRIE_MAX_PER_ADDRESS", value_name = "N", default_value_t = 32, value_parser = whole(1_u16..=4096))]
+    max_per_address: u16,
     /// Format of the log on stderr: lines of text, or a JSON object on each line
     #[arg(long, env = "PRAIRIE_LOG_FORMAT", value_enum, value_name = "FORMAT", default_value_t)]
     pub(super) log_format: LogFormat,
@@ -79,29 +83,43 @@ impl Serve {
             self.rerun.is_none() || cfg!(feature = "rerun"),
             "--rerun: this binary was built without the recording for rerun; build it with `--features rerun`"
         );
-        let scene = scenes::load(self.scene())?;
-        tokio::runtime::Builder::new_multi_thread().enable_all().build()?.block_on(async {
-            let listener = bind(&self.addr).await.context("--addr")?;
-            let address = listener.local_addr()?;
-            let tls = self.tls.open(address)?;
-            let mut limits = Limits { clients: usize::from(self.max_clients), ..Limits::default() };
-            limits.send.bytes_per_s = f64::from(self.client_kbit) * 1000.0 / 8.0;
-            let config = Config {
-                tls: tls.clone(),
-                allow_origins: self.tls.allow_origin,
-                allow_hosts: self.tls.allow_host,
-                rerun: self.rerun,
-                threads: self.threads.map(usize::from),
-                publish_hz: f32::from(self.publish_hz),
-                limits,
-                ..Config::new(scene)
-            };
-            let shutdown = async {
-                announce(address, tls.as_ref(), self.open);
-                stop_signal().await;
-            };
-            Ok(prairie::run_and_reload(config, listener, shutdown).await?)
-        })
+        let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
+        let outcome = runtime.block_on(self.run_until_stopped());
+        // A scene that is still being loaded is abandoned.
+        runtime.shutdown_background();
+        outcome
+    }
+
+    async fn run_until_stopped(self) -> anyhow::Result<()> {
+        // Before anything that takes time: a signal then ends the program in order, not at once.
+        let mut stop = StopSignal::install()?;
+        let scene = self.scene().to_owned();
+        let loading = tokio::task::spawn_blocking(move || scenes::load(&scene));
+        let scene = tokio::select! {
+            loaded = loading => loaded??,
+            () = stop.received() => return Ok(()),
+        };
+        let listener = bind(&self.addr).await.context("--addr")?;
+        let address = listener.local_addr()?;
+        let tls = self.tls.open(address)?;
+        let mut limits =
+            Limits { clients: usize::from(self.max_clients), clients_per_address: usize::from(self.max_per_address), ..Limits::default() };
+        limits.send.bytes_per_s = f64::from(self.client_kbit) * 1000.0 / 8.0;
+        let config = Config {
+            tls: tls.clone(),
+            allow_origins: self.tls.allow_origin,
+            allow_hosts: self.tls.allow_host,
+            rerun: self.rerun,
+            threads: self.threads.map(usize::from),
+            publish_hz: f32::from(self.publish_hz),
+            limits,
+            ..Config::new(scene)
+        };
+        let shutdown = async {
+            announce(address, tls.as_ref(), self.open);
+            stop.received().await;
+        };
+        Ok(prairie::run_and_reload(config, listener, shutdown).await?)
     }
 }
 
@@ -112,20 +130,4 @@ fn yes_or_no(text: &str) -> Result<bool, String> {
         "false" | "no" | "off" | "0" | "" => Ok(false),
         _ => Err("allowed: true, yes, on or 1, and false, no, off or 0".to_owned()),
     }
-}
-
-/// Completes on Ctrl-C or SIGTERM.
-async fn stop_signal() {
-    let interrupt = tokio::signal::ctrl_c();
-    #[cfg(unix)]
-    {
-        let mut terminate =
-            tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate()).expect("a SIGTERM handler can be installed");
-        tokio::select! {
-            _ = interrupt => {}
-            _ = terminate.recv() => {}
-        }
-    }
-    #[cfg(not(unix))]
-    let _ = interrupt.await;
 }

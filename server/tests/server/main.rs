@@ -14,6 +14,8 @@ mod monitoring;
 mod prebuilt_client;
 mod reload;
 mod shared_world;
+#[cfg(unix)]
+mod signals;
 mod slow_clients;
 mod stand_in;
 mod test_client;

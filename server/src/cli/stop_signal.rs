@@ -1,0 +1,71 @@
+//! Signals that stop the server: Ctrl-C, and on Unix SIGTERM and SIGHUP.
+
+use std::io;
+
+/// Installed signal handlers.
+#[cfg(unix)]
+pub(super) struct StopSignal {
+    interrupt: tokio::signal::unix::Signal,
+    terminate: tokio::signal::unix::Signal,
+    /// `None` where SIGHUP was ignored when the program started, as `nohup` does.
+    hangup: Option<tokio::signal::unix::Signal>,
+}
+
+#[cfg(unix)]
+impl StopSignal {
+    /// Installs the handlers. A signal that comes from now on is not lost.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub(super) fn install() -> io::Result<Self> {
+        use tokio::signal::unix::{SignalKind, signal};
+        let hangup = (!is_ignored(SignalKind::hangup())).then(|| signal(SignalKind::hangup())).transpose()?;
+        Ok(Self { interrupt: signal(SignalKind::interrupt())?, terminate: signal(SignalKind::terminate())?, hangup })
+    }
+
+    /// Completes when a signal has come, and logs it.
+    pub(super) async fn received(&mut self) {
+        let hangup = async {
+            match &mut self.hangup {
+                Some(hangup) => hangup.recv().await,
+                None => std::future::pending().await,
+            }
+        };
+        let signal = tokio::select! {
+            _ = self.interrupt.recv() => "SIGINT",
+            _ = self.terminate.recv() => "SIGTERM",
+            _ = hangup => "SIGHUP",
+        };
+        tracing::info!(signal, "stopping");
+    }
+}
+
+/// Whether the program was started with a signal ignored; false where the system does not tell.
+#[cfg(unix)]
+fn is_ignored(signal: tokio::signal::unix::SignalKind) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+    mask >> (signal.as_raw_value() - 1) & 1 == 1
+}
+
+/// Installed signal handlers.
+#[cfg(not(unix))]
+pub(super) struct StopSignal;
+
+#[cfg(not(unix))]
+impl StopSignal {
+    /// Prepares to wait for Ctrl-C.
+    ///
+    /// # Errors
+    /// Never.
+    pub(super) fn install() -> io::Result<Self> {
+        Ok(Self)
+    }
+
+    /// Completes on Ctrl-C, and logs it.
+    pub(super) async fn received(&mut self) {
+        let _ = tokio::signal::ctrl_c().await;
+        tracing::info!("stopping");
+    }
+}
