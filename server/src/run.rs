@@ -106,12 +106,7 @@ pub async fn run_simulation(
         () = shutdown => Ok(()),
     };
     stop.send_replace(true);
-    // Every session holds a slot until it has ended.
-    let sessions_ended =
-        async { (client_slots.acquire_many(client_limit as u32).await, pending_slots.acquire_many(pending_limit as u32).await) };
-    if timeout(SHUTDOWN_TIMEOUT, sessions_ended).await.is_err() {
-        tracing::warn!("some clients were disconnected without a shutdown notice");
-    }
+    wait_for_sessions(&client_slots, &pending_slots, config.limits).await;
     let joined = tokio::task::spawn_blocking(move || (runner.stop(), stream.join())).await;
     if let Some(recording) = recording
         && let Ok(Err(error)) = recording.await
@@ -122,6 +117,14 @@ pub async fn run_simulation(
         Ok((true, true)) => outcome,
         Ok((true, false)) => Err(RunError::StreamStopped),
         _ => Err(RunError::WorldStopped),
+    }
+}
+
+/// Waits for all sessions to end, within the time limit. Each holds a client's or a pending slot until then.
+async fn wait_for_sessions(client_slots: &Semaphore, pending_slots: &Semaphore, limits: Limits) {
+    let ended = async { (client_slots.acquire_many(limits.clients as u32).await, pending_slots.acquire_many(limits.pending as u32).await) };
+    if timeout(SHUTDOWN_TIMEOUT, ended).await.is_err() {
+        tracing::warn!("some clients were disconnected without a shutdown notice");
     }
 }
 
