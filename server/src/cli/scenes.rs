@@ -1,21 +1,40 @@
 //! `prairie scenes`: lists the built-in scenes.
 
 use super::print::print;
-use clap::Args;
+use anyhow::Context as _;
+use clap::{Args, ValueEnum};
 use prairie::scenes;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
   prairie scenes                             the names, with a summary of each
+  prairie scenes --format json               with maps, size and what each shows, for scripts
   prairie storm                              serves one of them";
 
 /// Arguments of `prairie scenes`.
 #[derive(Debug, Args)]
-pub(super) struct Scenes {}
+pub(super) struct Scenes {
+    /// Format of the list: names and summaries, or a JSON list with an object for each scene
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t)]
+    format: Format,
+}
+
+/// Format of the list.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Format {
+    #[default]
+    Text,
+    Json,
+}
 
 impl Scenes {
     pub(super) fn run(self) -> anyhow::Result<()> {
-        let lines: Vec<_> = scenes::list().map(|(name, summary)| format!("{name:12} {summary}")).collect();
-        print(lines.join("\n"))
+        match self.format {
+            Format::Text => {
+                let lines: Vec<_> = scenes::list().map(|(name, summary)| format!("{name:12} {summary}")).collect();
+                print(lines.join("\n"))
+            }
+            Format::Json => print(serde_json::to_string_pretty(&scenes::catalogue()).context("the list cannot be written as JSON")?),
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! Errors of scene files, with file, line and column.
 
+use super::fault_report::draw;
 use crate::escaped::escaped;
+use annotate_snippets::Renderer;
 use prairie_core::scene::SceneFault;
 use std::ffi::OsString;
 use std::fmt;
@@ -39,10 +41,11 @@ fn suggestion(nearest: Option<&str>) -> String {
 
 /// The text of a scene file, or of its underbrush file, with all its faults.
 ///
-/// Displayed on several lines: for each fault its position, a description, the line of the file, and carets below it.
+/// Displayed on several lines: the number of faults, and for each of the first ones a description, its position, the line of the file, and carets
+/// below it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FaultyScene {
-    /// The file: the scene file as the user named it, or the underbrush file with its folder.
+    /// The file: the scene file as the user named it, or the underbrush file with its folder; escaped.
     pub file: String,
     /// Its text.
     pub text: String,
@@ -50,20 +53,15 @@ pub struct FaultyScene {
     pub faults: Vec<SceneFault>,
 }
 
+impl FaultyScene {
+    /// The displayed lines in the colours of a terminal.
+    pub fn styled(&self) -> String {
+        draw(self, &Renderer::styled())
+    }
+}
+
 impl fmt::Display for FaultyScene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let count = self.faults.len();
-        writeln!(f, "{} has {count} fault{}", self.file, if count == 1 { "" } else { "s" })?;
-        for fault in &self.faults {
-            let SceneFault { line, column, length, .. } = fault;
-            let source = self.text.lines().nth(line - 1).unwrap_or_default();
-            let number = line.to_string();
-            let gutter = " ".repeat(number.len());
-            let shown: String = source.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-            let carets = format!("{}{}", " ".repeat(column - 1), "^".repeat(*length));
-            write!(f, "\n{}:{line}:{column}: {fault}", self.file)?;
-            write!(f, "\n{gutter} |\n{number} | {shown}\n{gutter} | {carets}\n")?;
-        }
-        Ok(())
+        f.write_str(&draw(self, &Renderer::plain()))
     }
 }

@@ -9,10 +9,10 @@ use crate::objects::gltf;
 use crate::settings_error::SettingsError;
 use crate::world::{self, Maps};
 use prairie_core::plant::growth::NutrientMap;
-use prairie_core::scene::{Scene, SceneFault, VehicleKind, WindShape, parse, parse_underbrush, parse_with};
+use prairie_core::scene::{Positions, Scene, SceneFault, VehicleKind, WindShape, parse, parse_underbrush, parse_with};
 use prairie_core::terrain::{Cover, CoverMap, HeightMap, MapError};
 use prairie_core::wire::Mesh;
-use std::cell::RefCell;
+use std::cell::{LazyCell, RefCell};
 use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -171,7 +171,8 @@ fn parse_scene(file: &str, text: &str, source: &Source) -> Result<Scene, SceneEr
 fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, SceneError> {
     let mut scene = parse_scene(file, text, &source)?;
     let mut faults = Vec::new();
-    let mut note = |path: &str, message: String| faults.push(SceneFault::at(text, path, message));
+    let positions = LazyCell::new(|| Positions::new(text));
+    let mut note = |path: &str, message: String| faults.push(positions.at(path, message));
 
     for SettingsError { field, message } in world::check(&scene) {
         note(&field, message);

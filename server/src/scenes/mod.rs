@@ -1,12 +1,15 @@
 //! Scenes: built-in scenes, scene files, and generators of the built-in maps.
 
 mod builtin;
+mod catalogue;
 mod create;
 mod error;
+mod fault_report;
 mod load;
 pub mod maps;
 mod report;
 
+pub use catalogue::{BuiltInScene, catalogue};
 pub use create::{CreateError, create};
 pub use error::{FaultyScene, SceneError};
 #[cfg(test)]

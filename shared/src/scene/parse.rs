@@ -2,7 +2,7 @@
 
 use super::checks::{Conflicts, check_underbrush_species, cross_checks};
 use super::walk::Walk;
-use super::{Scene, SceneFault, Underbrush, flat, template};
+use super::{Positions, Scene, SceneFault, Underbrush, flat, template};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use toml::de::DeTable;
@@ -67,17 +67,16 @@ fn root(text: &str) -> Result<Spanned<DeTable<'_>>, Vec<SceneFault>> {
 
 /// The first error of each line; later ones on the same line are seldom more than consequences.
 fn syntax_faults(text: &str, errors: &[toml::de::Error]) -> Vec<SceneFault> {
-    let mut faults: Vec<_> = errors
-        .iter()
-        .map(|error| SceneFault::spanning(text, error.span().unwrap_or(0..0), "", format!("not TOML: {}", error.message())))
-        .collect();
+    let positions = Positions::new(text);
+    let mut faults: Vec<_> =
+        errors.iter().map(|error| positions.spanning(error.span().unwrap_or(0..0), "", format!("not TOML: {}", error.message()))).collect();
     faults.sort_by_key(|fault| (fault.line, fault.column));
     faults.dedup_by_key(|fault| fault.line);
     faults
 }
 
 fn made_of<T: DeserializeOwned>(values: Table, text: &str) -> Result<T, Vec<SceneFault>> {
-    T::deserialize(values).map_err(|error| vec![SceneFault::spanning(text, 0..0, "", error.message())])
+    T::deserialize(values).map_err(|error| vec![Positions::new(text).spanning(0..0, "", error.message())])
 }
 
 #[cfg(test)]

@@ -2,27 +2,48 @@
 
 use super::allowed::{Allowed, FIELDS, REQUIRED};
 use super::checks::{Conflict, Conflicts};
-use super::{SceneFault, template};
+use super::{Positions, SceneFault, template};
 use std::ops::Range;
+use std::rc::Rc;
 use toml::de::{DeArray, DeTable, DeValue};
 use toml::{Table, Value};
 
 /// Overwrites the template's values by the file's, and collects faults against the template and [`FIELDS`].
 pub(super) struct Walk<'t> {
-    text: &'t str,
+    positions: Positions<'t>,
     /// Description of the file, such as "a scene".
     file: &'static str,
     /// Names of the top-level fields.
     top: Vec<String>,
     /// An empty section `[[species]]` with its defaults.
     species: Table,
-    faults: Vec<SceneFault>,
+    findings: Vec<Finding>,
 }
+
+/// A fault found during the walk.
+struct Finding {
+    fault: SceneFault,
+    /// For an unknown field, its key and the known ones; the message is made later, for it takes long and a file may contain many.
+    unknown: Option<(String, Rc<[String]>)>,
+}
+
+impl From<SceneFault> for Finding {
+    fn from(fault: SceneFault) -> Self {
+        Self { fault, unknown: None }
+    }
+}
+
+/// Most unknown fields of a file for which the known ones are searched or listed: the first ones.
+const EXPLAINED_LIMIT: usize = 100;
+
+/// Longest key (bytes) for which a similar one is searched, far longer than all known keys.
+const KEY_LIMIT: usize = 64;
 
 impl<'t> Walk<'t> {
     /// Starts a walk through `text`, a `file` with the fields of `template`.
     pub(super) fn new(text: &'t str, file: &'static str, template: &Table) -> Self {
-        Self { text, file, top: template.keys().cloned().collect(), species: Table::new(), faults: Vec::new() }
+        let top = template.keys().cloned().collect();
+        Self { positions: Positions::new(text), file, top, species: Table::new(), findings: Vec::new() }
     }
 
     /// Sets the defaults of a section `[[species]]`.
@@ -34,25 +55,37 @@ impl<'t> Walk<'t> {
     /// valid by themselves.
     pub(super) fn judge(mut self, conflicts: Conflicts) -> Result<(), Vec<SceneFault>> {
         let is_sound =
-            |conflict: &Conflict| !self.faults.iter().any(|fault| conflict.fields.iter().any(|field| overlap(&fault.path, field)));
+            |conflict: &Conflict| !self.findings.iter().any(|found| conflict.fields.iter().any(|field| overlap(&found.fault.path, field)));
         let told: Vec<_> = conflicts.0.into_iter().filter(is_sound).collect();
-        self.faults.extend(told.into_iter().map(|conflict| SceneFault::at(self.text, &conflict.fields[0], conflict.message)));
-        self.faults.sort_by_key(|fault| (fault.line, fault.column));
-        if self.faults.is_empty() { Ok(()) } else { Err(self.faults) }
+        self.findings.extend(told.into_iter().map(|conflict| self.positions.at(&conflict.fields[0], conflict.message).into()));
+        if self.findings.is_empty() {
+            return Ok(());
+        }
+        self.findings.sort_by_key(|found| (found.fault.line, found.fault.column));
+        let mut findings = std::mem::take(&mut self.findings);
+        for Finding { fault, unknown } in findings.iter_mut().filter(|found| found.unknown.is_some()).take(EXPLAINED_LIMIT) {
+            let (key, known) = unknown.take().unwrap_or_default();
+            fault.message = self.unknown_field(&key, &fault.path, &known);
+        }
+        Err(findings.into_iter().map(|found| found.fault).collect())
     }
 
     fn fault(&mut self, span: Range<usize>, path: &str, message: impl Into<String>) {
-        self.faults.push(SceneFault::spanning(self.text, span, path, message));
+        self.findings.push(self.positions.spanning(span, path, message).into());
     }
 
     /// Overwrites `values` by the fields of a section.
     pub(super) fn table(&mut self, values: &mut Table, found: &DeTable<'_>, span: Range<usize>, path: &str) {
+        let mut known: Option<Rc<[String]>> = None;
         for (key, value) in found {
             let path = join(path, key.get_ref());
-            match values.get_mut(key.get_ref().as_ref()) {
-                Some(place) => self.value(place, value.get_ref(), value.span(), &path),
-                None => self.fault(key.span(), &path, self.unknown_field(key.get_ref(), &path, values)),
+            if let Some(place) = values.get_mut(key.get_ref().as_ref()) {
+                self.value(place, value.get_ref(), value.span(), &path);
+                continue;
             }
+            let known = known.get_or_insert_with(|| values.keys().cloned().collect());
+            let fault = self.positions.spanning(key.span(), &path, format!("is no field of {}", self.file));
+            self.findings.push(Finding { fault, unknown: Some((key.get_ref().to_string(), known.clone())) });
         }
         for key in values.keys().filter(|key| !found.contains_key(key.as_str())) {
             let path = join(path, key);
@@ -122,18 +155,19 @@ impl<'t> Walk<'t> {
             (place, _) => self.fault(span, path, format!("is {}; expected {}", kind_of(found), expectation(place, path))),
         }
     }
-    /// Suggests the field that was probably meant: a similar name in the same section, or the same name in another.
-    fn unknown_field(&self, key: &str, path: &str, values: &Table) -> String {
+
+    /// Message about an unknown field. Suggests the field that was probably meant: a similar name in the same section, or the same name in another.
+    fn unknown_field(&self, key: &str, path: &str, known: &[String]) -> String {
         let (file, field) = (self.file, field_of(path));
-        let like = |known: &&str| strsim::jaro_winkler(key, known);
-        let nearest = values.keys().map(String::as_str).filter(|known| like(known) > 0.8).max_by(|a, b| like(a).total_cmp(&like(b)));
+        let like = |known: &&str| if key.len() > KEY_LIMIT { 0.0 } else { strsim::jaro_winkler(key, known) };
+        let nearest = known.iter().map(String::as_str).filter(|known| like(known) > 0.8).max_by(|a, b| like(a).total_cmp(&like(b)));
         let may_stand = |known: &&str| known.split('.').next().is_some_and(|first| self.top.iter().any(|top| top == first));
         let has_name = |known: &&str| known.rsplit('.').next() == Some(key) && *known != field;
         let elsewhere = || FIELDS.iter().map(|(known, _)| *known).find(|known| may_stand(known) && has_name(known));
         if let Some(known) = nearest.or_else(elsewhere) {
             return format!("is no field of {file}; did you mean `{known}`?");
         }
-        let known: Vec<_> = values.keys().map(|known| format!("`{known}`")).collect();
+        let known: Vec<_> = known.iter().map(|known| format!("`{known}`")).collect();
         format!("is no field of {file}; known here: {}", known.join(", "))
     }
 }
