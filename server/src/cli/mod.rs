@@ -101,7 +101,7 @@ pub(crate) fn run() -> anyhow::Result<ExitCode> {
     let is_named = cli.command.is_some();
     let command = cli.command.unwrap_or_else(|| Command::Serve(Box::new(cli.serve)));
     let format = if let Command::Serve(serve) = &command { serve.log_format } else { LogFormat::default() };
-    log::start(format)?;
+    let _log = log::start(format)?;
     let done = |()| ExitCode::SUCCESS;
     match command {
         Command::Serve(serve) if is_named => serve.run().map(done),
