@@ -34,6 +34,9 @@ pub enum RunError {
     /// The recording cannot be opened.
     #[error(transparent)]
     Inspect(#[from] InspectError),
+    /// The run ended, but its recording is incomplete, for example because the disk is full.
+    #[error("the recording is incomplete: {0}")]
+    Incomplete(InspectError),
     /// The world's thread panicked, which is a bug.
     #[error("the simulation stopped unexpectedly; the log says where")]
     WorldStopped,
@@ -108,13 +111,12 @@ pub async fn run_simulation(
     stop.send_replace(true);
     wait_for_sessions(&client_slots, &pending_slots, config.limits).await;
     let joined = tokio::task::spawn_blocking(move || (runner.stop(), stream.join())).await;
-    if let Some(recording) = recording
-        && let Ok(Err(error)) = recording.await
-    {
-        tracing::warn!(%error, "the recording is incomplete");
-    }
+    let recorded = match recording {
+        Some(recording) => recording.await.unwrap_or_else(|panic| Err(InspectError::Sdk(panic.to_string()))),
+        None => Ok(()),
+    };
     match joined {
-        Ok((true, true)) => outcome,
+        Ok((true, true)) => outcome.and(recorded.map_err(RunError::Incomplete)),
         Ok((true, false)) => Err(RunError::StreamStopped),
         _ => Err(RunError::WorldStopped),
     }
@@ -130,7 +132,7 @@ async fn wait_for_sessions(client_slots: &Semaphore, pending_slots: &Semaphore, 
 
 /// Passes every published snapshot and the traffic to the inspector; closes the recording when the runner ends.
 async fn record(inspector: Inspector, mut published: watch::Receiver<Arc<Published>>, clients: Arc<Clients>) -> Result<(), InspectError> {
-    tracing::info!(target = inspector.target(), "recording for the rerun viewer");
+    tracing::info!(to = inspector.target(), "recording for the rerun viewer");
     let (mut since, mut sent_before) = (Instant::now(), 0);
     while published.changed().await.is_ok() {
         if since.elapsed() >= Duration::from_secs(1) {

@@ -1,5 +1,6 @@
 //! Errors of a recording.
 
+use crate::escaped::escaped;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -17,12 +18,18 @@ pub enum InspectError {
         reason: std::io::Error,
     },
     /// The file cannot be written.
-    #[error("cannot write the recording to {}: {reason}", path.display())]
+    #[error("cannot write the recording to {}: {reason}", escaped(path))]
     File {
         /// The requested file.
         path: PathBuf,
         /// The system's reason.
         reason: std::io::Error,
+    },
+    /// The end of the file is missing, for example because the disk is full.
+    #[error("the recording {} has no footer; the disk may be full", escaped(path))]
+    NoFooter {
+        /// The file.
+        path: PathBuf,
     },
     /// No viewer listens at the address.
     #[error("no viewer listens at {url}: {reason}; start one with `rerun` first")]

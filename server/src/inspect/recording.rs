@@ -28,10 +28,14 @@ use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
 use prairie_core::wire::ObjectPose;
 use rerun::components::{FillMode, ImageFormat};
 use rerun::datatypes::ChannelDatatype;
+use rerun::external::re_log_encoding::{Decodable as _, StreamFooter};
 use rerun::{
     AnnotationContext, Arrows3D, AsComponents, Boxes3D, LineStrips2D, LineStrips3D, Mesh3D, Points2D, Quaternion, Radius, RecordingStream,
     Rgba32, Scalars, SegmentationImage, SeriesLines, ViewCoordinates,
 };
+use std::fs::File;
+use std::io::{Read as _, Seek as _, SeekFrom};
+use std::path::Path;
 
 /// Radius of a wind arrow's shaft (m).
 const ARROW_RADIUS_M: f32 = 0.16;
@@ -158,10 +162,21 @@ impl Sink for Recording {
         if self.to_file {
             self.stream.flush_blocking().map_err(sdk)?;
             self.stream.disconnect();
-            return Ok(());
+            return check_footer(Path::new(&self.address));
         }
         self.stream.flush_with_timeout(VIEWER_TIMEOUT).map_err(sdk)
     }
+}
+
+/// Checks that a file got its footer, for the SDK only logs that it could not write it.
+fn check_footer(path: &Path) -> Result<(), InspectError> {
+    let unreadable = |reason| InspectError::File { path: path.to_owned(), reason };
+    let mut file = File::open(path).map_err(unreadable)?;
+    let length = StreamFooter::ENCODED_SIZE_BYTES as u64;
+    let bytes = file.metadata().map_err(unreadable)?.len();
+    let mut footer = [0; StreamFooter::ENCODED_SIZE_BYTES];
+    file.seek(SeekFrom::Start(bytes.saturating_sub(length))).and_then(|_| file.read_exact(&mut footer)).map_err(unreadable)?;
+    StreamFooter::from_rrd_bytes(&footer).map(drop).map_err(|_| InspectError::NoFooter { path: path.to_owned() })
 }
 
 /// The boxes of the objects, in the dimensions that the scene gives them.
@@ -196,7 +211,6 @@ mod tests {
     use rerun::external::re_log_encoding::DecoderApp;
     use rerun::log::{Chunk, LogMsg};
     use std::collections::BTreeMap;
-    use std::fs::File;
     use std::io::BufReader;
     use std::net::TcpListener;
     use std::sync::Arc;
@@ -258,6 +272,19 @@ mod tests {
             assert_eq!(rows.get(&entity), Some(&kept), "{entity} in {rows:?}");
         }
         std::fs::remove_file(path).unwrap();
+    }
+
+    #[test]
+    fn a_file_without_its_footer_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run.rrd");
+        let inspector = open(&Target::Save(path.clone())).unwrap();
+        inspector.observe(&driven(0));
+        inspector.finish().unwrap();
+        check_footer(&path).unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        std::fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
+        assert!(matches!(check_footer(&path), Err(InspectError::NoFooter { .. })));
     }
 
     #[test]
