@@ -23,7 +23,7 @@ pub(super) struct Manual {
 
 impl Manual {
     pub(super) fn run(self) -> anyhow::Result<()> {
-        let mut prairie = Cli::command();
+        let mut prairie = Cli::command().disable_help_subcommand(true);
         prairie.build();
         let page = match &self.command {
             None => &prairie,

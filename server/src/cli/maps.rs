@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 pub(super) const EXAMPLES: &str = "\
 Example:
-  prairie maps --out maps                    writes the PNG files into the folder `maps`, and prints their paths";
+  prairie maps --out maps                    writes PNG files into the folder `maps`";
 
 /// Arguments of `prairie maps`.
 #[derive(Debug, Args)]

@@ -6,6 +6,7 @@ use anyhow::Context as _;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Command, CommandFactory as _, FromArgMatches as _};
+use prairie::escaped::escaped;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
@@ -16,7 +17,7 @@ use std::process::ExitCode;
 pub(super) fn parse() -> Result<Cli, clap::Error> {
     let mut command = Cli::command();
     let arguments: Vec<OsString> = std::env::args_os().collect();
-    let matches = command.try_get_matches_from_mut(&arguments).map_err(|error| name_variable(error, &command, &arguments))?;
+    let matches = command.try_get_matches_from_mut(&arguments).map_err(|error| explain(error, &mut command, &arguments))?;
     for matches in [Some(&matches), matches.subcommand_matches("serve")].into_iter().flatten() {
         refuse_two_scenes(&mut command, matches)?;
     }
@@ -43,6 +44,17 @@ fn refuse_two_scenes(command: &mut Command, matches: &ArgMatches) -> Result<(), 
         return Err(command.error(ErrorKind::ArgumentConflict, "the scene is given twice, as a word and by --scene; give it once"));
     }
     Ok(())
+}
+
+/// Words two errors better than clap does, which takes a second scene for a command.
+fn explain(error: clap::Error, command: &mut Command, arguments: &[OsString]) -> clap::Error {
+    match error.get(ContextKind::InvalidSubcommand) {
+        Some(ContextValue::String(word)) if error.kind() == ErrorKind::ArgumentConflict && command.find_subcommand(word).is_none() => {
+            let message = format!("`{}` is a second scene; allowed: one", escaped(word));
+            command.error(ErrorKind::ArgumentConflict, message)
+        }
+        _ => name_variable(error, command, arguments),
+    }
 }
 
 /// Adds the name of the environment variable to the message about an invalid value that came from there.

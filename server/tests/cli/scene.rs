@@ -1,0 +1,46 @@
+//! The scene on the command line, and what is said about unknown words.
+
+use crate::program::{command, prairie, text};
+
+#[test]
+fn an_error_is_printed_once() {
+    let nowhere = prairie(&["serve", "--addr", "nowhere"]);
+    assert_eq!((nowhere.status.code(), text(&nowhere.stdout)), (Some(1), String::new()));
+    assert_eq!(text(&nowhere.stderr).matches("invalid socket address").count(), 1, "{nowhere:?}");
+}
+
+#[test]
+fn a_scene_is_a_word_or_an_option() {
+    let nowhere = |arguments: &[&str]| {
+        let failed = prairie(&[arguments, &["--addr", "nowhere"]].concat());
+        assert!(text(&failed.stderr).starts_with("error: --addr: cannot listen on `nowhere`"), "{arguments:?}: {failed:?}");
+    };
+    nowhere(&["shells"]);
+    nowhere(&["serve", "shells"]);
+    nowhere(&["--scene", "shells"]);
+    nowhere(&["scenes/shells.toml"]);
+    for twice in [["shells", "--scene", "shells"].as_slice(), &["serve", "--scene=shells", "shells"]] {
+        let refused = prairie(twice);
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(text(&refused.stderr).starts_with("error: the scene is given twice"), "{refused:?}");
+    }
+}
+
+#[test]
+fn the_scene_of_the_environment_yields_to_the_command_line() {
+    let mut prairie = command();
+    prairie.env("PRAIRIE_SCENE", "no-scene");
+    let told = |arguments: &[&str], prairie: &mut std::process::Command| text(&prairie.args(arguments).output().unwrap().stderr);
+    assert!(told(&[], &mut prairie).contains("called `no-scene`"));
+    assert!(told(&["other-scene"], &mut prairie).contains("called `other-scene`"));
+}
+
+#[test]
+fn an_unknown_word_gets_a_suggestion() {
+    let told = |arguments: &[&str]| text(&prairie(arguments).stderr);
+    assert!(told(&["serv"]).starts_with("error: there is no command, no built-in scene and no file called `serv`; did you mean `serve`?"));
+    assert!(
+        told(&["medow"]).starts_with("error: there is no command, no built-in scene and no file called `medow`; did you mean `meadow`?")
+    );
+    assert!(told(&["serve", "serv"]).starts_with("error: there is no built-in scene and no file called `serv`. Built-in scenes: meadow"));
+}
