@@ -60,8 +60,8 @@ mod tests {
     use super::*;
     use crate::vehicle::VehicleProfile;
 
-    /// Keys of the page (`panel.js`) and the key that gives a vehicle up.
-    const PAGE_KEYS: &str = "kpvf";
+    /// Keys of the page (`panel.js`, `sound.js`) and the key that gives a vehicle up.
+    const PAGE_KEYS: &str = "knpvf";
 
     #[test]
     fn letters_take_vehicles_whatever_the_case_and_digits_set_heights() {

@@ -10,7 +10,7 @@ use prairie_core::scene::VehicleKind;
 pub struct VehicleProfile {
     /// Label of the page's button.
     pub label: &'static str,
-    /// Letter key that selects this kind, lower case. Must differ from the keys of other vehicles and of the page (`a d e f k p q s v w`).
+    /// Letter key that selects this kind, lower case. Must differ from the keys of other vehicles and of the page (`a d e f k n p q s v w`).
     pub key: char,
     /// Direction of the gamepad's cross that selects this kind; `None` for none. Down is reserved for leaving the vehicle.
     pub dpad: Option<Dpad>,
@@ -20,6 +20,8 @@ pub struct VehicleProfile {
     pub vertical: VerticalControl,
     /// Source of the vehicle's heading.
     pub heading: HeadingSource,
+    /// Sound of its engine, if it has one.
+    pub engine: Option<Engine>,
     /// Whether parts move even while the vehicle stands still, so that every frame has to be drawn.
     pub moves_at_rest: bool,
 }
@@ -55,6 +57,17 @@ pub struct ChaseOffset {
     pub height_m: f32,
 }
 
+/// Sound of an engine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Engine {
+    /// Pitch at rest (Hz).
+    pub idle_hz: f32,
+    /// Rise of the pitch with the speed (Hz per m/s).
+    pub hz_per_m_per_s: f32,
+    /// Beats of the rotor (Hz); 0 for none.
+    pub beat_hz: f32,
+}
+
 /// Effect of the up and down controls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VerticalControl {
@@ -82,6 +95,7 @@ pub fn profile(kind: VehicleKind) -> VehicleProfile {
         chase: ChaseOffset { distance_m: 8.0, height_m: 2.8 },
         vertical: VerticalControl::Brake,
         heading: HeadingSource::Rotation,
+        engine: Some(Engine { idle_hz: 42.0, hz_per_m_per_s: 5.0, beat_hz: 0.0 }),
         moves_at_rest: false,
     };
     match kind {
@@ -91,6 +105,7 @@ pub fn profile(kind: VehicleKind) -> VehicleProfile {
             key: 'm',
             dpad: Some(Dpad::Right),
             chase: ChaseOffset { distance_m: 5.0, height_m: 2.0 },
+            engine: Some(Engine { idle_hz: 28.0, hz_per_m_per_s: 3.0, beat_hz: 0.0 }),
             ..car
         },
         VehicleKind::Helicopter => VehicleProfile {
@@ -99,11 +114,13 @@ pub fn profile(kind: VehicleKind) -> VehicleProfile {
             dpad: Some(Dpad::Up),
             chase: ChaseOffset { distance_m: 15.0, height_m: 4.5 },
             vertical: VerticalControl::Lift,
+            engine: Some(Engine { idle_hz: 88.0, hz_per_m_per_s: 0.6, beat_hz: 11.0 }),
             moves_at_rest: true,
             ..car
         },
         VehicleKind::Sled => {
-            VehicleProfile { label: "Sled", key: 'l', dpad: None, chase: ChaseOffset { distance_m: 10.0, height_m: 4.0 }, ..car }
+            let chase = ChaseOffset { distance_m: 10.0, height_m: 4.0 };
+            VehicleProfile { label: "Sled", key: 'l', dpad: None, chase, engine: None, ..car }
         }
         VehicleKind::Ball => VehicleProfile {
             label: "Ball",
@@ -111,6 +128,7 @@ pub fn profile(kind: VehicleKind) -> VehicleProfile {
             dpad: None,
             chase: ChaseOffset { distance_m: 7.0, height_m: 2.4 },
             heading: HeadingSource::PartAngle,
+            engine: None,
             ..car
         },
     }

@@ -10,6 +10,7 @@
 //   look([x, y, z], heading, pitch)  moves the free camera (m, rad)
 //   picture()                        picture of the canvas at full size: { name, blob }
 //   link()                           link to the current picture
+//   sound()                          what is played as sound, for tests
 //   choose(vehicle)                  takes a vehicle by its name, such as "car"; "" gives it up
 //   draw(time)                       draws one frame at this animation time (s); resolves when it is on the screen
 // The README lists the parameters of the address.
@@ -20,6 +21,7 @@ import { Comparison } from "./compare.js";
 import { hide, show } from "./messages.js";
 import { fillHelp } from "./help.js";
 import { Panel, variantLabel } from "./panel.js";
+import { Sound } from "./sound.js";
 
 const NAMES = ["Bluestem", "Bobolink", "Bison", "Clover", "Curlew", "Hare", "Lark", "Lupine", "Meadowlark", "Poppy", "Sage", "Yarrow"];
 
@@ -106,7 +108,10 @@ async function begin() {
   fillHelp(choices);
   const panel = new Panel(client, choices, { name: options.name, remember, capture });
   new Comparison(client, { variants: choices.compared, label: (name) => variantLabel(choices, name), keep }).restore(parameter("compare"), parameter("at"));
-  Object.assign(window.prairie, { picture: () => capture.shoot(), link: () => link(state().view) });
+  const sound = new Sound(() => JSON.parse(client.hear()), {
+    volume: remembered("volume"), remember, notify: (text) => panel.notify(text),
+  });
+  Object.assign(window.prairie, { picture: () => capture.shoot(), link: () => link(state().view), sound: () => sound.report() });
   panel.show((parameter("panel") ?? remembered("panel") ?? (innerWidth < 640 ? "0" : "1")) !== "0");
   if (parameter("panel") === "0") document.getElementById("open").hidden = true;
   else panel.hint();

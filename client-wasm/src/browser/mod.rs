@@ -126,6 +126,12 @@ pub fn dust(x_m: f32, y_m: f32, z_m: f32) -> f32 {
     with_app(|app| app.mirror.dust_at(Vec3::new(x_m, y_m, z_m))).unwrap_or(0.0)
 }
 
+/// What is heard at the camera (`hearing.rs`), as JSON; `null` while the client is not connected or has no view yet.
+#[wasm_bindgen]
+pub fn hear() -> String {
+    with_app(|app| app.hearing_report().to_string()).unwrap_or_else(|| "null".into())
+}
+
 /// Checksum of the underbrush in the client's mirror (`Flora::checksum`), 16 hexadecimal digits; empty if there is none.
 #[wasm_bindgen]
 pub fn plants() -> String {

@@ -2,6 +2,7 @@
 
 use super::app::App;
 use super::connection::ConnectionState;
+use crate::hearing::{HeardEngine, Hearing, hear};
 use crate::render::Quality;
 use crate::rig::Rig;
 use serde_json::{Value, json};
@@ -11,6 +12,17 @@ impl App {
     pub(super) fn report(&self) -> Value {
         let parts = [self.connection_report(), self.world_report(), self.drawing_report()];
         parts.into_iter().filter_map(|part| if let Value::Object(part) = part { Some(part) } else { None }).flatten().collect()
+    }
+
+    /// What is heard at the camera; null while the client is not connected or has no view yet.
+    pub(super) fn hearing_report(&self) -> Value {
+        let Some(camera) = self.rig.as_ref().map(Rig::camera).filter(|_| self.connection.client().is_some()) else { return Value::Null };
+        let Hearing { wind_m_per_s, rustle, engines } = hear(&camera, self.mirror.newest_objects().iter().copied(), &self.mirror);
+        let engines = engines.iter().map(|engine| {
+            let HeardEngine { object, loudness, pitch_hz, beat_hz, pan } = *engine;
+            json!({ "object": object, "loudness": loudness, "pitch_hz": pitch_hz, "beat_hz": beat_hz, "pan": pan })
+        });
+        json!({ "wind_m_per_s": wind_m_per_s, "rustle": rustle, "engines": engines.collect::<Vec<_>>() })
     }
 
     fn connection_report(&self) -> Value {

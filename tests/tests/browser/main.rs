@@ -5,4 +5,5 @@ mod input;
 mod page;
 mod prairie;
 mod sharing;
+mod sound;
 mod webgpu;
