@@ -1,7 +1,8 @@
 //! Builds the browser client and embeds it, so that `cargo run` is the only command needed.
 //!
-//! The files of `client-wasm/web`, the compiled client and its JavaScript bindings go to `OUT_DIR/client`. `OUT_DIR/client.rs` is the
-//! table of these files that `src/net/assets.rs` includes. A copy of the files stays in `target/PROFILE/client/page`.
+//! The files of `client-wasm/web`, the compiled client and its JavaScript bindings go to `OUT_DIR/page`, and from there, named after their
+//! contents and compressed, to `OUT_DIR/client`. `OUT_DIR/client.rs` is the table of these files that `src/net/assets.rs` includes. A copy of
+//! the files before that stays in `target/PROFILE/client/page`.
 //!
 //! `PRAIRIE_CLIENT=skip` builds no client and embeds a placeholder page; `PRAIRIE_CLIENT=FOLDER` embeds a client built before, such as that
 //! copy. A relative folder starts at the workspace. The server of docs.rs, which has no wasm target, gets the placeholder.
@@ -12,6 +13,8 @@ mod commit;
 mod compile;
 #[path = "build/embed.rs"]
 mod embed;
+#[path = "build/fingerprint.rs"]
+mod fingerprint;
 #[path = "build/prebuilt.rs"]
 mod prebuilt;
 
@@ -33,25 +36,30 @@ fn main() {
 fn build() -> Result<()> {
     let server = PathBuf::from(variable("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(variable("OUT_DIR")?);
-    let client = out.join("client");
+    let (page, client, target_dir) = (out.join("page"), out.join("client"), compile::target_dir(&out));
     let workspace = server.parent().ok_or("the server package is outside its workspace")?;
     commit::locate(workspace, &out)?;
+    clear(&page)?;
     clear(&client)?;
 
     let choice = env::var("PRAIRIE_CLIENT").unwrap_or_default();
     match choice.as_str() {
-        "" if env::var_os("DOCS_RS").is_none() => build_client(workspace, &out, &client)?,
-        "" | "skip" => copy(&server.join("build/without_client.html"), &client.join("index.html"))?,
+        "" if env::var_os("DOCS_RS").is_none() => build_client(workspace, &target_dir, &page)?,
+        "" | "skip" => {
+            println!("cargo::rerun-if-changed=build");
+            copy(&server.join("build/without_client.html"), &page.join("index.html"))?;
+            copy(&server.join("build/without_client.css"), &page.join("without_client.css"))?;
+        }
         folder => {
             let folder = workspace.join(folder);
             println!("cargo::rerun-if-changed={}", folder.display());
-            prebuilt::copy(&folder, &client)?;
+            prebuilt::copy(&folder, &page)?;
         }
     }
-    embed::write_table(&client, &out.join("client.rs"))
+    embed::write_table(&embed::read(&page)?, &client, &out.join("client.rs"), compile::is_dist(&target_dir))
 }
 
-fn build_client(workspace: &Path, out: &Path, client: &Path) -> Result<()> {
+fn build_client(workspace: &Path, target_dir: &Path, page: &Path) -> Result<()> {
     let web = workspace.join("client-wasm/web");
     if !web.is_dir() {
         return Err(format!(
@@ -61,12 +69,11 @@ fn build_client(workspace: &Path, out: &Path, client: &Path) -> Result<()> {
         ));
     }
     watch(workspace);
-    let target = compile::target_dir(out);
-    compile::client(workspace, &target, client)?;
-    copy_files(&web, client)?;
-    let page = target.join("page");
-    clear(&page)?;
-    copy_files(client, &page)
+    compile::client(workspace, target_dir, page)?;
+    copy_files(&web, page)?;
+    let kept = target_dir.join("page");
+    clear(&kept)?;
+    copy_files(page, &kept)
 }
 
 /// Reruns the build when a source of the client changes.

@@ -9,6 +9,11 @@ use prairie_core::scene::VehicleKind;
 pub enum Action {
     /// Selects a vehicle, or leaves the current one.
     Take(Option<VehicleKind>),
+    /// Takes the next or the previous kind of vehicle.
+    TakeNext {
+        /// Whether it is the next one.
+        forward: bool,
+    },
     /// Moves the camera to a height (m) above the ground, or above the vehicle.
     SetHeight(f32),
 }
@@ -48,11 +53,33 @@ pub fn key_action(key: &str, code: &str) -> Option<Action> {
     vehicle.map(|kind| Action::Take(Some(kind))).or_else(height)
 }
 
-/// Buttons of the gamepad's cross in the standard layout (W3C Gamepad, section 11), and their actions.
-pub fn dpad_actions() -> [(u32, Option<Action>); 4] {
+/// Action of a gamepad button in the standard layout (W3C Gamepad, section 11): the cross takes vehicles and gives them up, the upper shoulder
+/// buttons go through all of them.
+pub fn gamepad_action(button: u32) -> Option<Action> {
     let take =
         |direction| VehicleKind::ALL.into_iter().find(|&kind| profile(kind).dpad == Some(direction)).map(|kind| Action::Take(Some(kind)));
-    [(12, take(Dpad::Up)), (13, Some(Action::Take(None))), (14, take(Dpad::Left)), (15, take(Dpad::Right))]
+    match button {
+        4 => Some(Action::TakeNext { forward: false }),
+        5 => Some(Action::TakeNext { forward: true }),
+        12 => take(Dpad::Up),
+        13 => Some(Action::Take(None)),
+        14 => take(Dpad::Left),
+        15 => take(Dpad::Right),
+        _ => None,
+    }
+}
+
+/// The kind of vehicle after or before `current` in [`VehicleKind::ALL`], beyond whose ends it starts again; without a vehicle the first or last.
+pub fn next_vehicle(current: Option<VehicleKind>, forward: bool) -> VehicleKind {
+    let all = VehicleKind::ALL;
+    let position = current.and_then(|current| all.iter().position(|kind| *kind == current));
+    let next = match (position, forward) {
+        (Some(position), true) => position + 1,
+        (Some(position), false) => position + all.len() - 1,
+        (None, true) => 0,
+        (None, false) => all.len() - 1,
+    };
+    all[next % all.len()]
 }
 
 #[cfg(test)]
@@ -61,7 +88,7 @@ mod tests {
     use crate::vehicle::VehicleProfile;
 
     /// Keys of the page (`panel.js`, `sound.js`) and the key that gives a vehicle up.
-    const PAGE_KEYS: &str = "knpvf";
+    const PAGE_KEYS: &str = "knpvxf";
 
     #[test]
     fn letters_take_vehicles_whatever_the_case_and_digits_set_heights() {
@@ -92,12 +119,23 @@ mod tests {
 
     #[test]
     fn the_cross_takes_the_vehicles_of_the_table() {
-        let taken = dpad_actions().map(|(_, action)| action);
-        let [up, down, left, right] = taken;
+        let [up, down, left, right] = [12, 13, 14, 15].map(gamepad_action);
         assert_eq!(
             [up, left, right],
             [VehicleKind::Helicopter, VehicleKind::Car, VehicleKind::Monster].map(|kind| Some(Action::Take(Some(kind))))
         );
         assert_eq!(down, Some(Action::Take(None)));
+    }
+
+    #[test]
+    fn the_shoulder_buttons_reach_every_vehicle_both_ways() {
+        for (button, forward) in [(5, true), (4, false)] {
+            assert_eq!(gamepad_action(button), Some(Action::TakeNext { forward }));
+            let reached = std::iter::successors(Some(next_vehicle(None, forward)), |kind| Some(next_vehicle(Some(*kind), forward)));
+            let reached: Vec<_> = reached.take(VehicleKind::ALL.len()).collect();
+            assert!(VehicleKind::ALL.iter().all(|kind| reached.contains(kind)), "{reached:?}");
+            assert_eq!(next_vehicle(reached.last().copied(), forward), reached[0]);
+        }
+        assert_ne!(next_vehicle(Some(VehicleKind::ALL[1]), true), next_vehicle(Some(VehicleKind::ALL[1]), false));
     }
 }

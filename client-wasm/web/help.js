@@ -1,6 +1,8 @@
 // Rows of the help dialog that depend on the client's choices.
 
-const keys = (names) => names.map((name) => `<kbd>${name}</kbd>`).join(" ");
+import { byId, marked } from "./elements.js";
+
+const keys = (names) => names.map((name) => `\`${name}\``).join(" ");
 const list = (items) => items.join(", ");
 
 // Fills the rows from the client's vehicles and camera heights.
@@ -15,7 +17,7 @@ export function fillHelp({ vehicles, heights }) {
 }
 
 function row(id, head, text) {
-  const row = document.getElementById(id);
-  if (head !== null) row.querySelector("th").innerHTML = head;
+  const row = byId(id);
+  if (head !== null) row.querySelector("th").replaceChildren(marked("span", head, "kbd"));
   row.querySelector("td").textContent = text;
 }

@@ -1,8 +1,8 @@
 // The panel: settings, connected clients and performance figures. It reads the client's state a few times a second.
 
 import { keep, link, parameter } from "./address.js";
+import { byId, element, marked } from "./elements.js";
 
-const byId = (id) => document.getElementById(id);
 const UPDATE_MS = 250;
 const HINT_MS = 14_000;
 const NOTICE_MS = 5_000;
@@ -29,10 +29,6 @@ export class Panel {
     byId("name").value = name;
     this.fill(choices);
     byId("quality").value = JSON.parse(client.state()).chosen_quality;
-    if (parameter("hour")) {
-      byId("hour").value = parameter("hour");
-      this.clock(Number(parameter("hour")));
-    }
     byId("options").open = ["order", "far", "compare"].some((key) => parameter(key) !== null);
     this.listen();
     setInterval(() => this.update(JSON.parse(client.state())), UPDATE_MS);
@@ -42,8 +38,8 @@ export class Panel {
   fill({ vehicles, heights, quality, order, far, compared }) {
     byId("vehicles").prepend(...vehicles.map(({ name, label, key }) => vehicleButton(name, label, key)));
     byId("heights").append(...heights.map((height) => {
-      const button = document.createElement("button");
-      Object.assign(button, { type: "button", textContent: `${height} m` });
+      const button = element("button", `${height} m`);
+      button.type = "button";
       button.dataset.height = height;
       return button;
     }));
@@ -67,9 +63,10 @@ export class Panel {
     const vehicle = `a ${label.toLowerCase()}`;
     const touch = matchMedia("(pointer: coarse)").matches;
     const hint = byId("hint");
-    hint.innerHTML = touch
+    const text = touch
       ? `The left thumb walks, the right thumb looks. The menu has ${vehicle}.`
-      : `Drag to look, <kbd>W</kbd> <kbd>A</kbd> <kbd>S</kbd> <kbd>D</kbd> to walk, <kbd>${key.toUpperCase()}</kbd> for ${vehicle}, <kbd>?</kbd> for all keys.`;
+      : `Drag to look, \`W\` \`A\` \`S\` \`D\` to walk, \`${key.toUpperCase()}\` for ${vehicle}, \`?\` for all keys.`;
+    hint.replaceChildren(marked("span", text, "kbd"));
     hint.hidden = false;
     const gone = () => { hint.hidden = true };
     setTimeout(gone, HINT_MS);
@@ -99,16 +96,33 @@ export class Panel {
     }
   }
 
-  // Shows the chosen hour of the day; null for the scene's own.
-  clock(hour) {
-    const text = () => `${Math.floor(hour)}:${String(Math.round((hour % 1) * 60)).padStart(2, "0")}`;
-    byId("clock").textContent = hour === null ? "the scene’s" : text();
-    byId("scene-hour").disabled = hour === null;
+  // Shows the hour of the day: the chosen one, or, if that is null, the scene's.
+  showHour(hour, sceneHour) {
+    const slider = byId("hour");
+    const isScenes = hour === null;
+    const text = isScenes ? `${clock(sceneHour)}, as in the scene` : clock(hour);
+    if (isScenes) slider.value = sceneHour;
+    else if (document.activeElement !== slider) slider.value = hour;
+    write("clock", text);
+    if (slider.getAttribute("aria-valuetext") !== text) slider.setAttribute("aria-valuetext", text);
+    byId("scene-hour").disabled = isScenes;
   }
 
+  // Shows or hides the panel, and moves the focus if it would be lost.
   toggle(shown = byId("panel").hidden) {
+    const focused = document.activeElement;
     this.show(shown);
     this.remember("panel", shown ? "1" : "0");
+    if (focused === byId("open")) byId("close").focus();
+    else if (focused === byId("close")) byId("open").focus();
+    else if (byId("panel").contains(focused)) byId("view").focus();
+  }
+
+  // Enters or leaves full screen.
+  fullScreen() {
+    if (!document.fullscreenEnabled) return this.notify("This browser has no full screen for pages.");
+    const change = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
+    change.catch(({ message }) => this.notify(`No full screen: ${message}`));
   }
 
   help() {
@@ -137,30 +151,38 @@ export class Panel {
     }
     byId("hour").addEventListener("input", ({ target }) => {
       this.client.set_hour(Number(target.value));
-      this.clock(Number(target.value));
+      this.showHour(Number(target.value), null);
       keep({ hour: target.value });
     });
     byId("scene-hour").addEventListener("click", ({ detail }) => {
       this.client.set_hour(-1);
-      this.clock(null);
       keep({ hour: null });
+      this.update(JSON.parse(this.client.state()));
       // A disabled button loses the focus: keyboard users continue at the slider.
       byId(detail > 0 ? "view" : "hour").focus();
     });
     byId("shoot").addEventListener("click", () => this.capture.picture());
     byId("video").addEventListener("click", () => this.capture.video());
     byId("share").addEventListener("click", () => this.share());
+    byId("full-screen").hidden = !document.fullscreenEnabled;
+    byId("full-screen").addEventListener("click", () => this.fullScreen());
+    document.addEventListener("fullscreenchange", () => {
+      byId("full-screen").setAttribute("aria-pressed", String(document.fullscreenElement !== null));
+    });
     byId("name").addEventListener("change", ({ target }) => {
       this.client.set_name(target.value.trim());
       this.remember("name", target.value.trim());
     });
     byId("name").addEventListener("keydown", ({ key }) => key === "Enter" && byId("view").focus());
     for (const button of document.querySelectorAll("[data-rise]")) {
-      button.addEventListener("pointerdown", () => this.client.hold_rise(Number(button.dataset.rise)));
-      for (const end of ["pointerup", "pointercancel", "pointerleave"]) button.addEventListener(end, () => this.client.hold_rise(0));
+      const hold = () => this.client.hold_rise(Number(button.dataset.rise));
+      button.addEventListener("pointerdown", hold);
+      button.addEventListener("keydown", ({ key }) => (key === " " || key === "Enter") && hold());
+      for (const end of ["pointerup", "pointercancel", "pointerleave", "keyup", "blur"]) button.addEventListener(end, () => this.client.hold_rise(0));
     }
     addEventListener("keydown", (event) => this.key(event));
     this.returnFocus();
+    showFocus(byId("view"));
   }
 
   // Returns the keyboard focus to the canvas after pointer input in the panel; keyboard users stay in the panel.
@@ -191,6 +213,7 @@ export class Panel {
     else if (once === "p") this.toggle();
     else if (once === "k") this.capture.picture();
     else if (once === "v") this.capture.video();
+    else if (once === "x") this.fullScreen();
     else return;
     event.preventDefault();
   }
@@ -204,11 +227,12 @@ export class Panel {
     if (state.eye && parameter("scene") !== state.scene_name) keep({ scene: state.scene_name });
     for (const id of ["order", "far"]) if (document.activeElement !== byId(id)) byId(id).value = state[id];
     write("work", state.cpu_ms === null ? "–" : `CPU ${state.cpu_ms.toFixed(1)} · GPU ${state.gpu_ms.toFixed(1)} ms`);
-    write("detail", state.automatic ? `level ${state.level.toFixed(1)}/${state.highest_level}, target ${state.budget_ms.toFixed(0)} ms` : state.quality);
+    write("detail", state.automatic ? `${state.level.toFixed(1)} of ${state.highest_level} · target ${state.budget_ms.toFixed(0)} ms` : state.quality);
     byId("fallback").hidden = !state.fallbacks.length;
     write("fallback", state.fallbacks.join(" "));
     write("frame", state.resting ? "idle" : state.frame_ms ? `${state.frame_ms.toFixed(state.frame_ms < 100 ? 1 : 0)} ms · ${state.fps.toFixed(state.fps < 10 ? 1 : 0)}/s` : "–");
     write("stream", `${rate(state.bytes_per_s)}`);
+    if (state.scene_hour !== null) this.showHour(state.hour, state.scene_hour);
     write("latency", state.latency_ms === null ? "–" : `${state.latency_ms.toFixed(state.latency_ms < 10 ? 1 : 0)} ms`);
     this.showPeers(state.peers);
     const notice = state.notice ?? (performance.now() < this.notice.until ? this.notice.text : "");
@@ -223,24 +247,36 @@ export class Panel {
     byId("peers").replaceChildren(...peers.map(({ client, name, vehicle, me }) => {
       const item = document.createElement("li");
       item.style.setProperty("--hue", (client * 137.5) % 360);
-      item.append(me ? `${name} (you)` : name);
-      const activity = document.createElement("span");
-      activity.textContent = vehicle ?? "looking";
-      item.append(activity);
+      const text = me ? `${name} (you)` : name;
+      item.append(element("b", text), element("span", vehicle ?? "looking"));
+      // A long name is cut off.
+      item.title = text;
       return item;
     }));
   }
 }
 
+// Marks the canvas while it has the focus from the Tab key. With `:focus-visible` alone, the frame would also appear when someone clicks and then drives.
+function showFocus(canvas) {
+  let byTab = false;
+  addEventListener("keydown", ({ key }) => { if (key === "Tab") byTab = true }, true);
+  addEventListener("pointerdown", () => { byTab = false }, true);
+  canvas.addEventListener("focus", () => canvas.classList.toggle("by-key", byTab));
+}
+
 function vehicleButton(name, label, key) {
-  const button = document.createElement("button");
-  const hint = document.createElement("kbd");
-  hint.textContent = key.toUpperCase();
+  const button = element("button", `${label} `);
   button.type = "button";
   button.dataset.vehicle = name;
   button.setAttribute("aria-pressed", "false");
-  button.append(`${label} `, hint);
+  button.append(element("kbd", key.toUpperCase()));
   return button;
+}
+
+// An hour of the day as hours and minutes.
+function clock(hour) {
+  const minutes = Math.round(hour * 60);
+  return `${Math.floor(minutes / 60)}:${String(minutes % 60).padStart(2, "0")}`;
 }
 
 function write(id, text) {

@@ -1,7 +1,7 @@
 // Sound of wind, grass and engines, made from noise and oscillators. It is off until someone asks for it: browsers allow sound only then, and so do people.
 // What is heard comes from the client (`hearing.rs`); while the page is hidden, nothing is.
 
-const byId = (id) => document.getElementById(id);
+import { byId } from "./elements.js";
 
 const UPDATE_MS = 100;
 // Time in which a change is followed (s): short enough for gusts, too long for clicks.

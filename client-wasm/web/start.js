@@ -2,6 +2,9 @@
 //
 // `window.prairie` is the interface between page, client and tests:
 //   message(kind, detail), clear()   shows and hides a status message of messages.js; called by the client
+//   panicked(report)                 ends the page with a message; called by the client
+//   halt()                           stops the client for good
+//   panic(reason)                    makes the client panic, to try the message
 //   state()                          state of the client as an object; null before it has started
 //   theta(x, z)                      bending angle of the grass at a point in the client's mirror (rad)
 //   wind(x, y, z)                    wind at a point in the client's mirror (m/s)
@@ -18,14 +21,13 @@
 import { keep, link, parameter } from "./address.js";
 import { Capture } from "./capture.js";
 import { Comparison } from "./compare.js";
-import { hide, show } from "./messages.js";
 import { fillHelp } from "./help.js";
+import { show } from "./messages.js";
 import { Panel, variantLabel } from "./panel.js";
+import { context } from "./report.js";
 import { Sound } from "./sound.js";
 
 const NAMES = ["Bluestem", "Bobolink", "Bison", "Clover", "Curlew", "Hare", "Lark", "Lupine", "Meadowlark", "Poppy", "Sage", "Yarrow"];
-
-window.prairie = { message: show, clear: hide, state: () => null };
 
 // Storage may be blocked; then nothing is remembered.
 const remembered = (key) => { try { return localStorage.getItem(`prairie.${key}`) } catch { return null } };
@@ -61,11 +63,12 @@ async function load() {
   const client = await import("./prairie_client.js");
   const response = await fetch("prairie_client_bg.wasm");
   if (!response.ok) throw new Error(`prairie_client_bg.wasm: ${response.status} ${response.statusText}`);
+  const total = Number(response.headers.get("x-uncompressed-length"));
   let bytes = 0;
   const count = new TransformStream({
     transform(chunk, onward) {
       bytes += chunk.length;
-      show("loading", `${Math.round(bytes / 1024)} KB`);
+      show("loading", `${kilobytes(bytes)}${total ? ` of ${kilobytes(total)}` : ""} KB`, total ? bytes / total : null);
       onward.enqueue(chunk);
     },
   });
@@ -74,13 +77,18 @@ async function load() {
   return client;
 }
 
+const kilobytes = (bytes) => Math.round(bytes / 1024);
+
 const nextFrame = () => new Promise(requestAnimationFrame);
 
 async function begin() {
   const [kind, info] = await obstacle();
   if (kind) return show(kind);
+  context.adapter = adapterName(info);
   const client = await load();
   Object.assign(window.prairie, {
+    halt: client.halt,
+    panic: (reason) => setTimeout(() => client.panic(String(reason))),
     state: () => JSON.parse(client.state()),
     theta: client.theta,
     wind: (x, y, z) => Array.from(client.wind(x, y, z)),
@@ -117,4 +125,5 @@ async function begin() {
   else panel.hint();
 }
 
-begin().catch((error) => show("failed", String(error?.message ?? error)));
+// An error ends the page: see errors.js.
+begin();

@@ -32,7 +32,7 @@ const SERVER_BUILD_PREFIXES: [&str; 8] = [
 /// Installation instructions when the wasm target is missing; otherwise the message of cargo or wasm-bindgen.
 pub(crate) fn client(workspace: &Path, target_dir: &Path, out: &Path) -> Result<()> {
     ensure_target()?;
-    let profile = if target_dir.parent().is_some_and(|dir| dir.ends_with("dist")) { DIST_PROFILE } else { PROFILE };
+    let profile = if is_dist(target_dir) { DIST_PROFILE } else { PROFILE };
     let mut cargo = Command::new(variable("CARGO")?);
     for (name, _) in env::vars_os() {
         if name.to_str().is_some_and(|name| SERVER_BUILD_PREFIXES.iter().any(|prefix| name.starts_with(prefix))) {
@@ -59,6 +59,11 @@ pub(crate) fn client(workspace: &Path, target_dir: &Path, out: &Path) -> Result<
 pub(crate) fn target_dir(out: &Path) -> PathBuf {
     let profile_dir = out.ancestors().find(|dir| dir.ends_with("build")).and_then(Path::parent);
     profile_dir.unwrap_or(out).join("client")
+}
+
+/// Whether a target directory belongs to a distributed binary, for which a slow build is worth a small client.
+pub(crate) fn is_dist(target_dir: &Path) -> bool {
+    target_dir.parent().is_some_and(|dir| dir.ends_with("dist"))
 }
 
 fn bind(wasm: &Path, out: &Path) -> Result<()> {

@@ -23,6 +23,8 @@ pub struct Config {
     pub threads: Option<usize>,
     /// Snapshots per second (Hz). Default 20.
     pub publish_hz: f32,
+    /// Whether errors that pages report are logged; otherwise they are discarded. Default false.
+    pub logs_page_errors: bool,
     /// Limits on clients and their traffic.
     pub limits: Limits,
 }
@@ -38,6 +40,7 @@ impl Config {
             rerun: None,
             threads: None,
             publish_hz: 20.0,
+            logs_page_errors: false,
             limits: Limits::default(),
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::config::{Config, Limits};
 use crate::inspect::{InspectError, Inspector};
-use crate::net::{self, Access, Admission, App};
+use crate::net::{self, Access, Admission, App, PageErrors};
 use crate::runner::{Published, Runner, Simulation, Timing};
 use crate::settings_error::SettingsError;
 use crate::stream::{self, Clients, Streamer};
@@ -95,6 +95,7 @@ pub async fn run_simulation(
         limits: config.limits,
         access: Access::new(&config.allow_origins, &config.allow_hosts, config.tls.clone()),
         admission: admission.clone(),
+        page_errors: config.logs_page_errors.then(|| PageErrors::new(Instant::now())),
         client_slots: client_slots.clone(),
         pending_slots: pending_slots.clone(),
         stopping,

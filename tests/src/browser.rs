@@ -16,6 +16,9 @@ use crate::picture::Picture;
 /// Page size of a [`Browser`], width and height (CSS pixels, equal to the picture's pixels).
 pub const VIEW: (u32, u32) = (960, 540);
 
+/// Page size of a phone (CSS pixels).
+pub const PHONE: [u32; 2] = [390, 844];
+
 /// Timeout of a script, a page load and [`Browser::until`].
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -44,13 +47,15 @@ const SOFTWARE_WEBGPU: [&str; 4] =
 pub struct Options {
     /// Whether WebGPU offers an adapter; default true.
     pub webgpu: bool,
+    /// Whether the page is that of a phone, 390 × 844, used with fingers; default false.
+    pub phone: bool,
     /// Additional command-line arguments of Chromium; default empty.
     pub arguments: Vec<String>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { webgpu: true, arguments: Vec::new() }
+        Self { webgpu: true, phone: false, arguments: Vec::new() }
     }
 }
 
@@ -86,16 +91,21 @@ impl Browser {
         arguments.push(format!("--window-size={},{}", VIEW.0, VIEW.1));
         arguments.push(format!("--user-data-dir={}", driver.profile().display()));
         arguments.extend(options.arguments.iter().cloned());
-        let capabilities = json!({
-            "acceptInsecureCerts": true,
-            "goog:chromeOptions": { "binary": binary, "args": arguments },
-        });
+        let mut chromium = json!({ "binary": binary, "args": arguments });
+        if options.phone {
+            let [width, height] = PHONE;
+            chromium["mobileEmulation"] =
+                json!({ "deviceMetrics": { "width": width, "height": height, "pixelRatio": 1.0, "touch": true } });
+        }
+        let capabilities = json!({ "acceptInsecureCerts": true, "goog:chromeOptions": chromium });
         let Value::Object(capabilities) = capabilities else { bail!("capabilities are an object") };
         let connected = ClientBuilder::new(HttpConnector::new()).capabilities(capabilities).connect(&driver.url).await;
         let client = connected.with_context(|| format!("Chromium did not start:\n{}", driver.log()))?;
         let browser = Self { client, driver };
         browser.client.update_timeouts(TimeoutConfiguration::new(Some(PATIENCE), Some(PATIENCE), None)).await?;
-        browser.fit().await?;
+        if !options.phone {
+            browser.resize(VIEW.into()).await?;
+        }
         Ok(browser)
     }
 
@@ -155,10 +165,11 @@ impl Browser {
     /// # Errors
     /// When the page has no canvas `#view`.
     pub async fn canvas(&self) -> Result<Picture> {
-        self.evaluate("document.head.insertAdjacentHTML('beforeend', '<style id=bare>#panel, #message { visibility: hidden }</style>')")
-            .await?;
+        // The page's policy forbids style elements, but not style sheets made by scripts.
+        let hide = "(sheet => (sheet.replaceSync('#panel, #message { visibility: hidden }'), document.adoptedStyleSheets = [sheet], 0))(new CSSStyleSheet())";
+        self.evaluate(hide).await?;
         let picture = self.picture("#view").await;
-        self.evaluate("document.getElementById('bare').remove()").await?;
+        self.evaluate("(document.adoptedStyleSheets = [], 0)").await?;
         picture
     }
 
@@ -187,6 +198,20 @@ impl Browser {
         element.click().await.with_context(|| format!("clicking {selector}"))
     }
 
+    /// Sets the size of the page (CSS pixels) instead of [`VIEW`].
+    ///
+    /// # Errors
+    /// When the window does not take that size.
+    pub async fn resize(&self, [width, height]: [u32; 2]) -> Result<()> {
+        let frame = self.evaluate("[outerWidth - innerWidth, outerHeight - innerHeight]").await?;
+        let [Some(wide), Some(high)] = [0, 1].map(|side| frame[side].as_u64().and_then(|pixels| u32::try_from(pixels).ok())) else {
+            bail!("the window's frame measures {frame}");
+        };
+        self.client.set_window_size(width + wide, height + high).await?;
+        self.until(&format!("innerWidth === {width} && innerHeight === {height}")).await?;
+        Ok(())
+    }
+
     /// Console output of the page so far.
     #[must_use]
     pub fn console(&self) -> String {
@@ -204,16 +229,5 @@ impl Browser {
     async fn key(&self, action: KeyAction) -> Result<()> {
         let keyboard = KeyActions::new("keyboard".into()).then(action);
         Ok(self.client.perform_actions(keyboard).await?)
-    }
-
-    /// Sizes the window so that the page, not its frame, has the size of [`VIEW`].
-    async fn fit(&self) -> Result<()> {
-        let frame = self.evaluate("[outerWidth - innerWidth, outerHeight - innerHeight]").await?;
-        let [Some(wide), Some(high)] = [0, 1].map(|side| frame[side].as_u64().and_then(|pixels| u32::try_from(pixels).ok())) else {
-            bail!("the window's frame measures {frame}");
-        };
-        self.client.set_window_size(VIEW.0 + wide, VIEW.1 + high).await?;
-        self.until(&format!("innerWidth === {} && innerHeight === {}", VIEW.0, VIEW.1)).await?;
-        Ok(())
     }
 }

@@ -4,11 +4,12 @@ use super::connection::Connection;
 use super::device_support::DeviceSupport;
 use super::frame_meter::FrameMeter;
 use super::gpu_canvas::{FrameInput, GpuCanvas};
+use super::halted::is_halted;
 use super::input::Input;
 use super::page;
 use super::settings::{Device, Settings};
 use super::socket::SocketEvent;
-use crate::bindings::Action;
+use crate::bindings::{Action, next_vehicle};
 use crate::budget::FrameTime;
 use crate::camera::Camera;
 use crate::redraw::RedrawTracker;
@@ -38,8 +39,11 @@ thread_local! {
     static APP: RefCell<Option<App>> = const { RefCell::new(None) };
 }
 
-/// Calls `act` with the page's client; `None` if it has not started.
+/// Calls `act` with the page's client; `None` if it has not started, or is halted.
 pub(super) fn with_app<T>(act: impl FnOnce(&mut App) -> T) -> Option<T> {
+    if is_halted() {
+        return None;
+    }
     APP.with_borrow_mut(|app| app.as_mut().map(act))
 }
 
@@ -164,6 +168,7 @@ impl App {
         for action in self.input.take_actions() {
             match action {
                 Action::Take(vehicle) => self.take(vehicle),
+                Action::TakeNext { forward } => self.take(Some(next_vehicle(self.wanted, forward))),
                 Action::SetHeight(height_m) => self.set_height(height_m),
             }
         }

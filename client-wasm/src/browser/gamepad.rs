@@ -1,6 +1,6 @@
 //! The first gamepad with the standard layout (W3C Gamepad, section 11).
 
-use crate::bindings::{Action, dpad_actions};
+use crate::bindings::{Action, gamepad_action};
 use crate::controls::{Controls, without_dead_zone};
 use wasm_bindgen::prelude::*;
 use web_sys::{Gamepad as Pad, GamepadButton, GamepadMappingType};
@@ -22,8 +22,8 @@ const RIGHT_TRIGGER: u32 = 7;
 pub(super) struct Gamepad {
     controls: Controls,
     look: [f32; 2],
-    /// Button of the cross that was down.
-    cross: Option<u32>,
+    /// Button with an action that was down.
+    pressed: Option<u32>,
 }
 
 impl Gamepad {
@@ -36,7 +36,7 @@ impl Gamepad {
         self.look.map(|deflection| deflection * LOOK_RAD_PER_S)
     }
 
-    /// Polls the gamepad; returns the action of a button of the cross pressed since the last poll.
+    /// Polls the gamepad; returns the action of a button pressed since the last poll.
     pub(super) fn poll(&mut self) -> Option<Action> {
         let Some(pad) = standard() else {
             *self = Self::default();
@@ -50,9 +50,9 @@ impl Gamepad {
             ..Default::default()
         });
         self.look = [axis(2), -axis(3)];
-        let down = dpad_actions().into_iter().find(|(index, _)| button(*index) > 0.5);
-        let before = std::mem::replace(&mut self.cross, down.map(|(index, _)| index));
-        down.filter(|(index, _)| before != Some(*index)).and_then(|(_, action)| action)
+        let down = (0..pad.buttons().length()).find(|&index| button(index) > 0.5 && gamepad_action(index).is_some());
+        let before = std::mem::replace(&mut self.pressed, down);
+        down.filter(|index| before != Some(*index)).and_then(gamepad_action)
     }
 }
 

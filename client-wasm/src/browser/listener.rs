@@ -1,5 +1,6 @@
 //! An event listener that is removed when it is dropped.
 
+use super::halted::is_halted;
 use wasm_bindgen::prelude::*;
 use web_sys::{Event, EventTarget};
 
@@ -11,9 +12,13 @@ pub(super) struct Listener {
 }
 
 impl Listener {
-    /// Calls `handle` with each event of this kind, such as `keydown`.
+    /// Calls `handle` with each event of this kind, such as `keydown`, until the client is halted.
     pub(super) fn new<E: JsCast>(target: &EventTarget, kind: &'static str, mut handle: impl FnMut(&E) + 'static) -> Self {
-        let closure = Closure::<dyn FnMut(Event)>::new(move |event: Event| handle(event.unchecked_ref()));
+        let closure = Closure::<dyn FnMut(Event)>::new(move |event: Event| {
+            if !is_halted() {
+                handle(event.unchecked_ref());
+            }
+        });
         // Fails only if the name or the function is null.
         let _ = target.add_event_listener_with_callback(kind, closure.as_ref().unchecked_ref());
         Self { target: target.clone(), kind, closure }

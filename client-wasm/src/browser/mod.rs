@@ -1,13 +1,15 @@
 //! The client in a web page, and the functions that the page's script calls.
 //!
-//! There is one client per page. Before [`start`], every function does nothing and returns an empty value.
+//! There is one client per page. Before [`start`] and after [`halt`], every function does nothing and returns an empty value.
 
 mod app;
 mod connection;
 mod device_support;
+mod failure;
 mod frame_meter;
 mod gamepad;
 mod gpu_canvas;
+mod halted;
 mod incoming;
 mod input;
 mod listener;
@@ -24,10 +26,11 @@ use crate::render::{BlendOrder, FarPlants, SideOptions};
 use crate::vehicle::{Dpad, VehicleProfile, VerticalControl, profile};
 use app::{App, set_app, with_app};
 use glam::Vec3;
+use halted::is_halted;
 use prairie_core::scene::VehicleKind;
 use serde_json::{Value, json};
 use settings::Settings;
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::rc::Rc;
 use wasm_bindgen::prelude::*;
 use web_sys::Window;
@@ -43,27 +46,39 @@ const TICK_MS: i32 = 33;
 /// If the page has no such canvas, or the options cannot be parsed.
 #[wasm_bindgen]
 pub fn start(canvas_id: &str, options: &str) -> Result<(), JsError> {
-    console_error_panic_hook::set_once();
+    failure::set_panic_hook();
     let window = web_sys::window().ok_or_else(|| JsError::new("the client needs a browser window"))?;
     let canvas = page::canvas(&window, canvas_id)?;
     let mut app = App::new(window.clone(), canvas, app::options(options)?, incoming::handle).map_err(|error| JsError::new(&error))?;
     app.request_device();
     set_app(app);
 
-    let ticking = window.clone();
+    start_ticking(&window)?;
+    start_frame_loop(window);
+    Ok(())
+}
+
+/// Ticks until the client is halted.
+fn start_ticking(window: &Window) -> Result<(), JsError> {
+    let (own_window, timer) = (window.clone(), Rc::new(Cell::new(None)));
+    let own_timer = timer.clone();
     let tick = Closure::<dyn Fn()>::new(move || {
-        with_app(|app| app.tick(page::now_secs(&ticking)));
+        if is_halted()
+            && let Some(timer) = own_timer.take()
+        {
+            own_window.clear_interval_with_handle(timer);
+        }
+        with_app(|app| app.tick(page::now_secs(&own_window)));
     });
     let scheduled = window.set_interval_with_callback_and_timeout_and_arguments_0(tick.into_js_value().unchecked_ref(), TICK_MS);
-    scheduled.map_err(|_| JsError::new("the page has no timer"))?;
-    start_frame_loop(window);
+    timer.set(Some(scheduled.map_err(|_| JsError::new("the page has no timer"))?));
     Ok(())
 }
 
 /// Callback of the animation frame, with its time (ms).
 type OnFrame = Rc<OnceCell<Closure<dyn Fn(f64)>>>;
 
-/// Draws in every animation frame; browsers stop these while the page is hidden.
+/// Draws in every animation frame until the client is halted; browsers stop these while the page is hidden.
 fn start_frame_loop(window: Window) {
     let on_frame = OnFrame::default();
     let (own_window, own) = (window.clone(), on_frame.clone());
@@ -81,10 +96,22 @@ fn start_frame_loop(window: Window) {
 }
 
 fn request_frame(window: &Window, on_frame: &OnFrame) {
-    if let Some(closure) = on_frame.get() {
+    if let Some(closure) = on_frame.get().filter(|_| !is_halted()) {
         // Fails only if the function is null.
         let _ = window.request_animation_frame(closure.as_ref().unchecked_ref());
     }
+}
+
+/// Stops the client for good, even after a panic.
+#[wasm_bindgen]
+pub fn halt() {
+    failure::halt();
+}
+
+/// Panics inside the client, as a bug would, to try how the page reports it.
+#[wasm_bindgen]
+pub fn panic(reason: &str) {
+    with_app(|_| panic!("{reason}"));
 }
 
 /// Draws one frame at the animation time `time_secs`, even if it equals the previous one. Returns false if there is nothing to draw yet, or the GPU is

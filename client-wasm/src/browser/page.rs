@@ -7,6 +7,8 @@ use web_sys::{HtmlCanvasElement, Window};
 extern "C" {
     /// Shows a status message of `messages.js`, with a detail.
     pub(super) fn message(kind: &str, detail: &str);
+    /// Shows that the client has panicked, and where.
+    pub(super) fn panicked(report: &str);
     /// Hides the status message.
     pub(super) fn clear();
 }

@@ -4,7 +4,8 @@ use super::listener::Listener;
 use crate::controls::{Controls, without_dead_zone};
 use std::cell::RefCell;
 use std::rc::Rc;
-use web_sys::{Element, HtmlCanvasElement, PointerEvent, WheelEvent};
+use wasm_bindgen::JsCast;
+use web_sys::{HtmlCanvasElement, HtmlElement, PointerEvent, WheelEvent};
 
 /// Turn of the view per pixel of a drag (rad/px): for a mouse, for touch.
 const LOOK_RAD: [f32; 2] = [0.0035, 0.006];
@@ -109,8 +110,10 @@ impl State {
 
     fn release(&mut self, event: &PointerEvent) {
         let gone = self.drags.extract_if(.., |drag| drag.id == event.pointer_id());
-        if gone.filter(|drag| drag.look_rad.is_none()).count() > 0 {
-            set_stick("hidden", "");
+        if gone.filter(|drag| drag.look_rad.is_none()).count() > 0
+            && let Some(stick) = stick()
+        {
+            stick.set_hidden(true);
         }
     }
 }
@@ -121,21 +124,18 @@ fn position_px(event: &PointerEvent) -> [f32; 2] {
 
 /// Shows the virtual stick where the touch began, with its knob under the finger.
 fn show_stick(drag: &Drag) {
-    if drag.look_rad.is_none() {
-        let [x, y] = drag.origin_px;
-        let [dx, dy] = [0, 1].map(|axis| (drag.at_px[axis] - drag.origin_px[axis]).clamp(-STICK_PX, STICK_PX));
-        set_stick("style", &format!("left:{x}px;top:{y}px;--x:{dx}px;--y:{dy}px"));
+    let Some(stick) = stick().filter(|_| drag.look_rad.is_none()) else { return };
+    let [x, y] = drag.origin_px;
+    let [dx, dy] = [0, 1].map(|axis| (drag.at_px[axis] - drag.origin_px[axis]).clamp(-STICK_PX, STICK_PX));
+    // The page's policy forbids the attribute `style`, but not its properties.
+    for (name, px) in [("left", x), ("top", y), ("--x", dx), ("--y", dy)] {
+        // Fails only for a style that is computed.
+        let _ = stick.style().set_property(name, &format!("{px}px"));
     }
+    stick.set_hidden(false);
 }
 
-/// Sets an attribute of the page's element `#stick`, if there is one.
-fn set_stick(attribute: &str, value: &str) {
-    let stick: Option<Element> = web_sys::window().and_then(|window| window.document()?.get_element_by_id("stick"));
-    if let Some(stick) = stick {
-        // Fails only for an invalid attribute name.
-        let _ = stick.set_attribute(attribute, value);
-        if attribute != "hidden" {
-            let _ = stick.remove_attribute("hidden");
-        }
-    }
+/// The page's element `#stick`, if there is one.
+fn stick() -> Option<HtmlElement> {
+    web_sys::window()?.document()?.get_element_by_id("stick")?.dyn_into().ok()
 }

@@ -90,6 +90,7 @@ impl App {
             "order": self.settings.option_names()[0],
             "far": self.settings.option_names()[1],
             "hour": self.settings.hour(),
+            "scene_hour": self.mirror.decoded_scene().map(|decoded| decoded.scene().light.hour_at(self.mirror.time_secs())),
             "compared": self.settings.compared().map(|(variants, _)| variants),
             "at": self.settings.compared().map(|(_, border)| border),
             "fallbacks": self.fallbacks(),

@@ -1,8 +1,21 @@
 //! The WebSocket, in binary messages.
 
 use super::listener::Listener;
+use std::cell::RefCell;
 use wasm_bindgen::prelude::*;
 use web_sys::{BinaryType, CloseEvent, Event, MessageEvent, WebSocket};
+
+thread_local! {
+    /// The newest socket, which [`close`] reaches even while the client is locked.
+    static NEWEST: RefCell<Option<WebSocket>> = const { RefCell::new(None) };
+}
+
+/// Closes the page's socket, if it has one.
+pub(super) fn close() {
+    if let Some(socket) = NEWEST.take() {
+        let _ = socket.close();
+    }
+}
 
 /// Events of a socket.
 pub(super) enum SocketEvent {
@@ -25,6 +38,7 @@ impl Socket {
     pub(super) fn open(url: &str, handle: fn(SocketEvent)) -> Result<Self, JsValue> {
         let socket = WebSocket::new(url)?;
         socket.set_binary_type(BinaryType::Arraybuffer);
+        NEWEST.set(Some(socket.clone()));
         let listeners = [
             Listener::new(&socket, "open", move |_: &Event| handle(SocketEvent::Open)),
             Listener::new(&socket, "message", move |event: &MessageEvent| {

@@ -70,6 +70,9 @@ pub(super) struct Serve {
     /// Format of the log on stderr: lines of text, or a JSON object on each line
     #[arg(long, env = "PRAIRIE_LOG_FORMAT", value_enum, value_name = "FORMAT", default_value_t)]
     pub(super) log_format: LogFormat,
+    /// Log the errors of the pages, such as a panic of the client or a browser without WebGPU; at most 20 at once and one in 5 s
+    #[arg(long, env = "PRAIRIE_REPORT", value_parser = yes_or_no)]
+    report: bool,
 }
 
 impl Serve {
@@ -112,6 +115,7 @@ impl Serve {
             rerun: self.rerun,
             threads: self.threads.map(usize::from),
             publish_hz: f32::from(self.publish_hz),
+            logs_page_errors: self.report,
             limits,
             ..Config::new(scene)
         };

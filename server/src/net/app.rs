@@ -2,6 +2,7 @@
 
 use super::admission::Admission;
 use super::origin::Access;
+use super::page_errors::PageErrors;
 use crate::config::Limits;
 use crate::metrics::ServerStats;
 use crate::runner::Published;
@@ -28,6 +29,8 @@ pub(crate) struct App {
     pub(crate) access: Access,
     /// Limits per remote address.
     pub(crate) admission: Arc<Admission>,
+    /// Gate of the errors that pages report; `None` if they are discarded.
+    pub(crate) page_errors: Option<PageErrors>,
     /// One permit per additional client.
     pub(crate) client_slots: Arc<Semaphore>,
     /// One permit per additional WebSocket before its hello.

@@ -10,6 +10,7 @@ mod floods;
 mod http;
 mod misbehaving_clients;
 mod monitoring;
+mod page;
 mod prebuilt_client;
 mod reload;
 mod shared_world;

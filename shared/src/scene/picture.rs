@@ -76,8 +76,23 @@ impl Light {
         if self.hour < 0.0 {
             return Sun { heading_rad: self.sun_heading_rad, elevation_rad: self.sun_elevation_rad };
         }
+        self.sun_at_hour(self.hour_at(time_secs))
+    }
+
+    /// Hour of the day (0..24) at a simulated time (s). For a sun at a given heading and elevation: the quarter of an hour, on the scene's latitude and
+    /// day, at which the sun is nearest to that.
+    pub fn hour_at(&self, time_secs: f64) -> f32 {
+        if self.hour < 0.0 {
+            let [x, y, z] = self.sun_at(time_secs).direction();
+            let nearness = |hour: &f32| {
+                let at = self.sun_at_hour(*hour).direction();
+                x * at[0] + y * at[1] + z * at[2]
+            };
+            let quarters = (0..96_u8).map(|quarter| 0.25 * f32::from(quarter));
+            return quarters.max_by(|a, b| nearness(a).total_cmp(&nearness(b))).unwrap_or_default();
+        }
         let days = if self.day_length_secs > 0.0 { time_secs / f64::from(self.day_length_secs) } else { 0.0 };
-        self.sun_at_hour((f64::from(self.hour) + 24.0 * days.rem_euclid(1.0)).rem_euclid(24.0) as f32)
+        (f64::from(self.hour) + 24.0 * days.rem_euclid(1.0)).rem_euclid(24.0) as f32
     }
 }
 
@@ -91,6 +106,7 @@ mod tests {
         assert_eq!(light.sun_at(0.0), light.sun_at_hour(20.0));
         assert_eq!(light.sun_at(600.0), light.sun_at_hour(8.0));
         assert_eq!(light.sun_at(12_000.0), light.sun_at_hour(20.0));
+        assert_eq!(light.hour_at(600.0), 8.0);
         let still = Light { hour: 20.0, ..Light::default() };
         assert_eq!(still.sun_at(5000.0), still.sun_at(0.0));
     }
@@ -99,5 +115,13 @@ mod tests {
     fn without_an_hour_the_sun_stands_where_it_is_put() {
         let light = Light { sun_heading_rad: 2.0, sun_elevation_rad: -0.05, ..Light::default() };
         assert_eq!(light.sun_at(1e6), Sun { heading_rad: 2.0, elevation_rad: -0.05 });
+    }
+
+    #[test]
+    fn the_hour_of_a_sun_at_a_given_position_is_the_nearest_one() {
+        for hour in [5.5, 8.25, 12.0, 18.75] {
+            let Sun { heading_rad: sun_heading_rad, elevation_rad: sun_elevation_rad } = Light::default().sun_at_hour(hour);
+            assert_eq!(Light { sun_heading_rad, sun_elevation_rad, ..Light::default() }.hour_at(1e6), hour);
+        }
     }
 }

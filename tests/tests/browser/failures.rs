@@ -79,3 +79,51 @@ async fn a_page_with_another_protocol_version_asks_for_a_reload() -> Result<()> 
     ensure!(title == "This page is outdated", "the page says {title}");
     Ok(())
 }
+
+/// Counts the client's requests for animation frames as `window.frames_requested`.
+const COUNT_FRAMES: &str = "(() => {
+    const request = window.requestAnimationFrame;
+    window.frames_requested = 0;
+    window.requestAnimationFrame = (callback) => (window.frames_requested++, request(callback));
+    window.real_frame = () => new Promise((done) => request(done));
+})()";
+
+/// Ends the page, waits for a message that contains `text`, and reloads by its button.
+async fn ends(browser: &Browser, how: &str, kind: &str, text: &str) -> Result<()> {
+    browser.evaluate(&format!("({how}, 0)")).await?;
+    browser.until(&message_is(kind)).await?;
+    let said = browser.evaluate("document.getElementById('message').innerText").await?;
+    ensure!(said.as_str().is_some_and(|said| said.contains(text)), "the page says {said}");
+    let reported = "performance.getEntriesByType('resource').find(({ name }) => name.endsWith('/report'))?.responseStatus";
+    ensure!(browser.until(reported).await? == 204, "the server did not take the report");
+    let reachable = browser.evaluate("[document.getElementById('prairie').inert, document.activeElement.innerText]").await?;
+    ensure!(reachable == serde_json::json!([true, "Reload"]), "reachable: {reachable}");
+    browser.client().active_element().await?.click().await?;
+    browser.until("window.prairie && window.prairie.state() && window.prairie.state().connected").await?;
+    browser.until("document.getElementById('message').hidden").await?;
+    Ok(())
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_panic_or_an_error_ends_the_page_with_a_message_until_it_is_reloaded() -> Result<()> {
+    let (_prairie, browser) = visited_meadow().await?;
+    browser.evaluate(COUNT_FRAMES).await?;
+    browser.until("window.frames_requested > 0").await?;
+    browser.evaluate("window.prairie.panic('no grass left')").await?;
+    browser.until(&message_is("panicked")).await?;
+    // Nothing goes on: no frame is requested, no status replaces the message, and the functions return nothing.
+    let later = "(async () => {
+        const before = window.frames_requested;
+        for (let frame = 0; frame < 5; frame++) await window.real_frame();
+        window.prairie.message('connecting', '');
+        return [window.frames_requested - before, window.prairie.state(), document.getElementById('message').dataset.kind];
+    })()";
+    let after = browser.evaluate(later).await?;
+    ensure!(after == serde_json::json!([0, null, "panicked"]), "after the panic: {after}");
+
+    ends(&browser, "0", "panicked", "no grass left").await?;
+    // Browsers hide the errors of a test's own scripts: one of the page's has to fail.
+    ends(&browser, "JSON.parse = () => ({ peers: null })", "error", "null").await?;
+    ends(&browser, "void window.prairie.draw(Symbol())", "error", "Symbol").await?;
+    Ok(())
+}

@@ -1,6 +1,8 @@
 //! The page in a real browser, and the world behind it.
 
+mod access;
 mod failures;
+mod icons;
 mod input;
 mod page;
 mod prairie;

@@ -35,3 +35,43 @@ async fn without_webgpu_the_page_explains_how_to_get_it() -> Result<()> {
     assert_eq!(title, "WebGPU found no graphics adapter");
     Ok(())
 }
+
+/// The embedded page in a browser without `navigator.gpu`.
+fn without_gpu(path: &str) -> Option<Page> {
+    let (content_type, bytes) = embedded(path)?;
+    if path != "/" {
+        return Some((content_type, bytes));
+    }
+    let script = "<head><script>Object.defineProperty(Navigator.prototype, 'gpu', { value: undefined })</script>";
+    let page = String::from_utf8_lossy(bytes).replacen("<head>", script, 1);
+    Some((content_type, page.leak().as_bytes()))
+}
+
+#[tokio::test]
+async fn without_webgpu_no_client_is_fetched() -> Result<()> {
+    let browser = Browser::start(&Options { webgpu: false, ..Options::default() }).await?;
+    for (find, kind) in [(embedded as fn(&str) -> Option<Page>, "no-adapter"), (without_gpu, "unsupported")] {
+        let pages = Pages::serve(find).await?;
+        browser.go(&format!("http://{}/", pages.addr)).await?;
+        browser.until(&format!("document.getElementById('message').dataset.kind === '{kind}'")).await?;
+        let fetched = browser.evaluate("performance.getEntriesByType('resource').map(({ name }) => name).join(' ')").await?;
+        let fetched = fetched.as_str().unwrap_or_default();
+        assert!(fetched.contains("start.") && !fetched.contains("prairie_client"), "{kind}: the page fetched {fetched}");
+        let text = browser.evaluate("document.getElementById('message').innerText").await?;
+        let text = text.as_str().unwrap_or_default();
+        let platforms = ["Linux, as here: ", "Windows: ", "iPhone, iPad: ", "Checked in "];
+        assert_eq!(platforms.iter().all(|part| text.contains(part)), kind == "unsupported", "{text}");
+    }
+    Ok(())
+}
+
+#[tokio::test]
+async fn a_script_that_does_not_load_is_reported() -> Result<()> {
+    let pages = Pages::serve(|path| embedded(path).filter(|_| !path.starts_with("/start."))).await?;
+    let browser = Browser::start(&Options { webgpu: false, ..Options::default() }).await?;
+    browser.go(&format!("http://{}/", pages.addr)).await?;
+    browser.until("document.getElementById('message').dataset.kind === 'error'").await?;
+    let text = browser.evaluate("document.getElementById('message').innerText").await?;
+    assert!(text.as_str().is_some_and(|text| text.contains("/start.") && text.contains("Reload")), "{text}");
+    Ok(())
+}
