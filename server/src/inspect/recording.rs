@@ -168,9 +168,12 @@ impl Sink for Recording {
     }
 }
 
-/// Checks that a file got its footer, for the SDK only logs that it could not write it.
+/// Checks that a file got its footer, for the SDK only logs that it could not write it. A pipe cannot be read again.
 fn check_footer(path: &Path) -> Result<(), InspectError> {
     let unreadable = |reason| InspectError::File { path: path.to_owned(), reason };
+    if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
+        return Ok(());
+    }
     let mut file = File::open(path).map_err(unreadable)?;
     let length = StreamFooter::ENCODED_SIZE_BYTES as u64;
     let bytes = file.metadata().map_err(unreadable)?.len();

@@ -19,13 +19,12 @@ fn an_incomplete_recording_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let pipe = folder.path().join("run.rrd");
     assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-    let reader = {
-        let pipe = pipe.clone();
-        // Reads a little and hangs up, as a disk that is full takes no more.
-        std::thread::spawn(move || File::open(pipe).unwrap().read_exact(&mut [0; 64]).unwrap())
-    };
+    // Also open for writing, so that the program may open and close it as it likes.
+    let mut reader = File::options().read(true).write(true).open(&pipe).unwrap();
     let mut server = Server::start(&["--rerun", &format!("save={}", pipe.display())], &[]);
-    reader.join().unwrap();
+    reader.read_exact(&mut [0; 64]).unwrap();
+    // From here on it takes no more, like a disk that is full.
+    drop(reader);
     let mut stderr = server.stderr();
     let status = server.stop();
     let mut log = String::new();
