@@ -117,7 +117,7 @@ fn step(criterion: &mut Criterion) {
         let pool = threads(number);
         let triad = triad_bytes_per_s(&pool);
         println!("triad on {number} threads: {:.1} GB/s", triad / 1e9);
-        for cells in [[8, 8, 8], [16, 16, 16], [32, 32, 32], [64, 64, 64], [128, 32, 128]] {
+        for cells in [[8, 8, 8], [16, 16, 16], [32, 8, 32], [32, 32, 32], [64, 32, 64], [64, 64, 64], [128, 32, 128]] {
             let [nx, ny, nz] = cells;
             group.throughput(Throughput::Elements((nx * ny * nz) as u64));
             // Zhang's method is single-threaded.
