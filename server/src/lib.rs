@@ -5,6 +5,13 @@
 //! as fast as each client acknowledges.
 //!
 //! [`run`] is the whole server; the README shows how to embed it in another program.
+//!
+//! # Packages
+//! `cargo doc --workspace --no-deps --open` documents all of them; this page is the way in.
+//! - [`prairie_core`]: scenes, terrain, the bend field of grass, plants, light and the wire format, shared by server and client.
+//! - [`prairie_wind`]: the wind solver.
+//! - [prairie_client](../prairie_client/index.html): the mirror of a server's world, and the renderer.
+//! - [tests](../tests/index.html): reference solutions, charts and pictures.
 
 pub mod bend;
 mod checksum;
