@@ -32,6 +32,8 @@ pub mod scenes;
 pub mod settings_error;
 pub mod snapshot;
 pub mod stream;
+#[cfg(feature = "picture")]
+pub mod studio;
 mod token_bucket;
 pub mod weather;
 pub mod world;

@@ -16,7 +16,6 @@ pub mod prairie;
 pub mod problems;
 pub mod random_winds;
 pub mod similarity;
-pub mod stage;
 pub mod still;
 pub mod synthetic;
 pub mod turntable;

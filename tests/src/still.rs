@@ -9,8 +9,8 @@ use prairie_client::render::{BlendOrder, FrameStats, Gpu, OffscreenRenderer as C
 use prairie_client::state::Mirror;
 
 use crate::picture::Picture;
-use crate::stage::Stage;
 use crate::views::View;
+use prairie::studio::Stage;
 
 /// Time of the clouds and gusts (s).
 const TIME_SECS: f64 = 5.0;

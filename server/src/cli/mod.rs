@@ -3,33 +3,47 @@
 mod announce;
 mod check;
 mod completions;
+#[cfg(feature = "picture")]
+mod film;
 mod log;
 mod manual;
 mod maps;
 mod new;
 mod number;
+#[cfg(feature = "picture")]
+mod picture;
 mod print;
 mod scenes;
 mod schema;
 mod serve;
+#[cfg(feature = "picture")]
+mod shot;
 mod stop_signal;
 mod tls;
 mod unknown_word;
 mod usage;
 mod version;
+#[cfg(not(feature = "picture"))]
+mod without_picture;
 
 use check::Check;
 use clap::{Parser, Subcommand};
 use completions::Completions;
+#[cfg(feature = "picture")]
+use film::Film;
 use log::LogFormat;
 use manual::Manual;
 use maps::Maps;
 use new::New;
+#[cfg(feature = "picture")]
+use picture::Picture;
 pub(crate) use print::complain;
 use scenes::Scenes;
 use schema::Schema;
 use serve::Serve;
 use std::process::ExitCode;
+#[cfg(not(feature = "picture"))]
+use without_picture::{Film, Picture};
 
 /// A streaming grassland simulator: wind, grass and vehicles, simulated here and drawn in any browser with WebGPU.
 #[derive(Debug, Parser)]
@@ -81,6 +95,12 @@ enum Command {
     /// Generate the maps of the built-in scenes; the result is always the same
     #[command(after_help = maps::EXAMPLES)]
     Maps(Maps),
+    /// Draw a picture of a scene, without a browser
+    #[cfg_attr(feature = "picture", command(after_help = picture::EXAMPLES))]
+    Picture(Picture),
+    /// Draw a film of a scene, without a browser
+    #[cfg_attr(feature = "picture", command(after_help = film::EXAMPLES))]
+    Film(Film),
     /// Print the script that completes commands, options and files in a shell
     #[command(after_help = completions::EXAMPLES)]
     Completions(Completions),
@@ -111,6 +131,8 @@ pub(crate) fn run() -> anyhow::Result<ExitCode> {
         Command::New(new) => new.run().map(done),
         Command::Schema(schema) => schema.run().map(done),
         Command::Maps(maps) => maps.run().map(done),
+        Command::Picture(picture) => picture.run().map(done),
+        Command::Film(film) => film.run().map(done),
         Command::Completions(completions) => completions.run().map(done),
         Command::Man(manual) => manual.run().map(done),
     }

@@ -6,7 +6,8 @@ use std::sync::LazyLock;
 pub(super) const SHORT: &str = env!("CARGO_PKG_VERSION");
 
 /// Optional parts of the program, and whether this one has them.
-const FEATURES: &[(&str, bool)] = &[("acme", cfg!(feature = "acme")), ("rerun", cfg!(feature = "rerun"))];
+const FEATURES: &[(&str, bool)] =
+    &[("acme", cfg!(feature = "acme")), ("picture", cfg!(feature = "picture")), ("rerun", cfg!(feature = "rerun"))];
 
 /// Longest name of a commit (hex digits), that of SHA-256.
 const LONGEST: usize = 64;

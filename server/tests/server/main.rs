@@ -6,6 +6,8 @@ mod common;
 #[cfg(feature = "acme")]
 mod acme;
 mod addresses;
+mod command_line;
+mod drawing;
 mod floods;
 mod http;
 mod misbehaving_clients;

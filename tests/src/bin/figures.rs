@@ -67,6 +67,7 @@ fn main() -> Result<()> {
 
 /// Today in UTC, by the system's `date`.
 fn today() -> Result<String> {
-    let output = std::process::Command::new("date").args(["-u", "+%Y-%m-%d"]).output().context("--date: the program `date` did not start")?;
+    let output =
+        std::process::Command::new("date").args(["-u", "+%Y-%m-%d"]).output().context("--date: the program `date` did not start")?;
     Ok(String::from_utf8(output.stdout)?.trim().to_owned())
 }

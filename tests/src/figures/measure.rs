@@ -64,6 +64,9 @@ mod tests {
         assert!(told(&figure("no-such-program", "")).contains("`no-such-program` did not start"));
         assert!(told(&figure("false", "")).contains("`false` failed"));
         let missing = told(&figure("echo nothing here", "speed"));
-        assert!(missing.contains("words: `echo nothing here` printed\nnothing here") && missing.contains("no line contains `speed`"), "{missing}");
+        assert!(
+            missing.contains("words: `echo nothing here` printed\nnothing here") && missing.contains("no line contains `speed`"),
+            "{missing}"
+        );
     }
 }

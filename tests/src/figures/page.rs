@@ -82,7 +82,10 @@ mod tests {
         page.set(&SIZE, measured("3 MB"));
         page.set(&SPEED, measured("0.9 ms"));
         fs::write(&path, page.text(&[SPEED, SIZE]))?;
-        assert!(page.text(&[SPEED, SIZE]).ends_with("| speed | 0.9 ms | 1 ms | `go fast` | 2026-11-24, here |\n| size | 3 MB |  | `go` | 2026-11-24, here |\n"));
+        assert!(
+            page.text(&[SPEED, SIZE])
+                .ends_with("| speed | 0.9 ms | 1 ms | `go fast` | 2026-11-24, here |\n| size | 3 MB |  | `go` | 2026-11-24, here |\n")
+        );
         assert_eq!(Page::read(&path)?.text(&[SPEED, SIZE]), page.text(&[SPEED, SIZE]));
         Ok(())
     }
@@ -92,7 +95,10 @@ mod tests {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/figures.md");
         let stored = fs::read_to_string(&path)?;
         let expected = Page::read(&path)?.text(FIGURES);
-        assert!(stored == expected, "tests/results/figures.md is old; `cargo run --release -p tests --bin figures -- --only nothing` writes:\n{expected}");
+        assert!(
+            stored == expected,
+            "tests/results/figures.md is old; `cargo run --release -p tests --bin figures -- --only nothing` writes:\n{expected}"
+        );
         assert!(!stored.contains("not measured yet"), "figures are missing");
         Ok(())
     }

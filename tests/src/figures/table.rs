@@ -11,7 +11,8 @@ const WIND: &str = "cargo bench --workspace --bench wind";
 const CODEC: &str = "cargo bench --workspace --bench codec";
 const PLANTS: &str = "cargo bench --workspace --bench plants";
 const DRIVE: &str = "cargo run --release -p prairie --example watched_drive -- meadow 112 20";
-const LOW: &str = "cargo run --release --features picture -- picture --stats --quality low --size 640x360 --frames 300 --out target/figures/low.jpg";
+const LOW: &str =
+    "cargo run --release --features picture -- picture --stats --quality low --size 640x360 --frames 300 --out target/figures/low.jpg";
 const MEDIUM: &str = "cargo run --release --features picture -- picture --stats --quality medium --size 640x360 --frames 300 --out target/figures/medium.jpg";
 
 const fn figure(quantity: &'static str, aim: &'static str, command: &'static str, pick: Pick) -> Figure {
@@ -30,7 +31,12 @@ pub const FIGURES: &[Figure] = &[
     ),
     figure("the same, 225 patches", "0.7 · 10⁹ cell-steps/s on one thread", BEND, Pick::After("|     225 | Substepped, 4 sub-steps")),
     figure("the same, Verlet scheme of Chen & Johan", "", BEND, Pick::After("|     225 | Verlet, 1 sub-step")),
-    figure("scene `continuum`, 88 × 88 patches, the whole server at rest", "0.5 % of a core, 150 MB", REST, Pick::After("at rest, no visitor: ")),
+    figure(
+        "scene `continuum`, 88 × 88 patches, the whole server at rest",
+        "0.5 % of a core, 150 MB",
+        REST,
+        Pick::After("at rest, no visitor: "),
+    ),
     figure("the same, with a client that watches", "", REST, Pick::After("at rest, one visitor who stands still: ")),
     figure(
         "`continuum`, 64 cars at 20 m/s for a minute, two cores, a tick: mean, median, 90 %, 99 %, longest (ms)",
@@ -70,10 +76,25 @@ pub const FIGURES: &[Figure] = &[
     figure("divergence that these sweeps leave, 64³", "", WIND, Pick::After("20 Gauss-Seidel sweeps at 64³ leave ")),
     figure("bytes of a moving patch of 12 288 values, mean of 39 frames", "below deflate", CODEC, Pick::After("mean bytes of a patch: ")),
     figure("near blades, nine grids of 1024, one step: least, median", "", PLANTS, Pick::After("| exact: wind, swing and contacts")),
-    figure("posture look-up at the nearest node: least, median; than the full balance", "20 ns", PLANTS, Pick::After("| looked up at the nearest node")),
-    figure("posture look-up between nodes: least, median; than the full balance", "20 ns", PLANTS, Pick::After("| looked up between nodes")),
+    figure(
+        "posture look-up at the nearest node: least, median; than the full balance",
+        "20 ns",
+        PLANTS,
+        Pick::After("| looked up at the nearest node"),
+    ),
+    figure(
+        "posture look-up between nodes: least, median; than the full balance",
+        "20 ns",
+        PLANTS,
+        Pick::After("| looked up between nodes"),
+    ),
     figure("underbrush grown over 512 × 512 sites, with posture tables", "1 s", PLANTS, Pick::After("| 512 × 512 sites, ")),
-    figure("force field, 64 × 4 × 64 volumes, spread and decay: least, median", "", PLANTS, Pick::After("| what lingers spreads and decays")),
+    figure(
+        "force field, 64 × 4 × 64 volumes, spread and decay: least, median",
+        "",
+        PLANTS,
+        Pick::After("| what lingers spreads and decays"),
+    ),
     figure("stream to a client that watches a driving car within 112 m", "2 Mbit/s", DRIVE, Pick::After("total ")),
     figure("frame at low quality, 640 × 360, scene `meadow`", "", LOW, Pick::After(": ")),
     figure("frame at medium quality, 640 × 360, scene `meadow`", "100 ms in software", MEDIUM, Pick::After(": ")),

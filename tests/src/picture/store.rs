@@ -1,37 +1,19 @@
 //! Writing pictures to files.
 
-use std::borrow::Cow;
-use std::fs::{self, File};
-use std::io::{BufWriter, Write as _};
 use std::path::Path;
 
-use anyhow::{Context as _, Result, bail};
-use jpeg_encoder::{ColorType as JpegColor, Encoder as JpegEncoder, SamplingFactor};
-use png::{BitDepth, ColorType, Encoder};
+use anyhow::Result;
+use prairie::studio::write_picture;
 
 use super::{Difference, Picture};
 
-/// JPEG quality of the pictures that documents show: about 130 kB for 960 × 540 pixels of grass.
-const JPEG_QUALITY: u8 = 80;
-
 impl Picture {
-    /// Writes the picture as PNG or JPEG, by the ending of the file's name, and creates its directory.
-    /// A PNG of opaque pixels is stored without alpha; a JPEG ignores alpha.
+    /// Writes the picture as PNG or JPEG; see [`write_picture`].
     ///
     /// # Errors
-    /// When the name ends in neither `.png`, `.jpg` nor `.jpeg`, or the file cannot be written.
+    /// As [`write_picture`].
     pub fn save(&self, path: &Path) -> Result<()> {
-        let encoded = match path.extension().and_then(|ending| ending.to_str()) {
-            Some("png") => self.to_png(),
-            Some("jpg" | "jpeg") => self.to_jpeg(),
-            _ => bail!("{}: a picture's name must end in .png or .jpg", path.display()),
-        };
-        let encoded = encoded.with_context(|| path.display().to_string())?;
-        if let Some(dir) = path.parent() {
-            fs::create_dir_all(dir).with_context(|| dir.display().to_string())?;
-        }
-        let mut file = BufWriter::new(File::create(path).with_context(|| path.display().to_string())?);
-        file.write_all(&encoded).and_then(|()| file.flush()).with_context(|| path.display().to_string())
+        write_picture(path, [self.width, self.height], &self.rgba)
     }
 
     /// Writes the picture to `path` unless the PNG stored there already looks the same; returns whether it was written.
@@ -53,39 +35,12 @@ impl Picture {
         }
         Ok(!looks_the_same)
     }
-
-    fn to_png(&self) -> Result<Vec<u8>> {
-        let is_opaque = self.rgba.chunks_exact(4).all(|pixel| pixel[3] == u8::MAX);
-        let mut encoded = Vec::new();
-        let mut encoder = Encoder::new(&mut encoded, self.width, self.height);
-        encoder.set_color(if is_opaque { ColorType::Rgb } else { ColorType::Rgba });
-        encoder.set_depth(BitDepth::Eight);
-        let mut writer = encoder.write_header()?;
-        let channels = if is_opaque { Cow::Owned(self.rgb()) } else { Cow::Borrowed(&self.rgba) };
-        writer.write_image_data(&channels)?;
-        writer.finish()?;
-        Ok(encoded)
-    }
-
-    /// Progressive, with chroma at full resolution so that thin blades and text keep their colours.
-    fn to_jpeg(&self) -> Result<Vec<u8>> {
-        let mut encoded = Vec::new();
-        let mut encoder = JpegEncoder::new(&mut encoded, JPEG_QUALITY);
-        encoder.set_progressive(true);
-        encoder.set_optimized_huffman_tables(true);
-        encoder.set_sampling_factor(SamplingFactor::F_1_1);
-        encoder.encode(&self.rgb(), self.width.try_into()?, self.height.try_into()?, JpegColor::Rgb)?;
-        Ok(encoded)
-    }
-
-    fn rgb(&self) -> Vec<u8> {
-        self.rgba.chunks_exact(4).flat_map(|pixel| &pixel[..3]).copied().collect()
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn grey(width: u32, height: u32, level: u8) -> Picture {
         Picture { width, height, rgba: [level, level, level, 255].repeat((width * height) as usize) }
@@ -101,19 +56,6 @@ mod tests {
             picture.save(&path)?;
             assert_eq!(Picture::load(&path)?, picture);
         }
-        Ok(())
-    }
-
-    #[test]
-    fn the_file_name_chooses_the_format() -> Result<()> {
-        let dir = tempfile::tempdir()?;
-        for (name, magic) in [("a.png", &b"\x89PNG"[..]), ("a.jpg", &[0xff, 0xd8, 0xff]), ("a.jpeg", &[0xff, 0xd8, 0xff])] {
-            let path = dir.path().join(name);
-            grey(16, 16, 90).save(&path)?;
-            assert!(fs::read(&path)?.starts_with(magic), "{name}");
-        }
-        let error = grey(1, 1, 0).save(&dir.path().join("a.gif")).expect_err("GIF is not supported").to_string();
-        assert!(error.ends_with("a.gif: a picture's name must end in .png or .jpg"), "{error}");
         Ok(())
     }
 

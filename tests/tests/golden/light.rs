@@ -2,9 +2,9 @@
 
 use crate::{Golden, Unlike, golden};
 use anyhow::Result;
+use prairie::studio::Act;
 use prairie_client::render::{Quality, RenderOptions, Sun};
 use prairie_core::scene::Scene;
-use tests::stage::Act;
 use tests::views::{Eye, over};
 
 /// Render options with the sun at a heading and an elevation (degrees).

@@ -10,11 +10,11 @@ mod options;
 mod scenes;
 
 use anyhow::{Context as _, Result, ensure};
+use prairie::studio::{Act, Stage};
 use prairie_client::render::{Gpu, OffscreenRenderer as Canvas, Quality, RenderOptions, Split};
 use prairie_core::scene::Scene;
 use std::path::PathBuf;
 use tests::picture::{Difference, Picture};
-use tests::stage::{Act, Stage};
 use tests::views::Eye;
 
 /// A test with the name of its stored picture.

@@ -2,7 +2,7 @@
 
 use crate::{Golden, Unlike, golden};
 use anyhow::Result;
-use tests::stage::Act;
+use prairie::studio::Act;
 use tests::views::Eye;
 
 golden!(

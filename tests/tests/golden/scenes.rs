@@ -2,8 +2,8 @@
 
 use crate::{Golden, Unlike, golden};
 use anyhow::Result;
+use prairie::studio::Act;
 use prairie_client::render::RenderOptions;
-use tests::stage::Act;
 use tests::views::over;
 
 /// A larger picture, for whole scenes.

@@ -55,6 +55,7 @@ fn a_forbidden_dependency_is_found() {
 
 #[test]
 fn server_and_client_never_depend_on_each_other() -> Result<()> {
+    // But for the feature `picture`, which draws without a browser.
     assert_free_of("prairie", &dependencies("prairie", &[])?, &["prairie-client", "wgpu-core"]);
     for options in [&[], BROWSER] {
         assert_free_of("prairie-client", &dependencies("prairie-client", options)?, &["prairie", "tests", "tokio", "axum", "rerun"]);
@@ -120,6 +121,15 @@ fn only_net_uses_axum() -> Result<()> {
 fn only_inspect_uses_rerun() -> Result<()> {
     for file in files_using("rerun")? {
         assert!(file.starts_with("server/src/inspect"), "{} uses rerun", file.display());
+    }
+    Ok(())
+}
+
+#[test]
+fn only_the_studio_and_its_commands_use_the_renderer() -> Result<()> {
+    let allowed = ["server/src/studio", "server/src/cli/shot.rs", "server/src/cli/picture.rs", "client-wasm/src"];
+    for file in files_using("prairie_client")? {
+        assert!(allowed.iter().any(|place| file.starts_with(place)), "{} uses prairie_client", file.display());
     }
     Ok(())
 }

@@ -3,11 +3,11 @@
 use anyhow::{Context as _, Result};
 use png::{BitDepth, ColorType};
 use prairie::scenes::{self, LoadedScene};
+use prairie::studio::Stage;
 use prairie_core::plant::flora::Flora;
 use prairie_core::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
-use tests::stage::Stage;
 
 /// Checks that server and client grow identical plants; returns their number and checksum.
 fn same_plants(name_or_path: &str) -> Result<(usize, u64)> {

@@ -7,7 +7,7 @@ use prairie_client::render::Gpu;
 
 use super::super::figure::Drawn;
 use super::sweep::{Sweep, qualities, sweep};
-use crate::stage::{Act, Stage, play};
+use prairie::studio::{Act, Stage, play};
 
 /// Heights above the ground (m).
 const HEIGHTS_M: [f32; 8] = [1.0, 2.0, 5.0, 10.0, 20.0, 35.0, 60.0, 100.0];

@@ -1,9 +1,9 @@
 //! A world and a client's mirror of it in one process, without sockets or clocks.
 
-use anyhow::{Context as _, Result};
-use prairie::scenes;
-use prairie::snapshot::{PatchCodes, PatchQuantiser};
-use prairie::world::{Camera, Command, World};
+use crate::scenes;
+use crate::snapshot::{PatchCodes, PatchQuantiser};
+use crate::world::{Camera, Command, World};
+use anyhow::Result;
 use prairie_client::state::Mirror;
 use prairie_core::scene::{Scene, VehicleKind};
 use prairie_core::terrain::HeightMap;
@@ -109,7 +109,12 @@ impl Stage {
 
     /// Runs the world for `secs` of simulated time.
     pub fn run(&mut self, secs: f32) {
-        for _ in 0..(secs * self.scene.tick_hz).round() as u32 {
+        self.run_ticks((secs * self.scene.tick_hz).round() as u32);
+    }
+
+    /// Runs the world for a number of ticks.
+    pub fn run_ticks(&mut self, ticks: u32) {
+        for _ in 0..ticks {
             self.world.step(&[]);
         }
     }
@@ -156,74 +161,5 @@ impl Stage {
             None => self.sent.remove(&patch),
         };
         Ok(())
-    }
-}
-
-/// Events on a stage before its picture is taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Act {
-    /// Wind alone.
-    Wind,
-    /// A car has driven a long curve across the view.
-    Track,
-    /// A helicopter hovers low over the grass.
-    Wash,
-    /// A monster walks through the grass.
-    Walk,
-    /// A sled has been dragged across the view.
-    Drag,
-    /// A ball rolls away through the grass.
-    Roll,
-}
-
-/// Plays an act in front of the camera and shows its end. Returns the pose of the act's object, if it has one.
-///
-/// # Errors
-/// When there is no room for the act's vehicle, or the mirror rejects a message.
-pub fn play(stage: &mut Stage, act: Act, eye_m: [f32; 3]) -> Result<Option<ObjectPose>> {
-    stage.look_from(eye_m);
-    stage.run(4.0);
-    let moves: &[(f32, Drive)] = match act {
-        Act::Wind => &[],
-        Act::Track => &[
-            (2.2, Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 }),
-            (2.6, Drive { throttle: 0.6, steer: 0.45, lift: 0.0, brake: 0.0 }),
-            (1.2, Drive { throttle: 0.6, steer: -0.3, lift: 0.0, brake: 0.0 }),
-        ],
-        Act::Wash => &[
-            (0.8, Drive { throttle: 0.0, steer: 0.0, lift: 0.5, brake: 0.0 }),
-            (3.5, Drive { throttle: 0.0, steer: 0.0, lift: 0.0, brake: 0.0 }),
-        ],
-        Act::Walk => &[(4.0, Drive { throttle: 0.7, steer: 0.1, lift: 0.0, brake: 0.0 })],
-        Act::Roll => &[(2.6, Drive { throttle: 1.0, steer: 0.15, lift: 0.0, brake: 0.0 })],
-        Act::Drag => &[
-            (1.8, Drive { throttle: 0.8, steer: 0.0, lift: 0.0, brake: 0.0 }),
-            (2.4, Drive { throttle: 0.6, steer: 0.7, lift: 0.0, brake: 0.0 }),
-        ],
-    };
-    let kind = match act {
-        Act::Wind => None,
-        Act::Track => Some(VehicleKind::Car),
-        Act::Wash => Some(VehicleKind::Helicopter),
-        Act::Walk => Some(VehicleKind::Monster),
-        Act::Drag => Some(VehicleKind::Sled),
-        Act::Roll => Some(VehicleKind::Ball),
-    };
-    if let Some(kind) = kind {
-        stage.spawn(1, kind);
-        stage.run(0.5);
-    }
-    for &(secs, drive) in moves {
-        stage.drive(1, drive);
-        stage.run(secs);
-    }
-    let poses = stage.show()?;
-    let object = stage.world.object_of(1);
-    match kind {
-        Some(kind) => {
-            let pose = object.and_then(|id| poses.into_iter().find(|pose| pose.id == id));
-            pose.map(Some).with_context(|| format!("there was no room for the {}", kind.name()))
-        }
-        None => Ok(None),
     }
 }
