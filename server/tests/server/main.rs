@@ -6,7 +6,6 @@ mod common;
 #[cfg(feature = "acme")]
 mod acme;
 mod addresses;
-mod command_line;
 mod drawing;
 mod floods;
 mod http;
