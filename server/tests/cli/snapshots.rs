@@ -11,6 +11,9 @@ fn help_texts_and_messages_equal_the_stored_ones() {
     if cfg!(feature = "rerun") {
         cases.skip("tests/cli/snapshots/without_rerun.trycmd");
     }
+    if !cfg!(feature = "picture") {
+        cases.skip("tests/cli/snapshots/picture.trycmd");
+    }
 }
 
 #[test]
@@ -19,7 +22,7 @@ fn the_help_of_every_command_is_stored() {
     let (_, commands) = help.split_once("Commands:\n").unwrap();
     let names: Vec<_> = commands.lines().map_while(|line| line.split_whitespace().next()).filter(|name| *name != "help").collect();
     assert!(names.contains(&"serve") && names.contains(&"man"), "{names:?}");
-    let stored = std::fs::read_to_string("tests/cli/snapshots/help.trycmd").unwrap();
+    let stored = ["help", "picture"].map(|file| std::fs::read_to_string(format!("tests/cli/snapshots/{file}.trycmd")).unwrap()).concat();
     for name in names {
         assert!(stored.contains(&format!("\n$ prairie {name} --help\n")), "{name}");
     }
