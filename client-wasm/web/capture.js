@@ -4,6 +4,8 @@
 const FORMATS = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
 const VIDEO_BITS_PER_S = 16e6;
 const VIDEO_FRAMES_PER_S = 60;
+// The browser keeps a video in memory until it is saved: eight minutes at the rate above.
+const VIDEO_BYTES = 1e9;
 
 export class Capture {
   // `state()` returns the client's state; `notify(text)` shows a line to the user; `recording(seconds)` is called twice a second, and with null at the end.
@@ -41,11 +43,23 @@ export class Capture {
     if (!type) return this.notify("This browser cannot record a canvas. Chrome, Edge and Firefox can.");
     const name = this.name(type.startsWith("video/mp4") ? "mp4" : "webm");
     const parts = [];
+    let bytes = 0;
     const started = performance.now();
-    const recorder = new MediaRecorder(this.canvas.captureStream(VIDEO_FRAMES_PER_S), { mimeType: type, videoBitsPerSecond: VIDEO_BITS_PER_S });
+    let recorder;
+    try {
+      recorder = new MediaRecorder(this.canvas.captureStream(VIDEO_FRAMES_PER_S), { mimeType: type, videoBitsPerSecond: VIDEO_BITS_PER_S });
+      recorder.start(1000);
+    } catch (error) {
+      return this.notify(`No video: ${error.message}`);
+    }
     const seconds = () => (performance.now() - started) / 1000;
     const timer = setInterval(() => this.recording(seconds()), 500);
-    recorder.ondataavailable = ({ data }) => data.size && parts.push(data);
+    recorder.ondataavailable = ({ data }) => {
+      if (!data.size) return;
+      parts.push(data);
+      bytes += data.size;
+      if (bytes > VIDEO_BYTES && recorder.state === "recording") recorder.stop();
+    };
     recorder.onerror = ({ error }) => this.notify(`The recording stopped: ${error?.message ?? "the browser gave no reason"}.`);
     recorder.onstop = () => {
       clearInterval(timer);
@@ -58,7 +72,6 @@ export class Capture {
       this.notify(`Video saved: ${seconds().toFixed(1)} s.`);
     };
     this.client.draw_every_frame(true);
-    recorder.start(1000);
     this.recorder = recorder;
     this.recording(0);
   }

@@ -1,8 +1,8 @@
 // Side-by-side comparison of two variants of the picture, with a border that is moved by dragging or by keys.
 
-const KEYS = { ArrowLeft: -0.02, ArrowDown: -0.02, ArrowRight: 0.02, ArrowUp: 0.02, PageDown: -0.1, PageUp: 0.1, Home: -1, End: 1 };
+import { byId } from "./elements.js";
 
-const byId = (id) => document.getElementById(id);
+const KEYS = { ArrowLeft: -0.02, ArrowDown: -0.02, ArrowRight: 0.02, ArrowUp: 0.02, PageDown: -0.1, PageUp: 0.1, Home: -1, End: 1 };
 
 export class Comparison {
   // `variants` are the names to choose from; `label(name)` is the displayed name; `keep({ compare, at })` stores the comparison in the address.

@@ -25,8 +25,10 @@ function endWith(error) {
 // Errors of files do not bubble, hence the capturing listener.
 addEventListener("error", ({ target, filename, error, message }) => {
   if (target instanceof HTMLScriptElement) end("error", `${target.src} did not load.`);
-  // Extensions of the browser share the page's window.
-  else if (target === window && !/^[a-z-]+-extension:/.test(filename)) endWith(error ?? message);
+  // Extensions and scripts that a browser injects share the page's window; their file is another origin's, or none.
+  else if (target === window && (filename.startsWith(location.origin) || filename.startsWith("wasm:"))) endWith(error ?? message);
 }, true);
 
-addEventListener("unhandledrejection", ({ reason }) => endWith(reason));
+addEventListener("unhandledrejection", ({ reason }) => {
+  if (!reason?.stack || reason.stack.includes(location.origin) || reason.stack.includes("wasm")) endWith(reason);
+});

@@ -50,7 +50,7 @@ const MESSAGES = {
   loading: { tone: "wait", title: "Starting Prairie", text: "Loading the client…" },
   connecting: { tone: "wait", title: "Starting Prairie", text: "Connecting to the server…" },
   preparing: { tone: "wait", title: "Starting Prairie", text: "Almost ready." },
-  full: { tone: "wait", title: "The server is full", text: "All client slots of this server are taken. This page keeps trying." },
+  full: { tone: "wait", title: "The server is full", text: "There is no room for another client. This page keeps trying." },
   "server-gone": { tone: "strip", title: "Connection to the server lost", text: "Reconnecting…" },
   version: {
     tone: "stop",

@@ -180,7 +180,8 @@ export class Panel {
       button.addEventListener("keydown", ({ key }) => (key === " " || key === "Enter") && hold());
       for (const end of ["pointerup", "pointercancel", "pointerleave", "keyup", "blur"]) button.addEventListener(end, () => this.client.hold_rise(0));
     }
-    addEventListener("keydown", (event) => this.key(event));
+    // A message that covers the page leaves it inert.
+    addEventListener("keydown", (event) => byId("prairie").inert || this.key(event));
     this.returnFocus();
     showFocus(byId("view"));
   }
@@ -226,7 +227,8 @@ export class Panel {
     write("count", state.peers.length > 1 ? String(state.peers.length) : "");
     if (state.eye && parameter("scene") !== state.scene_name) keep({ scene: state.scene_name });
     for (const id of ["order", "far"]) if (document.activeElement !== byId(id)) byId(id).value = state[id];
-    write("work", state.cpu_ms === null ? "–" : `CPU ${state.cpu_ms.toFixed(1)} · GPU ${state.gpu_ms.toFixed(1)} ms`);
+    // Without a device, such as between its loss and its replacement, there is no GPU time.
+    write("work", state.cpu_ms === null || state.gpu_ms === null ? "–" : `CPU ${state.cpu_ms.toFixed(1)} · GPU ${state.gpu_ms.toFixed(1)} ms`);
     write("detail", state.automatic ? `${state.level.toFixed(1)} of ${state.highest_level} · target ${state.budget_ms.toFixed(0)} ms` : state.quality);
     byId("fallback").hidden = !state.fallbacks.length;
     write("fallback", state.fallbacks.join(" "));

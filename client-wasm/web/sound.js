@@ -34,7 +34,7 @@ export class Sound {
     });
     addEventListener("keydown", (event) => {
       if (event.repeat || event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("input, select")) return;
-      if (event.key.toLowerCase() !== KEY) return;
+      if (event.key.toLowerCase() !== KEY || byId("prairie").inert) return;
       event.preventDefault();
       this.toggle();
     });

@@ -21,6 +21,7 @@
 import { keep, link, parameter } from "./address.js";
 import { Capture } from "./capture.js";
 import { Comparison } from "./compare.js";
+import { byId } from "./elements.js";
 import { fillHelp } from "./help.js";
 import { show } from "./messages.js";
 import { Panel, variantLabel } from "./panel.js";
@@ -109,7 +110,7 @@ async function begin() {
   client.set_options(parameter("order") ?? "", parameter("far") ?? "");
   if (parameter("hour")) client.set_hour(Number(parameter("hour")));
   const { state } = window.prairie;
-  const capture = new Capture(client, document.getElementById("view"), {
+  const capture = new Capture(client, byId("view"), {
     state, notify: (text) => panel.notify(text), recording: (seconds) => panel.recording(seconds),
   });
   const choices = JSON.parse(client.choices());
@@ -121,7 +122,7 @@ async function begin() {
   });
   Object.assign(window.prairie, { picture: () => capture.shoot(), link: () => link(state().view), sound: () => sound.report() });
   panel.show((parameter("panel") ?? remembered("panel") ?? (innerWidth < 640 ? "0" : "1")) !== "0");
-  if (parameter("panel") === "0") document.getElementById("open").hidden = true;
+  if (parameter("panel") === "0") byId("open").hidden = true;
   else panel.hint();
 }
 

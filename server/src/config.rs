@@ -51,14 +51,15 @@ impl Config {
 pub struct Limits {
     /// Largest number of clients at once. Default 64.
     pub clients: usize,
-    /// Largest number of clients with the same address: an IPv4 address, or the /64 of an IPv6 address. Connections that are not clients may be four times
+    /// Largest number of clients with the same address: an IPv4 address, or the /64 of an IPv6 address. Connections that are not clients may be eight times
     /// as many. Default 32: a class behind one router, and half of all places, so that no address can take them all.
     pub clients_per_address: usize,
-    /// Largest number of connections that are not clients: page requests, handshakes, WebSockets before their hello. Default 256.
+    /// Largest number of connections that are not clients: page requests, handshakes, WebSockets before their hello. Default 512, so that one address
+    /// with the default of clients cannot take all places.
     pub pending: usize,
     /// Time limit for each of TLS handshake, request headers and hello. Default 5 s.
     pub handshake_timeout: Duration,
-    /// Time limit for a connection that does not become a client; long enough to fetch the page over a slow line. Default 30 s.
+    /// Time limit for a connection that does not become a client. A response that is under way is sent for up to 5 min more. Default 30 s.
     pub http_timeout: Duration,
     /// Time limit for a client that accepts no byte of a message, or acknowledges no frame after the first. Default 15 s.
     pub stall_timeout: Duration,
@@ -88,7 +89,7 @@ impl Default for Limits {
         Self {
             clients: 64,
             clients_per_address: 32,
-            pending: 256,
+            pending: 512,
             handshake_timeout: Duration::from_secs(5),
             http_timeout: Duration::from_secs(30),
             stall_timeout: Duration::from_secs(15),

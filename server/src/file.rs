@@ -4,6 +4,12 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+/// A part of a file name that no other process uses, wherever it runs: process numbers repeat in containers that share a folder.
+pub(crate) fn unique_part() -> String {
+    use std::hash::{BuildHasher as _, RandomState};
+    format!("{:016x}", RandomState::new().hash_one(std::process::id()))
+}
+
 /// Contents of a file, or the reason why it cannot be read: it is missing, not a regular file, or larger than `limit` bytes.
 pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
     let is_file = std::fs::metadata(path).map_err(|error| error.to_string())?.is_file();
@@ -17,4 +23,14 @@ pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
         return Err(format!("it is larger than {} MiB", limit >> 20));
     }
     Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unique_parts_differ() {
+        assert_ne!(unique_part(), unique_part());
+    }
 }

@@ -9,25 +9,43 @@ const LOG_INTERVAL: Duration = Duration::from_secs(10);
 /// Most bytes of a client's text in the log.
 const EXCERPT_BYTES: usize = 60;
 
-/// Rate limit for one kind of log message.
-#[derive(Debug, Default)]
-pub(crate) struct LogLimit(Mutex<State>);
+/// Rate limit for one kind of log message: by default one in [`LOG_INTERVAL`].
+#[derive(Debug)]
+pub(crate) struct LogLimit {
+    per_interval: u32,
+    state: Mutex<State>,
+}
 
 #[derive(Debug, Default)]
 struct State {
-    logged_at: Option<Instant>,
+    interval_began: Option<Instant>,
+    logged: u32,
     suppressed: u64,
 }
 
+impl Default for LogLimit {
+    fn default() -> Self {
+        Self::of(1)
+    }
+}
+
 impl LogLimit {
+    /// At most `per_interval` messages in [`LOG_INTERVAL`].
+    pub(crate) fn of(per_interval: u32) -> Self {
+        Self { per_interval, state: Mutex::default() }
+    }
+
     /// Number of messages suppressed since the last one that was due, if another is due; otherwise counts this one as suppressed.
     pub(crate) fn due(&self) -> Option<u64> {
-        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if state.logged_at.is_some_and(|at| at.elapsed() <= LOG_INTERVAL) {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        if state.interval_began.is_none_or(|at| at.elapsed() > LOG_INTERVAL) {
+            (state.interval_began, state.logged) = (Some(Instant::now()), 0);
+        }
+        if state.logged >= self.per_interval {
             state.suppressed += 1;
             return None;
         }
-        state.logged_at = Some(Instant::now());
+        state.logged += 1;
         Some(std::mem::take(&mut state.suppressed))
     }
 }
@@ -48,8 +66,10 @@ mod tests {
     fn messages_are_suppressed_and_counted() {
         let limit = LogLimit::default();
         assert_eq!([limit.due(), limit.due(), limit.due()], [Some(0), None, None]);
-        limit.0.lock().unwrap().logged_at = None;
+        limit.state.lock().unwrap().interval_began = None;
         assert_eq!([limit.due(), limit.due()], [Some(2), None]);
+        let several = LogLimit::of(2);
+        assert_eq!([several.due(), several.due(), several.due()], [Some(0), Some(0), None]);
     }
 
     #[test]

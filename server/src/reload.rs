@@ -14,6 +14,9 @@ use tokio::task::JoinError;
 /// Time between two checks of the files.
 const POLL_PERIOD: Duration = Duration::from_millis(400);
 
+/// Checks after which an invalid scene is loaded again, since it may name a file that the old scene does not, and that is therefore not watched.
+const POLLS_PER_RETRY: u32 = 5;
+
 /// Serves a scene like [`run`], and restarts whenever one of its files changes and the scene is still valid. Clients get a shutdown notice, and
 /// reconnect to the new world on the same socket. The new world is built while the old one runs. The faults of an invalid scene are logged, and the old
 /// world continues; so it does after a panic while a scene is loaded or a world built.
@@ -52,23 +55,37 @@ where
 {
     // Empty, so that the first check reloads the scene: the files may have changed since they were read.
     let mut seen = Vec::new();
+    let mut fault = None;
+    let mut polls = 0_u32;
     loop {
         tokio::time::sleep(POLL_PERIOD).await;
+        polls = polls.wrapping_add(1);
         let newest = stamps(&now.files);
-        if newest == seen {
+        let retries = fault.is_some() && polls.is_multiple_of(POLLS_PER_RETRY);
+        if newest == seen && !retries {
             continue;
         }
         seen = newest;
         let path = now.files[0].clone();
         match tokio::task::spawn_blocking(move || load(path)).await {
             Ok(Ok(scene)) if scene != *now => {
+                fault = None;
                 if let Some(new) = with_world(scene).await {
                     return new;
                 }
             }
-            Ok(Ok(_)) => {}
-            Ok(Err(error)) => tracing::warn!("the changed scene is invalid; the old one continues:\n{error}"),
-            Err(error) => log_panic(error, "loaded"),
+            Ok(Ok(_)) => fault = None,
+            Ok(Err(error)) => {
+                let newest_fault = Some(error.to_string());
+                if fault != newest_fault {
+                    tracing::warn!("the changed scene is invalid; the old one continues:\n{error}");
+                    fault = newest_fault;
+                }
+            }
+            Err(error) => {
+                fault = None;
+                log_panic(error, "loaded");
+            }
         }
     }
 }
@@ -132,5 +149,22 @@ mod tests {
         };
         let (changed, ()) = tokio::join!(changed_scene(&now, load_with_a_bug), edit);
         assert_eq!((changed.0.name.as_str(), LOADS.load(Ordering::SeqCst)), ("blades", 2));
+    }
+
+    static FAULTY_LOADS: AtomicU32 = AtomicU32::new(0);
+
+    /// Fails at first, as if a file that the scene newly names were missing, and then loads another scene.
+    fn load_with_a_fault(_: PathBuf) -> Result<LoadedScene, SceneError> {
+        match FAULTY_LOADS.fetch_add(1, Ordering::SeqCst) {
+            0 => scenes::load("no-such-scene"),
+            _ => scenes::load("blades"),
+        }
+    }
+
+    #[tokio::test]
+    async fn an_invalid_scene_is_tried_again_although_no_watched_file_changes() {
+        let now = LoadedScene { files: vec!["scene.toml".into()], ..scenes::load("shells").unwrap() };
+        let (changed, _) = changed_scene(&now, load_with_a_fault).await;
+        assert_eq!((changed.name.as_str(), FAULTY_LOADS.load(Ordering::SeqCst)), ("blades", 2));
     }
 }

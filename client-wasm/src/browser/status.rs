@@ -47,7 +47,9 @@ impl App {
         let (kind, detail) = match self.connection.state() {
             ConnectionState::Closed(Close::Version) => ("version", ""),
             ConnectionState::Closed(_) => ("refused", self.notice.as_ref().map_or("", |(reason, _)| reason)),
-            ConnectionState::Connecting { reason: Some(Close::ServerFull), .. } => ("full", ""),
+            ConnectionState::Connecting { reason: Some(Close::ServerFull), .. } => {
+                ("full", self.notice.as_ref().map_or("", |(reason, _)| reason))
+            }
             ConnectionState::Connecting { attempts: 1.., .. } if self.was_welcomed => ("server-gone", ""),
             ConnectionState::Connecting { attempts: 1.., .. } => ("connecting", "The server has not responded yet. Trying again…"),
             ConnectionState::Connecting { .. } if !self.was_welcomed => ("connecting", ""),

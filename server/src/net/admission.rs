@@ -5,8 +5,9 @@ use std::net::{IpAddr, Ipv6Addr};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Connections that are not clients yet, for each client that an address may have. A browser opens up to six connections to load the page.
-pub(crate) const PENDING_PER_CLIENT: usize = 4;
+/// Connections that are not clients yet, for each client that an address may have. A browser opens up to six connections to load the page, and keeps them
+/// for seconds: all clients of an address may load it at the same time.
+pub(crate) const PENDING_PER_CLIENT: usize = 8;
 
 /// The open connections of each address, and counters of rejected ones.
 #[derive(Debug)]
@@ -41,12 +42,12 @@ impl Admission {
     pub(crate) fn admit(self: &Arc<Self>, address: IpAddr) -> Option<Place> {
         let network = network(address);
         let mut table = self.table();
-        let open = table.entry(network).or_default();
-        if open.pending >= self.clients_per_address.saturating_mul(PENDING_PER_CLIENT) {
+        let pending = table.get(&network).map_or(0, |open| open.pending);
+        if pending >= self.clients_per_address.saturating_mul(PENDING_PER_CLIENT) {
             self.rejected_connections.fetch_add(1, Relaxed);
             return None;
         }
-        open.pending += 1;
+        table.entry(network).or_default().pending += 1;
         Some(Place { admission: self.clone(), network, is_client: Mutex::new(false) })
     }
 
@@ -137,5 +138,13 @@ mod tests {
         places[0].become_client().unwrap();
         places.clear();
         assert!(admission.table().is_empty(), "nothing is remembered of addresses without connections");
+    }
+
+    #[test]
+    fn a_class_behind_one_router_loads_the_page_at_the_same_time() {
+        let admission = Arc::new(Admission::new(32));
+        let router = IpAddr::from([192, 0, 2, 1]);
+        let places: Vec<_> = (0..32 * 6).map(|_| admission.admit(router).expect("a browser opens six connections")).collect();
+        assert_eq!(places.len(), 192);
     }
 }

@@ -4,6 +4,7 @@ use super::admission::Admission;
 use super::origin::Access;
 use super::page_errors::PageErrors;
 use crate::config::Limits;
+use crate::log_limit::LogLimit;
 use crate::metrics::ServerStats;
 use crate::runner::Published;
 use crate::stream::{Clients, Counters};
@@ -13,6 +14,24 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::Instant;
 use tokio::sync::{Semaphore, mpsc, watch};
+
+/// Most log messages of one kind about sessions in ten seconds.
+const SESSION_LINES: u32 = 50;
+
+/// Rate limits of the log messages about sessions, which a client that connects over and over would fill the log with.
+#[derive(Debug)]
+pub(crate) struct SessionLog {
+    pub(crate) joined: LogLimit,
+    pub(crate) left: LogLimit,
+    pub(crate) closed: LogLimit,
+}
+
+impl Default for SessionLog {
+    fn default() -> Self {
+        let [joined, left, closed] = [SESSION_LINES; 3].map(LogLimit::of);
+        Self { joined, left, closed }
+    }
+}
 
 /// State shared by all requests and sessions.
 #[derive(Debug)]
@@ -35,6 +54,8 @@ pub(crate) struct App {
     pub(crate) client_slots: Arc<Semaphore>,
     /// One permit per additional WebSocket before its hello.
     pub(crate) pending_slots: Arc<Semaphore>,
+    /// Rate limits of the sessions' log messages.
+    pub(crate) session_log: SessionLog,
     /// True as soon as the server stops.
     pub(crate) stopping: watch::Receiver<bool>,
     pub(crate) started: Instant,

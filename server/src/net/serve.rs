@@ -9,6 +9,7 @@ use axum::{Extension, Router};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use socket2::SockRef;
+use std::pin::pin;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite};
@@ -99,14 +100,26 @@ fn limit_unsent(stream: &TcpStream) {
     }
 }
 
-/// Serves HTTP requests until the connection ends, becomes a WebSocket, or times out.
+/// Time limit for a response that is under way when the connection's time is over.
+const RESPONSE_TIMEOUT: Duration = Duration::from_secs(300);
+
+/// Serves HTTP requests until the connection ends, becomes a WebSocket, or times out. A response that is under way then is still sent, so that the page
+/// loads over a slow line, too.
 async fn http(io: impl AsyncRead + AsyncWrite + Unpin + Send + 'static, router: Router, limits: Limits) {
     let connection = hyper::server::conn::http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(limits.handshake_timeout)
         .serve_connection(TokioIo::new(io), TowerToHyperService::new(router))
         .with_upgrades();
-    match timeout(limits.http_timeout, connection).await {
+    let mut connection = pin!(connection);
+    let served = match timeout(limits.http_timeout, connection.as_mut()).await {
+        Ok(served) => Ok(served),
+        Err(_) => {
+            connection.as_mut().graceful_shutdown();
+            timeout(RESPONSE_TIMEOUT, connection).await
+        }
+    };
+    match served {
         Ok(Ok(())) => {}
         Ok(Err(error)) => tracing::debug!(%error, "a connection failed"),
         Err(_) => tracing::debug!("a connection timed out"),

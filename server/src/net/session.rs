@@ -50,7 +50,9 @@ pub(super) async fn run<S: AsyncRead + AsyncWrite + Unpin>(
         Err(end) => end,
     };
     if let End::Closed(close, reason) = end {
-        tracing::info!(code = close.code(), reason, "closed a connection");
+        if let Some(suppressed) = app.session_log.closed.due() {
+            tracing::info!(code = close.code(), reason, suppressed = some(suppressed), "closed a connection");
+        }
         if close == Close::RateLimit {
             connection.place.count_rate_limited();
         }
@@ -60,6 +62,11 @@ pub(super) async fn run<S: AsyncRead + AsyncWrite + Unpin>(
         }
     }
     drop(slot);
+}
+
+/// A number of suppressed messages, left out of the log where it is zero.
+fn some(suppressed: u64) -> Option<u64> {
+    Some(suppressed).filter(|suppressed| *suppressed > 0)
 }
 
 /// Waits for the hello; returns the client's name.
@@ -110,7 +117,9 @@ async fn serve_client<S: AsyncRead + AsyncWrite + Unpin>(
         return end;
     }
     let (client, mut frames) = app.clients.join(id, name_for(id, name), app.limits.send.in_flight as usize);
-    tracing::info!(client = id, name = client.name(), "joined");
+    if let Some(suppressed) = app.session_log.joined.due() {
+        tracing::info!(client = id, name = client.name(), suppressed = some(suppressed), "joined");
+    }
     let (replies, mut queued_replies) = mpsc::channel(REPLY_CAPACITY);
     let end = tokio::select! {
         end = receive_all(reader, app, &client, &replies) => end,
@@ -121,7 +130,9 @@ async fn serve_client<S: AsyncRead + AsyncWrite + Unpin>(
     app.clients.leave(id);
     // An error means that the world has stopped, so there is nothing to remove.
     let _ = app.commands.send(Command::Remove { client: id }).await;
-    tracing::info!(client = id, ?end, sent_bytes = client.sent_bytes(), "left");
+    if let Some(suppressed) = app.session_log.left.due() {
+        tracing::info!(client = id, ?end, sent_bytes = client.sent_bytes(), suppressed = some(suppressed), "left");
+    }
     end
 }
 

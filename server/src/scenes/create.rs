@@ -4,6 +4,7 @@ use super::builtin::BuiltIn;
 use super::load::most_similar;
 use super::maps;
 use crate::escaped::escaped;
+use crate::file::unique_part;
 use prairie_core::scene::SCHEMA;
 use std::borrow::Cow;
 use std::ffi::{OsStr, OsString};
@@ -129,7 +130,7 @@ struct Staging(PathBuf);
 
 impl Staging {
     fn new(around: &Path) -> io::Result<Self> {
-        let folder = around.join(format!(".prairie-new-{}", std::process::id()));
+        let folder = around.join(format!(".prairie-new-{}", unique_part()));
         fs::create_dir(&folder)?;
         Ok(Self(folder))
     }

@@ -119,7 +119,8 @@ fn encode(path: &Path, [width, height]: [u32; 2], frames_per_s: u32, container: 
         .args(["-s", &format!("{width}x{height}"), "-r", &frames_per_s.to_string(), "-i", "-"])
         .args(encoder)
         .args(["-f", container])
-        .arg(&part)
+        // ffmpeg takes a name that begins with a hyphen for an option.
+        .arg(if part.is_relative() { Path::new(".").join(&part) } else { part.clone() })
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .spawn();

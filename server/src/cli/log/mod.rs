@@ -45,7 +45,7 @@ pub(super) fn start(format: LogFormat) -> anyhow::Result<Guard> {
 /// Events to log: those that `RUST_LOG` names, or warnings of all packages and information of Prairie's.
 fn filter() -> anyhow::Result<Targets> {
     let text = std::env::var("RUST_LOG").unwrap_or_default();
-    let filter = if text.is_empty() { "warn,prairie=info" } else { &text };
+    let filter = if text.is_empty() { "warn,rustls=error,prairie=info" } else { &text };
     filter.parse().with_context(|| {
         format!("RUST_LOG is `{text}`; allowed: levels (off, error, warn, info, debug, trace) and package=level, with commas between")
     })

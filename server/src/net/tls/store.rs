@@ -69,7 +69,7 @@ fn set_aside(path: &Path) -> io::Result<PathBuf> {
 
 /// Writes a file that only the user may read, as a whole or not at all.
 fn write(path: &Path, text: &str) -> io::Result<()> {
-    let temporary = path.with_extension(format!("{}.new", std::process::id()));
+    let temporary = path.with_extension(format!("{}.new", file::unique_part()));
     let written = || {
         let mut options = OpenOptions::new();
         options.write(true).create_new(true);
@@ -80,8 +80,6 @@ fn write(path: &Path, text: &str) -> io::Result<()> {
         file.sync_all()?;
         fs::rename(&temporary, path)
     };
-    // A crash with the same process number may have left the file behind.
-    let _ = fs::remove_file(&temporary);
     written().inspect_err(|_| drop(fs::remove_file(&temporary)))
 }
 
