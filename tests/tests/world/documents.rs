@@ -90,7 +90,7 @@ fn lists<'a>(document: &str, words: &[&'a str]) -> Vec<(String, Vec<&'a str>)> {
 #[test]
 fn lists_of_vehicles_and_presets_are_complete() -> Result<()> {
     let mut incomplete = Vec::new();
-    for (words, least) in [(VehicleKind::ALL.map(VehicleKind::name).to_vec(), 1), (Quality::ALL.map(Quality::name).to_vec(), 2)] {
+    for words in [VehicleKind::ALL.map(VehicleKind::name).to_vec(), Quality::ALL.map(Quality::name).to_vec()] {
         let mut count = 0;
         for document in READMES {
             let lists = lists(&fs::read_to_string(workspace().join(document))?, &words);
@@ -98,7 +98,7 @@ fn lists_of_vehicles_and_presets_are_complete() -> Result<()> {
             let short = lists.into_iter().filter(|(_, missing)| !missing.is_empty());
             incomplete.extend(short.map(|(sentence, missing)| format!("{document}: {} missing in: {sentence}", missing.join(", "))));
         }
-        ensure!(count >= least, "only {count} lists of {}", words.join(", "));
+        ensure!(count > 0, "no list of {} was found", words.join(", "));
     }
     ensure!(incomplete.is_empty(), "{}", incomplete.join("\n"));
     Ok(())
