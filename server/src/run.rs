@@ -2,7 +2,7 @@
 
 use crate::config::{Config, Limits};
 use crate::inspect::{InspectError, Inspector};
-use crate::net::{self, Access, Admission, App, PageErrors};
+use crate::net::{self, Access, Admission, App, PageErrors, SessionLog};
 use crate::runner::{Published, Runner, Simulation, Timing};
 use crate::settings_error::SettingsError;
 use crate::stream::{self, Clients, Streamer};
@@ -98,6 +98,7 @@ pub async fn run_simulation(
         page_errors: config.logs_page_errors.then(|| PageErrors::new(Instant::now())),
         client_slots: client_slots.clone(),
         pending_slots: pending_slots.clone(),
+        session_log: SessionLog::default(),
         stopping,
         started: Instant::now(),
     });

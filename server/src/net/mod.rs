@@ -30,7 +30,7 @@ mod writer;
 
 pub use addresses::reachable_ip;
 pub(crate) use admission::Admission;
-pub(crate) use app::App;
+pub(crate) use app::{App, SessionLog};
 pub use bind::{BindError, bind};
 pub use host_name::{HostName, Origin};
 pub(crate) use origin::Access;
