@@ -11,7 +11,7 @@ use hyper_util::service::TowerToHyperService;
 use socket2::SockRef;
 use std::pin::pin;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
@@ -78,10 +78,10 @@ async fn serve_connection(stream: TcpStream, connection: Arc<Connection>, tls: O
     let _ = stream.set_nodelay(true);
     limit_unsent(&stream);
     let stream = Metered::new(stream, connection.clone(), limits.bytes_per_s);
-    let router = router.layer(Extension(connection));
-    let Some(tls) = tls else { return http(stream, router, limits).await };
+    let router = router.layer(Extension(connection.clone()));
+    let Some(tls) = tls else { return http(stream, connection, router, limits).await };
     match timeout(limits.handshake_timeout, tls.accept(stream)).await {
-        Ok(Ok(Some(stream))) => http(stream, router, limits).await,
+        Ok(Ok(Some(stream))) => http(stream, connection, router, limits).await,
         Ok(Ok(None)) => tracing::debug!("the ACME service checked a domain"),
         Ok(Err(error)) => tracing::debug!(%error, "TLS handshake failed"),
         Err(_) => tracing::debug!("TLS handshake timed out"),
@@ -103,23 +103,27 @@ fn limit_unsent(stream: &TcpStream) {
 /// Time limit for a response that is under way when the connection's time is over.
 const RESPONSE_TIMEOUT: Duration = Duration::from_secs(300);
 
-/// Serves HTTP requests until the connection ends, becomes a WebSocket, or times out. A response that is under way then is still sent, so that the page
-/// loads over a slow line, too.
-async fn http(io: impl AsyncRead + AsyncWrite + Unpin + Send + 'static, router: Router, limits: Limits) {
-    let connection = hyper::server::conn::http1::Builder::new()
+/// Serves HTTP requests until the connection ends, becomes a WebSocket, or times out. A response that is under way then is still sent as long as the client
+/// reads it, so that the page loads over a slow line, too.
+async fn http(io: impl AsyncRead + AsyncWrite + Unpin + Send + 'static, connection: Arc<Connection>, router: Router, limits: Limits) {
+    let served = hyper::server::conn::http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(limits.handshake_timeout)
         .serve_connection(TokioIo::new(io), TowerToHyperService::new(router))
         .with_upgrades();
-    let mut connection = pin!(connection);
-    let served = match timeout(limits.http_timeout, connection.as_mut()).await {
-        Ok(served) => Ok(served),
-        Err(_) => {
-            connection.as_mut().graceful_shutdown();
-            timeout(RESPONSE_TIMEOUT, connection).await
+    let mut served = pin!(served);
+    let mut outcome = timeout(limits.http_timeout, served.as_mut()).await;
+    if outcome.is_err() {
+        served.as_mut().graceful_shutdown();
+        let (patience, begun) = (limits.http_timeout / 2, Instant::now());
+        let mut written = None;
+        // The first turn finds out how much has been written.
+        while outcome.is_err() && written != Some(connection.written_bytes()) && begun.elapsed() < RESPONSE_TIMEOUT {
+            written = Some(connection.written_bytes());
+            outcome = timeout(patience, served.as_mut()).await;
         }
-    };
-    match served {
+    }
+    match outcome {
         Ok(Ok(())) => {}
         Ok(Err(error)) => tracing::debug!(%error, "a connection failed"),
         Err(_) => tracing::debug!("a connection timed out"),
