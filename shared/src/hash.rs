@@ -5,7 +5,7 @@ pub const HASH_MULTIPLIER: u32 = 1_664_525;
 /// Increment of that step.
 pub const HASH_INCREMENT: u32 = 1_013_904_223;
 
-/// Number of distinct values of [`unit`]: 2²⁴, the precision of an `f32`.
+/// Number of distinct values of [`unit()`]: 2²⁴, the precision of an `f32`.
 pub const UNIT_STEPS: f32 = 16_777_216.0;
 
 /// Random bits as a number in 0..1, 1 excluded; uses the upper 24 bits.

@@ -37,7 +37,6 @@ pub const FIGURES: &[Figure] = &[
         REST,
         Pick::After("at rest, no visitor: "),
     ),
-    figure("the same, with a client that watches", "", REST, Pick::After("at rest, one visitor who stands still: ")),
     figure(
         "`continuum`, 64 cars at 20 m/s for a minute, two cores, a tick: mean, median, 90 %, 99 %, longest (ms)",
         "12 at 99 %",
@@ -75,7 +74,6 @@ pub const FIGURES: &[Figure] = &[
     ),
     figure("divergence that these sweeps leave, 64³", "", WIND, Pick::After("20 Gauss-Seidel sweeps at 64³ leave ")),
     figure("bytes of a moving patch of 12 288 values, mean of 39 frames", "below deflate", CODEC, Pick::After("mean bytes of a patch: ")),
-    figure("near blades, nine grids of 1024, one step: least, median", "", PLANTS, Pick::After("| exact: wind, swing and contacts")),
     figure(
         "posture look-up at the nearest node: least, median; than the full balance",
         "20 ns",
