@@ -3,12 +3,14 @@
 use super::number::whole;
 use super::print::print;
 use super::shot::Shot;
-use anyhow::Result;
+use super::stop_signal::stop_flag;
+use anyhow::{Result, ensure};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use prairie::studio::Film as Writer;
 use prairie_core::wire::Drive;
 use std::path::PathBuf;
+use std::sync::atomic::Ordering::Relaxed;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -48,6 +50,7 @@ impl Film {
         let default_secs = if act.vehicle().is_some() { act.secs() } else { WIND_SECS };
         let dt_secs = 1.0 / self.frames_per_second as f32;
         let frames = (self.seconds.unwrap_or(default_secs) / dt_secs).round().max(1.0) as u32;
+        let stopped = stop_flag()?;
         let mut film = Writer::create(&self.out, self.shot.size_px(), self.frames_per_second)?;
         let mut studio = self.shot.open()?;
         let eye_m = studio.camera().eye_m.to_array();
@@ -56,6 +59,7 @@ impl Film {
         let bar = ProgressBar::new(u64::from(frames)).with_style(ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {eta} left")?);
         let (tick_hz, mut ticks, mut controls) = (studio.stage.scene().tick_hz, 0, None);
         for frame in 0..LEAD_IN_FRAMES + frames {
+            ensure!(!stopped.load(Relaxed), "{}: stopped by a signal before the film was complete", self.out.display());
             let is_filmed = frame >= LEAD_IN_FRAMES;
             if is_filmed
                 && let Some(drive) =

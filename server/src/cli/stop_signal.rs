@@ -1,6 +1,28 @@
 //! Signals that stop the server: Ctrl-C, and on Unix SIGTERM and SIGHUP.
 
 use std::io;
+#[cfg(feature = "picture")]
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering::Relaxed},
+};
+
+/// A flag that is set when a signal has come, for work that no async runtime can interrupt.
+///
+/// # Errors
+/// When the system refuses the handlers or the thread that waits for them.
+#[cfg(feature = "picture")]
+pub(super) fn stop_flag() -> io::Result<Arc<AtomicBool>> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    let mut signal = runtime.block_on(async { StopSignal::install() })?;
+    let flag = Arc::new(AtomicBool::new(false));
+    let set = Arc::clone(&flag);
+    std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
+        runtime.block_on(signal.received());
+        set.store(true, Relaxed);
+    })?;
+    Ok(flag)
+}
 
 /// Installed signal handlers.
 #[cfg(unix)]

@@ -64,6 +64,34 @@ mod with_the_renderer {
         assert!(stderr(&again).contains("is not empty"), "{again:?}");
     }
 
+    /// An encoder that keeps its input in the file it is to write.
+    #[cfg(unix)]
+    fn encoder(folder: &Path) -> std::path::PathBuf {
+        use std::os::unix::fs::PermissionsExt as _;
+        let program = folder.join("encoder");
+        fs::write(&program, "#!/bin/sh\nfor file; do :; done\nexec cat > \"$file\"\n").unwrap();
+        fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+        program
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_signal_ends_a_film_and_leaves_no_part_of_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let (film, part) = (folder.path().join("film.gif"), folder.path().join("film.gif.part"));
+        let mut prairie = Command::new(env!("CARGO_BIN_EXE_prairie"));
+        prairie.arg("film").args(SMALL).args(["--seconds", "3600", "--out"]).arg(&film);
+        let child = prairie.env("PRAIRIE_FFMPEG", encoder(folder.path())).stderr(std::process::Stdio::piped()).spawn().unwrap();
+        while !fs::metadata(&part).is_ok_and(|part| part.len() > 0) {
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+        assert!(Command::new("sh").arg("-c").arg(format!("kill -INT {}", child.id())).status().unwrap().success());
+        let stopped = child.wait_with_output().unwrap();
+        assert_eq!(stopped.status.code(), Some(1), "{}", stderr(&stopped));
+        assert!(stderr(&stopped).contains("film.gif: stopped by a signal"), "{}", stderr(&stopped));
+        assert!(!part.exists() && !film.exists());
+    }
+
     #[test]
     fn wrong_options_name_the_option_and_what_is_allowed() {
         let folder = tempfile::tempdir().unwrap();
