@@ -2,7 +2,7 @@
 
 use crate::config::Config;
 use crate::escaped::escaped;
-use crate::run::{RunError, run, run_simulation};
+use crate::run::{RunError, run_simulation};
 use crate::scenes::{self, LoadedScene, SceneError};
 use crate::world::World;
 use std::path::PathBuf;
@@ -17,21 +17,26 @@ const POLL_PERIOD: Duration = Duration::from_millis(400);
 /// Checks after which an invalid scene is loaded again, since it may name a file that the old scene does not, and that is therefore not watched.
 const POLLS_PER_RETRY: u32 = 5;
 
-/// Serves a scene like [`run`], and restarts whenever one of its files changes and the scene is still valid. Clients get a shutdown notice, and
-/// reconnect to the new world on the same socket. The new world is built while the old one runs. The faults of an invalid scene are logged, and the old
+/// Serves a scene like [`run`](crate::run()), beginning with its `world`, and restarts whenever one of its files changes and the scene is still valid.
+/// Clients get a shutdown notice, and reconnect to the new world on the same socket. The new world is built while the old one runs. The faults of an invalid scene are logged, and the old
 /// world continues; so it does after a panic while a scene is loaded or a world built.
 ///
 /// A built-in scene has no files. A recorded scene is not watched, since the recording would restart too.
 ///
 /// # Errors
-/// As [`run`].
-pub async fn run_and_reload(mut config: Config, listener: TcpListener, shutdown: impl Future<Output = ()>) -> Result<(), RunError> {
+/// As [`run_simulation`].
+pub async fn run_and_reload(
+    mut world: World,
+    mut config: Config,
+    listener: TcpListener,
+    shutdown: impl Future<Output = ()>,
+) -> Result<(), RunError> {
     if config.scene.files.is_empty() || config.rerun.is_some() {
-        return run(config, listener, shutdown).await;
+        config.scene.nutrients = None;
+        return run_simulation(world, config, listener, shutdown).await;
     }
     let listener = listener.into_std().map_err(RunError::Socket)?;
     let mut shutdown = pin!(shutdown);
-    let mut world = World::new(&config.scene.scene, config.scene.maps())?;
     loop {
         let mut changed = None;
         let until = async {

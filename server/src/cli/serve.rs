@@ -9,6 +9,7 @@ use anyhow::Context as _;
 use clap::{Args, ValueHint};
 use prairie::inspect::Target;
 use prairie::net::bind;
+use prairie::world::World;
 use prairie::{Config, Limits, scenes};
 use std::ffi::{OsStr, OsString};
 
@@ -88,7 +89,7 @@ impl Serve {
         );
         let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
         let outcome = runtime.block_on(self.run_until_stopped());
-        // A scene that is still being loaded is abandoned.
+        // A scene that is still being loaded, or a world that is being built, is abandoned.
         runtime.shutdown_background();
         outcome
     }
@@ -108,6 +109,11 @@ impl Serve {
         let mut limits =
             Limits { clients: usize::from(self.max_clients), clients_per_address: usize::from(self.max_per_address), ..Limits::default() };
         limits.send.bytes_per_s = f64::from(self.client_kbit) * 1000.0 / 8.0;
+        let building = tokio::task::spawn_blocking(move || World::new(&scene.scene, scene.maps()).map(|world| (scene, world)));
+        let (scene, world) = tokio::select! {
+            built = building => built??,
+            () = stop.received() => return Ok(()),
+        };
         let config = Config {
             tls: tls.clone(),
             allow_origins: self.tls.allow_origin,
@@ -123,7 +129,7 @@ impl Serve {
             announce(address, tls.as_ref(), self.open);
             stop.received().await;
         };
-        Ok(prairie::run_and_reload(config, listener, shutdown).await?)
+        Ok(prairie::run_and_reload(world, config, listener, shutdown).await?)
     }
 }
 

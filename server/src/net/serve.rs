@@ -6,6 +6,7 @@ use super::tls::Tls;
 use crate::config::Limits;
 use crate::log_limit::LogLimit;
 use axum::{Extension, Router};
+use futures_util::future::BoxFuture;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use socket2::SockRef;
@@ -26,7 +27,19 @@ const UNSENT_BYTES: u32 = 64 << 10;
 
 /// Serves connections forever. At most `limits.pending` connections that are not clients are open at once; others wait in the system's queue, for at
 /// most `limits.http_timeout`. Those of an address that has too many are closed at once.
-pub(crate) async fn serve(listener: TcpListener, tls: Option<Tls>, router: Router, limits: Limits, admission: Arc<Admission>) {
+///
+/// The future is boxed so that the whole network stack is compiled once, in this crate, and not again in every program that polls it.
+pub(crate) fn serve(
+    listener: TcpListener,
+    tls: Option<Tls>,
+    router: Router,
+    limits: Limits,
+    admission: Arc<Admission>,
+) -> BoxFuture<'static, ()> {
+    Box::pin(accept_connections(listener, tls, router, limits, admission))
+}
+
+async fn accept_connections(listener: TcpListener, tls: Option<Tls>, router: Router, limits: Limits, admission: Arc<Admission>) {
     let slots = Slots { free: Arc::new(Semaphore::new(limits.pending)), warning: LogLimit::default() };
     let rejection_warning = LogLimit::default();
     loop {

@@ -55,6 +55,31 @@ fn a_hangup_that_nohup_ignores_stays_ignored() {
     assert!(log.contains("SIGTERM") && !log.contains("SIGHUP"), "{log}");
 }
 
+/// The socket listens before the world is built, which takes seconds where so much underbrush grows.
+#[test]
+fn a_signal_while_the_world_is_built_announces_no_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene_dir = folder.path().join("dense");
+    let program = env!("CARGO_BIN_EXE_prairie");
+    assert!(Command::new(program).args(["new", "--from", "underbrush"]).arg(&scene_dir).output().unwrap().status.success());
+    let file = scene_dir.join("scene.toml");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let dense = text.replace("spacing_m = 0.4", "spacing_m = 0.125");
+    assert_ne!(dense, text);
+    std::fs::write(&file, dense).unwrap();
+    let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let address = format!("127.0.0.1:{port}");
+    let mut child = start(program, &["serve", file.to_str().unwrap(), "--addr", &address]);
+    while std::net::TcpStream::connect(&address).is_err() {
+        sleep(Duration::from_millis(1));
+    }
+    send(&child, "INT");
+    let mut printed = String::new();
+    child.stdout.take().unwrap().read_to_string(&mut printed).unwrap();
+    let (code, log) = end(child);
+    assert_eq!((code, printed.as_str()), (Some(0), ""), "{log}");
+}
+
 /// The handlers are there before the scene is loaded, which takes long for this one.
 #[cfg(target_os = "linux")]
 #[test]

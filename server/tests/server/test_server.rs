@@ -3,6 +3,7 @@
 use crate::stand_in::{StandInWorld, scene};
 use prairie::net::{Tls, TlsSettings, bind};
 use prairie::scenes::LoadedScene;
+use prairie::world::World;
 use prairie::{Config, Limits, RunError, run, run_and_reload, run_simulation, scenes};
 use std::net::SocketAddr;
 use std::path::Path;
@@ -64,7 +65,8 @@ impl Server {
         let address = listener.local_addr().unwrap();
         let (stop, stopped) = oneshot::channel();
         let config = Config::new(scenes::load(scene.to_str().unwrap()).unwrap());
-        Self { address, stop, outcome: tokio::spawn(run_and_reload(config, listener, async { drop(stopped.await) })) }
+        let world = World::new(&config.scene.scene, config.scene.maps()).unwrap();
+        Self { address, stop, outcome: tokio::spawn(run_and_reload(world, config, listener, async { drop(stopped.await) })) }
     }
 
     pub(crate) async fn stop(self) {
