@@ -20,6 +20,7 @@ const RELOAD = ["Reload", () => location.reload()];
 const MESSAGES = {
   insecure: {
     tone: "stop",
+    reported: true,
     title: "This address is not a secure one",
     text: "Browsers allow WebGPU only on https addresses and on localhost. Ask the operator of the server for one of these:",
     items: [

@@ -79,7 +79,11 @@ where
                     return new;
                 }
             }
-            Ok(Ok(_)) => fault = None,
+            Ok(Ok(_)) => {
+                if fault.take().is_some() {
+                    tracing::info!(file = escaped(&now.files[0]), "the scene is valid again");
+                }
+            }
             Ok(Err(error)) => {
                 let newest_fault = Some(error.to_string());
                 if fault != newest_fault {
@@ -171,5 +175,35 @@ mod tests {
         let now = LoadedScene { files: vec!["scene.toml".into()], ..scenes::load("shells").unwrap() };
         let (changed, _) = changed_scene(&now, load_with_a_fault).await;
         assert_eq!((changed.name.as_str(), FAULTY_LOADS.load(Ordering::SeqCst)), ("blades", 2));
+    }
+
+    /// Fails at first, and then loads the scene that the test serves.
+    fn load_a_mended_scene(path: PathBuf) -> Result<LoadedScene, SceneError> {
+        static LOADS: AtomicU32 = AtomicU32::new(0);
+        match LOADS.fetch_add(1, Ordering::SeqCst) {
+            0 => scenes::load("no-such-scene"),
+            _ => Ok(LoadedScene { files: vec![path], ..scenes::load("shells").unwrap() }),
+        }
+    }
+
+    #[tokio::test]
+    async fn the_log_says_when_a_fault_is_mended() {
+        let log = tempfile::NamedTempFile::new().unwrap();
+        let subscriber = tracing_subscriber::fmt().with_ansi(false).with_writer(log.reopen().map(std::sync::Arc::new).unwrap()).finish();
+        let _log = tracing::subscriber::set_default(subscriber);
+        let now = LoadedScene { files: vec!["scene.toml".into()], ..scenes::load("shells").unwrap() };
+        let mended = async {
+            loop {
+                let text = std::fs::read_to_string(log.path()).unwrap();
+                if text.contains("the scene is valid again") {
+                    break text;
+                }
+                tokio::time::sleep(POLL_PERIOD).await;
+            }
+        };
+        tokio::select! {
+            _ = changed_scene(&now, load_a_mended_scene) => panic!("the scene has not changed"),
+            text = mended => assert!(text.contains("the changed scene is invalid") && text.contains("file=\"scene.toml\""), "{text}"),
+        }
     }
 }

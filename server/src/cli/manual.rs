@@ -2,7 +2,6 @@
 
 use super::Cli;
 use super::print::print;
-use anyhow::Context as _;
 use clap::{Args, CommandFactory as _};
 use clap_mangen::Man;
 
@@ -17,7 +16,7 @@ Examples:
 #[derive(Debug, Args)]
 pub(super) struct Manual {
     /// A command, for its own page
-    #[arg(value_name = "COMMAND")]
+    #[arg(value_name = "COMMAND", value_parser = name_of_command)]
     command: Option<String>,
 }
 
@@ -27,13 +26,16 @@ impl Manual {
         prairie.build();
         let page = match &self.command {
             None => &prairie,
-            Some(name) => prairie.find_subcommand(name).with_context(|| {
-                let known: Vec<_> = prairie.get_subcommands().map(clap::Command::get_name).collect();
-                format!("COMMAND is `{name}`; allowed: {}", known.join(", "))
-            })?,
+            Some(name) => prairie.find_subcommand(name).expect("the parser of the argument knows it"),
         };
         let mut text = Vec::new();
         Man::new(page.clone()).render(&mut text)?;
         print(String::from_utf8(text)?.trim_end())
     }
+}
+
+fn name_of_command(text: &str) -> Result<String, String> {
+    let prairie = Cli::command();
+    let known: Vec<_> = prairie.get_subcommands().map(clap::Command::get_name).collect();
+    if known.contains(&text) { Ok(text.to_owned()) } else { Err(format!("allowed: {}", known.join(", "))) }
 }

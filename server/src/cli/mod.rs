@@ -109,7 +109,7 @@ enum Command {
     Man(Manual),
 }
 
-/// Parses the arguments and runs the command. Returns the exit status: 0, 1 if a scene is invalid, or 2 for wrong usage.
+/// Parses the arguments and runs the command. Returns the exit status: 0, 1 if a scene is invalid, or 2 for wrong arguments or environment variables.
 ///
 /// # Errors
 /// Those of the command, for `main` to print.
@@ -121,10 +121,17 @@ pub(crate) fn run() -> anyhow::Result<ExitCode> {
     let is_named = cli.command.is_some();
     let command = cli.command.unwrap_or_else(|| Command::Serve(Box::new(cli.serve)));
     let format = if let Command::Serve(serve) = &command { serve.log_format } else { LogFormat::default() };
-    let _log = log::start(format)?;
+    let filter = match log::filter() {
+        Ok(filter) => filter,
+        Err(error) => {
+            complain(&error);
+            return Ok(ExitCode::from(2));
+        }
+    };
+    let _log = log::start(format, filter)?;
     let done = |()| ExitCode::SUCCESS;
     match command {
-        Command::Serve(serve) if is_named => serve.run().map(done),
+        Command::Serve(serve) if is_named || !serve.has_word() => serve.run().map(done),
         Command::Serve(serve) => serve.run().map(done).map_err(unknown_word::suggest_commands),
         Command::Scenes(scenes) => scenes.run().map(done),
         Command::Check(check) => check.run(),

@@ -33,6 +33,30 @@ impl New {
             if is_from { error.context("--from") } else { error }
         })?;
         let lines: Vec<_> = files.iter().map(escaped).collect();
-        print(format_args!("{}\n\nRun it with: prairie {}", lines.join("\n"), lines[0]))
+        print(format_args!("{}\n\nRun it with: prairie {}", lines.join("\n"), quoted(&lines[0])))
+    }
+}
+
+/// A path as a word of a command line: in quotes if the shell would not take it as it is.
+fn quoted(path: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-+:@%,=".contains(c) || cfg!(windows) && c == '\\';
+    match path {
+        _ if path.chars().all(is_plain) => path.to_owned(),
+        _ if cfg!(windows) => format!("\"{path}\""),
+        _ => format!("'{}'", path.replace('\'', r"'\''")),
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shell_takes_a_quoted_path_as_one_word() {
+        assert_eq!(quoted("hills/Hügel-1/scene.toml"), "hills/Hügel-1/scene.toml");
+        for path in ["a b/scene.toml", "Ada's/scene.toml", "$HOME;*/scene.toml"] {
+            let echoed = std::process::Command::new("sh").args(["-c", &format!("printf %s {}", quoted(path))]).output().unwrap();
+            assert_eq!(String::from_utf8(echoed.stdout).unwrap(), path);
+        }
     }
 }

@@ -9,6 +9,7 @@ use anyhow::Context as _;
 use clap::{Args, ValueHint};
 use prairie::inspect::Target;
 use prairie::net::bind;
+use prairie::scenes::SceneError;
 use prairie::world::World;
 use prairie::{Config, Limits, scenes};
 use std::ffi::{OsStr, OsString};
@@ -43,13 +44,13 @@ pub(super) struct Serve {
     #[arg(id = "scene_flag", long = "scene", env = "PRAIRIE_SCENE", value_name = "NAME|FILE", value_hint = ValueHint::FilePath)]
     scene_flag: Option<OsString>,
     /// Address to listen on; port 0 picks a free port
-    #[arg(long, env = "PRAIRIE_ADDR", value_name = "HOST:PORT", default_value = "127.0.0.1:8080")]
+    #[arg(long, env = "PRAIRIE_ADDR", value_name = "HOST:PORT", default_value = "127.0.0.1:8080", value_parser = address)]
     addr: String,
     /// Open the page in the browser
     #[arg(long, env = "PRAIRIE_OPEN", value_parser = yes_or_no)]
     open: bool,
     #[command(flatten)]
-    tls: TlsArguments,
+    pub(super) tls: TlsArguments,
     /// Record the run for the rerun viewer: serve it to viewers, save it to a file, or send it to a running viewer
     #[arg(long, env = "PRAIRIE_RERUN", value_name = "serve|save=FILE.rrd|connect=URL")]
     rerun: Option<Target>,
@@ -74,9 +75,22 @@ pub(super) struct Serve {
     /// Log the errors of the pages, such as a panic of the client or a browser without WebGPU; at most 20 at once and one in 5 s
     #[arg(long, env = "PRAIRIE_REPORT", value_parser = yes_or_no)]
     report: bool,
+    /// Environment variables from which options have their values.
+    #[arg(skip)]
+    pub(super) variables: Vec<String>,
 }
 
 impl Serve {
+    /// Whether the scene is given as a word.
+    pub(super) fn has_word(&self) -> bool {
+        self.scene.is_some()
+    }
+
+    /// Whether an option has its value from its environment variable.
+    fn is_from(&self, variable: &str) -> bool {
+        self.variables.iter().any(|used| used == variable)
+    }
+
     /// The scene: the word or `--scene`, which `usage` does not allow together, else `PRAIRIE_SCENE`, else the default.
     fn scene(&self) -> &OsStr {
         self.scene.as_deref().or(self.scene_flag.as_deref()).unwrap_or(DEFAULT_SCENE.as_ref())
@@ -94,16 +108,22 @@ impl Serve {
         outcome
     }
 
+    /// An error about the scene, with the environment variable if the scene comes from there.
+    fn scene_error(&self, error: SceneError) -> anyhow::Error {
+        let error = anyhow::Error::from(error);
+        if !self.has_word() && self.is_from("PRAIRIE_SCENE") { error.context("PRAIRIE_SCENE") } else { error }
+    }
+
     async fn run_until_stopped(self) -> anyhow::Result<()> {
         // Before anything that takes time: a signal then ends the program in order, not at once.
         let mut stop = StopSignal::install()?;
         let scene = self.scene().to_owned();
         let loading = tokio::task::spawn_blocking(move || scenes::load(&scene));
         let scene = tokio::select! {
-            loaded = loading => loaded??,
+            loaded = loading => loaded?.map_err(|error| self.scene_error(error))?,
             () = stop.received() => return Ok(()),
         };
-        let listener = bind(&self.addr).await.context("--addr")?;
+        let listener = bind(&self.addr).await.context(if self.is_from("PRAIRIE_ADDR") { "PRAIRIE_ADDR" } else { "--addr" })?;
         let address = listener.local_addr()?;
         let tls = self.tls.open(address)?;
         let mut limits =
@@ -133,11 +153,19 @@ impl Serve {
     }
 }
 
+/// Parser of an address to listen on. Whether its host exists and belongs to this machine is known only when the server listens.
+fn address(text: &str) -> Result<String, String> {
+    match text.rsplit_once(':') {
+        Some((host, port)) if !host.is_empty() && port.parse::<u16>().is_ok() => Ok(text.to_owned()),
+        _ => Err("expected HOST:PORT, such as 127.0.0.1:8080 or 0.0.0.0:8080, with a port from 0 to 65535".to_owned()),
+    }
+}
+
 /// Parser of a switch in an environment variable.
 fn yes_or_no(text: &str) -> Result<bool, String> {
     match text.to_ascii_lowercase().as_str() {
         "true" | "yes" | "on" | "1" => Ok(true),
-        "false" | "no" | "off" | "0" | "" => Ok(false),
+        "false" | "no" | "off" | "0" => Ok(false),
         _ => Err("allowed: true, yes, on or 1, and false, no, off or 0".to_owned()),
     }
 }

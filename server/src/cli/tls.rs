@@ -1,8 +1,7 @@
 //! Arguments of `prairie serve` about https and the names of the server.
 
-use anyhow::Context as _;
 use clap::{Args, ValueHint};
-use prairie::net::{AcmeService, HostName, LETS_ENCRYPT, Origin, Tls, TlsChoice, TlsSettings};
+use prairie::net::{AcmeService, HostName, LETS_ENCRYPT, Origin, Tls, TlsChoice, TlsError, TlsSettings};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
@@ -33,20 +32,24 @@ pub(super) struct TlsArguments {
 }
 
 impl TlsArguments {
+    /// The first argument that needs another one, by its identifier, and the one that it needs.
+    pub(super) fn unmet(&self) -> Option<(&'static str, &'static str)> {
+        let is_acme = matches!(self.tls, Some(TlsChoice::Acme { .. }));
+        let keeps_certificates = is_acme || self.tls == Some(TlsChoice::SelfSigned);
+        let arguments = [
+            ("tls_dir", self.tls_dir.is_some() && !keeps_certificates, "--tls self or --tls acme:DOMAIN"),
+            ("acme_email", self.acme_email.is_some() && !is_acme, "--tls acme:DOMAIN"),
+            ("acme_directory", self.acme_directory.is_some() && !is_acme, "--tls acme:DOMAIN"),
+            ("acme_root", self.acme_root.is_some() && !is_acme, "--tls acme:DOMAIN"),
+        ];
+        arguments.into_iter().find(|(_, lacks_another, _)| *lacks_another).map(|(id, _, needed)| (id, needed))
+    }
+
     /// Opens the certificate; `None` without `--tls`.
     ///
     /// # Errors
-    /// When the certificate cannot be used, or an argument needs another.
+    /// When the certificate cannot be used.
     pub(super) fn open(&self, listening: SocketAddr) -> anyhow::Result<Option<Tls>> {
-        let is_acme = matches!(self.tls, Some(TlsChoice::Acme { .. }));
-        let acme_arguments = [
-            ("--acme-email", self.acme_email.is_some()),
-            ("--acme-directory", self.acme_directory.is_some()),
-            ("--acme-root", self.acme_root.is_some()),
-        ];
-        if let Some((name, _)) = acme_arguments.iter().find(|(_, is_given)| *is_given && !is_acme) {
-            anyhow::bail!("{name} needs --tls acme:DOMAIN");
-        }
         let Some(choice) = &self.tls else { return Ok(None) };
         let settings = TlsSettings {
             folder: self.tls_dir.clone(),
@@ -58,8 +61,11 @@ impl TlsArguments {
             },
             ..TlsSettings::new(choice.clone())
         };
-        let tls = Tls::new(&settings, listening).context("--tls")?;
-        if is_acme && listening.port() != 443 {
+        let tls = Tls::new(&settings, listening).map_err(|error| {
+            let flag = if matches!(error, TlsError::Store { .. }) { "--tls-dir" } else { "--tls" };
+            anyhow::Error::from(error).context(flag)
+        })?;
+        if matches!(choice, TlsChoice::Acme { .. }) && listening.port() != 443 {
             tracing::info!("the ACME service checks the domain at port 443, which must lead to port {}", listening.port());
         }
         Ok(Some(tls))

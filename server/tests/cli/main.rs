@@ -1,6 +1,7 @@
 //! The program as its users see it: help texts, messages, output, log and exit status.
 
 mod check;
+mod environment;
 #[cfg(unix)]
 mod log;
 mod new;

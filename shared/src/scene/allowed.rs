@@ -276,6 +276,8 @@ impl fmt::Display for Allowed {
         match self {
             Text => f.write_str("text in quotes"),
             Name => f.write_str("a name in quotes, not empty"),
+            // The nearest f64 is one larger, and would be shown rounded.
+            Range(low, high) if *high == i64::MAX as f64 => write!(f, "{low} to {}", i64::MAX),
             Range(low, high) => write!(f, "{low} to {high}"),
             OneOf(words) => {
                 for (i, word) in words.iter().enumerate() {

@@ -197,6 +197,13 @@ fn the_ends_of_every_range_pass_the_check_of_that_range() {
 }
 
 #[test]
+fn the_largest_seed_is_shown_to_the_last_digit() {
+    let faults = parse("seed = -1").unwrap_err();
+    let fault = faults.iter().find(|fault| fault.path == "seed").unwrap();
+    assert_eq!(fault.message, format!("is -1; allowed: 0 to {}", i64::MAX));
+}
+
+#[test]
 fn exactly_the_required_fields_are_required() {
     let fields = FIELDS.iter().map(|(path, _)| (*path).to_owned());
     for path in fields.chain(sections()) {

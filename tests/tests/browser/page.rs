@@ -9,7 +9,7 @@ fn embedded(path: &str) -> Option<Page> {
     asset(path).map(|asset| (asset.content_type, asset.bytes))
 }
 
-/// Opens the embedded page under a host name, waits for a message, and returns its title.
+/// Opens the embedded page under a host name, waits for a message and its report to the server, and returns its title.
 async fn title_of_message(host: &str, kind: &str, options: &Options) -> Result<String> {
     let pages = Pages::serve(embedded).await?;
     let mut options = options.clone();
@@ -17,6 +17,7 @@ async fn title_of_message(host: &str, kind: &str, options: &Options) -> Result<S
     let browser = Browser::start(&options).await?;
     browser.go(&format!("http://{host}:{}/", pages.addr.port())).await?;
     browser.until(&format!("document.getElementById('message').dataset.kind === '{kind}'")).await?;
+    browser.until("performance.getEntriesByType('resource').some(({ name }) => name.endsWith('/report'))").await?;
     let title = browser.evaluate("document.querySelector('#message h1').innerText").await?;
     Ok(title.as_str().unwrap_or_default().to_owned())
 }

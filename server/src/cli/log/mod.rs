@@ -28,12 +28,11 @@ pub(super) enum LogFormat {
     Json,
 }
 
-/// Starts the log; dropping the guard writes the events that still wait.
+/// Starts the log of the events that pass a filter; dropping the guard writes those that still wait.
 ///
 /// # Errors
-/// When `RUST_LOG` is malformed, or the system refuses to start a thread.
-pub(super) fn start(format: LogFormat) -> anyhow::Result<Guard> {
-    let filter = filter()?;
+/// When the system refuses to start a thread.
+pub(super) fn start(format: LogFormat, filter: Targets) -> anyhow::Result<Guard> {
     let is_coloured = is_coloured(stderr().is_terminal(), std::env::var_os("NO_COLOR").as_deref());
     let losses = tracing_subscriber::registry().with(layer(format, is_coloured, stderr)).into();
     let (queue, guard) = Queue::start(stderr(), losses).context("cannot start the thread of the log")?;
@@ -43,7 +42,10 @@ pub(super) fn start(format: LogFormat) -> anyhow::Result<Guard> {
 }
 
 /// Events to log: those that `RUST_LOG` names, or warnings of all packages and information of Prairie's.
-fn filter() -> anyhow::Result<Targets> {
+///
+/// # Errors
+/// When `RUST_LOG` is malformed.
+pub(super) fn filter() -> anyhow::Result<Targets> {
     let text = std::env::var("RUST_LOG").unwrap_or_default();
     let filter = if text.is_empty() { "warn,rustls=error,prairie=info" } else { &text };
     filter.parse().with_context(|| {

@@ -28,7 +28,7 @@ const ROOT_LIMIT: u64 = 1 << 20;
 pub(super) fn start(domains: &[HostName], service: &AcmeService, folder: &Path) -> Result<Tls, TlsError> {
     let runtime = Handle::try_current().map_err(|error| TlsError::Acme(error.to_string()))?;
     let folder = folder.join(FOLDER);
-    create(&folder).map_err(|error| TlsError::File { file: folder.clone(), reason: format!("cannot be created: {error}") })?;
+    create(&folder).map_err(|error| TlsError::Store { file: folder.clone(), reason: format!("cannot be created: {error}") })?;
     let config = match &service.root {
         None => AcmeConfig::new(domains.iter().map(HostName::as_str)),
         Some(root) => AcmeConfig::new_with_client_config(domains.iter().map(HostName::as_str), trusting(root)?),

@@ -7,10 +7,18 @@ use thiserror::Error;
 /// Reasons why TLS cannot be set up.
 #[derive(Debug, Error)]
 pub enum TlsError {
-    /// A file is missing, unreadable, not writable or of another kind, or certificate and key do not match.
+    /// A file is missing, unreadable or of another kind, or certificate and key do not match.
     #[error("{} {reason}", escaped(file))]
     File {
-        /// The file or folder.
+        /// The file.
+        file: PathBuf,
+        /// Reason why it cannot be used.
+        reason: String,
+    },
+    /// The folder in which certificates are kept, or a file of it, cannot be created, read or written.
+    #[error("{} {reason}", escaped(file))]
+    Store {
+        /// The folder or file.
         file: PathBuf,
         /// Reason why it cannot be used.
         reason: String,

@@ -23,7 +23,7 @@ const FILE_LIMIT: u64 = 1 << 20;
 /// damaged file is kept under another name.
 pub(super) fn open(folder: &Path, names: &Names, now: OffsetDateTime) -> Result<Tls, TlsError> {
     let path = folder.join(FILE);
-    let failed = |file: &Path, reason: String| TlsError::File { file: file.to_owned(), reason };
+    let failed = |file: &Path, reason: String| TlsError::Store { file: file.to_owned(), reason };
     fs::create_dir_all(folder).map_err(|error| failed(folder, format!("cannot be created: {error}")))?;
     if path.try_exists().map_err(|error| failed(&path, format!("cannot be read: {error}")))? {
         let stored = file::read(&path, FILE_LIMIT).map_err(|reason| failed(&path, format!("cannot be read: {reason}")))?;
