@@ -53,8 +53,8 @@ pub fn key_action(key: &str, code: &str) -> Option<Action> {
     vehicle.map(|kind| Action::Take(Some(kind))).or_else(height)
 }
 
-/// Action of a gamepad button in the standard layout (W3C Gamepad, section 11): the cross takes vehicles and gives them up, the upper shoulder
-/// buttons go through all of them.
+/// Action of a gamepad button in the standard layout (W3C Gamepad, section 11): the D-pad selects a vehicle or leaves it; LB and RB cycle through
+/// all of them.
 pub fn gamepad_action(button: u32) -> Option<Action> {
     let take =
         |direction| VehicleKind::ALL.into_iter().find(|&kind| profile(kind).dpad == Some(direction)).map(|kind| Action::Take(Some(kind)));

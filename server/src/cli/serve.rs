@@ -29,7 +29,7 @@ With `--tls self` the browser shows a warning: compare the fingerprint with the 
 A scene file is reloaded when you save it or a file that it names; all pages reconnect.
 The log goes to stderr; RUST_LOG=prairie=debug makes it more detailed.";
 
-/// The scene without another one.
+/// Scene served if none is given.
 const DEFAULT_SCENE: &str = "meadow";
 
 /// Arguments of `prairie serve`.

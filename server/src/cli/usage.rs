@@ -24,7 +24,7 @@ pub(super) fn parse() -> Result<Cli, clap::Error> {
     Cli::from_arg_matches(&matches)
 }
 
-/// Prints what clap has to say: help and version on stdout, with exit status 0; wrong usage on stderr, with exit status 2.
+/// Prints clap's output: help and version to stdout (status 0), usage errors to stderr (status 2).
 ///
 /// # Errors
 /// When stdout cannot be written.
@@ -46,7 +46,7 @@ fn refuse_two_scenes(command: &mut Command, matches: &ArgMatches) -> Result<(), 
     Ok(())
 }
 
-/// Words two errors better than clap does, which takes a second scene for a command.
+/// Rewrites clap's error for a second scene, which clap mistakes for a subcommand.
 fn explain(error: clap::Error, command: &mut Command, arguments: &[OsString]) -> clap::Error {
     match error.get(ContextKind::InvalidSubcommand) {
         Some(ContextValue::String(word)) if error.kind() == ErrorKind::ArgumentConflict && command.find_subcommand(word).is_none() => {

@@ -1,6 +1,6 @@
 //! Reports on the server for people, monitoring and load balancers: `/healthz`, `/readyz` and `/metrics`.
 //!
-//! All of them read what the world has published last, so none waits for it.
+//! All three report the last published state and never wait for the simulation.
 
 use super::app::App;
 use crate::metrics;

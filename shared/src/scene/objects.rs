@@ -16,7 +16,7 @@ pub enum VehicleKind {
     Helicopter,
     /// A frame of any outline that glides over the land and lays the grass; concave outlines are split (Chen & Johan §6).
     Sled,
-    /// A light sphere that whatever touches it sends off; rolls and presses the grass.
+    /// A light ball: bounces off whatever hits it, rolls, and presses the grass.
     Ball,
 }
 
