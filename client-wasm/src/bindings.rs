@@ -1,4 +1,4 @@
-//! Key and gamepad bindings: which key or button does what.
+//! Key and gamepad bindings: the action of each key and button.
 
 use crate::controls::Controls;
 use crate::vehicle::{Dpad, profile};
@@ -69,7 +69,7 @@ pub fn gamepad_action(button: u32) -> Option<Action> {
     }
 }
 
-/// The kind of vehicle after or before `current` in [`VehicleKind::ALL`], beyond whose ends it starts again; without a vehicle the first or last.
+/// The next or previous kind of vehicle in [`VehicleKind::ALL`], wrapping around at the ends; without a current vehicle the first or last.
 pub fn next_vehicle(current: Option<VehicleKind>, forward: bool) -> VehicleKind {
     let all = VehicleKind::ALL;
     let position = current.and_then(|current| all.iter().position(|kind| *kind == current));

@@ -24,7 +24,7 @@ pub(super) fn print_exactly(text: impl Display) -> io::Result<()> {
     stdout.flush()
 }
 
-/// Whether nobody reads the other end of the pipe any more.
+/// Whether the reader of the pipe has closed it.
 pub(super) fn is_closed_pipe(error: &io::Error) -> bool {
     error.kind() == ErrorKind::BrokenPipe
 }

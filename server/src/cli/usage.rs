@@ -35,7 +35,7 @@ pub(super) fn report(error: &clap::Error) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Refuses a scene given twice on the command line. `PRAIRIE_SCENE` may stand beside the word, so clap's own check is of no use.
+/// Rejects a scene given twice on the command line. clap's own check would also reject a word beside `PRAIRIE_SCENE`, which is allowed.
 fn refuse_two_scenes(command: &mut Command, matches: &ArgMatches) -> Result<(), clap::Error> {
     let has_word = matches!(matches.try_contains_id("scene"), Ok(true));
     let has_flag =

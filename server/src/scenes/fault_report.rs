@@ -9,7 +9,7 @@ use std::ops::Range;
 /// Most faults that are drawn, the first ones; the others are counted.
 pub(super) const DRAWN_LIMIT: usize = 20;
 
-/// Longest line (bytes) that is handed to the renderer as a whole. It shows only what fits, but its time grows with the line.
+/// Maximum length of a line (bytes) for the renderer; longer ones are cut. It shows only the part that fits, but its time grows with the line.
 const LONG_LINE: usize = 1000;
 
 /// Number of characters of a longer line that are handed over on each side of the fault, more than are shown.

@@ -58,7 +58,7 @@ pub struct Solver<R: Real> {
     pub(super) dust: Option<Field<R>>,
     /// Velocity at the start of a substep, where dust needs it or the substep may be rolled back.
     pub(super) old: Option<Velocity<R>>,
-    /// Pressure gradient at the start of a substep, where dust, which comes last, may roll it back.
+    /// Pressure gradient at the start of a sub-step, for a rollback if the dust, which comes last, fails.
     pub(super) old_pressure_gradient: Option<Velocity<R>>,
     /// Fraction of the canopy that stands in each column of cells, x fastest.
     pub(super) canopy_fraction: Vec<R>,

@@ -39,7 +39,7 @@ pub enum StepError {
         /// The jet.
         jet: Jet,
     },
-    /// The step exceeds the stability limit of a scheme. The state is that before the step, or before the substep that was too long.
+    /// The step exceeds the stability limit of a scheme. The state is restored to that before the step, or before the sub-step that was too long.
     #[error(
         "wind: {what} over dt_secs = {dt_secs} needs {needed:.0} substeps of at most {stable_dt_secs} s; allowed: {MAX_SUBSTEPS}. Take a shorter step, larger cells or a smaller value"
     )]

@@ -22,7 +22,7 @@ impl Load {
         (self.tip + self.spread * (count as f64 - section as f64 - 0.5) / count as f64) / count as f64
     }
 
-    /// The part of that load that rotates it.
+    /// The part of that load that rotates the section: all of it, except in the lowest.
     fn turning(&self, section: usize, count: usize) -> f64 {
         self.held(section, count) * if section == 0 { FOOT_LOAD_SHARE } else { 1.0 }
     }
