@@ -24,13 +24,13 @@ impl Load {
 
     /// The part of that load that rotates the section: all of it, except in the lowest.
     fn turning(&self, section: usize, count: usize) -> f64 {
-        self.held(section, count) * if section == 0 { FOOT_LOAD_SHARE } else { 1.0 }
+        self.held(section, count) * if section == 0 { FOOT_LOAD_FRACTION } else { 1.0 }
     }
 }
 
 /// Fraction of its load that rotates the lowest section. The joint at the clamp represents half a section, so it bends by the moment in the middle of
 /// that half: a quarter of the section is below.
-const FOOT_LOAD_SHARE: f64 = 0.75;
+const FOOT_LOAD_FRACTION: f64 = 0.75;
 
 /// Rotational stiffness of the joints at the lower ends of `sections` sections, from the base, with a rigidity that falls linearly to `tip_fraction` at
 /// the tip.

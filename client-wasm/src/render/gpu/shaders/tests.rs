@@ -81,7 +81,7 @@ fn passes_are_linked_from_their_files() {
 }
 
 #[test]
-fn each_file_is_valid_with_what_it_imports() {
+fn each_file_is_valid_with_its_imports() {
     let library = Library::new(texts()).expect("sound shaders");
     for file in library.0.keys() {
         let unit = joined(library.unit(file).unwrap_or_else(|error| panic!("{error}")));
