@@ -48,7 +48,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_cannot_be_seen_is_escaped() {
+    fn only_invisible_characters_are_escaped() {
         assert!(matches!(escape_invisible("Grüße, 草.toml"), Cow::Borrowed("Grüße, 草.toml")));
         assert_eq!(escape_invisible("a\u{1b}[31m\nb\u{202e}c\u{9b}"), "a\\u{1b}[31m\\nb\\u{202e}c\\u{9b}");
     }
