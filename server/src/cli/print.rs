@@ -4,7 +4,7 @@ use anyhow::Context as _;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write as _};
 
-/// Prints text and a line end to stdout. Colours are left out where stdout is no terminal, or where `NO_COLOR` is set. A closed pipe is no error: its
+/// Prints text and a line end to stdout. Colours are left out where stdout is not a terminal, or where `NO_COLOR` is set. A closed pipe is not an error: its
 /// reader, such as `head`, has read enough.
 ///
 /// # Errors

@@ -71,7 +71,7 @@ mod tests {
         let drawn = drawn(&format!("wind = {{ {keys} mean_m_per_s = 7 }}\n"));
         assert!(drawn.starts_with("s.toml has 2003 faults\n"), "{drawn}");
         assert!(drawn.lines().filter(|line| !line.starts_with("error: ")).all(|line| line.chars().count() <= 150), "{drawn}");
-        assert!(drawn.contains("`wind.é0` is no field of a scene; known here: `advection`,"), "{drawn}");
+        assert!(drawn.contains("`wind.é0` is not a field of a scene; known here: `advection`,"), "{drawn}");
         assert!(drawn.contains(" --> s.toml:1:10\n"), "{drawn}");
         assert_eq!(drawn.matches("error: ").count(), DRAWN_LIMIT);
         assert!(drawn.ends_with("\nand 1983 more faults\n"), "{drawn}");
@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn no_escape_sequence_of_a_file_is_drawn() {
         let drawn = drawn("\"a\\u001b[31m\" = 1 # \u{202e}\t\n");
-        assert!(drawn.contains("`a\\u{1b}[31m` is no field"), "{drawn}");
+        assert!(drawn.contains("`a\\u{1b}[31m` is not a field"), "{drawn}");
         assert!(!drawn.contains(['\u{1b}', '\u{202e}', '\t']), "{drawn}");
     }
 }
