@@ -1,4 +1,4 @@
-//! Key and gamepad bindings: which key or button does what.
+//! Key and gamepad bindings: the action of each key and button.
 
 use crate::controls::Controls;
 use crate::vehicle::{Dpad, profile};
@@ -53,8 +53,8 @@ pub fn key_action(key: &str, code: &str) -> Option<Action> {
     vehicle.map(|kind| Action::Take(Some(kind))).or_else(height)
 }
 
-/// Action of a gamepad button in the standard layout (W3C Gamepad, section 11): the cross takes vehicles and gives them up, the upper shoulder
-/// buttons go through all of them.
+/// Action of a gamepad button in the standard layout (W3C Gamepad, section 11): the D-pad selects a vehicle or leaves it; LB and RB cycle through
+/// all of them.
 pub fn gamepad_action(button: u32) -> Option<Action> {
     let take =
         |direction| VehicleKind::ALL.into_iter().find(|&kind| profile(kind).dpad == Some(direction)).map(|kind| Action::Take(Some(kind)));
@@ -69,7 +69,7 @@ pub fn gamepad_action(button: u32) -> Option<Action> {
     }
 }
 
-/// The kind of vehicle after or before `current` in [`VehicleKind::ALL`], beyond whose ends it starts again; without a vehicle the first or last.
+/// The next or previous kind of vehicle in [`VehicleKind::ALL`], wrapping around at the ends; without a current vehicle the first or last.
 pub fn next_vehicle(current: Option<VehicleKind>, forward: bool) -> VehicleKind {
     let all = VehicleKind::ALL;
     let position = current.and_then(|current| all.iter().position(|kind| *kind == current));

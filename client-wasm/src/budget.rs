@@ -31,7 +31,7 @@ const INITIAL_SLOPE: f32 = 1.0;
 const SLOPE_SMOOTHING: f32 = 0.5;
 /// Minimum change of level from which a slope is measured.
 const MIN_SLOPE_STEP: f32 = 0.05;
-/// Factor that shortens a step up, so that it ends below the budget.
+/// Divisor of steps up, so that they end below the budget.
 const STEP_UP_CAUTION: f32 = 1.5;
 
 /// Back-off after a step up that exceeded the budget (s): initial and maximum. It doubles each time.
@@ -44,7 +44,7 @@ const RELIEF: f32 = 0.7;
 /// Measured times of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameTime {
-    /// Time that the frame kept the CPU or the GPU busy, whichever is longer (s).
+    /// Busy time of the frame (s): the longer of its CPU time and its GPU time.
     pub work_secs: f32,
     /// Time since the previous frame (s).
     pub interval_secs: f32,

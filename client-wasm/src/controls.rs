@@ -1,4 +1,4 @@
-//! Control input, whichever device it comes from, and its meaning for a vehicle.
+//! Control input of any device, and its meaning for a vehicle.
 
 use crate::vehicle::{VerticalControl, profile};
 use prairie_core::scene::VehicleKind;

@@ -1,4 +1,4 @@
-//! What is heard at the camera: loudness and pitch of wind, grass and engines. The page turns it into sound.
+//! Sound levels at the camera: loudness and pitch of wind, grass and engines. The page turns them into sound.
 
 use crate::camera::Camera;
 use crate::vehicle::{Engine, profile};
@@ -22,7 +22,7 @@ const QUIETEST: f32 = 0.01;
 /// Largest number of engines heard at once, the loudest first.
 pub const ENGINE_LIMIT: usize = 4;
 
-/// What is heard at the camera. Loudness is 0 (silent) to 1.
+/// Sound levels at the camera. Loudness is 0 (silent) to 1.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Hearing {
     /// Speed of the wind at the camera (m/s).
@@ -72,7 +72,7 @@ impl Air for crate::state::Mirror {
     }
 }
 
-/// What is heard at `camera` among `objects`.
+/// Sound levels at `camera` among `objects`.
 pub fn hear(camera: &Camera, objects: impl IntoIterator<Item = ObjectPose>, air: &impl Air) -> Hearing {
     let eye_m = camera.eye_m;
     let wind_m_per_s = air.wind(eye_m).length();

@@ -4,7 +4,7 @@
 //! - [`render`]: the renderer.
 //! - [`camera`]: the camera; [`rig`]: its motion, free or behind a vehicle; [`damped`]: critically damped smoothing.
 //! - [`vehicle`]: table of vehicle kinds; [`bindings`]: keys and gamepad buttons; [`controls`]: control input and its meaning for a vehicle.
-//! - [`hearing`]: what is heard at the camera.
+//! - [`hearing`]: sound levels at the camera.
 //! - [`budget`]: automatic quality; [`redraw`]: detection of frames that need not be drawn.
 //! - `browser` (wasm only): page, socket, input devices and frame loop.
 

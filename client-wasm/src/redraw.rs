@@ -83,7 +83,7 @@ fn is_at_rest(a: &ObjectPose, b: &ObjectPose) -> bool {
     (a.id, a.kind) == (b.id, b.kind) && numbers(a).iter().zip(numbers(b)).all(|(a, b)| (a - b).abs() < MOTION_THRESHOLD)
 }
 
-/// Settling time of the plants once nothing moves them any more (s): that of the slowest blades, underbrush or force field.
+/// Settling time of undisturbed plants (s): that of the slowest blades, underbrush or force field.
 fn settle_secs(scene: &Scene) -> f32 {
     let (plants, damping) = (&scene.plants, scene.plants.swing_damping);
     let slowest_hz = scene.kinds_of_plants().iter().map(|plants| plants.swing_hz).fold(f32::INFINITY, f32::min);

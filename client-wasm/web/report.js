@@ -1,12 +1,12 @@
 // Reports errors of this page to the server, which writes them to its log with `--report`, and discards them without.
 
-// Most reports of one page, and their longest text (UTF-16 units; the server accepts 4096 bytes).
+// Maximum number of reports of one page, and maximum length of their text (UTF-16 units; the server accepts 4096 bytes).
 const LIMIT = 5;
 const LENGTH = 1300;
 
 const sent = new Set();
 
-// What a report says besides the error.
+// Details that each report adds to the error.
 export const context = { adapter: "" };
 
 export function report(kind, text) {

@@ -1,5 +1,5 @@
 // Sound of wind, grass and engines, made from noise and oscillators. It is off until someone asks for it: browsers allow sound only then, and so do people.
-// What is heard comes from the client (`hearing.rs`); while the page is hidden, nothing is.
+// The sound levels at the camera come from the client (`hearing.rs`). While the page is hidden, it is silent.
 
 import { byId } from "./elements.js";
 
@@ -12,7 +12,7 @@ const SILENCE = { wind_m_per_s: 0, rustle: 0, engines: [] };
 const KEY = "n";
 
 export class Sound {
-  // `hear()` returns what is heard, or null; `volume` is that of the last visit or null; `remember(key, value)` stores it; `notify(text)` shows a line to
+  // `hear()` returns the sound levels at the camera, or null; `volume` is that of the last visit or null; `remember(key, value)` stores it; `notify(text)` shows a line to
   // the user.
   constructor(hear, { volume, remember, notify }) {
     Object.assign(this, { hear, remember, notify });
@@ -111,7 +111,7 @@ class Graph {
     this.glide(this.master.gain, (volume / 100) ** 2);
   }
 
-  // Plays what is heard.
+  // Plays the newest sound levels.
   follow({ wind_m_per_s, rustle, engines }) {
     // A stronger wind is louder and higher.
     const wind = { m_per_s: wind_m_per_s, gain: 0.9 * Math.min(wind_m_per_s / 20, 1) ** 1.5, hz: 180 + 35 * wind_m_per_s };

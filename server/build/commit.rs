@@ -1,7 +1,7 @@
 //! Finds the file that names the commit of the sources.
 //!
-//! The log of a checkout's `HEAD` is that file where there is one: the program includes it, so a new commit recompiles the program alone, and neither
-//! the library nor this script.
+//! In a checkout it is the log of `HEAD`. The program includes that file, so a new commit recompiles the program alone, and neither the library nor this
+//! script.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -11,7 +11,8 @@ use flate2::{Compression, write::GzEncoder};
 use crate::Result;
 use crate::fingerprint::{Files, fingerprinted, hash};
 
-/// Quality of the brotli encoder, 0 to 11. The highest makes the client 10 % smaller and takes ten times as long, which only distributed binaries are worth.
+/// Quality of the brotli encoder, 0 to 11. The highest makes the client 10 % smaller and takes ten times as long; it is used for distributed binaries
+/// only.
 const BROTLI_QUALITY: i32 = 9;
 const DIST_BROTLI_QUALITY: i32 = 11;
 

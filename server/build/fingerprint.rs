@@ -43,7 +43,7 @@ pub(crate) fn hash(bytes: &[u8]) -> String {
     format!("{:016x}", hasher.finish())
 }
 
-/// Rewrites the references of a file, which finishes the files that it refers to first, and names it. `open` are the files being finished.
+/// Renames a file after its contents, once the files to which it refers have been renamed and its references updated. `open` are the files being finished.
 fn finish<'a>(
     name: &'a str,
     files: &'a Files,
@@ -92,8 +92,8 @@ fn extension(name: &str) -> &str {
     name.rsplit_once('.').map_or("", |(_, extension)| extension)
 }
 
-/// Quoted words of a text that look like the name of a file in the same folder, and whether the file must exist: bindings of WebAssembly call their
-/// imports by the name of a file that there is not.
+/// Quoted words that look like the name of a file in the same folder, and whether the file must exist. WebAssembly bindings name their imports after a
+/// file that does not exist.
 fn references(text: &str) -> BTreeMap<String, bool> {
     let mut found = BTreeMap::new();
     for (before, after) in QUOTES {

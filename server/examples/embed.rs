@@ -1,6 +1,6 @@
 //! Embeds a server in a program, connects a client over WebSocket, and prints the messages that the client receives while it drives a car.
 //!
-//! `cargo run --release -p prairie --no-default-features --example embed -- [SCENE] [FRAMES]`
+//! `cargo run --release -p prairie --example embed -- [SCENE] [FRAMES]`
 
 use anyhow::Context;
 use futures_util::{SinkExt, StreamExt};

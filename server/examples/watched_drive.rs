@@ -1,6 +1,6 @@
 //! Measures the data rate of a client whose camera follows a driving car, by kind of message, without a network.
 //!
-//! `cargo run --release -p prairie --no-default-features --example watched_drive -- [SCENE] [RADIUS_M] [SECONDS]`
+//! `cargo run --release -p prairie --example watched_drive -- [SCENE] [RADIUS_M] [SECONDS]`
 
 use anyhow::Context;
 use prairie::runner::Published;

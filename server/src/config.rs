@@ -72,11 +72,11 @@ pub struct Limits {
     /// Sustained rate of the bytes that a connection sends (bytes/s), TLS, HTTP and the headers of WebSocket frames included; bursts of four times this
     /// number are allowed. A connection that sends more is closed. Default 32 768, at least three times what `messages_per_s` messages of the page take.
     pub bytes_per_s: f64,
-    /// Views that are carried out (1/s). Of more, only the newest counts; so with choices and names. Default 30.
+    /// Rate limit of view messages (1/s). Beyond it a newer one replaces the one that waits; likewise for choices and names. Default 30.
     pub views_per_s: f64,
-    /// Choices of a vehicle that are carried out (1/s). Default 2.
+    /// Rate limit of vehicle choices (1/s). Default 2.
     pub choices_per_s: f64,
-    /// New names that are carried out (1/s). Default 0.5.
+    /// Rate limit of new names (1/s). Default 0.5.
     pub renames_per_s: f64,
     /// Pings that are answered (1/s). Default 5.
     pub pings_per_s: f64,

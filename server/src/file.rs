@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// A part of a file name that no other process uses, wherever it runs: process numbers repeat in containers that share a folder.
+/// Unique part of a file name, also among containers that share a folder, where process numbers repeat.
 pub(crate) fn unique_part() -> String {
     use std::hash::{BuildHasher as _, RandomState};
     format!("{:016x}", RandomState::new().hash_one(std::process::id()))

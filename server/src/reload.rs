@@ -14,7 +14,7 @@ use tokio::task::JoinError;
 /// Time between two checks of the files.
 const POLL_PERIOD: Duration = Duration::from_millis(400);
 
-/// Checks after which an invalid scene is loaded again, since it may name a file that the old scene does not, and that is therefore not watched.
+/// Number of checks between attempts to load an invalid scene. It may depend on a file that is not watched because the old scene does not name it.
 const POLLS_PER_RETRY: u32 = 5;
 
 /// Serves a scene like [`run`](crate::run()), beginning with its `world`, and restarts whenever one of its files changes and the scene is still valid.

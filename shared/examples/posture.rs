@@ -11,7 +11,7 @@ use prairie_core::plant::underbrush::rest::{Load, balanced, joints};
 const UNBENT_RAD: f64 = 0.3;
 
 /// Rigidity at the tip as a fraction of that at the base.
-const TIP_SHARE: f64 = 0.5;
+const TIP_FRACTION: f64 = 0.5;
 
 /// Pixels per length of the leaf.
 const SCALE_PX: f64 = 300.0;
@@ -27,7 +27,7 @@ fn main() {
         let path: Vec<String> = points.iter().map(|[x, y]| format!("{:.1} {:.1}", SCALE_PX * x, -SCALE_PX * y)).collect();
         let color = format!("hsl({} 60% 33%)", 130 - 13 * i);
         println!(r#"<path d="M{}" fill="none" stroke="{color}" stroke-width="2"/>"#, path.join("L"));
-        let [x, y] = elastica::tip(TIP_SHARE, load, UNBENT_RAD).map(|length| SCALE_PX * length);
+        let [x, y] = elastica::tip(TIP_FRACTION, load, UNBENT_RAD).map(|length| SCALE_PX * length);
         println!(r#"<circle cx="{x:.1}" cy="{:.1}" r="4" fill="none" stroke="{color}"/>"#, -y);
         println!(r#"<text x="{:.1}" y="{:.1}" fill="{color}">Λ = {weight}</text>"#, x + 8.0, 4.0 - y);
     }
@@ -37,7 +37,7 @@ fn main() {
 /// Joints of a leaf of length 1 from its foot to its tip, in balance with `load`.
 fn posture(sections: usize, load: Load) -> Vec<[f64; 2]> {
     let mut bends_rad = vec![0.0; sections];
-    balanced(&joints(sections, TIP_SHARE), load, UNBENT_RAD, &mut bends_rad);
+    balanced(&joints(sections, TIP_FRACTION), load, UNBENT_RAD, &mut bends_rad);
     let length = 1.0 / sections as f64;
     let tips = bends_rad.iter().scan([0.0; 2], |[x, y], bend_rad| {
         (*x, *y) = (*x + length * (UNBENT_RAD + bend_rad).sin(), *y + length * (UNBENT_RAD + bend_rad).cos());

@@ -5,8 +5,7 @@ use std::borrow::Cow;
 /// Longest text from outside that a message repeats (characters).
 pub const EXCERPT_LIMIT: usize = 1000;
 
-/// The text without its middle if it is longer than [`EXCERPT_LIMIT`], so that its beginning and its end are still shown, and with invisible characters
-/// escaped.
+/// Excerpt of a text with invisible characters escaped: above [`EXCERPT_LIMIT`] the middle is left out, and beginning and end remain.
 pub fn excerpt(text: &str) -> String {
     const HALF: usize = EXCERPT_LIMIT / 2;
     let Some((head, _)) = text.char_indices().nth(HALF).filter(|_| text.chars().nth(EXCERPT_LIMIT).is_some()) else {
@@ -49,7 +48,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_cannot_be_seen_is_escaped() {
+    fn only_invisible_characters_are_escaped() {
         assert!(matches!(escape_invisible("Grüße, 草.toml"), Cow::Borrowed("Grüße, 草.toml")));
         assert_eq!(escape_invisible("a\u{1b}[31m\nb\u{202e}c\u{9b}"), "a\\u{1b}[31m\\nb\\u{202e}c\\u{9b}");
     }

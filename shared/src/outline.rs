@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_convex_stays_whole() {
+    fn convex_outlines_stay_whole() {
         let hexagon = [[2.0, 0.0], [1.0, 1.7], [0.0, 1.7], [-1.0, 1.7], [-2.0, 0.0], [-1.0, -1.7], [1.0, -1.7]];
         let parts = convex_parts(&hexagon);
         assert_eq!((parts.len(), parts[0].corners_m.len()), (1, 6), "the straight corner goes");
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_outline_is_told() {
+    fn faults_of_outlines_are_reported() {
         let told = |corners: &[[f32; 2]]| check(corners).map_err(|fault| fault.to_string()).unwrap_err();
         assert!(told(&[]).starts_with("has 0 corners, which enclose no area"));
         assert!(told(&U[..2]).starts_with("has 2 corners"));

@@ -80,12 +80,12 @@ fn a_component_is_on_a_branch_before_it() {
         (
             vec![("leaf", "leaf", "on = 'stem'")],
             0,
-            "\"stem\", which is no component of its plant; allowed: \"\", the ground; no branch comes before it",
+            "\"stem\", which is not a component of its plant; allowed: \"\", the ground; no branch comes before it",
         ),
         (
             vec![stem, twig, ("leaf", "leaf", "on = 'twg'")],
             2,
-            "\"twg\", which is no component of its plant; allowed: \"\", the ground, or a branch before it, \"stem\", \"twig\"",
+            "\"twg\", which is not a component of its plant; allowed: \"\", the ground, or a branch before it, \"stem\", \"twig\"",
         ),
         (
             vec![("leaf", "leaf", "on = 'stem'"), stem],
@@ -244,15 +244,15 @@ fn an_underbrush_file_comes_before_the_scenes_own() {
 #[test]
 fn an_underbrush_file_contains_nothing_else() {
     let told = |text: &str| told(parse_underbrush(text).unwrap_err());
-    assert_eq!(told("[wind]\nsources = 3\n"), ["`wind` is no field of an underbrush file; known here: `underbrush`"]);
-    assert_eq!(told("underbush = 3\n"), ["`underbush` is no field of an underbrush file; did you mean `underbrush`?"]);
+    assert_eq!(told("[wind]\nsources = 3\n"), ["`wind` is not a field of an underbrush file; known here: `underbrush`"]);
+    assert_eq!(told("underbush = 3\n"), ["`underbush` is not a field of an underbrush file; did you mean `underbrush`?"]);
     assert_eq!(
         told(&format!("{REED}light_need = 0.5\n")),
-        ["`underbrush[0].components[1].light_need` is no field of an underbrush file; did you mean `underbrush.light_need`?"]
+        ["`underbrush[0].components[1].light_need` is not a field of an underbrush file; did you mean `underbrush.light_need`?"]
     );
     // Fields of a scene are not suggested.
     let elsewhere = told(&format!("{REED}haze_m = 2\n"));
-    assert!(elsewhere[0].contains("is no field of an underbrush file; known here: `angle_rad`, "), "{elsewhere:?}");
+    assert!(elsewhere[0].contains("is not a field of an underbrush file; known here: `angle_rad`, "), "{elsewhere:?}");
     assert!(told("[[underbrush]\n")[0].starts_with("not TOML"));
     assert_eq!(told(&format!("{REED}{REED}")).len(), 2);
 }

@@ -94,7 +94,7 @@ pub const VIEWS: [View; 10] = [
         scene: "storm",
         act: Act::Drag,
         eye: Eye::Chase([8.0, 3.0, 0.0]),
-        shows: "a sled, a concave object, through laid grass",
+        shows: "a sled, a concave object, through flattened grass",
         answers: "Chen & Johan 2010, Figure 12",
     },
     View {

@@ -74,12 +74,12 @@ fn mottle_at(p: vec2<f32>, span_m: f32) -> f32 {
 }
 
 // Dead leaves between the roots, resolved only near the eye: noise stretched along three directions.
-fn litter_at(p: vec2<f32>, is_told: bool) -> vec3<f32> {
+fn litter_at(p: vec2<f32>, is_near: bool) -> vec3<f32> {
     let heap = noise(p / 0.83);
     // Direction; length and width of a leaf (m).
     let leaves = array<vec4<f32>, 3>(vec4<f32>(0.98, 0.19, 0.53, 0.067), vec4<f32>(0.34, -0.94, 0.47, 0.059), vec4<f32>(-0.71, 0.70, 0.61, 0.073));
     var top = 0.0;
-    for (var i = 0; i < select(0, 3, is_told); i++) {
+    for (var i = 0; i < select(0, 3, is_near); i++) {
         let along = leaves[i].xy;
         let leaf = noise(vec2<f32>(dot(p, along), dot(p, vec2<f32>(-along.y, along.x))) / leaves[i].zw);
         top = max(top, select(leaf.g, leaf.b, i == 1) + 0.5 * heap.rag[i]);

@@ -48,7 +48,7 @@ const FAR_HEAD_PX: f32 = 4.0;
 const SINGLE_PX: f32 = 12.0;
 
 // Height of petals relative to that of the blade at their position, and its variation (Zhang, section 3.3).
-const PETALS_SHARE: f32 = 0.65;
+const PETALS_FRACTION: f32 = 0.65;
 const PETALS_SPREAD: f32 = 0.05;
 // Lean of a flower relative to that of a blade in the same wind: it is heavier, and slower by the square root of this (Zhang, section 3.4).
 const FLOWER_GIVE: f32 = 0.55;
@@ -111,7 +111,7 @@ fn plant_at(grid: vec2<i32>, index: u32, place: vec2<f32>, is_flower: bool) -> P
     plant.hue = clamp(shared_by.y * 0.45 + s.z * 0.55, 0.0, 0.999);
     plant.is_flower = is_flower;
     if is_flower {
-        plant.height *= PETALS_SHARE + PETALS_SPREAD * (2.0 * random3(grid, index + 22051u).y - 1.0);
+        plant.height *= PETALS_FRACTION + PETALS_SPREAD * (2.0 * random3(grid, index + 22051u).y - 1.0);
         plant.frequency *= sqrt(FLOWER_GIVE);
         plant.width = frame.blade_width_m * kind.width * 0.45;
         plant.droop = leaning * 0.35;

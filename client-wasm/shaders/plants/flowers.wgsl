@@ -12,7 +12,7 @@ import package::plants::strip_list::{is_listed, listed, number_of};
 const PETALS: u32 = 12u;
 const PETAL_VERTICES: u32 = 5u;
 // Radius of a disc with the same coverage as the petals, relative to their length.
-const DISC_SHARE: f32 = 0.8;
+const DISC_FRACTION: f32 = 0.8;
 
 struct Flower {
     // Number of petals.
@@ -147,8 +147,8 @@ fn vs_disc(@builtin(vertex_index) index: u32, @builtin(instance_index) instance:
     let head = head_of(stem);
     let kind = head.kind;
     // The more the petals rise, the narrower and deeper the head.
-    let reach = DISC_SHARE * kind.length_m * head.size * select(cos(0.7 * kind.rise_rad), 0.0, rim == 0u);
-    let rise = select(sin(0.7 * kind.rise_rad) * DISC_SHARE * kind.length_m * head.size, 0.0, rim == 0u);
+    let reach = DISC_FRACTION * kind.length_m * head.size * select(cos(0.7 * kind.rise_rad), 0.0, rim == 0u);
+    let rise = select(sin(0.7 * kind.rise_rad) * DISC_FRACTION * kind.length_m * head.size, 0.0, rim == 0u);
     let angle = f32(rim) / 6.0 * TAU;
     let p = head.at + (head.right * cos(angle) + head.ahead * sin(angle)) * reach + head.axis * rise;
     let albedo = select(mix(kind.base, kind.tip, 0.7), mix(kind.base, kind.disc_rgb, 0.6), rim == 0u);

@@ -299,11 +299,11 @@ fn ribbons(@builtin(global_invocation_id) id: vec3<u32>) {
     let along = bent.along;
     var p = plant.root_m + bent.at;
     let own = limb_of(plant, row, list);
-    if trembles && list.drops_per_m2_s * own.drop_m2 > 0.0 {
+    if trembles && list.drops_per_m2_per_s * own.drop_m2 > 0.0 {
         let number = vec2<u32>(u32(plant.hue * UNIT_STEPS), row.limb_and_steps & 0xffffu);
         // The larger the component, the less the mass of the drop counts.
         let speed = 1.0 / mix(1.0 / DROP_M_PER_S, 1.0 / own.drop_m_per_s, size * size * size);
-        let dip = dip_m(speed, own.drop_secs * size, own.drop_m2 * size * size * list.drops_per_m2_s, number, frame.time_secs);
+        let dip = dip_m(speed, own.drop_secs * size, own.drop_m2 * size * size * list.drops_per_m2_per_s, number, frame.time_secs);
         // The leaf does not yield along its axis.
         let down = vec3<f32>(0.0, 1.0, 0.0) - along * along.y;
         p -= down * (min(dip, FARTHEST_DIP * own.length_m * size) * bow(f32(row.limb_and_steps >> 16u) / f32(own.steps)));

@@ -172,7 +172,7 @@ fn fs(surface: Surface) -> @location(0) vec4<f32> {
 
 // Depth below the corners of a spray of leaves at which their shadow is sampled, relative to the height of the tree; farther in they would be
 // in their own shadow.
-const SPRAY_SHARE: f32 = 0.14;
+const SPRAY_FRACTION: f32 = 0.14;
 
 // Surface lit at its vertices: most fragments of sprays of leaves are hidden or cut away.
 struct Afar {
@@ -190,7 +190,7 @@ fn vs_afar(vertex: Vertex, @builtin(instance_index) index: u32) -> Afar {
     let view = normalize(surface.p - frame.eye_m);
     let normal = normalize(surface.normal);
     let height = length(instances[index].world_from_model[1].xyz);
-    let light = sun_light_at(surface.p - normal * select(0.0, SPRAY_SHARE * height, is_leaf), normal);
+    let light = sun_light_at(surface.p - normal * select(0.0, SPRAY_FRACTION * height, is_leaf), normal);
     let black = matte(surface.p, normal, view, vec3<f32>(0.0), surface.color.a, is_leaf, light);
     let plain = matte(surface.p, normal, view, surface.color.rgb, surface.color.a, is_leaf, light);
     let air = air_before(surface.p);

@@ -9,7 +9,7 @@ pub(super) struct DeviceSupport {
     pub(super) is_pending: bool,
     /// Number of devices requested so far. Results for an earlier device are ignored.
     pub(super) device: u32,
-    /// Highest quality that may be supported, and why no higher one is; `None` before an attempt has failed.
+    /// Highest quality that may be supported, and the error of the next higher one; `None` before an attempt has failed.
     limit: Option<(Quality, String)>,
 }
 

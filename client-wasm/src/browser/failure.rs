@@ -1,4 +1,4 @@
-//! The end of a client that failed: by a panic, or by an error that the page caught.
+//! Shutdown of a failed client, after a panic or an error that the page caught.
 
 use super::halted::set_halted;
 use super::{page, socket};

@@ -8,7 +8,7 @@ use crate::rig::Rig;
 use crate::state::Event;
 use prairie_core::wire::{self, Close, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, WireError};
 
-/// How long a refusal is shown (s).
+/// Display time of a refusal (s).
 const NOTICE_SECS: f64 = 6.0;
 
 /// Passes a socket event to the page's client.

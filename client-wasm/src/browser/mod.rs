@@ -153,7 +153,7 @@ pub fn dust(x_m: f32, y_m: f32, z_m: f32) -> f32 {
     with_app(|app| app.mirror.dust_at(Vec3::new(x_m, y_m, z_m))).unwrap_or(0.0)
 }
 
-/// What is heard at the camera (`hearing.rs`), as JSON; `null` while the client is not connected or has no view yet.
+/// Sound levels at the camera (`hearing.rs`), as JSON; `null` while the client is not connected or has no view yet.
 #[wasm_bindgen]
 pub fn hear() -> String {
     with_app(|app| app.hearing_report().to_string()).unwrap_or_else(|| "null".into())
@@ -193,7 +193,7 @@ pub fn set_quality(name: &str) {
 }
 
 /// Everything the page offers to choose from, as a JSON object: names of `quality` presets, of transparency `order`s, of representations of `far` plants and
-/// of variants that can be `compared`; `vehicles` with `name`, `label`, `key`, `arrow` of the gamepad's cross (or null) and whether they `flies`; camera
+/// of variants that can be `compared`; `vehicles` with `name`, `label`, `key`, `arrow` of the D-pad (or null) and whether they `flies`; camera
 /// `heights` (m) on the digit keys from 1.
 #[wasm_bindgen]
 pub fn choices() -> String {

@@ -14,7 +14,7 @@ impl App {
         parts.into_iter().filter_map(|part| if let Value::Object(part) = part { Some(part) } else { None }).flatten().collect()
     }
 
-    /// What is heard at the camera; null while the client is not connected or has no view yet.
+    /// Sound levels at the camera; null while the client is not connected or has no view yet.
     pub(super) fn hearing_report(&self) -> Value {
         let Some(camera) = self.rig.as_ref().map(Rig::camera).filter(|_| self.connection.client().is_some()) else { return Value::Null };
         let Hearing { wind_m_per_s, rustle, engines } = hear(&camera, self.mirror.newest_objects().iter().copied(), &self.mirror);

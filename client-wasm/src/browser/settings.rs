@@ -11,7 +11,7 @@ pub(super) const AUTOMATIC: &str = "auto";
 /// Frame time budget of automatic quality (ms): on a GPU, and on a software adapter.
 const BUDGET_MS: [f32; 2] = [16.7, 100.0];
 
-/// Kind of device, as far as the page can tell. It decides what automatic quality means.
+/// Kind of device, as detected by the page. It determines the highest level and the time budget of automatic quality.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(super) struct Device {
     /// Whether the graphics adapter is a software renderer.
@@ -90,7 +90,7 @@ impl Settings {
         if self.budget.is_some() { AUTOMATIC } else { self.quality.name() }
     }
 
-    /// Quality that the renderer must support: the chosen one, or a higher one that is compared.
+    /// Highest quality in use: the chosen one, or a higher one in a comparison. The renderer must support it.
     pub(super) fn quality(&self) -> Quality {
         let compared = self.comparison.iter().flat_map(|comparison| &comparison.variants).filter_map(|name| Quality::from_name(name));
         compared.fold(self.quality, |highest, quality| if quality.level() > highest.level() { quality } else { highest })

@@ -65,7 +65,7 @@ impl Renderer {
         }
     }
 
-    /// A renderer with the mirror's scene loaded, and a future that resolves once the device has reported whether all of it fits.
+    /// Creates a renderer and loads the mirror's scene. The future resolves once the device has reported whether its memory sufficed.
     /// After an error the renderer draws garbage; a [lower](Quality::lower) quality may fit.
     ///
     /// # Errors

@@ -153,7 +153,7 @@ fn lean_rad(tips: &[Vec3]) -> f32 {
 }
 
 #[test]
-fn near_blades_lean_by_what_the_wind_and_the_field_hold_together() {
+fn near_blades_lean_by_the_sum_of_wind_and_field() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let bend_rad = Grass::default().wind_bend_rad;
     let leans = |wind_m_per_s: f32, streamed_rad: Option<f32>| lean_rad(&tips(&gpu, wind_m_per_s, streamed_rad));

@@ -12,7 +12,7 @@ use prairie_core::wire::{ObjectId, ObjectPose, Peer, Refusal, ServerMessage};
 /// Maximum number of peers stored; the server's list is truncated to it.
 pub const PEER_LIMIT: usize = 4096;
 
-/// Consequence of a message that the page has to act on.
+/// Event for the page, caused by a message.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
     /// The server accepted the client.

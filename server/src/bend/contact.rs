@@ -8,7 +8,7 @@ use prairie_core::bend::Bend;
 
 /// Speed below which an object counts as standing still (m/s).
 pub const STANDSTILL_M_PER_S: f32 = 0.05;
-/// Speed at which grass yields to the weight of an object that stands still (m/s).
+/// Sinking speed of the grass below the weight of an object at rest (m/s).
 const SETTLING_M_PER_S: f32 = 0.3;
 
 /// One contact of an object with the grass in a step.

@@ -18,7 +18,7 @@ pub const TILE_BYTES: usize = size_of::<FlattenedTile>() + size_of::<Option<Box<
 pub const QUANTUM_RAD: f32 = PI / i16::MAX as f32;
 /// A tile is dropped when all its leans are below this (rad): half a code on the wire, so it is no longer visible.
 pub const VISIBLE_RAD: f32 = THETA_FULL_RAD / 254.0;
-/// A tile that has decayed to this fraction is rewritten before a new lean is stored, so that the new lean is within the range of its quanta.
+/// Remaining fraction below which a decayed tile is rewritten before a new lean is stored, so that the lean is within the range of its quanta.
 const REWRITE_FRACTION: f32 = 0.5;
 
 /// Current time, and decay of leans with time.

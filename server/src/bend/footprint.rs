@@ -50,8 +50,8 @@ impl Footprint {
     }
 
     /// The polygon widened to `least_m` along its narrowest direction and then along the next, or `None` when it is wide enough. A strip as wide as a
-    /// cell contains a chain of cells that touch at least at their corners, in any direction. Among equally narrow directions the first side's counts,
-    /// so that rounding does not turn the widened polygon of a round object from one step to the next.
+    /// cell contains a chain of cells that touch at least at their corners, in any direction. Of equally narrow directions the one of the first side is
+    /// taken, so that rounding does not rotate the widened polygon of a round object between steps.
     pub fn widened(&self, least_m: f32) -> Option<Self> {
         let mut wide: Option<Self> = None;
         for _ in 0..2 {

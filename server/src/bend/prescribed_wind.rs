@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// Height above the ground at and above which a source no longer reaches the grass (m).
 pub const CEILING_M: f32 = 30.0;
-/// Downwash of a rotor on the ground: radius (m), speed (m/s), bend that it sustains (rad), height at which it pushes (m).
+/// Downwash of a rotor on the ground: radius (m), speed (m/s), steady bend (rad), height of its force above the ground (m).
 const DOWNWASH_RADIUS_M: f32 = 10.0;
 const DOWNWASH_M_PER_S: f32 = 12.0;
 const DOWNWASH_BEND_RAD: f32 = 1.2;
@@ -69,7 +69,7 @@ pub struct PrescribedWind {
     pub strength: f32,
     /// Speed where the pattern is strongest, for a source on the ground (m/s).
     pub speed_m_per_s: f32,
-    /// Bend that the wind sustains at that speed (rad).
+    /// Steady bend of the grass at that speed (rad).
     pub bend_rad: f32,
     /// Height above the ground at which the wind pushes (m), h of Chen & Johan, Eq. (12).
     pub strike_height_m: f32,

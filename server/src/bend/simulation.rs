@@ -140,7 +140,7 @@ impl BendSimulation {
         let winds = self.winds.step(&motions, &self.height, dt_secs);
         let gusty = self.gusts.as_ref().map(|gusts| gusts.patches(self.field.layout(), cameras)).unwrap_or_default();
         if self.scheme == Scheme::Modal {
-            // Broken patches are woken again at rest.
+            // Patches put to rest because of invalid values are woken again.
             self.field.wake_all();
         } else {
             let touched = [self.touched(&contacts, &winds), gusty.clone()].concat();

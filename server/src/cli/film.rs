@@ -25,7 +25,7 @@ It needs a Vulkan driver, and for files the program ffmpeg (or the one that PRAI
 /// Duration of a film of the wind alone (s).
 const WIND_SECS: f32 = 6.0;
 
-/// Frames that are drawn before the first one of the film, so that the blades move as they do in the wind.
+/// Warm-up frames before the first one of the film, in which the blades take up the motion of the wind.
 const LEAD_IN_FRAMES: u32 = 30;
 
 /// Arguments of `prairie film`.

@@ -1,4 +1,4 @@
-//! The command line: what all commands share, and one file per command.
+//! The command line: the parts common to all commands, and one file per command.
 
 mod announce;
 mod check;

@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// Parser of a whole number in `allowed`; its error says what is allowed, whatever is wrong with the value.
+/// Parser of a whole number in `allowed`. Its error always states the allowed range.
 pub(super) fn whole<N: FromStr + PartialOrd + Display>(allowed: RangeInclusive<N>) -> impl Fn(&str) -> Result<N, String> + Clone
 where
     RangeInclusive<N>: Clone,

@@ -4,7 +4,7 @@ use anyhow::Context as _;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write as _};
 
-/// Prints text and a line end to stdout. Colours are left out where stdout is no terminal, or where `NO_COLOR` is set. A closed pipe is no error: its
+/// Prints text and a line end to stdout. Colours are left out where stdout is not a terminal, or where `NO_COLOR` is set. A closed pipe is not an error: its
 /// reader, such as `head`, has read enough.
 ///
 /// # Errors
@@ -24,7 +24,7 @@ pub(super) fn print_exactly(text: impl Display) -> io::Result<()> {
     stdout.flush()
 }
 
-/// Whether nobody reads the other end of the pipe any more.
+/// Whether the reader of the pipe has closed it.
 pub(super) fn is_closed_pipe(error: &io::Error) -> bool {
     error.kind() == ErrorKind::BrokenPipe
 }

@@ -31,7 +31,7 @@ With `--tls self` the browser shows a warning: compare the fingerprint with the 
 A scene file is reloaded when you save it or a file that it names; all pages reconnect.
 The log goes to stderr; RUST_LOG=prairie=debug makes it more detailed.";
 
-/// The scene without another one.
+/// Scene served if none is given.
 const DEFAULT_SCENE: &str = "meadow";
 
 /// Arguments of `prairie serve`.
@@ -63,10 +63,10 @@ pub(super) struct Serve {
     /// Data rate limit per client (kbit/s), 64 to 1000000; grass near the camera is sent first
     #[arg(long, env = "PRAIRIE_CLIENT_KBIT", value_name = "KBIT", default_value_t = 2000, value_parser = whole(64_u32..=1_000_000))]
     client_kbit: u32,
-    /// Most clients at once, 1 to 4096
+    /// Maximum number of clients, 1 to 4096
     #[arg(long, env = "PRAIRIE_MAX_CLIENTS", value_name = "N", default_value_t = 64, value_parser = whole(1_u16..=4096))]
     max_clients: u16,
-    /// Most clients at once with the same IP address (IPv6: the same /64), 1 to 4096
+    /// Maximum number of clients with the same IP address (IPv6: the same /64), 1 to 4096
     #[arg(long, env = "PRAIRIE_MAX_PER_ADDRESS", value_name = "N", default_value_t = 32, value_parser = whole(1_u16..=4096))]
     max_per_address: u16,
     /// Format of the log on stderr: lines of text, or a JSON object on each line

@@ -7,7 +7,7 @@ use std::sync::{
     atomic::{AtomicBool, Ordering::Relaxed},
 };
 
-/// A flag that is set when a signal has come, for work that no async runtime can interrupt.
+/// Flag set by a stop signal, for work outside an async runtime.
 ///
 /// # Errors
 /// When the system refuses the handlers or the thread that waits for them.

@@ -5,7 +5,7 @@ use clap::CommandFactory as _;
 use prairie::escaped::escaped;
 use prairie::scenes::{SceneError, most_similar};
 
-/// Adds the commands to an error about an unknown scene, for a word that may have been meant as either.
+/// Adds the list of commands to an error about an unknown scene, since the word may be a misspelt command.
 pub(super) fn suggest_commands(error: anyhow::Error) -> anyhow::Error {
     let Some(SceneError::Unknown { name, known, .. }) = error.downcast_ref::<SceneError>() else { return error };
     let prairie = Cli::command();

@@ -51,7 +51,7 @@ fn check(serve: &mut Serve, command: &mut Command, matches: &ArgMatches) -> Resu
     Ok(())
 }
 
-/// Prints what clap has to say: help and version on stdout, with exit status 0; wrong usage on stderr, with exit status 2.
+/// Prints clap's output: help and version to stdout (status 0), usage errors to stderr (status 2).
 ///
 /// # Errors
 /// When stdout cannot be written.
@@ -62,7 +62,7 @@ pub(super) fn report(error: &clap::Error) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Refuses a scene given twice on the command line. `PRAIRIE_SCENE` may stand beside the word, so clap's own check is of no use.
+/// Rejects a scene given twice on the command line. clap's own check would also reject a word beside `PRAIRIE_SCENE`, which is allowed.
 fn refuse_two_scenes(command: &mut Command, matches: &ArgMatches) -> Result<(), clap::Error> {
     let has_word = matches!(matches.try_contains_id("scene"), Ok(true));
     let has_flag =
@@ -73,7 +73,7 @@ fn refuse_two_scenes(command: &mut Command, matches: &ArgMatches) -> Result<(), 
     Ok(())
 }
 
-/// Words three errors better than clap does, which takes a second scene for a command. The help names all environment variables, empty ones too.
+/// Rewrites three of clap's errors, which mistakes a second scene for a subcommand. The help names all environment variables, empty ones too.
 fn explain(error: clap::Error, command: &mut Command, arguments: &[OsString]) -> clap::Error {
     if error.kind() == ErrorKind::DisplayHelp {
         return Cli::command().try_get_matches_from(arguments).err().unwrap_or(error);

@@ -43,7 +43,7 @@ pub struct Inspector {
 
 /// State for the next frame.
 struct Intake {
-    /// `None` once the recording is being finished.
+    /// `None` while the recording is being closed.
     queue: Option<SyncSender<Frame>>,
     last_secs: Option<f64>,
     clients: u32,

@@ -66,7 +66,7 @@ mod tests {
         if luminance > 0.008_856 { 116.0 * luminance.cbrt() - 16.0 } else { 903.3 * luminance }
     }
 
-    /// What colour-blind readers rely on: a larger angle is lighter, and equal differences look equal.
+    /// Lightness, on which colour-blind readers rely: a larger angle is lighter, and equal differences look equal.
     #[test]
     fn a_larger_bend_is_lighter() {
         let lightnesses: Vec<f32> = (0..=90).map(|degrees| lightness(bend_rgb(degrees as f32))).collect();

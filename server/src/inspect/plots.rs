@@ -1,4 +1,4 @@
-//! The plots of the recording: which metrics each one shows, in which unit.
+//! Plots of the recording, with the metrics and the unit of each.
 //!
 //! The entities, the layout of the viewer and the table in `server/README.md` follow from [`PLOTS`].
 

@@ -168,7 +168,7 @@ impl Sink for Recording {
     }
 }
 
-/// Checks that a file got its footer, for the SDK only logs that it could not write it. A pipe cannot be read again.
+/// Checks that a file has its footer. If the SDK cannot write it, it only logs that. A pipe cannot be read again.
 fn check_footer(path: &Path) -> Result<(), InspectError> {
     let unreadable = |reason| InspectError::File { path: path.to_owned(), reason };
     if !std::fs::metadata(path).map_err(unreadable)?.is_file() {

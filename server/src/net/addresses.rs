@@ -13,7 +13,7 @@ fn names_of(host: &str) -> Vec<HostName> {
     let label = host.split('.').next().unwrap_or_default();
     let mut names: Vec<HostName> = Vec::new();
     for name in ["localhost", host, label, &format!("{label}.local")] {
-        // A host name that is no DNS name cannot be reached by it.
+        // A host name that is not a DNS name cannot be reached.
         if let Ok(name) = name.parse()
             && !names.contains(&name)
         {

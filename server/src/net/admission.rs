@@ -5,8 +5,8 @@ use std::net::{IpAddr, Ipv6Addr};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Connections that are not clients yet, for each client that an address may have. A browser opens up to six connections to load the page, and keeps them
-/// for seconds: all clients of an address may load it at the same time.
+/// Maximum number of pending connections (not clients yet) of an address, for each client that it may have. A browser opens up to six connections to load
+/// the page, and keeps them for seconds: all clients of an address may load it at the same time.
 pub(crate) const PENDING_PER_CLIENT: usize = 8;
 
 /// The open connections of each address, and counters of rejected ones.
@@ -103,7 +103,7 @@ impl Drop for Place {
     }
 }
 
-/// The network that counts as one address: an IPv4 address, or the /64 of an IPv6 address, which one user can have whole.
+/// Network counted as one address: an IPv4 address, or the /64 of an IPv6 address, since a single user often has a whole /64.
 fn network(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() >> 64 << 64).into(),

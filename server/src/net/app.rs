@@ -18,7 +18,7 @@ use tokio::sync::{Semaphore, mpsc, watch};
 /// Most log messages of one kind about sessions in ten seconds.
 const SESSION_LINES: u32 = 50;
 
-/// Rate limits of the log messages about sessions, which a client that connects over and over would fill the log with.
+/// Rate limits of the log messages about sessions, so that a client that reconnects all the time cannot fill the log.
 #[derive(Debug)]
 pub(crate) struct SessionLog {
     pub(crate) joined: LogLimit,

@@ -1,4 +1,4 @@
-//! A connection whose traffic is measured below TLS, HTTP and WebSocket: what it sends is limited, what it accepts counts as progress.
+//! Connection metering below TLS, HTTP and WebSocket: limits input, and counts accepted output as progress.
 
 use super::admission::Place;
 use crate::token_bucket::TokenBucket;

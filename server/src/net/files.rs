@@ -8,8 +8,8 @@ use axum::response::{IntoResponse, Response};
 /// Cache period of files that are named after their contents: a year, the longest that RFC 9111 recommends.
 const FOREVER: &str = "public, max-age=31536000, immutable";
 
-/// Header with the size of the uncompressed file (bytes), against which a page measures the progress of a download: scripts see neither the
-/// compressed bytes nor their number.
+/// Header with the size of the uncompressed file (bytes), from which the page computes the progress of a download: scripts receive uncompressed bytes
+/// only.
 const UNCOMPRESSED_LENGTH: HeaderName = HeaderName::from_static("x-uncompressed-length");
 
 /// Responds with the embedded file at the path of the request.

@@ -1,6 +1,6 @@
 //! Reports on the server for people, monitoring and load balancers: `/healthz`, `/readyz` and `/metrics`.
 //!
-//! All of them read what the world has published last, so none waits for it.
+//! All three report the last published state and never wait for the simulation.
 
 use super::app::App;
 use crate::metrics;
@@ -59,7 +59,7 @@ fn json_response(status: StatusCode, body: &Value) -> Response {
     (status, [(header::CONTENT_TYPE, "application/json"), NO_STORE], format!("{body}\n")).into_response()
 }
 
-/// Reasons why the server is degraded, as far as it knows them: simulated time dropped within the last minute, and the age of the newest publication.
+/// Reasons why the server is degraded: simulated time dropped within the last minute, and the age of the newest publication.
 fn degradations(dropped_recently_secs: f64, age: Duration) -> Vec<String> {
     let dropped = (dropped_recently_secs > 0.0)
         .then(|| format!("{dropped_recently_secs:.2} s of simulated time were dropped within the last {} s", RECENT.as_secs()));

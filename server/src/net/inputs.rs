@@ -1,4 +1,4 @@
-//! A client's inputs between receipt and execution. Of each kind only the newest counts, at the rate that the kind is worth.
+//! A client's inputs between receipt and execution. Each kind has a rate limit, and a newer input replaces one that waits.
 
 use super::app::App;
 use super::end::End;
@@ -83,7 +83,7 @@ impl Inputs {
         Ok(())
     }
 
-    /// Carries out what the rates allow now.
+    /// Carries out the waiting inputs that the rate limits allow now.
     pub(super) async fn carry_out(&mut self, app: &App, client: &Client) {
         let (id, now) = (client.id, Instant::now());
         if let Some(area) = self.view.take_due(now) {
@@ -111,7 +111,7 @@ impl Inputs {
         [self.view.wait(), self.choice.wait(), self.name.wait()].into_iter().flatten().min()
     }
 
-    /// Whether there is driving input for the world. It waits for a choice, which it was meant for.
+    /// Whether there is driving input for the world. It waits while a choice of a vehicle waits, since it is for that vehicle.
     pub(super) fn has_drive(&self) -> bool {
         self.drive.is_some() && !self.choice.is_waiting()
     }

@@ -1,9 +1,9 @@
-//! Messages of one kind, of which only the newest counts, carried out at a limited rate.
+//! Rate limit for messages of one kind: a newer message replaces one that waits.
 
 use crate::token_bucket::TokenBucket;
 use std::time::{Duration, Instant};
 
-/// The newest message of a kind, until the rate allows to carry it out; a newer one replaces it.
+/// The newest message of a kind, until the rate limit allows it; a newer one replaces it.
 #[derive(Debug)]
 pub(super) struct Newest<T> {
     waiting: Option<T>,

@@ -35,7 +35,7 @@ impl Access {
         }
     }
 
-    /// Checks the `Host` header of a request. It must be there from HTTP/1.1 on; programs that speak HTTP/1.0 are no browsers.
+    /// Checks the `Host` header of a request. It must be there from HTTP/1.1 on; programs that speak HTTP/1.0 are not browsers.
     pub(super) fn check_host(&self, headers: &HeaderMap, version: Version) -> Result<(), Rejection> {
         let mut hosts = headers.get_all(header::HOST).iter();
         let host = match (hosts.next(), hosts.next()) {
@@ -53,7 +53,7 @@ impl Access {
         }
         Err((
             StatusCode::MISDIRECTED_REQUEST,
-            format!("`{host}` is no name of this server; --allow-host NAME at its start allows a name\n"),
+            format!("`{host}` is not a name of this server; to allow it, start the server with --allow-host NAME\n"),
         ))
     }
 

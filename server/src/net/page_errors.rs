@@ -15,7 +15,7 @@ const REPORT_LIMIT: usize = 4096;
 /// Longest description of the browser in the log (bytes).
 const BROWSER_LIMIT: usize = 256;
 
-/// Reports accepted at once, and their mean rate (1/s), of all pages together: a fault that every page has fills no disk.
+/// Reports accepted at once, and their mean rate (1/s), of all pages together, so that a fault in every page cannot fill the disk.
 const BURST: f64 = 20.0;
 const RATE_PER_S: f64 = 0.2;
 

@@ -1,4 +1,4 @@
-//! Response headers that restrict what the page may do, whatever a fault in it or in a scene would let it try.
+//! Security headers that limit the damage from a faulty page or a hostile scene.
 
 use axum::http::{HeaderName, HeaderValue, header};
 use axum::response::Response;

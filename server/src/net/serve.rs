@@ -21,8 +21,8 @@ use tokio::time::timeout;
 /// Pause after a failed accept, the symptom of running out of file descriptors.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(200);
 
-/// Largest amount of unsent data in the system's buffers (bytes). The system's own limit is megabytes: a slow client would take that much memory, get
-/// states that are old by as many seconds, and seem to accept nothing until a third of it was sent.
+/// Maximum amount of unsent data in the system's buffers (bytes). With the system's own limit of megabytes, a slow client would use that much memory, get
+/// states that are seconds old, and seem to accept nothing until a third of it was sent.
 const UNSENT_BYTES: u32 = 64 << 10;
 
 /// Serves connections forever. At most `limits.pending` connections that are not clients are open at once; others wait in the system's queue, for at
@@ -113,10 +113,10 @@ fn limit_unsent(stream: &TcpStream) {
     }
 }
 
-/// Time limit for a response that is under way when the connection's time is over.
+/// Time limit for completing a response after the connection has timed out.
 const RESPONSE_TIMEOUT: Duration = Duration::from_secs(300);
 
-/// Serves HTTP requests until the connection ends, becomes a WebSocket, or times out. A response that is under way then is still sent as long as the client
+/// Serves HTTP requests until the connection ends, becomes a WebSocket, or times out. A response begun before that is completed as long as the client
 /// reads it, so that the page loads over a slow line, too.
 async fn http(io: impl AsyncRead + AsyncWrite + Unpin + Send + 'static, connection: Arc<Connection>, router: Router, limits: Limits) {
     let served = hyper::server::conn::http1::Builder::new()

@@ -1,4 +1,4 @@
-//! Writing to a client for as long as it reads.
+//! Writing to a client, with a time limit for phases in which it reads nothing.
 
 use super::connection::Connection;
 use super::end::End;

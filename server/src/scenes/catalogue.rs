@@ -17,7 +17,7 @@ pub struct BuiltInScene {
     pub patches: [u32; 2],
     /// Files of its maps and species.
     pub maps: Vec<String>,
-    /// What it shows, besides grass in the wind, such as `rain` and `dust`.
+    /// Features used, such as `rain` and `dust`.
     pub shows: Vec<String>,
 }
 

@@ -19,7 +19,7 @@ const STARTER: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/
 /// Name of the scene file in a new folder.
 const SCENE_FILE: &str = "scene.toml";
 
-/// Name of the schema in a new folder, and the line of a scene that leads editors with Taplo to it.
+/// Name of the schema in a new folder, and the line of a scene by which editors with Taplo find it.
 const SCHEMA_FILE: &str = "scene.schema.json";
 const SCHEMA_LINE: &str = "#:schema ./scene.schema.json\n";
 
@@ -44,7 +44,7 @@ pub enum CreateError {
         /// Something in it.
         entry: OsString,
     },
-    /// There is a file, or anything else that is no folder.
+    /// The path exists and is not a folder.
     #[error("`{}` exists and is not a folder; allowed: a new folder or an empty one", escaped(.0))]
     NotFolder(PathBuf),
     /// The folder around the new one does not exist.

@@ -9,7 +9,7 @@ use std::ops::Range;
 /// Most faults that are drawn, the first ones; the others are counted.
 pub(super) const DRAWN_LIMIT: usize = 20;
 
-/// Longest line (bytes) that is handed to the renderer as a whole. It shows only what fits, but its time grows with the line.
+/// Maximum length of a line (bytes) for the renderer; longer ones are cut. It shows only the part that fits, but its time grows with the line.
 const LONG_LINE: usize = 1000;
 
 /// Number of characters of a longer line that are handed over on each side of the fault, more than are shown.
@@ -71,7 +71,7 @@ mod tests {
         let drawn = drawn(&format!("wind = {{ {keys} mean_m_per_s = 7 }}\n"));
         assert!(drawn.starts_with("s.toml has 2003 faults\n"), "{drawn}");
         assert!(drawn.lines().filter(|line| !line.starts_with("error: ")).all(|line| line.chars().count() <= 150), "{drawn}");
-        assert!(drawn.contains("`wind.é0` is no field of a scene; known here: `advection`,"), "{drawn}");
+        assert!(drawn.contains("`wind.é0` is not a field of a scene; known here: `advection`,"), "{drawn}");
         assert!(drawn.contains(" --> s.toml:1:10\n"), "{drawn}");
         assert_eq!(drawn.matches("error: ").count(), DRAWN_LIMIT);
         assert!(drawn.ends_with("\nand 1983 more faults\n"), "{drawn}");
@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn no_escape_sequence_of_a_file_is_drawn() {
         let drawn = drawn("\"a\\u001b[31m\" = 1 # \u{202e}\t\n");
-        assert!(drawn.contains("`a\\u{1b}[31m` is no field"), "{drawn}");
+        assert!(drawn.contains("`a\\u{1b}[31m` is not a field"), "{drawn}");
         assert!(!drawn.contains(['\u{1b}', '\u{202e}', '\t']), "{drawn}");
     }
 }

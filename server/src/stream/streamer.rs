@@ -18,8 +18,8 @@ use std::thread::JoinHandle;
 use std::time::Instant;
 use tokio::sync::{mpsc, oneshot, watch};
 
-/// Share of a client's data rate that rosters may take. All clients get each roster, so one client that changes its name would cost much.
-const ROSTER_SHARE: f64 = 0.1;
+/// Maximum fraction of a client's data rate for rosters. All clients get each roster, so one client that changes its name would cost much.
+const ROSTER_FRACTION: f64 = 0.1;
 
 /// Bounds of the histogram of frame sizes (bytes).
 const FRAME_BOUNDS_BYTES: [f64; 9] = [64.0, 256.0, 1024.0, 4096.0, 8192.0, 16_384.0, 32_768.0, 65_536.0, 262_144.0];
@@ -146,7 +146,7 @@ impl Streamer {
 
     /// Encodes the roster again if it has changed and the budget allows; otherwise the change waits.
     fn update_roster(&mut self, published: &Published, clients: &[Arc<Client>], now: Instant) {
-        let bytes_per_s = ROSTER_SHARE * self.limits.bytes_per_s;
+        let bytes_per_s = ROSTER_FRACTION * self.limits.bytes_per_s;
         let budget = self.roster_budget.get_or_insert_with(|| TokenBucket::new(bytes_per_s, bytes_per_s, now));
         budget.fill(now);
         if !budget.is_solvent() {

@@ -51,7 +51,7 @@ impl Film {
                 encode(path, size_px, frames_per_s, container, encoder)?
             }
             (None, Some(ending)) => bail!(
-                "{}: `.{ending}` is no format of films; allowed: .webm, .mp4, .webp, .gif, or a folder (a name without an ending) for PNG files",
+                "{}: `.{ending}` is not a film format; allowed: .webm, .mp4, .webp, .gif, or a folder (a name without an ending) for PNG files",
                 path.display()
             ),
             (None, None) => {
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn unsuitable_formats_and_sizes_are_refused() {
-        assert!(refused(Path::new("film.avi"), [2, 2]).contains("`.avi` is no format of films; allowed: .webm"));
+        assert!(refused(Path::new("film.avi"), [2, 2]).contains("`.avi` is not a film format; allowed: .webm"));
         assert!(refused(Path::new("film.webm"), [3, 2]).contains("needs an even width and height, not 3 × 2"));
     }
 

@@ -11,7 +11,7 @@ use prairie_core::wire::{self, Drive, ObjectPose, SERVER_MESSAGE_LIMIT, ServerMe
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// A world that is stepped by hand, and a client mirror that receives its snapshots as encoded messages.
+/// A world stepped by the caller, and a client mirror that receives its snapshots as encoded messages.
 pub struct Stage {
     /// The world.
     pub world: World,

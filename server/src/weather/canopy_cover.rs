@@ -9,7 +9,7 @@ const SAMPLES: usize = 8;
 /// Distance between sampled cells of the bend field along x and z (cells).
 const STRIDE: usize = 4;
 
-/// Canopy cover of each column of wind cells. Grass half as tall as the tallest counts half.
+/// Canopy cover of each column of wind cells, weighted by height: grass half as tall as the tallest has the weight ½.
 pub(super) struct CanopyCover {
     columns: [usize; 2],
     spacing_m: [f32; 2],

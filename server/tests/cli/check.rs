@@ -41,7 +41,7 @@ fn json_lists_every_scene_and_its_faults() {
     assert_eq!((&list[1]["file"], &list[1]["valid"], &list[1]["error"]), (&json!(broken), &json!(false), &Value::Null));
     let tick = json!({
         "file": broken, "line": 3, "column": 1, "length": 4, "path": "tick",
-        "message": "is no field of a scene; did you mean `tick_hz`?",
+        "message": "is not a field of a scene; did you mean `tick_hz`?",
     });
     assert_eq!(list[1]["faults"][1], tick);
     let unknown = list[2]["error"].as_str().unwrap();

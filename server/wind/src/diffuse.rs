@@ -104,7 +104,7 @@ pub enum Portion {
 /// Diffuses `field` over a portion of a step of `dt_secs` (s). Its ghosts must be filled before, and are filled again afterwards. `boundaries`
 /// applies the boundary conditions to a field; `even` and `odd` are work arrays.
 ///
-/// Halves of the explicit scheme are midpoint steps (Runge–Kutta 2), with substeps within the limit. Those of Crank–Nicolson are Crank–Nicolson steps
+/// Halves of the explicit scheme are midpoint steps (Runge–Kutta 2), with sub-steps within the limit. Those of Crank–Nicolson are Crank–Nicolson steps
 /// of half the length with one solve each, since an explicit half before and an implicit half after other sub-steps would not be second order.
 /// First-order schemes diffuse entirely in the second half.
 #[expect(clippy::too_many_arguments, reason = "a kernel: numbers, a field and its scratch")]

@@ -1,9 +1,9 @@
-//! Stability limits of a step, and the number of substeps they require.
+//! Stability limits of a step, and the number of sub-steps they require.
 
 use super::state::{MAX_SUBSTEPS, StepError};
 use super::{Config, Diffusion, Dust, Grid, Real, diffuse, transport};
 
-/// Substep length as a fraction of the longest stable step, since the air may be faster at its end.
+/// Sub-step length as a fraction of the longest stable step, since the air may be faster at its end.
 const SAFETY: f64 = 0.8;
 /// Maximum Courant number, summed over the axes, at which limited transport of dust creates no new extrema.
 const DUST_COURANT: f64 = 0.5;
@@ -12,7 +12,7 @@ const DUST_COURANT: f64 = 0.5;
 pub(super) const COURANT: &str = "the Courant number of conservative advection";
 const DUST: &str = "the Courant number of conservative dust.advection";
 
-/// Number of substeps, at least 1 and at most `most`, that keeps a step within the stability limits at these speeds.
+/// Number of sub-steps, at least 1 and at most `most`, that keeps a step within the stability limits at these speeds.
 pub(super) fn substeps<R: Real>(
     config: &Config,
     grid: &Grid<R>,
@@ -29,7 +29,7 @@ pub(super) fn substeps<R: Real>(
         count("viscosity_m2_per_s", dt_secs, SAFETY * transport::stable_dt_secs(grid, [0.0; 3], viscosity), most)?;
         count(COURANT, dt_secs, SAFETY * transport::stable_dt_secs(grid, max_speed_m_per_s, viscosity), most)?
     } else {
-        // Explicit diffusion has substeps of its own.
+        // Explicit diffusion has sub-steps of its own.
         count("viscosity_m2_per_s", dt_secs, diffuse::stable_dt_secs(grid, viscosity), most)?;
         1
     };
@@ -41,7 +41,7 @@ pub(super) fn substeps<R: Real>(
     Ok(substeps)
 }
 
-/// Number of dust substeps, at least 1, that keeps limited transport free of new extrema at these speeds.
+/// Number of dust sub-steps, at least 1, that keeps limited transport free of new extrema at these speeds.
 pub(super) fn dust_substeps<R: Real>(
     config: &Config,
     dust: &Dust,

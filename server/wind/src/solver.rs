@@ -56,9 +56,9 @@ pub struct Solver<R: Real> {
     /// Gradient of pressure over density (m/s²) of the last step, for [`TimeScheme::RungeKutta3`](super::TimeScheme::RungeKutta3).
     pub(super) pressure_gradient: Velocity<R>,
     pub(super) dust: Option<Field<R>>,
-    /// Velocity at the start of a substep, where dust needs it or the substep may be rolled back.
+    /// Velocity at the start of a sub-step, where dust needs it or the sub-step may be rolled back.
     pub(super) old: Option<Velocity<R>>,
-    /// Pressure gradient at the start of a substep, where dust, which comes last, may roll it back.
+    /// Pressure gradient at the start of a sub-step, for a rollback if the dust, which comes last, fails.
     pub(super) old_pressure_gradient: Option<Velocity<R>>,
     /// Fraction of the canopy that stands in each column of cells, x fastest.
     pub(super) canopy_fraction: Vec<R>,

@@ -304,7 +304,7 @@ fn primitives_blow_as_their_names_say() {
 
 /// The server documentation states these figures.
 #[test]
-fn memory_is_what_is_stated() {
+fn memory_is_as_stated() {
     let memory = |config: &Config| WindSolver::new(config).unwrap().memory_bytes();
     let default = Config::default();
     let dusty = Config { dust: Some(Dust::default()), ..Config::default() };

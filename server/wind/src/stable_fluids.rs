@@ -115,7 +115,7 @@ impl<R: Real> StableFluids<R> {
         }
     }
 
-    /// Advances the air, then the dust, by `dt_secs` (s), driven by the mean wind, the random sources, the primitives and `jets`. There are no substeps.
+    /// Advances the air, then the dust, by `dt_secs` (s), driven by the mean wind, the random sources, the primitives and `jets`. There are no sub-steps.
     ///
     /// # Errors
     /// [`StepError::BadTimeStep`], [`StepError::BadJet`] or [`StepError::NotFinite`].

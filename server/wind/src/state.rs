@@ -2,7 +2,7 @@
 
 use super::Jet;
 
-/// Maximum number of substeps of a step; see [`StepError::TooLong`].
+/// Maximum number of sub-steps of a step; see [`StepError::TooLong`].
 pub const MAX_SUBSTEPS: u32 = 256;
 
 /// Diagnostics of a step.
@@ -14,7 +14,7 @@ pub struct StepReport {
     pub divergence_rms_rel: f64,
     /// Mean kinetic energy per mass, `|u|²/2` (m²/s²).
     pub kinetic_energy_m2_per_s2: f64,
-    /// Number of substeps, at least 1.
+    /// Number of sub-steps, at least 1.
     pub substeps: u32,
     /// Residual of the last pressure solve relative to its right-hand side; 0 for the direct solver.
     pub pressure_residual: f64,
@@ -39,18 +39,18 @@ pub enum StepError {
         /// The jet.
         jet: Jet,
     },
-    /// The step exceeds the stability limit of a scheme. The state is that before the step, or before the substep that was too long.
+    /// The step exceeds the stability limit of a scheme. The state is restored to that before the step, or before the sub-step that was too long.
     #[error(
-        "wind: {what} over dt_secs = {dt_secs} needs {needed:.0} substeps of at most {stable_dt_secs} s; allowed: {MAX_SUBSTEPS}. Take a shorter step, larger cells or a smaller value"
+        "wind: {what} over dt_secs = {dt_secs} needs {needed:.0} sub-steps of at most {stable_dt_secs} s; allowed: {MAX_SUBSTEPS}. Take a shorter step, larger cells or a smaller value"
     )]
     TooLong {
         /// The limit, or the setting that causes it.
         what: &'static str,
         /// The requested step (s).
         dt_secs: f64,
-        /// Number of substeps needed.
+        /// Number of sub-steps needed.
         needed: f64,
-        /// Longest stable substep (s).
+        /// Longest stable sub-step (s).
         stable_dt_secs: f64,
     },
     /// The velocity became NaN or infinite. The state is lost; restore an earlier one by [`Solver::restore`](super::Solver::restore).

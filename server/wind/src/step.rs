@@ -1,4 +1,4 @@
-//! A step of the solver: checks, substeps and diagnostics.
+//! A step of the solver: checks, sub-steps and diagnostics.
 
 use super::pressure::Convergence;
 use super::state::{MAX_SUBSTEPS, StepError, StepReport};
@@ -52,7 +52,7 @@ impl<R: Real> Solver<R> {
         limits::substeps(config, &config.grid::<R>(), [0.0; 3], dt_secs, MAX_SUBSTEPS).map(|_| ())
     }
 
-    /// Takes the first of `substeps` equal substeps of the rest of a step. Doubles their number, up to `most`, while the air becomes too fast for
+    /// Takes the first of `substeps` equal sub-steps of the rest of a step. Doubles their number, up to `most`, while the air becomes too fast for
     /// them. Returns the final number.
     fn first_substep(&mut self, left_secs: f64, mut substeps: u32, most: u32, jets: &[Jet]) -> Result<(Convergence, u32), StepError> {
         loop {
@@ -66,7 +66,7 @@ impl<R: Real> Solver<R> {
         }
     }
 
-    /// Takes one substep. If it turns out too long, the state is unchanged.
+    /// Takes one sub-step. If it turns out too long, the state is unchanged.
     fn substep(&mut self, dt_secs: f64, jets: &[Jet]) -> Result<Convergence, StepError> {
         if let Some(old) = &mut self.old {
             old.copy_from(&self.velocity);
@@ -102,7 +102,7 @@ impl<R: Real> Solver<R> {
         Ok(convergence)
     }
 
-    /// Restores the state before the substep.
+    /// Restores the state before the sub-step.
     pub(super) fn roll_back(&mut self) {
         if let Some(old) = &self.old {
             self.velocity.copy_from(old);

@@ -45,7 +45,7 @@ pub(super) struct Neighbour {
 }
 
 impl Neighbour {
-    /// Maps one of our ring tiles toward the neighbour to the neighbour's own tile; `count` tiles a side.
+    /// Maps a tile in the ring of this patch to the neighbour's tile; `count` tiles a side.
     pub(super) fn place(&self, tile: [i64; 2], toward: [i64; 2], count: i64) -> [i64; 2] {
         [0, 1].map(|axis| theirs(tile[axis], toward[axis], count, self.mirrored[axis]))
     }
@@ -89,7 +89,7 @@ fn ghosts(toward: i64, count: i64, width: i64) -> std::ops::Range<i64> {
     }
 }
 
-/// Converts one of our indices beyond the border to the neighbour's own index.
+/// Converts an index beyond the border of this patch to the neighbour's index.
 fn theirs(at: i64, toward: i64, count: i64, mirrored: bool) -> i64 {
     match (toward, mirrored) {
         (0, _) => at,

@@ -34,7 +34,7 @@ pub struct Report {
     pub cell_steps: u64,
     /// Patches put to rest because they held a NaN or infinite value.
     pub reset_patches: u32,
-    /// Patches that energy reached but that stayed asleep because of the limit on awake patches.
+    /// Number of patches that a wave reached, but that stayed asleep because of the limit on awake patches.
     pub refused: u32,
 }
 

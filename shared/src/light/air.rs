@@ -51,7 +51,7 @@ pub fn rayleigh_phase(cosine: f64) -> f64 {
     3.0 / (16.0 * std::f64::consts::PI) * (1.0 + cosine * cosine)
 }
 
-/// Phase function of haze (Henyey & Greenstein 1941); twin of `haze_phase` in the light shaders.
+/// Phase function of haze (Henyey & Greenstein 1941); twin: `haze_phase` in `land_and_sky/sky_light.wgsl`.
 pub fn haze_phase(cosine: f32) -> f32 {
     let g = HAZE_FORWARD;
     (1.0 - g * g) / (4.0 * std::f32::consts::PI * (1.0 + g * g - 2.0 * g * cosine).powf(1.5))

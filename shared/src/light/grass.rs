@@ -1,4 +1,4 @@
-//! Shading of a blade of grass among others: a thin cylinder with normals all around it. The light shaders have twins of these functions.
+//! Shading of a blade of grass among others: a thin cylinder with normals all around it. Twins: `land_and_sky/grass_light.wgsl`.
 
 /// Extinction coefficient of leaves with uniformly distributed orientation, per leaf area (Ross 1981).
 pub const LEAF_EXTINCTION: f32 = 0.5;

@@ -1,7 +1,7 @@
 //! Light: position of the sun, atmosphere, lamps, and shading of grass.
 //!
 //! Light is photometric: illuminance in lux and luminance in cd/m², each as linear RGB, in which the sun above the atmosphere is white. Functions
-//! that are also needed on the GPU have twins in the light shaders.
+//! that are also needed on the GPU have twins in `land_and_sky/grass_light.wgsl`, `land_and_sky/sky_light.wgsl` and `inputs/lamps.wgsl`.
 
 pub mod air;
 pub mod exposure;

@@ -6,7 +6,7 @@ use std::f32::consts::FRAC_PI_2;
 /// Number of earlier states of the field that [`LagWay::History`](crate::scene::LagWay::History) keeps.
 pub const PASTS: usize = 3;
 
-/// Delay of one kind of grass. Its twin on the GPU is in the common shaders.
+/// Delay of one kind of grass. Twin: `trailing_lean` in `inputs/bend_atlas.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lag {
     /// γ of the topmost segment (s).

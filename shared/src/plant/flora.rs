@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn what_names_no_branch_before_it_stands_on_the_ground_for_all() {
+    fn components_without_an_earlier_branch_stand_on_the_ground() {
         let component = |name: &str, kind, on: &str| Component { on: on.into(), angle_rad: 0.0, ..Component::new(name, kind) };
         let on = |on: &str| {
             let components = vec![

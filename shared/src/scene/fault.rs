@@ -11,7 +11,7 @@ pub struct SceneFault {
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// Number of characters on that line that the fault is about, at least 1.
+    /// Length of the marked part of that line (characters), at least 1.
     pub length: usize,
     /// Path of the field, such as `wind.cells[1]`; empty for a syntax error.
     pub path: String,

@@ -22,7 +22,7 @@ pub struct Grass {
     pub recovery_lag_share: f32,
     /// Number of segments that bend one after the other, from the root up; 1 is stiff, short grass that bends as a whole. Default 3, allowed 1..=6.
     pub segments: u32,
-    /// Time in which grass laid by an object's weight rises to 1/e of its lean (s). Default 60, allowed 0.5..=86400.
+    /// Time in which grass flattened by an object's weight rises to 1/e of its lean (s). Default 60, allowed 0.5..=86400.
     pub laid_recovery_secs: f32,
 }
 

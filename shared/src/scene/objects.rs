@@ -14,9 +14,9 @@ pub enum VehicleKind {
     Monster,
     /// Flies; its downwash bends the grass like an object, weaker with height (Chen & Johan §5.3).
     Helicopter,
-    /// A frame of any outline that glides over the land and lays the grass; concave outlines are split (Chen & Johan §6).
+    /// A frame of any outline that glides over the land and flattens the grass; concave outlines are split (Chen & Johan §6).
     Sled,
-    /// A light sphere that whatever touches it sends off; rolls and presses the grass.
+    /// A light ball: bounces off whatever hits it, rolls, and presses the grass.
     Ball,
 }
 

@@ -109,8 +109,8 @@ mod tests {
             (8, 9, "`wind.cells` is a list of 2; expected a list of 3 numbers, each 2 to 256"),
             (9, 10, "`wind.tiling` is \"bix\"; allowed: \"box\", \"patch\" or \"follow\""),
             (10, 22, "`wind.viscosity_m2_per_s` is nan; allowed: 0 to 100"),
-            (11, 1, "`wind.sorces` is no field of a scene; did you mean `sources`?"),
-            (12, 1, "`wind.tree_m` is no field of a scene; did you mean `plants.tree_m`?"),
+            (11, 1, "`wind.sorces` is not a field of a scene; did you mean `sources`?"),
+            (12, 1, "`wind.tree_m` is not a field of a scene; did you mean `plants.tree_m`?"),
             (14, 9, "`objects.limit` is the number 2.5; expected a whole number, 0 to 1024"),
         ];
         assert_eq!(faults, expected.map(|(line, column, text)| (line, column, text.to_owned())));

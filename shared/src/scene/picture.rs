@@ -80,7 +80,7 @@ impl Light {
     }
 
     /// Hour of the day (0..24) at a simulated time (s). For a sun at a given heading and elevation: the quarter of an hour, on the scene's latitude and
-    /// day, at which the sun is nearest to that.
+    /// day, at which the sun is nearest to that position.
     pub fn hour_at(&self, time_secs: f64) -> f32 {
         if self.hour < 0.0 {
             let [x, y, z] = self.sun_at(time_secs).direction();

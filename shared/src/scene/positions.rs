@@ -1,4 +1,4 @@
-//! Positions of faults in the text of a file, each found in a time that does not depend on the size of the text.
+//! Positions of faults in the text of a file, each found in constant time.
 
 use super::SceneFault;
 use std::cell::OnceCell;

@@ -1,4 +1,4 @@
-//! Templates that a file's values overwrite: every field with its default, so that no second list of names and types is needed.
+//! Defaults of all fields, overwritten by a file's values, so that no second list of names and types is needed.
 
 use super::flat::{flatten, flatten_species, nest_grass};
 use super::walk::Walk;

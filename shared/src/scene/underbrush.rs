@@ -56,7 +56,7 @@ pub struct Component {
     pub angle_rad: f32,
     /// Random part of that angle, plus or minus (rad). Default 0.1, allowed 0..=1.5.
     pub angle_variation_rad: f32,
-    /// Rotation from each to the next about what carries them (rad). Default 2.4, the golden angle; allowed −6.3..=6.3.
+    /// Angle around the parent between successive components (rad). Default 2.4, the golden angle; allowed −6.3..=6.3.
     pub turn_rad: f32,
     /// Colour at its base, linear RGB. Default (0.04, 0.09, 0.02), allowed 0..=1 each.
     pub root_rgb: [f32; 3],

@@ -84,7 +84,7 @@ impl<'t> Walk<'t> {
                 continue;
             }
             let known = known.get_or_insert_with(|| values.keys().cloned().collect());
-            let fault = self.positions.spanning(key.span(), &path, format!("is no field of {}", self.file));
+            let fault = self.positions.spanning(key.span(), &path, format!("is not a field of {}", self.file));
             self.findings.push(Finding { fault, unknown: Some((key.get_ref().to_string(), known.clone())) });
         }
         for key in values.keys().filter(|key| !found.contains_key(key.as_str())) {
@@ -165,10 +165,10 @@ impl<'t> Walk<'t> {
         let has_name = |known: &&str| known.rsplit('.').next() == Some(key) && *known != field;
         let elsewhere = || FIELDS.iter().map(|(known, _)| *known).find(|known| may_stand(known) && has_name(known));
         if let Some(known) = nearest.or_else(elsewhere) {
-            return format!("is no field of {file}; did you mean `{known}`?");
+            return format!("is not a field of {file}; did you mean `{known}`?");
         }
         let known: Vec<_> = known.iter().map(|known| format!("`{known}`")).collect();
-        format!("is no field of {file}; known here: {}", known.join(", "))
+        format!("is not a field of {file}; known here: {}", known.join(", "))
     }
 }
 

@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_far_from_any_grass_is_of_the_first_kind() {
+    fn pixels_far_from_any_grass_are_of_the_first_kind() {
         let map = kinds(TWO, [7, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
         assert_eq!(map.kinds(), [1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 0, 0, 0, 0, 0]);
     }

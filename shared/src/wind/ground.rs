@@ -1,6 +1,6 @@
 //! Wind profile between the ground and the lowest wind cells.
 
-/// Height (m) above which the wind is that of the solver's cells.
+/// Height (m) above which the solver's wind is used unchanged.
 pub const FREE_WIND_M: f32 = 2.0;
 /// Lowest height of the profile, as a fraction of [`FREE_WIND_M`]; below it the wind is constant.
 pub const LEAST_WIND_HEIGHT: f32 = 0.02;

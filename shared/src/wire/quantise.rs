@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_heading_has_a_code() {
+    fn vectors_without_a_heading_have_a_code() {
         for vector in [[0.0; 2], [1.0, -1e-9], [f32::NAN, 1.0], [f32::MAX, 0.0]] {
             assert_eq!(heading_code(vector), NonZeroU8::MAX, "{vector:?}");
         }

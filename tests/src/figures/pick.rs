@@ -55,14 +55,14 @@ fn estimate<'a>(output: &'a str, name: &str) -> Result<&'a str> {
 
 /// Seconds of `12.3 µs`.
 fn secs_of(time: &str) -> Result<f64> {
-    let (number, unit) = time.split_once(' ').with_context(|| format!("`{time}` is no time"))?;
+    let (number, unit) = time.split_once(' ').with_context(|| format!("`{time}` is not a time"))?;
     let unit_secs = match unit {
         "ps" => 1e-12,
         "ns" => 1e-9,
         "µs" | "us" => 1e-6,
         "ms" => 1e-3,
         "s" => 1.0,
-        _ => anyhow::bail!("`{unit}` is no unit of time"),
+        _ => anyhow::bail!("`{unit}` is not a unit of time"),
     };
     Ok(number.parse::<f64>()? * unit_secs)
 }

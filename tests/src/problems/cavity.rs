@@ -108,7 +108,7 @@ mod tests {
         for cavity in TABLES {
             for (place, _) in cavity.vertical.into_iter().chain(cavity.horizontal) {
                 let node = (place * 128.0).round() / 128.0;
-                assert!((place - node).abs() <= 0.51e-4, "{place} is no multiple of 1/128");
+                assert!((place - node).abs() <= 0.51e-4, "{place} is not a multiple of 1/128");
             }
         }
     }

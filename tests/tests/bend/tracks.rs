@@ -1,4 +1,4 @@
-//! Heavy objects lay grass for longer: tracks stay, fade with their own time constant, and are sent although their patches sleep.
+//! Heavy objects flatten the grass: tracks stay, fade with their own time constant, and are sent although their patches sleep.
 
 use prairie::bend::flattened::{self, QUANTUM_RAD, TILE_BYTES};
 use prairie::snapshot::PatchQuantiser;

@@ -19,7 +19,7 @@ async fn meadow() -> Result<Prairie> {
 
 async fn number(browser: &Browser, field: &str) -> Result<f64> {
     let value = browser.state().await?[field].as_f64();
-    value.with_context(|| format!("`{field}` of the client's state is no number"))
+    value.with_context(|| format!("`{field}` of the client's state is not a number"))
 }
 
 /// Waits until the client's vehicle is [`FAR_M`] away from its current position.

@@ -78,7 +78,7 @@ impl Prairie {
 
 async fn numbers(browser: &Browser, expression: &str) -> Result<Vec<f64>> {
     let value = browser.evaluate(expression).await?;
-    let list = value.as_array().with_context(|| format!("{expression} is no list but {value}"))?;
+    let list = value.as_array().with_context(|| format!("{expression} is not a list but {value}"))?;
     Ok(list.iter().filter_map(Value::as_f64).collect())
 }
 

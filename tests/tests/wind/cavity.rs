@@ -25,7 +25,7 @@ fn steady(reynolds: f64, cells: usize, guess: Option<&Solver<f32>>) -> Solver<f3
     };
     let mut air = Solver::new(&config).expect("settings are allowed");
     air.set_velocity(|position| guess.map_or([0.0; 3], |air| air.velocity_at(position)));
-    // The longest step that the method takes without substeps if the air is as fast as the lid along both axes.
+    // The longest step that the method takes without sub-steps if the air is as fast as the lid along both axes.
     let per_s = cells as f64 / 1.73 * 1.5 + 8.0 / 2.51 * (cells * cells) as f64 / reynolds;
     let dt_secs = 0.8 / per_s;
     let steps_per_s = dt_secs.recip().ceil() as usize;

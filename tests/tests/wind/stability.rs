@@ -239,7 +239,7 @@ fn too_long_a_step_is_subdivided_or_rejected_and_never_clamped() {
     assert!(solver.state() == before);
 }
 
-/// Forces that would exceed the Courant limit within a step cause substeps or a rejection beforehand.
+/// Forces that would exceed the Courant limit within a step cause sub-steps or a rejection beforehand.
 #[test]
 fn strong_forces_subdivide_the_step() {
     let still = |force: f32| {

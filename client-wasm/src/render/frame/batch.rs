@@ -1,4 +1,4 @@
-//! Command encoder of a frame. Most frames have one; where more plants are drawn than a buffer holds, each batch of them has its own.
+//! Command encoder of a frame. Most frames have one. If the plants do not fit into a buffer, they are drawn in batches, each with an encoder of its own.
 
 use crate::render::frame::moment::OutputRegion;
 use crate::render::frame::prepare::FramePlan;

@@ -106,7 +106,7 @@ impl Renderer {
         }
     }
 
-    /// Replaces an order that this scene or target does not support, and creates what the order needs.
+    /// Replaces a transparency order that the scene or target does not support, and creates the resources that the order needs.
     fn set_blend_order(&mut self, scene: &mut SceneResources, plan: &mut FramePlan) {
         let samples = self.quality.samples(self.gpu.is_software);
         let factory = PassFactory { gpu: &self.gpu, frame_layout: &self.bindings.layout, samples, has_kinds: scene.has_kinds };

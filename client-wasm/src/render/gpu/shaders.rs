@@ -7,7 +7,7 @@ use super::{constants, uniforms};
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
-/// WGSL module of a pass. Each line of its text ends with a comment that names the file and line it is from, which compilers quote in their errors.
+/// WGSL module of a pass. Each line of its text ends with a comment that names its source file and line, so that the errors of compilers show them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shader {
     /// File with the entry points, as a path below `shaders/` without extension.

@@ -439,7 +439,7 @@ uniform_block! {
         /// Number of angles and of loads in the tables.
         nodes: [u32; 2],
         /// Rate of the drops of rain that make leaves tremble (1/(m²·s)).
-        drops_per_m2_s: f32,
+        drops_per_m2_per_s: f32,
         _pad: [u8; 4],
     }
 }

@@ -103,7 +103,7 @@ impl BendAtlas {
                 };
                 self.slots[at] = Slot { patch: Some(patch), is_bent, was_bent: is_bent || slot.was_bent && !has_moved };
                 if is_stale {
-                    // A patch that enters the window gets its present state as its history.
+                    // The history of a patch that enters the window starts with its present state.
                     self.write(gpu, origin, codes, if has_moved { self.texture.depth_or_array_layers() } else { 1 });
                     written += 1;
                 }

@@ -12,7 +12,7 @@ use std::f32::consts::PI;
 const GAIN: f32 = 0.7;
 /// Movement of the sun after which the sky is recomputed (rad): a third of its disc.
 const SKY_STEP_RAD: f32 = 0.003;
-/// Luminance of the sky (cd/m²) above which no star is visible, and below which all are.
+/// Luminance of the sky (cd/m²): no star is visible above the first value, and all are below the second.
 const STARS_CD_PER_M2: [f32; 2] = [4.0, 0.05];
 /// Brightness of the brightest stars.
 const STARS: f32 = 0.5;

@@ -21,7 +21,7 @@ pub(crate) struct SpotLight {
     pub(crate) rgb: Vec3,
     /// Luminous intensity on the axis (cd).
     pub(crate) candela: f32,
-    /// Cosines of the outer angle, where the light ends, and the inner angle, within which it is full.
+    /// Cosines of the outer angle (end of the light cone) and of the inner angle (full light within it).
     pub(crate) cone_cosines: [f32; 2],
 }
 

@@ -190,7 +190,7 @@ mod tests {
     use crate::camera::Camera;
 
     #[test]
-    fn tiles_within_the_map_are_told_from_those_beyond_its_edge() {
+    fn tiles_within_the_map_are_distinguished_from_those_beyond_its_edge() {
         let extent_m = Vec2::new(100.0, 64.0);
         let is_within = |x: f32, z: f32| TerrainTile { corner_m: [x, z], side_m: 16.0, range_m: 0.0 }.is_within(extent_m);
         assert!(is_within(0.0, 0.0) && is_within(80.0, 48.0) && is_within(84.0, 48.0), "on it, up to its edge");

@@ -47,9 +47,10 @@ impl Detail {
         }
     }
 
-    /// This detail with shorter distances where plants grow densely, so that no more of them are drawn. The reference, which draws all, stays as it is.
+    /// This detail, with shorter distances where plants grow densely, so that the number drawn stays the same. The reference draws every plant and is
+    /// unchanged.
     pub(crate) fn on(self, plants: &Plants) -> Self {
-        /// Plants per square metre that the distances of the presets are meant for.
+        /// Plant density (1/m²) for which the distances of the presets are tuned.
         const USUAL_PER_M2: f32 = 410.0;
         let per_m2 = (blades_per_grid(plants.plants_per_side) / plants.grid_m.powi(2) + plants.flowers_per_m2).max(USUAL_PER_M2);
         let nearer = if self.full_m < self.blades_m { (USUAL_PER_M2 / per_m2).sqrt() } else { 1.0 };

@@ -14,7 +14,7 @@ pub enum Quality {
     High,
     /// The same farther away, with 2 × 2 supersampling.
     Ultra,
-    /// Every plant in full detail up to [`REFERENCE_REACH_M`], at any cost: the reference that the other presets are compared with.
+    /// Reference for comparisons: every plant in full detail up to [`REFERENCE_REACH_M`], at any cost.
     Reference,
 }
 
@@ -198,7 +198,7 @@ const ULTRA: Preset = Preset {
     bend_radius_m: 256.0,
 };
 
-/// Number of presets that a user may choose: all except the reference, which is the last.
+/// Number of presets for users: all except the last, the reference.
 const OFFERED: usize = PRESETS.len() - 1;
 
 const _: () = {
@@ -240,7 +240,7 @@ impl Quality {
         self.preset().name
     }
 
-    /// The preset of that name that a user may choose.
+    /// The preset of this name, if it is one for users.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|quality| quality.name() == name)
     }
@@ -282,8 +282,8 @@ impl Quality {
         self.preset().samples[usize::from(is_software)]
     }
 
-    /// Supersampling factor: rendered pixels along each side of an output pixel. It is 1 where more would exceed `limit_px` along a side, or 10 million
-    /// pixels in all, which take 0.5 GB.
+    /// Supersampling factor: rendered pixels along each side of an output pixel. Reduced to 1 if the rendered picture would exceed `limit_px` along a
+    /// side, or 10 million pixels in all (0.5 GB).
     pub fn supersampling(self, size_px: [u32; 2], limit_px: u32) -> u32 {
         const MAX_RENDERED_PX: u64 = 10_000_000;
         let factor = self.preset().supersampling;

@@ -8,7 +8,7 @@ use prairie_core::light::sun::Sun;
 use prairie_core::wire::ObjectPose;
 
 const CASCADES: usize = SHADOW_CASCADES as usize;
-/// Refresh period of each cascade (frames in which time advances), and the frame of the period in which it is redrawn: cascades take turns.
+/// Refresh period of each cascade (frames in which time advances), and its phase (frame within the period): cascades take turns.
 /// The shadows of swaying trees move in steps of this period.
 const PERIOD_FRAMES: [u32; CASCADES] = [2, 4];
 const PHASE: [u32; CASCADES] = [0, 3];

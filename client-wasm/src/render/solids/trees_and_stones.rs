@@ -10,7 +10,7 @@ use std::f32::consts::TAU;
 /// Number of shapes of trees and of stones.
 pub(crate) const TREE_SHAPES: u32 = 4;
 pub(crate) const STONE_SHAPES: u32 = 3;
-/// Maximum number of trees, and of stones; of more, every n-th is drawn.
+/// Maximum number of trees, and of stones. If a scene has more, only every n-th is drawn.
 const MODEL_LIMIT: usize = 100_000;
 
 /// Sway of the top of a tree at 10 m/s and above, relative to its height.

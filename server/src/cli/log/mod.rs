@@ -1,6 +1,6 @@
 //! The log on stderr.
 //!
-//! Events are put into a bounded [`queue`] that a thread of its own writes, so that a stderr which nobody reads stops nothing else.
+//! A thread of its own writes events from a bounded [`queue`], so a stderr that is not read blocks nothing else.
 
 mod queue;
 mod text;
@@ -71,7 +71,7 @@ where
     }
 }
 
-/// Logs a panic, since the standard hook would wait for whoever reads stderr.
+/// Logs a panic. The standard hook would block while stderr is not read.
 fn log_panic(panic: &PanicHookInfo<'_>) {
     let message = panic.payload_as_str().unwrap_or("no message");
     let place = panic.location().map(ToString::to_string).unwrap_or_default();

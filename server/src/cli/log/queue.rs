@@ -15,7 +15,7 @@ const LINES_LIMIT: usize = 4096;
 /// Most bytes of these lines.
 const BYTES_LIMIT: usize = 4 << 20;
 
-/// Longest wait for the last lines at the end of the program, in case nobody reads them.
+/// Time limit for writing the last lines at the end of the program, in case stderr is not read.
 const END_LIMIT: Duration = Duration::from_secs(1);
 
 /// The queue's entrance. Never waits: a line for which there is no room is lost, and counted.
@@ -31,7 +31,7 @@ struct State {
     bytes: AtomicUsize,
     /// Lines lost since they were last reported.
     lost: AtomicU64,
-    /// Whether the thread shall end once it has written every line.
+    /// Whether the thread ends after the last line.
     is_ending: AtomicBool,
 }
 
@@ -59,7 +59,7 @@ impl Queue {
     }
 }
 
-/// Writes lines until the guard is dropped. Whenever none is left, reports those that were lost meanwhile.
+/// Writes lines until the guard is dropped. When the queue is empty, reports the number of lines lost meanwhile.
 fn write_lines(lines: &Receiver<Vec<u8>>, mut output: impl Write, state: &State, losses: &Dispatch) {
     loop {
         let line = match lines.try_recv() {

@@ -80,7 +80,7 @@ fn trusting(root: &Path) -> Result<Arc<ClientConfig>, TlsError> {
     Ok(Arc::new(config.with_root_certificates(roots).with_no_client_auth()))
 }
 
-/// Obtains and renews the certificate forever, and logs what happens.
+/// Obtains and renews the certificate until the server stops, and logs the results.
 async fn renew(mut state: AcmeState<io::Error>, domains: String, directory: String) {
     while let Some(event) = state.next().await {
         match event {

@@ -52,7 +52,7 @@ fn is_key(contents: &[u8]) -> bool {
     PrivateKeyDer::from_pem_slice(contents).is_ok()
 }
 
-/// Description of the fault in a file that should contain a `what`.
+/// Message about a PEM file without a valid `what`.
 pub(super) fn explain(what: &str, contents: &[u8], error: &pem::Error) -> String {
     let is_encrypted = contents.windows(ENCRYPTED.len()).any(|window| window == ENCRYPTED);
     match error {

@@ -1,4 +1,4 @@
-//! Self-signed certificates: what they contain, and when one must be replaced.
+//! Self-signed certificates: contents, and conditions for replacement.
 
 use super::acceptor::Tls;
 use super::error::TlsError;

@@ -67,7 +67,7 @@ fn set_aside(path: &Path) -> io::Result<PathBuf> {
     Ok(aside)
 }
 
-/// Writes a file that only the user may read, as a whole or not at all.
+/// Writes a file atomically, readable by the user only.
 fn write(path: &Path, text: &str) -> io::Result<()> {
     let temporary = path.with_extension(format!("{}.new", file::unique_part()));
     let written = || {

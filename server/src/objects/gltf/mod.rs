@@ -36,7 +36,7 @@ pub enum ModelFault {
     #[error("cannot be read: {0}")]
     Unreadable(String),
     /// The file is not valid glTF.
-    #[error("is no sound glTF 2.0 file (.glb or .gltf): {0}")]
+    #[error("is not a valid glTF 2.0 file (.glb or .gltf): {0}")]
     NotGltf(String),
     /// A buffer cannot be read.
     #[error("keeps its data in `{uri}`, which {reason}")]

@@ -114,9 +114,9 @@ fn at_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, ModelFault> {
     let unfit = |uri: &str, reason: String| ModelFault::Buffer { uri: excerpt(uri), reason };
     if let Some(data) = uri.strip_prefix("data:") {
         let digits = data.split_once(";base64,").map_or(data, |(_media_type, digits)| digits).trim_end_matches('=');
-        return BASE64_NOPAD.decode(digits.as_bytes()).map_err(|error| unfit("data:…", format!("is no base64: {error}")));
+        return BASE64_NOPAD.decode(digits.as_bytes()).map_err(|error| unfit("data:…", format!("is not base64: {error}")));
     }
-    let name = urlencoding::decode(uri).map_err(|error| unfit(uri, format!("is no name of a file: {error}")))?;
+    let name = urlencoding::decode(uri).map_err(|error| unfit(uri, format!("is not a file name: {error}")))?;
     if name.contains("://") {
         return Err(unfit(uri, "is elsewhere; allowed: a path relative to the model, or data within it".to_owned()));
     }

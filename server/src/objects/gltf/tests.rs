@@ -73,16 +73,16 @@ fn errors_name_the_file_and_its_buffers() {
     assert!(missing.to_string().starts_with("model no/such/model.glb cannot be read: No such file"), "{missing}");
     let buffer = |uri: &'static str| fault_of(|gltf| gltf["buffers"][0]["uri"] = json!(uri));
     assert!(buffer("my%20car.bin").starts_with("keeps its data in `my%20car.bin`, which cannot be read: No such file"));
-    assert!(buffer("%ff.bin").starts_with("keeps its data in `%ff.bin`, which is no name of a file"));
+    assert!(buffer("%ff.bin").starts_with("keeps its data in `%ff.bin`, which is not a file name"));
     assert!(buffer("http://elsewhere.example/car.bin").contains("which is elsewhere; allowed: a path relative to the model"));
-    assert!(buffer("data:application/octet-stream;base64,?").starts_with("keeps its data in `data:…`, which is no base64"));
+    assert!(buffer("data:application/octet-stream;base64,?").starts_with("keeps its data in `data:…`, which is not base64"));
 }
 
 #[test]
 fn invalid_gltf_is_rejected() {
     let fault_of = |bytes: &[u8]| read_bytes(bytes, VehicleKind::Monster).expect_err("no glTF").reason.to_string();
-    assert_eq!(fault_of(b"no glTF at all"), "is no sound glTF 2.0 file (.glb or .gltf): expected ident at line 1 column 2");
-    assert_eq!(fault_of(b"glTF\x02\0\0\0"), "is no sound glTF 2.0 file (.glb or .gltf): it ends too early");
+    assert_eq!(fault_of(b"no glTF at all"), "is not a valid glTF 2.0 file (.glb or .gltf): expected ident at line 1 column 2");
+    assert_eq!(fault_of(b"glTF\x02\0\0\0"), "is not a valid glTF 2.0 file (.glb or .gltf): it ends too early");
     let mut gltf = triangle([0, 1, 2]);
     gltf["nodes"][0]["mesh"] = json!(7);
     assert!(
@@ -95,7 +95,7 @@ fn invalid_gltf_is_rejected() {
 #[test]
 fn an_accessor_of_positions_that_does_not_exist_is_rejected() {
     let fault = |index: u32| fault_of(move |gltf| gltf["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(index));
-    let told = "is no sound glTF 2.0 file (.glb or .gltf): meshes[0].primitives[0].attributes.POSITION is ";
+    let told = "is not a valid glTF 2.0 file (.glb or .gltf): meshes[0].primitives[0].attributes.POSITION is ";
     assert_eq!(fault(2), format!("{told}2, and there are 2 accessors, numbered from 0"));
     assert_eq!(fault(u32::MAX), format!("{told}4294967295, and there are 2 accessors, numbered from 0"));
 }
@@ -106,8 +106,8 @@ fn a_binary_file_shorter_than_its_header_is_rejected() {
         let bytes = [b"glTF".as_slice(), &2_u32.to_le_bytes(), &length.to_le_bytes(), &[0; 8]].concat();
         read_bytes(&bytes, VehicleKind::Car).expect_err("no glTF").reason.to_string()
     };
-    assert_eq!(told(11), "is no sound glTF 2.0 file (.glb or .gltf): its header states a length of 11 bytes; allowed: at least 12");
-    assert_eq!(told(40), "is no sound glTF 2.0 file (.glb or .gltf): it ends too early");
+    assert_eq!(told(11), "is not a valid glTF 2.0 file (.glb or .gltf): its header states a length of 11 bytes; allowed: at least 12");
+    assert_eq!(told(40), "is not a valid glTF 2.0 file (.glb or .gltf): it ends too early");
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn messages_do_not_repeat_long_values() {
     let buffer = fault_of(move |gltf| gltf["buffers"][0]["uri"] = json!(uri));
     assert!(buffer.len() < 2000 && buffer.contains("x…x") && buffer.contains("which cannot be read: "), "{buffer}");
     let value = fault_of(move |gltf| gltf["meshes"] = json!(long));
-    assert!(value.len() < 2000 && value.contains("is no sound glTF"), "{value}");
+    assert!(value.len() < 2000 && value.contains("is not a valid glTF"), "{value}");
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn values_outside_the_data_are_rejected() {
     assert_eq!(fault_of(|gltf| gltf["bufferViews"][0]["byteStride"] = json!(4)), outside);
     assert_eq!(fault_of(|gltf| gltf["bufferViews"][0]["byteOffset"] = json!(42)), outside);
     let short = fault_of(|gltf| gltf["buffers"][0]["byteLength"] = json!(100));
-    assert_eq!(short, "is no sound glTF 2.0 file (.glb or .gltf): buffer 0 is stated to have 100 bytes and has 42");
+    assert_eq!(short, "is not a valid glTF 2.0 file (.glb or .gltf): buffer 0 is stated to have 100 bytes and has 42");
     let mut beyond = triangle([0, 1, 9]);
     let fault_of = |gltf: &Value| read_bytes(gltf.to_string().as_bytes(), VehicleKind::Car).expect_err("three vertices").reason.to_string();
     assert_eq!(fault_of(&beyond), "refers to vertex 9 of a mesh that has 3");

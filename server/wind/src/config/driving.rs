@@ -42,7 +42,7 @@ pub struct Gusts {
     pub radius_m: [f32; 3],
 }
 
-/// Dust, seed or another passive scalar, as a concentration (1: what a source of `release_per_s = 1` adds at its centre in one second).
+/// Dust, seed or another passive scalar, as a dimensionless concentration: a source of `release_per_s = 1` adds 1 at its centre in one second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dust {
     /// Advection scheme. Default [`Advection::Conservative`], which conserves the amount of dust.

@@ -39,7 +39,7 @@ impl TimeScheme {
 /// Diffusion scheme of velocity and dust.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Diffusion {
-    /// Explicit, with substeps where the step exceeds the stability limit (`ν·dt/h² = 1/6` on cubes).
+    /// Explicit, with sub-steps where the step exceeds the stability limit (`ν·dt/h² = 1/6` on cubes).
     Explicit,
     /// Backward Euler by a fixed number of Gauss–Seidel sweeps (Zhang §2.3.2). First order in dt, stable at any step.
     GaussSeidel {

@@ -28,7 +28,7 @@ pub enum IterativeMethod {
     /// Every cell from the previous iterate. The error falls by `cos(π/n)` per sweep for `n` cells along each axis: about `n²` sweeps. In air without
     /// an open edge, damped just enough for the checkerboard mode to decay.
     Jacobi,
-    /// Cell after cell, x fastest, from the newest values (Zhang §2.3.6): half the sweeps of Jacobi, on one thread.
+    /// Gauss–Seidel in lexicographic order, x fastest (Zhang §2.3.6): needs half the sweeps of Jacobi, but runs on one thread.
     GaussSeidel,
     /// Red–black successive over-relaxation with the optimal factor for the box without its solids: about `2 n` sweeps.
     Sor,

@@ -22,7 +22,7 @@ pub(super) struct Around<'a, R> {
 }
 
 impl<'a, R: Real> Around<'a, R> {
-    /// Tells the compiler that all have `len` values.
+    /// Reslices all to `len` values, so that the compiler omits bounds checks.
     #[inline(always)]
     fn of_len(self, len: usize) -> Self {
         let cut = |slices: [&'a [R]; 3]| slices.map(|slice| &slice[..len]);

@@ -94,7 +94,7 @@ fn projecting_twice_changes_nothing_more() {
 }
 
 #[test]
-fn every_solver_leaves_what_it_says() {
+fn every_solver_leaves_the_divergence_it_reports() {
     let grid = Grid { cells: [12, 8, 10], spacing_m: [1.0f32, 2.0, 0.5], boundary: [[Wrap; 2], [FreeSlip; 2], [NoSlip, Outflow]] };
     for method in [
         IterativeMethod::Jacobi,

@@ -196,7 +196,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_makes_no_equation_is_refused() {
+    fn invalid_systems_are_rejected() {
         let closed = [Some([Neumann; 2]); 3];
         assert_eq!(System::new([4, 0, 4], [1.0; 3], closed, None).err(), Some(SystemError::Cells([4, 0, 4])));
         assert_eq!(System::new([usize::MAX; 3], [1.0; 3], closed, None).err(), Some(SystemError::Cells([usize::MAX; 3])));

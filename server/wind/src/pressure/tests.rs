@@ -155,7 +155,7 @@ fn gauss_seidel_is_the_textbook_sweep() {
 }
 
 #[test]
-fn the_residual_told_is_the_true_one() {
+fn the_reported_residual_is_the_true_one() {
     for case in shapes().iter().filter(|case| case.len() > 20) {
         for method in METHODS {
             for sweeps in [0, 1, 6] {
@@ -202,7 +202,7 @@ fn closed_air_leaves_the_mean_out() {
 }
 
 #[test]
-fn what_is_not_finite_is_not_met() {
+fn values_that_are_not_finite_miss_the_tolerance() {
     let case = Case::new([6, 5, 4], [1.0; 3], EDGES[3], |_, _| false);
     for (method, value) in METHODS.into_iter().flat_map(|method| [(method, f64::NAN), (method, f64::INFINITY)]) {
         let mut f = noise(case.len(), 1);

@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn what_leans_too_far_hangs() {
+    fn a_lean_beyond_half_a_turn_hangs() {
         assert!((direction([9.0, 0.0])[1] + 1.0).abs() < 1e-5);
         let [x, z] = lean_of([0.0, -1.0, 0.0]);
         assert!((x - PI).abs() < 1e-5 && z == 0.0);

@@ -80,7 +80,7 @@ fn forces_decay_at_their_rate_whatever_the_step() {
 }
 
 #[test]
-fn what_lingers_is_gone_in_the_end() {
+fn lingering_forces_vanish_in_the_end() {
     let mut field = wide(LINGERING);
     (0..20).for_each(|_| field.step(1.0));
     assert!(forces(&field).iter().flatten().all(|force| *force == 0.0 || force.abs() > f32::MIN_POSITIVE), "and never subnormal");

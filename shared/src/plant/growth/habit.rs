@@ -38,8 +38,8 @@ impl Habit {
         let own = &species[index];
         let room_steps = sites.steps(own.room_m.into());
         let apart2 = |other: &Underbrush| square_steps(0.5 * sites.steps(f64::from(own.room_m) + f64::from(other.room_m)));
-        // Of two species the one that needs more room does the work, since it has fewer plants: before it comes up it searches for the other, and
-        // then closes sites to it.
+        // Of two species the one that needs more room checks the distance, since it has fewer plants: before a plant of it comes up, it searches for
+        // plants of the other; afterwards it closes sites to them.
         let keeps_away = |(i, other): (usize, &Underbrush)| (other.room_m <= own.room_m).then(|| (1 << i, apart2(other)));
         let stays_away = |other: &Underbrush| if other.room_m < own.room_m { apart2(other) } else { 0 };
         let taken = |i: usize| 2.0 * shade * (1.0 - heights_m[i] / heights_m[index]) * f32::from(u16::MAX);

@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn what_yields_to_any_wind_bears_it() {
+    fn a_limp_stalk_bears_any_wind() {
         // All sections along the wind: the moment at the foot is at most its joint's, 16·EI/L times a right angle, over the ¾ of its load that rotate it.
         let limp = |strength_n_m| bears_pa(&plan(vec![Component { angle_rad: 0.0, ..stalk("stalk", "", strength_n_m) }]));
         assert!(limp(2.0 * 33.6) == f32::INFINITY && limp(2.0 * 28.0).is_finite());

@@ -15,7 +15,7 @@ pub const DROP_KG: f32 = 4.19e-6;
 pub const DROP_M_PER_S: f32 = 6.49;
 
 /// Drops per square metre and second (1/(m²·s)) at a rainfall rate (mm/h): 3300 at 50 mm/h.
-pub fn drops_per_m2_s(rate_mm_per_h: f32) -> f32 {
+pub fn drops_per_m2_per_s(rate_mm_per_h: f32) -> f32 {
     // A millimetre of rain is a kilogram per square metre.
     rate_mm_per_h / 3600.0 / DROP_KG
 }
@@ -54,7 +54,7 @@ mod tests {
 
     #[test]
     fn rain_brings_its_water_and_momentum() {
-        let drops = drops_per_m2_s(50.0);
+        let drops = drops_per_m2_per_s(50.0);
         assert!((drops * DROP_KG * 3600.0 - 50.0).abs() < 1e-3, "{drops} drops");
         assert!((drops * DROP_KG * DROP_M_PER_S - 0.09).abs() < 0.001, "Pa");
         let ball_kg = 1000.0 * std::f32::consts::PI / 6.0 * 0.002_f32.powi(3);

@@ -17,7 +17,7 @@ pub const SECTIONS_LIMIT: usize = 16;
 const SETTLE_SECS: [f32; 2] = [0.01, 10.0];
 
 /// Diameter of a flower's stalk relative to that of its ring of petals.
-pub(super) const STALK_SHARE: f32 = 0.06;
+pub(super) const STALK_FRACTION: f32 = 0.06;
 
 /// Mean width of a component relative to its largest, by its outline in [`vectors`](super::vectors).
 const LEAF_MEAN_WIDTH: f32 = 0.73;
@@ -219,7 +219,7 @@ fn drag_m2(component: &Component) -> f32 {
         ComponentKind::Leaf => LEAF_DRAG * LEAF_MEAN_WIDTH * length_m * width_m,
         ComponentKind::Branch => STALK_DRAG * BRANCH_MEAN_WIDTH * length_m * width_m,
         ComponentKind::Flower => {
-            STALK_DRAG * STALK_SHARE * length_m * width_m + LEAF_DRAG * std::f32::consts::FRAC_PI_4 * width_m * width_m
+            STALK_DRAG * STALK_FRACTION * length_m * width_m + LEAF_DRAG * std::f32::consts::FRAC_PI_4 * width_m * width_m
         }
     }
 }

@@ -22,15 +22,15 @@ impl Load {
         (self.tip + self.spread * (count as f64 - section as f64 - 0.5) / count as f64) / count as f64
     }
 
-    /// The part of that load that rotates it.
+    /// The part of that load that rotates the section: all of it, except in the lowest.
     fn turning(&self, section: usize, count: usize) -> f64 {
-        self.held(section, count) * if section == 0 { FOOT_LOAD_SHARE } else { 1.0 }
+        self.held(section, count) * if section == 0 { FOOT_LOAD_FRACTION } else { 1.0 }
     }
 }
 
 /// Fraction of its load that rotates the lowest section. The joint at the clamp represents half a section, so it bends by the moment in the middle of
 /// that half: a quarter of the section is below.
-const FOOT_LOAD_SHARE: f64 = 0.75;
+const FOOT_LOAD_FRACTION: f64 = 0.75;
 
 /// Rotational stiffness of the joints at the lower ends of `sections` sections, from the base, with a rigidity that falls linearly to `tip_fraction` at
 /// the tip.

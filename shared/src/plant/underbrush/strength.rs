@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_above_a_broken_joint_hangs() {
+    fn the_part_above_a_broken_joint_hangs() {
         let (joints, fractions) = (joints(8, 0.5), fractions(8, 0.5));
         let broken = broken_across(&joints, &fractions, 1.0).unwrap();
         let tip_rad = |joints: &[f64]| {

@@ -1,6 +1,6 @@
 //! Outline of a bent component as vectors (Endo et al. 2003, §3.1): along its axis, and to its left and right edges.
 
-use super::plan::{Part, STALK_SHARE};
+use super::plan::{Part, STALK_FRACTION};
 use super::plant::Posed;
 use crate::scene::ComponentKind;
 use glam::Vec3;
@@ -51,7 +51,7 @@ fn width_m(part: &Part, size: f32, fraction: f32) -> f32 {
     match part.component.kind {
         ComponentKind::Leaf => width_m * (fraction + 0.15) * (1.0 - fraction) / (0.575 * 0.575),
         ComponentKind::Branch => width_m * (1.0 - 0.5 * fraction),
-        ComponentKind::Flower => width_m * STALK_SHARE * (1.0 - 0.5 * fraction),
+        ComponentKind::Flower => width_m * STALK_FRACTION * (1.0 - 0.5 * fraction),
     }
 }
 

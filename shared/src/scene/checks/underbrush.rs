@@ -112,7 +112,7 @@ fn no_branch(species: &Underbrush, index: usize) -> Option<String> {
         Some(at) if at < index => format!(", which is a {}", species.components[at].kind.word()),
         Some(at) if at == index => ", which is itself".to_owned(),
         Some(_) => ", which comes later".to_owned(),
-        None => ", which is no component of its plant".to_owned(),
+        None => ", which is not a component of its plant".to_owned(),
     };
     let before = species.components[..index].iter().filter(|component| component.kind == ComponentKind::Branch);
     let branches: Vec<_> = before.map(|branch| format!("\"{}\"", branch.name)).collect();

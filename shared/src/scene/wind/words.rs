@@ -89,7 +89,7 @@ impl WindTime {
 words! {
     /// Diffusion scheme of the wind.
     WindDiffusion {
-        /// Forward Euler, with substeps within its limit (ν·dt/h² up to 1/6 in cubic cells).
+        /// Forward Euler, with sub-steps within its limit (ν·dt/h² up to 1/6 in cubic cells).
         Explicit = "explicit",
         /// Backward Euler by Gauss–Seidel sweeps (Zhang §2.3).
         GaussSeidel = "gauss-seidel",

@@ -18,7 +18,7 @@ use super::super::{Outcome, Problem, Run};
 use crate::norms::Norms;
 
 const SECTIONS: usize = 8;
-const TIP_SHARE: f64 = 0.5;
+const TIP_FRACTION: f64 = 0.5;
 /// Nodes along each axis of a table.
 const SIZES: [usize; 6] = [5, 9, 17, 33, 65, 129];
 /// Number of angles and of loads that are looked up.
@@ -60,7 +60,7 @@ fn tip(unbent_rad: f64, bends_rad: impl Iterator<Item = f64>) -> [f64; 2] {
 fn samples() -> &'static [Sample] {
     static ALL: OnceLock<Vec<Sample>> = OnceLock::new();
     ALL.get_or_init(|| {
-        let joints = joints(SECTIONS, TIP_SHARE);
+        let joints = joints(SECTIONS, TIP_FRACTION);
         let sample = |n: usize| {
             let [angle, load] = [n / SAMPLES, n % SAMPLES].map(|n| (n as f64 + 0.4) / SAMPLES as f64);
             let (unbent_rad, load) = (PI * angle.powf(1.5), 0.1 * 2000f64.powf(load));
@@ -74,7 +74,7 @@ fn samples() -> &'static [Sample] {
 }
 
 fn table(size: usize) -> Postures {
-    Postures::new(&joints(SECTIONS, TIP_SHARE), &fractions(SECTIONS, TIP_SHARE), Nodes { angles: size, loads: size })
+    Postures::new(&joints(SECTIONS, TIP_FRACTION), &fractions(SECTIONS, TIP_FRACTION), Nodes { angles: size, loads: size })
 }
 
 pub(super) fn problem(quick: bool) -> Problem {
@@ -128,7 +128,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
         writeln!(summary, "{name}: {} to {} a look-up, from the smallest table to the largest", time_text(least), time_text(most))?;
         curves.push(curve);
     }
-    let joints = joints(SECTIONS, TIP_SHARE);
+    let joints = joints(SECTIONS, TIP_FRACTION);
     let (mut bends_rad, begun) = ([0.0; SECTIONS], Instant::now());
     for sample in samples() {
         balanced(&joints, Load { spread: sample.load, tip: 0.0 }, sample.unbent_rad, &mut bends_rad);

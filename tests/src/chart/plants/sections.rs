@@ -17,7 +17,7 @@ const WAYS: [(&str, Way); 2] = [("one pass (Endo et al.)", one_pass), ("balance"
 const SECTIONS: [usize; 6] = [1, 2, 4, 8, 16, 32];
 
 /// Ratio of the rigidity at the tip to that at the foot.
-const TIP_SHARE: f64 = 0.5;
+const TIP_FRACTION: f64 = 0.5;
 /// Weights over EI/L², and angles of the unbent axis from upright (rad).
 const WEIGHTS: [f64; 4] = [1.0, 3.0, 10.0, 30.0];
 const UNBENT_RAD: [f64; 3] = [0.3, 1.0, 1.57];
@@ -32,7 +32,7 @@ fn cases() -> impl Iterator<Item = (f64, f64)> {
 /// Exact tips of the cases, as continuous beams.
 fn exact() -> &'static [[f64; 2]] {
     static TIPS: OnceLock<Vec<[f64; 2]>> = OnceLock::new();
-    TIPS.get_or_init(|| cases().map(|(weight, unbent_rad)| heavy_tip(TIP_SHARE, weight, unbent_rad)).collect())
+    TIPS.get_or_init(|| cases().map(|(weight, unbent_rad)| heavy_tip(TIP_FRACTION, weight, unbent_rad)).collect())
 }
 
 pub(super) fn problem(quick: bool) -> Problem {
@@ -52,7 +52,7 @@ pub(super) fn problem(quick: bool) -> Problem {
 }
 
 fn bend(way: Way, sections: usize) -> Result<Outcome> {
-    let joints = joints(sections, TIP_SHARE);
+    let joints = joints(sections, TIP_FRACTION);
     let mut bends_rad = vec![0.0; sections];
     let begun = Instant::now();
     for _ in 0..REPEATS {

@@ -81,7 +81,7 @@ fn passes_are_linked_from_their_files() {
 }
 
 #[test]
-fn each_file_is_valid_with_what_it_imports() {
+fn each_file_is_valid_with_its_imports() {
     let library = Library::new(texts()).expect("sound shaders");
     for file in library.0.keys() {
         let unit = joined(library.unit(file).unwrap_or_else(|error| panic!("{error}")));
@@ -139,7 +139,7 @@ fn uniform_blocks_are_laid_out_as_in_wgsl() {
         block.declare(&mut Vec::new(), &mut text).expect("a string takes all");
         let module = parsed(&format!("{text}@group(0) @binding(0) var<uniform> block: {};", block.name)).expect("valid WGSL");
         let (_, found) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(block.name)).expect("the block");
-        let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{} is no struct", block.name) };
+        let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{} is not a struct", block.name) };
         let found: Vec<_> = members.iter().map(|member| (member.name.as_deref().unwrap_or_default(), member.offset as usize)).collect();
         let wanted: Vec<_> =
             block.members.iter().filter(|member| !member.is_padding()).map(|member| (member.name, member.offset_bytes)).collect();

@@ -3,7 +3,7 @@
 use crate::render::gpu::constants::BLADE_SHAPES;
 use crate::render::gpu::mipmaps::box_mipmaps;
 
-/// Size of the texture (px), with its shapes side by side; `SHAPES` in `blades.wgsl`.
+/// Size of the texture (px), with its [`BLADE_SHAPES`] side by side.
 pub(super) const BLADE_PX: [u32; 2] = [64 * BLADE_SHAPES, 256];
 /// Mip levels, down to 4 px per shape, so that shapes do not bleed into each other.
 const BLADE_LEVELS: usize = 5;

@@ -265,7 +265,7 @@ fn drop_response(part: &Part, calm: &Posed) -> DropResponse {
     DropResponse { speed_m_per_s, settle_secs, area_m2, _unused: 0.0 }
 }
 
-/// Components that a level shows, with a factor on their width that preserves coverage. The coarsest level omits thin stalks and most leaves.
+/// Components drawn at a level of detail, with a factor on their width that preserves coverage. The coarsest level omits thin stalks and most leaves.
 fn kept(plan: &Plan, placed: &[Placed], level: usize) -> Vec<(usize, f32)> {
     let kind = |index: usize| plan.parts[placed[index].part].component.kind;
     let is_stout = |index: usize| plan.parts[placed[index].part].component.width_m > 0.006;

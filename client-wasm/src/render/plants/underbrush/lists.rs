@@ -8,7 +8,7 @@ use crate::render::gpu::uniforms::BrushList;
 use bytemuck::Zeroable;
 use prairie_core::plant::flora::Flora;
 use prairie_core::plant::growth::SPECIES_LIMIT;
-use prairie_core::plant::underbrush::drops::drops_per_m2_s;
+use prairie_core::plant::underbrush::drops::drops_per_m2_per_s;
 use wgpu::BufferUsages;
 
 /// Approximate number of vertices per instance: small plants share instances.
@@ -58,7 +58,7 @@ impl Lists {
                     is_nearest: u32::from(level + 1 == LEVELS),
                     first_step: steps.len() as u32,
                     nodes: [nodes.angles as u32, nodes.loads as u32],
-                    drops_per_m2_s: if trembles { drops_per_m2_s(rain_mm_per_h) } else { 0.0 },
+                    drops_per_m2_per_s: if trembles { drops_per_m2_per_s(rain_mm_per_h) } else { 0.0 },
                     _pad: [0; 4],
                 };
                 places += own;
