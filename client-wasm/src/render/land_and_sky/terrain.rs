@@ -85,20 +85,12 @@ impl TerrainQuadtree {
         tiles
     }
 
-    /// Range of the hills of a tile relative to the map (m), for `far_hills` in WGSL.
-    fn hills_m(&self, tile: &TerrainTile) -> [f32; 2] {
-        let low = Vec2::from(tile.corner_m);
-        let outside_m = (-low).max(low + tile.side_m - self.extent_m).max(Vec2::ZERO).length();
-        let fraction = (outside_m / HILLS_FULL_M).min(1.0);
-        let rise = fraction * fraction * (3.0 - 2.0 * fraction);
-        [-HILLS_MEAN * HILLS_RANGE_M * rise, ((1.0 - HILLS_MEAN) * HILLS_RANGE_M + HILLS_SLOPE * outside_m) * rise]
-    }
-
     fn collect(&self, corner: Vec2, side: f32, eye: Vec3, frustum: &Frustum, tiles: &mut Vec<TerrainTile>) {
         let tile = TerrainTile { corner_m: corner.into(), side_m: side, range_m: RANGE_SIDES * side };
         let [lowest, highest] = self.height_m;
         let between = |[below, above]: [f32; 2]| [corner.extend(lowest + below).xzy(), (corner + side).extend(highest + above).xzy()];
-        let [low, high] = between(self.hills_m(&tile));
+        let outside_m = (-corner).max(corner + side - self.extent_m).max(Vec2::ZERO).length();
+        let [low, high] = between(hills_m(outside_m));
         if !frustum.sees_box(low, high + self.grass_m * Vec3::Y) {
             return;
         }
@@ -113,6 +105,13 @@ impl TerrainQuadtree {
             tiles.push(tile);
         }
     }
+}
+
+/// Bounds of the hills up to a distance from the edge of the map, relative to the map (m): those of `far_hills` in WGSL.
+pub(crate) fn hills_m(outside_m: f32) -> [f32; 2] {
+    let fraction = (outside_m / HILLS_FULL_M).min(1.0);
+    let rise = fraction * fraction * (3.0 - 2.0 * fraction);
+    [-HILLS_MEAN * HILLS_RANGE_M * rise, ((1.0 - HILLS_MEAN) * HILLS_RANGE_M + HILLS_SLOPE * outside_m) * rise]
 }
 
 pub(crate) struct Terrain {
