@@ -34,7 +34,7 @@ struct BladeCounters {
 @group(1) @binding(2) var<storage, read_write> drawn: array<Blade>;
 @group(1) @binding(3) var<storage, read_write> counters: BladeCounters;
 @group(1) @binding(5) var<storage, read_write> draws: array<u32>;
-// Numbers of near and of far plants that are listed; indices of the near ones in `sways`; chunk · 64 + index in the chunk of the far ones.
+// Numbers of near and of far plants that are listed; indices of the near ones in `sways`; chunk · `CHUNK` + index in the chunk of the far ones.
 @group(1) @binding(6) var<storage, read> standing: array<u32>;
 // Number of the frame that last moved each near plant.
 @group(1) @binding(7) var<storage, read_write> moved: array<u32>;
@@ -256,7 +256,7 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
     append(list, blade);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(CHUNK)
 fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= standing[0] {
         return;
@@ -326,15 +326,15 @@ fn blowing(p: vec3<f32>, above_m: f32, gust: f32) -> vec2<f32> {
     return wind * min(1.0, BEND_SATURATES_M_PER_S / max(length(wind), 1e-3));
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(CHUNK)
 fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= standing[1] {
         return;
     }
     let listed = standing[LISTED + NEAR_SLOTS * plants.grid_plants + id.x];
-    let chunk = chunks[listed / 64u];
+    let chunk = chunks[listed / CHUNK];
     let grid = chunk.grid;
-    let index = chunk.first + listed % 64u;
+    let index = chunk.first + listed % CHUNK;
     let plant = plant_at(grid, index, plant_place(grid, index), is_flower_at(grid, index));
     let distance_m = distance(plant.root, frame.eye_m);
     let grown = growth(index, distance_m);
@@ -344,7 +344,7 @@ fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
     show(plant, points_of(standing_far(plant, bending_at(plant, grid, index)), plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
 }
 
-// Indirect draws, with 64 plants per instance.
+// Indirect draws, with a chunk of plants per instance.
 @compute @workgroup_size(PLANT_LISTS)
 fn finish(@builtin(local_invocation_index) list: u32) {
     if list < PLANT_LISTS {

@@ -1,7 +1,7 @@
 // Shells (Bakay): layers of one texture of cross-sections that lean without changing the length of a blade. Between two layers the view ray
 // is sampled in slices, so that it meets blades there at grazing angles.
 
-import package::constants::{GUST_SPEED, RIGHT_ANGLE, SHELL_BLADE_PX, TILE_CELLS, TILE_VERTICES};
+import package::constants::{GUST_SPEED, RIGHT_ANGLE, SHELL_BLADE_PX, TILE_CELLS, TILE_VERTICES, WORKGROUP_SIZE};
 import package::inputs::bend_atlas::{field_level, lean_at};
 import package::inputs::frame::{frame, runtime_zero, repeated};
 import package::inputs::grass_kinds::kinds_blended;
@@ -94,7 +94,7 @@ fn gust_held(p: vec2<f32>) -> f32 {
     return max(now, max(mix(now, gust_at(p + back_m), 0.61), mix(now, gust_at(p + 2.0 * back_m), 0.37)));
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP_SIZE)
 fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= TILE_VERTICES {
         return;

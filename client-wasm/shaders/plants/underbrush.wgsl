@@ -1,7 +1,8 @@
 // Underbrush: culling, force and level of detail of each plant.
 
 import package::constants::{
-    BLOCK_ROWS, DRAW_WORDS, FALL_PA, MIN_KEPT_FRACTION, FREE_WIND_M, LEAST_WIND_HEIGHT, TAU, UNDERBRUSH_LEVELS, UNDERBRUSH_LISTS, VARIANTS,
+    AIR_KG_PER_M3, BLOCK_ROWS, CHUNK, DRAW_WORDS, ENLARGEMENT_EXPONENT, FALL_PA, FREE_WIND_M, LEAST_WIND_HEIGHT, MIN_KEPT_FRACTION,
+    SPARE_DIVISOR, TAU, UNDERBRUSH_LEVELS, UNDERBRUSH_LISTS, VARIANTS, WORKGROUP_SIZE,
 };
 import package::inputs::bend_atlas::lean_of_field;
 import package::inputs::frame::{clamped, frame, runtime_zero};
@@ -72,7 +73,7 @@ struct UnderbrushCounters {
 // Number of workgroups of `ribbons`, for an indirect dispatch.
 @group(1) @binding(22) var<storage, read_write> ribbon_groups: array<u32, 3>;
 
-const GROUP_BLOCKS: u32 = 64u / BLOCK_ROWS;
+const GROUP_BLOCKS: u32 = WORKGROUP_SIZE / BLOCK_ROWS;
 
 // Force on a silhouette (Pa, X and Z) at a height above the root: from the force field, and beyond it from the wind alone.
 fn pressure_at(root: vec3<f32>, above_m: f32) -> vec2<f32> {
@@ -85,7 +86,7 @@ fn pressure_at(root: vec3<f32>, above_m: f32) -> vec2<f32> {
     }
     if inside < 1.0 {
         let wind = wind_at(root, above_m);
-        force += vec4<f32>(wind.xz * (0.6 * length(wind) * (1.0 - inside)), 0.0, 0.0);
+        force += vec4<f32>(wind.xz * (0.5 * AIR_KG_PER_M3 * length(wind) * (1.0 - inside)), 0.0, 0.0);
     }
     // Gusts, and shelter among the plants: a quarter-power law of the height, as in `near_ground_fraction` of shared/src/wind/ground.rs.
     let gust = gust_at(root.xz);
@@ -134,7 +135,7 @@ fn display_size(plant: UnderbrushPlant) -> DisplaySize {
     // Plants of a few pixels thin out, and the rest are larger.
     shown.tall_px = shown.tall / (shown.distance_m * frame.pixel_rad);
     let kept = clamp(shown.tall_px / 16.0, MIN_KEPT_FRACTION, 1.0);
-    shown.larger = pow(kept, -0.3);
+    shown.larger = pow(kept, ENLARGEMENT_EXPONENT);
     shown.lot = random3(vec2<i32>(i32(plant.site), 5), 91u).x;
     let reach_m = brush.reach_m;
     let stays = clamp((kept - shown.lot) / (0.2 * kept), 0.0, 1.0) * (1.0 - smoothstep(0.8, 1.0, shown.distance_m / reach_m));
@@ -142,7 +143,7 @@ fn display_size(plant: UnderbrushPlant) -> DisplaySize {
     return shown;
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(CHUNK)
 fn sift(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let chunk = chunks[group.x];
     if local >= chunk.y {
@@ -155,7 +156,7 @@ fn sift(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     if (shown.left > 0.01) & ((brush.culls == 0u) | is_seen(shown.root, reach_m)) {
         let number = atomicAdd(&sifted[0], 1u);
         atomicStore(&sifted[1u + number], index);
-        if number % 64u == 0u {
+        if number % CHUNK == 0u {
             atomicAdd(&sifted_groups[0], 1u);
         }
     }
@@ -163,7 +164,7 @@ fn sift(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
 
 // Blocks for plants at their own levels; the rest is for plants that found none, at the coarsest level.
 fn main_room() -> u32 {
-    return brush.block_limit - brush.block_limit / 4u;
+    return brush.block_limit - brush.block_limit / SPARE_DIVISOR;
 }
 
 fn blocks_of(list: u32) -> u32 {
@@ -191,7 +192,7 @@ fn room(species: u32, finest: u32, number: u32) -> vec2<u32> {
     return vec2<u32>(select(UNDERBRUSH_LEVELS, UNDERBRUSH_LEVELS - 1u, claim(spare, few, brush.block_limit, number)), spare);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(CHUNK)
 fn stand(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= min(candidates[0], brush.plant_limit) {
         return;
@@ -270,7 +271,7 @@ fn stand(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // Arguments of the indirect draws and of the dispatch of `ribbons`.
-@compute @workgroup_size(64)
+@compute @workgroup_size(UNDERBRUSH_LISTS)
 fn finish(@builtin(local_invocation_index) list: u32) {
     let held = lists.list[list].instance_plants;
     brush_draws[list * DRAW_WORDS + 1u] = (atomicLoad(&counters.drawn[list]) + held - 1u) / max(held, 1u);

@@ -1,6 +1,6 @@
 //! Shells (Bakay): grass as layers of cross-sections over the mesh of the ground, fewer with distance.
 
-use crate::render::gpu::constants::TILE_VERTICES;
+use crate::render::gpu::constants::{TILE_VERTICES, WORKGROUP_SIZE};
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, storage, storage_rw, texture, uniform};
 use crate::render::gpu::shaders;
@@ -149,7 +149,7 @@ impl Shells {
         if self.tile_count > 0 {
             pass.set_pipeline(&self.settle);
             pass.set_bind_group(1, &self.settle_group, &[]);
-            pass.dispatch_workgroups(TILE_VERTICES.div_ceil(64), self.tile_count, 1);
+            pass.dispatch_workgroups(TILE_VERTICES.div_ceil(WORKGROUP_SIZE), self.tile_count, 1);
         }
     }
 

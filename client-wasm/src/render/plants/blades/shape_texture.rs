@@ -3,7 +3,7 @@
 use crate::render::gpu::constants::BLADE_SHAPES;
 use crate::render::gpu::mipmaps::box_mipmaps;
 
-/// Size of the texture (px), with its shapes side by side; `SHAPES` in `blades.wgsl`.
+/// Size of the texture (px), with its shapes side by side.
 pub(super) const BLADE_PX: [u32; 2] = [64 * BLADE_SHAPES, 256];
 /// Mip levels, down to 4 px per shape, so that shapes do not bleed into each other.
 const BLADE_LEVELS: usize = 5;
@@ -11,7 +11,7 @@ const BLADE_LEVELS: usize = 5;
 /// The five blades of Zhang, Fig. 5 b. R is brightness, A coverage. Tips are at the top.
 pub(super) fn blade_shapes() -> Vec<Vec<u8>> {
     let [width, height] = BLADE_PX.map(|px| px as usize);
-    let tile = width / 5;
+    let tile = width / BLADE_SHAPES as usize;
     let mut texels = vec![0; width * height * 4];
     for y in 0..height {
         let up = 1.0 - (y as f32 + 0.5) / height as f32;

@@ -1,6 +1,7 @@
 //! Grid squares of underbrush plants, each culled as a unit.
 
 use super::bake::VARIANTS;
+use crate::render::gpu::constants::{ENLARGEMENT_EXPONENT, MIN_KEPT_FRACTION};
 use crate::state::DecodedScene;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -8,7 +9,6 @@ use prairie_core::plant::flora::{self, Flora};
 
 /// Side of a square (m).
 const TILE_M: f32 = 8.0;
-use crate::render::gpu::constants::MIN_KEPT_FRACTION;
 
 /// A plant of `underbrush.wgsl`.
 #[repr(C)]
@@ -53,7 +53,11 @@ pub(crate) fn tiles(decoded: &DecodedScene, flora: &Flora) -> (Vec<PlantInstance
                 heading_rad: instance.heading_rad,
                 site: plant.site,
             };
-            (instance.at_m.map(tile_number), grown, reaches_m[instance.species] * instance.size * MIN_KEPT_FRACTION.powf(-0.3))
+            (
+                instance.at_m.map(tile_number),
+                grown,
+                reaches_m[instance.species] * instance.size * MIN_KEPT_FRACTION.powf(ENLARGEMENT_EXPONENT),
+            )
         })
         .collect();
     by_tile.sort_by_key(|&([x, z], ..)| [z, x]);
