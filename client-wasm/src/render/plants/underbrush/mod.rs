@@ -23,7 +23,7 @@ use prairie_core::plant::flora::{self, Flora, height_m};
 use prairie_core::plant::growth::SPECIES_LIMIT;
 use tiles::PlantTile;
 use tiles::tile_number;
-pub(crate) use tiles::tiles;
+pub(crate) use tiles::{UnderbrushPlant, tiles};
 
 pub(crate) struct Underbrush {
     passes: Passes,
