@@ -18,6 +18,9 @@ const STEPS_PER_PUBLISH: u64 = 3;
 /// Simulated time before the measurement, to skip the first key frames and the onset of the wind (s).
 const WARM_UP_SECS: f32 = 5.0;
 
+/// Messages of the measurement by kind: number and bytes.
+type Sums = BTreeMap<&'static str, (usize, usize)>;
+
 fn main() -> anyhow::Result<()> {
     let mut arguments = std::env::args().skip(1);
     let scene = arguments.next().unwrap_or_else(|| "meadow".to_owned());
@@ -33,7 +36,7 @@ fn main() -> anyhow::Result<()> {
     let (client, mut frames) = clients.join(clients.next_id(), "driver".to_owned(), limits.in_flight as usize);
     let mut commands = vec![Command::Spawn { client: client.id, kind: VehicleKind::Car }];
 
-    let mut sums: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+    let mut sums = Sums::new();
     let (mut publishing, mut publishes) = (Duration::ZERO, 0);
     let mut quantiser = PatchQuantiser::default();
     let start = Instant::now();
@@ -73,7 +76,13 @@ fn main() -> anyhow::Result<()> {
         tick_hz / STEPS_PER_PUBLISH as f32,
         publishing.as_secs_f64() * 1e3 / f64::from(publishes)
     );
-    for (kind, (count, sum)) in &sums {
+    print_rates(&sums, measured_secs);
+    Ok(())
+}
+
+/// Prints the rate of each kind of message, and that of all.
+fn print_rates(sums: &Sums, measured_secs: f32) {
+    for (kind, (count, sum)) in sums {
         println!(
             "{kind:12} {:8.1} messages/s {:8.1} bytes each {:9.1} kbit/s",
             *count as f32 / measured_secs,
@@ -82,7 +91,6 @@ fn main() -> anyhow::Result<()> {
         );
     }
     println!("total {:.0} kbit/s", sums.values().map(|(_, sum)| *sum as f32).sum::<f32>() * 8e-3 / measured_secs);
-    Ok(())
 }
 
 fn kind(message: &ServerMessage) -> &'static str {

@@ -5,7 +5,7 @@
 // positions among the pairs with that value; each tile adds the start of its value and writes its pairs there. Workgroups never wait for
 // each other, and no subgroup operations are needed.
 
-import package::constants::{DIGITS, SORT_TILE};
+import package::constants::{DIGITS, SORT_TILE, WORKGROUP_SIZE};
 import package::uniforms::SortDigit;
 
 @group(1) @binding(0) var<storage, read> counters: array<u32>;
@@ -72,7 +72,7 @@ fn add_up(thread: u32, count: u32) {
 }
 
 // Threads per digit value, each with a run of tiles.
-const RUNS: u32 = 64u;
+const RUNS: u32 = WORKGROUP_SIZE;
 
 @compute @workgroup_size(RUNS)
 fn place_digits(@builtin(workgroup_id) digit: vec3<u32>, @builtin(local_invocation_index) thread: u32) {

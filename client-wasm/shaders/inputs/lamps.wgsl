@@ -1,5 +1,6 @@
 // Light of lamps. Twin of shared/src/light/lamp.rs.
 
+import package::constants::LEAST_LAMP_DISTANCE_M;
 import package::inputs::frame::frame;
 import package::uniforms::Lamp;
 
@@ -11,7 +12,7 @@ struct LampRay {
 
 // Twin of `attenuation` in shared/src/light/lamp.rs.
 fn attenuation(weights: vec3<f32>, distance_m: f32) -> f32 {
-    let d = max(distance_m, 0.1);
+    let d = max(distance_m, LEAST_LAMP_DISTANCE_M);
     return 1.0 / dot(weights, vec3<f32>(1.0, d, d * d));
 }
 

@@ -1,6 +1,7 @@
 // Dust carried by the streamed wind: motes near the camera, and soft puffs of haze farther away. Both drift in squares that move with it:
 // sprites that leave a square on one side enter again on the other, faded out at the rim.
 
+import package::constants::WORKGROUP_SIZE;
 import package::inputs::frame::frame;
 import package::inputs::lamps::lamps_on;
 import package::inputs::noise::noise;
@@ -65,7 +66,7 @@ fn scattered(toward_sun: f32) -> f32 {
     return 0.22 + 0.22 * ahead * ahead + 0.75 * pow(ahead, 9.0);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP_SIZE)
 fn blow(@builtin(global_invocation_id) id: vec3<u32>) {
     let index = id.x;
     if index >= drift.puffs + drift.motes {

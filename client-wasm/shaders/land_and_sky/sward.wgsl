@@ -1,6 +1,6 @@
 // Colour of grass: of a point of a blade, and of a whole sward seen from afar.
 
-import package::constants::LEAF_EXTINCTION;
+import package::constants::{LEAF_EXTINCTION, LEAST_DENSITY_DISTANCE_M};
 import package::inputs::frame::frame;
 import package::inputs::grass_kinds::kinds;
 import package::land_and_sky::grass_color::{plant_color, trodden};
@@ -32,7 +32,7 @@ const CANOPY_TOP_DEPTH: f32 = 0.1;
 
 // Density of plants at a distance, relative to the full density up to `full_m`; the number per pixel is constant beyond.
 fn density(distance_m: f32, full_m: f32) -> f32 {
-    let near = full_m / max(distance_m, 0.01);
+    let near = full_m / max(distance_m, LEAST_DENSITY_DISTANCE_M);
     return min(near * near, 1.0);
 }
 

@@ -34,7 +34,7 @@ struct BladeCounters {
 @group(1) @binding(2) var<storage, read_write> drawn: array<Blade>;
 @group(1) @binding(3) var<storage, read_write> counters: BladeCounters;
 @group(1) @binding(5) var<storage, read_write> draws: array<u32>;
-// Numbers of near and of far plants that are listed; indices of the near ones in `sways`; chunk · 64 + index in the chunk of the far ones.
+// Numbers of near and of far plants that are listed; indices of the near ones in `sways`; chunk · `CHUNK` + index in the chunk of the far ones.
 @group(1) @binding(6) var<storage, read> standing: array<u32>;
 // Number of the frame that last moved each near plant.
 @group(1) @binding(7) var<storage, read_write> moved: array<u32>;
@@ -54,15 +54,17 @@ const PETALS_SPREAD: f32 = 0.05;
 const FLOWER_GIVE: f32 = 0.55;
 
 struct Plant {
-    root: vec3<f32>,
+    // Root (m).
+    root_m: vec3<f32>,
     // Length (m).
-    height: f32,
+    height_m: f32,
     // Lowest natural frequency (rad/s).
-    frequency: f32,
-    width: f32,
+    frequency_rad_per_s: f32,
+    width_m: f32,
     // Lean by its own weight, as a vector (rad).
-    droop: vec2<f32>,
-    side: f32,
+    droop_rad: vec2<f32>,
+    // Angle of the side of the strip (rad).
+    side_rad: f32,
     hue: f32,
     is_flower: bool,
     kind: u32,
@@ -95,26 +97,26 @@ fn plant_at(grid: vec2<i32>, index: u32, place: vec2<f32>, is_flower: bool) -> P
     let p = mix(place, centre, 0.34 * r.x);
     let away = p - centre;
     var plant: Plant;
-    plant.root = vec3<f32>(p.x, ground_height(p), p.y);
+    plant.root_m = vec3<f32>(p.x, ground_height(p), p.y);
     plant.normal = ground_normal(p);
     // Kinds mix where they meet.
     plant.kind = kind_at(p + (r.xz - 0.5) * 0.7);
     let kind = kinds.list[plant.kind];
     let grown = fed(p) * mix(GROWTH_BY_TUFT[0], GROWTH_BY_TUFT[1], shared_by.x);
-    plant.height = kind.height_m * (1.0 + frame.height_variation * (2.0 * r.y - 1.0)) * grown;
-    plant.frequency = kind.frequency_rad_per_s * kind.height_m / plant.height;
-    plant.width = frame.blade_width_m * kind.width * mix(0.75, 1.3, r.z);
+    plant.height_m = kind.height_m * (1.0 + frame.height_variation * (2.0 * r.y - 1.0)) * grown;
+    plant.frequency_rad_per_s = kind.frequency_rad_per_s * kind.height_m / plant.height_m;
+    plant.width_m = frame.blade_width_m * kind.width * mix(0.75, 1.3, r.z);
     let own = (s.x - 0.5) * TAU;
     let leaning = away * 2.2 + (shared_by.yz - 0.5) * 0.5 + vec2<f32>(cos(own), sin(own)) * mix(0.08, 0.42, s.y * s.y);
-    plant.droop = leaning * kind.droop;
-    plant.side = own + s.z * 1.3;
+    plant.droop_rad = leaning * kind.droop;
+    plant.side_rad = own + s.z * 1.3;
     plant.hue = clamp(shared_by.y * 0.45 + s.z * 0.55, 0.0, 0.999);
     plant.is_flower = is_flower;
     if is_flower {
-        plant.height *= PETALS_FRACTION + PETALS_SPREAD * (2.0 * random3(grid, index + 22051u).y - 1.0);
-        plant.frequency *= sqrt(FLOWER_GIVE);
-        plant.width = frame.blade_width_m * kind.width * 0.45;
-        plant.droop = leaning * 0.35;
+        plant.height_m *= PETALS_FRACTION + PETALS_SPREAD * (2.0 * random3(grid, index + 22051u).y - 1.0);
+        plant.frequency_rad_per_s *= sqrt(FLOWER_GIVE);
+        plant.width_m = frame.blade_width_m * kind.width * 0.45;
+        plant.droop_rad = leaning * 0.35;
     }
     return plant;
 }
@@ -130,7 +132,7 @@ fn leans_of(plant: Plant, leans_in: array<vec2<f32>, 3>) -> array<vec2<f32>, 3> 
     for (var i = 0; i < LINKS; i++) {
         let fraction = (f32(i) + 1.0) / 3.0;
         let bend = select(mix(fractions[i], 1.0 + 0.06 * fraction, flat_fraction), 1.0, is_stiff);
-        let v = pressed[i] * bend + plant.droop * fraction * (1.6 - 1.1 * flat_fraction);
+        let v = pressed[i] * bend + plant.droop_rad * fraction * (1.6 - 1.1 * flat_fraction);
         leans[i] = v * min(1.0, 1.55 / max(length(v), 1e-5));
     }
     return leans;
@@ -158,8 +160,8 @@ struct Bending {
 }
 
 fn bending_at(plant: Plant, grid: vec2<i32>, index: u32) -> Bending {
-    let p = plant.root.xz;
-    return Bending(wind_at(plant.root, 0.0).xz, gust_at(p), random3(grid, index + 47u), bend_at(p, 0.0, 0), field_fraction(p));
+    let p = plant.root_m.xz;
+    return Bending(wind_at(plant.root_m, 0.0).xz, gust_at(p), random3(grid, index + 47u), bend_at(p, 0.0, 0), field_fraction(p));
 }
 
 // Gust factor of a plant.
@@ -175,7 +177,7 @@ fn trailing_leans(plant: Plant, bending: Bending, gust: f32) -> array<vec2<f32>,
     var leans = array<vec2<f32>, 3>(held, held, held);
     leans[0] += lean_of_bend(bending.field) * bending.fraction;
     for (var i = 1; i < select(1, 3, bending.fraction > 0.0); i++) {
-        leans[i] += trailing_lean(plant.root.xz, 0.0, bending.field, kind, lag_secs * f32(i) * 0.5) * bending.fraction;
+        leans[i] += trailing_lean(plant.root_m.xz, 0.0, bending.field, kind, lag_secs * f32(i) * 0.5) * bending.fraction;
     }
     return leans;
 }
@@ -203,41 +205,41 @@ fn is_blade_seen(root: vec3<f32>, points: array<vec3<f32>, 3>, width: f32) -> bo
 // Colour of the grass around a plant as seen from afar, and how much of it shows between the drawn plants.
 fn about(plant: Plant, tint: vec3<f32>, lean: vec2<f32>, distance_m: f32, light: f32) -> vec4<f32> {
     let kind = kinds.list[plant.kind];
-    let view = normalize(plant.root - frame.eye_m);
+    let view = normalize(plant.root_m - frame.eye_m);
     let between = bare_between(distance_m, kind, view, plant.normal);
     if between <= 0.02 && contrast(distance_m) >= 1.0 {
         return vec4<f32>(0.0);
     }
-    return vec4<f32>(sward_color(plant.root, plant.normal, kind, tint, lean, view, light), between);
+    return vec4<f32>(sward_color(plant.root_m, plant.normal, kind, tint, lean, view, light), between);
 }
 
 fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, kind: f32) {
     let pixel_m = distance_m * frame.pixel_rad;
     let thinned = inverseSqrt(density(distance_m, plants.full_density_m));
     let least_m = select(pixel_m * plants.thinnest_px, 0.0, plants.is_ordered != 0u);
-    let width = max(plant.width * thinned, least_m) * min(grown * 2.0, 1.0);
-    if !is_blade_seen(plant.root, points, width) {
+    let width = max(plant.width_m * thinned, least_m) * min(grown * 2.0, 1.0);
+    if !is_blade_seen(plant.root_m, points, width) {
         return;
     }
-    let length_m = plant.height * grown;
+    let length_m = plant.height_m * grown;
     // If blades are drawn in order, all fine blades must be nearer than the others.
     let own = 1.0 + select(FINE_SPREAD, 0.0, plants.is_ordered != 0u) * (2.0 * fract(plant.hue * 97.0) - 1.0);
     let list = select(select(COARSE_LIST, SINGLE_LIST, length_m < SINGLE_PX * own * pixel_m), FINE_LIST, distance_m < plants.fine_m * own);
     let segments = select(select(1u, plants.coarse_segments, list == COARSE_LIST), plants.fine_segments, list == FINE_LIST);
     let along = drawn_out(points, length_m, segments);
     var blade: Blade;
-    blade.root_m = plant.root;
+    blade.root_m = plant.root_m;
     blade.width = width;
-    let p = plant.root + points[1];
+    let p = plant.root_m + points[1];
     let light = cloud_light(p.xz) * sun_visible(p);
     blade.low_m = along[0];
-    blade.side_rad = plant.side;
+    blade.side_rad = plant.side_rad;
     blade.middle_m = along[1];
     blade.kind_and_hue = f32(plant.kind) + plant.hue;
     blade.tip_m = along[2];
     blade.sunlight = light;
-    let drift = drift_at(plant.root.xz);
-    blade.about = about(plant, tint_of(drift), points[2].xz / plant.height, distance_m, light);
+    let drift = drift_at(plant.root_m.xz);
+    blade.about = about(plant, tint_of(drift), points[2].xz / plant.height_m, distance_m, light);
     blade.drift = drift;
     blade.slope = plant.normal.xz;
     blade.air = air_before(p);
@@ -256,7 +258,7 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
     append(list, blade);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(CHUNK)
 fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= standing[0] {
         return;
@@ -266,7 +268,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     let slot = plants.slots[at / plants.grid_plants];
     let grid = slot.grid;
     let plant = plant_at(grid, index, plant_place(grid, index), is_flower_at(grid, index));
-    let distance_m = distance(plant.root, frame.eye_m);
+    let distance_m = distance(plant.root_m, frame.eye_m);
     let grown = growth(index, distance_m);
     let kind = kinds.list[plant.kind];
     let bending = bending_at(plant, grid, index);
@@ -274,7 +276,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     let field_lean = lean_of_bend(bending.field) * bending.fraction;
     let held = leans_of(plant, array<vec2<f32>, 3>(field_lean, field_lean, field_lean));
     let give = give_of(plant);
-    let nature = BladeNature(plant.height, plant.frequency, plants.damping, kind.wind_bend_rad * 0.01 * give);
+    let nature = BladeNature(plant.height_m, plant.frequency_rad_per_s, plants.damping_ratio, kind.wind_bend_rad * 0.01 * give);
 
     var sway = sways[at];
     // A plant that was not simulated in the previous frame starts at rest.
@@ -284,19 +286,19 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let steps = plants.step_count + u32(runtime_zero(distance_m));
     for (var step = 0u; step < steps; step++) {
-        let points = points_of(sway, plant.height);
+        let points = points_of(sway, plant.height_m);
         let winds = array<vec2<f32>, 3>(
-            blowing(plant.root + points[0], points[0].y, gust),
-            blowing(plant.root + points[1], points[1].y, gust),
-            blowing(plant.root + points[2], points[2].y, gust),
+            blowing(plant.root_m + points[0], points[0].y, gust),
+            blowing(plant.root_m + points[1], points[1].y, gust),
+            blowing(plant.root_m + points[2], points[2].y, gust),
         );
-        sway = settle(advance(sway, nature, held, winds, plants.integrator, plants.step_secs), plant.height, plant.normal, plant.root);
+        sway = settle(advance(sway, nature, held, winds, plants.integrator, plants.step_secs), plant.height_m, plant.normal, plant.root_m);
     }
     sways[at] = sway;
     moved[at] = plants.frame_number;
 
     // Towards the border of the near grids, a plant blends into the pose of those beyond.
-    let away = abs(plant.root.xz - frame.eye_m.xz) / plants.grid_m;
+    let away = abs(plant.root_m.xz - frame.eye_m.xz) / plants.grid_m;
     let beyond = standing_far(plant, bending);
     let fraction = smoothstep(0.6, 1.0, max(away.x, away.y));
     for (var i = 0; i < LINKS; i++) {
@@ -304,7 +306,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
         sway.links[i].rate_rad_per_s = mix(sway.links[i].rate_rad_per_s, beyond.links[i].rate_rad_per_s, fraction);
     }
     if grown > 0.01 {
-        show(plant, points_of(sway, plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
+        show(plant, points_of(sway, plant.height_m), grown, distance_m, flower_at(grid, index, plant.root_m.xz));
     }
 }
 
@@ -312,7 +314,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
 fn standing_far(plant: Plant, bending: Bending) -> Sway {
     let flutter = 1.0 + 0.065 * sin(frame.time_secs * mix(6.0, 9.0, bending.own.x) + bending.own.z * TAU);
     let leans = trailing_leans(plant, bending, own_gust(bending) * flutter);
-    return settle(still(plant, leans), plant.height, plant.normal, plant.root);
+    return settle(still(plant, leans), plant.height_m, plant.normal, plant.root_m);
 }
 
 // Lean of a plant relative to that of a blade in the same wind.
@@ -326,25 +328,25 @@ fn blowing(p: vec3<f32>, above_m: f32, gust: f32) -> vec2<f32> {
     return wind * min(1.0, BEND_SATURATES_M_PER_S / max(length(wind), 1e-3));
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(CHUNK)
 fn bend_far(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= standing[1] {
         return;
     }
     let listed = standing[LISTED + NEAR_SLOTS * plants.grid_plants + id.x];
-    let chunk = chunks[listed / 64u];
+    let chunk = chunks[listed / CHUNK];
     let grid = chunk.grid;
-    let index = chunk.first + listed % 64u;
+    let index = chunk.first + listed % CHUNK;
     let plant = plant_at(grid, index, plant_place(grid, index), is_flower_at(grid, index));
-    let distance_m = distance(plant.root, frame.eye_m);
+    let distance_m = distance(plant.root_m, frame.eye_m);
     let grown = growth(index, distance_m);
     if grown <= 0.01 {
         return;
     }
-    show(plant, points_of(standing_far(plant, bending_at(plant, grid, index)), plant.height), grown, distance_m, flower_at(grid, index, plant.root.xz));
+    show(plant, points_of(standing_far(plant, bending_at(plant, grid, index)), plant.height_m), grown, distance_m, flower_at(grid, index, plant.root_m.xz));
 }
 
-// Indirect draws, with 64 plants per instance.
+// Indirect draws, with a chunk of plants per instance.
 @compute @workgroup_size(PLANT_LISTS)
 fn finish(@builtin(local_invocation_index) list: u32) {
     if list < PLANT_LISTS {

@@ -1,6 +1,6 @@
 // Clumps of far plants: six rectangles about a vertical axis (Zhang, section 4.1). One instance is 32 clumps.
 
-import package::constants::{CLUMP_FADE_SPREAD_M, CLUMP_SEGMENT_LIMIT, CLUMPS, TAU};
+import package::constants::{CLUMP_FADE_SPREAD_M, CLUMP_SEGMENT_LIMIT, CLUMPS, TAU, WORKGROUP_SIZE};
 import package::inputs::bend_atlas::{bend_at, field_level, field_fraction, lean_of_bend, lean_of_field, trailing_lean};
 import package::inputs::frame::{frame, repeated};
 import package::inputs::grass_kinds::{kind_at, kinds};
@@ -87,7 +87,7 @@ fn joints_of(ground: vec3<f32>, kind: Kind, segments: u32, height: f32, level: f
     return joints;
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP_SIZE)
 fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= list.count {
         return;
@@ -135,7 +135,7 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     poses_out[id.x] = pose;
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP_SIZE)
 fn key_clumps(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x < list.count {
         let root = clumps[id.x].axis_m;

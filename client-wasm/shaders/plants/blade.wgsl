@@ -22,11 +22,11 @@ struct Sway {
 // Mechanical properties of a blade.
 struct BladeNature {
     // Length (m).
-    length: f32,
+    length_m: f32,
     // Lowest natural frequency (rad/s).
-    frequency: f32,
+    frequency_rad_per_s: f32,
     // Damping ratio.
-    damping: f32,
+    damping_ratio: f32,
     // Lean by a wind of 1 m/s (rad s²/m²).
     lean_per_wind2: f32,
 }
@@ -60,7 +60,7 @@ fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_pe
     var old = sway;
     var held_in = held;
     var winds_in = winds_m_per_s;
-    let link = blade.length / 3.0;
+    let link = blade.length_m / 3.0;
     var own = vec2<f32>(0.0);
     var past = vec3<f32>(0.0);
     var drag_x = vec3<f32>(0.0);
@@ -71,7 +71,7 @@ fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_pe
         drag_x[j] = winds_in[j].x * past[j];
         drag_z[j] = winds_in[j].y * past[j];
     }
-    let braked = 0.5 * blade.length * blade.frequency * blade.frequency;
+    let braked = 0.5 * blade.length_m * blade.frequency_rad_per_s * blade.frequency_rad_per_s;
     let lean_x = vec3<f32>(old.links[0].lean_rad.x, old.links[1].lean_rad.x, old.links[2].lean_rad.x) - vec3<f32>(held_in[0].x, held_in[1].x, held_in[2].x);
     let lean_z = vec3<f32>(old.links[0].lean_rad.y, old.links[1].lean_rad.y, old.links[2].lean_rad.y) - vec3<f32>(held_in[0].y, held_in[1].y, held_in[2].y);
     let rate_x = vec3<f32>(old.links[0].rate_rad_per_s.x, old.links[1].rate_rad_per_s.x, old.links[2].rate_rad_per_s.x);
@@ -83,8 +83,8 @@ fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_pe
         var amplitudes = AMPLITUDES;
         var pushes = PUSHES;
         var brakes = BRAKES;
-        let omega = blade.frequency * frequencies[m];
-        let step = propagator(integrator, omega, blade.damping * omega + braked * dot(brakes[m], past), dt);
+        let omega = blade.frequency_rad_per_s * frequencies[m];
+        let step = propagator(integrator, omega, blade.damping_ratio * omega + braked * dot(brakes[m], past), dt);
         let x = vec2<f32>(dot(amplitudes[m], lean_x) - dot(pushes[m], drag_x), dot(amplitudes[m], lean_z) - dot(pushes[m], drag_z));
         let v = vec2<f32>(dot(amplitudes[m], rate_x), dot(amplitudes[m], rate_z));
         let moved = step.x * x + step.y * v;

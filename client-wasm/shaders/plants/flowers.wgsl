@@ -1,16 +1,14 @@
 // Flower heads of six kinds: near ones as a ring of petals around a disc, others as a disc alone. One instance is 64 heads as one indexed
 // list.
 
-import package::constants::{DISC_VERTICES, HEAD_VERTICES, TAU};
+import package::constants::{DISC_VERTICES, HEAD_VERTICES, PETAL_VERTICES, PETALS, TAU};
 import package::inputs::frame::frame;
 import package::inputs::lamps::lamps_on;
 import package::land_and_sky::sky_light::ambient;
 import package::plants::drawn_blade::Blade;
 import package::plants::strip_list::{is_listed, listed, number_of};
 
-// Petals 0..12 of five vertices, then the disc: a centre and six on its rim.
-const PETALS: u32 = 12u;
-const PETAL_VERTICES: u32 = 5u;
+const RIM_VERTICES: u32 = DISC_VERTICES - 1u;
 // Radius of a disc with the same coverage as the petals, relative to their length.
 const DISC_FRACTION: f32 = 0.8;
 
@@ -105,8 +103,8 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
         let across = cross(head.axis, out_dir);
         let rise = kind.rise_rad;
         // Root, two at the middle, two at the end.
-        let t = array<f32, 5>(0.0, 0.55, 0.55, 1.0, 1.0)[corner];
-        let w = array<f32, 5>(0.0, -0.5, 0.5, -0.28, 0.28)[corner];
+        let t = array<f32, PETAL_VERTICES>(0.0, 0.55, 0.55, 1.0, 1.0)[corner];
+        let w = array<f32, PETAL_VERTICES>(0.0, -0.5, 0.5, -0.28, 0.28)[corner];
         let curl = rise * (1.0 - 0.45 * t);
         let along = out_dir * cos(curl) + head.axis * sin(curl);
         let reach = select(0.0, kind.length_m * head.size, is_there);
@@ -116,7 +114,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     } else {
         let rim = local - PETALS * PETAL_VERTICES;
         let radius = select(kind.disc_m * head.size, 0.0, rim == 0u);
-        let angle = f32(rim) / 6.0 * TAU;
+        let angle = f32(rim) / f32(RIM_VERTICES) * TAU;
         p = head.at + head.axis * (head.size * (0.004 + select(0.0, kind.disc_m * 0.5, rim == 0u)));
         p += (head.right * cos(angle) + head.ahead * sin(angle)) * radius;
         albedo = kind.disc_rgb;
@@ -149,7 +147,7 @@ fn vs_disc(@builtin(vertex_index) index: u32, @builtin(instance_index) instance:
     // The more the petals rise, the narrower and deeper the head.
     let reach = DISC_FRACTION * kind.length_m * head.size * select(cos(0.7 * kind.rise_rad), 0.0, rim == 0u);
     let rise = select(sin(0.7 * kind.rise_rad) * DISC_FRACTION * kind.length_m * head.size, 0.0, rim == 0u);
-    let angle = f32(rim) / 6.0 * TAU;
+    let angle = f32(rim) / f32(RIM_VERTICES) * TAU;
     let p = head.at + (head.right * cos(angle) + head.ahead * sin(angle)) * reach + head.axis * rise;
     let albedo = select(mix(kind.base, kind.tip, 0.7), mix(kind.base, kind.disc_rgb, 0.6), rim == 0u);
     return shown(stem, p, head.axis, albedo);

@@ -1,6 +1,6 @@
 // Plants of grass grids: where they are, and how far they have grown at a distance.
 
-import package::constants::UNIT_STEPS;
+import package::constants::{LEAST_DENSITY_DISTANCE_M, UNIT_STEPS};
 import package::inputs::frame::frame;
 import package::inputs::random::random3;
 import package::plants::chunk::Chunk;
@@ -24,7 +24,7 @@ fn plant_place(grid: vec2<i32>, index: u32) -> vec2<f32> {
 // Growth factor of a plant where the density falls, and where the last plants end: 0 gone, 1 full size, as for all plants nearer than nine
 // tenths of the distance of full density.
 fn growth(index: u32, distance_m: f32) -> f32 {
-    let near = plants.full_density_m / max(distance_m, 0.01);
+    let near = plants.full_density_m / max(distance_m, LEAST_DENSITY_DISTANCE_M);
     let places = f32(plants.grid_plants);
     let kept = places * near * near;
     let thinning = clamp((kept - f32(index)) / (0.18 * min(kept, places)), 0.0, 1.0);

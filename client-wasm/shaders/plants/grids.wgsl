@@ -1,5 +1,6 @@
-// Culls grass grids around the camera and lists their plants in chunks of 64, each one workgroup of the following passes.
+// Culls grass grids around the camera and lists their plants in chunks, each one workgroup of the following passes.
 
+import package::constants::CHUNK;
 import package::inputs::frame::{frame, runtime_zero};
 import package::inputs::frustum::is_box_seen;
 import package::land_and_sky::ground::{ground_height, heights};
@@ -85,7 +86,7 @@ fn is_hidden(low: vec3<f32>, high: vec3<f32>) -> bool {
     return false;
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(CHUNK)
 fn list_grids(@builtin(global_invocation_id) id: vec3<u32>) {
     let side = u32(squares.side);
     if id.x >= side * side || id.x < squares.first || id.x >= squares.end {
@@ -113,11 +114,11 @@ fn list_grids(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let count = u32(ceil(f32(squares.grid_plants) * density(distance_m, squares.full_density_m)));
-    let needed = (count + 63u) / 64u;
+    let needed = (count + CHUNK - 1u) / CHUNK;
     let first = atomicAdd(&workgroups.count, needed);
     for (var i = 0u; i < needed; i++) {
         if first + i < squares.chunk_limit {
-            chunks[first + i] = Chunk(grid, i * 64u, count);
+            chunks[first + i] = Chunk(grid, i * CHUNK, count);
         }
     }
 }

@@ -1,6 +1,6 @@
 // Sort keys of the listed blades, far to near (Zhang, section 5.4).
 
-import package::constants::{CHUNK, COARSE_LIST, FINE_LIST, ORDER_CELLS, SINGLE_LIST};
+import package::constants::{CHUNK, COARSE_LIST, DISPATCH_WORDS, DRAW_WORDS, FINE_LIST, ORDER_CELLS, SINGLE_LIST};
 import package::inputs::frame::{frame, runtime_zero};
 import package::plants::drawn_blade::Blade;
 import package::plants::nearness::nearness;
@@ -11,7 +11,7 @@ import package::uniforms::Ordering;
 @group(1) @binding(1) var<storage, read> blades: array<Blade>;
 @group(1) @binding(2) var<storage, read> drawn: array<u32>;
 @group(1) @binding(3) var<storage, read_write> spans: Spans;
-// Arguments of the indirect dispatch of `key_blades`, and after four words those of the draws of the other and of the fine blades.
+// Arguments of the indirect dispatch of `key_blades`, and after `DISPATCH_WORDS` those of the draws of the other and of the fine blades.
 @group(1) @binding(4) var<storage, read_write> arguments: array<u32>;
 @group(1) @binding(5) var<storage, read_write> pairs: array<vec2<u32>>;
 // For each of 3 x 3 sections around the camera's grid, row by row, the rank of each of 64 x 64 cells of a grid.
@@ -28,12 +28,12 @@ fn span_blades() {
     spans.parts[0] = Span(0u, others);
     spans.parts[1] = Span(others, fine);
     spans.first_single = ordering.fine_capacity + coarse;
-    arguments[0] = (others + fine + 63u) / 64u;
-    arguments[5] = (others + CHUNK - 1u) / CHUNK;
-    arguments[10] = (fine + CHUNK - 1u) / CHUNK;
+    arguments[0] = (others + fine + CHUNK - 1u) / CHUNK;
+    arguments[DISPATCH_WORDS + 1u] = (others + CHUNK - 1u) / CHUNK;
+    arguments[DISPATCH_WORDS + DRAW_WORDS + 1u] = (fine + CHUNK - 1u) / CHUNK;
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(CHUNK)
 fn key_blades(@builtin(global_invocation_id) id: vec3<u32>) {
     let others = spans.parts[0].count;
     if id.x >= spans.all {

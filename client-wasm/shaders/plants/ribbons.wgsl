@@ -2,7 +2,7 @@
 // widened and lit. One invocation computes both borders of a row, which are then drawn.
 
 import package::constants::{
-    ARC_COSINE, BLOCK_ROWS, DROP_M_PER_S, GRAVITY_M_PER_S2, MIDDLE_LOAD, PETAL, STALK, TAU, UNIT_STEPS, VARIANTS, WIDTH_UNIT_M,
+    ARC_COSINE, BLOCK_ROWS, DROP_M_PER_S, GRAVITY_M_PER_S2, MIDDLE_LOAD, PETAL, STALK, TAU, UNIT_STEPS, VARIANTS, WIDTH_UNIT_M, WORKGROUP_SIZE,
 };
 import package::inputs::frame::frame;
 import package::inputs::grass_kinds::kinds;
@@ -279,7 +279,7 @@ fn bow(fraction: f32) -> f32 {
     return fraction * fraction * (1.5 - 0.5 * fraction);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP_SIZE)
 fn ribbons(@builtin(global_invocation_id) id: vec3<u32>) {
     let owner = owners[id.x / BLOCK_ROWS];
     if owner == FREE_BLOCK {

@@ -1,7 +1,7 @@
 // Shells (Bakay): layers of one texture of cross-sections that lean without changing the length of a blade. Between two layers the view ray
 // is sampled in slices, so that it meets blades there at grazing angles.
 
-import package::constants::{GUST_SPEED, RIGHT_ANGLE, SHELL_BLADE_PX, TILE_CELLS, TILE_VERTICES};
+import package::constants::{GUST_SPEED, RIGHT_ANGLE, SHELL_BLADE_PX, TILE_CELLS, TILE_VERTICES, WORKGROUP_SIZE};
 import package::inputs::bend_atlas::{field_level, lean_at};
 import package::inputs::frame::{frame, runtime_zero, repeated};
 import package::inputs::grass_kinds::kinds_blended;
@@ -68,7 +68,7 @@ struct TileLayer {
 @group(1) @binding(1) var<uniform> shells: ShellFrame;
 @group(1) @binding(2) var<storage, read> turfs: array<Turf>;
 @group(1) @binding(3) var dots: texture_2d<f32>;
-@group(1) @binding(4) var<storage, read> sheets: array<TileLayer>;
+@group(1) @binding(4) var<storage, read> tile_layers: array<TileLayer>;
 @group(1) @binding(5) var<storage, read_write> settled: array<Turf>;
 
 // Position of layer `i` of a blade with a tilted root in the wind, along the normal and along the wind, in blade heights. Twin of
@@ -94,7 +94,7 @@ fn gust_held(p: vec2<f32>) -> f32 {
     return max(now, max(mix(now, gust_at(p + back_m), 0.61), mix(now, gust_at(p + 2.0 * back_m), 0.37)));
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP_SIZE)
 fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= TILE_VERTICES {
         return;
@@ -158,18 +158,18 @@ struct Sheet {
 
 @vertex
 fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Sheet {
-    let sheet = sheets[instance];
-    let turf = turfs[(sheet.tile_and_layer >> 8u) * TILE_VERTICES + index];
-    let layer = f32(sheet.tile_and_layer & 255u);
+    let drawn = tile_layers[instance];
+    let turf = turfs[(drawn.tile_and_layer >> 8u) * TILE_VERTICES + index];
+    let layer = f32(drawn.tile_and_layer & 255u);
     let segments = f32(max(shells.segments, 1u));
-    let below = f32(sheet.to_next);
+    let below = f32(drawn.to_next);
     let at = layer_place(turf.tilt_rad, turf.wind_intensity, layer, segments);
     let under = layer_place(turf.tilt_rad, turf.wind_intensity, layer - below, segments);
     let normal = turf.normal;
     let height = turf.height_m;
     var p = turf.root_m + height * (at.x * normal + at.y * turf.wind_direction);
     // The single layer of the lowest setting is just above the ground.
-    p.y += select(0.0, 0.004, sheet.tile_and_layer % 256u == 0u);
+    p.y += select(0.0, 0.004, drawn.tile_and_layer % 256u == 0u);
     var out: Sheet;
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
     out.p = vec4<f32>(p, turf.sunlight);
@@ -178,7 +178,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     out.normal = normal;
     out.low = turf.root_rgb;
     out.high = turf.tip_rgb;
-    out.layer = vec4<f32>(layer / segments, below / segments, f32(sheet.to_second) / max(below, 1.0), f32(sheet.ends));
+    out.layer = vec4<f32>(layer / segments, below / segments, f32(drawn.to_second) / max(below, 1.0), f32(drawn.ends));
     return out;
 }
 

@@ -1,7 +1,7 @@
 // Compaction: lists the plants around the camera that may be in view, so that the following passes run for them alone. Buffers for near
 // plants can be large, since few of them are in view at once.
 
-import package::constants::{NEAR_SLOTS, TUFT_REACH_M};
+import package::constants::{CHUNK, NEAR_SLOTS, TUFT_REACH_M};
 import package::inputs::frame::frame;
 import package::inputs::frustum::is_seen;
 import package::inputs::random::random3;
@@ -32,17 +32,17 @@ fn may_stand(grid: vec2<i32>, index: u32, height: f32) -> bool {
     return (height > NO_PLANT_M) & is_grown & ((plants.culls == 0u) | is_seen(ground, plants.plant_reach_m));
 }
 
-// Reserves the next index of a list; every 64 entries add a workgroup.
+// Reserves the next index of a list; every full chunk of entries adds a workgroup.
 fn next(list: u32) -> u32 {
     let number = atomicAdd(&sifted[list], 1u);
-    if number % 64u == 0u {
+    if number % CHUNK == 0u {
         atomicAdd(&sifted_groups[3u * list], 1u);
     }
     return number;
 }
 
 // Finds the land below the plants of grids that became near in this frame.
-@compute @workgroup_size(64)
+@compute @workgroup_size(CHUNK)
 fn find_ground(@builtin(global_invocation_id) id: vec3<u32>) {
     let slot = plants.slots[id.y];
     if id.x < plants.grid_plants && slot.moved_in == plants.frame_number {
@@ -50,7 +50,7 @@ fn find_ground(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(CHUNK)
 fn sift_near(@builtin(global_invocation_id) id: vec3<u32>) {
     let slot = plants.slots[id.y];
     let at = id.y * plants.grid_plants + id.x;
@@ -59,11 +59,11 @@ fn sift_near(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(CHUNK)
 fn sift_far(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let chunk = chunks[group.x];
     let index = chunk.first + local;
     if index < chunk.grid_plants && may_stand(chunk.grid, index, ground_of(chunk.grid, index)) {
-        atomicStore(&sifted[LISTED + NEAR_SLOTS * plants.grid_plants + next(1u)], group.x * 64u + local);
+        atomicStore(&sifted[LISTED + NEAR_SLOTS * plants.grid_plants + next(1u)], group.x * CHUNK + local);
     }
 }

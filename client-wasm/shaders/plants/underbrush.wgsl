@@ -1,7 +1,8 @@
 // Underbrush: culling, force and level of detail of each plant.
 
 import package::constants::{
-    BLOCK_ROWS, DRAW_WORDS, FALL_PA, MIN_KEPT_FRACTION, FREE_WIND_M, LEAST_WIND_HEIGHT, TAU, UNDERBRUSH_LEVELS, UNDERBRUSH_LISTS, VARIANTS,
+    AIR_KG_PER_M3, BLOCK_ROWS, CHUNK, DRAW_WORDS, ENLARGEMENT_EXPONENT, FALL_PA, FREE_WIND_M, LEAST_WIND_HEIGHT, MIN_KEPT_FRACTION,
+    SPARE_DIVISOR, TAU, UNDERBRUSH_LEVELS, UNDERBRUSH_LISTS, VARIANTS, WORKGROUP_SIZE,
 };
 import package::inputs::bend_atlas::lean_of_field;
 import package::inputs::frame::{clamped, frame, runtime_zero};
@@ -72,7 +73,7 @@ struct UnderbrushCounters {
 // Number of workgroups of `ribbons`, for an indirect dispatch.
 @group(1) @binding(22) var<storage, read_write> ribbon_groups: array<u32, 3>;
 
-const GROUP_BLOCKS: u32 = 64u / BLOCK_ROWS;
+const GROUP_BLOCKS: u32 = WORKGROUP_SIZE / BLOCK_ROWS;
 
 // Force on a silhouette (Pa, X and Z) at a height above the root: from the force field, and beyond it from the wind alone.
 fn pressure_at(root: vec3<f32>, above_m: f32) -> vec2<f32> {
@@ -85,7 +86,7 @@ fn pressure_at(root: vec3<f32>, above_m: f32) -> vec2<f32> {
     }
     if inside < 1.0 {
         let wind = wind_at(root, above_m);
-        force += vec4<f32>(wind.xz * (0.6 * length(wind) * (1.0 - inside)), 0.0, 0.0);
+        force += vec4<f32>(wind.xz * (0.5 * AIR_KG_PER_M3 * length(wind) * (1.0 - inside)), 0.0, 0.0);
     }
     // Gusts, and shelter among the plants: a quarter-power law of the height, as in `near_ground_fraction` of shared/src/wind/ground.rs.
     let gust = gust_at(root.xz);
@@ -134,7 +135,7 @@ fn display_size(plant: UnderbrushPlant) -> DisplaySize {
     // Plants of a few pixels thin out, and the rest are larger.
     shown.tall_px = shown.tall / (shown.distance_m * frame.pixel_rad);
     let kept = clamp(shown.tall_px / 16.0, MIN_KEPT_FRACTION, 1.0);
-    shown.larger = pow(kept, -0.3);
+    shown.larger = pow(kept, ENLARGEMENT_EXPONENT);
     shown.lot = random3(vec2<i32>(i32(plant.site), 5), 91u).x;
     let reach_m = brush.reach_m;
     let stays = clamp((kept - shown.lot) / (0.2 * kept), 0.0, 1.0) * (1.0 - smoothstep(0.8, 1.0, shown.distance_m / reach_m));
@@ -142,7 +143,7 @@ fn display_size(plant: UnderbrushPlant) -> DisplaySize {
     return shown;
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(CHUNK)
 fn sift(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let chunk = chunks[group.x];
     if local >= chunk.y {
@@ -155,7 +156,7 @@ fn sift(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     if (shown.left > 0.01) & ((brush.culls == 0u) | is_seen(shown.root, reach_m)) {
         let number = atomicAdd(&sifted[0], 1u);
         atomicStore(&sifted[1u + number], index);
-        if number % 64u == 0u {
+        if number % CHUNK == 0u {
             atomicAdd(&sifted_groups[0], 1u);
         }
     }
@@ -163,7 +164,7 @@ fn sift(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
 
 // Blocks for plants at their own levels; the rest is for plants that found none, at the coarsest level.
 fn main_room() -> u32 {
-    return brush.block_limit - brush.block_limit / 4u;
+    return brush.block_limit - brush.block_limit / SPARE_DIVISOR;
 }
 
 fn blocks_of(list: u32) -> u32 {
@@ -191,7 +192,68 @@ fn room(species: u32, finest: u32, number: u32) -> vec2<u32> {
     return vec2<u32>(select(UNDERBRUSH_LEVELS, UNDERBRUSH_LEVELS - 1u, claim(spare, few, brush.block_limit, number)), spare);
 }
 
-@compute @workgroup_size(64)
+// Pressure (Pa) that a plant has followed; its response is kept for the next frame. `fall` is as in `fallen`.
+fn followed_pressure(index: u32, root: vec3<f32>, height: f32, fall: u32, settle_secs: f32) -> vec2<f32> {
+    let goal = fallen(pressure_at(root, 0.5 * height), fall);
+    var response = responses[index];
+    if brush.frame_number - response.frame > 1u {
+        response = ForceResponse(goal, vec2<f32>(0.0), response.frame);
+    } else {
+        response = followed(response, goal, settle_secs, brush.step_secs);
+    }
+    response.frame = select(response.frame, brush.frame_number, brush.step_secs > 0.0);
+    responses[index] = response;
+    return response.pressure_pa;
+}
+
+// Bit mask of the interaction spheres that a plant may touch.
+fn spheres_at(root: vec3<f32>, reach_m: f32) -> u32 {
+    var spheres = 0u;
+    let every = frame.sphere_count + u32(runtime_zero(reach_m));
+    for (var s = 0u; s < every; s++) {
+        let sphere = frame.spheres[s];
+        spheres |= select(0u, 1u << s, distance(sphere.centre_m, root) < sphere.radius_m + reach_m);
+    }
+    return spheres;
+}
+
+// Posture and light of a plant; without its force, and without its level of detail and its rows.
+fn standing(plant: UnderbrushPlant, shown: DisplaySize, height: f32) -> VisiblePlant {
+    var out: VisiblePlant;
+    let root = shown.root;
+    var lean = lean_of_field(plant.at_m, 0.0);
+    let tilt = length(lean);
+    lean *= min(1.0, 1.5 / max(tilt, 1e-5));
+    out.root_m = root;
+    out.shown_size = plant.size * shown.left * shown.larger;
+    let lit = root + vec3<f32>(0.0, 0.6 * height, 0.0);
+    out.lean_rad = lean;
+    out.sunlight = cloud_light(plant.at_m) * sun_visible(lit);
+    out.heading_rad = plant.heading_rad;
+    out.height_m = height;
+    out.hue = random3(vec2<i32>(i32(plant.site), 9), 17u).x;
+    out.distance_m = shown.distance_m;
+    out.size = plant.size;
+    out.normal = ground_normal(plant.at_m);
+    out.tint = grass_tint(plant.at_m);
+    let kind_number = kind_at(plant.at_m);
+    let kind = kinds.list[kind_number];
+    let variant = (plant.species_and_variant >> 8u) % VARIANTS;
+    out.variant_and_kind = variant + 2u * VARIANTS * kind_number;
+    let view = normalize(root - frame.eye_m);
+    out.grass_rgb = sward_color(root, out.normal, kind, out.tint, lean, view, out.sunlight);
+    out.grass_fraction = bare_between(shown.distance_m, kind, view, out.normal) * grass_fraction(plant.at_m);
+    out.air = air_before(root + vec3<f32>(0.0, 0.5 * height, 0.0));
+    return out;
+}
+
+// Finest level of detail of a plant. Plants of one height change level at different distances.
+fn finest_level(shown: DisplaySize) -> u32 {
+    let fine_px = shown.tall_px / (brush.coarseness * (0.85 + 0.3 * shown.lot));
+    return select(select(select(3u, 2u, fine_px > 26.0), 1u, fine_px > 90.0), 0u, fine_px > 300.0);
+}
+
+@compute @workgroup_size(CHUNK)
 fn stand(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= min(candidates[0], brush.plant_limit) {
         return;
@@ -202,75 +264,26 @@ fn stand(@builtin(global_invocation_id) id: vec3<u32>) {
     let nature = brush.species[species];
     let height = nature.height_m * plant.size;
     let shown = display_size(plant);
-    let root = shown.root;
-    let distance_m = shown.distance_m;
-
     let fall = (broken[plant.site >> 2u] >> (8u * (plant.site & 3u))) & 255u;
-    let goal = fallen(pressure_at(root, 0.5 * height), fall);
-    var response = responses[index];
-    if brush.frame_number - response.frame > 1u {
-        response = ForceResponse(goal, vec2<f32>(0.0), response.frame);
-    } else {
-        response = followed(response, goal, nature.settle_secs, brush.step_secs);
-    }
-    response.frame = select(response.frame, brush.frame_number, brush.step_secs > 0.0);
-    responses[index] = response;
+    let pressure = followed_pressure(index, shown.root, height, fall, nature.settle_secs);
 
-    var lean = lean_of_field(plant.at_m, 0.0);
-    let tilt = length(lean);
-    lean *= min(1.0, 1.5 / max(tilt, 1e-5));
-
-    let variant = (plant.species_and_variant >> 8u) % VARIANTS + select(0u, VARIANTS, fall != 0u);
-    let shown_size = plant.size * shown.left * shown.larger;
-    var spheres = 0u;
-    let every = frame.sphere_count + u32(runtime_zero(height));
-    for (var s = 0u; s < every; s++) {
-        let sphere = frame.spheres[s];
-        spheres |= select(0u, 1u << s, distance(sphere.centre_m, root) < sphere.radius_m + nature.reach_m * shown_size);
-    }
-
-    var out: VisiblePlant;
-    out.root_m = root;
-    out.shown_size = shown_size;
-    let lit = root + vec3<f32>(0.0, 0.6 * height, 0.0);
-    out.lean_rad = lean;
-    out.sunlight = cloud_light(plant.at_m) * sun_visible(lit);
-    out.heading_rad = plant.heading_rad;
-    let kind_number = kind_at(plant.at_m);
-    let kind = kinds.list[kind_number];
-    out.pressure_pa = response.pressure_pa;
-    out.variant_and_kind = variant + 2u * VARIANTS * kind_number;
-    out.spheres = spheres;
-    out.height_m = height;
-    out.hue = random3(vec2<i32>(i32(plant.site), 9), 17u).x;
-    out.distance_m = distance_m;
-    out.size = plant.size;
-    let up = ground_normal(plant.at_m);
-    let view = normalize(root - frame.eye_m);
-    let tint = grass_tint(plant.at_m);
-    let afar = sward_color(root, up, kind, tint, lean, view, out.sunlight);
-    out.grass_rgb = afar;
-    out.grass_fraction = bare_between(distance_m, kind, view, up) * grass_fraction(plant.at_m);
-    out.air = air_before(root + vec3<f32>(0.0, 0.5 * height, 0.0));
-
-    // Plants of one height change level at different distances.
-    let fine_px = shown.tall_px / (brush.coarseness * (0.85 + 0.3 * shown.lot));
-    let finest = select(select(select(3u, 2u, fine_px > 26.0), 1u, fine_px > 90.0), 0u, fine_px > 300.0);
-    let place = room(species, finest, id.x);
+    var out = standing(plant, shown, height);
+    out.pressure_pa = pressure;
+    out.variant_and_kind += select(0u, VARIANTS, fall != 0u);
+    out.spheres = spheres_at(shown.root, nature.reach_m * out.shown_size);
+    let place = room(species, finest_level(shown), id.x);
     if place.x == UNDERBRUSH_LEVELS {
         return;
     }
     let list = species * UNDERBRUSH_LEVELS + place.x;
-    out.tint = tint;
     out.list = list;
-    out.normal = up;
     out.first_block = place.y;
     visible_out[id.x] = out;
     listed[lists.list[list].first_listed + atomicAdd(&counters.drawn[list], 1u)] = place.y;
 }
 
 // Arguments of the indirect draws and of the dispatch of `ribbons`.
-@compute @workgroup_size(64)
+@compute @workgroup_size(UNDERBRUSH_LISTS)
 fn finish(@builtin(local_invocation_index) list: u32) {
     let held = lists.list[list].instance_plants;
     brush_draws[list * DRAW_WORDS + 1u] = (atomicLoad(&counters.drawn[list]) + held - 1u) / max(held, 1u);

@@ -1,6 +1,6 @@
 // Triangle meshes: vehicles, trees and stones, in the picture and in the shadow map.
 
-import package::constants::FLUTTER_M;
+import package::constants::{FLUTTER_M, WORKGROUP_SIZE};
 import package::inputs::frame::{clamped, frame};
 import package::inputs::lamps::{lamps_about, lamps_on};
 import package::inputs::shadows::sun_visible;
@@ -75,7 +75,7 @@ fn sway_of(instance: Instance) -> TreeSway {
     return TreeSway(held * (0.7 + 0.3 * sin(phase)), FLUTTER_M * min(6.0 * blown, 0.4 + 1.5 * blown), 0.0);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP_SIZE)
 fn blow(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x < arrayLength(&sways_out) {
         sways_out[id.x] = sway_of(instances[id.x]);

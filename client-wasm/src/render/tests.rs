@@ -4,10 +4,13 @@ use crate::render::gpu::pipeline::{PassFactory, bind, storage_rw};
 use crate::render::gpu::readback::read;
 use crate::render::gpu::shaders::tests::{linked, parsed};
 use crate::render::gpu::shaders::{self, Constant};
+use crate::render::land_and_sky::terrain::GroundTile;
 use crate::render::offscreen::OffscreenRenderer;
 use crate::render::options::quality::Quality;
 use crate::render::options::render_options::{FarPlants, RenderOptions};
 use crate::render::plants::blades;
+use crate::render::plants::shells::TileLayer;
+use crate::render::plants::underbrush::UnderbrushPlant;
 use crate::state::Mirror;
 use glam::Vec3;
 use prairie_core::hash::{hash3, unit};
@@ -51,8 +54,8 @@ fn storage_structs_have_the_sizes_that_rust_gives_them() {
         (&shells, "Turf", crate::render::plants::shells::TURF_BYTES as u32),
         (&module, "Sway", blades::SWAY_BYTES as u32),
         (&module, "Blade", blades::BLADE_BYTES as u32),
-        (&shells, "GroundTile", 16),
-        (&shells, "TileLayer", 16),
+        (&shells, "GroundTile", size_of::<GroundTile>() as u32),
+        (&shells, "TileLayer", size_of::<TileLayer>() as u32),
         (&billboards, "Clump", 16),
         (&billboards, "ClumpPose", 160),
         (&dust, "DustPlace", 16),
@@ -61,7 +64,7 @@ fn storage_structs_have_the_sizes_that_rust_gives_them() {
         (&objects, "TreeSway", 16),
         (&underbrush, "Row", 32),
         (&underbrush, "Limb", 64),
-        (&underbrush, "UnderbrushPlant", 24),
+        (&underbrush, "UnderbrushPlant", size_of::<UnderbrushPlant>() as u32),
         (&underbrush, "ForceResponse", 32),
         (&underbrush, "VisiblePlant", crate::render::plants::underbrush::VISIBLE_PLANT_BYTES as u32),
         (&underbrush, "Border", crate::render::plants::underbrush::ROW_BYTES as u32 / 2),
@@ -393,7 +396,7 @@ fn petals_stand_at_065_of_the_height_of_the_blade_whose_place_they_take() {
         let place = 8.0 * at.xy + 8.0 * random3(grid, u32(at.z)).xy;
         let blade = plant_at(grid, u32(at.z), place, false);
         let flower = plant_at(grid, u32(at.z), place, true);
-        return vec4<f32>(blade.height, flower.height, blade.frequency, flower.frequency);";
+        return vec4<f32>(blade.height_m, flower.height_m, blade.frequency_rad_per_s, flower.frequency_rad_per_s);";
     let places: Vec<_> = (0..4000).map(|n| [(n % 8) as f32, (n / 8 % 8) as f32, (n / 64) as f32, 0.0]).collect();
     let found = probe_in(&gpu, &picture, "plants/bend", body, &places);
     let plants = mirror.decoded_scene().expect("a scene").scene().plants;

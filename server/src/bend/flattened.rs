@@ -1,17 +1,16 @@
 //! Flattened grass: the plastic part of the bend below the weight of objects, which recovers with its own time constant.
 //!
 //! Flattened grass needs no stepping. Its lean decays as `exp(−t/τ)` from the time when its tile was written, and is evaluated on reading.
-//! Tiles of 8 × 8 cells exist only where grass is flattened, in awake and in sleeping patches.
+//! Tiles, those of activity in [`prairie_core::bend`], exist only where grass is flattened, in awake and in sleeping patches.
 
 use super::camera::{Camera, nearest_distance2_m2};
 use super::vector::length;
+use prairie_core::bend::TILE;
 use prairie_core::grid::{PatchIndex, PatchLayout};
 use prairie_core::wire::quantise::THETA_FULL_RAD;
 use std::collections::BTreeMap;
 use std::f32::consts::PI;
 
-/// Cells along one side of a tile.
-pub const TILE: usize = 8;
 /// Memory of a tile, with its entry in the list (bytes).
 pub const TILE_BYTES: usize = size_of::<FlattenedTile>() + size_of::<Option<Box<FlattenedTile>>>();
 /// Quantum of a lean (rad). Leans are rounded towards zero to whole quanta, so that they decay to zero in finite time.

@@ -3,7 +3,7 @@
 use super::bodies::Bodies;
 use super::camera::Camera;
 use super::contact::Contact;
-use super::flattened::{self, FlattenedGrass};
+use super::flattened::FlattenedGrass;
 use super::grass_properties::GrassProperties;
 use super::grass_state::{self, GrassState};
 use super::ground_wind::GroundWind;
@@ -15,7 +15,7 @@ use super::swept_footprint::SweptFootprint;
 use super::wind_drawing::WindDrawings;
 use crate::checksum::Checksum;
 use crate::objects::{Motion, MotionError};
-use prairie_core::bend::{Field, Kinds, Patch, Report, Scheme, StepError};
+use prairie_core::bend::{Field, Kinds, Patch, Report, Scheme, StepError, TILE};
 use prairie_core::grid::{PatchIndex, PatchLayout};
 use prairie_core::scene::Scene;
 use prairie_core::terrain::{CoverMap, HeightMap};
@@ -58,7 +58,7 @@ impl BendSimulation {
             .with_rest(settings.rest())
             .with_awake_limit(limit);
         // As many tiles as in all awake patches together.
-        let tile_limit = limit * (layout.cells as usize / flattened::TILE).pow(2);
+        let tile_limit = limit * (layout.cells as usize / TILE).pow(2);
         Self {
             field,
             scheme: settings.scheme,

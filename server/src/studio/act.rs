@@ -11,7 +11,8 @@ const SETTLE_SECS: f32 = 4.0;
 const DROP_SECS: f32 = 0.5;
 
 /// Events on a stage, in front of its camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Act {
     /// Wind alone.
     Wind,

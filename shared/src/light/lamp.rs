@@ -1,9 +1,12 @@
 //! Lamps: point lights with attenuation.
 
+/// Shortest distance in the attenuation of a lamp (m).
+pub const LEAST_LAMP_DISTANCE_M: f32 = 0.1;
+
 /// Attenuation, illuminance (lx) per luminous intensity (cd) at a distance (m): Bakay §3.3.4, the reciprocal of the sum of a constant, a linear (1/m)
-/// and a quadratic (1/m²) term. [0, 0, 1] is the inverse-square law; distances below 0.1 m count as 0.1 m.
+/// and a quadratic (1/m²) term. [0, 0, 1] is the inverse-square law; distances below [`LEAST_LAMP_DISTANCE_M`] count as that.
 pub fn attenuation([constant, linear, quadratic]: [f32; 3], distance_m: f32) -> f32 {
-    let d = distance_m.max(0.1);
+    let d = distance_m.max(LEAST_LAMP_DISTANCE_M);
     1.0 / (constant + linear * d + quadratic * d * d)
 }
 

@@ -188,7 +188,7 @@ mod tests {
             ];
             let species = Underbrush::new("a", components);
             let plan = Plan::new(&species, Nodes { angles: 2, loads: 2 });
-            (species.branch_below(2), plan.parts[2].on, (height_m(&species) / 0.4).round(), (reach_m(&species) / 0.485).round())
+            (species.branch_below(2), plan.components[2].on, (height_m(&species) / 0.4).round(), (reach_m(&species) / 0.485).round())
         };
         assert_eq!(on("stalk"), (Some(0), Some(0), 2.0, 2.0));
         for none in ["leaf", "bud", "twig", "root", ""] {

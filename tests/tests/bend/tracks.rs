@@ -1,9 +1,9 @@
 //! Heavy objects flatten the grass: tracks stay, fade with their own time constant, and are sent although their patches sleep.
 
-use prairie::bend::flattened::{self, QUANTUM_RAD, TILE_BYTES};
+use prairie::bend::flattened::{QUANTUM_RAD, TILE_BYTES};
 use prairie::snapshot::PatchQuantiser;
 use prairie::world::{Camera, Command, World};
-use prairie_core::bend::{Field, Kinds};
+use prairie_core::bend::{Field, Kinds, TILE};
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{Grass, Scene, VehicleKind};
 use prairie_core::wire::Drive;
@@ -36,7 +36,7 @@ fn an_awake_cell_with_its_flattened_grass_takes_at_most_32_bytes() {
     let mut field = Field::new(layout, Kinds::one(Grass::default().waves));
     assert_eq!(field.memory_bytes(), 0, "grass that sleeps holds none");
     field.wake(4);
-    let bytes = field.memory_bytes() as f64 / 120.0_f64.powi(2) + TILE_BYTES as f64 / (flattened::TILE as f64).powi(2);
+    let bytes = field.memory_bytes() as f64 / 120.0_f64.powi(2) + TILE_BYTES as f64 / (TILE as f64).powi(2);
     assert!(bytes > 24.0 && bytes <= 32.0, "{bytes} bytes a cell");
 }
 

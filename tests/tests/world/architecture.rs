@@ -64,6 +64,12 @@ fn server_and_client_never_depend_on_each_other() -> Result<()> {
 }
 
 #[test]
+fn the_library_does_without_what_only_the_program_uses() -> Result<()> {
+    assert_free_of("prairie", &dependencies("prairie", &["--no-default-features"])?, &["clap", "open", "anstream", "tracing-subscriber"]);
+    Ok(())
+}
+
+#[test]
 fn tests_depend_on_every_package() -> Result<()> {
     let all = dependencies("tests", &[])?;
     for name in ["prairie-core", "prairie", "prairie-wind", "prairie-client"] {

@@ -1,4 +1,4 @@
-//! Lengths of the product's functions, which are meant to be read at a glance.
+//! Lengths of functions, which are meant to be read at a glance: those of the packages, of their examples and of the shaders.
 
 use std::path::Path;
 
@@ -11,7 +11,16 @@ use super::pictures::files;
 /// Maximum number of lines of a function, from its name to its closing brace.
 const LIMIT: usize = 60;
 
-/// Functions of a file formatted by rustfmt, with their first line and their number of lines. Those in the module `tests` at its end are left out.
+/// Folders of functions beside the packages' sources, each with a number that it exceeds, so that no folder is read in vain.
+const FOLDERS: [(&str, usize); 5] = [
+    ("client-wasm/shaders", 200),
+    ("client-wasm/examples", 0),
+    ("server/examples", 2),
+    ("server/wind/examples", 1),
+    ("shared/examples", 1),
+];
+
+/// Functions of a file of Rust formatted by rustfmt, or of WGSL, with their first line and their number of lines. Those in the module `tests` at its end are left out.
 fn functions(text: &str) -> Vec<(&str, usize, usize)> {
     let product = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
     let lines: Vec<_> = product.lines().collect();
@@ -35,10 +44,9 @@ fn functions(text: &str) -> Vec<(&str, usize, usize)> {
 /// Functions below a folder that are too long, and the number of all.
 fn too_long(dir: &Path) -> Result<(Vec<String>, usize)> {
     let (mut sources, mut found, mut count) = (Vec::new(), Vec::new(), 0);
-    files(dir, &["rs"], &mut sources)?;
-    for (path, _) in
-        sources.into_iter().filter(|(path, _)| !path.components().any(|part| part.as_os_str().to_string_lossy().starts_with("tests")))
-    {
+    files(dir, &["rs", "wgsl"], &mut sources)?;
+    let is_test = |path: &Path| path.components().any(|part| part.as_os_str().to_string_lossy().starts_with("tests"));
+    for (path, _) in sources.into_iter().filter(|(path, _)| !path.strip_prefix(dir).is_ok_and(is_test)) {
         let text = std::fs::read_to_string(&path)?;
         let all = functions(&text);
         count += all.len();
@@ -51,9 +59,9 @@ fn too_long(dir: &Path) -> Result<(Vec<String>, usize)> {
 #[test]
 fn functions_are_short() -> Result<()> {
     let mut found = Vec::new();
-    for package in PACKAGES {
-        let (long, count) = too_long(&workspace().join(package))?;
-        ensure!(count > 100, "{package}: only {count} functions were found");
+    for (folder, exceeded) in PACKAGES.map(|package| (package, 100)).into_iter().chain(FOLDERS) {
+        let (long, count) = too_long(&workspace().join(folder))?;
+        ensure!(count > exceeded, "{folder}: only {count} functions were found");
         found.extend(long);
     }
     ensure!(found.is_empty(), "functions of more than {LIMIT} lines:\n{}", found.join("\n"));
@@ -73,6 +81,13 @@ fn a_long_function_is_found() -> Result<()> {
         std::fs::write(dir.path().join("draw.rs"), source(body))?;
         let (found, count) = too_long(dir.path())?;
         assert_eq!((found.len(), count), (expected, 3), "{found:?}");
+    }
+    let shader = |lines: usize| format!("@vertex\nfn vs() -> Corner {{\n{}}}\n", "    next();\n".repeat(lines));
+    std::fs::remove_file(dir.path().join("draw.rs"))?;
+    for (body, expected) in [(LIMIT - 2, 0), (LIMIT - 1, 1)] {
+        std::fs::write(dir.path().join("draw.wgsl"), shader(body))?;
+        let (found, count) = too_long(dir.path())?;
+        assert_eq!((found.len(), count), (expected, 1), "{found:?}");
     }
     Ok(())
 }

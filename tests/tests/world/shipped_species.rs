@@ -53,9 +53,9 @@ fn pressure_pa(wind_m_per_s: f32) -> f32 {
     0.5 * AIR_KG_PER_M3 * wind_m_per_s * wind_m_per_s
 }
 
-/// Number of components for a part of a plant; 1 for the ground.
-fn components_of(plan: &Plan, part: Option<usize>) -> usize {
-    part.map_or(1, |part| components_of(plan, plan.parts[part].on) * plan.parts[part].component.count as usize)
+/// Number of components of a plant for a planned component; 1 for the ground.
+fn components_of(plan: &Plan, planned: Option<usize>) -> usize {
+    planned.map_or(1, |planned| components_of(plan, plan.components[planned].on) * plan.components[planned].component.count as usize)
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn every_species_has_room_for_its_offspring_and_all_its_components() {
     for Shipped { species, plan, .. } in SHIPPED.iter() {
         assert!(species.reach_m > species.room_m, "{} has room for its offspring", species.name);
         assert!((0.02..=0.5).contains(&plan.settle_secs), "{} settles in {} s", species.name, plan.settle_secs);
-        let asked: usize = plan.parts.iter().map(|part| components_of(plan, part.on) * part.component.count as usize).sum();
+        let asked: usize = plan.components.iter().map(|planned| components_of(plan, planned.on) * planned.component.count as usize).sum();
         assert!(asked <= COMPONENTS_LIMIT && plan.placed(1).len() == asked, "{} has {asked} components", species.name);
     }
 }
@@ -72,29 +72,29 @@ fn every_species_has_room_for_its_offspring_and_all_its_components() {
 #[test]
 fn stalks_stand_and_leaves_droop() {
     for Shipped { species, plan, .. } in SHIPPED.iter() {
-        for part in &plan.parts {
-            let load = part.weight_s2_per_m * GRAVITY_M_PER_S2;
-            let fitting = if part.component.kind == ComponentKind::Leaf { 0.5..=6.0 } else { 0.01..=1.5 };
-            assert!(fitting.contains(&load), "{} of {}: {load}", part.component.name, species.name);
+        for planned in &plan.components {
+            let load = planned.weight_s2_per_m * GRAVITY_M_PER_S2;
+            let fitting = if planned.component.kind == ComponentKind::Leaf { 0.5..=6.0 } else { 0.01..=1.5 };
+            assert!(fitting.contains(&load), "{} of {}: {load}", planned.component.name, species.name);
         }
-        for (index, part) in plan.parts.iter().enumerate() {
-            let all: Vec<Posed> = (0..40).flat_map(|number| pose(plan, number, 0.0)).filter(|one| one.part == index).collect();
+        for (index, planned) in plan.components.iter().enumerate() {
+            let all: Vec<Posed> = (0..40).flat_map(|number| pose(plan, number, 0.0)).filter(|one| one.planned == index).collect();
             let tip = |one: &Posed| one.sections()[one.sections().len() - 1];
-            let rises = all.iter().map(|one| (tip(one).end_m - one.foot_m).y / (part.component.length_m * one.size));
+            let rises = all.iter().map(|one| (tip(one).end_m - one.foot_m).y / (planned.component.length_m * one.size));
             let mean_rise = rises.clone().sum::<f32>() / all.len() as f32;
             let least_rise = rises.fold(1.0, f32::min);
             let most_bend_rad = all.iter().map(|one| tip(one).direction.angle_between(one.axis)).fold(0.0, f32::max);
-            let fits = match part.component.kind {
-                ComponentKind::Leaf if part.on.is_none() => mean_rise > 0.3 && least_rise > 0.05 && most_bend_rad > 0.2,
+            let fits = match planned.component.kind {
+                ComponentKind::Leaf if planned.on.is_none() => mean_rise > 0.3 && least_rise > 0.05 && most_bend_rad > 0.2,
                 ComponentKind::Leaf => most_bend_rad < 1.2,
                 _ => most_bend_rad < 0.5 && least_rise > 0.3,
             };
-            assert!(fits, "{} of {}: {mean_rise}, {least_rise}, {most_bend_rad}", part.component.name, species.name);
+            assert!(fits, "{} of {}: {mean_rise}, {least_rise}, {most_bend_rad}", planned.component.name, species.name);
             assert!(all.iter().all(|one| one.strain < 0.2));
             let is_smooth =
                 |one: &&Posed| one.sections().windows(2).all(|pair| pair[0].direction.angle_between(pair[1].direction) < 0.1745);
             let smooth = all.iter().filter(is_smooth).count();
-            assert!(smooth * 10 >= all.len() * 9, "{} of {}: {smooth} of {}", part.component.name, species.name, all.len());
+            assert!(smooth * 10 >= all.len() * 9, "{} of {}: {smooth} of {}", planned.component.name, species.name, all.len());
         }
     }
 }
@@ -114,12 +114,12 @@ fn a_storm_breaks_the_species_that_say_so_and_no_others() {
 fn a_gale_bends_stiff_stalks_and_a_car_breaks_them() {
     // Species whose first component is a breakable stalk on the ground: a gale of 16 m/s does not break it, a force that lays it over as a car does breaks it.
     let stalks = SHIPPED.iter().filter(|shipped| {
-        shipped.breaks_m_per_s.is_some_and(|[low, _]| low > 21.0) && shipped.plan.parts[0].component.kind == ComponentKind::Branch
+        shipped.breaks_m_per_s.is_some_and(|[low, _]| low > 21.0) && shipped.plan.components[0].component.kind == ComponentKind::Branch
     });
     let stalks: Vec<_> = stalks.collect();
     assert!(!stalks.is_empty(), "no species breaks above 21 m/s");
     for Shipped { species, plan, .. } in stalks {
-        for one in (0..40).flat_map(|number| pose(plan, number, pressure_pa(16.0))).filter(|one| one.part == 0) {
+        for one in (0..40).flat_map(|number| pose(plan, number, pressure_pa(16.0))).filter(|one| one.planned == 0) {
             assert!(one.strain < 1.0, "{}: {}", species.name, one.strain);
             assert!(one.sections()[one.sections().len() - 1].direction.angle_between(one.axis) > 0.1);
         }

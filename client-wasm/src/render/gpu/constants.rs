@@ -11,9 +11,11 @@ pub(crate) use prairie_core::bend::BEND_SATURATES_M_PER_S;
 pub(crate) use prairie_core::hash::{HASH_INCREMENT, HASH_MULTIPLIER, UNIT_STEPS};
 pub(crate) use prairie_core::light::air::HAZE_FORWARD;
 pub(crate) use prairie_core::light::grass::{LEAF_EXTINCTION, LEAST_SUN_SINE};
+pub(crate) use prairie_core::light::lamp::LEAST_LAMP_DISTANCE_M;
 pub(crate) use prairie_core::plant::blade::contact::CLEARANCE_M;
 pub(crate) use prairie_core::plant::blade::lean::{ARCTANGENT, COSINE, HANGING_RAD2, SINC};
 pub(crate) use prairie_core::plant::blade::modes::{AMPLITUDES, BRAKES, FREQUENCIES, MODES, PUSHES, WIND_SHAPE};
+pub(crate) use prairie_core::plant::force_field::AIR_KG_PER_M3;
 pub(crate) use prairie_core::scene::{GROWTH_BY_COVER, GROWTH_BY_MEADOW, GROWTH_BY_SOIL, GROWTH_BY_TUFT};
 pub(crate) use prairie_core::wind::{FREE_WIND_M, LEAST_WIND_HEIGHT};
 pub(crate) use prairie_core::wire::quantise::{DUST_FULL, OMEGA_FULL_RAD_PER_S, THETA_FULL_RAD, WIND_FULL_M_PER_S};
@@ -23,6 +25,9 @@ pub(crate) use std::f32::consts::{FRAC_PI_2 as RIGHT_ANGLE, TAU};
 pub(crate) const GRAVITY_M_PER_S2: f32 = prairie_core::GRAVITY_M_PER_S2 as f32;
 /// Weights of linear red, green and blue in luminance.
 pub(crate) const LUMINANCE: Vec3 = Vec3::from_array(prairie_core::light::LUMINANCE);
+
+/// Invocations per workgroup of the compute passes.
+pub(crate) const WORKGROUP_SIZE: u32 = 64;
 
 // --- wind ---
 
@@ -52,10 +57,14 @@ pub(crate) const VERLET: u32 = Integrator::Verlet as u32;
 pub(crate) const NEAR_SLOTS: u32 = 9;
 /// Maximum displacement of a plant by its tuft, also across the border of its grid (m).
 pub(crate) const TUFT_REACH_M: f32 = 0.5;
+/// Distance below which the density of plants no longer grows (m).
+pub(crate) const LEAST_DENSITY_DISTANCE_M: f32 = 0.01;
+/// Words of the arguments of an indirect dispatch, padded, before those of draws in the same buffer.
+pub(crate) const DISPATCH_WORDS: u32 = 4;
 /// Words of the arguments of an indirect draw.
 pub(crate) const DRAW_WORDS: u32 = 5;
 /// Plants in one instance of an indirect draw, and in one workgroup.
-pub(crate) const CHUNK: u32 = 64;
+pub(crate) const CHUNK: u32 = WORKGROUP_SIZE;
 /// Lists of single plants: fine blades, coarse ones, those of one segment, near flower heads, far ones.
 pub(crate) const FINE_LIST: u32 = 0;
 pub(crate) const COARSE_LIST: u32 = 1;
@@ -67,9 +76,13 @@ pub(crate) const PLANT_LISTS: u32 = 5;
 pub(crate) const FINE_SPREAD: f32 = 0.15;
 /// Shapes in the texture of blades, side by side.
 pub(crate) const BLADE_SHAPES: u32 = 5;
-/// Vertices of a flower head, and of one that is drawn as a disc.
-pub(crate) const HEAD_VERTICES: u32 = 67;
+/// Maximum number of petals of a flower head, and vertices of a petal.
+pub(crate) const PETALS: u32 = 12;
+pub(crate) const PETAL_VERTICES: u32 = 5;
+/// Vertices of the disc of a flower head: its centre, then its rim.
 pub(crate) const DISC_VERTICES: u32 = 7;
+/// Vertices of a flower head: petals, then the disc.
+pub(crate) const HEAD_VERTICES: u32 = PETALS * PETAL_VERTICES + DISC_VERTICES;
 /// Cells along the side of a grid whose order is precomputed.
 pub(crate) const ORDER_CELLS: u32 = 64;
 
@@ -94,8 +107,12 @@ pub(crate) const UNDERBRUSH_LEVELS: u32 = 4;
 pub(crate) const UNDERBRUSH_LISTS: u32 = prairie_core::plant::growth::SPECIES_LIMIT as u32 * UNDERBRUSH_LEVELS;
 /// Rows per allocation block of a plant.
 pub(crate) const BLOCK_ROWS: u32 = 8;
-/// Minimum fraction of plants kept when they are only a few pixels tall. A kept fraction f enlarges the plants by f^-0.3.
+/// One in this number of blocks is a reserve for plants that found no room at their own level.
+pub(crate) const SPARE_DIVISOR: u32 = 4;
+/// Minimum fraction of plants kept when they are only a few pixels tall.
 pub(crate) const MIN_KEPT_FRACTION: f32 = 0.06;
+/// Exponent of the kept fraction in the enlargement of the plants.
+pub(crate) const ENLARGEMENT_EXPONENT: f32 = -0.3;
 /// Pressure (Pa) that bends a fallen plant.
 pub(crate) const FALL_PA: f32 = 8.0;
 /// Unit of half-widths (m).

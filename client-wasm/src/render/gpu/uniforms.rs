@@ -272,7 +272,7 @@ uniform_block! {
         /// Maximum distance of fine blades (m).
         fine_m: f32,
         /// Damping ratio of a blade.
-        damping: f32,
+        damping_ratio: f32,
         /// Length of a step (s).
         step_secs: f32,
         /// Probability that the first plant of a grid is a flower.

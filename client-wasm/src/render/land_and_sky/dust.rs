@@ -1,5 +1,6 @@
 //! Visible dust: motes and puffs of haze around the camera that drift with the streamed wind.
 
+use crate::render::gpu::constants::WORKGROUP_SIZE;
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind, storage, storage_rw, uniform};
 use crate::render::gpu::shaders;
@@ -85,7 +86,7 @@ impl Dust {
     pub(crate) fn drift(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_pipeline(&self.blow);
         pass.set_bind_group(1, &self.blow_group, &[]);
-        pass.dispatch_workgroups(self.count.div_ceil(64), 1, 1);
+        pass.dispatch_workgroups(self.count.div_ceil(WORKGROUP_SIZE), 1, 1);
     }
 
     /// Draws the dust over the opaque picture.

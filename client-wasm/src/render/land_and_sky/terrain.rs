@@ -15,16 +15,18 @@ const HILLS_M: [f32; 2] = [-90.0, 160.0];
 /// Distance at which a coarser tile takes over, relative to the side of a tile.
 const RANGE_SIDES: f32 = 2.6;
 
-/// A tile as in WGSL: corner (m), side (m), distance at which the next coarser grid takes over (m).
+/// A leaf of the quadtree, as in `ground_tile.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(crate) struct TerrainTile {
+pub(crate) struct GroundTile {
+    /// North-west corner, X and Z (m).
     pub(crate) corner_m: [f32; 2],
     pub(crate) side_m: f32,
-    range_m: f32,
+    /// Distance at which the next coarser grid takes over (m).
+    coarser_from_m: f32,
 }
 
-impl TerrainTile {
+impl GroundTile {
     /// Smallest and largest horizontal distance from a position (m).
     pub(crate) fn distances_m(&self, at_m: Vec3) -> [f32; 2] {
         let low = Vec2::from(self.corner_m) - Vec2::new(at_m.x, at_m.z);
@@ -75,30 +77,22 @@ impl TerrainQuadtree {
     }
 
     /// Tiles in view, nearest first.
-    pub(crate) fn tiles(&self, eye_m: Vec3, frustum: &Frustum) -> Vec<TerrainTile> {
+    pub(crate) fn tiles(&self, eye_m: Vec3, frustum: &Frustum) -> Vec<GroundTile> {
         let mut tiles = Vec::new();
         self.collect(self.corner_m, self.side_m, eye_m, frustum, &mut tiles);
         let distance =
-            |tile: &TerrainTile| (Vec2::from(tile.corner_m) + 0.5 * tile.side_m - Vec2::new(eye_m.x, eye_m.z)).length() - 0.7 * tile.side_m;
+            |tile: &GroundTile| (Vec2::from(tile.corner_m) + 0.5 * tile.side_m - Vec2::new(eye_m.x, eye_m.z)).length() - 0.7 * tile.side_m;
         tiles.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         tiles.truncate(TILE_LIMIT);
         tiles
     }
 
-    /// Range of the hills of a tile relative to the map (m), for `far_hills` in WGSL.
-    fn hills_m(&self, tile: &TerrainTile) -> [f32; 2] {
-        let low = Vec2::from(tile.corner_m);
-        let outside_m = (-low).max(low + tile.side_m - self.extent_m).max(Vec2::ZERO).length();
-        let fraction = (outside_m / HILLS_FULL_M).min(1.0);
-        let rise = fraction * fraction * (3.0 - 2.0 * fraction);
-        [-HILLS_MEAN * HILLS_RANGE_M * rise, ((1.0 - HILLS_MEAN) * HILLS_RANGE_M + HILLS_SLOPE * outside_m) * rise]
-    }
-
-    fn collect(&self, corner: Vec2, side: f32, eye: Vec3, frustum: &Frustum, tiles: &mut Vec<TerrainTile>) {
-        let tile = TerrainTile { corner_m: corner.into(), side_m: side, range_m: RANGE_SIDES * side };
+    fn collect(&self, corner: Vec2, side: f32, eye: Vec3, frustum: &Frustum, tiles: &mut Vec<GroundTile>) {
+        let tile = GroundTile { corner_m: corner.into(), side_m: side, coarser_from_m: RANGE_SIDES * side };
         let [lowest, highest] = self.height_m;
         let between = |[below, above]: [f32; 2]| [corner.extend(lowest + below).xzy(), (corner + side).extend(highest + above).xzy()];
-        let [low, high] = between(self.hills_m(&tile));
+        let outside_m = (-corner).max(corner + side - self.extent_m).max(Vec2::ZERO).length();
+        let [low, high] = between(hills_m(outside_m));
         if !frustum.sees_box(low, high + self.grass_m * Vec3::Y) {
             return;
         }
@@ -113,6 +107,13 @@ impl TerrainQuadtree {
             tiles.push(tile);
         }
     }
+}
+
+/// Bounds of the hills up to a distance from the edge of the map, relative to the map (m): those of `far_hills` in WGSL.
+pub(crate) fn hills_m(outside_m: f32) -> [f32; 2] {
+    let fraction = (outside_m / HILLS_FULL_M).min(1.0);
+    let rise = fraction * fraction * (3.0 - 2.0 * fraction);
+    [-HILLS_MEAN * HILLS_RANGE_M * rise, ((1.0 - HILLS_MEAN) * HILLS_RANGE_M + HILLS_SLOPE * outside_m) * rise]
 }
 
 pub(crate) struct Terrain {
@@ -146,7 +147,7 @@ impl Terrain {
             })
         });
         let indices = tile_indices();
-        let size = (TILE_LIMIT * size_of::<TerrainTile>()) as u64;
+        let size = (TILE_LIMIT * size_of::<GroundTile>()) as u64;
         let tiles = factory.gpu.empty_buffer("tiles", size, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST);
         let group = bind(factory.gpu, "terrain", &layout, &[tiles.as_entire_binding()]);
         let index_buffer = factory.gpu.buffer("tile", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
@@ -154,8 +155,8 @@ impl Terrain {
         Self { pipelines, extent_m: extent_m.into(), indices: index_buffer, index_count, tiles, ends: [0; 2], group }
     }
 
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, tiles: &[TerrainTile]) {
-        let (mut sorted, beyond): (Vec<TerrainTile>, Vec<TerrainTile>) = tiles.iter().partition(|tile| tile.is_within(self.extent_m));
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, tiles: &[GroundTile]) {
+        let (mut sorted, beyond): (Vec<GroundTile>, Vec<GroundTile>) = tiles.iter().partition(|tile| tile.is_within(self.extent_m));
         self.ends = [sorted.len() as u32, tiles.len() as u32];
         sorted.extend(beyond);
         gpu.queue.write_buffer(&self.tiles, 0, bytemuck::cast_slice(&sorted));
@@ -192,7 +193,7 @@ mod tests {
     #[test]
     fn tiles_within_the_map_are_distinguished_from_those_beyond_its_edge() {
         let extent_m = Vec2::new(100.0, 64.0);
-        let is_within = |x: f32, z: f32| TerrainTile { corner_m: [x, z], side_m: 16.0, range_m: 0.0 }.is_within(extent_m);
+        let is_within = |x: f32, z: f32| GroundTile { corner_m: [x, z], side_m: 16.0, coarser_from_m: 0.0 }.is_within(extent_m);
         assert!(is_within(0.0, 0.0) && is_within(80.0, 48.0) && is_within(84.0, 48.0), "on it, up to its edge");
         assert!(!is_within(-16.0, 0.0) && !is_within(-1.0, 16.0) && !is_within(16.0, -1.0), "west and north of it");
         assert!(
@@ -208,7 +209,7 @@ mod tests {
         let seen = |pitch_rad: f32| {
             let camera = Camera { eye_m: Vec3::new(128.0, 100.0, 250.0), pitch_rad, ..Camera::default() };
             let tiles = ground.tiles(camera.eye_m, &Frustum::new(&camera.projection_from_world(1.7)));
-            let is_near = |tile: &&TerrainTile| tile.is_within(Vec2::splat(256.0)) && tile.distances_m(camera.eye_m)[1] < 100.0;
+            let is_near = |tile: &&GroundTile| tile.is_within(Vec2::splat(256.0)) && tile.distances_m(camera.eye_m)[1] < 100.0;
             tiles.iter().filter(is_near).count()
         };
         assert_eq!(seen(0.0), 0);
@@ -226,7 +227,7 @@ mod tests {
             assert!(tiles.len() < 300, "{} tiles", tiles.len());
             for fraction in [0.01, 0.05, 0.2, 0.7] {
                 let p = eye_m + camera.forward() * extent[0] * fraction;
-                let holds = |tile: &&TerrainTile| {
+                let holds = |tile: &&GroundTile| {
                     let [x, z] = tile.corner_m;
                     (x..x + tile.side_m).contains(&p.x) && (z..z + tile.side_m).contains(&p.z)
                 };

@@ -1,6 +1,6 @@
 //! Clumps of far plants (Zhang, section 4.1). Their number and length depend on how many grids away from the camera they are.
 
-use crate::render::gpu::constants::{CLUMP_FADE_SPREAD_M, CLUMP_SEGMENT_LIMIT, CLUMPS};
+use crate::render::gpu::constants::{CLUMP_FADE_SPREAD_M, CLUMP_SEGMENT_LIMIT, CLUMPS, WORKGROUP_SIZE};
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{PassFactory, bind_as, storage, storage_rw, uniform};
 use crate::render::gpu::shaders;
@@ -168,7 +168,7 @@ impl Billboards {
         if self.count > 0 {
             pass.set_pipeline(&self.place);
             pass.set_bind_group(1, &self.place_group, &[]);
-            pass.dispatch_workgroups(self.count.div_ceil(64), 1, 1);
+            pass.dispatch_workgroups(self.count.div_ceil(WORKGROUP_SIZE), 1, 1);
             self.pipelines.get().run(pass, self.count);
         }
     }

@@ -1,6 +1,7 @@
 //! Pipelines that draw clumps in a blend order: sorted on the GPU, or grids far to near and clumps in the sequences of their sections
 //! (Zhang, section 5.4.2).
 
+use crate::render::gpu::constants::WORKGROUP_SIZE;
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind_as, storage, storage_rw, texture, uniform};
 use crate::render::gpu::shaders;
@@ -118,7 +119,7 @@ impl ClumpPipelines {
         if let DrawSequence::Sorted(sorted) = &self.sequence {
             pass.set_pipeline(&sorted.key);
             pass.set_bind_group(1, &sorted.group, &[]);
-            pass.dispatch_workgroups(count.div_ceil(64), 1, 1);
+            pass.dispatch_workgroups(count.div_ceil(WORKGROUP_SIZE), 1, 1);
             sorted.sort.run(&sorted.sorter, pass);
         }
     }

@@ -1,16 +1,17 @@
 //! Shells (Bakay): grass as layers of cross-sections over the mesh of the ground, fewer with distance.
 
-use crate::render::gpu::constants::TILE_VERTICES;
+use crate::render::gpu::constants::{TILE_VERTICES, WORKGROUP_SIZE};
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, storage, storage_rw, texture, uniform};
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::ShellFrame;
 use crate::render::inputs::frustum::Frustum;
-use crate::render::land_and_sky::terrain::{TerrainQuadtree, TerrainTile, tile_indices};
+use crate::render::land_and_sky::terrain::{GroundTile, TerrainQuadtree, tile_indices};
 use crate::render::plants::blades::square_is_seen;
 use crate::render::plants::shell_texture;
 use crate::render::plants::shell_texture::{DOTS, DOTS_PX};
 use crate::state::DecodedScene;
+use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use prairie_core::lod::shells::{LAYERS_LIMIT, drawn_layers};
 use wgpu::BufferUsages;
@@ -19,13 +20,23 @@ use wgpu::BufferUsages;
 const FINEST_M: f32 = 4.0;
 /// Maximum number of tiles in a frame, and of their layers.
 const TILE_LIMIT: usize = 384;
-const SHEET_LIMIT: usize = 16_384;
+const LAYER_LIMIT: usize = 16_384;
 /// Bytes of `Turf` in `shells.wgsl`.
 pub(crate) const TURF_BYTES: u64 = 96;
 
-/// A layer of a tile: its number and that of the tile, segments down to the next drawn layer and to the one after that, 1 if it ends where the next coarser
-/// tiles begin. Element of `sheets` in `shells.wgsl`.
-type Sheet = [u32; 4];
+/// A layer of a tile to be drawn, as in `shells.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct TileLayer {
+    /// Number of the layer in the low byte, number of the tile above it.
+    tile_and_layer: u32,
+    /// Segments down to the next drawn layer.
+    to_next: u32,
+    /// Segments down to the layer after that one.
+    to_second: u32,
+    /// 1 if the layer ends where the next coarser tiles begin.
+    ends: u32,
+}
 
 /// Where shells replace blades.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,10 +68,10 @@ pub(crate) struct Shells {
     index_count: u32,
     tiles: wgpu::Buffer,
     frame: wgpu::Buffer,
-    sheets: wgpu::Buffer,
+    layers: wgpu::Buffer,
     ground: TerrainQuadtree,
     tile_count: u32,
-    sheet_count: u32,
+    layers_drawn: u32,
     samples: u32,
 }
 
@@ -72,20 +83,20 @@ impl Shells {
         let module = factory.shader("shells", shaders::SHELLS, &[]);
         let draw = DrawDescriptor { label: "shells", ..DrawDescriptor::default() };
         let listed = BufferUsages::STORAGE | BufferUsages::COPY_DST;
-        let tiles = gpu.empty_buffer("shell tiles", (TILE_LIMIT * size_of::<TerrainTile>()) as u64, listed);
-        let sheets = gpu.empty_buffer("shell sheets", (SHEET_LIMIT * size_of::<Sheet>()) as u64, listed);
+        let tiles = gpu.empty_buffer("shell tiles", (TILE_LIMIT * size_of::<GroundTile>()) as u64, listed);
+        let layers = gpu.empty_buffer("shell layers", (LAYER_LIMIT * size_of::<TileLayer>()) as u64, listed);
         let frame = gpu.empty_buffer("shells", size_of::<ShellFrame>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let turfs = gpu.empty_buffer("turf", TILE_LIMIT as u64 * u64::from(TILE_VERTICES) * TURF_BYTES, BufferUsages::STORAGE);
         let levels = shell_texture::dots(decoded.scene().plants.height_variation);
         let dots = gpu.texture("dots", wgpu::TextureFormat::Rgba8Unorm, [DOTS_PX; 2], &levels).create_view(&Default::default());
-        let [listed_tiles, uniforms, settled, listed_sheets] = [&tiles, &frame, &turfs, &sheets].map(|buffer| buffer.as_entire_binding());
+        let [listed_tiles, uniforms, settled, listed_layers] = [&tiles, &frame, &turfs, &layers].map(|buffer| buffer.as_entire_binding());
         let group_of = |label, layout: &wgpu::BindGroupLayout, entries: &[(u32, wgpu::BindingResource<'_>)]| {
             let entries: Vec<_> =
                 entries.iter().map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() }).collect();
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
         };
         let dots = wgpu::BindingResource::TextureView(&dots);
-        let drawn = [(1, uniforms.clone()), (2, settled.clone()), (3, dots), (4, listed_sheets)];
+        let drawn = [(1, uniforms.clone()), (2, settled.clone()), (3, dots), (4, listed_layers)];
         let indices = tile_indices();
         Self {
             pipeline: factory.draw(&module, Some(&layout), &draw),
@@ -97,9 +108,9 @@ impl Shells {
             ground: ground.finer(FINEST_M),
             tiles,
             frame,
-            sheets,
+            layers,
             tile_count: 0,
-            sheet_count: 0,
+            layers_drawn: 0,
             samples: factory.samples,
         }
     }
@@ -109,7 +120,7 @@ impl Shells {
         let ShellRequest { extent, from_m, end_m, layers } = wanted;
         let settings = &decoded.scene().shells;
         let segments = layers.unwrap_or(settings.layers).clamp(1, LAYERS_LIMIT) - 1;
-        let is_needed = |tile: &TerrainTile| {
+        let is_needed = |tile: &GroundTile| {
             let [nearest_m, farthest_m] = tile.distances_m(eye_m);
             let middle = tile.corner_m.map(|corner| corner + 0.5 * tile.side_m);
             let above_m = (eye_m.y - decoded.heights().height_m(middle[0], middle[1])).abs() + 0.5 * tile.side_m;
@@ -118,9 +129,9 @@ impl Shells {
         };
         let mut tiles: Vec<_> = self.ground.tiles(eye_m, frustum).into_iter().filter(is_needed).collect();
         tiles.truncate(TILE_LIMIT);
-        let mut sheets: Vec<Sheet> =
-            (0..).zip(&tiles).flat_map(|(number, tile)| sheets_of(number, segments, (tile.side_m / FINEST_M) as u32)).collect();
-        sheets.truncate(SHEET_LIMIT);
+        let mut tile_layers: Vec<TileLayer> =
+            (0..).zip(&tiles).flat_map(|(number, tile)| layers_of(number, segments, (tile.side_m / FINEST_M) as u32)).collect();
+        tile_layers.truncate(LAYER_LIMIT);
         let side_m = (DOTS as f32 / settings.blades_per_m2).sqrt();
         let frame = ShellFrame {
             segments,
@@ -133,15 +144,15 @@ impl Shells {
             root_light: settings.root_light,
         };
         gpu.queue.write_buffer(&self.tiles, 0, bytemuck::cast_slice(&tiles));
-        gpu.queue.write_buffer(&self.sheets, 0, bytemuck::cast_slice(&sheets));
+        gpu.queue.write_buffer(&self.layers, 0, bytemuck::cast_slice(&tile_layers));
         gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
         self.tile_count = tiles.len() as u32;
-        self.sheet_count = sheets.len() as u32;
+        self.layers_drawn = tile_layers.len() as u32;
     }
 
     /// Number of layers in the frame, summed over all tiles.
     pub(crate) fn layer_count(&self) -> u32 {
-        self.sheet_count
+        self.layers_drawn
     }
 
     /// Computes the posture of the grass at the vertices of the tiles.
@@ -149,7 +160,7 @@ impl Shells {
         if self.tile_count > 0 {
             pass.set_pipeline(&self.settle);
             pass.set_bind_group(1, &self.settle_group, &[]);
-            pass.dispatch_workgroups(TILE_VERTICES.div_ceil(64), self.tile_count, 1);
+            pass.dispatch_workgroups(TILE_VERTICES.div_ceil(WORKGROUP_SIZE), self.tile_count, 1);
         }
     }
 
@@ -157,20 +168,24 @@ impl Shells {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, &self.group, &[]);
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
-        pass.draw_indexed(0..self.index_count, 0, 0..self.sheet_count);
+        pass.draw_indexed(0..self.index_count, 0, 0..self.layers_drawn);
     }
 }
 
 /// Layers of a tile with `segments` between them, of which every `stride`-th is drawn; with 0 segments, the ground alone.
-fn sheets_of(tile: u32, segments: u32, stride: u32) -> Vec<Sheet> {
+fn layers_of(tile: u32, segments: u32, stride: u32) -> Vec<TileLayer> {
     if segments == 0 {
-        return vec![[tile << 8, 0, 0, 0]];
+        return vec![TileLayer { tile_and_layer: tile << 8, to_next: 0, to_second: 0, ends: 0 }];
     }
     let stride = stride.clamp(1, segments);
     let next = (2 * stride).min(segments);
-    let sheet =
-        |(layer, below): (u32, u32)| [tile << 8 | layer, below, next.min(layer), u32::from(!(segments - layer).is_multiple_of(next))];
-    drawn_layers(segments, stride).map(sheet).collect()
+    let tile_layer = |(layer, below): (u32, u32)| TileLayer {
+        tile_and_layer: tile << 8 | layer,
+        to_next: below,
+        to_second: next.min(layer),
+        ends: u32::from(!(segments - layer).is_multiple_of(next)),
+    };
+    drawn_layers(segments, stride).map(tile_layer).collect()
 }
 
 #[cfg(test)]
@@ -181,14 +196,15 @@ mod tests {
     fn remaining_layers_reach_down_to_the_next_one() {
         for segments in [1, 8, 16, 21, 64] {
             for stride in [1, 2, 4, 16, 128] {
-                let sheets = sheets_of(3, segments, stride);
-                assert_eq!(sheets[0], [3 << 8 | segments, stride.min(segments), (2 * stride).min(segments), 0]);
-                let remain: Vec<_> = sheets.iter().filter(|sheet| sheet[3] == 0).collect();
-                let layer = |sheet: &Sheet| sheet[0] & 255;
-                assert!(remain.windows(2).all(|pair| layer(pair[0]) - pair[0][2] == layer(pair[1])), "{sheets:?}");
-                assert_eq!(layer(remain[remain.len() - 1]), remain[remain.len() - 1][2]);
+                let layers = layers_of(3, segments, stride);
+                let [to_next, to_second] = [stride, 2 * stride].map(|below| below.min(segments));
+                assert_eq!(layers[0], TileLayer { tile_and_layer: 3 << 8 | segments, to_next, to_second, ends: 0 });
+                let remain: Vec<_> = layers.iter().filter(|layer| layer.ends == 0).collect();
+                let number = |layer: &TileLayer| layer.tile_and_layer & 255;
+                assert!(remain.windows(2).all(|pair| number(pair[0]) - pair[0].to_second == number(pair[1])), "{layers:?}");
+                assert_eq!(number(remain[remain.len() - 1]), remain[remain.len() - 1].to_second);
             }
         }
-        assert_eq!(sheets_of(2, 0, 4), [[2 << 8, 0, 0, 0]]);
+        assert_eq!(layers_of(2, 0, 4), [TileLayer { tile_and_layer: 2 << 8, to_next: 0, to_second: 0, ends: 0 }]);
     }
 }

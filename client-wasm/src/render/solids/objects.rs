@@ -1,5 +1,6 @@
 //! Draws vehicles, trees and stones, in the picture and in the shadow map.
 
+use crate::render::gpu::constants::WORKGROUP_SIZE;
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{DrawDescriptor, LampVariants, PassFactory, bind, bind_as, storage, storage_rw, texture};
 use crate::render::gpu::shaders;
@@ -203,7 +204,7 @@ impl ObjectPasses {
     pub(crate) fn sway(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_pipeline(&self.sway);
         pass.set_bind_group(1, &self.sway_group, &[]);
-        pass.dispatch_workgroups(self.count.div_ceil(64), 1, 1);
+        pass.dispatch_workgroups(self.count.div_ceil(WORKGROUP_SIZE), 1, 1);
     }
 
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {

@@ -42,7 +42,7 @@ fn blades_move_as_their_cpu_twins() {
             var sway = Sway(input.links);
             for (var i = 0; i < 5; i++) {
                 sway = advance(sway, nature, held, winds_m_per_s, u32(input.normal.w), input.root.w);
-                sway = settle(sway, nature.length, input.normal.xyz, input.root.xyz);
+                sway = settle(sway, nature.length_m, input.normal.xyz, input.root.xyz);
             }
             cases[id.x].links = sway.links;
         }";

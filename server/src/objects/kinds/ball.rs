@@ -2,6 +2,7 @@
 
 use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics};
 use super::super::prism::Prism;
+use prairie_core::plant::force_field::AIR_KG_PER_M3;
 use prairie_core::scene::Objects;
 use prairie_core::wire::Drive;
 use rapier3d::prelude::*;
@@ -14,7 +15,7 @@ const DENSITY_KG_PER_M3: f32 = 8.0;
 const LEAST_MASS_KG: f32 = 1.0;
 const RESTITUTION: f32 = 0.5;
 /// Drag coefficient of a sphere, times half the density of air (kg/m³).
-const DRAG_KG_PER_M3: f32 = 0.5 * 1.2 * 0.47;
+const DRAG_KG_PER_M3: f32 = 0.5 * AIR_KG_PER_M3 * 0.47;
 /// Deceleration by rolling through grass, and additional deceleration at full brake (m/s²).
 const ROLLING_M_PER_S2: f32 = 0.8;
 const BRAKE_M_PER_S2: f32 = 5.0;

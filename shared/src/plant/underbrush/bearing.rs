@@ -1,6 +1,6 @@
 //! Breaking loads of a species: the bend and the wind pressure at which one of its components on the ground breaks (Endo et al. 2003, §§3.2, 4).
 
-use super::plan::{Part, Plan, chain};
+use super::plan::{Plan, PlannedComponent, chain};
 use super::rest::Load;
 use super::strength::breaks;
 use crate::GRAVITY_M_PER_S2;
@@ -14,7 +14,7 @@ const HALVINGS: u32 = 40;
 /// Bend at which the weakest component on the ground breaks (rad); infinite if none does. A component pressed to a lean of θ is bent over its lower
 /// half, with the moment 2·θ·EI/L at its base.
 pub fn bears_rad(plan: &Plan) -> f32 {
-    on_ground(plan).map(|part| 0.5 * part.strength).fold(f32::INFINITY, f32::min)
+    on_ground(plan).map(|planned| 0.5 * planned.strength).fold(f32::INFINITY, f32::min)
 }
 
 /// Dynamic pressure of the air (Pa) at which the weakest component on the ground breaks under its weight and the drag, at unit size; infinite if none
@@ -24,21 +24,21 @@ pub fn bears_pa(plan: &Plan) -> f32 {
     on_ground(plan).map(component_bears_pa).fold(f32::INFINITY, f32::min)
 }
 
-fn on_ground(plan: &Plan) -> impl Iterator<Item = &Part> {
-    plan.parts.iter().filter(|part| part.on.is_none() && part.strength > 0.0)
+fn on_ground(plan: &Plan) -> impl Iterator<Item = &PlannedComponent> {
+    plan.components.iter().filter(|planned| planned.on.is_none() && planned.strength > 0.0)
 }
 
 /// By bisection, as the strain grows with the pressure.
-fn component_bears_pa(part: &Part) -> f32 {
-    let (joints, fractions) = chain(&part.component);
-    let lean_rad = f64::from(part.component.angle_rad);
-    let weight = f64::from(part.weight_s2_per_m) * GRAVITY_M_PER_S2;
+fn component_bears_pa(planned: &PlannedComponent) -> f32 {
+    let (joints, fractions) = chain(&planned.component);
+    let lean_rad = f64::from(planned.component.angle_rad);
+    let weight = f64::from(planned.weight_s2_per_m) * GRAVITY_M_PER_S2;
     let is_broken = |pressure_pa: f64| {
-        let drag = f64::from(part.drag_per_pa) * pressure_pa;
+        let drag = f64::from(planned.drag_per_pa) * pressure_pa;
         let (load, load_rad) = (Load { spread: weight.hypot(drag), tip: 0.0 }, drag.atan2(weight));
         [lean_rad, -lean_rad].iter().any(|lean_rad| {
             let unbent_rad = (lean_rad + load_rad).abs().min(PI);
-            breaks(&joints, &fractions, part.strength.into(), load, unbent_rad).is_some()
+            breaks(&joints, &fractions, planned.strength.into(), load, unbent_rad).is_some()
         })
     };
     if !is_broken(MOST_PA) {

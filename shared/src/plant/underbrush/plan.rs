@@ -35,10 +35,10 @@ const STALK_DRAG: f32 = 1.1;
 /// the load Λ = |R|·L²/EI on a component is `weight_s2_per_m·s` times the force per mass plus `drag_per_pa` times the pressure of the air. A
 /// branch does not feel the components that it carries: its own mass includes them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct PlannedComponent {
     /// The component as in the scene.
     pub component: Component,
-    /// Index of the part that carries it, which comes before it; `None` for the ground.
+    /// Index of the planned component that carries it, which comes before it; `None` for the ground.
     pub on: Option<usize>,
     /// Λ per force per mass at size 1, m·L²/EI (s²/m).
     pub weight_s2_per_m: f32,
@@ -56,7 +56,7 @@ pub struct Part {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Its kinds of component; carriers come before the components that they carry.
-    pub parts: Vec<Part>,
+    pub components: Vec<PlannedComponent>,
     /// Posture tables; kinds that bend alike share one.
     pub tables: Vec<Postures>,
     /// Time constant τ with which it follows a force (s), 0.01..=10: as in the scene, or 1/ω₁ of the longest component on the ground, from
@@ -67,13 +67,13 @@ pub struct Plan {
 /// A component of a plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// Index among the parts of the plan.
-    pub part: usize,
+    /// Index among the components of the plan.
+    pub planned: usize,
     /// Index of the component that carries it, which comes before it in the plant; `None` for the ground.
     pub on: Option<usize>,
     /// Position along the carrier, as a fraction of its length.
     pub at_fraction: f32,
-    /// Its length relative to its part's.
+    /// Its length relative to that of its planned component.
     pub size: f32,
     /// Angle of its unbent axis from the direction of its carrier (rad).
     pub angle_rad: f32,
@@ -85,25 +85,25 @@ impl Plan {
     /// Precomputes the bending of the components of `species`. A component whose `on` names no earlier branch is on the ground.
     pub fn new(species: &Underbrush, nodes: Nodes) -> Self {
         let mut tables = Tables { chains: Vec::new(), tables: Vec::new(), nodes };
-        let mut parts: Vec<Part> = Vec::with_capacity(species.components.len());
+        let mut components: Vec<PlannedComponent> = Vec::with_capacity(species.components.len());
         for (index, component) in species.components.iter().enumerate() {
-            parts.push(part(component, species.branch_below(index), &mut tables));
+            components.push(planned(component, species.branch_below(index), &mut tables));
         }
-        let settle_secs = if species.settle_secs > 0.0 { species.settle_secs } else { 1.0 / slowest_rad_per_s(&parts) };
-        Self { parts, tables: tables.tables, settle_secs: settle_secs.clamp(SETTLE_SECS[0], SETTLE_SECS[1]) }
+        let settle_secs = if species.settle_secs > 0.0 { species.settle_secs } else { 1.0 / slowest_rad_per_s(&components) };
+        Self { components, tables: tables.tables, settle_secs: settle_secs.clamp(SETTLE_SECS[0], SETTLE_SECS[1]) }
     }
 
     /// Components of the plant with this number, carriers first: the same for the same number.
     ///
     /// Angles and lengths are uniform in their ranges. Rotations about a branch start at its right side, so that two rows of leaflets are in the
-    /// plane of a frond; the first rotation of each part on the ground is random, too.
+    /// plane of a frond; the first rotation of each kind of component on the ground is random, too.
     pub fn placed(&self, number: u32) -> Vec<Placed> {
         let mut placed: Vec<Placed> = Vec::new();
-        for (index, part) in self.parts.iter().enumerate() {
-            let Component { count, length_variation, angle_rad, angle_variation_rad, turn_rad, .. } = part.component;
-            let hosts: Vec<Option<usize>> = match part.on {
+        for (index, planned) in self.components.iter().enumerate() {
+            let Component { count, length_variation, angle_rad, angle_variation_rad, turn_rad, .. } = planned.component;
+            let hosts: Vec<Option<usize>> = match planned.on {
                 None => vec![None],
-                Some(on) => (0..placed.len()).filter(|&host| placed[host].part == on).map(Some).collect(),
+                Some(on) => (0..placed.len()).filter(|&host| placed[host].planned == on).map(Some).collect(),
             };
             for host in hosts {
                 let first = host.map_or(0, |host| host as u32 + 1) * count;
@@ -114,9 +114,9 @@ impl Plan {
                     }
                     let [angle, length, _] = hash3([number, index as u32, first + nth]).map(|random| 2.0 * fraction(random) - 1.0);
                     placed.push(Placed {
-                        part: index,
+                        planned: index,
                         on: host,
-                        at_fraction: at_fraction(&part.component, nth),
+                        at_fraction: at_fraction(&planned.component, nth),
                         size: 1.0 + length_variation * length,
                         angle_rad: (angle_rad + angle_variation_rad * angle).abs(),
                         turn_rad: first_turn_rad + turn_rad * nth as f32,
@@ -147,15 +147,15 @@ pub fn frequency_rad_per_s(component: &Component, tip_kg: f32) -> f32 {
 
 /// Frequency ω₁ of the longest component on the ground (rad/s), including carried components: a mass at the fraction s of its length counts at the tip
 /// with the square of `(3s² − s³)/2`, the shape under a load at the tip.
-fn slowest_rad_per_s(parts: &[Part]) -> f32 {
-    let on_ground = parts.iter().enumerate().filter(|(_, part)| part.on.is_none());
+fn slowest_rad_per_s(components: &[PlannedComponent]) -> f32 {
+    let on_ground = components.iter().enumerate().filter(|(_, planned)| planned.on.is_none());
     let Some((longest, host)) = on_ground.max_by(|(_, a), (_, b)| a.component.length_m.total_cmp(&b.component.length_m)) else {
         return 1.0;
     };
     // Mass (kg) of one component of each kind, including those that it carries, which follow it in the list.
-    let mut whole_kg: Vec<f32> = parts.iter().map(|part| part.component.mass_kg).collect();
+    let mut whole_kg: Vec<f32> = components.iter().map(|planned| planned.component.mass_kg).collect();
     let mut tip_kg = 0.0;
-    for (index, Part { component, on, .. }) in parts.iter().enumerate().rev() {
+    for (index, PlannedComponent { component, on, .. }) in components.iter().enumerate().rev() {
         let Some(on) = *on else { continue };
         whole_kg[on] += component.count as f32 * whole_kg[index];
         if on == longest {
@@ -188,12 +188,12 @@ impl Tables {
     }
 }
 
-fn part(component: &Component, on: Option<usize>, tables: &mut Tables) -> Part {
+fn planned(component: &Component, on: Option<usize>, tables: &mut Tables) -> PlannedComponent {
     let (joints, fractions) = chain(component);
     let square_per_rigidity = component.length_m * component.length_m / component.stiffness_n_m2;
     let strength = component.strength_n_m * component.length_m / component.stiffness_n_m2;
     let broken = broken_across(&joints, &fractions, f64::from(strength));
-    Part {
+    PlannedComponent {
         component: component.clone(),
         on,
         weight_s2_per_m: component.mass_kg * square_per_rigidity,
@@ -249,15 +249,15 @@ mod tests {
     fn every_branch_bears_its_own() {
         let plan = Plan::new(&bush(), NODES);
         let placed = plan.placed(7);
-        let count = |part: usize| placed.iter().filter(|one| one.part == part).count();
+        let count = |planned: usize| placed.iter().filter(|one| one.planned == planned).count();
         assert_eq!([0, 1, 2].map(count), [3, 6, 18]);
         for (index, one) in placed.iter().enumerate() {
-            assert_eq!(one.on.map(|on| placed[on].part), plan.parts[one.part].on);
+            assert_eq!(one.on.map(|on| placed[on].planned), plan.components[one.planned].on);
             assert!(one.on.is_none_or(|on| on < index));
         }
-        let leaves: Vec<f32> = placed.iter().filter(|one| one.part == 2).map(|one| one.at_fraction).collect();
+        let leaves: Vec<f32> = placed.iter().filter(|one| one.planned == 2).map(|one| one.at_fraction).collect();
         assert_eq!(leaves[..3], [0.5, 0.75, 1.0]);
-        let mut sizes: Vec<f32> = placed.iter().filter(|one| one.part == 2).map(|one| one.size).collect();
+        let mut sizes: Vec<f32> = placed.iter().filter(|one| one.planned == 2).map(|one| one.size).collect();
         sizes.sort_by(f32::total_cmp);
         sizes.dedup();
         assert_eq!(sizes.len(), 18, "no branch has the leaves of another");
@@ -278,17 +278,20 @@ mod tests {
     #[test]
     fn kinds_that_bend_alike_share_a_table() {
         let plan = Plan::new(&bush(), NODES);
-        assert_eq!(plan.parts.iter().map(|part| (part.whole, part.broken)).collect::<Vec<_>>(), [(0, None), (0, None), (0, Some(1))]);
+        assert_eq!(
+            plan.components.iter().map(|planned| (planned.whole, planned.broken)).collect::<Vec<_>>(),
+            [(0, None), (0, None), (0, Some(1))]
+        );
         assert_eq!(plan.tables.len(), 2);
     }
 
     #[test]
     fn load_and_strength_are_in_units_of_the_stiffness() {
-        let part = Plan::new(&bush(), NODES).parts.remove(2);
-        assert!((part.weight_s2_per_m - 0.001 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
-        assert!((part.drag_per_pa - 0.25 * 0.73 * 0.4 * 0.01 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
-        assert!((part.strength - 0.01 * 0.4 / 0.001).abs() < 1e-6);
-        let drag_per_pa = |kind| Plan::new(&Underbrush::new("one", vec![Component::new("one", kind)]), NODES).parts[0].drag_per_pa;
+        let planned = Plan::new(&bush(), NODES).components.remove(2);
+        assert!((planned.weight_s2_per_m - 0.001 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
+        assert!((planned.drag_per_pa - 0.25 * 0.73 * 0.4 * 0.01 * 0.4 * 0.4 / 0.001).abs() < 1e-6);
+        assert!((planned.strength - 0.01 * 0.4 / 0.001).abs() < 1e-6);
+        let drag_per_pa = |kind| Plan::new(&Underbrush::new("one", vec![Component::new("one", kind)]), NODES).components[0].drag_per_pa;
         assert!((drag_per_pa(ComponentKind::Branch) - 1.1 * 0.75 * 0.004 * 160.0).abs() < 1e-5);
         assert!(
             (drag_per_pa(ComponentKind::Flower) - (1.1 * 0.06 * 0.004 + 0.25 * std::f32::consts::FRAC_PI_4 * 1e-4) * 160.0).abs() < 1e-5
@@ -303,7 +306,7 @@ mod tests {
             let stand = Stand { size: 1.0, heading_rad: 0.0, lean_rad: [0.0; 2] };
             let weightless = Forces { per_mass_m_per_s2: Vec3::ZERO, pressure_pa: Vec3::ZERO };
             let one = posed(&plan, &plan.placed(1), stand, weightless, LookUp::Nearest, 0)[0];
-            let outline = vectors(&plan.parts[0], &one, 1);
+            let outline = vectors(&plan.components[0], &one, 1);
             let silhouette_m2: f32 =
                 outline.windows(2).map(|pair| pair[1].axis_m.length() * (pair[0].right_m.length() + pair[1].right_m.length())).sum();
             let found_m2 = drag_m2(&component) / drag;

@@ -47,9 +47,9 @@ pub struct Section {
 /// A component with its bent sections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Posed {
-    /// Index among the parts of the plan.
-    pub part: usize,
-    /// Its size relative to its part.
+    /// Index among the components of the plan.
+    pub planned: usize,
+    /// Its size relative to its planned component.
     pub size: f32,
     /// Its base (m, relative to the plant's root).
     pub foot_m: Vec3,
@@ -87,22 +87,22 @@ pub fn posed(plan: &Plan, placed: &[Placed], stand: Stand, forces: Forces, look_
     let ground = ground_frame(stand);
     let mut posed: Vec<Posed> = Vec::with_capacity(placed.len());
     for (index, one) in placed.iter().enumerate() {
-        let part = &plan.parts[one.part];
+        let planned = &plan.components[one.planned];
         let (foot_m, frame) = one.on.map_or((Vec3::ZERO, ground), |on| posed[on].at(one.at_fraction));
         let unbent = unbent(foot_m, frame, one);
-        let load = forces.per_mass_m_per_s2 * (part.weight_s2_per_m * one.size * stand.size) + forces.pressure_pa * part.drag_per_pa;
+        let load = forces.per_mass_m_per_s2 * (planned.weight_s2_per_m * one.size * stand.size) + forces.pressure_pa * planned.drag_per_pa;
         let is_broken = broken >> index & 1 == 1;
-        let table = &plan.tables[part.broken.filter(|_| is_broken).unwrap_or(part.whole)];
+        let table = &plan.tables[planned.broken.filter(|_| is_broken).unwrap_or(planned.whole)];
         let (towards, node) = posture(table, &unbent, load, look_up);
-        let (sections, count) = bent(&unbent, towards, one.size * stand.size * part.component.length_m, &node[..table.stride() - 1]);
+        let (sections, count) = bent(&unbent, towards, one.size * stand.size * planned.component.length_m, &node[..table.stride() - 1]);
         let moment = load.length() * node[table.stride() - 1];
         posed.push(Posed {
-            part: one.part,
+            planned: one.planned,
             size: one.size * stand.size,
             foot_m,
             axis: unbent.axis,
             towards,
-            strain: if part.strength > 0.0 { moment / part.strength } else { 0.0 },
+            strain: if planned.strength > 0.0 { moment / planned.strength } else { 0.0 },
             count,
             sections,
         });

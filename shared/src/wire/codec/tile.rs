@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-/// Side of a tile (cells).
-const TILE: usize = 8;
+/// Side of a tile (cells), each with its own choice of a prediction. Part of the format; the tiles of activity in [`bend`](crate::bend) are others.
+const CODED_TILE: usize = 8;
 
 /// Rectangle of cells, clipped to the grid.
 pub(super) struct Tile {
@@ -21,9 +21,9 @@ impl Tile {
 
 /// Tiles of a plane, row by row.
 pub(super) fn tiles(width: usize, rows: usize) -> impl Iterator<Item = Tile> {
-    (0..rows)
-        .step_by(TILE)
-        .flat_map(move |y| (0..width).step_by(TILE).map(move |x| Tile { x: x..(x + TILE).min(width), y: y..(y + TILE).min(rows) }))
+    (0..rows).step_by(CODED_TILE).flat_map(move |y| {
+        (0..width).step_by(CODED_TILE).map(move |x| Tile { x: x..(x + CODED_TILE).min(width), y: y..(y + CODED_TILE).min(rows) })
+    })
 }
 
 /// Values to the left, above, and above left of a cell; zero outside the plane.

@@ -1,4 +1,5 @@
 //! Imports between the files of each package run one way: no circle between files of different folders, and none of more than two files within a folder.
+//! The folders of the renderer import only from those before them.
 
 mod circles;
 mod modules;
@@ -11,8 +12,8 @@ use anyhow::{Result, ensure};
 use circles::{Graph, circles};
 use modules::Modules;
 
-/// Source folders of the product's packages.
-pub(super) const PACKAGES: [&str; 4] = ["shared/src", "server/src", "server/wind/src", "client-wasm/src"];
+/// Source folders of the packages.
+pub(super) const PACKAGES: [&str; 5] = ["shared/src", "server/src", "server/wind/src", "client-wasm/src", "tests/src"];
 
 /// Roots of the crates of a package: its library, and its binary if it has one.
 const ROOTS: [&str; 2] = ["lib.rs", "main.rs"];
@@ -45,6 +46,45 @@ fn imports_make_no_circles() -> Result<()> {
     }
     ensure!(found.is_empty(), "circles of imports:\n{}", found.join("\n"));
     Ok(())
+}
+
+/// Folders of the renderer, each importing only from itself and those before it. Files beside them import from all.
+const RENDER_FOLDERS: [&str; 6] = ["gpu", "options", "inputs", "land_and_sky", "solids", "plants"];
+
+/// Imports of the renderer against the order of its folders.
+fn backward_imports(graph: &Graph) -> Vec<String> {
+    let rank = |file: usize| {
+        let path = graph.files[file].strip_prefix("render/")?;
+        let folder = path.split_once('/').map(|(folder, _)| folder);
+        Some(RENDER_FOLDERS.iter().position(|other| folder == Some(*other)).unwrap_or(RENDER_FOLDERS.len()))
+    };
+    let arrows = graph.arrows.iter().enumerate().flat_map(|(from, to)| to.iter().map(move |to| (from, *to)));
+    let backward = arrows.filter(|(from, to)| rank(*from).zip(rank(*to)).is_some_and(|(from, to)| from < to));
+    backward.map(|(from, to)| format!("{} imports {}", graph.files[from], graph.files[to])).collect()
+}
+
+#[test]
+fn imports_of_the_renderer_run_one_way() -> Result<()> {
+    let graphs = imports("client-wasm/src")?;
+    let files: Vec<_> = graphs.iter().flat_map(|graph| &graph.files).collect();
+    for folder in RENDER_FOLDERS {
+        ensure!(files.iter().any(|file| file.starts_with(&format!("render/{folder}/"))), "no file in render/{folder}");
+    }
+    assert_eq!(graphs.iter().flat_map(backward_imports).collect::<Vec<_>>(), Vec::<String>::new());
+    Ok(())
+}
+
+#[test]
+fn backward_imports_of_the_renderer_are_found() {
+    let sources = [
+        ("lib.rs", "mod render;\npub struct Camera;"),
+        ("render/mod.rs", "mod frame;\nmod gpu;\nmod plants;\npub use gpu::Gpu;"),
+        ("render/frame.rs", "use super::plants::Blades;\npub struct Frame(Blades);"),
+        ("render/gpu/mod.rs", "use crate::Camera;\npub struct Gpu;\nimpl Gpu { fn draw(&self, _: &super::plants::Blades) {} }"),
+        ("render/plants/mod.rs", "use crate::render::Gpu;\npub struct Blades(Gpu);\nfn plan() -> crate::render::frame::Frame {}"),
+    ];
+    let expected = ["render/gpu/mod.rs imports render/plants/mod.rs", "render/plants/mod.rs imports render/frame.rs"];
+    assert_eq!(backward_imports(&graph_of(&sources)), expected);
 }
 
 #[test]

@@ -1,4 +1,5 @@
 use super::{ALL, FROM_RUST, write_lines};
+use crate::render::gpu::constants::WORKGROUP_SIZE;
 use link::{Library, Piece};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -179,13 +180,16 @@ impl FromRust {
     }
 
     /// The Rust value that a number repeats, unless they may coincide by chance. Counted are constants of at least three digits other than powers of
-    /// two, literals of at least four, and constants of mathematics.
+    /// two, the size of a workgroup and one less, literals of at least four digits, and constants of mathematics.
     fn repeated(&self, number: &str) -> Option<String> {
         let value = value_of(number)?;
         let digits = significant_digits(number);
         let is_power = value > 0.0 && value.log2().fract() == 0.0;
         let constant = self.constants.iter().find(|(_, of_rust)| *of_rust == Some(value)).filter(|_| digits >= 3 && !is_power);
         let constant = constant.map(|(name, _)| format!("`{name}` in Rust"));
+        let of_workgroup = [(WORKGROUP_SIZE, "`WORKGROUP_SIZE` in Rust"), (WORKGROUP_SIZE - 1, "`WORKGROUP_SIZE - 1` in Rust")];
+        let of_workgroup = of_workgroup.iter().find(|(size, _)| !number.contains('.') && value == f64::from(*size));
+        let constant = constant.or_else(|| of_workgroup.map(|(_, name)| (*name).to_owned()));
         let of_mathematics = MATHEMATICS.iter().find(|(_, exact)| digits >= 4 && (value - exact).abs() < 1e-5 * exact);
         let of_mathematics = of_mathematics.map(|(name, _)| format!("`{name}` of mathematics"));
         let is_literal = digits >= 4 && (!is_power || digits > 5) && self.literals.contains(&value.to_bits());
@@ -282,6 +286,9 @@ fn a_copied_number_is_found_by_name_or_value() {
         "fn stir(v: u32) -> u32 { return v * 1664525u + 3u; }",
         "fn unit(v: u32) -> f32 { return f32(v) / 16777216.0; }",
         "fn turned(x: f32) -> f32 { return x * 1.5707963 + 1.25; }",
+        "@compute @workgroup_size(64)\nfn pass() {}",
+        "fn groups(count: u32) -> u32 { return (count + 63u) / 64u; }",
+        "fn metres(x: f32) -> f32 { return x * 64.0; }",
     ];
     let library = Library::new([("gpu/planted".to_owned(), planted.join("\n"))]).expect("sound declarations");
     let found = written_twice(&library);
@@ -298,6 +305,9 @@ fn a_copied_number_is_found_by_name_or_value() {
             "13: 1664525u is `HASH_MULTIPLIER` in Rust",
             "14: 16777216.0 is the literal `16777216.0` in Rust",
             "15: 1.5707963 is `π/2` of mathematics",
+            "16: 64 is `WORKGROUP_SIZE` in Rust",
+            "18: 63u is `WORKGROUP_SIZE - 1` in Rust",
+            "18: 64u is `WORKGROUP_SIZE` in Rust",
         ]
     );
 }

@@ -1,7 +1,7 @@
 //! Culling of single plants: compute passes list those in view, so that only these are bent.
 
 use super::far_grids::FarGrids;
-use super::layout::{CHUNK, storage_compute};
+use super::layout::{CHUNK, NEAR_SLOTS, storage_compute};
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{PassFactory, storage_rw, uniform};
 use wgpu::BufferUsages;
@@ -28,11 +28,11 @@ impl PlantCulling {
         places: u32,
     ) -> Self {
         let gpu = factory.gpu;
-        let most = u64::from(places) * 9 + u64::from(grids.capacity) * u64::from(CHUNK);
+        let most = u64::from(places) * NEAR_SLOTS as u64 + u64::from(grids.capacity) * u64::from(CHUNK);
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let standing = gpu.empty_buffer("standing plants", 4 * (COUNTS + most), usage | BufferUsages::COPY_SRC);
         let workgroups = gpu.empty_buffer("workgroups of plants", 24, usage | BufferUsages::INDIRECT);
-        let grounds = gpu.empty_buffer("ground below near plants", 4 * 9 * u64::from(places), BufferUsages::STORAGE);
+        let grounds = gpu.empty_buffer("ground below near plants", 4 * NEAR_SLOTS as u64 * u64::from(places), BufferUsages::STORAGE);
         let layout = factory.layout("sift", &[uniform(0), storage_compute(4), storage_rw(8), storage_rw(9), storage_rw(10)]);
         let entries = [(0, plants), (4, grids.chunks()), (8, &standing), (9, &workgroups), (10, &grounds)]
             .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
@@ -61,7 +61,7 @@ impl PlantCulling {
     pub(super) fn find_ground(&self, pass: &mut wgpu::ComputePass<'_>, workgroups: u32) {
         pass.set_bind_group(1, &self.group, &[]);
         pass.set_pipeline(&self.ground);
-        pass.dispatch_workgroups(workgroups, 9, 1);
+        pass.dispatch_workgroups(workgroups, NEAR_SLOTS as u32, 1);
     }
 
     /// Lists the plants in view of the nine near grids, and of the chunks of far ones, whose number is read from a buffer.
@@ -69,7 +69,7 @@ impl PlantCulling {
         pass.set_bind_group(1, &self.group, &[]);
         if near_workgroups > 0 {
             pass.set_pipeline(&self.near);
-            pass.dispatch_workgroups(near_workgroups, 9, 1);
+            pass.dispatch_workgroups(near_workgroups, NEAR_SLOTS as u32, 1);
         }
         pass.set_pipeline(&self.far);
         pass.dispatch_workgroups_indirect(chunks, 0);

@@ -10,6 +10,7 @@ use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::Squares;
 use crate::render::inputs::frustum::Frustum;
 use crate::render::inputs::viewpoint::Viewpoint;
+use crate::render::land_and_sky::terrain::hills_m;
 use crate::render::options::detail::Detail;
 use crate::state::DecodedScene;
 use glam::Vec3;
@@ -157,8 +158,8 @@ fn square_bounds_m(decoded: &DecodedScene, corner_m: [f32; 2], side_m: f32) -> [
     [Vec3::new(low[0], lowest - beyond_m, low[1]), Vec3::new(high[0], highest + beyond_m, high[1])]
 }
 
-/// Range of ground heights in a rectangle (m). Beyond the edge of the map it is the range at the edge plus the maximum height of the hills; `grids.wgsl`
-/// evaluates the hills themselves.
+/// Range of ground heights in a rectangle (m). Beyond the edge of the map it is the range at the edge plus the bounds of the hills; `grids.wgsl` evaluates
+/// the hills themselves.
 fn heights_within(decoded: &DecodedScene, low: [f32; 2], high: [f32; 2]) -> [f32; 2] {
     let heights = decoded.heights();
     let (pixel_m, size) = (heights.pixel_m(), heights.size_px());
@@ -176,14 +177,8 @@ fn heights_within(decoded: &DecodedScene, low: [f32; 2], high: [f32; 2]) -> [f32
     }
     let extent = decoded.scene().extent_m();
     let outside = [0, 1].map(|axis| (-low[axis]).max(high[axis] - extent[axis]).max(0.0));
-    let hills_m = hills_limit_m(outside[0].hypot(outside[1]));
-    [range[0] - hills_m, range[1] + hills_m]
-}
-
-/// Maximum height or depth of the hills at a distance from the edge of the map (m); see `far_hills` in WGSL.
-fn hills_limit_m(outside_m: f32) -> f32 {
-    let rise = (outside_m / 900.0).min(1.0);
-    rise * rise * (3.0 - 2.0 * rise) * (0.58 * 150.0 + 0.006 * outside_m)
+    let [below, above] = hills_m(outside[0].hypot(outside[1]));
+    [range[0] + below, range[1] + above]
 }
 
 /// Whether a plant of a grid may be in view.

@@ -1,7 +1,7 @@
 //! Sizes and bind group layouts that the files of the blades share.
 
 pub(super) use crate::render::gpu::constants::CHUNK;
-use crate::render::gpu::constants::{self, FAR_HEAD_LIST, HEAD_LIST, PLANT_LISTS};
+use crate::render::gpu::constants::{self, FAR_HEAD_LIST, HEAD_LIST, LEAST_DENSITY_DISTANCE_M, PLANT_LISTS};
 use crate::render::gpu::pipeline::{PassFactory, storage, texture, uniform};
 
 /// Bytes of a drawn blade and of its sway in WGSL.
@@ -30,7 +30,7 @@ pub(super) fn list_layout(factory: &PassFactory<'_>) -> wgpu::BindGroupLayout {
 
 /// Fraction of the plants that are drawn at a distance; same as `density` in WGSL.
 pub(super) fn density(distance_m: f32, full_m: f32) -> f32 {
-    (full_m / distance_m.max(0.01)).powi(2).min(1.0)
+    (full_m / distance_m.max(LEAST_DENSITY_DISTANCE_M)).powi(2).min(1.0)
 }
 
 pub(super) fn storage_compute(binding: u32) -> wgpu::BindGroupLayoutEntry {

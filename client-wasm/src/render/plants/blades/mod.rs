@@ -211,7 +211,7 @@ impl Blades {
             grid_m: self.listed.grid_m,
             full_density_m: detail.full_m,
             fine_m: detail.fine_m,
-            damping: settings.swing_damping,
+            damping_ratio: settings.swing_damping,
             step_secs,
             first_flower: self.first_flower,
             flower_power: FLOWER_POWER,

@@ -11,7 +11,7 @@ const BLADE_LEVELS: usize = 5;
 /// The five blades of Zhang, Fig. 5 b. R is brightness, A coverage. Tips are at the top.
 pub(super) fn blade_shapes() -> Vec<Vec<u8>> {
     let [width, height] = BLADE_PX.map(|px| px as usize);
-    let tile = width / 5;
+    let tile = width / BLADE_SHAPES as usize;
     let mut texels = vec![0; width * height * 4];
     for y in 0..height {
         let up = 1.0 - (y as f32 + 0.5) / height as f32;

@@ -1,6 +1,6 @@
 //! Sort of the listed blades from far to near (Zhang, section 5.4): a compute pass computes a key for each, and two indirect draws follow the sorted order.
 
-use crate::render::gpu::constants::{DRAW_WORDS, ORDER_CELLS};
+use crate::render::gpu::constants::{DISPATCH_WORDS, DRAW_WORDS, ORDER_CELLS};
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{PassFactory, bind_as, storage, storage_rw, uniform};
 use crate::render::gpu::shaders;
@@ -11,8 +11,6 @@ use wgpu::BufferUsages;
 
 /// Words of `Spans` in WGSL.
 const SPANS: u64 = 6;
-/// Words before the arguments of the two draws: those of a dispatch, padded.
-const DISPATCH_WORDS: usize = 4;
 
 /// How the sort keys are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,7 +123,7 @@ impl BladeSort {
 
     /// Draws a span: 0 for the other, 1 for the fine blades.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, span: usize) {
-        pass.draw_indexed_indirect(&self.arguments, ((DISPATCH_WORDS + DRAW_WORDS as usize * span) * 4) as u64);
+        pass.draw_indexed_indirect(&self.arguments, ((DISPATCH_WORDS as usize + DRAW_WORDS as usize * span) * 4) as u64);
     }
 }
 

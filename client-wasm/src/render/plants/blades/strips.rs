@@ -1,7 +1,7 @@
 //! Index lists of the instances of single plants.
 
 use super::layout::CHUNK;
-use crate::render::gpu::constants::{DISC_VERTICES, HEAD_VERTICES};
+use crate::render::gpu::constants::{DISC_VERTICES, HEAD_VERTICES, PETAL_VERTICES, PETALS};
 
 /// Triangles of 64 blades with `segments` rectangles each; the last one of a pointed blade is a triangle.
 pub(super) fn strip_indices(segments: u32, are_pointed: bool) -> Vec<u16> {
@@ -18,16 +18,16 @@ pub(super) fn strip_indices(segments: u32, are_pointed: bool) -> Vec<u16> {
     indices
 }
 
-/// Triangles of 64 flower heads: twelve petals of three triangles and a disc of six.
+/// Triangles of a chunk of flower heads: petals of three triangles, and a disc.
 pub(super) fn head_indices() -> Vec<u16> {
     let mut indices = Vec::new();
     for head in 0..CHUNK {
         let first = head * HEAD_VERTICES;
-        for petal in 0..12 {
-            let a = first + petal * 5;
+        for petal in 0..PETALS {
+            let a = first + petal * PETAL_VERTICES;
             indices.extend([a, a + 1, a + 2, a + 1, a + 3, a + 2, a + 2, a + 3, a + 4].map(|i| i as u16));
         }
-        indices.extend(disc(first + 60));
+        indices.extend(disc(first + PETALS * PETAL_VERTICES));
     }
     indices
 }
@@ -37,9 +37,10 @@ pub(super) fn disc_indices() -> Vec<u16> {
     (0..CHUNK).flat_map(|head| disc(head * DISC_VERTICES)).collect()
 }
 
-/// A disc of six triangles around vertex `centre`; its rim are the following vertices.
+/// Triangles of a disc around vertex `centre`; its rim are the following vertices.
 fn disc(centre: u32) -> impl Iterator<Item = u16> {
-    (0..6).flat_map(move |i| [centre, centre + 1 + i, centre + 1 + (i + 1) % 6].map(|i| i as u16))
+    let rim = DISC_VERTICES - 1;
+    (0..rim).flat_map(move |i| [centre, centre + 1 + i, centre + 1 + (i + 1) % rim].map(|i| i as u16))
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ use crate::render::gpu::constants::{GRAVITY_M_PER_S2, PETAL, STALK, UNDERBRUSH_L
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use prairie_core::plant::underbrush::drops::Struck;
-use prairie_core::plant::underbrush::plan::{Part, Placed, Plan, SECTIONS_LIMIT};
+use prairie_core::plant::underbrush::plan::{Placed, Plan, PlannedComponent, SECTIONS_LIMIT};
 use prairie_core::plant::underbrush::plant::{Forces, LookUp, Posed, Stand, posed};
 use prairie_core::plant::underbrush::posture::Postures;
 use prairie_core::plant::underbrush::vectors::{PETAL_RAD, vectors};
@@ -162,7 +162,7 @@ impl Baked {
             let forces = Forces { per_mass_m_per_s2: Vec3::ZERO, pressure_pa: Vec3::ZERO };
             let unbent = posed(plan, placed, Stand { size: 1.0, heading_rad: 0.0, lean_rad: [0.0; 2] }, forces, LookUp::Nearest, 0);
             for &(index, wider) in &kept {
-                for ribbon in ribbons(&plan.parts[placed[index].part], &unbent[index], index, level, wider) {
+                for ribbon in ribbons(&plan.components[placed[index].planned], &unbent[index], index, level, wider) {
                     if number == 0 {
                         baked.ribbons.push(ribbon.len() as u32);
                     }
@@ -174,7 +174,7 @@ impl Baked {
             for placed in &makes {
                 let calm = Forces { per_mass_m_per_s2: GRAVITY, pressure_pa: Vec3::ZERO };
                 let calm = posed(plan, placed, Stand { size: 1.0, heading_rad: 0.0, lean_rad: [0.0; 2] }, calm, LookUp::Nearest, 0);
-                let drop = |index: usize| drop_response(&plan.parts[placed[index].part], &calm[index]);
+                let drop = |index: usize| drop_response(&plan.components[placed[index].planned], &calm[index]);
                 let limb = |index: usize| Limb { drop: drop(index), ..limb(plan, &tables, placed, index, every, is_broken) };
                 baked.limbs.extend((0..placed.len()).map(limb));
             }
@@ -217,11 +217,11 @@ fn chords(table: &Postures, every: usize) -> impl Iterator<Item = [f32; 2]> {
 
 fn limb(plan: &Plan, tables: &[u32], placed: &[Placed], index: usize, every: usize, is_broken: bool) -> Limb {
     let one = &placed[index];
-    let part = &plan.parts[one.part];
-    let table = part.broken.filter(|_| is_broken).unwrap_or(part.whole);
+    let planned = &plan.components[one.planned];
+    let table = planned.broken.filter(|_| is_broken).unwrap_or(planned.whole);
     let sections = |table: usize| plan.tables[table].stride() - 1;
     let at_step = one.on.map_or(0.0, |on| {
-        let sections = sections(plan.parts[placed[on].part].whole);
+        let sections = sections(plan.components[placed[on].planned].whole);
         let at = one.at_fraction.clamp(0.0, 1.0) * sections as f32;
         let step = (at as usize).min(sections - 1) / every;
         let held = every.min(sections - step * every);
@@ -232,9 +232,9 @@ fn limb(plan: &Plan, tables: &[u32], placed: &[Placed], index: usize, every: usi
     Limb {
         angle: [cosine, sine],
         turn: [turn_cosine, turn_sine],
-        load_s2_per_m: part.weight_s2_per_m * one.size,
-        load_per_pa: part.drag_per_pa,
-        length_m: part.component.length_m * one.size,
+        load_s2_per_m: planned.weight_s2_per_m * one.size,
+        load_per_pa: planned.drag_per_pa,
+        length_m: planned.component.length_m * one.size,
         host_steps: at_step,
         first_step: tables[table],
         steps: sections(table).div_ceil(every) as u32,
@@ -246,15 +246,15 @@ fn limb(plan: &Plan, tables: &[u32], placed: &[Placed], index: usize, every: usi
 
 /// Response of a component to a drop of rain. Leaves catch drops with their area as seen from above, flowers with the disc of their petals; stalks are
 /// stiff.
-fn drop_response(part: &Part, calm: &Posed) -> DropResponse {
-    let component = &part.component;
+fn drop_response(planned: &PlannedComponent, calm: &Posed) -> DropResponse {
+    let component = &planned.component;
     let Struck { speed_m_per_s, settle_secs } = Struck::new(component, calm.size);
     let area_m2 = match component.kind {
         _ if settle_secs < FASTEST_SECS => 0.0,
         ComponentKind::Branch => 0.0,
         ComponentKind::Flower => FRAC_PI_4 * (component.width_m * calm.size).powi(2),
         ComponentKind::Leaf => {
-            let outline = vectors(part, calm, 1);
+            let outline = vectors(planned, calm, 1);
             let area = |length_m: fn(Vec3) -> f32| -> f32 {
                 outline.windows(2).map(|pair| (pair[0].right_m.length() + pair[1].right_m.length()) * length_m(pair[1].axis_m)).sum()
             };
@@ -267,8 +267,8 @@ fn drop_response(part: &Part, calm: &Posed) -> DropResponse {
 
 /// Components drawn at a level of detail, with a factor on their width that preserves coverage. The coarsest level omits thin stalks and most leaves.
 fn kept(plan: &Plan, placed: &[Placed], level: usize) -> Vec<(usize, f32)> {
-    let kind = |index: usize| plan.parts[placed[index].part].component.kind;
-    let is_stout = |index: usize| plan.parts[placed[index].part].component.width_m > 0.006;
+    let kind = |index: usize| plan.components[placed[index].planned].component.kind;
+    let is_stout = |index: usize| plan.components[placed[index].planned].component.width_m > 0.006;
     if level + 1 < LEVELS {
         return (0..placed.len()).map(|index| (index, 1.0)).collect();
     }
@@ -287,10 +287,10 @@ fn kept(plan: &Plan, placed: &[Placed], level: usize) -> Vec<(usize, f32)> {
 }
 
 /// Ribbons of the component at `index` of a plant: its own, and those of its petals.
-fn ribbons(part: &Part, one: &Posed, index: usize, level: usize, wider: f32) -> Vec<Vec<Row>> {
-    let component = &part.component;
+fn ribbons(planned: &PlannedComponent, one: &Posed, index: usize, level: usize, wider: f32) -> Vec<Vec<Row>> {
+    let component = &planned.component;
     let (root, tip) = (Vec3::from(component.root_rgb), Vec3::from(component.tip_rgb));
-    let outline = vectors(part, one, EVERY[level]);
+    let outline = vectors(planned, one, EVERY[level]);
     let steps = outline.len() - 1;
     let row = |step: usize, half_m: f32, rgb: Vec3, material: RowMaterial, petal: PetalPlace| {
         let half = (half_m / WIDTH_UNIT_M).round().clamp(0.0, 65_535.0) as u32;
@@ -388,13 +388,13 @@ mod tests {
                 let forces = Forces { per_mass_m_per_s2: GRAVITY, pressure_pa: Vec3::new(cosine, 0.0, sine) * pressure_pa };
                 let stand = Stand { size: 1.0, heading_rad: 0.0, lean_rad: [0.0; 2] };
                 for one in posed(&plan, &placed, stand, forces, LookUp::Interpolated, u64::MAX) {
-                    let part = &plan.parts[one.part];
-                    if part.on.is_some() || part.broken.is_none() {
+                    let planned = &plan.components[one.planned];
+                    if planned.on.is_some() || planned.broken.is_none() {
                         continue;
                     }
-                    let tip_m = one.sections()[one.sections().len() - 1].end_m / (part.component.length_m * one.size);
+                    let tip_m = one.sections()[one.sections().len() - 1].end_m / (planned.component.length_m * one.size);
                     let along = tip_m.x * cosine + tip_m.z * sine;
-                    assert!(along > 0.9 && tip_m.y < 0.1, "{} of {}: {tip_m} at heading {heading}", part.component.name, own.name);
+                    assert!(along > 0.9 && tip_m.y < 0.1, "{} of {}: {tip_m} at heading {heading}", planned.component.name, own.name);
                 }
             }
         }

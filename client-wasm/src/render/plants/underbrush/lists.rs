@@ -1,7 +1,7 @@
 //! Draw lists of the underbrush: one for each species at each level of detail.
 
 use super::bake::{Baked, LEVELS};
-use super::layout::{BLOCK, LISTS};
+use super::layout::{BLOCK, CHUNK, LISTS};
 use crate::render::gpu::constants;
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::uniforms::BrushList;
@@ -46,7 +46,7 @@ impl Lists {
                 let list = number * LEVELS + level;
                 let baked = Baked::new(plan, level);
                 let own_rows = baked.ribbons.iter().sum::<u32>();
-                let held = (INSTANCE_VERTICES / (2 * own_rows)).clamp(1, 64);
+                let held = (INSTANCE_VERTICES / (2 * own_rows)).clamp(1, CHUNK);
                 let trembles = rain_mm_per_h > 0.0 && level < TREMBLING_LEVELS;
                 of[list] = BrushList {
                     rows: own_rows,

@@ -7,6 +7,7 @@ mod lists;
 mod passes;
 mod tiles;
 
+use crate::render::gpu::constants::SPARE_DIVISOR;
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::PassFactory;
 use crate::render::gpu::uniforms::{Nature, UnderbrushFrame};
@@ -22,7 +23,7 @@ use prairie_core::plant::flora::{self, Flora, height_m};
 use prairie_core::plant::growth::SPECIES_LIMIT;
 use tiles::PlantTile;
 use tiles::tile_number;
-pub(crate) use tiles::tiles;
+pub(crate) use tiles::{UnderbrushPlant, tiles};
 
 pub(crate) struct Underbrush {
     passes: Passes,
@@ -193,9 +194,9 @@ fn room(gpu: &Gpu, quality: Quality, flora: &Flora, lists: &Lists, counts: &[u32
     [plants.min(bytes / VISIBLE_PLANT_BYTES), room_for(all_blocks).min(bytes / (ROW_BYTES * u64::from(BLOCK)))]
 }
 
-/// Blocks to reserve so that `blocks` fit; a quarter is a reserve for those that do not fit elsewhere, as in `main_room` of `underbrush.wgsl`.
+/// Blocks to reserve so that `blocks` fit beside the reserve, as in `main_room` of `underbrush.wgsl`.
 fn room_for(blocks: u64) -> u64 {
-    (4 * blocks).div_ceil(3)
+    (u64::from(SPARE_DIVISOR) * blocks).div_ceil(u64::from(SPARE_DIVISOR - 1))
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::layout::{BLOCK, CHUNK, COUNTER_BYTES, RESPONSE_BYTES, ROW_BYTES, VISIBLE_PLANT_BYTES};
 use super::lists::Lists;
-use super::tiles::PlantInstance;
+use super::tiles::UnderbrushPlant;
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{
     DrawDescriptor, LampVariants, PassFactory, SphereVariants, bind_as, sampled, storage, storage_rw, uniform,
@@ -43,7 +43,7 @@ impl UnderbrushBuffers {
     /// Buffers with this capacity in plants and in blocks of rows.
     pub(super) fn new(
         gpu: &Gpu,
-        grown: &[PlantInstance],
+        grown: &[UnderbrushPlant],
         flora: &Flora,
         lists: &Lists,
         [plant_room, block_room]: [u64; 2],

@@ -234,7 +234,7 @@ fn tips_off<'a>(plan: &'a Plan, axes: &'a [(usize, &'a [Found])], wanted: &'a [P
     axes.iter().map(|&(limb, rows)| {
         let one = &wanted[limb];
         let tip_m = one.sections()[one.sections().len() - 1].end_m;
-        place(&rows[rows.len() - 1]).distance(tip_m) / (plan.parts[one.part].component.length_m * one.size)
+        place(&rows[rows.len() - 1]).distance(tip_m) / (plan.components[one.planned].component.length_m * one.size)
     })
 }
 
@@ -261,7 +261,7 @@ fn plants_bend_as_in_the_core_and_keep_their_lengths() {
             }
             for (limb, rows) in axes {
                 let one = &wanted[limb];
-                let section_m = plan.parts[one.part].component.length_m * one.size / one.sections().len() as f32;
+                let section_m = plan.components[one.planned].component.length_m * one.size / one.sections().len() as f32;
                 for (pair, section) in rows.windows(2).zip(one.sections()) {
                     let step_m = place(&pair[0]).distance(place(&pair[1]));
                     assert!((step_m / section_m - 1.0).abs() < 1e-5, "{step_m} instead of {section_m} m of {}", species.name);

@@ -1,6 +1,7 @@
 //! Grid squares of underbrush plants, each culled as a unit.
 
 use super::bake::VARIANTS;
+use crate::render::gpu::constants::{ENLARGEMENT_EXPONENT, MIN_KEPT_FRACTION};
 use crate::state::DecodedScene;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -8,12 +9,11 @@ use prairie_core::plant::flora::{self, Flora};
 
 /// Side of a square (m).
 const TILE_M: f32 = 8.0;
-use crate::render::gpu::constants::MIN_KEPT_FRACTION;
 
 /// A plant of `underbrush.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct PlantInstance {
+pub(crate) struct UnderbrushPlant {
     pub(crate) at_m: [f32; 2],
     size: f32,
     pub(super) species_and_variant: u32,
@@ -37,23 +37,27 @@ pub(super) fn tile_number(m: f32) -> i32 {
 }
 
 /// All plants sorted by square, and the squares sorted by row.
-pub(crate) fn tiles(decoded: &DecodedScene, flora: &Flora) -> (Vec<PlantInstance>, Vec<PlantTile>) {
+pub(crate) fn tiles(decoded: &DecodedScene, flora: &Flora) -> (Vec<UnderbrushPlant>, Vec<PlantTile>) {
     let reaches_m: Vec<f32> = flora.species().iter().map(flora::reach_m).collect();
-    let mut by_tile: Vec<([i32; 2], PlantInstance, f32)> = flora
+    let mut by_tile: Vec<([i32; 2], UnderbrushPlant, f32)> = flora
         .grown()
         .plants()
         .iter()
         .map(|plant| {
             let instance = flora.instance(plant);
             let species_and_variant = instance.species as u32 | (instance.number % VARIANTS) << 8;
-            let grown = PlantInstance {
+            let grown = UnderbrushPlant {
                 at_m: instance.at_m,
                 size: instance.size,
                 species_and_variant,
                 heading_rad: instance.heading_rad,
                 site: plant.site,
             };
-            (instance.at_m.map(tile_number), grown, reaches_m[instance.species] * instance.size * MIN_KEPT_FRACTION.powf(-0.3))
+            (
+                instance.at_m.map(tile_number),
+                grown,
+                reaches_m[instance.species] * instance.size * MIN_KEPT_FRACTION.powf(ENLARGEMENT_EXPONENT),
+            )
         })
         .collect();
     by_tile.sort_by_key(|&([x, z], ..)| [z, x]);

@@ -45,7 +45,7 @@ proptest! {
         for look_up in [LookUp::Nearest, LookUp::Interpolated] {
             let posed = posed(&PLAN, &placed, stand, forces, look_up, broken);
             for (one, place) in posed.iter().zip(&placed) {
-                let section_m = PLAN.parts[one.part].component.length_m * one.size / one.sections().len() as f32;
+                let section_m = PLAN.components[one.planned].component.length_m * one.size / one.sections().len() as f32;
                 let mut from_m = one.foot_m;
                 for section in one.sections() {
                     prop_assert!(((section.end_m - from_m).length() - section_m).abs() < 1e-6);
@@ -72,9 +72,9 @@ proptest! {
     #[test]
     fn vectors_are_across_the_axis_and_fewer_keep_foot_and_tip(number in any::<u32>(), stand in stands(), forces in forces()) {
         for one in pose(number, stand, forces) {
-            let part = &PLAN.parts[one.part];
+            let planned = &PLAN.components[one.planned];
             for every in [1, 2, 4, 8] {
-                let vectors = vectors(part, &one, every);
+                let vectors = vectors(planned, &one, every);
                 prop_assert_eq!(vectors.len(), one.sections().len().div_ceil(every) + 1);
                 for set in &vectors[1..] {
                     let along = set.axis_m.normalize();
@@ -111,7 +111,7 @@ fn leaves_droop_and_wind_carries_them_along() {
 
 #[test]
 fn a_pressed_plant_leans_as_the_grass_does() {
-    let mean = |posed: &[Posed]| posed.iter().filter(|one| one.part == 0).map(|one| one.axis).sum::<Vec3>() / 2.0;
+    let mean = |posed: &[Posed]| posed.iter().filter(|one| one.planned == 0).map(|one| one.axis).sum::<Vec3>() / 2.0;
     let upright = mean(&pose(5, UPRIGHT, CALM));
     for (lean_rad, turn) in [([0.0, 0.8], Quat::from_rotation_x(0.8)), ([0.8, 0.0], Quat::from_rotation_z(-0.8))] {
         assert!((mean(&pose(5, Stand { lean_rad, ..UPRIGHT }, CALM)) - turn * upright).length() < 1e-6);
@@ -124,7 +124,7 @@ fn each_stands_a_turn_on_from_the_one_before_as_headings_go() {
     let off = |a: f32, b: f32| ((a - b).sin(), (a - b).cos() - 1.0);
     let is_small = |(sine, cosine): (f32, f32)| sine.abs() < 1e-3 && cosine.abs() < 1e-3;
     let [first, second] = headings(&pose(4, UPRIGHT, CALM));
-    assert!(is_small(off(second, first + PLAN.parts[0].component.turn_rad)), "{first} and {second}");
+    assert!(is_small(off(second, first + PLAN.components[0].component.turn_rad)), "{first} and {second}");
     let [turned, _] = headings(&pose(4, Stand { heading_rad: 0.5, ..UPRIGHT }, CALM));
     assert!(is_small(off(turned, first + 0.5)), "{first} and {turned}");
 }
@@ -154,7 +154,7 @@ fn a_larger_plant_bends_more_under_its_weight() {
 #[test]
 fn a_breath_of_air_strains_a_stalk_by_half_its_force_times_its_length() {
     let breath = Forces { per_mass_m_per_s2: Vec3::ZERO, pressure_pa: Vec3::X };
-    for one in pose(6, UPRIGHT, breath).iter().filter(|one| one.part == 0) {
+    for one in pose(6, UPRIGHT, breath).iter().filter(|one| one.planned == 0) {
         let moment_n_m = 1.1 * 0.75 * 0.4 * 0.01 * 0.2 * Vec3::X.cross(one.axis).length();
         assert!((one.strain / (moment_n_m / 0.03) - 1.0).abs() < 0.02, "{}", one.strain);
     }
@@ -163,12 +163,12 @@ fn a_breath_of_air_strains_a_stalk_by_half_its_force_times_its_length() {
 #[test]
 fn a_flower_has_its_petals_about_its_tip() {
     let posed = pose(3, UPRIGHT, CALM);
-    let flower = posed.iter().find(|one| one.part == 3).unwrap();
-    let petals = petals(&PLAN.parts[3], flower);
+    let flower = posed.iter().find(|one| one.planned == 3).unwrap();
+    let petals = petals(&PLAN.components[3], flower);
     assert_eq!(petals.len(), 6);
     let radius_m = 0.02 * flower.size;
     assert!(petals.iter().all(|petal| (petal.axis_m.length() - radius_m).abs() < 1e-6 && petal.axis_m.dot(petal.left_m).abs() < 1e-8));
     let sum = petals.iter().map(|petal| petal.axis_m).sum::<Vec3>();
     assert!(sum.normalize().dot(flower.sections()[1].direction) > 0.999, "all about the stalk");
-    assert!(super::super::vectors::petals(&PLAN.parts[0], &posed[0]).is_empty());
+    assert!(super::super::vectors::petals(&PLAN.components[0], &posed[0]).is_empty());
 }
