@@ -22,8 +22,10 @@ use passes::{Passes, SpeciesDrawList, UnderbrushBuffers};
 use prairie_core::plant::flora::{self, Flora, height_m};
 use prairie_core::plant::growth::SPECIES_LIMIT;
 use tiles::PlantTile;
+#[cfg(test)]
+pub(crate) use tiles::UnderbrushPlant;
 use tiles::tile_number;
-pub(crate) use tiles::{UnderbrushPlant, tiles};
+pub(crate) use tiles::tiles;
 
 pub(crate) struct Underbrush {
     passes: Passes,
