@@ -12,7 +12,7 @@ use prairie_client::state::Mirror;
 use prairie_core::scene::{Light, Patches, Plants, Scene, TerrainMaps, VehicleKind};
 use prairie_core::terrain::grey_png;
 use prairie_core::wire::quantise::{omega_code, theta_code, wind_code};
-use prairie_core::wire::{ObjectPose, ServerMessage, Shape, codec};
+use prairie_core::wire::{ObjectPose, ServerMessage, Shape, TurbulenceState, codec};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -88,7 +88,13 @@ fn scene() -> ServerMessage {
 fn wind(cells: [u32; 3]) -> ServerMessage {
     let volume = cells.iter().product::<u32>() as usize;
     let codes: Vec<i8> = [4.0, 0.0, 2.5].into_iter().flat_map(|m_per_s| std::iter::repeat_n(wind_code(m_per_s), volume)).collect();
-    ServerMessage::Wind { tick: 0, seq: 1, key: true, payload: codec::encode(Shape::wind(cells[0] as usize, false), &codes, None) }
+    ServerMessage::Wind {
+        tick: 0,
+        seq: 1,
+        key: true,
+        turbulence: TurbulenceState::default(),
+        payload: codec::encode(Shape::wind(cells[0] as usize, false), &codes, None),
+    }
 }
 
 /// Bend field of one patch: grass lies flat in the two tracks behind the car.

@@ -101,7 +101,7 @@ mod tests {
     use super::*;
     use prairie_core::scene::{TerrainMaps, VehicleKind, Wind, WindDust};
     use prairie_core::terrain::grey_png;
-    use prairie_core::wire::{ServerMessage, Shape, codec};
+    use prairie_core::wire::{ServerMessage, Shape, TurbulenceState, codec};
 
     const DT_SECS: f32 = 1.0 / 30.0;
 
@@ -119,7 +119,9 @@ mod tests {
 
     fn blow(mirror: &mut Mirror, seq: u32, codes: &[i8]) {
         let payload = codec::encode(Shape::wind(4, codes.len() > 96), codes, None);
-        mirror.apply(ServerMessage::Wind { tick: 1, seq, key: true, payload }).expect("a valid wind frame");
+        mirror
+            .apply(ServerMessage::Wind { tick: 1, seq, key: true, turbulence: TurbulenceState::default(), payload })
+            .expect("a valid wind frame");
     }
 
     fn bend(mirror: &mut Mirror, seq: u32, code: i8) {

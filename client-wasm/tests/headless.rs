@@ -8,7 +8,7 @@ use prairie_client::state::Mirror;
 use prairie_core::scene::{Patches, Scene, TerrainMaps, Wind, WindDust};
 use prairie_core::terrain::grey_png;
 use prairie_core::wire::quantise::{dust_code, omega_code, theta_code};
-use prairie_core::wire::{ServerMessage, Shape, codec};
+use prairie_core::wire::{ServerMessage, Shape, TurbulenceState, codec};
 
 const SIZE_PX: [u32; 2] = [192, 108];
 
@@ -110,7 +110,9 @@ fn dust_is_drawn_only_where_it_is() {
         let mut codes = vec![0; 3 * 8192];
         codes.extend((0..8192).map(|at| if (at % 32) as f32 * 8.0 < edge_m { dust_code(4.0) } else { 0 }));
         let payload = codec::encode(Shape::wind(32, true), &codes, None);
-        mirror.apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, payload }).expect("a valid wind frame");
+        mirror
+            .apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, turbulence: TurbulenceState::default(), payload })
+            .expect("a valid wind frame");
         draw(&gpu, &mut mirror)
     };
     let (clear, dusty) = (picture(0.0), picture(16.0));

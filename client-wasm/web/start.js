@@ -93,6 +93,8 @@ async function begin() {
     state: () => JSON.parse(client.state()),
     theta: client.theta,
     wind: (x, y, z) => Array.from(client.wind(x, y, z)),
+    wind_tick: client.wind_tick,
+    bend: (x, z) => Array.from(client.bend(x, z)),
     dust: (x, y, z) => client.dust(x, y, z),
     plants: client.plants,
     look: (eye, heading, pitch) => client.set_camera(Float32Array.from(eye), heading, pitch),

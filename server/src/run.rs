@@ -2,7 +2,7 @@
 
 use crate::config::{Config, Limits};
 use crate::inspect::{InspectError, Inspector};
-use crate::net::{self, Access, Admission, App, PageErrors, SessionLog};
+use crate::net::{self, Access, Admission, App, FieldSampler, PageErrors, SessionLog};
 use crate::runner::{Published, Runner, Simulation, Timing};
 use crate::settings_error::SettingsError;
 use crate::stream::{self, Clients, Streamer};
@@ -93,6 +93,7 @@ pub async fn run_simulation(
         scene_name: config.scene.name.clone(),
         scene: scene_message(&config),
         limits: config.limits,
+        fields: FieldSampler::new(&config.scene),
         access: Access::new(&config.allow_origins, &config.allow_hosts, config.tls.clone()),
         admission: admission.clone(),
         page_errors: config.logs_page_errors.then(|| PageErrors::new(Instant::now())),

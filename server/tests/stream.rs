@@ -34,7 +34,7 @@ impl FakeWorld {
     }
 
     fn with_wind_planes(planes: usize) -> Self {
-        let wind = Arc::new(WindFrame { tick: 0, cells: WIND_CELLS, codes: vec![0; planes * 32] });
+        let wind = Arc::new(WindFrame { cells: WIND_CELLS, codes: vec![0; planes * 32], ..WindFrame::default() });
         let snapshot = Snapshot { wind, ..Snapshot::default() };
         Self { snapshot, requests: Default::default() }
     }

@@ -12,8 +12,6 @@ use crate::picture::Picture;
 use crate::views::View;
 use prairie::studio::Stage;
 
-/// Time of the clouds and gusts (s).
-const TIME_SECS: f64 = 5.0;
 const DT_SECS: f32 = 1.0 / 30.0;
 /// Supersampling factor of the reference along each side.
 const SUPERSAMPLED: u32 = 2;
@@ -49,7 +47,8 @@ impl Still {
     }
 
     fn draw_sized(&mut self, canvas: &mut Canvas, [width, height]: [u32; 2]) -> (Picture, FrameStats) {
-        let stats = canvas.draw(&mut self.stage.mirror, &self.camera, TIME_SECS, 0.0);
+        let time_secs = self.stage.mirror.time_secs();
+        let stats = canvas.draw(&mut self.stage.mirror, &self.camera, time_secs, 0.0);
         (Picture { width, height, rgba: canvas.rgba() }, stats)
     }
 
@@ -94,7 +93,8 @@ pub fn frame_secs(canvas: &mut Canvas, mirror: &mut Mirror, camera: &Camera, fra
     let mut times: Vec<f64> = (0..=frames)
         .map(|frame| {
             let begun = Instant::now();
-            canvas.draw(mirror, camera, TIME_SECS + f64::from(frame) * f64::from(DT_SECS), DT_SECS);
+            let time_secs = mirror.time_secs() + f64::from(frame) * f64::from(DT_SECS);
+            canvas.draw(mirror, camera, time_secs, DT_SECS);
             begun.elapsed().as_secs_f64()
         })
         .skip(1)

@@ -8,7 +8,7 @@ use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{Objects, Scene, TerrainMaps, VehicleKind};
 use prairie_core::terrain::{HeightMap, grey_png};
 use prairie_core::wire::quantise::{omega_code, theta_code, wind_code};
-use prairie_core::wire::{ObjectPose, ServerMessage, Shape, codec};
+use prairie_core::wire::{ObjectPose, ServerMessage, Shape, TurbulenceState, codec};
 
 /// Pixels of both maps along X and Z, and the distance between those of the height map (m).
 const MAP_PX: u32 = 257;
@@ -98,7 +98,9 @@ fn wind(scene: &Scene) -> ServerMessage {
         codes[i] = wind_code(4.2 * strength);
         codes[2 * count + i] = wind_code(2.6 * strength + 0.8 * (2.0 * fx).sin());
     }
-    ServerMessage::Wind { tick: 1, seq: 1, key: true, payload: codec::encode(Shape::wind(nx, false), &codes, None) }
+    // As in a neutral surface layer under a mean wind of 4.9 m/s at 10 m.
+    let turbulence = TurbulenceState { friction_m_per_s: 0.37, ..TurbulenceState::default() };
+    ServerMessage::Wind { tick: 1, seq: 1, key: true, turbulence, payload: codec::encode(Shape::wind(nx, false), &codes, None) }
 }
 
 fn patch_message(layout: &PatchLayout, patch: u32) -> Option<ServerMessage> {

@@ -7,8 +7,10 @@ use prairie::world::{Maps, World};
 use prairie_client::camera::Camera;
 use prairie_client::state::Mirror;
 use prairie_core::scene::{Patches, Scene, TerrainMaps};
-use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
+use prairie_core::terrain::{CoverMap, HeightMap, KindMap, grey_png};
+use prairie_core::wind::WindField;
 use prairie_core::wire::ServerMessage;
+use std::sync::Arc;
 
 /// A scene of `count × count` patches with the defaults of everything else.
 pub fn scene(count: u32) -> Scene {
@@ -27,6 +29,11 @@ pub fn maps(scene: &Scene, height_m: impl Fn(f32, f32) -> f32, cover: impl Fn(f3
     let height = HeightMap::from_heights(width, depth, [2.0; 2], heights);
     let cover = CoverMap::from_png(&grey_png([width, depth], &ids)).expect("a grey PNG of eight bits");
     Maps { height, cover, drawings: Default::default(), nutrients: None }
+}
+
+/// Still air over the grass of `[grass]`.
+pub fn still_air(scene: &Scene) -> WindField {
+    WindField::still(scene, Arc::new(KindMap::uniform()))
 }
 
 /// Flat land, all grass.

@@ -2,7 +2,7 @@
 
 import package::constants::{BEND_ATLAS_LEVELS, OMEGA_FULL_RAD_PER_S, PASTS, TAU, THETA_FULL_RAD};
 import package::inputs::frame::{frame, runtime_zero, repeated};
-import package::inputs::wind::{lean_of_wind, wind_at};
+import package::inputs::wind::lean_of_wind;
 import package::uniforms::Kind;
 
 @group(0) @binding(4) var bends: texture_2d_array<f32>;
@@ -74,9 +74,9 @@ fn lean_of_field(p: vec2<f32>, level: f32) -> vec2<f32> {
     return lean_of_bend(bend_at(p, level, 0)) * fraction;
 }
 
-// Lean (rad) of a plant at `ground` in the local wind times `gust`, for a plant that a wind of 10 m/s bends by `bend_rad`.
-fn lean_at(ground: vec3<f32>, level: f32, gust: f32, bend_rad: f32) -> vec2<f32> {
-    return lean_of_field(ground.xz, level) + lean_of_wind(wind_at(ground, 0.0).xz * gust, bend_rad);
+// Lean (rad) of a plant at `ground` in a wind over the ground (m/s), for a plant that a wind of 10 m/s bends by `bend_rad`.
+fn lean_in(ground: vec3<f32>, level: f32, wind: vec2<f32>, bend_rad: f32) -> vec2<f32> {
+    return lean_of_field(ground.xz, level) + lean_of_wind(wind, bend_rad);
 }
 
 fn field_level(distance_m: f32) -> f32 {

@@ -1,10 +1,7 @@
-// Sampling of the streamed wind, and gusts finer than its cells.
+// Sampling of the streamed wind, and gusts finer than its cells. Twin of `WindField` in shared/src/wind/field.rs.
 
-import package::constants::{
-    BEND_SATURATES_M_PER_S, BROAD_GUST_ACROSS_M, BROAD_GUST_M, DUST_FULL, FINE_GUST_ACROSS_M, FINE_GUST_M, WIND_FULL_M_PER_S,
-};
+import package::constants::{BEND_SATURATES_M_PER_S, DUST_FULL, FREE_WIND_M, LEAST_WIND_HEIGHT, TAU, WIND_FULL_M_PER_S};
 import package::inputs::frame::{frame, runtime_zero, repeated};
-import package::inputs::noise::noise;
 import package::inputs::random::hash3;
 
 @group(0) @binding(5) var winds: texture_3d<f32>;
@@ -44,22 +41,42 @@ fn air_at(p: vec2<f32>, above_m: f32) -> vec4<f32> {
     return air;
 }
 
-fn wind_at(p: vec3<f32>, above_m: f32) -> vec3<f32> {
+// The solver's wind (m/s) at a height above `p`.
+fn resolved_at(p: vec3<f32>, above_m: f32) -> vec3<f32> {
     return air_at(p.xz, above_m).xyz;
+}
+
+// Gust (m/s, along X and Z): the turbulence that the solver's cells do not resolve. Twin of `Gusts::at` in shared/src/wind/turbulence.rs.
+fn gust_at(p: vec2<f32>) -> vec2<f32> {
+    var gust = vec2<f32>(0.0);
+    let count = frame.gust_count + u32(runtime_zero(p.x));
+    for (var i = 0u; i < count; i++) {
+        let wave = frame.gusts[i];
+        let speed = wave.strength * cos(TAU * fract(dot(wave.per_m, p) + wave.phase));
+        gust += vec2<f32>(-wave.per_m.y, wave.per_m.x) * speed;
+    }
+    return gust;
+}
+
+// Wind over the ground (m/s, along X and Z) in the lowest cells, with its gust.
+fn ground_wind_at(ground: vec3<f32>) -> vec2<f32> {
+    return resolved_at(ground, 0.0).xz + gust_at(ground.xz);
+}
+
+// Wind with its gust (m/s) at a height above `p`, reduced near the ground. Twin of `WindField::wind_at`.
+fn wind_at(p: vec3<f32>, above_m: f32) -> vec3<f32> {
+    let gust = gust_at(p.xz);
+    return (resolved_at(p, above_m) + vec3<f32>(gust.x, 0.0, gust.y)) * near_ground_fraction(above_m);
+}
+
+// Wind speed at a height, relative to that at `FREE_WIND_M`: a quarter-power law. Twin of the function in shared/src/wind/ground.rs.
+fn near_ground_fraction(above_m: f32) -> f32 {
+    return sqrt(sqrt(clamp(above_m / FREE_WIND_M, LEAST_WIND_HEIGHT, 1.0)));
 }
 
 // Dust concentration of a sample of `air_at`.
 fn dust_of(air: vec4<f32>) -> f32 {
     return air.w * air.w * DUST_FULL;
-}
-
-// Gust factor, about 1: gust fronts finer than the solver's cells, which travel with the mean wind.
-fn gust_at(p: vec2<f32>) -> f32 {
-    let along = dot(p, frame.wind_direction) - frame.gust_travel_m;
-    let across = dot(p, vec2<f32>(-frame.wind_direction.y, frame.wind_direction.x));
-    let broad = noise(vec2<f32>(along / BROAD_GUST_M, across / BROAD_GUST_ACROSS_M)).r;
-    let fine = noise(vec2<f32>(along / FINE_GUST_M, across / FINE_GUST_ACROSS_M)).g;
-    return 0.45 + 1.35 * smoothstep(0.28, 0.74, broad * 0.62 + fine * 0.38);
 }
 
 // Lean (rad, as a vector on the ground) in a steady wind, for a plant that a wind of `BEND_SATURATES_M_PER_S` bends by `bend_rad`.

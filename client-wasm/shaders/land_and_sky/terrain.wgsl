@@ -7,7 +7,7 @@ import package::inputs::grass_kinds::kinds_blended;
 import package::inputs::lamps::lamps_on;
 import package::inputs::noise::{noise, noise_over};
 import package::inputs::shadows::sun_visible;
-import package::inputs::wind::{gust_at, lean_of_wind, wind_at};
+import package::inputs::wind::{ground_wind_at, lean_of_wind};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
 import package::land_and_sky::grass_light::sun_in_grass;
@@ -41,8 +41,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let p = flat_p - odd * spacing * morph;
     var out: Ground;
     out.p = vec3<f32>(p.x, ground_height(p), p.y);
-    let wind = wind_at(out.p, 0.0).xz * gust_at(p);
-    out.air = vec3<f32>(lean_of_wind(wind, 1.0), cloud_light(p));
+    out.air = vec3<f32>(lean_of_wind(ground_wind_at(out.p), 1.0), cloud_light(p));
     out.tint = grass_tint(p);
     out.position = frame.projection_from_world * vec4<f32>(out.p, 1.0);
     return out;

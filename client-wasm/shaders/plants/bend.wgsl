@@ -14,7 +14,7 @@ import package::inputs::grass_kinds::{kind_at, kinds};
 import package::inputs::noise::noise;
 import package::inputs::random::random3;
 import package::inputs::shadows::sun_visible;
-import package::inputs::wind::{gust_at, lean_of_wind, wind_at};
+import package::inputs::wind::{gust_at, lean_of_wind, resolved_at};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::{drift_at, tint_of};
 import package::land_and_sky::ground::{fed, ground_height, ground_normal};
@@ -149,8 +149,8 @@ fn still(plant: Plant, leans_in: array<vec2<f32>, 3>) -> Sway {
 struct Bending {
     // Wind over the ground (m/s).
     wind: vec2<f32>,
-    // Gust factor shared with neighbours.
-    gust: f32,
+    // Gust (m/s).
+    gust: vec2<f32>,
     // Three random numbers of the plant, 0..1.
     own: vec3<f32>,
     // State of the bend field: θ (rad) and ω (rad/s).
@@ -161,19 +161,19 @@ struct Bending {
 
 fn bending_at(plant: Plant, grid: vec2<i32>, index: u32) -> Bending {
     let p = plant.root_m.xz;
-    return Bending(wind_at(plant.root_m, 0.0).xz, gust_at(p), random3(grid, index + 47u), bend_at(p, 0.0, 0), field_fraction(p));
+    return Bending(resolved_at(plant.root_m, 0.0).xz, gust_at(p), random3(grid, index + 47u), bend_at(p, 0.0, 0), field_fraction(p));
 }
 
-// Gust factor of a plant.
-fn own_gust(bending: Bending) -> f32 {
-    return bending.gust * (0.9 + 0.2 * bending.own.y);
+// Wind on a plant relative to that around it: neighbours shelter each other by chance.
+fn exposure_of(bending: Bending) -> f32 {
+    return 0.9 + 0.2 * bending.own.y;
 }
 
 // Leans of the thirds of a plant (rad) without simulation: the upper ones lag behind the lowest (Chen & Johan, section 4.5).
-fn trailing_leans(plant: Plant, bending: Bending, gust: f32) -> array<vec2<f32>, 3> {
+fn trailing_leans(plant: Plant, bending: Bending, exposure: f32) -> array<vec2<f32>, 3> {
     let kind = kinds.list[plant.kind];
     let lag_secs = select(0.0, kind.lag_secs, kind.segments > 1.5);
-    let held = lean_of_wind(bending.wind * gust, kind.wind_bend_rad) * give_of(plant);
+    let held = lean_of_wind((bending.wind + bending.gust) * exposure, kind.wind_bend_rad) * give_of(plant);
     var leans = array<vec2<f32>, 3>(held, held, held);
     leans[0] += lean_of_bend(bending.field) * bending.fraction;
     for (var i = 1; i < select(1, 3, bending.fraction > 0.0); i++) {
@@ -272,7 +272,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     let grown = growth(index, distance_m);
     let kind = kinds.list[plant.kind];
     let bending = bending_at(plant, grid, index);
-    let gust = own_gust(bending);
+    let exposure = exposure_of(bending);
     let field_lean = lean_of_bend(bending.field) * bending.fraction;
     let held = leans_of(plant, array<vec2<f32>, 3>(field_lean, field_lean, field_lean));
     let give = give_of(plant);
@@ -281,16 +281,16 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     var sway = sways[at];
     // A plant that was not simulated in the previous frame starts at rest.
     if moved[at] < slot.moved_in || plants.frame_number - moved[at] > 1u {
-        let lean = field_lean + lean_of_wind(bending.wind * gust, kind.wind_bend_rad) * give;
+        let lean = field_lean + lean_of_wind((bending.wind + bending.gust) * exposure, kind.wind_bend_rad) * give;
         sway = still(plant, array<vec2<f32>, 3>(lean, lean, lean));
     }
     let steps = plants.step_count + u32(runtime_zero(distance_m));
     for (var step = 0u; step < steps; step++) {
         let points = points_of(sway, plant.height_m);
         let winds = array<vec2<f32>, 3>(
-            blowing(plant.root_m + points[0], points[0].y, gust),
-            blowing(plant.root_m + points[1], points[1].y, gust),
-            blowing(plant.root_m + points[2], points[2].y, gust),
+            blowing(plant.root_m + points[0], points[0].y, bending.gust, exposure),
+            blowing(plant.root_m + points[1], points[1].y, bending.gust, exposure),
+            blowing(plant.root_m + points[2], points[2].y, bending.gust, exposure),
         );
         sway = settle(advance(sway, nature, held, winds, plants.integrator, plants.step_secs), plant.height_m, plant.normal, plant.root_m);
     }
@@ -313,7 +313,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
 // Pose of a plant that is not simulated.
 fn standing_far(plant: Plant, bending: Bending) -> Sway {
     let flutter = 1.0 + 0.065 * sin(frame.time_secs * mix(6.0, 9.0, bending.own.x) + bending.own.z * TAU);
-    let leans = trailing_leans(plant, bending, own_gust(bending) * flutter);
+    let leans = trailing_leans(plant, bending, exposure_of(bending) * flutter);
     return settle(still(plant, leans), plant.height_m, plant.normal, plant.root_m);
 }
 
@@ -323,8 +323,8 @@ fn give_of(plant: Plant) -> f32 {
 }
 
 // Wind over the ground at a control point (m/s), limited to the speed beyond which grass bends no farther.
-fn blowing(p: vec3<f32>, above_m: f32, gust: f32) -> vec2<f32> {
-    let wind = wind_at(p, max(above_m, 0.0)).xz * gust;
+fn blowing(p: vec3<f32>, above_m: f32, gust: vec2<f32>, exposure: f32) -> vec2<f32> {
+    let wind = (resolved_at(p, max(above_m, 0.0)).xz + gust) * exposure;
     return wind * min(1.0, BEND_SATURATES_M_PER_S / max(length(wind), 1e-3));
 }
 

@@ -1,14 +1,14 @@
 // Shells (Bakay): layers of one texture of cross-sections that lean without changing the length of a blade. Between two layers the view ray
 // is sampled in slices, so that it meets blades there at grazing angles.
 
-import package::constants::{GUST_SPEED, RIGHT_ANGLE, SHELL_BLADE_PX, TILE_CELLS, TILE_VERTICES, WORKGROUP_SIZE};
-import package::inputs::bend_atlas::{field_level, lean_at};
+import package::constants::{RIGHT_ANGLE, SHELL_BLADE_PX, TILE_CELLS, TILE_VERTICES, WORKGROUP_SIZE};
+import package::inputs::bend_atlas::{field_level, lean_in};
 import package::inputs::frame::{frame, runtime_zero, repeated};
 import package::inputs::grass_kinds::kinds_blended;
 import package::inputs::noise::noise;
 import package::inputs::random::gradient_noise;
 import package::inputs::shadows::sun_visible;
-import package::inputs::wind::gust_at;
+import package::inputs::wind::{gust_at, resolved_at};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::{grass_tint, plant_color, trodden};
 import package::land_and_sky::grass_light::{grass_lamps, grass_light};
@@ -87,11 +87,18 @@ fn tilt_of(lean_rad: f32) -> vec2<f32> {
     return vec2<f32>(root_rad, (min(twice, RIGHT_ANGLE) - root_rad) / RIGHT_ANGLE);
 }
 
-// Gust factor as grass follows it: at once when it rises, slowly when it falls.
-fn gust_held(p: vec2<f32>) -> f32 {
-    let now = gust_at(p);
-    let back_m = frame.wind_direction * (frame.mean_wind_m_per_s * GUST_SPEED * RELEASE_SECS * 0.5);
-    return max(now, max(mix(now, gust_at(p + back_m), 0.61), mix(now, gust_at(p + 2.0 * back_m), 0.37)));
+// Wind over the ground (m/s) as grass follows it: at once when it rises, slowly when it falls. The gusts of the last second are those that the wind has
+// carried past.
+fn wind_held(ground: vec3<f32>) -> vec2<f32> {
+    let resolved = resolved_at(ground, 0.0).xz;
+    let now = resolved + gust_at(ground.xz);
+    let passed_m = frame.wind_direction * (frame.mean_wind_m_per_s * RELEASE_SECS * 0.5);
+    var held = now;
+    for (var i = 1; i <= 2; i++) {
+        let before = mix(now, resolved + gust_at(ground.xz + f32(i) * passed_m), select(0.61, 0.37, i == 2));
+        held = select(held, before, dot(before, before) > dot(held, held));
+    }
+    return held;
 }
 
 @compute @workgroup_size(WORKGROUP_SIZE)
@@ -114,7 +121,7 @@ fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
     let kind = kinds_blended(p);
 
     let height = kind.height_m * (1.0 + frame.height_variation) * fed(p) * mix(0.86, 1.10, noise(p / 3.1).g);
-    let lean = lean_at(ground, field_level(distance_m), gust_held(p), kind.wind_bend_rad);
+    let lean = lean_in(ground, field_level(distance_m), wind_held(ground), kind.wind_bend_rad);
     let lean_rad = length(lean);
     let across = vec3<f32>(lean.x, 0.0, lean.y) / max(lean_rad, 1e-4);
     let along = across - dot(across, normal) * normal;

@@ -1,7 +1,7 @@
 // Underbrush: culling, force and level of detail of each plant.
 
 import package::constants::{
-    AIR_KG_PER_M3, BLOCK_ROWS, CHUNK, DRAW_WORDS, ENLARGEMENT_EXPONENT, FALL_PA, FREE_WIND_M, LEAST_WIND_HEIGHT, MIN_KEPT_FRACTION,
+    AIR_KG_PER_M3, BLOCK_ROWS, CHUNK, DRAW_WORDS, ENLARGEMENT_EXPONENT, FALL_PA, MIN_KEPT_FRACTION,
     SPARE_DIVISOR, TAU, UNDERBRUSH_LEVELS, UNDERBRUSH_LISTS, VARIANTS, WORKGROUP_SIZE,
 };
 import package::inputs::bend_atlas::lean_of_field;
@@ -10,7 +10,7 @@ import package::inputs::frustum::is_seen;
 import package::inputs::grass_kinds::{kind_at, kinds};
 import package::inputs::random::random3;
 import package::inputs::shadows::sun_visible;
-import package::inputs::wind::{gust_at, wind_at};
+import package::inputs::wind::{gust_at, near_ground_fraction, resolved_at};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
 import package::land_and_sky::ground::{grass_fraction, ground_height, ground_normal};
@@ -85,12 +85,13 @@ fn pressure_at(root: vec3<f32>, above_m: f32) -> vec2<f32> {
         force = textureSampleLevel(forces, clamped, vec3<f32>(at, above_m / brush.field_height_m), 0.0) * inside;
     }
     if inside < 1.0 {
-        let wind = wind_at(root, above_m);
+        let wind = resolved_at(root, above_m);
         force += vec4<f32>(wind.xz * (0.5 * AIR_KG_PER_M3 * length(wind) * (1.0 - inside)), 0.0, 0.0);
     }
-    // Gusts, and shelter among the plants: a quarter-power law of the height, as in `near_ground_fraction` of shared/src/wind/ground.rs.
-    let gust = gust_at(root.xz);
-    return force.xy * (gust * gust * sqrt(clamp(above_m / FREE_WIND_M, LEAST_WIND_HEIGHT, 1.0))) + force.zw;
+    // With the gust, and shelter among the plants.
+    let wind = force.xy / sqrt(max(0.5 * AIR_KG_PER_M3 * length(force.xy), 1e-12));
+    let blown = (wind + gust_at(root.xz)) * near_ground_fraction(above_m);
+    return blown * (0.5 * AIR_KG_PER_M3 * length(blown)) + force.zw;
 }
 
 // Critically damped response of a value to a target, in closed form. Twin of `Following` in shared/src/plant/underbrush/constraint.rs.

@@ -4,7 +4,7 @@ import package::constants::{FLUTTER_M, WORKGROUP_SIZE};
 import package::inputs::frame::{clamped, frame};
 import package::inputs::lamps::{lamps_about, lamps_on};
 import package::inputs::shadows::sun_visible;
-import package::inputs::wind::{gust_at, lean_of_wind, wind_at};
+import package::inputs::wind::{lean_of_wind, wind_at};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_light::{grass_lamps, grass_light};
 import package::land_and_sky::haze::{air_before, hazed};
@@ -68,7 +68,7 @@ fn sway_of(instance: Instance) -> TreeSway {
     let foot = instance.world_from_model[3].xyz;
     // Models are a metre tall.
     let height = length(instance.world_from_model[1].xyz);
-    let held = lean_of_wind(wind_at(foot, 6.0).xz * gust_at(foot.xz), most);
+    let held = lean_of_wind(wind_at(foot, 6.0).xz, most);
     // Taller trees sway more slowly.
     let phase = frame.time_secs * 4.5 / sqrt(height) + foot.x * 0.7 + foot.z * 1.3;
     let blown = length(held) / max(most, 1e-6);

@@ -96,8 +96,10 @@ pub(super) struct App {
     /// Vehicle requested by the user.
     pub(super) wanted: Option<VehicleKind>,
     clock_secs: f64,
-    /// Animation time of the last frame (s).
+    /// Simulated time of the last frame (s).
     drawn_secs: f64,
+    /// Time of the last motion of the camera (s).
+    moved_at_secs: f64,
     /// Last view written to the address, and when (s).
     link: (String, f64),
     /// Message for the user, and when it disappears (s).
@@ -155,6 +157,7 @@ impl App {
             wanted: None,
             clock_secs: 0.0,
             drawn_secs: 0.0,
+            moved_at_secs: 0.0,
             link: (String::new(), 0.0),
             notice: None,
             was_welcomed: false,
@@ -185,11 +188,14 @@ impl App {
         self.update_status();
     }
 
-    /// Advances the camera to `time_secs` and draws a frame, unless it would equal the previous one and is not `forced`. Returns whether it drew; it does
-    /// not while the scene or the renderer is missing, or the GPU is busy.
-    pub(super) fn frame(&mut self, now_secs: f64, time_secs: f64, forced: bool) -> bool {
+    /// Advances the camera and draws a frame at simulated time `at_secs`, or else at the time to show now, unless it would equal the previous one and is not
+    /// `forced`. Returns whether it drew; it does not while the scene or the renderer is missing, or the GPU is busy.
+    pub(super) fn frame(&mut self, now_secs: f64, at_secs: Option<f64>, forced: bool) -> bool {
         self.run_clock(now_secs);
+        let time_secs = at_secs.unwrap_or_else(|| self.mirror.shown_secs());
         let dt_secs = (time_secs - self.drawn_secs).clamp(0.0, MAX_FRAME_SECS) as f32;
+        // The camera moves even if the world does not.
+        let camera_secs = at_secs.map_or((now_secs - self.moved_at_secs).clamp(0.0, MAX_FRAME_SECS) as f32, |_| dt_secs);
         let vehicle = self.interpolated_own_object();
         let (Some(rig), Some(gpu)) = (&mut self.rig, &mut self.gpu) else { return false };
         if gpu.is_busy() {
@@ -203,12 +209,12 @@ impl App {
         renderer.set_level(self.settings.level());
         let quality = renderer.quality();
         let view = DrawnView { size_px: gpu.next_size_px(quality), quality, level: self.settings.level(), options, split };
-        self.drawn_secs = time_secs;
-        let [right_rad, up_rad] = self.input.take_look(dt_secs);
+        (self.drawn_secs, self.moved_at_secs) = (time_secs, now_secs);
+        let [right_rad, up_rad] = self.input.take_look(camera_secs);
         rig.look(right_rad, up_rad);
         rig.zoom(self.input.take_zoom());
         let mirror = &self.mirror;
-        rig.advance(self.input.controls(), vehicle.as_ref(), |x_m, z_m| mirror.ground_m(x_m, z_m), dt_secs);
+        rig.advance(self.input.controls(), vehicle.as_ref(), |x_m, z_m| mirror.ground_m(x_m, z_m), camera_secs);
         let camera = rig.camera();
         if !self.redraw.needs_frame(&self.mirror, &camera, view, dt_secs) && !forced && !self.draws_every_frame {
             self.meter.record_skipped();
@@ -228,7 +234,7 @@ impl App {
 
     /// Draws the newest frame again.
     pub(super) fn redraw(&mut self, now_secs: f64) -> bool {
-        self.frame(now_secs, self.drawn_secs, true)
+        self.frame(now_secs, Some(self.drawn_secs), true)
     }
 
     /// Draws every frame from now on, or only those that differ from the previous one.

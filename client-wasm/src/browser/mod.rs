@@ -83,10 +83,10 @@ fn start_frame_loop(window: Window) {
     let on_frame = OnFrame::default();
     let (own_window, own) = (window.clone(), on_frame.clone());
     on_frame.get_or_init(|| {
-        Closure::new(move |time_ms: f64| {
+        Closure::new(move |_| {
             with_app(|app| {
                 if !app.is_paused() {
-                    app.frame(page::now_secs(&own_window), time_ms / 1e3, false);
+                    app.frame(page::now_secs(&own_window), None, false);
                 }
             });
             request_frame(&own_window, &own);
@@ -114,12 +114,12 @@ pub fn panic(reason: &str) {
     with_app(|_| panic!("{reason}"));
 }
 
-/// Draws one frame at the animation time `time_secs`, even if it equals the previous one. Returns false if there is nothing to draw yet, or the GPU is
+/// Draws one frame at simulated time `time_secs`, of wind, clouds and rain, even if it equals the previous one. Returns false if there is nothing to draw yet, or the GPU is
 /// busy.
 #[wasm_bindgen]
 pub fn draw(time_secs: f64) -> bool {
     let now_secs = web_sys::window().map_or(0.0, |window| page::now_secs(&window));
-    with_app(|app| app.frame(now_secs, time_secs, true)).unwrap_or(false)
+    with_app(|app| app.frame(now_secs, Some(time_secs), true)).unwrap_or(false)
 }
 
 /// Draws the newest frame again, so that the canvas can be read. Returns false like [`draw`].
@@ -141,7 +141,19 @@ pub fn theta(x_m: f32, z_m: f32) -> f32 {
     with_app(|app| app.mirror.theta_at(x_m, z_m)).unwrap_or(0.0)
 }
 
-/// Wind at a point in the client's mirror (m/s).
+/// Lean of the bend field at `(x_m, z_m)` in the client's mirror (rad, X and Z), without the lean in the wind: as `GET /api/bend` on the server.
+#[wasm_bindgen]
+pub fn bend(x_m: f32, z_m: f32) -> Vec<f32> {
+    with_app(|app| app.mirror.field_lean_at(x_m, z_m).to_vec()).unwrap_or_default()
+}
+
+/// World step of the newest wind in the client's mirror; −1 before the first.
+#[wasm_bindgen]
+pub fn wind_tick() -> f64 {
+    with_app(|app| app.mirror.wind().map(|wind| wind.tick() as f64)).flatten().unwrap_or(-1.0)
+}
+
+/// Wind at a point in the client's mirror (m/s), with its gust: as `GET /api/wind` on the server for the same step.
 #[wasm_bindgen]
 pub fn wind(x_m: f32, y_m: f32, z_m: f32) -> Vec<f32> {
     with_app(|app| app.mirror.wind_at(Vec3::new(x_m, y_m, z_m)).to_array().to_vec()).unwrap_or_default()

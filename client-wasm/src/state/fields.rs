@@ -3,8 +3,8 @@
 use super::error::{MirrorError, range};
 use prairie_core::grid::{PatchIndex, PatchLayout};
 use prairie_core::scene::Wind;
-use prairie_core::wire::{PATCH_MEMORY, Shape, codec};
-use std::collections::{BTreeSet, HashMap};
+use prairie_core::wire::{PATCH_MEMORY, Shape, TurbulenceState, codec};
+use std::collections::{BTreeSet, HashMap, VecDeque};
 
 /// Maximum number of patches stored; the least recently updated one is evicted. 4096 patches of 64² cells take 50 MB.
 pub const PATCH_LIMIT: usize = 4096;
@@ -99,12 +99,14 @@ impl PatchFields {
     }
 }
 
-/// Codes of the wind: three planes (u, v, w), x fastest, then y, then z. A scene with dust has a fourth plane, its concentration.
+/// Codes of the wind at one tick: three planes (u, v, w), x fastest, then y, then z. A scene with dust has a fourth plane, its concentration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WindCodes {
     cells: [u32; 3],
+    tick: u64,
     seq: u32,
-    planes: Vec<i8>,
+    turbulence: TurbulenceState,
+    codes: Vec<i8>,
     is_calm: bool,
 }
 
@@ -114,9 +116,19 @@ impl WindCodes {
         self.cells
     }
 
+    /// World step of this frame.
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
     /// Sequence number of this frame.
     pub fn seq(&self) -> u32 {
         self.seq
+    }
+
+    /// State of the gusts between the cells.
+    pub fn turbulence(&self) -> &TurbulenceState {
+        &self.turbulence
     }
 
     /// Whether all cells are free of wind and dust.
@@ -124,50 +136,90 @@ impl WindCodes {
         self.is_calm
     }
 
-    fn plane(&self, index: usize) -> &[i8] {
-        let volume = volume(self.cells);
-        &self.planes[index * volume..][..volume]
-    }
-
-    /// Planes u, v, w.
-    pub fn planes(&self) -> [&[i8]; 3] {
-        [0, 1, 2].map(|index| self.plane(index))
-    }
-
-    /// Dust plane; `None` in a scene without dust.
-    pub fn dust(&self) -> Option<&[i8]> {
-        (self.planes.len() > 3 * volume(self.cells)).then(|| self.plane(3))
+    /// All codes, plane after plane.
+    pub fn codes(&self) -> &[i8] {
+        &self.codes
     }
 }
 
-fn volume(cells: [u32; 3]) -> usize {
-    cells.iter().map(|&n| n as usize).product()
+/// The wind between two frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShownWind<'a> {
+    /// Frame before the moment shown.
+    pub from: &'a WindCodes,
+    /// Frame after it.
+    pub to: &'a WindCodes,
+    /// Weight of the frame after it, 0..=1.
+    pub fraction: f32,
 }
 
-/// The newest wind frame, which is the base of the next delta.
+impl ShownWind<'_> {
+    /// State of the gusts at this moment.
+    pub fn turbulence(&self) -> TurbulenceState {
+        self.from.turbulence.towards(&self.to.turbulence, self.fraction.into())
+    }
+}
+
+/// Header of a wind frame on the wire.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WindHeader {
+    pub(super) tick: u64,
+    pub(super) seq: u32,
+    pub(super) key: bool,
+    pub(super) turbulence: TurbulenceState,
+}
+
+/// Number of wind frames kept: they span the delay at which the wind is shown, even if the next one is late.
+const WIND_FRAMES: usize = 6;
+
+/// The newest wind frames, oldest first. The last one is the base of the next delta.
 #[derive(Debug, Default)]
 pub(super) struct WindFrames {
-    newest: Option<WindCodes>,
+    frames: VecDeque<WindCodes>,
 }
 
 impl WindFrames {
-    pub(super) fn apply(&mut self, wind: &Wind, seq: u32, key: bool, payload: &[u8]) -> Result<(), MirrorError> {
+    /// Decodes a frame. Returns whether it is new; a delta without its base is not.
+    pub(super) fn apply(&mut self, wind: &Wind, header: WindHeader, payload: &[u8]) -> Result<bool, MirrorError> {
+        let WindHeader { tick, seq, key, turbulence } = header;
+        if !turbulence.is_finite() {
+            return Err(range("turbulence of the wind", format!("{turbulence:?}"), "finite numbers"));
+        }
         let cells = wind.cells;
         let shape = Shape::wind(cells[0] as usize, wind.has_dust());
-        let count = shape.planes * volume(cells);
-        let planes = match &self.newest {
+        let count = shape.planes * cells.iter().map(|&n| n as usize).product::<usize>();
+        let mut codes = match self.frames.back() {
             _ if key => vec![0; count],
-            Some(base) if base.seq.wrapping_add(1) == seq => base.planes.clone(),
-            _ => return Ok(()),
+            Some(base) if base.seq.wrapping_add(1) == seq => base.codes.clone(),
+            _ => return Ok(false),
         };
-        let mut planes = planes;
-        codec::decode(shape, payload, &mut planes).map_err(|error| MirrorError::Field { field: "wind", error })?;
-        let is_calm = planes.iter().all(|&code| code == 0);
-        self.newest = Some(WindCodes { cells, seq, planes, is_calm });
-        Ok(())
+        codec::decode(shape, payload, &mut codes).map_err(|error| MirrorError::Field { field: "wind", error })?;
+        let is_calm = codes.iter().all(|&code| code == 0);
+        match self.frames.back() {
+            Some(newest) if newest.tick == tick => drop(self.frames.pop_back()),
+            // An earlier tick is that of a world that was restarted.
+            Some(newest) if newest.tick > tick => self.frames.clear(),
+            _ => {}
+        }
+        if self.frames.len() == WIND_FRAMES {
+            self.frames.pop_front();
+        }
+        self.frames.push_back(WindCodes { cells, tick, seq, turbulence, codes, is_calm });
+        Ok(true)
     }
 
-    pub(super) fn codes(&self) -> Option<&WindCodes> {
-        self.newest.as_ref()
+    /// The newest frame.
+    pub(super) fn newest(&self) -> Option<&WindCodes> {
+        self.frames.back()
+    }
+
+    /// The wind at a `tick`, linear between frames; before the first and after the last that of the nearest frame.
+    pub(super) fn at(&self, tick: f64) -> Option<ShownWind<'_>> {
+        let next = self.frames.partition_point(|frame| frame.tick as f64 <= tick);
+        let to = self.frames.get(next).or(self.frames.back())?;
+        let from = next.checked_sub(1).map_or(to, |last| &self.frames[last]);
+        let span = to.tick - from.tick;
+        let fraction = if span > 0 { (tick - from.tick as f64) / span as f64 } else { 0.0 };
+        Some(ShownWind { from, to, fraction: fraction as f32 })
     }
 }

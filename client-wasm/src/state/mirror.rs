@@ -2,15 +2,19 @@
 
 use super::broken_plants::BrokenPlants;
 use super::error::{MirrorError, range};
-use super::fields::{PatchCodes, PatchFields, WindCodes, WindFrames};
+use super::fields::{PatchCodes, PatchFields, ShownWind, WindCodes, WindFrames, WindHeader};
 use super::playback::Playback;
 use super::scene::DecodedScene;
 use prairie_core::grid::PatchIndex;
 use prairie_core::scene::Scene;
+use prairie_core::wind::WindField;
 use prairie_core::wire::{ObjectId, ObjectPose, Peer, Refusal, ServerMessage};
 
 /// Maximum number of peers stored; the server's list is truncated to it.
 pub const PEER_LIMIT: usize = 4096;
+
+/// Delay of the wind behind the objects shown (s): that of a frame, so that a next one to interpolate towards is usually there.
+pub const WIND_DELAY_SECS: f64 = 1.0 / 6.0;
 
 /// Event for the page, caused by a message.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,6 +58,7 @@ pub struct Mirror {
     scene_number: u32,
     patches: PatchFields,
     wind: WindFrames,
+    wind_field: Option<WindField>,
     poses: Playback,
     broken: BrokenPlants,
     peers: Vec<Peer>,
@@ -76,6 +81,7 @@ impl Mirror {
                 self.scene_number = self.scene_number.wrapping_add(1);
                 self.patches = PatchFields::default();
                 self.wind = WindFrames::default();
+                self.wind_field = self.scene.as_ref().map(DecodedScene::still_air);
                 self.poses = Playback::default();
                 Some(Event::Scene)
             }
@@ -83,9 +89,12 @@ impl Mirror {
                 self.poses.push(tick as f64 / f64::from(self.tick_hz()), objects)?;
                 None
             }
-            ServerMessage::Wind { seq, key, payload, .. } => {
+            ServerMessage::Wind { tick, seq, key, turbulence, payload } => {
                 let decoded = self.scene.as_ref().ok_or(MirrorError::BeforeScene("wind frame"))?;
-                self.wind.apply(&decoded.scene().wind, seq, key, &payload)?;
+                let is_new = self.wind.apply(&decoded.scene().wind, WindHeader { tick, seq, key, turbulence }, &payload)?;
+                if let (true, Some(field), Some(newest)) = (is_new, &mut self.wind_field, self.wind.newest()) {
+                    field.set(newest.codes(), newest.turbulence());
+                }
                 None
             }
             ServerMessage::Patch { patch, seq, key, payload } => {
@@ -215,6 +224,21 @@ impl Mirror {
 
     /// Newest wind frame.
     pub fn wind(&self) -> Option<&WindCodes> {
-        self.wind.codes()
+        self.wind.newest()
+    }
+
+    /// The wind of the newest frame at any place; `None` before the scene has arrived, still before the first frame.
+    pub fn wind_field(&self) -> Option<&WindField> {
+        self.wind_field.as_ref()
+    }
+
+    /// The wind to show at simulated time `time_secs`: that of [`WIND_DELAY_SECS`] before, between two frames. `None` before the first frame.
+    pub fn shown_wind(&self, time_secs: f64) -> Option<ShownWind<'_>> {
+        self.wind.at((time_secs - WIND_DELAY_SECS) * f64::from(self.tick_hz()))
+    }
+
+    /// Simulated time that is shown now (s), about 0.1 s behind the server.
+    pub fn shown_secs(&self) -> f64 {
+        self.poses.time_secs().unwrap_or(self.time_secs)
     }
 }

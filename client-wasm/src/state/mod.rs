@@ -14,8 +14,8 @@ mod sample;
 mod scene;
 
 pub use error::MirrorError;
-pub use fields::{PATCH_LIMIT, PatchCodes, WindCodes};
-pub use mirror::{Event, Mirror, PEER_LIMIT};
+pub use fields::{PATCH_LIMIT, PatchCodes, ShownWind, WindCodes};
+pub use mirror::{Event, Mirror, PEER_LIMIT, WIND_DELAY_SECS};
 pub use playback::OBJECT_LIMIT;
 pub use scene::DecodedScene;
 

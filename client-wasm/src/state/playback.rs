@@ -76,6 +76,11 @@ impl Playback {
         self.clock_secs += dt_secs;
     }
 
+    /// Simulated time of playback (s); `None` before the first snapshot.
+    pub(super) fn time_secs(&self) -> Option<f64> {
+        Some(self.clock_secs - self.clock_offset_secs? - DELAY_SECS)
+    }
+
     /// Newest received poses.
     pub(super) fn newest(&self) -> &[ObjectPose] {
         self.snapshots.back().map_or(&[], |newest| &newest.objects)
@@ -83,10 +88,9 @@ impl Playback {
 
     /// Poses at the playback time: cubic Hermite interpolation of position and velocity, and spherical interpolation of rotation.
     pub(super) fn interpolated(&self) -> Vec<ObjectPose> {
-        let (Some(offset), Some(newest), Some(oldest)) = (self.clock_offset_secs, self.snapshots.back(), self.snapshots.front()) else {
+        let (Some(time_secs), Some(newest), Some(oldest)) = (self.time_secs(), self.snapshots.back(), self.snapshots.front()) else {
             return Vec::new();
         };
-        let time_secs = self.clock_secs - offset - DELAY_SECS;
         if time_secs <= oldest.time_secs {
             return oldest.objects.clone();
         }

@@ -7,8 +7,9 @@ use prairie_core::plant::flora::Flora;
 use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::{Scene, VehicleKind};
 use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
-use prairie_core::wind::WindTiles;
+use prairie_core::wind::{WindField, WindTiles};
 use prairie_core::wire::Mesh;
+use std::sync::Arc;
 
 /// A scene with its decoded maps.
 #[derive(Clone, Debug)]
@@ -17,7 +18,7 @@ pub struct DecodedScene {
     layout: PatchLayout,
     heights: HeightMap,
     cover: CoverMap,
-    kinds: KindMap,
+    kinds: Arc<KindMap>,
     flora: Option<Flora>,
     models: Vec<(VehicleKind, Mesh)>,
     tiles: WindTiles,
@@ -45,7 +46,7 @@ impl DecodedScene {
             check_mesh(mesh)?;
         }
         let layout = PatchLayout::from(&scene.patches);
-        let (tiles, kinds) = (WindTiles::new(&scene), KindMap::new(&scene, &cover));
+        let (tiles, kinds) = (WindTiles::new(&scene), Arc::new(KindMap::new(&scene, &cover)));
         let flora = Flora::new(&scene, &cover, nutrients.as_ref());
         Ok(Self { scene, layout, heights, cover, kinds, flora, models, tiles })
     }
@@ -73,6 +74,11 @@ impl DecodedScene {
     /// The covering map.
     pub fn cover(&self) -> &CoverMap {
         &self.cover
+    }
+
+    /// Still air over the scene.
+    pub(super) fn still_air(&self) -> WindField {
+        WindField::still(&self.scene, Arc::clone(&self.kinds))
     }
 
     /// Map of grass kinds.

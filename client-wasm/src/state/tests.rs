@@ -3,7 +3,7 @@ use glam::Vec3;
 use prairie_core::scene::{Component, ComponentKind, Lamp, Patches, Scene, Species, TerrainMaps, Underbrush, VehicleKind, Wind};
 use prairie_core::terrain::grey_png;
 use prairie_core::wire::quantise::{dust_code, theta_code, wind_code};
-use prairie_core::wire::{BrokenPlant, Shape, codec, decode};
+use prairie_core::wire::{BrokenPlant, Shape, TurbulenceState, codec, decode};
 use prairie_core::wire::{ObjectPose, ServerMessage};
 use proptest::prelude::*;
 use std::num::NonZeroU8;
@@ -93,15 +93,54 @@ fn wind_deltas_apply_to_their_key_frame() {
         tick: 0,
         seq,
         key: false,
+        turbulence: TurbulenceState::default(),
         payload: codec::encode(Shape::wind(4, false), &second, Some(first.as_slice())),
     };
     mirror.apply(delta(5)).unwrap();
     assert!(mirror.wind().is_none());
-    mirror.apply(ServerMessage::Wind { tick: 0, seq: 4, key: true, payload: codec::encode(Shape::wind(4, false), &first, None) }).unwrap();
+    mirror
+        .apply(ServerMessage::Wind {
+            tick: 0,
+            seq: 4,
+            key: true,
+            turbulence: TurbulenceState::default(),
+            payload: codec::encode(Shape::wind(4, false), &first, None),
+        })
+        .unwrap();
     mirror.apply(delta(6)).unwrap();
-    assert_eq!(mirror.wind().unwrap().planes()[2][31], 3);
+    assert_eq!(mirror.wind().unwrap().codes()[95], 3);
     mirror.apply(delta(5)).unwrap();
-    assert_eq!(mirror.wind().unwrap().planes()[2][31], -4);
+    assert_eq!(mirror.wind().unwrap().codes()[95], -4);
+}
+
+#[test]
+fn wind_is_shown_between_frames() {
+    let mut mirror = loaded();
+    let mut blow = |tick: u64, speed: f32, friction_m_per_s: f32| {
+        let codes: Vec<i8> = (0..96).map(|at| if at < 32 { wind_code(speed) } else { 0 }).collect();
+        let turbulence = TurbulenceState { friction_m_per_s, ..TurbulenceState::default() };
+        let payload = codec::encode(Shape::wind(4, false), &codes, None);
+        mirror.apply(ServerMessage::Wind { tick, seq: tick as u32, key: true, turbulence, payload }).unwrap();
+    };
+    (0..12).for_each(|n| blow(100 + 9 * n, n as f32, 0.1 * n as f32));
+    let shown = |tick: f64| {
+        let shown = mirror.shown_wind(tick / 60.0 + WIND_DELAY_SECS).unwrap();
+        (shown.from.tick(), shown.to.tick(), shown.fraction, shown.turbulence().friction_m_per_s)
+    };
+    let (from, to, fraction, friction) = shown(193.0);
+    assert_eq!((from, to), (190, 199));
+    assert!((fraction - 3.0 / 9.0).abs() < 1e-4 && (friction - 1.0 - 0.1 / 3.0).abs() < 1e-4, "{fraction}, {friction}");
+    assert_eq!(shown(500.0).0, 199, "without a later frame the wind stays as it is");
+    assert_eq!(shown(0.0).1, 154, "the oldest of six frames");
+    let field = mirror.wind_field().unwrap();
+    assert!((field.resolved_at([1.0, 1.0, 1.0])[0] - 11.0).abs() < 0.13, "points are sampled in the newest frame");
+    let mut again = mirror;
+    let payload = codec::encode(Shape::wind(4, false), &[0; 96], None);
+    again.apply(ServerMessage::Wind { tick: 5, seq: 1, key: true, turbulence: TurbulenceState::default(), payload }).unwrap();
+    assert_eq!(again.shown_wind(9.0).unwrap().from.tick(), 5, "a restarted world begins anew");
+    let broken = TurbulenceState { path_m: f64::NAN, ..TurbulenceState::default() };
+    let payload = codec::encode(Shape::wind(4, false), &[0; 96], None);
+    assert!(again.apply(ServerMessage::Wind { tick: 6, seq: 2, key: true, turbulence: broken, payload }).is_err());
 }
 
 #[test]
@@ -112,12 +151,17 @@ fn dust_is_the_fourth_wind_plane() {
     mirror.apply(scene_message(dusty)).unwrap();
     let codes: Vec<i8> = [0, 0, 0, dust_code(2.0)].into_iter().flat_map(|code| [code; 32]).collect();
     let payload = codec::encode(Shape::wind(4, true), &codes, None);
-    mirror.apply(ServerMessage::Wind { tick: 0, seq: 1, key: true, payload: payload.clone() }).unwrap();
+    mirror
+        .apply(ServerMessage::Wind { tick: 0, seq: 1, key: true, turbulence: TurbulenceState::default(), payload: payload.clone() })
+        .unwrap();
     assert!((mirror.dust_at(Vec3::new(1.0, 1.0, 1.0)) - 2.0).abs() < 0.05);
     let clear = codec::encode(Shape::wind(4, true), &[0; 128], Some(codes.as_slice()));
-    mirror.apply(ServerMessage::Wind { tick: 0, seq: 2, key: false, payload: clear }).unwrap();
-    assert_eq!(mirror.wind().unwrap().dust(), Some([0; 32].as_slice()));
-    assert!(loaded().apply(ServerMessage::Wind { tick: 0, seq: 1, key: true, payload }).is_err(), "four planes in a scene without dust");
+    mirror.apply(ServerMessage::Wind { tick: 0, seq: 2, key: false, turbulence: TurbulenceState::default(), payload: clear }).unwrap();
+    assert_eq!(mirror.wind().unwrap().codes()[96..], [0; 32]);
+    assert!(
+        loaded().apply(ServerMessage::Wind { tick: 0, seq: 1, key: true, turbulence: TurbulenceState::default(), payload }).is_err(),
+        "four planes in a scene without dust"
+    );
 }
 
 #[test]
@@ -188,7 +232,7 @@ proptest! {
         mirror.apply(scene_message(scene)).unwrap();
         let _ = mirror.apply(ServerMessage::Patch { patch, seq, key, payload: payload.clone() });
         let _ = mirror.apply(ServerMessage::Patch { patch, seq: seq.wrapping_add(1), key: false, payload: payload.clone() });
-        let _ = mirror.apply(ServerMessage::Wind { tick: 0, seq, key, payload });
+        let _ = mirror.apply(ServerMessage::Wind { tick: 0, seq, key, turbulence: TurbulenceState::default(), payload });
     }
 }
 
@@ -202,7 +246,7 @@ fn grass_angle_combines_wind_and_bend_field() {
     // 20 m/s eastward hold the grass at 0.6 rad.
     let codes: Vec<i8> = [wind_code(20.0), 0, 0].into_iter().flat_map(|code| [code; 8]).collect();
     let payload = codec::encode(Shape::wind(2, false), &codes, None);
-    mirror.apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, payload }).unwrap();
+    mirror.apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, turbulence: TurbulenceState::default(), payload }).unwrap();
     assert!((mirror.theta_at(3.0, 1.0) - 0.6).abs() < 1e-3, "{}", mirror.theta_at(3.0, 1.0));
     for (seq, omega, expected_rad) in [(1, [40, 0], 1.4), (2, [-40, 0], 0.2), (3, [0, 40], 1.0)] {
         let planes = [theta_code(0.8), omega[0], omega[1]];

@@ -6,10 +6,10 @@ use super::bending::{HELD_RAD_PER_S, terrain_limit_rad};
 use super::flattened::FlattenedGrass;
 use super::footprint::Footprint;
 use super::grass_properties::GrassProperties;
-use super::ground_wind::GroundWind;
 use super::vector::{length, sum, unit};
 use prairie_core::bend::{Bend, Field};
 use prairie_core::terrain::HeightMap;
+use prairie_core::wind::WindField;
 use prairie_core::wire::quantise::THETA_FULL_RAD;
 
 /// State and limits of the total bend of the grass.
@@ -18,8 +18,8 @@ pub struct GrassState<'a> {
     pub field: &'a mut Field,
     /// Grass that stays bent below the weight of objects.
     pub flattened: &'a mut FlattenedGrass,
-    /// The wind near the ground.
-    pub wind: &'a GroundWind,
+    /// The wind.
+    pub wind: &'a WindField,
     /// Terrain heights.
     pub height: &'a HeightMap,
     /// Limits of the bend.
@@ -52,7 +52,6 @@ impl GrassState<'_> {
         for run in footprint.runs(&layout) {
             let (patch_z, j) = (run.row / cells, (run.row % cells) as usize);
             let z_m = (run.row as f32 + 0.5) * layout.cell_m;
-            let wind_rad = self.wind.row(z_m);
             for patch_x in run.from / cells..=(run.to - 1) / cells {
                 let Some(index) = layout.index(patch_x, patch_z) else { continue };
                 let is_awake = self.field.patch(index).is_some();
@@ -64,7 +63,7 @@ impl GrassState<'_> {
                     let at_m = [(i as f32 + 0.5) * layout.cell_m, z_m];
                     let cell = [i, run.row];
                     let i = (i - first) as usize;
-                    let (wind_rad, flattened_rad) = (wind_rad(at_m[0]), self.flattened.lean_rad(index, i, j));
+                    let (wind_rad, flattened_rad) = (self.wind.lean_at(at_m), self.flattened.lean_rad(index, i, j));
                     let bend = leaning(self.field.cell(cell), sum(wind_rad, flattened_rad), DIRECTION_RAD_PER_S);
                     let limit_rad =
                         |direction| terrain_limit_rad(self.properties.theta_max_rad(at_m), self.height.slope(at_m[0], at_m[1]), direction);
@@ -72,7 +71,7 @@ impl GrassState<'_> {
                     let Some(Pressed { bend, flattened_fraction }) = change(at_m, bend, &limit_rad) else { continue };
                     if is_at_rest {
                         if is_awake || recovered_rad < bend.theta - REWRITE_RAD {
-                            self.flattened.flatten(index, i, j, sum(lean_rad(bend), wind_rad.map(|lean| -lean)));
+                            self.flattened.flatten(index, i, j, sum(bend.lean_rad(), wind_rad.map(|lean| -lean)));
                             self.field.press(cell, Bend::default());
                         }
                         continue;
@@ -93,14 +92,14 @@ impl GrassState<'_> {
 }
 
 /// Total lean of the grass at a position (rad, as a vector along X and Z).
-pub fn total_lean_rad(field: &Field, flattened: &FlattenedGrass, wind: &GroundWind, at_m: [f32; 2]) -> [f32; 2] {
+pub fn total_lean_rad(field: &Field, flattened: &FlattenedGrass, wind: &WindField, at_m: [f32; 2]) -> [f32; 2] {
     let layout = field.layout();
     let (cell, cells) = (at_m.map(|m| (m / layout.cell_m).floor() as i64), i64::from(layout.cells));
     let [patch_x, patch_z] = cell.map(|at| at.div_euclid(cells));
     let [i, j] = cell.map(|at| at.rem_euclid(cells) as usize);
     let flattened_rad = layout.index(patch_x, patch_z).map_or([0.0; 2], |patch| flattened.lean_rad(patch, i, j));
     let center_m = cell.map(|at| (at as f32 + 0.5) * layout.cell_m);
-    sum(lean_rad(field.cell(cell)), sum(wind.lean_rad(center_m), flattened_rad))
+    sum(field.cell(cell).lean_rad(), sum(wind.lean_at(center_m), flattened_rad))
 }
 
 /// Bend of a cell as published: the sum of bend field and flattened grass. The direction of ω is the direction of the bend.
@@ -115,16 +114,11 @@ const DIRECTION_RAD_PER_S: f32 = 1e-3;
 
 /// A bend plus a lean (rad), added as vectors on the ground. The bending speed, at least `least_rad_per_s`, turns with the sum.
 fn leaning(bend: Bend, lean_rad: [f32; 2], least_rad_per_s: f32) -> Bend {
-    let lean = sum(self::lean_rad(bend), lean_rad);
+    let lean = sum(bend.lean_rad(), lean_rad);
     match unit(lean) {
         Some(along) => Bend { theta: length(lean), omega: along.map(|d| d * length(bend.omega).max(least_rad_per_s)) },
         None => Bend { theta: 0.0, omega: bend.omega },
     }
-}
-
-/// The lean of a bend (rad), along its bending speed.
-fn lean_rad(bend: Bend) -> [f32; 2] {
-    unit(bend.omega).unwrap_or_default().map(|d| d * bend.theta)
 }
 
 #[cfg(test)]

@@ -8,7 +8,6 @@ pub mod flattened;
 pub mod footprint;
 pub mod grass_properties;
 pub mod grass_state;
-pub mod ground_wind;
 mod gust_noise;
 pub mod pool;
 pub mod prescribed_wind;

@@ -6,7 +6,6 @@ use super::contact::Contact;
 use super::flattened::FlattenedGrass;
 use super::grass_properties::GrassProperties;
 use super::grass_state::{self, GrassState};
-use super::ground_wind::GroundWind;
 use super::gust_noise::GustNoise;
 use super::pool::Pool;
 use super::prescribed_wind::{PrescribedWind, PrescribedWinds};
@@ -19,6 +18,7 @@ use prairie_core::bend::{Field, Kinds, Patch, Report, Scheme, StepError, TILE};
 use prairie_core::grid::{PatchIndex, PatchLayout};
 use prairie_core::scene::Scene;
 use prairie_core::terrain::{CoverMap, HeightMap};
+use prairie_core::wind::WindField;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -117,7 +117,7 @@ impl BendSimulation {
     }
 
     /// Total lean of the grass at a position (rad, as a vector along X and Z): wind, flattened grass and bend field together.
-    pub fn lean_rad(&self, at_m: [f32; 2], wind: &GroundWind) -> [f32; 2] {
+    pub fn lean_rad(&self, at_m: [f32; 2], wind: &WindField) -> [f32; 2] {
         grass_state::total_lean_rad(&self.field, &self.flattened, wind, at_m)
     }
 
@@ -132,7 +132,7 @@ impl BendSimulation {
     }
 
     /// Advances the grass by one step: active regions, contact, prescribed wind, gusts, propagation. Invalid motions are [rejected](Self::rejected).
-    pub fn step(&mut self, dt_secs: f32, motions: &[Motion], cameras: &[Camera], wind: &GroundWind) {
+    pub fn step(&mut self, dt_secs: f32, motions: &[Motion], cameras: &[Camera], wind: &WindField) {
         let motions = self.validated(motions);
         let cell_m = self.field.layout().cell_m;
         let (bodies, height, properties) = (&self.bodies, &*self.height, &self.properties);

@@ -75,7 +75,7 @@ impl Film {
             let objects = studio.stage.show()?;
             let pose = act.pose(&studio.stage, &objects)?;
             studio.follow(pose.as_ref());
-            studio.draw(f64::from(frame) * f64::from(dt_secs), dt_secs);
+            studio.draw(dt_secs);
             if is_filmed {
                 film.add(&studio.renderer.rgba())?;
                 bar.inc(1);

@@ -51,7 +51,7 @@ impl Picture {
             studio.stage.run(DT_SECS);
             studio.stage.show()?;
             let start = Instant::now();
-            studio.draw(f64::from(frame) * f64::from(DT_SECS), DT_SECS);
+            studio.draw(DT_SECS);
             frame_secs.push(start.elapsed().as_secs_f64());
             pass_secs.extend(studio.renderer.pass_secs());
         }

@@ -124,8 +124,9 @@ impl Studio {
         }
     }
 
-    /// Draws a frame at a time (s), `dt_secs` after the previous one.
-    pub(super) fn draw(&mut self, time_secs: f64, dt_secs: f32) -> FrameStats {
+    /// Draws a frame of the stage as it is shown, `dt_secs` after the previous one.
+    pub(super) fn draw(&mut self, dt_secs: f32) -> FrameStats {
+        let time_secs = self.stage.mirror.time_secs();
         let Self { stage, renderer, camera, split, .. } = self;
         match split {
             Some(split) => renderer.draw_split(&mut stage.mirror, camera, time_secs, dt_secs, split),

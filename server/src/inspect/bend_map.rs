@@ -1,10 +1,10 @@
 //! The map of bending angles that textures the terrain.
 
 use super::palette::{Rgb, bend_rgb};
-use crate::bend::ground_wind::GroundWind;
 use crate::snapshot::{BentPatches, WindFrame};
 use prairie_core::grid::PatchLayout;
-use prairie_core::wire::quantise::{omega_rad_per_s, theta_rad, wind_m_per_s};
+use prairie_core::wind::WindField;
+use prairie_core::wire::quantise::{omega_rad_per_s, theta_rad};
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ pub(super) struct BendMap {
     size_px: [u32; 2],
     /// Angle of each pixel; 127 is a right angle.
     codes: Vec<u8>,
-    wind: GroundWind,
+    wind: WindField,
     /// Minimum number of steps between redraws that are due to the wind alone.
     wind_ticks: u64,
     /// Step of the wind, and patches, of the last update; `None` before the first.
@@ -32,7 +32,7 @@ pub(super) struct BendMap {
 
 impl BendMap {
     /// A map of grass at rest in still air.
-    pub(super) fn new(layout: PatchLayout, wind: GroundWind, wind_ticks: u64) -> Self {
+    pub(super) fn new(layout: PatchLayout, wind: WindField, wind_ticks: u64) -> Self {
         let cells = layout.count.map(|patches| patches * layout.cells);
         let mut shift = 0;
         while (cells[0].max(cells[1]) - 1) >> shift >= MAP_LIMIT_PX {
@@ -70,11 +70,9 @@ impl BendMap {
         if self.shown.as_ref().is_some_and(|(tick, shown)| is_recent(*tick) && same(shown, patches)) {
             return false;
         }
-        let plane = wind.volume();
-        let component = |axis: usize, at: usize| wind_m_per_s(wind.codes[axis * plane + at]);
-        self.wind.set_wind(wind.cells[1] as usize, (0..plane).map(|at| [component(0, at), component(2, at)]));
+        self.wind.set(&wind.codes, &wind.turbulence);
 
-        let leans_rad: Vec<_> = (0..self.codes.len() as u32).map(|pixel| self.wind.lean_rad(self.center_m(pixel))).collect();
+        let leans_rad: Vec<_> = (0..self.codes.len() as u32).map(|pixel| self.wind.lean_at(self.center_m(pixel))).collect();
         for (code, lean_rad) in self.codes.iter_mut().zip(&leans_rad) {
             *code = code_of(*lean_rad);
         }
@@ -126,6 +124,8 @@ fn same(a: &BentPatches, b: &BentPatches) -> bool {
 mod tests {
     use super::*;
     use crate::snapshot::PatchCodes;
+    use prairie_core::terrain::KindMap;
+    use prairie_core::wire::TurbulenceState;
     use prairie_core::wire::quantise::{theta_code, wind_code};
 
     const CELLS: usize = 8;
@@ -134,13 +134,13 @@ mod tests {
     fn map(cell_m: f32, count: [u32; 2]) -> BendMap {
         let mut scene = crate::scenes::load("meadow").unwrap().scene;
         scene.grass.wind_bend_rad = 0.5;
-        BendMap::new(PatchLayout { count, cells: CELLS as u32, cell_m }, GroundWind::still(&scene), 60)
+        BendMap::new(PatchLayout { count, cells: CELLS as u32, cell_m }, WindField::still(&scene, Arc::new(KindMap::uniform())), 60)
     }
 
     fn wind(tick: u64, east_m_per_s: f32) -> WindFrame {
         let cells = [32, 8, 32];
         let codes = [east_m_per_s, 0.0, 0.0].into_iter().flat_map(|v| std::iter::repeat_n(wind_code(v), 32 * 8 * 32));
-        WindFrame { tick, cells, codes: codes.collect() }
+        WindFrame { tick, cells, turbulence: TurbulenceState::default(), codes: codes.collect() }
     }
 
     /// One patch whose cells lean east by the given angle (degrees), or west where it is negative.

@@ -19,12 +19,12 @@ use super::sink::{Frame, Sink};
 use super::target::Target;
 use super::terrain_mesh::TerrainMesh;
 use super::trails::Trails;
-use crate::bend::ground_wind::GroundWind;
 use crate::objects::trail_rgb;
 use crate::snapshot::Snapshot;
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{Objects, Scene};
 use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
+use prairie_core::wind::WindField;
 use prairie_core::wire::ObjectPose;
 use rerun::components::{FillMode, ImageFormat};
 use rerun::datatypes::ChannelDatatype;
@@ -36,6 +36,7 @@ use rerun::{
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Radius of a wind arrow's shaft (m).
 const ARROW_RADIUS_M: f32 = 0.16;
@@ -65,7 +66,7 @@ impl Recording {
             stream,
             address,
             to_file: matches!(target, Target::Save(_)),
-            map: BendMap::new(layout, GroundWind::still(scene).with_kinds(KindMap::new(scene, cover)), scene.tick_hz as u64),
+            map: BendMap::new(layout, WindField::still(scene, Arc::new(KindMap::new(scene, cover))), scene.tick_hz as u64),
             arrows: WindArrows::new(scene, heights),
             settings: scene.objects.clone(),
             wind_tick: None,
@@ -210,6 +211,7 @@ mod tests {
     use crate::snapshot::{PatchCodes, WindFrame};
     use prairie_core::scene::VehicleKind;
     use prairie_core::terrain::grey_png;
+    use prairie_core::wire::TurbulenceState;
     use prairie_core::wire::quantise::wind_code;
     use rerun::external::re_log_encoding::DecoderApp;
     use rerun::log::{Chunk, LogMsg};
@@ -242,7 +244,12 @@ mod tests {
     fn driven(tick: u64) -> Snapshot {
         let car = pose(VehicleKind::Car, 40.0 + tick as f32);
         let patches = Arc::new([(tick as u32 % 256, Arc::new(PatchCodes { tick, codes: vec![50; 3 * 64 * 64] }))].into());
-        let wind = Arc::new(WindFrame { tick, cells: [32, 8, 32], codes: vec![wind_code(3.0); 3 * 32 * 8 * 32] });
+        let wind = Arc::new(WindFrame {
+            tick,
+            cells: [32, 8, 32],
+            turbulence: TurbulenceState::default(),
+            codes: vec![wind_code(3.0); 3 * 32 * 8 * 32],
+        });
         Snapshot { tick, time_secs: tick as f64 / 60.0, objects: vec![car], wind, patches, ..Snapshot::default() }
     }
 

@@ -1,6 +1,7 @@
 //! State shared by all requests and sessions.
 
 use super::admission::Admission;
+use super::field_sampler::FieldSampler;
 use super::origin::Access;
 use super::page_errors::PageErrors;
 use crate::config::Limits;
@@ -44,6 +45,8 @@ pub(crate) struct App {
     /// The encoded scene message, the same for all clients.
     pub(crate) scene: Bytes,
     pub(crate) limits: Limits,
+    /// Sampler of the fields, for the HTTP API.
+    pub(crate) fields: FieldSampler,
     /// Hosts and origins that requests may name.
     pub(crate) access: Access,
     /// Limits per remote address.

@@ -5,12 +5,14 @@
 
 mod addresses;
 mod admission;
+mod api;
 mod app;
 pub mod assets;
 mod bind;
 mod connection;
 mod encoding;
 mod end;
+mod field_sampler;
 mod files;
 mod health;
 mod host_name;
@@ -32,6 +34,7 @@ pub use addresses::reachable_ip;
 pub(crate) use admission::Admission;
 pub(crate) use app::{App, SessionLog};
 pub use bind::{BindError, bind};
+pub(crate) use field_sampler::FieldSampler;
 pub use host_name::{HostName, Origin};
 pub(crate) use origin::Access;
 pub(crate) use page_errors::PageErrors;

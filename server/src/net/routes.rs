@@ -1,9 +1,9 @@
-//! HTTP routes: `/ws`, the reports on the server, `/report` and the client's files.
+//! HTTP routes: `/ws`, the reports on the server, `/api`, `/report` and the client's files.
 
 use super::app::App;
 use super::connection::Connection;
 use super::upgrade::upgrade;
-use super::{files, health, page_errors, security, session};
+use super::{api, files, health, page_errors, security, session};
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, StatusCode};
 use axum::middleware::{self, Next};
@@ -18,6 +18,8 @@ pub(crate) fn router(app: Arc<App>) -> Router {
         .route("/healthz", get(health::health))
         .route("/readyz", get(health::readiness))
         .route("/metrics", get(health::metrics))
+        .route("/api/wind", get(api::wind).post(api::winds))
+        .route("/api/bend", get(api::bend).post(api::bends))
         .route("/report", post(page_errors::receive))
         .fallback(get(files::file))
         .layer(middleware::from_fn_with_state(app.clone(), own_host))

@@ -77,7 +77,7 @@ impl PlantDamage {
                     let Some(passage) = leg.passage(at_m).filter(|_| !self.broken.is_broken(plant.site)) else { continue };
                     let BendLimit { height_m, bears_rad } = self.species[usize::from(plant.species)];
                     let below_rad = (clearance_m / (height_m * flora.instance(plant).size)).min(1.0).acos();
-                    let lean_rad = bend.lean_rad(at_m, weather.ground_wind());
+                    let lean_rad = bend.lean_rad(at_m, weather.field());
                     if below_rad.max(length(lean_rad)) > bears_rad {
                         let along = if length(lean_rad) > below_rad { lean_rad } else { passage.moves_m };
                         self.broken.break_plant(plant.site, along);
@@ -85,8 +85,8 @@ impl PlantDamage {
                 }
             }
         }
-        let strongest_m_per_s = weather.strongest_m_per_s(self.storm.reach_m());
-        self.storm.step(tick, flora, strongest_m_per_s, |at_m| weather.wind_m_per_s(at_m), &mut self.broken);
+        let strongest_m_per_s = weather.field().strongest_m_per_s(self.storm.reach_m());
+        self.storm.step(tick, flora, strongest_m_per_s, |at_m| weather.field().wind_at(at_m), &mut self.broken);
     }
 
     /// Adds the broken plants to a checksum.

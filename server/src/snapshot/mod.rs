@@ -8,7 +8,7 @@ mod patches;
 pub use broken_plants::BrokenPlants;
 pub use patches::{BentPatches, PatchCodes, PatchQuantiser};
 
-use prairie_core::wire::ObjectPose;
+use prairie_core::wire::{ObjectPose, TurbulenceState};
 use std::sync::Arc;
 
 /// The state of the world after a step.
@@ -33,12 +33,14 @@ pub struct Snapshot {
 }
 
 /// The wind at the cell centres.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct WindFrame {
     /// Step of the wind.
     pub tick: u64,
     /// Cells along X, Y and Z.
     pub cells: [u32; 3],
+    /// State of the gusts between the cells.
+    pub turbulence: TurbulenceState,
     /// Three planes (u, v, w) of wind codes, x fastest, then y, then z. A scene with dust has a fourth plane of dust codes.
     pub codes: Vec<i8>,
 }

@@ -92,7 +92,8 @@ impl Encoder {
         frames.offer(publish, newest, self.wind_pacing);
         frames.message(held, |FrameHeader { seq, key }, payload| {
             self.encodings += 1;
-            wire::encode(&ServerMessage::Wind { tick: snapshot.wind.tick, seq, key, payload }).into()
+            let WindFrame { tick, turbulence, .. } = *snapshot.wind;
+            wire::encode(&ServerMessage::Wind { tick, seq, key, turbulence, payload }).into()
         })
     }
 

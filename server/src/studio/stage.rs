@@ -129,7 +129,8 @@ impl Stage {
         self.frame += 1;
         let wind = &snapshot.wind;
         let payload = codec::encode(Shape::wind(wind.cells[0] as usize, wind.has_dust()), &wind.codes, None);
-        self.send(&ServerMessage::Wind { tick: snapshot.tick, seq: self.frame, key: true, payload })?;
+        let (tick, turbulence) = (wind.tick, wind.turbulence);
+        self.send(&ServerMessage::Wind { tick, seq: self.frame, key: true, turbulence, payload })?;
         let shown: BTreeSet<u32> = self.sent.keys().chain(snapshot.patches.keys()).copied().collect();
         for patch in shown {
             self.show_patch(patch, snapshot.patches.get(&patch))?;

@@ -2,24 +2,24 @@
 
 mod box_terrain;
 mod canopy_cover;
-mod sample;
+mod carrier;
 mod settings;
 mod vehicle_jets;
 
-use crate::bend::ground_wind::GroundWind;
 use crate::checksum::Checksum;
 use crate::objects::Motion;
 use crate::settings_error::SettingsError;
 use crate::snapshot::WindFrame;
 use box_terrain::BoxTerrain;
 use canopy_cover::CanopyCover;
+use carrier::Carrier;
 use glam::Vec3;
 use prairie_core::bend::Field;
 use prairie_core::scene::{Scene, WindTiling};
 use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
-use prairie_core::wind::{CellGrid, WindTiles};
-use prairie_core::wire::Shape;
+use prairie_core::wind::WindField;
 use prairie_core::wire::quantise::{dust_code, wind_code};
+use prairie_core::wire::{Shape, TurbulenceState};
 use prairie_wind::state::MAX_SUBSTEPS;
 use prairie_wind::{Air, Config, ConfigError, Method, SolidError, StepError, StepReport};
 use settings::settings;
@@ -37,17 +37,15 @@ pub struct Weather {
     method: Method,
     config: Config,
     tiling: WindTiling,
-    tiles: WindTiles,
-    grid: CellGrid,
     ticks_per_step: u64,
     step_secs: f64,
     report: StepReport,
     resets: u64,
     terrain: BoxTerrain,
     canopy: Option<CanopyCover>,
-    ground: GroundWind,
-    /// Wind (m/s) at the centres of layers above the ground, x fastest, then y, then z.
-    velocities: Vec<Vec3>,
+    carrier: Carrier,
+    turbulence: TurbulenceState,
+    field: WindField,
     frame: Arc<WindFrame>,
 }
 
@@ -111,11 +109,10 @@ impl Weather {
         let mut weather = Self {
             canopy: config.canopy.map(|canopy| CanopyCover::new(scene, cover, canopy.height_m)),
             tiling: scene.wind.tiling,
-            tiles: WindTiles::new(scene),
-            grid: CellGrid::from(&scene.wind),
-            ground: GroundWind::still(scene).with_kinds(KindMap::new(scene, cover)),
+            carrier: Carrier::new(&config),
+            turbulence: TurbulenceState::default(),
+            field: WindField::still(scene, Arc::new(KindMap::new(scene, cover))),
             frame: Arc::default(),
-            velocities: Vec::new(),
             resets: 0,
             air,
             method,
@@ -125,7 +122,7 @@ impl Weather {
             report,
             terrain,
         };
-        weather.observe(0);
+        weather.observe(0, 0.0);
         Ok(weather)
     }
 
@@ -157,7 +154,7 @@ impl Weather {
                 self.resets += 1;
             }
         }
-        self.observe(tick);
+        self.observe(tick, self.step_secs);
     }
 
     /// Puts the seam of the periodic box on the side opposite to the centre of all objects.
@@ -171,9 +168,9 @@ impl Weather {
         self.air.set_sponge((!motions.is_empty()).then_some(sponge_m));
     }
 
-    /// Bend of the grass in equilibrium with the wind near the ground.
-    pub fn ground_wind(&self) -> &GroundWind {
-        &self.ground
+    /// The wind at any place: what clients decode from the [frame](Self::frame).
+    pub fn field(&self) -> &WindField {
+        &self.field
     }
 
     /// The newest wind, quantised.
@@ -191,23 +188,22 @@ impl Weather {
         self.resets
     }
 
-    /// Wind (m/s) at the centres of layers above the ground, x fastest, then y, then z.
-    pub fn velocities(&self) -> &[Vec3] {
-        &self.velocities
-    }
-
     /// Adds the wind to a checksum.
     pub(crate) fn hash(&self, sum: &mut Checksum) {
-        sum.add(self.velocities.iter().flat_map(|velocity| velocity.to_array().map(f32::to_bits)));
+        sum.add(self.field.velocities().iter().flat_map(|velocity| velocity.to_array().map(f32::to_bits)));
+        let TurbulenceState { travel_m: [x_m, z_m], path_m, friction_m_per_s } = self.turbulence;
+        sum.add([x_m, z_m, path_m].into_iter().flat_map(|m| [m.to_bits() as u32, (m.to_bits() >> 32) as u32]));
+        sum.add([friction_m_per_s.to_bits()]);
     }
 
-    /// Samples the solver's state above the ground, for other parts of the world and for clients.
-    fn observe(&mut self, tick: u64) {
+    /// Samples the solver's state above the ground, for clients and other parts of the world, `secs` after the last time. Both read the same codes.
+    fn observe(&mut self, tick: u64, secs: f64) {
         let [nx, ny, nz] = self.config.cells;
         let cells = nx * ny * nz;
-        self.velocities = self.terrain.above_ground(self.air.cell_velocities().collect(), Vec3::lerp);
+        let velocities = self.terrain.above_ground(self.air.cell_velocities().collect(), Vec3::lerp);
+        self.carrier.advance(&mut self.turbulence, &velocities, secs);
         let mut codes = vec![0; Shape::wind(nx, self.config.dust.is_some()).planes * cells];
-        for (at, velocity) in self.velocities.iter().enumerate() {
+        for (at, velocity) in velocities.iter().enumerate() {
             for (plane, component) in velocity.to_array().into_iter().enumerate() {
                 codes[plane * cells + at] = wind_code(component);
             }
@@ -216,8 +212,8 @@ impl Weather {
             let dust = self.terrain.above_ground(dust.collect(), |a, b, t| a + (b - a) * t);
             codes[3 * cells..].iter_mut().zip(dust).for_each(|(code, density)| *code = dust_code(density));
         }
-        self.ground.set_wind(ny, self.velocities.iter().map(|velocity| [velocity.x, velocity.z]));
-        self.frame = Arc::new(WindFrame { tick, cells: [nx, ny, nz].map(|n| n as u32), codes });
+        self.field.set(&codes, &self.turbulence);
+        self.frame = Arc::new(WindFrame { tick, cells: [nx, ny, nz].map(|n| n as u32), turbulence: self.turbulence, codes });
     }
 }
 

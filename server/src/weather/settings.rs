@@ -5,7 +5,7 @@ use prairie_wind::pressure::{Effort, IterativeMethod};
 use prairie_wind::{Advection, Boundary, Canopy, Config, Diffusion, Dust, Gusts, Method, Pressure, Primitive, Profile, Shape, TimeScheme};
 
 /// Roughness length of grass (m), for the logarithmic profile.
-const ROUGHNESS_M: f32 = 0.05;
+pub(super) const ROUGHNESS_M: f32 = 0.05;
 
 /// The solver's method and settings for `scene`.
 pub(super) fn settings(scene: &Scene) -> (Method, Config) {

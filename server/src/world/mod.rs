@@ -79,10 +79,10 @@ impl World {
         }
         self.tick += 1;
         let (weather, height) = (&self.weather, &self.height);
-        self.objects.step(self.dt_secs, |[x, y, z]| weather.wind_m_per_s([x, y - height.height_m(x, z), z]));
+        self.objects.step(self.dt_secs, |[x, y, z]| weather.field().wind_at([x, y - height.height_m(x, z), z]));
         let motions = self.objects.motions();
         self.weather.step(self.tick, &motions, &self.height, self.bend.field());
-        self.bend.step(self.dt_secs, &motions, &self.cameras, self.weather.ground_wind());
+        self.bend.step(self.dt_secs, &motions, &self.cameras, self.weather.field());
         self.plants.step(self.tick, self.dt_secs, &self.bend, &self.weather);
     }
 

@@ -83,7 +83,7 @@ impl Simulation for StandInWorld {
             let codes = (0..len).map(|i| ((tick as usize + i * index) % 200) as i8 / 2).collect();
             (index as u32, Arc::new(PatchCodes { tick, codes }))
         };
-        let wind = WindFrame { tick: self.tick, cells: WIND_CELLS, codes: vec![(self.tick % 100) as i8; 96] };
+        let wind = WindFrame { tick: self.tick, cells: WIND_CELLS, codes: vec![(self.tick % 100) as i8; 96], ..WindFrame::default() };
         Snapshot {
             tick: self.tick,
             time_secs: self.tick as f64 / 60.0,

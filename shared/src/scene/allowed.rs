@@ -63,6 +63,7 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("wind.body_force_m_per_s2", Range(-1.0, 1.0)),
     ("wind.sources", Range(0.0, 1000.0)),
     ("wind.source_m_per_s", Range(0.0, 40.0)),
+    ("wind.turbulence", Range(0.0, 3.0)),
     ("wind.method", OneOf(WindMethod::WORDS)),
     ("wind.advection", OneOf(WindAdvection::WORDS)),
     ("wind.time", OneOf(WindTime::WORDS)),

@@ -1,12 +1,17 @@
-//! Reading the wind on server and client: mapping from the world to the solver's box, trilinear sampling between cells, and the profile near the ground.
+//! Sampling of the wind on server and client: mapping from the world to the solver's box, trilinear interpolation between cells, gusts finer than the cells, and
+//! the profile near the ground. [`WindField`] joins them.
 
+mod field;
 mod ground;
 mod sample;
 mod tiling;
+pub mod turbulence;
 
+pub use field::WindField;
 pub use ground::{FREE_WIND_M, LEAST_WIND_HEIGHT, near_ground_fraction};
 pub use sample::CellGrid;
 pub use tiling::{Tap, WindTiles, offset_cells};
+pub use turbulence::{Gusts, Turbulence};
 
 use crate::scene::Wind;
 

@@ -1,6 +1,6 @@
 //! Messages, and their encoding.
 
-use super::PROTOCOL;
+use super::{PROTOCOL, TurbulenceState};
 use crate::grid::PatchIndex;
 use crate::scene::{Scene, VehicleKind};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -114,6 +114,8 @@ pub enum ServerMessage {
         seq: u32,
         /// Whether this is a key frame, coded against zero.
         key: bool,
+        /// State of the gusts between the cells.
+        turbulence: TurbulenceState,
         /// [`codec`](super::codec) payload.
         #[serde(with = "serde_bytes")]
         payload: Vec<u8>,

@@ -8,11 +8,13 @@ pub mod codec;
 mod message;
 mod protocol;
 pub mod quantise;
+mod turbulence_state;
 
 pub use close::Close;
 pub use codec::{CodecError, Shape};
 pub use message::{BrokenPlant, ClientMessage, Drive, Mesh, ObjectId, ObjectPose, Peer, Refusal, ServerMessage, WireError, decode, encode};
 pub use protocol::PROTOCOL;
+pub use turbulence_state::TurbulenceState;
 
 /// Largest message a client may send (bytes).
 pub const CLIENT_MESSAGE_LIMIT: usize = 4096;

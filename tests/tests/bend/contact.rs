@@ -3,26 +3,29 @@
 use glam::Quat;
 use prairie::bend::bending::{bend_after_rad, bending_speed_rad_per_s, direction, terrain_limit_rad};
 use prairie::bend::footprint::Footprint;
-use prairie::bend::ground_wind::GroundWind;
 use prairie::bend::{BendSimulation, Camera};
 use prairie::objects::{BodyPose, Motion, MotionError};
 use prairie_core::bend::{Bend, Patch};
 use prairie_core::scene::{Objects, Scene, VehicleKind};
 use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
-use prairie_core::wire::quantise::{THETA_FULL_RAD, theta_code, theta_rad};
+use prairie_core::wind::WindField;
+use prairie_core::wire::TurbulenceState;
+use prairie_core::wire::quantise::{THETA_FULL_RAD, theta_code, theta_rad, wind_code};
 use std::sync::Arc;
 use tests::worlds;
 
 const DT_SECS: f32 = 1.0 / 60.0;
 
-fn still_air() -> GroundWind {
-    GroundWind::still(&worlds::scene(1))
+fn still_air() -> WindField {
+    worlds::still_air(&worlds::scene(1))
 }
 
 /// A uniform wind to the east.
-fn wind(scene: &Scene, m_per_s: f32) -> GroundWind {
-    let mut wind = GroundWind::still(scene);
-    wind.set_wind(1, std::iter::repeat([m_per_s, 0.0]));
+fn wind(scene: &Scene, m_per_s: f32) -> WindField {
+    let mut wind = worlds::still_air(scene);
+    let cells = wind.velocities().len();
+    let codes: Vec<_> = (0..3 * cells).map(|at| if at < cells { wind_code(m_per_s) } else { 0 }).collect();
+    wind.set(&codes, &TurbulenceState::default());
     wind
 }
 
@@ -278,7 +281,7 @@ fn invalid_motions_are_rejected_and_touch_nothing() {
 fn wind_wakes_no_patch_and_erases_no_track() {
     let mut scene = springy(4);
     scene.grass.waves.mu_m_per_rad = 0.0;
-    let track = |wind: &GroundWind| {
+    let track = |wind: &WindField| {
         let mut meadow = meadow(&scene);
         for _ in 0..60 {
             meadow.step(DT_SECS, &[], &[], wind);
@@ -291,7 +294,7 @@ fn wind_wakes_no_patch_and_erases_no_track() {
         // The bends of the field and of the wind add up to the angle pressed by the wheel, in any wind.
         let field = meadow.field().bend_at(32.0, 32.8);
         let along = field.omega.map(|omega| omega / (field.omega[0] * field.omega[0] + field.omega[1] * field.omega[1]).sqrt());
-        let [lean_x, lean_z] = wind.lean_rad([32.0, 32.8]);
+        let [lean_x, lean_z] = wind.lean_at([32.0, 32.8]);
         let [x, z] = [along[0] * field.theta + lean_x, along[1] * field.theta + lean_z];
         let pressed = (x * x + z * z).sqrt();
         for _ in 0..120 {

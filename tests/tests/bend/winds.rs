@@ -4,7 +4,6 @@ use png::{BitDepth, ColorType};
 use prairie::bend::flattened::FlattenedGrass;
 use prairie::bend::grass_properties::GrassProperties;
 use prairie::bend::grass_state::GrassState;
-use prairie::bend::ground_wind::GroundWind;
 use prairie::bend::prescribed_wind::{Pattern, PrescribedWind};
 use prairie::bend::wind_drawing::WindDrawing;
 use prairie::scenes;
@@ -27,7 +26,7 @@ fn blown(wind: &PrescribedWind) -> Field {
     });
     let mut flattened = FlattenedGrass::new(LAYOUT, 60.0, 0);
     let flat = HeightMap::from_heights(2, 2, [1000.0; 2], vec![0.0; 4]);
-    let ground_wind = GroundWind::still(&worlds::scene(1));
+    let ground_wind = worlds::still_air(&worlds::scene(1));
     let grass = CoverMap::from_png(&grey_png([2; 2], &[255; 4])).expect("a grey PNG");
     let properties = GrassProperties::new(&worlds::scene(1), &grass);
     let mut state = GrassState { field: &mut field, flattened: &mut flattened, wind: &ground_wind, height: &flat, properties: &properties };

@@ -4,6 +4,7 @@ mod access;
 mod failures;
 mod icons;
 mod input;
+mod one_storm;
 mod page;
 mod prairie;
 mod sharing;

@@ -128,13 +128,13 @@ impl Golden {
         canvas.set_options(self.look);
         let [width, height] = self.size_px;
         let seen = |canvas: &Canvas| Picture { width, height, rgba: canvas.rgba() };
-        let time_secs = |frame: u32| f64::from(frame) * f64::from(DT_SECS);
-        for frame in 0..self.frames {
+        for _ in 0..self.frames {
             stage.run(DT_SECS);
             stage.show()?;
+            let time_secs = stage.mirror.time_secs();
             match &self.split {
-                Some(split) => canvas.draw_split(&mut stage.mirror, &camera, time_secs(frame), DT_SECS, split),
-                None => canvas.draw(&mut stage.mirror, &camera, time_secs(frame), DT_SECS),
+                Some(split) => canvas.draw_split(&mut stage.mirror, &camera, time_secs, DT_SECS, split),
+                None => canvas.draw(&mut stage.mirror, &camera, time_secs, DT_SECS),
             };
         }
         let drawn = seen(&canvas);
@@ -143,7 +143,8 @@ impl Golden {
             Unlike::RenderOptions(look) => canvas.set_options(look),
             Unlike::Bare => stage.show_bare()?,
         }
-        canvas.draw(&mut stage.mirror, &camera, time_secs(self.frames - 1), 0.0);
+        let time_secs = stage.mirror.time_secs();
+        canvas.draw(&mut stage.mirror, &camera, time_secs, 0.0);
         Ok((drawn, Some(seen(&canvas))))
     }
 

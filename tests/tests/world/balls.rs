@@ -1,6 +1,5 @@
 //! Balls rest, are kicked by vehicles and monsters, roll, come to rest again, and press the grass.
 
-use prairie::bend::ground_wind::GroundWind;
 use prairie::objects::{Environment, Objects};
 use prairie::world::{Camera, Command, World};
 use prairie_core::scene::Scene;
@@ -252,7 +251,7 @@ fn grass_under_a_resting_ball_stays_pressed_while_its_patch_sleeps() {
     let scene = calm(with_balls(8, 1));
     let mut world = worlds::flat(&scene);
     let lean_rad = |world: &World, [x, z]: [f32; 2]| {
-        let [x, z] = world.bend().lean_rad([x, z], &GroundWind::still(&scene));
+        let [x, z] = world.bend().lean_rad([x, z], &worlds::still_air(&scene));
         x.hypot(z)
     };
     run(&mut world, 900);

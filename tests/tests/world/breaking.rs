@@ -1,6 +1,5 @@
 //! Underbrush breaks permanently under objects and in storms, and falls in the direction of the load.
 
-use prairie::bend::ground_wind::GroundWind;
 use prairie::scenes;
 use prairie::snapshot::BrokenPlants;
 use prairie::world::{Camera, Command, World};
@@ -122,7 +121,7 @@ fn mirror(scene: &Scene) -> Mirror {
 #[test]
 fn broken_plants_fall_in_the_direction_of_the_car_and_so_they_do_in_the_mirror() {
     let scene = calm(reeds(8));
-    let (mut world, flora, still) = (worlds::flat(&scene), flora(&scene), GroundWind::still(&scene));
+    let (mut world, flora, still) = (worlds::flat(&scene), flora(&scene), worlds::still_air(&scene));
     drive(&mut world, VehicleKind::Car, 20);
     let (mut known, mut told) = (0, Vec::new());
     let mut mirror = mirror(&scene);

@@ -53,14 +53,15 @@ impl Renderer {
         let poses: Vec<ObjectPose> = mirror.objects().collect();
         let eye_xz_m = [camera.eye_m.x, camera.eye_m.z];
         let patches_written = scene.textures.atlas.update(&self.gpu, mirror, eye_xz_m, dt_secs);
-        scene.textures.wind.update(&self.gpu, mirror.wind(), dt_secs);
+        scene.textures.wind.update(&self.gpu, mirror.shown_wind(time_secs));
         let Some(decoded) = mirror.decoded_scene() else { return FramePlan::default() };
 
-        let sun = self.options.sun.unwrap_or_else(|| decoded.scene().light.sun_at(mirror.time_secs()));
+        let sun = self.options.sun.unwrap_or_else(|| decoded.scene().light.sun_at(time_secs));
         self.daylight.update(&self.gpu, sun);
         let detail = self.detail.on(&decoded.scene().plants).with(self.options.far_plants);
         let view = View::new(camera, self.targets.size_px, self.quality, detail, time_secs, sun);
-        let mut frame = view.frame(decoded, &scene.textures.atlas, &self.daylight, &poses, &headlights(&poses));
+        let mut frame =
+            view.frame(decoded, &scene.textures.atlas, scene.textures.wind.gusts(), &self.daylight, &poses, &headlights(&poses));
         let (eye_m, heading_rad) = (camera.eye_m, camera.heading_rad);
         let shadow_view = ShadowView { eye_m, heading_rad, sun, trees_m: detail.trees_m, culls: self.options.culls, time_secs };
         let cascades = update_cascades(scene, decoded, &mut frame, shadow_view, &poses, dt_secs);

@@ -29,16 +29,6 @@ pub(crate) const LUMINANCE: Vec3 = Vec3::from_array(prairie_core::light::LUMINAN
 /// Invocations per workgroup of the compute passes.
 pub(crate) const WORKGROUP_SIZE: u32 = 64;
 
-// --- wind ---
-
-/// Periods of the gust patterns (m): the broad and the fine one along the wind, then both across it.
-pub(crate) const BROAD_GUST_M: f32 = 60.0;
-pub(crate) const FINE_GUST_M: f32 = 23.0;
-pub(crate) const BROAD_GUST_ACROSS_M: f32 = 120.0;
-pub(crate) const FINE_GUST_ACROSS_M: f32 = 60.0;
-/// Speed of the gust fronts relative to the mean wind.
-pub(crate) const GUST_SPEED: f64 = 1.3;
-
 // --- bend field ---
 
 /// Mip levels of the bend atlas. The side of a patch is a multiple of 8 cells, so that no level mixes two patches.

@@ -3,6 +3,7 @@
 use crate::render::gpu::constants::{NEAR_SLOTS, UNDERBRUSH_LISTS};
 use crate::render::gpu::uniform_block::uniform_block;
 use prairie_core::plant::growth::SPECIES_LIMIT;
+use prairie_core::wind::turbulence::WAVES;
 
 /// Maximum number of interaction spheres in a frame; those nearest to the camera are kept.
 pub(crate) const SPHERE_LIMIT: usize = 16;
@@ -56,8 +57,8 @@ uniform_block! {
         wind_direction: [f32; 2],
         /// Speed of the mean wind (m/s).
         mean_wind_m_per_s: f32,
-        /// Distance that the gusts have travelled (m).
-        gust_travel_m: f32,
+        /// Number of waves of the gusts.
+        gust_count: u32,
         /// Ages of the atlas's past layers (s), youngest first.
         past_ages_secs: [f32; 3],
         /// Index of the youngest of these layers, or -1 if none is kept.
@@ -89,6 +90,8 @@ uniform_block! {
         _pad: [u8; 4],
         /// Interaction spheres; unused entries are zero.
         spheres: [Sphere; SPHERE_LIMIT],
+        /// Waves of the gusts; unused entries are zero.
+        gusts: [GustWave; WAVES],
         /// Light of sky and lamps.
         lights: Lights,
     }
@@ -103,6 +106,18 @@ impl Frame {
     /// Whether there is any interaction sphere.
     pub(crate) fn has_spheres(&self) -> bool {
         self.sphere_count > 0
+    }
+}
+
+uniform_block! {
+    /// Wave of the gusts, of velocity `strength · cos(τ(per_m · p + phase))` times `per_m` turned by a right angle.
+    GustWave {
+        /// Wave vector along X and Z (turns per metre).
+        per_m: [f32; 2],
+        /// Phase (turns).
+        phase: f32,
+        /// Amplitude over the length of the wave vector.
+        strength: f32,
     }
 }
 

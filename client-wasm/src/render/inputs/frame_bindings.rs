@@ -126,7 +126,7 @@ impl SceneTextures {
         let kind_texture = gpu.texture("kinds", TextureFormat::R8Uint, kind_map.size_px(), &[kind_map.kinds().to_vec()]);
         let kinds = gpu.buffer("kinds", bytemuck::bytes_of(&grass_kinds::table(decoded.scene())), wgpu::BufferUsages::UNIFORM);
         let atlas = BendAtlas::new(gpu, *decoded.layout(), decoded.scene());
-        let wind = WindTexture::new(gpu, &decoded.scene().wind);
+        let wind = WindTexture::new(gpu, decoded.scene());
         let group = |label, shadows: &wgpu::Texture| {
             use wgpu::BindingResource::{Sampler, TextureView};
             let views = [&height_texture, &normal_texture, &cover_texture, &wind.texture, &kind_texture].map(view);

@@ -1,8 +1,7 @@
 //! Fills the uniforms of a frame from camera, light and scene.
 
 use crate::camera::Camera;
-use crate::render::gpu::constants::{BROAD_GUST_M, FINE_GUST_M, GUST_SPEED};
-use crate::render::gpu::uniforms::{Frame, Lamp, Lights, SPHERE_LIMIT, Sphere};
+use crate::render::gpu::uniforms::{Frame, GustWave, Lamp, Lights, SPHERE_LIMIT, Sphere};
 use crate::render::inputs::bend_atlas::BendAtlas;
 use crate::render::inputs::cascades;
 use crate::render::inputs::daylight::Daylight;
@@ -14,10 +13,9 @@ use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
 use prairie_core::light::sun::Sun;
 use prairie_core::scene::{Objects, Plants};
+use prairie_core::wind::{self, Gusts};
 use prairie_core::wire::ObjectPose;
 
-/// Period of all patterns of gusts (m).
-const GUST_PERIOD_M: f64 = (BROAD_GUST_M * FINE_GUST_M) as f64;
 /// Speed of the clouds relative to the mean wind near the ground.
 const CLOUD_SPEED: f64 = 1.6;
 /// Rain rate at which the sky is overcast (mm/h).
@@ -33,7 +31,7 @@ pub(crate) struct View<'a> {
     pub(crate) projection_from_world: Mat4,
 }
 
-/// Mean wind of a scene, which carries gust fronts and clouds.
+/// Mean wind of a scene, which carries clouds and rain.
 struct MeanWind {
     direction: [f32; 2],
     speed_m_per_s: f32,
@@ -44,11 +42,6 @@ impl MeanWind {
         let speed_m_per_s = x.hypot(z);
         let direction = if speed_m_per_s > 1e-3 { [x / speed_m_per_s, z / speed_m_per_s] } else { [1.0, 0.0] };
         Self { direction, speed_m_per_s }
-    }
-
-    /// Distance travelled by the gust fronts, within their period.
-    fn gust_travel_m(&self, time_secs: f64) -> f32 {
-        (time_secs * f64::from(self.speed_m_per_s) * GUST_SPEED).rem_euclid(GUST_PERIOD_M) as f32
     }
 
     fn cloud_offset_m(&self, time_secs: f64) -> [f32; 2] {
@@ -68,6 +61,7 @@ impl<'a> View<'a> {
         &self,
         decoded: &DecodedScene,
         atlas: &BendAtlas,
+        gusts: &Gusts,
         daylight: &Daylight,
         poses: &[ObjectPose],
         headlights: &[SpotLight],
@@ -103,7 +97,7 @@ impl<'a> View<'a> {
             lamp_count: lamps.len() as u32,
             wind_direction: mean_wind.direction,
             mean_wind_m_per_s: mean_wind.speed_m_per_s,
-            gust_travel_m: mean_wind.gust_travel_m(self.time_secs),
+            gust_count: gusts.waves().len() as u32,
             past_ages_secs,
             youngest_past,
             screen_px: self.size_px.map(|px| px as f32),
@@ -121,6 +115,7 @@ impl<'a> View<'a> {
             sphere_count: spheres.len() as u32,
             _pad: [0; 4],
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_else(Sphere::zeroed)),
+            gusts: std::array::from_fn(|i| gusts.waves().get(i).map_or_else(GustWave::zeroed, GustWave::from)),
             lights: self.lights(decoded, daylight, &lamps),
         }
     }
@@ -170,6 +165,12 @@ impl<'a> View<'a> {
             lit_radius_m,
             lamps: std::array::from_fn(|i| lamps.get(i).copied().unwrap_or_else(Lamp::zeroed)),
         }
+    }
+}
+
+impl From<&wind::turbulence::GustWave> for GustWave {
+    fn from(&wind::turbulence::GustWave { per_m, phase, strength }: &wind::turbulence::GustWave) -> Self {
+        Self { per_m, phase, strength }
     }
 }
 

@@ -1,26 +1,27 @@
-//! The streamed wind as a 3-D texture that follows the newest frame smoothly; the fourth channel is dust.
+//! The streamed wind as a 3-D texture, interpolated between frames; the fourth channel is dust. And the gusts between its cells.
 
 use crate::render::gpu::device::Gpu;
-use crate::state::{DecodedScene, WindCodes};
-use prairie_core::scene::Wind;
-use prairie_core::wind::CellGrid;
+use crate::state::{DecodedScene, ShownWind};
+use prairie_core::scene::Scene;
+use prairie_core::wind::{CellGrid, Gusts, Turbulence};
 use prairie_core::wire::Shape;
 use prairie_core::wire::quantise::WIND_FULL_M_PER_S;
-
-/// Time constant with which the displayed wind follows the streamed one (s).
-const FOLLOW_SECS: f32 = 0.12;
 
 pub(crate) struct WindTexture {
     pub(crate) texture: wgpu::Texture,
     cells: [u32; 3],
+    /// Codes of all planes, interpolated in time.
     shown: Vec<f32>,
-    seq: Option<u32>,
-    settled: bool,
+    turbulence: Turbulence,
+    gusts: Gusts,
+    /// Frames shown, and the fraction of the second.
+    moment: Option<([u32; 2], f32)>,
 }
 
 impl WindTexture {
-    /// A texture of the scene's mean wind, until the first frame arrives.
-    pub(crate) fn new(gpu: &Gpu, wind: &Wind) -> Self {
+    /// A texture of the scene's mean wind without gusts, until the first frame arrives.
+    pub(crate) fn new(gpu: &Gpu, scene: &Scene) -> Self {
+        let wind = &scene.wind;
         let cells = wind.cells;
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("wind"),
@@ -36,30 +37,33 @@ impl WindTexture {
         let [x, z] = wind.mean_m_per_s.map(|v| f32::from(prairie_core::wire::quantise::wind_code(v)));
         let still = [x, 0.0, z, 0.0].into_iter().take(Shape::wind(1, wind.has_dust()).planes);
         let shown = still.flat_map(|v| std::iter::repeat_n(v, count)).collect();
-        let new = Self { texture, cells, shown, seq: None, settled: false };
+        let new = Self { texture, cells, shown, turbulence: Turbulence::new(scene), gusts: Gusts::default(), moment: None };
         new.write(gpu);
         new
     }
 
-    /// Moves towards the newest frame, if any; the first is adopted at once.
-    pub(crate) fn update(&mut self, gpu: &Gpu, newest: Option<&WindCodes>, dt_secs: f32) {
-        let Some(newest) = newest.filter(|codes| codes.cells() == self.cells) else { return };
-        if self.seq == Some(newest.seq()) && self.settled {
+    /// Adopts the wind to show, if there is any yet.
+    pub(crate) fn update(&mut self, gpu: &Gpu, wind: Option<ShownWind<'_>>) {
+        let Some(wind) = wind.filter(|wind| wind.from.cells() == self.cells) else { return };
+        let moment = Some(([wind.from.seq(), wind.to.seq()], wind.fraction));
+        if std::mem::replace(&mut self.moment, moment) == moment {
             return;
         }
-        let fraction = if self.seq.is_none() { 1.0 } else { 1.0 - (-dt_secs / FOLLOW_SECS).exp() };
-        let mut rest = 0.0_f32;
-        for (shown, &code) in self.shown.iter_mut().zip(newest.planes().into_iter().chain(newest.dust()).flatten()) {
-            *shown += (f32::from(code) - *shown) * fraction;
-            rest = rest.max((f32::from(code) - *shown).abs());
+        for (shown, (from, to)) in self.shown.iter_mut().zip(wind.from.codes().iter().zip(wind.to.codes())) {
+            let [from, to] = [from, to].map(|code| f32::from(*code));
+            *shown = from + (to - from) * wind.fraction;
         }
-        self.seq = Some(newest.seq());
-        self.settled = rest < 0.5;
+        self.gusts = self.turbulence.at(&wind.turbulence());
         self.write(gpu);
     }
 
-    /// Displayed wind (m/s) at X, height above the ground and Z (m), by the trilinear sampling of `air_at` in WGSL.
-    pub(crate) fn at(&self, decoded: &DecodedScene, [x, above_m, z]: [f32; 3]) -> [f32; 3] {
+    /// The gusts of the wind shown.
+    pub(crate) fn gusts(&self) -> &Gusts {
+        &self.gusts
+    }
+
+    /// Displayed wind (m/s) without its gusts at X, height above the ground and Z (m), by the trilinear sampling of `air_at` in WGSL.
+    pub(crate) fn resolved_at(&self, decoded: &DecodedScene, [x, above_m, z]: [f32; 3]) -> [f32; 3] {
         let (grid, count) = (CellGrid::from(&decoded.scene().wind), self.cells.map(|n| n as usize).iter().product::<usize>());
         let codes = decoded
             .tiles()

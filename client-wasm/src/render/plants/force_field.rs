@@ -93,7 +93,7 @@ impl CameraForceField {
         self.field.step(dt_secs);
         self.field.obstruct(poses.iter().map(|pose| of_pose(decoded, pose)));
         if has_moved || self.steps.is_multiple_of(WIND_STEPS) {
-            self.field.blow(|[x, above, z]| dynamic_pressure_pa(wind.at(decoded, [x, above, z])));
+            self.field.blow(|[x, above, z]| dynamic_pressure_pa(wind.resolved_at(decoded, [x, above, z])));
         }
         for pose in poses {
             let [x, y, z] = pose.position_m;

@@ -45,6 +45,9 @@ pub struct Wind {
     pub sources: u32,
     /// Speed that the strongest gust gives the air over its life (m/s). Default 14, allowed 0..=40.
     pub source_m_per_s: f32,
+    /// Strength of the gusts that the cells do not resolve, relative to a neutral surface layer (`wind/turbulence.rs`); 0 turns them off.
+    /// Default 1, allowed 0..=3.
+    pub turbulence: f32,
     /// The solver: `staggered`, or `stable-fluids`, the collocated method of Zhang, for comparison. Default `staggered`.
     pub method: WindMethod,
     /// Advection scheme of the wind. Default `conservative`; only `semi-lagrangian` with `stable-fluids`.
@@ -86,6 +89,7 @@ impl Default for Wind {
             body_force_m_per_s2: [0.0; 2],
             sources: 24,
             source_m_per_s: 14.0,
+            turbulence: 1.0,
             method: WindMethod::Staggered,
             advection: WindAdvection::Conservative,
             time: WindTime::RungeKutta3,

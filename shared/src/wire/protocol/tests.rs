@@ -3,7 +3,8 @@
 use super::{PINS, PROTOCOL};
 use crate::scene::{Allowed, FIELDS, Scene, VehicleKind, parse};
 use crate::wire::{
-    BrokenPlant, ClientMessage, Drive, Mesh, ObjectPose, Peer, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, WireError, decode, encode,
+    BrokenPlant, ClientMessage, Drive, Mesh, ObjectPose, Peer, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, TurbulenceState, WireError,
+    decode, encode,
 };
 use serde::{Deserialize, de::DeserializeOwned};
 use std::fmt::{Debug, Write};
@@ -35,7 +36,7 @@ fn server_messages() -> Vec<ServerMessage> {
             models: vec![(VehicleKind::Car, mesh())],
         },
         ServerMessage::Poses { tick: 300, objects: vec![pose()] },
-        ServerMessage::Wind { tick: 300, seq: 2, key: true, payload: vec![9, 8] },
+        ServerMessage::Wind { tick: 300, seq: 2, key: true, turbulence: turbulence(), payload: vec![9, 8] },
         ServerMessage::Patch { patch: 130, seq: 3, key: false, payload: vec![7] },
         ServerMessage::Roster { peers: vec![Peer { client: 3, name: "Ada".to_owned(), object: Some(200) }] },
         ServerMessage::Broken { plants: vec![BrokenPlant { site: 128, fall: NonZeroU8::MAX }] },
@@ -76,6 +77,10 @@ fn server_name(message: &ServerMessage) -> &'static str {
 
 fn mesh() -> Mesh {
     Mesh { positions_m: vec![[0.0, 1.0, 2.0]], normals: vec![[0.0, 1.0, 0.0]], rgb: vec![[10, 20, 30]], indices: vec![0, 0, 0] }
+}
+
+fn turbulence() -> TurbulenceState {
+    TurbulenceState { travel_m: [1.0, -2.0], path_m: 3.0, friction_m_per_s: 0.5 }
 }
 
 fn pose() -> ObjectPose {

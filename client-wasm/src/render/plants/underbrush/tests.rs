@@ -492,17 +492,17 @@ fn the_compute_pass_computes_each_posture_and_lists_each_plant_once() {
             if 0.8 * aside_m + 0.6 * beyond_m > -8.0 && (0.8 * beyond_m - 0.6 * aside_m).abs() < 8.0 {
                 continue;
             }
-            let wind = scene.textures.wind.at(decoded, [at_m[0], 0.5 * height_m, at_m[1]]);
+            let wind = scene.textures.wind.resolved_at(decoded, [at_m[0], 0.5 * height_m, at_m[1]]);
             let still: f32 = (0.25 * height_m).clamp(0.02, 1.0).sqrt();
-            let pressure_pa = [wind[0], wind[2]].map(|speed| 0.6 * speed * wind[0].hypot(wind[2]) * still);
-            feeling.push(([at_m[0], 0.0, at_m[1], 0.0], pressure_pa, plant.site % 3 == 0, found.pressure_pa));
+            feeling.push(([at_m[0], 0.0, at_m[1], still], [wind[0], wind[2]], plant.site % 3 == 0, found.pressure_pa));
         }
     }
-    // Expected pressure: the wind's dynamic pressure at half its height, times the square of the gust; for a broken plant less of it, plus that of its fall.
+    // Expected pressure: the dynamic pressure of wind and gust at half its height; for a broken plant less of it, plus that of its fall.
     let places: Vec<_> = feeling.iter().map(|&(at, ..)| at).collect();
-    let gusts = probe(&gpu, &picture, "return vec4<f32>(gust_at(at.xz));", &places);
-    for ((at, wind_pa, is_broken, found_pa), [gust, ..]) in feeling.iter().zip(gusts) {
-        let [east_pa, south_pa] = wind_pa.map(|pa| pa * gust * gust);
+    let gusts = probe(&gpu, &picture, "return vec4<f32>(gust_at(at.xz), 0.0, 0.0);", &places);
+    for ((at, wind, is_broken, found_pa), [gust_u, gust_w, ..]) in feeling.iter().zip(gusts) {
+        let blown = [wind[0] + gust_u, wind[1] + gust_w];
+        let [east_pa, south_pa] = blown.map(|speed| 0.6 * speed * blown[0].hypot(blown[1]) * at[3]);
         let fall = heading_rad(fall);
         let wanted_pa =
             if *is_broken { [0.45 * east_pa + 8.0 * fall.cos(), 0.45 * south_pa + 8.0 * fall.sin()] } else { [east_pa, south_pa] };
