@@ -58,7 +58,7 @@ mod tests {
         }
         let [x, _] = field_lean_at(&LAYOUT, [8.0, 4.25], linear);
         assert!((x - 0.5 * 0.775).abs() < 1e-5, "half-way to the grass at rest outside the world: {x}");
-        assert_eq!(field_lean_at(&LAYOUT, [f32::MAX, -f32::MAX], linear), [0.0; 2]);
+        assert_eq!(field_lean_at(&LAYOUT, [1e30, -1e30], linear), [0.0; 2]);
         assert!(field_lean_at(&LAYOUT, [f32::INFINITY, f32::NAN], linear)[0].is_nan());
     }
 

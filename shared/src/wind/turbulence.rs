@@ -79,10 +79,11 @@ impl Turbulence {
         let band = Band::new(longest_m, SHORTEST_M.into());
         let [east, south] = unit(scene.wind.mean_m_per_s.map(f64::from));
         let mut random = SplitMix64::new(folded(scene.seed).into());
-        // A permutation of the directions' strata: 7 and the number of waves have no common factor.
+        // Each wave has a stratum of the energy and one of the directions, in every combination over all seeds: 7 and the number of waves have no common factor.
+        let first = (random.next_u64() % WAVES as u64) as usize;
         let wave = |n: usize| {
             let k = band.wavenumber((n as f64 + random.unit()) / WAVES as f64);
-            let [along, across] = heading((((7 * n) % WAVES) as f64 + random.unit()) / WAVES as f64);
+            let [along, across] = heading((((first + 7 * n) % WAVES) as f64 + random.unit()) / WAVES as f64);
             let per_m = [along * east - across * south, along * south + across * east].map(|part| part * k / TAU);
             let turnover = libm::cbrt(k * k / f64::from(VON_KARMAN * REFERENCE_M)) / TAU;
             Wave { per_m, phase: random.unit(), per_path_m: if random.unit() < 0.5 { turnover } else { -turnover } }

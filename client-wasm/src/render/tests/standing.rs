@@ -1,5 +1,6 @@
 //! Selection of the plants that are bent: those in view, and those that return into view.
 
+use super::wind::blow_gusts;
 use super::*;
 
 /// Rates of the near plants (rad/s, all links), 0 where there was none.
@@ -13,6 +14,7 @@ fn rates(gpu: &Gpu, picture: &OffscreenRenderer) -> Vec<f32> {
 fn plants_that_return_into_view_start_at_rest_and_others_keep_moving() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut mirror = meadow(6.0);
+    blow_gusts(&mut mirror, 6.0);
     let mut picture = OffscreenRenderer::new(&gpu, [64, 36], Quality::Low);
     let ahead = Camera { eye_m: Vec3::new(32.0, 1.6, 32.0), pitch_rad: -0.4, ..Camera::default() };
     let aside = Camera { heading_rad: 0.5, ..ahead };

@@ -42,6 +42,20 @@ fn patches_show_the_box_where_the_server_has_it() {
     }
 }
 
+/// Streams a wind towards the east whose gusts travel along for 1.2 s.
+pub(super) fn blow_gusts(mirror: &mut Mirror, m_per_s: f32) {
+    let cells = mirror.decoded_scene().expect("a scene").scene().wind.cells.map(|n| n as usize);
+    let count = cells.iter().product::<usize>();
+    let codes: Vec<i8> = (0..3 * count).map(|at| if at < count { wind_code(m_per_s) } else { 0 }).collect();
+    for frame in 0..6 {
+        let travel_m = f64::from(m_per_s) * 0.25 * f64::from(frame);
+        let turbulence = TurbulenceState { travel_m: [travel_m, 0.0], path_m: 0.08 * travel_m, friction_m_per_s: 0.08 * m_per_s };
+        let payload = codec::encode(Shape::wind(cells[0], false), &codes, None);
+        let message = ServerMessage::Wind { tick: 15 * u64::from(frame), seq: frame, key: true, turbulence, payload };
+        mirror.apply(message).expect("a sound wind");
+    }
+}
+
 #[test]
 fn the_shaders_have_the_wind_of_the_core() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
