@@ -47,7 +47,7 @@ impl Picture {
         let pose = play(&mut studio.stage, self.shot.act(), eye_m)?;
         studio.follow(pose.as_ref());
         let (mut frame_secs, mut pass_secs) = (Vec::new(), Vec::new());
-        for frame in 0..self.frames {
+        for _ in 0..self.frames {
             studio.stage.run(DT_SECS);
             studio.stage.show()?;
             let start = Instant::now();
