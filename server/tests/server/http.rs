@@ -94,6 +94,41 @@ async fn pages_health_and_origins_are_served() {
     server.stop().await;
 }
 
+/// The status of a response and its JSON.
+async fn json_of(server: &Server, request: &str) -> (u16, serde_json::Value) {
+    let response = String::from_utf8(server.http(request).await).unwrap();
+    let (head, body) = response.split_once("\r\n\r\n").unwrap();
+    (head.split(' ').nth(1).unwrap().parse().unwrap(), serde_json::from_str(body).unwrap())
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn wind_and_bend_are_read_by_http() {
+    let server = Server::start(Limits::default()).await;
+    let mut client = PlainClient::join(&server, "client").await;
+    client.frame().await;
+    let (status, wind) = json_of(&server, "GET /api/wind?x=3.5&z=2&y=9 HTTP/1.1").await;
+    assert_eq!(status, 200, "{wind}");
+    // The stand-in's wind has the same code everywhere, and no gusts.
+    let code = wind["wind_tick"].as_u64().unwrap() % 100;
+    let expected = prairie_core::wire::quantise::wind_m_per_s(code as i8);
+    let resolved: [f32; 3] = serde_json::from_value(wind["resolved_m_per_s"].clone()).unwrap();
+    assert!(resolved.iter().all(|speed| (speed - expected).abs() < 1e-4), "{wind} instead of {expected}");
+    assert_eq!(wind["gust_m_per_s"], serde_json::json!([0.0, 0.0]));
+    let (status, bend) = json_of(&server, "GET /api/bend?x=3.5&z=2 HTTP/1.1").await;
+    assert!(status == 200 && bend["bend_rad"].as_array().is_some_and(|lean| lean.len() == 2), "{bend}");
+    let body = r#"{"at_m": [[1, 9, 1], [2, 9, 2], [3, 9, 3]]}"#;
+    let post = |path: &str, body: &str| {
+        format!("POST {path} HTTP/1.1\r\ncontent-length: {}\r\nconnection: close\r\nhost: {}\r\n\r\n{body}", body.len(), server.address)
+    };
+    let (status, winds) = json_of(&server, &post("/api/wind", body)).await;
+    assert!(status == 200 && winds["wind_m_per_s"].as_array().is_some_and(|winds| winds.len() == 3), "{winds}");
+    let (status, error) = json_of(&server, &post("/api/bend", body)).await;
+    assert_eq!((status, error["error"].as_str()), (400, Some("`at_m[0]` has 3 numbers; allowed: [x, z]")));
+    let (status, error) = json_of(&server, "GET /api/wind?x=1 HTTP/1.1").await;
+    assert_eq!((status, error["error"].as_str()), (400, Some("`z` is missing: a number of metres")));
+    server.stop().await;
+}
+
 /// The status of the response to a WebSocket request with these headers.
 async fn open_web_socket(server: &Server, host: &str, origin: &str) -> u16 {
     let mut request = format!("ws://{host}/ws").into_client_request().unwrap();
