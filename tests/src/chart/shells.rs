@@ -41,9 +41,8 @@ fn knolls(slices: Option<u32>) -> Result<Mirror> {
 }
 
 /// Frames per second of the fastest frame, since disturbances only lengthen frames.
-fn frames_per_s(gpu: &Gpu, size_px: [u32; 2], mirror: &mut Mirror, layers: u32, frames: u32) -> f64 {
+fn frames_per_s(picture: &mut OffscreenRenderer, mirror: &mut Mirror, layers: u32, frames: u32) -> f64 {
     let camera = Camera { eye_m: Vec3::new(66.0, 3.5, 60.0), heading_rad: -0.35, pitch_rad: -0.3, ..Camera::default() };
-    let mut picture = OffscreenRenderer::new(gpu, size_px, Quality::Low);
     picture.set_options(RenderOptions { shell_layers: Some(layers), ..RenderOptions::default() });
     let times = (0..frames).map(|frame| {
         let begun = Instant::now();
@@ -68,9 +67,10 @@ fn draw(quick: bool, caption: &str) -> Result<Drawn> {
         for slices in SLICES {
             let mut mirror = knolls(slices)?;
             let shown = mirror.decoded_scene().map_or(0, |land| land.scene().shells.slices);
+            let mut picture = OffscreenRenderer::new(&gpu, size_px, Quality::Low);
             let mut points = Vec::new();
             for (layers, theirs) in TABLE {
-                let found = frames_per_s(&gpu, size_px, &mut mirror, layers, frames);
+                let found = frames_per_s(&mut picture, &mut mirror, layers, frames);
                 writeln!(csv, "{width},{height},{shown},{layers},{found:.2},{}", theirs[n])?;
                 writeln!(
                     summary,

@@ -1,24 +1,25 @@
 //! Dust under each scheme: a rotating hill, Zalesak's slotted disc, and a diffusing spot.
 
 use prairie_wind::{Advection, Solver};
+use tests::chart::tables::assert_published;
 use tests::norms::Norms;
-use tests::orders::{self, assert_formal};
+use tests::orders;
 use tests::problems::{Rotation, SlottedDisc};
 use tests::turntable::turntable;
 
 #[test]
 fn each_advection_scheme_has_its_order_on_a_rotating_hill() {
-    assert_formal(&orders::rotating_gaussian());
+    assert_published(&orders::rotating_gaussian());
 }
 
 #[test]
 fn each_diffusion_is_second_order_in_space() {
-    assert_formal(&orders::heat_space());
+    assert_published(&orders::heat_space());
 }
 
 #[test]
 fn each_diffusion_has_its_order_in_time() {
-    assert_formal(&orders::heat_time());
+    assert_published(&orders::heat_time());
 }
 
 /// Result of one revolution of the disc in 628 steps.
