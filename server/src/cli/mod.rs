@@ -25,6 +25,7 @@ mod usage;
 mod version;
 #[cfg(not(feature = "picture"))]
 mod without_picture;
+mod world;
 
 use check::Check;
 use clap::{Parser, Subcommand};
