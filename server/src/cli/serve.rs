@@ -174,7 +174,7 @@ fn survive_full_files() {
 }
 
 /// Parser of an address to listen on. Whether its host exists and belongs to this machine is known only when the server listens.
-fn address(text: &str) -> Result<String, String> {
+pub(super) fn address(text: &str) -> Result<String, String> {
     match text.rsplit_once(':') {
         Some((host, port)) if !host.is_empty() && port.parse::<u16>().is_ok() => Ok(text.to_owned()),
         _ => Err("expected HOST:PORT, such as 127.0.0.1:8080 or 0.0.0.0:8080, with a port from 0 to 65535".to_owned()),

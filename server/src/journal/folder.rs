@@ -71,14 +71,15 @@ pub fn find(path: &Path) -> Result<PathBuf, JournalError> {
     }
 }
 
-/// Name or path of the scene of the world in `path`, as given to `prairie serve`.
+/// Name or path of the scene of the world in `path`, as given to `prairie serve`, and its [`name_of`].
 ///
 /// # Errors
-/// When it cannot be read.
-pub(super) fn scene_of(path: &Path) -> Result<PathBuf, JournalError> {
+/// When they cannot be read.
+pub(super) fn scene_of(path: &Path) -> Result<(PathBuf, String), JournalError> {
     let file = path.join("scene");
     let text = fs::read_to_string(&file).map_err(|error| JournalError::file(&file, error))?;
-    Ok(PathBuf::from(text))
+    let (source, name) = text.rsplit_once('\n').unwrap_or((&text, ""));
+    Ok((PathBuf::from(source), name.to_owned()))
 }
 
 /// Numbers of the generations in `path`, ascending.
@@ -124,7 +125,8 @@ impl Folder {
         let source = scene.files.first().map(|file| fs::canonicalize(file).unwrap_or_else(|_| file.clone()));
         let source = source.map_or_else(|| scene.name.clone(), |file| file.to_string_lossy().into_owned());
         let scene_path = path.join("scene");
-        write_atomically(&scene_path, source.as_bytes()).map_err(|error| JournalError::file(&scene_path, error))?;
+        write_atomically(&scene_path, format!("{source}\n{}", name_of(scene)).as_bytes())
+            .map_err(|error| JournalError::file(&scene_path, error))?;
         let key = key(&path.join("key"))?;
         Ok(Self { path, key, _lock: lock })
     }

@@ -76,8 +76,7 @@ mod tests {
         let drive = [-1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0, 0.0f32..1.0];
         let camera = (any::<u32>(), any::<[f32; 3]>()).prop_map(|(client, eye_m)| Camera { client, eye_m });
         prop_oneof![
-            (any::<u32>(), 0..VehicleKind::ALL.len())
-                .prop_map(|(client, kind)| Command::Spawn { client, kind: VehicleKind::ALL[kind] }),
+            (any::<u32>(), 0..VehicleKind::ALL.len()).prop_map(|(client, kind)| Command::Spawn { client, kind: VehicleKind::ALL[kind] }),
             any::<u32>().prop_map(|client| Command::Remove { client }),
             (any::<u32>(), drive).prop_map(|(client, [throttle, steer, lift, brake])| {
                 Command::Drive { client, drive: Drive { throttle, steer, lift, brake } }

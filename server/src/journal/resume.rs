@@ -53,7 +53,9 @@ fn say_that_it_is_new(config: &WorldFolder, folder: &Folder, newest: u64) {
     }
     let others = folder::others(&config.path, folder.path());
     match others.last() {
-        Some(other) => tracing::info!(folder = name, kept = escaped(other), "the scene has changed; beginning a new world, and keeping the old one"),
+        Some(other) => {
+            tracing::info!(folder = name, kept = escaped(other), "the scene has changed; beginning a new world, and keeping the old one")
+        }
         None => tracing::info!(folder = name, "beginning a new world"),
     }
 }

@@ -33,7 +33,8 @@ pub enum WeatherRestoreError {
 impl Weather {
     /// A copy of the state.
     pub fn state(&self) -> WeatherState {
-        let StepReport { courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps } = self.report;
+        let StepReport { courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps } =
+            self.report;
         WeatherState {
             air: self.air.state(),
             resets: self.resets,
@@ -51,8 +52,7 @@ impl Weather {
         weather.air.restore(&state.air)?;
         weather.resets = state.resets;
         let (courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps) = state.report;
-        weather.report =
-            StepReport { courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps };
+        weather.report = StepReport { courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps };
         weather.observe(state.stepped);
         Ok(weather)
     }

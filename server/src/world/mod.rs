@@ -17,12 +17,12 @@ use crate::plants::PlantDamage;
 use crate::settings_error::SettingsError;
 use crate::snapshot::{Diagnostics, PatchQuantiser, Snapshot};
 use crate::weather::Weather;
+use departed::Departed;
 use prairie_core::plant::flora::Flora;
 use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::Scene;
 use prairie_core::terrain::{CoverMap, HeightMap};
 use prairie_core::wire::{Drive, ObjectId};
-use departed::Departed;
 use std::sync::Arc;
 
 /// The maps of a scene.

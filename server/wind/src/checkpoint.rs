@@ -111,7 +111,8 @@ mod tests {
             (Config::default().advection, Config::default().time),
         ];
         let iterative = Pressure::Iterative(IterativeMethod::Multigrid, Effort { tolerance: 1e-3, sweeps: 3 });
-        for (method, pressure) in [(Method::Staggered, Pressure::Direct), (Method::Staggered, iterative), (Method::StableFluids, iterative)] {
+        for (method, pressure) in [(Method::Staggered, Pressure::Direct), (Method::Staggered, iterative), (Method::StableFluids, iterative)]
+        {
             for (advection, time) in schemes.into_iter().filter(|(advection, time)| time.allows(*advection)) {
                 let boundary = [[Boundary::Wrap; 2], [Boundary::FreeSlip; 2], [Boundary::Wrap; 2]];
                 let config =

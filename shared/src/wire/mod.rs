@@ -11,7 +11,9 @@ pub mod quantise;
 
 pub use close::Close;
 pub use codec::{CodecError, Shape};
-pub use message::{BrokenPlant, ClientMessage, Drive, Mesh, ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage, WireError, decode, encode};
+pub use message::{
+    BrokenPlant, ClientMessage, Drive, Mesh, ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage, WireError, decode, encode,
+};
 pub use protocol::PROTOCOL;
 
 /// Largest message a client may send (bytes).

@@ -3,7 +3,8 @@
 use super::{PINS, PROTOCOL};
 use crate::scene::{Allowed, FIELDS, Scene, VehicleKind, parse};
 use crate::wire::{
-    BrokenPlant, ClientMessage, Drive, Mesh, ObjectPose, PROOF_BYTES, Peer, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, WireError, decode, encode,
+    BrokenPlant, ClientMessage, Drive, Mesh, ObjectPose, PROOF_BYTES, Peer, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, WireError,
+    decode, encode,
 };
 use serde::{Deserialize, de::DeserializeOwned};
 use std::fmt::{Debug, Write};
@@ -27,7 +28,12 @@ fn client_messages() -> Vec<ClientMessage> {
 /// One example of every server message, in the order of the variants.
 fn server_messages() -> Vec<ServerMessage> {
     vec![
-        ServerMessage::Welcome { client: 3, proof: [0xab; PROOF_BYTES], server_version: "0.1.0".to_owned(), scene_name: "meadow".to_owned() },
+        ServerMessage::Welcome {
+            client: 3,
+            proof: [0xab; PROOF_BYTES],
+            server_version: "0.1.0".to_owned(),
+            scene_name: "meadow".to_owned(),
+        },
         ServerMessage::Scene {
             scene: Box::new(filled_scene()),
             height_png: vec![1, 2],
