@@ -30,7 +30,7 @@ async fn main() -> anyhow::Result<()> {
     loop {
         let message = receive(&mut socket, &mut bytes).await?;
         match message {
-            ServerMessage::Welcome { client, server_version, scene_name } => {
+            ServerMessage::Welcome { client, server_version, scene_name, .. } => {
                 println!("client {client} of prairie {server_version}, scene {scene_name}");
             }
             ServerMessage::Scene { scene, .. } => {

@@ -1,6 +1,7 @@
 //! Configuration of a run.
 
 use crate::inspect::Target;
+use crate::journal::WorldFolder;
 use crate::net::{HostName, Origin, Tls};
 use crate::scenes::LoadedScene;
 use crate::stream::SendLimits;
@@ -25,6 +26,8 @@ pub struct Config {
     pub publish_hz: f32,
     /// Whether errors that pages report are logged; otherwise they are discarded. Default false.
     pub logs_page_errors: bool,
+    /// Where the world is kept between runs; `None` for a world without memory. Default none.
+    pub world: Option<WorldFolder>,
     /// Limits on clients and their traffic.
     pub limits: Limits,
 }
@@ -41,6 +44,7 @@ impl Config {
             threads: None,
             publish_hz: 20.0,
             logs_page_errors: false,
+            world: None,
             limits: Limits::default(),
         }
     }

@@ -20,6 +20,7 @@ pub mod escaped;
 mod file;
 pub mod histogram;
 pub mod inspect;
+pub mod journal;
 mod log_limit;
 pub mod metrics;
 pub mod net;

@@ -2,6 +2,7 @@
 
 use crate::config::Config;
 use crate::escaped::escaped;
+use crate::journal::{self, JournaledWorld};
 use crate::run::{RunError, run_simulation};
 use crate::scenes::{self, LoadedScene, SceneError};
 use crate::world::World;
@@ -26,11 +27,12 @@ const POLLS_PER_RETRY: u32 = 5;
 /// # Errors
 /// As [`run_simulation`].
 pub async fn run_and_reload(
-    mut world: World,
+    world: impl Into<JournaledWorld>,
     mut config: Config,
     listener: TcpListener,
     shutdown: impl Future<Output = ()>,
 ) -> Result<(), RunError> {
+    let mut world = world.into();
     if config.scene.files.is_empty() || config.rerun.is_some() {
         config.scene.nutrients = None;
         return run_simulation(world, config, listener, shutdown).await;
@@ -49,7 +51,31 @@ pub async fn run_and_reload(
         run_simulation(world, config.clone(), socket, until).await?;
         let Some((scene, new)) = changed else { return Ok(()) };
         tracing::info!(file = escaped(&scene.files[0]), "the scene has changed; restarting the world");
-        (config.scene, world) = (scene, new);
+        config.scene = scene;
+        world = reopened(&config, new).await?;
+    }
+}
+
+/// The world that is kept of the changed scene, or else the new one.
+async fn reopened(config: &Config, new: World) -> Result<JournaledWorld, RunError> {
+    let (folder, scene) = (config.world.clone(), config.scene.clone());
+    if folder.is_none() {
+        return Ok(new.into());
+    }
+    let opening = tokio::task::spawn_blocking(move || {
+        let mut new = Some(new);
+        let opened = journal::open_or(folder.as_ref(), &scene, || Ok(new.take().expect("asked for once")));
+        opened.or_else(|error| match new.take() {
+            Some(new) => {
+                tracing::error!("{error}; the world of the changed scene is not kept");
+                Ok(JournaledWorld::from(new))
+            }
+            None => Err(error),
+        })
+    });
+    match opening.await {
+        Ok(opened) => Ok(opened?),
+        Err(_) => Err(RunError::WorldStopped),
     }
 }
 

@@ -2,11 +2,10 @@
 
 use crate::config::{Config, Limits};
 use crate::inspect::{InspectError, Inspector};
-use crate::net::{self, Access, Admission, App, FieldSampler, PageErrors, SessionLog};
+use crate::journal::{self, JournalError};
+use crate::net::{self, Access, Admission, App, FieldSampler, PageErrors, Proofs, SessionLog};
 use crate::runner::{Published, Runner, Simulation, Timing};
-use crate::settings_error::SettingsError;
 use crate::stream::{self, Clients, Streamer};
-use crate::world::World;
 use prairie_core::grid::PatchLayout;
 use prairie_core::wire::{self, ServerMessage};
 use std::sync::Arc;
@@ -28,9 +27,9 @@ pub enum RunError {
     /// The listening socket failed.
     #[error("the listening socket failed: {0}")]
     Socket(std::io::Error),
-    /// The scene's constants contradict each other.
+    /// The scene's constants contradict each other, or the folder of the world cannot be used.
     #[error(transparent)]
-    Settings(#[from] SettingsError),
+    World(#[from] JournalError),
     /// The recording cannot be opened.
     #[error(transparent)]
     Inspect(#[from] InspectError),
@@ -45,7 +44,7 @@ pub enum RunError {
     StreamStopped,
 }
 
-/// Serves the scene on `listener` until `shutdown` completes; then notifies the clients and joins every thread.
+/// Serves the scene, in the world that is kept or a new one, on `listener` until `shutdown` completes; then notifies the clients and joins every thread.
 ///
 /// `shutdown` is first polled after the world is built, the recording opened and every thread started, so it may begin by printing
 /// the address of the page.
@@ -53,10 +52,9 @@ pub enum RunError {
 /// # Errors
 /// [`RunError`] when the world cannot be built, or one of the threads fails.
 pub async fn run(mut config: Config, listener: TcpListener, shutdown: impl Future<Output = ()>) -> Result<(), RunError> {
-    let maps = config.scene.maps();
+    let world = journal::open(config.world.as_ref(), &config.scene)?;
     // Only needed to grow the plants, and possibly large.
     config.scene.nutrients = None;
-    let world = World::new(&config.scene.scene, maps)?;
     run_simulation(world, config, listener, shutdown).await
 }
 
@@ -75,9 +73,9 @@ pub async fn run_simulation(
     let timing = Timing { tick_hz: scene.tick_hz, publish_hz: config.publish_hz, threads: config.threads };
     let inspector =
         config.rerun.as_ref().map(|target| Inspector::start(target, scene, &config.scene.height, &config.scene.cover)).transpose()?;
+    let (proofs, clients) = (Proofs::new(simulation.key()), Arc::new(Clients::starting_at(simulation.first_client())));
     let runner = Runner::start(simulation, timing)?;
     let mut published = runner.published();
-    let clients = Arc::new(Clients::default());
     let streamer = Streamer::new(layout, config.limits.send, timing.published_hz());
     let counters = streamer.counters();
     let mut stream = stream::start(streamer, runner.published(), clients.clone(), runner.commands())?;
@@ -90,6 +88,7 @@ pub async fn run_simulation(
         counters,
         published: runner.published(),
         commands: runner.commands(),
+        proofs,
         scene_name: config.scene.name.clone(),
         scene: scene_message(&config),
         limits: config.limits,

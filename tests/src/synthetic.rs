@@ -46,7 +46,7 @@ fn messages() -> Vec<ServerMessage> {
     let heights = HeightMap::from_png(&height_png, &scene.terrain).expect("a height map");
     let layout = PatchLayout::from(&scene.patches);
     let mut messages = vec![
-        ServerMessage::Welcome { client: 1, server_version: String::new(), scene_name: String::new() },
+        ServerMessage::Welcome { client: 1, proof: [0; 32], server_version: String::new(), scene_name: String::new() },
         ServerMessage::Scene { scene: Box::new(scene.clone()), height_png, covering_png, nutrient_png: Vec::new(), models: Vec::new() },
         wind(&scene),
         ServerMessage::Poses { tick: 1, objects: objects(&heights) },

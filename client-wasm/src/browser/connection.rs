@@ -3,7 +3,7 @@
 use super::socket::{Socket, SocketEvent};
 use glam::Vec3;
 use prairie_core::scene::VehicleKind;
-use prairie_core::wire::{self, ClientMessage, Close, Drive};
+use prairie_core::wire::{self, ClientMessage, Close, Drive, PROOF_BYTES};
 
 /// Minimum interval between two view messages (s).
 const VIEW_SECS: f64 = 0.125;
@@ -46,6 +46,10 @@ pub(super) struct Connection {
     handle: fn(SocketEvent),
     socket: Option<Socket>,
     state: ConnectionState,
+    /// Number of this client and its proof, for the next connection.
+    proof: Option<(u32, [u8; PROOF_BYTES])>,
+    /// Whether the server has kept the number, and with it the vehicle, from the connection before.
+    is_back: bool,
     retry_at_secs: f64,
     last_view: Option<(Vec3, f32)>,
     view_at_secs: f64,
@@ -75,6 +79,8 @@ impl Connection {
             handle,
             socket: None,
             state: ConnectionState::Connecting { attempts: 0, reason: None },
+            proof: None,
+            is_back: false,
             retry_at_secs: 0.0,
             last_view: None,
             view_at_secs: 0.0,
@@ -98,6 +104,11 @@ impl Connection {
             ConnectionState::Connected { client } => Some(client),
             _ => None,
         }
+    }
+
+    /// Whether the server has kept the number, and with it the vehicle, from the connection before.
+    pub(super) fn is_back(&self) -> bool {
+        self.is_back
     }
 
     /// Round-trip time of the last ping (s).
@@ -134,9 +145,13 @@ impl Connection {
         }
     }
 
-    /// Handles an opened socket: sends the hello.
+    /// Handles an opened socket: sends the hello, with the proof of the connection before.
     pub(super) fn opened(&self) {
-        self.send(&ClientMessage::Hello { name: self.name.clone() });
+        let name = self.name.clone();
+        self.send(&match self.proof {
+            Some((client, proof)) => ClientMessage::Return { name, client, proof },
+            None => ClientMessage::Hello { name },
+        });
     }
 
     /// Counts the bytes of a received message.
@@ -145,7 +160,9 @@ impl Connection {
     }
 
     /// Handles the server's welcome.
-    pub(super) fn welcomed(&mut self, client: u32) {
+    pub(super) fn welcomed(&mut self, client: u32, proof: [u8; PROOF_BYTES]) {
+        self.is_back = self.proof.is_some_and(|(before, _)| before == client);
+        self.proof = Some((client, proof));
         self.state = ConnectionState::Connected { client };
         self.last_view = None;
         self.view_at_secs = f64::NEG_INFINITY;

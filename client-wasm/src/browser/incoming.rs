@@ -36,8 +36,8 @@ impl App {
     fn receive(&mut self, message: ServerMessage, now_secs: f64) {
         self.run_clock(now_secs);
         match self.mirror.apply(message) {
-            Ok(Some(Event::Welcome { client, scene_name, .. })) => {
-                self.connection.welcomed(client);
+            Ok(Some(Event::Welcome { client, proof, scene_name, .. })) => {
+                self.connection.welcomed(client, proof);
                 self.scene_name = Some(scene_name);
                 self.was_welcomed = true;
             }
@@ -67,12 +67,12 @@ impl App {
         self.set_camera(camera);
     }
 
-    /// Resumes after a reconnection: sends the camera position, which the server must know first, and takes the same kind of vehicle again.
+    /// Resumes after a reconnection: sends the camera position, which the server must know first, and takes the same kind of vehicle again unless its own was kept.
     fn resume(&mut self, now_secs: f64) {
         if let Some(camera) = self.rig.as_ref().map(Rig::camera) {
             self.send_view(camera, now_secs);
         }
-        if self.wanted.is_some() {
+        if self.wanted.is_some() && !self.connection.is_back() {
             self.connection.choose(self.wanted);
         }
     }

@@ -8,7 +8,7 @@ use super::scene::DecodedScene;
 use prairie_core::grid::PatchIndex;
 use prairie_core::scene::Scene;
 use prairie_core::wind::WindField;
-use prairie_core::wire::{ObjectId, ObjectPose, Peer, Refusal, ServerMessage};
+use prairie_core::wire::{ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage};
 
 /// Maximum number of peers stored; the server's list is truncated to it.
 pub const PEER_LIMIT: usize = 4096;
@@ -23,6 +23,8 @@ pub enum Event {
     Welcome {
         /// Number that identifies this client.
         client: u32,
+        /// Proof of the number, for a return.
+        proof: [u8; PROOF_BYTES],
         /// Version of the server's package.
         server_version: String,
         /// Name of the scene that the server runs.
@@ -73,7 +75,9 @@ impl Mirror {
     /// [`MirrorError`] if the message is malformed or out of range.
     pub fn apply(&mut self, message: ServerMessage) -> Result<Option<Event>, MirrorError> {
         Ok(match message {
-            ServerMessage::Welcome { client, server_version, scene_name } => Some(Event::Welcome { client, server_version, scene_name }),
+            ServerMessage::Welcome { client, proof, server_version, scene_name } => {
+                Some(Event::Welcome { client, proof, server_version, scene_name })
+            }
             ServerMessage::Scene { scene, height_png, covering_png, nutrient_png, models } => {
                 let decoded = DecodedScene::new(*scene, &height_png, &covering_png, &nutrient_png, models)?;
                 self.broken = BrokenPlants::new(decoded.flora().map_or(0, |flora| flora.grown().sites.total()));

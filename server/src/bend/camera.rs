@@ -2,9 +2,10 @@
 
 use super::vector::squared_distance;
 use prairie_core::grid::{PatchIndex, PatchLayout};
+use serde::{Deserialize, Serialize};
 
 /// A client's camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
     /// Number of the client.
     pub client: u32,

@@ -28,6 +28,16 @@ impl GustNoise {
         (settings.strength_rad_per_s2 > 0.0).then(|| Self { noise: Perlin::new(scene.seed as u32), settings, along, time_secs: 0.0 })
     }
 
+    /// Simulated time of the next step (s).
+    pub(super) fn time_secs(&self) -> f64 {
+        self.time_secs
+    }
+
+    /// Sets the simulated time of the next step (s).
+    pub(super) fn set_time(&mut self, time_secs: f64) {
+        self.time_secs = time_secs;
+    }
+
     /// Patches whose centre is within reach of a camera.
     pub(super) fn patches(&self, layout: &PatchLayout, cameras: &[Camera]) -> Vec<PatchIndex> {
         let reach_m = self.settings.reach_m;

@@ -19,4 +19,4 @@ pub(crate) mod vector;
 pub mod wind_drawing;
 
 pub use camera::Camera;
-pub use simulation::BendSimulation;
+pub use simulation::{BendSimulation, BendState};

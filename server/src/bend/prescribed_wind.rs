@@ -146,6 +146,16 @@ impl PrescribedWinds {
         Self { winds, downwash, objects: scene.objects.clone(), time_secs: 0.0 }
     }
 
+    /// Simulated time of the next step (s).
+    pub(super) fn time_secs(&self) -> f64 {
+        self.time_secs
+    }
+
+    /// Sets the simulated time of the next step (s).
+    pub(super) fn set_time(&mut self, time_secs: f64) {
+        self.time_secs = time_secs;
+    }
+
     /// Winds of the next `dt_secs`: downwash below the rotors among `motions`, and the drawn winds. A wind that travels far in a step is repeated along
     /// its path, at most a quarter of its radius apart.
     pub fn step(&mut self, motions: &[Motion], height: &HeightMap, dt_secs: f32) -> Vec<PrescribedWind> {

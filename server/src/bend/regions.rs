@@ -22,6 +22,11 @@ impl Regions {
         self.evicted
     }
 
+    /// Sets the number of patches so far that were put to sleep because of the limit.
+    pub(super) fn set_evicted(&mut self, evicted: u64) {
+        self.evicted = evicted;
+    }
+
     /// Puts quiet patches to sleep and wakes the `touched` ones. Above the limit, the patches farthest from any camera sleep (farthest from the centre
     /// of the world when there is no camera).
     pub(super) fn update(&mut self, field: &mut Field, touched: &[PatchIndex], cameras: &[Camera]) {

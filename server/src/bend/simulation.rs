@@ -3,7 +3,7 @@
 use super::bodies::Bodies;
 use super::camera::Camera;
 use super::contact::Contact;
-use super::flattened::FlattenedGrass;
+use super::flattened::{FlattenedGrass, FlattenedState};
 use super::grass_properties::GrassProperties;
 use super::grass_state::{self, GrassState};
 use super::gust_noise::GustNoise;
@@ -14,12 +14,13 @@ use super::swept_footprint::SweptFootprint;
 use super::wind_drawing::WindDrawings;
 use crate::checksum::Checksum;
 use crate::objects::{Motion, MotionError};
-use prairie_core::bend::{Field, Kinds, Patch, Report, Scheme, StepError, TILE};
+use prairie_core::bend::{Field, FieldState, Kinds, Patch, Report, Scheme, StateError, StepError, TILE};
 use prairie_core::grid::{PatchIndex, PatchLayout};
 use prairie_core::scene::Scene;
 use prairie_core::terrain::{CoverMap, HeightMap};
 use prairie_core::wind::WindField;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Margin around contacts within which patches are woken (m).
@@ -40,6 +41,20 @@ pub struct BendSimulation {
     rejected_count: u64,
     reset_count: u64,
     regions: Regions,
+    report: Report,
+}
+
+/// A copy of the state of a [`BendSimulation`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BendState {
+    field: FieldState,
+    flattened: FlattenedState,
+    gusts_secs: Option<f64>,
+    winds_secs: f64,
+    motions: Vec<Motion>,
+    rejected_count: u64,
+    reset_count: u64,
+    evicted: u64,
     report: Report,
 }
 
@@ -168,6 +183,38 @@ impl BendSimulation {
             }
         }
         sum.add(self.flattened.words());
+    }
+
+    /// A copy of the state.
+    pub fn state(&self) -> BendState {
+        BendState {
+            field: self.field.state(),
+            flattened: self.flattened.state(),
+            gusts_secs: self.gusts.as_ref().map(GustNoise::time_secs),
+            winds_secs: self.winds.time_secs(),
+            motions: self.motions.clone(),
+            rejected_count: self.rejected_count,
+            reset_count: self.reset_count,
+            evicted: self.regions.evicted(),
+            report: self.report,
+        }
+    }
+
+    /// Restores a copy of the state in the same scene. The errors of the newest step's rejected motions are not part of it.
+    ///
+    /// # Errors
+    /// [`StateError`] when the state is that of another grid of patches; this one is then partly restored.
+    pub fn restore(&mut self, state: BendState) -> Result<(), StateError> {
+        self.field.restore(state.field)?;
+        self.flattened.restore(state.flattened);
+        if let (Some(gusts), Some(secs)) = (&mut self.gusts, state.gusts_secs) {
+            gusts.set_time(secs);
+        }
+        self.winds.set_time(state.winds_secs);
+        self.regions.set_evicted(state.evicted);
+        self.motions = state.motions;
+        (self.rejected_count, self.reset_count, self.report) = (state.rejected_count, state.reset_count, state.report);
+        Ok(())
     }
 
     /// Propagates the waves. Grass that needs more sub-steps than allowed is put to rest and counts as reset.

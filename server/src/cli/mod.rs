@@ -3,6 +3,7 @@
 mod announce;
 mod check;
 mod completions;
+mod diff;
 #[cfg(feature = "picture")]
 mod film;
 mod log;
@@ -13,6 +14,7 @@ mod number;
 #[cfg(feature = "picture")]
 mod picture;
 mod print;
+mod replay;
 mod scenes;
 mod schema;
 mod serve;
@@ -25,10 +27,12 @@ mod usage;
 mod version;
 #[cfg(not(feature = "picture"))]
 mod without_picture;
+mod world;
 
 use check::Check;
 use clap::{Parser, Subcommand};
 use completions::Completions;
+use diff::DiffArguments;
 #[cfg(feature = "picture")]
 use film::Film;
 use log::LogFormat;
@@ -38,6 +42,7 @@ use new::New;
 #[cfg(feature = "picture")]
 use picture::Picture;
 pub(crate) use print::complain;
+use replay::ReplayArguments;
 use scenes::Scenes;
 use schema::Schema;
 use serve::Serve;
@@ -80,6 +85,12 @@ enum Command {
     /// Simulate a scene and serve it to browsers
     #[command(after_help = serve::EXAMPLES)]
     Serve(Box<Serve>),
+    /// Play what happened in a world, exactly, for people to watch
+    #[command(after_help = replay::EXAMPLES)]
+    Replay(ReplayArguments),
+    /// Find the first step at which two journals differ
+    #[command(after_help = diff::EXAMPLES)]
+    Diff(DiffArguments),
     /// List the built-in scenes
     #[command(after_help = scenes::EXAMPLES)]
     Scenes(Scenes),
@@ -109,7 +120,7 @@ enum Command {
     Man(Manual),
 }
 
-/// Parses the arguments and runs the command. Returns the exit status: 0, 1 if a scene is invalid, or 2 for wrong arguments or environment variables.
+/// Parses the arguments and runs the command. Returns the exit status: 0, 1 if a scene is invalid or journals differ, or 2 for wrong arguments or environment variables.
 ///
 /// # Errors
 /// Those of the command, for `main` to print.
@@ -133,6 +144,8 @@ pub(crate) fn run() -> anyhow::Result<ExitCode> {
     match command {
         Command::Serve(serve) if is_named || !serve.has_word() => serve.run().map(done),
         Command::Serve(serve) => serve.run().map(done).map_err(unknown_word::suggest_commands),
+        Command::Replay(replay) => replay.run().map(done),
+        Command::Diff(diff) => diff.run(),
         Command::Scenes(scenes) => scenes.run().map(done),
         Command::Check(check) => check.run(),
         Command::New(new) => new.run().map(done),

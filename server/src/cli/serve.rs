@@ -5,13 +5,13 @@ use super::log::LogFormat;
 use super::number::whole;
 use super::stop_signal::StopSignal;
 use super::tls::TlsArguments;
+use super::world::WorldArguments;
 use anyhow::Context as _;
 use clap::{Args, ValueHint};
 use prairie::inspect::Target;
 use prairie::net::bind;
 use prairie::scenes::SceneError;
-use prairie::world::World;
-use prairie::{Config, Limits, scenes};
+use prairie::{Config, Limits, journal, scenes};
 use std::ffi::{OsStr, OsString};
 
 pub(super) const EXAMPLES: &str = "\
@@ -25,10 +25,12 @@ Examples:
   prairie serve --allow-origin https://play.example
                                              behind a proxy that serves https://play.example
   prairie serve --rerun save=run.rrd         records the run for the rerun viewer
+  prairie serve --world none                 a world that is forgotten when the server stops
 
 Browsers enable WebGPU only on pages from this machine or over https, so other machines need --tls.
 With `--tls self` the browser shows a warning: compare the fingerprint with the one printed here.
 A scene file is reloaded when you save it or a file that it names; all pages reconnect.
+The world is kept: after a stop or a crash it goes on where it was. `prairie replay` plays what was.
 The log goes to stderr; RUST_LOG=prairie=debug makes it more detailed.";
 
 /// Scene served if none is given.
@@ -69,6 +71,8 @@ pub(super) struct Serve {
     /// Maximum number of clients with the same IP address (IPv6: the same /64), 1 to 4096
     #[arg(long, env = "PRAIRIE_MAX_PER_ADDRESS", value_name = "N", default_value_t = 32, value_parser = whole(1_u16..=4096))]
     max_per_address: u16,
+    #[command(flatten)]
+    world: WorldArguments,
     /// Format of the log on stderr: lines of text, or a JSON object on each line
     #[arg(long, env = "PRAIRIE_LOG_FORMAT", value_enum, value_name = "FORMAT", default_value_t)]
     pub(super) log_format: LogFormat,
@@ -117,6 +121,7 @@ impl Serve {
     async fn run_until_stopped(self) -> anyhow::Result<()> {
         // Before anything that takes time: a signal then ends the program in order, not at once.
         let mut stop = StopSignal::install()?;
+        survive_full_files();
         let scene = self.scene().to_owned();
         let loading = tokio::task::spawn_blocking(move || scenes::load(&scene));
         let scene = tokio::select! {
@@ -129,7 +134,9 @@ impl Serve {
         let mut limits =
             Limits { clients: usize::from(self.max_clients), clients_per_address: usize::from(self.max_per_address), ..Limits::default() };
         limits.send.bytes_per_s = f64::from(self.client_kbit) * 1000.0 / 8.0;
-        let building = tokio::task::spawn_blocking(move || World::new(&scene.scene, scene.maps()).map(|world| (scene, world)));
+        let folder = self.world.folder();
+        let kept = folder.clone();
+        let building = tokio::task::spawn_blocking(move || journal::open(kept.as_ref(), &scene).map(|world| (scene, world)));
         let (scene, world) = tokio::select! {
             built = building => built??,
             () = stop.received() => return Ok(()),
@@ -142,6 +149,7 @@ impl Serve {
             threads: self.threads.map(usize::from),
             publish_hz: f32::from(self.publish_hz),
             logs_page_errors: self.report,
+            world: folder,
             limits,
             ..Config::new(scene)
         };
@@ -153,8 +161,20 @@ impl Serve {
     }
 }
 
+/// Lets a write beyond the allowed size of a file fail instead of ending the program.
+fn survive_full_files() {
+    #[cfg(target_os = "linux")]
+    {
+        use tokio::signal::unix::{SignalKind, signal};
+        /// The number of SIGXFSZ on most machines.
+        const SIGXFSZ: i32 = 25;
+        // The handler stays when the stream of signals is dropped. Where it cannot be installed, such a write ends the program as before.
+        drop(signal(SignalKind::from_raw(SIGXFSZ)));
+    }
+}
+
 /// Parser of an address to listen on. Whether its host exists and belongs to this machine is known only when the server listens.
-fn address(text: &str) -> Result<String, String> {
+pub(super) fn address(text: &str) -> Result<String, String> {
     match text.rsplit_once(':') {
         Some((host, port)) if !host.is_empty() && port.parse::<u16>().is_ok() => Ok(text.to_owned()),
         _ => Err("expected HOST:PORT, such as 127.0.0.1:8080 or 0.0.0.0:8080, with a port from 0 to 65535".to_owned()),

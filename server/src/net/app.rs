@@ -4,6 +4,7 @@ use super::admission::Admission;
 use super::field_sampler::FieldSampler;
 use super::origin::Access;
 use super::page_errors::PageErrors;
+use super::proofs::Proofs;
 use crate::config::Limits;
 use crate::log_limit::LogLimit;
 use crate::metrics::ServerStats;
@@ -41,6 +42,7 @@ pub(crate) struct App {
     pub(crate) counters: Arc<Counters>,
     pub(crate) published: watch::Receiver<Arc<Published>>,
     pub(crate) commands: mpsc::Sender<Command>,
+    pub(crate) proofs: Proofs,
     pub(crate) scene_name: String,
     /// The encoded scene message, the same for all clients.
     pub(crate) scene: Bytes,

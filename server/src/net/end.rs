@@ -9,6 +9,8 @@ pub(super) enum End {
     Left,
     /// The connection broke.
     Broken,
+    /// The client is back on another connection.
+    Replaced,
     /// The server closes the connection, with a code and a reason.
     Closed(Close, String),
 }

@@ -46,7 +46,7 @@ impl Inputs {
     /// When a value is out of range, or the message is not allowed now.
     pub(super) fn take_in(&mut self, message: ClientMessage, client: &Client, replies: &mpsc::Sender<Bytes>) -> Result<(), End> {
         match message {
-            ClientMessage::Hello { .. } => return Err(End::bad("a second hello; a session has one")),
+            ClientMessage::Hello { .. } | ClientMessage::Return { .. } => return Err(End::bad("a second hello; a session has one")),
             ClientMessage::View { eye_m, radius_m } => {
                 if !eye_m.iter().all(|m| m.abs() <= EYE_LIMIT_M) {
                     return Err(End::bad(format!("view: eye_m is {eye_m:?}; allowed: each within ±{EYE_LIMIT_M}")));

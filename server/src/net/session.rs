@@ -40,10 +40,10 @@ pub(super) async fn run<S: AsyncRead + AsyncWrite + Unpin>(
     let mut writer = Writer::new(sink, connection.clone(), app.limits.stall_timeout);
     let mut reader = Reader::new(source, connection.clone(), &app.limits);
     let end = match read_hello(&mut reader, &app).await {
-        Ok(name) => match admit(&app, &connection) {
+        Ok(hello) => match admit(&app, &connection) {
             Ok(client_slot) => {
                 slot = client_slot;
-                serve_client(&mut writer, &mut reader, &app, &connection, &name).await
+                serve_client(&mut writer, &mut reader, &app, &connection, &hello).await
             }
             Err(end) => end,
         },
@@ -69,15 +69,26 @@ fn some(suppressed: u64) -> Option<u64> {
     Some(suppressed).filter(|suppressed| *suppressed > 0)
 }
 
-/// Waits for the hello; returns the client's name.
-async fn read_hello<S: AsyncRead + AsyncWrite + Unpin>(reader: &mut Reader<S>, app: &App) -> Result<String, End> {
+/// The first message of a client.
+struct Hello {
+    name: String,
+    /// The number of a client that is back; the vehicle of that number was kept.
+    back: Option<u32>,
+}
+
+/// Waits for the hello.
+async fn read_hello<S: AsyncRead + AsyncWrite + Unpin>(reader: &mut Reader<S>, app: &App) -> Result<Hello, End> {
     let limit = app.limits.handshake_timeout;
     let first = tokio::select! {
         first = timeout(limit, reader.next()) => first,
         end = stopping(app) => return Err(end),
     };
     match first {
-        Ok(Ok(ClientMessage::Hello { name })) => Ok(name),
+        Ok(Ok(ClientMessage::Hello { name })) => Ok(Hello { name, back: None }),
+        Ok(Ok(ClientMessage::Return { name, client, proof })) => {
+            let back = (app.proofs.accepts(client, &proof) && app.published.borrow().has_vehicle(client)).then_some(client);
+            Ok(Hello { name, back })
+        }
         Ok(Ok(_)) => Err(End::bad("the first message must be a hello")),
         Ok(Err(end)) => Err(end),
         Err(_) => Err(End::Closed(Close::NoHello, format!("no hello within {} s", limit.as_secs_f32()))),
@@ -100,15 +111,15 @@ async fn stopping(app: &App) -> End {
     End::Closed(Close::Stopping, "the server is stopping".to_owned())
 }
 
-/// Serves a client from welcome to end, then removes it and its vehicle.
+/// Serves a client from welcome to end, then removes it, and its vehicle unless that is kept.
 async fn serve_client<S: AsyncRead + AsyncWrite + Unpin>(
     writer: &mut Writer<S>,
     reader: &mut Reader<S>,
     app: &App,
     connection: &Connection,
-    name: &str,
+    hello: &Hello,
 ) -> End {
-    let id = app.clients.next_id();
+    let id = hello.back.unwrap_or_else(|| app.clients.next_id());
     let welcomed = tokio::select! {
         welcomed = welcome(writer, app, id) => welcomed,
         end = stopping(app) => Err(end),
@@ -116,30 +127,44 @@ async fn serve_client<S: AsyncRead + AsyncWrite + Unpin>(
     if let Err(end) = welcomed {
         return end;
     }
-    let (client, mut frames) = app.clients.join(id, name_for(id, name), app.limits.send.in_flight as usize);
+    let (client, mut frames) = app.clients.join(id, name_for(id, &hello.name), app.limits.send.in_flight as usize);
+    let arrival = if hello.back.is_some() { Command::Return { client: id } } else { Command::Join { client: id } };
+    // An error means that the world has stopped, as for all commands here.
+    let _ = app.commands.send(arrival).await;
     if let Some(suppressed) = app.session_log.joined.due() {
-        tracing::info!(client = id, name = client.name(), suppressed = some(suppressed), "joined");
+        let joined = if hello.back.is_some() { "returned" } else { "joined" };
+        tracing::info!(client = id, name = client.name(), suppressed = some(suppressed), "{joined}");
     }
     let (replies, mut queued_replies) = mpsc::channel(REPLY_CAPACITY);
     let end = tokio::select! {
         end = receive_all(reader, app, &client, &replies) => end,
         end = send_all(writer, &mut frames, &mut queued_replies, &client) => end,
         end = watch_acknowledgements(&client, connection, &app.limits) => end,
+        () = client.replaced() => End::Replaced,
         end = stopping(app) => end,
     };
-    app.clients.leave(id);
-    // An error means that the world has stopped, so there is nothing to remove.
-    let _ = app.commands.send(Command::Remove { client: id }).await;
+    if app.clients.leave(&client) {
+        let _ = app.commands.send(departure(&end, id)).await;
+    }
     if let Some(suppressed) = app.session_log.left.due() {
         tracing::info!(client = id, ?end, sent_bytes = client.sent_bytes(), suppressed = some(suppressed), "left");
     }
     end
 }
 
+/// The command for the vehicle of a client whose session has ended: it is kept if the client may want to return.
+fn departure(end: &End, client: u32) -> Command {
+    match end {
+        End::Broken | End::Replaced | End::Closed(Close::Stopping | Close::Stalled, _) => Command::Leave { client },
+        End::Left | End::Closed(..) => Command::Remove { client },
+    }
+}
+
 /// Sends the welcome and the scene.
 async fn welcome<S: AsyncRead + AsyncWrite + Unpin>(writer: &mut Writer<S>, app: &App, client: u32) -> Result<(), End> {
+    let proof = app.proofs.issue(client);
     let (server_version, scene_name) = (env!("CARGO_PKG_VERSION").to_owned(), app.scene_name.clone());
-    writer.send([wire::encode(&ServerMessage::Welcome { client, server_version, scene_name }).into()]).await?;
+    writer.send([wire::encode(&ServerMessage::Welcome { client, proof, server_version, scene_name }).into()]).await?;
     writer.send_fragmented(app.scene.clone()).await
 }
 

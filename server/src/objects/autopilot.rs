@@ -1,6 +1,7 @@
 //! Autopilot: drives a vehicle in circles.
 
 use prairie_core::wire::Drive;
+use serde::{Deserialize, Serialize};
 
 /// Excess speed above which the autopilot brakes, for example downhill (m/s).
 const BRAKE_BEYOND_M_PER_S: f32 = 0.5;
@@ -10,7 +11,7 @@ const STUCK_SECS: f32 = 2.0;
 const REVERSE_SECS: f32 = 1.5;
 
 /// Driver of one vehicle.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Autopilot {
     speed_m_per_s: f32,
     steer: f32,

@@ -44,10 +44,24 @@ pub(super) struct ControlStep<'a> {
     pub(super) wind_m_per_s: &'a dyn Fn([f32; 3]) -> [f32; 3],
 }
 
+/// Encodes the state of a controller.
+pub(super) fn encoded(state: &impl serde::Serialize) -> Vec<u8> {
+    postcard::to_allocvec(state).expect("a controller is plain data")
+}
+
 /// Moves one vehicle.
 pub(super) trait Controller: Send {
     /// Turns the driver's input into forces or velocities of the body.
     fn control(&mut self, drive: Drive, step: &mut ControlStep<'_>);
+
+    /// The whole state, for a checkpoint.
+    fn save(&self) -> Vec<u8>;
+
+    /// Restores a state.
+    ///
+    /// # Errors
+    /// When the bytes are not a state of this kind.
+    fn restore(&mut self, state: &[u8]) -> postcard::Result<()>;
 
     /// Angle of the moving part (rad), as in [`ObjectPose`](prairie_core::wire::ObjectPose).
     fn part_rad(&self) -> f32 {

@@ -3,6 +3,7 @@
 //! Rigid-body dynamics are rapier's, on one thread and in the order of the object numbers, so the same commands give the same bits.
 
 mod autopilot;
+mod checkpoint;
 mod dynamics;
 mod environment;
 pub mod gltf;
@@ -13,6 +14,7 @@ mod spawn;
 mod terrain_colliders;
 mod vehicle;
 
+pub use checkpoint::{ObjectsError, ObjectsState};
 pub use dynamics::Airflow;
 pub use environment::Environment;
 pub use kinds::{airflow, is_round, prisms, trail_rgb};
@@ -97,6 +99,14 @@ impl Objects {
     /// The vehicle of `client`.
     pub fn object_of(&self, client: u32) -> Option<ObjectId> {
         self.slot_of(client).map(|slot| self.vehicles[slot].id)
+    }
+
+    /// Clients that have a vehicle, ascending by vehicle.
+    pub fn drivers(&self) -> impl Iterator<Item = u32> {
+        self.vehicles.iter().filter_map(|vehicle| match vehicle.driver {
+            Driver::Client { client, .. } => Some(client),
+            Driver::Autopilot(_) | Driver::None => None,
+        })
     }
 
     /// Advances all objects by `dt_secs`, given the wind (m/s) as a function of position (m).

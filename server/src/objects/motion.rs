@@ -2,10 +2,11 @@
 
 use glam::{Quat, Vec3};
 use prairie_core::scene::VehicleKind;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// Position and orientation of a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BodyPose {
     /// Centre of the body's box (m).
     pub position_m: [f32; 3],
@@ -26,7 +27,7 @@ impl BodyPose {
 }
 
 /// Motion of an object in one step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
     /// Kind of the object.
     pub kind: VehicleKind,

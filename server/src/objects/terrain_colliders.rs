@@ -23,7 +23,8 @@ const OBSTACLES_PER_TILE: usize = 256;
 /// Radius of a trunk relative to the tree's height.
 const TRUNK_RADIUS: f32 = 0.03;
 
-type TileIndex = [i32; 2];
+/// Index of a tile along X and Z.
+pub(super) type TileIndex = [i32; 2];
 
 /// A tree or a stone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,6 +102,16 @@ impl TerrainColliders {
                 self.created.insert(tile, colliders);
             }
         }
+    }
+
+    /// The handles of the colliders of each tile.
+    pub(super) fn created(&self) -> &BTreeMap<TileIndex, Vec<ColliderHandle>> {
+        &self.created
+    }
+
+    /// Restores the handles of colliders that are part of a restored physics world.
+    pub(super) fn restore(&mut self, created: BTreeMap<TileIndex, Vec<ColliderHandle>>) {
+        self.created = created;
     }
 
     fn put(&mut self, obstacle: Obstacle) {

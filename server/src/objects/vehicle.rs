@@ -8,6 +8,7 @@ use super::terrain_colliders::TerrainColliders;
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::{Drive, ObjectId};
 use rapier3d::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// Largest speed of any object (m/s). Faster bodies are slowed down to it.
 pub const SPEED_LIMIT_M_PER_S: f32 = 90.0;
@@ -26,6 +27,7 @@ pub(super) struct Vehicle {
     pub(super) previous: BodyPose,
 }
 
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) enum Driver {
     Client { client: u32, drive: Drive },
     Autopilot(Autopilot),

@@ -20,6 +20,19 @@ impl BrokenState {
         &self.plants
     }
 
+    /// Restores a list of broken plants; false if one of them has no site here.
+    pub(super) fn restore(&mut self, plants: BrokenPlants) -> bool {
+        self.is_broken.fill(false);
+        self.plants = plants;
+        self.plants.iter().all(|plant| match self.is_broken.get_mut(plant.site as usize) {
+            Some(is_broken) => {
+                *is_broken = true;
+                true
+            }
+            None => false,
+        })
+    }
+
     pub(super) fn is_broken(&self, site: u32) -> bool {
         self.is_broken[site as usize]
     }

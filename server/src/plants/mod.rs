@@ -64,6 +64,11 @@ impl PlantDamage {
         self.broken.plants()
     }
 
+    /// Restores a list of broken plants; false if it is that of another scene.
+    pub fn restore(&mut self, broken: BrokenPlants) -> bool {
+        self.broken.restore(broken)
+    }
+
     /// Breaks plants overloaded in the newest step. Takes time only where an object moves over the grass, and in a storm.
     pub fn step(&mut self, tick: u64, dt_secs: f32, bend: &BendSimulation, weather: &Weather) {
         let Some(flora) = &self.flora else { return };

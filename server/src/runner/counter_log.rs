@@ -9,6 +9,13 @@ pub(super) struct CounterLog {
     limit: LogLimit,
 }
 
+impl From<u64> for CounterLog {
+    /// A counter that has this value already.
+    fn from(logged: u64) -> Self {
+        Self { logged, limit: LogLimit::default() }
+    }
+}
+
 impl CounterLog {
     /// Increase since the last message, if it is not zero and another message is due.
     pub(super) fn increase(&mut self, count: u64) -> Option<u64> {

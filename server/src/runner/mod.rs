@@ -46,9 +46,33 @@ pub trait Simulation: Send + 'static {
     fn is_idle(&self) -> bool {
         false
     }
+    /// Number of steps before the first one.
+    fn tick(&self) -> u64 {
+        0
+    }
+    /// Key for the proofs of clients, which stays the same over restarts; `None` for one that does not.
+    fn key(&self) -> Option<[u8; 32]> {
+        None
+    }
+    /// Clients that have left and whose vehicles are kept for their return.
+    fn departed(&self) -> Vec<u32> {
+        Vec::new()
+    }
+    /// Lowest client number that was never used.
+    fn first_client(&self) -> u32 {
+        1
+    }
 }
 
 impl Simulation for World {
+    fn departed(&self) -> Vec<u32> {
+        Self::departed(self)
+    }
+
+    fn tick(&self) -> u64 {
+        Self::tick(self)
+    }
+
     fn step(&mut self, commands: &[Command]) {
         Self::step(self, commands);
     }
@@ -77,6 +101,8 @@ pub struct Published {
     pub snapshot: Snapshot,
     /// Outcome of each client's newest request for a vehicle.
     pub requests: BTreeMap<u32, Request>,
+    /// Clients that have left and whose vehicles are kept for their return.
+    pub departed: Vec<u32>,
     /// Simulated time that was dropped because the machine is too slow (s).
     pub dropped_secs: f64,
     /// The part of it that was dropped within the last minute, [`RECENT`] (s).
@@ -93,11 +119,19 @@ impl Published {
         Self {
             snapshot,
             requests: BTreeMap::new(),
+            departed: Vec::new(),
             dropped_secs: 0.0,
             dropped_recently_secs: 0.0,
             step_secs: Histogram::new(&STEP_BOUNDS_SECS),
             at: Instant::now(),
         }
+    }
+}
+
+impl Published {
+    /// Whether a client has a vehicle, connected or not.
+    pub fn has_vehicle(&self, client: u32) -> bool {
+        self.departed.contains(&client) || self.requests.get(&client).is_some_and(|request| request.object.is_some())
     }
 }
 
@@ -150,7 +184,7 @@ impl Runner {
     pub fn start(simulation: impl Simulation, timing: Timing) -> std::io::Result<Self> {
         let (commands, inbox) = mpsc::channel(COMMAND_CAPACITY);
         let mut quantiser = PatchQuantiser::default();
-        let first = Published::new(simulation.publish(&mut quantiser));
+        let first = Published { departed: simulation.departed(), ..Published::new(simulation.publish(&mut quantiser)) };
         let (sender, published) = watch::channel(Arc::new(first));
         let stop = Arc::new(AtomicBool::new(false));
         let pool = rayon::ThreadPoolBuilder::new()
@@ -213,21 +247,22 @@ impl<S: Simulation> Loop<S> {
         inbox: mpsc::Receiver<Command>,
         sender: watch::Sender<Arc<Published>>,
     ) -> Self {
+        let before = simulation.publish(&mut PatchQuantiser::default()).diagnostics;
         Self {
+            tick: simulation.tick(),
             simulation,
             quantiser,
             inbox,
             sender,
             clock: Clock::new(f64::from(timing.tick_hz)),
             steps_per_publish: timing.steps_per_publish(),
-            tick: 0,
             requests: BTreeMap::new(),
             step_times: Vec::new(),
             step_secs: Histogram::new(&STEP_BOUNDS_SECS),
             start: Instant::now(),
             dropped: CounterLog::default(),
-            evicted: CounterLog::default(),
-            reset: CounterLog::default(),
+            evicted: CounterLog::from(before.evicted_patches),
+            reset: CounterLog::from(before.reset_patches),
         }
     }
 
@@ -283,10 +318,14 @@ impl<S: Simulation> Loop<S> {
                     let object = self.simulation.object_of(client);
                     self.requests.insert(client, Request { tick: self.tick, object });
                 }
-                Command::Remove { client } => {
+                Command::Remove { client } | Command::Leave { client } => {
                     self.requests.remove(&client);
                 }
-                Command::Drive { .. } | Command::Cameras(_) => {}
+                Command::Return { client } => {
+                    let object = self.simulation.object_of(client);
+                    self.requests.extend(object.map(|object| (client, Request { tick: self.tick, object: Some(object) })));
+                }
+                Command::Drive { .. } | Command::Cameras(_) | Command::Join { .. } => {}
             }
         }
     }
@@ -310,6 +349,7 @@ impl<S: Simulation> Loop<S> {
         }
         let published = Published {
             requests: self.requests.clone(),
+            departed: self.simulation.departed(),
             dropped_secs: self.clock.dropped_secs(),
             dropped_recently_secs: self.clock.dropped_recently_secs(self.start.elapsed()),
             step_secs: self.step_secs.clone(),

@@ -1,11 +1,13 @@
 //! List of broken plants, which only grows and is cheap to copy.
 
 use prairie_core::wire::{BROKEN_LIMIT, BrokenPlant};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Broken plants, oldest first, in chunks of the size of a message. A copy shares all chunks. While a copy exists, the next `push` clones the newest chunk,
 /// at most 32 KiB.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "Vec<BrokenPlant>", into = "Vec<BrokenPlant>")]
 pub struct BrokenPlants {
     chunks: Vec<Arc<Vec<BrokenPlant>>>,
 }
@@ -37,6 +39,18 @@ impl BrokenPlants {
     /// Broken plants after the first `known`: at most [`BROKEN_LIMIT`], fewer at the end of a chunk, empty when all are known.
     pub fn after(&self, known: usize) -> &[BrokenPlant] {
         self.chunks.get(known / BROKEN_LIMIT).and_then(|chunk| chunk.get(known % BROKEN_LIMIT..)).unwrap_or_default()
+    }
+}
+
+impl From<Vec<BrokenPlant>> for BrokenPlants {
+    fn from(plants: Vec<BrokenPlant>) -> Self {
+        plants.into_iter().collect()
+    }
+}
+
+impl From<BrokenPlants> for Vec<BrokenPlant> {
+    fn from(plants: BrokenPlants) -> Self {
+        plants.iter().copied().collect()
     }
 }
 

@@ -5,7 +5,7 @@ use bytes::Bytes;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
-use tokio::sync::mpsc;
+use tokio::sync::{Notify, mpsc};
 
 /// One publication, as sent to one client.
 #[derive(Clone, Debug, Default)]
@@ -48,6 +48,7 @@ pub struct Client {
     written: AtomicU32,
     acknowledged: AtomicU32,
     sent_bytes: AtomicU64,
+    replaced: Notify,
     sent_bytes_to_all: Arc<AtomicU64>,
 }
 
@@ -122,6 +123,11 @@ impl Client {
         self.sent_bytes_to_all.fetch_add(bytes as u64, Relaxed);
     }
 
+    /// Completes when the client is back on another connection.
+    pub async fn replaced(&self) {
+        self.replaced.notified().await;
+    }
+
     /// Bytes written to the client's socket so far.
     pub fn sent_bytes(&self) -> u64 {
         self.sent_bytes.load(Relaxed)
@@ -142,7 +148,12 @@ impl Clients {
         self.newest_id.fetch_add(1, Relaxed) + 1
     }
 
-    /// Adds a client, which gets frames from now on; at most `outbox_frames` of them are queued for its session.
+    /// Numbers from `first` on; call it before the first client joins.
+    pub fn starting_at(first: u32) -> Self {
+        Self { newest_id: AtomicU32::new(first.saturating_sub(1)), ..Self::default() }
+    }
+
+    /// Adds a client, in place of any with its number, which gets frames from now on; at most `outbox_frames` of them are queued for its session.
     pub fn join(&self, id: u32, name: String, outbox_frames: usize) -> (Arc<Client>, mpsc::Receiver<Frame>) {
         let (outbox, frames) = mpsc::channel(outbox_frames);
         let client = Arc::new(Client {
@@ -154,15 +165,23 @@ impl Clients {
             written: AtomicU32::default(),
             acknowledged: AtomicU32::default(),
             sent_bytes: AtomicU64::default(),
+            replaced: Notify::new(),
             sent_bytes_to_all: self.sent_bytes.clone(),
         });
-        self.lock().insert(id, client.clone());
+        if let Some(before) = self.lock().insert(id, client.clone()) {
+            before.replaced.notify_one();
+        }
         (client, frames)
     }
 
-    /// Removes a client.
-    pub fn leave(&self, id: u32) {
-        self.lock().remove(&id);
+    /// Removes a client; false if another with its number is in its place.
+    pub fn leave(&self, client: &Arc<Client>) -> bool {
+        let mut table = self.lock();
+        let is_present = table.get(&client.id).is_some_and(|present| Arc::ptr_eq(present, client));
+        if is_present {
+            table.remove(&client.id);
+        }
+        is_present
     }
 
     /// All clients, in the order of joining.

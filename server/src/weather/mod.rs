@@ -3,6 +3,7 @@
 mod box_terrain;
 mod canopy_cover;
 mod carrier;
+mod checkpoint;
 mod settings;
 mod vehicle_jets;
 
@@ -13,6 +14,7 @@ use crate::snapshot::WindFrame;
 use box_terrain::BoxTerrain;
 use canopy_cover::CanopyCover;
 use carrier::Carrier;
+pub use checkpoint::{WeatherRestoreError, WeatherState};
 use glam::Vec3;
 use prairie_core::bend::Field;
 use prairie_core::scene::{Scene, WindTiling};
@@ -97,13 +99,18 @@ impl Weather {
     /// # Errors
     /// [`WeatherError`] when the solver rejects the scene's settings.
     pub fn new(scene: &Scene, height: &HeightMap, cover: &CoverMap) -> Result<Self, WeatherError> {
+        let cells: usize = settings(scene).1.cells.iter().product();
+        Self::after(scene, height, cover, (WARM_UP_CELL_STEPS / cells).clamp(1, WARM_UP_STEPS))
+    }
+
+    /// The wind of `scene` over its terrain, after a number of steps.
+    fn after(scene: &Scene, height: &HeightMap, cover: &CoverMap, steps: usize) -> Result<Self, WeatherError> {
         let (method, config) = settings(scene);
         let terrain = BoxTerrain::new(scene, height);
         let mut air = initial_air(method, &config, &terrain)?;
         let (ticks_per_step, step_secs) = step_interval(scene);
-        let cells: usize = config.cells.iter().product();
-        let mut report = air.step(step_secs, &[])?;
-        for _ in 1..(WARM_UP_CELL_STEPS / cells).clamp(1, WARM_UP_STEPS) {
+        let mut report = StepReport::default();
+        for _ in 0..steps {
             report = air.step(step_secs, &[])?;
         }
         let mut weather = Self {

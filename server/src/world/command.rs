@@ -3,9 +3,10 @@
 use crate::bend::Camera;
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::Drive;
+use serde::{Deserialize, Serialize};
 
 /// A request from outside the world, carried out before the next step.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Command {
     /// Gives a client a vehicle in place of its previous one, near its camera.
     Spawn {
@@ -28,4 +29,19 @@ pub enum Command {
     },
     /// Replaces the cameras of all clients.
     Cameras(Vec<Camera>),
+    /// A new client has connected. Its number is not given to another, also after a restart.
+    Join {
+        /// Number of the client.
+        client: u32,
+    },
+    /// The connection of a client was lost. Its vehicle stops, and is removed after [`KEPT_SECS`](super::KEPT_SECS) unless the client returns.
+    Leave {
+        /// Number of the client.
+        client: u32,
+    },
+    /// A client is back, and drives the vehicle that was kept for it.
+    Return {
+        /// Number of the client.
+        client: u32,
+    },
 }

@@ -1,9 +1,13 @@
 //! The world: one fixed step after another. It has no clock, input or output; the same commands give the same bits.
 
+mod checkpoint;
 mod command;
+mod departed;
 
 pub use crate::bend::Camera;
+pub use checkpoint::{RestoreError, WorldState};
 pub use command::Command;
+pub use departed::KEPT_SECS;
 
 use crate::bend::wind_drawing::WindDrawings;
 use crate::bend::{self, BendSimulation};
@@ -13,11 +17,12 @@ use crate::plants::PlantDamage;
 use crate::settings_error::SettingsError;
 use crate::snapshot::{Diagnostics, PatchQuantiser, Snapshot};
 use crate::weather::Weather;
+use departed::Departed;
 use prairie_core::plant::flora::Flora;
 use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::Scene;
 use prairie_core::terrain::{CoverMap, HeightMap};
-use prairie_core::wire::ObjectId;
+use prairie_core::wire::{Drive, ObjectId};
 use std::sync::Arc;
 
 /// The maps of a scene.
@@ -44,6 +49,9 @@ pub struct World {
     bend: BendSimulation,
     plants: PlantDamage,
     cameras: Vec<Camera>,
+    departed: Departed,
+    /// Highest client number so far.
+    newest_client: u32,
 }
 
 impl World {
@@ -53,8 +61,13 @@ impl World {
     /// [`SettingsError`] when settings that are each in range are incompatible with each other.
     pub fn new(scene: &Scene, maps: Maps) -> Result<Self, SettingsError> {
         bend::stability::check(scene)?;
-        bend::prescribed_wind::check(scene, &maps.drawings)?;
         let weather = Weather::new(scene, &maps.height, &maps.cover).map_err(|error| error.in_settings(scene))?;
+        Self::with_weather(scene, maps, weather)
+    }
+
+    /// The initial state, except for the weather.
+    fn with_weather(scene: &Scene, maps: Maps, weather: Weather) -> Result<Self, SettingsError> {
+        bend::prescribed_wind::check(scene, &maps.drawings)?;
         let height = Arc::new(maps.height);
         let environment = Environment { height: Arc::clone(&height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
         let plants = PlantDamage::new(Flora::new(scene, &environment.cover, maps.nutrients.as_deref()), scene.dt_secs());
@@ -69,6 +82,8 @@ impl World {
             bend,
             plants,
             cameras: vec![],
+            departed: Departed::default(),
+            newest_client: 0,
         })
     }
 
@@ -76,6 +91,9 @@ impl World {
     pub fn step(&mut self, commands: &[Command]) {
         for command in commands {
             self.execute(command);
+        }
+        for client in self.departed.expired(self.tick, self.dt_secs) {
+            self.objects.remove(client);
         }
         self.tick += 1;
         let (weather, height) = (&self.weather, &self.height);
@@ -121,6 +139,26 @@ impl World {
         self.objects.object_of(client)
     }
 
+    /// Clients that have a vehicle, connected or not, ascending by vehicle.
+    pub fn drivers(&self) -> impl Iterator<Item = u32> {
+        self.objects.drivers()
+    }
+
+    /// Clients that have left and whose vehicles are kept for their return.
+    pub fn departed(&self) -> Vec<u32> {
+        self.departed.clients()
+    }
+
+    /// Number of steps so far.
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// Highest client number so far.
+    pub fn newest_client(&self) -> u32 {
+        self.newest_client
+    }
+
     /// The bend field and everything that acts on it.
     pub fn bend(&self) -> &BendSimulation {
         &self.bend
@@ -141,15 +179,47 @@ impl World {
         sum.value()
     }
 
+    /// Checksums of the parts of the state, with their names.
+    pub fn checksums(&self) -> [(&'static str, u64); 4] {
+        let of = |add: &dyn Fn(&mut Checksum)| {
+            let mut sum = Checksum::default();
+            add(&mut sum);
+            sum.value()
+        };
+        [
+            ("objects", of(&|sum| self.objects.hash(sum))),
+            ("wind", of(&|sum| self.weather.hash(sum))),
+            ("bend field", of(&|sum| self.bend.hash(sum))),
+            ("broken plants", of(&|sum| self.plants.hash(sum))),
+        ]
+    }
+
     fn execute(&mut self, command: &Command) {
         match command {
             Command::Spawn { client, kind } => {
-                // A refusal is visible in `object_of`.
-                self.objects.spawn(*client, *kind, self.spawn_center_m(*client));
+                self.departed.forget(*client);
+                let center_m = self.spawn_center_m(*client);
+                // A vehicle that waits for its client makes room for one that is wanted. A refusal is visible in `object_of`.
+                while self.objects.spawn(*client, *kind, center_m).is_none()
+                    && let Some(lost) = self.departed.pop_longest()
+                {
+                    self.objects.remove(lost);
+                }
             }
-            Command::Remove { client } => self.objects.remove(*client),
+            Command::Remove { client } => {
+                self.departed.forget(*client);
+                self.objects.remove(*client);
+            }
             Command::Drive { client, drive } => self.objects.drive(*client, *drive),
             Command::Cameras(cameras) => self.cameras.clone_from(cameras),
+            Command::Join { client } => self.newest_client = self.newest_client.max(*client),
+            Command::Leave { client } => {
+                if self.objects.object_of(*client).is_some() {
+                    self.objects.drive(*client, Drive::default());
+                    self.departed.leave(*client, self.tick);
+                }
+            }
+            Command::Return { client } => self.departed.forget(*client),
         }
     }
 

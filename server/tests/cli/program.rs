@@ -5,7 +5,7 @@ use std::process::{Command, Output};
 /// A command that the environment of the test does not change.
 pub(crate) fn command() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_prairie"));
-    command.env_remove("RUST_LOG").env_remove("NO_COLOR");
+    command.env_remove("RUST_LOG").env_remove("NO_COLOR").env("PRAIRIE_WORLD", "none");
     command
 }
 

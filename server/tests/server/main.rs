@@ -9,6 +9,7 @@ mod addresses;
 mod drawing;
 mod floods;
 mod http;
+mod killed;
 mod misbehaving_clients;
 mod monitoring;
 mod page;

@@ -77,6 +77,7 @@ async fn reports_are_discarded_unless_the_operator_wants_them() {
 async fn the_log_gets_the_errors_of_pages_bounded_and_escaped() {
     let mut program = Command::new(env!("CARGO_BIN_EXE_prairie"))
         .args(["serve", "--scene", "shells", "--addr", "127.0.0.1:0", "--report"])
+        .env("PRAIRIE_WORLD", "none")
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .kill_on_drop(true)

@@ -7,7 +7,14 @@ use std::time::Duration;
 
 /// Starts a program with its output in pipes.
 fn start(program: &str, arguments: &[&str]) -> Child {
-    Command::new(program).args(arguments).env_remove("RUST_LOG").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+    Command::new(program)
+        .args(arguments)
+        .env_remove("RUST_LOG")
+        .env("PRAIRIE_WORLD", "none")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
 }
 
 fn send(child: &Child, signal: &str) {

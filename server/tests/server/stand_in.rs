@@ -62,13 +62,13 @@ impl Simulation for StandInWorld {
                 Command::Spawn { client, kind } if self.objects.len() < OBJECT_LIMIT => {
                     self.objects.insert(client, pose(client, kind));
                 }
-                Command::Remove { client } => {
+                Command::Remove { client } | Command::Leave { client } => {
                     self.objects.remove(&client);
                 }
                 Command::Drive { client, drive } => {
                     self.throttle.insert(client, drive.throttle);
                 }
-                Command::Spawn { .. } | Command::Cameras(_) => {}
+                Command::Spawn { .. } | Command::Cameras(_) | Command::Join { .. } | Command::Return { .. } => {}
             }
         }
         for (client, object) in &mut self.objects {

@@ -8,6 +8,7 @@
 //! | [`config`] | settings, their defaults and ranges |
 //! | [`solver`], [`state`] | the solver; checkpoints, step reports and errors |
 //! | [`air`], [`stable_fluids`] | one interface to both solvers; the collocated method of Zhang's thesis, as the baseline |
+//! | [`checkpoint`] | complete copies, from which either solver continues bit for bit |
 //! | [`grid`], [`field`], [`sample`] | staggered grid, fields, trilinear interpolation |
 //! | [`boundary`] | boundary conditions, ghost values, solid cells |
 //! | [`advect`], [`trajectory`] | advection schemes; the semi-Lagrangian family |
@@ -23,6 +24,7 @@ pub mod advect;
 pub mod air;
 pub mod boundary;
 pub mod canopy;
+pub mod checkpoint;
 pub mod config;
 pub mod diagnostics;
 pub mod diffuse;
@@ -53,6 +55,7 @@ pub use advect::Advection;
 pub use air::{Air, Method};
 pub use boundary::Boundary;
 pub use canopy::Canopy;
+pub use checkpoint::AirState;
 pub use config::{Config, ConfigError, Diffusion, Dust, Gusts, Profile, TimeScheme};
 pub use field::{Field, Velocity};
 pub use forcing::Jet;

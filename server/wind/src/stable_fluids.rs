@@ -37,18 +37,18 @@ use listing::{Kind, SWEEPS};
 pub struct StableFluids<R: Real> {
     config: Config,
     grid: Grid<R>,
-    time_secs: f64,
-    velocity: Velocity<R>,
+    pub(super) time_secs: f64,
+    pub(super) velocity: Velocity<R>,
     /// The listings' `u0`, `v0`, `w0`; its first field also serves as the `x0` of dust.
-    before: Velocity<R>,
-    dust: Option<Field<R>>,
-    p: Field<R>,
+    pub(super) before: Velocity<R>,
+    pub(super) dust: Option<Field<R>>,
+    pub(super) p: Field<R>,
     div: Field<R>,
     mean: MeanWind,
     relaxation: Relaxation<R>,
     footprint: Footprint<R>,
     pushes: Pushes<R>,
-    sponge_m: Option<[f64; 2]>,
+    pub(super) sponge_m: Option<[f64; 2]>,
     /// Volume source of each cell (1/s); empty without source or sink primitives.
     volume_sources_per_s: Vec<f64>,
 }

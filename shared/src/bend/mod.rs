@@ -49,6 +49,7 @@
 //! # Ok::<(), prairie_core::bend::StepError>(())
 //! ```
 
+mod checkpoint;
 mod exchange;
 mod executor;
 mod field;
@@ -69,6 +70,7 @@ mod tridiagonal;
 mod verlet;
 mod wind;
 
+pub use checkpoint::{FieldState, PatchState, StateError};
 pub use executor::{Executor, Serial};
 pub use field::Field;
 pub use halo::{Edges, Seams};

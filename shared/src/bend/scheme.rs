@@ -24,7 +24,7 @@ words! {
 }
 
 /// Statistics of a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// Number of sub-steps.
     pub substeps: u32,

@@ -6,6 +6,7 @@
 //! see [`Rest`].
 
 use super::Bend;
+use serde::{Deserialize, Serialize};
 
 /// Side of a tile (cells).
 pub const TILE: usize = 8;
@@ -29,7 +30,7 @@ impl Rest {
 }
 
 /// Peaks of each tile, whether it steps, and when it last changed.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Tiles {
     /// Tiles along one side.
     count: usize,
@@ -72,6 +73,12 @@ impl Tiles {
             changed_in: vec![revision; count * count],
             revision,
         }
+    }
+
+    /// Whether all lists have the lengths for a patch of `side` cells.
+    pub(super) fn fits(&self, side: usize) -> bool {
+        let own = |tiles: &Self| (tiles.count, tiles.peaks.len(), tiles.steps.len(), tiles.active.len(), tiles.changed_in.len());
+        own(self) == own(&Self::new(side, 0))
     }
 
     pub(super) fn count(&self) -> usize {

@@ -68,15 +68,30 @@ pub enum ClientMessage {
         /// As in [`Hello`](Self::Hello).
         name: String,
     },
+    /// First message of a connection, instead of [`Hello`](Self::Hello), of a client that was connected before. If its vehicle is still there it gets its number and
+    /// its vehicle back; otherwise, and with a wrong proof, it is a new client.
+    Return {
+        /// As in [`Hello`](Self::Hello).
+        name: String,
+        /// Its number, from [`ServerMessage::Welcome`].
+        client: u32,
+        /// The proof that came with the number.
+        proof: [u8; PROOF_BYTES],
+    },
 }
+
+/// Length of the proof that a client has its number from the server (bytes).
+pub const PROOF_BYTES: usize = 32;
 
 /// Messages from server to client.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ServerMessage {
-    /// Reply to a valid hello.
+    /// Reply to a valid hello or return.
     Welcome {
         /// The client's own ID in [`ServerMessage::Roster`].
         client: u32,
+        /// Proof of the number, for [`ClientMessage::Return`].
+        proof: [u8; PROOF_BYTES],
         /// Version of the server's package.
         server_version: String,
         /// Name of the running scene as used in links: that of a built-in scene, or of the scene file without its extension.

@@ -12,7 +12,9 @@ mod turbulence_state;
 
 pub use close::Close;
 pub use codec::{CodecError, Shape};
-pub use message::{BrokenPlant, ClientMessage, Drive, Mesh, ObjectId, ObjectPose, Peer, Refusal, ServerMessage, WireError, decode, encode};
+pub use message::{
+    BrokenPlant, ClientMessage, Drive, Mesh, ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage, WireError, decode, encode,
+};
 pub use protocol::PROTOCOL;
 pub use turbulence_state::TurbulenceState;
 

@@ -1,11 +1,12 @@
 //! Ball: a light sphere that objects and strong wind push along, and that a driver rolls from within.
 
-use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics};
+use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
 use super::super::prism::Prism;
 use prairie_core::plant::force_field::AIR_KG_PER_M3;
 use prairie_core::scene::Objects;
 use prairie_core::wire::Drive;
 use rapier3d::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::f32::consts::{PI, TAU};
 
 /// Collision group of balls.
@@ -42,6 +43,7 @@ pub(super) const DYNAMICS: VehicleDynamics = VehicleDynamics {
 };
 
 /// Controller of one ball.
+#[derive(Serialize, Deserialize)]
 struct Ball {
     body: RigidBodyHandle,
     radius_m: f32,
@@ -115,5 +117,14 @@ impl Controller for Ball {
     /// Heading of the driver (rad).
     fn part_rad(&self) -> f32 {
         self.heading_rad
+    }
+
+    fn save(&self) -> Vec<u8> {
+        encoded(self)
+    }
+
+    fn restore(&mut self, state: &[u8]) -> postcard::Result<()> {
+        *self = postcard::from_bytes(state)?;
+        Ok(())
     }
 }

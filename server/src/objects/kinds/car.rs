@@ -1,12 +1,13 @@
 //! Car: a body on four sprung wheels with ray-cast suspension.
 
-use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics};
+use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
 use super::super::prism::Prism;
 use super::ball::BALLS;
 use prairie_core::scene::Objects;
 use prairie_core::wire::Drive;
 use rapier3d::control::{DynamicRayCastVehicleController, WheelTuning};
 use rapier3d::prelude::*;
+use serde::{Deserialize, Serialize};
 
 const MASS_KG: f32 = 1200.0;
 /// Acceleration at full throttle from rest (m/s²); it decreases to zero at [`TOP_M_PER_S`].
@@ -42,6 +43,7 @@ pub(super) const DYNAMICS: VehicleDynamics = VehicleDynamics {
 };
 
 /// Controller of one car.
+#[derive(Serialize, Deserialize)]
 struct Car {
     wheels: DynamicRayCastVehicleController,
     steering_rad: f32,
@@ -137,6 +139,15 @@ impl Controller for Car {
     /// Steering of the front wheels (rad, + right).
     fn part_rad(&self) -> f32 {
         self.steering_rad
+    }
+
+    fn save(&self) -> Vec<u8> {
+        encoded(self)
+    }
+
+    fn restore(&mut self, state: &[u8]) -> postcard::Result<()> {
+        *self = postcard::from_bytes(state)?;
+        Ok(())
     }
 }
 

@@ -1,10 +1,11 @@
 //! Helicopter: thrust along its own up axis, tilted towards the target velocity.
 
-use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics};
+use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
 use super::super::prism::Prism;
 use prairie_core::scene::{Objects, VehicleKind};
 use prairie_core::wire::Drive;
 use rapier3d::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::f32::consts::TAU;
 
 const MASS_KG: f32 = 1100.0;
@@ -37,6 +38,7 @@ pub(super) const DYNAMICS: VehicleDynamics = VehicleDynamics {
 };
 
 /// Controller of one helicopter.
+#[derive(Serialize, Deserialize)]
 struct Helicopter {
     body: RigidBodyHandle,
     half_height_m: f32,
@@ -89,5 +91,14 @@ impl Controller for Helicopter {
     /// Phase of the rotor (rad).
     fn part_rad(&self) -> f32 {
         self.rotor_rad
+    }
+
+    fn save(&self) -> Vec<u8> {
+        encoded(self)
+    }
+
+    fn restore(&mut self, state: &[u8]) -> postcard::Result<()> {
+        *self = postcard::from_bytes(state)?;
+        Ok(())
     }
 }

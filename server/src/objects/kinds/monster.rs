@@ -1,11 +1,12 @@
 //! Monster: a walking capsule. Its velocity is set directly, and its feet follow the terrain.
 
-use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics};
+use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
 use super::super::prism::Prism;
 use super::super::terrain_colliders::TERRAIN;
 use prairie_core::scene::Objects;
 use prairie_core::wire::Drive;
 use rapier3d::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::f32::consts::TAU;
 
 const RUN_M_PER_S: f32 = 7.0;
@@ -35,6 +36,7 @@ pub(super) const DYNAMICS: VehicleDynamics = VehicleDynamics {
 };
 
 /// Controller of one monster.
+#[derive(Serialize, Deserialize)]
 struct Monster {
     body: RigidBodyHandle,
     heading_rad: f32,
@@ -78,5 +80,14 @@ impl Controller for Monster {
     /// Phase of the walk (rad).
     fn part_rad(&self) -> f32 {
         self.phase_rad
+    }
+
+    fn save(&self) -> Vec<u8> {
+        encoded(self)
+    }
+
+    fn restore(&mut self, state: &[u8]) -> postcard::Result<()> {
+        *self = postcard::from_bytes(state)?;
+        Ok(())
     }
 }

@@ -1,12 +1,13 @@
 //! Sled: a gliding frame of any outline. Its velocity is set directly, and its floor follows the slope of the terrain.
 
-use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics};
+use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
 use super::super::prism::Prism;
 use super::super::terrain_colliders::TERRAIN;
 use prairie_core::outline::convex_parts;
 use prairie_core::scene::{Objects, VehicleKind};
 use prairie_core::wire::Drive;
 use rapier3d::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::f32::consts::TAU;
 
 const GLIDE_M_PER_S: f32 = 15.0;
@@ -38,6 +39,7 @@ pub(super) const DYNAMICS: VehicleDynamics = VehicleDynamics {
 };
 
 /// Controller of one sled.
+#[derive(Serialize, Deserialize)]
 struct Sled {
     body: RigidBodyHandle,
     half_height_m: f32,
@@ -95,5 +97,14 @@ impl Controller for Sled {
         }
         body.set_linvel(velocity, true);
         body.set_gravity_scale(if glides { 0.0 } else { 1.0 }, true);
+    }
+
+    fn save(&self) -> Vec<u8> {
+        encoded(self)
+    }
+
+    fn restore(&mut self, state: &[u8]) -> postcard::Result<()> {
+        *self = postcard::from_bytes(state)?;
+        Ok(())
     }
 }

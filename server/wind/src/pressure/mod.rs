@@ -68,6 +68,16 @@ impl Projection {
         Self { solver, potential: vec![0.0; grid.len()], divergence: vec![0.0; grid.len()] }
     }
 
+    /// Potential from which the next solve begins; `None` for the direct solver, which needs none.
+    pub(super) fn guess(&self) -> Option<&[f64]> {
+        matches!(self.solver, PressureSolver::Iterative(..)).then_some(&self.potential)
+    }
+
+    /// Mutable access to [`guess`](Self::guess).
+    pub(super) fn guess_mut(&mut self) -> Option<&mut [f64]> {
+        matches!(self.solver, PressureSolver::Iterative(..)).then_some(&mut self.potential)
+    }
+
     /// Makes `velocity`, with its boundary values filled in, divergence-free, or gives it the divergence `inflow` (1/s, one per cell, or empty). Adds
     /// the subtracted gradient, times `per_secs`, to `pressure_gradient`. Momentum along periodic axes is conserved to rounding.
     ///

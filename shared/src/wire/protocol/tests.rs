@@ -3,8 +3,8 @@
 use super::{PINS, PROTOCOL};
 use crate::scene::{Allowed, FIELDS, Scene, VehicleKind, parse};
 use crate::wire::{
-    BrokenPlant, ClientMessage, Drive, Mesh, ObjectPose, Peer, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, TurbulenceState, WireError,
-    decode, encode,
+    BrokenPlant, ClientMessage, Drive, Mesh, ObjectPose, PROOF_BYTES, Peer, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, TurbulenceState,
+    WireError, decode, encode,
 };
 use serde::{Deserialize, de::DeserializeOwned};
 use std::fmt::{Debug, Write};
@@ -21,13 +21,19 @@ fn client_messages() -> Vec<ClientMessage> {
         ClientMessage::Ack { frame: 70_000 },
         ClientMessage::Ping { nonce: 7 },
         ClientMessage::Rename { name: "Grace".to_owned() },
+        ClientMessage::Return { name: "Ada".to_owned(), client: 3, proof: [0xab; PROOF_BYTES] },
     ]
 }
 
 /// One example of every server message, in the order of the variants.
 fn server_messages() -> Vec<ServerMessage> {
     vec![
-        ServerMessage::Welcome { client: 3, server_version: "0.1.0".to_owned(), scene_name: "meadow".to_owned() },
+        ServerMessage::Welcome {
+            client: 3,
+            proof: [0xab; PROOF_BYTES],
+            server_version: "0.1.0".to_owned(),
+            scene_name: "meadow".to_owned(),
+        },
         ServerMessage::Scene {
             scene: Box::new(filled_scene()),
             height_png: vec![1, 2],
@@ -56,6 +62,7 @@ fn client_name(message: &ClientMessage) -> &'static str {
         ClientMessage::Ack { .. } => "Ack",
         ClientMessage::Ping { .. } => "Ping",
         ClientMessage::Rename { .. } => "Rename",
+        ClientMessage::Return { .. } => "Return",
     }
 }
 

@@ -1,0 +1,171 @@
+//! A world that remembers: every step goes into the journal, and now and then a checkpoint begins a new generation of it.
+
+use super::error::JournalError;
+use super::folder::Folder;
+use super::health::Health;
+use super::unchanged::Unchanged;
+use super::writer::{Entry, Writer};
+use crate::runner::Simulation;
+use crate::snapshot::{PatchQuantiser, Snapshot};
+use crate::world::{Command, World};
+use prairie_core::wire::ObjectId;
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+use std::time::{Duration, Instant};
+
+/// Time of computing that a resumption may have to repeat: a checkpoint is due when the steps since the last one took this long.
+const REPEATED: Duration = Duration::from_secs(2);
+/// A checkpoint is also due after this time.
+const LONGEST: Duration = Duration::from_secs(300);
+/// Shortest time between two checkpoints, and between two attempts.
+const SHORTEST: Duration = Duration::from_secs(2);
+/// Client numbers that are left out at a start: the last clients of a process that was killed may be missing in its journal.
+const CLIENT_GAP: u32 = 4096;
+
+/// A world, with its journal unless it is one without memory.
+pub struct JournaledWorld {
+    world: World,
+    journal: Option<Journal>,
+    key: Option<[u8; 32]>,
+    first_client: u32,
+    /// Commands before those of the next step.
+    pending: Vec<Command>,
+}
+
+/// The journal of a running world.
+struct Journal {
+    writer: Writer,
+    health: Arc<Health>,
+    generation: u64,
+    unchanged: Unchanged,
+    /// Whether a step is missing, so that only a new generation makes sense.
+    has_gap: bool,
+    computed: Duration,
+    begun: Instant,
+}
+
+impl From<World> for JournaledWorld {
+    /// A world without memory.
+    fn from(world: World) -> Self {
+        let first_client = world.newest_client() + 1;
+        Self { world, journal: None, key: None, first_client, pending: vec![] }
+    }
+}
+
+impl JournaledWorld {
+    /// A world whose journal continues with a generation. The vehicles of its clients wait for their return.
+    pub(super) fn new(world: World, folder: Folder, limit_bytes: u64, generation: u64) -> Result<Self, JournalError> {
+        let (key, health) = (folder.key(), Arc::<Health>::default());
+        let first_client = if world.tick() == 0 { 1 } else { world.newest_client().saturating_add(CLIENT_GAP) };
+        let pending = world.drivers().map(|client| Command::Leave { client }).collect();
+        let writer = Writer::start(folder, limit_bytes, health.clone())?;
+        let mut journal = Journal {
+            writer,
+            health,
+            generation,
+            unchanged: Unchanged::default(),
+            has_gap: false,
+            computed: Duration::ZERO,
+            begun: Instant::now(),
+        };
+        journal.begin(&world);
+        Ok(Self { world, journal: Some(journal), key: Some(key), first_client, pending })
+    }
+
+    /// The world.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// Counters of the journal; `None` without memory.
+    pub fn health(&self) -> Option<Arc<Health>> {
+        self.journal.as_ref().map(|journal| journal.health.clone())
+    }
+}
+
+impl Journal {
+    /// Begins a generation with a checkpoint. Without room in a queue the next attempt follows later.
+    fn begin(&mut self, world: &World) {
+        let copying = Instant::now();
+        let state = world.save();
+        self.health.copy_max_us.fetch_max(copying.elapsed().as_micros() as u64, Relaxed);
+        (self.begun, self.computed) = (Instant::now(), Duration::ZERO);
+        if self.writer.keep(self.generation, state) {
+            self.has_gap = !self.writer.enter(Entry::Begin { generation: self.generation, tick: world.tick() });
+            self.generation += 1;
+            self.unchanged = Unchanged::default();
+        }
+    }
+
+    fn note(&mut self, world: &World, commands: &[Command], took: Duration) {
+        self.computed += took;
+        let is_missing = self.has_gap || self.health.is_broken.load(Relaxed);
+        if is_missing {
+            self.health.lost_steps.fetch_add(1, Relaxed);
+        } else {
+            let commands = self.unchanged.filter(commands);
+            self.has_gap = !self.writer.enter(Entry::Step { tick: world.tick(), commands });
+        }
+        let age = self.begun.elapsed();
+        if age >= SHORTEST && (is_missing || self.computed >= REPEATED || age >= LONGEST) {
+            self.begin(world);
+        }
+    }
+}
+
+impl Drop for JournaledWorld {
+    /// A last checkpoint, so that the next start repeats nothing.
+    fn drop(&mut self) {
+        if let Some(journal) = &mut self.journal {
+            let (generation, tick) = (journal.generation, self.world.tick());
+            if !journal.health.is_broken.load(Relaxed) && journal.writer.enter(Entry::Begin { generation, tick }) {
+                journal.writer.keep_last(generation, self.world.save());
+            }
+        }
+    }
+}
+
+impl Simulation for JournaledWorld {
+    fn step(&mut self, commands: &[Command]) {
+        let mut all = std::mem::take(&mut self.pending);
+        all.extend_from_slice(commands);
+        let begun = Instant::now();
+        self.world.step(&all);
+        if let Some(journal) = &mut self.journal {
+            journal.note(&self.world, &all, begun.elapsed());
+        }
+    }
+
+    fn quantise_ahead(&self, quantiser: &mut PatchQuantiser, part: [u64; 2]) {
+        self.world.quantise_ahead(quantiser, part);
+    }
+
+    fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot {
+        self.world.publish(quantiser)
+    }
+
+    fn object_of(&self, client: u32) -> Option<ObjectId> {
+        self.world.object_of(client)
+    }
+
+    fn is_idle(&self) -> bool {
+        self.world.is_idle()
+    }
+
+    fn tick(&self) -> u64 {
+        self.world.tick()
+    }
+
+    fn key(&self) -> Option<[u8; 32]> {
+        self.key
+    }
+
+    fn departed(&self) -> Vec<u32> {
+        // Before the first step, all drivers of the process before.
+        if self.pending.is_empty() { self.world.departed() } else { self.world.drivers().collect() }
+    }
+
+    fn first_client(&self) -> u32 {
+        self.first_client
+    }
+}

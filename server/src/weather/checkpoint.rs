@@ -1,0 +1,62 @@
+//! Copies of the weather's state, from which it continues bit for bit.
+
+use super::{Weather, WeatherError};
+use crate::settings_error::SettingsError;
+use prairie_core::scene::Scene;
+use prairie_core::terrain::{CoverMap, HeightMap};
+use prairie_core::wire::TurbulenceState;
+use prairie_wind::state::StateError;
+use prairie_wind::{AirState, StepReport};
+use serde::{Deserialize, Serialize};
+
+/// A copy of the state of [`Weather`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WeatherState {
+    air: AirState<f32>,
+    resets: u64,
+    turbulence: TurbulenceState,
+    /// Tick of the newest solver step.
+    stepped: u64,
+    /// The newest report: Courant number, divergence, energy, sub-steps, pressure residual, pressure sweeps.
+    report: (f64, f64, f64, u32, f64, u32),
+}
+
+/// Reason why the weather cannot be restored.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WeatherRestoreError {
+    /// The scene's settings are rejected.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The state is that of another box.
+    #[error(transparent)]
+    State(#[from] StateError),
+}
+
+impl Weather {
+    /// A copy of the state.
+    pub fn state(&self) -> WeatherState {
+        let StepReport { courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps } =
+            self.report;
+        WeatherState {
+            air: self.air.state(),
+            resets: self.resets,
+            turbulence: self.turbulence,
+            stepped: self.frame.tick,
+            report: (courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps),
+        }
+    }
+
+    /// The weather of `scene` in a state that it had before; without a warm-up.
+    ///
+    /// # Errors
+    /// When the solver rejects the scene's settings, or the state is that of another box.
+    pub fn restored(scene: &Scene, height: &HeightMap, cover: &CoverMap, state: &WeatherState) -> Result<Self, WeatherRestoreError> {
+        let mut weather = Self::after(scene, height, cover, 0).map_err(|error: WeatherError| error.in_settings(scene))?;
+        weather.air.restore(&state.air)?;
+        (weather.resets, weather.turbulence) = (state.resets, state.turbulence);
+        let (courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps) = state.report;
+        weather.report = StepReport { courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps };
+        weather.observe(state.stepped, 0.0);
+        Ok(weather)
+    }
+}

@@ -1,0 +1,102 @@
+//! Copies of a world's state, from which it continues bit for bit.
+
+use super::departed::Departed;
+use super::{Camera, Maps, World};
+use crate::bend::BendState;
+use crate::objects::{ObjectsError, ObjectsState};
+use crate::settings_error::SettingsError;
+use crate::snapshot::BrokenPlants;
+use crate::weather::{Weather, WeatherRestoreError, WeatherState};
+use prairie_core::bend::StateError;
+use prairie_core::scene::Scene;
+use serde::{Deserialize, Serialize};
+
+/// A copy of the whole state of a [`World`]; the scene and its maps are not part of it. Taking it costs a copy of the memory that the state occupies, encoding
+/// it several times that.
+#[derive(Serialize, Deserialize)]
+pub struct WorldState {
+    tick: u64,
+    newest_client: u32,
+    departed: Departed,
+    cameras: Vec<Camera>,
+    objects: ObjectsState,
+    weather: WeatherState,
+    bend: BendState,
+    broken: BrokenPlants,
+}
+
+/// Reason why a world cannot be restored.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RestoreError {
+    /// The bytes are not a state.
+    #[error("it cannot be decoded: {0}")]
+    Encoding(#[from] postcard::Error),
+    /// The scene's settings contradict each other.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The wind does not fit the scene.
+    #[error(transparent)]
+    Weather(#[from] WeatherRestoreError),
+    /// The bend field does not fit the scene.
+    #[error(transparent)]
+    Bend(#[from] StateError),
+    /// The objects contradict each other.
+    #[error(transparent)]
+    Objects(#[from] ObjectsError),
+    /// A plant is broken that the scene does not have.
+    #[error("a broken plant has no site in the scene")]
+    Plants,
+}
+
+impl WorldState {
+    /// Number of steps that the world has done.
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// The state as bytes.
+    pub fn encode(&self) -> Vec<u8> {
+        postcard::to_allocvec(self).expect("the state is plain data")
+    }
+
+    /// The state from [`encode`](Self::encode).
+    ///
+    /// # Errors
+    /// When the bytes are not a state.
+    pub fn decode(bytes: &[u8]) -> Result<Self, RestoreError> {
+        Ok(postcard::from_bytes(bytes)?)
+    }
+}
+
+impl World {
+    /// A copy of the whole state.
+    pub fn save(&self) -> WorldState {
+        WorldState {
+            tick: self.tick,
+            newest_client: self.newest_client,
+            departed: self.departed.clone(),
+            cameras: self.cameras.clone(),
+            objects: self.objects.state(),
+            weather: self.weather.state(),
+            bend: self.bend.state(),
+            broken: self.plants.broken().clone(),
+        }
+    }
+
+    /// The world of a scene in a state that it had before. It continues with the same bits as the original, on any number of threads.
+    ///
+    /// # Errors
+    /// [`RestoreError`] when the state is that of another scene.
+    pub fn restore(scene: &Scene, maps: Maps, state: WorldState) -> Result<Self, RestoreError> {
+        let weather = Weather::restored(scene, &maps.height, &maps.cover, &state.weather)?;
+        let mut world = Self::with_weather(scene, maps, weather)?;
+        (world.tick, world.newest_client) = (state.tick, state.newest_client);
+        (world.departed, world.cameras) = (state.departed, state.cameras);
+        world.objects.restore(state.objects)?;
+        world.bend.restore(state.bend)?;
+        if !world.plants.restore(state.broken) {
+            return Err(RestoreError::Plants);
+        }
+        Ok(world)
+    }
+}

@@ -1,0 +1,158 @@
+//! A program that is killed while a client drives: it resumes where it was, and the client is back in its vehicle.
+
+use crate::common::Replica;
+use crate::test_client::TestClient;
+use crate::test_server::within;
+use prairie::journal::{Player, find, recorded};
+use prairie_core::scene::VehicleKind;
+use prairie_core::wire::{ClientMessage, Drive, ServerMessage};
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+use tokio::io::{AsyncBufReadExt as _, BufReader, Lines};
+use tokio::net::TcpStream;
+use tokio::process::{Child, ChildStderr, Command};
+
+struct Program {
+    child: Child,
+    address: String,
+    log: Lines<BufReader<ChildStderr>>,
+}
+
+impl Program {
+    async fn start(world: &Path) -> Self {
+        Self::start_with(Command::new(env!("CARGO_BIN_EXE_prairie")), world).await
+    }
+
+    async fn start_with(mut command: Command, world: &Path) -> Self {
+        command.args(["serve", "--scene", "blades", "--addr", "127.0.0.1:0", "--world"]).arg(world).env("NO_COLOR", "1");
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).kill_on_drop(true).spawn().unwrap();
+        let mut printed = BufReader::new(child.stdout.take().unwrap()).lines();
+        let log = BufReader::new(child.stderr.take().unwrap()).lines();
+        let first = within(printed.next_line()).await.unwrap().expect("the address");
+        Self { child, address: first.split("http://").nth(1).expect("an address").trim().to_owned(), log }
+    }
+
+    async fn connect(&self) -> TestClient<TcpStream> {
+        TestClient::over(TcpStream::connect(&self.address).await.unwrap(), &format!("ws://{}/ws", self.address)).await
+    }
+
+    /// The first line of the log with `text`.
+    async fn logged(&mut self, text: &str) -> String {
+        within(async {
+            loop {
+                let line = self.log.next_line().await.unwrap().unwrap_or_else(|| panic!("no line with `{text}`"));
+                if line.contains(text) {
+                    return line;
+                }
+            }
+        })
+        .await
+    }
+}
+
+/// Sends the first message, and returns the proof of the welcome.
+async fn enter(client: &mut TestClient<TcpStream>, first: &ClientMessage) -> [u8; 32] {
+    client.send_message(first).await;
+    let welcome = client.receive().await.unwrap();
+    let ServerMessage::Welcome { client: id, proof, .. } = welcome else { panic!("{welcome:?}") };
+    client.id = id;
+    assert!(matches!(client.receive().await, Ok(ServerMessage::Scene { .. })));
+    client.send_message(&ClientMessage::View { eye_m: [12.0, 2.0, 12.0], radius_m: 100.0 }).await;
+    proof
+}
+
+async fn own_object(client: &mut TestClient<TcpStream>) -> u32 {
+    client.frames_until(|client| client.peers.iter().any(|peer| peer.0 == client.id && peer.2.is_some())).await;
+    client.peers.iter().find(|peer| peer.0 == client.id).and_then(|peer| peer.2).unwrap()
+}
+
+/// The tick that a line of the log names.
+fn tick(line: &str) -> u64 {
+    line.split("tick=").nth(1).and_then(|rest| rest.split_whitespace().next()).and_then(|tick| tick.parse().ok()).expect("a tick")
+}
+
+/// Lets a client drive for `frames` frames, kills the program, and resumes; all steps twice.
+async fn kill_and_return(frames: usize) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut program = Program::start(folder.path()).await;
+    let mut client = program.connect().await;
+    let mut proof = enter(&mut client, &ClientMessage::Hello { name: "Ada".to_owned() }).await;
+    client.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
+    let (id, object) = (client.id, own_object(&mut client).await);
+    for round in 0..2 {
+        for frame in 0..frames {
+            let steer = (frame as f32 * 0.3).sin();
+            client.send_message(&ClientMessage::Drive(Drive { throttle: 1.0, steer, ..Drive::default() })).await;
+            client.frame().await;
+        }
+        let seen = client.replica.tick;
+        program.child.kill().await.unwrap();
+        let (_, mut player) = recorded(folder.path(), None).unwrap();
+        player.advance(u64::MAX);
+        let (reached, sum) = (player.world.tick(), player.world.checksum());
+        assert!(reached + 6 >= seen, "round {round}: the client saw step {seen}, the journal has {reached}");
+
+        let begun = Instant::now();
+        program = Program::start(folder.path()).await;
+        assert!(begun.elapsed() < Duration::from_secs(5), "resumed after {:?}", begun.elapsed());
+        assert_eq!(tick(&program.logged("resumed the world").await), reached);
+        let (_, newest) = newest_at(folder.path(), reached);
+        assert_eq!(newest, sum, "round {round}: the resumed world is that of an undisturbed replay");
+
+        let mut wrong = program.connect().await;
+        let mut forged = proof;
+        forged[7] ^= 1;
+        enter(&mut wrong, &ClientMessage::Return { name: "Eve".to_owned(), client: id, proof: forged }).await;
+        assert!(wrong.id != id, "a wrong proof gives a new number");
+        drop(wrong);
+
+        client = program.connect().await;
+        client.replica = Replica::default();
+        proof = enter(&mut client, &ClientMessage::Return { name: "Ada".to_owned(), client: id, proof }).await;
+        assert_eq!((client.id, own_object(&mut client).await), (id, object), "the client is back in its vehicle");
+        assert!(client.replica.tick >= reached);
+    }
+}
+
+/// The state at a step, from the newest checkpoint before it.
+fn newest_at(folder: &Path, tick: u64) -> (u64, u64) {
+    let (scene, _) = recorded(folder, None).unwrap();
+    let mut player = Player::open(&find(folder).unwrap(), &scene, tick).unwrap().unwrap();
+    player.advance(tick);
+    (player.world.tick(), player.world.checksum())
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_killed_world_is_resumed_and_its_clients_are_back_in_their_vehicles() {
+    for frames in [1, 7] {
+        kill_and_return(frames).await;
+    }
+}
+
+/// `cargo nextest run --release -p prairie --run-ignored only a_world_killed_200_times_is_always_resumed`
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "takes many minutes"]
+async fn a_world_killed_200_times_is_always_resumed() {
+    for n in 0..100 {
+        kill_and_return(1 + n * 37 % 90).await;
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_full_disk_is_logged_once_and_stops_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut limited = Command::new("sh");
+    limited.args(["-c", &format!("ulimit -f 2; exec {} \"$@\"", env!("CARGO_BIN_EXE_prairie")), "sh"]);
+    let mut program = Program::start_with(limited, folder.path()).await;
+    let line = program.logged("cannot be written").await;
+    assert!(line.contains("a checkpoint of the world"), "{line}");
+    let mut client = program.connect().await;
+    enter(&mut client, &ClientMessage::Hello { name: "Ada".to_owned() }).await;
+    client.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
+    own_object(&mut client).await;
+    for _ in 0..100 {
+        client.frame().await;
+    }
+}
