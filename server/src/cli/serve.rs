@@ -11,7 +11,7 @@ use clap::{Args, ValueHint};
 use prairie::inspect::Target;
 use prairie::net::bind;
 use prairie::scenes::SceneError;
-use prairie::{Config, Limits, journal, scenes};
+use prairie::{Config, Limits, scenes};
 use std::ffi::{OsStr, OsString};
 
 pub(super) const EXAMPLES: &str = "\
@@ -135,8 +135,8 @@ impl Serve {
             Limits { clients: usize::from(self.max_clients), clients_per_address: usize::from(self.max_per_address), ..Limits::default() };
         limits.send.bytes_per_s = f64::from(self.client_kbit) * 1000.0 / 8.0;
         let folder = self.world.folder();
-        let kept = folder.clone();
-        let building = tokio::task::spawn_blocking(move || journal::open(kept.as_ref(), &scene).map(|world| (scene, world)));
+        let arguments = self.world.clone();
+        let building = tokio::task::spawn_blocking(move || arguments.open(&scene).map(|world| (scene, world)));
         let (scene, world) = tokio::select! {
             built = building => built??,
             () = stop.received() => return Ok(()),

@@ -2,7 +2,8 @@
 
 use super::number::whole;
 use clap::Args;
-use prairie::journal::WorldFolder;
+use prairie::journal::{self, JournalError, JournaledWorld, WorldFolder};
+use prairie::scenes::LoadedScene;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -18,6 +19,20 @@ pub(super) struct WorldArguments {
 }
 
 impl WorldArguments {
+    /// The world of a scene, as it is kept, or a new one. If the user's data folder cannot be written, a world without memory.
+    ///
+    /// # Errors
+    /// Those of a folder that was asked for, and that of one in use.
+    pub(super) fn open(&self, scene: &LoadedScene) -> Result<JournaledWorld, JournalError> {
+        match journal::open(self.folder().as_ref(), scene) {
+            Err(error @ JournalError::File { .. }) if self.world.is_none() => {
+                tracing::warn!("{error}; the world is not kept. --world names another folder");
+                journal::open(None, scene)
+            }
+            opened => opened,
+        }
+    }
+
     /// The folder; `None` if nothing is to be kept, or the user has no data folder.
     pub(super) fn folder(&self) -> Option<WorldFolder> {
         let path = match &self.world {

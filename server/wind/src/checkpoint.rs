@@ -119,7 +119,7 @@ mod tests {
                     Config { cells: [8, 4, 8], boundary, advection, time, pressure, dust: Some(Dust::default()), ..Config::default() };
                 let mut air = Air::<f32>::new(method, &config).unwrap();
                 let step = |air: &mut Air<f32>| air.step(0.05, &[]).unwrap();
-                (0..5).for_each(|_| drop(step(&mut air)));
+                (0..5).for_each(|_| _ = step(&mut air));
                 let mut copy = Air::<f32>::new(method, &config).unwrap();
                 copy.restore(&air.state()).unwrap();
                 for _ in 0..5 {
