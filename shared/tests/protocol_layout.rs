@@ -1,0 +1,39 @@
+//! The layout of every type on the wire, for programs in other languages: `server/docs/protocol.json`, generated from the types.
+
+use prairie_core::bend::{Edges, Scheme, Seams};
+use prairie_core::scene::{
+    BladeIntegrator, BladeShape, ComponentKind, LagWay, PlantCover, PrimitiveKind, VehicleKind, WindAdvection, WindBoundary, WindDiffusion,
+    WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+};
+use prairie_core::wire::{ClientMessage, PROTOCOL, Refusal, ServerMessage};
+use serde_json::{Value, json};
+use serde_reflection::{Samples, Tracer, TracerConfig};
+use std::path::Path;
+
+/// The layouts of all types by name, in the format of `serde-reflection`.
+fn generated() -> Value {
+    // The byte 0 is not a valid heading.
+    let mut tracer = Tracer::new(TracerConfig::default().default_u8_value(1));
+    let samples = Samples::new();
+    // The enums inside messages first: of an enum inside another type the tracer sees one variant at a time.
+    macro_rules! trace {
+        ($($name:ident),+) => {
+            $(tracer.trace_type::<$name>(&samples).expect(concat!(stringify!($name), " describes itself"));)+
+        };
+    }
+    trace!(BladeIntegrator, BladeShape, ComponentKind, Edges, LagWay, PlantCover, PrimitiveKind, Refusal, Scheme, Seams, VehicleKind);
+    trace!(WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime);
+    trace!(ClientMessage, ServerMessage);
+    let types = tracer.registry().expect("every enum inside a message is in the list above");
+    json!({ "protocol": PROTOCOL, "types": types })
+}
+
+#[test]
+fn the_stored_layout_is_the_generated_one() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../server/docs/protocol.json");
+    if std::env::var_os("PRAIRIE_UPDATE").is_some() {
+        std::fs::write(&path, format!("{:#}\n", generated())).unwrap();
+    }
+    let stored: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    assert!(stored == generated(), "server/docs/protocol.json is old; run again with PRAIRIE_UPDATE=1");
+}
