@@ -90,7 +90,7 @@ fn copied(folder: &Path) -> TempDir {
     fs::create_dir(&to).unwrap();
     for entry in fs::read_dir(&own).unwrap() {
         let path = entry.unwrap().path();
-        if !path.extension().is_some_and(|extension| extension == "new") {
+        if path.extension().is_none_or(|extension| extension != "new") {
             fs::copy(&path, to.join(path.file_name().unwrap())).unwrap();
         }
     }

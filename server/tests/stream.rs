@@ -326,7 +326,7 @@ fn bytes_sent_to_departed_clients_stay_counted() {
         let viewer = Viewer::join(&clients, SendLimits::default(), 1.0);
         viewer.client.count_sent(bytes);
         assert_eq!(viewer.client.sent_bytes(), bytes as u64);
-        clients.leave(viewer.client.id);
+        clients.leave(&viewer.client);
     }
     assert_eq!((clients.count(), clients.sent_bytes()), (0, 120));
 }

@@ -21,7 +21,7 @@ Examples:
   prairie replay worlds --from 3600          from one hour after the beginning of the world
   prairie replay worlds --speed 4 --rerun save=run.rrd
                                              four times as fast, recorded for the rerun viewer
-  prairie replay worlds --addr none          as fast as possible, unseen; prints the checksum of the end
+  prairie replay worlds --addr none          as fast as possible, unseen; prints its checksum
 
 `prairie serve` keeps worlds in the user's data folder, or in that of --world; the log names the sub-folder at the start.
 A replay is exact to the last bit. Viewers can look around but not drive. A running server is not disturbed.";
