@@ -78,3 +78,21 @@ macro_rules! scenes {
 }
 
 scenes!(meadow storm continuum devil underbrush);
+
+#[test]
+fn the_vehicle_of_a_lost_client_is_kept_for_a_minute() {
+    let loaded = scenes::load("blades").unwrap();
+    let kept_ticks = (prairie::world::KEPT_SECS / loaded.scene.dt_secs()).round() as u64;
+    let mut world = World::new(&loaded.scene, loaded.maps()).unwrap();
+    let take = |client| [Command::Join { client }, Command::Spawn { client, kind: VehicleKind::Car }];
+    world.step(&take(1));
+    world.step(&take(2));
+    let [first, second] = [1, 2].map(|client| world.object_of(client));
+    assert!(first.is_some() && second.is_some());
+    world.step(&[Command::Leave { client: 1 }, Command::Leave { client: 2 }]);
+    (0..kept_ticks / 2).for_each(|_| world.step(&[]));
+    assert_eq!([1, 2].map(|client| world.object_of(client)), [first, second], "both wait");
+    world.step(&[Command::Return { client: 2 }]);
+    (0..kept_ticks).for_each(|_| world.step(&[]));
+    assert_eq!([1, 2].map(|client| world.object_of(client)), [None, second], "the first has not returned");
+}

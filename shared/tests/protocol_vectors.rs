@@ -65,6 +65,7 @@ fn client_messages() -> Vec<ClientMessage> {
         ClientMessage::Ack { frame: u32::MAX },
         ClientMessage::Ping { nonce: 7 },
         ClientMessage::Rename { name: "Grace".to_owned() },
+        ClientMessage::Return { name: "Ada".to_owned(), client: 3, proof: [0xab; 32] },
     ]
 }
 
@@ -73,7 +74,12 @@ fn server_messages() -> Vec<ServerMessage> {
     let peer = |client: u32, object: Option<u32>| Peer { client, name: "Ada".to_owned(), object };
     let refused = |refusal: Refusal| ServerMessage::Refused { refusal, reason: "a reason".to_owned() };
     vec![
-        ServerMessage::Welcome { client: 3, server_version: "0.1.0".to_owned(), scene_name: "meadow".to_owned() },
+        ServerMessage::Welcome {
+            client: 3,
+            proof: std::array::from_fn(|at| 8 * at as u8),
+            server_version: "0.1.0".to_owned(),
+            scene_name: "meadow".to_owned(),
+        },
         ServerMessage::Scene {
             scene: Box::new(scene(FILLED)),
             height_png: vec![1, 2],
