@@ -37,3 +37,20 @@ fn the_stored_layout_is_the_generated_one() {
     let stored: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
     assert!(stored == generated(), "server/docs/protocol.json is old; run again with PRAIRIE_UPDATE=1");
 }
+
+/// Every variant of a message has a row with its number and the names of its fields.
+#[test]
+fn the_page_lists_every_message() {
+    let (page, layout) = (include_str!("../../server/docs/protocol.md"), generated());
+    for message in ["ClientMessage", "ServerMessage"] {
+        for (number, variant) in layout["types"][message]["ENUM"].as_object().expect("messages are enums") {
+            let (name, content) = variant.as_object().and_then(|variant| variant.iter().next()).expect("a variant has a name");
+            let start = format!("| {number} | `{name}` |");
+            let row = page.lines().find(|line| line.starts_with(&start)).unwrap_or_else(|| panic!("docs/protocol.md lacks a row {start}"));
+            let fields = content["STRUCT"].as_array().into_iter().flatten().filter_map(Value::as_object).flat_map(|field| field.keys());
+            for field in fields {
+                assert!(row.contains(&format!("`{field}`")), "docs/protocol.md lacks the field {field} of {name}");
+            }
+        }
+    }
+}

@@ -14,6 +14,7 @@ mod misbehaving_clients;
 mod monitoring;
 mod page;
 mod prebuilt_client;
+mod python;
 mod reload;
 mod shared_world;
 #[cfg(unix)]
