@@ -95,6 +95,7 @@ async fn two_render_options_are_compared_across_a_movable_border() -> Result<()>
     browser.go(&prairie.url("?quality=low&panel=1&compare=clumps,nonsense")).await?;
     browser.until("(s => s && s.view)(window.prairie.state())").await?;
     ensure!(browser.state().await?["compared"] == Value::Null, "a way that does not exist is compared");
+    browser.until("document.getElementById('message').hidden").await?;
     browser.click("#comparing").await?;
     browser.until("(s => s.compared && s.compared.join() === 'clumps,shells')(window.prairie.state())").await?;
     browser.click("#comparing").await?;
