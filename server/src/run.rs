@@ -69,14 +69,13 @@ pub async fn run_simulation(
     shutdown: impl Future<Output = ()>,
 ) -> Result<(), RunError> {
     let scene = &config.scene.scene;
-    let layout = PatchLayout::from(&scene.patches);
     let timing = Timing { tick_hz: scene.tick_hz, publish_hz: config.publish_hz, threads: config.threads };
     let inspector =
         config.rerun.as_ref().map(|target| Inspector::start(target, scene, &config.scene.height, &config.scene.cover)).transpose()?;
     let (proofs, clients) = (Proofs::new(simulation.key()), Arc::new(Clients::starting_at(simulation.first_client())));
     let runner = Runner::start(simulation, timing)?;
     let mut published = runner.published();
-    let streamer = Streamer::new(layout, config.limits.send, timing.published_hz());
+    let streamer = Streamer::new(PatchLayout::from(&scene.patches), config.limits.send, timing.published_hz());
     let counters = streamer.counters();
     let mut stream = stream::start(streamer, runner.published(), clients.clone(), runner.commands())?;
     let (stop, stopping) = watch::channel(false);

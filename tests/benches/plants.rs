@@ -297,7 +297,7 @@ fn breaking() {
                 tick += 1;
             }
         });
-        let strongest_m_per_s = weather.strongest_m_per_s(1.0);
+        let strongest_m_per_s = weather.field().strongest_m_per_s(1.0);
         line(&format!("{name}, up to {strongest_m_per_s:.0} m/s: {} broken", plants.broken().len()), times, 120, US, calm);
         calm = calm.or(Some(times));
     }

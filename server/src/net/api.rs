@@ -118,7 +118,7 @@ fn listed(body: &[u8], has_elevation: bool) -> Result<Vec<Place>, String> {
 
 fn check(place: &Place, path: &str) -> Result<(), String> {
     for (name, value) in [("x", Some(place.x)), ("y", place.y), ("z", Some(place.z))] {
-        if let Some(value) = value.filter(|value| !(value.abs() <= COORDINATE_LIMIT_M)) {
+        if let Some(value) = value.filter(|value| !(-COORDINATE_LIMIT_M..=COORDINATE_LIMIT_M).contains(value)) {
             return Err(format!("`{path}{name}` is {value}; allowed: −1000000 to 1000000"));
         }
     }

@@ -90,9 +90,10 @@ impl Encoder {
         let (publish, newest) = (self.publish, Some(&snapshot.wind));
         let frames = self.wind.get_or_insert_with(|| GridFrames::new(publish, newest, publish + self.wind_pacing.slow_every));
         frames.offer(publish, newest, self.wind_pacing);
+        // The frame may be older than the snapshot.
+        let (tick, turbulence) = frames.newest().map(|wind| (wind.tick, wind.turbulence)).unwrap_or_default();
         frames.message(held, |FrameHeader { seq, key }, payload| {
             self.encodings += 1;
-            let WindFrame { tick, turbulence, .. } = *snapshot.wind;
             wire::encode(&ServerMessage::Wind { tick, seq, key, turbulence, payload }).into()
         })
     }

@@ -91,6 +91,11 @@ impl<G: Grid> GridFrames<G> {
         }
     }
 
+    /// The grid of the newest frame (`None`: at rest); it may be older than the grid offered last.
+    pub fn newest(&self) -> Option<&Arc<G>> {
+        self.now.as_ref()
+    }
+
     /// The message that updates a client from frame `held` (`None`: no frame) to the newest one, and the number of that frame; `None` if the
     /// client is up to date. `write` builds the message from a payload; it is called only for the first client that needs this message.
     pub fn message(&mut self, held: Option<u32>, write: impl FnOnce(FrameHeader, Vec<u8>) -> Bytes) -> Option<(u32, Bytes)> {

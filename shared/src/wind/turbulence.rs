@@ -197,7 +197,7 @@ fn unit([x, z]: [f64; 2]) -> [f64; 2] {
 
 /// Cosine of an angle in turns, to 3e-7 of 1: the Taylor series of the sine of the angle's complement, by + − × alone.
 fn cosine(turns: f32) -> f32 {
-    const COEFFICIENTS: [f32; 6] = [6.283_185_3, -41.341_703, 81.605_25, -76.705_86, 42.058_69, -15.094_643];
+    const COEFFICIENTS: [f32; 6] = [std::f32::consts::TAU, -41.3417, 81.605_25, -76.705_86, 42.058_69, -15.094_643];
     let off = turns - turns.floor() - 0.5;
     let complement = off.abs() - 0.25;
     let square = complement * complement;

@@ -67,11 +67,9 @@ impl<'a> View<'a> {
         headlights: &[SpotLight],
     ) -> Frame {
         let scene = decoded.scene();
-        let eye = self.camera.eye_m;
-        let overcast = overcast(decoded);
+        let (eye, overcast) = (self.camera.eye_m, overcast(decoded));
         let [wraps_x, _, wraps_z] = scene.wind.faces.wraps().map(u32::from);
-        let mean_wind = MeanWind::of(scene.wind.mean_m_per_s);
-        let [past_ages_secs @ .., youngest_past] = atlas.past();
+        let (mean_wind, [past_ages_secs @ .., youngest_past]) = (MeanWind::of(scene.wind.mean_m_per_s), atlas.past());
         let fades_from = if self.quality == Quality::Reference { 0.999 } else { 0.72 };
         let lamps = lamps(scene, decoded.heights(), headlights, self.sun.elevation_rad, daylight.brightness(), eye);
         let spheres = spheres(&scene.objects, poses, eye);
