@@ -66,9 +66,8 @@ macro_rules! scenes {
             continues(stringify!($name), 150, 300);
         })*
 
-        /// `cargo nextest run --release -p prairie --run-ignored only restored_worlds_stay_equal`
         #[test]
-        #[ignore = "takes minutes"]
+        #[ignore = "takes minutes; cargo nextest run --release -p prairie --run-ignored only restored_worlds_stay_equal"]
         fn restored_worlds_stay_equal() {
             for scene in [$(stringify!($name)),*] {
                 continues(scene, 1000, 6000);

@@ -130,9 +130,8 @@ async fn a_killed_world_is_resumed_and_its_clients_are_back_in_their_vehicles() 
     }
 }
 
-/// `cargo nextest run --release -p prairie --run-ignored only a_world_killed_200_times_is_always_resumed`
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-#[ignore = "takes many minutes"]
+#[ignore = "takes many minutes; cargo nextest run --release -p prairie --run-ignored only a_world_killed_200_times_is_always_resumed"]
 async fn a_world_killed_200_times_is_always_resumed() {
     for n in 0..100 {
         kill_and_return(1 + n * 37 % 90).await;
