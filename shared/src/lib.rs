@@ -28,7 +28,9 @@
 //! postures and light may differ in the last bits between platforms, so the server's results are authoritative.
 
 pub mod bend;
+pub mod body;
 pub mod escape;
+pub mod grass;
 pub mod grid;
 pub mod hash;
 pub mod light;

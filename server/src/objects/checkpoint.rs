@@ -2,7 +2,8 @@
 
 use super::terrain_colliders::TileIndex;
 use super::vehicle::{Driver, Vehicle};
-use super::{BodyPose, Objects, kinds};
+use super::{Objects, kinds};
+use prairie_core::body::BodyPose;
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::ObjectId;
 use rapier3d::prelude::*;

@@ -1,7 +1,7 @@
 //! Interface between the physics and a kind of vehicle.
 
-use super::prism::Prism;
 use super::terrain_colliders::TerrainColliders;
+use prairie_core::body::Prism;
 use prairie_core::scene::Objects;
 use prairie_core::wire::Drive;
 use rapier3d::prelude::*;

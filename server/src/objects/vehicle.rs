@@ -3,8 +3,8 @@
 use super::autopilot::Autopilot;
 use super::dynamics::Controller;
 use super::environment::Environment;
-use super::motion::BodyPose;
 use super::terrain_colliders::TerrainColliders;
+use prairie_core::body::BodyPose;
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::{Drive, ObjectId};
 use rapier3d::prelude::*;

@@ -10,13 +10,13 @@
 mod broken_state;
 mod storm_damage;
 
-use crate::bend::BendSimulation;
-use crate::bend::contact::STANDSTILL_M_PER_S;
-use crate::bend::vector::length;
 use crate::checksum::Checksum;
 use crate::snapshot::BrokenPlants;
 use crate::weather::Weather;
 use broken_state::BrokenState;
+use prairie_core::grass::BendSimulation;
+use prairie_core::grass::contact::STANDSTILL_M_PER_S;
+use prairie_core::grass::vector::length;
 use prairie_core::plant::flora::{Flora, height_m};
 use prairie_core::plant::underbrush::bearing::bears_rad;
 use storm_damage::StormDamage;

@@ -1,7 +1,7 @@
 //! Storm damage: breaking of plants by wind.
 
 use super::broken_state::BrokenState;
-use crate::bend::vector::length;
+use prairie_core::grass::vector::length;
 use prairie_core::plant::flora::{Flora, PlantInstance, height_m};
 use prairie_core::plant::force_field::{AIR_KG_PER_M3, dynamic_pressure_pa};
 use prairie_core::plant::underbrush::bearing::bears_pa;

@@ -2,12 +2,12 @@
 
 use super::builtin::BuiltIn;
 use super::error::{FaultyScene, SceneError};
-use crate::bend::wind_drawing::{WindDrawing, WindDrawings};
 use crate::escaped::escaped;
 use crate::file;
 use crate::objects::gltf;
 use crate::settings_error::SettingsError;
 use crate::world::{self, Maps};
+use prairie_core::grass::wind_drawing::{WindDrawing, WindDrawings};
 use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::{Positions, Scene, SceneFault, VehicleKind, WindShape, parse, parse_underbrush, parse_with};
 use prairie_core::terrain::{Cover, CoverMap, HeightMap, MapError};

@@ -1,7 +1,7 @@
 //! Quantised bend field: 8-bit codes of each patch, encoded again where something changed.
 
-use crate::bend::{BendSimulation, Camera, grass_state};
 use prairie_core::bend::{Bend, Patch, TILE};
+use prairie_core::grass::{BendSimulation, Camera, grass_state};
 use prairie_core::grid::{PatchIndex, PatchLayout};
 use prairie_core::wire::{VIEW_RADIUS_LIMIT_M, quantise};
 use rayon::prelude::*;

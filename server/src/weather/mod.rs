@@ -8,7 +8,6 @@ mod settings;
 mod vehicle_jets;
 
 use crate::checksum::Checksum;
-use crate::objects::Motion;
 use crate::settings_error::SettingsError;
 use crate::snapshot::WindFrame;
 use box_terrain::BoxTerrain;
@@ -17,6 +16,7 @@ use carrier::Carrier;
 pub use checkpoint::{WeatherRestoreError, WeatherState};
 use glam::Vec3;
 use prairie_core::bend::Field;
+use prairie_core::body::Motion;
 use prairie_core::scene::{Scene, WindTiling};
 use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
 use prairie_core::wind::WindField;

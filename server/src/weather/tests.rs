@@ -1,6 +1,6 @@
 use super::*;
-use crate::objects::BodyPose;
 use crate::world::Maps;
+use prairie_core::body::BodyPose;
 use prairie_core::bend::{Bend, Field, Kinds};
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{Primitive, PrimitiveKind};

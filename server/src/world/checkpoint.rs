@@ -2,12 +2,12 @@
 
 use super::departed::Departed;
 use super::{Camera, Maps, World};
-use crate::bend::BendState;
 use crate::objects::{ObjectsError, ObjectsState};
 use crate::settings_error::SettingsError;
 use crate::snapshot::BrokenPlants;
 use crate::weather::{Weather, WeatherRestoreError, WeatherState};
 use prairie_core::bend::StateError;
+use prairie_core::grass::BendState;
 use prairie_core::scene::Scene;
 use serde::{Deserialize, Serialize};
 

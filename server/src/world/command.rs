@@ -1,6 +1,6 @@
 //! Commands from clients to the world.
 
-use crate::bend::Camera;
+use prairie_core::grass::Camera;
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::Drive;
 use serde::{Deserialize, Serialize};

@@ -4,25 +4,28 @@ mod checkpoint;
 mod command;
 mod departed;
 
-pub use crate::bend::Camera;
 pub use checkpoint::{RestoreError, WorldState};
 pub use command::Command;
 pub use departed::KEPT_SECS;
+pub use prairie_core::grass::Camera;
 
-use crate::bend::wind_drawing::WindDrawings;
-use crate::bend::{self, BendSimulation};
+use crate::bend;
+use crate::bend::pool::Pool;
 use crate::checksum::Checksum;
-use crate::objects::{Environment, Objects};
+use crate::objects::{Environment, Objects, bodies};
 use crate::plants::PlantDamage;
 use crate::settings_error::SettingsError;
 use crate::snapshot::{Diagnostics, PatchQuantiser, Snapshot};
 use crate::weather::Weather;
 use departed::Departed;
+use prairie_core::grass::wind_drawing::WindDrawings;
+use prairie_core::grass::{BendSimulation, prescribed_wind};
 use prairie_core::plant::flora::Flora;
 use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::Scene;
 use prairie_core::terrain::{CoverMap, HeightMap};
 use prairie_core::wire::{Drive, ObjectId};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The maps of a scene.
@@ -67,11 +70,12 @@ impl World {
 
     /// The initial state, except for the weather.
     fn with_weather(scene: &Scene, maps: Maps, weather: Weather) -> Result<Self, SettingsError> {
-        bend::prescribed_wind::check(scene, &maps.drawings)?;
+        check_drawings(scene, &maps.drawings)?;
         let height = Arc::new(maps.height);
         let environment = Environment { height: Arc::clone(&height), cover: Arc::new(maps.cover), extent_m: scene.extent_m() };
         let plants = PlantDamage::new(Flora::new(scene, &environment.cover, maps.nutrients.as_deref()), scene.dt_secs());
-        let bend = BendSimulation::with_drawings(scene, Arc::clone(&height), &environment.cover, &maps.drawings);
+        let bodies = bodies(&scene.objects);
+        let bend = BendSimulation::new(scene, Arc::clone(&height), &environment.cover, &bodies, &maps.drawings);
         Ok(Self {
             dt_secs: scene.dt_secs(),
             tick: 0,
@@ -100,7 +104,7 @@ impl World {
         self.objects.step(self.dt_secs, |[x, y, z]| weather.field().wind_at([x, y - height.height_m(x, z), z]));
         let motions = self.objects.motions();
         self.weather.step(self.tick, &motions, &self.height, self.bend.field());
-        self.bend.step(self.dt_secs, &motions, &self.cameras, self.weather.field());
+        self.bend.step(self.dt_secs, &motions, &self.cameras, self.weather.field(), &Pool);
         self.plants.step(self.tick, self.dt_secs, &self.bend, &self.weather);
     }
 
@@ -174,7 +178,7 @@ impl World {
         let mut sum = Checksum::default();
         self.objects.hash(&mut sum);
         self.weather.hash(&mut sum);
-        self.bend.hash(&mut sum);
+        hash_bend(&self.bend, &mut sum);
         self.plants.hash(&mut sum);
         sum.value()
     }
@@ -189,7 +193,7 @@ impl World {
         [
             ("objects", of(&|sum| self.objects.hash(sum))),
             ("wind", of(&|sum| self.weather.hash(sum))),
-            ("bend field", of(&|sum| self.bend.hash(sum))),
+            ("bend field", of(&|sum| hash_bend(&self.bend, sum))),
             ("broken plants", of(&|sum| self.plants.hash(sum))),
         ]
     }
@@ -237,7 +241,7 @@ impl World {
             step_max_secs: 0.0,
             divergence_rms: wind.divergence_rms_rel as f32,
             wind_energy: wind.kinetic_energy_m2_per_s2,
-            bend_activity: self.bend.activity(),
+            bend_activity: activity(&self.bend),
             awake_patches: self.bend.field().awake_count() as u32,
             evicted_patches: self.bend.evicted(),
             reset_patches: self.bend.reset_count(),
@@ -249,6 +253,33 @@ impl World {
             courant: bend.courant_fraction,
         }
     }
+}
+
+/// Sum of θ² + ω² over all cells (mixed units).
+fn activity(bend: &BendSimulation) -> f64 {
+    let patches: Vec<_> = bend.field().awake().collect();
+    let activities: Vec<_> = patches.par_iter().map(|patch| patch.activity()).collect();
+    // `sum` of an empty list would be −0.
+    activities.into_iter().fold(0.0, |sum, activity| sum + activity)
+}
+
+/// Adds the bend field and the flattened grass to a checksum.
+fn hash_bend(bend: &BendSimulation, sum: &mut Checksum) {
+    for patch in bend.field().awake() {
+        sum.add([patch.index()]);
+        for row in patch.rows().chain(patch.rows_before()) {
+            sum.add(row.into_iter().flatten().map(|v| v.to_bits()));
+        }
+    }
+    sum.add(bend.flattened().words());
+}
+
+/// Checks that `drawings` has all wind drawings that `scene` names; otherwise the error names the first that is missing.
+fn check_drawings(scene: &Scene, drawings: &WindDrawings) -> Result<(), SettingsError> {
+    let mut missing = prescribed_wind::named_drawings(scene).filter(|(_, name)| !drawings.contains_key(*name));
+    missing.next().map_or(Ok(()), |(field, name)| {
+        Err(SettingsError { field: field.to_owned(), message: format!("names the drawing `{name}`, which is not among the maps") })
+    })
 }
 
 /// All incompatibilities among the settings of `scene`, found without creating a world.

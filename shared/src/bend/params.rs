@@ -96,7 +96,7 @@ struct Decay {
 impl Decay {
     fn new(rate_per_s: f32, dt_secs: f32, damping: Damping) -> Self {
         let exponent = f64::from(rate_per_s) * f64::from(dt_secs);
-        let lambda = -f64::exp_m1(-exponent);
+        let lambda = -libm::expm1(-exponent);
         let force_fraction = if damping == Damping::Plain || exponent == 0.0 { 1.0 } else { lambda / exponent };
         Self { lambda, force_fraction }
     }

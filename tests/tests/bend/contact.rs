@@ -1,10 +1,10 @@
 //! Contact of objects with grass: Chen & Johan, Eqs. (1) and (10)–(12), tracks without holes, recovery, independence of the tick rate.
 
 use glam::Quat;
-use prairie::bend::bending::{bend_after_rad, bending_speed_rad_per_s, direction, terrain_limit_rad};
-use prairie::bend::footprint::Footprint;
-use prairie::bend::{BendSimulation, Camera};
-use prairie::objects::{BodyPose, Motion, MotionError};
+use prairie_core::grass::bending::{bend_after_rad, bending_speed_rad_per_s, direction, terrain_limit_rad};
+use prairie_core::grass::footprint::Footprint;
+use prairie_core::grass::{BendSimulation, Camera};
+use prairie_core::body::{BodyPose, Motion, MotionError};
 use prairie_core::bend::{Bend, Patch};
 use prairie_core::scene::{Objects, Scene, VehicleKind};
 use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
@@ -32,7 +32,7 @@ fn wind(scene: &Scene, m_per_s: f32) -> WindField {
 fn meadow(scene: &Scene) -> BendSimulation {
     let flat = HeightMap::from_heights(2, 2, [1000.0; 2], vec![0.0; 4]);
     let grass = CoverMap::from_png(&grey_png([2; 2], &[255; 4])).expect("a grey PNG");
-    BendSimulation::new(scene, Arc::new(flat), &grass)
+    BendSimulation::new(scene, Arc::new(flat), &grass, &prairie::objects::bodies(&scene.objects), &WindDrawings::new())
 }
 
 /// A scene without flattened grass: only the field bends.

@@ -1,11 +1,11 @@
 //! Wind as an object (Chen & Johan, §5.3): helicopter downwash, cyclones, drawn winds.
 
 use png::{BitDepth, ColorType};
-use prairie::bend::flattened::FlattenedGrass;
-use prairie::bend::grass_properties::GrassProperties;
-use prairie::bend::grass_state::GrassState;
-use prairie::bend::prescribed_wind::{Pattern, PrescribedWind};
-use prairie::bend::wind_drawing::WindDrawing;
+use prairie_core::grass::flattened::FlattenedGrass;
+use prairie_core::grass::grass_properties::GrassProperties;
+use prairie_core::grass::grass_state::GrassState;
+use prairie_core::grass::prescribed_wind::{Pattern, PrescribedWind};
+use prairie_core::grass::wind_drawing::WindDrawing;
 use prairie::scenes;
 use prairie::world::World;
 use prairie_core::bend::{Bend, Field, Kinds, Patch};

@@ -1,7 +1,7 @@
 //! Ball: a light sphere that objects and strong wind push along, and that a driver rolls from within.
 
 use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
-use super::super::prism::Prism;
+use prairie_core::body::Prism;
 use prairie_core::plant::force_field::AIR_KG_PER_M3;
 use prairie_core::scene::Objects;
 use prairie_core::wire::Drive;

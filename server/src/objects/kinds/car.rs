@@ -1,8 +1,8 @@
 //! Car: a body on four sprung wheels with ray-cast suspension.
 
 use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
-use super::super::prism::Prism;
 use super::ball::BALLS;
+use prairie_core::body::Prism;
 use prairie_core::scene::Objects;
 use prairie_core::wire::Drive;
 use rapier3d::control::{DynamicRayCastVehicleController, WheelTuning};

@@ -1,7 +1,7 @@
 //! Helicopter: thrust along its own up axis, tilted towards the target velocity.
 
 use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
-use super::super::prism::Prism;
+use prairie_core::body::Prism;
 use prairie_core::scene::{Objects, VehicleKind};
 use prairie_core::wire::Drive;
 use rapier3d::prelude::*;

@@ -7,7 +7,7 @@ mod monster;
 mod sled;
 
 use super::dynamics::{Airflow, VehicleDynamics};
-use super::prism::Prism;
+use prairie_core::body::{Body, Prism};
 use prairie_core::scene::{Objects, VehicleKind};
 
 pub(super) fn dynamics(kind: VehicleKind) -> &'static VehicleDynamics {
@@ -30,9 +30,13 @@ pub fn airflow(kind: VehicleKind) -> Airflow {
     dynamics(kind).airflow
 }
 
-/// Whether the rotation of a kind has no effect on the grass.
-pub fn is_round(kind: VehicleKind) -> bool {
-    dynamics(kind).is_round
+/// Shapes of all kinds in contact with the grass, in the order of [`VehicleKind::ALL`].
+pub fn bodies(objects: &Objects) -> Vec<Body> {
+    let body = |kind| {
+        let VehicleDynamics { prisms, airflow, is_round, .. } = dynamics(kind);
+        Body { prisms: prisms(objects), is_round: *is_round, has_downwash: *airflow == Airflow::Downwash }
+    };
+    VehicleKind::ALL.map(body).to_vec()
 }
 
 /// Colour of a kind's trail in recordings.

@@ -1,8 +1,8 @@
 //! Monster: a walking capsule. Its velocity is set directly, and its feet follow the terrain.
 
 use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
-use super::super::prism::Prism;
 use super::super::terrain_colliders::TERRAIN;
+use prairie_core::body::Prism;
 use prairie_core::scene::Objects;
 use prairie_core::wire::Drive;
 use rapier3d::prelude::*;

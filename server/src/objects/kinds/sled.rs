@@ -1,8 +1,8 @@
 //! Sled: a gliding frame of any outline. Its velocity is set directly, and its floor follows the slope of the terrain.
 
 use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
-use super::super::prism::Prism;
 use super::super::terrain_colliders::TERRAIN;
+use prairie_core::body::Prism;
 use prairie_core::outline::convex_parts;
 use prairie_core::scene::{Objects, VehicleKind};
 use prairie_core::wire::Drive;

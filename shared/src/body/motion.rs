@@ -1,30 +1,9 @@
 //! Motion of objects in a step, as input to grass and wind.
 
-use glam::{Quat, Vec3};
-use prairie_core::scene::VehicleKind;
+use super::BodyPose;
+use crate::scene::VehicleKind;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
-
-/// Position and orientation of a body.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BodyPose {
-    /// Centre of the body's box (m).
-    pub position_m: [f32; 3],
-    /// Unit quaternion (x, y, z, w); the body's own axes are right +X, up +Y, forward −Z.
-    pub rotation: [f32; 4],
-}
-
-impl BodyPose {
-    /// Position on the ground (m).
-    pub fn xz(&self) -> [f32; 2] {
-        [self.position_m[0], self.position_m[2]]
-    }
-
-    /// World position (m) of a point given in the body's axes (m).
-    pub fn point_m(&self, local_m: [f32; 3]) -> Vec3 {
-        Vec3::from_array(self.position_m) + Quat::from_array(self.rotation) * Vec3::from_array(local_m)
-    }
-}
 
 /// Motion of an object in one step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -82,8 +61,13 @@ pub enum MotionError {
 impl Motion {
     /// The same displacement without rotation.
     pub fn without_rotation(&self) -> Self {
-        let level = |pose: BodyPose| BodyPose { rotation: Quat::IDENTITY.to_array(), ..pose };
+        let level = |pose: BodyPose| BodyPose { rotation: BodyPose::IDENTITY.rotation, ..pose };
         Self { from: level(self.from), to: level(self.to), ..*self }
+    }
+
+    /// The same motion between [rounded](BodyPose::rounded) poses: that by which the grass is pressed.
+    pub fn rounded(&self) -> Self {
+        Self { from: self.from.rounded(), to: self.to.rounded(), ..*self }
     }
 
     /// Checks the motion.
@@ -103,11 +87,12 @@ impl Motion {
             return Err(MotionError::NotFinite { kind, field, value: value.to_vec() });
         }
         for (field, value) in [("from.rotation", from.rotation), ("to.rotation", to.rotation)] {
-            if (Quat::from_array(value).length_squared() - 1.0).abs() > UNIT_TOLERANCE {
+            let length2: f32 = value.iter().map(|part| part * part).sum();
+            if (length2 - 1.0).abs() > UNIT_TOLERANCE {
                 return Err(MotionError::NotUnit { kind, field, value });
             }
         }
-        let travel_m = Vec3::from_array(from.position_m).distance(Vec3::from_array(to.position_m));
+        let travel_m = (0..3).map(|axis| to.position_m[axis] - from.position_m[axis]).map(|m| m * m).sum::<f32>().sqrt();
         if travel_m <= TRAVEL_LIMIT_M { Ok(()) } else { Err(MotionError::TooFar { kind, travel_m }) }
     }
 }

@@ -2,9 +2,9 @@
 
 use super::camera::Camera;
 use noise::{NoiseFn, Perlin};
-use prairie_core::bend::{Bend, Field, TILE};
-use prairie_core::grid::{PatchIndex, PatchLayout};
-use prairie_core::scene::{NaturalWind, Scene};
+use crate::bend::{Bend, Field, TILE};
+use crate::grid::{PatchIndex, PatchLayout};
+use crate::scene::{NaturalWind, Scene};
 
 /// Rate at which gusts change while they travel (1/s).
 const CHANGE_PER_S: f64 = 0.15;

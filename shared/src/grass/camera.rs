@@ -1,7 +1,7 @@
 //! Client cameras, near which the grass is simulated first.
 
 use super::vector::squared_distance;
-use prairie_core::grid::{PatchIndex, PatchLayout};
+use crate::grid::{PatchIndex, PatchLayout};
 use serde::{Deserialize, Serialize};
 
 /// A client's camera.

@@ -5,11 +5,10 @@ use super::footprint::Footprint;
 use super::grass_state::{GrassState, Pressed};
 use super::vector::{length, unit};
 use super::wind_drawing::{WindDrawing, WindDrawings};
-use crate::objects::{Airflow, Motion, airflow};
-use crate::settings_error::SettingsError;
-use prairie_core::bend::Bend;
-use prairie_core::scene::{DrawnWind, Objects, Scene, WindShape};
-use prairie_core::terrain::HeightMap;
+use crate::body::Motion;
+use crate::bend::Bend;
+use crate::scene::{DrawnWind, Objects, Scene, WindShape};
+use crate::terrain::HeightMap;
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
@@ -102,7 +101,7 @@ impl PrescribedWind {
 
     /// Bends the grass of awake patches along the wind.
     pub fn press(&self, grass: &mut GrassState) {
-        let (sin, cos) = self.rotation_rad.sin_cos();
+        let (sin, cos) = libm::sincosf(self.rotation_rad);
         grass.for_each_cell(&self.footprint(), false, |at_m, bend, limit_rad| {
             let [x, z] = [0, 1].map(|axis| (at_m[axis] - self.center_m[axis]) / self.radius_m);
             let [x, z] = self.pattern.at([cos * x + sin * z, cos * z - sin * x]);
@@ -121,7 +120,7 @@ impl PrescribedWind {
 
     /// The square that is pressed.
     pub fn footprint(&self) -> Footprint {
-        let (sin, cos) = self.rotation_rad.sin_cos();
+        let (sin, cos) = libm::sincosf(self.rotation_rad);
         let [x, z] = self.center_m;
         let (a, b) = (self.radius_m * (cos - sin), self.radius_m * (cos + sin));
         Footprint::around(vec![[x + a, z + b], [x - b, z + a], [x - a, z - b], [x + b, z - a]])
@@ -156,10 +155,10 @@ impl PrescribedWinds {
         self.time_secs = time_secs;
     }
 
-    /// Winds of the next `dt_secs`: downwash below the rotors among `motions`, and the drawn winds. A wind that travels far in a step is repeated along
+    /// Winds of the next `dt_secs`: downwash below `rotors`, and the drawn winds. A wind that travels far in a step is repeated along
     /// its path, at most a quarter of its radius apart.
-    pub fn step(&mut self, motions: &[Motion], height: &HeightMap, dt_secs: f32) -> Vec<PrescribedWind> {
-        let downwash = motions.iter().filter(|motion| airflow(motion.kind) == Airflow::Downwash).filter_map(|motion| {
+    pub fn step<'a>(&mut self, rotors: impl Iterator<Item = &'a Motion>, height: &HeightMap, dt_secs: f32) -> Vec<PrescribedWind> {
+        let downwash = rotors.filter_map(|motion| {
             let [x, z] = motion.to.xz();
             let skids_m = motion.to.position_m[1] - self.objects.half_extents_m(motion.kind)[1];
             PrescribedWind::downwash(self.downwash.clone()?, [x, z], skids_m - height.height_m(x, z), dt_secs)
@@ -171,19 +170,13 @@ impl PrescribedWinds {
     }
 }
 
-/// Checks that `drawings` has all wind drawings that `scene` names.
-///
-/// # Errors
-/// [`SettingsError`] names the first that is missing.
-pub fn check(scene: &Scene, drawings: &WindDrawings) -> Result<(), SettingsError> {
+/// The drawings that `scene` names, with the fields that name them.
+pub fn named_drawings(scene: &Scene) -> impl Iterator<Item = (&'static str, &str)> {
     let winds = scene.drawn_winds.iter().map(|wind| ("drawn_winds", &wind.shape));
-    let named = winds.chain([("objects.helicopter.wash_shape", &scene.objects.helicopter.wash_shape)]);
-    let mut missing = named.filter_map(|(field, shape)| match shape {
-        WindShape::Drawn(name) if !drawings.contains_key(name) => Some((field, name)),
-        _ => None,
-    });
-    missing.next().map_or(Ok(()), |(field, name)| {
-        Err(SettingsError { field: field.to_owned(), message: format!("names the drawing `{name}`, which is not among the maps") })
+    let shapes = winds.chain([("objects.helicopter.wash_shape", &scene.objects.helicopter.wash_shape)]);
+    shapes.filter_map(|(field, shape)| match shape {
+        WindShape::Drawn(name) => Some((field, name.as_str())),
+        WindShape::Outward | WindShape::Swirl => None,
     })
 }
 
@@ -212,7 +205,7 @@ fn along_path(wind: &DrawnWind, pattern: &Pattern, time_secs: f64, dt_secs: f32)
 /// The position (m) at the distance `travelled_m` along the closed path through `corners_m`.
 fn position_on_path_m(corners_m: &[[f32; 2]], travelled_m: f64) -> [f32; 2] {
     let legs =
-        || corners_m.iter().zip(corners_m.iter().cycle().skip(1)).map(|(&a, &b)| (a, b, f64::from((b[0] - a[0]).hypot(b[1] - a[1]))));
+        || corners_m.iter().zip(corners_m.iter().cycle().skip(1)).map(|(&a, &b)| (a, b, f64::from(length([b[0] - a[0], b[1] - a[1]]))));
     let round_m: f64 = legs().map(|(.., length_m)| length_m).sum();
     let mut left_m = if round_m > 0.0 { travelled_m.rem_euclid(round_m) } else { 0.0 };
     for (a, b, length_m) in legs() {

@@ -5,7 +5,8 @@
 //! any speed and step. A prism narrower than a cell counts as one cell wide, so that its track is connected.
 
 use super::footprint::{Edge, Footprint};
-use crate::objects::{BodyPose, Motion, Prism};
+use super::vector::length;
+use crate::body::{BodyPose, Motion, Prism};
 use std::f32::consts::{PI, TAU};
 
 /// Area that a convex prism sweeps over.
@@ -34,7 +35,7 @@ struct LevelFrame {
 
 impl LevelFrame {
     fn new(at_m: [f32; 2], angle_rad: f32) -> Self {
-        let (sin, cos) = angle_rad.sin_cos();
+        let (sin, cos) = libm::sincosf(angle_rad);
         Self { at_m, angle_rad, cos, sin }
     }
 
@@ -71,8 +72,8 @@ impl SweptFootprint {
         let [from_x, from_z] = motion.from.xz();
         let [to_x, to_z] = motion.to.xz();
         let moved_m = [to_x - from_x, to_z - from_z];
-        let moved = moved_m[0].hypot(moved_m[1]);
-        let reach_m = outline.corners_m().iter().map(|[x, z]| x.hypot(*z)).fold(0.0, f32::max) + moved;
+        let moved = length(moved_m);
+        let reach_m = outline.corners_m().iter().copied().map(length).fold(0.0, f32::max) + moved;
         // Upper bound of the curvature of a path in the turning frame. Its sagitta in one of n legs is bend/(8·n²).
         let bend_m = turn_rad * turn_rad * reach_m + 2.0 * turn_rad.abs() * moved;
         let legs = (bend_m / cell_m).sqrt().ceil().max(1.0) as u16;
@@ -89,12 +90,12 @@ impl SweptFootprint {
 
     /// Upper bound of the distance that any point of the prism moves (m).
     pub fn travel_m(&self) -> f32 {
-        self.moved_m[0].hypot(self.moved_m[1]) + self.turn_rad.abs() * self.reach_m()
+        length(self.moved_m) + self.turn_rad.abs() * self.reach_m()
     }
 
     /// Distance of the farthest corner from the body's centre (m).
     fn reach_m(&self) -> f32 {
-        self.outline.corners_m().iter().map(|[x, z]| x.hypot(*z)).fold(0.0, f32::max)
+        self.outline.corners_m().iter().copied().map(length).fold(0.0, f32::max)
     }
 
     /// The legs of the step, in order.
@@ -187,10 +188,10 @@ impl Leg<'_> {
 fn angle_rad(pose: &BodyPose) -> f32 {
     let along = |axis: [f32; 3]| {
         let tip = pose.point_m(axis);
-        [tip.x - pose.position_m[0], tip.z - pose.position_m[2]]
+        [tip[0] - pose.position_m[0], tip[2] - pose.position_m[2]]
     };
     let ([back_x, back_z], [right_x, right_z]) = (along([0.0, 0.0, 1.0]), along([1.0, 0.0, 0.0]));
-    if back_x.hypot(back_z) > 0.5 { (-back_x).atan2(back_z) } else { right_z.atan2(right_x) }
+    if length([back_x, back_z]) > 0.5 { libm::atan2f(-back_x, back_z) } else { libm::atan2f(right_z, right_x) }
 }
 
 /// Smallest vertical component of the body's up axis at which the prism touches the ground with its floor.
@@ -198,7 +199,7 @@ const UPRIGHT: f32 = 0.7;
 
 /// The prism seen from above in its level frame, at least one cell wide, and which of its sides are rims.
 fn outline(prism: &Prism, pose: &BodyPose, level: &LevelFrame, cell_m: f32) -> (Footprint, Vec<bool>) {
-    let up = pose.point_m([0.0, 1.0, 0.0]).y - pose.position_m[1];
+    let up = pose.point_m([0.0, 1.0, 0.0])[1] - pose.position_m[1];
     let [low, _] = prism.span_m;
     let seen = |heights: [f32; 2]| prism.corners(pose, heights).map(|[x, _, z]| level.local([x, z]));
     // From above, an upright prism is the affine image of its floor: convex, with the same sides.

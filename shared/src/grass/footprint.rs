@@ -1,6 +1,6 @@
 //! Convex footprints on the ground, and the cells within them.
 
-use prairie_core::grid::PatchLayout;
+use crate::grid::PatchLayout;
 
 /// A convex polygon on the ground, corners in order (m).
 #[derive(Clone, Debug, PartialEq)]

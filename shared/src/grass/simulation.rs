@@ -2,24 +2,22 @@
 
 use super::bodies::Bodies;
 use super::camera::Camera;
+use super::causes::{Causes, Limits};
 use super::contact::Contact;
 use super::flattened::{FlattenedGrass, FlattenedState};
 use super::grass_properties::GrassProperties;
 use super::grass_state::{self, GrassState};
 use super::gust_noise::GustNoise;
-use super::pool::Pool;
 use super::prescribed_wind::{PrescribedWind, PrescribedWinds};
 use super::regions::Regions;
 use super::swept_footprint::SweptFootprint;
 use super::wind_drawing::WindDrawings;
-use crate::checksum::Checksum;
-use crate::objects::{Motion, MotionError};
-use prairie_core::bend::{Field, FieldState, Kinds, Patch, Report, Scheme, StateError, StepError, TILE};
-use prairie_core::grid::{PatchIndex, PatchLayout};
-use prairie_core::scene::Scene;
-use prairie_core::terrain::{CoverMap, HeightMap};
-use prairie_core::wind::WindField;
-use rayon::prelude::*;
+use crate::bend::{Executor, Field, FieldState, Kinds, Patch, Report, Scheme, StateError, StepError, TILE};
+use crate::body::{Body, Motion, MotionError};
+use crate::grid::{PatchIndex, PatchLayout};
+use crate::scene::Scene;
+use crate::terrain::{CoverMap, HeightMap};
+use crate::wind::WindField;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -36,7 +34,8 @@ pub struct BendSimulation {
     bodies: Bodies,
     winds: PrescribedWinds,
     flattened: FlattenedGrass,
-    motions: Vec<Motion>,
+    /// Causes of the newest step.
+    causes: Causes,
     rejected: Vec<MotionError>,
     rejected_count: u64,
     reset_count: u64,
@@ -51,7 +50,7 @@ pub struct BendState {
     flattened: FlattenedState,
     gusts_secs: Option<f64>,
     winds_secs: f64,
-    motions: Vec<Motion>,
+    causes: Causes,
     rejected_count: u64,
     reset_count: u64,
     evicted: u64,
@@ -59,13 +58,9 @@ pub struct BendState {
 }
 
 impl BendSimulation {
-    /// Grass at rest, without hand-drawn winds.
-    pub fn new(scene: &Scene, height: Arc<HeightMap>, cover: &CoverMap) -> Self {
-        Self::with_drawings(scene, height, cover, &WindDrawings::new())
-    }
-
-    /// Grass at rest. A wind whose drawing is not among `drawings` is left out.
-    pub fn with_drawings(scene: &Scene, height: Arc<HeightMap>, cover: &CoverMap, drawings: &WindDrawings) -> Self {
+    /// Grass at rest, pressed by objects of these shapes, in the order of [`VehicleKind::ALL`](crate::scene::VehicleKind::ALL). A wind whose drawing is not
+    /// among `drawings` is left out.
+    pub fn new(scene: &Scene, height: Arc<HeightMap>, cover: &CoverMap, bodies: &[Body], drawings: &WindDrawings) -> Self {
         let (layout, settings, limit) = (PatchLayout::from(&scene.patches), scene.bend, scene.patches.awake_limit as usize);
         let field = Field::new(layout, Kinds::of(scene, cover))
             .with_edges(settings.edges)
@@ -80,10 +75,10 @@ impl BendSimulation {
             height,
             properties: GrassProperties::new(scene, cover),
             gusts: GustNoise::new(scene),
-            bodies: Bodies::new(&scene.objects),
+            bodies: Bodies::new(bodies, &scene.objects),
             winds: PrescribedWinds::new(scene, drawings),
             flattened: FlattenedGrass::new(layout, scene.grass.laid_recovery_secs, tile_limit),
-            motions: vec![],
+            causes: Causes::default(),
             rejected: vec![],
             rejected_count: 0,
             reset_count: 0,
@@ -100,14 +95,6 @@ impl BendSimulation {
     /// Diagnostics of the newest step.
     pub fn report(&self) -> Report {
         self.report
-    }
-
-    /// Sum of θ² + ω² over all cells (mixed units).
-    pub fn activity(&self) -> f64 {
-        let patches: Vec<_> = self.field.awake().collect();
-        let activities: Vec<_> = patches.par_iter().map(|patch| patch.activity()).collect();
-        // `sum` of an empty list would be −0.
-        activities.into_iter().fold(0.0, |sum, activity| sum + activity)
     }
 
     /// Number of patches so far that were put to sleep because of the limit of awake patches.
@@ -128,7 +115,7 @@ impl BendSimulation {
     /// Areas swept by prisms of objects in the newest step at less than `below_m` above the terrain, with their clearance (m).
     pub fn swept_below(&self, below_m: f32) -> impl Iterator<Item = (SweptFootprint, f32)> {
         let cell_m = self.field.layout().cell_m;
-        self.motions.iter().flat_map(move |motion| self.bodies.swept_below(motion, &self.height, below_m, cell_m))
+        self.causes.motions.iter().flat_map(move |motion| self.bodies.swept_below(motion, &self.height, below_m, cell_m))
     }
 
     /// Total lean of the grass at a position (rad, as a vector along X and Z): wind, flattened grass and bend field together.
@@ -146,43 +133,50 @@ impl BendSimulation {
         self.rejected_count
     }
 
-    /// Advances the grass by one step: active regions, contact, prescribed wind, gusts, propagation. Invalid motions are [rejected](Self::rejected).
-    pub fn step(&mut self, dt_secs: f32, motions: &[Motion], cameras: &[Camera], wind: &WindField) {
+    /// Causes of the newest step.
+    pub fn causes(&self) -> &Causes {
+        &self.causes
+    }
+
+    /// Advances the grass by one step: active regions, contact, prescribed wind, gusts, propagation. Motions are [rounded](Motion::rounded); invalid ones are
+    /// [rejected](Self::rejected).
+    pub fn step(&mut self, dt_secs: f32, motions: &[Motion], cameras: &[Camera], wind: &WindField, executor: &impl Executor) {
         let motions = self.validated(motions);
+        let gusty = self.gusts.as_ref().map(|gusts| gusts.patches(self.field.layout(), cameras)).unwrap_or_default();
+        self.causes = Causes { motions, gusty, ..Causes::default() };
+        self.advance(dt_secs, Limits::Farthest(cameras), wind, executor);
+    }
+
+    /// Advances the grass by one step by the causes of another simulation of the same scene.
+    pub fn follow(&mut self, dt_secs: f32, causes: Causes, wind: &WindField, executor: &impl Executor) {
+        let [evicted, dropped] = [causes.evicted.clone(), causes.dropped.clone()];
+        self.causes = causes;
+        self.advance(dt_secs, Limits::Given { evicted: &evicted, dropped: &dropped }, wind, executor);
+    }
+
+    fn advance(&mut self, dt_secs: f32, limits: Limits, wind: &WindField, executor: &impl Executor) {
         let cell_m = self.field.layout().cell_m;
         let (bodies, height, properties) = (&self.bodies, &*self.height, &self.properties);
+        let motions = &self.causes.motions;
         let contacts: Vec<_> = motions.iter().flat_map(|motion| bodies.contacts(motion, height, properties, cell_m)).collect();
-        let winds = self.winds.step(&motions, &self.height, dt_secs);
-        let gusty = self.gusts.as_ref().map(|gusts| gusts.patches(self.field.layout(), cameras)).unwrap_or_default();
+        let winds = self.winds.step(motions.iter().filter(|motion| bodies.has_downwash(motion.kind)), height, dt_secs);
         if self.scheme == Scheme::Modal {
             // Patches put to rest because of invalid values are woken again.
             self.field.wake_all();
         } else {
-            let touched = [self.touched(&contacts, &winds), gusty.clone()].concat();
-            self.regions.update(&mut self.field, &touched, cameras);
+            let touched = [self.touched(&contacts, &winds), self.causes.gusty.clone()].concat();
+            self.causes.evicted = self.regions.update(&mut self.field, &touched, limits);
         }
         let (field, flattened) = (&mut self.field, &mut self.flattened);
         let mut grass = GrassState { field, flattened, wind, height: &self.height, properties: &self.properties };
         contacts.iter().for_each(|contact| contact.press(&mut grass, dt_secs));
         winds.iter().for_each(|wind| wind.press(&mut grass));
         if let Some(gusts) = &mut self.gusts {
-            gusts.push(&mut self.field, &gusty, dt_secs);
+            gusts.push(&mut self.field, &self.causes.gusty, dt_secs);
         }
-        self.motions = motions;
-        self.flattened.step(dt_secs, cameras);
-        self.report = self.propagate(dt_secs);
+        self.causes.dropped = self.flattened.step_within(dt_secs, limits);
+        self.report = self.propagate(dt_secs, executor);
         self.reset_count += u64::from(self.report.reset_patches);
-    }
-
-    /// Adds the bend field and the flattened grass to a checksum.
-    pub(crate) fn hash(&self, sum: &mut Checksum) {
-        for patch in self.field.awake() {
-            sum.add([patch.index()]);
-            for row in patch.rows().chain(patch.rows_before()) {
-                sum.add(row.into_iter().flatten().map(|v| v.to_bits()));
-            }
-        }
-        sum.add(self.flattened.words());
     }
 
     /// A copy of the state.
@@ -192,7 +186,7 @@ impl BendSimulation {
             flattened: self.flattened.state(),
             gusts_secs: self.gusts.as_ref().map(GustNoise::time_secs),
             winds_secs: self.winds.time_secs(),
-            motions: self.motions.clone(),
+            causes: self.causes.clone(),
             rejected_count: self.rejected_count,
             reset_count: self.reset_count,
             evicted: self.regions.evicted(),
@@ -212,16 +206,16 @@ impl BendSimulation {
         }
         self.winds.set_time(state.winds_secs);
         self.regions.set_evicted(state.evicted);
-        self.motions = state.motions;
+        self.causes = state.causes;
         (self.rejected_count, self.reset_count, self.report) = (state.rejected_count, state.reset_count, state.report);
         Ok(())
     }
 
     /// Propagates the waves. Grass that needs more sub-steps than allowed is put to rest and counts as reset.
-    fn propagate(&mut self, dt_secs: f32) -> Report {
+    fn propagate(&mut self, dt_secs: f32, executor: &impl Executor) -> Report {
         let mut reset_patches = 0;
         loop {
-            match self.field.step(self.scheme, dt_secs, &Pool) {
+            match self.field.step(self.scheme, dt_secs, executor) {
                 Ok(report) => return Report { reset_patches: report.reset_patches + reset_patches, ..report },
                 Err(StepError::TooFast { omega_rad_per_s, .. }) => {
                     let is_fastest = |patch: &&Patch| patch.omega_max_rad_per_s() >= omega_rad_per_s;
@@ -235,11 +229,11 @@ impl BendSimulation {
         }
     }
 
-    /// The valid motions. The errors of the others are kept.
+    /// The valid motions, rounded. The errors of the others are kept.
     fn validated(&mut self, motions: &[Motion]) -> Vec<Motion> {
         self.rejected = motions.iter().filter_map(|motion| motion.check().err()).collect();
         self.rejected_count += self.rejected.len() as u64;
-        motions.iter().filter(|motion| motion.check().is_ok()).copied().collect()
+        motions.iter().filter(|motion| motion.check().is_ok()).map(Motion::rounded).collect()
     }
 
     /// Patches near moving objects and prescribed winds.

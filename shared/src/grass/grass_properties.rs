@@ -1,7 +1,7 @@
 //! Grass properties that limit contact, by position.
 
-use prairie_core::scene::Scene;
-use prairie_core::terrain::{CoverMap, KindMap};
+use crate::scene::Scene;
+use crate::terrain::{CoverMap, KindMap};
 
 /// Largest bend and height of the grass at each position.
 #[derive(Clone, Debug)]

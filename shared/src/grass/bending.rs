@@ -14,20 +14,20 @@ const SLIP: f32 = 0.174;
 /// less the inclination of the terrain ahead, at most a right angle (Chen & Johan, §4.3).
 pub fn terrain_limit_rad(theta_max_rad: f32, slope: [f32; 2], direction: [f32; 2]) -> f32 {
     let rise = slope[0] * direction[0] + slope[1] * direction[1];
-    (theta_max_rad - rise.atan()).clamp(0.0, FRAC_PI_2)
+    (theta_max_rad - libm::atanf(rise)).clamp(0.0, FRAC_PI_2)
 }
 
 /// Bending speed (rad/s) of grass at bend `theta_rad` that an object pushes at `speed_m_per_s` along the bend, at height `height_m`:
 /// `s·cos²θ / h` (Chen & Johan, Eq. 12).
 pub fn bending_speed_rad_per_s(speed_m_per_s: f32, theta_rad: f32, height_m: f32) -> f32 {
-    let cos = theta_rad.cos();
+    let cos = libm::cosf(theta_rad);
     speed_m_per_s * cos * cos / height_m
 }
 
 /// Bend (rad) after `secs` in contact of grass that starts at `theta_rad`, below a right angle. Integrates Eq. (1) with the speed of Eq. (12)
 /// exactly, `tan θ = tan θ₀ + s·t/h`, so the result does not depend on the number of steps.
 pub fn bend_after_rad(theta_rad: f32, speed_m_per_s: f32, height_m: f32, secs: f32) -> f32 {
-    (theta_rad.tan() + speed_m_per_s * secs / height_m).atan()
+    libm::atanf(libm::tanf(theta_rad) + speed_m_per_s * secs / height_m)
 }
 
 /// Bending direction (Chen & Johan, Eqs. 10–11): the unit vector of motion `moves`, plus the outward normal of a side that is within `rim_m` and does

@@ -1,13 +1,14 @@
 //! Flattened grass: the plastic part of the bend below the weight of objects, which recovers with its own time constant.
 //!
 //! Flattened grass needs no stepping. Its lean decays as `exp(−t/τ)` from the time when its tile was written, and is evaluated on reading.
-//! Tiles, those of activity in [`prairie_core::bend`], exist only where grass is flattened, in awake and in sleeping patches.
+//! Tiles, those of activity in [`crate::bend`], exist only where grass is flattened, in awake and in sleeping patches.
 
 use super::camera::{Camera, nearest_distance2_m2};
+use super::causes::Limits;
 use super::vector::length;
-use prairie_core::bend::TILE;
-use prairie_core::grid::{PatchIndex, PatchLayout};
-use prairie_core::wire::quantise::THETA_FULL_RAD;
+use crate::bend::TILE;
+use crate::grid::{PatchIndex, PatchLayout};
+use crate::wire::quantise::THETA_FULL_RAD;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f32::consts::PI;
@@ -30,7 +31,7 @@ struct Clock {
 
 impl Clock {
     fn remaining(&self, since_secs: f64) -> f32 {
-        ((since_secs - self.now_secs) / self.recovery_secs).exp() as f32
+        libm::exp((since_secs - self.now_secs) / self.recovery_secs) as f32
     }
 }
 
@@ -174,8 +175,13 @@ impl FlattenedGrass {
     }
 
     /// Advances time by `dt_secs`. Each patch drops its invisible tiles about once a second, a few patches per step. Above the limit, the patches
-    /// farthest from any camera lose their tiles first (farthest from the centre of the world when there is no camera).
-    pub fn step(&mut self, dt_secs: f32, cameras: &[Camera]) {
+    /// farthest from any camera lose their tiles first (farthest from the centre of the world when there is no camera); returns these.
+    pub fn step(&mut self, dt_secs: f32, cameras: &[Camera]) -> Vec<PatchIndex> {
+        self.step_within(dt_secs, Limits::Farthest(cameras))
+    }
+
+    /// [`step`](Self::step), with any choice of what is dropped above the limit.
+    pub(super) fn step_within(&mut self, dt_secs: f32, limits: Limits) -> Vec<PatchIndex> {
         self.clock.now_secs += f64::from(dt_secs);
         let round = (1.0 / dt_secs).round().max(1.0) as u64;
         let (clock, revision) = (self.clock, self.revision);
@@ -187,14 +193,32 @@ impl FlattenedGrass {
             }
             patch.count > 0
         });
-        let mut tiles = self.tiles();
-        while tiles > self.tile_limit {
-            let distance2_m2 = |patch: &PatchIndex| nearest_distance2_m2(*patch, &self.layout, cameras);
-            let farthest = self.patches.keys().max_by(|a, b| distance2_m2(a).total_cmp(&distance2_m2(b)));
-            let Some(index) = farthest.copied() else { break };
-            tiles -= self.patches.remove(&index).map_or(0, |patch| patch.count);
-            self.dropped += 1;
+        let dropped = match limits {
+            Limits::Farthest(cameras) => self.farthest(cameras),
+            Limits::Given { dropped, .. } => dropped.to_vec(),
+        };
+        for patch in &dropped {
+            self.dropped += u64::from(self.patches.remove(patch).is_some());
         }
+        dropped
+    }
+
+    /// The patches farthest from any camera that hold the tiles above the limit, farthest first.
+    fn farthest(&self, cameras: &[Camera]) -> Vec<PatchIndex> {
+        let mut tiles = self.tiles();
+        if tiles <= self.tile_limit {
+            return vec![];
+        }
+        let distance2_m2 = |patch: &PatchIndex| nearest_distance2_m2(*patch, &self.layout, cameras);
+        let mut farthest: Vec<PatchIndex> = self.patches().collect();
+        farthest.sort_by(|a, b| distance2_m2(b).total_cmp(&distance2_m2(a)).then(b.cmp(a)));
+        let mut is_above = |patch: &PatchIndex| {
+            let above = tiles > self.tile_limit;
+            tiles -= self.patches.get(patch).map_or(0, |patch| patch.count);
+            above
+        };
+        farthest.retain(|patch| is_above(patch));
+        farthest
     }
 
     /// Number of completed steps. Pass it to [`changed_since`](Self::changed_since) later to find the patches that have changed.

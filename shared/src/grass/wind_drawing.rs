@@ -1,5 +1,6 @@
 //! Hand-drawn wind fields: direction and strength of the wind as the colours of a picture (Chen & Johan, Fig. 9b).
 
+use super::vector::length;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::sync::Arc;
@@ -83,7 +84,7 @@ impl WindDrawing {
 
         let wind = |(at, rgb): (usize, &[u8])| {
             let [x, z] = [rgb[0], rgb[1]].map(|level| f32::from(i16::from(level) - ZERO_LEVEL));
-            match (rgb[2], x.hypot(z)) {
+            match (rgb[2], length([x, z])) {
                 (0, _) => Ok([0.0; 2]),
                 (blue, 0.0) => Err(DrawingError::NoDirection { column: at % width, row: at / width, blue }),
                 (blue, length) => Ok([x, z].map(|d| d / length * f32::from(blue) / 255.0)),

@@ -3,14 +3,14 @@
 use super::contact::Contact;
 use super::grass_properties::GrassProperties;
 use super::swept_footprint::SweptFootprint;
-use crate::objects::{Motion, Prism, is_round, prisms};
-use prairie_core::scene::{Objects, Tread, VehicleKind};
-use prairie_core::terrain::HeightMap;
+use crate::body::{Body, Motion, Prism};
+use crate::scene::{Objects, Tread, VehicleKind};
+use crate::terrain::HeightMap;
 
-/// Prisms and treads of every kind of object.
+/// Shapes and treads of every kind of object.
 #[derive(Clone, Debug)]
 pub(super) struct Bodies {
-    kinds: Vec<(Vec<Prism>, Tread)>,
+    kinds: Vec<(Body, Tread)>,
 }
 
 /// A prism low above the terrain.
@@ -24,9 +24,15 @@ struct LowPrism<'a> {
 }
 
 impl Bodies {
-    /// The bodies of a scene's objects.
-    pub(super) fn new(objects: &Objects) -> Self {
-        Self { kinds: VehicleKind::ALL.map(|kind| (prisms(kind, objects), objects.tread(kind))).to_vec() }
+    /// The bodies of a scene's objects, in the order of [`VehicleKind::ALL`]; a kind without a shape does not touch the grass.
+    pub(super) fn new(bodies: &[Body], objects: &Objects) -> Self {
+        let body = |(at, kind)| (bodies.get(at).cloned().unwrap_or_default(), objects.tread(kind));
+        Self { kinds: VehicleKind::ALL.into_iter().enumerate().map(body).collect() }
+    }
+
+    /// Whether a rotor of this kind blows air down.
+    pub(super) fn has_downwash(&self, kind: VehicleKind) -> bool {
+        self.kinds[kind as usize].0.has_downwash
     }
 
     /// Contacts of an object with grass taller than the clearance of its prisms.
@@ -43,7 +49,7 @@ impl Bodies {
             (clearance < 1.0).then(|| Contact {
                 swept: SweptFootprint::new(prism, &motion, cell_m),
                 strike_height_m: tread.strike_height_m,
-                slip_bend_rad: clearance.acos(),
+                slip_bend_rad: libm::acosf(clearance),
                 parts_grass: prism.parts_grass,
                 flattened_fraction: if prism.bears_weight { tread.lays_share } else { 0.0 },
                 is_at_rest: motion.is_at_rest,
@@ -64,8 +70,9 @@ impl Bodies {
     }
 
     fn prisms<'a>(&'a self, motion: &Motion, height: &'a HeightMap) -> impl Iterator<Item = LowPrism<'a>> + use<'a> {
-        let motion = if is_round(motion.kind) { motion.without_rotation() } else { *motion };
-        self.kinds[motion.kind as usize].0.iter().map(move |prism| {
+        let body = &self.kinds[motion.kind as usize].0;
+        let motion = if body.is_round { motion.without_rotation() } else { *motion };
+        body.prisms.iter().map(move |prism| {
             let foot_m = prism.foot_m(&motion.to);
             let clearance_m = (prism.lowest_m(&motion.to) - height.height_m(foot_m[0], foot_m[1])).max(0.0);
             LowPrism { prism, motion, foot_m, clearance_m }

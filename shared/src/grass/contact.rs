@@ -4,7 +4,7 @@ use super::bending::{HELD_RAD_PER_S, bend_after_rad, bending_speed_rad_per_s, di
 use super::grass_state::{GrassState, Pressed};
 use super::swept_footprint::SweptFootprint;
 use super::vector::{length, unit};
-use prairie_core::bend::Bend;
+use crate::bend::Bend;
 
 /// Speed below which an object counts as standing still (m/s).
 pub const STANDSTILL_M_PER_S: f32 = 0.05;

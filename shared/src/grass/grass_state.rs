@@ -7,10 +7,10 @@ use super::flattened::FlattenedGrass;
 use super::footprint::Footprint;
 use super::grass_properties::GrassProperties;
 use super::vector::{length, sum, unit};
-use prairie_core::bend::{Bend, Field};
-use prairie_core::terrain::HeightMap;
-use prairie_core::wind::WindField;
-use prairie_core::wire::quantise::THETA_FULL_RAD;
+use crate::bend::{Bend, Field};
+use crate::terrain::HeightMap;
+use crate::wind::WindField;
+use crate::wire::quantise::THETA_FULL_RAD;
 
 /// State and limits of the total bend of the grass.
 pub struct GrassState<'a> {

@@ -1,0 +1,26 @@
+//! Grass under objects and winds (Chen & Johan, sections 4 and 5): active regions, contact, prescribed winds and flattened grass, around the
+//! [bend field](crate::bend).
+//!
+//! A step is determined by the state before it, its [causes](Causes) and the [wind](crate::wind::WindField), to the last bit on every machine. So a server and
+//! its clients simulate the same grass when the clients know the causes.
+
+pub mod bending;
+mod bodies;
+mod camera;
+mod causes;
+pub mod contact;
+pub mod flattened;
+pub mod footprint;
+pub mod grass_properties;
+pub mod grass_state;
+mod gust_noise;
+pub mod prescribed_wind;
+mod regions;
+mod simulation;
+pub mod swept_footprint;
+pub mod vector;
+pub mod wind_drawing;
+
+pub use camera::Camera;
+pub use causes::Causes;
+pub use simulation::{BendSimulation, BendState};
