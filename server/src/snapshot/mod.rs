@@ -3,10 +3,9 @@
 //! A snapshot is cheap to keep and to share: unchanged parts are the same `Arc` as in the previous one.
 
 mod broken_plants;
-mod patches;
 
 pub use broken_plants::BrokenPlants;
-pub use patches::{BentPatches, PatchCodes, PatchQuantiser};
+pub use prairie_core::grass::{BentPatches, PatchCodes, PatchQuantiser};
 
 use prairie_core::wire::{ObjectPose, TurbulenceState};
 use std::sync::Arc;

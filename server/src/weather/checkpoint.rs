@@ -15,8 +15,8 @@ pub struct WeatherState {
     air: AirState<f32>,
     resets: u64,
     turbulence: TurbulenceState,
-    /// Tick of the newest solver step.
-    stepped: u64,
+    /// The newest frame: tick, gusts, codes.
+    frame: (u64, TurbulenceState, Vec<i8>),
     /// The newest report: Courant number, divergence, energy, sub-steps, pressure residual, pressure sweeps.
     report: (f64, f64, f64, u32, f64, u32),
 }
@@ -30,6 +30,14 @@ pub enum WeatherRestoreError {
     /// The state is that of another box.
     #[error(transparent)]
     State(#[from] StateError),
+    /// The frame is that of another box.
+    #[error("its wind frame has {found} codes; needed: {needed}")]
+    Frame {
+        /// Number of codes.
+        found: usize,
+        /// Number of codes of the scene's wind.
+        needed: usize,
+    },
 }
 
 impl Weather {
@@ -41,7 +49,7 @@ impl Weather {
             air: self.air.state(),
             resets: self.resets,
             turbulence: self.turbulence,
-            stepped: self.frame.tick,
+            frame: (self.frame.tick, self.frame.turbulence, self.frame.codes.clone()),
             report: (courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps),
         }
     }
@@ -56,7 +64,11 @@ impl Weather {
         (weather.resets, weather.turbulence) = (state.resets, state.turbulence);
         let (courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps) = state.report;
         weather.report = StepReport { courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps };
-        weather.observe(state.stepped, 0.0);
+        let (tick, turbulence, ref codes) = state.frame;
+        if codes.len() != weather.frame.codes.len() {
+            return Err(WeatherRestoreError::Frame { found: codes.len(), needed: weather.frame.codes.len() });
+        }
+        weather.hold(WindFrame { tick, cells: weather.frame.cells, turbulence, codes: codes.clone() });
         Ok(weather)
     }
 }

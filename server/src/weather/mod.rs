@@ -29,6 +29,8 @@ use std::sync::Arc;
 
 /// Minimum duration of a solver step (s). A step is the smallest whole number of ticks that takes at least this long.
 const STEP_SECS: f32 = 0.05;
+/// Rate at which the wind is released to the rest of the world and to clients (Hz), rounded to whole solver steps.
+const FRAME_HZ: f32 = 6.0;
 /// Cell steps of the solver's warm-up, so that there are gusts from the start; and the largest number of warm-up steps.
 const WARM_UP_CELL_STEPS: usize = 1 << 20;
 const WARM_UP_STEPS: usize = 120;
@@ -40,6 +42,8 @@ pub struct Weather {
     config: Config,
     tiling: WindTiling,
     ticks_per_step: u64,
+    /// Ticks per frame.
+    ticks_per_frame: u64,
     step_secs: f64,
     report: StepReport,
     resets: u64,
@@ -125,15 +129,16 @@ impl Weather {
             method,
             config,
             ticks_per_step,
+            ticks_per_frame: ticks_per_step * (scene.tick_hz / (ticks_per_step as f32 * FRAME_HZ)).round().max(1.0) as u64,
             step_secs,
             report,
             terrain,
         };
-        weather.observe(0, 0.0);
+        weather.release(0);
         Ok(weather)
     }
 
-    /// Advances the solver when a step of it is due at this tick.
+    /// Advances the solver when a step of it is due at this tick, and releases a frame when that is due.
     pub fn step(&mut self, tick: u64, motions: &[Motion], height: &HeightMap, grass: &Field) {
         if !tick.is_multiple_of(self.ticks_per_step) {
             return;
@@ -161,7 +166,10 @@ impl Weather {
                 self.resets += 1;
             }
         }
-        self.observe(tick, self.step_secs);
+        self.carrier.advance(&mut self.turbulence, &self.velocities(), self.step_secs);
+        if tick.is_multiple_of(self.ticks_per_frame) {
+            self.release(tick);
+        }
     }
 
     /// Puts the seam of the periodic box on the side opposite to the centre of all objects.
@@ -175,7 +183,7 @@ impl Weather {
         self.air.set_sponge((!motions.is_empty()).then_some(sponge_m));
     }
 
-    /// The wind at any place: what clients decode from the [frame](Self::frame).
+    /// The wind at any place, that of the newest [frame](Self::frame): world and clients read the same codes, which hold until the next frame.
     pub fn field(&self) -> &WindField {
         &self.field
     }
@@ -203,12 +211,16 @@ impl Weather {
         sum.add([friction_m_per_s.to_bits()]);
     }
 
-    /// Samples the solver's state above the ground, for clients and other parts of the world, `secs` after the last time. Both read the same codes.
-    fn observe(&mut self, tick: u64, secs: f64) {
+    /// Wind above the ground at the cell centres (m/s).
+    fn velocities(&self) -> Vec<Vec3> {
+        self.terrain.above_ground(self.air.cell_velocities().collect(), Vec3::lerp)
+    }
+
+    /// Releases the wind of this moment as the frame of `tick`.
+    fn release(&mut self, tick: u64) {
         let [nx, ny, nz] = self.config.cells;
         let cells = nx * ny * nz;
-        let velocities = self.terrain.above_ground(self.air.cell_velocities().collect(), Vec3::lerp);
-        self.carrier.advance(&mut self.turbulence, &velocities, secs);
+        let velocities = self.velocities();
         let mut codes = vec![0; Shape::wind(nx, self.config.dust.is_some()).planes * cells];
         for (at, velocity) in velocities.iter().enumerate() {
             for (plane, component) in velocity.to_array().into_iter().enumerate() {
@@ -219,8 +231,13 @@ impl Weather {
             let dust = self.terrain.above_ground(dust.collect(), |a, b, t| a + (b - a) * t);
             codes[3 * cells..].iter_mut().zip(dust).for_each(|(code, density)| *code = dust_code(density));
         }
-        self.field.set(&codes, &self.turbulence);
-        self.frame = Arc::new(WindFrame { tick, cells: [nx, ny, nz].map(|n| n as u32), turbulence: self.turbulence, codes });
+        self.hold(WindFrame { tick, cells: [nx, ny, nz].map(|n| n as u32), turbulence: self.turbulence, codes });
+    }
+
+    /// Makes `frame` the newest.
+    fn hold(&mut self, frame: WindFrame) {
+        self.field.set(&frame.codes, &frame.turbulence);
+        self.frame = Arc::new(frame);
     }
 }
 

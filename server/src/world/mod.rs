@@ -18,13 +18,14 @@ use crate::settings_error::SettingsError;
 use crate::snapshot::{Diagnostics, PatchQuantiser, Snapshot};
 use crate::weather::Weather;
 use departed::Departed;
+use prairie_core::grid::PatchIndex;
 use prairie_core::grass::wind_drawing::WindDrawings;
 use prairie_core::grass::{BendSimulation, prescribed_wind};
 use prairie_core::plant::flora::Flora;
 use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::Scene;
 use prairie_core::terrain::{CoverMap, HeightMap};
-use prairie_core::wire::{Drive, ObjectId};
+use prairie_core::wire::{Drive, ObjectId, VIEW_RADIUS_LIMIT_M};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -111,7 +112,7 @@ impl World {
     /// Quantises the patches of one of `count` parts ahead of the next [`publish`](Self::publish), which then uses them as they are now. The part is given as
     /// `[index, count]`.
     pub fn quantise_ahead(&self, quantiser: &mut PatchQuantiser, part: [u64; 2]) {
-        quantiser.quantise_part(self.tick, &self.bend, part);
+        quantiser.quantise_part(self.tick, &self.bend, part, &Pool);
     }
 
     /// The present state, for clients. `quantiser` keeps the codes of the bend field and encodes only changes since its last use.
@@ -122,7 +123,7 @@ impl World {
             objects: self.objects.poses(),
             object_limit: self.objects.limit(),
             wind: Arc::clone(self.weather.frame()),
-            patches: quantiser.quantise(self.tick, &self.bend, &self.cameras),
+            patches: quantiser.quantise(self.tick, &self.bend, |patch| self.is_in_sight(patch), &Pool),
             broken: self.plants.broken().clone(),
             diagnostics: self.diagnostics(),
         }
@@ -225,6 +226,14 @@ impl World {
             }
             Command::Return { client } => self.departed.forget(*client),
         }
+    }
+
+    /// Whether a patch may be within the view radius of any camera.
+    fn is_in_sight(&self, patch: PatchIndex) -> bool {
+        let layout = self.bend.field().layout();
+        let center_m = layout.center_m(patch);
+        let reach_m = VIEW_RADIUS_LIMIT_M + layout.patch_m();
+        self.cameras.iter().any(|camera| (center_m[0] - camera.eye_m[0]).hypot(center_m[1] - camera.eye_m[2]) < reach_m)
     }
 
     /// Position around which a client's vehicles appear: below its camera, or the centre of the world.

@@ -233,8 +233,13 @@ impl FlattenedGrass {
 
     /// The whole state as words, for hashing: patch, age and leans of each tile.
     pub fn words(&self) -> impl Iterator<Item = u32> {
-        let tiles = self.patches.iter().flat_map(|(&index, patch)| patch.tiles.iter().flatten().map(move |tile| (index, tile)));
-        tiles.flat_map(|(index, tile)| {
+        self.patches.keys().flat_map(|index| self.words_of(*index))
+    }
+
+    /// The [words](Self::words) of one patch.
+    pub fn words_of(&self, index: PatchIndex) -> impl Iterator<Item = u32> {
+        let tiles = self.patches.get(&index).into_iter().flat_map(|patch| patch.tiles.iter().flatten());
+        tiles.flat_map(move |tile| {
             let age = (self.clock.now_secs - tile.since_secs).to_bits();
             let leans = tile.leans.iter().map(|&[x, z]| u32::from(x.cast_unsigned()) << 16 | u32::from(z.cast_unsigned()));
             [index, (age >> 32) as u32, age as u32].into_iter().chain(leans)
@@ -286,7 +291,9 @@ mod tests {
     const DT_SECS: f32 = 1.0 / 60.0;
 
     fn run(grass: &mut FlattenedGrass, secs: f32) {
-        (0..(secs / DT_SECS).round() as u32).for_each(|_| grass.step(DT_SECS, &[]));
+        for _ in 0..(secs / DT_SECS).round() as u32 {
+            grass.step(DT_SECS, &[]);
+        }
     }
 
     #[test]

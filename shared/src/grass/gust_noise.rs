@@ -1,10 +1,10 @@
 //! Natural wind as noise near the cameras (Chen & Johan, §5.3, second approach).
 
 use super::camera::Camera;
-use noise::{NoiseFn, Perlin};
 use crate::bend::{Bend, Field, TILE};
 use crate::grid::{PatchIndex, PatchLayout};
 use crate::scene::{NaturalWind, Scene};
+use noise::{NoiseFn, Perlin};
 
 /// Rate at which gusts change while they travel (1/s).
 const CHANGE_PER_S: f64 = 0.15;

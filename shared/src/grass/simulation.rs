@@ -18,11 +18,15 @@ use crate::grid::{PatchIndex, PatchLayout};
 use crate::scene::Scene;
 use crate::terrain::{CoverMap, HeightMap};
 use crate::wind::WindField;
+use crate::wire::PatchCheck;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Margin around contacts within which patches are woken (m).
 const MARGIN_M: f32 = 1.0;
+
+/// Rounds of checksums in a second, over which the patches are spread.
+const CHECK_ROUNDS: u64 = 4;
 
 /// The bend field and everything that acts on it.
 pub struct BendSimulation {
@@ -177,6 +181,29 @@ impl BendSimulation {
         self.causes.dropped = self.flattened.step_within(dt_secs, limits);
         self.report = self.propagate(dt_secs, executor);
         self.reset_count += u64::from(self.report.reset_patches);
+    }
+
+    /// Checksum of a patch's grass, bend field and flattened, and of the number of awake patches.
+    pub fn patch_checksum(&self, patch: PatchIndex) -> u16 {
+        let bend = self.field.patch(patch).map_or(0, Patch::checksum) ^ self.field.awake_count() as u32;
+        let stir = |sum: u32, word: u32| (sum ^ word).wrapping_mul(0x85EB_CA77).rotate_left(13);
+        let sum = self.flattened.words_of(patch).fold(bend, stir);
+        (sum ^ (sum >> 16)) as u16
+    }
+
+    /// Patches that are checked after step `tick` of a world with `tick_hz` steps per second, with their checksums: each patch that is not at rest, once a
+    /// second.
+    pub fn checks(&self, tick: u64, tick_hz: f32) -> Vec<PatchCheck> {
+        let ticks_per_round = (tick_hz / CHECK_ROUNDS as f32).round().max(1.0) as u64;
+        if !tick.is_multiple_of(ticks_per_round) {
+            return vec![];
+        }
+        let round = tick / ticks_per_round % CHECK_ROUNDS;
+        let mut patches: Vec<_> = self.field.awake().map(Patch::index).chain(self.flattened.patches()).collect();
+        patches.retain(|patch| u64::from(*patch) % CHECK_ROUNDS == round);
+        patches.sort_unstable();
+        patches.dedup();
+        patches.into_iter().map(|patch| PatchCheck { patch, sum: self.patch_checksum(patch) }).collect()
     }
 
     /// A copy of the state.

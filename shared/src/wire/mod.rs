@@ -8,6 +8,7 @@ pub mod codec;
 mod message;
 mod protocol;
 pub mod quantise;
+mod step;
 mod turbulence_state;
 
 pub use close::Close;
@@ -16,6 +17,7 @@ pub use message::{
     BrokenPlant, ClientMessage, Drive, Mesh, ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage, WireError, decode, encode,
 };
 pub use protocol::PROTOCOL;
+pub use step::{Joined, Move, PatchCheck, PoseChange, RareCauses, Step};
 pub use turbulence_state::TurbulenceState;
 
 /// Largest message a client may send (bytes).

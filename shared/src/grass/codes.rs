@@ -1,10 +1,9 @@
-//! Quantised bend field: 8-bit codes of each patch, encoded again where something changed.
+//! Codes of the grass: 8 bits for each channel of a cell, encoded again where something changed.
 
-use prairie_core::bend::{Bend, Patch, TILE};
-use prairie_core::grass::{BendSimulation, Camera, grass_state};
-use prairie_core::grid::{PatchIndex, PatchLayout};
-use prairie_core::wire::{VIEW_RADIUS_LIMIT_M, quantise};
-use rayon::prelude::*;
+use super::{BendSimulation, grass_state};
+use crate::bend::{Bend, Executor, Patch, TILE};
+use crate::grid::PatchIndex;
+use crate::wire::quantise;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -53,30 +52,38 @@ pub struct PatchQuantiser {
 
 impl PatchQuantiser {
     /// Encodes one of `count` parts of the awake patches, `[index, count]`. The next [`quantise`](Self::quantise) uses these codes unchanged.
-    pub(crate) fn quantise_part(&mut self, tick: u64, bend: &BendSimulation, [part, count]: [u64; 2]) {
+    pub fn quantise_part(&mut self, tick: u64, bend: &BendSimulation, [part, count]: [u64; 2], executor: &impl Executor) {
         let is_due = |index: &PatchIndex| u64::from(*index) % count == part && !self.ahead.contains_key(index);
-        let due: Vec<_> = bend.field().awake().map(Patch::index).filter(is_due).collect();
-        let encode = |index: PatchIndex| {
-            let source = self.sources.get(&index).filter(|source| source.is_awake)?;
-            Some((index, self.encode(tick, index, Some(source), bend)))
-        };
-        let codes: Vec<_> = due.into_par_iter().filter_map(encode).collect();
+        let is_known = |index: &PatchIndex| self.sources.get(index).is_some_and(|source| source.is_awake);
+        let due = bend.field().awake().map(Patch::index).filter(|index| is_due(index) && is_known(index));
+        let mut codes: Vec<_> = due.map(|index| (index, None)).collect();
+        executor.for_each(codes.iter_mut().collect(), |(index, codes)| *codes = self.encode(tick, *index, self.sources.get(index), bend));
         let revisions = Revisions::of(bend);
         self.encoded.extend(codes.iter().map(|(index, _)| (*index, revisions)));
         self.ahead.extend(codes);
     }
 
-    /// Encodes the changed patches: awake ones, and those in sight of a camera that have only flattened grass. Returns the codes of all patches that are
-    /// not at rest.
-    pub(crate) fn quantise(&mut self, tick: u64, bend: &BendSimulation, cameras: &[Camera]) -> Arc<BentPatches> {
-        let sources = sources(bend, cameras);
+    /// Encodes the changed patches: awake ones, and those that have only flattened grass and are `in_sight`. Returns the codes of all patches that are not at
+    /// rest.
+    pub fn quantise(
+        &mut self,
+        tick: u64,
+        bend: &BendSimulation,
+        in_sight: impl Fn(PatchIndex) -> bool,
+        executor: &impl Executor,
+    ) -> Arc<BentPatches> {
+        let sources = sources(bend, in_sight);
         let (before, mut ahead) = (&self.sources, std::mem::take(&mut self.ahead));
         ahead.retain(|index, _| sources.get(index).is_some_and(|source| before.get(index) == Some(source)));
-        let encode = |(&index, source): (&PatchIndex, &Sources)| match ahead.get(&index) {
-            Some(codes) => Some((index, codes.clone()?)),
-            None => Some((index, self.encode(tick, index, before.get(&index).filter(|before| *before == source), bend)?)),
-        };
-        self.patches = Arc::new(sources.par_iter().filter_map(encode).collect());
+        let mut codes: Vec<_> = sources.keys().map(|index| (*index, None)).collect();
+        executor.for_each(codes.iter_mut().collect(), |(index, codes)| {
+            let source = sources.get(index);
+            *codes = match ahead.get(index) {
+                Some(codes) => codes.clone(),
+                None => self.encode(tick, *index, before.get(index).filter(|before| source == Some(*before)), bend),
+            }
+        });
+        self.patches = Arc::new(codes.into_iter().filter_map(|(index, codes)| Some((index, codes?))).collect());
         let revisions = Revisions::of(bend);
         self.encoded.retain(|index, _| sources.contains_key(index));
         self.encoded.extend(sources.keys().filter(|index| !ahead.contains_key(index)).map(|index| (*index, revisions)));
@@ -104,24 +111,16 @@ impl PatchQuantiser {
 }
 
 /// Patches that are not at rest, with the sources of their codes.
-fn sources(bend: &BendSimulation, cameras: &[Camera]) -> BTreeMap<PatchIndex, Sources> {
-    let layout = bend.field().layout();
+fn sources(bend: &BendSimulation, in_sight: impl Fn(PatchIndex) -> bool) -> BTreeMap<PatchIndex, Sources> {
     let awake = |patch: &Patch| (patch.index(), Sources { is_awake: true, is_flattened: false });
     let mut sources: BTreeMap<_, _> = bend.field().awake().map(awake).collect();
     for index in bend.flattened().patches() {
         let is_awake = sources.contains_key(&index);
-        if is_awake || is_in_sight(layout, cameras, index) {
+        if is_awake || in_sight(index) {
             sources.insert(index, Sources { is_awake, is_flattened: true });
         }
     }
     sources
-}
-
-/// Whether a patch may be within the view radius of any camera.
-fn is_in_sight(layout: &PatchLayout, cameras: &[Camera], patch: PatchIndex) -> bool {
-    let center_m = layout.center_m(patch);
-    let reach_m = VIEW_RADIUS_LIMIT_M + layout.patch_m();
-    cameras.iter().any(|camera| (center_m[0] - camera.eye_m[0]).hypot(center_m[1] - camera.eye_m[2]) < reach_m)
 }
 
 /// Whether all codes are zero; in chunks, for vectorisation.
