@@ -18,6 +18,7 @@ pub mod damped;
 pub mod hearing;
 pub mod redraw;
 pub mod render;
+pub mod replica_budget;
 pub mod rig;
 pub mod state;
 pub mod vehicle;

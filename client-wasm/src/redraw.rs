@@ -112,7 +112,14 @@ mod tests {
         let map = grey_png([4; 2], &[255; 16]);
         let mut mirror = Mirror::default();
         let (height_png, covering_png) = (map.clone(), map);
-        let scene = ServerMessage::Scene { scene: Box::new(scene), height_png, covering_png, nutrient_png: Vec::new(), models: Vec::new() };
+        let scene = ServerMessage::Scene {
+            scene: Box::new(scene),
+            height_png,
+            covering_png,
+            nutrient_png: Vec::new(),
+            models: Vec::new(),
+            shapes: Default::default(),
+        };
         mirror.apply(scene).expect("a valid scene");
         mirror
     }

@@ -4,10 +4,12 @@ use crate::config::{Config, Limits};
 use crate::inspect::{InspectError, Inspector};
 use crate::journal::{self, JournalError};
 use crate::net::{self, Access, Admission, App, FieldSampler, PageErrors, Proofs, SessionLog};
+use crate::objects;
 use crate::runner::{Published, Runner, Simulation, Timing};
+use crate::scenes::LoadedScene;
 use crate::stream::{self, Clients, Streamer};
 use prairie_core::grid::PatchLayout;
-use prairie_core::wire::{self, ServerMessage};
+use prairie_core::wire::{self, Drawing, ServerMessage, Shapes};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use thiserror::Error;
@@ -75,7 +77,8 @@ pub async fn run_simulation(
     let (proofs, clients) = (Proofs::new(simulation.key()), Arc::new(Clients::starting_at(simulation.first_client())));
     let runner = Runner::start(simulation, timing)?;
     let mut published = runner.published();
-    let streamer = Streamer::new(PatchLayout::from(&scene.patches), config.limits.send, timing.published_hz());
+    let streamer = Streamer::new(PatchLayout::from(&scene.patches), config.limits.send, timing.published_hz())
+        .requesting_states_by(runner.state_request());
     let counters = streamer.counters();
     let mut stream = stream::start(streamer, runner.published(), clients.clone(), runner.commands())?;
     let (stop, stopping) = watch::channel(false);
@@ -148,6 +151,12 @@ async fn record(inspector: Inspector, mut published: watch::Receiver<Arc<Publish
     tokio::task::spawn_blocking(move || inspector.finish()).await.unwrap_or_else(|panic| Err(InspectError::Sdk(panic.to_string())))
 }
 
+/// Shapes of the objects and winds that press the grass of a scene.
+fn shapes(loaded: &LoadedScene) -> Shapes {
+    let drawings = loaded.drawings.iter().map(|(name, drawing)| Drawing { name: name.clone(), png: drawing.png().to_vec() });
+    Shapes { bodies: objects::bodies(&loaded.scene.objects), drawings: drawings.collect() }
+}
+
 fn scene_message(config: &Config) -> bytes::Bytes {
     let loaded = &config.scene;
     let message = ServerMessage::Scene {
@@ -156,6 +165,7 @@ fn scene_message(config: &Config) -> bytes::Bytes {
         covering_png: loaded.covering_png.clone(),
         nutrient_png: loaded.nutrient_png.clone(),
         models: loaded.models.clone(),
+        shapes: shapes(loaded),
     };
     wire::encode(&message).into()
 }

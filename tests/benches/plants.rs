@@ -9,10 +9,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::Vec3;
-use prairie_core::grass::BendSimulation;
 use prairie::plants::PlantDamage;
 use prairie::scenes;
 use prairie::weather::Weather;
+use prairie_core::grass::BendSimulation;
 use prairie_core::hash::hash3;
 use prairie_core::plant::blade::contact::{Sphere, settle};
 use prairie_core::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
@@ -283,7 +283,13 @@ fn breaking() {
     let loaded = scenes::load("underbrush").expect("a built-in scene is sound");
     let maps = loaded.maps();
     let flora = Flora::new(&loaded.scene, &maps.cover, None).expect("a scene with underbrush");
-    let meadow = BendSimulation::new(&loaded.scene, Arc::new(maps.height.clone()), &maps.cover, &prairie::objects::bodies(&loaded.scene.objects), &maps.drawings);
+    let meadow = BendSimulation::new(
+        &loaded.scene,
+        Arc::new(maps.height.clone()),
+        &maps.cover,
+        &prairie::objects::bodies(&loaded.scene.objects),
+        &maps.drawings,
+    );
     heading(&format!("a look at the wind for {} plants, a step", flora.grown().plants().len()), "slower");
     let mut calm = None;
     for (name, wind_m_per_s) in [("in the scene's own wind", loaded.scene.wind.mean_m_per_s), ("in a storm", [40.0, 0.0])] {

@@ -47,7 +47,14 @@ fn messages() -> Vec<ServerMessage> {
     let layout = PatchLayout::from(&scene.patches);
     let mut messages = vec![
         ServerMessage::Welcome { client: 1, proof: [0; 32], server_version: String::new(), scene_name: String::new() },
-        ServerMessage::Scene { scene: Box::new(scene.clone()), height_png, covering_png, nutrient_png: Vec::new(), models: Vec::new() },
+        ServerMessage::Scene {
+            scene: Box::new(scene.clone()),
+            height_png,
+            covering_png,
+            nutrient_png: Vec::new(),
+            models: Vec::new(),
+            shapes: Default::default(),
+        },
         wind(&scene),
         ServerMessage::Poses { tick: 1, objects: objects(&heights) },
     ];

@@ -88,6 +88,7 @@ fn flat_land(side_m: u32, cover: u8) -> Result<(Mirror, f64)> {
         covering_png: grey_png([8; 2], &[cover; 64]),
         nutrient_png: Vec::new(),
         models: Vec::new(),
+        shapes: Default::default(),
     })?;
     Ok((mirror, plants_per_m2 * f64::from(side_m).powi(2)))
 }

@@ -14,6 +14,7 @@ use crate::budget::FrameTime;
 use crate::camera::Camera;
 use crate::redraw::RedrawTracker;
 use crate::render::{Quality, RenderOptions, Split, bend_reach_m};
+use crate::replica_budget::{ReplicaBudget, Wish};
 use crate::rig::Rig;
 use crate::state::Mirror;
 use glam::Vec3;
@@ -78,6 +79,7 @@ pub(super) struct App {
     pub(super) rig: Option<Rig>,
     pub(super) meter: FrameMeter,
     pub(super) failure: Option<Failure>,
+    pub(super) replica_budget: ReplicaBudget,
     pub(super) redraw: RedrawTracker<DrawnView>,
     /// Name of the server's scene.
     pub(super) scene_name: Option<String>,
@@ -142,6 +144,7 @@ impl App {
             rig: None,
             meter: FrameMeter::default(),
             failure: None,
+            replica_budget: ReplicaBudget::default(),
             redraw: RedrawTracker::default(),
             scene_name: None,
             canvas,
@@ -176,6 +179,9 @@ impl App {
             }
         }
         self.connection.tick(now_secs);
+        if self.replica_budget.wish(now_secs) == Some(Wish::Replica) {
+            self.connection.replicate(true);
+        }
         if let Some(kind) = self.own_object().map(|pose| pose.kind) {
             self.connection.drive(self.input.controls().drive(kind), now_secs);
         }

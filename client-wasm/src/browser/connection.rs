@@ -2,6 +2,7 @@
 
 use super::socket::{Socket, SocketEvent};
 use glam::Vec3;
+use prairie_core::grid::PatchIndex;
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::{self, ClientMessage, Close, Drive, PROOF_BYTES};
 
@@ -231,6 +232,16 @@ impl Connection {
             self.view_at_secs = now_secs;
             self.send(&ClientMessage::View { eye_m: eye_m.into(), radius_m });
         }
+    }
+
+    /// Asks for a replica of the grass, or for patches.
+    pub(super) fn replicate(&self, wanted: bool) {
+        self.send(&ClientMessage::Replicate { wanted });
+    }
+
+    /// Reports that the replica differs from the server's grass.
+    pub(super) fn report_difference(&self, tick: u64, patch: PatchIndex) {
+        self.send(&ClientMessage::Differs { tick, patch });
     }
 
     /// Sends the driving commands if they have changed, at a limited rate.

@@ -4,6 +4,7 @@ use super::app::{App, with_app};
 use super::page;
 use super::socket::SocketEvent;
 use crate::camera::Camera;
+use crate::replica_budget::{ReplicaBudget, Wish};
 use crate::rig::Rig;
 use crate::state::Event;
 use prairie_core::wire::{self, Close, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, WireError};
@@ -35,17 +36,26 @@ impl App {
 
     fn receive(&mut self, message: ServerMessage, now_secs: f64) {
         self.run_clock(now_secs);
-        match self.mirror.apply(message) {
+        let applied = self.mirror.apply(message);
+        self.measure_replica(now_secs);
+        match applied {
             Ok(Some(Event::Welcome { client, proof, scene_name, .. })) => {
                 self.connection.welcomed(client, proof);
                 self.scene_name = Some(scene_name);
                 self.was_welcomed = true;
             }
             Ok(Some(Event::Scene)) => {
+                self.replica_budget = ReplicaBudget::default();
+                self.connection.replicate(true);
                 self.place_camera();
                 self.resume(now_secs);
             }
-            Ok(Some(Event::FrameEnd { frame })) => self.connection.acknowledge(frame),
+            Ok(Some(Event::FrameEnd { frame })) => {
+                self.connection.acknowledge(frame);
+                if let Some((tick, patch)) = self.mirror.take_difference() {
+                    self.connection.report_difference(tick, patch);
+                }
+            }
             Ok(Some(Event::Pong { nonce })) => self.connection.ponged(nonce, now_secs),
             Ok(Some(Event::Refused { refusal, reason })) => {
                 if refusal == Refusal::ObjectLimit {
@@ -55,6 +65,17 @@ impl App {
             }
             Ok(Some(Event::Roster) | None) => {}
             Err(error) => self.fail(format!("A message from the server is invalid: {error}.")),
+        }
+    }
+
+    /// Measures the work of a message for the replica of the grass, and gives the replica up if it is too much.
+    fn measure_replica(&mut self, began_secs: f64) {
+        if self.mirror.replica().is_none() {
+            return;
+        }
+        let now_secs = page::now_secs(&self.window);
+        if self.replica_budget.record(now_secs, now_secs - began_secs) == Some(Wish::Patches) {
+            self.connection.replicate(false);
         }
     }
 

@@ -105,6 +105,7 @@ fn meadow_over(heights: &[u8], change: impl FnOnce(&mut Scene), covering: &[u8])
         covering_png: grey_png([16; 2], covering),
         nutrient_png: Vec::new(),
         models: Vec::new(),
+        shapes: Default::default(),
     };
     mirror.apply(scene).expect("a sound scene");
     mirror

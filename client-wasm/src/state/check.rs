@@ -2,6 +2,7 @@
 
 use super::check_underbrush::check_underbrush;
 use super::error::{MirrorError, range, within};
+use prairie_core::body::Body;
 use prairie_core::scene::{LAMPS_LIMIT, Scene, WIND_CELLS_LIMIT};
 use prairie_core::wire::Mesh;
 
@@ -11,6 +12,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), MirrorError> {
     check_world(scene)?;
     check_light(scene)?;
     check_grass(scene)?;
+    check_winds(scene)?;
     check_underbrush(scene)
 }
 
@@ -19,6 +21,7 @@ fn check_grids(scene: &Scene) -> Result<(), MirrorError> {
     if !(8..=256).contains(&cells) || !cells.is_multiple_of(8) {
         return Err(range("patches.cells", cells, "8..=256, a multiple of 8"));
     }
+    within("patches.awake_limit", scene.patches.awake_limit as f32, 9.0, 4096.0)?;
     for count in scene.patches.count {
         within("patches.count", count as f32, 1.0, 2048.0)?;
     }
@@ -105,6 +108,49 @@ fn check_grass(scene: &Scene) -> Result<(), MirrorError> {
         within("*.swing_hz", plants.swing_hz, 0.05, 50.0)?;
         for channel in plants.root_rgb.into_iter().chain(plants.tip_rgb) {
             within("*_rgb", channel, 0.0, 1.0)?;
+        }
+    }
+    Ok(())
+}
+
+/// Checks the winds that press the grass.
+fn check_winds(scene: &Scene) -> Result<(), MirrorError> {
+    within("natural_wind.scale_m", scene.natural_wind.scale_m, 8.0, 1000.0)?;
+    within("natural_wind.reach_m", scene.natural_wind.reach_m, 0.0, 500.0)?;
+    if scene.drawn_winds.len() > 16 {
+        return Err(range("number of drawn winds", scene.drawn_winds.len(), "at most 16"));
+    }
+    for wind in &scene.drawn_winds {
+        within("drawn_winds.radius_m", wind.radius_m, 0.5, 500.0)?;
+        within("drawn_winds.travel_m_per_s", wind.travel_m_per_s, 0.0, 60.0)?;
+        within("drawn_winds.strike_height_m", wind.strike_height_m, 0.05, 5.0)?;
+        if wind.path_m.len() > 64 {
+            return Err(range("corners of a drawn wind's path", wind.path_m.len(), "at most 64"));
+        }
+    }
+    Ok(())
+}
+
+/// Largest number of kinds of objects, of prisms of one of them, and of corners of a prism.
+const BODY_LIMITS: [usize; 3] = [64, 256, 64];
+
+/// Checks the shapes of objects.
+pub(super) fn check_bodies(bodies: &[Body]) -> Result<(), MirrorError> {
+    let [kinds, prisms, corners] = BODY_LIMITS;
+    if bodies.len() > kinds {
+        return Err(range("number of shapes", bodies.len(), format!("at most {kinds}")));
+    }
+    for body in bodies {
+        if body.prisms.len() > prisms {
+            return Err(range("prisms of a shape", body.prisms.len(), format!("at most {prisms}")));
+        }
+        for prism in &body.prisms {
+            if !(3..=corners).contains(&prism.outline_m.len()) || prism.seams.len() != prism.outline_m.len() {
+                return Err(range("corners of a prism", prism.outline_m.len(), format!("3..={corners}, each with a seam")));
+            }
+            for coordinate in prism.outline_m.iter().flatten().chain(&prism.span_m) {
+                within("coordinate of a prism", *coordinate, -100.0, 100.0)?;
+            }
         }
     }
     Ok(())

@@ -1,5 +1,6 @@
 //! Errors of the mirror, and the range checks that raise them.
 
+use prairie_core::grass::ReplicaError;
 use prairie_core::terrain::MapError;
 use prairie_core::wire::CodecError;
 use thiserror::Error;
@@ -26,6 +27,9 @@ pub enum MirrorError {
         /// Decoding error.
         error: CodecError,
     },
+    /// The replica of the grass cannot be started or continued.
+    #[error("the grass cannot be replicated: {0}")]
+    Replica(ReplicaError),
     /// A value is out of range.
     #[error("{what} is {found}; allowed: {allowed}")]
     Range {

@@ -65,8 +65,13 @@ impl PatchFields {
             codec::decode(Shape::patch(cells), payload, &mut planes).map_err(|error| MirrorError::Field { field: "patch", error })?;
             Some(PatchCodes { planes })
         };
+        self.store(patch, Entry { seq, updated: 0, codes });
+        Ok(())
+    }
+
+    fn store(&mut self, patch: PatchIndex, entry: Entry) {
         self.clock += 1;
-        self.entries.insert(patch, Entry { seq, updated: self.clock, codes });
+        self.entries.insert(patch, Entry { updated: self.clock, ..entry });
         self.dirty.insert(patch);
         if self.entries.len() > PATCH_LIMIT {
             let oldest = self.entries.iter().min_by_key(|(_, entry)| entry.updated).map(|(&index, _)| index);
@@ -75,7 +80,12 @@ impl PatchFields {
                 self.dirty.insert(oldest);
             }
         }
-        Ok(())
+    }
+
+    /// Sets the codes of a patch, `None` at rest. Only a key frame of the server can replace them.
+    pub(super) fn set(&mut self, patch: PatchIndex, codes: Option<&[i8]>) {
+        let codes = codes.map(|codes| PatchCodes { planes: codes.to_vec() });
+        self.store(patch, Entry { seq: 0, updated: 0, codes });
     }
 
     pub(super) fn codes(&self, patch: PatchIndex) -> Option<&PatchCodes> {
@@ -169,8 +179,11 @@ pub(super) struct WindHeader {
     pub(super) turbulence: TurbulenceState,
 }
 
-/// Number of wind frames kept: they span the delay at which the wind is shown, even if the next one is late.
+/// Number of wind frames kept at least: they span the delay at which the wind is shown, even if the next one is late.
 const WIND_FRAMES: usize = 6;
+/// Number of wind frames kept at most, for the steps of a replica that has yet to catch up (about 15 s), and memory of their codes (bytes).
+const WIND_FRAMES_LIMIT: usize = 100;
+const WIND_LIMIT_BYTES: usize = 16 << 20;
 
 /// The newest wind frames, oldest first. The last one is the base of the next delta.
 #[derive(Debug, Default)]
@@ -201,7 +214,8 @@ impl WindFrames {
             Some(newest) if newest.tick > tick => self.frames.clear(),
             _ => {}
         }
-        if self.frames.len() == WIND_FRAMES {
+        let limit = (WIND_LIMIT_BYTES / codes.len().max(1)).clamp(WIND_FRAMES, WIND_FRAMES_LIMIT);
+        while self.frames.len() >= limit {
             self.frames.pop_front();
         }
         self.frames.push_back(WindCodes { cells, tick, seq, turbulence, codes, is_calm });
@@ -211,6 +225,12 @@ impl WindFrames {
     /// The newest frame.
     pub(super) fn newest(&self) -> Option<&WindCodes> {
         self.frames.back()
+    }
+
+    /// The newest frame of a step or before it: that in which the world does the step.
+    pub(super) fn frame_of(&self, tick: u64) -> Option<&WindCodes> {
+        let next = self.frames.partition_point(|frame| frame.tick <= tick);
+        self.frames.get(next.checked_sub(1)?)
     }
 
     /// The wind at a `tick`, linear between frames; before the first and after the last that of the nearest frame.

@@ -3,8 +3,10 @@
 use super::broken_plants::BrokenPlants;
 use super::error::{MirrorError, range};
 use super::fields::{PatchCodes, PatchFields, ShownWind, WindCodes, WindFrames, WindHeader};
+use super::following::{Following, Part};
 use super::playback::Playback;
 use super::scene::DecodedScene;
+use prairie_core::grass::Replica;
 use prairie_core::grid::PatchIndex;
 use prairie_core::scene::Scene;
 use prairie_core::wind::WindField;
@@ -59,6 +61,7 @@ pub struct Mirror {
     scene: Option<DecodedScene>,
     scene_number: u32,
     patches: PatchFields,
+    following: Following,
     wind: WindFrames,
     wind_field: Option<WindField>,
     poses: Playback,
@@ -78,18 +81,20 @@ impl Mirror {
             ServerMessage::Welcome { client, proof, server_version, scene_name } => {
                 Some(Event::Welcome { client, proof, server_version, scene_name })
             }
-            ServerMessage::Scene { scene, height_png, covering_png, nutrient_png, models } => {
-                let decoded = DecodedScene::new(*scene, &height_png, &covering_png, &nutrient_png, models)?;
+            ServerMessage::Scene { scene, height_png, covering_png, nutrient_png, models, shapes } => {
+                let decoded = DecodedScene::new(*scene, &height_png, &covering_png, &nutrient_png, models, shapes)?;
                 self.broken = BrokenPlants::new(decoded.flora().map_or(0, |flora| flora.grown().sites.total()));
                 self.scene = Some(decoded);
                 self.scene_number = self.scene_number.wrapping_add(1);
                 self.patches = PatchFields::default();
+                self.following = Following::default();
                 self.wind = WindFrames::default();
                 self.wind_field = self.scene.as_ref().map(DecodedScene::still_air);
                 self.poses = Playback::default();
                 Some(Event::Scene)
             }
             ServerMessage::Poses { tick, objects } => {
+                self.following.stop();
                 self.poses.push(tick as f64 / f64::from(self.tick_hz()), objects)?;
                 None
             }
@@ -106,6 +111,15 @@ impl Mirror {
                 self.patches.apply(decoded.layout(), patch, seq, key, &payload)?;
                 None
             }
+            ServerMessage::ReplicaState { tick, part, parts, payload } => {
+                let decoded = self.scene.as_ref().ok_or(MirrorError::BeforeScene("replica's state"))?;
+                self.following.receive(Part { tick, part, parts, payload }, decoded)?;
+                None
+            }
+            ServerMessage::Steps { first_tick, steps } => {
+                self.following.advance(first_tick, steps, &self.wind)?;
+                None
+            }
             ServerMessage::Roster { mut peers } => {
                 peers.truncate(PEER_LIMIT);
                 self.peers = peers;
@@ -118,6 +132,10 @@ impl Mirror {
             ServerMessage::FrameEnd { frame, tick, time_secs } => {
                 if !time_secs.is_finite() {
                     return Err(range("time_secs", time_secs, "a finite number"));
+                }
+                self.following.rest_until(tick, &self.wind)?;
+                if let Some(objects) = self.following.show(&mut self.patches) {
+                    self.poses.push(tick as f64 / f64::from(self.tick_hz()), objects)?;
                 }
                 (self.tick, self.time_secs) = (tick, time_secs);
                 Some(Event::FrameEnd { frame })
@@ -179,6 +197,16 @@ impl Mirror {
     /// Simulated time of the newest complete frame (s).
     pub fn time_secs(&self) -> f64 {
         self.time_secs
+    }
+
+    /// The replica of the server's grass; `None` while the client gets patches.
+    pub fn replica(&self) -> Option<&Replica> {
+        self.following.replica()
+    }
+
+    /// Tick after which the replica was found to differ from the server's grass since the last call, and a patch that differs. The replica has ended with it.
+    pub fn take_difference(&mut self) -> Option<(u64, PatchIndex)> {
+        self.following.take_difference()
     }
 
     /// Codes of a patch; `None` if it is at rest or unknown.

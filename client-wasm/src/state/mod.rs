@@ -8,6 +8,7 @@ mod check;
 mod check_underbrush;
 mod error;
 mod fields;
+mod following;
 mod mirror;
 mod playback;
 mod sample;

@@ -1,26 +1,34 @@
 //! The scene as the client holds it: settings, decoded maps, underbrush and models. Constant until the next scene.
 
-use super::check::{check, check_mesh};
-use super::error::MirrorError;
+use super::check::{check, check_bodies, check_mesh};
+use super::error::{MirrorError, range};
+use prairie_core::body::Body;
+use prairie_core::grass::wind_drawing::{WindDrawing, WindDrawings};
+use prairie_core::grass::{BendSimulation, Replica, ReplicaError, ReplicaState};
 use prairie_core::grid::PatchLayout;
 use prairie_core::plant::flora::Flora;
 use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::{Scene, VehicleKind};
 use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
 use prairie_core::wind::{WindField, WindTiles};
-use prairie_core::wire::Mesh;
+use prairie_core::wire::{Drawing, Mesh, Shapes};
 use std::sync::Arc;
+
+/// Largest number of wind drawings.
+const DRAWINGS_LIMIT: usize = 32;
 
 /// A scene with its decoded maps.
 #[derive(Clone, Debug)]
 pub struct DecodedScene {
     scene: Scene,
     layout: PatchLayout,
-    heights: HeightMap,
+    heights: Arc<HeightMap>,
     cover: CoverMap,
     kinds: Arc<KindMap>,
     flora: Option<Flora>,
     models: Vec<(VehicleKind, Mesh)>,
+    bodies: Vec<Body>,
+    drawings: WindDrawings,
     tiles: WindTiles,
 }
 
@@ -35,20 +43,23 @@ impl DecodedScene {
         covering_png: &[u8],
         nutrient_png: &[u8],
         models: Vec<(VehicleKind, Mesh)>,
+        shapes: Shapes,
     ) -> Result<Self, MirrorError> {
         check(&scene)?;
+        check_bodies(&shapes.bodies)?;
         let heights = HeightMap::from_png(height_png, &scene.terrain);
-        let heights = heights.map_err(|error| MirrorError::Map { map: "height map", error })?;
+        let heights = Arc::new(heights.map_err(|error| MirrorError::Map { map: "height map", error })?);
         let cover = CoverMap::from_png(covering_png).map_err(|error| MirrorError::Map { map: "covering map", error })?;
         let nutrients = (!nutrient_png.is_empty()).then(|| NutrientMap::from_png(nutrient_png));
         let nutrients = nutrients.transpose().map_err(|error| MirrorError::Map { map: "nutrient map", error })?;
         for (_, mesh) in &models {
             check_mesh(mesh)?;
         }
+        let drawings = drawings(&shapes)?;
         let layout = PatchLayout::from(&scene.patches);
         let (tiles, kinds) = (WindTiles::new(&scene), Arc::new(KindMap::new(&scene, &cover)));
         let flora = Flora::new(&scene, &cover, nutrients.as_ref());
-        Ok(Self { scene, layout, heights, cover, kinds, flora, models, tiles })
+        Ok(Self { scene, layout, heights, cover, kinds, flora, models, bodies: shapes.bodies, drawings, tiles })
     }
 
     /// Settings of the scene.
@@ -81,6 +92,15 @@ impl DecodedScene {
         WindField::still(&self.scene, Arc::clone(&self.kinds))
     }
 
+    /// A replica of the server's grass, from its state.
+    ///
+    /// # Errors
+    /// [`ReplicaError`] when the state is that of another scene.
+    pub fn replica(&self, state: ReplicaState) -> Result<Replica, ReplicaError> {
+        let at_rest = BendSimulation::new(&self.scene, Arc::clone(&self.heights), &self.cover, &self.bodies, &self.drawings);
+        Replica::new(at_rest, self.still_air(), self.scene.dt_secs(), state)
+    }
+
     /// Map of grass kinds.
     pub fn kinds(&self) -> &KindMap {
         &self.kinds
@@ -95,4 +115,17 @@ impl DecodedScene {
     pub fn models(&self) -> &[(VehicleKind, Mesh)] {
         &self.models
     }
+}
+
+/// The wind drawings, decoded.
+fn drawings(shapes: &Shapes) -> Result<WindDrawings, MirrorError> {
+    if shapes.drawings.len() > DRAWINGS_LIMIT {
+        return Err(range("number of wind drawings", shapes.drawings.len(), format!("at most {DRAWINGS_LIMIT}")));
+    }
+    let decode = |drawing: &Drawing| {
+        let decoded =
+            WindDrawing::from_png(&drawing.png).map_err(|error| range("wind drawing", format!("a file that {error}"), "a wind drawing"))?;
+        Ok((drawing.name.clone(), Arc::new(decoded)))
+    };
+    shapes.drawings.iter().map(decode).collect()
 }

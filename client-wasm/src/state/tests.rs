@@ -25,6 +25,7 @@ fn scene_message(scene: Scene) -> ServerMessage {
         covering_png: map,
         nutrient_png: Vec::new(),
         models: Vec::new(),
+        shapes: Default::default(),
     }
 }
 

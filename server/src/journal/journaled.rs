@@ -8,6 +8,7 @@ use super::writer::{Entry, Writer};
 use crate::runner::Simulation;
 use crate::snapshot::{PatchQuantiser, Snapshot};
 use crate::world::{Command, World};
+use prairie_core::grass::BendState;
 use prairie_core::wire::ObjectId;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -134,6 +135,10 @@ impl Simulation for JournaledWorld {
         if let Some(journal) = &mut self.journal {
             journal.note(&self.world, &all, begun.elapsed());
         }
+    }
+
+    fn bend_state(&self) -> Option<BendState> {
+        self.world.bend_state()
     }
 
     fn quantise_ahead(&self, quantiser: &mut PatchQuantiser, part: [u64; 2]) {

@@ -7,6 +7,7 @@ use crate::runner::Simulation;
 use crate::scenes::{self, LoadedScene};
 use crate::snapshot::{PatchQuantiser, Snapshot};
 use crate::world::Command;
+use prairie_core::grass::BendState;
 use prairie_core::wire::ObjectId;
 use std::path::Path;
 
@@ -35,6 +36,10 @@ impl Simulation for Replay {
                 tracing::info!(tick = self.player.world.tick(), "the end of the recording");
             }
         }
+    }
+
+    fn bend_state(&self) -> Option<BendState> {
+        self.player.world.bend_state()
     }
 
     fn quantise_ahead(&self, quantiser: &mut PatchQuantiser, part: [u64; 2]) {

@@ -5,7 +5,7 @@ use super::end::End;
 use super::name::name_for;
 use super::newest::Newest;
 use crate::config::Limits;
-use crate::stream::{AreaOfInterest, Client};
+use crate::stream::{AreaOfInterest, Client, Difference};
 use crate::token_bucket::TokenBucket;
 use crate::world::Command;
 use bytes::Bytes;
@@ -79,6 +79,11 @@ impl Inputs {
                 }
             }
             ClientMessage::Rename { name } => self.name.put(name_for(client.id, &name)),
+            ClientMessage::Replicate { wanted } => client.request_replica(wanted),
+            ClientMessage::Differs { tick, patch } => {
+                client.report_difference(Difference { tick, patch });
+                client.request_replica(true);
+            }
         }
         Ok(())
     }

@@ -142,6 +142,11 @@ impl Objects {
         self.vehicles.iter().map(object_pose).collect()
     }
 
+    /// Numbers of all objects, ascending, and angles of their moving parts (rad).
+    pub fn parts(&self) -> impl Iterator<Item = (ObjectId, f32)> {
+        self.vehicles.iter().map(|vehicle| (vehicle.id, vehicle.controller.part_rad()))
+    }
+
     /// Motions of all objects in the newest step.
     pub fn motions(&self) -> Vec<Motion> {
         let motion = |vehicle: &Vehicle| {

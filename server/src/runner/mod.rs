@@ -12,6 +12,7 @@ use crate::snapshot::{PatchQuantiser, Snapshot};
 use crate::world::{Command, World};
 use clock::Clock;
 use counter_log::CounterLog;
+use prairie_core::grass::BendState;
 use prairie_core::wire::ObjectId;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -40,6 +41,10 @@ pub trait Simulation: Send + 'static {
     fn quantise_ahead(&self, _quantiser: &mut PatchQuantiser, _part: [u64; 2]) {}
     /// The state after the newest step. `quantiser` is the same at every call.
     fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot;
+    /// A copy of the state of the grass after the newest step, from which replicas start; `None` if they cannot follow it.
+    fn bend_state(&self) -> Option<BendState> {
+        None
+    }
     /// The object that a client drives.
     fn object_of(&self, client: u32) -> Option<ObjectId>;
     /// Whether nothing but the wind moves. The runner then does all steps up to the next snapshot at once, which wakes the processor less often.
@@ -85,6 +90,10 @@ impl Simulation for World {
         Self::publish(self, quantiser)
     }
 
+    fn bend_state(&self) -> Option<BendState> {
+        Self::bend_state(self)
+    }
+
     fn object_of(&self, client: u32) -> Option<ObjectId> {
         Self::object_of(self, client)
     }
@@ -109,6 +118,8 @@ pub struct Published {
     pub dropped_recently_secs: f64,
     /// Durations of all steps so far (s), wall-clock time.
     pub step_secs: Histogram,
+    /// State of the grass, if it was [requested](Runner::state_request).
+    pub bend_state: Option<Arc<BendState>>,
     /// Time of the publication.
     pub at: Instant,
 }
@@ -123,6 +134,7 @@ impl Published {
             dropped_secs: 0.0,
             dropped_recently_secs: 0.0,
             step_secs: Histogram::new(&STEP_BOUNDS_SECS),
+            bend_state: None,
             at: Instant::now(),
         }
     }
@@ -172,6 +184,7 @@ impl Timing {
 pub struct Runner {
     commands: mpsc::Sender<Command>,
     published: watch::Receiver<Arc<Published>>,
+    state_request: Arc<AtomicBool>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -192,11 +205,12 @@ impl Runner {
             .thread_name(|index| format!("world-{index}"))
             .build()
             .map_err(std::io::Error::other)?;
-        let stopped = stop.clone();
+        let state_request = Arc::new(AtomicBool::new(false));
+        let (stopped, requested) = (stop.clone(), state_request.clone());
         let thread = std::thread::Builder::new().name("world".to_owned()).spawn(move || {
-            pool.install(|| Loop::new(simulation, quantiser, timing, inbox, sender).run(&stopped));
+            pool.install(|| Loop::new(simulation, quantiser, timing, inbox, sender).run(&stopped, &requested));
         })?;
-        Ok(Self { commands, published, stop, thread: Some(thread) })
+        Ok(Self { commands, published, state_request, stop, thread: Some(thread) })
     }
 
     /// Queue of commands to the world. It is bounded: use `try_send` for commands that may be lost.
@@ -207,6 +221,11 @@ impl Runner {
     /// The newest state. The channel closes when the thread ends.
     pub fn published(&self) -> watch::Receiver<Arc<Published>> {
         self.published.clone()
+    }
+
+    /// Request for the state of the grass: while it is true, the next publication carries it, and resets this to false.
+    pub fn state_request(&self) -> Arc<AtomicBool> {
+        self.state_request.clone()
     }
 
     /// Stops after the present step and waits for the thread. Returns whether it ended without a panic.
@@ -266,10 +285,10 @@ impl<S: Simulation> Loop<S> {
         }
     }
 
-    fn run(mut self, stop: &AtomicBool) {
+    fn run(mut self, stop: &AtomicBool, state_request: &AtomicBool) {
         while !stop.load(Relaxed) {
             for _ in 0..self.clock.due(self.start.elapsed()) {
-                self.step();
+                self.step(state_request);
             }
             if self.dropped.increase(self.clock.dropped).is_some() {
                 tracing::warn!(dropped_secs = self.clock.dropped_secs(), "the world is slower than real time; simulated time is dropped");
@@ -293,7 +312,7 @@ impl<S: Simulation> Loop<S> {
         (self.steps_per_publish - self.tick % self.steps_per_publish) % self.steps_per_publish
     }
 
-    fn step(&mut self) {
+    fn step(&mut self, state_request: &AtomicBool) {
         let commands: Vec<Command> = std::iter::from_fn(|| self.inbox.try_recv().ok()).collect();
         let begun = Instant::now();
         self.simulation.step(&commands);
@@ -304,7 +323,7 @@ impl<S: Simulation> Loop<S> {
         self.note_requests(&commands);
         let parts = self.steps_per_publish.min(SNAPSHOT_STEPS);
         match self.steps_to_publish() {
-            0 => self.publish(),
+            0 => self.publish(state_request.swap(false, Relaxed)),
             left if left < parts => self.simulation.quantise_ahead(&mut self.quantiser, [parts - left, parts]),
             _ => {}
         }
@@ -330,7 +349,7 @@ impl<S: Simulation> Loop<S> {
         }
     }
 
-    fn publish(&mut self) {
+    fn publish(&mut self, with_bend_state: bool) {
         let mut snapshot = self.simulation.publish(&mut self.quantiser);
         let total: Duration = self.step_times.iter().sum();
         snapshot.diagnostics.step_secs = total.as_secs_f32() / self.step_times.len() as f32;
@@ -353,6 +372,7 @@ impl<S: Simulation> Loop<S> {
             dropped_secs: self.clock.dropped_secs(),
             dropped_recently_secs: self.clock.dropped_recently_secs(self.start.elapsed()),
             step_secs: self.step_secs.clone(),
+            bend_state: with_bend_state.then(|| self.simulation.bend_state()).flatten().map(Arc::new),
             ..Published::new(snapshot)
         };
         self.sender.send_replace(Arc::new(published));

@@ -7,6 +7,7 @@ mod broken_plants;
 pub use broken_plants::BrokenPlants;
 pub use prairie_core::grass::{BentPatches, PatchCodes, PatchQuantiser};
 
+use prairie_core::grass::StepRecord;
 use prairie_core::wire::{ObjectPose, TurbulenceState};
 use std::sync::Arc;
 
@@ -27,6 +28,8 @@ pub struct Snapshot {
     pub patches: Arc<BentPatches>,
     /// Broken plants of the underbrush, oldest first.
     pub broken: BrokenPlants,
+    /// The newest steps of the grass, oldest first.
+    pub steps: Vec<Arc<StepRecord>>,
     /// Step diagnostics.
     pub diagnostics: Diagnostics,
 }

@@ -3,6 +3,8 @@
 use super::area::{PATCH_LIMIT, patches_near};
 use super::clients::{AreaOfInterest, Client, Frame};
 use super::encoder::Encoder;
+use super::following::Following;
+use super::step_log::StepLog;
 use crate::snapshot::Snapshot;
 use crate::token_bucket::TokenBucket;
 use bytes::Bytes;
@@ -42,6 +44,8 @@ pub struct Publication<'a> {
     pub roster_version: u64,
     /// The encoded roster message.
     pub roster: Bytes,
+    /// The newest steps.
+    pub steps: &'a StepLog,
 }
 
 const _: () = assert!(PATCH_LIMIT <= PATCH_MEMORY, "a client can hold its whole area of interest");
@@ -62,6 +66,7 @@ pub struct ClientState {
     frame: u32,
     /// The patches sent last, at most [`PATCH_MEMORY`]: the client certainly holds these.
     held: HashMap<PatchIndex, Held>,
+    following: Following,
     patch_messages: u64,
     held_wind: Option<u32>,
     held_roster: u64,
@@ -80,6 +85,7 @@ impl ClientState {
             budget: TokenBucket::new(limits.bytes_per_s, limits.bytes_per_s, now),
             frame: 0,
             held: HashMap::new(),
+            following: Following::default(),
             patch_messages: 0,
             held_wind: None,
             held_roster: 0,
@@ -89,8 +95,9 @@ impl ClientState {
         }
     }
 
-    /// Sends the newest state to a client; returns the bytes of the frame, or `None` if too many frames are in flight. Poses are always sent; broken plants, wind and patches
-    /// (nearest first) as far as the budget allows, the rest with a later frame. `extra` is a message for this client alone.
+    /// Sends the newest state to a client; returns the bytes of the frame, 0 if there is nothing to say to a client with a replica, or `None` if too many frames
+    /// are in flight. Poses are always sent; broken plants, wind, patches (nearest first) and the parts of a replica's state as far as the budget allows, the
+    /// rest with a later frame. A client with a replica gets all steps instead of poses and patches. `extra` is a message for this client alone.
     pub fn send_frame(
         &mut self,
         client: &Client,
@@ -98,13 +105,17 @@ impl ClientState {
         encoder: &mut Encoder,
         extra: Option<Bytes>,
     ) -> Option<usize> {
+        if self.following.update(client, publication.steps, publication.now) {
+            self.held.clear();
+        }
         if client.in_flight() >= self.limits.in_flight {
             return None;
         }
         let snapshot = publication.snapshot;
         self.budget.fill(publication.now);
         self.set_area(client.area_of_interest(), publication.layout);
-        let mut messages = vec![publication.poses.clone()];
+        let has_replica = self.following.has_replica();
+        let mut messages: Vec<Bytes> = if has_replica { vec![] } else { vec![publication.poses.clone()] };
         messages.extend(extra);
         if self.held_roster != publication.roster_version {
             messages.push(publication.roster.clone());
@@ -113,8 +124,44 @@ impl ClientState {
         let broken = encoder.broken(snapshot, self.sent_broken);
         let broken = broken.filter(|(_, message)| self.budget.try_overdraw(message.len() as f64));
         messages.extend(broken.iter().map(|(_, message)| message.clone()));
-        let wind = encoder.wind(snapshot, self.held_wind).filter(|(_, message)| self.budget.try_overdraw(message.len() as f64));
-        let mut patches = Vec::new();
+        let (grass, wind, patches) = if has_replica {
+            let Some((steps, wind)) = self.following.steps(publication.steps, !messages.is_empty(), publication.now) else {
+                return Some(0);
+            };
+            (steps, wind, vec![])
+        } else {
+            self.patches(publication, encoder)
+        };
+        messages.extend(grass);
+        let number = self.frame + 1;
+        let end = ServerMessage::FrameEnd { frame: number, tick: snapshot.tick, time_secs: snapshot.time_secs };
+        messages.push(wire::encode(&end).into());
+        let bytes = messages.iter().map(Bytes::len).sum();
+        if has_replica {
+            self.budget.charge(bytes as f64);
+        }
+        if !client.hand_out(Frame { number, messages }) {
+            return None;
+        }
+        self.following.note_sent(publication.steps, publication.now);
+        self.frame = number;
+        self.held_roster = publication.roster_version;
+        self.sent_broken = broken.map_or(self.sent_broken, |(count, _)| count);
+        self.held_wind = wind.or(self.held_wind);
+        self.hold(patches);
+        Some(bytes)
+    }
+
+    /// Messages of patches, wind and the parts of a replica's state, as far as the budget allows; the number of the wind frame, and the patches sent.
+    fn patches(&mut self, publication: &Publication<'_>, encoder: &mut Encoder) -> (Vec<Bytes>, Option<u32>, Vec<(PatchIndex, u32)>) {
+        let snapshot = publication.snapshot;
+        let newer = encoder.wind(snapshot, self.held_wind);
+        let is_behind = newer.is_some();
+        let wind = newer.filter(|(_, message)| self.budget.try_overdraw(message.len() as f64));
+        if wind.as_ref().is_some_and(|(seq, _)| self.held_wind.is_some_and(|held| held.wrapping_add(1) != *seq)) {
+            self.following.miss_wind();
+        }
+        let (mut messages, mut patches) = (Vec::new(), Vec::new());
         for &patch in &self.wanted {
             let held = self.held.get(&patch).map(|held| held.seq);
             let Some((seq, message)) = encoder.patch(snapshot, patch, held) else { continue };
@@ -125,21 +172,19 @@ impl ClientState {
             patches.push((patch, seq));
         }
         messages.extend(wind.iter().map(|(_, message)| message.clone()));
-        let number = self.frame + 1;
-        let end = ServerMessage::FrameEnd { frame: number, tick: snapshot.tick, time_secs: snapshot.time_secs };
-        let end: Bytes = wire::encode(&end).into();
-        self.budget.charge(end.len() as f64);
-        messages.push(end);
-        let bytes = messages.iter().map(Bytes::len).sum();
-        if !client.hand_out(Frame { number, messages }) {
-            return None;
-        }
-        self.frame = number;
-        self.held_roster = publication.roster_version;
-        self.sent_broken = broken.map_or(self.sent_broken, |(count, _)| count);
-        self.held_wind = wind.map(|(seq, _)| seq).or(self.held_wind);
-        self.hold(patches);
-        Some(bytes)
+        let (budget, has_wind) = (&mut self.budget, !is_behind || wind.is_some());
+        messages.extend(self.following.parts(publication.steps, has_wind, |bytes| budget.try_overdraw(bytes as f64)));
+        (messages, wind.map(|(seq, _)| seq), patches)
+    }
+
+    /// Whether the client waits for a state of the grass.
+    pub fn wants_state(&self) -> bool {
+        self.following.wants_state()
+    }
+
+    /// Whether the client has a replica of the grass.
+    pub fn has_replica(&self) -> bool {
+        self.following.has_replica()
     }
 
     /// Number of patches that the client certainly holds.

@@ -2,6 +2,7 @@
 
 use crate::world::Camera;
 use bytes::Bytes;
+use prairie_core::grid::PatchIndex;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -23,6 +24,15 @@ pub struct AreaOfInterest {
     pub eye_m: [f32; 3],
     /// Radius of the area (m).
     pub radius_m: f32,
+}
+
+/// Difference between a client's replica and the server's grass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// Tick after which they differ.
+    pub tick: u64,
+    /// A patch that differs.
+    pub patch: PatchIndex,
 }
 
 /// Numbers of frames, per client.
@@ -49,6 +59,9 @@ pub struct Client {
     acknowledged: AtomicU32,
     sent_bytes: AtomicU64,
     replaced: Notify,
+    /// Twice the number of its requests, plus 1 if the newest is for a replica of the grass.
+    replica_request: AtomicU32,
+    difference: Mutex<Option<Difference>>,
     sent_bytes_to_all: Arc<AtomicU64>,
 }
 
@@ -117,6 +130,28 @@ impl Client {
         taken
     }
 
+    /// Requests a replica of the grass, from its state on, or none.
+    pub fn request_replica(&self, wanted: bool) {
+        let next = |request: u32| Some((request & !1).wrapping_add(2) | u32::from(wanted));
+        let _ = self.replica_request.fetch_update(Relaxed, Relaxed, next);
+    }
+
+    /// The newest request: a value that differs from those before, and whether it is for a replica.
+    pub fn replica_request(&self) -> (u32, bool) {
+        let request = self.replica_request.load(Relaxed);
+        (request, request & 1 == 1)
+    }
+
+    /// Reports that the client's replica differs from the server's grass.
+    pub fn report_difference(&self, difference: Difference) {
+        *self.difference.lock().unwrap_or_else(PoisonError::into_inner) = Some(difference);
+    }
+
+    /// The newest difference that was reported since the last call.
+    pub fn take_difference(&self) -> Option<Difference> {
+        self.difference.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
     /// Counts bytes written to the client's socket.
     pub fn count_sent(&self, bytes: usize) {
         self.sent_bytes.fetch_add(bytes as u64, Relaxed);
@@ -166,7 +201,9 @@ impl Clients {
             acknowledged: AtomicU32::default(),
             sent_bytes: AtomicU64::default(),
             replaced: Notify::new(),
+            replica_request: AtomicU32::default(),
             sent_bytes_to_all: self.sent_bytes.clone(),
+            difference: Mutex::default(),
         });
         if let Some(before) = self.lock().insert(id, client.clone()) {
             before.replaced.notify_one();

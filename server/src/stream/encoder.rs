@@ -13,8 +13,8 @@ pub const DEAD_BAND: u8 = 2;
 /// Frame rate of a patch that changes within the dead band (Hz).
 pub const SLOW_HZ: f32 = 10.0;
 
-/// Frame rate of the wind (Hz).
-pub const WIND_HZ: f32 = 6.0;
+/// Each wind that is released is a frame.
+const WIND_PACING: Pacing = Pacing { dead_band: 0, slow_every: 1 };
 
 /// Shortest time before the frames of a patch outside every area of interest are dropped (s); the longest is twice this.
 const CACHE_SECS: f32 = 2.0;
@@ -25,7 +25,6 @@ pub struct Encoder {
     publish: u64,
     cache_publishes: u64,
     patch_pacing: Pacing,
-    wind_pacing: Pacing,
     patches: HashMap<PatchIndex, GridFrames<PatchCodes>>,
     wind: Option<GridFrames<WindFrame>>,
     /// Messages of this publication about broken plants, by their range in the order of breaking: first, past the last.
@@ -41,7 +40,6 @@ impl Encoder {
             publish: 0,
             cache_publishes: (publish_hz * CACHE_SECS).ceil().max(1.0) as u64,
             patch_pacing: Pacing { dead_band: DEAD_BAND, slow_every: every(SLOW_HZ) },
-            wind_pacing: Pacing { dead_band: u8::MAX, slow_every: every(WIND_HZ) },
             patches: HashMap::new(),
             wind: None,
             broken: HashMap::new(),
@@ -85,12 +83,19 @@ impl Encoder {
         (!newer.is_empty()).then(|| (count, self.broken.entry([known, count]).or_insert_with(encode).clone()))
     }
 
+    /// The message from the wind frame before to the newest one, and the number of that; `None` if this publication brings none.
+    pub fn next_wind(&mut self, snapshot: &Snapshot) -> Option<(u32, Bytes)> {
+        let before = self.wind.as_ref().map(GridFrames::seq);
+        let next = self.wind(snapshot, before);
+        // The first frame of all is not a change.
+        before.and(next)
+    }
+
     /// The message that updates a client's wind from frame `held` to the newest one, and the number of that frame.
     pub fn wind(&mut self, snapshot: &Snapshot, held: Option<u32>) -> Option<(u32, Bytes)> {
         let (publish, newest) = (self.publish, Some(&snapshot.wind));
-        let frames = self.wind.get_or_insert_with(|| GridFrames::new(publish, newest, publish + self.wind_pacing.slow_every));
-        frames.offer(publish, newest, self.wind_pacing);
-        // The frame may be older than the snapshot.
+        let frames = self.wind.get_or_insert_with(|| GridFrames::new(publish, newest, publish));
+        frames.offer(publish, newest, WIND_PACING);
         let (tick, turbulence) = frames.newest().map(|wind| (wind.tick, wind.turbulence)).unwrap_or_default();
         frames.message(held, |FrameHeader { seq, key }, payload| {
             self.encodings += 1;

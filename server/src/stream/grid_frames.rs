@@ -11,6 +11,10 @@ pub trait Grid {
     fn shape(&self) -> Shape;
     /// The codes, plane after plane.
     fn codes(&self) -> &[i8];
+    /// Whether something besides the codes differs.
+    fn differs(&self, _other: &Self) -> bool {
+        false
+    }
 }
 
 impl Grid for WindFrame {
@@ -19,6 +23,11 @@ impl Grid for WindFrame {
     }
     fn codes(&self) -> &[i8] {
         &self.codes
+    }
+
+    /// Gusts travel even in a wind that stays the same.
+    fn differs(&self, other: &Self) -> bool {
+        self.turbulence != other.turbulence
     }
 }
 
@@ -67,6 +76,11 @@ impl<G: Grid> GridFrames<G> {
     /// values, so that the slow frames of many grids do not coincide.
     pub fn new(publish: u64, newest: Option<&Arc<G>>, slow_at: u64) -> Self {
         Self { seq: publish as u32, now: newest.cloned(), before: None, offered_at: publish, slow_at, delta: None, key: None }
+    }
+
+    /// Number of the newest frame.
+    pub fn seq(&self) -> u32 {
+        self.seq
     }
 
     /// The last publication at which a grid was offered.
@@ -119,7 +133,7 @@ fn difference<G: Grid>(a: Option<&Arc<G>>, b: Option<&Arc<G>>) -> u8 {
     match (a, b) {
         (None, None) => 0,
         (Some(a), Some(b)) if Arc::ptr_eq(a, b) => 0,
-        (Some(a), Some(b)) => a.codes().iter().zip(b.codes()).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0),
+        (Some(a), Some(b)) => a.codes().iter().zip(b.codes()).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0).max(a.differs(b).into()),
         (Some(one), None) | (None, Some(one)) => one.codes().iter().map(|code| code.unsigned_abs()).max().unwrap_or(0),
     }
 }

@@ -9,6 +9,9 @@
 //! Patches outside every area of interest cost nothing: their frames are dropped after a while. For each client the streamer remembers
 //! only the patches sent last, no more than any client keeps; other patches are sent as keys.
 //!
+//! A client that asks for a replica of the grass gets its state and from then on the causes of each step ([`StepLog`]) instead of patches and poses. Causes
+//! are never skipped: a client that lags gets them later, and one that lags too far starts again.
+//!
 //! A client has at most a few unacknowledged frames in flight ([`SendLimits`]). Until it acknowledges one it is skipped, and then gets
 //! the newest state: nothing queues.
 
@@ -16,12 +19,16 @@ mod area;
 mod client_state;
 mod clients;
 mod encoder;
+mod following;
 mod grid_frames;
+mod step_log;
 mod streamer;
 
 pub use area::{PATCH_LIMIT, patches_near};
 pub use client_state::{ClientState, Publication, SendLimits};
-pub use clients::{AreaOfInterest, Client, Clients, Frame, Progress};
-pub use encoder::{DEAD_BAND, Encoder, SLOW_HZ, WIND_HZ};
+pub use clients::{AreaOfInterest, Client, Clients, Difference, Frame, Progress};
+pub use encoder::{DEAD_BAND, Encoder, SLOW_HZ};
+pub use following::Following;
 pub use grid_frames::{FrameHeader, Grid, GridFrames, Pacing};
+pub use step_log::StepLog;
 pub use streamer::{Counters, Stream, Streamer, start};

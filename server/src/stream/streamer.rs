@@ -1,9 +1,11 @@
 //! The streaming thread: turns each published snapshot into frames for all clients.
 
 use super::client_state::{ClientState, Publication, SendLimits};
-use super::clients::{Client, Clients};
+use super::clients::{Client, Clients, Difference};
 use super::encoder::Encoder;
+use super::step_log::StepLog;
 use crate::histogram::Histogram;
+use crate::log_limit::LogLimit;
 use crate::runner::Published;
 use crate::snapshot::Snapshot;
 use crate::token_bucket::TokenBucket;
@@ -12,7 +14,7 @@ use bytes::Bytes;
 use prairie_core::grid::PatchLayout;
 use prairie_core::wire::{self, Peer, Refusal, ServerMessage};
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Instant;
@@ -37,6 +39,10 @@ pub struct Counters {
     pub held_patches: AtomicU64,
     /// Frames handed to sessions.
     pub frames: AtomicU64,
+    /// Clients that have a replica of the grass.
+    pub replicas: AtomicU64,
+    /// Replicas so far that differed from the grass.
+    pub differences: AtomicU64,
     /// Frames skipped because the client had too many unacknowledged.
     pub skipped_frames: AtomicU64,
     frame_bytes: Mutex<Histogram>,
@@ -51,6 +57,8 @@ impl Default for Counters {
             held_patches: AtomicU64::default(),
             frames: AtomicU64::default(),
             skipped_frames: AtomicU64::default(),
+            replicas: AtomicU64::default(),
+            differences: AtomicU64::default(),
             frame_bytes: Mutex::new(Histogram::new(&FRAME_BOUNDS_BYTES)),
         }
     }
@@ -82,6 +90,10 @@ pub struct Streamer {
     /// Bytes of rosters that each client may be sent; filled from the first publication on.
     roster_budget: Option<TokenBucket>,
     counters: Arc<Counters>,
+    steps: StepLog,
+    /// Set to request the state of the grass with the next publication.
+    state_request: Arc<AtomicBool>,
+    difference_warning: LogLimit,
 }
 
 impl Streamer {
@@ -98,7 +110,15 @@ impl Streamer {
             roster: Bytes::new(),
             roster_budget: None,
             counters: Arc::default(),
+            steps: StepLog::default(),
+            state_request: Arc::default(),
+            difference_warning: LogLimit::default(),
         }
+    }
+
+    /// Requests states of the grass, for replicas, by setting `request`.
+    pub fn requesting_states_by(self, request: Arc<AtomicBool>) -> Self {
+        Self { state_request: request, ..self }
     }
 
     /// The counters, readable from any thread.
@@ -111,6 +131,11 @@ impl Streamer {
         self.encoder.begin();
         self.remove_departed(clients);
         self.update_roster(published, clients, now);
+        let snapshot = &published.snapshot;
+        self.steps.extend(&snapshot.steps, snapshot.wind.tick, self.encoder.next_wind(snapshot));
+        if let Some(state) = &published.bend_state {
+            self.steps.set_state(state);
+        }
         let publication = Publication {
             snapshot: &published.snapshot,
             layout: &self.layout,
@@ -118,12 +143,22 @@ impl Streamer {
             poses: Encoder::poses(&published.snapshot),
             roster_version: self.roster_version,
             roster: self.roster.clone(),
+            steps: &self.steps,
         };
         for client in clients {
             let refusal = self.refusal(published, client.id);
             let extra = refusal.is_some().then(|| no_vehicle(&published.snapshot));
             let state = self.states.entry(client.id).or_insert_with(|| ClientState::new(self.limits, now));
+            if let Some(Difference { tick, patch }) = client.take_difference() {
+                self.counters.differences.fetch_add(1, Relaxed);
+                if self.difference_warning.due().is_some() {
+                    tracing::warn!(client = client.id, tick, patch, "the replica of a client differs; it gets the state again");
+                }
+            }
             if let Some(bytes) = state.send_frame(client, &publication, &mut self.encoder, extra) {
+                if bytes == 0 {
+                    continue;
+                }
                 self.counters.lock().observe(bytes as f64);
                 self.notified.extend(refusal.map(|tick| (client.id, tick)));
                 self.counters.frames.fetch_add(1, Relaxed);
@@ -131,6 +166,10 @@ impl Streamer {
                 self.counters.skipped_frames.fetch_add(1, Relaxed);
             }
         }
+        if self.states.values().any(ClientState::wants_state) {
+            self.state_request.store(true, Relaxed);
+        }
+        self.counters.replicas.store(self.states.values().filter(|state| state.has_replica()).count() as u64, Relaxed);
         self.counters.publications.fetch_add(1, Relaxed);
         self.counters.encodings.store(self.encoder.encodings(), Relaxed);
         self.counters.cached_patches.store(self.encoder.cached_patches() as u64, Relaxed);

@@ -59,6 +59,7 @@ impl Stage {
             covering_png: loaded.covering_png,
             nutrient_png: loaded.nutrient_png,
             models: loaded.models,
+            shapes: Default::default(),
         })?;
         Ok(stage)
     }

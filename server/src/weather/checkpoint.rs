@@ -2,6 +2,7 @@
 
 use super::{Weather, WeatherError};
 use crate::settings_error::SettingsError;
+use crate::snapshot::WindFrame;
 use prairie_core::scene::Scene;
 use prairie_core::terrain::{CoverMap, HeightMap};
 use prairie_core::wire::TurbulenceState;

@@ -166,7 +166,8 @@ impl Weather {
                 self.resets += 1;
             }
         }
-        self.carrier.advance(&mut self.turbulence, &self.velocities(), self.step_secs);
+        let velocities = self.velocities();
+        self.carrier.advance(&mut self.turbulence, &velocities, self.step_secs);
         if tick.is_multiple_of(self.ticks_per_frame) {
             self.release(tick);
         }
@@ -205,7 +206,8 @@ impl Weather {
 
     /// Adds the wind to a checksum.
     pub(crate) fn hash(&self, sum: &mut Checksum) {
-        sum.add(self.field.velocities().iter().flat_map(|velocity| velocity.to_array().map(f32::to_bits)));
+        sum.add(self.air.cell_velocities().flat_map(|velocity| velocity.to_array().map(f32::to_bits)));
+        sum.add([self.frame.tick as u32]);
         let TurbulenceState { travel_m: [x_m, z_m], path_m, friction_m_per_s } = self.turbulence;
         sum.add([x_m, z_m, path_m].into_iter().flat_map(|m| [m.to_bits() as u32, (m.to_bits() >> 32) as u32]));
         sum.add([friction_m_per_s.to_bits()]);

@@ -1,7 +1,7 @@
 use super::*;
 use crate::world::Maps;
-use prairie_core::body::BodyPose;
 use prairie_core::bend::{Bend, Field, Kinds};
+use prairie_core::body::BodyPose;
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{Primitive, PrimitiveKind};
 use prairie_core::scene::{VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTime};

@@ -18,15 +18,18 @@ use crate::settings_error::SettingsError;
 use crate::snapshot::{Diagnostics, PatchQuantiser, Snapshot};
 use crate::weather::Weather;
 use departed::Departed;
-use prairie_core::grid::PatchIndex;
+use prairie_core::bend::Scheme;
+use prairie_core::body::Motion;
 use prairie_core::grass::wind_drawing::WindDrawings;
-use prairie_core::grass::{BendSimulation, prescribed_wind};
+use prairie_core::grass::{BendSimulation, BendState, StepRecord, prescribed_wind};
+use prairie_core::grid::PatchIndex;
 use prairie_core::plant::flora::Flora;
 use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::Scene;
 use prairie_core::terrain::{CoverMap, HeightMap};
 use prairie_core::wire::{Drive, ObjectId, VIEW_RADIUS_LIMIT_M};
 use rayon::prelude::*;
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// The maps of a scene.
@@ -42,6 +45,9 @@ pub struct Maps {
     pub nutrients: Option<Arc<NutrientMap>>,
 }
 
+/// Number of the newest steps whose causes are kept: half a second at the highest step rate.
+const STEPS_KEPT: usize = 120;
+
 /// Objects, wind, grass and underbrush.
 pub struct World {
     dt_secs: f32,
@@ -56,6 +62,8 @@ pub struct World {
     departed: Departed,
     /// Highest client number so far.
     newest_client: u32,
+    /// The newest steps of the grass, oldest first.
+    steps: VecDeque<Arc<StepRecord>>,
 }
 
 impl World {
@@ -89,6 +97,7 @@ impl World {
             cameras: vec![],
             departed: Departed::default(),
             newest_client: 0,
+            steps: VecDeque::new(),
         })
     }
 
@@ -107,6 +116,23 @@ impl World {
         self.weather.step(self.tick, &motions, &self.height, self.bend.field());
         self.bend.step(self.dt_secs, &motions, &self.cameras, self.weather.field(), &Pool);
         self.plants.step(self.tick, self.dt_secs, &self.bend, &self.weather);
+        self.record_step(&motions);
+    }
+
+    /// Records the causes of the newest step, for replicas of the grass.
+    fn record_step(&mut self, motions: &[Motion]) {
+        let valid = self.objects.parts().zip(motions).filter(|(_, motion)| motion.check().is_ok());
+        let record = StepRecord {
+            tick: self.tick,
+            wind_tick: self.weather.frame().tick,
+            causes: self.bend.causes().clone(),
+            objects: valid.map(|(part, _)| part).collect(),
+            checks: self.bend.checks(self.tick, 1.0 / self.dt_secs),
+        };
+        if self.steps.len() == STEPS_KEPT {
+            self.steps.pop_front();
+        }
+        self.steps.push_back(Arc::new(record));
     }
 
     /// Quantises the patches of one of `count` parts ahead of the next [`publish`](Self::publish), which then uses them as they are now. The part is given as
@@ -125,6 +151,7 @@ impl World {
             wind: Arc::clone(self.weather.frame()),
             patches: quantiser.quantise(self.tick, &self.bend, |patch| self.is_in_sight(patch), &Pool),
             broken: self.plants.broken().clone(),
+            steps: self.steps.iter().cloned().collect(),
             diagnostics: self.diagnostics(),
         }
     }
@@ -152,6 +179,11 @@ impl World {
     /// Clients that have left and whose vehicles are kept for their return.
     pub fn departed(&self) -> Vec<u32> {
         self.departed.clients()
+    }
+
+    /// A copy of the state of the grass, from which replicas start; `None` for the scheme `modal`, which clients do not have.
+    pub fn bend_state(&self) -> Option<BendState> {
+        (self.bend.scheme() != Scheme::Modal).then(|| self.bend.state())
     }
 
     /// Number of steps so far.

@@ -96,6 +96,11 @@ impl BendSimulation {
         &self.field
     }
 
+    /// Scheme of the bend field.
+    pub fn scheme(&self) -> Scheme {
+        self.scheme
+    }
+
     /// Diagnostics of the newest step.
     pub fn report(&self) -> Report {
         self.report

@@ -19,6 +19,8 @@ const PART_STEPS: f32 = 65_536.0;
 pub struct StepRecord {
     /// Number of the step.
     pub tick: u64,
+    /// Tick of the wind frame of the step.
+    pub wind_tick: u64,
     /// Causes of the step.
     pub causes: Causes,
     /// Number of the object behind each motion, ascending, and the angle of its moving part (rad).
@@ -239,7 +241,13 @@ mod tests {
             Motion { kind: VehicleKind::Car, from: *from, to: *to, velocity_m_per_s: [0.0; 3], is_at_rest: *is_at_rest }.rounded()
         };
         let causes = Causes { motions: objects.iter().map(motion).collect(), gusty: vec![tick as u32 / 10], ..Causes::default() };
-        StepRecord { tick, causes, objects: objects.iter().map(|object| (object.0, tick as f32 * 0.1)).collect(), checks: vec![] }
+        StepRecord {
+            tick,
+            wind_tick: 0,
+            causes,
+            objects: objects.iter().map(|object| (object.0, tick as f32 * 0.1)).collect(),
+            checks: vec![],
+        }
     }
 
     fn pose(id: ObjectId, tick: u64) -> BodyPose {

@@ -21,6 +21,7 @@ pub struct WindDrawing {
     size_px: [usize; 2],
     /// Wind vectors along X and Z, of length 0 to 1, row by row from the north.
     wind: Vec<[f32; 2]>,
+    png: Vec<u8>,
 }
 
 /// Reason why a picture is not a wind drawing. The caller adds the file's name.
@@ -94,7 +95,12 @@ impl WindDrawing {
         if wind.iter().all(|wind| *wind == [0.0; 2]) {
             return Err(DrawingError::Calm);
         }
-        Ok(Self { size_px: [width, height], wind })
+        Ok(Self { size_px: [width, height], wind, png: png_bytes.to_vec() })
+    }
+
+    /// The bytes of the PNG file.
+    pub fn png(&self) -> &[u8] {
+        &self.png
     }
 
     /// The wind vector, of length 0 to 1, at a position in the square: −1 to 1 from west to east and from north to south. Bilinear between pixels, zero

@@ -1,6 +1,7 @@
 //! Messages, and their encoding.
 
-use super::{PROTOCOL, TurbulenceState};
+use super::{PROTOCOL, Step, TurbulenceState};
+use crate::body::Body;
 use crate::grid::PatchIndex;
 use crate::scene::{Scene, VehicleKind};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -78,6 +79,19 @@ pub enum ClientMessage {
         /// The proof that came with the number.
         proof: [u8; PROOF_BYTES],
     },
+    /// Asks for a replica of the grass ([`ServerMessage::ReplicaState`], then [`ServerMessage::Steps`]) instead of patches, or for patches again. A connection
+    /// starts with patches.
+    Replicate {
+        /// Whether the client wants a replica.
+        wanted: bool,
+    },
+    /// The client's replica differs from the server's grass. It gets the state again.
+    Differs {
+        /// Tick after which it differs.
+        tick: u64,
+        /// A patch that differs.
+        patch: PatchIndex,
+    },
 }
 
 /// Length of the proof that a client has its number from the server (bytes).
@@ -112,6 +126,8 @@ pub enum ServerMessage {
         nutrient_png: Vec<u8>,
         /// Models read from glTF files; all other kinds are drawn with the built-in model.
         models: Vec<(VehicleKind, Mesh)>,
+        /// Shapes of objects and winds that press the grass, for a replica of it.
+        shapes: Shapes,
     },
     /// Newest poses of all objects.
     Poses {
@@ -180,6 +196,44 @@ pub enum ServerMessage {
         /// The nonce of the ping.
         nonce: u32,
     },
+    /// Part of the state of the grass, from which the client starts a replica of it when it has all parts.
+    ReplicaState {
+        /// Tick of the state.
+        tick: u64,
+        /// Number of the part, from 0.
+        part: u16,
+        /// Number of parts.
+        parts: u16,
+        /// Part of the encoded [`ReplicaState`](crate::grass::ReplicaState).
+        #[serde(with = "serde_bytes")]
+        payload: Vec<u8>,
+    },
+    /// Causes of steps of the grass, for a client with a replica of it. Nothing changes in the steps between these and those of the message before.
+    Steps {
+        /// Tick of the first step.
+        first_tick: u64,
+        /// Consecutive steps.
+        steps: Vec<Step>,
+    },
+}
+
+/// Shapes of objects and winds that press the grass.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Shapes {
+    /// Shapes of all kinds of objects, in the order of [`VehicleKind::ALL`].
+    pub bodies: Vec<Body>,
+    /// Wind drawings that the scene names.
+    pub drawings: Vec<Drawing>,
+}
+
+/// A wind drawing.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Drawing {
+    /// Its name in the scene.
+    pub name: String,
+    /// The PNG file's bytes.
+    #[serde(with = "serde_bytes")]
+    pub png: Vec<u8>,
 }
 
 /// Reasons of a [`ServerMessage::Refused`].

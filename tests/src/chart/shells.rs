@@ -36,6 +36,7 @@ fn knolls(slices: Option<u32>) -> Result<Mirror> {
         covering_png: loaded.covering_png,
         nutrient_png: loaded.nutrient_png,
         models: loaded.models,
+        shapes: Default::default(),
     })?;
     Ok(mirror)
 }

@@ -1,11 +1,11 @@
 //! Contact of objects with grass: Chen & Johan, Eqs. (1) and (10)–(12), tracks without holes, recovery, independence of the tick rate.
 
 use glam::Quat;
+use prairie_core::bend::{Bend, Patch};
+use prairie_core::body::{BodyPose, Motion, MotionError};
 use prairie_core::grass::bending::{bend_after_rad, bending_speed_rad_per_s, direction, terrain_limit_rad};
 use prairie_core::grass::footprint::Footprint;
 use prairie_core::grass::{BendSimulation, Camera};
-use prairie_core::body::{BodyPose, Motion, MotionError};
-use prairie_core::bend::{Bend, Patch};
 use prairie_core::scene::{Objects, Scene, VehicleKind};
 use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
 use prairie_core::wind::WindField;

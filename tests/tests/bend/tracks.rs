@@ -1,9 +1,9 @@
 //! Heavy objects flatten the grass: tracks stay, fade with their own time constant, and are sent although their patches sleep.
 
-use prairie_core::grass::flattened::{QUANTUM_RAD, TILE_BYTES};
 use prairie::snapshot::PatchQuantiser;
 use prairie::world::{Camera, Command, World};
 use prairie_core::bend::{Field, Kinds, TILE};
+use prairie_core::grass::flattened::{QUANTUM_RAD, TILE_BYTES};
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{Grass, Scene, VehicleKind};
 use prairie_core::wire::Drive;

@@ -1,14 +1,14 @@
 //! Wind as an object (Chen & Johan, §5.3): helicopter downwash, cyclones, drawn winds.
 
 use png::{BitDepth, ColorType};
+use prairie::scenes;
+use prairie::world::World;
+use prairie_core::bend::{Bend, Field, Kinds, Patch};
 use prairie_core::grass::flattened::FlattenedGrass;
 use prairie_core::grass::grass_properties::GrassProperties;
 use prairie_core::grass::grass_state::GrassState;
 use prairie_core::grass::prescribed_wind::{Pattern, PrescribedWind};
 use prairie_core::grass::wind_drawing::WindDrawing;
-use prairie::scenes;
-use prairie::world::World;
-use prairie_core::bend::{Bend, Field, Kinds, Patch};
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{DrawnWind, Grass, WindShape};
 use prairie_core::terrain::{CoverMap, HeightMap, grey_png};

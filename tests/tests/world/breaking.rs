@@ -113,6 +113,7 @@ fn mirror(scene: &Scene) -> Mirror {
         covering_png: map(255),
         nutrient_png: Vec::new(),
         models: Vec::new(),
+        shapes: Default::default(),
     };
     mirror.apply(scene).expect("a sound scene");
     mirror

@@ -236,6 +236,7 @@ fn two_largest_models_and_three_maps_fit_into_a_message() {
         covering_png: map.clone(),
         nutrient_png: map,
         models,
+        shapes: Default::default(),
     };
     assert!(prairie_core::wire::encode(&message).len() <= prairie_core::wire::SERVER_MESSAGE_LIMIT);
 }

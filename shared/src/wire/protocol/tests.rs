@@ -40,6 +40,7 @@ fn server_messages() -> Vec<ServerMessage> {
             covering_png: vec![3],
             nutrient_png: vec![4, 5, 6],
             models: vec![(VehicleKind::Car, mesh())],
+            shapes: Default::default(),
         },
         ServerMessage::Poses { tick: 300, objects: vec![pose()] },
         ServerMessage::Wind { tick: 300, seq: 2, key: true, turbulence: turbulence(), payload: vec![9, 8] },

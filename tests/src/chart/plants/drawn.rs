@@ -54,6 +54,7 @@ fn meadow(places: u32) -> Result<Mirror> {
         covering_png: grey_png([COVER_PX; 2], &covering),
         nutrient_png: Vec::new(),
         models: Vec::new(),
+        shapes: Default::default(),
     })?;
     Ok(mirror)
 }

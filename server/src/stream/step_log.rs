@@ -1,0 +1,116 @@
+//! The newest steps of the grass, encoded once for all clients that have a replica of it, and states from which replicas start.
+
+use bytes::Bytes;
+use prairie_core::grass::{BendState, ReplicaState, StepCodec, StepRecord};
+use prairie_core::wire::{self, ServerMessage, Step};
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// Largest number of publications with changes that are kept for clients that lag: 12 s at 20 Hz. It covers the transfer of a state.
+const ENTRIES: usize = 240;
+/// Size of the parts of a state (bytes).
+const PART_BYTES: usize = 16 << 10;
+/// Largest encoded state that is sent (bytes): 32 s at the default data rate; larger worlds are sent as patches.
+const STATE_LIMIT_BYTES: usize = 8 << 20;
+
+/// The steps of one publication in which something changes, with the wind frame that is released in them.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    /// The wind message of this publication, and the number of its frame.
+    pub(super) wind: Option<(u32, Bytes)>,
+    /// The steps message; `None` if only the wind changes.
+    pub(super) steps: Option<Bytes>,
+}
+
+/// An encoded state of the grass.
+#[derive(Debug)]
+pub(super) struct EncodedState {
+    /// Messages of its parts.
+    pub(super) parts: Vec<Bytes>,
+    /// Number of the first entry after it.
+    pub(super) next_entry: u64,
+}
+
+/// The newest steps.
+#[derive(Debug, Default)]
+pub struct StepLog {
+    codec: StepCodec,
+    /// The newest step, and the tick of its wind.
+    newest: Option<(u64, u64)>,
+    entries: VecDeque<Entry>,
+    /// Number of the first entry.
+    first: u64,
+    state: Option<Arc<EncodedState>>,
+}
+
+impl StepLog {
+    /// Adds the steps up to a publication, of those that are new, and the wind message of this publication. When a step or a wind frame is missing, as after a
+    /// long pause of this thread, all replicas must start again.
+    pub(super) fn extend(&mut self, records: &[Arc<StepRecord>], wind_tick: u64, wind: Option<(u32, Bytes)>) {
+        self.state = None;
+        let after = self.newest.map_or(0, |(tick, _)| tick);
+        let new: Vec<_> = records.iter().filter(|record| record.tick > after).collect();
+        let is_next = new.first().is_none_or(|record| self.newest.is_some() && record.tick == after + 1);
+        let known_wind = self.newest.map_or(0, |(_, tick)| tick);
+        let has_winds = new.iter().all(|record| record.wind_tick == known_wind || record.wind_tick == wind_tick);
+        if !(is_next && has_winds) {
+            // No client's next entry is ever this one.
+            self.first += self.entries.len() as u64 + 1;
+            self.entries.clear();
+        }
+        let steps: Vec<(u64, Step)> = new.iter().map(|record| (record.tick, self.codec.encode(record))).collect();
+        if let Some(record) = new.last() {
+            self.newest = Some((record.tick, wind_tick));
+        }
+        let steps = changed(&steps).map(|steps| {
+            let (first_tick, steps) = (steps[0].0, steps.iter().map(|(_, step)| step.clone()).collect());
+            wire::encode(&ServerMessage::Steps { first_tick, steps }).into()
+        });
+        if steps.is_some() || wind.is_some() {
+            self.entries.push_back(Entry { wind, steps });
+        }
+        if self.entries.len() > ENTRIES {
+            self.entries.pop_front();
+            self.first += 1;
+        }
+    }
+
+    /// Encodes a state of the grass after the newest step, for replicas that start.
+    pub(super) fn set_state(&mut self, bend: &BendState) {
+        let Some((tick, _)) = self.newest else { return };
+        let state = ReplicaState { tick, bend: bend.clone(), codec: self.codec.clone() }.encode();
+        if state.len() > STATE_LIMIT_BYTES {
+            tracing::debug!(bytes = state.len(), "the state of the grass is too large for replicas");
+            return;
+        }
+        let chunks = state.chunks(PART_BYTES);
+        let parts = chunks.len() as u16;
+        let message = |(part, payload): (usize, &[u8])| {
+            wire::encode(&ServerMessage::ReplicaState { tick, part: part as u16, parts, payload: payload.to_vec() }).into()
+        };
+        self.state = Some(Arc::new(EncodedState { parts: chunks.enumerate().map(message).collect(), next_entry: self.next_entry() }));
+    }
+
+    /// The state after the newest step, if it was [set](Self::set_state).
+    pub(super) fn state(&self) -> Option<&Arc<EncodedState>> {
+        self.state.as_ref()
+    }
+
+    /// Number of the entry after the newest.
+    pub(super) fn next_entry(&self) -> u64 {
+        self.first + self.entries.len() as u64
+    }
+
+    /// The entries from a number on; `None` when some of them are gone.
+    pub(super) fn since(&self, entry: u64) -> Option<impl Iterator<Item = &Entry>> {
+        let skipped = entry.checked_sub(self.first)? as usize;
+        (skipped <= self.entries.len()).then(|| self.entries.iter().skip(skipped))
+    }
+}
+
+/// The steps from the first to the last that changes something.
+fn changed(steps: &[(u64, Step)]) -> Option<&[(u64, Step)]> {
+    let is_changed = |(_, step): &(u64, Step)| !step.is_quiet();
+    let (first, last) = (steps.iter().position(is_changed)?, steps.iter().rposition(is_changed)?);
+    Some(&steps[first..=last])
+}
