@@ -1,6 +1,7 @@
 //! Measures the data rate of a client whose camera follows a driving car, by kind of message, without a network.
 //!
-//! `cargo run --release -p prairie --example watched_drive -- [SCENE] [RADIUS_M] [SECONDS]`
+//! `cargo run --release -p prairie --example watched_drive -- [SCENE] [RADIUS_M] [SECONDS] [patches|replica] [car|none]`: with patches or with a replica of the
+//! grass, and with or without the car.
 
 use anyhow::Context;
 use prairie::runner::Published;
@@ -12,6 +13,8 @@ use prairie_core::grid::PatchLayout;
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::{Drive, SERVER_MESSAGE_LIMIT, ServerMessage, decode};
 use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 const STEPS_PER_PUBLISH: u64 = 3;
@@ -26,15 +29,19 @@ fn main() -> anyhow::Result<()> {
     let scene = arguments.next().unwrap_or_else(|| "meadow".to_owned());
     let radius_m: f32 = arguments.next().map_or(Ok(48.0), |text| text.parse()).context("RADIUS_M")?;
     let measured_secs: f32 = arguments.next().map_or(Ok(20.0), |text| text.parse()).context("SECONDS")?;
+    let has_replica = arguments.next().is_some_and(|way| way == "replica");
+    let has_car = arguments.next().is_none_or(|car| car == "car");
     let loaded = scenes::load(&scene)?;
+    let requested = Arc::new(AtomicBool::new(false));
     let tick_hz = loaded.scene.tick_hz;
     let mut world = World::new(&loaded.scene, loaded.maps())?;
     let layout = PatchLayout::from(&loaded.scene.patches);
     let limits = SendLimits { bytes_per_s: 1e9, ..SendLimits::default() };
-    let mut streamer = Streamer::new(layout, limits, tick_hz / STEPS_PER_PUBLISH as f32);
+    let mut streamer = Streamer::new(layout, limits, tick_hz / STEPS_PER_PUBLISH as f32).requesting_states_by(requested.clone());
     let clients = Clients::default();
     let (client, mut frames) = clients.join(clients.next_id(), "driver".to_owned(), limits.in_flight as usize);
-    let mut commands = vec![Command::Spawn { client: client.id, kind: VehicleKind::Car }];
+    client.request_replica(has_replica);
+    let mut commands = if has_car { vec![Command::Spawn { client: client.id, kind: VehicleKind::Car }] } else { vec![] };
 
     let mut sums = Sums::new();
     let (mut publishing, mut publishes) = (Duration::ZERO, 0);
@@ -48,7 +55,8 @@ fn main() -> anyhow::Result<()> {
         if !step.is_multiple_of(STEPS_PER_PUBLISH) {
             continue;
         }
-        let published = Published::new(world.publish(&mut quantiser));
+        let bend_state = requested.swap(false, Relaxed).then(|| world.bend_state()).flatten().map(Arc::new);
+        let published = Published { bend_state, ..Published::new(world.publish(&mut quantiser)) };
         if let Some(car) = published.snapshot.objects.first() {
             let [x, y, z] = car.position_m;
             client.set_area_of_interest(AreaOfInterest { eye_m: [x, y + 3.0, z + 8.0], radius_m });
@@ -103,6 +111,8 @@ fn kind(message: &ServerMessage) -> &'static str {
         ServerMessage::Roster { .. } => "roster",
         ServerMessage::Broken { .. } => "broken",
         ServerMessage::FrameEnd { .. } => "frame end",
+        ServerMessage::ReplicaState { .. } => "state",
+        ServerMessage::Steps { .. } => "steps",
         _ => "other",
     }
 }

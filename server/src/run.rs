@@ -4,12 +4,10 @@ use crate::config::{Config, Limits};
 use crate::inspect::{InspectError, Inspector};
 use crate::journal::{self, JournalError};
 use crate::net::{self, Access, Admission, App, FieldSampler, PageErrors, Proofs, SessionLog};
-use crate::objects;
 use crate::runner::{Published, Runner, Simulation, Timing};
-use crate::scenes::LoadedScene;
 use crate::stream::{self, Clients, Streamer};
 use prairie_core::grid::PatchLayout;
-use prairie_core::wire::{self, Drawing, ServerMessage, Shapes};
+use prairie_core::wire;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use thiserror::Error;
@@ -92,7 +90,7 @@ pub async fn run_simulation(
         commands: runner.commands(),
         proofs,
         scene_name: config.scene.name.clone(),
-        scene: scene_message(&config),
+        scene: wire::encode(&config.scene.message()).into(),
         limits: config.limits,
         fields: FieldSampler::new(&config.scene),
         access: Access::new(&config.allow_origins, &config.allow_hosts, config.tls.clone()),
@@ -149,23 +147,4 @@ async fn record(inspector: Inspector, mut published: watch::Receiver<Arc<Publish
         inspector.observe(&newest.snapshot);
     }
     tokio::task::spawn_blocking(move || inspector.finish()).await.unwrap_or_else(|panic| Err(InspectError::Sdk(panic.to_string())))
-}
-
-/// Shapes of the objects and winds that press the grass of a scene.
-fn shapes(loaded: &LoadedScene) -> Shapes {
-    let drawings = loaded.drawings.iter().map(|(name, drawing)| Drawing { name: name.clone(), png: drawing.png().to_vec() });
-    Shapes { bodies: objects::bodies(&loaded.scene.objects), drawings: drawings.collect() }
-}
-
-fn scene_message(config: &Config) -> bytes::Bytes {
-    let loaded = &config.scene;
-    let message = ServerMessage::Scene {
-        scene: Box::new(loaded.scene.clone()),
-        height_png: loaded.height_png.clone(),
-        covering_png: loaded.covering_png.clone(),
-        nutrient_png: loaded.nutrient_png.clone(),
-        models: loaded.models.clone(),
-        shapes: shapes(loaded),
-    };
-    wire::encode(&message).into()
 }

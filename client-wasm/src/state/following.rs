@@ -3,9 +3,9 @@
 use super::error::{MirrorError, range};
 use super::fields::{PatchFields, WindFrames};
 use super::scene::DecodedScene;
-use prairie_core::grass::{BentPatches, Replica, ReplicaState};
+use prairie_core::grass::{BentPatches, DecodedStep, EncodedSteps, Replica, ReplicaState};
 use prairie_core::grid::PatchIndex;
-use prairie_core::wire::{ObjectPose, Step};
+use prairie_core::wire::ObjectPose;
 use std::sync::Arc;
 
 /// Largest number of parts of a state, and largest part (bytes).
@@ -76,38 +76,35 @@ impl Following {
         self.differs.take()
     }
 
-    /// Does all steps up to the last of `steps`, of which the first is `first_tick`. Steps without a replica are dropped.
-    pub(super) fn advance(&mut self, first_tick: u64, steps: Vec<Step>, wind: &WindFrames) -> Result<(), MirrorError> {
-        let Some(replica) = &mut self.replica else { return Ok(()) };
-        // Steps before the state are part of it.
-        let known = (replica.tick() + 1).saturating_sub(first_tick) as usize;
-        if let Some(last) = first_tick.checked_sub(1) {
-            self.rest_until(last, wind)?;
+    /// Does all steps up to the last of `steps`. Without a replica, and when they are part of its state, they are dropped.
+    pub(super) fn advance(&mut self, steps: EncodedSteps, wind: &WindFrames) -> Result<(), MirrorError> {
+        if self.replica.as_ref().is_none_or(|replica| steps.first_tick <= replica.tick()) {
+            return Ok(());
         }
-        steps.into_iter().skip(known).try_for_each(|step| self.step(Some(step), wind))
+        self.rest_until(steps.first_tick - 1, wind)?;
+        let Some(replica) = &mut self.replica else { return Ok(()) };
+        for DecodedStep { tick, causes, checks } in replica.decode(steps).map_err(MirrorError::Replica)? {
+            set_wind(replica, wind);
+            replica.advance(causes);
+            if let Some(patch) = replica.first_difference(&checks) {
+                self.differs = Some((tick, patch));
+                self.replica = None;
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Does all steps up to `tick`, in which nothing changes.
     pub(super) fn rest_until(&mut self, tick: u64, wind: &WindFrames) -> Result<(), MirrorError> {
-        let Some(replica) = &self.replica else { return Ok(()) };
+        let Some(replica) = &mut self.replica else { return Ok(()) };
         let quiet = tick.saturating_sub(replica.tick());
         if quiet > QUIET_LIMIT {
             return Err(range("number of steps without a change", quiet, format!("at most {QUIET_LIMIT}")));
         }
-        (0..quiet).try_for_each(|_| self.step(None, wind))
-    }
-
-    /// Does one step. A replica that differs ends.
-    fn step(&mut self, step: Option<Step>, wind: &WindFrames) -> Result<(), MirrorError> {
-        let Some(replica) = &mut self.replica else { return Ok(()) };
-        let tick = replica.tick() + 1;
-        if let Some(frame) = wind.frame_of(tick).filter(|frame| replica.wind_tick() != Some(frame.tick())) {
-            replica.set_wind(frame.tick(), frame.codes(), frame.turbulence());
-        }
-        let differs = replica.advance(step).map_err(MirrorError::Replica)?;
-        if let Some(&patch) = differs.first() {
-            self.differs = Some((tick, patch));
-            self.replica = None;
+        for _ in 0..quiet {
+            set_wind(replica, wind);
+            replica.rest();
         }
         Ok(())
     }
@@ -126,5 +123,12 @@ impl Following {
         }
         self.shown = codes;
         Some(replica.objects().collect())
+    }
+}
+
+/// Sets the wind of the replica's next step.
+fn set_wind(replica: &mut Replica, wind: &WindFrames) {
+    if let Some(frame) = wind.frame_of(replica.tick() + 1).filter(|frame| replica.wind_tick() != Some(frame.tick())) {
+        replica.set_wind(frame.tick(), frame.codes(), frame.turbulence());
     }
 }

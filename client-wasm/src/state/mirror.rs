@@ -6,7 +6,7 @@ use super::fields::{PatchCodes, PatchFields, ShownWind, WindCodes, WindFrames, W
 use super::following::{Following, Part};
 use super::playback::Playback;
 use super::scene::DecodedScene;
-use prairie_core::grass::Replica;
+use prairie_core::grass::{EncodedSteps, Replica};
 use prairie_core::grid::PatchIndex;
 use prairie_core::scene::Scene;
 use prairie_core::wind::WindField;
@@ -116,8 +116,8 @@ impl Mirror {
                 self.following.receive(Part { tick, part, parts, payload }, decoded)?;
                 None
             }
-            ServerMessage::Steps { first_tick, steps } => {
-                self.following.advance(first_tick, steps, &self.wind)?;
+            ServerMessage::Steps { first_tick, steps: heads, moves } => {
+                self.following.advance(EncodedSteps { first_tick, heads, moves }, &self.wind)?;
                 None
             }
             ServerMessage::Roster { mut peers } => {

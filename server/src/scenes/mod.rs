@@ -6,7 +6,9 @@ mod create;
 mod error;
 mod fault_report;
 mod load;
+
 pub mod maps;
+mod message;
 mod report;
 
 pub use catalogue::{BuiltInScene, catalogue};

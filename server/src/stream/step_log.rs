@@ -1,8 +1,8 @@
 //! The newest steps of the grass, encoded once for all clients that have a replica of it, and states from which replicas start.
 
 use bytes::Bytes;
-use prairie_core::grass::{BendState, ReplicaState, StepCodec, StepRecord};
-use prairie_core::wire::{self, ServerMessage, Step};
+use prairie_core::grass::{BendState, EncodedSteps, ReplicaState, StepCodec, StepRecord};
+use prairie_core::wire::{self, ServerMessage};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -58,13 +58,12 @@ impl StepLog {
             self.first += self.entries.len() as u64 + 1;
             self.entries.clear();
         }
-        let steps: Vec<(u64, Step)> = new.iter().map(|record| (record.tick, self.codec.encode(record))).collect();
         if let Some(record) = new.last() {
             self.newest = Some((record.tick, wind_tick));
         }
-        let steps = changed(&steps).map(|steps| {
-            let (first_tick, steps) = (steps[0].0, steps.iter().map(|(_, step)| step.clone()).collect());
-            wire::encode(&ServerMessage::Steps { first_tick, steps }).into()
+        let steps = self.codec.encode(new.into_iter().map(|record| &**record));
+        let steps = steps.map(|EncodedSteps { first_tick, heads, moves }| {
+            wire::encode(&ServerMessage::Steps { first_tick, steps: heads, moves }).into()
         });
         if steps.is_some() || wind.is_some() {
             self.entries.push_back(Entry { wind, steps });
@@ -106,11 +105,4 @@ impl StepLog {
         let skipped = entry.checked_sub(self.first)? as usize;
         (skipped <= self.entries.len()).then(|| self.entries.iter().skip(skipped))
     }
-}
-
-/// The steps from the first to the last that changes something.
-fn changed(steps: &[(u64, Step)]) -> Option<&[(u64, Step)]> {
-    let is_changed = |(_, step): &(u64, Step)| !step.is_quiet();
-    let (first, last) = (steps.iter().position(is_changed)?, steps.iter().rposition(is_changed)?);
-    Some(&steps[first..=last])
 }

@@ -46,21 +46,14 @@ impl Stage {
             world: World::new(&loaded.scene, loaded.maps())?,
             mirror: Mirror::default(),
             scene: loaded.scene.clone(),
-            height: loaded.height,
+            height: loaded.height.clone(),
             quantiser: PatchQuantiser::default(),
             sent: BTreeMap::new(),
             sent_broken: 0,
             frame: 0,
             time_secs: 0.0,
         };
-        stage.send(&ServerMessage::Scene {
-            scene: Box::new(loaded.scene),
-            height_png: loaded.height_png,
-            covering_png: loaded.covering_png,
-            nutrient_png: loaded.nutrient_png,
-            models: loaded.models,
-            shapes: Default::default(),
-        })?;
+        stage.send(&loaded.message())?;
         Ok(stage)
     }
 

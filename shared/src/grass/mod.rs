@@ -29,4 +29,4 @@ pub use causes::Causes;
 pub use codes::{BentPatches, PatchCodes, PatchQuantiser};
 pub use replica::{Replica, ReplicaError, ReplicaState, STATE_LIMIT_BYTES};
 pub use simulation::{BendSimulation, BendState};
-pub use step_codec::{DecodeError, OBJECT_LIMIT, StepCodec, StepRecord};
+pub use step_codec::{DecodeError, DecodedStep, EncodedSteps, OBJECT_LIMIT, StepCodec, StepRecord};

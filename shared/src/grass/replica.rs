@@ -1,10 +1,10 @@
 //! A replica of a server's grass: from a copy of its state, the causes of each step and the wind, it keeps the same bits.
 
-use super::{BendSimulation, BendState, BentPatches, DecodeError, PatchQuantiser, StepCodec};
+use super::{BendSimulation, BendState, BentPatches, Causes, DecodeError, DecodedStep, EncodedSteps, PatchQuantiser, StepCodec};
 use crate::bend::{Serial, StateError};
 use crate::grid::PatchIndex;
 use crate::wind::WindField;
-use crate::wire::{ObjectPose, Step, TurbulenceState};
+use crate::wire::{ObjectPose, PatchCheck, TurbulenceState};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use thiserror::Error;
@@ -106,17 +106,29 @@ impl Replica {
         self.wind_tick = Some(tick);
     }
 
-    /// Does the next step, by its causes; `None` when nothing changes. Returns the patches whose grass differs from the server's, of those that are checked.
+    /// Decodes the causes of the next steps, to be done [one by one](Self::advance).
     ///
     /// # Errors
-    /// [`ReplicaError`] when the step contradicts the objects. The replica can then not be continued.
-    pub fn advance(&mut self, step: Option<Step>) -> Result<Vec<PatchIndex>, ReplicaError> {
-        let step = step.unwrap_or_else(|| self.codec.quiet());
-        let (causes, checks) = self.codec.decode(step, self.dt_secs)?;
+    /// [`ReplicaError`] when they contradict the objects. The replica can then not be continued.
+    pub fn decode(&mut self, steps: EncodedSteps) -> Result<Vec<DecodedStep>, ReplicaError> {
+        Ok(self.codec.decode(steps, self.dt_secs)?)
+    }
+
+    /// Does the next step, in which nothing changes.
+    pub fn rest(&mut self) {
+        let causes = self.codec.quiet(self.dt_secs);
+        self.advance(causes);
+    }
+
+    /// Does the next step, by its causes.
+    pub fn advance(&mut self, causes: Causes) {
         self.grass.follow(self.dt_secs, causes, &self.wind, &Serial);
         self.tick += 1;
-        let differs = checks.iter().filter(|check| self.grass.patch_checksum(check.patch) != check.sum);
-        Ok(differs.map(|check| check.patch).collect())
+    }
+
+    /// The first patch whose grass differs from the server's after the newest step.
+    pub fn first_difference(&self, checks: &[PatchCheck]) -> Option<PatchIndex> {
+        checks.iter().find(|check| self.grass.patch_checksum(check.patch) != check.sum).map(|check| check.patch)
     }
 
     /// Poses of all objects after the newest step, ascending by number.

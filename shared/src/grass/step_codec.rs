@@ -1,16 +1,19 @@
-//! Causes of steps as [differences](Step) from the step before, and back.
+//! Causes of steps as [differences](Move) from the step before, and back.
 
 use super::Causes;
 use crate::body::{BodyPose, Motion, MotionError, PoseCode};
 use crate::grid::PatchIndex;
 use crate::scene::VehicleKind;
-use crate::wire::{Joined, Move, ObjectId, ObjectPose, PatchCheck, PoseChange, RareCauses, Step};
+use crate::wire::codec::moves::{MoveContext, MoveDecoder, MoveEncoder, MoveModel};
+use crate::wire::{Joined, Move, ObjectId, ObjectPose, PatchCheck, PoseChange, RareCauses, StepHead};
 use serde::{Deserialize, Serialize};
 use std::f32::consts::TAU;
 use thiserror::Error;
 
 /// Largest number of objects.
 pub const OBJECT_LIMIT: usize = 1024;
+/// Largest number of steps in a message.
+const STEPS_LIMIT: usize = 4096;
 /// Quanta of a moving part's angle in a turn.
 const PART_STEPS: f32 = 65_536.0;
 
@@ -39,11 +42,13 @@ struct Track {
     /// Change in the newest step.
     change: PoseChange,
     is_at_rest: bool,
+    context: MoveContext,
 }
 
 impl Track {
     fn new(Joined { id, kind, from }: Joined) -> Self {
-        Self { id, kind, pose: from, part: 0, change: PoseChange::default(), is_at_rest: false }
+        let (change, context) = (PoseChange::default(), MoveContext::default());
+        Self { id, kind, pose: from, part: 0, change, is_at_rest: false, context }
     }
 
     /// Moves on by `change`.
@@ -68,19 +73,40 @@ pub struct StepCodec {
     /// Ascending by number.
     tracks: Vec<Track>,
     gusty: Vec<PatchIndex>,
+    model: MoveModel,
+}
+
+/// Steps in which something changes, as a [message](crate::wire::ServerMessage::Steps).
+#[derive(Clone, Debug, PartialEq)]
+pub struct EncodedSteps {
+    /// Tick of the first one.
+    pub first_tick: u64,
+    /// The steps.
+    pub heads: Vec<StepHead>,
+    /// Coded moves of their objects.
+    pub moves: Vec<u8>,
+}
+
+/// Decoded causes of a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DecodedStep {
+    /// Number of the step.
+    pub tick: u64,
+    /// Its causes.
+    pub causes: Causes,
+    /// Checksums of patches after it.
+    pub checks: Vec<PatchCheck>,
 }
 
 /// Reason why a step cannot be decoded.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum DecodeError {
-    /// The number of moves is not that of the objects.
-    #[error("{found} moves of {objects} objects")]
-    Moves {
-        /// Number of moves.
-        found: usize,
-        /// Number of objects.
-        objects: usize,
-    },
+    /// Too many steps.
+    #[error("more than {STEPS_LIMIT} steps in one message")]
+    Steps,
+    /// The moves end too early or too late.
+    #[error("the length of the moves does not match the objects and steps")]
+    Length,
     /// Too many objects, or one that is already there.
     #[error("object {id} joins {objects} others; allowed: up to {OBJECT_LIMIT} objects, each once")]
     Joined {
@@ -95,8 +121,74 @@ pub enum DecodeError {
 }
 
 impl StepCodec {
-    /// Encodes a step that follows the newest one.
-    pub fn encode(&mut self, record: &StepRecord) -> Step {
+    /// Encodes the next steps; `None` when nothing changes in them.
+    pub fn encode<'a>(&mut self, records: impl IntoIterator<Item = &'a StepRecord>) -> Option<EncodedSteps> {
+        let (mut first_tick, mut last_tick, mut heads, mut encoder) = (0, 0, vec![], MoveEncoder::default());
+        for record in records {
+            let (rare, moves) = self.changes(record);
+            if rare.is_none() && moves.iter().all(|step| *step == Move::Same) {
+                continue;
+            }
+            let quiet_before = if heads.is_empty() { 0 } else { (record.tick - last_tick - 1) as u16 };
+            first_tick = if heads.is_empty() { record.tick } else { first_tick };
+            last_tick = record.tick;
+            heads.push(StepHead { quiet_before, rare });
+            for (track, step) in self.tracks.iter_mut().zip(moves) {
+                self.model.encode(&mut encoder, &mut track.context, step);
+            }
+        }
+        (!heads.is_empty()).then(|| EncodedSteps { first_tick, heads, moves: encoder.finish() })
+    }
+
+    /// Decodes the next steps, from `first_tick` on.
+    ///
+    /// # Errors
+    /// [`DecodeError`] when a step contradicts the objects, or a motion is invalid. The codec can then not be used on.
+    pub fn decode(&mut self, steps: EncodedSteps, dt_secs: f32) -> Result<Vec<DecodedStep>, DecodeError> {
+        let EncodedSteps { first_tick, heads, moves } = steps;
+        let (mut decoder, mut tick, mut decoded) = (MoveDecoder::new(&moves), first_tick, vec![]);
+        for StepHead { quiet_before, rare } in heads {
+            if decoded.len() + usize::from(quiet_before) >= STEPS_LIMIT {
+                return Err(DecodeError::Steps);
+            }
+            for _ in 0..quiet_before {
+                decoded.push(DecodedStep { tick, causes: self.quiet(dt_secs), checks: vec![] });
+                tick += 1;
+            }
+            let RareCauses { left, joined, gusty, evicted, dropped, checks } = rare.map(|rare| *rare).unwrap_or_default();
+            self.tracks.retain(|track| !left.contains(&track.id));
+            for new in joined {
+                let objects = self.tracks.len();
+                if objects >= OBJECT_LIMIT || self.place_of(new.id).is_ok() {
+                    return Err(DecodeError::Joined { id: new.id, objects });
+                }
+                self.join(new);
+            }
+            self.gusty = gusty.unwrap_or(std::mem::take(&mut self.gusty));
+            let model = &mut self.model;
+            let decode = |track: &mut Track| {
+                let step = model.decode(&mut decoder, &mut track.context);
+                decode_move(track, step, dt_secs)
+            };
+            let motions = self.tracks.iter_mut().map(decode).collect::<Result<_, _>>()?;
+            let causes = Causes { motions, gusty: self.gusty.clone(), evicted, dropped };
+            decoded.push(DecodedStep { tick, causes, checks });
+            tick += 1;
+        }
+        if decoder.is_finished() { Ok(decoded) } else { Err(DecodeError::Length) }
+    }
+
+    /// Causes of a next step in which nothing changes: objects stay, and nothing rare happens.
+    pub fn quiet(&mut self, dt_secs: f32) -> Causes {
+        let stay = |track: &mut Track| {
+            track.change = PoseChange::default();
+            track.motion(track.pose, dt_secs)
+        };
+        Causes { motions: self.tracks.iter_mut().map(stay).collect(), gusty: self.gusty.clone(), ..Causes::default() }
+    }
+
+    /// The rare causes of the next step, and the move of each object after those that leave and join.
+    fn changes(&mut self, record: &StepRecord) -> (Option<Box<RareCauses>>, Vec<Move>) {
         let Causes { motions, gusty, evicted, dropped } = &record.causes;
         let is_here = |track: &Track| record.objects.binary_search_by_key(&track.id, |object| object.0).is_ok();
         let left = self.tracks.iter().filter(|track| !is_here(track)).map(|track| track.id).collect();
@@ -115,32 +207,7 @@ impl StepCodec {
         };
         self.gusty.clone_from(gusty);
         let moves = self.tracks.iter_mut().zip(objects).map(|(track, (&(_, part_rad), motion))| encode_move(track, motion, part_rad));
-        Step { moves: moves.collect(), rare: (rare != RareCauses::default()).then(|| Box::new(rare)) }
-    }
-
-    /// Decodes the causes of the step that follows the newest one.
-    ///
-    /// # Errors
-    /// [`DecodeError`] when the step contradicts the objects, or a motion is invalid.
-    pub fn decode(&mut self, step: Step, dt_secs: f32) -> Result<(Causes, Vec<PatchCheck>), DecodeError> {
-        let RareCauses { left, joined, gusty, evicted, dropped, checks } = step.rare.map(|rare| *rare).unwrap_or_default();
-        self.tracks.retain(|track| !left.contains(&track.id));
-        for new in joined {
-            let objects = self.tracks.len();
-            if objects >= OBJECT_LIMIT || self.place_of(new.id).is_ok() {
-                return Err(DecodeError::Joined { id: new.id, objects });
-            }
-            self.join(new);
-        }
-        if step.moves.len() != self.tracks.len() {
-            return Err(DecodeError::Moves { found: step.moves.len(), objects: self.tracks.len() });
-        }
-        if let Some(gusty) = gusty {
-            self.gusty = gusty;
-        }
-        let moves = self.tracks.iter_mut().zip(step.moves);
-        let motions = moves.map(|(track, step)| decode_move(track, step, dt_secs)).collect::<Result<_, _>>()?;
-        Ok((Causes { motions, gusty: self.gusty.clone(), evicted, dropped }, checks))
+        ((rare != RareCauses::default()).then(|| Box::new(rare)), moves.collect())
     }
 
     /// Place of an object among the tracks; the place for it if it is missing.
@@ -154,11 +221,6 @@ impl StepCodec {
         }
     }
 
-    /// The step in which nothing changes: objects stay, and nothing rare happens.
-    pub fn quiet(&self) -> Step {
-        Step { moves: vec![Move::Same; self.tracks.len()], rare: None }
-    }
-
     /// Poses of all objects after the newest step of `dt_secs`, ascending by number.
     pub fn objects(&self, dt_secs: f32) -> impl Iterator<Item = ObjectPose> {
         self.tracks.iter().map(move |track| {
@@ -170,15 +232,14 @@ impl StepCodec {
 }
 
 impl Track {
+    /// The motion of the newest step, from the pose before it.
+    fn motion(&self, from: PoseCode, dt_secs: f32) -> Motion {
+        let velocity_m_per_s = self.velocity_m_per_s(dt_secs);
+        Motion { kind: self.kind, from: from.pose(), to: self.pose.pose(), velocity_m_per_s, is_at_rest: self.is_at_rest }
+    }
+
     fn velocity_m_per_s(&self, dt_secs: f32) -> [f32; 3] {
         self.change.position.map(|quanta| quanta as f32 * crate::body::POSITION_QUANTUM_M / dt_secs)
-    }
-}
-
-impl Step {
-    /// Whether nothing changes, as in [`StepCodec::quiet`].
-    pub fn is_quiet(&self) -> bool {
-        self.rare.is_none() && self.moves.iter().all(|step| *step == Move::Same)
     }
 }
 
@@ -205,8 +266,7 @@ fn encode_move(track: &mut Track, motion: &Motion, part_rad: f32) -> Move {
 }
 
 fn decode_move(track: &mut Track, step: Move, dt_secs: f32) -> Result<Motion, MotionError> {
-    let from = track.pose.pose();
-    let before = track.change;
+    let (from, before) = (track.pose, track.change);
     let change = match step {
         Move::Same | Move::Rest(_) => PoseChange::default(),
         Move::Moved(second) | Move::MovedAtRest(second) => PoseChange {
@@ -222,8 +282,7 @@ fn decode_move(track: &mut Track, step: Move, dt_secs: f32) -> Result<Motion, Mo
         Move::MovedAtRest(_) => true,
     };
     track.advance(change);
-    let velocity_m_per_s = track.velocity_m_per_s(dt_secs);
-    let motion = Motion { kind: track.kind, from, to: track.pose.pose(), velocity_m_per_s, is_at_rest: track.is_at_rest };
+    let motion = track.motion(from, dt_secs);
     motion.check()?;
     Ok(motion)
 }
@@ -268,54 +327,73 @@ mod tests {
     #[test]
     fn causes_come_back_with_the_same_bits() {
         let (mut encoder, mut decoder) = (StepCodec::default(), StepCodec::default());
-        let mut bytes = 0;
-        for tick in 0..320 {
-            let record = drive(tick);
-            let step = encoder.encode(&record);
-            bytes += postcard::to_allocvec(&step).unwrap().len();
-            let (causes, _) = decoder.decode(step, DT_SECS).unwrap();
-            for (found, wanted) in causes.motions.iter().zip(&record.causes.motions) {
-                assert_eq!((found.from, found.to, found.is_at_rest), (wanted.from, wanted.to, wanted.is_at_rest), "step {tick}");
+        let records: Vec<_> = (1..=321).map(drive).collect();
+        let (mut next_tick, mut bytes) = (1, 0);
+        for records in records.chunks(3) {
+            let Some(steps) = encoder.encode(records) else { continue };
+            bytes += steps.moves.len();
+            let (first_tick, count) = (steps.first_tick, steps.heads.iter().map(|head| 1 + u64::from(head.quiet_before)).sum::<u64>());
+            for _ in next_tick..first_tick {
+                decoder.quiet(DT_SECS);
             }
-            assert_eq!(causes.motions.len(), record.causes.motions.len());
-            assert_eq!(causes.gusty, record.causes.gusty);
-            assert_eq!(encoder, decoder);
+            for (found, record) in decoder.decode(steps, DT_SECS).unwrap().iter().zip(&records[(first_tick - records[0].tick) as usize..]) {
+                assert_eq!((found.tick, &found.causes.gusty), (record.tick, &record.causes.gusty));
+                assert_eq!(found.causes.motions.len(), record.causes.motions.len());
+                for (found, wanted) in found.causes.motions.iter().zip(&record.causes.motions) {
+                    assert_eq!(
+                        (found.from, found.to, found.is_at_rest),
+                        (wanted.from, wanted.to, wanted.is_at_rest),
+                        "step {}",
+                        record.tick
+                    );
+                }
+            }
+            next_tick = first_tick + count;
             let ids: Vec<_> = decoder.objects(DT_SECS).map(|object| object.id).collect();
-            assert_eq!(ids, record.objects.iter().map(|object| object.0).collect::<Vec<_>>());
+            assert_eq!(ids, records[(next_tick - 1 - records[0].tick) as usize].objects.iter().map(|object| object.0).collect::<Vec<_>>());
         }
-        assert!(bytes < 320 * 4 * 16, "{bytes} bytes");
+        assert!(next_tick > 300 && bytes < 320 * 4 * 6, "{bytes} bytes up to step {next_tick}");
     }
 
     #[test]
-    fn steps_in_which_nothing_happens_are_quiet() {
+    fn steps_in_which_nothing_changes_are_not_encoded() {
         let mut codec = StepCodec::default();
-        let stands = |tick| StepRecord {
-            causes: Causes { gusty: vec![], ..record(tick, &[(7, [pose(7, 9); 2], true)]).causes },
-            ..record(0, &[(7, [pose(7, 9); 2], true)])
+        let stands = |tick| {
+            let record = record(tick, &[(7, [pose(7, 9); 2], true)]);
+            StepRecord { causes: Causes { gusty: vec![], ..record.causes }, objects: vec![(7, 0.5)], ..record }
         };
-        assert!(!codec.encode(&stands(0)).is_quiet(), "an object joins");
-        codec.encode(&stands(1));
-        assert!(codec.encode(&stands(2)).is_quiet());
-        assert_eq!(codec.encode(&stands(3)), codec.quiet());
+        assert!(codec.encode([&stands(1), &stands(2)]).is_some_and(|steps| steps.heads.len() == 1), "an object joins");
+        let mut quiet = codec.clone();
+        assert_eq!(codec.encode([&stands(3), &stands(4)]), None);
+        quiet.quiet(DT_SECS);
+        assert_eq!(codec, quiet);
+        let gust = StepRecord { causes: Causes { gusty: vec![3], ..stands(9).causes }, ..stands(9) };
+        let heads = codec.encode([&stands(5), &gust, &stands(10), &StepRecord { tick: 12, ..stands(12) }]).unwrap().heads;
+        assert_eq!(heads.iter().map(|head| head.quiet_before).collect::<Vec<_>>(), [0, 0], "the gust begins and ends");
     }
 
     #[test]
     fn steps_that_contradict_the_objects_are_rejected() {
-        let mut codec = StepCodec::default();
-        let error = |step: Step, codec: &mut StepCodec| codec.decode(step, DT_SECS).unwrap_err().to_string();
-        assert_eq!(error(Step { moves: vec![Move::Same], rare: None }, &mut codec), "1 moves of 0 objects");
-        let joined = Joined { id: 3, kind: VehicleKind::Ball, from: PoseCode::default() };
-        let twice = RareCauses { joined: vec![joined; 2], ..RareCauses::default() };
-        assert!(error(Step { moves: vec![], rare: Some(Box::new(twice)) }, &mut codec).starts_with("object 3 joins 1 others"));
-        let far = Move::Moved(PoseChange { position: [i32::MAX, 0, 0], ..PoseChange::default() });
-        assert!(error(Step { moves: vec![far], rare: None }, &mut codec).starts_with("a ball moves 262144.0 m in one step"));
+        let error = |heads: Vec<StepHead>, moves: Vec<u8>| {
+            StepCodec::default().decode(EncodedSteps { first_tick: 1, heads, moves }, DT_SECS).unwrap_err().to_string()
+        };
+        let joins =
+            |joined: Vec<Joined>| vec![StepHead { quiet_before: 0, rare: Some(Box::new(RareCauses { joined, ..RareCauses::default() })) }];
+        let ball = Joined { id: 3, kind: VehicleKind::Ball, from: PoseCode::default() };
+        assert!(error(joins(vec![ball; 2]), vec![]).starts_with("object 3 joins 1 others"));
+        assert_eq!(error(vec![StepHead::default()], vec![1, 2, 3]), "the length of the moves does not match the objects and steps");
+        assert_eq!(error(vec![StepHead { quiet_before: u16::MAX, rare: None }], vec![]), "more than 4096 steps in one message");
+        let mut encoder = MoveEncoder::default();
+        let far = PoseChange { position: [i32::MAX, 0, 0], ..PoseChange::default() };
+        MoveModel::default().encode(&mut encoder, &mut MoveContext::default(), Move::Moved(far));
+        assert!(error(joins(vec![ball]), encoder.finish()).starts_with("a ball moves 262144.0 m in one step"));
     }
 
     proptest! {
         #[test]
-        fn any_step_is_decoded_or_rejected(bytes in proptest::collection::vec(any::<u8>(), 0..100)) {
-            if let Ok(step) = postcard::from_bytes::<Step>(&bytes) {
-                let _ = StepCodec::default().decode(step, DT_SECS);
+        fn any_steps_are_decoded_or_rejected(first_tick in any::<u64>(), heads in proptest::collection::vec(any::<u8>(), 0..100), moves in proptest::collection::vec(any::<u8>(), 0..50)) {
+            if let Ok(heads) = postcard::from_bytes(&heads) {
+                let _ = StepCodec::default().decode(EncodedSteps { first_tick: first_tick / 2, heads, moves }, DT_SECS);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Messages, and their encoding.
 
-use super::{PROTOCOL, Step, TurbulenceState};
+use super::{PROTOCOL, StepHead, TurbulenceState};
 use crate::body::Body;
 use crate::grid::PatchIndex;
 use crate::scene::{Scene, VehicleKind};
@@ -212,8 +212,11 @@ pub enum ServerMessage {
     Steps {
         /// Tick of the first step.
         first_tick: u64,
-        /// Consecutive steps.
-        steps: Vec<Step>,
+        /// The steps in which something changes.
+        steps: Vec<StepHead>,
+        /// [Coded](super::codec::moves) moves of all objects, ascending by their number, in each of these steps.
+        #[serde(with = "serde_bytes")]
+        moves: Vec<u8>,
     },
 }
 

@@ -18,7 +18,7 @@ pub use message::{
     decode, encode,
 };
 pub use protocol::PROTOCOL;
-pub use step::{Joined, Move, PatchCheck, PoseChange, RareCauses, Step};
+pub use step::{Joined, Move, PatchCheck, PoseChange, RareCauses, StepHead};
 pub use turbulence_state::TurbulenceState;
 
 /// Largest message a client may send (bytes).

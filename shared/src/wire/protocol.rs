@@ -9,7 +9,7 @@ pub const PROTOCOL: u8 = 12;
 /// Encoded messages in this version, without the version byte: hexadecimal up to 40 bytes, else length and FNV-1a hash.
 #[cfg(test)]
 const PINS: &[(&str, &str)] = &[
-    ("protocol", "11"),
+    ("protocol", "12"),
     ("client Hello", "0003416461"),
     ("client View", "010000803f000020c0002474490000c042"),
     ("client Choose", "020102"),
@@ -18,8 +18,10 @@ const PINS: &[(&str, &str)] = &[
     ("client Ping", "0507"),
     ("client Rename", "06054772616365"),
     ("client Return", "070341646103abababababababababababababababababababababababababababababababab"),
+    ("client Replicate", "0801"),
+    ("client Differs", "09ac028201"),
     ("server Welcome", "47 bytes, e24a32964020568d"),
-    ("server Scene", "1004 bytes, b2f20dbbd1031bb6"),
+    ("server Scene", "1040 bytes, 09ae9f241299b9ad"),
     ("server Poses", "51 bytes, e962de2ed87d03d6"),
     ("server Wind", "03ac020201000000000000f03f00000000000000c000000000000008400000003f020908"),
     ("server Patch", "04820103000107"),
@@ -28,7 +30,9 @@ const PINS: &[(&str, &str)] = &[
     ("server FrameEnd", "0704ac020000000000001440"),
     ("server Refused", "08000466756c6c"),
     ("server Pong", "0907"),
+    ("server ReplicaState", "0aac0201c801020506"),
+    ("server Steps", "41 bytes, 0bc60e3432bb92d7"),
     ("refusals", "0001020304"),
     ("vehicle kinds", "050001020304"),
-    ("scenes with every word", "96859 bytes, 6de7aa69b771436e"),
+    ("scenes with every word", "96859 bytes, dc1ffd460d843a2b"),
 ];

@@ -6,17 +6,17 @@ use crate::grid::PatchIndex;
 use crate::scene::VehicleKind;
 use serde::{Deserialize, Serialize};
 
-/// Causes of one step.
+/// A step in which something changes, apart from the [moves](Move) of its objects.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Step {
-    /// Motion of each object, ascending by its number, after those of `rare` have left and joined.
-    pub moves: Vec<Move>,
+pub struct StepHead {
+    /// Number of steps before it, since the one before in the message, in which nothing changes.
+    pub quiet_before: u16,
     /// Causes that few steps have.
     pub rare: Option<Box<RareCauses>>,
 }
 
 /// Motion of an object in a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Move {
     /// The pose stays the same; the object is at rest or not, as before.
     Same,

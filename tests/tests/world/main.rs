@@ -11,5 +11,6 @@ mod functions;
 mod imports;
 mod licences;
 mod pictures;
+mod replica;
 mod same_plants;
 mod shipped_species;

@@ -1,5 +1,7 @@
 //! Binary arithmetic coder: a 32-bit interval, split by an adaptive probability for each bit.
 
+use serde::{Deserialize, Serialize};
+
 /// Either side of the arithmetic coder: an encoder writes the given bit, a decoder reads it.
 pub(super) trait Coder {
     /// Codes one bit with its adaptive probability.
@@ -8,7 +10,7 @@ pub(super) trait Coder {
 
 /// Probability that a bit is set, in 1/65536: the mean of the bits seen so far, and after [`SETTLED`] bits their exponential moving average.
 /// Payloads are short, so the first bits must count.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Probability {
     set: u16,
     seen: u8,
@@ -42,13 +44,13 @@ impl Probability {
     }
 
     fn update(&mut self, bit: bool) {
-        let rate = RATE[usize::from(self.seen)];
+        let rate = RATE[usize::from(self.seen).min(SETTLED - 1)];
         if bit {
             self.set += ((u32::from(u16::MAX - self.set) * rate) >> 16) as u16;
         } else {
             self.set -= ((u32::from(self.set) * rate) >> 16) as u16;
         }
-        self.seen = (self.seen + 1).min(SETTLED as u8 - 1);
+        self.seen = self.seen.saturating_add(1).min(SETTLED as u8 - 1);
     }
 }
 

@@ -13,6 +13,7 @@
 
 mod arithmetic;
 mod model;
+pub mod moves;
 mod tile;
 
 use arithmetic::Coder;

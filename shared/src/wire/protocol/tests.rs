@@ -1,10 +1,11 @@
 //! The encoded bytes of every message are pinned: postcard does not describe itself, so two builds whose types differ must differ in `PROTOCOL`.
 
 use super::{PINS, PROTOCOL};
+use crate::body::{Body, PoseCode, Prism};
 use crate::scene::{Allowed, FIELDS, Scene, VehicleKind, parse};
 use crate::wire::{
-    BrokenPlant, ClientMessage, Drive, Mesh, ObjectPose, PROOF_BYTES, Peer, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, TurbulenceState,
-    WireError, decode, encode,
+    BrokenPlant, ClientMessage, Drawing, Drive, Joined, Mesh, ObjectPose, PROOF_BYTES, PatchCheck, Peer, RareCauses, Refusal,
+    SERVER_MESSAGE_LIMIT, ServerMessage, Shapes, StepHead, TurbulenceState, WireError, decode, encode,
 };
 use serde::{Deserialize, de::DeserializeOwned};
 use std::fmt::{Debug, Write};
@@ -22,6 +23,8 @@ fn client_messages() -> Vec<ClientMessage> {
         ClientMessage::Ping { nonce: 7 },
         ClientMessage::Rename { name: "Grace".to_owned() },
         ClientMessage::Return { name: "Ada".to_owned(), client: 3, proof: [0xab; PROOF_BYTES] },
+        ClientMessage::Replicate { wanted: true },
+        ClientMessage::Differs { tick: 300, patch: 130 },
     ]
 }
 
@@ -40,7 +43,7 @@ fn server_messages() -> Vec<ServerMessage> {
             covering_png: vec![3],
             nutrient_png: vec![4, 5, 6],
             models: vec![(VehicleKind::Car, mesh())],
-            shapes: Default::default(),
+            shapes: shapes(),
         },
         ServerMessage::Poses { tick: 300, objects: vec![pose()] },
         ServerMessage::Wind { tick: 300, seq: 2, key: true, turbulence: turbulence(), payload: vec![9, 8] },
@@ -50,7 +53,30 @@ fn server_messages() -> Vec<ServerMessage> {
         ServerMessage::FrameEnd { frame: 4, tick: 300, time_secs: 5.0 },
         ServerMessage::Refused { refusal: Refusal::ObjectLimit, reason: "full".to_owned() },
         ServerMessage::Pong { nonce: 7 },
+        ServerMessage::ReplicaState { tick: 300, part: 1, parts: 200, payload: vec![5, 6] },
+        ServerMessage::Steps { first_tick: 300, steps: vec![step()], moves: vec![3, 4] },
     ]
+}
+
+/// A step with every rare cause.
+fn step() -> StepHead {
+    let from = PoseCode { position: [8192, 0, -8192], rotation: [0, 0, 0, 32_767] };
+    let rare = RareCauses {
+        left: vec![2],
+        joined: vec![Joined { id: 200, kind: VehicleKind::Ball, from }],
+        gusty: Some(vec![5, 6]),
+        evicted: vec![7],
+        dropped: vec![8],
+        checks: vec![PatchCheck { patch: 130, sum: 40_000 }],
+    };
+    StepHead { quiet_before: 3, rare: Some(Box::new(rare)) }
+}
+
+/// A shape and a drawing.
+fn shapes() -> Shapes {
+    let prism = Prism { outline_m: vec![[0.0, 1.0]], seams: vec![true], span_m: [-1.0, 1.0], parts_grass: true, bears_weight: false };
+    let body = Body { prisms: vec![prism], is_round: false, has_downwash: true };
+    Shapes { bodies: vec![body], drawings: vec![Drawing { name: "spiral".to_owned(), png: vec![1, 2] }] }
 }
 
 /// Name of a client message in [`PINS`]; the compiler demands a name for a new variant.
@@ -64,6 +90,8 @@ fn client_name(message: &ClientMessage) -> &'static str {
         ClientMessage::Ping { .. } => "Ping",
         ClientMessage::Rename { .. } => "Rename",
         ClientMessage::Return { .. } => "Return",
+        ClientMessage::Replicate { .. } => "Replicate",
+        ClientMessage::Differs { .. } => "Differs",
     }
 }
 
@@ -80,6 +108,8 @@ fn server_name(message: &ServerMessage) -> &'static str {
         ServerMessage::FrameEnd { .. } => "FrameEnd",
         ServerMessage::Refused { .. } => "Refused",
         ServerMessage::Pong { .. } => "Pong",
+        ServerMessage::ReplicaState { .. } => "ReplicaState",
+        ServerMessage::Steps { .. } => "Steps",
     }
 }
 

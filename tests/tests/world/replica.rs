@@ -1,0 +1,182 @@
+//! Replicas of the grass: the clients' bits are the server's, through lost time, late joins, patches in between, and a restart of the server.
+
+use anyhow::{Context as _, Result, ensure};
+use prairie::runner::Published;
+use prairie::scenes::{self, LoadedScene};
+use prairie::snapshot::PatchQuantiser;
+use prairie::stream::{AreaOfInterest, Client, Clients, Frame, SendLimits, Streamer};
+use prairie::world::{Command, World};
+use prairie_client::state::{Event, Mirror};
+use prairie_core::grid::PatchLayout;
+use prairie_core::random::SplitMix64;
+use prairie_core::scene::VehicleKind;
+use prairie_core::wire::{Drive, SERVER_MESSAGE_LIMIT, ServerMessage, decode};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+use tokio::sync::mpsc;
+
+const STEPS_PER_PUBLISH: u64 = 3;
+
+/// A server without a network: world, streamer and clients.
+struct Server {
+    world: World,
+    streamer: Streamer,
+    clients: Clients,
+    requested: Arc<AtomicBool>,
+    quantiser: PatchQuantiser,
+    start: Instant,
+}
+
+impl Server {
+    fn new(world: World, loaded: &LoadedScene) -> Self {
+        let limits = SendLimits::default();
+        let requested = Arc::new(AtomicBool::new(false));
+        let publish_hz = loaded.scene.tick_hz / STEPS_PER_PUBLISH as f32;
+        let streamer = Streamer::new(PatchLayout::from(&loaded.scene.patches), limits, publish_hz).requesting_states_by(requested.clone());
+        Self { world, streamer, clients: Clients::default(), requested, quantiser: PatchQuantiser::default(), start: Instant::now() }
+    }
+
+    /// Does the steps to the next publication, and sends it.
+    fn publish(&mut self, commands: &mut Vec<Command>, tick_hz: f32) {
+        for _ in 0..STEPS_PER_PUBLISH {
+            self.world.step(&std::mem::take(commands));
+        }
+        let bend_state = self.requested.swap(false, Relaxed).then(|| self.world.bend_state()).flatten().map(Arc::new);
+        let published = Published { bend_state, ..Published::new(self.world.publish(&mut self.quantiser)) };
+        let now = self.start + Duration::from_secs_f64(published.snapshot.tick as f64 / f64::from(tick_hz));
+        commands.push(Command::Cameras(self.streamer.publish(&published, &self.clients.all(), now)));
+    }
+
+    fn join(&self, loaded: &LoadedScene, eye_m: [f32; 3]) -> Result<Viewer> {
+        let (client, frames) = self.clients.join(self.clients.next_id(), "viewer".to_owned(), SendLimits::default().in_flight as usize);
+        client.set_area_of_interest(AreaOfInterest { eye_m, radius_m: 60.0 });
+        client.request_replica(true);
+        let mut mirror = Mirror::default();
+        mirror.apply(loaded.message())?;
+        Ok(Viewer { client, frames, mirror, bytes: 0 })
+    }
+}
+
+/// A client with its mirror.
+struct Viewer {
+    client: Arc<Client>,
+    frames: mpsc::Receiver<Frame>,
+    mirror: Mirror,
+    bytes: usize,
+}
+
+impl Viewer {
+    /// Applies all frames that have arrived, and acknowledges them.
+    fn receive(&mut self) -> Result<()> {
+        while let Ok(frame) = self.frames.try_recv() {
+            for message in frame.messages {
+                self.bytes += message.len();
+                if let Some(Event::FrameEnd { frame }) = self.mirror.apply(decode::<ServerMessage>(&message, SERVER_MESSAGE_LIMIT)?)? {
+                    self.client.acknowledge(frame);
+                }
+            }
+        }
+        ensure!(self.mirror.take_difference().is_none(), "the client has found a difference");
+        Ok(())
+    }
+
+    /// Whether the client has a replica. If so, it has the bits and the codes of the server's grass.
+    fn is_equal(&mut self, world: &World) -> Result<bool> {
+        let Some(replica) = self.mirror.replica() else { return Ok(false) };
+        let (grass, bend) = (replica.grass(), world.bend());
+        ensure!(replica.tick() == world.tick(), "the replica is at step {}, the world at {}", replica.tick(), world.tick());
+        ensure!(grass.field() == bend.field(), "the bend field differs after step {}", world.tick());
+        ensure!(grass.flattened().state() == bend.flattened().state(), "the flattened grass differs after step {}", world.tick());
+        let codes = world.snapshot().patches;
+        let mut shown: Vec<_> = self.mirror.bent_patches().collect();
+        shown.sort_unstable();
+        ensure!(shown == codes.keys().copied().collect::<Vec<_>>(), "other patches are bent after step {}", world.tick());
+        for (index, wanted) in codes.iter() {
+            let found = self.mirror.patch(*index).context("the patch is shown")?.planes().concat();
+            // Codes of flattened grass, which recovers without being stepped, are up to a second old.
+            let is_flattened = bend.flattened().patches().any(|patch| patch == *index);
+            ensure!(is_flattened || found == wanted.codes, "the codes of patch {index} differ after step {}", world.tick());
+        }
+        Ok(true)
+    }
+}
+
+/// Vehicles that drive, hover, stop and leave at random.
+fn commands(random: &mut SplitMix64, publication: u64, commands: &mut Vec<Command>) {
+    let mut draw = |below: u64| random.next_u64() % below;
+    for client in 100..104 {
+        let kind = VehicleKind::ALL[draw(5) as usize];
+        if publication == 0 || draw(400) == 0 {
+            commands.push(Command::Spawn { client, kind });
+        } else if draw(900) == 0 {
+            commands.push(Command::Remove { client });
+        }
+        if draw(12) == 0 {
+            let mut signed = || draw(201) as f32 / 100.0 - 1.0;
+            let [throttle, steer, lift] = [signed(), signed(), signed()];
+            let brake = if draw(4) == 0 { 1.0 } else { 0.0 };
+            let throttle = if brake > 0.0 { 0.0 } else { throttle };
+            commands.push(Command::Drive { client, drive: Drive { throttle, steer, lift, brake } });
+        }
+    }
+}
+
+/// Runs `publications` with two viewers, of which one joins late, loses time, takes patches for a while, and outlives the server. Returns the number of
+/// publications at which each viewer was found equal.
+fn compare(scene: &str, publications: u64) -> Result<[u64; 2]> {
+    let loaded = scenes::load(scene)?;
+    let (tick_hz, [extent_x, extent_z]) = (loaded.scene.tick_hz, loaded.scene.extent_m());
+    let eye_m = [0.5 * extent_x, 30.0, 0.5 * extent_z];
+    let mut server = Server::new(World::new(&loaded.scene, loaded.maps())?, &loaded);
+    let mut random = SplitMix64::new(7);
+    let (mut first, mut late) = (server.join(&loaded, eye_m)?, None::<Viewer>);
+    let (mut queue, mut equal) = (vec![], [0; 2]);
+    let mut paused_until = 0;
+    for publication in 0..publications {
+        let part = publication * 10 / publications;
+        let is_start_of = |of: u64| part == of && (publication == 0 || (publication - 1) * 10 / publications != of);
+        commands(&mut random, publication, &mut queue);
+        if is_start_of(2) {
+            late = Some(server.join(&loaded, eye_m)?);
+        }
+        if let Some(late) = late.as_ref().filter(|_| is_start_of(5) || is_start_of(6)) {
+            late.client.request_replica(is_start_of(6));
+        }
+        if is_start_of(8) {
+            let world = World::restore(&loaded.scene, loaded.maps(), server.world.save())?;
+            server = Server::new(world, &loaded);
+            (first, late) = (server.join(&loaded, eye_m)?, Some(server.join(&loaded, eye_m)?));
+        }
+        server.publish(&mut queue, tick_hz);
+        first.receive()?;
+        equal[0] += u64::from(first.is_equal(&server.world)?);
+        let Some(late) = &mut late else { continue };
+        // About a tenth of the time the client reads nothing, for up to 2 s.
+        if publication >= paused_until && random.next_u64().is_multiple_of(100) {
+            paused_until = publication + random.next_u64() % 40;
+        }
+        if publication >= paused_until {
+            late.receive()?;
+            let lags = late.mirror.tick() != server.world.tick();
+            equal[1] += u64::from(!lags && late.is_equal(&server.world)?);
+        }
+    }
+    Ok(equal)
+}
+
+#[test]
+fn replicas_have_the_bits_of_the_server_for_ten_thousand_steps_of_driving() -> Result<()> {
+    let [first, late] = compare("meadow", 3334)?;
+    assert!(first > 3200 && late > 1800, "the first viewer was equal at {first} of 3334 publications, the late one at {late}");
+    Ok(())
+}
+
+#[test]
+fn replicas_have_the_bits_of_the_server_in_every_built_in_scene() -> Result<()> {
+    for (scene, _) in scenes::list() {
+        let [first, late] = compare(scene, 300).with_context(|| scene.to_owned())?;
+        assert!(first > 220 && late > 60, "{scene}: {first} and {late} of 300");
+    }
+    Ok(())
+}
