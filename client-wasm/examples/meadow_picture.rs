@@ -81,6 +81,7 @@ fn scene() -> ServerMessage {
         covering_png: map(256, 0.5, 0.5, cover),
         nutrient_png: Vec::new(),
         models: Vec::new(),
+        shapes: Default::default(),
     }
 }
 

@@ -67,6 +67,8 @@ impl Replica {
             | ServerMessage::Poses { .. }
             | ServerMessage::Broken { .. }
             | ServerMessage::Pong { .. }
+            | ServerMessage::ReplicaState { .. }
+            | ServerMessage::Steps { .. }
             | ServerMessage::Refused { .. } => {}
         }
         message

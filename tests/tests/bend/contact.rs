@@ -1,10 +1,12 @@
 //! Contact of objects with grass: Chen & Johan, Eqs. (1) and (10)–(12), tracks without holes, recovery, independence of the tick rate.
 
 use glam::Quat;
+use prairie::bend::pool::Pool;
 use prairie_core::bend::{Bend, Patch};
 use prairie_core::body::{BodyPose, Motion, MotionError};
 use prairie_core::grass::bending::{bend_after_rad, bending_speed_rad_per_s, direction, terrain_limit_rad};
 use prairie_core::grass::footprint::Footprint;
+use prairie_core::grass::wind_drawing::WindDrawings;
 use prairie_core::grass::{BendSimulation, Camera};
 use prairie_core::scene::{Objects, Scene, VehicleKind};
 use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
@@ -114,7 +116,7 @@ fn a_fast_car_leaves_no_holes_in_its_track() {
         let start = at;
         for _ in 0..50 {
             let motion = drive(at, heading_rad, 60.0);
-            meadow.step(DT_SECS, &[motion], &[], &still_air());
+            meadow.step(DT_SECS, &[motion], &[], &still_air(), &Pool);
             at = motion.to.xz();
         }
         // Along both wheels and the middle, from where the whole car has passed, every 5 cm.
@@ -138,14 +140,14 @@ fn a_track_recovers_within_its_time_constant() {
     let mut meadow = meadow(&scene);
     let car = drive([24.0, 24.0], 0.0, 0.0);
     for _ in 0..600 {
-        meadow.step(DT_SECS, &[car], &[], &still_air());
+        meadow.step(DT_SECS, &[car], &[], &still_air(), &Pool);
     }
     let pressed = meadow.field().bend_at(24.0, 24.0).theta;
     assert!(pressed > 1.0, "a standing car keeps the grass below it pressed: θ = {pressed}");
     assert!(meadow.field().bend_at(24.8, 24.0).theta > pressed, "wheels press harder than the body");
     let mut secs = 0.0;
     while meadow.field().bend_at(24.0, 24.0).theta > 0.1 * pressed {
-        meadow.step(DT_SECS, &[], &[], &still_air());
+        meadow.step(DT_SECS, &[], &[], &still_air(), &Pool);
         secs += DT_SECS;
         assert!(secs < 60.0, "the track does not rise");
     }
@@ -157,7 +159,7 @@ fn a_track_recovers_within_its_time_constant() {
     let mut last_rad = 0.0;
     for _ in 0..3600 {
         last_rad = meadow.field().awake().map(Patch::theta_max_rad).reduce(f32::max).unwrap_or(last_rad);
-        meadow.step(DT_SECS, &[], &[], &still_air());
+        meadow.step(DT_SECS, &[], &[], &still_air(), &Pool);
     }
     assert_eq!(meadow.field().awake_count(), 0, "grass at rest sleeps");
     assert_eq!(theta_code(last_rad), 0, "the last patch that fell asleep was bent by {last_rad} rad, which is seen");
@@ -180,7 +182,7 @@ fn crossed(scene: &Scene, hz: u32) -> Vec<(f32, f32)> {
         let [from, to] = [tick, tick + 1].map(|tick| crossing_m(f64::from(tick) / f64::from(hz)));
         let motion = drive_for(VehicleKind::Car, from, CROSSING_RAD, 20.0, dt_secs);
         let to = BodyPose { position_m: [to[0], motion.to.position_m[1], to[1]], ..motion.to };
-        meadow.step(dt_secs, &[Motion { to, ..motion }], &[], &still_air());
+        meadow.step(dt_secs, &[Motion { to, ..motion }], &[], &still_air(), &Pool);
     }
     let ([x_m, z_m], (sin, cos)) = (crossing_m(1.2), CROSSING_RAD.sin_cos());
     let cell = |n: i32| (n as f32 + 0.5) * 0.25;
@@ -225,7 +227,7 @@ fn grass_inside_a_concave_object_stays_upright() {
     (scene.grass.waves.c0_m_per_s, scene.grass.waves.mu_m_per_rad) = (0.0, 0.0);
     let mut meadow = meadow(&scene);
     for _ in 0..300 {
-        meadow.step(DT_SECS, &[drive_for(VehicleKind::Sled, [24.0, 24.0], 0.4, 0.0, DT_SECS)], &[], &still_air());
+        meadow.step(DT_SECS, &[drive_for(VehicleKind::Sled, [24.0, 24.0], 0.4, 0.0, DT_SECS)], &[], &still_air(), &Pool);
     }
     let (sin, cos) = 0.4_f32.sin_cos();
     // Right and back of its middle.
@@ -262,8 +264,8 @@ fn invalid_motions_are_rejected_and_touch_nothing() {
         (far, "a car moves 200.0 m in one step; allowed: up to 100 m"),
     ];
     for (motion, expected) in broken {
-        told.step(DT_SECS, &[motion, sound], &[], &still_air());
-        spared.step(DT_SECS, &[sound], &[], &still_air());
+        told.step(DT_SECS, &[motion, sound], &[], &still_air(), &Pool);
+        spared.step(DT_SECS, &[sound], &[], &still_air(), &Pool);
         let reasons: Vec<_> = told.rejected().iter().map(MotionError::to_string).collect();
         assert!(reasons.len() == 1 && reasons[0].starts_with(expected), "{reasons:?}");
     }
@@ -273,7 +275,7 @@ fn invalid_motions_are_rejected_and_touch_nothing() {
         "the sound motion was felt, the others not"
     );
     let mut alone = meadow(&scene);
-    alone.step(DT_SECS, &[far], &[], &still_air());
+    alone.step(DT_SECS, &[far], &[], &still_air(), &Pool);
     assert_eq!((alone.field().awake_count(), alone.flattened().tiles()), (0, 0));
 }
 
@@ -284,12 +286,12 @@ fn wind_wakes_no_patch_and_erases_no_track() {
     let track = |wind: &WindField| {
         let mut meadow = meadow(&scene);
         for _ in 0..60 {
-            meadow.step(DT_SECS, &[], &[], wind);
+            meadow.step(DT_SECS, &[], &[], wind, &Pool);
         }
         assert_eq!(meadow.field().awake_count(), 0);
         let car = drive([32.0, 32.0], std::f32::consts::FRAC_PI_2, 0.0);
         for _ in 0..300 {
-            meadow.step(DT_SECS, &[car], &[], wind);
+            meadow.step(DT_SECS, &[car], &[], wind, &Pool);
         }
         // The bends of the field and of the wind add up to the angle pressed by the wheel, in any wind.
         let field = meadow.field().bend_at(32.0, 32.8);
@@ -298,7 +300,7 @@ fn wind_wakes_no_patch_and_erases_no_track() {
         let [x, z] = [along[0] * field.theta + lean_x, along[1] * field.theta + lean_z];
         let pressed = (x * x + z * z).sqrt();
         for _ in 0..120 {
-            meadow.step(DT_SECS, &[], &[], wind);
+            meadow.step(DT_SECS, &[], &[], wind, &Pool);
         }
         (pressed, meadow.field().bend_at(32.0, 32.8).theta / field.theta)
     };
@@ -316,7 +318,7 @@ fn the_limit_of_awake_patches_holds_and_the_farthest_sleep_first() {
     for _ in 0..400 {
         let motion = drive(at, 2.0, 25.0);
         let view = Camera { client: 0, eye_m: [at[0], 2.0, at[1]] };
-        meadow.step(DT_SECS, &[motion], &[view], &still_air());
+        meadow.step(DT_SECS, &[motion], &[view], &still_air(), &Pool);
         assert!(meadow.field().awake_count() <= 9);
         at = motion.to.xz();
     }
@@ -333,7 +335,7 @@ fn the_wire_format_holds_grass_pressed_against_the_strongest_wind() {
     let (wind, mut at) = (wind(&scene, 20.0), [50.0, 32.0]);
     for _ in 0..60 {
         let motion = drive(at, -std::f32::consts::FRAC_PI_2, 15.0);
-        meadow.step(DT_SECS, &[motion], &[], &wind);
+        meadow.step(DT_SECS, &[motion], &[], &wind, &Pool);
         at = motion.to.xz();
     }
     let largest_rad = meadow.field().awake().map(Patch::theta_max_rad).fold(0.0, f32::max);
