@@ -140,6 +140,10 @@ pub struct ServerStats {
     pub frames: u64,
     /// Frames skipped because the client had too many unacknowledged.
     pub skipped_frames: u64,
+    /// Clients that have a replica of the grass.
+    pub replicas: u64,
+    /// Replicas so far that differed from the grass.
+    pub differences: u64,
     /// Connections rejected because of too many from the same address.
     pub rejected_connections: u64,
     /// Connections closed because they sent too much.
@@ -231,6 +235,14 @@ pub const METRICS: &[Metric] = &[
     server("cached_patches", Gauge, Unit::Count, "patches whose encoded frames are cached", |s| s.cached_patches.into()),
     server("held_patches", Gauge, Unit::Count, "patches that clients hold, summed over the clients", |s| s.held_patches.into()),
     server("frames", Counter, Unit::Count, "frames handed to sessions", |s| s.frames.into()),
+    server("replicas", Gauge, Unit::Count, "clients that simulate the grass themselves", |s| s.replicas.into()),
+    server(
+        "replica_differences",
+        Counter,
+        Unit::Count,
+        "replicas that differed from the grass of the server, and got its state again",
+        |s| s.differences.into(),
+    ),
     server("skipped_frames", Counter, Unit::Count, "frames skipped because the client had too many unacknowledged", |s| {
         s.skipped_frames.into()
     }),
@@ -313,6 +325,8 @@ fn stats_for_tests() -> ServerStats {
         held_patches: 0,
         frames: 0,
         skipped_frames: 0,
+        replicas: 0,
+        differences: 0,
         rejected_connections: 0,
         rate_limited_connections: 0,
         step_secs: Histogram::new(&[0.002, 0.004]),

@@ -4,10 +4,10 @@
 mod mutate;
 
 use mutate::{Edit, edits};
-use prairie::bend::wind_drawing::WindDrawing;
 use prairie::objects::gltf;
 use prairie::scenes::{self, LoadedScene};
 use prairie::world::World;
+use prairie_core::grass::wind_drawing::WindDrawing;
 use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::{Objects, Scene, VehicleKind, parse};
 use prairie_core::terrain::{CoverMap, HeightMap, grey_png, grey_png_16};

@@ -78,6 +78,8 @@ impl App {
             cached_patches: self.counters.cached_patches.load(Relaxed),
             held_patches: self.counters.held_patches.load(Relaxed),
             frames: self.counters.frames.load(Relaxed),
+            replicas: self.counters.replicas.load(Relaxed),
+            differences: self.counters.differences.load(Relaxed),
             skipped_frames: self.counters.skipped_frames.load(Relaxed),
             rejected_connections: self.admission.rejected_connections.load(Relaxed),
             rate_limited_connections: self.admission.rate_limited_connections.load(Relaxed),
