@@ -42,6 +42,7 @@ fn meadow_with(covering: &[u8], change: impl FnOnce(&mut Scene)) -> Mirror {
         covering_png: grey_png([16; 2], covering),
         nutrient_png: Vec::new(),
         models: Vec::new(),
+        shapes: Default::default(),
     };
     mirror.apply(scene).expect("a valid scene");
     mirror
