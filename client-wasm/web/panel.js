@@ -235,6 +235,7 @@ export class Panel {
     write("frame", state.resting ? "idle" : state.frame_ms ? `${state.frame_ms.toFixed(state.frame_ms < 100 ? 1 : 0)} ms · ${state.fps.toFixed(state.fps < 10 ? 1 : 0)}/s` : "–");
     write("stream", `${rate(state.bytes_per_s)}`);
     if (state.scene_hour !== null) this.showHour(state.hour, state.scene_hour);
+    write("grass", state.replica ? `simulated here, ${(100 * state.replica_share).toFixed(1)} % of the time` : "from the server");
     write("latency", state.latency_ms === null ? "–" : `${state.latency_ms.toFixed(state.latency_ms < 10 ? 1 : 0)} ms`);
     this.showPeers(state.peers);
     const notice = state.notice ?? (performance.now() < this.notice.until ? this.notice.text : "");

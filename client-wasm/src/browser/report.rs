@@ -34,6 +34,8 @@ impl App {
             "bytes_per_s": self.connection.bytes_per_s(),
             "bytes": self.connection.received_bytes(),
             "latency_ms": self.connection.latency_secs().map(|secs| secs * 1e3),
+            "replica": self.mirror.replica().is_some(),
+            "replica_share": self.replica_budget.share(),
             "notice": self.notice(),
             "error": self.failure.as_ref().map(|failure| &failure.reason),
         })

@@ -11,10 +11,10 @@ def varint(data):
 def read(layout, data):  # the next value of an io.BytesIO, of the shape that it has in JSON; byte strings are bytes
     match layout:
         case "BOOL" | "U8": return data.read(1)[0]
-        case "U32" | "U64": return varint(data)
+        case "U16" | "U32" | "U64": return varint(data)
+        case "I16" | "I32": return (code := varint(data)) >> 1 ^ -(code & 1)
         case "F32" | "F64": return struct.unpack({"F32": "<f", "F64": "<d"}[layout], data.read(int(layout[1:]) // 8))[0]
-        case "STR": return data.read(varint(data)).decode()
-        case "BYTES": return data.read(varint(data))
+        case "STR" | "BYTES": return data.read(varint(data)).decode() if layout == "STR" else data.read(varint(data))
         case {"OPTION": inner}: return read(inner, data) if data.read(1)[0] else None
         case {"SEQ": inner}: return [read(inner, data) for _ in range(varint(data))]
         case {"TUPLEARRAY": {"CONTENT": inner, "SIZE": size}}: return [read(inner, data) for _ in range(size)]

@@ -2,14 +2,16 @@
 
 use super::number::whole;
 use super::print::print;
+use super::replay::from_zero;
 use super::shot::Shot;
 use super::stop_signal::stop_flag;
 use anyhow::{Result, ensure};
-use clap::Args;
+use clap::{Args, ValueHint};
 use indicatif::{ProgressBar, ProgressStyle};
-use prairie::studio::Film as Writer;
+use prairie::journal::recorded;
+use prairie::studio::{Film as Writer, Stage};
 use prairie_core::wire::Drive;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::Relaxed;
 
 pub(super) const EXAMPLES: &str = "\
@@ -18,6 +20,8 @@ Examples:
   prairie film --act track --chase 9,3,2 --size 1920x1080 --out car.mp4
   prairie film --seconds 2 --frames-per-second 10 --size 480x270 --out meadow.webp
   prairie film --out frames                  PNG files in a new folder
+  prairie film --replay worlds --from 60 --seconds 10 --out storm.webp
+                                             ten seconds of a world that is kept
 
 Time in the film is that of the scene, however long a frame takes to draw.
 It needs a Vulkan driver, and for files the program ffmpeg (or the one that PRAIRIE_FFMPEG names).";
@@ -39,6 +43,12 @@ pub(super) struct Film {
     /// Frames per second, 1 to 60
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = whole::<u32>(1..=60))]
     frames_per_second: u32,
+    /// Film what happened in the world that is kept in this folder, as `prairie replay` plays it, instead of an act
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath, conflicts_with_all = ["scene", "act"])]
+    replay: Option<PathBuf>,
+    /// Simulated time at which the replay begins (s) [default: the oldest that is kept]
+    #[arg(long, value_name = "SECS", value_parser = from_zero, requires = "replay")]
+    from: Option<f64>,
     /// File to write, which ends in .webm, .mp4, .webp or .gif; or a new or empty folder, for PNG files
     #[arg(long, value_name = "FILE|FOLDER")]
     out: PathBuf,
@@ -52,9 +62,17 @@ impl Film {
         let frames = (self.seconds.unwrap_or(default_secs) / dt_secs).round().max(1.0) as u32;
         let stopped = stop_flag()?;
         let mut film = Writer::create(&self.out, self.shot.size_px(), self.frames_per_second)?;
-        let mut studio = self.shot.open()?;
-        let eye_m = studio.camera().eye_m.to_array();
-        act.begin(&mut studio.stage, eye_m);
+        let mut studio = match &self.replay {
+            Some(world) => {
+                let lead_in_secs = f64::from(LEAD_IN_FRAMES) * f64::from(dt_secs);
+                self.shot.open_with(|| replayed(world, self.from.map(|secs| (secs - lead_in_secs).max(0.0))))?
+            }
+            None => self.shot.open()?,
+        };
+        if self.replay.is_none() {
+            let eye_m = studio.camera().eye_m.to_array();
+            act.begin(&mut studio.stage, eye_m);
+        }
 
         let bar = ProgressBar::new(u64::from(frames)).with_style(ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {eta} left")?);
         let (tick_hz, mut ticks, mut controls) = (studio.stage.scene().tick_hz, 0, None);
@@ -92,6 +110,13 @@ impl Film {
         ))?;
         Ok(())
     }
+}
+
+/// A stage on which the recording in a folder is played.
+fn replayed(world: &Path, from_secs: Option<f64>) -> Result<Stage> {
+    let (scene, player) = recorded(world, from_secs)?;
+    player.recording.faults.iter().for_each(|fault| tracing::warn!("{fault}"));
+    Stage::replaying(&scene, player)
 }
 
 /// Controls of a script at a time (s); the last ones go on. `None` for an empty script.

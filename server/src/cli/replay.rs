@@ -87,7 +87,8 @@ fn unseen(mut player: Player) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn from_zero(text: &str) -> Result<f64, String> {
+/// Parser of a time from zero on (s).
+pub(super) fn from_zero(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|secs: &f64| secs.is_finite() && *secs >= 0.0).ok_or_else(|| "allowed: 0 or more".to_owned())
 }
 

@@ -83,6 +83,14 @@ impl Shot {
     /// # Errors
     /// When options contradict each other, the scene is invalid, or there is no Vulkan driver.
     pub(super) fn open(&self) -> Result<Studio> {
+        self.open_with(|| Stage::load(&self.scene))
+    }
+
+    /// [`open`](Self::open), with another stage than that of the scene.
+    ///
+    /// # Errors
+    /// When options contradict each other, there is no stage, or no Vulkan driver.
+    pub(super) fn open_with(&self, stage: impl FnOnce() -> Result<Stage>) -> Result<Studio> {
         anyhow::ensure!(
             self.chase.is_none() || self.act.vehicle().is_some(),
             "--chase: the act `wind` has no vehicle; allowed with the other values of --act"
@@ -96,7 +104,7 @@ impl Shot {
         let gpu = Gpu::headless().context(
             "drawing without a browser needs a Vulkan driver; without a graphics card install a software one, such as Debian's mesa-vulkan-drivers",
         )?;
-        let stage = Stage::load(&self.scene)?;
+        let stage = stage()?;
         let sun = self.sun.or(self.hour.map(|hour| stage.scene().light.sun_at_hour(hour)));
         let options = RenderOptions { sun, ..side.options };
         for side in split.iter_mut().flat_map(|split| &mut split.sides) {

@@ -1,6 +1,7 @@
 //! A world and a client's mirror of it in one process, without sockets or clocks.
 
-use crate::scenes;
+use crate::journal::Player;
+use crate::scenes::{self, LoadedScene};
 use crate::snapshot::{PatchCodes, PatchQuantiser};
 use crate::world::{Camera, Command, World};
 use anyhow::Result;
@@ -24,6 +25,8 @@ pub struct Stage {
     sent_broken: usize,
     frame: u32,
     time_secs: f64,
+    /// Commands by step, of a recording that is played.
+    recorded: BTreeMap<u64, Vec<Command>>,
 }
 
 impl Stage {
@@ -42,8 +45,22 @@ impl Stage {
     pub fn changed(name_or_path: &str, change: impl FnOnce(&mut Scene)) -> Result<Self> {
         let mut loaded = scenes::load(name_or_path)?;
         change(&mut loaded.scene);
+        let world = World::new(&loaded.scene, loaded.maps())?;
+        Self::of(&loaded, world, BTreeMap::new())
+    }
+
+    /// Plays a recording of a world of this scene, step by step; after its end nobody drives.
+    ///
+    /// # Errors
+    /// When the mirror rejects the scene.
+    pub fn replaying(loaded: &LoadedScene, player: Player) -> Result<Self> {
+        Self::of(loaded, player.world, player.recording.commands)
+    }
+
+    fn of(loaded: &LoadedScene, world: World, recorded: BTreeMap<u64, Vec<Command>>) -> Result<Self> {
         let mut stage = Self {
-            world: World::new(&loaded.scene, loaded.maps())?,
+            world,
+            recorded,
             mirror: Mirror::default(),
             scene: loaded.scene.clone(),
             height: loaded.height.clone(),
@@ -109,7 +126,8 @@ impl Stage {
     /// Runs the world for a number of ticks.
     pub fn run_ticks(&mut self, ticks: u32) {
         for _ in 0..ticks {
-            self.world.step(&[]);
+            let next = self.world.tick() + 1;
+            self.world.step(self.recorded.get(&next).map_or(&[], Vec::as_slice));
         }
     }
 
