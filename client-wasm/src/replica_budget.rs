@@ -35,6 +35,9 @@ pub struct ReplicaBudget {
 impl ReplicaBudget {
     /// Adds work of `work_secs` for the replica. Returns the wish that changes because of it.
     pub fn record(&mut self, now_secs: f64, work_secs: f64) -> Option<Wish> {
+        if self.resumes_at_secs.is_some() {
+            return None;
+        }
         let (began_secs, total_secs) = *self.period.get_or_insert((now_secs, 0.0));
         let total_secs = total_secs + work_secs;
         self.period = Some((began_secs, total_secs));

@@ -123,18 +123,18 @@ fn wind_is_shown_between_frames() {
         let payload = codec::encode(Shape::wind(4, false), &codes, None);
         mirror.apply(ServerMessage::Wind { tick, seq: tick as u32, key: true, turbulence, payload }).unwrap();
     };
-    (0..12).for_each(|n| blow(100 + 9 * n, n as f32, 0.1 * n as f32));
+    (0..112).for_each(|n| blow(100 + 9 * n, n as f32 % 31.0, 0.1 * n as f32));
     let shown = |tick: f64| {
         let shown = mirror.shown_wind(tick / 60.0 + WIND_DELAY_SECS).unwrap();
         (shown.from.tick(), shown.to.tick(), shown.fraction, shown.turbulence().friction_m_per_s)
     };
-    let (from, to, fraction, friction) = shown(193.0);
-    assert_eq!((from, to), (190, 199));
-    assert!((fraction - 3.0 / 9.0).abs() < 1e-4 && (friction - 1.0 - 0.1 / 3.0).abs() < 1e-4, "{fraction}, {friction}");
-    assert_eq!(shown(500.0).0, 199, "without a later frame the wind stays as it is");
-    assert_eq!(shown(0.0).1, 154, "the oldest of six frames");
+    let (from, to, fraction, friction) = shown(1093.0);
+    assert_eq!((from, to), (1090, 1099));
+    assert!((fraction - 3.0 / 9.0).abs() < 1e-4 && (friction - 11.0 - 0.1 / 3.0).abs() < 1e-4, "{fraction}, {friction}");
+    assert_eq!(shown(5000.0).0, 1099, "without a later frame the wind stays as it is");
+    assert_eq!(shown(0.0).1, 208, "the oldest of a hundred frames");
     let field = mirror.wind_field().unwrap();
-    assert!((field.resolved_at([1.0, 1.0, 1.0])[0] - 11.0).abs() < 0.13, "points are sampled in the newest frame");
+    assert!((field.resolved_at([1.0, 1.0, 1.0])[0] - 18.0).abs() < 0.13, "points are sampled in the newest frame");
     let mut again = mirror;
     let payload = codec::encode(Shape::wind(4, false), &[0; 96], None);
     again.apply(ServerMessage::Wind { tick: 5, seq: 1, key: true, turbulence: TurbulenceState::default(), payload }).unwrap();

@@ -128,6 +128,7 @@ impl ClientState {
             let Some((steps, wind)) = self.following.steps(publication.steps, !messages.is_empty(), publication.now) else {
                 return Some(0);
             };
+            self.budget.charge(steps.iter().map(Bytes::len).sum::<usize>() as f64);
             (steps, wind, vec![])
         } else {
             self.patches(publication, encoder)
@@ -135,12 +136,14 @@ impl ClientState {
         messages.extend(grass);
         let number = self.frame + 1;
         let end = ServerMessage::FrameEnd { frame: number, tick: snapshot.tick, time_secs: snapshot.time_secs };
-        messages.push(wire::encode(&end).into());
+        let end: Bytes = wire::encode(&end).into();
+        self.budget.charge(end.len() as f64);
+        messages.push(end);
         let bytes = messages.iter().map(Bytes::len).sum();
-        if has_replica {
-            self.budget.charge(bytes as f64);
-        }
         if !client.hand_out(Frame { number, messages }) {
+            if !has_replica {
+                self.following.restart();
+            }
             return None;
         }
         self.following.note_sent(publication.steps, publication.now);
@@ -159,7 +162,7 @@ impl ClientState {
         let is_behind = newer.is_some();
         let wind = newer.filter(|(_, message)| self.budget.try_overdraw(message.len() as f64));
         if wind.as_ref().is_some_and(|(seq, _)| self.held_wind.is_some_and(|held| held.wrapping_add(1) != *seq)) {
-            self.following.miss_wind();
+            self.following.restart();
         }
         let (mut messages, mut patches) = (Vec::new(), Vec::new());
         for &patch in &self.wanted {

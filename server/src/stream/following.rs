@@ -74,9 +74,9 @@ impl Following {
         matches!(self.progress, Progress::Waiting)
     }
 
-    /// Notes that the client has missed a wind frame, without which a replica would differ.
-    pub(super) fn miss_wind(&mut self) {
-        if let Progress::Receiving { .. } = self.progress {
+    /// Waits for another state: the client has missed a part of this one, or a wind frame, without which a replica would differ.
+    pub(super) fn restart(&mut self) {
+        if let Progress::Receiving { .. } | Progress::Steps { .. } = self.progress {
             self.progress = Progress::Waiting;
         }
     }

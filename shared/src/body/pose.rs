@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Quantum of a position on the wire (m).
 pub const POSITION_QUANTUM_M: f32 = 1.0 / 8192.0;
 /// Code of 1 for the components of a rotation.
-pub const ROTATION_FULL: f32 = 32_767.0;
+pub const ROTATION_FULL: f32 = i16::MAX as f32;
 
 /// Position and orientation of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -7,6 +7,7 @@ mod input;
 mod one_storm;
 mod page;
 mod prairie;
+mod replica;
 mod sharing;
 mod sound;
 mod webgpu;

@@ -180,3 +180,52 @@ fn replicas_have_the_bits_of_the_server_in_every_built_in_scene() -> Result<()> 
     }
     Ok(())
 }
+
+/// Steps the server and the viewer until the condition holds, for at most `publications`; returns the number it took.
+fn until(server: &mut Server, viewer: &mut Viewer, publications: u64, mut is_done: impl FnMut(&mut Viewer) -> Result<bool>) -> Result<u64> {
+    let (mut random, mut queue) = (SplitMix64::new(3), vec![]);
+    for publication in 0..publications {
+        commands(&mut random, publication, &mut queue);
+        server.publish(&mut queue, 60.0);
+        if is_done(viewer)? {
+            return Ok(publication);
+        }
+    }
+    anyhow::bail!("not within {publications} publications")
+}
+
+#[test]
+fn a_replica_that_differs_is_found_and_repaired() -> Result<()> {
+    let loaded = scenes::load("meadow")?;
+    let [x, z] = loaded.scene.extent_m().map(|extent| 0.5 * extent);
+    let mut server = Server::new(World::new(&loaded.scene, loaded.maps())?, &loaded);
+    let mut viewer = server.join(&loaded, [x, 30.0, z])?;
+    until(&mut server, &mut viewer, 200, |viewer| {
+        viewer.receive()?;
+        Ok(viewer.mirror.replica().is_some())
+    })?;
+    // The gusts of one wind frame are damaged on their way: the grass that is pressed then has another lean in the wind.
+    let mut is_damaged = false;
+    let found = until(&mut server, &mut viewer, 400, |viewer| {
+        while let Ok(frame) = viewer.frames.try_recv() {
+            for message in frame.messages {
+                let mut message = decode::<ServerMessage>(&message, SERVER_MESSAGE_LIMIT)?;
+                if let (ServerMessage::Wind { turbulence, .. }, false) = (&mut message, is_damaged) {
+                    turbulence.path_m += 30.0;
+                    is_damaged = true;
+                }
+                viewer.mirror.apply(message)?;
+            }
+            viewer.client.acknowledge(frame.number);
+        }
+        Ok(viewer.mirror.take_difference().is_some())
+    })?;
+    assert!(found < 60, "the difference is found after {found} publications of 50 ms");
+    viewer.client.request_replica(true);
+    until(&mut server, &mut viewer, 400, |viewer| {
+        viewer.receive()?;
+        Ok(viewer.mirror.replica().is_some())
+    })?;
+    assert!(viewer.is_equal(&server.world)?);
+    Ok(())
+}
