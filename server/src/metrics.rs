@@ -3,9 +3,11 @@
 //! `/healthz`, `/metrics`, the plots in rerun and the table in `server/README.md` all follow from [`METRICS`].
 
 mod exposition;
+mod stats;
 mod unit;
 
 pub use exposition::{Format, exposition};
+pub use stats::{JournalStats, RecordingStats, ServerStats};
 pub use unit::Unit;
 
 use crate::histogram::Histogram;
@@ -119,52 +121,6 @@ impl Value {
     }
 }
 
-/// State of the server, for `/healthz` and `/metrics`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ServerStats {
-    /// Connected clients.
-    pub clients: u32,
-    /// Time since the start (s).
-    pub uptime_secs: f64,
-    /// Simulated time that was skipped because the machine was too slow (s).
-    pub dropped_secs: f64,
-    /// Bytes sent to all clients.
-    pub sent_bytes: u64,
-    /// Grids encoded.
-    pub encodings: u64,
-    /// Patches whose encoded frames are cached.
-    pub cached_patches: u64,
-    /// Patches that clients hold, summed over the clients.
-    pub held_patches: u64,
-    /// Frames handed to sessions.
-    pub frames: u64,
-    /// Frames skipped because the client had too many unacknowledged.
-    pub skipped_frames: u64,
-    /// Clients that have a replica of the grass.
-    pub replicas: u64,
-    /// Replicas so far that differed from the grass.
-    pub differences: u64,
-    /// Connections rejected because of too many from the same address.
-    pub rejected_connections: u64,
-    /// Connections closed because they sent too much.
-    pub rate_limited_connections: u64,
-    /// Durations of the steps (s), wall-clock time.
-    pub step_secs: Histogram,
-    /// Bytes of each frame handed to a session.
-    pub frame_bytes: Histogram,
-}
-
-/// State of a recording and of the connections while it runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RecordingStats {
-    /// Connected clients.
-    pub clients: u32,
-    /// Rate of the bytes sent to all clients together (bytes/s).
-    pub sent_bytes_per_s: f64,
-    /// Frames of the recording dropped because the logger was behind.
-    pub dropped_log_frames: u64,
-}
-
 const fn world(name: &'static str, kind: Kind, unit: Unit, meaning: &'static str, read: fn(&Snapshot) -> Value) -> Metric {
     Metric { name, kind, unit, meaning, source: Source::World(read) }
 }
@@ -252,6 +208,15 @@ pub const METRICS: &[Metric] = &[
     server("rate_limited_connections", Counter, Unit::Count, "connections closed because they sent too much", |s| {
         s.rate_limited_connections.into()
     }),
+    server("journal_bytes", Counter, Unit::Bytes, "bytes of records written to the journal", |s| s.journal.bytes.into()),
+    server("journal_checkpoints", Counter, Unit::Count, "checkpoints written", |s| s.journal.checkpoints.into()),
+    server("journal_failures", Counter, Unit::Count, "failed writes of the journal and of checkpoints", |s| s.journal.failures.into()),
+    server("journal_lost_steps", Counter, Unit::Count, "steps missing in the journal because of a full queue or a failed write", |s| {
+        s.journal.lost_steps.into()
+    }),
+    server("journal_copy_max_secs", Gauge, Unit::Seconds, "longest copy of the state for a checkpoint, for which a step waits", |s| {
+        s.journal.copy_max_secs.into()
+    }),
     distribution("step_duration_secs", Unit::Seconds, "duration of a step", |s| &s.step_secs),
     distribution("frame_bytes", Unit::Bytes, "bytes of a frame handed to a session", |s| &s.frame_bytes),
     recording("sent_bytes_per_s", Gauge, Unit::BytesPerSecond, "rate of the bytes sent to all clients", |s| s.sent_bytes_per_s.into()),
@@ -310,28 +275,6 @@ pub fn find(name: &str) -> Option<&'static Metric> {
 /// Names and values of the metrics in `/healthz`.
 pub fn report(snapshot: &Snapshot, stats: &ServerStats) -> impl Iterator<Item = (&'static str, Value)> {
     METRICS.iter().filter_map(|metric| Some((metric.name, metric.value(snapshot, stats)?)))
-}
-
-/// A server that has done nothing yet.
-#[cfg(test)]
-fn stats_for_tests() -> ServerStats {
-    ServerStats {
-        clients: 0,
-        uptime_secs: 0.0,
-        dropped_secs: 0.0,
-        sent_bytes: 0,
-        encodings: 0,
-        cached_patches: 0,
-        held_patches: 0,
-        frames: 0,
-        skipped_frames: 0,
-        replicas: 0,
-        differences: 0,
-        rejected_connections: 0,
-        rate_limited_connections: 0,
-        step_secs: Histogram::new(&[0.002, 0.004]),
-        frame_bytes: Histogram::new(&[1e3]),
-    }
 }
 
 #[cfg(test)]

@@ -73,6 +73,7 @@ pub async fn run_simulation(
     let inspector =
         config.rerun.as_ref().map(|target| Inspector::start(target, scene, &config.scene.height, &config.scene.cover)).transpose()?;
     let (proofs, clients) = (Proofs::new(simulation.key()), Arc::new(Clients::starting_at(simulation.first_client())));
+    let journal = simulation.journal_health().unwrap_or_default();
     let runner = Runner::start(simulation, timing)?;
     let mut published = runner.published();
     let streamer = Streamer::new(PatchLayout::from(&scene.patches), config.limits.send, timing.published_hz())
@@ -92,6 +93,7 @@ pub async fn run_simulation(
         scene_name: config.scene.name.clone(),
         scene: wire::encode(&config.scene.message()).into(),
         limits: config.limits,
+        journal,
         fields: FieldSampler::new(&config.scene),
         access: Access::new(&config.allow_origins, &config.allow_hosts, config.tls.clone()),
         admission: admission.clone(),

@@ -2,14 +2,14 @@
 
 use super::error::JournalError;
 use crate::escaped::escaped;
-use crate::file::unique_part;
+use crate::file::{unique_part, write_atomically};
 use crate::scenes::LoadedScene;
 use data_encoding::HEXLOWER;
 use ring::digest::{Context, SHA256};
 use ring::rand::{SecureRandom as _, SystemRandom};
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Write as _};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Version of the state and of everything that computes it. Another version begins new worlds.
@@ -190,33 +190,6 @@ fn key(path: &Path) -> Result<[u8; KEY_BYTES], JournalError> {
     let drawn = SystemRandom::new().fill(&mut key).map_err(|_| io::Error::other("the system has no random numbers"));
     drawn.and_then(|()| write_atomically(path, &key)).map_err(|error| JournalError::file(path, error))?;
     Ok(key)
-}
-
-/// Writes a file, readable by the user only, that appears completely or not at all, even if the machine loses power.
-fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let temporary = path.with_extension(format!("{}.new", unique_part()));
-    let written = || {
-        let mut options = OpenOptions::new();
-        options.write(true).create_new(true);
-        #[cfg(unix)]
-        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-        let mut file = options.open(&temporary)?;
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        drop(file);
-        fs::rename(&temporary, path)?;
-        sync_folder(path)
-    };
-    written().inspect_err(|_| drop(fs::remove_file(&temporary)))
-}
-
-/// Waits until the names in the folder of `path` are on the disk.
-pub(super) fn sync_folder(path: &Path) -> io::Result<()> {
-    match path.parent() {
-        #[cfg(unix)]
-        Some(folder) => File::open(folder)?.sync_all(),
-        _ => Ok(()),
-    }
 }
 
 /// Other folders of worlds of a scene of the same name.

@@ -173,4 +173,8 @@ impl Simulation for JournaledWorld {
     fn first_client(&self) -> u32 {
         self.first_client
     }
+
+    fn journal_health(&self) -> Option<Arc<Health>> {
+        self.health()
+    }
 }

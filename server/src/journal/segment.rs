@@ -1,8 +1,8 @@
 //! Segments of a journal: a header, the step reached, and records.
 
 use super::error::Fault;
-use super::folder::sync_folder;
 use super::record::{Step, open_record, seal_record};
+use crate::file::sync_folder;
 use std::fs::{File, OpenOptions};
 use std::io::{self, Seek as _, SeekFrom, Write as _};
 use std::path::Path;

@@ -130,7 +130,7 @@ impl Collector for Scrape {
 
 #[cfg(test)]
 mod tests {
-    use super::super::stats_for_tests;
+    use super::super::stats::stats_for_tests;
     use super::*;
 
     /// The lines of `text` that start with `start`.

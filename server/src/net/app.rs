@@ -6,6 +6,7 @@ use super::origin::Access;
 use super::page_errors::PageErrors;
 use super::proofs::Proofs;
 use crate::config::Limits;
+use crate::journal::Health;
 use crate::log_limit::LogLimit;
 use crate::metrics::ServerStats;
 use crate::runner::Published;
@@ -47,6 +48,8 @@ pub(crate) struct App {
     /// The encoded scene message, the same for all clients.
     pub(crate) scene: Bytes,
     pub(crate) limits: Limits,
+    /// State of the journal's files; that of an unused journal without memory.
+    pub(crate) journal: Arc<Health>,
     /// Sampler of the fields, for the HTTP API.
     pub(crate) fields: FieldSampler,
     /// Hosts and origins that requests may name.
@@ -83,6 +86,7 @@ impl App {
             skipped_frames: self.counters.skipped_frames.load(Relaxed),
             rejected_connections: self.admission.rejected_connections.load(Relaxed),
             rate_limited_connections: self.admission.rate_limited_connections.load(Relaxed),
+            journal: self.journal.stats(),
             step_secs: published.step_secs.clone(),
             frame_bytes: self.counters.frame_bytes(),
         }

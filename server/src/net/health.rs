@@ -21,7 +21,7 @@ const NO_STORE: (HeaderName, &str) = (header::CACHE_CONTROL, "no-store");
 /// `/healthz`: the status with the reasons why it is degraded, and the metrics, as JSON. Always 200: a restart does not make a slow machine faster.
 pub(super) async fn health(State(app): State<Arc<App>>) -> Response {
     let published = app.published.borrow().clone();
-    let reasons = degradations(published.dropped_recently_secs, published.at.elapsed());
+    let reasons = degradations(published.dropped_recently_secs, published.at.elapsed(), app.journal.failure());
     let clients: Vec<_> =
         app.clients.all().iter().map(|client| json!({ "client": client.id, "sent_bytes": client.sent_bytes() })).collect();
     let stats = app.stats(&published);
@@ -59,11 +59,12 @@ fn json_response(status: StatusCode, body: &Value) -> Response {
     (status, [(header::CONTENT_TYPE, "application/json"), NO_STORE], format!("{body}\n")).into_response()
 }
 
-/// Reasons why the server is degraded: simulated time dropped within the last minute, and the age of the newest publication.
-fn degradations(dropped_recently_secs: f64, age: Duration) -> Vec<String> {
+/// Reasons why the server is degraded: simulated time dropped within the last minute, the age of the newest publication, and the journal's failure.
+fn degradations(dropped_recently_secs: f64, age: Duration, journal_failure: Option<String>) -> Vec<String> {
     let dropped = (dropped_recently_secs > 0.0)
         .then(|| format!("{dropped_recently_secs:.2} s of simulated time were dropped within the last {} s", RECENT.as_secs()));
-    dropped.into_iter().chain(stuck(age)).collect()
+    let unkept = journal_failure.map(|failure| format!("{failure}; a crash loses what happens until it can be"));
+    dropped.into_iter().chain(stuck(age)).chain(unkept).collect()
 }
 
 /// Why the server is not ready: a status and the reason. `tick` and `age` are those of the newest publication, `streamed` is the number of publications
@@ -90,11 +91,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_server_is_degraded_while_it_drops_time_or_is_stuck() {
-        assert!(degradations(0.0, Duration::from_secs(9)).is_empty());
-        assert_eq!(degradations(1.504, Duration::ZERO), ["1.50 s of simulated time were dropped within the last 60 s"]);
-        assert_eq!(degradations(0.0, Duration::from_secs(12)), ["the world has published nothing for 12 s"]);
-        assert_eq!(degradations(0.1, Duration::from_secs(12)).len(), 2);
+    fn a_server_is_degraded_while_it_drops_time_or_is_stuck_or_keeps_nothing() {
+        let full = || Some("a checkpoint of the world cannot be written: no space".to_owned());
+        assert!(degradations(0.0, Duration::from_secs(9), None).is_empty());
+        assert_eq!(degradations(1.504, Duration::ZERO, None), ["1.50 s of simulated time were dropped within the last 60 s"]);
+        assert_eq!(degradations(0.0, Duration::from_secs(12), None), ["the world has published nothing for 12 s"]);
+        let unkept = degradations(0.0, Duration::ZERO, full());
+        assert_eq!(unkept, ["a checkpoint of the world cannot be written: no space; a crash loses what happens until it can be"]);
+        assert_eq!(degradations(0.1, Duration::from_secs(12), full()).len(), 3);
     }
 
     #[test]

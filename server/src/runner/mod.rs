@@ -8,6 +8,7 @@ pub use clock::CATCH_UP_STEPS;
 pub use recent_drops::RECENT;
 
 use crate::histogram::Histogram;
+use crate::journal::Health;
 use crate::snapshot::{PatchQuantiser, Snapshot};
 use crate::world::{Command, World};
 use clock::Clock;
@@ -66,6 +67,10 @@ pub trait Simulation: Send + 'static {
     /// Lowest client number that was never used.
     fn first_client(&self) -> u32 {
         1
+    }
+    /// State of the journal's files, for the metrics; `None` without memory.
+    fn journal_health(&self) -> Option<Arc<Health>> {
+        None
     }
 }
 

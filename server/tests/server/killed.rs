@@ -9,7 +9,7 @@ use prairie_core::wire::{ClientMessage, Drive, ServerMessage};
 use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
-use tokio::io::{AsyncBufReadExt as _, BufReader, Lines};
+use tokio::io::{AsyncBufReadExt as _, AsyncReadExt as _, AsyncWriteExt as _, BufReader, Lines};
 use tokio::net::TcpStream;
 use tokio::process::{Child, ChildStderr, Command};
 
@@ -35,6 +35,16 @@ impl Program {
 
     async fn connect(&self) -> TestClient<TcpStream> {
         TestClient::over(TcpStream::connect(&self.address).await.unwrap(), &format!("ws://{}/ws", self.address)).await
+    }
+
+    /// Body of the response to a request.
+    async fn get(&self, path: &str) -> String {
+        let mut stream = TcpStream::connect(&self.address).await.unwrap();
+        let request = format!("GET {path} HTTP/1.1\r\nhost: {}\r\nconnection: close\r\n\r\n", self.address);
+        stream.write_all(request.as_bytes()).await.unwrap();
+        let mut response = String::new();
+        within(stream.read_to_string(&mut response)).await.unwrap();
+        response.split_once("\r\n\r\n").expect("a response").1.to_owned()
     }
 
     /// The first line of the log with `text`.
@@ -140,7 +150,7 @@ async fn a_world_killed_200_times_is_always_resumed() {
 
 #[cfg(target_os = "linux")]
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn a_full_disk_is_logged_once_and_stops_nothing() {
+async fn a_full_disk_is_logged_once_and_reported_and_stops_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let mut limited = Command::new("sh");
     limited.args(["-c", &format!("ulimit -f 2; exec {} \"$@\"", env!("CARGO_BIN_EXE_prairie")), "sh"]);
@@ -154,4 +164,42 @@ async fn a_full_disk_is_logged_once_and_stops_nothing() {
     for _ in 0..100 {
         client.frame().await;
     }
+    let health: serde_json::Value = serde_json::from_str(&program.get("/healthz").await).unwrap();
+    let reason =
+        health["reasons"].as_array().unwrap().iter().filter_map(|reason| reason.as_str()).find(|reason| reason.contains("written"));
+    assert!(health["status"] == "degraded" && reason.is_some_and(|reason| reason.contains("a crash loses")), "{health}");
+    assert!(health["journal_failures"].as_u64() > Some(0) && health["journal_checkpoints"] == 0, "{health}");
+}
+
+/// Value of a series without labels in a scrape.
+fn scraped(text: &str, name: &str) -> f64 {
+    let line = text.lines().find(|line| line.split(' ').next() == Some(name)).unwrap_or_else(|| panic!("no {name}: {text}"));
+    line.rsplit_once(' ').and_then(|(_, value)| value.parse().ok()).unwrap_or_else(|| panic!("{line}"))
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn the_journal_is_scraped_and_zero_without_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let counters = ["bytes_total", "checkpoints_total", "failures_total", "lost_steps_total", "copy_max_seconds"];
+    let names = counters.map(|name| format!("prairie_journal_{name}"));
+    let kept = Program::start(folder.path()).await;
+    let mut client = kept.connect().await;
+    enter(&mut client, &ClientMessage::Hello { name: "Ada".to_owned() }).await;
+    let values = within(async {
+        loop {
+            let text = kept.get("/metrics").await;
+            let values = names.each_ref().map(|name| scraped(&text, name));
+            if values[0] > 0.0 && values[1] > 0.0 {
+                return values;
+            }
+            tokio::time::sleep(Duration::from_millis(20)).await;
+        }
+    })
+    .await;
+    assert!(values[2] == 0.0 && values[4] > 0.0 && values[4] < 10.0, "{values:?}");
+
+    let forgetful = Program::start(Path::new("none")).await;
+    let text = forgetful.get("/metrics").await;
+    assert_eq!(names.map(|name| scraped(&text, &name)), [0.0; 5]);
+    assert!(!forgetful.get("/healthz").await.contains("cannot be written"));
 }

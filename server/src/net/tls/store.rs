@@ -6,8 +6,8 @@ use super::files::explain;
 use super::self_signed::{self, Names};
 use crate::escaped::escaped;
 use crate::file;
-use std::fs::{self, OpenOptions};
-use std::io::{self, Write as _};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use time::OffsetDateTime;
 use tokio_rustls::rustls::pki_types::pem::PemObject as _;
@@ -43,7 +43,7 @@ pub(super) fn open(folder: &Path, names: &Names, now: OffsetDateTime) -> Result<
         }
     }
     let generated = self_signed::generate(names, now)?;
-    write(&path, &generated.pem).map_err(|error| failed(&path, format!("cannot be written: {error}")))?;
+    file::write_atomically(&path, generated.pem.as_bytes()).map_err(|error| failed(&path, format!("cannot be written: {error}")))?;
     Ok(kept(generated.into_tls()?, folder))
 }
 
@@ -65,22 +65,6 @@ fn set_aside(path: &Path) -> io::Result<PathBuf> {
     let aside = free.expect("some number is free");
     fs::rename(path, &aside)?;
     Ok(aside)
-}
-
-/// Writes a file atomically, readable by the user only.
-fn write(path: &Path, text: &str) -> io::Result<()> {
-    let temporary = path.with_extension(format!("{}.new", file::unique_part()));
-    let written = || {
-        let mut options = OpenOptions::new();
-        options.write(true).create_new(true);
-        #[cfg(unix)]
-        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-        let mut file = options.open(&temporary)?;
-        file.write_all(text.as_bytes())?;
-        file.sync_all()?;
-        fs::rename(&temporary, path)
-    };
-    written().inspect_err(|_| drop(fs::remove_file(&temporary)))
 }
 
 #[cfg(test)]
