@@ -17,11 +17,14 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use tokio::sync::{mpsc, oneshot, watch};
 
 /// Maximum fraction of a client's data rate for rosters. All clients get each roster, so one client that changes its name would cost much.
 const ROSTER_FRACTION: f64 = 0.1;
+
+/// Shortest time between two states of the grass, each for all clients that wait: copying and compressing one takes tens of milliseconds.
+const STATE_PERIOD: Duration = Duration::from_secs(2);
 
 /// Bounds of the histogram of frame sizes (bytes).
 const FRAME_BOUNDS_BYTES: [f64; 9] = [64.0, 256.0, 1024.0, 4096.0, 8192.0, 16_384.0, 32_768.0, 65_536.0, 262_144.0];
@@ -93,6 +96,8 @@ pub struct Streamer {
     steps: StepLog,
     /// Set to request the state of the grass with the next publication.
     state_request: Arc<AtomicBool>,
+    /// Time of the newest request.
+    requested_at: Option<Instant>,
     difference_warning: LogLimit,
 }
 
@@ -112,6 +117,7 @@ impl Streamer {
             counters: Arc::default(),
             steps: StepLog::default(),
             state_request: Arc::default(),
+            requested_at: None,
             difference_warning: LogLimit::default(),
         }
     }
@@ -166,8 +172,10 @@ impl Streamer {
                 self.counters.skipped_frames.fetch_add(1, Relaxed);
             }
         }
-        if self.states.values().any(ClientState::wants_state) {
+        let may_request = self.requested_at.is_none_or(|at| now.duration_since(at) >= STATE_PERIOD);
+        if may_request && self.states.values().any(ClientState::wants_state) {
             self.state_request.store(true, Relaxed);
+            self.requested_at = Some(now);
         }
         self.counters.replicas.store(self.states.values().filter(|state| state.has_replica()).count() as u64, Relaxed);
         self.counters.publications.fetch_add(1, Relaxed);
