@@ -6,6 +6,8 @@ use prairie::journal::{Segment, WorldFolder, find, open, open_checkpoint};
 use prairie::runner::Simulation as _;
 use prairie::scenes::LoadedScene;
 use prairie::world::{Camera, Command, World, WorldState};
+use prairie_core::body::{BodyPose, Motion};
+use prairie_core::grass::{BendSimulation, Causes, EncodedSteps, ReplicaState, StepCodec, StepRecord};
 use prairie_core::scene::{Patches, Scene, TerrainMaps, VehicleKind, Wind, parse, parse_underbrush};
 use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
 use prairie_core::wire::{CLIENT_MESSAGE_LIMIT, ClientMessage, Drive, SERVER_MESSAGE_LIMIT, ServerMessage, Shape, codec, decode};
@@ -73,10 +75,38 @@ fn server_messages() -> Vec<Seed> {
         ServerMessage::FrameEnd { frame: 1, tick: 20, time_secs: 0.3 },
     ];
     let lawn: Vec<_> = lawn.iter().map(prairie_core::wire::encode).collect();
+    let replica: Vec<_> = replica().iter().map(prairie_core::wire::encode).collect();
     vec![
+        ("server_messages", "replica".to_owned(), joined(lawn.iter().chain(&replica))),
         ("server_messages", "vectors".to_owned(), joined(scenes.iter().chain(&rest).map(|(_, bytes)| bytes))),
         ("server_messages", "without_scene".to_owned(), joined(rest.iter().map(|(_, bytes)| bytes))),
         ("server_messages", "lawn".to_owned(), joined(lawn.iter())),
+    ]
+}
+
+/// The state of the target's lawn at rest, and steps in which a ball rolls over it.
+fn replica() -> Vec<ServerMessage> {
+    let terrain = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [1.0, 1.0], level_m: 0.1, base_m: 0.0 };
+    let patches = Patches { count: [3, 2], cells: 8, ..Patches::default() };
+    let scene = Scene { patches, wind: Wind { cells: [4, 2, 4], ..Wind::default() }, ..Scene::new(terrain) };
+    let map = grey_png([4; 2], &[255; 16]);
+    let (height, cover) = (HeightMap::from_png(&map, &scene.terrain).unwrap(), CoverMap::from_png(&map).unwrap());
+    let bend = BendSimulation::new(&scene, height.into(), &cover, &[], &Default::default()).state();
+    let mut codec = StepCodec::default();
+    let payload = ReplicaState { tick: 20, bend, codec: codec.clone() }.encode();
+    let pose = |tick: u64| BodyPose { position_m: [0.1 * tick as f32, 25.6, 2.0], ..BodyPose::IDENTITY };
+    let record = |tick: u64| {
+        let motion =
+            Motion { kind: VehicleKind::Ball, from: pose(tick), to: pose(tick + 1), velocity_m_per_s: [6.0, 0.0, 0.0], is_at_rest: false };
+        let causes = Causes { motions: vec![motion.rounded()], ..Causes::default() };
+        StepRecord { tick, causes, objects: vec![(1, 0.0)], ..StepRecord::default() }
+    };
+    let records: Vec<_> = (21..30).map(record).collect();
+    let EncodedSteps { first_tick, heads, moves } = codec.encode(&records).unwrap();
+    vec![
+        ServerMessage::ReplicaState { tick: 20, part: 0, parts: 1, payload },
+        ServerMessage::Steps { first_tick, steps: heads, moves },
+        ServerMessage::FrameEnd { frame: 2, tick: 32, time_secs: 0.5 },
     ]
 }
 

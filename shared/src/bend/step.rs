@@ -24,7 +24,7 @@ impl Field {
             Scheme::Implicit => implicit::step(self, dt_secs, executor),
             Scheme::Modal => self.modal(dt_secs)?,
         };
-        self.revision.0 += 1;
+        self.revision.0 = self.revision.0.wrapping_add(1);
         self.patches.iter_mut().for_each(|patch| patch.tiles.set_revision(self.revision.0));
         Ok(Report { reset_patches, ..report })
     }

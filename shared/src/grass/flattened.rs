@@ -185,9 +185,9 @@ impl FlattenedGrass {
         self.clock.now_secs += f64::from(dt_secs);
         let round = (1.0 / dt_secs).round().max(1.0) as u64;
         let (clock, revision) = (self.clock, self.revision);
-        self.revision += 1;
+        self.revision = self.revision.wrapping_add(1);
         self.patches.retain(|&index, patch| {
-            if (self.revision + u64::from(index)).is_multiple_of(round) {
+            if self.revision.wrapping_add(index.into()).is_multiple_of(round) {
                 patch.drop_invisible(&clock);
                 patch.changed_in = revision;
             }
@@ -198,7 +198,7 @@ impl FlattenedGrass {
             Limits::Given { dropped, .. } => dropped.to_vec(),
         };
         for patch in &dropped {
-            self.dropped += u64::from(self.patches.remove(patch).is_some());
+            self.dropped = self.dropped.wrapping_add(self.patches.remove(patch).is_some().into());
         }
         dropped
     }

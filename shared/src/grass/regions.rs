@@ -40,7 +40,7 @@ impl Regions {
             Limits::Given { evicted, .. } => evicted.to_vec(),
         };
         for &patch in &evicted {
-            self.evicted += u64::from(field.patch(patch).is_some());
+            self.evicted = self.evicted.wrapping_add(field.patch(patch).is_some().into());
             field.sleep(patch);
         }
         touched.retain(|patch| evicted.binary_search(patch).is_err());

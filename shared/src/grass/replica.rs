@@ -11,6 +11,8 @@ use thiserror::Error;
 
 /// Largest state, decompressed (bytes).
 pub const STATE_LIMIT_BYTES: usize = 512 << 20;
+/// Latest step of a state: a million years at 240 Hz.
+const TICK_LIMIT: u64 = 1 << 53;
 /// Level of compression of a state: the fastest.
 const COMPRESSION_LEVEL: u8 = 1;
 
@@ -37,6 +39,12 @@ pub enum ReplicaError {
     /// The state is that of another scene.
     #[error(transparent)]
     State(#[from] StateError),
+    /// The step is out of range.
+    #[error("its state is that of step {tick}; allowed: up to {TICK_LIMIT}")]
+    Tick {
+        /// The step.
+        tick: u64,
+    },
     /// A step cannot be decoded.
     #[error(transparent)]
     Step(#[from] DecodeError),
@@ -81,6 +89,9 @@ impl Replica {
     /// [`ReplicaError`] when the state is that of another scene.
     pub fn new(mut at_rest: BendSimulation, still_air: WindField, dt_secs: f32, state: ReplicaState) -> Result<Self, ReplicaError> {
         let ReplicaState { tick, bend, codec } = state;
+        if tick > TICK_LIMIT {
+            return Err(ReplicaError::Tick { tick });
+        }
         at_rest.restore(bend)?;
         Ok(Self { grass: at_rest, codec, wind: still_air, wind_tick: None, quantiser: PatchQuantiser::default(), tick, dt_secs })
     }

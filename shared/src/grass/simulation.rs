@@ -185,7 +185,7 @@ impl BendSimulation {
         }
         self.causes.dropped = self.flattened.step_within(dt_secs, limits);
         self.report = self.propagate(dt_secs, executor);
-        self.reset_count += u64::from(self.report.reset_patches);
+        self.reset_count = self.reset_count.wrapping_add(self.report.reset_patches.into());
     }
 
     /// Checksum of a patch's grass, bend field and flattened, and of the number of awake patches.

@@ -6,9 +6,10 @@
 
 use libfuzzer_sys::fuzz_target;
 use prairie_client::state::Mirror;
-use prairie_core::scene::{Patches, Scene, TerrainMaps, Wind};
+use prairie_core::body::{Body, Prism};
+use prairie_core::scene::{Patches, Scene, TerrainMaps, VehicleKind, Wind};
 use prairie_core::terrain::grey_png;
-use prairie_core::wire::{SERVER_MESSAGE_LIMIT, ServerMessage, decode};
+use prairie_core::wire::{SERVER_MESSAGE_LIMIT, ServerMessage, Shapes, decode};
 
 /// Places at which the fields are sampled: within the small scene, and outside (m, X and Z).
 const PLACES_M: [[f32; 2]; 2] = [[3.3, 2.1], [-7.0, 1e4]];
@@ -22,12 +23,15 @@ fn scene() -> ServerMessage {
         ..Scene::new(maps)
     };
     let map = grey_png([4; 2], &[255; 16]);
+    let prism = Prism::cuboid([0.0; 3], [0.5, 0.5, 1.0]);
+    let body = Body { prisms: vec![Prism { bears_weight: true, ..prism }], is_round: false, has_downwash: true };
     ServerMessage::Scene {
         scene: Box::new(scene),
         height_png: map.clone(),
         covering_png: map,
         nutrient_png: Vec::new(),
         models: Vec::new(),
+        shapes: Shapes { bodies: vec![body; VehicleKind::ALL.len()], drawings: Vec::new() },
     }
 }
 
