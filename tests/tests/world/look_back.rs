@@ -243,6 +243,9 @@ fn a_record_of_two_cars_is_measured() -> Result<()> {
         total_secs / 2.5,
         slowest_secs * 1e3
     );
+    let began = Instant::now();
+    let state = recording.live().replica().context("a replica")?.state().encode();
+    println!("a checkpoint has {} kB and takes {:.1} ms", state.len() / 1000, began.elapsed().as_secs_f64() * 1e3);
     let (oldest_secs, mut random) = (recording.record.oldest_secs().context("a record")?, SplitMix64::new(3));
     let mut past = Past::new(oldest_secs);
     let mut secs: Vec<f64> = vec![];
