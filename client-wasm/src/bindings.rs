@@ -87,8 +87,8 @@ mod tests {
     use super::*;
     use crate::vehicle::VehicleProfile;
 
-    /// Keys of the page (`panel.js`, `sound.js`) and the key that gives a vehicle up.
-    const PAGE_KEYS: &str = "knpvxf";
+    /// Keys of the page (`panel.js`, `sound.js`, `time_bar.js`) and the key that gives a vehicle up.
+    const PAGE_KEYS: &str = "knpvxtr,.f";
 
     #[test]
     fn letters_take_vehicles_whatever_the_case_and_digits_set_heights() {

@@ -6,14 +6,17 @@
 //   halt()                           stops the client for good
 //   panic(reason)                    makes the client panic, to try the message
 //   state()                          state of the client as an object; null before it has started
-//   theta(x, z)                      bending angle of the grass at a point in the client's mirror (rad)
-//   wind(x, y, z)                    wind at a point in the client's mirror (m/s)
-//   dust(x, y, z)                    dust concentration at a point in the client's mirror
+//   theta(x, z)                      bending angle of the grass at a point in the mirror shown (rad)
+//   wind(x, y, z)                    wind at a point in the mirror shown (m/s)
+//   dust(x, y, z)                    dust concentration at a point in the mirror shown
 //   plants()                         checksum of the underbrush in the client's mirror; empty if there is none
 //   look([x, y, z], heading, pitch)  moves the free camera (m, rad)
 //   picture()                        picture of the canvas at full size: { name, blob }
 //   link()                           link to the current picture
 //   sound()                          what is played as sound, for tests
+//   look_back(secs)                  shows the world of some seconds ago, at which time stands still; 0 is the present
+//   run_past(runs)                   lets time go on from the moment shown, or stand still
+//   live()                           shows the present again
 //   choose(vehicle)                  takes a vehicle by its name, such as "car"; "" gives it up
 //   draw(time)                       draws one frame at this animation time (s); resolves when it is on the screen
 // The README lists the parameters of the address.
@@ -27,6 +30,7 @@ import { show } from "./messages.js";
 import { Panel, variantLabel } from "./panel.js";
 import { context } from "./report.js";
 import { Sound } from "./sound.js";
+import { TimeBar } from "./time_bar.js";
 
 const NAMES = ["Bluestem", "Bobolink", "Bison", "Clover", "Curlew", "Hare", "Lark", "Lupine", "Meadowlark", "Poppy", "Sage", "Yarrow"];
 
@@ -98,6 +102,9 @@ async function begin() {
     dust: (x, y, z) => client.dust(x, y, z),
     plants: client.plants,
     look: (eye, heading, pitch) => client.set_camera(Float32Array.from(eye), heading, pitch),
+    look_back: client.look_back,
+    run_past: client.run_past,
+    live: client.live,
     choose: client.choose,
     draw: async (time) => {
       while (!client.draw(time)) await nextFrame();
@@ -122,6 +129,7 @@ async function begin() {
   const sound = new Sound(() => JSON.parse(client.hear()), {
     volume: remembered("volume"), remember, notify: (text) => panel.notify(text),
   });
+  new TimeBar(client, parameter("panel") !== "0");
   Object.assign(window.prairie, { picture: () => capture.shoot(), link: () => link(state().view), sound: () => sound.report() });
   panel.show((parameter("panel") ?? remembered("panel") ?? (innerWidth < 640 ? "0" : "1")) !== "0");
   if (parameter("panel") === "0") byId("open").hidden = true;

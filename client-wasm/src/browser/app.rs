@@ -12,11 +12,12 @@ use super::socket::SocketEvent;
 use crate::bindings::{Action, next_vehicle};
 use crate::budget::FrameTime;
 use crate::camera::Camera;
+use crate::controls::Controls;
 use crate::redraw::RedrawTracker;
 use crate::render::{Quality, RenderOptions, Split, bend_reach_m};
 use crate::replica_budget::{ReplicaBudget, Wish};
 use crate::rig::Rig;
-use crate::state::Mirror;
+use crate::state::{Mirror, Past, Record};
 use glam::Vec3;
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::{Close, ObjectPose};
@@ -75,6 +76,10 @@ pub(super) struct App {
     pub(super) options: Options,
     pub(super) settings: Settings,
     pub(super) mirror: Mirror,
+    /// The last minutes, while there is a replica.
+    pub(super) record: Record,
+    /// The past that is shown instead of the present, while the user looks back.
+    pub(super) past: Option<Past>,
     pub(super) connection: Connection,
     pub(super) rig: Option<Rig>,
     pub(super) meter: FrameMeter,
@@ -140,6 +145,8 @@ impl App {
             options,
             settings,
             mirror: Mirror::default(),
+            record: Record::default(),
+            past: None,
             connection,
             rig: None,
             meter: FrameMeter::default(),
@@ -183,8 +190,13 @@ impl App {
             self.connection.replicate(true);
         }
         if let Some(kind) = self.own_object().map(|pose| pose.kind) {
-            self.connection.drive(self.input.controls().drive(kind), now_secs);
+            let controls = self.input.controls();
+            if controls != Controls::default() {
+                self.go_live();
+            }
+            self.connection.drive(controls.drive(kind), now_secs);
         }
+        self.work_on_past(now_secs);
         if let Some(camera) = self.rig.as_ref().map(Rig::camera) {
             self.send_view(camera, now_secs);
             self.keep_link(camera, now_secs);
@@ -198,10 +210,14 @@ impl App {
     /// `forced`. Returns whether it drew; it does not while the scene or the renderer is missing, or the GPU is busy.
     pub(super) fn frame(&mut self, now_secs: f64, at_secs: Option<f64>, forced: bool) -> bool {
         self.run_clock(now_secs);
-        let time_secs = at_secs.unwrap_or_else(|| self.mirror.shown_secs());
-        let dt_secs = (time_secs - self.drawn_secs).clamp(0.0, MAX_FRAME_SECS) as f32;
+        let elapsed_secs = (now_secs - self.moved_at_secs).clamp(0.0, MAX_FRAME_SECS);
+        self.advance_past(elapsed_secs, now_secs);
+        let time_secs = at_secs.unwrap_or_else(|| self.shown().shown_secs());
+        let passed_secs = (time_secs - self.drawn_secs).clamp(0.0, MAX_FRAME_SECS);
+        // Plants settle even in a past that stands still.
+        let dt_secs = if self.past.is_some() && at_secs.is_none() { elapsed_secs } else { passed_secs } as f32;
         // The camera moves even if the world does not.
-        let camera_secs = at_secs.map_or((now_secs - self.moved_at_secs).clamp(0.0, MAX_FRAME_SECS) as f32, |_| dt_secs);
+        let camera_secs = if at_secs.is_some() { dt_secs } else { elapsed_secs as f32 };
         let vehicle = self.interpolated_own_object();
         let (Some(rig), Some(gpu)) = (&mut self.rig, &mut self.gpu) else { return false };
         if gpu.is_busy() {
@@ -219,14 +235,14 @@ impl App {
         let [right_rad, up_rad] = self.input.take_look(camera_secs);
         rig.look(right_rad, up_rad);
         rig.zoom(self.input.take_zoom());
-        let mirror = &self.mirror;
+        let mirror = self.past.as_mut().and_then(Past::mirror_mut).unwrap_or(&mut self.mirror);
         rig.advance(self.input.controls(), vehicle.as_ref(), |x_m, z_m| mirror.ground_m(x_m, z_m), camera_secs);
         let camera = rig.camera();
-        if !self.redraw.needs_frame(&self.mirror, &camera, view, dt_secs) && !forced && !self.draws_every_frame {
+        if !self.redraw.needs_frame(mirror, &camera, view, dt_secs) && !forced && !self.draws_every_frame {
             self.meter.record_skipped();
             return false;
         }
-        let Some(cpu_secs) = gpu.draw(&mut self.mirror, &camera, &FrameInput { time_secs, dt_secs, split }) else {
+        let Some(cpu_secs) = gpu.draw(mirror, &camera, &FrameInput { time_secs, dt_secs, split }) else {
             self.redraw.invalidate();
             return false;
         };
@@ -259,11 +275,12 @@ impl App {
     }
 
     fn interpolated_own_object(&self) -> Option<ObjectPose> {
-        self.mirror.object(self.mirror.object_of(self.connection.client()?)?)
+        self.shown().object(self.mirror.object_of(self.connection.client()?)?)
     }
 
     /// Selects a vehicle, or leaves the current one.
     pub(super) fn take(&mut self, vehicle: Option<VehicleKind>) {
+        self.go_live();
         self.wanted = vehicle;
         self.connection.choose(vehicle);
     }

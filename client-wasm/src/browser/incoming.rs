@@ -36,7 +36,7 @@ impl App {
 
     fn receive(&mut self, message: ServerMessage, now_secs: f64) {
         self.run_clock(now_secs);
-        let applied = self.mirror.apply(message);
+        let applied = self.record.apply(&mut self.mirror, message);
         self.measure_replica(now_secs);
         match applied {
             Ok(Some(Event::Welcome { client, proof, scene_name, .. })) => {

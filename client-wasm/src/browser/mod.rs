@@ -13,6 +13,7 @@ mod halted;
 mod incoming;
 mod input;
 mod listener;
+mod looking_back;
 mod page;
 mod pointer;
 mod renderer_setup;
@@ -135,34 +136,53 @@ pub fn state() -> String {
     with_app(|app| app.report().to_string()).unwrap_or_else(|| "null".into())
 }
 
-/// Bending angle of the grass at `(x_m, z_m)` in the client's mirror (rad).
+/// Shows the world of `secs` seconds ago, at which time stands still unless it is [`run`](run_past) on; 0 or less shows the present again. Does nothing while
+/// nothing is recorded.
+#[wasm_bindgen]
+pub fn look_back(secs: f64) {
+    with_app(|app| app.look_back(secs));
+}
+
+/// Shows the present again.
+#[wasm_bindgen]
+pub fn live() {
+    with_app(App::go_live);
+}
+
+/// Lets time go on from the moment shown, or stand still, even at the present.
+#[wasm_bindgen]
+pub fn run_past(runs: bool) {
+    with_app(|app| app.run_past(runs));
+}
+
+/// Bending angle of the grass at `(x_m, z_m)` in the mirror shown (rad): that of the present, or of the past that the user looks at.
 #[wasm_bindgen]
 pub fn theta(x_m: f32, z_m: f32) -> f32 {
-    with_app(|app| app.mirror.theta_at(x_m, z_m)).unwrap_or(0.0)
+    with_app(|app| app.shown().theta_at(x_m, z_m)).unwrap_or(0.0)
 }
 
-/// Lean of the bend field at `(x_m, z_m)` in the client's mirror (rad, X and Z), without the lean in the wind: as `GET /api/bend` on the server.
+/// Lean of the bend field at `(x_m, z_m)` in the mirror shown (rad, X and Z), without the lean in the wind: as `GET /api/bend` on the server.
 #[wasm_bindgen]
 pub fn bend(x_m: f32, z_m: f32) -> Vec<f32> {
-    with_app(|app| app.mirror.field_lean_at(x_m, z_m).to_vec()).unwrap_or_default()
+    with_app(|app| app.shown().field_lean_at(x_m, z_m).to_vec()).unwrap_or_default()
 }
 
-/// World step of the newest wind in the client's mirror; −1 before the first.
+/// World step of the newest wind in the mirror shown; −1 before the first.
 #[wasm_bindgen]
 pub fn wind_tick() -> f64 {
-    with_app(|app| app.mirror.wind().map(|wind| wind.tick() as f64)).flatten().unwrap_or(-1.0)
+    with_app(|app| app.shown().wind().map(|wind| wind.tick() as f64)).flatten().unwrap_or(-1.0)
 }
 
-/// Wind at a point in the client's mirror (m/s), with its gust: as `GET /api/wind` on the server for the same step.
+/// Wind at a point in the mirror shown (m/s), with its gust: as `GET /api/wind` on the server for the same step.
 #[wasm_bindgen]
 pub fn wind(x_m: f32, y_m: f32, z_m: f32) -> Vec<f32> {
-    with_app(|app| app.mirror.wind_at(Vec3::new(x_m, y_m, z_m)).to_array().to_vec()).unwrap_or_default()
+    with_app(|app| app.shown().wind_at(Vec3::new(x_m, y_m, z_m)).to_array().to_vec()).unwrap_or_default()
 }
 
-/// Dust concentration at a point in the client's mirror.
+/// Dust concentration at a point in the mirror shown.
 #[wasm_bindgen]
 pub fn dust(x_m: f32, y_m: f32, z_m: f32) -> f32 {
-    with_app(|app| app.mirror.dust_at(Vec3::new(x_m, y_m, z_m))).unwrap_or(0.0)
+    with_app(|app| app.shown().dust_at(Vec3::new(x_m, y_m, z_m))).unwrap_or(0.0)
 }
 
 /// Sound levels at the camera (`hearing.rs`), as JSON; `null` while the client is not connected or has no view yet.

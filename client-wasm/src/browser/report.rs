@@ -5,19 +5,22 @@ use super::connection::ConnectionState;
 use crate::hearing::{HeardEngine, Hearing, hear};
 use crate::render::Quality;
 use crate::rig::Rig;
+use crate::state::Past;
 use serde_json::{Value, json};
 
 impl App {
     /// The whole state. Positions in m, angles in rad, times in s unless the name says ms.
     pub(super) fn report(&self) -> Value {
-        let parts = [self.connection_report(), self.world_report(), self.drawing_report()];
+        let parts = [self.connection_report(), self.world_report(), self.time_report(), self.drawing_report()];
         parts.into_iter().filter_map(|part| if let Value::Object(part) = part { Some(part) } else { None }).flatten().collect()
     }
 
-    /// Sound levels at the camera; null while the client is not connected or has no view yet.
+    /// Sound levels at the camera; null while the client is not connected, has no view yet, or shows a past that stands still.
     pub(super) fn hearing_report(&self) -> Value {
-        let Some(camera) = self.rig.as_ref().map(Rig::camera).filter(|_| self.connection.client().is_some()) else { return Value::Null };
-        let Hearing { wind_m_per_s, rustle, engines } = hear(&camera, self.mirror.newest_objects().iter().copied(), &self.mirror);
+        let is_heard = self.connection.client().is_some() && self.past.as_ref().is_none_or(Past::is_playing);
+        let Some(camera) = self.rig.as_ref().map(Rig::camera).filter(|_| is_heard) else { return Value::Null };
+        let shown = self.shown();
+        let Hearing { wind_m_per_s, rustle, engines } = hear(&camera, shown.newest_objects().iter().copied(), shown);
         let engines = engines.iter().map(|engine| {
             let HeardEngine { object, loudness, pitch_hz, beat_hz, pan } = *engine;
             json!({ "object": object, "loudness": loudness, "pitch_hz": pitch_hz, "beat_hz": beat_hz, "pan": pan })
@@ -70,6 +73,17 @@ impl App {
             "height": camera.map(|camera| camera.eye_m.y - self.mirror.ground_m(camera.eye_m.x, camera.eye_m.z)),
             "patches_known": self.mirror.known_patches(),
             "patches_bent": self.mirror.bent_patches().count(),
+        })
+    }
+
+    fn time_report(&self) -> Value {
+        json!({
+            "is_live": self.past.is_none(),
+            "is_playing": self.past.as_ref().is_none_or(Past::is_playing),
+            "recorded_secs": self.record.length_secs(),
+            "recorded_bytes": self.record.memory_bytes(),
+            "behind_secs": self.behind_secs(),
+            "shown_tick": self.shown().tick(),
         })
     }
 

@@ -2,19 +2,21 @@
 
 use super::error::{MirrorError, range};
 use prairie_core::wire::{BROKEN_LIMIT, BrokenPlant};
+use std::sync::Arc;
 
 /// One heading code per site, padded to a multiple of four bytes. Empty before a scene with underbrush.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct BrokenPlants {
     sites: usize,
-    falls: Vec<u8>,
+    /// Shared with copies until another plant breaks.
+    falls: Arc<Vec<u8>>,
     count: u32,
 }
 
 impl BrokenPlants {
     /// Unbroken plants on `sites` sites.
     pub(super) fn new(sites: usize) -> Self {
-        Self { sites, falls: vec![0; sites.next_multiple_of(4)], count: 0 }
+        Self { sites, falls: Arc::new(vec![0; sites.next_multiple_of(4)]), count: 0 }
     }
 
     /// Records newly broken plants. A plant that was broken before keeps its direction.
@@ -26,7 +28,7 @@ impl BrokenPlants {
             return Err(range("site of a broken plant", beyond.site, format!("below {}", self.sites)));
         }
         for plant in plants {
-            let fall = &mut self.falls[plant.site as usize];
+            let fall = &mut Arc::make_mut(&mut self.falls)[plant.site as usize];
             if *fall == 0 {
                 *fall = plant.fall.get();
                 self.count += 1;

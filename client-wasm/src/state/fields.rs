@@ -100,6 +100,12 @@ impl PatchFields {
         self.entries.iter().filter(|(_, entry)| entry.codes.is_some()).map(|(&index, _)| index)
     }
 
+    /// Marks all bent patches as changed.
+    pub(super) fn touch(&mut self) {
+        let Self { entries, dirty, .. } = self;
+        dirty.extend(entries.iter().filter(|(_, entry)| entry.codes.is_some()).map(|(&index, _)| index));
+    }
+
     pub(super) fn has_dirty(&self) -> bool {
         !self.dirty.is_empty()
     }
@@ -186,7 +192,7 @@ const WIND_FRAMES_LIMIT: usize = 100;
 const WIND_LIMIT_BYTES: usize = 16 << 20;
 
 /// The newest wind frames, oldest first. The last one is the base of the next delta.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct WindFrames {
     frames: VecDeque<WindCodes>,
 }
@@ -220,6 +226,17 @@ impl WindFrames {
         }
         self.frames.push_back(WindCodes { cells, tick, seq, turbulence, codes, is_calm });
         Ok(true)
+    }
+
+    /// Copies of the frames in use at `tick` or after it.
+    pub(super) fn since(&self, tick: u64) -> Self {
+        let next = self.frames.partition_point(|frame| frame.tick <= tick);
+        Self { frames: self.frames.range(next.saturating_sub(1)..).cloned().collect() }
+    }
+
+    /// Memory of the codes (bytes).
+    pub(super) fn memory_bytes(&self) -> usize {
+        self.frames.iter().map(|frame| frame.codes.len()).sum()
     }
 
     /// The newest frame.

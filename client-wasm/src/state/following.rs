@@ -61,6 +61,11 @@ impl Following {
         Ok(())
     }
 
+    /// Goes on from a replica, of which nothing is shown yet.
+    pub(super) fn of(replica: Replica) -> Self {
+        Self { replica: Some(replica), ..Self::default() }
+    }
+
     /// Ends the replica: patches follow.
     pub(super) fn stop(&mut self) {
         self.replica = None;
@@ -109,9 +114,14 @@ impl Following {
         Ok(())
     }
 
-    /// Shows the replica: its codes become those of `patches`. Returns the poses of all objects.
-    pub(super) fn show(&mut self, patches: &mut PatchFields) -> Option<Vec<ObjectPose>> {
-        let replica = self.replica.as_mut()?;
+    /// Poses of all objects of the replica, if there is one.
+    pub(super) fn objects(&self) -> Option<Vec<ObjectPose>> {
+        Some(self.replica.as_ref()?.objects().collect())
+    }
+
+    /// Shows the replica: its codes become those of `patches`.
+    pub(super) fn show(&mut self, patches: &mut PatchFields) {
+        let Some(replica) = &mut self.replica else { return };
         let codes = replica.codes();
         for index in patches.bent().filter(|index| !codes.contains_key(index)).collect::<Vec<_>>() {
             patches.set(index, None);
@@ -122,7 +132,6 @@ impl Following {
             }
         }
         self.shown = codes;
-        Some(replica.objects().collect())
     }
 }
 

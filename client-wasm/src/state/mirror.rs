@@ -11,6 +11,7 @@ use prairie_core::grid::PatchIndex;
 use prairie_core::scene::Scene;
 use prairie_core::wind::WindField;
 use prairie_core::wire::{ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage};
+use std::sync::Arc;
 
 /// Maximum number of peers stored; the server's list is truncated to it.
 pub const PEER_LIMIT: usize = 4096;
@@ -58,17 +59,17 @@ pub enum Event {
 /// The client's copy of the server's world.
 #[derive(Debug, Default)]
 pub struct Mirror {
-    scene: Option<DecodedScene>,
-    scene_number: u32,
-    patches: PatchFields,
-    following: Following,
-    wind: WindFrames,
-    wind_field: Option<WindField>,
-    poses: Playback,
-    broken: BrokenPlants,
-    peers: Vec<Peer>,
-    tick: u64,
-    time_secs: f64,
+    pub(super) scene: Option<Arc<DecodedScene>>,
+    pub(super) scene_number: u32,
+    pub(super) patches: PatchFields,
+    pub(super) following: Following,
+    pub(super) wind: WindFrames,
+    pub(super) wind_field: Option<WindField>,
+    pub(super) poses: Playback,
+    pub(super) broken: BrokenPlants,
+    pub(super) peers: Vec<Peer>,
+    pub(super) tick: u64,
+    pub(super) time_secs: f64,
 }
 
 impl Mirror {
@@ -84,18 +85,18 @@ impl Mirror {
             ServerMessage::Scene { scene, height_png, covering_png, nutrient_png, models, shapes } => {
                 let decoded = DecodedScene::new(*scene, &height_png, &covering_png, &nutrient_png, models, shapes)?;
                 self.broken = BrokenPlants::new(decoded.flora().map_or(0, |flora| flora.grown().sites.total()));
-                self.scene = Some(decoded);
+                self.scene = Some(Arc::new(decoded));
                 self.scene_number = self.scene_number.wrapping_add(1);
                 self.patches = PatchFields::default();
                 self.following = Following::default();
                 self.wind = WindFrames::default();
-                self.wind_field = self.scene.as_ref().map(DecodedScene::still_air);
+                self.wind_field = self.scene.as_ref().map(|decoded| decoded.still_air());
                 self.poses = Playback::default();
                 Some(Event::Scene)
             }
             ServerMessage::Poses { tick, objects } => {
                 self.following.stop();
-                self.poses.push(tick as f64 / f64::from(self.tick_hz()), objects)?;
+                self.poses.push(self.secs_of(tick), objects)?;
                 None
             }
             ServerMessage::Wind { tick, seq, key, turbulence, payload } => {
@@ -130,14 +131,8 @@ impl Mirror {
                 None
             }
             ServerMessage::FrameEnd { frame, tick, time_secs } => {
-                if !time_secs.is_finite() {
-                    return Err(range("time_secs", time_secs, "a finite number"));
-                }
-                self.following.rest_until(tick, &self.wind)?;
-                if let Some(objects) = self.following.show(&mut self.patches) {
-                    self.poses.push(tick as f64 / f64::from(self.tick_hz()), objects)?;
-                }
-                (self.tick, self.time_secs) = (tick, time_secs);
+                self.end_frame(tick, time_secs)?;
+                self.following.show(&mut self.patches);
                 Some(Event::FrameEnd { frame })
             }
             ServerMessage::Refused { refusal, reason } => Some(Event::Refused { refusal, reason }),
@@ -145,18 +140,36 @@ impl Mirror {
         })
     }
 
+    /// Completes the frame of step `tick`. The patches of a replica are not shown yet.
+    pub(super) fn end_frame(&mut self, tick: u64, time_secs: f64) -> Result<(), MirrorError> {
+        if !time_secs.is_finite() {
+            return Err(range("time_secs", time_secs, "a finite number"));
+        }
+        self.following.rest_until(tick, &self.wind)?;
+        if let Some(objects) = self.following.objects() {
+            self.poses.push(self.secs_of(tick), objects)?;
+        }
+        (self.tick, self.time_secs) = (tick, time_secs);
+        Ok(())
+    }
+
+    /// Time of playback of a step (s).
+    pub(super) fn secs_of(&self, tick: u64) -> f64 {
+        tick as f64 / f64::from(self.tick_hz())
+    }
+
     /// Advances the client's clock by `dt_secs`, so that objects move on.
     pub fn advance(&mut self, dt_secs: f64) {
         self.poses.advance(dt_secs);
     }
 
-    fn tick_hz(&self) -> f32 {
+    pub(super) fn tick_hz(&self) -> f32 {
         self.scene.as_ref().map_or(60.0, |decoded| decoded.scene().tick_hz)
     }
 
     /// The scene with its decoded maps; `None` before it has arrived.
     pub fn decoded_scene(&self) -> Option<&DecodedScene> {
-        self.scene.as_ref()
+        self.scene.as_deref()
     }
 
     /// Number of scenes received so far. When it changes, the renderer must reload the scene.
@@ -227,6 +240,11 @@ impl Mirror {
     /// Patches changed since the previous call.
     pub fn take_dirty_patches(&mut self) -> Vec<PatchIndex> {
         self.patches.take_dirty()
+    }
+
+    /// Marks all bent patches as changed, for a renderer that has drawn another mirror in between.
+    pub fn touch_patches(&mut self) {
+        self.patches.touch();
     }
 
     /// Whether any patch changed since [`take_dirty_patches`](Self::take_dirty_patches).

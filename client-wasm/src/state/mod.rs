@@ -6,18 +6,23 @@
 mod broken_plants;
 mod check;
 mod check_underbrush;
+mod checkpoint;
 mod error;
 mod fields;
 mod following;
 mod mirror;
+mod past;
 mod playback;
+mod record;
 mod sample;
 mod scene;
 
 pub use error::MirrorError;
 pub use fields::{PATCH_LIMIT, PatchCodes, ShownWind, WindCodes};
 pub use mirror::{Event, Mirror, PEER_LIMIT, WIND_DELAY_SECS};
+pub use past::Past;
 pub use playback::OBJECT_LIMIT;
+pub use record::{CHECKPOINT_SECS, RECORD_LIMIT_BYTES, RECORD_SECS, Record};
 pub use scene::DecodedScene;
 
 #[cfg(test)]

@@ -76,6 +76,11 @@ impl Playback {
         self.clock_secs += dt_secs;
     }
 
+    /// Sets the time of playback to `time_secs`.
+    pub(super) fn show_at(&mut self, time_secs: f64) {
+        (self.clock_secs, self.clock_offset_secs) = (time_secs + DELAY_SECS, Some(0.0));
+    }
+
     /// Simulated time of playback (s); `None` before the first snapshot.
     pub(super) fn time_secs(&self) -> Option<f64> {
         Some(self.clock_secs - self.clock_offset_secs? - DELAY_SECS)

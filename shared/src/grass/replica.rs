@@ -96,6 +96,11 @@ impl Replica {
         Ok(Self { grass: at_rest, codec, wind: still_air, wind_tick: None, quantiser: PatchQuantiser::default(), tick, dt_secs })
     }
 
+    /// A copy of the state after the newest step, without the wind.
+    pub fn state(&self) -> ReplicaState {
+        ReplicaState { tick: self.tick, bend: self.grass.state(), codec: self.codec.clone() }
+    }
+
     /// Number of the newest step.
     pub fn tick(&self) -> u64 {
         self.tick

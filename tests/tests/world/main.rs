@@ -10,6 +10,7 @@ mod driving;
 mod functions;
 mod imports;
 mod licences;
+mod look_back;
 mod pictures;
 mod replica;
 mod same_plants;

@@ -19,8 +19,8 @@ use tokio::sync::mpsc;
 const STEPS_PER_PUBLISH: u64 = 3;
 
 /// A server without a network: world, streamer and clients.
-struct Server {
-    world: World,
+pub(super) struct Server {
+    pub(super) world: World,
     streamer: Streamer,
     clients: Clients,
     requested: Arc<AtomicBool>,
@@ -29,7 +29,7 @@ struct Server {
 }
 
 impl Server {
-    fn new(world: World, loaded: &LoadedScene) -> Self {
+    pub(super) fn new(world: World, loaded: &LoadedScene) -> Self {
         let limits = SendLimits::default();
         let requested = Arc::new(AtomicBool::new(false));
         let publish_hz = loaded.scene.tick_hz / STEPS_PER_PUBLISH as f32;
@@ -38,7 +38,7 @@ impl Server {
     }
 
     /// Does the steps to the next publication, and sends it.
-    fn publish(&mut self, commands: &mut Vec<Command>, tick_hz: f32) {
+    pub(super) fn publish(&mut self, commands: &mut Vec<Command>, tick_hz: f32) {
         for _ in 0..STEPS_PER_PUBLISH {
             self.world.step(&std::mem::take(commands));
         }
@@ -48,7 +48,7 @@ impl Server {
         commands.push(Command::Cameras(self.streamer.publish(&published, &self.clients.all(), now)));
     }
 
-    fn join(&self, loaded: &LoadedScene, eye_m: [f32; 3]) -> Result<Viewer> {
+    pub(super) fn join(&self, loaded: &LoadedScene, eye_m: [f32; 3]) -> Result<Viewer> {
         let (client, frames) = self.clients.join(self.clients.next_id(), "viewer".to_owned(), SendLimits::default().in_flight as usize);
         client.set_area_of_interest(AreaOfInterest { eye_m, radius_m: 60.0 });
         client.request_replica(true);
@@ -59,10 +59,10 @@ impl Server {
 }
 
 /// A client with its mirror.
-struct Viewer {
-    client: Arc<Client>,
-    frames: mpsc::Receiver<Frame>,
-    mirror: Mirror,
+pub(super) struct Viewer {
+    pub(super) client: Arc<Client>,
+    pub(super) frames: mpsc::Receiver<Frame>,
+    pub(super) mirror: Mirror,
     bytes: usize,
 }
 
@@ -103,7 +103,7 @@ impl Viewer {
 }
 
 /// Vehicles that drive, hover, stop and leave at random.
-fn commands(random: &mut SplitMix64, publication: u64, commands: &mut Vec<Command>) {
+pub(super) fn commands(random: &mut SplitMix64, publication: u64, commands: &mut Vec<Command>) {
     let mut draw = |below: u64| random.next_u64() % below;
     for client in 100..104 {
         let kind = VehicleKind::ALL[draw(5) as usize];

@@ -1,0 +1,164 @@
+//! A record of the last minutes: the messages that a mirror with a replica has applied, and checkpoints between them.
+
+use super::checkpoint::Checkpoint;
+use super::error::MirrorError;
+use super::mirror::{Event, Mirror};
+use prairie_core::wire::{self, ServerMessage};
+use std::collections::VecDeque;
+
+/// Time recorded (s). Until the next checkpoint falls out, the record is up to [`CHECKPOINT_SECS`] longer.
+pub const RECORD_SECS: f64 = 120.0;
+/// Largest memory of a record (bytes). A record that would exceed it becomes shorter.
+pub const RECORD_LIMIT_BYTES: usize = 64 << 20;
+/// Time between two checkpoints (s).
+pub const CHECKPOINT_SECS: f64 = 5.0;
+
+/// A frame of the record.
+#[derive(Debug)]
+pub(super) struct RecordedFrame {
+    /// Time of playback (s).
+    pub(super) secs: f64,
+    /// Its messages as sent, the end of the frame included.
+    pub(super) messages: Vec<Vec<u8>>,
+    /// State after the frame.
+    pub(super) checkpoint: Option<Checkpoint>,
+}
+
+impl RecordedFrame {
+    fn memory_bytes(&self) -> usize {
+        let messages = self.messages.iter().map(|message| size_of::<Vec<u8>>() + message.len()).sum::<usize>();
+        size_of::<Self>() + messages + self.checkpoint.as_ref().map_or(0, Checkpoint::memory_bytes)
+    }
+}
+
+/// Frames of the last minutes. It begins with a checkpoint, and is empty while the mirror has no replica.
+#[derive(Debug)]
+pub struct Record {
+    frames: VecDeque<RecordedFrame>,
+    /// Number of the first frame, counted from the first that was ever recorded.
+    first: u64,
+    /// Messages of the frame that has not ended yet.
+    begun: Vec<Vec<u8>>,
+    checkpoint_secs: f64,
+    memory_bytes: usize,
+    limit_bytes: usize,
+}
+
+impl Default for Record {
+    fn default() -> Self {
+        Self::with_limit(RECORD_LIMIT_BYTES)
+    }
+}
+
+impl Record {
+    /// An empty record that takes at most `limit_bytes` of memory.
+    pub fn with_limit(limit_bytes: usize) -> Self {
+        Self { frames: VecDeque::new(), first: 0, begun: Vec::new(), checkpoint_secs: 0.0, memory_bytes: 0, limit_bytes }
+    }
+
+    /// Applies a message to the mirror, and records it.
+    ///
+    /// # Errors
+    /// As [`Mirror::apply`].
+    pub fn apply(&mut self, mirror: &mut Mirror, message: ServerMessage) -> Result<Option<Event>, MirrorError> {
+        let is_recorded = matches!(
+            message,
+            ServerMessage::Wind { .. } | ServerMessage::Steps { .. } | ServerMessage::Broken { .. } | ServerMessage::FrameEnd { .. }
+        );
+        let is_start = matches!(message, ServerMessage::ReplicaState { part, parts, .. } if part + 1 == parts);
+        let bytes = (is_recorded && mirror.replica().is_some()).then(|| wire::encode(&message));
+        let event = mirror.apply(message)?;
+        self.begun.extend(bytes);
+        if is_start || mirror.replica().is_none() || self.begun.iter().map(Vec::len).sum::<usize>() > self.limit_bytes {
+            self.clear();
+        }
+        if matches!(event, Some(Event::FrameEnd { .. })) {
+            self.end_frame(mirror);
+        }
+        Ok(event)
+    }
+
+    /// Adds the frame that has ended, with a checkpoint if one is due.
+    fn end_frame(&mut self, mirror: &Mirror) {
+        let (messages, secs) = (std::mem::take(&mut self.begun), mirror.secs_of(mirror.tick()));
+        if self.newest_secs().is_some_and(|newest_secs| secs <= newest_secs) {
+            self.clear();
+        }
+        let is_due = self.frames.is_empty() || secs - self.checkpoint_secs >= CHECKPOINT_SECS;
+        let checkpoint = is_due.then(|| mirror.checkpoint()).flatten();
+        if checkpoint.is_some() {
+            self.checkpoint_secs = secs;
+        } else if self.frames.is_empty() {
+            return;
+        }
+        let frame = RecordedFrame { secs, messages, checkpoint };
+        self.memory_bytes += frame.memory_bytes();
+        self.frames.push_back(frame);
+        self.trim(secs);
+    }
+
+    /// Drops the oldest frames, up to a checkpoint, while the record is too long or too large.
+    fn trim(&mut self, newest_secs: f64) {
+        let next = |record: &Self| record.frames.iter().skip(1).position(|frame| frame.checkpoint.is_some()).map(|place| place + 1);
+        while let Some(front) = self.frames.front() {
+            let is_too_large = self.memory_bytes > self.limit_bytes;
+            if !is_too_large && newest_secs - front.secs < RECORD_SECS {
+                break;
+            }
+            match next(self) {
+                Some(place) if is_too_large || newest_secs - self.frames[place].secs >= RECORD_SECS => self.drop_first(place),
+                None if is_too_large => self.clear(),
+                _ => break,
+            }
+        }
+    }
+
+    fn drop_first(&mut self, count: usize) {
+        self.memory_bytes -= self.frames.drain(..count).map(|frame| frame.memory_bytes()).sum::<usize>();
+        self.first += count as u64;
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.drop_first(self.frames.len());
+        self.begun.clear();
+    }
+
+    /// Memory of the record (bytes).
+    pub fn memory_bytes(&self) -> usize {
+        self.memory_bytes
+    }
+
+    /// Time of playback of the oldest moment (s); `None` while nothing is recorded.
+    pub fn oldest_secs(&self) -> Option<f64> {
+        Some(self.frames.front()?.secs)
+    }
+
+    /// Time of playback of the newest moment (s).
+    pub fn newest_secs(&self) -> Option<f64> {
+        Some(self.frames.back()?.secs)
+    }
+
+    /// Time recorded (s).
+    pub fn length_secs(&self) -> f64 {
+        self.oldest_secs().zip(self.newest_secs()).map_or(0.0, |(oldest_secs, newest_secs)| newest_secs - oldest_secs)
+    }
+
+    /// The frame of this number, if it is still recorded.
+    pub(super) fn frame(&self, number: u64) -> Option<&RecordedFrame> {
+        self.frames.get(usize::try_from(number.checked_sub(self.first)?).ok()?)
+    }
+
+    /// Number of the first frame recorded.
+    pub(super) fn first(&self) -> u64 {
+        self.first
+    }
+
+    /// The newest checkpoint at or before `secs`, or else the oldest, and the number of its frame.
+    pub(super) fn checkpoint_before(&self, secs: f64) -> Option<(u64, &Checkpoint)> {
+        let end = self.frames.partition_point(|frame| frame.secs <= secs).max(1).min(self.frames.len());
+        let (place, checkpoint) =
+            (0..end).rev().find_map(|place| self.frames[place].checkpoint.as_ref().map(|checkpoint| (place, checkpoint)))?;
+        Some((self.first + place as u64, checkpoint))
+    }
+}
