@@ -88,8 +88,8 @@ mod tests {
         fn a_code_is_within_its_bounds(at in proptest::array::uniform3(-1500.0_f32..1500.0), rotation in rotation()) {
             let pose = BodyPose { position_m: at, rotation: rotation.to_array() };
             let rounded = pose.rounded();
-            for axis in 0..3 {
-                prop_assert!((rounded.position_m[axis] - at[axis]).abs() <= 0.5 * POSITION_QUANTUM_M);
+            for (found, wanted) in rounded.position_m.iter().zip(at) {
+                prop_assert!((found - wanted).abs() <= 0.5 * POSITION_QUANTUM_M);
             }
             let local = Vec3::new(1.0, -2.0, 2.0);
             let found = Vec3::from_array(BodyPose { position_m: [0.0; 3], ..rounded }.point_m(local.to_array()));
