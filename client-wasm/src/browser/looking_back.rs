@@ -13,6 +13,11 @@ impl App {
         self.past.as_ref().and_then(Past::mirror).unwrap_or(&self.mirror)
     }
 
+    /// Time between the oldest moment recorded and the present (s).
+    pub(super) fn recorded_secs(&self) -> f64 {
+        self.record.oldest_secs().map_or(0.0, |oldest_secs| (self.mirror.shown_secs() - oldest_secs).max(0.0))
+    }
+
     /// Time by which the picture is behind the present (s).
     pub(super) fn behind_secs(&self) -> f64 {
         self.past.as_ref().map_or(0.0, |past| (self.mirror.shown_secs() - past.goal_secs()).max(0.0))
@@ -57,7 +62,7 @@ impl App {
         self.work_on_past(now_secs);
     }
 
-    /// Goes towards the moment wanted. Shows the present again when the record has ended, which it does with the replica.
+    /// Goes towards the moment wanted. Shows the present again when nothing is recorded any more.
     pub(super) fn work_on_past(&mut self, now_secs: f64) {
         let Some(past) = &mut self.past else { return };
         let (was_there, window) = (past.is_caught_up(), &self.window);

@@ -78,7 +78,7 @@ impl App {
         json!({
             "is_live": self.past.is_none(),
             "is_playing": self.past.as_ref().is_none_or(Past::is_playing),
-            "recorded_secs": self.record.length_secs(),
+            "recorded_secs": self.recorded_secs(),
             "recorded_bytes": self.record.memory_bytes(),
             "behind_secs": self.behind_secs(),
             "shown_tick": self.shown().tick(),

@@ -83,15 +83,7 @@ impl Mirror {
                 Some(Event::Welcome { client, proof, server_version, scene_name })
             }
             ServerMessage::Scene { scene, height_png, covering_png, nutrient_png, models, shapes } => {
-                let decoded = DecodedScene::new(*scene, &height_png, &covering_png, &nutrient_png, models, shapes)?;
-                self.broken = BrokenPlants::new(decoded.flora().map_or(0, |flora| flora.grown().sites.total()));
-                self.scene = Some(Arc::new(decoded));
-                self.scene_number = self.scene_number.wrapping_add(1);
-                self.patches = PatchFields::default();
-                self.following = Following::default();
-                self.wind = WindFrames::default();
-                self.wind_field = self.scene.as_ref().map(|decoded| decoded.still_air());
-                self.poses = Playback::default();
+                self.load(DecodedScene::new(*scene, &height_png, &covering_png, &nutrient_png, models, shapes)?);
                 Some(Event::Scene)
             }
             ServerMessage::Poses { tick, objects } => {
@@ -138,6 +130,18 @@ impl Mirror {
             ServerMessage::Refused { refusal, reason } => Some(Event::Refused { refusal, reason }),
             ServerMessage::Pong { nonce } => Some(Event::Pong { nonce }),
         })
+    }
+
+    /// Begins with another scene, at rest.
+    fn load(&mut self, decoded: DecodedScene) {
+        self.broken = BrokenPlants::new(decoded.flora().map_or(0, |flora| flora.grown().sites.total()));
+        self.wind_field = Some(decoded.still_air());
+        self.scene = Some(Arc::new(decoded));
+        self.scene_number = self.scene_number.wrapping_add(1);
+        self.patches = PatchFields::default();
+        self.following = Following::default();
+        self.wind = WindFrames::default();
+        self.poses = Playback::default();
     }
 
     /// Completes the frame of step `tick`. The patches of a replica are not shown yet.

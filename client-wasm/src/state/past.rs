@@ -30,13 +30,16 @@ impl Run {
     }
 
     /// Applies frames up to the first at the moment or after it, or until `is_out_of_time`.
-    fn advance(&mut self, record: &Record, is_out_of_time: &mut impl FnMut() -> bool) -> Result<(), MirrorError> {
+    fn advance(&mut self, record: &Record, live: &Mirror, is_out_of_time: &mut impl FnMut() -> bool) -> Result<(), MirrorError> {
         while self.mirror.secs_of(self.mirror.tick()) < self.to_secs {
             let Some(frame) = record.frame(self.next) else { break };
             if is_out_of_time() {
                 return Ok(());
             }
-            self.mirror.follow(frame)?;
+            match frame.checkpoint.as_ref().filter(|_| frame.is_start) {
+                Some(checkpoint) => self.mirror = live.at(checkpoint)?,
+                None => self.mirror.follow(frame)?,
+            }
             self.next += 1;
         }
         self.mirror.following.show(&mut self.mirror.patches);
@@ -118,13 +121,13 @@ impl Past {
                 Some(shown) if shown.to_secs == self.goal_secs && shown.is_there => return Ok(()),
                 Some(shown) if shown.leads_to(record, self.goal_secs) => {
                     (shown.to_secs, shown.is_there) = (self.goal_secs, false);
-                    return shown.advance(record, &mut is_out_of_time);
+                    return shown.advance(record, live, &mut is_out_of_time);
                 }
                 _ => self.next = Run::new(record, live, self.goal_secs)?,
             }
         }
         if let Some(run) = &mut self.next {
-            run.advance(record, &mut is_out_of_time)?;
+            run.advance(record, live, &mut is_out_of_time)?;
         }
         if self.next.as_ref().is_some_and(|run| run.is_there) {
             self.shown = self.next.take();

@@ -20,7 +20,9 @@ pub(super) struct RecordedFrame {
     pub(super) secs: f64,
     /// Its messages as sent, the end of the frame included.
     pub(super) messages: Vec<Vec<u8>>,
-    /// State after the frame.
+    /// Whether it does not go on from the frame before: the replica was another then, or frames are missing.
+    pub(super) is_start: bool,
+    /// State after the frame. A start has one.
     pub(super) checkpoint: Option<Checkpoint>,
 }
 
@@ -31,7 +33,7 @@ impl RecordedFrame {
     }
 }
 
-/// Frames of the last minutes. It begins with a checkpoint, and is empty while the mirror has no replica.
+/// Frames of the last minutes, begun with a checkpoint. While the mirror has no replica, nothing is added.
 #[derive(Debug)]
 pub struct Record {
     frames: VecDeque<RecordedFrame>,
@@ -39,6 +41,8 @@ pub struct Record {
     first: u64,
     /// Messages of the frame that has not ended yet.
     begun: Vec<Vec<u8>>,
+    /// Whether the next frame is a start.
+    is_interrupted: bool,
     checkpoint_secs: f64,
     memory_bytes: usize,
     limit_bytes: usize,
@@ -53,7 +57,8 @@ impl Default for Record {
 impl Record {
     /// An empty record that takes at most `limit_bytes` of memory.
     pub fn with_limit(limit_bytes: usize) -> Self {
-        Self { frames: VecDeque::new(), first: 0, begun: Vec::new(), checkpoint_secs: 0.0, memory_bytes: 0, limit_bytes }
+        let (frames, begun) = (VecDeque::new(), Vec::new());
+        Self { frames, first: 0, begun, is_interrupted: true, checkpoint_secs: 0.0, memory_bytes: 0, limit_bytes }
     }
 
     /// Applies a message to the mirror, and records it.
@@ -70,10 +75,13 @@ impl Record {
         let event = mirror.apply(message)?;
         self.begun.extend(bytes);
         if is_start || mirror.replica().is_none() || self.begun.iter().map(Vec::len).sum::<usize>() > self.limit_bytes {
-            self.clear();
+            self.begun.clear();
+            self.is_interrupted = true;
         }
-        if matches!(event, Some(Event::FrameEnd { .. })) {
-            self.end_frame(mirror);
+        match event {
+            Some(Event::Scene) => self.clear(),
+            Some(Event::FrameEnd { .. }) => self.end_frame(mirror),
+            _ => {}
         }
         Ok(event)
     }
@@ -81,23 +89,25 @@ impl Record {
     /// Adds the frame that has ended, with a checkpoint if one is due.
     fn end_frame(&mut self, mirror: &Mirror) {
         let (messages, secs) = (std::mem::take(&mut self.begun), mirror.secs_of(mirror.tick()));
+        // An earlier step is that of a world that was restarted.
         if self.newest_secs().is_some_and(|newest_secs| secs <= newest_secs) {
             self.clear();
         }
-        let is_due = self.frames.is_empty() || secs - self.checkpoint_secs >= CHECKPOINT_SECS;
+        let is_start = self.is_interrupted || self.frames.is_empty();
+        let is_due = is_start || secs - self.checkpoint_secs >= CHECKPOINT_SECS;
         let checkpoint = is_due.then(|| mirror.checkpoint()).flatten();
         if checkpoint.is_some() {
-            self.checkpoint_secs = secs;
-        } else if self.frames.is_empty() {
-            return;
+            (self.checkpoint_secs, self.is_interrupted) = (secs, false);
         }
-        let frame = RecordedFrame { secs, messages, checkpoint };
-        self.memory_bytes += frame.memory_bytes();
-        self.frames.push_back(frame);
+        if checkpoint.is_some() || !is_start {
+            let frame = RecordedFrame { secs, messages, is_start, checkpoint };
+            self.memory_bytes += frame.memory_bytes();
+            self.frames.push_back(frame);
+        }
         self.trim(secs);
     }
 
-    /// Drops the oldest frames, up to a checkpoint, while the record is too long or too large.
+    /// Drops the oldest frames, up to a checkpoint, while the record reaches too far back from `newest_secs`, or is too large.
     fn trim(&mut self, newest_secs: f64) {
         let next = |record: &Self| record.frames.iter().skip(1).position(|frame| frame.checkpoint.is_some()).map(|place| place + 1);
         while let Some(front) = self.frames.front() {
@@ -107,7 +117,7 @@ impl Record {
             }
             match next(self) {
                 Some(place) if is_too_large || newest_secs - self.frames[place].secs >= RECORD_SECS => self.drop_first(place),
-                None if is_too_large => self.clear(),
+                None if is_too_large || newest_secs - self.frames[self.frames.len() - 1].secs >= RECORD_SECS => self.clear(),
                 _ => break,
             }
         }
@@ -122,6 +132,7 @@ impl Record {
     pub fn clear(&mut self) {
         self.drop_first(self.frames.len());
         self.begun.clear();
+        self.is_interrupted = true;
     }
 
     /// Memory of the record (bytes).
