@@ -70,7 +70,7 @@ impl Record {
             message,
             ServerMessage::Wind { .. } | ServerMessage::Steps { .. } | ServerMessage::Broken { .. } | ServerMessage::FrameEnd { .. }
         );
-        let is_start = matches!(message, ServerMessage::ReplicaState { part, parts, .. } if part + 1 == parts);
+        let is_start = matches!(message, ServerMessage::ReplicaState { part, parts, .. } if part.checked_add(1) == Some(parts));
         let bytes = (is_recorded && mirror.replica().is_some()).then(|| wire::encode(&message));
         let event = mirror.apply(message)?;
         self.begun.extend(bytes);
