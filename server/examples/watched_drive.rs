@@ -25,12 +25,7 @@ const WARM_UP_SECS: f32 = 5.0;
 type Sums = BTreeMap<&'static str, (usize, usize)>;
 
 fn main() -> anyhow::Result<()> {
-    let mut arguments = std::env::args().skip(1);
-    let scene = arguments.next().unwrap_or_else(|| "meadow".to_owned());
-    let radius_m: f32 = arguments.next().map_or(Ok(48.0), |text| text.parse()).context("RADIUS_M")?;
-    let measured_secs: f32 = arguments.next().map_or(Ok(20.0), |text| text.parse()).context("SECONDS")?;
-    let has_replica = arguments.next().is_some_and(|way| way == "replica");
-    let has_car = arguments.next().is_none_or(|car| car == "car");
+    let Arguments { scene, radius_m, measured_secs, has_replica, has_car } = arguments()?;
     let loaded = scenes::load(&scene)?;
     let requested = Arc::new(AtomicBool::new(false));
     let tick_hz = loaded.scene.tick_hz;
@@ -86,6 +81,26 @@ fn main() -> anyhow::Result<()> {
     );
     print_rates(&sums, measured_secs);
     Ok(())
+}
+
+/// Arguments of the program.
+struct Arguments {
+    scene: String,
+    radius_m: f32,
+    measured_secs: f32,
+    has_replica: bool,
+    has_car: bool,
+}
+
+fn arguments() -> anyhow::Result<Arguments> {
+    let mut arguments = std::env::args().skip(1);
+    Ok(Arguments {
+        scene: arguments.next().unwrap_or_else(|| "meadow".to_owned()),
+        radius_m: arguments.next().map_or(Ok(48.0), |text| text.parse()).context("RADIUS_M")?,
+        measured_secs: arguments.next().map_or(Ok(20.0), |text| text.parse()).context("SECONDS")?,
+        has_replica: arguments.next().is_some_and(|way| way == "replica"),
+        has_car: arguments.next().is_none_or(|car| car == "car"),
+    })
 }
 
 /// Prints the rate of each kind of message, and that of all.

@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 use tokio::net::TcpListener;
 use tokio::sync::{Semaphore, watch};
+use tokio::task::JoinHandle;
 use tokio::time::timeout;
 
 /// Time limit for the shutdown notices to all clients.
@@ -115,14 +116,19 @@ pub async fn run_simulation(
     stop.send_replace(true);
     wait_for_sessions(&client_slots, &pending_slots, config.limits).await;
     let joined = tokio::task::spawn_blocking(move || (runner.stop(), stream.join())).await;
-    let recorded = match recording {
-        Some(recording) => recording.await.unwrap_or_else(|panic| Err(InspectError::Sdk(panic.to_string()))),
-        None => Ok(()),
-    };
+    let recorded = outcome_of(recording).await;
     match joined {
         Ok((true, true)) => outcome.and(recorded.map_err(RunError::Incomplete)),
         Ok((true, false)) => Err(RunError::StreamStopped),
         _ => Err(RunError::WorldStopped),
+    }
+}
+
+/// Waits for a recording to end, if there is one.
+async fn outcome_of(recording: Option<JoinHandle<Result<(), InspectError>>>) -> Result<(), InspectError> {
+    match recording {
+        Some(recording) => recording.await.unwrap_or_else(|panic| Err(InspectError::Sdk(panic.to_string()))),
+        None => Ok(()),
     }
 }
 
