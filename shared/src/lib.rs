@@ -10,6 +10,7 @@
 //! - [`terrain`]: height map, covering map, normals.
 //! - [`grid`]: the grid of patches: indices and world coordinates.
 //! - [`bend`]: the bend field of the grass, a 2-D continuum (Chen & Johan 2010).
+//! - [`grass`] and [`body`]: contact, winds and flattened grass around the bend field; its causes, and replicas; shapes and motions of objects.
 //! - [`wind`]: tiling of the wind's box over the world, and trilinear sampling.
 //! - [`plant`]: mechanics of blades and underbrush, and where they grow.
 //! - [`light`]: position of the sun, sky, lamps, and the shading of grass.
@@ -23,9 +24,9 @@
 //!
 //! # Determinism
 //! Nothing here reads a clock, a file or the network, and everything builds for `wasm32`. The hashes, the codec, the growth of underbrush, the motion of
-//! blades, and the bend field's schemes other than `modal` (given their coefficients) use only integers, `+ − × ÷` and square roots: their bits are the
-//! same on every machine. Functions such as `exp` and `sin` come from the platform's library: coefficients of a step, headings, the scheme `modal`,
-//! postures and light may differ in the last bits between platforms, so the server's results are authoritative.
+//! blades, the wind with its gusts, and the [grass] with the bend field's schemes other than `modal` use only integers, `+ − × ÷`, square roots and the crate
+//! `libm`: their bits are the same on every machine, so clients can simulate the grass. Headings of broken plants, the scheme `modal`, postures and light use the
+//! platform's library: they may differ in the last bits, and the server's results are authoritative.
 
 pub mod bend;
 pub mod body;

@@ -304,7 +304,7 @@ mod tests {
             tick,
             wind_tick: 0,
             causes,
-            objects: objects.iter().map(|object| (object.0, tick as f32 * 0.1)).collect(),
+            objects: objects.iter().map(|object| (object.0, object.1[1].position_m[0])).collect(),
             checks: vec![],
         }
     }
@@ -318,7 +318,12 @@ mod tests {
     /// Objects that join, stand, move and leave.
     fn drive(tick: u64) -> StepRecord {
         let objects = (1..=4).filter(|id| tick >= u64::from(*id) * 20 && tick < 300 - u64::from(*id) * 30 || *id == 2 && tick > 290);
-        let moving = |tick: u64| if (100..150).contains(&tick) { 100 } else { tick };
+        // A long stop, at rest, and a short one in which nothing at all changes.
+        let moving = |tick: u64| match tick {
+            100..150 => 100,
+            202..208 => 202,
+            _ => tick,
+        };
         let objects: Vec<_> =
             objects.map(|id| (id, [pose(id, moving(tick)), pose(id, moving(tick + 1))], (110..150).contains(&tick))).collect();
         record(tick, &objects)

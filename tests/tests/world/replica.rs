@@ -229,3 +229,38 @@ fn a_replica_that_differs_is_found_and_repaired() -> Result<()> {
     assert!(viewer.is_equal(&server.world)?);
     Ok(())
 }
+
+#[test]
+#[ignore = "a measurement: cargo nextest run --release -p tests --test world --run-ignored only the_time_of_a_replica --no-capture"]
+fn the_time_of_a_replica() -> Result<()> {
+    for (scene, _) in scenes::list() {
+        let loaded = scenes::load(scene)?;
+        let [x, z] = loaded.scene.extent_m().map(|extent| 0.5 * extent);
+        let mut server = Server::new(World::new(&loaded.scene, loaded.maps())?, &loaded);
+        let mut viewer = server.join(&loaded, [x, 30.0, z])?;
+        let (mut random, mut queue, mut times) = (SplitMix64::new(3), vec![], vec![]);
+        let (mut state_bytes, mut awake) = (0, 0);
+        for publication in 0..600 {
+            commands(&mut random, publication, &mut queue);
+            server.publish(&mut queue, loaded.scene.tick_hz);
+            let had_replica = viewer.mirror.replica().is_some();
+            let (begun, bytes) = (Instant::now(), viewer.bytes);
+            viewer.receive()?;
+            match had_replica {
+                true => times.push(begun.elapsed().as_secs_f64() * 1e3 / STEPS_PER_PUBLISH as f64),
+                false => state_bytes += viewer.bytes - bytes,
+            }
+            awake = awake.max(server.world.bend().field().awake_count());
+        }
+        times.sort_by(f64::total_cmp);
+        let mean_ms = times.iter().sum::<f64>() / times.len() as f64;
+        let at = |fraction: f64| times[((times.len() - 1) as f64 * fraction) as usize];
+        println!(
+            "{scene:12} ms per step: mean {mean_ms:.2}, median {:.2}, 99 % {:.2}; up to {awake} patches awake; {:.0} kB before the first step",
+            at(0.5),
+            at(0.99),
+            state_bytes as f64 / 1e3
+        );
+    }
+    Ok(())
+}
