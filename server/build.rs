@@ -78,7 +78,7 @@ fn build_client(workspace: &Path, target_dir: &Path, page: &Path) -> Result<()> 
 
 /// Reruns the build when a source of the client changes.
 fn watch(workspace: &Path) {
-    for source in ["client-wasm", "shared/src", "shared/Cargo.toml", "Cargo.toml", "Cargo.lock", "server/build"] {
+    for source in ["client-wasm", "shared/src", "shared/Cargo.toml", "shared/vehicles", "Cargo.toml", "Cargo.lock", "server/build"] {
         println!("cargo::rerun-if-changed={}", workspace.join(source).display());
     }
 }

@@ -4,6 +4,7 @@
 //! - [`render`]: the renderer.
 //! - [`camera`]: the camera; [`rig`]: its motion, free or behind a vehicle; [`damped`]: critically damped smoothing.
 //! - [`vehicle`]: table of vehicle kinds; [`bindings`]: keys and gamepad buttons; [`controls`]: control input and its meaning for a vehicle.
+//! - [`prediction`]: the own vehicle, ahead of the server.
 //! - [`hearing`]: sound levels at the camera.
 //! - [`budget`]: automatic quality; [`redraw`]: detection of frames that need not be drawn.
 //! - `browser` (wasm only): page, socket, input devices and frame loop.
@@ -16,6 +17,7 @@ pub mod camera;
 pub mod controls;
 pub mod damped;
 pub mod hearing;
+pub mod prediction;
 pub mod redraw;
 pub mod render;
 pub mod replica_budget;

@@ -237,6 +237,7 @@ export class Panel {
     if (state.scene_hour !== null) this.showHour(state.hour, state.scene_hour);
     write("grass", state.replica ? `simulated here, ${(100 * state.replica_share).toFixed(1)} % of the time` : "from the server");
     write("latency", state.latency_ms === null ? "–" : `${state.latency_ms.toFixed(state.latency_ms < 10 ? 1 : 0)} ms`);
+    write("input", state.input_to_picture_ms === null ? "–" : inputLatency(state));
     this.showPeers(state.peers);
     const notice = state.notice ?? (performance.now() < this.notice.until ? this.notice.text : "");
     byId("notice").hidden = !notice;
@@ -274,6 +275,11 @@ function vehicleButton(name, label, key) {
   button.setAttribute("aria-pressed", "false");
   button.append(element("kbd", key.toUpperCase()));
   return button;
+}
+
+// Times from an input to the picture and to the server's pose.
+function inputLatency({ input_to_picture_ms: picture, input_to_server_ms: server }) {
+  return `picture ${picture.toFixed(0)}${server === null ? "" : ` · server ${server.toFixed(0)}`} ms`;
 }
 
 // An hour of the day as hours and minutes.

@@ -18,6 +18,7 @@
 //   run_past(runs)                   lets time go on from the moment shown, or stand still
 //   live()                           shows the present again
 //   choose(vehicle)                  takes a vehicle by its name, such as "car"; "" gives it up
+//   predict(enabled)                 predicts the own vehicle, or shows it as the server has it
 //   draw(time)                       draws one frame at this animation time (s); resolves when it is on the screen
 // The README lists the parameters of the address.
 
@@ -106,6 +107,7 @@ async function begin() {
     run_past: client.run_past,
     live: client.live,
     choose: client.choose,
+    predict: client.predict,
     draw: async (time) => {
       while (!client.draw(time)) await nextFrame();
       await nextFrame();
@@ -113,7 +115,7 @@ async function begin() {
   });
   const options = {
     name: name(), qualities: [parameter("quality"), remembered("quality")], device: device(info),
-    scene: parameter("scene"), paused: parameter("paused") === "1", adapter: adapterName(info),
+    scene: parameter("scene"), paused: parameter("paused") === "1", predicts: parameter("predict") !== "0", adapter: adapterName(info),
   };
   client.start("view", JSON.stringify(options));
   client.set_options(parameter("order") ?? "", parameter("far") ?? "");

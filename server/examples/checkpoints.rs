@@ -42,8 +42,9 @@ fn measure(name: &str) -> Result<(), Box<dyn std::error::Error>> {
         (copy_secs, longest_secs) = (copy_secs + secs, longest_secs.max(secs));
         drop(state);
         let steer = (tick as f32 * 0.01).sin();
-        commands =
-            (1..=CLIENTS).map(|client| Command::Drive { client, drive: Drive { throttle: 1.0, steer, ..Drive::default() } }).collect();
+        commands = (1..=CLIENTS)
+            .map(|client| Command::Drive { client, number: 0, drive: Drive { throttle: 1.0, steer, ..Drive::default() } })
+            .collect();
     }
     let state = world.save();
     let bytes = state.encode().len();

@@ -38,7 +38,8 @@ async fn main() -> anyhow::Result<()> {
                 let [x, z] = [0, 1].map(|axis| scene.camera.at[axis] * scene.extent_m()[axis]);
                 send(&mut socket, &ClientMessage::View { eye_m: [x, 5.0, z], radius_m: 48.0 }).await?;
                 send(&mut socket, &ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await?;
-                send(&mut socket, &ClientMessage::Drive(Drive { throttle: 0.7, steer: 0.2, ..Drive::default() })).await?;
+                send(&mut socket, &ClientMessage::Drive { number: 1, drive: Drive { throttle: 0.7, steer: 0.2, ..Drive::default() } })
+                    .await?;
             }
             ServerMessage::Poses { objects, .. } => {
                 if let Some(car) = objects.iter().find(|object| object.kind == VehicleKind::Car) {

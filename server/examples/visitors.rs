@@ -120,7 +120,7 @@ async fn visit(address: &str, index: u64, drives: bool) -> anyhow::Result<()> {
                         send(&mut socket, &ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await?;
                         continue;
                     }
-                    send(&mut socket, &ClientMessage::Drive(steer_to(car, target_m))).await?;
+                    send(&mut socket, &ClientMessage::Drive { number: 1, drive: steer_to(car, target_m) }).await?;
                 } else if !drives {
                     let [x, z] = [0, 1].map(|axis| target_m[axis] - at_m[axis]);
                     // Walking speed, 1.5 m/s.

@@ -44,7 +44,7 @@ fn main() -> anyhow::Result<()> {
     let start = Instant::now();
     for step in 0..((WARM_UP_SECS + measured_secs) * tick_hz) as u64 {
         let weaving = (step as f32 / tick_hz * 0.7).sin() * 0.5;
-        commands.push(Command::Drive { client: client.id, drive: Drive { throttle: 0.7, steer: weaving, ..Drive::default() } });
+        commands.push(Command::Drive { client: client.id, number: 0, drive: Drive { throttle: 0.7, steer: weaving, ..Drive::default() } });
         world.step(&commands);
         commands.clear();
         if !step.is_multiple_of(STEPS_PER_PUBLISH) {

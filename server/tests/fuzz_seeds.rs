@@ -150,7 +150,7 @@ fn lawn() -> LoadedScene {
 fn commands(tick: u64) -> Vec<Command> {
     match tick {
         0 => vec![Command::Join { client: 1 }, Command::Spawn { client: 1, kind: VehicleKind::Car }],
-        5 => vec![Command::Drive { client: 1, drive: Drive { throttle: 0.8, steer: 0.3, ..Drive::default() } }],
+        5 => vec![Command::Drive { client: 1, number: 0, drive: Drive { throttle: 0.8, steer: 0.3, ..Drive::default() } }],
         9 => vec![Command::Cameras(vec![Camera { client: 1, eye_m: [8.0, 2.0, 8.0] }])],
         20 => vec![Command::Join { client: 2 }, Command::Spawn { client: 2, kind: VehicleKind::ALL[1] }, Command::Leave { client: 1 }],
         25 => vec![Command::Return { client: 1 }, Command::Remove { client: 2 }],

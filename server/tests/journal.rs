@@ -28,7 +28,11 @@ fn commands(tick: u64) -> Vec<Command> {
     }
     if tick.is_multiple_of(2) {
         let steer = (tick as f32 * 0.013).sin();
-        commands.extend((1..=2).map(|client| Command::Drive { client, drive: Drive { throttle: 0.8, steer, ..Drive::default() } }));
+        commands.extend((1..=2).map(|client| Command::Drive {
+            client,
+            number: 0,
+            drive: Drive { throttle: 0.8, steer, ..Drive::default() },
+        }));
     }
     if tick.is_multiple_of(3) {
         commands.push(Command::Cameras(vec![Camera { client: 1, eye_m: [12.0 + 0.01 * tick as f32, 2.0, 12.0] }]));
@@ -272,7 +276,7 @@ fn an_hour_of_driving_takes_at_most_5_mb() {
         let phase = tick as f32;
         if tick.is_multiple_of(2) {
             let drive = Drive { throttle: (phase * 0.01).cos(), steer: (phase * 0.03).sin(), ..Drive::default() };
-            commands.push(Command::Drive { client: 1, drive });
+            commands.push(Command::Drive { client: 1, number: 0, drive });
         }
         if tick.is_multiple_of(3) {
             commands.push(Command::Cameras(vec![Camera { client: 1, eye_m: [phase.sin(), 2.0 + phase.cos(), phase] }]));

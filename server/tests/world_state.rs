@@ -17,7 +17,7 @@ fn commands(tick: u64, middle_m: [f32; 2]) -> Vec<Command> {
     if tick.is_multiple_of(10) {
         let swing = |client: u32| ((tick / 10 * 7 + u64::from(client) * 3) % 11) as f32 / 5.0 - 1.0;
         let drive = |client| Drive { throttle: 1.0, steer: swing(client), lift: swing(client + 1), brake: 0.0 };
-        commands.extend((1..=5).map(|client| Command::Drive { client, drive: drive(client) }));
+        commands.extend((1..=5).map(|client| Command::Drive { client, number: 0, drive: drive(client) }));
         commands.push(Command::Cameras(vec![Camera { client: 1, eye_m: [x + 0.02 * tick as f32, 2.0, z] }]));
     }
     match tick {

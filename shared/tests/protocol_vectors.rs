@@ -11,8 +11,8 @@ use prairie_core::wire::quantise::{
     dust, dust_code, heading_code, heading_rad, omega_code, omega_rad_per_s, theta_code, theta_rad, wind_code, wind_m_per_s,
 };
 use prairie_core::wire::{
-    BrokenPlant, ClientMessage, Drawing, Drive, Joined, Mesh, ObjectPose, PROTOCOL, PatchCheck, Peer, RareCauses, Refusal, ServerMessage,
-    Shape, Shapes, StepHead, TurbulenceState, codec, encode,
+    AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Joined, Mesh, ObjectPose, PROTOCOL, PatchCheck, Peer, RareCauses, Refusal,
+    ServerMessage, Shape, Shapes, StepHead, TurbulenceState, codec, encode,
 };
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -61,7 +61,7 @@ fn client_messages() -> Vec<ClientMessage> {
         ClientMessage::View { eye_m: [1.0, -2.5, 1e6], radius_m: 96.0 },
         ClientMessage::Choose { vehicle: Some(VehicleKind::Helicopter) },
         ClientMessage::Choose { vehicle: None },
-        ClientMessage::Drive(Drive { throttle: 1.0, steer: -0.5, lift: 0.25, brake: 0.125 }),
+        ClientMessage::Drive { number: 300, drive: Drive { throttle: 1.0, steer: -0.5, lift: 0.25, brake: 0.125 } },
         ClientMessage::Ack { frame: 127 },
         ClientMessage::Ack { frame: 70_000 },
         ClientMessage::Ack { frame: u32::MAX },
@@ -109,6 +109,7 @@ fn server_messages() -> Vec<ServerMessage> {
         ServerMessage::Pong { nonce: 7 },
         ServerMessage::ReplicaState { tick: 300, part: 1, parts: 200, payload: vec![5, 6] },
         ServerMessage::Steps { first_tick: 300, steps: vec![step(), StepHead::default()], moves: vec![3, 4] },
+        ServerMessage::Applied(AppliedInput { number: 7, tick: 300 }),
     ]
 }
 

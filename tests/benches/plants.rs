@@ -287,7 +287,7 @@ fn breaking() {
         &loaded.scene,
         Arc::new(maps.height.clone()),
         &maps.cover,
-        &prairie::objects::bodies(&loaded.scene.objects),
+        &prairie_vehicles::bodies(&loaded.scene.objects),
         &maps.drawings,
     );
     heading(&format!("a look at the wind for {} plants, a step", flora.grown().plants().len()), "slower");

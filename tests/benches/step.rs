@@ -26,7 +26,10 @@ fn busy(objects: u32) -> World {
 fn drives(objects: u32, tick: u32) -> Vec<Command> {
     let steer = |client: u32| ((tick / 60 + client * 37) % 100) as f32 / 50.0 - 1.0;
     let drive = |client| Drive { throttle: 1.0, steer: steer(client), lift: 0.1, brake: 0.0 };
-    (0..objects).filter(|client| (tick + client).is_multiple_of(60)).map(|client| Command::Drive { client, drive: drive(client) }).collect()
+    (0..objects)
+        .filter(|client| (tick + client).is_multiple_of(60))
+        .map(|client| Command::Drive { client, number: 0, drive: drive(client) })
+        .collect()
 }
 
 fn step(criterion: &mut Criterion) {

@@ -2,12 +2,12 @@
 
 use anyhow::Result;
 use glam::Vec3;
-use prairie::scenes;
+use prairie::scenes::{self, LoadedScene};
 use prairie::world::{Maps, World};
 use prairie_client::camera::Camera;
 use prairie_client::state::Mirror;
 use prairie_core::scene::{Patches, Scene, TerrainMaps};
-use prairie_core::terrain::{CoverMap, HeightMap, KindMap, grey_png};
+use prairie_core::terrain::{CoverMap, HeightMap, KindMap, grey_png, grey_png_16};
 use prairie_core::wind::WindField;
 use prairie_core::wire::ServerMessage;
 use std::sync::Arc;
@@ -54,6 +54,35 @@ pub fn hills(scene: &Scene) -> World {
         _ => 255,
     };
     World::new(scene, maps(scene, hills_m, cover)).expect("the default constants make a world")
+}
+
+/// A scene with its files, 256 m long: rolling hills, with this ID at each pixel of the covering map, 2 m apart.
+///
+/// # Errors
+/// When a map cannot be decoded.
+pub fn loaded_hills(cover: impl Fn(u32) -> u8) -> Result<LoadedScene> {
+    const BELOW_M: f32 = 8.0;
+    const LEVEL_M: f32 = 0.01;
+    let mut scene = scene(16);
+    (scene.terrain.level_m, scene.terrain.base_m) = (LEVEL_M, -BELOW_M);
+    let pixels = (scene.extent_m()[0] / 2.0) as u32 + 1;
+    let at = |i: u32| ((i % pixels) as f32 * 2.0, (i / pixels) as f32 * 2.0);
+    let level = |i: u32| ((hills_m(at(i).0, at(i).1) + BELOW_M) / LEVEL_M).round() as u16;
+    let height_png = grey_png_16([pixels; 2], &(0..pixels * pixels).map(level).collect::<Vec<_>>());
+    let covering_png = grey_png([pixels; 2], &(0..pixels * pixels).map(cover).collect::<Vec<_>>());
+    Ok(LoadedScene {
+        name: "hills".to_owned(),
+        height: HeightMap::from_png(&height_png, &scene.terrain)?,
+        cover: CoverMap::from_png(&covering_png)?,
+        scene,
+        height_png,
+        covering_png,
+        nutrient_png: vec![],
+        nutrients: None,
+        drawings: Default::default(),
+        models: vec![],
+        files: vec![],
+    })
 }
 
 /// Client mirror of a flat meadow in still air, `side_m` (a multiple of 8) long, and its number of plant sites, 16 per square metre.

@@ -13,6 +13,7 @@ use crate::bindings::{Action, next_vehicle};
 use crate::budget::FrameTime;
 use crate::camera::Camera;
 use crate::controls::Controls;
+use crate::prediction::Prediction;
 use crate::redraw::RedrawTracker;
 use crate::render::{Quality, RenderOptions, Split, bend_reach_m};
 use crate::replica_budget::{ReplicaBudget, Wish};
@@ -67,6 +68,8 @@ pub(super) struct Options {
     pub(super) scene: Option<String>,
     /// Whether to draw only on request.
     pub(super) paused: bool,
+    /// Whether to predict the own vehicle.
+    pub(super) predicts: bool,
     /// The browser's description of its graphics adapter.
     pub(super) adapter: String,
 }
@@ -81,6 +84,7 @@ pub(super) struct App {
     /// The past that is shown instead of the present, while the user looks back.
     pub(super) past: Option<Past>,
     pub(super) connection: Connection,
+    pub(super) prediction: Prediction,
     pub(super) rig: Option<Rig>,
     pub(super) meter: FrameMeter,
     pub(super) failure: Option<Failure>,
@@ -142,6 +146,7 @@ impl App {
         let input = Input::new(&window, &canvas);
         let connection = Connection::new(page::socket_url(&window)?, options.name.clone(), handle);
         Ok(Self {
+            prediction: Prediction::new(options.predicts),
             options,
             settings,
             mirror: Mirror::default(),
@@ -189,13 +194,10 @@ impl App {
         if self.replica_budget.wish(now_secs) == Some(Wish::Replica) {
             self.connection.replicate(true);
         }
-        if let Some(kind) = self.own_object().map(|pose| pose.kind) {
-            let controls = self.input.controls();
-            if controls != Controls::default() {
-                self.go_live();
-            }
-            self.connection.drive(controls.drive(kind), now_secs);
+        if self.own_object().is_some() && self.input.controls() != Controls::default() {
+            self.go_live();
         }
+        self.drive(now_secs);
         self.work_on_past(now_secs);
         if let Some(camera) = self.rig.as_ref().map(Rig::camera) {
             self.send_view(camera, now_secs);
@@ -218,7 +220,9 @@ impl App {
         let dt_secs = if self.past.is_some() && at_secs.is_none() { elapsed_secs } else { passed_secs } as f32;
         // The camera moves even if the world does not.
         let camera_secs = if at_secs.is_some() { dt_secs } else { elapsed_secs as f32 };
-        let vehicle = self.interpolated_own_object();
+        self.input.poll();
+        self.drive(now_secs);
+        let vehicle = self.place_own_object(now_secs);
         let (Some(rig), Some(gpu)) = (&mut self.rig, &mut self.gpu) else { return false };
         if gpu.is_busy() {
             self.waited = true;
@@ -240,6 +244,7 @@ impl App {
         let camera = rig.camera();
         if !self.redraw.needs_frame(mirror, &camera, view, dt_secs) && !forced && !self.draws_every_frame {
             self.meter.record_skipped();
+            self.prediction.drawn(&self.mirror, page::now_secs(&self.window));
             return false;
         }
         let Some(cpu_secs) = gpu.draw(mirror, &camera, &FrameInput { time_secs, dt_secs, split }) else {
@@ -247,6 +252,7 @@ impl App {
             return false;
         };
         self.meter.record(now_secs, cpu_secs);
+        self.prediction.drawn(&self.mirror, page::now_secs(&self.window));
         let interval_secs = (now_secs - std::mem::replace(&mut self.drawn_at_secs, now_secs)) as f32;
         let work_secs = gpu.gpu_secs().max(cpu_secs) as f32;
         let waited = std::mem::take(&mut self.waited);
@@ -274,14 +280,11 @@ impl App {
         self.mirror.newest_objects().iter().find(|pose| pose.id == own)
     }
 
-    fn interpolated_own_object(&self) -> Option<ObjectPose> {
-        self.shown().object(self.mirror.object_of(self.connection.client()?)?)
-    }
-
     /// Selects a vehicle, or leaves the current one.
     pub(super) fn take(&mut self, vehicle: Option<VehicleKind>) {
         self.go_live();
         self.wanted = vehicle;
+        self.prediction.restart();
         self.connection.choose(vehicle);
     }
 

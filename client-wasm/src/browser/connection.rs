@@ -244,13 +244,20 @@ impl Connection {
         self.send(&ClientMessage::Differs { tick, patch });
     }
 
-    /// Sends the driving commands if they have changed, at a limited rate.
-    pub(super) fn drive(&mut self, drive: Drive, now_secs: f64) {
-        if self.is_ready() && drive != self.last_drive && now_secs - self.drive_at_secs >= DRIVE_SECS {
-            self.last_drive = drive;
-            self.drive_at_secs = now_secs;
-            self.send(&ClientMessage::Drive(drive));
-        }
+    /// Whether an input differs from the one sent last.
+    pub(super) fn is_new_drive(&self, drive: Drive) -> bool {
+        drive != self.last_drive
+    }
+
+    /// Whether an input may be sent now, at a limited rate.
+    pub(super) fn may_drive(&self, now_secs: f64) -> bool {
+        self.is_ready() && now_secs - self.drive_at_secs >= DRIVE_SECS
+    }
+
+    /// Sends an input with its number.
+    pub(super) fn drive(&mut self, number: u32, drive: Drive, now_secs: f64) {
+        (self.last_drive, self.drive_at_secs) = (drive, now_secs);
+        self.send(&ClientMessage::Drive { number, drive });
     }
 
     /// Whether the client is connected and the socket is below the back-pressure limit.

@@ -41,6 +41,7 @@ impl App {
         match applied {
             Ok(Some(Event::Welcome { client, proof, scene_name, .. })) => {
                 self.connection.welcomed(client, proof);
+                self.prediction.restart();
                 self.scene_name = Some(scene_name);
                 self.was_welcomed = true;
             }
@@ -52,11 +53,17 @@ impl App {
             }
             Ok(Some(Event::FrameEnd { frame })) => {
                 self.connection.acknowledge(frame);
+                self.prediction.receive(&self.mirror, now_secs);
                 if let Some((tick, patch)) = self.mirror.take_difference() {
                     self.connection.report_difference(tick, patch);
                 }
             }
-            Ok(Some(Event::Pong { nonce })) => self.connection.ponged(nonce, now_secs),
+            Ok(Some(Event::Pong { nonce })) => {
+                self.connection.ponged(nonce, now_secs);
+                if let Some(secs) = self.connection.latency_secs() {
+                    self.prediction.note_round_trip(secs);
+                }
+            }
             Ok(Some(Event::Refused { refusal, reason })) => {
                 if refusal == Refusal::ObjectLimit {
                     self.wanted = None;
@@ -94,6 +101,7 @@ impl App {
             self.send_view(camera, now_secs);
         }
         if self.wanted.is_some() && !self.connection.is_back() {
+            self.prediction.restart();
             self.connection.choose(self.wanted);
         }
     }

@@ -20,6 +20,8 @@ pub(super) struct Input {
     pointers: Pointers,
     gamepad: Gamepad,
     buttons: Controls,
+    /// Time at which an input was noticed that is not sent yet (s).
+    noticed_secs: Option<f64>,
     _listeners: [Listener; 3],
 }
 
@@ -27,6 +29,8 @@ pub(super) struct Input {
 struct Keys {
     /// Codes of the keys held.
     down: BTreeSet<String>,
+    /// Time of the first change of `down` that is not sent yet (s).
+    changed_secs: Option<f64>,
     actions: Vec<Action>,
 }
 
@@ -38,11 +42,18 @@ impl Input {
         let listeners = [
             Listener::new(window, "keydown", move |event: &KeyboardEvent| pressed.borrow_mut().press(event)),
             Listener::new(window, "keyup", move |event: &KeyboardEvent| {
-                released.borrow_mut().down.remove(&event.code());
+                released.borrow_mut().release(event);
             }),
             Listener::new(window, "blur", move |_: &Event| blurred.borrow_mut().down.clear()),
         ];
-        Self { keys, pointers: Pointers::new(canvas), gamepad: Gamepad::default(), buttons: Controls::default(), _listeners: listeners }
+        Self {
+            keys,
+            pointers: Pointers::new(canvas),
+            gamepad: Gamepad::default(),
+            buttons: Controls::default(),
+            noticed_secs: None,
+            _listeners: listeners,
+        }
     }
 
     /// Combined controls of all devices.
@@ -53,6 +64,17 @@ impl Input {
     /// Sets the state of the page's up (+) and down (−) buttons.
     pub(super) fn hold_rise(&mut self, rise: f32) {
         self.buttons.rise = rise.clamp(-1.0, 1.0);
+    }
+
+    /// Time of the event behind the present controls (s): that of the key, or else when they were noticed, which is `now_secs` the first time.
+    pub(super) fn event_secs(&mut self, now_secs: f64) -> f64 {
+        let noticed_secs = *self.noticed_secs.get_or_insert(now_secs);
+        self.keys.borrow().changed_secs.unwrap_or(noticed_secs)
+    }
+
+    /// Forgets the event: its controls are sent, or those of before again.
+    pub(super) fn forget_event(&mut self) {
+        (self.noticed_secs, self.keys.borrow_mut().changed_secs) = (None, None);
     }
 
     /// Polls the gamepad, which sends no events.
@@ -87,11 +109,24 @@ impl Keys {
         let code = event.code();
         if HELD_KEYS.iter().any(|(known, _)| *known == code) {
             event.prevent_default();
-            self.down.insert(code);
+            if self.down.insert(code) {
+                self.note(event);
+            }
         }
         if !event.repeat() && self.actions.len() < ACTION_LIMIT {
             self.actions.extend(key_action(&event.key(), &event.code()));
         }
+    }
+
+    fn release(&mut self, event: &KeyboardEvent) {
+        if self.down.remove(&event.code()) {
+            self.note(event);
+        }
+    }
+
+    /// Notes the time of an event that changes the controls.
+    fn note(&mut self, event: &KeyboardEvent) {
+        self.changed_secs.get_or_insert(event.time_stamp() / 1e3);
     }
 
     fn controls(&self) -> Controls {

@@ -5,6 +5,7 @@
 mod app;
 mod connection;
 mod device_support;
+mod driving;
 mod failure;
 mod frame_meter;
 mod gamepad;
@@ -41,7 +42,7 @@ const TICK_MS: i32 = 33;
 
 /// Starts the client on the canvas with this id. `options` is a JSON object: `name` of the user, `qualities` (names in order of preference, or null),
 /// `device` (`is_software`, `is_touch`, and `budget_ms` per frame or null), `scene` (name in the address, or null), `paused` (draw only when [`draw`] is
-/// called) and `adapter` (the browser's description of its graphics adapter).
+/// called), `predicts` (whether the own vehicle is predicted) and `adapter` (the browser's description of its graphics adapter).
 ///
 /// # Errors
 /// If the page has no such canvas, or the options cannot be parsed.
@@ -261,6 +262,12 @@ pub fn set_hour(hour: f32) {
 #[wasm_bindgen]
 pub fn compare(left: String, right: String, border: f32) {
     with_app(|app| app.settings.compare([left, right], border));
+}
+
+/// Predicts the own vehicle from now on, or shows it as the server has it.
+#[wasm_bindgen]
+pub fn predict(enabled: bool) {
+    with_app(|app| app.prediction.enable(enabled));
 }
 
 /// Draws every frame, for a recording, or only those that differ from the previous one.

@@ -20,7 +20,7 @@ impl App {
         let is_heard = self.connection.client().is_some() && self.past.as_ref().is_none_or(Past::is_playing);
         let Some(camera) = self.rig.as_ref().map(Rig::camera).filter(|_| is_heard) else { return Value::Null };
         let shown = self.shown();
-        let Hearing { wind_m_per_s, rustle, engines } = hear(&camera, shown.newest_objects().iter().copied(), shown);
+        let Hearing { wind_m_per_s, rustle, engines } = hear(&camera, shown.heard_objects(), shown);
         let engines = engines.iter().map(|engine| {
             let HeardEngine { object, loudness, pitch_hz, beat_hz, pan } = *engine;
             json!({ "object": object, "loudness": loudness, "pitch_hz": pitch_hz, "beat_hz": beat_hz, "pan": pan })
@@ -37,6 +37,10 @@ impl App {
             "bytes_per_s": self.connection.bytes_per_s(),
             "bytes": self.connection.received_bytes(),
             "latency_ms": self.connection.latency_secs().map(|secs| secs * 1e3),
+            "predicting": self.prediction.is_predicting(),
+            "input_to_picture_ms": self.prediction.latency().to_picture_secs().map(|secs| secs * 1e3),
+            "input_to_server_ms": self.prediction.latency().to_server_secs().map(|secs| secs * 1e3),
+            "delay_ms": self.mirror.delay_secs() * 1e3,
             "replica": self.mirror.replica().is_some(),
             "replica_share": self.replica_budget.share(),
             "notice": self.notice(),

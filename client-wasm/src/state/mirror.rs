@@ -6,11 +6,12 @@ use super::fields::{PatchCodes, PatchFields, ShownWind, WindCodes, WindFrames, W
 use super::following::{Following, Part};
 use super::playback::Playback;
 use super::scene::DecodedScene;
+use super::seen_motion::SeenMotion;
 use prairie_core::grass::{EncodedSteps, Replica};
 use prairie_core::grid::PatchIndex;
 use prairie_core::scene::Scene;
 use prairie_core::wind::WindField;
-use prairie_core::wire::{ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage};
+use prairie_core::wire::{AppliedInput, ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage};
 use std::sync::Arc;
 
 /// Maximum number of peers stored; the server's list is truncated to it.
@@ -66,6 +67,10 @@ pub struct Mirror {
     pub(super) wind: WindFrames,
     pub(super) wind_field: Option<WindField>,
     pub(super) poses: Playback,
+    /// Pose to show of the client's own object, instead of the interpolated one.
+    pub(super) own: Option<ObjectPose>,
+    /// The newest input that moves the client's own object.
+    pub(super) applied: Option<AppliedInput>,
     pub(super) broken: BrokenPlants,
     pub(super) peers: Vec<Peer>,
     pub(super) tick: u64,
@@ -80,6 +85,7 @@ impl Mirror {
     pub fn apply(&mut self, message: ServerMessage) -> Result<Option<Event>, MirrorError> {
         Ok(match message {
             ServerMessage::Welcome { client, proof, server_version, scene_name } => {
+                self.applied = None;
                 Some(Event::Welcome { client, proof, server_version, scene_name })
             }
             ServerMessage::Scene { scene, height_png, covering_png, nutrient_png, models, shapes } => {
@@ -127,6 +133,10 @@ impl Mirror {
                 self.following.show(&mut self.patches);
                 Some(Event::FrameEnd { frame })
             }
+            ServerMessage::Applied(applied) => {
+                self.applied = Some(applied);
+                None
+            }
             ServerMessage::Refused { refusal, reason } => Some(Event::Refused { refusal, reason }),
             ServerMessage::Pong { nonce } => Some(Event::Pong { nonce }),
         })
@@ -142,6 +152,7 @@ impl Mirror {
         self.following = Following::default();
         self.wind = WindFrames::default();
         self.poses = Playback::default();
+        (self.own, self.applied) = (None, None);
     }
 
     /// Completes the frame of step `tick`. The patches of a replica are not shown yet.
@@ -167,7 +178,8 @@ impl Mirror {
         self.poses.advance(dt_secs);
     }
 
-    pub(super) fn tick_hz(&self) -> f32 {
+    /// Steps of the world in a second (Hz).
+    pub fn tick_hz(&self) -> f32 {
         self.scene.as_ref().map_or(60.0, |decoded| decoded.scene().tick_hz)
     }
 
@@ -181,9 +193,37 @@ impl Mirror {
         self.scene_number
     }
 
-    /// Interpolated poses of all objects, about 0.1 s behind the server.
+    /// Poses of all objects to show: [that of the own one](Self::show_own), and all others interpolated between the newest snapshots.
     pub fn objects(&self) -> impl Iterator<Item = ObjectPose> + use<> {
-        self.poses.interpolated().into_iter()
+        let own = self.own;
+        self.poses.interpolated().into_iter().map(move |pose| own.filter(|own| own.id == pose.id).unwrap_or(pose))
+    }
+
+    /// Shows an object in this pose from now on, or all of them interpolated.
+    pub fn show_own(&mut self, own: Option<ObjectPose>) {
+        self.own = own;
+    }
+
+    /// Interpolated pose of one object, whatever is shown of it.
+    pub fn interpolated(&self, id: ObjectId) -> Option<ObjectPose> {
+        self.poses.interpolated().into_iter().find(|pose| pose.id == id)
+    }
+
+    /// Poses of all objects as they are heard: that of the own one as it is shown, and the newest of all others.
+    pub fn heard_objects(&self) -> impl Iterator<Item = ObjectPose> {
+        self.newest_objects().iter().map(|pose| self.own.filter(|own| own.id == pose.id).unwrap_or(*pose))
+    }
+
+    /// The newest motion of an object, with its step; `None` while the frame of that step is incomplete. Angular velocity is the mean since the snapshot before.
+    pub fn newest_motion(&self, id: ObjectId) -> Option<SeenMotion> {
+        let ((newest_secs, pose), before) = self.poses.newest_two(id)?;
+        let is_complete = newest_secs == self.secs_of(self.tick);
+        is_complete.then(|| SeenMotion::new(self.tick, &pose, before.map(|(secs, before)| (newest_secs - secs, before))))
+    }
+
+    /// The newest input that moves the client's own object, if it has sent any; as of the newest frame.
+    pub fn applied_input(&self) -> Option<AppliedInput> {
+        self.applied
     }
 
     /// Interpolated pose of one object.
@@ -291,8 +331,18 @@ impl Mirror {
         self.wind.at((time_secs - WIND_DELAY_SECS) * f64::from(self.tick_hz()))
     }
 
-    /// Simulated time that is shown now (s), about 0.1 s behind the server.
+    /// Simulated time that is shown now (s), behind the newest frame by as much as its successors may be late.
     pub fn shown_secs(&self) -> f64 {
-        self.poses.time_secs().unwrap_or(self.time_secs)
+        self.poses.clock().time_secs().unwrap_or(self.time_secs)
+    }
+
+    /// Simulated time of a frame that would arrive now by the fastest way (s); `None` before the first one.
+    pub fn fresh_secs(&self) -> Option<f64> {
+        self.poses.clock().fresh_secs()
+    }
+
+    /// Time by which other objects are shown behind the fastest frames (s).
+    pub fn delay_secs(&self) -> f64 {
+        self.poses.clock().delay_secs()
     }
 }

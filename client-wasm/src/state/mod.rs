@@ -13,9 +13,11 @@ mod following;
 mod mirror;
 mod past;
 mod playback;
+mod playback_clock;
 mod record;
 mod sample;
 mod scene;
+mod seen_motion;
 
 pub use error::MirrorError;
 pub use fields::{PATCH_LIMIT, PatchCodes, ShownWind, WindCodes};
@@ -24,6 +26,7 @@ pub use past::Past;
 pub use playback::OBJECT_LIMIT;
 pub use record::{CHECKPOINT_SECS, RECORD_LIMIT_BYTES, RECORD_SECS, Record};
 pub use scene::DecodedScene;
+pub use seen_motion::SeenMotion;
 
 #[cfg(test)]
 mod tests;

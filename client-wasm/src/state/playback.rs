@@ -1,22 +1,14 @@
 //! Interpolation between the server's snapshots. Objects are drawn a little late, so that a next snapshot to move towards is usually there.
 
 use super::error::{MirrorError, range};
+use super::playback_clock::PlaybackClock;
 use crate::damped::wrap_angle;
 use glam::{Quat, Vec3};
-use prairie_core::wire::ObjectPose;
+use prairie_core::wire::{ObjectId, ObjectPose};
 use std::collections::VecDeque;
-
-/// Interpolation delay (s). Two lost or late snapshots of a 30 Hz stream stay invisible.
-const DELAY_SECS: f64 = 0.1;
 
 /// Maximum extrapolation time (s): how long objects continue at their last velocity without a new snapshot.
 const EXTRAPOLATION_SECS: f64 = 0.15;
-
-/// Clock error (s) above which the clock offset is set at once instead of being smoothed.
-const CLOCK_JUMP_SECS: f64 = 0.5;
-
-/// Smoothing factor of the measured clock offset.
-const CLOCK_SMOOTHING: f64 = 0.08;
 
 /// Minimum displacement (m), in excess of the velocity's, that counts as a teleport and is not interpolated.
 const TELEPORT_M: f32 = 4.0;
@@ -32,13 +24,14 @@ struct TimedPoses {
     objects: Vec<ObjectPose>,
 }
 
+/// A pose, with the time of its snapshot (s).
+type TimedPose = (f64, ObjectPose);
+
 /// The latest snapshots and the playback clock.
 #[derive(Debug, Default)]
 pub(super) struct Playback {
     snapshots: VecDeque<TimedPoses>,
-    clock_secs: f64,
-    /// Client clock minus server clock (s).
-    clock_offset_secs: Option<f64>,
+    clock: PlaybackClock,
 }
 
 impl Playback {
@@ -56,14 +49,13 @@ impl Playback {
                 newest.objects = objects;
                 return Ok(());
             }
-            Some(newest) if time_secs < newest.time_secs => self.snapshots.clear(),
+            Some(newest) if time_secs < newest.time_secs => {
+                self.snapshots.clear();
+                self.clock.restart();
+            }
             _ => {}
         }
-        let measured = self.clock_secs - time_secs;
-        self.clock_offset_secs = Some(match self.clock_offset_secs {
-            Some(offset) if (measured - offset).abs() < CLOCK_JUMP_SECS => offset + CLOCK_SMOOTHING * (measured - offset),
-            _ => measured,
-        });
+        self.clock.receive(time_secs, self.snapshots.back().map(|newest| time_secs - newest.time_secs));
         self.snapshots.push_back(TimedPoses { time_secs, objects });
         if self.snapshots.len() > SNAPSHOT_LIMIT {
             self.snapshots.pop_front();
@@ -73,17 +65,26 @@ impl Playback {
 
     /// Advances the client's clock by `dt_secs`.
     pub(super) fn advance(&mut self, dt_secs: f64) {
-        self.clock_secs += dt_secs;
+        self.clock.advance(dt_secs);
     }
 
     /// Sets the time of playback to `time_secs`.
     pub(super) fn show_at(&mut self, time_secs: f64) {
-        (self.clock_secs, self.clock_offset_secs) = (time_secs + DELAY_SECS, Some(0.0));
+        self.clock.show_at(time_secs);
     }
 
-    /// Simulated time of playback (s); `None` before the first snapshot.
-    pub(super) fn time_secs(&self) -> Option<f64> {
-        Some(self.clock_secs - self.clock_offset_secs? - DELAY_SECS)
+    /// The clock.
+    pub(super) fn clock(&self) -> &PlaybackClock {
+        &self.clock
+    }
+
+    /// Newest pose of an object, and the one of the snapshot before, with their times (s).
+    pub(super) fn newest_two(&self, id: ObjectId) -> Option<(TimedPose, Option<TimedPose>)> {
+        let mut newest = self.snapshots.iter().rev().map(|snapshot| {
+            let pose = snapshot.objects.iter().find(|pose| pose.id == id);
+            pose.map(|pose| (snapshot.time_secs, *pose))
+        });
+        Some((newest.next()??, newest.next().flatten()))
     }
 
     /// Newest received poses.
@@ -93,7 +94,7 @@ impl Playback {
 
     /// Poses at the playback time: cubic Hermite interpolation of position and velocity, and spherical interpolation of rotation.
     pub(super) fn interpolated(&self) -> Vec<ObjectPose> {
-        let (Some(time_secs), Some(newest), Some(oldest)) = (self.time_secs(), self.snapshots.back(), self.snapshots.front()) else {
+        let (Some(time_secs), Some(newest), Some(oldest)) = (self.clock.time_secs(), self.snapshots.back(), self.snapshots.front()) else {
             return Vec::new();
         };
         if time_secs <= oldest.time_secs {
@@ -166,78 +167,122 @@ mod tests {
         }
     }
 
-    impl Playback {
-        fn interpolated_at(&mut self, clock_secs: f64) -> Vec<ObjectPose> {
-            self.clock_secs = clock_secs;
-            self.interpolated()
-        }
+    const INTERVAL_SECS: f64 = 0.05;
+    /// A picture: the client's clock (s), the time of playback (s), the position (m), and whether it is extrapolated.
+    type Shown = (f64, f64, f64, bool);
+    /// Interval between two pictures (s).
+    const PICTURE_SECS: f64 = 0.01;
 
-        fn push_at(&mut self, clock_secs: f64, time_secs: f64, pose: ObjectPose) {
-            self.clock_secs = clock_secs;
-            self.push(time_secs, vec![pose]).expect("a valid pose");
+    /// A playback of snapshots of a car that starts at 0 and moves by `place` (m at a time in s) and `speed` (m/s), 20 a second, of which each is `late_secs` late; it
+    /// is shown up to `until_secs`. For each picture: the client's clock (s), the time of playback (s), the position (m), and whether it is extrapolated.
+    fn shown(
+        place: impl Fn(f64) -> f64,
+        speed: impl Fn(f64) -> f64,
+        late_secs: impl Fn(u32) -> f64,
+        until_secs: f64,
+    ) -> (Playback, Vec<Shown>) {
+        let (mut playback, mut pictures, mut next) = (Playback::default(), Vec::new(), 0);
+        let mut arrived_secs = 0.0_f64;
+        for picture in 0..(until_secs / PICTURE_SECS) as u32 {
+            let clock_secs = f64::from(picture) * PICTURE_SECS;
+            // In order, as on a socket.
+            while arrived_secs.max(f64::from(next) * INTERVAL_SECS + late_secs(next)) <= clock_secs + 1e-9 {
+                let time_secs = f64::from(next) * INTERVAL_SECS;
+                arrived_secs = arrived_secs.max(time_secs + late_secs(next));
+                playback.advance(arrived_secs.max(playback.clock.now_secs()) - playback.clock.now_secs());
+                playback.push(time_secs, vec![pose(place(time_secs) as f32, speed(time_secs) as f32)]).expect("a valid pose");
+                next += 1;
+            }
+            playback.advance(clock_secs - playback.clock.now_secs());
+            let (Some(time_secs), Some(newest)) = (playback.clock.time_secs(), playback.snapshots.back()) else { continue };
+            let newest_secs = newest.time_secs;
+            let at_m = f64::from(playback.interpolated()[0].position_m[0]);
+            pictures.push((clock_secs, time_secs, at_m, time_secs > newest_secs));
         }
+        (playback, pictures)
     }
 
-    /// Snapshots at 20 Hz of a car that accelerates at 3 m/s², arriving without delay.
-    fn accelerating() -> (Playback, impl Fn(f64) -> f64) {
-        let place = |t: f64| 1.5 * t * t;
-        let mut playback = Playback::default();
-        for i in 0..20 {
-            let t = f64::from(i) * 0.05;
-            playback.push_at(t, t, pose(place(t) as f32, 3.0 * t as f32));
-        }
-        (playback, place)
+    fn steady(late_secs: impl Fn(u32) -> f64, until_secs: f64) -> (Playback, Vec<Shown>) {
+        shown(|t| 10.0 * t, |_| 10.0, late_secs, until_secs)
+    }
+
+    /// A pseudo-random number from 0 to 1.
+    fn noise(n: u32) -> f64 {
+        f64::from(n.wrapping_mul(2_654_435_769) >> 8) / f64::from(1 << 24)
+    }
+
+    #[test]
+    fn a_steady_stream_is_shown_one_interval_late() {
+        let (playback, pictures) = steady(|_| 0.03, 10.0);
+        assert!((playback.clock.delay_secs() - 0.055).abs() < 1e-6, "{}", playback.clock.delay_secs());
+        let (clock_secs, time_secs, ..) = pictures[pictures.len() - 1];
+        assert!((clock_secs - 0.03 - time_secs - 0.055).abs() < 1e-6, "{time_secs} s at {clock_secs} s");
+        assert!(pictures.iter().all(|picture| !picture.3), "extrapolated");
+    }
+
+    #[test]
+    fn jitter_lengthens_the_delay_until_motion_is_even_and_its_end_shortens_it() {
+        let jitter = |n: u32| if (100..500).contains(&n) { 0.08 * noise(n) } else { 0.0 };
+        let (playback, pictures) = steady(jitter, 40.0);
+        let between = |from: f64, to: f64| pictures.iter().filter(move |picture| (from..to).contains(&picture.0));
+        let delay_secs = |(clock_secs, time_secs, ..): &Shown| clock_secs - time_secs;
+        let longest_secs = between(15.0, 25.0).map(delay_secs).fold(0.0, f64::max);
+        assert!((0.11..0.145).contains(&longest_secs), "{longest_secs} s behind");
+        let extrapolated = between(10.0, 25.0).filter(|picture| picture.3).count();
+        assert_eq!(extrapolated, 0, "of {}", between(10.0, 25.0).count());
+        let steps: Vec<_> = pictures.windows(2).filter(|pair| pair[0].0 > 1.0).map(|pair| pair[1].2 - pair[0].2).collect();
+        let even_m = 10.0 * PICTURE_SECS;
+        let (slowest, fastest) = steps.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), step| (low.min(*step), high.max(*step)));
+        assert!(slowest > 0.94 * even_m && fastest < 1.06 * even_m, "{slowest} to {fastest} m a picture instead of {even_m}");
+        assert!((playback.clock.delay_secs() - 0.055).abs() < 1e-6 && delay_secs(&pictures[pictures.len() - 1]) < 0.06);
+    }
+
+    #[test]
+    fn playback_follows_a_clock_that_was_set_at_once_and_waits_out_a_stall() {
+        // The server drops 2 s: later for good.
+        let (_, pictures) = steady(|n| if n < 100 { 0.0 } else { 2.0 }, 12.0);
+        let (clock_secs, time_secs, ..) = pictures[pictures.len() - 1];
+        assert!((clock_secs - 2.0 - time_secs - 0.055).abs() < 0.01, "{time_secs} s at {clock_secs} s");
+        // One second without a snapshot: then all arrive at once.
+        let (_, pictures) = steady(|n| (6.0 - f64::from(n) * INTERVAL_SECS).clamp(0.0, 1.0) * f64::from(u8::from(n >= 100)), 12.0);
+        assert!(pictures.windows(2).all(|pair| pair[1].1 > pair[0].1), "playback never jumps back");
     }
 
     #[test]
     fn constant_acceleration_is_reproduced_exactly() {
-        let (mut playback, place) = accelerating();
-        for i in 0..80 {
-            let clock = 0.12 + f64::from(i) * 0.011;
-            let shown = playback.interpolated_at(clock)[0].position_m[0];
-            assert!((f64::from(shown) - place(clock - DELAY_SECS)).abs() < 1e-5, "at {clock}");
+        let place = |t: f64| 1.5 * t * t;
+        let (_, pictures) = shown(place, |t| 3.0 * t, |_| 0.0, 2.0);
+        for (_, time_secs, at_m, _) in pictures.iter().filter(|picture| picture.1 > 0.0) {
+            assert!((at_m - place(*time_secs)).abs() < 1e-5, "at {time_secs}");
         }
     }
 
     #[test]
     fn without_snapshots_an_object_is_extrapolated_and_then_stops() {
-        let (mut playback, place) = accelerating();
-        let newest = 0.95;
-        let coasted = playback.interpolated_at(newest + DELAY_SECS + 0.1)[0].position_m[0];
-        assert!((f64::from(coasted) - (place(newest) + 3.0 * newest * 0.1)).abs() < 1e-5);
-        assert_eq!(playback.interpolated_at(50.0), playback.interpolated_at(60.0));
+        let (mut playback, pictures) = steady(|_| 0.0, 1.0);
+        let newest_m = 10.0 * playback.snapshots.back().expect("a snapshot").time_secs;
+        playback.advance(0.1);
+        let time_secs = playback.clock.time_secs().expect("a snapshot");
+        let coasted_m = f64::from(playback.interpolated()[0].position_m[0]);
+        assert!(coasted_m > newest_m && (coasted_m - 10.0 * time_secs).abs() < 1e-4, "{coasted_m} m after {} pictures", pictures.len());
+        playback.advance(50.0);
+        let stopped = playback.interpolated();
+        playback.advance(10.0);
+        assert_eq!(playback.interpolated(), stopped);
     }
 
     #[test]
     fn a_teleported_object_is_not_interpolated() {
-        let mut playback = Playback::default();
-        playback.push_at(0.0, 0.0, pose(0.0, 1.0));
-        playback.push_at(0.1, 0.1, pose(50.0, 1.0));
-        assert_eq!(playback.interpolated_at(0.15)[0].position_m[0], 50.0);
+        let (playback, pictures) = shown(|t| if t < 1.0 { 0.0 } else { 50.0 }, |_| 1.0, |_| 0.0, 2.0);
+        assert!(pictures.iter().all(|picture| picture.2 < 1.0 || picture.2 > 49.0) && playback.newest()[0].position_m[0] == 50.0);
     }
 
     #[test]
     fn a_restarted_world_discards_old_snapshots() {
-        let (mut playback, _) = accelerating();
-        playback.push_at(9.0, 0.0, pose(-4.0, 0.0));
-        assert_eq!(playback.interpolated_at(9.0)[0].position_m[0], -4.0);
-    }
-
-    #[test]
-    fn network_jitter_does_not_make_motion_uneven() {
-        let mut playback = Playback::default();
-        let (mut last, mut slowest, mut fastest) = (None, f32::INFINITY, 0.0_f32);
-        for i in 0..200_u32 {
-            let t = f64::from(i) * 0.05;
-            let late = if i % 3 == 0 { 0.03 } else { 0.0 };
-            playback.push_at(t + late, t, pose(10.0 * t as f32, 10.0));
-            let shown = playback.interpolated_at(t + 0.04)[0].position_m[0];
-            if let (Some(before), true) = (last.replace(shown), i > 60) {
-                slowest = slowest.min(shown - before);
-                fastest = fastest.max(shown - before);
-            }
-        }
-        assert!(slowest > 0.45 && fastest < 0.55, "{slowest} to {fastest} m a snapshot instead of 0.5");
+        let (mut playback, _) = steady(|_| 0.0, 1.0);
+        playback.advance(8.0);
+        playback.push(0.0, vec![pose(-4.0, 0.0)]).expect("a valid pose");
+        assert_eq!(playback.interpolated()[0].position_m[0], -4.0);
     }
 
     #[test]

@@ -12,6 +12,7 @@ use prairie_core::scene::{Scene, VehicleKind};
 use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
 use prairie_core::wind::{WindField, WindTiles};
 use prairie_core::wire::{Drawing, Mesh, Shapes};
+use prairie_vehicles::{Environment, LoneVehicle};
 use std::sync::Arc;
 
 /// Largest number of wind drawings.
@@ -23,7 +24,7 @@ pub struct DecodedScene {
     scene: Scene,
     layout: PatchLayout,
     heights: Arc<HeightMap>,
-    cover: CoverMap,
+    cover: Arc<CoverMap>,
     kinds: Arc<KindMap>,
     flora: Option<Flora>,
     models: Vec<(VehicleKind, Mesh)>,
@@ -50,6 +51,7 @@ impl DecodedScene {
         let heights = HeightMap::from_png(height_png, &scene.terrain);
         let heights = Arc::new(heights.map_err(|error| MirrorError::Map { map: "height map", error })?);
         let cover = CoverMap::from_png(covering_png).map_err(|error| MirrorError::Map { map: "covering map", error })?;
+        let cover = Arc::new(cover);
         let nutrients = (!nutrient_png.is_empty()).then(|| NutrientMap::from_png(nutrient_png));
         let nutrients = nutrients.transpose().map_err(|error| MirrorError::Map { map: "nutrient map", error })?;
         for (_, mesh) in &models {
@@ -85,6 +87,12 @@ impl DecodedScene {
     /// The covering map.
     pub fn cover(&self) -> &CoverMap {
         &self.cover
+    }
+
+    /// A vehicle of this kind, alone on the terrain of the scene.
+    pub fn lone_vehicle(&self, kind: VehicleKind) -> LoneVehicle {
+        let (height, cover) = (Arc::clone(&self.heights), Arc::clone(&self.cover));
+        LoneVehicle::new(&self.scene, Environment { height, cover, extent_m: self.scene.extent_m() }, kind)
     }
 
     /// Still air over the scene.

@@ -1,9 +1,9 @@
 //! Stability check: sub-steps of the bend field when the grass is struck at the greatest possible speed.
 
-use crate::objects::SPEED_LIMIT_M_PER_S;
 use crate::settings_error::SettingsError;
 use prairie_core::bend::{Damping, Scheme, WaveParams, limits};
 use prairie_core::scene::{DrawnWind, Grass, Patches, Scene, VehicleKind};
+use prairie_vehicles::SPEED_LIMIT_M_PER_S;
 
 /// Largest number of sub-steps per step that a scene's grass may need.
 const SUBSTEP_LIMIT: u32 = 64;

@@ -1,9 +1,9 @@
 //! Trails of the objects.
 
 use super::palette::Rgb;
-use crate::objects::trail_rgb;
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::{ObjectId, ObjectPose};
+use prairie_vehicles::trail_rgb;
 use std::collections::{BTreeMap, VecDeque};
 
 /// Largest number of points in a trail: 6 s in a file, 9 s live.

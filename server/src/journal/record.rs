@@ -78,8 +78,8 @@ mod tests {
         prop_oneof![
             (any::<u32>(), 0..VehicleKind::ALL.len()).prop_map(|(client, kind)| Command::Spawn { client, kind: VehicleKind::ALL[kind] }),
             any::<u32>().prop_map(|client| Command::Remove { client }),
-            (any::<u32>(), drive).prop_map(|(client, [throttle, steer, lift, brake])| {
-                Command::Drive { client, drive: Drive { throttle, steer, lift, brake } }
+            (any::<[u32; 2]>(), drive).prop_map(|([client, number], [throttle, steer, lift, brake])| {
+                Command::Drive { client, number, drive: Drive { throttle, steer, lift, brake } }
             }),
             proptest::collection::vec(camera, 0..5).prop_map(Command::Cameras),
             any::<u32>().prop_map(|client| Command::Join { client }),

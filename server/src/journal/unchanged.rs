@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Default)]
 pub struct Unchanged {
     cameras: Option<Vec<(u32, [u32; 3])>>,
-    drives: BTreeMap<u32, [u32; 4]>,
+    /// Number and bits.
+    drives: BTreeMap<u32, (u32, [u32; 4])>,
 }
 
 /// The bits of a camera: −0 is not 0.
@@ -35,7 +36,10 @@ impl Unchanged {
                 self.cameras = Some(bits);
                 changes
             }
-            Command::Drive { client, drive } => self.drives.insert(*client, drive_bits(drive)) != Some(drive_bits(drive)),
+            Command::Drive { client, number, drive } => {
+                let input = (*number, drive_bits(drive));
+                self.drives.insert(*client, input) != Some(input)
+            }
             Command::Spawn { client, .. } | Command::Remove { client } | Command::Leave { client } | Command::Return { client } => {
                 self.drives.remove(client);
                 true
@@ -53,7 +57,7 @@ mod tests {
     #[test]
     fn repetitions_are_left_out_except_for_a_new_vehicle() {
         let mut unchanged = Unchanged::default();
-        let drive = |client, throttle| Command::Drive { client, drive: Drive { throttle, ..Drive::default() } };
+        let drive = |client, throttle| Command::Drive { client, number: 7, drive: Drive { throttle, ..Drive::default() } };
         let cameras = |x| Command::Cameras(vec![Camera { client: 1, eye_m: [x, 2.0, 3.0] }]);
         let spawn = Command::Spawn { client: 1, kind: VehicleKind::Car };
         let all = [spawn.clone(), drive(1, 1.0), cameras(1.0), drive(2, 1.0)];

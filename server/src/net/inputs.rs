@@ -21,7 +21,7 @@ const EYE_LIMIT_M: f32 = 1e6;
 #[derive(Debug)]
 pub(super) struct Inputs {
     /// The newest input that the world has not accepted yet; a world that lags skips older ones.
-    drive: Option<Drive>,
+    drive: Option<(u32, Drive)>,
     view: Newest<AreaOfInterest>,
     choice: Newest<Option<VehicleKind>>,
     name: Newest<String>,
@@ -61,11 +61,11 @@ impl Inputs {
                 self.drive = None;
                 self.choice.put(vehicle);
             }
-            ClientMessage::Drive(drive) => {
+            ClientMessage::Drive { number, drive } => {
                 if !drive.is_valid() {
                     return Err(End::bad(format!("drive: {drive:?}; allowed: throttle, steer and lift -1..=1, brake 0..=1")));
                 }
-                self.drive = Some(drive);
+                self.drive = Some((number, drive));
             }
             ClientMessage::Ack { frame } => {
                 if !client.acknowledge(frame) {
@@ -121,8 +121,8 @@ impl Inputs {
         self.drive.is_some() && !self.choice.is_waiting()
     }
 
-    /// The driving input for the world.
-    pub(super) fn take_drive(&mut self) -> Option<Drive> {
+    /// The driving input for the world, with its number.
+    pub(super) fn take_drive(&mut self) -> Option<(u32, Drive)> {
         self.drive.take()
     }
 }

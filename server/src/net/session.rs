@@ -182,8 +182,8 @@ async fn receive_all<S: AsyncRead + AsyncWrite + Unpin>(
         let message = tokio::select! {
             message = reader.next() => message,
             Ok(room) = app.commands.reserve(), if inputs.has_drive() => {
-                if let Some(drive) = inputs.take_drive() {
-                    room.send(Command::Drive { client: client.id, drive });
+                if let Some((number, drive)) = inputs.take_drive() {
+                    room.send(Command::Drive { client: client.id, number, drive });
                 }
                 continue;
             }

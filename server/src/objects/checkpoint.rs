@@ -1,11 +1,11 @@
 //! Copies of the objects' state, from which they continue bit for bit.
 
-use super::terrain_colliders::TileIndex;
-use super::vehicle::{Driver, Vehicle};
-use super::{Objects, kinds};
+use super::Objects;
+use super::driver::{Driven, Driver};
 use prairie_core::body::BodyPose;
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::ObjectId;
+use prairie_vehicles::{TileIndex, Vehicle, dynamics};
 use rapier3d::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -43,10 +43,10 @@ pub enum ObjectsError {
 impl Objects {
     /// A copy of the state; shapes are shared.
     pub fn state(&self) -> ObjectsState {
-        let vehicle = |vehicle: &Vehicle| VehicleState {
-            id: vehicle.id,
+        let vehicle = |Driven { id, driver, vehicle }: &Driven| VehicleState {
+            id: *id,
             kind: vehicle.kind,
-            driver: vehicle.driver.clone(),
+            driver: driver.clone(),
             body: vehicle.body,
             controller: vehicle.controller.save(),
             previous: vehicle.previous,
@@ -69,9 +69,10 @@ impl Objects {
             if !state.physics.bodies.contains(body) {
                 return Err(ObjectsError::NoBody(id));
             }
-            let mut restored = (kinds::dynamics(kind).controller)(body, settings, 0.0);
+            let mut restored = (dynamics(kind).controller)(body, settings, 0.0);
             restored.restore(&controller).map_err(|error| ObjectsError::Controller(id, error))?;
-            Ok(Vehicle { id, kind, half_extents_m: settings.half_extents_m(kind), driver, body, controller: restored, previous })
+            let vehicle = Vehicle { kind, half_extents_m: settings.half_extents_m(kind), body, controller: restored, previous };
+            Ok(Driven { id, driver, vehicle })
         };
         self.vehicles = state.vehicles.into_iter().map(vehicle).collect::<Result<_, _>>()?;
         self.physics = state.physics;

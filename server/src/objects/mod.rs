@@ -4,30 +4,23 @@
 
 mod autopilot;
 mod checkpoint;
-mod dynamics;
-mod environment;
+mod driver;
 pub mod gltf;
-mod kinds;
 mod spawn;
-mod terrain_colliders;
-mod vehicle;
 
 pub use checkpoint::{ObjectsError, ObjectsState};
-pub use dynamics::Airflow;
-pub use environment::Environment;
-pub use kinds::{airflow, bodies, prisms, trail_rgb};
-pub use vehicle::SPEED_LIMIT_M_PER_S;
+pub use prairie_vehicles::Environment;
 
 use crate::checksum::Checksum;
 use autopilot::Autopilot;
-use dynamics::ControlStep;
+use driver::{Driven, Driver};
 use prairie_core::body::{BodyPose, Motion};
 use prairie_core::scene::{self, Scene, VehicleKind};
-use prairie_core::wire::{Drive, ObjectId, ObjectPose};
+use prairie_core::wire::{AppliedInput, Drive, ObjectId, ObjectPose};
+use prairie_vehicles::{ControlStep, TerrainColliders, Vehicle, dynamics, pose};
 use rapier3d::prelude::*;
 use spawn::Disc;
-use terrain_colliders::TerrainColliders;
-use vehicle::{Driver, Vehicle, pose};
+use std::collections::BTreeMap;
 
 /// Gap between a new object's box and the ground (m).
 const DROP_M: f32 = 0.05;
@@ -39,7 +32,7 @@ pub struct Objects {
     environment: Environment,
     terrain: TerrainColliders,
     physics: PhysicsWorld,
-    vehicles: Vec<Vehicle>,
+    vehicles: Vec<Driven>,
     settings: scene::Objects,
     next_id: ObjectId,
 }
@@ -67,25 +60,35 @@ impl Objects {
     /// Gives `client` a vehicle near `center_m` in place of its previous one. Returns `None` when the limit is reached or no position is free.
     pub fn spawn(&mut self, client: u32, kind: VehicleKind, center_m: [f32; 2]) -> Option<ObjectId> {
         self.remove(client);
-        self.add(kind, Driver::Client { client, drive: Drive::default() }, center_m, spawn::NEAR_M)
+        self.add(kind, Driver::client(client), center_m, spawn::NEAR_M)
     }
 
     /// Removes the vehicle of `client`.
     pub fn remove(&mut self, client: u32) {
         if let Some(slot) = self.slot_of(client) {
             let vehicle = self.vehicles.remove(slot);
-            self.physics.remove_body(vehicle.body);
+            self.physics.remove_body(vehicle.vehicle.body);
         }
     }
 
-    /// Sets the input of the vehicle of `client`, which stays until the next call. An invalid [`Drive`] is ignored.
-    pub fn drive(&mut self, client: u32, input: Drive) {
+    /// Sets the input of the vehicle of `client`, which stays until the next call: its number by the client, and the step in which it first has effect. An invalid
+    /// [`Drive`] is ignored.
+    pub fn drive(&mut self, client: u32, input: Drive, applied: AppliedInput) {
         if let Some(slot) = self.slot_of(client)
-            && let Driver::Client { drive, .. } = &mut self.vehicles[slot].driver
+            && let Driver::Client { drive, applied: newest, .. } = &mut self.vehicles[slot].driver
             && input.is_valid()
         {
-            *drive = input;
+            (*drive, *newest) = (input, applied);
         }
+    }
+
+    /// The newest input of each client with a vehicle that has sent any.
+    pub fn applied_inputs(&self) -> BTreeMap<u32, AppliedInput> {
+        let applied = self.vehicles.iter().filter_map(|vehicle| match vehicle.driver {
+            Driver::Client { client, applied, .. } => Some((client, applied)),
+            Driver::Autopilot(_) | Driver::None => None,
+        });
+        applied.filter(|(_, applied)| applied.number != 0).collect()
     }
 
     /// Limit of the number of objects.
@@ -111,16 +114,15 @@ impl Objects {
         if self.is_empty() && self.terrain.is_empty() {
             return;
         }
-        let positions: Vec<_> = self.vehicles.iter().map(|vehicle| pose(&self.physics.bodies[vehicle.body]).xz()).collect();
+        let positions: Vec<_> = self.vehicles.iter().map(|driven| pose(&self.physics.bodies[driven.vehicle.body]).xz()).collect();
         self.terrain.follow(&positions, &mut self.physics);
-        for vehicle in &mut self.vehicles {
-            vehicle.previous = pose(&self.physics.bodies[vehicle.body]);
-            let drive = vehicle.input(dt_secs, &self.physics, &self.terrain);
+        for driven in &mut self.vehicles {
+            let drive = driven.input(dt_secs, &self.physics, &self.terrain);
             let (physics, terrain) = (&mut self.physics, &self.terrain);
-            vehicle.controller.control(drive, &mut ControlStep { dt_secs, physics, terrain, wind_m_per_s: &wind_m_per_s });
+            driven.vehicle.control(drive, &mut ControlStep { dt_secs, physics, terrain, wind_m_per_s: &wind_m_per_s });
         }
         self.physics.step();
-        for vehicle in &self.vehicles {
+        for Driven { vehicle, .. } in &self.vehicles {
             vehicle.confine(&mut self.physics.bodies[vehicle.body], &self.environment, &self.terrain);
         }
     }
@@ -132,24 +134,24 @@ impl Objects {
 
     /// Poses of all objects, ascending by number.
     pub fn poses(&self) -> Vec<ObjectPose> {
-        let object_pose = |vehicle: &Vehicle| {
+        let object_pose = |Driven { id, vehicle, .. }: &Driven| {
             let body = &self.physics.bodies[vehicle.body];
             let BodyPose { position_m, rotation } = pose(body);
             let velocity_m_per_s = body.linvel().to_array();
             let part_rad = vehicle.controller.part_rad();
-            ObjectPose { id: vehicle.id, kind: vehicle.kind, position_m, rotation, velocity_m_per_s, part_rad }
+            ObjectPose { id: *id, kind: vehicle.kind, position_m, rotation, velocity_m_per_s, part_rad }
         };
         self.vehicles.iter().map(object_pose).collect()
     }
 
     /// Numbers of all objects, ascending, and angles of their moving parts (rad).
     pub fn parts(&self) -> impl Iterator<Item = (ObjectId, f32)> {
-        self.vehicles.iter().map(|vehicle| (vehicle.id, vehicle.controller.part_rad()))
+        self.vehicles.iter().map(|driven| (driven.id, driven.vehicle.controller.part_rad()))
     }
 
     /// Motions of all objects in the newest step.
     pub fn motions(&self) -> Vec<Motion> {
-        let motion = |vehicle: &Vehicle| {
+        let motion = |Driven { vehicle, .. }: &Driven| {
             let body = &self.physics.bodies[vehicle.body];
             Motion {
                 kind: vehicle.kind,
@@ -178,23 +180,20 @@ impl Objects {
         if self.vehicles.len() >= self.settings.limit as usize {
             return None;
         }
-        let disc = |other: &Vehicle| Disc { at_m: pose(&self.physics.bodies[other.body]).xz(), radius_m: radius_m(other.half_extents_m) };
+        let disc = |Driven { vehicle: other, .. }: &Driven| {
+            let at_m = pose(&self.physics.bodies[other.body]).xz();
+            Disc { at_m, radius_m: radius_m(other.half_extents_m) }
+        };
         let taken: Vec<_> = self.vehicles.iter().map(disc).collect();
-        let (dynamics, half_extents_m) = (kinds::dynamics(kind), self.settings.half_extents_m(kind));
+        let half_extents_m = self.settings.half_extents_m(kind);
         let at_m = spawn::find(center_m, spacing_m, radius_m(half_extents_m), &taken, &self.terrain, &self.environment)?;
         let heading_rad = (at_m[0] - center_m[0]).atan2(center_m[1] - at_m[1]);
-        let reach_m = if dynamics.follows_terrain { 0.0 } else { 0.7 * radius_m(half_extents_m) };
-        let (body, colliders) = (dynamics.body)(&self.settings);
-        let center = Vector::new(at_m[0], self.highest_within(at_m, reach_m) + half_extents_m[1] + DROP_M, at_m[1]);
-        let body = self.physics.insert_body(body.pose(Pose::from_parts(center, Rotation::from_rotation_y(-heading_rad))));
-        for collider in colliders {
-            self.physics.insert_collider(collider, Some(body));
-        }
-        let controller = (dynamics.controller)(body, &self.settings, heading_rad);
+        let reach_m = if dynamics(kind).follows_terrain { 0.0 } else { 0.7 * radius_m(half_extents_m) };
+        let center_m = [at_m[0], self.highest_within(at_m, reach_m) + half_extents_m[1] + DROP_M, at_m[1]];
+        let vehicle = Vehicle::insert(kind, &self.settings, center_m, heading_rad, &mut self.physics);
         let id = self.next_id;
         self.next_id += 1;
-        let previous = pose(&self.physics.bodies[body]);
-        self.vehicles.push(Vehicle { id, kind, half_extents_m, driver, body, controller, previous });
+        self.vehicles.push(Driven { id, driver, vehicle });
         Some(id)
     }
 

@@ -1,7 +1,6 @@
 //! Free positions for new objects.
 
-use super::environment::Environment;
-use super::terrain_colliders::TerrainColliders;
+use prairie_vehicles::{Environment, TerrainColliders};
 
 /// Number of candidates along the spiral.
 const TRIES: u32 = 4096;

@@ -227,7 +227,7 @@ mod tests {
             let aside = (to[0] - x).atan2(z - to[1]) + 2.0 * turn_y.atan2(turn_w);
             let steer = aside.sin().atan2(aside.cos()).clamp(-1.0, 1.0);
             let throttle = if vx.hypot(vz) < 7.0 { 0.7 } else { 0.0 };
-            world.step(&[Command::Drive { client: 1, drive: Drive { throttle, steer, ..Drive::default() } }]);
+            world.step(&[Command::Drive { client: 1, number: 0, drive: Drive { throttle, steer, ..Drive::default() } }]);
         }
         panic!("after a minute the car is at {:?}, on its way to {:?}", world.snapshot().objects, lane.peek());
     }

@@ -1,7 +1,6 @@
 //! The message with everything that is constant in a run of a scene.
 
 use super::LoadedScene;
-use crate::objects;
 use prairie_core::wire::{Drawing, ServerMessage, Shapes};
 
 impl LoadedScene {
@@ -14,7 +13,7 @@ impl LoadedScene {
             covering_png: self.covering_png.clone(),
             nutrient_png: self.nutrient_png.clone(),
             models: self.models.clone(),
-            shapes: Shapes { bodies: objects::bodies(&self.scene.objects), drawings: drawings.collect() },
+            shapes: Shapes { bodies: prairie_vehicles::bodies(&self.scene.objects), drawings: drawings.collect() },
         }
     }
 }

@@ -8,7 +8,8 @@ pub use broken_plants::BrokenPlants;
 pub use prairie_core::grass::{BentPatches, PatchCodes, PatchQuantiser};
 
 use prairie_core::grass::StepRecord;
-use prairie_core::wire::{ObjectPose, TurbulenceState};
+use prairie_core::wire::{AppliedInput, ObjectPose, TurbulenceState};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The state of the world after a step.
@@ -20,6 +21,8 @@ pub struct Snapshot {
     pub time_secs: f64,
     /// Poses of all objects.
     pub objects: Vec<ObjectPose>,
+    /// The newest input of each driven vehicle, by its client.
+    pub inputs: BTreeMap<u32, AppliedInput>,
     /// Limit of the number of objects.
     pub object_limit: u32,
     /// The wind.

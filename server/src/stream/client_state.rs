@@ -9,7 +9,7 @@ use crate::snapshot::Snapshot;
 use crate::token_bucket::TokenBucket;
 use bytes::Bytes;
 use prairie_core::grid::{PatchIndex, PatchLayout};
-use prairie_core::wire::{self, PATCH_MEMORY, ServerMessage};
+use prairie_core::wire::{self, AppliedInput, PATCH_MEMORY, ServerMessage};
 use std::collections::HashMap;
 use std::time::Instant;
 
@@ -70,6 +70,8 @@ pub struct ClientState {
     patch_messages: u64,
     held_wind: Option<u32>,
     held_roster: u64,
+    /// The newest input of the client's vehicle that was reported.
+    reported: Option<AppliedInput>,
     /// Number of broken plants sent, in the order of breaking.
     sent_broken: usize,
     area: Option<AreaOfInterest>,
@@ -89,6 +91,7 @@ impl ClientState {
             patch_messages: 0,
             held_wind: None,
             held_roster: 0,
+            reported: None,
             sent_broken: 0,
             area: None,
             wanted: Vec::new(),
@@ -117,6 +120,8 @@ impl ClientState {
         let has_replica = self.following.has_replica();
         let mut messages: Vec<Bytes> = if has_replica { vec![] } else { vec![publication.poses.clone()] };
         messages.extend(extra);
+        let applied = snapshot.inputs.get(&client.id).copied();
+        messages.extend(applied.filter(|_| applied != self.reported).map(|input| wire::encode(&ServerMessage::Applied(input)).into()));
         if self.held_roster != publication.roster_version {
             messages.push(publication.roster.clone());
         }
@@ -148,7 +153,7 @@ impl ClientState {
         }
         self.following.note_sent(publication.steps, publication.now);
         self.frame = number;
-        self.held_roster = publication.roster_version;
+        (self.held_roster, self.reported) = (publication.roster_version, applied);
         self.sent_broken = broken.map_or(self.sent_broken, |(count, _)| count);
         self.held_wind = wind.or(self.held_wind);
         self.hold(patches);

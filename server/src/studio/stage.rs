@@ -102,7 +102,7 @@ impl Stage {
 
     /// Sets the controls of `client`'s vehicle.
     pub fn drive(&mut self, client: u32, drive: Drive) {
-        self.command(&[Command::Drive { client, drive }]);
+        self.command(&[Command::Drive { client, number: 0, drive }]);
     }
 
     /// Removes all objects from the mirror until the next [`show`](Self::show).

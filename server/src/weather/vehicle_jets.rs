@@ -1,8 +1,8 @@
 //! Jets: air moved by vehicles.
 
-use crate::objects::{Airflow, airflow};
 use glam::Vec3;
 use prairie_core::body::Motion;
+use prairie_vehicles::{Airflow, airflow};
 use prairie_wind::Jet;
 
 /// Speed (m/s), radius (m) and rate (1/s) of rotor downwash.

@@ -24,6 +24,8 @@ pub enum Command {
     Drive {
         /// Number of the client.
         client: u32,
+        /// Number of the input, which the client gave it.
+        number: u32,
         /// The driver's input.
         drive: Drive,
     },

@@ -12,7 +12,7 @@ pub use prairie_core::grass::Camera;
 use crate::bend;
 use crate::bend::pool::Pool;
 use crate::checksum::Checksum;
-use crate::objects::{Environment, Objects, bodies};
+use crate::objects::{Environment, Objects};
 use crate::plants::PlantDamage;
 use crate::settings_error::SettingsError;
 use crate::snapshot::{Diagnostics, PatchQuantiser, Snapshot};
@@ -27,7 +27,8 @@ use prairie_core::plant::flora::Flora;
 use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::Scene;
 use prairie_core::terrain::{CoverMap, HeightMap};
-use prairie_core::wire::{Drive, ObjectId, VIEW_RADIUS_LIMIT_M};
+use prairie_core::wire::{AppliedInput, Drive, ObjectId, ObjectPose, VIEW_RADIUS_LIMIT_M};
+use prairie_vehicles::bodies;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -147,6 +148,7 @@ impl World {
             tick: self.tick,
             time_secs: self.tick as f64 * f64::from(self.dt_secs),
             objects: self.objects.poses(),
+            inputs: self.objects.applied_inputs(),
             object_limit: self.objects.limit(),
             wind: Arc::clone(self.weather.frame()),
             patches: quantiser.quantise(self.tick, &self.bend, |patch| self.is_in_sight(patch), &Pool),
@@ -164,6 +166,11 @@ impl World {
     /// Whether nothing but the wind moves: there are no objects, and all patches sleep.
     pub fn is_idle(&self) -> bool {
         self.objects.is_empty() && self.bend.field().awake_count() == 0
+    }
+
+    /// Poses of all objects, ascending by number.
+    pub fn poses(&self) -> Vec<ObjectPose> {
+        self.objects.poses()
     }
 
     /// The vehicle of a client.
@@ -247,12 +254,14 @@ impl World {
                 self.departed.forget(*client);
                 self.objects.remove(*client);
             }
-            Command::Drive { client, drive } => self.objects.drive(*client, *drive),
+            Command::Drive { client, number, drive } => {
+                self.objects.drive(*client, *drive, AppliedInput { number: *number, tick: self.tick + 1 });
+            }
             Command::Cameras(cameras) => self.cameras.clone_from(cameras),
             Command::Join { client } => self.newest_client = self.newest_client.max(*client),
             Command::Leave { client } => {
                 if self.objects.object_of(*client).is_some() {
-                    self.objects.drive(*client, Drive::default());
+                    self.objects.drive(*client, Drive::default(), AppliedInput::default());
                     self.departed.leave(*client, self.tick);
                 }
             }

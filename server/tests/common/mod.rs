@@ -69,6 +69,7 @@ impl Replica {
             | ServerMessage::Pong { .. }
             | ServerMessage::ReplicaState { .. }
             | ServerMessage::Steps { .. }
+            | ServerMessage::Applied(_)
             | ServerMessage::Refused { .. } => {}
         }
         message

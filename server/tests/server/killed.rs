@@ -93,7 +93,7 @@ async fn kill_and_return(frames: usize) {
     for round in 0..2 {
         for frame in 0..frames {
             let steer = (frame as f32 * 0.3).sin();
-            client.send_message(&ClientMessage::Drive(Drive { throttle: 1.0, steer, ..Drive::default() })).await;
+            client.send_message(&ClientMessage::Drive { number: 1, drive: Drive { throttle: 1.0, steer, ..Drive::default() } }).await;
             client.frame().await;
         }
         let seen = client.replica.tick;

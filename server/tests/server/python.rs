@@ -90,7 +90,7 @@ async fn the_python_client_sees_the_wind_and_the_track_of_a_car() {
     let server = Server::start_meadow().await;
     let mut driver = PlainClient::join(&server, "driver").await;
     driver.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
-    driver.send_message(&ClientMessage::Drive(Drive { throttle: 0.5, ..Drive::default() })).await;
+    driver.send_message(&ClientMessage::Drive { number: 1, drive: Drive { throttle: 0.5, ..Drive::default() } }).await;
     let mut received = Received::default();
     while driver.objects.is_empty() {
         received.next(&mut driver).await;

@@ -29,7 +29,7 @@ async fn two_clients_see_the_same_world() {
     let mut ada = PlainClient::join(&server, "Ada").await;
     let mut bob = PlainClient::join(&server, " Bob\u{7}").await;
     ada.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
-    ada.send_message(&ClientMessage::Drive(Drive { throttle: 1.0, ..Drive::default() })).await;
+    ada.send_message(&ClientMessage::Drive { number: 1, drive: Drive { throttle: 1.0, ..Drive::default() } }).await;
     let object = Some(100 + ada.id);
     let roster = vec![(ada.id, "Ada".to_owned(), object), (bob.id, "Bob".to_owned(), None)];
     for client in [&mut ada, &mut bob] {
@@ -86,9 +86,9 @@ async fn the_newest_input_reaches_a_lagging_world() {
     driver.frames_until(|driver| !driver.objects.is_empty()).await;
     halted.store(true, Relaxed);
     for _ in 0..5000 {
-        driver.send_message(&ClientMessage::Drive(Drive::default())).await;
+        driver.send_message(&ClientMessage::Drive { number: 1, drive: Drive::default() }).await;
     }
-    driver.send_message(&ClientMessage::Drive(Drive { throttle: 1.0, ..Drive::default() })).await;
+    driver.send_message(&ClientMessage::Drive { number: 1, drive: Drive { throttle: 1.0, ..Drive::default() } }).await;
     driver.send_message(&ClientMessage::Ping { nonce: 1 }).await;
     while driver.receive().await != Ok(ServerMessage::Pong { nonce: 1 }) {}
     halted.store(false, Relaxed);
@@ -102,7 +102,7 @@ async fn another_client_sees_the_track_of_a_car() {
     let layout = PatchLayout::from(&scenes::load("meadow").unwrap().scene.patches);
     let (mut driver, mut watcher) = (PlainClient::join(&server, "driver").await, PlainClient::join(&server, "watcher").await);
     driver.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
-    driver.send_message(&ClientMessage::Drive(Drive { throttle: 0.5, ..Drive::default() })).await;
+    driver.send_message(&ClientMessage::Drive { number: 1, drive: Drive { throttle: 0.5, ..Drive::default() } }).await;
     watcher.frames_until(|watcher| !watcher.objects.is_empty()).await;
     let start = watcher.objects[0].position_m;
     watcher.send_message(&ClientMessage::View { eye_m: start, radius_m: 64.0 }).await;

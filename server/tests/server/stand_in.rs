@@ -65,7 +65,7 @@ impl Simulation for StandInWorld {
                 Command::Remove { client } | Command::Leave { client } => {
                     self.objects.remove(&client);
                 }
-                Command::Drive { client, drive } => {
+                Command::Drive { client, drive, .. } => {
                     self.throttle.insert(client, drive.throttle);
                 }
                 Command::Spawn { .. } | Command::Cameras(_) | Command::Join { .. } | Command::Return { .. } => {}

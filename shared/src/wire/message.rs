@@ -53,7 +53,12 @@ pub enum ClientMessage {
         vehicle: Option<VehicleKind>,
     },
     /// Controls of one's own vehicle.
-    Drive(Drive),
+    Drive {
+        /// Number of the input, which comes back with [`ServerMessage::Applied`]; from 1, increasing, modulo 2³². 0 is that of no input.
+        number: u32,
+        /// The controls.
+        drive: Drive,
+    },
     /// Acknowledges the newest frame that has arrived completely.
     Ack {
         /// Number from [`ServerMessage::FrameEnd`].
@@ -218,6 +223,17 @@ pub enum ServerMessage {
         #[serde(with = "serde_bytes")]
         moves: Vec<u8>,
     },
+    /// The newest input of the client's own vehicle, whenever it is another. It is part of the frame, whose poses show its effect.
+    Applied(AppliedInput),
+}
+
+/// An input that moves a vehicle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AppliedInput {
+    /// Its number, from [`ClientMessage::Drive`].
+    pub number: u32,
+    /// First tick in which it has effect.
+    pub tick: u64,
 }
 
 /// Shapes of objects and winds that press the grass.

@@ -14,8 +14,8 @@ mod turbulence_state;
 pub use close::Close;
 pub use codec::{CodecError, Shape};
 pub use message::{
-    BrokenPlant, ClientMessage, Drawing, Drive, Mesh, ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage, Shapes, WireError,
-    decode, encode,
+    AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Mesh, ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage,
+    Shapes, WireError, decode, encode,
 };
 pub use protocol::PROTOCOL;
 pub use step::{Joined, Move, PatchCheck, PoseChange, RareCauses, StepHead};

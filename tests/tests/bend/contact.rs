@@ -34,7 +34,7 @@ fn wind(scene: &Scene, m_per_s: f32) -> WindField {
 fn meadow(scene: &Scene) -> BendSimulation {
     let flat = HeightMap::from_heights(2, 2, [1000.0; 2], vec![0.0; 4]);
     let grass = CoverMap::from_png(&grey_png([2; 2], &[255; 4])).expect("a grey PNG");
-    BendSimulation::new(scene, Arc::new(flat), &grass, &prairie::objects::bodies(&scene.objects), &WindDrawings::new())
+    BendSimulation::new(scene, Arc::new(flat), &grass, &prairie_vehicles::bodies(&scene.objects), &WindDrawings::new())
 }
 
 /// A scene without flattened grass: only the field bends.

@@ -1,12 +1,12 @@
 //! A moving object touches exactly the cells that it passes over, at any speed, turn rate and tick rate.
 
 use glam::Quat;
-use prairie::objects::prisms;
 use prairie_core::body::{BodyPose, Motion, Prism};
 use prairie_core::grass::footprint::Footprint;
 use prairie_core::grass::swept_footprint::SweptFootprint;
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{Objects, VehicleKind};
+use prairie_vehicles::prisms;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 

@@ -24,7 +24,7 @@ fn look_from(world: &mut World, eye_m: [f32; 3]) {
 fn driven(scene: &Scene) -> World {
     let mut world = worlds::flat(scene);
     look_from(&mut world, [128.0, 2.0, 200.0]);
-    world.step(&[Command::Spawn { client: 1, kind: VehicleKind::Car }, Command::Drive { client: 1, drive: AHEAD }]);
+    world.step(&[Command::Spawn { client: 1, kind: VehicleKind::Car }, Command::Drive { client: 1, number: 0, drive: AHEAD }]);
     run(&mut world, 5.0);
     world.step(&[Command::Remove { client: 1 }]);
     world

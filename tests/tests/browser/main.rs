@@ -4,6 +4,7 @@ mod access;
 mod failures;
 mod icons;
 mod input;
+mod latency;
 mod look_back;
 mod one_storm;
 mod page;

@@ -32,10 +32,13 @@ fn assert_free_of(package: &str, dependencies: &[String], forbidden: &[&str]) {
 }
 
 #[test]
-fn prairie_core_is_pure() -> Result<()> {
+fn what_server_and_client_share_is_pure() -> Result<()> {
     for options in [&[], BROWSER] {
         let forbidden = ["prairie", "prairie-client", "tests", "tokio", "axum", "wgpu", "rerun", "wasm-bindgen"];
-        assert_free_of("prairie-core", &dependencies("prairie-core", options)?, &forbidden);
+        for package in ["prairie-core", "prairie-vehicles"] {
+            assert_free_of(package, &dependencies(package, options)?, &forbidden);
+        }
+        assert_free_of("prairie-core", &dependencies("prairie-core", options)?, &["prairie-vehicles", "rapier3d"]);
     }
     Ok(())
 }
@@ -72,7 +75,7 @@ fn the_library_does_without_what_only_the_program_uses() -> Result<()> {
 #[test]
 fn tests_depend_on_every_package() -> Result<()> {
     let all = dependencies("tests", &[])?;
-    for name in ["prairie-core", "prairie", "prairie-wind", "prairie-client"] {
+    for name in ["prairie-core", "prairie-vehicles", "prairie", "prairie-wind", "prairie-client"] {
         assert!(all.iter().any(|dependency| dependency == name), "tests does not depend on {name}");
     }
     Ok(())
@@ -103,7 +106,7 @@ fn uses(source: &str, library: &str) -> bool {
 /// Source files of the product that use a library, as paths below the workspace.
 fn files_using(library: &str) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
-    for package in ["shared/src", "server/src", "server/wind/src", "client-wasm/src"] {
+    for package in ["shared/src", "shared/vehicles/src", "server/src", "server/wind/src", "client-wasm/src"] {
         rust_files(&workspace().join(package), &mut files)?;
     }
     let mut found = Vec::new();

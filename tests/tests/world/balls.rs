@@ -47,7 +47,7 @@ fn kick(world: &mut World, kind: VehicleKind) -> f32 {
     let [x, _, z] = balls(world)[0].position_m;
     // The first site to be tried lies 9 m east of the camera, and a vehicle put there faces away from the camera.
     world.step(&[Command::Cameras(vec![Camera { client: 1, eye_m: [x - 20.0, 2.0, z] }])]);
-    world.step(&[Command::Spawn { client: 1, kind }, Command::Drive { client: 1, drive: AHEAD }]);
+    world.step(&[Command::Spawn { client: 1, kind }, Command::Drive { client: 1, number: 0, drive: AHEAD }]);
     assert!(world.object_of(1).is_some(), "no room for a {}", kind.name());
     let mut fastest = 0.0_f32;
     for _ in 0..600 {
@@ -135,7 +135,7 @@ fn a_client_rolls_and_steers_a_ball() {
     let mut world = worlds::flat(&worlds::scene(24));
     world.step(&[Command::Spawn { client: 1, kind: Ball }]);
     let mut drive = |drive: Drive, ticks: u32| {
-        world.step(&[Command::Drive { client: 1, drive }]);
+        world.step(&[Command::Drive { client: 1, number: 0, drive }]);
         run(&mut world, ticks);
         balls(&mut world)[0]
     };
@@ -158,7 +158,7 @@ fn a_rolling_ball_presses_the_grass_by_its_depth() {
         let mut scene = worlds::scene(8);
         scene.objects.ball_radius_m = radius_m;
         let mut world = worlds::flat(&scene);
-        world.step(&[Command::Spawn { client: 1, kind: Ball }, Command::Drive { client: 1, drive: AHEAD }]);
+        world.step(&[Command::Spawn { client: 1, kind: Ball }, Command::Drive { client: 1, number: 0, drive: AHEAD }]);
         run(&mut world, 90);
         let [x, _, z] = balls(&mut world)[0].position_m;
         let field = world.bend().field();

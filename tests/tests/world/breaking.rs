@@ -48,7 +48,7 @@ fn run(world: &mut World, ticks: u32) {
 /// Drives a vehicle of client 1 eastward for `ticks` steps; returns its position after each.
 fn drive(world: &mut World, kind: VehicleKind, ticks: u32) -> Vec<[f32; 2]> {
     world.step(&[Command::Cameras(vec![Camera { client: 1, eye_m: [30.0, 2.0, 64.0] }])]);
-    world.step(&[Command::Spawn { client: 1, kind }, Command::Drive { client: 1, drive: AHEAD }]);
+    world.step(&[Command::Spawn { client: 1, kind }, Command::Drive { client: 1, number: 0, drive: AHEAD }]);
     let id = world.object_of(1).expect("there is room");
     let mut place = || {
         world.step(&[]);
@@ -162,10 +162,10 @@ fn neither_gales_nor_downwash_break_plants() {
     assert!(world.snapshot().broken.is_empty(), "a gale");
     world.step(&[Command::Spawn { client: 1, kind: VehicleKind::Helicopter }]);
     let hover = Drive { lift: 1.0, ..Drive::default() };
-    world.step(&[Command::Drive { client: 1, drive: hover }]);
+    world.step(&[Command::Drive { client: 1, number: 0, drive: hover }]);
     run(&mut world, 90);
     let lifted = world.snapshot().broken;
-    world.step(&[Command::Drive { client: 1, drive: AHEAD }]);
+    world.step(&[Command::Drive { client: 1, number: 0, drive: AHEAD }]);
     run(&mut world, 300);
     assert!(world.bend().field().awake_count() > 0, "the wash bends the grass");
     assert_eq!(world.snapshot().broken, lifted, "a wash");

@@ -20,7 +20,7 @@ fn commands(tick: u32) -> Vec<Command> {
         let swing = |client: u32| ((tick / 30 * 7 + client * 3) % 11) as f32 / 5.0 - 1.0;
         commands.extend((0..CLIENTS).map(|client| {
             let drive = Drive { throttle: 1.0, steer: swing(client), lift: swing(client + 1), brake: 0.0 };
-            Command::Drive { client, drive }
+            Command::Drive { client, number: 0, drive }
         }));
     }
     if tick == 200 {

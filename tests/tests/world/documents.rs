@@ -73,7 +73,7 @@ fn links_of_documents_lead_to_existing_files_and_headings() -> Result<()> {
 }
 
 /// Documents that describe the present product.
-const READMES: [&str; 4] = ["README.md", "server/README.md", "client-wasm/README.md", "shared/README.md"];
+const READMES: [&str; 5] = ["README.md", "server/README.md", "client-wasm/README.md", "shared/README.md", "shared/vehicles/README.md"];
 
 /// Sentences and table cells of a document that name at least three of some words, in any case or with a plural s, and those that each leaves out.
 fn lists<'a>(document: &str, words: &[&'a str]) -> Vec<(String, Vec<&'a str>)> {

@@ -14,7 +14,7 @@ fn spawn(world: &mut World, client: u32, kind: VehicleKind) {
 }
 
 fn drive(world: &mut World, client: u32, drive: Drive, ticks: u32) -> ObjectPose {
-    world.step(&[Command::Drive { client, drive }]);
+    world.step(&[Command::Drive { client, number: 0, drive }]);
     (1..ticks).for_each(|_| world.step(&[]));
     pose(world, client)
 }
@@ -87,6 +87,7 @@ fn a_minute_of_wild_driving_stays_on_the_terrain_and_in_the_world() {
                 .filter(|_| tick % 45 == 0)
                 .map(|client| Command::Drive {
                     client,
+                    number: 0,
                     drive: Drive { throttle: next(), steer: next(), lift: next(), brake: next().max(0.0) * 0.2 },
                 })
                 .collect();
@@ -232,7 +233,7 @@ fn absurd_terrain_and_constants_give_finite_poses() {
     let spikes = |x: f32, z: f32| if ((x + z) / 2.0) as i32 % 2 == 0 { 40.0 } else { 0.0 };
     let mut world = World::new(&scene, worlds::maps(&scene, spikes, |_, _| 253)).expect("a sound scene");
     for (client, kind) in (0..).zip(VehicleKind::ALL) {
-        world.step(&[Command::Spawn { client, kind }, Command::Drive { client, drive: AHEAD }]);
+        world.step(&[Command::Spawn { client, kind }, Command::Drive { client, number: 0, drive: AHEAD }]);
     }
     for _ in 0..600 {
         world.step(&[]);

@@ -56,7 +56,7 @@ impl Recording {
     fn drive_two_cars(&mut self) {
         for (client, steer) in [(100, 0.3), (101, -0.5)] {
             self.queue.push(Command::Spawn { client, kind: VehicleKind::Car });
-            self.queue.push(Command::Drive { client, drive: Drive { throttle: 0.7, steer, lift: 0.0, brake: 0.0 } });
+            self.queue.push(Command::Drive { client, number: 0, drive: Drive { throttle: 0.7, steer, lift: 0.0, brake: 0.0 } });
         }
     }
 }

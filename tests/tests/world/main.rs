@@ -12,6 +12,7 @@ mod imports;
 mod licences;
 mod look_back;
 mod pictures;
+mod prediction;
 mod replica;
 mod same_plants;
 mod shipped_species;

@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 use tokio::sync::mpsc;
 
-const STEPS_PER_PUBLISH: u64 = 3;
+pub(super) const STEPS_PER_PUBLISH: u64 = 3;
 
 /// A server without a network: world, streamer and clients.
 pub(super) struct Server {
@@ -42,6 +42,11 @@ impl Server {
         for _ in 0..STEPS_PER_PUBLISH {
             self.world.step(&std::mem::take(commands));
         }
+        self.send(commands, tick_hz);
+    }
+
+    /// Sends the present state.
+    pub(super) fn send(&mut self, commands: &mut Vec<Command>, tick_hz: f32) {
         let bend_state = self.requested.swap(false, Relaxed).then(|| self.world.bend_state()).flatten().map(Arc::new);
         let published = Published { bend_state, ..Published::new(self.world.publish(&mut self.quantiser)) };
         let now = self.start + Duration::from_secs_f64(published.snapshot.tick as f64 / f64::from(tick_hz));
@@ -117,7 +122,7 @@ pub(super) fn commands(random: &mut SplitMix64, publication: u64, commands: &mut
             let [throttle, steer, lift] = [signed(), signed(), signed()];
             let brake = if draw(4) == 0 { 1.0 } else { 0.0 };
             let throttle = if brake > 0.0 { 0.0 } else { throttle };
-            commands.push(Command::Drive { client, drive: Drive { throttle, steer, lift, brake } });
+            commands.push(Command::Drive { client, number: 0, drive: Drive { throttle, steer, lift, brake } });
         }
     }
 }

@@ -4,7 +4,7 @@ use super::{PINS, PROTOCOL};
 use crate::body::{Body, PoseCode, Prism};
 use crate::scene::{Allowed, FIELDS, Scene, VehicleKind, parse};
 use crate::wire::{
-    BrokenPlant, ClientMessage, Drawing, Drive, Joined, Mesh, ObjectPose, PROOF_BYTES, PatchCheck, Peer, RareCauses, Refusal,
+    AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Joined, Mesh, ObjectPose, PROOF_BYTES, PatchCheck, Peer, RareCauses, Refusal,
     SERVER_MESSAGE_LIMIT, ServerMessage, Shapes, StepHead, TurbulenceState, WireError, decode, encode,
 };
 use serde::{Deserialize, de::DeserializeOwned};
@@ -18,7 +18,7 @@ fn client_messages() -> Vec<ClientMessage> {
         ClientMessage::Hello { name: "Ada".to_owned() },
         ClientMessage::View { eye_m: [1.0, -2.5, 1e6], radius_m: 96.0 },
         ClientMessage::Choose { vehicle: Some(VehicleKind::Helicopter) },
-        ClientMessage::Drive(Drive { throttle: 1.0, steer: -0.5, lift: 0.25, brake: 0.125 }),
+        ClientMessage::Drive { number: 300, drive: Drive { throttle: 1.0, steer: -0.5, lift: 0.25, brake: 0.125 } },
         ClientMessage::Ack { frame: 70_000 },
         ClientMessage::Ping { nonce: 7 },
         ClientMessage::Rename { name: "Grace".to_owned() },
@@ -55,6 +55,7 @@ fn server_messages() -> Vec<ServerMessage> {
         ServerMessage::Pong { nonce: 7 },
         ServerMessage::ReplicaState { tick: 300, part: 1, parts: 200, payload: vec![5, 6] },
         ServerMessage::Steps { first_tick: 300, steps: vec![step()], moves: vec![3, 4] },
+        ServerMessage::Applied(AppliedInput { number: 7, tick: 300 }),
     ]
 }
 
@@ -85,7 +86,7 @@ fn client_name(message: &ClientMessage) -> &'static str {
         ClientMessage::Hello { .. } => "Hello",
         ClientMessage::View { .. } => "View",
         ClientMessage::Choose { .. } => "Choose",
-        ClientMessage::Drive(_) => "Drive",
+        ClientMessage::Drive { .. } => "Drive",
         ClientMessage::Ack { .. } => "Ack",
         ClientMessage::Ping { .. } => "Ping",
         ClientMessage::Rename { .. } => "Rename",
@@ -110,6 +111,7 @@ fn server_name(message: &ServerMessage) -> &'static str {
         ServerMessage::Pong { .. } => "Pong",
         ServerMessage::ReplicaState { .. } => "ReplicaState",
         ServerMessage::Steps { .. } => "Steps",
+        ServerMessage::Applied(_) => "Applied",
     }
 }
 

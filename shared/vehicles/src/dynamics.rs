@@ -6,22 +6,22 @@ use prairie_core::scene::Objects;
 use prairie_core::wire::Drive;
 use rapier3d::prelude::*;
 
-/// Definition of a kind of vehicle on the server. Each kind has one file in [`kinds`](super::kinds).
-pub(super) struct VehicleDynamics {
+/// Definition of a kind of vehicle. Each kind has one file in `kinds`.
+pub struct VehicleDynamics {
     /// Rigid body and colliders, for the scene's settings.
-    pub(super) body: fn(&Objects) -> (RigidBodyBuilder, Vec<ColliderBuilder>),
+    pub body: fn(&Objects) -> (RigidBodyBuilder, Vec<ColliderBuilder>),
     /// Controller of a body that has just been placed with a heading (rad).
-    pub(super) controller: fn(RigidBodyHandle, &Objects, f32) -> Box<dyn Controller>,
+    pub controller: fn(RigidBodyHandle, &Objects, f32) -> Box<dyn Controller>,
     /// Prisms that can touch grass, higher ones first. A lower prism presses the grass that a higher one has bent.
-    pub(super) prisms: fn(&Objects) -> Vec<Prism>,
+    pub prisms: fn(&Objects) -> Vec<Prism>,
     /// Effect on the air.
-    pub(super) airflow: Airflow,
+    pub airflow: Airflow,
     /// Whether its floor follows the terrain below its centre. Others start on the highest terrain below them.
-    pub(super) follows_terrain: bool,
+    pub follows_terrain: bool,
     /// Whether its rotation has no effect on the grass.
-    pub(super) is_round: bool,
+    pub is_round: bool,
     /// Colour of its trail in recordings.
-    pub(super) trail_rgb: [u8; 3],
+    pub trail_rgb: [u8; 3],
 }
 
 /// Effect of a vehicle on the air.
@@ -36,21 +36,29 @@ pub enum Airflow {
 }
 
 /// Surroundings of a vehicle in one step.
-pub(super) struct ControlStep<'a> {
-    pub(super) dt_secs: f32,
-    pub(super) physics: &'a mut PhysicsWorld,
-    pub(super) terrain: &'a TerrainColliders,
+pub struct ControlStep<'a> {
+    /// Duration of the step (s).
+    pub dt_secs: f32,
+    /// Bodies and colliders of all objects.
+    pub physics: &'a mut PhysicsWorld,
+    /// The terrain.
+    pub terrain: &'a TerrainColliders,
     /// Wind (m/s) at a position (m).
-    pub(super) wind_m_per_s: &'a dyn Fn([f32; 3]) -> [f32; 3],
+    pub wind_m_per_s: &'a dyn Fn([f32; 3]) -> [f32; 3],
+}
+
+/// Heading from north towards east (rad) of a rotation about the Y axis.
+pub(crate) fn heading_rad(rotation: Rotation) -> f32 {
+    -2.0 * libm::atan2f(rotation.y, rotation.w)
 }
 
 /// Encodes the state of a controller.
-pub(super) fn encoded(state: &impl serde::Serialize) -> Vec<u8> {
+pub(crate) fn encoded(state: &impl serde::Serialize) -> Vec<u8> {
     postcard::to_allocvec(state).expect("a controller is plain data")
 }
 
 /// Moves one vehicle.
-pub(super) trait Controller: Send {
+pub trait Controller: Send {
     /// Turns the driver's input into forces or velocities of the body.
     fn control(&mut self, drive: Drive, step: &mut ControlStep<'_>);
 
@@ -62,6 +70,9 @@ pub(super) trait Controller: Send {
     /// # Errors
     /// When the bytes are not a state of this kind.
     fn restore(&mut self, state: &[u8]) -> postcard::Result<()>;
+
+    /// Takes over a state as far as it is seen from outside: the body's rotation, and the angle of the moving part (rad).
+    fn assume(&mut self, rotation: Rotation, part_rad: f32);
 
     /// Angle of the moving part (rad), as in [`ObjectPose`](prairie_core::wire::ObjectPose).
     fn part_rad(&self) -> f32 {

@@ -1,7 +1,7 @@
 //! Monster: a walking capsule. Its velocity is set directly, and its feet follow the terrain.
 
-use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
-use super::super::terrain_colliders::TERRAIN;
+use crate::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded, heading_rad};
+use crate::terrain_colliders::TERRAIN;
 use prairie_core::body::Prism;
 use prairie_core::scene::Objects;
 use prairie_core::wire::Drive;
@@ -75,6 +75,10 @@ impl Controller for Monster {
         body.set_gravity_scale(if clearance < STEP_M { 0.0 } else { 1.0 }, true);
         let covered = velocity.x.hypot(velocity.z) * dt_secs;
         self.phase_rad = (self.phase_rad + covered * TAU / STRIDE_M) % TAU;
+    }
+
+    fn assume(&mut self, rotation: Rotation, part_rad: f32) {
+        (self.heading_rad, self.phase_rad) = (heading_rad(rotation), part_rad);
     }
 
     /// Phase of the walk (rad).

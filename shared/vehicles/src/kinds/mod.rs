@@ -6,11 +6,12 @@ mod helicopter;
 mod monster;
 mod sled;
 
-use super::dynamics::{Airflow, VehicleDynamics};
+use crate::dynamics::{Airflow, VehicleDynamics};
 use prairie_core::body::{Body, Prism};
 use prairie_core::scene::{Objects, VehicleKind};
 
-pub(super) fn dynamics(kind: VehicleKind) -> &'static VehicleDynamics {
+/// Definition of a kind.
+pub fn dynamics(kind: VehicleKind) -> &'static VehicleDynamics {
     match kind {
         VehicleKind::Car => &car::DYNAMICS,
         VehicleKind::Monster => &monster::DYNAMICS,

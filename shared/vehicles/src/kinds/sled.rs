@@ -1,7 +1,7 @@
 //! Sled: a gliding frame of any outline. Its velocity is set directly, and its floor follows the slope of the terrain.
 
-use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
-use super::super::terrain_colliders::TERRAIN;
+use crate::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded, heading_rad};
+use crate::terrain_colliders::TERRAIN;
 use prairie_core::body::Prism;
 use prairie_core::outline::convex_parts;
 use prairie_core::scene::{Objects, VehicleKind};
@@ -97,6 +97,11 @@ impl Controller for Sled {
         }
         body.set_linvel(velocity, true);
         body.set_gravity_scale(if glides { 0.0 } else { 1.0 }, true);
+    }
+
+    fn assume(&mut self, rotation: Rotation, _: f32) {
+        self.up = rotation * Vector::Y;
+        self.heading_rad = heading_rad(Rotation::from_rotation_arc(Vector::Y, self.up).inverse() * rotation);
     }
 
     fn save(&self) -> Vec<u8> {

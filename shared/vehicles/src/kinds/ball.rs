@@ -1,6 +1,6 @@
 //! Ball: a light sphere that objects and strong wind push along, and that a driver rolls from within.
 
-use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
+use crate::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
 use prairie_core::body::Prism;
 use prairie_core::plant::force_field::AIR_KG_PER_M3;
 use prairie_core::scene::Objects;
@@ -112,6 +112,10 @@ impl Controller for Ball {
             let change = (wanted - body.linvel()).clamp_length_max(ACCELERATION_M_PER_S2 * dt_secs);
             body.apply_torque_impulse(up.cross(change) * (ROLLING_INERTIA * self.mass_kg * self.radius_m), true);
         }
+    }
+
+    fn assume(&mut self, _: Rotation, part_rad: f32) {
+        self.heading_rad = part_rad;
     }
 
     /// Heading of the driver (rad).

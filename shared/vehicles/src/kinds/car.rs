@@ -1,7 +1,7 @@
 //! Car: a body on four sprung wheels with ray-cast suspension.
 
-use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
 use super::ball::BALLS;
+use crate::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
 use prairie_core::body::Prism;
 use prairie_core::scene::Objects;
 use prairie_core::wire::Drive;
@@ -134,6 +134,10 @@ impl Controller for Car {
         let dispatcher = physics.narrow_phase.query_dispatcher();
         let queries = physics.broad_phase.as_query_pipeline_mut(dispatcher, &mut physics.bodies, &mut physics.colliders, filter);
         self.wheels.update_vehicle(dt_secs, queries);
+    }
+
+    fn assume(&mut self, _: Rotation, part_rad: f32) {
+        (self.steering_rad, self.overturned_secs) = (part_rad, 0.0);
     }
 
     /// Steering of the front wheels (rad, + right).

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Collision group of the terrain. Vehicles that follow the terrain themselves exclude it.
-pub(super) const TERRAIN: Group = Group::GROUP_2;
+pub(crate) const TERRAIN: Group = Group::GROUP_2;
 
 /// Minimum side of a tile (m).
 const TILE_M: f32 = 24.0;
@@ -24,18 +24,18 @@ const OBSTACLES_PER_TILE: usize = 256;
 const TRUNK_RADIUS: f32 = 0.03;
 
 /// Index of a tile along X and Z.
-pub(super) type TileIndex = [i32; 2];
+pub type TileIndex = [i32; 2];
 
 /// A tree or a stone.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Obstacle {
-    pub(super) at_m: [f32; 2],
-    pub(super) radius_m: f32,
-    pub(super) half_height_m: Option<f32>,
+struct Obstacle {
+    at_m: [f32; 2],
+    radius_m: f32,
+    half_height_m: Option<f32>,
 }
 
 /// Colliders of terrain, trunks and stones.
-pub(super) struct TerrainColliders {
+pub struct TerrainColliders {
     height: Arc<HeightMap>,
     spacing_m: [f32; 2],
     tile_m: [f32; 2],
@@ -44,7 +44,8 @@ pub(super) struct TerrainColliders {
 }
 
 impl TerrainColliders {
-    pub(super) fn new(environment: &Environment, plants: &Plants) -> Self {
+    /// No colliders yet, on the terrain of `environment`, with the trees and stones of its cover.
+    pub fn new(environment: &Environment, plants: &Plants) -> Self {
         let height = environment.height.clone();
         let spacing_m = height.pixel_m().map(spacing_m);
         let tile_m = spacing_m.map(|spacing| (TILE_M / spacing).ceil() * spacing);
@@ -57,17 +58,17 @@ impl TerrainColliders {
     }
 
     /// Height of the terrain (m).
-    pub(super) fn height_m(&self, at_m: [f32; 2]) -> f32 {
+    pub fn height_m(&self, at_m: [f32; 2]) -> f32 {
         self.height.height_m(at_m[0], at_m[1])
     }
 
     /// Slope of the terrain (∂h/∂x, ∂h/∂z).
-    pub(super) fn slope(&self, at_m: [f32; 2]) -> [f32; 2] {
+    pub fn slope(&self, at_m: [f32; 2]) -> [f32; 2] {
         self.height.slope(at_m[0], at_m[1])
     }
 
     /// Whether there is no tree or stone within `radius_m`.
-    pub(super) fn is_free(&self, at_m: [f32; 2], radius_m: f32) -> bool {
+    pub fn is_free(&self, at_m: [f32; 2], radius_m: f32) -> bool {
         self.tiles_around(at_m, radius_m + TILE_M).all(|tile| {
             self.obstacles.get(&tile).is_none_or(|obstacles| {
                 obstacles.iter().all(|obstacle| {
@@ -79,12 +80,12 @@ impl TerrainColliders {
     }
 
     /// Whether there are no colliders.
-    pub(super) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.created.is_empty()
     }
 
     /// Creates the tiles near `objects_m` and removes those far from all.
-    pub(super) fn follow(&mut self, objects_m: &[[f32; 2]], physics: &mut PhysicsWorld) {
+    pub fn follow(&mut self, objects_m: &[[f32; 2]], physics: &mut PhysicsWorld) {
         let around = |reach_m| objects_m.iter().flat_map(|&at_m| self.tiles_around(at_m, reach_m)).collect::<BTreeSet<_>>();
         let (create, keep) = (around(CREATE_M), around(KEEP_M));
         self.created.retain(|tile, colliders| {
@@ -105,12 +106,12 @@ impl TerrainColliders {
     }
 
     /// The handles of the colliders of each tile.
-    pub(super) fn created(&self) -> &BTreeMap<TileIndex, Vec<ColliderHandle>> {
+    pub fn created(&self) -> &BTreeMap<TileIndex, Vec<ColliderHandle>> {
         &self.created
     }
 
     /// Restores the handles of colliders that are part of a restored physics world.
-    pub(super) fn restore(&mut self, created: BTreeMap<TileIndex, Vec<ColliderHandle>>) {
+    pub fn restore(&mut self, created: BTreeMap<TileIndex, Vec<ColliderHandle>>) {
         self.created = created;
     }
 

@@ -1,6 +1,6 @@
 //! Helicopter: thrust along its own up axis, tilted towards the target velocity.
 
-use super::super::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
+use crate::dynamics::{Airflow, ControlStep, Controller, VehicleDynamics, encoded};
 use prairie_core::body::Prism;
 use prairie_core::scene::{Objects, VehicleKind};
 use prairie_core::wire::Drive;
@@ -86,6 +86,10 @@ impl Controller for Helicopter {
         let turning = up.cross(thrust.normalize_or(Vector::Y)) * ATTITUDE_PER_S - Vector::Y * (drive.steer * TURN_RAD_PER_S);
         let turned = body.angvel() + (turning - body.angvel()) * (TURNING_PER_S * dt_secs).min(1.0);
         body.set_angvel(turned, true);
+    }
+
+    fn assume(&mut self, _: Rotation, part_rad: f32) {
+        self.rotor_rad = part_rad;
     }
 
     /// Phase of the rotor (rad).

@@ -1,0 +1,48 @@
+//! Latency of inputs in a real browser, with and without a prediction.
+
+use anyhow::{Context as _, Result, ensure};
+use prairie::world::World;
+use tests::browser::Browser;
+use tests::prairie::Prairie;
+use tests::worlds;
+
+/// Presses and releases `W` every 0.4 s for 8 s, draws all the while, and returns the state.
+const DRIVE: &str = "(async () => {
+    const began = performance.now();
+    for (let presses = 0; presses < 20;) {
+        if (performance.now() > began + 400 * presses) {
+            const event = presses++ % 2 ? 'keyup' : 'keydown';
+            window.dispatchEvent(new KeyboardEvent(event, { code: 'KeyW', key: 'w' }));
+        }
+        await window.prairie.draw(performance.now() / 1000);
+    }
+    return window.prairie.state();
+})()";
+
+/// Times to the picture and to the server (ms), and whether the vehicle was predicted.
+async fn latencies(browser: &Browser) -> Result<(f64, f64, bool)> {
+    let state = browser.evaluate(DRIVE).await?;
+    let number = |field: &str| state[field].as_f64().with_context(|| format!("{field} of {state}"));
+    Ok((number("input_to_picture_ms")?, number("input_to_server_ms")?, state["predicting"] == true))
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_prediction_shows_an_input_before_the_server_does() -> Result<()> {
+    // Bare land, which is drawn quickly in software.
+    let hills = worlds::loaded_hills(|_| 0)?;
+    let world = World::new(&hills.scene, hills.maps())?;
+    let prairie = Prairie::serve(hills, world).await?;
+    let browser = prairie.visitor("Ada").await?;
+    browser.evaluate("window.prairie.choose('car')").await?;
+    browser.until("window.prairie.state().vehicle === 'car' && window.prairie.state().position").await?;
+
+    let predicted = latencies(&browser).await?;
+    browser.evaluate("window.prairie.predict(false)").await?;
+    let interpolated = latencies(&browser).await?;
+    println!("input to picture, input to server (ms), predicted: {predicted:.1?}, then {interpolated:.1?}");
+    ensure!(predicted.2 && !interpolated.2, "{predicted:?}, then {interpolated:?}");
+    ensure!(predicted.0 > 0.0 && predicted.0 < interpolated.0, "the picture is not earlier: {predicted:?}, then {interpolated:?}");
+    ensure!(predicted.0 < predicted.1, "the server was faster: {predicted:?}");
+    ensure!(interpolated.0 > interpolated.1, "interpolated before the server's pose: {interpolated:?}");
+    Ok(())
+}
