@@ -18,6 +18,8 @@ pub(super) struct Predicted {
     seen_tick: u64,
     /// Step from which its prediction counts, which is later while it stands.
     start_tick: u64,
+    /// Whether it stands, and no input has been on its way since the server's pose.
+    stands: bool,
     /// Newest predicted step.
     tick: u64,
     /// Motions before and after that step.
@@ -30,7 +32,8 @@ pub(super) struct Predicted {
 impl Predicted {
     pub(super) fn new(id: ObjectId, scene: u32, vehicle: LoneVehicle) -> Self {
         let motion = vehicle.motion();
-        Self { id, scene, vehicle, seen_tick: 0, start_tick: 0, tick: 0, before: motion, after: motion, shown_ticks: 0.0 }
+        let (before, after) = (motion, motion);
+        Self { id, scene, vehicle, seen_tick: 0, start_tick: 0, stands: false, tick: 0, before, after, shown_ticks: 0.0 }
     }
 
     /// Whether it is that of an object in a scene.
@@ -51,9 +54,9 @@ impl Predicted {
     /// Goes on from a pose of the server. A vehicle at rest stays so until the next input has effect: frames may be a second apart then.
     pub(super) fn restart_from(&mut self, seen: &SeenMotion, inputs: &SentInputs, now_ticks: f64) {
         self.vehicle.assume(&seen.motion);
-        let now_tick = now_ticks.max(0.0).floor() as u64;
+        let now_tick = step_before(now_ticks);
         let moves_tick = inputs.first_tick().map_or(now_tick, |first| first.saturating_sub(1).min(now_tick));
-        self.seen_tick = seen.tick;
+        (self.seen_tick, self.stands) = (seen.tick, seen.is_at_rest && inputs.first_tick().is_none());
         self.start_tick = if seen.is_at_rest { seen.tick.max(moves_tick) } else { seen.tick };
         self.tick = self.start_tick;
         (self.before, self.after) = (seen.motion, seen.motion);
@@ -61,6 +64,13 @@ impl Predicted {
 
     /// Goes on to the moment `now_ticks` (steps), but no further than `cap_ticks` from the server's pose.
     pub(super) fn advance(&mut self, now_ticks: f64, cap_ticks: f64, inputs: &SentInputs, mirror: &Mirror) {
+        self.stands &= inputs.first_tick().is_none();
+        if self.stands {
+            // Nothing moves it: no frame comes either.
+            self.start_tick = self.start_tick.max(step_before(now_ticks));
+            (self.tick, self.shown_ticks) = (self.start_tick, now_ticks);
+            return;
+        }
         self.shown_ticks = now_ticks.clamp(self.start_tick as f64, self.start_tick as f64 + cap_ticks);
         while (self.tick as f64) < self.shown_ticks {
             self.tick += 1;
@@ -85,4 +95,9 @@ impl Predicted {
             part_rad: from.part_rad + wrap_angle(to.part_rad - from.part_rad) * s,
         }
     }
+}
+
+/// The step at a moment (steps), or the one before it.
+fn step_before(ticks: f64) -> u64 {
+    ticks.max(0.0).floor() as u64
 }

@@ -14,7 +14,7 @@ use tokio_tungstenite::tungstenite::Message;
 async fn bad_messages_close_only_their_sender() {
     let server = Server::start(Limits::default()).await;
     let mut witness = PlainClient::join(&server, "witness").await;
-    let drive = |drive: Drive| encode(&ClientMessage::Drive { number: 1, drive: drive });
+    let drive = |drive: Drive| encode(&ClientMessage::Drive { number: 1, drive });
     let view = |eye_m, radius_m| encode(&ClientMessage::View { eye_m, radius_m });
     let hello = encode(&ClientMessage::Hello { name: "again".to_owned() });
     let huge_name = encode(&ClientMessage::Hello { name: "x".repeat(5000) });

@@ -6,22 +6,28 @@ use tests::browser::Browser;
 use tests::prairie::Prairie;
 use tests::worlds;
 
+/// Size of the page (CSS pixels): small, since drawing in software must not take longer than what is measured.
+const SMALL: [u32; 2] = [160, 100];
+
 /// Presses and releases `W` every 0.4 s for 8 s, draws all the while, and returns the state.
 const DRIVE: &str = "(async () => {
     const began = performance.now();
+    let frames = 0;
     for (let presses = 0; presses < 20;) {
         if (performance.now() > began + 400 * presses) {
             const event = presses++ % 2 ? 'keyup' : 'keydown';
             window.dispatchEvent(new KeyboardEvent(event, { code: 'KeyW', key: 'w' }));
         }
         await window.prairie.draw(performance.now() / 1000);
+        frames++;
     }
-    return window.prairie.state();
+    return { ...window.prairie.state(), pictures: frames };
 })()";
 
 /// Times to the picture and to the server (ms), and whether the vehicle was predicted.
 async fn latencies(browser: &Browser) -> Result<(f64, f64, bool)> {
     let state = browser.evaluate(DRIVE).await?;
+    println!("{} pictures", state["pictures"]);
     let number = |field: &str| state[field].as_f64().with_context(|| format!("{field} of {state}"));
     Ok((number("input_to_picture_ms")?, number("input_to_server_ms")?, state["predicting"] == true))
 }
@@ -33,6 +39,7 @@ async fn a_prediction_shows_an_input_before_the_server_does() -> Result<()> {
     let world = World::new(&hills.scene, hills.maps())?;
     let prairie = Prairie::serve(hills, world).await?;
     let browser = prairie.visitor("Ada").await?;
+    browser.resize(SMALL).await?;
     browser.evaluate("window.prairie.choose('car')").await?;
     browser.until("window.prairie.state().vehicle === 'car' && window.prairie.state().position").await?;
 

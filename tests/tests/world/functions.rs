@@ -59,7 +59,7 @@ fn too_long(dir: &Path) -> Result<(Vec<String>, usize)> {
 #[test]
 fn functions_are_short() -> Result<()> {
     let mut found = Vec::new();
-    for (folder, exceeded) in PACKAGES.map(|package| (package, 100)).into_iter().chain(FOLDERS) {
+    for (folder, exceeded) in PACKAGES.map(|package| (package, 50)).into_iter().chain(FOLDERS) {
         let (long, count) = too_long(&workspace().join(folder))?;
         ensure!(count > exceeded, "{folder}: only {count} functions were found");
         found.extend(long);

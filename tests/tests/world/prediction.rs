@@ -79,6 +79,8 @@ struct Drives {
     clock_secs: f64,
     sent: (f64, Drive),
     jitter: SplitMix64,
+    /// Way of a message, one way (s).
+    way_secs: f64,
 }
 
 impl Drives {
@@ -91,11 +93,24 @@ impl Drives {
         let (prediction, sent) = (Prediction::new(true), (0.0, Drive::default()));
         let to_server = VecDeque::from([spawn]);
         let (jitter, to_client, truth) = (SplitMix64::new(5), VecDeque::new(), vec![None]);
-        Ok(Self { server, viewer, prediction, kind, changes, to_client, to_server, truth, clock_secs: 0.0, sent, jitter })
+        Ok(Self {
+            server,
+            viewer,
+            prediction,
+            kind,
+            changes,
+            to_client,
+            to_server,
+            truth,
+            clock_secs: 0.0,
+            sent,
+            jitter,
+            way_secs: WAY_SECS,
+        })
     }
 
     fn way_secs(&mut self) -> f64 {
-        WAY_SECS + JITTER_SECS * (self.jitter.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+        self.way_secs + JITTER_SECS * (self.jitter.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     fn own(&self) -> Option<ObjectId> {
@@ -169,7 +184,7 @@ impl Drives {
         Some(at_m(ticks.floor() as usize)?.lerp(at_m(ticks.floor() as usize + 1)?, ticks.fract() as f32))
     }
 
-    /// All pictures of a drive.
+    /// All pictures of a drive that show a prediction.
     fn run(&mut self) -> Result<Vec<Shown>> {
         let (mut shown, mut tick, mut picture) = (vec![], 1_u64, 1_u64);
         while (picture as f64) * PICTURE_SECS < END_SECS {
@@ -289,6 +304,18 @@ fn a_sled_is_predicted_within_a_quarter_of_a_metre() -> Result<()> {
 #[test]
 fn a_ball_is_predicted_within_a_quarter_of_a_metre() -> Result<()> {
     check(Ball, true)
+}
+
+#[test]
+fn over_a_long_way_the_vehicle_is_interpolated() -> Result<()> {
+    let mut drives = Drives::new(&hills()?, Monster, true, true)?;
+    drives.way_secs = 0.22;
+    drives.prediction.note_round_trip(2.0 * drives.way_secs);
+    let predicted = drives.run()?;
+    ensure!(predicted.is_empty() && !drives.prediction.is_predicting(), "{} pictures show a prediction", predicted.len());
+    let to_picture_secs = drives.prediction.latency().to_picture_secs().context("inputs were measured")?;
+    ensure!((0.5..0.7).contains(&to_picture_secs), "{to_picture_secs} s from an input to the picture");
+    Ok(())
 }
 
 /// A ball at rest, its driver, and one who watches: what each of them was sent.
