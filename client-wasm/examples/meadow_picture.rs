@@ -11,7 +11,7 @@ use prairie_client::render::{Gpu, OffscreenRenderer, Quality};
 use prairie_client::state::Mirror;
 use prairie_core::scene::{Light, Patches, Plants, Scene, TerrainMaps, VehicleKind};
 use prairie_core::terrain::grey_png;
-use prairie_core::wire::quantise::{omega_code, theta_code, wind_code};
+use prairie_core::wire::quantise::CodeSteps;
 use prairie_core::wire::{ObjectPose, ServerMessage, Shape, TurbulenceState, codec};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -88,7 +88,8 @@ fn scene() -> ServerMessage {
 /// A steady wind towards the south-east.
 fn wind(cells: [u32; 3]) -> ServerMessage {
     let volume = cells.iter().product::<u32>() as usize;
-    let codes: Vec<i8> = [4.0, 0.0, 2.5].into_iter().flat_map(|m_per_s| std::iter::repeat_n(wind_code(m_per_s), volume)).collect();
+    let codes: Vec<i16> =
+        [4.0, 0.0, 2.5].into_iter().flat_map(|m_per_s| std::iter::repeat_n(CodeSteps::default().wind_code(m_per_s), volume)).collect();
     ServerMessage::Wind {
         tick: 0,
         seq: 1,
@@ -101,14 +102,19 @@ fn wind(cells: [u32; 3]) -> ServerMessage {
 /// Bend field of one patch: grass lies flat in the two tracks behind the car.
 fn tracks(patch: u32) -> ServerMessage {
     let corner_m = [patch % PATCHES, patch / PATCHES].map(|index| (index * CELLS) as f32 * CELL_M);
+    let steps = CodeSteps::default();
     let cells = (0..CELLS * CELLS).map(|cell| {
         let [x_m, z_m] = [0, 1].map(|axis| corner_m[axis] + ([cell % CELLS, cell / CELLS][axis] as f32 + 0.5) * CELL_M);
         let (aside_m, direction) = path(x_m, z_m);
         let lies_flat = z_m > CAR_M[1] && (aside_m.abs() - 0.85).abs() < 0.35;
-        if lies_flat { [theta_code(1.5), omega_code(20.0 * direction[0]), omega_code(20.0 * direction[1])] } else { [0; 3] }
+        if lies_flat {
+            [steps.theta_code(1.5), steps.omega_code(20.0 * direction[0]), steps.omega_code(20.0 * direction[1])]
+        } else {
+            [0; 3]
+        }
     });
-    let cells: Vec<[i8; 3]> = cells.collect();
-    let codes: Vec<i8> = (0..3).flat_map(|plane| cells.iter().map(move |cell| cell[plane])).collect();
+    let cells: Vec<[i16; 3]> = cells.collect();
+    let codes: Vec<i16> = (0..3).flat_map(|plane| cells.iter().map(move |cell| cell[plane])).collect();
     ServerMessage::Patch { patch, seq: 1, key: true, payload: codec::encode(Shape::patch(CELLS as usize), &codes, None) }
 }
 

@@ -124,14 +124,14 @@ mod tests {
         mirror
     }
 
-    fn blow(mirror: &mut Mirror, seq: u32, codes: &[i8]) {
+    fn blow(mirror: &mut Mirror, seq: u32, codes: &[i16]) {
         let payload = codec::encode(Shape::wind(4, codes.len() > 96), codes, None);
         mirror
             .apply(ServerMessage::Wind { tick: 1, seq, key: true, turbulence: TurbulenceState::default(), payload })
             .expect("a valid wind frame");
     }
 
-    fn bend(mirror: &mut Mirror, seq: u32, code: i8) {
+    fn bend(mirror: &mut Mirror, seq: u32, code: i16) {
         let cells = mirror.decoded_scene().expect("a scene").layout().cells as usize;
         let payload = codec::encode(Shape::patch(cells), &vec![code; 3 * cells * cells], None);
         mirror.apply(ServerMessage::Patch { patch: 0, seq, key: true, payload }).expect("a valid patch");
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn moving_air_always_needs_frames() {
-        let one = |at: usize, count: usize| (0..count).map(|i| i8::from(i == at)).collect::<Vec<i8>>();
+        let one = |at: usize, count: usize| (0..count).map(|i| i16::from(i == at)).collect::<Vec<i16>>();
         for (cause, mut mirror, wind) in [
             ("mean wind", meadow(|scene| scene.wind.mean_m_per_s = [0.0, -2.0]), vec![0; 96]),
             ("rain", meadow(|scene| scene.rain.rate_mm_per_h = 5.0), vec![0; 96]),

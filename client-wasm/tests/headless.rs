@@ -7,7 +7,7 @@ use prairie_client::render::{Gpu, OffscreenRenderer, Quality};
 use prairie_client::state::Mirror;
 use prairie_core::scene::{Patches, Scene, TerrainMaps, Wind, WindDust};
 use prairie_core::terrain::grey_png;
-use prairie_core::wire::quantise::{dust_code, omega_code, theta_code};
+use prairie_core::wire::quantise::CodeSteps;
 use prairie_core::wire::{ServerMessage, Shape, TurbulenceState, codec};
 
 const SIZE_PX: [u32; 2] = [192, 108];
@@ -91,8 +91,9 @@ fn a_frame_shows_sky_grass_and_track() {
     assert!(difference(&grass, &again) < 0.5, "drawing the same frames again gives the same picture");
 
     let mut trodden = meadow(255);
-    let plane = |code: i8| std::iter::repeat_n(code, 64 * 64);
-    let codes: Vec<i8> = plane(theta_code(1.4)).chain(plane(omega_code(30.0))).chain(plane(omega_code(0.0))).collect();
+    let plane = |code: i16| std::iter::repeat_n(code, 64 * 64);
+    let steps = CodeSteps::default();
+    let codes: Vec<i16> = plane(steps.theta_code(1.4)).chain(plane(steps.omega_code(30.0))).chain(plane(0)).collect();
     for patch in 0..16 {
         let payload = codec::encode(Shape::patch(64), &codes, None);
         trodden.apply(ServerMessage::Patch { patch, seq: 1, key: true, payload }).expect("a valid patch");
@@ -109,7 +110,7 @@ fn dust_is_drawn_only_where_it_is() {
     let picture = |edge_m: f32| {
         let mut mirror = meadow_in(255, wind.clone());
         let mut codes = vec![0; 3 * 8192];
-        codes.extend((0..8192).map(|at| if (at % 32) as f32 * 8.0 < edge_m { dust_code(4.0) } else { 0 }));
+        codes.extend((0..8192).map(|at| if (at % 32) as f32 * 8.0 < edge_m { CodeSteps::default().dust_code(4.0) } else { 0 }));
         let payload = codec::encode(Shape::wind(32, true), &codes, None);
         mirror
             .apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, turbulence: TurbulenceState::default(), payload })

@@ -57,10 +57,10 @@ fn joined<'m>(messages: impl Iterator<Item = &'m Vec<u8>>) -> Vec<u8> {
 fn server_messages() -> Vec<Seed> {
     let all = vectors("ServerMessage");
     let (scenes, rest): (Vec<_>, Vec<_>) = all.iter().partition(|(name, _)| name == "Scene");
-    let patch: Vec<i8> = (0..192).map(|at| (at % 50) as i8 - 20).collect();
-    let wind: Vec<i8> = (0..96).map(|at| (at % 30) as i8).collect();
-    let moved: Vec<i8> = wind.iter().map(|code| code + 1).collect();
-    let blow = |tick: u64, seq, codes: &[i8], base: Option<&[i8]>| ServerMessage::Wind {
+    let patch: Vec<i16> = (0..192).map(|at| (at % 50) as i16 - 20).collect();
+    let wind: Vec<i16> = (0..96).map(|at| (at % 30) as i16).collect();
+    let moved: Vec<i16> = wind.iter().map(|code| code + 1).collect();
+    let blow = |tick: u64, seq, codes: &[i16], base: Option<&[i16]>| ServerMessage::Wind {
         tick,
         seq,
         key: base.is_none(),
@@ -114,8 +114,8 @@ fn replica() -> Vec<ServerMessage> {
 fn grids() -> Vec<Seed> {
     let shape = Shape::wind(16, true);
     let len = shape.planes * shape.width * 16;
-    let smooth: Vec<i8> = (0..len).map(|at| (at % 16 * 7) as i8 - 50).collect();
-    let noisy: Vec<i8> = (0..len).map(|at| ((at * at * 31 + at * 17) % 251) as u8 as i8).map(|code| code.max(-127)).collect();
+    let smooth: Vec<i16> = (0..len).map(|at| (at % 16 * 7) as i16 - 50).collect();
+    let noisy: Vec<i16> = (0..len).map(|at| ((at * at * 31 + at * 17) % 251) as i16 - 127).collect();
     [("smooth", smooth), ("noisy", noisy)]
         .map(|(name, codes)| {
             let payload = codec::encode(shape, &codes, Some(&vec![0; len]));

@@ -5,7 +5,7 @@ mod common;
 use common::Replica;
 use prairie::runner::{Published, Request};
 use prairie::snapshot::{BentPatches, PatchCodes, Snapshot, WindFrame};
-use prairie::stream::{AreaOfInterest, Client, Clients, DEAD_BAND, Frame, SendLimits, Streamer, patches_near};
+use prairie::stream::{AreaOfInterest, Client, Clients, Frame, SendLimits, Streamer, patches_near};
 use prairie_core::grid::PatchLayout;
 use prairie_core::wire::{BROKEN_LIMIT, BrokenPlant, PATCH_MEMORY, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, decode};
 use proptest::prelude::*;
@@ -19,7 +19,7 @@ const LAYOUT: PatchLayout = PatchLayout { count: [3, 3], cells: 8, cell_m: 1.0 }
 const GRID: usize = 3 * 8 * 8;
 const WIND_CELLS: [u32; 3] = [4, 2, 4];
 const PUBLISH_HZ: f32 = 20.0;
-/// Publications after which even the slowest grid has had a frame.
+/// Publications after which every client is up to date.
 const SETTLE: usize = 8;
 
 /// A world of nine patches whose codes are set by the test.
@@ -43,14 +43,14 @@ impl FakeWorld {
         Arc::make_mut(&mut self.snapshot.patches)
     }
 
-    fn change_patch(&mut self, patch: usize, change: impl FnOnce(&mut [i8])) {
+    fn change_patch(&mut self, patch: usize, change: impl FnOnce(&mut [i16])) {
         let mut codes = self.codes(patch);
         change(&mut codes);
         let tick = self.snapshot.tick;
         self.patches().insert(patch as u32, Arc::new(PatchCodes { tick, codes }));
     }
 
-    fn codes(&self, patch: usize) -> Vec<i8> {
+    fn codes(&self, patch: usize) -> Vec<i16> {
         self.snapshot.patches.get(&(patch as u32)).map_or_else(|| vec![0; GRID], |patch| patch.codes.clone())
     }
 
@@ -86,11 +86,11 @@ impl Viewer {
         frames
     }
 
-    fn error_against(&self, prairie: &FakeWorld) -> u8 {
+    fn error_against(&self, prairie: &FakeWorld) -> u16 {
         self.error_over(0..LAYOUT.patches() as u32, prairie)
     }
 
-    fn error_over(&self, patches: impl IntoIterator<Item = u32>, prairie: &FakeWorld) -> u8 {
+    fn error_over(&self, patches: impl IntoIterator<Item = u32>, prairie: &FakeWorld) -> u16 {
         let patch_error = |patch: u32| {
             let held = self.replica.patches.get(&patch).map_or_else(|| vec![0; GRID], |(_, codes)| codes.clone());
             held.iter().zip(prairie.codes(patch as usize)).map(|(held, code)| held.abs_diff(code)).max().unwrap()
@@ -102,11 +102,11 @@ impl Viewer {
 #[derive(Clone, Debug)]
 enum Event {
     /// Adds to some codes of a patch.
-    Change { patch: usize, at: usize, count: usize, by: i8 },
+    Change { patch: usize, at: usize, count: usize, by: i16 },
     /// Sets a patch to rest.
     Rest { patch: usize },
     /// Adds to the codes of the wind.
-    Wind { by: i8 },
+    Wind { by: i16 },
     /// Publishes a snapshot.
     Publish,
     /// One client reads and acknowledges.
@@ -115,9 +115,9 @@ enum Event {
 
 fn event() -> impl Strategy<Value = Event> {
     prop_oneof![
-        4 => (0..9_usize, 0..GRID, 1..40_usize, -9..=9_i8).prop_map(|(patch, at, count, by)| Event::Change { patch, at, count, by }),
+        4 => (0..9_usize, 0..GRID, 1..40_usize, -9..=9_i16).prop_map(|(patch, at, count, by)| Event::Change { patch, at, count, by }),
         1 => (0..9_usize).prop_map(|patch| Event::Rest { patch }),
-        1 => (-9..=9_i8).prop_map(|by| Event::Wind { by }),
+        1 => (-9..=9_i16).prop_map(|by| Event::Wind { by }),
         4 => Just(Event::Publish),
         3 => (0..3_usize).prop_map(|viewer| Event::Read { viewer }),
     ]
@@ -182,7 +182,7 @@ fn busy_run(viewers: usize, publishes: i32) -> (u64, Vec<Vec<Frame>>) {
     let mut last = Vec::new();
     for publish in 0..publishes {
         for patch in [4, 5] {
-            prairie.change_patch(patch, |codes| codes[publish as usize % GRID] = (publish % 100) as i8 + 10);
+            prairie.change_patch(patch, |codes| codes[publish as usize % GRID] = (publish % 100) as i16 + 10);
         }
         now += Duration::from_millis(50);
         streamer.publish(&prairie.publish(), &clients.all(), now);
@@ -210,7 +210,7 @@ fn a_slow_client_gets_the_newest_state_not_a_queue() {
     let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
     let mut slow = Viewer::join(&clients, limits, 100.0);
     let mut quick = Viewer::join(&clients, limits, 100.0);
-    let mut step = |prairie: &mut FakeWorld, level: i8| {
+    let mut step = |prairie: &mut FakeWorld, level: i16| {
         prairie.change_patch(4, |codes| codes.fill(level));
         now += Duration::from_millis(50);
         streamer.publish(&prairie.publish(), &clients.all(), now);
@@ -241,7 +241,7 @@ fn a_client_gets_its_byte_budget_and_the_nearest_patches_first() {
             prairie.change_patch(patch, |codes| {
                 codes.fill_with(|| {
                     noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                    (noise >> 26) as i8
+                    (noise >> 26) as i16
                 })
             });
         }
@@ -260,30 +260,6 @@ fn a_client_gets_its_byte_budget_and_the_nearest_patches_first() {
     assert!((0..9).all(|patch| served[4] >= served[patch]), "the camera's patch comes first: {served:?}");
 }
 
-/// Error bound of the slow frames: exactly the dead band while a patch moves, and zero once it is at rest.
-#[test]
-fn a_small_change_waits_within_the_dead_band() {
-    let limits = SendLimits::default();
-    let (clients, mut prairie, mut now) = (Clients::default(), FakeWorld::at_rest(), Instant::now());
-    let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
-    let mut viewer = Viewer::join(&clients, limits, 100.0);
-    let mut worst = 0;
-    for publish in 0..200_i32 {
-        prairie.change_patch(4, |codes| codes[7] = (publish * 7 % 5) as i8);
-        now += Duration::from_millis(50);
-        streamer.publish(&prairie.publish(), &clients.all(), now);
-        viewer.read();
-        worst = worst.max(viewer.error_against(&prairie));
-    }
-    assert_eq!(worst, DEAD_BAND);
-    for _ in 0..SETTLE {
-        now += Duration::from_millis(50);
-        streamer.publish(&prairie.publish(), &clients.all(), now);
-        viewer.read();
-    }
-    assert_eq!(viewer.error_against(&prairie), 0);
-}
-
 #[test]
 fn memory_does_not_grow_with_the_distance_travelled() {
     const STRIP: PatchLayout = PatchLayout { count: [400, 12], cells: 8, cell_m: 1.0 };
@@ -293,7 +269,7 @@ fn memory_does_not_grow_with_the_distance_travelled() {
     let mut streamer = Streamer::new(STRIP, limits, PUBLISH_HZ);
     let mut viewer = Viewer::join(&clients, limits, RADIUS_M);
     for patch in 0..STRIP.patches() {
-        prairie.change_patch(patch, |codes| codes.fill(10 + (patch % 50) as i8));
+        prairie.change_patch(patch, |codes| codes.fill(10 + (patch % 50) as i16));
     }
     let column = |x: u32| (0..STRIP.count[1]).map(move |z| (z * STRIP.count[0] + x) as usize);
     for x in (0..STRIP.count[0]).chain((0..STRIP.count[0]).rev()) {

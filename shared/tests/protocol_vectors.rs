@@ -7,9 +7,7 @@ use prairie_core::hash::hash3;
 use prairie_core::scene::{Scene, VehicleKind, WindBoundary, WindTiling, parse};
 use prairie_core::terrain::KindMap;
 use prairie_core::wind::WindField;
-use prairie_core::wire::quantise::{
-    dust, dust_code, heading_code, heading_rad, omega_code, omega_rad_per_s, theta_code, theta_rad, wind_code, wind_m_per_s,
-};
+use prairie_core::wire::quantise::{CODE_LIMIT, CodeSteps, heading_code, heading_rad};
 use prairie_core::wire::{
     AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Joined, Mesh, ObjectPose, PROTOCOL, PatchCheck, Peer, RareCauses, Refusal,
     ServerMessage, Shape, Shapes, StepHead, TurbulenceState, codec, encode,
@@ -45,8 +43,8 @@ fn hex(bytes: impl IntoIterator<Item = u8>) -> String {
     bytes.into_iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn codes_hex(codes: &[i8]) -> String {
-    hex(codes.iter().map(|&code| code as u8))
+fn codes_hex(codes: &[i16]) -> String {
+    hex(codes.iter().flat_map(|&code| code.to_be_bytes()))
 }
 
 fn message<M: Serialize>(layout: &str, message: &M) -> Value {
@@ -166,28 +164,28 @@ fn pose() -> ObjectPose {
 }
 
 /// Codes of a smooth field, by integers alone: waves of triangles with amplitudes of up to `amplitude`.
-fn smooth(shape: Shape, rows: usize, amplitude: i32, phase: i32) -> Vec<i8> {
+fn smooth(shape: Shape, rows: usize, amplitude: i32, phase: i32) -> Vec<i16> {
     let triangle = |n: i32| (n.rem_euclid(64) - 32).abs() - 16;
     let code = |n: i32| {
         let (x, y, plane) = (n % shape.width as i32, n / shape.width as i32 % rows as i32, n / (shape.width * rows) as i32);
-        (triangle(3 * x + 2 * y + phase + 11 * plane) * amplitude / 16) as i8
+        (triangle(3 * x + 2 * y + phase + 11 * plane) * amplitude / 16) as i16
     };
     (0..(shape.planes * shape.width * rows) as i32).map(code).map(|code| if shape.planes == 4 { code.max(0) } else { code }).collect()
 }
 
 /// `codes` with a difference of −`most`..=`most` at about one place of `every`.
-fn disturbed(codes: &[i8], every: u32, most: i32) -> Vec<i8> {
-    let changed = |(n, code): (usize, &i8)| {
+fn disturbed(codes: &[i16], every: u32, most: i32) -> Vec<i16> {
+    let changed = |(n, code): (usize, &i16)| {
         let [chance, size, _] = hash3([n as u32, every, 5]);
         let change = if (chance >> 8) % every == 0 { (size >> 8) as i32 % (2 * most + 1) - most } else { 0 };
-        (i32::from(*code) + change).clamp(-127, 127) as i8
+        (i32::from(*code) + change) as i16
     };
     codes.iter().enumerate().map(changed).collect()
 }
 
 /// Payloads of the codec with their grids.
 fn grids() -> Vec<Value> {
-    let example = |name: &str, shape: Shape, codes: &[i8], base: Option<&[i8]>| {
+    let example = |name: &str, shape: Shape, codes: &[i16], base: Option<&[i16]>| {
         let payload = codec::encode(shape, codes, base);
         json!({
             "name": name,
@@ -208,8 +206,8 @@ fn grids() -> Vec<Value> {
         example("patch, delta of noise", patch, &disturbed(&track, 3, 1), Some(&track)),
         example("patch, delta of a few cells", patch, &disturbed(&rest, 90, 20), Some(&rest)),
         example("patch, delta without a change", patch, &track, Some(&track)),
-        example("patch, key of noise over the whole range", patch, &disturbed(&rest, 1, 127), None),
-        example("patch, delta over the whole range", patch, &[127; 3 * 16 * 16], Some(&[-127; 3 * 16 * 16])),
+        example("patch, key of noise over a wide range", patch, &disturbed(&rest, 1, 3000), None),
+        example("patch, delta over the whole range", patch, &[CODE_LIMIT; 3 * 16 * 16], Some(&[-CODE_LIMIT; 3 * 16 * 16])),
         example("wind, key", air, &wind, None),
         example("wind, delta", air, &disturbed(&smooth(air, 3 * 7, 30, 11), 4, 2), Some(&wind)),
         example("wind with dust, key", dusty, &dust, None),
@@ -219,8 +217,10 @@ fn grids() -> Vec<Value> {
 
 /// Values with their codes and the values of these.
 fn quantisation() -> Vec<Value> {
-    let table = |quantity: &str, values: &[f32], code: fn(f32) -> i8, value: fn(i8) -> f32| {
-        let rows = values.iter().map(|&given| (given, code(given), value(code(given))));
+    type Table = (fn(&CodeSteps, f32) -> i16, fn(&CodeSteps, i16) -> f32);
+    let steps = CodeSteps::default();
+    let table = |quantity: &str, values: &[f32], (code, value): Table| {
+        let rows = values.iter().map(|&given| (given, code(&steps, given), value(&steps, code(&steps, given))));
         json!({ "quantity": quantity, "rows": rows.collect::<Vec<_>>() })
     };
     let heading = |turns_x: f32, turns_z: f32| {
@@ -228,10 +228,14 @@ fn quantisation() -> Vec<Value> {
         ([turns_x, turns_z], code, heading_rad(code))
     };
     vec![
-        table("theta_rad", &[0.0, 0.012, 0.013, 0.5, -1.0, 1.5, -3.0, 3.2, 10.0], theta_code, theta_rad),
-        table("omega_rad_per_s", &[0.0, 0.001, 0.002, 0.01, -0.3, 2.0, -25.0, 79.0, 100.0], omega_code, omega_rad_per_s),
-        table("wind_m_per_s", &[0.0, 0.12, 0.125, 0.13, 0.375, -0.375, 7.3, -31.7, 40.0], wind_code, wind_m_per_s),
-        table("dust", &[-1.0, 0.0, 0.0001, 0.001, 0.1, 1.0, 5.0, 15.9, 100.0], dust_code, dust),
+        table("theta_rad", &[0.0, 0.008, 0.009, 0.5, -1.0, 1.5, -3.0, 3.2, 10.0], (CodeSteps::theta_code, CodeSteps::theta_rad)),
+        table(
+            "omega_rad_per_s",
+            &[0.0, 0.001, 0.002, 0.01, -0.3, 2.0, -25.0, 79.0, 1e4],
+            (CodeSteps::omega_code, CodeSteps::omega_rad_per_s),
+        ),
+        table("wind_m_per_s", &[0.0, 0.12, 0.125, 0.13, 0.375, -0.375, 7.3, -31.7, 70.0], (CodeSteps::wind_code, CodeSteps::wind_m_per_s)),
+        table("dust", &[-1.0, 0.0, 0.0001, 0.001, 0.1, 1.0, 5.0, 15.9, 100.0], (CodeSteps::dust_code, CodeSteps::dust)),
         json!({ "quantity": "heading_rad", "rows": [heading(1.0, 0.0), heading(0.0, 1.0), heading(-3.0, 0.1), heading(-0.5, -0.5), heading(1.0, -0.02)] }),
     ]
 }
@@ -264,7 +268,7 @@ fn wind(name: &str, scene: &Scene, state: &TurbulenceState) -> Value {
     };
     json!({
         "name": name,
-        "scene": { "seed": scene.seed, "patches": scene.patches, "wind": scene.wind, "grass": scene.grass },
+        "scene": { "seed": scene.seed, "patches": scene.patches, "wind": scene.wind, "grass": scene.grass, "stream": scene.stream },
         "codes": codes_hex(&codes),
         "turbulence": state,
         "samples": places.map(sample),
@@ -309,7 +313,7 @@ fn bends() -> Value {
     let patches = [(0, smooth(shape, 8, 50, 7)), (3, disturbed(&smooth(shape, 8, 60, 20), 2, 30))];
     let cell = |patch: u32, number: usize| {
         let held = patches.iter().find(|(index, _)| *index == patch);
-        Bend::of_codes(held.map_or([0; 3], |(_, codes)| [0, 1, 2].map(|plane| codes[plane * 64 + number])))
+        Bend::of_codes(held.map_or([0; 3], |(_, codes)| [0, 1, 2].map(|plane| codes[plane * 64 + number])), &CodeSteps::default())
     };
     let places = [[0.25, 0.25], [1.1, 2.3], [3.99, 3.9], [4.0, 4.0], [4.3, 1.0], [6.6, 7.7], [8.1, 7.9], [-0.1, 0.3], [100.0, 100.0]];
     let samples = places.map(|at| json!({ "at_m": at, "bend_rad": field_lean_at(&layout, at, cell) }));

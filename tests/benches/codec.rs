@@ -7,7 +7,8 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use prairie_core::bend::{Bend, Field, Kinds, Scheme, Serial};
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::Grass;
-use prairie_core::wire::{Shape, codec, quantise};
+use prairie_core::wire::quantise::CodeSteps;
+use prairie_core::wire::{Shape, codec};
 use std::hint::black_box;
 
 const SIDE: usize = 64;
@@ -17,9 +18,9 @@ const DT_SECS: f32 = 1.0 / 60.0;
 const STEPS_PER_FRAME: usize = 3;
 
 /// Codes of consecutive frames while a disc of 1 m radius crosses the patch at 8 m/s.
-fn frames() -> Vec<Vec<i8>> {
+fn frames() -> Vec<Vec<i16>> {
     let mut field = Field::new(LAYOUT, Kinds::one(Grass::default().waves));
-    let mut frames = Vec::new();
+    let (steps, mut frames) = (CodeSteps::default(), Vec::new());
     for step in 0..120 {
         let x_m = 1.0 + 8.0 * step as f32 * DT_SECS;
         let patch = field.wake(0);
@@ -35,29 +36,29 @@ fn frames() -> Vec<Vec<i8>> {
         field.step(Scheme::Substepped, DT_SECS, &Serial).expect("a step of some length");
         if step % STEPS_PER_FRAME == 0 {
             let patch = field.patch(0).expect("awake");
-            let own = |channel: usize, code: fn(f32) -> i8| -> Vec<i8> {
-                patch.rows().flat_map(|row| row[channel].iter().map(|&value| code(value)).collect::<Vec<_>>()).collect()
+            let own = |channel: usize, code: fn(&CodeSteps, f32) -> i16| -> Vec<i16> {
+                patch.rows().flat_map(|row| row[channel].iter().map(|&value| code(&steps, value)).collect::<Vec<_>>()).collect()
             };
-            let planes = [own(0, quantise::theta_code), own(1, quantise::omega_code), own(2, quantise::omega_code)];
+            let planes = [own(0, CodeSteps::theta_code), own(1, CodeSteps::omega_code), own(2, CodeSteps::omega_code)];
             frames.push(planes.concat());
         }
     }
     frames
 }
 
-fn deflate_delta(codes: &[i8], base: &[i8]) -> Vec<u8> {
-    let delta: Vec<u8> = codes.iter().zip(base).map(|(code, base)| code.wrapping_sub(*base) as u8).collect();
+fn deflate_delta(codes: &[i16], base: &[i16]) -> Vec<u8> {
+    let delta: Vec<u8> = codes.iter().zip(base).flat_map(|(code, base)| code.wrapping_sub(*base).to_le_bytes()).collect();
     miniz_oxide::deflate::compress_to_vec(&delta, 6)
 }
 
 fn bench(criterion: &mut Criterion) {
     let frames = frames();
     let pairs: Vec<_> = frames.windows(2).collect();
-    let mean = |size: &dyn Fn(&[Vec<i8>]) -> usize| pairs.iter().map(|pair| size(pair)).sum::<usize>() / pairs.len();
+    let mean = |size: &dyn Fn(&[Vec<i16>]) -> usize| pairs.iter().map(|pair| size(pair)).sum::<usize>() / pairs.len();
     let ours = mean(&|pair| codec::encode(SHAPE, &pair[1], Some(&pair[0])).len());
     let key = mean(&|pair| codec::encode(SHAPE, &pair[1], None).len());
     let deflate = mean(&|pair| deflate_delta(&pair[1], &pair[0]).len());
-    println!("mean bytes of a patch: raw {}, key {key}, delta {ours}, deflate of the delta {deflate}", frames[0].len());
+    println!("mean bytes of a patch: raw {}, key {key}, delta {ours}, deflate of the delta {deflate}", 2 * frames[0].len());
 
     let (base, codes) = (&pairs[pairs.len() / 2][0], &pairs[pairs.len() / 2][1]);
     let delta = codec::encode(SHAPE, codes, Some(base));

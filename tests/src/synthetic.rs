@@ -7,7 +7,7 @@ use prairie_client::state::Mirror;
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{Objects, Scene, TerrainMaps, VehicleKind};
 use prairie_core::terrain::{HeightMap, grey_png};
-use prairie_core::wire::quantise::{omega_code, theta_code, wind_code};
+use prairie_core::wire::quantise::CodeSteps;
 use prairie_core::wire::{ObjectPose, ServerMessage, Shape, TurbulenceState, codec};
 
 /// Pixels of both maps along X and Z, and the distance between those of the height map (m).
@@ -95,15 +95,15 @@ fn covering() -> Vec<u8> {
 
 fn wind(scene: &Scene) -> ServerMessage {
     let [nx, ny, nz] = scene.wind.cells.map(|n| n as usize);
-    let mut codes = vec![0_i8; nx * ny * nz * 3];
-    let count = nx * ny * nz;
+    let mut codes = vec![0_i16; nx * ny * nz * 3];
+    let (count, steps) = (nx * ny * nz, CodeSteps::from(&scene.stream));
     for i in 0..count {
         let (x, y, z) = (i % nx, i / nx % ny, i / (nx * ny));
         let turn = std::f32::consts::TAU;
         let (fx, fz) = (turn * x as f32 / nx as f32, turn * z as f32 / nz as f32);
         let strength = 0.8 + 0.05 * y as f32 + 0.35 * (3.0 * fx + fz).sin() * (2.0 * fz).cos();
-        codes[i] = wind_code(4.2 * strength);
-        codes[2 * count + i] = wind_code(2.6 * strength + 0.8 * (2.0 * fx).sin());
+        codes[i] = steps.wind_code(4.2 * strength);
+        codes[2 * count + i] = steps.wind_code(2.6 * strength + 0.8 * (2.0 * fx).sin());
     }
     // As in a neutral surface layer under a mean wind of 4.9 m/s at 10 m.
     let turbulence = TurbulenceState { friction_m_per_s: 0.37, ..TurbulenceState::default() };
@@ -111,17 +111,17 @@ fn wind(scene: &Scene) -> ServerMessage {
 }
 
 fn patch_message(layout: &PatchLayout, patch: u32) -> Option<ServerMessage> {
-    let cells = layout.cells as usize;
+    let (cells, steps) = (layout.cells as usize, CodeSteps::default());
     let [corner_x, corner_z] = layout.corner_m(patch);
-    let mut codes = vec![0_i8; cells * cells * 3];
+    let mut codes = vec![0_i16; cells * cells * 3];
     for i in 0..cells * cells {
         let x = corner_x + ((i % cells) as f32 + 0.5) * layout.cell_m;
         let z = corner_z + ((i / cells) as f32 + 0.5) * layout.cell_m;
         let (theta, direction) = bend_at(Vec2::new(x, z));
         if theta > 0.01 {
-            codes[i] = theta_code(theta);
-            codes[cells * cells + i] = omega_code(direction.x * theta * 20.0);
-            codes[2 * cells * cells + i] = omega_code(direction.y * theta * 20.0);
+            codes[i] = steps.theta_code(theta);
+            codes[cells * cells + i] = steps.omega_code(direction.x * theta * 20.0);
+            codes[2 * cells * cells + i] = steps.omega_code(direction.y * theta * 20.0);
         }
     }
     let is_bent = codes.iter().any(|&code| code != 0);

@@ -1,6 +1,6 @@
 // Sampling of the streamed bend field.
 
-import package::constants::{BEND_ATLAS_LEVELS, OMEGA_FULL_RAD_PER_S, PASTS, TAU, THETA_FULL_RAD};
+import package::constants::{BEND_ATLAS_LEVELS, PASTS, TAU};
 import package::inputs::frame::{frame, runtime_zero, repeated};
 import package::inputs::wind::lean_of_wind;
 import package::uniforms::Kind;
@@ -9,8 +9,8 @@ import package::uniforms::Kind;
 
 // State of the bend field at a position, in a mip level and a layer of the atlas: θ (rad), ω (rad/s). Layer 0 is the newest.
 fn bend_at(p: vec2<f32>, level: f32, layer: i32) -> vec3<f32> {
-    let code = textureSampleLevel(bends, repeated, p / frame.bend_window_m, layer, level);
-    return vec3<f32>(code.x * THETA_FULL_RAD, code.yz * abs(code.yz) * OMEGA_FULL_RAD_PER_S);
+    let bend = textureSampleLevel(bends, repeated, p / frame.bend_window_m, layer, level);
+    return vec3<f32>(bend.x, bend.yz * abs(bend.yz));
 }
 
 // Lean (rad, as a vector on the ground) of a state of the bend field.

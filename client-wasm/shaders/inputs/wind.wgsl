@@ -1,18 +1,18 @@
 // Sampling of the streamed wind, and gusts finer than its cells. Twin of `WindField` in shared/src/wind/field.rs.
 
-import package::constants::{BEND_SATURATES_M_PER_S, DUST_FULL, FREE_WIND_M, LEAST_WIND_HEIGHT, TAU, WIND_FULL_M_PER_S};
+import package::constants::{BEND_SATURATES_M_PER_S, FREE_WIND_M, LEAST_WIND_HEIGHT, TAU};
 import package::inputs::frame::{frame, runtime_zero, repeated};
 import package::inputs::random::hash3;
 
 @group(0) @binding(5) var winds: texture_3d<f32>;
 
-// Wind (m/s), and square root of the dust concentration relative to `DUST_FULL`, at a position in the wind domain.
+// Wind (m/s), and square root of the dust concentration, at a position in the wind domain.
 fn air_in_box(place_m: vec3<f32>) -> vec4<f32> {
     let edge = 0.5 / vec3<f32>(textureDimensions(winds));
     let uvw = place_m / frame.wind_box_m;
     let held = clamp(uvw, edge, 1.0 - edge);
     let at = select(held, uvw, vec3<bool>(frame.wind_repeats.x != 0u, false, frame.wind_repeats.y != 0u));
-    return textureSampleLevel(winds, repeated, at, 0.0) * vec4<f32>(vec3<f32>(WIND_FULL_M_PER_S), 1.0);
+    return textureSampleLevel(winds, repeated, at, 0.0);
 }
 
 // Offset (cells along X and Z) of the wind domain in a patch. Twin of `offset_cells` in shared/src/wind/tiling.rs.
@@ -76,7 +76,7 @@ fn near_ground_fraction(above_m: f32) -> f32 {
 
 // Dust concentration of a sample of `air_at`.
 fn dust_of(air: vec4<f32>) -> f32 {
-    return air.w * air.w * DUST_FULL;
+    return air.w * air.w;
 }
 
 // Lean (rad, as a vector on the ground) in a steady wind, for a plant that a wind of `BEND_SATURATES_M_PER_S` bends by `bend_rad`.

@@ -19,7 +19,7 @@ use prairie_core::plant::blade::{LINKS, Sway};
 use prairie_core::plant::underbrush::constraint::Following;
 use prairie_core::scene::{BladeIntegrator, Grass, LagWay, Patches, Scene, Species, TerrainMaps, VehicleKind, Wind};
 use prairie_core::terrain::grey_png;
-use prairie_core::wire::quantise::{omega_code, omega_rad_per_s, theta_code};
+use prairie_core::wire::quantise::CodeSteps;
 use prairie_core::wire::{ServerMessage, Shape, codec};
 use std::fmt::Display;
 use wgpu::naga;
@@ -120,9 +120,9 @@ fn stream_lean(mirror: &mut Mirror, theta_rad: f32) {
 fn stream(mirror: &mut Mirror, theta_rad: impl Fn(f32) -> f32, omega_rad_per_s: f32) {
     for patch in 0..16 {
         let west_m = (patch % 4) as f32 * 16.0;
-        let thetas = (0..64 * 64).map(|at| theta_code(theta_rad(west_m + ((at % 64) as f32 + 0.5) * 0.25)));
-        let plane = |code: i8| std::iter::repeat_n(code, 64 * 64);
-        let codes: Vec<i8> = thetas.chain(plane(omega_code(omega_rad_per_s))).chain(plane(0)).collect();
+        let thetas = (0..64 * 64).map(|at| CodeSteps::default().theta_code(theta_rad(west_m + ((at % 64) as f32 + 0.5) * 0.25)));
+        let plane = |code: i16| std::iter::repeat_n(code, 64 * 64);
+        let codes: Vec<i16> = thetas.chain(plane(CodeSteps::default().omega_code(omega_rad_per_s))).chain(plane(0)).collect();
         let payload = codec::encode(Shape::patch(64), &codes, None);
         mirror.apply(ServerMessage::Patch { patch, seq: 1, key: true, payload }).expect("a sound patch");
     }
@@ -269,7 +269,8 @@ fn segments_that_look_upwind_find_what_their_twin_finds() {
     );
     // Bends that fall and rise towards the east, slowly enough for 8-bit codes.
     let theta_rad = |x_m: f32| 0.5 + 0.4 * (x_m * 0.3).sin();
-    let omega = omega_rad_per_s(omega_code(1.2));
+    let steps = CodeSteps::default();
+    let omega = steps.omega_rad_per_s(steps.omega_code(1.2));
     stream(&mut mirror, theta_rad, omega);
     let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut mirror, &Camera { eye_m: Vec3::new(32.0, 2.0, 32.0), ..Camera::default() }, 0.0, 0.0);

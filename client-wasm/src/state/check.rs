@@ -3,7 +3,7 @@
 use super::check_underbrush::check_underbrush;
 use super::error::{MirrorError, range, within};
 use prairie_core::body::Body;
-use prairie_core::scene::{LAMPS_LIMIT, Scene, WIND_CELLS_LIMIT};
+use prairie_core::scene::{LAMPS_LIMIT, Scene, Stream, WIND_CELLS_LIMIT};
 use prairie_core::wire::Mesh;
 
 /// Checks all settings that the client relies on.
@@ -38,7 +38,11 @@ fn check_grids(scene: &Scene) -> Result<(), MirrorError> {
     for mean in scene.wind.mean_m_per_s {
         within("wind.mean_m_per_s", mean, -40.0, 40.0)?;
     }
-    Ok(())
+    let Stream { theta_error_deg, omega_error_rad_per_s, wind_error_m_per_s, dust_error } = scene.stream;
+    within("stream.theta_error_deg", theta_error_deg, 0.05, 5.0)?;
+    within("stream.omega_error_rad_per_s", omega_error_rad_per_s, 0.01, 1.0)?;
+    within("stream.wind_error_m_per_s", wind_error_m_per_s, 0.01, 1.0)?;
+    within("stream.dust_error", dust_error, 0.005, 0.5)
 }
 
 fn check_world(scene: &Scene) -> Result<(), MirrorError> {

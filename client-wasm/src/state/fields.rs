@@ -1,4 +1,4 @@
-//! The streamed fields: 8-bit codes of patches and wind, synchronised with the server by key frames and sequence numbers.
+//! The streamed fields: 16-bit codes of patches and wind, synchronised with the server by key frames and sequence numbers.
 
 use super::error::{MirrorError, range};
 use prairie_core::grid::{PatchIndex, PatchLayout};
@@ -6,19 +6,19 @@ use prairie_core::scene::Wind;
 use prairie_core::wire::{PATCH_MEMORY, Shape, TurbulenceState, codec};
 use std::collections::{BTreeSet, HashMap, VecDeque};
 
-/// Maximum number of patches stored; the least recently updated one is evicted. 4096 patches of 64² cells take 50 MB.
+/// Maximum number of patches stored; the least recently updated one is evicted. 4096 patches of 64² cells take 100 MB.
 pub const PATCH_LIMIT: usize = 4096;
 const _: () = assert!(PATCH_LIMIT >= PATCH_MEMORY, "the server relies on the client remembering this many patches");
 
 /// Codes of one patch: three planes (θ, ωx, ωz) of `cells × cells`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PatchCodes {
-    planes: Vec<i8>,
+    planes: Vec<i16>,
 }
 
 impl PatchCodes {
     /// Planes θ, ωx, ωz, each in rows from north to south.
-    pub fn planes(&self) -> [&[i8]; 3] {
+    pub fn planes(&self) -> [&[i16]; 3] {
         let plane = self.planes.len() / 3;
         std::array::from_fn(|i| &self.planes[i * plane..(i + 1) * plane])
     }
@@ -83,7 +83,7 @@ impl PatchFields {
     }
 
     /// Sets the codes of a patch, `None` at rest. Only a key frame of the server can replace them.
-    pub(super) fn set(&mut self, patch: PatchIndex, codes: Option<&[i8]>) {
+    pub(super) fn set(&mut self, patch: PatchIndex, codes: Option<&[i16]>) {
         let codes = codes.map(|codes| PatchCodes { planes: codes.to_vec() });
         self.store(patch, Entry { seq: 0, updated: 0, codes });
     }
@@ -122,7 +122,7 @@ pub struct WindCodes {
     tick: u64,
     seq: u32,
     turbulence: TurbulenceState,
-    codes: Vec<i8>,
+    codes: Vec<i16>,
     is_calm: bool,
 }
 
@@ -153,7 +153,7 @@ impl WindCodes {
     }
 
     /// All codes, plane after plane.
-    pub fn codes(&self) -> &[i8] {
+    pub fn codes(&self) -> &[i16] {
         &self.codes
     }
 }
@@ -220,7 +220,7 @@ impl WindFrames {
             Some(newest) if newest.tick > tick => self.frames.clear(),
             _ => {}
         }
-        let limit = (WIND_LIMIT_BYTES / codes.len().max(1)).clamp(WIND_FRAMES, WIND_FRAMES_LIMIT);
+        let limit = (WIND_LIMIT_BYTES / size_of_val(codes.as_slice()).max(1)).clamp(WIND_FRAMES, WIND_FRAMES_LIMIT);
         while self.frames.len() >= limit {
             self.frames.pop_front();
         }
@@ -236,7 +236,7 @@ impl WindFrames {
 
     /// Memory of the codes (bytes).
     pub(super) fn memory_bytes(&self) -> usize {
-        self.frames.iter().map(|frame| frame.codes.len()).sum()
+        self.frames.iter().map(|frame| size_of_val(frame.codes.as_slice())).sum()
     }
 
     /// The newest frame.

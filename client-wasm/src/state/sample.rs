@@ -28,7 +28,7 @@ impl Mirror {
         let Some(decoded) = self.decoded_scene() else { return [0.0; 2] };
         field_lean_at(decoded.layout(), [x_m, z_m], |patch, cell| {
             let codes = self.patch(patch).map(|codes| codes.planes().map(|plane| plane[cell]));
-            codes.map(Bend::of_codes).unwrap_or_default()
+            codes.map(|codes| Bend::of_codes(codes, decoded.code_steps())).unwrap_or_default()
         })
     }
 

@@ -11,6 +11,7 @@ use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::{Scene, VehicleKind};
 use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
 use prairie_core::wind::{WindField, WindTiles};
+use prairie_core::wire::quantise::CodeSteps;
 use prairie_core::wire::{Drawing, Mesh, Shapes};
 use prairie_vehicles::{Environment, LoneVehicle};
 use std::sync::Arc;
@@ -31,6 +32,7 @@ pub struct DecodedScene {
     bodies: Vec<Body>,
     drawings: WindDrawings,
     tiles: WindTiles,
+    steps: CodeSteps,
 }
 
 impl DecodedScene {
@@ -61,7 +63,8 @@ impl DecodedScene {
         let layout = PatchLayout::from(&scene.patches);
         let (tiles, kinds) = (WindTiles::new(&scene), Arc::new(KindMap::new(&scene, &cover)));
         let flora = Flora::new(&scene, &cover, nutrients.as_ref());
-        Ok(Self { scene, layout, heights, cover, kinds, flora, models, bodies: shapes.bodies, drawings, tiles })
+        let steps = CodeSteps::from(&scene.stream);
+        Ok(Self { scene, layout, heights, cover, kinds, flora, models, bodies: shapes.bodies, drawings, tiles, steps })
     }
 
     /// Settings of the scene.
@@ -77,6 +80,11 @@ impl DecodedScene {
     /// Tiling of the world by the wind domain.
     pub fn tiles(&self) -> &WindTiles {
         &self.tiles
+    }
+
+    /// Steps of the codes of wind and patches.
+    pub fn code_steps(&self) -> &CodeSteps {
+        &self.steps
     }
 
     /// The height map.

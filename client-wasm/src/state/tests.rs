@@ -2,11 +2,15 @@ use super::*;
 use glam::Vec3;
 use prairie_core::scene::{Component, ComponentKind, Lamp, Patches, Scene, Species, TerrainMaps, Underbrush, VehicleKind, Wind};
 use prairie_core::terrain::grey_png;
-use prairie_core::wire::quantise::{dust_code, theta_code, wind_code};
+use prairie_core::wire::quantise::CodeSteps;
 use prairie_core::wire::{BrokenPlant, Shape, TurbulenceState, codec, decode};
 use prairie_core::wire::{ObjectPose, ServerMessage};
 use proptest::prelude::*;
 use std::num::NonZeroU8;
+use std::sync::LazyLock;
+
+/// Steps of the codes of a scene with the default errors.
+static STEPS: LazyLock<CodeSteps> = LazyLock::new(CodeSteps::default);
 
 fn scene() -> Scene {
     let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [1.0, 1.0], level_m: 0.1, base_m: 0.0 };
@@ -35,11 +39,11 @@ fn loaded() -> Mirror {
     mirror
 }
 
-fn patch(seq: u32, key: bool, base: Option<&[i8]>, codes: &[i8]) -> ServerMessage {
+fn patch(seq: u32, key: bool, base: Option<&[i16]>, codes: &[i16]) -> ServerMessage {
     ServerMessage::Patch { patch: 1, seq, key, payload: codec::encode(Shape::patch(8), codes, base) }
 }
 
-fn theta(mirror: &Mirror) -> Option<i8> {
+fn theta(mirror: &Mirror) -> Option<i16> {
     mirror.patch(1).map(|codes| codes.planes()[0][0])
 }
 
@@ -118,7 +122,7 @@ fn wind_deltas_apply_to_their_key_frame() {
 fn wind_is_shown_between_frames() {
     let mut mirror = loaded();
     let mut blow = |tick: u64, speed: f32, friction_m_per_s: f32| {
-        let codes: Vec<i8> = (0..96).map(|at| if at < 32 { wind_code(speed) } else { 0 }).collect();
+        let codes: Vec<i16> = (0..96).map(|at| if at < 32 { STEPS.wind_code(speed) } else { 0 }).collect();
         let turbulence = TurbulenceState { friction_m_per_s, ..TurbulenceState::default() };
         let payload = codec::encode(Shape::wind(4, false), &codes, None);
         mirror.apply(ServerMessage::Wind { tick, seq: tick as u32, key: true, turbulence, payload }).unwrap();
@@ -150,7 +154,7 @@ fn dust_is_the_fourth_wind_plane() {
     dusty.wind.dust.release_per_s = 1.0;
     let mut mirror = Mirror::default();
     mirror.apply(scene_message(dusty)).unwrap();
-    let codes: Vec<i8> = [0, 0, 0, dust_code(2.0)].into_iter().flat_map(|code| [code; 32]).collect();
+    let codes: Vec<i16> = [0, 0, 0, STEPS.dust_code(2.0)].into_iter().flat_map(|code| [code; 32]).collect();
     let payload = codec::encode(Shape::wind(4, true), &codes, None);
     mirror
         .apply(ServerMessage::Wind { tick: 0, seq: 1, key: true, turbulence: TurbulenceState::default(), payload: payload.clone() })
@@ -245,13 +249,13 @@ fn grass_angle_combines_wind_and_bend_field() {
     let mut mirror = Mirror::default();
     mirror.apply(scene_message(scene)).unwrap();
     // 20 m/s eastward hold the grass at 0.6 rad.
-    let codes: Vec<i8> = [wind_code(20.0), 0, 0].into_iter().flat_map(|code| [code; 8]).collect();
+    let codes: Vec<i16> = [STEPS.wind_code(20.0), 0, 0].into_iter().flat_map(|code| [code; 8]).collect();
     let payload = codec::encode(Shape::wind(2, false), &codes, None);
     mirror.apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, turbulence: TurbulenceState::default(), payload }).unwrap();
     assert!((mirror.theta_at(3.0, 1.0) - 0.6).abs() < 1e-3, "{}", mirror.theta_at(3.0, 1.0));
     for (seq, omega, expected_rad) in [(1, [40, 0], 1.4), (2, [-40, 0], 0.2), (3, [0, 40], 1.0)] {
-        let planes = [theta_code(0.8), omega[0], omega[1]];
-        let codes: Vec<i8> = planes.into_iter().flat_map(|code| [code; 64]).collect();
+        let planes = [STEPS.theta_code(0.8), omega[0], omega[1]];
+        let codes: Vec<i16> = planes.into_iter().flat_map(|code| [code; 64]).collect();
         mirror.apply(patch(seq, true, None, &codes)).unwrap();
         let found_rad = mirror.theta_at(3.0, 1.0);
         assert!((found_rad - expected_rad).abs() < 0.015, "{found_rad} instead of {expected_rad} for ω = {omega:?}");

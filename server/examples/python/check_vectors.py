@@ -10,6 +10,13 @@ import prairie
 
 VECTORS = json.loads((Path(__file__).resolve().parents[2] / "docs/protocol-vectors.json").read_text())
 SPEED_M_PER_S, LEAN_RAD = 1e-4, 1e-5
+# The steps of a scene with the default errors.
+STEPS = {
+    "theta_rad": np.float32(0.5) * np.float32(2 * math.pi / 180),
+    "omega_rad_per_s": np.float32(0.07),
+    "wind_m_per_s": np.float32(0.25),
+    "dust": np.float32(0.03),
+}
 
 compared, differences = 0, []
 
@@ -31,7 +38,7 @@ def plain(value):
 
 
 def grid(text, planes, width):
-    return np.frombuffer(bytes.fromhex(text), np.int8).reshape(planes, -1, width)
+    return np.frombuffer(bytes.fromhex(text), ">i2").reshape(planes, -1, width)
 
 
 def check_messages():
@@ -55,27 +62,21 @@ def check_grids():
 
 def code(quantity, value):
     """The formulas of the page, in single precision."""
-    value, full = np.float32(value), np.float32({"theta_rad": math.pi, "omega_rad_per_s": 80, "wind_m_per_s": 31.75, "dust": 16}[quantity])
-    if quantity == "dust":
-        value = max(value, np.float32(0))
+    value = max(np.float32(value), np.float32(0)) if quantity == "dust" else np.float32(value)
     if quantity in ("omega_rad_per_s", "dust"):
-        scaled = np.copysign(np.sqrt(np.abs(value) * (np.float32(127 * 127) / full)), value)
-    else:
-        scaled = value * (np.float32(127) / full)
-    return int(np.rint(np.clip(scaled, -127, 127)))
+        value = np.copysign(np.sqrt(np.abs(value)), value)
+    return int(np.rint(np.clip(value * (np.float32(1) / STEPS[quantity]), -32767, 32767)))
 
 
 def value(quantity, code):
-    fraction = code / 127
+    steps = code * float(STEPS[quantity])
     match quantity:
-        case "theta_rad":
-            return fraction * math.pi
         case "omega_rad_per_s":
-            return fraction * abs(fraction) * 80
-        case "wind_m_per_s":
-            return fraction * 31.75
+            return steps * abs(steps)
         case "dust":
-            return max(fraction, 0) ** 2 * 16
+            return max(steps, 0) ** 2
+        case _:
+            return steps
 
 
 def check_quantisation():

@@ -32,10 +32,10 @@ def decode(message, layout="ServerMessage"):
 def number(n): return bytes([n]) if n < 128 else bytes([n & 127 | 128]) + number(n >> 7)
 def encode(variant, *parts): return bytes([LAYOUT["protocol"], variant]) + b"".join(parts)
 
-def decode_grid(base, payload):  # the grid (int8: plane, row, column) whose differences from `base` are in the payload
+def decode_grid(base, payload):  # the grid (int16: plane, row, column) whose differences from `base` are in the payload
     (planes, rows, width), codes, data = base.shape, base.astype(int), iter(payload + bytes(4))
     low, high, value = 0, 0xffffffff, int.from_bytes(bytes(next(data) for _ in range(4)), "big")
-    chances, seen, stride = [32768] * 334, [0] * 334, width + 1
+    chances, seen, stride = [32768] * 649, [0] * 649, width + 1
     def bit(context):
         nonlocal low, high, value
         chance, rate = chances[context], 655360 // (10 * min(seen[context], 47) + 16)
@@ -58,13 +58,13 @@ def decode_grid(base, payload):  # the grid (int8: plane, row, column) whose dif
                 size, residual, length = bisect.bisect((1, 3, 5, 10, 25), 2 * (abs(left) + abs(above)) + abs(corner)), 0, 0
                 if not bit(12 + 12 * kind + 6 * predicted + size):
                     sign = -1 if bit(49 + 3 * predicted + (left + above > 0) - (left + above < 0)) else 1
-                    while length < 9 and bit(54 + 60 * kind + 10 * size + length): length += 1
-                    magnitude = sum(bit(234 + 10 * length + place) << place for place in reversed(range(length))) + (1 << length)
+                    while length < 16 and bit(54 + 102 * kind + 17 * size + length): length += 1
+                    magnitude = sum(bit(360 + 17 * length + place) << place for place in reversed(range(length))) + (1 << length)
                     residuals[at] = residual = sign * magnitude
                 left, above, corner = differences[at - 1], differences[at - stride], differences[at - stride - 1]
                 differences[at] = residual + predicted * sorted((left, above, left + above - corner))[1]
         codes[plane] += np.reshape(differences, (rows + 1, stride))[1:, 1:]
-    return codes.astype(np.int8)
+    return codes.astype(np.int16)
 
 def around(at, spacing):  # the two cells whose centres are around a coordinate, with their shares
     low = math.floor(at / spacing - 0.5)
@@ -74,8 +74,8 @@ class Prairie:  # the newest fields at places in metres: X, height above the gro
     def __init__(self, scene):
         self.wind, self.patches, self.seed = scene["wind"], scene["patches"], (scene["seed"] ^ scene["seed"] >> 32) & 0xffffffff
         (nx, ny, nz), cells, planes = self.wind["cells"], self.patches["cells"], 4 if self.wind["dust"]["release_per_s"] > 0 else 3
-        self.rest, self.grids = np.zeros((3, cells, cells), np.int8), {"wind": (0, np.zeros((planes, nz * ny, nx), np.int8))}
-        self.state, self.waves = dict(travel_m=[0, 0], path_m=0, friction_m_per_s=0), self.make_waves()
+        self.rest, self.grids = np.zeros((3, cells, cells), np.int16), {"wind": (0, np.zeros((planes, nz * ny, nx), np.int16))}
+        self.steps, self.state, self.waves = scene["stream"], dict(travel_m=[0, 0], path_m=0, friction_m_per_s=0), self.make_waves()
     def update(self, body):  # takes in a Patch or a Wind
         index, self.state = body.get("patch", "wind"), body.get("turbulence", self.state)
         seq, codes = self.grids.get(index, (0, self.rest))
@@ -117,16 +117,16 @@ class Prairie:  # the newest fields at places in metres: X, height above the gro
             for corner in itertools.product(*map(around, (tap_x, above, tap_z), self.wind["spacing_m"])):
                 i, j, k = (n % nx if wrap else min(max(n, 0), nx - 1) for (n, _), nx, wrap in zip(corner, counts, wraps))
                 total += share * math.prod(part for _, part in corner) * self.grids["wind"][1][:3, j + counts[1] * k, i]
-        return total * (31.75 / 127)
+        return total * 2 * self.steps["wind_error_m_per_s"]
     def wind_at(self, x, above, z):  # wind (m/s) along X, Y and Z
         return (self.resolved_at(x, above, z) + np.insert(self.gust_at(x, z), 1, 0)) * min(max(above / 2, 0.02), 1) ** 0.25
     def bend_at(self, x, z):  # lean (rad) along X and Z of the bend field, relative to the lean in the wind
         total, cells, (nx, nz) = np.zeros(2), self.patches["cells"], self.patches["count"]
         for (i, u), (j, v) in itertools.product(*(around(at, self.patches["cell_m"]) for at in (x, z))):
             index = i // cells + j // cells * nx if 0 <= i < nx * cells and 0 <= j < nz * cells else None
-            theta, *omega = self.grids.get(index, (0, self.rest))[1][:, j % cells, i % cells] / 127
+            theta, *omega = map(float, self.grids.get(index, (0, self.rest))[1][:, j % cells, i % cells])
             omega = np.array(omega) * np.abs(omega)
-            total += u * v * math.pi * theta * omega / (math.hypot(*omega) or 1)
+            total += u * v * math.radians(2 * self.steps["theta_error_deg"]) * theta * omega / (math.hypot(*omega) or 1)
         return total
 
 def frames(url, eye_m, radius_m=64, name="python"):  # connects; after each frame yields the newest fields and the FrameEnd

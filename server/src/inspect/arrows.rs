@@ -81,7 +81,7 @@ impl WindArrows {
 mod tests {
     use super::*;
     use prairie_core::scene::{Wind, WindBoundary, WindTiling};
-    use prairie_core::wire::quantise::{wind_code, wind_m_per_s};
+    use prairie_core::wire::quantise::CodeSteps;
 
     /// A world of `count × count` patches of 16 m.
     fn scene(wind: Wind, count: u32) -> Scene {
@@ -102,7 +102,7 @@ mod tests {
         let mut codes = vec![0; 3 * 18];
         let [i, j, k] = [2, 1, 1];
         let cell = (k * 2 + j) * 3 + i;
-        codes[18 + cell] = wind_code(-5.0);
+        codes[18 + cell] = CodeSteps::default().wind_code(-5.0);
         let (origins_m, vectors_m, colours) = arrows.of(&WindFrame { cells: [3, 2, 3], codes, ..WindFrame::default() });
         assert_eq!((origins_m.len(), vectors_m.len(), colours.len()), (18, 18, 18));
         let at = origins_m.iter().position(|o| *o == [10.0, 10.0, 7.5]).unwrap();
@@ -127,12 +127,12 @@ mod tests {
         let wind = Wind { cells: [4, 2, 4], spacing_m: [4.0; 3], tiling: WindTiling::Patch, ..Wind::default() };
         let scene = scene(wind, 4);
         let mut arrows = WindArrows::new(&scene, &flat(0.0));
-        let codes: Vec<i8> = (0..96).map(|at| if at < 32 { at as i8 } else { 0 }).collect();
+        let codes: Vec<i16> = (0..96).map(|at| if at < 32 { at as i16 } else { 0 }).collect();
         let (origins_m, vectors_m, _) = arrows.of(&WindFrame { cells: [4, 2, 4], codes, ..WindFrame::default() });
         for patch in 0..4 {
             let at = origins_m.iter().position(|origin_m| *origin_m == [patch as f32 * 16.0 + 6.0, 2.0, 6.0]).unwrap();
             let [x, z] = prairie_core::wind::offset_cells(scene.seed as u32, [patch, 0], [4, 4]);
-            let wanted = wind_m_per_s(((1 + x) % 4 + (1 + z) % 4 * 8) as i8) * ARROW_SECS;
+            let wanted = CodeSteps::default().wind_m_per_s(((1 + x) % 4 + (1 + z) % 4 * 8) as i16) * ARROW_SECS;
             assert!((vectors_m[at][0] - wanted).abs() < 1e-4, "patch {patch}");
         }
     }

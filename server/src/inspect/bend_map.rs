@@ -4,7 +4,6 @@ use super::palette::{Rgb, bend_rgb};
 use crate::snapshot::{BentPatches, WindFrame};
 use prairie_core::grid::PatchLayout;
 use prairie_core::wind::WindField;
-use prairie_core::wire::quantise::{omega_rad_per_s, theta_rad};
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -87,17 +86,17 @@ impl BendMap {
         [pixel % self.size_px[0], pixel / self.size_px[0]].map(|n| (n as f32 + 0.5) * self.pixel_m())
     }
 
-    fn draw(&mut self, patch: u32, codes: &[i8], wind_rad: &[[f32; 2]]) {
-        let cells = self.layout.cells;
+    fn draw(&mut self, patch: u32, codes: &[i16], wind_rad: &[[f32; 2]]) {
+        let (cells, steps) = (self.layout.cells, *self.wind.code_steps());
         let plane = (cells * cells) as usize;
         let [x0, z0] = self.layout.place(patch).map(|n| n * cells);
         let within = (1 << self.shift) - 1;
         for (at, &theta) in codes[..plane].iter().enumerate() {
             let [x, z] = [x0 + at as u32 % cells, z0 + at as u32 / cells];
             let pixel = ((z >> self.shift) * self.size_px[0] + (x >> self.shift)) as usize;
-            let omega = [1, 2].map(|channel| omega_rad_per_s(codes[channel * plane + at]));
+            let omega = [1, 2].map(|channel| steps.omega_rad_per_s(codes[channel * plane + at]));
             let speed = (omega[0] * omega[0] + omega[1] * omega[1]).sqrt();
-            let per_speed = if speed > 0.0 { theta_rad(theta) / speed } else { 0.0 };
+            let per_speed = if speed > 0.0 { steps.theta_rad(theta) / speed } else { 0.0 };
             let code = code_of([0, 1].map(|axis| wind_rad[pixel][axis] + omega[axis] * per_speed));
             // The first cell of a pixel replaces the value that is due to the wind alone.
             let is_first = x & within == 0 && z & within == 0;
@@ -126,7 +125,7 @@ mod tests {
     use crate::snapshot::PatchCodes;
     use prairie_core::terrain::KindMap;
     use prairie_core::wire::TurbulenceState;
-    use prairie_core::wire::quantise::{theta_code, wind_code};
+    use prairie_core::wire::quantise::CodeSteps;
 
     const CELLS: usize = 8;
 
@@ -139,15 +138,15 @@ mod tests {
 
     fn wind(tick: u64, east_m_per_s: f32) -> WindFrame {
         let cells = [32, 8, 32];
-        let codes = [east_m_per_s, 0.0, 0.0].into_iter().flat_map(|v| std::iter::repeat_n(wind_code(v), 32 * 8 * 32));
+        let codes = [east_m_per_s, 0.0, 0.0].into_iter().flat_map(|v| std::iter::repeat_n(CodeSteps::default().wind_code(v), 32 * 8 * 32));
         WindFrame { tick, cells, turbulence: TurbulenceState::default(), codes: codes.collect() }
     }
 
     /// One patch whose cells lean east by the given angle (degrees), or west where it is negative.
     fn bent(index: u32, lean_deg: impl Fn(usize, usize) -> f32) -> Arc<BentPatches> {
         let leans: Vec<f32> = (0..CELLS * CELLS).map(|at| lean_deg(at % CELLS, at / CELLS).to_radians()).collect();
-        let thetas = leans.iter().map(|lean| theta_code(lean.abs()));
-        let omegas = leans.iter().map(|lean| if *lean == 0.0 { 0 } else { 60 * lean.signum() as i8 });
+        let thetas = leans.iter().map(|lean| CodeSteps::default().theta_code(lean.abs()));
+        let omegas = leans.iter().map(|lean| if *lean == 0.0 { 0 } else { 60 * lean.signum() as i16 });
         let codes = thetas.chain(omegas).chain(std::iter::repeat_n(0, CELLS * CELLS)).collect();
         Arc::new(BentPatches::from([(index, Arc::new(PatchCodes { tick: 1, codes }))]))
     }

@@ -212,7 +212,7 @@ mod tests {
     use prairie_core::scene::VehicleKind;
     use prairie_core::terrain::grey_png;
     use prairie_core::wire::TurbulenceState;
-    use prairie_core::wire::quantise::wind_code;
+    use prairie_core::wire::quantise::CodeSteps;
     use rerun::external::re_log_encoding::DecoderApp;
     use rerun::log::{Chunk, LogMsg};
     use std::collections::BTreeMap;
@@ -248,7 +248,7 @@ mod tests {
             tick,
             cells: [32, 8, 32],
             turbulence: TurbulenceState::default(),
-            codes: vec![wind_code(3.0); 3 * 32 * 8 * 32],
+            codes: vec![CodeSteps::default().wind_code(3.0); 3 * 32 * 8 * 32],
         });
         Snapshot { tick, time_secs: tick as f64 / 60.0, objects: vec![car], wind, patches, ..Snapshot::default() }
     }

@@ -141,10 +141,6 @@ impl Simulation for JournaledWorld {
         self.world.bend_state()
     }
 
-    fn quantise_ahead(&self, quantiser: &mut PatchQuantiser, part: [u64; 2]) {
-        self.world.quantise_ahead(quantiser, part);
-    }
-
     fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot {
         self.world.publish(quantiser)
     }

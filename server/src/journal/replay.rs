@@ -42,10 +42,6 @@ impl Simulation for Replay {
         self.player.world.bend_state()
     }
 
-    fn quantise_ahead(&self, quantiser: &mut PatchQuantiser, part: [u64; 2]) {
-        self.player.world.quantise_ahead(quantiser, part);
-    }
-
     fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot {
         self.player.world.publish(quantiser)
     }

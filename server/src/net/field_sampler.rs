@@ -6,6 +6,7 @@ use prairie_core::bend::{Bend, field_lean_at};
 use prairie_core::grid::PatchLayout;
 use prairie_core::terrain::{HeightMap, KindMap};
 use prairie_core::wind::WindField;
+use prairie_core::wire::quantise::CodeSteps;
 use serde_json::{Value, json};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -17,6 +18,7 @@ pub(super) const DEFAULT_HEIGHT_M: f32 = 2.0;
 pub(crate) struct FieldSampler {
     layout: PatchLayout,
     heights: HeightMap,
+    steps: CodeSteps,
     /// Tick of the wind, and the wind; `None` before the first request.
     wind: Mutex<(Option<u64>, WindField)>,
 }
@@ -35,7 +37,12 @@ impl FieldSampler {
     pub(crate) fn new(loaded: &LoadedScene) -> Self {
         let scene = &loaded.scene;
         let wind = WindField::still(scene, Arc::new(KindMap::new(scene, &loaded.cover)));
-        Self { layout: PatchLayout::from(&scene.patches), heights: loaded.height.clone(), wind: Mutex::new((None, wind)) }
+        Self {
+            layout: PatchLayout::from(&scene.patches),
+            heights: loaded.height.clone(),
+            steps: CodeSteps::from(&scene.stream),
+            wind: Mutex::new((None, wind)),
+        }
     }
 
     /// Wind at places, with its parts: the solver's, and the gust.
@@ -59,7 +66,7 @@ impl FieldSampler {
         let plane = (self.layout.cells * self.layout.cells) as usize;
         let cell = |patch, cell: usize| {
             let codes = snapshot.patches.get(&patch).map(|patch| [0, 1, 2].map(|channel| patch.codes[channel * plane + cell]));
-            codes.map(Bend::of_codes).unwrap_or_default()
+            codes.map(|codes| Bend::of_codes(codes, &self.steps)).unwrap_or_default()
         };
         let bends: Vec<_> = places.iter().map(|place| field_lean_at(&self.layout, [place.x, place.z], cell)).collect();
         let leans: Vec<_> = self.with_wind(published, |wind| {

@@ -25,9 +25,6 @@ use tokio::sync::{mpsc, watch};
 /// Capacity of the command queue.
 const COMMAND_CAPACITY: usize = 1024;
 
-/// Number of steps over which the encoding of a snapshot is spread. Patches in a snapshot are up to `SNAPSHOT_STEPS − 1` steps old.
-pub const SNAPSHOT_STEPS: u64 = 3;
-
 /// Longest sleep of an idle world (s).
 const IDLE_SLEEP_SECS: f64 = 0.05;
 
@@ -38,8 +35,6 @@ const STEP_BOUNDS_SECS: [f64; 12] = [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 
 pub trait Simulation: Send + 'static {
     /// Advances by one fixed step after carrying out `commands` in order.
     fn step(&mut self, commands: &[Command]);
-    /// Encodes one part of the next snapshot, `[index, count]`, after a step without a snapshot. This spreads the cost over the steps.
-    fn quantise_ahead(&self, _quantiser: &mut PatchQuantiser, _part: [u64; 2]) {}
     /// The state after the newest step. `quantiser` is the same at every call.
     fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot;
     /// A copy of the state of the grass after the newest step, from which replicas start; `None` if they cannot follow it.
@@ -85,10 +80,6 @@ impl Simulation for World {
 
     fn step(&mut self, commands: &[Command]) {
         Self::step(self, commands);
-    }
-
-    fn quantise_ahead(&self, quantiser: &mut PatchQuantiser, part: [u64; 2]) {
-        Self::quantise_ahead(self, quantiser, part);
     }
 
     fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot {
@@ -326,11 +317,8 @@ impl<S: Simulation> Loop<S> {
         self.step_secs.observe(duration.as_secs_f64());
         self.tick += 1;
         self.note_requests(&commands);
-        let parts = self.steps_per_publish.min(SNAPSHOT_STEPS);
-        match self.steps_to_publish() {
-            0 => self.publish(state_request.swap(false, Relaxed)),
-            left if left < parts => self.simulation.quantise_ahead(&mut self.quantiser, [parts - left, parts]),
-            _ => {}
+        if self.steps_to_publish() == 0 {
+            self.publish(state_request.swap(false, Relaxed));
         }
     }
 

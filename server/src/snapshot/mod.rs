@@ -47,7 +47,7 @@ pub struct WindFrame {
     /// State of the gusts between the cells.
     pub turbulence: TurbulenceState,
     /// Three planes (u, v, w) of wind codes, x fastest, then y, then z. A scene with dust has a fourth plane of dust codes.
-    pub codes: Vec<i8>,
+    pub codes: Vec<i16>,
 }
 
 impl WindFrame {

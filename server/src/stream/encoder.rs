@@ -1,20 +1,11 @@
 //! Encoding of snapshots as messages, each encoded once and shared by all clients.
 
-use super::grid_frames::{FrameHeader, GridFrames, Pacing};
+use super::grid_frames::{FrameHeader, GridFrames};
 use crate::snapshot::{PatchCodes, Snapshot, WindFrame};
 use bytes::Bytes;
 use prairie_core::grid::PatchIndex;
 use prairie_core::wire::{self, ServerMessage};
 use std::collections::HashMap;
-
-/// Dead band (codes): smaller or equal changes of a patch wait for a slow frame. Two codes are 0.05 rad of θ.
-pub const DEAD_BAND: u8 = 2;
-
-/// Frame rate of a patch that changes within the dead band (Hz).
-pub const SLOW_HZ: f32 = 10.0;
-
-/// Each wind that is released is a frame.
-const WIND_PACING: Pacing = Pacing { dead_band: 0, slow_every: 1 };
 
 /// Shortest time before the frames of a patch outside every area of interest are dropped (s); the longest is twice this.
 const CACHE_SECS: f32 = 2.0;
@@ -24,7 +15,6 @@ const CACHE_SECS: f32 = 2.0;
 pub struct Encoder {
     publish: u64,
     cache_publishes: u64,
-    patch_pacing: Pacing,
     patches: HashMap<PatchIndex, GridFrames<PatchCodes>>,
     wind: Option<GridFrames<WindFrame>>,
     /// Messages of this publication about broken plants, by their range in the order of breaking: first, past the last.
@@ -35,11 +25,9 @@ pub struct Encoder {
 impl Encoder {
     /// An encoder for a world that is published `publish_hz` times per second.
     pub fn new(publish_hz: f32) -> Self {
-        let every = |hz: f32| (publish_hz / hz).round().max(1.0) as u64;
         Self {
             publish: 0,
             cache_publishes: (publish_hz * CACHE_SECS).ceil().max(1.0) as u64,
-            patch_pacing: Pacing { dead_band: DEAD_BAND, slow_every: every(SLOW_HZ) },
             patches: HashMap::new(),
             wind: None,
             broken: HashMap::new(),
@@ -94,8 +82,8 @@ impl Encoder {
     /// The message that updates a client's wind from frame `held` to the newest one, and the number of that frame.
     pub fn wind(&mut self, snapshot: &Snapshot, held: Option<u32>) -> Option<(u32, Bytes)> {
         let (publish, newest) = (self.publish, Some(&snapshot.wind));
-        let frames = self.wind.get_or_insert_with(|| GridFrames::new(publish, newest, publish));
-        frames.offer(publish, newest, WIND_PACING);
+        let frames = self.wind.get_or_insert_with(|| GridFrames::new(publish, newest));
+        frames.offer(publish, newest);
         let (tick, turbulence) = frames.newest().map(|wind| (wind.tick, wind.turbulence)).unwrap_or_default();
         frames.message(held, |FrameHeader { seq, key }, payload| {
             self.encodings += 1;
@@ -106,9 +94,8 @@ impl Encoder {
     /// The message that updates a client's patch from frame `held` to the newest one, and the number of that frame.
     pub fn patch(&mut self, snapshot: &Snapshot, patch: PatchIndex, held: Option<u32>) -> Option<(u32, Bytes)> {
         let (publish, newest) = (self.publish, snapshot.patches.get(&patch));
-        let slow_at = publish + 1 + u64::from(patch) % self.patch_pacing.slow_every;
-        let frames = self.patches.entry(patch).or_insert_with(|| GridFrames::new(publish, newest, slow_at));
-        frames.offer(publish, newest, self.patch_pacing);
+        let frames = self.patches.entry(patch).or_insert_with(|| GridFrames::new(publish, newest));
+        frames.offer(publish, newest);
         frames.message(held, |FrameHeader { seq, key }, payload| {
             self.encodings += 1;
             wire::encode(&ServerMessage::Patch { patch, seq, key, payload }).into()

@@ -10,7 +10,7 @@ pub trait Grid {
     /// Dimensions of the grid.
     fn shape(&self) -> Shape;
     /// The codes, plane after plane.
-    fn codes(&self) -> &[i8];
+    fn codes(&self) -> &[i16];
     /// Whether something besides the codes differs.
     fn differs(&self, _other: &Self) -> bool {
         false
@@ -21,7 +21,7 @@ impl Grid for WindFrame {
     fn shape(&self) -> Shape {
         Shape::wind(self.cells[0] as usize, self.has_dust())
     }
-    fn codes(&self) -> &[i8] {
+    fn codes(&self) -> &[i16] {
         &self.codes
     }
 
@@ -35,18 +35,9 @@ impl Grid for PatchCodes {
     fn shape(&self) -> Shape {
         Shape::patch((self.codes.len() / 3).isqrt())
     }
-    fn codes(&self) -> &[i8] {
+    fn codes(&self) -> &[i16] {
         &self.codes
     }
-}
-
-/// Timing of a changed grid's next frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pacing {
-    /// Largest change of any code that may wait (codes); a larger change gets a frame at the next publication.
-    pub dead_band: u8,
-    /// Longest wait of a change within the dead band (publications).
-    pub slow_every: u64,
 }
 
 /// Header of an encoded frame.
@@ -66,16 +57,14 @@ pub struct GridFrames<G> {
     now: Option<Arc<G>>,
     before: Option<Arc<G>>,
     offered_at: u64,
-    slow_at: u64,
     delta: Option<Bytes>,
     key: Option<Bytes>,
 }
 
 impl<G: Grid> GridFrames<G> {
-    /// Frames that start with the newest grid (`None`: at rest). The first slow frame is due at publication `slow_at`; choose different
-    /// values, so that the slow frames of many grids do not coincide.
-    pub fn new(publish: u64, newest: Option<&Arc<G>>, slow_at: u64) -> Self {
-        Self { seq: publish as u32, now: newest.cloned(), before: None, offered_at: publish, slow_at, delta: None, key: None }
+    /// Frames that start with the newest grid (`None`: at rest).
+    pub fn new(publish: u64, newest: Option<&Arc<G>>) -> Self {
+        Self { seq: publish as u32, now: newest.cloned(), before: None, offered_at: publish, delta: None, key: None }
     }
 
     /// Number of the newest frame.
@@ -88,24 +77,20 @@ impl<G: Grid> GridFrames<G> {
         self.offered_at
     }
 
-    /// Offers the newest grid (`None`: at rest); decides once per publication whether it becomes the next frame. The newest frame then differs
-    /// from the newest grid by at most `pacing.dead_band` in any code, and not at all after `pacing.slow_every` publications without a change.
-    pub fn offer(&mut self, publish: u64, newest: Option<&Arc<G>>, pacing: Pacing) {
+    /// Offers the newest grid (`None`: at rest), once per publication. If it differs from that of the newest frame, it becomes the next one.
+    pub fn offer(&mut self, publish: u64, newest: Option<&Arc<G>>) {
         if self.offered_at == publish {
             return;
         }
         self.offered_at = publish;
-        let difference = difference(self.now.as_ref(), newest);
-        let due = publish >= self.slow_at;
-        if difference > pacing.dead_band || (difference > 0 && due) {
+        if differ(self.now.as_ref(), newest) {
             self.before = std::mem::replace(&mut self.now, newest.cloned());
             (self.delta, self.key) = (None, None);
             self.seq = self.seq.wrapping_add(1);
-            self.slow_at = publish + pacing.slow_every;
         }
     }
 
-    /// The grid of the newest frame (`None`: at rest); it may be older than the grid offered last.
+    /// The grid of the newest frame (`None`: at rest).
     pub fn newest(&self) -> Option<&Arc<G>> {
         self.now.as_ref()
     }
@@ -128,12 +113,11 @@ impl<G: Grid> GridFrames<G> {
     }
 }
 
-/// Largest difference of any code; a missing grid is all zero.
-fn difference<G: Grid>(a: Option<&Arc<G>>, b: Option<&Arc<G>>) -> u8 {
+/// Whether two grids differ; a missing grid is all zero.
+fn differ<G: Grid>(a: Option<&Arc<G>>, b: Option<&Arc<G>>) -> bool {
     match (a, b) {
-        (None, None) => 0,
-        (Some(a), Some(b)) if Arc::ptr_eq(a, b) => 0,
-        (Some(a), Some(b)) => a.codes().iter().zip(b.codes()).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0).max(a.differs(b).into()),
-        (Some(one), None) | (None, Some(one)) => one.codes().iter().map(|code| code.unsigned_abs()).max().unwrap_or(0),
+        (None, None) => false,
+        (Some(a), Some(b)) => !Arc::ptr_eq(a, b) && (a.codes() != b.codes() || a.differs(b)),
+        (Some(one), None) | (None, Some(one)) => one.codes().iter().any(|code| *code != 0),
     }
 }

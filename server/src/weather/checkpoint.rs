@@ -17,7 +17,7 @@ pub struct WeatherState {
     resets: u64,
     turbulence: TurbulenceState,
     /// The newest frame: tick, gusts, codes.
-    frame: (u64, TurbulenceState, Vec<i8>),
+    frame: (u64, TurbulenceState, Vec<i16>),
     /// The newest report: Courant number, divergence, energy, sub-steps, pressure residual, pressure sweeps.
     report: (f64, f64, f64, u32, f64, u32),
 }

@@ -20,7 +20,6 @@ use prairie_core::body::Motion;
 use prairie_core::scene::{Scene, WindTiling};
 use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
 use prairie_core::wind::WindField;
-use prairie_core::wire::quantise::{dust_code, wind_code};
 use prairie_core::wire::{Shape, TurbulenceState};
 use prairie_wind::state::MAX_SUBSTEPS;
 use prairie_wind::{Air, Config, ConfigError, Method, SolidError, StepError, StepReport};
@@ -222,16 +221,16 @@ impl Weather {
     fn release(&mut self, tick: u64) {
         let [nx, ny, nz] = self.config.cells;
         let cells = nx * ny * nz;
-        let velocities = self.velocities();
+        let (velocities, steps) = (self.velocities(), self.field.code_steps());
         let mut codes = vec![0; Shape::wind(nx, self.config.dust.is_some()).planes * cells];
         for (at, velocity) in velocities.iter().enumerate() {
             for (plane, component) in velocity.to_array().into_iter().enumerate() {
-                codes[plane * cells + at] = wind_code(component);
+                codes[plane * cells + at] = steps.wind_code(component);
             }
         }
         if let Some(dust) = self.air.dust() {
             let dust = self.terrain.above_ground(dust.collect(), |a, b, t| a + (b - a) * t);
-            codes[3 * cells..].iter_mut().zip(dust).for_each(|(code, density)| *code = dust_code(density));
+            codes[3 * cells..].iter_mut().zip(dust).for_each(|(code, density)| *code = steps.dust_code(density));
         }
         self.hold(WindFrame { tick, cells: [nx, ny, nz].map(|n| n as u32), turbulence: self.turbulence, codes });
     }

@@ -244,3 +244,19 @@ fn the_wind_at_a_position_is_that_of_its_cell_and_weaker_close_to_the_ground() {
         assert!(fastest > 0.5 && fastest <= weather.field().strongest_m_per_s(0.97));
     }
 }
+
+#[test]
+fn a_hurricane_is_sent_as_it_is() {
+    for error in [0.125, 0.02] {
+        let hurricane = |scene: &mut Scene| {
+            scene.wind.mean_m_per_s = [-36.0, 24.0];
+            scene.stream.wind_error_m_per_s = error;
+        };
+        // Step 63 has a frame.
+        let weather = blown(hurricane, 63).unwrap();
+        let (released, sent) = (weather.velocities(), weather.field().velocities());
+        let apart = released.iter().zip(sent).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
+        let fastest = released.iter().map(|velocity| velocity.x.abs()).fold(0.0, f32::max);
+        assert!(fastest > 35.0 && apart <= 1.0001 * error && apart > 0.9 * error, "{fastest} m/s, off by {apart} m/s");
+    }
+}

@@ -136,12 +136,6 @@ impl World {
         self.steps.push_back(Arc::new(record));
     }
 
-    /// Quantises the patches of one of `count` parts ahead of the next [`publish`](Self::publish), which then uses them as they are now. The part is given as
-    /// `[index, count]`.
-    pub fn quantise_ahead(&self, quantiser: &mut PatchQuantiser, part: [u64; 2]) {
-        quantiser.quantise_part(self.tick, &self.bend, part, &Pool);
-    }
-
     /// The present state, for clients. `quantiser` keeps the codes of the bend field and encodes only changes since its last use.
     pub fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot {
         Snapshot {

@@ -12,10 +12,10 @@ pub struct Replica {
     pub patch_cells: usize,
     pub wind_cells: [u32; 3],
     pub has_dust: bool,
-    pub patches: BTreeMap<PatchIndex, (u32, Vec<i8>)>,
+    pub patches: BTreeMap<PatchIndex, (u32, Vec<i16>)>,
     /// The patches, least recently updated first.
     pub recent: Vec<PatchIndex>,
-    pub wind: (u32, Vec<i8>),
+    pub wind: (u32, Vec<i16>),
     pub tick: u64,
     pub frame: u32,
     pub bytes: usize,
@@ -76,7 +76,7 @@ impl Replica {
     }
 }
 
-fn update(held: &mut (u32, Vec<i8>), shape: Shape, seq: u32, key: bool, payload: &[u8]) {
+fn update(held: &mut (u32, Vec<i16>), shape: Shape, seq: u32, key: bool, payload: &[u8]) {
     if key {
         held.1.fill(0);
     } else {

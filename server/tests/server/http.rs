@@ -110,7 +110,7 @@ async fn wind_and_bend_are_read_by_http() {
     assert_eq!(status, 200, "{wind}");
     // The stand-in's wind has the same code everywhere, and no gusts.
     let code = wind["wind_tick"].as_u64().unwrap() % 100;
-    let expected = prairie_core::wire::quantise::wind_m_per_s(code as i8);
+    let expected = prairie_core::wire::quantise::CodeSteps::default().wind_m_per_s(code as i16);
     let resolved: [f32; 3] = serde_json::from_value(wind["resolved_m_per_s"].clone()).unwrap();
     assert!(resolved.iter().all(|speed| (speed - expected).abs() < 1e-4), "{wind} instead of {expected}");
     assert_eq!(wind["gust_m_per_s"], serde_json::json!([0.0, 0.0]));

@@ -7,7 +7,7 @@ use prairie::scenes;
 use prairie_core::scene::VehicleKind;
 use prairie_core::terrain::KindMap;
 use prairie_core::wind::WindField;
-use prairie_core::wire::quantise::theta_code;
+use prairie_core::wire::quantise::CodeSteps;
 use prairie_core::wire::{ClientMessage, Drive, ServerMessage, TurbulenceState};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -64,7 +64,7 @@ const RADIUS_M: f32 = 100.0;
 /// Every grid that the native client has received, by name and sequence number, and the state of the gusts by that of the wind.
 #[derive(Default)]
 struct Received {
-    grids: BTreeMap<(String, u32), Vec<i8>>,
+    grids: BTreeMap<(String, u32), Vec<i16>>,
     turbulence: BTreeMap<u32, TurbulenceState>,
 }
 
@@ -116,7 +116,7 @@ fn compare(seen: &[Seen], received: &Received) {
     let (mut winds, mut patches, mut deepest) = (0, 0, 0);
     for (name, (seq, found)) in seen.iter().flat_map(|seen| &seen.grids) {
         let Some(codes) = received.grids.get(&(name.clone(), *seq)) else { continue };
-        let bytes: Vec<u8> = codes.iter().map(|&code| code as u8).collect();
+        let bytes: Vec<u8> = codes.iter().flat_map(|code| code.to_be_bytes()).collect();
         assert!(*found == HEXLOWER.encode(&bytes), "frame {seq} of grid {name} differs");
         if name == "wind" {
             winds += 1;
@@ -126,7 +126,7 @@ fn compare(seen: &[Seen], received: &Received) {
         }
     }
     assert!(winds >= 5 && patches >= 10, "{winds} frames of the wind and {patches} of patches reached both clients");
-    assert!(deepest >= theta_code(1.0), "the car has pressed the grass to code {deepest}");
+    assert!(deepest >= CodeSteps::default().theta_code(1.0), "the car has pressed the grass to code {deepest}");
 
     let scene = scenes::load("meadow").unwrap().scene;
     let mut field = WindField::still(&scene, Arc::new(KindMap::uniform()));

@@ -6,7 +6,7 @@ use crate::test_server::Server;
 use prairie::{Limits, scenes};
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::VehicleKind;
-use prairie_core::wire::quantise::theta_code;
+use prairie_core::wire::quantise::CodeSteps;
 use prairie_core::wire::{ClientMessage, Drive, Refusal, ServerMessage};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -111,7 +111,7 @@ async fn another_client_sees_the_track_of_a_car() {
         let (_, codes) = client.replica.patches.get(&patch)?;
         codes[..client.replica.patch_cells.pow(2)].iter().max().copied()
     };
-    let pressed = theta_code(1.0);
+    let pressed = CodeSteps::default().theta_code(1.0);
     tokio::join!(driver.frames_until(|driver| driver.replica.frame > 40), watcher.frames_until(|watcher| bent(watcher) >= Some(pressed)));
     server.stop().await;
 }

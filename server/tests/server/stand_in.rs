@@ -80,10 +80,10 @@ impl Simulation for StandInWorld {
         let len = 3 * CELLS * CELLS - usize::from(self.misshapen_at.is_some_and(|tick| self.tick >= tick));
         let patch = |index: usize| {
             let tick = self.tick / PATCHES as u64 * PATCHES as u64 + index as u64;
-            let codes = (0..len).map(|i| ((tick as usize + i * index) % 200) as i8 / 2).collect();
+            let codes = (0..len).map(|i| ((tick as usize + i * index) % 200) as i16 / 2).collect();
             (index as u32, Arc::new(PatchCodes { tick, codes }))
         };
-        let wind = WindFrame { tick: self.tick, cells: WIND_CELLS, codes: vec![(self.tick % 100) as i8; 96], ..WindFrame::default() };
+        let wind = WindFrame { tick: self.tick, cells: WIND_CELLS, codes: vec![(self.tick % 100) as i16; 96], ..WindFrame::default() };
         Snapshot {
             tick: self.tick,
             time_secs: self.tick as f64 / 60.0,

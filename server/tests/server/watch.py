@@ -13,7 +13,7 @@ for fields, frame in prairie.frames(url, (x, 2, z), radius_m):
     new = {index: held for index, held in fields.grids.items() if held[0] not in (0, printed.get(index))}
     printed.update((index, seq) for index, (seq, _) in new.items())
     seen = {
-        "grids": {index: [seq, codes.tobytes().hex()] for index, (seq, codes) in new.items()},
+        "grids": {index: [seq, codes.astype(">i2").tobytes().hex()] for index, (seq, codes) in new.items()},
         "wind_seq": fields.grids["wind"][0],
         "wind_m_per_s": fields.wind_at(x, 2, z).tolist(),
     }

@@ -2,12 +2,12 @@
 
 use super::Bend;
 use crate::grid::{PatchIndex, PatchLayout};
-use crate::wire::quantise::{omega_rad_per_s, theta_rad};
+use crate::wire::quantise::CodeSteps;
 
 impl Bend {
     /// The bend of the codes of θ, ωx and ωz on the wire.
-    pub fn of_codes([theta, x, z]: [i8; 3]) -> Self {
-        Self { theta: theta_rad(theta), omega: [omega_rad_per_s(x), omega_rad_per_s(z)] }
+    pub fn of_codes([theta, x, z]: [i16; 3], steps: &CodeSteps) -> Self {
+        Self { theta: steps.theta_rad(theta), omega: [steps.omega_rad_per_s(x), steps.omega_rad_per_s(z)] }
     }
 
     /// The bend as a lean (rad, vector along X and Z): of length θ, along ω; zero without a direction.
@@ -66,6 +66,7 @@ mod tests {
     fn a_bend_leans_along_its_velocity() {
         assert_eq!(Bend { theta: 0.5, omega: [0.0, -3.0] }.lean_rad(), [0.0, -0.5]);
         assert_eq!(Bend { theta: 0.5, omega: [0.0; 2] }.lean_rad(), [0.0; 2]);
-        assert_eq!(Bend::of_codes([0, 127, -127]).omega, [80.0, -80.0]);
+        let steps = CodeSteps { omega_root: 0.5, ..CodeSteps::default() };
+        assert_eq!(Bend::of_codes([0, 6, -4], &steps).omega, [9.0, -4.0]);
     }
 }

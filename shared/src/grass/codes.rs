@@ -1,9 +1,10 @@
-//! Codes of the grass: 8 bits for each channel of a cell, encoded again where something changed.
+//! Codes of the grass: 16 bits for each channel of a cell, encoded again where something changed.
 
+use super::vector::length;
 use super::{BendSimulation, grass_state};
 use crate::bend::{Bend, Executor, Patch, TILE};
 use crate::grid::PatchIndex;
-use crate::wire::quantise;
+use crate::wire::quantise::CodeSteps;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -16,7 +17,7 @@ pub struct PatchCodes {
     /// Step at which the codes last changed.
     pub tick: u64,
     /// Three planes (θ, ωx, ωz) of `cells × cells` codes, row by row from the north-west.
-    pub codes: Vec<i8>,
+    pub codes: Vec<i16>,
 }
 
 /// Sources of a patch's codes.
@@ -26,43 +27,28 @@ struct Sources {
     is_flattened: bool,
 }
 
-/// Revisions of the bend field and the flattened grass.
+/// State of the grass from which the codes of a patch were made.
 #[derive(Clone, Copy, Debug, Default)]
-struct Revisions {
+struct Encoded {
+    /// Revision of the bend field.
     field: u64,
+    /// Revision of the flattened grass.
     flattened: u64,
-}
-
-impl Revisions {
-    fn of(bend: &BendSimulation) -> Self {
-        Self { field: bend.field().revision(), flattened: bend.flattened().revision() }
-    }
+    /// Simulated time (s) at which flattened grass has recovered by the largest error of a code, so that all codes are due again.
+    due_secs: f64,
 }
 
 /// Quantises the bend field for clients. It keeps the newest codes, so that only tiles that changed are encoded again.
+///
+/// Codes are within half a [step](CodeSteps) of the state, and where grass lies flattened within a whole step of θ.
 #[derive(Debug, Default)]
 pub struct PatchQuantiser {
     patches: Arc<BentPatches>,
     sources: BTreeMap<PatchIndex, Sources>,
-    /// Revisions from which each patch was last encoded.
-    encoded: BTreeMap<PatchIndex, Revisions>,
-    /// Codes of patches encoded ahead of the next snapshot; `None` where all are zero.
-    ahead: BTreeMap<PatchIndex, Option<Arc<PatchCodes>>>,
+    encoded: BTreeMap<PatchIndex, Encoded>,
 }
 
 impl PatchQuantiser {
-    /// Encodes one of `count` parts of the awake patches, `[index, count]`. The next [`quantise`](Self::quantise) uses these codes unchanged.
-    pub fn quantise_part(&mut self, tick: u64, bend: &BendSimulation, [part, count]: [u64; 2], executor: &impl Executor) {
-        let is_due = |index: &PatchIndex| u64::from(*index) % count == part && !self.ahead.contains_key(index);
-        let is_known = |index: &PatchIndex| self.sources.get(index).is_some_and(|source| source.is_awake);
-        let due = bend.field().awake().map(Patch::index).filter(|index| is_due(index) && is_known(index));
-        let mut codes: Vec<_> = due.map(|index| (index, None)).collect();
-        executor.for_each(codes.iter_mut().collect(), |(index, codes)| *codes = self.encode(tick, *index, self.sources.get(index), bend));
-        let revisions = Revisions::of(bend);
-        self.encoded.extend(codes.iter().map(|(index, _)| (*index, revisions)));
-        self.ahead.extend(codes);
-    }
-
     /// Encodes the changed patches: awake ones, and those that have only flattened grass and are `in_sight`. Returns the codes of all patches that are not at
     /// rest.
     pub fn quantise(
@@ -73,40 +59,49 @@ impl PatchQuantiser {
         executor: &impl Executor,
     ) -> Arc<BentPatches> {
         let sources = sources(bend, in_sight);
-        let (before, mut ahead) = (&self.sources, std::mem::take(&mut self.ahead));
-        ahead.retain(|index, _| sources.get(index).is_some_and(|source| before.get(index) == Some(source)));
-        let mut codes: Vec<_> = sources.keys().map(|index| (*index, None)).collect();
-        executor.for_each(codes.iter_mut().collect(), |(index, codes)| {
-            let source = sources.get(index);
-            *codes = match ahead.get(index) {
-                Some(codes) => codes.clone(),
-                None => self.encode(tick, *index, before.get(index).filter(|before| source == Some(*before)), bend),
-            }
+        let mut results: Vec<_> = sources.iter().map(|(index, source)| (*index, *source, None)).collect();
+        executor.for_each(results.iter_mut().collect(), |(index, source, result)| {
+            let is_known = self.sources.get(index) == Some(source);
+            *result = Some(self.encode(tick, *index, self.encoded.get(index).filter(|_| is_known), bend));
         });
-        self.patches = Arc::new(codes.into_iter().filter_map(|(index, codes)| Some((index, codes?))).collect());
-        let revisions = Revisions::of(bend);
-        self.encoded.retain(|index, _| sources.contains_key(index));
-        self.encoded.extend(sources.keys().filter(|index| !ahead.contains_key(index)).map(|index| (*index, revisions)));
-        self.sources = sources;
+        let results = results.into_iter().filter_map(|(index, _, result)| Some((index, result?)));
+        let (mut patches, mut encoded) = (BentPatches::new(), BTreeMap::new());
+        for (index, (codes, state)) in results {
+            patches.extend(codes.map(|codes| (index, codes)));
+            encoded.insert(index, state);
+        }
+        (self.patches, self.encoded, self.sources) = (Arc::new(patches), encoded, sources);
         Arc::clone(&self.patches)
     }
 
-    /// Codes of a patch, or `None` where all are zero. They start from the previous codes when these had the same `source`.
-    fn encode(&self, tick: u64, index: PatchIndex, source: Option<&Sources>, bend: &BendSimulation) -> Option<Arc<PatchCodes>> {
+    /// Codes of a patch, or `None` where all are zero, and the state that they show. They start from the previous codes, if these are `known` to have the same
+    /// sources.
+    fn encode(&self, tick: u64, index: PatchIndex, known: Option<&Encoded>, bend: &BendSimulation) -> (Option<Arc<PatchCodes>>, Encoded) {
         let (patch, before) = (bend.field().patch(index), self.patches.get(&index));
-        let since = self.encoded.get(&index).copied().unwrap_or_default();
-        let is_known = source.is_some() && !bend.flattened().changed_since(since.flattened, index);
-        let codes = match (patch, is_known) {
-            (None, true) => return before.map(Arc::clone),
-            (Some(patch), true) if !patch.changed_since(since.field).any(|changed| changed) => return before.map(Arc::clone),
-            (Some(patch), true) => update(before.map(|before| before.codes.as_slice()), patch, since.field, bend),
-            _ => encode_all(index, patch, bend),
+        let is_current =
+            |known: &&Encoded| bend.flattened().secs() < known.due_secs && !bend.flattened().changed_since(known.flattened, index);
+        let mut state = Encoded { field: bend.field().revision(), flattened: bend.flattened().revision(), due_secs: f64::INFINITY };
+        let codes = match (patch, known.filter(is_current)) {
+            (None, Some(known)) => return (before.cloned(), Encoded { due_secs: known.due_secs, ..state }),
+            (Some(patch), Some(known)) => {
+                state.due_secs = known.due_secs;
+                if !patch.changed_since(known.field).any(|changed| changed) {
+                    return (before.cloned(), state);
+                }
+                update(before.map(|before| before.codes.as_slice()), patch, known.field, bend)
+            }
+            (patch, None) => {
+                let (codes, largest_rad) = encode_all(index, patch, bend);
+                state.due_secs = bend.flattened().secs() + bend.flattened().recovery_secs(largest_rad, 0.5 * bend.code_steps().theta_rad);
+                codes
+            }
         };
-        match before {
+        let codes = match before {
             Some(before) if before.codes == codes => Some(Arc::clone(before)),
             _ if are_zero(&codes) => None,
             _ => Some(Arc::new(PatchCodes { tick, codes })),
-        }
+        };
+        (codes, state)
     }
 }
 
@@ -124,33 +119,33 @@ fn sources(bend: &BendSimulation, in_sight: impl Fn(PatchIndex) -> bool) -> BTre
 }
 
 /// Whether all codes are zero; in chunks, for vectorisation.
-fn are_zero(codes: &[i8]) -> bool {
+fn are_zero(codes: &[i16]) -> bool {
     codes.chunks(256).all(|chunk| chunk.iter().fold(0, |any, code| any | code) == 0)
 }
 
-/// Codes of all tiles.
-fn encode_all(index: PatchIndex, patch: Option<&Patch>, bend: &BendSimulation) -> Vec<i8> {
+/// Codes of all tiles, and the largest lean (rad) of flattened grass in them.
+fn encode_all(index: PatchIndex, patch: Option<&Patch>, bend: &BendSimulation) -> (Vec<i16>, f32) {
     let side = bend.field().layout().cells as usize;
     let mut codes = vec![0; 3 * side * side];
     if let Some(patch) = patch {
-        write_tiles(&mut codes, patch, |_| true);
+        write_tiles(&mut codes, patch, bend.code_steps(), |_| true);
     }
-    add_flattened(&mut codes, side, index, patch, bend, |_| true);
-    codes
+    let largest_rad = add_flattened(&mut codes, side, index, patch, bend, |_| true);
+    (codes, largest_rad)
 }
 
 /// The codes `before`, updated in the tiles that changed since a revision of the field.
-fn update(before: Option<&[i8]>, patch: &Patch, since: u64, bend: &BendSimulation) -> Vec<i8> {
+fn update(before: Option<&[i16]>, patch: &Patch, since: u64, bend: &BendSimulation) -> Vec<i16> {
     let side = patch.side();
-    let mut codes = before.map_or_else(|| vec![0; 3 * side * side], <[i8]>::to_vec);
+    let mut codes = before.map_or_else(|| vec![0; 3 * side * side], <[i16]>::to_vec);
     let changed: Vec<bool> = patch.changed_since(since).collect();
-    write_tiles(&mut codes, patch, |tile| changed[tile]);
+    write_tiles(&mut codes, patch, bend.code_steps(), |tile| changed[tile]);
     add_flattened(&mut codes, side, patch.index(), Some(patch), bend, |tile| changed[tile]);
     codes
 }
 
 /// Writes the chosen tiles, adjacent ones together.
-fn write_tiles(codes: &mut [i8], patch: &Patch, chosen: impl Fn(usize) -> bool) {
+fn write_tiles(codes: &mut [i16], patch: &Patch, steps: &CodeSteps, chosen: impl Fn(usize) -> bool) {
     let (side, count) = (patch.side(), patch.side() / TILE);
     let plane = side * side;
     for band in 0..count {
@@ -161,29 +156,32 @@ fn write_tiles(codes: &mut [i8], patch: &Patch, chosen: impl Fn(usize) -> bool) 
                 let [theta, x, z] = patch.row(j).map(|row| &row[first..last]);
                 let row = j * side + first..j * side + last;
                 let range = |channel: usize| channel * plane + row.start..channel * plane + row.end;
-                quantise::theta_codes(theta, &mut codes[range(0)]);
-                quantise::omega_codes(x, &mut codes[range(1)]);
-                quantise::omega_codes(z, &mut codes[range(2)]);
+                steps.theta_codes(theta, &mut codes[range(0)]);
+                steps.omega_codes(x, &mut codes[range(1)]);
+                steps.omega_codes(z, &mut codes[range(2)]);
             }
         }
     }
 }
 
-/// Adds the flattened grass in the chosen tiles of a patch.
+/// Adds the flattened grass in the chosen tiles of a patch. Returns its largest lean (rad).
 fn add_flattened(
-    codes: &mut [i8],
+    codes: &mut [i16],
     side: usize,
     index: PatchIndex,
     patch: Option<&Patch>,
     bend: &BendSimulation,
     chosen: impl Fn(usize) -> bool,
-) {
+) -> f32 {
+    let (steps, mut largest_rad) = (bend.code_steps(), 0.0_f32);
     let plane = side * side;
     for ([i, j], lean_rad) in bend.flattened().cells(index).filter(|([i, j], _)| chosen(j / TILE * (side / TILE) + i / TILE)) {
         let bend = grass_state::published(patch.map_or_else(Bend::default, |patch| patch.bend(i, j)), lean_rad);
         let at = j * side + i;
-        codes[at] = quantise::theta_code(bend.theta);
-        codes[plane + at] = quantise::omega_code(bend.omega[0]);
-        codes[2 * plane + at] = quantise::omega_code(bend.omega[1]);
+        codes[at] = steps.theta_code(bend.theta);
+        codes[plane + at] = steps.omega_code(bend.omega[0]);
+        codes[2 * plane + at] = steps.omega_code(bend.omega[1]);
+        largest_rad = largest_rad.max(length(lean_rad));
     }
+    largest_rad
 }

@@ -8,7 +8,6 @@ use super::causes::Limits;
 use super::vector::length;
 use crate::bend::TILE;
 use crate::grid::{PatchIndex, PatchLayout};
-use crate::wire::quantise::THETA_FULL_RAD;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f32::consts::PI;
@@ -17,8 +16,8 @@ use std::f32::consts::PI;
 pub const TILE_BYTES: usize = size_of::<FlattenedTile>() + size_of::<Option<Box<FlattenedTile>>>();
 /// Quantum of a lean (rad). Leans are rounded towards zero to whole quanta, so that they decay to zero in finite time.
 pub const QUANTUM_RAD: f32 = PI / i16::MAX as f32;
-/// A tile is dropped when all its leans are below this (rad): half a code on the wire, so it is no longer visible.
-pub const VISIBLE_RAD: f32 = THETA_FULL_RAD / 254.0;
+/// A tile is dropped when all its leans are below this (rad), 0.7°: it is no longer visible.
+pub const VISIBLE_RAD: f32 = PI / 254.0;
 /// Remaining fraction below which a decayed tile is rewritten before a new lean is stored, so that the lean is within the range of its quanta.
 const REWRITE_FRACTION: f32 = 0.5;
 
@@ -116,6 +115,16 @@ impl FlattenedGrass {
         self.patches = state.patches.into_iter().map(patch).collect();
     }
 
+    /// Simulated time (s) since the grass was at rest.
+    pub fn secs(&self) -> f64 {
+        self.clock.now_secs
+    }
+
+    /// Time (s) in which a lean (rad) recovers by `by_rad`; infinite for one that is not longer.
+    pub fn recovery_secs(&self, lean_rad: f32, by_rad: f32) -> f64 {
+        if lean_rad > by_rad { self.clock.recovery_secs * -libm::log1p(f64::from(-by_rad / lean_rad)) } else { f64::INFINITY }
+    }
+
     /// Number of tiles, [`TILE_BYTES`] each.
     pub fn tiles(&self) -> usize {
         self.patches.values().map(|patch| patch.count).sum()
@@ -188,8 +197,11 @@ impl FlattenedGrass {
         self.revision = self.revision.wrapping_add(1);
         self.patches.retain(|&index, patch| {
             if self.revision.wrapping_add(index.into()).is_multiple_of(round) {
+                let count = patch.count;
                 patch.drop_invisible(&clock);
-                patch.changed_in = revision;
+                if patch.count < count {
+                    patch.changed_in = revision;
+                }
             }
             patch.count > 0
         });

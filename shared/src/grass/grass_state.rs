@@ -3,14 +3,13 @@
 //! The three are leans: vectors on the ground, as long as the bend, that add up.
 
 use super::bending::{HELD_RAD_PER_S, terrain_limit_rad};
-use super::flattened::FlattenedGrass;
+use super::flattened::{FlattenedGrass, VISIBLE_RAD};
 use super::footprint::Footprint;
 use super::grass_properties::GrassProperties;
 use super::vector::{length, sum, unit};
 use crate::bend::{Bend, Field};
 use crate::terrain::HeightMap;
 use crate::wind::WindField;
-use crate::wire::quantise::THETA_FULL_RAD;
 
 /// State and limits of the total bend of the grass.
 pub struct GrassState<'a> {
@@ -40,7 +39,7 @@ impl GrassState<'_> {
     /// function of direction. The bend field stores the result less the leans of wind and flattened grass.
     ///
     /// Below an object that `is_at_rest` all of the bend counts as flattened grass, in sleeping patches as well. It is rewritten whenever it has
-    /// recovered by one code of the wire format.
+    /// recovered by 1.4°.
     pub fn for_each_cell(
         &mut self,
         footprint: &Footprint,
@@ -107,8 +106,8 @@ pub fn published(bend: Bend, flattened_rad: [f32; 2]) -> Bend {
     leaning(bend, flattened_rad, HELD_RAD_PER_S)
 }
 
-/// Recovery below an object at rest after which grass is flattened again (rad): one code of the wire format.
-const REWRITE_RAD: f32 = THETA_FULL_RAD / 127.0;
+/// Recovery below an object at rest after which grass is flattened again (rad).
+const REWRITE_RAD: f32 = 2.0 * VISIBLE_RAD;
 /// Minimum bending speed (rad/s) of leaning grass. The direction of ω is the direction of the lean.
 const DIRECTION_RAD_PER_S: f32 = 1e-3;
 

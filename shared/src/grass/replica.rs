@@ -117,7 +117,7 @@ impl Replica {
     }
 
     /// Sets the wind, from the next step on, to that of the frame of `tick`.
-    pub fn set_wind(&mut self, tick: u64, codes: &[i8], turbulence: &TurbulenceState) {
+    pub fn set_wind(&mut self, tick: u64, codes: &[i16], turbulence: &TurbulenceState) {
         self.wind.set(codes, turbulence);
         self.wind_tick = Some(tick);
     }

@@ -19,6 +19,7 @@ use crate::scene::Scene;
 use crate::terrain::{CoverMap, HeightMap};
 use crate::wind::WindField;
 use crate::wire::PatchCheck;
+use crate::wire::quantise::CodeSteps;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -45,6 +46,7 @@ pub struct BendSimulation {
     reset_count: u64,
     regions: Regions,
     report: Report,
+    steps: CodeSteps,
 }
 
 /// A copy of the state of a [`BendSimulation`].
@@ -88,6 +90,7 @@ impl BendSimulation {
             reset_count: 0,
             regions: Regions::new(limit),
             report: Report::default(),
+            steps: CodeSteps::from(&scene.stream),
         }
     }
 
@@ -119,6 +122,11 @@ impl BendSimulation {
     /// Grass that stays bent below the weight of objects.
     pub fn flattened(&self) -> &FlattenedGrass {
         &self.flattened
+    }
+
+    /// Steps of the codes.
+    pub fn code_steps(&self) -> &CodeSteps {
+        &self.steps
     }
 
     /// Areas swept by prisms of objects in the newest step at less than `below_m` above the terrain, with their clearance (m).

@@ -200,6 +200,10 @@ const AFTER_OBJECTS: &[(&str, Allowed)] = &[
     ("lights.rgb", Range(0.0, 1.0)),
     ("lights.candela", Range(0.0, 1_000_000.0)),
     ("lights.attenuation", Range(0.0, 100.0)),
+    ("stream.theta_error_deg", Range(0.05, 5.0)),
+    ("stream.omega_error_rad_per_s", Range(0.01, 1.0)),
+    ("stream.wind_error_m_per_s", Range(0.01, 1.0)),
+    ("stream.dust_error", Range(0.005, 0.5)),
 ];
 
 /// Fields that a scene file must contain; for a list of sections, each section of it.

@@ -24,6 +24,7 @@ mod positions;
 mod rain;
 mod shells;
 mod species;
+mod stream;
 mod template;
 mod terrain;
 mod underbrush;
@@ -49,6 +50,7 @@ pub use positions::Positions;
 pub use rain::Rain;
 pub use shells::Shells;
 pub use species::Species;
+pub use stream::Stream;
 pub use terrain::TerrainMaps;
 pub use underbrush::{Component, ComponentKind, Underbrush};
 pub(crate) use wind::words;
@@ -132,6 +134,9 @@ pub struct Scene {
     /// Lamps on the land, each a section `[[lights]]`. Default none, allowed at most 8.
     #[serde(default)]
     pub lights: Vec<Lamp>,
+    /// Largest errors of the streamed fields.
+    #[serde(default)]
+    pub stream: Stream,
 }
 
 fn default_seed() -> u64 {
@@ -167,6 +172,7 @@ impl Scene {
             camera: CameraStart::default(),
             light: Light::default(),
             lights: Vec::new(),
+            stream: Stream::default(),
         }
     }
 

@@ -5,7 +5,7 @@ use crate::bend::wind_lean_rad;
 use crate::scene::Scene;
 use crate::terrain::KindMap;
 use crate::wire::TurbulenceState;
-use crate::wire::quantise::{dust, wind_m_per_s};
+use crate::wire::quantise::CodeSteps;
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -25,6 +25,7 @@ pub struct WindField {
     /// Bend of each kind of grass in a wind of 10 m/s (rad).
     bends_rad: Vec<f32>,
     kinds: Arc<KindMap>,
+    steps: CodeSteps,
 }
 
 impl WindField {
@@ -41,6 +42,7 @@ impl WindField {
             dust: Vec::new(),
             bends_rad: scene.kinds().iter().map(|grass| grass.wind_bend_rad).collect(),
             kinds,
+            steps: CodeSteps::from(&scene.stream),
         }
     }
 
@@ -48,14 +50,19 @@ impl WindField {
     ///
     /// # Panics
     /// When there are fewer than three planes of all cells.
-    pub fn set(&mut self, codes: &[i8], state: &TurbulenceState) {
+    pub fn set(&mut self, codes: &[i16], state: &TurbulenceState) {
         let count = self.velocities.len();
         for (cell, velocity) in self.velocities.iter_mut().enumerate() {
-            *velocity = Vec3::from_array([0, 1, 2].map(|plane| wind_m_per_s(codes[plane * count + cell])));
+            *velocity = Vec3::from_array([0, 1, 2].map(|plane| self.steps.wind_m_per_s(codes[plane * count + cell])));
         }
-        self.dust = codes[3 * count..].iter().map(|code| dust(*code)).collect();
+        self.dust = codes[3 * count..].iter().map(|code| self.steps.dust(*code)).collect();
         self.state = *state;
         self.gusts = self.turbulence.at(state);
+    }
+
+    /// Steps of the codes.
+    pub fn code_steps(&self) -> &CodeSteps {
+        &self.steps
     }
 
     /// Wind (m/s) at the cell centres, x fastest, then y, then z.

@@ -1,83 +1,111 @@
-//! Quantisation of the fields to 8 bits, with error bounds.
+//! Quantisation of the streamed fields to whole codes, with error bounds that the scene sets.
 //!
-//! θ and wind are linear. ω and dust are companded by a square root, so that weak bends keep their direction and thin dust is kept.
+//! θ and wind are linear. ω and dust are companded by a square root, so that weak bends keep their direction and thin dust is kept. Codes have 16 bits, which
+//! no value that the simulation can reach exceeds: at the default steps ±571 rad, ±5 million rad/s, ±8191 m/s. A larger value gets the largest code.
 
+use crate::scene::Stream;
 use multiversion::multiversion;
-use std::f32::consts::TAU;
+use serde::{Deserialize, Serialize};
+use std::f32::consts::{PI, TAU};
 use std::num::NonZeroU8;
 
-/// θ at code ±127 (rad). The field is the bend minus the wind's lean: grass flattened against the wind deviates by up to a right angle plus
-/// [`wind_bend_rad`](crate::scene::Grass::wind_bend_rad), 3.07 rad.
-pub const THETA_FULL_RAD: f32 = std::f32::consts::PI;
+/// Largest code; the smallest is its negative.
+pub const CODE_LIMIT: i16 = i16::MAX;
 
-/// |ω| of a component at code ±127 (rad/s); larger values saturate.
-pub const OMEGA_FULL_RAD_PER_S: f32 = 80.0;
-
-/// Wind component at code ±127 (m/s); larger values saturate.
-pub const WIND_FULL_M_PER_S: f32 = 31.75;
-
-/// Code of a bending angle; error at most `THETA_FULL_RAD / 254` (0.0124 rad) within ±[`THETA_FULL_RAD`].
-#[inline]
-pub fn theta_code(theta_rad: f32) -> i8 {
-    linear_code(theta_rad, THETA_FULL_RAD)
+/// Steps between neighbouring codes: those of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CodeSteps {
+    /// Step of θ (rad).
+    pub theta_rad: f32,
+    /// Step of the square root of a component of ω (√(rad/s)).
+    pub omega_root: f32,
+    /// Step of a component of the wind (m/s).
+    pub wind_m_per_s: f32,
+    /// Step of the square root of the concentration of dust.
+    pub dust_root: f32,
 }
 
-/// [`theta_code`] of a row of cells.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-pub fn theta_codes(thetas_rad: &[f32], codes: &mut [i8]) {
-    codes.iter_mut().zip(thetas_rad).for_each(|(code, theta_rad)| *code = theta_code(*theta_rad));
+impl From<&Stream> for CodeSteps {
+    fn from(stream: &Stream) -> Self {
+        let Stream { theta_error_deg, omega_error_rad_per_s, wind_error_m_per_s, dust_error } = *stream;
+        Self {
+            theta_rad: theta_error_deg * (2.0 * PI / 180.0),
+            omega_root: omega_error_rad_per_s,
+            wind_m_per_s: 2.0 * wind_error_m_per_s,
+            dust_root: dust_error,
+        }
+    }
 }
 
-/// Bending angle of a code (rad).
-pub fn theta_rad(code: i8) -> f32 {
-    linear_value(code, THETA_FULL_RAD)
+impl Default for CodeSteps {
+    /// Steps of a scene with the default errors.
+    fn default() -> Self {
+        Self::from(&Stream::default())
+    }
 }
 
-/// Code of a component of the bending velocity: `127·√(|ω|/full)`, rounded, with its sign. The error of `√(|ω|/full)` is at most
-/// 1/254, so that of ω at most `full·(|code| + ¼)/127²` within ±[`OMEGA_FULL_RAD_PER_S`].
-#[inline]
-pub fn omega_code(omega_rad_per_s: f32) -> i8 {
-    let size = (omega_rad_per_s.abs() * (127.0 * 127.0 / OMEGA_FULL_RAD_PER_S)).sqrt();
-    rounded(size.copysign(omega_rad_per_s))
+impl CodeSteps {
+    /// Code of a bending angle (rad); error at most half a step.
+    pub fn theta_code(&self, theta_rad: f32) -> i16 {
+        linear_code(theta_rad, 1.0 / self.theta_rad)
+    }
+
+    /// [`theta_code`](Self::theta_code) of a row of cells.
+    pub fn theta_codes(&self, thetas_rad: &[f32], codes: &mut [i16]) {
+        linear_codes(thetas_rad, 1.0 / self.theta_rad, codes);
+    }
+
+    /// Bending angle of a code (rad).
+    pub fn theta_rad(&self, code: i16) -> f32 {
+        f32::from(code) * self.theta_rad
+    }
+
+    /// Code of a component of the bending velocity (rad/s): its root, with its sign, in steps. The error of ω is at most `step·√|ω| + step²/4`.
+    pub fn omega_code(&self, omega_rad_per_s: f32) -> i16 {
+        root_code(omega_rad_per_s, 1.0 / self.omega_root)
+    }
+
+    /// [`omega_code`](Self::omega_code) of a row of cells.
+    pub fn omega_codes(&self, omegas_rad_per_s: &[f32], codes: &mut [i16]) {
+        root_codes(omegas_rad_per_s, 1.0 / self.omega_root, codes);
+    }
+
+    /// Component of the bending velocity of a code (rad/s).
+    pub fn omega_rad_per_s(&self, code: i16) -> f32 {
+        let root = f32::from(code) * self.omega_root;
+        root * root.abs()
+    }
+
+    /// Code of a wind component (m/s); error at most half a step.
+    pub fn wind_code(&self, m_per_s: f32) -> i16 {
+        linear_code(m_per_s, 1.0 / self.wind_m_per_s)
+    }
+
+    /// Wind component of a code (m/s).
+    pub fn wind_m_per_s(&self, code: i16) -> f32 {
+        f32::from(code) * self.wind_m_per_s
+    }
+
+    /// Code of a concentration of dust: its root in steps; negative values count as 0. The error of c is at most `step·√c + step²/4`.
+    pub fn dust_code(&self, concentration: f32) -> i16 {
+        root_code(concentration.max(0.0), 1.0 / self.dust_root)
+    }
+
+    /// Concentration of dust of a code; 0 for negative codes.
+    pub fn dust(&self, code: i16) -> f32 {
+        let root = f32::from(code.max(0)) * self.dust_root;
+        root * root
+    }
 }
 
-/// [`omega_code`] of a row of cells.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-pub fn omega_codes(omegas_rad_per_s: &[f32], codes: &mut [i8]) {
-    codes.iter_mut().zip(omegas_rad_per_s).for_each(|(code, omega_rad_per_s)| *code = omega_code(*omega_rad_per_s));
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw", "x86_64+avx2"))]
+fn linear_codes(values: &[f32], per_step: f32, codes: &mut [i16]) {
+    codes.iter_mut().zip(values).for_each(|(code, value)| *code = linear_code(*value, per_step));
 }
 
-/// Component of the bending velocity of a code (rad/s).
-pub fn omega_rad_per_s(code: i8) -> f32 {
-    let fraction = f32::from(code) / 127.0;
-    fraction * fraction.abs() * OMEGA_FULL_RAD_PER_S
-}
-
-/// Code of a wind component; error at most 0.125 m/s within ±[`WIND_FULL_M_PER_S`].
-#[inline]
-pub fn wind_code(m_per_s: f32) -> i8 {
-    linear_code(m_per_s, WIND_FULL_M_PER_S)
-}
-
-/// Wind component of a code (m/s).
-pub fn wind_m_per_s(code: i8) -> f32 {
-    linear_value(code, WIND_FULL_M_PER_S)
-}
-
-/// Concentration of dust at code 127; more saturates, and negative values count as 0. A gust that releases 1/s leaves about 2 where it is thickest.
-pub const DUST_FULL: f32 = 16.0;
-
-/// Code of a concentration of dust, 0..=127: `127·√(c/full)`, rounded. The error of c is at most `full·(code + ¼)/127²` within
-/// 0..=[`DUST_FULL`]: 0.03 at a concentration of 1.
-#[inline]
-pub fn dust_code(concentration: f32) -> i8 {
-    rounded((concentration.max(0.0) * (127.0 * 127.0 / DUST_FULL)).sqrt())
-}
-
-/// Concentration of dust of a code; 0 for negative codes.
-pub fn dust(code: i8) -> f32 {
-    let fraction = f32::from(code.max(0)) / 127.0;
-    fraction * fraction * DUST_FULL
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw", "x86_64+avx2"))]
+fn root_codes(values: &[f32], per_step: f32, codes: &mut [i16]) {
+    codes.iter_mut().zip(values).for_each(|(code, value)| *code = root_code(*value, per_step));
 }
 
 /// Code of the heading of a vector on the ground (X and Z), in 255ths of a turn from +X towards +Z; a whole turn is 255, so that 0 is free to mean
@@ -93,22 +121,24 @@ pub fn heading_rad(code: NonZeroU8) -> f32 {
 }
 
 #[inline(always)]
-fn linear_code(value: f32, full: f32) -> i8 {
-    rounded(value * (127.0 / full))
+fn linear_code(value: f32, per_step: f32) -> i16 {
+    rounded(value * per_step)
 }
 
-/// The nearest integer within ±127, ties to even; −127 for NaN. Without branches or library calls, so that loops over cells vectorise: adding 1.5·2²³
-/// leaves the integer in the lowest bits of the sum.
 #[inline(always)]
-fn rounded(value: f32) -> i8 {
-    const SHIFT: f32 = 12_582_912.0;
-    let bounded = if value > -127.0 { value } else { -127.0 };
-    let bounded = if bounded < 127.0 { bounded } else { 127.0 };
-    (bounded + SHIFT).to_bits() as i8
+fn root_code(value: f32, per_step: f32) -> i16 {
+    rounded((value.abs().sqrt() * per_step).copysign(value))
 }
 
-fn linear_value(code: i8, full: f32) -> f32 {
-    f32::from(code) / 127.0 * full
+/// The nearest integer within ±[`CODE_LIMIT`], ties to even; the smallest code for NaN. Without branches or library calls, so that loops over cells vectorise:
+/// adding 1.5·2²³ leaves the integer in the lowest bits of the sum.
+#[inline(always)]
+fn rounded(value: f32) -> i16 {
+    const SHIFT: f32 = 12_582_912.0;
+    const LIMIT: f32 = CODE_LIMIT as f32;
+    let bounded = if value > -LIMIT { value } else { -LIMIT };
+    let bounded = if bounded < LIMIT { bounded } else { LIMIT };
+    (bounded + SHIFT).to_bits() as i16
 }
 
 #[cfg(test)]
@@ -116,35 +146,51 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    proptest! {
-        #[test]
-        fn theta_stays_within_its_bound(theta in -THETA_FULL_RAD..=THETA_FULL_RAD) {
-            prop_assert!((theta_rad(theta_code(theta)) - theta).abs() <= THETA_FULL_RAD / 254.0 * 1.0001);
-        }
+    fn steps() -> impl Strategy<Value = CodeSteps> {
+        let stream = |(theta_error_deg, omega_error_rad_per_s, wind_error_m_per_s, dust_error)| Stream {
+            theta_error_deg,
+            omega_error_rad_per_s,
+            wind_error_m_per_s,
+            dust_error,
+        };
+        prop_oneof![
+            Just(CodeSteps::default()),
+            (0.05_f32..5.0, 0.01_f32..1.0, 0.01_f32..1.0, 0.005_f32..0.5).prop_map(move |errors| CodeSteps::from(&stream(errors))),
+        ]
+    }
 
-        #[test]
-        fn omega_stays_within_its_bound(fraction in -1.0_f32..=1.0) {
-            let omega = fraction * fraction.abs() * OMEGA_FULL_RAD_PER_S;
-            let code = omega_code(omega);
-            let bound = OMEGA_FULL_RAD_PER_S * (f32::from(code).abs() + 0.25) / (127.0 * 127.0);
-            prop_assert!((omega_rad_per_s(code) - omega).abs() <= bound * 1.001, "{omega} -> {code}");
-        }
-
-        #[test]
-        fn wind_stays_within_its_bound(wind in -WIND_FULL_M_PER_S..=WIND_FULL_M_PER_S) {
-            prop_assert!((wind_m_per_s(wind_code(wind)) - wind).abs() <= 0.125 * 1.0001);
-        }
-
-        #[test]
-        fn dust_stays_within_its_bound(fraction in 0.0_f32..=1.0) {
-            let concentration = fraction * fraction * DUST_FULL;
-            let code = dust_code(concentration);
-            let bound = DUST_FULL * (f32::from(code) + 0.25) / (127.0 * 127.0);
-            prop_assert!((dust(code) - concentration).abs() <= bound * 1.001, "{concentration} -> {code}");
-        }
+    /// Error bound of a value whose root is rounded to whole steps.
+    fn root_bound(value: f32, step: f32) -> f32 {
+        step * value.abs().sqrt() + 0.25 * step * step
     }
 
     proptest! {
+        #[test]
+        fn values_stay_within_their_bounds(
+            steps in steps(),
+            theta in -4.0_f32..4.0,
+            root in -30.0_f32..30.0,
+            wind in -120.0_f32..120.0,
+            dust in 0.0_f32..100.0,
+        ) {
+            let omega = root * root.abs();
+            let rounding = 1.0 + 1e-4;
+            prop_assert!((steps.theta_rad(steps.theta_code(theta)) - theta).abs() <= 0.5 * steps.theta_rad * rounding);
+            prop_assert!((steps.omega_rad_per_s(steps.omega_code(omega)) - omega).abs() <= root_bound(omega, steps.omega_root) * rounding);
+            prop_assert!((steps.wind_m_per_s(steps.wind_code(wind)) - wind).abs() <= 0.5 * steps.wind_m_per_s * rounding);
+            prop_assert!((steps.dust(steps.dust_code(dust)) - dust).abs() <= root_bound(dust, steps.dust_root) * rounding);
+        }
+
+        #[test]
+        fn rows_have_the_codes_of_their_cells(values in proptest::collection::vec(-1e6_f32..1e6, 0..70)) {
+            let steps = CodeSteps::default();
+            let mut codes = vec![0; values.len()];
+            steps.theta_codes(&values, &mut codes);
+            prop_assert!(codes.iter().zip(&values).all(|(code, value)| *code == steps.theta_code(*value)));
+            steps.omega_codes(&values, &mut codes);
+            prop_assert!(codes.iter().zip(&values).all(|(code, value)| *code == steps.omega_code(*value)));
+        }
+
         #[test]
         fn headings_stay_within_their_bound(heading in 0.0..TAU, length in 1e-6_f32..1e6) {
             let found = heading_rad(heading_code([length * heading.cos(), length * heading.sin()]));
@@ -169,16 +215,19 @@ mod tests {
     }
 
     #[test]
-    fn the_bounds_are_reached() {
-        let half_step = THETA_FULL_RAD / 254.0;
-        assert!((theta_rad(theta_code(0.999 * half_step)) - 0.999 * half_step).abs() > 0.99 * half_step);
-        assert_eq!(theta_code(10.0), 127);
-        assert_eq!(omega_code(-1e9), -127);
-        assert_eq!(wind_code(f32::INFINITY), 127);
-        assert_eq!(wind_code(f32::NAN), -127);
-        let between = DUST_FULL * (20.499 / 127.0_f32).powi(2);
-        assert!((dust(dust_code(between)) - between).abs() > 0.99 * DUST_FULL * 20.25 / (127.0 * 127.0));
-        assert_eq!([-3.0, 0.0, DUST_FULL, 1e9].map(dust_code), [0, 0, 127, 127]);
-        assert_eq!(dust(-5), 0.0);
+    fn the_bounds_are_reached_and_only_absurd_values_have_the_largest_code() {
+        let steps = CodeSteps::default();
+        assert!((steps.theta_rad - 1.0_f32.to_radians()).abs() < 1e-7 && steps.wind_m_per_s == 0.25);
+        let close = 0.999 * 0.5 * steps.theta_rad;
+        assert!((steps.theta_rad(steps.theta_code(close)) - close).abs() > 0.99 * 0.5 * steps.theta_rad);
+        let between = (20.499 * steps.dust_root).powi(2);
+        assert!((steps.dust(steps.dust_code(between)) - between).abs() > 0.97 * root_bound(between, steps.dust_root));
+        assert!(steps.theta_code(500.0) < CODE_LIMIT && steps.omega_code(1e6) < CODE_LIMIT && steps.wind_code(8000.0) < CODE_LIMIT);
+        assert_eq!(
+            [steps.theta_code(f32::INFINITY), steps.omega_code(-1e9), steps.wind_code(f32::NAN)],
+            [CODE_LIMIT, -CODE_LIMIT, -CODE_LIMIT]
+        );
+        assert_eq!([-3.0, 0.0].map(|dust| steps.dust_code(dust)), [0, 0]);
+        assert_eq!(steps.dust(-5), 0.0);
     }
 }

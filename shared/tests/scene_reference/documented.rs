@@ -11,7 +11,7 @@ pub(crate) struct Field {
 }
 
 /// Source files and, for each struct in them, the section that it documents.
-const SOURCES: [(&str, &[(&str, &str)]); 20] = [
+const SOURCES: [(&str, &[(&str, &str)]); 21] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
     ("terrain.rs", &[("TerrainMaps", "terrain")]),
@@ -32,10 +32,11 @@ const SOURCES: [(&str, &[(&str, &str)]); 20] = [
     ("drawn_wind.rs", &[("DrawnWind", "drawn_winds")]),
     ("picture.rs", &[("CameraStart", "camera"), ("Light", "light")]),
     ("lamp.rs", &[("Lamp", "lights")]),
+    ("stream.rs", &[("Stream", "stream")]),
 ];
 
 /// Sections that may occur once, without those of [`tread_sections`].
-const SECTIONS: [&str; 15] = [
+const SECTIONS: [&str; 16] = [
     "patches",
     "terrain",
     "wind",
@@ -51,6 +52,7 @@ const SECTIONS: [&str; 15] = [
     "objects",
     "camera",
     "light",
+    "stream",
 ];
 
 /// Structs whose fields a file writes directly in the section around them: field, file and name.

@@ -5,13 +5,14 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use prairie_core::wire::quantise::CODE_LIMIT;
 use prairie_core::wire::{Shape, codec};
 
 fuzz_target!(|bytes: &[u8]| {
     let Some((&[columns, rows, slope], payload)) = bytes.split_first_chunk() else { return };
     let shape = Shape::wind(usize::from(columns & 15) + 1, columns & 16 != 0);
     let len = shape.planes * shape.width * (usize::from(rows & 31) + 1);
-    let base: Vec<i8> = (0..len).map(|at| ((at * usize::from(slope)) % 255) as u8 as i8).map(|code| code.max(-127)).collect();
+    let base: Vec<i16> = (0..len).map(|at| ((at * usize::from(slope) * 257) % 65_535) as u16 as i16).map(|code| code.max(-CODE_LIMIT)).collect();
     let mut codes = base.clone();
     if codec::decode(shape, payload, &mut codes).is_ok() {
         let encoded = codec::encode(shape, &codes, Some(&base));

@@ -12,7 +12,7 @@ use prairie_core::scene::{Objects, Scene, VehicleKind};
 use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
 use prairie_core::wind::WindField;
 use prairie_core::wire::TurbulenceState;
-use prairie_core::wire::quantise::{THETA_FULL_RAD, theta_code, theta_rad, wind_code};
+use prairie_core::wire::quantise::CodeSteps;
 use std::sync::Arc;
 use tests::worlds;
 
@@ -26,7 +26,7 @@ fn still_air() -> WindField {
 fn wind(scene: &Scene, m_per_s: f32) -> WindField {
     let mut wind = worlds::still_air(scene);
     let cells = wind.velocities().len();
-    let codes: Vec<_> = (0..3 * cells).map(|at| if at < cells { wind_code(m_per_s) } else { 0 }).collect();
+    let codes: Vec<_> = (0..3 * cells).map(|at| if at < cells { CodeSteps::default().wind_code(m_per_s) } else { 0 }).collect();
     wind.set(&codes, &TurbulenceState::default());
     wind
 }
@@ -162,7 +162,7 @@ fn a_track_recovers_within_its_time_constant() {
         meadow.step(DT_SECS, &[], &[], &still_air(), &Pool);
     }
     assert_eq!(meadow.field().awake_count(), 0, "grass at rest sleeps");
-    assert_eq!(theta_code(last_rad), 0, "the last patch that fell asleep was bent by {last_rad} rad, which is seen");
+    assert_eq!(CodeSteps::default().theta_code(last_rad), 0, "the last patch that fell asleep was bent by {last_rad} rad, which is seen");
 }
 
 /// Position (m) of a car on heading [`CROSSING_RAD`] at 20 m/s after `secs`.
@@ -340,6 +340,7 @@ fn the_wire_format_holds_grass_pressed_against_the_strongest_wind() {
     }
     let largest_rad = meadow.field().awake().map(Patch::theta_max_rad).fold(0.0, f32::max);
     assert!(largest_rad > 2.5, "grass pressed westward departs by {largest_rad} rad from where the wind holds it");
-    let error_rad = (theta_rad(theta_code(largest_rad)) - largest_rad).abs();
-    assert!(error_rad <= THETA_FULL_RAD / 254.0 * 1.0001, "{largest_rad} rad come back {error_rad} rad off");
+    let steps = CodeSteps::default();
+    let error_rad = (steps.theta_rad(steps.theta_code(largest_rad)) - largest_rad).abs();
+    assert!(error_rad <= 0.5 * steps.theta_rad * 1.0001, "{largest_rad} rad come back {error_rad} rad off");
 }

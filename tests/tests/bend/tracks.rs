@@ -7,7 +7,7 @@ use prairie_core::grass::flattened::{QUANTUM_RAD, TILE_BYTES};
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{Grass, Scene, VehicleKind};
 use prairie_core::wire::Drive;
-use prairie_core::wire::quantise::{omega_rad_per_s, theta_rad};
+use prairie_core::wire::quantise::CodeSteps;
 use tests::worlds;
 
 const AHEAD: Drive = Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 };
@@ -44,7 +44,7 @@ fn an_awake_cell_with_its_flattened_grass_takes_at_most_32_bytes() {
 fn shown(world: &mut World) -> (usize, f32) {
     let snapshot = world.snapshot();
     let thetas = snapshot.patches.values().flat_map(|patch| patch.codes[..patch.codes.len() / 3].to_vec());
-    let bent: Vec<f32> = thetas.filter(|&code| code != 0).map(|code| theta_rad(code).abs()).collect();
+    let bent: Vec<f32> = thetas.filter(|&code| code != 0).map(|code| CodeSteps::default().theta_rad(code).abs()).collect();
     (bent.len(), bent.into_iter().fold(0.0, f32::max))
 }
 
@@ -120,12 +120,13 @@ fn the_sent_direction_is_that_of_the_flattened_grass() {
     let mut world = driven(&worlds::scene(16));
     run(&mut world, 20.0);
     let snapshot = world.snapshot();
-    let mut agree = 0;
+    let (steps, mut agree) = (CodeSteps::default(), 0);
     for (&index, patch) in snapshot.patches.iter() {
         let plane = patch.codes.len() / 3;
         for ([i, j], [x, z]) in world.bend().flattened().cells(index).filter(|(_, [x, z])| x.hypot(*z) > 0.1) {
             let at = j * 64 + i;
-            let (bend_rad, omega) = (theta_rad(patch.codes[at]), [plane, 2 * plane].map(|start| omega_rad_per_s(patch.codes[start + at])));
+            let bend_rad = steps.theta_rad(patch.codes[at]);
+            let omega = [plane, 2 * plane].map(|start| steps.omega_rad_per_s(patch.codes[start + at]));
             let speed = omega[0].hypot(omega[1]);
             let along = (omega[0] * x + omega[1] * z) / (speed * x.hypot(z));
             assert!((bend_rad - x.hypot(z)).abs() < 0.02 && along > 0.95, "shown {bend_rad} rad along {omega:?}, flattened {x}, {z}");

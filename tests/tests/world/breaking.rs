@@ -7,7 +7,7 @@ use prairie_client::state::Mirror;
 use prairie_core::plant::flora::Flora;
 use prairie_core::scene::{Primitive, PrimitiveKind, Scene, VehicleKind, parse_underbrush};
 use prairie_core::terrain::{CoverMap, grey_png};
-use prairie_core::wire::quantise::{heading_rad, wind_m_per_s};
+use prairie_core::wire::quantise::{CodeSteps, heading_rad};
 use prairie_core::wire::{BrokenPlant, Drive, SERVER_MESSAGE_LIMIT, ServerMessage, decode, encode};
 use std::f32::consts::{PI, TAU};
 use tests::worlds;
@@ -251,7 +251,8 @@ fn the_wind_of_the_underbrush_scene_breaks_nothing() {
     let wind = world.snapshot().wind;
     let [nx, ny, _] = wind.cells.map(|n| n as usize);
     let lowest = |at: &usize| (at / nx).is_multiple_of(ny);
-    let speed = |at: usize| wind_m_per_s(wind.codes[at]).hypot(wind_m_per_s(wind.codes[2 * wind.volume() + at]));
+    let component = |at: usize| CodeSteps::default().wind_m_per_s(wind.codes[at]);
+    let speed = |at: usize| component(at).hypot(component(2 * wind.volume() + at));
     let strongest_m_per_s = (0..wind.volume()).filter(lowest).map(speed).fold(0.0, f32::max);
     assert!(strongest_m_per_s > 1.0 && 1.5 * strongest_m_per_s < 15.0, "{strongest_m_per_s} m/s");
 }

@@ -67,7 +67,7 @@ struct Moment {
     replica: ReplicaState,
     objects: Vec<ObjectPose>,
     broken: u32,
-    wind: Option<(u64, Vec<i8>)>,
+    wind: Option<(u64, Vec<i16>)>,
 }
 
 impl Moment {

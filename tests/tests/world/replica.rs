@@ -73,7 +73,7 @@ pub(super) struct Viewer {
 
 impl Viewer {
     /// Applies all frames that have arrived, and acknowledges them.
-    fn receive(&mut self) -> Result<()> {
+    pub(super) fn receive(&mut self) -> Result<()> {
         while let Ok(frame) = self.frames.try_recv() {
             for message in frame.messages {
                 self.bytes += message.len();
@@ -99,7 +99,7 @@ impl Viewer {
         ensure!(shown == codes.keys().copied().collect::<Vec<_>>(), "other patches are bent after step {}", world.tick());
         for (index, wanted) in codes.iter() {
             let found = self.mirror.patch(*index).context("the patch is shown")?.planes().concat();
-            // Codes of flattened grass, which recovers without being stepped, are up to a second old.
+            // Codes of flattened grass are renewed at times that depend on when the client began.
             let is_flattened = bend.flattened().patches().any(|patch| patch == *index);
             ensure!(is_flattened || found == wanted.codes, "the codes of patch {index} differ after step {}", world.tick());
         }

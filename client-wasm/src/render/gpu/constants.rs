@@ -18,7 +18,6 @@ pub(crate) use prairie_core::plant::blade::modes::{AMPLITUDES, BRAKES, FREQUENCI
 pub(crate) use prairie_core::plant::force_field::AIR_KG_PER_M3;
 pub(crate) use prairie_core::scene::{GROWTH_BY_COVER, GROWTH_BY_MEADOW, GROWTH_BY_SOIL, GROWTH_BY_TUFT};
 pub(crate) use prairie_core::wind::{FREE_WIND_M, LEAST_WIND_HEIGHT};
-pub(crate) use prairie_core::wire::quantise::{DUST_FULL, OMEGA_FULL_RAD_PER_S, THETA_FULL_RAD, WIND_FULL_M_PER_S};
 pub(crate) use std::f32::consts::{FRAC_PI_2 as RIGHT_ANGLE, TAU};
 
 /// Gravitational acceleration (m/s²).

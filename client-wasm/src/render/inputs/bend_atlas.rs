@@ -1,12 +1,15 @@
 //! Bend atlas: the bend field around the camera in one texture. Patch `(x, z)` is stored in slot `(x mod n, z mod n)`, so that a moving camera changes only
-//! the patches that enter the window. Texels: θ, ωx, ωz. If the scene uses the history of the field, further layers store past states of the window.
+//! the patches that enter the window. Texels: θ (rad), ωx and ωz (roots of rad/s, with their signs). If the scene uses the history of the field, further layers store past states of the window.
 
 use crate::render::gpu::constants::BEND_ATLAS_LEVELS;
 use crate::render::gpu::device::Gpu;
 use crate::state::{Mirror, PatchCodes};
+use half::f16;
+use half::slice::HalfFloatSliceExt;
 use prairie_core::grid::{PatchIndex, PatchLayout};
 use prairie_core::lod::PASTS;
 use prairie_core::scene::{LagWay, Scene};
+use prairie_core::wire::quantise::CodeSteps;
 use std::collections::HashSet;
 
 /// Largest side of the atlas (texels).
@@ -38,6 +41,7 @@ pub(crate) struct BendAtlas {
     layout: PatchLayout,
     /// Patches along one side of the window.
     side: u32,
+    steps: CodeSteps,
     slots: Vec<Slot>,
     pasts: Option<History>,
 }
@@ -53,11 +57,11 @@ impl BendAtlas {
             mip_level_count: BEND_ATLAS_LEVELS,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba8Snorm,
+            format: wgpu::TextureFormat::Rgba16Float,
             usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
-        Self { texture, layout, side, slots: vec![Slot::default(); (side * side) as usize], pasts }
+        Self { texture, layout, side, steps: CodeSteps::from(&scene.stream), slots: vec![Slot::default(); (side * side) as usize], pasts }
     }
 
     /// Side of the window (m), the period of the atlas.
@@ -118,18 +122,22 @@ impl BendAtlas {
     /// Writes a slot in the newest `layers`.
     fn write(&self, gpu: &Gpu, slot: [u32; 2], codes: Option<&PatchCodes>, layers: u32) {
         let mut side = self.layout.cells as usize;
-        let mut texels = vec![0_i8; side * side * 4];
+        let CodeSteps { theta_rad, omega_root, .. } = self.steps;
+        let mut texels = vec![0.0_f32; side * side * 4];
         if let Some(codes) = codes {
-            for (channel, plane) in codes.planes().into_iter().enumerate() {
+            for (channel, (plane, step)) in codes.planes().into_iter().zip([theta_rad, omega_root, omega_root]).enumerate() {
                 for (i, &code) in plane.iter().enumerate() {
-                    texels[i * 4 + channel] = code;
+                    texels[i * 4 + channel] = f32::from(code) * step;
                 }
             }
         }
+        let mut rounded = vec![f16::ZERO; texels.len()];
         for level in 0..BEND_ATLAS_LEVELS {
+            rounded.truncate(texels.len());
+            rounded.convert_from_f32_slice(&texels);
             let [x, y] = slot.map(|n| n * side as u32);
             for layer in 0..layers {
-                gpu.write_level(&self.texture, level, [x, y, layer], [side as u32; 2], bytemuck::cast_slice(&texels));
+                gpu.write_level(&self.texture, level, [x, y, layer], [side as u32; 2], bytemuck::cast_slice(&rounded));
             }
             texels = halved(&texels, side);
             side /= 2;
@@ -193,14 +201,14 @@ fn copy_layer(gpu: &Gpu, texture: &wgpu::Texture, to: u32) {
 }
 
 /// The next mip level: means of 2 × 2 texels.
-fn halved(texels: &[i8], side: usize) -> Vec<i8> {
+fn halved(texels: &[f32], side: usize) -> Vec<f32> {
     let half = side / 2;
     let mut coarse = Vec::with_capacity(half * half * 4);
     for z in 0..half {
         for x in 0..half {
             for channel in 0..4 {
-                let at = |dx: usize, dz: usize| i16::from(texels[((2 * z + dz) * side + 2 * x + dx) * 4 + channel]);
-                coarse.push(((at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1)) / 4) as i8);
+                let at = |dx: usize, dz: usize| texels[((2 * z + dz) * side + 2 * x + dx) * 4 + channel];
+                coarse.push(0.25 * (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1)));
             }
         }
     }

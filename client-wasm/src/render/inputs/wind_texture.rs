@@ -2,15 +2,18 @@
 
 use crate::render::gpu::device::Gpu;
 use crate::state::{DecodedScene, ShownWind};
+use half::f16;
 use prairie_core::scene::Scene;
 use prairie_core::wind::{CellGrid, Gusts, Turbulence};
 use prairie_core::wire::Shape;
-use prairie_core::wire::quantise::WIND_FULL_M_PER_S;
+use prairie_core::wire::quantise::CodeSteps;
 
 pub(crate) struct WindTexture {
     pub(crate) texture: wgpu::Texture,
     cells: [u32; 3],
-    /// Codes of all planes, interpolated in time.
+    /// Values of a code of each plane: m/s, and the root of the concentration of dust.
+    steps: [f32; 4],
+    /// Wind (m/s) and root of the concentration of dust, plane after plane, interpolated in time.
     shown: Vec<f32>,
     turbulence: Turbulence,
     gusts: Gusts,
@@ -29,15 +32,17 @@ impl WindTexture {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D3,
-            format: wgpu::TextureFormat::Rgba8Snorm,
+            format: wgpu::TextureFormat::Rgba16Float,
             usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
             view_formats: &[],
         });
         let count = cells.iter().map(|&n| n as usize).product::<usize>();
-        let [x, z] = wind.mean_m_per_s.map(|v| f32::from(prairie_core::wire::quantise::wind_code(v)));
+        let CodeSteps { wind_m_per_s, dust_root, .. } = CodeSteps::from(&scene.stream);
+        let steps = [wind_m_per_s, wind_m_per_s, wind_m_per_s, dust_root];
+        let [x, z] = wind.mean_m_per_s;
         let still = [x, 0.0, z, 0.0].into_iter().take(Shape::wind(1, wind.has_dust()).planes);
         let shown = still.flat_map(|v| std::iter::repeat_n(v, count)).collect();
-        let new = Self { texture, cells, shown, turbulence: Turbulence::new(scene), gusts: Gusts::default(), moment: None };
+        let new = Self { texture, cells, steps, shown, turbulence: Turbulence::new(scene), gusts: Gusts::default(), moment: None };
         new.write(gpu);
         new
     }
@@ -49,9 +54,10 @@ impl WindTexture {
         if std::mem::replace(&mut self.moment, moment) == moment {
             return;
         }
-        for (shown, (from, to)) in self.shown.iter_mut().zip(wind.from.codes().iter().zip(wind.to.codes())) {
+        let count = self.cells.map(|n| n as usize).iter().product::<usize>();
+        for (at, (shown, (from, to))) in self.shown.iter_mut().zip(wind.from.codes().iter().zip(wind.to.codes())).enumerate() {
             let [from, to] = [from, to].map(|code| f32::from(*code));
-            *shown = from + (to - from) * wind.fraction;
+            *shown = (from + (to - from) * wind.fraction) * self.steps[at / count];
         }
         self.gusts = self.turbulence.at(&wind.turbulence());
         self.write(gpu);
@@ -65,25 +71,23 @@ impl WindTexture {
     /// Displayed wind (m/s) without its gusts at X, height above the ground and Z (m), by the trilinear sampling of `air_at` in WGSL.
     pub(crate) fn resolved_at(&self, decoded: &DecodedScene, [x, above_m, z]: [f32; 3]) -> [f32; 3] {
         let (grid, count) = (CellGrid::from(&decoded.scene().wind), self.cells.map(|n| n as usize).iter().product::<usize>());
-        let codes = decoded
-            .tiles()
-            .blend([x, z], |[x, z]| grid.trilinear([x, above_m, z], |cell| [0, 1, 2].map(|channel| self.shown[channel * count + cell])));
-        codes.map(|code| code * (WIND_FULL_M_PER_S / 127.0))
+        let at_cell = |cell| [0, 1, 2].map(|channel| self.shown[channel * count + cell]);
+        decoded.tiles().blend([x, z], |[x, z]| grid.trilinear([x, above_m, z], at_cell))
     }
 
     fn write(&self, gpu: &Gpu) {
         let [nx, ny, nz] = self.cells;
         let count = (nx * ny * nz) as usize;
-        let mut texels = vec![0_u8; count * 4];
+        let mut texels = vec![f16::ZERO; count * 4];
         for (channel, plane) in self.shown.chunks_exact(count).enumerate() {
             for (i, value) in plane.iter().enumerate() {
-                texels[i * 4 + channel] = value.round() as i8 as u8;
+                texels[i * 4 + channel] = f16::from_f32(*value);
             }
         }
         gpu.queue.write_texture(
             self.texture.as_image_copy(),
-            &texels,
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(nx * 4), rows_per_image: Some(ny) },
+            bytemuck::cast_slice(&texels),
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(nx * 8), rows_per_image: Some(ny) },
             wgpu::Extent3d { width: nx, height: ny, depth_or_array_layers: nz },
         );
     }

@@ -3,7 +3,7 @@
 use super::*;
 use prairie_core::scene::{WindDust, WindTiling};
 use prairie_core::wire::TurbulenceState;
-use prairie_core::wire::quantise::{DUST_FULL, WIND_FULL_M_PER_S, wind_code};
+use prairie_core::wire::quantise::CodeSteps;
 
 /// Wind and dust as the shaders sample them at `places`: X, height above the ground and Z (m).
 fn air(gpu: &Gpu, picture: &OffscreenRenderer, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
@@ -16,8 +16,8 @@ fn patches_show_the_box_where_the_server_has_it() {
     let dust = WindDust { release_per_s: 1.0, ..WindDust::default() };
     let mut mirror = meadow_in(Wind { cells: [8, 2, 4], spacing_m: [2.0, 2.0, 4.0], tiling: WindTiling::Patch, dust, ..Wind::default() });
     // Codes that differ between all cells along X, along Z and in height.
-    let plane = |code: fn(usize) -> usize| (0..64).map(move |at| code(at) as i8);
-    let codes: Vec<i8> =
+    let plane = |code: fn(usize) -> usize| (0..64).map(move |at| code(at) as i16);
+    let codes: Vec<i16> =
         plane(|at| 10 * (at % 8)).chain(plane(|at| at / 8 % 2 * 50)).chain(plane(|at| at / 16 * 30)).chain(plane(|at| at)).collect();
     let payload = codec::encode(Shape::wind(8, true), &codes, None);
     mirror
@@ -33,8 +33,9 @@ fn patches_show_the_box_where_the_server_has_it() {
     let wind = &picture.renderer.scene.as_ref().expect("a scene").textures.wind;
     for (place, found) in places.iter().zip(air(&gpu, &picture, &places)) {
         let wanted = decoded.tiles().blend([place[0], place[2]], |at_m| trilinear(&codes, [at_m[0], place[1], at_m[1]]));
-        let [u, v, w, root] = wanted.map(|code| code / 127.0);
-        let wanted = [u * WIND_FULL_M_PER_S, v * WIND_FULL_M_PER_S, w * WIND_FULL_M_PER_S, root * root * DUST_FULL];
+        let CodeSteps { wind_m_per_s: step, dust_root, .. } = CodeSteps::default();
+        let [u, v, w, root] = wanted;
+        let wanted = [u * step, v * step, w * step, (root * dust_root).powi(2)];
         // Filtering has 8 bits of fraction.
         assert!(wanted.iter().zip(found).all(|(a, b)| (a - b).abs() < 0.15), "{found:?} instead of {wanted:?} at {place:?}");
         let twin = wind.resolved_at(decoded, [place[0], place[1], place[2]]);
@@ -46,7 +47,7 @@ fn patches_show_the_box_where_the_server_has_it() {
 pub(super) fn blow_gusts(mirror: &mut Mirror, m_per_s: f32) {
     let cells = mirror.decoded_scene().expect("a scene").scene().wind.cells.map(|n| n as usize);
     let count = cells.iter().product::<usize>();
-    let codes: Vec<i8> = (0..3 * count).map(|at| if at < count { wind_code(m_per_s) } else { 0 }).collect();
+    let codes: Vec<i16> = (0..3 * count).map(|at| if at < count { CodeSteps::default().wind_code(m_per_s) } else { 0 }).collect();
     for frame in 0..6 {
         let travel_m = f64::from(m_per_s) * 0.25 * f64::from(frame);
         let turbulence = TurbulenceState { travel_m: [travel_m, 0.0], path_m: 0.08 * travel_m, friction_m_per_s: 0.08 * m_per_s };
@@ -62,7 +63,8 @@ fn the_shaders_have_the_wind_of_the_core() {
     let mut mirror = meadow(4.0);
     let cells = mirror.decoded_scene().expect("a scene").scene().wind.cells.map(|n| n as usize);
     let count = cells.iter().product::<usize>();
-    let codes: Vec<i8> = (0..3 * count).map(|at| wind_code([4.0, 0.1, -1.0][at / count] + (at % 7) as f32 * 0.25)).collect();
+    let codes: Vec<i16> =
+        (0..3 * count).map(|at| CodeSteps::default().wind_code([4.0, 0.1, -1.0][at / count] + (at % 7) as f32 * 0.25)).collect();
     let turbulence = TurbulenceState { travel_m: [123_456.7, -4321.1], path_m: 9876.5, friction_m_per_s: 0.8 };
     let payload = codec::encode(Shape::wind(cells[0], false), &codes, None);
     mirror.apply(ServerMessage::Wind { tick: 1, seq: 1, key: true, turbulence, payload }).expect("a sound wind");
@@ -86,7 +88,7 @@ fn the_shaders_have_the_wind_of_the_core() {
 }
 
 /// Codes (u, v, w, dust) of 8 × 2 × 4 cells of 2 × 2 × 4 m, interpolated at a place like a sampler does.
-fn trilinear(codes: &[i8], place_m: [f32; 3]) -> [f32; 4] {
+fn trilinear(codes: &[i16], place_m: [f32; 3]) -> [f32; 4] {
     let at: [f32; 3] = std::array::from_fn(|axis| place_m[axis] / [2.0, 2.0, 4.0][axis] - 0.5);
     let mut sum = [0.0; 4];
     for corner in 0..8 {

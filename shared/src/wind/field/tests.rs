@@ -2,7 +2,6 @@ use super::*;
 use crate::scene::{Grass, Species, TerrainMaps, WindBoundary, WindTiling};
 use crate::terrain::{CoverMap, grey_png};
 use crate::wind::offset_cells;
-use crate::wire::quantise::wind_code;
 
 /// A world of 256 m with calm gusts.
 fn scene() -> Scene {
@@ -12,8 +11,13 @@ fn scene() -> Scene {
     scene
 }
 
+/// Code of a wind component (m/s) at the default step.
+fn wind_code(m_per_s: f32) -> i16 {
+    CodeSteps::default().wind_code(m_per_s)
+}
+
 /// A field of wind codes by cell, component after component.
-fn field(scene: &Scene, code: impl Fn(usize, usize) -> i8) -> WindField {
+fn field(scene: &Scene, code: impl Fn(usize, usize) -> i16) -> WindField {
     let mut field = WindField::still(scene, Arc::new(KindMap::uniform()));
     let count = field.velocities.len();
     let codes: Vec<_> = (0..3 * count).map(|at| code(at / count, at % count)).collect();
@@ -86,8 +90,8 @@ fn a_box_tiled_by_patch_is_offset_in_each_patch() {
     (scene.wind.tiling, scene.wind.cells, scene.wind.spacing_m) = (WindTiling::Patch, [8, 8, 8], [2.0; 3]);
     let patch_m = scene.patches.cells as f32 * scene.patches.cell_m;
     let wind = field(&scene, |component, cell| match component {
-        0 => (cell % 8) as i8,
-        2 => (cell / 64) as i8,
+        0 => (cell % 8) as i16,
+        2 => (cell / 64) as i16,
         _ => 0,
     });
     let inside = |n: usize| [n as f32 * patch_m + 9.0, patch_m + 9.0];

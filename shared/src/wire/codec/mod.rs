@@ -1,4 +1,4 @@
-//! Lossless codec of the streamed fields: adaptive binary arithmetic coding of small 8-bit grids.
+//! Lossless codec of the streamed fields: adaptive binary arithmetic coding of small grids of 16-bit codes.
 //!
 //! A grid has a few planes of rows of codes ([`Shape`]). It is coded as differences from a base of the same shape (delta frame) or from
 //! zero (key frame), so one code path serves both. Per plane and tile of 8 × 8 cells:
@@ -16,6 +16,7 @@ mod model;
 pub mod moves;
 mod tile;
 
+use super::quantise::CODE_LIMIT;
 use arithmetic::Coder;
 use model::Model;
 use thiserror::Error;
@@ -41,7 +42,7 @@ impl Shape {
         Self { width, planes: if has_dust { 4 } else { 3 } }
     }
 
-    fn assert_fits(self, codes: &[i8]) {
+    fn assert_fits(self, codes: &[i16]) {
         let Self { width, planes } = self;
         assert!(width > 0 && planes > 0 && codes.len().is_multiple_of(planes * width), "{planes} planes of rows of {width}");
     }
@@ -53,8 +54,8 @@ pub enum CodecError {
     /// The payload ends before the grid is complete, or is longer than the grid.
     #[error("the payload's length does not match its grid")]
     Length,
-    /// A value is outside −127..=127.
-    #[error("the payload holds a value outside -127..=127")]
+    /// A value is outside ±[`CODE_LIMIT`].
+    #[error("the payload holds a value outside -{CODE_LIMIT}..={CODE_LIMIT}")]
     Range,
 }
 
@@ -62,13 +63,13 @@ pub enum CodecError {
 ///
 /// # Panics
 /// When `codes.len()` is not a multiple of `planes · width`, or differs from the base's length.
-pub fn encode(shape: Shape, codes: &[i8], base: Option<&[i8]>) -> Vec<u8> {
+pub fn encode(shape: Shape, codes: &[i16], base: Option<&[i16]>) -> Vec<u8> {
     shape.assert_fits(codes);
     let Shape { width, planes } = shape;
     assert!(base.is_none_or(|base| base.len() == codes.len()), "the base has the grid's shape");
-    let differences: Vec<i16> = match base {
-        Some(base) => codes.iter().zip(base).map(|(&code, &base)| i16::from(code) - i16::from(base)).collect(),
-        None => codes.iter().map(|&code| i16::from(code)).collect(),
+    let differences: Vec<i32> = match base {
+        Some(base) => codes.iter().zip(base).map(|(&code, &base)| i32::from(code) - i32::from(base)).collect(),
+        None => codes.iter().map(|&code| i32::from(code)).collect(),
     };
     let mut encoder = arithmetic::Encoder::default();
     let mut model = Model::default();
@@ -100,14 +101,14 @@ pub fn encode(shape: Shape, codes: &[i8], base: Option<&[i8]>) -> Vec<u8> {
 ///
 /// # Panics
 /// When `codes.len()` is not a multiple of `planes · width`.
-pub fn decode(shape: Shape, payload: &[u8], codes: &mut [i8]) -> Result<(), CodecError> {
+pub fn decode(shape: Shape, payload: &[u8], codes: &mut [i16]) -> Result<(), CodecError> {
     shape.assert_fits(codes);
     let Shape { width, planes } = shape;
     let plane_len = codes.len() / planes;
     let mut decoder = arithmetic::Decoder::new(payload);
     let mut model = Model::default();
-    let mut differences = vec![0_i16; plane_len];
-    let mut residuals = vec![0_i16; plane_len];
+    let mut differences = vec![0_i32; plane_len];
+    let mut residuals = vec![0_i32; plane_len];
     for (plane, codes) in codes.chunks_exact_mut(plane_len).enumerate() {
         differences.fill(0);
         residuals.fill(0);
@@ -121,12 +122,12 @@ pub fn decode(shape: Shape, payload: &[u8], codes: &mut [i8]) -> Result<(), Code
                 let prediction = if predicted { median_edge(&differences, width, at) } else { 0 };
                 let residual = model.code_residual(&mut decoder, plane, predicted, width, at, &mut residuals, None);
                 let difference = prediction + residual;
-                let code = i16::from(codes[at]) + difference;
-                if !(-127..=127).contains(&code) {
+                let code = i32::from(codes[at]) + difference;
+                if code.abs() > i32::from(CODE_LIMIT) {
                     return Err(CodecError::Range);
                 }
                 differences[at] = difference;
-                codes[at] = code as i8;
+                codes[at] = code as i16;
             }
         }
     }
@@ -141,8 +142,9 @@ mod tests {
     const PATCH: Shape = Shape::patch(64);
     const PATCH_LEN: usize = 3 * 64 * 64;
 
-    fn grid(shape: Shape, rows: usize) -> impl Strategy<Value = Vec<i8>> {
-        proptest::collection::vec(prop_oneof![4 => Just(0_i8), 2 => -3_i8..=3, 1 => -127_i8..=127], shape.planes * shape.width * rows)
+    fn grid(shape: Shape, rows: usize) -> impl Strategy<Value = Vec<i16>> {
+        let codes = prop_oneof![8 => Just(0_i16), 4 => -3_i16..=3, 2 => -127_i16..=127, 1 => -CODE_LIMIT..=CODE_LIMIT];
+        proptest::collection::vec(codes, shape.planes * shape.width * rows)
     }
 
     fn shapes() -> impl Strategy<Value = Shape> {
@@ -167,7 +169,7 @@ mod tests {
             for shape in [Shape::patch(16), Shape::wind(16, true)] {
                 let mut codes = vec![0; shape.planes * 16 * 16];
                 if decode(shape, &bytes, &mut codes).is_ok() {
-                    prop_assert!(codes.iter().all(|&code| code != i8::MIN));
+                    prop_assert!(codes.iter().all(|&code| code != i16::MIN));
                 }
             }
         }
@@ -175,7 +177,7 @@ mod tests {
 
     #[test]
     fn payloads_of_the_wrong_length_are_rejected() {
-        let codes: Vec<i8> = (0..PATCH_LEN).map(|i| ((i * 7919) % 255) as u8 as i8).map(|c| c.max(-127)).collect();
+        let codes: Vec<i16> = (0..PATCH_LEN).map(|i| ((i * 7919) % 255) as i16 - 127).collect();
         let whole = encode(PATCH, &codes, None);
         for length in [0, whole.len() / 2, whole.len() + 1, whole.len() + 3] {
             let mut payload = whole.clone();
@@ -193,11 +195,11 @@ mod tests {
 
     #[test]
     fn smooth_motion_costs_under_a_bit_and_a_half_per_value() {
-        let wave = |phase: f32| -> Vec<i8> {
+        let wave = |phase: f32| -> Vec<i16> {
             (0..PATCH_LEN)
                 .map(|i| {
                     let (x, y) = ((i % 64) as f32, (i / 64 % 64) as f32);
-                    (40.0 * ((x * 0.11 + phase).sin() * (y * 0.07).cos())) as i8
+                    (40.0 * ((x * 0.11 + phase).sin() * (y * 0.07).cos())) as i16
                 })
                 .collect()
         };
@@ -208,7 +210,7 @@ mod tests {
 
     #[test]
     fn an_extra_plane_does_not_raise_the_cost_of_the_others() {
-        let three: Vec<i8> = (0..PATCH_LEN).map(|i| ((i % 64) as i8 - 32) / 5).collect();
+        let three: Vec<i16> = (0..PATCH_LEN).map(|i| ((i % 64) as i16 - 32) / 5).collect();
         let four = [three.as_slice(), &[0; 64 * 64]].concat();
         let [without, with] = [encode(PATCH, &three, None).len(), encode(Shape::wind(64, true), &four, None).len()];
         assert!(with <= without + 4, "clear air costs {} bytes", with - without);

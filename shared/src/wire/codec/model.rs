@@ -7,8 +7,8 @@ use super::tile::{Tile, neighbours};
 const KINDS: usize = 3;
 /// Number of size classes of the neighbours' residuals.
 const SIZES: usize = 6;
-/// Longest exp-Golomb prefix: magnitudes up to 2¹⁰ − 1.
-const PREFIX: usize = 10;
+/// Longest exp-Golomb prefix: magnitudes up to 2¹⁷ − 1, the largest difference of two differences.
+const PREFIX: usize = 17;
 
 #[derive(Default)]
 pub(super) struct Model {
@@ -26,7 +26,7 @@ fn kind(plane: usize) -> usize {
 
 impl Model {
     /// Context of a tile's change: how many of the tiles to the left and above have residuals at their shared border.
-    pub(super) fn tile_context(&self, plane: usize, tile: &Tile, width: usize, residuals: &[i16]) -> (usize, usize) {
+    pub(super) fn tile_context(&self, plane: usize, tile: &Tile, width: usize, residuals: &[i32]) -> (usize, usize) {
         let left = tile.x.start > 0 && tile.y.clone().any(|y| residuals[y * width + tile.x.start - 1] != 0);
         let above = tile.y.start > 0 && tile.x.clone().any(|x| residuals[(tile.y.start - 1) * width + x] != 0);
         (kind(plane), usize::from(left) + usize::from(above))
@@ -49,9 +49,9 @@ impl Model {
         predicted: bool,
         width: usize,
         at: usize,
-        residuals: &mut [i16],
-        residual: Option<i16>,
-    ) -> i16 {
+        residuals: &mut [i32],
+        residual: Option<i32>,
+    ) -> i32 {
         let [left, above, above_left] = neighbours(residuals, width, at);
         let size = size_class(2 * (left.abs() + above.abs()) + above_left.abs());
         let kind = kind(plane);
@@ -68,22 +68,22 @@ impl Model {
     }
 
     /// Exp-Golomb code of a magnitude of at least 1: the position of its top bit in unary, then the bits below it.
-    fn code_magnitude(&mut self, coder: &mut impl Coder, kind: usize, size: usize, magnitude: Option<u16>) -> i16 {
+    fn code_magnitude(&mut self, coder: &mut impl Coder, kind: usize, size: usize, magnitude: Option<u32>) -> i32 {
         let top = magnitude.map(|m| m.ilog2() as usize);
         let mut length = 0;
         while length + 1 < PREFIX && coder.code(&mut self.prefix[kind][size][length], top.map(|top| length < top)) {
             length += 1;
         }
-        let mut value = 1_u16;
+        let mut value = 1_u32;
         for place in (0..length).rev() {
             let bit = coder.code(&mut self.suffix[length][place], magnitude.map(|m| (m >> place) & 1 == 1));
-            value = (value << 1) | u16::from(bit);
+            value = (value << 1) | u32::from(bit);
         }
-        value as i16
+        value as i32
     }
 }
 
-fn size_class(sum: i16) -> usize {
+fn size_class(sum: i32) -> usize {
     match sum {
         0 => 0,
         1..=2 => 1,

@@ -27,7 +27,7 @@ pub(super) fn tiles(width: usize, rows: usize) -> impl Iterator<Item = Tile> {
 }
 
 /// Values to the left, above, and above left of a cell; zero outside the plane.
-pub(super) fn neighbours(values: &[i16], width: usize, at: usize) -> [i16; 3] {
+pub(super) fn neighbours(values: &[i32], width: usize, at: usize) -> [i32; 3] {
     let left_inside = !at.is_multiple_of(width);
     let left = if left_inside { values[at - 1] } else { 0 };
     let above = if at >= width { values[at - width] } else { 0 };
@@ -36,7 +36,7 @@ pub(super) fn neighbours(values: &[i16], width: usize, at: usize) -> [i16; 3] {
 }
 
 /// Median edge detector: predicts a cell from its three neighbours (Weinberger et al. 2000).
-pub(super) fn median_edge(values: &[i16], width: usize, at: usize) -> i16 {
+pub(super) fn median_edge(values: &[i32], width: usize, at: usize) -> i32 {
     let [left, above, above_left] = neighbours(values, width, at);
     let (low, high) = if left < above { (left, above) } else { (above, left) };
     if above_left >= high {
@@ -49,11 +49,11 @@ pub(super) fn median_edge(values: &[i16], width: usize, at: usize) -> i16 {
 }
 
 /// Whether the prediction leaves smaller residuals in the tile than no prediction.
-pub(super) fn predicts_better(tile: &Tile, width: usize, differences: &[i16]) -> bool {
-    let (mut plain, mut predicted) = (0_i32, 0_i32);
+pub(super) fn predicts_better(tile: &Tile, width: usize, differences: &[i32]) -> bool {
+    let (mut plain, mut predicted) = (0_i64, 0_i64);
     for at in tile.cells(width) {
-        plain += i32::from(differences[at].abs());
-        predicted += i32::from((differences[at] - median_edge(differences, width, at)).abs());
+        plain += i64::from(differences[at].abs());
+        predicted += i64::from((differences[at] - median_edge(differences, width, at)).abs());
     }
     predicted < plain
 }
