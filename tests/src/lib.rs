@@ -16,6 +16,7 @@ pub mod prairie;
 pub mod problems;
 pub mod random_winds;
 pub mod similarity;
+pub mod slow_line;
 pub mod still;
 pub mod synthetic;
 pub mod turntable;

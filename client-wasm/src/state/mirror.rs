@@ -183,6 +183,11 @@ impl Mirror {
         self.scene.as_ref().map_or(60.0, |decoded| decoded.scene().tick_hz)
     }
 
+    /// Sets playback to the newest frame, so that objects are shown at the same moment as the grass: for pictures that are not drawn in real time.
+    pub fn show_newest(&mut self) {
+        self.poses.show_at(self.secs_of(self.tick));
+    }
+
     /// The scene with its decoded maps; `None` before it has arrived.
     pub fn decoded_scene(&self) -> Option<&DecodedScene> {
         self.scene.as_deref()

@@ -24,7 +24,6 @@ pub struct Stage {
     sent: BTreeMap<u32, (u32, Arc<PatchCodes>)>,
     sent_broken: usize,
     frame: u32,
-    time_secs: f64,
     /// Commands by step, of a recording that is played.
     recorded: BTreeMap<u64, Vec<Command>>,
 }
@@ -68,7 +67,6 @@ impl Stage {
             sent: BTreeMap::new(),
             sent_broken: 0,
             frame: 0,
-            time_secs: 0.0,
         };
         stage.send(&loaded.message())?;
         Ok(stage)
@@ -152,10 +150,8 @@ impl Stage {
             self.sent_broken += plants.len();
             self.send(&ServerMessage::Broken { plants })?;
         }
-        let secs = snapshot.time_secs - self.time_secs;
-        self.time_secs = snapshot.time_secs;
         self.send(&ServerMessage::FrameEnd { frame: self.frame, tick: snapshot.tick, time_secs: snapshot.time_secs })?;
-        self.mirror.advance(secs);
+        self.mirror.show_newest();
         Ok(snapshot.objects)
     }
 

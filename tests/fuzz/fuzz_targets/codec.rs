@@ -12,7 +12,8 @@ fuzz_target!(|bytes: &[u8]| {
     let Some((&[columns, rows, slope], payload)) = bytes.split_first_chunk() else { return };
     let shape = Shape::wind(usize::from(columns & 15) + 1, columns & 16 != 0);
     let len = shape.planes * shape.width * (usize::from(rows & 31) + 1);
-    let base: Vec<i16> = (0..len).map(|at| ((at * usize::from(slope) * 257) % 65_535) as u16 as i16).map(|code| code.max(-CODE_LIMIT)).collect();
+    let base: Vec<i16> =
+        (0..len).map(|at| ((at * usize::from(slope) * 257) % 65_535) as u16 as i16).map(|code| code.max(-CODE_LIMIT)).collect();
     let mut codes = base.clone();
     if codec::decode(shape, payload, &mut codes).is_ok() {
         let encoded = codec::encode(shape, &codes, Some(&base));

@@ -16,7 +16,7 @@ use tests::chart::row::cells_text;
 use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
 use tests::chart::tables::with_tables;
-use tests::chart::{Problem, bend, plants, shells, wind};
+use tests::chart::{Problem, bend, plants, shells, stream, wind};
 use tests::still::Still;
 use tests::views::{VIEWS, View};
 
@@ -38,7 +38,8 @@ Examples:
   cargo run --release -p tests --bin chart -- wind --tables tests/README.md
   cargo run --release -p tests --bin chart -- bend --only cars
   cargo run --release -p tests --bin chart -- picture --quick --views ant-calm,hill-storm
-  cargo run --release -p tests --bin chart -- gallery";
+  cargo run --release -p tests --bin chart -- gallery
+  cargo run --release -p tests --features peers --bin chart -- stream";
 
 #[derive(Subcommand)]
 enum Model {
@@ -90,6 +91,9 @@ enum Model {
     /// Shells: frames per second against the number of layers, beside Bakay 2003, table 4.1
     #[command(after_help = SHELLS_FILES)]
     Shells(Options),
+    /// Stream: bits per cell against error, by causes, in a closed loop, by the codec of patches, and by general compressors
+    #[command(after_help = STREAM_FILES)]
+    Stream(Options),
 }
 
 /// Cache folder of references, within the folder of the charts.
@@ -98,6 +102,12 @@ const CACHE: &str = "target/charts/cache";
 const SHELLS_FILES: &str = "\
 Files in DIR:
   shells-layers.svg, .csv  frames per second against the number of layers, with and without slices between them, and Bakay's";
+
+const STREAM_FILES: &str = "\
+Files in DIR:
+  stream-DRIVE.svg, .csv  bits per cell and frame against the largest error of θ: drive, wash, cyclone and storm
+
+Built with --features peers, which needs cmake, libclang and libzstd-dev, the charts have lines of zstd, zfp and SZ3, too.";
 
 const FILES: &str = "\
 Files in DIR, updated after each problem:
@@ -159,6 +169,7 @@ fn main() -> Result<()> {
         Model::Picture { options, size, views } => chart_picture(&options, size, &chosen(views)),
         Model::Gallery { out, cache, size, quality, views } => draw_gallery(&out, &cache, size, quality, &chosen(views)),
         Model::Shells(options) => charts("shells", Vec::new(), &shells::FIGURES, &options),
+        Model::Stream(options) => charts("stream", Vec::new(), &stream::FIGURES, &options),
     }
 }
 

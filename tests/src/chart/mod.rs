@@ -10,6 +10,7 @@
 //! | [`picture`] | render options: frame time against similarity, and figures of other kinds |
 //! | [`gallery`] | the gallery page |
 //! | [`shells`] | cost of shell layers |
+//! | [`stream`] | bits on the wire against the error of the grass |
 //! | [`figure`] | line charts and coloured fields as SVG |
 //! | [`line`](mod@line) | a line per method, with interpolation |
 //! | [`plot`], [`ticks`] | a log–log chart as SVG |
@@ -31,6 +32,7 @@ pub mod plot;
 pub mod row;
 pub mod run;
 pub mod shells;
+pub mod stream;
 pub mod summary;
 pub mod table;
 pub mod tables;

@@ -1,13 +1,18 @@
 //! Latency of inputs in a real browser, with and without a prediction.
 
+use std::time::Duration;
+
 use anyhow::{Context as _, Result, ensure};
 use prairie::world::World;
 use tests::browser::Browser;
 use tests::prairie::Prairie;
+use tests::slow_line::slow_line;
 use tests::worlds;
 
 /// Size of the page (CSS pixels): small, since drawing in software must not take longer than what is measured.
 const SMALL: [u32; 2] = [160, 100];
+/// Delay of the line in each direction: longer than a picture takes to draw on a busy machine.
+const ONE_WAY: Duration = Duration::from_millis(100);
 
 /// Presses and releases `W` every 0.4 s for 8 s, draws all the while, and returns the state.
 const DRIVE: &str = "(async () => {
@@ -37,7 +42,8 @@ async fn a_prediction_shows_an_input_before_the_server_does() -> Result<()> {
     // Bare land, which is drawn quickly in software.
     let hills = worlds::loaded_hills(|_| 0)?;
     let world = World::new(&hills.scene, hills.maps())?;
-    let prairie = Prairie::serve(hills, world).await?;
+    let mut prairie = Prairie::serve(hills, world).await?;
+    prairie.addr = slow_line(prairie.addr, ONE_WAY).await?;
     let browser = prairie.visitor("Ada").await?;
     browser.resize(SMALL).await?;
     browser.evaluate("window.prairie.choose('car')").await?;
@@ -50,6 +56,8 @@ async fn a_prediction_shows_an_input_before_the_server_does() -> Result<()> {
     ensure!(predicted.2 && !interpolated.2, "{predicted:?}, then {interpolated:?}");
     ensure!(predicted.0 > 0.0 && predicted.0 < interpolated.0, "the picture is not earlier: {predicted:?}, then {interpolated:?}");
     ensure!(predicted.0 < predicted.1, "the server was faster: {predicted:?}");
+    let round_trip_ms = 2e3 * ONE_WAY.as_secs_f64();
+    ensure!(predicted.1 > round_trip_ms && interpolated.1 > round_trip_ms, "there and back in less time than it takes");
     ensure!(interpolated.0 > interpolated.1, "interpolated before the server's pose: {interpolated:?}");
     Ok(())
 }
