@@ -21,7 +21,8 @@ const PICTURE_SECS: f64 = 1.0 / 57.0;
 /// Way of a message, one way (s), and its jitter.
 const WAY_SECS: f64 = 0.05;
 const JITTER_SECS: f64 = 0.004;
-/// Time before anything is measured, and end (s).
+/// Time of the first input, time before anything is measured, and end (s).
+const START_SECS: f64 = 1.0;
 const WARM_UP_SECS: f64 = 3.0;
 const END_SECS: f64 = 18.0;
 /// Shortest time between two inputs (s), as in the browser.
@@ -162,7 +163,7 @@ impl Drives {
     fn picture(&mut self, secs: f64) -> Result<Option<Shown>> {
         self.receive(secs)?;
         let own = self.own();
-        let drive = if secs < 1.0 { Drive::default() } else { input(self.kind, self.changes, secs) };
+        let drive = if secs < START_SECS { Drive::default() } else { input(self.kind, self.changes, secs) };
         if drive != self.sent.1 && secs - self.sent.0 >= INPUT_SECS && own.is_some() {
             let number = self.prediction.send(drive, &self.viewer.mirror, secs);
             let arrives_secs = secs + self.way_secs();
@@ -304,6 +305,19 @@ fn a_sled_is_predicted_within_a_quarter_of_a_metre() -> Result<()> {
 #[test]
 fn a_ball_is_predicted_within_a_quarter_of_a_metre() -> Result<()> {
     check(Ball, true)
+}
+
+#[test]
+fn an_input_moves_the_picture_before_the_server_can_answer() -> Result<()> {
+    for kind in [Car, Sled] {
+        let pictures = Drives::new(&hills()?, kind, false, true)?.run()?;
+        let is_early = |shown: &&Shown| shown.secs > START_SECS && shown.secs < START_SECS + 2.0 * WAY_SECS;
+        let Shown { pose, interpolated, .. } =
+            pictures.iter().rfind(is_early).context("the vehicle is predicted from its first input on")?;
+        let [predicted, server] = [pose, interpolated].map(|pose| pose.velocity_m_per_s[0].hypot(pose.velocity_m_per_s[2]));
+        ensure!(predicted > 0.2 && server < 0.1, "{}: {predicted} m/s are shown, {server} m/s by the server", kind.name());
+    }
+    Ok(())
 }
 
 #[test]
