@@ -127,9 +127,10 @@ impl Field {
 fn choose_tiles(patch: &mut Patch) {
     let count = patch.tiles.count();
     for (x, z) in (0..count).flat_map(|z| (0..count).map(move |x| (x, z))) {
-        let steps = patch.tiles.is_near_active(x, z);
+        let (steps, stepped) = (patch.tiles.is_near_active(x, z), patch.tiles.steps(x as i64, z as i64));
         patch.tiles.set_steps(x as i64, z as i64, steps);
-        if !steps && patch.tiles.holds(x, z) {
+        // A tile that has stepped may hold −0.
+        if !steps && (stepped || patch.tiles.holds(x, z)) {
             patch.put_to_rest([x, z].map(|n| (n * TILE) as i64), [TILE; 2]);
             patch.tiles.set_peaks(x, z, [0; 2]);
         }

@@ -249,7 +249,8 @@ fn read(planes: &Planes, at: usize) -> Bend {
     Bend { theta: planes[0][at], omega: [planes[1][at], planes[2][at]] }
 }
 
+/// Writes a state, with 0 for −0: a cell that counts as at rest has the bits of 0.
 fn write(planes: &mut Planes, at: usize, bend: Bend) {
-    let values = [bend.theta, bend.omega[0], bend.omega[1]];
+    let values = [bend.theta, bend.omega[0], bend.omega[1]].map(|value| value + 0.0);
     planes.iter_mut().zip(values).for_each(|(plane, value)| plane[at] = value);
 }
