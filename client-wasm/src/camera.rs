@@ -20,11 +20,13 @@ pub struct Camera {
     pub pitch_rad: f32,
     /// Vertical field of view (rad). Default 1.0.
     pub fov_rad: f32,
+    /// Position (m) that trees must not hide: those in front of it fade. Default `None`. Not part of a link.
+    pub target_m: Option<Vec3>,
 }
 
 impl Default for Camera {
     fn default() -> Self {
-        Self { eye_m: Vec3::new(0.0, 2.0, 0.0), heading_rad: 0.0, pitch_rad: 0.0, fov_rad: 1.0 }
+        Self { eye_m: Vec3::new(0.0, 2.0, 0.0), heading_rad: 0.0, pitch_rad: 0.0, fov_rad: 1.0, target_m: None }
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! - [`state`]: the mirror of the server's world, to which its messages are applied.
 //! - [`render`]: the renderer.
-//! - [`camera`]: the camera; [`rig`]: its motion, free or behind a vehicle; [`damped`]: critically damped smoothing.
+//! - [`camera`]: the camera; [`rig`]: its motion, free or behind a vehicle; [`sight`]: its line of sight; [`damped`]: critically damped smoothing.
 //! - [`vehicle`]: table of vehicle kinds; [`bindings`]: keys and gamepad buttons; [`controls`]: control input and its meaning for a vehicle.
 //! - [`prediction`]: the own vehicle, ahead of the server.
 //! - [`hearing`]: sound levels at the camera.
@@ -22,6 +22,7 @@ pub mod redraw;
 pub mod render;
 pub mod replica_budget;
 pub mod rig;
+pub mod sight;
 pub mod state;
 pub mod vehicle;
 

@@ -3,6 +3,7 @@
 use crate::camera::{Camera, PITCH_LIMIT_RAD};
 use crate::controls::Controls;
 use crate::damped::{Damped, wrap_angle};
+use crate::sight::{Sight, above_land};
 use crate::vehicle::{ChaseOffset, HeadingSource, profile};
 use glam::{Quat, Vec3};
 use prairie_core::scene::VehicleKind;
@@ -22,6 +23,12 @@ const FOLLOW_TURN_SECS: f32 = 0.28;
 
 /// Time constant of the transition to a newly taken vehicle (s).
 const TRANSITION_SECS: f32 = 0.3;
+
+/// Shortest arm of a chase camera in front of a crown, relative to its whole arm.
+const SHORTEST_ARM: f32 = 0.35;
+
+/// Time constant with which the arm grows again behind a crown (s). It shortens at once.
+const ARM_GROWS_SECS: f32 = 0.4;
 
 /// Time constant with which a view turned aside returns to straight ahead while driving (s).
 const RECENTRE_SECS: f32 = 0.9;
@@ -50,6 +57,8 @@ struct Chase {
     height: Damped,
     floor: Damped,
     heading: Damped,
+    /// Length of the arm relative to the whole, shorter in front of crowns.
+    arm: Damped,
     /// View turned by the user, to the right and up (rad).
     right_rad: f32,
     up_rad: f32,
@@ -109,17 +118,25 @@ impl Rig {
     }
 
     /// Advances the camera by `dt_secs`: behind `vehicle` if there is one, else freely by `controls`. `ground_m` is the elevation of the ground at
-    /// (x, z).
-    pub fn advance(&mut self, controls: Controls, vehicle: Option<&ObjectPose>, ground_m: impl Fn(f32, f32) -> f32, dt_secs: f32) {
+    /// (x, z). The chase camera keeps above the land, and outside the crowns of `sight` unless the vehicle is in one.
+    pub fn advance(
+        &mut self,
+        controls: Controls,
+        vehicle: Option<&ObjectPose>,
+        sight: &Sight,
+        ground_m: impl Fn(f32, f32) -> f32,
+        dt_secs: f32,
+    ) {
         let Some(pose) = vehicle else {
             if self.chase.is_some() {
-                *self = Self::new(self.camera, ground_m(self.camera.eye_m.x, self.camera.eye_m.z));
+                let camera = Camera { target_m: None, ..self.camera };
+                *self = Self::new(camera, ground_m(camera.eye_m.x, camera.eye_m.z));
             }
             return self.advance_freely(controls, ground_m, dt_secs);
         };
         let before = self.camera;
         let taken = self.chase.as_ref().is_none_or(|chase| chase.kind != pose.kind);
-        let goal = self.chase_camera(pose, &ground_m, dt_secs);
+        let goal = self.chase_camera(pose, sight, &ground_m, dt_secs);
         if taken {
             let [x, y, z] = (before.eye_m - goal.eye_m).to_array();
             let [right, up] = [before.heading_rad - goal.heading_rad, before.pitch_rad - goal.pitch_rad].map(wrap_angle);
@@ -132,7 +149,7 @@ impl Rig {
             eye_m,
             heading_rad: wrap_angle(goal.heading_rad + right),
             pitch_rad: (goal.pitch_rad + up).clamp(-PITCH_LIMIT_RAD, PITCH_LIMIT_RAD),
-            ..self.camera
+            ..goal
         };
     }
 
@@ -151,24 +168,12 @@ impl Rig {
         eye_m.y = ground_m(eye_m.x, eye_m.z) + self.height.value;
     }
 
-    fn chase_camera(&mut self, pose: &ObjectPose, ground_m: &impl Fn(f32, f32) -> f32, dt_secs: f32) -> Camera {
+    fn chase_camera(&mut self, pose: &ObjectPose, sight: &Sight, ground_m: &impl Fn(f32, f32) -> f32, dt_secs: f32) -> Camera {
         let position = Vec3::from(pose.position_m);
         let facing_rad = heading_of(pose);
         let chase = match &mut self.chase {
             Some(chase) if chase.kind == pose.kind => chase,
-            other => {
-                let offset = profile(pose.kind).chase;
-                other.insert(Chase {
-                    kind: pose.kind,
-                    offset,
-                    distance: Damped::at(offset.distance_m),
-                    height: Damped::at(offset.height_m),
-                    floor: Damped::at(position.y),
-                    heading: Damped::at(facing_rad),
-                    right_rad: 0.0,
-                    up_rad: 0.0,
-                })
-            }
+            other => other.insert(Chase::new(pose.kind, position.y, facing_rad)),
         };
         if Vec3::from(pose.velocity_m_per_s).length() > RECENTRE_SPEED_M_PER_S {
             let keep = (-dt_secs / RECENTRE_SECS).exp();
@@ -184,11 +189,38 @@ impl Rig {
         let arm_m = distance_m.hypot(height_m);
         let (sin, cos) = heading_rad.sin_cos();
         let (up, back) = rise_rad.clamp(-0.3, 1.5).sin_cos();
-        let mut eye_m = center + Vec3::new(-sin * back, up, cos * back) * arm_m;
-        eye_m.y = eye_m.y.max(ground_m(eye_m.x, eye_m.z) + CLEARANCE_M);
+        let target_m = center + Vec3::Y * (0.1 * arm_m);
+        let whole_m = above_land(target_m, center + Vec3::new(-sin * back, up, cos * back) * arm_m, CLEARANCE_M, ground_m);
+        let eye_m = target_m.lerp(whole_m, chase.shortened(sight.clear_fraction(target_m, whole_m), dt_secs));
 
-        let sight = center + Vec3::Y * (0.1 * arm_m) - eye_m;
-        Camera { eye_m, heading_rad, pitch_rad: sight.y.atan2(sight.x.hypot(sight.z)), ..self.camera }
+        let look = target_m - eye_m;
+        Camera { eye_m, heading_rad, pitch_rad: look.y.atan2(look.x.hypot(look.z)), target_m: Some(target_m), ..self.camera }
+    }
+}
+
+impl Chase {
+    fn new(kind: VehicleKind, floor_m: f32, heading_rad: f32) -> Self {
+        let offset = profile(kind).chase;
+        Self {
+            kind,
+            offset,
+            distance: Damped::at(offset.distance_m),
+            height: Damped::at(offset.height_m),
+            floor: Damped::at(floor_m),
+            heading: Damped::at(heading_rad),
+            arm: Damped::at(1.0),
+            right_rad: 0.0,
+            up_rad: 0.0,
+        }
+    }
+
+    /// Length of the arm relative to the whole, where a fraction `clear` of it is free of crowns.
+    fn shortened(&mut self, clear: f32, dt_secs: f32) -> f32 {
+        let most = clear.max(SHORTEST_ARM);
+        if self.arm.follow(most, ARM_GROWS_SECS, dt_secs) > most {
+            self.arm = Damped::at(most);
+        }
+        self.arm.value
     }
 }
 
@@ -224,7 +256,7 @@ mod tests {
 
     fn settle(rig: &mut Rig, vehicle: Option<&ObjectPose>) {
         for _ in 0..300 {
-            rig.advance(Controls::default(), vehicle, flat, 0.02);
+            rig.advance(Controls::default(), vehicle, &Sight::default(), flat, 0.02);
         }
     }
 
@@ -245,7 +277,7 @@ mod tests {
         let parked = car(10.0, 20.0, 0.4);
         let mut before = rig.camera();
         for step in 0..400 {
-            rig.advance(Controls::default(), (step < 200).then_some(&parked), flat, 0.01);
+            rig.advance(Controls::default(), (step < 200).then_some(&parked), &Sight::default(), flat, 0.01);
             let moved = rig.camera().eye_m.distance(before.eye_m);
             let turned = wrap_angle(rig.camera().heading_rad - before.heading_rad).abs();
             assert!(moved < 0.4 && turned < 0.1, "step {step}: {moved} m, {turned} rad");
@@ -259,7 +291,7 @@ mod tests {
         for height_m in [1.0, 5.0, 10.0, 20.0] {
             rig.set_height(height_m);
             for _ in 0..300 {
-                rig.advance(Controls::default(), None, |_, _| 11.0, 0.02);
+                rig.advance(Controls::default(), None, &Sight::default(), |_, _| 11.0, 0.02);
             }
             assert!((rig.camera().eye_m.y - 11.0 - height_m).abs() < 0.01);
         }
@@ -270,7 +302,7 @@ mod tests {
         let mut rig = Rig::new(Camera { eye_m: Vec3::new(0.0, 2.0, 0.0), ..Camera::default() }, 0.0);
         let hill = |_: f32, z: f32| -0.5 * z;
         for _ in 0..100 {
-            rig.advance(Controls { forward: 1.0, ..Default::default() }, None, hill, 0.02);
+            rig.advance(Controls { forward: 1.0, ..Default::default() }, None, &Sight::default(), hill, 0.02);
         }
         let eye = rig.camera().eye_m;
         assert!(eye.z < -5.0 && eye.x.abs() < 1e-3, "{eye}");

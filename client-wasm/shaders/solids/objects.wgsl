@@ -143,11 +143,28 @@ fn veins(texel: vec4<f32>) -> f32 {
     return 0.55 + 0.9 * texel.r;
 }
 
+// Fraction of the line of sight, from its end, in which trees do not fade: those beside the vehicle remain whole.
+const WHOLE_AT_TARGET: f32 = 0.25;
+
+// Visible fraction of a tree at a position: it fades around the line from the eye to the camera's target.
+fn visible_fraction(p: vec3<f32>) -> f32 {
+    let sight = frame.target_m - frame.eye_m;
+    let along = dot(p - frame.eye_m, sight) / max(dot(sight, sight), 1e-3);
+    let aside = distance(p, frame.eye_m + sight * clamp(along, 0.0, 1.0)) / max(frame.fade_m, 1e-3);
+    let seen = max(smoothstep(0.6, 1.0, aside), smoothstep(1.0 - WHOLE_AT_TARGET, 1.0, along));
+    return select(1.0, seen, frame.fade_m > 0.0);
+}
+
+// Threshold of a pixel for its visible fraction: interleaved gradient noise (Jimenez 2014).
+fn threshold(pixel: vec2<f32>) -> f32 {
+    return fract(52.982918 * fract(dot(pixel, vec2<f32>(0.06711056, 0.00583715))));
+}
+
 @fragment
 fn fs(surface: Surface) -> @location(0) vec4<f32> {
     let leaf = textureSample(leaves, clamped, surface.leaf);
     let is_leaf = surface.leaf.x > 0.0;
-    if is_leaf && leaf.a < 0.5 {
+    if is_leaf && leaf.a < 0.5 || !is_glossy && visible_fraction(surface.p) <= threshold(surface.position.xy) {
         discard;
     }
     let view = normalize(surface.p - frame.eye_m);

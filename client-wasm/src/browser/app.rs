@@ -18,6 +18,7 @@ use crate::redraw::RedrawTracker;
 use crate::render::{Quality, RenderOptions, Split, bend_reach_m};
 use crate::replica_budget::{ReplicaBudget, Wish};
 use crate::rig::Rig;
+use crate::sight::Sight;
 use crate::state::{Mirror, Past, Record};
 use glam::Vec3;
 use prairie_core::scene::VehicleKind;
@@ -86,6 +87,8 @@ pub(super) struct App {
     pub(super) connection: Connection,
     pub(super) prediction: Prediction,
     pub(super) rig: Option<Rig>,
+    /// Trees of the scene with this number, for the chase camera.
+    sight: (u32, Sight),
     pub(super) meter: FrameMeter,
     pub(super) failure: Option<Failure>,
     pub(super) replica_budget: ReplicaBudget,
@@ -154,6 +157,7 @@ impl App {
             past: None,
             connection,
             rig: None,
+            sight: Default::default(),
             meter: FrameMeter::default(),
             failure: None,
             replica_budget: ReplicaBudget::default(),
@@ -223,6 +227,7 @@ impl App {
         self.input.poll();
         self.drive(now_secs);
         let vehicle = self.place_own_object(now_secs);
+        self.find_trees();
         let (Some(rig), Some(gpu)) = (&mut self.rig, &mut self.gpu) else { return false };
         if gpu.is_busy() {
             self.waited = true;
@@ -240,7 +245,7 @@ impl App {
         rig.look(right_rad, up_rad);
         rig.zoom(self.input.take_zoom());
         let mirror = self.past.as_mut().and_then(Past::mirror_mut).unwrap_or(&mut self.mirror);
-        rig.advance(self.input.controls(), vehicle.as_ref(), |x_m, z_m| mirror.ground_m(x_m, z_m), camera_secs);
+        rig.advance(self.input.controls(), vehicle.as_ref(), &self.sight.1, |x_m, z_m| mirror.ground_m(x_m, z_m), camera_secs);
         let camera = rig.camera();
         if !self.redraw.needs_frame(mirror, &camera, view, dt_secs) && !forced && !self.draws_every_frame {
             self.meter.record_skipped();
@@ -258,6 +263,14 @@ impl App {
         let waited = std::mem::take(&mut self.waited);
         self.settings.record(FrameTime { work_secs, interval_secs, waited });
         true
+    }
+
+    /// Finds the trees of a new scene.
+    fn find_trees(&mut self) {
+        let number = self.mirror.scene_number();
+        if self.sight.0 != number {
+            self.sight = (number, self.mirror.decoded_scene().map(Sight::new).unwrap_or_default());
+        }
     }
 
     /// Draws the newest frame again.

@@ -19,7 +19,7 @@ mod options;
 mod plants;
 mod renderer;
 mod scene_resources;
-mod solids;
+pub(crate) mod solids;
 mod targets;
 
 pub use frame::FrameStats;

@@ -4,6 +4,7 @@ mod architecture;
 mod balls;
 mod breaking;
 mod broken_scenes;
+mod chase_camera;
 mod codes;
 mod determinism;
 mod documents;

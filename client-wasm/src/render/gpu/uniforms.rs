@@ -88,6 +88,10 @@ uniform_block! {
         /// Interaction spheres in the frame.
         sphere_count: u32,
         _pad: [u8; 4],
+        /// Position (m) that trees must not hide.
+        target_m: [f32; 3],
+        /// Radius around the line from the eye to it within which trees fade (m); 0 if there is none.
+        fade_m: f32,
         /// Interaction spheres; unused entries are zero.
         spheres: [Sphere; SPHERE_LIMIT],
         /// Waves of the gusts; unused entries are zero.

@@ -18,6 +18,8 @@ use prairie_core::wire::ObjectPose;
 
 /// Speed of the clouds relative to the mean wind near the ground.
 const CLOUD_SPEED: f64 = 1.6;
+/// Radius around the line from the eye to the camera's target within which trees fade (m).
+const FADE_M: f32 = 2.2;
 /// Rain rate at which the sky is overcast (mm/h).
 const OVERCAST_MM_PER_H: f32 = 10.0;
 
@@ -112,6 +114,8 @@ impl<'a> View<'a> {
             cloud_offset_m: mean_wind.cloud_offset_m(self.time_secs),
             sphere_count: spheres.len() as u32,
             _pad: [0; 4],
+            target_m: self.camera.target_m.unwrap_or_default().to_array(),
+            fade_m: if self.camera.target_m.is_some() { FADE_M } else { 0.0 },
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_else(Sphere::zeroed)),
             gusts: std::array::from_fn(|i| gusts.waves().get(i).map_or_else(GustWave::zeroed, GustWave::from)),
             lights: self.lights(decoded, daylight, &lamps),

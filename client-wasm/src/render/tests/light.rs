@@ -11,7 +11,7 @@ use prairie_core::light::sun::Sun;
 use prairie_core::light::{grass, lamp};
 use prairie_core::scene::Lamp;
 
-const CAMERA: Camera = Camera { eye_m: Vec3::new(32.0, 2.2, 40.0), heading_rad: 0.0, pitch_rad: -0.15, fov_rad: 1.0 };
+const CAMERA: Camera = Camera { eye_m: Vec3::new(32.0, 2.2, 40.0), heading_rad: 0.0, pitch_rad: -0.15, fov_rad: 1.0, target_m: None };
 
 fn drawn(gpu: &Gpu, sun: Sun, lamps: Vec<Lamp>) -> OffscreenRenderer {
     let mut picture = OffscreenRenderer::new(gpu, [32, 32], Quality::Low);
