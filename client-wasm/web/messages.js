@@ -51,6 +51,7 @@ const MESSAGES = {
   loading: { tone: "wait", title: "Starting Prairie", text: "Loading the client…" },
   connecting: { tone: "wait", title: "Starting Prairie", text: "Connecting to the server…" },
   preparing: { tone: "wait", title: "Starting Prairie", text: "Almost ready." },
+  adding: { tone: "strip", title: "Adding to the picture", text: "" },
   full: { tone: "wait", title: "The server is full", text: "There is no room for another client. This page keeps trying." },
   "server-gone": { tone: "strip", title: "Connection to the server lost", text: "Reconnecting…" },
   version: {

@@ -236,6 +236,7 @@ export class Panel {
     write("stream", `${rate(state.bytes_per_s)}`);
     if (state.scene_hour !== null) this.showHour(state.hour, state.scene_hour);
     write("grass", state.replica ? `simulated here, ${(100 * state.replica_share).toFixed(1)} % of the time` : "from the server");
+    write("start", startTimes(state));
     write("latency", state.latency_ms === null ? "–" : `${state.latency_ms.toFixed(state.latency_ms < 10 ? 1 : 0)} ms`);
     write("input", state.input_to_picture_ms === null ? "–" : inputLatency(state));
     this.showPeers(state.peers);
@@ -280,6 +281,12 @@ function vehicleButton(name, label, key) {
 // Times from an input to the picture and to the server's pose.
 function inputLatency({ input_to_picture_ms: picture, input_to_server_ms: server }) {
   return `picture ${picture.toFixed(0)}${server === null ? "" : ` · server ${server.toFixed(0)}`} ms`;
+}
+
+// Times from opening the page to the first picture and to the whole one.
+function startTimes({ first_picture_secs: first, complete_picture_secs: whole }) {
+  if (first === null) return "–";
+  return `picture ${first.toFixed(1)} · all ${whole === null ? "…" : whole.toFixed(1)} s`;
 }
 
 // An hour of the day as hours and minutes.

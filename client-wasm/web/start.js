@@ -64,17 +64,21 @@ function name() {
   return given;
 }
 
+// Fraction of the start that is done when the client is loaded. The client reports the rest.
+const LOADED = 0.5;
+
 // Loads and compiles the client, and shows the progress.
 async function load() {
+  const fetched = fetch("prairie_client_bg.wasm");
   const client = await import("./prairie_client.js");
-  const response = await fetch("prairie_client_bg.wasm");
+  const response = await fetched;
   if (!response.ok) throw new Error(`prairie_client_bg.wasm: ${response.status} ${response.statusText}`);
   const total = Number(response.headers.get("x-uncompressed-length"));
   let bytes = 0;
   const count = new TransformStream({
     transform(chunk, onward) {
       bytes += chunk.length;
-      show("loading", `${kilobytes(bytes)}${total ? ` of ${kilobytes(total)}` : ""} KB`, total ? bytes / total : null);
+      show("loading", `${kilobytes(bytes)}${total ? ` of ${kilobytes(total)}` : ""} KB`, total ? LOADED * bytes / total : null);
       onward.enqueue(chunk);
     },
   });
@@ -91,6 +95,7 @@ async function begin() {
   const [kind, info] = await obstacle();
   if (kind) return show(kind);
   context.adapter = adapterName(info);
+  document.documentElement.classList.toggle("software", isSoftware(info));
   const client = await load();
   Object.assign(window.prairie, {
     halt: client.halt,

@@ -65,10 +65,10 @@ pub struct Limits {
     pub handshake_timeout: Duration,
     /// Time limit for a connection that does not become a client. A response that is under way is sent for up to 5 min more. Default 30 s.
     pub http_timeout: Duration,
-    /// Time limit for a client that accepts no byte of a message, or acknowledges no frame after the first. Default 15 s.
+    /// Time limit for a client that accepts no byte of a message, or, once `load_timeout` has passed, acknowledges no frame. Default 15 s.
     pub stall_timeout: Duration,
-    /// Time limit from the last byte of the scene to the first acknowledged frame, in which a client builds the scene and compiles its shaders. Default
-    /// 120 s: without a graphics card this takes 20 s, several times that on a busy machine.
+    /// Time from the last byte of the scene in which a client builds the scene and compiles its shaders, and may acknowledge no frame. Default 120 s: without
+    /// a graphics card this takes 10 s, several times that on a busy machine.
     pub load_timeout: Duration,
     /// Sustained rate of a client's messages (1/s), including hello and WebSocket pings and pongs; bursts of twice this number are
     /// allowed. A client that sends more is closed. Default 200.

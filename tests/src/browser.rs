@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use tokio::time::{Instant, sleep};
 
 use crate::chromedriver::{Chromedriver, chromium};
+use crate::devtools::devtools;
 use crate::picture::Picture;
 
 /// Page size of a [`Browser`], width and height (CSS pixels, equal to the picture's pixels).
@@ -115,6 +116,15 @@ impl Browser {
     /// When the page does not load.
     pub async fn go(&self, url: &str) -> Result<()> {
         self.client.goto(url).await.with_context(|| format!("opening {url}"))
+    }
+
+    /// Runs a script in each page that is opened from now on, before the page's own scripts.
+    ///
+    /// # Errors
+    /// When the browser is gone.
+    pub async fn run_first(&self, script: &str) -> Result<()> {
+        let session = self.client.session_id().await?.context("the browser has no session")?;
+        devtools(&self.driver.url, &session, "Page.addScriptToEvaluateOnNewDocument", &json!({ "source": script })).await
     }
 
     /// The value of a JavaScript expression in the page; a promise is awaited.

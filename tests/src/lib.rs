@@ -5,6 +5,7 @@ pub mod arguments;
 pub mod browser;
 pub mod chart;
 pub mod chromedriver;
+mod devtools;
 pub mod figures;
 pub mod limits;
 pub mod maps;

@@ -4,7 +4,7 @@ use crate::browser::Browser;
 use anyhow::Result;
 use prairie::runner::Simulation;
 use prairie::scenes::LoadedScene;
-use prairie::{Config, run_simulation};
+use prairie::{Config, Limits, run_simulation};
 use std::net::SocketAddr;
 use tokio::net::TcpListener;
 use tokio::sync::oneshot;
@@ -23,10 +23,18 @@ impl Prairie {
     /// # Errors
     /// When no port is free.
     pub async fn serve(scene: LoadedScene, simulation: impl Simulation) -> Result<Self> {
+        Self::serve_within(scene, simulation, Limits::default()).await
+    }
+
+    /// The same within limits.
+    ///
+    /// # Errors
+    /// When no port is free.
+    pub async fn serve_within(scene: LoadedScene, simulation: impl Simulation, limits: Limits) -> Result<Self> {
         let listener = TcpListener::bind("127.0.0.1:0").await?;
         let addr = listener.local_addr()?;
         let (stop, stopped) = oneshot::channel::<()>();
-        tokio::spawn(run_simulation(simulation, Config::new(scene), listener, async {
+        tokio::spawn(run_simulation(simulation, Config { limits, ..Config::new(scene) }, listener, async {
             let _ = stopped.await;
         }));
         Ok(Self { addr, _stop: stop })

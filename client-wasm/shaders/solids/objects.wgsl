@@ -164,7 +164,7 @@ fn threshold(pixel: vec2<f32>) -> f32 {
 fn fs(surface: Surface) -> @location(0) vec4<f32> {
     let leaf = textureSample(leaves, clamped, surface.leaf);
     let is_leaf = surface.leaf.x > 0.0;
-    if is_leaf && leaf.a < 0.5 || !is_glossy && visible_fraction(surface.p) <= threshold(surface.position.xy) {
+    if (is_leaf && leaf.a < 0.5) || (!is_glossy && visible_fraction(surface.p) <= threshold(surface.position.xy)) {
         discard;
     }
     let view = normalize(surface.p - frame.eye_m);

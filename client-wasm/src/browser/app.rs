@@ -9,13 +9,15 @@ use super::input::Input;
 use super::page;
 use super::settings::{Device, Settings};
 use super::socket::SocketEvent;
+use super::start_times::StartTimes;
+use super::status::Status;
 use crate::bindings::{Action, next_vehicle};
 use crate::budget::FrameTime;
 use crate::camera::Camera;
 use crate::controls::Controls;
 use crate::prediction::Prediction;
 use crate::redraw::RedrawTracker;
-use crate::render::{Quality, RenderOptions, Split, bend_reach_m};
+use crate::render::{Quality, RenderOptions, Split, Stage, bend_reach_m};
 use crate::replica_budget::{ReplicaBudget, Wish};
 use crate::rig::Rig;
 use crate::sight::Sight;
@@ -25,6 +27,7 @@ use prairie_core::scene::VehicleKind;
 use prairie_core::wire::{Close, ObjectPose};
 use serde::Deserialize;
 use std::cell::RefCell;
+use std::sync::Arc;
 use wasm_bindgen::prelude::*;
 use web_sys::{HtmlCanvasElement, Window};
 
@@ -98,6 +101,7 @@ pub(super) struct App {
     pub(super) canvas: HtmlCanvasElement,
     pub(super) gpu: Option<GpuCanvas>,
     pub(super) support: DeviceSupport,
+    pub(super) times: Arc<StartTimes>,
     pub(super) window: Window,
     pub(super) input: Input,
     draws_every_frame: bool,
@@ -119,8 +123,8 @@ pub(super) struct App {
     /// Message for the user, and when it disappears (s).
     pub(super) notice: Option<(String, f64)>,
     pub(super) was_welcomed: bool,
-    /// Status message shown, and its detail.
-    pub(super) status: Option<(&'static str, String)>,
+    /// Status message shown.
+    pub(super) status: Option<Status>,
 }
 
 /// Reason why the client stopped.
@@ -136,6 +140,7 @@ pub(super) struct Failure {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DrawnView {
     size_px: [u32; 2],
+    stage: Option<(Stage, bool)>,
     quality: Quality,
     level: f32,
     options: RenderOptions,
@@ -166,6 +171,7 @@ impl App {
             canvas,
             gpu: None,
             support: DeviceSupport::default(),
+            times: Arc::default(),
             window,
             input,
             draws_every_frame: false,
@@ -228,18 +234,21 @@ impl App {
         self.drive(now_secs);
         let vehicle = self.place_own_object(now_secs);
         self.find_trees();
+        let loads_stage = self.loads_stage(now_secs);
         let (Some(rig), Some(gpu)) = (&mut self.rig, &mut self.gpu) else { return false };
-        if gpu.is_busy() {
+        if loads_stage || gpu.is_busy(&self.mirror) {
             self.waited = true;
             return false;
         }
+        let stage = gpu.stage(&self.mirror);
         let Some(renderer) = gpu.renderer(&self.mirror) else { return false };
         let light = self.mirror.decoded_scene().map(|decoded| decoded.scene().light);
         let (options, split) = (self.settings.options(light.as_ref()), self.settings.split());
         renderer.set_options(options);
         renderer.set_level(self.settings.level());
         let quality = renderer.quality();
-        let view = DrawnView { size_px: gpu.next_size_px(quality), quality, level: self.settings.level(), options, split };
+        let view =
+            DrawnView { size_px: gpu.next_frame_px(quality, &self.mirror), stage, quality, level: self.settings.level(), options, split };
         (self.drawn_secs, self.moved_at_secs) = (time_secs, now_secs);
         let [right_rad, up_rad] = self.input.take_look(camera_secs);
         rig.look(right_rad, up_rad);
@@ -261,7 +270,10 @@ impl App {
         let interval_secs = (now_secs - std::mem::replace(&mut self.drawn_at_secs, now_secs)) as f32;
         let work_secs = gpu.gpu_secs().max(cpu_secs) as f32;
         let waited = std::mem::take(&mut self.waited);
-        self.settings.record(FrameTime { work_secs, interval_secs, waited });
+        // Until then, frames wait for pipelines.
+        if self.times.complete_secs().is_some() {
+            self.settings.record(FrameTime { work_secs, interval_secs, waited });
+        }
         true
     }
 

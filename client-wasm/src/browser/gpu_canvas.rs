@@ -1,7 +1,8 @@
 //! The canvas with its GPU device and renderer. It is recreated when the device is lost.
 
+use super::start_times::StartTimes;
 use crate::camera::Camera;
-use crate::render::{Gpu, GpuError, Quality, Renderer, Split, fit_within_px};
+use crate::render::{Gpu, GpuError, NextStage, Quality, Renderer, Split, Stage, fit_within_px};
 use crate::state::Mirror;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
@@ -10,14 +11,28 @@ use web_sys::HtmlCanvasElement;
 /// Maximum number of frames in flight on the GPU. More would delay the response to input.
 const MAX_IN_FLIGHT: u32 = 2;
 
+/// Frames drawn between two variants of pipelines that are created in advance: in software each may take as long as a frame.
+const VARIANT_FRAMES: u32 = 8;
+
+/// Divisor of the sides of the first picture in software.
+const FIRST_DIVISOR: u32 = 2;
+
 /// A canvas with its own GPU device.
 pub(super) struct GpuCanvas {
     canvas: HtmlCanvasElement,
     surface: wgpu::Surface<'static>,
     config: wgpu::SurfaceConfiguration,
     gpu: Gpu,
+    /// The renderer that draws, perhaps before all of its scene is loaded.
     renderer: Option<SceneRenderer>,
+    /// The renderer that replaces it once all of its scene is loaded.
+    next: Option<SceneRenderer>,
+    /// Frames submitted before the newest stage was added to either.
+    frames_before_stage: u32,
+    /// Frames submitted since a variant of a pipeline was created in advance.
+    frames_since_variant: u32,
     load: Arc<GpuLoad>,
+    times: Arc<StartTimes>,
     lost: Arc<OnceLock<String>>,
     fault: Arc<OnceLock<String>>,
 }
@@ -32,7 +47,9 @@ pub(super) struct SceneRenderer {
 /// Load of the GPU.
 #[derive(Default)]
 struct GpuLoad {
-    in_flight: AtomicU32,
+    /// Frames submitted, and finished, since the device was created.
+    submitted: AtomicU32,
+    finished: AtomicU32,
     /// Time at which the newest frame was finished (s), and its duration (s); bits of `f64`.
     done_secs: AtomicU64,
     frame_secs: AtomicU64,
@@ -48,8 +65,8 @@ pub(super) struct FrameInput {
 }
 
 impl GpuCanvas {
-    /// Requests a device for the canvas.
-    pub(super) async fn new(canvas: HtmlCanvasElement) -> Result<Self, GpuError> {
+    /// Requests a device for the canvas. `times` receives the times of the first pictures.
+    pub(super) async fn new(canvas: HtmlCanvasElement, times: Arc<StartTimes>) -> Result<Self, GpuError> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let no_adapter = |error: &dyn std::fmt::Display| GpuError::NoAdapter(error.to_string());
         let target = wgpu::SurfaceTarget::Canvas(canvas.clone());
@@ -74,7 +91,20 @@ impl GpuCanvas {
         gpu.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             fault_sender.get_or_init(|| error.to_string());
         }));
-        Ok(Self { canvas, surface, config, gpu, renderer: None, load: Arc::default(), lost, fault })
+        Ok(Self {
+            canvas,
+            surface,
+            config,
+            gpu,
+            renderer: None,
+            next: None,
+            frames_before_stage: 0,
+            frames_since_variant: 0,
+            load: Arc::default(),
+            times,
+            lost,
+            fault,
+        })
     }
 
     /// Reason why the device was lost, if it was.
@@ -87,9 +117,24 @@ impl GpuCanvas {
         self.fault.get().map(String::as_str)
     }
 
-    /// Whether the maximum number of frames is in flight.
-    pub(super) fn is_busy(&self) -> bool {
-        self.load.in_flight.load(Relaxed) >= MAX_IN_FLIGHT
+    /// Whether the maximum number of frames is in flight: one while the scene is being loaded, so that each stage is seen before the next one.
+    pub(super) fn is_busy(&self, mirror: &Mirror) -> bool {
+        self.load.in_flight() >= if self.is_complete(mirror) { MAX_IN_FLIGHT } else { 1 }
+    }
+
+    /// Whether a frame with the newest stage has been finished.
+    pub(super) fn has_shown_stage(&self) -> bool {
+        self.load.finished.load(Relaxed).wrapping_sub(self.frames_before_stage) as i32 > 0
+    }
+
+    /// Whether the renderer that draws has loaded all of the mirror's scene.
+    pub(super) fn is_complete(&self, mirror: &Mirror) -> bool {
+        self.stage(mirror).is_some_and(|(_, is_last)| is_last)
+    }
+
+    /// Newest stage of the renderer that draws, and whether it is the last one of the mirror's scene.
+    pub(super) fn stage(&self, mirror: &Mirror) -> Option<(Stage, bool)> {
+        self.renderer.as_ref().filter(|current| current.scene_number == mirror.scene_number())?.renderer.stage(mirror)
     }
 
     /// GPU time of the newest finished frame (s); 0 before the first.
@@ -97,19 +142,55 @@ impl GpuCanvas {
         f64::from_bits(self.load.frame_secs.load(Relaxed))
     }
 
-    /// Creates a renderer for the mirror's scene. The future resolves to an error if it exceeds what the device supports.
+    /// Creates a renderer with the first stage of the mirror's scene. The future resolves to an error if it exceeds what the device supports.
     pub(super) fn create_renderer(
         &self,
         quality: Quality,
         mirror: &Mirror,
     ) -> (SceneRenderer, impl Future<Output = Result<(), GpuError>> + use<>) {
-        let (renderer, verdict) = Renderer::with_scene(&self.gpu, self.config.format, self.next_size_px(quality), quality, mirror);
+        let (renderer, verdict) = Renderer::with_land(&self.gpu, self.config.format, self.next_size_px(quality), quality, mirror);
         (SceneRenderer { renderer, scene_number: mirror.scene_number() }, verdict)
     }
 
-    /// Uses this renderer from now on.
+    /// Uses this renderer from now on; if another one draws the same scene, only once all stages are loaded.
     pub(super) fn set_renderer(&mut self, renderer: SceneRenderer) {
-        self.renderer = Some(renderer);
+        self.note_stage();
+        let replaces = self.renderer.as_ref().is_some_and(|current| current.scene_number == renderer.scene_number);
+        if replaces {
+            self.next = Some(renderer);
+        } else {
+            (self.renderer, self.next) = (Some(renderer), None);
+        }
+    }
+
+    /// Creates the next stage of the newest renderer, for [`add`](Self::add), or else replaces the one that draws. The future is that of
+    /// [`create_renderer`](Self::create_renderer).
+    pub(super) fn create_next_stage(&mut self, mirror: &Mirror) -> Option<(NextStage, impl Future<Output = Result<(), GpuError>> + use<>)> {
+        let newest = self.next.as_ref().or(self.renderer.as_ref())?;
+        if newest.renderer.stage(mirror).is_some_and(|(_, is_last)| !is_last) {
+            return newest.renderer.create_next_stage(mirror);
+        }
+        if self.next.is_some() {
+            self.renderer = self.next.take();
+        }
+        None
+    }
+
+    /// Whether another renderer is being loaded behind the one that draws.
+    pub(super) fn is_replacing(&self) -> bool {
+        self.next.is_some()
+    }
+
+    /// Adds a stage to the newest renderer.
+    pub(super) fn add(&mut self, stage: NextStage) {
+        self.note_stage();
+        if let Some(newest) = self.next.as_mut().or(self.renderer.as_mut()) {
+            newest.renderer.add(stage);
+        }
+    }
+
+    fn note_stage(&mut self) {
+        self.frames_before_stage = self.load.submitted.load(Relaxed);
     }
 
     /// The renderer, if it was created for the mirror's scene.
@@ -118,9 +199,9 @@ impl GpuCanvas {
         current.map(|current| &mut current.renderer)
     }
 
-    /// Quality and scene number of the renderer.
+    /// Quality and scene number of the newest renderer.
     pub(super) fn renderer_key(&self) -> Option<(Quality, u32)> {
-        self.renderer.as_ref().map(|current| (current.renderer.quality(), current.scene_number))
+        self.next.as_ref().or(self.renderer.as_ref()).map(|newest| (newest.renderer.quality(), newest.scene_number))
     }
 
     /// Size of the newest frame (px).
@@ -131,6 +212,14 @@ impl GpuCanvas {
     /// Size of the next frame (px): the canvas's size on the screen at the quality's pixel ratio, limited to the maximum texture size.
     pub(super) fn next_size_px(&self, quality: Quality) -> [u32; 2] {
         fit_within_px(wanted_px(&self.canvas, quality), self.gpu.side_limit_px())
+    }
+
+    /// Size of the next frame of the mirror's world (px). In software, that of land and sky alone is smaller, for it would take most of the time to the first
+    /// picture; the page enlarges it.
+    pub(super) fn next_frame_px(&self, quality: Quality, mirror: &Mirror) -> [u32; 2] {
+        let is_first = self.gpu.is_software && self.stage(mirror) == Some((Stage::Land, false));
+        let size_px = self.next_size_px(quality);
+        if is_first { size_px.map(|side_px| side_px.div_ceil(FIRST_DIVISOR)) } else { size_px }
     }
 
     /// Explanation for the user if the frame is smaller than its canvas.
@@ -144,7 +233,7 @@ impl GpuCanvas {
 
     /// Draws the mirror's world. Returns the CPU time spent (s); `None` if no frame was drawn.
     pub(super) fn draw(&mut self, mirror: &mut Mirror, camera: &Camera, input: &FrameInput) -> Option<f64> {
-        let size_px = self.next_size_px(self.renderer.as_ref()?.renderer.quality());
+        let size_px = self.next_frame_px(self.renderer.as_ref()?.renderer.quality(), mirror);
         if self.size_px() != size_px {
             [self.config.width, self.config.height] = size_px;
             self.surface.configure(&self.gpu.device, &self.config);
@@ -169,10 +258,32 @@ impl GpuCanvas {
         };
         let submitted_secs = now_secs();
         self.gpu.queue.present(frame);
-        self.load.in_flight.fetch_add(1, Relaxed);
-        let load = self.load.clone();
-        self.gpu.queue.on_submitted_work_done(move || load.frame_done(submitted_secs, now_secs()));
+        let stage = renderer.stage(mirror);
+        self.notify_when_done(submitted_secs, stage);
+        if stage.is_some_and(|(_, is_last)| is_last) {
+            self.prepare_variants();
+        }
         Some(submitted_secs - begun_secs)
+    }
+
+    /// Records when the frame just submitted is finished.
+    fn notify_when_done(&self, submitted_secs: f64, stage: Option<(Stage, bool)>) {
+        self.load.submitted.fetch_add(1, Relaxed);
+        let (load, times) = (self.load.clone(), self.times.clone());
+        self.gpu.queue.on_submitted_work_done(move || {
+            let done_secs = now_secs();
+            load.frame_done(submitted_secs, done_secs);
+            stage.into_iter().for_each(|(stage, is_last)| times.note(stage, is_last, done_secs));
+        });
+    }
+
+    /// Now and then creates a variant of a pipeline that no frame has needed yet.
+    fn prepare_variants(&mut self) {
+        self.frames_since_variant += 1;
+        if self.frames_since_variant >= VARIANT_FRAMES {
+            self.frames_since_variant = 0;
+            self.renderer.iter().for_each(|current| _ = current.renderer.create_next_variant());
+        }
     }
 }
 
@@ -181,7 +292,11 @@ impl GpuLoad {
     fn frame_done(&self, submitted_secs: f64, done_secs: f64) {
         let before_secs = f64::from_bits(self.done_secs.swap(done_secs.to_bits(), Relaxed));
         self.frame_secs.store((done_secs - submitted_secs.max(before_secs)).to_bits(), Relaxed);
-        self.in_flight.fetch_sub(1, Relaxed);
+        self.finished.fetch_add(1, Relaxed);
+    }
+
+    fn in_flight(&self) -> u32 {
+        self.submitted.load(Relaxed).wrapping_sub(self.finished.load(Relaxed))
     }
 }
 

@@ -21,6 +21,7 @@ mod renderer_setup;
 mod report;
 mod settings;
 mod socket;
+mod start_times;
 mod status;
 
 use crate::bindings::HEIGHT_KEYS;
@@ -116,12 +117,12 @@ pub fn panic(reason: &str) {
     with_app(|_| panic!("{reason}"));
 }
 
-/// Draws one frame at simulated time `time_secs`, of wind, clouds and rain, even if it equals the previous one. Returns false if there is nothing to draw yet, or the GPU is
-/// busy.
+/// Draws one frame at simulated time `time_secs`, of wind, clouds and rain, even if it equals the previous one. Returns false if not all of the scene is loaded
+/// yet, or the GPU is busy.
 #[wasm_bindgen]
 pub fn draw(time_secs: f64) -> bool {
     let now_secs = web_sys::window().map_or(0.0, |window| page::now_secs(&window));
-    with_app(|app| app.frame(now_secs, Some(time_secs), true)).unwrap_or(false)
+    with_app(|app| app.is_complete() && app.frame(now_secs, Some(time_secs), true)).unwrap_or(false)
 }
 
 /// Draws the newest frame again, so that the canvas can be read. Returns false like [`draw`].

@@ -5,8 +5,8 @@ use web_sys::{HtmlCanvasElement, Window};
 
 #[wasm_bindgen(js_namespace = ["window", "prairie"])]
 extern "C" {
-    /// Shows a status message of `messages.js`, with a detail.
-    pub(super) fn message(kind: &str, detail: &str);
+    /// Shows a status message of `messages.js`, with a detail and the fraction of the start that is done, if known.
+    pub(super) fn message(kind: &str, detail: &str, progress: Option<f64>);
     /// Shows that the client has panicked, and where.
     pub(super) fn panicked(report: &str);
     /// Hides the status message.

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 impl App {
     /// The whole state. Positions in m, angles in rad, times in s unless the name says ms.
     pub(super) fn report(&self) -> Value {
-        let parts = [self.connection_report(), self.world_report(), self.time_report(), self.drawing_report()];
+        let parts = [self.connection_report(), self.world_report(), self.time_report(), self.start_report(), self.drawing_report()];
         parts.into_iter().filter_map(|part| if let Value::Object(part) = part { Some(part) } else { None }).flatten().collect()
     }
 
@@ -88,6 +88,16 @@ impl App {
             "recorded_bytes": self.record.memory_bytes(),
             "behind_secs": self.behind_secs(),
             "shown_tick": self.shown().tick(),
+        })
+    }
+
+    fn start_report(&self) -> Value {
+        let stages = self.times.drawn().map(|(stage, secs)| (stage.name().to_owned(), json!(secs)));
+        json!({
+            "first_picture_secs": self.times.first_secs(),
+            "complete_picture_secs": self.times.complete_secs(),
+            "stage_secs": Value::Object(stages.collect()),
+            "complete": self.is_complete(),
         })
     }
 

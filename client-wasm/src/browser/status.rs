@@ -3,7 +3,33 @@
 use super::app::App;
 use super::connection::ConnectionState;
 use super::page;
+use crate::render::Stage;
 use prairie_core::wire::Close;
+
+/// Fractions of the start, after the client itself is loaded, that are done when a message appears.
+const CONNECTING: f64 = 0.5;
+const REQUESTING_DEVICE: f64 = 0.6;
+const RECEIVING: f64 = 0.7;
+const DRAWING: f64 = 0.8;
+
+/// A status message of `messages.js`.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Status {
+    kind: &'static str,
+    detail: String,
+    /// Fraction of the start that is done, if known.
+    progress: Option<f64>,
+}
+
+impl Status {
+    fn new(kind: &'static str, detail: impl Into<String>) -> Self {
+        Self { kind, detail: detail.into(), progress: None }
+    }
+
+    fn at(self, progress: f64) -> Self {
+        Self { progress: Some(progress), ..self }
+    }
+}
 
 /// Maximum length of a scene name from the address in a message (characters).
 const NAME_LIMIT: usize = 64;
@@ -20,52 +46,75 @@ impl App {
         let now = self.current_status();
         if self.status != now {
             match &now {
-                Some((kind, detail)) => page::message(kind, detail),
+                Some(Status { kind, detail, progress }) => page::message(kind, detail, *progress),
                 None => page::clear(),
             }
             self.status = now;
         }
     }
 
-    fn current_status(&self) -> Option<(&'static str, String)> {
+    fn current_status(&self) -> Option<Status> {
         if let Some(failure) = &self.failure {
-            return Some((failure.kind, failure.reason.clone()));
+            return Some(Status::new(failure.kind, failure.reason.clone()));
         }
         self.scene_status().or_else(|| self.connection_status()).or_else(|| self.drawing_status())
     }
 
-    fn scene_status(&self) -> Option<(&'static str, String)> {
+    fn scene_status(&self) -> Option<Status> {
         let (linked, running) = self.other_scene().filter(|_| self.connection.client().is_some())?;
         let linked: String = linked.chars().take(NAME_LIMIT).collect();
         let problem = format!("This link is for the scene {linked}, but the server runs {running}.");
         let remedy =
             format!("To see the linked scene, start the server with it: prairie serve --scene {linked} (or the path of its file).");
-        Some(("other-scene", format!("{problem} {remedy}")))
+        Some(Status::new("other-scene", format!("{problem} {remedy}")))
     }
 
-    fn connection_status(&self) -> Option<(&'static str, String)> {
-        let (kind, detail) = match self.connection.state() {
-            ConnectionState::Closed(Close::Version) => ("version", ""),
-            ConnectionState::Closed(_) => ("refused", self.notice.as_ref().map_or("", |(reason, _)| reason)),
-            ConnectionState::Connecting { reason: Some(Close::ServerFull), .. } => {
-                ("full", self.notice.as_ref().map_or("", |(reason, _)| reason))
+    fn connection_status(&self) -> Option<Status> {
+        let reason = || self.notice.as_ref().map_or("", |(reason, _)| reason);
+        Some(match self.connection.state() {
+            ConnectionState::Closed(Close::Version) => Status::new("version", ""),
+            ConnectionState::Closed(_) => Status::new("refused", reason()),
+            ConnectionState::Connecting { reason: Some(Close::ServerFull), .. } => Status::new("full", reason()),
+            ConnectionState::Connecting { attempts: 1.., .. } if self.was_welcomed => Status::new("server-gone", ""),
+            ConnectionState::Connecting { attempts: 1.., .. } => {
+                Status::new("connecting", "The server has not responded yet. Trying again…")
             }
-            ConnectionState::Connecting { attempts: 1.., .. } if self.was_welcomed => ("server-gone", ""),
-            ConnectionState::Connecting { attempts: 1.., .. } => ("connecting", "The server has not responded yet. Trying again…"),
-            ConnectionState::Connecting { .. } if !self.was_welcomed => ("connecting", ""),
+            ConnectionState::Connecting { .. } if !self.was_welcomed => Status::new("connecting", "").at(CONNECTING),
             _ => return None,
-        };
-        Some((kind, detail.to_owned()))
+        })
     }
 
-    fn drawing_status(&self) -> Option<(&'static str, String)> {
-        let (kind, detail) = match (&self.gpu, self.mirror.decoded_scene()) {
-            (None, _) if self.losses > 0 => ("device-back", ""),
-            (None, _) => ("preparing", "Requesting the graphics device…"),
-            (_, None) => ("preparing", "Receiving the scene…"),
-            _ if self.meter.frames() == 0 && !self.options.paused => ("preparing", "Drawing the first frame…"),
-            _ => return None,
+    fn drawing_status(&self) -> Option<Status> {
+        let preparing = |detail| Some(Status::new("preparing", detail));
+        let (gpu, decoded) = match (&self.gpu, self.mirror.decoded_scene()) {
+            (None, _) if self.losses > 0 => return Some(Status::new("device-back", "")),
+            (None, _) => return preparing("Requesting the graphics device…").map(|status| status.at(REQUESTING_DEVICE)),
+            (_, None) => return preparing("Receiving the scene…").map(|status| status.at(RECEIVING)),
+            (Some(gpu), Some(decoded)) => (gpu, decoded),
         };
-        Some((kind, detail.to_owned()))
+        let is_complete = gpu.is_complete(&self.mirror);
+        if self.options.paused {
+            return preparing("Drawing the land…").map(|status| status.at(DRAWING)).filter(|_| !is_complete);
+        }
+        let Some((newest, _)) = self.times.drawn().last() else {
+            return preparing("Drawing the land…").map(|status| status.at(DRAWING));
+        };
+        if is_complete && self.times.complete_secs().is_some() {
+            return None;
+        }
+        // A later renderer loads what the first one had.
+        let shown = gpu.stage(&self.mirror).map_or(Stage::Land, |(stage, _)| stage.min(newest));
+        shown.next(decoded).map(|next| Status::new("adding", addition(next)))
+    }
+}
+
+/// Text about a stage that is being loaded.
+fn addition(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Land => "Land and sky…",
+        Stage::Grass => "Grass…",
+        Stage::Solids => "Trees, stones and vehicles…",
+        Stage::Underbrush => "Underbrush…",
+        Stage::Weather => "Rain and dust…",
     }
 }

@@ -7,7 +7,7 @@ mod prepare;
 use crate::camera::Camera;
 use crate::render::options::split::Split;
 use crate::render::plants::billboards::Billboards;
-use crate::render::plants::underbrush::Underbrush;
+use crate::render::plants::shells::Shells;
 use crate::render::renderer::Renderer;
 use crate::render::scene_resources::SceneResources;
 use crate::state::Mirror;
@@ -97,12 +97,12 @@ impl Renderer {
 
 fn stats(scene: &SceneResources, plan: &FramePlan) -> FrameStats {
     FrameStats {
-        blades: if plan.has_blades { scene.blades.near_plants() } else { 0 },
+        blades: scene.blades.as_ref().map_or(0, |blades| blades.near_plants()),
         clumps: plan.clumps(scene).map_or(0, Billboards::count),
-        shell_layers: if plan.shells.is_some() { scene.shells.layer_count() } else { 0 },
-        underbrush: scene.underbrush.as_ref().map_or(0, Underbrush::plants),
+        shell_layers: plan.shells(scene).map_or(0, Shells::layer_count),
+        underbrush: scene.underbrush.as_ref().map_or(0, |underbrush| underbrush.plants()),
         ground_vertices: scene.terrain.vertices(),
-        object_triangles: scene.objects.triangles(),
+        object_triangles: scene.objects.as_ref().map_or(0, |objects| objects.triangles()),
         patches_written: plan.patches_written,
     }
 }

@@ -20,6 +20,7 @@ mod plants;
 mod renderer;
 mod scene_resources;
 pub(crate) mod solids;
+mod stage;
 mod targets;
 
 pub use frame::FrameStats;
@@ -35,7 +36,8 @@ pub use options::quality::{DeviceClass, Quality, REFERENCE_REACH_M};
 pub use options::render_options::{BlendOrder, FarPlants, RenderOptions};
 pub use options::split::{SideOptions, Split};
 pub use prairie_core::light::sun::Sun;
-pub use renderer::Renderer;
+pub use renderer::{NextStage, Renderer};
+pub use stage::Stage;
 
 #[cfg(test)]
 mod tests;

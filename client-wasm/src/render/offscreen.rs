@@ -110,7 +110,8 @@ impl OffscreenRenderer {
     /// Number of blades and flowers that the newest frame bent: those in view, and some at its edges.
     pub fn bent_plants(&self) -> u32 {
         let scene = self.renderer.scene.as_ref();
-        let counts = scene.map(|scene| bytemuck::pod_collect_to_vec::<u8, u32>(&read(&self.gpu, scene.blades.in_view())));
+        let blades = scene.and_then(|scene| scene.blades.as_ref());
+        let counts = blades.map(|blades| bytemuck::pod_collect_to_vec::<u8, u32>(&read(&self.gpu, blades.in_view())));
         counts.map_or(0, |counts| counts.iter().take(2).sum())
     }
 

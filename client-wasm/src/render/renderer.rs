@@ -14,6 +14,7 @@ use crate::render::options::quality::Quality;
 use crate::render::options::render_options::RenderOptions;
 use crate::render::plants::weighted_oit::WeightedOit;
 use crate::render::scene_resources::SceneResources;
+use crate::render::stage::{Stage, StageResources};
 use crate::render::targets::Targets;
 use crate::state::Mirror;
 
@@ -45,7 +46,7 @@ impl Renderer {
         let daylight = Daylight::new(gpu);
         let bindings = FrameBindings::new(gpu, quality, &daylight);
         let samples = quality.samples(gpu.is_software);
-        let factory = PassFactory { gpu, frame_layout: &bindings.layout, samples, has_kinds: true };
+        let factory = PassFactory { gpu: gpu.clone(), frame_layout: bindings.layout.clone(), samples, has_kinds: true };
         let targets = Targets::new(gpu, size_px, quality);
         Self {
             tone: ToneMapping::new(&factory, format, &targets.color, targets.supersampling),
@@ -77,20 +78,58 @@ impl Renderer {
         quality: Quality,
         mirror: &Mirror,
     ) -> (Self, impl Future<Output = Result<(), GpuError>> + use<>) {
-        let memory = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let validity = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let scopes = ErrorScopes::open(gpu);
         let mut renderer = Self::new(gpu, format, size_px, quality);
         renderer.load_scene(mirror);
-        let found = [validity.pop(), memory.pop()];
-        let verdict = async move {
-            for error in found {
-                if let Some(error) = error.await {
-                    return Err(GpuError::does_not_fit(quality.name(), &error));
-                }
-            }
-            Ok(())
-        };
-        (renderer, verdict)
+        (renderer, scopes.close(quality))
+    }
+
+    /// The same with the first [stage](Stage) of the scene only: land and sky.
+    ///
+    /// # Errors
+    /// The future resolves to [`GpuError::DoesNotFit`].
+    pub fn with_land(
+        gpu: &Gpu,
+        format: wgpu::TextureFormat,
+        size_px: [u32; 2],
+        quality: Quality,
+        mirror: &Mirror,
+    ) -> (Self, impl Future<Output = Result<(), GpuError>> + use<>) {
+        let scopes = ErrorScopes::open(gpu);
+        let mut renderer = Self::new(gpu, format, size_px, quality);
+        renderer.begin_scene(mirror);
+        (renderer, scopes.close(quality))
+    }
+
+    /// Creates the resources of the next stage of the mirror's scene, which [`add`](Self::add) makes visible; `None` if all stages are loaded, or those of
+    /// another scene. The future is that of [`with_scene`](Self::with_scene).
+    ///
+    /// # Errors
+    /// The future resolves to [`GpuError::DoesNotFit`].
+    pub fn create_next_stage(&self, mirror: &Mirror) -> Option<(NextStage, impl Future<Output = Result<(), GpuError>> + use<>)> {
+        let scopes = ErrorScopes::open(&self.gpu);
+        let next = self.next_stage(mirror);
+        let verdict = scopes.close(self.quality);
+        next.map(|next| (next, verdict))
+    }
+
+    /// Shows a stage in the following frames, unless it is that of another scene.
+    pub fn add(&mut self, next: NextStage) {
+        if let Some(scene) = self.scene.as_mut().filter(|scene| scene.number == next.scene_number) {
+            scene.add(next.stage, next.resources);
+        }
+    }
+
+    /// Newest stage that is loaded, and whether it is the last one of the mirror's scene; `None` without a scene.
+    pub fn stage(&self, mirror: &Mirror) -> Option<(Stage, bool)> {
+        let (scene, decoded) = (self.scene.as_ref()?, mirror.decoded_scene()?);
+        Some((scene.stage, scene.stage.next(decoded).is_none()))
+    }
+
+    /// Creates a variant of a pipeline that no frame has needed yet, so that the first frame with lamps or moving objects does not wait for it. Returns false
+    /// if there is none.
+    pub fn create_next_variant(&self) -> bool {
+        self.scene.as_ref().is_some_and(|scene| scene.create_next_variant())
     }
 
     /// Changes the size of the target.
@@ -126,13 +165,61 @@ impl Renderer {
         self.quality
     }
 
-    /// Loads the mirror's scene. [`draw`](Self::draw) does so by itself when the scene has changed.
+    /// Loads all stages of the mirror's scene. [`draw`](Self::draw) does so by itself when the scene has changed.
     pub fn load_scene(&mut self, mirror: &Mirror) {
+        self.begin_scene(mirror);
+        while let Some(next) = self.next_stage(mirror) {
+            self.add(next);
+        }
+    }
+
+    /// Loads the first stage of the mirror's scene.
+    fn begin_scene(&mut self, mirror: &Mirror) {
         let samples = self.quality.samples(self.gpu.is_software);
         self.scene = mirror.decoded_scene().map(|decoded| {
             let has_kinds = !decoded.scene().species.is_empty();
-            let factory = PassFactory { gpu: &self.gpu, frame_layout: &self.bindings.layout, samples, has_kinds };
-            Box::new(SceneResources::new(&factory, &self.bindings, self.quality, mirror.scene_number(), decoded))
+            let factory = PassFactory { gpu: self.gpu.clone(), frame_layout: self.bindings.layout.clone(), samples, has_kinds };
+            Box::new(SceneResources::new(factory, &self.bindings, mirror.scene_number(), decoded))
         });
+    }
+
+    fn next_stage(&self, mirror: &Mirror) -> Option<NextStage> {
+        let (scene, decoded) = (self.scene.as_ref()?, mirror.decoded_scene()?);
+        let stage = scene.stage.next(decoded).filter(|_| scene.number == mirror.scene_number())?;
+        let resources = StageResources::new(stage, &scene.factory, self.quality, decoded)?;
+        Some(NextStage { stage, scene_number: scene.number, resources })
+    }
+}
+
+/// Resources of a stage that no frame shows yet.
+pub struct NextStage {
+    stage: Stage,
+    scene_number: u32,
+    resources: StageResources,
+}
+
+/// Error scopes around the creation of resources.
+struct ErrorScopes {
+    memory: wgpu::ErrorScopeGuard,
+    validity: wgpu::ErrorScopeGuard,
+}
+
+impl ErrorScopes {
+    fn open(gpu: &Gpu) -> Self {
+        let memory = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        Self { memory, validity: gpu.device.push_error_scope(wgpu::ErrorFilter::Validation) }
+    }
+
+    /// The future resolves once the device has reported whether everything created for `quality` is valid and fits into memory.
+    fn close(self, quality: Quality) -> impl Future<Output = Result<(), GpuError>> + use<> {
+        let found = [self.validity.pop(), self.memory.pop()];
+        async move {
+            for error in found {
+                if let Some(error) = error.await {
+                    return Err(GpuError::does_not_fit(quality.name(), &error));
+                }
+            }
+            Ok(())
+        }
     }
 }

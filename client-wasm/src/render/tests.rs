@@ -30,6 +30,7 @@ mod light;
 mod order;
 mod shells;
 mod small;
+mod stages;
 mod standing;
 mod trees;
 mod twins;
@@ -145,7 +146,7 @@ fn sways(gpu: &Gpu, mirror: &mut Mirror, streamed_rad: Option<f32>) -> Vec<Sway>
         }
         picture.draw(mirror, &camera, 0.0, 1.0 / 30.0);
     }
-    let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").blades.sways);
+    let bytes = read(gpu, &picture.renderer.scene.as_ref().and_then(|scene| scene.blades.as_ref()).expect("grass").sways);
     let sways: &[[[f32; 4]; LINKS]] = bytemuck::cast_slice(&bytes);
     let sway =
         |links: &[[f32; 4]; LINKS]| Sway { lean_rad: links.map(|[x, z, ..]| [x, z]), rate_rad_per_s: links.map(|[.., x, z]| [x, z]) };
@@ -240,7 +241,7 @@ fn compute(
     invocations: u32,
 ) -> Vec<[f32; 4]> {
     let renderer = &picture.renderer;
-    let factory = PassFactory { gpu, frame_layout: &renderer.bindings.layout, samples: 1, has_kinds: true };
+    let factory = PassFactory { gpu: gpu.clone(), frame_layout: renderer.bindings.layout.clone(), samples: 1, has_kinds: true };
     let layout = factory.layout("probes", &[storage_rw(0)]);
     let pipeline = factory.compute("probe", &gpu.shader("probe", source, constants), "probe", &layout);
     let probes = gpu.buffer("probes", bytemuck::cast_slice(inputs), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
@@ -374,7 +375,7 @@ fn as_many_flowers_stand_as_the_scene_says_and_all_are_listed() {
         let mut picture = OffscreenRenderer::new(&gpu, [16, 2048], Quality::Low);
         picture.set_options(RenderOptions { culls: false, far_plants: far, ..RenderOptions::default() });
         picture.draw(&mut mirror, &camera, 0.0, 0.0);
-        let blades = &picture.renderer.scene.as_ref().expect("a scene").blades;
+        let blades = &picture.renderer.scene.as_ref().and_then(|scene| scene.blades.as_ref()).expect("grass");
         let bytes = read(&gpu, &blades.listed.counters);
         let &[fine, coarse, single, near_heads, far_heads] = bytemuck::cast_slice::<u8, u32>(&bytes) else { panic!("five lists") };
         let heads = near_heads + far_heads;
@@ -405,7 +406,7 @@ fn the_last_blades_shrink_away_where_nothing_stands_for_them() {
         let mut picture = OffscreenRenderer::new(&gpu, [64, 2048], Quality::Low);
         picture.set_options(RenderOptions { culls: false, far_plants: far, ..RenderOptions::default() });
         picture.draw(&mut mirror, &camera, 0.0, 0.0);
-        let blades = &picture.renderer.scene.as_ref().expect("a scene").blades;
+        let blades = &picture.renderer.scene.as_ref().and_then(|scene| scene.blades.as_ref()).expect("grass");
         let listed: Vec<[f32; 28]> = bytemuck::pod_collect_to_vec(&read(&gpu, &blades.listed.blades));
         let mean_m = |from: f32, to: f32| {
             let lengths_m = listed.iter().filter_map(|blade| {
@@ -432,14 +433,14 @@ fn every_quality_has_room_for_the_same_plants_near_by_and_draws_them_in_one_turn
         let mut picture = OffscreenRenderer::new(&gpu, [16, 16], quality);
         picture.set_options(RenderOptions { culls: false, ..RenderOptions::default() });
         picture.draw(&mut mirror, &Camera::default(), 0.0, 0.0);
-        let blades = &picture.renderer.scene.as_ref().expect("a scene").blades;
+        let blades = &picture.renderer.scene.as_ref().and_then(|scene| scene.blades.as_ref()).expect("grass");
         assert_eq!(blades.sways.size(), 9 * (5 * 20) * (5 * 20) * blades::SWAY_BYTES, "{quality:?}");
         assert!(!blades.by_batches(), "{quality:?}");
     }
     // The scene's own defaults, too.
     let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Ultra);
     picture.draw(&mut meadow(0.0), &Camera::default(), 0.0, 0.0);
-    assert!(!picture.renderer.scene.as_ref().expect("a scene").blades.by_batches());
+    assert!(!picture.renderer.scene.as_ref().and_then(|scene| scene.blades.as_ref()).expect("grass").by_batches());
 }
 
 #[test]

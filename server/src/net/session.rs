@@ -17,7 +17,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::sync::{OwnedSemaphorePermit, mpsc};
-use tokio::time::timeout;
+use tokio::time::{Instant, timeout};
 use tokio_tungstenite::WebSocketStream;
 
 /// Time limit for sending the close frame, and again for the client's answer to it.
@@ -219,21 +219,21 @@ async fn send_all<S: AsyncRead + AsyncWrite + Unpin>(
     }
 }
 
-/// Ends when frames have been written and none has been acknowledged for too long: `load_timeout` before the first one, in which a client builds the
-/// scene, and `stall_timeout` after that. The bytes of a frame that is being written count as progress.
+/// Ends when frames have been written and none has been acknowledged for `stall_timeout`, but not in the first `load_timeout`, in which a client builds the
+/// scene and compiles its shaders. The bytes of a frame that is being written count as progress.
 async fn watch_acknowledgements(client: &Client, connection: &Connection, limits: &Limits) -> End {
     let period = limits.stall_timeout / CHECKS;
-    let (mut before, mut idle_checks) = (None, 0.0);
+    let (began, mut before, mut idle_checks) = (Instant::now(), None, 0);
     loop {
         tokio::time::sleep(period).await;
         let progress = client.progress();
         let writing_bytes = (progress.handed_out > progress.written).then(|| connection.written_bytes());
         let now = Some((progress.written, progress.acknowledged, writing_bytes));
-        idle_checks = if progress.written <= progress.acknowledged || now != before { 0.0 } else { idle_checks + 1.0 };
+        idle_checks = if progress.written <= progress.acknowledged || now != before { 0 } else { idle_checks + 1 };
         before = now;
-        let limit = if progress.acknowledged == 0 { limits.load_timeout } else { limits.stall_timeout };
-        if idle_checks >= limit.div_duration_f32(period) {
-            return End::Closed(Close::Stalled, format!("no frame was acknowledged for {} s", limit.as_secs_f32()));
+        if idle_checks >= CHECKS && began.elapsed() >= limits.load_timeout {
+            let idle = period * idle_checks;
+            return End::Closed(Close::Stalled, format!("no frame was acknowledged for {} s", idle.as_secs_f32()));
         }
     }
 }

@@ -75,14 +75,16 @@ async fn a_stopping_server_says_so_while_a_scene_travels() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn the_first_acknowledgement_may_take_longer_than_later_ones() {
-    let limits = Limits { stall_timeout: Duration::from_millis(200), load_timeout: Duration::from_secs(60), ..Limits::default() };
+async fn a_client_may_pause_while_it_starts_and_not_later() {
+    let limits = Limits { stall_timeout: Duration::from_millis(200), load_timeout: Duration::from_secs(3), ..Limits::default() };
     let server = Server::start(limits).await;
     let mut client = PlainClient::join(&server, "client").await;
-    // The client builds the scene.
-    sleep(Duration::from_secs(1)).await;
-    for _ in 0..10 {
-        client.frame().await;
+    // The client builds the scene; then, after some frames, it compiles its shaders.
+    for pause_secs in [0.7, 0.7, 0.0] {
+        sleep(Duration::from_secs_f32(pause_secs)).await;
+        for _ in 0..10 {
+            client.frame().await;
+        }
     }
     assert_eq!(client.closed().await.0, Close::Stalled.code());
     let mut silent = PlainClient::join(&server, "silent").await;

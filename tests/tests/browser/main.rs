@@ -12,4 +12,5 @@ mod prairie;
 mod replica;
 mod sharing;
 mod sound;
+mod start;
 mod webgpu;

@@ -30,8 +30,8 @@ impl<'a> Batch<'a> {
             }
             statistics.begin_encoder();
         }
-        if plan.has_blades {
-            scene.blades.begin_batch(&renderer.gpu, number);
+        if let Some(blades) = &mut scene.blades {
+            blades.begin_batch(&renderer.gpu, number);
         }
         let encoder = renderer.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         Self { renderer, scene, plan, is_first, is_last, encoder }
@@ -49,7 +49,7 @@ impl<'a> Batch<'a> {
             let descriptor = wgpu::ComputePassDescriptor { label: Some("sway"), timestamp_writes };
             let mut pass = self.encoder.begin_compute_pass(&descriptor);
             pass.set_bind_group(0, group, &[]);
-            self.scene.objects.sway(&mut pass);
+            self.scene.objects.iter().for_each(|objects| objects.sway(&mut pass));
         }
         for &cascade in cascades {
             let is_last = cascades.last() == Some(&cascade);
@@ -57,26 +57,26 @@ impl<'a> Batch<'a> {
             let pass = shadow_pass(&mut self.encoder, &self.renderer.bindings.shadow_map(cascade), clock);
             let mut pass = counted(&mut self.renderer.statistics, Pass::Shadows, pass);
             pass.set_bind_group(0, group, &[]);
-            self.scene.objects.draw_shadows(&mut pass, cascade as usize);
+            self.scene.objects.iter().for_each(|objects| objects.draw_shadows(&mut pass, cascade as usize));
         }
     }
 
     /// Culls, bends and sorts the plants.
     pub(super) fn bend(&mut self) {
-        let &FramePlan { has_blades, has_spheres, has_lamps, .. } = self.plan;
+        let &FramePlan { has_spheres, has_lamps, .. } = self.plan;
         let scene = self.scene;
         let timestamp_writes = self.renderer.timestamps.as_ref().map(|queries| queries.of_compute(Pass::Bend, true));
         let pass = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes });
         let mut pass = counted(&mut self.renderer.statistics, Pass::Bend, pass);
         pass.set_bind_group(0, &scene.textures.group, &[]);
-        if has_blades {
-            scene.blades.bend(&mut pass, has_spheres, has_lamps);
+        if let Some(blades) = &scene.blades {
+            blades.bend(&mut pass, has_spheres, has_lamps);
         }
         if !self.is_first {
             return;
         }
-        if self.plan.shells.is_some() {
-            scene.shells.bend(&mut pass);
+        if let Some(shells) = self.plan.shells(scene) {
+            shells.bend(&mut pass);
         }
         if let Some(clumps) = self.plan.clumps(scene) {
             clumps.bend(&mut pass);
@@ -91,22 +91,22 @@ impl<'a> Batch<'a> {
 
     /// Draws everything opaque, roughly near to far, and returns the pass for [`blended`](Self::blended).
     pub(super) fn opaque(&mut self) -> RenderPass {
-        let &FramePlan { has_blades, has_lamps, order, .. } = self.plan;
+        let &FramePlan { has_lamps, order, .. } = self.plan;
         let scene = self.scene;
         let ends_picture = self.is_last && !self.is_weighted();
         let mut pass = self.picture_pass(self.is_first, ends_picture);
-        if self.is_first {
-            scene.objects.draw(&mut pass, has_lamps);
+        if let Some(objects) = scene.objects.as_ref().filter(|_| self.is_first) {
+            objects.draw(&mut pass, has_lamps);
         }
-        if has_blades {
+        if let Some(blades) = &scene.blades {
             if !order.blends() {
-                scene.blades.draw(&mut pass, has_lamps);
+                blades.draw(&mut pass, has_lamps);
             }
-            scene.blades.draw_flowers(&mut pass, has_lamps);
+            blades.draw_flowers(&mut pass, has_lamps);
         }
         if self.is_last {
-            if self.plan.shells.is_some() {
-                scene.shells.draw(&mut pass);
+            if let Some(shells) = self.plan.shells(scene) {
+                shells.draw(&mut pass);
             }
             if let Some(underbrush) = &scene.underbrush {
                 underbrush.draw(&mut pass);
@@ -183,8 +183,8 @@ impl<'a> Batch<'a> {
         if let Some(clumps) = self.plan.clumps(self.scene) {
             clumps.draw(pass);
         }
-        if self.plan.has_blades {
-            self.scene.blades.draw(pass, self.plan.has_lamps);
+        if let Some(blades) = &self.scene.blades {
+            blades.draw(pass, self.plan.has_lamps);
         }
     }
 

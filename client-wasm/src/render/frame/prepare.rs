@@ -2,7 +2,6 @@
 
 use crate::render::frame::moment::Moment;
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::PassFactory;
 use crate::render::gpu::uniforms::Frame;
 use crate::render::inputs::cascades::SHADOW_CASCADES;
 use crate::render::inputs::frustum::{CascadeVolume, Frustum};
@@ -10,12 +9,13 @@ use crate::render::inputs::view::View;
 use crate::render::inputs::viewpoint::Viewpoint;
 use crate::render::options::render_options::{BlendOrder, FarPlants};
 use crate::render::plants::billboards::{Billboards, ClumpRange};
-use crate::render::plants::shells::{ShellExtent, ShellRequest};
+use crate::render::plants::shells::{ShellExtent, ShellRequest, Shells};
 use crate::render::plants::weighted_oit::WeightedOit;
 use crate::render::renderer::Renderer;
 use crate::render::scene_resources::SceneResources;
 use crate::render::solids::shadow_cache::ShadowView;
 use crate::render::solids::vehicles::headlights;
+use crate::render::stage::Stage;
 use crate::state::{DecodedScene, Mirror};
 use glam::{Mat4, Vec3};
 use prairie_core::scene::PlantCover;
@@ -28,7 +28,6 @@ const SEVERAL_SEGMENTS_REACH: f32 = 1.6;
 #[derive(Default)]
 pub(super) struct FramePlan {
     pub(super) order: BlendOrder,
-    pub(super) has_blades: bool,
     pub(super) has_clumps: bool,
     pub(super) shells: Option<ShellExtent>,
     pub(super) has_lamps: bool,
@@ -41,9 +40,14 @@ pub(super) struct FramePlan {
 }
 
 impl FramePlan {
+    /// The shells, if the frame shows any.
+    pub(super) fn shells<'a>(&self, scene: &'a SceneResources) -> Option<&'a Shells> {
+        scene.shells.as_ref().filter(|_| self.shells.is_some())
+    }
+
     /// The clumps, if the frame shows any.
     pub(super) fn clumps<'a>(&self, scene: &'a SceneResources) -> Option<&'a Billboards> {
-        self.has_clumps.then_some(&scene.billboards)
+        scene.billboards.as_ref().filter(|_| self.has_clumps)
     }
 }
 
@@ -59,6 +63,7 @@ impl Renderer {
         let sun = self.options.sun.unwrap_or_else(|| decoded.scene().light.sun_at(time_secs));
         self.daylight.update(&self.gpu, sun);
         let detail = self.detail.on(&decoded.scene().plants).with(self.options.far_plants);
+        let detail = if scene.stage == Stage::Land { detail.without_blades() } else { detail };
         let view = View::new(camera, self.targets.size_px, self.quality, detail, time_secs, sun);
         let mut frame =
             view.frame(decoded, &scene.textures.atlas, scene.textures.wind.gusts(), &self.daylight, &poses, &headlights(&poses));
@@ -69,14 +74,13 @@ impl Renderer {
 
         let frustum = self.frustum(&view.projection_from_world);
         let viewpoint = Viewpoint { eye_m, frustum: &frustum, detail: &detail, options: self.options, dt_secs };
-        let mut plan = self.plan(decoded, &frame, &cascades, patches_written);
+        let mut plan = self.plan(scene, decoded, &frame, &cascades, patches_written);
         self.set_blend_order(scene, &mut plan);
         scene.prepare_land(&self.gpu, &viewpoint);
-        scene.prepare_grass(&self.gpu, decoded, &viewpoint, &frame, &plan);
+        scene.prepare_grass(&self.gpu, decoded, &viewpoint, &frame, &mut plan);
         scene.prepare_underbrush(&self.gpu, mirror, decoded, &viewpoint, &poses);
-        scene.objects.prepare(&self.gpu, &poses, &viewpoint, cascades, time_secs as f32, frame.pixel_rad);
-        if plan.has_blades {
-            plan.batches = scene.blades.batches();
+        if let Some(objects) = &mut scene.objects {
+            objects.prepare(&self.gpu, &poses, &viewpoint, cascades, time_secs as f32, frame.pixel_rad);
         }
         plan
     }
@@ -86,18 +90,16 @@ impl Renderer {
     }
 
     /// Which plants are drawn by which method.
-    fn plan(&self, decoded: &DecodedScene, frame: &Frame, cascades: &Cascades, patches_written: u32) -> FramePlan {
+    fn plan(&self, scene: &SceneResources, decoded: &DecodedScene, frame: &Frame, cascades: &Cascades, patches_written: u32) -> FramePlan {
         let far_plants = self.options.far_plants;
         let shells = match (decoded.scene().plants.cover, far_plants) {
             (PlantCover::Shells, _) => Some(ShellExtent::All),
-            (PlantCover::Blades, FarPlants::Shells) => Some(ShellExtent::BeyondBlades),
+            (PlantCover::Blades, FarPlants::Shells) if scene.blades.is_some() => Some(ShellExtent::BeyondBlades),
             _ => None,
         };
-        let has_blades = shells != Some(ShellExtent::All);
         FramePlan {
             order: self.options.blend_order,
-            has_blades,
-            has_clumps: far_plants == FarPlants::Clumps && has_blades,
+            has_clumps: far_plants == FarPlants::Clumps && scene.blades.is_some(),
             shells,
             has_lamps: frame.has_lamps(),
             has_spheres: frame.has_spheres(),
@@ -110,12 +112,10 @@ impl Renderer {
     /// Replaces a transparency order that the scene or target does not support, and creates the resources that the order needs.
     fn set_blend_order(&mut self, scene: &mut SceneResources, plan: &mut FramePlan) {
         let samples = self.quality.samples(self.gpu.is_software);
-        let factory = PassFactory { gpu: &self.gpu, frame_layout: &self.bindings.layout, samples, has_kinds: scene.has_kinds };
-        plan.order = plan.order.supported(samples, scene.blades.by_batches());
-        scene.blades.set_order(&factory, plan.order);
-        scene.billboards.set_order(&factory, plan.order);
+        plan.order = plan.order.supported(samples, scene.by_batches());
+        scene.set_order(plan.order, plan.has_clumps);
         if plan.order == BlendOrder::Weighted && self.weighted.is_none() {
-            self.weighted = Some(WeightedOit::new(&factory, self.targets.size_px));
+            self.weighted = Some(WeightedOit::new(&scene.factory, self.targets.size_px));
         }
     }
 }
@@ -148,25 +148,26 @@ impl SceneResources {
         }
     }
 
-    fn prepare_grass(&mut self, gpu: &Gpu, decoded: &DecodedScene, from: &Viewpoint<'_>, frame: &Frame, plan: &FramePlan) {
-        if plan.has_blades {
-            self.blades.prepare(gpu, decoded, from);
+    fn prepare_grass(&mut self, gpu: &Gpu, decoded: &DecodedScene, from: &Viewpoint<'_>, frame: &Frame, plan: &mut FramePlan) {
+        if let Some(blades) = &mut self.blades {
+            blades.prepare(gpu, decoded, from);
+            plan.batches = blades.batches();
         }
         if let Some(extent) = plan.shells {
             let request =
                 ShellRequest { extent, from_m: frame.blades_fade_from_m, end_m: frame.far_end_m, layers: from.options.shell_layers };
-            self.shells.prepare(gpu, decoded, from.eye_m, from.frustum, request);
+            self.shells(decoded).prepare(gpu, decoded, from.eye_m, from.frustum, request);
         } else if plan.has_clumps {
             let several_m = SEVERAL_SEGMENTS_REACH * frame.blades_end_m;
             let range = ClumpRange { from_m: frame.blades_fade_from_m, several_m, to_m: frame.far_end_m };
-            self.billboards.prepare(gpu, decoded, from.eye_m, from.frustum, range);
+            self.billboards().prepare(gpu, decoded, from.eye_m, from.frustum, range);
         }
     }
 
     fn prepare_underbrush(&mut self, gpu: &Gpu, mirror: &Mirror, decoded: &DecodedScene, from: &Viewpoint<'_>, poses: &[ObjectPose]) {
-        let Some(underbrush) = &mut self.underbrush else { return };
-        self.force_field.update(gpu, decoded, &self.textures.wind, poses, [from.eye_m.x, from.eye_m.z], from.dt_secs);
+        let (Some(forces), Some(underbrush)) = (&mut self.force_field, &mut self.underbrush) else { return };
+        forces.update(gpu, decoded, &self.textures.wind, poses, [from.eye_m.x, from.eye_m.z], from.dt_secs);
         underbrush.show_broken(gpu, mirror.falls(), mirror.broken_count());
-        underbrush.prepare(gpu, &self.force_field, from);
+        underbrush.prepare(gpu, forces, from);
     }
 }

@@ -17,3 +17,4 @@ pub(crate) mod sort;
 pub(crate) mod timestamps;
 pub(crate) mod uniform_block;
 pub(crate) mod uniforms;
+pub(crate) mod variants;

@@ -10,9 +10,10 @@ pub(crate) const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Creates the pipelines and bind group layouts of passes.
-pub(crate) struct PassFactory<'a> {
-    pub(crate) gpu: &'a Gpu,
-    pub(crate) frame_layout: &'a wgpu::BindGroupLayout,
+#[derive(Clone)]
+pub(crate) struct PassFactory {
+    pub(crate) gpu: Gpu,
+    pub(crate) frame_layout: wgpu::BindGroupLayout,
     pub(crate) samples: u32,
     /// Whether more than one kind of grass grows; override `has_kinds` in WGSL.
     pub(crate) has_kinds: bool,
@@ -49,37 +50,9 @@ impl Default for DrawDescriptor<'_> {
     }
 }
 
-/// Two variants of a pipeline, without and with lamps; override `has_lamps` in WGSL.
-pub(crate) struct LampVariants<P>([P; 2]);
-
-impl<P> LampVariants<P> {
-    pub(crate) fn new(make: impl Fn(Constant) -> P) -> Self {
-        Self([false, true].map(|has_lamps| make(("has_lamps", has_lamps))))
-    }
-
-    /// The variant for a frame with or without lamps.
-    pub(crate) fn of(&self, has_lamps: bool) -> &P {
-        &self.0[usize::from(has_lamps)]
-    }
-}
-
-/// Variants without and with interaction spheres, each with its [`LampVariants`]; overrides `meets_spheres` and `has_lamps` in WGSL.
-pub(crate) struct SphereVariants<P>([LampVariants<P>; 2]);
-
-impl<P> SphereVariants<P> {
-    pub(crate) fn new(make: impl Fn([Constant; 2]) -> P) -> Self {
-        Self([false, true].map(|spheres| LampVariants::new(|lamps| make([lamps, ("meets_spheres", spheres)]))))
-    }
-
-    /// The variant for a frame with or without spheres and lamps.
-    pub(crate) fn of(&self, has_spheres: bool, has_lamps: bool) -> &P {
-        self.0[usize::from(has_spheres)].of(has_lamps)
-    }
-}
-
 pub(crate) const ALL_STAGES: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT.union(wgpu::ShaderStages::COMPUTE);
 
-impl PassFactory<'_> {
+impl PassFactory {
     pub(crate) fn layout(&self, label: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
         self.gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
     }
@@ -92,7 +65,7 @@ impl PassFactory<'_> {
     fn pipeline_layout(&self, label: &str, own: Option<&wgpu::BindGroupLayout>) -> wgpu::PipelineLayout {
         self.gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(label),
-            bind_group_layouts: &[Some(self.frame_layout), own],
+            bind_group_layouts: &[Some(&self.frame_layout), own],
             immediate_size: 0,
         })
     }

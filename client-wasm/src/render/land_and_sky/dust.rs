@@ -30,12 +30,12 @@ pub(crate) struct Dust {
 
 impl Dust {
     /// The dust of a scene; `None` if its wind carries none.
-    pub(crate) fn new(factory: &PassFactory<'_>, quality: Quality, decoded: &DecodedScene) -> Option<Self> {
+    pub(crate) fn new(factory: &PassFactory, quality: Quality, decoded: &DecodedScene) -> Option<Self> {
         decoded.scene().wind.has_dust().then(|| Self::make(factory, quality, decoded))
     }
 
-    fn make(factory: &PassFactory<'_>, quality: Quality, decoded: &DecodedScene) -> Self {
-        let gpu = factory.gpu;
+    fn make(factory: &PassFactory, quality: Quality, decoded: &DecodedScene) -> Self {
+        let gpu = &factory.gpu;
         let ((puffs, square_m), motes) = (quality.puffs(), quality.motes());
         let count = puffs + motes;
         let wind = &decoded.scene().wind;

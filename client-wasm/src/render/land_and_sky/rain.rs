@@ -22,7 +22,7 @@ pub(crate) struct Rain {
 
 impl Rain {
     /// The rain of a scene; `None` if it is dry.
-    pub(crate) fn new(factory: &PassFactory<'_>, quality: Quality, decoded: &DecodedScene) -> Option<Self> {
+    pub(crate) fn new(factory: &PassFactory, quality: Quality, decoded: &DecodedScene) -> Option<Self> {
         let rate_mm_per_h = decoded.scene().rain.rate_mm_per_h;
         if rate_mm_per_h <= 0.0 {
             return None;
@@ -38,7 +38,7 @@ impl Rain {
             ..DrawDescriptor::default()
         };
         let pipeline = factory.draw(&factory.shader("rain", shaders::RAIN, &[]), Some(&layout), &draw);
-        Some(Self { pipeline, group: bind(factory.gpu, "rain", &layout, &[shower.as_entire_binding()]), drops })
+        Some(Self { pipeline, group: bind(&factory.gpu, "rain", &layout, &[shower.as_entire_binding()]), drops })
     }
 
     /// Draws the rain over the opaque picture.

@@ -8,7 +8,7 @@ pub(crate) struct Sky {
 }
 
 impl Sky {
-    pub(crate) fn new(factory: &PassFactory<'_>) -> Self {
+    pub(crate) fn new(factory: &PassFactory) -> Self {
         let module = factory.shader("sky", shaders::SKY, &[]);
         let draw = DrawDescriptor { label: "sky", depth_write: false, ..DrawDescriptor::default() };
         Self { pipeline: factory.draw(&module, None, &draw) }

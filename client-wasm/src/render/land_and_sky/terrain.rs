@@ -2,8 +2,9 @@
 
 use crate::render::gpu::constants::{HILLS_FULL_M, HILLS_MEAN, HILLS_RANGE_M, HILLS_SLOPE, TILE_CELLS, TILE_VERTICES};
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{DrawDescriptor, LampVariants, PassFactory, bind, storage};
+use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind, storage};
 use crate::render::gpu::shaders;
+use crate::render::gpu::variants::LampVariants;
 use crate::render::inputs::frustum::Frustum;
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec3Swizzles};
@@ -130,28 +131,15 @@ pub(crate) struct Terrain {
 
 impl Terrain {
     /// The ground pass for a map of `extent_m`.
-    pub(crate) fn new(factory: &PassFactory<'_>, extent_m: [f32; 2]) -> Self {
-        let module = factory.shader("terrain", shaders::TERRAIN, &[]);
+    pub(crate) fn new(factory: &PassFactory, extent_m: [f32; 2]) -> Self {
         let layout = factory.layout("terrain", &[storage(0)]);
-        let pipelines = LampVariants::new(|lamps| {
-            [false, true].map(|beyond| {
-                // Both share the vertex shader, so that they meet at the edge of the map to the bit.
-                let fragments = factory.shader("terrain", shaders::TERRAIN, &[lamps, ("reaches_beyond", beyond)]);
-                let draw = DrawDescriptor {
-                    label: "terrain",
-                    cull: Some(wgpu::Face::Back),
-                    fragment_module: Some(&fragments),
-                    ..DrawDescriptor::default()
-                };
-                factory.draw(&module, Some(&layout), &draw)
-            })
-        });
         let indices = tile_indices();
         let size = (TILE_LIMIT * size_of::<GroundTile>()) as u64;
         let tiles = factory.gpu.empty_buffer("tiles", size, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST);
-        let group = bind(factory.gpu, "terrain", &layout, &[tiles.as_entire_binding()]);
+        let group = bind(&factory.gpu, "terrain", &layout, &[tiles.as_entire_binding()]);
         let index_buffer = factory.gpu.buffer("tile", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
         let index_count = indices.len() as u32;
+        let pipelines = pipelines(factory.clone(), layout);
         Self { pipelines, extent_m: extent_m.into(), indices: index_buffer, index_count, tiles, ends: [0; 2], group }
     }
 
@@ -160,6 +148,11 @@ impl Terrain {
         self.ends = [sorted.len() as u32, tiles.len() as u32];
         sorted.extend(beyond);
         gpu.queue.write_buffer(&self.tiles, 0, bytemuck::cast_slice(&sorted));
+    }
+
+    /// Creates a variant of a pipeline that no frame has needed yet. Returns false if there is none.
+    pub(crate) fn create_next(&self) -> bool {
+        self.pipelines.create_next()
     }
 
     /// Vertices that [`draw`](Self::draw) submits.
@@ -176,6 +169,24 @@ impl Terrain {
             pass.draw_indexed(0..self.index_count, 0, tiles);
         }
     }
+}
+
+/// Pipelines for tiles on the map, and for those that reach beyond its edge.
+fn pipelines(factory: PassFactory, layout: wgpu::BindGroupLayout) -> LampVariants<[wgpu::RenderPipeline; 2]> {
+    LampVariants::new(move |[lamps]| {
+        // Both share the vertex shader, so that they meet at the edge of the map to the bit.
+        let vertices = factory.shader("terrain", shaders::TERRAIN, &[]);
+        [false, true].map(|beyond| {
+            let fragments = factory.shader("terrain", shaders::TERRAIN, &[lamps, ("reaches_beyond", beyond)]);
+            let draw = DrawDescriptor {
+                label: "terrain",
+                cull: Some(wgpu::Face::Back),
+                fragment_module: Some(&fragments),
+                ..DrawDescriptor::default()
+            };
+            factory.draw(&vertices, Some(&layout), &draw)
+        })
+    })
 }
 
 /// Two triangles per cell, anticlockwise as seen from above.

@@ -20,7 +20,7 @@ pub(crate) struct ToneMapping {
 
 impl ToneMapping {
     /// `supersampling`: rendered pixels along each side of a pixel of the target.
-    pub(crate) fn new(factory: &PassFactory<'_>, target: wgpu::TextureFormat, picture: &wgpu::TextureView, supersampling: u32) -> Self {
+    pub(crate) fn new(factory: &PassFactory, target: wgpu::TextureFormat, picture: &wgpu::TextureView, supersampling: u32) -> Self {
         let device = &factory.gpu.device;
         let module = factory.shader("tone", shaders::TONE, &[]);
         let (entry, binding) = if factory.samples > 1 { ("fs_sampled", 2) } else { ("fs", 0) };
@@ -31,7 +31,7 @@ impl ToneMapping {
         let settings = factory.gpu.buffer("tone", bytemuck::bytes_of(&contents), usage);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("tone"),
-            bind_group_layouts: &[Some(factory.frame_layout), Some(&layout)],
+            bind_group_layouts: &[Some(&factory.frame_layout), Some(&layout)],
             immediate_size: 0,
         });
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -50,7 +50,7 @@ impl ToneMapping {
             multiview_mask: None,
             cache: None,
         });
-        let group = group(factory.gpu, &layout, binding, picture, &settings);
+        let group = group(&factory.gpu, &layout, binding, picture, &settings);
         Self { pipeline, layout, binding, settings, group }
     }
 

@@ -1,5 +1,6 @@
 //! Level of detail of plants.
 
+use crate::camera::NEAR_M;
 use crate::render::options::render_options::FarPlants;
 use prairie_core::scene::Plants;
 
@@ -62,6 +63,11 @@ impl Detail {
     pub(crate) fn with(self, far_plants: FarPlants) -> Self {
         let blades_m = if far_plants == FarPlants::Land { self.blades_m } else { self.blades_m * 0.35 };
         Self { blades_m, ..self }
+    }
+
+    /// This detail while no blades are drawn: everywhere the land has the far look of its grass.
+    pub(crate) fn without_blades(self) -> Self {
+        Self { blades_m: 0.5 * NEAR_M, ..self }
     }
 }
 

@@ -61,8 +61,8 @@ pub(crate) struct Billboards {
 }
 
 impl Billboards {
-    pub(crate) fn new(factory: &PassFactory<'_>) -> Self {
-        let gpu = factory.gpu;
+    pub(crate) fn new(factory: &PassFactory) -> Self {
+        let gpu = &factory.gpu;
         let place_layout = factory.layout("billboard places", &[storage(0), uniform(1), storage_rw(4)]);
         let module = factory.shader("billboards", shaders::BILLBOARDS, &[]);
         let place = factory.compute("place", &module, "place", &place_layout);
@@ -91,7 +91,7 @@ impl Billboards {
     }
 
     /// Sets the blend order of the following frames.
-    pub(crate) fn set_order(&mut self, factory: &PassFactory<'_>, order: BlendOrder) {
+    pub(crate) fn set_order(&mut self, factory: &PassFactory, order: BlendOrder) {
         let lists = [&self.clumps, &self.list, &self.poses];
         self.pipelines.set(order, || ClumpPipelines::new(factory, order, CLUMP_LIMIT as u32, lists, &self.tufts));
     }

@@ -19,7 +19,7 @@ const OVER: wgpu::BlendState = blended(wgpu::BlendFactor::SrcAlpha, wgpu::BlendF
 
 /// Pipeline that draws plants over each other in an order.
 pub(crate) fn blend_pipeline(
-    factory: &PassFactory<'_>,
+    factory: &PassFactory,
     module: &wgpu::ShaderModule,
     own: Option<&wgpu::BindGroupLayout>,
     draw: &DrawDescriptor<'_>,

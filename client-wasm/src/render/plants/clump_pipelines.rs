@@ -48,13 +48,13 @@ struct Sorted {
 impl ClumpPipelines {
     /// Creates pipelines for at most `limit` clumps with poses `poses`.
     pub(crate) fn new(
-        factory: &PassFactory<'_>,
+        factory: &PassFactory,
         order: BlendOrder,
         limit: u32,
         [clumps, list, poses]: [&wgpu::Buffer; 3],
         tufts: &wgpu::TextureView,
     ) -> Self {
-        let gpu = factory.gpu;
+        let gpu = &factory.gpu;
         let module = factory.shader("billboards", shaders::BILLBOARDS, &[]);
         let sequence = match order {
             BlendOrder::Cut | BlendOrder::Coverage | BlendOrder::Weighted => DrawSequence::AsListed,
@@ -126,8 +126,8 @@ impl ClumpPipelines {
 }
 
 impl Sorted {
-    fn new(factory: &PassFactory<'_>, limit: u32, module: &wgpu::ShaderModule, clumps: &wgpu::Buffer, list: &wgpu::Buffer) -> Self {
-        let gpu = factory.gpu;
+    fn new(factory: &PassFactory, limit: u32, module: &wgpu::ShaderModule, clumps: &wgpu::Buffer, list: &wgpu::Buffer) -> Self {
+        let gpu = &factory.gpu;
         let sorter = Sorter::new(gpu);
         let count = gpu.empty_buffer("clump count", 4, BufferUsages::STORAGE | BufferUsages::COPY_DST);
         let sort = Sort::new(gpu, &sorter, &count, 0, limit, 2);

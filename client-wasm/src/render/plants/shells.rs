@@ -76,8 +76,8 @@ pub(crate) struct Shells {
 }
 
 impl Shells {
-    pub(crate) fn new(factory: &PassFactory<'_>, decoded: &DecodedScene, ground: &TerrainQuadtree) -> Self {
-        let gpu = factory.gpu;
+    pub(crate) fn new(factory: &PassFactory, decoded: &DecodedScene, ground: &TerrainQuadtree) -> Self {
+        let gpu = &factory.gpu;
         let layout = factory.layout("shells", &[uniform(1), storage(2), texture(3), storage(4)]);
         let settle_layout = factory.layout("turf", &[storage(0), uniform(1), storage_rw(5)]);
         let module = factory.shader("shells", shaders::SHELLS, &[]);

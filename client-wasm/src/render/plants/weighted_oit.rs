@@ -42,8 +42,8 @@ impl Target {
 }
 
 impl WeightedOit {
-    pub(crate) fn new(factory: &PassFactory<'_>, size_px: [u32; 2]) -> Self {
-        let gpu = factory.gpu;
+    pub(crate) fn new(factory: &PassFactory, size_px: [u32; 2]) -> Self {
+        let gpu = &factory.gpu;
         let layout = factory.layout("compose", &[texture(0), texture(1)]);
         let blend = Some(wgpu::BlendState::ALPHA_BLENDING);
         let draw = DrawDescriptor { label: "compose", depth_write: false, blend, ..DrawDescriptor::default() };

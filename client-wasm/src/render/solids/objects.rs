@@ -2,8 +2,9 @@
 
 use crate::render::gpu::constants::WORKGROUP_SIZE;
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{DrawDescriptor, LampVariants, PassFactory, bind, bind_as, storage, storage_rw, texture};
+use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind, bind_as, storage, storage_rw, texture};
 use crate::render::gpu::shaders;
+use crate::render::gpu::variants::LampVariants;
 use crate::render::inputs::frustum::CascadeVolume;
 use crate::render::inputs::viewpoint::Viewpoint;
 use crate::render::options::quality::Quality;
@@ -76,8 +77,8 @@ pub(crate) struct ObjectPasses {
 }
 
 impl ObjectPasses {
-    pub(crate) fn new(factory: &PassFactory<'_>, quality: Quality, decoded: &DecodedScene, placed: Vec<PlacedModel>) -> Self {
-        let gpu = factory.gpu;
+    pub(crate) fn new(factory: &PassFactory, quality: Quality, decoded: &DecodedScene, placed: Vec<PlacedModel>) -> Self {
+        let gpu = &factory.gpu;
         let meshes = ModelMeshes::new(gpu, decoded);
         let index = SpatialIndex::new(placed.into_iter().map(|placed| (placed, meshes.bounds_of(&placed))).collect());
         let module = factory.shader("objects", shaders::OBJECTS, &[]);
@@ -90,7 +91,7 @@ impl ObjectPasses {
         let resources = [instances.as_entire_binding(), wgpu::BindingResource::TextureView(&leaves), sways.as_entire_binding()];
         let sway_layout = factory.layout("blow", &[storage(0), storage_rw(3)]);
         Self {
-            pipelines: pipelines(factory, quality, &layout),
+            pipelines: pipelines(factory.clone(), quality, layout.clone()),
             shadow_pipelines: shadow_pipelines(factory, &module, &layout),
             group: bind(gpu, "objects", &layout, &resources),
             sway: factory.compute("blow", &module, "blow", &sway_layout),
@@ -195,6 +196,11 @@ impl ObjectPasses {
         }
     }
 
+    /// Creates a variant of a pipeline that no frame has needed yet. Returns false if there is none.
+    pub(crate) fn create_next(&self) -> bool {
+        self.pipelines.create_next()
+    }
+
     /// Triangles that [`draw`](Self::draw) submits.
     pub(crate) fn triangles(&self) -> u64 {
         self.picture_list.iter().map(|(mesh, instances)| self.meshes.triangles(*mesh) * instances.len() as u64).sum()
@@ -245,20 +251,20 @@ const VERTEX_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 1] = [Some(wgp
     attributes: &VERTEX_ATTRIBUTES,
 })];
 
-fn pipelines(factory: &PassFactory<'_>, quality: Quality, layout: &wgpu::BindGroupLayout) -> LampVariants<Pipelines> {
+fn pipelines(factory: PassFactory, quality: Quality, layout: wgpu::BindGroupLayout) -> LampVariants<Pipelines> {
     let draw = DrawDescriptor { label: "objects", buffers: &VERTEX_BUFFERS, ..DrawDescriptor::default() };
-    LampVariants::new(|lamps| {
+    LampVariants::new(move |[lamps]| {
         let [glossy_module, matte_module] =
             [true, false].map(|gloss| factory.shader("objects", shaders::OBJECTS, &[lamps, ("is_glossy", gloss)]));
-        let [glossy, matte] = [&glossy_module, &matte_module].map(|module| factory.draw(module, Some(layout), &draw));
+        let [glossy, matte] = [&glossy_module, &matte_module].map(|module| factory.draw(module, Some(&layout), &draw));
         let per_vertex = DrawDescriptor { vertex: "vs_afar", fragment: Some("fs_afar"), ..draw };
         let is_per_vertex = quality.lights_trees_at_vertices(factory.gpu.is_software);
-        let coarse_trees = if is_per_vertex { factory.draw(&matte_module, Some(layout), &per_vertex) } else { matte.clone() };
+        let coarse_trees = if is_per_vertex { factory.draw(&matte_module, Some(&layout), &per_vertex) } else { matte.clone() };
         Pipelines { glossy, matte, coarse_trees }
     })
 }
 
-fn shadow_pipelines(factory: &PassFactory<'_>, module: &wgpu::ShaderModule, layout: &wgpu::BindGroupLayout) -> [wgpu::RenderPipeline; 2] {
+fn shadow_pipelines(factory: &PassFactory, module: &wgpu::ShaderModule, layout: &wgpu::BindGroupLayout) -> [wgpu::RenderPipeline; 2] {
     ["vs_shadow", "vs_shadow_far"].map(|vertex| {
         let shadow =
             DrawDescriptor { label: "shadows", vertex, fragment: Some("fs_shadow"), buffers: &VERTEX_BUFFERS, ..DrawDescriptor::default() };

@@ -35,7 +35,7 @@ fn apart(a: &[u8], b: &[u8]) -> f64 {
 }
 
 fn blades(picture: &OffscreenRenderer) -> &Blades {
-    &picture.renderer.scene.as_ref().expect("a scene").blades
+    picture.renderer.scene.as_ref().and_then(|scene| scene.blades.as_ref()).expect("grass")
 }
 
 /// Roots (m) of the blades in the order in which they are drawn, and how many of them come before the fine ones.
@@ -133,7 +133,10 @@ fn resources_of_two_orders_side_by_side_are_created_once() {
         picture.draw_split(&mut mirror, &camera(), 1.0, 0.0, &Split { sides: ways, border: 0.5 });
         // The pairs that the right side has just been drawn with.
         let pairs = blades(&picture).strip_pipelines.get().ordered().expect("blades in order").pairs().clone();
-        (pairs, picture.renderer.scene.as_ref().expect("a scene").billboards.pipelines.get().pipeline.clone())
+        (
+            pairs,
+            picture.renderer.scene.as_ref().and_then(|scene| scene.billboards.as_ref()).expect("clumps").pipelines.get().pipeline.clone(),
+        )
     };
     let first = draw();
     assert!(draw() == first, "made anew");

@@ -5,7 +5,7 @@ use super::*;
 
 /// Rates of the near plants (rad/s, all links), 0 where there was none.
 fn rates(gpu: &Gpu, picture: &OffscreenRenderer) -> Vec<f32> {
-    let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").blades.sways);
+    let bytes = read(gpu, &picture.renderer.scene.as_ref().and_then(|scene| scene.blades.as_ref()).expect("grass").sways);
     let sways: &[[[f32; 4]; LINKS]] = bytemuck::cast_slice(&bytes);
     sways.iter().map(|links| links.iter().map(|[.., x, z]| x.hypot(*z)).sum()).collect()
 }
@@ -44,8 +44,10 @@ fn plants_out_of_view_are_not_bent() {
         let mut picture = OffscreenRenderer::new(&gpu, [64, 36], Quality::Low);
         picture.set_options(RenderOptions { culls, ..RenderOptions::default() });
         picture.draw(&mut meadow(0.0), &camera, 0.0, 0.0);
-        let counts: Vec<u32> =
-            bytemuck::pod_collect_to_vec(&read(&gpu, picture.renderer.scene.as_ref().expect("a scene").blades.in_view()));
+        let counts: Vec<u32> = bytemuck::pod_collect_to_vec(&read(
+            &gpu,
+            picture.renderer.scene.as_ref().and_then(|scene| scene.blades.as_ref()).expect("grass").in_view(),
+        ));
         [counts[0], counts[1]]
     };
     let ([near, far], [every_near, every_far]) = (standing(true), standing(false));

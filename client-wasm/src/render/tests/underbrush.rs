@@ -55,7 +55,7 @@ fn leaves_dip_under_raindrops() {
 }
 
 /// A species that grows wherever it can.
-fn grasses() -> Vec<Underbrush> {
+pub(super) fn grasses() -> Vec<Underbrush> {
     let leaf = Component { count: 6, sections: 3, length_m: 1.2, stiffness_n_m2: 0.1, ..Component::new("leaf", ComponentKind::Leaf) };
     vec![Underbrush { room_m: 0.3, needs: [0.0; 3], uptake: [0.0; 3], light_need: 0.0, ..Underbrush::new("grass", vec![leaf]) }]
 }
@@ -96,7 +96,7 @@ fn felt(picture: &mut OffscreenRenderer, gpu: &Gpu, mirror: &mut Mirror) -> Hash
     });
     let decoded = mirror.decoded_scene().expect("a scene");
     let (grown, _) = underbrush::tiles(decoded, decoded.flora().expect("underbrush"));
-    let bytes = read(gpu, &picture.renderer.scene.as_ref().expect("a scene").underbrush.as_ref().expect("underbrush").seen.responses);
+    let bytes = read(gpu, &picture.renderer.scene.as_ref().and_then(|scene| scene.underbrush.as_ref()).expect("underbrush").seen.responses);
     let responses: &[[f32; 8]] = bytemuck::cast_slice(&bytes);
     grown.iter().zip(responses).map(|(plant, response)| (plant.site, (plant.at_m, [response[0], response[1]]))).collect()
 }
@@ -152,7 +152,7 @@ fn passing_objects_push_plants_in_still_air() {
     mirror.apply(ServerMessage::Poses { tick: 1, objects: vec![car] }).expect("a sound pose");
     let mut picture = OffscreenRenderer::new(&gpu, [128; 2], Quality::Low);
     let felt = felt(&mut picture, &gpu, &mut mirror);
-    let field = &picture.renderer.scene.as_ref().expect("a scene").force_field.field;
+    let field = &picture.renderer.scene.as_ref().and_then(|scene| scene.force_field.as_ref()).expect("forces").field;
     let [west, _, north] = field.mesh().center_m([0; 3]);
     let (mut compared, mut strongest) = (0, 0.0_f32);
     for ([x, z], [east_pa, south_pa]) in felt.values().copied() {

@@ -52,7 +52,7 @@ impl BladeBuffers {
     /// Bind group of each list. Blades of one segment fill the space of the coarse ones from its end, far heads that of the near ones.
     pub(super) fn list_groups(
         &self,
-        factory: &PassFactory<'_>,
+        factory: &PassFactory,
         [fine, others, heads]: [u32; 3],
         segments: [u32; 2],
         shapes: &wgpu::TextureView,
@@ -68,7 +68,7 @@ impl BladeBuffers {
         lists.map(|list| {
             let list = factory.gpu.buffer("list", bytemuck::bytes_of(&list), BufferUsages::UNIFORM);
             let [drawn, counters, list] = [&self.drawn, &self.counters, &list].map(|buffer| buffer.as_entire_binding());
-            bind(factory.gpu, "plant list", &layout, &[drawn, counters, list, wgpu::BindingResource::TextureView(shapes)])
+            bind(&factory.gpu, "plant list", &layout, &[drawn, counters, list, wgpu::BindingResource::TextureView(shapes)])
         })
     }
 }

@@ -20,14 +20,8 @@ pub(super) struct PlantCulling {
 
 impl PlantCulling {
     /// Passes for `places` plants per near grid.
-    pub(super) fn new(
-        factory: &PassFactory<'_>,
-        shader: &wgpu::ShaderModule,
-        plants: &wgpu::Buffer,
-        grids: &FarGrids,
-        places: u32,
-    ) -> Self {
-        let gpu = factory.gpu;
+    pub(super) fn new(factory: &PassFactory, shader: &wgpu::ShaderModule, plants: &wgpu::Buffer, grids: &FarGrids, places: u32) -> Self {
+        let gpu = &factory.gpu;
         let most = u64::from(places) * NEAR_SLOTS as u64 + u64::from(grids.capacity) * u64::from(CHUNK);
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let standing = gpu.empty_buffer("standing plants", 4 * (COUNTS + most), usage | BufferUsages::COPY_SRC);

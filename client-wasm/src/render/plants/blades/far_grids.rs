@@ -38,8 +38,8 @@ pub(super) struct FarGrids {
 
 impl FarGrids {
     /// Pass for `places` plants per grid, listed at once or in batches.
-    pub(super) fn new(factory: &PassFactory<'_>, decoded: &DecodedScene, detail: &Detail, places: u32, by_batches: bool) -> Self {
-        let gpu = factory.gpu;
+    pub(super) fn new(factory: &PassFactory, decoded: &DecodedScene, detail: &Detail, places: u32, by_batches: bool) -> Self {
+        let gpu = &factory.gpu;
         let grid_m = decoded.scene().plants.grid_m;
         let side = side(detail, grid_m);
         let grids_per_batch = if by_batches { (BATCH_LIMIT / places.max(1)).max(1) } else { side * side };

@@ -24,7 +24,7 @@ pub(super) fn index_count(indices: &wgpu::Buffer) -> u32 {
 }
 
 /// Layout of the bind group of a draw list.
-pub(super) fn list_layout(factory: &PassFactory<'_>) -> wgpu::BindGroupLayout {
+pub(super) fn list_layout(factory: &PassFactory) -> wgpu::BindGroupLayout {
     factory.layout("plant list", &[storage(0), storage(1), uniform(2), texture(3)])
 }
 

@@ -13,9 +13,10 @@ mod strips;
 
 use crate::render::gpu::constants::{DRAW_WORDS, FINE_SPREAD};
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{DrawDescriptor, LampVariants, PassFactory, SphereVariants, storage_rw, uniform};
+use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, storage_rw, uniform};
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::{GridSlot, Plants};
+use crate::render::gpu::variants::{LampVariants, SphereVariants};
 use crate::render::inputs::viewpoint::Viewpoint;
 use crate::render::options::detail::{Detail, PLANTS_LIMIT, blades_per_grid};
 use crate::render::options::quality::Quality;
@@ -85,8 +86,8 @@ pub(crate) struct Blades {
 }
 
 impl Blades {
-    pub(crate) fn new(factory: &PassFactory<'_>, quality: Quality, decoded: &DecodedScene) -> Self {
-        let gpu = factory.gpu;
+    pub(crate) fn new(factory: &PassFactory, quality: Quality, decoded: &DecodedScene) -> Self {
+        let gpu = &factory.gpu;
         let plants = &decoded.scene().plants;
         let (detail, grid_m, places) = (quality.detail().on(plants), plants.grid_m, plants_per_grid(decoded));
         let (capacities, by_batches) = list_capacities(plants, &detail, places);
@@ -147,7 +148,7 @@ impl Blades {
     }
 
     /// Sets the blend order of the following frames.
-    pub(crate) fn set_order(&mut self, factory: &PassFactory<'_>, order: BlendOrder) {
+    pub(crate) fn set_order(&mut self, factory: &PassFactory, order: BlendOrder) {
         self.strip_pipelines.set(order, || StripPipelines::new(factory, order, &self.listed));
         let are_pointed = self.listed.are_pointed(order);
         if are_pointed != self.are_pointed {
@@ -268,6 +269,11 @@ impl Blades {
         }
     }
 
+    /// Creates a variant of a pipeline that no frame has needed yet. Returns false if there is none.
+    pub(crate) fn create_next(&self) -> bool {
+        self.bend.create_next() || self.strip_pipelines.get().create_next(self.fades) || self.heads.create_next()
+    }
+
     /// Draws the blades in the current blend order.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
         let strips = &self.indices.strips[usize::from(self.are_pointed)];
@@ -302,18 +308,19 @@ fn list_capacities(plants: &PlantSettings, detail: &Detail, places: u32) -> ([u3
     (if by_batches { wanted.map(|count| count.min(BATCH_LIMIT)) } else { wanted }, by_batches)
 }
 
-fn bend_pipelines(factory: &PassFactory<'_>, layout: &wgpu::BindGroupLayout) -> SphereVariants<[wgpu::ComputePipeline; 2]> {
-    SphereVariants::new(|constants| {
+fn bend_pipelines(factory: &PassFactory, layout: &wgpu::BindGroupLayout) -> SphereVariants<[wgpu::ComputePipeline; 2]> {
+    let (factory, layout) = (factory.clone(), layout.clone());
+    SphereVariants::new(move |constants| {
         let bend = factory.shader("bend", shaders::BEND, &constants);
-        ["bend_near", "bend_far"].map(|entry| factory.compute(entry, &bend, entry, layout))
+        ["bend_near", "bend_far"].map(|entry| factory.compute(entry, &bend, entry, &layout))
     })
 }
 
 /// Pipelines of near and of far flower heads.
-fn head_pipelines(factory: &PassFactory<'_>) -> LampVariants<[wgpu::RenderPipeline; 2]> {
-    let layout = list_layout(factory);
-    LampVariants::new(|lamps| {
-        let flowers = factory.shader("flowers", shaders::FLOWERS, &[lamps]);
+fn head_pipelines(factory: &PassFactory) -> LampVariants<[wgpu::RenderPipeline; 2]> {
+    let (factory, layout) = (factory.clone(), list_layout(factory));
+    LampVariants::new(move |lamps| {
+        let flowers = factory.shader("flowers", shaders::FLOWERS, &lamps);
         ["vs", "vs_disc"].map(|vertex| {
             let draw = DrawDescriptor { label: "flowers", vertex, ..DrawDescriptor::default() };
             factory.draw(&flowers, Some(&layout), &draw)
@@ -369,7 +376,7 @@ fn upper_bound(mean: f32) -> u32 {
 }
 
 /// Layout of the bind group of the bend passes.
-fn compute_layout(factory: &PassFactory<'_>) -> wgpu::BindGroupLayout {
+fn compute_layout(factory: &PassFactory) -> wgpu::BindGroupLayout {
     let entries =
         [uniform(0), storage_rw(1), storage_rw(2), storage_rw(3), storage_compute(4), storage_rw(5), storage_compute(6), storage_rw(7)];
     factory.layout("bend", &entries)

@@ -41,14 +41,14 @@ impl BladeSort {
     /// Sorts at most `capacities` fine and other `blades`; their numbers are read from `drawn`. `indices` are the indices of an instance of other and
     /// of fine blades.
     pub(super) fn new(
-        factory: &PassFactory<'_>,
+        factory: &PassFactory,
         keys: SortKeys,
         [blades, drawn]: [&wgpu::Buffer; 2],
         capacities: [u32; 2],
         indices: [u32; 2],
         grid_m: f32,
     ) -> Self {
-        let gpu = factory.gpu;
+        let gpu = &factory.gpu;
         let sorter = Sorter::new(gpu);
         let spans = gpu.empty_buffer("spans", SPANS * 4, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
         let all = capacities.iter().sum();

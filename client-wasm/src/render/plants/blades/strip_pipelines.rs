@@ -3,10 +3,10 @@
 use super::layout::list_layout;
 use super::sort::{BladeSort, SortKeys};
 use super::strips::strip_indices;
-use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{DrawDescriptor, LampVariants, PassFactory, bind, storage, texture, uniform};
+use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind, storage, texture, uniform};
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::StripList;
+use crate::render::gpu::variants::LampVariants;
 use crate::render::options::render_options::BlendOrder;
 use crate::render::plants::blending::blend_pipeline;
 use bytemuck::Zeroable;
@@ -45,7 +45,7 @@ struct InOrder {
 }
 
 impl StripPipelines {
-    pub(super) fn new(factory: &PassFactory<'_>, order: BlendOrder, listed: &BladeDrawList) -> Self {
+    pub(super) fn new(factory: &PassFactory, order: BlendOrder, listed: &BladeDrawList) -> Self {
         let list_layout = list_layout(factory);
         let in_order_layout = factory.layout("blades in order", &[storage(0), storage(1), uniform(2), texture(3), storage(4)]);
         let (layout, vertex) = match order {
@@ -60,10 +60,11 @@ impl StripPipelines {
         };
         let shape = [("is_textured", listed.are_textured), ("are_pointed", listed.are_pointed(order))];
         let strips = [false, true].map(|fades| {
-            LampVariants::new(|lamps| {
+            let (factory, layout) = (factory.clone(), layout.clone());
+            LampVariants::new(move |[lamps]| {
                 let module = factory.shader("blades", shaders::BLADES, &[shape[0], shape[1], ("fades", fades), lamps]);
                 let draw = DrawDescriptor { label: "blades", vertex, fragment: Some(fragment), ..DrawDescriptor::default() };
-                blend_pipeline(factory, &module, Some(layout), &draw, order)
+                blend_pipeline(&factory, &module, Some(&layout), &draw, order)
             })
         });
         let keys = match order {
@@ -77,6 +78,11 @@ impl StripPipelines {
     /// The sort of the blades, if they are drawn far to near.
     pub(crate) fn ordered(&self) -> Option<&BladeSort> {
         self.in_order.as_ref().map(|in_order| &in_order.ordered)
+    }
+
+    /// Creates a variant of a pipeline for blades that fade or not, which no frame has needed yet. Returns false if there is none.
+    pub(super) fn create_next(&self, fades: bool) -> bool {
+        self.strips[usize::from(fades)].create_next()
     }
 
     /// Draws all strips: sorted, or list by list through `lists`.
@@ -98,8 +104,8 @@ impl StripPipelines {
 }
 
 impl InOrder {
-    fn new(factory: &PassFactory<'_>, keys: SortKeys, layout: &wgpu::BindGroupLayout, listed: &BladeDrawList) -> Self {
-        let gpu: &Gpu = factory.gpu;
+    fn new(factory: &PassFactory, keys: SortKeys, layout: &wgpu::BindGroupLayout, listed: &BladeDrawList) -> Self {
+        let gpu = &factory.gpu;
         let [fine, others] = listed.segments;
         let segments = [others, fine];
         let indices = segments.map(|segments| strip_indices(segments, false));

@@ -59,9 +59,9 @@ pub(crate) struct TestBuffers {
 
 impl Underbrush {
     /// The underbrush of a scene; `None` if none grows.
-    pub(crate) fn new(factory: &PassFactory<'_>, quality: Quality, decoded: &DecodedScene, force_field: &CameraForceField) -> Option<Self> {
+    pub(crate) fn new(factory: &PassFactory, quality: Quality, decoded: &DecodedScene, force_field: &CameraForceField) -> Option<Self> {
         let flora = decoded.flora()?;
-        let gpu = factory.gpu;
+        let gpu = &factory.gpu;
         let (grown, tiles) = tiles(decoded, flora);
         if grown.is_empty() {
             return None;
@@ -172,6 +172,11 @@ impl Underbrush {
         if self.chunk_count > 0 {
             self.passes.bend(pass, &self.buffers, self.chunk_count, has_spheres, has_lamps);
         }
+    }
+
+    /// Creates a variant of a pipeline that no frame has needed yet. Returns false if there is none.
+    pub(crate) fn create_next(&self) -> bool {
+        self.passes.create_next()
     }
 
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {

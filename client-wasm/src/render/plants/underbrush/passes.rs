@@ -4,12 +4,11 @@ use super::layout::{BLOCK, CHUNK, COUNTER_BYTES, RESPONSE_BYTES, ROW_BYTES, VISI
 use super::lists::Lists;
 use super::tiles::UnderbrushPlant;
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{
-    DrawDescriptor, LampVariants, PassFactory, SphereVariants, bind_as, sampled, storage, storage_rw, uniform,
-};
+use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind_as, sampled, storage, storage_rw, uniform};
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::DrawnList;
 use crate::render::gpu::uniforms::UnderbrushFrame;
+use crate::render::gpu::variants::{LampVariants, SphereVariants};
 use crate::render::plants::force_field::CameraForceField;
 use prairie_core::plant::flora::Flora;
 use wgpu::BufferUsages;
@@ -99,7 +98,7 @@ pub(super) struct Passes {
 
 impl Passes {
     pub(super) fn new(
-        factory: &PassFactory<'_>,
+        factory: &PassFactory,
         buffers: &UnderbrushBuffers,
         lists: &Lists,
         force_field: &CameraForceField,
@@ -108,7 +107,7 @@ impl Passes {
         let module = factory.shader("underbrush", shaders::UNDERBRUSH, &[]);
         let step = |entry, entries: &[_], resources: &[_]| {
             let layout = factory.layout(entry, entries);
-            Step { pipeline: factory.compute(entry, &module, entry, &layout), group: bind_as(factory.gpu, entry, &layout, resources) }
+            Step { pipeline: factory.compute(entry, &module, entry, &layout), group: bind_as(&factory.gpu, entry, &layout, resources) }
         };
         let UnderbrushBuffers { frame, plants, chunks, sifted, sifted_groups, counters, owners, ribbon_groups, .. } = buffers;
         let list_layout = factory.layout("underbrush list", &[storage(11), storage(12), uniform(15), storage(24), uniform(25)]);
@@ -149,6 +148,11 @@ impl Passes {
         lists.indices.iter().map(list).collect()
     }
 
+    /// Creates a variant of a pipeline that no frame has needed yet. Returns false if there is none.
+    pub(super) fn create_next(&self) -> bool {
+        self.ribbons.pipeline.create_next() || self.stand.pipeline.create_next()
+    }
+
     /// Culls the plants of `chunk_count` chunks and bends the visible ones.
     pub(super) fn bend(
         &self,
@@ -175,7 +179,7 @@ impl Passes {
 
 /// The pass that computes forces and postures, and lists the plants.
 fn stand_step(
-    factory: &PassFactory<'_>,
+    factory: &PassFactory,
     buffers: &UnderbrushBuffers,
     lists: &Lists,
     force_field: &CameraForceField,
@@ -202,26 +206,32 @@ fn stand_step(
         resources.into_iter().chain([forces]).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
     let descriptor = wgpu::BindGroupDescriptor { label: Some("stand"), layout: &layout, entries: &entries };
     let group = factory.gpu.device.create_bind_group(&descriptor);
-    let shader = |lamps| factory.shader("underbrush", shaders::UNDERBRUSH, &[lamps]);
-    Step { pipeline: LampVariants::new(|lamps| factory.compute("stand", &shader(lamps), "stand", &layout)), group }
+    let factory = factory.clone();
+    let pipeline = LampVariants::new(move |lamps| {
+        let module = factory.shader("underbrush", shaders::UNDERBRUSH, &lamps);
+        factory.compute("stand", &module, "stand", &layout)
+    });
+    Step { pipeline, group }
 }
 
 /// The pass that bends and lights the rows of the ribbons.
 fn ribbon_step(
-    factory: &PassFactory<'_>,
+    factory: &PassFactory,
     buffers: &UnderbrushBuffers,
     lists: &Lists,
     rains: bool,
 ) -> Step<SphereVariants<wgpu::ComputePipeline>> {
     let layout = factory.layout("ribbons", &[read(10), read(13), read(14), uniform(15), read(16), read(21), storage_rw(23)]);
-    let pipeline = SphereVariants::new(|[lamps, spheres]| {
-        let module = factory.shader("underbrush", shaders::UNDERBRUSH, &[lamps, spheres, ("trembles", rains)]);
-        factory.compute("ribbons", &module, "ribbons", &layout)
-    });
     let Lists { steps, rows, settings, limbs, .. } = lists;
     let UnderbrushBuffers { visible_plants, owners, borders, .. } = buffers;
     let resources = [(10, visible_plants), (13, steps), (14, rows), (15, settings), (16, limbs), (21, owners), (23, borders)];
-    Step { pipeline, group: bind_as(factory.gpu, "ribbons", &layout, &resources) }
+    let group = bind_as(&factory.gpu, "ribbons", &layout, &resources);
+    let factory = factory.clone();
+    let pipeline = SphereVariants::new(move |[lamps, spheres]| {
+        let module = factory.shader("underbrush", shaders::UNDERBRUSH, &[lamps, spheres, ("trembles", rains)]);
+        factory.compute("ribbons", &module, "ribbons", &layout)
+    });
+    Step { pipeline, group }
 }
 
 fn read(binding: u32) -> wgpu::BindGroupLayoutEntry {
