@@ -58,6 +58,7 @@ async fn started(prairie: &Prairie, script: &str) -> Result<Browser> {
     browser.run_first(script).await?;
     browser.go(&format!("http://{}/?quality=low&panel=0&name=Ada", prairie.addr)).await?;
     browser.until("window.prairie.state()?.complete_picture_secs").await?;
+    browser.until("window.events.includes('no message')").await?;
     Ok(browser)
 }
 
