@@ -68,11 +68,9 @@ impl<'a> View<'a> {
         poses: &[ObjectPose],
         headlights: &[SpotLight],
     ) -> Frame {
-        let scene = decoded.scene();
-        let (eye, overcast) = (self.camera.eye_m, overcast(decoded));
+        let (scene, eye, overcast) = (decoded.scene(), self.camera.eye_m, overcast(decoded));
         let [wraps_x, _, wraps_z] = scene.wind.faces.wraps().map(u32::from);
         let (mean_wind, [past_ages_secs @ .., youngest_past]) = (MeanWind::of(scene.wind.mean_m_per_s), atlas.past());
-        let fades_from = if self.quality == Quality::Reference { 0.999 } else { 0.72 };
         let lamps = lamps(scene, decoded.heights(), headlights, self.sun.elevation_rad, daylight.brightness(), eye);
         let spheres = spheres(&scene.objects, poses, eye);
         Frame {
@@ -107,7 +105,7 @@ impl<'a> View<'a> {
             blade_width_m: scene.plants.width_m,
             leaf_area: leaf_area(&scene.plants),
             full_density_m: self.detail.full_m,
-            blades_fade_from_m: self.detail.blades_m * fades_from,
+            blades_fade_from_m: self.detail.blades_m * if self.quality == Quality::Reference { 0.999 } else { 0.72 },
             blades_end_m: self.detail.blades_m,
             far_fade_from_m: self.detail.far_m * 0.6,
             far_end_m: self.detail.far_m,
