@@ -85,17 +85,18 @@ impl JournaledWorld {
 }
 
 impl Journal {
-    /// Begins a generation with a checkpoint. Without room in a queue the next attempt follows later.
+    /// Begins a generation with a checkpoint. While the one before is still being written, the next attempt follows later.
     fn begin(&mut self, world: &World) {
         let copying = Instant::now();
-        let state = world.save();
-        self.health.copy_max_us.fetch_max(copying.elapsed().as_micros() as u64, Relaxed);
-        (self.begun, self.computed) = (Instant::now(), Duration::ZERO);
-        if self.writer.keep(self.generation, state) {
+        if let Some(mut state) = self.writer.spare_state() {
+            world.save_into(&mut state);
+            self.health.copy_max_us.fetch_max(copying.elapsed().as_micros() as u64, Relaxed);
+            self.writer.keep(self.generation, state);
             self.has_gap = !self.writer.enter(Entry::Begin { generation: self.generation, tick: world.tick() });
             self.generation += 1;
             self.unchanged = Unchanged::default();
         }
+        (self.begun, self.computed) = (Instant::now(), Duration::ZERO);
     }
 
     fn note(&mut self, world: &World, commands: &[Command], took: Duration) {
@@ -120,7 +121,7 @@ impl Drop for JournaledWorld {
         if let Some(journal) = &mut self.journal {
             let (generation, tick) = (journal.generation, self.world.tick());
             if !journal.health.is_broken.load(Relaxed) && journal.writer.enter(Entry::Begin { generation, tick }) {
-                journal.writer.keep_last(generation, self.world.save());
+                journal.writer.keep(generation, self.world.save());
             }
         }
     }

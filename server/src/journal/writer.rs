@@ -30,6 +30,8 @@ pub(super) enum Entry {
 pub(super) struct Writer {
     entries: Option<SyncSender<Entry>>,
     states: Option<SyncSender<(u64, WorldState)>>,
+    /// States that have been written, whose memory serves for the next.
+    written: Receiver<WorldState>,
     threads: Vec<JoinHandle<()>>,
 }
 
@@ -37,17 +39,19 @@ impl Writer {
     /// Starts the threads.
     pub(super) fn start(folder: Folder, limit_bytes: u64, health: Arc<Health>) -> Result<Self, JournalError> {
         let (entries, inbox) = sync_channel(STEP_CAPACITY);
-        // A checkpoint that waits while another is being written would only take memory.
         let (states, state_inbox) = sync_channel(1);
+        // One state is copied or written at a time; another would only take memory.
+        let (returned, written) = sync_channel(1);
+        let _ = returned.try_send(WorldState::default());
         let folder = Arc::new(folder);
         let spawn = |name: &str, run: Box<dyn FnOnce() + Send>| Builder::new().name(name.to_owned()).spawn(run);
         let segments = Segments { folder: folder.clone(), health: health.clone(), writer: None, synced: Instant::now() };
         let threads = [
             spawn("journal", Box::new(move || segments.run(&inbox))),
-            spawn("checkpoint", Box::new(move || write_checkpoints(&folder, limit_bytes, &health, &state_inbox))),
+            spawn("checkpoint", Box::new(move || write_checkpoints(&folder, limit_bytes, &health, &state_inbox, &returned))),
         ];
         let threads = threads.into_iter().collect::<io::Result<_>>().map_err(JournalError::Threads)?;
-        Ok(Self { entries: Some(entries), states: Some(states), threads })
+        Ok(Self { entries: Some(entries), states: Some(states), written, threads })
     }
 
     /// Queues an entry; false if the queue is full.
@@ -55,13 +59,13 @@ impl Writer {
         self.entries.as_ref().is_some_and(|entries| entries.try_send(entry).is_ok())
     }
 
-    /// Queues the state at the beginning of a generation; false if the one before is still being written.
-    pub(super) fn keep(&self, generation: u64, state: WorldState) -> bool {
-        self.states.as_ref().is_some_and(|states| states.try_send((generation, state)).is_ok())
+    /// Memory for the next state; `None` while the one before is still being written.
+    pub(super) fn spare_state(&self) -> Option<WorldState> {
+        self.written.try_recv().ok()
     }
 
     /// Queues the state at the beginning of a generation, after the one before.
-    pub(super) fn keep_last(&self, generation: u64, state: WorldState) {
+    pub(super) fn keep(&self, generation: u64, state: WorldState) {
         if let Some(states) = &self.states {
             // An error means that the thread has panicked, which the log says.
             let _ = states.send((generation, state));
@@ -161,13 +165,18 @@ impl Segments {
     }
 }
 
-/// Writes checkpoints as they come.
-fn write_checkpoints(folder: &Folder, limit_bytes: u64, health: &Health, inbox: &Receiver<(u64, WorldState)>) {
+/// Writes checkpoints as they come, and returns the states.
+fn write_checkpoints(
+    folder: &Folder,
+    limit_bytes: u64,
+    health: &Health,
+    inbox: &Receiver<(u64, WorldState)>,
+    returned: &SyncSender<WorldState>,
+) {
     for (generation, state) in inbox {
         let begun = Instant::now();
         let tick = state.tick();
         let bytes = seal_checkpoint(&state);
-        drop(state);
         match folder.write_checkpoint(generation, &bytes).and_then(|()| folder.prune(limit_bytes)) {
             Ok(()) => {
                 health.succeed();
@@ -175,5 +184,7 @@ fn write_checkpoints(folder: &Folder, limit_bytes: u64, health: &Health, inbox: 
             }
             Err(error) => health.fail("a checkpoint of the world", &error),
         }
+        // Without room, the last state of a world that ends came after another.
+        let _ = returned.try_send(state);
     }
 }

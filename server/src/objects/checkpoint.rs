@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A copy of the state of [`Objects`]: all of the physics, with the colliders of the terrain near the objects, and the drivers.
-#[derive(Serialize, Deserialize)]
+#[derive(Default, Serialize, Deserialize)]
 pub struct ObjectsState {
     physics: PhysicsWorld,
     vehicles: Vec<VehicleState>,

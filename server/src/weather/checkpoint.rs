@@ -11,7 +11,7 @@ use prairie_wind::{AirState, StepReport};
 use serde::{Deserialize, Serialize};
 
 /// A copy of the state of [`Weather`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WeatherState {
     air: AirState<f32>,
     resets: u64,
@@ -42,17 +42,15 @@ pub enum WeatherRestoreError {
 }
 
 impl Weather {
-    /// A copy of the state.
-    pub fn state(&self) -> WeatherState {
+    /// Copies the state into `state`, whose memory is used again.
+    pub fn save_into(&self, state: &mut WeatherState) {
         let StepReport { courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps } =
             self.report;
-        WeatherState {
-            air: self.air.state(),
-            resets: self.resets,
-            turbulence: self.turbulence,
-            frame: (self.frame.tick, self.frame.turbulence, self.frame.codes.clone()),
-            report: (courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps),
-        }
+        self.air.save_into(&mut state.air);
+        (state.resets, state.turbulence) = (self.resets, self.turbulence);
+        (state.frame.0, state.frame.1) = (self.frame.tick, self.frame.turbulence);
+        state.frame.2.clone_from(&self.frame.codes);
+        state.report = (courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps);
     }
 
     /// The weather of `scene` in a state that it had before; without a warm-up.

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 /// A copy of the whole state of a [`World`]; the scene and its maps are not part of it. Taking it costs a copy of the memory that the state occupies, encoding
 /// it several times that.
-#[derive(Serialize, Deserialize)]
+#[derive(Default, Serialize, Deserialize)]
 pub struct WorldState {
     tick: u64,
     newest_client: u32,
@@ -71,16 +71,20 @@ impl WorldState {
 impl World {
     /// A copy of the whole state.
     pub fn save(&self) -> WorldState {
-        WorldState {
-            tick: self.tick,
-            newest_client: self.newest_client,
-            departed: self.departed.clone(),
-            cameras: self.cameras.clone(),
-            objects: self.objects.state(),
-            weather: self.weather.state(),
-            bend: self.bend.state(),
-            broken: self.plants.broken().clone(),
-        }
+        let mut state = WorldState::default();
+        self.save_into(&mut state);
+        state
+    }
+
+    /// Copies the whole state into `state`, whose memory is used again: fresh memory costs several times the copy.
+    pub fn save_into(&self, state: &mut WorldState) {
+        (state.tick, state.newest_client) = (self.tick, self.newest_client);
+        state.departed.clone_from(&self.departed);
+        state.cameras.clone_from(&self.cameras);
+        state.objects = self.objects.state();
+        self.weather.save_into(&mut state.weather);
+        self.bend.save_into(&mut state.bend);
+        state.broken.clone_from(self.plants.broken());
     }
 
     /// The world of a scene in a state that it had before. It continues with the same bits as the original, on any number of threads.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// A complete copy of [`Air`]. Unlike [`State`](super::State) it includes ghosts and the first guess of an iterative pressure solver, so that air with the same
 /// settings continues bit for bit with every scheme. Solid cells are settings.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct AirState<R> {
     /// Time since the start (s).
     pub time_secs: f64,
@@ -17,6 +17,19 @@ pub struct AirState<R> {
     pub fields: Vec<Vec<R>>,
     /// Potential of the last pressure solve; empty where no solve begins with it.
     pub potential: Vec<f64>,
+}
+
+/// Copies lists into others, whose memory is used again.
+fn copy_into<'a, R: Real>(copies: &mut Vec<Vec<R>>, lists: impl Iterator<Item = &'a Vec<R>>) {
+    let mut count = 0;
+    for list in lists {
+        if count == copies.len() {
+            copies.push(Vec::new());
+        }
+        copies[count].clone_from(list);
+        count += 1;
+    }
+    copies.truncate(count);
 }
 
 /// Sets lists from others of the same lengths; changes nothing if a length differs.
@@ -34,15 +47,12 @@ fn lists<'a, R>(velocities: [&'a mut Velocity<R>; 2], others: impl Iterator<Item
 }
 
 impl<R: Real> Solver<R> {
-    fn complete_state(&self) -> AirState<R> {
+    fn save_completely_into(&self, state: &mut AirState<R>) {
         let velocities = [&self.velocity, &self.pressure_gradient].into_iter().flat_map(|velocity| &velocity.0);
-        let fields = velocities.chain(&self.dust).map(|field| field.data.clone()).chain([self.canopy_fraction.clone()]).collect();
-        AirState {
-            time_secs: self.time_secs,
-            sponge_m: self.sponge_m,
-            fields,
-            potential: self.projection.guess().map(<[f64]>::to_vec).unwrap_or_default(),
-        }
+        copy_into(&mut state.fields, velocities.chain(&self.dust).map(|field| &field.data).chain([&self.canopy_fraction]));
+        state.potential.clear();
+        state.potential.extend_from_slice(self.projection.guess().unwrap_or_default());
+        (state.time_secs, state.sponge_m) = (self.time_secs, self.sponge_m);
     }
 
     fn restore_completely(&mut self, state: &AirState<R>) -> Result<(), StateError> {
@@ -62,10 +72,11 @@ impl<R: Real> Solver<R> {
 }
 
 impl<R: Real> StableFluids<R> {
-    fn complete_state(&self) -> AirState<R> {
+    fn save_completely_into(&self, state: &mut AirState<R>) {
         let velocities = [&self.velocity, &self.before].into_iter().flat_map(|velocity| &velocity.0);
-        let fields = velocities.chain([&self.p]).chain(&self.dust).map(|field| field.data.clone()).collect();
-        AirState { time_secs: self.time_secs, sponge_m: self.sponge_m, fields, potential: Vec::new() }
+        copy_into(&mut state.fields, velocities.chain([&self.p]).chain(&self.dust).map(|field| &field.data));
+        state.potential.clear();
+        (state.time_secs, state.sponge_m) = (self.time_secs, self.sponge_m);
     }
 
     fn restore_completely(&mut self, state: &AirState<R>) -> Result<(), StateError> {
@@ -79,9 +90,16 @@ impl<R: Real> StableFluids<R> {
 impl<R: Real> Air<R> {
     /// A complete copy of the state.
     pub fn state(&self) -> AirState<R> {
+        let mut state = AirState::default();
+        self.save_into(&mut state);
+        state
+    }
+
+    /// Copies the complete state into `state`, whose memory is used again.
+    pub fn save_into(&self, state: &mut AirState<R>) {
         match self {
-            Self::Staggered(air) => air.complete_state(),
-            Self::StableFluids(air) => air.complete_state(),
+            Self::Staggered(air) => air.save_completely_into(state),
+            Self::StableFluids(air) => air.save_completely_into(state),
         }
     }
 

@@ -1,116 +1,143 @@
 //! Copies of a field's state, from which it continues bit for bit.
 
+use super::Field;
 use super::halo::Seams;
 use super::patch::Patch;
 use super::tiles::{TILE, Tiles};
-use super::{CHANNELS, Field};
 use crate::grid::PatchIndex;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 use thiserror::Error;
 
 /// A copy of a [`Field`]'s state. Layout, kinds of grass and settings are not part of it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FieldState {
     dt_secs: Option<f32>,
     revision: u64,
-    patches: Vec<PatchState>,
-}
-
-/// A copy of the state of one awake patch.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PatchState {
-    index: PatchIndex,
-    tiles: Tiles,
-    /// With exact seams, the cells of the tiles that may not be at rest, tile by tile, row by row, channels at both times; ghosts are fetched from the
+    /// Index and tiles of each awake patch, ascending.
+    patches: Vec<(PatchIndex, Tiles)>,
+    /// Patch by patch. With exact seams, the rows of cells, without those of tiles at rest, in each row channels at both times; ghosts are fetched from the
     /// neighbours before the next step. With overlapping seams, whose ghosts are their own, all planes.
     values: Vec<f32>,
 }
 
-/// The state of a field of another layout.
+/// Reason why the state of a field cannot be restored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("patch {patch} does not fit the field")]
-pub struct StateError {
-    /// Index of the patch.
-    pub patch: PatchIndex,
+pub enum StateError {
+    /// A patch is outside the world, has another size or fewer values, or does not follow the one before.
+    #[error("patch {0} does not fit the field")]
+    Patch(PatchIndex),
+    /// More patches are awake than the field allows.
+    #[error("{awake} patches are awake; allowed: at most {limit}")]
+    Awake {
+        /// Number of awake patches.
+        awake: usize,
+        /// Largest number.
+        limit: usize,
+    },
+    /// There are more values than the patches have.
+    #[error("{0} values belong to no patch")]
+    Values(usize),
+    /// The flattened grass of a patch is outside the world, has another size, or does not follow the one before.
+    #[error("the flattened grass of patch {0} does not fit the field")]
+    Flattened(PatchIndex),
 }
 
 impl Field {
+    /// Copies the state into `state`, whose memory is used again.
+    pub fn save_into(&self, state: &mut FieldState) {
+        let FieldState { dt_secs, revision, patches, values } = state;
+        (*dt_secs, *revision) = (self.dt_secs, self.revision.0);
+        patches.clear();
+        patches.extend(self.patches.iter().map(|patch| (patch.index(), patch.tiles.clone())));
+        values.clear();
+        self.patches.iter().for_each(|patch| patch.save(self.seams, values));
+    }
+
     /// A copy of the state.
     pub fn state(&self) -> FieldState {
-        let patch = |patch: &Patch| PatchState { index: patch.index(), tiles: patch.tiles.clone(), values: patch.saved(self.seams) };
-        FieldState { dt_secs: self.dt_secs, revision: self.revision.0, patches: self.patches.iter().map(patch).collect() }
+        let mut state = FieldState::default();
+        self.save_into(&mut state);
+        state
     }
 
     /// Restores a copy of a field with the same layout, kinds and settings. Later steps are bit-identical to those of the original.
     ///
     /// # Errors
-    /// [`StateError`] when a patch has another size or is outside the world; the field is then partly restored.
+    /// [`StateError`] when the state does not fit the field; the field is then partly restored.
     pub fn restore(&mut self, state: FieldState) -> Result<(), StateError> {
+        let FieldState { dt_secs, revision, patches, values } = state;
+        if patches.len() > self.awake_limit {
+            return Err(StateError::Awake { awake: patches.len(), limit: self.awake_limit });
+        }
         self.patches.clear();
-        (self.dt_secs, self.revision.0) = (state.dt_secs, state.revision);
-        for PatchState { index, tiles, values } in state.patches {
-            let error = Err(StateError { patch: index });
-            if index as usize >= self.layout.patches() || !tiles.fits(self.layout.cells as usize) {
-                return error;
+        (self.dt_secs, self.revision.0) = (dt_secs, revision);
+        let mut values = values.as_slice();
+        for (index, tiles) in patches {
+            let follows = self.patches.last().is_none_or(|last| last.index() < index);
+            if !follows || index as usize >= self.layout.patches() || !tiles.fits(self.layout.cells as usize) {
+                return Err(StateError::Patch(index));
             }
             let seams = self.seams;
-            if !self.wake(index).restore(seams, tiles, &values) {
-                return error;
-            }
+            values = self.wake(index).restore(seams, tiles, values).ok_or(StateError::Patch(index))?;
         }
-        Ok(())
+        if values.is_empty() { Ok(()) } else { Err(StateError::Values(values.len())) }
     }
 }
 
 impl Patch {
-    fn saved(&self, seams: Seams) -> Vec<f32> {
+    fn save(&self, seams: Seams, values: &mut Vec<f32>) {
         let planes = self.now.iter().chain(&self.before);
-        if seams == Seams::Overlap {
-            return planes.flatten().copied().collect();
+        for part in self.saved_parts(seams) {
+            planes.clone().for_each(|plane| values.extend_from_slice(&plane[part.clone()]));
         }
-        let rows = self.rows_of_moving_tiles();
-        let mut values = Vec::with_capacity(rows.len() * 2 * CHANNELS * TILE);
-        for row in rows {
-            planes.clone().for_each(|plane| values.extend_from_slice(&plane[row..row + TILE]));
-        }
-        values
     }
 
-    /// Sets the state of a patch at rest; false if the number of values is wrong, with the patch unchanged but for its tiles.
-    fn restore(&mut self, seams: Seams, tiles: Tiles, values: &[f32]) -> bool {
+    /// Sets the state of a patch at rest from the first of the values; the others, or `None` when there are too few.
+    fn restore<'a>(&mut self, seams: Seams, tiles: Tiles, mut values: &'a [f32]) -> Option<&'a [f32]> {
         self.tiles = tiles;
-        let rows = self.rows_of_moving_tiles();
+        let parts = self.saved_parts(seams);
         let mut planes: Vec<_> = self.now.iter_mut().chain(&mut self.before).collect();
-        if seams == Seams::Overlap {
-            let plane_len = planes[0].len();
-            let fits = values.len() == planes.len() * plane_len;
-            if fits {
-                planes.iter_mut().zip(values.chunks_exact(plane_len)).for_each(|(plane, values)| plane.copy_from_slice(values));
-            }
-            return fits;
-        }
-        let fits = values.len() == rows.len() * planes.len() * TILE;
-        if fits {
-            let mut values = values.chunks_exact(TILE);
-            for row in rows {
-                planes.iter_mut().zip(&mut values).for_each(|(plane, values)| plane[row..row + TILE].copy_from_slice(values));
+        for part in parts {
+            for plane in &mut planes {
+                let own;
+                (own, values) = values.split_at_checked(part.len())?;
+                plane[part.clone()].copy_from_slice(own);
             }
         }
-        fits
+        Some(values)
     }
 
-    /// Indices in the planes of the rows of all tiles that may not be at rest.
-    fn rows_of_moving_tiles(&self) -> Vec<usize> {
+    /// Ranges in the planes that a state has: rows of cells in runs of tiles that may not be at rest, or everything.
+    fn saved_parts(&self, seams: Seams) -> Vec<Range<usize>> {
+        if seams == Seams::Overlap {
+            return vec![0..self.now[0].len()];
+        }
         let count = self.tiles.count();
-        let tiles = (0..count).flat_map(|z| (0..count).map(move |x| (x, z)));
-        let moving = tiles.filter(|&(x, z)| self.tiles.holds(x, z) || self.tiles.steps(x as i64, z as i64));
-        moving.flat_map(|(x, z)| (0..TILE).map(move |row| self.at((x * TILE) as i64, (z * TILE + row) as i64))).collect()
+        let mut parts = vec![];
+        for z in 0..count {
+            let moves = |x: &usize| self.tiles.holds(*x, z) || self.tiles.steps(*x as i64, z as i64);
+            let mut runs: Vec<Range<usize>> = vec![];
+            for x in (0..count).filter(moves) {
+                match runs.last_mut().filter(|run| run.end == x) {
+                    Some(run) => run.end = x + 1,
+                    None => runs.push(x..x + 1),
+                }
+            }
+            for row in z * TILE..(z + 1) * TILE {
+                parts.extend(runs.iter().map(|run| {
+                    let begin = self.at((run.start * TILE) as i64, row as i64);
+                    begin..begin + run.len() * TILE
+                }));
+            }
+        }
+        parts
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Bend, Kinds, Rest, Scheme, Serial, WaveParams};
+    use super::super::{Bend, CHANNELS, Kinds, Rest, Scheme, Serial, WaveParams};
     use super::*;
     use crate::grid::PatchLayout;
 
@@ -174,24 +201,43 @@ mod tests {
         assert!(field.state().patches.is_empty(), "all patches sleep");
         field.wake(5);
         field.press([20, 21], Bend { theta: 0.6, omega: [3.0, -1.0] });
-        let values = |field: &Field| field.state().patches.iter().map(|patch| patch.values.len()).sum::<usize>();
-        assert_eq!(values(&field), TILE * TILE * 2 * CHANNELS, "one tile of four");
+        assert_eq!(field.state().values.len(), TILE * TILE * 2 * CHANNELS, "one tile of four");
     }
 
     #[test]
-    fn states_of_other_sizes_are_rejected() {
+    fn a_state_is_saved_into_the_memory_of_another() {
+        let mut original = field(4);
+        run(&mut original, Scheme::Substepped, 0..50);
+        let mut state = original.state();
+        let capacity = state.values.capacity();
+        run(&mut original, Scheme::Substepped, 50..60);
+        original.save_into(&mut state);
+        assert!(state == original.state() && state.values.capacity() == capacity);
+    }
+
+    #[test]
+    fn states_that_do_not_fit_are_rejected() {
         let mut original = field(4);
         run(&mut original, Scheme::Substepped, 0..20);
-        assert_eq!(field(2).restore(original.state()), Err(StateError { patch: 4 }), "of a larger field");
+        let state = original.state();
+        assert_eq!(field(2).restore(state.clone()), Err(StateError::Patch(4)), "of a larger field");
+        let awake = state.patches.len();
+        assert!(awake > 1);
+        let error = field(4).with_awake_limit(awake - 1).restore(state.clone());
+        assert_eq!(error, Err(StateError::Awake { awake, limit: awake - 1 }));
+        let last = state.patches[awake - 1].0;
+        let mut twice = state.clone();
+        twice.patches.push(state.patches[awake - 1].clone());
+        assert_eq!(field(4).restore(twice), Err(StateError::Patch(last)), "twice the same patch");
         for seams in [Seams::Exact, Seams::Overlap] {
             let mut original = field(4).with_seams(seams);
             run(&mut original, Scheme::Substepped, 0..20);
-            for change in [-1_isize, 1] {
-                let mut state = original.state();
-                let (index, len) = (state.patches[0].index, state.patches[0].values.len());
-                state.patches[0].values.resize(len.saturating_add_signed(change), 0.0);
-                assert_eq!(field(4).with_seams(seams).restore(state), Err(StateError { patch: index }), "{seams:?}, {change}");
-            }
+            let mut state = original.state();
+            let last = state.patches.last().unwrap().0;
+            state.values.push(0.0);
+            assert_eq!(field(4).with_seams(seams).restore(state.clone()), Err(StateError::Values(1)), "{seams:?}");
+            state.values.truncate(state.values.len() - 2);
+            assert_eq!(field(4).with_seams(seams).restore(state), Err(StateError::Patch(last)), "{seams:?}");
         }
     }
 }

@@ -70,7 +70,7 @@ mod tridiagonal;
 mod verlet;
 mod wind;
 
-pub use checkpoint::{FieldState, PatchState, StateError};
+pub use checkpoint::{FieldState, StateError};
 pub use executor::{Executor, Serial};
 pub use field::Field;
 pub use halo::{Edges, Seams};

@@ -8,9 +8,12 @@ use super::causes::Limits;
 use super::vector::length;
 use crate::bend::TILE;
 use crate::grid::{PatchIndex, PatchLayout};
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f32::consts::PI;
+
+mod checkpoint;
+
+pub use checkpoint::FlattenedState;
 
 /// Memory of a tile, with its entry in the list (bytes).
 pub const TILE_BYTES: usize = size_of::<FlattenedTile>() + size_of::<Option<Box<FlattenedTile>>>();
@@ -63,56 +66,11 @@ struct FlattenedTile {
     leans: [[i16; 2]; TILE * TILE],
 }
 
-/// A copy of the state of [`FlattenedGrass`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FlattenedState {
-    now_secs: f64,
-    revision: u64,
-    dropped: u64,
-    /// Index of each patch, the revision in which it last changed, and its tiles.
-    patches: Vec<(PatchIndex, u64, Vec<TileState>)>,
-}
-
-/// Position of a tile in its patch, time of writing (s) and leans in quanta.
-type TileState = (u16, f64, Vec<[i16; 2]>);
-
 impl FlattenedGrass {
     /// No flattened grass. Leans decay to 1/e in `recovery_secs`. At most `tile_limit` tiles are kept after each step.
     pub fn new(layout: PatchLayout, recovery_secs: f32, tile_limit: usize) -> Self {
         let clock = Clock { now_secs: 0.0, recovery_secs: recovery_secs.into() };
         Self { layout, clock, tile_limit, revision: 0, patches: BTreeMap::new(), dropped: 0 }
-    }
-
-    /// A copy of the state.
-    pub fn state(&self) -> FlattenedState {
-        let tiles = |patch: &FlattenedPatch| {
-            let tiles = patch.tiles.iter().enumerate().filter_map(|(at, tile)| Some((at, tile.as_deref()?)));
-            tiles.map(|(at, tile)| (at as u16, tile.since_secs, tile.leans.to_vec())).collect()
-        };
-        FlattenedState {
-            now_secs: self.clock.now_secs,
-            revision: self.revision,
-            dropped: self.dropped,
-            patches: self.patches.iter().map(|(&index, patch)| (index, patch.changed_in, tiles(patch))).collect(),
-        }
-    }
-
-    /// Restores a copy of the state in a world of the same layout.
-    pub fn restore(&mut self, state: FlattenedState) {
-        let across = self.tiles_across();
-        (self.clock.now_secs, self.revision, self.dropped) = (state.now_secs, state.revision, state.dropped);
-        let patch = |(index, changed_in, states): (PatchIndex, u64, Vec<TileState>)| {
-            let mut tiles = vec![None; across * across];
-            let count = states.len();
-            for (at, since_secs, leans) in states {
-                let tile = leans.try_into().map(|leans| Box::new(FlattenedTile { since_secs, leans }));
-                if let (Some(place), Ok(tile)) = (tiles.get_mut(usize::from(at)), tile) {
-                    *place = Some(tile);
-                }
-            }
-            (index, FlattenedPatch { tiles, count, changed_in })
-        };
-        self.patches = state.patches.into_iter().map(patch).collect();
     }
 
     /// Simulated time (s) since the grass was at rest.

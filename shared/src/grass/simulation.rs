@@ -50,7 +50,7 @@ pub struct BendSimulation {
 }
 
 /// A copy of the state of a [`BendSimulation`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BendState {
     field: FieldState,
     flattened: FlattenedState,
@@ -221,26 +221,28 @@ impl BendSimulation {
 
     /// A copy of the state.
     pub fn state(&self) -> BendState {
-        BendState {
-            field: self.field.state(),
-            flattened: self.flattened.state(),
-            gusts_secs: self.gusts.as_ref().map(GustNoise::time_secs),
-            winds_secs: self.winds.time_secs(),
-            causes: self.causes.clone(),
-            rejected_count: self.rejected_count,
-            reset_count: self.reset_count,
-            evicted: self.regions.evicted(),
-            report: self.report,
-        }
+        let mut state = BendState::default();
+        self.save_into(&mut state);
+        state
+    }
+
+    /// Copies the state into `state`, whose memory is used again.
+    pub fn save_into(&self, state: &mut BendState) {
+        self.field.save_into(&mut state.field);
+        self.flattened.save_into(&mut state.flattened);
+        state.causes.clone_from(&self.causes);
+        (state.gusts_secs, state.winds_secs) = (self.gusts.as_ref().map(GustNoise::time_secs), self.winds.time_secs());
+        (state.rejected_count, state.reset_count) = (self.rejected_count, self.reset_count);
+        (state.evicted, state.report) = (self.regions.evicted(), self.report);
     }
 
     /// Restores a copy of the state in the same scene. The errors of the newest step's rejected motions are not part of it.
     ///
     /// # Errors
-    /// [`StateError`] when the state is that of another grid of patches; this one is then partly restored.
+    /// [`StateError`] when the state does not fit the scene; the grass is then partly restored.
     pub fn restore(&mut self, state: BendState) -> Result<(), StateError> {
         self.field.restore(state.field)?;
-        self.flattened.restore(state.flattened);
+        self.flattened.restore(&state.flattened)?;
         if let (Some(gusts), Some(secs)) = (&mut self.gusts, state.gusts_secs) {
             gusts.set_time(secs);
         }
