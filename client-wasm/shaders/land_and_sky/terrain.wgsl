@@ -1,9 +1,9 @@
-// Ground: tiles of a quadtree. Odd vertices morph onto the next coarser grid before it takes over.
+// Ground: tiles of a quadtree.
 
-import package::constants::TILE_CELLS;
+import package::constants::LITTER_END_M;
 import package::inputs::bend_atlas::{field_level, lean_of_field};
 import package::inputs::frame::frame;
-import package::inputs::grass_kinds::kinds_blended;
+import package::inputs::grass_kinds::{kinds, kinds_blended};
 import package::inputs::lamps::lamps_on;
 import package::inputs::noise::{noise, noise_over};
 import package::inputs::shadows::sun_visible;
@@ -12,11 +12,14 @@ import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
 import package::land_and_sky::grass_light::sun_in_grass;
 import package::land_and_sky::ground::{grass_fraction, ground_height, ground_normal, ragged_fraction, soft_fraction};
-import package::land_and_sky::ground_tile::GroundTile;
-import package::land_and_sky::haze::hazed;
+import package::land_and_sky::ground_tile::{GroundTile, kind_of_plain, tile_vertex};
+import package::land_and_sky::haze::air_before;
 import package::land_and_sky::sky_light::ambient;
 import package::land_and_sky::sward::{bare_between, sward_color};
 import package::uniforms::Kind;
+
+// Whether only grass of one kind grows, beyond the distance up to which litter is resolved. Software drivers execute both sides of a branch.
+override is_plain: bool = false;
 
 @group(1) @binding(0) var<storage, read> tiles: array<GroundTile>;
 
@@ -26,23 +29,22 @@ struct Ground {
     // Slowly varying values: lean by the wind (rad), sunlight below the clouds; tint of the grass.
     @location(1) air: vec3<f32>,
     @location(2) tint: vec3<f32>,
+    // Light and transmittance of the air before the ground.
+    @location(3) haze: vec4<f32>,
+    // Kind of grass of plain land.
+    @location(4) @interpolate(flat) kind: u32,
 }
 
 @vertex
 fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Ground {
     let tile = tiles[instance];
-    let row = TILE_CELLS + 1u;
-    let cell = vec2<f32>(f32(index % row), f32(index / row));
-    let spacing = tile.side_m / f32(TILE_CELLS);
-    let flat_p = tile.corner_m + cell * spacing;
-    let distance_m = length(vec3<f32>(flat_p.x, ground_height(flat_p), flat_p.y) - frame.eye_m);
-    let morph = smoothstep(0.70, 0.95, distance_m / tile.coarser_from_m);
-    let odd = cell - 2.0 * floor(cell * 0.5);
-    let p = flat_p - odd * spacing * morph;
+    let p = tile_vertex(tile, index).p;
     var out: Ground;
     out.p = vec3<f32>(p.x, ground_height(p), p.y);
     out.air = vec3<f32>(lean_of_wind(ground_wind_at(out.p), 1.0), cloud_light(p));
     out.tint = grass_tint(p);
+    out.haze = air_before(out.p);
+    out.kind = kind_of_plain(tile);
     out.position = frame.projection_from_world * vec4<f32>(out.p, 1.0);
     return out;
 }
@@ -93,6 +95,31 @@ fn fraction_before(p: vec2<f32>, view: vec3<f32>, normal: vec3<f32>, kind: Kind)
     return grass_fraction(p - 0.5 * hidden_m * view.xz / max(length(view.xz), 1e-3));
 }
 
+fn kind_of(ground: Ground) -> Kind {
+    if is_plain {
+        return kinds.list[ground.kind];
+    }
+    return kinds_blended(ground.p.xz);
+}
+
+// Visible fraction of grass, which also hides bare ground behind it.
+fn fraction_at(p: vec2<f32>, soft: f32, between: f32, view: vec3<f32>, normal: vec3<f32>, kind: Kind) -> f32 {
+    if is_plain {
+        return 1.0;
+    }
+    return max(ragged_fraction(p, soft), between * fraction_before(p, view, normal, kind));
+}
+
+// Ground between the roots.
+fn floor_at(p: vec2<f32>, distance_m: f32, kind: Kind) -> vec3<f32> {
+    let bare = kind.root_rgb * 0.7;
+    if is_plain {
+        return bare;
+    }
+    let litter_fraction = 0.8 * (1.0 - smoothstep(0.3, LITTER_END_M, distance_m));
+    return mix(bare, litter_at(p, litter_fraction > 0.0), litter_fraction);
+}
+
 @fragment
 fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let p = ground.p.xz;
@@ -100,14 +127,14 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let distance_m = length(to);
     let view = to / distance_m;
     let normal = ground_normal(p);
-    let soft = soft_fraction(p);
-    let kind = kinds_blended(p);
+    let soft = select(soft_fraction(p), 1.0, is_plain);
+    let kind = kind_of(ground);
     let between = bare_between(distance_m, kind, view, normal);
-    let fraction = max(ragged_fraction(p, soft), between * fraction_before(p, view, normal, kind));
+    let fraction = fraction_at(p, soft, between, view, normal, kind);
     let span_m = distance_m * frame.pixel_rad * inverseSqrt(max(-dot(view, normal), 0.05));
     let sun_light = ground.air.z * sun_visible(ground.p + normal * 0.05);
     var color = vec3<f32>(0.0);
-    if fraction < 1.0 {
+    if !is_plain && fraction < 1.0 {
         let soil = soil_at(p, span_m);
         let rough = normalize(normal + vec3<f32>(soil.slope.x, 0.0, soil.slope.y));
         let direct = frame.sun_rgb * (sun_light * max(dot(rough, frame.toward_sun), 0.0));
@@ -121,11 +148,9 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
         let afar = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light);
         let mottle = mottle_at(p, span_m);
         let reached = frame.sun_rgb * sun_light * sun_in_grass(0.0, kind.height_m);
-        let litter_fraction = 0.8 * (1.0 - smoothstep(0.3, 2.5, distance_m));
-        let floor = mix(kind.root_rgb * 0.7, litter_at(p, litter_fraction > 0.0), litter_fraction);
-        let under = floor * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
+        let under = floor_at(p, distance_m, kind) * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
         let grass = afar * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
         color += mix(under, grass, between) * fraction;
     }
-    return vec4<f32>(hazed(color, ground.p), 1.0);
+    return vec4<f32>(color * ground.haze.a + ground.haze.rgb, 1.0);
 }

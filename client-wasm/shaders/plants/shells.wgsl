@@ -1,7 +1,7 @@
 // Shells (Bakay): layers of one texture of cross-sections that lean without changing the length of a blade. Between two layers the view ray
 // is sampled in slices, so that it meets blades there at grazing angles.
 
-import package::constants::{RIGHT_ANGLE, SHELL_BLADE_PX, TILE_CELLS, TILE_VERTICES, WORKGROUP_SIZE};
+import package::constants::{RIGHT_ANGLE, SHELL_BLADE_PX, TILE_VERTICES, WORKGROUP_SIZE};
 import package::inputs::bend_atlas::{field_level, lean_in};
 import package::inputs::frame::{frame, runtime_zero, repeated};
 import package::inputs::grass_kinds::kinds_blended;
@@ -13,7 +13,7 @@ import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::{grass_tint, plant_color, trodden};
 import package::land_and_sky::grass_light::{grass_lamps, grass_light};
 import package::land_and_sky::ground::{fed, grass_fraction, ground_height, ground_normal};
-import package::land_and_sky::ground_tile::GroundTile;
+import package::land_and_sky::ground_tile::{GroundTile, tile_vertex};
 import package::land_and_sky::haze::hazed;
 import package::uniforms::ShellFrame;
 
@@ -106,15 +106,8 @@ fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= TILE_VERTICES {
         return;
     }
-    let tile = tiles[id.y];
-    let row = TILE_CELLS + 1u;
-    let cell = vec2<f32>(f32(id.x % row), f32(id.x / row));
-    let spacing = tile.side_m / f32(TILE_CELLS);
-    let flat_p = tile.corner_m + cell * spacing;
-    let flat_m = length(vec3<f32>(flat_p.x, ground_height(flat_p), flat_p.y) - frame.eye_m);
-    let morph = smoothstep(0.70, 0.95, flat_m / tile.coarser_from_m);
-    let odd = cell - 2.0 * floor(cell * 0.5);
-    let p = flat_p - odd * spacing * morph;
+    let vertex = tile_vertex(tiles[id.y], id.x);
+    let p = vertex.p;
     let ground = vec3<f32>(p.x, ground_height(p), p.y);
     let distance_m = distance(ground, frame.eye_m);
     let normal = ground_normal(p);
@@ -144,7 +137,7 @@ fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
     turf.sunlight = light;
     turf.tip_rgb = kind.tip_rgb * tint * trodden(lean_rad);
     turf.growth = growth;
-    turf.morph = morph;
+    turf.morph = vertex.morph;
     settled[id.y * TILE_VERTICES + id.x] = turf;
 }
 

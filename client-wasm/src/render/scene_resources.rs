@@ -4,7 +4,8 @@ use crate::render::gpu::pipeline::PassFactory;
 use crate::render::inputs::frame_bindings::{FrameBindings, SceneTextures};
 use crate::render::land_and_sky::dust::Dust;
 use crate::render::land_and_sky::rain::Rain;
-use crate::render::land_and_sky::terrain::{Terrain, TerrainQuadtree};
+use crate::render::land_and_sky::terrain::Terrain;
+use crate::render::land_and_sky::terrain_quadtree::TerrainQuadtree;
 use crate::render::options::render_options::BlendOrder;
 use crate::render::plants::billboards::Billboards;
 use crate::render::plants::blades::Blades;
@@ -44,12 +45,13 @@ impl SceneResources {
     pub(super) fn new(factory: PassFactory, bindings: &FrameBindings, number: u32, decoded: &DecodedScene) -> Self {
         let (scene, heights) = (decoded.scene(), decoded.heights());
         let grass_m = scene.plants.most_grown() * scene.tallest_m();
+        let quadtree = TerrainQuadtree::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), grass_m, scene.light.haze_m);
         Self {
             number,
             stage: Stage::Land,
             textures: SceneTextures::new(&factory.gpu, bindings, decoded),
-            quadtree: TerrainQuadtree::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), grass_m, scene.light.haze_m),
-            terrain: Terrain::new(&factory, scene.extent_m()),
+            terrain: Terrain::new(&factory, decoded, &quadtree),
+            quadtree,
             blades: None,
             billboards: None,
             shells: None,

@@ -142,7 +142,7 @@ fn update_cascades(
 impl SceneResources {
     fn prepare_land(&mut self, gpu: &Gpu, from: &Viewpoint<'_>) {
         let tiles = self.quadtree.tiles(from.eye_m, from.frustum);
-        self.terrain.prepare(gpu, &tiles);
+        self.terrain.prepare(gpu, from.eye_m, &tiles);
         if let Some(dust) = &self.dust {
             dust.prepare(gpu, from.dt_secs);
         }

@@ -126,6 +126,13 @@ pub(crate) const HILLS_FULL_M: f32 = 900.0;
 /// Cells along one side of a ground tile, and vertices of the tile.
 pub(crate) const TILE_CELLS: u32 = 16;
 pub(crate) const TILE_VERTICES: u32 = (TILE_CELLS + 1).pow(2);
+/// Distance at which coarser tiles take over, relative to the side of a tile: at least 2√2, so that neighbours differ by at most one level.
+pub(crate) const RANGE_SIDES: f32 = 3.0;
+/// Codes of the border of a tile with a coarser neighbour, and with finer ones.
+pub(crate) const COARSER: u32 = 1;
+pub(crate) const FINER: u32 = 2;
+/// Distance up to which litter on the ground is resolved (m).
+pub(crate) const LITTER_END_M: f32 = 2.5;
 /// Maximum flutter of tree leaves (m along X).
 pub(crate) const FLUTTER_M: f32 = 0.035;
 /// Pairs per tile of a sort.

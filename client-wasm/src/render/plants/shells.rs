@@ -6,7 +6,8 @@ use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, storage, storage
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::ShellFrame;
 use crate::render::inputs::frustum::Frustum;
-use crate::render::land_and_sky::terrain::{GroundTile, TerrainQuadtree, tile_indices};
+use crate::render::land_and_sky::terrain::tile_indices;
+use crate::render::land_and_sky::terrain_quadtree::{GroundTile, TerrainQuadtree};
 use crate::render::plants::blades::square_is_seen;
 use crate::render::plants::shell_texture;
 use crate::render::plants::shell_texture::{DOTS, DOTS_PX};

@@ -10,7 +10,7 @@ use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::Squares;
 use crate::render::inputs::frustum::Frustum;
 use crate::render::inputs::viewpoint::Viewpoint;
-use crate::render::land_and_sky::terrain::hills_m;
+use crate::render::land_and_sky::terrain_quadtree::hills_m;
 use crate::render::options::detail::Detail;
 use crate::state::DecodedScene;
 use glam::Vec3;

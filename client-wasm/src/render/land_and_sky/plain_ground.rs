@@ -1,0 +1,73 @@
+//! Squares of the map that are covered with grass of one kind: land needs neither bare soil nor the map of kinds there, which are half of its price in software.
+
+use crate::state::DecodedScene;
+use glam::Vec2;
+use prairie_core::terrain::Cover;
+use std::ops::Range;
+
+/// Greatest displacement of the borders of kinds, relative to the pixels of their map, and the range of these pixels (m): those of `kinds_about` in WGSL.
+const RAGGED: f32 = 1.25;
+const RAGGED_PX_M: [f32; 2] = [1.0, 5.0];
+
+/// The kind of grass of each square of the map that is plain.
+pub(crate) struct PlainGround {
+    square_m: f32,
+    /// Number of whole squares along X and Z.
+    count: [usize; 2],
+    /// Row by row; `None` where a square is not plain.
+    kinds: Vec<Option<u8>>,
+}
+
+/// A map of pixels that covers a map of `extent_m`.
+struct Pixels<'a> {
+    ids: &'a [u8],
+    size_px: [u32; 2],
+    extent_m: [f32; 2],
+}
+
+impl PlainGround {
+    /// The plain squares of `square_m` along each side.
+    pub(crate) fn new(decoded: &DecodedScene, square_m: f32) -> Self {
+        let (scene, extent_m) = (decoded.scene(), decoded.scene().extent_m());
+        let cover = Pixels { ids: decoded.cover().ids(), size_px: decoded.cover().size_px(), extent_m };
+        let kinds = Pixels { ids: decoded.kinds().kinds(), size_px: decoded.kinds().size_px(), extent_m };
+        let count = extent_m.map(|m| (m / square_m) as usize);
+        let plain = |at: usize| {
+            let corner_m = [at % count[0], at / count[0]].map(|n| n as f32 * square_m);
+            let is_covered = cover.within(corner_m, square_m, |_| 0.0).all(|id| scene.is_grass(Cover::from(id)));
+            let mut found = kinds.within(corner_m, square_m, |px_m| RAGGED * px_m.clamp(RAGGED_PX_M[0], RAGGED_PX_M[1]));
+            let first = found.next().filter(|_| is_covered)?;
+            found.all(|kind| kind == first).then_some(first)
+        };
+        Self { square_m, count, kinds: (0..count[0] * count[1]).map(plain).collect() }
+    }
+
+    /// Kind of the grass in a region of whole squares, if all of it is plain.
+    pub(crate) fn kind(&self, corner_m: Vec2, side_m: f32) -> Option<u8> {
+        let squares = |from_m: f32| {
+            let first = from_m / self.square_m;
+            (first >= 0.0).then(|| first as usize..((from_m + side_m) / self.square_m).ceil() as usize)
+        };
+        let (columns, rows) = (squares(corner_m.x)?, squares(corner_m.y)?);
+        if columns.end > self.count[0] || rows.end > self.count[1] {
+            return None;
+        }
+        let mut found = rows.flat_map(|row| &self.kinds[row * self.count[0]..][columns.clone()]);
+        let first = *found.next()?;
+        if found.all(|kind| *kind == first) { first } else { None }
+    }
+}
+
+impl Pixels<'_> {
+    /// Values that interpolation may use in a square, with a margin (m) that depends on the size of a pixel (m).
+    fn within(&self, corner_m: [f32; 2], side_m: f32, margin_m: impl Fn(f32) -> f32) -> impl Iterator<Item = u8> {
+        let [columns, rows]: [Range<usize>; 2] = std::array::from_fn(|axis| {
+            let px_m = self.extent_m[axis] / self.size_px[axis] as f32;
+            let margin_m = margin_m(px_m) + px_m;
+            let last = self.size_px[axis] as usize - 1;
+            let first = ((corner_m[axis] - margin_m) / px_m).max(0.0) as usize;
+            first.min(last)..(((corner_m[axis] + side_m + margin_m) / px_m) as usize).min(last) + 1
+        });
+        rows.flat_map(move |row| &self.ids[row * self.size_px[0] as usize..][columns.clone()]).copied()
+    }
+}
