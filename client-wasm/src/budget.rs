@@ -1,4 +1,5 @@
-//! Automatic quality: a controller that keeps the frame time within a budget by changing the level of detail, quickly downwards and slowly upwards.
+//! Automatic quality: a controller that keeps the frame time within a budget by changing a level, quickly downwards and slowly upwards. The level is a height on
+//! the [ladder](crate::ladder) of detail and resolution.
 //!
 //! The cost of a frame is modelled as growing by a factor e^s per level. The slope s is learnt from the steps taken. A step aims at `TARGET` of the
 //! budget; within `DEAD_BAND` the level is left alone.
@@ -58,7 +59,7 @@ impl FrameTime {
     }
 }
 
-/// Controller of the level of detail.
+/// Controller of the level.
 #[derive(Clone, Debug)]
 pub struct FrameBudget {
     budget_secs: f32,
@@ -115,7 +116,7 @@ impl FrameBudget {
         self.budget_secs
     }
 
-    /// Level of detail for the next frame.
+    /// Level for the next frame.
     pub fn level(&self) -> f32 {
         self.shown.value.clamp(0.0, self.highest)
     }

@@ -6,7 +6,7 @@
 //! - [`vehicle`]: table of vehicle kinds; [`bindings`]: keys and gamepad buttons; [`controls`]: control input and its meaning for a vehicle.
 //! - [`prediction`]: the own vehicle, ahead of the server.
 //! - [`hearing`]: sound levels at the camera.
-//! - [`budget`]: automatic quality; [`redraw`]: detection of frames that need not be drawn.
+//! - [`budget`] and [`ladder`]: automatic quality; [`redraw`]: detection of frames that need not be drawn.
 //! - `browser` (wasm only): page, socket, input devices and frame loop.
 
 pub mod bindings;
@@ -17,6 +17,7 @@ pub mod camera;
 pub mod controls;
 pub mod damped;
 pub mod hearing;
+pub mod ladder;
 pub mod prediction;
 pub mod redraw;
 pub mod render;

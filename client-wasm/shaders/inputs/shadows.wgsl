@@ -13,12 +13,25 @@ const SUN_RAD: f32 = 0.014;
 // Greatest half-width of a penumbra (texels of the map).
 const SOFTEST_PX: f32 = 4.0;
 
+// Whether shadows have penumbras. They are most of the price of a shadow in software.
+override soft_shadows: bool = true;
+
+// Depth at which a position is compared with the map: a little nearer to the sun than its own.
+fn compared_depth(place: vec3<f32>, depth_m: f32, texel_m: f32) -> f32 {
+    return place.z - 0.6 * (0.2 + texel_m) / depth_m;
+}
+
+// Fraction of sunlight at a position in a layer of the shadow map, between four texels.
+fn hard_shadow(place: vec3<f32>, layer: i32, depth_m: f32, texel_m: f32) -> f32 {
+    return textureSampleCompareLevel(shadows, shadow_sampler, place.xy, layer, compared_depth(place, depth_m, texel_m));
+}
+
 // Fraction of sunlight at a position in a layer of the shadow map, by percentage-closer soft shadows (Fernando 2005): four texels around
 // the position estimate the distance of the occluder and so the width of the penumbra, four comparisons the fraction of the sun that it
 // hides. Fully lit where none of the texels is occluded.
 fn soft_shadow(place: vec3<f32>, layer: i32, depth_m: f32, texel_m: f32, turn: vec2<f32>) -> f32 {
     let size = vec2<f32>(textureDimensions(shadows));
-    let depth = place.z - 0.6 * (0.2 + texel_m) / depth_m;
+    let depth = compared_depth(place, depth_m, texel_m);
     var nearest_m = 0.0;
     var found = 0.0;
     for (var i = 0; i < 4; i++) {
@@ -47,10 +60,25 @@ fn spread(i: i32, turn: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(at.x * turn.x - at.y * turn.y, at.x * turn.y + at.y * turn.x);
 }
 
+// Random unit vector.
+fn turn_at(p: vec3<f32>) -> vec2<f32> {
+    if !soft_shadows {
+        return vec2<f32>(0.0);
+    }
+    let angle = random3(vec2<i32>(floor(p.xz * 97.0)), bitcast<u32>(i32(floor(p.y * 97.0)))).x * TAU;
+    return vec2<f32>(cos(angle), sin(angle));
+}
+
+fn shadow(place: vec3<f32>, layer: i32, depth_m: f32, texel_m: f32, turn: vec2<f32>) -> f32 {
+    if !soft_shadows {
+        return hard_shadow(place, layer, depth_m, texel_m);
+    }
+    return soft_shadow(place, layer, depth_m, texel_m, turn);
+}
+
 // Fraction of the sun that objects and trees leave at a position: from the sharp cascade nearby, from the coarse one farther away.
 fn sun_visible(p: vec3<f32>) -> f32 {
-    let angle = random3(vec2<i32>(floor(p.xz * 97.0)), bitcast<u32>(i32(floor(p.y * 97.0)))).x * TAU;
-    let turn = vec2<f32>(cos(angle), sin(angle));
+    let turn = turn_at(p);
     let near = (frame.shadow_from_world * vec4<f32>(p, 1.0)).xyz;
     let far = (frame.lights.far_shadow_from_world * vec4<f32>(p, 1.0)).xyz;
     let off = border_of(near);
@@ -64,7 +92,7 @@ fn sun_visible(p: vec3<f32>) -> f32 {
         let place = select(near, far, is_far);
         let texel_m = select(frame.lights.near_texel_m, frame.lights.far_texel_m, is_far);
         let depth_m = select(frame.lights.near_depth_m, frame.lights.far_depth_m, is_far);
-        let seen = soft_shadow(vec3<f32>(place.xy * vec2<f32>(0.5, -0.5) + 0.5, place.z), layer, depth_m, texel_m, turn);
+        let seen = shadow(vec3<f32>(place.xy * vec2<f32>(0.5, -0.5) + 0.5, place.z), layer, depth_m, texel_m, turn);
         let fraction = select(1.0, smoothstep(0.88, 0.98, off) * (1.0 - smoothstep(0.85, 0.98, far_off)), is_far);
         light = mix(light, seen, fraction);
     }

@@ -15,6 +15,7 @@ use crate::bindings::{Action, next_vehicle};
 use crate::budget::FrameTime;
 use crate::camera::Camera;
 use crate::controls::Controls;
+use crate::ladder::Rung;
 use crate::prediction::Prediction;
 use crate::redraw::RedrawTracker;
 use crate::render::{Quality, RenderOptions, Split, Stage, bend_reach_m};
@@ -143,6 +144,7 @@ pub(super) struct DrawnView {
     stage: Option<(Stage, bool)>,
     quality: Quality,
     level: f32,
+    resolution: f32,
     options: RenderOptions,
     split: Option<Split>,
 }
@@ -245,10 +247,10 @@ impl App {
         let light = self.mirror.decoded_scene().map(|decoded| decoded.scene().light);
         let (options, split) = (self.settings.options(light.as_ref()), self.settings.split());
         renderer.set_options(options);
-        renderer.set_level(self.settings.level());
+        let Rung { level, resolution } = self.settings.rung();
+        renderer.set_level(level);
         let quality = renderer.quality();
-        let view =
-            DrawnView { size_px: gpu.next_frame_px(quality, &self.mirror), stage, quality, level: self.settings.level(), options, split };
+        let view = DrawnView { size_px: gpu.next_size_px(quality), stage, quality, level, resolution, options, split };
         (self.drawn_secs, self.moved_at_secs) = (time_secs, now_secs);
         let [right_rad, up_rad] = self.input.take_look(camera_secs);
         rig.look(right_rad, up_rad);
@@ -261,7 +263,7 @@ impl App {
             self.prediction.drawn(&self.mirror, page::now_secs(&self.window));
             return false;
         }
-        let Some(cpu_secs) = gpu.draw(mirror, &camera, &FrameInput { time_secs, dt_secs, split }) else {
+        let Some(cpu_secs) = gpu.draw(mirror, &camera, &FrameInput { time_secs, dt_secs, resolution, split }) else {
             self.redraw.invalidate();
             return false;
         };

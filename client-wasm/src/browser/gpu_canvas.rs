@@ -14,8 +14,8 @@ const MAX_IN_FLIGHT: u32 = 2;
 /// Frames drawn between two variants of pipelines that are created in advance: in software each may take as long as a frame.
 const VARIANT_FRAMES: u32 = 8;
 
-/// Divisor of the sides of the first picture in software.
-const FIRST_DIVISOR: u32 = 2;
+/// Resolution of the first picture in software: land and sky alone would take most of the time until it is shown.
+const FIRST_RESOLUTION: f32 = 0.5;
 
 /// A canvas with its own GPU device.
 pub(super) struct GpuCanvas {
@@ -60,6 +60,8 @@ pub(super) struct FrameInput {
     /// Animation time (s), and time since the previous frame (s).
     pub(super) time_secs: f64,
     pub(super) dt_secs: f32,
+    /// Fraction of the quality's resolution along each side.
+    pub(super) resolution: f32,
     /// Variants to draw side by side, instead of one picture.
     pub(super) split: Option<Split>,
 }
@@ -214,14 +216,6 @@ impl GpuCanvas {
         fit_within_px(wanted_px(&self.canvas, quality), self.gpu.side_limit_px())
     }
 
-    /// Size of the next frame of the mirror's world (px). In software, that of land and sky alone is smaller, for it would take most of the time to the first
-    /// picture; the page enlarges it.
-    pub(super) fn next_frame_px(&self, quality: Quality, mirror: &Mirror) -> [u32; 2] {
-        let is_first = self.gpu.is_software && self.stage(mirror) == Some((Stage::Land, false));
-        let size_px = self.next_size_px(quality);
-        if is_first { size_px.map(|side_px| side_px.div_ceil(FIRST_DIVISOR)) } else { size_px }
-    }
-
     /// Explanation for the user if the frame is smaller than its canvas.
     pub(super) fn size_limitation(&self, quality: Quality) -> Option<String> {
         let ([width, height], [wide, high]) = (self.next_size_px(quality), wanted_px(&self.canvas, quality));
@@ -233,7 +227,8 @@ impl GpuCanvas {
 
     /// Draws the mirror's world. Returns the CPU time spent (s); `None` if no frame was drawn.
     pub(super) fn draw(&mut self, mirror: &mut Mirror, camera: &Camera, input: &FrameInput) -> Option<f64> {
-        let size_px = self.next_frame_px(self.renderer.as_ref()?.renderer.quality(), mirror);
+        let size_px = self.next_size_px(self.renderer.as_ref()?.renderer.quality());
+        let is_first = self.gpu.is_software && self.stage(mirror) == Some((Stage::Land, false));
         if self.size_px() != size_px {
             [self.config.width, self.config.height] = size_px;
             self.surface.configure(&self.gpu.device, &self.config);
@@ -242,6 +237,7 @@ impl GpuCanvas {
         if renderer.size_px() != size_px {
             renderer.resize(size_px);
         }
+        renderer.set_resolution(if is_first { FIRST_RESOLUTION } else { input.resolution });
         let frame = match self.surface.get_current_texture() {
             wgpu::CurrentSurfaceTexture::Success(frame) | wgpu::CurrentSurfaceTexture::Suboptimal(frame) => frame,
             _ => {

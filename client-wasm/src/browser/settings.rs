@@ -1,6 +1,7 @@
 //! Render settings chosen by the user: quality, render options, hour of the day, and side-by-side comparison.
 
 use crate::budget::{FrameBudget, FrameTime};
+use crate::ladder::{self, RUNGS_BELOW, Rung};
 use crate::render::{BlendOrder, DeviceClass, FarPlants, Quality, RenderOptions, SideOptions, Split};
 use prairie_core::scene::Light;
 use serde::Deserialize;
@@ -23,14 +24,14 @@ pub(super) struct Device {
 }
 
 impl Device {
-    /// Highest quality that automatic quality uses, and its initial level.
+    /// Highest quality that automatic quality uses, and its initial height on the [ladder](ladder).
     fn automatic(self) -> (Quality, f32) {
-        let (class, level) = match self {
+        let (class, height) = match self {
             Self { is_software: true, .. } => (DeviceClass::Software, 0.0),
-            Self { is_touch: true, .. } => (DeviceClass::Touch, 1.0),
-            _ => (DeviceClass::Desktop, 1.5),
+            Self { is_touch: true, .. } => (DeviceClass::Touch, RUNGS_BELOW + 1.0),
+            _ => (DeviceClass::Desktop, RUNGS_BELOW + 1.5),
         };
-        (Quality::automatic(class), level)
+        (Quality::automatic(class), height)
     }
 
     fn budget_secs(self) -> f32 {
@@ -76,8 +77,8 @@ impl Settings {
         let (quality, budget) = match Quality::from_name(name) {
             Some(quality) => (quality, None),
             None if name == AUTOMATIC => {
-                let (quality, level) = self.device.automatic();
-                (quality, Some(FrameBudget::new(self.device.budget_secs(), level, quality.level())))
+                let (quality, height) = self.device.automatic();
+                (quality, Some(FrameBudget::new(self.device.budget_secs(), height, ladder::top(quality.level()))))
             }
             None => return false,
         };
@@ -101,19 +102,21 @@ impl Settings {
         self.budget.as_ref()
     }
 
-    /// Reports a drawn frame to the controller. If no level keeps the budget, switches to the next lower quality, with fewer samples and pixels.
+    /// Reports a drawn frame to the controller. If no rung keeps the budget, switches to the next lower quality, with fewer samples and pixels.
     pub(super) fn record(&mut self, frame: FrameTime) {
         let Some(budget) = &mut self.budget else { return };
         budget.record(frame);
         if let Some(lower) = self.quality.lower().filter(|_| budget.is_exhausted()) {
-            *budget = FrameBudget::new(budget.budget_secs(), 0.0, lower.level());
+            *budget = FrameBudget::new(budget.budget_secs(), 0.0, ladder::top(lower.level()));
             self.quality = lower;
         }
     }
 
-    /// Current level of detail.
-    pub(super) fn level(&self) -> f32 {
-        self.budget.as_ref().map_or(self.quality.level(), FrameBudget::level)
+    /// Current level of detail and resolution.
+    pub(super) fn rung(&self) -> Rung {
+        let highest_level = self.quality.level();
+        let full = Rung { level: highest_level, resolution: 1.0 };
+        self.budget.as_ref().map_or(full, |budget| Rung::at(budget.level(), highest_level))
     }
 
     /// Sets render options by name; an unknown name changes nothing.
@@ -155,7 +158,7 @@ impl Settings {
     }
 
     fn current(&self) -> SideOptions {
-        SideOptions { options: self.options, level: self.level() }
+        SideOptions { options: self.options, level: self.rung().level }
     }
 
     /// The two variants to draw side by side, if a comparison is on.

@@ -56,6 +56,11 @@ impl OffscreenRenderer {
         self.renderer.set_level(level);
     }
 
+    /// Sets the fraction of the quality's resolution. See [`Renderer::set_resolution`].
+    pub fn set_resolution(&mut self, resolution: f32) {
+        self.renderer.set_resolution(resolution);
+    }
+
     /// Draws a frame and waits for the GPU. See [`Renderer::draw`].
     pub fn draw(&mut self, mirror: &mut Mirror, camera: &Camera, time_secs: f64, dt_secs: f32) -> FrameStats {
         let view = self.texture.create_view(&Default::default());

@@ -1,5 +1,6 @@
 //! The renderer: its state between frames, and its settings.
 
+use crate::ladder::LEAST_RESOLUTION;
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::pipeline::PassFactory;
@@ -18,6 +19,9 @@ use crate::render::stage::{Stage, StageResources};
 use crate::render::targets::Targets;
 use crate::state::Mirror;
 
+/// Steps of the resolution: each creates new textures.
+const RESOLUTION_STEPS: f32 = 16.0;
+
 /// Draws a [`Mirror`] as a [`Camera`](crate::camera::Camera) sees it.
 pub struct Renderer {
     pub(super) gpu: Gpu,
@@ -25,6 +29,8 @@ pub struct Renderer {
     pub(super) options: RenderOptions,
     pub(super) detail: Detail,
     pub(super) size_px: [u32; 2],
+    /// Fraction of the quality's resolution.
+    resolution: f32,
     pub(super) bindings: FrameBindings,
     pub(super) daylight: Daylight,
     pub(super) targets: Targets,
@@ -45,17 +51,17 @@ impl Renderer {
         let size_px = size_px.map(|side| side.max(1));
         let daylight = Daylight::new(gpu);
         let bindings = FrameBindings::new(gpu, quality, &daylight);
-        let samples = quality.samples(gpu.is_software);
-        let factory = PassFactory { gpu: gpu.clone(), frame_layout: bindings.layout.clone(), samples, has_kinds: true };
-        let targets = Targets::new(gpu, size_px, quality);
+        let factory = pass_factory(gpu, quality, &bindings, true);
+        let targets = Targets::new(gpu, size_px, quality, 1.0);
         Self {
-            tone: ToneMapping::new(&factory, format, &targets.color, targets.supersampling),
+            tone: ToneMapping::new(&factory, format, &targets.color, targets.scale),
             sky: Sky::new(&factory),
             gpu: gpu.clone(),
             quality,
             options: RenderOptions::default(),
             detail: quality.detail(),
             size_px,
+            resolution: 1.0,
             targets,
             bindings,
             daylight,
@@ -135,8 +141,22 @@ impl Renderer {
     /// Changes the size of the target.
     pub fn resize(&mut self, size_px: [u32; 2]) {
         self.size_px = size_px.map(|side| side.max(1));
-        self.targets = Targets::new(&self.gpu, self.size_px, self.quality);
-        self.tone.set_picture(&self.gpu, &self.targets.color, self.targets.supersampling);
+        self.create_targets();
+    }
+
+    /// Sets the fraction of the quality's resolution, along each side, that the following frames are rendered at, in steps of 1/16 from
+    /// [`LEAST_RESOLUTION`] to 1. The target keeps its size: the picture is enlarged along its edges.
+    pub fn set_resolution(&mut self, resolution: f32) {
+        let resolution = (resolution.clamp(LEAST_RESOLUTION, 1.0) * RESOLUTION_STEPS).round() / RESOLUTION_STEPS;
+        if resolution != self.resolution {
+            self.resolution = resolution;
+            self.create_targets();
+        }
+    }
+
+    fn create_targets(&mut self) {
+        self.targets = Targets::new(&self.gpu, self.size_px, self.quality, self.resolution);
+        self.tone.set_picture(&self.targets.color, self.targets.scale);
         self.weighted = None;
     }
 
@@ -175,10 +195,9 @@ impl Renderer {
 
     /// Loads the first stage of the mirror's scene.
     fn begin_scene(&mut self, mirror: &Mirror) {
-        let samples = self.quality.samples(self.gpu.is_software);
         self.scene = mirror.decoded_scene().map(|decoded| {
             let has_kinds = !decoded.scene().species.is_empty();
-            let factory = PassFactory { gpu: self.gpu.clone(), frame_layout: self.bindings.layout.clone(), samples, has_kinds };
+            let factory = pass_factory(&self.gpu, self.quality, &self.bindings, has_kinds);
             Box::new(SceneResources::new(factory, &self.bindings, mirror.scene_number(), decoded))
         });
     }
@@ -189,6 +208,11 @@ impl Renderer {
         let resources = StageResources::new(stage, &scene.factory, self.quality, decoded)?;
         Some(NextStage { stage, scene_number: scene.number, resources })
     }
+}
+
+fn pass_factory(gpu: &Gpu, quality: Quality, bindings: &FrameBindings, has_kinds: bool) -> PassFactory {
+    let (samples, soft_shadows) = (quality.samples(gpu.is_software), !quality.saves(gpu.is_software));
+    PassFactory { gpu: gpu.clone(), frame_layout: bindings.layout.clone(), samples, has_kinds, soft_shadows }
 }
 
 /// Resources of a stage that no frame shows yet.

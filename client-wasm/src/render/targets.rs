@@ -8,20 +8,21 @@ use wgpu::{LoadOp, StoreOp};
 /// Colour and depth of the picture before tone mapping.
 pub(super) struct Targets {
     pub(super) size_px: [u32; 2],
-    /// Rendered pixels along each side of an output pixel.
-    pub(super) supersampling: u32,
+    /// Rendered pixels per output pixel, along X and Y.
+    pub(super) scale: [f32; 2],
     pub(super) color: wgpu::TextureView,
     pub(super) depth: wgpu::TextureView,
 }
 
 impl Targets {
-    /// Targets for an output of `output_px`.
-    pub(super) fn new(gpu: &Gpu, output_px: [u32; 2], quality: Quality) -> Self {
+    /// Targets for an output of `output_px` at a fraction of the quality's resolution.
+    pub(super) fn new(gpu: &Gpu, output_px: [u32; 2], quality: Quality, resolution: f32) -> Self {
         let samples = quality.samples(gpu.is_software);
-        let supersampling = quality.supersampling(output_px, gpu.side_limit_px());
-        let size_px = output_px.map(|side_px| side_px * supersampling);
+        let factor = quality.supersampling(output_px, gpu.side_limit_px()) as f32 * resolution;
+        let size_px = output_px.map(|side_px| (side_px as f32 * factor).round().max(1.0) as u32);
+        let scale = std::array::from_fn(|axis| size_px[axis] as f32 / output_px[axis] as f32);
         let texture = |label, format| gpu.render_target(label, format, size_px, samples);
-        Self { size_px, supersampling, color: texture("color", COLOR), depth: texture("depth", DEPTH) }
+        Self { size_px, scale, color: texture("color", COLOR), depth: texture("depth", DEPTH) }
     }
 
     /// Begins or resumes the pass that draws the picture. The first one clears both textures; the last one discards depth.

@@ -4,7 +4,7 @@ use crate::render::gpu::pipeline::{PassFactory, bind, storage_rw};
 use crate::render::gpu::readback::read;
 use crate::render::gpu::shaders::tests::{linked, parsed};
 use crate::render::gpu::shaders::{self, Constant};
-use crate::render::land_and_sky::terrain::GroundTile;
+use crate::render::land_and_sky::terrain_quadtree::GroundTile;
 use crate::render::offscreen::OffscreenRenderer;
 use crate::render::options::quality::Quality;
 use crate::render::options::render_options::{FarPlants, RenderOptions};
@@ -26,8 +26,10 @@ use wgpu::naga;
 
 mod branches;
 mod constants;
+mod cracks;
 mod light;
 mod order;
+mod resolution;
 mod shells;
 mod small;
 mod stages;
@@ -241,7 +243,8 @@ fn compute(
     invocations: u32,
 ) -> Vec<[f32; 4]> {
     let renderer = &picture.renderer;
-    let factory = PassFactory { gpu: gpu.clone(), frame_layout: renderer.bindings.layout.clone(), samples: 1, has_kinds: true };
+    let factory =
+        PassFactory { gpu: gpu.clone(), frame_layout: renderer.bindings.layout.clone(), samples: 1, has_kinds: true, soft_shadows: true };
     let layout = factory.layout("probes", &[storage_rw(0)]);
     let pipeline = factory.compute("probe", &gpu.shader("probe", source, constants), "probe", &layout);
     let probes = gpu.buffer("probes", bytemuck::cast_slice(inputs), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);

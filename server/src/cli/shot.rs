@@ -5,6 +5,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use prairie::studio::{Act, Stage, chase};
 use prairie_client::camera::Camera;
+use prairie_client::ladder::LEAST_RESOLUTION;
 use prairie_client::render::{BlendOrder, FarPlants, FrameStats, Gpu, OffscreenRenderer, Quality, RenderOptions, SideOptions, Split, Sun};
 use prairie_core::wire::ObjectPose;
 
@@ -32,6 +33,9 @@ pub(super) struct Shot {
     /// Quality preset
     #[arg(long, default_value = "high", value_parser = quality())]
     quality: Quality,
+    /// Part of the quality's resolution along each side, 0.5 to 1, in steps of 1/16: the picture is enlarged along its edges
+    #[arg(long, value_name = "PART", default_value = "1", value_parser = resolution)]
+    resolution: f32,
     /// Transparency of plants: alpha test, alpha to coverage, sorted, precomputed order, or weighted blended
     #[arg(long, default_value = "cut", value_parser = order())]
     order: BlendOrder,
@@ -115,6 +119,7 @@ impl Shot {
         let mut renderer =
             OffscreenRenderer::new(&gpu, self.size.0, split.as_ref().map_or(self.quality, |split| finest(self.quality, split)));
         renderer.set_options(options);
+        renderer.set_resolution(self.resolution);
         Ok(Studio { stage, gpu, renderer, camera, chase: self.chase, split })
     }
 }
@@ -199,6 +204,11 @@ fn size(text: &str) -> Result<Size, String> {
         .filter(|sides: &[u32; 2]| sides.iter().all(|side| allowed.contains(side)))
         .map(Size)
         .ok_or_else(|| format!("allowed: WIDTHxHEIGHT, each 1 to {SIDE_LIMIT_PX}, such as 1280x720"))
+}
+
+fn resolution(text: &str) -> Result<f32, String> {
+    let allowed = LEAST_RESOLUTION..=1.0;
+    text.parse().ok().filter(|part| allowed.contains(part)).ok_or_else(|| format!("allowed: {LEAST_RESOLUTION} to 1"))
 }
 
 fn hour(text: &str) -> Result<f32, &'static str> {

@@ -17,6 +17,8 @@ pub(crate) struct PassFactory {
     pub(crate) samples: u32,
     /// Whether more than one kind of grass grows; override `has_kinds` in WGSL.
     pub(crate) has_kinds: bool,
+    /// Whether shadows have penumbras; override `soft_shadows` in WGSL.
+    pub(crate) soft_shadows: bool,
 }
 
 /// Settings of a render pipeline.
@@ -59,7 +61,7 @@ impl PassFactory {
 
     /// A pass's module with values of its overrides.
     pub(crate) fn shader(&self, label: &str, source: impl Display, constants: &[Constant]) -> wgpu::ShaderModule {
-        self.gpu.shader(label, source, &[constants, &[("has_kinds", self.has_kinds)]].concat())
+        self.gpu.shader(label, source, &[constants, &[("has_kinds", self.has_kinds), ("soft_shadows", self.soft_shadows)]].concat())
     }
 
     fn pipeline_layout(&self, label: &str, own: Option<&wgpu::BindGroupLayout>) -> wgpu::PipelineLayout {

@@ -499,9 +499,8 @@ uniform_block! {
         target_encodes: f32,
         /// Exposure.
         exposure: f32,
-        /// Supersampling factor: rendered pixels along each side of an output pixel.
-        supersampling: f32,
-        _pad: [u8; 4],
+        /// Rendered pixels per pixel of the target, along X and Y.
+        scale: [f32; 2],
     }
 }
 

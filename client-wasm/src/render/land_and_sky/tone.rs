@@ -1,81 +1,116 @@
 //! Tone mapping: from light to the colours of the target.
 
-use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{PassFactory, uniform};
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::Tone;
 use std::mem::offset_of;
+use std::sync::OnceLock;
 
 /// Exposure before the tone curve.
 const EXPOSURE: f32 = 1.15;
 
 pub(crate) struct ToneMapping {
-    pipeline: wgpu::RenderPipeline,
+    factory: PassFactory,
+    target: wgpu::TextureFormat,
+    module: wgpu::ShaderModule,
+    /// Pipelines that average whole pixels, and that interpolate between pixels, created when first needed.
+    pipelines: [OnceLock<wgpu::RenderPipeline>; 2],
     layout: wgpu::BindGroupLayout,
-    /// Binding of the picture.
-    binding: u32,
+    /// Whether the picture has whole pixels for each pixel of the target.
+    is_whole: bool,
     settings: wgpu::Buffer,
     group: wgpu::BindGroup,
 }
 
 impl ToneMapping {
-    /// `supersampling`: rendered pixels along each side of a pixel of the target.
-    pub(crate) fn new(factory: &PassFactory, target: wgpu::TextureFormat, picture: &wgpu::TextureView, supersampling: u32) -> Self {
-        let device = &factory.gpu.device;
-        let module = factory.shader("tone", shaders::TONE, &[]);
-        let (entry, binding) = if factory.samples > 1 { ("fs_sampled", 2) } else { ("fs", 0) };
-        let layout = factory.layout("tone", &[picture_entry(binding, factory.samples), uniform(1)]);
+    /// `scale`: rendered pixels per pixel of the target, along X and Y.
+    pub(crate) fn new(factory: &PassFactory, target: wgpu::TextureFormat, picture: &wgpu::TextureView, scale: [f32; 2]) -> Self {
+        let layout = factory.layout("tone", &[picture_entry(factory.samples), uniform(1)]);
         let encodes = if target.is_srgb() { 1.0 } else { 0.0_f32 };
-        let contents = Tone { target_encodes: encodes, exposure: EXPOSURE, supersampling: supersampling as f32, _pad: [0; 4] };
+        let contents = Tone { target_encodes: encodes, exposure: EXPOSURE, scale };
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let settings = factory.gpu.buffer("tone", bytemuck::bytes_of(&contents), usage);
+        let group = group(factory, &layout, picture, &settings);
+        let module = factory.shader("tone", shaders::TONE, &[]);
+        let pipelines = Default::default();
+        Self { factory: factory.clone(), target, module, pipelines, layout, is_whole: is_whole(scale), settings, group }
+    }
+
+    fn pipeline(&self) -> &wgpu::RenderPipeline {
+        self.pipelines[usize::from(!self.is_whole)].get_or_init(|| self.create_pipeline())
+    }
+
+    fn create_pipeline(&self) -> wgpu::RenderPipeline {
+        let (factory, device) = (&self.factory, &self.factory.gpu.device);
+        let entry = match (factory.samples > 1, self.is_whole) {
+            (false, true) => "fs",
+            (false, false) => "fs_between",
+            (true, true) => "fs_sampled",
+            (true, false) => "fs_sampled_between",
+        };
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("tone"),
-            bind_group_layouts: &[Some(&factory.frame_layout), Some(&layout)],
+            bind_group_layouts: &[Some(&factory.frame_layout), Some(&self.layout)],
             immediate_size: 0,
         });
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("tone"),
             layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState { module: &module, entry_point: Some("vs"), compilation_options: Default::default(), buffers: &[] },
+            vertex: wgpu::VertexState {
+                module: &self.module,
+                entry_point: Some("vs"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
             primitive: Default::default(),
             depth_stencil: None,
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {
-                module: &module,
+                module: &self.module,
                 entry_point: Some(entry),
                 compilation_options: Default::default(),
-                targets: &[Some(target.into())],
+                targets: &[Some(self.target.into())],
             }),
             multiview_mask: None,
             cache: None,
-        });
-        let group = group(&factory.gpu, &layout, binding, picture, &settings);
-        Self { pipeline, layout, binding, settings, group }
+        })
     }
 
-    pub(crate) fn set_picture(&mut self, gpu: &Gpu, picture: &wgpu::TextureView, supersampling: u32) {
-        gpu.queue.write_buffer(&self.settings, offset_of!(Tone, supersampling) as u64, bytemuck::bytes_of(&(supersampling as f32)));
-        self.group = group(gpu, &self.layout, self.binding, picture, &self.settings);
+    pub(crate) fn set_picture(&mut self, picture: &wgpu::TextureView, scale: [f32; 2]) {
+        let gpu = &self.factory.gpu;
+        gpu.queue.write_buffer(&self.settings, offset_of!(Tone, scale) as u64, bytemuck::bytes_of(&scale));
+        self.group = group(&self.factory, &self.layout, picture, &self.settings);
+        self.is_whole = is_whole(scale);
     }
 
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(self.pipeline());
         pass.set_bind_group(1, &self.group, &[]);
         pass.draw(0..3, 0..1);
     }
 }
 
-fn picture_entry(binding: u32, samples: u32) -> wgpu::BindGroupLayoutEntry {
-    let sample_type = wgpu::TextureSampleType::Float { filterable: false };
-    let ty = wgpu::BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled: samples > 1 };
-    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
+/// Whether a scale is a whole number.
+fn is_whole(scale: [f32; 2]) -> bool {
+    scale == scale.map(f32::round) && scale[0] >= 1.0
 }
 
-fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, binding: u32, picture: &wgpu::TextureView, settings: &wgpu::Buffer) -> wgpu::BindGroup {
+/// Binding of a picture with this number of samples per pixel.
+fn picture_binding(samples: u32) -> u32 {
+    if samples > 1 { 2 } else { 0 }
+}
+
+fn picture_entry(samples: u32) -> wgpu::BindGroupLayoutEntry {
+    let sample_type = wgpu::TextureSampleType::Float { filterable: false };
+    let ty = wgpu::BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled: samples > 1 };
+    wgpu::BindGroupLayoutEntry { binding: picture_binding(samples), visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
+}
+
+fn group(factory: &PassFactory, layout: &wgpu::BindGroupLayout, picture: &wgpu::TextureView, settings: &wgpu::Buffer) -> wgpu::BindGroup {
+    let binding = picture_binding(factory.samples);
     let entries = [
         wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(picture) },
         wgpu::BindGroupEntry { binding: 1, resource: settings.as_entire_binding() },
     ];
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("tone"), layout, entries: &entries })
+    factory.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("tone"), layout, entries: &entries })
 }

@@ -57,13 +57,15 @@ fn a_distant_tree_towards_a_low_sun_casts_its_shadow_near_the_camera() {
     let mut mirror = meadow_of(wide, &covering);
     let camera = Camera { eye_m: Vec3::new(136.0, 2.0, 200.0), heading_rad: PI, ..Camera::default() };
     let places: Vec<_> = (0..81).map(|n| [132.0 + (n % 9) as f32, 0.5, 192.0 + 2.0 * (n / 9) as f32, 0.0]).collect();
-    // The sun in the north, behind the tree, and in the south.
-    let [darkest, lightest] = [0.0, PI].map(|heading_rad| {
+    // The sun in the north, behind the tree, and in the south; with penumbras and without.
+    let cases = [(0.0, true), (PI, true), (0.0, false), (PI, false)];
+    let [darkest, lightest, hard, hardly] = cases.map(|(heading_rad, soft)| {
         let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
         picture.set_options(RenderOptions { sun: Some(Sun { heading_rad, elevation_rad: 0.2 }), ..RenderOptions::default() });
         picture.draw(&mut mirror, &camera, 0.0, 0.0);
-        let light = probe(&gpu, &picture, "return vec4<f32>(sun_visible(at.xyz));", &places);
+        let light = probe_with(&gpu, &picture, &[("soft_shadows", soft)], "return vec4<f32>(sun_visible(at.xyz));", &places);
         light.iter().map(|light| light[0]).fold(1.0, f32::min)
     });
     assert!(darkest < 0.3 && lightest == 1.0, "{darkest} behind the tree, {lightest} before it");
+    assert!(hard < 0.3 && hardly == 1.0, "without penumbras: {hard} behind the tree, {hardly} before it");
 }

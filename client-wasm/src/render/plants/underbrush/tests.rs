@@ -165,7 +165,13 @@ impl Bender {
                 found[at + 1u] = vec4<f32>(bent.along, 0.0);
                 found[at + 2u] = vec4<f32>(bent.side, 0.0);
             }";
-        let factory = PassFactory { gpu: gpu.clone(), frame_layout: picture.renderer.bindings.layout.clone(), samples: 1, has_kinds: true };
+        let factory = PassFactory {
+            gpu: gpu.clone(),
+            frame_layout: picture.renderer.bindings.layout.clone(),
+            samples: 1,
+            has_kinds: true,
+            soft_shadows: true,
+        };
         let layout = factory.layout("bender", &[storage(10), storage(13), storage(14), uniform(15), storage(16), storage_rw(30)]);
         let module = factory.shader("bender", linked("plants/ribbons", SOURCE), &[]);
         Self { pipeline: factory.compute("bender", &module, "probe", &layout), layout }

@@ -1,0 +1,64 @@
+//! What automatic quality gives up to keep its budget, rung by rung: at the highest level of detail first resolution, down to half of the pixels; then detail;
+//! last resolution again, down to a quarter of the pixels.
+
+use std::f32::consts::FRAC_1_SQRT_2;
+
+/// Least fraction of the resolution along each side.
+pub const LEAST_RESOLUTION: f32 = 0.5;
+/// Fraction of the resolution at which detail changes.
+const STEADY_RESOLUTION: f32 = FRAC_1_SQRT_2;
+/// Rungs below the coarsest level of detail.
+pub const RUNGS_BELOW: f32 = 1.0;
+/// Rungs above the highest level of detail.
+const RUNGS_ABOVE: f32 = 1.0;
+
+/// What a frame is drawn with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rung {
+    /// Level of detail, from 0.
+    pub level: f32,
+    /// Fraction of the quality's resolution along each side.
+    pub resolution: f32,
+}
+
+impl Rung {
+    /// The rung at a height of 0..=[`top`], where the highest level of detail is `highest_level`. The number of pixels doubles with each of the lowest and the
+    /// highest rungs.
+    pub fn at(height: f32, highest_level: f32) -> Self {
+        let level = (height - RUNGS_BELOW).clamp(0.0, highest_level);
+        let pixels_log2 = if height < RUNGS_BELOW { height - RUNGS_BELOW } else { (height - RUNGS_BELOW - highest_level).max(0.0) };
+        let resolution = STEADY_RESOLUTION * (0.5 * pixels_log2).exp2();
+        Self { level, resolution: resolution.clamp(LEAST_RESOLUTION, 1.0) }
+    }
+}
+
+/// Height of the highest rung.
+pub fn top(highest_level: f32) -> f32 {
+    RUNGS_BELOW + highest_level + RUNGS_ABOVE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_rung_up_draws_more_and_the_ends_are_least_and_most() {
+        for highest_level in [0.0, 1.0, 3.0] {
+            let rungs: Vec<Rung> = (0..=100).map(|at| Rung::at(at as f32 * 0.01 * top(highest_level), highest_level)).collect();
+            assert_eq!(rungs[0], Rung { level: 0.0, resolution: LEAST_RESOLUTION });
+            assert!(rungs[100].level == highest_level && (rungs[100].resolution - 1.0).abs() < 1e-6);
+            for pair in rungs.windows(2) {
+                let rises = [pair[1].level - pair[0].level, pair[1].resolution - pair[0].resolution];
+                assert!(rises.iter().all(|rise| *rise >= 0.0) && rises.iter().any(|rise| *rise > 0.0), "{pair:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn detail_is_given_up_at_half_of_the_pixels() {
+        for height in [1.01, 1.5, 3.0, 3.99] {
+            let rung = Rung::at(height, 3.0);
+            assert!((rung.resolution.powi(2) - 0.5).abs() < 1e-6 && (rung.level - (height - 1.0)).abs() < 1e-6, "{rung:?}");
+        }
+    }
+}
