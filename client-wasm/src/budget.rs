@@ -121,6 +121,11 @@ impl FrameBudget {
         self.shown.value.clamp(0.0, self.highest)
     }
 
+    /// Level that the shown one moves to.
+    pub fn goal(&self) -> f32 {
+        self.goal
+    }
+
     /// Whether even the lowest level exceeds the budget.
     pub fn is_exhausted(&self) -> bool {
         self.exhausted_secs >= EXHAUSTED_SECS

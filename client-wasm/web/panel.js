@@ -229,7 +229,8 @@ export class Panel {
     for (const id of ["order", "far"]) if (document.activeElement !== byId(id)) byId(id).value = state[id];
     // Without a device, such as between its loss and its replacement, there is no GPU time.
     write("work", state.cpu_ms === null || state.gpu_ms === null ? "–" : `CPU ${state.cpu_ms.toFixed(1)} · GPU ${state.gpu_ms.toFixed(1)} ms`);
-    write("detail", state.automatic ? `${state.level.toFixed(1)} of ${state.highest_level} · ${(100 * state.resolution).toFixed(0)} % resolution · target ${state.budget_ms.toFixed(0)} ms` : state.quality);
+    write("detail", state.automatic ? `${state.level.toFixed(1)} of ${state.highest_level} · target ${state.budget_ms.toFixed(0)} ms` : state.quality);
+    write("resolution", state.rendered_px ? state.rendered_px.join(" × ") : "–");
     byId("fallback").hidden = !state.fallbacks.length;
     write("fallback", state.fallbacks.join(" "));
     write("frame", state.resting ? "idle" : state.frame_ms ? `${state.frame_ms.toFixed(state.frame_ms < 100 ? 1 : 0)} ms · ${state.fps.toFixed(state.fps < 10 ? 1 : 0)}/s` : "–");

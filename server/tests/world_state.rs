@@ -37,8 +37,11 @@ fn continues(scene: &str, before: u64, after: u64) {
     let loaded = scenes::load(scene).unwrap();
     let middle_m = loaded.scene.extent_m().map(|m| 0.5 * m);
     let mut world = World::new(&loaded.scene, loaded.maps()).unwrap();
+    let mut younger = world.save();
     on_threads(2, || (0..before).for_each(|tick| world.step(&commands(tick, middle_m))));
     let bytes = world.save().encode();
+    world.save_into(&mut younger);
+    assert!(younger.encode() == bytes, "{scene}: nothing remains of the state whose memory is used again");
     let state = WorldState::decode(&bytes).unwrap();
     assert!(state.tick() == before && state.encode() == bytes, "{scene}: the encoding is that of the same state");
     let mut copy = World::restore(&loaded.scene, loaded.maps(), state).unwrap();

@@ -1,5 +1,6 @@
 // Kinds of grass and their map.
 
+import package::constants::{RAGGED, RAGGED_PX_M};
 import package::inputs::frame::frame;
 import package::inputs::noise::noise;
 import package::inputs::world_edge::metres_outside;
@@ -27,8 +28,8 @@ fn kinds_about(p: vec2<f32>) -> KindsAbout {
     let size = textureDimensions(kind_map);
     let px_m = frame.world_extent_m / vec2<f32>(size);
     // Ragged borders: the map is sampled at a small offset, which beyond the edge of the world grows with the distance from it.
-    let ragged_m = clamp(px_m, vec2<f32>(1.0), vec2<f32>(5.0));
-    let scales_m = array<vec2<f32>, 3>(1.7 * ragged_m, 0.8 * ragged_m, vec2<f32>(metres_outside(p)));
+    let ragged_m = clamp(px_m, vec2<f32>(RAGGED_PX_M[0]), vec2<f32>(RAGGED_PX_M[1]));
+    let scales_m = array<vec2<f32>, 3>(RAGGED[0] * ragged_m, RAGGED[1] * ragged_m, vec2<f32>(metres_outside(p)));
     let sizes_m = vec3<f32>(13.0, 3.7, 830.0);
     var beside_m = vec2<f32>(0.0);
     for (var i = 0; i < 3; i++) {

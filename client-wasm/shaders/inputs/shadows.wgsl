@@ -60,7 +60,7 @@ fn spread(i: i32, turn: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(at.x * turn.x - at.y * turn.y, at.x * turn.y + at.y * turn.x);
 }
 
-// Random unit vector.
+// Random unit vector that turns the samples; not used by hard shadows.
 fn turn_at(p: vec3<f32>) -> vec2<f32> {
     if !soft_shadows {
         return vec2<f32>(0.0);
@@ -69,6 +69,7 @@ fn turn_at(p: vec3<f32>) -> vec2<f32> {
     return vec2<f32>(cos(angle), sin(angle));
 }
 
+// Fraction of sunlight at a position in a layer of the shadow map.
 fn shadow(place: vec3<f32>, layer: i32, depth_m: f32, texel_m: f32, turn: vec2<f32>) -> f32 {
     if !soft_shadows {
         return hard_shadow(place, layer, depth_m, texel_m);

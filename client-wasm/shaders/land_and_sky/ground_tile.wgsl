@@ -24,7 +24,7 @@ struct TileVertex {
 }
 
 // Vertex `index` of a tile. Odd vertices move onto the next coarser grid before that takes over (Strugar 2009); on a border they are where the
-// coarser of both tiles has them, so that no crack opens.
+// coarser of both tiles has them, so that no crack opens. Vertices of the coarser tile jump back when its neighbour splits, far from the eye.
 fn tile_vertex(tile: GroundTile, index: u32) -> TileVertex {
     let row = TILE_CELLS + 1u;
     let cell = vec2<u32>(index % row, index / row);

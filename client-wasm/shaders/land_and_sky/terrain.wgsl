@@ -29,7 +29,7 @@ struct Ground {
     // Slowly varying values: lean by the wind (rad), sunlight below the clouds; tint of the grass.
     @location(1) air: vec3<f32>,
     @location(2) tint: vec3<f32>,
-    // Light and transmittance of the air before the ground.
+    // Light and transmittance of the air before the ground. Near the eye it is interpolated over cells of up to 16 m, which only mist much thinner than that shows.
     @location(3) haze: vec4<f32>,
     // Kind of grass of plain land.
     @location(4) @interpolate(flat) kind: u32,

@@ -211,6 +211,11 @@ impl GpuCanvas {
         [self.config.width, self.config.height]
     }
 
+    /// Size at which the newest frame was rendered, before it was enlarged or averaged (px).
+    pub(super) fn rendered_px(&self) -> Option<[u32; 2]> {
+        self.renderer.as_ref().map(|current| current.renderer.rendered_px())
+    }
+
     /// Size of the next frame (px): the canvas's size on the screen at the quality's pixel ratio, limited to the maximum texture size.
     pub(super) fn next_size_px(&self, quality: Quality) -> [u32; 2] {
         fit_within_px(wanted_px(&self.canvas, quality), self.gpu.side_limit_px())

@@ -2,6 +2,7 @@
 
 use super::app::App;
 use super::connection::ConnectionState;
+use super::gpu_canvas::GpuCanvas;
 use crate::hearing::{HeardEngine, Hearing, hear};
 use crate::render::Quality;
 use crate::rig::Rig;
@@ -116,7 +117,7 @@ impl App {
             "automatic": self.settings.budget().is_some(),
             "budget_ms": self.settings.budget().map(|budget| budget.budget_secs() * 1e3),
             "level": self.settings.rung().level,
-            "resolution": self.settings.rung().resolution,
+            "rendered_px": self.gpu.as_ref().and_then(GpuCanvas::rendered_px),
             "highest_level": Quality::FINEST.level(),
             "order": self.settings.option_names()[0],
             "far": self.settings.option_names()[1],

@@ -112,11 +112,15 @@ impl Settings {
         }
     }
 
-    /// Current level of detail and resolution.
+    /// Current level of detail and resolution. Detail changes gradually, resolution at once: each of its changes creates new textures.
     pub(super) fn rung(&self) -> Rung {
         let highest_level = self.quality.level();
         let full = Rung { level: highest_level, resolution: 1.0 };
-        self.budget.as_ref().map_or(full, |budget| Rung::at(budget.level(), highest_level))
+        let rung = |budget: &FrameBudget| {
+            let [shown, goal] = [budget.level(), budget.goal()].map(|height| Rung::at(height, highest_level));
+            Rung { level: shown.level, resolution: goal.resolution }
+        };
+        self.budget.as_ref().map_or(full, rung)
     }
 
     /// Sets render options by name; an unknown name changes nothing.

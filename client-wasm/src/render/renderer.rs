@@ -1,6 +1,6 @@
 //! The renderer: its state between frames, and its settings.
 
-use crate::ladder::LEAST_RESOLUTION;
+use crate::ladder;
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::pipeline::PassFactory;
@@ -18,9 +18,6 @@ use crate::render::scene_resources::SceneResources;
 use crate::render::stage::{Stage, StageResources};
 use crate::render::targets::Targets;
 use crate::state::Mirror;
-
-/// Steps of the resolution: each creates new textures.
-const RESOLUTION_STEPS: f32 = 16.0;
 
 /// Draws a [`Mirror`] as a [`Camera`](crate::camera::Camera) sees it.
 pub struct Renderer {
@@ -144,10 +141,10 @@ impl Renderer {
         self.create_targets();
     }
 
-    /// Sets the fraction of the quality's resolution, along each side, that the following frames are rendered at, in steps of 1/16 from
-    /// [`LEAST_RESOLUTION`] to 1. The target keeps its size: the picture is enlarged along its edges.
+    /// Sets the fraction of the quality's resolution, along each side, that the following frames are rendered at, [rounded](ladder::rounded). The target keeps
+    /// its size: the picture is enlarged along its edges. With supersampling, a picture that is larger than its target has whole pixels for each of the target's.
     pub fn set_resolution(&mut self, resolution: f32) {
-        let resolution = (resolution.clamp(LEAST_RESOLUTION, 1.0) * RESOLUTION_STEPS).round() / RESOLUTION_STEPS;
+        let resolution = ladder::rounded(resolution);
         if resolution != self.resolution {
             self.resolution = resolution;
             self.create_targets();
@@ -158,6 +155,11 @@ impl Renderer {
         self.targets = Targets::new(&self.gpu, self.size_px, self.quality, self.resolution);
         self.tone.set_picture(&self.targets.color, self.targets.scale);
         self.weighted = None;
+    }
+
+    /// Size of the picture before it is enlarged or averaged (px).
+    pub fn rendered_px(&self) -> [u32; 2] {
+        self.targets.size_px
     }
 
     /// Size of the target (px).
@@ -211,7 +213,7 @@ impl Renderer {
 }
 
 fn pass_factory(gpu: &Gpu, quality: Quality, bindings: &FrameBindings, has_kinds: bool) -> PassFactory {
-    let (samples, soft_shadows) = (quality.samples(gpu.is_software), !quality.saves(gpu.is_software));
+    let (samples, soft_shadows) = (quality.samples(gpu.is_software), !quality.is_cheap(gpu.is_software));
     PassFactory { gpu: gpu.clone(), frame_layout: bindings.layout.clone(), samples, has_kinds, soft_shadows }
 }
 

@@ -15,10 +15,12 @@ pub(super) struct Targets {
 }
 
 impl Targets {
-    /// Targets for an output of `output_px` at a fraction of the quality's resolution.
+    /// Targets for an output of `output_px` at a fraction of the quality's resolution. A picture that is larger than its output has whole pixels for each of the
+    /// output's.
     pub(super) fn new(gpu: &Gpu, output_px: [u32; 2], quality: Quality, resolution: f32) -> Self {
         let samples = quality.samples(gpu.is_software);
         let factor = quality.supersampling(output_px, gpu.side_limit_px()) as f32 * resolution;
+        let factor = if factor > 1.0 { factor.floor() } else { factor };
         let size_px = output_px.map(|side_px| (side_px as f32 * factor).round().max(1.0) as u32);
         let scale = std::array::from_fn(|axis| size_px[axis] as f32 / output_px[axis] as f32);
         let texture = |label, format| gpu.render_target(label, format, size_px, samples);
@@ -43,6 +45,13 @@ impl Targets {
             ..Default::default()
         };
         encoder.begin_render_pass(&descriptor).forget_lifetime()
+    }
+}
+
+impl Drop for Targets {
+    /// Frees the textures at once: a browser frees dropped ones only when it collects garbage.
+    fn drop(&mut self) {
+        [&self.color, &self.depth].into_iter().for_each(|view| view.texture().destroy());
     }
 }
 

@@ -29,6 +29,7 @@ mod constants;
 mod cracks;
 mod light;
 mod order;
+mod plain;
 mod resolution;
 mod shells;
 mod small;

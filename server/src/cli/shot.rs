@@ -33,7 +33,7 @@ pub(super) struct Shot {
     /// Quality preset
     #[arg(long, default_value = "high", value_parser = quality())]
     quality: Quality,
-    /// Part of the quality's resolution along each side, 0.5 to 1, in steps of 1/16: the picture is enlarged along its edges
+    /// Part of the quality's resolution along each side, 0.5 to 1, in steps of 1/32: the picture is enlarged along its edges
     #[arg(long, value_name = "PART", default_value = "1", value_parser = resolution)]
     resolution: f32,
     /// Transparency of plants: alpha test, alpha to coverage, sorted, precomputed order, or weighted blended

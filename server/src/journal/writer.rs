@@ -64,7 +64,7 @@ impl Writer {
         self.written.try_recv().ok()
     }
 
-    /// Queues the state at the beginning of a generation, after the one before.
+    /// Queues the state at the beginning of a generation. Waits only if it does not come from [`spare_state`](Self::spare_state).
     pub(super) fn keep(&self, generation: u64, state: WorldState) {
         if let Some(states) = &self.states {
             // An error means that the thread has panicked, which the log says.

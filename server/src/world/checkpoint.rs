@@ -76,7 +76,7 @@ impl World {
         state
     }
 
-    /// Copies the whole state into `state`, whose memory is used again: fresh memory costs several times the copy.
+    /// Copies the whole state into `state`, whose memory is used again but for the objects: fresh memory costs several times the copy.
     pub fn save_into(&self, state: &mut WorldState) {
         (state.tick, state.newest_client) = (self.tick, self.newest_client);
         state.departed.clone_from(&self.departed);

@@ -41,6 +41,14 @@ pub enum StateError {
     /// The flattened grass of a patch is outside the world, has another size, or does not follow the one before.
     #[error("the flattened grass of patch {0} does not fit the field")]
     Flattened(PatchIndex),
+    /// Flattened grass has other tiles than its patches, or other cells than its tiles.
+    #[error("flattened grass has {tiles} tiles of {cells} cells, which its patches do not have")]
+    Tiles {
+        /// Number of tiles.
+        tiles: usize,
+        /// Number of their cells.
+        cells: usize,
+    },
 }
 
 impl Field {
@@ -111,7 +119,7 @@ impl Patch {
     /// Ranges in the planes that a state has: rows of cells in runs of tiles that may not be at rest, or everything.
     fn saved_parts(&self, seams: Seams) -> Vec<Range<usize>> {
         if seams == Seams::Overlap {
-            return vec![0..self.now[0].len()];
+            return std::iter::once(0..self.now[0].len()).collect();
         }
         let count = self.tiles.count();
         let mut parts = vec![];

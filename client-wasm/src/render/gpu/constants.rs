@@ -131,6 +131,10 @@ pub(crate) const RANGE_SIDES: f32 = 3.0;
 /// Codes of the border of a tile with a coarser neighbour, and with finer ones.
 pub(crate) const COARSER: u32 = 1;
 pub(crate) const FINER: u32 = 2;
+/// Ranges of the coarse and the fine displacement of the borders of kinds of grass, relative to the pixels of their map.
+pub(crate) const RAGGED: [f32; 2] = [1.7, 0.8];
+/// Least and greatest size of these pixels to which displacements are relative (m).
+pub(crate) const RAGGED_PX_M: [f32; 2] = [1.0, 5.0];
 /// Distance up to which litter on the ground is resolved (m).
 pub(crate) const LITTER_END_M: f32 = 2.5;
 /// Maximum flutter of tree leaves (m along X).

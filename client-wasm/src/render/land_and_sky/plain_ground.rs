@@ -1,13 +1,13 @@
 //! Squares of the map that are covered with grass of one kind: land needs neither bare soil nor the map of kinds there, which are half of its price in software.
 
+use crate::render::gpu::constants::{RAGGED, RAGGED_PX_M};
 use crate::state::DecodedScene;
 use glam::Vec2;
 use prairie_core::terrain::Cover;
 use std::ops::Range;
 
-/// Greatest displacement of the borders of kinds, relative to the pixels of their map, and the range of these pixels (m): those of `kinds_about` in WGSL.
-const RAGGED: f32 = 1.25;
-const RAGGED_PX_M: [f32; 2] = [1.0, 5.0];
+/// Maximum number of squares along each side of the map.
+const SIDE_LIMIT: f32 = 1024.0;
 
 /// The kind of grass of each square of the map that is plain.
 pub(crate) struct PlainGround {
@@ -15,7 +15,7 @@ pub(crate) struct PlainGround {
     /// Number of whole squares along X and Z.
     count: [usize; 2],
     /// Row by row; `None` where a square is not plain.
-    kinds: Vec<Option<u8>>,
+    pub(crate) kinds: Vec<Option<u8>>,
 }
 
 /// A map of pixels that covers a map of `extent_m`.
@@ -26,23 +26,28 @@ struct Pixels<'a> {
 }
 
 impl PlainGround {
-    /// The plain squares of `square_m` along each side.
-    pub(crate) fn new(decoded: &DecodedScene, square_m: f32) -> Self {
+    /// The plain squares of at least `least_m` along each side.
+    pub(crate) fn new(decoded: &DecodedScene, least_m: f32) -> Self {
         let (scene, extent_m) = (decoded.scene(), decoded.scene().extent_m());
+        let mut square_m = least_m;
+        while extent_m[0].max(extent_m[1]) > SIDE_LIMIT * square_m {
+            square_m *= 2.0;
+        }
         let cover = Pixels { ids: decoded.cover().ids(), size_px: decoded.cover().size_px(), extent_m };
         let kinds = Pixels { ids: decoded.kinds().kinds(), size_px: decoded.kinds().size_px(), extent_m };
         let count = extent_m.map(|m| (m / square_m) as usize);
         let plain = |at: usize| {
             let corner_m = [at % count[0], at / count[0]].map(|n| n as f32 * square_m);
             let is_covered = cover.within(corner_m, square_m, |_| 0.0).all(|id| scene.is_grass(Cover::from(id)));
-            let mut found = kinds.within(corner_m, square_m, |px_m| RAGGED * px_m.clamp(RAGGED_PX_M[0], RAGGED_PX_M[1]));
+            let mut found =
+                kinds.within(corner_m, square_m, |px_m| 0.5 * (RAGGED[0] + RAGGED[1]) * px_m.clamp(RAGGED_PX_M[0], RAGGED_PX_M[1]));
             let first = found.next().filter(|_| is_covered)?;
             found.all(|kind| kind == first).then_some(first)
         };
         Self { square_m, count, kinds: (0..count[0] * count[1]).map(plain).collect() }
     }
 
-    /// Kind of the grass in a region of whole squares, if all of it is plain.
+    /// Kind of the grass in all squares that a region touches, if they are plain.
     pub(crate) fn kind(&self, corner_m: Vec2, side_m: f32) -> Option<u8> {
         let squares = |from_m: f32| {
             let first = from_m / self.square_m;

@@ -15,12 +15,12 @@ pub(crate) struct Terrain {
     /// Pipelines by [`TileClass`].
     pipelines: LampVariants<[wgpu::RenderPipeline; 3]>,
     extent_m: Vec2,
-    plain: PlainGround,
+    pub(crate) plain: PlainGround,
     indices: wgpu::Buffer,
     index_count: u32,
     tiles: wgpu::Buffer,
     /// Tiles of each class.
-    ranges: [Range<u32>; 3],
+    pub(crate) ranges: [Range<u32>; 3],
     group: wgpu::BindGroup,
 }
 

@@ -9,6 +9,7 @@ use glam::{Vec2, Vec3, Vec3Swizzles};
 pub(crate) const TILE_LIMIT: usize = 1024;
 /// Bounds of the hills beyond the edge of the map, relative to the map (m).
 const HILLS_M: [f32; 2] = [-90.0, 160.0];
+
 /// A leaf of the quadtree, as in `ground_tile.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -130,7 +131,7 @@ impl TerrainQuadtree {
         let codes = BORDERS.map(|way| {
             let beside = corner + side * Vec2::from(way);
             let around = self.corner_m + ((beside - self.corner_m) / wider).floor() * wider;
-            let is_inside = around.cmpge(self.corner_m).all() && around.cmplt(self.corner_m + self.side_m).all();
+            let is_inside = beside.cmpge(self.corner_m).all() && beside.cmplt(self.corner_m + self.side_m).all();
             match is_inside {
                 true if !self.splits(around, wider, eye) => COARSER,
                 true if self.splits(beside, side, eye) => FINER,

@@ -52,7 +52,7 @@ struct Preset {
     /// Largest ratio of canvas pixels to CSS pixels.
     max_device_pixel_ratio: f64,
     /// Whether software lights coarse trees per vertex, since most fragments of their leaf sprays are hidden or cut away, and samples shadows once.
-    saves_in_software: bool,
+    is_cheap_in_software: bool,
     /// Side of the shadow map (px).
     shadow_px: u32,
     /// Streaks of heavy rain.
@@ -89,7 +89,7 @@ const PRESETS: [Preset; 5] = [
         samples: [1, 1],
         supersampling: 1,
         max_device_pixel_ratio: 1.0,
-        saves_in_software: true,
+        is_cheap_in_software: true,
         shadow_px: 512,
         drops: 4000,
         motes: 3000,
@@ -116,7 +116,7 @@ const PRESETS: [Preset; 5] = [
         samples: [4, 1],
         supersampling: 1,
         max_device_pixel_ratio: 1.25,
-        saves_in_software: true,
+        is_cheap_in_software: true,
         shadow_px: 1024,
         drops: 9000,
         motes: 6000,
@@ -143,7 +143,7 @@ const PRESETS: [Preset; 5] = [
         samples: [4, 4],
         supersampling: 1,
         max_device_pixel_ratio: 2.0,
-        saves_in_software: false,
+        is_cheap_in_software: false,
         shadow_px: 2048,
         drops: 18_000,
         motes: 14_000,
@@ -189,7 +189,7 @@ const ULTRA: Preset = Preset {
     samples: [4, 4],
     supersampling: 2,
     max_device_pixel_ratio: 3.0,
-    saves_in_software: false,
+    is_cheap_in_software: false,
     shadow_px: 2048,
     drops: 30_000,
     motes: 28_000,
@@ -298,8 +298,8 @@ impl Quality {
     }
 
     /// Whether coarse trees are lit per vertex and shadows sampled once.
-    pub(crate) fn saves(self, is_software: bool) -> bool {
-        is_software && self.preset().saves_in_software
+    pub(crate) fn is_cheap(self, is_software: bool) -> bool {
+        is_software && self.preset().is_cheap_in_software
     }
 
     /// Side of the shadow map (px).

@@ -19,6 +19,13 @@ struct Target {
     resolved: Option<wgpu::TextureView>,
 }
 
+impl Drop for Target {
+    /// Frees the textures at once, as those of the picture.
+    fn drop(&mut self) {
+        [Some(&self.view), self.resolved.as_ref()].into_iter().flatten().for_each(|view| view.texture().destroy());
+    }
+}
+
 impl Target {
     fn new(gpu: &Gpu, format: wgpu::TextureFormat, size_px: [u32; 2], samples: u32) -> Self {
         let texture = |samples| gpu.render_target("weighted", format, size_px, samples);

@@ -55,7 +55,7 @@ struct Pipelines {
     /// Pipeline for vehicles, which may be glossy.
     glossy: wgpu::RenderPipeline,
     matte: wgpu::RenderPipeline,
-    /// Pipeline for coarse and distant trees; lights them per vertex where the quality [saves](Quality::saves).
+    /// Pipeline for coarse and distant trees; lights them per vertex where the quality is [cheap](Quality::is_cheap).
     coarse_trees: wgpu::RenderPipeline,
 }
 
@@ -258,7 +258,7 @@ fn pipelines(factory: PassFactory, quality: Quality, layout: wgpu::BindGroupLayo
             [true, false].map(|gloss| factory.shader("objects", shaders::OBJECTS, &[lamps, ("is_glossy", gloss)]));
         let [glossy, matte] = [&glossy_module, &matte_module].map(|module| factory.draw(module, Some(&layout), &draw));
         let per_vertex = DrawDescriptor { vertex: "vs_afar", fragment: Some("fs_afar"), ..draw };
-        let is_per_vertex = quality.saves(factory.gpu.is_software);
+        let is_per_vertex = quality.is_cheap(factory.gpu.is_software);
         let coarse_trees = if is_per_vertex { factory.draw(&matte_module, Some(&layout), &per_vertex) } else { matte.clone() };
         Pipelines { glossy, matte, coarse_trees }
     })

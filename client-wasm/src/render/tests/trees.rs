@@ -59,7 +59,7 @@ fn a_distant_tree_towards_a_low_sun_casts_its_shadow_near_the_camera() {
     let places: Vec<_> = (0..81).map(|n| [132.0 + (n % 9) as f32, 0.5, 192.0 + 2.0 * (n / 9) as f32, 0.0]).collect();
     // The sun in the north, behind the tree, and in the south; with penumbras and without.
     let cases = [(0.0, true), (PI, true), (0.0, false), (PI, false)];
-    let [darkest, lightest, hard, hardly] = cases.map(|(heading_rad, soft)| {
+    let [darkest, lightest, hard_darkest, hard_lightest] = cases.map(|(heading_rad, soft)| {
         let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
         picture.set_options(RenderOptions { sun: Some(Sun { heading_rad, elevation_rad: 0.2 }), ..RenderOptions::default() });
         picture.draw(&mut mirror, &camera, 0.0, 0.0);
@@ -67,5 +67,5 @@ fn a_distant_tree_towards_a_low_sun_casts_its_shadow_near_the_camera() {
         light.iter().map(|light| light[0]).fold(1.0, f32::min)
     });
     assert!(darkest < 0.3 && lightest == 1.0, "{darkest} behind the tree, {lightest} before it");
-    assert!(hard < 0.3 && hardly == 1.0, "without penumbras: {hard} behind the tree, {hardly} before it");
+    assert!(hard_darkest < 0.3 && hard_lightest == 1.0, "without penumbras: {hard_darkest} behind the tree, {hard_lightest} before it");
 }

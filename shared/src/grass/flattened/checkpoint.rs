@@ -16,7 +16,7 @@ pub struct FlattenedState {
     dropped: u64,
     /// Index of each patch, ascending, the revision in which it last changed, and its number of tiles.
     patches: Vec<(PatchIndex, u64, u16)>,
-    /// Position of each tile in its patch, ascending in each, and its time of writing (s).
+    /// Position of each tile in its patch, and its time of writing (s).
     tiles: Vec<(u16, f64)>,
     /// Leans of the cells of each tile, in quanta.
     leans: Vec<[i16; 2]>,
@@ -71,10 +71,65 @@ impl FlattenedGrass {
             restored.insert(index, patch);
         }
         if !rest.is_empty() || leans.len() != state.tiles.len() || tiles.next().is_some() {
-            return Err(StateError::Values(rest.len().max(leans.len().abs_diff(state.tiles.len()) * CELLS)));
+            return Err(StateError::Tiles { tiles: state.tiles.len(), cells: state.leans.len() });
         }
         (self.clock.now_secs, self.revision, self.dropped) = (state.now_secs, state.revision, state.dropped);
         self.patches = restored;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::PatchLayout;
+
+    /// A case: its name, the error of restoring, and the change to a valid state.
+    type Case = (&'static str, StateError, fn(&mut FlattenedState));
+
+    const LAYOUT: PatchLayout = PatchLayout { count: [4, 4], cells: 16, cell_m: 0.5 };
+
+    fn grass() -> FlattenedGrass {
+        let mut grass = FlattenedGrass::new(LAYOUT, 20.0, 1000);
+        for (patch, cell) in [(3, [9, 2]), (3, [1, 12]), (7, [0, 0])] {
+            grass.flatten(patch, cell[0], cell[1], [0.7, -0.2]);
+        }
+        grass.step(1.0 / 60.0, &[]);
+        grass
+    }
+
+    #[test]
+    fn restored_grass_is_equal_also_from_a_state_that_was_another() {
+        let grass = grass();
+        let mut state = FlattenedGrass::new(LAYOUT, 20.0, 1000).state();
+        grass.save_into(&mut state);
+        let mut copy = FlattenedGrass::new(LAYOUT, 20.0, 1000);
+        copy.restore(&state).unwrap();
+        assert!(copy.state() == grass.state() && copy.words().eq(grass.words()) && copy.tiles() == 3);
+    }
+
+    #[test]
+    fn states_that_do_not_fit_are_rejected_and_change_nothing() {
+        let own = grass().state();
+        let changes: [Case; 8] = [
+            ("a patch outside the world", StateError::Flattened(16), |state| state.patches[1].0 = 16),
+            ("a patch before the one before", StateError::Flattened(2), |state| state.patches[1].0 = 2),
+            ("a patch without tiles", StateError::Flattened(3), |state| state.patches[0].2 = 0),
+            ("a tile outside its patch", StateError::Flattened(3), |state| state.tiles[0].0 = 4),
+            ("the same tile twice", StateError::Flattened(3), |state| state.tiles[0].0 = state.tiles[1].0),
+            ("more tiles than there are", StateError::Flattened(7), |state| state.patches[1].2 = 2),
+            ("a tile of no patch", StateError::Tiles { tiles: 4, cells: 256 }, |state| {
+                state.tiles.push((0, 0.0));
+                state.leans.extend([[1; 2]; CELLS]);
+            }),
+            ("a cell too many", StateError::Tiles { tiles: 3, cells: 193 }, |state| state.leans.push([1; 2])),
+        ];
+        for (name, error, change) in changes {
+            let mut state = own.clone();
+            change(&mut state);
+            let mut grass = grass();
+            assert_eq!(grass.restore(&state), Err(error), "{name}");
+            assert!(grass.state() == own, "{name}");
+        }
     }
 }
