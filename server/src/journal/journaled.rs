@@ -175,3 +175,56 @@ impl Simulation for JournaledWorld {
         self.health()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::folder::checkpoint_in;
+    use super::super::{WorldFolder, find, open, open_checkpoint};
+    use super::*;
+    use crate::scenes;
+    use prairie_core::scene::VehicleKind;
+    use prairie_core::wire::Drive;
+    use std::{fs, thread};
+
+    #[test]
+    fn checkpoints_in_the_middle_of_a_run_are_whole_and_resumed_from() {
+        let mut scene = scenes::load("blades").unwrap();
+        scene.scene.objects.limit = 32;
+        let folder = tempfile::tempdir().unwrap();
+        let place = WorldFolder::new(folder.path().to_owned());
+        let mut kept = open(Some(&place), &scene).unwrap();
+        let mut undisturbed = World::new(&scene.scene, scene.maps()).unwrap();
+        let mut drive = |kept: &mut JournaledWorld, ticks: u64| {
+            for _ in 0..ticks {
+                let spawn = Command::Spawn { client: 1, kind: VehicleKind::Car };
+                let drive = Drive { throttle: 1.0, steer: (undisturbed.tick() as f32 * 0.02).sin(), ..Drive::default() };
+                let commands = [if undisturbed.tick() == 0 { spawn } else { Command::Drive { client: 1, number: 0, drive } }];
+                kept.step(&commands);
+                undisturbed.step(&commands);
+            }
+            undisturbed.save().encode()
+        };
+        let mut expected = vec![];
+        // The first begins with the world; the memory of each serves for the next.
+        for generation in 2..6 {
+            expected.push((generation, drive(&mut kept, 40)));
+            let JournaledWorld { world, journal: Some(journal), .. } = &mut kept else { panic!("a world with memory") };
+            let until = Instant::now() + Duration::from_secs(20);
+            while journal.generation == generation {
+                assert!(Instant::now() < until, "the checkpoint before is written");
+                journal.begin(world);
+                thread::sleep(Duration::from_millis(1));
+            }
+        }
+        let last = drive(&mut kept, 40);
+        drop(kept);
+        let own = find(folder.path()).unwrap();
+        for (generation, state) in &expected {
+            let sealed = fs::read(checkpoint_in(&own, *generation)).unwrap();
+            assert!(open_checkpoint(&sealed).unwrap().encode() == *state, "generation {generation}");
+        }
+        // As after a crash, the state at the end is missing.
+        fs::remove_file(checkpoint_in(&own, 6)).unwrap();
+        assert!(open(Some(&place), &scene).unwrap().world().save().encode() == last);
+    }
+}

@@ -2,6 +2,7 @@
 
 use super::departed::Departed;
 use super::{Camera, Maps, World};
+use crate::bend::pool::Pool;
 use crate::objects::{ObjectsError, ObjectsState};
 use crate::settings_error::SettingsError;
 use crate::snapshot::BrokenPlants;
@@ -82,8 +83,8 @@ impl World {
         state.departed.clone_from(&self.departed);
         state.cameras.clone_from(&self.cameras);
         state.objects = self.objects.state();
-        self.weather.save_into(&mut state.weather);
-        self.bend.save_into(&mut state.bend);
+        let (weather, bend) = (&self.weather, &self.bend);
+        rayon::join(|| weather.save_into(&mut state.weather), || bend.save_into(&mut state.bend, &Pool));
         state.broken.clone_from(self.plants.broken());
     }
 

@@ -12,7 +12,7 @@ use super::prescribed_wind::{PrescribedWind, PrescribedWinds};
 use super::regions::Regions;
 use super::swept_footprint::SweptFootprint;
 use super::wind_drawing::WindDrawings;
-use crate::bend::{Executor, Field, FieldState, Kinds, Patch, Report, Scheme, StateError, StepError, TILE};
+use crate::bend::{Executor, Field, FieldState, Kinds, Patch, Report, Scheme, Serial, StateError, StepError, TILE};
 use crate::body::{Body, Motion, MotionError};
 use crate::grid::{PatchIndex, PatchLayout};
 use crate::scene::Scene;
@@ -222,13 +222,13 @@ impl BendSimulation {
     /// A copy of the state.
     pub fn state(&self) -> BendState {
         let mut state = BendState::default();
-        self.save_into(&mut state);
+        self.save_into(&mut state, &Serial);
         state
     }
 
     /// Copies the state into `state`, whose memory is used again.
-    pub fn save_into(&self, state: &mut BendState) {
-        self.field.save_into(&mut state.field);
+    pub fn save_into(&self, state: &mut BendState, executor: &impl Executor) {
+        self.field.save_into(&mut state.field, executor);
         self.flattened.save_into(&mut state.flattened);
         state.causes.clone_from(&self.causes);
         (state.gusts_secs, state.winds_secs) = (self.gusts.as_ref().map(GustNoise::time_secs), self.winds.time_secs());
