@@ -176,6 +176,9 @@ fn a_damaged_checkpoint_is_left_out() {
                 }
                 fs::write(path, bytes).unwrap();
             }
+            let player = Player::open(&find(copy.path()).unwrap(), &scene(), u64::MAX).unwrap().unwrap();
+            assert_eq!(player.recording.faults.len(), damaged, "{:?}", player.recording.faults);
+            assert!(player.recording.faults.iter().all(|fault| fault.contains(".checkpoint: ")), "{:?}", player.recording.faults);
             let world = resumed(&copy);
             assert_eq!(
                 (world.tick(), world.world().checksum()),
@@ -315,4 +318,28 @@ fn the_first_difference_of_two_journals_is_found() {
     assert!(matches!(both(&folder, &copy), Some(Difference::Commands { tick: 42, .. })));
     let (_, from) = recorded(folder.path(), Some(20.0 / 60.0)).unwrap();
     assert_eq!(from.world.tick(), 20, "from a moment on");
+}
+
+#[test]
+fn a_recording_is_played_after_its_scene_has_changed() {
+    let work = tempfile::tempdir().unwrap();
+    let files = scenes::create(&work.path().join("mine"), None).unwrap();
+    let scene = scenes::load(&files[0]).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let mut world = open(Some(&WorldFolder::new(folder.path().to_owned())), &scene).unwrap();
+    (0..30).for_each(|tick| world.step(&commands(tick)));
+    let sum = world.world().checksum();
+    drop(world);
+    let text = fs::read_to_string(&files[0]).unwrap();
+    fs::write(&files[0], text.replacen("seed = ", "seed = 1", 1)).unwrap();
+    let (found, mut player) = recorded(folder.path(), Some(0.0)).unwrap();
+    player.advance(u64::MAX);
+    assert!(found.scene == scene.scene && found.height_png == scene.height_png);
+    assert_eq!((player.world.tick(), player.world.checksum()), (30, sum));
+    // Without the files that are kept, it needs the scene as it was.
+    fs::remove_dir_all(find(folder.path()).unwrap().join("source")).unwrap();
+    let error = recorded(folder.path(), None).err().expect("the scene has changed").to_string();
+    assert!(error.contains("has changed since"), "{error}");
+    fs::write(&files[0], text).unwrap();
+    assert!(recorded(folder.path(), None).is_ok(), "the scene is back");
 }

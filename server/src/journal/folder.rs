@@ -1,6 +1,7 @@
 //! The folder of one world: names, lock, key, atomic writes, and deletion of the oldest generations.
 
 use super::error::JournalError;
+use super::source::SceneSource;
 use crate::escaped::escaped;
 use crate::file::{unique_part, write_atomically};
 use crate::scenes::LoadedScene;
@@ -71,17 +72,6 @@ pub fn find(path: &Path) -> Result<PathBuf, JournalError> {
     }
 }
 
-/// Name or path of the scene of the world in `path`, as given to `prairie serve`, and its [`name_of`].
-///
-/// # Errors
-/// When they cannot be read.
-pub(super) fn scene_of(path: &Path) -> Result<(PathBuf, String), JournalError> {
-    let file = path.join("scene");
-    let text = fs::read_to_string(&file).map_err(|error| JournalError::file(&file, error))?;
-    let (source, name) = text.rsplit_once('\n').unwrap_or((&text, ""));
-    Ok((PathBuf::from(source), name.to_owned()))
-}
-
 /// Numbers of the generations in `path`, ascending.
 ///
 /// # Errors
@@ -122,10 +112,8 @@ impl Folder {
             Err(TryLockError::WouldBlock) => return Err(JournalError::Busy(path)),
             Err(TryLockError::Error(error)) => return Err(JournalError::file(&lock_path, error)),
         }
-        let source = scene.files.first().map(|file| fs::canonicalize(file).unwrap_or_else(|_| file.clone()));
-        let source = source.map_or_else(|| scene.name.clone(), |file| file.to_string_lossy().into_owned());
         let scene_path = path.join("scene");
-        write_atomically(&scene_path, format!("{source}\n{}", name_of(scene)).as_bytes())
+        write_atomically(&scene_path, SceneSource::of(scene, &path).text().as_bytes())
             .map_err(|error| JournalError::file(&scene_path, error))?;
         let key = key(&path.join("key"))?;
         Ok(Self { path, key, _lock: lock })

@@ -19,6 +19,7 @@ mod record;
 mod replay;
 mod resume;
 mod segment;
+mod source;
 mod unchanged;
 mod writer;
 

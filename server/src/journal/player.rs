@@ -76,7 +76,8 @@ pub struct Player {
 }
 
 impl Player {
-    /// The newest state in `path` that is valid, of at most the step `from`, and the steps after it; `None` without a valid state. Faults go to the log.
+    /// The newest state in `path` that is valid, of at most the step `from`, and the steps after it; `None` without a valid state, when the faults go to the
+    /// log.
     ///
     /// # Errors
     /// When the folder cannot be read.
@@ -102,18 +103,26 @@ impl Player {
         Ok(None)
     }
 
-    /// The oldest valid state in `path`, and the steps after it.
+    /// The oldest valid state in `path`, and the steps after it. Faults go to the log if there is none.
     ///
     /// # Errors
     /// When the folder cannot be read.
     pub fn open_oldest(path: &Path, scene: &LoadedScene) -> Result<Option<Self>, JournalError> {
         let generations = generations(path)?;
+        let mut faults = vec![];
         for &generation in &generations {
-            if let Ok(Some(world)) = restore(&checkpoint_in(path, generation), scene, u64::MAX) {
-                let recording = Recording::read(path, generation, world.tick(), &generations);
-                return Ok(Some(Self { world, recording }));
+            let file = checkpoint_in(path, generation);
+            match restore(&file, scene, u64::MAX) {
+                Ok(Some(world)) => {
+                    let mut recording = Recording::read(path, generation, world.tick(), &generations);
+                    recording.faults.splice(..0, faults);
+                    return Ok(Some(Self { world, recording }));
+                }
+                Err(found) if file.is_file() => faults.push(fault(&file, &found)),
+                _ => {}
             }
         }
+        faults.iter().for_each(|fault| tracing::warn!("{fault}"));
         Ok(None)
     }
 

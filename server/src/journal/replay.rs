@@ -1,10 +1,11 @@
 //! A recording as a simulation that people can watch.
 
 use super::error::JournalError;
-use super::folder::{find, name_of, scene_of};
+use super::folder::find;
 use super::player::Player;
+use super::source::SceneSource;
 use crate::runner::Simulation;
-use crate::scenes::{self, LoadedScene};
+use crate::scenes::LoadedScene;
 use crate::snapshot::{PatchQuantiser, Snapshot};
 use crate::world::Command;
 use prairie_core::grass::BendState;
@@ -61,18 +62,14 @@ impl Simulation for Replay {
 }
 
 /// The scene and the recording of the world in `path`, or in its only sub-folder with a world: from the simulated time `from_secs`, or from the oldest state that
-/// is kept. A running server may go on writing to it.
+/// is kept. A running server may go on writing to it. The scene is the one kept in the folder, or the original.
 ///
 /// # Errors
-/// [`JournalError`] when there is no valid recording, or the scene has changed since.
+/// [`JournalError`] when there is no valid recording, or no file of the scene is as it was.
 pub fn recorded(path: &Path, from_secs: Option<f64>) -> Result<(LoadedScene, Player), JournalError> {
     let folder = find(path)?;
     let no_world = |reason: String| JournalError::NoWorld { path: folder.clone(), reason };
-    let (source, name) = scene_of(&folder)?;
-    let scene = scenes::load(&source).map_err(|error| no_world(format!("its scene cannot be loaded: {error}")))?;
-    if name_of(&scene) != name {
-        return Err(no_world(format!("its scene, {}, or this program has changed since", source.display())));
-    }
+    let scene = SceneSource::read(&folder)?.load(&folder).map_err(no_world)?;
     let player = match from_secs {
         None => Player::open_oldest(&folder, &scene)?,
         Some(secs) => {
