@@ -47,6 +47,7 @@ pub fn top(highest_level: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::budget::{FrameBudget, FrameTime};
 
     #[test]
     fn each_rung_up_draws_more_and_the_ends_are_least_and_most() {
@@ -66,6 +67,34 @@ mod tests {
         for height in [1.01, 1.5, 3.0, 3.99] {
             let rung = Rung::at(height, 3.0);
             assert!((rung.resolution.powi(2) - 0.5).abs() < 0.02 && (rung.level - (height - 1.0)).abs() < 1e-6, "{rung:?}");
+        }
+    }
+
+    /// Frames whose cost is in part that of pixels, and which are only as fine as the steps of the resolution, neither hunt nor leave the budget unused.
+    #[test]
+    fn automatic_quality_settles_on_a_rung() {
+        let (highest_level, budget_secs) = (3.0, 1.0 / 30.0);
+        let cost_secs = |height: f32, [pixels_secs, slope, fixed_secs]: [f32; 3]| {
+            let rung = Rung::at(height, highest_level);
+            fixed_secs + pixels_secs * rung.resolution.powi(2) * (slope * rung.level).exp()
+        };
+        for device in
+            [[0.060, 0.3, 0.002], [0.045, 0.3, 0.010], [0.030, 0.3, 0.002], [0.030, 0.6, 0.010], [0.020, 0.3, 0.002], [0.012, 0.5, 0.004]]
+        {
+            for begin in [0.0, 1.5, top(highest_level)] {
+                let mut budget = FrameBudget::new(budget_secs, begin, top(highest_level));
+                let mut heights = vec![];
+                for _ in 0..3600 {
+                    let work_secs = cost_secs(budget.level(), device);
+                    budget.record(FrameTime { work_secs, interval_secs: work_secs.max(1.0 / 60.0), waited: false });
+                    heights.push(budget.level());
+                }
+                let settled = &heights[2400..];
+                let (low, high) = settled.iter().fold((f32::MAX, f32::MIN), |(low, high), &height| (low.min(height), high.max(height)));
+                let used = cost_secs(budget.level(), device) / budget_secs;
+                assert!(high - low < 0.3, "{device:?} from {begin}: between {low} and {high}");
+                assert!((0.85..=1.05).contains(&used), "{device:?} from {begin}: {used} of the budget");
+            }
         }
     }
 }

@@ -15,9 +15,14 @@ fn sun_heading() -> vec2<f32> {
     return frame.lights.sun_heading;
 }
 
-// Luminance of the sky in a direction. Twin of `Sky::luminance` in shared/src/light/sky.rs. The upper half of the table holds scattering by
-// molecules, the lower half scattering by haze, divided by its phase function.
-fn sky_color(direction: vec3<f32>) -> vec3<f32> {
+// Luminance of the sky in a direction, in two parts that vary slowly with it: without haze; by haze, divided by its phase function.
+struct SkyParts {
+    steady: vec3<f32>,
+    haze: vec3<f32>,
+}
+
+// The upper half of the table holds scattering by molecules, the lower half scattering by haze, divided by its phase function.
+fn sky_parts(direction: vec3<f32>) -> SkyParts {
     let up = clamp(direction.y, 0.0, 1.0);
     let level = direction.xz / max(length(direction.xz), 1e-4);
     let size = vec2<f32>(textureDimensions(sky_table)) * vec2<f32>(1.0, 0.5);
@@ -25,11 +30,16 @@ fn sky_color(direction: vec3<f32>) -> vec3<f32> {
     let uv = (place * (size - 1.0) + 0.5) / (size * vec2<f32>(1.0, 2.0));
     let molecules = textureSampleLevel(sky_table, clamped, uv, 0.0).rgb;
     let haze = textureSampleLevel(sky_table, clamped, uv + vec2<f32>(0.0, 0.5), 0.0).rgb;
-    let clear = molecules + haze * haze_phase(dot(direction, frame.toward_sun)) + frame.lights.night_rgb;
     // Rain clouds are grey in all directions, a little brighter at the horizon.
     let grey = dot(frame.lights.mean_rgb + frame.lights.up_rgb, LUMINANCE);
     let overcast = vec3<f32>(0.94, 0.99, 1.06) * (grey * mix(1.0, 0.68, sqrt(up)));
-    return mix(clear, overcast, frame.overcast);
+    return SkyParts(mix(molecules + frame.lights.night_rgb, overcast, frame.overcast), haze * (1.0 - frame.overcast));
+}
+
+// Luminance of the sky in a direction. Twin of `Sky::luminance` in shared/src/light/sky.rs.
+fn sky_color(direction: vec3<f32>) -> vec3<f32> {
+    let parts = sky_parts(direction);
+    return parts.steady + parts.haze * haze_phase(dot(direction, frame.toward_sun));
 }
 
 // Light of sky and land on a surface, divided by π. Twin of `Sky::ambient`.

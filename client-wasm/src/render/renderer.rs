@@ -132,7 +132,7 @@ impl Renderer {
     /// Creates a variant of a pipeline that no frame has needed yet, so that the first frame with lamps or moving objects does not wait for it. Returns false
     /// if there is none.
     pub fn create_next_variant(&self) -> bool {
-        self.scene.as_ref().is_some_and(|scene| scene.create_next_variant())
+        self.scene.as_ref().is_some_and(|scene| scene.create_next_variant()) || self.sky.create_next()
     }
 
     /// Changes the size of the target.

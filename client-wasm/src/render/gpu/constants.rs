@@ -127,7 +127,10 @@ pub(crate) const HILLS_FULL_M: f32 = 900.0;
 pub(crate) const TILE_CELLS: u32 = 16;
 pub(crate) const TILE_VERTICES: u32 = (TILE_CELLS + 1).pow(2);
 /// Distance at which coarser tiles take over, relative to the side of a tile: at least 2√2, so that neighbours differ by at most one level.
-pub(crate) const RANGE_SIDES: f32 = 3.0;
+pub(crate) const RANGE_SIDES: f32 = 2.84;
+/// Headings and rings of the dome of the sky.
+pub(crate) const SKY_HEADINGS: u32 = 64;
+pub(crate) const SKY_RINGS: u32 = 26;
 /// Codes of the border of a tile with a coarser neighbour, and with finer ones.
 pub(crate) const COARSER: u32 = 1;
 pub(crate) const FINER: u32 = 2;

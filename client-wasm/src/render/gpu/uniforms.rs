@@ -17,8 +17,6 @@ uniform_block! {
     Frame {
         /// World to clip space, reversed depth.
         projection_from_world: [f32; 16],
-        /// Clip space to directions in the world; the sky's rays.
-        world_from_projection: [f32; 16],
         /// World to the clip space of the shadow map's sharp layer.
         shadow_from_world: [f32; 16],
         /// Camera position (m).
@@ -110,6 +108,16 @@ impl Frame {
     /// Whether there is any interaction sphere.
     pub(crate) fn has_spheres(&self) -> bool {
         self.sphere_count > 0
+    }
+
+    /// Whether any star is visible.
+    pub(crate) fn has_stars(&self) -> bool {
+        self.lights.star_brightness > 0.0 && self.overcast < 1.0
+    }
+
+    /// Whether single clouds are visible.
+    pub(crate) fn has_clouds(&self) -> bool {
+        self.overcast < 0.95
     }
 }
 

@@ -14,20 +14,23 @@ pub(crate) type LampVariants<P> = Variants<1, P>;
 /// Variants without and with lamps, each without and with interaction spheres; overrides `has_lamps` and `meets_spheres` in WGSL.
 pub(crate) type SphereVariants<P> = Variants<2, P>;
 
-/// Overrides of which variants set the first `N`.
-const OVERRIDES: [&str; 2] = ["has_lamps", "meets_spheres"];
-
 /// Variants of a pipeline by the values of `N` overrides.
 pub(crate) struct Variants<const N: usize, P> {
     /// By the values as bits, the first override in the lowest.
     made: Vec<OnceLock<P>>,
+    overrides: [&'static str; N],
     make: Make<N, P>,
 }
 
 impl<const N: usize, P> Variants<N, P> {
-    /// Variants that `make` creates.
-    pub(crate) fn new(make: impl Fn([Constant; N]) -> P + wgpu::WasmNotSendSync + 'static) -> Self {
-        Self { made: (0..1 << N).map(|_| OnceLock::new()).collect(), make: Box::new(make) }
+    /// Variants by these overrides in WGSL that `make` creates.
+    pub(crate) fn by(overrides: [&'static str; N], make: impl Fn([Constant; N]) -> P + wgpu::WasmNotSendSync + 'static) -> Self {
+        Self { made: (0..1 << N).map(|_| OnceLock::new()).collect(), overrides, make: Box::new(make) }
+    }
+
+    /// The variant for these values of the overrides.
+    pub(crate) fn with(&self, values: [bool; N]) -> &P {
+        self.variant(values.iter().rev().fold(0, |bits, value| bits << 1 | usize::from(*value)))
     }
 
     /// Creates a variant that no frame has needed yet. Returns false if there is none.
@@ -37,22 +40,32 @@ impl<const N: usize, P> Variants<N, P> {
     }
 
     fn variant(&self, bits: usize) -> &P {
-        let constants = std::array::from_fn(|n| (OVERRIDES[n], bits >> n & 1 == 1));
+        let constants = std::array::from_fn(|n| (self.overrides[n], bits >> n & 1 == 1));
         self.made[bits].get_or_init(|| (self.make)(constants))
     }
 }
 
 impl<P> LampVariants<P> {
+    /// Variants that `make` creates.
+    pub(crate) fn new(make: impl Fn([Constant; 1]) -> P + wgpu::WasmNotSendSync + 'static) -> Self {
+        Self::by(["has_lamps"], make)
+    }
+
     /// The variant for a frame with or without lamps.
     pub(crate) fn of(&self, has_lamps: bool) -> &P {
-        self.variant(usize::from(has_lamps))
+        self.with([has_lamps])
     }
 }
 
 impl<P> SphereVariants<P> {
+    /// Variants that `make` creates.
+    pub(crate) fn new(make: impl Fn([Constant; 2]) -> P + wgpu::WasmNotSendSync + 'static) -> Self {
+        Self::by(["has_lamps", "meets_spheres"], make)
+    }
+
     /// The variant for a frame with or without spheres and lamps.
     pub(crate) fn of(&self, has_spheres: bool, has_lamps: bool) -> &P {
-        self.variant(usize::from(has_lamps) | usize::from(has_spheres) << 1)
+        self.with([has_lamps, has_spheres])
     }
 }
 
@@ -68,7 +81,7 @@ mod tests {
         let counter = creations.clone();
         let variants = SphereVariants::new(move |[lamps, spheres]| {
             counter.fetch_add(1, Relaxed);
-            assert_eq!([lamps.0, spheres.0], OVERRIDES);
+            assert_eq!([lamps.0, spheres.0], ["has_lamps", "meets_spheres"]);
             (spheres.1, lamps.1)
         });
         assert_eq!(creations.load(Relaxed), 0);

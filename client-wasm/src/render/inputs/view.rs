@@ -75,7 +75,6 @@ impl<'a> View<'a> {
         let spheres = spheres(&scene.objects, poses, eye);
         Frame {
             projection_from_world: self.projection_from_world.to_cols_array(),
-            world_from_projection: self.direction_from_projection().to_cols_array(),
             shadow_from_world: self.shadow_from_world(0).to_cols_array(),
             eye_m: eye.to_array(),
             time_secs: (self.time_secs % 10_000.0) as f32,
@@ -118,13 +117,6 @@ impl<'a> View<'a> {
             gusts: std::array::from_fn(|i| gusts.waves().get(i).map_or_else(GustWave::zeroed, GustWave::from)),
             lights: self.lights(decoded, daylight, &lamps),
         }
-    }
-
-    /// Matrix from normalised device coordinates to directions in the world.
-    fn direction_from_projection(&self) -> Mat4 {
-        let rays = Mat4::from_mat3(glam::Mat3::from_mat4(glam::camera::rh::view::look_to_mat4(Vec3::ZERO, self.camera.forward(), Vec3::Y)));
-        let aspect = self.size_px[0] as f32 / self.size_px[1] as f32;
-        (self.camera.projection_from_view(aspect) * rays).inverse()
     }
 
     fn shadow_from_world(&self, cascade: usize) -> Mat4 {
