@@ -41,6 +41,8 @@ pub struct StepLog {
     /// Number of the first entry.
     first: u64,
     state: Option<Arc<EncodedState>>,
+    /// Whether the newest state that was asked for was too large to be sent.
+    is_too_large: bool,
 }
 
 impl StepLog {
@@ -79,9 +81,17 @@ impl StepLog {
         let Some((tick, _)) = self.newest else { return };
         let state = ReplicaState { tick, bend: bend.clone(), codec: self.codec.clone() }.encode();
         if state.len() > STATE_LIMIT_BYTES {
-            tracing::debug!(bytes = state.len(), "the state of the grass is too large for replicas");
+            // Said once, although a state is asked for again and again.
+            if !std::mem::replace(&mut self.is_too_large, true) {
+                tracing::warn!(
+                    bytes = state.len(),
+                    limit = STATE_LIMIT_BYTES,
+                    "the grass is too large for replicas; new clients get patches"
+                );
+            }
             return;
         }
+        self.is_too_large = false;
         let chunks = state.chunks(PART_BYTES);
         let parts = chunks.len() as u16;
         let message = |(part, payload): (usize, &[u8])| {
