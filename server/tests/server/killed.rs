@@ -25,7 +25,12 @@ impl Program {
     }
 
     async fn start_with(mut command: Command, world: &Path) -> Self {
-        command.args(["serve", "--scene", "blades", "--addr", "127.0.0.1:0", "--world"]).arg(world).env("NO_COLOR", "1");
+        command.args(["serve", "--scene", "blades", "--addr", "127.0.0.1:0", "--world"]).arg(world);
+        Self::run(command).await
+    }
+
+    async fn run(mut command: Command) -> Self {
+        command.env("NO_COLOR", "1");
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).kill_on_drop(true).spawn().unwrap();
         let mut printed = BufReader::new(child.stdout.take().unwrap()).lines();
         let log = BufReader::new(child.stderr.take().unwrap()).lines();
@@ -97,6 +102,8 @@ async fn kill_and_return(frames: usize) {
             client.frame().await;
         }
         let seen = client.replica.tick;
+        // At any moment between two steps, or in one.
+        tokio::time::sleep(Duration::from_micros(frames as u64 * 7919 % 16_667)).await;
         program.child.kill().await.unwrap();
         let (_, mut player) = recorded(folder.path(), None).unwrap();
         player.advance(u64::MAX);
@@ -146,6 +153,55 @@ async fn a_world_killed_200_times_is_always_resumed() {
     for n in 0..100 {
         kill_and_return(1 + n * 37 % 90).await;
     }
+}
+
+/// What the program prints with these arguments.
+async fn printed(arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_prairie")).args(arguments).output().await.unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_world_is_replayed_at_any_speed_for_viewers_who_change_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut program = Program::start(folder.path()).await;
+    let mut client = program.connect().await;
+    enter(&mut client, &ClientMessage::Hello { name: "Ada".to_owned() }).await;
+    client.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
+    own_object(&mut client).await;
+    client.send_message(&ClientMessage::Drive { number: 1, drive: Drive { throttle: 1.0, ..Drive::default() } }).await;
+    for _ in 0..200 {
+        client.frame().await;
+    }
+    program.child.kill().await.unwrap();
+    let (_, mut player) = recorded(folder.path(), None).unwrap();
+    player.advance(u64::MAX);
+    let (reached, sum) = (player.world.tick(), player.world.checksum());
+    let world = folder.path().to_str().unwrap();
+    let unseen = printed(&["replay", world, "--addr", "none"]).await;
+    assert_eq!(unseen.trim(), format!("steps 0 to {reached}, checksum {sum:016x}"));
+    assert_eq!(printed(&["diff", world, world]).await.trim(), format!("equal up to their end after step {reached}"));
+
+    let mut command = Command::new(env!("CARGO_BIN_EXE_prairie"));
+    command.args(["replay", world, "--addr", "127.0.0.1:0", "--from", "0", "--speed", "5"]);
+    let replay = Program::run(command).await;
+    let mut viewer = replay.connect().await;
+    enter(&mut viewer, &ClientMessage::Hello { name: "Eve".to_owned() }).await;
+    viewer.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Monster) }).await;
+    let mut ticks = vec![];
+    while viewer.replica.tick < reached {
+        viewer.frame().await;
+        ticks.push(viewer.replica.tick);
+    }
+    ticks.pop();
+    let steps: Vec<u64> = ticks.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert!(steps.len() > 2 && steps.iter().all(|steps| steps.is_multiple_of(15)), "a publication is three steps of the clock: {steps:?}");
+    for _ in 0..10 {
+        viewer.frame().await;
+    }
+    assert_eq!(viewer.replica.tick, reached, "it stands still at its end");
+    assert_eq!(viewer.objects.len(), client.objects.len(), "no monster was added");
 }
 
 #[cfg(target_os = "linux")]
