@@ -121,12 +121,17 @@ fn common<'a>(folder: &'a Path, file: &Path) -> &'a Path {
 mod tests {
     use super::*;
 
+    /// A scene in a folder in `work`.
+    fn written(work: &Path) -> PathBuf {
+        let folder = work.join("scenes");
+        scenes::create(&folder, None).unwrap();
+        folder
+    }
+
     #[test]
     fn files_keep_their_places_relative_to_each_other() {
-        let world = tempfile::tempdir().unwrap();
-        let work = tempfile::tempdir().unwrap();
-        let folder = work.path().join("scenes");
-        scenes::create(&folder, None).unwrap();
+        let (world, work) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let folder = written(work.path());
         // The height map is outside the folder of the scene.
         fs::create_dir(work.path().join("maps")).unwrap();
         fs::rename(folder.join("height.png"), work.path().join("maps/height.png")).unwrap();
@@ -145,10 +150,8 @@ mod tests {
 
     #[test]
     fn files_that_have_changed_since_are_not_kept() {
-        let world = tempfile::tempdir().unwrap();
-        let work = tempfile::tempdir().unwrap();
-        let folder = work.path().join("scenes");
-        scenes::create(&folder, None).unwrap();
+        let (world, work) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let folder = written(work.path());
         let file = folder.join("scene.toml");
         let scene = scenes::load(&file).unwrap();
         let text = fs::read_to_string(&file).unwrap();
