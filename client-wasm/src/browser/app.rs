@@ -84,7 +84,7 @@ pub(super) struct App {
     pub(super) options: Options,
     pub(super) settings: Settings,
     pub(super) mirror: Mirror,
-    /// The last minutes, while there is a replica.
+    /// The last minutes.
     pub(super) record: Record,
     /// The past that is shown instead of the present, while the user looks back.
     pub(super) past: Option<Past>,

@@ -24,7 +24,7 @@ impl PatchCodes {
     }
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Entry {
     seq: u32,
     updated: u64,
@@ -32,7 +32,7 @@ struct Entry {
 }
 
 /// All patches received.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct PatchFields {
     entries: HashMap<PatchIndex, Entry>,
     dirty: BTreeSet<PatchIndex>,
@@ -98,6 +98,11 @@ impl PatchFields {
 
     pub(super) fn bent(&self) -> impl Iterator<Item = PatchIndex> + '_ {
         self.entries.iter().filter(|(_, entry)| entry.codes.is_some()).map(|(&index, _)| index)
+    }
+
+    /// Memory of the codes (bytes).
+    pub(super) fn memory_bytes(&self) -> usize {
+        self.entries.values().flat_map(|entry| &entry.codes).map(|codes| size_of_val(codes.planes.as_slice())).sum()
     }
 
     /// Marks all bent patches as changed.

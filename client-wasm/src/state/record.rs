@@ -1,4 +1,4 @@
-//! A record of the last minutes: the messages that a mirror with a replica has applied, and checkpoints between them.
+//! A record of the last minutes: the messages that a mirror has applied, and checkpoints between them.
 
 use super::checkpoint::Checkpoint;
 use super::error::MirrorError;
@@ -20,7 +20,7 @@ pub(super) struct RecordedFrame {
     pub(super) secs: f64,
     /// Its messages as sent, the end of the frame included.
     pub(super) messages: Vec<Vec<u8>>,
-    /// Whether it does not go on from the frame before: the replica was another then, or frames are missing.
+    /// Whether it does not go on from the frame before: there was another replica or none then, or frames are missing.
     pub(super) is_start: bool,
     /// State after the frame. A start has one.
     pub(super) checkpoint: Option<Checkpoint>,
@@ -33,7 +33,7 @@ impl RecordedFrame {
     }
 }
 
-/// Frames of the last minutes, begun with a checkpoint. While the mirror has no replica, nothing is added.
+/// Frames of the last minutes, begun with a checkpoint. Of a time without a replica, it has the patches that the server has sent.
 #[derive(Debug)]
 pub struct Record {
     frames: VecDeque<RecordedFrame>,
@@ -68,13 +68,20 @@ impl Record {
     pub fn apply(&mut self, mirror: &mut Mirror, message: ServerMessage) -> Result<Option<Event>, MirrorError> {
         let is_recorded = matches!(
             message,
-            ServerMessage::Wind { .. } | ServerMessage::Steps { .. } | ServerMessage::Broken { .. } | ServerMessage::FrameEnd { .. }
+            ServerMessage::Poses { .. }
+                | ServerMessage::Wind { .. }
+                | ServerMessage::Patch { .. }
+                | ServerMessage::Steps { .. }
+                | ServerMessage::Broken { .. }
+                | ServerMessage::FrameEnd { .. }
         );
-        let is_start = matches!(message, ServerMessage::ReplicaState { part, parts, .. } if part.checked_add(1) == Some(parts));
-        let bytes = (is_recorded && mirror.replica().is_some()).then(|| wire::encode(&message));
+        let starts_replica = matches!(message, ServerMessage::ReplicaState { part, parts, .. } if part.checked_add(1) == Some(parts));
+        let had_replica = mirror.replica().is_some();
+        let bytes = is_recorded.then(|| wire::encode(&message));
         let event = mirror.apply(message)?;
         self.begun.extend(bytes);
-        if is_start || mirror.replica().is_none() || self.begun.iter().map(Vec::len).sum::<usize>() > self.limit_bytes {
+        let is_interrupted = starts_replica || mirror.replica().is_some() != had_replica;
+        if is_interrupted || self.begun.iter().map(Vec::len).sum::<usize>() > self.limit_bytes {
             self.begun.clear();
             self.is_interrupted = true;
         }

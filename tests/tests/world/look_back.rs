@@ -4,8 +4,9 @@ use super::replica::{Server, Viewer, commands};
 use anyhow::{Context as _, Result, ensure};
 use prairie::scenes::{self, LoadedScene};
 use prairie::world::{Command, World};
-use prairie_client::state::{CHECKPOINT_SECS, Event, Mirror, Past, RECORD_SECS, Record};
-use prairie_core::grass::ReplicaState;
+use prairie_client::state::{CHECKPOINT_SECS, Event, Mirror, Past, PatchCodes, RECORD_SECS, Record};
+use prairie_core::grass::{Replica, ReplicaState};
+use prairie_core::grid::PatchIndex;
 use prairie_core::random::SplitMix64;
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::{Drive, ObjectPose, SERVER_MESSAGE_LIMIT, decode};
@@ -61,23 +62,29 @@ impl Recording {
     }
 }
 
-/// Copies of all that must come back: the replica's state, the poses, the codes, the number of broken plants, and the wind frame.
+/// Copies of all that must come back: the replica's state, the codes of all bent patches, the poses, the number of broken plants, and the wind frame.
 #[derive(Debug, PartialEq)]
 struct Moment {
-    replica: ReplicaState,
+    /// `None` while the client takes patches.
+    replica: Option<ReplicaState>,
+    codes: BTreeMap<PatchIndex, PatchCodes>,
     objects: Vec<ObjectPose>,
     broken: u32,
     wind: Option<(u64, Vec<i16>)>,
 }
 
 impl Moment {
-    fn of(mirror: &Mirror) -> Option<Self> {
-        Some(Self {
-            replica: mirror.replica()?.state(),
+    fn of(mirror: &Mirror) -> Self {
+        let replica = mirror.replica().map(Replica::state);
+        // Codes of flattened grass are renewed at times that depend on when a replica began.
+        let bent = mirror.bent_patches().filter(|_| replica.is_none());
+        Self {
+            codes: bent.filter_map(|patch| Some((patch, mirror.patch(patch)?.clone()))).collect(),
+            replica,
             objects: mirror.newest_objects().to_vec(),
             broken: mirror.broken_count(),
             wind: mirror.wind().map(|wind| (wind.tick(), wind.codes().to_vec())),
-        })
+        }
     }
 }
 
@@ -100,9 +107,9 @@ fn catch_up(past: &mut Past, recording: &Recording, frames: u32) -> Result<()> {
 fn compare(past: &Past, tick: u64, moment: &Moment) -> Result<()> {
     let mirror = past.mirror().context("a past is shown")?;
     ensure!(mirror.tick() == tick, "step {} is shown instead of {tick}", mirror.tick());
-    ensure!(Moment::of(mirror).as_ref() == Some(moment), "the past differs at step {tick}");
-    let codes = mirror.replica().context("a replica")?.grass().field().awake_count();
-    ensure!(mirror.bent_patches().count() >= codes.min(1), "no patch is shown at step {tick}");
+    ensure!(Moment::of(mirror) == *moment, "the past differs at step {tick}");
+    let awake = mirror.replica().map_or(0, |replica| replica.grass().field().awake_count());
+    ensure!(mirror.bent_patches().count() >= awake.min(1), "no patch is shown at step {tick}");
     Ok(())
 }
 
@@ -115,7 +122,7 @@ fn look_back_at(scene: &str, publications: u64) -> Result<()> {
         commands(&mut random, publication, &mut recording.queue);
         recording.publish()?;
         if recording.record.newest_secs().is_some() && publication % 7 == 0 {
-            moments.insert(recording.live().tick(), Moment::of(recording.live()).context("a replica")?);
+            moments.insert(recording.live().tick(), Moment::of(recording.live()));
         }
     }
     let ticks: Vec<u64> = moments.keys().copied().collect();
@@ -170,50 +177,58 @@ fn a_record_is_bounded_in_time_and_in_memory() -> Result<()> {
 }
 
 #[test]
-fn a_record_goes_on_after_the_replica_was_interrupted() -> Result<()> {
+fn a_record_goes_on_while_patches_come_instead_of_a_replica() -> Result<()> {
     let loaded = scenes::load("meadow")?;
     let mut recording = Recording::new(&loaded, Record::default())?;
     recording.drive_two_cars();
-    let mut moments = vec![];
-    for (publications, has_replica) in [(100, true), (60, false), (100, true)] {
+    let mut moments = BTreeMap::new();
+    // Longer than the server pauses between two states.
+    for (publications, has_replica) in [(150, true), (130, false), (150, true)] {
         recording.viewer.client.request_replica(has_replica);
-        let recorded = recording.record.memory_bytes();
-        for _ in 0..publications {
+        for publication in 0..publications {
             recording.publish()?;
+            if publication % 10 == 9 {
+                moments.insert(recording.live().tick(), Moment::of(recording.live()));
+            }
         }
-        ensure!(has_replica || recording.record.memory_bytes() < recorded + 20_000, "patches are recorded");
-        moments.extend(Moment::of(recording.live()).map(|moment| (recording.live().tick(), moment)));
+        ensure!(recording.live().replica().is_some() == has_replica, "replica: {}", !has_replica);
     }
-    ensure!(moments.len() == 2, "{} moments with a replica", moments.len());
+    let is_taken = |moment: &&Moment| moment.replica.is_none() && !moment.codes.is_empty() && !moment.objects.is_empty();
+    ensure!(moments.values().filter(is_taken).count() >= 10, "bent patches came without a replica");
     let mut past = Past::new(0.0);
     catch_up(&mut past, &recording, u32::MAX)?;
     ensure!(Some(past.goal_secs()) == recording.record.oldest_secs(), "the past begins before the record");
-    // From before the interruption to after it, and back, in leaps and by small steps.
-    for leaps in [0, 1, 0, 1, 0, 40] {
-        let from_secs = past.goal_secs();
-        let (tick, moment) = &moments[usize::from(leaps > 0)];
-        for leap in 1..=leaps.max(1) {
-            past.seek(from_secs + (recording.secs_of(*tick) - from_secs) * (f64::from(leap) / f64::from(leaps.max(1))));
-            catch_up(&mut past, &recording, u32::MAX)?;
-        }
-        compare(&past, *tick, moment)?;
+    // One after the other, back in leaps, and at random.
+    let ticks: Vec<u64> = moments.keys().copied().collect();
+    let mut random = SplitMix64::new(5);
+    let random_ticks: Vec<u64> = (0..20).map(|_| ticks[random.next_u64() as usize % ticks.len()]).collect();
+    for &tick in ticks.iter().chain(ticks.iter().rev().step_by(7)).chain(&random_ticks) {
+        past.seek(recording.secs_of(tick));
+        catch_up(&mut past, &recording, u32::MAX)?;
+        compare(&past, tick, &moments[&tick])?;
     }
     Ok(())
 }
 
 #[test]
-fn a_record_is_forgotten_when_no_replica_comes_again() -> Result<()> {
+fn a_record_of_patches_is_bounded_in_time_and_in_memory() -> Result<()> {
     let loaded = scenes::load("meadow")?;
-    let mut recording = Recording::new(&loaded, Record::default())?;
-    recording.drive_two_cars();
-    for _ in 0..100 {
-        recording.publish()?;
+    for (limit_bytes, publications) in [(usize::MAX, 2700), (3 << 20, 800)] {
+        let mut recording = Recording::new(&loaded, Record::with_limit(limit_bytes))?;
+        recording.viewer.client.request_replica(false);
+        recording.drive_two_cars();
+        let mut longest_secs = 0.0_f64;
+        for _ in 0..publications {
+            recording.publish()?;
+            let (length_secs, bytes) = (recording.record.length_secs(), recording.record.memory_bytes());
+            longest_secs = longest_secs.max(length_secs);
+            ensure!(bytes <= limit_bytes, "the record has {bytes} bytes instead of {limit_bytes}");
+            ensure!(length_secs < RECORD_SECS + CHECKPOINT_SECS + 0.1, "the record is {length_secs} s long");
+        }
+        println!("up to {longest_secs:.1} s in {} kB", recording.record.memory_bytes() / 1000);
+        let is_expected = if limit_bytes == usize::MAX { longest_secs > RECORD_SECS } else { longest_secs > CHECKPOINT_SECS };
+        ensure!(is_expected, "with {limit_bytes} bytes, the record was up to {longest_secs} s long");
     }
-    recording.viewer.client.request_replica(false);
-    for _ in 0..2600 {
-        recording.publish()?;
-    }
-    ensure!(recording.record.newest_secs().is_none() && recording.record.memory_bytes() == 0, "the record is older than it may be");
     Ok(())
 }
 
