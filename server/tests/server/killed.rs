@@ -227,6 +227,63 @@ async fn a_full_disk_is_logged_once_and_reported_and_stops_nothing() {
     assert!(health["journal_failures"].as_u64() > Some(0) && health["journal_checkpoints"] == 0, "{health}");
 }
 
+/// Limits the size of the files that a running program can write.
+#[cfg(target_os = "linux")]
+async fn limit_files(program: &Program, bytes: &str) {
+    let pid = program.child.id().expect("it runs").to_string();
+    let status = Command::new("prlimit").args(["--pid", &pid, &format!("--fsize={bytes}:unlimited")]).status().await.unwrap();
+    assert!(status.success(), "prlimit failed");
+}
+
+/// Drives on, for `frames` frames.
+#[cfg(target_os = "linux")]
+async fn drive_on(client: &mut TestClient<TcpStream>, frames: usize) {
+    for frame in 0..frames {
+        let drive = Drive { throttle: 1.0, steer: (frame as f32 * 0.3).sin(), ..Drive::default() };
+        client.send_message(&ClientMessage::Drive { number: 1, drive }).await;
+        client.frame().await;
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_disk_that_is_full_for_a_while_costs_only_that_while() {
+    for is_room_again in [false, true] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut program = Program::start(folder.path()).await;
+        let mut client = program.connect().await;
+        enter(&mut client, &ClientMessage::Hello { name: "Ada".to_owned() }).await;
+        client.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
+        own_object(&mut client).await;
+        drive_on(&mut client, 60).await;
+        let before = client.replica.tick;
+        limit_files(&program, "1").await;
+        drive_on(&mut client, 60).await;
+        program.logged("cannot be written").await;
+        let full = client.replica.tick;
+        if is_room_again {
+            limit_files(&program, "unlimited").await;
+            within(async {
+                while program.get("/healthz").await.contains("cannot be written") {
+                    drive_on(&mut client, 5).await;
+                }
+            })
+            .await;
+            drive_on(&mut client, 60).await;
+        }
+        let seen = client.replica.tick;
+        program.child.kill().await.unwrap();
+        let (reached, sum) = newest_at(folder.path(), u64::MAX);
+        let wanted = if is_room_again { seen } else { before };
+        assert!(reached + 6 >= wanted, "step {wanted} was written, the journal has {reached}");
+        assert!(is_room_again || reached < full, "step {reached} was written to a full disk");
+
+        let mut program = Program::start(folder.path()).await;
+        assert_eq!(tick(&program.logged("resumed the world").await), reached);
+        assert_eq!(newest_at(folder.path(), reached), (reached, sum), "the new checkpoint is the replayed state");
+    }
+}
+
 /// Value of a series without labels in a scrape.
 fn scraped(text: &str, name: &str) -> f64 {
     let line = text.lines().find(|line| line.split(' ').next() == Some(name)).unwrap_or_else(|| panic!("no {name}: {text}"));
