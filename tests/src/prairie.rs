@@ -4,21 +4,23 @@ use crate::browser::Browser;
 use anyhow::Result;
 use prairie::runner::Simulation;
 use prairie::scenes::LoadedScene;
-use prairie::{Config, Limits, run_simulation};
+use prairie::{Config, Limits, RunError, run_simulation};
 use std::net::SocketAddr;
 use tokio::net::TcpListener;
 use tokio::sync::oneshot;
+use tokio::task::JoinHandle;
 
-/// A server on a free port; it stops when dropped.
+/// A server; it stops when dropped.
 #[derive(Debug)]
 pub struct Prairie {
     /// Listening address.
     pub addr: SocketAddr,
-    _stop: oneshot::Sender<()>,
+    stop: oneshot::Sender<()>,
+    server: JoinHandle<Result<(), RunError>>,
 }
 
 impl Prairie {
-    /// Serves a scene with `simulation` as its world.
+    /// Serves a scene with `simulation` as its world on a free port.
     ///
     /// # Errors
     /// When no port is free.
@@ -31,13 +33,30 @@ impl Prairie {
     /// # Errors
     /// When no port is free.
     pub async fn serve_within(scene: LoadedScene, simulation: impl Simulation, limits: Limits) -> Result<Self> {
-        let listener = TcpListener::bind("127.0.0.1:0").await?;
+        Self::serve_at(SocketAddr::from(([127, 0, 0, 1], 0)), scene, simulation, limits).await
+    }
+
+    /// The same at an address.
+    ///
+    /// # Errors
+    /// When the port is not free.
+    pub async fn serve_at(addr: SocketAddr, scene: LoadedScene, simulation: impl Simulation, limits: Limits) -> Result<Self> {
+        let listener = TcpListener::bind(addr).await?;
         let addr = listener.local_addr()?;
         let (stop, stopped) = oneshot::channel::<()>();
-        tokio::spawn(run_simulation(simulation, Config { limits, ..Config::new(scene) }, listener, async {
+        let server = tokio::spawn(run_simulation(simulation, Config { limits, ..Config::new(scene) }, listener, async {
             let _ = stopped.await;
         }));
-        Ok(Self { addr, _stop: stop })
+        Ok(Self { addr, stop, server })
+    }
+
+    /// Stops the server, and waits until its world has ended.
+    ///
+    /// # Errors
+    /// When the server has failed.
+    pub async fn stop(self) -> Result<()> {
+        drop(self.stop);
+        Ok(self.server.await??)
     }
 
     /// Opens a browser and waits until it has the scene, the first frames and a GPU device. It draws only on request: continuous software rendering would
