@@ -164,11 +164,7 @@ impl ClientState {
     fn patches(&mut self, publication: &Publication<'_>, encoder: &mut Encoder) -> (Vec<Bytes>, Option<u32>, Vec<(PatchIndex, u32)>) {
         let snapshot = publication.snapshot;
         let newer = encoder.wind(snapshot, self.held_wind);
-        let is_behind = newer.is_some();
         let wind = newer.filter(|(_, message)| self.budget.try_overdraw(message.len() as f64));
-        if wind.as_ref().is_some_and(|(seq, _)| self.held_wind.is_some_and(|held| held.wrapping_add(1) != *seq)) {
-            self.following.restart();
-        }
         let (mut messages, mut patches) = (Vec::new(), Vec::new());
         for &patch in &self.wanted {
             let held = self.held.get(&patch).map(|held| held.seq);
@@ -180,9 +176,14 @@ impl ClientState {
             patches.push((patch, seq));
         }
         messages.extend(wind.iter().map(|(_, message)| message.clone()));
-        let (budget, has_wind) = (&mut self.budget, !is_behind || wind.is_some());
-        messages.extend(self.following.parts(publication.steps, has_wind, |bytes| budget.try_overdraw(bytes as f64)));
-        (messages, wind.map(|(seq, _)| seq), patches)
+        let mut wind = wind.map(|(seq, _)| seq);
+        messages.extend(self.following.parts(|bytes| self.budget.try_overdraw(bytes as f64)));
+        if let Some((steps, newest)) = self.following.catch_up(publication.steps) {
+            self.budget.charge(steps.iter().map(Bytes::len).sum::<usize>() as f64);
+            messages.extend(steps);
+            wind = newest.or(wind);
+        }
+        (messages, wind, patches)
     }
 
     /// Whether the client waits for a state of the grass.

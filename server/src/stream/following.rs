@@ -1,7 +1,7 @@
 //! A client's way to a replica of the grass: from patches, over the parts of a state, to the causes of steps.
 
 use super::clients::Client;
-use super::step_log::{EncodedState, StepLog};
+use super::step_log::{EncodedState, Entry, StepLog};
 use bytes::Bytes;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -74,46 +74,44 @@ impl Following {
         matches!(self.progress, Progress::Waiting)
     }
 
-    /// Waits for another state: the client has missed a part of this one, or a wind frame, without which a replica would differ.
+    /// Waits for another state: the client has missed a part of this one.
     pub(super) fn restart(&mut self) {
         if let Progress::Receiving { .. } | Progress::Steps { .. } = self.progress {
             self.progress = Progress::Waiting;
         }
     }
 
-    /// The next parts of the state for which `pay` is true; after the last one, the steps since, so that the replica is complete with this frame. The last one
-    /// waits for a frame with which the client `has_wind`, the newest.
-    pub(super) fn parts(&mut self, log: &StepLog, has_wind: bool, mut pay: impl FnMut(usize) -> bool) -> Vec<Bytes> {
+    /// The next parts of the state for which `pay` is true.
+    pub(super) fn parts(&mut self, mut pay: impl FnMut(usize) -> bool) -> Vec<Bytes> {
         let Progress::Receiving { state, sent } = &mut self.progress else { return vec![] };
-        let last = state.parts.len() - usize::from(!has_wind);
-        let mut messages: Vec<Bytes> = state.parts[*sent..last.max(*sent)].iter().take_while(|part| pay(part.len())).cloned().collect();
+        let messages: Vec<Bytes> = state.parts[*sent..].iter().take_while(|part| pay(part.len())).cloned().collect();
         *sent += messages.len();
-        if *sent < state.parts.len() {
-            return messages;
-        }
-        match log.since(state.next_entry) {
-            // The client has had the wind already.
-            Some(entries) => {
-                messages.extend(entries.filter_map(|entry| entry.steps.clone()));
-                self.progress = Progress::Steps { next_entry: log.next_entry() };
-            }
-            None => self.progress = Progress::Patches,
-        }
         messages
+    }
+
+    /// After the last part, the wind of the state, and all winds and steps since, so that the replica is complete with this frame whatever frames the client has
+    /// missed meanwhile; with the number of the newest wind frame in them.
+    pub(super) fn catch_up(&mut self, log: &StepLog) -> Option<(Vec<Bytes>, Option<u32>)> {
+        let Progress::Receiving { state, sent } = &self.progress else { return None };
+        if *sent < state.parts.len() {
+            return None;
+        }
+        let Some(entries) = log.since(state.next_entry) else {
+            self.progress = Progress::Patches;
+            return None;
+        };
+        let (since, newest) = told(entries);
+        let (first, wind) = state.wind.clone().unzip();
+        let messages = wind.into_iter().chain(since).collect();
+        self.progress = Progress::Steps { next_entry: log.next_entry() };
+        Some((messages, newest.or(first)))
     }
 
     /// Messages of the entries that a client with a replica has not got, and the number of the newest wind frame in them; `None` when there is nothing to say.
     pub(super) fn steps(&mut self, log: &StepLog, must_send: bool, now: Instant) -> Option<(Vec<Bytes>, Option<u32>)> {
         let Progress::Steps { next_entry } = self.progress else { return None };
         let is_due = must_send || self.frame_at.is_none_or(|at| now.duration_since(at) >= HEARTBEAT);
-        let (mut messages, mut wind) = (Vec::new(), None);
-        for entry in log.since(next_entry)? {
-            if let Some((seq, message)) = &entry.wind {
-                messages.push(message.clone());
-                wind = Some(*seq);
-            }
-            messages.extend(entry.steps.clone());
-        }
+        let (messages, wind) = told(log.since(next_entry)?);
         (is_due || !messages.is_empty()).then_some((messages, wind))
     }
 
@@ -124,4 +122,17 @@ impl Following {
         }
         self.frame_at = Some(now);
     }
+}
+
+/// Messages of entries, and the number of the newest wind frame in them.
+fn told<'a>(entries: impl Iterator<Item = &'a Entry>) -> (Vec<Bytes>, Option<u32>) {
+    let (mut messages, mut wind) = (Vec::new(), None);
+    for entry in entries {
+        if let Some((seq, message)) = &entry.wind {
+            messages.push(message.clone());
+            wind = Some(*seq);
+        }
+        messages.extend(entry.steps.clone());
+    }
+    (messages, wind)
 }

@@ -6,8 +6,8 @@ use prairie_core::wire::{self, ServerMessage};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Largest number of publications with changes that are kept for clients that lag: 12 s at 20 Hz. It covers the transfer of a state.
-const ENTRIES: usize = 240;
+/// Largest number of publications with changes that are kept for clients that lag: 40 s at 20 Hz. It covers the transfer of the largest state.
+const ENTRIES: usize = 800;
 /// Size of the parts of a state (bytes).
 const PART_BYTES: usize = 16 << 10;
 /// Largest encoded state that is sent (bytes): 32 s at the default data rate; larger worlds are sent as patches.
@@ -27,6 +27,8 @@ pub(super) struct Entry {
 pub(super) struct EncodedState {
     /// Messages of its parts.
     pub(super) parts: Vec<Bytes>,
+    /// Key frame of the wind after the step, and its number.
+    pub(super) wind: Option<(u32, Bytes)>,
     /// Number of the first entry after it.
     pub(super) next_entry: u64,
 }
@@ -76,8 +78,8 @@ impl StepLog {
         }
     }
 
-    /// Encodes a state of the grass after the newest step, for replicas that start.
-    pub(super) fn set_state(&mut self, bend: &BendState) {
+    /// Encodes a state of the grass after the newest step, for replicas that start, with the key frame of the wind of this publication.
+    pub(super) fn set_state(&mut self, bend: &BendState, wind: Option<(u32, Bytes)>) {
         let Some((tick, _)) = self.newest else { return };
         let state = ReplicaState { tick, bend: bend.clone(), codec: self.codec.clone() }.encode();
         if state.len() > STATE_LIMIT_BYTES {
@@ -97,7 +99,8 @@ impl StepLog {
         let message = |(part, payload): (usize, &[u8])| {
             wire::encode(&ServerMessage::ReplicaState { tick, part: part as u16, parts, payload: payload.to_vec() }).into()
         };
-        self.state = Some(Arc::new(EncodedState { parts: chunks.enumerate().map(message).collect(), next_entry: self.next_entry() }));
+        let parts = chunks.enumerate().map(message).collect();
+        self.state = Some(Arc::new(EncodedState { parts, wind, next_entry: self.next_entry() }));
     }
 
     /// The state after the newest step, if it was [set](Self::set_state).

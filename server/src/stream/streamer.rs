@@ -140,7 +140,7 @@ impl Streamer {
         let snapshot = &published.snapshot;
         self.steps.extend(&snapshot.steps, snapshot.wind.tick, self.encoder.next_wind(snapshot));
         if let Some(state) = &published.bend_state {
-            self.steps.set_state(state);
+            self.steps.set_state(state, self.encoder.wind(snapshot, None));
         }
         let publication = Publication {
             snapshot: &published.snapshot,

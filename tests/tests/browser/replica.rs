@@ -65,11 +65,11 @@ fn stalls(since: Duration) -> Duration {
     Duration::from_secs_f64((1.0 - phase_secs).max(0.0))
 }
 
-/// Largest difference of the bend between the page and the server at the same step, at places 2 m apart (rad); `None` when no frame of the page was one that the
+/// Largest difference of the bend between the page and the server at the same step, at 4096 places 4 m apart (rad); `None` when no frame of the page was one that the
 /// server answered for.
 const DIFFERENCE: &str = "(async () => {
     const at_m = [];
-    for (let x = 1; x < 256; x += 2) for (let z = 1; z < 256; z += 2) at_m.push([x, z]);
+    for (let x = 2; x < 256; x += 4) for (let z = 2; z < 256; z += 4) at_m.push([x, z]);
     for (let attempt = 0; attempt < 20; attempt++) {
         const answer = await (await fetch('/api/bend', { method: 'POST', body: JSON.stringify({ at_m }) })).json();
         if (window.prairie.state().tick !== answer.tick) continue;
@@ -98,8 +98,9 @@ struct Seen {
 }
 
 impl Seen {
-    /// Looks at a page.
+    /// Looks at a page, and waits.
     async fn look(&mut self, browser: &Browser) -> Result<()> {
+        sleep(Duration::from_millis(500)).await;
         let state = browser.state().await?;
         self.looks += 1;
         self.replicas += u32::from(state["replica"] == true);
@@ -124,14 +125,15 @@ async fn metric(browser: &Browser, name: &str) -> Result<f64> {
 async fn pages_have_the_bits_of_the_server_for_ten_thousand_steps() -> Result<()> {
     let mut meadow = scenes::load("meadow")?;
     meadow.scene.underbrush.clear();
-    (meadow.scene.objects.self_driving, meadow.scene.objects.balls) = (3, 3);
+    // Two pages and the server share the cores of the machine.
+    (meadow.scene.objects.self_driving, meadow.scene.objects.balls) = (1, 0);
     let kept = tempfile::tempdir()?;
     let open = || journal::open(Some(&WorldFolder::new(kept.path().to_owned())), &meadow);
     let mut prairie = Prairie::serve(meadow.clone(), open()?).await?;
     let server_addr = prairie.addr;
     let line_addr = line(server_addr, stalls).await?;
     let page = || async move { Browser::open(&format!("http://{line_addr}/?paused=1&quality=low&panel=0#128,6,140,20,-8")).await };
-    let has_replica = "window.prairie?.state().connected && window.prairie.state().replica";
+    let has_replica = "window.prairie?.state()?.connected && window.prairie.state().replica";
     let first = page().await?;
     first.until(has_replica).await?;
     let (mut late, mut seen, mut differences) = (None, [Seen::default(), Seen::default()], 0.0);

@@ -236,6 +236,36 @@ fn a_replica_that_differs_is_found_and_repaired() -> Result<()> {
 }
 
 #[test]
+fn a_replica_starts_although_the_line_stalls_while_its_state_is_sent() -> Result<()> {
+    let loaded = scenes::load("meadow")?;
+    let [x, z] = loaded.scene.extent_m().map(|extent| 0.5 * extent);
+    let mut server = Server::new(World::new(&loaded.scene, loaded.maps())?, &loaded);
+    let (mut random, mut queue) = (SplitMix64::new(3), vec![]);
+    for publication in 0..600 {
+        commands(&mut random, publication, &mut queue);
+        server.publish(&mut queue, loaded.scene.tick_hz);
+    }
+    let mut viewer = server.join(&loaded, [x, 30.0, z])?;
+    let (mut began, mut equal) = (None, 0);
+    for publication in 0..400 {
+        commands(&mut random, publication, &mut queue);
+        server.publish(&mut queue, loaded.scene.tick_hz);
+        // Of every 2 s the line stalls for the first.
+        if publication % 40 >= 20 {
+            viewer.receive()?;
+            let has_caught_up = viewer.mirror.tick() == server.world.tick();
+            equal += u64::from(has_caught_up && viewer.is_equal(&server.world)?);
+            began = began.or(viewer.mirror.replica().map(|_| publication));
+        }
+    }
+    let began = began.context("no replica has started")?;
+    println!("a replica after {began} publications, equal at {equal}; {} kB", viewer.bytes / 1000);
+    assert!(began > 60, "the state was sent between two stalls");
+    assert!(began < 300 && equal > (400 - began) / 3, "a replica after {began} publications, equal at {equal}");
+    Ok(())
+}
+
+#[test]
 #[ignore = "a measurement: cargo nextest run --release -p tests --test world --run-ignored only the_time_of_a_replica --no-capture"]
 fn the_time_of_a_replica() -> Result<()> {
     for (scene, _) in scenes::list() {
