@@ -1,15 +1,16 @@
 //! The data rate of a client that watches a drive.
 
+// What only the example prints is not read here.
+#[allow(dead_code)]
 #[path = "../examples/watched_drive/measure.rs"]
 mod measure;
 
-use measure::{Measured, STEPS_PER_PUBLISH, WatchedDrive};
+use measure::{Measured, WatchedDrive};
 
 /// Rate beyond the wind (kbit/s), with replicas or with patches of the grass.
 fn beyond_the_wind(scene: &str, has_replica: bool, has_car: bool) -> f64 {
     let drive = WatchedDrive { scene: scene.to_owned(), radius_m: 112.0, measured_secs: 8.0, has_replica, has_car, viewers: 0 };
-    let Measured { sums, tick_hz, publishing } = drive.measure().unwrap();
-    assert!(!publishing.is_zero() && tick_hz / STEPS_PER_PUBLISH as f32 > 1.0);
+    let Measured { sums, .. } = drive.measure().unwrap();
     let bytes: usize = sums.iter().filter(|(kind, _)| **kind != "wind").map(|(_, (_, bytes))| bytes).sum();
     let kbit_per_s = bytes as f64 * 8e-3 / f64::from(drive.measured_secs);
     println!("{scene}: {kbit_per_s:.1} kbit/s");

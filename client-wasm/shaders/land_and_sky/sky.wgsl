@@ -32,7 +32,8 @@ fn vs(@builtin(vertex_index) index: u32) -> Ray {
     let ring = index / (SKY_HEADINGS + 1u);
     let above = f32(max(ring, 1u) - 1u) / f32(SKY_RINGS - 2u);
     let up = select(above * above, -1.0, ring == 0u);
-    let turn = f32(index % (SKY_HEADINGS + 1u)) * (TAU / f32(SKY_HEADINGS));
+    // The last heading is the first one, to the bit.
+    let turn = f32((index % (SKY_HEADINGS + 1u)) % SKY_HEADINGS) * (TAU / f32(SKY_HEADINGS));
     let sun = sun_heading();
     let level = vec2<f32>(cos(turn) * sun.x - sin(turn) * sun.y, cos(turn) * sun.y + sin(turn) * sun.x) * sqrt(max(1.0 - up * up, 0.0));
     let direction = vec3<f32>(level.x, up, level.y);

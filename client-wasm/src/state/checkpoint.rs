@@ -15,7 +15,12 @@ enum Grass {
     /// State of the replica, encoded.
     Replica(Vec<u8>),
     /// Without a replica: what the server has sent.
-    Sent { patches: PatchFields, objects: Vec<ObjectPose> },
+    Sent {
+        patches: PatchFields,
+        objects: Vec<ObjectPose>,
+        /// Time of playback of the objects (s).
+        objects_secs: f64,
+    },
 }
 
 /// State of a mirror after a frame.
@@ -34,29 +39,35 @@ impl Checkpoint {
     pub(super) fn memory_bytes(&self) -> usize {
         let grass_bytes = match &self.grass {
             Grass::Replica(state) => state.len(),
-            Grass::Sent { patches, objects } => patches.memory_bytes() + size_of_val(objects.as_slice()),
+            Grass::Sent { patches, objects, .. } => patches.memory_bytes() + size_of_val(objects.as_slice()),
         };
         grass_bytes + self.wind.memory_bytes() + self.broken.falls().len()
     }
 }
 
 impl Mirror {
-    /// State after the newest frame; `None` before the scene, and while a replica is not at the step of this frame.
-    pub(super) fn checkpoint(&self) -> Option<Checkpoint> {
+    /// State after the newest frame; `None` before the scene, while a replica is not at the step of this frame, and if it takes more than `limit_bytes` of memory.
+    pub(super) fn checkpoint(&self, limit_bytes: usize) -> Option<Checkpoint> {
         self.scene.as_ref()?;
         let grass = match self.replica() {
             Some(replica) if replica.tick() == self.tick => Grass::Replica(replica.state().encode()),
             Some(_) => return None,
-            None => Grass::Sent { patches: self.patches.clone(), objects: self.poses.newest().to_vec() },
+            None if self.patches.memory_bytes() > limit_bytes => return None,
+            None => Grass::Sent {
+                patches: self.patches.clone(),
+                objects: self.poses.newest().to_vec(),
+                objects_secs: self.poses.newest_secs().unwrap_or_else(|| self.secs_of(self.tick)),
+            },
         };
         let delay_ticks = (WIND_DELAY_SECS * f64::from(self.tick_hz())).ceil() as u64;
-        Some(Checkpoint {
+        let checkpoint = Checkpoint {
             tick: self.tick,
             time_secs: self.time_secs,
             grass,
             wind: self.wind.since(self.tick.saturating_sub(delay_ticks)),
             broken: self.broken.clone(),
-        })
+        };
+        Some(checkpoint).filter(|checkpoint| checkpoint.memory_bytes() <= limit_bytes)
     }
 
     /// A second mirror of the same scene and peers that goes on from a checkpoint. The patches of a replica are not shown yet.
@@ -83,10 +94,10 @@ impl Mirror {
                 let state = ReplicaState::decode(state).map_err(MirrorError::Replica)?;
                 past.following = Following::of(decoded.replica(state).map_err(MirrorError::Replica)?);
             }
-            Grass::Sent { patches, objects } => {
+            Grass::Sent { patches, objects, objects_secs } => {
                 past.patches.clone_from(patches);
                 past.patches.touch();
-                past.poses.push(past.secs_of(checkpoint.tick), objects.clone())?;
+                past.poses.push(*objects_secs, objects.clone())?;
             }
         }
         past.end_frame(checkpoint.tick, checkpoint.time_secs)?;

@@ -221,7 +221,7 @@ impl WindFrames {
         let is_calm = codes.iter().all(|&code| code == 0);
         match self.frames.back() {
             Some(newest) if newest.tick == tick => drop(self.frames.pop_back()),
-            // An earlier tick is that of a world that was restarted.
+            // An earlier tick is that of a world that was restarted, or of the state from which a replica starts.
             Some(newest) if newest.tick > tick => self.frames.clear(),
             _ => {}
         }

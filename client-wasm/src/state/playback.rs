@@ -87,6 +87,11 @@ impl Playback {
         Some((newest.next()??, newest.next().flatten()))
     }
 
+    /// Time of the newest received poses (s).
+    pub(super) fn newest_secs(&self) -> Option<f64> {
+        Some(self.snapshots.back()?.time_secs)
+    }
+
     /// Newest received poses.
     pub(super) fn newest(&self) -> &[ObjectPose] {
         self.snapshots.back().map_or(&[], |newest| &newest.objects)

@@ -41,8 +41,12 @@ pub struct Record {
     first: u64,
     /// Messages of the frame that has not ended yet.
     begun: Vec<Vec<u8>>,
+    /// Whether they say more than where the objects are.
+    has_news: bool,
     /// Whether the next frame is a start.
     is_interrupted: bool,
+    /// Time before which no checkpoint is tried, since the last one was too large (s).
+    too_large_until_secs: f64,
     checkpoint_secs: f64,
     memory_bytes: usize,
     limit_bytes: usize,
@@ -58,7 +62,17 @@ impl Record {
     /// An empty record that takes at most `limit_bytes` of memory.
     pub fn with_limit(limit_bytes: usize) -> Self {
         let (frames, begun) = (VecDeque::new(), Vec::new());
-        Self { frames, first: 0, begun, is_interrupted: true, checkpoint_secs: 0.0, memory_bytes: 0, limit_bytes }
+        Self {
+            frames,
+            first: 0,
+            begun,
+            has_news: false,
+            is_interrupted: true,
+            too_large_until_secs: f64::NEG_INFINITY,
+            checkpoint_secs: 0.0,
+            memory_bytes: 0,
+            limit_bytes,
+        }
     }
 
     /// Applies a message to the mirror, and records it.
@@ -76,6 +90,7 @@ impl Record {
                 | ServerMessage::FrameEnd { .. }
         );
         let starts_replica = matches!(message, ServerMessage::ReplicaState { part, parts, .. } if part.checked_add(1) == Some(parts));
+        self.has_news |= is_recorded && !matches!(message, ServerMessage::Poses { .. } | ServerMessage::FrameEnd { .. });
         let had_replica = mirror.replica().is_some();
         let bytes = is_recorded.then(|| wire::encode(&message));
         let event = mirror.apply(message)?;
@@ -95,18 +110,28 @@ impl Record {
 
     /// Adds the frame that has ended, with a checkpoint if one is due.
     fn end_frame(&mut self, mirror: &Mirror) {
-        let (messages, secs) = (std::mem::take(&mut self.begun), mirror.secs_of(mirror.tick()));
-        // An earlier step is that of a world that was restarted.
-        if self.newest_secs().is_some_and(|newest_secs| secs <= newest_secs) {
-            self.clear();
+        let (mut messages, secs) = (std::mem::take(&mut self.begun), mirror.secs_of(mirror.tick()));
+        let has_news = std::mem::take(&mut self.has_news);
+        // An earlier step is that of a world that was restarted; the same step comes again from a replay that stands still.
+        match self.newest_secs() {
+            Some(newest_secs) if secs < newest_secs => self.clear(),
+            Some(newest_secs) if secs == newest_secs && !has_news && !self.is_interrupted => return,
+            _ => {}
         }
         let is_start = self.is_interrupted || self.frames.is_empty();
         let is_due = is_start || secs - self.checkpoint_secs >= CHECKPOINT_SECS;
-        let checkpoint = is_due.then(|| mirror.checkpoint()).flatten();
+        let may_try = is_due && secs >= self.too_large_until_secs;
+        let checkpoint = may_try.then(|| mirror.checkpoint(self.limit_bytes)).flatten();
         if checkpoint.is_some() {
             (self.checkpoint_secs, self.is_interrupted) = (secs, false);
+        } else if may_try {
+            self.too_large_until_secs = secs + CHECKPOINT_SECS;
         }
         if checkpoint.is_some() || !is_start {
+            if is_start {
+                // The checkpoint holds what they say.
+                messages.clear();
+            }
             let frame = RecordedFrame { secs, messages, is_start, checkpoint };
             self.memory_bytes += frame.memory_bytes();
             self.frames.push_back(frame);
@@ -139,7 +164,7 @@ impl Record {
     pub fn clear(&mut self) {
         self.drop_first(self.frames.len());
         self.begun.clear();
-        self.is_interrupted = true;
+        (self.is_interrupted, self.too_large_until_secs) = (true, f64::NEG_INFINITY);
     }
 
     /// Memory of the record (bytes).

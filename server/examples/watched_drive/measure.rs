@@ -92,7 +92,7 @@ impl WatchedDrive {
                 }
             }
         }
-        Ok(Measured { sums, publishing: publishing / publishes, tick_hz })
+        Ok(Measured { sums, publishing: publishing / publishes.max(1), tick_hz })
     }
 }
 

@@ -17,8 +17,8 @@ pub struct Health {
     pub lost_steps: AtomicU64,
     /// Duration of the longest copy of the state within a step (µs).
     pub copy_max_us: AtomicU64,
-    /// Whether the present segment cannot be written.
-    pub(super) is_broken: AtomicBool,
+    /// Generation of the segment that cannot be written; 0 if the newest one can.
+    pub(super) broken_generation: AtomicU64,
     is_failing: AtomicBool,
     newest_failure: Mutex<String>,
 }
@@ -43,10 +43,14 @@ impl Health {
         }
     }
 
+    /// Whether the newest write of a segment or a checkpoint has failed.
+    pub(super) fn is_failing(&self) -> bool {
+        self.is_failing.load(Relaxed) || self.broken_generation.load(Relaxed) != 0
+    }
+
     /// The newest failure while the journal or its checkpoints cannot be written; a crash would then lose steps.
     pub fn failure(&self) -> Option<String> {
-        let fails = self.is_failing.load(Relaxed) || self.is_broken.load(Relaxed);
-        fails.then(|| self.newest_failure.lock().map(|newest| newest.clone()).unwrap_or_default())
+        self.is_failing().then(|| self.newest_failure.lock().map(|newest| newest.clone()).unwrap_or_default())
     }
 
     /// The counters at this moment.
@@ -70,12 +74,12 @@ mod tests {
     fn a_failure_is_reported_until_segment_and_checkpoint_can_be_written() {
         let health = Health::default();
         assert_eq!(health.failure(), None);
-        health.is_broken.store(true, Relaxed);
+        health.broken_generation.store(7, Relaxed);
         health.fail("the journal of the world", &Error::new(ErrorKind::StorageFull, "no space"));
         assert_eq!(health.failure().as_deref(), Some("the journal of the world cannot be written: no space"));
         health.succeed();
         assert!(health.failure().is_some(), "a checkpoint without a segment after it");
-        health.is_broken.store(false, Relaxed);
+        health.broken_generation.store(0, Relaxed);
         assert_eq!(health.failure(), None);
         assert_eq!(health.stats(), JournalStats { failures: 1, checkpoints: 1, ..JournalStats::default() });
     }

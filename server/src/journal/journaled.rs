@@ -37,6 +37,7 @@ pub struct JournaledWorld {
 struct Journal {
     writer: Writer,
     health: Arc<Health>,
+    /// The next generation.
     generation: u64,
     unchanged: Unchanged,
     /// Whether a step is missing, so that only a new generation makes sense.
@@ -101,7 +102,8 @@ impl Journal {
 
     fn note(&mut self, world: &World, commands: &[Command], took: Duration) {
         self.computed += took;
-        let is_missing = self.has_gap || self.health.is_broken.load(Relaxed);
+        // A failure of an earlier generation is over: its successor begins with a checkpoint.
+        let is_missing = self.has_gap || self.health.broken_generation.load(Relaxed) + 1 == self.generation;
         if is_missing {
             self.health.lost_steps.fetch_add(1, Relaxed);
         } else {
@@ -109,7 +111,7 @@ impl Journal {
             self.has_gap = !self.writer.enter(Entry::Step { tick: world.tick(), commands });
         }
         let age = self.begun.elapsed();
-        if age >= SHORTEST && (is_missing || self.computed >= REPEATED || age >= LONGEST) {
+        if age >= SHORTEST && (is_missing || self.health.is_failing() || self.computed >= REPEATED || age >= LONGEST) {
             self.begin(world);
         }
     }
@@ -120,7 +122,7 @@ impl Drop for JournaledWorld {
     fn drop(&mut self) {
         if let Some(journal) = &mut self.journal {
             let (generation, tick) = (journal.generation, self.world.tick());
-            if !journal.health.is_broken.load(Relaxed) && journal.writer.enter(Entry::Begin { generation, tick }) {
+            if journal.writer.enter(Entry::Begin { generation, tick }) {
                 journal.writer.keep(generation, self.world.save());
             }
         }

@@ -3,7 +3,7 @@
 use super::error::JournalError;
 use super::folder::name_of;
 use crate::escaped::escaped;
-use crate::file::unique_part;
+use crate::file::{sync_folder, unique_part};
 use crate::scenes::{self, LoadedScene};
 use std::fs;
 use std::io;
@@ -26,7 +26,8 @@ impl SceneSource {
     /// The source of a scene whose world is in `folder`, where its files are kept if they are not yet. A failure goes to the log.
     pub(super) fn of(scene: &LoadedScene, folder: &Path) -> Self {
         let original = scene.files.first().map(|file| fs::canonicalize(file).unwrap_or_else(|_| file.clone()));
-        let known = Self::read(folder).ok().and_then(|source| source.kept).filter(|kept| folder.join(kept).is_file());
+        let is_whole = |kept: &PathBuf| scenes::load(folder.join(kept)).is_ok_and(|copy| name_of(&copy) == name_of(scene));
+        let known = Self::read(folder).ok().and_then(|source| source.kept).filter(is_whole);
         let kept = known.or_else(|| {
             let kept = keep(folder, scene).inspect_err(|error| {
                 tracing::warn!(folder = escaped(folder), "the files of the scene are not kept: {error}; a replay needs them unchanged");
@@ -61,15 +62,15 @@ impl SceneSource {
     /// The reason why neither can be loaded.
     pub(super) fn load(&self, folder: &Path) -> Result<LoadedScene, String> {
         let kept = self.kept.iter().map(|kept| folder.join(kept));
-        let mut reason = String::new();
+        let mut reasons = vec![];
         for source in kept.chain([self.original.clone()]) {
             match scenes::load(&source) {
                 Ok(scene) if name_of(&scene) == self.name => return Ok(scene),
-                Ok(_) => reason = format!("its scene, {}, or this program has changed since", escaped(&source)),
-                Err(error) => reason = format!("its scene cannot be loaded: {error}"),
+                Ok(_) => reasons.push(format!("its scene, {}, or this program has changed since", escaped(&source))),
+                Err(error) => reasons.push(format!("its scene cannot be loaded: {error}")),
             }
         }
-        Err(reason)
+        Err(reasons.join("; "))
     }
 }
 
@@ -86,6 +87,8 @@ fn keep(folder: &Path, scene: &LoadedScene) -> io::Result<Option<PathBuf>> {
             let to = new.join(within(file));
             fs::create_dir_all(to.parent().expect("in a folder"))?;
             fs::copy(file, &to)?;
+            fs::File::open(&to)?.sync_all()?;
+            sync_folder(&to)?;
         }
         let copy = scenes::load(new.join(within(scene_file))).map_err(io::Error::other)?;
         if name_of(&copy) != name_of(scene) {
@@ -94,7 +97,8 @@ fn keep(folder: &Path, scene: &LoadedScene) -> io::Result<Option<PathBuf>> {
         if kept.exists() {
             fs::remove_dir_all(&kept)?;
         }
-        fs::rename(&new, &kept)
+        fs::rename(&new, &kept)?;
+        sync_folder(&kept)
     };
     copied().inspect_err(|_| drop(fs::remove_dir_all(&new)))?;
     Ok(Some(Path::new(FOLDER).join(within(scene_file))))

@@ -45,7 +45,7 @@ impl Writer {
         let _ = returned.try_send(WorldState::default());
         let folder = Arc::new(folder);
         let spawn = |name: &str, run: Box<dyn FnOnce() + Send>| Builder::new().name(name.to_owned()).spawn(run);
-        let segments = Segments { folder: folder.clone(), health: health.clone(), writer: None, synced: Instant::now() };
+        let segments = Segments { folder: folder.clone(), health: health.clone(), generation: 0, writer: None, synced: Instant::now() };
         let threads = [
             spawn("journal", Box::new(move || segments.run(&inbox))),
             spawn("checkpoint", Box::new(move || write_checkpoints(&folder, limit_bytes, &health, &state_inbox, &returned))),
@@ -84,6 +84,7 @@ impl Drop for Writer {
 struct Segments {
     folder: Arc<Folder>,
     health: Arc<Health>,
+    generation: u64,
     writer: Option<SegmentWriter>,
     synced: Instant,
 }
@@ -124,10 +125,11 @@ impl Segments {
 
     fn begin(&mut self, generation: u64, tick: u64) {
         self.attempt(|writer| writer.sync().map(|()| 0));
+        self.generation = generation;
         match SegmentWriter::create(&segment_in(self.folder.path(), generation), tick) {
             Ok(writer) => {
                 self.writer = Some(writer);
-                self.health.is_broken.store(false, Relaxed);
+                self.health.broken_generation.store(0, Relaxed);
             }
             Err(error) => self.fail(&error),
         }
@@ -160,7 +162,7 @@ impl Segments {
 
     fn fail(&mut self, error: &io::Error) {
         self.writer = None;
-        self.health.is_broken.store(true, Relaxed);
+        self.health.broken_generation.store(self.generation, Relaxed);
         self.health.fail("the journal of the world", error);
     }
 }

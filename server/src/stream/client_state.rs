@@ -177,7 +177,7 @@ impl ClientState {
         }
         messages.extend(wind.iter().map(|(_, message)| message.clone()));
         let mut wind = wind.map(|(seq, _)| seq);
-        messages.extend(self.following.parts(|bytes| self.budget.try_overdraw(bytes as f64)));
+        messages.extend(self.following.parts(publication.steps, |bytes| self.budget.try_overdraw(bytes as f64)));
         if let Some((steps, newest)) = self.following.catch_up(publication.steps) {
             self.budget.charge(steps.iter().map(Bytes::len).sum::<usize>() as f64);
             messages.extend(steps);

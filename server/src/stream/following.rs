@@ -81,9 +81,13 @@ impl Following {
         }
     }
 
-    /// The next parts of the state for which `pay` is true.
-    pub(super) fn parts(&mut self, mut pay: impl FnMut(usize) -> bool) -> Vec<Bytes> {
+    /// The next parts of the state for which `pay` is true. A state that can no longer be caught up with is given up.
+    pub(super) fn parts(&mut self, log: &StepLog, mut pay: impl FnMut(usize) -> bool) -> Vec<Bytes> {
         let Progress::Receiving { state, sent } = &mut self.progress else { return vec![] };
+        if log.since(state.next_entry).is_none() {
+            self.progress = Progress::Patches;
+            return vec![];
+        }
         let messages: Vec<Bytes> = state.parts[*sent..].iter().take_while(|part| pay(part.len())).cloned().collect();
         *sent += messages.len();
         messages
@@ -96,11 +100,7 @@ impl Following {
         if *sent < state.parts.len() {
             return None;
         }
-        let Some(entries) = log.since(state.next_entry) else {
-            self.progress = Progress::Patches;
-            return None;
-        };
-        let (since, newest) = told(entries);
+        let (since, newest) = told(log.since(state.next_entry)?);
         let (first, wind) = state.wind.clone().unzip();
         let messages = wind.into_iter().chain(since).collect();
         self.progress = Progress::Steps { next_entry: log.next_entry() };

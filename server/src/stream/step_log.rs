@@ -6,11 +6,13 @@ use prairie_core::wire::{self, ServerMessage};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Largest number of publications with changes that are kept for clients that lag: 40 s at 20 Hz. It covers the transfer of the largest state.
-const ENTRIES: usize = 800;
+/// Time for which publications with changes are kept for clients that lag (s).
+const KEPT_SECS: f32 = 40.0;
+/// Longest transfer of a state at the whole data rate of a client (s); the steps since must still be kept after it.
+const TRANSFER_SECS: f64 = 32.0;
 /// Size of the parts of a state (bytes).
 const PART_BYTES: usize = 16 << 10;
-/// Largest encoded state that is sent (bytes): 32 s at the default data rate; larger worlds are sent as patches.
+/// Largest encoded state that is sent at any data rate (bytes); larger worlds are sent as patches.
 const STATE_LIMIT_BYTES: usize = 8 << 20;
 
 /// The steps of one publication in which something changes, with the wind frame that is released in them.
@@ -34,8 +36,12 @@ pub(super) struct EncodedState {
 }
 
 /// The newest steps.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct StepLog {
+    /// Largest number of entries.
+    entries_limit: usize,
+    /// Largest encoded state that is sent (bytes).
+    state_limit_bytes: usize,
     codec: StepCodec,
     /// The newest step, and the tick of its wind.
     newest: Option<(u64, u64)>,
@@ -48,6 +54,20 @@ pub struct StepLog {
 }
 
 impl StepLog {
+    /// An empty log of a world that is published `publish_hz` times per second to clients with a data rate of `bytes_per_s`.
+    pub(super) fn new(publish_hz: f32, bytes_per_s: f64) -> Self {
+        Self {
+            entries_limit: (publish_hz * KEPT_SECS).ceil().max(1.0) as usize,
+            state_limit_bytes: STATE_LIMIT_BYTES.min((bytes_per_s * TRANSFER_SECS) as usize),
+            codec: StepCodec::default(),
+            newest: None,
+            entries: VecDeque::new(),
+            first: 0,
+            state: None,
+            is_too_large: false,
+        }
+    }
+
     /// Adds the steps up to a publication, of those that are new, and the wind message of this publication. When a step or a wind frame is missing, as after a
     /// long pause of this thread, all replicas must start again.
     pub(super) fn extend(&mut self, records: &[Arc<StepRecord>], wind_tick: u64, wind: Option<(u32, Bytes)>) {
@@ -72,7 +92,7 @@ impl StepLog {
         if steps.is_some() || wind.is_some() {
             self.entries.push_back(Entry { wind, steps });
         }
-        if self.entries.len() > ENTRIES {
+        if self.entries.len() > self.entries_limit {
             self.entries.pop_front();
             self.first += 1;
         }
@@ -82,12 +102,12 @@ impl StepLog {
     pub(super) fn set_state(&mut self, bend: &BendState, wind: Option<(u32, Bytes)>) {
         let Some((tick, _)) = self.newest else { return };
         let state = ReplicaState { tick, bend: bend.clone(), codec: self.codec.clone() }.encode();
-        if state.len() > STATE_LIMIT_BYTES {
+        if state.len() > self.state_limit_bytes {
             // Said once, although a state is asked for again and again.
             if !std::mem::replace(&mut self.is_too_large, true) {
                 tracing::warn!(
                     bytes = state.len(),
-                    limit = STATE_LIMIT_BYTES,
+                    limit = self.state_limit_bytes,
                     "the grass is too large for replicas; new clients get patches"
                 );
             }

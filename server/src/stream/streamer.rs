@@ -115,7 +115,7 @@ impl Streamer {
             roster: Bytes::new(),
             roster_budget: None,
             counters: Arc::default(),
-            steps: StepLog::default(),
+            steps: StepLog::new(publish_hz, limits.bytes_per_s),
             state_request: Arc::default(),
             requested_at: None,
             difference_warning: LogLimit::default(),
