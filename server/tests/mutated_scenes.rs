@@ -4,7 +4,7 @@
 mod mutate;
 
 use mutate::{Edit, edits};
-use prairie::objects::gltf;
+use prairie::objects::gltf::{self, Model};
 use prairie::scenes::{self, LoadedScene};
 use prairie::world::World;
 use prairie_core::grass::wind_drawing::WindDrawing;
@@ -61,7 +61,7 @@ fn read_model(bytes: &[u8]) {
     let path = folder.path().join("model.glb");
     std::fs::write(&path, bytes).unwrap();
     match gltf::read(&path, Objects::default().half_extents_m(VehicleKind::Car)) {
-        Ok(mesh) => {
+        Ok(Model { mesh, .. }) => {
             assert!(mesh.positions_m.iter().chain(&mesh.normals).flatten().all(|v| v.is_finite()));
             assert!(mesh.indices.iter().all(|&index| (index as usize) < mesh.positions_m.len()));
         }
@@ -196,6 +196,22 @@ fn deep_nesting_is_refused() {
 }
 
 #[test]
+fn a_buffer_beside_a_model_is_a_file_of_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    write_scene(folder.path(), SCENE.as_bytes());
+    let mut model = model();
+    let uri = model["buffers"][0]["uri"].take();
+    let digits = uri.as_str().and_then(|uri| uri.split_once(";base64,")).expect("data").1;
+    std::fs::write(folder.path().join("model.bin"), data_encoding::BASE64.decode(digits.as_bytes()).unwrap()).unwrap();
+    model["buffers"][0]["uri"] = "model.bin".into();
+    std::fs::write(folder.path().join("model.gltf"), model.to_string()).unwrap();
+    let loaded = scenes::load(folder.path().join("scene.toml")).unwrap_or_else(|error| panic!("{error}"));
+    for name in ["model.gltf", "model.bin"] {
+        assert!(loaded.files.contains(&folder.path().join(name)), "{name} is not among {:?}", loaded.files);
+    }
+}
+
+#[test]
 fn the_unchanged_files_are_valid() {
     let folder = tempfile::tempdir().unwrap();
     write_scene(folder.path(), SCENE.as_bytes());
@@ -204,7 +220,7 @@ fn the_unchanged_files_are_valid() {
     let path = folder.path().join("model.glb");
     for bytes in [model().to_string().into_bytes(), binary(model().to_string().as_bytes())] {
         std::fs::write(&path, bytes).unwrap();
-        assert_eq!(gltf::read(&path, [1.0; 3]).unwrap_or_else(|error| panic!("{error}")).indices.len(), 6);
+        assert_eq!(gltf::read(&path, [1.0; 3]).unwrap_or_else(|error| panic!("{error}")).mesh.indices.len(), 6);
     }
     for (png, kind) in maps().iter().zip(0..) {
         let mut mended = png.clone();

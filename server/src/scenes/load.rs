@@ -4,7 +4,7 @@ use super::builtin::BuiltIn;
 use super::error::{FaultyScene, SceneError};
 use crate::escaped::escaped;
 use crate::file;
-use crate::objects::gltf;
+use crate::objects::gltf::{self, Model};
 use crate::settings_error::SettingsError;
 use crate::world::{self, Maps};
 use prairie_core::grass::wind_drawing::{WindDrawing, WindDrawings};
@@ -133,6 +133,15 @@ impl Source {
         }
     }
 
+    /// The mesh of a model; the files of its buffers are recorded, too.
+    fn model(&self, name: &str, half_extents_m: [f32; 3]) -> Result<Mesh, String> {
+        let Model { mesh, buffer_files } = gltf::read(&self.path(name), half_extents_m).map_err(|error| error.reason.to_string())?;
+        if let Self::Folder { read, .. } = self {
+            read.borrow_mut().extend(buffer_files);
+        }
+        Ok(mesh)
+    }
+
     /// Files that have been read, without duplicates.
     fn into_files(self) -> Vec<PathBuf> {
         match self {
@@ -187,7 +196,7 @@ fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, Scen
         if field.is_empty() {
             continue;
         }
-        match gltf::read(&source.path(&field), scene.objects.half_extents_m(kind)).map_err(|error| error.reason.to_string()) {
+        match source.model(&field, scene.objects.half_extents_m(kind)) {
             Ok(mesh) => loaded_models.push((kind, mesh)),
             Err(reason) => note(&format!("objects.{}_model", kind.name()), format!("names `{field}`, which {reason}")),
         }

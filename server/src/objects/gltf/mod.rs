@@ -86,6 +86,15 @@ pub enum ModelFault {
     },
 }
 
+/// A vehicle's model.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Its mesh.
+    pub mesh: Mesh,
+    /// Files beside the model that hold its buffers.
+    pub buffer_files: Vec<PathBuf>,
+}
+
 /// Reads a `.glb` or `.gltf` file as a vehicle's model.
 ///
 /// The mesh consists of the triangles of all meshes of the default scene, normals (computed from the faces where the file has none), and base colours of
@@ -94,12 +103,12 @@ pub enum ModelFault {
 ///
 /// # Errors
 /// [`ModelError`] names the file and its problem.
-pub fn read(path: &Path, half_extents_m: [f32; 3]) -> Result<Mesh, ModelError> {
-    let source = Source::open(path);
-    source
-        .and_then(|source| source.mesh())
-        .and_then(|mesh| fitted(mesh, half_extents_m))
-        .map_err(|reason| ModelError { path: path.to_owned(), reason })
+pub fn read(path: &Path, half_extents_m: [f32; 3]) -> Result<Model, ModelError> {
+    let model = |source: Source| {
+        let mesh = fitted(source.mesh()?, half_extents_m)?;
+        Ok(Model { mesh, buffer_files: source.buffer_files })
+    };
+    Source::open(path).and_then(model).map_err(|reason| ModelError { path: path.to_owned(), reason })
 }
 
 /// The mesh turned to face −Z, scaled into a box and put on its floor.

@@ -8,7 +8,7 @@ use gltf::json::Index;
 use gltf::json::validation::Checked;
 use gltf::{Accessor, Document, Gltf, Semantic, binary, buffer};
 use prairie_core::escape::excerpt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Length of a binary file's header (bytes).
 const HEADER_BYTES: u32 = 12;
@@ -17,6 +17,8 @@ const HEADER_BYTES: u32 = 12;
 pub(super) struct Source {
     pub(super) document: Document,
     pub(super) buffers: Vec<Vec<u8>>,
+    /// Files of buffers beside the document.
+    pub(super) buffer_files: Vec<PathBuf>,
 }
 
 /// Allowed types of an attribute or of indices.
@@ -38,12 +40,12 @@ impl Source {
         let bytes = file::read(path, FILE_LIMIT).map_err(ModelFault::Unreadable)?;
         let (document, mut blob) = parse(&bytes)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        let mut buffers = Vec::new();
+        let (mut buffers, mut buffer_files) = (Vec::new(), Vec::new());
         let mut held = 0;
         for buffer in document.buffers() {
             let bytes = match buffer.source() {
                 buffer::Source::Bin => blob.take().ok_or_else(|| ModelFault::NotGltf("it has no binary part".to_owned()))?,
-                buffer::Source::Uri(uri) => at_uri(uri, folder)?,
+                buffer::Source::Uri(uri) => at_uri(uri, folder, &mut buffer_files)?,
             };
             if bytes.len() < buffer.length() {
                 let (index, stated) = (buffer.index(), buffer.length());
@@ -55,7 +57,7 @@ impl Source {
             }
             buffers.push(bytes);
         }
-        Ok(Self { document, buffers })
+        Ok(Self { document, buffers, buffer_files })
     }
 
     /// Number of the accessor's values, after checking them. The readers of `gltf` panic for unknown types and for a stride shorter than a value, so
@@ -110,7 +112,8 @@ fn stated_length(bytes: &[u8]) -> Option<u32> {
     Some(u32::from_le_bytes(length.try_into().ok()?))
 }
 
-fn at_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, ModelFault> {
+/// The bytes that a URI names; the path of a file is added to `files`.
+fn at_uri(uri: &str, folder: &Path, files: &mut Vec<PathBuf>) -> Result<Vec<u8>, ModelFault> {
     let unfit = |uri: &str, reason: String| ModelFault::Buffer { uri: excerpt(uri), reason };
     if let Some(data) = uri.strip_prefix("data:") {
         let digits = data.split_once(";base64,").map_or(data, |(_media_type, digits)| digits).trim_end_matches('=');
@@ -120,7 +123,10 @@ fn at_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, ModelFault> {
     if name.contains("://") {
         return Err(unfit(uri, "is elsewhere; allowed: a path relative to the model, or data within it".to_owned()));
     }
-    file::read(&folder.join(name.as_ref()), FILE_LIMIT).map_err(|reason| unfit(uri, format!("cannot be read: {reason}")))
+    let path = folder.join(name.as_ref());
+    let bytes = file::read(&path, FILE_LIMIT).map_err(|reason| unfit(uri, format!("cannot be read: {reason}")))?;
+    files.push(path);
+    Ok(bytes)
 }
 
 fn not_gltf(error: gltf::Error) -> ModelFault {

@@ -45,7 +45,7 @@ fn read_bytes(bytes: &[u8], kind: VehicleKind) -> Result<Mesh, ModelError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("model.gltf");
     std::fs::write(&path, bytes).unwrap();
-    read(&path, half_extents_m(kind))
+    read(&path, half_extents_m(kind)).map(|model| model.mesh)
 }
 
 /// Error message for the triangle after `spoil`.
