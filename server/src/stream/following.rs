@@ -100,7 +100,7 @@ impl Following {
         if *sent < state.parts.len() {
             return None;
         }
-        let (since, newest) = told(log.since(state.next_entry)?);
+        let (since, newest) = messages_of(log.since(state.next_entry)?);
         let (first, wind) = state.wind.clone().unzip();
         let messages = wind.into_iter().chain(since).collect();
         self.progress = Progress::Steps { next_entry: log.next_entry() };
@@ -111,7 +111,7 @@ impl Following {
     pub(super) fn steps(&mut self, log: &StepLog, must_send: bool, now: Instant) -> Option<(Vec<Bytes>, Option<u32>)> {
         let Progress::Steps { next_entry } = self.progress else { return None };
         let is_due = must_send || self.frame_at.is_none_or(|at| now.duration_since(at) >= HEARTBEAT);
-        let (messages, wind) = told(log.since(next_entry)?);
+        let (messages, wind) = messages_of(log.since(next_entry)?);
         (is_due || !messages.is_empty()).then_some((messages, wind))
     }
 
@@ -125,7 +125,7 @@ impl Following {
 }
 
 /// Messages of entries, and the number of the newest wind frame in them.
-fn told<'a>(entries: impl Iterator<Item = &'a Entry>) -> (Vec<Bytes>, Option<u32>) {
+fn messages_of<'a>(entries: impl Iterator<Item = &'a Entry>) -> (Vec<Bytes>, Option<u32>) {
     let (mut messages, mut wind) = (Vec::new(), None);
     for entry in entries {
         if let Some((seq, message)) = &entry.wind {

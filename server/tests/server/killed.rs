@@ -43,6 +43,15 @@ impl Program {
         TestClient::over(TcpStream::connect(&self.address).await.unwrap(), &format!("ws://{}/ws", self.address)).await
     }
 
+    /// A client in a car.
+    async fn driver(&self) -> TestClient<TcpStream> {
+        let mut client = self.connect().await;
+        enter(&mut client, &ClientMessage::Hello { name: "Ada".to_owned() }).await;
+        client.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
+        own_object(&mut client).await;
+        client
+    }
+
     /// Body of the response to a request.
     async fn get(&self, path: &str) -> String {
         let mut stream = TcpStream::connect(&self.address).await.unwrap();
@@ -172,10 +181,7 @@ async fn printed(arguments: &[&str]) -> String {
 async fn a_world_is_replayed_at_any_speed_for_viewers_who_change_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let mut program = Program::start(folder.path()).await;
-    let mut client = program.connect().await;
-    enter(&mut client, &ClientMessage::Hello { name: "Ada".to_owned() }).await;
-    client.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
-    own_object(&mut client).await;
+    let mut client = program.driver().await;
     client.send_message(&ClientMessage::Drive { number: 1, drive: Drive { throttle: 1.0, ..Drive::default() } }).await;
     for _ in 0..200 {
         client.frame().await;
@@ -219,10 +225,7 @@ async fn a_full_disk_is_logged_once_and_reported_and_stops_nothing() {
     let mut program = Program::start_with(limited, folder.path()).await;
     let line = program.logged("cannot be written").await;
     assert!(line.contains("a checkpoint of the world"), "{line}");
-    let mut client = program.connect().await;
-    enter(&mut client, &ClientMessage::Hello { name: "Ada".to_owned() }).await;
-    client.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
-    own_object(&mut client).await;
+    let mut client = program.driver().await;
     for _ in 0..100 {
         client.frame().await;
     }
@@ -260,10 +263,7 @@ async fn a_disk_that_is_full_for_a_while_costs_only_that_while() {
     for is_room_again in [false, true] {
         let folder = tempfile::tempdir().unwrap();
         let mut program = Program::start(folder.path()).await;
-        let mut client = program.connect().await;
-        enter(&mut client, &ClientMessage::Hello { name: "Ada".to_owned() }).await;
-        client.send_message(&ClientMessage::Choose { vehicle: Some(VehicleKind::Car) }).await;
-        own_object(&mut client).await;
+        let mut client = program.driver().await;
         let mut frames = drive_on(&mut client, 60).await;
         let before = client.replica.tick;
         limit_files(&program, "1").await;
