@@ -229,4 +229,31 @@ mod tests {
         fs::remove_file(checkpoint_in(&own, 6)).unwrap();
         assert!(open(Some(&place), &scene).unwrap().world().save().encode() == last);
     }
+    #[test]
+    fn a_generation_has_all_its_steps_although_the_one_before_failed() {
+        let scene = scenes::load("blades").unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let mut kept = open(Some(&WorldFolder::new(folder.path().to_owned())), &scene).unwrap();
+        let JournaledWorld { world, journal: Some(journal), .. } = &mut kept else { panic!("a world with memory") };
+        let until = Instant::now() + Duration::from_secs(20);
+        let failed = journal.generation - 1;
+        while journal.generation == failed + 1 {
+            assert!(Instant::now() < until, "the first checkpoint is written");
+            journal.begin(world);
+            thread::sleep(Duration::from_millis(1));
+        }
+        // As while the new segment is still being created.
+        journal.health.broken_generation.store(failed, Relaxed);
+        world.step(&[]);
+        journal.note(world, &[Command::Spawn { client: 1, kind: VehicleKind::Car }], Duration::ZERO);
+        assert_eq!(journal.health.lost_steps.load(Relaxed), 0, "the step belongs to the new generation");
+        while journal.health.journal_bytes.load(Relaxed) == 0 {
+            assert!(Instant::now() < until, "the step is written");
+            thread::sleep(Duration::from_millis(1));
+        }
+        journal.health.broken_generation.store(failed + 1, Relaxed);
+        world.step(&[]);
+        journal.note(world, &[], Duration::ZERO);
+        assert_eq!(journal.health.lost_steps.load(Relaxed), 1, "the generation has failed itself");
+    }
 }
