@@ -3,17 +3,19 @@
 //! After Hillaire 2020: in-scattered light is integrated along rays through the air; multiply scattered light is treated as isotropic, `Ψ = L₂ / (1 −
 //! f)` (Eqs 5 to 10).
 
-use super::air::{self, Density};
+use super::air::{self, Density, Spectrum};
 use super::exposure::exposure;
 use super::{Rgb, luminance};
 use std::f64::consts::{PI, TAU};
 
 /// Illuminance by the sun above the atmosphere (lx).
 pub const SUN_LX: f32 = 128_000.0;
-/// Luminance of the sky on a night with a moon behind thin cloud (cd/m²), still visible: 0.1 lx on the ground in total.
+/// Luminance of the sky on a night with a full moon (cd/m²): 0.1 lx on the ground in total, the light of the moon included.
 pub const NIGHT_CD_PER_M2: Rgb = [0.024, 0.031, 0.047];
 /// Albedo of the land: grass, a little red and little blue.
 pub const GROUND_ALBEDO: Rgb = [0.10, 0.13, 0.06];
+/// The same at the wavelengths of [`air`](super::air).
+const GROUND_SPECTRUM: Spectrum = [0.088, 0.134, 0.11, 0.06];
 /// Height of the eye in the atmosphere model, and of the clouds that the sun lights (m).
 const EYE_M: f64 = 300.0;
 const CLOUDS_M: f64 = 6000.0;
@@ -38,19 +40,19 @@ impl Default for Air {
     }
 }
 
-/// Colours over the sine of the sun's elevation and the height in the atmosphere.
+/// Spectra over the sine of the sun's elevation and the height in the atmosphere.
 #[derive(Clone, Debug)]
 struct Table {
     columns: usize,
     rows: usize,
-    texels: Vec<Rgb>,
+    texels: Vec<Spectrum>,
 }
 
 /// Smallest sine of an elevation in the tables; a lower sun lights no air.
 const LOWEST_UP: f64 = -0.25;
 
 impl Table {
-    fn new(columns: usize, rows: usize, of: impl Fn(f64, f64) -> Rgb) -> Self {
+    fn new(columns: usize, rows: usize, of: impl Fn(f64, f64) -> Spectrum) -> Self {
         let texels = (0..columns * rows).map(|at| {
             let along = |n: usize, count: usize| n as f64 / (count - 1) as f64;
             // Denser near the horizon and near the ground, where colours change most.
@@ -61,7 +63,7 @@ impl Table {
         Self { columns, rows, texels: texels.collect() }
     }
 
-    fn at(&self, height_m: f64, up: f64) -> [f64; 3] {
+    fn at(&self, height_m: f64, up: f64) -> Spectrum {
         let x = if up < 0.0 { -(up / LOWEST_UP).min(1.0).sqrt() } else { up.min(1.0).sqrt() };
         let place = |fraction: f64, count: usize| {
             let at = fraction.clamp(0.0, 1.0) * (count - 1) as f64;
@@ -70,7 +72,7 @@ impl Table {
         };
         let (column, right) = place(0.5 + 0.5 * x, self.columns);
         let (row, above) = place((height_m / (air::TOP_M - air::GROUND_M)).max(0.0).sqrt(), self.rows);
-        let texel = |c: usize, r: usize, i: usize| f64::from(self.texels[(row + r) * self.columns + column + c][i]);
+        let texel = |c: usize, r: usize, i: usize| self.texels[(row + r) * self.columns + column + c][i];
         std::array::from_fn(|i| {
             let low = texel(0, 0, i) * (1.0 - right) + texel(1, 0, i) * right;
             let high = texel(0, 1, i) * (1.0 - right) + texel(1, 1, i) * right;
@@ -81,15 +83,15 @@ impl Table {
 
 /// Marches along a ray in growing steps; passes `visit` the height, the distance, the air, and the integral of the transmittance over the step (m),
 /// which is the light gained per unit of source. Returns the transmittance to the end.
-fn march(height_m: f64, up: f64, length_m: f64, steps: u32, mut visit: impl FnMut(f64, f64, Density, [f64; 3])) -> [f64; 3] {
-    let mut left = [1.0; 3];
+fn march(height_m: f64, up: f64, length_m: f64, steps: u32, mut visit: impl FnMut(f64, f64, Density, Spectrum)) -> Spectrum {
+    let mut left = Spectrum::default().map(|_| 1.0);
     for step in 0..steps {
         let [near, far] = [step, step + 1].map(|n| (f64::from(n) / f64::from(steps)).powi(2) * length_m);
         let middle = 0.5 * (near + far);
         let height = air::height_along_m(height_m, up, middle);
         let density = Density::at(height);
-        let mut gain = [0.0; 3];
-        for i in 0..3 {
+        let mut gain = Spectrum::default();
+        for i in 0..gain.len() {
             let kept = (-density.extinction[i] * (far - near)).exp();
             gain[i] = left[i] * (1.0 - kept) / density.extinction[i].max(1e-12);
             left[i] *= kept;
@@ -109,7 +111,7 @@ impl Air {
 
     /// Sunlight at a height above the sea on a surface that faces the sun: linear RGB (lx).
     fn sunlight_lx(&self, height_m: f64, up: f64) -> Rgb {
-        self.transmittance.at(height_m, up).map(|fraction| fraction as f32 * SUN_LX)
+        lit(self.transmittance.at(height_m, up))
     }
 
     /// The sky over the eye with the sun at this elevation (some 2 ms).
@@ -143,25 +145,30 @@ impl Air {
         let toward_sun = up * sun_up + level(up) * level(sun_up) * heading_cosine;
         let phase = air::rayleigh_phase(toward_sun);
         let length_m = air::to_sphere_m(EYE_M, up, air::TOP_M);
-        let mut light = [[0.0; 3]; 2];
+        let mut light = [Spectrum::default(); 2];
         march(EYE_M, up, length_m, 28, |height, middle, density, gain| {
             // The sun's elevation as seen from there, on a sphere.
             let sun_there = ((air::GROUND_M + EYE_M) * sun_up + middle * toward_sun) / (air::GROUND_M + height);
             let (sun, often) = (self.transmittance.at(height, sun_there), self.scattered.at(height, sun_there));
-            for i in 0..3 {
+            for i in 0..gain.len() {
                 let scattered = density.rayleigh[i] + density.haze[i];
                 light[0][i] += gain[i] * (density.rayleigh[i] * phase * sun[i] + scattered * often[i]);
                 light[1][i] += gain[i] * density.haze[i] * sun[i];
             }
         });
-        light.map(|light| light.map(|light| light as f32 * SUN_LX))
+        light.map(lit)
     }
 }
 
+/// Colour of light with these fractions of sunlight: linear RGB, in the unit of [`SUN_LX`].
+fn lit(fractions: Spectrum) -> Rgb {
+    air::rgb(fractions).map(|channel| channel as f32 * SUN_LX)
+}
+
 /// Multiply scattered, isotropic light at a point of the atmosphere, for a sun of illuminance 1 (1/sr).
-fn scattered_often(transmittance: &Table, height_m: f64, sun_up: f64) -> Rgb {
+fn scattered_often(transmittance: &Table, height_m: f64, sun_up: f64) -> Spectrum {
     const DIRECTIONS: u32 = 48;
-    let (mut second, mut passed_on) = ([0.0; 3], [0.0; 3]);
+    let (mut second, mut passed_on) = (Spectrum::default(), Spectrum::default());
     for n in 0..DIRECTIONS {
         // Directions distributed evenly over the sphere, by the golden angle.
         let up = 1.0 - 2.0 * (f64::from(n) + 0.5) / f64::from(DIRECTIONS);
@@ -177,7 +184,7 @@ fn scattered_often(transmittance: &Table, height_m: f64, sun_up: f64) -> Rgb {
         let left = march(height_m, up, length_m, 16, |height, middle, density, gain| {
             let sun_there = (radius * sun_up + middle * toward_sun) / (air::GROUND_M + height);
             let sun = transmittance.at(height, sun_there);
-            for i in 0..3 {
+            for i in 0..gain.len() {
                 let scattered = gain[i] * (density.rayleigh[i] + density.haze[i]);
                 second[i] += scattered * sun[i] / (4.0 * PI);
                 passed_on[i] += scattered;
@@ -186,11 +193,11 @@ fn scattered_often(transmittance: &Table, height_m: f64, sun_up: f64) -> Rgb {
         if meets_ground {
             let sun_there = (radius * sun_up + length_m * toward_sun) / air::GROUND_M;
             let sun = transmittance.at(0.0, sun_there);
-            (0..3).for_each(|i| second[i] += left[i] * sun[i] * sun_there.max(0.0) * f64::from(GROUND_ALBEDO[i]) / PI);
+            (0..left.len()).for_each(|i| second[i] += left[i] * sun[i] * sun_there.max(0.0) * GROUND_SPECTRUM[i] / PI);
         }
     }
     let count = f64::from(DIRECTIONS);
-    std::array::from_fn(|i| (second[i] / count / (1.0 - passed_on[i] / count)) as f32)
+    std::array::from_fn(|i| second[i] / count / (1.0 - passed_on[i] / count))
 }
 
 /// The sky for one elevation of the sun.
