@@ -1,4 +1,4 @@
-// Sky: scattered light, the disc of the sun, soft clouds and stars, drawn where nothing else is.
+// Sky: scattered light, the discs of sun and moon, clouds and stars, drawn where nothing else is.
 
 import package::constants::{SKY_HEADINGS, SKY_RINGS, TAU};
 import package::inputs::frame::frame;
@@ -6,9 +6,9 @@ import package::inputs::noise::noise;
 import package::inputs::random::random3;
 import package::land_and_sky::sky_light::{haze_phase, sky_parts, sun_heading};
 
-// Whether stars are visible, and whether clouds are. Fixed at pipeline creation, since software drivers execute both sides of a branch.
+// Whether stars are visible, and whether rain clouds are. Fixed at pipeline creation, since software drivers execute both sides of a branch.
 override has_stars: bool = true;
-override has_clouds: bool = true;
+override has_rain_clouds: bool = true;
 
 // A dome at infinity: what varies slowly is found at its vertices, what the phase function of haze, the sun and clouds make of it at each pixel.
 struct Ray {
@@ -23,6 +23,8 @@ struct Ray {
 // than white.
 const DRAWN_DISC_RAD: f32 = 0.0065;
 const DISC_BRIGHTNESS: f32 = 60.0;
+// Angular radius of the drawn moon (rad): twice the true one, as it seems to an eye.
+const DRAWN_MOON_RAD: f32 = 0.0095;
 // Cells along the side of each face of a cube; each holds one star.
 const STAR_CELLS: f32 = 90.0;
 
@@ -76,6 +78,18 @@ fn stars(direction: vec3<f32>) -> f32 {
     return exp(-0.7 * off * off) * (0.02 + 1.2 * pow(own.z, 22.0));
 }
 
+// The full moon, opposite the sun: its light relative to a bright star, with its maria and the glow of the air about it; and how far it covers the stars.
+fn moon(direction: vec3<f32>) -> vec2<f32> {
+    let off = (direction + frame.toward_sun) / DRAWN_MOON_RAD;
+    let off2 = dot(off, off);
+    let east = normalize(vec3<f32>(frame.toward_sun.z, 0.0, 1e-5 - frame.toward_sun.x));
+    let place = vec2<f32>(dot(off, east), dot(off, cross(east, frame.toward_sun)));
+    let maria = smoothstep(0.42, 0.62, noise(place * 0.045 + 0.73).g);
+    let pixel = 0.5 * frame.pixel_rad / DRAWN_MOON_RAD;
+    let disc = 1.0 - smoothstep((1.0 - pixel) * (1.0 - pixel), (1.0 + pixel) * (1.0 + pixel), off2);
+    return vec2<f32>(disc * (1.9 - 0.7 * maria) + 0.16 / (1.0 + 0.06 * off2), disc);
+}
+
 // Sky with clouds before it.
 fn clouded(sky: vec3<f32>, direction: vec3<f32>, toward_sun: f32) -> vec3<f32> {
     let up = max(direction.y, 0.0);
@@ -93,6 +107,15 @@ fn clouded(sky: vec3<f32>, direction: vec3<f32>, toward_sun: f32) -> vec3<f32> {
     return mix(sky, cloud, density * 0.9 * smoothstep(0.015, 0.16, direction.y) * (1.0 - frame.overcast));
 }
 
+// Light of rain clouds relative to their mean: low and torn, dark where they are thick. Towards the horizon they merge.
+fn rain_cloud_light(direction: vec3<f32>) -> f32 {
+    let at = frame.eye_m.xz + frame.cloud_offset_m + direction.xz / (max(direction.y, 0.0) + 0.07) * 640.0;
+    let broad = noise(at / 2900.0);
+    let thick = broad.r * 0.5 + broad.g * 0.28 + noise(at / 690.0 + 0.61).b * 0.22;
+    let light = mix(1.44, 0.56, smoothstep(0.36, 0.64, thick));
+    return mix(1.0, light, smoothstep(0.01, 0.22, direction.y));
+}
+
 @fragment
 fn fs(ray: Ray) -> @location(0) vec4<f32> {
     let direction = normalize(ray.direction);
@@ -100,11 +123,14 @@ fn fs(ray: Ray) -> @location(0) vec4<f32> {
     let clear = 1.0 - frame.overcast;
     var color = ray.steady + ray.haze * haze_phase(toward_sun) + sun_disc(direction) * clear;
     if has_stars {
-        let starry = frame.lights.star_brightness * clear * smoothstep(0.0, 0.25, direction.y);
-        color += vec3<f32>(0.85, 0.92, 1.05) * (stars(direction) * starry);
+        let night = frame.lights.star_brightness * clear;
+        let moon = moon(direction);
+        color += vec3<f32>(0.85, 0.92, 1.05) * (stars(direction) * (1.0 - moon.y) * night * smoothstep(0.0, 0.25, direction.y));
+        color += vec3<f32>(1.0, 0.97, 0.9) * (moon.x * night * smoothstep(-0.005, 0.03, direction.y));
     }
-    if has_clouds {
-        color = clouded(color, direction, toward_sun);
+    color = clouded(color, direction, toward_sun);
+    if has_rain_clouds {
+        color *= mix(1.0, rain_cloud_light(direction), frame.overcast);
     }
     return vec4<f32>(color, 1.0);
 }

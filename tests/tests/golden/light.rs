@@ -77,6 +77,17 @@ golden!(
         ..Golden::default()
     }
 );
+golden!(
+    moon,
+    Golden {
+        shows: "the full moon, opposite the sun",
+        eye: over([128.0, 158.7], 2.0, 150.0, 10.0),
+        look: sunlit(330.0, -9.0),
+        parts: &[[124, 70, 8, 8]],
+        unlike: Unlike::RenderOptions(sunlit(345.0, -9.0)),
+        ..Golden::default()
+    }
+);
 
 fn above_trees() -> Golden {
     Golden { eye: over([150.0, 130.0], 14.0, 350.0, -14.0), look: sunlit(250.0, 14.0), quality: Quality::Medium, ..Golden::default() }

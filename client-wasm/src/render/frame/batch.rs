@@ -115,7 +115,7 @@ impl<'a> Batch<'a> {
                 clumps.draw(&mut pass);
             }
             scene.terrain.draw(&mut pass, has_lamps);
-            self.renderer.sky.draw(&mut pass, self.plan.has_stars, self.plan.has_clouds);
+            self.renderer.sky.draw(&mut pass, self.plan.sky_shows);
         }
         pass
     }

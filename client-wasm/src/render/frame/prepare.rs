@@ -32,8 +32,8 @@ pub(super) struct FramePlan {
     pub(super) shells: Option<ShellExtent>,
     pub(super) has_lamps: bool,
     pub(super) has_spheres: bool,
-    pub(super) has_stars: bool,
-    pub(super) has_clouds: bool,
+    /// Whether stars are visible, and whether rain clouds are.
+    pub(super) sky_shows: [bool; 2],
     /// Shadow cascades that are redrawn.
     pub(super) due_cascades: Vec<u32>,
     /// Batches in which plants are listed and drawn, at least 1.
@@ -105,8 +105,7 @@ impl Renderer {
             shells,
             has_lamps: frame.has_lamps(),
             has_spheres: frame.has_spheres(),
-            has_stars: frame.has_stars(),
-            has_clouds: frame.has_clouds(),
+            sky_shows: frame.sky_shows(),
             due_cascades: (0..).zip(cascades).filter_map(|(cascade, volume)| volume.map(|_| cascade)).collect(),
             batches: 1,
             patches_written,

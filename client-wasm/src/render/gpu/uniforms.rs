@@ -110,14 +110,9 @@ impl Frame {
         self.sphere_count > 0
     }
 
-    /// Whether any star is visible.
-    pub(crate) fn has_stars(&self) -> bool {
-        self.lights.star_brightness > 0.0 && self.overcast < 1.0
-    }
-
-    /// Whether single clouds are visible.
-    pub(crate) fn has_clouds(&self) -> bool {
-        self.overcast < 0.95
+    /// Whether stars are visible, and whether rain clouds are.
+    pub(crate) fn sky_shows(&self) -> [bool; 2] {
+        [self.lights.star_brightness > 0.0 && self.overcast < 1.0, self.overcast > 0.0]
     }
 }
 

@@ -80,7 +80,7 @@ impl<'a> View<'a> {
             time_secs: (self.time_secs % 10_000.0) as f32,
             toward_sun: self.sun.direction(),
             overcast,
-            sun_rgb: (daylight.sunlight()[0] * (1.0 - 0.75 * overcast)).to_array(),
+            sun_rgb: (daylight.sunlight()[0] * (1.0 - 0.92 * overcast)).to_array(),
             haze_distance_m: scene.light.haze_m * (1.0 - 0.6 * overcast),
             world_extent_m: scene.extent_m(),
             height_spacing_m: decoded.heights().pixel_m(),
@@ -129,7 +129,7 @@ impl<'a> View<'a> {
         let light = &scene.light;
         let overcast = overcast(decoded);
         let [_, cloud_sun] = daylight.sunlight();
-        // Rain clouds transmit a fifth of the daylight, all of it diffuse.
+        // Rain clouds transmit a fifth of the daylight, nearly all of it diffuse.
         let [mean, up, toward_sun] = daylight.ambient();
         let (night, star_brightness) = daylight.night();
         let texel_m = |cascade| cascades::texel_m(cascade, self.quality.shadow_px());

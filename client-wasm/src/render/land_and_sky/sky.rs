@@ -6,7 +6,7 @@ use crate::render::gpu::shaders;
 use crate::render::gpu::variants::Variants;
 
 pub(crate) struct Sky {
-    /// Pipelines without and with stars, each without and with clouds.
+    /// Pipelines without and with stars, each without and with rain clouds.
     pipelines: Variants<2, wgpu::RenderPipeline>,
     indices: wgpu::Buffer,
     index_count: u32,
@@ -17,7 +17,7 @@ impl Sky {
         let indices = dome_indices();
         let indices_buffer = factory.gpu.buffer("dome", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
         let factory = factory.clone();
-        let pipelines = Variants::by(["has_stars", "has_clouds"], move |constants| {
+        let pipelines = Variants::by(["has_stars", "has_rain_clouds"], move |constants| {
             let module = factory.shader("sky", shaders::SKY, &constants);
             let draw = DrawDescriptor { label: "sky", depth_write: false, ..DrawDescriptor::default() };
             factory.draw(&module, None, &draw)
@@ -30,8 +30,9 @@ impl Sky {
         self.pipelines.create_next()
     }
 
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_stars: bool, has_clouds: bool) {
-        pass.set_pipeline(self.pipelines.with([has_stars, has_clouds]));
+    /// Draws the sky; `shows` says whether there are stars and rain clouds.
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, shows: [bool; 2]) {
+        pass.set_pipeline(self.pipelines.with(shows));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
         pass.draw_indexed(0..self.index_count, 0, 0..1);
     }
