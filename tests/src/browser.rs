@@ -230,6 +230,12 @@ impl Browser {
         lines.collect::<Vec<_>>().join("\n")
     }
 
+    /// Processor time that the browser has used so far (s). Linux only: 0 elsewhere.
+    #[must_use]
+    pub fn cpu_secs(&self) -> f64 {
+        self.driver.cpu_secs()
+    }
+
     /// The WebDriver client, for commands that have no method here.
     #[must_use]
     pub fn client(&self) -> &Client {

@@ -57,6 +57,14 @@ impl Chromedriver {
         self.files.path().join("profile")
     }
 
+    /// Processor time that chromedriver and its browser have used so far (s), of the processes that are still running. Linux only: 0 elsewhere.
+    #[must_use]
+    pub fn cpu_secs(&self) -> f64 {
+        let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
+        let stats = processes.filter_map(|process| fs::read_to_string(process.path().join("stat")).ok());
+        stats.filter_map(|stat| cpu_ticks(&stat, self.group.as_raw_nonzero().get())).sum::<u64>() as f64 / TICKS_PER_SEC
+    }
+
     /// Output of chromedriver and Chromium so far, including the console of the page.
     #[must_use]
     pub fn log(&self) -> String {
@@ -81,6 +89,18 @@ pub fn chromium() -> Result<PathBuf> {
 }
 
 const LOG: &str = "log";
+
+/// Unit of processor times in `/proc` on Linux.
+const TICKS_PER_SEC: f64 = 100.0;
+
+/// Processor time in user and kernel mode of a process, from its line in `/proc`; `None` if it belongs to another process group.
+fn cpu_ticks(stat: &str, group: i32) -> Option<u64> {
+    // The name, in parentheses, may have spaces: state, parent and group follow it, then eight more before the times.
+    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let is_ours = fields.get(2)?.parse() == Ok(group);
+    let ticks = |at: usize| fields.get(at)?.parse::<u64>().ok();
+    Some(ticks(11)? + ticks(12)?).filter(|_| is_ours)
+}
 
 fn on_path(names: &[&str]) -> Option<PathBuf> {
     let path = env::var_os("PATH")?;
@@ -107,4 +127,17 @@ async fn port_from(process: &mut Child, log: &Path) -> Result<u16> {
 
 fn read_log(log: &Path) -> String {
     fs::read(log).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn processor_time_is_that_of_a_group() {
+        let stat = "4711 (Web (GPU) 1) S 4700 4690 4690 0 -1 4194560 1 2 3 4 150 25 7 8 20 0 12 0 99";
+        assert_eq!(cpu_ticks(stat, 4690), Some(175));
+        assert_eq!(cpu_ticks(stat, 4700), None);
+        assert_eq!(cpu_ticks("4711 (cut", 4690), None);
+    }
 }

@@ -11,12 +11,13 @@ use tests::chart::figure::Figure;
 use tests::chart::files::write_all;
 use tests::chart::gallery::{self, reference_path};
 use tests::chart::machine::machine;
+use tests::chart::peers::{self, Peer};
 use tests::chart::picture::{self, METHODS, Method, ViewShots};
 use tests::chart::row::cells_text;
 use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
 use tests::chart::tables::with_tables;
-use tests::chart::{Problem, bend, plants, shells, stream, wind};
+use tests::chart::{Problem, bend, gpu, pictures, plants, shells, stream, wind};
 use tests::still::Still;
 use tests::views::{VIEWS, View};
 
@@ -39,7 +40,10 @@ Examples:
   cargo run --release -p tests --bin chart -- bend --only cars
   cargo run --release -p tests --bin chart -- picture --quick --views ant-calm,hill-storm
   cargo run --release -p tests --bin chart -- gallery
-  cargo run --release -p tests --features peers --bin chart -- stream";
+  cargo run --release -p tests --bin chart -- gpu
+  cargo run --release -p tests --bin chart -- peers --peer webgpu-grass=../webgpu-grass/dist
+  cargo run --release -p tests --bin chart -- pictures --only storm
+  cargo run --release -p tests --features compressors --bin chart -- stream";
 
 #[derive(Subcommand)]
 enum Model {
@@ -88,6 +92,38 @@ enum Model {
         #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = View::find)]
         views: Vec<&'static View>,
     },
+    /// The renderer on this machine's graphics card: frames and passes beside their aims, in less than five minutes
+    #[command(after_help = GPU_FILES)]
+    Gpu {
+        /// Output folder
+        #[arg(long, value_name = "DIR", default_value = "target/charts")]
+        out: PathBuf,
+        /// Small pictures and single frames, for a quick look
+        #[arg(long)]
+        quick: bool,
+    },
+    /// Frame rates of other programs that draw grass, and of ours, in a browser with software WebGPU
+    #[command(after_help = PEERS_FILES)]
+    Peers {
+        /// Name of a program and the folder of its built page; repeat for more
+        #[arg(long = "peer", value_name = "NAME=FOLDER", value_parser = Peer::parse)]
+        peers: Vec<Peer>,
+        /// Measured time of each page (s)
+        #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=600))]
+        seconds: u64,
+        /// Output folder
+        #[arg(long, value_name = "DIR", default_value = "target/charts")]
+        out: PathBuf,
+    },
+    /// Pictures of a document, drawn again by the commands beside them
+    Pictures {
+        /// The document
+        #[arg(long, value_name = "FILE", default_value = "tests/results/README.md")]
+        of: PathBuf,
+        /// Only pictures with this word in their file name
+        #[arg(long, value_name = "WORD")]
+        only: Option<String>,
+    },
     /// Shells: frames per second against the number of layers, beside Bakay 2003, table 4.1
     #[command(after_help = SHELLS_FILES)]
     Shells(Options),
@@ -99,6 +135,18 @@ enum Model {
 /// Cache folder of references, within the folder of the charts.
 const CACHE: &str = "target/charts/cache";
 
+const GPU_FILES: &str = "\
+Files in DIR:
+  gpu.md  frame time at medium, high and ultra, 1920 × 1080 and 3840 × 2160, the time of each kind of pass, and the
+          time for a million near blades; with the card's name";
+
+const PEERS_FILES: &str = "\
+Files in DIR:
+  peers.md           frames per second and processor time a frame of each page, and how ours compare
+  peers/NAME.jpg     a screenshot of each
+
+A page is built with its own tools first, such as `npm ci && npx vite build`; --peer names the folder with its index.html.";
+
 const SHELLS_FILES: &str = "\
 Files in DIR:
   shells-layers.svg, .csv  frames per second against the number of layers, with and without slices between them, and Bakay's";
@@ -107,7 +155,7 @@ const STREAM_FILES: &str = "\
 Files in DIR:
   stream-DRIVE.svg, .csv  bits per cell and frame against the largest error of θ: drive, wash, cyclone and storm
 
-Built with --features peers, which needs cmake, libclang and libzstd-dev, the charts have lines of zstd, zfp and SZ3, too.";
+Built with --features compressors, which needs cmake, libclang and libzstd-dev, the charts have lines of zstd, zfp and SZ3, too.";
 
 const FILES: &str = "\
 Files in DIR, updated after each problem:
@@ -168,6 +216,9 @@ fn main() -> Result<()> {
         Model::Plants(options) => charts("plants", plants::problems(options.quick), &plants::FIGURES, &options),
         Model::Picture { options, size, views } => chart_picture(&options, size, &chosen(views)),
         Model::Gallery { out, cache, size, quality, views } => draw_gallery(&out, &cache, size, quality, &chosen(views)),
+        Model::Gpu { out, quick } => report_gpu(&out, quick),
+        Model::Peers { peers, seconds, out } => compare_peers(&peers, seconds, &out),
+        Model::Pictures { of, only } => draw_pictures(&of, only.as_deref()),
         Model::Shells(options) => charts("shells", Vec::new(), &shells::FIGURES, &options),
         Model::Stream(options) => charts("stream", Vec::new(), &stream::FIGURES, &options),
     }
@@ -237,6 +288,55 @@ fn draw_gallery(out: &Path, cache: &Path, size_px: [u32; 2], quality: Quality, v
         gallery::write(&plates, size_px, quality, &format!("{}; {}", gpu.adapter_name, machine()), out)?;
     }
     println!("{} pictures in {}", plates.len(), out.display());
+    Ok(())
+}
+
+/// A line that says what is being done, and since when.
+fn spinner() -> ProgressBar {
+    let style = ProgressStyle::with_template("{spinner} {elapsed} {wide_msg}").expect("the template is well formed");
+    let bar = ProgressBar::new_spinner().with_style(style);
+    bar.enable_steady_tick(std::time::Duration::from_millis(200));
+    bar
+}
+
+fn report_gpu(out: &Path, quick: bool) -> Result<()> {
+    let bar = spinner();
+    let report = gpu::report(quick, &machine(), |name| bar.set_message(name.to_owned()))?;
+    bar.finish_and_clear();
+    write_report(&report, out, "gpu.md")
+}
+
+fn compare_peers(peers: &[Peer], seconds: u64, out: &Path) -> Result<()> {
+    let (bar, screenshots) = (spinner(), out.join("peers"));
+    std::fs::create_dir_all(&screenshots).with_context(|| format!("{} cannot be made", screenshots.display()))?;
+    let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build()?;
+    let measured = std::time::Duration::from_secs(seconds);
+    let report = runtime.block_on(peers::compare(peers, measured, &machine(), &screenshots, |name| bar.set_message(name.to_owned())))?;
+    bar.finish_and_clear();
+    write_report(&report, out, "peers.md")
+}
+
+fn write_report(report: &str, out: &Path, name: &str) -> Result<()> {
+    println!("{report}");
+    std::fs::create_dir_all(out).with_context(|| format!("{} cannot be made", out.display()))?;
+    let path = out.join(name);
+    std::fs::write(&path, report).with_context(|| format!("{} cannot be written", path.display()))
+}
+
+/// Draws the pictures of a document again.
+fn draw_pictures(of: &Path, only: Option<&str>) -> Result<()> {
+    let document = std::fs::read_to_string(of).with_context(|| format!("{} cannot be read", of.display()))?;
+    let mut commands = pictures::commands(&document);
+    commands.retain(|command| only.is_none_or(|word| pictures::file(command).contains(word)));
+    ensure!(!commands.is_empty(), "{} has no line `picture …` that draws a file with this word in its name", of.display());
+    let bar = progress(commands.len());
+    for command in &commands {
+        bar.set_message(pictures::file(command).to_owned());
+        pictures::draw(command)?;
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    println!("{} pictures drawn", commands.len());
     Ok(())
 }
 

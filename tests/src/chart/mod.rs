@@ -9,6 +9,9 @@
 //! | [`plants`] | the runs of blades and underbrush |
 //! | [`picture`] | render options: frame time against similarity, and figures of other kinds |
 //! | [`gallery`] | the gallery page |
+//! | [`gpu`] | the renderer on a graphics card, beside its aims |
+//! | [`peers`] | frame rates of other programs and ours in a browser |
+//! | [`pictures`] | draws the pictures of a document again |
 //! | [`shells`] | cost of shell layers |
 //! | [`stream`] | bits on the wire against the error of the grass |
 //! | [`figure`] | line charts and coloured fields as SVG |
@@ -24,9 +27,12 @@ pub mod bend;
 pub mod figure;
 pub mod files;
 pub mod gallery;
+pub mod gpu;
 pub mod line;
 pub mod machine;
+pub mod peers;
 pub mod picture;
+pub mod pictures;
 pub mod plants;
 pub mod plot;
 pub mod row;

@@ -18,6 +18,9 @@ use tokio::sync::mpsc;
 
 pub(super) const STEPS_PER_PUBLISH: u64 = 3;
 
+/// Radius of the area that a viewer watches (m).
+const NEAR_M: f32 = 60.0;
+
 /// A server without a network: world, streamer and clients.
 pub(super) struct Server {
     pub(super) world: World,
@@ -55,7 +58,7 @@ impl Server {
 
     pub(super) fn join(&self, loaded: &LoadedScene, eye_m: [f32; 3]) -> Result<Viewer> {
         let (client, frames) = self.clients.join(self.clients.next_id(), "viewer".to_owned(), SendLimits::default().in_flight as usize);
-        client.set_area_of_interest(AreaOfInterest { eye_m, radius_m: 60.0 });
+        client.set_area_of_interest(AreaOfInterest { eye_m, radius_m: NEAR_M });
         client.request_replica(true);
         let mut mirror = Mirror::default();
         mirror.apply(loaded.message())?;
@@ -274,7 +277,7 @@ fn the_time_of_a_replica() -> Result<()> {
         let mut server = Server::new(World::new(&loaded.scene, loaded.maps())?, &loaded);
         let mut viewer = server.join(&loaded, [x, 30.0, z])?;
         let (mut random, mut queue, mut times) = (SplitMix64::new(3), vec![], vec![]);
-        let (mut state_bytes, mut awake) = (0, 0);
+        let (mut state_bytes, mut awake, mut islands) = (0, 0, [0; 2]);
         for publication in 0..600 {
             commands(&mut random, publication, &mut queue);
             server.publish(&mut queue, loaded.scene.tick_hz);
@@ -286,16 +289,42 @@ fn the_time_of_a_replica() -> Result<()> {
                 false => state_bytes += viewer.bytes - bytes,
             }
             awake = awake.max(server.world.bend().field().awake_count());
+            let counts = awake_and_near(&server.world, [x, z]);
+            islands.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
         }
         times.sort_by(f64::total_cmp);
         let mean_ms = times.iter().sum::<f64>() / times.len() as f64;
         let at = |fraction: f64| times[((times.len() - 1) as f64 * fraction) as usize];
         println!(
-            "{scene:12} ms per step: mean {mean_ms:.2}, median {:.2}, 99 % {:.2}; up to {awake} patches awake; {:.0} kB before the first step",
+            "{scene:12} ms per step: mean {mean_ms:.2}, median {:.2}, 99 % {:.2}; up to {awake} patches awake, on average {:.0} % of them connected to a patch within {NEAR_M} m of the camera; {:.0} kB before the first step",
             at(0.5),
             at(0.99),
+            100.0 * islands[1] as f64 / islands[0].max(1) as f64,
             state_bytes as f64 / 1e3
         );
     }
     Ok(())
+}
+
+/// Number of awake patches, and of those connected through awake patches to one near a place.
+fn awake_and_near(world: &World, [x_m, z_m]: [f32; 2]) -> [usize; 2] {
+    let field = world.bend().field();
+    let (layout, awake) =
+        (field.layout(), field.awake().map(|patch| field.layout().place(patch.index()).map(i64::from)).collect::<Vec<_>>());
+    let is_near = |[x, z]: [i64; 2]| {
+        let off = [x_m, z_m].into_iter().zip([x, z]).map(|(eye_m, n)| {
+            let low_m = n as f32 * layout.patch_m();
+            eye_m - eye_m.clamp(low_m, low_m + layout.patch_m())
+        });
+        off.map(|off_m| off_m * off_m).sum::<f32>() <= NEAR_M * NEAR_M
+    };
+    let mut reached: Vec<[i64; 2]> = awake.iter().copied().filter(|place| is_near(*place)).collect();
+    let mut next = 0;
+    while let Some([x, z]) = reached.get(next).copied() {
+        let touches = |place: &[i64; 2]| (place[0] - x).abs() <= 1 && (place[1] - z).abs() <= 1;
+        let new: Vec<_> = awake.iter().copied().filter(|place| touches(place) && !reached.contains(place)).collect();
+        reached.extend(new);
+        next += 1;
+    }
+    [awake.len(), reached.len()]
 }

@@ -4,14 +4,14 @@
 //! |---|---|
 //! | `drive` | recordings of the bend field, with the bytes of its causes |
 //! | `patches` | the codec of patches, and a closed loop with it |
-//! | `peers` | zstd, zfp and SZ3; with the feature `peers` |
+//! | `compressors` | zstd, zfp and SZ3; with the feature `compressors` |
 //!
 //! All methods get the same window of 384 × 384 cells at 20 frames a second. Headers of messages and the wind are left out.
 
+#[cfg(feature = "compressors")]
+mod compressors;
 mod drive;
 mod patches;
-#[cfg(feature = "peers")]
-mod peers;
 
 use std::fmt::Write as _;
 
@@ -56,12 +56,12 @@ const METHODS: &[Method] = &[
     Method { name: "closed loop, θ and ω", send: patches::closed_loop },
     Method { name: "codec of patches, θ and ω", send: |recording, steps| patches::codec(recording, steps, 3) },
     Method { name: "codec of patches, θ alone", send: |recording, steps| patches::codec(recording, steps, 1) },
-    #[cfg(feature = "peers")]
-    Method { name: "zstd 19, differences of θ", send: peers::zstd },
-    #[cfg(feature = "peers")]
-    Method { name: "zfp, θ frame by frame", send: peers::zfp },
-    #[cfg(feature = "peers")]
-    Method { name: "SZ3, all of θ at once", send: peers::sz3 },
+    #[cfg(feature = "compressors")]
+    Method { name: "zstd 19, differences of θ", send: compressors::zstd },
+    #[cfg(feature = "compressors")]
+    Method { name: "zfp, θ frame by frame", send: compressors::zfp },
+    #[cfg(feature = "compressors")]
+    Method { name: "SZ3, all of θ at once", send: compressors::sz3 },
 ];
 
 /// Largest errors of θ of the chart (degrees).
