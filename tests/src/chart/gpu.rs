@@ -164,12 +164,12 @@ mod tests {
     }
 
     #[test]
-    fn the_dense_meadow_has_as_many_near_blades_as_a_scene_may_have() -> Result<()> {
-        const NEAR_GRIDS: u32 = 9;
+    fn the_dense_meadow_has_nearly_twice_the_usual_near_blades() -> Result<()> {
+        const USUAL_LIMIT: u32 = 230_400;
         let gpu = Gpu::headless()?;
         let (mut stage, camera) = meadow(|per_side| *per_side = DENSE_PER_SIDE)?;
         let stats = Canvas::new(&gpu, QUICK_SIZES_PX[0], Quality::High).draw(&mut stage.mirror, &camera, 0.0, 0.0);
-        assert!(stats.blades >= NEAR_GRIDS * 240 * 240, "{stats:?}");
+        assert!(stats.blades > USUAL_LIMIT * 17 / 10, "{stats:?}");
         Ok(())
     }
 }
