@@ -73,10 +73,11 @@ struct Run {
     cpu_secs: f64,
 }
 
-/// Measures ours at two qualities and each peer for `measured`, one after the other; returns a table as Markdown. Screenshots go into a folder.
+/// Measures ours at two qualities and each peer for `measured`, one after the other; returns a table as Markdown, and which peers
+/// could not be measured. Screenshots go into a folder.
 ///
 /// # Errors
-/// When a page draws nothing, or a browser does not start.
+/// When our own page cannot be measured.
 pub async fn compare(
     peers: &[Peer],
     measured: Duration,
@@ -84,13 +85,16 @@ pub async fn compare(
     screenshots: &std::path::Path,
     mut say: impl FnMut(&str),
 ) -> Result<String> {
-    let mut runs = Vec::new();
+    let (mut runs, mut failures) = (Vec::new(), String::new());
     let mut add = async |name: String, url: String| -> Result<()> {
         say(&name);
         let (run, picture) = run(&name, &url, measured).await.with_context(|| name.clone())?;
-        picture.save(&screenshots.join(format!("{name}.jpg")))?;
         runs.push(run);
-        Ok(())
+        // A page that is busy for longer than the browser waits has no screenshot.
+        picture.and_then(|picture| picture.save(&screenshots.join(format!("{name}.jpg")))).or_else(|error| {
+            say(&format!("{name} has no screenshot: {error:#}"));
+            Ok(())
+        })
     };
     for quality in QUALITIES {
         let scene = scenes::load("meadow")?;
@@ -101,11 +105,13 @@ pub async fn compare(
     }
     for Peer { name, folder } in peers {
         let pages = Pages::serve_folder(folder.clone()).await?;
-        add(name.clone(), format!("http://{}/", pages.addr)).await?;
+        if let Err(error) = add(name.clone(), format!("http://{}/", pages.addr)).await {
+            failures += &format!("\nNot measured: {error:#}\n");
+        }
     }
     Ok(format!(
         "# Frame rates in a browser\n\n{machine}\n\nHeadless Chromium with WebGPU in software (SwiftShader), {} × {}, each page as it starts, for {} s from {} s after its first picture on; processor time of the browser alone; \
-         our server simulates on the same cores. Ours is the scene `meadow` with land, sky, wind and underbrush.\n\n{}",
+         our server simulates on the same cores. Ours is the scene `meadow` with land, sky, wind and underbrush.\n\n{}{failures}",
         SIZE_PX[0],
         SIZE_PX[1],
         measured.as_secs(),
@@ -114,7 +120,7 @@ pub async fn compare(
     ))
 }
 
-async fn run(name: &str, url: &str, measured: Duration) -> Result<(Run, Picture)> {
+async fn run(name: &str, url: &str, measured: Duration) -> Result<(Run, Result<Picture>)> {
     let browser = Browser::start(&Options::default()).await?;
     browser.resize(SIZE_PX).await?;
     browser.run_first(COUNT).await?;
@@ -137,7 +143,7 @@ async fn run(name: &str, url: &str, measured: Duration) -> Result<(Run, Picture)
         pictures: last - first,
         cpu_secs: cpu_secs_then - cpu_secs,
     };
-    Ok((run, browser.picture("canvas").await?))
+    Ok((run, browser.picture("canvas").await))
 }
 
 /// Frames per second and processor time a frame, with the ratio of each frame rate of ours to it.
