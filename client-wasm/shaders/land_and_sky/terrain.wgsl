@@ -21,6 +21,9 @@ import package::uniforms::Kind;
 // Whether only grass of one kind grows, beyond the distance up to which litter is resolved. Software drivers execute both sides of a branch.
 override is_plain: bool = false;
 
+// Whether the streamed bend field may be other than 0.
+override has_bend: bool = true;
+
 @group(1) @binding(0) var<storage, read> tiles: array<GroundTile>;
 
 struct Ground {
@@ -120,6 +123,14 @@ fn floor_at(p: vec2<f32>, distance_m: f32, kind: Kind) -> vec3<f32> {
     return mix(bare, litter_at(p, litter_fraction > 0.0), litter_fraction);
 }
 
+// Lean by the bend field (rad).
+fn laid_at(p: vec2<f32>, distance_m: f32) -> vec2<f32> {
+    if !has_bend {
+        return vec2<f32>(0.0);
+    }
+    return lean_of_field(p, field_level(distance_m));
+}
+
 @fragment
 fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let p = ground.p.xz;
@@ -144,7 +155,7 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     }
     if fraction > 0.0 {
         // Far look of the grass, leaning like the blades, where no blades hide the ground; dark between blades.
-        let lean = lean_of_field(p, field_level(distance_m)) + ground.air.xy * kind.wind_bend_rad;
+        let lean = laid_at(p, distance_m) + ground.air.xy * kind.wind_bend_rad;
         let afar = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light);
         let mottle = mottle_at(p, span_m);
         let reached = frame.sun_rgb * sun_light * sun_in_grass(0.0, kind.height_m);

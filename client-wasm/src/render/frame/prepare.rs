@@ -145,7 +145,7 @@ fn update_cascades(
 impl SceneResources {
     fn prepare_land(&mut self, gpu: &Gpu, from: &Viewpoint<'_>) {
         let tiles = self.quadtree.tiles(from.eye_m, from.frustum);
-        self.terrain.prepare(gpu, from.eye_m, &tiles);
+        self.terrain.prepare(gpu, from.eye_m, &tiles, &self.textures.atlas.bent_patches());
         if let Some(dust) = &self.dust {
             dust.prepare(gpu, from.dt_secs);
         }

@@ -36,6 +36,22 @@ struct Slot {
     was_bent: bool,
 }
 
+/// Patches of the atlas whose newest layer is bent.
+pub(crate) struct BentPatches {
+    patch_m: f32,
+    /// Places in the grid of patches.
+    patches: Vec<[i64; 2]>,
+}
+
+impl BentPatches {
+    /// Whether a square may show the bend of a patch; a coarse mip level spreads it by up to half a patch.
+    pub(crate) fn touch(&self, corner_m: [f32; 2], side_m: f32) -> bool {
+        let [low, high] = [-0.5, 0.5]
+            .map(|margin| corner_m.map(|m| ((m + if margin > 0.0 { side_m } else { 0.0 }) / self.patch_m + margin).floor() as i64));
+        self.patches.iter().any(|patch| (0..2).all(|axis| (low[axis]..=high[axis]).contains(&patch[axis])))
+    }
+}
+
 pub(crate) struct BendAtlas {
     pub(crate) texture: wgpu::Texture,
     layout: PatchLayout,
@@ -72,6 +88,12 @@ impl BendAtlas {
     /// Distance from the camera along X or Z that the atlas covers (m).
     pub(crate) fn reach_m(&self) -> f32 {
         reach_m(&self.layout)
+    }
+
+    /// The patches that are bent now.
+    pub(crate) fn bent_patches(&self) -> BentPatches {
+        let patches = self.slots.iter().filter(|slot| slot.is_bent).filter_map(|slot| slot.patch).collect();
+        BentPatches { patch_m: self.layout.patch_m(), patches }
     }
 
     /// Ages of the past layers (s), youngest first, and the index of the youngest; −1 without history.

@@ -14,6 +14,8 @@ pub(crate) struct PlainGround {
     square_m: f32,
     /// Number of whole squares along X and Z.
     count: [usize; 2],
+    /// Whether all grass is of one kind, and whole squares cover the map.
+    continues: bool,
     /// Row by row; `None` where a square is not plain.
     pub(crate) kinds: Vec<Option<u8>>,
 }
@@ -44,19 +46,20 @@ impl PlainGround {
             let first = found.next().filter(|_| is_covered)?;
             found.all(|kind| kind == first).then_some(first)
         };
-        Self { square_m, count, kinds: (0..count[0] * count[1]).map(plain).collect() }
+        let continues = scene.species.is_empty() && (0..2).all(|axis| count[axis] as f32 * square_m == extent_m[axis]);
+        Self { square_m, count, continues, kinds: (0..count[0] * count[1]).map(plain).collect() }
     }
 
-    /// Kind of the grass in all squares that a region touches, if they are plain.
+    /// Kind of the grass in all squares that a region touches, if they are plain. Where grass of one kind grows, the squares at the edge of the map
+    /// continue beyond it.
     pub(crate) fn kind(&self, corner_m: Vec2, side_m: f32) -> Option<u8> {
-        let squares = |from_m: f32| {
-            let first = from_m / self.square_m;
-            (first >= 0.0).then(|| first as usize..((from_m + side_m) / self.square_m).ceil() as usize)
+        let squares = |from_m: f32, count: usize| {
+            let (first, end) = ((from_m / self.square_m).floor(), ((from_m + side_m) / self.square_m).ceil());
+            let is_within = first >= 0.0 && end <= count as f32;
+            let last = count.checked_sub(1)? as f32;
+            (is_within || self.continues).then(|| first.clamp(0.0, last) as usize..end.clamp(1.0, last + 1.0) as usize)
         };
-        let (columns, rows) = (squares(corner_m.x)?, squares(corner_m.y)?);
-        if columns.end > self.count[0] || rows.end > self.count[1] {
-            return None;
-        }
+        let (columns, rows) = (squares(corner_m.x, self.count[0])?, squares(corner_m.y, self.count[1])?);
         let mut found = rows.flat_map(|row| &self.kinds[row * self.count[0]..][columns.clone()]);
         let first = *found.next()?;
         if found.all(|kind| *kind == first) { first } else { None }

@@ -1,10 +1,12 @@
-//! Ground: the tiles of a quadtree, which all share one small mesh. Plain tiles, of one kind of grass without bare soil, have a cheaper pipeline.
+//! Ground: the tiles of a quadtree, which all share one small mesh. Plain tiles and blocks of tiles, of one kind of grass without bare soil, have
+//! cheaper pipelines.
 
-use crate::render::gpu::constants::{LITTER_END_M, TILE_CELLS, TILE_VERTICES};
+use crate::render::gpu::constants::{LITTER_END_M, TILE_CELLS};
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind, storage};
 use crate::render::gpu::shaders;
 use crate::render::gpu::variants::LampVariants;
+use crate::render::inputs::bend_atlas::BentPatches;
 use crate::render::land_and_sky::plain_ground::PlainGround;
 use crate::render::land_and_sky::terrain_quadtree::{GroundTile, TILE_LIMIT, TerrainQuadtree};
 use crate::state::DecodedScene;
@@ -13,21 +15,23 @@ use std::ops::Range;
 
 pub(crate) struct Terrain {
     /// Pipelines by [`TileClass`].
-    pipelines: LampVariants<[wgpu::RenderPipeline; 3]>,
+    pipelines: LampVariants<[wgpu::RenderPipeline; CLASSES.len()]>,
     extent_m: Vec2,
     pub(crate) plain: PlainGround,
     indices: wgpu::Buffer,
-    index_count: u32,
     tiles: wgpu::Buffer,
-    /// Tiles of each class.
-    pub(crate) ranges: [Range<u32>; 3],
+    pub(crate) runs: Vec<Run>,
     group: wgpu::BindGroup,
 }
 
 /// What the pixels of a tile may show.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum TileClass {
-    /// One kind of grass, beyond [`LITTER_END_M`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum TileClass {
+    /// One kind of grass, beyond [`LITTER_END_M`], which only the wind bends.
+    Still,
+    /// The same where part of it is beyond the edge of the map, whose cover continues there.
+    StillBeyond,
+    /// The same within the map where the bend field may be other than 0.
     Plain,
     /// Anything on the map.
     Mixed,
@@ -35,50 +39,88 @@ enum TileClass {
     Beyond,
 }
 
+const CLASSES: [TileClass; 5] = [TileClass::Still, TileClass::StillBeyond, TileClass::Plain, TileClass::Mixed, TileClass::Beyond];
+
+/// Blocks along each side of a tile. The blocks of a tile that is not plain as a whole are classified one by one.
+const BLOCKS: u32 = 4;
+const BLOCK_CELLS: u32 = TILE_CELLS / BLOCKS;
+const BLOCK_INDICES: u32 = 6 * BLOCK_CELLS.pow(2);
+/// Maximum number of instances: tiles, and blocks of mixed ones.
+const INSTANCE_LIMIT: usize = 4 * TILE_LIMIT;
+
+/// One draw call: the same block, or the whole, of tiles of a class.
+#[derive(Clone, Debug)]
+pub(crate) struct Run {
+    pub(crate) class: TileClass,
+    indices: Range<u32>,
+    pub(crate) tiles: Range<u32>,
+}
+
+impl Run {
+    fn vertices(&self) -> u64 {
+        let cells = if self.indices.len() as u32 == BLOCK_INDICES { BLOCK_CELLS } else { TILE_CELLS };
+        u64::from((cells + 1).pow(2)) * self.tiles.len() as u64
+    }
+}
+
 impl Terrain {
     /// The ground pass for a scene whose map is divided by this quadtree.
     pub(crate) fn new(factory: &PassFactory, decoded: &DecodedScene, quadtree: &TerrainQuadtree) -> Self {
         let layout = factory.layout("terrain", &[storage(0)]);
-        let indices = tile_indices();
-        let size = (TILE_LIMIT * size_of::<GroundTile>()) as u64;
+        let size = (INSTANCE_LIMIT * size_of::<GroundTile>()) as u64;
         let tiles = factory.gpu.empty_buffer("tiles", size, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST);
         let group = bind(&factory.gpu, "terrain", &layout, &[tiles.as_entire_binding()]);
-        let index_buffer = factory.gpu.buffer("tile", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
-        let index_count = indices.len() as u32;
+        let indices = factory.gpu.buffer("tile", bytemuck::cast_slice(&tile_indices()), wgpu::BufferUsages::INDEX);
         let pipelines = pipelines(factory.clone(), layout);
         Self {
             pipelines,
             extent_m: decoded.scene().extent_m().into(),
-            plain: PlainGround::new(decoded, quadtree.finest_m()),
-            indices: index_buffer,
-            index_count,
+            plain: PlainGround::new(decoded, quadtree.finest_m() / BLOCKS as f32),
+            indices,
             tiles,
-            ranges: Default::default(),
+            runs: Vec::new(),
             group,
         }
     }
 
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, eye_m: Vec3, tiles: &[GroundTile]) {
-        let mut sorted: [Vec<GroundTile>; 3] = Default::default();
-        for tile in tiles {
-            let (class, tile) = self.classified(tile, eye_m);
-            sorted[class as usize].push(tile);
+    /// Classifies the tiles in view, of which the bend field bends those of `bent`.
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, eye_m: Vec3, tiles: &[GroundTile], bent: &BentPatches) {
+        let mut instances = Vec::with_capacity(INSTANCE_LIMIT);
+        for (number, tile) in tiles.iter().enumerate() {
+            let (whole_class, whole) = self.classified(tile, eye_m, bent);
+            let room = INSTANCE_LIMIT - instances.len() - (tiles.len() - number - 1);
+            let first = instances.len();
+            if whole_class >= TileClass::Mixed && room >= BLOCKS.pow(2) as usize {
+                let blocks = (0..BLOCKS.pow(2)).map(|block| (block, self.classified(&tile.part(block, BLOCKS), eye_m, bent)));
+                instances.extend(blocks.map(|(block, (class, part))| (class, Some(block), tile.with_kind(part.kind()))));
+            }
+            if instances[first..].iter().all(|(class, ..)| *class >= TileClass::Mixed) {
+                instances.truncate(first);
+                instances.push((whole_class, None, whole));
+            }
         }
+        instances.sort_by_key(|(class, block, _)| (*class, *block));
+        let tiles: Vec<GroundTile> = instances.iter().map(|(.., tile)| *tile).collect();
+        gpu.queue.write_buffer(&self.tiles, 0, bytemuck::cast_slice(&tiles));
         let mut end = 0;
-        self.ranges = sorted.each_ref().map(|tiles| {
+        self.runs.clear();
+        self.runs.extend(instances.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).map(|same| {
+            let (class, block, _) = same[0];
+            let (first, last) = block.map_or((0, BLOCKS.pow(2)), |block| (block, block + 1));
             let begin = end;
-            end += tiles.len() as u32;
-            begin..end
-        });
-        gpu.queue.write_buffer(&self.tiles, 0, bytemuck::cast_slice(&sorted.concat()));
+            end += same.len() as u32;
+            Run { class, indices: first * BLOCK_INDICES..last * BLOCK_INDICES, tiles: begin..end }
+        }));
     }
 
-    fn classified(&self, tile: &GroundTile, eye_m: Vec3) -> (TileClass, GroundTile) {
-        if !tile.is_within(self.extent_m) {
-            return (TileClass::Beyond, *tile);
-        }
+    fn classified(&self, tile: &GroundTile, eye_m: Vec3, bent: &BentPatches) -> (TileClass, GroundTile) {
+        let is_within = tile.is_within(self.extent_m);
         let kind = self.plain.kind(tile.corner_m.into(), tile.side_m).filter(|_| tile.distances_m(eye_m)[0] > LITTER_END_M);
-        kind.map_or((TileClass::Mixed, *tile), |kind| (TileClass::Plain, tile.with_kind(kind)))
+        match (kind, bent.touch(tile.corner_m, tile.side_m)) {
+            (Some(kind), false) => (if is_within { TileClass::Still } else { TileClass::StillBeyond }, tile.with_kind(kind)),
+            (Some(kind), true) if is_within => (TileClass::Plain, tile.with_kind(kind)),
+            _ => (if is_within { TileClass::Mixed } else { TileClass::Beyond }, *tile),
+        }
     }
 
     /// Creates a variant of a pipeline that no frame has needed yet. Returns false if there is none.
@@ -88,26 +130,34 @@ impl Terrain {
 
     /// Vertices that [`draw`](Self::draw) submits.
     pub(crate) fn vertices(&self) -> u64 {
-        u64::from(self.ranges[2].end * TILE_VERTICES)
+        self.runs.iter().map(Run::vertices).sum()
     }
 
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
         pass.set_bind_group(1, &self.group, &[]);
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
-        for (pipeline, tiles) in self.pipelines.of(has_lamps).iter().zip(self.ranges.clone()) {
-            pass.set_pipeline(pipeline);
-            pass.draw_indexed(0..self.index_count, 0, tiles);
+        let pipelines = self.pipelines.of(has_lamps);
+        for runs in self.runs.chunk_by(|a, b| a.class == b.class) {
+            pass.set_pipeline(&pipelines[runs[0].class as usize]);
+            for run in runs {
+                pass.draw_indexed(run.indices.clone(), 0, run.tiles.clone());
+            }
         }
     }
 }
 
 /// Pipelines by [`TileClass`].
-fn pipelines(factory: PassFactory, layout: wgpu::BindGroupLayout) -> LampVariants<[wgpu::RenderPipeline; 3]> {
+fn pipelines(factory: PassFactory, layout: wgpu::BindGroupLayout) -> LampVariants<[wgpu::RenderPipeline; CLASSES.len()]> {
     LampVariants::new(move |[lamps]| {
         // All share the vertex shader, so that they meet to the bit.
         let vertices = factory.shader("terrain", shaders::TERRAIN, &[]);
-        [TileClass::Plain, TileClass::Mixed, TileClass::Beyond].map(|class| {
-            let constants = [lamps, ("is_plain", class == TileClass::Plain), ("reaches_beyond", class == TileClass::Beyond)];
+        CLASSES.map(|class| {
+            let constants = [
+                lamps,
+                ("is_plain", class < TileClass::Mixed),
+                ("has_bend", class >= TileClass::Plain),
+                ("reaches_beyond", matches!(class, TileClass::StillBeyond | TileClass::Beyond)),
+            ];
             let fragments = factory.shader("terrain", shaders::TERRAIN, &constants);
             let draw = DrawDescriptor {
                 label: "terrain",
@@ -120,9 +170,16 @@ fn pipelines(factory: PassFactory, layout: wgpu::BindGroupLayout) -> LampVariant
     })
 }
 
-/// Two triangles per cell, anticlockwise as seen from above.
+/// Two triangles per cell, anticlockwise as seen from above, block by block.
 pub(crate) fn tile_indices() -> Vec<u16> {
     let row = TILE_CELLS as u16 + 1;
-    let cells = (0..TILE_CELLS as u16).flat_map(|z| (0..TILE_CELLS as u16).map(move |x| z * row + x));
-    cells.flat_map(|nw| [nw, nw + row, nw + 1, nw + 1, nw + row, nw + row + 1]).collect()
+    let square = |side: u32| (0..side.pow(2)).map(move |at| [at % side, at / side]);
+    let cells =
+        square(BLOCKS).flat_map(|[x, z]| square(BLOCK_CELLS).map(move |cell| [x * BLOCK_CELLS + cell[0], z * BLOCK_CELLS + cell[1]]));
+    cells
+        .flat_map(|[x, z]| {
+            let nw = z as u16 * row + x as u16;
+            [nw, nw + row, nw + 1, nw + 1, nw + row, nw + row + 1]
+        })
+        .collect()
 }

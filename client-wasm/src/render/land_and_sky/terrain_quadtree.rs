@@ -33,6 +33,18 @@ impl GroundTile {
         Self { borders_and_kind: self.borders_and_kind | u32::from(kind) << BORDERS_BITS, ..self }
     }
 
+    /// Kind of the grass of plain land.
+    pub(crate) fn kind(&self) -> u8 {
+        (self.borders_and_kind >> BORDERS_BITS) as u8
+    }
+
+    /// Block `number`, row by row, of a tile divided into `count` × `count` blocks. Without neighbours.
+    pub(crate) fn part(&self, number: u32, count: u32) -> Self {
+        let side_m = self.side_m / count as f32;
+        let place = [number % count, number / count];
+        Self { corner_m: std::array::from_fn(|axis| self.corner_m[axis] + place[axis] as f32 * side_m), side_m, borders_and_kind: 0 }
+    }
+
     /// Smallest and largest horizontal distance from a position (m).
     pub(crate) fn distances_m(&self, at_m: Vec3) -> [f32; 2] {
         let low = Vec2::from(self.corner_m) - Vec2::new(at_m.x, at_m.z);
