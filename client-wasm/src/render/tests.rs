@@ -122,7 +122,12 @@ fn stream_lean(mirror: &mut Mirror, theta_rad: f32) {
 
 /// Streams a field that leans eastward by `theta_rad` of X (m), at a uniform bending velocity.
 fn stream(mirror: &mut Mirror, theta_rad: impl Fn(f32) -> f32, omega_rad_per_s: f32) {
-    for patch in 0..16 {
+    stream_to(mirror, 0..16, theta_rad, omega_rad_per_s);
+}
+
+/// [`stream`] to some patches.
+fn stream_to(mirror: &mut Mirror, patches: std::ops::Range<u32>, theta_rad: impl Fn(f32) -> f32, omega_rad_per_s: f32) {
+    for patch in patches {
         let west_m = (patch % 4) as f32 * 16.0;
         let thetas = (0..64 * 64).map(|at| CodeSteps::default().theta_code(theta_rad(west_m + ((at % 64) as f32 + 0.5) * 0.25)));
         let plane = |code: i16| std::iter::repeat_n(code, 64 * 64);

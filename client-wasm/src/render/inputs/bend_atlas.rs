@@ -46,8 +46,9 @@ pub(crate) struct BentPatches {
 impl BentPatches {
     /// Whether a square may show the bend of a patch; a coarse mip level spreads it by up to half a patch.
     pub(crate) fn touch(&self, corner_m: [f32; 2], side_m: f32) -> bool {
-        let [low, high] = [-0.5, 0.5]
-            .map(|margin| corner_m.map(|m| ((m + if margin > 0.0 { side_m } else { 0.0 }) / self.patch_m + margin).floor() as i64));
+        let patch = |m: f32| (m / self.patch_m).floor() as i64;
+        let low = corner_m.map(|m| patch(m - 0.5 * self.patch_m));
+        let high = corner_m.map(|m| patch(m + side_m + 0.5 * self.patch_m));
         self.patches.iter().any(|patch| (0..2).all(|axis| (low[axis]..=high[axis]).contains(&patch[axis])))
     }
 }
@@ -235,4 +236,22 @@ fn halved(texels: &[f32], side: usize) -> Vec<f32> {
         }
     }
     coarse
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bent_patch_touches_squares_up_to_half_a_patch_away() {
+        let bent = BentPatches { patch_m: 16.0, patches: vec![[1, -1]] };
+        // The patch covers 16 to 32 m in X, and -16 to 0 m in Z.
+        for corner_m in [[20.0, -10.0], [3.5, -8.0], [39.5, -8.0], [24.0, -28.5], [24.0, 7.5]] {
+            assert!(bent.touch(corner_m, 5.0), "{corner_m:?}");
+        }
+        for corner_m in [[2.5, -8.0], [40.5, -8.0], [24.0, -29.5], [24.0, 8.5], [-8.0, 24.0]] {
+            assert!(!bent.touch(corner_m, 5.0), "{corner_m:?}");
+        }
+        assert!(bent.touch([-100.0, -100.0], 200.0), "a square around the patch");
+    }
 }

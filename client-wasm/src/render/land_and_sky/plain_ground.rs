@@ -61,8 +61,8 @@ impl PlainGround {
         };
         let (columns, rows) = (squares(corner_m.x, self.count[0])?, squares(corner_m.y, self.count[1])?);
         let mut found = rows.flat_map(|row| &self.kinds[row * self.count[0]..][columns.clone()]);
-        let first = *found.next()?;
-        if found.all(|kind| *kind == first) { first } else { None }
+        let first = (*found.next()?)?;
+        found.all(|kind| *kind == Some(first)).then_some(first)
     }
 }
 

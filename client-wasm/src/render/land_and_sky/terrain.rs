@@ -39,7 +39,8 @@ pub(crate) enum TileClass {
     Beyond,
 }
 
-const CLASSES: [TileClass; 5] = [TileClass::Still, TileClass::StillBeyond, TileClass::Plain, TileClass::Mixed, TileClass::Beyond];
+pub(crate) const CLASSES: [TileClass; 5] =
+    [TileClass::Still, TileClass::StillBeyond, TileClass::Plain, TileClass::Mixed, TileClass::Beyond];
 
 /// Blocks along each side of a tile. The blocks of a tile that is not plain as a whole are classified one by one.
 const BLOCKS: u32 = 4;
@@ -85,7 +86,7 @@ impl Terrain {
 
     /// Classifies the tiles in view, of which the bend field bends those of `bent`.
     pub(crate) fn prepare(&mut self, gpu: &Gpu, eye_m: Vec3, tiles: &[GroundTile], bent: &BentPatches) {
-        let mut instances = Vec::with_capacity(INSTANCE_LIMIT);
+        let mut instances = Vec::with_capacity(tiles.len());
         for (number, tile) in tiles.iter().enumerate() {
             let (whole_class, whole) = self.classified(tile, eye_m, bent);
             let room = INSTANCE_LIMIT - instances.len() - (tiles.len() - number - 1);
@@ -116,10 +117,14 @@ impl Terrain {
     fn classified(&self, tile: &GroundTile, eye_m: Vec3, bent: &BentPatches) -> (TileClass, GroundTile) {
         let is_within = tile.is_within(self.extent_m);
         let kind = self.plain.kind(tile.corner_m.into(), tile.side_m).filter(|_| tile.distances_m(eye_m)[0] > LITTER_END_M);
-        match (kind, bent.touch(tile.corner_m, tile.side_m)) {
-            (Some(kind), false) => (if is_within { TileClass::Still } else { TileClass::StillBeyond }, tile.with_kind(kind)),
-            (Some(kind), true) if is_within => (TileClass::Plain, tile.with_kind(kind)),
-            _ => (if is_within { TileClass::Mixed } else { TileClass::Beyond }, *tile),
+        let Some(kind) = kind else {
+            return (if is_within { TileClass::Mixed } else { TileClass::Beyond }, *tile);
+        };
+        match (is_within, bent.touch(tile.corner_m, tile.side_m)) {
+            (true, false) => (TileClass::Still, tile.with_kind(kind)),
+            (true, true) => (TileClass::Plain, tile.with_kind(kind)),
+            (false, false) => (TileClass::StillBeyond, tile.with_kind(kind)),
+            (false, true) => (TileClass::Beyond, *tile),
         }
     }
 

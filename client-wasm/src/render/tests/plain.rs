@@ -3,7 +3,7 @@
 use super::cracks::ragged_land;
 use super::*;
 use crate::render::Renderer;
-use crate::render::land_and_sky::terrain::{Terrain, TileClass};
+use crate::render::land_and_sky::terrain::{CLASSES, Terrain, TileClass};
 
 const SIZE_PX: [u32; 2] = [160, 120];
 const VIEWS: u32 = 18;
@@ -53,10 +53,10 @@ fn terrain(picture: &mut OffscreenRenderer) -> &mut Terrain {
     &mut picture.renderer.scene.as_mut().expect("land").terrain
 }
 
-/// Instances of plain and of other classes of the last picture.
-fn instances(picture: &mut OffscreenRenderer) -> [usize; 2] {
-    let (plain, other): (Vec<_>, Vec<_>) = terrain(picture).runs.iter().partition(|run| run.class < TileClass::Mixed);
-    [plain, other].map(|runs| runs.iter().map(|run| run.tiles.len()).sum())
+/// Instances of each class of the last picture.
+fn instances(picture: &mut OffscreenRenderer) -> [usize; CLASSES.len()] {
+    let runs = &terrain(picture).runs;
+    CLASSES.map(|class| runs.iter().filter(|run| run.class == class).map(|run| run.tiles.len()).sum())
 }
 
 fn of_land(gpu: &Gpu, mirror: &Mirror) -> OffscreenRenderer {
@@ -67,26 +67,46 @@ fn of_land(gpu: &Gpu, mirror: &Mirror) -> OffscreenRenderer {
 
 #[test]
 fn plain_land_looks_as_with_soil_and_kinds() {
-    plain_looks_as_mixed(land(true));
+    let [still, beyond, _, mixed, _] = plain_looks_as_mixed(&mut land(true));
+    assert!(still > 50 && mixed > 50 && beyond == 0);
 }
 
 #[test]
 fn plain_land_of_one_kind_goes_on_beyond_the_map() {
-    plain_looks_as_mixed(land(false));
+    let [still, beyond, bent, ..] = plain_looks_as_mixed(&mut land(false));
+    assert!(still > 50 && beyond > 50 && bent == 0);
 }
 
-fn plain_looks_as_mixed(mut mirror: Mirror) {
-    let gpu = Gpu::headless().expect("a Vulkan adapter");
-    let mut picture = of_land(&gpu, &mirror);
-    let plain: Vec<_> = (0..VIEWS).map(|number| (draw(&mut picture, &mut mirror, number), instances(&mut picture))).collect();
+#[test]
+fn plain_land_is_bent_where_its_patches_are() {
+    let mut mirror = meadow(0.0);
+    let mut picture = of_land(&Gpu::headless().expect("a Vulkan adapter"), &mirror);
+    let upright: Vec<_> = (0..VIEWS).map(|number| draw(&mut picture, &mut mirror, number)).collect();
+    stream_to(&mut mirror, 5..7, |_| 1.2, 0.5);
+    let [still, _, bent, ..] = plain_looks_as_mixed(&mut mirror);
+    assert!(still > 50 && bent > 50);
+    let is_changed = |(number, before): (u32, &Vec<u8>)| difference(before, &draw(&mut picture, &mut mirror, number)) > MOST;
+    assert!((0..VIEWS).zip(&upright).any(is_changed), "the bend is not visible");
+}
+
+/// Greatest difference of a channel between plain and mixed land (levels of 255).
+const MOST: u8 = 2;
+
+fn difference(a: &[u8], b: &[u8]) -> u8 {
+    a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or_default()
+}
+
+/// Compares pictures of land with those where none of it is plain. Returns the instances of each class in the former.
+fn plain_looks_as_mixed(mirror: &mut Mirror) -> [usize; CLASSES.len()] {
+    let mut picture = of_land(&Gpu::headless().expect("a Vulkan adapter"), mirror);
+    let plain: Vec<_> = (0..VIEWS).map(|number| (draw(&mut picture, mirror, number), instances(&mut picture))).collect();
     terrain(&mut picture).plain.kinds.fill(None);
-    let mixed: Vec<_> = (0..VIEWS).map(|number| (draw(&mut picture, &mut mirror, number), instances(&mut picture))).collect();
-    for (number, ((plain, _), (mixed, [none, _]))) in plain.iter().zip(&mixed).enumerate() {
-        assert_eq!(*none, 0);
-        let most = plain.iter().zip(mixed).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or_default();
-        assert!(most <= 2, "view {number}: channels differ by up to {most} of 255");
+    for (number, (plain, _)) in (0..VIEWS).zip(&plain) {
+        let most = difference(plain, &draw(&mut picture, mirror, number));
+        assert_eq!(instances(&mut picture)[..TileClass::Mixed as usize], [0; 3]);
+        assert!(most <= MOST, "view {number}: channels differ by up to {most} of 255");
     }
-    let counts = plain.iter().fold([0, 0], |sum, (_, counts)| [sum[0] + counts[0], sum[1] + counts[1]]);
-    println!("{counts:?} plain and other tiles and blocks");
-    assert!(counts.iter().all(|count| *count > 50), "{counts:?} plain and other tiles and blocks");
+    let counts = plain.iter().fold([0; CLASSES.len()], |sum, (_, counts)| std::array::from_fn(|class| sum[class] + counts[class]));
+    println!("tiles and blocks of {CLASSES:?}: {counts:?}");
+    counts
 }
