@@ -63,7 +63,7 @@ fn storage_structs_have_the_sizes_that_rust_gives_them() {
         (&shells, "TileLayer", size_of::<TileLayer>() as u32),
         (&billboards, "Clump", 16),
         (&billboards, "ClumpPose", 160),
-        (&dust, "DustPlace", 16),
+        (&dust, "DustPlace", 32),
         (&dust, "Sprite", 48),
         (&objects, "Instance", 80),
         (&objects, "TreeSway", 16),

@@ -147,7 +147,7 @@ impl SceneResources {
         let tiles = self.quadtree.tiles(from.eye_m, from.frustum);
         self.terrain.prepare(gpu, from.eye_m, &tiles, &self.textures.atlas.bent_patches());
         if let Some(dust) = &self.dust {
-            dust.prepare(gpu, from.dt_secs);
+            dust.prepare(gpu, self.textures.wind.dusty(), from.dt_secs);
         }
     }
 

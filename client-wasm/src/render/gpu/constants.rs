@@ -28,6 +28,13 @@ pub(crate) const LUMINANCE: Vec3 = Vec3::from_array(prairie_core::light::LUMINAN
 /// Invocations per workgroup of the compute passes.
 pub(crate) const WORKGROUP_SIZE: u32 = 64;
 
+// --- dust ---
+
+/// Cells of the wind domain among which puffs choose where to start.
+pub(crate) const DUSTY_CELLS: u32 = 1024;
+/// Concentration of dust from which on puffs get denser instead of more.
+pub(crate) const FULL_PUFFS_DUST: f32 = 1.5;
+
 // --- bend field ---
 
 /// Mip levels of the bend atlas. The side of a patch is a multiple of 8 cells, so that no level mixes two patches.

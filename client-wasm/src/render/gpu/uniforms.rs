@@ -243,11 +243,13 @@ uniform_block! {
         /// Sides of the squares around the camera that contain the puffs, and the motes (m).
         puff_square_m: f32,
         mote_square_m: f32,
-        /// Maximum height of both (m).
+        /// Maximum height of motes (m).
         top_m: f32,
         /// Time since the previous frame (s).
         step_secs: f32,
-        _pad: [u8; 8],
+        /// Air that a puff stands for (m³); 0 in clear air.
+        puff_m3: f32,
+        _pad: [u8; 4],
     }
 }
 

@@ -4,6 +4,7 @@ pub(crate) mod bend_atlas;
 pub(crate) mod canvas;
 pub(crate) mod cascades;
 pub(crate) mod daylight;
+pub(crate) mod dusty_cells;
 pub(crate) mod frame_bindings;
 pub(crate) mod frustum;
 pub(crate) mod grass_kinds;

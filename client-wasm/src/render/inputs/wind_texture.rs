@@ -1,6 +1,7 @@
 //! The streamed wind as a 3-D texture, interpolated between frames; the fourth channel is dust. And the gusts between its cells.
 
 use crate::render::gpu::device::Gpu;
+use crate::render::inputs::dusty_cells::DustyCells;
 use crate::state::{DecodedScene, ShownWind};
 use half::f16;
 use prairie_core::scene::Scene;
@@ -15,6 +16,8 @@ pub(crate) struct WindTexture {
     steps: [f32; 4],
     /// Wind (m/s) and root of the concentration of dust, plane after plane, interpolated in time.
     shown: Vec<f32>,
+    dusty: DustyCells,
+    cell_m3: f32,
     turbulence: Turbulence,
     gusts: Gusts,
     /// Frames shown, and the fraction of the second.
@@ -42,7 +45,17 @@ impl WindTexture {
         let [x, z] = wind.mean_m_per_s;
         let still = [x, 0.0, z, 0.0].into_iter().take(Shape::wind(1, wind.has_dust()).planes);
         let shown = still.flat_map(|v| std::iter::repeat_n(v, count)).collect();
-        let new = Self { texture, cells, steps, shown, turbulence: Turbulence::new(scene), gusts: Gusts::default(), moment: None };
+        let new = Self {
+            texture,
+            cells,
+            steps,
+            shown,
+            dusty: DustyCells::default(),
+            cell_m3: wind.spacing_m.iter().product(),
+            turbulence: Turbulence::new(scene),
+            gusts: Gusts::default(),
+            moment: None,
+        };
         new.write(gpu);
         new
     }
@@ -59,6 +72,9 @@ impl WindTexture {
             let [from, to] = [from, to].map(|code| f32::from(*code));
             *shown = (from + (to - from) * wind.fraction) * self.steps[at / count];
         }
+        if let Some(roots) = self.shown.get(3 * count..4 * count) {
+            self.dusty.update(roots.iter().map(|root| root * root), self.cell_m3);
+        }
         self.gusts = self.turbulence.at(&wind.turbulence());
         self.write(gpu);
     }
@@ -66,6 +82,11 @@ impl WindTexture {
     /// The gusts of the wind shown.
     pub(crate) fn gusts(&self) -> &Gusts {
         &self.gusts
+    }
+
+    /// The dusty cells of the wind shown.
+    pub(crate) fn dusty(&self) -> &DustyCells {
+        &self.dusty
     }
 
     /// Displayed wind (m/s) without its gusts at X, height above the ground and Z (m), by the trilinear sampling of `air_at` in WGSL.

@@ -1,23 +1,27 @@
 //! Visible dust: motes and puffs of haze around the camera that drift with the streamed wind.
 
-use crate::render::gpu::constants::WORKGROUP_SIZE;
+use crate::render::gpu::constants::{DUSTY_CELLS, WORKGROUP_SIZE};
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind, storage, storage_rw, uniform};
+use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, storage, storage_rw, uniform};
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::Drift;
+use crate::render::inputs::dusty_cells::DustyCells;
 use crate::render::inputs::random::random3;
 use crate::render::options::quality::Quality;
 use crate::state::DecodedScene;
+use prairie_core::scene::Wind;
 use wgpu::BufferUsages;
 
 /// Side of the square of motes around the camera (m). Farther away they are too small to be visible.
 const MOTE_SQUARE_M: f32 = 44.0;
-/// Maximum height of motes and puffs (m).
+/// Maximum height of motes (m).
 const TOP_M: f32 = 12.0;
 /// Longest drift per frame (s): after a pause, dust continues from its last position.
 const LONGEST_SECS: f32 = 0.1;
 /// Bytes of `Sprite` in `dust.wgsl`.
 const SPRITE_BYTES: u64 = 48;
+/// Age of a puff that has not lived yet, see `DustPlace` in `dust.wgsl`.
+const NEVER_LIVED: f32 = 2.0;
 
 pub(crate) struct Dust {
     pipeline: wgpu::RenderPipeline,
@@ -25,7 +29,10 @@ pub(crate) struct Dust {
     group: wgpu::BindGroup,
     blow_group: wgpu::BindGroup,
     drift: wgpu::Buffer,
+    dusty_cells: wgpu::Buffer,
     count: u32,
+    /// 1 / (number of puffs per wind domain).
+    domains_per_puff: f32,
 }
 
 impl Dust {
@@ -36,29 +43,29 @@ impl Dust {
 
     fn make(factory: &PassFactory, quality: Quality, decoded: &DecodedScene) -> Self {
         let gpu = &factory.gpu;
-        let ((puffs, square_m), motes) = (quality.puffs(), quality.motes());
+        let ((puffs, puff_square_m), motes) = (quality.puffs(), quality.motes());
         let count = puffs + motes;
         let wind = &decoded.scene().wind;
         let top_m = TOP_M.min(wind.cells[1] as f32 * wind.spacing_m[1]);
-        let contents = Drift { puffs, motes, puff_square_m: square_m, mote_square_m: MOTE_SQUARE_M, top_m, step_secs: 0.0, _pad: [0; 8] };
+        let contents =
+            Drift { puffs, motes, puff_square_m, mote_square_m: MOTE_SQUARE_M, top_m, step_secs: 0.0, puff_m3: 0.0, _pad: [0; 4] };
         let drift = gpu.buffer("drift", bytemuck::bytes_of(&contents), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
-        let positions: Vec<[f32; 4]> = (0..count)
+        // `DustPlace` in `dust.wgsl`.
+        let positions: Vec<[f32; 8]> = (0..count)
             .map(|number| {
-                let side_m = if number < puffs { square_m } else { MOTE_SQUARE_M };
                 let [x, y, z] = random3([0, 0], number);
                 let [own, ..] = random3([1, 0], number);
-                [x * side_m, y * top_m, z * side_m, own]
+                [x * MOTE_SQUARE_M, y * top_m, z * MOTE_SQUARE_M, own, NEVER_LIVED, 0.0, 0.0, 0.0]
             })
             .collect();
         let positions = gpu.buffer("dust", bytemuck::cast_slice(&positions), BufferUsages::STORAGE);
         let sprites = gpu.empty_buffer("dust sprites", u64::from(count) * SPRITE_BYTES, BufferUsages::STORAGE);
-        let blow_layout = factory.layout("dust drifts", &[uniform(0), storage_rw(1), storage_rw(2)]);
-        let resources = [&drift, &positions, &sprites].map(|buffer| buffer.as_entire_binding());
-        let blow_group = bind(gpu, "dust drifts", &blow_layout, &resources);
+        let dusty_cells = gpu.empty_buffer("dusty cells", u64::from(DUSTY_CELLS) * 4, BufferUsages::STORAGE | BufferUsages::COPY_DST);
+        let blow_layout = factory.layout("dust drifts", &[uniform(0), storage_rw(1), storage_rw(2), storage(4)]);
+        let resources = [(0, &drift), (1, &positions), (2, &sprites), (4, &dusty_cells)];
+        let blow_group = bind_at(gpu, "dust drifts", &blow_layout, &resources);
         let layout = factory.layout("dust", &[uniform(0), storage(3)]);
-        let entries =
-            [(0, &drift), (3, &sprites)].map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("dust"), layout: &layout, entries: &entries });
+        let group = bind_at(gpu, "dust", &layout, &[(0, &drift), (3, &sprites)]);
         let module = factory.shader("dust", shaders::DUST, &[]);
         let draw = DrawDescriptor {
             label: "dust",
@@ -72,14 +79,18 @@ impl Dust {
             group,
             blow_group,
             drift,
+            dusty_cells,
             count,
+            domains_per_puff: domains(wind, puff_square_m) / puffs as f32,
         }
     }
 
-    /// Sets the time since the previous frame.
-    pub(crate) fn prepare(&self, gpu: &Gpu, dt_secs: f32) {
+    /// Sets the time since the previous frame, and where new puffs start.
+    pub(crate) fn prepare(&self, gpu: &Gpu, dusty: &DustyCells, dt_secs: f32) {
         let at = std::mem::offset_of!(Drift, step_secs);
-        gpu.queue.write_buffer(&self.drift, at as u64, bytemuck::bytes_of(&dt_secs.clamp(0.0, LONGEST_SECS)));
+        let values = [dt_secs.clamp(0.0, LONGEST_SECS), dusty.volume_m3 * self.domains_per_puff];
+        gpu.queue.write_buffer(&self.drift, at as u64, bytemuck::bytes_of(&values));
+        gpu.queue.write_buffer(&self.dusty_cells, 0, bytemuck::cast_slice(&dusty.cells));
     }
 
     /// Moves and lights all sprites.
@@ -95,4 +106,16 @@ impl Dust {
         pass.set_bind_group(1, &self.group, &[]);
         pass.draw(0..self.count * 6, 0..1);
     }
+}
+
+/// Number of wind domains, side by side, over which the puffs are spread.
+fn domains(wind: &Wind, square_m: f32) -> f32 {
+    let [x_m, _, z_m] = wind.box_m();
+    [x_m, z_m].map(|side_m| (square_m / side_m - 1.0).max(1.0)).iter().product()
+}
+
+fn bind_at(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {
+    let entries = buffers.iter().map(|(binding, buffer)| wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() });
+    let entries: Vec<_> = entries.collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
