@@ -2,6 +2,8 @@
 
 import package::constants::TAU;
 
+// Greatest angular width of a blade (rad).
+const WIDEST_RAD: f32 = 0.06;
 // Width of a textured strip relative to the root width of a tapered one.
 const WIDER: f32 = 2.6;
 
@@ -51,6 +53,11 @@ fn corner_of(vertex: u32, segments: u32) -> vec2<f32> {
 // are rectangles up to the tip (Fig. 5b).
 fn width_fraction(t: f32, is_textured: bool) -> f32 {
     return select((1.0 - t * t) * (0.80 + 0.55 * t), WIDER, is_textured);
+}
+
+// Width (m) at a distance from the eye: near blades part before they fill the picture.
+fn width_at(width_m: f32, distance_m: f32) -> f32 {
+    return min(width_m, WIDEST_RAD * distance_m);
 }
 
 // Coverage of a pixel by a strip whose middle is `border.x` away and whose half width is `border.y` (px).

@@ -6,7 +6,7 @@ import package::inputs::grass_kinds::kinds;
 import package::inputs::random::dither_at;
 import package::land_and_sky::grass_color::tint_of;
 import package::land_and_sky::sward::{among, blade_color};
-import package::plants::backbone::{backbone_at, corner_of, covered, side_at, tangent_at, width_fraction};
+import package::plants::backbone::{backbone_at, corner_of, covered, side_at, tangent_at, width_at, width_fraction};
 import package::plants::drawn_blade::Blade;
 import package::plants::opacity::LEAST_OPACITY;
 import package::plants::spans::Spans;
@@ -74,12 +74,14 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
     let offset = backbone_at(points, t);
     let tangent = tangent_at(points, t);
     let centre = blade.root_m + offset;
-    let view = normalize(centre - frame.eye_m);
+    let to = centre - frame.eye_m;
+    let distance_m = length(to);
+    let view = to / distance_m;
     let wide = shown_side(side_at(tip, blade.side_rad, t), tangent, view);
     let slope = blade.slope;
     let up = vec3<f32>(slope.x, sqrt(max(1.0 - dot(slope, slope), 0.0)), slope.y);
     // The backbone is above the ground; the border of a wide strip need not be.
-    var from_root = offset + wide * (across * width_fraction(t, is_textured) * blade.width * 0.5);
+    var from_root = offset + wide * (across * 0.5 * width_at(width_fraction(t, is_textured) * blade.width, distance_m));
     from_root += up * max(-dot(from_root, up), 0.0);
     let p = blade.root_m + from_root;
 

@@ -75,3 +75,23 @@ fn plants_stay_on_the_ground_as_the_camera_moves() {
     }
     assert!(pictures[0] == pictures[4] && pictures[0] != pictures[1], "the eye has moved");
 }
+
+#[test]
+fn near_blades_part_before_they_fill_the_picture() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
+    picture.draw(&mut meadow(0.0), &Camera::default(), 0.0, 0.0);
+    // Blades of 1 cm.
+    let distances_m = [0.0, 0.01, 0.05, 0.1, 0.15, 0.2, 1.0, 10.0];
+    let found = probe_in(
+        &gpu,
+        &picture,
+        "plants/backbone",
+        "return vec4<f32>(width_at(at.x, at.y), 0.0, 0.0, 0.0);",
+        &distances_m.map(|distance_m| [0.01, distance_m, 0.0, 0.0]),
+    );
+    for ([width_m, ..], distance_m) in found.into_iter().zip(distances_m) {
+        assert!(width_m <= 0.0601 * distance_m, "{width_m} m at {distance_m} m");
+        assert!(width_m == 0.01 || distance_m < 0.17, "{width_m} m at {distance_m} m");
+    }
+}
