@@ -39,6 +39,9 @@ const STEP_UP_CAUTION: f32 = 1.5;
 const BACK_OFF_SECS: [f32; 2] = [4.0, 64.0];
 /// Time over budget at the lowest level (s) after which no level can keep the budget.
 const EXHAUSTED_SECS: f32 = 2.0;
+/// Fraction of the budget below which the highest level leaves much of it unused, and the time (s) after which that is certain.
+const AMPLE: f32 = 0.5;
+const AMPLE_SECS: f32 = 2.0;
 /// Fraction to which costs must fall to end a back-off early: the view has changed.
 const RELIEF: f32 = 0.7;
 
@@ -79,6 +82,8 @@ pub struct FrameBudget {
     back_off: BackOff,
     /// Time over the budget at the lowest level (s).
     exhausted_secs: f32,
+    /// Time far below the budget at the highest level (s).
+    ample_secs: f32,
 }
 
 /// Time without steps up.
@@ -108,6 +113,7 @@ impl FrameBudget {
             stepped_up: false,
             back_off: BackOff::default(),
             exhausted_secs: 0.0,
+            ample_secs: 0.0,
         }
     }
 
@@ -129,6 +135,11 @@ impl FrameBudget {
     /// Whether even the lowest level exceeds the budget.
     pub fn is_exhausted(&self) -> bool {
         self.exhausted_secs >= EXHAUSTED_SECS
+    }
+
+    /// Whether even the highest level leaves half of the budget unused.
+    pub fn is_ample(&self) -> bool {
+        self.ample_secs >= AMPLE_SECS
     }
 
     /// Records a frame and adjusts the level.
@@ -162,6 +173,8 @@ impl FrameBudget {
         let fraction = cost_secs / self.budget_secs;
         let is_over = fraction > DEAD_BAND[1] && self.goal <= 0.0;
         self.exhausted_secs = if is_over { self.exhausted_secs + span_secs } else { 0.0 };
+        let is_ample = fraction < AMPLE && self.goal >= self.highest;
+        self.ample_secs = if is_ample { self.ample_secs + span_secs } else { 0.0 };
         if self.back_off.cost_secs == 0.0 {
             self.back_off.cost_secs = cost_secs;
         }
@@ -284,9 +297,9 @@ mod tests {
     fn a_fast_device_reaches_the_highest_level_and_a_slow_one_the_lowest() {
         let mut budget = FrameBudget::new(BUDGET_SECS, 1.5, 2.0);
         Device { least_secs: 0.001, ..DEVICE }.draw(&mut budget, 30.0);
-        assert!(budget.level() == 2.0 && !budget.is_exhausted());
+        assert!(budget.level() == 2.0 && budget.is_ample() && !budget.is_exhausted());
         Device { least_secs: 0.012, ..DEVICE }.draw(&mut budget, 30.0);
-        assert!(!budget.is_exhausted());
+        assert!(!budget.is_exhausted() && !budget.is_ample());
         Device { least_secs: 0.2, ..DEVICE }.draw(&mut budget, 10.0);
         assert!(budget.level() == 0.0 && budget.is_exhausted());
         Device { least_secs: 0.012, ..DEVICE }.draw(&mut budget, 10.0);

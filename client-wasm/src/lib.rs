@@ -9,6 +9,7 @@
 //! - [`budget`] and [`ladder`]: automatic quality; [`redraw`]: detection of frames that need not be drawn.
 //! - `browser` (wasm only): page, socket, input devices and frame loop.
 
+pub mod automatic;
 pub mod bindings;
 #[cfg(target_arch = "wasm32")]
 pub mod browser;

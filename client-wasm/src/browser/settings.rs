@@ -1,7 +1,8 @@
 //! Render settings chosen by the user: quality, render options, hour of the day, and side-by-side comparison.
 
-use crate::budget::{FrameBudget, FrameTime};
-use crate::ladder::{self, RUNGS_BELOW, Rung};
+use crate::automatic::AutomaticQuality;
+use crate::budget::FrameTime;
+use crate::ladder::Rung;
 use crate::render::{BlendOrder, DeviceClass, FarPlants, Quality, RenderOptions, SideOptions, Split};
 use prairie_core::scene::Light;
 use serde::Deserialize;
@@ -12,7 +13,7 @@ pub(super) const AUTOMATIC: &str = "auto";
 /// Frame time budget of automatic quality (ms): on a GPU, and on a software adapter.
 const BUDGET_MS: [f32; 2] = [16.7, 100.0];
 
-/// Kind of device, as detected by the page. It determines the highest level and the time budget of automatic quality.
+/// Kind of device, as detected by the page. It determines presets and time budget of automatic quality.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(super) struct Device {
     /// Whether the graphics adapter is a software renderer.
@@ -24,14 +25,12 @@ pub(super) struct Device {
 }
 
 impl Device {
-    /// Highest quality that automatic quality uses, and its initial height on the [ladder](ladder).
-    fn automatic(self) -> (Quality, f32) {
-        let (class, height) = match self {
-            Self { is_software: true, .. } => (DeviceClass::Software, 0.0),
-            Self { is_touch: true, .. } => (DeviceClass::Touch, RUNGS_BELOW + 1.0),
-            _ => (DeviceClass::Desktop, RUNGS_BELOW + 1.5),
-        };
-        (Quality::automatic(class), height)
+    fn class(self) -> DeviceClass {
+        match self {
+            Self { is_software: true, .. } => DeviceClass::Software,
+            Self { is_touch: true, .. } => DeviceClass::Touch,
+            _ => DeviceClass::Desktop,
+        }
     }
 
     fn budget_secs(self) -> f32 {
@@ -44,11 +43,17 @@ impl Device {
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
     device: Device,
-    quality: Quality,
-    budget: Option<FrameBudget>,
+    preset: Preset,
     options: RenderOptions,
     hour: Option<f32>,
     comparison: Option<Comparison>,
+}
+
+/// A quality, fixed or automatic.
+#[derive(Clone, Debug)]
+enum Preset {
+    Fixed(Quality),
+    Automatic(Box<AutomaticQuality>),
 }
 
 /// Two variants, left and right of a border.
@@ -61,10 +66,8 @@ struct Comparison {
 impl Settings {
     /// The first quality of `names` that exists, automatic quality if none does, and default render options.
     pub(super) fn new(names: &[Option<String>], device: Device) -> Self {
-        let mut settings =
-            Self { device, quality: Quality::default(), budget: None, options: RenderOptions::default(), hour: None, comparison: None };
-        let _is_chosen = names.iter().flatten().any(|name| settings.set_quality(name)) || settings.set_quality(AUTOMATIC);
-        settings
+        let preset = names.iter().flatten().find_map(|name| Preset::from_name(name, device)).unwrap_or_else(|| Preset::automatic(device));
+        Self { device, preset, options: RenderOptions::default(), hour: None, comparison: None }
     }
 
     /// Names of all qualities, automatic quality first.
@@ -74,53 +77,47 @@ impl Settings {
 
     /// Sets the quality by name, [`AUTOMATIC`] included. An unknown name changes nothing and returns false.
     pub(super) fn set_quality(&mut self, name: &str) -> bool {
-        let (quality, budget) = match Quality::from_name(name) {
-            Some(quality) => (quality, None),
-            None if name == AUTOMATIC => {
-                let (quality, height) = self.device.automatic();
-                (quality, Some(FrameBudget::new(self.device.budget_secs(), height, ladder::top(quality.level()))))
-            }
-            None => return false,
-        };
-        (self.quality, self.budget) = (quality, budget);
-        true
+        let preset = Preset::from_name(name, self.device);
+        let is_known = preset.is_some();
+        self.preset = preset.unwrap_or_else(|| self.preset.clone());
+        is_known
     }
 
     /// Name of the chosen quality, [`AUTOMATIC`] included.
     pub(super) fn quality_name(&self) -> &'static str {
-        if self.budget.is_some() { AUTOMATIC } else { self.quality.name() }
+        match &self.preset {
+            Preset::Fixed(quality) => quality.name(),
+            Preset::Automatic(_) => AUTOMATIC,
+        }
     }
 
     /// Highest quality in use: the chosen one, or a higher one in a comparison. The renderer must support it.
     pub(super) fn quality(&self) -> Quality {
         let compared = self.comparison.iter().flat_map(|comparison| &comparison.variants).filter_map(|name| Quality::from_name(name));
-        compared.fold(self.quality, |highest, quality| if quality.level() > highest.level() { quality } else { highest })
+        compared.fold(self.preset.quality(), |highest, quality| if quality.level() > highest.level() { quality } else { highest })
     }
 
-    /// Controller of automatic quality; `None` for a fixed quality.
-    pub(super) fn budget(&self) -> Option<&FrameBudget> {
-        self.budget.as_ref()
-    }
-
-    /// Reports a drawn frame to the controller. If no rung keeps the budget, switches to the next lower quality, with fewer samples and pixels.
-    pub(super) fn record(&mut self, frame: FrameTime) {
-        let Some(budget) = &mut self.budget else { return };
-        budget.record(frame);
-        if let Some(lower) = self.quality.lower().filter(|_| budget.is_exhausted()) {
-            *budget = FrameBudget::new(budget.budget_secs(), 0.0, ladder::top(lower.level()));
-            self.quality = lower;
+    /// Frame time budget of automatic quality (s); `None` for a fixed quality.
+    pub(super) fn budget_secs(&self) -> Option<f32> {
+        match &self.preset {
+            Preset::Fixed(_) => None,
+            Preset::Automatic(automatic) => Some(automatic.budget_secs()),
         }
     }
 
-    /// Current level of detail and resolution. Detail changes gradually, resolution at once: each of its changes creates new textures.
+    /// Reports a drawn frame to automatic quality.
+    pub(super) fn record(&mut self, frame: FrameTime) {
+        if let Preset::Automatic(automatic) = &mut self.preset {
+            automatic.record(frame);
+        }
+    }
+
+    /// Current level of detail and resolution.
     pub(super) fn rung(&self) -> Rung {
-        let highest_level = self.quality.level();
-        let full = Rung { level: highest_level, resolution: 1.0 };
-        let rung = |budget: &FrameBudget| {
-            let [shown, goal] = [budget.level(), budget.goal()].map(|height| Rung::at(height, highest_level));
-            Rung { level: shown.level, resolution: goal.resolution }
-        };
-        self.budget.as_ref().map_or(full, rung)
+        match &self.preset {
+            Preset::Fixed(quality) => Rung { level: quality.level(), resolution: 1.0 },
+            Preset::Automatic(automatic) => automatic.rung(),
+        }
     }
 
     /// Sets render options by name; an unknown name changes nothing.
@@ -169,5 +166,24 @@ impl Settings {
     pub(super) fn split(&self) -> Option<Split> {
         let Comparison { variants: [left, right], border } = self.comparison.as_ref()?;
         Some(Split { sides: [self.current().with(left)?, self.current().with(right)?], border: *border })
+    }
+}
+
+impl Preset {
+    /// The quality of this name, [`AUTOMATIC`] included.
+    fn from_name(name: &str, device: Device) -> Option<Self> {
+        let automatic = || (name == AUTOMATIC).then(|| Self::automatic(device));
+        Quality::from_name(name).map(Self::Fixed).or_else(automatic)
+    }
+
+    fn automatic(device: Device) -> Self {
+        Self::Automatic(Box::new(AutomaticQuality::new(device.class(), device.budget_secs())))
+    }
+
+    fn quality(&self) -> Quality {
+        match self {
+            Self::Fixed(quality) => *quality,
+            Self::Automatic(automatic) => automatic.quality(),
+        }
     }
 }

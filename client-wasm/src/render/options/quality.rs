@@ -250,6 +250,11 @@ impl Quality {
         (self as usize).checked_sub(1).map(|below| Self::ALL[below])
     }
 
+    /// The next finer preset that a user may choose, if any.
+    pub fn higher(self) -> Option<Self> {
+        Self::ALL.get(self as usize + 1).copied()
+    }
+
     /// Level of detail of plants: 0 for the coarsest preset, 1 more for each finer one that a user may choose.
     pub fn level(self) -> f32 {
         (self as usize).min(OFFERED - 1) as f32
