@@ -3,7 +3,7 @@
 import package::constants::TAU;
 
 // Greatest angular width of a blade (rad).
-const WIDEST_RAD: f32 = 0.06;
+const WIDEST_RAD: f32 = 0.12;
 // Width of a textured strip relative to the root width of a tapered one.
 const WIDER: f32 = 2.6;
 
