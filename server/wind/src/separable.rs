@@ -33,7 +33,7 @@ const TASKS: usize = 32;
 /// A planned solver of `(shift − ∇²)·φ = f` with the seven-point Laplacian.
 ///
 /// Takes time proportional to the number of unknowns and to the sum of the prime factors of the transform lengths along x and y: products of 2, 3 and 5
-/// are best (for [`Basis::Nodes`], one less than these). All lengths along z are equally efficient.
+/// are best (for nodes between two Dirichlet edges, one less than these). All lengths along z are equally efficient.
 ///
 /// ```
 /// use prairie_wind::separable::{Basis, Edge, Separable};
@@ -110,7 +110,7 @@ impl Separable {
     /// `1/(ν·dt)` for implicit diffusion.
     ///
     /// Without shift and without a Dirichlet end or nodes on any axis, the constant is in the null space: the mean of `f` is dropped and φ has mean 0.
-    /// Exact except for rounding, which the Laplacian of φ amplifies by up to `(n/π)²`.
+    /// Nodes between two Neumann edges need a shift, or a Dirichlet end on another axis. Exact except for rounding, which the Laplacian of φ amplifies by up to `(n/π)²`.
     ///
     /// # Panics
     /// If the length of `field` is not the number of unknowns.

@@ -100,6 +100,10 @@ impl<R: Real> Solver<R> {
         let traced_len = if !uses_fluxes || config.traces_dust() { grid.padded_len() } else { 0 };
         let dust_stage = if config.dust.is_some() { dust.clone() } else { Field { data: Vec::new(), ..dust.clone() } };
         let has_sources = config.primitives.iter().any(|primitive| primitive.is_source());
+        let mut boundaries = BoundaryConditions::new(&grid, Box::new(move |[_, y, _], _| mean.at(y.max(0.0))));
+        if uses_fluxes {
+            boundaries.continue_backflow();
+        }
         let mut solver = Self {
             time_secs: 0.0,
             velocity: still.clone(),
@@ -110,7 +114,7 @@ impl<R: Real> Solver<R> {
             canopy_fraction: vec![R::one(); grid.cells[0] * grid.cells[2]],
             sponge_m: None,
             solid: None,
-            boundaries: BoundaryConditions::new(&grid, Box::new(move |[_, y, _], _| mean.at(y.max(0.0)))),
+            boundaries,
             stages: [still.clone(), still],
             dust_stages: [dust_stage.clone(), dust_stage],
             centres: vec![[R::zero(); 4]; traced_len],

@@ -1,7 +1,7 @@
 //! The sub-steps of each time scheme, in order.
 
-use super::boundary::InflowGhosts;
-use super::diffuse::{Portion, diffuse};
+use super::boundary::{InflowGhosts, outflow};
+use super::diffuse::{Portion, diffuse, keep_signs, stable_dt_secs};
 use super::pressure::Convergence;
 use super::state::StepError;
 use super::transport::{self, STAGE_ENDS, STAGES, Stage};
@@ -72,8 +72,16 @@ impl<R: Real> Solver<R> {
             self.diffuse(Portion::First, dt_secs);
         }
         self.transport(dt_secs, if explicit { self.config.viscosity_m2_per_s.into() } else { 0.0 })?;
+        // Sweeps that end early are of first order whatever they smooth; smoothing the pressure gradient, too, some of them would let it grow.
+        let spares_pressure = matches!(self.config.diffusion, Diffusion::GaussSeidel { .. });
+        if spares_pressure {
+            self.add_pressure_gradient(dt_secs);
+        }
         if !explicit {
             self.diffuse(Portion::Second, dt_secs);
+        }
+        if spares_pressure {
+            self.add_pressure_gradient(-dt_secs);
         }
         self.force(0.5 * dt_secs, middle_secs, jets);
         Ok(self.project(Some(dt_secs)))
@@ -109,6 +117,7 @@ impl<R: Real> Solver<R> {
                     damping: self.config.damping.into(),
                 };
                 stage.run(&mut target.0[axis], &mut self.transport);
+                outflow::correct_flux(&self.grid, air, fraction * dt_secs, &mut target.0[axis]);
             }
             self.boundaries.update_inflow(self.time_secs + STAGE_ENDS[number] * dt_secs);
             // Forces follow the last stage and apply the boundary conditions; before them only diffusion and canopy drag read ghosts.
@@ -168,11 +177,29 @@ impl<R: Real> Solver<R> {
         }
     }
 
+    /// Adds the pressure gradient of the previous step, times `dt_secs`, to the velocity.
+    fn add_pressure_gradient(&mut self, dt_secs: f64) {
+        let dt = R::of(dt_secs);
+        for (field, gradient) in self.velocity.0.iter_mut().zip(&self.pressure_gradient.0) {
+            field.data.iter_mut().zip(&gradient.data).for_each(|(speed, &gradient)| *speed = *speed + dt * gradient);
+        }
+        self.boundaries.apply(&mut self.velocity);
+    }
+
     fn diffuse(&mut self, portion: Portion, dt_secs: f64) {
+        let viscosity = self.config.viscosity_m2_per_s.into();
+        // The old pressure gradient passes through the second half. A wave of it that Crank–Nicolson reverses would be added to the pressure, instead of replacing it, in
+        // every step.
+        let keeps_pressure = self.config.time == TimeScheme::RungeKutta3;
+        let reverses = self.config.diffusion == Diffusion::CrankNicolson && 0.5 * dt_secs > stable_dt_secs(&self.grid, viscosity);
         let [a, b] = &mut self.stages;
         for (axis, field) in self.velocity.0.iter_mut().enumerate() {
-            let (viscosity, scratch) = (self.config.viscosity_m2_per_s.into(), [&mut a.0[axis], &mut b.0[axis]]);
+            let scratch = [&mut a.0[axis], &mut b.0[axis]];
             let boundaries = |field: &mut _| self.boundaries.apply_to_component(field);
+            if let Some(implicit) = self.implicit.as_mut().filter(|_| keeps_pressure && reverses) {
+                keep_signs(&self.grid, viscosity, 0.5 * dt_secs, field, scratch[0], implicit, boundaries);
+                continue;
+            }
             diffuse(self.config.diffusion, portion, &self.grid, viscosity, dt_secs, field, scratch, self.implicit.as_mut(), boundaries);
         }
     }

@@ -3,6 +3,7 @@
 pub(crate) mod condition;
 mod ghosts;
 mod inflow;
+pub(crate) mod outflow;
 #[cfg(test)]
 mod tests;
 
@@ -25,6 +26,8 @@ pub struct BoundaryConditions<R> {
     prescribed: Prescribed,
     /// For each component, the indices in memory of the faces next to a solid cell.
     solid_faces: [Vec<usize>; 3],
+    /// Whether air that flows back in enters at rest.
+    backflow_rests: bool,
 }
 
 /// Values on and beyond inflow faces.
@@ -42,9 +45,15 @@ pub enum InflowGhosts {
 impl<R: Real> BoundaryConditions<R> {
     /// The boundary conditions of `grid`, with the velocity `prescribed` on inflow faces.
     pub fn new(grid: &Grid<R>, prescribed: Prescribed) -> Self {
-        let mut boundaries = Self { grid: *grid, inflow: Inflow::of_faces(grid), prescribed, solid_faces: Default::default() };
+        let mut boundaries = Self { grid: *grid, inflow: Inflow::of_faces(grid), prescribed, solid_faces: Default::default(), backflow_rests: true };
         boundaries.update_inflow(0.0);
         boundaries
+    }
+
+    /// Gives air beyond outflow faces the velocity at the face, also where it flows back in, for transport by fluxes that accounts for such air itself: see
+    /// [`outflow::correct_flux`].
+    pub(super) fn continue_backflow(&mut self) {
+        self.backflow_rests = false;
     }
 
     /// Changes the velocity prescribed on inflow faces.
@@ -94,7 +103,7 @@ impl<R: Real> BoundaryConditions<R> {
         }
         for axis in 0..3 {
             for side in [0, 1] {
-                if self.grid.boundary[axis][side].fixes_pressure() {
+                if self.backflow_rests && self.grid.boundary[axis][side].fixes_pressure() {
                     self.zero_backflow(velocity, axis, side);
                 }
             }
@@ -155,7 +164,7 @@ impl<R: Real> BoundaryConditions<R> {
         }
     }
 
-    /// Sets the ghosts beyond an outflow face to 0 where air flows back in. With zero-gradient ghosts such air would gain energy without bound.
+    /// Sets the ghosts beyond an outflow face to 0 where air flows back in. A trajectory from there would carry ever faster air if the ghosts had its velocity.
     fn zero_backflow(&self, velocity: &mut Velocity<R>, axis: usize, side: usize) {
         let (grid, strides) = (&self.grid, self.grid.strides());
         let [a, b] = [(axis + 1) % 3, (axis + 2) % 3];

@@ -6,7 +6,7 @@ use crate::{Boundary, Field, Grid, Location, Real};
 /// Solves `(1 − ν·dt·∇²)·u = start` exactly, one field at a time, by transforms along the axes of the box.
 ///
 /// Unconditionally stable; first order in dt, second in h. Extrapolated linearly to twice the step it is the Crank–Nicolson scheme, second order in
-/// both. On outflow faces the normal velocity is held fixed for the step.
+/// both. On outflow faces the gradient of the velocity is zero.
 pub struct Implicit {
     /// One per location: the three faces, and the centre.
     solvers: [Option<Separable>; 4],
@@ -17,12 +17,13 @@ impl Implicit {
     /// Plans the transforms for fields of all locations on `grid`.
     pub fn new<R: Real>(grid: &Grid<R>) -> Self {
         let locations = [Location::Face(0), Location::Face(1), Location::Face(2), Location::Centre];
+        let count = |location| unknowns(grid, location).iter().product::<usize>();
         let solvers = locations.map(|location| {
-            let unknowns = unknowns(grid, location);
             let bases = [0, 1, 2].map(|axis| basis(grid, location, axis));
-            (unknowns.iter().product::<usize>() > 0).then(|| Separable::new(unknowns, grid.spacing_m.map(R::wide), bases))
+            (count(location) > 0).then(|| Separable::new(unknowns(grid, location), grid.spacing_m.map(R::wide), bases))
         });
-        Self { solvers, values: vec![0.0; grid.len()] }
+        let most = locations.into_iter().map(count).max().unwrap_or(0);
+        Self { solvers, values: vec![0.0; most] }
     }
 
     /// Takes a step of `dt_secs` (s) in place, from `field` with its ghosts filled; afterwards the ghosts must be filled again.
@@ -35,7 +36,7 @@ impl Implicit {
         let Some(solver) = &mut self.solvers[slot] else { return };
         let shift = (diffusivity_m2_per_s * dt_secs).recip();
         let [nx, ny, nz] = unknowns(grid, location);
-        let first = [0, 1, 2].map(|axis| first_unknown(grid, location, axis));
+        let first = [0, 1, 2].map(|axis| grid.free(location, axis).start);
         let strides = grid.strides();
         let per_m2 = grid.spacing_m.map(|h| (h.wide() * h.wide()).recip());
         let values = &mut self.values[..nx * ny * nz];
@@ -50,21 +51,16 @@ impl Implicit {
         let mut add =
             |index: [usize; 3], axis: usize, outside: f64| values[index[0] + nx * (index[1] + ny * index[2])] += outside * per_m2[axis];
         for (axis, &step) in strides.iter().enumerate() {
-            let Basis::Centres(edges) = basis(grid, location, axis) else {
-                if location == Location::Face(axis) && !grid.wraps(axis) {
-                    for_each_of_ends([nx, ny, nz], axis, |index, side| {
-                        let node = at(index[1], index[2]) + index[0];
-                        let beyond = if side == 0 { node - step } else { node + step };
-                        add(index, axis, field.data[beyond].wide());
-                    });
-                }
-                continue;
+            let (edges, on_faces) = match basis(grid, location, axis) {
+                Basis::Wrap => continue,
+                Basis::Nodes(edges) => (edges, true),
+                Basis::Centres(edges) => (edges, false),
             };
             for_each_of_ends([nx, ny, nz], axis, |index, side| {
                 if edges[side] == Edge::Dirichlet {
                     let inner = at(index[1], index[2]) + index[0];
-                    let ghost = if side == 0 { inner - step } else { inner + step };
-                    add(index, axis, (field.data[ghost] + field.data[inner]).wide());
+                    let beyond = field.data[if side == 0 { inner - step } else { inner + step }];
+                    add(index, axis, if on_faces { beyond } else { beyond + field.data[inner] }.wide());
                 }
             });
         }
@@ -92,12 +88,8 @@ fn for_each_of_ends(unknowns: [usize; 3], axis: usize, mut f: impl FnMut([usize;
     }
 }
 
-fn first_unknown<R: Real>(grid: &Grid<R>, location: Location, axis: usize) -> usize {
-    usize::from(location == Location::Face(axis) && !grid.wraps(axis))
-}
-
 fn unknowns<R: Real>(grid: &Grid<R>, location: Location) -> [usize; 3] {
-    [0, 1, 2].map(|axis| grid.cells[axis] - first_unknown(grid, location, axis))
+    [0, 1, 2].map(|axis| grid.free(location, axis).len())
 }
 
 fn basis<R: Real>(grid: &Grid<R>, location: Location, axis: usize) -> Basis {
@@ -105,7 +97,7 @@ fn basis<R: Real>(grid: &Grid<R>, location: Location, axis: usize) -> Basis {
         return Basis::Wrap;
     }
     if location == Location::Face(axis) {
-        return Basis::Nodes;
+        return Basis::Nodes(grid.boundary[axis].map(|face| if face.fixes_pressure() { Edge::Neumann } else { Edge::Dirichlet }));
     }
     let is_velocity = location != Location::Centre;
     Basis::Centres(

@@ -1,11 +1,11 @@
 //! Boundary conditions of the transforms.
 
-/// Boundary condition at an edge half a cell beyond the outermost cell centre of an axis.
+/// Boundary condition at the end of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edge {
-    /// Zero gradient: the value beyond the edge equals the value inside.
+    /// Zero gradient: the value beyond the edge equals its mirror image inside.
     Neumann,
-    /// Zero value: the value beyond the edge is minus the value inside.
+    /// Zero value: the value beyond the edge is minus its mirror image inside.
     Dirichlet,
 }
 
@@ -16,6 +16,7 @@ pub enum Basis {
     Wrap,
     /// Cell centres between two edges, each half a cell beyond the outermost. Transformed by the DCT-II, DST-II, DCT-IV or DST-IV.
     Centres([Edge; 2]),
-    /// Inner nodes between two nodes where the value is zero, one spacing beyond the outermost. Transformed by the DST-I.
-    Nodes,
+    /// Nodes, of which the outermost are on the edges. Values at Dirichlet edges are zero and no unknowns; those at Neumann edges are unknowns. Transformed by the
+    /// DST-I between two Dirichlet edges; otherwise by a matrix, in time proportional to the square of the length.
+    Nodes([Edge; 2]),
 }

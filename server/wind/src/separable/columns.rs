@@ -42,12 +42,20 @@ pub(super) fn solve(basis: Basis, lambda: &Row, rows: &mut [Row], scratch: &mut 
     let (inverse_pivots, response) = scratch.split_at_mut(rows.len());
     match basis {
         Basis::Wrap => bordered(lambda, rows, inverse_pivots, response),
-        Basis::Nodes => {
-            factor(lambda, [1.0, 1.0], inverse_pivots);
+        Basis::Nodes(edges) => {
+            // Half of the equation at a node on a Neumann edge, so that the matrix is symmetric.
+            let ends = edges.map(|edge| if edge == Edge::Neumann { lambda.map(|lambda| -0.5 * lambda) } else { [1.0; WIDTH] });
+            let last = rows.len() - 1;
+            for (at, edge) in [0, last].into_iter().zip(edges) {
+                if edge == Edge::Neumann {
+                    rows[at].iter_mut().for_each(|value| *value *= 0.5);
+                }
+            }
+            factor(lambda, ends, inverse_pivots);
             substitute(inverse_pivots, rows);
         }
         Basis::Centres(edges) => {
-            factor(lambda, edges.map(|edge| if edge == Edge::Neumann { 0.0 } else { 2.0 }), inverse_pivots);
+            factor(lambda, edges.map(|edge| [if edge == Edge::Neumann { 0.0 } else { 2.0 }; WIDTH]), inverse_pivots);
             substitute(inverse_pivots, rows);
         }
     }
@@ -60,7 +68,7 @@ fn bordered(lambda: &Row, rows: &mut [Row], inverse_pivots: &mut [Row], response
     let Some((last, rest)) = rows.split_last_mut() else { return };
     let (inverse_pivots, response) = (&mut inverse_pivots[..rest.len()], &mut response[..rest.len()]);
     response.fill(*lambda);
-    factor(lambda, [1.0, 1.0], inverse_pivots);
+    factor(lambda, [[1.0; WIDTH]; 2], inverse_pivots);
     substitute(inverse_pivots, rest);
     substitute(inverse_pivots, response);
     let mut pivot = *lambda;
@@ -82,16 +90,16 @@ fn bordered(lambda: &Row, rows: &mut [Row], inverse_pivots: &mut [Row], response
 
 /// Forward elimination of the matrix; `ends` is added to the diagonals of the first and the last unknown for their missing neighbours.
 #[inline(always)]
-fn factor(lambda: &Row, ends: [f64; 2], inverse_pivots: &mut [Row]) {
+fn factor(lambda: &Row, ends: [Row; 2], inverse_pivots: &mut [Row]) {
     let Some((last, rest)) = inverse_pivots.split_last_mut() else { return };
-    let mut excess = lambda.map(|lambda| lambda + ends[0]);
+    let mut excess: Row = std::array::from_fn(|l| lambda[l] + ends[0][l]);
     for inverse_pivot in rest {
         for l in 0..WIDTH {
             inverse_pivot[l] = 1.0 / (1.0 + excess[l]);
             excess[l] = lambda[l] + excess[l] * inverse_pivot[l];
         }
     }
-    *last = excess.map(|excess| inverse_or_zero(excess + ends[1]));
+    *last = std::array::from_fn(|l| inverse_or_zero(excess[l] + ends[1][l]));
 }
 
 #[inline(always)]

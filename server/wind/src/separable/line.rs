@@ -40,6 +40,8 @@ enum Kind {
     Quarter { shifts: Vec<[f64; 2]>, turns: Vec<[f64; 2]>, flipped: bool },
     /// DST-I, with sin(πj/(len + 1)).
     Nodes { sines: Vec<f64> },
+    /// Cosines about the node on a Neumann edge, as matrices in row order.
+    Matrix { to_modes: Vec<f64>, back: Vec<f64> },
 }
 
 impl Line {
@@ -50,9 +52,13 @@ impl Line {
         let (kind, gain, fft_len) = match basis {
             _ if len == 1 => (Kind::Single, 1.0, 1),
             Basis::Wrap => (Kind::Fourier, 2.0 * n, len),
-            Basis::Nodes => {
+            Basis::Nodes([Edge::Dirichlet, Edge::Dirichlet]) => {
                 let sines = (0..=len).map(|j| (PI * j as f64 / (n + 1.0)).sin()).collect();
                 (Kind::Nodes { sines }, 2.0 * (n + 1.0), len + 1)
+            }
+            Basis::Nodes(edges) => {
+                let [to_modes, back] = matrices(edges, len);
+                (Kind::Matrix { to_modes, back }, 1.0, 1)
             }
             Basis::Centres([first, last]) if first == last => {
                 let odd_sign = if first == Edge::Neumann { 1.0 } else { -1.0 };
@@ -82,13 +88,39 @@ fn eigenvalues(basis: Basis, len: usize, spacing_m: f64) -> Vec<f64> {
         let k = k as f64;
         match basis {
             Basis::Wrap => PI * k / n,
-            Basis::Nodes => 0.5 * PI * (k + 1.0) / (n + 1.0),
+            Basis::Nodes(edges) => 0.5 * node_angle(edges, k, n),
             Basis::Centres([Edge::Neumann, Edge::Neumann]) => 0.5 * PI * k / n,
             Basis::Centres([Edge::Dirichlet, Edge::Dirichlet]) => 0.5 * PI * (n - k) / n,
             Basis::Centres(_) => 0.5 * PI * (k + 0.5) / n,
         }
     };
     (0..len).map(|k| (2.0 / spacing_m * half_angle(k).sin()).powi(2)).collect()
+}
+
+/// Angle θ by which mode `k` of `n` nodes advances per node.
+fn node_angle(edges: [Edge; 2], k: f64, n: f64) -> f64 {
+    match edges {
+        [Edge::Dirichlet, Edge::Dirichlet] => PI * (k + 1.0) / (n + 1.0),
+        [Edge::Neumann, Edge::Neumann] => PI * k / (n - 1.0),
+        _ => PI * (k + 0.5) / n,
+    }
+}
+
+/// Transforms of nodes with a Neumann edge, to modes and back. The modes are cosines about that edge; they are orthogonal if the node on a Neumann edge, to
+/// which half a cell belongs, counts half.
+fn matrices(edges: [Edge; 2], len: usize) -> [Vec<f64>; 2] {
+    let n = len as f64;
+    let is_neumann = edges.map(|edge| edge == Edge::Neumann);
+    let from_edge = |j: usize| if is_neumann[0] { j as f64 } else { n - 1.0 - j as f64 };
+    let mode = |j: usize, k: usize| (node_angle(edges, k as f64, n) * from_edge(j)).cos();
+    let weight = |j: usize| if (is_neumann[0] && j == 0) || (is_neumann[1] && j + 1 == len) { 0.5 } else { 1.0 };
+    let square = |k: usize| (0..len).map(|j| weight(j) * mode(j, k).powi(2)).sum::<f64>();
+    let to_modes = (0..len).flat_map(|k| {
+        let square = square(k);
+        (0..len).map(move |j| weight(j) * mode(j, k) / square)
+    });
+    let back = (0..len).flat_map(|j| (0..len).map(move |k| mode(j, k)));
+    [to_modes.collect(), back.collect()]
 }
 
 /// Transforms [`LINES`] lines in place: entry j of line l is `slab[j·stride + l]`.
@@ -100,6 +132,7 @@ pub(super) fn transform(line: &Line, way: Way, slab: &mut [f64], stride: usize, 
         Kind::Half { turns, odd_sign } => half(line, way, turns, *odd_sign, slab, stride, scratch),
         Kind::Quarter { shifts, turns, flipped } => quarter(line, shifts, turns, *flipped, slab, stride, scratch),
         Kind::Nodes { sines } => nodes(line, sines, slab, stride, scratch),
+        Kind::Matrix { to_modes, back } => multiply(if way == Way::ToModes { to_modes } else { back }, line.len, slab, stride, scratch),
     }
 }
 
@@ -224,6 +257,16 @@ fn nodes(line: &Line, sines: &[f64], slab: &mut [f64], stride: usize, scratch: &
             sum = sum + even;
             store(slab, stride, 2 * k, sum);
         }
+    }
+}
+
+#[inline(always)]
+fn multiply(matrix: &[f64], n: usize, slab: &mut [f64], stride: usize, scratch: &mut [Pair]) {
+    let values = &mut scratch[..n];
+    values.iter_mut().enumerate().for_each(|(j, value)| *value = load(slab, stride, j));
+    for (k, row) in matrix.chunks_exact(n).enumerate() {
+        let sum = values.iter().zip(row).fold(Pair::default(), |sum, (&value, &factor)| sum + value * factor);
+        store(slab, stride, k, sum);
     }
 }
 
