@@ -190,3 +190,41 @@ pub fn diffuse<R: Real>(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boundary::BoundaryConditions;
+    use crate::{Boundary, Location};
+
+    /// Amplitude of a cosine after diffusion for `dt_secs` that keeps signs, and of the exact solution.
+    fn decayed(dt_secs: f64, steps: u32) -> [f64; 2] {
+        let grid = Grid { cells: [8, 1, 1], spacing_m: [1.0; 3], boundary: [[Boundary::Wrap; 2]; 3] };
+        let walls = BoundaryConditions::new(&grid, Box::new(|_, _| [0.0; 3]));
+        let [mut field, mut first] = [(), ()].map(|()| Field::<f64>::zeros(&grid, Location::Face(1)));
+        for i in 0..8 {
+            field.data[grid.at([i, 0, 0])] = if i % 2 == 0 { 1.0 } else { -1.0 };
+        }
+        walls.apply_to_component(&mut field);
+        let mut implicit = Implicit::new(&grid);
+        for _ in 0..steps {
+            keep_signs(&grid, 1.0, dt_secs, &mut field, &mut first, &mut implicit, |field| walls.apply_to_component(field));
+        }
+        // Waves of two cells have the eigenvalue −4/h².
+        [field.data[grid.at([0, 0, 0])], (-4.0 * dt_secs * f64::from(steps)).exp()]
+    }
+
+    #[test]
+    fn waves_keep_their_sign_and_decay_with_second_order() {
+        for dt_secs in [0.1, 1.0, 1e3, 1e6] {
+            let [amplitude, _] = decayed(dt_secs, 1);
+            assert!((0.0..1.0).contains(&amplitude), "{amplitude} after {dt_secs} s");
+        }
+        let errors = [64, 128, 256].map(|steps| {
+            let [amplitude, exact] = decayed(0.4 / f64::from(steps), steps);
+            (amplitude - exact).abs()
+        });
+        let orders = [0, 1].map(|at| (errors[at] / errors[at + 1]).log2());
+        assert!(orders.iter().all(|order| (1.9..2.1).contains(order)), "{errors:?}: orders {orders:?}");
+    }
+}

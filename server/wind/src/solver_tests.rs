@@ -316,3 +316,27 @@ fn memory_is_as_stated() {
     assert!((1_900_000..2_500_000).contains(&memory(&traced)));
     assert!((13_000_000..15_000_000).contains(&memory(&large)));
 }
+
+/// The old pressure gradient passes through friction: a wave of it that friction reversed would double in every step.
+#[test]
+fn stiff_friction_and_kept_pressure_lose_energy_together() {
+    for diffusion in [Diffusion::Implicit, Diffusion::CrankNicolson] {
+        let config = Config {
+            cells: [8, 6, 7],
+            spacing_m: [1.0; 3],
+            boundary: [[Boundary::NoSlip; 2], [Boundary::FreeSlip, Boundary::NoSlip], [Boundary::NoSlip, Boundary::Outflow]],
+            diffusion,
+            viscosity_m2_per_s: 300.0,
+            mean_wind_m_per_s: [0.0; 3],
+            relaxation_per_s: 0.0,
+            profile: Profile::Uniform,
+            gusts: Gusts { number: 0, ..Gusts::default() },
+            ..Config::default()
+        };
+        let mut wind = Solver::<f64>::new(&config).unwrap();
+        wind.set_velocity(|[x, y, z]| [(3.0 * x + y).sin(), (2.0 * y - z).cos(), (x + 3.0 * z).sin()]);
+        let energies: Vec<f64> = (0..200).map(|_| wind.step(0.1, &[]).unwrap().kinetic_energy_m2_per_s2).collect();
+        assert!(energies.iter().all(|energy| *energy <= energies[0]), "{diffusion:?}: {energies:?}");
+        assert!(energies[199] < 1e-6 * energies[0], "{diffusion:?}: {:e} of {:e}", energies[199], energies[0]);
+    }
+}

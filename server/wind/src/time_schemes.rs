@@ -72,16 +72,8 @@ impl<R: Real> Solver<R> {
             self.diffuse(Portion::First, dt_secs);
         }
         self.transport(dt_secs, if explicit { self.config.viscosity_m2_per_s.into() } else { 0.0 })?;
-        // Sweeps that end early are of first order whatever they smooth; smoothing the pressure gradient, too, some of them would let it grow.
-        let spares_pressure = matches!(self.config.diffusion, Diffusion::GaussSeidel { .. });
-        if spares_pressure {
-            self.add_pressure_gradient(dt_secs);
-        }
         if !explicit {
             self.diffuse(Portion::Second, dt_secs);
-        }
-        if spares_pressure {
-            self.add_pressure_gradient(-dt_secs);
         }
         self.force(0.5 * dt_secs, middle_secs, jets);
         Ok(self.project(Some(dt_secs)))
@@ -175,15 +167,6 @@ impl<R: Real> Solver<R> {
                 primitive.add_volume_source(&self.grid, time_secs, &mut self.volume_sources_per_s, &mut self.footprint);
             }
         }
-    }
-
-    /// Adds the pressure gradient of the previous step, times `dt_secs`, to the velocity.
-    fn add_pressure_gradient(&mut self, dt_secs: f64) {
-        let dt = R::of(dt_secs);
-        for (field, gradient) in self.velocity.0.iter_mut().zip(&self.pressure_gradient.0) {
-            field.data.iter_mut().zip(&gradient.data).for_each(|(speed, &gradient)| *speed = *speed + dt * gradient);
-        }
-        self.boundaries.apply(&mut self.velocity);
     }
 
     fn diffuse(&mut self, portion: Portion, dt_secs: f64) {

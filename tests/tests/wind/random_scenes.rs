@@ -1,15 +1,20 @@
 //! Random valid scenes: the wind rejects them with a named error or stays finite, and gains no energy without forcing.
 
-use prairie_wind::{Advection, Boundary, Diffusion, Location, Pressure, Real, Solver, StepError};
+use prairie_wind::{Advection, Boundary, Diffusion, Location, Pressure, Real, Solver, StepError, TimeScheme};
+use std::collections::BTreeMap;
 use tests::random_winds::RandomWind;
 
 const WINDS: u64 = 2000;
-const STEPS: usize = 4;
+/// Steps of winds with forcing, and of those without, whose energy is checked in every step.
+const STEPS: [usize; 2] = [4, 200];
 
 /// Relative growth of kinetic energy attributed to rounding.
 const ENERGY_TOLERANCE: f64 = 1e-3;
-/// Largest growth of kinetic energy where the pressure iteration is too short to remove the divergence: advection by a divergent flow can add energy.
-const COMPRESSED_GROWTH: f64 = 2.0;
+/// Largest growth of kinetic energy where traced air may enter the box: nothing but its speed is bounded then.
+const TRACED_GROWTH: f64 = 2.0;
+/// Largest growth of kinetic energy in the first steps where air may enter the box and an iteration ends early: transport by a divergent flow adds energy, and so does
+/// a pressure that is kept although friction was not solved. Later only numbers must be finite.
+const UNFINISHED_GROWTH: f64 = 1.5;
 /// Residual of the pressure above which the flow counts as divergent.
 const COMPRESSED: f64 = 0.01;
 /// Rounding of dust in single precision.
@@ -17,7 +22,50 @@ const DUST_TOLERANCE: f32 = 1e-4;
 
 enum Outcome {
     Refused,
-    Stepped,
+    Stepped(Energy),
+}
+
+/// What is known about the kinetic energy of air without forcing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Energy {
+    /// It never grows, by an argument for conservative transport, and in every box without open faces by test.
+    Falls,
+    /// Traced air enters through open faces.
+    Traced,
+    /// Air enters through open faces, and an iteration ends early.
+    Unfinished,
+    /// A forcing adds energy.
+    Driven,
+    /// There is none.
+    Still,
+}
+
+impl Energy {
+    fn of(wind: &RandomWind, start: f64, is_compressed: bool) -> Self {
+        let config = &wind.config;
+        let open = config.boundary.iter().flatten().any(|&face| face == Boundary::Outflow);
+        let has_sweeps = matches!(config.diffusion, Diffusion::GaussSeidel { .. }) && config.time == TimeScheme::RungeKutta3;
+        match config.advection.uses_fluxes() {
+            _ if wind.is_driven() => Self::Driven,
+            _ if start == 0.0 => Self::Still,
+            _ if !open => Self::Falls,
+            _ if is_compressed => Self::Unfinished,
+            false => Self::Traced,
+            true if has_sweeps => Self::Unfinished,
+            true => Self::Falls,
+        }
+    }
+
+    /// Largest energy after a step, relative to the start.
+    fn limit(self, step: usize) -> f64 {
+        match self {
+            Self::Falls => 1.0 + ENERGY_TOLERANCE,
+            Self::Traced => TRACED_GROWTH,
+            Self::Unfinished if step < STEPS[0] => UNFINISHED_GROWTH,
+            Self::Unfinished | Self::Driven => f64::INFINITY,
+            Self::Still => 0.0,
+        }
+    }
 }
 
 /// Twice the kinetic energy (per volume of a cell). Faces on the box's surface have half a cell.
@@ -42,9 +90,8 @@ fn energy<R: Real>(solver: &Solver<R>) -> f64 {
 fn run<R: Real>(wind: &RandomWind) -> Result<Outcome, String> {
     let Ok(mut solver) = wind.solver::<R>() else { return Ok(Outcome::Refused) };
     let (start, config) = (energy(&solver), &wind.config);
-    let open = config.boundary.iter().flatten().any(|&face| face == Boundary::Outflow);
-    let mut compressed = false;
-    for step in 0..STEPS {
+    let (mut class, mut is_compressed) = (Energy::of(wind, start, false), false);
+    for step in 0..STEPS[usize::from(class != Energy::Driven)] {
         let report = match solver.step(wind.dt_secs, &wind.jets) {
             Ok(report) => report,
             Err(StepError::TooLong { .. }) => return Ok(Outcome::Refused),
@@ -56,11 +103,10 @@ fn run<R: Real>(wind: &RandomWind) -> Result<Outcome, String> {
         if !finite {
             return Err(format!("step {step}: {report:?}"));
         }
-        compressed |= report.pressure_residual > COMPRESSED;
-        let most = start * if compressed { COMPRESSED_GROWTH } else { 1.0 + ENERGY_TOLERANCE };
-        // Through an outflow face air may enter, with any energy.
-        if !wind.is_driven() && !open && now > most {
-            return Err(format!("step {step}: energy {now:e}, at the start {start:e}; {report:?}"));
+        is_compressed |= report.pressure_residual > COMPRESSED;
+        class = Energy::of(wind, start, is_compressed);
+        if class != Energy::Driven && now > start * class.limit(step).min(f64::MAX) {
+            return Err(format!("step {step}: energy {now:e}, at the start {start:e}, {class:?}; {report:?}"));
         }
         let [low, high] = dust_range(&solver);
         if !(low.is_finite() && high.is_finite()) {
@@ -73,7 +119,7 @@ fn run<R: Real>(wind: &RandomWind) -> Result<Outcome, String> {
             return Err(format!("step {step}: dust from {low} to {high}"));
         }
     }
-    Ok(Outcome::Stepped)
+    Ok(Outcome::Stepped(class))
 }
 
 fn dust_range<R: Real>(solver: &Solver<R>) -> [f32; 2] {
@@ -81,20 +127,30 @@ fn dust_range<R: Real>(solver: &Solver<R>) -> [f32; 2] {
     dust.fold([0.0; 2], |[low, high], density| if density.is_nan() { [density; 2] } else { [density.min(low), density.max(high)] })
 }
 
-#[test]
-fn two_thousand_random_winds_are_rejected_or_stay_finite() {
-    let (mut refused, mut failed) = (0, Vec::new());
-    for seed in 0..WINDS {
+/// Runs the winds with these seeds in one precision.
+fn check<R: Real>(seeds: impl Iterator<Item = u64>) {
+    let (mut refused, mut failed, mut checked) = (0, Vec::new(), BTreeMap::new());
+    for seed in seeds {
         let wind = RandomWind::new(seed);
         assert_eq!(wind.config.validate(), Ok(()), "only valid winds are drawn");
-        let outcome = if seed % 2 == 0 { run::<f32>(&wind) } else { run::<f64>(&wind) };
-        match outcome {
+        match run::<R>(&wind) {
             Ok(Outcome::Refused) => refused += 1,
-            Ok(Outcome::Stepped) => {}
+            Ok(Outcome::Stepped(class)) => *checked.entry(class).or_insert(0_u64) += 1,
             Err(why) => failed.push(format!("wind {seed}: {why}\n{wind:?}")),
         }
     }
-    println!("{refused} of {WINDS} refused");
+    println!("{refused} are refused; by what is known of their energy: {checked:?}");
     assert!(failed.is_empty(), "{} fail:\n{}", failed.len(), failed.join("\n"));
-    assert!(refused < WINDS / 4, "{refused} refused: too few tell anything");
+    assert!(refused < WINDS / 8, "{refused} refused: too few tell anything");
+    assert!(checked.get(&Energy::Falls).is_some_and(|falls| *falls > 100), "few have an energy that must fall: {checked:?}");
+}
+
+#[test]
+fn a_thousand_random_winds_in_single_precision_are_rejected_or_stay_finite() {
+    check::<f32>((0..WINDS).step_by(2));
+}
+
+#[test]
+fn a_thousand_random_winds_in_double_precision_are_rejected_or_stay_finite() {
+    check::<f64>((1..WINDS).step_by(2));
 }

@@ -20,7 +20,8 @@ pub enum Boundary {
     /// Prescribed velocity as a function of position and time ([`Solver::set_inflow`](crate::Solver::set_inflow)); by default the mean wind. Dust enters with a
     /// concentration of 0.
     Inflow,
-    /// Zero pressure and zero gradient of the velocity. Air that flows back in enters at rest.
+    /// Zero pressure and zero gradient of the velocity. Air that flows back in brings no kinetic energy: fluxes carry half of the velocity at the face (Braack & Mucha
+    /// 2014), trajectories begin in air at rest.
     Outflow,
 }
 

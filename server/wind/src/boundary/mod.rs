@@ -26,7 +26,7 @@ pub struct BoundaryConditions<R> {
     prescribed: Prescribed,
     /// For each component, the indices in memory of the faces next to a solid cell.
     solid_faces: [Vec<usize>; 3],
-    /// Whether air that flows back in enters at rest.
+    /// Whether air beyond outflow faces is at rest where it flows back in.
     backflow_rests: bool,
 }
 
@@ -45,13 +45,14 @@ pub enum InflowGhosts {
 impl<R: Real> BoundaryConditions<R> {
     /// The boundary conditions of `grid`, with the velocity `prescribed` on inflow faces.
     pub fn new(grid: &Grid<R>, prescribed: Prescribed) -> Self {
-        let mut boundaries = Self { grid: *grid, inflow: Inflow::of_faces(grid), prescribed, solid_faces: Default::default(), backflow_rests: true };
+        let mut boundaries =
+            Self { grid: *grid, inflow: Inflow::of_faces(grid), prescribed, solid_faces: Default::default(), backflow_rests: true };
         boundaries.update_inflow(0.0);
         boundaries
     }
 
-    /// Gives air beyond outflow faces the velocity at the face, also where it flows back in, for transport by fluxes that accounts for such air itself: see
-    /// [`outflow::correct_flux`].
+    /// Gives air beyond outflow faces the velocity at the face, also where it flows back in: transport by fluxes corrects what such air brings
+    /// ([`outflow::correct_flux`]).
     pub(super) fn continue_backflow(&mut self) {
         self.backflow_rests = false;
     }

@@ -16,7 +16,8 @@ pub(crate) fn correct_flux<R: Real>(grid: &Grid<R>, air: &Velocity<R>, gain_secs
     for axis in 0..3 {
         let gain = R::of(gain_secs) / grid.spacing_m[axis];
         for side in (0..2).filter(|&side| grid.boundary[axis][side].fixes_pressure()) {
-            let excess = |at| if component == axis { normal(grid, air, axis, side, at) } else { tangential(grid, air, component, axis, side, at) };
+            let excess =
+                |at| if component == axis { normal(grid, air, axis, side, at) } else { tangential(grid, air, component, axis, side, at) };
             for_each_next_to(grid, target.location, axis, side, |at| target.data[at] = target.data[at] - gain * excess(at));
         }
     }
