@@ -20,7 +20,7 @@ struct DustPlace {
     at_m: vec3<f32>,
     // Random number 0..1.
     random: f32,
-    // Age of a puff, relative to its life: from 1 on it may start again; from 2 on it never lived.
+    // Age of a puff, relative to its life: at 1 it may start again; 2 before its first life.
     age: f32,
 }
 
@@ -91,8 +91,18 @@ fn through_dust(place: vec3<f32>) -> f32 {
     return 0.4 + 0.6 * exp(-EXTINCTION_PER_M * concentration_m);
 }
 
-// A random place in a dusty cell (X, height above the ground, Z in m), in one of the images of the wind domain around the camera.
-fn started(index: u32) -> vec3<f32> {
+// Whether the wind domain repeats along X and Z.
+fn repeats() -> vec2<bool> {
+    return (frame.wind_repeats != vec2<u32>(0u)) | vec2<bool>(frame.wind_patch_m > 0.0);
+}
+
+fn patch_of(p: vec2<f32>) -> vec2<i32> {
+    return vec2<i32>(floor(p / max(frame.wind_patch_m, 1.0)));
+}
+
+// A random place in a dusty cell (X, height above the ground, Z in m), in one of the images of the wind domain around the camera; 0 as fourth component if it lies in
+// another patch than the one whose offset was tried.
+fn started(index: u32) -> vec4<f32> {
     let seed = vec2<i32>(i32(index), bitcast<i32>(frame.time_secs));
     let pick = random3(seed, 0u);
     let cells = textureDimensions(winds);
@@ -105,11 +115,12 @@ fn started(index: u32) -> vec3<f32> {
     let by_patch = frame.wind_patch_m > 0.0;
     let near = frame.eye_m.xz + (pick.yz - 0.5) * max(drift.puff_square_m - box_m, vec2<f32>(0.0));
     let spacing_m = box_m / vec2<f32>(cells.xz);
-    let moved = vec2<f32>(offset_cells(vec2<i32>(floor(near / max(frame.wind_patch_m, 1.0))), cells.xz)) * spacing_m;
+    let moved = vec2<f32>(offset_cells(patch_of(near), cells.xz)) * spacing_m;
     let image = place.xz - select(vec2<f32>(0.0), moved, by_patch);
     let nearest = image + box_m * round((near - image) / box_m);
-    let xz = select(image, nearest, (frame.wind_repeats != vec2<u32>(0u)) | vec2<bool>(by_patch));
-    return vec3<f32>(xz.x, place.y, xz.y);
+    let xz = select(image, nearest, repeats());
+    let is_there = !by_patch || all(patch_of(xz) == patch_of(near));
+    return vec4<f32>(xz.x, place.y, xz.y, select(0.0, 1.0, is_there));
 }
 
 // Colour of dust at `centre_m`, with shares of the light of sun and sky.
@@ -124,20 +135,23 @@ fn puff(index: u32) -> Sprite {
     let own = places[index].random;
     var sprite: Sprite;
     var place = places[index].at_m;
-    var age = places[index].age + drift.step_secs / (PUFF_SECS * (0.6 + 0.8 * own));
-    if age >= 1.0 && drift.puff_m3 > 0.0 {
-        place = started(index);
+    let before = places[index].age;
+    var age = before + drift.step_secs / (PUFF_SECS * (0.6 + 0.8 * own));
+    let start = started(index);
+    if age >= 1.0 && drift.puff_m3 > 0.0 && start.w > 0.0 {
+        place = start.xyz;
         // The first ones are of all ages.
-        age = select(0.0, random3(vec2<i32>(i32(index), 7), 0u).x, age >= 2.0);
+        age = select(0.0, random3(vec2<i32>(i32(index), 7), 0u).x, before >= 2.0);
     } else {
         place += wind_at(place, place.y) * drift.step_secs;
+        age = select(min(age, 1.0), before, before >= 2.0);
     }
     let cube_side_m = pow(drift.puff_m3, 1.0 / 3.0);
     let size_m = min(PUFF_PER_SIDE * cube_side_m, LARGEST_PUFF_M) * (0.7 + 0.6 * own) * (0.75 + 0.5 * age);
     place.y = clamp(place.y, 0.3 * size_m, max(frame.wind_box_m.y, size_m));
     places[index].at_m = place;
     places[index].age = age;
-    if age >= 1.0 {
+    if age >= 1.0 || drift.puff_m3 <= 0.0 {
         return sprite;
     }
     let dust = dust_of(air_at(place.xz, place.y));
@@ -149,12 +163,13 @@ fn puff(index: u32) -> Sprite {
     let area_m2 = OPAQUE_SHARE * PUFF_LENGTH * PUFF_WIDTH * size_m * size_m;
     let optical_depth = EXTINCTION_PER_M * max(dust, FULL_PUFFS_DUST) * drift.puff_m3 / area_m2;
     let share = smoothstep(0.0, 0.3 * FULL_PUFFS_DUST, dust);
-    let reach_m = 0.5 * max(vec2<f32>(drift.puff_square_m), frame.wind_box_m.xz);
+    let reach_m = select(frame.wind_box_m.xz, 0.5 * max(vec2<f32>(drift.puff_square_m), frame.wind_box_m.xz), repeats());
     let rim = 1.0 - smoothstep(0.8, 1.0, max(abs(to.x) / reach_m.x, abs(to.z) / reach_m.y));
     let of_life = smoothstep(0.0, 0.2, age) * (1.0 - smoothstep(0.6, 1.0, age));
     let near = smoothstep(1.0, 3.0, distance_m / size_m);
-    sprite.opacity = (1.0 - exp(-optical_depth)) * share * rim * of_life * near;
-    if sprite.opacity > 0.002 {
+    let opacity = (1.0 - exp(-optical_depth)) * share * rim * of_life * near;
+    if opacity > 0.002 {
+        sprite.opacity = opacity;
         let level = normalize(cross(view, vec3<f32>(0.0, 1.0, 0.0)) + vec3<f32>(1e-5, 0.0, 0.0));
         sprite.half_length_m = level * size_m * PUFF_LENGTH;
         sprite.half_width_m = size_m * PUFF_WIDTH;
@@ -195,8 +210,9 @@ fn mote(index: u32) -> Sprite {
     let near = smoothstep(0.15, 0.30, distance_m / 3.0);
     // The number of motes follows the concentration; motes smaller than a pixel are fainter in proportion.
     let least_m = 0.75 * distance_m * frame.pixel_rad;
-    sprite.opacity = rim * near * smoothstep(own * FULL_DUST, (own + 0.3) * FULL_DUST, dust) * min(size_m / least_m, 1.0);
-    if sprite.opacity > 0.002 {
+    let opacity = rim * near * smoothstep(own * FULL_DUST, (own + 0.3) * FULL_DUST, dust) * min(size_m / least_m, 1.0);
+    if opacity > 0.002 {
+        sprite.opacity = opacity;
         let across = velocity - view * dot(velocity, view);
         let half_m = max(size_m, least_m);
         let streak_m = half_m + 0.5 * length(across) * MOTE_STREAK_SECS;
@@ -237,7 +253,7 @@ fn vs(@builtin(vertex_index) vertex: u32) -> Speck {
     let sprite = sprites[index];
     var out: Speck;
     out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
-    if sprite.opacity <= 0.0 {
+    if !(sprite.opacity > 0.0) {
         return out;
     }
     out.uv = vec2<f32>(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;

@@ -28,7 +28,7 @@ enum Outcome {
 /// What is known about the kinetic energy of air without forcing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Energy {
-    /// It never grows, by an argument for conservative transport, and in every box without open faces by test.
+    /// It never grows: by an argument for conservative transport without damping, by test for the rest and for every box without open faces.
     Falls,
     /// Traced air enters through open faces.
     Traced,

@@ -1,4 +1,4 @@
-//! Visible dust: motes and puffs of haze around the camera that drift with the streamed wind.
+//! Visible dust: motes and puffs of haze that drift with the streamed wind.
 
 use crate::render::gpu::constants::{DUSTY_CELLS, WORKGROUP_SIZE};
 use crate::render::gpu::device::Gpu;
@@ -9,7 +9,7 @@ use crate::render::inputs::dusty_cells::DustyCells;
 use crate::render::inputs::random::random3;
 use crate::render::options::quality::Quality;
 use crate::state::DecodedScene;
-use prairie_core::scene::Wind;
+use prairie_core::scene::{Wind, WindTiling};
 use wgpu::BufferUsages;
 
 /// Side of the square of motes around the camera (m). Farther away they are too small to be visible.
@@ -31,7 +31,7 @@ pub(crate) struct Dust {
     drift: wgpu::Buffer,
     dusty_cells: wgpu::Buffer,
     count: u32,
-    /// 1 / (number of puffs per wind domain).
+    /// Wind domains over which the puffs are spread, relative to the number of puffs.
     domains_per_puff: f32,
 }
 
@@ -110,8 +110,10 @@ impl Dust {
 
 /// Number of wind domains, side by side, over which the puffs are spread.
 fn domains(wind: &Wind, square_m: f32) -> f32 {
-    let [x_m, _, z_m] = wind.box_m();
-    [x_m, z_m].map(|side_m| (square_m / side_m - 1.0).max(1.0)).iter().product()
+    let ([x_m, _, z_m], [wraps_x, _, wraps_z]) = (wind.box_m(), wind.faces.wraps());
+    let by_patch = wind.tiling == WindTiling::Patch;
+    let along = |side_m: f32, wraps: bool| if wraps || by_patch { (square_m / side_m - 1.0).max(1.0) } else { 1.0 };
+    along(x_m, wraps_x) * along(z_m, wraps_z)
 }
 
 fn bind_at(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {

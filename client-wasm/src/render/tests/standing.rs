@@ -91,7 +91,7 @@ fn near_blades_part_before_they_fill_the_picture() {
         &distances_m.map(|distance_m| [0.01, distance_m, 0.0, 0.0]),
     );
     for ([width_m, ..], distance_m) in found.into_iter().zip(distances_m) {
-        assert!(width_m <= 0.1201 * distance_m, "{width_m} m at {distance_m} m");
-        assert!(width_m == 0.01 || distance_m < 0.084, "{width_m} m at {distance_m} m");
+        let wanted = (0.12 * distance_m).min(0.01);
+        assert!((width_m - wanted).abs() < 1e-6, "{width_m} m instead of {wanted} m at {distance_m} m");
     }
 }

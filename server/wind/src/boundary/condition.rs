@@ -21,7 +21,7 @@ pub enum Boundary {
     /// concentration of 0.
     Inflow,
     /// Zero pressure and zero gradient of the velocity. Air that flows back in brings no kinetic energy: fluxes carry half of the velocity at the face (Braack & Mucha
-    /// 2014), trajectories begin in air at rest.
+    /// 2014), trajectories of velocity begin in air at rest.
     Outflow,
 }
 

@@ -47,7 +47,7 @@ impl Implicit {
                 *value = shift * u.wide();
             }
         }
-        // Contribution of faces with a given velocity: the ghost is 2w − u, and −u is part of the transform.
+        // Contribution of faces with a given velocity w: a node there has it; beyond centres the ghost is 2w − u, and −u is part of the transform.
         let mut add =
             |index: [usize; 3], axis: usize, outside: f64| values[index[0] + nx * (index[1] + ny * index[2])] += outside * per_m2[axis];
         for (axis, &step) in strides.iter().enumerate() {
@@ -60,7 +60,9 @@ impl Implicit {
                 if edges[side] == Edge::Dirichlet {
                     let inner = at(index[1], index[2]) + index[0];
                     let beyond = field.data[if side == 0 { inner - step } else { inner + step }];
-                    add(index, axis, if on_faces { beyond } else { beyond + field.data[inner] }.wide());
+                    // A single node on a Neumann edge has the given value on both sides.
+                    let times = if edges[1 - side] == Edge::Neumann && [nx, ny, nz][axis] == 1 { 2.0 } else { 1.0 };
+                    add(index, axis, if on_faces { times * beyond.wide() } else { (beyond + field.data[inner]).wide() });
                 }
             });
         }

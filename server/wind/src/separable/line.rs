@@ -1,6 +1,6 @@
 //! Transform of eight lines along one axis into the modes of its discrete Laplacian, and back.
 //!
-//! Every basis costs one complex Fourier transform of two real lines, which are permuted on input and separated by symmetry on output. Cosines:
+//! Every basis, except nodes with a Neumann edge, costs one complex Fourier transform of two real lines, which are permuted on input and separated by symmetry on output. Cosines:
 //! Makhoul, "A fast cosine transform in one and two dimensions", IEEE Trans. ASSP 28 (1980); the quarter-wave ones follow in the same way from
 //! frequencies shifted by one half; sines between nodes: Press et al. 2007, §12.4.
 
