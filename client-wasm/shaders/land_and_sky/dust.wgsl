@@ -119,7 +119,7 @@ fn started(index: u32) -> vec4<f32> {
     let image = place.xz - select(vec2<f32>(0.0), moved, by_patch);
     let nearest = image + box_m * round((near - image) / box_m);
     let xz = select(image, nearest, repeats());
-    let is_there = !by_patch || all(patch_of(xz) == patch_of(near));
+    let is_there = !by_patch | all(patch_of(xz) == patch_of(near));
     return vec4<f32>(xz.x, place.y, xz.y, select(0.0, 1.0, is_there));
 }
 
