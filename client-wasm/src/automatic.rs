@@ -34,7 +34,7 @@ impl AutomaticQuality {
         self.budget.budget_secs()
     }
 
-    /// Reports a drawn frame. If no rung keeps the budget, the next coarser preset takes over for good; if the highest rung leaves much of it unused, the
+    /// Reports a drawn frame. If no rung keeps the budget, the next coarser preset takes over, and no finer one comes back; if the highest rung leaves much of it unused, the
     /// next finer one.
     pub fn record(&mut self, frame: FrameTime) {
         self.budget.record(frame);

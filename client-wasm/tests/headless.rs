@@ -130,6 +130,36 @@ fn dust_is_drawn_only_where_it_is() {
     assert_eq!(differing(middle..2 * middle), 0.0, "no dust in the east");
 }
 
+/// Pictures of two seconds after dust everywhere has gone at once, and of air that was always clear.
+#[test]
+fn dust_that_has_gone_leaves_nothing_behind() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter; the package mesa-vulkan-drivers contains a software one");
+    let wind = Wind { dust: WindDust { release_per_s: 1.0, ..WindDust::default() }, ..Wind::default() };
+    let blow = |mirror: &mut Mirror, seq: u32, concentration: f32| {
+        let mut codes = vec![0; 3 * 8192];
+        codes.resize(4 * 8192, CodeSteps::default().dust_code(concentration));
+        let payload = codec::encode(Shape::wind(32, true), &codes, None);
+        let (tick, turbulence) = (u64::from(15 * seq), TurbulenceState::default());
+        mirror.apply(ServerMessage::Wind { tick, seq, key: true, turbulence, payload }).expect("a valid wind frame");
+    };
+    let pictures = |concentration: f32| {
+        let (mut mirror, mut picture) = (meadow_in(255, wind.clone()), OffscreenRenderer::new(&gpu, SIZE_PX, Quality::Low));
+        let mut draw = |mirror: &mut Mirror, frames: std::ops::Range<u32>| {
+            for frame in frames {
+                picture.draw(mirror, &camera(), f64::from(frame) * 0.1, 0.1);
+            }
+            picture.rgba()
+        };
+        blow(&mut mirror, 1, concentration);
+        let before = draw(&mut mirror, 0..10);
+        (2..6).for_each(|seq| blow(&mut mirror, seq, 0.0));
+        [before, draw(&mut mirror, 10..30)]
+    };
+    let ([clear, still_clear], [dusty, cleared]) = (pictures(0.0), pictures(4.0));
+    assert!(difference(&clear, &dusty) > 5.0, "dust is seen: {}", difference(&clear, &dusty));
+    assert!(cleared == still_clear, "{} of 255 differ", difference(&cleared, &still_clear));
+}
+
 #[test]
 fn a_skipped_frame_would_equal_the_previous_one() {
     let gpu = Gpu::headless().expect("a Vulkan adapter; the package mesa-vulkan-drivers contains a software one");

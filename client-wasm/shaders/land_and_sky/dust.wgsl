@@ -61,7 +61,7 @@ const PUFF_LENGTH: f32 = 1.2;
 const PUFF_WIDTH: f32 = 0.85;
 // Mean opacity of a puff over its life and the square of its half-axes, relative to the opacity of its centre: pi / 3 of the outline, 0.7 of the life.
 const OPAQUE_SHARE: f32 = 0.73;
-// Largest size of a puff (m).
+// Largest size of a puff of mean random number in the middle of its life (m).
 const LARGEST_PUFF_M: f32 = 5.0;
 // Mean life of a puff (s).
 const PUFF_SECS: f32 = 5.0;
@@ -138,7 +138,10 @@ fn puff(index: u32) -> Sprite {
     let before = places[index].age;
     var age = before + drift.step_secs / (PUFF_SECS * (0.6 + 0.8 * own));
     let start = started(index);
-    if age >= 1.0 && drift.puff_m3 > 0.0 && start.w > 0.0 {
+    // One that the camera has left behind.
+    let reach_m = select(frame.wind_box_m.xz, 0.5 * max(vec2<f32>(drift.puff_square_m), frame.wind_box_m.xz), repeats());
+    let is_lost = any(abs(place.xz - frame.eye_m.xz) > reach_m);
+    if (age >= 1.0 || is_lost) && drift.puff_m3 > 0.0 && start.w > 0.0 {
         place = start.xyz;
         // The first ones are of all ages.
         age = select(0.0, random3(vec2<i32>(i32(index), 7), 0u).x, before >= 2.0);
@@ -163,7 +166,6 @@ fn puff(index: u32) -> Sprite {
     let area_m2 = OPAQUE_SHARE * PUFF_LENGTH * PUFF_WIDTH * size_m * size_m;
     let optical_depth = EXTINCTION_PER_M * max(dust, FULL_PUFFS_DUST) * drift.puff_m3 / area_m2;
     let share = smoothstep(0.0, 0.3 * FULL_PUFFS_DUST, dust);
-    let reach_m = select(frame.wind_box_m.xz, 0.5 * max(vec2<f32>(drift.puff_square_m), frame.wind_box_m.xz), repeats());
     let rim = 1.0 - smoothstep(0.8, 1.0, max(abs(to.x) / reach_m.x, abs(to.z) / reach_m.y));
     let of_life = smoothstep(0.0, 0.2, age) * (1.0 - smoothstep(0.6, 1.0, age));
     let near = smoothstep(1.0, 3.0, distance_m / size_m);

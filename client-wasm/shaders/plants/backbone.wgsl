@@ -55,7 +55,7 @@ fn width_fraction(t: f32, is_textured: bool) -> f32 {
     return select((1.0 - t * t) * (0.80 + 0.55 * t), WIDER, is_textured);
 }
 
-// Width (m) at a distance from the eye: near blades part before they fill the picture.
+// Width (m) at a distance from the eye: blades at the eye get narrower, so that none fills the picture.
 fn width_at(width_m: f32, distance_m: f32) -> f32 {
     return min(width_m, WIDEST_RAD * distance_m);
 }

@@ -77,10 +77,9 @@ impl Settings {
 
     /// Sets the quality by name, [`AUTOMATIC`] included. An unknown name changes nothing and returns false.
     pub(super) fn set_quality(&mut self, name: &str) -> bool {
-        let preset = Preset::from_name(name, self.device);
-        let is_known = preset.is_some();
-        self.preset = preset.unwrap_or_else(|| self.preset.clone());
-        is_known
+        let Some(preset) = Preset::from_name(name, self.device) else { return false };
+        self.preset = preset;
+        true
     }
 
     /// Name of the chosen quality, [`AUTOMATIC`] included.

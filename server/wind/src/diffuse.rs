@@ -197,7 +197,7 @@ mod tests {
     use crate::boundary::BoundaryConditions;
     use crate::{Boundary, Location};
 
-    /// Amplitude of a cosine after diffusion for `dt_secs` that keeps signs, and of the exact solution.
+    /// Amplitude of a wave of two cells after diffusion for `dt_secs` that keeps signs, and of the exact solution.
     fn decayed(dt_secs: f64, steps: u32) -> [f64; 2] {
         let grid = Grid { cells: [8, 1, 1], spacing_m: [1.0; 3], boundary: [[Boundary::Wrap; 2]; 3] };
         let walls = BoundaryConditions::new(&grid, Box::new(|_, _| [0.0; 3]));
@@ -226,5 +226,20 @@ mod tests {
         });
         let orders = [0, 1].map(|at| (errors[at] / errors[at + 1]).log2());
         assert!(orders.iter().all(|order| (1.9..2.1).contains(order)), "{errors:?}: orders {orders:?}");
+    }
+
+    /// The only free value between an inflow and an outflow face has the inflow on both sides.
+    #[test]
+    fn implicit_friction_keeps_a_uniform_wind_through_any_number_of_cells() {
+        for cells in 1..5 {
+            let boundary = [[Boundary::Inflow, Boundary::Outflow], [Boundary::FreeSlip; 2], [Boundary::Wrap; 2]];
+            let grid = Grid { cells: [cells, 4, 3], spacing_m: [1.0; 3], boundary };
+            let faces = BoundaryConditions::new(&grid, Box::new(|_, _| [2.0, 0.0, 0.0]));
+            let mut field = Field::<f64>::zeros(&grid, Location::Face(0));
+            field.data.fill(2.0);
+            Implicit::new(&grid).step(&grid, 50.0, 0.1, &mut field);
+            faces.apply_to_component(&mut field);
+            assert!(field.values(&grid).all(|speed| (speed - 2.0).abs() < 1e-12), "{cells} cells: {:?}", field.data);
+        }
     }
 }

@@ -33,7 +33,7 @@ const TASKS: usize = 32;
 /// A planned solver of `(shift − ∇²)·φ = f` with the seven-point Laplacian.
 ///
 /// Takes time proportional to the number of unknowns and to the sum of the prime factors of the transform lengths along x and y: products of 2, 3 and 5
-/// are best (for nodes between two Dirichlet edges, one less than these). All lengths along z are equally efficient.
+/// are best (for nodes between two Dirichlet edges, one less than these); nodes on a Neumann edge take time proportional to the square of their number. All lengths along z are equally efficient.
 ///
 /// ```
 /// use prairie_wind::separable::{Basis, Edge, Separable};

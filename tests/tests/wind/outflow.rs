@@ -56,7 +56,7 @@ fn carried_out(rows: usize, damping: f32, speed_m_per_s: f64) -> anyhow::Result<
 }
 
 #[test]
-fn vortices_leave_with_less_than_a_hundredth_of_their_energy_reflected() -> anyhow::Result<()> {
+fn vortices_on_fine_grids_leave_with_less_than_a_hundredth_of_their_energy_reflected() -> anyhow::Result<()> {
     for speed_m_per_s in [2.0, 6.0] {
         let mut conserved = Vec::new();
         for rows in [16, 32, 64] {
@@ -143,6 +143,7 @@ fn a_cyclone_at_open_faces_brings_no_energy_in() -> anyhow::Result<()> {
         for _ in 0..1500 {
             solver.step(0.02, &[])?;
             let now = energy(&solver);
+            assert!(now <= start * (1.0 + 1e-3), "{diffusion:?}: {now} of {start}");
             rise = rise.max((now - before) / start);
             before = now;
         }

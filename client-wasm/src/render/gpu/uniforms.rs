@@ -240,7 +240,7 @@ uniform_block! {
         /// Number of puffs, and of motes.
         puffs: u32,
         motes: u32,
-        /// Sides of the squares around the camera that contain the puffs, and the motes (m).
+        /// Side of the square around the camera over which the puffs spread where the wind domain is smaller, and of the square that contains the motes (m).
         puff_square_m: f32,
         mote_square_m: f32,
         /// Maximum height of motes (m).

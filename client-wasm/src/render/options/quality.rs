@@ -59,7 +59,7 @@ struct Preset {
     drops: u32,
     /// Dust motes around the camera.
     motes: u32,
-    /// Puffs of haze, and the side of the square around the camera that contains them (m).
+    /// Puffs of dust, and the side of the square around the camera over which they spread where the wind domain is smaller (m).
     puffs: (u32, f32),
     /// Buffer for the underbrush in view, and again for its rows (bytes): four times what the shipped scenes fill at 960 × 540. Where rows do not fit, plants
     /// are drawn more coarsely and finally left out.
@@ -322,7 +322,7 @@ impl Quality {
         self.preset().motes
     }
 
-    /// Puffs of haze, and the side of the square around the camera that contains them (m).
+    /// Puffs of dust, and the side of the square around the camera over which they spread where the wind domain is smaller (m).
     pub(crate) fn puffs(self) -> (u32, f32) {
         self.preset().puffs
     }

@@ -48,6 +48,7 @@ pub enum Diffusion {
     },
     /// Backward Euler, solved exactly by transforms. First order in dt, stable at any step. Requires a box without solid cells.
     Implicit,
-    /// Crank–Nicolson, its implicit half solved by transforms. Second order in dt, stable at any step. Requires a box without solid cells.
+    /// Crank–Nicolson, its implicit half solved by transforms; with Runge–Kutta 3, beyond the limit of the explicit scheme, an L-stable scheme. Second order in dt,
+    /// stable at any step. Requires a box without solid cells.
     CrankNicolson,
 }
