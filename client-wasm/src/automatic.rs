@@ -1,4 +1,4 @@
-//! Automatic quality: which preset is loaded, and the height on its [ladder](crate::ladder) that keeps the frame time within a budget.
+//! Automatic quality: which preset is loaded, and the height on its [ladder] that keeps the frame time within a budget.
 
 use crate::budget::{FrameBudget, FrameTime};
 use crate::ladder::{self, RUNGS_BELOW, Rung};
