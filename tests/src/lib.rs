@@ -20,6 +20,7 @@ pub mod similarity;
 pub mod slow_line;
 pub mod still;
 pub mod synthetic;
+pub mod texture;
 pub mod turntable;
 pub mod views;
 pub mod worlds;

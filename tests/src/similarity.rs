@@ -1,4 +1,4 @@
-//! Perceptual similarity of two pictures: FLIP and SSIM.
+//! Perceptual similarity of two pictures: FLIP, SSIM and texture.
 //!
 //! FLIP (Andersson et al. 2020) is the difference seen when two pictures are shown alternately: 0 (none) to 1. It
 //! weighs colour and edges by the resolution of the eye, so finer noise counts for little. SSIM (Wang et al. 2004) compares mean, contrast and structure of the luma in windows: 1 for equal pictures, about 0 for unrelated ones.
@@ -7,6 +7,7 @@ use anyhow::{Result, ensure};
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageFloat, FlipImageRgb8, magma_lut};
 
 use crate::picture::Picture;
+use crate::texture::Texture;
 
 /// Similarity of a picture to a reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,6 +18,8 @@ pub struct Similarity {
     pub flip_worst: f64,
     /// Mean SSIM, 1 for equal pictures.
     pub ssim: f64,
+    /// Difference of texture.
+    pub texture: Texture,
 }
 
 impl Similarity {
@@ -26,7 +29,12 @@ impl Similarity {
     /// When the sizes differ, or are too small for SSIM.
     pub fn of(reference: &Picture, seen: &Picture) -> Result<Self> {
         let flip = Flip::of(reference, seen)?;
-        Ok(Self { flip_mean: flip.mean(), flip_worst: flip.exceeded_by(0.01), ssim: ssim(reference, seen)? })
+        Ok(Self {
+            flip_mean: flip.mean(),
+            flip_worst: flip.exceeded_by(0.01),
+            ssim: ssim(reference, seen)?,
+            texture: Texture::of(reference, seen)?,
+        })
     }
 }
 
@@ -75,7 +83,7 @@ fn rgb(picture: &Picture) -> FlipImageRgb8 {
     FlipImageRgb8::with_data(picture.width, picture.height, &bytes)
 }
 
-fn same_size(a: &Picture, b: &Picture) -> Result<()> {
+pub(crate) fn same_size(a: &Picture, b: &Picture) -> Result<()> {
     let is_same = (a.width, a.height) == (b.width, b.height);
     ensure!(is_same, "a picture of {}x{} compared with one of {}x{}", b.width, b.height, a.width, a.height);
     Ok(())
@@ -110,7 +118,7 @@ pub fn ssim(a: &Picture, b: &Picture) -> Result<f64> {
 }
 
 /// Luma of ITU-R BT.601, 0 to 255.
-fn luma(picture: &Picture) -> Vec<f64> {
+pub(crate) fn luma(picture: &Picture) -> Vec<f64> {
     let of = |rgba: &[u8]| 0.299 * f64::from(rgba[0]) + 0.587 * f64::from(rgba[1]) + 0.114 * f64::from(rgba[2]);
     picture.rgba.chunks_exact(4).map(of).collect()
 }

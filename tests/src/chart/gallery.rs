@@ -8,6 +8,7 @@ use prairie_client::render::{Gpu, Quality, RenderOptions};
 
 use crate::similarity::Similarity;
 use crate::still::Still;
+use crate::texture::Texture;
 use crate::views::View;
 
 /// A picture of the page.
@@ -59,7 +60,7 @@ pub fn write(plates: &[Plate], [width, height]: [u32; 2], quality: Quality, mach
     let (size, quality) = (format!("{width}x{height}"), quality.name());
     let mut text = format!(
         "# Gallery\n\nTen views, from an ant's to an aircraft's height, in calm air and in a storm, at {size} px and {quality} quality. Each states, for every quality, the median\n\
-         frame time in software rendering, and the mean FLIP and SSIM against a reference that draws every plant at full detail ([method](../../README.md#the-picture)).\n\
+         frame time in software rendering, and the mean FLIP, SSIM and texture against a reference that draws every plant at full detail ([method](../../README.md#the-picture)).\n\
          It also names the corresponding figures in the literature ([bibliography](../../../shared/README.md#bibliography)). [More pictures](../README.md)\n\n\
          {machine}\n\n```sh\ncargo run --release -p tests --bin chart -- gallery --size {size} --quality {quality}\n```\n"
     );
@@ -67,13 +68,17 @@ pub fn write(plates: &[Plate], [width, height]: [u32; 2], quality: Quality, mach
         let View { name, scene, shows, answers, .. } = view;
         let rows: String = shots
             .iter()
-            .map(|Shot { quality, ms, similarity: Similarity { flip_mean, ssim, .. } }| {
-                format!("| {} | {ms:.0} ms | {flip_mean:.4} | {ssim:.4} |\n", quality.name())
+            .map(|Shot { quality, ms, similarity: Similarity { flip_mean, ssim, texture, .. } }| {
+                let Texture { brightness, contrast, gradients } = texture;
+                format!(
+                    "| {} | {ms:.0} ms | {flip_mean:.4} | {ssim:.4} | {brightness:.4} | {contrast:.4} | {gradients:.3} |\n",
+                    quality.name()
+                )
             })
             .collect();
         writeln!(
             text,
-            "\n## {name}\n\n![{shows}]({name}.jpg)\n\nScene `{scene}`: {shows}. Compare {answers}.\n\n| quality | frame time | mean FLIP | SSIM |\n|---|---:|---:|---:|\n\
+            "\n## {name}\n\n![{shows}]({name}.jpg)\n\nScene `{scene}`: {shows}. Compare {answers}.\n\n| quality | frame time | mean FLIP | SSIM | brightness | contrast | gradients |\n|---|---:|---:|---:|---:|---:|---:|\n\
              {rows}\n```sh\ncargo run --release -p tests --bin chart -- gallery --size {size} --quality {quality} --views {name}\n```"
         )
         .expect("writing to a string cannot fail");
@@ -89,7 +94,8 @@ mod tests {
     #[test]
     fn the_page_shows_every_plate_with_its_figures() -> Result<()> {
         let folder = tempfile::tempdir()?;
-        let similarity = Similarity { flip_mean: 0.0412, flip_worst: 0.3, ssim: 0.871 };
+        let texture = Texture { brightness: 0.0123, contrast: 0.0034, gradients: 0.256 };
+        let similarity = Similarity { flip_mean: 0.0412, flip_worst: 0.3, ssim: 0.871, texture };
         let shots = Quality::ALL.map(|quality| Shot { quality, ms: 123.4, similarity }).to_vec();
         let plates = VIEWS.map(|view| Plate { view, shots: shots.clone() });
         write(&plates, [640, 360], Quality::High, "made-up machine", folder.path())?;
@@ -98,7 +104,7 @@ mod tests {
             let section = page.split("\n## ").find(|section| section.starts_with(&format!("{}\n", view.name)));
             let section = section.with_context(|| format!("{} is missing", view.name))?;
             assert!(section.contains(&format!("({}.jpg)", view.name)) && section.contains(view.answers), "{section}");
-            assert!(section.contains("| medium | 123 ms | 0.0412 | 0.8710 |\n| high | 123 ms |"), "{section}");
+            assert!(section.contains("| medium | 123 ms | 0.0412 | 0.8710 | 0.0123 | 0.0034 | 0.256 |\n| high | 123 ms |"), "{section}");
         }
         assert!(page.contains("made-up machine"));
         Ok(())

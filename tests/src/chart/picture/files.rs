@@ -9,6 +9,7 @@ use super::super::Row;
 use super::super::line::lines;
 use super::super::plot::{Labels, svg};
 use super::Shot;
+use crate::texture::Texture;
 
 /// The chart of all views: means over them.
 pub(super) const ALL: &str = "all views";
@@ -81,6 +82,11 @@ pub(super) fn means(shots: &[Shot], views: usize) -> Vec<Shot> {
                 flip: mean(|shot| shot.flip),
                 flip_worst: mean(|shot| shot.flip_worst),
                 ssim: mean(|shot| shot.ssim),
+                texture: Texture {
+                    brightness: mean(|shot| shot.texture.brightness),
+                    contrast: mean(|shot| shot.texture.contrast),
+                    gradients: mean(|shot| shot.texture.gradients),
+                },
                 blades: mean(|shot| shot.blades.into()) as u32,
                 clumps: mean(|shot| shot.clumps.into()) as u32,
                 ..shot.clone()
@@ -92,9 +98,10 @@ pub(super) fn means(shots: &[Shot], views: usize) -> Vec<Shot> {
 
 /// Measurements as CSV (RFC 4180).
 fn csv(shots: &[Shot]) -> String {
-    let mut text = String::from("view,method,quality,level,ms,flip,flip_worst,ssim,blades,clumps\n");
-    for Shot { view, method, quality, level, ms, flip, flip_worst, ssim, blades, clumps } in shots {
-        writeln!(text, "{view},\"{method}\",{quality},{level},{ms:.3},{flip:.5},{flip_worst:.5},{ssim:.5},{blades},{clumps}")
+    let mut text = String::from("view,method,quality,level,ms,flip,flip_worst,ssim,brightness,contrast,gradients,blades,clumps\n");
+    for Shot { view, method, quality, level, ms, flip, flip_worst, ssim, texture, blades, clumps } in shots {
+        let Texture { brightness, contrast, gradients } = texture;
+        writeln!(text, "{view},\"{method}\",{quality},{level},{ms:.3},{flip:.5},{flip_worst:.5},{ssim:.5},{brightness:.5},{contrast:.5},{gradients:.5},{blades},{clumps}")
             .expect("a string takes all");
     }
     text
@@ -121,7 +128,7 @@ mod tests {
         let names: Vec<&str> = files.iter().filter_map(|path| path.file_name()?.to_str()).collect();
         assert_eq!(names, ["picture.csv", "picture.json", "picture-ant.svg", "picture-hill.svg", "picture-all-views.svg"]);
         let text = std::fs::read_to_string(&files[0]).unwrap();
-        assert_eq!(text.lines().nth(1), Some("ant,\"clumps, cut\",low,0,10.000,0.10000,0.20000,0.90000,7,3"));
+        assert_eq!(text.lines().nth(1), Some("ant,\"clumps, cut\",low,0,10.000,0.10000,0.20000,0.90000,0.01000,0.02000,0.30000,7,3"));
         let read: serde_json::Value = serde_json::from_slice(&std::fs::read(&files[1]).unwrap()).unwrap();
         assert_eq!(read[1]["view"], "hill");
         assert!(std::fs::read_to_string(&files[4]).unwrap().contains("made-up machine"));

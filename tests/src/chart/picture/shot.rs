@@ -8,6 +8,7 @@ use super::Method;
 use crate::picture::Picture;
 use crate::similarity::Similarity;
 use crate::still::Still;
+use crate::texture::Texture;
 
 /// Cost and similarity of one method on one view at one quality.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -28,6 +29,8 @@ pub struct Shot {
     pub flip_worst: f64,
     /// Mean SSIM.
     pub ssim: f64,
+    /// Difference of texture.
+    pub texture: Texture,
     /// Simulated near plants.
     pub blades: u32,
     /// Drawn clumps of distant plants.
@@ -75,6 +78,7 @@ pub fn shots(
                 flip: similarity.flip_mean,
                 flip_worst: similarity.flip_worst,
                 ssim: similarity.ssim,
+                texture: similarity.texture,
                 blades: stats.blades,
                 clumps: stats.clumps,
             });
@@ -87,5 +91,6 @@ pub fn shots(
 pub(super) fn made_up(view: &str, method: &str, level: u32, ms: f64, flip: f64) -> Shot {
     let quality = Quality::ALL[level as usize].name().to_owned();
     let (view, method) = (view.to_owned(), method.to_owned());
-    Shot { view, method, quality, level: level.into(), ms, flip, flip_worst: 2.0 * flip, ssim: 1.0 - flip, blades: 7, clumps: 3 }
+    let texture = Texture { brightness: 0.1 * flip, contrast: 0.2 * flip, gradients: 3.0 * flip };
+    Shot { view, method, quality, level: level.into(), ms, flip, flip_worst: 2.0 * flip, ssim: 1.0 - flip, texture, blades: 7, clumps: 3 }
 }

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::files::means;
 use super::{Shot, bought};
+use crate::texture::Texture;
 
 /// Frame budgets of the summary (ms): 60, 30, 15, 10, 5 and 2 frames per second.
 const BUDGETS_MS: [f64; 6] = [16.7, 33.3, 66.7, 100.0, 200.0, 500.0];
@@ -14,9 +15,13 @@ pub fn summary(shots: &[Shot]) -> String {
     views.dedup();
     let means = means(shots, views.len());
     let width = means.iter().map(|shot| shot.method.chars().count()).fold(8, usize::max);
-    let mut text = format!("{:<width$}  {:<8} {:>9} {:>7} {:>7} {:>7}\n", "method", "quality", "ms", "FLIP", "worst", "SSIM");
-    for Shot { method, quality, ms, flip, flip_worst, ssim, .. } in &means {
-        writeln!(text, "{method:<width$}  {quality:<8} {ms:>9.1} {flip:>7.4} {flip_worst:>7.4} {ssim:>7.4}").expect("a string takes all");
+    let mut text = format!(
+        "{:<width$}  {:<8} {:>9} {:>7} {:>7} {:>7} {:>10} {:>8} {:>9}\n",
+        "method", "quality", "ms", "FLIP", "worst", "SSIM", "brightness", "contrast", "gradients"
+    );
+    for Shot { method, quality, ms, flip, flip_worst, ssim, texture: Texture { brightness, contrast, gradients }, .. } in &means {
+        write!(text, "{method:<width$}  {quality:<8} {ms:>9.1} {flip:>7.4} {flip_worst:>7.4} {ssim:>7.4}").expect("a string takes all");
+        writeln!(text, " {brightness:>10.4} {contrast:>8.4} {gradients:>9.4}").expect("a string takes all");
     }
     let Some(first) = shots.first() else { return text };
     writeln!(text, "\n{}, mean of the views: what a frame budget buys", first.method).expect("a string takes all");
@@ -53,7 +58,10 @@ mod tests {
         let text = summary(&[of("ant"), of("hill")].concat());
         let line =
             |start: &str| text.lines().find(|line| line.trim_start().starts_with(start)).unwrap_or_else(|| panic!("{start}: {text}"));
-        assert_eq!(line("clumps, cut  low").split_whitespace().collect::<Vec<_>>()[3..], ["20.0", "0.1000", "0.2000", "0.9000"]);
+        assert_eq!(
+            line("clumps, cut  low").split_whitespace().collect::<Vec<_>>()[3..],
+            ["20.0", "0.1000", "0.2000", "0.9000", "0.0100", "0.0200", "0.3000"]
+        );
         assert_eq!(line("16.7 ms"), "  16.7 ms  kept in no view");
         assert_eq!(line("500 ms"), "   500 ms  kept in 2 of 2 views: level 1.00, FLIP 0.0500, 0.0500 at most");
     }
