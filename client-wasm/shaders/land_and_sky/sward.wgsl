@@ -7,13 +7,21 @@ import package::land_and_sky::grass_color::{plant_color, trodden};
 import package::land_and_sky::grass_light::{grass_lamps, grass_light, sun_in_grass};
 import package::uniforms::Kind;
 
+// Fraction of straw in the colour of a blade of a hue.
+fn straw_of(hue: f32) -> f32 {
+    return smoothstep(0.86, 0.99, hue) * 0.75;
+}
+
+// Its mean over all hues.
+const MEAN_STRAW: f32 = 0.05625;
+
 // Light from a blade to the eye, at fraction `t` of its length and at `height` relative to the mean height of its kind. `view` runs from the
 // eye to `p`, `light` is the fraction of unshadowed sunlight, `hue` runs from fresh to dry.
 fn blade_color(
-    kind: Kind, tint: vec3<f32>, t: f32, height: f32, hue: f32, tilt: f32, normal: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>, p: vec3<f32>, light: f32,
+    kind: Kind, tint: vec3<f32>, t: f32, height: f32, hue: f32, straw: f32, tilt: f32, normal: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>, p: vec3<f32>,
+    light: f32,
 ) -> vec3<f32> {
     var albedo = tint * plant_color(kind.root_rgb, kind.tip_rgb, t, hue);
-    let straw = smoothstep(0.86, 0.99, hue) * 0.75;
     albedo = mix(albedo, vec3<f32>(0.38, 0.30, 0.13) * (0.35 + 0.65 * t), straw);
     // Pale ends, as in flowering grass.
     albedo = mix(albedo, albedo * vec3<f32>(1.35, 1.12, 0.95), smoothstep(0.72, 1.0, t) * smoothstep(0.3, 0.9, hue));
@@ -72,6 +80,12 @@ fn leafiness(kind: Kind) -> f32 {
     return kind.width * kind.height_m / (kinds.list[0].width * kinds.list[0].height_m);
 }
 
+// Fraction of a sward that shows leaves; dark gaps show between them. Fitted, as `SWARD_SHEEN`, to pictures of every blade without a far look: meadow and
+// continuum, the sun behind and before the eye.
+const LEAFY_FRACTION: f32 = 0.92;
+// Mean of the highlights along blades that lean in all directions, relative to sunlight.
+const SWARD_SHEEN: f32 = 0.008;
+
 // Colour of a sward seen from afar: two layers of leaves, each with half of the visible leaf area; deeper leaves show less.
 fn sward_color(p: vec3<f32>, up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: vec2<f32>, view: vec3<f32>, light: f32) -> vec3<f32> {
     let leaf_area = frame.leaf_area * leafiness(kind);
@@ -84,7 +98,7 @@ fn sward_color(p: vec3<f32>, up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: v
     for (var i = 0; i < 2; i++) {
         let height = max(1.0 - CANOPY_TOP_DEPTH - free * select(1.39, 0.29, i == 0), 0.0);
         let t = mix(height, 1.0, 0.35);
-        color += blade_color(kind, tint, t, height, select(0.65, 0.35, i == 0), tilt, facing, tangent, view, p, light);
+        color += blade_color(kind, tint, t, height, select(0.65, 0.35, i == 0), MEAN_STRAW, tilt, facing, tangent, view, p, light);
     }
-    return 0.5 * color;
+    return 0.5 * LEAFY_FRACTION * color + frame.sun_rgb * (light * SWARD_SHEEN);
 }

@@ -70,11 +70,12 @@ fn soil_at(p: vec2<f32>, span_m: f32) -> Soil {
     return Soil(albedo, 0.9 * (crumbs.rb - 0.5) + 0.5 * (grain.gb - 0.5));
 }
 
-// Mottle of grass seen from afar, where a pixel spans `span_m`: two patterns at an angle, which hides their repetition.
+// Mottle of grass seen from afar, where a pixel spans `span_m`: tufts and their shadows, of 3 m down to 0.1 m. Two patterns at an angle, which hides their
+// repetition; the mip levels are a step finer than pixels, since averages of four pixels lose contrast.
 fn mottle_at(p: vec2<f32>, span_m: f32) -> f32 {
-    let fine = noise_over(p / 2.9, span_m / 2.9).g;
-    let broad = noise_over(vec2<f32>(0.6 * p.x - 0.8 * p.y, 0.6 * p.y + 0.8 * p.x) / 11.3, span_m / 11.3).b;
-    return 1.05 + 0.22 * (fine - 0.5) + 0.22 * (broad - 0.5);
+    let fine = noise_over(vec2<f32>(0.9285 * p.x - 0.3714 * p.y, 0.9285 * p.y + 0.3714 * p.x) / 6.9, 0.5 * span_m / 6.9).gb;
+    let broad = noise_over(vec2<f32>(0.6 * p.x - 0.8 * p.y, 0.6 * p.y + 0.8 * p.x) / 23.0, 0.5 * span_m / 23.0).gb;
+    return 1.02 + 0.3 * (fine.x + fine.y - 1.0) + 0.12 * (broad.x + broad.y - 1.0);
 }
 
 // Dead leaves between the roots, resolved only near the eye: noise stretched along three directions.
@@ -160,7 +161,7 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
         let mottle = mottle_at(p, span_m);
         let reached = frame.sun_rgb * sun_light * sun_in_grass(0.0, kind.height_m);
         let under = floor_at(p, distance_m, kind) * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
-        let grass = afar * mix(mottle, 1.0, smoothstep(60.0, 400.0, distance_m));
+        let grass = afar * mix(mottle, 1.0, smoothstep(200.0, 900.0, distance_m));
         color += mix(under, grass, between) * fraction;
     }
     return vec4<f32>(color * ground.haze.a + ground.haze.rgb, 1.0);

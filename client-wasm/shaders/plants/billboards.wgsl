@@ -13,7 +13,7 @@ import package::land_and_sky::grass_color::grass_tint;
 import package::land_and_sky::ground::{fed, grass_fraction, ground_height, ground_normal};
 import package::land_and_sky::haze::hazed;
 import package::land_and_sky::sky_light::ambient;
-import package::land_and_sky::sward::{blade_color, contrast, sward_color};
+import package::land_and_sky::sward::{MEAN_STRAW, blade_color, contrast, sward_color};
 import package::plants::nearness::nearness;
 import package::plants::opacity::LEAST_OPACITY;
 import package::plants::weighted::{Weighted, weighted};
@@ -129,7 +129,7 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     // Near its root a clump has the colour of the grass around it.
     let afar = sward_color(ground, ground_normal(root), kind, tint, lean, view, light);
     pose.root_color = hazed(afar, p);
-    let top = blade_color(kind, tint, 0.95, 0.9, 0.5, tilt, normal, tangent, view, p, light);
+    let top = blade_color(kind, tint, 0.95, 0.9, 0.5, MEAN_STRAW, tilt, normal, tangent, view, p, light);
     pose.tip_color = hazed(mix(afar, top, 0.35 + 0.65 * contrast(distance_m)), p);
     pose.petal_light = frame.sun_rgb * light * 0.6 + ambient(normal) + lamps_on(p, normal, 0.3);
     poses_out[id.x] = pose;
