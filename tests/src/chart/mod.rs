@@ -13,6 +13,7 @@
 //! | [`peers`] | frame rates of other programs and ours in a browser |
 //! | [`pictures`] | draws the pictures of a document again |
 //! | [`shells`] | cost of shell layers |
+//! | [`start`] | times of the first pictures of a page in a browser |
 //! | [`stream`] | bits on the wire against the error of the grass |
 //! | [`figure`] | line charts and coloured fields as SVG |
 //! | [`line`](mod@line) | a line per method, with interpolation |
@@ -38,6 +39,7 @@ pub mod plot;
 pub mod row;
 pub mod run;
 pub mod shells;
+pub mod start;
 pub mod stream;
 pub mod summary;
 pub mod table;

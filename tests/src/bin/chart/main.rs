@@ -1,5 +1,7 @@
 //! Measures methods (wall time against error), writes charts and a summary, and updates the tables of the documents.
 
+mod help;
+
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, ensure};
@@ -17,9 +19,11 @@ use tests::chart::row::cells_text;
 use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
 use tests::chart::tables::with_tables;
-use tests::chart::{Problem, bend, gpu, pictures, plants, shells, stream, wind};
+use tests::chart::{Problem, bend, gpu, pictures, plants, shells, start, stream, wind};
 use tests::still::Still;
 use tests::views::{VIEWS, View};
+
+use help::{BEND_FILES, EXAMPLES, FILES, GPU_FILES, PEERS_FILES, PICTURE_FILES, PLANTS_FILES, SHELLS_FILES, START_FILES, STREAM_FILES};
 
 /// Measures methods on problems with known solutions: wall time against error.
 ///
@@ -31,19 +35,6 @@ struct Arguments {
     #[command(subcommand)]
     model: Model,
 }
-
-const EXAMPLES: &str = "\
-Examples:
-  cargo run --release -p tests --bin chart -- wind
-  cargo run --release -p tests --bin chart -- wind --quick --only cavity --out /tmp/charts
-  cargo run --release -p tests --bin chart -- wind --tables tests/README.md
-  cargo run --release -p tests --bin chart -- bend --only cars
-  cargo run --release -p tests --bin chart -- picture --quick --views ant-calm,hill-storm
-  cargo run --release -p tests --bin chart -- gallery
-  cargo run --release -p tests --bin chart -- gpu
-  cargo run --release -p tests --bin chart -- peers --peer webgpu-grass=../webgpu-grass/dist
-  cargo run --release -p tests --bin chart -- pictures --only storm
-  cargo run --release -p tests --features compressors --bin chart -- stream";
 
 #[derive(Subcommand)]
 enum Model {
@@ -115,6 +106,16 @@ enum Model {
         #[arg(long, value_name = "DIR", default_value = "target/charts")]
         out: PathBuf,
     },
+    /// Start of a page in fresh browsers with software WebGPU: times of the first pictures, and processor time of a frame
+    #[command(after_help = START_FILES)]
+    Start {
+        /// Number of pages at each quality
+        #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=1000))]
+        pages: u32,
+        /// Output folder
+        #[arg(long, value_name = "DIR", default_value = "target/charts")]
+        out: PathBuf,
+    },
     /// Pictures of a document, drawn again by the commands beside them
     Pictures {
         /// The document
@@ -134,66 +135,6 @@ enum Model {
 
 /// Cache folder of references, within the folder of the charts.
 const CACHE: &str = "target/charts/cache";
-
-const GPU_FILES: &str = "\
-Files in DIR:
-  gpu.md  frame time at medium, high and ultra, 1920 × 1080 and 3840 × 2160, the time of each kind of pass, and the
-          time for a million near blades; with the card's name";
-
-const PEERS_FILES: &str = "\
-Files in DIR:
-  peers.md           frames per second and processor time a frame of each page, and how ours compare
-  peers/NAME.jpg     a screenshot of each
-
-A page is built with its own tools first, such as `npm ci && npx vite build`; --peer names the folder with its index.html.";
-
-const SHELLS_FILES: &str = "\
-Files in DIR:
-  shells-layers.svg, .csv  frames per second against the number of layers, with and without slices between them, and Bakay's";
-
-const STREAM_FILES: &str = "\
-Files in DIR:
-  stream-DRIVE.svg, .csv  bits per cell and frame against the largest error of θ: drive, wash, cyclone and storm
-
-Built with --features compressors, which needs cmake, libclang and libzstd-dev, the charts have lines of zstd, zfp and SZ3, too.";
-
-const FILES: &str = "\
-Files in DIR, updated after each problem:
-  wind-PROBLEM.svg   error across, time up, both logarithmic; one line per method, further left
-                     and down is better; the Pareto front, which nothing beats, is highlighted
-  wind.csv, .json    every figure: model, problem, method, cells, dt_secs, norm (l1, l2 = root mean
-                     square, linf), error, wall_secs (wall time per simulated second or projection)
-
-Printed for each problem and a few errors: the fastest method, interpolated between two runs, and how
-much longer the best of another family takes.";
-
-const BEND_FILES: &str = "\
-Files in DIR:
-  bend-PROBLEM.svg        error across, time up, as for the wind; bend.csv and bend.json hold the figures
-  bend-cars.svg, .csv     time of a step against the number of moving cars, with a straight line through it
-  bend-failures.svg, .csv where each scheme is accurate, inaccurate or blows up: speed of a car against steps per second
-  bend-overlap.svg, .csv  error of the loose overlap of Chen & Johan against wave speed, for three damping rates";
-
-const PLANTS_FILES: &str = "\
-Files in DIR:
-  plants-PROBLEM.svg         error across, time up, as for the wind: a blade's integrators in a recorded gust, and the
-                             sections of a component under its weight; plants.csv and plants.json hold the figures
-  plants-postures.svg, .csv  error of the tip against the size of a posture table, and look-up times
-  plants-constraint.svg, .csv force on a plant after a gust, with and without the velocity term of the constraint
-  plants-stability.svg, .csv longest stable time step of a blade against its stiffness, measured and in theory";
-
-const PICTURE_FILES: &str = "\
-Files in DIR:
-  picture-VIEW.svg         mean FLIP (x) and frame time (y), both logarithmic; one line per method, whose points
-                           are the qualities; picture-all-views.svg has the means over the views
-  picture.csv, .json       every figure: view, method, quality, level, ms, FLIP (mean and 99th percentile), SSIM, counts
-  picture-plants.svg, .csv time of a frame against the plants of the scene
-  picture-height.svg, .csv time of a frame against the height of the view
-  picture-vertices.svg, .csv, .md
-                           time of the main pass per million vertices, as counted by the GPU
-  cache/VIEW-SIZE.png      references, drawn again after this program is rebuilt
-
---only WORD picks methods (`clumps`, `sorted`) or one of the figures `plants`, `height` and `vertices`.";
 
 #[derive(Args)]
 struct Options {
@@ -218,6 +159,7 @@ fn main() -> Result<()> {
         Model::Gallery { out, cache, size, quality, views } => draw_gallery(&out, &cache, size, quality, &chosen(views)),
         Model::Gpu { out, quick } => report_gpu(&out, quick),
         Model::Peers { peers, seconds, out } => compare_peers(&peers, seconds, &out),
+        Model::Start { pages, out } => time_starts(pages, &out),
         Model::Pictures { of, only } => draw_pictures(&of, only.as_deref()),
         Model::Shells(options) => charts("shells", Vec::new(), &shells::FIGURES, &options),
         Model::Stream(options) => charts("stream", Vec::new(), &stream::FIGURES, &options),
@@ -314,6 +256,14 @@ fn compare_peers(peers: &[Peer], seconds: u64, out: &Path) -> Result<()> {
     let report = runtime.block_on(peers::compare(peers, measured, &machine(), &screenshots, |name| bar.set_message(name.to_owned())))?;
     bar.finish_and_clear();
     write_report(&report, out, "peers.md")
+}
+
+fn time_starts(pages: u32, out: &Path) -> Result<()> {
+    let bar = spinner();
+    let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build()?;
+    let report = runtime.block_on(start::measure(pages, &machine(), |name| bar.set_message(name.to_owned())))?;
+    bar.finish_and_clear();
+    write_report(&report, out, "start.md")
 }
 
 fn write_report(report: &str, out: &Path, name: &str) -> Result<()> {
