@@ -80,10 +80,8 @@ fn leafiness(kind: Kind) -> f32 {
     return kind.width * kind.height_m / (kinds.list[0].width * kinds.list[0].height_m);
 }
 
-// Fraction of a sward that shows leaves; dark gaps show between them. Fitted, as `SWARD_SHEEN`, to pictures of every blade without a far look: meadow and
-// continuum, the sun behind and before the eye.
-const LEAFY_FRACTION: f32 = 0.92;
-// Mean of the highlights along blades that lean in all directions, relative to sunlight.
+// Mean of the highlights along blades that lean in all directions, relative to sunlight: fitted to pictures of every blade without a far look, of meadow and
+// continuum with the sun behind and before the eye.
 const SWARD_SHEEN: f32 = 0.008;
 
 // Colour of a sward seen from afar: two layers of leaves, each with half of the visible leaf area; deeper leaves show less.
@@ -100,5 +98,5 @@ fn sward_color(p: vec3<f32>, up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: v
         let t = mix(height, 1.0, 0.35);
         color += blade_color(kind, tint, t, height, select(0.65, 0.35, i == 0), MEAN_STRAW, tilt, facing, tangent, view, p, light);
     }
-    return 0.5 * LEAFY_FRACTION * color + frame.sun_rgb * (light * SWARD_SHEEN);
+    return 0.5 * color + frame.sun_rgb * (light * SWARD_SHEEN);
 }

@@ -70,12 +70,12 @@ fn soil_at(p: vec2<f32>, span_m: f32) -> Soil {
     return Soil(albedo, 0.9 * (crumbs.rb - 0.5) + 0.5 * (grain.gb - 0.5));
 }
 
-// Mottle of grass seen from afar, where a pixel spans `span_m`: tufts and their shadows, of 3 m down to 0.1 m. Two patterns at an angle, which hides their
-// repetition; the mip levels are a step finer than pixels, since averages of four pixels lose contrast.
+// Mottle of grass seen from afar, where a pixel spans `span_m`: taller grass is brighter, by the pattern of its growth in `fed`; finer tufts and their shadows
+// at an angle to it, which hides their repetition. The mip levels are a step finer than pixels, since averages of four pixels lose contrast.
 fn mottle_at(p: vec2<f32>, span_m: f32) -> f32 {
-    let fine = noise_over(vec2<f32>(0.9285 * p.x - 0.3714 * p.y, 0.9285 * p.y + 0.3714 * p.x) / 6.9, 0.5 * span_m / 6.9).gb;
-    let broad = noise_over(vec2<f32>(0.6 * p.x - 0.8 * p.y, 0.6 * p.y + 0.8 * p.x) / 23.0, 0.5 * span_m / 23.0).gb;
-    return 1.02 + 0.3 * (fine.x + fine.y - 1.0) + 0.12 * (broad.x + broad.y - 1.0);
+    let growth = noise_over(p / 14.0, 0.5 * span_m / 14.0).a;
+    let tufts = noise_over(vec2<f32>(0.9285 * p.x - 0.3714 * p.y, 0.9285 * p.y + 0.3714 * p.x) / 6.9, 0.5 * span_m / 6.9).gb;
+    return 1.02 + 0.3 * (growth - 0.53) + 0.2 * (tufts.x + tufts.y - 1.0);
 }
 
 // Dead leaves between the roots, resolved only near the eye: noise stretched along three directions.

@@ -78,7 +78,10 @@ const LIGHT_STEP: f64 = 0.05;
 fn light_of_crown(picture: &mut OffscreenRenderer, mirror: &mut Mirror, tree: &PlacedModel, distance_m: f32) -> f64 {
     let middle_m = tree.position_m + Vec3::Y * 0.6 * tree.size_m;
     let camera = Camera { eye_m: middle_m + Vec3::Z * distance_m, ..Camera::default() };
-    picture.draw(mirror, &camera, 0.0, 0.0);
+    // Shadows of a cascade that the camera has left are drawn in a later frame.
+    for _ in 0..4 {
+        picture.draw(mirror, &camera, 0.0, 0.0);
+    }
     let half_px = (0.25 * tree.size_m / (distance_m * pixel_rad(&camera))) as u32;
     let [left, top] = APPROACH_PX.map(|side| side / 2 - half_px);
     let rgba = picture.rgba();
