@@ -3,14 +3,19 @@
 use anyhow::{Result, ensure};
 use prairie_client::render::Quality;
 use tests::chart::picture::METHODS;
+use tests::picture::Picture;
 use tests::similarity::{Flip, Similarity};
+use tests::texture::Texture;
 
 use crate::{SIZE_PX, gpu, view};
 
 /// Bounds of mean FLIP and SSIM from the hill.
 const HILL_BOUNDS: [f64; 2] = [0.14, 0.49];
 
-/// Checks that all render options keep to an upper bound of mean FLIP and a lower bound of SSIM.
+/// Bounds of the difference of texture on every view.
+const TEXTURE_BOUNDS: Texture = Texture { brightness: 0.05, contrast: 0.05, gradients: 0.35 };
+
+/// Checks that all render options keep to an upper bound of mean FLIP and a lower bound of SSIM, and to [`TEXTURE_BOUNDS`].
 fn compare(name: &str, [most_flip, least_ssim]: [f64; 2]) -> Result<()> {
     let gpu = gpu()?;
     let (mut still, reference) = view(&gpu, name, SIZE_PX)?;
@@ -21,12 +26,12 @@ fn compare(name: &str, [most_flip, least_ssim]: [f64; 2]) -> Result<()> {
         let (picture, _) = still.draw(&mut canvas);
         let similarity = Similarity::of(&reference, &picture)?;
         println!("{name}, {}: {similarity:?}", method.name());
-        if similarity.flip_mean > most_flip || similarity.ssim < least_ssim {
+        if similarity.flip_mean > most_flip || similarity.ssim < least_ssim || !similarity.texture.is_within(&TEXTURE_BOUNDS) {
             let seen = std::env::temp_dir().join(format!("prairie-{name}-{}-{}.png", method.far.name(), method.order.name()));
             picture.save(&seen)?;
             Flip::of(&reference, &picture)?.heat_map().save(&seen.with_extension("flip.png"))?;
             failures.push(format!(
-                "{}: {similarity:?}, FLIP up to {most_flip} and SSIM from {least_ssim} are allowed; see {}",
+                "{}: {similarity:?}, FLIP up to {most_flip}, SSIM from {least_ssim} and {TEXTURE_BOUNDS:?} are allowed; see {}",
                 method.name(),
                 seen.display()
             ));
@@ -61,5 +66,23 @@ fn another_view_differs_from_the_reference() -> Result<()> {
     let similarity = Similarity::of(&reference, &still.draw(&mut canvas).0)?;
     let [most_flip, least_ssim] = HILL_BOUNDS;
     ensure!(similarity.flip_mean > most_flip && similarity.ssim < least_ssim, "{similarity:?}");
+    Ok(())
+}
+
+/// Negative control of the bounds of texture: grass drawn as blocks of its mean colours, and a picture a quarter darker.
+#[test]
+fn blocks_and_darker_grass_differ_in_texture() -> Result<()> {
+    let (_, reference) = view(&gpu()?, "walking-calm", SIZE_PX)?;
+    let block_px = 8;
+    let means = reference.averaged(block_px);
+    let changed = |change: &dyn Fn(u32, u32) -> [u8; 4]| {
+        let pixels = (0..reference.height).flat_map(|y| (0..reference.width).map(move |x| (x, y)));
+        Picture { rgba: pixels.flat_map(|(x, y)| change(x, y)).collect(), ..reference.clone() }
+    };
+    let last = [means.width - 1, means.height - 1];
+    let blocks = Texture::of(&reference, &changed(&|x, y| means.pixel((x / block_px).min(last[0]), (y / block_px).min(last[1]))))?;
+    ensure!(blocks.gradients > TEXTURE_BOUNDS.gradients, "{blocks:?}");
+    let darker = Texture::of(&reference, &changed(&|x, y| reference.pixel(x, y).map(|level| level - level / 4)))?;
+    ensure!(darker.brightness > TEXTURE_BOUNDS.brightness, "{darker:?}");
     Ok(())
 }
