@@ -31,7 +31,7 @@ const VEHICLE_INSTANCES: usize = 18;
 const SWAY_BYTES: usize = 16;
 /// Minimum height on screen of fine trees, and maximum of distant ones (px), at high quality.
 pub(crate) const FINE_TREE_PX: f32 = 130.0;
-pub(crate) const DISTANT_TREE_PX: f32 = 26.0;
+const DISTANT_TREE_PX: f32 = 26.0;
 /// Light of distant trees that are lit per vertex, relative to that of fragments: their few sprays of leaves reach out of the shade of the crown.
 const DISTANT_LIGHT_PER_VERTEX: f32 = 0.88;
 /// Detail of the trees in each shadow cascade.
