@@ -105,7 +105,7 @@ mod tests {
 
     /// Upright stripes of random levels: blades that stand elsewhere for every seed.
     fn blades(seed: u32) -> Picture {
-        picture(|x, y| 60.0 + 120.0 * f64::from(hash3([x / 2, y / 24, seed])[0]) / f64::from(u32::MAX))
+        picture(|x, y| 60.0 + 120.0 * f64::from(hash3([x / 2, y / 4, seed])[0]) / f64::from(u32::MAX))
     }
 
     #[test]
