@@ -1,4 +1,4 @@
-//! Start of a page in a fresh browser: times of its first and of its complete picture, and the processor time of a frame afterwards.
+//! Start of a page in a fresh browser: times of its first and of its complete picture, and of a frame in the page afterwards.
 
 use std::time::Duration;
 
@@ -13,16 +13,16 @@ use crate::prairie::Prairie;
 
 /// Size of every page (CSS pixels).
 const SIZE_PX: [u32; 2] = [1280, 720];
-/// Time for frames after the complete picture, whose processor time is averaged by the page.
+/// Time for frames after the complete picture, whose time is averaged by the page.
 const SETTLE: Duration = Duration::from_secs(10);
 /// Qualities; without one it is automatic, as for a visitor.
 const QUALITIES: [Option<&str>; 3] = [None, Some("low"), Some("medium")];
 
-/// Aims for the first picture in software (s), and for the processor time of a frame in the page at medium (ms).
+/// Aims for the first picture in software (s), and for a frame in the page at medium (ms).
 const FIRST_PICTURE_SECS: f64 = 3.0;
 const FRAME_CPU_MS: f64 = 2.0;
 
-/// A page that started: first and complete picture (s since it was opened), and processor time of a frame (ms).
+/// A page that started: first and complete picture (s since it was opened), and a frame in the page (ms).
 type Times = [f64; 3];
 
 /// Opens the scene `meadow` in `pages` fresh browsers at each quality; returns a table as Markdown.
@@ -42,11 +42,11 @@ pub async fn measure(pages: u32, machine: &str, mut say: impl FnMut(&str)) -> Re
     }
     Ok(format!(
         "# Start of a page\n\n{machine}\n\nHeadless Chromium with WebGPU in software (SwiftShader), {} × {}, scene `meadow`; every page in a browser of its own that knows nothing of an earlier one, with the server on the same cores. \
-         Least, median and largest of {pages} pages. The first picture is that of land and sky on the screen; the processor time is that of the page's own thread, without the graphics process. \
+         Least, median and largest of {pages} pages. The first picture is that of land and sky on the screen; the time of a frame is that of the page's own thread by the clock, with what the graphics process takes from it on the same cores. \
          The aims are a first picture in {FIRST_PICTURE_SECS} s and a frame in {FRAME_CPU_MS} ms at medium.\n\n{}",
         SIZE_PX[0],
         SIZE_PX[1],
-        markdown(&["quality", "first picture (s)", "complete picture (s)", "processor time of a frame (ms)"], &rows)
+        markdown(&["quality", "first picture (s)", "complete picture (s)", "frame in the page (ms)"], &rows)
     ))
 }
 

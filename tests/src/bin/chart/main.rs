@@ -106,7 +106,7 @@ enum Model {
         #[arg(long, value_name = "DIR", default_value = "target/charts")]
         out: PathBuf,
     },
-    /// Start of a page in fresh browsers with software WebGPU: times of the first pictures, and processor time of a frame
+    /// Start of a page in fresh browsers with software WebGPU: times of the first pictures, and of a frame in the page
     #[command(after_help = START_FILES)]
     Start {
         /// Number of pages at each quality
