@@ -187,9 +187,10 @@ fn fs(surface: Surface) -> @location(0) vec4<f32> {
     return vec4<f32>(hazed(color, surface.p), 1.0);
 }
 
-// Depth below the corners of a spray of leaves at which their shadow is sampled, relative to the height of the tree; farther in they would be
-// in their own shadow.
-const SPRAY_FRACTION: f32 = 0.14;
+// Where the shadow of a corner of a spray of leaves is sampled: at this depth below it, since the corners reach out of the crown, and this far
+// towards the eye, since the leaves behind it are hidden. Both are relative to the height of the tree.
+const SPRAY_FRACTION: f32 = 0.065;
+const TOWARDS_EYE_FRACTION: f32 = 0.095;
 
 // Surface lit at its vertices: most fragments of sprays of leaves are hidden or cut away.
 struct Afar {
@@ -207,7 +208,8 @@ fn vs_afar(vertex: Vertex, @builtin(instance_index) index: u32) -> Afar {
     let view = normalize(surface.p - frame.eye_m);
     let normal = normalize(surface.normal);
     let height = length(instances[index].world_from_model[1].xyz);
-    let light = sun_light_at(surface.p - normal * select(0.0, SPRAY_FRACTION * height, is_leaf), normal);
+    let sampled_from = (normal * SPRAY_FRACTION + view * TOWARDS_EYE_FRACTION) * select(0.0, height, is_leaf);
+    let light = sun_light_at(surface.p - sampled_from, normal);
     let black = matte(surface.p, normal, view, vec3<f32>(0.0), surface.color.a, is_leaf, light);
     let plain = matte(surface.p, normal, view, surface.color.rgb, surface.color.a, is_leaf, light);
     let air = air_before(surface.p);

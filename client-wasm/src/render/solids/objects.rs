@@ -31,9 +31,7 @@ const VEHICLE_INSTANCES: usize = 18;
 const SWAY_BYTES: usize = 16;
 /// Minimum height on screen of fine trees, and maximum of distant ones (px), at high quality.
 pub(crate) const FINE_TREE_PX: f32 = 130.0;
-const DISTANT_TREE_PX: f32 = 26.0;
-/// Light of distant trees that are lit per vertex, relative to that of fragments: their few sprays of leaves reach out of the shade of the crown.
-const DISTANT_LIGHT_PER_VERTEX: f32 = 0.88;
+pub(crate) const DISTANT_TREE_PX: f32 = 26.0;
 /// Detail of the trees in each shadow cascade.
 const SHADOW_DETAIL: [TreeDetail; 2] = [TreeDetail::Coarse, TreeDetail::Distant];
 
@@ -65,8 +63,6 @@ pub(crate) struct ObjectPasses {
     pipelines: LampVariants<Pipelines>,
     shadow_pipelines: [wgpu::RenderPipeline; 2],
     group: wgpu::BindGroup,
-    /// Factor on the tint of distant trees.
-    distant_light: f32,
     sway: wgpu::ComputePipeline,
     sway_group: wgpu::BindGroup,
     instances: wgpu::Buffer,
@@ -98,7 +94,6 @@ impl ObjectPasses {
             pipelines: pipelines(factory.clone(), quality, layout.clone()),
             shadow_pipelines: shadow_pipelines(factory, &module, &layout),
             group: bind(gpu, "objects", &layout, &resources),
-            distant_light: if is_lit_per_vertex(factory, quality) { DISTANT_LIGHT_PER_VERTEX } else { 1.0 },
             sway: factory.compute("blow", &module, "blow", &sway_layout),
             sway_group: bind_as(gpu, "blow", &sway_layout, &[(0, &instances), (3, &sways)]),
             count: 0,
@@ -191,9 +186,7 @@ impl ObjectPasses {
             };
             let instance = Instance { world_from_model: placed.world_from_model.to_cols_array(), tint: placed.tint };
             if is_seen(bounds) {
-                let light = if detail == TreeDetail::Distant && placed.is_tree { self.distant_light } else { 1.0 };
-                let [red, green, blue, sway] = placed.tint;
-                lists.picture[mesh(detail)].push(Instance { tint: [red * light, green * light, blue * light, sway], ..instance });
+                lists.picture[mesh(detail)].push(instance);
             }
             for ((list, cascade), detail) in lists.cascades.iter_mut().zip(cascades).zip(SHADOW_DETAIL) {
                 if casts(cascade, bounds) {
@@ -258,11 +251,6 @@ const VERTEX_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 1] = [Some(wgp
     attributes: &VERTEX_ATTRIBUTES,
 })];
 
-/// Whether coarse and distant trees are lit at their vertices.
-fn is_lit_per_vertex(factory: &PassFactory, quality: Quality) -> bool {
-    quality.is_cheap(factory.gpu.is_software)
-}
-
 fn pipelines(factory: PassFactory, quality: Quality, layout: wgpu::BindGroupLayout) -> LampVariants<Pipelines> {
     let draw = DrawDescriptor { label: "objects", buffers: &VERTEX_BUFFERS, ..DrawDescriptor::default() };
     LampVariants::new(move |[lamps]| {
@@ -270,8 +258,8 @@ fn pipelines(factory: PassFactory, quality: Quality, layout: wgpu::BindGroupLayo
             [true, false].map(|gloss| factory.shader("objects", shaders::OBJECTS, &[lamps, ("is_glossy", gloss)]));
         let [glossy, matte] = [&glossy_module, &matte_module].map(|module| factory.draw(module, Some(&layout), &draw));
         let per_vertex = DrawDescriptor { vertex: "vs_afar", fragment: Some("fs_afar"), ..draw };
-        let coarse_trees =
-            if is_lit_per_vertex(&factory, quality) { factory.draw(&matte_module, Some(&layout), &per_vertex) } else { matte.clone() };
+        let is_per_vertex = quality.is_cheap(factory.gpu.is_software);
+        let coarse_trees = if is_per_vertex { factory.draw(&matte_module, Some(&layout), &per_vertex) } else { matte.clone() };
         Pipelines { glossy, matte, coarse_trees }
     })
 }

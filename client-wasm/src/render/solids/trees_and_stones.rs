@@ -91,9 +91,9 @@ pub(crate) fn crown(shape: u32) -> Crown {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TreeDetail {
     Fine,
-    /// Fewer and larger sprays of leaves.
+    /// Fewer and larger sprays of leaves, and no branches.
     Coarse,
-    /// One spray per clump of leaves, and a minimal trunk.
+    /// Even fewer and larger ones, and a minimal trunk.
     Distant,
 }
 
@@ -103,12 +103,24 @@ impl TreeDetail {
     /// Sides and rings of the trunk, and sprays per clump of leaves.
     fn counts(self) -> [usize; 3] {
         match self {
-            Self::Fine => [9, 5, 11],
+            Self::Fine => [9, 5, FINE_SPRAYS],
             Self::Coarse => [5, 5, 3],
-            Self::Distant => [3, 1, 1],
+            Self::Distant => [3, 1, 2],
+        }
+    }
+
+    /// Size of a spray of leaves relative to that of a fine tree, which keeps the light of the crown.
+    fn spray_scale(self) -> f32 {
+        match self {
+            Self::Fine => 1.0,
+            Self::Coarse => 1.6,
+            Self::Distant => 1.75,
         }
     }
 }
+
+/// Sprays per clump of leaves of a fine tree; coarser trees have the first of them.
+const FINE_SPRAYS: usize = 11;
 
 /// A tree one metre tall.
 pub(crate) fn tree(shape: u32, detail: TreeDetail) -> Solid {
@@ -125,14 +137,32 @@ pub(crate) fn tree(shape: u32, detail: TreeDetail) -> Solid {
     tree.tube(&rings, sides, BARK);
     let clumps = form.clumps(&mut tree, detail, &mut random);
     for (i, &clump) in clumps.iter().enumerate() {
-        for _ in 0..sprays {
-            form.spray(&mut tree, clump, i as f32 / clumps.len() as f32, detail, &mut random);
+        let along = i as f32 / clumps.len() as f32;
+        for n in 0..FINE_SPRAYS {
+            let mut spray = form.spray(clump, along, &mut random);
+            if n < sprays {
+                spray.size *= detail.spray_scale();
+                form.add_spray(&mut tree, &spray);
+            }
         }
     }
     tree
 }
 
 const BARK: Paint = Paint::new(0.105, 0.075, 0.050, 0.0);
+
+/// A square of leaves in a tree one metre tall.
+struct Spray {
+    /// Centre of the clump it belongs to.
+    clump: Vec3,
+    centre: Vec3,
+    /// Half its side (m).
+    size: f32,
+    /// How its face differs from the direction out of the crown.
+    tilt: Vec3,
+    spin_rad: f32,
+    hue: f32,
+}
 
 /// Shape of a tree one metre tall.
 struct TreeForm {
@@ -185,17 +215,32 @@ impl TreeForm {
             };
             let centre = Vec3::new(radius * angle.cos(), height, radius * angle.sin());
             clumps.push(centre);
-            if detail == TreeDetail::Fine && !self.is_cone && i % 2 == 0 {
+            if !self.is_cone && i % 2 == 0 {
                 let start = self.trunk(random.between(0.55, 0.98));
                 let knee = start.lerp(centre, 0.55) - Vec3::Y * 0.02;
-                tree.tube(&[(start, GIRTH * 0.38), (knee, GIRTH * 0.24), (centre, GIRTH * 0.08)], 5, BARK);
+                if detail == TreeDetail::Fine {
+                    tree.tube(&[(start, GIRTH * 0.38), (knee, GIRTH * 0.24), (centre, GIRTH * 0.08)], 5, BARK);
+                }
             }
         }
         clumps
     }
 
-    /// Adds a spray of leaves to a clump; `along` is the position of the clump from the first (0) to the last (1).
-    fn spray(&self, tree: &mut Solid, clump: Vec3, along: f32, detail: TreeDetail, random: &mut Random) {
+    /// A random spray of leaves of a fine tree; `along` is the position of its clump from the first (0) to the last (1).
+    fn spray(&self, clump: Vec3, along: f32, random: &mut Random) -> Spray {
+        let offset = Vec3::new(random.between(-1.0, 1.0), random.between(-0.8, 0.8), random.between(-1.0, 1.0));
+        let size = self.clump_size * if self.is_cone { 1.0 - 0.55 * along } else { 1.0 };
+        Spray {
+            clump,
+            centre: clump + offset * size * 0.55,
+            size: size * random.between(0.55, 0.80),
+            tilt: Vec3::new(random.between(-1.0, 1.0), random.between(-0.6, 1.0), random.between(-1.0, 1.0)),
+            spin_rad: random.between(0.0, TAU),
+            hue: random.between(0.85, 1.2),
+        }
+    }
+
+    fn add_spray(&self, tree: &mut Solid, &Spray { clump, centre, size, tilt, spin_rad, hue }: &Spray) {
         let leaf = match self.shape {
             0 => [0.100, 0.170, 0.030],
             1 => [0.130, 0.200, 0.040],
@@ -203,26 +248,13 @@ impl TreeForm {
             _ => [0.052, 0.105, 0.034],
         };
         let Crown { low, high, .. } = self.crown;
-        let offset = Vec3::new(random.between(-1.0, 1.0), random.between(-0.8, 0.8), random.between(-1.0, 1.0));
-        let shrink = if self.is_cone { 1.0 - 0.55 * along } else { 1.0 };
-        let centre = clump + offset * self.clump_size * 0.55 * shrink;
-        let size = match detail {
-            TreeDetail::Fine => random.between(0.55, 0.80),
-            TreeDetail::Coarse => 1.05,
-            TreeDetail::Distant => 1.45,
-        };
-        let size = self.clump_size * shrink * size;
         let outward = ((centre - self.middle) / self.half).normalize_or(Vec3::Y);
-        let tilt = Vec3::new(random.between(-1.0, 1.0), random.between(-0.6, 1.0), random.between(-1.0, 1.0));
         let face = (outward + tilt * 0.9).normalize_or(Vec3::Y);
-        let right = face.any_orthonormal_vector();
-        let spin = Quat::from_axis_angle(face, random.between(0.0, TAU));
-        let right = spin * right * size;
+        let right = Quat::from_axis_angle(face, spin_rad) * face.any_orthonormal_vector() * size;
         let up = face.cross(right);
         // It is darker deep inside the crown and near its lower end.
         let depth = ((centre - self.middle) / self.half).length().min(1.0);
         let open = (0.30 + 0.70 * depth.powf(1.5)) * (0.72 + 0.28 * ((centre.y - low) / (high - low)).clamp(0.0, 1.0));
-        let hue = random.between(0.85, 1.2);
         let paint = Paint { rgb: [leaf[0] * hue, leaf[1], leaf[2] * (2.0 - hue)], gloss: open };
         let mut corner = |x: f32, y: f32| {
             let position = centre + right * x + up * y;
