@@ -7,5 +7,6 @@ mod rotation;
 mod seams;
 mod sweep;
 mod tracks;
+mod varying_speed;
 mod waves;
 mod winds;
