@@ -17,7 +17,8 @@ fn pattern(of: impl Fn(usize, usize) -> f32) -> Pattern {
     (0..COUNT * COUNT).map(|n| of(n % COUNT, n / COUNT)).collect()
 }
 
-fn random(i: usize, j: usize) -> u32 {
+/// A random number below 2²⁴ for a cell.
+pub(super) fn random(i: usize, j: usize) -> u32 {
     let mixed = ((i as u32 * 0x9E37_79B1) ^ (j as u32 * 0x85EB_CA77)).wrapping_mul(0xC2B2_AE3D);
     (mixed ^ (mixed >> 15)).wrapping_mul(0x2C1B_3C6D) >> 8
 }
