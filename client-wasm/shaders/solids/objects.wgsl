@@ -208,8 +208,8 @@ fn vs_afar(vertex: Vertex, @builtin(instance_index) index: u32) -> Afar {
     let view = normalize(surface.p - frame.eye_m);
     let normal = normalize(surface.normal);
     let height = length(instances[index].world_from_model[1].xyz);
-    let sampled_from = (normal * SPRAY_FRACTION + view * TOWARDS_EYE_FRACTION) * select(0.0, height, is_leaf);
-    let light = sun_light_at(surface.p - sampled_from, normal);
+    let shaded_at = surface.p - (normal * SPRAY_FRACTION + view * TOWARDS_EYE_FRACTION) * select(0.0, height, is_leaf);
+    let light = sun_light_at(shaded_at, normal);
     let black = matte(surface.p, normal, view, vec3<f32>(0.0), surface.color.a, is_leaf, light);
     let plain = matte(surface.p, normal, view, surface.color.rgb, surface.color.a, is_leaf, light);
     let air = air_before(surface.p);

@@ -240,6 +240,7 @@ impl TreeForm {
         }
     }
 
+    /// Adds the two triangles of a spray to a tree.
     fn add_spray(&self, tree: &mut Solid, &Spray { clump, centre, size, tilt, spin_rad, hue }: &Spray) {
         let leaf = match self.shape {
             0 => [0.100, 0.170, 0.030],
