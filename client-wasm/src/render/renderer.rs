@@ -69,25 +69,8 @@ impl Renderer {
         }
     }
 
-    /// Creates a renderer and loads the mirror's scene. The future resolves once the device has reported whether its memory sufficed.
-    /// After an error the renderer draws garbage; a [lower](Quality::lower) quality may fit.
-    ///
-    /// # Errors
-    /// The future resolves to [`GpuError::DoesNotFit`].
-    pub fn with_scene(
-        gpu: &Gpu,
-        format: wgpu::TextureFormat,
-        size_px: [u32; 2],
-        quality: Quality,
-        mirror: &Mirror,
-    ) -> (Self, impl Future<Output = Result<(), GpuError>> + use<>) {
-        let scopes = ErrorScopes::open(gpu);
-        let mut renderer = Self::new(gpu, format, size_px, quality);
-        renderer.load_scene(mirror);
-        (renderer, scopes.close(quality))
-    }
-
-    /// The same with the first [stage](Stage) of the scene only: land and sky.
+    /// Creates a renderer with the first [stage](Stage) of the mirror's scene: land and sky. The future resolves once the device has reported whether its memory
+    /// sufficed. After an error the renderer draws garbage; a [lower](Quality::lower) quality may fit.
     ///
     /// # Errors
     /// The future resolves to [`GpuError::DoesNotFit`].
@@ -105,7 +88,7 @@ impl Renderer {
     }
 
     /// Creates the resources of the next stage of the mirror's scene, which [`add`](Self::add) makes visible; `None` if all stages are loaded, or those of
-    /// another scene. The future is that of [`with_scene`](Self::with_scene).
+    /// another scene. The future is that of [`with_land`](Self::with_land).
     ///
     /// # Errors
     /// The future resolves to [`GpuError::DoesNotFit`].
@@ -188,7 +171,7 @@ impl Renderer {
     }
 
     /// Loads all stages of the mirror's scene. [`draw`](Self::draw) does so by itself when the scene has changed.
-    pub fn load_scene(&mut self, mirror: &Mirror) {
+    pub(super) fn load_scene(&mut self, mirror: &Mirror) {
         self.begin_scene(mirror);
         while let Some(next) = self.next_stage(mirror) {
             self.add(next);

@@ -26,8 +26,13 @@ fn meadow(change: impl FnOnce(&mut Scene)) -> Mirror {
 }
 
 fn fits(gpu: &Gpu, quality: Quality, mirror: &Mirror) -> Result<(), GpuError> {
-    let (_, verdict) = Renderer::with_scene(gpu, wgpu::TextureFormat::Rgba8UnormSrgb, [64, 36], quality, mirror);
-    pollster::block_on(verdict)
+    let (mut renderer, verdict) = Renderer::with_land(gpu, wgpu::TextureFormat::Rgba8UnormSrgb, [64, 36], quality, mirror);
+    pollster::block_on(verdict)?;
+    while let Some((next, verdict)) = renderer.create_next_stage(mirror) {
+        pollster::block_on(verdict)?;
+        renderer.add(next);
+    }
+    Ok(())
 }
 
 fn camera() -> Camera {
