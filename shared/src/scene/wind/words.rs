@@ -95,7 +95,7 @@ words! {
         GaussSeidel = "gauss-seidel",
         /// Backward Euler, solved directly; first order in time.
         Implicit = "implicit",
-        /// Crank–Nicolson, solved directly; second order in time.
+        /// Crank–Nicolson, solved directly, or an L-stable scheme where friction is stiff and the pressure is kept; second order in time.
         CrankNicolson = "crank-nicolson",
     }
 }
