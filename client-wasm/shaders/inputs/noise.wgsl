@@ -10,5 +10,5 @@ fn noise(uv: vec2<f32>) -> vec4<f32> {
 
 // Noise in the mip level whose texels are as large as a pixel, `span` in texture coordinates.
 fn noise_over(uv: vec2<f32>, span: f32) -> vec4<f32> {
-    return textureSampleLevel(noises, repeated, uv, max(log2(span * f32(textureDimensions(noises).x)), 0.0));
+    return textureSampleLevel(noises, repeated, uv, log2(max(span * f32(textureDimensions(noises).x), 1.0)));
 }

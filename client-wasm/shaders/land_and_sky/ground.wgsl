@@ -2,7 +2,7 @@
 
 import package::constants::{GROWTH_BY_COVER, GROWTH_BY_MEADOW, GROWTH_BY_SOIL, HILLS_FULL_M, HILLS_MEAN, HILLS_RANGE_M, HILLS_SLOPE};
 import package::inputs::frame::{clamped, frame};
-import package::inputs::noise::noise;
+import package::inputs::noise::{noise, noise_over};
 import package::inputs::world_edge::metres_outside;
 
 @group(0) @binding(1) var heights: texture_2d<f32>;
@@ -61,17 +61,22 @@ fn soft_fraction(p: vec2<f32>) -> f32 {
 
 // Grass cover with ragged borders.
 fn grass_fraction(p: vec2<f32>) -> f32 {
-    return ragged_fraction(p, soft_fraction(p));
+    return grass_fraction_over(p, 0.0);
 }
 
-fn ragged_fraction(p: vec2<f32>, soft: f32) -> f32 {
+// Mean of the grass cover over `span_m`: a bare strip that is narrower makes it paler, but stays whole.
+fn grass_fraction_over(p: vec2<f32>, span_m: f32) -> f32 {
+    let spans_px = span_m * f32(textureDimensions(cover).x) / frame.world_extent_m.x;
+    let soft = textureSampleLevel(cover, clamped, p / frame.world_extent_m, log2(max(spans_px, 1.0))).r;
     let is_border = soft > 0.0 && soft < 1.0;
     var ragged = 0.0;
     for (var i = 0; i < select(0, 2, is_border); i++) {
-        let found = noise(p / select(7.0, 2.1, i == 1));
+        let period_m = select(7.0, 2.1, i == 1);
+        let found = noise_over(p / period_m, span_m / period_m);
         ragged += 0.3 * select(found.b, found.g, i == 1);
     }
-    return select(soft, smoothstep(0.35, 0.65, soft + (ragged - 0.3) * (1.0 - abs(2.0 * soft - 1.0))), is_border);
+    let sharp = smoothstep(0.35, 0.65, soft + (ragged - 0.3) * (1.0 - abs(2.0 * soft - 1.0)));
+    return select(soft, mix(sharp, soft, smoothstep(1.0, 3.0, spans_px)), is_border);
 }
 
 // Height of grass relative to its kind, 1 on average: it varies with the nutrients that underbrush leaves in the soil and with a random

@@ -11,7 +11,7 @@ import package::inputs::wind::{ground_wind_at, lean_of_wind};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
 import package::land_and_sky::grass_light::sun_in_grass;
-import package::land_and_sky::ground::{grass_fraction, ground_height, ground_normal, ragged_fraction, soft_fraction};
+import package::land_and_sky::ground::{grass_fraction_over, ground_height, ground_normal, soft_fraction};
 import package::land_and_sky::ground_tile::{GroundTile, kind_of_plain, tile_vertex};
 import package::land_and_sky::haze::air_before;
 import package::land_and_sky::sky_light::ambient;
@@ -92,11 +92,16 @@ fn litter_at(p: vec2<f32>, is_near: bool) -> vec3<f32> {
     return mix(vec3<f32>(0.034, 0.030, 0.012), vec3<f32>(0.125, 0.105, 0.042), smoothstep(0.72, 1.18, top)) * (0.6 + 0.8 * heap.b);
 }
 
-// Grass cover in front of a position, at half the distance that tall grass hides at this viewing angle.
-fn fraction_before(p: vec2<f32>, view: vec3<f32>, normal: vec3<f32>, kind: Kind) -> f32 {
+// Mean grass cover in front of a position, over the distance that tall grass hides at this viewing angle.
+fn fraction_before(p: vec2<f32>, span_m: f32, view: vec3<f32>, normal: vec3<f32>, kind: Kind) -> f32 {
     let down = clamp(-dot(view, normal), 0.02, 1.0);
     let hidden_m = kind.height_m * sqrt(1.0 - down * down) / down;
-    return grass_fraction(p - 0.5 * hidden_m * view.xz / max(length(view.xz), 1e-3));
+    let toward_eye = -view.xz / max(length(view.xz), 1e-3);
+    var sum = 0.0;
+    for (var i = 0; i < 2; i++) {
+        sum += grass_fraction_over(p + select(0.25, 0.75, i == 1) * hidden_m * toward_eye, max(span_m, 0.5 * hidden_m));
+    }
+    return 0.5 * sum;
 }
 
 fn kind_of(ground: Ground) -> Kind {
@@ -107,11 +112,11 @@ fn kind_of(ground: Ground) -> Kind {
 }
 
 // Visible fraction of grass, which also hides bare ground behind it.
-fn fraction_at(p: vec2<f32>, soft: f32, between: f32, view: vec3<f32>, normal: vec3<f32>, kind: Kind) -> f32 {
+fn fraction_at(p: vec2<f32>, span_m: f32, between: f32, view: vec3<f32>, normal: vec3<f32>, kind: Kind) -> f32 {
     if is_plain {
         return 1.0;
     }
-    return max(ragged_fraction(p, soft), between * fraction_before(p, view, normal, kind));
+    return max(grass_fraction_over(p, span_m), between * fraction_before(p, span_m, view, normal, kind));
 }
 
 // Ground between the roots.
@@ -142,8 +147,8 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let soft = select(soft_fraction(p), 1.0, is_plain);
     let kind = kind_of(ground);
     let between = bare_between(distance_m, kind, view, normal);
-    let fraction = fraction_at(p, soft, between, view, normal, kind);
     let span_m = distance_m * frame.pixel_rad * inverseSqrt(max(-dot(view, normal), 0.05));
+    let fraction = fraction_at(p, span_m, between, view, normal, kind);
     let sun_light = ground.air.z * sun_visible(ground.p + normal * 0.05);
     var color = vec3<f32>(0.0);
     if !is_plain && fraction < 1.0 {

@@ -24,6 +24,7 @@ use prairie_core::wire::{ServerMessage, Shape, codec};
 use std::fmt::Display;
 use wgpu::naga;
 
+mod bare;
 mod branches;
 mod constants;
 mod cracks;

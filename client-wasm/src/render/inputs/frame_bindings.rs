@@ -1,6 +1,7 @@
 //! Bind group 0, which all passes share: uniforms, heights, normals, cover, bend atlas, wind, noise, shadow map, sky.
 
 use crate::render::gpu::device::Gpu;
+use crate::render::gpu::mipmaps::{all_mipmaps, box_mipmaps};
 use crate::render::gpu::pipeline::{DEPTH, bind, sampled, sampler, texture, uniform};
 use crate::render::gpu::uniforms::Frame;
 use crate::render::inputs::bend_atlas::BendAtlas;
@@ -122,7 +123,7 @@ impl SceneTextures {
             gpu.texture("heights", TextureFormat::R32Float, heights.size_px(), &[bytemuck::cast_slice(heights.heights_m()).to_vec()]);
         let normal_texture = gpu.texture("normals", TextureFormat::Rgba8Snorm, heights.size_px(), &[normals(heights)]);
         let (cover, kind_map) = (decoded.cover(), decoded.kinds());
-        let cover_texture = gpu.texture("cover", TextureFormat::Rg8Unorm, cover.size_px(), &[grass(decoded)]);
+        let cover_texture = gpu.texture("cover", TextureFormat::Rg8Unorm, cover.size_px(), &grass(decoded));
         let kind_texture = gpu.texture("kinds", TextureFormat::R8Uint, kind_map.size_px(), &[kind_map.kinds().to_vec()]);
         let kinds = gpu.buffer("kinds", bytemuck::bytes_of(&grass_kinds::table(decoded.scene())), wgpu::BufferUsages::UNIFORM);
         let atlas = BendAtlas::new(gpu, *decoded.layout(), decoded.scene());
@@ -178,8 +179,9 @@ fn normals(heights: &HeightMap) -> Vec<u8> {
     texels
 }
 
-/// For each pixel the cover fraction of grass, which grows up to the trunks of trees, and the nutrients of the soil relative to twice their mean.
-fn grass(decoded: &DecodedScene) -> Vec<u8> {
+/// For each pixel the cover fraction of grass, which grows up to the trunks of trees, and the nutrients of the soil relative to twice their mean;
+/// all mip levels.
+fn grass(decoded: &DecodedScene) -> Vec<Vec<u8>> {
     let (scene, cover) = (decoded.scene(), decoded.cover());
     let fraction = |id: u8| match Cover::from(id) {
         cover if scene.is_grass(cover) => 255,
@@ -188,7 +190,8 @@ fn grass(decoded: &DecodedScene) -> Vec<u8> {
         _ => 0,
     };
     let nutrients = nutrients(decoded);
-    cover.ids().iter().zip(nutrients).flat_map(|(&id, nutrients)| [fraction(id), nutrients]).collect()
+    let texels = cover.ids().iter().zip(nutrients).flat_map(|(&id, nutrients)| [fraction(id), nutrients]).collect();
+    box_mipmaps::<2>(texels, cover.size_px(), all_mipmaps(cover.size_px()))
 }
 
 /// Nutrients at the pixels of the covering map, relative to twice their mean; one half in scenes without underbrush, which have no soil.

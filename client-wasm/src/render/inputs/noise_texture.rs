@@ -1,6 +1,6 @@
 //! Tileable noise.
 
-use crate::render::gpu::mipmaps::box_mipmaps;
+use crate::render::gpu::mipmaps::{all_mipmaps, box_mipmaps};
 use crate::render::inputs::random::Random;
 
 /// Side of the noise texture (px).
@@ -17,7 +17,7 @@ pub(crate) fn noise() -> Vec<Vec<u8>> {
             texels[i * 4 + channel] = (value * 255.0 + 0.5) as u8;
         }
     }
-    box_mipmaps(texels, [NOISE_PX; 2], NOISE_PX.ilog2() as usize + 1)
+    box_mipmaps::<4>(texels, [NOISE_PX; 2], all_mipmaps([NOISE_PX; 2]))
 }
 
 fn fractal(side: usize, period: usize, seed: u64, octaves: u32) -> Vec<f32> {

@@ -23,7 +23,7 @@ pub(super) fn blade_shapes() -> Vec<Vec<u8>> {
             }
         }
     }
-    box_mipmaps(texels, BLADE_PX, BLADE_LEVELS)
+    box_mipmaps::<4>(texels, BLADE_PX, BLADE_LEVELS)
 }
 
 /// Brightness of a blade at a height (0..1) and a position across (−1..1); `None` beside the blade.
