@@ -236,6 +236,12 @@ impl Browser {
         self.driver.cpu_secs()
     }
 
+    /// Processor time that the page's own thread has used so far (s). Linux only: 0 elsewhere.
+    #[must_use]
+    pub fn page_cpu_secs(&self) -> f64 {
+        self.driver.page_cpu_secs()
+    }
+
     /// The WebDriver client, for commands that have no method here.
     #[must_use]
     pub fn client(&self) -> &Client {

@@ -65,6 +65,21 @@ impl Chromedriver {
         stats.filter_map(|stat| cpu_ticks(&stat, self.group.as_raw_nonzero().get())).sum::<u64>() as f64 / TICKS_PER_SEC
     }
 
+    /// Processor time that the main threads of pages have used so far (s), without those of workers, of the graphics process and of the browser itself. Linux
+    /// only: 0 elsewhere.
+    #[must_use]
+    pub fn page_cpu_secs(&self) -> f64 {
+        let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
+        let nanos = processes.filter_map(|process| {
+            let read = |file: &str| fs::read_to_string(process.path().join(file)).ok();
+            cpu_ticks(&read("stat")?, self.group.as_raw_nonzero().get())?;
+            read("cmdline")?.contains("--type=renderer").then_some(())?;
+            let thread = Path::new("task").join(process.file_name()).join("schedstat");
+            read(thread.to_str()?)?.split_whitespace().next()?.parse::<u64>().ok()
+        });
+        nanos.sum::<u64>() as f64 / 1e9
+    }
+
     /// Output of chromedriver and Chromium so far, including the console of the page.
     #[must_use]
     pub fn log(&self) -> String {

@@ -15,6 +15,7 @@
 //! | [`shells`] | cost of shell layers |
 //! | [`start`] | times of the first pictures of a page in a browser |
 //! | [`stream`] | bits on the wire against the error of the grass |
+//! | [`versions`] | the same views with two versions of Prairie in a browser |
 //! | [`figure`] | line charts and coloured fields as SVG |
 //! | [`line`](mod@line) | a line per method, with interpolation |
 //! | [`plot`], [`ticks`] | a log–log chart as SVG |
@@ -45,6 +46,7 @@ pub mod summary;
 pub mod table;
 pub mod tables;
 pub mod ticks;
+pub mod versions;
 pub mod wind;
 
 pub use row::Row;

@@ -12,6 +12,7 @@ Examples:
   cargo run --release -p tests --bin chart -- peers --peer webgpu-grass=../webgpu-grass/dist
   cargo run --release -p tests --bin chart -- start
   cargo run --release -p tests --bin chart -- pictures --only storm
+  cargo run --release -p tests --bin chart -- versions --before ../earlier/target/release/prairie
   cargo run --release -p tests --features compressors --bin chart -- stream";
 
 pub(super) const GPU_FILES: &str = "\
@@ -29,6 +30,13 @@ A page is built with its own tools first, such as `npm ci && npx vite build`; --
 pub(super) const START_FILES: &str = "\
 Files in DIR:
   start.md  times of the first and of the complete picture, and of a frame in the page, at automatic quality, low and medium";
+
+pub(super) const VERSIONS_FILES: &str = "\
+Files in DIR:
+  VIEW.jpg   the view with the earlier version on the left and with the later one on the right
+  README.md  a page of all
+
+--views picks some: hill, aircraft, ruts, beyond, jacksboro, near, trees, storm, devil, night, dusk, tracks. All take a quarter of an hour.";
 
 pub(super) const SHELLS_FILES: &str = "\
 Files in DIR:

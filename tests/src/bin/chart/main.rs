@@ -19,11 +19,15 @@ use tests::chart::row::cells_text;
 use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
 use tests::chart::tables::with_tables;
-use tests::chart::{Problem, bend, gpu, pictures, plants, shells, start, stream, wind};
+use tests::chart::versions::{SIGHTS, Sight};
+use tests::chart::{Problem, bend, gpu, pictures, plants, shells, start, stream, versions, wind};
 use tests::still::Still;
 use tests::views::{VIEWS, View};
 
-use help::{BEND_FILES, EXAMPLES, FILES, GPU_FILES, PEERS_FILES, PICTURE_FILES, PLANTS_FILES, SHELLS_FILES, START_FILES, STREAM_FILES};
+use help::{
+    BEND_FILES, EXAMPLES, FILES, GPU_FILES, PEERS_FILES, PICTURE_FILES, PLANTS_FILES, SHELLS_FILES, START_FILES, STREAM_FILES,
+    VERSIONS_FILES,
+};
 
 /// Measures methods on problems with known solutions: wall time against error.
 ///
@@ -125,6 +129,22 @@ enum Model {
         #[arg(long, value_name = "WORD")]
         only: Option<String>,
     },
+    /// Two versions of Prairie in a browser with software WebGPU: the same views of each, side by side
+    #[command(after_help = VERSIONS_FILES)]
+    Versions {
+        /// Program of the earlier version, such as ../earlier/target/release/prairie
+        #[arg(long, value_name = "PROGRAM")]
+        before: PathBuf,
+        /// Program of the later version
+        #[arg(long, value_name = "PROGRAM", default_value = "target/release/prairie")]
+        after: PathBuf,
+        /// Only these views, separated by commas
+        #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = Sight::find)]
+        views: Vec<&'static Sight>,
+        /// Output folder
+        #[arg(long, value_name = "DIR", default_value = "tests/results/versions")]
+        out: PathBuf,
+    },
     /// Shells: frames per second against the number of layers, beside Bakay 2003, table 4.1
     #[command(after_help = SHELLS_FILES)]
     Shells(Options),
@@ -160,6 +180,7 @@ fn main() -> Result<()> {
         Model::Gpu { out, quick } => report_gpu(&out, quick),
         Model::Peers { peers, seconds, out } => compare_peers(&peers, seconds, &out),
         Model::Start { pages, out } => time_starts(pages, &out),
+        Model::Versions { before, after, views, out } => compare_versions(&before, &after, views, &out),
         Model::Pictures { of, only } => draw_pictures(&of, only.as_deref()),
         Model::Shells(options) => charts("shells", Vec::new(), &shells::FIGURES, &options),
         Model::Stream(options) => charts("stream", Vec::new(), &stream::FIGURES, &options),
@@ -264,6 +285,16 @@ fn time_starts(pages: u32, out: &Path) -> Result<()> {
     let report = runtime.block_on(start::measure(pages, &machine(), |name| bar.set_message(name.to_owned())))?;
     bar.finish_and_clear();
     write_report(&report, out, "start.md")
+}
+
+fn compare_versions(before: &Path, after: &Path, views: Vec<&'static Sight>, out: &Path) -> Result<()> {
+    let bar = spinner();
+    let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build()?;
+    let views = if views.is_empty() { SIGHTS.iter().collect() } else { views };
+    runtime.block_on(versions::compare(before, after, &views, out, |name| bar.set_message(name.to_owned())))?;
+    bar.finish_and_clear();
+    println!("{} pairs of pictures in {}", views.len(), out.display());
+    Ok(())
 }
 
 fn write_report(report: &str, out: &Path, name: &str) -> Result<()> {

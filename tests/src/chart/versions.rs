@@ -1,0 +1,173 @@
+//! Two versions of Prairie in a real browser: the same views of each, side by side.
+
+use std::fmt::Write as _;
+use std::net::TcpListener;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::Duration;
+
+use anyhow::{Context as _, Result, ensure};
+use tokio::process::Command;
+use tokio::time::sleep;
+
+use crate::browser::{Browser, Options};
+use crate::picture::Picture;
+
+/// Size of every page (CSS pixels).
+const SIZE_PX: [u32; 2] = [640, 360];
+/// Time for a page to settle after its first frames.
+const SETTLE: Duration = Duration::from_secs(12);
+/// Frames before a screenshot.
+const FRAMES: u32 = 6;
+/// Pixels between two pictures, which are white.
+const GAP_PX: u32 = 6;
+
+/// What is looked at in two versions.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight {
+    /// Its name, that of the file.
+    pub name: &'static str,
+    scene: &'static str,
+    /// Quality and other parameters of the address.
+    query: &'static str,
+    /// Position (m), heading and pitch (degrees) of the camera as in a link, or empty for the scene's own.
+    camera: &'static str,
+    /// Key pressed before the screenshot.
+    key: Option<char>,
+    shows: &'static str,
+}
+
+const fn sight(name: &'static str, scene: &'static str, query: &'static str, camera: &'static str, shows: &'static str) -> Sight {
+    Sight { name, scene, query, camera, key: None, shows }
+}
+
+/// All sights, in the order of the page.
+pub const SIGHTS: [Sight; 12] = [
+    sight("hill", "meadow", "quality=low", "128,22,158,20,-13", "grass from ten metres at low"),
+    sight("aircraft", "meadow", "quality=ultra", "128,60,200,10,-25", "grass from fifty metres at ultra"),
+    sight("ruts", "meadow", "quality=medium", "118,34,196,10,-30", "ruts and bare ground from above"),
+    sight("beyond", "meadow", "quality=medium", "128,12,30,20,-6", "land beyond the map"),
+    sight("jacksboro", "jacksboro", "quality=medium", "", "a real landscape"),
+    Sight { key: Some('1'), ..sight("near", "continuum", "quality=medium", "", "the lowest camera of the continuum") },
+    sight("trees", "meadow", "quality=ultra", "92,3,120,300,4", "trees near the eye"),
+    sight("storm", "storm", "quality=medium", "", "a storm"),
+    sight("devil", "devil", "quality=medium", "", "a dust devil"),
+    sight("night", "meadow", "quality=medium&hour=23", "", "night"),
+    sight("dusk", "meadow", "quality=medium&hour=20.3", "", "dusk"),
+    sight("tracks", "continuum", "quality=medium", "", "tracks"),
+];
+
+impl Sight {
+    /// The sight with a name.
+    ///
+    /// # Errors
+    /// When there is none; the message lists all names.
+    pub fn find(name: &str) -> Result<&'static Self> {
+        let all = || SIGHTS.map(|sight| sight.name).join(", ");
+        SIGHTS.iter().find(|sight| sight.name == name).with_context(|| format!("no sight is named `{name}`; allowed are {}", all()))
+    }
+
+    /// Draws the sight in a browser with a program of either version.
+    ///
+    /// # Errors
+    /// When the program does not serve the scene, or the page draws nothing.
+    pub async fn draw(&self, program: &Path) -> Result<Picture> {
+        let addr = TcpListener::bind("127.0.0.1:0")?.local_addr()?.to_string();
+        let mut server = Command::new(program);
+        server.args(["serve", "--scene", self.scene, "--world", "none", "--addr", &addr]).kill_on_drop(true);
+        let server = server.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+        let _server = server.with_context(|| format!("{} does not start", program.display()))?;
+        let browser = Browser::start(&Options::default()).await?;
+        browser.resize(SIZE_PX).await?;
+        let url = format!("http://{addr}/?{}&panel=0#{}", self.query, self.camera);
+        let mut tries = 0;
+        while let Err(error) = browser.go(&url).await {
+            tries += 1;
+            ensure!(tries < 100, "{} does not serve `{}`: {error:#}", program.display(), self.scene);
+            sleep(Duration::from_millis(200)).await;
+        }
+        browser.until("window.prairie?.state()?.frames > 2").await?;
+        if let Some(key) = self.key {
+            browser.press(key).await?;
+            browser.release(key).await?;
+        }
+        sleep(SETTLE).await;
+        browser.until(&format!("window.prairie.state().frames > {FRAMES}")).await?;
+        browser.canvas().await
+    }
+}
+
+/// Draws the sights with the program of an earlier version and with that of a later one, each pair into a file of `folder`, with a page of all.
+///
+/// # Errors
+/// As [`Sight::draw`], or when a file cannot be written.
+pub async fn compare(before: &Path, after: &Path, sights: &[&Sight], folder: &Path, mut say: impl FnMut(&str)) -> Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("{} cannot be made", folder.display()))?;
+    for sight in sights {
+        let mut pair = Vec::new();
+        for program in [before, after] {
+            say(&format!("{}, {}", sight.name, program.display()));
+            pair.push(sight.draw(program).await.with_context(|| sight.name)?);
+        }
+        beside(&pair[0], &pair[1])?.save(&folder.join(format!("{}.jpg", sight.name)))?;
+    }
+    let path = folder.join("README.md");
+    std::fs::write(&path, page(sights)).with_context(|| format!("{} cannot be written", path.display()))
+}
+
+/// Markdown with all pairs.
+fn page(sights: &[&Sight]) -> String {
+    let mut page = format!(
+        "# Two versions\n\nThe same views in Chromium with WebGPU in software (SwiftShader), {} × {}: on the left with an earlier version of server and page, on the right with this one.\n",
+        SIZE_PX[0], SIZE_PX[1]
+    );
+    for Sight { name, scene, query, camera, key, shows } in sights {
+        let key = key.map_or(String::new(), |key| format!(", key `{key}`"));
+        let camera = if camera.is_empty() { String::new() } else { format!("#{camera}") };
+        write!(page, "\n## {shows}\n\n![{shows}, before and after]({name}.jpg)\n\nScene `{scene}`, `?{query}{camera}`{key}.\n")
+            .expect("a string takes all text");
+    }
+    page
+}
+
+/// Two pictures of one size side by side.
+fn beside(left: &Picture, right: &Picture) -> Result<Picture> {
+    let size = |picture: &Picture| [picture.width, picture.height];
+    ensure!(size(left) == size(right), "pictures of {:?} and {:?} px", size(left), size(right));
+    let row_bytes = 4 * left.width as usize;
+    let gap = vec![255; 4 * GAP_PX as usize];
+    let rows = left.rgba.chunks_exact(row_bytes).zip(right.rgba.chunks_exact(row_bytes));
+    let rgba = rows.flat_map(|(left, right)| [left, &gap, right].concat()).collect();
+    Ok(Picture { width: 2 * left.width + GAP_PX, height: left.height, rgba })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_pictures_stand_side_by_side() {
+        let grey = |level: u8, width: u32| Picture { width, height: 2, rgba: vec![level; 8 * width as usize] };
+        let pair = beside(&grey(9, 3), &grey(70, 3)).unwrap();
+        assert_eq!([pair.width, pair.height], [12, 2]);
+        let levels: Vec<u8> = (0..12).map(|x| pair.pixel(x, 1)[0]).collect();
+        assert_eq!(levels, [9, 9, 9, 255, 255, 255, 255, 255, 255, 70, 70, 70]);
+        assert!(beside(&grey(9, 3), &grey(9, 4)).is_err());
+    }
+
+    #[test]
+    fn names_are_unique_and_scenes_exist() {
+        for (at, sight) in SIGHTS.iter().enumerate() {
+            assert!(prairie::scenes::load(sight.scene).is_ok(), "{}", sight.scene);
+            assert!(SIGHTS[..at].iter().all(|other| other.name != sight.name), "{}", sight.name);
+        }
+        assert!(Sight::find("moon").unwrap_err().to_string().contains("allowed are hill, aircraft"));
+    }
+
+    #[test]
+    fn a_page_has_every_pair_with_its_address() {
+        let page = page(&[&SIGHTS[0], &SIGHTS[5]]);
+        assert!(page.contains("![grass from ten metres at low, before and after](hill.jpg)"));
+        assert!(page.contains("Scene `meadow`, `?quality=low#128,22,158,20,-13`.\n") && page.contains("`?quality=medium`, key `1`.\n"));
+    }
+}
