@@ -49,12 +49,12 @@ pub const SIGHTS: [Sight; 12] = [
     sight("beyond", "meadow", "quality=medium", "128,12,30,20,-6", "land beyond the map"),
     sight("jacksboro", "jacksboro", "quality=medium", "", "a real landscape"),
     Sight { key: Some('1'), ..sight("near", "continuum", "quality=medium", "", "the lowest camera of the continuum") },
-    sight("trees", "meadow", "quality=ultra", "92,3,120,300,4", "trees near the eye"),
+    sight("trees", "meadow", "quality=ultra", "104,3,146,345,5", "trees near the eye"),
     sight("storm", "storm", "quality=medium", "", "a storm"),
     sight("devil", "devil", "quality=medium", "", "a dust devil"),
     sight("night", "meadow", "quality=medium&hour=23", "", "night"),
     sight("dusk", "meadow", "quality=medium&hour=20.3", "", "dusk"),
-    sight("tracks", "continuum", "quality=medium", "", "tracks"),
+    sight("tracks", "continuum", "quality=medium", "2466.5,47.6,2530.5,93,-35", "tracks of cars"),
 ];
 
 impl Sight {
