@@ -2,9 +2,9 @@
 
 import package::inputs::noise::noise;
 
-// Factor on the colour of grass for a tilt (rad): trodden grass shows its pale undersides.
+// Factor on the colour of grass for a tilt (rad): trodden grass shows its pale undersides. Under the floor of a car it leans by about 1 rad, under wheels it lies.
 fn trodden(tilt: f32) -> vec3<f32> {
-    return mix(vec3<f32>(1.0), vec3<f32>(1.85, 1.70, 2.1), smoothstep(0.60, 1.20, tilt));
+    return mix(vec3<f32>(1.0), vec3<f32>(1.85, 1.70, 2.1), smoothstep(0.85, 1.50, tilt));
 }
 
 // Colour of a plant at a fraction `up` of its height, between its colours at the root and at the tip; hue 0..1 runs from fresh to dry.

@@ -76,7 +76,7 @@ fn grass_fraction_over(p: vec2<f32>, span_m: f32) -> f32 {
         ragged += 0.3 * select(found.b, found.g, i == 1);
     }
     let sharp = smoothstep(0.35, 0.65, soft + (ragged - 0.3) * (1.0 - abs(2.0 * soft - 1.0)));
-    return select(soft, mix(sharp, soft, smoothstep(1.0, 3.0, spans_px)), is_border);
+    return select(soft, mix(sharp, soft, smoothstep(0.15, 1.5, spans_px)), is_border);
 }
 
 // Height of grass relative to its kind, 1 on average: it varies with the nutrients that underbrush leaves in the soil and with a random

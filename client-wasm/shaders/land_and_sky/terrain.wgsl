@@ -99,7 +99,7 @@ fn fraction_before(p: vec2<f32>, span_m: f32, view: vec3<f32>, normal: vec3<f32>
     let toward_eye = -view.xz / max(length(view.xz), 1e-3);
     var sum = 0.0;
     for (var i = 0; i < 2; i++) {
-        sum += grass_fraction_over(p + select(0.25, 0.75, i == 1) * hidden_m * toward_eye, max(span_m, 0.5 * hidden_m));
+        sum += grass_fraction_over(p + select(0.25, 0.75, i == 1) * hidden_m * toward_eye, max(span_m, 0.25 * hidden_m));
     }
     return 0.5 * sum;
 }
