@@ -21,8 +21,6 @@ const SETTLE: Duration = Duration::from_secs(12);
 const FRAMES: u32 = 6;
 /// Pixels between two pictures, which are white.
 const GAP_PX: u32 = 6;
-/// Width of the stored pair (px).
-const STORED_PX: u32 = 800;
 
 /// What is looked at in two versions.
 #[derive(Clone, Copy, Debug)]
@@ -111,7 +109,7 @@ pub async fn compare(before: &Path, after: &Path, sights: &[&Sight], folder: &Pa
             say(&format!("{}, {}", sight.name, program.display()));
             pair.push(sight.draw(program).await.with_context(|| sight.name)?);
         }
-        beside(&pair[0], &pair[1])?.shrunk_to_width(STORED_PX).save(&folder.join(format!("{}.jpg", sight.name)))?;
+        beside(&pair[0], &pair[1])?.save(&folder.join(format!("{}.jpg", sight.name)))?;
     }
     let path = folder.join("README.md");
     std::fs::write(&path, page(sights)).with_context(|| format!("{} cannot be written", path.display()))
