@@ -68,13 +68,12 @@ fn contrast(distance_m: f32) -> f32 {
     return clamp(sqrt(1.5 * frame.blade_width_m / (distance_m * frame.pixel_rad)), 0.0, 1.0);
 }
 
-// Part of its contrast that a blade loses where it stands alone on the sward's far look: it is as wide as the several blades that it stands for.
-const ALONE: f32 = 0.6;
-
 // Colour of a part of a plant at height `up` in the grass (0 at the ground, 1 at its top), mixed with the far look of the grass around it
-// (`about`): near the ground it merges with blades that are not drawn.
+// (`about`): near the ground it merges with blades that are not drawn. Where it stands alone its whole area, not only a pixel, shows the mean of the several
+// blades that it stands for.
 fn among(color: vec3<f32>, about: vec4<f32>, up: f32, distance_m: f32) -> vec3<f32> {
-    let own = contrast(distance_m) * (1.0 - about.w * (1.0 - (1.0 - ALONE) * smoothstep(0.0, 0.8, up)));
+    let single = contrast(distance_m);
+    let own = single * (1.0 - about.w * (1.0 - single * smoothstep(0.0, 0.8, up)));
     return mix(about.rgb, color, own);
 }
 

@@ -92,14 +92,15 @@ fn litter_at(p: vec2<f32>, is_near: bool) -> vec3<f32> {
     return mix(vec3<f32>(0.034, 0.030, 0.012), vec3<f32>(0.125, 0.105, 0.042), smoothstep(0.72, 1.18, top)) * (0.6 + 0.8 * heap.b);
 }
 
-// Mean grass cover in front of a position, over the distance that tall grass hides at this viewing angle.
+// Mean grass cover in front of a position, over the first 0.6 of the distance that tall grass hides at this viewing angle: few blades are tall enough to hide
+// it from farther on.
 fn fraction_before(p: vec2<f32>, span_m: f32, view: vec3<f32>, normal: vec3<f32>, kind: Kind) -> f32 {
     let down = clamp(-dot(view, normal), 0.02, 1.0);
     let hidden_m = kind.height_m * sqrt(1.0 - down * down) / down;
     let toward_eye = -view.xz / max(length(view.xz), 1e-3);
     var sum = 0.0;
     for (var i = 0; i < 2; i++) {
-        sum += grass_fraction_over(p + select(0.25, 0.75, i == 1) * hidden_m * toward_eye, max(span_m, 0.25 * hidden_m));
+        sum += grass_fraction_over(p + select(0.15, 0.45, i == 1) * hidden_m * toward_eye, max(span_m, 0.25 * hidden_m));
     }
     return 0.5 * sum;
 }
