@@ -44,12 +44,12 @@ const fn sight(name: &'static str, scene: &'static str, query: &'static str, cam
 /// All sights, in the order of the page.
 pub const SIGHTS: [Sight; 12] = [
     sight("hill", "meadow", "quality=low", "128,22,158,20,-13", "grass from ten metres at low"),
-    sight("aircraft", "meadow", "quality=ultra", "128,60,200,10,-25", "grass from fifty metres at ultra"),
+    sight("aircraft", "meadow", "quality=high", "128,60,200,10,-25", "grass from fifty metres at high"),
     sight("ruts", "meadow", "quality=medium", "118,34,196,10,-30", "ruts and bare ground from above"),
     sight("beyond", "meadow", "quality=medium", "128,12,30,20,-6", "land beyond the map"),
     sight("jacksboro", "jacksboro", "quality=medium", "", "a real landscape"),
     Sight { key: Some('1'), ..sight("near", "continuum", "quality=medium", "", "the lowest camera of the continuum") },
-    sight("trees", "meadow", "quality=ultra", "104,3,146,345,5", "trees near the eye"),
+    sight("trees", "meadow", "quality=high", "104,3,146,345,5", "trees near the eye"),
     sight("storm", "storm", "quality=medium", "", "a storm"),
     sight("devil", "devil", "quality=medium", "", "a dust devil"),
     sight("night", "meadow", "quality=medium&hour=23", "", "night"),
