@@ -45,7 +45,7 @@ pub async fn measure(pages: u32, machine: &str, mut say: impl FnMut(&str)) -> Re
     }
     Ok(format!(
         "# Start of a page\n\n{machine}\n\nHeadless Chromium with WebGPU in software (SwiftShader), {} × {}, scene `meadow`; every page in a browser of its own that knows nothing of an earlier one, with the server on the same cores. \
-         Least, median and largest of {pages} pages. The first picture is that of land and sky on the screen; the time of a frame is the processor time of the page's own thread, without the graphics process, over {} s of frames. \
+         Least, median and largest of {pages} pages. The first picture is that of land and sky on the screen; the time of a frame is the processor time of the page's own thread in {} s over the frames drawn in them, with all else that the thread does: messages, panel, the browser's own painting. \
          The aims are a first picture in {FIRST_PICTURE_SECS} s and a frame in {FRAME_CPU_MS} ms at medium.\n\n{}",
         SIZE_PX[0],
         SIZE_PX[1],
