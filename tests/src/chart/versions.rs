@@ -22,7 +22,7 @@ const FRAMES: u32 = 6;
 /// Pixels between two pictures, which are white.
 const GAP_PX: u32 = 6;
 /// Width of a stored pair (px).
-const STORED_PX: u32 = 960;
+const STORED_PX: u32 = 800;
 
 /// What is looked at in two versions.
 #[derive(Clone, Copy, Debug)]
