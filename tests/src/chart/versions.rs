@@ -26,7 +26,7 @@ const STORED_PX: u32 = 800;
 
 /// What is looked at in two versions.
 #[derive(Clone, Copy, Debug)]
-pub struct Sight {
+pub struct PageView {
     /// Its name, that of the file.
     pub name: &'static str,
     scene: &'static str,
@@ -39,36 +39,36 @@ pub struct Sight {
     shows: &'static str,
 }
 
-const fn sight(name: &'static str, scene: &'static str, query: &'static str, camera: &'static str, shows: &'static str) -> Sight {
-    Sight { name, scene, query, camera, key: None, shows }
+const fn view(name: &'static str, scene: &'static str, query: &'static str, camera: &'static str, shows: &'static str) -> PageView {
+    PageView { name, scene, query, camera, key: None, shows }
 }
 
-/// All sights, in the order of the page.
-pub const SIGHTS: [Sight; 11] = [
-    sight("hill", "meadow", "quality=low", "128,22,158,20,-13", "grass from ten metres at low"),
-    sight("aircraft", "meadow", "quality=high", "128,60,200,10,-25", "grass from fifty metres at high"),
-    sight("ruts", "meadow", "quality=medium", "118,34,196,10,-30", "ruts and bare ground from above"),
-    sight("beyond", "meadow", "quality=medium", "128,12,30,20,-6", "land beyond the map"),
-    sight("jacksboro", "jacksboro", "quality=medium", "", "a real landscape"),
-    Sight { key: Some('1'), ..sight("near", "continuum", "quality=medium", "", "the lowest camera of the continuum") },
-    sight("trees", "meadow", "quality=high", "104,3,146,345,5", "trees near the eye"),
-    sight("storm", "storm", "quality=medium", "", "a storm"),
-    sight("devil", "devil", "quality=medium", "", "a dust devil"),
-    sight("night", "meadow", "quality=medium&hour=23", "", "night"),
-    sight("dusk", "meadow", "quality=medium&hour=20.3", "", "dusk"),
+/// All views, in the order of the page.
+pub const PAGE_VIEWS: [PageView; 11] = [
+    view("hill", "meadow", "quality=low", "128,22,158,20,-13", "grass from ten metres at low"),
+    view("aircraft", "meadow", "quality=high", "128,60,200,10,-25", "grass from fifty metres at high"),
+    view("ruts", "meadow", "quality=medium", "118,34,196,10,-30", "ruts and bare ground from above"),
+    view("beyond", "meadow", "quality=medium", "128,12,30,20,-6", "land beyond the map"),
+    view("jacksboro", "jacksboro", "quality=medium", "", "a real landscape"),
+    PageView { key: Some('1'), ..view("near", "continuum", "quality=medium", "", "the lowest camera of the continuum") },
+    view("trees", "meadow", "quality=high", "104,3,146,345,5", "trees near the eye"),
+    view("storm", "storm", "quality=medium", "", "a storm"),
+    view("devil", "devil", "quality=medium", "", "a dust devil"),
+    view("night", "meadow", "quality=medium&hour=23", "", "night"),
+    view("dusk", "meadow", "quality=medium&hour=20.3", "", "dusk"),
 ];
 
-impl Sight {
-    /// The sight with a name.
+impl PageView {
+    /// The view with a name.
     ///
     /// # Errors
     /// When there is none; the message lists all names.
     pub fn find(name: &str) -> Result<&'static Self> {
-        let all = || SIGHTS.map(|sight| sight.name).join(", ");
-        SIGHTS.iter().find(|sight| sight.name == name).with_context(|| format!("no sight is named `{name}`; allowed are {}", all()))
+        let all = || PAGE_VIEWS.map(|view| view.name).join(", ");
+        PAGE_VIEWS.iter().find(|view| view.name == name).with_context(|| format!("no view is named `{name}`; allowed are {}", all()))
     }
 
-    /// Draws the sight in a browser with a program of either version.
+    /// Draws the view in a browser with a program of either version.
     ///
     /// # Errors
     /// When the program does not serve the scene, or the page draws nothing.
@@ -98,31 +98,31 @@ impl Sight {
     }
 }
 
-/// Draws the sights with the program of an earlier version and with that of a later one, each pair into a file of `folder`, with a page of all.
+/// Draws the views with the program of an earlier version and with that of a later one, each pair into a file of `folder`, with a page of all.
 ///
 /// # Errors
-/// As [`Sight::draw`], or when a file cannot be written.
-pub async fn compare(before: &Path, after: &Path, sights: &[&Sight], folder: &Path, mut say: impl FnMut(&str)) -> Result<()> {
+/// As [`PageView::draw`], or when a file cannot be written.
+pub async fn compare(before: &Path, after: &Path, views: &[&PageView], folder: &Path, mut say: impl FnMut(&str)) -> Result<()> {
     std::fs::create_dir_all(folder).with_context(|| format!("{} cannot be made", folder.display()))?;
-    for sight in sights {
+    for view in views {
         let mut pair = Vec::new();
         for program in [before, after] {
-            say(&format!("{}, {}", sight.name, program.display()));
-            pair.push(sight.draw(program).await.with_context(|| sight.name)?);
+            say(&format!("{}, {}", view.name, program.display()));
+            pair.push(view.draw(program).await.with_context(|| view.name)?);
         }
-        beside(&pair[0], &pair[1])?.shrunk_to_width(STORED_PX).save(&folder.join(format!("{}.jpg", sight.name)))?;
+        beside(&pair[0], &pair[1])?.shrunk_to_width(STORED_PX).save(&folder.join(format!("{}.jpg", view.name)))?;
     }
     let path = folder.join("README.md");
-    std::fs::write(&path, page(sights)).with_context(|| format!("{} cannot be written", path.display()))
+    std::fs::write(&path, page(views)).with_context(|| format!("{} cannot be written", path.display()))
 }
 
 /// Markdown with all pairs.
-fn page(sights: &[&Sight]) -> String {
+fn page(views: &[&PageView]) -> String {
     let mut page = format!(
         "# Two versions\n\nThe same views in Chromium with WebGPU in software (SwiftShader), {} × {}: on the left with an earlier version of server and page, on the right with this one.\n",
         SIZE_PX[0], SIZE_PX[1]
     );
-    for Sight { name, scene, query, camera, key, shows } in sights {
+    for PageView { name, scene, query, camera, key, shows } in views {
         let key = key.map_or(String::new(), |key| format!(", key `{key}`"));
         let camera = if camera.is_empty() { String::new() } else { format!("#{camera}") };
         write!(page, "\n## {shows}\n\n![{shows}, before and after]({name}.jpg)\n\nScene `{scene}`, `?{query}{camera}`{key}.\n")
@@ -158,16 +158,16 @@ mod tests {
 
     #[test]
     fn names_are_unique_and_scenes_exist() {
-        for (at, sight) in SIGHTS.iter().enumerate() {
-            assert!(prairie::scenes::load(sight.scene).is_ok(), "{}", sight.scene);
-            assert!(SIGHTS[..at].iter().all(|other| other.name != sight.name), "{}", sight.name);
+        for (at, view) in PAGE_VIEWS.iter().enumerate() {
+            assert!(prairie::scenes::load(view.scene).is_ok(), "{}", view.scene);
+            assert!(PAGE_VIEWS[..at].iter().all(|other| other.name != view.name), "{}", view.name);
         }
-        assert!(Sight::find("moon").unwrap_err().to_string().contains("allowed are hill, aircraft"));
+        assert!(PageView::find("moon").unwrap_err().to_string().contains("allowed are hill, aircraft"));
     }
 
     #[test]
     fn a_page_has_every_pair_with_its_address() {
-        let page = page(&[&SIGHTS[0], &SIGHTS[5]]);
+        let page = page(&[&PAGE_VIEWS[0], &PAGE_VIEWS[5]]);
         assert!(page.contains("![grass from ten metres at low, before and after](hill.jpg)"));
         assert!(page.contains("Scene `meadow`, `?quality=low#128,22,158,20,-13`.\n") && page.contains("`?quality=medium`, key `1`.\n"));
     }

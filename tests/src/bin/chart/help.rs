@@ -36,7 +36,7 @@ Files in DIR:
   VIEW.jpg   the view with the earlier version on the left and with the later one on the right
   README.md  a page of all
 
---views picks some: hill, aircraft, ruts, beyond, jacksboro, near, trees, storm, devil, night, dusk. All take a quarter of an hour.";
+An unknown name in --views lists them all. All together take a quarter of an hour.";
 
 pub(super) const SHELLS_FILES: &str = "\
 Files in DIR:

@@ -19,7 +19,7 @@ use tests::chart::row::cells_text;
 use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
 use tests::chart::tables::with_tables;
-use tests::chart::versions::{SIGHTS, Sight};
+use tests::chart::versions::{PAGE_VIEWS, PageView};
 use tests::chart::{Problem, bend, gpu, pictures, plants, shells, start, stream, versions, wind};
 use tests::still::Still;
 use tests::views::{VIEWS, View};
@@ -139,8 +139,8 @@ enum Model {
         #[arg(long, value_name = "PROGRAM", default_value = "target/release/prairie")]
         after: PathBuf,
         /// Only these views, separated by commas
-        #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = Sight::find)]
-        views: Vec<&'static Sight>,
+        #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = PageView::find)]
+        views: Vec<&'static PageView>,
         /// Output folder
         #[arg(long, value_name = "DIR", default_value = "tests/results/versions")]
         out: PathBuf,
@@ -287,10 +287,10 @@ fn time_starts(pages: u32, out: &Path) -> Result<()> {
     write_report(&report, out, "start.md")
 }
 
-fn compare_versions(before: &Path, after: &Path, views: Vec<&'static Sight>, out: &Path) -> Result<()> {
+fn compare_versions(before: &Path, after: &Path, views: Vec<&'static PageView>, out: &Path) -> Result<()> {
     let bar = spinner();
     let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build()?;
-    let views = if views.is_empty() { SIGHTS.iter().collect() } else { views };
+    let views = if views.is_empty() { PAGE_VIEWS.iter().collect() } else { views };
     runtime.block_on(versions::compare(before, after, &views, out, |name| bar.set_message(name.to_owned())))?;
     bar.finish_and_clear();
     println!("{} pairs of pictures in {}", views.len(), out.display());
