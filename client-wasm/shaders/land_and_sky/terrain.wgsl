@@ -93,13 +93,13 @@ fn litter_at(p: vec2<f32>, is_near: bool) -> vec3<f32> {
 }
 
 // Mean grass cover in front of a position, over the first 0.6 of the distance that tall grass hides at this viewing angle: few blades are tall enough to hide
-// it from farther on.
-fn fraction_before(p: vec2<f32>, span_m: f32, view: vec3<f32>, normal: vec3<f32>, kind: Kind) -> f32 {
+// it from farther on. 0 where the position is not bare, to which it does not matter.
+fn fraction_before(p: vec2<f32>, is_bare: bool, span_m: f32, view: vec3<f32>, normal: vec3<f32>, kind: Kind) -> f32 {
     let down = clamp(-dot(view, normal), 0.02, 1.0);
     let hidden_m = kind.height_m * sqrt(1.0 - down * down) / down;
     let toward_eye = -view.xz / max(length(view.xz), 1e-3);
     var sum = 0.0;
-    for (var i = 0; i < 2; i++) {
+    for (var i = 0; i < select(0, 2, is_bare); i++) {
         sum += grass_fraction_over(p + select(0.15, 0.45, i == 1) * hidden_m * toward_eye, max(span_m, 0.25 * hidden_m));
     }
     return 0.5 * sum;
@@ -117,7 +117,8 @@ fn fraction_at(p: vec2<f32>, span_m: f32, between: f32, view: vec3<f32>, normal:
     if is_plain {
         return 1.0;
     }
-    return max(grass_fraction_over(p, span_m), between * fraction_before(p, span_m, view, normal, kind));
+    let own = grass_fraction_over(p, span_m);
+    return max(own, between * fraction_before(p, own < 1.0, span_m, view, normal, kind));
 }
 
 // Ground between the roots.
@@ -145,7 +146,6 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let distance_m = length(to);
     let view = to / distance_m;
     let normal = ground_normal(p);
-    let soft = select(soft_fraction(p), 1.0, is_plain);
     let kind = kind_of(ground);
     let between = bare_between(distance_m, kind, view, normal);
     let span_m = distance_m * frame.pixel_rad * inverseSqrt(max(-dot(view, normal), 0.05));
@@ -157,7 +157,7 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
         let rough = normalize(normal + vec3<f32>(soil.slope.x, 0.0, soil.slope.y));
         let direct = frame.sun_rgb * (sun_light * max(dot(rough, frame.toward_sun), 0.0));
         // Nearby grass hides part of the sky.
-        let open = 1.0 - 0.5 * smoothstep(0.0, 0.5, soft);
+        let open = 1.0 - 0.5 * smoothstep(0.0, 0.5, soft_fraction(p));
         color = soil.albedo * (direct + ambient(rough) * open + lamps_on(ground.p, rough, 0.0)) * (1.0 - fraction);
     }
     if fraction > 0.0 {
