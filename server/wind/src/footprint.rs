@@ -5,13 +5,24 @@ use super::{Field, Grid, Location, Real};
 /// Weights `Π (1 − (d/r)²)²` about a centre: 1 at the centre, 0 beyond the radius along any axis. On periodic axes the nearest image counts.
 ///
 /// A radius below the spacing is widened to it and the weights are reduced in proportion, so that the total momentum is kept.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Footprint<R> {
     /// Index, weight and offset from the centre (m) along each axis.
     along: [Vec<(usize, R, R)>; 3],
 }
 
 impl<R: Real> Footprint<R> {
+    /// A footprint without values, with memory for one of any size on `grid`.
+    pub fn new(grid: &Grid<R>) -> Self {
+        Self { along: grid.cells.map(|cells| Vec::with_capacity(cells + 1)) }
+    }
+
+    /// Largest number of values of a component along `axis` under a footprint of a radius (m).
+    pub fn largest(grid: &Grid<R>, axis: usize, radius_m: f64) -> usize {
+        let spacing_m = grid.spacing_m[axis].wide();
+        ((2.0 * radius_m.max(spacing_m) / spacing_m) as usize + 1).min(grid.cells[axis] + 1)
+    }
+
     /// Moves the footprint to `centre_m` on the values of a field at `location`.
     pub fn put(&mut self, grid: &Grid<R>, location: Location, centre_m: [R; 3], radius_m: [R; 3]) {
         let shape = grid.shape(location);
@@ -73,7 +84,7 @@ mod tests {
     fn total(radius_m: f64, centre_x: f64) -> f64 {
         let grid = Grid { cells: [16, 1, 1], spacing_m: [2.0, 1.0, 1.0], boundary: [[Wrap; 2], [FreeSlip; 2], [Wrap; 2]] };
         let mut field = Field::zeros(&grid, Location::Centre);
-        let mut footprint = Footprint::default();
+        let mut footprint = Footprint::new(&grid);
         footprint.put(&grid, Location::Centre, [centre_x, 0.5, 0.5], [radius_m, 1.0, 1.0]);
         footprint.for_each(&grid, &mut field, |_, weight, _| assert!((0.0..=1.0).contains(&weight)));
         footprint.for_each(&grid, &mut field, |value, weight, _| *value += weight);

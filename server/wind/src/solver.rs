@@ -124,8 +124,8 @@ impl<R: Real> Solver<R> {
             projection: Projection::new(&grid, config.pressure, None),
             implicit: is_implicit.then(|| Implicit::new(&grid)),
             relaxation: Relaxation::new(&grid, &mean),
-            footprint: Footprint::default(),
-            pushes: Pushes::default(),
+            footprint: Footprint::new(&grid),
+            pushes: Pushes::new(&grid, &config.gusts),
             volume_sources_per_s: if has_sources { vec![0.0; grid.len()] } else { Vec::new() },
             planes: vec![PlaneSums::default(); grid.cells[2]],
             diagnostics: Diagnostics::default(),
@@ -257,7 +257,8 @@ impl<R: Real> Solver<R> {
         let values: usize = fields.map(|field| field.data.len()).sum();
         let traced = 4 * (self.centres.len() + self.trajectories.backward.len() + self.trajectories.forward.len());
         let scratch = self.advection.values() + self.transport.values() + self.canopy_fraction.len();
-        size_of::<R>() * (values + traced + scratch) + size_of::<f64>() * (3 * self.grid.len() + self.volume_sources_per_s.len())
+        let pressure = 3 * self.grid.len() + self.volume_sources_per_s.len();
+        size_of::<R>() * (values + traced + scratch) + size_of::<f64>() * pressure + self.pushes.memory_bytes()
     }
 
     /// The velocity on its faces.

@@ -58,13 +58,24 @@ pub fn sources_at<R: Real>(config: &Config, grid: &Grid<R>, mean: &MeanWind, tim
 }
 
 /// Accelerations (m/s²) of faces by all sources, computed once for both halves of a step.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Pushes<R> {
-    /// Index in memory and acceleration, for each component; a face may appear more than once.
-    on: [Vec<(usize, R)>; 3],
+    /// Index in memory and acceleration along x and z; a face may appear more than once.
+    on: [(usize, Vec<(usize, R)>); 2],
 }
 
 impl<R: Real> Pushes<R> {
+    /// No accelerations, with memory for those of all sources.
+    pub fn new(grid: &Grid<R>, gusts: &Gusts) -> Self {
+        let faces: usize = (0..3).map(|axis| Footprint::largest(grid, axis, gusts.radius_m[axis].into())).product();
+        Self { on: [0, 2].map(|axis| (axis, Vec::with_capacity(gusts.number * faces))) }
+    }
+
+    /// Memory (bytes).
+    pub fn memory_bytes(&self) -> usize {
+        self.on.iter().map(|(_, on)| on.capacity() * size_of::<(usize, R)>()).sum()
+    }
+
     /// Computes the accelerations of `sources`.
     pub fn set(
         &mut self,
@@ -74,12 +85,12 @@ impl<R: Real> Pushes<R> {
         velocity: &Velocity<R>,
         footprint: &mut Footprint<R>,
     ) {
-        self.on.iter_mut().for_each(Vec::clear);
+        self.on.iter_mut().for_each(|(_, on)| on.clear());
         for source in sources {
-            for (axis, on) in self.on.iter_mut().enumerate() {
-                let push = R::of(source.push_m_per_s2[axis]);
+            for (axis, on) in &mut self.on {
+                let push = R::of(source.push_m_per_s2[*axis]);
                 if push != R::zero() {
-                    footprint.put(grid, velocity.0[axis].location, source.position_m.map(R::of), gusts.radius_m.map(|r| R::of(r.into())));
+                    footprint.put(grid, velocity.0[*axis].location, source.position_m.map(R::of), gusts.radius_m.map(|r| R::of(r.into())));
                     footprint.for_each_index(|index, weight| on.push((grid.at(index), weight * push)));
                 }
             }
@@ -89,8 +100,9 @@ impl<R: Real> Pushes<R> {
     /// Applies the accelerations for `dt_secs` (s).
     pub fn apply(&self, dt_secs: f64, velocity: &mut Velocity<R>) {
         let dt = R::of(dt_secs);
-        for (field, on) in velocity.0.iter_mut().zip(&self.on) {
-            on.iter().for_each(|&(at, push)| field.data[at] = field.data[at] + dt * push);
+        for (axis, on) in &self.on {
+            let data = &mut velocity.0[*axis].data;
+            on.iter().for_each(|&(at, push)| data[at] = data[at] + dt * push);
         }
     }
 }
