@@ -92,6 +92,11 @@ impl Field {
         self.revision.0
     }
 
+    /// Time between the two states that every patch holds (s), the last sub-step; `None` before the first step.
+    pub fn between_states_secs(&self) -> Option<f32> {
+        self.dt_secs
+    }
+
     /// Number of awake patches.
     pub fn awake_count(&self) -> usize {
         self.patches.len()

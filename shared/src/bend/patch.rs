@@ -120,6 +120,18 @@ impl Patch {
         self.set_ghost(i as i64, j as i64, now, before);
     }
 
+    /// Pushes the cells of tile `(x, z)` of the patch: `push` returns the displacement of θ and ω of a cell, given its place in the tile, in the newer of
+    /// the two states, which changes its motion. The tile is not put to rest in the next step, so that small pushes add up.
+    pub fn push_tile(&mut self, [x, z]: [usize; 2], push: impl Fn([usize; 2]) -> Bend) {
+        self.tiles.push(x, z);
+        for [u, v] in (0..TILE * TILE).map(|n| [n % TILE, n / TILE]) {
+            let (i, j) = (x * TILE + u, z * TILE + v);
+            let (now, by) = (self.bend(i, j), push([u, v]));
+            let pushed = Bend { theta: now.theta + by.theta, omega: [0, 1].map(|axis| now.omega[axis] + by.omega[axis]) };
+            self.set(i, j, pushed, self.bend_before(i, j));
+        }
+    }
+
     /// [`set`](Self::set) for any cell, ghosts included; a ghost activates the nearest own tile.
     pub(super) fn set_ghost(&mut self, i: i64, j: i64, now: Bend, before: Bend) {
         let at = self.at(i, j);

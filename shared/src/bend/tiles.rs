@@ -45,6 +45,9 @@ pub(super) struct Tiles {
     changed_in: Vec<u64>,
     /// Revision in progress.
     revision: u64,
+    /// Tiles that are pushed in the next step, and so are active however little they move. Empty between steps.
+    #[serde(skip)]
+    pushed: Vec<usize>,
 }
 
 const SIGN: u32 = 1 << 31;
@@ -72,6 +75,7 @@ impl Tiles {
             active: vec![false; ringed],
             changed_in: vec![revision; count * count],
             revision,
+            pushed: vec![],
         }
     }
 
@@ -118,6 +122,15 @@ impl Tiles {
                 self.active[(z + 1) * (self.count + 2) + x + 1] = theta > limits[0] || omega2 > limits[1];
             }
         }
+        for tile in self.pushed.drain(..) {
+            let (x, z) = (tile % self.count, tile / self.count);
+            self.active[(z + 1) * (self.count + 2) + x + 1] = true;
+        }
+    }
+
+    /// Makes tile `(x, z)` active in the next step: small pushes add up only in a tile that isn't put to rest between them.
+    pub(super) fn push(&mut self, x: usize, z: usize) {
+        self.pushed.push(z * self.count + x);
     }
 
     /// Whether tile `(x, z)` or one of the eight around it is active.

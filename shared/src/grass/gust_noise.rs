@@ -8,6 +8,8 @@ use noise::{NoiseFn, Perlin};
 
 /// Rate at which gusts change while they travel (1/s).
 const CHANGE_PER_S: f64 = 0.15;
+/// Bending speed that a gust gives for each radian of bend (1/s). It sets the direction of the bend, and stays small beside the speeds of struck grass.
+const OMEGA_PER_THETA_PER_S: f32 = 1.0;
 
 /// Gusts of Perlin noise that travel over the terrain.
 pub(super) struct GustNoise {
@@ -55,35 +57,39 @@ impl GustNoise {
         patches
     }
 
-    /// Pushes the grass of the awake ones among `patches` for `dt_secs`.
+    /// Pushes the grass of the awake ones among `patches` for `dt_secs`. A gust accelerates θ, and ω along with it at [`OMEGA_PER_THETA_PER_S`], so that the
+    /// grass leans along the drift.
     pub(super) fn push(&mut self, field: &mut Field, patches: &[PatchIndex], dt_secs: f32) {
         self.time_secs += f64::from(dt_secs);
         let layout = *field.layout();
+        // A displacement over the last sub-step that changes the speed by the acceleration times `dt_secs`.
+        let secs2 = dt_secs * field.between_states_secs().unwrap_or(dt_secs);
         for &index in patches {
-            let pushes = self.pushes_rad(&layout, index, dt_secs);
+            let pushes = self.pushes_rad(&layout, index, secs2);
             let Some(patch) = field.patch_mut(index) else { continue };
-            let side = patch.side();
-            let corners = side / TILE + 1;
-            for (i, j) in (0..side).flat_map(|j| (0..side).map(move |i| (i, j))) {
-                let corner = j / TILE * corners + i / TILE;
-                let [u, v] = [i, j].map(|n| ((n % TILE) as f32 + 0.5) / TILE as f32);
-                let mix = |a: f32, b: f32, weight: f32| a + (b - a) * weight;
-                let north = mix(pushes[corner], pushes[corner + 1], u);
-                let push = mix(north, mix(pushes[corner + corners], pushes[corner + corners + 1], u), v);
-                let (now, before) = (patch.bend(i, j), patch.bend_before(i, j));
-                // Only the newer state is displaced. That is an acceleration, which the waves propagate.
-                let [x, z] = [0, 1].map(|axis| now.omega[axis] + self.along[axis] * push / dt_secs);
-                patch.set(i, j, Bend { theta: now.theta + push, omega: [x, z] }, before);
+            let tiles = patch.side() / TILE;
+            for [x, z] in (0..tiles * tiles).map(|n| [n % tiles, n / tiles]) {
+                let corner = z * (tiles + 1) + x;
+                let [north, south] = [corner, corner + tiles + 1].map(|west| [pushes[west], pushes[west + 1]]);
+                if north == [0.0; 2] && south == [0.0; 2] {
+                    continue;
+                }
+                patch.push_tile([x, z], |at| {
+                    let [u, v] = at.map(|n| (n as f32 + 0.5) / TILE as f32);
+                    let mix = |[a, b]: [f32; 2], weight: f32| a + (b - a) * weight;
+                    let theta = mix([mix(north, u), mix(south, u)], v);
+                    Bend { theta, omega: self.along.map(|along| along * theta * OMEGA_PER_THETA_PER_S) }
+                });
             }
         }
     }
 
-    /// Displacement of the grass (rad) at the corners of a patch's tiles, row by row.
-    fn pushes_rad(&self, layout: &PatchLayout, patch: PatchIndex, dt_secs: f32) -> Vec<f32> {
+    /// Displacement of the grass (rad) at the corners of a patch's tiles, row by row, by gusts that act for a time whose square is `secs2` (s²).
+    fn pushes_rad(&self, layout: &PatchLayout, patch: PatchIndex, secs2: f32) -> Vec<f32> {
         let [corner_x, corner_z] = layout.corner_m(patch);
         let (tile_m, corners) = (TILE as f32 * layout.cell_m, layout.cells as usize / TILE + 1);
         let scale_m = f64::from(self.settings.scale_m);
-        let most = self.settings.strength_rad_per_s2 * dt_secs * dt_secs;
+        let most = self.settings.strength_rad_per_s2 * secs2;
         let push = |n: usize| {
             let at_m = [(n % corners) as f32 * tile_m + corner_x, (n / corners) as f32 * tile_m + corner_z];
             let [x, z] =
