@@ -18,7 +18,7 @@ macro_rules! file {
 }
 
 /// All built-in scenes, the default first.
-pub(super) const BUILT_IN: [BuiltIn; 8] = [
+pub(super) const BUILT_IN: [BuiltIn; 9] = [
     BuiltIn {
         name: "meadow",
         text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meadow.toml")),
@@ -38,6 +38,11 @@ pub(super) const BUILT_IN: [BuiltIn; 8] = [
         name: "storm",
         text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/storm.toml")),
         files: &[file!("meadow-height.png"), file!("meadow-reeds-covering.png"), file!("species.toml")],
+    },
+    BuiltIn {
+        name: "breeze",
+        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/breeze.toml")),
+        files: &[file!("meadow-height.png"), file!("meadow-covering.png")],
     },
     BuiltIn {
         name: "continuum",

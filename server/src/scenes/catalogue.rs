@@ -77,6 +77,7 @@ mod tests {
         assert_eq!(continuum.shows, ["species of grass", "flowers", "self-driving cars"]);
         assert_eq!(of("devil").shows, ["flowers", "whirls and jets", "dust"]);
         assert_eq!(of("storm").shows, ["underbrush", "flowers", "rain"]);
+        assert_eq!(of("breeze").shows, ["flowers", "gusts of noise"]);
         assert_eq!(of("blades").shows, ["flowers", "self-driving monsters"]);
         assert_eq!(of("shells").shows, ["grass drawn as shells"]);
         assert_eq!(of("underbrush").shows, ["underbrush", "balls"]);
