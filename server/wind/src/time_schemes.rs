@@ -1,6 +1,6 @@
 //! The sub-steps of each time scheme, in order.
 
-use super::boundary::{InflowGhosts, outflow};
+use super::boundary::{InflowGhosts, friction, outflow};
 use super::diffuse::{Portion, diffuse, keep_signs, stable_dt_secs};
 use super::pressure::Convergence;
 use super::state::StepError;
@@ -110,6 +110,7 @@ impl<R: Real> Solver<R> {
                 };
                 stage.run(&mut target.0[axis], &mut self.transport);
                 outflow::correct_flux(&self.grid, air, fraction * dt_secs, &mut target.0[axis]);
+                friction::complete(&self.grid, viscosity_m2_per_s, fraction * dt_secs, &air.0[axis], &mut target.0[axis]);
             }
             self.boundaries.update_inflow(self.time_secs + STAGE_ENDS[number] * dt_secs);
             // Forces follow the last stage and apply the boundary conditions; before them only diffusion and canopy drag read ghosts.
