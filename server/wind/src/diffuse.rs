@@ -7,18 +7,22 @@ mod implicit;
 
 pub use implicit::Implicit;
 
+use super::boundary::friction::{self, largest_eigenvalue};
 use super::field::for_each_plane;
 use super::{Diffusion, Field, Grid, Real};
 
-/// Longest stable step (s) of [`explicit`]: `1 / (2·ν·Σ 1/h²)`, which is `a = ν·dt/h² = 1/6` on cubes. Above it the checkerboard mode grows.
+/// Longest stable step (s) of [`explicit`]: `2 / (ν·Σ λ/h²)` with the largest eigenvalue λ = 4 of each second difference, which is `a = ν·dt/h² = 1/6` on cubes. Above
+/// it the checkerboard mode grows.
 ///
-/// Infinite for a diffusivity of 0.
+/// Across faces that prescribe the tangential velocity λ is larger: 8/√3 = 4.62 where they are many cells apart, up to 16/3 between two of them. For a
+/// concentration, to which such faces are closed, the limit is then up to a quarter below what it could be. Infinite for a diffusivity of 0.
 pub fn stable_dt_secs<R: Real>(grid: &Grid<R>, diffusivity_m2_per_s: f64) -> f64 {
-    let curvature: f64 = grid.spacing_m.iter().map(|h| (h.wide() * h.wide()).recip()).sum();
-    (2.0 * diffusivity_m2_per_s * curvature).recip()
+    let curvature: f64 =
+        (0..3).map(|axis| largest_eigenvalue(grid, axis) * (grid.spacing_m[axis].wide() * grid.spacing_m[axis].wide()).recip()).sum();
+    2.0 * (diffusivity_m2_per_s * curvature).recip()
 }
 
-/// Writes `start + ν·dt·∇²field` (central differences, second order in h) into the interior values of `target`. The ghosts of `field` must be filled.
+/// Writes `start + ν·dt·∇²field` (central differences, second order in h; next to walls by a parabola through the wall's velocity) into the interior values of `target`. The ghosts of `field` must be filled.
 ///
 /// With `start` equal to `field` this is the explicit step: forward Euler, first order in dt.
 pub fn explicit<R: Real>(
@@ -49,6 +53,7 @@ pub fn explicit<R: Real>(
             }
         }
     });
+    friction::complete(grid, diffusivity_m2_per_s, dt_secs, field, target);
 }
 
 /// Backward Euler by Gauss–Seidel sweeps (Zhang §2.3.2, corrected: `a = ν·dt/h²`, and parentheses): relaxes `field` towards the solution of
@@ -62,13 +67,16 @@ pub fn gauss_seidel<R: Real>(
     sweeps: u32,
     start: &Field<R>,
     field: &mut Field<R>,
-    boundaries: impl Fn(&mut Field<R>),
+    mut boundaries: impl FnMut(&mut Field<R>),
 ) -> f64 {
     let strides = grid.strides();
-    let weight = grid.spacing_m.map(|h| R::of(diffusivity_m2_per_s * dt_secs) / (h * h));
-    let two = R::of(2.0);
-    let per = (R::one() + two * (weight[0] + weight[1] + weight[2])).recip();
+    let inner = grid.spacing_m.map(|h| R::of(diffusivity_m2_per_s * dt_secs) / (h * h));
     let location = field.location;
+    let walls = [0, 1, 2].map(|axis| friction::walls(grid, location, axis));
+    let weight = |axis: usize, index: usize| {
+        let is_next = (walls[axis][0] && index == 0) || (walls[axis][1] && index + 1 == grid.cells[axis]);
+        if is_next { R::of(friction::FACTOR) * inner[axis] } else { inner[axis] }
+    };
     let mut change = R::zero();
     for _ in 0..sweeps {
         change = R::zero();
@@ -76,6 +84,8 @@ pub fn gauss_seidel<R: Real>(
             for j in grid.free(location, 1) {
                 for i in grid.free(location, 0) {
                     let at = grid.at([i, j, k]);
+                    let weight = [weight(0, i), weight(1, j), weight(2, k)];
+                    let per = (R::one() + R::of(2.0) * (weight[0] + weight[1] + weight[2])).recip();
                     let data = &field.data;
                     let around =
                         (0..3).fold(R::zero(), |sum, axis| sum + weight[axis] * (data[at - strides[axis]] + data[at + strides[axis]]));
@@ -91,26 +101,28 @@ pub fn gauss_seidel<R: Real>(
 }
 
 /// Diffuses like Crank–Nicolson, second order in dt, but by the L-stable scheme of two stages with γ = 1 + √½ (Alexander, SIAM J. Numer. Anal. 14 (1977)), which
-/// leaves the sign of every wave: with the backward Euler step B of length γ·dt, the result is `√2·B − (√2 − 1)·B²`. For smooth fields its error is 17 times that of
+/// leaves the sign of every wave: with the backward Euler step B of length γ·dt, the result is `B·(1 − (√2 − 1)·(B − 1))`. For smooth fields its error is 17 times that of
 /// Crank–Nicolson.
+///
+/// The first stage ends at γ·dt, beyond the step, and the second at its end: `boundaries` applies the conditions at the given multiple of the step.
 pub fn keep_signs<R: Real>(
     grid: &Grid<R>,
     diffusivity_m2_per_s: f64,
     dt_secs: f64,
     field: &mut Field<R>,
-    first: &mut Field<R>,
+    start: &mut Field<R>,
     implicit: &mut Implicit,
-    boundaries: impl Fn(&mut Field<R>),
+    mut boundaries: impl FnMut(&mut Field<R>, f64),
 ) {
-    let stage_secs = (1.0 + std::f64::consts::FRAC_1_SQRT_2) * dt_secs;
-    implicit.step(grid, diffusivity_m2_per_s, stage_secs, field);
-    boundaries(field);
-    first.data.copy_from_slice(&field.data);
-    implicit.step(grid, diffusivity_m2_per_s, stage_secs, field);
-    let root = R::of(std::f64::consts::SQRT_2);
-    let second = field.data.iter_mut().zip(&first.data);
-    second.for_each(|(value, &first)| *value = root * first - (root - R::one()) * *value);
-    boundaries(field);
+    let reach = 1.0 + std::f64::consts::FRAC_1_SQRT_2;
+    start.data.copy_from_slice(&field.data);
+    boundaries(field, reach);
+    implicit.step(grid, diffusivity_m2_per_s, reach * dt_secs, field);
+    let back = R::of(std::f64::consts::SQRT_2) - R::one();
+    field.data.iter_mut().zip(&start.data).for_each(|(value, &start)| *value = start - back * (*value - start));
+    boundaries(field, 1.0);
+    implicit.step(grid, diffusivity_m2_per_s, reach * dt_secs, field);
+    boundaries(field, 1.0);
 }
 
 /// Portion of a step's diffusion: all of it, or the halves before and after the other sub-steps of a second-order scheme (Strang splitting).
@@ -124,8 +136,8 @@ pub enum Portion {
     Second,
 }
 
-/// Diffuses `field` over a portion of a step of `dt_secs` (s). Its ghosts must be filled before, and are filled again afterwards. `boundaries`
-/// applies the boundary conditions to a field; `even` and `odd` are work arrays.
+/// Diffuses `field` over a portion of a step of `dt_secs` (s). `boundaries` applies the boundary conditions to a field as they are at a fraction of
+/// the portion: those at its start must be in place, those at its end are afterwards. `even` and `odd` are work arrays.
 ///
 /// Halves of the explicit scheme are midpoint steps (Runge–Kutta 2), with sub-steps within the limit. Those of Crank–Nicolson are Crank–Nicolson steps
 /// of half the length with one solve each, since an explicit half before and an implicit half after other sub-steps would not be second order.
@@ -140,53 +152,55 @@ pub fn diffuse<R: Real>(
     field: &mut Field<R>,
     [even, odd]: [&mut Field<R>; 2],
     implicit: Option<&mut Implicit>,
-    boundaries: impl Fn(&mut Field<R>),
+    mut boundaries: impl FnMut(&mut Field<R>, f64),
 ) {
     if diffusivity_m2_per_s == 0.0 {
         return;
     }
     let substeps = |secs: f64| (secs / stable_dt_secs(grid, diffusivity_m2_per_s)).ceil().max(1.0);
-    let mut euler = |field: &mut Field<R>, secs: f64| {
-        explicit(grid, diffusivity_m2_per_s, secs, field, field, even);
-        std::mem::swap(&mut field.data, &mut even.data);
-        boundaries(field);
-    };
     match (scheme, portion) {
         (Diffusion::Explicit, Portion::Whole) => {
             let n = substeps(dt_secs);
-            (0..n as u32).for_each(|_| euler(field, dt_secs / n));
+            for number in 1..=n as u32 {
+                explicit(grid, diffusivity_m2_per_s, dt_secs / n, field, field, even);
+                std::mem::swap(&mut field.data, &mut even.data);
+                boundaries(field, f64::from(number) / n);
+            }
         }
         (Diffusion::Explicit, _) => {
             let n = substeps(0.5 * dt_secs);
             let secs = 0.5 * dt_secs / n;
-            for _ in 0..n as u32 {
+            for number in 0..n as u32 {
                 explicit(grid, diffusivity_m2_per_s, 0.5 * secs, field, field, even);
-                boundaries(even);
+                boundaries(even, (f64::from(number) + 0.5) / n);
                 explicit(grid, diffusivity_m2_per_s, secs, field, even, odd);
                 std::mem::swap(&mut field.data, &mut odd.data);
-                boundaries(field);
+                boundaries(field, f64::from(number + 1) / n);
             }
         }
         (Diffusion::CrankNicolson, portion) => {
             let secs = if portion == Portion::Whole { dt_secs } else { 0.5 * dt_secs };
             if let Some(implicit) = implicit {
                 even.data.copy_from_slice(&field.data);
+                boundaries(field, 0.5);
                 implicit.step(grid, diffusivity_m2_per_s, 0.5 * secs, field);
                 // The implicit half ends in mid-step; the explicit half adds the same change again.
                 field.data.iter_mut().zip(&even.data).for_each(|(value, &start)| *value = *value + *value - start);
-                boundaries(field);
+                boundaries(field, 1.0);
             }
         }
         (Diffusion::Implicit | Diffusion::GaussSeidel { .. }, Portion::First) => {}
         (Diffusion::Implicit, _) => {
             if let Some(implicit) = implicit {
+                boundaries(field, 1.0);
                 implicit.step(grid, diffusivity_m2_per_s, dt_secs, field);
-                boundaries(field);
+                boundaries(field, 1.0);
             }
         }
         (Diffusion::GaussSeidel { sweeps }, _) => {
             even.data.copy_from_slice(&field.data);
-            gauss_seidel(grid, diffusivity_m2_per_s, dt_secs, sweeps, even, field, boundaries);
+            boundaries(field, 1.0);
+            gauss_seidel(grid, diffusivity_m2_per_s, dt_secs, sweeps, even, field, |field| boundaries(field, 1.0));
         }
     }
 }
@@ -208,7 +222,7 @@ mod tests {
         walls.apply_to_component(&mut field);
         let mut implicit = Implicit::new(&grid);
         for _ in 0..steps {
-            keep_signs(&grid, 1.0, dt_secs, &mut field, &mut first, &mut implicit, |field| walls.apply_to_component(field));
+            keep_signs(&grid, 1.0, dt_secs, &mut field, &mut first, &mut implicit, |field, _| walls.apply_to_component(field));
         }
         // Waves of two cells have the eigenvalue −4/h².
         [field.data[grid.at([0, 0, 0])], (-4.0 * dt_secs * f64::from(steps)).exp()]

@@ -36,7 +36,7 @@ impl<R: Real> Solver<R> {
         if !self.diffuses_in_fluxes(settings) {
             let Some(dust) = &mut self.dust else { return Ok(()) };
             let ([even, odd], diffusivity) = (&mut self.dust_stages, f64::from(settings.diffusivity_m2_per_s));
-            let boundaries = |field: &mut _| self.boundaries.apply_to_concentration(field);
+            let boundaries = |field: &mut _, _: f64| self.boundaries.apply_to_concentration(field);
             let (scheme, scratch) = (self.config.diffusion, [even, odd]);
             diffuse(scheme, Portion::Whole, &self.grid, diffusivity, dt_secs, dust, scratch, self.implicit.as_mut(), boundaries);
         }

@@ -16,6 +16,7 @@ mod line;
 mod plane;
 #[cfg(test)]
 mod tests;
+mod walls;
 
 pub use self::basis::{Basis, Edge};
 
@@ -33,7 +34,7 @@ const TASKS: usize = 32;
 /// A planned solver of `(shift − ∇²)·φ = f` with the seven-point Laplacian.
 ///
 /// Takes time proportional to the number of unknowns and to the sum of the prime factors of the transform lengths along x and y: products of 2, 3 and 5
-/// are best (for nodes between two Dirichlet edges, one less than these); nodes on a Neumann edge take time proportional to the square of their number. All lengths along z are equally efficient.
+/// are best (for nodes between two Dirichlet edges, one less than these); nodes on a Neumann edge and centres next to walls take time proportional to the square of their number. All lengths along z are equally efficient.
 ///
 /// ```
 /// use prairie_wind::separable::{Basis, Edge, Separable};
@@ -82,7 +83,8 @@ impl Separable {
         // An axis of one unknown may be in any position; putting it last leaves two longer ones for the plane.
         let mut order = [0, 1, 2];
         order.sort_by_key(|&axis| cells[axis] == 1);
-        let (cells, spacing_m, axes) = (order.map(|axis| cells[axis]), order.map(|axis| spacing_m[axis]), order.map(|axis| axes[axis]));
+        let (cells, spacing_m, axes) =
+            (order.map(|axis| cells[axis]), order.map(|axis| spacing_m[axis]), order.map(|axis| axes[axis].reduced(cells[axis])));
         let [nx, ny, nz] = cells;
         let [x, y] = from_fn(|axis| Line::new(axes[axis], cells[axis], spacing_m[axis]));
 

@@ -1,6 +1,6 @@
 //! The sub-steps of each time scheme, in order.
 
-use super::boundary::{InflowGhosts, outflow};
+use super::boundary::{InflowGhosts, friction, outflow};
 use super::diffuse::{Portion, diffuse, keep_signs, stable_dt_secs};
 use super::pressure::Convergence;
 use super::state::StepError;
@@ -110,6 +110,7 @@ impl<R: Real> Solver<R> {
                 };
                 stage.run(&mut target.0[axis], &mut self.transport);
                 outflow::correct_flux(&self.grid, air, fraction * dt_secs, &mut target.0[axis]);
+                friction::complete(&self.grid, viscosity_m2_per_s, fraction * dt_secs, &air.0[axis], &mut target.0[axis]);
             }
             self.boundaries.update_inflow(self.time_secs + STAGE_ENDS[number] * dt_secs);
             // Forces follow the last stage and apply the boundary conditions; before them only diffusion and canopy drag read ghosts.
@@ -171,20 +172,36 @@ impl<R: Real> Solver<R> {
 
     fn diffuse(&mut self, portion: Portion, dt_secs: f64) {
         let viscosity = self.config.viscosity_m2_per_s.into();
+        if viscosity == 0.0 {
+            return;
+        }
         // The old pressure gradient passes through the second half. A wave of it that Crank–Nicolson reverses would be added to the pressure, instead of replacing it, in
         // every step.
         let keeps_pressure = self.config.time == TimeScheme::RungeKutta3;
         let reverses = self.config.diffusion == Diffusion::CrankNicolson && 0.5 * dt_secs > stable_dt_secs(&self.grid, viscosity);
+        let [start_secs, length_secs] = match portion {
+            Portion::Whole => [self.time_secs, dt_secs],
+            Portion::First => [self.time_secs, 0.5 * dt_secs],
+            Portion::Second => [self.time_secs + 0.5 * dt_secs, 0.5 * dt_secs],
+        };
         let [a, b] = &mut self.stages;
         for (axis, field) in self.velocity.0.iter_mut().enumerate() {
             let scratch = [&mut a.0[axis], &mut b.0[axis]];
-            let boundaries = |field: &mut _| self.boundaries.apply_to_component(field);
+            // Air next to a face follows it within a fraction of the step: with its velocity at another time the error would be of first order there.
+            let mut boundaries = |field: &mut _, fraction: f64| {
+                self.boundaries.update_inflow(start_secs + fraction * length_secs);
+                self.boundaries.apply_to_component(field);
+            };
+            boundaries(field, 0.0);
             if let Some(implicit) = self.implicit.as_mut().filter(|_| keeps_pressure && reverses) {
                 keep_signs(&self.grid, viscosity, 0.5 * dt_secs, field, scratch[0], implicit, boundaries);
                 continue;
             }
             diffuse(self.config.diffusion, portion, &self.grid, viscosity, dt_secs, field, scratch, self.implicit.as_mut(), boundaries);
         }
+        // Other sub-steps have the velocity on the faces at their own times.
+        self.boundaries.update_inflow(if portion == Portion::First { self.time_secs } else { self.time_secs + dt_secs });
+        self.boundaries.apply(&mut self.velocity);
     }
 
     /// Projects the velocity. With `dt_secs`, adds the correction to the pressure gradient.

@@ -10,6 +10,7 @@
 
 use multiversion::multiversion;
 
+use super::boundary::friction::largest_eigenvalue;
 use super::parallel::for_each_chunk_pair;
 use super::{Field, GHOST, Grid, Location, Real, Velocity};
 
@@ -30,12 +31,12 @@ pub const REACH: [f64; 2] = [1.732_050_807_568_877_2, 2.512_745_326_618_329];
 
 /// Longest stable step (s) of transport at the given maximum speeds (m/s) along the axes and diffusivity (m²/s).
 ///
-/// Central differences have eigenvalues up to `i·Σ|u|/h`, diffusion up to `−4ν·Σ1/h²`; the straight line between the two
-/// extents bounds both together. Upwind damping moves eigenvalues into the part of the stability region beyond this line.
+/// Central differences have eigenvalues up to `i·Σ|u|/h`, diffusion up to `−4ν·Σ1/h²`, with somewhat more than 4 across walls
+/// ([`diffuse::stable_dt_secs`](super::diffuse::stable_dt_secs)); the straight line between the two extents bounds both together. Upwind damping moves eigenvalues into the part of the stability region beyond this line.
 pub fn stable_dt_secs<R: Real>(grid: &Grid<R>, speeds_m_per_s: [f64; 3], diffusivity_m2_per_s: f64) -> f64 {
     let spacing = grid.spacing_m.map(R::wide);
     let advective: f64 = (0..3).map(|axis| speeds_m_per_s[axis] / spacing[axis]).sum();
-    let diffusive: f64 = spacing.iter().map(|h| 4.0 * diffusivity_m2_per_s / (h * h)).sum();
+    let diffusive: f64 = (0..3).map(|axis| largest_eigenvalue(grid, axis) * diffusivity_m2_per_s / (spacing[axis] * spacing[axis])).sum();
     (advective / REACH[0] + diffusive / REACH[1]).recip()
 }
 

@@ -8,6 +8,7 @@
 //! | [`TaylorGreen`] | the whole solver in two dimensions, in a periodic box |
 //! | [`EthierSteinman`] | the whole solver in three dimensions, with prescribed velocity on every face |
 //! | [`Cavity`] | no-slip walls and a moving lid, against three published tables |
+//! | [`CouetteStart`], [`OscillatingWall`] | friction at moving walls |
 //! | [`SlottedDisc`], [`RotatingGaussian`], [`drifting_hill`] | advection alone: sharp edges, a smooth hill on curved and on straight paths |
 //! | [`HeatKernel`] | diffusion alone, in one to three dimensions |
 //! | [`plants`] | blades in a recorded gust, components under their weight |
@@ -20,6 +21,7 @@ mod differences;
 mod ethier_steinman;
 mod heat;
 mod hill;
+mod moving_walls;
 pub mod plants;
 mod rotation;
 mod taylor_green;
@@ -28,5 +30,6 @@ pub use cavity::{BOTELLA_PEYRET_RE_1000, Cavity, Centreline, GHIA_RE_100, GHIA_R
 pub use ethier_steinman::EthierSteinman;
 pub use heat::HeatKernel;
 pub use hill::drifting_hill;
+pub use moving_walls::{CouetteStart, OscillatingWall};
 pub use rotation::{RotatingGaussian, Rotation, SlottedDisc};
 pub use taylor_green::TaylorGreen;

@@ -9,7 +9,7 @@
 use prairie_wind::{Boundary, Canopy, Config, Solver};
 use tests::air::still_air;
 use tests::norms::Norms;
-use tests::orders::{Order, assert_formal};
+use tests::orders::{Order, assert_expected};
 
 const TOP_M: f64 = 16.0;
 const DRAG_PER_M: f64 = 0.125;
@@ -99,7 +99,7 @@ fn the_profile_converges_to_the_exact_one_at_second_order() {
         });
         Order::fit("Canopy", format!("{canopy_m} m high"), "h, L2", 2.0, errors.to_vec())
     };
-    assert_formal(&CANOPIES_M.map(row));
+    assert_expected(&CANOPIES_M.map(row));
 }
 
 #[test]

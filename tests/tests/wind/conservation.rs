@@ -2,7 +2,7 @@
 
 use prairie_wind::{Boundary, Config, Diffusion, Dust, Real, Solver, TimeScheme};
 use tests::air::{noise, still_air};
-use tests::orders::{Order, assert_formal};
+use tests::orders::{Order, assert_expected};
 
 const WRAP: [[Boundary; 2]; 3] = [[Boundary::Wrap; 2]; 3];
 
@@ -58,7 +58,7 @@ fn without_damping_energy_changes_only_by_the_time_error() {
         assert!((-bound..0.0).contains(&gain), "Courant {courant}: {gain}");
     }
     let losses = [(0.4, 20), (0.2, 40), (0.1, 80)].map(|(courant, steps)| gain(courant, steps)).map(|(dt_secs, gain)| (dt_secs, -gain));
-    assert_formal(&[Order::fit("Rough air", "Conservative RungeKutta3, damping 0", "dt, energy", 3.0, losses.to_vec())]);
+    assert_expected(&[Order::fit("Rough air", "Conservative RungeKutta3, damping 0", "dt, energy", 3.0, losses.to_vec())]);
 }
 
 #[test]

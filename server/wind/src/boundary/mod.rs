@@ -1,6 +1,7 @@
 //! Boundary conditions: the values at and beyond the faces of the box and of solid cells.
 
 pub(crate) mod condition;
+pub(crate) mod friction;
 mod ghosts;
 mod inflow;
 pub(crate) mod outflow;
@@ -20,6 +21,8 @@ use inflow::Inflow;
 ///
 /// Ghosts are second-order mirror images: `2w − image` where the face has the value w, the image itself where the gradient is 0. They are filled along x, then y,
 /// then z, so that edges and corners are consistent.
+///
+/// Friction next to a face with a given tangential velocity takes its second difference from a parabola through w instead (`friction.rs`).
 pub struct BoundaryConditions<R> {
     grid: Grid<R>,
     inflow: Vec<Inflow<R>>,

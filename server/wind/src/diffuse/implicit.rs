@@ -1,12 +1,13 @@
 //! Backward Euler by a direct solve.
 
+use crate::boundary::friction;
 use crate::separable::{Basis, Edge, Separable};
 use crate::{Boundary, Field, Grid, Location, Real};
 
 /// Solves `(1 − ν·dt·∇²)·u = start` exactly, one field at a time, by transforms along the axes of the box.
 ///
 /// Unconditionally stable; first order in dt, second in h. Extrapolated linearly to twice the step it is the Crank–Nicolson scheme, second order in
-/// both. On outflow faces the gradient of the velocity is zero.
+/// both. On outflow faces the gradient of the velocity is zero; next to walls the equation is that of [`explicit`](super::explicit).
 pub struct Implicit {
     /// One per location: the three faces, and the centre.
     solvers: [Option<Separable>; 4],
@@ -47,22 +48,23 @@ impl Implicit {
                 *value = shift * u.wide();
             }
         }
-        // Contribution of faces with a given velocity w: a node there has it; beyond centres the ghost is 2w − u, and −u is part of the transform.
+        // Contribution of faces with a given velocity w: a node there has it; beyond centres the mirrored ghost is 2w − u, of which w alone is not part of the transform.
         let mut add =
             |index: [usize; 3], axis: usize, outside: f64| values[index[0] + nx * (index[1] + ny * index[2])] += outside * per_m2[axis];
         for (axis, &step) in strides.iter().enumerate() {
-            let (edges, on_faces) = match basis(grid, location, axis) {
-                Basis::Wrap => continue,
-                Basis::Nodes(edges) => (edges, true),
-                Basis::Centres(edges) => (edges, false),
+            let (is_given, on_faces) = match basis(grid, location, axis) {
+                Basis::Nodes(edges) => (edges.map(|edge| edge == Edge::Dirichlet), true),
+                Basis::Walls(walls) => (walls, false),
+                Basis::Wrap | Basis::Centres(_) => continue,
             };
+            let factor = if grid.cells[axis] > 1 { friction::FACTOR } else { 1.0 };
             for_each_of_ends([nx, ny, nz], axis, |index, side| {
-                if edges[side] == Edge::Dirichlet {
+                if is_given[side] {
                     let inner = at(index[1], index[2]) + index[0];
                     let beyond = field.data[if side == 0 { inner - step } else { inner + step }];
                     // A single node on a Neumann edge has the given value on both sides.
-                    let times = if edges[1 - side] == Edge::Neumann && [nx, ny, nz][axis] == 1 { 2.0 } else { 1.0 };
-                    add(index, axis, if on_faces { times * beyond.wide() } else { (beyond + field.data[inner]).wide() });
+                    let times = if !is_given[1 - side] && [nx, ny, nz][axis] == 1 { 2.0 } else { 1.0 };
+                    add(index, axis, if on_faces { times * beyond.wide() } else { factor * (beyond + field.data[inner]).wide() });
                 }
             });
         }
@@ -102,8 +104,5 @@ fn basis<R: Real>(grid: &Grid<R>, location: Location, axis: usize) -> Basis {
         return Basis::Nodes(grid.boundary[axis].map(|face| if face.fixes_pressure() { Edge::Neumann } else { Edge::Dirichlet }));
     }
     let is_velocity = location != Location::Centre;
-    Basis::Centres(
-        grid.boundary[axis]
-            .map(|face: Boundary| if is_velocity && face.fixes_tangential_velocity() { Edge::Dirichlet } else { Edge::Neumann }),
-    )
+    Basis::Walls(grid.boundary[axis].map(|face: Boundary| is_velocity && face.fixes_tangential_velocity()))
 }

@@ -6,6 +6,7 @@
 use multiversion::multiversion;
 
 use super::basis::{Basis, Edge};
+use super::walls;
 
 /// Columns solved at once: two cache lines of each plane.
 pub(super) const WIDTH: usize = 16;
@@ -45,12 +46,7 @@ pub(super) fn solve(basis: Basis, lambda: &Row, rows: &mut [Row], scratch: &mut 
         Basis::Nodes(edges) => {
             // Half of the equation at a node on a Neumann edge, so that the matrix is symmetric.
             let ends = edges.map(|edge| if edge == Edge::Neumann { lambda.map(|lambda| -0.5 * lambda) } else { [1.0; WIDTH] });
-            let last = rows.len() - 1;
-            for (at, edge) in [0, last].into_iter().zip(edges) {
-                if edge == Edge::Neumann {
-                    rows[at].iter_mut().for_each(|value| *value *= 0.5);
-                }
-            }
+            weigh(rows, edges.map(|edge| edge == Edge::Neumann), 0.5);
             factor(lambda, ends, inverse_pivots);
             substitute(inverse_pivots, rows);
         }
@@ -58,6 +54,22 @@ pub(super) fn solve(basis: Basis, lambda: &Row, rows: &mut [Row], scratch: &mut 
             factor(lambda, edges.map(|edge| [if edge == Edge::Neumann { 0.0 } else { 2.0 }; WIDTH]), inverse_pivots);
             substitute(inverse_pivots, rows);
         }
+        Basis::Walls(walls) => {
+            // Three quarters of the equation next to a wall, for the same reason.
+            let end = |is_wall: bool| if is_wall { lambda.map(|lambda| 2.0 - (1.0 - walls::WEIGHT) * lambda) } else { [0.0; WIDTH] };
+            weigh(rows, walls, walls::WEIGHT);
+            factor(lambda, walls.map(end), inverse_pivots);
+            substitute(inverse_pivots, rows);
+        }
+    }
+}
+
+/// Multiplies the right-hand sides of the first and the last equation, where `weighed`, by a weight.
+#[inline(always)]
+fn weigh(rows: &mut [Row], weighed: [bool; 2], weight: f64) {
+    let last = rows.len() - 1;
+    for (at, _) in [0, last].into_iter().zip(weighed).filter(|(_, weighed)| *weighed) {
+        rows[at].iter_mut().for_each(|value| *value *= weight);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Transform of eight lines along one axis into the modes of its discrete Laplacian, and back.
 //!
-//! Every basis, except nodes with a Neumann edge, costs one complex Fourier transform of two real lines, which are permuted on input and separated by symmetry on output. Cosines:
+//! Every basis, except nodes with a Neumann edge and centres next to walls, costs one complex Fourier transform of two real lines, which are permuted on input and separated by symmetry on output. Cosines:
 //! Makhoul, "A fast cosine transform in one and two dimensions", IEEE Trans. ASSP 28 (1980); the quarter-wave ones follow in the same way from
 //! frequencies shifted by one half; sines between nodes: Press et al. 2007, §12.4.
 
@@ -11,6 +11,7 @@ use multiversion::multiversion;
 use super::basis::{Basis, Edge};
 use super::fft::{Fft, root};
 use super::lanes::{LINES, Pair};
+use super::walls;
 
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Way {
@@ -40,7 +41,7 @@ enum Kind {
     Quarter { shifts: Vec<[f64; 2]>, turns: Vec<[f64; 2]>, flipped: bool },
     /// DST-I, with sin(πj/(len + 1)).
     Nodes { sines: Vec<f64> },
-    /// Cosines about the node on a Neumann edge, as matrices in row order.
+    /// Cosines about the node on a Neumann edge, or the modes between walls, as matrices in row order.
     Matrix { to_modes: Vec<f64>, back: Vec<f64> },
 }
 
@@ -58,6 +59,10 @@ impl Line {
             }
             Basis::Nodes(edges) => {
                 let [to_modes, back] = matrices(edges, len);
+                (Kind::Matrix { to_modes, back }, 1.0, 1)
+            }
+            Basis::Walls(walls) => {
+                let [to_modes, back] = walls::matrices(walls, len);
                 (Kind::Matrix { to_modes, back }, 1.0, 1)
             }
             Basis::Centres([first, last]) if first == last => {
@@ -81,20 +86,18 @@ impl Line {
     }
 }
 
-/// Eigenvalues `(2/h)²·sin²(θ/2)` of the three-point −∂², for waves that advance by θ per unknown.
+/// Eigenvalues of the three-point −∂²: `(2/h)²·sin²(θ/2)` for waves that advance by θ per unknown.
 fn eigenvalues(basis: Basis, len: usize, spacing_m: f64) -> Vec<f64> {
     let n = len as f64;
-    let half_angle = |k: usize| {
-        let k = k as f64;
-        match basis {
-            Basis::Wrap => PI * k / n,
-            Basis::Nodes(edges) => 0.5 * node_angle(edges, k, n),
-            Basis::Centres([Edge::Neumann, Edge::Neumann]) => 0.5 * PI * k / n,
-            Basis::Centres([Edge::Dirichlet, Edge::Dirichlet]) => 0.5 * PI * (n - k) / n,
-            Basis::Centres(_) => 0.5 * PI * (k + 0.5) / n,
-        }
-    };
-    (0..len).map(|k| (2.0 / spacing_m * half_angle(k).sin()).powi(2)).collect()
+    let of_waves = |half_angle: &dyn Fn(f64) -> f64| (0..len).map(|k| (2.0 / spacing_m * half_angle(k as f64).sin()).powi(2)).collect();
+    match basis {
+        Basis::Wrap => of_waves(&|k| PI * k / n),
+        Basis::Nodes(edges) => of_waves(&|k| 0.5 * node_angle(edges, k, n)),
+        Basis::Centres([Edge::Neumann, Edge::Neumann]) => of_waves(&|k| 0.5 * PI * k / n),
+        Basis::Centres([Edge::Dirichlet, Edge::Dirichlet]) => of_waves(&|k| 0.5 * PI * (n - k) / n),
+        Basis::Centres(_) => of_waves(&|k| 0.5 * PI * (k + 0.5) / n),
+        Basis::Walls(walls) => walls::eigenvalues(walls, len).into_iter().map(|eigenvalue| eigenvalue / (spacing_m * spacing_m)).collect(),
+    }
 }
 
 /// Angle θ by which mode `k` of `n` nodes advances per node.

@@ -19,6 +19,12 @@ fn apply(cells: [usize; 3], spacing_m: [f64; 3], axes: [Basis; 3], shift: f64, p
             Basis::Nodes(_) if upwards => phi[at - strides[axis]],
             Basis::Nodes(_) => phi[at + strides[axis]],
             Basis::Centres(edges) if edges[usize::from(upwards)] == Edge::Neumann => phi[at],
+            Basis::Walls(walls) if !walls[usize::from(upwards)] => phi[at],
+            Basis::Walls(_) if n > 1 => {
+                let next = if upwards { at - strides[axis] } else { at + strides[axis] };
+                (phi[next] - 6.0 * phi[at]) / 3.0
+            }
+            Basis::Walls(_) => -phi[at],
             Basis::Centres(_) => -phi[at],
         }
     };
@@ -47,7 +53,7 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 }
 
 const NEUMANN: Basis = Basis::Centres([Edge::Neumann; 2]);
-const BASES: [Basis; 9] = [
+const BASES: [Basis; 12] = [
     Basis::Wrap,
     NEUMANN,
     Basis::Centres([Edge::Dirichlet; 2]),
@@ -57,6 +63,9 @@ const BASES: [Basis; 9] = [
     FREE_NODES,
     Basis::Nodes([Edge::Neumann, Edge::Dirichlet]),
     Basis::Nodes([Edge::Dirichlet, Edge::Neumann]),
+    Basis::Walls([true; 2]),
+    Basis::Walls([true, false]),
+    Basis::Walls([false, true]),
 ];
 const FREE_NODES: Basis = Basis::Nodes([Edge::Neumann; 2]);
 
@@ -228,4 +237,18 @@ fn bits_do_not_depend_on_the_number_of_threads_or_the_past() {
     solver.solve(1e3, &mut random_field(37 * 30 * 36, 6));
     assert!(alone == solve(1, &mut solver), "the past shows");
     assert!(alone == solve(2, &mut solver) && alone == solve(3, &mut solver), "the number of threads shows");
+}
+
+/// The bound by which explicit friction limits its step.
+#[test]
+fn the_largest_eigenvalue_between_walls_is_bounded_closely() {
+    use crate::Boundary::{FreeSlip, NoSlip, Wrap};
+    for cells in 2..=64 {
+        for (across, walls, least) in [([NoSlip; 2], [true; 2], 0.98), ([FreeSlip, NoSlip], [false, true], 0.95)] {
+            let grid = crate::Grid { cells: [1, cells, 1], spacing_m: [1.0; 3], boundary: [[Wrap; 2], across, [Wrap; 2]] };
+            let bound = crate::boundary::friction::largest_eigenvalue(&grid, 1);
+            let found = super::walls::eigenvalues(walls, cells).into_iter().fold(0.0, f64::max);
+            assert!((least..=1.0 + 1e-12).contains(&(found / bound)), "{cells} cells, {across:?}: {found} of {bound}");
+        }
+    }
 }

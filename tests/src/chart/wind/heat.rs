@@ -53,7 +53,17 @@ fn run((name, diffusion, portions): Scheme, n: usize, number: f64) -> Run {
         close(&mut heat);
         let wall = steps.take(|dt_secs| {
             for &portion in portions {
-                diffuse(diffusion, portion, &grid, diffusivity, dt_secs, &mut heat, [&mut even, &mut odd], Some(&mut implicit), close);
+                diffuse(
+                    diffusion,
+                    portion,
+                    &grid,
+                    diffusivity,
+                    dt_secs,
+                    &mut heat,
+                    [&mut even, &mut odd],
+                    Some(&mut implicit),
+                    |field, _| close(field),
+                );
             }
             Ok(())
         })?;
