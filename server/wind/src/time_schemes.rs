@@ -199,8 +199,9 @@ impl<R: Real> Solver<R> {
             Some(Immersed { walls, iteration, step_secs }) => {
                 *step_secs = dt_secs;
                 let speed_m_per_s = (2.0 * self.diagnostics.kinetic_energy_m2_per_s2).sqrt();
-                let around = (walls, iteration);
-                self.projection.project_around(grid, around, (dt_secs, speed_m_per_s), velocity, sources, pressure_gradient)
+                walls.hold(dt_secs, velocity);
+                self.boundaries.apply(velocity);
+                self.projection.project_around(grid, (walls, iteration), speed_m_per_s, velocity, sources, pressure_gradient)
             }
             None => self.projection.project(grid, velocity, sources, pressure_gradient),
         };

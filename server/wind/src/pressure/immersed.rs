@@ -38,12 +38,13 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Projection {
-    /// [`Projection::project`] around walls that act for `dt_secs` (s), in air of rms speed `speed_m_per_s`. The residual is the slip relative to it.
+    /// [`Projection::project`] around walls that hold the velocity already, with its boundary values filled in, in air of rms speed `speed_m_per_s`. The residual is the
+    /// slip relative to it.
     pub(crate) fn project_around<R: Real>(
         &mut self,
         grid: &Grid<R>,
         (walls, work): (&mut Walls<R>, &mut Iteration),
-        (dt_secs, speed_m_per_s): (f64, f64),
+        speed_m_per_s: f64,
         velocity: &mut Velocity<R>,
         inflow: &[f64],
         pressure_gradient: Option<(&mut Velocity<R>, f64)>,
@@ -51,7 +52,6 @@ impl Projection {
         let Self { solver: PressureSolver::Direct(separable), divergence: ahead, .. } = self else {
             return self.project(grid, velocity, inflow, pressure_gradient);
         };
-        walls.hold(dt_secs, velocity);
         let Iteration { potential, residual, direction, image } = work;
         divergence(grid, velocity, -1.0, residual);
         residual.iter_mut().zip(inflow).for_each(|(residual, &inflow)| *residual += inflow);

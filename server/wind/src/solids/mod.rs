@@ -6,6 +6,8 @@
 mod body;
 pub(crate) mod drag;
 mod setting;
+#[cfg(test)]
+mod tests;
 mod walls;
 
 pub use body::Body;
