@@ -15,6 +15,7 @@
 //! | [`transport`] | conservative fluxes by Runge–Kutta 3 |
 //! | [`diffuse`] | explicit and implicit diffusion |
 //! | [`pressure`], [`separable`] | projection by iteration (multigrid, conjugate gradients, relaxation) and by transforms |
+//! | [`solids`] | immersed walls, moving bodies, drag of bodies and crowns |
 //! | [`profile`], [`sources`], [`primitive`], [`forcing`], [`canopy`], [`footprint`] | mean wind, gusts, flow primitives, jets, grass drag, and the weights of local forces |
 //! | [`diagnostics`] | speed, divergence, kinetic energy, finiteness |
 //!

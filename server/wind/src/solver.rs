@@ -47,7 +47,7 @@ pub type WindSolver = Solver<f32>;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// [`Config`] selects other schemes, for example `advection: Advection::MacCormack, time: TimeScheme::Reflection`. [`Solver::set_solid`] adds obstacles,
+/// [`Config`] selects other schemes, for example `advection: Advection::MacCormack, time: TimeScheme::Reflection`. [`Solver::set_walls`] and [`Solver::set_bodies`] add obstacles ([`Solver::set_solid`] whole cells),
 /// [`Solver::set_inflow`] sets the velocity on [`Inflow`](super::Boundary::Inflow) faces, [`Solver::samples`] returns every value with its position.
 pub struct Solver<R: Real> {
     pub(super) config: Config,

@@ -1,6 +1,6 @@
 //! Solids in the air: walls at any angle to the cells, bodies that move, and drag of those that the cells do not resolve.
 //!
-//! [`Walls`] are an immersed boundary for the direct pressure solver; a [`DragBody`] takes momentum out of the air over its volume; a [`Body`] becomes the one or the
+//! Walls are an immersed boundary for the direct pressure solver; a [`DragBody`] takes momentum out of the air over its volume; a [`Body`] becomes the one or the
 //! other by its size.
 
 mod body;
@@ -12,9 +12,9 @@ mod walls;
 
 pub use body::Body;
 pub use drag::DragBody;
-pub use walls::Walls;
 
 pub(crate) use drag::Drag;
+pub(crate) use walls::Walls;
 
 use crate::Real;
 use crate::pressure::immersed::Iteration;

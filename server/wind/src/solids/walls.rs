@@ -33,7 +33,7 @@ pub(crate) struct WallFace<R> {
 
 /// Walls in a grid, with the force on them.
 #[derive(Clone, Debug, Default)]
-pub struct Walls<R> {
+pub(crate) struct Walls<R> {
     /// The faces across x, y and z: those of fixed walls in memory order, then those of moving ones.
     pub(crate) faces: [Vec<WallFace<R>>; 3],
     /// Number of faces of fixed walls.
@@ -89,12 +89,12 @@ impl<R: Real> Walls<R> {
     }
 
     /// Whether no wall acts on any face.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.faces.iter().all(Vec::is_empty)
     }
 
     /// Number of faces inside the walls and next to them.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.faces.iter().map(Vec::len).sum()
     }
 
