@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::config::{Config, ConfigError};
 use super::diagnostics::Diagnostics;
 use super::state::{SolidError, StepError, StepReport};
-use super::{Jet, Real, Solver, StableFluids};
+use super::{Body, DragBody, Jet, Real, Solver, StableFluids};
 
 /// Solver to use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -122,6 +122,35 @@ impl<R: Real> Air<R> {
         match self {
             Self::Staggered(air) => air.set_solid(f),
             Self::StableFluids(_) => Err(SolidError::Method),
+        }
+    }
+
+    /// Immerses fixed walls; see [`Solver::set_walls`].
+    ///
+    /// # Errors
+    /// Those of [`Solver::check_walls`]; always with [`StableFluids`]. Nothing changes then.
+    pub fn set_walls(
+        &mut self,
+        distance_m: impl Fn([f64; 3]) -> f64,
+        velocity_m_per_s: impl Fn([f64; 3]) -> [f64; 3],
+    ) -> Result<(), SolidError> {
+        match self {
+            Self::Staggered(air) => air.set_walls(distance_m, velocity_m_per_s),
+            Self::StableFluids(_) => Err(SolidError::Method),
+        }
+    }
+
+    /// Sets fixed bodies that slow the air; see [`Solver::set_drag`]. No effect with [`StableFluids`].
+    pub fn set_drag(&mut self, bodies: &[DragBody]) {
+        if let Self::Staggered(air) = self {
+            air.set_drag(bodies);
+        }
+    }
+
+    /// Sets solid bodies that may move; see [`Solver::set_bodies`]. No effect with [`StableFluids`].
+    pub fn set_bodies(&mut self, bodies: &[Body]) {
+        if let Self::Staggered(air) = self {
+            air.set_bodies(bodies);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Drag of a grass canopy.
 
 use super::config::error::{ConfigError, above_zero, at_least_zero};
+use super::solids::drag::speed_squared;
 use super::{Grid, Location, Real, Velocity};
 
 /// A layer of grass with the drag `f = −C_d·a·|u|·u`, a the frontal area per volume. The resulting shear layer causes the travelling waves over a
@@ -38,7 +39,6 @@ impl Canopy {
 pub fn drag<R: Real>(grid: &Grid<R>, canopy: &Canopy, cover: &[R], dt_secs: f64, velocity: &mut Velocity<R>, slowed: &mut Velocity<R>) {
     let strides = grid.strides();
     let [nx, ny, nz] = grid.cells;
-    let quarter = R::of(0.25);
     let layer_m = grid.spacing_m[1].wide();
     for axis in 0..3 {
         let location = Location::Face(axis);
@@ -54,17 +54,7 @@ pub fn drag<R: Real>(grid: &Grid<R>, canopy: &Canopy, cover: &[R], dt_secs: f64,
             for k in grid.free(location, 2) {
                 for i in grid.free(location, 0) {
                     let at = grid.at([i, j, k]);
-                    let mut squares = R::zero();
-                    for other in 0..3 {
-                        let data = &velocity.0[other].data;
-                        let speed = if other == axis {
-                            data[at]
-                        } else {
-                            let (back, on) = (strides[axis], strides[other]);
-                            quarter * (data[at] + data[at + on] + data[at - back] + data[at + on - back])
-                        };
-                        squares = squares + speed * speed;
-                    }
+                    let squares = speed_squared(velocity, strides, axis, at, [R::zero(); 3]);
                     let standing = cover[i.min(nx - 1) + nx * k.min(nz - 1)];
                     target.data[at] = velocity.0[axis].data[at] / (R::one() + rate * standing * squares.sqrt());
                 }

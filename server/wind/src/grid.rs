@@ -106,6 +106,12 @@ impl<R: Real> Grid<R> {
         1 - low..n + high
     }
 
+    /// Values along `axis` of a field at `location` between two cells, or in one: [`Grid::free`] without the faces of outflows.
+    pub(super) fn inner(&self, location: Location, axis: usize) -> Range<usize> {
+        let n = self.cells[axis];
+        if location != Location::Face(axis) || self.wraps(axis) { 0..n } else { 1..n }
+    }
+
     /// Offset of a value from the low corner of its cell, in cells along `axis`.
     ///
     /// ```

@@ -15,6 +15,7 @@
 //! | [`transport`] | conservative fluxes by Runge–Kutta 3 |
 //! | [`diffuse`] | explicit and implicit diffusion |
 //! | [`pressure`], [`separable`] | projection by iteration (multigrid, conjugate gradients, relaxation) and by transforms |
+//! | [`solids`] | immersed walls, moving bodies, drag of bodies and crowns |
 //! | [`profile`], [`sources`], [`primitive`], [`forcing`], [`canopy`], [`footprint`] | mean wind, gusts, flow primitives, jets, grass drag, and the weights of local forces |
 //! | [`diagnostics`] | speed, divergence, kinetic energy, finiteness |
 //!
@@ -42,6 +43,7 @@ pub mod profile;
 mod real;
 pub mod sample;
 pub mod separable;
+pub mod solids;
 pub mod solver;
 pub mod sources;
 pub mod stable_fluids;
@@ -63,6 +65,7 @@ pub use grid::{GHOST, Grid, Location};
 pub use pressure::Pressure;
 pub use primitive::{Primitive, Shape};
 pub use real::Real;
+pub use solids::{Body, DragBody};
 pub use solver::{Solver, WindSolver};
 pub use stable_fluids::StableFluids;
 pub use state::{SolidError, State, StateError, StepError, StepReport};

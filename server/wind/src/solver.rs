@@ -9,6 +9,7 @@ use super::diffuse::Implicit;
 use super::footprint::Footprint;
 use super::pressure::{Pressure, Projection};
 use super::profile::{MeanWind, Relaxation};
+use super::solids::{Drag, Immersed};
 use super::sources::Pushes;
 use super::state::{SolidError, State, StateError};
 use super::trajectory::Trajectories;
@@ -46,7 +47,7 @@ pub type WindSolver = Solver<f32>;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// [`Config`] selects other schemes, for example `advection: Advection::MacCormack, time: TimeScheme::Reflection`. [`Solver::set_solid`] adds obstacles,
+/// [`Config`] selects other schemes, for example `advection: Advection::MacCormack, time: TimeScheme::Reflection`. [`Solver::set_walls`] and [`Solver::set_bodies`] add obstacles ([`Solver::set_solid`] whole cells),
 /// [`Solver::set_inflow`] sets the velocity on [`Inflow`](super::Boundary::Inflow) faces, [`Solver::samples`] returns every value with its position.
 pub struct Solver<R: Real> {
     pub(super) config: Config,
@@ -63,7 +64,9 @@ pub struct Solver<R: Real> {
     /// Fraction of the canopy that stands in each column of cells, x fastest.
     pub(super) canopy_fraction: Vec<R>,
     pub(super) sponge_m: Option<[f64; 2]>,
-    solid: Option<Vec<bool>>,
+    pub(super) solid: Option<Vec<bool>>,
+    pub(super) immersed: Option<Immersed<R>>,
+    pub(super) drag: Drag<R>,
 
     pub(super) boundaries: BoundaryConditions<R>,
     pub(super) stages: [Velocity<R>; 2],
@@ -114,6 +117,8 @@ impl<R: Real> Solver<R> {
             canopy_fraction: vec![R::one(); grid.cells[0] * grid.cells[2]],
             sponge_m: None,
             solid: None,
+            immersed: None,
+            drag: Drag::none(),
             boundaries,
             stages: [still.clone(), still],
             dust_stages: [dust_stage.clone(), dust_stage],

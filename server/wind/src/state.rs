@@ -103,6 +103,12 @@ pub enum SolidError {
     /// The pressure solver uses transforms.
     #[error("wind: pressure is Direct; allowed with solid cells: Multigrid, ConjugateGradients, Sor, GaussSeidel or Jacobi")]
     Pressure,
+    /// The pressure solver iterates.
+    #[error("wind: pressure is iterative; allowed with immersed walls: Direct")]
+    Iterative,
+    /// The time scheme reflects the velocity about its projection.
+    #[error("wind: time is Reflection; allowed with immersed walls: Split or RungeKutta3")]
+    Reflection,
     /// The diffusion scheme uses transforms.
     #[error("wind: diffusion is solved by transforms; allowed with solid cells: Explicit or GaussSeidel")]
     Diffusion,

@@ -3,6 +3,7 @@
 use super::boundary::{InflowGhosts, friction, outflow};
 use super::diffuse::{Portion, diffuse, keep_signs, stable_dt_secs};
 use super::pressure::Convergence;
+use super::solids::Immersed;
 use super::state::StepError;
 use super::transport::{self, STAGE_ENDS, STAGES, Stage};
 use super::{Diffusion, Jet, Real, Solver, TimeScheme, advect, canopy, diagnostics, forcing, limits, profile, trajectory};
@@ -21,7 +22,7 @@ impl<R: Real> Solver<R> {
         }
         self.force(dt_secs, self.time_secs + 0.5 * dt_secs, jets);
         self.diffuse(Portion::Whole, dt_secs);
-        Ok(self.project(None))
+        Ok(self.project(dt_secs, false))
     }
 
     /// [`TimeScheme::Reflection`]: half of forces and diffusion; mid-step velocity; half a step of advection, reflection, half a step; half of diffusion and forces;
@@ -59,7 +60,7 @@ impl<R: Real> Solver<R> {
 
         self.diffuse(Portion::Second, dt_secs);
         self.force(0.5 * dt_secs, middle_secs, jets);
-        self.project(None)
+        self.project(dt_secs, false)
     }
 
     /// [`TimeScheme::RungeKutta3`]: half of forces and diffusion; three stages of conservative transport with the old pressure gradient; half of
@@ -76,7 +77,7 @@ impl<R: Real> Solver<R> {
             self.diffuse(Portion::Second, dt_secs);
         }
         self.force(0.5 * dt_secs, middle_secs, jets);
-        Ok(self.project(Some(dt_secs)))
+        Ok(self.project(dt_secs, true))
     }
 
     /// Advects the velocity by fluxes, with the pressure gradient of the previous step. Restores the state if forces and pressure make the air too fast.
@@ -87,8 +88,10 @@ impl<R: Real> Solver<R> {
             self.roll_back();
             return Err(error);
         }
-        let reads_ghosts =
-            self.config.canopy.is_some() || self.config.diffusion != Diffusion::Explicit || self.config.time == TimeScheme::Split;
+        let reads_ghosts = self.config.canopy.is_some()
+            || !self.drag.is_empty()
+            || self.config.diffusion != Diffusion::Explicit
+            || self.config.time == TimeScheme::Split;
         for (number, fraction) in STAGES.into_iter().enumerate() {
             let [even, odd] = &mut self.stages;
             let (air, target) = match number {
@@ -138,12 +141,13 @@ impl<R: Real> Solver<R> {
         self.boundaries.apply(&mut self.stages[stage]);
     }
 
-    /// Forces: canopy drag, gusts, primitives, jets, relaxation to the mean wind, sponge layer and body force.
+    /// Forces: drag of canopy and bodies, gusts, primitives, jets, relaxation to the mean wind, sponge layer and body force.
     fn force(&mut self, dt_secs: f64, time_secs: f64, jets: &[Jet]) {
         let grid = &self.grid;
         if let Some(canopy) = &self.config.canopy {
             canopy::drag(grid, canopy, &self.canopy_fraction, dt_secs, &mut self.velocity, &mut self.stages[0]);
         }
+        self.drag.apply(grid, dt_secs, &mut self.velocity);
         self.pushes.apply(dt_secs, &mut self.velocity);
         for primitive in &self.config.primitives {
             primitive.drive(grid, time_secs, dt_secs, &mut self.velocity, &mut self.footprint);
@@ -204,10 +208,20 @@ impl<R: Real> Solver<R> {
         self.boundaries.apply(&mut self.velocity);
     }
 
-    /// Projects the velocity. With `dt_secs`, adds the correction to the pressure gradient.
-    fn project(&mut self, dt_secs: Option<f64>) -> Convergence {
-        let pressure_gradient = dt_secs.map(|dt_secs| (&mut self.pressure_gradient, dt_secs.recip()));
-        let convergence = self.projection.project(&self.grid, &mut self.velocity, &self.volume_sources_per_s, pressure_gradient);
+    /// Projects the velocity, around the walls that are immersed in the grid; optionally adds the correction to the pressure gradient.
+    fn project(&mut self, dt_secs: f64, keeps_pressure: bool) -> Convergence {
+        let pressure_gradient = keeps_pressure.then_some((&mut self.pressure_gradient, dt_secs.recip()));
+        let (grid, velocity, sources) = (&self.grid, &mut self.velocity, &self.volume_sources_per_s);
+        let convergence = match &mut self.immersed {
+            Some(Immersed { walls, iteration, step_secs }) => {
+                *step_secs = dt_secs;
+                let speed_m_per_s = (2.0 * self.diagnostics.kinetic_energy_m2_per_s2).sqrt();
+                walls.hold(dt_secs, velocity);
+                self.boundaries.apply(velocity);
+                self.projection.project_around(grid, (walls, iteration), speed_m_per_s, velocity, sources, pressure_gradient)
+            }
+            None => self.projection.project(grid, velocity, sources, pressure_gradient),
+        };
         self.boundaries.apply(&mut self.velocity);
         convergence
     }

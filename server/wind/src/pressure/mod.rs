@@ -3,6 +3,7 @@
 mod coarsen;
 mod coloured;
 mod conjugate;
+pub(crate) mod immersed;
 mod islands;
 mod iterative;
 mod kernels;
