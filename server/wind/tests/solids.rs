@@ -56,7 +56,7 @@ fn oblique_channel(cells: usize) -> f64 {
         if s < width { s.min(width - s) } else { -(s - width).min(1.0 / root - s) }
     };
     air.set_walls(distance, |_| [0.0; 3]).unwrap();
-    settle(&mut air, 0.2 * h * h / viscosity, 0.8);
+    settle(&mut air, 0.24 * h * h / viscosity, 0.5);
     error(&air, |position_m| {
         let s = across(position_m);
         let speed = 4.0 * s * (width - s) / (width * width);
@@ -66,11 +66,11 @@ fn oblique_channel(cells: usize) -> f64 {
 
 #[test]
 fn flow_between_oblique_walls_converges_at_first_order_or_better() {
-    let errors = [32, 64, 128].map(|cells| (1.0 / cells as f64, oblique_channel(cells)));
+    let errors = [24, 48, 96].map(|cells| (1.0 / cells as f64, oblique_channel(cells)));
     let order = fitted_order(&errors);
     println!("oblique channel: {errors:?}, order {order:.2}");
     assert!(order >= 1.0, "order {order}");
-    assert!(errors[1].1 <= 0.03, "16 cells across the channel: {}", errors[1].1);
+    assert!(errors[1].1 <= 0.03, "twelve cells across the channel: {}", errors[1].1);
 }
 
 /// Error of the flow between a cylinder of radius 0.2 m that turns at 1 m/s and one of 0.45 m at rest.
@@ -91,7 +91,7 @@ fn turning_cylinder(cells: usize) -> f64 {
         |position_m| if radius(position_m) < 0.5 * (inner + outer) { turn(position_m, 1.0 / inner) } else { [0.0; 3] },
     )
     .unwrap();
-    settle(&mut air, 0.2 * h * h / viscosity, 0.8);
+    settle(&mut air, 0.24 * h * h / viscosity, 0.5);
     error(&air, |position_m| {
         let r = radius(position_m);
         let speed = inner / (outer * outer - inner * inner) * (outer * outer / r - r);
@@ -101,11 +101,11 @@ fn turning_cylinder(cells: usize) -> f64 {
 
 #[test]
 fn flow_between_turning_cylinders_converges_at_first_order_or_better() {
-    let errors = [32, 64, 128].map(|cells| (1.0 / cells as f64, turning_cylinder(cells)));
+    let errors = [24, 48, 96].map(|cells| (1.0 / cells as f64, turning_cylinder(cells)));
     let order = fitted_order(&errors);
     println!("turning cylinder: {errors:?}, order {order:.2}");
     assert!(order >= 1.0, "order {order}");
-    assert!(errors[1].1 <= 0.03, "16 cells across the gap: {}", errors[1].1);
+    assert!(errors[1].1 <= 0.03, "twelve cells across the gap: {}", errors[1].1);
 }
 
 /// A cylinder of 1 m in a stream of 1 m/s: air, centre, and step (s).
@@ -137,7 +137,7 @@ fn the_wake_of_a_cylinder_at_re_40_is_that_of_the_literature() {
     }
     let [drag, _] = coefficients(&air);
     let backwards = |behind: &f64| air.velocity_at([(centre[0] + 0.5 + behind) as f32, centre[1] as f32, 0.05])[0] < 0.0;
-    let length = (1..500).map(|n| 0.01 * f64::from(n)).filter(backwards).last().unwrap_or_default();
+    let length = (1..500).map(|n| 0.01 * f64::from(n)).rev().find(backwards).unwrap_or_default();
     println!("Re 40: drag {drag:.3}, recirculation {length:.2} diameters");
     // 1.54 and 2.25 diameters (Linnick & Fasel 2005 and the works they compare), within 5 % on ten cells per diameter.
     assert!((drag / 1.54 - 1.0).abs() <= 0.05, "drag {drag}");
