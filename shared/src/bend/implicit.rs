@@ -4,6 +4,7 @@
 //! k·dt·(θ − θ⁻)`. The left-hand side over A is factored into `(1 − a·Lx)(1 − a·Lz)·δ` with a = r²/(4A), with a splitting error of second order, and
 //! solved as a tridiagonal system along each row, then along each column (Lees 1962). Stable for any step where c is constant.
 
+use super::ground;
 use super::halo::Edges;
 use super::patch::{CHANNELS, Patch, Planes};
 use super::tridiagonal::{End, LANES, Lanes, Line};
@@ -60,8 +61,9 @@ pub(super) fn step(field: &mut Field, dt_secs: f32, executor: &impl Executor) ->
         let lines = lines(field, &mut works, axis);
         executor.for_each(lines, |mut line| line.solve(axis));
     }
+    let limit_rad = field.ground_contact.limit_rad();
     let tasks: Vec<_> = field.patches.iter_mut().zip(&works).collect();
-    executor.for_each(tasks, |(patch, work)| take_on(patch, &work.changes));
+    executor.for_each(tasks, |(patch, work)| take_on(patch, &work.changes, limit_rad));
     let cells = u64::from(field.layout.cells).pow(2);
     Report { substeps: 1, cell_steps: cells * field.patches.len() as u64, refused, ..Report::default() }
 }
@@ -110,7 +112,7 @@ fn begin(patch: &mut Patch, kinds: &[Coefficients], ratio: f32) -> Work {
     work
 }
 
-fn take_on(patch: &mut Patch, changes: &Planes) {
+fn take_on(patch: &mut Patch, changes: &Planes, limit_rad: f32) {
     let side = patch.side();
     for j in 0..side {
         let row = patch.at(0, j as i64);
@@ -123,6 +125,7 @@ fn take_on(patch: &mut Patch, changes: &Planes) {
         }
     }
     std::mem::swap(&mut patch.now, &mut patch.before);
+    ground::stop(patch, limit_rad);
     patch.measure();
 }
 

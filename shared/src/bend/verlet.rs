@@ -26,6 +26,8 @@ pub(super) struct Pass<'a> {
     pub(super) ratio: f32,
     /// Rings of the halo that each sub-step advances; `None` for as many as the later ones need.
     pub(super) rings: Option<usize>,
+    /// Largest |θ| (rad).
+    pub(super) limit_rad: f32,
 }
 
 /// Advances the active tiles of a patch. Returns the number of cells stepped.
@@ -51,7 +53,7 @@ pub(super) fn advance(patch: &mut Patch, pass: &Pass<'_>) -> u64 {
             let mut peaks = is_last.then(Peaks::default);
             for span in &spans {
                 cells += own_cells(patch, band, *span);
-                advance_span(patch, pass.kinds, band, rings, *span, peaks.as_mut());
+                advance_span(patch, pass, band, rings, *span, peaks.as_mut());
             }
             if let Some(peaks) = peaks {
                 peaks.record(patch, band);
@@ -145,7 +147,14 @@ impl Peaks {
 }
 
 /// Advances a span of columns in the rows of a band.
-fn advance_span(patch: &mut Patch, kinds: &[Coefficients], band: i64, rings: i64, [from, to]: [i64; 2], mut peaks: Option<&mut Peaks>) {
+fn advance_span(
+    patch: &mut Patch,
+    &Pass { kinds, limit_rad, .. }: &Pass<'_>,
+    band: i64,
+    rings: i64,
+    [from, to]: [i64; 2],
+    mut peaks: Option<&mut Peaks>,
+) {
     let (side, stride) = (patch.side() as i64, patch.stride());
     let [first, last] = extent(patch, band, rings);
     // Ghosts have no peaks; their own patch reports them.
@@ -164,11 +173,11 @@ fn advance_span(patch: &mut Patch, kinds: &[Coefficients], band: i64, rings: i64
     };
     let rows = (last - first) as usize;
     match &patch.ground {
-        PatchKinds::One(kind) => advance(Block { first: start, width, rows, stride, k: &kinds[usize::from(*kind)] }),
+        PatchKinds::One(kind) => advance(Block { first: start, width, rows, stride, k: &kinds[usize::from(*kind)], limit_rad }),
         PatchKinds::Map(_) => {
             for first in (0..rows).map(|row| start + row * stride) {
                 for_each_kind(&patch.ground, first, first + width, |kind, from, to| {
-                    advance(Block { first: from, width: to - from, rows: 1, stride, k: &kinds[usize::from(kind)] });
+                    advance(Block { first: from, width: to - from, rows: 1, stride, k: &kinds[usize::from(kind)], limit_rad });
                 });
             }
         }
