@@ -3,6 +3,10 @@
 //! With δ = θ⁺ − 2θ + θ⁻, r = c·dt/h and A = 1 + k·dt/2 + κ·dt²/4 the step of `θ'' + kθ' + κθ = c²·Lθ` is `A·δ − ¼r²·(Lx + Lz)·δ = r²·Lθ − κ·dt²·θ −
 //! k·dt·(θ − θ⁻)`. The left-hand side over A is factored into `(1 − a·Lx)(1 − a·Lz)·δ` with a = r²/(4A), with a splitting error of second order, and
 //! solved as a tridiagonal system along each row, then along each column (Lees 1962). Stable for any step where c is constant.
+//!
+//! Where a wave slows down by Eq. (4), from c⁻ to c, its motion θ − θ⁻ is scaled by c/c⁻. A wave's energy is `(θ'/c)² + |∇θ|²`; without that limit each fall of c
+//! would add to it. It loses energy, and as it compares two successive speeds, the order in time is 1. Momentum kept as in [`verlet`](super::verlet) would have
+//! an energy without the splitting only: `(1 − a·Lx)(1 − a·Lz)` isn't symmetric where a varies.
 
 use super::ground;
 use super::halo::Edges;
@@ -68,8 +72,7 @@ pub(super) fn step(field: &mut Field, dt_secs: f32, executor: &impl Executor) ->
     Report { substeps: 1, cell_steps: cells * field.patches.len() as u64, refused, ..Report::default() }
 }
 
-/// Computes weights and right-hand sides. Adjusts the earlier state if dt has changed, and reduces the motion of waves that slow down, as in
-/// [`verlet`](super::verlet).
+/// Computes weights and right-hand sides. Adjusts the earlier state if dt has changed, and reduces the motion of waves that slow down.
 fn begin(patch: &mut Patch, kinds: &[Coefficients], ratio: f32) -> Work {
     let (side, stride) = (patch.side(), patch.stride());
     let plane = || vec![0.0; side * side];

@@ -224,6 +224,7 @@ fn the_seam_tests_take_more_sub_steps_than_the_halo_is_wide() {
         count: [2, 2],
         cells: 16,
         edges: Edges::Rest,
+        ground_contact: GroundContact::None,
         rest: Rest::EXACT,
         map: None,
         steps: vec![(0.05, vec![Press { at: [0.45, 0.5], bend: Bend { theta: 1.0, omega: [50.0, 30.0] } }]); 2],
