@@ -100,15 +100,15 @@ fn next_cell<const SPEED: u8>(
     let next_x = keep * x.center[i] - memory * before[1] + k.r2_omega * x.laplacian(i);
     let next_z = keep * z.center[i] - memory * before[2] + k.r2_omega * z.laplacian(i);
     let memory = 1.0 - k.lambda_theta;
-    let courant = |x: f32, z: f32| k.r0 + k.r_mu * (x * x + z * z).sqrt();
+    let courant = |twice: f32, x: f32, z: f32| twice * k.r0 + k.r_mu * (x * x + z * z).sqrt();
     let next_theta = if SPEED == CONSERVING {
-        let r = courant(x.center[i], z.center[i]);
-        // Twice the speeds in the middle of the next and the last interval.
-        let (ahead, behind) = (r + courant(next_x, next_z), r + courant(before[1], before[2]));
+        // Twice the Courant numbers at the bending velocities in the middle of the next and the last interval.
+        let ahead = courant(2.0, x.center[i] + next_x, z.center[i] + next_z);
+        let behind = courant(2.0, x.center[i] + before[1], z.center[i] + before[2]);
         let kept = memory * (ahead / behind) * (theta.center[i] - before[0]);
         theta.center[i] + kept + 0.125 * ahead * (ahead + behind) * (theta.laplacian(i) - k.stiffness * theta.center[i])
     } else {
-        let r = if SPEED == STEADY { k.r0 } else { courant(x.center[i], z.center[i]) };
+        let r = if SPEED == STEADY { k.r0 } else { courant(1.0, x.center[i], z.center[i]) };
         (1.0 + memory - k.restoring[0]) * theta.center[i] - memory * before[0] + r * r * theta.laplacian(i)
     };
     [held(next_theta, limit_rad), next_x, next_z]

@@ -54,7 +54,7 @@ pub struct Coefficients {
     pub lambda_theta: f32,
     /// λ_ω = 1 − exp(−k_ω·dt).
     pub lambda_omega: f32,
-    /// √φ·c₀·dt/h: Courant number of θ at rest. With [`Damping::Exact`] and μ > 0 at least 0.001: θ − θ⁻ couldn't hold a smaller momentum in f32.
+    /// √φ·c₀·dt/h: Courant number of θ at rest. With [`Damping::Exact`] and μ > 0 at least 10⁻⁵: θ − θ⁻ couldn't hold a smaller momentum in f32.
     pub r0: f32,
     /// √φ·μ·dt/h (s/rad): increase of that Courant number per rad/s of bending velocity.
     pub r_mu: f32,
@@ -99,7 +99,7 @@ impl Coefficients {
 }
 
 /// Smallest Courant number at rest of θ whose speed varies.
-const SLOWEST: f32 = 1e-3;
+const SLOWEST: f32 = 1e-5;
 
 /// λ and φ in f64, so that small rates keep their digits.
 struct Decay {

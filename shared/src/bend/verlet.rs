@@ -6,7 +6,7 @@
 //! Where c varies by Eq. (4), [`Damping::Plain`](super::Damping) keeps the motion θ − θ⁻, as Chen & Johan do. A wave's energy is `(θ'/c)² + |∇θ|²`: each fall of
 //! c adds to it, and the oscillating |ω| drives θ up without end, however short the steps (Hill's equation; 250 000 rad in one of 5000 random draws).
 //! [`Damping::Exact`](super::Damping) keeps the momentum `p = θ'/c` instead, in the equations `θ' = c·p`, `p' = c·(L − κ/c₀²)·θ − k·p`, whose energy
-//! `p² + |∇θ|² + (κ/c₀²)·θ²` no change of c alters. Their leapfrog, with φ of [`Coefficients`] and r⁻ and r⁺ the means of the Courant numbers of the last two
+//! `p² + |∇θ|² + (κ/c₀²)·θ²` no change of c alters. Their leapfrog, with φ of [`Coefficients`] and r⁻ and r⁺ the Courant numbers at the mean ω of the last two
 //! and the next two states (ω⁺ comes first, and doesn't depend on θ), is `θ⁺ = θ + (1 − λ)·(r⁺/r⁻)·(θ − θ⁻) + r⁺·½(r⁻ + r⁺)·(Σ neighbours − 4θ − κ·(h/c₀)²·θ)`.
 //!
 //! A sub-step without damping keeps `⟨v/r⁺, v/r⁺⟩ − ⟨θ⁺, A·θ⟩` with `v = θ⁺ − θ`, up to `⟨(r⁻² − r⁺²)·A·θ, A·θ⟩/4` where r varies, A being the last

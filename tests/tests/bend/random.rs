@@ -64,10 +64,9 @@ fn five_thousand_sub_stepped_draws_stay_bounded_and_come_to_rest() {
     assert_courses(Scheme::Substepped, &courses(5000, Draw::new, GroundContact::None), [6.0, 2.0]);
 }
 
-/// What the ground takes from θ it also takes from its motion, so that Σθ² may grow more at first.
 #[test]
 fn with_ground_contact_no_draw_bends_beyond_a_right_angle() {
-    assert_courses(Scheme::Substepped, &courses(5000, Draw::new, GroundContact::Inelastic), [1.0, f64::INFINITY]);
+    assert_courses(Scheme::Substepped, &courses(5000, Draw::new, GroundContact::Inelastic), [1.0, 2.0]);
 }
 
 /// In stiff grass with little damping the speed oscillates with |ω|, and energy goes to and fro between θ' and θ.

@@ -43,8 +43,8 @@ fn energy(field: &Field, dt_secs: f32) -> f64 {
     for ([i, j], states) in cells(field) {
         let cell = at(i, j, SIDE);
         [now[cell], before[cell]] = states.map(|state| f64::from(state.theta));
-        let speeds = states.map(|state| speed(state.omega.map(f64::from)));
-        r[cell] = 0.5 * (speeds[0] + speeds[1]) * f64::from(dt_secs) / f64::from(CELL_M);
+        let omega = [0, 1].map(|axis| 0.5 * states.iter().map(|state| f64::from(state.omega[axis])).sum::<f64>());
+        r[cell] = speed(omega) * f64::from(dt_secs) / f64::from(CELL_M);
     }
     let waves = field.kinds().waves()[0];
     let stiffness = f64::from(waves.stiffness_per_s2) * (f64::from(CELL_M) / f64::from(waves.c0_m_per_s)).powi(2);

@@ -149,13 +149,14 @@ impl<T: Real> OneGrid<T> {
             (two - lambda_omega - restoring_omega) * now - (one - lambda_omega) * before + r2_omega * laplacian
         };
         let next = [along(x, before[1]), along(z, before[2])];
-        let courant = |[x, z]: [T; 2]| r0 + r_mu * (x * x + z * z).root();
-        let r = courant([x[0], z[0]]);
+        let courant = |twice: T, [x, z]: [T; 2]| twice * r0 + r_mu * (x * x + z * z).root();
         let memory = one - lambda_theta;
         let next_theta = if k.keeps_motion || k.r_mu == 0.0 {
+            let r = courant(one, [x[0], z[0]]);
             (one + memory - restoring_theta) * theta[0] - memory * before[0] + r * r * theta[1]
         } else {
-            let (ahead, behind) = (r + courant(next), r + courant([before[1], before[2]]));
+            let ahead = courant(two, [x[0] + next[0], z[0] + next[1]]);
+            let behind = courant(two, [x[0] + before[1], z[0] + before[2]]);
             let kept = memory * (ahead / behind) * (theta[0] - before[0]);
             theta[0] + kept + T::from(0.125) * ahead * (ahead + behind) * (theta[1] - T::from(k.stiffness) * theta[0])
         };
