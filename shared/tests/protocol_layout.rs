@@ -1,6 +1,6 @@
 //! The layout of every type on the wire, for programs in other languages: `server/docs/protocol.json`, generated from the types.
 
-use prairie_core::bend::{Edges, Scheme, Seams};
+use prairie_core::bend::{Edges, GroundContact, Scheme, Seams};
 use prairie_core::scene::{
     BladeIntegrator, BladeShape, ComponentKind, LagWay, PlantCover, PrimitiveKind, VehicleKind, WindAdvection, WindBoundary, WindDiffusion,
     WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
@@ -21,7 +21,10 @@ fn generated() -> Value {
             $(tracer.trace_type::<$name>(&samples).expect(concat!(stringify!($name), " describes itself"));)+
         };
     }
-    trace!(BladeIntegrator, BladeShape, ComponentKind, Edges, LagWay, PlantCover, PrimitiveKind, Refusal, Scheme, Seams, VehicleKind);
+    trace!(
+        BladeIntegrator,
+        BladeShape, ComponentKind, Edges, GroundContact, LagWay, PlantCover, PrimitiveKind, Refusal, Scheme, Seams, VehicleKind
+    );
     trace!(WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime);
     trace!(ClientMessage, ServerMessage);
     let types = tracer.registry().expect("every enum inside a message is in the list above");

@@ -4,7 +4,7 @@ use super::halo::{AROUND, Edges, Seams, neighbour, source};
 use super::limits::courant_fraction;
 use super::tiles::{Rest, TILE};
 use super::verlet::SIDE_LIMIT;
-use super::{Bend, Coefficients, Damping, HALO, Kinds, Patch, Scheme};
+use super::{Bend, Coefficients, Damping, GroundContact, HALO, Kinds, Patch, Scheme};
 use crate::grid::{PatchIndex, PatchLayout};
 
 /// Bend field of a world. A patch that is not awake is at rest and uses no memory, however large the world.
@@ -19,6 +19,7 @@ pub struct Field {
     pub(super) seams: Seams,
     pub(super) rest: Rest,
     pub(super) awake_limit: usize,
+    pub(super) ground_contact: GroundContact,
     /// Awake patches, ascending by index.
     pub(super) patches: Vec<Patch>,
     /// Time between the two states that every patch holds (s); `None` before the first step.
@@ -37,7 +38,8 @@ impl PartialEq for Revision {
 }
 
 impl Field {
-    /// A field at rest with all patches asleep. Defaults: edges at rest, exact seams, only zero counts as at rest, no limit on awake patches.
+    /// A field at rest with all patches asleep. Defaults: edges at rest, exact seams, only zero counts as at rest, no
+    /// limit on awake patches, no contact with the ground.
     ///
     /// # Panics
     /// When the cells along the side of a patch are not a multiple of 8 in 8..=256.
@@ -51,6 +53,7 @@ impl Field {
             seams: Seams::default(),
             rest: Rest::EXACT,
             awake_limit: usize::MAX,
+            ground_contact: GroundContact::None,
             patches: vec![],
             dt_secs: None,
             revision: Revision::default(),
@@ -75,6 +78,11 @@ impl Field {
     /// Limits the number of awake patches: beyond it, energy wakes no more.
     pub fn with_awake_limit(self, awake_limit: usize) -> Self {
         Self { awake_limit, ..self }
+    }
+
+    /// Sets how grass that is bent to a right angle meets the ground, in every scheme.
+    pub fn with_ground_contact(self, ground_contact: GroundContact) -> Self {
+        Self { ground_contact, ..self }
     }
 
     /// Shape and spacing of the patches.

@@ -3,7 +3,12 @@
 //! With δ = θ⁺ − 2θ + θ⁻, r = c·dt/h and A = 1 + k·dt/2 + κ·dt²/4 the step of `θ'' + kθ' + κθ = c²·Lθ` is `A·δ − ¼r²·(Lx + Lz)·δ = r²·Lθ − κ·dt²·θ −
 //! k·dt·(θ − θ⁻)`. The left-hand side over A is factored into `(1 − a·Lx)(1 − a·Lz)·δ` with a = r²/(4A), with a splitting error of second order, and
 //! solved as a tridiagonal system along each row, then along each column (Lees 1962). Stable for any step where c is constant.
+//!
+//! Where a wave slows down by Eq. (4), from c⁻ to c, its motion θ − θ⁻ is scaled by c/c⁻. A wave's energy is `(θ'/c)² + |∇θ|²`; without that limit each fall of c
+//! would add to it. It loses energy, and as it compares two successive speeds, the order in time is 1. Momentum kept as in [`verlet`](super::verlet) would have
+//! an energy without the splitting only: `(1 − a·Lx)(1 − a·Lz)` isn't symmetric where a varies.
 
+use super::ground;
 use super::halo::Edges;
 use super::patch::{CHANNELS, Patch, Planes};
 use super::tridiagonal::{End, LANES, Lanes, Line};
@@ -60,14 +65,14 @@ pub(super) fn step(field: &mut Field, dt_secs: f32, executor: &impl Executor) ->
         let lines = lines(field, &mut works, axis);
         executor.for_each(lines, |mut line| line.solve(axis));
     }
+    let limit_rad = field.ground_contact.limit_rad();
     let tasks: Vec<_> = field.patches.iter_mut().zip(&works).collect();
-    executor.for_each(tasks, |(patch, work)| take_on(patch, &work.changes));
+    executor.for_each(tasks, |(patch, work)| take_on(patch, &work.changes, limit_rad));
     let cells = u64::from(field.layout.cells).pow(2);
     Report { substeps: 1, cell_steps: cells * field.patches.len() as u64, refused, ..Report::default() }
 }
 
-/// Computes weights and right-hand sides. Adjusts the earlier state if dt has changed, and reduces the motion of waves that slow down, as in
-/// [`verlet`](super::verlet).
+/// Computes weights and right-hand sides. Adjusts the earlier state if dt has changed, and reduces the motion of waves that slow down.
 fn begin(patch: &mut Patch, kinds: &[Coefficients], ratio: f32) -> Work {
     let (side, stride) = (patch.side(), patch.stride());
     let plane = || vec![0.0; side * side];
@@ -110,7 +115,7 @@ fn begin(patch: &mut Patch, kinds: &[Coefficients], ratio: f32) -> Work {
     work
 }
 
-fn take_on(patch: &mut Patch, changes: &Planes) {
+fn take_on(patch: &mut Patch, changes: &Planes, limit_rad: f32) {
     let side = patch.side();
     for j in 0..side {
         let row = patch.at(0, j as i64);
@@ -123,6 +128,7 @@ fn take_on(patch: &mut Patch, changes: &Planes) {
         }
     }
     std::mem::swap(&mut patch.now, &mut patch.before);
+    ground::stop(patch, limit_rad);
     patch.measure();
 }
 

@@ -3,7 +3,8 @@
 //! A cell holds one cluster of grass: its bending angle θ (rad; 0 at rest) and its bending velocity ω = (ωx, ωz)
 //! (rad/s), whose direction is the direction in which the cluster leans. Contact sets both ([`Field::press`]); the
 //! damped wave equations (2)–(6), with a restoring rate κ, propagate them and return them to rest: with the Laplacian L,
-//! `θ'' + k_θ·θ' + κ·θ = (c₀ + μ·|ω|)²·Lθ` and `ω'' + k_ω·ω' + κ·ω = c_ω²·Lω`. A [`Scheme`] integrates them in time.
+//! `θ'' + k_θ·θ' + κ·θ = (c₀ + μ·|ω|)²·Lθ` and `ω'' + k_ω·ω' + κ·ω = c_ω²·Lω`. A [`Scheme`] integrates them in time;
+//! the default, in the form in which a varying speed adds no energy. [`GroundContact`] keeps θ within a right angle.
 //!
 //! A [`Field`] is made of patches with a halo of ghost cells. The ghosts are filled before they are needed, so a field
 //! of many patches equals one big grid bit for bit. A sleeping patch uses no memory and counts as at rest; in an awake one, only
@@ -53,6 +54,7 @@ mod checkpoint;
 mod exchange;
 mod executor;
 mod field;
+mod ground;
 mod halo;
 mod implicit;
 mod kernel;
@@ -73,6 +75,7 @@ mod wind;
 pub use checkpoint::{FieldState, StateError};
 pub use executor::{Executor, Serial};
 pub use field::Field;
+pub use ground::GroundContact;
 pub use halo::{Edges, Seams};
 pub use kinds::Kinds;
 pub use params::{Coefficients, Damping, WaveParams};

@@ -4,6 +4,7 @@
 //! transform over the grid, extended to a periodic one by its mirror images: odd beyond edges at rest, even beyond free ones. A mode of wave number K
 //! oscillates at Ω² = c²K² + κ − k²/4, and three states dt apart obey exactly `θ⁺ = 2·exp(−k·dt/2)·cos(Ω·dt)·θ − exp(−k·dt)·θ⁻`.
 
+use super::ground;
 use super::halo::Edges;
 use super::patch::CHANNELS;
 use super::{Field, Patch, Report, Seams, StepError, WaveParams};
@@ -55,8 +56,10 @@ pub(super) fn step(field: &mut Field, dt_secs: f32) -> Result<Report, StepError>
     // Both components of ω obey one equation, so they are transformed as one complex number.
     propagate(field, [Some(0), None], &theta, dt_secs, ratio);
     propagate(field, [Some(1), Some(2)], &omega, dt_secs, ratio);
+    let limit_rad = field.ground_contact.limit_rad();
     for patch in &mut field.patches {
         std::mem::swap(&mut patch.now, &mut patch.before);
+        ground::stop(patch, limit_rad);
         patch.measure();
     }
     let cells = field.layout.count.map(|n| u64::from(n) * u64::from(field.layout.cells));

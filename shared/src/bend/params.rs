@@ -41,8 +41,8 @@ pub enum Damping {
     /// Chen & Johan Eqs (5)–(6) as published, with λ = 1 − exp(−k·dt): the force counts in full, and a wave that slows down keeps its motion.
     /// First order in time.
     Plain,
-    /// The velocity decays by 1 − λ and gains the force times (1 − exp(−k·dt))/k, which is exact under a steady force. Second order in time. A wave
-    /// that slows down by Eq. (4) loses the motion that it can no longer carry, so that no change of speed adds energy.
+    /// The velocity decays by 1 − λ and gains the force times (1 − exp(−k·dt))/k, which is exact under a steady force. Where the wave speed c of θ changes
+    /// by Eq. (4), a wave keeps its momentum θ'/c instead of θ', so that no change of speed adds energy. Second order in time.
     Exact,
 }
 
@@ -54,7 +54,7 @@ pub struct Coefficients {
     pub lambda_theta: f32,
     /// λ_ω = 1 − exp(−k_ω·dt).
     pub lambda_omega: f32,
-    /// √φ·c₀·dt/h: Courant number of θ at rest.
+    /// √φ·c₀·dt/h: Courant number of θ at rest. With [`Damping::Exact`] and μ > 0 at least 10⁻⁵: θ − θ⁻ couldn't hold a smaller momentum in f32.
     pub r0: f32,
     /// √φ·μ·dt/h (s/rad): increase of that Courant number per rad/s of bending velocity.
     pub r_mu: f32,
@@ -62,7 +62,9 @@ pub struct Coefficients {
     pub r2_omega: f32,
     /// φ·κ·dt², for θ and for ω.
     pub restoring: [f32; 2],
-    /// Whether θ keeps all its motion where its wave speed falls by Eq. (4).
+    /// κ·(h/c₀)², with the c₀ of `r0`: the restoring term of θ relative to the square of its Courant number, where its wave speed changes.
+    pub stiffness: f32,
+    /// Whether θ keeps its motion θ', not its momentum θ'/c, where its wave speed changes by Eq. (4).
     pub keeps_motion: bool,
 }
 
@@ -75,17 +77,29 @@ impl Coefficients {
             |speed: f32, decay: &Decay| (decay.force_fraction.sqrt() * f64::from(speed) * f64::from(dt_secs) / f64::from(cell_m)) as f32;
         let r_omega = courant(params.c_omega_m_per_s, &omega);
         let restoring = |decay: &Decay| (decay.force_fraction * f64::from(params.stiffness_per_s2) * f64::from(dt_secs).powi(2)) as f32;
+        let (r0, r_mu) = (courant(params.c0_m_per_s, &theta), courant(params.mu_m_per_rad, &theta));
+        let keeps_motion = damping == Damping::Plain;
+        let r0 = if keeps_motion || r_mu == 0.0 { r0 } else { r0.max(SLOWEST) };
         Self {
             lambda_theta: theta.lambda as f32,
             lambda_omega: omega.lambda as f32,
-            r0: courant(params.c0_m_per_s, &theta),
-            r_mu: courant(params.mu_m_per_rad, &theta),
+            r0,
+            r_mu,
             r2_omega: r_omega * r_omega,
             restoring: [restoring(&theta), restoring(&omega)],
-            keeps_motion: damping == Damping::Plain,
+            stiffness: restoring(&theta) / (r0 * r0),
+            keeps_motion,
         }
     }
+
+    /// Whether the wave speed of θ follows the bend with its momentum kept.
+    pub(super) fn keeps_momentum(&self) -> bool {
+        self.r_mu > 0.0 && !self.keeps_motion
+    }
 }
+
+/// Smallest Courant number at rest of θ whose speed varies.
+const SLOWEST: f32 = 1e-5;
 
 /// λ and φ in f64, so that small rates keep their digits.
 struct Decay {

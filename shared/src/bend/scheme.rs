@@ -11,11 +11,12 @@ words! {
         /// Chen & Johan Eqs (5)–(6) in one step of any length: explicit, first order in time with damping, unstable beyond
         /// [`courant_limit`](super::limits::courant_limit).
         Verlet = "verlet",
-        /// The same in as many equal sub-steps as the limit requires, with exact damping: second order.
+        /// Explicit as well, in as many equal sub-steps as the limit requires, with exact damping and with momentum kept where the speed varies: second
+        /// order.
         #[default]
         Substepped = "substepped",
-        /// Newmark's average acceleration (β = ¼) by alternating directions (Lees 1962): one step of any length, second order, stable for any step
-        /// where the speed is constant.
+        /// Newmark's average acceleration (β = ¼) by alternating directions (Lees 1962): one step of any length, second order and stable for any step
+        /// where the speed is constant; first order where it varies.
         Implicit = "implicit",
         /// Exact in time for each mode of the whole grid, with the same finite differences in space as the others. Needs one constant speed (μ = 0,
         /// one kind of grass), every patch awake, and the feature `modal`.

@@ -65,7 +65,7 @@ impl Field {
             let substeps = left.min(HALO);
             report.refused += self.exchange(substeps);
             let rings = (self.seams == Seams::Overlap).then_some(HALO - 1);
-            let pass = Pass { kinds: &kinds, substeps, ratio, rings };
+            let pass = Pass { kinds: &kinds, substeps, ratio, rings, limit_rad: self.ground_contact.limit_rad() };
             report.cell_steps += self.advance(executor, |patch| verlet::advance(patch, &pass));
             (left, ratio) = (left - substeps, 1.0);
         }

@@ -3,9 +3,14 @@
 //! With λ = 1 − exp(−k·dt) and r = c·dt/h a cell becomes `θ⁺ = θ + (1 − λ)·(θ − θ⁻) + r²·(Σ neighbours − 4θ) − κ·dt²·θ`, likewise for both components
 //! of ω. When dt changes, θ⁻ is adjusted first, to keep (θ − θ⁻)/dt.
 //!
-//! Where the bend slows down, so does the wave (Eq. 4), from c⁻ to c: its motion θ − θ⁻ is then scaled by c/c⁻. A wave's energy is `(θ'/c)² + |∇θ|²`.
-//! If the motion were kept whole, each fall of c would add energy, and the oscillating |ω| would drive θ up without end, however short the steps
-//! (Hill's equation; 250 000 rad in one of 5000 random draws). [`Damping::Plain`](super::Damping) keeps it whole, as Chen & Johan do.
+//! Where c varies by Eq. (4), [`Damping::Plain`](super::Damping) keeps the motion θ − θ⁻, as Chen & Johan do. A wave's energy is `(θ'/c)² + |∇θ|²`: each fall of
+//! c adds to it, and the oscillating |ω| drives θ up without end, however short the steps (Hill's equation; 250 000 rad in one of 5000 random draws).
+//! [`Damping::Exact`](super::Damping) keeps the momentum `p = θ'/c` instead, in the equations `θ' = c·p`, `p' = c·(L − κ/c₀²)·θ − k·p`, whose energy
+//! `p² + |∇θ|² + (κ/c₀²)·θ²` no change of c alters. Their leapfrog, with φ of [`Coefficients`] and r⁻ and r⁺ the Courant numbers at the mean ω of the last two
+//! and the next two states (ω⁺ comes first, and doesn't depend on θ), is `θ⁺ = θ + (1 − λ)·(r⁺/r⁻)·(θ − θ⁻) + r⁺·½(r⁻ + r⁺)·(Σ neighbours − 4θ − κ·(h/c₀)²·θ)`.
+//!
+//! A sub-step without damping keeps `⟨v/r⁺, v/r⁺⟩ − ⟨θ⁺, A·θ⟩` with `v = θ⁺ − θ`, up to `⟨(r⁻² − r⁺²)·A·θ, A·θ⟩/4` where r varies, A being the last
+//! bracket; that term is of second order, and takes as it gives unless c oscillates within a few sub-steps.
 //!
 //! A patch does up to [`HALO`] sub-steps while it is in the cache: its halo then contains as many rings of its neighbours' cells, and each sub-step
 //! uses up one. The neighbours compute these cells, too, with the same bits.
@@ -26,6 +31,8 @@ pub(super) struct Pass<'a> {
     pub(super) ratio: f32,
     /// Rings of the halo that each sub-step advances; `None` for as many as the later ones need.
     pub(super) rings: Option<usize>,
+    /// Largest |θ| (rad).
+    pub(super) limit_rad: f32,
 }
 
 /// Advances the active tiles of a patch. Returns the number of cells stepped.
@@ -51,7 +58,7 @@ pub(super) fn advance(patch: &mut Patch, pass: &Pass<'_>) -> u64 {
             let mut peaks = is_last.then(Peaks::default);
             for span in &spans {
                 cells += own_cells(patch, band, *span);
-                advance_span(patch, pass.kinds, band, rings, *span, peaks.as_mut());
+                advance_span(patch, pass, band, rings, *span, peaks.as_mut());
             }
             if let Some(peaks) = peaks {
                 peaks.record(patch, band);
@@ -145,7 +152,14 @@ impl Peaks {
 }
 
 /// Advances a span of columns in the rows of a band.
-fn advance_span(patch: &mut Patch, kinds: &[Coefficients], band: i64, rings: i64, [from, to]: [i64; 2], mut peaks: Option<&mut Peaks>) {
+fn advance_span(
+    patch: &mut Patch,
+    &Pass { kinds, limit_rad, .. }: &Pass<'_>,
+    band: i64,
+    rings: i64,
+    [from, to]: [i64; 2],
+    mut peaks: Option<&mut Peaks>,
+) {
     let (side, stride) = (patch.side() as i64, patch.stride());
     let [first, last] = extent(patch, band, rings);
     // Ghosts have no peaks; their own patch reports them.
@@ -164,11 +178,11 @@ fn advance_span(patch: &mut Patch, kinds: &[Coefficients], band: i64, rings: i64
     };
     let rows = (last - first) as usize;
     match &patch.ground {
-        PatchKinds::One(kind) => advance(Block { first: start, width, rows, stride, k: &kinds[usize::from(*kind)] }),
+        PatchKinds::One(kind) => advance(Block { first: start, width, rows, stride, k: &kinds[usize::from(*kind)], limit_rad }),
         PatchKinds::Map(_) => {
             for first in (0..rows).map(|row| start + row * stride) {
                 for_each_kind(&patch.ground, first, first + width, |kind, from, to| {
-                    advance(Block { first: from, width: to - from, rows: 1, stride, k: &kinds[usize::from(kind)] });
+                    advance(Block { first: from, width: to - from, rows: 1, stride, k: &kinds[usize::from(kind)], limit_rad });
                 });
             }
         }

@@ -72,6 +72,7 @@ impl BendSimulation {
             .with_edges(settings.edges)
             .with_seams(settings.seams)
             .with_rest(settings.rest())
+            .with_ground_contact(settings.ground_contact)
             .with_awake_limit(limit);
         // As many tiles as in all awake patches together.
         let tile_limit = limit * (layout.cells as usize / TILE).pow(2);

@@ -5,7 +5,7 @@ use super::{
     BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, LAMPS_LIMIT, LagWay, PlantCover, PrimitiveKind, SPECIES_LIMIT,
     WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
-use crate::bend::{Edges, Scheme, Seams};
+use crate::bend::{Edges, GroundContact, Scheme, Seams};
 use crate::lod::shells::LAYERS_LIMIT;
 use crate::plant::underbrush::plan::SECTIONS_LIMIT;
 use std::fmt;
@@ -101,6 +101,7 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("bend.edges", OneOf(Edges::WORDS)),
     ("bend.rest_theta_rad", Range(0.0, 0.1)),
     ("bend.rest_omega_rad_per_s", Range(0.0, 2.0)),
+    ("bend.ground_contact", OneOf(GroundContact::WORDS)),
     ("grass.c0_m_per_s", Range(0.0, 50.0)),
     ("grass.mu_m_per_rad", Range(0.0, 10.0)),
     ("grass.c_omega_m_per_s", Range(0.0, 50.0)),

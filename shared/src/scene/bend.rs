@@ -1,6 +1,6 @@
 //! Numerical method of the bend field: the section `[bend]`.
 
-use crate::bend::{Edges, Rest, Scheme, Seams};
+use crate::bend::{Edges, GroundContact, Rest, Scheme, Seams};
 use serde::{Deserialize, Serialize};
 
 /// Scheme of the bend field, coupling of its patches, boundary condition and rest tolerance.
@@ -20,12 +20,15 @@ pub struct BendField {
     pub rest_theta_rad: f32,
     /// Largest bending velocity that counts as at rest (rad/s). Default 0.2, allowed 0..=2.
     pub rest_omega_rad_per_s: f32,
+    /// Contact of bent grass with the ground: `inelastic`, the bend stops at a right angle and loses its motion there; `none`, the wave equations alone,
+    /// whose waves add up to more. Default `inelastic`.
+    pub ground_contact: GroundContact,
 }
 
 impl Default for BendField {
     fn default() -> Self {
         let (scheme, seams, edges) = (Scheme::default(), Seams::default(), Edges::default());
-        Self { scheme, seams, edges, rest_theta_rad: 0.01, rest_omega_rad_per_s: 0.2 }
+        Self { scheme, seams, edges, rest_theta_rad: 0.01, rest_omega_rad_per_s: 0.2, ground_contact: GroundContact::default() }
     }
 }
 

@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use prairie_core::bend::{Bend, Damping, Edges, Executor, Field, Kinds, Report, Rest, Scheme, Seams, Serial, TILE, WaveParams};
+use prairie_core::bend::{
+    Bend, Damping, Edges, Executor, Field, GroundContact, Kinds, Report, Rest, Scheme, Seams, Serial, TILE, WaveParams,
+};
 use prairie_core::grid::PatchLayout;
 use proptest::prelude::*;
 use rayon::prelude::*;
@@ -38,6 +40,7 @@ struct Case {
     cells: u32,
     edges: Edges,
     rest: Rest,
+    ground_contact: GroundContact,
     /// Pixels of a map of kinds; empty for one kind.
     map: Option<([usize; 2], Vec<u8>)>,
     /// Length of each step (s), and the presses before it.
@@ -74,6 +77,7 @@ prop_compose! {
         (count, cells) in a_world(4),
         edges in prop::sample::select(&EDGES[..]),
         is_exact in any::<bool>(),
+        ground_contact in prop::sample::select(GroundContact::ALL),
         pixels in prop::option::of(([1..30usize, 1..30], prop::collection::vec(0..2u8, 900))),
         steps in prop::collection::vec(
             (prop::sample::select(&[1.0f32 / 60.0, 1.0 / 60.0, 0.01, 0.05][..]), prop::collection::vec(a_press(), 0..3)),
@@ -86,7 +90,7 @@ prop_compose! {
         let mut steps = steps;
         steps[0].1.extend(first);
         let rest = if is_exact { Rest::EXACT } else { Rest { theta_rad: 0.01, omega_rad_per_s: 0.2 } };
-        Case { count, cells, edges, rest, map, steps, order }
+        Case { count, cells, edges, rest, ground_contact, map, steps, order }
     }
 }
 
@@ -100,14 +104,14 @@ impl Case {
 
     fn field(&self) -> Field {
         let layout = PatchLayout { count: self.count, cells: self.cells, cell_m: 0.4572 };
-        Field::new(layout, self.kinds()).with_edges(self.edges).with_rest(self.rest)
+        Field::new(layout, self.kinds()).with_edges(self.edges).with_rest(self.rest).with_ground_contact(self.ground_contact)
     }
 
     /// The same world in patches of one tile.
     fn divided(&self) -> Field {
         let tiles = self.cells / TILE as u32;
         let layout = PatchLayout { count: self.count.map(|n| n * tiles), cells: TILE as u32, cell_m: 0.4572 };
-        Field::new(layout, self.kinds()).with_edges(self.edges).with_rest(self.rest)
+        Field::new(layout, self.kinds()).with_edges(self.edges).with_rest(self.rest).with_ground_contact(self.ground_contact)
     }
 
     /// All patches of a field, in the case's order.
@@ -138,7 +142,7 @@ impl Case {
 
     /// Runs a single grid with the sub-steps of a field.
     fn run_on_one_grid(&self, damping: Damping, reports: &[Report]) -> OneGrid<f32> {
-        let mut grid = OneGrid::like(&self.field(), self.edges);
+        let mut grid = OneGrid::like(&self.field(), self.edges).with_ground_contact(self.ground_contact);
         for ((dt_secs, presses), report) in self.steps.iter().zip(reports) {
             presses.iter().for_each(|press| grid.press(self.cell(press), press.bend));
             grid.step(damping, report.substeps, *dt_secs);
@@ -220,6 +224,7 @@ fn the_seam_tests_take_more_sub_steps_than_the_halo_is_wide() {
         count: [2, 2],
         cells: 16,
         edges: Edges::Rest,
+        ground_contact: GroundContact::None,
         rest: Rest::EXACT,
         map: None,
         steps: vec![(0.05, vec![Press { at: [0.45, 0.5], bend: Bend { theta: 1.0, omega: [50.0, 30.0] } }]); 2],

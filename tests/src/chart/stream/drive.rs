@@ -94,7 +94,8 @@ impl Drive {
         let at_rest = Field::new(layout, Kinds::of(scene, &loaded.cover))
             .with_edges(scene.bend.edges)
             .with_seams(scene.bend.seams)
-            .with_rest(scene.bend.rest());
+            .with_rest(scene.bend.rest())
+            .with_ground_contact(scene.bend.ground_contact);
         let scheme = scene.bend.scheme;
         Ok(Recording { layout, patches, frames, cause_bytes, at_rest, scheme, dt_secs: scene.dt_secs() })
     }

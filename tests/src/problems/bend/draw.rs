@@ -2,7 +2,7 @@
 
 use std::f32::consts::TAU;
 
-use prairie_core::bend::{Field, Kinds, Rest, Scheme, Serial, WaveParams};
+use prairie_core::bend::{Field, GroundContact, Kinds, Rest, Scheme, Serial, WaveParams};
 use prairie_core::grid::PatchLayout;
 
 use super::Striker;
@@ -68,13 +68,24 @@ impl Draw {
         Self { waves, dt_secs, objects }
     }
 
+    /// The draw with stiff grass: κ of 0.1 to 1000 /s², also with little damping, so that |ω| oscillates.
+    pub fn stiff(number: u64) -> Self {
+        let mut draw = Self::new(number);
+        let mut random = Random::new(!number);
+        draw.waves.stiffness_per_s2 = random.scale(0.1, 1000.0) as f32;
+        if random.one_in(3) {
+            (draw.waves.theta_damping_per_s, draw.waves.omega_damping_per_s) = (0.3, 0.3);
+        }
+        draw
+    }
+
     /// Runs the draw on one patch or on nine; the bits are the same.
     ///
     /// # Panics
     /// When the scheme rejects the step.
-    pub fn run(&self, scheme: Scheme, rest: Rest, patches: u32) -> Course {
+    pub fn run(&self, scheme: Scheme, ground_contact: GroundContact, rest: Rest, patches: u32) -> Course {
         let layout = PatchLayout { count: [patches; 2], cells: 24 / patches, cell_m: 0.4572 };
-        let mut field = Field::new(layout, Kinds::one(self.waves)).with_rest(rest);
+        let mut field = Field::new(layout, Kinds::one(self.waves)).with_rest(rest).with_ground_contact(ground_contact);
         if scheme == Scheme::Implicit {
             field.wake_all();
         }

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
-use prairie_core::bend::{Bend, CHANNELS, Coefficients, Damping, Edges, Field, WaveParams};
+use prairie_core::bend::{Bend, CHANNELS, Coefficients, Damping, Edges, Field, GroundContact, WaveParams};
 
 use super::{channels, size};
 
@@ -46,6 +46,7 @@ pub struct OneGrid<T> {
     now: [Vec<T>; CHANNELS],
     before: [Vec<T>; CHANNELS],
     dt_secs: Option<f32>,
+    ground_contact: GroundContact,
 }
 
 impl<T: Real> OneGrid<T> {
@@ -64,7 +65,13 @@ impl<T: Real> OneGrid<T> {
             now: zeros(),
             before: zeros(),
             dt_secs: None,
+            ground_contact: GroundContact::None,
         }
+    }
+
+    /// Sets how grass that is bent to a right angle meets the ground.
+    pub fn with_ground_contact(self, ground_contact: GroundContact) -> Self {
+        Self { ground_contact, ..self }
     }
 
     /// Cells along X and Z.
@@ -83,6 +90,22 @@ impl<T: Real> OneGrid<T> {
         for (channel, value) in channels(bend).into_iter().enumerate() {
             (self.now[channel][at], self.before[channel][at]) = (value.into(), value.into());
         }
+    }
+
+    /// Sets all cells: θ, ωx and ωz now and `dt_secs` ago.
+    pub fn start(&mut self, dt_secs: f32, state: impl Fn([usize; 2]) -> [[T; CHANNELS]; 2]) {
+        for n in 0..self.kinds.len() {
+            let [now, before] = state([n % self.size[0], n / self.size[0]]);
+            for channel in 0..CHANNELS {
+                (self.now[channel][n], self.before[channel][n]) = (now[channel], before[channel]);
+            }
+        }
+        self.dt_secs = Some(dt_secs);
+    }
+
+    /// θ of all cells, row by row.
+    pub fn thetas(&self) -> &[T] {
+        &self.now[0]
     }
 
     /// State of a cell.
@@ -120,18 +143,33 @@ impl<T: Real> OneGrid<T> {
         let [r0, r_mu, r2_omega, lambda_theta, lambda_omega] = [k.r0, k.r_mu, k.r2_omega, k.lambda_theta, k.lambda_omega].map(T::from);
         let [restoring_theta, restoring_omega] = k.restoring.map(T::from);
         let (one, two) = (T::from(1.0), T::from(2.0));
-        let courant = |[_, x, z]: &[Vec<T>; CHANNELS]| r0 + r_mu * (x[n] * x[n] + z[n] * z[n]).root();
-        let (r, r_before) = (courant(&self.now), courant(&self.before));
-        let slowed = r / r_before;
-        // A NaN quotient, where no wave runs, keeps the full motion.
-        let kept = if !k.keeps_motion && slowed < one { slowed } else { one };
         let [theta, x, z] = self.now.each_ref().map(|plane| [plane[n], laplacian(plane)]);
         let before = self.before.each_ref().map(|plane| plane[n]);
-        let memory = (one - lambda_theta) * kept;
         let along = |[now, laplacian]: [T; 2], before: T| {
             (two - lambda_omega - restoring_omega) * now - (one - lambda_omega) * before + r2_omega * laplacian
         };
-        [(one + memory - restoring_theta) * theta[0] - memory * before[0] + r * r * theta[1], along(x, before[1]), along(z, before[2])]
+        let next = [along(x, before[1]), along(z, before[2])];
+        let courant = |twice: T, [x, z]: [T; 2]| twice * r0 + r_mu * (x * x + z * z).root();
+        let memory = one - lambda_theta;
+        let next_theta = if k.keeps_motion || k.r_mu == 0.0 {
+            let r = courant(one, [x[0], z[0]]);
+            (one + memory - restoring_theta) * theta[0] - memory * before[0] + r * r * theta[1]
+        } else {
+            let ahead = courant(two, [x[0] + next[0], z[0] + next[1]]);
+            let behind = courant(two, [x[0] + before[1], z[0] + before[2]]);
+            let kept = memory * (ahead / behind) * (theta[0] - before[0]);
+            theta[0] + kept + T::from(0.125) * ahead * (ahead + behind) * (theta[1] - T::from(k.stiffness) * theta[0])
+        };
+        let limit = self.ground_contact.limit_rad();
+        let limits = [T::from(-limit), T::from(limit)];
+        let held = if next_theta > limits[1] {
+            limits[1]
+        } else if next_theta < limits[0] {
+            limits[0]
+        } else {
+            next_theta
+        };
+        [held, next[0], next[1]]
     }
 
     fn beside(&self, cell: [i64; 2]) -> Option<usize> {
