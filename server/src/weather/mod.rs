@@ -5,6 +5,7 @@ mod canopy_cover;
 mod carrier;
 mod checkpoint;
 mod settings;
+mod tree_crowns;
 mod vehicle_jets;
 
 use crate::checksum::Checksum;
@@ -21,6 +22,7 @@ use prairie_core::scene::{Scene, WindTiling};
 use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
 use prairie_core::wind::WindField;
 use prairie_core::wire::{Shape, TurbulenceState};
+use prairie_wind::solids::DragBody;
 use prairie_wind::state::MAX_SUBSTEPS;
 use prairie_wind::{Air, Config, ConfigError, Method, SolidError, StepError, StepReport};
 use settings::settings;
@@ -47,6 +49,7 @@ pub struct Weather {
     report: StepReport,
     resets: u64,
     terrain: BoxTerrain,
+    crowns: Vec<DragBody>,
     canopy: Option<CanopyCover>,
     carrier: Carrier,
     turbulence: TurbulenceState,
@@ -110,7 +113,8 @@ impl Weather {
     fn after(scene: &Scene, height: &HeightMap, cover: &CoverMap, steps: usize) -> Result<Self, WeatherError> {
         let (method, config) = settings(scene);
         let terrain = BoxTerrain::new(scene, height);
-        let mut air = initial_air(method, &config, &terrain)?;
+        let crowns = tree_crowns::drag_bodies(scene, height, cover, &terrain);
+        let mut air = initial_air(method, &config, &terrain, &crowns)?;
         let (ticks_per_step, step_secs) = step_interval(scene);
         let mut report = StepReport::default();
         for _ in 0..steps {
@@ -132,6 +136,7 @@ impl Weather {
             step_secs,
             report,
             terrain,
+            crowns,
         };
         weather.release(0);
         Ok(weather)
@@ -161,7 +166,8 @@ impl Weather {
             Ok(report) => self.report = report,
             // The state is invalid: the air restarts from the mean wind.
             Err(_) => {
-                self.air = initial_air(self.method, &self.config, &self.terrain).expect("the same settings were accepted before");
+                self.air =
+                    initial_air(self.method, &self.config, &self.terrain, &self.crowns).expect("the same settings were accepted before");
                 self.resets += 1;
             }
         }
@@ -242,12 +248,13 @@ impl Weather {
     }
 }
 
-/// The solver in its initial state, with the terrain as obstacle where it is solid.
-fn initial_air(method: Method, config: &Config, terrain: &BoxTerrain) -> Result<Air<f32>, WeatherError> {
+/// The solver in its initial state, with the terrain as obstacle where it is solid, and the crowns of trees.
+fn initial_air(method: Method, config: &Config, terrain: &BoxTerrain, crowns: &[DragBody]) -> Result<Air<f32>, WeatherError> {
     let mut air = Air::new(method, config)?;
     if terrain.is_solid() {
         air.set_solid(|position_m| terrain.contains(position_m, config.spacing_m))?;
     }
+    air.set_drag(crowns);
     Ok(air)
 }
 

@@ -5,6 +5,7 @@ use prairie_core::body::BodyPose;
 use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{Primitive, PrimitiveKind};
 use prairie_core::scene::{VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTime};
+use prairie_core::terrain::grey_png;
 
 fn meadow() -> (Scene, Maps) {
     let loaded = crate::scenes::load("meadow").unwrap();
@@ -149,6 +150,38 @@ fn bent_grass_slows_the_wind_less() {
     let [still_same, faster] = near_ground(&grass);
     assert!(faster > 1.1 * there, "over lying grass {faster} m/s, over the same standing {there}");
     assert!((still_same / same - 1.0).abs() < 0.1, "elsewhere {still_same}, before {same}");
+}
+
+/// Wind (m/s) 5 m above the ground and lean (rad) of the grass in the lee of a tree of 12 m, and beside it.
+fn around_a_tree(tree_drag_per_m: f32) -> [[f32; 2]; 2] {
+    let (mut scene, maps) = meadow();
+    let mut ids = [255; 128 * 128];
+    ids[16 + 128 * 16] = 253;
+    let cover = CoverMap::from_png(&grey_png([128; 2], &ids)).unwrap();
+    scene.plants.tree_m = 12.0;
+    (scene.wind.cells, scene.wind.spacing_m) = ([32, 12, 32], [2.0; 3]);
+    (scene.wind.sources, scene.wind.mean_m_per_s, scene.wind.turbulence) = (0, [6.0, 0.0], 0.0);
+    scene.wind.tree_drag_per_m = tree_drag_per_m;
+    let mut weather = Weather::new(&scene, &maps.height, &cover).unwrap();
+    let grass = grass(&scene);
+    (1..=400).for_each(|tick| weather.step(tick, &[], &maps.height, &grass));
+    let at = |at_m: [f32; 2]| {
+        let [lean_x, lean_z] = weather.field().lean_at(at_m);
+        [weather.field().wind_at([at_m[0], 5.0, at_m[1]])[0], lean_x.hypot(lean_z)]
+    };
+    [at([39.0, 33.0]), at([33.0, 45.0])]
+}
+
+#[test]
+fn a_tree_leaves_a_lee_that_the_grass_shows() {
+    let [[lee, lee_rad], [beside, beside_rad]] = around_a_tree(0.4);
+    println!("lee {lee:.2} m/s and {lee_rad:.3} rad, beside {beside:.2} m/s and {beside_rad:.3} rad");
+    assert!(lee < 0.7 * beside, "wind in the lee {lee} m/s, beside {beside} m/s");
+    assert!(lee_rad < 0.9 * beside_rad, "lean in the lee {lee_rad} rad, beside {beside_rad} rad");
+    let [[open, open_rad], [open_beside, open_beside_rad]] = around_a_tree(0.0);
+    println!("without it {open:.2} and {open_beside:.2} m/s, {open_rad:.3} and {open_beside_rad:.3} rad");
+    assert!((open / open_beside - 1.0).abs() < 0.02 && (open_rad / open_beside_rad - 1.0).abs() < 0.02);
+    assert!(beside > open_beside, "the air goes round the tree: {beside} m/s beside it, {open_beside} m/s without it");
 }
 
 #[test]
