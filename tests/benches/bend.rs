@@ -73,9 +73,9 @@ struct Case {
 
 impl Case {
     fn dt_secs(self, field: &Field) -> f32 {
-        // The sub-stepped scheme stays 5 % below the limit, 40 % where the speed of θ varies; a step a little shorter still is split into the required number.
+        // The sub-stepped scheme stays 5 % below the limit, 50 % where the speed of θ varies; a step a little shorter still is split into the required number.
         let is_split = self.scheme == Scheme::Substepped && field.kinds().waves()[0].mu_m_per_rad > 0.0;
-        (if is_split { 0.58 } else { 0.93 }) * f32::from(self.substeps as u16) * field.stable_dt_secs(self.scheme)
+        (if is_split { 0.48 } else { 0.93 }) * f32::from(self.substeps as u16) * field.stable_dt_secs(self.scheme)
     }
 
     /// Shortest time of a step (s), and the report of the last one.

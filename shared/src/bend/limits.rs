@@ -8,9 +8,10 @@ pub const SUBSTEPS_LIMIT: u32 = 4096;
 /// Fraction of the Courant limit that [`substeps`] uses; the rest covers the growth of |ω| within a step.
 const SAFETY: f32 = 0.95;
 /// The same for θ whose speed varies by Eq. (4) with its momentum kept. A sub-step keeps the energy with the fraction `1 − fraction²` of the checkerboard's
-/// bend, and more of that of longer waves; where c changes, so does that fraction. Here it is at least 0.64, and a speed that oscillates within a few
-/// sub-steps doesn't drive up the checkerboard: at 0.95, 13 of 1000 random draws with κ up to 1000 /s² blow up; at 0.7, one; at 0.6, none.
-const VARYING_SAFETY: f32 = 0.6;
+/// bend, and more of that of longer waves; where c changes, so does that fraction, here to at least 3/4. Nearer the limit a speed that oscillates within a
+/// few sub-steps drives the checkerboard up. Chosen by trial, after 0.95, 0.7 and 0.6 had failed in some of the stiff random draws of `tests/bend/random.rs`; see
+/// there for draws that had no part in the choice.
+const VARYING_SAFETY: f32 = 0.5;
 
 /// Largest Courant number for damping λ and restoring term `κ·dt²`: `r ≤ √((4 − 2λ − κ·dt²)/8)`.
 ///

@@ -70,6 +70,8 @@ fn with_ground_contact_no_draw_bends_beyond_a_right_angle() {
 }
 
 /// In stiff grass with little damping the speed oscillates with |ω|, and energy goes to and fro between θ' and θ.
+///
+/// The fraction of the limit at which sub-steps are kept was chosen on these draws; figures for others are in `tests/README.md`.
 #[test]
 fn a_thousand_stiff_draws_stay_bounded_and_come_to_rest() {
     assert_courses(Scheme::Substepped, &courses(1000, Draw::stiff, GroundContact::None), [6.0, f64::INFINITY]);
