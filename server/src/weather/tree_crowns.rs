@@ -10,17 +10,17 @@ use std::f32::consts::FRAC_PI_4;
 const CROWN: [f32; 2] = [0.2, 0.95];
 const CROWN_DIAMETER: f32 = 0.35;
 
-/// Crowns of all trees of `scene` as bodies of the wind's box; none without `wind.tree_drag_per_m`. Trees beyond a box smaller than the world are left out: the
+/// Crowns of all trees of `scene` as bodies of the wind's box; none without `wind.crown_drag_per_m`. Trees beyond a box smaller than the world are left out: the
 /// box repeats with its own.
 pub(super) fn drag_bodies(scene: &Scene, height: &HeightMap, cover: &CoverMap, terrain: &BoxTerrain) -> Vec<DragBody> {
     let (wind, tree_m) = (&scene.wind, scene.plants.tree_m);
-    if wind.tree_drag_per_m == 0.0 {
+    if wind.crown_drag_per_m == 0.0 {
         return Vec::new();
     }
     let box_m = [0, 2].map(|axis| wind.cells[axis] as f32 * wind.spacing_m[axis]);
     let [low_m, high_m] = CROWN.map(|share| share * tree_m);
     let (diameter_m, depth_m) = (CROWN_DIAMETER * tree_m, high_m - low_m);
-    let drag_m2 = wind.tree_drag_per_m * FRAC_PI_4 * diameter_m * diameter_m * depth_m;
+    let drag_m2 = wind.crown_drag_per_m * FRAC_PI_4 * diameter_m * diameter_m * depth_m;
     let crown = |[x, z]: [f32; 2]| {
         let ground_m = height.height_m(x, z);
         let centre_m = [x, ground_m - terrain.zero_m(ground_m) + low_m + 0.5 * depth_m, z];

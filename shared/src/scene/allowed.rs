@@ -60,7 +60,7 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("wind.mean_rate_per_s", Range(0.0, 10.0)),
     ("wind.viscosity_m2_per_s", Range(0.0, 100.0)),
     ("wind.canopy_drag_per_m", Range(0.0, 10.0)),
-    ("wind.tree_drag_per_m", Range(0.0, 10.0)),
+    ("wind.crown_drag_per_m", Range(0.0, 10.0)),
     ("wind.body_force_m_per_s2", Range(-1.0, 1.0)),
     ("wind.sources", Range(0.0, 1000.0)),
     ("wind.source_m_per_s", Range(0.0, 40.0)),

@@ -22,9 +22,10 @@ pub(in crate::scene) fn check(scene: &Scene, conflicts: &mut Conflicts) {
     mean_wind(wind, conflicts);
     lids(wind, conflicts);
     extent(scene, conflicts);
-    if wind.tree_drag_per_m != 0.0 && wind.tiling == WindTiling::Patch {
-        let message = format!("is {}; allowed with `tiling = \"patch\"`: 0, since the trees would be in every patch", wind.tree_drag_per_m);
-        conflicts.note(&["wind.tree_drag_per_m", "wind.tiling"], message);
+    if wind.crown_drag_per_m != 0.0 && wind.tiling == WindTiling::Patch {
+        let message =
+            format!("is {}; allowed with `tiling = \"patch\"`: 0, since the trees would be in every patch", wind.crown_drag_per_m);
+        conflicts.note(&["wind.crown_drag_per_m", "wind.tiling"], message);
     }
     match wind.method {
         WindMethod::Staggered => schemes(wind, conflicts),
@@ -250,10 +251,10 @@ fn stable_fluids(wind: &Wind, conflicts: &mut Conflicts) {
             format!("is {}; allowed with `method = \"stable-fluids\"`: 0, since that method has no canopy", wind.canopy_drag_per_m);
         conflicts.note(&["wind.canopy_drag_per_m", "wind.method"], message);
     }
-    if wind.tree_drag_per_m != 0.0 {
+    if wind.crown_drag_per_m != 0.0 {
         let message =
-            format!("is {}; allowed with `method = \"stable-fluids\"`: 0, since that method has no drag of bodies", wind.tree_drag_per_m);
-        conflicts.note(&["wind.tree_drag_per_m", "wind.method"], message);
+            format!("is {}; allowed with `method = \"stable-fluids\"`: 0, since that method has no drag of bodies", wind.crown_drag_per_m);
+        conflicts.note(&["wind.crown_drag_per_m", "wind.method"], message);
     }
 }
 

@@ -42,7 +42,7 @@ pub struct Wind {
     /// C_d·a of the crowns of trees (1/m), a being their leaf area density: their drag is `−C_d·a·‖u‖·u`, averaged over the cells that a crown touches (Shaw &
     /// Schumann 1992). Leaves have a C_d of about 0.2, crowns 1 to 2 m²/m³ of them. Default 0, no drag; allowed 0..=10; 0 with the method `stable-fluids` or
     /// `tiling = "patch"`.
-    pub tree_drag_per_m: f32,
+    pub crown_drag_per_m: f32,
     /// Uniform body force along X and Z, per mass (m/s²). Default (0, 0), allowed −1..=1 each.
     pub body_force_m_per_s2: [f32; 2],
     /// Number of random gusts at any moment (Zhang §2.3.1). Default 24, allowed 0..=1000 and at most the number of cells.
@@ -90,7 +90,7 @@ impl Default for Wind {
             mean_rate_per_s: 0.2,
             viscosity_m2_per_s: 0.2,
             canopy_drag_per_m: 0.1,
-            tree_drag_per_m: 0.0,
+            crown_drag_per_m: 0.0,
             body_force_m_per_s2: [0.0; 2],
             sources: 24,
             source_m_per_s: 14.0,
