@@ -169,11 +169,10 @@ pub fn diffuse<R: Real>(
         }
         (Diffusion::Explicit, _) => {
             let n = substeps(0.5 * dt_secs);
-            let secs = 0.5 * dt_secs / n;
             for number in 0..n as u32 {
-                explicit(grid, diffusivity_m2_per_s, 0.5 * secs, field, field, even);
+                explicit(grid, diffusivity_m2_per_s, 0.25 * dt_secs / n, field, field, even);
                 boundaries(even, (f64::from(number) + 0.5) / n);
-                explicit(grid, diffusivity_m2_per_s, secs, field, even, odd);
+                explicit(grid, diffusivity_m2_per_s, 0.5 * dt_secs / n, field, even, odd);
                 std::mem::swap(&mut field.data, &mut odd.data);
                 boundaries(field, f64::from(number + 1) / n);
             }
