@@ -1,6 +1,6 @@
 //! Natural wind as noise (Chen & Johan, §5.3): direction, travel, size, strength and reach of its gusts.
 
-use prairie_core::bend::{Bend, Patch, Serial};
+use prairie_core::bend::{Bend, Edges, HALO, Patch, Serial, WaveParams};
 use prairie_core::grass::BendSimulation;
 use prairie_core::grass::Camera;
 use prairie_core::grass::wind_drawing::WindDrawings;
@@ -27,15 +27,16 @@ struct Land {
 
 impl Land {
     fn new(natural_wind: NaturalWind, seed: u64) -> Self {
-        Self::with_cells(32, natural_wind, seed)
+        Self::with(32, WaveParams::default(), natural_wind, seed)
     }
 
     /// Patches of `cells × cells` cells, whose tiles of 8 × 8 get one push at each corner.
-    fn with_cells(cells: u32, natural_wind: NaturalWind, seed: u64) -> Self {
+    fn with(cells: u32, waves: WaveParams, natural_wind: NaturalWind, seed: u64) -> Self {
         let terrain = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [64.0; 2], level_m: 0.1, base_m: 0.0 };
         let mut scene = Scene { natural_wind, seed, ..Scene::new(terrain) };
         scene.patches = Patches { count: [4; 2], cells, cell_m: 16.0 / cells as f32, ..Patches::default() };
-        scene.grass.waves.mu_m_per_rad = 0.0;
+        scene.bend.edges = Edges::Wrapped;
+        scene.grass.waves = WaveParams { mu_m_per_rad: 0.0, ..waves };
         let height = Arc::new(HeightMap::from_heights(2, 2, [64.0; 2], vec![0.0; 4]));
         let cover = CoverMap::from_png(&grey_png([2; 2], &[255; 4])).expect("a grey PNG");
         let grass = BendSimulation::new(&scene, height, &cover, &[], &WindDrawings::new());
@@ -135,7 +136,8 @@ fn half_width_m(scale_m: f32) -> f32 {
     let distances_m: Vec<f32> = (1..=24).map(|n| 0.5 * n as f32).collect();
     let (mut near, mut far) = (vec![], vec![vec![]; distances_m.len()]);
     for seed in 1..=4 {
-        let mut land = Land::with_cells(64, NaturalWind { scale_m, drift_m_per_s: [5.0, 0.0], ..WIND }, seed).run(5.0);
+        let cells = if scale_m < 16.0 { 64 } else { 32 };
+        let mut land = Land::with(cells, WaveParams::default(), NaturalWind { scale_m, drift_m_per_s: [5.0, 0.0], ..WIND }, seed).run(5.0);
         for _ in 0..8 {
             land = land.run(5.0);
             for [x, z] in places(24).flat_map(|x| places(18).map(move |z| [x, z])) {
@@ -162,16 +164,28 @@ fn the_bend_is_proportional_to_the_strength_and_below_that_of_a_steady_push() {
         let land = Land::new(NaturalWind { strength_rad_per_s2, ..WIND }, 1).run(SETTLED_SECS);
         land.grass.field().awake().map(Patch::theta_max_rad).fold(0.0, f32::max)
     };
-    let kappa_per_s2 =
-        Scene::new(TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [2.0; 2], level_m: 0.1, base_m: 0.0 })
-            .grass
-            .waves
-            .stiffness_per_s2;
+    let kappa_per_s2 = WaveParams::default().stiffness_per_s2;
     let [weak, strong] = [0.5, 1.0].map(strongest);
     println!("{weak} and {strong} rad");
     assert!((strong / weak - 2.0).abs() < 2e-3, "{weak} and {strong} rad");
     assert!(strong > 0.1 / kappa_per_s2 && strong < 1.0 / kappa_per_s2, "{strong} rad");
     assert_eq!(strongest(0.0), 0.0);
+}
+
+/// Waves of 50 m/s need more sub-steps than a patch takes between two exchanges with its neighbours. They spread a gust, but don't change the mean bend.
+#[test]
+fn gusts_move_grass_whatever_the_number_of_sub_steps() {
+    let mean_theta_rad = |c0_m_per_s: f32| {
+        let waves = WaveParams { c0_m_per_s, ..WaveParams::default() };
+        let land = Land::with(32, waves, WIND, 1).run(SETTLED_SECS);
+        let thetas = land.grass.field().awake().flat_map(Patch::rows).flat_map(|[theta, _, _]| theta);
+        let (sum, count) = thetas.fold((0.0, 0.0), |(sum, count), theta| (sum + theta, count + 1.0));
+        (land.grass.report().substeps as usize, sum / count)
+    };
+    let [(few, slow_rad), (many, fast_rad)] = [1.0, 50.0].map(mean_theta_rad);
+    println!("{few} and {many} sub-steps, {slow_rad} and {fast_rad} rad");
+    assert!(few == 1 && many > HALO, "{few} and {many} sub-steps");
+    assert!((fast_rad / slow_rad - 1.0_f32).abs() < 0.1, "{slow_rad} and {fast_rad} rad");
 }
 
 #[test]

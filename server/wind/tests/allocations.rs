@@ -3,8 +3,8 @@
 use glam::Vec3;
 use prairie_wind::pressure::{Effort, IterativeMethod};
 use prairie_wind::{
-    Advection, Boundary, Canopy, Config, Diffusion, Dust, Gusts, Jet, Pressure, Primitive, Profile, Real, Shape, Solver, StableFluids,
-    TimeScheme,
+    Advection, Body, Boundary, Canopy, Config, Diffusion, Dust, Gusts, Jet, Pressure, Primitive, Profile, Real, Shape, Solver,
+    StableFluids, TimeScheme,
 };
 
 /// Steps before the count starts, in which work arrays may still grow to their final size.
@@ -91,6 +91,31 @@ fn no_boundary_condition_allocates_in_a_step() {
 #[test]
 fn a_grid_large_enough_for_parallel_loops_is_stepped_without_allocations() {
     assert_eq!(allocations::<f32>(&Config { cells: [48, 24, 48], ..everything() }), 0);
+}
+
+#[test]
+fn solids_do_not_allocate_in_a_step() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let allocations = pool.install(|| {
+        let mut air = Solver::<f32>::new(&Config { cells: [24, 12, 24], ..everything() }).unwrap();
+        air.set_walls(|[x, y, _]| y - 0.1 * x, |_| [0.0; 3]).unwrap();
+        let body = |x: f64, half_m: f64| Body {
+            centre_m: [x, 7.0, 20.0],
+            half_extents_m: [half_m; 3],
+            axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            velocity_m_per_s: [1.0, 0.0, 0.0],
+            drag_coefficient: 1.0,
+        };
+        let bodies = [body(20.0, 4.0), body(30.0, 0.4)];
+        air.set_drag(&[bodies[1].drag()]);
+        let mut step = |_| {
+            air.set_bodies(&bodies);
+            air.step(DT_SECS, &[]).unwrap();
+        };
+        (0..WARM_UP_STEPS).for_each(&mut step);
+        allocation_counter::measure(|| (0..STEPS).for_each(&mut step)).count_total
+    });
+    assert_eq!(allocations, 0);
 }
 
 #[test]

@@ -101,7 +101,7 @@ impl Field {
     }
 
     /// Time between the two states that every patch holds (s), the last sub-step; `None` before the first step.
-    pub fn between_states_secs(&self) -> Option<f32> {
+    pub(crate) fn between_states_secs(&self) -> Option<f32> {
         self.dt_secs
     }
 

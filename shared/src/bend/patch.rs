@@ -122,7 +122,7 @@ impl Patch {
 
     /// Pushes the cells of tile `(x, z)` of the patch: `push` returns the displacement of θ and ω of a cell, given its place in the tile, in the newer of
     /// the two states, which changes its motion. The tile is not put to rest in the next step, so that small pushes add up.
-    pub fn push_tile(&mut self, [x, z]: [usize; 2], push: impl Fn([usize; 2]) -> Bend) {
+    pub(crate) fn push_tile(&mut self, [x, z]: [usize; 2], push: impl Fn([usize; 2]) -> Bend) {
         self.tiles.push(x, z);
         for [u, v] in (0..TILE * TILE).map(|n| [n % TILE, n / TILE]) {
             let (i, j) = (x * TILE + u, z * TILE + v);

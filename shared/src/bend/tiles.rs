@@ -122,7 +122,7 @@ impl Tiles {
                 self.active[(z + 1) * (self.count + 2) + x + 1] = theta > limits[0] || omega2 > limits[1];
             }
         }
-        for tile in self.pushed.drain(..) {
+        for &tile in &self.pushed {
             let (x, z) = (tile % self.count, tile / self.count);
             self.active[(z + 1) * (self.count + 2) + x + 1] = true;
         }
@@ -186,8 +186,10 @@ impl Tiles {
         &self.changed_in
     }
 
+    /// Sets the revision at the end of a step, after which no tile is pushed.
     pub(super) fn set_revision(&mut self, revision: u64) {
         self.revision = revision;
+        self.pushed.clear();
     }
 
     pub(super) fn memory_bytes(&self) -> usize {

@@ -64,7 +64,8 @@ impl<R: Real> Walls<R> {
         }
     }
 
-    /// Sets the moving walls. A face that a fixed wall acts on remains that wall's; of several bodies, one that contains the face comes first.
+    /// Sets the moving walls. A face that a fixed wall acts on remains that wall's; of several bodies, one that contains the face
+    /// comes first, and of those the one with the lower velocity.
     pub(super) fn set_moving<'a>(&mut self, grid: &Grid<R>, viscosity_m2_per_s: f64, bodies: impl Iterator<Item = &'a Body>) {
         self.faces.iter_mut().zip(self.fixed).for_each(|(faces, fixed)| faces.truncate(fixed));
         for body in bodies {
@@ -210,8 +211,9 @@ fn around<R: Real>(grid: &Grid<R>, location: Location, along: usize, body: &Body
 /// Removes from the faces of moving walls, `faces[fixed..]`, those of fixed walls and all but the first for each face.
 fn keep_first<R: Real>(faces: &mut Vec<WallFace<R>>, fixed: usize) {
     let (own, moving) = faces.split_at_mut(fixed);
-    // Inside walls first.
-    moving.sort_by_key(|face| (face.at, face.rate_per_s.is_finite()));
+    // Inside walls first. A stable sort would allocate.
+    let place = |face: &WallFace<R>| (face.at, face.rate_per_s.is_finite());
+    moving.sort_unstable_by(|a, b| place(a).cmp(&place(b)).then(a.target.wide().total_cmp(&b.target.wide())));
     let mut kept = 0;
     for n in 0..moving.len() {
         let is_repeated = kept > 0 && moving[kept - 1].at == moving[n].at;
