@@ -5,9 +5,10 @@
 use futures_util::{SinkExt, StreamExt};
 use prairie::objects::{Environment, Objects};
 use prairie::scenes;
-use prairie::snapshot::PatchQuantiser;
+use prairie::snapshot::{Audience, PatchQuantiser};
 use prairie::weather::Weather;
 use prairie::world::{Maps, World};
+use prairie_core::grid::PatchLayout;
 use prairie_core::scene::Scene;
 use prairie_core::terrain::HeightMap;
 use prairie_core::wire::{ClientMessage, SERVER_MESSAGE_LIMIT, ServerMessage, decode, encode};
@@ -134,6 +135,8 @@ fn at_rest() {
         loaded.scene.objects.self_driving = 0;
         let world = World::new(&loaded.scene, loaded.maps()).expect("a built-in scene is sound");
         let prairie = Prairie::serve(loaded, world).await.expect("a port is free");
+        // Long enough for the world to pause.
+        tokio::time::sleep(Duration::from_secs(10)).await;
         share_of_a_core("at rest, no visitor").await;
         let visit = tokio::spawn(visit(prairie.addr.to_string()));
         share_of_a_core("at rest, one visitor who stands still").await;
@@ -182,16 +185,25 @@ fn resident_mb() -> f64 {
     line.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok()).unwrap_or(0.0) * 1024e-6
 }
 
-/// A minute with 64 cars, with the scene's limit on awake patches.
+/// A minute with 64 cars, with the scene's limit on awake patches: with drivers whose pages simulate the grass themselves, and with some who take all patches.
 fn minute() {
-    on_two_threads(|| {
-        let mut timed = Timed::new(64, 200.0, 225);
-        timed.ticks(2.0);
-        println!("64 cars at 20 m/s, {THREADS} threads:");
-        table(&timed.ticks(sampled(60.0)));
-        let health = timed.world.snapshot().diagnostics;
-        println!("{} patches awake, {} let go, {:.0} MB resident", health.awake_patches, health.evicted_patches, resident_mb());
-    });
+    for (drivers, audience) in [("none takes patches", nobody()), ("all patches are taken", Audience::default())] {
+        on_two_threads(|| {
+            let mut timed = Timed::new(64, 200.0, 225);
+            timed.quantiser.set_audience(audience);
+            timed.ticks(2.0);
+            println!("64 cars at 20 m/s, {THREADS} threads, {drivers}:");
+            table(&timed.ticks(sampled(60.0)));
+            let health = timed.world.snapshot().diagnostics;
+            println!("{} patches awake, {} let go, {:.0} MB resident", health.awake_patches, health.evicted_patches, resident_mb());
+        });
+    }
+}
+
+/// No patch of the scene.
+fn nobody() -> Audience {
+    let scene = scenes::load("continuum").expect("a built-in scene is sound").scene;
+    Audience::of(std::iter::empty(), &PatchLayout::from(&scene.patches))
 }
 
 /// Cost of a car: up to 256 cars, each with a track of its own, without a limit on patches.

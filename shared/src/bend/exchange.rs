@@ -1,6 +1,7 @@
 //! Exchange between patches before a step: wakes patches, chooses the tiles to step, and fills the ghost cells.
 
-use super::halo::{AROUND, Neighbour, Seams, TileRun, fetch, neighbour, put_to_rest, ring};
+use super::halo::{AROUND, Fetch, Neighbour, RestingGhosts, Seams, TileRun, neighbour, ring};
+use super::patch::CHANNELS;
 use super::tiles::TILE;
 use super::{Executor, Field, Patch};
 
@@ -15,20 +16,39 @@ impl Field {
 
     /// Prepares up to `substeps` sub-steps: wakes patches that energy reaches, chooses the tiles to step, and fills the ghosts. Returns the number of
     /// patches that stayed asleep because of the limit.
-    pub(super) fn exchange(&mut self, substeps: usize) -> u32 {
-        self.patches.iter_mut().for_each(|patch| patch.tiles.find_active(self.rest));
+    pub(super) fn exchange(&mut self, substeps: usize, executor: &impl Executor) -> u32 {
+        let rest = self.rest;
+        executor.for_each(self.patches.iter_mut().collect(), |patch: &mut Patch| patch.tiles.find_active(rest));
         let refused = if self.seams == Seams::Exact { self.wake_reached() } else { 0 };
         let around = self.neighbours();
         if self.seams == Seams::Exact {
             self.mark_active_neighbours(&around);
         }
-        self.patches.iter_mut().for_each(choose_tiles);
+        executor.for_each(self.patches.iter_mut().collect(), choose_tiles);
+        let mut ghosts = Ghosts::default();
         for (own, around) in around.iter().enumerate() {
             for (toward, met) in AROUND.into_iter().zip(*around) {
-                self.exchange_with(own, toward, met, substeps);
+                self.exchange_with(own, toward, met, substeps, &mut ghosts);
             }
         }
+        self.fill_ghosts(&ghosts, substeps, executor);
         refused
+    }
+
+    /// Fills the ghosts, plane by plane in parallel: the own cells of a plane only supply ghosts of the same plane. With one sub-step the ghosts of the
+    /// earlier state aren't needed.
+    fn fill_ghosts(&mut self, ghosts: &Ghosts, substeps: usize, executor: &impl Executor) {
+        let mut planes: [Vec<&mut [f32]>; 2 * CHANNELS] = Default::default();
+        for patch in &mut self.patches {
+            planes.iter_mut().zip(patch.planes_mut(2)).for_each(|(planes, plane)| planes.push(plane));
+        }
+        let filled = if substeps > 1 { 2 * CHANNELS } else { CHANNELS };
+        executor.for_each(planes.iter_mut().enumerate().collect(), |(number, planes)| {
+            if number < filled {
+                ghosts.filled.iter().for_each(|fetch| fetch.fill(planes));
+            }
+            ghosts.resting.iter().for_each(|resting| resting.clear(planes));
+        });
     }
 
     /// The awake neighbours of each awake patch, with their slots.
@@ -88,8 +108,8 @@ impl Field {
         }
     }
 
-    /// Fills the ghosts toward one neighbour where its tiles step, and puts to rest those where they no longer do.
-    fn exchange_with(&mut self, own: usize, toward: [i64; 2], met: Option<(usize, Neighbour)>, rings: usize) {
+    /// Finds the ghosts to fill toward one neighbour, where its tiles step, and those to put to rest, where they no longer do.
+    fn exchange_with(&mut self, own: usize, toward: [i64; 2], met: Option<(usize, Neighbour)>, rings: usize, ghosts: &mut Ghosts) {
         let count = self.patches[own].tiles.count() as i64;
         let steps_beyond = |patches: &[Patch], [x, z]: [i64; 2]| match (self.seams, met) {
             (Seams::Overlap, _) => patches[own].tiles.steps(x.clamp(0, count - 1), z.clamp(0, count - 1)),
@@ -115,12 +135,21 @@ impl Field {
         }
         for (steps, tiles) in runs {
             match (steps, met, self.seams) {
-                (true, Some((from, neighbour)), Seams::Exact) => fetch(&mut self.patches, own, from, toward, &tiles, neighbour, rings),
+                (true, Some((from, neighbour)), Seams::Exact) => {
+                    ghosts.filled.push(Fetch::new(&self.patches[own], [own, from], toward, &tiles, neighbour, rings));
+                }
                 (true, ..) => {}
-                (false, ..) => put_to_rest(&mut self.patches[own], toward, &tiles),
+                (false, ..) => ghosts.resting.push(RestingGhosts::new(&self.patches[own], own, toward, &tiles)),
             }
         }
     }
+}
+
+/// Ghosts that an exchange changes.
+#[derive(Default)]
+struct Ghosts {
+    filled: Vec<Fetch>,
+    resting: Vec<RestingGhosts>,
 }
 
 /// Marks active tiles and their neighbours to step; puts the others to rest.

@@ -115,6 +115,11 @@ impl Field {
         self.patches.iter()
     }
 
+    /// Mutable access to the awake patches, ascending by index.
+    pub(crate) fn awake_mut(&mut self) -> impl Iterator<Item = &mut Patch> {
+        self.patches.iter_mut()
+    }
+
     pub(super) fn slot(&self, patch: PatchIndex) -> Option<usize> {
         self.patches.binary_search_by_key(&patch, Patch::index).ok()
     }
@@ -190,9 +195,19 @@ impl Field {
         if let Some(patch) = self.patch_mut(patch) {
             patch.press(i, j, bend);
         }
-        if self.seams == Seams::Exact {
-            return;
+        if self.has_overlaps() {
+            self.press_overlaps(cell, bend);
         }
+    }
+
+    /// Whether patches have overlaps, in which contact sets the cells of their neighbours, too.
+    pub(crate) fn has_overlaps(&self) -> bool {
+        self.seams == Seams::Overlap
+    }
+
+    /// Sets a cell in the overlaps of the awake neighbours of its patch.
+    pub(crate) fn press_overlaps(&mut self, cell: [i64; 2], bend: Bend) {
+        let Some((patch, [i, j])) = self.locate(cell) else { return };
         let (side, halo) = (i64::from(self.layout.cells), HALO as i64);
         for toward in AROUND {
             let beyond = [i as i64 - toward[0] * side, j as i64 - toward[1] * side];

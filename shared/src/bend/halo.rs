@@ -116,38 +116,65 @@ fn cells(tiles: &TileRun, toward: [i64; 2], side: i64, rings: usize) -> [std::op
     })
 }
 
-/// Fills the ghosts of ring tiles from the neighbour `from`: `rings` rings of the newest state and, if more than one, of the earlier state.
-pub(super) fn fetch(patches: &mut [Patch], own: usize, from: usize, toward: [i64; 2], tiles: &TileRun, neighbour: Neighbour, rings: usize) {
-    let side = patches[own].side() as i64;
-    let [columns, rows] = cells(tiles, toward, side, rings);
-    let width = (columns.end - columns.start) as usize;
-    let reversed = toward[0] != 0 && neighbour.mirrored[0];
-    let their_column = |at| theirs(at, toward[0], side, neighbour.mirrored[0]);
-    let first_column = if reversed { their_column(columns.end - 1) } else { their_column(columns.start) };
-    let place = |row| {
-        let source = patches[own].at(first_column, theirs(row, toward[1], side, neighbour.mirrored[1]));
-        [source, patches[own].at(columns.start, row)]
-    };
-    let places: Vec<_> = rows.map(place).collect();
-    let states = if rings > 1 { 2 } else { 1 };
-    if own == from {
-        for plane in patches[own].planes_mut(states) {
-            for &[source, target] in &places {
-                plane.copy_within(source..source + width, target);
-                if reversed {
-                    plane[target..target + width].reverse();
-                }
-            }
+/// Ghosts of one patch that are filled from a neighbour: rows of equal width, the same in every plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fetch {
+    /// Slots of the patch and of the neighbour.
+    own: usize,
+    from: usize,
+    /// Index of the first ghost in the first row, and of the cell from which the leftmost one of the row, or the rightmost if `is_reversed`, is filled.
+    target: usize,
+    source: usize,
+    /// Distance between the neighbour's rows, and whether it is downwards.
+    rows_apart: usize,
+    goes_down: bool,
+    rows: usize,
+    width: usize,
+    is_reversed: bool,
+}
+
+impl Fetch {
+    /// Ghosts of ring tiles of `patch`, in slot `own`, from the neighbour in slot `from`: `rings` rings.
+    pub(super) fn new(
+        patch: &Patch,
+        [own, from]: [usize; 2],
+        toward: [i64; 2],
+        tiles: &TileRun,
+        neighbour: Neighbour,
+        rings: usize,
+    ) -> Self {
+        let side = patch.side() as i64;
+        let [columns, rows] = cells(tiles, toward, side, rings);
+        let is_reversed = toward[0] != 0 && neighbour.mirrored[0];
+        let first_column = if is_reversed { columns.end - 1 } else { columns.start };
+        let their_column = theirs(first_column, toward[0], side, neighbour.mirrored[0]);
+        Self {
+            own,
+            from,
+            target: patch.at(columns.start, rows.start),
+            source: patch.at(their_column, theirs(rows.start, toward[1], side, neighbour.mirrored[1])),
+            rows_apart: patch.stride(),
+            goes_down: toward[1] == 0 || !neighbour.mirrored[1],
+            rows: (rows.end - rows.start) as usize,
+            width: (columns.end - columns.start) as usize,
+            is_reversed,
         }
-        return;
     }
-    let Ok([own, from]) = patches.get_disjoint_mut([own, from]) else { unreachable!("two patches of one field") };
-    // Plane by plane: strides of constant length, which the processor prefetches.
-    for (to, from) in own.planes_mut(states).zip(from.planes_mut(states)) {
-        for &[source, target] in &places {
-            copy(&from[source..source + width], &mut to[target..target + width]);
-            if reversed {
-                to[target..target + width].reverse();
+
+    /// Fills the ghosts in one plane, given that plane of all patches.
+    pub(super) fn fill(&self, planes: &mut [&mut [f32]]) {
+        for row in 0..self.rows {
+            let by = row * self.rows_apart;
+            let (source, target) = (if self.goes_down { self.source + by } else { self.source - by }, self.target + by);
+            let ghosts = target..target + self.width;
+            if self.own == self.from {
+                planes[self.own].copy_within(source..source + self.width, target);
+            } else {
+                let Ok([own, from]) = planes.get_disjoint_mut([self.own, self.from]) else { unreachable!("two patches of one field") };
+                copy(&from[source..source + self.width], &mut own[ghosts.clone()]);
+            }
+            if self.is_reversed {
+                planes[self.own][ghosts].reverse();
             }
         }
     }
@@ -162,9 +189,33 @@ fn copy(from: &[f32], to: &mut [f32]) {
     }
 }
 
-/// Puts the ghosts of ring tiles to rest.
-pub(super) fn put_to_rest(patch: &mut Patch, toward: [i64; 2], tiles: &TileRun) {
-    let [columns, rows] = cells(tiles, toward, patch.side() as i64, HALO);
-    let size = [&columns, &rows].map(|range| (range.end - range.start) as usize);
-    patch.put_to_rest([columns.start, rows.start], size);
+/// Ghosts of one patch that are put to rest.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RestingGhosts {
+    own: usize,
+    first: usize,
+    rows_apart: usize,
+    rows: usize,
+    width: usize,
+}
+
+impl RestingGhosts {
+    /// Ghosts of ring tiles of `patch`, in slot `own`.
+    pub(super) fn new(patch: &Patch, own: usize, toward: [i64; 2], tiles: &TileRun) -> Self {
+        let [columns, rows] = cells(tiles, toward, patch.side() as i64, HALO);
+        Self {
+            own,
+            first: patch.at(columns.start, rows.start),
+            rows_apart: patch.stride(),
+            rows: (rows.end - rows.start) as usize,
+            width: (columns.end - columns.start) as usize,
+        }
+    }
+
+    /// Puts the ghosts in one plane to rest, given that plane of all patches.
+    pub(super) fn clear(&self, planes: &mut [&mut [f32]]) {
+        for row in 0..self.rows {
+            planes[self.own][self.first + row * self.rows_apart..][..self.width].fill(0.0);
+        }
+    }
 }

@@ -57,7 +57,7 @@ struct Work {
 pub(super) fn step(field: &mut Field, dt_secs: f32, executor: &impl Executor) -> Report {
     let ratio = field.dt_secs.replace(dt_secs).map_or(1.0, |last| dt_secs / last);
     let kinds: Vec<_> = field.kinds.waves().iter().map(|waves| Coefficients::new(waves, field.layout.cell_m, dt_secs)).collect();
-    let refused = field.exchange(1);
+    let refused = field.exchange(1, executor);
     let mut works: Vec<Work> = field.patches.iter().map(|_| Work::default()).collect();
     let tasks: Vec<_> = field.patches.iter_mut().zip(&mut works).collect();
     executor.for_each(tasks, |(patch, work)| *work = begin(patch, &kinds, ratio));

@@ -63,7 +63,7 @@ impl Field {
         let mut left = count as usize;
         while left > 0 {
             let substeps = left.min(HALO);
-            report.refused += self.exchange(substeps);
+            report.refused += self.exchange(substeps, executor);
             let rings = (self.seams == Seams::Overlap).then_some(HALO - 1);
             let pass = Pass { kinds: &kinds, substeps, ratio, rings, limit_rad: self.ground_contact.limit_rad() };
             report.cell_steps += self.advance(executor, |patch| verlet::advance(patch, &pass));

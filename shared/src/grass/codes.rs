@@ -1,7 +1,7 @@
 //! Codes of the grass: 16 bits for each channel of a cell, encoded again where something changed.
 
 use super::vector::length;
-use super::{BendSimulation, grass_state};
+use super::{Audience, BendSimulation, grass_state};
 use crate::bend::{Bend, Executor, Patch, TILE};
 use crate::grid::PatchIndex;
 use crate::wire::quantise::CodeSteps;
@@ -46,11 +46,22 @@ pub struct PatchQuantiser {
     patches: Arc<BentPatches>,
     sources: BTreeMap<PatchIndex, Sources>,
     encoded: BTreeMap<PatchIndex, Encoded>,
+    audience: Audience,
 }
 
 impl PatchQuantiser {
-    /// Encodes the changed patches: awake ones, and those that have only flattened grass and are `in_sight`. Returns the codes of all patches that are not at
-    /// rest.
+    /// Sets the patches that are encoded from now on. Default: all.
+    pub fn set_audience(&mut self, audience: Audience) {
+        self.audience = audience;
+    }
+
+    /// The patches that are encoded.
+    pub fn audience(&self) -> &Audience {
+        &self.audience
+    }
+
+    /// Encodes the changed patches of the audience: awake ones, and those that have only flattened grass and are `in_sight`. Returns the codes of all its patches that are not
+    /// at rest.
     pub fn quantise(
         &mut self,
         tick: u64,
@@ -58,7 +69,8 @@ impl PatchQuantiser {
         in_sight: impl Fn(PatchIndex) -> bool,
         executor: &impl Executor,
     ) -> Arc<BentPatches> {
-        let sources = sources(bend, in_sight);
+        let mut sources = sources(bend, in_sight);
+        sources.retain(|patch, _| self.audience.takes(*patch));
         let mut results: Vec<_> = sources.iter().map(|(index, source)| (*index, *source, None)).collect();
         executor.for_each(results.iter_mut().collect(), |(index, source, result)| {
             let is_known = self.sources.get(index) == Some(source);

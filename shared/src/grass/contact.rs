@@ -1,10 +1,12 @@
 //! Contact of moving objects with the grass.
 
 use super::bending::{HELD_RAD_PER_S, bend_after_rad, bending_speed_rad_per_s, direction};
-use super::grass_state::{GrassState, Pressed};
-use super::swept_footprint::SweptFootprint;
+use super::grass_state::CellState;
+use super::stroke::{Pressed, Stroke};
+use super::swept_footprint::{Leg, SweptFootprint};
 use super::vector::{length, unit};
 use crate::bend::Bend;
+use crate::grid::PatchLayout;
 
 /// Speed below which an object counts as standing still (m/s).
 pub const STANDSTILL_M_PER_S: f32 = 0.05;
@@ -28,36 +30,44 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Presses the grass of awake patches for a step of `dt_secs`. An object at rest flattens grass in sleeping patches as well.
-    pub fn press(&self, grass: &mut GrassState, dt_secs: f32) {
-        let rim_m = grass.field.layout().cell_m;
-        for leg in self.swept.legs() {
-            let (rims, middle) = (if self.parts_grass { leg.rims() } else { &[] }, leg.middle_m());
-            let leg_secs = leg.fraction * dt_secs;
-            grass.for_each_cell(&leg.cover(), self.is_at_rest, |at_m, bend, limit_rad| {
-                let passage = leg.passage(at_m)?;
-                let velocity = passage.moves_m.map(|m| m / leg_secs);
-                let moves = if length(velocity) > STANDSTILL_M_PER_S { unit(velocity) } else { None };
-                let direction = match moves {
-                    Some(moves) => leg.to_world(direction(leg.to_local(moves), passage.local_m, rims, rim_m)),
-                    None => unit(bend.omega).unwrap_or_else(|| {
-                        let out = [passage.local_m[0] - middle[0], passage.local_m[1] - middle[1]];
-                        unit(out).map_or([1.0, 0.0], |out| leg.to_world(out))
-                    }),
-                };
-                let along = (velocity[0] * direction[0] + velocity[1] * direction[1]).max(SETTLING_M_PER_S);
-                let terrain_rad = limit_rad(direction);
-                let limit = terrain_rad.min(self.slip_bend_rad);
-                let theta = if bend.theta >= limit {
-                    bend.theta.min(terrain_rad)
-                } else if self.is_at_rest {
-                    limit
-                } else {
-                    limit.min(bend_after_rad(bend.theta, along, self.strike_height_m, passage.fraction * leg_secs))
-                };
-                let held = bending_speed_rad_per_s(along, theta, self.strike_height_m).max(HELD_RAD_PER_S);
-                Some(Pressed { bend: Bend { theta, omega: direction.map(|d| d * held) }, flattened_fraction: self.flattened_fraction })
-            });
+    /// The strokes of a step of `dt_secs`, one for each leg.
+    pub fn strokes<'a>(&'a self, layout: &'a PatchLayout, dt_secs: f32) -> impl Iterator<Item = Stroke<'a>> {
+        self.swept.legs().map(move |leg| Stroke::new(&leg.cover(), layout, self.is_at_rest, self.rule(leg, layout.cell_m, dt_secs)))
+    }
+
+    /// How grass yields to one leg.
+    fn rule<'a>(
+        &'a self,
+        leg: Leg<'a>,
+        rim_m: f32,
+        dt_secs: f32,
+    ) -> impl Fn([f32; 2], &mut CellState) -> Option<Pressed> + Send + Sync + 'a {
+        let (middle_m, leg_secs) = (leg.middle_m(), leg.fraction * dt_secs);
+        move |at_m, cell| {
+            let rims = if self.parts_grass { leg.rims() } else { &[] };
+            let passage = leg.passage(at_m)?;
+            let bend = cell.bend();
+            let velocity = passage.moves_m.map(|m| m / leg_secs);
+            let moves = if length(velocity) > STANDSTILL_M_PER_S { unit(velocity) } else { None };
+            let direction = match moves {
+                Some(moves) => leg.to_world(direction(leg.to_local(moves), passage.local_m, rims, rim_m)),
+                None => unit(bend.omega).unwrap_or_else(|| {
+                    let out = [passage.local_m[0] - middle_m[0], passage.local_m[1] - middle_m[1]];
+                    unit(out).map_or([1.0, 0.0], |out| leg.to_world(out))
+                }),
+            };
+            let along = (velocity[0] * direction[0] + velocity[1] * direction[1]).max(SETTLING_M_PER_S);
+            let terrain_rad = cell.limit_rad(direction);
+            let limit = terrain_rad.min(self.slip_bend_rad);
+            let theta = if bend.theta >= limit {
+                bend.theta.min(terrain_rad)
+            } else if self.is_at_rest {
+                limit
+            } else {
+                limit.min(bend_after_rad(bend.theta, along, self.strike_height_m, passage.fraction * leg_secs))
+            };
+            let held = bending_speed_rad_per_s(along, theta, self.strike_height_m).max(HELD_RAD_PER_S);
+            Some(Pressed { bend: Bend { theta, omega: direction.map(|d| d * held) }, flattened_fraction: self.flattened_fraction })
         }
     }
 }

@@ -5,15 +5,17 @@
 
 use super::camera::{Camera, nearest_distance2_m2};
 use super::causes::Limits;
-use super::vector::length;
 use crate::bend::TILE;
 use crate::grid::{PatchIndex, PatchLayout};
 use std::collections::BTreeMap;
 use std::f32::consts::PI;
 
 mod checkpoint;
+mod patch;
 
 pub use checkpoint::FlattenedState;
+pub use patch::DetachedPatch;
+use patch::{FlattenedPatch, FlattenedTile};
 
 /// Memory of a tile, with its entry in the list (bytes).
 pub const TILE_BYTES: usize = size_of::<FlattenedTile>() + size_of::<Option<Box<FlattenedTile>>>();
@@ -47,23 +49,6 @@ pub struct FlattenedGrass {
     revision: u64,
     patches: BTreeMap<PatchIndex, FlattenedPatch>,
     dropped: u64,
-}
-
-/// The flattened grass of one patch.
-#[derive(Clone, Debug)]
-struct FlattenedPatch {
-    /// Row by row from the north-west.
-    tiles: Vec<Option<Box<FlattenedTile>>>,
-    count: usize,
-    /// Revision in which it last changed.
-    changed_in: u64,
-}
-
-/// Leans along X and Z in quanta, as written at `since_secs`.
-#[derive(Clone, Debug)]
-struct FlattenedTile {
-    since_secs: f64,
-    leans: [[i16; 2]; TILE * TILE],
 }
 
 impl FlattenedGrass {
@@ -117,28 +102,14 @@ impl FlattenedGrass {
         })
     }
 
-    /// Flattens cell `(i, j)` of a patch with a lean of at most a right angle (rad). Returns the rounded lean.
-    pub fn flatten(&mut self, patch: PatchIndex, i: usize, j: usize, lean_rad: [f32; 2]) -> [f32; 2] {
-        let (clock, at, across, revision) = (self.clock, self.tile_at(i, j), self.tiles_across(), self.revision);
-        let empty = || FlattenedPatch { tiles: vec![None; across * across], count: 0, changed_in: revision };
-        let patch = self.patches.entry(patch).or_insert_with(empty);
-        patch.changed_in = revision;
-        let tile = patch.tiles[at].get_or_insert_with(|| {
-            patch.count += 1;
-            Box::new(FlattenedTile { since_secs: clock.now_secs, leans: [[0; 2]; TILE * TILE] })
-        });
-        let mut remaining = clock.remaining(tile.since_secs);
-        if remaining < REWRITE_FRACTION {
-            tile.leans.iter_mut().flatten().for_each(|units| *units = (f32::from(*units) * remaining) as i16);
-            (tile.since_secs, remaining) = (clock.now_secs, 1.0);
-        }
-        let units = lean_rad.map(|rad| {
-            let cut = (rad / (remaining * QUANTUM_RAD)) as i16;
-            // The quotient of a lean just below a quantum may round up to it.
-            if (units_rad(cut) * remaining).abs() > rad.abs() { cut - cut.signum() } else { cut }
-        });
-        tile.leans[cell_at(i, j)] = units;
-        units.map(|units| units_rad(units) * remaining)
+    /// Takes the flattened grass of a patch out of the world's, so that patches can be pressed in parallel; [`attach`](Self::attach) puts it back.
+    pub(super) fn detach(&mut self, patch: PatchIndex) -> DetachedPatch {
+        DetachedPatch::new(self.patches.remove(&patch), self.clock, self.tiles_across(), self.revision)
+    }
+
+    /// Puts back the flattened grass of a patch.
+    pub(super) fn attach(&mut self, index: PatchIndex, patch: DetachedPatch) {
+        self.patches.extend(patch.into_patch().map(|patch| (index, patch)));
     }
 
     /// Advances time by `dt_secs`. Each patch drops its invisible tiles about once a second, a few patches per step. Above the limit, the patches
@@ -225,25 +196,6 @@ impl FlattenedGrass {
     }
 }
 
-impl FlattenedPatch {
-    /// Drops tiles that are no longer visible.
-    fn drop_invisible(&mut self, clock: &Clock) {
-        for tile in &mut self.tiles {
-            if tile.as_ref().is_some_and(|tile| tile.largest_rad() * clock.remaining(tile.since_secs) < VISIBLE_RAD) {
-                *tile = None;
-                self.count -= 1;
-            }
-        }
-    }
-}
-
-impl FlattenedTile {
-    /// Largest lean as it was written (rad).
-    fn largest_rad(&self) -> f32 {
-        self.leans.iter().map(|&lean| length(lean.map(units_rad))).fold(0.0, f32::max)
-    }
-}
-
 fn cell_at(i: usize, j: usize) -> usize {
     j % TILE * TILE + i % TILE
 }
@@ -260,6 +212,13 @@ mod tests {
     const LAYOUT: PatchLayout = PatchLayout { count: [20, 20], cells: 16, cell_m: 0.5 };
     const DT_SECS: f32 = 1.0 / 60.0;
 
+    fn flatten(grass: &mut FlattenedGrass, index: PatchIndex, [i, j]: [usize; 2], lean_rad: [f32; 2]) -> [f32; 2] {
+        let mut patch = grass.detach(index);
+        let kept = patch.flatten(i, j, lean_rad);
+        grass.attach(index, patch);
+        kept
+    }
+
     fn run(grass: &mut FlattenedGrass, secs: f32) {
         for _ in 0..(secs / DT_SECS).round() as u32 {
             grass.step(DT_SECS, &[]);
@@ -269,12 +228,12 @@ mod tests {
     #[test]
     fn leans_decay_exponentially_within_two_quanta() {
         let mut grass = FlattenedGrass::new(LAYOUT, 20.0, 1000);
-        let kept = grass.flatten(3, 9, 2, [1.1, -0.4]);
+        let kept = flatten(&mut grass, 3, [9, 2], [1.1, -0.4]);
         assert!((kept[0] - 1.1).abs() < QUANTUM_RAD && (kept[1] + 0.4).abs() < QUANTUM_RAD);
         for second in 1..=60 {
             run(&mut grass, 1.0);
             // Rewriting neighbours costs the first cell no accuracy.
-            grass.flatten(3, 10, 2, [0.5, 0.5]);
+            flatten(&mut grass, 3, [10, 2], [0.5, 0.5]);
             let remaining = (-f64::from(second) / 20.0).exp() as f32;
             let found = grass.lean_rad(3, 9, 2);
             for (axis, first) in [1.1, -0.4].into_iter().enumerate() {
@@ -289,8 +248,8 @@ mod tests {
     #[test]
     fn tiles_end_when_they_are_no_longer_visible() {
         let mut grass = FlattenedGrass::new(LAYOUT, 2.0, 1000);
-        grass.flatten(3, 0, 0, [1.0, 0.0]);
-        grass.flatten(3, 8, 0, [0.1, 0.0]);
+        flatten(&mut grass, 3, [0, 0], [1.0, 0.0]);
+        flatten(&mut grass, 3, [8, 0], [0.1, 0.0]);
         let ends_secs = 2.0 * (0.1 / VISIBLE_RAD).ln();
         run(&mut grass, ends_secs - 0.1);
         assert_eq!(grass.tiles(), 2);
@@ -305,8 +264,8 @@ mod tests {
         let mut grass = FlattenedGrass::new(LAYOUT, 60.0, 50);
         let cameras = [[10.0, 10.0], [150.0, 150.0]].map(|[x, z]| Camera { client: 0, eye_m: [x, 2.0, z] });
         for index in 0..400 {
-            grass.flatten(index, 4, 4, [1.0, 0.0]);
-            grass.flatten(index, 12, 4, [1.0, 0.0]);
+            flatten(&mut grass, index, [4, 4], [1.0, 0.0]);
+            flatten(&mut grass, index, [12, 4], [1.0, 0.0]);
             grass.step(DT_SECS, &cameras);
             assert!(grass.tiles() <= 50);
         }
@@ -319,7 +278,7 @@ mod tests {
     fn a_lean_just_below_a_quantum_is_rounded_down_although_its_quotient_rounds_up() {
         let short = [0.826_745, -0.922_142_3];
         assert_eq!(short.map(|rad: f32| (rad / QUANTUM_RAD).fract()), [0.0; 2]);
-        let kept = FlattenedGrass::new(LAYOUT, 30.0, 1000).flatten(0, 2, 1, short);
+        let kept = flatten(&mut FlattenedGrass::new(LAYOUT, 30.0, 1000), 0, [2, 1], short);
         for (kept, lean) in kept.into_iter().zip(short) {
             assert!(kept.abs() < lean.abs() && (kept - lean).abs() <= QUANTUM_RAD, "{kept} of {lean}");
         }
@@ -329,9 +288,9 @@ mod tests {
         #[test]
         fn any_lean_is_stored_within_a_quantum(x in -1.57f32..1.57, z in -1.57f32..1.57, secs in 0.0f32..40.0) {
             let mut grass = FlattenedGrass::new(LAYOUT, 30.0, 1000);
-            grass.flatten(0, 1, 1, [0.7, 0.7]);
+            flatten(&mut grass, 0, [1, 1], [0.7, 0.7]);
             run(&mut grass, secs);
-            let kept = grass.flatten(0, 2, 1, [x, z]);
+            let kept = flatten(&mut grass, 0, [2, 1], [x, z]);
             prop_assert_eq!(kept, grass.lean_rad(0, 2, 1));
             prop_assert!((kept[0] - x).abs() <= QUANTUM_RAD && (kept[1] - z).abs() <= QUANTUM_RAD);
             prop_assert!(kept[0].abs() <= x.abs() && kept[1].abs() <= z.abs(), "rounded towards zero");

@@ -4,6 +4,7 @@
 //! A step is determined by the state before it, its [causes](Causes) and the [wind](crate::wind::WindField), to the last bit on every machine. So a server and
 //! its clients simulate the same grass when the clients know the causes.
 
+mod audience;
 pub mod bending;
 mod bodies;
 mod camera;
@@ -20,10 +21,12 @@ mod regions;
 mod replica;
 mod simulation;
 mod step_codec;
+pub mod stroke;
 pub mod swept_footprint;
 pub mod vector;
 pub mod wind_drawing;
 
+pub use audience::Audience;
 pub use camera::Camera;
 pub use causes::Causes;
 pub use codes::{BentPatches, PatchCodes, PatchQuantiser};

@@ -2,11 +2,12 @@
 
 use super::bending::{HELD_RAD_PER_S, bend_after_rad, bending_speed_rad_per_s};
 use super::footprint::Footprint;
-use super::grass_state::{GrassState, Pressed};
+use super::stroke::{Pressed, Stroke};
 use super::vector::{length, unit};
 use super::wind_drawing::{WindDrawing, WindDrawings};
 use crate::bend::Bend;
 use crate::body::Motion;
+use crate::grid::PatchLayout;
 use crate::scene::{DrawnWind, Objects, Scene, WindShape};
 use crate::terrain::HeightMap;
 use std::f32::consts::TAU;
@@ -99,15 +100,15 @@ impl PrescribedWind {
         })
     }
 
-    /// Bends the grass of awake patches along the wind.
-    pub fn press(&self, grass: &mut GrassState) {
+    /// The stroke by which it bends grass along the wind.
+    pub fn stroke(&self, layout: &PatchLayout) -> Stroke<'_> {
         let (sin, cos) = libm::sincosf(self.rotation_rad);
-        grass.for_each_cell(&self.footprint(), false, |at_m, bend, limit_rad| {
+        Stroke::new(&self.footprint(), layout, false, move |at_m, cell| {
             let [x, z] = [0, 1].map(|axis| (at_m[axis] - self.center_m[axis]) / self.radius_m);
             let [x, z] = self.pattern.at([cos * x + sin * z, cos * z - sin * x]);
             let wind = [cos * x - sin * z, cos * z + sin * x];
             let (strength, direction) = (self.strength * length(wind), unit(wind)?);
-            let limit = (self.bend_rad * strength).min(limit_rad(direction));
+            let (bend, limit) = (cell.bend(), (self.bend_rad * strength).min(cell.limit_rad(direction)));
             if bend.theta >= limit {
                 return None;
             }
@@ -115,7 +116,7 @@ impl PrescribedWind {
             let theta = limit.min(bend_after_rad(bend.theta, speed, self.strike_height_m, self.secs));
             let held = bending_speed_rad_per_s(speed, theta, self.strike_height_m).max(HELD_RAD_PER_S);
             Some(Pressed { bend: Bend { theta, omega: direction.map(|d| d * held) }, flattened_fraction: 0.0 })
-        });
+        })
     }
 
     /// The square that is pressed.

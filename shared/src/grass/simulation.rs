@@ -173,10 +173,10 @@ impl BendSimulation {
     }
 
     fn advance(&mut self, dt_secs: f32, limits: Limits, wind: &WindField, executor: &impl Executor) {
-        let cell_m = self.field.layout().cell_m;
+        let layout = *self.field.layout();
         let (bodies, height, properties) = (&self.bodies, &*self.height, &self.properties);
         let motions = &self.causes.motions;
-        let contacts: Vec<_> = motions.iter().flat_map(|motion| bodies.contacts(motion, height, properties, cell_m)).collect();
+        let contacts: Vec<_> = motions.iter().flat_map(|motion| bodies.contacts(motion, height, properties, layout.cell_m)).collect();
         let winds = self.winds.step(motions.iter().filter(|motion| bodies.has_downwash(motion.kind)), height, dt_secs);
         if self.scheme == Scheme::Modal {
             // Patches put to rest because of invalid values are woken again.
@@ -187,8 +187,9 @@ impl BendSimulation {
         }
         let (field, flattened) = (&mut self.field, &mut self.flattened);
         let mut grass = GrassState { field, flattened, wind, height: &self.height, properties: &self.properties };
-        contacts.iter().for_each(|contact| contact.press(&mut grass, dt_secs));
-        winds.iter().for_each(|wind| wind.press(&mut grass));
+        let from_objects = contacts.iter().flat_map(|contact| contact.strokes(&layout, dt_secs));
+        let strokes: Vec<_> = from_objects.chain(winds.iter().map(|wind| wind.stroke(&layout))).collect();
+        grass.press(&strokes, executor);
         if let Some(gusts) = &mut self.gusts {
             gusts.push(&mut self.field, &self.causes.gusty, dt_secs);
         }
@@ -207,7 +208,7 @@ impl BendSimulation {
 
     /// Patches that are checked after step `tick` of a world with `tick_hz` steps per second, with their checksums: each patch that is not at rest, once a
     /// second.
-    pub fn checks(&self, tick: u64, tick_hz: f32) -> Vec<PatchCheck> {
+    pub fn checks(&self, tick: u64, tick_hz: f32, executor: &impl Executor) -> Vec<PatchCheck> {
         let ticks_per_round = (tick_hz / CHECK_ROUNDS as f32).round().max(1.0) as u64;
         if !tick.is_multiple_of(ticks_per_round) {
             return vec![];
@@ -217,7 +218,9 @@ impl BendSimulation {
         patches.retain(|patch| u64::from(*patch) % CHECK_ROUNDS == round);
         patches.sort_unstable();
         patches.dedup();
-        patches.into_iter().map(|patch| PatchCheck { patch, sum: self.patch_checksum(patch) }).collect()
+        let mut checks: Vec<_> = patches.into_iter().map(|patch| PatchCheck { patch, sum: 0 }).collect();
+        executor.for_each(checks.iter_mut().collect(), |check: &mut PatchCheck| check.sum = self.patch_checksum(check.patch));
+        checks
     }
 
     /// A copy of the state.

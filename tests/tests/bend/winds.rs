@@ -3,7 +3,7 @@
 use png::{BitDepth, ColorType};
 use prairie::scenes;
 use prairie::world::World;
-use prairie_core::bend::{Bend, Field, Kinds, Patch};
+use prairie_core::bend::{Bend, Field, Kinds, Patch, Serial};
 use prairie_core::grass::flattened::FlattenedGrass;
 use prairie_core::grass::grass_properties::GrassProperties;
 use prairie_core::grass::grass_state::GrassState;
@@ -31,7 +31,7 @@ fn blown(wind: &PrescribedWind) -> Field {
     let properties = GrassProperties::new(&worlds::scene(1), &grass);
     let mut state = GrassState { field: &mut field, flattened: &mut flattened, wind: &ground_wind, height: &flat, properties: &properties };
     for _ in 0..120 {
-        wind.press(&mut state);
+        state.press(&[wind.stroke(&LAYOUT)], &Serial);
     }
     field
 }

@@ -1,6 +1,7 @@
 //! Copies of the state of flattened grass.
 
-use super::{FlattenedGrass, FlattenedPatch, FlattenedTile};
+use super::FlattenedGrass;
+use super::patch::{FlattenedPatch, FlattenedTile};
 use crate::bend::{StateError, TILE};
 use crate::grid::PatchIndex;
 use serde::{Deserialize, Serialize};
@@ -92,7 +93,9 @@ mod tests {
     fn grass() -> FlattenedGrass {
         let mut grass = FlattenedGrass::new(LAYOUT, 20.0, 1000);
         for (patch, cell) in [(3, [9, 2]), (3, [1, 12]), (7, [0, 0])] {
-            grass.flatten(patch, cell[0], cell[1], [0.7, -0.2]);
+            let mut detached = grass.detach(patch);
+            detached.flatten(cell[0], cell[1], [0.7, -0.2]);
+            grass.attach(patch, detached);
         }
         grass.step(1.0 / 60.0, &[]);
         grass
