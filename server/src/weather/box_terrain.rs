@@ -38,6 +38,14 @@ impl BoxTerrain {
         y < self.ground_m[i + self.cells[0] * k]
     }
 
+    /// Signed distance (m, negative inside) of a position (m, in the box) from the ground, as if the ground were even around the point below it.
+    pub(super) fn distance_m(&self, [x, y, z]: [f64; 3], height: &HeightMap) -> f64 {
+        let [x, z] = [x, z].map(|m| m as f32);
+        let above_m = y - f64::from(height.height_m(x, z) - self.floor_m);
+        let steepness = height.slope(x, z).iter().map(|rise| f64::from(*rise) * f64::from(*rise)).sum::<f64>();
+        above_m / (1.0 + steepness).sqrt()
+    }
+
     /// Elevation (m) of height 0 in the box at a position whose ground has elevation `ground_m`.
     pub(super) fn zero_m(&self, ground_m: f32) -> f32 {
         if self.is_solid() { self.floor_m } else { ground_m }

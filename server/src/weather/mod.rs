@@ -4,9 +4,9 @@ mod box_terrain;
 mod canopy_cover;
 mod carrier;
 mod checkpoint;
+mod fixed_solids;
 mod settings;
-mod tree_crowns;
-mod vehicle_jets;
+mod vehicles;
 
 use crate::checksum::Checksum;
 use crate::settings_error::SettingsError;
@@ -15,6 +15,7 @@ use box_terrain::BoxTerrain;
 use canopy_cover::CanopyCover;
 use carrier::Carrier;
 pub use checkpoint::{WeatherRestoreError, WeatherState};
+use fixed_solids::FixedSolids;
 use glam::Vec3;
 use prairie_core::bend::Field;
 use prairie_core::body::Motion;
@@ -22,11 +23,11 @@ use prairie_core::scene::{Scene, WindTiling};
 use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
 use prairie_core::wind::WindField;
 use prairie_core::wire::{Shape, TurbulenceState};
-use prairie_wind::solids::DragBody;
 use prairie_wind::state::MAX_SUBSTEPS;
-use prairie_wind::{Air, Config, ConfigError, Method, SolidError, StepError, StepReport};
+use prairie_wind::{Air, Body, Config, ConfigError, Method, SolidError, StepError, StepReport};
 use settings::settings;
 use std::sync::Arc;
+use vehicles::Vehicles;
 
 /// Minimum duration of a solver step (s). A step is the smallest whole number of ticks that takes at least this long.
 const STEP_SECS: f32 = 0.05;
@@ -49,7 +50,10 @@ pub struct Weather {
     report: StepReport,
     resets: u64,
     terrain: BoxTerrain,
-    crowns: Vec<DragBody>,
+    solids: FixedSolids,
+    vehicles: Vehicles,
+    /// Stones and vehicles that are walls or slow the air, set before each step.
+    bodies: Vec<Body>,
     canopy: Option<CanopyCover>,
     carrier: Carrier,
     turbulence: TurbulenceState,
@@ -113,8 +117,8 @@ impl Weather {
     fn after(scene: &Scene, height: &HeightMap, cover: &CoverMap, steps: usize) -> Result<Self, WeatherError> {
         let (method, config) = settings(scene);
         let terrain = BoxTerrain::new(scene, height);
-        let crowns = tree_crowns::drag_bodies(scene, height, cover, &terrain);
-        let mut air = initial_air(method, &config, &terrain, &crowns)?;
+        let solids = FixedSolids::new(scene, height, cover, &terrain);
+        let mut air = initial_air(method, &config, &terrain, &solids, height)?;
         let (ticks_per_step, step_secs) = step_interval(scene);
         let mut report = StepReport::default();
         for _ in 0..steps {
@@ -136,7 +140,9 @@ impl Weather {
             step_secs,
             report,
             terrain,
-            crowns,
+            vehicles: Vehicles::new(scene),
+            bodies: solids.stones.clone(),
+            solids,
         };
         weather.release(0);
         Ok(weather)
@@ -155,19 +161,17 @@ impl Weather {
         if let (Some(canopy), WindTiling::Box | WindTiling::Follow) = (&mut self.canopy, self.tiling) {
             self.air.set_canopy_fraction(canopy.fractions(grass));
         }
-        let jets: Vec<_> = motions
-            .iter()
-            .filter_map(|motion| {
-                let [x, _, z] = motion.to.position_m;
-                vehicle_jets::jet(motion, self.terrain.zero_m(height.height_m(x, z)))
-            })
-            .collect();
+        let ground_m = |motion: &Motion| self.terrain.zero_m(height.height_m(motion.to.position_m[0], motion.to.position_m[2]));
+        let jets: Vec<_> = motions.iter().filter_map(|motion| self.vehicles.jet(motion, ground_m(motion))).collect();
+        self.bodies.truncate(self.solids.stones.len());
+        self.bodies.extend(motions.iter().filter_map(|motion| self.vehicles.body(motion, ground_m(motion))));
+        self.air.set_bodies(&self.bodies);
         match self.air.step(self.step_secs, &jets) {
             Ok(report) => self.report = report,
             // The state is invalid: the air restarts from the mean wind.
             Err(_) => {
-                self.air =
-                    initial_air(self.method, &self.config, &self.terrain, &self.crowns).expect("the same settings were accepted before");
+                self.air = initial_air(self.method, &self.config, &self.terrain, &self.solids, height)
+                    .expect("the same settings were accepted before");
                 self.resets += 1;
             }
         }
@@ -248,13 +252,17 @@ impl Weather {
     }
 }
 
-/// The solver in its initial state, with the terrain as obstacle where it is solid, and the crowns of trees.
-fn initial_air(method: Method, config: &Config, terrain: &BoxTerrain, crowns: &[DragBody]) -> Result<Air<f32>, WeatherError> {
+/// The solver in its initial state, around all that does not move.
+fn initial_air(
+    method: Method,
+    config: &Config,
+    terrain: &BoxTerrain,
+    solids: &FixedSolids,
+    height: &HeightMap,
+) -> Result<Air<f32>, WeatherError> {
     let mut air = Air::new(method, config)?;
-    if terrain.is_solid() {
-        air.set_solid(|position_m| terrain.contains(position_m, config.spacing_m))?;
-    }
-    air.set_drag(crowns);
+    solids.immerse(&mut air, config, terrain, height)?;
+    air.set_bodies(&solids.stones);
     Ok(air)
 }
 

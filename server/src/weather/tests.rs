@@ -7,6 +7,8 @@ use prairie_core::scene::{Primitive, PrimitiveKind};
 use prairie_core::scene::{VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTime};
 use prairie_core::terrain::grey_png;
 
+mod solids;
+
 fn meadow() -> (Scene, Maps) {
     let loaded = crate::scenes::load("meadow").unwrap();
     let maps = loaded.maps();

@@ -25,8 +25,13 @@ impl Body {
 
     /// Whether the cells of `grid` resolve the body.
     pub fn is_resolved<R: Real>(&self, grid: &Grid<R>) -> bool {
+        self.is_resolved_by(grid.spacing_m.map(R::wide))
+    }
+
+    /// Whether cells with these sides (m) along x, y and z resolve the body.
+    pub fn is_resolved_by(&self, spacing_m: [f64; 3]) -> bool {
         (0..3).all(|axis| {
-            let widest_m = grid.spacing_m.iter().zip(self.axes[axis]).map(|(h, part)| h.wide() * part.abs()).sum::<f64>();
+            let widest_m = spacing_m.iter().zip(self.axes[axis]).map(|(h, part)| h * part.abs()).sum::<f64>();
             2.0 * self.half_extents_m[axis] >= Self::RESOLVED * widest_m
         })
     }

@@ -198,10 +198,10 @@ fn schemes(wind: &Wind, conflicts: &mut Conflicts) {
     if wind.terrain != WindTerrain::Obstacle {
         return;
     }
-    if wind.pressure == WindPressure::Direct {
-        let message = "is \"direct\"; allowed with `terrain = \"obstacle\"`: \"multigrid\", \"conjugate-gradients\", \"sor\", \"gauss-seidel\" or \
-                       \"jacobi\", since transforms know no solid cells";
-        conflicts.note(&["wind.pressure", "wind.terrain"], message.to_owned());
+    if wind.pressure == WindPressure::Direct && wind.time == WindTime::Reflection {
+        let message = "is \"reflection\"; allowed with `terrain = \"obstacle\"` and `pressure = \"direct\"`: \"split\", since the immersed land holds \
+                       the air in every step";
+        conflicts.note(&["wind.time", "wind.pressure", "wind.terrain"], message.to_owned());
     }
     if matches!(wind.diffusion, WindDiffusion::Implicit | WindDiffusion::CrankNicolson) {
         let message = format!(

@@ -26,8 +26,9 @@ pub struct Wind {
     /// patch, with a random offset per patch (Zhang §5.1), a whole number of patches wide; `follow`, a box that follows the objects.
     /// `patch` and `follow` need all four sides to be `wrap`. Default `box`.
     pub tiling: WindTiling,
-    /// How the wind treats the land: `follow`, the floor of the box follows it; `obstacle`, the land is solid cells in a box of
-    /// absolute height, which needs an iterative `pressure`, `explicit` or `gauss-seidel` diffusion, and `tiling = "box"`. Default `follow`.
+    /// How the wind treats the land: `follow`, the floor of the box follows it; `obstacle`, the air of a box of
+    /// absolute height flows round it, which needs `explicit` or `gauss-seidel` diffusion and `tiling = "box"`: with the `direct` pressure solver the land is a wall
+    /// immersed at its slope, with an iterative one it is solid cells. Default `follow`.
     pub terrain: WindTerrain,
     /// Prevailing wind along X and Z at a height of five cells (m/s). Default (4, 2.5), allowed
     /// −40..=40 each and a length of at most 40; 0 across closed faces.
