@@ -24,6 +24,9 @@ pub struct Config {
     pub threads: Option<usize>,
     /// Snapshots per second (Hz). Default 20.
     pub publish_hz: f32,
+    /// Time without a client, a recording or a request for the fields after which a world pauses in which only the wind moves; `None` if it never pauses.
+    /// Default 10 s.
+    pub pause_after: Option<Duration>,
     /// Whether errors that pages report are logged; otherwise they are discarded. Default false.
     pub logs_page_errors: bool,
     /// Where the world is kept between runs; `None` for a world without memory. Default none.
@@ -43,6 +46,7 @@ impl Config {
             rerun: None,
             threads: None,
             publish_hz: 20.0,
+            pause_after: Some(Duration::from_secs(10)),
             logs_page_errors: false,
             world: None,
             limits: Limits::default(),

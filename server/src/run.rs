@@ -4,7 +4,7 @@ use crate::config::{Config, Limits};
 use crate::inspect::{InspectError, Inspector};
 use crate::journal::{self, JournalError};
 use crate::net::{self, Access, Admission, App, FieldSampler, PageErrors, Proofs, SessionLog};
-use crate::runner::{Published, Runner, Simulation, Timing};
+use crate::runner::{Attendance, Published, Runner, Simulation, Timing};
 use crate::stream::{self, Clients, Streamer};
 use prairie_core::grid::PatchLayout;
 use prairie_core::wire;
@@ -70,7 +70,8 @@ pub async fn run_simulation(
     shutdown: impl Future<Output = ()>,
 ) -> Result<(), RunError> {
     let scene = &config.scene.scene;
-    let timing = Timing { tick_hz: scene.tick_hz, publish_hz: config.publish_hz, threads: config.threads };
+    let Config { publish_hz, threads, pause_after, .. } = config;
+    let timing = Timing { tick_hz: scene.tick_hz, publish_hz, threads, pause_after };
     let inspector =
         config.rerun.as_ref().map(|target| Inspector::start(target, scene, &config.scene.height, &config.scene.cover)).transpose()?;
     let (proofs, clients) = (Proofs::new(simulation.key()), Arc::new(Clients::starting_at(simulation.first_client())));
@@ -80,7 +81,9 @@ pub async fn run_simulation(
     let streamer = Streamer::new(PatchLayout::from(&scene.patches), config.limits.send, timing.published_hz())
         .requesting_states_by(runner.state_request());
     let counters = streamer.counters();
-    let mut stream = stream::start(streamer, runner.published(), clients.clone(), runner.commands())?;
+    // A recording shows all patches.
+    let audience = inspector.is_none().then(|| runner.audience());
+    let mut stream = stream::start(streamer, runner.published(), clients.clone(), runner.commands(), runner.attendance(), audience)?;
     let (stop, stopping) = watch::channel(false);
     let Limits { clients: client_limit, pending: pending_limit, .. } = config.limits;
     let (client_slots, pending_slots) = (Arc::new(Semaphore::new(client_limit)), Arc::new(Semaphore::new(pending_limit)));
@@ -90,6 +93,7 @@ pub async fn run_simulation(
         counters,
         published: runner.published(),
         commands: runner.commands(),
+        attendance: runner.attendance(),
         proofs,
         scene_name: config.scene.name.clone(),
         scene: wire::encode(&config.scene.message()).into(),
@@ -105,7 +109,7 @@ pub async fn run_simulation(
         stopping,
         started: Instant::now(),
     });
-    let recording = inspector.map(|inspector| tokio::spawn(record(inspector, runner.published(), clients.clone())));
+    let recording = inspector.map(|inspector| tokio::spawn(record(inspector, runner.published(), clients.clone(), runner.attendance())));
     let world_stopped = async { while published.changed().await.is_ok() {} };
     let outcome = tokio::select! {
         () = net::serve(listener, config.tls.clone(), net::router(app), config.limits, admission) => Ok(()),
@@ -141,10 +145,16 @@ async fn wait_for_sessions(client_slots: &Semaphore, pending_slots: &Semaphore, 
 }
 
 /// Passes every published snapshot and the traffic to the inspector; closes the recording when the runner ends.
-async fn record(inspector: Inspector, mut published: watch::Receiver<Arc<Published>>, clients: Arc<Clients>) -> Result<(), InspectError> {
+async fn record(
+    inspector: Inspector,
+    mut published: watch::Receiver<Arc<Published>>,
+    clients: Arc<Clients>,
+    attendance: Arc<Attendance>,
+) -> Result<(), InspectError> {
     tracing::info!(to = inspector.target(), "recording for the rerun viewer");
     let (mut since, mut sent_before) = (Instant::now(), 0);
     while published.changed().await.is_ok() {
+        attendance.note();
         if since.elapsed() >= Duration::from_secs(1) {
             let sent = clients.sent_bytes();
             let sent_bytes_per_s = (sent - sent_before) as f64 / since.elapsed().as_secs_f64();

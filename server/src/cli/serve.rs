@@ -7,7 +7,7 @@ use super::stop_signal::StopSignal;
 use super::tls::TlsArguments;
 use super::world::WorldArguments;
 use anyhow::Context as _;
-use clap::{Args, ValueHint};
+use clap::{Args, ValueEnum, ValueHint};
 use prairie::inspect::Target;
 use prairie::net::bind;
 use prairie::scenes::SceneError;
@@ -62,6 +62,9 @@ pub(super) struct Serve {
     /// Frames per second sent to clients, 1 to 60
     #[arg(long, env = "PRAIRIE_PUBLISH_HZ", value_name = "HZ", default_value_t = 20, value_parser = whole(1_u16..=60))]
     publish_hz: u16,
+    /// What a world does in which only the wind moves, once nobody has been there for 10 s: stand still and use no processor time, or go on
+    #[arg(long, env = "PRAIRIE_WHEN_EMPTY", value_enum, value_name = "ACT", default_value_t)]
+    when_empty: WhenEmpty,
     /// Data rate limit per client (kbit/s), 64 to 1000000; grass near the camera is sent first
     #[arg(long, env = "PRAIRIE_CLIENT_KBIT", value_name = "KBIT", default_value_t = 2000, value_parser = whole(64_u32..=1_000_000))]
     client_kbit: u32,
@@ -82,6 +85,16 @@ pub(super) struct Serve {
     /// Environment variables from which options have their values.
     #[arg(skip)]
     pub(super) variables: Vec<String>,
+}
+
+/// What an empty world does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum WhenEmpty {
+    /// It pauses until somebody comes.
+    #[default]
+    Pause,
+    /// It runs.
+    Run,
 }
 
 impl Serve {
@@ -141,7 +154,9 @@ impl Serve {
             built = building => built??,
             () = stop.received() => return Ok(()),
         };
+        let usual = Config::new(scene);
         let config = Config {
+            pause_after: usual.pause_after.filter(|_| self.when_empty == WhenEmpty::Pause),
             tls: tls.clone(),
             allow_origins: self.tls.allow_origin,
             allow_hosts: self.tls.allow_host,
@@ -151,7 +166,7 @@ impl Serve {
             logs_page_errors: self.report,
             world: folder,
             limits,
-            ..Config::new(scene)
+            ..usual
         };
         let shutdown = async {
             announce(address, tls.as_ref(), self.open);

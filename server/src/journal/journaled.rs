@@ -156,6 +156,10 @@ impl Simulation for JournaledWorld {
         self.world.is_idle()
     }
 
+    fn is_at_rest(&self) -> bool {
+        self.world.is_at_rest()
+    }
+
     fn tick(&self) -> u64 {
         self.world.tick()
     }

@@ -1,8 +1,7 @@
 //! The fields by HTTP, as JSON: `/api/wind` and `/api/bend`, one place by `GET`, many by `POST`.
 
 use super::app::App;
-use super::field_sampler::{FieldSampler, Place};
-use crate::runner::Published;
+use super::field_sampler::Place;
 use axum::body::{Body, to_bytes};
 use axum::extract::{RawQuery, State};
 use axum::http::{StatusCode, header};
@@ -10,6 +9,8 @@ use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::sync::Arc;
+use std::time::Duration;
+use tokio::time::timeout;
 
 /// Largest number of places in a request.
 const PLACES_LIMIT: usize = 4096;
@@ -20,8 +21,43 @@ const BODY_LIMIT: usize = 96 << 10;
 /// Largest coordinate, either way (m).
 const COORDINATE_LIMIT_M: f32 = 1e6;
 
-/// A way to sample a field at places.
-type Sample = fn(&FieldSampler, &Published, &[Place]) -> Value;
+/// Time in which the bend of all patches must be published after a request for it: two publications at the slowest rate.
+const BEND_TIMEOUT: Duration = Duration::from_secs(3);
+
+/// A field that can be sampled.
+#[derive(Clone, Copy, PartialEq)]
+enum Field {
+    Wind,
+    Bend,
+}
+
+impl Field {
+    fn has_elevation(self) -> bool {
+        self == Self::Wind
+    }
+
+    /// The field at places, in the newest publication that has it everywhere.
+    async fn sample(self, app: &App, places: &[Place]) -> Result<Value, (StatusCode, String)> {
+        match self {
+            Self::Wind => {
+                app.attendance.note();
+                let published = app.published.borrow().clone();
+                Ok(app.fields.wind(&published, places))
+            }
+            Self::Bend => {
+                app.attendance.ask_for_bend();
+                let mut published = app.published.clone();
+                let complete = timeout(BEND_TIMEOUT, published.wait_for(|newest| newest.snapshot.audience.takes_all())).await;
+                let Ok(Ok(newest)) = complete else {
+                    let error = format!("the world has not published its bend within {} s", BEND_TIMEOUT.as_secs());
+                    return Err((StatusCode::SERVICE_UNAVAILABLE, error));
+                };
+                let published = newest.clone();
+                Ok(app.fields.bend(&published, places))
+            }
+        }
+    }
+}
 
 /// Body of a `POST`: places in metres, `[x, y, z]` of the wind and `[x, z]` of the bend.
 #[derive(Deserialize)]
@@ -32,22 +68,22 @@ struct Places {
 
 /// `GET /api/wind?x=&z=&y=`.
 pub(super) async fn wind(State(app): State<Arc<App>>, RawQuery(query): RawQuery) -> Response {
-    answer(one(&app, query, true, FieldSampler::wind))
+    answer(one(&app, query, Field::Wind).await)
 }
 
 /// `GET /api/bend?x=&z=`.
 pub(super) async fn bend(State(app): State<Arc<App>>, RawQuery(query): RawQuery) -> Response {
-    answer(one(&app, query, false, FieldSampler::bend))
+    answer(one(&app, query, Field::Bend).await)
 }
 
 /// `POST /api/wind`.
 pub(super) async fn winds(State(app): State<Arc<App>>, body: Body) -> Response {
-    answer(many(&app, body, true, FieldSampler::wind).await)
+    answer(many(&app, body, Field::Wind).await)
 }
 
 /// `POST /api/bend`.
 pub(super) async fn bends(State(app): State<Arc<App>>, body: Body) -> Response {
-    answer(many(&app, body, false, FieldSampler::bend).await)
+    answer(many(&app, body, Field::Bend).await)
 }
 
 fn answer(outcome: Result<Value, (StatusCode, String)>) -> Response {
@@ -58,10 +94,10 @@ fn answer(outcome: Result<Value, (StatusCode, String)>) -> Response {
     (status, [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")], format!("{body}\n")).into_response()
 }
 
-/// The fields at the place of a query. Lists of one place are replaced by their element.
-fn one(app: &App, query: Option<String>, has_elevation: bool, sample: Sample) -> Result<Value, (StatusCode, String)> {
-    let place = queried(&query.unwrap_or_default(), has_elevation).map_err(|error| (StatusCode::BAD_REQUEST, error))?;
-    let mut value = sample(&app.fields, &app.published.borrow().clone(), &[place]);
+/// The field at the place of a query. Lists of one place are replaced by their element.
+async fn one(app: &App, query: Option<String>, field: Field) -> Result<Value, (StatusCode, String)> {
+    let place = queried(&query.unwrap_or_default(), field.has_elevation()).map_err(|error| (StatusCode::BAD_REQUEST, error))?;
+    let mut value = field.sample(app, &[place]).await?;
     for field in value.as_object_mut().into_iter().flat_map(|fields| fields.values_mut()) {
         if let Some(only) = field.as_array_mut().and_then(Vec::pop) {
             *field = only;
@@ -70,11 +106,11 @@ fn one(app: &App, query: Option<String>, has_elevation: bool, sample: Sample) ->
     Ok(value)
 }
 
-async fn many(app: &App, body: Body, has_elevation: bool, sample: Sample) -> Result<Value, (StatusCode, String)> {
+async fn many(app: &App, body: Body, field: Field) -> Result<Value, (StatusCode, String)> {
     let too_large = |_| (StatusCode::PAYLOAD_TOO_LARGE, format!("the body has more than {BODY_LIMIT} bytes"));
     let body = to_bytes(body, BODY_LIMIT).await.map_err(too_large)?;
-    let places = listed(&body, has_elevation).map_err(|error| (StatusCode::BAD_REQUEST, error))?;
-    Ok(sample(&app.fields, &app.published.borrow().clone(), &places))
+    let places = listed(&body, field.has_elevation()).map_err(|error| (StatusCode::BAD_REQUEST, error))?;
+    field.sample(app, &places).await
 }
 
 /// The place of a query: `x` and `z`, and `y` where there is an elevation.

@@ -9,7 +9,7 @@ use crate::config::Limits;
 use crate::journal::Health;
 use crate::log_limit::LogLimit;
 use crate::metrics::ServerStats;
-use crate::runner::Published;
+use crate::runner::{Attendance, Published};
 use crate::stream::{Clients, Counters};
 use crate::world::Command;
 use bytes::Bytes;
@@ -43,6 +43,7 @@ pub(crate) struct App {
     pub(crate) counters: Arc<Counters>,
     pub(crate) published: watch::Receiver<Arc<Published>>,
     pub(crate) commands: mpsc::Sender<Command>,
+    pub(crate) attendance: Arc<Attendance>,
     pub(crate) proofs: Proofs,
     pub(crate) scene_name: String,
     /// The encoded scene message, the same for all clients.

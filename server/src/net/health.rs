@@ -29,6 +29,7 @@ pub(super) async fn health(State(app): State<Arc<App>>) -> Response {
     let mut report: Map<String, Value> = metrics.map(|(name, value)| (name.to_owned(), json!(value))).collect();
     report.insert("status".to_owned(), if reasons.is_empty() { "ok" } else { "degraded" }.into());
     report.insert("reasons".to_owned(), reasons.into());
+    report.insert("paused".to_owned(), published.is_paused.into());
     report.insert("version".to_owned(), env!("CARGO_PKG_VERSION").into());
     report.insert("scene".to_owned(), app.scene_name.as_str().into());
     report.insert("clients".to_owned(), clients.into());

@@ -128,6 +128,7 @@ async fn serve_client<S: AsyncRead + AsyncWrite + Unpin>(
         return end;
     }
     let (client, mut frames) = app.clients.join(id, name_for(id, &hello.name), app.limits.send.in_flight as usize);
+    app.attendance.note();
     let arrival = if hello.back.is_some() { Command::Return { client: id } } else { Command::Join { client: id } };
     // An error means that the world has stopped, as for all commands here.
     let _ = app.commands.send(arrival).await;

@@ -31,6 +31,11 @@ impl Clock {
         steps
     }
 
+    /// Leaves out all steps that are due: simulated time has stood still, none is dropped.
+    pub(super) fn skip(&mut self, elapsed: Duration) {
+        self.accounted = (elapsed.as_secs_f64() * self.tick_hz) as u64;
+    }
+
     /// Time until `steps` more steps are due.
     pub(super) fn until(&self, steps: u64, elapsed: Duration) -> Duration {
         let next_secs = (self.accounted + steps) as f64 / self.tick_hz;
@@ -60,6 +65,14 @@ mod tests {
         let wait = clock.until(1, Duration::from_secs(10));
         assert!(wait <= Duration::from_secs_f64(1.0 / 60.0) && wait > Duration::from_millis(16));
         assert_eq!(clock.until(3, Duration::from_millis(10_020)), Duration::from_millis(30));
+    }
+
+    #[test]
+    fn time_that_stands_still_is_not_dropped() {
+        let mut clock = Clock::new(60.0);
+        assert_eq!(clock.due(Duration::from_millis(50)), 3);
+        clock.skip(Duration::from_secs(100));
+        assert_eq!((clock.due(Duration::from_millis(100_050)), clock.dropped), (3, 0));
     }
 
     #[test]

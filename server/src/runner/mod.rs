@@ -1,156 +1,30 @@
 //! The simulation thread: owns the world, steps it in real time with the clients' commands, and publishes snapshots. It never waits for a reader.
 
+mod attendance;
 mod clock;
 mod counter_log;
+mod published;
 mod recent_drops;
+mod simulation;
+mod step_loop;
 
+pub use attendance::Attendance;
 pub use clock::CATCH_UP_STEPS;
+pub use published::{Published, Request};
 pub use recent_drops::RECENT;
+pub use simulation::Simulation;
 
-use crate::histogram::Histogram;
-use crate::journal::Health;
-use crate::snapshot::{PatchQuantiser, Snapshot};
-use crate::world::{Command, World};
-use clock::Clock;
-use counter_log::CounterLog;
-use prairie_core::grass::BendState;
-use prairie_core::wire::ObjectId;
-use std::collections::BTreeMap;
+use crate::snapshot::{Audience, PatchQuantiser};
+use crate::world::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use step_loop::Loop;
 use tokio::sync::{mpsc, watch};
 
 /// Capacity of the command queue.
 const COMMAND_CAPACITY: usize = 1024;
-
-/// Longest sleep of an idle world (s).
-const IDLE_SLEEP_SECS: f64 = 0.05;
-
-/// Bounds of the histogram of step durations (s).
-const STEP_BOUNDS_SECS: [f64; 12] = [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064, 0.125, 0.25, 0.5, 1.0];
-
-/// Interface of a simulation to the runner: the world, or a stand-in for tests.
-pub trait Simulation: Send + 'static {
-    /// Advances by one fixed step after carrying out `commands` in order.
-    fn step(&mut self, commands: &[Command]);
-    /// The state after the newest step. `quantiser` is the same at every call.
-    fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot;
-    /// A copy of the state of the grass after the newest step, from which replicas start; `None` if they cannot follow it.
-    fn bend_state(&self) -> Option<BendState> {
-        None
-    }
-    /// The object that a client drives.
-    fn object_of(&self, client: u32) -> Option<ObjectId>;
-    /// Whether nothing but the wind moves. The runner then does all steps up to the next snapshot at once, which wakes the processor less often.
-    fn is_idle(&self) -> bool {
-        false
-    }
-    /// Number of steps before the first one.
-    fn tick(&self) -> u64 {
-        0
-    }
-    /// Key for the proofs of clients, which stays the same over restarts; `None` for one that does not.
-    fn key(&self) -> Option<[u8; 32]> {
-        None
-    }
-    /// Clients that have left and whose vehicles are kept for their return.
-    fn departed(&self) -> Vec<u32> {
-        Vec::new()
-    }
-    /// Lowest client number that was never used.
-    fn first_client(&self) -> u32 {
-        1
-    }
-    /// State of the journal's files, for the metrics; `None` without memory.
-    fn journal_health(&self) -> Option<Arc<Health>> {
-        None
-    }
-}
-
-impl Simulation for World {
-    fn departed(&self) -> Vec<u32> {
-        Self::departed(self)
-    }
-
-    fn tick(&self) -> u64 {
-        Self::tick(self)
-    }
-
-    fn step(&mut self, commands: &[Command]) {
-        Self::step(self, commands);
-    }
-
-    fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot {
-        Self::publish(self, quantiser)
-    }
-
-    fn bend_state(&self) -> Option<BendState> {
-        Self::bend_state(self)
-    }
-
-    fn object_of(&self, client: u32) -> Option<ObjectId> {
-        Self::object_of(self, client)
-    }
-
-    fn is_idle(&self) -> bool {
-        Self::is_idle(self)
-    }
-}
-
-/// The newest state, with information from the runner.
-#[derive(Clone, Debug)]
-pub struct Published {
-    /// The world's state.
-    pub snapshot: Snapshot,
-    /// Outcome of each client's newest request for a vehicle.
-    pub requests: BTreeMap<u32, Request>,
-    /// Clients that have left and whose vehicles are kept for their return.
-    pub departed: Vec<u32>,
-    /// Simulated time that was dropped because the machine is too slow (s).
-    pub dropped_secs: f64,
-    /// The part of it that was dropped within the last minute, [`RECENT`] (s).
-    pub dropped_recently_secs: f64,
-    /// Durations of all steps so far (s), wall-clock time.
-    pub step_secs: Histogram,
-    /// State of the grass, if it was [requested](Runner::state_request).
-    pub bend_state: Option<Arc<BendState>>,
-    /// Time of the publication.
-    pub at: Instant,
-}
-
-impl Published {
-    /// A state without requests and losses, published now.
-    pub fn new(snapshot: Snapshot) -> Self {
-        Self {
-            snapshot,
-            requests: BTreeMap::new(),
-            departed: Vec::new(),
-            dropped_secs: 0.0,
-            dropped_recently_secs: 0.0,
-            step_secs: Histogram::new(&STEP_BOUNDS_SECS),
-            bend_state: None,
-            at: Instant::now(),
-        }
-    }
-}
-
-impl Published {
-    /// Whether a client has a vehicle, connected or not.
-    pub fn has_vehicle(&self, client: u32) -> bool {
-        self.departed.contains(&client) || self.requests.get(&client).is_some_and(|request| request.object.is_some())
-    }
-}
-
-/// A client's request for a vehicle, granted or refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Request {
-    /// Step that decided it.
-    pub tick: u64,
-    /// The object, or `None` when the request was refused.
-    pub object: Option<ObjectId>,
-}
 
 /// Rates and threads of the runner.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -161,6 +35,8 @@ pub struct Timing {
     pub publish_hz: f32,
     /// Threads of the world, including its own; by default one per core.
     pub threads: Option<usize>,
+    /// Time without anybody after which a world [at rest](Simulation::is_at_rest) pauses; `None` if it never does.
+    pub pause_after: Option<Duration>,
 }
 
 impl Timing {
@@ -180,7 +56,9 @@ impl Timing {
 pub struct Runner {
     commands: mpsc::Sender<Command>,
     published: watch::Receiver<Arc<Published>>,
+    audience: watch::Sender<Audience>,
     state_request: Arc<AtomicBool>,
+    attendance: Arc<Attendance>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -202,11 +80,13 @@ impl Runner {
             .build()
             .map_err(std::io::Error::other)?;
         let state_request = Arc::new(AtomicBool::new(false));
-        let (stopped, requested) = (stop.clone(), state_request.clone());
+        let attendance = Arc::<Attendance>::default();
+        let (audience, taken) = watch::channel(Audience::default());
+        let (stopped, requested, attended) = (stop.clone(), state_request.clone(), attendance.clone());
         let thread = std::thread::Builder::new().name("world".to_owned()).spawn(move || {
-            pool.install(|| Loop::new(simulation, quantiser, timing, inbox, sender).run(&stopped, &requested));
+            pool.install(|| Loop::new(simulation, quantiser, timing, inbox, taken, sender).run(&stopped, &requested, &attended));
         })?;
-        Ok(Self { commands, published, state_request, stop, thread: Some(thread) })
+        Ok(Self { commands, published, audience, state_request, attendance, stop, thread: Some(thread) })
     }
 
     /// Queue of commands to the world. It is bounded: use `try_send` for commands that may be lost.
@@ -219,9 +99,19 @@ impl Runner {
         self.published.clone()
     }
 
+    /// The patches that publications contain, all until something else is sent.
+    pub fn audience(&self) -> watch::Sender<Audience> {
+        self.audience.clone()
+    }
+
     /// Request for the state of the grass: while it is true, the next publication carries it, and resets this to false.
     pub fn state_request(&self) -> Arc<AtomicBool> {
         self.state_request.clone()
+    }
+
+    /// Whether anybody needs the world to run, which keeps it from [pausing](Timing::pause_after).
+    pub fn attendance(&self) -> Arc<Attendance> {
+        self.attendance.clone()
     }
 
     /// Stops after the present step and waits for the thread. Returns whether it ended without a panic.
@@ -237,148 +127,13 @@ impl Drop for Runner {
     }
 }
 
-struct Loop<S> {
-    simulation: S,
-    quantiser: PatchQuantiser,
-    inbox: mpsc::Receiver<Command>,
-    sender: watch::Sender<Arc<Published>>,
-    clock: Clock,
-    steps_per_publish: u64,
-    tick: u64,
-    requests: BTreeMap<u32, Request>,
-    step_times: Vec<Duration>,
-    step_secs: Histogram,
-    start: Instant,
-    dropped: CounterLog,
-    evicted: CounterLog,
-    reset: CounterLog,
-}
-
-impl<S: Simulation> Loop<S> {
-    fn new(
-        simulation: S,
-        quantiser: PatchQuantiser,
-        timing: Timing,
-        inbox: mpsc::Receiver<Command>,
-        sender: watch::Sender<Arc<Published>>,
-    ) -> Self {
-        let before = simulation.publish(&mut PatchQuantiser::default()).diagnostics;
-        Self {
-            tick: simulation.tick(),
-            simulation,
-            quantiser,
-            inbox,
-            sender,
-            clock: Clock::new(f64::from(timing.tick_hz)),
-            steps_per_publish: timing.steps_per_publish(),
-            requests: BTreeMap::new(),
-            step_times: Vec::new(),
-            step_secs: Histogram::new(&STEP_BOUNDS_SECS),
-            start: Instant::now(),
-            dropped: CounterLog::default(),
-            evicted: CounterLog::from(before.evicted_patches),
-            reset: CounterLog::from(before.reset_patches),
-        }
-    }
-
-    fn run(mut self, stop: &AtomicBool, state_request: &AtomicBool) {
-        while !stop.load(Relaxed) {
-            for _ in 0..self.clock.due(self.start.elapsed()) {
-                self.step(state_request);
-            }
-            if self.dropped.increase(self.clock.dropped).is_some() {
-                tracing::warn!(dropped_secs = self.clock.dropped_secs(), "the world is slower than real time; simulated time is dropped");
-            }
-            std::thread::sleep(self.clock.until(self.steps_at_once(), self.start.elapsed()));
-        }
-    }
-
-    /// Number of steps to do at once after the next sleep.
-    fn steps_at_once(&self) -> u64 {
-        if !self.simulation.is_idle() {
-            return 1;
-        }
-        let in_a_sleep = (IDLE_SLEEP_SECS * self.clock.tick_hz) as u64;
-        let to_publish = self.steps_per_publish - self.tick % self.steps_per_publish;
-        to_publish.min(in_a_sleep).clamp(1, CATCH_UP_STEPS / 2)
-    }
-
-    /// Steps until the next snapshot, 0 when it is due now.
-    fn steps_to_publish(&self) -> u64 {
-        (self.steps_per_publish - self.tick % self.steps_per_publish) % self.steps_per_publish
-    }
-
-    fn step(&mut self, state_request: &AtomicBool) {
-        let commands: Vec<Command> = std::iter::from_fn(|| self.inbox.try_recv().ok()).collect();
-        let begun = Instant::now();
-        self.simulation.step(&commands);
-        let duration = begun.elapsed();
-        self.step_times.push(duration);
-        self.step_secs.observe(duration.as_secs_f64());
-        self.tick += 1;
-        self.note_requests(&commands);
-        if self.steps_to_publish() == 0 {
-            self.publish(state_request.swap(false, Relaxed));
-        }
-    }
-
-    /// Notes the outcome of requests for vehicles.
-    fn note_requests(&mut self, commands: &[Command]) {
-        for command in commands {
-            match *command {
-                Command::Spawn { client, .. } => {
-                    let object = self.simulation.object_of(client);
-                    self.requests.insert(client, Request { tick: self.tick, object });
-                }
-                Command::Remove { client } | Command::Leave { client } => {
-                    self.requests.remove(&client);
-                }
-                Command::Return { client } => {
-                    let object = self.simulation.object_of(client);
-                    self.requests.extend(object.map(|object| (client, Request { tick: self.tick, object: Some(object) })));
-                }
-                Command::Drive { .. } | Command::Cameras(_) | Command::Join { .. } => {}
-            }
-        }
-    }
-
-    fn publish(&mut self, with_bend_state: bool) {
-        let mut snapshot = self.simulation.publish(&mut self.quantiser);
-        let total: Duration = self.step_times.iter().sum();
-        snapshot.diagnostics.step_secs = total.as_secs_f32() / self.step_times.len() as f32;
-        snapshot.diagnostics.step_max_secs = self.step_times.iter().max().map_or(0.0, Duration::as_secs_f32);
-        self.step_times.clear();
-        let resets = snapshot.diagnostics.wind_resets;
-        if resets > self.sender.borrow().snapshot.diagnostics.wind_resets {
-            tracing::warn!(resets, "the wind solver failed and restarted from the mean wind");
-        }
-        if let Some(patches) = self.evicted.increase(snapshot.diagnostics.evicted_patches) {
-            let awake = snapshot.diagnostics.awake_patches;
-            tracing::warn!(patches, awake, "patches far from all cameras were put to sleep: `patches.awake_limit` is reached");
-        }
-        if let Some(patches) = self.reset.increase(snapshot.diagnostics.reset_patches) {
-            tracing::warn!(patches, "grass moved faster than the scheme can follow, or was NaN or infinite, and was put to rest");
-        }
-        let published = Published {
-            requests: self.requests.clone(),
-            departed: self.simulation.departed(),
-            dropped_secs: self.clock.dropped_secs(),
-            dropped_recently_secs: self.clock.dropped_recently_secs(self.start.elapsed()),
-            step_secs: self.step_secs.clone(),
-            bend_state: with_bend_state.then(|| self.simulation.bend_state()).flatten().map(Arc::new),
-            ..Published::new(snapshot)
-        };
-        self.sender.send_replace(Arc::new(published));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn publish_rates_divide_the_step_rate() {
-        let timing = |tick_hz, publish_hz| Timing { tick_hz, publish_hz, threads: None };
+        let timing = |tick_hz, publish_hz| Timing { tick_hz, publish_hz, threads: None, pause_after: None };
         assert_eq!(timing(60.0, 20.0).steps_per_publish(), 3);
         assert_eq!(timing(60.0, 25.0).published_hz(), 30.0);
         assert_eq!(timing(10.0, 60.0).steps_per_publish(), 1);

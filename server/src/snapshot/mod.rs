@@ -5,7 +5,7 @@
 mod broken_plants;
 
 pub use broken_plants::BrokenPlants;
-pub use prairie_core::grass::{BentPatches, PatchCodes, PatchQuantiser};
+pub use prairie_core::grass::{Audience, BentPatches, PatchCodes, PatchQuantiser};
 
 use prairie_core::grass::StepRecord;
 use prairie_core::wire::{AppliedInput, ObjectPose, TurbulenceState};
@@ -27,8 +27,10 @@ pub struct Snapshot {
     pub object_limit: u32,
     /// The wind.
     pub wind: Arc<WindFrame>,
-    /// The bend field.
+    /// The bend field, where somebody takes it.
     pub patches: Arc<BentPatches>,
+    /// The patches that somebody takes.
+    pub audience: Audience,
     /// Broken plants of the underbrush, oldest first.
     pub broken: BrokenPlants,
     /// The newest steps of the grass, oldest first.

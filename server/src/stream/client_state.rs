@@ -166,7 +166,7 @@ impl ClientState {
         let newer = encoder.wind(snapshot, self.held_wind);
         let wind = newer.filter(|(_, message)| self.budget.try_overdraw(message.len() as f64));
         let (mut messages, mut patches) = (Vec::new(), Vec::new());
-        for &patch in &self.wanted {
+        for &patch in self.wanted.iter().filter(|patch| snapshot.audience.takes(**patch)) {
             let held = self.held.get(&patch).map(|held| held.seq);
             let Some((seq, message)) = encoder.patch(snapshot, patch, held) else { continue };
             if !self.budget.try_overdraw(message.len() as f64) {
@@ -194,6 +194,11 @@ impl ClientState {
     /// Whether the client has a replica of the grass.
     pub fn has_replica(&self) -> bool {
         self.following.has_replica()
+    }
+
+    /// Patches that the client takes, none with a replica.
+    pub fn taken(&self) -> &[PatchIndex] {
+        if self.has_replica() { &[] } else { &self.wanted }
     }
 
     /// Number of patches that the client certainly holds.

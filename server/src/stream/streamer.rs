@@ -6,8 +6,8 @@ use super::encoder::Encoder;
 use super::step_log::StepLog;
 use crate::histogram::Histogram;
 use crate::log_limit::LogLimit;
-use crate::runner::Published;
-use crate::snapshot::Snapshot;
+use crate::runner::{Attendance, Published};
+use crate::snapshot::{Audience, Snapshot};
 use crate::token_bucket::TokenBucket;
 use crate::world::{Camera, Command};
 use bytes::Bytes;
@@ -185,6 +185,11 @@ impl Streamer {
         clients.iter().filter_map(|client| client.camera()).collect()
     }
 
+    /// The patches that any client takes.
+    pub fn audience(&self) -> Audience {
+        Audience::of(self.states.values().flat_map(ClientState::taken).copied(), &self.layout)
+    }
+
     fn remove_departed(&mut self, clients: &[Arc<Client>]) {
         let is_connected = |id: &u32| clients.binary_search_by_key(id, |client| client.id).is_ok();
         self.states.retain(|id, _| is_connected(id));
@@ -248,7 +253,7 @@ impl Stream {
     }
 }
 
-/// Starts the thread. It ends when the world's thread does.
+/// Starts the thread. It ends when the world's thread does. Its clients are the `audience` of the grass, unless somebody else takes all patches.
 ///
 /// # Errors
 /// When the system cannot start a thread.
@@ -257,6 +262,8 @@ pub fn start(
     mut published: watch::Receiver<Arc<Published>>,
     clients: Arc<Clients>,
     commands: mpsc::Sender<Command>,
+    attendance: Arc<Attendance>,
+    audience: Option<watch::Sender<Audience>>,
 ) -> std::io::Result<Stream> {
     let runtime = tokio::runtime::Handle::current();
     let (guard, alive) = oneshot::channel();
@@ -264,7 +271,15 @@ pub fn start(
         let _guard: oneshot::Sender<()> = guard;
         while runtime.block_on(published.changed()).is_ok() {
             let newest = published.borrow_and_update().clone();
-            let cameras = streamer.publish(&newest, &clients.all(), Instant::now());
+            let clients = clients.all();
+            if !clients.is_empty() {
+                attendance.note();
+            }
+            let cameras = streamer.publish(&newest, &clients, Instant::now());
+            if let Some(audience) = &audience {
+                let newest = if attendance.wants_bend() { Audience::default() } else { streamer.audience() };
+                audience.send_if_modified(|audience| std::mem::replace(audience, newest.clone()) != newest);
+            }
             // A full channel means that the world lags; the next publication brings newer cameras.
             let _ = commands.try_send(Command::Cameras(cameras));
         }

@@ -128,7 +128,7 @@ impl World {
             wind_tick: self.weather.frame().tick,
             causes: self.bend.causes().clone(),
             objects: valid.map(|(part, _)| part).collect(),
-            checks: self.bend.checks(self.tick, 1.0 / self.dt_secs),
+            checks: self.bend.checks(self.tick, 1.0 / self.dt_secs, &Pool),
         };
         if self.steps.len() == STEPS_KEPT {
             self.steps.pop_front();
@@ -146,6 +146,7 @@ impl World {
             object_limit: self.objects.limit(),
             wind: Arc::clone(self.weather.frame()),
             patches: quantiser.quantise(self.tick, &self.bend, |patch| self.is_in_sight(patch), &Pool),
+            audience: quantiser.audience().clone(),
             broken: self.plants.broken().clone(),
             steps: self.steps.iter().cloned().collect(),
             diagnostics: self.diagnostics(),
@@ -160,6 +161,11 @@ impl World {
     /// Whether nothing but the wind moves: there are no objects, and all patches sleep.
     pub fn is_idle(&self) -> bool {
         self.objects.is_empty() && self.bend.field().awake_count() == 0
+    }
+
+    /// Whether nothing but the wind would change: it [is idle](Self::is_idle), and no grass lies flattened.
+    pub fn is_at_rest(&self) -> bool {
+        self.is_idle() && self.bend.flattened().tiles() == 0
     }
 
     /// Poses of all objects, ascending by number.

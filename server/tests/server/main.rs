@@ -13,6 +13,7 @@ mod killed;
 mod misbehaving_clients;
 mod monitoring;
 mod page;
+mod pause;
 mod prebuilt_client;
 mod python;
 mod reload;

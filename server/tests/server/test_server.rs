@@ -2,6 +2,7 @@
 
 use crate::stand_in::{StandInWorld, scene};
 use prairie::net::{Tls, TlsSettings, bind};
+use prairie::runner::Simulation;
 use prairie::scenes::LoadedScene;
 use prairie::world::World;
 use prairie::{Config, Limits, RunError, run, run_and_reload, run_simulation, scenes};
@@ -41,8 +42,8 @@ impl Server {
         Self::start_config(StandInWorld::default(), Config { limits, ..Config::new(scene) }, listener)
     }
 
-    /// Serves a stand-in world with any configuration of the scene [`scene`].
-    pub(crate) fn start_config(world: StandInWorld, config: Config, listener: TcpListener) -> Self {
+    /// Serves a world with any configuration.
+    pub(crate) fn start_config(world: impl Simulation, config: Config, listener: TcpListener) -> Self {
         let address = listener.local_addr().unwrap();
         let (stop, stopped) = oneshot::channel();
         let shutdown = async { drop(stopped.await) };

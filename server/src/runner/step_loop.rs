@@ -1,0 +1,207 @@
+//! The loop of the simulation thread: steps in real time, publications, and pauses.
+
+use super::clock::{CATCH_UP_STEPS, Clock};
+use super::counter_log::CounterLog;
+use super::published::step_histogram;
+use super::{Attendance, Published, Request, Simulation, Timing};
+use crate::histogram::Histogram;
+use crate::snapshot::{Audience, PatchQuantiser};
+use crate::world::Command;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+use tokio::sync::{mpsc, watch};
+
+/// Longest sleep of an idle world (s).
+const IDLE_SLEEP_SECS: f64 = 0.05;
+
+/// Longest sleep of a paused world, in which it notices that somebody came.
+const PAUSED_SLEEP: Duration = Duration::from_millis(100);
+
+/// Time between the publications of a paused world, which show that it is not stuck.
+const PAUSED_PUBLISH: Duration = Duration::from_secs(1);
+
+/// The world with its clock and its channels.
+pub(super) struct Loop<S> {
+    simulation: S,
+    quantiser: PatchQuantiser,
+    inbox: mpsc::Receiver<Command>,
+    audience: watch::Receiver<Audience>,
+    /// Commands that came during a pause.
+    waiting: Vec<Command>,
+    sender: watch::Sender<Arc<Published>>,
+    clock: Clock,
+    steps_per_publish: u64,
+    pause_after: Option<Duration>,
+    tick: u64,
+    requests: BTreeMap<u32, Request>,
+    step_times: Vec<Duration>,
+    step_secs: Histogram,
+    start: Instant,
+    dropped: CounterLog,
+    evicted: CounterLog,
+    reset: CounterLog,
+}
+
+impl<S: Simulation> Loop<S> {
+    pub(super) fn new(
+        simulation: S,
+        quantiser: PatchQuantiser,
+        timing: Timing,
+        inbox: mpsc::Receiver<Command>,
+        audience: watch::Receiver<Audience>,
+        sender: watch::Sender<Arc<Published>>,
+    ) -> Self {
+        let before = simulation.publish(&mut PatchQuantiser::default()).diagnostics;
+        Self {
+            tick: simulation.tick(),
+            simulation,
+            quantiser,
+            inbox,
+            audience,
+            waiting: Vec::new(),
+            sender,
+            clock: Clock::new(f64::from(timing.tick_hz)),
+            steps_per_publish: timing.steps_per_publish(),
+            pause_after: timing.pause_after,
+            requests: BTreeMap::new(),
+            step_times: Vec::new(),
+            step_secs: step_histogram(),
+            start: Instant::now(),
+            dropped: CounterLog::default(),
+            evicted: CounterLog::from(before.evicted_patches),
+            reset: CounterLog::from(before.reset_patches),
+        }
+    }
+
+    pub(super) fn run(mut self, stop: &AtomicBool, state_request: &AtomicBool, attendance: &Attendance) {
+        while !stop.load(Relaxed) {
+            if self.is_unattended(attendance) && self.simulation.is_at_rest() {
+                self.pause(stop, attendance);
+            }
+            for _ in 0..self.clock.due(self.start.elapsed()) {
+                self.step(state_request);
+            }
+            if self.dropped.increase(self.clock.dropped).is_some() {
+                tracing::warn!(dropped_secs = self.clock.dropped_secs(), "the world is slower than real time; simulated time is dropped");
+            }
+            std::thread::sleep(self.clock.until(self.steps_at_once(), self.start.elapsed()));
+        }
+    }
+
+    fn is_unattended(&self, attendance: &Attendance) -> bool {
+        self.pause_after.is_some_and(|after| attendance.absent_for() >= after)
+    }
+
+    /// Waits, without a step, until somebody comes. The time of the world stands still.
+    fn pause(&mut self, stop: &AtomicBool, attendance: &Attendance) {
+        tracing::info!(tick = self.tick, "nobody is here and only the wind moves: the world pauses");
+        let mut published_at: Option<Instant> = None;
+        while !stop.load(Relaxed) && self.is_unattended(attendance) && self.waiting.is_empty() {
+            if published_at.is_none_or(|at| at.elapsed() >= PAUSED_PUBLISH) {
+                let state = self.simulation.publish(&mut self.quantiser);
+                self.send(Published { is_paused: true, ..Published::new(state) });
+                published_at = Some(Instant::now());
+            }
+            std::thread::sleep(PAUSED_SLEEP);
+            self.receive();
+        }
+        self.clock.skip(self.start.elapsed());
+        tracing::info!(tick = self.tick, "the world goes on");
+    }
+
+    /// Takes the commands that have come, except for empty lists of cameras.
+    fn receive(&mut self) {
+        while let Ok(command) = self.inbox.try_recv() {
+            if command != Command::Cameras(Vec::new()) {
+                self.waiting.push(command);
+            }
+        }
+    }
+
+    /// Number of steps to do at once after the next sleep.
+    fn steps_at_once(&self) -> u64 {
+        if !self.simulation.is_idle() {
+            return 1;
+        }
+        let in_a_sleep = (IDLE_SLEEP_SECS * self.clock.tick_hz) as u64;
+        let to_publish = self.steps_per_publish - self.tick % self.steps_per_publish;
+        to_publish.min(in_a_sleep).clamp(1, CATCH_UP_STEPS / 2)
+    }
+
+    /// Steps until the next snapshot, 0 when it is due now.
+    fn steps_to_publish(&self) -> u64 {
+        (self.steps_per_publish - self.tick % self.steps_per_publish) % self.steps_per_publish
+    }
+
+    fn step(&mut self, state_request: &AtomicBool) {
+        let mut commands = std::mem::take(&mut self.waiting);
+        commands.extend(std::iter::from_fn(|| self.inbox.try_recv().ok()));
+        let begun = Instant::now();
+        self.simulation.step(&commands);
+        let duration = begun.elapsed();
+        self.step_times.push(duration);
+        self.step_secs.observe(duration.as_secs_f64());
+        self.tick += 1;
+        self.note_requests(&commands);
+        if self.steps_to_publish() == 0 {
+            self.publish(state_request.swap(false, Relaxed));
+        }
+    }
+
+    /// Notes the outcome of requests for vehicles.
+    fn note_requests(&mut self, commands: &[Command]) {
+        for command in commands {
+            match *command {
+                Command::Spawn { client, .. } => {
+                    let object = self.simulation.object_of(client);
+                    self.requests.insert(client, Request { tick: self.tick, object });
+                }
+                Command::Remove { client } | Command::Leave { client } => {
+                    self.requests.remove(&client);
+                }
+                Command::Return { client } => {
+                    let object = self.simulation.object_of(client);
+                    self.requests.extend(object.map(|object| (client, Request { tick: self.tick, object: Some(object) })));
+                }
+                Command::Drive { .. } | Command::Cameras(_) | Command::Join { .. } => {}
+            }
+        }
+    }
+
+    fn publish(&mut self, with_bend_state: bool) {
+        self.quantiser.set_audience(self.audience.borrow().clone());
+        let mut snapshot = self.simulation.publish(&mut self.quantiser);
+        let total: Duration = self.step_times.iter().sum();
+        snapshot.diagnostics.step_secs = total.as_secs_f32() / self.step_times.len() as f32;
+        snapshot.diagnostics.step_max_secs = self.step_times.iter().max().map_or(0.0, Duration::as_secs_f32);
+        self.step_times.clear();
+        let resets = snapshot.diagnostics.wind_resets;
+        if resets > self.sender.borrow().snapshot.diagnostics.wind_resets {
+            tracing::warn!(resets, "the wind solver failed and restarted from the mean wind");
+        }
+        if let Some(patches) = self.evicted.increase(snapshot.diagnostics.evicted_patches) {
+            let awake = snapshot.diagnostics.awake_patches;
+            tracing::warn!(patches, awake, "patches far from all cameras were put to sleep: `patches.awake_limit` is reached");
+        }
+        if let Some(patches) = self.reset.increase(snapshot.diagnostics.reset_patches) {
+            tracing::warn!(patches, "grass moved faster than the scheme can follow, or was NaN or infinite, and was put to rest");
+        }
+        let bend_state = with_bend_state.then(|| self.simulation.bend_state()).flatten().map(Arc::new);
+        self.send(Published { bend_state, ..Published::new(snapshot) });
+    }
+
+    /// Publishes a state, with the information from the runner.
+    fn send(&mut self, state: Published) {
+        let published = Published {
+            requests: self.requests.clone(),
+            departed: self.simulation.departed(),
+            dropped_secs: self.clock.dropped_secs(),
+            dropped_recently_secs: self.clock.dropped_recently_secs(self.start.elapsed()),
+            step_secs: self.step_secs.clone(),
+            ..state
+        };
+        self.sender.send_replace(Arc::new(published));
+    }
+}
