@@ -5,7 +5,7 @@ use crate::inspect::{InspectError, Inspector};
 use crate::journal::{self, JournalError};
 use crate::net::{self, Access, Admission, App, FieldSampler, PageErrors, Proofs, SessionLog};
 use crate::runner::{Attendance, Published, Runner, Simulation, Timing};
-use crate::stream::{self, Clients, Streamer};
+use crate::stream::{self, Clients, Counters, Stream, Streamer};
 use prairie_core::grid::PatchLayout;
 use prairie_core::wire;
 use std::sync::Arc;
@@ -69,21 +69,14 @@ pub async fn run_simulation(
     listener: TcpListener,
     shutdown: impl Future<Output = ()>,
 ) -> Result<(), RunError> {
-    let scene = &config.scene.scene;
-    let Config { publish_hz, threads, pause_after, .. } = config;
-    let timing = Timing { tick_hz: scene.tick_hz, publish_hz, threads, pause_after };
+    let (scene, timing) = (&config.scene.scene, timing(&config));
     let inspector =
         config.rerun.as_ref().map(|target| Inspector::start(target, scene, &config.scene.height, &config.scene.cover)).transpose()?;
     let (proofs, clients) = (Proofs::new(simulation.key()), Arc::new(Clients::starting_at(simulation.first_client())));
     let journal = simulation.journal_health().unwrap_or_default();
     let runner = Runner::start(simulation, timing)?;
     let mut published = runner.published();
-    let streamer = Streamer::new(PatchLayout::from(&scene.patches), config.limits.send, timing.published_hz())
-        .requesting_states_by(runner.state_request());
-    let counters = streamer.counters();
-    // A recording shows all patches.
-    let audience = inspector.is_none().then(|| runner.audience());
-    let mut stream = stream::start(streamer, runner.published(), clients.clone(), runner.commands(), runner.attendance(), audience)?;
+    let (mut stream, counters) = start_stream(&config, &runner, clients.clone())?;
     let (stop, stopping) = watch::channel(false);
     let Limits { clients: client_limit, pending: pending_limit, .. } = config.limits;
     let (client_slots, pending_slots) = (Arc::new(Semaphore::new(client_limit)), Arc::new(Semaphore::new(pending_limit)));
@@ -126,6 +119,22 @@ pub async fn run_simulation(
         Ok((true, false)) => Err(RunError::StreamStopped),
         _ => Err(RunError::WorldStopped),
     }
+}
+
+/// Rates and threads of the runner.
+fn timing(config: &Config) -> Timing {
+    let Config { publish_hz, threads, pause_after, .. } = *config;
+    Timing { tick_hz: config.scene.scene.tick_hz, publish_hz, threads, pause_after }
+}
+
+/// Starts the stream to the clients, which are the only audience of the grass unless there is a recording, which shows all patches.
+fn start_stream(config: &Config, runner: &Runner, clients: Arc<Clients>) -> std::io::Result<(Stream, Arc<Counters>)> {
+    let layout = PatchLayout::from(&config.scene.scene.patches);
+    let streamer = Streamer::new(layout, config.limits.send, timing(config).published_hz()).requesting_states_by(runner.state_request());
+    let counters = streamer.counters();
+    let audience = config.rerun.is_none().then(|| runner.audience());
+    let stream = stream::start(streamer, runner.published(), clients, runner.commands(), runner.attendance(), audience)?;
+    Ok((stream, counters))
 }
 
 /// Waits for a recording to end, if there is one.

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 pub struct Pool;
 
 impl Executor for Pool {
-    fn for_each<T: Send>(&self, tasks: Vec<T>, act: impl Fn(T) + Send + Sync) {
-        tasks.into_par_iter().for_each(act);
+    fn for_each<T: Send>(&self, items: &mut [T], act: impl Fn(&mut T) + Send + Sync) {
+        items.par_iter_mut().for_each(act);
     }
 }

@@ -72,7 +72,7 @@ impl Field {
             rest = others;
             copies.push((patch, parts, own));
         }
-        executor.for_each(copies, |(patch, parts, values)| patch.save(&parts, values));
+        executor.for_each(&mut copies, |(patch, parts, values)| patch.save(parts, values));
     }
 
     /// A copy of the state.

@@ -3,68 +3,122 @@
 use super::halo::{AROUND, Fetch, Neighbour, RestingGhosts, Seams, TileRun, neighbour, ring};
 use super::patch::CHANNELS;
 use super::tiles::TILE;
-use super::{Executor, Field, Patch};
+use super::{Coefficients, Executor, Field, Patch};
+use crate::grid::PatchIndex;
+
+/// The awake neighbours of a patch with their slots, in the order of [`AROUND`].
+type Around = [Option<(usize, Neighbour)>; 8];
+
+/// One plane of all patches: of a channel at a time.
+#[derive(Debug, Default)]
+struct PlaneSet {
+    /// Number of the plane, as in [`Patch::planes`].
+    number: usize,
+    planes: Vec<Vec<f32>>,
+}
+
+/// Ghosts that an exchange changes.
+#[derive(Debug, Default)]
+struct Ghosts {
+    filled: Vec<Fetch>,
+    resting: Vec<RestingGhosts>,
+    /// Runs of tiles in the ring toward one neighbour, and whether they step.
+    runs: Vec<(bool, TileRun)>,
+}
+
+impl Ghosts {
+    /// Empties the lists. There is room for a run of tiles on each side of every patch, so that waves which spread don't enlarge them.
+    fn clear(&mut self, patches: usize, tiles: usize) {
+        self.filled.clear();
+        self.filled.reserve(AROUND.len() * patches);
+        self.resting.clear();
+        self.resting.reserve(AROUND.len() * patches);
+        self.runs.reserve(tiles);
+    }
+}
+
+/// Lists of a step, kept for their memory. Copies start without them.
+#[derive(Debug, Default)]
+pub(super) struct Workspace {
+    reached: Vec<PatchIndex>,
+    around: Vec<Around>,
+    ghosts: Ghosts,
+    planes: [PlaneSet; 2 * CHANNELS],
+    pub(super) coefficients: Vec<Coefficients>,
+}
+
+impl Clone for Workspace {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+/// Fields are equal whatever their workspaces.
+impl PartialEq for Workspace {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
 
 impl Field {
-    /// Applies `act` to every patch with an active tile; returns the sum of its results.
-    pub(super) fn advance(&mut self, executor: &impl Executor, act: impl Fn(&mut Patch) -> u64 + Send + Sync) -> u64 {
-        let mut counts = vec![0; self.patches.len()];
-        let tasks: Vec<_> = self.patches.iter_mut().zip(&mut counts).filter(|(patch, _)| patch.tiles.any_active()).collect();
-        executor.for_each(tasks, |(patch, count)| *count = act(patch));
-        counts.iter().sum()
-    }
-
     /// Prepares up to `substeps` sub-steps: wakes patches that energy reaches, chooses the tiles to step, and fills the ghosts. Returns the number of
     /// patches that stayed asleep because of the limit.
     pub(super) fn exchange(&mut self, substeps: usize, executor: &impl Executor) -> u32 {
+        let mut work = std::mem::take(&mut self.workspace);
         let rest = self.rest;
-        executor.for_each(self.patches.iter_mut().collect(), |patch: &mut Patch| patch.tiles.find_active(rest));
-        let refused = if self.seams == Seams::Exact { self.wake_reached() } else { 0 };
-        let around = self.neighbours();
+        executor.for_each(&mut self.patches, |patch| patch.tiles.find_active(rest));
+        let refused = if self.seams == Seams::Exact { self.wake_reached(&mut work.reached) } else { 0 };
+        self.find_neighbours(&mut work.around);
         if self.seams == Seams::Exact {
-            self.mark_active_neighbours(&around);
+            self.mark_active_neighbours(&work.around);
         }
-        executor.for_each(self.patches.iter_mut().collect(), choose_tiles);
-        let mut ghosts = Ghosts::default();
-        for (own, around) in around.iter().enumerate() {
+        executor.for_each(&mut self.patches, choose_tiles);
+        work.ghosts.clear(self.patches.len(), self.layout.cells as usize / TILE);
+        for (own, around) in work.around.iter().enumerate() {
             for (toward, met) in AROUND.into_iter().zip(*around) {
-                self.exchange_with(own, toward, met, substeps, &mut ghosts);
+                self.exchange_with(own, toward, met, substeps, &mut work.ghosts);
             }
         }
-        self.fill_ghosts(&ghosts, substeps, executor);
+        self.fill_ghosts(&work.ghosts, &mut work.planes, substeps, executor);
+        self.workspace = work;
         refused
     }
 
     /// Fills the ghosts, plane by plane in parallel: the own cells of a plane only supply ghosts of the same plane. With one sub-step the ghosts of the
     /// earlier state aren't needed.
-    fn fill_ghosts(&mut self, ghosts: &Ghosts, substeps: usize, executor: &impl Executor) {
-        let mut planes: [Vec<&mut [f32]>; 2 * CHANNELS] = Default::default();
-        for patch in &mut self.patches {
-            planes.iter_mut().zip(patch.planes_mut(2)).for_each(|(planes, plane)| planes.push(plane));
+    fn fill_ghosts(&mut self, ghosts: &Ghosts, sets: &mut [PlaneSet], substeps: usize, executor: &impl Executor) {
+        for (number, set) in sets.iter_mut().enumerate() {
+            set.number = number;
+            set.planes.extend(self.patches.iter_mut().map(|patch| std::mem::take(patch.plane_mut(number))));
         }
         let filled = if substeps > 1 { 2 * CHANNELS } else { CHANNELS };
-        executor.for_each(planes.iter_mut().enumerate().collect(), |(number, planes)| {
-            if number < filled {
+        executor.for_each(sets, |PlaneSet { number, planes }| {
+            if *number < filled {
                 ghosts.filled.iter().for_each(|fetch| fetch.fill(planes));
             }
             ghosts.resting.iter().for_each(|resting| resting.clear(planes));
         });
+        for (number, set) in sets.iter_mut().enumerate() {
+            self.patches.iter_mut().zip(set.planes.drain(..)).for_each(|(patch, plane)| *patch.plane_mut(number) = plane);
+        }
     }
 
-    /// The awake neighbours of each awake patch, with their slots.
-    fn neighbours(&self) -> Vec<[Option<(usize, Neighbour)>; 8]> {
+    /// Finds the awake neighbours of each awake patch.
+    fn find_neighbours(&self, around: &mut Vec<Around>) {
         let met = |patch: &Patch| {
             AROUND.map(|toward| {
                 let neighbour = neighbour(&self.layout, self.edges, patch.index(), toward)?;
                 Some((self.slot(neighbour.index)?, neighbour))
             })
         };
-        self.patches.iter().map(met).collect()
+        around.clear();
+        around.extend(self.patches.iter().map(met));
     }
 
     /// Wakes the neighbours that active tiles touch, in ascending order, up to the limit.
-    fn wake_reached(&mut self) -> u32 {
-        let mut reached = vec![];
+    fn wake_reached(&mut self, reached: &mut Vec<PatchIndex>) -> u32 {
+        reached.clear();
+        reached.reserve(AROUND.len() * self.patches.len());
         for patch in &self.patches {
             if !patch.tiles.any_active() {
                 continue;
@@ -94,7 +148,7 @@ impl Field {
     }
 
     /// Marks which tiles are active beyond each patch's border.
-    fn mark_active_neighbours(&mut self, around: &[[Option<(usize, Neighbour)>; 8]]) {
+    fn mark_active_neighbours(&mut self, around: &[Around]) {
         for (own, around) in around.iter().enumerate() {
             for (toward, met) in AROUND.into_iter().zip(*around) {
                 let Some((from, neighbour)) = met else { continue };
@@ -119,7 +173,8 @@ impl Field {
                 patches[from].tiles.steps(x, z)
             }
         };
-        let mut runs: Vec<(bool, TileRun)> = vec![];
+        let Ghosts { filled, resting, runs } = ghosts;
+        runs.clear();
         for [x, z] in ring(count as usize, toward) {
             let steps = steps_beyond(&self.patches, [x, z]);
             let stepped = self.patches[own].tiles.steps(x, z);
@@ -133,23 +188,16 @@ impl Field {
                 _ => runs.push((steps, [x..x + 1, z..z + 1])),
             }
         }
-        for (steps, tiles) in runs {
+        for (steps, tiles) in runs.drain(..) {
             match (steps, met, self.seams) {
                 (true, Some((from, neighbour)), Seams::Exact) => {
-                    ghosts.filled.push(Fetch::new(&self.patches[own], [own, from], toward, &tiles, neighbour, rings));
+                    filled.push(Fetch::new(&self.patches[own], [own, from], toward, &tiles, neighbour, rings));
                 }
                 (true, ..) => {}
-                (false, ..) => ghosts.resting.push(RestingGhosts::new(&self.patches[own], own, toward, &tiles)),
+                (false, ..) => resting.push(RestingGhosts::new(&self.patches[own], own, toward, &tiles)),
             }
         }
     }
-}
-
-/// Ghosts that an exchange changes.
-#[derive(Default)]
-struct Ghosts {
-    filled: Vec<Fetch>,
-    resting: Vec<RestingGhosts>,
 }
 
 /// Marks active tiles and their neighbours to step; puts the others to rest.

@@ -2,8 +2,8 @@
 
 /// Runs independent tasks in any order or in parallel. Tasks share no mutable data, so results do not depend on the implementation.
 pub trait Executor {
-    /// Runs every task once.
-    fn for_each<T: Send>(&self, tasks: Vec<T>, act: impl Fn(T) + Send + Sync);
+    /// Runs `act` once for every item.
+    fn for_each<T: Send>(&self, items: &mut [T], act: impl Fn(&mut T) + Send + Sync);
 }
 
 /// Runs all tasks on the calling thread.
@@ -11,7 +11,7 @@ pub trait Executor {
 pub struct Serial;
 
 impl Executor for Serial {
-    fn for_each<T: Send>(&self, tasks: Vec<T>, act: impl Fn(T) + Send + Sync) {
-        tasks.into_iter().for_each(act);
+    fn for_each<T: Send>(&self, items: &mut [T], act: impl Fn(&mut T) + Send + Sync) {
+        items.iter_mut().for_each(act);
     }
 }

@@ -1,5 +1,6 @@
 //! The field: awake patches and their state.
 
+use super::exchange::Workspace;
 use super::halo::{AROUND, Edges, Seams, neighbour, source};
 use super::limits::courant_fraction;
 use super::tiles::{Rest, TILE};
@@ -25,6 +26,7 @@ pub struct Field {
     /// Time between the two states that every patch holds (s); `None` before the first step.
     pub(super) dt_secs: Option<f32>,
     pub(super) revision: Revision,
+    pub(super) workspace: Workspace,
 }
 
 /// Number of completed steps. Fields are equal if their cells are, whatever their history.
@@ -57,6 +59,7 @@ impl Field {
             patches: vec![],
             dt_secs: None,
             revision: Revision::default(),
+            workspace: Workspace::default(),
         }
     }
 

@@ -162,7 +162,7 @@ impl Fetch {
     }
 
     /// Fills the ghosts in one plane, given that plane of all patches.
-    pub(super) fn fill(&self, planes: &mut [&mut [f32]]) {
+    pub(super) fn fill(&self, planes: &mut [Vec<f32>]) {
         for row in 0..self.rows {
             let by = row * self.rows_apart;
             let (source, target) = (if self.goes_down { self.source + by } else { self.source - by }, self.target + by);
@@ -213,7 +213,7 @@ impl RestingGhosts {
     }
 
     /// Puts the ghosts in one plane to rest, given that plane of all patches.
-    pub(super) fn clear(&self, planes: &mut [&mut [f32]]) {
+    pub(super) fn clear(&self, planes: &mut [Vec<f32>]) {
         for row in 0..self.rows {
             planes[self.own][self.first + row * self.rows_apart..][..self.width].fill(0.0);
         }

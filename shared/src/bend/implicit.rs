@@ -59,15 +59,15 @@ pub(super) fn step(field: &mut Field, dt_secs: f32, executor: &impl Executor) ->
     let kinds: Vec<_> = field.kinds.waves().iter().map(|waves| Coefficients::new(waves, field.layout.cell_m, dt_secs)).collect();
     let refused = field.exchange(1, executor);
     let mut works: Vec<Work> = field.patches.iter().map(|_| Work::default()).collect();
-    let tasks: Vec<_> = field.patches.iter_mut().zip(&mut works).collect();
-    executor.for_each(tasks, |(patch, work)| *work = begin(patch, &kinds, ratio));
+    let mut tasks: Vec<_> = field.patches.iter_mut().zip(&mut works).collect();
+    executor.for_each(&mut tasks, |(patch, work)| **work = begin(patch, &kinds, ratio));
     for axis in [0, 1] {
-        let lines = lines(field, &mut works, axis);
-        executor.for_each(lines, |mut line| line.solve(axis));
+        let mut lines = lines(field, &mut works, axis);
+        executor.for_each(&mut lines, |line| line.solve(axis));
     }
     let limit_rad = field.ground_contact.limit_rad();
-    let tasks: Vec<_> = field.patches.iter_mut().zip(&works).collect();
-    executor.for_each(tasks, |(patch, work)| take_on(patch, &work.changes, limit_rad));
+    let mut tasks: Vec<_> = field.patches.iter_mut().zip(&works).collect();
+    executor.for_each(&mut tasks, |(patch, work)| take_on(patch, &work.changes, limit_rad));
     let cells = u64::from(field.layout.cells).pow(2);
     Report { substeps: 1, cell_steps: cells * field.patches.len() as u64, refused, ..Report::default() }
 }

@@ -38,6 +38,8 @@ pub struct Patch {
     pub(super) before: Planes,
     pub(super) tiles: Tiles,
     pub(super) ground: PatchKinds,
+    /// Number of cells stepped in the newest pass.
+    pub(super) cells_stepped: u64,
 }
 
 /// Two patches are equal if their own cells are: ghosts and revisions depend on their history.
@@ -73,6 +75,7 @@ impl Patch {
             before: std::array::from_fn(|_| zeros()),
             tiles: Tiles::new(side, revision),
             ground,
+            cells_stepped: 0,
         }
     }
 
@@ -243,16 +246,17 @@ impl Patch {
         }
     }
 
-    /// Planes of the newest state and, if `states` is 2, of the earlier one.
-    pub(super) fn planes_mut(&mut self, states: usize) -> impl Iterator<Item = &mut [f32]> {
-        self.now.iter_mut().chain(&mut self.before).take(states * CHANNELS).map(Vec::as_mut_slice)
+    /// Plane of a channel by its number: first those of the newest state, then those of the earlier one.
+    pub(super) fn plane_mut(&mut self, number: usize) -> &mut Vec<f32> {
+        let planes = if number < CHANNELS { &mut self.now } else { &mut self.before };
+        &mut planes[number % CHANNELS]
     }
 
     /// Puts `width × depth` cells from `(i, j)` on to rest, ghosts included.
     pub(super) fn put_to_rest(&mut self, [i, j]: [i64; 2], [width, depth]: [usize; 2]) {
         for row in 0..depth as i64 {
             let at = self.at(i, j + row);
-            self.planes_mut(2).for_each(|plane| plane[at..at + width].fill(0.0));
+            self.now.iter_mut().chain(&mut self.before).for_each(|plane| plane[at..at + width].fill(0.0));
         }
     }
 }

@@ -52,7 +52,9 @@ impl Field {
     fn explicit(&mut self, count: u32, damping: Damping, dt_secs: f32, executor: &impl Executor) -> Report {
         let substep_secs = dt_secs / count as f32;
         let coefficients = |waves| Coefficients::new(waves, self.layout.cell_m, substep_secs, damping);
-        let kinds: Vec<_> = self.kinds.waves().iter().map(coefficients).collect();
+        let mut kinds = std::mem::take(&mut self.workspace.coefficients);
+        kinds.clear();
+        kinds.extend(self.kinds.waves().iter().map(coefficients));
         let omega_max = self.omega_max_rad_per_s();
         let mut report = Report {
             substeps: count,
@@ -66,9 +68,11 @@ impl Field {
             report.refused += self.exchange(substeps, executor);
             let rings = (self.seams == Seams::Overlap).then_some(HALO - 1);
             let pass = Pass { kinds: &kinds, substeps, ratio, rings, limit_rad: self.ground_contact.limit_rad() };
-            report.cell_steps += self.advance(executor, |patch| verlet::advance(patch, &pass));
+            executor.for_each(&mut self.patches, |patch| verlet::advance(patch, &pass));
+            report.cell_steps += self.patches.iter().map(|patch| patch.cells_stepped).sum::<u64>();
             (left, ratio) = (left - substeps, 1.0);
         }
+        self.workspace.coefficients = kinds;
         report
     }
 }

@@ -35,14 +35,18 @@ pub(super) struct Pass<'a> {
     pub(super) limit_rad: f32,
 }
 
-/// Advances the active tiles of a patch. Returns the number of cells stepped.
-pub(super) fn advance(patch: &mut Patch, pass: &Pass<'_>) -> u64 {
+/// Advances the active tiles of a patch.
+pub(super) fn advance(patch: &mut Patch, pass: &Pass<'_>) {
+    patch.cells_stepped = 0;
+    if !patch.tiles.any_active() {
+        return;
+    }
     let bands = -1..=patch.tiles.count() as i64;
-    let (mut cells, mut spans) = (0, vec![]);
+    let (mut cells, mut spans) = (0, Spans::default());
     if pass.ratio != 1.0 {
         for band in bands.clone() {
             find_spans(patch, band, [HALO as i64; 2], Join::Ghosts, &mut spans);
-            spans.iter().for_each(|span| retime(patch, band, *span, pass.ratio));
+            spans.as_slice().iter().for_each(|span| retime(patch, band, *span, pass.ratio));
         }
     }
     for substep in 1..=pass.substeps {
@@ -52,11 +56,11 @@ pub(super) fn advance(patch: &mut Patch, pass: &Pass<'_>) -> u64 {
         let is_last = substep == pass.substeps;
         for band in bands.clone() {
             find_spans(patch, band, [columns, rings], if is_last { Join::Own } else { Join::Ghosts }, &mut spans);
-            if spans.is_empty() {
+            if spans.as_slice().is_empty() {
                 continue;
             }
             let mut peaks = is_last.then(Peaks::default);
-            for span in &spans {
+            for span in spans.as_slice() {
                 cells += own_cells(patch, band, *span);
                 advance_span(patch, pass, band, rings, *span, peaks.as_mut());
             }
@@ -66,7 +70,31 @@ pub(super) fn advance(patch: &mut Patch, pass: &Pass<'_>) -> u64 {
         }
         std::mem::swap(&mut patch.now, &mut patch.before);
     }
-    cells
+    patch.cells_stepped = cells;
+}
+
+/// Spans of columns in a band of tiles, ascending; at most every other tile, rings included, begins one.
+#[derive(Default)]
+struct Spans {
+    spans: [[i64; 2]; SIDE_LIMIT / TILE / 2 + 2],
+    count: usize,
+}
+
+impl Spans {
+    fn as_slice(&self) -> &[[i64; 2]] {
+        &self.spans[..self.count]
+    }
+
+    /// Adds a span, which continues the last one if it begins at its end and `joins`.
+    fn add(&mut self, [from, to]: [i64; 2], joins: bool) {
+        match self.spans[..self.count].last_mut() {
+            Some(last) if last[1] == from && joins => last[1] = to,
+            _ => {
+                self.spans[self.count] = [from, to];
+                self.count += 1;
+            }
+        }
+    }
 }
 
 /// Whether cells of the patch and ghosts form one span.
@@ -88,19 +116,17 @@ fn extent(patch: &Patch, tile: i64, rings: i64) -> [i64; 2] {
 }
 
 /// Spans of columns of the stepping tiles in a band of tiles, with `columns` and `rows` of the halo; bands −1 and `count` are in the halo.
-fn find_spans(patch: &Patch, band: i64, [columns, rows]: [i64; 2], join: Join, spans: &mut Vec<[i64; 2]>) {
+fn find_spans(patch: &Patch, band: i64, [columns, rows]: [i64; 2], join: Join, spans: &mut Spans) {
     let count = patch.tiles.count() as i64;
-    spans.clear();
+    spans.count = 0;
     if rows == 0 && !(0..count).contains(&band) {
         return;
     }
     for tile in (-1..=count).filter(|&tile| patch.tiles.steps(tile, band)) {
         let [from, to] = extent(patch, tile, columns);
         let joins = join == Join::Ghosts || (1..count).contains(&tile);
-        match spans.last_mut() {
-            Some(last) if last[1] == from && joins => last[1] = to,
-            _ if from < to => spans.push([from, to]),
-            _ => {}
+        if from < to {
+            spans.add([from, to], joins);
         }
     }
 }
@@ -144,7 +170,10 @@ impl Peaks {
         if !(0..count as i64).contains(&band) {
             return;
         }
-        for tile in (0..count).filter(|&tile| patch.tiles.steps(tile as i64, band)).collect::<Vec<_>>() {
+        for tile in 0..count {
+            if !patch.tiles.steps(tile as i64, band) {
+                continue;
+            }
             let largest = |columns: &[u32]| columns[tile * TILE..][..TILE].iter().copied().max().unwrap_or_default();
             patch.tiles.set_peaks(tile, band as usize, [largest(&self.theta), largest(&self.omega2)]);
         }

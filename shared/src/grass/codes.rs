@@ -72,7 +72,7 @@ impl PatchQuantiser {
         let mut sources = sources(bend, in_sight);
         sources.retain(|patch, _| self.audience.takes(*patch));
         let mut results: Vec<_> = sources.iter().map(|(index, source)| (*index, *source, None)).collect();
-        executor.for_each(results.iter_mut().collect(), |(index, source, result)| {
+        executor.for_each(&mut results, |(index, source, result)| {
             let is_known = self.sources.get(index) == Some(source);
             *result = Some(self.encode(tick, *index, self.encoded.get(index).filter(|_| is_known), bend));
         });

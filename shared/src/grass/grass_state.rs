@@ -103,7 +103,7 @@ impl GrassState<'_> {
                 add(index, None, strokes);
             }
         }
-        executor.for_each(patches.iter_mut().collect(), |patch| patch.press(&surroundings, keeps_overlaps));
+        executor.for_each(&mut patches, |patch| patch.press(&surroundings, keeps_overlaps));
         let mut pressed = vec![];
         for patch in patches {
             self.flattened.attach(patch.index, patch.flattened);

@@ -219,7 +219,7 @@ impl BendSimulation {
         patches.sort_unstable();
         patches.dedup();
         let mut checks: Vec<_> = patches.into_iter().map(|patch| PatchCheck { patch, sum: 0 }).collect();
-        executor.for_each(checks.iter_mut().collect(), |check: &mut PatchCheck| check.sum = self.patch_checksum(check.patch));
+        executor.for_each(&mut checks, |check| check.sum = self.patch_checksum(check.patch));
         checks
     }
 

@@ -7,9 +7,9 @@ use prairie_core::bend::Executor;
 pub struct Threads(pub usize);
 
 impl Executor for Threads {
-    fn for_each<T: Send>(&self, tasks: Vec<T>, act: impl Fn(T) + Send + Sync) {
-        let mut hands: Vec<Vec<T>> = (0..self.0).map(|_| vec![]).collect();
-        tasks.into_iter().enumerate().for_each(|(n, task)| hands[n % self.0].push(task));
+    fn for_each<T: Send>(&self, items: &mut [T], act: impl Fn(&mut T) + Send + Sync) {
+        let mut hands: Vec<Vec<&mut T>> = (0..self.0).map(|_| vec![]).collect();
+        items.iter_mut().enumerate().for_each(|(n, task)| hands[n % self.0].push(task));
         std::thread::scope(|scope| {
             for hand in hands {
                 scope.spawn(|| hand.into_iter().rev().for_each(&act));
