@@ -2,7 +2,7 @@
 
 use prairie_core::plant::blade::backbone::{backbone_m, drawn_out_m, segment_points_m};
 use prairie_core::plant::blade::contact::settle;
-use prairie_core::plant::blade::modes::WIND_SHAPE;
+use prairie_core::plant::blade::deflection::WIND_SHAPE;
 use prairie_core::plant::blade::{LINKS, Leans, Sway};
 use proptest::prelude::*;
 
