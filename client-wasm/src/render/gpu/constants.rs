@@ -12,6 +12,7 @@ pub(crate) use prairie_core::hash::{HASH_INCREMENT, HASH_MULTIPLIER, UNIT_STEPS}
 pub(crate) use prairie_core::light::air::HAZE_FORWARD;
 pub(crate) use prairie_core::light::grass::{LEAF_EXTINCTION, LEAST_SUN_SINE};
 pub(crate) use prairie_core::light::lamp::LEAST_LAMP_DISTANCE_M;
+pub(crate) use prairie_core::plant::blade::backbone::{LACK_RANGE, LARGEST_BULGE, LEAST_GROWTH, RIGHT_ANGLE_LACK, SPARE};
 pub(crate) use prairie_core::plant::blade::contact::CLEARANCE_M;
 pub(crate) use prairie_core::plant::blade::deflection::{DRAG_LEANS, LAID_RAD4, LOST_PER_RAD2, WIND_SHAPE};
 pub(crate) use prairie_core::plant::blade::lean::{ARCTANGENT, COSINE, HANGING_RAD2, SINC};
