@@ -63,17 +63,22 @@ struct Deflection {
     z: vec3<f32>,
 }
 
+// Scalar product, summed in the order of the twin.
+fn weighted(weights: vec3<f32>, values: vec3<f32>) -> f32 {
+    return weights.x * values.x + weights.y * values.y + weights.z * values.z;
+}
+
 // Leans by drag along one axis for small loads.
 fn drag_leans(drag: vec3<f32>) -> vec3<f32> {
-    return vec3<f32>(dot(DRAG_LEANS[0], drag), dot(DRAG_LEANS[1], drag), dot(DRAG_LEANS[2], drag));
+    return vec3<f32>(weighted(DRAG_LEANS[0], drag), weighted(DRAG_LEANS[1], drag), weighted(DRAG_LEANS[2], drag));
 }
 
 // Twin of shared/src/plant/blade/deflection.rs.
 fn deflection(drag_x: vec3<f32>, drag_z: vec3<f32>) -> Deflection {
-    let mean = vec2<f32>(dot(MEAN_LEAN, drag_x), dot(MEAN_LEAN, drag_z));
+    let mean = vec2<f32>(weighted(MEAN_LEAN, drag_x), weighted(MEAN_LEAN, drag_z));
     let rad2 = dot(mean, mean);
     let gained = rad2 * rad2 / (LAID_RAD4 + rad2 * rad2) * mean;
-    let lost = rad2 / (1.0 + LOST_PER_RAD2 * rad2) * vec2<f32>(dot(EXCESS_LEAN, drag_x), dot(EXCESS_LEAN, drag_z));
+    let lost = rad2 / (1.0 + LOST_PER_RAD2 * rad2) * vec2<f32>(weighted(EXCESS_LEAN, drag_x), weighted(EXCESS_LEAN, drag_z));
     return Deflection(
         drag_leans(drag_x) + LAID_LEANS * gained.x - LOST_LEANS * lost.x,
         drag_leans(drag_z) + LAID_LEANS * gained.y - LOST_LEANS * lost.y,
@@ -84,7 +89,7 @@ fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_pe
     var old = sway;
     var held_in = held;
     var winds_in = winds_m_per_s;
-    let link = blade.length_m / 3.0;
+    let link = blade.length_m * (1.0 / 3.0);
     var own = vec2<f32>(0.0);
     var past = vec3<f32>(0.0);
     var drag_x = vec3<f32>(0.0);
@@ -108,9 +113,9 @@ fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_pe
         var amplitudes = AMPLITUDES;
         var brakes = BRAKES;
         let omega = blade.frequency_rad_per_s * frequencies[m];
-        let step = propagator(integrator, omega, blade.damping_ratio * omega + braked * dot(brakes[m], past), dt);
-        let x = vec2<f32>(dot(amplitudes[m], apart_x), dot(amplitudes[m], apart_z));
-        let v = vec2<f32>(dot(amplitudes[m], rate_x), dot(amplitudes[m], rate_z));
+        let step = propagator(integrator, omega, blade.damping_ratio * omega + braked * weighted(brakes[m], past), dt);
+        let x = vec2<f32>(weighted(amplitudes[m], apart_x), weighted(amplitudes[m], apart_z));
+        let v = vec2<f32>(weighted(amplitudes[m], rate_x), weighted(amplitudes[m], rate_z));
         let moved = step.x * x + step.y * v;
         let faster = step.z * x + step.w * v;
         for (var i = 0; i < LINKS; i++) {
@@ -168,7 +173,7 @@ fn points_of(sway: Sway, length_m: f32) -> array<vec3<f32>, 3> {
     var points: array<vec3<f32>, 3>;
     var at = vec3<f32>(0.0);
     for (var i = 0; i < LINKS; i++) {
-        at += direction_of(old.links[i].lean_rad) * (length_m / 3.0);
+        at += (length_m * (1.0 / 3.0)) * direction_of(old.links[i].lean_rad);
         points[i] = at;
     }
     return points;
