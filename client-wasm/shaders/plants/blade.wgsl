@@ -102,8 +102,10 @@ fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_pe
     }
     let braked = 0.5 * blade.length_m * blade.frequency_rad_per_s * blade.frequency_rad_per_s;
     let blown = deflection(drag_x, drag_z);
-    let apart_x = vec3<f32>(old.links[0].lean_rad.x, old.links[1].lean_rad.x, old.links[2].lean_rad.x) - vec3<f32>(held_in[0].x, held_in[1].x, held_in[2].x) - blown.x;
-    let apart_z = vec3<f32>(old.links[0].lean_rad.y, old.links[1].lean_rad.y, old.links[2].lean_rad.y) - vec3<f32>(held_in[0].y, held_in[1].y, held_in[2].y) - blown.z;
+    let apart_x = vec3<f32>(old.links[0].lean_rad.x, old.links[1].lean_rad.x, old.links[2].lean_rad.x)
+        - vec3<f32>(held_in[0].x, held_in[1].x, held_in[2].x) - blown.x;
+    let apart_z = vec3<f32>(old.links[0].lean_rad.y, old.links[1].lean_rad.y, old.links[2].lean_rad.y)
+        - vec3<f32>(held_in[0].y, held_in[1].y, held_in[2].y) - blown.z;
     let rate_x = vec3<f32>(old.links[0].rate_rad_per_s.x, old.links[1].rate_rad_per_s.x, old.links[2].rate_rad_per_s.x);
     let rate_z = vec3<f32>(old.links[0].rate_rad_per_s.y, old.links[1].rate_rad_per_s.y, old.links[2].rate_rad_per_s.y);
     var to = sway;

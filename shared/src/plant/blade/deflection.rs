@@ -6,8 +6,9 @@
 //!
 //! # Large loads
 //! An even wind of u m/s holds the mean lean κu² of the bend field at any speed, with κ the lean per squared wind. So drag counts as the force that
-//! this lean takes: `A·d·f·EI/L²` at a control point with a drag of d rad, where A is its silhouette and f the load at which the elastica with the blade's silhouette
-//! has the mean lean m that linear theory gives the drag, over that of linear theory: 1.15, 1.97 and 3.13 at 0.5, 1 and 1.2 rad.
+//! this lean takes: `A·d·f·EI/L²` at a control point with a drag of d rad, where A is its silhouette. f is the load at which the elastica with the
+//! blade's silhouette has the mean lean m that linear theory gives the drag, over the load of linear theory: 1.15, 1.97 and 3.13 for an m of 0.5, 1
+//! and 1.2 rad.
 //!
 //! Two terms follow the elastica's shape. As a blade lies down, its upper links find no more load across them and its bend moves to the root; and
 //! of an excess of drag on the upper links, less arrives. With both, the tip is within 1 % of the length of the elastica's up to a mean lean of
