@@ -1,8 +1,10 @@
 //! Backbone curve of a blade's control points, and the outline about it.
 
+use prairie_core::hash::hash3;
 use prairie_core::plant::blade::backbone::{backbone_m, drawn_out_m, segment_points_m};
 use prairie_core::plant::blade::contact::settle;
-use prairie_core::plant::blade::modes::WIND_SHAPE;
+use prairie_core::plant::blade::deflection::WIND_SHAPE;
+use prairie_core::plant::blade::lean::direction;
 use prairie_core::plant::blade::{LINKS, Leans, Sway};
 use proptest::prelude::*;
 
@@ -42,12 +44,33 @@ proptest! {
         let points_m = Sway::at_rest(angles.map(lean)).points_m(length_m);
         let drawn_m = drawn_out_m(&points_m, length_m, segments);
         prop_assert!((curve_m(&drawn_m, segments) / length_m - 1.0).abs() < 1e-5);
-        // One factor: shapes stay, lengths change.
-        let factor = drawn_m[0][1] / points_m[0][1];
-        prop_assert!(factor >= 1.0);
-        for (drawn_m, point_m) in drawn_m.into_iter().zip(points_m) {
-            prop_assert!(distance(drawn_m, point_m.map(|v| v * factor)) < 1e-4 * length_m);
+        // All move along the line from the root, the lower two by one factor.
+        let [bulge, factor] = [0, 2].map(|point| distance(drawn_m[point], [0.0; 3]) / distance(points_m[point], [0.0; 3]));
+        prop_assert!(bulge >= factor * (1.0 - 1e-5));
+        for (point, factor) in [bulge, bulge, factor].into_iter().enumerate() {
+            prop_assert!(distance(drawn_m[point], points_m[point].map(|v| v * factor)) < 1e-4 * length_m);
         }
+    }
+
+    #[test]
+    fn the_drawn_tip_of_a_blade_with_a_right_angle_is_where_the_blade_ends(
+        below in (0.0_f32..1.5, 0.0_f32..6.3), around in 0.0_f32..6.3, is_low in any::<bool>(), segments in 3_u32..16,
+    ) {
+        // Straight up to the corner, from there straight at a right angle to that.
+        let (along, north) = (direction(lean([below.0, below.1])), [-below.1.sin(), 0.0, below.1.cos()]);
+        let up: [f32; 3] = [along[1] * north[2] - along[2] * north[1], along[2] * north[0] - along[0] * north[2], along[0] * north[1] - along[1] * north[0]];
+        let across: [f32; 3] = std::array::from_fn(|i| around.cos() * north[i] + around.sin() * up[i]);
+        let links = [along, if is_low { across } else { along }, across];
+        let mut at = [0.0; 3];
+        let points_m = links.map(|link| {
+            at = std::array::from_fn(|i| at[i] + link[i] / 3.0);
+            at
+        });
+        let off_m = distance(drawn_out_m(&points_m, 1.0, segments)[2], points_m[2]);
+        prop_assert!(off_m < 0.02, "{off_m} of the length away");
+        // Without the bulge, by one factor on all points, it is not.
+        let strip_m = curve_m(&points_m, segments);
+        prop_assert!((1.0 / strip_m - 1.0) * distance(points_m[2], [0.0; 3]) > 0.12, "{strip_m}");
     }
 
     #[test]
@@ -104,6 +127,20 @@ proptest! {
         let (tip, [x, _, z]) = (side(SEGMENTS), points_m[LINKS - 1]);
         if x.hypot(z) > 1e-3 {
             prop_assert!((tip[0] * x + tip[2] * z).abs() / x.hypot(z) < 2e-3, "across the lean");
+        }
+    }
+}
+
+#[test]
+fn no_drawn_tip_is_farther_from_the_simulated_one_than_by_one_factor() {
+    let random = |place: [u32; 3]| (hash3(place)[0] >> 8) as f32 / (1 << 24) as f32;
+    for segments in [2, 3, 7] {
+        for number in 0..10_000 {
+            let leans = std::array::from_fn(|link| lean([1.5 * random([number, link as u32, 1]), 6.3 * random([number, link as u32, 2])]));
+            let points_m = Sway::at_rest(leans).points_m(1.0);
+            let off_m = distance(drawn_out_m(&points_m, 1.0, segments)[2], points_m[2]);
+            let by_one_m = (1.0 / curve_m(&points_m, segments) - 1.0) * distance(points_m[2], [0.0; 3]);
+            assert!(off_m <= by_one_m + 1e-5, "{off_m} instead of {by_one_m} with {segments} segments");
         }
     }
 }

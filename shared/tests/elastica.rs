@@ -1,6 +1,5 @@
-//! Blades and components compared with the elastica: a beam of bending stiffness EI whose shape is exact at any bend.
+//! Components of plants compared with the elastica: a beam of bending stiffness EI whose shape is exact at any bend.
 
-use prairie_core::plant::blade::{Blade, Integrator, LINKS, Leans, Sway, advance};
 use prairie_core::plant::underbrush::elastica;
 use prairie_core::plant::underbrush::rest::{Load, balanced, joints};
 use prairie_core::scene::parse_underbrush;
@@ -99,57 +98,5 @@ fn the_worked_edit_of_a_species_gives_what_the_readme_says() {
         let tip_rad = unbent_rad + bends_rad[sections - 1];
         assert!((load - weight).abs() < 0.1 && (tip_rad.to_degrees() - off_upright).abs() < 3.0, "{load}, {tip_rad} rad");
         assert!(distance(at_m, [aside_m, up_m]) < 0.02 && (highest_m - top_m).abs() < 0.02, "{at_m:?}, {highest_m} m");
-    }
-}
-
-/// EI of the blade's chain relative to that of a cantilever of the same first frequency.
-const RIGIDITY: f64 = 1.104_39;
-/// Drag on its control points (in units of EI/L² of the chain) that holds a mean lean of 1.
-const DRAG: [f64; LINKS] = [3.233_53, 2.586_83, 0.970_06];
-
-/// Equilibrium of the tip of a blade of 1 m, X and height, under a force on each control point (over EI/L²), and its mean lean (rad).
-fn held_tip(forces: [f64; LINKS]) -> ([f64; 2], f64) {
-    let blade = Blade { length_m: 1.0, frequency_rad_per_s: 9.74, damping_ratio: 0.3, lean_per_wind2: 0.005 };
-    let square = |link: usize| forces[link] / (RIGIDITY * DRAG[link] * f64::from(blade.lean_per_wind2));
-    let wind: Leans = [0, 1, 2].map(|link| [square(link).sqrt() as f32, 0.0]);
-    let sway = (0..1500).fold(Sway::default(), |sway, _| advance(&sway, &blade, &Leans::default(), &wind, Integrator::Exact, 1.0 / 60.0));
-    let [x, height, _] = sway.points_m(blade.length_m)[LINKS - 1].map(f64::from);
-    ([x, height], sway.lean_rad.iter().map(|lean| f64::from(lean[0])).sum::<f64>() / LINKS as f64)
-}
-
-/// Distribution of loads along a blade: on its control points for a total load of 1, and on a beam.
-const AT_TIP: ([f64; LINKS], Load) = ([0.0, 0.0, 1.0], Load { spread: 0.0, tip: 1.0 });
-const EVENLY: ([f64; LINKS], Load) = ([1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0], Load { spread: 1.0, tip: 0.0 });
-
-/// Tip of a blade and of the elastica under such a load, X and height, and the blade's mean lean (rad).
-fn tips((on_points, on_beam): ([f64; LINKS], Load), load: f64) -> ([f64; 2], [f64; 2], f64) {
-    let [height, back] = elastica::tip(1.0, Load { spread: load * on_beam.spread, tip: load * on_beam.tip }, FRAC_PI_2);
-    let (tip, lean_rad) = held_tip(on_points.map(|fraction| load * fraction));
-    (tip, [-back, height], lean_rad)
-}
-
-#[test]
-fn a_blade_agrees_with_the_elastica_within_its_documented_range() {
-    for (way, [near, far], farthest) in [(AT_TIP, [1.0, 1.5], 3.0), (EVENLY, [2.0, 3.6], 8.0)] {
-        for step in 1..=20 {
-            for (load, bound) in [(near, 0.01), (far, 0.05)] {
-                let (found, exact, lean_rad) = tips(way, load * f64::from(step) / 20.0);
-                let error = distance(found, exact);
-                assert!(error <= bound, "{error} at a mean lean of {lean_rad}");
-            }
-        }
-        let leans = [near, far].map(|load| tips(way, load).2);
-        assert!(leans[0] > 0.25 && leans[1] > 0.45, "{leans:?}");
-        // Beyond that it leans too far.
-        let (found, exact, lean_rad) = tips(way, farthest);
-        assert!(lean_rad > 0.9 && found[0] > exact[0] + 0.1 && distance(found, exact) > 0.2, "{found:?} for {exact:?} at {lean_rad}");
-    }
-}
-
-#[test]
-fn a_blade_is_slightly_stiff_under_a_load_at_its_tip_and_not_under_drag() {
-    for (way, ratio) in [(AT_TIP, 0.956), (EVENLY, 1.006)] {
-        let (found, exact, _) = tips(way, 0.1);
-        assert!((found[0] / exact[0] - ratio).abs() < 0.002, "{found:?} for {exact:?}");
     }
 }

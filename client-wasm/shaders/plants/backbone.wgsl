@@ -1,6 +1,6 @@
 // Backbone of a blade: the Bezier curve of its control points, and its outline. Twin of shared/src/plant/blade/backbone.rs.
 
-import package::constants::TAU;
+import package::constants::{LACK_RANGE, LARGEST_BULGE, LEAST_GROWTH, RIGHT_ANGLE_LACK, SPARE, TAU};
 
 // Greatest angular width of a blade (rad).
 const WIDEST_RAD: f32 = 0.12;
@@ -20,17 +20,41 @@ fn tangent_at(points: array<vec3<f32>, 3>, t: f32) -> vec3<f32> {
     return along / max(length(along), 1e-9);
 }
 
-// Control points scaled about the root so that a strip of `segments` segments is as long as the blade.
-fn drawn_out(points: array<vec3<f32>, 3>, length_m: f32, segments: u32) -> array<vec3<f32>, 3> {
+// Length of a strip whose two lower control points are moved away from the root by a factor (m), and its derivative by that.
+fn strip_of(points: array<vec3<f32>, 3>, bulge: f32, segments: u32) -> vec2<f32> {
     var below = vec3<f32>(0.0);
-    var strip_m = 0.0;
+    var below_lower = vec3<f32>(0.0);
+    var strip = vec2<f32>(0.0);
     for (var segment = 1u; segment <= segments; segment++) {
-        let at = backbone_at(points, f32(segment) / f32(segments));
-        strip_m += distance(at, below);
+        let t = f32(segment) / f32(segments);
+        let s = 1.0 - t;
+        let lower = 3.0 * s * s * t * points[0] + 3.0 * s * t * t * points[1];
+        let at = bulge * lower + t * t * t * points[2];
+        let step_m = distance(at, below);
+        strip += vec2<f32>(step_m, dot(at - below, lower - below_lower) / max(step_m, 1e-9));
         below = at;
+        below_lower = lower;
     }
-    let factor = length_m / strip_m;
-    return array<vec3<f32>, 3>(points[0] * factor, points[1] * factor, points[2] * factor);
+    return strip;
+}
+
+// Control points moved away from the root so that a strip of `segments` segments is as long as the blade: by one factor, and for a sharp bend the
+// two lower ones farther, so that the tip hardly moves.
+fn drawn_out(points: array<vec3<f32>, 3>, length_m: f32, segments: u32) -> array<vec3<f32>, 3> {
+    var strip = strip_of(points, 1.0, segments);
+    let lack = 1.0 - strip.x / length_m;
+    let most = 1.0 + LARGEST_BULGE * (1.0 - abs(lack - RIGHT_ANGLE_LACK) / LACK_RANGE);
+    var bulge = 1.0;
+    if segments > 1u && most > 1.0 {
+        for (var i = 0; i < 3; i++) {
+            let lack_m = (1.0 - SPARE) * length_m - strip.x;
+            bulge = clamp(bulge + lack_m / (max(strip.y, 0.0) + LEAST_GROWTH * length_m), 1.0, most);
+            strip = strip_of(points, bulge, segments);
+        }
+    }
+    let factor = length_m / strip.x;
+    let lower = bulge * factor;
+    return array<vec3<f32>, 3>(points[0] * lower, points[1] * lower, points[2] * factor);
 }
 
 // Side vector of the strip at a fraction of the blade: it turns evenly, through the smaller angle, from its own side at the root to the

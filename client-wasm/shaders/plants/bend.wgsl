@@ -14,7 +14,7 @@ import package::inputs::grass_kinds::{kind_at, kinds};
 import package::inputs::noise::noise;
 import package::inputs::random::random3;
 import package::inputs::shadows::sun_visible;
-import package::inputs::wind::{gust_at, lean_of_wind, resolved_at};
+import package::inputs::wind::{gust_at, lean_of_wind};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::{drift_at, tint_of};
 import package::land_and_sky::ground::{fed, ground_height, ground_normal};
@@ -23,6 +23,7 @@ import package::land_and_sky::sward::{density, bare_between, contrast, sward_col
 import package::plants::backbone::{drawn_out, WIDER};
 import package::plants::blade::{advance, BladeNature, Link, points_of, settle, Sway};
 import package::plants::drawn_blade::Blade;
+import package::plants::force_field::sheltered_at;
 import package::plants::grid_plants::{plants, chunks, LISTED, plant_place, growth};
 import package::plants::sift::{find_ground, sift_far, sift_near};
 
@@ -161,7 +162,7 @@ struct Bending {
 
 fn bending_at(plant: Plant, grid: vec2<i32>, index: u32) -> Bending {
     let p = plant.root_m.xz;
-    return Bending(resolved_at(plant.root_m, 0.0).xz, gust_at(p), random3(grid, index + 47u), bend_at(p, 0.0, 0), field_fraction(p));
+    return Bending(sheltered_at(plant.root_m, 0.0), gust_at(p), random3(grid, index + 47u), bend_at(p, 0.0, 0), field_fraction(p));
 }
 
 // Wind on a plant relative to that around it: neighbours shelter each other by chance.
@@ -195,10 +196,10 @@ fn append(list: u32, blade: Blade) {
     }
 }
 
-// Whether a blade may be in view. Its curve lies in the convex hull of its control points.
+// Whether a blade may be in view. The strip is as long as the links, so that it is at most half that length from the middle between root and tip.
 fn is_blade_seen(root: vec3<f32>, points: array<vec3<f32>, 3>, width: f32) -> bool {
     let centre = 0.5 * points[2];
-    let reach = max(length(centre), max(distance(centre, points[0]), distance(centre, points[1])));
+    let reach = 0.5 * (length(points[0]) + distance(points[0], points[1]) + distance(points[1], points[2]));
     return (plants.culls == 0u) | is_seen(root + centre, 1.1 * reach + 0.5 * WIDER * width);
 }
 
@@ -324,7 +325,7 @@ fn give_of(plant: Plant) -> f32 {
 
 // Wind over the ground at a control point (m/s), limited to the speed beyond which grass bends no farther.
 fn blowing(p: vec3<f32>, above_m: f32, gust: vec2<f32>, exposure: f32) -> vec2<f32> {
-    let wind = (resolved_at(p, max(above_m, 0.0)).xz + gust) * exposure;
+    let wind = (sheltered_at(p, max(above_m, 0.0)) + gust) * exposure;
     return wind * min(1.0, BEND_SATURATES_M_PER_S / max(length(wind), 1e-3));
 }
 

@@ -2,7 +2,8 @@
 // operations.
 
 import package::constants::{
-    AMPLITUDES, ARCTANGENT, BRAKES, CLEARANCE_M, COSINE, EULER, FREQUENCIES, HANGING_RAD2, LINKS, MODES, PUSHES, SINC, VERLET,
+    AMPLITUDES, ARCTANGENT, BRAKES, CLEARANCE_M, COSINE, DRAG_LEANS, EULER, EXCESS_LEAN, FREQUENCIES, HANGING_RAD2, LAID_LEANS, LAID_RAD4, LINKS,
+    LOST_LEANS, LOST_PER_RAD2, MEAN_LEAN, MODES, SINC, VERLET,
 };
 import package::inputs::frame::{frame, runtime_zero};
 
@@ -56,11 +57,39 @@ fn propagator(integrator: u32, omega: f32, gamma: f32, dt: f32) -> vec4<f32> {
     return vec4<f32>(e, p, -omega2 * p, e - gamma2 * p);
 }
 
+// Leans of the links (rad) along X and Z in equilibrium with drag on the control points (rad).
+struct Deflection {
+    x: vec3<f32>,
+    z: vec3<f32>,
+}
+
+// Scalar product, summed in the order of the twin.
+fn weighted(weights: vec3<f32>, values: vec3<f32>) -> f32 {
+    return weights.x * values.x + weights.y * values.y + weights.z * values.z;
+}
+
+// Leans by drag along one axis for small loads.
+fn drag_leans(drag: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(weighted(DRAG_LEANS[0], drag), weighted(DRAG_LEANS[1], drag), weighted(DRAG_LEANS[2], drag));
+}
+
+// Twin of shared/src/plant/blade/deflection.rs.
+fn deflection(drag_x: vec3<f32>, drag_z: vec3<f32>) -> Deflection {
+    let mean = vec2<f32>(weighted(MEAN_LEAN, drag_x), weighted(MEAN_LEAN, drag_z));
+    let rad2 = dot(mean, mean);
+    let gained = rad2 * rad2 / (LAID_RAD4 + rad2 * rad2) * mean;
+    let lost = rad2 / (1.0 + LOST_PER_RAD2 * rad2) * vec2<f32>(weighted(EXCESS_LEAN, drag_x), weighted(EXCESS_LEAN, drag_z));
+    return Deflection(
+        drag_leans(drag_x) + LAID_LEANS * gained.x - LOST_LEANS * lost.x,
+        drag_leans(drag_z) + LAID_LEANS * gained.y - LOST_LEANS * lost.y,
+    );
+}
+
 fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_per_s: array<vec2<f32>, 3>, integrator: u32, dt: f32) -> Sway {
     var old = sway;
     var held_in = held;
     var winds_in = winds_m_per_s;
-    let link = blade.length_m / 3.0;
+    let link = blade.length_m * (1.0 / 3.0);
     var own = vec2<f32>(0.0);
     var past = vec3<f32>(0.0);
     var drag_x = vec3<f32>(0.0);
@@ -72,8 +101,11 @@ fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_pe
         drag_z[j] = winds_in[j].y * past[j];
     }
     let braked = 0.5 * blade.length_m * blade.frequency_rad_per_s * blade.frequency_rad_per_s;
-    let lean_x = vec3<f32>(old.links[0].lean_rad.x, old.links[1].lean_rad.x, old.links[2].lean_rad.x) - vec3<f32>(held_in[0].x, held_in[1].x, held_in[2].x);
-    let lean_z = vec3<f32>(old.links[0].lean_rad.y, old.links[1].lean_rad.y, old.links[2].lean_rad.y) - vec3<f32>(held_in[0].y, held_in[1].y, held_in[2].y);
+    let blown = deflection(drag_x, drag_z);
+    let apart_x = vec3<f32>(old.links[0].lean_rad.x, old.links[1].lean_rad.x, old.links[2].lean_rad.x)
+        - vec3<f32>(held_in[0].x, held_in[1].x, held_in[2].x) - blown.x;
+    let apart_z = vec3<f32>(old.links[0].lean_rad.y, old.links[1].lean_rad.y, old.links[2].lean_rad.y)
+        - vec3<f32>(held_in[0].y, held_in[1].y, held_in[2].y) - blown.z;
     let rate_x = vec3<f32>(old.links[0].rate_rad_per_s.x, old.links[1].rate_rad_per_s.x, old.links[2].rate_rad_per_s.x);
     let rate_z = vec3<f32>(old.links[0].rate_rad_per_s.y, old.links[1].rate_rad_per_s.y, old.links[2].rate_rad_per_s.y);
     var to = sway;
@@ -81,12 +113,11 @@ fn advance(sway: Sway, blade: BladeNature, held: array<vec2<f32>, 3>, winds_m_pe
         var frequencies = FREQUENCIES;
         var modes = MODES;
         var amplitudes = AMPLITUDES;
-        var pushes = PUSHES;
         var brakes = BRAKES;
         let omega = blade.frequency_rad_per_s * frequencies[m];
-        let step = propagator(integrator, omega, blade.damping_ratio * omega + braked * dot(brakes[m], past), dt);
-        let x = vec2<f32>(dot(amplitudes[m], lean_x) - dot(pushes[m], drag_x), dot(amplitudes[m], lean_z) - dot(pushes[m], drag_z));
-        let v = vec2<f32>(dot(amplitudes[m], rate_x), dot(amplitudes[m], rate_z));
+        let step = propagator(integrator, omega, blade.damping_ratio * omega + braked * weighted(brakes[m], past), dt);
+        let x = vec2<f32>(weighted(amplitudes[m], apart_x), weighted(amplitudes[m], apart_z));
+        let v = vec2<f32>(weighted(amplitudes[m], rate_x), weighted(amplitudes[m], rate_z));
         let moved = step.x * x + step.y * v;
         let faster = step.z * x + step.w * v;
         for (var i = 0; i < LINKS; i++) {
@@ -144,7 +175,7 @@ fn points_of(sway: Sway, length_m: f32) -> array<vec3<f32>, 3> {
     var points: array<vec3<f32>, 3>;
     var at = vec3<f32>(0.0);
     for (var i = 0; i < LINKS; i++) {
-        at += direction_of(old.links[i].lean_rad) * (length_m / 3.0);
+        at += (length_m * (1.0 / 3.0)) * direction_of(old.links[i].lean_rad);
         points[i] = at;
     }
     return points;

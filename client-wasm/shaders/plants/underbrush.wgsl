@@ -5,7 +5,7 @@ import package::constants::{
     SPARE_DIVISOR, TAU, UNDERBRUSH_LEVELS, UNDERBRUSH_LISTS, VARIANTS, WORKGROUP_SIZE,
 };
 import package::inputs::bend_atlas::lean_of_field;
-import package::inputs::frame::{clamped, frame, runtime_zero};
+import package::inputs::frame::{frame, runtime_zero};
 import package::inputs::frustum::is_seen;
 import package::inputs::grass_kinds::{kind_at, kinds};
 import package::inputs::random::random3;
@@ -16,6 +16,7 @@ import package::land_and_sky::grass_color::grass_tint;
 import package::land_and_sky::ground::{grass_fraction, ground_height, ground_normal};
 import package::land_and_sky::haze::air_before;
 import package::land_and_sky::sward::{bare_between, sward_color};
+import package::plants::force_field::{forces_at, sheltered};
 import package::plants::ribbons::{fs, ribbons, vs};
 import package::plants::visible_plant::{FREE_BLOCK, lists, VisiblePlant};
 import package::uniforms::UnderbrushFrame;
@@ -62,7 +63,6 @@ struct UnderbrushCounters {
 // Direction in which the plant of each site fell, a byte each.
 @group(1) @binding(7) var<storage, read> broken: array<u32>;
 @group(1) @binding(8) var<storage, read_write> brush_draws: array<u32>;
-@group(1) @binding(9) var forces: texture_3d<f32>;
 // Number of plants that may be in view, and their indices.
 @group(1) @binding(17) var<storage, read_write> sifted: array<atomic<u32>>;
 // Number of their workgroups, for an indirect dispatch.
@@ -77,19 +77,9 @@ const GROUP_BLOCKS: u32 = WORKGROUP_SIZE / BLOCK_ROWS;
 
 // Force on a silhouette (Pa, X and Z) at a height above the root: from the force field, and beyond it from the wind alone.
 fn pressure_at(root: vec3<f32>, above_m: f32) -> vec2<f32> {
-    let at = (root.xz - brush.field_corner_m) / brush.field_extent_m;
-    let inside = 1.0 - smoothstep(0.40, 0.49, max(abs(at.x - 0.5), abs(at.y - 0.5)));
-    // Force of the wind, and of lingering impulses.
-    var force = vec4<f32>(0.0);
-    if inside > 0.0 {
-        force = textureSampleLevel(forces, clamped, vec3<f32>(at, above_m / brush.field_height_m), 0.0) * inside;
-    }
-    if inside < 1.0 {
-        let wind = resolved_at(root, above_m);
-        force += vec4<f32>(wind.xz * (0.5 * AIR_KG_PER_M3 * length(wind) * (1.0 - inside)), 0.0, 0.0);
-    }
+    let force = forces_at(root.xz, above_m);
+    let wind = sheltered(resolved_at(root, above_m).xz, force.xy);
     // With the gust, and shelter among the plants.
-    let wind = force.xy / sqrt(max(0.5 * AIR_KG_PER_M3 * length(force.xy), 1e-12));
     let blown = (wind + gust_at(root.xz)) * near_ground_fraction(above_m);
     return blown * (0.5 * AIR_KG_PER_M3 * length(blown)) + force.zw;
 }

@@ -190,7 +190,7 @@ impl Renderer {
     fn next_stage(&self, mirror: &Mirror) -> Option<NextStage> {
         let (scene, decoded) = (self.scene.as_ref()?, mirror.decoded_scene()?);
         let stage = scene.stage.next(decoded).filter(|_| scene.number == mirror.scene_number())?;
-        let resources = StageResources::new(stage, &scene.factory, self.quality, decoded)?;
+        let resources = StageResources::new(stage, &scene.factory, self.quality, decoded, &scene.force_field)?;
         Some(NextStage { stage, scene_number: scene.number, resources })
     }
 }

@@ -14,6 +14,7 @@ use crate::render::plants::shells::Shells;
 use crate::render::plants::underbrush::Underbrush;
 use crate::render::solids::objects::ObjectPasses;
 use crate::render::solids::shadow_cache::ShadowCache;
+use crate::render::solids::trees_and_stones::placed_models;
 use crate::render::stage::{Stage, StageResources};
 use crate::state::DecodedScene;
 
@@ -33,7 +34,7 @@ pub(super) struct SceneResources {
     pub(super) shells: Option<Shells>,
     pub(super) objects: Option<Box<ObjectPasses>>,
     pub(super) shadow_cache: ShadowCache,
-    pub(super) force_field: Option<Box<CameraForceField>>,
+    pub(super) force_field: Box<CameraForceField>,
     /// `None` also where no underbrush grows, as are rain and dust where there is none.
     pub(super) underbrush: Option<Box<Underbrush>>,
     pub(super) rain: Option<Rain>,
@@ -57,7 +58,7 @@ impl SceneResources {
             shells: None,
             objects: None,
             shadow_cache: ShadowCache::default(),
-            force_field: None,
+            force_field: Box::new(CameraForceField::new(&factory.gpu, decoded, &placed_models(decoded))),
             underbrush: None,
             rain: None,
             dust: None,
@@ -75,7 +76,7 @@ impl SceneResources {
                 // Cascades drawn so far have no casters.
                 self.shadow_cache = ShadowCache::default();
             }
-            StageResources::Underbrush(forces, underbrush) => (self.force_field, self.underbrush) = (Some(forces), underbrush),
+            StageResources::Underbrush(underbrush) => self.underbrush = underbrush,
             StageResources::Weather(rain, dust) => (self.rain, self.dust) = (rain, dust),
         }
     }

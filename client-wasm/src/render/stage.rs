@@ -62,22 +62,24 @@ impl Stage {
 pub(super) enum StageResources {
     Grass(Box<Blades>),
     Solids(Box<ObjectPasses>),
-    Underbrush(Box<CameraForceField>, Option<Box<Underbrush>>),
+    Underbrush(Option<Box<Underbrush>>),
     Weather(Option<Rain>, Option<Dust>),
 }
 
 impl StageResources {
     /// Creates the resources of `stage`; `None` for land, which a scene begins with.
-    pub(super) fn new(stage: Stage, factory: &PassFactory, quality: Quality, decoded: &DecodedScene) -> Option<Self> {
+    pub(super) fn new(
+        stage: Stage,
+        factory: &PassFactory,
+        quality: Quality,
+        decoded: &DecodedScene,
+        forces: &CameraForceField,
+    ) -> Option<Self> {
         Some(match stage {
             Stage::Land => return None,
-            Stage::Grass => Self::Grass(Box::new(Blades::new(factory, quality, decoded))),
+            Stage::Grass => Self::Grass(Box::new(Blades::new(factory, quality, decoded, forces))),
             Stage::Solids => Self::Solids(Box::new(ObjectPasses::new(factory, quality, decoded, placed_models(decoded)))),
-            Stage::Underbrush => {
-                let forces = CameraForceField::new(&factory.gpu, decoded, &placed_models(decoded));
-                let underbrush = Underbrush::new(factory, quality, decoded, &forces);
-                Self::Underbrush(Box::new(forces), underbrush.map(Box::new))
-            }
+            Stage::Underbrush => Self::Underbrush(Underbrush::new(factory, quality, decoded, forces).map(Box::new)),
             Stage::Weather => Self::Weather(Rain::new(factory, quality, decoded), Dust::new(factory, quality, decoded)),
         })
     }

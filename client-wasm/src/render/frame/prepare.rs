@@ -79,8 +79,9 @@ impl Renderer {
         let mut plan = self.plan(scene, decoded, &frame, &cascades, patches_written);
         self.set_blend_order(scene, &mut plan);
         scene.prepare_land(&self.gpu, &viewpoint);
+        scene.prepare_forces(&self.gpu, decoded, &viewpoint, &poses);
         scene.prepare_grass(&self.gpu, decoded, &viewpoint, &frame, &mut plan);
-        scene.prepare_underbrush(&self.gpu, mirror, decoded, &viewpoint, &poses);
+        scene.prepare_underbrush(&self.gpu, mirror, &viewpoint);
         if let Some(objects) = &mut scene.objects {
             objects.prepare(&self.gpu, &poses, &viewpoint, cascades, time_secs as f32, frame.pixel_rad);
         }
@@ -167,10 +168,16 @@ impl SceneResources {
         }
     }
 
-    fn prepare_underbrush(&mut self, gpu: &Gpu, mirror: &Mirror, decoded: &DecodedScene, from: &Viewpoint<'_>, poses: &[ObjectPose]) {
-        let (Some(forces), Some(underbrush)) = (&mut self.force_field, &mut self.underbrush) else { return };
-        forces.update(gpu, decoded, &self.textures.wind, poses, [from.eye_m.x, from.eye_m.z], from.dt_secs);
+    /// Advances the force field if plants feel it.
+    fn prepare_forces(&mut self, gpu: &Gpu, decoded: &DecodedScene, from: &Viewpoint<'_>, poses: &[ObjectPose]) {
+        if self.blades.is_some() || self.underbrush.is_some() {
+            self.force_field.update(gpu, decoded, &self.textures.wind, poses, [from.eye_m.x, from.eye_m.z], from.dt_secs);
+        }
+    }
+
+    fn prepare_underbrush(&mut self, gpu: &Gpu, mirror: &Mirror, from: &Viewpoint<'_>) {
+        let Some(underbrush) = &mut self.underbrush else { return };
         underbrush.show_broken(gpu, mirror.falls(), mirror.broken_count());
-        underbrush.prepare(gpu, forces, from);
+        underbrush.prepare(gpu, from);
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use glam::Vec3;
 use prairie_core::lod;
-use prairie_core::plant::blade::{self, Integrator};
+use prairie_core::plant::blade::{self, Integrator, deflection};
 use prairie_core::plant::underbrush::{drops, posture};
 
 pub(crate) use prairie_core::bend::BEND_SATURATES_M_PER_S;
@@ -12,9 +12,11 @@ pub(crate) use prairie_core::hash::{HASH_INCREMENT, HASH_MULTIPLIER, UNIT_STEPS}
 pub(crate) use prairie_core::light::air::HAZE_FORWARD;
 pub(crate) use prairie_core::light::grass::{LEAF_EXTINCTION, LEAST_SUN_SINE};
 pub(crate) use prairie_core::light::lamp::LEAST_LAMP_DISTANCE_M;
+pub(crate) use prairie_core::plant::blade::backbone::{LACK_RANGE, LARGEST_BULGE, LEAST_GROWTH, RIGHT_ANGLE_LACK, SPARE};
 pub(crate) use prairie_core::plant::blade::contact::CLEARANCE_M;
+pub(crate) use prairie_core::plant::blade::deflection::{DRAG_LEANS, LAID_RAD4, LOST_PER_RAD2, WIND_SHAPE};
 pub(crate) use prairie_core::plant::blade::lean::{ARCTANGENT, COSINE, HANGING_RAD2, SINC};
-pub(crate) use prairie_core::plant::blade::modes::{AMPLITUDES, BRAKES, FREQUENCIES, MODES, PUSHES, WIND_SHAPE};
+pub(crate) use prairie_core::plant::blade::modes::{AMPLITUDES, BRAKES, FREQUENCIES, MODES};
 pub(crate) use prairie_core::plant::force_field::AIR_KG_PER_M3;
 pub(crate) use prairie_core::scene::{GROWTH_BY_COVER, GROWTH_BY_MEADOW, GROWTH_BY_SOIL, GROWTH_BY_TUFT};
 pub(crate) use prairie_core::wind::{FREE_WIND_M, LEAST_WIND_HEIGHT};
@@ -46,6 +48,12 @@ pub(crate) const PASTS: i32 = lod::PASTS as i32;
 
 /// Links of a blade.
 pub(crate) const LINKS: i32 = blade::LINKS as i32;
+/// Leans of a blade's links per unit of drag, as vectors.
+pub(crate) const MEAN_LEAN: Vec3 = Vec3::from_array(deflection::MEAN_LEAN);
+pub(crate) const EXCESS_LEAN: Vec3 = Vec3::from_array(deflection::EXCESS_LEAN);
+/// Changes of the leans of its links as it lies down, as vectors.
+pub(crate) const LAID_LEANS: Vec3 = Vec3::from_array(deflection::LAID_LEANS);
+pub(crate) const LOST_LEANS: Vec3 = Vec3::from_array(deflection::LOST_LEANS);
 /// Codes of the integrators.
 pub(crate) const EULER: u32 = Integrator::Euler as u32;
 pub(crate) const VERLET: u32 = Integrator::Verlet as u32;

@@ -418,6 +418,8 @@ uniform_block! {
 uniform_block! {
     /// Settings of the compute pass of the underbrush.
     UnderbrushFrame {
+        /// Species by index.
+        species: [Nature; SPECIES_LIMIT],
         /// Frame number; counts frames in which time advances.
         frame_number: u32,
         /// 1 to cull plants outside the view.
@@ -429,15 +431,22 @@ uniform_block! {
         step_secs: f32,
         /// Distance at which plants have shrunk to nothing (m).
         reach_m: f32,
-        /// Height of the force field (m).
-        field_height_m: f32,
         /// Factor on the screen heights below which plants are coarser.
         coarseness: f32,
-        /// Corner of the force field and its extent, X and Z (m).
-        field_corner_m: [f32; 2],
-        field_extent_m: [f32; 2],
-        /// Species by index.
-        species: [Nature; SPECIES_LIMIT],
+        _pad: [u8; 4],
+    }
+}
+
+uniform_block! {
+    /// Extent of the force field around the camera.
+    ForceFieldFrame {
+        /// Its corner, X and Z (m).
+        corner_m: [f32; 2],
+        /// Its size along X and Z (m).
+        extent_m: [f32; 2],
+        /// Its height (m).
+        height_m: f32,
+        _pad: [u8; 12],
     }
 }
 

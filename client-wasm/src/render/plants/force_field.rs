@@ -1,15 +1,21 @@
 //! Force field around the camera (Endo et al. 2003, §4.1): a mesh of volumes with the sheltered wind and the impulses of moving objects, which
-//! bend the underbrush.
+//! bend the underbrush; blades of grass feel the sheltered wind.
 
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::f16::half;
+use crate::render::gpu::pipeline::{sampled, uniform};
+use crate::render::gpu::uniforms::ForceFieldFrame;
 use crate::render::inputs::wind_texture::WindTexture;
 use crate::render::plants::obstacles::{StaticObstacles, of_pose};
 use crate::render::solids::trees_and_stones::PlacedModel;
 use crate::state::DecodedScene;
 use prairie_core::plant::force_field::{Ball, Force, ForceField, Lingering, VolumeMesh, dynamic_pressure_pa};
 use prairie_core::wire::ObjectPose;
+use wgpu::BufferUsages;
 
+/// Bindings of the texture and of the uniforms in `force_field.wgsl`.
+const TEXTURE_BINDING: u32 = 26;
+const FRAME_BINDING: u32 = 27;
 /// Volumes of the mesh, and their size (m).
 const COUNT: [usize; 3] = [64, 4, 64];
 const SPACING_M: [f32; 3] = [2.0, 0.75, 2.0];
@@ -26,9 +32,10 @@ const LEAST_M_PER_S: f32 = 0.3;
 pub(crate) struct CameraForceField {
     pub(crate) field: ForceField,
     still: StaticObstacles,
-    /// For each volume the pressure of the sheltered wind, X and Z, and of the impulses, X and Z (Pa).
+    /// For each volume the fractions of the wind's force that arrive along X and Z, and the pressure of the impulses, X and Z (Pa).
     texture: wgpu::Texture,
-    pub(crate) view: wgpu::TextureView,
+    view: wgpu::TextureView,
+    frame: wgpu::Buffer,
     steps: u32,
     due_secs: f32,
 }
@@ -47,25 +54,29 @@ impl CameraForceField {
             view_formats: &[],
         });
         let mesh = VolumeMesh { count: COUNT, spacing_m: SPACING_M, corner: [0; 2] };
-        Self {
+        let frame = gpu.empty_buffer("force field", size_of::<ForceFieldFrame>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+        let own = Self {
             field: ForceField::new(mesh, LINGERING),
             still: StaticObstacles::new(decoded, placed),
             view: texture.create_view(&Default::default()),
             texture,
+            frame,
             steps: 0,
             due_secs: STEP_SECS,
-        }
+        };
+        own.write(gpu);
+        own
     }
 
-    /// Corner of the mesh and its extent along X and Z (m).
-    pub(crate) fn window_m(&self) -> [f32; 4] {
-        let [x, z] = self.field.mesh().corner;
-        [x as f32 * SPACING_M[0], z as f32 * SPACING_M[2], COUNT[0] as f32 * SPACING_M[0], COUNT[2] as f32 * SPACING_M[2]]
+    /// Layout entries of the field in the passes that sample it.
+    pub(crate) fn layout() -> [wgpu::BindGroupLayoutEntry; 2] {
+        let volumes = sampled(TEXTURE_BINDING, wgpu::TextureSampleType::Float { filterable: true }, wgpu::TextureViewDimension::D3);
+        [volumes, uniform(FRAME_BINDING)]
     }
 
-    /// Height of the mesh (m).
-    pub(crate) fn height_m(&self) -> f32 {
-        COUNT[1] as f32 * SPACING_M[1]
+    /// Its resources for these entries.
+    pub(crate) fn resources(&self) -> [(u32, wgpu::BindingResource<'_>); 2] {
+        [(TEXTURE_BINDING, wgpu::BindingResource::TextureView(&self.view)), (FRAME_BINDING, self.frame.as_entire_binding())]
     }
 
     /// Advances the field by the time since the previous frame, and moves it to a position on the ground.
@@ -112,7 +123,15 @@ impl CameraForceField {
     }
 
     fn write(&self, gpu: &Gpu) {
-        let texel = |Force { wind_pa, lasting_pa }| [wind_pa[0], wind_pa[2], lasting_pa[0], lasting_pa[2]].map(half);
+        let [corner_x, corner_z] = self.field.mesh().corner;
+        let frame = ForceFieldFrame {
+            corner_m: [corner_x as f32 * SPACING_M[0], corner_z as f32 * SPACING_M[2]],
+            extent_m: [COUNT[0] as f32 * SPACING_M[0], COUNT[2] as f32 * SPACING_M[2]],
+            height_m: COUNT[1] as f32 * SPACING_M[1],
+            _pad: [0; 12],
+        };
+        gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
+        let texel = |Force { arriving, lasting_pa, .. }: Force| [arriving[0], arriving[2], lasting_pa[0], lasting_pa[2]].map(half);
         let texels: Vec<[u16; 4]> = self.field.forces().map(texel).collect();
         let [width, layers, rows] = COUNT.map(|n| n as u32);
         gpu.queue.write_texture(

@@ -70,7 +70,7 @@ fn blades_move_as_their_cpu_twins() {
     let cases: Vec<_> = (0..600).map(blade_case).collect();
     let source = linked("plants/blade", SOURCE);
     let outputs = compute(&gpu, &picture, &source, &[], cases.as_flattened(), cases.len() as u32);
-    let mut touching = 0;
+    let (mut touching, mut grazing) = (0, 0);
     for (case, found) in cases.into_iter().zip(outputs.chunks_exact(9)) {
         let [l0, l1, l2, a0, a1, a2, [length_m, frequency_rad_per_s, damping_ratio, lean_per_wind2], root, [x, y, z, way]] = case;
         let (links, acts) = ([l0, l1, l2], [a0, a1, a2]);
@@ -79,19 +79,31 @@ fn blades_move_as_their_cpu_twins() {
         let about =
             spheres.iter().map(|s| Sphere { centre_m: std::array::from_fn(|i| s[i] - root[i]), radius_m: s[3] }).collect::<Vec<_>>();
         let pair = |part: [[f32; 4]; LINKS], first: usize| part.map(|link| [link[first], link[first + 1]]);
-        let mut sway = Sway { lean_rad: pair(links, 0), rate_rad_per_s: pair(links, 2) };
-        for _ in 0..5 {
-            sway = advance(&sway, &blade, &pair(acts, 0), &pair(acts, 2), integrator, root[3]);
-            let free = sway;
-            sway = settle(&sway, length_m, [x, y, z], &about);
-            touching += u32::from(free != sway);
-        }
-        let twin = Sway::at_rest(pair([found[0], found[1], found[2]], 0));
-        for (wanted, found) in sway.points_m(length_m).into_iter().zip(twin.points_m(length_m)) {
-            let apart_m = Vec3::from(wanted).distance(Vec3::from(found));
-            assert!(apart_m < 1e-4 * length_m, "{} of the length apart: {sway:?} and {twin:?}", apart_m / length_m);
+        let mut stepped = |changed_rad: f32| {
+            let mut sway = Sway { lean_rad: pair(links, 0), rate_rad_per_s: pair(links, 2) };
+            sway.lean_rad[0][0] += changed_rad;
+            for _ in 0..5 {
+                sway = advance(&sway, &blade, &pair(acts, 0), &pair(acts, 2), integrator, root[3]);
+                let free = sway;
+                sway = settle(&sway, length_m, [x, y, z], &about);
+                touching += u32::from(free != sway);
+            }
+            sway
+        };
+        let apart = |a: &Sway, b: &Sway| {
+            let pairs = a.points_m(length_m).into_iter().zip(b.points_m(length_m));
+            pairs.map(|(a, b)| Vec3::from(a).distance(Vec3::from(b)) / length_m).fold(0.0, f32::max)
+        };
+        let (sway, twin) = (stepped(0.0), Sway::at_rest(pair([found[0], found[1], found[2]], 0)));
+        let off = apart(&sway, &twin);
+        if off >= 1e-4 {
+            // A link that grazes a sphere meets it or not by the last bits: then the blade is the twin of one that starts as close as that.
+            let meets = [1e-6, -1e-6].iter().any(|&changed_rad| apart(&stepped(changed_rad), &twin) < 1e-4);
+            assert!(meets, "{off} of the length apart: {sway:?} and {twin:?}");
+            grazing += 1;
         }
     }
+    assert!(grazing < 4, "{grazing} blades graze a sphere");
     assert!(touching > 300, "only {touching} contacts were compared");
 }
 

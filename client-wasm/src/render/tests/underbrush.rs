@@ -4,7 +4,7 @@ use super::*;
 use crate::render::plants::obstacles::{StaticObstacles, of_pose};
 use crate::render::plants::underbrush;
 use crate::render::solids::trees_and_stones;
-use prairie_core::plant::force_field::VolumeMesh;
+use prairie_core::plant::force_field::{VolumeMesh, sheltered};
 use prairie_core::scene::{Component, ComponentKind, Underbrush};
 use prairie_core::wire::ObjectPose;
 use std::collections::HashMap;
@@ -137,6 +137,68 @@ fn plants_behind_a_boulder_are_sheltered_from_the_wind() {
     );
 }
 
+/// Lean of the tip of each drawn blade along the wind, by its root, after a second and a half below a camera.
+fn leaning(gpu: &Gpu, mirror: &mut Mirror) -> HashMap<[u32; 2], ([f32; 2], f32)> {
+    let mut picture = OffscreenRenderer::new(gpu, [400; 2], Quality::Low);
+    let camera = Camera { eye_m: Vec3::new(32.0, 8.0, 32.0), pitch_rad: -1.57, fov_rad: 1.9, ..Camera::default() };
+    (0..15).for_each(|_| {
+        picture.draw(mirror, &camera, 0.0, 0.1);
+    });
+    let blades = picture.renderer.scene.as_ref().and_then(|scene| scene.blades.as_ref()).expect("grass");
+    let counters: Vec<u32> = bytemuck::pod_collect_to_vec(&read(gpu, &blades.listed.counters));
+    let rows: Vec<[f32; 28]> = bytemuck::pod_collect_to_vec(&read(gpu, &blades.listed.blades));
+    // Root, and tip relative to it, of the fine and the coarse blades.
+    let [fine, coarse] = [rows.iter().take(counters[0] as usize), rows[blades.capacities[0] as usize..].iter().take(counters[1] as usize)];
+    let lean = |row: &[f32; 28]| ([row[0].to_bits(), row[2].to_bits()], ([row[0], row[2]], row[12].atan2(row[13])));
+    fine.chain(coarse).map(lean).collect()
+}
+
+#[test]
+fn grass_behind_a_boulder_leans_less_than_beside_it() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let run = |is_stony: bool| {
+        let mut covering = [255; 16 * 16];
+        if is_stony {
+            covering[7 + 16 * 7] = 254;
+        }
+        let mut mirror = meadow_of(|scene| (scene.wind.mean_m_per_s, scene.plants.stone_m) = ([8.0, 0.0], 6.0), &covering);
+        let stone = trees_and_stones::placed_models(mirror.decoded_scene().expect("a scene")).first().map(|stone| stone.position_m);
+        (leaning(&gpu, &mut mirror), stone)
+    };
+    let ((open, _), (stony, stone)) = (run(false), run(true));
+    let at_m = stone.expect("a boulder");
+    let fraction = |is_there: fn(f32, f32) -> bool| {
+        let both = stony.iter().filter_map(|(root, ([x, z], lean))| is_there(x - at_m.x, z - at_m.z).then_some((lean, open.get(root)?.1)));
+        let (found, open, count) = both.fold((0.0, 0.0, 0), |sum, (found, open)| (sum.0 + found, sum.1 + open, sum.2 + 1));
+        assert!(count > 30, "{count} blades");
+        found / open
+    };
+    let behind = fraction(|x, z| (3.5..6.0).contains(&x) && z.abs() < 1.0);
+    let beside = fraction(|x, z| x.abs() < 4.0 && (6.0..12.0).contains(&z.abs()));
+    println!("{behind} behind, {beside} beside");
+    assert!(behind < 0.7 && (0.95..1.05).contains(&beside), "of the lean in the open {behind} behind a boulder, {beside} beside it");
+}
+
+#[test]
+fn what_arrives_of_the_wind_is_that_of_the_cpu_twin() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
+    picture.draw(&mut meadow_of(|_| (), &[255; 16 * 16]), &Camera::default(), 0.0, 0.0);
+    let cases: Vec<[f32; 4]> = (0..300)
+        .map(|n| {
+            let ([a, b, _], [c, d, _]) = (hash3([n, 1, 5]).map(unit), hash3([n, 2, 5]).map(unit));
+            [20.0 * a - 10.0, 20.0 * b - 10.0, if n % 7 == 0 { 0.0 } else { c }, d]
+        })
+        .chain([[0.0; 4], [0.0, 0.0, 1.0, 1.0], [3.0, -4.0, 1.0, 1.0]])
+        .collect();
+    let found = probe_in(&gpu, &picture, "plants/force_field", "return vec4<f32>(sheltered(at.xy, at.zw), 0.0, 0.0);", &cases);
+    for ([x, z, east, south], found) in cases.into_iter().zip(found) {
+        let wanted = sheltered([x, z], [east, south]);
+        assert!((0..2).all(|i| (wanted[i] - found[i]).abs() < 1e-5 * x.hypot(z).max(1.0)), "{found:?} instead of {wanted:?}");
+    }
+    assert_eq!(sheltered([3.0, -4.0], [1.0; 2]), [3.0, -4.0]);
+}
+
 #[test]
 fn passing_objects_push_plants_in_still_air() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
@@ -152,7 +214,7 @@ fn passing_objects_push_plants_in_still_air() {
     mirror.apply(ServerMessage::Poses { tick: 1, objects: vec![car] }).expect("a sound pose");
     let mut picture = OffscreenRenderer::new(&gpu, [128; 2], Quality::Low);
     let felt = felt(&mut picture, &gpu, &mut mirror);
-    let field = &picture.renderer.scene.as_ref().and_then(|scene| scene.force_field.as_ref()).expect("forces").field;
+    let field = &picture.renderer.scene.as_ref().expect("a scene").force_field.field;
     let [west, _, north] = field.mesh().center_m([0; 3]);
     let (mut compared, mut strongest) = (0, 0.0_f32);
     for ([x, z], [east_pa, south_pa]) in felt.values().copied() {

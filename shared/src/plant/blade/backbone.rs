@@ -11,22 +11,64 @@ pub fn backbone_m(points_m: &[[f32; 3]; LINKS], t: f32) -> [f32; 3] {
     std::array::from_fn(|i| 3.0 * s * s * t * a[i] + 3.0 * s * t * t * b[i] + t * t * t * c[i])
 }
 
-/// Control points for drawing a blade as a strip of `segments` segments between equal steps of `t`: all three are moved away from the root by the one
-/// factor that makes the strip `length_m` long.
+/// Fraction of a blade's length that its strip may lack before its control points are moved apart to lengthen it.
+pub const SPARE: f32 = 0.02;
+
+/// Fraction of its length that a strip with one right angle lacks.
+pub const RIGHT_ANGLE_LACK: f32 = 0.16;
+
+/// Deviation from that at which control points are no longer moved apart: bends in a wind lack less; zigzags, which would swing out far at their
+/// corners, more.
+pub const LACK_RANGE: f32 = 0.12;
+
+/// Largest factor, less 1, by which the two lower control points are moved away from the root: that for one right angle.
+pub const LARGEST_BULGE: f32 = 0.72;
+
+/// Slope of the length of a strip by this factor, over the blade's length, that is added to the true one: for a straight blade this is 0.
+pub const LEAST_GROWTH: f32 = 0.02;
+
+/// Control points for drawing a blade as a strip of `segments` segments between equal steps of `t`, `length_m` long.
 ///
 /// A Bézier curve is shorter than the polygon of its control points: by 0.5 % for grass that a wind of 10 m/s bends by half a radian, by 15 % with
-/// one right angle. The strip's length is exact to rounding (1e-5). The curve that it approximates is longer by (θ/n)²/24 if n segments share a turn
-/// of θ evenly, and by at most 1 % with seven. The curve is in the hull of root and control points, so it is above every plane through the root that
-/// the control points are above.
+/// one right angle. For bends that lack about as much as a right angle, the lower two are moved away from the root by one factor, in three Newton
+/// steps, until the strip lacks [`SPARE`]; a last factor on all three makes its length exact to rounding (1e-5). So the tip of a blade with one right
+/// angle is within 2 % of the length of its third control point, with three segments or more, and no tip is farther from it than with the last
+/// factor alone.
+///
+/// The curve that the strip approximates is longer by (θ/n)²/24 if n segments share a turn of θ evenly, and by at most 1 % with seven. The curve is in
+/// the hull of the root and the returned points, so it is above every plane through the root that `points_m` are above.
 pub fn drawn_out_m(points_m: &[[f32; 3]; LINKS], length_m: f32, segments: u32) -> [[f32; 3]; LINKS] {
-    let (mut below, mut strip_m) = ([0.0; 3], 0.0);
-    for segment in 1..=segments {
-        let at = backbone_m(points_m, segment as f32 / segments as f32);
-        let [x, y, z] = [0, 1, 2].map(|i| at[i] - below[i]);
-        strip_m += (x * x + y * y + z * z).sqrt();
-        below = at;
+    let mut strip = strip_m(points_m, 1.0, segments);
+    let lack = 1.0 - strip[0] / length_m;
+    let most = 1.0 + LARGEST_BULGE * (1.0 - (lack - RIGHT_ANGLE_LACK).abs() / LACK_RANGE);
+    let mut bulge = 1.0;
+    if segments > 1 && most > 1.0 {
+        for _ in 0..3 {
+            let lack_m = (1.0 - SPARE) * length_m - strip[0];
+            bulge = (bulge + lack_m / (strip[1].max(0.0) + LEAST_GROWTH * length_m)).clamp(1.0, most);
+            strip = strip_m(points_m, bulge, segments);
+        }
     }
-    points_m.map(|point_m| point_m.map(|v| v * (length_m / strip_m)))
+    let factor = length_m / strip[0];
+    let [low, middle, tip] = points_m;
+    [low.map(|v| v * (bulge * factor)), middle.map(|v| v * (bulge * factor)), tip.map(|v| v * factor)]
+}
+
+/// Length of a strip (m) whose two lower control points are moved out by a factor, and its derivative by that.
+fn strip_m([low, middle, tip]: &[[f32; 3]; LINKS], bulge: f32, segments: u32) -> [f32; 2] {
+    let (mut below, mut sum) = ([[0.0; 3]; 2], [0.0; 2]);
+    for segment in 1..=segments {
+        let t = segment as f32 / segments as f32;
+        let s = 1.0 - t;
+        let lower: [f32; 3] = std::array::from_fn(|i| 3.0 * s * s * t * low[i] + 3.0 * s * t * t * middle[i]);
+        let at: [f32; 3] = std::array::from_fn(|i| bulge * lower[i] + t * t * t * tip[i]);
+        let [step, moved] = [[at, below[0]], [lower, below[1]]].map(|[to, from]| [to[0] - from[0], to[1] - from[1], to[2] - from[2]]);
+        let step_m = (step[0] * step[0] + step[1] * step[1] + step[2] * step[2]).sqrt();
+        sum[0] += step_m;
+        sum[1] += (step[0] * moved[0] + step[1] * moved[1] + step[2] * moved[2]) / step_m.max(1e-9);
+        below = [at, lower];
+    }
+    sum
 }
 
 /// Two segment points (m from the root) at parameter `t` of a blade that is `width_m` wide there and whose side points along `side_rad` at the root.

@@ -5,13 +5,13 @@
 //! length.
 //!
 //! # Accuracy
-//! Loads act across the blade at any lean, and springs are linear in the leans. Compared with the elastica of a blade with the same first frequency,
-//! the tip is within 1 % of the length up to a mean lean of 0.25 rad, and within 5 % up to 0.45 rad, under a force at the tip (1 and 1.5·EI/L²) and
-//! under uniform drag (2 and 3.6·EI/L² in total). A small force at the tip moves it 4.4 % too little, small uniform drag 0.6 % too much. Beyond that
-//! a blade leans too far, as the force does not decrease with its silhouette: at a mean lean of 1 rad by a quarter of its length.
+//! An even wind holds the mean lean of the bend field. Under the drag that this takes, and other loads in proportion, the tip is within 1 % of the
+//! length of the elastica's up to a mean lean of 1.2 rad, and small deflections of the tip are exact ([`mod@deflection`]). Springs are linear in the
+//! leans, and the inertia is that of the upright chain: at large leans the frequencies lack the shift of a real blade.
 //!
 //! # Parts
-//! - [`modes`]: natural frequencies of the chain, and the coupling of links and wind to its modes;
+//! - [`mod@deflection`]: equilibrium under drag;
+//! - [`modes`]: natural frequencies of the chain, and the coupling of links and drag to its modes;
 //! - [`propagator`]: three time integrators of a mode, each with its stability limit;
 //! - [`step`]: one step of a blade;
 //! - [`lean`]: conversion between lean and direction;
@@ -22,6 +22,7 @@
 
 pub mod backbone;
 pub mod contact;
+pub mod deflection;
 pub mod lean;
 pub mod modes;
 pub mod propagator;

@@ -33,21 +33,10 @@ pub const AMPLITUDES: [[f32; LINKS]; LINKS] = [
     [0.033_790_49, -0.049_749_267, 0.028_995_734],
 ];
 
-/// Static amplitude of each mode for drag on each control point, normalised so that a relative drag of 1 at all three gives a mean lean of 1. The
-/// silhouettes of the points are as 1 : 0.8 : 0.3, since a blade tapers.
-pub const PUSHES: [[f32; LINKS]; LINKS] = [
-    [0.102_832_17, 0.253_398_63, 0.169_181_12],
-    [-0.013_303_711, -0.006_240_119, 0.005_143_855],
-    [0.002_341_968, -0.002_217_938, 0.000_759_244_7],
-];
-
 /// Damping rate of each mode by drag on each control point, over `ω₁²·κ·L·|u − v|` with κ the lean per squared wind and |u − v| the speed of the air
 /// relative to it.
 pub const BRAKES: [[f32; LINKS]; LINKS] =
-    [[0.036_605_84, 0.277_850_3, 0.330_274_4], [0.622_086_6, 0.171_080_67, 0.309_999_75], [0.741_232_8, 0.831_000_7, 0.259_677_8]];
-
-/// Relative lean of each link in a steady wind, with a mean of 1.
-pub const WIND_SHAPE: [f32; LINKS] = [0.628_742_5, 1.131_736_5, 1.239_521];
+    [[0.037_274_215, 0.282_923_5, 0.336_304_8], [0.633_445_1, 0.174_204_38, 0.315_659_94], [0.754_766_8, 0.846_173_7, 0.264_419_2]];
 
 /// First natural frequency of a uniform blade (rad/s), a cantilever, from its flexural rigidity EI (N·m²), mass per length (kg/m) and length (m).
 ///
@@ -63,6 +52,7 @@ pub fn first_frequency_rad_per_s(rigidity_n_m2: f32, mass_kg_per_m: f32, length_
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plant::blade::deflection::SILHOUETTES;
 
     type Matrix<const N: usize = LINKS> = [[f64; N]; N];
 
@@ -146,15 +136,6 @@ mod tests {
         MODES[m].map(f64::from)
     }
 
-    /// Silhouettes of the control points, scaled to a mean lean of 1.
-    fn silhouettes() -> [f64; LINKS] {
-        let (_, stiffness) = chain::<LINKS>();
-        let shape = WIND_SHAPE.map(f64::from);
-        // K·shape = l·(sums of the silhouettes from each point up).
-        let sums = times(&stiffness, shape).map(|q| q * LINKS as f64);
-        [sums[0] - sums[1], sums[1] - sums[2], sums[2]]
-    }
-
     #[test]
     fn the_modes_are_those_of_the_chain() {
         let (mass, stiffness) = chain::<LINKS>();
@@ -206,18 +187,13 @@ mod tests {
     }
 
     #[test]
-    fn drag_holds_and_brakes_as_the_chain_has_it() {
-        let (_, stiffness) = chain::<LINKS>();
-        let areas = silhouettes();
-        assert!((areas[1] / areas[0] - 0.8).abs() < 1e-4 && (areas[2] / areas[0] - 0.3).abs() < 1e-4, "{areas:?}");
-        assert!((WIND_SHAPE.iter().sum::<f32>() / 3.0 - 1.0).abs() < 1e-6);
-        let lowest = dot(mode(0), times(&stiffness, mode(0)));
-        for m in 0..LINKS {
-            let value = dot(mode(m), times(&stiffness, mode(m)));
-            for j in 0..LINKS {
+    fn drag_brakes_each_mode_by_its_deflections() {
+        for (m, brakes) in BRAKES.iter().enumerate() {
+            for (j, (&brake, force)) in brakes.iter().zip(SILHOUETTES).enumerate() {
                 let deflection = mode(m)[..=j].iter().sum::<f64>() / LINKS as f64;
-                assert!((f64::from(PUSHES[m][j]) - areas[j] * deflection / value).abs() < 1e-6);
-                assert!((f64::from(BRAKES[m][j]) - areas[j] * deflection * deflection / lowest).abs() < 1e-5);
+                // Of the calibrated chain, whose lowest square of a frequency is a cantilever's.
+                let wanted = f64::from(force) * deflection * deflection / f64::from(CANTILEVER).powi(2);
+                assert!((f64::from(brake) - wanted).abs() < 1e-5);
             }
         }
     }

@@ -96,6 +96,8 @@ type Planes = [Vec<f32>; 3];
 pub struct Force {
     /// Force of the wind that arrives there.
     pub wind_pa: [f32; 3],
+    /// Fraction of the wind's force along each axis that arrives.
+    pub arriving: [f32; 3],
     /// Remainder of impulses.
     pub lasting_pa: [f32; 3],
 }
@@ -249,6 +251,9 @@ impl ForceField {
 
     fn force_at(&self, place: usize) -> Force {
         let of = |planes: &Planes| planes.each_ref().map(|plane| plane[place]);
-        Force { wind_pa: of(&self.blown), lasting_pa: of(&self.lasting) }
+        let (wind_pa, open_pa) = (of(&self.blown), of(&self.wind));
+        // Of no wind, what the lee leaves.
+        let arriving = [0, 1, 2].map(|axis| if open_pa[axis] == 0.0 { 1.0 - self.lee[place] } else { wind_pa[axis] / open_pa[axis] });
+        Force { wind_pa, arriving, lasting_pa: of(&self.lasting) }
     }
 }

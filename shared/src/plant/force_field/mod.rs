@@ -1,4 +1,5 @@
-//! Force field (Endo et al. 2003, §4.1): a mesh of volumes over the land, and the force on plants in each.
+//! Force field (Endo et al. 2003, §4.1): a mesh of volumes over the land, and the force on plants in each. Blades of grass feel its lees, underbrush the
+//! rest of it as well.
 //!
 //! A force is a dynamic pressure q (Pa) with a direction: a plant of silhouette A feels the force A·q. Each step the field is
 //! ```text
@@ -31,4 +32,4 @@ mod tests;
 
 pub use field::{Force, ForceField, Lingering, VolumeMesh};
 pub use obstacle::Obstacle;
-pub use sources::{AIR_KG_PER_M3, Ball, dynamic_pressure_pa};
+pub use sources::{AIR_KG_PER_M3, Ball, dynamic_pressure_pa, sheltered};

@@ -11,6 +11,14 @@ pub fn dynamic_pressure_pa([x, y, z]: [f32; 3]) -> [f32; 3] {
     [half * x, half * y, half * z]
 }
 
+/// Wind along X and Z (m/s) whose dynamic pressure is the fraction `arriving` of that of a `wind_m_per_s` along each axis. Twin of `sheltered` in WGSL.
+pub fn sheltered([x, z]: [f32; 2], arriving: [f32; 2]) -> [f32; 2] {
+    let speed = (x * x + z * z).sqrt();
+    let [x, z] = [arriving[0] * x * speed, arriving[1] * z * speed];
+    let root = (x * x + z * z).sqrt().max(1e-12).sqrt();
+    [x / root, z / root]
+}
+
 /// A moving ball, and the air that it displaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {

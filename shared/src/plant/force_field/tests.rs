@@ -213,6 +213,13 @@ fn solids_shelter_what_is_before_and_behind_them() {
     let behind: Vec<_> = (15..24).map(|x| wind(x)[0] / 5.0).collect();
     assert!(behind[0] < 0.2 && behind.is_sorted(), "{behind:?}");
     assert!(field.force([3, 0, 3]).wind_pa[1] == -1.0, "the ground takes nothing away");
+    for (x, wind_pa) in [3, 13, 16].map(|x| (x, wind(x))) {
+        let arriving = field.force([x, 2, 10]).arriving;
+        assert!(
+            (0..3).all(|axis| (arriving[axis] * [5.0, -1.0, 2.0][axis] - wind_pa[axis]).abs() < 1e-6),
+            "{arriving:?} of the wind at {x}"
+        );
+    }
     let calm = blown(MESH, [0.0; 3], &[wall(14.5, 0.5)]);
     assert!(winds(&calm).iter().all(|wind| *wind == [0.0; 3]));
     let turned = blown(MESH, [-5.0, -1.0, 2.0], &[wall(14.5, 0.5)]);

@@ -6,6 +6,7 @@ use crate::render::gpu::constants::{COARSE_LIST, FAR_HEAD_LIST, FINE_LIST, HEAD_
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{PassFactory, bind};
 use crate::render::gpu::uniforms::{Plants, StripList};
+use crate::render::plants::force_field::CameraForceField;
 use wgpu::BufferUsages;
 
 pub(super) struct BladeBuffers {
@@ -41,12 +42,13 @@ impl BladeBuffers {
         &self,
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
-        chunks: &wgpu::Buffer,
-        draws: &wgpu::Buffer,
-        standing: &wgpu::Buffer,
+        [chunks, draws, standing]: [&wgpu::Buffer; 3],
+        forces: &CameraForceField,
     ) -> wgpu::BindGroup {
         let buffers = [&self.plants, &self.sways, &self.drawn, &self.counters, chunks, draws, standing, &self.moved];
-        bind(gpu, "bend", layout, &buffers.map(|buffer| buffer.as_entire_binding()))
+        let own = (0..).zip(buffers.map(|buffer| buffer.as_entire_binding()));
+        let entries: Vec<_> = own.chain(forces.resources()).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("bend"), layout, entries: &entries })
     }
 
     /// Bind group of each list. Blades of one segment fill the space of the coarse ones from its end, far heads that of the near ones.

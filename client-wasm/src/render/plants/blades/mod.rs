@@ -21,6 +21,7 @@ use crate::render::inputs::viewpoint::Viewpoint;
 use crate::render::options::detail::{Detail, PLANTS_LIMIT, blades_per_grid};
 use crate::render::options::quality::Quality;
 use crate::render::options::render_options::{BlendOrder, FarPlants};
+use crate::render::plants::force_field::CameraForceField;
 use crate::render::plants::per_blend_order::PerBlendOrder;
 use crate::state::DecodedScene;
 use buffers::{BladeBuffers, InstanceIndices};
@@ -86,7 +87,7 @@ pub(crate) struct Blades {
 }
 
 impl Blades {
-    pub(crate) fn new(factory: &PassFactory, quality: Quality, decoded: &DecodedScene) -> Self {
+    pub(crate) fn new(factory: &PassFactory, quality: Quality, decoded: &DecodedScene, forces: &CameraForceField) -> Self {
         let gpu = &factory.gpu;
         let plants = &decoded.scene().plants;
         let (detail, grid_m, places) = (quality.detail().on(plants), plants.grid_m, plants_per_grid(decoded));
@@ -99,7 +100,7 @@ impl Blades {
         let culling = PlantCulling::new(factory, &bend, &buffers.plants, &grids, places);
         let draws = indices.draws(gpu);
         let compute_layout = compute_layout(factory);
-        let compute_group = buffers.compute_group(gpu, &compute_layout, grids.chunks(), &draws, culling.standing());
+        let compute_group = buffers.compute_group(gpu, &compute_layout, [grids.chunks(), &draws, culling.standing()], forces);
         let shapes = gpu.texture("blades", wgpu::TextureFormat::Rgba8Unorm, shape_texture::BLADE_PX, &shape_texture::blade_shapes());
         let shapes = shapes.create_view(&Default::default());
         let lists = buffers.list_groups(factory, capacities, segments, &shapes);
@@ -379,7 +380,7 @@ fn upper_bound(mean: f32) -> u32 {
 fn compute_layout(factory: &PassFactory) -> wgpu::BindGroupLayout {
     let entries =
         [uniform(0), storage_rw(1), storage_rw(2), storage_rw(3), storage_compute(4), storage_rw(5), storage_compute(6), storage_rw(7)];
-    factory.layout("bend", &entries)
+    factory.layout("bend", &[&entries[..], &CameraForceField::layout()].concat())
 }
 
 #[cfg(test)]

@@ -122,7 +122,7 @@ impl Underbrush {
     }
 
     /// Lists the plants of the squares that may be visible.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, forces: &CameraForceField, from: &Viewpoint<'_>) {
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, from: &Viewpoint<'_>) {
         let (eye_m, reach_m) = (from.eye_m, from.detail.underbrush_m);
         let mut chunks: Vec<[u32; 2]> = Vec::new();
         // Plants rooted on rows beyond are not drawn.
@@ -139,7 +139,6 @@ impl Underbrush {
         self.chunk_count = chunks.len() as u32;
         self.frame_number = self.frame_number.wrapping_add(u32::from(from.dt_secs > 0.0));
         let [plant_room, block_room] = self.room;
-        let [corner_x_m, corner_z_m, extent_x_m, extent_z_m] = forces.window_m();
         let frame = UnderbrushFrame {
             frame_number: self.frame_number,
             culls: u32::from(from.options.culls),
@@ -147,10 +146,8 @@ impl Underbrush {
             block_limit: block_room,
             step_secs: from.dt_secs.max(0.0),
             reach_m,
-            field_height_m: forces.height_m(),
             coarseness: from.detail.coarser,
-            field_corner_m: [corner_x_m, corner_z_m],
-            field_extent_m: [extent_x_m, extent_z_m],
+            _pad: [0; 4],
             species: self.species,
         };
         gpu.queue.write_buffer(&self.buffers.frame, 0, bytemuck::bytes_of(&frame));

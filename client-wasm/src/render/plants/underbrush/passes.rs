@@ -4,7 +4,7 @@ use super::layout::{BLOCK, CHUNK, COUNTER_BYTES, RESPONSE_BYTES, ROW_BYTES, VISI
 use super::lists::Lists;
 use super::tiles::UnderbrushPlant;
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind_as, sampled, storage, storage_rw, uniform};
+use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind_as, storage, storage_rw, uniform};
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::DrawnList;
 use crate::render::gpu::uniforms::UnderbrushFrame;
@@ -186,7 +186,7 @@ fn stand_step(
 ) -> Step<LampVariants<wgpu::ComputePipeline>> {
     let UnderbrushBuffers { frame, plants, sifted, responses, visible_plants, listed, broken, counters, owners, .. } = buffers;
     let rest = [read(1), storage_rw(3), storage_rw(4), storage_rw(5), storage_rw(6), read(7), read(19), storage_rw(20)];
-    let entries: Vec<_> = rest.into_iter().chain([uniform(0), volumes(9), uniform(15)]).collect();
+    let entries: Vec<_> = rest.into_iter().chain([uniform(0), uniform(15)]).chain(CameraForceField::layout()).collect();
     let layout = factory.layout("stand", &entries);
     let resources = [
         (1, plants),
@@ -201,9 +201,11 @@ fn stand_step(
         (15, &lists.settings),
     ];
     let resources = resources.map(|(binding, buffer)| (binding, buffer.as_entire_binding()));
-    let forces = (9, wgpu::BindingResource::TextureView(&force_field.view));
-    let entries: Vec<_> =
-        resources.into_iter().chain([forces]).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+    let entries: Vec<_> = resources
+        .into_iter()
+        .chain(force_field.resources())
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+        .collect();
     let descriptor = wgpu::BindGroupDescriptor { label: Some("stand"), layout: &layout, entries: &entries };
     let group = factory.gpu.device.create_bind_group(&descriptor);
     let factory = factory.clone();
@@ -236,8 +238,4 @@ fn ribbon_step(
 
 fn read(binding: u32) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::COMPUTE, ..storage(binding) }
-}
-
-fn volumes(binding: u32) -> wgpu::BindGroupLayoutEntry {
-    sampled(binding, wgpu::TextureSampleType::Float { filterable: true }, wgpu::TextureViewDimension::D3)
 }
