@@ -11,7 +11,7 @@ const GRASS_M: f32 = 1.0;
 const SECS: f64 = 60.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let canopy = Canopy { height_m: GRASS_M, drag_per_m: 0.5 };
+    let canopy = Canopy { height_m: GRASS_M, drag_per_m: 0.5, motion: None };
     let [bare, grass] = [run(None)?, run(Some(canopy))?];
     for (name, air) in [("bare ground", &bare), ("grass of 1 m", &grass)] {
         println!("\n{name}: wind along x, from 0 (space) to 8 m/s (@), 48 m long and 6 m high");

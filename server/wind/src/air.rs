@@ -161,6 +161,14 @@ impl<R: Real> Air<R> {
         }
     }
 
+    /// Displacement (m) of the tops of the grass; see [`Solver::canopy_displacements_m`]. `None` if the canopy does not move, or with [`StableFluids`].
+    pub fn canopy_displacements_m(&self) -> Option<impl Iterator<Item = [R; 2]> + '_> {
+        match self {
+            Self::Staggered(air) => air.canopy_displacements_m(),
+            Self::StableFluids(_) => None,
+        }
+    }
+
     /// Places sponge layers across x and z at these positions (m); see [`Solver::set_sponge`].
     pub fn set_sponge(&mut self, sponge_m: Option<[f64; 2]>) {
         either!(self, air => air.set_sponge(sponge_m))

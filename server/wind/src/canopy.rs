@@ -1,5 +1,10 @@
 //! Drag of a grass canopy.
 
+mod motion;
+
+pub use motion::CanopyMotion;
+pub(super) use motion::Stems;
+
 use super::config::error::{ConfigError, above_zero, at_least_zero};
 use super::solids::drag::speed_squared;
 use super::{Grid, Location, Real, Velocity};
@@ -12,18 +17,21 @@ pub struct Canopy {
     pub height_m: f32,
     /// C_d·a of standing grass (1/m). Default 0.1; 0 or more. Meadows have 0.1 to 1.
     pub drag_per_m: f32,
+    /// Motion of the grass in the wind, which acts back on it; `None` (default) for grass that keeps its place.
+    pub motion: Option<CanopyMotion>,
 }
 
 impl Default for Canopy {
     fn default() -> Self {
-        Self { height_m: 0.8, drag_per_m: 0.1 }
+        Self { height_m: 0.8, drag_per_m: 0.1, motion: None }
     }
 }
 
 impl Canopy {
     pub(super) fn validate(&self) -> Result<(), ConfigError> {
         above_zero("canopy.height_m", self.height_m)?;
-        at_least_zero("canopy.drag_per_m", self.drag_per_m)
+        at_least_zero("canopy.drag_per_m", self.drag_per_m)?;
+        self.motion.iter().try_for_each(CanopyMotion::validate)
     }
 
     /// Fraction of the layer from `low_m` to `high_m` above the ground that is inside the grass.

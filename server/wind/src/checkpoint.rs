@@ -12,7 +12,8 @@ pub struct AirState<R> {
     pub time_secs: f64,
     /// Positions of the sponge layers (m).
     pub sponge_m: Option<[f64; 2]>,
-    /// The fields in memory order: for [`Solver`] velocity, pressure gradient, dust and canopy fraction; for [`StableFluids`] velocity, the earlier velocity,
+    /// The fields in memory order: for [`Solver`] velocity, pressure gradient, dust, canopy fraction and, if the canopy moves, its
+    /// displacement and velocity; for [`StableFluids`] velocity, the earlier velocity,
     /// pressure and dust.
     pub fields: Vec<Vec<R>>,
     /// Potential of the last pressure solve; empty where no solve begins with it.
@@ -49,7 +50,8 @@ fn lists<'a, R>(velocities: [&'a mut Velocity<R>; 2], others: impl Iterator<Item
 impl<R: Real> Solver<R> {
     fn save_completely_into(&self, state: &mut AirState<R>) {
         let velocities = [&self.velocity, &self.pressure_gradient].into_iter().flat_map(|velocity| &velocity.0);
-        copy_into(&mut state.fields, velocities.chain(&self.dust).map(|field| &field.data).chain([&self.canopy_fraction]));
+        let stems = self.stems.iter().flat_map(|stems| &stems.values);
+        copy_into(&mut state.fields, velocities.chain(&self.dust).map(|field| &field.data).chain([&self.canopy_fraction]).chain(stems));
         state.potential.clear();
         state.potential.extend_from_slice(self.projection.guess().unwrap_or_default());
         (state.time_secs, state.sponge_m) = (self.time_secs, self.sponge_m);
@@ -60,6 +62,7 @@ impl<R: Real> Solver<R> {
         StateError::check("the potential", state.potential.len(), guess.as_ref().map_or(0, |guess| guess.len()))?;
         let mut own = lists([&mut self.velocity, &mut self.pressure_gradient], self.dust.iter_mut());
         own.push(&mut self.canopy_fraction);
+        own.extend(self.stems.iter_mut().flat_map(|stems| &mut stems.values));
         set(own, &state.fields)?;
         if let Some(guess) = guess {
             guess.copy_from_slice(&state.potential);

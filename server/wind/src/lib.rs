@@ -56,7 +56,7 @@ pub mod transport;
 pub use advect::Advection;
 pub use air::{Air, Method};
 pub use boundary::Boundary;
-pub use canopy::Canopy;
+pub use canopy::{Canopy, CanopyMotion};
 pub use checkpoint::AirState;
 pub use config::{Config, ConfigError, Diffusion, Dust, Gusts, Profile, TimeScheme};
 pub use field::{Field, Velocity};

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::boundary::BoundaryConditions;
+use super::canopy::Stems;
 use super::config::{Config, ConfigError};
 use super::diagnostics::{self, Diagnostics, PlaneSums};
 use super::diffuse::Implicit;
@@ -63,6 +64,7 @@ pub struct Solver<R: Real> {
     pub(super) old_pressure_gradient: Option<Velocity<R>>,
     /// Fraction of the canopy that stands in each column of cells, x fastest.
     pub(super) canopy_fraction: Vec<R>,
+    pub(super) stems: Option<Stems<R>>,
     pub(super) sponge_m: Option<[f64; 2]>,
     pub(super) solid: Option<Vec<bool>>,
     pub(super) immersed: Option<Immersed<R>>,
@@ -115,6 +117,7 @@ impl<R: Real> Solver<R> {
             old: (config.dust.is_some() || uses_fluxes).then(|| still.clone()),
             old_pressure_gradient: (config.dust.is_some() && uses_fluxes).then(|| still.clone()),
             canopy_fraction: vec![R::one(); grid.cells[0] * grid.cells[2]],
+            stems: Stems::new(&grid, config.canopy.as_ref()),
             sponge_m: None,
             solid: None,
             immersed: None,
@@ -200,6 +203,11 @@ impl<R: Real> Solver<R> {
         self.canopy_fraction.iter_mut().zip(fractions).for_each(|(own, fraction)| *own = R::of(fraction.clamp(0.0, 1.0).into()));
     }
 
+    /// Displacement (m) of the tops of the grass along x and z in the middle of each column of cells, x fastest; `None` if the canopy does not move.
+    pub fn canopy_displacements_m(&self) -> Option<impl Iterator<Item = [R; 2]> + '_> {
+        self.stems.as_ref().map(|stems| stems.displacements(&self.grid))
+    }
+
     /// Places a sponge layer across x and one across z at these positions (m) in a box that is periodic along both: the air there relaxes to the mean wind, so that
     /// disturbances do not re-enter. `None` (initially) for no sponge.
     pub fn set_sponge(&mut self, sponge_m: Option<[f64; 2]>) {
@@ -261,7 +269,8 @@ impl<R: Real> Solver<R> {
         let fields = velocities.flat_map(|velocity| &velocity.0).chain(&self.dust).chain(&self.dust_stages);
         let values: usize = fields.map(|field| field.data.len()).sum();
         let traced = 4 * (self.centres.len() + self.trajectories.backward.len() + self.trajectories.forward.len());
-        let scratch = self.advection.values() + self.transport.values() + self.canopy_fraction.len();
+        let scratch =
+            self.advection.values() + self.transport.values() + self.canopy_fraction.len() + self.stems.as_ref().map_or(0, Stems::len);
         let pressure = 3 * self.grid.len() + self.volume_sources_per_s.len();
         size_of::<R>() * (values + traced + scratch) + size_of::<f64>() * pressure + self.pushes.memory_bytes()
     }
@@ -294,6 +303,7 @@ impl<R: Real> Solver<R> {
             velocity: values(&self.velocity),
             pressure_gradient: values(&self.pressure_gradient),
             dust: self.dust.iter().flat_map(|dust| dust.values(&self.grid)).collect(),
+            stems: self.stems.as_ref().map(|stems| stems.values.clone()).unwrap_or_default(),
         }
     }
 
@@ -312,6 +322,12 @@ impl<R: Real> Solver<R> {
             )?;
         }
         StateError::check("dust", state.dust.len(), self.dust.as_ref().map_or(0, Field::len))?;
+        for (n, given) in state.stems.iter().enumerate() {
+            StateError::check("stems", given.len(), self.stems.as_ref().map_or(0, |stems| stems.values[n].len()))?;
+        }
+        if let Some(stems) = &mut self.stems {
+            stems.values.clone_from(&state.stems);
+        }
         for axis in 0..3 {
             self.velocity.0[axis].set_values(&self.grid, &state.velocity[axis]);
             self.pressure_gradient.0[axis].set_values(&self.grid, &state.pressure_gradient[axis]);

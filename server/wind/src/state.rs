@@ -74,6 +74,9 @@ pub struct State<R> {
     pub pressure_gradient: [Vec<R>; 3],
     /// Concentration of dust at cell centres; empty without dust.
     pub dust: Vec<R>,
+    /// Displacement of the tops of the grass (m) along x and z, and their velocity (m/s) along x and z: those along x in the columns of faces across x, those along z in
+    /// the columns of faces across z, `cells[0] + 1` in a row along x, `cells[2] + 1` rows. Empty if the canopy does not move.
+    pub stems: [Vec<R>; 4],
 }
 
 /// A checkpoint of another grid.

@@ -1,5 +1,6 @@
 //! A step of the solver: checks, sub-steps and diagnostics.
 
+use super::canopy::Stems;
 use super::pressure::Convergence;
 use super::state::{MAX_SUBSTEPS, StepError, StepReport};
 use super::{Config, Jet, Real, Solver, TimeScheme, diagnostics, limits, parallel, sources};
@@ -74,6 +75,7 @@ impl<R: Real> Solver<R> {
         if let Some(old_pressure_gradient) = &mut self.old_pressure_gradient {
             old_pressure_gradient.copy_from(&self.pressure_gradient);
         }
+        self.stems.iter_mut().for_each(Stems::keep);
         let gusts = sources::sources_at(&self.config, &self.grid, &self.mean, self.time_secs + 0.5 * dt_secs);
         self.pushes.set(&self.grid, &self.config.gusts, gusts, &self.velocity, &mut self.footprint);
         let convergence = match self.config.time {
@@ -110,6 +112,7 @@ impl<R: Real> Solver<R> {
         if let Some(old_pressure_gradient) = &self.old_pressure_gradient {
             self.pressure_gradient.copy_from(old_pressure_gradient);
         }
+        self.stems.iter_mut().for_each(Stems::roll_back);
         self.boundaries.update_inflow(self.time_secs);
         self.measure();
     }

@@ -144,7 +144,9 @@ impl<R: Real> Solver<R> {
     /// Forces: drag of canopy and bodies, gusts, primitives, jets, relaxation to the mean wind, sponge layer and body force.
     fn force(&mut self, dt_secs: f64, time_secs: f64, jets: &[Jet]) {
         let grid = &self.grid;
-        if let Some(canopy) = &self.config.canopy {
+        if let Some(stems) = &mut self.stems {
+            stems.sway(grid, &self.canopy_fraction, dt_secs, &mut self.velocity, &mut self.stages[0]);
+        } else if let Some(canopy) = &self.config.canopy {
             canopy::drag(grid, canopy, &self.canopy_fraction, dt_secs, &mut self.velocity, &mut self.stages[0]);
         }
         self.drag.apply(grid, dt_secs, &mut self.velocity);

@@ -3,8 +3,8 @@
 use glam::Vec3;
 use prairie_wind::pressure::{Effort, IterativeMethod};
 use prairie_wind::{
-    Advection, Body, Boundary, Canopy, Config, Diffusion, Dust, Gusts, Jet, Pressure, Primitive, Profile, Real, Shape, Solver,
-    StableFluids, TimeScheme,
+    Advection, Body, Boundary, Canopy, CanopyMotion, Config, Diffusion, Dust, Gusts, Jet, Pressure, Primitive, Profile, Real, Shape,
+    Solver, StableFluids, TimeScheme,
 };
 
 /// Steps before the count starts, in which work arrays may still grow to their final size.
@@ -91,6 +91,8 @@ fn no_boundary_condition_allocates_in_a_step() {
 #[test]
 fn a_grid_large_enough_for_parallel_loops_is_stepped_without_allocations() {
     assert_eq!(allocations::<f32>(&Config { cells: [48, 24, 48], ..everything() }), 0);
+    let canopy = Some(Canopy { motion: Some(CanopyMotion::default()), ..Canopy::default() });
+    assert_eq!(allocations::<f32>(&Config { canopy, ..everything() }), 0, "a canopy that moves");
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn profile(canopy_m: f64, layers: usize) -> Vec<(f64, f64)> {
     let config = Config {
         viscosity_m2_per_s: VISCOSITY_M2_PER_S as f32,
         body_force_m_per_s2: [FORCE_M_PER_S2 as f32, 0.0, 0.0],
-        canopy: Some(Canopy { height_m: canopy_m as f32, drag_per_m: DRAG_PER_M as f32 }),
+        canopy: Some(Canopy { height_m: canopy_m as f32, drag_per_m: DRAG_PER_M as f32, motion: None }),
         ..still_air([1, layers, 1], [16.0, spacing_m, 16.0], [[Boundary::Wrap; 2], [ground, Boundary::FreeSlip], [Boundary::Wrap; 2]])
     };
     let mut air = Solver::<f64>::new(&config).expect("settings are allowed");
