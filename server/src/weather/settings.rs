@@ -2,7 +2,9 @@
 
 use prairie_core::scene::{PrimitiveKind, Scene, Wind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTime};
 use prairie_wind::pressure::{Effort, IterativeMethod};
-use prairie_wind::{Advection, Boundary, Canopy, Config, Diffusion, Dust, Gusts, Method, Pressure, Primitive, Profile, Shape, TimeScheme};
+use prairie_wind::{
+    Advection, Boundary, Canopy, CanopyMotion, Config, Diffusion, Dust, Gusts, Method, Pressure, Primitive, Profile, Shape, TimeScheme,
+};
 
 /// Roughness length of grass (m), for the logarithmic profile.
 pub(super) const ROUGHNESS_M: f32 = 0.05;
@@ -36,7 +38,15 @@ pub(super) fn settings(scene: &Scene) -> (Method, Config) {
             ..Gusts::default()
         },
         primitives: wind.primitives.iter().map(primitive).collect(),
-        canopy: (wind.canopy_drag_per_m > 0.0).then_some(Canopy { height_m: scene.tallest_m(), drag_per_m: wind.canopy_drag_per_m }),
+        canopy: (wind.canopy_drag_per_m > 0.0).then_some(Canopy {
+            height_m: scene.tallest_m(),
+            drag_per_m: wind.canopy_drag_per_m,
+            motion: (wind.canopy_frequency_hz > 0.0).then_some(CanopyMotion {
+                frequency_hz: wind.canopy_frequency_hz,
+                damping_ratio: wind.canopy_damping_ratio,
+                mass_kg_per_m2: wind.canopy_mass_kg_per_m2,
+            }),
+        }),
         dust: wind.has_dust().then_some(Dust {
             advection: advection(wind.dust.advection),
             diffusivity_m2_per_s: wind.dust.diffusivity_m2_per_s,

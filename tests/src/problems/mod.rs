@@ -21,6 +21,7 @@ mod differences;
 mod ethier_steinman;
 mod heat;
 mod hill;
+pub mod honami;
 mod moving_walls;
 pub mod plants;
 mod rotation;

@@ -5,6 +5,7 @@ mod cavity;
 mod conservation;
 mod dust;
 mod ethier_steinman;
+mod honami;
 mod moving_walls;
 mod outflow;
 mod projection;

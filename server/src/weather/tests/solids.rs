@@ -1,4 +1,4 @@
-//! Land, stones and vehicles in the wind.
+//! Land, stones and vehicles in the wind, and grass that sways.
 
 use super::*;
 use prairie_core::terrain::grey_png;
@@ -82,4 +82,30 @@ fn vehicles_hold_the_wind_back_or_drag_it_along() {
     assert!(fast > 1.1 * open, "a fast one drags it along: {fast} m/s");
     let tiled = |motion| around(|scene| scene.wind.tiling = WindTiling::Patch, &grass_with(255), motion)[0];
     assert_eq!(tiled(Some(car(0.0))).to_bits(), tiled(None).to_bits(), "in a box tiled by patch it would be in every patch");
+}
+
+#[test]
+fn grass_that_sways_keeps_its_state_in_a_checkpoint() {
+    let (mut scene, maps) = meadow();
+    (scene.wind.canopy_frequency_hz, scene.wind.canopy_drag_per_m) = (1.05, 0.8);
+    let grass = grass(&scene);
+    let mut weather = Weather::new(&scene, &maps.height, &maps.cover).unwrap();
+    let displaced =
+        |weather: &Weather| weather.air.canopy_displacements_m().expect("grass that sways").map(|[x, _]| x.abs()).fold(0.0, f32::max);
+    (1..=60).for_each(|tick| weather.step(tick, &[], &maps.height, &grass));
+    let mut state = WeatherState::default();
+    weather.save_into(&mut state);
+    let mut restored = Weather::restored(&scene, &maps.height, &maps.cover, &state).unwrap();
+    (61..=120).for_each(|tick| [&mut weather, &mut restored].into_iter().for_each(|weather| weather.step(tick, &[], &maps.height, &grass)));
+    let sums = [&weather, &restored].map(|weather| {
+        let mut sum = Checksum::default();
+        weather.hash(&mut sum);
+        sum.value()
+    });
+    assert!(sums[0] == sums[1] && displaced(&weather) > 0.001, "{sums:?}, {} m", displaced(&weather));
+    scene.wind.canopy_frequency_hz = 0.0;
+    assert!(
+        Weather::restored(&scene, &maps.height, &maps.cover, &state).is_err(),
+        "a state with stems is not one of grass that holds still"
+    );
 }

@@ -22,6 +22,11 @@ pub(in crate::scene) fn check(scene: &Scene, conflicts: &mut Conflicts) {
     mean_wind(wind, conflicts);
     lids(wind, conflicts);
     extent(scene, conflicts);
+    if wind.canopy_frequency_hz != 0.0 && wind.canopy_drag_per_m == 0.0 {
+        let message =
+            format!("is {}; allowed with `canopy_drag_per_m = 0`: 0, since the wind moves grass by its drag", wind.canopy_frequency_hz);
+        conflicts.note(&["wind.canopy_frequency_hz", "wind.canopy_drag_per_m"], message);
+    }
     if wind.crown_drag_per_m != 0.0 && wind.tiling == WindTiling::Patch {
         let message =
             format!("is {}; allowed with `tiling = \"patch\"`: 0, since the trees would be in every patch", wind.crown_drag_per_m);

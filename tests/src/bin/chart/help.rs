@@ -54,6 +54,8 @@ Files in DIR, updated after each problem:
                      and down is better; the Pareto front, which nothing beats, is highlighted
   wind.csv, .json    every figure: model, problem, method, cells, dt_secs, norm (l1, l2 = root mean
                      square, linf), error, wall_secs (wall time per simulated second or projection)
+  wind-lock-in.svg, .csv  frequency of the waves over grass that sways and over rigid grass against the wind
+  wind-honami.svg, .csv   displacement of the grass by place and time
 
 Printed for each problem and a few errors: the fastest method, interpolated between two runs, and how
 much longer the best of another family takes.";

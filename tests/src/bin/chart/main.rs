@@ -172,7 +172,7 @@ struct Options {
 fn main() -> Result<()> {
     match Arguments::parse().model {
         Model::Wind { tables: Some(document), .. } => write_tables(&document),
-        Model::Wind { options, .. } => chart("wind", wind::problems(options.quick), &options),
+        Model::Wind { options, .. } => charts("wind", wind::problems(options.quick), &wind::FIGURES, &options),
         Model::Bend(options) => charts("bend", bend::problems(options.quick), &bend::FIGURES, &options),
         Model::Plants(options) => charts("plants", plants::problems(options.quick), &plants::FIGURES, &options),
         Model::Picture { options, size, views } => chart_picture(&options, size, &chosen(views)),

@@ -7,6 +7,7 @@
 //! | `dust` | Zalesak's disc and a rotating Gaussian: each advection scheme of dust |
 //! | `heat` | the heat kernel: each diffusion scheme |
 //! | `projection` | each pressure method: time against the remaining divergence |
+//! | `honami` | waves over grass that sways and over rigid grass: frequency against the wind; a field of waves |
 //!
 //! All runs are in double precision, so that rounding hides nothing. Zhang's method supports neither moving lids nor prescribed faces: it takes part in
 //! Taylor–Green and in the projection.
@@ -15,6 +16,7 @@ mod cavity;
 mod dust;
 mod flows;
 mod heat;
+mod honami;
 mod projection;
 
 use std::time::{Duration, Instant};
@@ -23,6 +25,7 @@ use anyhow::Result;
 use prairie_wind::{Advection, Config, StepError, TimeScheme};
 
 use super::Problem;
+use super::figure::Figure;
 use crate::problems::{BOTELLA_PEYRET_RE_1000, GHIA_RE_100};
 
 /// A named change of the default configuration.
@@ -40,6 +43,12 @@ const METHODS: [Choice; 6] = [
 
 /// Courant numbers of each method, by the largest initial speed.
 const COURANT: [f64; 2] = [0.5, 2.0];
+
+/// All figures other than error against time.
+pub const FIGURES: [Figure; 2] = [
+    Figure { name: "lock-in", title: "Waves over grass lock in to its own frequency", draw: honami::draw_lock_in },
+    Figure { name: "honami", title: "Waves over a field", draw: honami::draw_field },
+];
 
 /// All problems; `quick` leaves out the finest grids.
 pub fn problems(quick: bool) -> Vec<Problem> {

@@ -36,6 +36,19 @@ impl Meadow {
     }
 }
 
+/// A field like alfalfa (Py et al. 2006: 0.69 m, 1.05 Hz), in a wind whose waves over rigid grass would have nearly its frequency.
+pub const ALFALFA: Meadow = Meadow {
+    height_m: 0.7,
+    drag_per_m: 1.0,
+    wind_m_per_s: 5.0,
+    motion: Some(CanopyMotion { frequency_hz: 1.05, damping_ratio: 0.05, mass_kg_per_m2: 2.0 }),
+};
+
+/// The same field of rigid grass.
+pub fn rigid(meadow: Meadow) -> Meadow {
+    Meadow { motion: None, ..meadow }
+}
+
 /// A wave over a meadow.
 #[derive(Clone, Copy, Debug)]
 pub struct Wave {
