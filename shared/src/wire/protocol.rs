@@ -4,7 +4,7 @@
 mod tests;
 
 /// Version of the wire format; both sides must agree. Changes whenever an encoded byte does; a test compares the bytes with the pinned ones.
-pub const PROTOCOL: u8 = 16;
+pub const PROTOCOL: u8 = 17;
 
 /// Encoded messages in this version, without the version byte: hexadecimal up to 40 bytes, else length and FNV-1a hash.
 #[cfg(test)]

@@ -16,7 +16,11 @@ fn waves_grow_as_in_linear_theory_with_second_order() {
     let found = [8, 12, 16].map(|cells| simulation::wave(&ALFALFA, K_PER_M, cells));
     let errors = found.map(|wave| (wave.growth_per_s / growth - 1.0).abs());
     let orders = [(errors[0] / errors[1]).ln() / 1.5_f64.ln(), (errors[1] / errors[2]).ln() / (4.0_f64 / 3.0).ln()];
-    println!("growth {growth:.4} /s, errors {errors:.4?}, orders {orders:.2?}; frequency {:.4} Hz, {:.4?}", frequency / TAU, found.map(|wave| wave.frequency_rad_per_s / TAU));
+    println!(
+        "growth {growth:.4} /s, errors {errors:.4?}, orders {orders:.2?}; frequency {:.4} Hz, {:.4?}",
+        frequency / TAU,
+        found.map(|wave| wave.frequency_rad_per_s / TAU)
+    );
     assert!(orders.iter().all(|order| (order - 2.0).abs() < 0.15), "{orders:?}");
     assert!((found[2].frequency_rad_per_s / frequency - 1.0).abs() < 0.005);
     // The waves over rigid grass are others.
@@ -39,7 +43,10 @@ fn waves_lock_in_to_the_frequency_of_the_grass() {
     println!("swaying {swaying:.3?}, rigid {stiff:.3?} Hz in winds of {winds:?} m/s");
     for ([theory, solver], [stiff_theory, stiff_solver]) in swaying.iter().zip(&stiff) {
         assert!((solver / theory - 1.0).abs() < 0.02 && (stiff_solver / stiff_theory - 1.0).abs() < 0.02, "theory and solver agree");
-        assert!((solver - own_hz).abs() < 0.7 * (stiff_solver - own_hz).abs(), "{solver} Hz over swaying grass, {stiff_solver} Hz over rigid grass");
+        assert!(
+            (solver - own_hz).abs() < 0.7 * (stiff_solver - own_hz).abs(),
+            "{solver} Hz over swaying grass, {stiff_solver} Hz over rigid grass"
+        );
     }
     // Over rigid grass the frequency grows with the wind, over grass that sways by less than half as much.
     let growth = |found: [[f64; 2]; 3]| found[2][1] / found[0][1] - 1.0;

@@ -79,7 +79,8 @@ impl CameraForceField {
         [(TEXTURE_BINDING, wgpu::BindingResource::TextureView(&self.view)), (FRAME_BINDING, self.frame.as_entire_binding())]
     }
 
-    /// Advances the field by the time since the previous frame, and moves it to a position on the ground.
+    /// Advances the field by the time since the previous frame, and moves it to a position on the ground. After a jump in time the lees are those of a steady wind, so
+    /// that pages that come to the same moment in different ways show the same grass.
     pub(crate) fn update(
         &mut self,
         gpu: &Gpu,
@@ -89,14 +90,15 @@ impl CameraForceField {
         at_m: [f32; 2],
         dt_secs: f32,
     ) {
+        let jumps = !(0.0..=LONGEST_SECS).contains(&dt_secs);
         self.due_secs += dt_secs.max(0.0);
-        if self.due_secs < STEP_SECS {
+        if self.due_secs < STEP_SECS && !jumps {
             return;
         }
         let dt_secs = std::mem::take(&mut self.due_secs).min(LONGEST_SECS);
         let corner = self.field.mesh().about(at_m).corner;
-        let is_first = self.steps == 0;
-        let has_moved = is_first || corner != self.field.mesh().corner;
+        let starts_anew = self.steps == 0 || jumps;
+        let has_moved = starts_anew || corner != self.field.mesh().corner;
         if has_moved {
             self.field.move_to(corner);
             self.field.stand(self.still.near(*self.field.mesh()));
@@ -116,8 +118,8 @@ impl CameraForceField {
                 Ball { at_m, radius_m, velocity_m_per_s: pose.velocity_m_per_s }.push(&mut self.field, dt_secs);
             }
         }
-        // Lees grow by one volume per step; the first frame computes them in full.
-        (0..if is_first { COUNT[0] } else { 1 }).for_each(|_| self.field.shelter());
+        // Lees grow by one volume per step; at the start they are computed in full.
+        (0..if starts_anew { COUNT[0] } else { 1 }).for_each(|_| self.field.shelter());
         self.steps += 1;
         self.write(gpu);
     }

@@ -56,6 +56,8 @@ Files in DIR, updated after each problem:
                      square, linf), error, wall_secs (wall time per simulated second or projection)
   wind-lock-in.svg, .csv  frequency of the waves over grass that sways and over rigid grass against the wind
   wind-honami.svg, .csv   displacement of the grass by place and time
+  wind-cylinder.svg, .csv vortices behind a cylinder at Re = 100
+  wind-outflow.svg, .csv  a vortex that leaves the box
 
 Printed for each problem and a few errors: the fastest method, interpolated between two runs, and how
 much longer the best of another family takes.";

@@ -8,6 +8,7 @@
 //! | `heat` | the heat kernel: each diffusion scheme |
 //! | `projection` | each pressure method: time against the remaining divergence |
 //! | `honami` | waves over grass that sways and over rigid grass: frequency against the wind; a field of waves |
+//! | `wakes` | vortices behind an immersed cylinder, and a vortex that leaves the box |
 //!
 //! All runs are in double precision, so that rounding hides nothing. Zhang's method supports neither moving lids nor prescribed faces: it takes part in
 //! Taylor–Green and in the projection.
@@ -18,6 +19,7 @@ mod flows;
 mod heat;
 mod honami;
 mod projection;
+mod wakes;
 
 use std::time::{Duration, Instant};
 
@@ -45,9 +47,11 @@ const METHODS: [Choice; 6] = [
 const COURANT: [f64; 2] = [0.5, 2.0];
 
 /// All figures other than error against time.
-pub const FIGURES: [Figure; 2] = [
+pub const FIGURES: [Figure; 4] = [
     Figure { name: "lock-in", title: "Waves over grass lock in to its own frequency", draw: honami::draw_lock_in },
     Figure { name: "honami", title: "Waves over a field", draw: honami::draw_field },
+    Figure { name: "cylinder", title: "Vortices behind a cylinder", draw: wakes::draw_cylinder },
+    Figure { name: "outflow", title: "A vortex leaves the box", draw: wakes::draw_outflow },
 ];
 
 /// All problems; `quick` leaves out the finest grids.
@@ -120,6 +124,14 @@ mod tests {
         for (Problem { name, runs, .. }, largest) in problems(true).into_iter().zip(largest) {
             let error = (runs[0].solve)().unwrap().error;
             assert!(error.l2 > 0.0 && error.l2 < largest, "{name}: {error:?}");
+        }
+    }
+
+    #[test]
+    fn every_figure_has_its_data() {
+        for figure in &FIGURES {
+            let drawn = (figure.draw)(true, "caption").unwrap();
+            assert!(drawn.svg.contains("caption") && drawn.csv.lines().count() > 5 && !drawn.summary.is_empty(), "{}", figure.name);
         }
     }
 }
