@@ -89,9 +89,11 @@ impl RandomWind {
             mean_wind_m_per_s: [0.0; 3],
             profile: Profile::Uniform,
             gusts: Gusts { number: 0, ..Gusts::default() },
-            canopy: random
-                .one_in(3)
-                .then(|| Canopy { height_m: random.scale(0.01, 100.0) as f32, drag_per_m: random.scale(1e-3, 1e3) as f32 }),
+            canopy: random.one_in(3).then(|| Canopy {
+                height_m: random.scale(0.01, 100.0) as f32,
+                drag_per_m: random.scale(1e-3, 1e3) as f32,
+                motion: None,
+            }),
             dust: random.one_in(2).then(|| dust(&mut random)),
             seed: random.bits(),
             ..Config::default()

@@ -216,6 +216,7 @@ impl Weather {
     /// Adds the wind to a checksum.
     pub(crate) fn hash(&self, sum: &mut Checksum) {
         sum.add(self.air.cell_velocities().flat_map(|velocity| velocity.to_array().map(f32::to_bits)));
+        sum.add(self.air.stems().into_iter().flatten().map(|value| value.to_bits()));
         sum.add([self.frame.tick as u32]);
         let TurbulenceState { travel_m: [x_m, z_m], path_m, friction_m_per_s } = self.turbulence;
         sum.add([x_m, z_m, path_m].into_iter().flat_map(|m| [m.to_bits() as u32, (m.to_bits() >> 32) as u32]));

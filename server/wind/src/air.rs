@@ -169,6 +169,15 @@ impl<R: Real> Air<R> {
         }
     }
 
+    /// Displacement (m) and velocity (m/s) of the tops of the grass, as in [`State::stems`](super::state::State::stems); empty if the canopy does not move, or with
+    /// [`StableFluids`].
+    pub fn stems(&self) -> [&[R]; 4] {
+        match self {
+            Self::Staggered(air) => air.stems(),
+            Self::StableFluids(_) => [&[]; 4],
+        }
+    }
+
     /// Places sponge layers across x and z at these positions (m); see [`Solver::set_sponge`].
     pub fn set_sponge(&mut self, sponge_m: Option<[f64; 2]>) {
         either!(self, air => air.set_sponge(sponge_m))

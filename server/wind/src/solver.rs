@@ -208,6 +208,11 @@ impl<R: Real> Solver<R> {
         self.stems.as_ref().map(|stems| stems.displacements(&self.grid))
     }
 
+    /// Displacement (m) and velocity (m/s) of the tops of the grass, as in [`State::stems`]; empty if the canopy does not move.
+    pub fn stems(&self) -> [&[R]; 4] {
+        self.stems.as_ref().map_or([&[]; 4], |stems| stems.values.each_ref().map(Vec::as_slice))
+    }
+
     /// Places a sponge layer across x and one across z at these positions (m) in a box that is periodic along both: the air there relaxes to the mean wind, so that
     /// disturbances do not re-enter. `None` (initially) for no sponge.
     pub fn set_sponge(&mut self, sponge_m: Option<[f64; 2]>) {

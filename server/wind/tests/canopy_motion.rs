@@ -71,7 +71,9 @@ fn air_and_stems_exchange_energy_and_gain_none_in_steps_of_any_length() {
 /// Displacement (m) of stems in a steady wind over that at which its drag and their stiffness balance, less one.
 fn imbalance(dt_secs: f64) -> f64 {
     let mut air = Solver::<f64>::new(&Config { relaxation_per_s: 3.0, mean_wind_m_per_s: [4.0, 0.0, 0.0], ..column(CANOPY) }).unwrap();
-    (0..(40.0 / dt_secs) as usize).for_each(|_| drop(air.step(dt_secs, &[]).unwrap()));
+    (0..(40.0 / dt_secs) as usize).for_each(|_| {
+        air.step(dt_secs, &[]).unwrap();
+    });
     let wind: Vec<f64> = air.samples(0).map(|(_, speed)| speed).collect();
     let push = |((shape, part), speed): ((f64, f64), &f64)| part * shape * speed * speed;
     let pushed = AIR_KG_PER_M3 * f64::from(CANOPY.drag_per_m) * LAYER_M * layers().zip(&wind).map(push).sum::<f64>();
@@ -102,7 +104,9 @@ fn stems_without_drag_swing_at_their_frequency_and_decay_with_second_order() {
         let mut state = air.state();
         state.stems[0].fill(0.1);
         air.restore(&state).unwrap();
-        (0..steps).for_each(|_| drop(air.step(secs / steps as f64, &[]).unwrap()));
+        (0..steps).for_each(|_| {
+            air.step(secs / steps as f64, &[]).unwrap();
+        });
         (air.canopy_displacements_m().unwrap().next().unwrap()[0] - exact_m(secs)).abs()
     };
     let errors = [200, 400, 800].map(error_m);
@@ -116,7 +120,11 @@ fn a_restored_canopy_goes_on_with_the_same_bits() {
     let config =
         Config { mean_wind_m_per_s: [3.0, 0.0, 1.0], relaxation_per_s: 0.5, gusts: Gusts { number: 6, ..Gusts::default() }, ..config };
     let start = || Solver::<f32>::new(&config).unwrap();
-    let run = |air: &mut Solver<f32>, steps: usize| (0..steps).for_each(|_| drop(air.step(0.05, &[]).unwrap()));
+    let run = |air: &mut Solver<f32>, steps: usize| {
+        for _ in 0..steps {
+            air.step(0.05, &[]).unwrap();
+        }
+    };
     let (mut whole, mut copy) = (start(), start());
     run(&mut whole, 40);
     copy.restore(&whole.state()).unwrap();

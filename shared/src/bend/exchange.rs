@@ -12,7 +12,7 @@ type Around = [Option<(usize, Neighbour)>; 8];
 /// One plane of all patches: of a channel at a time.
 #[derive(Debug, Default)]
 struct PlaneSet {
-    /// Number of the plane, as in [`Patch::planes`].
+    /// Number of the plane, as in [`Patch::plane_mut`].
     number: usize,
     planes: Vec<Vec<f32>>,
 }

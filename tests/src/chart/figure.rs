@@ -175,7 +175,8 @@ pub(super) fn panels_svg(panels: &[Panel], classes: &[(&str, RGBColor)], axes: [
     const HEIGHT_PX: u32 = 560;
     const WIDE_PX: i32 = 330;
     let mut text = String::new();
-    let root = SVGBackend::with_string(&mut text, (130 + (WIDE_PX as u32 + 30) * panels.len() as u32, HEIGHT_PX)).into_drawing_area();
+    let root =
+        SVGBackend::with_string(&mut text, ((130 + (WIDE_PX as u32 + 30) * panels.len() as u32).max(680), HEIGHT_PX)).into_drawing_area();
     headed(&root, words, HEIGHT_PX)?;
     for (n, panel) in panels.iter().enumerate() {
         let frame = PlotArea { left: 100 + n as i32 * (WIDE_PX + 30), top: 120, width: WIDE_PX, height: 330 };

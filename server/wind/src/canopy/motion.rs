@@ -23,7 +23,7 @@ pub struct CanopyMotion {
     pub frequency_hz: f32,
     /// Damping ratio ζ in still air, apart from drag. Default 0.05; 0 or more.
     pub damping_ratio: f32,
-    /// Mass m of the plants per area of ground (kg/m²), the same at every height. Default 2; above 0. Meadows before the cut have 1 to 4.
+    /// Mass m of the plants per area of ground (kg/m²), the same at every height. Default 2; above 0.
     pub mass_kg_per_m2: f32,
 }
 

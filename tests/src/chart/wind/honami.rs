@@ -49,7 +49,7 @@ pub(super) fn draw_lock_in(quick: bool, caption: &str) -> Result<Drawn> {
         Axis { name: "frequency of the most amplified wave (Hz)", range: [0.0, 2.0], logarithmic: false },
     ];
     let subtitle = "0.7 m high, 1.05 Hz, as alfalfa; rigid grass waves the faster the stronger the wind (Py, de Langre & Moulia 2006)";
-    let words = Words { title: "Waves over grass lock in to its own frequency", subtitle, caption };
+    let words = Words { title: "Waves over grass are drawn to its own frequency", subtitle, caption };
     Ok(Drawn { svg: curves_svg(&curves, axes, words)?, csv, summary, tables: None })
 }
 

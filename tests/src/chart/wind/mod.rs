@@ -48,7 +48,7 @@ const COURANT: [f64; 2] = [0.5, 2.0];
 
 /// All figures other than error against time.
 pub const FIGURES: [Figure; 4] = [
-    Figure { name: "lock-in", title: "Waves over grass lock in to its own frequency", draw: honami::draw_lock_in },
+    Figure { name: "lock-in", title: "Waves over grass are drawn to its own frequency", draw: honami::draw_lock_in },
     Figure { name: "honami", title: "Waves over a field", draw: honami::draw_field },
     Figure { name: "cylinder", title: "Vortices behind a cylinder", draw: wakes::draw_cylinder },
     Figure { name: "outflow", title: "A vortex leaves the box", draw: wakes::draw_outflow },

@@ -8,7 +8,7 @@
 //! σp = −ω₀²q − 2ζω₀p + (ρ/M)·∫ 2r·χ·(φ′ − χp) dy
 //! ```
 //!
-//! These are the equations of Py, de Langre & Moulia (2006), with a smooth profile instead of a broken line and with eddy viscosity. They are solved here by finite differences for
+//! This is the mechanism of Py, de Langre & Moulia (2006), linear waves of a shear layer and of stems that its drag couples, with a smooth profile and eddy viscosity. They are solved here by finite differences for
 //! the stream function, on another grid and in other variables than those of the wind solver.
 
 use super::{AIR_KG_PER_M3, Meadow, Wave};
