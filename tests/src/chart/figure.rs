@@ -183,10 +183,12 @@ pub(super) fn panels_svg(panels: &[Panel], classes: &[(&str, RGBColor)], axes: [
         frame.draw_axes(&root, [&axes[0], &axes[1]], [true, n == 0])?;
         write(&root, &panel.name, (frame.left, frame.top - 16), 19, INK, HPos::Left)?;
         for (i, column) in panel.columns.iter().enumerate() {
-            for (j, class) in column.iter().enumerate() {
+            let mut j = 0;
+            for run in column.chunk_by(|a, b| a == b) {
                 let x = |n: usize| frame.left + (n as i32 * frame.width) / panel.columns.len() as i32;
                 let y = |n: usize| frame.top + frame.height - (n as i32 * frame.height) / column.len() as i32;
-                root.draw(&Rectangle::new([(x(i), y(j + 1)), (x(i + 1), y(j))], classes[*class].1.filled()))?;
+                root.draw(&Rectangle::new([(x(i), y(j + run.len())), (x(i + 1), y(j))], classes[run[0]].1.filled()))?;
+                j += run.len();
             }
         }
     }
