@@ -94,8 +94,8 @@ pub struct WaveField {
 }
 
 /// Columns and rows of a wave field.
-const PLACES: usize = 48;
-const TIMES: usize = 40;
+const PLACES: usize = 32;
+const TIMES: usize = 25;
 /// Length of the field in heights of the canopy, and times of its first and last row as above.
 const FIELD_LENGTH: f64 = 24.0;
 const FIELD_FROM: usize = 120;
