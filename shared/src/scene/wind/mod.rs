@@ -41,7 +41,7 @@ pub struct Wind {
     /// Default 0.1, allowed 0..=10; 0 with the method `stable-fluids`, which has no canopy.
     pub canopy_drag_per_m: f32,
     /// Natural frequency of standing grass (Hz). Where it is above 0, the grass sways in the wind and acts back on it: the drag is that on the relative velocity
-    /// (Py et al. 2006), and waves over cells as fine as the grass is high lock in to this frequency. Alfalfa has 1.05, wheat 2.5. Default 0, grass that holds
+    /// (Py et al. 2006), and waves over cells as fine as the grass is high are drawn to this frequency. Alfalfa has 1.05, wheat 2.5. Default 0, grass that holds
     /// still; allowed 0..=20.
     pub canopy_frequency_hz: f32,
     /// Damping ratio of standing grass that sways, apart from its drag. Default 0.05, allowed 0..=2.
