@@ -241,3 +241,7 @@ fn standing<R: Real>(grid: &Grid<R>, cover: &[R], i: usize, k: usize) -> R {
     let [nx, _, nz] = grid.cells;
     cover[i.min(nx - 1) + nx * k.min(nz - 1)]
 }
+
+#[cfg(test)]
+#[path = "motion_tests.rs"]
+mod tests;
