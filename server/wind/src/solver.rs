@@ -265,7 +265,7 @@ impl<R: Real> Solver<R> {
         }
     }
 
-    /// Memory (bytes) of fields and work arrays, except those of an iterative pressure solver or of implicit diffusion.
+    /// Memory (bytes) of fields, work arrays and solids, except the plans of transforms and the work arrays of an iterative pressure solver or of implicit diffusion.
     pub fn memory_bytes(&self) -> usize {
         let velocities = [&self.velocity, &self.pressure_gradient, &self.stages[0], &self.stages[1]]
             .into_iter()
@@ -277,7 +277,13 @@ impl<R: Real> Solver<R> {
         let scratch =
             self.advection.values() + self.transport.values() + self.canopy_fraction.len() + self.stems.as_ref().map_or(0, Stems::len);
         let pressure = 3 * self.grid.len() + self.volume_sources_per_s.len();
-        size_of::<R>() * (values + traced + scratch) + size_of::<f64>() * pressure + self.pushes.memory_bytes()
+        let solids =
+            self.solid.as_ref().map_or(0, Vec::len) + self.immersed.as_ref().map_or(0, Immersed::memory_bytes) + self.drag.memory_bytes();
+        size_of::<R>() * (values + traced + scratch)
+            + size_of::<f64>() * pressure
+            + self.pushes.memory_bytes()
+            + self.boundaries.memory_bytes()
+            + solids
     }
 
     /// The velocity on its faces.

@@ -95,19 +95,23 @@ fn a_grid_large_enough_for_parallel_loops_is_stepped_without_allocations() {
     assert_eq!(allocations::<f32>(&Config { canopy, ..everything() }), 0, "a canopy that moves");
 }
 
+/// A moving cube.
+fn body(x_m: f64, half_m: f64) -> Body {
+    Body {
+        centre_m: [x_m, 7.0, 20.0],
+        half_extents_m: [half_m; 3],
+        axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        velocity_m_per_s: [1.0, 0.0, 0.0],
+        drag_coefficient: 1.0,
+    }
+}
+
 #[test]
 fn solids_do_not_allocate_in_a_step() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let allocations = pool.install(|| {
         let mut air = Solver::<f32>::new(&Config { cells: [24, 12, 24], ..everything() }).unwrap();
         air.set_walls(|[x, y, _]| y - 0.1 * x, |_| [0.0; 3]).unwrap();
-        let body = |x: f64, half_m: f64| Body {
-            centre_m: [x, 7.0, 20.0],
-            half_extents_m: [half_m; 3],
-            axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-            velocity_m_per_s: [1.0, 0.0, 0.0],
-            drag_coefficient: 1.0,
-        };
         let bodies = [body(20.0, 4.0), body(30.0, 0.4)];
         air.set_drag(&[bodies[1].drag()]);
         let mut step = |_| {
@@ -118,6 +122,54 @@ fn solids_do_not_allocate_in_a_step() {
         allocation_counter::measure(|| (0..STEPS).for_each(&mut step)).count_total
     });
     assert_eq!(allocations, 0);
+}
+
+/// Growth of the stated memory (bytes) of a solver by a change of its solids, and that of the memory it holds.
+fn growth<R: Real>(air: &mut Solver<R>, change: impl FnOnce(&mut Solver<R>)) -> [i64; 2] {
+    let before = air.memory_bytes() as i64;
+    let held = allocation_counter::measure(|| change(air)).bytes_current;
+    [air.memory_bytes() as i64 - before, held]
+}
+
+fn check_memory_of_solids<R: Real>() {
+    let mut air = Solver::<R>::new(&Config { cells: [24, 12, 24], ..everything() }).unwrap();
+    let mut check = |name: &str, is_larger: bool, change: &dyn Fn(&mut Solver<R>)| {
+        let [stated, held] = growth(&mut air, change);
+        assert!(stated == held && (held > 0) == is_larger, "{name}: {stated} B more are stated, {held} B are held");
+    };
+    check("walls", true, &|air| air.set_walls(|[x, y, _]| y - 0.1 * x, |_| [0.0; 3]).unwrap());
+    check("fixed drag", true, &|air| air.set_drag(&[body(30.0, 0.4).drag()]));
+    check("a small body", true, &|air| air.set_bodies(&[body(12.0, 0.4)]));
+    check("a large body", true, &|air| air.set_bodies(&[body(20.0, 4.0), body(12.0, 0.4)]));
+    check("no body", false, &|air| air.set_bodies(&[]));
+    check("no walls", false, &|air| air.set_walls(|_| 1.0, |_| [0.0; 3]).unwrap());
+}
+
+#[test]
+fn the_stated_memory_includes_that_of_solids() {
+    check_memory_of_solids::<f32>();
+    check_memory_of_solids::<f64>();
+}
+
+/// A single solid cell takes a flag per cell and a list of its six faces.
+#[test]
+fn the_stated_memory_includes_that_of_solid_cells_and_inflow() {
+    let effort = Effort { tolerance: 1e-3, sweeps: 20 };
+    let config = Config { pressure: Pressure::Iterative(IterativeMethod::Multigrid, effort), ..everything() };
+    let mut air = Solver::<f32>::new(&config).unwrap();
+    let [stated, _] = growth(&mut air, |air| air.set_solid(|[x, y, z]| x == 5.0 && y == 2.5 && z == 5.0).unwrap());
+    let [flags, faces] = [air.grid().len() as i64, (6 * size_of::<usize>()) as i64];
+    assert!((flags + faces..=flags + 4 * faces).contains(&stated), "{stated} B for {flags} cells and a list of {faces} B");
+
+    let between = |face: Boundary| {
+        let boundary = [[Boundary::Wrap; 2], [Boundary::FreeSlip; 2], [face; 2]];
+        let config = Config { boundary, mean_wind_m_per_s: [3.0, 0.0, 0.0], profile: Profile::Uniform, ..everything() };
+        let air = Solver::<f32>::new(&config).unwrap();
+        let [nx, ny, _] = air.grid().padded();
+        (air.memory_bytes(), 3 * nx * ny * size_of::<f32>())
+    };
+    let ((closed, _), (open, per_face)) = (between(Boundary::NoSlip), between(Boundary::Inflow));
+    assert_eq!(open - closed, 2 * per_face);
 }
 
 #[test]

@@ -60,6 +60,12 @@ impl<R: Real> BoundaryConditions<R> {
         self.backflow_rests = false;
     }
 
+    /// Memory of the values on inflow faces and of the list of solid cells' faces (bytes).
+    pub(super) fn memory_bytes(&self) -> usize {
+        let inflow: usize = self.inflow.iter().flat_map(|face| &face.doubled).map(|values| size_of_val(values.as_slice())).sum();
+        inflow + self.solid_faces.iter().map(|faces| faces.capacity() * size_of::<usize>()).sum::<usize>()
+    }
+
     /// Changes the velocity prescribed on inflow faces.
     pub fn set_inflow(&mut self, prescribed: Prescribed) {
         self.prescribed = prescribed;

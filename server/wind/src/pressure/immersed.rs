@@ -31,6 +31,11 @@ impl Iteration {
         let zeros = || vec![0.0; cells];
         Self { potential: zeros(), residual: zeros(), direction: zeros(), image: zeros() }
     }
+
+    /// Memory (bytes).
+    pub(crate) fn memory_bytes(&self) -> usize {
+        [&self.potential, &self.residual, &self.direction, &self.image].map(|values| size_of_val(values.as_slice())).iter().sum()
+    }
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

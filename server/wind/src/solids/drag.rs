@@ -94,6 +94,14 @@ impl<R: Real> Drag<R> {
         }
     }
 
+    /// Memory of the bodies' faces (bytes).
+    pub(crate) fn memory_bytes(&self) -> usize {
+        let faces = |slowed: &Slowed<R>| slowed.faces.iter().map(|faces| faces.capacity() * size_of::<DragFace<R>>()).sum::<usize>();
+        let moving = self.moving.capacity() * size_of::<Slowed<R>>() + self.moving.iter().map(faces).sum::<usize>();
+        let shares: usize = self.shares.iter().map(|shares| shares.capacity() * size_of::<(usize, f64)>()).sum();
+        faces(&self.fixed) + moving + shares
+    }
+
     /// Applies the drag for `dt_secs` (s), first of the fixed bodies, then of each moving one. The ghosts of `velocity` must be filled.
     pub(crate) fn apply(&mut self, grid: &Grid<R>, dt_secs: f64, velocity: &mut Velocity<R>) {
         let Self { fixed, moving, count, .. } = self;

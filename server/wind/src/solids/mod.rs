@@ -31,4 +31,9 @@ impl<R: Real> Immersed<R> {
     fn new(cells: usize) -> Self {
         Self { walls: Walls::default(), iteration: Iteration::new(cells), step_secs: 0.0 }
     }
+
+    /// Memory of the walls and of the work arrays (bytes).
+    pub(crate) fn memory_bytes(&self) -> usize {
+        self.walls.memory_bytes() + self.iteration.memory_bytes()
+    }
 }

@@ -99,6 +99,11 @@ impl<R: Real> Walls<R> {
         self.faces.iter().map(Vec::len).sum()
     }
 
+    /// Memory of the faces (bytes).
+    pub(super) fn memory_bytes(&self) -> usize {
+        self.faces.iter().map(|faces| faces.capacity() * size_of::<WallFace<R>>()).sum()
+    }
+
     /// Gives the faces of `velocity` what the walls demand after `dt_secs` (s), by a backward Euler step.
     pub(crate) fn hold(&mut self, dt_secs: f64, velocity: &mut Velocity<R>) {
         let dt = R::of(dt_secs);
