@@ -7,13 +7,14 @@ import package::inputs::grass_kinds::{kind_at, kinds};
 import package::inputs::lamps::lamps_on;
 import package::inputs::random::dither_at;
 import package::inputs::shadows::sun_visible;
-import package::inputs::wind::{ground_wind_at, lean_of_wind};
+import package::inputs::wind::{gust_at, lean_of_wind};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
 import package::land_and_sky::ground::{fed, grass_fraction, ground_height, ground_normal};
 import package::land_and_sky::haze::hazed;
 import package::land_and_sky::sky_light::ambient;
 import package::land_and_sky::sward::{MEAN_STRAW, blade_color, contrast, sward_color};
+import package::plants::force_field::sheltered_at;
 import package::plants::nearness::nearness;
 import package::plants::opacity::LEAST_OPACITY;
 import package::plants::weighted::{Weighted, weighted};
@@ -101,7 +102,7 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let ground = vec3<f32>(root.x, ground_height(root), root.y);
     let distance_m = distance(ground, frame.eye_m);
     let level = field_level(distance_m);
-    let wind_lean = lean_of_wind(ground_wind_at(ground), kind.wind_bend_rad);
+    let wind_lean = lean_of_wind(sheltered_at(ground, 0.0) + gust_at(root), kind.wind_bend_rad);
     let lean = lean_of_field(root, level) + wind_lean;
     // Clumps fade in as single plants fade out (Zhang, section 6.1).
     let fade_in = smoothstep(frame.blades_fade_from_m, frame.blades_end_m, distance_m + (clump.random - 0.5) * (2.0 * CLUMP_FADE_SPREAD_M));

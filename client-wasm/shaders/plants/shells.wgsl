@@ -8,13 +8,14 @@ import package::inputs::grass_kinds::kinds_blended;
 import package::inputs::noise::noise;
 import package::inputs::random::gradient_noise;
 import package::inputs::shadows::sun_visible;
-import package::inputs::wind::{gust_at, resolved_at};
+import package::inputs::wind::gust_at;
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::{grass_tint, plant_color, trodden};
 import package::land_and_sky::grass_light::{grass_lamps, grass_light};
 import package::land_and_sky::ground::{fed, grass_fraction, ground_height, ground_normal};
 import package::land_and_sky::ground_tile::{GroundTile, tile_vertex};
 import package::land_and_sky::haze::hazed;
+import package::plants::force_field::sheltered_at;
 import package::uniforms::ShellFrame;
 
 // Size of the pattern of clumps (m).
@@ -87,10 +88,10 @@ fn tilt_of(lean_rad: f32) -> vec2<f32> {
     return vec2<f32>(root_rad, (min(twice, RIGHT_ANGLE) - root_rad) / RIGHT_ANGLE);
 }
 
-// Wind over the ground (m/s) as grass follows it: at once when it rises, slowly when it falls. The gusts of the last second are those that the wind has
+// Wind over the ground (m/s), behind obstacles, as grass follows it: at once when it rises, slowly when it falls. The gusts of the last second are those that the wind has
 // carried past.
 fn wind_held(ground: vec3<f32>) -> vec2<f32> {
-    let resolved = resolved_at(ground, 0.0).xz;
+    let resolved = sheltered_at(ground, 0.0);
     let now = resolved + gust_at(ground.xz);
     let passed_m = frame.wind_direction * (frame.mean_wind_m_per_s * RELEASE_SECS * 0.5);
     var held = now;

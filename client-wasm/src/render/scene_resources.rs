@@ -83,12 +83,12 @@ impl SceneResources {
 
     /// The shells, created when first needed.
     pub(super) fn shells(&mut self, decoded: &DecodedScene) -> &mut Shells {
-        self.shells.get_or_insert_with(|| Shells::new(&self.factory, decoded, &self.quadtree))
+        self.shells.get_or_insert_with(|| Shells::new(&self.factory, decoded, &self.quadtree, &self.force_field))
     }
 
     /// The clumps, created when first needed.
     pub(super) fn billboards(&mut self) -> &mut Billboards {
-        self.billboards.get_or_insert_with(|| Billboards::new(&self.factory))
+        self.billboards.get_or_insert_with(|| Billboards::new(&self.factory, &self.force_field))
     }
 
     /// Whether a frame may need several batches.

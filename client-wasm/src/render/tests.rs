@@ -1,6 +1,6 @@
 use crate::camera::Camera;
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{PassFactory, bind, storage_rw};
+use crate::render::gpu::pipeline::{PassFactory, bind_at, storage_rw};
 use crate::render::gpu::readback::read;
 use crate::render::gpu::shaders::tests::{linked, parsed};
 use crate::render::gpu::shaders::{self, Constant};
@@ -9,6 +9,7 @@ use crate::render::offscreen::OffscreenRenderer;
 use crate::render::options::quality::Quality;
 use crate::render::options::render_options::{FarPlants, RenderOptions};
 use crate::render::plants::blades;
+use crate::render::plants::force_field::CameraForceField;
 use crate::render::plants::shells::TileLayer;
 use crate::render::plants::underbrush::UnderbrushPlant;
 use crate::state::Mirror;
@@ -28,6 +29,7 @@ mod bare;
 mod branches;
 mod constants;
 mod cracks;
+mod lees;
 mod light;
 mod order;
 mod plain;
@@ -252,15 +254,16 @@ fn compute(
     let renderer = &picture.renderer;
     let factory =
         PassFactory { gpu: gpu.clone(), frame_layout: renderer.bindings.layout.clone(), samples: 1, has_kinds: true, soft_shadows: true };
-    let layout = factory.layout("probes", &[storage_rw(0)]);
+    let layout = factory.layout("probes", &[&[storage_rw(0)][..], &CameraForceField::layout()].concat());
+    let scene = renderer.scene.as_ref().expect("a scene");
     let pipeline = factory.compute("probe", &gpu.shader("probe", source, constants), "probe", &layout);
     let probes = gpu.buffer("probes", bytemuck::cast_slice(inputs), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-    let group = bind(gpu, "probes", &layout, &[probes.as_entire_binding()]);
+    let group = bind_at(gpu, "probes", &layout, [(0, probes.as_entire_binding())].into_iter().chain(scene.force_field.resources()));
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &renderer.scene.as_ref().expect("a scene").textures.group, &[]);
+        pass.set_bind_group(0, &scene.textures.group, &[]);
         pass.set_bind_group(1, &group, &[]);
         pass.dispatch_workgroups(invocations, 1, 1);
     }

@@ -170,7 +170,7 @@ impl SceneResources {
 
     /// Advances the force field if plants feel it.
     fn prepare_forces(&mut self, gpu: &Gpu, decoded: &DecodedScene, from: &Viewpoint<'_>, poses: &[ObjectPose]) {
-        if self.blades.is_some() || self.underbrush.is_some() {
+        if self.blades.is_some() || self.shells.is_some() || self.underbrush.is_some() {
             self.force_field.update(gpu, decoded, &self.textures.wind, poses, [from.eye_m.x, from.eye_m.z], from.dt_secs);
         }
     }

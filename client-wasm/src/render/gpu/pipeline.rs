@@ -183,17 +183,21 @@ fn buffer(binding: u32, visibility: wgpu::ShaderStages, ty: wgpu::BufferBindingT
 
 /// A bind group of resources with bindings 0, 1, …
 pub(crate) fn bind(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
-    let entries: Vec<_> = resources
-        .iter()
-        .enumerate()
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource: resource.clone() })
-        .collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+    bind_at(gpu, label, layout, (0..).zip(resources.iter().cloned()))
 }
 
 /// A bind group of buffers, each with its binding.
 pub(crate) fn bind_as(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {
-    let entries: Vec<_> =
-        buffers.iter().map(|&(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }).collect();
+    bind_at(gpu, label, layout, buffers.iter().map(|&(binding, buffer)| (binding, buffer.as_entire_binding())))
+}
+
+/// A bind group of resources, each with its binding.
+pub(crate) fn bind_at<'a>(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    resources: impl IntoIterator<Item = (u32, wgpu::BindingResource<'a>)>,
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = resources.into_iter().map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }

@@ -2,7 +2,7 @@
 
 use crate::render::gpu::constants::{DUSTY_CELLS, WORKGROUP_SIZE};
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, storage, storage_rw, uniform};
+use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind_as, storage, storage_rw, uniform};
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::Drift;
 use crate::render::inputs::dusty_cells::DustyCells;
@@ -63,9 +63,9 @@ impl Dust {
         let dusty_cells = gpu.empty_buffer("dusty cells", u64::from(DUSTY_CELLS) * 4, BufferUsages::STORAGE | BufferUsages::COPY_DST);
         let blow_layout = factory.layout("dust drifts", &[uniform(0), storage_rw(1), storage_rw(2), storage(4)]);
         let resources = [(0, &drift), (1, &positions), (2, &sprites), (4, &dusty_cells)];
-        let blow_group = bind_at(gpu, "dust drifts", &blow_layout, &resources);
+        let blow_group = bind_as(gpu, "dust drifts", &blow_layout, &resources);
         let layout = factory.layout("dust", &[uniform(0), storage(3)]);
-        let group = bind_at(gpu, "dust", &layout, &[(0, &drift), (3, &sprites)]);
+        let group = bind_as(gpu, "dust", &layout, &[(0, &drift), (3, &sprites)]);
         let module = factory.shader("dust", shaders::DUST, &[]);
         let draw = DrawDescriptor {
             label: "dust",
@@ -114,10 +114,4 @@ fn domains(wind: &Wind, square_m: f32) -> f32 {
     let by_patch = wind.tiling == WindTiling::Patch;
     let along = |side_m: f32, wraps: bool| if wraps || by_patch { (square_m / side_m - 1.0).max(1.0) } else { 1.0 };
     along(x_m, wraps_x) * along(z_m, wraps_z)
-}
-
-fn bind_at(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {
-    let entries = buffers.iter().map(|(binding, buffer)| wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() });
-    let entries: Vec<_> = entries.collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }

@@ -2,7 +2,7 @@
 
 use crate::render::gpu::constants::{CLUMP_FADE_SPREAD_M, CLUMP_SEGMENT_LIMIT, CLUMPS, WORKGROUP_SIZE};
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{PassFactory, bind_as, storage, storage_rw, uniform};
+use crate::render::gpu::pipeline::{PassFactory, bind_at, storage, storage_rw, uniform};
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::ClumpList;
 use crate::render::inputs::frustum::Frustum;
@@ -11,6 +11,7 @@ use crate::render::options::render_options::BlendOrder;
 use crate::render::plants::blades::grid_is_seen;
 use crate::render::plants::clump_pipelines::{Cell, ClumpPipelines};
 use crate::render::plants::clump_texture::{TUFT_PX, tufts};
+use crate::render::plants::force_field::CameraForceField;
 use crate::render::plants::per_blend_order::PerBlendOrder;
 use crate::state::DecodedScene;
 use bytemuck::{Pod, Zeroable};
@@ -48,31 +49,35 @@ pub(crate) struct Billboards {
     pub(crate) pipelines: PerBlendOrder<ClumpPipelines>,
     place: wgpu::ComputePipeline,
     place_group: wgpu::BindGroup,
-    clumps: wgpu::Buffer,
+    pub(crate) clumps: wgpu::Buffer,
     list: wgpu::Buffer,
-    poses: wgpu::Buffer,
+    pub(crate) poses: wgpu::Buffer,
     tufts: wgpu::TextureView,
     /// Index buffers of instances whose rectangles have 1, 2, … rows.
     indices: [wgpu::Buffer; SEGMENT_LIMIT],
-    count: u32,
+    pub(crate) count: u32,
     /// Instances whose clumps have several segments, and their maximum number of segments.
     several: u32,
     segments: usize,
 }
 
 impl Billboards {
-    pub(crate) fn new(factory: &PassFactory) -> Self {
+    pub(crate) fn new(factory: &PassFactory, forces: &CameraForceField) -> Self {
         let gpu = &factory.gpu;
-        let place_layout = factory.layout("billboard places", &[storage(0), uniform(1), storage_rw(4)]);
+        let place_layout =
+            factory.layout("billboard places", &[&[storage(0), uniform(1), storage_rw(4)][..], &CameraForceField::layout()].concat());
         let module = factory.shader("billboards", shaders::BILLBOARDS, &[]);
         let place = factory.compute("place", &module, "place", &place_layout);
         let size = (CLUMP_LIMIT * size_of::<Clump>()) as u64;
-        let clumps = gpu.empty_buffer("clumps", size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
+        let clumps = gpu.empty_buffer("clumps", size, BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
         let list = gpu.empty_buffer("clump list", size_of::<ClumpList>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let tufts = gpu.texture("tufts", wgpu::TextureFormat::Rgba8Unorm, TUFT_PX, &tufts());
         let tufts = tufts.create_view(&Default::default());
-        let poses = gpu.empty_buffer("poses", (CLUMP_LIMIT as u64) * POSE_BYTES, BufferUsages::STORAGE);
-        let place_group = bind_as(gpu, "billboard places", &place_layout, &[(0, &clumps), (1, &list), (4, &poses)]);
+        let poses = gpu.empty_buffer("poses", (CLUMP_LIMIT as u64) * POSE_BYTES, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let place_group = {
+            let own = [(0, &clumps), (1, &list), (4, &poses)].map(|(binding, buffer)| (binding, buffer.as_entire_binding()));
+            bind_at(gpu, "billboard places", &place_layout, own.into_iter().chain(forces.resources()))
+        };
         let indices = std::array::from_fn(|i| gpu.buffer("clump", bytemuck::cast_slice(&clump_indices(i as u16 + 1)), BufferUsages::INDEX));
         let pipelines = ClumpPipelines::new(factory, BlendOrder::default(), CLUMP_LIMIT as u32, [&clumps, &list, &poses], &tufts);
         Self {

@@ -1,5 +1,5 @@
 //! Force field around the camera (Endo et al. 2003, §4.1): a mesh of volumes with the sheltered wind and the impulses of moving objects, which
-//! bend the underbrush; blades of grass feel the sheltered wind.
+//! bend the underbrush; grass feels the sheltered wind.
 
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::f16::half;

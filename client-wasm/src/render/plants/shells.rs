@@ -2,13 +2,14 @@
 
 use crate::render::gpu::constants::{TILE_VERTICES, WORKGROUP_SIZE};
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, storage, storage_rw, texture, uniform};
+use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind_at, storage, storage_rw, texture, uniform};
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::ShellFrame;
 use crate::render::inputs::frustum::Frustum;
 use crate::render::land_and_sky::terrain::tile_indices;
 use crate::render::land_and_sky::terrain_quadtree::{GroundTile, TerrainQuadtree};
 use crate::render::plants::blades::square_is_seen;
+use crate::render::plants::force_field::CameraForceField;
 use crate::render::plants::shell_texture;
 use crate::render::plants::shell_texture::{DOTS, DOTS_PX};
 use crate::state::DecodedScene;
@@ -77,10 +78,10 @@ pub(crate) struct Shells {
 }
 
 impl Shells {
-    pub(crate) fn new(factory: &PassFactory, decoded: &DecodedScene, ground: &TerrainQuadtree) -> Self {
+    pub(crate) fn new(factory: &PassFactory, decoded: &DecodedScene, ground: &TerrainQuadtree, forces: &CameraForceField) -> Self {
         let gpu = &factory.gpu;
         let layout = factory.layout("shells", &[uniform(1), storage(2), texture(3), storage(4)]);
-        let settle_layout = factory.layout("turf", &[storage(0), uniform(1), storage_rw(5)]);
+        let settle_layout = factory.layout("turf", &[&[storage(0), uniform(1), storage_rw(5)][..], &CameraForceField::layout()].concat());
         let module = factory.shader("shells", shaders::SHELLS, &[]);
         let draw = DrawDescriptor { label: "shells", ..DrawDescriptor::default() };
         let listed = BufferUsages::STORAGE | BufferUsages::COPY_DST;
@@ -91,19 +92,14 @@ impl Shells {
         let levels = shell_texture::dots(decoded.scene().plants.height_variation);
         let dots = gpu.texture("dots", wgpu::TextureFormat::Rgba8Unorm, [DOTS_PX; 2], &levels).create_view(&Default::default());
         let [listed_tiles, uniforms, settled, listed_layers] = [&tiles, &frame, &turfs, &layers].map(|buffer| buffer.as_entire_binding());
-        let group_of = |label, layout: &wgpu::BindGroupLayout, entries: &[(u32, wgpu::BindingResource<'_>)]| {
-            let entries: Vec<_> =
-                entries.iter().map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() }).collect();
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
-        };
-        let dots = wgpu::BindingResource::TextureView(&dots);
-        let drawn = [(1, uniforms.clone()), (2, settled.clone()), (3, dots), (4, listed_layers)];
+        let drawn = [(1, uniforms.clone()), (2, settled.clone()), (3, wgpu::BindingResource::TextureView(&dots)), (4, listed_layers)];
+        let turf = [(0, listed_tiles), (1, uniforms), (5, settled)];
         let indices = tile_indices();
         Self {
             pipeline: factory.draw(&module, Some(&layout), &draw),
             settle: factory.compute("turf", &module, "settle_turf", &settle_layout),
-            group: group_of("shells", &layout, &drawn),
-            settle_group: group_of("turf", &settle_layout, &[(0, listed_tiles), (1, uniforms), (5, settled)]),
+            group: bind_at(gpu, "shells", &layout, drawn),
+            settle_group: bind_at(gpu, "turf", &settle_layout, turf.into_iter().chain(forces.resources())),
             index_count: indices.len() as u32,
             indices: gpu.buffer("shell tile", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
             ground: ground.finer(FINEST_M),

@@ -137,48 +137,6 @@ fn plants_behind_a_boulder_are_sheltered_from_the_wind() {
     );
 }
 
-/// Lean of the tip of each drawn blade along the wind, by its root, after a second and a half below a camera.
-fn leaning(gpu: &Gpu, mirror: &mut Mirror) -> HashMap<[u32; 2], ([f32; 2], f32)> {
-    let mut picture = OffscreenRenderer::new(gpu, [400; 2], Quality::Low);
-    let camera = Camera { eye_m: Vec3::new(32.0, 8.0, 32.0), pitch_rad: -1.57, fov_rad: 1.9, ..Camera::default() };
-    (0..15).for_each(|_| {
-        picture.draw(mirror, &camera, 0.0, 0.1);
-    });
-    let blades = picture.renderer.scene.as_ref().and_then(|scene| scene.blades.as_ref()).expect("grass");
-    let counters: Vec<u32> = bytemuck::pod_collect_to_vec(&read(gpu, &blades.listed.counters));
-    let rows: Vec<[f32; 28]> = bytemuck::pod_collect_to_vec(&read(gpu, &blades.listed.blades));
-    // Root, and tip relative to it, of the fine and the coarse blades.
-    let [fine, coarse] = [rows.iter().take(counters[0] as usize), rows[blades.capacities[0] as usize..].iter().take(counters[1] as usize)];
-    let lean = |row: &[f32; 28]| ([row[0].to_bits(), row[2].to_bits()], ([row[0], row[2]], row[12].atan2(row[13])));
-    fine.chain(coarse).map(lean).collect()
-}
-
-#[test]
-fn grass_behind_a_boulder_leans_less_than_beside_it() {
-    let gpu = Gpu::headless().expect("a Vulkan adapter");
-    let run = |is_stony: bool| {
-        let mut covering = [255; 16 * 16];
-        if is_stony {
-            covering[7 + 16 * 7] = 254;
-        }
-        let mut mirror = meadow_of(|scene| (scene.wind.mean_m_per_s, scene.plants.stone_m) = ([8.0, 0.0], 6.0), &covering);
-        let stone = trees_and_stones::placed_models(mirror.decoded_scene().expect("a scene")).first().map(|stone| stone.position_m);
-        (leaning(&gpu, &mut mirror), stone)
-    };
-    let ((open, _), (stony, stone)) = (run(false), run(true));
-    let at_m = stone.expect("a boulder");
-    let fraction = |is_there: fn(f32, f32) -> bool| {
-        let both = stony.iter().filter_map(|(root, ([x, z], lean))| is_there(x - at_m.x, z - at_m.z).then_some((lean, open.get(root)?.1)));
-        let (found, open, count) = both.fold((0.0, 0.0, 0), |sum, (found, open)| (sum.0 + found, sum.1 + open, sum.2 + 1));
-        assert!(count > 30, "{count} blades");
-        found / open
-    };
-    let behind = fraction(|x, z| (3.5..6.0).contains(&x) && z.abs() < 1.0);
-    let beside = fraction(|x, z| x.abs() < 4.0 && (6.0..12.0).contains(&z.abs()));
-    println!("{behind} behind, {beside} beside");
-    assert!(behind < 0.7 && (0.95..1.05).contains(&beside), "of the lean in the open {behind} behind a boulder, {beside} beside it");
-}
-
 #[test]
 fn what_arrives_of_the_wind_is_that_of_the_cpu_twin() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");

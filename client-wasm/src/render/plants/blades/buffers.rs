@@ -4,7 +4,7 @@ use super::layout::{BLADE_BYTES, LISTS, NEAR_SLOTS, STRIPS, SWAY_BYTES, index_co
 use super::strips::{disc_indices, head_indices, strip_indices};
 use crate::render::gpu::constants::{COARSE_LIST, FAR_HEAD_LIST, FINE_LIST, HEAD_LIST, SINGLE_LIST};
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{PassFactory, bind};
+use crate::render::gpu::pipeline::{PassFactory, bind, bind_at};
 use crate::render::gpu::uniforms::{Plants, StripList};
 use crate::render::plants::force_field::CameraForceField;
 use wgpu::BufferUsages;
@@ -47,8 +47,7 @@ impl BladeBuffers {
     ) -> wgpu::BindGroup {
         let buffers = [&self.plants, &self.sways, &self.drawn, &self.counters, chunks, draws, standing, &self.moved];
         let own = (0..).zip(buffers.map(|buffer| buffer.as_entire_binding()));
-        let entries: Vec<_> = own.chain(forces.resources()).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("bend"), layout, entries: &entries })
+        bind_at(gpu, "bend", layout, own.chain(forces.resources()))
     }
 
     /// Bind group of each list. Blades of one segment fill the space of the coarse ones from its end, far heads that of the near ones.

@@ -4,7 +4,7 @@ use super::layout::{BLOCK, CHUNK, COUNTER_BYTES, RESPONSE_BYTES, ROW_BYTES, VISI
 use super::lists::Lists;
 use super::tiles::UnderbrushPlant;
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind_as, storage, storage_rw, uniform};
+use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind_as, bind_at, storage, storage_rw, uniform};
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::DrawnList;
 use crate::render::gpu::uniforms::UnderbrushFrame;
@@ -201,13 +201,7 @@ fn stand_step(
         (15, &lists.settings),
     ];
     let resources = resources.map(|(binding, buffer)| (binding, buffer.as_entire_binding()));
-    let entries: Vec<_> = resources
-        .into_iter()
-        .chain(force_field.resources())
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-        .collect();
-    let descriptor = wgpu::BindGroupDescriptor { label: Some("stand"), layout: &layout, entries: &entries };
-    let group = factory.gpu.device.create_bind_group(&descriptor);
+    let group = bind_at(&factory.gpu, "stand", &layout, resources.into_iter().chain(force_field.resources()));
     let factory = factory.clone();
     let pipeline = LampVariants::new(move |lamps| {
         let module = factory.shader("underbrush", shaders::UNDERBRUSH, &lamps);
