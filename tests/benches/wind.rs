@@ -1,6 +1,7 @@
 //! Time of a wind step by each method, and of each projection, compared with Zhang's.
 //!
-//! It also prints the memory bandwidth, the fraction of it that each step uses, and the remaining divergence of each projection.
+//! It also prints the memory bandwidth, the fraction of it that each step uses, the time of steps with something in the air relative to
+//! those with nothing, and the remaining divergence of each projection.
 
 use std::f32::consts::PI;
 use std::hint::black_box;
@@ -10,7 +11,8 @@ use criterion::{BatchSize, BenchmarkGroup, BenchmarkId, Criterion, SamplingMode,
 use prairie_wind::pressure::{self, Effort, IterativeMethod, Projection};
 use prairie_wind::stable_fluids::listing::SWEEPS;
 use prairie_wind::{
-    Advection, Air, Boundary, Config, Grid, Gusts, Location, Method, Pressure, Profile, StableFluids, TimeScheme, Velocity,
+    Advection, Air, Body, Boundary, Config, DragBody, Grid, Gusts, Location, Method, Pressure, Profile, Solver, StableFluids, TimeScheme,
+    Velocity,
 };
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -149,6 +151,93 @@ fn step(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// Something in the air: put there once, and moved before each step, whose number is given.
+struct Obstacle {
+    name: &'static str,
+    put: fn(&mut Solver<f32>),
+    advance: fn(&mut Solver<f32>, usize),
+}
+
+/// Land that rises to 4 m, over the whole length of a box of cells of 1 m.
+fn immerse_land(air: &mut Solver<f32>) {
+    let land_m = |x: f64, z: f64| 2.0 + 2.0 * (0.2 * x).sin() * (0.2 * z).cos();
+    air.set_walls(|[x, y, z]| y - land_m(x, z), |_| [0.0; 3]).expect("land that leaves air");
+}
+
+/// A box of 5 m that the cells resolve, at 10 m/s along X.
+fn advance_body(air: &mut Solver<f32>, step: usize) {
+    let x_m = 8.0 + (step as f64 * 10.0 * DT_SECS) % 16.0;
+    let body = Body {
+        centre_m: [x_m, 2.5, 16.0],
+        half_extents_m: [2.5; 3],
+        axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        velocity_m_per_s: [10.0, 0.0, 0.0],
+        drag_coefficient: 1.0,
+    };
+    air.set_bodies(&[body]);
+}
+
+const CROWN_DRAG_PER_M: f64 = 0.3;
+
+/// A wood: a crown of 50 m³, 4 m across from 2 to 6 m above the ground, every 8 m.
+fn plant_crowns(air: &mut Solver<f32>) {
+    let [columns, _, rows] = air.grid().cells;
+    let places = (0..columns / 8).flat_map(|i| (0..rows / 8).map(move |k| [i, k].map(|n| 4.0 + 8.0 * n as f64)));
+    let crowns: Vec<_> = places
+        .map(|[x, z]| DragBody {
+            centre_m: [x, 4.0, z],
+            half_extents_m: [2.0; 3],
+            velocity_m_per_s: [0.0; 3],
+            drag_m2: [CROWN_DRAG_PER_M * 50.0; 3],
+        })
+        .collect();
+    air.set_drag(&crowns);
+}
+
+const OBSTACLES: [Obstacle; 4] = [
+    Obstacle { name: "nothing", put: |_| (), advance: |_, _| () },
+    Obstacle { name: "land", put: immerse_land, advance: |_, _| () },
+    Obstacle { name: "moving body", put: |_| (), advance: advance_body },
+    Obstacle { name: "crowns", put: plant_crowns, advance: |_, _| () },
+];
+
+/// Steps with something in the air beside those with nothing, by default settings.
+fn solids(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("wind solids");
+    brief(&mut group);
+    let pool = threads(1);
+    for cells in [[32, 8, 32], [64, 32, 64]] {
+        let [nx, ny, nz] = cells;
+        group.throughput(Throughput::Elements((nx * ny * nz) as u64));
+        let mut fastest = [Duration::MAX; OBSTACLES.len()];
+        for (Obstacle { name, put, advance }, fastest) in OBSTACLES.iter().zip(&mut fastest) {
+            let config = Config { cells, spacing_m: [1.0; 3], ..Config::default() };
+            let mut air = Solver::<f32>::new(&config).expect("allowed settings");
+            put(&mut air);
+            let mut steps = 0;
+            let mut step = |air: &mut Solver<f32>| {
+                steps += 1;
+                advance(air, steps);
+                black_box(air.step(DT_SECS, &[]).expect("a step within the limits"));
+            };
+            group.bench_function(BenchmarkId::new(*name, format!("{nx}x{ny}x{nz}")), |bencher| {
+                pool.install(|| {
+                    (0..STEPS_BEFORE).for_each(|_| step(&mut air));
+                    bencher.iter(|| {
+                        let begun = Instant::now();
+                        step(&mut air);
+                        *fastest = (*fastest).min(begun.elapsed());
+                    });
+                });
+            });
+        }
+        for (Obstacle { name, .. }, with) in OBSTACLES.iter().zip(fastest).skip(1).filter(|_| fastest[0] < Duration::MAX) {
+            println!("{nx}x{ny}x{nz} with {name}: {:.2} times the step with nothing", with.as_secs_f64() / fastest[0].as_secs_f64());
+        }
+    }
+    group.finish();
+}
+
 /// A smooth gradient field, which a projection should remove completely.
 fn smooth([x, y, z]: [f32; 3], n: usize) -> [f32; 3] {
     let k = PI / n as f32;
@@ -233,5 +322,5 @@ fn projection(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, step, projection);
+criterion_group!(benches, step, solids, projection);
 criterion_main!(benches);

@@ -163,11 +163,12 @@ pub(super) fn curves_svg(curves: &[Curve], axes: [Axis; 2], words: Words) -> Res
     Ok(text)
 }
 
-/// A coloured field: columns from left to right, in each the classes from bottom to top.
-#[derive(Clone, Debug)]
+/// A coloured field: columns from left to right, in each the classes from bottom to top; and lines over it, in the units of the axes.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Panel {
     pub(super) name: String,
     pub(super) columns: Vec<Vec<usize>>,
+    pub(super) outlines: Vec<Vec<[f64; 2]>>,
 }
 
 /// Draws panels side by side over the same axes; each class has a name and a colour.
@@ -182,14 +183,10 @@ pub(super) fn panels_svg(panels: &[Panel], classes: &[(&str, RGBColor)], axes: [
         let frame = PlotArea { left: 100 + n as i32 * (WIDE_PX + 30), top: 120, width: WIDE_PX, height: 330 };
         frame.draw_axes(&root, [&axes[0], &axes[1]], [true, n == 0])?;
         write(&root, &panel.name, (frame.left, frame.top - 16), 19, INK, HPos::Left)?;
-        for (i, column) in panel.columns.iter().enumerate() {
-            let mut j = 0;
-            for run in column.chunk_by(|a, b| a == b) {
-                let x = |n: usize| frame.left + (n as i32 * frame.width) / panel.columns.len() as i32;
-                let y = |n: usize| frame.top + frame.height - (n as i32 * frame.height) / column.len() as i32;
-                root.draw(&Rectangle::new([(x(i), y(j + run.len())), (x(i + 1), y(j))], classes[run[0]].1.filled()))?;
-                j += run.len();
-            }
+        draw_columns(&root, &frame, &panel.columns, classes)?;
+        for outline in &panel.outlines {
+            let points: Vec<_> = outline.iter().map(|at| frame.place([&axes[0], &axes[1]], *at)).collect();
+            root.draw(&PathElement::new(points, INK.stroke_width(2)))?;
         }
     }
     let mut x = 100;
@@ -202,6 +199,32 @@ pub(super) fn panels_svg(panels: &[Panel], classes: &[(&str, RGBColor)], axes: [
     root.present()?;
     drop(root);
     Ok(text)
+}
+
+/// A run of one class in a column: its first place, its length and the class.
+type Run = (usize, usize, usize);
+
+fn runs(column: &[usize]) -> Vec<Run> {
+    let starts = column.chunk_by(|a, b| a == b).scan(0, |next, run| {
+        let start = std::mem::replace(next, *next + run.len());
+        Some((start, run.len(), run[0]))
+    });
+    starts.collect()
+}
+
+/// Draws each run as a rectangle, as wide as the columns beside it have the same run.
+fn draw_columns(root: &Area, frame: &PlotArea, columns: &[Vec<usize>], classes: &[(&str, RGBColor)]) -> Result<()> {
+    let runs: Vec<_> = columns.iter().map(|column| runs(column)).collect();
+    for (i, column) in columns.iter().enumerate() {
+        let x = |n: usize| frame.left + (n as i32 * frame.width) / columns.len() as i32;
+        let y = |n: usize| frame.top + frame.height - (n as i32 * frame.height) / column.len() as i32;
+        for run in runs[i].iter().filter(|run| i == 0 || !runs[i - 1].contains(run)) {
+            let (j, length, class) = *run;
+            let width = runs[i..].iter().take_while(|runs| runs.contains(run)).count();
+            root.draw(&Rectangle::new([(x(i), y(j + length)), (x(i + width), y(j))], classes[class].1.filled()))?;
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -217,6 +240,20 @@ mod tests {
         assert_eq!(labels([0.0, 60.0], false), ["0", "10", "20", "30", "40", "50", "60"]);
         assert_eq!(labels([0.0, 2.6], false), ["0", "0.5", "1", "1.5", "2", "2.5"]);
         assert_eq!(labels([0.4, 12.0], true), ["0.5", "1", "2", "5", "10"]);
+    }
+
+    #[test]
+    fn equal_runs_of_columns_are_one_rectangle() {
+        let axis = |name| Axis { name, range: [0.0, 10.0], logarithmic: false };
+        let words = Words { title: "title", subtitle: "subtitle", caption: "caption" };
+        let classes = [("a", RGBColor(1, 2, 3)), ("b", RGBColor(4, 5, 6))];
+        let columns = vec![vec![0, 0, 1], vec![0, 0, 1], vec![0, 1, 1]];
+        let panel = Panel { name: "made up".into(), columns, outlines: vec![] };
+        let text = panels_svg(&[panel], &classes, [axis("across"), axis("up")], words).unwrap();
+        let drawn = |colour: &str| text.lines().filter(|line| line.starts_with("<rect") && line.contains(colour)).count();
+        // Two widths of each class, and its key.
+        assert_eq!([drawn("#010203"), drawn("#040506")], [3, 3], "{text}");
+        assert!(text.contains("<rect x=\"100\" y=\"230\" width=\"220\" height=\"220\""), "{text}");
     }
 
     #[test]

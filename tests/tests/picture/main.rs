@@ -8,7 +8,7 @@ mod similarity;
 
 use std::path::Path;
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, bail, ensure};
 use prairie_client::render::Gpu;
 use tests::picture::Picture;
 use tests::still::Still;
@@ -16,6 +16,14 @@ use tests::views::View;
 
 /// Size of most pictures (px).
 const SIZE_PX: [u32; 2] = [320, 180];
+
+/// Negative control: ensures that a check has refused its input, with these words in its message.
+fn ensure_refused(checked: Result<()>, words: &str) -> Result<()> {
+    let Err(refusal) = checked else { bail!("accepted, although it is wrong: {words}") };
+    println!("refused: {refusal:#}");
+    ensure!(refusal.to_string().contains(words), "refused for another reason than {words}: {refusal:#}");
+    Ok(())
+}
 
 fn gpu() -> Result<Gpu> {
     Gpu::headless().context("no Vulkan driver: install mesa-vulkan-drivers")

@@ -74,7 +74,7 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     let [across, up] = if quick { [9, 7] } else { [20, 16] };
     let middle = |[low, high]: [f64; 2], n: usize, count: usize| (low + (high - low) * (n as f64 + 0.5) / count as f64) as f32;
     let schemes = [("Chen & Johan", Scheme::Verlet), ("sub-stepped", Scheme::Substepped), ("implicit", Scheme::Implicit)];
-    let mut panels = schemes.map(|(name, _)| Panel { name: name.into(), columns: vec![vec![0; up]; across] });
+    let mut panels = schemes.map(|(name, _)| Panel { name: name.into(), columns: vec![vec![0; up]; across], outlines: vec![] });
     let mut csv = String::from("scheme,speed_m_per_s,steps_per_s,class,error\n");
     let mut counts = [[0; 3]; 3];
     for (i, j) in (0..across).flat_map(|i| (0..up).map(move |j| (i, j))) {

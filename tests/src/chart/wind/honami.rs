@@ -83,7 +83,7 @@ pub(super) fn draw_field(quick: bool, caption: &str) -> Result<Drawn> {
         Axis { name: "time (s)", range: [0.0, secs], logarithmic: false },
     ];
     let subtitle = "waves travel to the right; their slope is their speed";
-    let panels = [Panel { name: format!("{} m/s", ALFALFA.wind_m_per_s), columns }];
+    let panels = [Panel { name: format!("{} m/s", ALFALFA.wind_m_per_s), columns, outlines: vec![] }];
     let svg = panels_svg(&panels, &CLASSES, axes, Words { title: "Waves over a field", subtitle, caption })?;
     let summary = format!("displacement {mean:.3} m on average, {deviation:.3} m root mean square about it\n");
     Ok(Drawn { svg, csv, summary, tables: None })

@@ -8,9 +8,10 @@
 //! | `heat` | the heat kernel: each diffusion scheme |
 //! | `projection` | each pressure method: time against the remaining divergence |
 //! | `honami` | waves over grass that sways and over rigid grass: frequency against the wind; a field of waves |
+//! | `lee` | wind and grass around a tree in the wind of a scene |
 //! | `wakes` | vortices behind an immersed cylinder, and a vortex that leaves the box |
 //!
-//! All runs are in double precision, so that rounding hides nothing. Zhang's method supports neither moving lids nor prescribed faces: it takes part in
+//! All runs but `lee` are in double precision, so that rounding hides nothing. Zhang's method supports neither moving lids nor prescribed faces: it takes part in
 //! Taylor–Green and in the projection.
 
 mod cavity;
@@ -18,6 +19,7 @@ mod dust;
 mod flows;
 mod heat;
 mod honami;
+mod lee;
 mod projection;
 mod wakes;
 
@@ -47,11 +49,12 @@ const METHODS: [Choice; 6] = [
 const COURANT: [f64; 2] = [0.5, 2.0];
 
 /// All figures other than error against time.
-pub const FIGURES: [Figure; 4] = [
+pub const FIGURES: [Figure; 5] = [
     Figure { name: "lock-in", title: "Waves over grass are drawn to its own frequency", draw: honami::draw_lock_in },
     Figure { name: "honami", title: "Waves over a field", draw: honami::draw_field },
     Figure { name: "cylinder", title: "Vortices behind a cylinder", draw: wakes::draw_cylinder },
     Figure { name: "outflow", title: "A vortex leaves the box", draw: wakes::draw_outflow },
+    Figure { name: "lee", title: "The lee of a tree", draw: lee::draw_lee },
 ];
 
 /// All problems; `quick` leaves out the finest grids.

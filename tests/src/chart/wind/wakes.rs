@@ -48,7 +48,7 @@ fn panel(
         }
         classes.push(column);
     }
-    Ok(Panel { name: name.to_owned(), columns: classes })
+    Ok(Panel { name: name.to_owned(), columns: classes, outlines: vec![] })
 }
 
 /// Draws the vortices behind a cylinder of 1 m in a stream of 1 m/s at Re = 100.
