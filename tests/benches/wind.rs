@@ -174,7 +174,7 @@ fn advance_body(air: &mut Solver<f32>, step: usize) {
         velocity_m_per_s: [10.0, 0.0, 0.0],
         drag_coefficient: 1.0,
     };
-    air.set_bodies(&[body]);
+    air.set_bodies(&[body]).expect("bodies of finite size");
 }
 
 const CROWN_DRAG_PER_M: f64 = 0.3;
@@ -191,7 +191,7 @@ fn plant_crowns(air: &mut Solver<f32>) {
             drag_m2: [CROWN_DRAG_PER_M * 50.0; 3],
         })
         .collect();
-    air.set_drag(&crowns);
+    air.set_drag(&crowns).expect("bodies of finite size");
 }
 
 const OBSTACLES: [Obstacle; 4] = [

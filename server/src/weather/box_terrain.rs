@@ -1,5 +1,6 @@
 //! Terrain within the wind's box: solid cells, and conversion between box heights and heights above the ground.
 
+use prairie_core::body::Motion;
 use prairie_core::scene::{Scene, WindTerrain};
 use prairie_core::terrain::HeightMap;
 
@@ -49,6 +50,16 @@ impl BoxTerrain {
     /// Elevation (m) of height 0 in the box at a position whose ground has elevation `ground_m`.
     pub(super) fn zero_m(&self, ground_m: f32) -> f32 {
         if self.is_solid() { self.floor_m } else { ground_m }
+    }
+
+    /// Velocity (m/s) of an object in the box, whose floor rises and falls under the object where it follows the terrain.
+    pub(super) fn velocity_in_box(&self, motion: &Motion, height: &HeightMap) -> [f32; 3] {
+        let [u, v, w] = motion.velocity_m_per_s;
+        if self.is_solid() {
+            return [u, v, w];
+        }
+        let [east, south] = height.slope(motion.to.position_m[0], motion.to.position_m[2]);
+        [u, v - (east * u + south * w), w]
     }
 
     /// Resamples cell values of the box to the centres of layers above the ground; both are x fastest, then y, then z. Above the box the value of the top cell

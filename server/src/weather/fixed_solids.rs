@@ -37,8 +37,7 @@ impl FixedSolids {
             (true, _) => air.set_solid(|position_m| terrain.contains(position_m, config.spacing_m))?,
             (false, _) => {}
         }
-        air.set_drag(&self.drag);
-        Ok(())
+        air.set_drag(&self.drag)
     }
 }
 

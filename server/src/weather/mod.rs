@@ -162,10 +162,11 @@ impl Weather {
             self.air.set_canopy_fraction(canopy.fractions(grass));
         }
         let ground_m = |motion: &Motion| self.terrain.zero_m(height.height_m(motion.to.position_m[0], motion.to.position_m[2]));
-        let jets: Vec<_> = motions.iter().filter_map(|motion| self.vehicles.jet(motion, ground_m(motion))).collect();
+        let in_box = |motion: &Motion| Motion { velocity_m_per_s: self.terrain.velocity_in_box(motion, height), ..*motion };
+        let jets: Vec<_> = motions.iter().filter_map(|motion| self.vehicles.jet(&in_box(motion), ground_m(motion))).collect();
         self.bodies.truncate(self.solids.stones.len());
-        self.bodies.extend(motions.iter().filter_map(|motion| self.vehicles.body(motion, ground_m(motion))));
-        self.air.set_bodies(&self.bodies);
+        self.bodies.extend(motions.iter().filter_map(|motion| self.vehicles.body(&in_box(motion), ground_m(motion))));
+        self.air.set_bodies(&self.bodies).expect("bodies that may not be set are left out");
         match self.air.step(self.step_secs, &jets) {
             Ok(report) => self.report = report,
             // The state is invalid: the air restarts from the mean wind.
@@ -217,6 +218,8 @@ impl Weather {
     pub(crate) fn hash(&self, sum: &mut Checksum) {
         sum.add(self.air.cell_velocities().flat_map(|velocity| velocity.to_array().map(f32::to_bits)));
         sum.add(self.air.stems().into_iter().flatten().map(|value| value.to_bits()));
+        sum.add(self.air.pressure_gradient().into_iter().flatten().map(|value| value.to_bits()));
+        sum.add(self.air.dust().into_iter().flatten().map(f32::to_bits));
         sum.add([self.frame.tick as u32]);
         let TurbulenceState { travel_m: [x_m, z_m], path_m, friction_m_per_s } = self.turbulence;
         sum.add([x_m, z_m, path_m].into_iter().flat_map(|m| [m.to_bits() as u32, (m.to_bits() >> 32) as u32]));
@@ -263,7 +266,7 @@ fn initial_air(
 ) -> Result<Air<f32>, WeatherError> {
     let mut air = Air::new(method, config)?;
     solids.immerse(&mut air, config, terrain, height)?;
-    air.set_bodies(&solids.stones);
+    air.set_bodies(&solids.stones)?;
     Ok(air)
 }
 

@@ -30,23 +30,24 @@ impl Vehicles {
         Self { objects: scene.objects.clone(), has_bodies: scene.wind.method == WindMethod::Staggered }
     }
 
-    /// The body of a vehicle above ground of elevation `ground_m`, if it drags air along.
+    /// The body of a vehicle with a velocity in the box, above ground of elevation `ground_m`, if it drags air along.
     pub(super) fn body(&self, motion: &Motion, ground_m: f32) -> Option<Body> {
         if !self.has_bodies || airflow(motion.kind) != Airflow::Wake {
             return None;
         }
         let [x, y, z] = motion.to.position_m;
         let turn = Quat::from_array(motion.to.rotation);
-        Some(Body {
+        let body = Body {
             centre_m: [x, (y - ground_m).max(0.0), z].map(f64::from),
             half_extents_m: self.objects.half_extents_m(motion.kind).map(f64::from),
             axes: [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (turn * axis).to_array().map(f64::from)),
             velocity_m_per_s: motion.velocity_m_per_s.map(f64::from),
             drag_coefficient: DRAG_COEFFICIENT,
-        })
+        };
+        Some(body).filter(Body::is_valid)
     }
 
-    /// The jet of a vehicle above ground of elevation `ground_m`, if it has one: that of a rotor, and without bodies that of a wake.
+    /// The jet of a vehicle with a velocity in the box, above ground of elevation `ground_m`, if it has one: that of a rotor, and without bodies that of a wake.
     pub(super) fn jet(&self, motion: &Motion, ground_m: f32) -> Option<Jet> {
         let [x, y, z] = motion.to.position_m;
         let above_m = (y - ground_m).max(0.0);

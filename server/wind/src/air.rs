@@ -141,16 +141,24 @@ impl<R: Real> Air<R> {
     }
 
     /// Sets fixed bodies that slow the air; see [`Solver::set_drag`]. No effect with [`StableFluids`].
-    pub fn set_drag(&mut self, bodies: &[DragBody]) {
-        if let Self::Staggered(air) = self {
-            air.set_drag(bodies);
+    ///
+    /// # Errors
+    /// [`SolidError::Body`]. Nothing changes then.
+    pub fn set_drag(&mut self, bodies: &[DragBody]) -> Result<(), SolidError> {
+        match self {
+            Self::Staggered(air) => air.set_drag(bodies),
+            Self::StableFluids(_) => Ok(()),
         }
     }
 
     /// Sets solid bodies that may move; see [`Solver::set_bodies`]. No effect with [`StableFluids`].
-    pub fn set_bodies(&mut self, bodies: &[Body]) {
-        if let Self::Staggered(air) = self {
-            air.set_bodies(bodies);
+    ///
+    /// # Errors
+    /// [`SolidError::Body`]. Nothing changes then.
+    pub fn set_bodies(&mut self, bodies: &[Body]) -> Result<(), SolidError> {
+        match self {
+            Self::Staggered(air) => air.set_bodies(bodies),
+            Self::StableFluids(_) => Ok(()),
         }
     }
 
@@ -175,6 +183,14 @@ impl<R: Real> Air<R> {
         match self {
             Self::Staggered(air) => air.stems(),
             Self::StableFluids(_) => [&[]; 4],
+        }
+    }
+
+    /// Pressure gradient over density (m/s²) that the next step begins with, across x, y and z, with the layout of the solver's memory; empty with [`StableFluids`].
+    pub fn pressure_gradient(&self) -> [&[R]; 3] {
+        match self {
+            Self::Staggered(air) => air.pressure_gradient(),
+            Self::StableFluids(_) => [&[]; 3],
         }
     }
 

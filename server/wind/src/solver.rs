@@ -213,6 +213,12 @@ impl<R: Real> Solver<R> {
         self.stems.as_ref().map_or([&[]; 4], |stems| stems.values.each_ref().map(Vec::as_slice))
     }
 
+    /// Pressure gradient over density (m/s²) that the next step begins with, across x, y and z, with the layout of the memory; 0 unless the time scheme is
+    /// [`TimeScheme::RungeKutta3`](crate::TimeScheme::RungeKutta3).
+    pub fn pressure_gradient(&self) -> [&[R]; 3] {
+        self.pressure_gradient.0.each_ref().map(|field| field.data.as_slice())
+    }
+
     /// Places a sponge layer across x and one across z at these positions (m) in a box that is periodic along both: the air there relaxes to the mean wind, so that
     /// disturbances do not re-enter. `None` (initially) for no sponge.
     pub fn set_sponge(&mut self, sponge_m: Option<[f64; 2]>) {

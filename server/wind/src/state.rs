@@ -16,9 +16,9 @@ pub struct StepReport {
     pub kinetic_energy_m2_per_s2: f64,
     /// Number of sub-steps, at least 1.
     pub substeps: u32,
-    /// Residual of the last pressure solve relative to its right-hand side; 0 for the direct solver.
+    /// Residual of the last pressure solve relative to its right-hand side; 0 for the direct solver, and around its walls the slip relative to the speed of the air.
     pub pressure_residual: f64,
-    /// Sweeps of the last pressure solve; 0 for the direct solver.
+    /// Sweeps of the last pressure solve; 0 for the direct solver, and iterations around its walls.
     pub pressure_sweeps: u32,
 }
 
@@ -97,7 +97,7 @@ impl StateError {
     }
 }
 
-/// Reason why cells cannot be made solid.
+/// Reason why solids cannot be set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SolidError {
     /// [`StableFluids`](super::StableFluids) has no solid cells.
@@ -115,6 +115,14 @@ pub enum SolidError {
     /// The diffusion scheme uses transforms.
     #[error("wind: diffusion is solved by transforms; allowed with solid cells: Explicit or GaussSeidel")]
     Diffusion,
+    /// A body has a number that is not allowed.
+    #[error(
+        "wind: body {index} has a number that is not finite or below 0, or no width; allowed: finite centre, velocity and axes, half extents above 0 (from 0 for drag bodies), drag from 0"
+    )]
+    Body {
+        /// Its index in the list.
+        index: usize,
+    },
     /// Every cell would be solid.
     #[error("wind: every cell would be solid; allowed: at least one cell of air")]
     Full,

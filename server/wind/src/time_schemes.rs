@@ -115,6 +115,9 @@ impl<R: Real> Solver<R> {
                 outflow::correct_flux(&self.grid, air, fraction * dt_secs, &mut target.0[axis]);
                 friction::complete(&self.grid, viscosity_m2_per_s, fraction * dt_secs, &air.0[axis], &mut target.0[axis]);
             }
+            if let Some(Immersed { walls, .. }) = &self.immersed {
+                walls.bear(dt_secs, fraction * dt_secs, &self.pressure_gradient, target);
+            }
             self.boundaries.update_inflow(self.time_secs + STAGE_ENDS[number] * dt_secs);
             // Forces follow the last stage and apply the boundary conditions; before them only diffusion and canopy drag read ghosts.
             if number < 2 || reads_ghosts {
@@ -149,7 +152,12 @@ impl<R: Real> Solver<R> {
         } else if let Some(canopy) = &self.config.canopy {
             canopy::drag(grid, canopy, &self.canopy_fraction, dt_secs, &mut self.velocity, &mut self.stages[0]);
         }
-        self.drag.apply(grid, dt_secs, &mut self.velocity);
+        if !self.drag.is_empty() {
+            if self.config.canopy.is_some() {
+                self.boundaries.apply(&mut self.velocity);
+            }
+            self.drag.apply(grid, dt_secs, &mut self.velocity);
+        }
         self.pushes.apply(dt_secs, &mut self.velocity);
         for primitive in &self.config.primitives {
             primitive.drive(grid, time_secs, dt_secs, &mut self.velocity, &mut self.footprint);
@@ -212,14 +220,16 @@ impl<R: Real> Solver<R> {
 
     /// Projects the velocity, around the walls that are immersed in the grid; optionally adds the correction to the pressure gradient.
     fn project(&mut self, dt_secs: f64, keeps_pressure: bool) -> Convergence {
+        if let Some(Immersed { walls, .. }) = &mut self.immersed {
+            walls.hold(dt_secs, &self.pressure_gradient, &mut self.velocity);
+            self.boundaries.apply(&mut self.velocity);
+        }
         let pressure_gradient = keeps_pressure.then_some((&mut self.pressure_gradient, dt_secs.recip()));
         let (grid, velocity, sources) = (&self.grid, &mut self.velocity, &self.volume_sources_per_s);
         let convergence = match &mut self.immersed {
             Some(Immersed { walls, iteration, step_secs }) => {
                 *step_secs = dt_secs;
                 let speed_m_per_s = (2.0 * self.diagnostics.kinetic_energy_m2_per_s2).sqrt();
-                walls.hold(dt_secs, velocity);
-                self.boundaries.apply(velocity);
                 self.projection.project_around(grid, (walls, iteration), speed_m_per_s, velocity, sources, pressure_gradient)
             }
             None => self.projection.project(grid, velocity, sources, pressure_gradient),

@@ -113,9 +113,9 @@ fn solids_do_not_allocate_in_a_step() {
         let mut air = Solver::<f32>::new(&Config { cells: [24, 12, 24], ..everything() }).unwrap();
         air.set_walls(|[x, y, _]| y - 0.1 * x, |_| [0.0; 3]).unwrap();
         let bodies = [body(20.0, 4.0), body(30.0, 0.4)];
-        air.set_drag(&[bodies[1].drag()]);
+        air.set_drag(&[bodies[1].drag()]).unwrap();
         let mut step = |_| {
-            air.set_bodies(&bodies);
+            air.set_bodies(&bodies).unwrap();
             air.step(DT_SECS, &[]).unwrap();
         };
         (0..WARM_UP_STEPS).for_each(&mut step);
@@ -138,10 +138,10 @@ fn check_memory_of_solids<R: Real>() {
         assert!(stated == held && (held > 0) == is_larger, "{name}: {stated} B more are stated, {held} B are held");
     };
     check("walls", true, &|air| air.set_walls(|[x, y, _]| y - 0.1 * x, |_| [0.0; 3]).unwrap());
-    check("fixed drag", true, &|air| air.set_drag(&[body(30.0, 0.4).drag()]));
-    check("a small body", true, &|air| air.set_bodies(&[body(12.0, 0.4)]));
-    check("a large body", true, &|air| air.set_bodies(&[body(20.0, 4.0), body(12.0, 0.4)]));
-    check("no body", false, &|air| air.set_bodies(&[]));
+    check("fixed drag", true, &|air| air.set_drag(&[body(30.0, 0.4).drag()]).unwrap());
+    check("a small body", true, &|air| air.set_bodies(&[body(12.0, 0.4)]).unwrap());
+    check("a large body", true, &|air| air.set_bodies(&[body(20.0, 4.0), body(12.0, 0.4)]).unwrap());
+    check("no body", false, &|air| air.set_bodies(&[]).unwrap());
     check("no walls", false, &|air| air.set_walls(|_| 1.0, |_| [0.0; 3]).unwrap());
 }
 

@@ -69,8 +69,8 @@ fn flow_between_oblique_walls_converges_at_first_order_or_better() {
     let errors = [24, 48, 96].map(|cells| (1.0 / cells as f64, oblique_channel(cells)));
     let order = fitted_order(&errors);
     println!("oblique channel: {errors:?}, order {order:.2}");
-    assert!(order >= 1.0, "order {order}");
-    assert!(errors[1].1 <= 0.03, "twelve cells across the channel: {}", errors[1].1);
+    assert!(order >= 1.08, "order {order}");
+    assert!(errors[1].1 <= 0.03 && errors[2].1 <= 0.008, "twelve and 24 cells across the channel: {errors:?}");
 }
 
 /// Error of the flow between a cylinder of radius 0.2 m that turns at 1 m/s and one of 0.45 m at rest.
@@ -104,8 +104,8 @@ fn flow_between_turning_cylinders_converges_at_first_order_or_better() {
     let errors = [24, 48, 96].map(|cells| (1.0 / cells as f64, turning_cylinder(cells)));
     let order = fitted_order(&errors);
     println!("turning cylinder: {errors:?}, order {order:.2}");
-    assert!(order >= 1.0, "order {order}");
-    assert!(errors[1].1 <= 0.03, "twelve cells across the gap: {}", errors[1].1);
+    assert!(order >= 1.03, "order {order}");
+    assert!(errors[1].1 <= 0.03 && errors[2].1 <= 0.003, "twelve and 24 cells across the gap: {errors:?}");
 }
 
 /// A cylinder of 1 m in a stream of 1 m/s: air, centre, and step (s).

@@ -36,7 +36,7 @@ fn frequencies_hz(meadow: Meadow, wind_m_per_s: f64) -> [f64; 2] {
 }
 
 #[test]
-fn waves_lock_in_to_the_frequency_of_the_grass() {
+fn waves_are_drawn_to_the_frequency_of_the_grass() {
     let own_hz = f64::from(ALFALFA.motion.expect("it sways").frequency_hz);
     let winds = [4.0, 5.0, 6.0];
     let [swaying, stiff] = [ALFALFA, rigid(ALFALFA)].map(|meadow| winds.map(|wind| frequencies_hz(meadow, wind)));

@@ -4,10 +4,13 @@
 //! solves `∇·β∇φ = ∇·(βu + (1 − β)v)`. Conjugate gradients preconditioned by the solver for β = 1 need few iterations, because all eigenvalues are in 0..1 and
 //! only modes at the surface differ from 1; those of a compact body gather about ½. What is left after the last iteration is removed by an ordinary projection: the
 //! result is divergence-free to rounding, and the tolerance limits the slip at the walls instead.
+//!
+//! No pressure acts on a cell whose faces are all inside walls or closed. If walls move air into or out of such cells, as a body that lifts off the floor does, the equation has no
+//! solution, and only slip makes up for it: that air is set apart, and moved by an ordinary projection of its own, whose gradient isn't pressure that the next step keeps.
 
 use super::{Convergence, PressureSolver, Projection, divergence, subtract_gradient};
 use crate::field::Velocity;
-use crate::grid::Grid;
+use crate::grid::{Grid, Location};
 use crate::real::Real;
 use crate::solids::Walls;
 
@@ -15,6 +18,8 @@ use crate::solids::Walls;
 pub(crate) const SLIP: f64 = 1e-4;
 /// Maximum number of iterations.
 const MOST: u32 = 60;
+/// Smallest eigenvalue that counts: the iteration ends at a direction whose image is smaller, of air that walls enclose in several cells.
+const LEAST: f64 = 1e-6;
 
 /// Work arrays of the iteration, one value per cell.
 pub(crate) struct Iteration {
@@ -23,18 +28,21 @@ pub(crate) struct Iteration {
     direction: Vec<f64>,
     /// −∇² of the direction.
     image: Vec<f64>,
+    /// Cells that walls enclose, with the residual that is set apart in them (1/s).
+    enclosed: Vec<(usize, f64)>,
 }
 
 impl Iteration {
     /// Allocates for `cells` cells.
     pub(crate) fn new(cells: usize) -> Self {
         let zeros = || vec![0.0; cells];
-        Self { potential: zeros(), residual: zeros(), direction: zeros(), image: zeros() }
+        Self { potential: zeros(), residual: zeros(), direction: zeros(), image: zeros(), enclosed: Vec::new() }
     }
 
     /// Memory (bytes).
     pub(crate) fn memory_bytes(&self) -> usize {
-        [&self.potential, &self.residual, &self.direction, &self.image].map(|values| size_of_val(values.as_slice())).iter().sum()
+        let values = [&self.potential, &self.residual, &self.direction, &self.image];
+        values.map(|values| size_of_val(values.as_slice())).iter().sum::<usize>() + self.enclosed.capacity() * size_of::<(usize, f64)>()
     }
 }
 
@@ -57,9 +65,10 @@ impl Projection {
         let Self { solver: PressureSolver::Direct(separable), divergence: ahead, .. } = self else {
             return self.project(grid, velocity, inflow, pressure_gradient);
         };
-        let Iteration { potential, residual, direction, image } = work;
+        let Iteration { potential, residual, direction, image, enclosed } = work;
         divergence(grid, velocity, -1.0, residual);
         residual.iter_mut().zip(inflow).for_each(|(residual, &inflow)| *residual += inflow);
+        let elsewhere = set_apart(grid, walls, image, residual, enclosed);
         potential.fill(0.0);
         ahead.copy_from_slice(residual);
         separable.solve(0.0, ahead);
@@ -68,9 +77,14 @@ impl Projection {
         direction.copy_from_slice(ahead);
         image.copy_from_slice(residual);
         let mut sweeps = 0;
-        while slip > SLIP * SLIP * scale && sweeps < MOST {
+        while slip > (SLIP * SLIP * scale).max(f64::MIN_POSITIVE) && sweeps < MOST {
             // The image of the direction under −∇·β∇ differs from that under −∇² next to walls only.
-            let length = slip / (dot(direction, image) - held_energy(grid, walls, direction));
+            let energy = dot(direction, image);
+            let free = energy - held_energy(grid, walls, direction);
+            if free <= LEAST * energy {
+                break;
+            }
+            let length = slip / free;
             potential.iter_mut().zip(&*direction).for_each(|(potential, direction)| *potential += length * direction);
             residual.iter_mut().zip(&*image).for_each(|(residual, image)| *residual -= length * image);
             give_back(grid, walls, direction, length, residual);
@@ -93,8 +107,49 @@ impl Projection {
             subtract_gradient(grid, ahead, axis, &mut field.data, pressure_gradient, per_secs);
         }
         bear_pressure(grid, walls, potential, velocity);
+        if enclosed.iter().any(|(_, apart)| *apart != 0.0) {
+            ahead.fill(elsewhere);
+            enclosed.iter().for_each(|&(cell, apart)| ahead[cell] = apart);
+            separable.solve(0.0, ahead);
+            for (axis, field) in velocity.0.iter_mut().enumerate() {
+                subtract_gradient(grid, ahead, axis, &mut field.data, None, R::zero());
+            }
+        }
         Convergence { residual: (slip.max(0.0) / scale.max(f64::MIN_POSITIVE)).sqrt(), sweeps, tolerance: SLIP }
     }
+}
+
+/// Sets apart the residual of cells on whose faces no pressure acts, as walls hold them or the box is closed there, and lists it; then the mean of that of all other cells, if no
+/// air leaves the box, which it returns (1/s). `held` is a work array.
+fn set_apart<R: Real>(grid: &Grid<R>, walls: &Walls<R>, held: &mut [f64], residual: &mut [f64], enclosed: &mut Vec<(usize, f64)>) -> f64 {
+    enclosed.clear();
+    held.fill(0.0);
+    for face in walls.faces.iter().flatten().filter(|face| face.held == 1.0) {
+        face.cells.into_iter().for_each(|cell| held[cell] += 1.0);
+    }
+    let [nx, ny, _] = grid.cells;
+    let open = |cell: usize| {
+        let index = [cell % nx, cell / nx % ny, cell / (nx * ny)];
+        let faces = (0..3).map(|axis| {
+            let free = grid.free(Location::Face(axis), axis);
+            (index[axis]..index[axis] + 2).filter(|face| grid.wraps(axis) || free.contains(face)).count()
+        });
+        faces.sum::<usize>() as f64
+    };
+    for (cell, residual) in residual.iter_mut().enumerate() {
+        if held[cell] > 0.0 && held[cell] >= open(cell) {
+            enclosed.push((cell, std::mem::take(residual)));
+        }
+    }
+    let is_closed = !grid.boundary.iter().flatten().any(|face| face.fixes_pressure());
+    let others = residual.len() - enclosed.len();
+    if !is_closed || enclosed.is_empty() || others == 0 {
+        return 0.0;
+    }
+    let mean = residual.iter().sum::<f64>() / others as f64;
+    residual.iter_mut().for_each(|residual| *residual -= mean);
+    enclosed.iter().for_each(|&(cell, _)| residual[cell] = 0.0);
+    mean
 }
 
 /// Sum over the faces of walls of `(1 − β)·|∇p|²`.

@@ -23,6 +23,13 @@ impl Body {
     /// Smallest width, in cells, of a body that is a wall.
     pub const RESOLVED: f64 = 3.0;
 
+    /// Whether all numbers are finite, the half extents above 0 and the drag coefficient is not below it.
+    pub fn is_valid(&self) -> bool {
+        self.drag().is_valid()
+            && self.axes.as_flattened().iter().all(|part| part.is_finite())
+            && self.half_extents_m.iter().all(|&half_m| half_m > 0.0)
+    }
+
     /// Whether the cells of `grid` resolve the body.
     pub fn is_resolved<R: Real>(&self, grid: &Grid<R>) -> bool {
         self.is_resolved_by(grid.spacing_m.map(R::wide))

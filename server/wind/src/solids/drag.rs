@@ -18,6 +18,15 @@ pub struct DragBody {
     pub drag_m2: [f64; 3],
 }
 
+impl DragBody {
+    /// Whether all numbers are finite, and neither half extents nor drag below 0.
+    pub fn is_valid(&self) -> bool {
+        let are_finite = |numbers: [f64; 3]| numbers.iter().all(|number| number.is_finite());
+        let from_0 = |numbers: [f64; 3]| are_finite(numbers) && numbers.iter().all(|&number| number >= 0.0);
+        are_finite(self.centre_m) && are_finite(self.velocity_m_per_s) && from_0(self.half_extents_m) && from_0(self.drag_m2)
+    }
+}
+
 /// Drag on one face.
 #[derive(Clone, Copy, Debug)]
 struct DragFace<R> {
@@ -159,10 +168,11 @@ fn share_out<R: Real>(grid: &Grid<R>, location: Location, along: usize, body: &D
         shares.extend((0..n as usize).map(|i| (i, (n as f64).recip())));
         return;
     }
-    for i in first..=last {
+    let range = if grid.wraps(along) { first..last + 1 } else { first.max(free.start as i64)..last.min(free.end as i64 - 1) + 1 };
+    for i in range {
         let [low, high] = [(i as f64 - 0.5).max(centre - half), (i as f64 + 0.5).min(centre + half)];
         let index = if grid.wraps(along) { i.rem_euclid(n) } else { i };
-        if high > low && index >= free.start as i64 && index < free.end as i64 {
+        if high > low {
             shares.push((index as usize, (high - low) / (2.0 * half)));
         }
     }

@@ -26,13 +26,22 @@ impl<R: Real> Solver<R> {
 
     /// Sets fixed bodies that slow the air within them, in place of earlier ones. Their number does not matter: the cost of a step grows with the number of cells
     /// in which there are any.
-    pub fn set_drag(&mut self, bodies: &[DragBody]) {
+    ///
+    /// # Errors
+    /// [`SolidError::Body`]. Nothing changes then.
+    pub fn set_drag(&mut self, bodies: &[DragBody]) -> Result<(), SolidError> {
+        allow(bodies.iter().map(DragBody::is_valid))?;
         self.drag.set_fixed(&self.grid, bodies);
+        Ok(())
     }
 
     /// Sets solid bodies that may move, in place of earlier ones: call it before each step. A body at least [`Body::RESOLVED`] cells wide along every axis is a wall, where
     /// [`Solver::check_walls`] allows it; a smaller one slows the air around it by its drag.
-    pub fn set_bodies(&mut self, bodies: &[Body]) {
+    ///
+    /// # Errors
+    /// [`SolidError::Body`]. Nothing changes then.
+    pub fn set_bodies(&mut self, bodies: &[Body]) -> Result<(), SolidError> {
+        allow(bodies.iter().map(Body::is_valid))?;
         let may_be_walls = self.check_walls().is_ok();
         let (grid, viscosity) = (&self.grid, self.config.viscosity_m2_per_s.into());
         let is_wall = |body: &&Body| may_be_walls && body.is_resolved(grid);
@@ -44,6 +53,7 @@ impl<R: Real> Solver<R> {
             immersed.walls.set_moving(grid, viscosity, bodies.iter().filter(is_wall));
             self.drop_walls_without_faces();
         }
+        Ok(())
     }
 
     /// Whether walls can be immersed with these settings.
@@ -75,4 +85,9 @@ impl<R: Real> Solver<R> {
             self.immersed = None;
         }
     }
+}
+
+/// The first body whose numbers are not allowed is an error.
+fn allow(mut are_valid: impl Iterator<Item = bool>) -> Result<(), SolidError> {
+    are_valid.position(|is_valid| !is_valid).map_or(Ok(()), |index| Err(SolidError::Body { index }))
 }

@@ -77,7 +77,7 @@ fn a_body_that_moves_through_still_air_feels_the_force_of_the_wind_on_one_at_res
         let (mut sum, mut count) = (0.0, 0.0);
         for n in 1..=160 {
             let x = 24.0 + speed * 0.1 * f64::from(n);
-            air.set_bodies(&[cube([x, 12.2, 12.3], 3.1, [speed, 0.0, 0.0])]);
+            air.set_bodies(&[cube([x, 12.2, 12.3], 3.1, [speed, 0.0, 0.0])]).unwrap();
             air.step(0.1, &[]).unwrap();
             if n > 60 {
                 sum += air.wall_force_m4_per_s2()[0];
@@ -96,7 +96,7 @@ fn a_body_within_a_cell_takes_its_drag_and_none_at_the_speed_of_the_wind() {
     let config = Config { viscosity_m2_per_s: 0.0, ..steady([16, 8, 8], [Boundary::Wrap; 2], [Boundary::FreeSlip; 2]) };
     let momentum_lost = |velocity_m_per_s: [f64; 3], half_m: f64| {
         let mut air = Solver::<f64>::new(&config).unwrap();
-        air.set_bodies(&[Body { drag_coefficient: 0.8, ..cube([7.3, 3.9, 4.4], half_m, velocity_m_per_s) }]);
+        air.set_bodies(&[Body { drag_coefficient: 0.8, ..cube([7.3, 3.9, 4.4], half_m, velocity_m_per_s) }]).unwrap();
         let before: f64 = fluxes(&air).iter().sum();
         air.step(1e-4, &[]).unwrap();
         (before - fluxes(&air).iter().sum::<f64>()) / 1e-4
@@ -118,7 +118,7 @@ fn scenery(threads: usize, interrupt: bool) -> Vec<u32> {
         let mut air = Air::<f32>::new(Method::Staggered, &config).unwrap();
         air.set_walls(|[x, y, _]| y - 6.0 * (-(x - 40.0) * (x - 40.0) / 200.0).exp() - 0.3, |_| [0.0; 3]).unwrap();
         let crown = DragBody { centre_m: [20.0, 6.0, 20.0], half_extents_m: [4.0; 3], velocity_m_per_s: [0.0; 3], drag_m2: [40.0; 3] };
-        air.set_drag(&[crown, DragBody { centre_m: [23.0, 6.0, 20.0], ..crown }]);
+        air.set_drag(&[crown, DragBody { centre_m: [23.0, 6.0, 20.0], ..crown }]).unwrap();
         air
     };
     pool.install(|| {
@@ -130,7 +130,7 @@ fn scenery(threads: usize, interrupt: bool) -> Vec<u32> {
                 air.restore(&state).unwrap();
             }
             let x = f64::from(n);
-            air.set_bodies(&[cube([60.0 + x, 14.0, 30.0], 4.0, [10.0, 0.0, 0.0]), cube([x, 3.0, 40.0], 0.7, [10.0, 0.0, 0.0])]);
+            air.set_bodies(&[cube([60.0 + x, 14.0, 30.0], 4.0, [10.0, 0.0, 0.0]), cube([x, 3.0, 40.0], 0.7, [10.0, 0.0, 0.0])]).unwrap();
             air.step(0.1, &[]).unwrap();
         }
         air.cell_velocities().flat_map(|velocity| velocity.to_array().map(f32::to_bits)).collect()
@@ -149,8 +149,8 @@ fn air_without_solids_keeps_its_bits() {
         let mut air = Solver::<f32>::new(&Config::default()).unwrap();
         if clear {
             air.set_walls(|_| 1.0, |_| [0.0; 3]).unwrap();
-            air.set_drag(&[]);
-            air.set_bodies(&[]);
+            air.set_drag(&[]).unwrap();
+            air.set_bodies(&[]).unwrap();
         }
         (0..5).for_each(|_| _ = air.step(0.05, &[]).unwrap());
         air.state()
@@ -170,7 +170,7 @@ fn walls_are_refused_where_the_schemes_do_not_allow_them() {
         let mut air = Solver::<f32>::new(&config).unwrap();
         assert_eq!(air.set_walls(|_| -1.0, |_| [0.0; 3]), Err(error));
         // There a large body slows the air like a small one.
-        air.set_bodies(&[cube([128.0, 8.0, 128.0], 40.0, [0.0; 3])]);
+        air.set_bodies(&[cube([128.0, 8.0, 128.0], 40.0, [0.0; 3])]).unwrap();
         air.step(0.05, &[]).unwrap();
     }
 }

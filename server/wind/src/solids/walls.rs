@@ -6,6 +6,7 @@
 //! λ = ∞ inside and λ = ν/h²·(1/θ − 1) next to the surface, so that a steady flow does not depend on the time step.
 
 use super::Body;
+use crate::boundary::Boundary;
 use crate::field::Velocity;
 use crate::grid::{Grid, Location};
 use crate::real::Real;
@@ -104,20 +105,30 @@ impl<R: Real> Walls<R> {
         self.faces.iter().map(|faces| faces.capacity() * size_of::<WallFace<R>>()).sum()
     }
 
-    /// Gives the faces of `velocity` what the walls demand after `dt_secs` (s), by a backward Euler step.
-    pub(crate) fn hold(&mut self, dt_secs: f64, velocity: &mut Velocity<R>) {
+    /// Gives back to the faces of `velocity` the share of a pressure gradient that the walls bear, which has acted on them for `acted_secs` (s) of a step of `dt_secs`. Stages
+    /// of a step would else carry air through the walls.
+    pub(crate) fn bear(&self, dt_secs: f64, acted_secs: f64, pressure_gradient: &Velocity<R>, velocity: &mut Velocity<R>) {
+        for axis in 0..3 {
+            let (gradient, field) = (&pressure_gradient.0[axis].data, &mut velocity.0[axis].data);
+            for face in &self.faces[axis] {
+                field[face.at] = field[face.at] + R::of(acted_secs * face.held_after(dt_secs)) * gradient[face.at];
+            }
+        }
+    }
+
+    /// Gives the faces of `velocity` what the walls demand after `dt_secs` (s), by a backward Euler step. [`Walls::bear`] has given back the share of the pressure gradient, which
+    /// counts as the walls' force.
+    pub(crate) fn hold(&mut self, dt_secs: f64, pressure_gradient: &Velocity<R>, velocity: &mut Velocity<R>) {
         let dt = R::of(dt_secs);
-        for (faces, field) in self.faces.iter_mut().zip(&mut velocity.0) {
+        for (axis, faces) in self.faces.iter_mut().enumerate() {
+            let (gradient, field) = (&pressure_gradient.0[axis].data, &mut velocity.0[axis].data);
             for face in faces {
-                let speed = &mut field.data[face.at];
-                let (held, after) = if face.rate_per_s.is_finite() {
-                    let growth = R::one() + dt * face.rate_per_s;
-                    (1.0 - growth.wide().recip(), (*speed + dt * face.target) / growth)
-                } else {
-                    (1.0, face.target)
-                };
-                (face.held, face.gain) = (held, after - *speed);
-                *speed = after;
+                face.held = face.held_after(dt_secs);
+                let before = field[face.at] - R::of(dt_secs * face.held) * gradient[face.at];
+                let after =
+                    if face.rate_per_s.is_finite() { (before + dt * face.target) / (R::one() + dt * face.rate_per_s) } else { face.target };
+                face.gain = after - before;
+                field[face.at] = after;
             }
         }
     }
@@ -130,6 +141,11 @@ impl<R: Real> WallFace<R> {
         before[axis] = if index[axis] == 0 { grid.cells[axis] - 1 } else { index[axis] - 1 };
         let cells = [before, index].map(|[i, j, k]| i + nx * (j + ny * k));
         Self { at: grid.at(index), cells, rate_per_s, target, gain: R::zero(), held: 0.0 }
+    }
+
+    /// Fraction of the pressure gradient that the wall bears in a step of `dt_secs` (s).
+    fn held_after(&self, dt_secs: f64) -> f64 {
+        if self.rate_per_s.is_finite() { 1.0 - (R::one() + R::of(dt_secs) * self.rate_per_s).wide().recip() } else { 1.0 }
     }
 }
 
@@ -173,16 +189,35 @@ impl<R: Real, D: Fn([f64; 3]) -> f64, V: Fn([f64; 3]) -> [f64; 3]> Surface<'_, R
                     }
                     position_m
                 };
+                // Beyond a face of the box friction acts towards the face where that has a velocity, and not at all where it is free.
+                let beyond = self.beyond(along, position_m[along] + step_m);
+                if beyond.is_some_and(Boundary::fixes_tangential_velocity) {
+                    continue;
+                }
                 let inside_m = (self.distance_m)(moved(step_m));
                 if inside_m <= 0.0 {
+                    let inside = if beyond.is_some() { 0.0 } else { 1.0 };
                     let theta = (distance_m / (distance_m - inside_m)).max(NEAREST);
-                    let [surface, beyond] = [theta * step_m, step_m].map(|by_m| (self.velocity_m_per_s)(moved(by_m))[axis]);
-                    sums[0] += (theta.recip() - 1.0) / (spacing_m * spacing_m);
-                    sums[1] += (surface / theta - beyond) / (spacing_m * spacing_m);
+                    let [surface, neighbour] = [theta * step_m, step_m].map(|by_m| (self.velocity_m_per_s)(moved(by_m))[axis]);
+                    sums[0] += (theta.recip() - inside) / (spacing_m * spacing_m);
+                    sums[1] += (surface / theta - inside * neighbour) / (spacing_m * spacing_m);
                 }
             }
         }
         sums
+    }
+}
+
+impl<R: Real, D, V> Surface<'_, R, D, V> {
+    /// The face of the box between the air and a coordinate (m) beyond it.
+    fn beyond(&self, along: usize, coordinate_m: f64) -> Option<Boundary> {
+        let [low, high] = self.grid.boundary[along];
+        match coordinate_m {
+            _ if self.grid.wraps(along) => None,
+            _ if coordinate_m < 0.0 => Some(low),
+            _ if coordinate_m > self.grid.extent_m(along).wide() => Some(high),
+            _ => None,
+        }
     }
 }
 
