@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::render::Renderer;
-use crate::render::gpu::pipeline::{COLOR, DEPTH, DrawDescriptor, storage};
+use crate::render::gpu::pipeline::{COLOR, DEPTH, DrawDescriptor, bind, storage};
 use crate::render::inputs::frustum::Frustum;
 use crate::render::land_and_sky::terrain::tile_indices;
 use std::f32::consts::TAU;
