@@ -12,6 +12,7 @@ use super::{Convergence, PressureSolver, Projection, divergence, subtract_gradie
 use crate::field::Velocity;
 use crate::grid::{Grid, Location};
 use crate::real::Real;
+use crate::separable::Separable;
 use crate::solids::Walls;
 
 /// Slip, relative to the rms speed of the air, at which the iteration ends: root mean square over the faces of the walls.
@@ -109,11 +110,7 @@ impl Projection {
         bear_pressure(grid, walls, potential, velocity);
         if enclosed.iter().any(|(_, apart)| *apart != 0.0) {
             ahead.fill(elsewhere);
-            enclosed.iter().for_each(|&(cell, apart)| ahead[cell] = apart);
-            separable.solve(0.0, ahead);
-            for (axis, field) in velocity.0.iter_mut().enumerate() {
-                subtract_gradient(grid, ahead, axis, &mut field.data, None, R::zero());
-            }
+            push_through(grid, separable, enclosed, ahead, velocity);
         }
         Convergence { residual: (slip.max(0.0) / scale.max(f64::MIN_POSITIVE)).sqrt(), sweeps, tolerance: SLIP }
     }
@@ -150,6 +147,21 @@ fn set_apart<R: Real>(grid: &Grid<R>, walls: &Walls<R>, held: &mut [f64], residu
     residual.iter_mut().for_each(|residual| *residual -= mean);
     enclosed.iter().for_each(|&(cell, _)| residual[cell] = 0.0);
     mean
+}
+
+/// Moves the air that is set apart through the walls: what the list says in enclosed cells, and `apart` (1/s) elsewhere, which becomes its potential.
+fn push_through<R: Real>(
+    grid: &Grid<R>,
+    separable: &mut Separable,
+    enclosed: &[(usize, f64)],
+    apart: &mut [f64],
+    velocity: &mut Velocity<R>,
+) {
+    enclosed.iter().for_each(|&(cell, residual)| apart[cell] = residual);
+    separable.solve(0.0, apart);
+    for (axis, field) in velocity.0.iter_mut().enumerate() {
+        subtract_gradient(grid, apart, axis, &mut field.data, None, R::zero());
+    }
 }
 
 /// Sum over the faces of walls of `(1 − β)·|∇p|²`.
