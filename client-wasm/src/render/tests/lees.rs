@@ -22,8 +22,19 @@ fn windy_meadows(cover: PlantCover) -> (Mirror, Mirror, Vec3) {
     (plain, stony, at_m.expect("a boulder"))
 }
 
+/// Places of plants (m), and how far they lean along the wind, by the bits of their places.
+type Leans = HashMap<[u32; 2], ([f32; 2], f32)>;
+
+/// Lean of more than `least` plants at places relative to `at_m`, over that of the same ones in the open.
+fn fraction_of_lean(stony: &Leans, open: &Leans, at_m: Vec3, least: u32, is_there: fn(f32, f32) -> bool) -> f32 {
+    let both = stony.iter().filter_map(|(root, ([x, z], lean))| is_there(x - at_m.x, z - at_m.z).then_some((lean, open.get(root)?.1)));
+    let (found, open, count) = both.fold((0.0, 0.0, 0), |sum, (found, open)| (sum.0 + found, sum.1 + open, sum.2 + 1));
+    assert!(count > least, "{count} plants");
+    found / open
+}
+
 /// Lean of the tip of each drawn blade along the wind, by its root, after a second and a half below a camera.
-fn leaning(gpu: &Gpu, mirror: &mut Mirror) -> HashMap<[u32; 2], ([f32; 2], f32)> {
+fn leaning(gpu: &Gpu, mirror: &mut Mirror) -> Leans {
     let mut picture = OffscreenRenderer::new(gpu, [400; 2], Quality::Low);
     let camera = Camera { eye_m: Vec3::new(32.0, 8.0, 32.0), pitch_rad: -1.57, fov_rad: 1.9, ..Camera::default() };
     (0..15).for_each(|_| {
@@ -43,12 +54,7 @@ fn grass_behind_a_boulder_leans_less_than_beside_it() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let (mut plain, mut stony, at_m) = windy_meadows(PlantCover::Blades);
     let [open, stony] = [&mut plain, &mut stony].map(|mirror| leaning(&gpu, mirror));
-    let fraction = |is_there: fn(f32, f32) -> bool| {
-        let both = stony.iter().filter_map(|(root, ([x, z], lean))| is_there(x - at_m.x, z - at_m.z).then_some((lean, open.get(root)?.1)));
-        let (found, open, count) = both.fold((0.0, 0.0, 0), |sum, (found, open)| (sum.0 + found, sum.1 + open, sum.2 + 1));
-        assert!(count > 30, "{count} blades");
-        found / open
-    };
+    let fraction = |is_there: fn(f32, f32) -> bool| fraction_of_lean(&stony, &open, at_m, 30, is_there);
     let behind = fraction(|x, z| (3.5..6.0).contains(&x) && z.abs() < 1.0);
     let beside = fraction(|x, z| x.abs() < 4.0 && (6.0..12.0).contains(&z.abs()));
     println!("{behind} behind, {beside} beside");
@@ -78,7 +84,7 @@ fn shells_feel_the_lee_of_a_boulder() {
 }
 
 /// Displacement of the tops of clumps along the wind over their height, by their roots, after a second and a half.
-fn leaning_clumps(gpu: &Gpu, mirror: &mut Mirror) -> HashMap<[u32; 2], ([f32; 2], f32)> {
+fn leaning_clumps(gpu: &Gpu, mirror: &mut Mirror) -> Leans {
     let mut picture = OffscreenRenderer::new(gpu, [200; 2], Quality::Low);
     picture.set_options(RenderOptions { far_plants: FarPlants::Clumps, culls: false, ..RenderOptions::default() });
     let camera = Camera { eye_m: Vec3::new(32.0, 1.7, 78.0), ..Camera::default() };
@@ -98,12 +104,7 @@ fn clumps_feel_the_lee_of_a_boulder() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let (mut plain, mut stony, at_m) = windy_meadows(PlantCover::Blades);
     let [open, stony] = [&mut plain, &mut stony].map(|mirror| leaning_clumps(&gpu, mirror));
-    let fraction = |is_there: fn(f32, f32) -> bool| {
-        let both = stony.iter().filter_map(|(root, ([x, z], lean))| is_there(x - at_m.x, z - at_m.z).then_some((lean, open.get(root)?.1)));
-        let (found, open, count) = both.fold((0.0, 0.0, 0), |sum, (found, open)| (sum.0 + found, sum.1 + open, sum.2 + 1));
-        assert!(count > 3, "{count} clumps");
-        found / open
-    };
+    let fraction = |is_there: fn(f32, f32) -> bool| fraction_of_lean(&stony, &open, at_m, 3, is_there);
     let behind = fraction(|x, z| (3.0..10.0).contains(&x) && z.abs() < 2.5);
     let beside = fraction(|x, z| x.abs() < 5.0 && (6.0..14.0).contains(&z.abs()));
     println!("{behind} behind, {beside} beside");
