@@ -41,8 +41,8 @@ pub struct Wind {
     /// Default 0.1, allowed 0..=10; 0 with the method `stable-fluids`, which has no canopy.
     pub canopy_drag_per_m: f32,
     /// Natural frequency of standing grass (Hz). Where it is above 0, the grass sways in the wind and acts back on it: the drag is that on the relative velocity
-    /// (Py et al. 2006), and waves over cells as fine as the grass is high are drawn to this frequency. Alfalfa has 1.05, wheat 2.5. Default 0, grass that holds
-    /// still; allowed 0..=20.
+    /// (Py et al. 2006), and waves are drawn to this frequency where some eight cells per height of the grass resolve them. Pictures show it by the wind alone.
+    /// Alfalfa has 1.05, wheat 2.5. Default 0, grass that holds still; allowed 0..=20.
     pub canopy_frequency_hz: f32,
     /// Damping ratio of standing grass that sways, apart from its drag. Default 0.05, allowed 0..=2.
     pub canopy_damping_ratio: f32,
