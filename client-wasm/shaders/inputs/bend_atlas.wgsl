@@ -1,7 +1,8 @@
 // Sampling of the streamed bend field.
 
-import package::constants::{BEND_ATLAS_LEVELS, PASTS, TAU};
+import package::constants::{PASTS, TAU};
 import package::inputs::frame::{frame, runtime_zero, repeated};
+import package::inputs::repeated_patch::repeated_lean;
 import package::inputs::wind::lean_of_wind;
 import package::uniforms::Kind;
 
@@ -65,13 +66,19 @@ fn field_fraction(p: vec2<f32>) -> f32 {
     return 1.0 - smoothstep(0.8, 1.0, max(from_eye.x, from_eye.y) / frame.bend_reach_m);
 }
 
-// Lean (rad) of the bend field at a position: the deviation of the grass from its pose in the wind alone.
+// Lean (rad) of the repeated patch at a position where the bend field counts by `fraction`.
+fn far_lean(p: vec2<f32>, level: f32, fraction: f32) -> vec2<f32> {
+    return repeated_lean(p, level, textureDimensions(bends).x, fraction);
+}
+
+// Lean (rad) of the bend field and the repeated patch at a position: the deviation of the grass from its pose in the wind alone.
 fn lean_of_field(p: vec2<f32>, level: f32) -> vec2<f32> {
     let fraction = field_fraction(p);
+    let far = far_lean(p, level, fraction);
     if fraction <= 0.0 {
-        return vec2<f32>(0.0);
+        return far;
     }
-    return lean_of_bend(bend_at(p, level, 0)) * fraction;
+    return lean_of_bend(bend_at(p, level, 0)) * fraction + far;
 }
 
 // Lean (rad) of a plant at `ground` in a wind over the ground (m/s), for a plant that a wind of 10 m/s bends by `bend_rad`.
@@ -79,6 +86,7 @@ fn lean_in(ground: vec3<f32>, level: f32, wind: vec2<f32>, bend_rad: f32) -> vec
     return lean_of_field(ground.xz, level) + lean_of_wind(wind, bend_rad);
 }
 
+// Mip level of the bend atlas at a distance; the last one is used beyond its end.
 fn field_level(distance_m: f32) -> f32 {
-    return clamp(log2(distance_m * frame.pixel_rad * 4.0 * 6.0), 0.0, f32(BEND_ATLAS_LEVELS - 1u));
+    return max(log2(distance_m * frame.pixel_rad * 4.0 * 6.0), 0.0);
 }

@@ -7,7 +7,7 @@ import package::constants::{
     BEND_SATURATES_M_PER_S, CHUNK, COARSE_LIST, DRAW_WORDS, FAR_HEAD_LIST, FINE_LIST, FINE_SPREAD, GROWTH_BY_TUFT, HEAD_LIST, LINKS, NEAR_SLOTS,
     PLANT_LISTS, SINGLE_LIST, TAU, WIND_SHAPE,
 };
-import package::inputs::bend_atlas::{bend_at, field_fraction, lean_of_bend, trailing_lean};
+import package::inputs::bend_atlas::{bend_at, far_lean, field_fraction, lean_of_bend, trailing_lean};
 import package::inputs::frame::{frame, runtime_zero};
 import package::inputs::frustum::is_seen;
 import package::inputs::grass_kinds::{kind_at, kinds};
@@ -158,11 +158,21 @@ struct Bending {
     field: vec3<f32>,
     // Weight of the bend field.
     fraction: f32,
+    // Lean of the repeated patch (rad).
+    far_lean: vec2<f32>,
 }
 
 fn bending_at(plant: Plant, grid: vec2<i32>, index: u32) -> Bending {
     let p = plant.root_m.xz;
-    return Bending(sheltered_at(plant.root_m, 0.0), gust_at(p), random3(grid, index + 47u), bend_at(p, 0.0, 0), field_fraction(p));
+    let fraction = field_fraction(p);
+    return Bending(
+        sheltered_at(plant.root_m, 0.0),
+        gust_at(p),
+        random3(grid, index + 47u),
+        bend_at(p, 0.0, 0),
+        fraction,
+        far_lean(p, 0.0, fraction),
+    );
 }
 
 // Wind on a plant relative to that around it: neighbours shelter each other by chance.
@@ -174,7 +184,7 @@ fn exposure_of(bending: Bending) -> f32 {
 fn trailing_leans(plant: Plant, bending: Bending, exposure: f32) -> array<vec2<f32>, 3> {
     let kind = kinds.list[plant.kind];
     let lag_secs = select(0.0, kind.lag_secs, kind.segments > 1.5);
-    let held = lean_of_wind((bending.wind + bending.gust) * exposure, kind.wind_bend_rad) * give_of(plant);
+    let held = lean_of_wind((bending.wind + bending.gust) * exposure, kind.wind_bend_rad) * give_of(plant) + bending.far_lean;
     var leans = array<vec2<f32>, 3>(held, held, held);
     leans[0] += lean_of_bend(bending.field) * bending.fraction;
     for (var i = 1; i < select(1, 3, bending.fraction > 0.0); i++) {
@@ -274,7 +284,7 @@ fn bend_near(@builtin(global_invocation_id) id: vec3<u32>) {
     let kind = kinds.list[plant.kind];
     let bending = bending_at(plant, grid, index);
     let exposure = exposure_of(bending);
-    let field_lean = lean_of_bend(bending.field) * bending.fraction;
+    let field_lean = lean_of_bend(bending.field) * bending.fraction + bending.far_lean;
     let held = leans_of(plant, array<vec2<f32>, 3>(field_lean, field_lean, field_lean));
     let give = give_of(plant);
     let nature = BladeNature(plant.height_m, plant.frequency_rad_per_s, plants.damping_ratio, kind.wind_bend_rad * 0.01 * give);

@@ -1,7 +1,7 @@
 // Clumps of far plants: six rectangles about a vertical axis (Zhang, section 4.1). One instance is 32 clumps.
 
 import package::constants::{CLUMP_FADE_SPREAD_M, CLUMP_SEGMENT_LIMIT, CLUMPS, TAU, WORKGROUP_SIZE};
-import package::inputs::bend_atlas::{bend_at, field_level, field_fraction, lean_of_bend, lean_of_field, trailing_lean};
+import package::inputs::bend_atlas::{bend_at, far_lean, field_level, field_fraction, lean_of_bend, lean_of_field, trailing_lean};
 import package::inputs::frame::{frame, repeated};
 import package::inputs::grass_kinds::{kind_at, kinds};
 import package::inputs::lamps::lamps_on;
@@ -66,7 +66,8 @@ fn joints_of(ground: vec3<f32>, kind: Kind, segments: u32, height: f32, level: f
     let p = ground.xz;
     let fraction = field_fraction(p);
     let now = bend_at(p, level, 0);
-    let lowest = wind_lean + lean_of_bend(now) * fraction;
+    let steady = wind_lean + far_lean(p, level, fraction);
+    let lowest = steady + lean_of_bend(now) * fraction;
     let curl = (1.0 - straight) * (1.0 - smoothstep(0.5, 1.3, length(lowest)));
     var joints: array<vec3<f32>, CLUMP_SEGMENT_LIMIT>;
     var at = vec3<f32>(0.0);
@@ -74,7 +75,7 @@ fn joints_of(ground: vec3<f32>, kind: Kind, segments: u32, height: f32, level: f
         var lean = lowest;
         if i > 0u && fraction > 0.0 && straight < 1.0 {
             let secs = kind.lag_secs * f32(i) / f32(segments - 1u);
-            lean = mix(wind_lean + trailing_lean(p, level, now, kind, secs) * fraction, lowest, straight);
+            lean = mix(steady + trailing_lean(p, level, now, kind, secs) * fraction, lowest, straight);
         }
         if segments > 1u {
             lean *= 1.0 + curl * (0.7 * f32(i) / f32(segments - 1u) - 0.35);

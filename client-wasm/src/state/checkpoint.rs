@@ -5,7 +5,7 @@ use super::error::MirrorError;
 use super::fields::{PatchFields, WindFrames};
 use super::following::Following;
 use super::mirror::{Mirror, WIND_DELAY_SECS};
-use prairie_core::grass::ReplicaState;
+use prairie_core::grass::{RepeatedPatch, ReplicaState};
 use prairie_core::wire::ObjectPose;
 use std::sync::Arc;
 
@@ -87,6 +87,7 @@ impl Mirror {
             wind_field: Some(wind_field),
             broken: checkpoint.broken.clone(),
             peers: self.peers.clone(),
+            repeated: RepeatedPatch::new(decoded.scene()),
             ..Self::default()
         };
         match &checkpoint.grass {

@@ -7,7 +7,7 @@ use super::following::{Following, Part};
 use super::playback::Playback;
 use super::scene::DecodedScene;
 use super::seen_motion::SeenMotion;
-use prairie_core::grass::{EncodedSteps, Replica};
+use prairie_core::grass::{EncodedSteps, RepeatedPatch, Replica, patches_within};
 use prairie_core::grid::PatchIndex;
 use prairie_core::scene::Scene;
 use prairie_core::wind::WindField;
@@ -19,6 +19,9 @@ pub const PEER_LIMIT: usize = 4096;
 
 /// Delay of the wind behind the objects shown (s): that of a frame, so that a next one to interpolate towards is usually there.
 pub const WIND_DELAY_SECS: f64 = 1.0 / 6.0;
+
+/// Largest number of steps of the repeated patch before a frame: about 10 ms.
+const REPEATED_STEPS: u32 = 24;
 
 /// Event for the page, caused by a message.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +74,8 @@ pub struct Mirror {
     pub(super) own: Option<ObjectPose>,
     /// The newest input that moves the client's own object.
     pub(super) applied: Option<AppliedInput>,
+    /// Grass in the natural wind where no camera is near.
+    pub(super) repeated: Option<RepeatedPatch>,
     pub(super) broken: BrokenPlants,
     pub(super) peers: Vec<Peer>,
     pub(super) tick: u64,
@@ -146,6 +151,7 @@ impl Mirror {
     fn load(&mut self, decoded: DecodedScene) {
         self.broken = BrokenPlants::new(decoded.flora().map_or(0, |flora| flora.grown().sites.total()));
         self.wind_field = Some(decoded.still_air());
+        self.repeated = RepeatedPatch::new(decoded.scene());
         self.scene = Some(Arc::new(decoded));
         self.scene_number = self.scene_number.wrapping_add(1);
         self.patches = PatchFields::default();
@@ -186,6 +192,30 @@ impl Mirror {
     /// Sets playback to the newest frame, so that objects are shown at the same moment as the grass: for pictures that are not drawn in real time.
     pub fn show_newest(&mut self) {
         self.poses.show_at(self.secs_of(self.tick));
+        if let Some(repeated) = &mut self.repeated {
+            repeated.advance_to(self.tick, u32::MAX);
+        }
+    }
+
+    /// Advances the [repeated patch](Self::repeated_patch) towards the newest frame, by as much as a frame has time for.
+    pub fn advance_repeated_patch(&mut self) {
+        if let Some(repeated) = &mut self.repeated {
+            repeated.advance_to(self.tick, REPEATED_STEPS);
+        }
+    }
+
+    /// Grass in the natural wind where no camera is near; `None` in scenes without it.
+    pub fn repeated_patch(&self) -> Option<&RepeatedPatch> {
+        self.repeated.as_ref()
+    }
+
+    /// Patches that the natural wind pushes. Without a replica those around the eye alone: the cameras of others are not known.
+    pub fn pushed_patches(&self, eye_m: [f32; 2]) -> Vec<PatchIndex> {
+        match (self.following.replica(), &self.scene) {
+            (Some(replica), _) => replica.grass().causes().gusty.clone(),
+            (None, Some(decoded)) => patches_within(decoded.layout(), decoded.scene().natural_wind.reach_m, [eye_m]),
+            (None, None) => vec![],
+        }
     }
 
     /// The scene with its decoded maps; `None` before it has arrived.
@@ -301,13 +331,13 @@ impl Mirror {
         self.patches.has_dirty()
     }
 
-    /// Whether nothing moves by itself: no wind, rain, dust or moving sun. True before the scene has arrived.
+    /// Whether nothing moves by itself: no wind, natural wind, rain, dust or moving sun. True before the scene has arrived.
     pub fn is_calm(&self) -> bool {
         let scene_is_calm = self.scene.as_ref().is_none_or(|decoded| {
             let Scene { wind, rain, light, .. } = decoded.scene();
             wind.mean_m_per_s == [0.0; 2] && rain.rate_mm_per_h <= 0.0 && light.day_length_secs <= 0.0
         });
-        scene_is_calm && self.wind().is_none_or(WindCodes::is_calm)
+        scene_is_calm && self.repeated.is_none() && self.wind().is_none_or(WindCodes::is_calm)
     }
 
     /// Direction in which the plant of each underbrush site fell, as a [heading code](prairie_core::wire::quantise::heading_code); 0 for an unbroken plant.

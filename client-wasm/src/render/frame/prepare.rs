@@ -59,6 +59,8 @@ impl Renderer {
         let poses: Vec<ObjectPose> = mirror.objects().collect();
         let eye_xz_m = [camera.eye_m.x, camera.eye_m.z];
         let patches_written = scene.textures.atlas.update(&self.gpu, mirror, eye_xz_m, dt_secs);
+        mirror.advance_repeated_patch();
+        scene.textures.repeated.update(&self.gpu, mirror, eye_xz_m, dt_secs);
         scene.textures.wind.update(&self.gpu, mirror.shown_wind(time_secs));
         let Some(decoded) = mirror.decoded_scene() else { return FramePlan::default() };
 
@@ -67,8 +69,7 @@ impl Renderer {
         let detail = self.detail.on(&decoded.scene().plants).with(self.options.far_plants);
         let detail = if scene.stage == Stage::Land { detail.without_blades() } else { detail };
         let view = View::new(camera, self.targets.size_px, self.quality, detail, time_secs, sun);
-        let mut frame =
-            view.frame(decoded, &scene.textures.atlas, scene.textures.wind.gusts(), &self.daylight, &poses, &headlights(&poses));
+        let mut frame = view.frame(decoded, &scene.textures, &self.daylight, &poses, &headlights(&poses));
         let (eye_m, heading_rad) = (camera.eye_m, camera.heading_rad);
         let shadow_view = ShadowView { eye_m, heading_rad, sun, trees_m: detail.trees_m, culls: self.options.culls, time_secs };
         let cascades = update_cascades(scene, decoded, &mut frame, shadow_view, &poses, dt_secs);
@@ -146,7 +147,7 @@ fn update_cascades(
 impl SceneResources {
     fn prepare_land(&mut self, gpu: &Gpu, from: &Viewpoint<'_>) {
         let tiles = self.quadtree.tiles(from.eye_m, from.frustum);
-        self.terrain.prepare(gpu, from.eye_m, &tiles, &self.textures.atlas.bent_patches());
+        self.terrain.prepare(gpu, from.eye_m, &tiles, &self.textures.atlas.bent_patches(self.textures.repeated.per_m() > 0.0));
         if let Some(dust) = &self.dust {
             dust.prepare(gpu, self.textures.wind.dusty(), from.dt_secs);
         }

@@ -85,7 +85,8 @@ uniform_block! {
         cloud_offset_m: [f32; 2],
         /// Interaction spheres in the frame.
         sphere_count: u32,
-        _pad: [u8; 4],
+        /// Repetitions of the repeated patch in a metre; 0 if there is none.
+        repeated_per_m: f32,
         /// Position (m) that trees must not hide.
         target_m: [f32; 3],
         /// Radius around the line from the eye to it within which trees fade (m); 0 if there is none.

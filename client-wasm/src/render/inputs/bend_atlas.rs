@@ -25,6 +25,11 @@ pub fn reach_m(layout: &PatchLayout) -> f32 {
     (0.5 * side(layout) as f32 - 1.0) * layout.patch_m()
 }
 
+/// Place in the grid of patches of the first patch of a window of `side` × `side` patches around the eye.
+pub(crate) fn window_corner(layout: &PatchLayout, side: u32, eye_m: [f32; 2]) -> [i64; 2] {
+    eye_m.map(|m| (m / layout.patch_m()).round() as i64 - i64::from(side) / 2)
+}
+
 /// State of a slot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Slot {
@@ -38,6 +43,8 @@ struct Slot {
 
 /// Patches of the atlas whose newest layer is bent.
 pub(crate) struct BentPatches {
+    /// Whether all grass is bent, by the repeated patch.
+    everywhere: bool,
     patch_m: f32,
     /// Places in the grid of patches.
     patches: Vec<[i64; 2]>,
@@ -49,7 +56,7 @@ impl BentPatches {
         let patch = |m: f32| (m / self.patch_m).floor() as i64;
         let low = corner_m.map(|m| patch(m - 0.5 * self.patch_m));
         let high = corner_m.map(|m| patch(m + side_m + 0.5 * self.patch_m));
-        self.patches.iter().any(|patch| (0..2).all(|axis| (low[axis]..=high[axis]).contains(&patch[axis])))
+        self.everywhere || self.patches.iter().any(|patch| (0..2).all(|axis| (low[axis]..=high[axis]).contains(&patch[axis])))
     }
 }
 
@@ -91,10 +98,20 @@ impl BendAtlas {
         reach_m(&self.layout)
     }
 
-    /// The patches that are bent now.
-    pub(crate) fn bent_patches(&self) -> BentPatches {
+    /// Layout of the bend field.
+    pub(crate) fn layout(&self) -> &PatchLayout {
+        &self.layout
+    }
+
+    /// Patches along one side of the window.
+    pub(crate) fn side(&self) -> u32 {
+        self.side
+    }
+
+    /// The patches that are bent now, or all if grass is bent `everywhere`.
+    pub(crate) fn bent_patches(&self, everywhere: bool) -> BentPatches {
         let patches = self.slots.iter().filter(|slot| slot.is_bent).filter_map(|slot| slot.patch).collect();
-        BentPatches { patch_m: self.layout.patch_m(), patches }
+        BentPatches { everywhere, patch_m: self.layout.patch_m(), patches }
     }
 
     /// Ages of the past layers (s), youngest first, and the index of the youngest; −1 without history.
@@ -106,13 +123,12 @@ impl BendAtlas {
     }
 
     /// Updates the window around the camera, `dt_secs` after the last call. Returns the number of patches written.
-    pub(crate) fn update(&mut self, gpu: &Gpu, mirror: &mut Mirror, [eye_x_m, eye_z_m]: [f32; 2], dt_secs: f32) -> u32 {
+    pub(crate) fn update(&mut self, gpu: &Gpu, mirror: &mut Mirror, eye_m: [f32; 2], dt_secs: f32) -> u32 {
         if let Some(pasts) = &mut self.pasts {
             pasts.update(gpu, &self.texture, dt_secs);
         }
         let dirty: HashSet<PatchIndex> = mirror.take_dirty_patches().into_iter().collect();
-        let patch_m = self.layout.patch_m();
-        let first = [eye_x_m, eye_z_m].map(|m| (m / patch_m).round() as i64 - i64::from(self.side) / 2);
+        let first = window_corner(&self.layout, self.side, eye_m);
         let mut written = 0;
         for dz in 0..i64::from(self.side) {
             for dx in 0..i64::from(self.side) {
@@ -224,7 +240,7 @@ fn copy_layer(gpu: &Gpu, texture: &wgpu::Texture, to: u32) {
 }
 
 /// The next mip level: means of 2 × 2 texels.
-fn halved(texels: &[f32], side: usize) -> Vec<f32> {
+pub(crate) fn halved(texels: &[f32], side: usize) -> Vec<f32> {
     let half = side / 2;
     let mut coarse = Vec::with_capacity(half * half * 4);
     for z in 0..half {
@@ -244,7 +260,7 @@ mod tests {
 
     #[test]
     fn a_bent_patch_touches_squares_up_to_half_a_patch_away() {
-        let bent = BentPatches { patch_m: 16.0, patches: vec![[1, -1]] };
+        let bent = BentPatches { everywhere: false, patch_m: 16.0, patches: vec![[1, -1]] };
         // The patch covers 16 to 32 m in X, and -16 to 0 m in Z.
         for corner_m in [[20.0, -10.0], [3.5, -8.0], [39.5, -8.0], [24.0, -28.5], [24.0, 7.5]] {
             assert!(bent.touch(corner_m, 5.0), "{corner_m:?}");
@@ -253,5 +269,6 @@ mod tests {
             assert!(!bent.touch(corner_m, 5.0), "{corner_m:?}");
         }
         assert!(bent.touch([-100.0, -100.0], 200.0), "a square around the patch");
+        assert!(BentPatches { everywhere: true, ..bent }.touch([500.0, 0.0], 1.0));
     }
 }

@@ -1,4 +1,4 @@
-//! Bind group 0, which all passes share: uniforms, heights, normals, cover, bend atlas, wind, noise, shadow map, sky.
+//! Bind group 0, which all passes share: uniforms, heights, normals, cover, bend atlas, wind, noise, shadow map, sky, repeated patch.
 
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::mipmaps::{all_mipmaps, box_mipmaps};
@@ -9,9 +9,11 @@ use crate::render::inputs::cascades::SHADOW_CASCADES;
 use crate::render::inputs::daylight::Daylight;
 use crate::render::inputs::grass_kinds;
 use crate::render::inputs::noise_texture::{NOISE_PX, noise};
+use crate::render::inputs::repeated_patch::RepeatedTextures;
 use crate::render::inputs::wind_texture::WindTexture;
 use crate::render::options::quality::Quality;
 use crate::state::DecodedScene;
+use prairie_core::grass::RepeatedPatch;
 use prairie_core::terrain::{Cover, HeightMap};
 use wgpu::{TextureFormat, TextureSampleType, TextureViewDimension};
 
@@ -31,6 +33,7 @@ pub(crate) struct FrameBindings {
 /// Textures of a scene, and bind group 0 made of all resources.
 pub(crate) struct SceneTextures {
     pub(crate) atlas: BendAtlas,
+    pub(crate) repeated: RepeatedTextures,
     pub(crate) wind: WindTexture,
     /// Bind group 0 of all passes but the shadow pass.
     pub(crate) group: wgpu::BindGroup,
@@ -55,6 +58,8 @@ impl FrameBindings {
             sampled(11, TextureSampleType::Uint, TextureViewDimension::D2),
             uniform(12),
             texture(13),
+            texture(14),
+            texture(15),
         ];
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries: &entries });
         let linear = |mode, compare| {
@@ -127,11 +132,13 @@ impl SceneTextures {
         let kind_texture = gpu.texture("kinds", TextureFormat::R8Uint, kind_map.size_px(), &[kind_map.kinds().to_vec()]);
         let kinds = gpu.buffer("kinds", bytemuck::bytes_of(&grass_kinds::table(decoded.scene())), wgpu::BufferUsages::UNIFORM);
         let atlas = BendAtlas::new(gpu, *decoded.layout(), decoded.scene());
+        let repeated = RepeatedTextures::new(gpu, &atlas, RepeatedPatch::new(decoded.scene()).as_ref());
         let wind = WindTexture::new(gpu, decoded.scene());
         let group = |label, shadows: &wgpu::Texture| {
             use wgpu::BindingResource::{Sampler, TextureView};
             let views = [&height_texture, &normal_texture, &cover_texture, &wind.texture, &kind_texture].map(view);
             let [heights, normals, cover, winds, kind_map] = &views;
+            let [leans, near] = &[&repeated.leans, &repeated.near].map(view);
             let layers = wgpu::TextureViewDescriptor { dimension: Some(TextureViewDimension::D2Array), ..Default::default() };
             let bends = &atlas.texture.create_view(&layers);
             let shadows = &shadows.create_view(&layers);
@@ -150,11 +157,13 @@ impl SceneTextures {
                 TextureView(kind_map),
                 kinds.as_entire_binding(),
                 TextureView(&frame.sky),
+                TextureView(leans),
+                TextureView(near),
             ];
             bind(gpu, label, &frame.layout, &resources)
         };
         let (all, shadow) = (group("frame", &frame.shadows), group("frame without shadows", &frame.no_shadows));
-        Self { group: all, shadow_group: shadow, atlas, wind }
+        Self { group: all, shadow_group: shadow, atlas, repeated, wind }
     }
 }
 

@@ -11,6 +11,7 @@ pub(crate) mod grass_kinds;
 pub(crate) mod lamps;
 pub(crate) mod noise_texture;
 pub(crate) mod random;
+pub(crate) mod repeated_patch;
 pub(crate) mod view;
 pub(crate) mod viewpoint;
 pub(crate) mod wind_texture;

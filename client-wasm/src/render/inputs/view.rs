@@ -2,9 +2,9 @@
 
 use crate::camera::Camera;
 use crate::render::gpu::uniforms::{Frame, GustWave, Lamp, Lights, SPHERE_LIMIT, Sphere};
-use crate::render::inputs::bend_atlas::BendAtlas;
 use crate::render::inputs::cascades;
 use crate::render::inputs::daylight::Daylight;
+use crate::render::inputs::frame_bindings::SceneTextures;
 use crate::render::inputs::lamps::{SpotLight, lamps, lit_sphere};
 use crate::render::options::detail::{Detail, blades_per_grid};
 use crate::render::options::quality::Quality;
@@ -13,7 +13,7 @@ use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
 use prairie_core::light::sun::Sun;
 use prairie_core::scene::{Objects, Plants};
-use prairie_core::wind::{self, Gusts};
+use prairie_core::wind;
 use prairie_core::wire::ObjectPose;
 
 /// Speed of the clouds relative to the mean wind near the ground.
@@ -62,15 +62,15 @@ impl<'a> View<'a> {
     pub(crate) fn frame(
         &self,
         decoded: &DecodedScene,
-        atlas: &BendAtlas,
-        gusts: &Gusts,
+        textures: &SceneTextures,
         daylight: &Daylight,
         poses: &[ObjectPose],
         headlights: &[SpotLight],
     ) -> Frame {
         let (scene, eye, overcast) = (decoded.scene(), self.camera.eye_m, overcast(decoded));
         let [wraps_x, _, wraps_z] = scene.wind.faces.wraps().map(u32::from);
-        let (mean_wind, [past_ages_secs @ .., youngest_past]) = (MeanWind::of(scene.wind.mean_m_per_s), atlas.past());
+        let (mean_wind, [past_ages_secs @ .., youngest_past]) = (MeanWind::of(scene.wind.mean_m_per_s), textures.atlas.past());
+        let gusts = textures.wind.gusts();
         let lamps = lamps(scene, decoded.heights(), headlights, self.sun.elevation_rad, daylight.brightness(), eye);
         let spheres = spheres(&scene.objects, poses, eye);
         Frame {
@@ -85,8 +85,8 @@ impl<'a> View<'a> {
             world_extent_m: scene.extent_m(),
             height_spacing_m: decoded.heights().pixel_m(),
             heights_px: decoded.heights().size_px().map(|px| px as f32),
-            bend_window_m: atlas.window_m(),
-            bend_reach_m: atlas.reach_m(),
+            bend_window_m: textures.atlas.window_m(),
+            bend_reach_m: textures.atlas.reach_m(),
             wind_box_m: scene.wind.box_m(),
             wind_patch_m: if decoded.tiles().by_patch() { decoded.layout().patch_m() } else { 0.0 },
             wind_repeats: [wraps_x, wraps_z],
@@ -110,7 +110,7 @@ impl<'a> View<'a> {
             far_end_m: self.detail.far_m,
             cloud_offset_m: mean_wind.cloud_offset_m(self.time_secs),
             sphere_count: spheres.len() as u32,
-            _pad: [0; 4],
+            repeated_per_m: textures.repeated.per_m(),
             target_m: self.camera.target_m.unwrap_or_default().to_array(),
             fade_m: if self.camera.target_m.is_some() { FADE_M } else { 0.0 },
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_else(Sphere::zeroed)),
