@@ -183,6 +183,7 @@ mod tests {
         let one = |at: usize, count: usize| (0..count).map(|i| i16::from(i == at)).collect::<Vec<i16>>();
         for (cause, mut mirror, wind) in [
             ("mean wind", meadow(|scene| scene.wind.mean_m_per_s = [0.0, -2.0]), vec![0; 96]),
+            ("natural wind", meadow(|scene| scene.natural_wind.strength_rad_per_s2 = 1.0), vec![0; 96]),
             ("rain", meadow(|scene| scene.rain.rate_mm_per_h = 5.0), vec![0; 96]),
             ("wind in one cell", meadow(|_| {}), one(50, 96)),
             ("dust", meadow(|scene| scene.wind.dust = WindDust { release_per_s: 1.0, ..WindDust::default() }), one(100, 128)),

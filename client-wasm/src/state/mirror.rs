@@ -20,8 +20,8 @@ pub const PEER_LIMIT: usize = 4096;
 /// Delay of the wind behind the objects shown (s): that of a frame, so that a next one to interpolate towards is usually there.
 pub const WIND_DELAY_SECS: f64 = 1.0 / 6.0;
 
-/// Largest number of steps of the repeated patch before a frame: about 10 ms.
-const REPEATED_STEPS: u32 = 24;
+/// Number of sub-steps of the repeated patch before a frame: about 10 ms.
+const REPEATED_SUBSTEPS: u32 = 24;
 
 /// Event for the page, caused by a message.
 #[derive(Clone, Debug, PartialEq)]
@@ -200,7 +200,7 @@ impl Mirror {
     /// Advances the [repeated patch](Self::repeated_patch) towards the newest frame, by as much as a frame has time for.
     pub fn advance_repeated_patch(&mut self) {
         if let Some(repeated) = &mut self.repeated {
-            repeated.advance_to(self.tick, REPEATED_STEPS);
+            repeated.advance_to(self.tick, REPEATED_SUBSTEPS);
         }
     }
 

@@ -8,6 +8,8 @@ use noise::permutationtable::{NoiseHasher, PermutationTable};
 pub(super) const PERIOD_GUSTS: u32 = 8;
 /// Rate at which gusts change while they travel (1/s).
 const CHANGE_PER_S: f64 = 0.15;
+/// Size of the table of the noise, after which its changes begin again.
+const CHANGES: f64 = 256.0;
 
 /// Corners of a lattice that repeats along its first two axes.
 struct RepeatingCorners(PermutationTable);
@@ -50,8 +52,11 @@ impl GustPattern {
     /// Acceleration of the grass (rad/s²) by gusts, at a place (m) and a simulated time.
     pub(super) fn acceleration_rad_per_s2(&self, at_m: [f32; 2], time_secs: f64) -> f32 {
         let NaturalWind { strength_rad_per_s2, scale_m, drift_m_per_s, .. } = self.settings;
-        let [x, z] = [0, 1].map(|axis| (f64::from(at_m[axis]) - f64::from(drift_m_per_s[axis]) * time_secs) / f64::from(scale_m));
-        strength_rad_per_s2 * (perlin_3d([x, z, time_secs * CHANGE_PER_S].into(), &self.corners) as f32).max(0.0)
+        // Within the period, so that corners have small numbers at any time.
+        let place = |axis: usize| (f64::from(at_m[axis]) - f64::from(drift_m_per_s[axis]) * time_secs) / f64::from(scale_m);
+        let [x, z] = [0, 1].map(|axis| place(axis).rem_euclid(PERIOD_GUSTS.into()));
+        let change = (time_secs * CHANGE_PER_S).rem_euclid(CHANGES);
+        strength_rad_per_s2 * (perlin_3d([x, z, change].into(), &self.corners) as f32).max(0.0)
     }
 }
 
@@ -73,10 +78,18 @@ mod tests {
             places().map(|[x, z]| (at([x, z]) - at([x + shift_m[0], z + shift_m[1]])).abs()).fold(0.0, f32::max)
         };
         for shift_m in [[128.0, 0.0], [0.0, -128.0], [256.0, 128.0]] {
-            assert_eq!(difference(shift_m), 0.0, "{shift_m:?}");
+            assert!(difference(shift_m) < 1e-5, "{shift_m:?}: {}", difference(shift_m));
         }
         for shift_m in [[64.0, 0.0], [0.0, 64.0], [16.0, 0.0]] {
             assert!(difference(shift_m) > 0.5, "{shift_m:?}");
         }
+        // Gusts that stand still change in the same way again.
+        let [early, late] = [0.0, 256.0 / CHANGE_PER_S].map(|secs| {
+            let settings = NaturalWind { drift_m_per_s: [0.0; 2], ..natural_wind };
+            let standing = GustPattern { settings, corners: RepeatingCorners(PermutationTable::new(3)), along: [1.0, 0.0] };
+            places().map(|at_m| standing.acceleration_rad_per_s2(at_m, 17.5 + secs)).collect::<Vec<_>>()
+        });
+        assert!(early.iter().zip(&late).all(|(a, b)| (a - b).abs() < 1e-4), "changes begin again after 256");
+        assert!(pattern.acceleration_rad_per_s2([1.0, 2.0], 1e18).is_finite());
     }
 }

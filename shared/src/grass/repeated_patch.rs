@@ -20,6 +20,8 @@ const STEPS_PER_S: f32 = 30.0;
 const FORGOTTEN: f32 = 6.0;
 /// Longest window (s).
 const WINDOW_LIMIT_SECS: f32 = 120.0;
+/// Latest step of a world: a million years at 240 Hz.
+const TICK_LIMIT: u64 = 1 << 53;
 
 /// Grass in the natural wind that repeats along X and Z.
 pub struct RepeatedPatch {
@@ -32,8 +34,8 @@ pub struct RepeatedPatch {
     window: u64,
     /// Steps since one window and a step before the start of the scene.
     done: u64,
-    /// Whether `shown` is the grass of step `done`.
-    is_settled: bool,
+    /// Whether `done` is the wanted step.
+    has_arrived: bool,
     at_rest: Field,
     shown: Field,
     /// The grass of the next window, which started at rest with this one.
@@ -50,12 +52,12 @@ impl RepeatedPatch {
         if window_secs > WINDOW_LIMIT_SECS {
             return None;
         }
-        let ticks = (scene.tick_hz / STEPS_PER_S).round().max(1.0);
+        let ticks = (scene.tick_hz / STEPS_PER_S).ceil();
         let dt_secs = ticks / scene.tick_hz;
         let layout = PatchLayout { count: [1; 2], cells: CELLS, cell_m: pattern.period_m() / CELLS as f32 };
         let at_rest = Field::new(layout, Kinds::one(waves)).with_edges(Edges::Wrapped).with_ground_contact(scene.bend.ground_contact);
-        // The modal scheme is not in every build.
-        let scheme = if scene.bend.scheme == Scheme::Modal { Scheme::Substepped } else { scene.bend.scheme };
+        // One that is stable at steps that are longer than those of the world, and in every build.
+        let scheme = if scene.bend.scheme == Scheme::Implicit { Scheme::Implicit } else { Scheme::Substepped };
         let window = (window_secs / dt_secs).ceil().max(1.0) as u64;
         Some(Self {
             pattern,
@@ -64,33 +66,33 @@ impl RepeatedPatch {
             dt_secs,
             window,
             done: 0,
-            is_settled: false,
+            has_arrived: false,
             shown: at_rest.clone(),
             next: at_rest.clone(),
             at_rest,
         })
     }
 
-    /// Goes on to the grass after step `tick` of the world, by at most `most_steps` steps, and returns whether there is grass to show.
-    pub fn advance_to(&mut self, tick: u64, most_steps: u32) -> bool {
-        let goal = self.window + 1 + tick / self.ticks;
+    /// Goes on to the grass after step `tick` of the world, by about `most_substeps` sub-steps of its scheme, and returns whether it has arrived there.
+    pub fn advance_to(&mut self, tick: u64, most_substeps: u32) -> bool {
+        let goal = self.window + 1 + tick.min(TICK_LIMIT) / self.ticks;
         // A window begins with the step after a multiple of its steps.
         let first = ((goal - 1) / self.window - 1) * self.window;
         if !(first..=goal).contains(&self.done) {
             self.done = first;
-            self.is_settled = false;
             (self.shown, self.next) = (self.at_rest.clone(), self.at_rest.clone());
         }
-        for _ in 0..(goal - self.done).min(most_steps.into()) {
-            self.step();
+        let mut substeps = 0;
+        while self.done < goal && substeps < most_substeps {
+            substeps += self.step();
         }
-        self.is_settled |= self.done == goal;
-        self.is_settled
+        self.has_arrived = self.done == goal;
+        self.has_arrived
     }
 
-    /// Steps done, and the grass to show after them; `None` before the first arrival at a wanted step.
+    /// Steps done, and the grass to show after them; `None` on the way to the wanted step.
     pub fn shown(&self) -> Option<(u64, &Patch)> {
-        self.shown.patch(0).filter(|_| self.is_settled).map(|patch| (self.done, patch))
+        self.shown.patch(0).filter(|_| self.has_arrived).map(|patch| (self.done, patch))
     }
 
     /// Side of the patch (m).
@@ -108,7 +110,8 @@ impl RepeatedPatch {
         CELLS
     }
 
-    fn step(&mut self) {
+    /// Does a step. Returns its number of sub-steps.
+    fn step(&mut self) -> u32 {
         if self.done.is_multiple_of(self.window) {
             self.shown = std::mem::replace(&mut self.next, self.at_rest.clone());
             self.next.wake(0);
@@ -116,13 +119,18 @@ impl RepeatedPatch {
         self.done += 1;
         let time_secs = (self.done as f64 - (self.window + 1) as f64) * f64::from(self.dt_secs);
         let pushes = accelerations_rad_per_s2(&self.pattern, time_secs);
-        for field in [&mut self.shown, &mut self.next] {
+        let mut most = 1;
+        for field in [&mut self.shown, &mut self.next].into_iter().filter(|field| field.awake_count() > 0) {
             push(field, &pushes, self.pattern.along(), self.dt_secs);
-            if field.step(self.scheme, self.dt_secs, &Serial).is_err() {
+            let substeps = field.step(self.scheme, self.dt_secs, &Serial).map_or(0, |report| report.substeps);
+            most = most.max(substeps);
+            // Grass too fast to follow, or with NaN, starts again.
+            if substeps == 0 || field.awake_count() == 0 {
                 *field = self.at_rest.clone();
                 field.wake(0);
             }
         }
+        most
     }
 }
 

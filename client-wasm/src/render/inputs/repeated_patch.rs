@@ -9,7 +9,6 @@ use half::slice::HalfFloatSliceExt;
 use prairie_core::bend::Patch;
 use prairie_core::grass::RepeatedPatch;
 use prairie_core::grid::PatchLayout;
-use std::collections::HashMap;
 use wgpu::TextureFormat;
 
 /// A corner of patches.
@@ -24,10 +23,10 @@ struct Corner {
 pub(crate) struct RepeatedTextures {
     /// Leans along X and Z (rad) in the first two channels.
     pub(crate) leans: wgpu::Texture,
-    /// Weights of the corners; corner `(x, z)` is texel `(x mod n, z mod n)`.
+    /// Weights of the n × n corners; corner `(x, z)` is texel `(x mod n, z mod n)`.
     pub(crate) near: wgpu::Texture,
     corners: NearCorners,
-    /// Step of the repeated patch in the texture; `None` if there is nothing to show.
+    /// Step of the repeated patch in the texture; `None` before the first.
     step: Option<u64>,
     /// Repetitions of the patch in a metre.
     per_m: f32,
@@ -42,14 +41,14 @@ impl RepeatedTextures {
         let corners = NearCorners::new(*atlas.layout(), atlas.side(), repeated.map_or(1.0, RepeatedPatch::recovery_secs));
         Self {
             leans: gpu.texture("repeated patch", TextureFormat::Rgba16Float, [cells; 2], &levels),
-            near: gpu.texture("near weights", TextureFormat::R8Unorm, [atlas.side(); 2], &[corners.texels()]),
+            near: gpu.texture("near weights", TextureFormat::R8Unorm, [corners.side; 2], std::slice::from_ref(&corners.texels)),
             corners,
             step: None,
             per_m: repeated.map_or(0.0, |repeated| 1.0 / repeated.period_m()),
         }
     }
 
-    /// Repetitions of the patch in a metre; 0 if nothing is shown.
+    /// Repetitions of the patch in a metre; 0 before the first step is shown.
     pub(crate) fn per_m(&self) -> f32 {
         if self.step.is_some() { self.per_m } else { 0.0 }
     }
@@ -61,9 +60,10 @@ impl RepeatedTextures {
         if let Some((_, patch)) = shown.filter(|_| step != self.step) {
             self.write(gpu, patch);
         }
-        self.step = step;
-        if step.is_some() && self.corners.update(mirror, eye_m, dt_secs) {
-            gpu.write_level(&self.near, 0, [0; 3], [self.near.width(); 2], &self.corners.texels());
+        // On the way to a distant moment the last one stays.
+        self.step = step.or(self.step);
+        if self.step.is_some() && self.corners.update(mirror, eye_m, dt_secs) {
+            gpu.write_level(&self.near, 0, [0; 3], [self.near.width(); 2], &self.corners.texels);
         }
     }
 
@@ -86,42 +86,53 @@ impl RepeatedTextures {
 /// rises to its full bend while that of the repeated patch fades, and the other way round.
 struct NearCorners {
     layout: PatchLayout,
+    /// Corners along each side of the window, one more than patches.
     side: u32,
     recovery_secs: f32,
     corners: Vec<Corner>,
+    /// Weights in 255ths.
+    texels: Vec<u8>,
 }
 
 impl NearCorners {
-    fn new(layout: PatchLayout, side: u32, recovery_secs: f32) -> Self {
-        Self { layout, side, recovery_secs, corners: vec![Corner::default(); (side * side) as usize] }
+    fn new(layout: PatchLayout, patches: u32, recovery_secs: f32) -> Self {
+        let side = patches + 1;
+        let count = side.pow(2) as usize;
+        Self { layout, side, recovery_secs, corners: vec![Corner::default(); count], texels: vec![0; count] }
     }
 
-    fn texels(&self) -> Vec<u8> {
-        self.corners.iter().map(|corner| (corner.weight * 255.0).round() as u8).collect()
-    }
-
-    /// Follows the cameras for `dt_secs`. Returns whether any corner changed.
+    /// Follows the cameras for `dt_secs`. Returns whether any texel changed.
     fn update(&mut self, mirror: &Mirror, eye_m: [f32; 2], dt_secs: f32) -> bool {
-        let place = |patch| self.layout.place(patch).map(i64::from);
-        // Pushed patches, and whether their grass is bent already.
-        let pushed: HashMap<[i64; 2], bool> =
-            mirror.pushed_patches(eye_m).into_iter().map(|patch| (place(patch), mirror.patch(patch).is_some())).collect();
-        let first = window_corner(&self.layout, self.side, eye_m);
+        let first = window_corner(&self.layout, self.side - 1, eye_m);
+        let goals = self.goals(mirror, eye_m, first);
         let followed = 1.0 - (-dt_secs.max(0.0) / self.recovery_secs).exp();
         let side = i64::from(self.side);
         let mut has_changed = false;
-        for at in (0..side * side).map(|n| [first[0] + n % side, first[1] + n / side]) {
-            let around = [[-1, -1], [0, -1], [-1, 0], [0, 0]].map(|[dx, dz]| pushed.get(&[at[0] + dx, at[1] + dz]));
-            let goal = if around.iter().any(Option::is_some) { 1.0 } else { 0.0 };
-            let corner = &mut self.corners[(at[0].rem_euclid(side) + at[1].rem_euclid(side) * side) as usize];
-            let weight = match corner.at == Some(at) {
-                true => corner.weight + (goal - corner.weight) * followed,
-                false if around.contains(&Some(&true)) => goal,
-                false => 0.0,
-            };
-            let new = Corner { at: Some(at), weight };
-            has_changed |= std::mem::replace(corner, new) != new;
+        for (n, goal) in (0..).zip(goals) {
+            let at = [first[0] + n % side, first[1] + n / side];
+            let slot = (at[0].rem_euclid(side) + at[1].rem_euclid(side) * side) as usize;
+            let corner = &mut self.corners[slot];
+            let weight = if corner.at == Some(at) { corner.weight + (goal - corner.weight) * followed } else { goal };
+            *corner = Corner { at: Some(at), weight };
+            let texel = (weight * 255.0).round() as u8;
+            has_changed |= std::mem::replace(&mut self.texels[slot], texel) != texel;
         }
         has_changed
+    }
+
+    /// Weights towards which the corners go, row by row from the window's `first`: 1 around patches that are pushed and awake.
+    fn goals(&self, mirror: &Mirror, eye_m: [f32; 2], first: [i64; 2]) -> Vec<f32> {
+        let side = i64::from(self.side);
+        let mut goals = vec![0.0; self.corners.len()];
+        for patch in mirror.pushed_patches(eye_m).into_iter().filter(|patch| mirror.patch(*patch).is_some()) {
+            let place = self.layout.place(patch).map(i64::from);
+            for corner in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+                let [x, z] = [0, 1].map(|axis| place[axis] + corner[axis] - first[axis]);
+                if (0..side).contains(&x) && (0..side).contains(&z) {
+                    goals[(x + z * side) as usize] = 1.0;
+                }
+            }
+        }
+        goals
     }
 }

@@ -8,7 +8,10 @@ use prairie_core::scene::NaturalWind;
 const TICK: u64 = 300;
 const LEAN: &str = "return vec4<f32>(lean_of_field(at.xz, at.y), 0.0, 0.0);";
 
-/// 64 m of grass at rest in gusts of 8 m; cameras reach the four patches around the middle, within 16 m to 48 m.
+/// The four patches around the middle, within 16 m to 48 m.
+const MIDDLE: [std::ops::Range<u32>; 2] = [5..7, 9..11];
+
+/// 64 m of grass in gusts of 8 m; cameras in the middle reach the four [patches](MIDDLE) around it, of which none has been sent.
 fn breezy_meadow() -> Mirror {
     let natural_wind = NaturalWind { strength_rad_per_s2: 2.0, scale_m: 8.0, drift_m_per_s: [4.0, 1.5], reach_m: 13.0 };
     let mut mirror = meadow_of(|scene| scene.natural_wind = natural_wind, &[255; 16 * 16]);
@@ -34,6 +37,7 @@ fn far_grass_leans_as_the_repeated_patch_and_near_grass_by_itself() {
     let mut mirror = breezy_meadow();
     let mut picture = OffscreenRenderer::new(&gpu, [16; 2], Quality::Low);
     let camera = Camera { eye_m: Vec3::new(32.0, 2.0, 32.0), ..Camera::default() };
+    MIDDLE.into_iter().for_each(|patches| stream_to(&mut mirror, patches, |_| 0.5, 1.0));
     // The weights follow the cameras by the time constant of the grass, 4.8 s: after 40 s they have arrived.
     (0..20).for_each(|_| {
         picture.draw(&mut mirror, &camera, 5.0, 2.0);
@@ -51,7 +55,7 @@ fn far_grass_leans_as_the_repeated_patch_and_near_grass_by_itself() {
     assert!(largest > 0.2, "the grass leans by up to {largest} rad");
     let near: Vec<_> = (0..30).map(|n| [17.0 + n as f32, 0.0, 20.0 + 0.7 * n as f32, 0.0]).collect();
     for (at, [x, z, ..]) in near.iter().zip(probe(&gpu, &picture, LEAN, &near)) {
-        assert!(x.hypot(z) < 1e-3, "grass near the camera at {at:?} leans by {x}, {z}");
+        assert!((x - 0.5).abs() < 0.01 && z.abs() < 1e-3, "grass near the camera at {at:?} leans by {x}, {z} instead of 0.5");
     }
     // From corner to corner of a patch in between, the weight falls from 1 to 0.
     let between: Vec<_> = [1.0, 4.0, 8.0, 12.0, 15.0].map(|x| [x, 0.0, 32.0, 0.0]).to_vec();
@@ -70,15 +74,49 @@ fn the_repeated_patch_gives_way_as_slowly_as_grass_rises() {
     let recovery_secs = mirror.repeated_patch().expect("natural wind").recovery_secs();
     assert!((4.0..6.0).contains(&recovery_secs), "{recovery_secs} s");
     let at = [40.0, 0.0, 32.0, 0.0];
-    let mut lean_after = |dt_secs: f32| {
+    // Patches at rest that have been sent.
+    let mut lean_after = |dt_secs: f32, are_sent: bool| {
+        for patches in MIDDLE.into_iter().filter(|_| are_sent) {
+            stream_to(&mut mirror, patches, |_| 0.0, 0.0);
+        }
         picture.draw(&mut mirror, &camera, 5.0, dt_secs);
         probe(&gpu, &picture, LEAN, &[at])[0][0]
     };
-    let full = lean_after(0.0);
+    let full = lean_after(0.0, false);
     let wanted = repeated_lean_rad(breezy_meadow().repeated_patch().expect("natural wind"), [at[0], at[2]])[0];
-    assert!((full - wanted).abs() < 3e-3 && full.abs() > 0.05, "{full} instead of {wanted} at first");
-    let later = lean_after(recovery_secs);
+    assert!((full - wanted).abs() < 3e-3 && full.abs() > 0.05, "{full} instead of {wanted}, while the pushed grass has not been sent");
+    let later = lean_after(recovery_secs, true);
     assert!((later / full - (-1.0_f32).exp()).abs() < 0.01, "{later} of {full} after a time constant");
+}
+
+/// In patches of 256 cells the window has few of them, and patches that are pushed reach its border.
+#[test]
+fn grass_beyond_one_border_of_the_window_is_not_that_beyond_the_other() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let natural_wind = NaturalWind { strength_rad_per_s2: 2.0, scale_m: 8.0, drift_m_per_s: [4.0, 1.5], reach_m: 500.0 };
+    let change = |scene: &mut Scene| {
+        scene.natural_wind = natural_wind;
+        scene.patches = Patches { count: [1, 1], cells: 256, cell_m: 0.25, ..Patches::default() };
+    };
+    let mut mirror = meadow_of(change, &[255; 16 * 16]);
+    mirror.apply(ServerMessage::FrameEnd { frame: 1, tick: TICK, time_secs: 5.0 }).expect("a sound frame");
+    mirror.show_newest();
+    let codes = [vec![0; 256 * 256], vec![1; 256 * 256], vec![0; 256 * 256]].concat();
+    let payload = codec::encode(Shape::patch(256), &codes, None);
+    mirror.apply(ServerMessage::Patch { patch: 0, seq: 1, key: true, payload }).expect("a sound patch");
+    let mut picture = OffscreenRenderer::new(&gpu, [16; 2], Quality::Low);
+    // Four patches of 64 m are in the window, two on each side of an eye in the west of the first.
+    let camera = Camera { eye_m: Vec3::new(-30.0, 2.0, 32.0), ..Camera::default() };
+    (0..20).for_each(|_| {
+        picture.draw(&mut mirror, &camera, 5.0, 2.0);
+    });
+    let repeated = mirror.repeated_patch().expect("natural wind");
+    // Two patches farther west only the repeated one is shown, though its corner shares a texel with none of the pushed patch.
+    let west: Vec<_> = (0..8).map(|n| [-66.0 - 3.0 * n as f32, 0.0, 30.0, 0.0]).collect();
+    for (at, found) in west.iter().zip(probe(&gpu, &picture, LEAN, &west)) {
+        let wanted = repeated_lean_rad(repeated, [at[0], at[2]]);
+        assert!((found[0] - wanted[0]).abs() < 3e-3, "{found:?} instead of {wanted:?} at {at:?}");
+    }
 }
 
 #[test]
