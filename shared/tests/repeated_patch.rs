@@ -93,7 +93,7 @@ fn the_way_there_may_be_taken_in_parts() {
         assert!(patch.shown().is_none(), "nothing is shown on the way");
         calls += 1;
     }
-    // Between one window of 840 steps and two.
+    // Between one window of 870 steps and two.
     assert!((9..=17).contains(&calls), "{calls} calls");
     assert!(leans_rad(&patch) == at(1500, WaveParams::default()));
     assert!(!patch.advance_to(1560, 30) && patch.shown().is_none());

@@ -8,8 +8,8 @@ use noise::permutationtable::{NoiseHasher, PermutationTable};
 pub(super) const PERIOD_GUSTS: u32 = 8;
 /// Rate at which gusts change while they travel (1/s).
 const CHANGE_PER_S: f64 = 0.15;
-/// Size of the table of the noise, after which its changes begin again.
-const CHANGES: f64 = 256.0;
+/// Changes after which they begin again: the size of the table of the noise.
+const CHANGE_PERIOD: f64 = 256.0;
 
 /// Corners of a lattice that repeats along its first two axes.
 struct RepeatingCorners(PermutationTable);
@@ -55,7 +55,7 @@ impl GustPattern {
         // Within the period, so that corners have small numbers at any time.
         let place = |axis: usize| (f64::from(at_m[axis]) - f64::from(drift_m_per_s[axis]) * time_secs) / f64::from(scale_m);
         let [x, z] = [0, 1].map(|axis| place(axis).rem_euclid(PERIOD_GUSTS.into()));
-        let change = (time_secs * CHANGE_PER_S).rem_euclid(CHANGES);
+        let change = (time_secs * CHANGE_PER_S).rem_euclid(CHANGE_PERIOD);
         strength_rad_per_s2 * (perlin_3d([x, z, change].into(), &self.corners) as f32).max(0.0)
     }
 }

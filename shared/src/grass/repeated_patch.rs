@@ -1,8 +1,8 @@
 //! One patch of grass in the natural wind that is shown again and again where no camera is near (Chen & Johan 2010, §4.2 and §5.3).
 //!
 //! It holds a whole period of the gusts that push the grass near cameras, so that they are the same gusts at the same places, on coarser cells. Its state is a
-//! function of the scene and the number of the step alone: everyone who follows a scene sees the same, and nothing of it is sent or saved. Time is cut into windows,
-//! as long as grass takes to forget a push. The patch shown in a window has started at rest with the window before, and has forgotten that it was at rest.
+//! function of the scene and the number of the step alone: everyone who follows a scene sees the same, and nothing of it is sent or saved. For that time is cut
+//! into windows so long that grass recovers from a push in one: the patch shown in a window started at rest with the window before.
 
 use super::gust_noise::{push_along, push_secs2};
 use super::gust_pattern::{GustPattern, PERIOD_GUSTS};
@@ -16,8 +16,8 @@ const CELLS_PER_GUST: u32 = 8;
 const CELLS: u32 = PERIOD_GUSTS * CELLS_PER_GUST;
 /// Largest number of steps in a second: the grass is far away.
 const STEPS_PER_S: f32 = 30.0;
-/// Time constants of the slowest recovery after which grass has forgotten a push: e⁻⁶ of it is left, 2 mrad of 0.8 rad.
-const FORGOTTEN: f32 = 6.0;
+/// Length of a window in time constants of the slowest recovery: e⁻⁶ of a push is left after it, 2 mrad of 0.8 rad.
+const TIME_CONSTANTS: f32 = 6.0;
 /// Longest window (s).
 const WINDOW_LIMIT_SECS: f32 = 120.0;
 /// Latest step of a world: a million years at 240 Hz.
@@ -28,13 +28,12 @@ pub struct RepeatedPatch {
     pattern: GustPattern,
     scheme: Scheme,
     /// Steps of the world in a step of the patch.
-    ticks: u64,
+    ticks_per_step: u64,
     dt_secs: f32,
-    /// Steps of a window.
-    window: u64,
-    /// Steps since one window and a step before the start of the scene.
-    done: u64,
-    /// Whether `done` is the wanted step.
+    window_steps: u64,
+    /// Steps done, counted from a window and a step before the start of the scene.
+    steps: u64,
+    /// Whether they are those of the wanted step of the world.
     has_arrived: bool,
     at_rest: Field,
     shown: Field,
@@ -43,12 +42,12 @@ pub struct RepeatedPatch {
 }
 
 impl RepeatedPatch {
-    /// The grass of a scene, of its first kind. `None` in a scene without natural wind, and if its grass needs more than 120 s to forget a push: six times
+    /// The grass of a scene, of its first kind. `None` in a scene without natural wind, and if its grass needs more than 120 s to recover from a push: six times
     /// its slowest time constant, k/κ if it is well damped.
     pub fn new(scene: &Scene) -> Option<Self> {
         let pattern = GustPattern::new(scene)?;
         let waves = scene.grass.waves;
-        let window_secs = FORGOTTEN * slowest_secs(&waves);
+        let window_secs = TIME_CONSTANTS * slowest_secs(&waves);
         if window_secs > WINDOW_LIMIT_SECS {
             return None;
         }
@@ -58,14 +57,14 @@ impl RepeatedPatch {
         let at_rest = Field::new(layout, Kinds::one(waves)).with_edges(Edges::Wrapped).with_ground_contact(scene.bend.ground_contact);
         // One that is stable at steps that are longer than those of the world, and in every build.
         let scheme = if scene.bend.scheme == Scheme::Implicit { Scheme::Implicit } else { Scheme::Substepped };
-        let window = (window_secs / dt_secs).ceil().max(1.0) as u64;
+        let window_steps = (window_secs / dt_secs).ceil().max(1.0) as u64;
         Some(Self {
             pattern,
             scheme,
-            ticks: ticks as u64,
+            ticks_per_step: ticks as u64,
             dt_secs,
-            window,
-            done: 0,
+            window_steps,
+            steps: 0,
             has_arrived: false,
             shown: at_rest.clone(),
             next: at_rest.clone(),
@@ -75,24 +74,24 @@ impl RepeatedPatch {
 
     /// Goes on to the grass after step `tick` of the world, by about `most_substeps` sub-steps of its scheme, and returns whether it has arrived there.
     pub fn advance_to(&mut self, tick: u64, most_substeps: u32) -> bool {
-        let goal = self.window + 1 + tick.min(TICK_LIMIT) / self.ticks;
+        let goal = self.window_steps + 1 + tick.min(TICK_LIMIT) / self.ticks_per_step;
         // A window begins with the step after a multiple of its steps.
-        let first = ((goal - 1) / self.window - 1) * self.window;
-        if !(first..=goal).contains(&self.done) {
-            self.done = first;
+        let first = ((goal - 1) / self.window_steps - 1) * self.window_steps;
+        if !(first..=goal).contains(&self.steps) {
+            self.steps = first;
             (self.shown, self.next) = (self.at_rest.clone(), self.at_rest.clone());
         }
         let mut substeps = 0;
-        while self.done < goal && substeps < most_substeps {
+        while self.steps < goal && substeps < most_substeps {
             substeps += self.step();
         }
-        self.has_arrived = self.done == goal;
+        self.has_arrived = self.steps == goal;
         self.has_arrived
     }
 
     /// Steps done, and the grass to show after them; `None` on the way to the wanted step.
     pub fn shown(&self) -> Option<(u64, &Patch)> {
-        self.shown.patch(0).filter(|_| self.has_arrived).map(|patch| (self.done, patch))
+        self.shown.patch(0).filter(|_| self.has_arrived).map(|patch| (self.steps, patch))
     }
 
     /// Side of the patch (m).
@@ -102,7 +101,7 @@ impl RepeatedPatch {
 
     /// Time constant of the grass's slowest recovery (s).
     pub fn recovery_secs(&self) -> f32 {
-        self.window as f32 * self.dt_secs / FORGOTTEN
+        self.window_steps as f32 * self.dt_secs / TIME_CONSTANTS
     }
 
     /// Cells along each side.
@@ -112,12 +111,12 @@ impl RepeatedPatch {
 
     /// Does a step. Returns its number of sub-steps.
     fn step(&mut self) -> u32 {
-        if self.done.is_multiple_of(self.window) {
+        if self.steps.is_multiple_of(self.window_steps) {
             self.shown = std::mem::replace(&mut self.next, self.at_rest.clone());
             self.next.wake(0);
         }
-        self.done += 1;
-        let time_secs = (self.done as f64 - (self.window + 1) as f64) * f64::from(self.dt_secs);
+        self.steps += 1;
+        let time_secs = (self.steps as f64 - (self.window_steps + 1) as f64) * f64::from(self.dt_secs);
         let pushes = accelerations_rad_per_s2(&self.pattern, time_secs);
         let mut most = 1;
         for field in [&mut self.shown, &mut self.next].into_iter().filter(|field| field.awake_count() > 0) {
@@ -136,7 +135,7 @@ impl RepeatedPatch {
 
 impl std::fmt::Debug for RepeatedPatch {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.debug_struct("RepeatedPatch").field("done", &self.done).finish_non_exhaustive()
+        formatter.debug_struct("RepeatedPatch").field("steps", &self.steps).finish_non_exhaustive()
     }
 }
 
@@ -187,11 +186,11 @@ mod tests {
         let terrain = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [1.0; 2], level_m: 0.1, base_m: 0.0 };
         let natural_wind = NaturalWind { strength_rad_per_s2: 2.0, scale_m: 16.0, drift_m_per_s: [4.0, 1.5], ..NaturalWind::default() };
         let mut patch = RepeatedPatch::new(&Scene { natural_wind, seed: 9, ..Scene::new(terrain) }).expect("gusts");
-        patch.window /= shorter;
+        patch.window_steps /= shorter;
         let mut largest_rad = 0.0_f32;
         for number in 5..9 {
-            patch.advance_to(((number - 1) * patch.window - 2) * patch.ticks, u32::MAX);
-            assert!((patch.done + 1).is_multiple_of(patch.window), "the last step of a window");
+            patch.advance_to(((number - 1) * patch.window_steps - 2) * patch.ticks_per_step, u32::MAX);
+            assert!((patch.steps + 1).is_multiple_of(patch.window_steps), "the last step of a window");
             let rows = |field: &Field| field.patch(0).expect("awake").rows().flat_map(|[theta, ..]| theta.to_vec()).collect::<Vec<_>>();
             patch.step();
             // Both have done the same step, one from the window before, one from that window's start.
