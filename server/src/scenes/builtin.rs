@@ -9,61 +9,42 @@ pub(super) struct BuiltIn {
     pub(super) text: &'static str,
     /// The files that it names, with their contents.
     pub(super) files: &'static [(&'static str, &'static [u8])],
+    /// Its starting view, a JPEG of 256 × 144 px, drawn by the command in `docs/develop.md`.
+    pub(super) picture: &'static [u8],
 }
 
-macro_rules! file {
-    ($name:literal) => {
-        ($name, include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/", $name)).as_slice())
+/// A built-in scene with its text, the files that it names, and its picture.
+macro_rules! scene {
+    ($name:literal, $($file:literal),+) => {
+        BuiltIn {
+            name: $name,
+            text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/", $name, ".toml")),
+            files: &[$(($file, include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/", $file)).as_slice())),+],
+            picture: include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/pictures/", $name, ".jpg")),
+        }
     };
 }
 
 /// All built-in scenes, the default first.
-pub(super) const BUILT_IN: [BuiltIn; 9] = [
-    BuiltIn {
-        name: "meadow",
-        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meadow.toml")),
-        files: &[file!("meadow-height.png"), file!("meadow-reeds-covering.png"), file!("species.toml")],
-    },
-    BuiltIn {
-        name: "jacksboro",
-        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/jacksboro.toml")),
-        files: &[file!("jacksboro-height.png"), file!("jacksboro-covering.png")],
-    },
-    BuiltIn {
-        name: "devil",
-        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/devil.toml")),
-        files: &[file!("meadow-height.png"), file!("meadow-covering.png")],
-    },
-    BuiltIn {
-        name: "storm",
-        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/storm.toml")),
-        files: &[file!("meadow-height.png"), file!("meadow-reeds-covering.png"), file!("species.toml")],
-    },
-    BuiltIn {
-        name: "breeze",
-        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/breeze.toml")),
-        files: &[file!("meadow-height.png"), file!("meadow-covering.png")],
-    },
-    BuiltIn {
-        name: "continuum",
-        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/continuum.toml")),
-        files: &[file!("continuum-height.png"), file!("continuum-covering.png")],
-    },
-    BuiltIn {
-        name: "underbrush",
-        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/underbrush.toml")),
-        files: &[file!("meadow-height.png"), file!("underbrush-covering.png"), file!("species.toml")],
-    },
-    BuiltIn {
-        name: "blades",
-        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/blades.toml")),
-        files: &[file!("blades-height.png"), file!("blades-covering.png")],
-    },
-    BuiltIn {
-        name: "shells",
-        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/shells.toml")),
-        files: &[file!("shells-height.png"), file!("shells-covering.png")],
-    },
+pub(super) const BUILT_IN: [BuiltIn; 18] = [
+    scene!("meadow", "meadow-height.png", "meadow-reeds-covering.png", "species.toml"),
+    scene!("jacksboro", "jacksboro-height.png", "jacksboro-covering.png"),
+    scene!("devil", "meadow-height.png", "meadow-covering.png"),
+    scene!("storm", "meadow-height.png", "meadow-reeds-covering.png", "species.toml"),
+    scene!("breeze", "meadow-height.png", "meadow-covering.png"),
+    scene!("continuum", "continuum-height.png", "continuum-covering.png"),
+    scene!("underbrush", "meadow-height.png", "underbrush-covering.png", "species.toml"),
+    scene!("blades", "blades-height.png", "blades-covering.png"),
+    scene!("shells", "shells-height.png", "shells-covering.png"),
+    scene!("night", "meadow-height.png", "meadow-reeds-covering.png", "species.toml"),
+    scene!("lee", "meadow-height.png", "meadow-covering.png"),
+    scene!("cyclones", "meadow-height.png", "meadow-covering.png"),
+    scene!("follow", "continuum-height.png", "meadow-covering.png"),
+    scene!("prairie-2000", "blades-height.png", "blades-covering.png"),
+    scene!("verlet", "blades-height.png", "blades-covering.png"),
+    scene!("implicit", "blades-height.png", "blades-covering.png"),
+    scene!("modal", "blades-height.png", "blades-covering.png"),
+    scene!("history", "blades-height.png", "blades-covering.png"),
 ];
 
 impl BuiltIn {

@@ -1,14 +1,16 @@
-//! Descriptions of the built-in scenes, for programs that choose among them.
+//! Descriptions of scenes, for programs and people that choose among them.
 
 use super::builtin::{BUILT_IN, BuiltIn};
-use prairie_core::scene::{PlantCover, Scene};
+use prairie_core::bend::Scheme;
+use prairie_core::scene::{BladeIntegrator, BladeShape, LagWay, PlantCover, Scene, WindBoundary, WindMethod, WindTerrain, WindTiling};
 use serde::Serialize;
+use std::sync::LazyLock;
 
-/// Description of a built-in scene.
+/// Description of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BuiltInScene {
+pub struct SceneDescription {
     /// Name by which it is loaded.
-    pub name: &'static str,
+    pub name: String,
     /// One line about it.
     pub summary: String,
     /// Extent of the world to the east and to the south (m).
@@ -17,25 +19,44 @@ pub struct BuiltInScene {
     pub patches: [u32; 2],
     /// Files of its maps and species.
     pub maps: Vec<String>,
-    /// Features used, such as `rain` and `dust`.
+    /// Features that not every scene has, such as `rain` and `dust`.
     pub shows: Vec<String>,
+    /// Methods other than the default ones, with their sources.
+    pub methods: Vec<&'static str>,
+    /// Path of its picture on a server; `None` for a scene that is not built in.
+    pub picture: Option<String>,
 }
 
-/// Describes every built-in scene, the default first.
-pub fn catalogue() -> Vec<BuiltInScene> {
-    BUILT_IN.iter().map(describe).collect()
+/// Descriptions of all built-in scenes, the default first.
+pub fn catalogue() -> &'static [SceneDescription] {
+    static CATALOGUE: LazyLock<Vec<SceneDescription>> = LazyLock::new(|| BUILT_IN.iter().map(describe).collect());
+    &CATALOGUE
 }
 
-fn describe(built_in: &BuiltIn) -> BuiltInScene {
-    let scene = built_in.scene();
-    let files = [&scene.terrain.height_map, &scene.terrain.covering_map, &scene.growth.nutrient_map, &scene.underbrush_file];
-    BuiltInScene {
-        name: built_in.name,
-        size_m: scene.extent_m(),
-        patches: scene.patches.count,
-        maps: files.into_iter().filter(|file| !file.is_empty()).cloned().collect(),
-        shows: shown(&scene),
-        summary: scene.summary,
+/// Picture of a built-in scene: its starting view as a JPEG file.
+pub fn picture(name: &str) -> Option<&'static [u8]> {
+    BuiltIn::find(name).map(|scene| scene.picture)
+}
+
+fn describe(built_in: &BuiltIn) -> SceneDescription {
+    let picture = Some(format!("/api/scenes/{}/picture", built_in.name));
+    SceneDescription { picture, ..SceneDescription::of(built_in.name, &built_in.scene()) }
+}
+
+impl SceneDescription {
+    /// Describes a scene without a picture.
+    pub fn of(name: &str, scene: &Scene) -> Self {
+        let files = [&scene.terrain.height_map, &scene.terrain.covering_map, &scene.growth.nutrient_map, &scene.underbrush_file];
+        Self {
+            name: name.to_owned(),
+            summary: scene.summary.clone(),
+            size_m: scene.extent_m(),
+            patches: scene.patches.count,
+            maps: files.into_iter().filter(|file| !file.is_empty()).cloned().collect(),
+            shows: shown(scene),
+            methods: methods(scene),
+            picture: None,
+        }
     }
 }
 
@@ -61,6 +82,31 @@ fn shown(scene: &Scene) -> Vec<String> {
     parts.into_iter().filter(|(is_shown, _)| *is_shown).map(|(_, word)| word.to_owned()).collect()
 }
 
+/// The methods of a scene that differ from the default ones.
+fn methods(scene: &Scene) -> Vec<&'static str> {
+    let Scene { wind, bend, plants, .. } = scene;
+    let faces = wind.faces.pairs().concat();
+    let parts = [
+        (wind.method == WindMethod::StableFluids, "wind by stable fluids (Stam 1999; Zhang §2.3)"),
+        (wind.tiling == WindTiling::Patch, "one box of wind for all patches, at random offsets (Zhang §5.1)"),
+        (wind.tiling == WindTiling::Follow, "one box of wind that follows the objects"),
+        (wind.terrain == WindTerrain::Obstacle, "land as an obstacle to the wind, immersed at its slope"),
+        (faces.contains(&WindBoundary::Inflow) || faces.contains(&WindBoundary::Outflow), "wind that enters and leaves (inflow, outflow)"),
+        (wind.crown_drag_per_m > 0.0, "crowns of trees that slow the wind (Shaw & Schumann 1992)"),
+        (wind.canopy_frequency_hz > 0.0, "grass that sways back on the wind (Py et al. 2006)"),
+        (scene.natural_wind.strength_rad_per_s2 > 0.0, "gusts of Perlin noise (Chen & Johan 2010, §4.2)"),
+        (!scene.drawn_winds.is_empty(), "winds drawn as pictures (Chen & Johan 2010, §5.3)"),
+        (bend.scheme == Scheme::Verlet, "bend waves by Verlet's scheme (Chen & Johan 2010, §4.3)"),
+        (bend.scheme == Scheme::Implicit, "bend waves by an implicit scheme"),
+        (bend.scheme == Scheme::Modal, "bend waves by Fourier modes, exact in time"),
+        (plants.lag == LagWay::History, "segments that repeat earlier states (Chen & Johan 2010, Eq. 7)"),
+        (plants.integrator == BladeIntegrator::Verlet, "blades by Verlet's scheme (Zhang, Eq. 7)"),
+        (plants.blade_shape == BladeShape::Textured, "blades from an alpha texture (Zhang, Fig. 5)"),
+        (plants.cover == PlantCover::Shells, "shells (Bakay 2003)"),
+    ];
+    parts.into_iter().filter(|(is_used, _)| *is_used).map(|(_, words)| words).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -74,6 +120,7 @@ mod tests {
         assert_eq!((meadow.size_m, meadow.patches), ([256.0; 2], [16; 2]));
         assert_eq!(meadow.maps, ["meadow-height.png", "meadow-reeds-covering.png", "species.toml"]);
         assert_eq!(meadow.shows, ["underbrush", "flowers"]);
+        assert!(meadow.methods.is_empty());
         assert_eq!(continuum.shows, ["species of grass", "flowers", "self-driving cars"]);
         assert_eq!(of("devil").shows, ["flowers", "whirls and jets", "dust"]);
         assert_eq!(of("storm").shows, ["underbrush", "flowers", "rain"]);
@@ -81,5 +128,39 @@ mod tests {
         assert_eq!(of("blades").shows, ["flowers", "self-driving monsters"]);
         assert_eq!(of("shells").shows, ["grass drawn as shells"]);
         assert_eq!(of("underbrush").shows, ["underbrush", "balls"]);
+        assert_eq!(of("night").shows, ["underbrush", "flowers", "lamps"]);
+    }
+
+    #[test]
+    fn each_method_is_one_click_away() {
+        let methods: Vec<_> = catalogue().iter().flat_map(|scene| &scene.methods).collect();
+        for method in [
+            "stable fluids",
+            "at random offsets",
+            "follows the objects",
+            "obstacle",
+            "inflow, outflow",
+            "crowns",
+            "Perlin noise",
+            "drawn as pictures",
+            "bend waves by Verlet",
+            "implicit",
+            "Fourier modes",
+            "earlier states",
+            "blades by Verlet",
+            "alpha texture",
+            "shells",
+        ] {
+            assert!(methods.iter().any(|words| words.contains(method)), "no built-in scene has {method}");
+        }
+    }
+
+    #[test]
+    fn every_built_in_scene_has_a_small_picture() {
+        for scene in catalogue() {
+            let jpeg = picture(&scene.name).unwrap();
+            assert!(jpeg.starts_with(&[0xff, 0xd8, 0xff]) && jpeg.len() < 20_000, "{}: {} bytes", scene.name, jpeg.len());
+        }
+        assert!(picture("moon").is_none());
     }
 }

@@ -11,7 +11,7 @@ pub mod maps;
 mod message;
 mod report;
 
-pub use catalogue::{BuiltInScene, catalogue};
+pub use catalogue::{SceneDescription, catalogue, picture};
 pub use create::{CreateError, create};
 pub use error::{FaultyScene, SceneError};
 #[cfg(test)]

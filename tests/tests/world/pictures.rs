@@ -12,7 +12,8 @@ const TOTAL_BYTES: u64 = 10_000_000;
 /// Limit of one picture shown in documents (bytes).
 const SHOWN_BYTES: u64 = 300 << 10;
 
-/// All files below a folder with one of these endings, with their sizes (bytes). Hidden folders, build outputs and the maps of scenes are left out.
+/// All files below a folder with one of these endings, with their sizes (bytes). Hidden folders, build outputs and the maps of scenes are left out; the
+/// pictures of scenes count.
 pub(super) fn files(dir: &Path, endings: &[&str], found: &mut Vec<(PathBuf, u64)>) -> Result<()> {
     for entry in fs::read_dir(dir).with_context(|| dir.display().to_string())? {
         let entry = entry?;
@@ -22,6 +23,8 @@ pub(super) fn files(dir: &Path, endings: &[&str], found: &mut Vec<(PathBuf, u64)
                 name.to_string_lossy().starts_with('.') || name == "target" || name == "dist" || path.ends_with("server/scenes");
             if !is_left_out {
                 files(&path, endings, found)?;
+            } else if path.join("pictures").is_dir() {
+                files(&path.join("pictures"), endings, found)?;
             }
         } else if endings.iter().any(|ending| path.extension().is_some_and(|found| found == *ending)) {
             found.push((path, entry.metadata()?.len()));
@@ -61,12 +64,13 @@ fn too_many_or_too_heavy_pictures_are_found() -> Result<()> {
     };
     let refused = || check_weight(dir.path()).err().map_or(String::new(), |error| error.to_string());
     file("server/scenes/map.png", 2 * TOTAL_BYTES)?;
+    file("server/scenes/pictures/meadow.jpg", 1)?;
     file("target/charts/big.png", 2 * TOTAL_BYTES)?;
     file("tests/results/shown.jpg", SHOWN_BYTES)?;
-    file("tests/golden/a.png", TOTAL_BYTES - SHOWN_BYTES)?;
+    file("tests/golden/a.png", TOTAL_BYTES - SHOWN_BYTES - 1)?;
     assert_eq!(refused(), "", "maps and build outputs do not count, and the bound itself is allowed");
     file("tests/golden/b.png", 1)?;
-    assert!(refused().starts_with("3 pictures weigh 10000001 bytes"), "{}", refused());
+    assert!(refused().starts_with("4 pictures weigh 10000001 bytes"), "{}", refused());
     fs::remove_file(dir.path().join("tests/golden/a.png"))?;
     file("tests/results/shown.jpg", SHOWN_BYTES + 1)?;
     assert!(refused().contains("shown.jpg weighs 307201 bytes"), "{}", refused());
