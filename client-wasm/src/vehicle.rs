@@ -10,7 +10,7 @@ use prairie_core::scene::VehicleKind;
 pub struct VehicleProfile {
     /// Label of the page's button.
     pub label: &'static str,
-    /// Letter key that selects this kind, lower case. Must differ from the keys of other vehicles and of the page (`a d e f k n p q s v w x`).
+    /// Letter key that selects this kind, lower case. Must differ from the keys of other vehicles and of the page (`a d e f k n o p q s v w x`).
     pub key: char,
     /// Direction of the gamepad's cross that selects this kind; `None` for none. Down is reserved for leaving the vehicle.
     pub dpad: Option<Dpad>,

@@ -179,7 +179,7 @@ function progressBar(label) {
 // Takes everything below the message out of the reach of keyboard and screen reader.
 function cover() {
   if (!page.inert) focused = document.activeElement;
-  byId("help").close();
+  for (const id of ["help", "scenes"]) byId(id).close();
   page.inert = true;
 }
 

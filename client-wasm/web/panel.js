@@ -193,7 +193,7 @@ export class Panel {
     panel.addEventListener("pointerdown", () => { byPointer = true });
     panel.addEventListener("keydown", () => { byPointer = false });
     panel.addEventListener("click", ({ detail, target }) => {
-      if (detail > 0 && target.closest("button:not(#show-help), summary, [type=range]")) byId("view").focus();
+      if (detail > 0 && target.closest("button:not(#show-help, #show-scenes), summary, [type=range]")) byId("view").focus();
     });
     panel.addEventListener("change", ({ target }) => {
       if (byPointer && target.matches("select, [type=range]")) byId("view").focus();

@@ -30,6 +30,7 @@ import { fillHelp } from "./help.js";
 import { show } from "./messages.js";
 import { Panel, variantLabel } from "./panel.js";
 import { context } from "./report.js";
+import { SceneMenu } from "./scenes.js";
 import { Sound } from "./sound.js";
 import { TimeBar } from "./time_bar.js";
 
@@ -136,6 +137,7 @@ async function begin() {
   const sound = new Sound(() => JSON.parse(client.hear()), {
     volume: remembered("volume"), remember, notify: (text) => panel.notify(text),
   });
+  new SceneMenu((text) => panel.notify(text));
   new TimeBar(client, parameter("panel") !== "0");
   Object.assign(window.prairie, { picture: () => capture.shoot(), link: () => link(state().view), sound: () => sound.report() });
   panel.show((parameter("panel") ?? remembered("panel") ?? (innerWidth < 640 ? "0" : "1")) !== "0");

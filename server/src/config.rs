@@ -29,6 +29,8 @@ pub struct Config {
     pub pause_after: Option<Duration>,
     /// Whether errors that pages report are logged; otherwise they are discarded. Default false.
     pub logs_page_errors: bool,
+    /// Whether pages may change to another built-in scene, which starts its own world for everyone. Default false.
+    pub pages_change_scene: bool,
     /// Where the world is kept between runs; `None` for a world without memory. Default none.
     pub world: Option<WorldFolder>,
     /// Limits on clients and their traffic.
@@ -48,6 +50,7 @@ impl Config {
             publish_hz: 20.0,
             pause_after: Some(Duration::from_secs(10)),
             logs_page_errors: false,
+            pages_change_scene: false,
             world: None,
             limits: Limits::default(),
         }

@@ -29,6 +29,7 @@ pub mod plants;
 mod reload;
 mod run;
 pub mod runner;
+mod scene_menu;
 pub mod scenes;
 pub mod settings_error;
 pub mod snapshot;

@@ -1,9 +1,10 @@
-//! Hot reload: restarts the world when a file of its scene changes.
+//! Hot reload: restarts the world when a file of its scene changes, or a page chooses another scene.
 
 use crate::config::Config;
 use crate::escaped::escaped;
 use crate::journal::{self, JournaledWorld};
-use crate::run::{RunError, run_simulation};
+use crate::run::{RunError, run_simulation, run_with_menu};
+use crate::scene_menu::{SceneMenu, requested_scene};
 use crate::scenes::{self, LoadedScene, SceneError};
 use crate::world::World;
 use std::path::PathBuf;
@@ -18,11 +19,12 @@ const POLL_PERIOD: Duration = Duration::from_millis(400);
 /// Number of checks between attempts to load an invalid scene. It may depend on a file that is not watched because the old scene does not name it.
 const POLLS_PER_RETRY: u32 = 5;
 
-/// Serves a scene like [`run`](crate::run()), beginning with its `world`, and restarts whenever one of its files changes and the scene is still valid.
+/// Serves a scene like [`run`](crate::run()), beginning with its `world`, and restarts whenever one of its files changes and the scene is still valid,
+/// or a page that [may do so](Config::pages_change_scene) asks for another scene.
 /// Clients get a shutdown notice, and reconnect to the new world on the same socket. The new world is built while the old one runs. The faults of an invalid scene are logged, and the old
 /// world continues; so it does after a panic while a scene is loaded or a world built.
 ///
-/// A built-in scene has no files. A recorded scene is not watched, since the recording would restart too.
+/// A built-in scene has no files. A recorded scene is neither watched nor changed, since the recording would restart too.
 ///
 /// # Errors
 /// As [`run_simulation`].
@@ -33,27 +35,55 @@ pub async fn run_and_reload(
     shutdown: impl Future<Output = ()>,
 ) -> Result<(), RunError> {
     let mut world = world.into();
-    if config.scene.files.is_empty() || config.rerun.is_some() {
+    if config.rerun.is_some() {
         config.scene.nutrients = None;
         return run_simulation(world, config, listener, shutdown).await;
     }
+    let (menu, mut requests) = SceneMenu::new(&config.scene, config.pages_change_scene);
     let listener = listener.into_std().map_err(RunError::Socket)?;
     let mut shutdown = pin!(shutdown);
     loop {
-        let mut changed = None;
+        let mut next = None;
         let until = async {
             tokio::select! {
                 () = shutdown.as_mut() => {}
-                new = changed_scene(&config.scene, scenes::load) => changed = Some(new),
+                (scene, new) = changed_scene(&config.scene, scenes::load), if !config.scene.files.is_empty() => next = Some((scene, Next::Edited(new))),
+                (scene, opened) = requested_scene(&config.scene, config.world.as_ref(), &mut requests) => next = Some((scene, Next::Chosen(opened))),
             }
         };
         let socket = listener.try_clone().and_then(TcpListener::from_std).map_err(RunError::Socket)?;
-        run_simulation(world, config.clone(), socket, until).await?;
-        let Some((scene, new)) = changed else { return Ok(()) };
-        tracing::info!(file = escaped(&scene.files[0]), "the scene has changed; restarting the world");
+        run_with_menu(world, running(&config), menu.clone(), socket, until).await?;
+        let Some((scene, new)) = next else { return Ok(()) };
         config.scene = scene;
-        world = reopened(&config, new).await?;
+        let name = escaped(&config.scene.name);
+        world = match new {
+            Next::Edited(new) => {
+                tracing::info!(file = name, "the scene has changed; restarting the world");
+                reopened(&config, new).await?
+            }
+            Next::Chosen(opened) => {
+                tracing::info!(scene = name, "a page has chosen another scene");
+                opened
+            }
+        };
     }
+}
+
+/// The world that follows, and what brought it.
+enum Next {
+    /// A new world of the scene, whose files were edited.
+    Edited(World),
+    /// The world of the scene that a page has chosen, as it was kept.
+    Chosen(JournaledWorld),
+}
+
+/// The configuration of a run whose world exists: the nutrients are only needed to grow the plants, and possibly large.
+fn running(config: &Config) -> Config {
+    let mut running = config.clone();
+    if running.scene.files.is_empty() {
+        running.scene.nutrients = None;
+    }
+    running
 }
 
 /// The world that is kept of the changed scene, or else the new one.

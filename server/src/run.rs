@@ -5,6 +5,7 @@ use crate::inspect::{InspectError, Inspector};
 use crate::journal::{self, JournalError};
 use crate::net::{self, Access, Admission, App, FieldSampler, PageErrors, Proofs, SessionLog};
 use crate::runner::{Attendance, Published, Runner, Simulation, Timing};
+use crate::scene_menu::SceneMenu;
 use crate::stream::{self, Clients, Counters, Stream, Streamer};
 use prairie_core::grid::PatchLayout;
 use prairie_core::wire;
@@ -69,6 +70,18 @@ pub async fn run_simulation(
     listener: TcpListener,
     shutdown: impl Future<Output = ()>,
 ) -> Result<(), RunError> {
+    let (menu, _) = SceneMenu::new(&config.scene, false);
+    run_with_menu(simulation, config, menu, listener, shutdown).await
+}
+
+/// [`run_simulation`] with a menu of scenes for the pages.
+pub(crate) async fn run_with_menu(
+    simulation: impl Simulation,
+    config: Config,
+    scene_menu: SceneMenu,
+    listener: TcpListener,
+    shutdown: impl Future<Output = ()>,
+) -> Result<(), RunError> {
     let (scene, timing) = (&config.scene.scene, timing(&config));
     let inspector =
         config.rerun.as_ref().map(|target| Inspector::start(target, scene, &config.scene.height, &config.scene.cover)).transpose()?;
@@ -89,6 +102,7 @@ pub async fn run_simulation(
         attendance: runner.attendance(),
         proofs,
         scene_name: config.scene.name.clone(),
+        scene_menu,
         scene: wire::encode(&config.scene.message()).into(),
         limits: config.limits,
         journal,

@@ -4,7 +4,8 @@ use crate::browser::Browser;
 use anyhow::Result;
 use prairie::runner::Simulation;
 use prairie::scenes::LoadedScene;
-use prairie::{Config, Limits, RunError, run_simulation};
+use prairie::world::World;
+use prairie::{Config, Limits, RunError, run_and_reload, run_simulation};
 use std::net::SocketAddr;
 use tokio::net::TcpListener;
 use tokio::sync::oneshot;
@@ -45,6 +46,22 @@ impl Prairie {
         let addr = listener.local_addr()?;
         let (stop, stopped) = oneshot::channel::<()>();
         let server = tokio::spawn(run_simulation(simulation, Config { limits, ..Config::new(scene) }, listener, async {
+            let _ = stopped.await;
+        }));
+        Ok(Self { addr, stop, server })
+    }
+
+    /// Serves a scene whose pages may change to another one.
+    ///
+    /// # Errors
+    /// When the world cannot be built, or no port is free.
+    pub async fn serve_with_menu(scene: LoadedScene) -> Result<Self> {
+        let listener = TcpListener::bind(SocketAddr::from(([127, 0, 0, 1], 0))).await?;
+        let addr = listener.local_addr()?;
+        let world = World::new(&scene.scene, scene.maps())?;
+        let (stop, stopped) = oneshot::channel::<()>();
+        let config = Config { pages_change_scene: true, ..Config::new(scene) };
+        let server = tokio::spawn(run_and_reload(world, config, listener, async {
             let _ = stopped.await;
         }));
         Ok(Self { addr, stop, server })

@@ -99,6 +99,8 @@ pub(super) struct App {
     pub(super) redraw: RedrawTracker<DrawnView>,
     /// Name of the server's scene.
     pub(super) scene_name: Option<String>,
+    /// Whether the camera starts anew in the scene that is being received.
+    pub(super) starts_anew: bool,
     pub(super) canvas: HtmlCanvasElement,
     pub(super) gpu: Option<GpuCanvas>,
     pub(super) support: DeviceSupport,
@@ -170,6 +172,7 @@ impl App {
             replica_budget: ReplicaBudget::default(),
             redraw: RedrawTracker::default(),
             scene_name: None,
+            starts_anew: false,
             canvas,
             gpu: None,
             support: DeviceSupport::default(),

@@ -40,6 +40,7 @@ impl App {
         self.measure_replica(now_secs);
         match applied {
             Ok(Some(Event::Welcome { client, proof, scene_name, .. })) => {
+                self.follow_scene(&scene_name);
                 self.connection.welcomed(client, proof);
                 self.prediction.restart();
                 self.scene_name = Some(scene_name);
@@ -86,13 +87,26 @@ impl App {
         }
     }
 
+    /// Goes along when the server changes to another scene: the link and the vehicle belonged to the one before.
+    fn follow_scene(&mut self, scene_name: &str) {
+        if self.scene_name.as_deref().is_some_and(|before| before != scene_name) && self.other_scene().is_none() {
+            self.options.scene = None;
+            self.wanted = None;
+            self.starts_anew = true;
+            self.go_live();
+        }
+    }
+
     /// Places the camera in a newly received scene: at the view in the address, or at the scene's start view.
     fn place_camera(&mut self) {
-        let Some(decoded) = self.mirror.decoded_scene().filter(|_| self.rig.is_none() && self.other_scene().is_none()) else { return };
-        let linked = self.window.location().hash().ok().and_then(|hash| Camera::from_hash(&hash));
+        let is_due = (self.rig.is_none() || self.starts_anew) && self.other_scene().is_none();
+        let Some(decoded) = self.mirror.decoded_scene().filter(|_| is_due) else { return };
+        let hash = self.window.location().hash().ok().filter(|_| !self.starts_anew);
+        let linked = hash.and_then(|hash| Camera::from_hash(&hash));
         let ground_m = |x_m: f32, z_m: f32| decoded.heights().height_m(x_m, z_m);
         let camera = linked.unwrap_or_else(|| Camera::start(&decoded.scene().camera, decoded.scene().extent_m(), ground_m));
         self.set_camera(camera);
+        self.starts_anew = false;
     }
 
     /// Resumes after a reconnection: sends the camera position, which the server must know first, and takes the same kind of vehicle again unless its own was kept.

@@ -13,6 +13,7 @@ use prairie::net::bind;
 use prairie::scenes::SceneError;
 use prairie::{Config, Limits, scenes};
 use std::ffi::{OsStr, OsString};
+use std::net::SocketAddr;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -30,6 +31,7 @@ Examples:
 Browsers enable WebGPU only on pages from this machine or over https, so other machines need --tls.
 With `--tls self` the browser shows a warning: compare the fingerprint with the one printed here.
 A scene file is reloaded when you save it or a file that it names; all pages reconnect.
+The page has a menu of the built-in scenes (key O), which changes the scene for everyone.
 The world is kept: after a stop or a crash it goes on where it was. `prairie replay` plays what was.
 The log goes to stderr; RUST_LOG=prairie=debug makes it more detailed.";
 
@@ -76,6 +78,9 @@ pub(super) struct Serve {
     max_per_address: u16,
     #[command(flatten)]
     world: WorldArguments,
+    /// Who may change to another built-in scene on the page, for all: everyone, or nobody [default: everyone if only this machine can connect]
+    #[arg(long, env = "PRAIRIE_CHANGE_SCENE", value_enum, value_name = "WHO")]
+    change_scene: Option<Changers>,
     /// Format of the log on stderr: lines of text, or a JSON object on each line
     #[arg(long, env = "PRAIRIE_LOG_FORMAT", value_enum, value_name = "FORMAT", default_value_t)]
     pub(super) log_format: LogFormat,
@@ -97,7 +102,23 @@ enum WhenEmpty {
     Run,
 }
 
+/// Who may change the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Changers {
+    /// Everyone who has the page.
+    Everyone,
+    /// Nobody: the page shows the scenes and their commands.
+    Nobody,
+}
+
 impl Serve {
+    /// Whether pages may change the scene: by default where all of them are on this machine. Allowed origins and hosts are those of a proxy, whose visitors
+    /// are elsewhere.
+    fn pages_change_scene(&self, address: SocketAddr) -> bool {
+        let is_private = address.ip().is_loopback() && self.tls.allow_origin.is_empty() && self.tls.allow_host.is_empty();
+        self.change_scene.map_or(is_private, |who| who == Changers::Everyone)
+    }
+
     /// Whether the scene is given as a word.
     pub(super) fn has_word(&self) -> bool {
         self.scene.is_some()
@@ -155,6 +176,7 @@ impl Serve {
             () = stop.received() => return Ok(()),
         };
         let usual = Config::new(scene);
+        let pages_change_scene = self.pages_change_scene(address);
         let config = Config {
             pause_after: usual.pause_after.filter(|_| self.when_empty == WhenEmpty::Pause),
             tls: tls.clone(),
@@ -164,6 +186,7 @@ impl Serve {
             threads: self.threads.map(usize::from),
             publish_hz: f32::from(self.publish_hz),
             logs_page_errors: self.report,
+            pages_change_scene,
             world: folder,
             limits,
             ..usual

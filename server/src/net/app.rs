@@ -10,6 +10,7 @@ use crate::journal::Health;
 use crate::log_limit::LogLimit;
 use crate::metrics::ServerStats;
 use crate::runner::{Attendance, Published};
+use crate::scene_menu::SceneMenu;
 use crate::stream::{Clients, Counters};
 use crate::world::Command;
 use bytes::Bytes;
@@ -46,6 +47,7 @@ pub(crate) struct App {
     pub(crate) attendance: Arc<Attendance>,
     pub(crate) proofs: Proofs,
     pub(crate) scene_name: String,
+    pub(crate) scene_menu: SceneMenu,
     /// The encoded scene message, the same for all clients.
     pub(crate) scene: Bytes,
     pub(crate) limits: Limits,

@@ -24,6 +24,7 @@ mod page_errors;
 mod proofs;
 mod reader;
 mod routes;
+mod scenes;
 mod security;
 mod serve;
 mod session;

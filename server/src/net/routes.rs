@@ -1,9 +1,9 @@
-//! HTTP routes: `/ws`, the reports on the server, `/api`, `/report` and the client's files.
+//! HTTP routes: `/ws`, the reports on the server, `/api` with the fields and the scenes, `/report` and the client's files.
 
 use super::app::App;
 use super::connection::Connection;
 use super::upgrade::upgrade;
-use super::{api, files, health, page_errors, security, session};
+use super::{api, files, health, page_errors, scenes, security, session};
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, StatusCode};
 use axum::middleware::{self, Next};
@@ -20,6 +20,9 @@ pub(crate) fn router(app: Arc<App>) -> Router {
         .route("/metrics", get(health::metrics))
         .route("/api/wind", get(api::wind).post(api::winds))
         .route("/api/bend", get(api::bend).post(api::bends))
+        .route("/api/scenes", get(scenes::list))
+        .route("/api/scenes/{name}/picture", get(scenes::picture))
+        .route("/api/scene", post(scenes::change))
         .route("/report", post(page_errors::receive))
         .fallback(get(files::file))
         .layer(middleware::from_fn_with_state(app.clone(), own_host))

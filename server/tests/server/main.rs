@@ -17,6 +17,7 @@ mod pause;
 mod prebuilt_client;
 mod python;
 mod reload;
+mod scene_menu;
 mod shared_world;
 #[cfg(unix)]
 mod signals;

@@ -80,6 +80,15 @@ impl Server {
         self.http_at(&self.address.to_string(), request).await
     }
 
+    /// Sends a request with a body and returns the whole response.
+    pub(crate) async fn http_with_body(&self, head: &str, body: &str) -> Vec<u8> {
+        let mut stream = TcpStream::connect(self.address).await.unwrap();
+        stream.write_all(format!("{head}\r\nhost: {}\r\nconnection: close\r\n\r\n{body}", self.address).as_bytes()).await.unwrap();
+        let mut response = Vec::new();
+        within(stream.read_to_end(&mut response)).await.unwrap();
+        response
+    }
+
     /// Sends a request for a host and returns the whole response.
     pub(crate) async fn http_at(&self, host: &str, request: &str) -> Vec<u8> {
         let mut stream = TcpStream::connect(self.address).await.unwrap();

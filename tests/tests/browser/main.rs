@@ -10,6 +10,7 @@ mod one_storm;
 mod page;
 mod prairie;
 mod replica;
+mod scenes;
 mod sharing;
 mod sound;
 mod start;

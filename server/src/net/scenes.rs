@@ -1,0 +1,70 @@
+//! The menu of scenes by HTTP: the list, a picture of each, and the change to one.
+
+use super::app::App;
+use crate::scene_menu::ChangeError;
+use crate::scenes;
+use axum::body::{Body, to_bytes};
+use axum::extract::{Path, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::sync::Arc;
+
+/// Largest body of a request for a scene (bytes).
+const BODY_LIMIT: usize = 4096;
+
+/// Cache period of a picture: a day, since its name stays the same when the picture changes.
+const PICTURE_CACHE: &str = "public, max-age=86400";
+
+/// `GET /api/scenes`: the running scene, whether pages may change it, and descriptions of all.
+pub(super) async fn list(State(app): State<Arc<App>>) -> Response {
+    let scenes: Vec<_> = app.scene_menu.scenes().collect();
+    answer(StatusCode::OK, &json!({ "running": app.scene_name, "pages_may_change": app.scene_menu.is_open(), "scenes": scenes }))
+}
+
+/// `GET /api/scenes/NAME/picture`: a picture of a built-in scene.
+pub(super) async fn picture(Path(name): Path<String>) -> Response {
+    match scenes::picture(&name) {
+        Some(jpeg) => ([(header::CONTENT_TYPE, "image/jpeg"), (header::CACHE_CONTROL, PICTURE_CACHE)], jpeg).into_response(),
+        None => (StatusCode::NOT_FOUND, "no such scene\n").into_response(),
+    }
+}
+
+/// Body of a request for a scene.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Choice {
+    name: String,
+}
+
+/// `POST /api/scene`: changes to a scene for everyone, and answers when its world is ready.
+pub(super) async fn change(State(app): State<Arc<App>>, headers: HeaderMap, body: Body) -> Response {
+    if let Err(rejection) = app.access.check_origin(&headers) {
+        return rejection.into_response();
+    }
+    let refuse = |status, error: String| answer(status, &json!({ "error": error }));
+    let Ok(body) = to_bytes(body, BODY_LIMIT).await else {
+        return refuse(StatusCode::PAYLOAD_TOO_LARGE, format!("the body has more than {BODY_LIMIT} bytes"));
+    };
+    let choice: Choice = match serde_json::from_slice(&body) {
+        Ok(choice) => choice,
+        Err(error) => return refuse(StatusCode::BAD_REQUEST, format!("the body is not a JSON object with `name`: {error}")),
+    };
+    match app.scene_menu.change(&choice.name).await {
+        Ok(()) => answer(StatusCode::OK, &json!({ "running": choice.name })),
+        Err(error) => {
+            let status = match error {
+                ChangeError::NotAllowed => StatusCode::FORBIDDEN,
+                ChangeError::Unknown { .. } => StatusCode::BAD_REQUEST,
+                ChangeError::Busy => StatusCode::CONFLICT,
+                ChangeError::Failed(_) => StatusCode::SERVICE_UNAVAILABLE,
+            };
+            refuse(status, error.to_string())
+        }
+    }
+}
+
+fn answer(status: StatusCode, body: &Value) -> Response {
+    (status, [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")], format!("{body}\n")).into_response()
+}
