@@ -6,7 +6,7 @@ use prairie_core::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
-const BROKEN: [&str; 35] = [
+const BROKEN: [&str; 37] = [
     "unknown-field",
     "syntax",
     "out-of-range",
@@ -42,6 +42,8 @@ const BROKEN: [&str; 35] = [
     "drawn-winds",
     "drawn-winds-out-of-range",
     "drawn-winds-too-hard",
+    "race",
+    "race-one-gate",
 ];
 
 /// The message for a broken scene equals the stored text beside it; `PRAIRIE_UPDATE=1` rewrites the stored text.
