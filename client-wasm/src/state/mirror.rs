@@ -80,6 +80,8 @@ pub struct Mirror {
     pub(super) broken: BrokenPlants,
     pub(super) peers: Vec<Peer>,
     pub(super) standings: Vec<Standing>,
+    /// Number of this client.
+    pub(super) client: Option<u32>,
     pub(super) tick: u64,
     pub(super) time_secs: f64,
 }
@@ -92,7 +94,7 @@ impl Mirror {
     pub fn apply(&mut self, message: ServerMessage) -> Result<Option<Event>, MirrorError> {
         Ok(match message {
             ServerMessage::Welcome { client, proof, server_version, scene_name } => {
-                self.applied = None;
+                (self.applied, self.client) = (None, Some(client));
                 Some(Event::Welcome { client, proof, server_version, scene_name })
             }
             ServerMessage::Scene { scene, height_png, covering_png, nutrient_png, models, shapes } => {
@@ -293,6 +295,14 @@ impl Mirror {
     /// The race, the first in front; empty before somebody has begun a lap.
     pub fn standings(&self) -> &[Standing] {
         &self.standings
+    }
+
+    /// Number of the gate that this client has to pass next; `None` without a vehicle or a race.
+    pub fn next_gate(&self) -> Option<usize> {
+        self.object_of(self.client?)?;
+        let own = self.standings.iter().find(|standing| Some(standing.client) == self.client);
+        let gate = own.map_or(0, |own| usize::from(own.next_gate));
+        (gate < self.decoded_scene()?.scene().race.gates.len()).then_some(gate)
     }
 
     /// World step of the newest complete frame.
