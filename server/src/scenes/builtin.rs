@@ -18,7 +18,7 @@ macro_rules! file {
 }
 
 /// All built-in scenes, the default first.
-pub(super) const BUILT_IN: [BuiltIn; 9] = [
+pub(super) const BUILT_IN: [BuiltIn; 10] = [
     BuiltIn {
         name: "meadow",
         text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meadow.toml")),
@@ -63,6 +63,11 @@ pub(super) const BUILT_IN: [BuiltIn; 9] = [
         name: "shells",
         text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/shells.toml")),
         files: &[file!("shells-height.png"), file!("shells-covering.png")],
+    },
+    BuiltIn {
+        name: "race",
+        text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/race.toml")),
+        files: &[file!("meadow-height.png"), file!("meadow-covering.png")],
     },
 ];
 

@@ -44,7 +44,7 @@ fn shown(scene: &Scene) -> Vec<String> {
     let Scene { wind, objects, rain, .. } = scene;
     let driven = format!("self-driving {}s", objects.self_driving_kind.name());
     let has_underbrush = !scene.underbrush.is_empty() || !scene.underbrush_file.is_empty();
-    let parts: [(bool, &str); 12] = [
+    let parts: [(bool, &str); 13] = [
         (!scene.species.is_empty(), "species of grass"),
         (scene.plants.cover == PlantCover::Shells, "grass drawn as shells"),
         (has_underbrush, "underbrush"),
@@ -57,6 +57,7 @@ fn shown(scene: &Scene) -> Vec<String> {
         (!scene.lights.is_empty(), "lamps"),
         (objects.self_driving > 0, &driven),
         (objects.balls > 0, "balls"),
+        (!scene.race.gates.is_empty(), "a race"),
     ];
     parts.into_iter().filter(|(is_shown, _)| *is_shown).map(|(_, word)| word.to_owned()).collect()
 }
@@ -81,5 +82,6 @@ mod tests {
         assert_eq!(of("blades").shows, ["flowers", "self-driving monsters"]);
         assert_eq!(of("shells").shows, ["grass drawn as shells"]);
         assert_eq!(of("underbrush").shows, ["underbrush", "balls"]);
+        assert_eq!(of("race").shows, ["flowers", "a race"]);
     }
 }

@@ -253,7 +253,7 @@ mod tests {
     fn an_unknown_scene_creates_nothing() {
         let parent = tempfile::tempdir().unwrap();
         let folder = parent.path().join("new");
-        let known = "allowed: meadow, jacksboro, devil, storm, breeze, continuum, underbrush, blades, shells";
+        let known = "allowed: meadow, jacksboro, devil, storm, breeze, continuum, underbrush, blades, shells, race";
         assert_eq!(told(&folder, Some("medow")), format!("there is no built-in scene `medow` (did you mean `meadow`?); {known}"));
         assert_eq!(told(&folder, Some("../x")), format!("there is no built-in scene `../x`; {known}"));
         assert!(names_in(parent.path()).is_empty());
