@@ -98,3 +98,38 @@ pub(crate) fn placed(decoded: &DecodedScene) -> Vec<PlacedPart> {
     };
     decoded.scene().race.gates.iter().enumerate().flat_map(parts).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::tests::meadow_of;
+    use prairie_core::scene::RaceGate;
+
+    #[test]
+    fn posts_stand_in_the_ground_at_the_ends_of_the_line() {
+        let eastwards = RaceGate { width_m: 8.0, ..RaceGate::new([20.0, 30.0], std::f32::consts::FRAC_PI_2) };
+        let mirror = meadow_of(|scene| scene.race.gates = vec![eastwards, RaceGate::new([40.0, 30.0], 0.0)], &[255; 256]);
+        let decoded = mirror.decoded_scene().expect("a scene");
+        let parts = placed(decoded);
+        assert!(parts.iter().map(|part| part.gate).eq([0, 0, 0, 1, 1, 1]));
+        let kinds = [0, 1, 2, 5].map(|number| parts[number].part);
+        assert_eq!(kinds, [GatePart::Post, GatePart::Post, GatePart::Checkered, GatePart::Banner]);
+        let ground_m = decoded.heights().height_m(20.0, 30.0);
+        let top_m = ground_m + TOP_M;
+        // North is to the left of who drives east.
+        for (part, z) in parts.iter().zip([26.0, 34.0]) {
+            let [foot, head] = [0.0, 1.0].map(|up| part.world_from_part.transform_point3(up * Vec3::Y));
+            assert!(foot.distance(Vec3::new(20.0, ground_m - DEPTH_M, z)) < 1e-4 && head.distance(Vec3::new(20.0, top_m, z)) < 1e-4);
+        }
+        let ends = [-0.5, 0.5].map(|across| parts[2].world_from_part.transform_point3(across * Vec3::X));
+        assert!(ends[0].distance(Vec3::new(20.0, top_m, 26.0)) < 1e-4 && ends[1].distance(Vec3::new(20.0, top_m, 34.0)) < 1e-4, "{ends:?}");
+        assert_eq!([None, Some(0), Some(1)].map(|next| parts[5].tint(next)), [OTHER_TINT, OTHER_TINT, NEXT_TINT]);
+    }
+
+    #[test]
+    fn a_banner_has_both_sides_in_whole_checks() {
+        let [post, plain, checkered] = solids();
+        assert!(!post.indices.is_empty());
+        assert_eq!([plain.indices.len(), checkered.indices.len()], [2 * 6, 2 * 6 * (CHECKS[0] * CHECKS[1]) as usize]);
+    }
+}
