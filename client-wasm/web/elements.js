@@ -2,6 +2,12 @@
 
 export const byId = (id) => document.getElementById(id);
 
+// Sets the text of the element with an id, if it is another.
+export function write(id, text) {
+  const node = byId(id);
+  if (node.textContent !== text) node.textContent = text;
+}
+
 // A new element with a text.
 export function element(name, text = "", className = "") {
   const node = document.createElement(name);

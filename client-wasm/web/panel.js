@@ -1,7 +1,8 @@
 // The panel: settings, connected clients and performance figures. It reads the client's state a few times a second.
 
 import { keep, link, parameter } from "./address.js";
-import { byId, element, marked } from "./elements.js";
+import { byId, element, marked, write } from "./elements.js";
+import { showRace } from "./race.js";
 
 const UPDATE_MS = 250;
 const HINT_MS = 14_000;
@@ -241,6 +242,7 @@ export class Panel {
     write("latency", state.latency_ms === null ? "–" : `${state.latency_ms.toFixed(state.latency_ms < 10 ? 1 : 0)} ms`);
     write("input", state.input_to_picture_ms === null ? "–" : inputLatency(state));
     this.showPeers(state.peers);
+    showRace(state.race);
     const notice = state.notice ?? (performance.now() < this.notice.until ? this.notice.text : "");
     byId("notice").hidden = !notice;
     write("notice", notice);
@@ -294,11 +296,6 @@ function startTimes({ first_picture_secs: first, complete_picture_secs: whole })
 function clock(hour) {
   const minutes = Math.round(hour * 60);
   return `${Math.floor(minutes / 60)}:${String(minutes % 60).padStart(2, "0")}`;
-}
-
-function write(id, text) {
-  const node = byId(id);
-  if (node.textContent !== text) node.textContent = text;
 }
 
 function rate(bytesPerSecond) {

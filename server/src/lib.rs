@@ -26,6 +26,7 @@ pub mod metrics;
 pub mod net;
 pub mod objects;
 pub mod plants;
+pub mod race;
 mod reload;
 mod run;
 pub mod runner;

@@ -7,7 +7,9 @@ use prairie::runner::{Published, Request};
 use prairie::snapshot::{BentPatches, PatchCodes, Snapshot, WindFrame};
 use prairie::stream::{AreaOfInterest, Client, Clients, Frame, SendLimits, Streamer, patches_near};
 use prairie_core::grid::PatchLayout;
-use prairie_core::wire::{BROKEN_LIMIT, BrokenPlant, PATCH_MEMORY, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, decode};
+use prairie_core::wire::{
+    BROKEN_LIMIT, BrokenPlant, PATCH_MEMORY, Refusal, SERVER_MESSAGE_LIMIT, STANDINGS_LIMIT, ServerMessage, Standing, decode,
+};
 use proptest::prelude::*;
 use std::num::NonZeroU8;
 use std::sync::Arc;
@@ -410,6 +412,53 @@ fn broken_plants_are_encoded_once_for_all_clients() {
     });
     let addresses: Vec<_> = addresses.collect();
     assert!(addresses.iter().all(|address| *address == addresses[0]), "all clients share the same bytes in memory");
+}
+
+/// The race comes when it has changed, and at once to a client that joins; however often it changes, it takes at most a tenth of the data rate.
+#[test]
+fn the_race_is_sent_when_it_changes() {
+    const SECS: u32 = 10;
+    let limits = SendLimits { bytes_per_s: 20_000.0, ..SendLimits::default() };
+    let (clients, mut prairie, mut now) = (Clients::default(), FakeWorld::at_rest(), Instant::now());
+    let mut streamer = Streamer::new(LAYOUT, limits, PUBLISH_HZ);
+    let mut viewer = Viewer::join(&clients, limits, 100.0);
+    let races = |frames: &[Frame]| -> Vec<(usize, Vec<Standing>)> {
+        let race = |message: &bytes::Bytes| match decode(message, SERVER_MESSAGE_LIMIT) {
+            Ok(ServerMessage::Race { standings }) => Some((message.len(), standings)),
+            _ => None,
+        };
+        frames.iter().flat_map(|frame| &frame.messages).filter_map(race).collect()
+    };
+    let mut publish = |prairie: &mut FakeWorld| {
+        now += Duration::from_millis(50);
+        streamer.publish(&prairie.publish(), &clients.all(), now);
+    };
+    publish(&mut prairie);
+    assert_eq!(races(&viewer.read()), [], "nobody has begun");
+    let standing = Standing { client: 1, best_secs: Some(20.0), ..Standing::default() };
+    prairie.snapshot.standings = vec![standing];
+    publish(&mut prairie);
+    assert!(races(&viewer.read()).iter().map(|(_, standings)| standings).eq([&vec![standing]]));
+    publish(&mut prairie);
+    assert_eq!(races(&viewer.read()), [], "nothing has changed");
+    let mut late = Viewer::join(&clients, limits, 100.0);
+    publish(&mut prairie);
+    assert_eq!([races(&late.read()).len(), races(&viewer.read()).len()], [1, 0]);
+    let (mut bytes, mut largest, mut shown) = (0, 0, vec![]);
+    for change in 0..SECS * PUBLISH_HZ as u32 + 40 {
+        if change < SECS * PUBLISH_HZ as u32 {
+            let row = |client| Standing { client, next_gate: (change % 32) as u8, began_secs: Some(f64::from(change)), ..standing };
+            prairie.snapshot.standings = (0..STANDINGS_LIMIT as u32).map(row).collect();
+        }
+        publish(&mut prairie);
+        for (length, standings) in races(&viewer.read()) {
+            (bytes, largest, shown) = (bytes + length, largest.max(length), standings);
+        }
+    }
+    assert_eq!(shown, prairie.snapshot.standings, "the newest race comes last");
+    assert!(largest <= 40 * STANDINGS_LIMIT, "{largest} bytes for {STANDINGS_LIMIT} clients");
+    let allowed = 0.1 * limits.bytes_per_s * (f64::from(SECS) + 2.0 + 1.0) + largest as f64;
+    assert!(bytes > largest && bytes as f64 <= allowed, "{bytes} bytes of races, allowed {allowed}");
 }
 
 /// Rosters take at most a tenth of the data rate, and a burst of a second of that, however often clients change their names.

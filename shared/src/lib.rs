@@ -13,6 +13,7 @@
 //! - [`grass`] and [`body`]: contact, winds and flattened grass around the bend field; its causes, and replicas; shapes and motions of objects.
 //! - [`wind`]: tiling of the wind's box over the world, and trilinear sampling.
 //! - [`plant`]: mechanics of blades and underbrush, and where they grow.
+//! - [`race`]: gates of a race, and its start light.
 //! - [`light`]: position of the sun, sky, lamps, and the shading of grass.
 //! - [`lod`]: levels of detail and drawing order of grass grids.
 //! - [`outline`]: polygons on the ground and their convex parts.
@@ -24,7 +25,7 @@
 //!
 //! # Determinism
 //! Nothing here reads a clock, a file or the network, and everything builds for `wasm32`. The hashes, the codec, the growth of underbrush, the motion of
-//! blades, the wind with its gusts, and the [grass] with the bend field's schemes other than `modal` use only integers, `+ − × ÷`, square roots and the crate
+//! blades, the wind with its gusts, the passing of gates, and the [grass] with the bend field's schemes other than `modal` use only integers, `+ − × ÷`, square roots and the crate
 //! `libm`: their bits are the same on every machine, so clients can simulate the grass. Headings of broken plants, the scheme `modal`, postures and light use the
 //! platform's library: they may differ in the last bits, and the server's results are authoritative.
 
@@ -38,6 +39,7 @@ pub mod light;
 pub mod lod;
 pub mod outline;
 pub mod plant;
+pub mod race;
 pub mod random;
 pub mod scene;
 pub mod terrain;

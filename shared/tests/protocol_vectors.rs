@@ -10,7 +10,7 @@ use prairie_core::wind::WindField;
 use prairie_core::wire::quantise::{CODE_LIMIT, CodeSteps, heading_code, heading_rad};
 use prairie_core::wire::{
     AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Joined, Mesh, ObjectPose, PROTOCOL, PatchCheck, Peer, RareCauses, Refusal,
-    ServerMessage, Shape, Shapes, StepHead, TurbulenceState, codec, encode,
+    ServerMessage, Shape, Shapes, Standing, StepHead, TurbulenceState, codec, encode,
 };
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -108,6 +108,19 @@ fn server_messages() -> Vec<ServerMessage> {
         ServerMessage::ReplicaState { tick: 300, part: 1, parts: 200, payload: vec![5, 6] },
         ServerMessage::Steps { first_tick: 300, steps: vec![step(), StepHead::default()], moves: vec![3, 4] },
         ServerMessage::Applied(AppliedInput { number: 7, tick: 300 }),
+        ServerMessage::Race {
+            standings: vec![
+                Standing { client: 200, next_gate: 2, laps: 1, began_secs: Some(5.0), best_secs: Some(0.5), ..Standing::default() },
+                Standing {
+                    client: 3,
+                    is_false_start: true,
+                    last_secs: Some(60.5),
+                    race_secs: Some(181.5),
+                    gap_secs: Some(-0.5),
+                    ..Standing::default()
+                },
+            ],
+        },
     ]
 }
 
@@ -137,6 +150,7 @@ const FILLED: &str = "[[wind.primitives]]\nkind = 'source'\nat_m = [1, 2, 3]\n[[
     [[underbrush]]\nname = 'b'\n[[underbrush.components]]\nname = 'c'\nkind = 'branch'\n\
     [[underbrush.components]]\nname = 'd'\nkind = 'leaf'\non = 'c'\n\
     [[drawn_winds]]\nshape = 'swirl'\npath_m = [[1, 2]]\n[[lights]]\nat_m = [1, 2, 3]\n\
+    [[race.gates]]\nat_m = [1, 2]\nheading_rad = 0.5\n[[race.gates]]\nat_m = [8, 2]\nheading_rad = 3.5\n\
     [growth]\nnutrient_map = 'n.png'\n[objects]\ncar_model = 'car.glb'\nmonster_model = 'm.glb'\n";
 
 fn scene(more: &str) -> Scene {

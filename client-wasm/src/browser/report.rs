@@ -6,13 +6,21 @@ use super::gpu_canvas::GpuCanvas;
 use crate::hearing::{HeardEngine, Hearing, hear};
 use crate::render::Quality;
 use crate::rig::Rig;
-use crate::state::Past;
+use crate::state::{DecodedScene, Past};
+use prairie_core::race::StartLight;
 use serde_json::{Value, json};
 
 impl App {
     /// The whole state. Positions in m, angles in rad, times in s unless the name says ms.
     pub(super) fn report(&self) -> Value {
-        let parts = [self.connection_report(), self.world_report(), self.time_report(), self.start_report(), self.drawing_report()];
+        let parts = [
+            self.connection_report(),
+            self.world_report(),
+            self.race_report(),
+            self.time_report(),
+            self.start_report(),
+            self.drawing_report(),
+        ];
         parts.into_iter().filter_map(|part| if let Value::Object(part) = part { Some(part) } else { None }).flatten().collect()
     }
 
@@ -79,6 +87,35 @@ impl App {
             "patches_known": self.mirror.known_patches(),
             "patches_bent": self.mirror.bent_patches().count(),
         })
+    }
+
+    /// The race; null in a scene without one.
+    fn race_report(&self) -> Value {
+        let scene = self.mirror.decoded_scene().map(DecodedScene::scene).filter(|scene| !scene.race.gates.is_empty());
+        let Some(scene) = scene else { return json!({ "race": null }) };
+        let (tick, time_secs) = (self.mirror.tick(), self.mirror.time_secs());
+        let light = StartLight::of(scene).map(|light| {
+            let until_green_secs = light.until_green(tick) as f32 / scene.tick_hz;
+            json!({ "color": light.color(tick).name(), "until_green_secs": until_green_secs })
+        });
+        let name_of = |client| self.mirror.peers().iter().find(|peer| peer.client == client).map_or("", |peer| peer.name.as_str());
+        let standings = self.mirror.standings().iter().map(|standing| {
+            json!({
+                "client": standing.client,
+                "name": name_of(standing.client),
+                "me": Some(standing.client) == self.connection.client(),
+                "next_gate": standing.next_gate,
+                "laps": standing.laps,
+                "lap_secs": standing.began_secs.map(|began_secs| (time_secs - began_secs).max(0.0)),
+                "false_start": standing.is_false_start,
+                "last_secs": standing.last_secs,
+                "best_secs": standing.best_secs,
+                "race_secs": standing.race_secs,
+                "gap_secs": standing.gap_secs,
+            })
+        });
+        let standings: Vec<_> = standings.collect();
+        json!({ "race": { "laps": scene.race.laps, "gates": scene.race.gates.len(), "light": light, "standings": standings } })
     }
 
     fn time_report(&self) -> Value {

@@ -3,8 +3,8 @@
 use super::check_underbrush::check_underbrush;
 use super::error::{MirrorError, range, within};
 use prairie_core::body::Body;
-use prairie_core::scene::{LAMPS_LIMIT, Scene, Stream, WIND_CELLS_LIMIT};
-use prairie_core::wire::Mesh;
+use prairie_core::scene::{GATES_LIMIT, LAMPS_LIMIT, Scene, Stream, WIND_CELLS_LIMIT};
+use prairie_core::wire::{Mesh, STANDINGS_LIMIT, Standing};
 
 /// Checks all settings that the client relies on.
 pub(super) fn check(scene: &Scene) -> Result<(), MirrorError> {
@@ -13,6 +13,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), MirrorError> {
     check_light(scene)?;
     check_grass(scene)?;
     check_winds(scene)?;
+    check_race(scene)?;
     check_underbrush(scene)
 }
 
@@ -89,6 +90,43 @@ fn check_light(scene: &Scene) -> Result<(), MirrorError> {
         within("lights.candela", lamp.candela, 0.0, 1_000_000.0)?;
         for term in lamp.attenuation {
             within("lights.attenuation", term, 0.0, 100.0)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_race(scene: &Scene) -> Result<(), MirrorError> {
+    let race = &scene.race;
+    if race.gates.len() > GATES_LIMIT {
+        return Err(range("number of gates", race.gates.len(), format!("at most {GATES_LIMIT}")));
+    }
+    within("race.laps", race.laps as f32, 1.0, 99.0)?;
+    within("race.light_period_secs", race.light_period_secs, 0.0, 3600.0)?;
+    for gate in &race.gates {
+        for coordinate in gate.at_m {
+            within("race.gates.at_m", coordinate, 0.0, 100_000.0)?;
+        }
+        within("race.gates.heading_rad", gate.heading_rad, -6.3, 6.3)?;
+        within("race.gates.width_m", gate.width_m, 2.0, 100.0)?;
+    }
+    Ok(())
+}
+
+/// Checks a received race in a scene with this number of gates: its size, its gates and its times.
+pub(super) fn check_standings(standings: &[Standing], gates: usize) -> Result<(), MirrorError> {
+    if standings.len() > STANDINGS_LIMIT {
+        return Err(range("number of standings", standings.len(), format!("at most {STANDINGS_LIMIT}")));
+    }
+    for standing in standings {
+        if usize::from(standing.next_gate) >= gates {
+            return Err(range("standings.next_gate", standing.next_gate, format!("less than the number of gates, {gates}")));
+        }
+        let Standing { last_secs, best_secs, race_secs, gap_secs, .. } = *standing;
+        let began_secs = standing.began_secs.map(|secs| secs as f32);
+        for secs in [began_secs, last_secs, best_secs, race_secs, gap_secs].into_iter().flatten() {
+            if !secs.is_finite() {
+                return Err(range("times of standings", secs, "finite numbers"));
+            }
         }
     }
     Ok(())

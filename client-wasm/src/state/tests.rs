@@ -1,9 +1,11 @@
 use super::*;
 use glam::Vec3;
-use prairie_core::scene::{Component, ComponentKind, Lamp, Patches, Scene, Species, TerrainMaps, Underbrush, VehicleKind, Wind};
+use prairie_core::scene::{
+    Component, ComponentKind, Lamp, Patches, Race, RaceGate, Scene, Species, TerrainMaps, Underbrush, VehicleKind, Wind,
+};
 use prairie_core::terrain::grey_png;
 use prairie_core::wire::quantise::CodeSteps;
-use prairie_core::wire::{BrokenPlant, Shape, TurbulenceState, codec, decode};
+use prairie_core::wire::{BrokenPlant, Peer, STANDINGS_LIMIT, Shape, Standing, TurbulenceState, codec, decode};
 use prairie_core::wire::{ObjectPose, ServerMessage};
 use proptest::prelude::*;
 use std::num::NonZeroU8;
@@ -37,6 +39,40 @@ fn loaded() -> Mirror {
     let mut mirror = Mirror::default();
     assert_eq!(mirror.apply(scene_message(scene())), Ok(Some(Event::Scene)));
     mirror
+}
+
+#[test]
+fn a_race_is_checked_against_the_scene() {
+    let gates = vec![RaceGate::new([4.0, 4.0], 0.0), RaceGate::new([12.0, 4.0], 3.1)];
+    let race = |standings| ServerMessage::Race { standings };
+    let own = Standing { client: 3, next_gate: 1, began_secs: Some(2.0), best_secs: Some(9.5), ..Standing::default() };
+    let mut mirror = Mirror::default();
+    assert_eq!(mirror.apply(race(vec![own])), Err(MirrorError::BeforeScene("race")));
+    mirror.apply(scene_message(Scene { race: Race { gates, ..Race::default() }, ..scene() })).unwrap();
+    let faults = [
+        vec![Standing { next_gate: 2, ..own }],
+        vec![Standing { gap_secs: Some(f32::NAN), ..own }],
+        vec![Standing { began_secs: Some(f64::INFINITY), ..own }],
+        vec![own; STANDINGS_LIMIT + 1],
+    ];
+    for standings in faults {
+        assert!(matches!(mirror.apply(race(standings)), Err(MirrorError::Range { .. })));
+    }
+    assert_eq!((mirror.apply(race(vec![own])), mirror.standings()), (Ok(None), [own].as_slice()));
+    // The next gate is that of the own vehicle, and the first one before a lap has begun.
+    assert_eq!(mirror.next_gate(), None);
+    let welcome = |client| ServerMessage::Welcome { client, proof: [0; 32], server_version: String::new(), scene_name: String::new() };
+    mirror.apply(welcome(3)).unwrap();
+    let roster = |object| ServerMessage::Roster { peers: [3, 4].map(|client| Peer { client, name: String::new(), object }).to_vec() };
+    mirror.apply(roster(None)).unwrap();
+    assert_eq!(mirror.next_gate(), None, "on foot");
+    mirror.apply(roster(Some(1))).unwrap();
+    assert_eq!(mirror.next_gate(), Some(1));
+    mirror.apply(welcome(4)).unwrap();
+    assert_eq!(mirror.next_gate(), Some(0));
+    mirror.apply(scene_message(scene())).unwrap();
+    assert_eq!((mirror.standings().len(), mirror.next_gate()), (0, None), "another scene has another race");
+    assert!(mirror.apply(race(vec![own])).is_err(), "there is no race in it");
 }
 
 fn patch(seq: u32, key: bool, base: Option<&[i16]>, codes: &[i16]) -> ServerMessage {

@@ -59,7 +59,7 @@ impl JournaledWorld {
     pub(super) fn new(world: World, folder: Folder, limit_bytes: u64, generation: u64) -> Result<Self, JournalError> {
         let (key, health) = (folder.key(), Arc::<Health>::default());
         let first_client = if world.tick() == 0 { 1 } else { world.newest_client().saturating_add(CLIENT_GAP) };
-        let pending = world.drivers().map(|client| Command::Leave { client }).collect();
+        let pending = world.drivers().chain(world.racers_on_foot()).map(|client| Command::Leave { client }).collect();
         let writer = Writer::start(folder, limit_bytes, health.clone())?;
         let mut journal = Journal {
             writer,

@@ -12,6 +12,7 @@ pub use checkpoint::{ObjectsError, ObjectsState};
 pub use prairie_vehicles::Environment;
 
 use crate::checksum::Checksum;
+use crate::race::DrivenMotion;
 use autopilot::Autopilot;
 use driver::{Driven, Driver};
 use prairie_core::body::{BodyPose, Motion};
@@ -162,6 +163,16 @@ impl Objects {
             }
         };
         self.vehicles.iter().map(motion).collect()
+    }
+
+    /// Motions over the ground of the vehicles of clients, given [all motions](Self::motions) of the newest step.
+    pub fn driven(&self, motions: &[Motion]) -> impl Iterator<Item = DrivenMotion> {
+        self.vehicles.iter().zip(motions).filter_map(|(vehicle, motion)| match vehicle.driver {
+            Driver::Client { client, .. } => {
+                Some(DrivenMotion { client, object: vehicle.id, from_m: motion.from.xz(), to_m: motion.to.xz() })
+            }
+            Driver::Autopilot(_) | Driver::None => None,
+        })
     }
 
     /// Adds the poses to a checksum.

@@ -65,7 +65,7 @@ fn shown(scene: &Scene) -> Vec<String> {
     let Scene { wind, objects, rain, .. } = scene;
     let driven = format!("self-driving {}s", objects.self_driving_kind.name());
     let has_underbrush = !scene.underbrush.is_empty() || !scene.underbrush_file.is_empty();
-    let parts: [(bool, &str); 12] = [
+    let parts: [(bool, &str); 13] = [
         (!scene.species.is_empty(), "species of grass"),
         (scene.plants.cover == PlantCover::Shells, "grass drawn as shells"),
         (has_underbrush, "underbrush"),
@@ -78,6 +78,7 @@ fn shown(scene: &Scene) -> Vec<String> {
         (!scene.lights.is_empty(), "lamps"),
         (objects.self_driving > 0, &driven),
         (objects.balls > 0, "balls"),
+        (!scene.race.gates.is_empty(), "a race"),
     ];
     parts.into_iter().filter(|(is_shown, _)| *is_shown).map(|(_, word)| word.to_owned()).collect()
 }
@@ -129,6 +130,7 @@ mod tests {
         assert_eq!(of("shells").shows, ["grass drawn as shells"]);
         assert_eq!(of("underbrush").shows, ["underbrush", "balls"]);
         assert_eq!(of("night").shows, ["underbrush", "flowers", "lamps"]);
+        assert_eq!(of("race").shows, ["flowers", "a race"]);
     }
 
     #[test]

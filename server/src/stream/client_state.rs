@@ -1,5 +1,6 @@
 //! The streamer's state of one client: the frames known to the client, its byte budget, and the frames in flight.
 
+use super::announcement::Announced;
 use super::area::{PATCH_LIMIT, patches_near};
 use super::clients::{AreaOfInterest, Client, Frame};
 use super::encoder::Encoder;
@@ -40,10 +41,8 @@ pub struct Publication<'a> {
     pub now: Instant,
     /// The encoded poses message.
     pub poses: Bytes,
-    /// Version of the roster.
-    pub roster_version: u64,
-    /// The encoded roster message.
-    pub roster: Bytes,
+    /// Messages that all clients get when they change: roster and race.
+    pub announced: [Announced; 2],
     /// The newest steps.
     pub steps: &'a StepLog,
 }
@@ -69,7 +68,8 @@ pub struct ClientState {
     following: Following,
     patch_messages: u64,
     held_wind: Option<u32>,
-    held_roster: u64,
+    /// Version of each announcement that was sent.
+    held_announced: [u64; 2],
     /// The newest input of the client's vehicle that was reported.
     reported: Option<AppliedInput>,
     /// Number of broken plants sent, in the order of breaking.
@@ -90,7 +90,7 @@ impl ClientState {
             following: Following::default(),
             patch_messages: 0,
             held_wind: None,
-            held_roster: 0,
+            held_announced: [0; 2],
             reported: None,
             sent_broken: 0,
             area: None,
@@ -122,9 +122,8 @@ impl ClientState {
         messages.extend(extra);
         let applied = snapshot.inputs.get(&client.id).copied();
         messages.extend(applied.filter(|_| applied != self.reported).map(|input| wire::encode(&ServerMessage::Applied(input)).into()));
-        if self.held_roster != publication.roster_version {
-            messages.push(publication.roster.clone());
-        }
+        let newer = publication.announced.iter().zip(self.held_announced).filter(|(announced, held)| announced.version != *held);
+        messages.extend(newer.map(|(announced, _)| announced.message.clone()));
         self.budget.charge(messages.iter().map(Bytes::len).sum::<usize>() as f64);
         let broken = encoder.broken(snapshot, self.sent_broken);
         let broken = broken.filter(|(_, message)| self.budget.try_overdraw(message.len() as f64));
@@ -153,7 +152,8 @@ impl ClientState {
         }
         self.following.note_sent(publication.steps, publication.now);
         self.frame = number;
-        (self.held_roster, self.reported) = (publication.roster_version, applied);
+        self.held_announced = publication.announced.each_ref().map(|announced| announced.version);
+        self.reported = applied;
         self.sent_broken = broken.map_or(self.sent_broken, |(count, _)| count);
         self.held_wind = wind.or(self.held_wind);
         self.hold(patches);

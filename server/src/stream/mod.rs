@@ -15,6 +15,7 @@
 //! A client has at most a few unacknowledged frames in flight ([`SendLimits`]). Until it acknowledges one it is skipped, and then gets
 //! the newest state: nothing queues.
 
+mod announcement;
 mod area;
 mod client_state;
 mod clients;

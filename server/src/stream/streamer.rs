@@ -1,5 +1,6 @@
 //! The streaming thread: turns each published snapshot into frames for all clients.
 
+use super::announcement::{Announced, Announcement};
 use super::client_state::{ClientState, Publication, SendLimits};
 use super::clients::{Client, Clients, Difference};
 use super::encoder::Encoder;
@@ -8,20 +9,16 @@ use crate::histogram::Histogram;
 use crate::log_limit::LogLimit;
 use crate::runner::{Attendance, Published};
 use crate::snapshot::{Audience, Snapshot};
-use crate::token_bucket::TokenBucket;
 use crate::world::{Camera, Command};
 use bytes::Bytes;
 use prairie_core::grid::PatchLayout;
-use prairie_core::wire::{self, Peer, Refusal, ServerMessage};
+use prairie_core::wire::{self, Peer, Refusal, ServerMessage, Standing};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use tokio::sync::{mpsc, oneshot, watch};
-
-/// Maximum fraction of a client's data rate for rosters. All clients get each roster, so one client that changes its name would cost much.
-const ROSTER_FRACTION: f64 = 0.1;
 
 /// Shortest time between two states of the grass, each for all clients that wait: copying and compressing one takes tens of milliseconds.
 const STATE_PERIOD: Duration = Duration::from_secs(2);
@@ -87,11 +84,8 @@ pub struct Streamer {
     states: BTreeMap<u32, ClientState>,
     /// Step of the newest refusal sent to each client.
     notified: BTreeMap<u32, u64>,
-    peers: Vec<Peer>,
-    roster_version: u64,
-    roster: Bytes,
-    /// Bytes of rosters that each client may be sent; filled from the first publication on.
-    roster_budget: Option<TokenBucket>,
+    roster: Announcement<Vec<Peer>>,
+    race: Announcement<Vec<Standing>>,
     counters: Arc<Counters>,
     steps: StepLog,
     /// Set to request the state of the grass with the next publication.
@@ -110,10 +104,8 @@ impl Streamer {
             encoder: Encoder::new(publish_hz),
             states: BTreeMap::new(),
             notified: BTreeMap::new(),
-            peers: Vec::new(),
-            roster_version: 0,
-            roster: Bytes::new(),
-            roster_budget: None,
+            roster: Announcement::default(),
+            race: Announcement::default(),
             counters: Arc::default(),
             steps: StepLog::new(publish_hz, limits.bytes_per_s),
             state_request: Arc::default(),
@@ -136,19 +128,18 @@ impl Streamer {
     pub fn publish(&mut self, published: &Published, clients: &[Arc<Client>], now: Instant) -> Vec<Camera> {
         self.encoder.begin();
         self.remove_departed(clients);
-        self.update_roster(published, clients, now);
         let snapshot = &published.snapshot;
         self.steps.extend(&snapshot.steps, snapshot.wind.tick, self.encoder.next_wind(snapshot));
         if let Some(state) = &published.bend_state {
             self.steps.set_state(state, self.encoder.wind(snapshot, None));
         }
+        let announced = self.announced(published, clients, now);
         let publication = Publication {
             snapshot: &published.snapshot,
             layout: &self.layout,
             now,
             poses: Encoder::poses(&published.snapshot),
-            roster_version: self.roster_version,
-            roster: self.roster.clone(),
+            announced,
             steps: &self.steps,
         };
         for client in clients {
@@ -196,23 +187,17 @@ impl Streamer {
         self.notified.retain(|id, _| is_connected(id));
     }
 
-    /// Encodes the roster again if it has changed and the budget allows; otherwise the change waits.
-    fn update_roster(&mut self, published: &Published, clients: &[Arc<Client>], now: Instant) {
-        let bytes_per_s = ROSTER_FRACTION * self.limits.bytes_per_s;
-        let budget = self.roster_budget.get_or_insert_with(|| TokenBucket::new(bytes_per_s, bytes_per_s, now));
-        budget.fill(now);
-        if !budget.is_solvent() {
-            return;
-        }
+    /// The newest roster and race.
+    fn announced(&mut self, published: &Published, clients: &[Arc<Client>], now: Instant) -> [Announced; 2] {
         let object = |id| published.requests.get(&id).and_then(|request| request.object);
-        let peers: Vec<Peer> =
-            clients.iter().map(|client| Peer { client: client.id, name: client.name(), object: object(client.id) }).collect();
-        if peers != self.peers {
-            self.roster_version += 1;
-            self.roster = wire::encode(&ServerMessage::Roster { peers: peers.clone() }).into();
-            budget.charge(self.roster.len() as f64);
-            self.peers = peers;
-        }
+        let peer = |client: &Arc<Client>| Peer { client: client.id, name: client.name(), object: object(client.id) };
+        let peers = || clients.iter().map(peer).collect();
+        let bytes_per_s = self.limits.bytes_per_s;
+        let roster = self.roster.update(bytes_per_s, now, peers, |peers: &Vec<Peer>| ServerMessage::Roster { peers: peers.clone() });
+        let standings = || published.snapshot.standings.clone();
+        let race =
+            self.race.update(bytes_per_s, now, standings, |standings: &Vec<Standing>| ServerMessage::Race { standings: standings.clone() });
+        [roster, race]
     }
 
     /// Step at which a client's request for a vehicle was refused, if the client has not been notified.

@@ -4,6 +4,7 @@ use super::departed::Departed;
 use super::{Camera, Maps, World};
 use crate::bend::pool::Pool;
 use crate::objects::{ObjectsError, ObjectsState};
+use crate::race::RaceState;
 use crate::settings_error::SettingsError;
 use crate::snapshot::BrokenPlants;
 use crate::weather::{Weather, WeatherRestoreError, WeatherState};
@@ -21,6 +22,7 @@ pub struct WorldState {
     departed: Departed,
     cameras: Vec<Camera>,
     objects: ObjectsState,
+    race: RaceState,
     weather: WeatherState,
     bend: BendState,
     broken: BrokenPlants,
@@ -47,6 +49,9 @@ pub enum RestoreError {
     /// A plant is broken that the scene does not have.
     #[error("a broken plant has no site in the scene")]
     Plants,
+    /// The laps are those of a race with other gates.
+    #[error("the laps do not fit the gates of the scene")]
+    Race,
 }
 
 impl WorldState {
@@ -83,6 +88,7 @@ impl World {
         state.departed.clone_from(&self.departed);
         state.cameras.clone_from(&self.cameras);
         state.objects = self.objects.state();
+        state.race.clone_from(self.race.state());
         let (weather, bend) = (&self.weather, &self.bend);
         rayon::join(|| weather.save_into(&mut state.weather), || bend.save_into(&mut state.bend, &Pool));
         state.broken.clone_from(self.plants.broken());
@@ -99,6 +105,9 @@ impl World {
         (world.departed, world.cameras) = (state.departed, state.cameras);
         world.objects.restore(state.objects)?;
         world.bend.restore(state.bend)?;
+        if !world.race.restore(state.race) {
+            return Err(RestoreError::Race);
+        }
         if !world.plants.restore(state.broken) {
             return Err(RestoreError::Plants);
         }

@@ -14,6 +14,7 @@ use crate::bend::pool::Pool;
 use crate::checksum::Checksum;
 use crate::objects::{Environment, Objects};
 use crate::plants::PlantDamage;
+use crate::race::Race;
 use crate::settings_error::SettingsError;
 use crate::snapshot::{Diagnostics, PatchQuantiser, Snapshot};
 use crate::weather::Weather;
@@ -49,13 +50,14 @@ pub struct Maps {
 /// Number of the newest steps whose causes are kept: half a second at the highest step rate.
 const STEPS_KEPT: usize = 120;
 
-/// Objects, wind, grass and underbrush.
+/// Objects, race, wind, grass and underbrush.
 pub struct World {
     dt_secs: f32,
     tick: u64,
     height: Arc<HeightMap>,
     extent_m: [f32; 2],
     objects: Objects,
+    race: Race,
     weather: Weather,
     bend: BendSimulation,
     plants: PlantDamage,
@@ -92,6 +94,7 @@ impl World {
             height,
             extent_m: scene.extent_m(),
             objects: Objects::new(scene, environment),
+            race: Race::new(scene),
             weather,
             bend,
             plants,
@@ -102,18 +105,19 @@ impl World {
         })
     }
 
-    /// Advances by one fixed step: commands, objects, wind, bend field, underbrush.
+    /// Advances by one fixed step: commands, objects, race, wind, bend field, underbrush.
     pub fn step(&mut self, commands: &[Command]) {
         for command in commands {
             self.execute(command);
         }
         for client in self.departed.expired(self.tick, self.dt_secs) {
-            self.objects.remove(client);
+            self.give_up(client);
         }
         self.tick += 1;
         let (weather, height) = (&self.weather, &self.height);
         self.objects.step(self.dt_secs, |[x, y, z]| weather.field().wind_at([x, y - height.height_m(x, z), z]));
         let motions = self.objects.motions();
+        self.race.step(self.tick, self.objects.driven(&motions));
         self.weather.step(self.tick, &motions, &self.height, self.bend.field());
         self.bend.step(self.dt_secs, &motions, &self.cameras, self.weather.field(), &Pool);
         self.plants.step(self.tick, self.dt_secs, &self.bend, &self.weather);
@@ -148,6 +152,7 @@ impl World {
             patches: quantiser.quantise(self.tick, &self.bend, |patch| self.is_in_sight(patch), &Pool),
             audience: quantiser.audience().clone(),
             broken: self.plants.broken().clone(),
+            standings: self.race.standings(),
             steps: self.steps.iter().cloned().collect(),
             diagnostics: self.diagnostics(),
         }
@@ -188,6 +193,11 @@ impl World {
         self.departed.clients()
     }
 
+    /// Clients without a vehicle that have a time in the race, connected or not, ascending.
+    pub fn racers_on_foot(&self) -> impl Iterator<Item = u32> {
+        self.race.clients().filter(|client| self.object_of(*client).is_none())
+    }
+
     /// A copy of the state of the grass, from which replicas start; `None` for the scheme `modal`, which clients do not have.
     pub fn bend_state(&self) -> Option<BendState> {
         (self.bend.scheme() != Scheme::Modal).then(|| self.bend.state())
@@ -213,10 +223,11 @@ impl World {
         self.plants.flora()
     }
 
-    /// Checksum of the state of objects, wind, bend field and underbrush.
+    /// Checksum of the state of objects, race, wind, bend field and underbrush.
     pub fn checksum(&self) -> u64 {
         let mut sum = Checksum::default();
         self.objects.hash(&mut sum);
+        self.race.hash(&mut sum);
         self.weather.hash(&mut sum);
         hash_bend(&self.bend, &mut sum);
         self.plants.hash(&mut sum);
@@ -224,7 +235,7 @@ impl World {
     }
 
     /// Checksums of the parts of the state, with their names.
-    pub fn checksums(&self) -> [(&'static str, u64); 4] {
+    pub fn checksums(&self) -> [(&'static str, u64); 5] {
         let of = |add: &dyn Fn(&mut Checksum)| {
             let mut sum = Checksum::default();
             add(&mut sum);
@@ -232,6 +243,7 @@ impl World {
         };
         [
             ("objects", of(&|sum| self.objects.hash(sum))),
+            ("race", of(&|sum| self.race.hash(sum))),
             ("wind", of(&|sum| self.weather.hash(sum))),
             ("bend field", of(&|sum| hash_bend(&self.bend, sum))),
             ("broken plants", of(&|sum| self.plants.hash(sum))),
@@ -247,7 +259,7 @@ impl World {
                 while self.objects.spawn(*client, *kind, center_m).is_none()
                     && let Some(lost) = self.departed.pop_longest()
                 {
-                    self.objects.remove(lost);
+                    self.give_up(lost);
                 }
             }
             Command::Remove { client } => {
@@ -263,10 +275,18 @@ impl World {
                 if self.objects.object_of(*client).is_some() {
                     self.objects.drive(*client, Drive::default(), AppliedInput::default());
                     self.departed.leave(*client, self.tick);
+                } else {
+                    self.race.forget(*client);
                 }
             }
             Command::Return { client } => self.departed.forget(*client),
         }
+    }
+
+    /// Removes the vehicle of a client that does not return, and its times.
+    fn give_up(&mut self, client: u32) {
+        self.objects.remove(client);
+        self.race.forget(client);
     }
 
     /// Whether a patch may be within the view radius of any camera.

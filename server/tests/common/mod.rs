@@ -64,6 +64,7 @@ impl Replica {
             }
             ServerMessage::Welcome { .. }
             | ServerMessage::Roster { .. }
+            | ServerMessage::Race { .. }
             | ServerMessage::Poses { .. }
             | ServerMessage::Broken { .. }
             | ServerMessage::Pong { .. }

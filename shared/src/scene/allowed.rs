@@ -2,8 +2,8 @@
 
 use super::objects::OBJECT_FIELDS;
 use super::{
-    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, LAMPS_LIMIT, LagWay, PlantCover, PrimitiveKind, SPECIES_LIMIT,
-    WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, GATES_LIMIT, LAMPS_LIMIT, LagWay, PlantCover, PrimitiveKind,
+    SPECIES_LIMIT, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, GroundContact, Scheme, Seams};
 use crate::lod::shells::LAYERS_LIMIT;
@@ -188,6 +188,12 @@ const AFTER_OBJECTS: &[(&str, Allowed)] = &[
     ("drawn_winds.bend_rad", Range(0.0, 1.5)),
     ("drawn_winds.strike_height_m", Range(0.05, 5.0)),
     ("drawn_winds.height_m", Range(0.0, 30.0)),
+    ("race.laps", Range(1.0, 99.0)),
+    ("race.light_period_secs", Range(0.0, 3600.0)),
+    ("race.gates", Sections(0, GATES_LIMIT)),
+    ("race.gates.at_m", Range(0.0, 100_000.0)),
+    ("race.gates.heading_rad", Range(-6.3, 6.3)),
+    ("race.gates.width_m", Range(2.0, 100.0)),
     ("camera.at", Range(0.0, 1.0)),
     ("camera.height_m", Range(0.02, 2000.0)),
     ("camera.heading_rad", Range(-6.3, 6.3)),
@@ -212,7 +218,7 @@ const AFTER_OBJECTS: &[(&str, Allowed)] = &[
 ];
 
 /// Fields that a scene file must contain; for a list of sections, each section of it.
-pub const REQUIRED: [&str; 17] = [
+pub const REQUIRED: [&str; 19] = [
     "summary",
     "terrain",
     "terrain.height_map",
@@ -229,6 +235,8 @@ pub const REQUIRED: [&str; 17] = [
     "underbrush.components.kind",
     "drawn_winds.shape",
     "drawn_winds.path_m",
+    "race.gates.at_m",
+    "race.gates.heading_rad",
     "lights.at_m",
 ];
 

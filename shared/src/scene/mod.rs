@@ -21,6 +21,7 @@ mod patches;
 mod picture;
 mod plants;
 mod positions;
+mod race;
 mod rain;
 mod shells;
 mod species;
@@ -47,6 +48,7 @@ pub use patches::Patches;
 pub use picture::{CameraStart, Light};
 pub use plants::{BladeIntegrator, BladeShape, LagWay, PlantCover, Plants};
 pub use positions::Positions;
+pub use race::{AMBER_SECS, GATES_LIMIT, GREEN_SECS, Race, RaceGate};
 pub use rain::Rain;
 pub use shells::Shells;
 pub use species::Species;
@@ -125,6 +127,9 @@ pub struct Scene {
     /// most 16.
     #[serde(default)]
     pub drawn_winds: Vec<DrawnWind>,
+    /// A race over the land: gates, laps and start light.
+    #[serde(default)]
+    pub race: Race,
     /// Start position of the camera.
     #[serde(default)]
     pub camera: CameraStart,
@@ -169,6 +174,7 @@ impl Scene {
             growth: Growth::default(),
             objects: Objects::default(),
             drawn_winds: Vec::new(),
+            race: Race::default(),
             camera: CameraStart::default(),
             light: Light::default(),
             lights: Vec::new(),

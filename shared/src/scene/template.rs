@@ -3,8 +3,8 @@
 use super::flat::{flatten, flatten_species, nest_grass};
 use super::walk::Walk;
 use super::{
-    Component, ComponentKind, DrawnWind, Grass, Lamp, Plants, Primitive, PrimitiveKind, Scene, Species, TerrainMaps, Underbrush, Wind,
-    WindMethod, WindShape,
+    Component, ComponentKind, DrawnWind, Grass, Lamp, Plants, Primitive, PrimitiveKind, RaceGate, Scene, Species, TerrainMaps, Underbrush,
+    Wind, WindMethod, WindShape,
 };
 use serde::{Deserialize, Serialize};
 use toml::de::DeTable;
@@ -32,6 +32,7 @@ pub(super) fn section(field: &str) -> Table {
         "underbrush" => table(Underbrush::new("", Vec::new())),
         "underbrush.components" => table(Component::new("", ComponentKind::Leaf)),
         "drawn_winds" => table(DrawnWind::new(WindShape::Outward, vec![[0.0; 2]])),
+        "race.gates" => table(RaceGate::new([0.0; 2], 0.0)),
         "lights" => table(Lamp::new([0.0; 3])),
         _ => Table::new(),
     }

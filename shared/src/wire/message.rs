@@ -225,6 +225,34 @@ pub enum ServerMessage {
     },
     /// The newest input of the client's own vehicle, whenever it is another. It is part of the frame, whose poses show its effect.
     Applied(AppliedInput),
+    /// The race as it stands, whenever that has changed: at most [`STANDINGS_LIMIT`](super::STANDINGS_LIMIT) clients who have begun a lap, the first in front.
+    Race {
+        /// Ordered by the best race, then by the best lap.
+        standings: Vec<Standing>,
+    },
+}
+
+/// A client in the race. Times are simulated seconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Standing {
+    /// The client's ID in [`ServerMessage::Roster`].
+    pub client: u32,
+    /// Number of the gate that counts next, from 0 for start and finish.
+    pub next_gate: u8,
+    /// Complete laps of the running race.
+    pub laps: u8,
+    /// Time of the world at which the running lap began; `None` if none runs.
+    pub began_secs: Option<f64>,
+    /// Whether the running lap began before the light was green; it does not count then.
+    pub is_false_start: bool,
+    /// Duration of the newest lap (s).
+    pub last_secs: Option<f32>,
+    /// Duration of the best lap (s).
+    pub best_secs: Option<f32>,
+    /// Duration of the best race (s), of as many laps without a break as the scene says.
+    pub race_secs: Option<f32>,
+    /// Time at the gate passed last (s) after that of the best lap before; negative if it is ahead.
+    pub gap_secs: Option<f32>,
 }
 
 /// An input that moves a vehicle.

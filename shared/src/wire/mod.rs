@@ -15,7 +15,7 @@ pub use close::Close;
 pub use codec::{CodecError, Shape};
 pub use message::{
     AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Mesh, ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage,
-    Shapes, WireError, decode, encode,
+    Shapes, Standing, WireError, decode, encode,
 };
 pub use protocol::PROTOCOL;
 pub use step::{Joined, Move, PatchCheck, PoseChange, RareCauses, StepHead};
@@ -29,6 +29,9 @@ pub const VIEW_RADIUS_LIMIT_M: f32 = 512.0;
 
 /// Largest number of plants in a [`ServerMessage::Broken`].
 pub const BROKEN_LIMIT: usize = 4096;
+
+/// Largest number of clients in a [`ServerMessage::Race`]: all who drive where a scene does not raise the limit of objects.
+pub const STANDINGS_LIMIT: usize = 64;
 
 /// Number of most recently received patches that a client keeps at least. A server sends deltas only to these.
 pub const PATCH_MEMORY: usize = 2048;

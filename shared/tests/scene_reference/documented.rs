@@ -11,7 +11,7 @@ pub(crate) struct Field {
 }
 
 /// Source files and, for each struct in them, the section that it documents.
-const SOURCES: [(&str, &[(&str, &str)]); 21] = [
+const SOURCES: [(&str, &[(&str, &str)]); 22] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
     ("terrain.rs", &[("TerrainMaps", "terrain")]),
@@ -30,13 +30,14 @@ const SOURCES: [(&str, &[(&str, &str)]); 21] = [
     ("growth.rs", &[("Growth", "growth")]),
     ("objects.rs", &[("Objects", "objects")]),
     ("drawn_wind.rs", &[("DrawnWind", "drawn_winds")]),
+    ("race.rs", &[("Race", "race"), ("RaceGate", "race.gates")]),
     ("picture.rs", &[("CameraStart", "camera"), ("Light", "light")]),
     ("lamp.rs", &[("Lamp", "lights")]),
     ("stream.rs", &[("Stream", "stream")]),
 ];
 
 /// Sections that may occur once, without those of [`tread_sections`].
-const SECTIONS: [&str; 16] = [
+const SECTIONS: [&str; 17] = [
     "patches",
     "terrain",
     "wind",
@@ -50,6 +51,7 @@ const SECTIONS: [&str; 16] = [
     "shells",
     "growth",
     "objects",
+    "race",
     "camera",
     "light",
     "stream",

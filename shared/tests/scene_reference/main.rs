@@ -39,7 +39,8 @@ fn complete() -> toml::Table {
     let text = minimal().to_string()
         + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n[[species]]\nname = 'a'\ncover = 1\n"
         + "[[underbrush]]\nname = 'a'\n[[underbrush.components]]\nname = 'a'\nkind = 'leaf'\n"
-        + "[[drawn_winds]]\nshape = 'swirl'\npath_m = [[1.0, 2.0]]\n[[lights]]\nat_m = [1.0, 2.0, 3.0]\n";
+        + "[[drawn_winds]]\nshape = 'swirl'\npath_m = [[1.0, 2.0]]\n[[lights]]\nat_m = [1.0, 2.0, 3.0]\n"
+        + "[[race.gates]]\nat_m = [1.0, 2.0]\nheading_rad = 0.5\n[[race.gates]]\nat_m = [8.0, 2.0]\nheading_rad = 3.5\n";
     parse(&text).unwrap().to_toml().parse().unwrap()
 }
 

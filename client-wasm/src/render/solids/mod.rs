@@ -1,6 +1,7 @@
-//! Vehicles, trees and stones, and their shadows.
+//! Vehicles, trees, stones and gates, and their shadows.
 
 pub(crate) mod bounding_sphere;
+pub(crate) mod gates;
 pub(crate) mod leaf_texture;
 pub(crate) mod mesh;
 pub(crate) mod model_meshes;

@@ -1,7 +1,8 @@
-//! Meshes of all vehicles, trees and stones in one vertex and one index buffer.
+//! Meshes of all vehicles, gates, trees and stones in one vertex and one index buffer.
 
 use crate::render::gpu::device::Gpu;
 use crate::render::solids::bounding_sphere::BoundingSphere;
+use crate::render::solids::gates::{self, GatePart};
 use crate::render::solids::mesh::{Paint, Solid};
 use crate::render::solids::trees_and_stones::{self, PlacedModel, STONE_SHAPES, TREE_SHAPES, TreeDetail};
 use crate::render::solids::vehicles::vehicle_model;
@@ -18,13 +19,14 @@ struct MeshRange {
     base_vertex: i32,
 }
 
-/// The meshes: parts of vehicles by kind, then fine, coarse and distant trees, then stones.
+/// The meshes: parts of vehicles by kind, then those of gates, then fine, coarse and distant trees, then stones.
 pub(crate) struct ModelMeshes {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
     ranges: Vec<MeshRange>,
     /// First mesh of each kind of vehicle.
     first_part: [usize; VehicleKind::ALL.len()],
+    first_gate_part: usize,
     first_tree: usize,
     /// Bounding spheres of the tree shapes, then of the stone shapes.
     bounds: Vec<BoundingSphere>,
@@ -38,6 +40,8 @@ impl ModelMeshes {
             solids.extend(vehicle_parts(decoded, kind));
             first
         });
+        let first_gate_part = solids.len();
+        solids.extend(gates::solids());
         let first_tree = solids.len();
         let details = TreeDetail::ALL.into_iter();
         solids.extend(details.flat_map(|detail| (0..TREE_SHAPES).map(move |shape| trees_and_stones::tree(shape, detail))));
@@ -54,6 +58,7 @@ impl ModelMeshes {
             indices: gpu.buffer("mesh indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
             ranges,
             first_part,
+            first_gate_part,
             first_tree,
             bounds: Vec::new(),
         };
@@ -73,6 +78,11 @@ impl ModelMeshes {
     /// Mesh of a part of a vehicle.
     pub(crate) fn part(&self, kind: VehicleKind, part: usize) -> usize {
         self.first_part[kind as usize] + part
+    }
+
+    /// Mesh of a gate's part.
+    pub(crate) fn gate_part(&self, part: GatePart) -> usize {
+        self.first_gate_part + part as usize
     }
 
     /// Mesh of a tree shape.

@@ -1,4 +1,4 @@
-//! Draws vehicles, trees and stones, in the picture and in the shadow map.
+//! Draws vehicles, trees, stones and gates, in the picture and in the shadow map.
 
 use crate::render::gpu::constants::WORKGROUP_SIZE;
 use crate::render::gpu::device::Gpu;
@@ -9,6 +9,7 @@ use crate::render::inputs::frustum::CascadeVolume;
 use crate::render::inputs::viewpoint::Viewpoint;
 use crate::render::options::quality::Quality;
 use crate::render::solids::bounding_sphere::BoundingSphere;
+use crate::render::solids::gates::{self, PlacedPart};
 use crate::render::solids::leaf_texture::{LEAF_PX, leaves};
 use crate::render::solids::mesh::{VERTEX_ATTRIBUTES, Vertex};
 use crate::render::solids::model_meshes::ModelMeshes;
@@ -52,7 +53,7 @@ struct InstanceLists {
 type DrawList = Vec<(usize, Range<u32>)>;
 
 struct Pipelines {
-    /// Pipeline for vehicles, which may be glossy.
+    /// Pipeline for vehicles and gates, which may be glossy.
     glossy: wgpu::RenderPipeline,
     matte: wgpu::RenderPipeline,
     /// Pipeline for coarse and distant trees; lights them per vertex where the quality is [cheap](Quality::is_cheap).
@@ -70,6 +71,10 @@ pub(crate) struct ObjectPasses {
     count: u32,
     meshes: ModelMeshes,
     index: SpatialIndex,
+    /// Parts of the gates of the scene's race.
+    gates: Vec<PlacedPart>,
+    /// Gate that is marked as the next one.
+    next_gate: Option<usize>,
     /// Distance that each vehicle has travelled forward (m).
     rolled_m: HashMap<ObjectId, f32>,
     picture_list: DrawList,
@@ -100,10 +105,17 @@ impl ObjectPasses {
             instances,
             meshes,
             index,
+            gates: gates::placed(decoded),
+            next_gate: None,
             rolled_m: HashMap::new(),
             picture_list: Vec::new(),
             cascade_lists: Default::default(),
         }
+    }
+
+    /// Marks a gate as the next one.
+    pub(crate) fn mark_gate(&mut self, gate: Option<usize>) {
+        self.next_gate = gate;
     }
 
     /// Lists the models in view, and the shadow casters of the cascades that are redrawn.
@@ -119,7 +131,9 @@ impl ObjectPasses {
         let by_mesh = vec![Vec::new(); self.meshes.count()];
         let mut lists = InstanceLists { cascades: [by_mesh.clone(), by_mesh.clone()], picture: by_mesh };
         self.list_vehicles(&mut lists, poses, from.dt_secs, &cascades, time_secs);
-        let room = INSTANCE_LIMIT.saturating_sub(VEHICLE_INSTANCES * OBJECT_LIMIT.min(poses.len()));
+        self.list_gates(&mut lists, &cascades);
+        let taken = VEHICLE_INSTANCES * OBJECT_LIMIT.min(poses.len()) + 3 * self.gates.len();
+        let room = INSTANCE_LIMIT.saturating_sub(taken);
         self.list_trees_and_stones(&mut lists, from, &cascades, room / 3, pixel_rad);
         let mut all = Vec::new();
         self.picture_list = join(&lists.picture, &mut all);
@@ -152,6 +166,19 @@ impl ObjectPasses {
                 for (list, _) in lists.cascades.iter_mut().zip(cascades).filter(|(_, cascade)| cascade.is_some()) {
                     list[mesh].push(instance);
                 }
+            }
+        }
+    }
+
+    /// Lists all gates: there are few.
+    fn list_gates(&self, lists: &mut InstanceLists, cascades: &[Option<CascadeVolume>; 2]) {
+        for placed in &self.gates {
+            let [r, g, b] = placed.tint(self.next_gate);
+            let instance = Instance { world_from_model: placed.world_from_part.to_cols_array(), tint: [r, g, b, 0.0] };
+            let mesh = self.meshes.gate_part(placed.part);
+            lists.picture[mesh].push(instance);
+            for (list, _) in lists.cascades.iter_mut().zip(cascades).filter(|(_, cascade)| cascade.is_some()) {
+                list[mesh].push(instance);
             }
         }
     }

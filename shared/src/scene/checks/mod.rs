@@ -8,6 +8,7 @@ mod lights;
 pub(super) mod limits;
 mod objects;
 mod patches;
+mod race;
 mod species;
 mod underbrush;
 
@@ -27,6 +28,7 @@ pub(super) fn cross_checks(scene: &Scene, from_file: usize) -> Conflicts {
     underbrush::check(scene, from_file, &mut conflicts);
     objects::check(&scene.objects, &mut conflicts);
     drawn_winds::check(scene, &mut conflicts);
+    race::check(scene, &mut conflicts);
     lights::check_light(&scene.light, &mut conflicts);
     lights::check_lamps(&scene.lights, &mut conflicts);
     conflicts

@@ -5,7 +5,7 @@ use crate::body::{Body, PoseCode, Prism};
 use crate::scene::{Allowed, FIELDS, Scene, VehicleKind, parse};
 use crate::wire::{
     AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Joined, Mesh, ObjectPose, PROOF_BYTES, PatchCheck, Peer, RareCauses, Refusal,
-    SERVER_MESSAGE_LIMIT, ServerMessage, Shapes, StepHead, TurbulenceState, WireError, decode, encode,
+    SERVER_MESSAGE_LIMIT, ServerMessage, Shapes, Standing, StepHead, TurbulenceState, WireError, decode, encode,
 };
 use serde::{Deserialize, de::DeserializeOwned};
 use std::fmt::{Debug, Write};
@@ -56,7 +56,23 @@ fn server_messages() -> Vec<ServerMessage> {
         ServerMessage::ReplicaState { tick: 300, part: 1, parts: 200, payload: vec![5, 6] },
         ServerMessage::Steps { first_tick: 300, steps: vec![step()], moves: vec![3, 4] },
         ServerMessage::Applied(AppliedInput { number: 7, tick: 300 }),
+        ServerMessage::Race { standings: vec![standing()] },
     ]
+}
+
+/// A racer with a running lap.
+fn standing() -> Standing {
+    Standing {
+        client: 200,
+        next_gate: 2,
+        laps: 1,
+        began_secs: Some(5.0),
+        is_false_start: true,
+        last_secs: Some(1.0),
+        best_secs: Some(0.5),
+        race_secs: Some(2.0),
+        gap_secs: Some(-0.5),
+    }
 }
 
 /// A step with every rare cause.
@@ -112,6 +128,7 @@ fn server_name(message: &ServerMessage) -> &'static str {
         ServerMessage::ReplicaState { .. } => "ReplicaState",
         ServerMessage::Steps { .. } => "Steps",
         ServerMessage::Applied(_) => "Applied",
+        ServerMessage::Race { .. } => "Race",
     }
 }
 
@@ -142,6 +159,7 @@ fn filled_values() -> Table {
         [[underbrush]]\nname = 'b'\n[[underbrush.components]]\nname = 'c'\nkind = 'branch'\n\
         [[underbrush.components]]\nname = 'd'\nkind = 'leaf'\non = 'c'\n\
         [[drawn_winds]]\nshape = 'swirl'\npath_m = [[1, 2]]\n[[lights]]\nat_m = [1, 2, 3]\n\
+        [[race.gates]]\nat_m = [1, 2]\nheading_rad = 0.5\n[[race.gates]]\nat_m = [8, 2]\nheading_rad = 3.5\n\
         [growth]\nnutrient_map = 'n.png'\n[objects]\ncar_model = 'car.glb'\nmonster_model = 'm.glb'\n";
     let mut values = Table::try_from(parse(text).unwrap()).unwrap();
     let mut count = 0;
