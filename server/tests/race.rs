@@ -3,7 +3,7 @@
 use prairie::journal::{Player, WorldFolder, find, open};
 use prairie::runner::Simulation as _;
 use prairie::scenes::{self, LoadedScene};
-use prairie::world::{Command, RestoreError, World, WorldState};
+use prairie::world::{Camera, Command, RestoreError, World, WorldState};
 use prairie_core::scene::{Race, RaceGate, VehicleKind};
 use prairie_core::wire::{self, Standing};
 use std::f64::consts::TAU;
@@ -129,4 +129,37 @@ fn leave(mut world: World) {
     assert!(matches!(restored, Err(RestoreError::Race)), "its lap has gates");
     world.step(&[Command::Leave { client: 1 }]);
     assert!(world.snapshot().standings.iter().all(|standing| standing.client != 1));
+}
+
+/// A driver who steers for the middle of the next gate of the built-in scene completes a lap, and passes each gate in turn.
+#[test]
+fn the_built_in_circuit_can_be_driven() {
+    let scene = scenes::load("race").unwrap();
+    let (gates, extent_m) = (&scene.scene.race.gates, scene.scene.extent_m());
+    let mut world = World::new(&scene.scene, scene.maps()).unwrap();
+    let start = [scene.scene.camera.at[0] * extent_m[0], scene.scene.camera.at[1] * extent_m[1]];
+    let camera = Camera { client: 1, eye_m: [start[0], 2.0, start[1]] };
+    world.step(&[Command::Cameras(vec![camera]), Command::Join { client: 1 }, Command::Spawn { client: 1, kind: VehicleKind::Car }]);
+    world.step(&[Command::Cameras(vec![])]);
+    let mut best_secs = None;
+    for _ in 0..6000 {
+        let standing = world.snapshot().standings.first().copied().unwrap_or_default();
+        best_secs = standing.best_secs;
+        if best_secs.is_some() {
+            break;
+        }
+        let gate = gates[usize::from(standing.next_gate)];
+        let pose = world.poses()[0];
+        let [_, qy, _, qw] = pose.rotation;
+        let (x, z) = (gate.at_m[0] - pose.position_m[0], gate.at_m[1] - pose.position_m[2]);
+        // A heading is a rotation by its opposite about the upward axis.
+        let (sin, cos) = (x.atan2(-z) + 2.0 * qy.atan2(qw)).sin_cos();
+        let turn_rad = sin.atan2(cos);
+        let speed_m_per_s = pose.velocity_m_per_s[0].hypot(pose.velocity_m_per_s[2]);
+        let wanted_m_per_s = if turn_rad.abs() > 0.4 { 5.0 } else { 12.0 };
+        let throttle = ((wanted_m_per_s - speed_m_per_s) * 0.5).clamp(-1.0, 1.0);
+        let drive = wire::Drive { throttle, steer: (2.0 * turn_rad).clamp(-1.0, 1.0), ..wire::Drive::default() };
+        world.step(&[Command::Drive { client: 1, number: 0, drive }]);
+    }
+    assert!(best_secs.is_some(), "at {:?} on the way to {:?}", world.poses()[0].position_m, world.snapshot().standings);
 }

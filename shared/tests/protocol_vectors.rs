@@ -9,8 +9,8 @@ use prairie_core::terrain::KindMap;
 use prairie_core::wind::WindField;
 use prairie_core::wire::quantise::{CODE_LIMIT, CodeSteps, heading_code, heading_rad};
 use prairie_core::wire::{
-    AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Joined, Mesh, ObjectPose, PROTOCOL, PatchCheck, Peer, RareCauses, Refusal,
-    ServerMessage, Shape, Shapes, Standing, StepHead, TurbulenceState, codec, encode,
+    AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Ghost, Joined, Mesh, ObjectPose, PROTOCOL, PatchCheck, Peer, RareCauses,
+    Refusal, ServerMessage, Shape, Shapes, Standing, StepHead, TurbulenceState, codec, encode,
 };
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -108,6 +108,17 @@ fn server_messages() -> Vec<ServerMessage> {
         ServerMessage::ReplicaState { tick: 300, part: 1, parts: 200, payload: vec![5, 6] },
         ServerMessage::Steps { first_tick: 300, steps: vec![step(), StepHead::default()], moves: vec![3, 4] },
         ServerMessage::Applied(AppliedInput { number: 7, tick: 300 }),
+        ServerMessage::Ghost { ghost: None },
+        ServerMessage::Ghost {
+            ghost: Some(Ghost {
+                client: 200,
+                kind: VehicleKind::Car,
+                lap_secs: 20.0,
+                first_secs: 0.0625,
+                period_secs: 0.125,
+                poses: vec![PoseCode { position: [8192, 0, -8192], rotation: [0, 0, 0, 32_767] }; 2],
+            }),
+        },
         ServerMessage::Race {
             standings: vec![
                 Standing { client: 200, next_gate: 2, laps: 1, began_secs: Some(5.0), best_secs: Some(0.5), ..Standing::default() },

@@ -1,7 +1,6 @@
 //! The mirror itself: applies messages, and answers the renderer.
 
 use super::broken_plants::BrokenPlants;
-use super::check::check_standings;
 use super::error::{MirrorError, range};
 use super::fields::{PatchCodes, PatchFields, ShownWind, WindCodes, WindFrames, WindHeader};
 use super::following::{Following, Part};
@@ -12,7 +11,7 @@ use prairie_core::grass::{EncodedSteps, RepeatedPatch, Replica, patches_within};
 use prairie_core::grid::PatchIndex;
 use prairie_core::scene::Scene;
 use prairie_core::wind::WindField;
-use prairie_core::wire::{AppliedInput, ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage, Standing};
+use prairie_core::wire::{AppliedInput, Ghost, ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage, Standing};
 use std::sync::Arc;
 
 /// Maximum number of peers stored; the server's list is truncated to it.
@@ -80,6 +79,8 @@ pub struct Mirror {
     pub(super) broken: BrokenPlants,
     pub(super) peers: Vec<Peer>,
     pub(super) standings: Vec<Standing>,
+    /// The fastest lap of the race.
+    pub(super) ghost: Option<Ghost>,
     /// Number of this client.
     pub(super) client: Option<u32>,
     pub(super) tick: u64,
@@ -146,12 +147,7 @@ impl Mirror {
                 self.applied = Some(applied);
                 None
             }
-            ServerMessage::Race { standings } => {
-                let decoded = self.scene.as_ref().ok_or(MirrorError::BeforeScene("race"))?;
-                check_standings(&standings, decoded.scene().race.gates.len())?;
-                self.standings = standings;
-                None
-            }
+            message @ (ServerMessage::Race { .. } | ServerMessage::Ghost { .. }) => self.apply_race(message)?,
             ServerMessage::Refused { refusal, reason } => Some(Event::Refused { refusal, reason }),
             ServerMessage::Pong { nonce } => Some(Event::Pong { nonce }),
         })
@@ -169,7 +165,7 @@ impl Mirror {
         self.wind = WindFrames::default();
         self.poses = Playback::default();
         (self.own, self.applied) = (None, None);
-        self.standings.clear();
+        (self.standings, self.ghost) = (Vec::new(), None);
     }
 
     /// Completes the frame of step `tick`. The patches of a replica are not shown yet.
@@ -290,19 +286,6 @@ impl Mirror {
     /// Object driven by a client.
     pub fn object_of(&self, client: u32) -> Option<ObjectId> {
         self.peers.iter().find(|peer| peer.client == client)?.object
-    }
-
-    /// The race, the first in front; empty before somebody has begun a lap.
-    pub fn standings(&self) -> &[Standing] {
-        &self.standings
-    }
-
-    /// Number of the gate that this client has to pass next; `None` without a vehicle or a race.
-    pub fn next_gate(&self) -> Option<usize> {
-        self.object_of(self.client?)?;
-        let own = self.standings.iter().find(|standing| Some(standing.client) == self.client);
-        let gate = own.map_or(0, |own| usize::from(own.next_gate));
-        (gate < self.decoded_scene()?.scene().race.gates.len()).then_some(gate)
     }
 
     /// World step of the newest complete frame.

@@ -14,6 +14,7 @@ mod mirror;
 mod past;
 mod playback;
 mod playback_clock;
+mod race;
 mod record;
 mod sample;
 mod scene;

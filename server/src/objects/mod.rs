@@ -165,11 +165,11 @@ impl Objects {
         self.vehicles.iter().map(motion).collect()
     }
 
-    /// Motions over the ground of the vehicles of clients, given [all motions](Self::motions) of the newest step.
+    /// Motions of the vehicles of clients, given [all motions](Self::motions) of the newest step.
     pub fn driven(&self, motions: &[Motion]) -> impl Iterator<Item = DrivenMotion> {
         self.vehicles.iter().zip(motions).filter_map(|(vehicle, motion)| match vehicle.driver {
             Driver::Client { client, .. } => {
-                Some(DrivenMotion { client, object: vehicle.id, from_m: motion.from.xz(), to_m: motion.to.xz() })
+                Some(DrivenMotion { client, object: vehicle.id, kind: motion.kind, from: motion.from, to: motion.to })
             }
             Driver::Autopilot(_) | Driver::None => None,
         })

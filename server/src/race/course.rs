@@ -6,6 +6,8 @@ use prairie_core::scene::Scene;
 
 /// Depth of the place behind the first gate where vehicles wait for the start light (m).
 const GRID_M: f64 = 20.0;
+/// Poses of a track in a second (Hz).
+const TRACK_HZ: f32 = 10.0;
 /// Speed below which a vehicle waits (m/s).
 const WAITING_M_PER_S: f64 = 0.5;
 
@@ -14,6 +16,8 @@ pub(super) struct Course {
     pub(super) gates: Vec<GateLine>,
     pub(super) laps: u32,
     pub(super) light: Option<StartLight>,
+    /// Steps from one pose of a track to the next.
+    pub(super) track_period: u64,
     dt_secs: f64,
 }
 
@@ -25,6 +29,7 @@ impl Course {
             gates,
             laps: scene.race.laps,
             light: StartLight::of(scene),
+            track_period: (scene.tick_hz / TRACK_HZ).round().max(1.0) as u64,
             dt_secs: f64::from(scene.dt_secs()),
         })
     }
@@ -36,13 +41,13 @@ impl Course {
 
     /// Whether a step begins in the place where vehicles wait for the light.
     pub(super) fn is_on_grid(&self, motion: &DrivenMotion) -> bool {
-        let [ahead_m, right_m] = self.gates[0].from_gate_m(motion.from_m);
+        let [ahead_m, right_m] = self.gates[0].from_gate_m(motion.from.xz());
         (-GRID_M..0.0).contains(&ahead_m) && right_m.abs() <= self.gates[0].half_width_m()
     }
 
     /// Whether a vehicle stands.
     pub(super) fn is_waiting(&self, motion: &DrivenMotion) -> bool {
-        let [x_m, z_m] = [0, 1].map(|axis| f64::from(motion.to_m[axis]) - f64::from(motion.from_m[axis]));
+        let [x_m, z_m] = [0, 2].map(|axis| f64::from(motion.to.position_m[axis]) - f64::from(motion.from.position_m[axis]));
         let most_m = WAITING_M_PER_S * self.dt_secs;
         x_m * x_m + z_m * z_m < most_m * most_m
     }

@@ -5,6 +5,7 @@
 
 mod course;
 mod driven_motion;
+mod ghost;
 mod racer;
 #[cfg(test)]
 mod tests;
@@ -14,33 +15,45 @@ pub use driven_motion::DrivenMotion;
 use crate::checksum::Checksum;
 use course::Course;
 use prairie_core::scene::Scene;
-use prairie_core::wire::{STANDINGS_LIMIT, Standing};
+use prairie_core::wire::{Ghost, STANDINGS_LIMIT, Standing};
 use racer::Racer;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// The race of a scene, and those who take part.
 pub struct Race {
     course: Option<Course>,
-    racers: RaceState,
+    state: RaceState,
+    /// The ghost of the state, to be shared.
+    ghost: Option<Arc<Ghost>>,
 }
 
 /// A copy of the state of a [`Race`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct RaceState(BTreeMap<u32, Racer>);
+pub struct RaceState {
+    racers: BTreeMap<u32, Racer>,
+    /// The fastest lap.
+    ghost: Option<Ghost>,
+}
 
 impl Race {
     /// The race of a scene, in which nobody takes part yet.
     pub fn new(scene: &Scene) -> Self {
-        Self { course: Course::new(scene), racers: RaceState::default() }
+        Self { course: Course::new(scene), state: RaceState::default(), ghost: None }
     }
 
     /// Follows the driven vehicles through step `tick`. Who has no vehicle, or another one, loses the running lap.
     pub fn step(&mut self, tick: u64, driven: impl Iterator<Item = DrivenMotion>) {
-        let (Some(course), RaceState(racers)) = (&self.course, &mut self.racers) else { return };
+        let Some(course) = &self.course else { return };
+        let RaceState { racers, ghost: fastest } = &mut self.state;
         let mut driving = BTreeSet::new();
         for motion in driven {
-            racers.entry(motion.client).or_default().advance(course, tick, &motion);
+            let ghost = racers.entry(motion.client).or_default().advance(course, tick, &motion);
+            if let Some(ghost) = ghost.filter(|ghost| fastest.as_ref().is_none_or(|fastest| ghost.lap_secs < fastest.lap_secs)) {
+                self.ghost = Some(Arc::new(ghost.clone()));
+                *fastest = Some(ghost);
+            }
             driving.insert(motion.client);
         }
         racers.retain(|client, racer| {
@@ -54,17 +67,22 @@ impl Race {
 
     /// Forgets a client whose number nobody has any more.
     pub fn forget(&mut self, client: u32) {
-        self.racers.0.remove(&client);
+        self.state.racers.remove(&client);
     }
 
     /// Clients that have a time or drive, ascending.
     pub fn clients(&self) -> impl Iterator<Item = u32> {
-        self.racers.0.keys().copied()
+        self.state.racers.keys().copied()
+    }
+
+    /// The fastest lap of all, also of clients that are gone.
+    pub fn ghost(&self) -> Option<Arc<Ghost>> {
+        self.ghost.clone()
     }
 
     /// Those who have begun a lap: first by their best race, then by their best lap, then by their number. At most [`STANDINGS_LIMIT`].
     pub fn standings(&self) -> Vec<Standing> {
-        let mut order: Vec<_> = self.racers.0.iter().filter(|(_, racer)| racer.has_begun()).collect();
+        let mut order: Vec<_> = self.state.racers.iter().filter(|(_, racer)| racer.has_begun()).collect();
         order.sort_by(|(_, one), (_, other)| {
             let [one, other] = [one, other].map(|racer| racer.rank_secs());
             one[0].total_cmp(&other[0]).then(one[1].total_cmp(&other[1]))
@@ -75,24 +93,29 @@ impl Race {
 
     /// A copy of the state.
     pub fn state(&self) -> &RaceState {
-        &self.racers
+        &self.state
     }
 
     /// Restores a copy of the state; false if it is that of another scene.
     pub fn restore(&mut self, state: RaceState) -> bool {
         let gates = self.course.as_ref().map_or(0, |course| course.gates.len());
-        let fits = state.0.values().all(|racer| racer.fits(gates));
+        let fits = state.racers.values().all(|racer| racer.fits(gates)) && state.ghost.as_ref().is_none_or(|ghost| ghost.is_valid());
         if fits {
-            self.racers = state;
+            self.ghost = state.ghost.clone().map(Arc::new);
+            self.state = state;
         }
         fits
     }
 
     /// Adds all times to a checksum.
     pub(crate) fn hash(&self, sum: &mut Checksum) {
-        for (client, racer) in &self.racers.0 {
+        for (client, racer) in &self.state.racers {
             sum.add([*client]);
             racer.hash(sum);
+        }
+        if let Some(ghost) = &self.state.ghost {
+            sum.add([ghost.client, ghost.lap_secs.to_bits(), ghost.first_secs.to_bits()]);
+            sum.add(ghost::words(&ghost.poses));
         }
     }
 }

@@ -2,9 +2,10 @@
 
 use super::course::Course;
 use super::driven_motion::DrivenMotion;
+use super::ghost::Track;
 use crate::checksum::Checksum;
 use prairie_core::race::LightColor;
-use prairie_core::wire::{ObjectId, Standing};
+use prairie_core::wire::{Ghost, ObjectId, Standing};
 use serde::{Deserialize, Serialize};
 
 /// The times of a client. All are in seconds of simulated time.
@@ -32,6 +33,8 @@ struct Run {
     laps: u32,
     /// Times from the start of the running one to its gates so far, without the first gate.
     splits_secs: Vec<f64>,
+    /// Its track so far.
+    track: Track,
     /// Whether it began before the light was green; it does not count then.
     is_false_start: bool,
 }
@@ -45,28 +48,36 @@ struct Lap {
 
 impl Run {
     fn starting_at(began_secs: f64, is_false_start: bool) -> Self {
-        Self { race_began_secs: began_secs, began_secs, laps: 0, splits_secs: Vec::new(), is_false_start }
+        Self { race_began_secs: began_secs, began_secs, laps: 0, splits_secs: Vec::new(), track: Track::default(), is_false_start }
     }
 }
 
 impl Racer {
-    /// Follows the vehicle through step `tick`.
-    pub(super) fn advance(&mut self, course: &Course, tick: u64, motion: &DrivenMotion) {
+    /// Follows the vehicle through step `tick`. Returns the ghost of a lap that ends in it.
+    pub(super) fn advance(&mut self, course: &Course, tick: u64, motion: &DrivenMotion) -> Option<Ghost> {
         if self.object != motion.object {
             self.leave_vehicle();
             self.object = motion.object;
         }
         self.line_up(course, tick, motion);
-        let mut passed = 0.0;
+        let (mut passed, mut ghost) = (0.0, None);
         // A fast vehicle may pass several gates in a step.
         for _ in 0..course.gates.len() {
             let gate = if self.is_lined_up { 0 } else { self.next_gate(course.gates.len()) };
-            let share = course.gates[gate].passage(motion.from_m, motion.to_m).filter(|share| *share > passed);
+            let share = course.gates[gate].passage(motion.from.xz(), motion.to.xz()).filter(|share| *share > passed);
             let Some(share) = share else { break };
             passed = share;
             let secs = course.secs(tick, share);
-            if gate == 0 { self.pass_start(course, tick, secs) } else { self.pass(secs) }
+            if gate == 0 {
+                ghost = self.pass_start(course, tick, secs, motion).or(ghost);
+            } else {
+                self.pass(secs);
+            }
         }
+        if let Some(run) = &mut self.run {
+            run.track.record(course, tick, motion);
+        }
+        ghost
     }
 
     /// Loses the running lap, and keeps all times.
@@ -85,7 +96,9 @@ impl Racer {
     /// Whether the state is that of a race with this number of gates.
     pub(super) fn fits(&self, gates: usize) -> bool {
         let splits = self.run.iter().map(|run| &run.splits_secs).chain(self.best.iter().map(|lap| &lap.splits_secs));
+        let has_bounds = self.run.as_ref().is_none_or(|run| run.track.is_bounded());
         gates > 0
+            && has_bounds
             && splits.map(Vec::len).all(|splits| splits < gates)
             && self.best.as_ref().is_none_or(|lap| lap.splits_secs.len() + 1 == gates)
     }
@@ -120,8 +133,9 @@ impl Racer {
         if let Some(Lap { secs, splits_secs }) = &self.best {
             sum.add([*secs].iter().chain(splits_secs).copied().flat_map(bits));
         }
-        if let Some(Run { race_began_secs, began_secs, laps, splits_secs, is_false_start }) = &self.run {
+        if let Some(Run { race_began_secs, began_secs, laps, splits_secs, track, is_false_start }) = &self.run {
             sum.add([*laps, u32::from(*is_false_start)]);
+            sum.add(track.words());
             sum.add([*race_began_secs, *began_secs].iter().chain(splits_secs).copied().flat_map(bits));
         }
     }
@@ -143,17 +157,21 @@ impl Racer {
     }
 
     /// Passes the first gate at `secs`: by the light, at the end of a lap, or at the first crossing.
-    fn pass_start(&mut self, course: &Course, tick: u64, secs: f64) {
+    fn pass_start(&mut self, course: &Course, tick: u64, secs: f64, motion: &DrivenMotion) -> Option<Ghost> {
         if std::mem::take(&mut self.is_lined_up) {
             let green_secs = course.green_secs(tick, secs);
             self.run = Some(Run::starting_at(green_secs.unwrap_or(secs), green_secs.is_none()));
             self.gap_secs = None;
-            return;
+            return None;
         }
-        self.run = Some(match self.run.take() {
-            Some(run) if !run.is_false_start => self.finish_lap(run, course.laps, secs),
-            _ => Run::starting_at(secs, false),
-        });
+        let Some(mut run) = self.run.take().filter(|run| !run.is_false_start) else {
+            self.run = Some(Run::starting_at(secs, false));
+            return None;
+        };
+        let track = std::mem::take(&mut run.track);
+        let ghost = track.into_ghost(course, motion, run.began_secs, secs - run.began_secs);
+        self.run = Some(self.finish_lap(run, course.laps, secs));
+        ghost
     }
 
     /// Ends a lap, and begins the next one.

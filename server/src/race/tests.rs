@@ -1,7 +1,8 @@
 //! Times of vehicles that drive along known ways.
 
 use super::*;
-use prairie_core::scene::{RaceGate, TerrainMaps};
+use prairie_core::body::{BodyPose, POSITION_QUANTUM_M};
+use prairie_core::scene::{RaceGate, TerrainMaps, VehicleKind};
 use prairie_core::wire::ObjectId;
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -30,6 +31,12 @@ fn on_square(way_m: f64) -> [f32; 2] {
     place[(way_m / 60.0) as usize].map(|m| m as f32)
 }
 
+/// A car that moves on level ground.
+fn motion(client: u32, object: ObjectId, way_m: [[f32; 2]; 2]) -> DrivenMotion {
+    let [from, to] = way_m.map(|[x, z]| BodyPose { position_m: [x, 0.0, z], ..BodyPose::IDENTITY });
+    DrivenMotion { client, object, kind: VehicleKind::Car, from, to }
+}
+
 /// A race with one driver of `object` whose place follows from the simulated time (s).
 struct Drive {
     race: Race,
@@ -48,7 +55,7 @@ impl Drive {
         while (self.tick + 1) as f64 * self.dt_secs <= secs {
             let [from_m, to_m] = [self.tick, self.tick + 1].map(|tick| place_m(tick as f64 * self.dt_secs));
             self.tick += 1;
-            self.race.step(self.tick, [DrivenMotion { client: 3, object: self.object, from_m, to_m }].into_iter());
+            self.race.step(self.tick, [motion(3, self.object, [from_m, to_m])].into_iter());
         }
         self.standing()
     }
@@ -175,11 +182,11 @@ fn standings_are_ordered_by_race_then_by_lap_and_bounded() {
     // The higher the number of a client, the faster; only the fastest complete a race in this time.
     let way_m = |client: u32, tick: u64| (8.0 + 0.1 * f64::from(client)) * tick as f64 * dt_secs;
     for tick in 1..=(36.0 / dt_secs) as u64 {
-        let motion = |client| {
+        let drive = |client| {
             let [from_m, to_m] = [tick - 1, tick].map(|tick| on_square(way_m(client, tick)));
-            DrivenMotion { client, object: client, from_m, to_m }
+            motion(client, client, [from_m, to_m])
         };
-        race.step(tick, (1..=80).map(motion));
+        race.step(tick, (1..=80).map(drive));
     }
     let standings = race.standings();
     assert_eq!(standings.len(), STANDINGS_LIMIT);
@@ -187,6 +194,34 @@ fn standings_are_ordered_by_race_then_by_lap_and_bounded() {
     assert!(standings.iter().map(|standing| standing.client).eq((17..=80).rev()));
     assert!(standings[0].race_secs.is_some() && standings[63].race_secs.is_none());
     assert!(standings.iter().all(|standing| standing.best_secs.is_some()));
+}
+
+#[test]
+fn the_fastest_lap_becomes_the_ghost() {
+    let lap_secs = LAP_M / SPEED_M_PER_S;
+    let mut drive = Drive::new(&scene(0.0));
+    drive.until(lap_secs, at_speed);
+    assert_eq!(drive.race.ghost(), None);
+    drive.until(1.5 * lap_secs, at_speed);
+    let ghost = drive.race.ghost().unwrap();
+    assert!((f64::from(ghost.lap_secs) - lap_secs).abs() < 1e-4 && (0.0..=0.1).contains(&ghost.first_secs), "{ghost:?}");
+    assert_eq!(ghost.poses.len(), ((lap_secs - f64::from(ghost.first_secs)) / 0.1) as usize + 1);
+    for (n, code) in ghost.poses.iter().enumerate() {
+        let way_m = START_M + SPEED_M_PER_S * (f64::from(ghost.first_secs) + n as f64 * f64::from(ghost.period_secs));
+        let (found, wanted) = (code.pose().xz(), on_square(way_m));
+        assert!((0..2).all(|axis| (found[axis] - wanted[axis]).abs() < POSITION_QUANTUM_M + 1e-3), "{found:?}, exactly {wanted:?}");
+    }
+    // Neither a slower lap nor the driver's leave replaces it; a faster one does.
+    drive.rest();
+    drive.race.forget(3);
+    let at = |m_per_s: f64, since_secs: f64| move |secs: f64| on_square(m_per_s * (secs - since_secs));
+    let now_secs = drive.tick as f64 * drive.dt_secs;
+    drive.until(now_secs + 35.0, at(10.0, now_secs));
+    assert_eq!(drive.race.ghost(), Some(ghost.clone()));
+    drive.rest();
+    let now_secs = drive.tick as f64 * drive.dt_secs;
+    drive.until(now_secs + 25.0, at(15.0, now_secs));
+    assert!(drive.race.ghost().unwrap().lap_secs < ghost.lap_secs);
 }
 
 #[test]

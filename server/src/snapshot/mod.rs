@@ -8,7 +8,7 @@ pub use broken_plants::BrokenPlants;
 pub use prairie_core::grass::{Audience, BentPatches, PatchCodes, PatchQuantiser};
 
 use prairie_core::grass::StepRecord;
-use prairie_core::wire::{AppliedInput, ObjectPose, Standing, TurbulenceState};
+use prairie_core::wire::{AppliedInput, Ghost, ObjectPose, Standing, TurbulenceState};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -35,6 +35,8 @@ pub struct Snapshot {
     pub broken: BrokenPlants,
     /// The race, the first in front; at most [`STANDINGS_LIMIT`](prairie_core::wire::STANDINGS_LIMIT).
     pub standings: Vec<Standing>,
+    /// The fastest lap of the race.
+    pub ghost: Option<Arc<Ghost>>,
     /// The newest steps of the grass, oldest first.
     pub steps: Vec<Arc<StepRecord>>,
     /// Step diagnostics.

@@ -8,6 +8,9 @@ use std::time::Instant;
 /// Maximum fraction of a client's data rate for announcements of a kind. All clients get each of them, so one client that often changes its name would cost much.
 const FRACTION: f64 = 0.1;
 
+/// Number of kinds of announcements: roster, race, ghost.
+pub(super) const ANNOUNCEMENTS: usize = 3;
+
 /// A message for all clients, with its version.
 #[derive(Clone, Debug, Default)]
 pub struct Announced {

@@ -1,6 +1,6 @@
 //! The streamer's state of one client: the frames known to the client, its byte budget, and the frames in flight.
 
-use super::announcement::Announced;
+use super::announcement::{ANNOUNCEMENTS, Announced};
 use super::area::{PATCH_LIMIT, patches_near};
 use super::clients::{AreaOfInterest, Client, Frame};
 use super::encoder::Encoder;
@@ -41,8 +41,8 @@ pub struct Publication<'a> {
     pub now: Instant,
     /// The encoded poses message.
     pub poses: Bytes,
-    /// Messages that all clients get when they change: roster and race.
-    pub announced: [Announced; 2],
+    /// Messages that all clients get when they change: roster, race, and ghost.
+    pub announced: [Announced; ANNOUNCEMENTS],
     /// The newest steps.
     pub steps: &'a StepLog,
 }
@@ -69,7 +69,7 @@ pub struct ClientState {
     patch_messages: u64,
     held_wind: Option<u32>,
     /// Version of each announcement that was sent.
-    held_announced: [u64; 2],
+    held_announced: [u64; ANNOUNCEMENTS],
     /// The newest input of the client's vehicle that was reported.
     reported: Option<AppliedInput>,
     /// Number of broken plants sent, in the order of breaking.
@@ -90,7 +90,7 @@ impl ClientState {
             following: Following::default(),
             patch_messages: 0,
             held_wind: None,
-            held_announced: [0; 2],
+            held_announced: [0; ANNOUNCEMENTS],
             reported: None,
             sent_broken: 0,
             area: None,

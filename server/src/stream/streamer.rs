@@ -1,6 +1,6 @@
 //! The streaming thread: turns each published snapshot into frames for all clients.
 
-use super::announcement::{Announced, Announcement};
+use super::announcement::{ANNOUNCEMENTS, Announced, Announcement};
 use super::client_state::{ClientState, Publication, SendLimits};
 use super::clients::{Client, Clients, Difference};
 use super::encoder::Encoder;
@@ -12,7 +12,7 @@ use crate::snapshot::{Audience, Snapshot};
 use crate::world::{Camera, Command};
 use bytes::Bytes;
 use prairie_core::grid::PatchLayout;
-use prairie_core::wire::{self, Peer, Refusal, ServerMessage, Standing};
+use prairie_core::wire::{self, Ghost, Peer, Refusal, ServerMessage, Standing};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -86,6 +86,7 @@ pub struct Streamer {
     notified: BTreeMap<u32, u64>,
     roster: Announcement<Vec<Peer>>,
     race: Announcement<Vec<Standing>>,
+    ghost: Announcement<Option<Arc<Ghost>>>,
     counters: Arc<Counters>,
     steps: StepLog,
     /// Set to request the state of the grass with the next publication.
@@ -106,6 +107,7 @@ impl Streamer {
             notified: BTreeMap::new(),
             roster: Announcement::default(),
             race: Announcement::default(),
+            ghost: Announcement::default(),
             counters: Arc::default(),
             steps: StepLog::new(publish_hz, limits.bytes_per_s),
             state_request: Arc::default(),
@@ -187,8 +189,8 @@ impl Streamer {
         self.notified.retain(|id, _| is_connected(id));
     }
 
-    /// The newest roster and race.
-    fn announced(&mut self, published: &Published, clients: &[Arc<Client>], now: Instant) -> [Announced; 2] {
+    /// The newest roster, race and ghost.
+    fn announced(&mut self, published: &Published, clients: &[Arc<Client>], now: Instant) -> [Announced; ANNOUNCEMENTS] {
         let object = |id| published.requests.get(&id).and_then(|request| request.object);
         let peer = |client: &Arc<Client>| Peer { client: client.id, name: client.name(), object: object(client.id) };
         let peers = || clients.iter().map(peer).collect();
@@ -197,7 +199,9 @@ impl Streamer {
         let standings = || published.snapshot.standings.clone();
         let race =
             self.race.update(bytes_per_s, now, standings, |standings: &Vec<Standing>| ServerMessage::Race { standings: standings.clone() });
-        [roster, race]
+        let ghost = |ghost: &Option<Arc<Ghost>>| ServerMessage::Ghost { ghost: ghost.as_deref().cloned() };
+        let ghost = self.ghost.update(bytes_per_s, now, || published.snapshot.ghost.clone(), ghost);
+        [roster, race, ghost]
     }
 
     /// Step at which a client's request for a vehicle was refused, if the client has not been notified.

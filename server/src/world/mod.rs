@@ -153,6 +153,7 @@ impl World {
             audience: quantiser.audience().clone(),
             broken: self.plants.broken().clone(),
             standings: self.race.standings(),
+            ghost: self.race.ghost(),
             steps: self.steps.iter().cloned().collect(),
             diagnostics: self.diagnostics(),
         }

@@ -65,6 +65,7 @@ impl Replica {
             ServerMessage::Welcome { .. }
             | ServerMessage::Roster { .. }
             | ServerMessage::Race { .. }
+            | ServerMessage::Ghost { .. }
             | ServerMessage::Poses { .. }
             | ServerMessage::Broken { .. }
             | ServerMessage::Pong { .. }

@@ -1,7 +1,7 @@
 //! Messages, and their encoding.
 
 use super::{PROTOCOL, StepHead, TurbulenceState};
-use crate::body::Body;
+use crate::body::{Body, PoseCode};
 use crate::grid::PatchIndex;
 use crate::scene::{Scene, VehicleKind};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -230,6 +230,11 @@ pub enum ServerMessage {
         /// Ordered by the best race, then by the best lap.
         standings: Vec<Standing>,
     },
+    /// The fastest lap of the race, whenever there is a faster one.
+    Ghost {
+        /// `None` if no lap is complete.
+        ghost: Option<Ghost>,
+    },
 }
 
 /// A client in the race. Times are simulated seconds.
@@ -253,6 +258,32 @@ pub struct Standing {
     pub race_secs: Option<f32>,
     /// Time at the gate passed last (s) after that of the best lap before; negative if it is ahead.
     pub gap_secs: Option<f32>,
+}
+
+/// The way of the fastest lap: poses at equal distances in time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ghost {
+    /// The client that drove it, which may be gone.
+    pub client: u32,
+    /// Kind of its vehicle.
+    pub kind: VehicleKind,
+    /// Duration of the lap (s).
+    pub lap_secs: f32,
+    /// Time of the first pose after the start of the lap (s).
+    pub first_secs: f32,
+    /// Time from one pose to the next (s).
+    pub period_secs: f32,
+    /// The poses, 1 to [`GHOST_LIMIT`](super::GHOST_LIMIT).
+    pub poses: Vec<PoseCode>,
+}
+
+impl Ghost {
+    /// Whether all values are finite and in range.
+    pub fn is_valid(&self) -> bool {
+        let secs = [self.lap_secs, self.first_secs];
+        let has_poses = (1..=super::GHOST_LIMIT).contains(&self.poses.len());
+        has_poses && secs.iter().all(|secs| (0.0..=1e6).contains(secs)) && (1e-3..=10.0).contains(&self.period_secs)
+    }
 }
 
 /// An input that moves a vehicle.

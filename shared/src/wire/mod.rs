@@ -14,7 +14,7 @@ mod turbulence_state;
 pub use close::Close;
 pub use codec::{CodecError, Shape};
 pub use message::{
-    AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Mesh, ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage,
+    AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Ghost, Mesh, ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage,
     Shapes, Standing, WireError, decode, encode,
 };
 pub use protocol::PROTOCOL;
@@ -32,6 +32,9 @@ pub const BROKEN_LIMIT: usize = 4096;
 
 /// Largest number of clients in a [`ServerMessage::Race`]: all who drive where a scene does not raise the limit of objects.
 pub const STANDINGS_LIMIT: usize = 64;
+
+/// Largest number of poses of a [`Ghost`]: 205 s at 10 Hz. A longer lap has none.
+pub const GHOST_LIMIT: usize = 2048;
 
 /// Number of most recently received patches that a client keeps at least. A server sends deltas only to these.
 pub const PATCH_MEMORY: usize = 2048;

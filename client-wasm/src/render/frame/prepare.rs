@@ -84,7 +84,7 @@ impl Renderer {
         scene.prepare_grass(&self.gpu, decoded, &viewpoint, &frame, &mut plan);
         scene.prepare_underbrush(&self.gpu, mirror, &viewpoint);
         if let Some(objects) = &mut scene.objects {
-            objects.mark_gate(mirror.next_gate());
+            objects.show_race(mirror.next_gate(), mirror.ghost_pose());
             objects.prepare(&self.gpu, &poses, &viewpoint, cascades, time_secs as f32, frame.pixel_rad);
         }
         plan

@@ -28,6 +28,8 @@ use wgpu::BufferUsages;
 const INSTANCE_LIMIT: usize = 12_288;
 /// Instances reserved for each vehicle: six parts, in the picture and in two cascades.
 const VEHICLE_INSTANCES: usize = 18;
+/// Color factor of the ghost's vehicle, which turns every paint into a pale blue.
+const GHOST_TINT: [f32; 4] = [0.8, 1.4, 2.4, 0.0];
 /// Bytes of a tree's sway in `objects.wgsl`.
 const SWAY_BYTES: usize = 16;
 /// Minimum height on screen of fine trees, and maximum of distant ones (px), at high quality.
@@ -75,6 +77,8 @@ pub(crate) struct ObjectPasses {
     gates: Vec<PlacedPart>,
     /// Gate that is marked as the next one.
     next_gate: Option<usize>,
+    /// The ghost of the fastest lap.
+    ghost: Option<ObjectPose>,
     /// Distance that each vehicle has travelled forward (m).
     rolled_m: HashMap<ObjectId, f32>,
     picture_list: DrawList,
@@ -107,15 +111,16 @@ impl ObjectPasses {
             index,
             gates: gates::placed(decoded),
             next_gate: None,
+            ghost: None,
             rolled_m: HashMap::new(),
             picture_list: Vec::new(),
             cascade_lists: Default::default(),
         }
     }
 
-    /// Marks a gate as the next one.
-    pub(crate) fn mark_gate(&mut self, gate: Option<usize>) {
-        self.next_gate = gate;
+    /// Shows a race: the gate to be marked as the next one, and the ghost.
+    pub(crate) fn show_race(&mut self, next_gate: Option<usize>, ghost: Option<ObjectPose>) {
+        (self.next_gate, self.ghost) = (next_gate, ghost);
     }
 
     /// Lists the models in view, and the shadow casters of the cascades that are redrawn.
@@ -132,7 +137,8 @@ impl ObjectPasses {
         let mut lists = InstanceLists { cascades: [by_mesh.clone(), by_mesh.clone()], picture: by_mesh };
         self.list_vehicles(&mut lists, poses, from.dt_secs, &cascades, time_secs);
         self.list_gates(&mut lists, &cascades);
-        let taken = VEHICLE_INSTANCES * OBJECT_LIMIT.min(poses.len()) + 3 * self.gates.len();
+        self.list_ghost(&mut lists, time_secs);
+        let taken = VEHICLE_INSTANCES * (OBJECT_LIMIT.min(poses.len()) + 1) + 3 * self.gates.len();
         let room = INSTANCE_LIMIT.saturating_sub(taken);
         self.list_trees_and_stones(&mut lists, from, &cascades, room / 3, pixel_rad);
         let mut all = Vec::new();
@@ -167,6 +173,16 @@ impl ObjectPasses {
                     list[mesh].push(instance);
                 }
             }
+        }
+    }
+
+    /// Lists the ghost: a pale vehicle without a shadow.
+    fn list_ghost(&self, lists: &mut InstanceLists, time_secs: f32) {
+        let Some(pose) = &self.ghost else { return };
+        let body = Affine3A::from_rotation_translation(Quat::from_array(pose.rotation), Vec3::from(pose.position_m));
+        for (part, body_from_part) in (vehicle_model(pose.kind).place)(pose, Motion { rolled_m: 0.0, time_secs }) {
+            let world_from_model = Mat4::from(body * body_from_part).to_cols_array();
+            lists.picture[self.meshes.part(pose.kind, part)].push(Instance { world_from_model, tint: GHOST_TINT });
         }
     }
 

@@ -4,8 +4,8 @@ use super::{PINS, PROTOCOL};
 use crate::body::{Body, PoseCode, Prism};
 use crate::scene::{Allowed, FIELDS, Scene, VehicleKind, parse};
 use crate::wire::{
-    AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Joined, Mesh, ObjectPose, PROOF_BYTES, PatchCheck, Peer, RareCauses, Refusal,
-    SERVER_MESSAGE_LIMIT, ServerMessage, Shapes, Standing, StepHead, TurbulenceState, WireError, decode, encode,
+    AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Ghost, Joined, Mesh, ObjectPose, PROOF_BYTES, PatchCheck, Peer, RareCauses,
+    Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, Shapes, Standing, StepHead, TurbulenceState, WireError, decode, encode,
 };
 use serde::{Deserialize, de::DeserializeOwned};
 use std::fmt::{Debug, Write};
@@ -57,6 +57,7 @@ fn server_messages() -> Vec<ServerMessage> {
         ServerMessage::Steps { first_tick: 300, steps: vec![step()], moves: vec![3, 4] },
         ServerMessage::Applied(AppliedInput { number: 7, tick: 300 }),
         ServerMessage::Race { standings: vec![standing()] },
+        ServerMessage::Ghost { ghost: Some(ghost()) },
     ]
 }
 
@@ -73,6 +74,12 @@ fn standing() -> Standing {
         race_secs: Some(2.0),
         gap_secs: Some(-0.5),
     }
+}
+
+/// A ghost of one pose.
+fn ghost() -> Ghost {
+    let poses = vec![PoseCode { position: [8192, 0, -8192], rotation: [0, 0, 0, 32_767] }];
+    Ghost { client: 200, kind: VehicleKind::Sled, lap_secs: 20.0, first_secs: 0.0625, period_secs: 0.125, poses }
 }
 
 /// A step with every rare cause.
@@ -129,6 +136,7 @@ fn server_name(message: &ServerMessage) -> &'static str {
         ServerMessage::Steps { .. } => "Steps",
         ServerMessage::Applied(_) => "Applied",
         ServerMessage::Race { .. } => "Race",
+        ServerMessage::Ghost { .. } => "Ghost",
     }
 }
 
