@@ -128,6 +128,7 @@ export class Panel {
 
   help() {
     const help = byId("help");
+    byId("scenes").close();
     if (help.open) help.close();
     else help.showModal();
   }

@@ -11,7 +11,7 @@ export class SceneMenu {
     this.dialog.addEventListener("click", (event) => event.target === this.dialog && this.dialog.close());
     byId("scene-list").addEventListener("click", ({ target }) => {
       const button = target.closest("button");
-      if (button) this.change(button.dataset.scene);
+      if (button && button.getAttribute("aria-disabled") !== "true") this.change(button.dataset.scene);
     });
     addEventListener("keydown", (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey || event.repeat || event.target.closest?.("input, select")) return;
@@ -37,7 +37,7 @@ export class SceneMenu {
       const { running, pages_may_change: open, scenes } = await response.json();
       this.say(open
         ? "A scene that you choose is started for everyone on this server. Each has a world of its own."
-        : "This server keeps its scene. On a machine of your own, the command below a picture starts that one.");
+        : "This server keeps its scene. On a machine of your own, the command in a card starts that one.");
       byId("scene-list").replaceChildren(...scenes.map((scene) => card(scene, scene.name === running, open)));
     } catch (error) {
       this.say(`The server does not list its scenes: ${error.message}`);
@@ -62,7 +62,7 @@ export class SceneMenu {
   }
 
   freeze(frozen) {
-    for (const button of byId("scene-list").querySelectorAll("button")) button.disabled = frozen;
+    for (const button of byId("scene-list").querySelectorAll("button")) button.setAttribute("aria-disabled", String(frozen));
   }
 
   say(text) {
@@ -83,7 +83,7 @@ function card({ name, summary, methods, picture }, isRunning, open) {
   }
   card.append(element("b", isRunning ? `${name} (running)` : name), element("span", summary));
   for (const method of methods) card.append(element("small", method));
-  if (!open) card.append(element("code", `prairie ${name}`));
+  if (!open && picture) card.append(element("code", `prairie ${name}`));
   const item = document.createElement("li");
   item.append(card);
   return item;

@@ -4,8 +4,9 @@ use crate::escaped::escaped;
 use crate::journal::{self, JournaledWorld, WorldFolder};
 use crate::scenes::{self, LoadedScene, SceneDescription};
 use std::path::PathBuf;
+use std::sync::Arc;
 use thiserror::Error;
-use tokio::sync::{mpsc, oneshot};
+use tokio::sync::{Semaphore, mpsc, oneshot};
 
 /// The scenes that pages can ask for, and the way to ask.
 #[derive(Clone, Debug)]
@@ -14,6 +15,8 @@ pub(crate) struct SceneMenu {
     own: Option<OwnScene>,
     /// `None` where pages may not change the scene.
     requests: Option<mpsc::Sender<SceneRequest>>,
+    /// Held from a request to its answer.
+    turn: Arc<Semaphore>,
 }
 
 /// A scene file in the menu.
@@ -47,6 +50,9 @@ pub(crate) enum ChangeError {
     /// Another change is under way.
     #[error("the scene is already being changed; try again in a few seconds")]
     Busy,
+    /// The server stops before the change.
+    #[error("the server is stopping")]
+    Stopping,
     /// The scene cannot be loaded or its world cannot be opened.
     #[error("the scene cannot be started: {0}")]
     Failed(String),
@@ -58,7 +64,7 @@ impl SceneMenu {
         let own =
             first.files.first().map(|path| OwnScene { description: SceneDescription::of(&first.name, &first.scene), path: path.clone() });
         let (sender, requests) = mpsc::channel(1);
-        (Self { own, requests: is_open.then_some(sender) }, requests)
+        (Self { own, requests: is_open.then_some(sender), turn: Arc::new(Semaphore::new(1)) }, requests)
     }
 
     /// Whether pages may change the scene.
@@ -66,9 +72,11 @@ impl SceneMenu {
         self.requests.is_some()
     }
 
-    /// Descriptions of the scenes: the server's own file first, then the built-in ones.
+    /// Descriptions of the scenes: the server's own file first, then the built-in ones of other names.
     pub(crate) fn scenes(&self) -> impl Iterator<Item = &SceneDescription> {
-        self.own.iter().map(|own| &own.description).chain(scenes::catalogue())
+        let own = self.own.iter().map(|own| &own.description);
+        let is_other = |scene: &&SceneDescription| self.own.as_ref().is_none_or(|own| own.description.name != scene.name);
+        own.chain(scenes::catalogue().iter().filter(is_other))
     }
 
     /// Asks for a scene by its name, and waits until its world is ready.
@@ -86,9 +94,9 @@ impl SceneMenu {
             }
         };
         let (answer, answered) = oneshot::channel();
-        requests.try_send(SceneRequest { scene, answer }).map_err(|_| ChangeError::Busy)?;
-        // Without an answer, another change or the end of the server came first.
-        answered.await.map_err(|_| ChangeError::Busy)?.map_err(ChangeError::Failed)
+        let _turn = self.turn.try_acquire().map_err(|_| ChangeError::Busy)?;
+        requests.send(SceneRequest { scene, answer }).await.map_err(|_| ChangeError::Stopping)?;
+        answered.await.map_err(|_| ChangeError::Stopping)?.map_err(ChangeError::Failed)
     }
 }
 
@@ -137,15 +145,17 @@ mod tests {
         let (menu, mut requests) = SceneMenu::new(&scenes::load("shells").unwrap(), true);
         let unknown = menu.change("../strom\n").await.unwrap_err().to_string();
         assert!(unknown.starts_with("`name` is \"../strom\\n\"; allowed: meadow, jacksboro, "), "{unknown}");
-        let (first, second) = (menu.change("blades"), menu.change("storm"));
         let answered = async {
             let request = requests.recv().await.unwrap();
             assert_eq!(request.scene.as_os_str(), "blades");
+            // The scene is being opened.
+            assert!(matches!(menu.change("storm").await, Err(ChangeError::Busy)));
             let _ = request.answer.send(Err("the disk is full".to_owned()));
         };
-        let (first, second, ()) = tokio::join!(first, second, answered);
+        let (first, ()) = tokio::join!(menu.change("blades"), answered);
         assert_eq!(first.unwrap_err().to_string(), "the scene cannot be started: the disk is full");
-        assert!(matches!(second, Err(ChangeError::Busy)));
+        drop(requests);
+        assert!(matches!(menu.change("storm").await, Err(ChangeError::Stopping)), "the turn has ended");
     }
 
     #[tokio::test]
@@ -162,6 +172,8 @@ mod tests {
         let own = scenes::load(&file).unwrap();
         let (menu, mut requests) = SceneMenu::new(&own, true);
         assert_eq!(menu.scenes().next().unwrap().name, own.name);
+        let namesake = LoadedScene { name: "shells".to_owned(), ..own.clone() };
+        assert_eq!(SceneMenu::new(&namesake, true).0.scenes().filter(|scene| scene.name == "shells").count(), 1);
         let running = scenes::load("shells").unwrap();
         let (changed, (scene, _)) = tokio::join!(menu.change(&own.name), requested_scene(&running, None, &mut requests));
         assert!(changed.is_ok() && scene.files[0] == file);

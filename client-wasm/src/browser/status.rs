@@ -64,8 +64,9 @@ impl App {
         let (linked, running) = self.other_scene().filter(|_| self.connection.client().is_some())?;
         let linked: String = linked.chars().take(NAME_LIMIT).collect();
         let problem = format!("This link is for the scene {linked}, but the server runs {running}.");
-        let remedy =
-            format!("To see the linked scene, start the server with it: prairie serve --scene {linked} (or the path of its file).");
+        let remedy = format!(
+            "To see the linked scene, choose it in the menu of scenes (O) if the server offers it, or start the server with it: prairie serve --scene {linked} (or the path of its file)."
+        );
         Some(Status::new("other-scene", format!("{problem} {remedy}")))
     }
 

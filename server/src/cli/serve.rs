@@ -31,7 +31,7 @@ Examples:
 Browsers enable WebGPU only on pages from this machine or over https, so other machines need --tls.
 With `--tls self` the browser shows a warning: compare the fingerprint with the one printed here.
 A scene file is reloaded when you save it or a file that it names; all pages reconnect.
-The page has a menu of the built-in scenes (key O), which changes the scene for everyone.
+The page has a menu of the built-in scenes (key O), which changes the scene for everyone where --change-scene allows it.
 The world is kept: after a stop or a crash it goes on where it was. `prairie replay` plays what was.
 The log goes to stderr; RUST_LOG=prairie=debug makes it more detailed.";
 

@@ -74,9 +74,9 @@ impl Access {
         let Some(origin) = headers.get_all(header::ORIGIN).iter().find(|origin| !is_allowed(origin)) else { return Ok(()) };
         if let Some(suppressed) = self.rejected_origins.due() {
             let origin = excerpt(origin.as_bytes());
-            tracing::warn!(origin, suppressed, "rejected a WebSocket from another origin; --allow-origin ORIGIN allows one");
+            tracing::warn!(origin, suppressed, "rejected a page of another origin; --allow-origin ORIGIN allows one");
         }
-        let reason = "only pages of this server may open the WebSocket; --allow-origin ORIGIN at its start allows others\n";
+        let reason = "only pages of this server may ask for this; --allow-origin ORIGIN at its start allows others\n";
         Err((StatusCode::FORBIDDEN, reason.to_owned()))
     }
 }

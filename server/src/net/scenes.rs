@@ -40,10 +40,10 @@ struct Choice {
 
 /// `POST /api/scene`: changes to a scene for everyone, and answers when its world is ready.
 pub(super) async fn change(State(app): State<Arc<App>>, headers: HeaderMap, body: Body) -> Response {
-    if let Err(rejection) = app.access.check_origin(&headers) {
-        return rejection.into_response();
-    }
     let refuse = |status, error: String| answer(status, &json!({ "error": error }));
+    if let Err((status, reason)) = app.access.check_origin(&headers) {
+        return refuse(status, reason.trim_end().to_owned());
+    }
     let Ok(body) = to_bytes(body, BODY_LIMIT).await else {
         return refuse(StatusCode::PAYLOAD_TOO_LARGE, format!("the body has more than {BODY_LIMIT} bytes"));
     };
@@ -58,7 +58,7 @@ pub(super) async fn change(State(app): State<Arc<App>>, headers: HeaderMap, body
                 ChangeError::NotAllowed => StatusCode::FORBIDDEN,
                 ChangeError::Unknown { .. } => StatusCode::BAD_REQUEST,
                 ChangeError::Busy => StatusCode::CONFLICT,
-                ChangeError::Failed(_) => StatusCode::SERVICE_UNAVAILABLE,
+                ChangeError::Failed(_) | ChangeError::Stopping => StatusCode::SERVICE_UNAVAILABLE,
             };
             refuse(status, error.to_string())
         }

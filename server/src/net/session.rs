@@ -145,7 +145,9 @@ async fn serve_client<S: AsyncRead + AsyncWrite + Unpin>(
         end = stopping(app) => end,
     };
     if app.clients.leave(&client) {
-        let _ = app.commands.send(departure(&end, id)).await;
+        for command in departure(&end, id) {
+            let _ = app.commands.send(command).await;
+        }
     }
     if let Some(suppressed) = app.session_log.left.due() {
         tracing::info!(client = id, ?end, sent_bytes = client.sent_bytes(), suppressed = some(suppressed), "left");
@@ -153,11 +155,11 @@ async fn serve_client<S: AsyncRead + AsyncWrite + Unpin>(
     end
 }
 
-/// The command for the vehicle of a client whose session has ended: it is kept if the client may want to return.
-fn departure(end: &End, client: u32) -> Command {
+/// The commands for a client whose session has ended: its vehicle is kept if it may want to return. Without a vehicle its times in the race are forgotten.
+fn departure(end: &End, client: u32) -> Vec<Command> {
     match end {
-        End::Broken | End::Replaced | End::Closed(Close::Stopping | Close::Stalled, _) => Command::Leave { client },
-        End::Left | End::Closed(..) => Command::Remove { client },
+        End::Broken | End::Replaced | End::Closed(Close::Stopping | Close::Stalled, _) => vec![Command::Leave { client }],
+        End::Left | End::Closed(..) => vec![Command::Remove { client }, Command::Leave { client }],
     }
 }
 
@@ -235,6 +237,21 @@ async fn watch_acknowledgements(client: &Client, connection: &Connection, limits
         if idle_checks >= CHECKS && began.elapsed() >= limits.load_timeout {
             let idle = period * idle_checks;
             return End::Closed(Close::Stalled, format!("no frame was acknowledged for {} s", idle.as_secs_f32()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_leaves_for_good_leaves_nothing() {
+        let gone = [Command::Remove { client: 3 }, Command::Leave { client: 3 }];
+        assert_eq!(departure(&End::Left, 3), gone);
+        assert_eq!(departure(&End::Closed(Close::RateLimit, String::new()), 3), gone);
+        for lost in [End::Broken, End::Replaced, End::Closed(Close::Stopping, String::new())] {
+            assert_eq!(departure(&lost, 3), [Command::Leave { client: 3 }]);
         }
     }
 }

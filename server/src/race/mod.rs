@@ -80,15 +80,21 @@ impl Race {
         self.ghost.clone()
     }
 
-    /// Those who have begun a lap: first by their best race, then by their best lap, then by their number. At most [`STANDINGS_LIMIT`].
+    /// Those who have begun a lap: first by their best race, then by their best lap, then by their number. Of more than [`STANDINGS_LIMIT`], those on foot
+    /// are left out first, the slowest before the others.
     pub fn standings(&self) -> Vec<Standing> {
         let mut order: Vec<_> = self.state.racers.iter().filter(|(_, racer)| racer.has_begun()).collect();
-        order.sort_by(|(_, one), (_, other)| {
-            let [one, other] = [one, other].map(|racer| racer.rank_secs());
+        let by_rank = |one: &Racer, other: &Racer| {
+            let [one, other] = [one, other].map(Racer::rank_secs);
             one[0].total_cmp(&other[0]).then(one[1].total_cmp(&other[1]))
-        });
+        };
+        if order.len() > STANDINGS_LIMIT {
+            order.sort_by(|(_, one), (_, other)| other.is_racing().cmp(&one.is_racing()).then(by_rank(one, other)));
+            order.truncate(STANDINGS_LIMIT);
+        }
+        order.sort_by(|(_, one), (_, other)| by_rank(one, other));
         let gates = self.course.as_ref().map_or(0, |course| course.gates.len());
-        order.into_iter().take(STANDINGS_LIMIT).map(|(client, racer)| racer.standing(*client, gates)).collect()
+        order.into_iter().map(|(client, racer)| racer.standing(*client, gates)).collect()
     }
 
     /// A copy of the state.

@@ -89,6 +89,11 @@ impl Racer {
         self.best.is_some()
     }
 
+    /// Whether a lap runs.
+    pub(super) fn is_racing(&self) -> bool {
+        self.run.is_some()
+    }
+
     pub(super) fn has_begun(&self) -> bool {
         self.run.is_some() || self.has_a_time()
     }
@@ -166,6 +171,7 @@ impl Racer {
         }
         let Some(mut run) = self.run.take().filter(|run| !run.is_false_start) else {
             self.run = Some(Run::starting_at(secs, false));
+            self.gap_secs = None;
             return None;
         };
         let track = std::mem::take(&mut run.track);

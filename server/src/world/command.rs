@@ -36,7 +36,8 @@ pub enum Command {
         /// Number of the client.
         client: u32,
     },
-    /// The connection of a client was lost. Its vehicle stops, and is removed after [`KEPT_SECS`](super::KEPT_SECS) unless the client returns.
+    /// The connection of a client has ended. Its vehicle stops, and is removed after [`KEPT_SECS`](super::KEPT_SECS) unless the client returns; without a
+    /// vehicle, its times in the race are forgotten at once.
     Leave {
         /// Number of the client.
         client: u32,

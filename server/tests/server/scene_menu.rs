@@ -6,6 +6,8 @@ use prairie::net::bind;
 use prairie::{Config, journal, run_and_reload, scenes};
 use prairie_core::wire::{ClientMessage, Close, ServerMessage};
 use serde_json::{Value, json};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
 use tokio::sync::oneshot;
 
 /// Serves a built-in scene like the program, with worlds that are kept in a folder.
@@ -58,8 +60,12 @@ async fn a_page_changes_the_scene_for_everyone_and_returns_to_a_world_that_went_
 
     assert_eq!(change(&server, "shells").await, (200, json!({ "running": "shells" })), "the running scene goes on");
     client.frame().await;
+    let mut kept_open = TcpStream::connect(server.address).await.unwrap();
+    kept_open.write_all(format!("GET /api/scenes HTTP/1.1\r\nhost: {}\r\n\r\n", server.address).as_bytes()).await.unwrap();
     assert_eq!(change(&server, "blades").await, (200, json!({ "running": "blades" })));
     assert_eq!(client.closed().await.0, Close::Stopping.code());
+    // Its next request would be answered by the scene before, for half a minute.
+    within(kept_open.read_to_end(&mut Vec::new())).await.unwrap();
     let (mut client, name, _) = join(&server).await;
     assert_eq!(name, "blades");
     assert_eq!(ask(&server, "GET /api/scenes HTTP/1.1", "").await.1["running"], json!("blades"));

@@ -9,6 +9,8 @@ use prairie_core::race::GateLine;
 const TOP_M: f32 = 4.2;
 /// Height of a banner (m).
 const BANNER_M: f32 = 0.8;
+/// Half the thickness of a banner (m), so that its sides don't hide each other.
+const HALF_THICK_M: f32 = 0.03;
 /// Depth of a post's foot below the ground (m), so that none floats on a slope.
 const DEPTH_M: f32 = 0.5;
 /// Half the side of a post (m).
@@ -39,13 +41,15 @@ pub(crate) fn solids() -> [Solid; 3] {
 /// A banner of white and, alternately, black checks.
 fn banner([along, down]: [u32; 2]) -> Solid {
     const PAINTS: [Paint; 2] = [Paint::new(0.85, 0.85, 0.82, 0.1), Paint::new(0.02, 0.02, 0.02, 0.1)];
-    let corner = |across: u32, below: u32| Vec3::new(across as f32 / along as f32 - 0.5, -BANNER_M * below as f32 / down as f32, 0.0);
+    let corner =
+        |across: u32, below: u32| Vec3::new(across as f32 / along as f32 - 0.5, -BANNER_M * below as f32 / down as f32, HALF_THICK_M);
     let mut banner = Solid::default();
     for (across, below) in (0..along).flat_map(|across| (0..down).map(move |below| (across, below))) {
         let mut corners = [corner(across, below + 1), corner(across + 1, below + 1), corner(across + 1, below), corner(across, below)];
         let paint = PAINTS[((across + below) % 2) as usize];
         banner.polygon(&corners, paint);
         corners.reverse();
+        corners.iter_mut().for_each(|corner| corner.z = -HALF_THICK_M);
         banner.polygon(&corners, paint);
     }
     banner
