@@ -32,13 +32,13 @@ export class SceneMenu {
   // Asks the server for its scenes and shows them.
   async fill() {
     try {
-      const response = await fetch("api/scenes");
+      const response = await running(() => fetch("api/scenes"));
       if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
-      const { running, pages_may_change: open, scenes } = await response.json();
+      const { running: current, pages_may_change: open, scenes } = await response.json();
       this.say(open
         ? "A scene that you choose is started for everyone on this server. Each has a world of its own."
         : "This server keeps its scene. On a machine of your own, the command in a card starts that one.");
-      byId("scene-list").replaceChildren(...scenes.map((scene) => card(scene, scene.name === running, open)));
+      byId("scene-list").replaceChildren(...scenes.map((scene) => card(scene, scene.name === current, open)));
     } catch (error) {
       this.say(`The server does not list its scenes: ${error.message}`);
     }
@@ -68,6 +68,12 @@ export class SceneMenu {
   say(text) {
     byId("scenes-note").textContent = text;
   }
+}
+
+// The answer of the running world. That of one that has just stopped is 503, and ends the connection to it.
+async function running(ask) {
+  const first = await ask();
+  return first.status === 503 ? ask() : first;
 }
 
 // A scene as a button, or, where the scene cannot be changed, as a text with its command.

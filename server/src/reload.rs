@@ -47,8 +47,8 @@ pub async fn run_and_reload(
         let until = async {
             tokio::select! {
                 () = shutdown.as_mut() => {}
-                (scene, new) = changed_scene(&config.scene, scenes::load), if !config.scene.files.is_empty() => next = Some((scene, Next::Edited(new))),
-                (scene, opened) = requested_scene(&config.scene, config.world.as_ref(), &mut requests) => next = Some((scene, Next::Chosen(opened))),
+                (scene, new) = changed_scene(&config.scene, scenes::load), if !config.scene.files.is_empty() => next = Some((scene, Next::Edited(Box::new(new)))),
+                (scene, opened) = requested_scene(&config.scene, config.world.as_ref(), &mut requests) => next = Some((scene, Next::Chosen(Box::new(opened)))),
             }
         };
         let socket = listener.try_clone().and_then(TcpListener::from_std).map_err(RunError::Socket)?;
@@ -59,11 +59,11 @@ pub async fn run_and_reload(
         world = match new {
             Next::Edited(new) => {
                 tracing::info!(file = name, "the scene has changed; restarting the world");
-                reopened(&config, new).await?
+                reopened(&config, *new).await?
             }
             Next::Chosen(opened) => {
                 tracing::info!(scene = name, "a page has chosen another scene");
-                opened
+                *opened
             }
         };
     }
@@ -72,9 +72,9 @@ pub async fn run_and_reload(
 /// The world that follows, and what brought it.
 enum Next {
     /// A new world of the scene, whose files were edited.
-    Edited(World),
+    Edited(Box<World>),
     /// The world of the scene that a page has chosen, as it was kept.
-    Chosen(JournaledWorld),
+    Chosen(Box<JournaledWorld>),
 }
 
 /// The configuration of a run whose world exists: the nutrients are only needed to grow the plants, and possibly large.

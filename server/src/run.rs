@@ -113,13 +113,13 @@ pub(crate) async fn run_with_menu(
         client_slots: client_slots.clone(),
         pending_slots: pending_slots.clone(),
         session_log: SessionLog::default(),
-        stopping: stopping.clone(),
+        stopping,
         started: Instant::now(),
     });
     let recording = inspector.map(|inspector| tokio::spawn(record(inspector, runner.published(), clients.clone(), runner.attendance())));
     let world_stopped = async { while published.changed().await.is_ok() {} };
     let outcome = tokio::select! {
-        () = net::serve(listener, config.tls.clone(), net::router(app), config.limits, admission, stopping) => Ok(()),
+        () = net::serve(listener, config.tls.clone(), net::router(app), config.limits, admission) => Ok(()),
         () = world_stopped => Err(RunError::WorldStopped),
         () = stream.ended() => Err(RunError::StreamStopped),
         () = shutdown => Ok(()),

@@ -5,7 +5,7 @@ use super::connection::Connection;
 use super::upgrade::upgrade;
 use super::{api, files, health, page_errors, scenes, security, session};
 use axum::extract::{Request, State};
-use axum::http::{HeaderMap, StatusCode};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{any, get, post};
@@ -25,6 +25,7 @@ pub(crate) fn router(app: Arc<App>) -> Router {
         .route("/api/scene", post(scenes::change))
         .route("/report", post(page_errors::receive))
         .fallback(get(files::file))
+        .layer(middleware::from_fn_with_state(app.clone(), until_stopped))
         .layer(middleware::from_fn_with_state(app.clone(), own_host))
         .layer(middleware::map_response(security::restrict))
         .with_state(app)
@@ -36,6 +37,21 @@ async fn own_host(State(app): State<Arc<App>>, request: Request, next: Next) -> 
         Ok(()) => next.run(request).await,
         Err(rejection) => rejection.into_response(),
     }
+}
+
+/// Answers no request for the fields or the scenes once the run has stopped, and ends the connection with the response: the request after it is for the run
+/// that follows, if there is one.
+async fn until_stopped(State(app): State<Arc<App>>, request: Request, next: Next) -> Response {
+    let mut response = if *app.stopping.borrow() && request.uri().path().starts_with("/api/") {
+        (StatusCode::SERVICE_UNAVAILABLE, [(header::CONTENT_TYPE, "application/json")], "{\"error\":\"the server is stopping\"}\n")
+            .into_response()
+    } else {
+        next.run(request).await
+    };
+    if *app.stopping.borrow() {
+        response.headers_mut().entry(header::CONNECTION).or_insert(HeaderValue::from_static("close"));
+    }
+    response
 }
 
 async fn socket(

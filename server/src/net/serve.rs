@@ -15,8 +15,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
-use tokio::time::{sleep, timeout};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::time::timeout;
 
 /// Pause after a failed accept, the symptom of running out of file descriptors.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(200);
@@ -35,19 +35,11 @@ pub(crate) fn serve(
     router: Router,
     limits: Limits,
     admission: Arc<Admission>,
-    stopping: watch::Receiver<bool>,
 ) -> BoxFuture<'static, ()> {
-    Box::pin(accept_connections(listener, tls, router, limits, admission, stopping))
+    Box::pin(accept_connections(listener, tls, router, limits, admission))
 }
 
-async fn accept_connections(
-    listener: TcpListener,
-    tls: Option<Tls>,
-    router: Router,
-    limits: Limits,
-    admission: Arc<Admission>,
-    stopping: watch::Receiver<bool>,
-) {
+async fn accept_connections(listener: TcpListener, tls: Option<Tls>, router: Router, limits: Limits, admission: Arc<Admission>) {
     let slots = Slots { free: Arc::new(Semaphore::new(limits.pending)), warning: LogLimit::default() };
     let rejection_warning = LogLimit::default();
     loop {
@@ -56,7 +48,7 @@ async fn accept_connections(
             Ok(accepted) => accepted,
             Err(error) => {
                 tracing::warn!(%error, "cannot accept a connection");
-                sleep(ACCEPT_PAUSE).await;
+                tokio::time::sleep(ACCEPT_PAUSE).await;
                 continue;
             }
         };
@@ -66,11 +58,11 @@ async fn accept_connections(
             }
             continue;
         };
-        let (tls, router, stopping) = (tls.clone(), router.clone(), stopping.clone());
+        let (tls, router) = (tls.clone(), router.clone());
         tokio::spawn(async move {
             let connection = Arc::new(Connection::new(place));
             tokio::select! {
-                () = serve_connection(stream, connection.clone(), tls, router, limits, stopping) => {}
+                () = serve_connection(stream, connection.clone(), tls, router, limits) => {}
                 // A WebSocket's session sends the reason; before that, the client is not told.
                 () = connection.flooded() => connection.place.count_rate_limited(),
             }
@@ -94,22 +86,15 @@ impl Slots {
     }
 }
 
-async fn serve_connection(
-    stream: TcpStream,
-    connection: Arc<Connection>,
-    tls: Option<Tls>,
-    router: Router,
-    limits: Limits,
-    stopping: watch::Receiver<bool>,
-) {
+async fn serve_connection(stream: TcpStream, connection: Arc<Connection>, tls: Option<Tls>, router: Router, limits: Limits) {
     // Frames are written as a whole, so Nagle's algorithm would only delay them.
     let _ = stream.set_nodelay(true);
     limit_unsent(&stream);
     let stream = Metered::new(stream, connection.clone(), limits.bytes_per_s);
     let router = router.layer(Extension(connection.clone()));
-    let Some(tls) = tls else { return http(stream, connection, router, limits, stopping).await };
+    let Some(tls) = tls else { return http(stream, connection, router, limits).await };
     match timeout(limits.handshake_timeout, tls.accept(stream)).await {
-        Ok(Ok(Some(stream))) => http(stream, connection, router, limits, stopping).await,
+        Ok(Ok(Some(stream))) => http(stream, connection, router, limits).await,
         Ok(Ok(None)) => tracing::debug!("the ACME service checked a domain"),
         Ok(Err(error)) => tracing::debug!(%error, "TLS handshake failed"),
         Err(_) => tracing::debug!("TLS handshake timed out"),
@@ -131,39 +116,29 @@ fn limit_unsent(stream: &TcpStream) {
 /// Time limit for completing a response after the connection has timed out.
 const RESPONSE_TIMEOUT: Duration = Duration::from_secs(300);
 
-/// Serves HTTP requests until the connection ends, becomes a WebSocket, or times out, or the run stops: the next request is then for the run that follows.
-/// A response begun before that is completed as long as the client reads it, so that the page loads over a slow line, too.
-async fn http(
-    io: impl AsyncRead + AsyncWrite + Unpin + Send + 'static,
-    connection: Arc<Connection>,
-    router: Router,
-    limits: Limits,
-    mut stopping: watch::Receiver<bool>,
-) {
+/// Serves HTTP requests until the connection ends, becomes a WebSocket, or times out. A response begun before that is completed as long as the client
+/// reads it, so that the page loads over a slow line, too.
+async fn http(io: impl AsyncRead + AsyncWrite + Unpin + Send + 'static, connection: Arc<Connection>, router: Router, limits: Limits) {
     let served = hyper::server::conn::http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(limits.handshake_timeout)
         .serve_connection(TokioIo::new(io), TowerToHyperService::new(router))
         .with_upgrades();
     let mut served = pin!(served);
-    let mut outcome = tokio::select! {
-        ended = served.as_mut() => Some(ended),
-        () = sleep(limits.http_timeout) => None,
-        _ = stopping.wait_for(|is_stopping| *is_stopping) => None,
-    };
-    if outcome.is_none() {
+    let mut outcome = timeout(limits.http_timeout, served.as_mut()).await;
+    if outcome.is_err() {
         served.as_mut().graceful_shutdown();
         let (patience, begun) = (limits.http_timeout / 2, Instant::now());
         let mut written = None;
         // The first turn finds out how much has been written.
-        while outcome.is_none() && written != Some(connection.written_bytes()) && begun.elapsed() < RESPONSE_TIMEOUT {
+        while outcome.is_err() && written != Some(connection.written_bytes()) && begun.elapsed() < RESPONSE_TIMEOUT {
             written = Some(connection.written_bytes());
-            outcome = timeout(patience, served.as_mut()).await.ok();
+            outcome = timeout(patience, served.as_mut()).await;
         }
     }
     match outcome {
-        Some(Ok(())) => {}
-        Some(Err(error)) => tracing::debug!(%error, "a connection failed"),
-        None => tracing::debug!("a connection timed out"),
+        Ok(Ok(())) => {}
+        Ok(Err(error)) => tracing::debug!(%error, "a connection failed"),
+        Err(_) => tracing::debug!("a connection timed out"),
     }
 }

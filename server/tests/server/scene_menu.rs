@@ -61,11 +61,17 @@ async fn a_page_changes_the_scene_for_everyone_and_returns_to_a_world_that_went_
     assert_eq!(change(&server, "shells").await, (200, json!({ "running": "shells" })), "the running scene goes on");
     client.frame().await;
     let mut kept_open = TcpStream::connect(server.address).await.unwrap();
-    kept_open.write_all(format!("GET /api/scenes HTTP/1.1\r\nhost: {}\r\n\r\n", server.address).as_bytes()).await.unwrap();
+    let request = format!("GET /api/scenes HTTP/1.1\r\nhost: {}\r\n\r\n", server.address);
+    kept_open.write_all(request.as_bytes()).await.unwrap();
+    kept_open.readable().await.unwrap();
     assert_eq!(change(&server, "blades").await, (200, json!({ "running": "blades" })));
     assert_eq!(client.closed().await.0, Close::Stopping.code());
-    // Its next request would be answered by the scene before, for half a minute.
-    within(kept_open.read_to_end(&mut Vec::new())).await.unwrap();
+    // The world before does not answer any more.
+    kept_open.write_all(request.as_bytes()).await.unwrap();
+    let mut answers = String::new();
+    within(kept_open.read_to_string(&mut answers)).await.unwrap();
+    let statuses: Vec<_> = answers.split("HTTP/1.1 ").skip(1).map(|answer| &answer[..3]).collect();
+    assert_eq!(statuses, ["200", "503"], "{answers}");
     let (mut client, name, _) = join(&server).await;
     assert_eq!(name, "blades");
     assert_eq!(ask(&server, "GET /api/scenes HTTP/1.1", "").await.1["running"], json!("blades"));

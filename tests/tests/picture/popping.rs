@@ -98,7 +98,7 @@ fn ensure_jumps_are_refused(gpu: &Gpu, still: &mut Still, flight: Flight, by_fli
 
 #[test]
 fn level_of_detail_alone_changes_little_between_frames() -> Result<()> {
-    compare(Flight { frames: 4, step_m: 0.25 })
+    compare(Flight { frames: 2, step_m: 0.25 })
 }
 
 #[test]

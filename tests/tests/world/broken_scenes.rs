@@ -64,11 +64,11 @@ fn missing_names_and_files_are_reported() {
     let told = |name: &str| load(name).unwrap_err().to_string();
     assert_eq!(
         told("medow"),
-        "there is no built-in scene and no file called `medow`; did you mean `meadow`? Built-in scenes: meadow, jacksboro, devil, storm, breeze, continuum, underbrush, blades, shells, race"
+        "there is no built-in scene and no file called `medow`; did you mean `meadow`? Built-in scenes: meadow, jacksboro, devil, storm, breeze, continuum, underbrush, blades, shells, night, lee, cyclones, follow, prairie-2000, verlet, implicit, modal, history, race"
     );
     assert_eq!(
         told("xyzzy"),
-        "there is no built-in scene and no file called `xyzzy`. Built-in scenes: meadow, jacksboro, devil, storm, breeze, continuum, underbrush, blades, shells, race"
+        "there is no built-in scene and no file called `xyzzy`. Built-in scenes: meadow, jacksboro, devil, storm, breeze, continuum, underbrush, blades, shells, night, lee, cyclones, follow, prairie-2000, verlet, implicit, modal, history, race"
     );
     assert!(told("scenes/none.toml").starts_with("scene file `scenes/none.toml` cannot be read: No such file"));
     assert_eq!(told("scenes/broken"), "scene file `scenes/broken` cannot be read: it is not a file");
