@@ -39,7 +39,7 @@ impl GateLine {
         self.half_width_m
     }
 
-    /// Fraction, above 0 and at most 1, of the straight way between two places (m) at which it passes the gate forwards and between its posts. Two ways
+    /// Fraction, above 0 and at most 1, of the straight path between two places (m) at which it passes the gate forwards and between its posts. Two paths
     /// that follow each other never both pass it at the place where they meet.
     pub fn passage(&self, from_m: [f32; 2], to_m: [f32; 2]) -> Option<f64> {
         let ([before_m, right_before_m], [after_m, right_after_m]) = (self.from_gate_m(from_m), self.from_gate_m(to_m));

@@ -1,6 +1,6 @@
 //! The race: laps of the clients' vehicles through the scene's gates.
 //!
-//! A gate is passed when the straight way of a vehicle in one step crosses the line between its posts in its direction, and the moment is that of the crossing:
+//! A gate is passed when the straight path of a vehicle in one step crosses the line between its posts in its direction, and the moment is that of the crossing:
 //! the same motions give the same times, to the last bit.
 
 mod course;
