@@ -2,8 +2,8 @@
 
 use prairie_core::bend::{Edges, GroundContact, Scheme, Seams};
 use prairie_core::scene::{
-    BladeIntegrator, BladeShape, ComponentKind, LagWay, PlantCover, PrimitiveKind, VehicleKind, WindAdvection, WindBoundary, WindDiffusion,
-    WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    BladeIntegrator, BladeShape, ComponentKind, FlowerShape, LagWay, PlantCover, PrimitiveKind, VehicleKind, WindAdvection, WindBoundary,
+    WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use prairie_core::wire::{ClientMessage, PROTOCOL, Refusal, ServerMessage};
 use serde_json::{Value, json};
@@ -23,7 +23,18 @@ fn generated() -> Value {
     }
     trace!(
         BladeIntegrator,
-        BladeShape, ComponentKind, Edges, GroundContact, LagWay, PlantCover, PrimitiveKind, Refusal, Scheme, Seams, VehicleKind
+        BladeShape,
+        ComponentKind,
+        Edges,
+        FlowerShape,
+        GroundContact,
+        LagWay,
+        PlantCover,
+        PrimitiveKind,
+        Refusal,
+        Scheme,
+        Seams,
+        VehicleKind
     );
     trace!(WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime);
     trace!(ClientMessage, ServerMessage);

@@ -1,8 +1,12 @@
-// Flower heads of six kinds: near ones as a ring of petals around a disc, others as a disc alone. One instance is 64 heads as one indexed
+// Flower heads of six kinds: near ones as a ring of petals around a disc, or as a square with a texture; others as a disc alone. One instance is 64 heads as one indexed
 // list.
 
-import package::constants::{DISC_VERTICES, HEAD_VERTICES, PETAL_VERTICES, PETALS, TAU};
-import package::inputs::frame::frame;
+import package::constants::{
+    DISC_VERTICES, FLOWER_BASE_RGB, FLOWER_DISC_M, FLOWER_DISC_RGB, FLOWER_KINDS, FLOWER_PETAL_M, FLOWER_PETAL_WIDTH, FLOWER_PETALS,
+    FLOWER_RISE_RAD, FLOWER_SQUARE, FLOWER_TIP_RGB, HEAD_VERTICES, PETAL_ACROSS, PETAL_ALONG, PETAL_FLATTENS, PETAL_VERTICES, PETALS,
+    SQUARE_VERTICES, TAU,
+};
+import package::inputs::frame::{clamped, frame};
 import package::inputs::lamps::lamps_on;
 import package::land_and_sky::sky_light::ambient;
 import package::plants::drawn_blade::Blade;
@@ -31,14 +35,18 @@ struct Flower {
 }
 
 fn kind_of(fraction: f32) -> Flower {
-    switch u32(fraction * 6.0) {
-        case 0u: { return Flower(12.0, 0.026, 0.34, 0.18, vec3<f32>(0.80, 0.80, 0.76), vec3<f32>(0.95, 0.95, 0.93), vec3<f32>(0.85, 0.52, 0.03), 0.010); }
-        case 1u: { return Flower(5.0, 0.030, 1.05, 0.75, vec3<f32>(0.28, 0.015, 0.01), vec3<f32>(0.86, 0.075, 0.02), vec3<f32>(0.03, 0.02, 0.02), 0.008); }
-        case 2u: { return Flower(9.0, 0.024, 0.50, 0.45, vec3<f32>(0.09, 0.08, 0.42), vec3<f32>(0.16, 0.25, 0.88), vec3<f32>(0.18, 0.05, 0.30), 0.009); }
-        case 3u: { return Flower(5.0, 0.018, 0.95, 0.55, vec3<f32>(0.90, 0.58, 0.02), vec3<f32>(0.98, 0.80, 0.06), vec3<f32>(0.75, 0.55, 0.05), 0.007); }
-        case 4u: { return Flower(12.0, 0.022, 0.30, 1.05, vec3<f32>(0.62, 0.20, 0.46), vec3<f32>(0.84, 0.46, 0.72), vec3<f32>(0.66, 0.30, 0.50), 0.012); }
-        default: { return Flower(6.0, 0.026, 0.55, 0.30, vec3<f32>(0.46, 0.28, 0.72), vec3<f32>(0.70, 0.56, 0.92), vec3<f32>(0.85, 0.70, 0.20), 0.006); }
-    }
+    let kind = u32(fraction * f32(FLOWER_KINDS));
+    var petals = FLOWER_PETALS;
+    var length_m = FLOWER_PETAL_M;
+    var width = FLOWER_PETAL_WIDTH;
+    var rise_rad = FLOWER_RISE_RAD;
+    var base = FLOWER_BASE_RGB;
+    var tip = FLOWER_TIP_RGB;
+    var disc_rgb = FLOWER_DISC_RGB;
+    var disc_m = FLOWER_DISC_M;
+    return Flower(
+        petals[kind], length_m[kind], width[kind], rise_rad[kind], base[kind], tip[kind], disc_rgb[kind], disc_m[kind],
+    );
 }
 
 struct Petal {
@@ -103,9 +111,11 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
         let across = cross(head.axis, out_dir);
         let rise = kind.rise_rad;
         // Root, two at the middle, two at the end.
-        let t = array<f32, PETAL_VERTICES>(0.0, 0.55, 0.55, 1.0, 1.0)[corner];
-        let w = array<f32, PETAL_VERTICES>(0.0, -0.5, 0.5, -0.28, 0.28)[corner];
-        let curl = rise * (1.0 - 0.45 * t);
+        var alongs = PETAL_ALONG;
+        var acrosses = PETAL_ACROSS;
+        let t = alongs[corner];
+        let w = acrosses[corner];
+        let curl = rise * (1.0 - PETAL_FLATTENS * t);
         let along = out_dir * cos(curl) + head.axis * sin(curl);
         let reach = select(0.0, kind.length_m * head.size, is_there);
         p = head.at + along * (reach * t) + across * (reach * w * kind.width);
@@ -124,13 +134,17 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
 
 // Light from a petal or disc to the eye.
 fn lit(stem: Blade, p: vec3<f32>, normal: vec3<f32>, albedo: vec3<f32>) -> vec3<f32> {
+    return albedo * light_on(stem, p, normal) * stem.air.a + stem.air.rgb;
+}
+
+// Light that a white petal or disc sends to the eye.
+fn light_on(stem: Blade, p: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let view = normalize(p - frame.eye_m);
     let light = stem.sunlight;
     let facing = dot(normal, frame.toward_sun);
     let diffuse = clamp((facing + 0.3) / 1.3, 0.0, 1.0);
     let through = 0.35 * max(dot(view, frame.toward_sun), 0.0) * clamp(0.5 - facing, 0.0, 1.0);
-    let color = albedo * (frame.sun_rgb * light * (diffuse + through) * 0.85 + ambient(normal) + lamps_on(p, normal, 0.3));
-    return color * stem.air.a + stem.air.rgb;
+    return frame.sun_rgb * light * (diffuse + through) * 0.85 + ambient(normal) + lamps_on(p, normal, 0.3);
 }
 
 // Far head as a disc: a centre and six vertices on its rim.
@@ -151,6 +165,58 @@ fn vs_disc(@builtin(vertex_index) index: u32, @builtin(instance_index) instance:
     let p = head.at + (head.right * cos(angle) + head.ahead * sin(angle)) * reach + head.axis * rise;
     let albedo = select(mix(kind.base, kind.tip, 0.7), mix(kind.base, kind.disc_rgb, 0.6), rim == 0u);
     return shown(stem, p, head.axis, albedo);
+}
+
+// Largest tilt of a textured flower from upright.
+const TILT: f32 = 0.45;
+
+struct Square {
+    @builtin(position) position: vec4<f32>,
+    // Light on a white square that reaches the eye, and the light of the air before it.
+    @location(0) light: vec3<f32>,
+    @location(1) air: vec3<f32>,
+    // Place in the texture, with the squares of all kinds side by side.
+    @location(2) place: vec2<f32>,
+}
+
+// Near head as a square across the upward direction, tilted at random and by the stem (Zhang, section 3.3).
+@vertex
+fn vs_square(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Square {
+    let number = number_of(index, instance, SQUARE_VERTICES);
+    var out: Square;
+    if !is_listed(number) {
+        out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+        return out;
+    }
+    let corner = vec2<f32>(f32(index % 2u), f32(index % SQUARE_VERTICES / 2u)) * 2.0 - 1.0;
+    let stem = listed(number);
+    let head = head_of(stem);
+    let kind = clamp(stem.kind_and_hue, 0.0, 0.999) * f32(FLOWER_KINDS);
+    let own = fract(vec2<f32>(kind * 71.3, kind * 193.7)) * 2.0 - 1.0;
+    let stem_lean = normalize(stem.tip_m - stem.middle_m).xz;
+    let axis = normalize(vec3<f32>(TILT * own.x + stem_lean.x, 1.0, TILT * own.y + stem_lean.y));
+    let right = normalize(cross(axis, vec3<f32>(0.31, 0.17, 0.93)));
+    let turn = stem.side_rad;
+    let across = right * cos(turn) + cross(right, axis) * sin(turn);
+    let half_m = 0.5 * FLOWER_SQUARE * head.kind.length_m * head.size;
+    let p = head.at + (across * corner.x + cross(across, axis) * corner.y) * half_m;
+    out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
+    out.light = light_on(stem, p, axis) * stem.air.a;
+    out.air = stem.air.rgb;
+    out.place = vec2<f32>((floor(kind) + 0.5 + 0.5 * corner.x) / f32(FLOWER_KINDS), 0.5 + 0.5 * corner.y);
+    return out;
+}
+
+// Square roots of the linear colours of the flowers, and their coverage.
+@group(1) @binding(3) var flowers: texture_2d<f32>;
+
+@fragment
+fn fs_square(square: Square) -> @location(0) vec4<f32> {
+    let texel = textureSample(flowers, clamped, square.place);
+    if texel.a < 0.5 {
+        discard;
+    }
+    return vec4<f32>(texel.rgb * texel.rgb * square.light + square.air, 1.0);
 }
 
 @fragment

@@ -29,6 +29,7 @@ mod bare;
 mod branches;
 mod constants;
 mod cracks;
+mod flowers;
 mod lees;
 mod light;
 mod natural_wind;

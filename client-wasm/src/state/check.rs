@@ -57,6 +57,10 @@ fn check_world(scene: &Scene) -> Result<(), MirrorError> {
     within("terrain.base_m", scene.terrain.base_m, -20_000.0, 20_000.0)?;
     within("plants.grid_m", plants.grid_m, 1.0, 64.0)?;
     within("plants.plants_per_side", plants.plants_per_side as f32, 2.0, 256.0)?;
+    within("plants.near_ratio", plants.near_ratio, 1.0, 5.0)?;
+    for segments in plants.blade_segments {
+        within("plants.blade_segments", segments as f32, 0.0, 12.0)?;
+    }
     within("plants.height_variation", plants.height_variation, 0.0, 0.9)?;
     within("plants.width_m", plants.width_m, 0.001, 0.5)?;
     within("plants.flowers_per_m2", plants.flowers_per_m2, 0.0, 50.0)?;

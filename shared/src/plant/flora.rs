@@ -2,7 +2,6 @@
 
 use super::growth::{Grown, NutrientMap, Permission, Plant, Sites, Soil, grow};
 use super::underbrush::plan::Plan;
-use super::underbrush::posture::Nodes;
 use crate::hash::{folded, hash3};
 use crate::scene::{Component, Scene, Underbrush};
 use crate::terrain::CoverMap;
@@ -48,7 +47,7 @@ impl Flora {
             Permission::new(cover, scene.is_grass(cover), &species)
         };
         let grown = grow(sites, soil, &species, &heights_m, scene.growth.shade, ground);
-        let plans = species.iter().map(|species| Plan::new(species, Nodes::default())).collect();
+        let plans = species.iter().map(|species| Plan::new(species, species.posture_nodes())).collect();
         Some(Self { grown, species, plans, seed: folded(scene.seed) })
     }
 
@@ -122,6 +121,7 @@ fn rise_m(component: &Component) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::underbrush::posture::Nodes;
     use super::*;
     use crate::scene::{ComponentKind, parse};
     use crate::terrain::grey_png;

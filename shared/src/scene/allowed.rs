@@ -2,7 +2,7 @@
 
 use super::objects::OBJECT_FIELDS;
 use super::{
-    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, GATES_LIMIT, LAMPS_LIMIT, LagWay, PlantCover, PrimitiveKind,
+    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, FlowerShape, GATES_LIMIT, LAMPS_LIMIT, LagWay, PlantCover, PrimitiveKind,
     SPECIES_LIMIT, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, GroundContact, Scheme, Seams};
@@ -121,6 +121,8 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("plants.cover", OneOf(PlantCover::WORDS)),
     ("plants.grid_m", Range(1.0, 64.0)),
     ("plants.plants_per_side", Range(2.0, 256.0)),
+    ("plants.near_ratio", Range(1.0, 5.0)),
+    ("plants.blade_segments", Range(0.0, 12.0)),
     ("plants.height_m", Range(0.02, 5.0)),
     ("plants.height_variation", Range(0.0, 0.9)),
     ("plants.width_m", Range(0.001, 0.5)),
@@ -131,6 +133,7 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("plants.stone_m", Range(0.05, 20.0)),
     ("plants.lag", OneOf(LagWay::WORDS)),
     ("plants.blade_shape", OneOf(BladeShape::WORDS)),
+    ("plants.flower_shape", OneOf(FlowerShape::WORDS)),
     ("plants.swing_hz", Range(0.05, 50.0)),
     ("plants.swing_damping", Range(0.005, 5.0)),
     ("plants.integrator", OneOf(BladeIntegrator::WORDS)),
@@ -143,6 +146,8 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("underbrush.name", Name),
     ("underbrush.cover", Range(0.0, 252.0)),
     ("underbrush.settle_secs", Range(0.0, 10.0)),
+    ("underbrush.posture_angles", Range(2.0, 65.0)),
+    ("underbrush.posture_loads", Range(2.0, 65.0)),
     ("underbrush.size_variation", Range(0.0, 0.9)),
     ("underbrush.room_m", Range(0.05, 20.0)),
     ("underbrush.reach_m", Range(0.0, 50.0)),

@@ -34,6 +34,16 @@ words! {
 }
 
 words! {
+    /// Shape of a flower head near the camera.
+    FlowerShape {
+        /// Petals around a disc.
+        Modelled = "modelled",
+        /// A tilted square with one of six textures (Zhang §3.3).
+        Textured = "textured",
+    }
+}
+
+words! {
     /// Time integration of a blade's swing.
     BladeIntegrator {
         /// Explicit Euler; first order, and gains energy where damping is weak.
@@ -54,9 +64,14 @@ pub struct Plants {
     pub cover: PlantCover,
     /// Side of a grass grid (m), the unit of level of detail (Zhang §3.1.2). Default 8, allowed 1..=64.
     pub grid_m: f32,
-    /// Plants along one side of a grass grid, n of Zhang Eq. (9), which determines the levels of detail; near the camera there are five times as many
-    /// blades along a side, up to 60 000 plants a grid. Default 32, allowed 2..=256.
+    /// Plants along one side of a grass grid, n of Zhang Eq. (9), which determines the levels of detail. Default 32, allowed 2..=256.
     pub plants_per_side: u32,
+    /// Blades along one side of a grid near the camera, relative to `plants_per_side`; up to 60 000 plants a grid are drawn. 1 is Zhang's prairie, whose
+    /// ground shows between the blades; 5 closes the sward. Default 5, allowed 1..=5.
+    pub near_ratio: f32,
+    /// Straight segments of a near and of a farther blade, one less than its backbone points (Zhang §3.1.1); 0: the quality of the picture decides.
+    /// Default (0, 0), allowed 0..=12 each.
+    pub blade_segments: [u32; 2],
     /// Mean height of a blade (m). Default 0.8, allowed 0.02..=5.
     pub height_m: f32,
     /// Random variation of the height, plus or minus, as a fraction. Default 0.35, allowed 0..=0.9.
@@ -78,6 +93,9 @@ pub struct Plants {
     pub lag: LagWay,
     /// Shape of single blades (Zhang Fig. 5): `simple`, a strip that tapers; `textured`, five shapes with a texture's alpha, mixed. Default `simple`.
     pub blade_shape: BladeShape,
+    /// Shape of flower heads near the camera: `modelled`, petals around a disc; `textured`, a tilted square with one of six textures (Zhang §3.3).
+    /// Default `modelled`.
+    pub flower_shape: FlowerShape,
     /// Natural frequency of a blade of mean height (Hz); inversely proportional to the height. Default 1.55, allowed 0.05..=50.
     pub swing_hz: f32,
     /// Damping ratio of its swing (1 is critical damping). Default 0.1, allowed 0.005..=5.
@@ -93,6 +111,8 @@ impl Default for Plants {
             cover: PlantCover::Blades,
             grid_m: 8.0,
             plants_per_side: 32,
+            near_ratio: 5.0,
+            blade_segments: [0; 2],
             height_m: 0.8,
             height_variation: 0.35,
             width_m: 0.02,
@@ -103,6 +123,7 @@ impl Default for Plants {
             stone_m: 0.8,
             lag: LagWay::Upwind,
             blade_shape: BladeShape::Simple,
+            flower_shape: FlowerShape::Modelled,
             swing_hz: 1.55,
             swing_damping: 0.1,
             integrator: BladeIntegrator::Exact,

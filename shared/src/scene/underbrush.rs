@@ -1,6 +1,7 @@
 //! Species of underbrush: plants made of leaves, branches and flowers (Endo et al. 2003, §3).
 
 use super::wind::words;
+use crate::plant::underbrush::posture::Nodes;
 use serde::{Deserialize, Serialize};
 
 words! {
@@ -103,6 +104,11 @@ pub struct Underbrush {
     /// Time constant τ with which its plants follow a force (s), Endo et al. 2003, Eq. (5); 0: 1/ω₁ of the longest component on the ground, from its
     /// rigidity, mass, length and load, limited to 0.01..=10. Default 0, allowed 0..=10.
     pub settle_secs: f32,
+    /// Number of angles between its components and their load for which postures are precomputed (Endo et al. 2003, §4.2); memory and time to start
+    /// grow in proportion, the error falls as [`Nodes`](crate::plant::underbrush::posture::Nodes) says. Default 33, allowed 2..=65.
+    pub posture_angles: u32,
+    /// Number of loads for which postures are precomputed, from none to one that aligns a component with it. Default 33, allowed 2..=65.
+    pub posture_loads: u32,
     /// Random variation of the unbent size, plus or minus, as a fraction. Default 0.25, allowed 0..=0.9.
     pub size_variation: f32,
     /// Smallest distance between plants of this species (m); to another species half the sum of both. Default 0.5, allowed 0.05..=20.
@@ -129,6 +135,8 @@ impl Underbrush {
             name: name.to_owned(),
             cover: 0,
             settle_secs: 0.0,
+            posture_angles: 33,
+            posture_loads: 33,
             size_variation: 0.25,
             room_m: 0.5,
             reach_m: 1.5,
@@ -138,6 +146,11 @@ impl Underbrush {
             light_need: 0.3,
             components,
         }
+    }
+
+    /// Size of its posture tables.
+    pub fn posture_nodes(&self) -> Nodes {
+        Nodes { angles: self.posture_angles as usize, loads: self.posture_loads as usize }
     }
 
     /// Index of the branch that carries the component at `index`, which comes before it; `None` on the ground, or if there is no such branch.

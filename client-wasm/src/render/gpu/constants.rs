@@ -2,11 +2,16 @@
 
 use std::fmt;
 
+use crate::render::plants::flower_kinds;
 use glam::Vec3;
 use prairie_core::lod;
 use prairie_core::plant::blade::{self, Integrator, deflection};
 use prairie_core::plant::underbrush::{drops, posture};
 
+pub(crate) use crate::render::plants::flower_kinds::{
+    FLOWER_BASE_RGB, FLOWER_DISC_M, FLOWER_DISC_RGB, FLOWER_PETAL_M, FLOWER_PETAL_WIDTH, FLOWER_PETALS, FLOWER_RISE_RAD, FLOWER_SQUARE,
+    FLOWER_TIP_RGB, PETAL_ACROSS, PETAL_ALONG, PETAL_FLATTENS,
+};
 pub(crate) use prairie_core::bend::BEND_SATURATES_M_PER_S;
 pub(crate) use prairie_core::hash::{HASH_INCREMENT, HASH_MULTIPLIER, UNIT_STEPS};
 pub(crate) use prairie_core::light::air::HAZE_FORWARD;
@@ -87,6 +92,9 @@ pub(crate) const PETAL_VERTICES: u32 = 5;
 pub(crate) const DISC_VERTICES: u32 = 7;
 /// Vertices of a flower head: petals, then the disc.
 pub(crate) const HEAD_VERTICES: u32 = PETALS * PETAL_VERTICES + DISC_VERTICES;
+/// Kinds of flowers, and vertices of the square of a textured one.
+pub(crate) const FLOWER_KINDS: u32 = flower_kinds::FLOWER_KINDS as u32;
+pub(crate) const SQUARE_VERTICES: u32 = 4;
 /// Cells along the side of a grid whose order is precomputed.
 pub(crate) const ORDER_CELLS: u32 = 64;
 

@@ -170,7 +170,7 @@ impl From<&wind::turbulence::GustWave> for GustWave {
 fn leaf_area(plants: &Plants) -> f32 {
     /// Area of a blade relative to its height times the width of its root.
     const LEAF_FRACTION: f32 = 0.65;
-    let per_m2 = blades_per_grid(plants.plants_per_side) / plants.grid_m.powi(2);
+    let per_m2 = blades_per_grid(plants) / plants.grid_m.powi(2);
     per_m2 * LEAF_FRACTION * plants.height_m * plants.width_m
 }
 

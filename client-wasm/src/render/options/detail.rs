@@ -29,8 +29,6 @@ pub(crate) struct Detail {
 
 /// Maximum number of plants of a grid near the camera.
 pub(crate) const PLANTS_LIMIT: f32 = 60_000.0;
-/// Blades along a side of a grid, relative to the scene's setting, so that the sward looks closed. All levels draw the same blades near the camera.
-const DENSE: f32 = 5.0;
 
 impl Detail {
     /// Geometric interpolation from `self` (fraction 0) to `other` (fraction 1).
@@ -53,7 +51,7 @@ impl Detail {
     pub(crate) fn on(self, plants: &Plants) -> Self {
         /// Plant density (1/m²) for which the distances of the presets are tuned.
         const USUAL_PER_M2: f32 = 410.0;
-        let per_m2 = (blades_per_grid(plants.plants_per_side) / plants.grid_m.powi(2) + plants.flowers_per_m2).max(USUAL_PER_M2);
+        let per_m2 = (blades_per_grid(plants) / plants.grid_m.powi(2) + plants.flowers_per_m2).max(USUAL_PER_M2);
         let nearer = if self.full_m < self.blades_m { (USUAL_PER_M2 / per_m2).sqrt() } else { 1.0 };
         let rarer = if self.heads_m < self.blades_m { plants.flowers_per_m2.max(1.0).sqrt() } else { 1.0 };
         Self { full_m: self.full_m * nearer, fine_m: self.fine_m * nearer, heads_m: self.heads_m / rarer, ..self }
@@ -71,7 +69,7 @@ impl Detail {
     }
 }
 
-/// Blades of a grid near the camera, where the scene sets `plants_per_side`.
-pub(crate) fn blades_per_grid(plants_per_side: u32) -> f32 {
-    (plants_per_side as f32 * DENSE).round().powi(2).min(PLANTS_LIMIT)
+/// Blades of a grid near the camera, the same at all levels.
+pub(crate) fn blades_per_grid(plants: &Plants) -> f32 {
+    (plants.plants_per_side as f32 * plants.near_ratio).round().powi(2).min(PLANTS_LIMIT)
 }

@@ -5,6 +5,7 @@ pub(crate) mod blades;
 pub(crate) mod blending;
 pub(crate) mod clump_pipelines;
 pub(crate) mod clump_texture;
+pub(crate) mod flower_kinds;
 pub(crate) mod force_field;
 pub(crate) mod obstacles;
 pub(crate) mod per_blend_order;

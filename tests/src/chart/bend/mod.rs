@@ -4,11 +4,13 @@
 //! |---|---|
 //! | `waves` | error against time: a standing wave, a pulse, a car with a speed that follows the bend |
 //! | `cars` | cost against the number of moving cars |
+//! | `interactions` | the four interactions of Chen & Johan; clusters in a step, beside methods that go cluster by cluster |
 //! | `failures` | where each scheme is accurate, inaccurate or blows up |
 //! | `overlap` | error of the loose overlap of Chen & Johan |
 
 mod cars;
 mod failures;
+mod interactions;
 mod overlap;
 mod waves;
 
@@ -16,8 +18,9 @@ use super::Problem;
 use super::figure::Figure;
 
 /// All figures other than error against time.
-pub const FIGURES: [Figure; 3] = [
+pub const FIGURES: [Figure; 4] = [
     Figure { name: "cars", title: "Cost of moving cars", draw: cars::draw },
+    Figure { name: "interactions", title: "The four interactions", draw: interactions::draw },
     Figure { name: "failures", title: "Where each scheme fails", draw: failures::draw },
     Figure { name: "overlap", title: "Error of the loose overlap", draw: overlap::draw },
 ];

@@ -1,12 +1,13 @@
 //! Buffers of the blades, and the bind groups made of them.
 
-use super::layout::{BLADE_BYTES, LISTS, NEAR_SLOTS, STRIPS, SWAY_BYTES, index_count, list_layout};
-use super::strips::{disc_indices, head_indices, strip_indices};
+use super::layout::{BLADE_BYTES, HEADS, LISTS, NEAR_SLOTS, STRIPS, SWAY_BYTES, index_count, list_layout};
+use super::strips::{disc_indices, head_indices, square_indices, strip_indices};
 use crate::render::gpu::constants::{COARSE_LIST, FAR_HEAD_LIST, FINE_LIST, HEAD_LIST, SINGLE_LIST};
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{PassFactory, bind, bind_at};
 use crate::render::gpu::uniforms::{Plants, StripList};
 use crate::render::plants::force_field::CameraForceField;
+use prairie_core::scene::FlowerShape;
 use wgpu::BufferUsages;
 
 pub(super) struct BladeBuffers {
@@ -56,7 +57,7 @@ impl BladeBuffers {
         factory: &PassFactory,
         [fine, others, heads]: [u32; 3],
         segments: [u32; 2],
-        shapes: &wgpu::TextureView,
+        [shapes, flowers]: [&wgpu::TextureView; 2],
     ) -> [wgpu::BindGroup; LISTS] {
         let layout = list_layout(factory);
         let lists = [
@@ -67,9 +68,10 @@ impl BladeBuffers {
             strip_list(fine + others + heads - 1, heads, 0, FAR_HEAD_LIST, -1),
         ];
         lists.map(|list| {
+            let texture = if HEADS.contains(&(list.number as usize)) { flowers } else { shapes };
             let list = factory.gpu.buffer("list", bytemuck::bytes_of(&list), BufferUsages::UNIFORM);
             let [drawn, counters, list] = [&self.drawn, &self.counters, &list].map(|buffer| buffer.as_entire_binding());
-            bind(&factory.gpu, "plant list", &layout, &[drawn, counters, list, wgpu::BindingResource::TextureView(shapes)])
+            bind(&factory.gpu, "plant list", &layout, &[drawn, counters, list, wgpu::BindingResource::TextureView(texture)])
         })
     }
 }
@@ -82,11 +84,15 @@ pub(super) struct InstanceIndices {
 }
 
 impl InstanceIndices {
-    /// Index buffers for fine and coarse blades with these numbers of segments.
-    pub(super) fn new(gpu: &Gpu, [fine, coarse]: [u32; 2]) -> Self {
+    /// Index buffers for fine and coarse blades with these numbers of segments, and for near flowers of a shape.
+    pub(super) fn new(gpu: &Gpu, [fine, coarse]: [u32; 2], flowers: FlowerShape) -> Self {
         let buffer = |list: Vec<u16>| gpu.buffer("plant", bytemuck::cast_slice(&list), BufferUsages::INDEX);
         let strips = |are_pointed| [fine, coarse, 1].map(|segments| buffer(strip_indices(segments, are_pointed)));
-        Self { strips: [false, true].map(strips), heads: [head_indices(), disc_indices()].map(buffer) }
+        let near_heads = match flowers {
+            FlowerShape::Modelled => head_indices(),
+            FlowerShape::Textured => square_indices(),
+        };
+        Self { strips: [false, true].map(strips), heads: [near_heads, disc_indices()].map(buffer) }
     }
 
     /// Indirect draws of all lists, without instances, for blades with broad tips.

@@ -4,6 +4,7 @@
 mod buffers;
 mod culling;
 mod far_grids;
+mod flower_texture;
 mod layout;
 mod lowest_land;
 mod shape_texture;
@@ -32,7 +33,7 @@ pub(crate) use far_grids::{grid_is_seen, square_is_seen};
 use layout::{BATCH_LIMIT, CHUNK, HEADS, LISTED_LIMIT, LISTS, NEAR_SLOTS, density, index_count, list_layout, storage_compute};
 #[cfg(test)]
 pub(crate) use layout::{BLADE_BYTES, SWAY_BYTES};
-use prairie_core::scene::{BLADE_STEPS_LIMIT, BladeShape, Plants as PlantSettings};
+use prairie_core::scene::{BLADE_STEPS_LIMIT, BladeShape, FlowerShape, Plants as PlantSettings};
 use std::f32::consts::{PI, TAU};
 use strip_pipelines::{BladeDrawList, StripPipelines};
 
@@ -93,9 +94,9 @@ impl Blades {
         let (detail, grid_m, places) = (quality.detail().on(plants), plants.grid_m, plants_per_grid(decoded));
         let (capacities, by_batches) = list_capacities(plants, &detail, places);
         let grids = FarGrids::new(factory, decoded, &detail, places, by_batches);
-        let segments = quality.segments();
+        let segments = segments_of(plants, quality);
         let buffers = BladeBuffers::new(gpu, places, capacities);
-        let indices = InstanceIndices::new(gpu, segments);
+        let indices = InstanceIndices::new(gpu, segments, plants.flower_shape);
         let bend = factory.shader("bend", shaders::BEND, &[]);
         let culling = PlantCulling::new(factory, &bend, &buffers.plants, &grids, places);
         let draws = indices.draws(gpu);
@@ -103,7 +104,8 @@ impl Blades {
         let compute_group = buffers.compute_group(gpu, &compute_layout, [grids.chunks(), &draws, culling.standing()], forces);
         let shapes = gpu.texture("blades", wgpu::TextureFormat::Rgba8Unorm, shape_texture::BLADE_PX, &shape_texture::blade_shapes());
         let shapes = shapes.create_view(&Default::default());
-        let lists = buffers.list_groups(factory, capacities, segments, &shapes);
+        let flowers = flower_squares(gpu, plants.flower_shape);
+        let lists = buffers.list_groups(factory, capacities, segments, [&shapes, flowers.as_ref().unwrap_or(&shapes)]);
         let are_textured = plants.blade_shape == BladeShape::Textured;
         let [fine, others, _] = capacities;
         let listed = BladeDrawList {
@@ -121,7 +123,7 @@ impl Blades {
             finish: factory.compute("finish", &bend, "finish", &compute_layout),
             strip_pipelines: PerBlendOrder::new(BlendOrder::default(), StripPipelines::new(factory, BlendOrder::default(), &listed)),
             listed,
-            heads: head_pipelines(factory),
+            heads: head_pipelines(factory, plants.flower_shape),
             uniforms: buffers.plants,
             #[cfg(test)]
             sways: buffers.sways,
@@ -317,13 +319,31 @@ fn bend_pipelines(factory: &PassFactory, layout: &wgpu::BindGroupLayout) -> Sphe
     })
 }
 
+/// Texture of near flower heads, if they have one.
+fn flower_squares(gpu: &Gpu, shape: FlowerShape) -> Option<wgpu::TextureView> {
+    let levels = (shape == FlowerShape::Textured).then(flower_texture::flowers)?;
+    let texture = gpu.texture("flowers", wgpu::TextureFormat::Rgba8Unorm, flower_texture::FLOWERS_PX, &levels);
+    Some(texture.create_view(&Default::default()))
+}
+
+/// Segments of near and of farther blades: those of the scene, or else of the quality.
+fn segments_of(plants: &PlantSettings, quality: Quality) -> [u32; 2] {
+    let [near, farther] = plants.blade_segments;
+    let [fine, coarse] = quality.segments();
+    [if near > 0 { near } else { fine }, if farther > 0 { farther } else { coarse }]
+}
+
 /// Pipelines of near and of far flower heads.
-fn head_pipelines(factory: &PassFactory) -> LampVariants<[wgpu::RenderPipeline; 2]> {
+fn head_pipelines(factory: &PassFactory, shape: FlowerShape) -> LampVariants<[wgpu::RenderPipeline; 2]> {
     let (factory, layout) = (factory.clone(), list_layout(factory));
+    let near = match shape {
+        FlowerShape::Modelled => ("vs", "fs"),
+        FlowerShape::Textured => ("vs_square", "fs_square"),
+    };
     LampVariants::new(move |lamps| {
         let flowers = factory.shader("flowers", shaders::FLOWERS, &lamps);
-        ["vs", "vs_disc"].map(|vertex| {
-            let draw = DrawDescriptor { label: "flowers", vertex, ..DrawDescriptor::default() };
+        [near, ("vs_disc", "fs")].map(|(vertex, fragment)| {
+            let draw = DrawDescriptor { label: "flowers", vertex, fragment: Some(fragment), ..DrawDescriptor::default() };
             factory.draw(&flowers, Some(&layout), &draw)
         })
     })
@@ -333,7 +353,7 @@ fn head_pipelines(factory: &PassFactory) -> LampVariants<[wgpu::RenderPipeline; 
 fn plants_per_grid(decoded: &DecodedScene) -> u32 {
     let plants = &decoded.scene().plants;
     let flowers = plants.flowers_per_m2 * plants.grid_m * plants.grid_m;
-    (blades_per_grid(plants.plants_per_side) + flowers).round().min(PLANTS_LIMIT) as u32
+    (blades_per_grid(plants) + flowers).round().min(PLANTS_LIMIT) as u32
 }
 
 /// Factor c for which `flowers` of `plants` are flowers on average, if plant i is one with the probability min(1, c·(i + 1)^[`FLOWER_POWER`]).

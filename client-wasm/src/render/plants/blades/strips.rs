@@ -1,7 +1,7 @@
 //! Index lists of the instances of single plants.
 
 use super::layout::CHUNK;
-use crate::render::gpu::constants::{DISC_VERTICES, HEAD_VERTICES, PETAL_VERTICES, PETALS};
+use crate::render::gpu::constants::{DISC_VERTICES, HEAD_VERTICES, PETAL_VERTICES, PETALS, SQUARE_VERTICES};
 
 /// Triangles of 64 blades with `segments` rectangles each; the last one of a pointed blade is a triangle.
 pub(super) fn strip_indices(segments: u32, are_pointed: bool) -> Vec<u16> {
@@ -35,6 +35,11 @@ pub(super) fn head_indices() -> Vec<u16> {
 /// Triangles of 64 disc-shaped flower heads.
 pub(super) fn disc_indices() -> Vec<u16> {
     (0..CHUNK).flat_map(|head| disc(head * DISC_VERTICES)).collect()
+}
+
+/// Triangles of 64 square flower heads.
+pub(super) fn square_indices() -> Vec<u16> {
+    (0..CHUNK).flat_map(|head| [0, 1, 2, 2, 1, 3].map(|corner| (head * SQUARE_VERTICES + corner) as u16)).collect()
 }
 
 /// Triangles of a disc around vertex `centre`; its rim are the following vertices.
@@ -71,7 +76,7 @@ mod tests {
     #[test]
     fn indices_stay_within_their_chunk() {
         let strips = [(strip_indices(7, false), 16), (strip_indices(3, false), 8), (strip_indices(7, true), 15)];
-        let heads = [(head_indices(), HEAD_VERTICES), (disc_indices(), DISC_VERTICES)];
+        let heads = [(head_indices(), HEAD_VERTICES), (disc_indices(), DISC_VERTICES), (square_indices(), SQUARE_VERTICES)];
         for (list, vertices) in strips.into_iter().chain(heads) {
             let largest = u32::from(*list.iter().max().expect("indices"));
             assert_eq!(largest, CHUNK * vertices - 1);
