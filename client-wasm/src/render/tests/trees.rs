@@ -87,8 +87,8 @@ fn light_of_crown(picture: &mut OffscreenRenderer, mirror: &mut Mirror, tree: &P
     for heading_rad in [-0.1, 0.0, 0.1_f32] {
         let eye_m = middle_m + distance_m * Vec3::new(-heading_rad.sin(), 0.0, heading_rad.cos());
         let camera = Camera { eye_m, heading_rad, ..Camera::default() };
-        // Shadows of a cascade that the camera has left are drawn in a later frame.
-        for _ in 0..4 {
+        // The force field of the wind about the camera settles in the first frame.
+        for _ in 0..2 {
             picture.draw(mirror, &camera, 0.0, 0.0);
         }
         let rgba = picture.rgba();
