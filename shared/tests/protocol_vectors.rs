@@ -157,7 +157,8 @@ fn shapes() -> Shapes {
 }
 
 /// Sections of a scene file in which no list is empty.
-const FILLED: &str = "[[wind.primitives]]\nkind = 'source'\nat_m = [1, 2, 3]\n[[species]]\nname = 'a'\ncover = 1\n\
+const FILLED: &str = "[[wind.primitives]]\nkind = 'source'\nat_m = [1, 2, 3]\nintensity = 'spline'\nperiod_secs = 9\n\
+    intensity_points = [[1, 1], [2, 0.5]]\n[[species]]\nname = 'a'\ncover = 1\n\
     [[underbrush]]\nname = 'b'\n[[underbrush.components]]\nname = 'c'\nkind = 'branch'\n\
     [[underbrush.components]]\nname = 'd'\nkind = 'leaf'\non = 'c'\n\
     [[drawn_winds]]\nshape = 'swirl'\npath_m = [[1, 2]]\n[[lights]]\nat_m = [1, 2, 3]\n\

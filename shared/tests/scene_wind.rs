@@ -1,6 +1,8 @@
 //! The wind in scene files: defaults follow from the method, valid combinations are accepted, others rejected.
 
-use prairie_core::scene::{Primitive, PrimitiveKind, Scene, Wind, WindAdvection, WindBoundary, WindDust, WindMethod, WindPressure, parse};
+use prairie_core::scene::{
+    Primitive, PrimitiveIntensity, PrimitiveKind, Scene, Wind, WindAdvection, WindBoundary, WindDust, WindMethod, WindPressure, parse,
+};
 
 fn scene(more: &str) -> Result<Scene, Vec<String>> {
     let maps = "summary = 's'\n[terrain]\nheight_map = 'h.png'\ncovering_map = 'c.png'\npixel_m = [2, 2]\nlevel_m = 0.1\n";
@@ -106,7 +108,7 @@ fn primitives_are_read_in_order() {
         dust: 1.0,
         ..Primitive::new(PrimitiveKind::Uniform, [256.0, 16.0, 256.0])
     };
-    assert_eq!(wind(list).primitives, [vortex, uniform]);
+    assert_eq!(wind(list).primitives, [vortex.clone(), uniform]);
     assert_eq!(wind("[wind]\nprimitives = [{ kind = 'vortex', at_m = [1, 2, 3] }]\n").primitives, [vortex]);
     assert_eq!(wind("[wind]\nprimitives = []\n").primitives, []);
     let written = scene(list).unwrap().to_toml();
@@ -146,4 +148,102 @@ fn faces_at_the_bottom_and_the_top_are_limited_to_the_listed_conditions() {
             }
         }
     }
+}
+
+/// A section of a primitive with these fields.
+fn primitive(fields: &str) -> String {
+    format!("[[wind.primitives]]\nkind = 'source'\nat_m = [1, 2, 3]\n{fields}\n")
+}
+
+#[test]
+fn intensities_are_read_and_sent() {
+    let steady = Primitive::new(PrimitiveKind::Source, [1.0, 2.0, 3.0]);
+    assert_eq!(wind(&primitive("")).primitives, [steady.clone()]);
+    let gust = Primitive {
+        intensity: PrimitiveIntensity::Gust,
+        attack_secs: 0.6,
+        hold_secs: 0.4,
+        fall_secs: 3.0,
+        period_secs: 4.0,
+        front_m_per_s: 8.0,
+        step_m: 2.0,
+        ..steady.clone()
+    };
+    let of_gust = "attack_secs = 0.6\nhold_secs = 0.4\nfall_secs = 3\nperiod_secs = 4\nfront_m_per_s = 8\nstep_m = 2";
+    assert_eq!(wind(&primitive(&format!("intensity = 'gust'\n{of_gust}"))).primitives, [gust.clone()], "decimal fractions fill a period");
+    let cubic = Primitive { intensity: PrimitiveIntensity::Cubic, ..gust };
+    assert_eq!(wind(&primitive(&format!("intensity = 'cubic'\n{of_gust}"))).primitives, [cubic]);
+    assert_eq!(wind(&primitive("intensity = 'gust'\nfall_secs = 1")).primitives[0].period_secs, 0.0, "it happens once");
+    assert_eq!(wind(&primitive("intensity = 'periodic'\nperiod_secs = 7")).primitives[0].period_secs, 7.0);
+    let spline = Primitive {
+        intensity: PrimitiveIntensity::Spline,
+        period_secs: 9.0,
+        intensity_points: vec![[0.0, 0.0], [1.5, 2.0], [8.9, 0.5]],
+        ..steady
+    };
+    let of_spline = primitive("intensity = 'spline'\nperiod_secs = 9\nintensity_points = [[0, 0], [1.5, 2], [8.9, 0.5]]");
+    assert_eq!(wind(&of_spline).primitives, [spline]);
+    let read = scene(&of_spline).unwrap();
+    assert_eq!(parse(&read.to_toml()).unwrap(), read);
+    assert_eq!(postcard::from_bytes::<Scene>(&postcard::to_stdvec(&read).unwrap()).unwrap(), read);
+}
+
+#[test]
+fn fields_that_do_not_fit_an_intensity_are_rejected() {
+    for (fields, message) in [
+        ("attack_secs = 1", "attack_secs` is 1; allowed with `intensity = \"steady\"`: 0, since that has no use for it"),
+        ("front_m_per_s = 8", "front_m_per_s` is 8; allowed with `intensity = \"steady\"`: 0, since that has no use for it"),
+        (
+            "intensity = 'gust'",
+            "attack_secs` is 0, and so are `hold_secs` and `fall_secs`; allowed with `intensity = \"gust\"`: one of them above 0",
+        ),
+        (
+            "intensity = 'cubic'\nattack_secs = 1\nhold_secs = 1\nfall_secs = 3\nperiod_secs = 4",
+            "period_secs` is 4; allowed: 0, or at least attack_secs + hold_secs + fall_secs, which is 5",
+        ),
+        ("intensity = 'gust'\nfall_secs = 1\nstep_m = 2", "step_m` is 2; allowed with `front_m_per_s = 0`: 0, since nothing is delayed"),
+        ("intensity = 'periodic'", "period_secs` is 0; allowed with `intensity = \"periodic\"`: above 0, since it repeats"),
+        (
+            "intensity = 'periodic'\nperiod_secs = 1\nhold_secs = 1",
+            "hold_secs` is 1; allowed with `intensity = \"periodic\"`: 0, since that has no use for it",
+        ),
+        (
+            "intensity = 'periodic'\nperiod_secs = 2\nintensity_points = [[0, 0], [1, 1]]",
+            "intensity_points` is a list of 2; allowed with `intensity = \"periodic\"`: an empty one, since only \"spline\" has points",
+        ),
+        (
+            "intensity = 'spline'\nperiod_secs = 2",
+            "intensity_points` is a list of 0; allowed with `intensity = \"spline\"`: 2 to 32 points",
+        ),
+        (
+            "intensity = 'spline'\nperiod_secs = 2\nintensity_points = [[0, 0], [1, 1], [1, 2]]",
+            "intensity_points[2]` is at 1 s; allowed: after 1 s, the time of the point before",
+        ),
+        (
+            "intensity = 'spline'\nperiod_secs = 2\nintensity_points = [[0, 0], [2, 1]]",
+            "intensity_points[1]` is at 2 s; allowed: before `period_secs`, 2 s, when the first point comes again",
+        ),
+    ] {
+        assert_eq!(fault(&primitive(fields)), format!("`wind.primitives[0].{message}"), "{fields}");
+    }
+}
+
+#[test]
+fn single_points_are_checked() {
+    let spline = |points: &str| fault(&primitive(&format!("intensity = 'spline'\nperiod_secs = 99\nintensity_points = {points}")));
+    for (points, message) in [
+        ("[[0, nan], [1, 1]]", "intensity_points[0][1]` is nan; allowed: 0 to 2"),
+        ("[[0, 0], [1, 2.5]]", "intensity_points[1][1]` is 2.5; allowed: 0 to 2"),
+        ("[[0, 0], [-1, 1]]", "intensity_points[1][0]` is -1; allowed: 0 to 86400"),
+        ("[[0, 0], [3]]", "intensity_points[1]` is a list of 1; expected a point [secs, intensity]"),
+        ("[[0, 0], 3]", "intensity_points[1]` is the number 3; expected a point [secs, intensity]"),
+        (
+            "3",
+            "intensity_points` is the number 3; expected a list of 0 to 32 points [secs, intensity], seconds 0 to 86400 and intensity 0 to 2",
+        ),
+    ] {
+        assert_eq!(spline(points), format!("`wind.primitives[0].{message}"), "{points}");
+    }
+    let many = format!("[{}]", (0..33).map(|n| format!("[{n}, 1]")).collect::<Vec<_>>().join(", "));
+    assert_eq!(spline(&many), "`wind.primitives[0].intensity_points` has 33 points; allowed: 0 to 32");
 }

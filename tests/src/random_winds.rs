@@ -3,7 +3,8 @@
 use prairie_core::random::SplitMix64;
 use prairie_wind::pressure::{Effort, IterativeMethod};
 use prairie_wind::{
-    Advection, Boundary, Canopy, Config, Diffusion, Dust, Gusts, Jet, Pressure, Primitive, Profile, Real, Shape, Solver, TimeScheme,
+    Advection, Boundary, Canopy, Config, Diffusion, Dust, Front, Gusts, Intensity, Jet, Pressure, Primitive, Profile, Real, Shape, Solver,
+    TimeScheme,
 };
 
 /// Random numbers from a seed.
@@ -157,6 +158,8 @@ impl RandomWind {
                     speed_m_per_s: random.scale(0.1, 200.0) as f32,
                     direction: [angle.cos() as f32, angle.sin() as f32],
                     dust: random.unit() as f32,
+                    intensity: Intensity::Steady,
+                    front: Front::default(),
                 }
             })
             .collect();

@@ -2,7 +2,9 @@
 
 use super::builtin::{BUILT_IN, BuiltIn};
 use prairie_core::bend::Scheme;
-use prairie_core::scene::{BladeIntegrator, BladeShape, LagWay, PlantCover, Scene, WindBoundary, WindMethod, WindTerrain, WindTiling};
+use prairie_core::scene::{
+    BladeIntegrator, BladeShape, LagWay, PlantCover, PrimitiveIntensity, Scene, WindBoundary, WindMethod, WindTerrain, WindTiling,
+};
 use serde::Serialize;
 use std::sync::LazyLock;
 
@@ -87,7 +89,7 @@ fn shown(scene: &Scene) -> Vec<String> {
 type Method = (&'static str, fn(&Scene) -> bool);
 
 /// Methods other than the default ones.
-const METHODS: [Method; 17] = [
+const METHODS: [Method; 18] = [
     ("wind by stable fluids (Stam 1999; Zhang §2.3)", |scene| scene.wind.method == WindMethod::StableFluids),
     ("one box of wind for all patches, at random offsets (Zhang §5.1)", |scene| scene.wind.tiling == WindTiling::Patch),
     ("one box of wind that follows the objects", |scene| scene.wind.tiling == WindTiling::Follow),
@@ -95,6 +97,7 @@ const METHODS: [Method; 17] = [
     ("wind that enters and leaves (inflow, outflow)", enters_or_leaves),
     ("crowns of trees that slow the wind (Shaw & Schumann 1992)", |scene| scene.wind.crown_drag_per_m > 0.0),
     ("grass that sways back on the wind (Py et al. 2006)", |scene| scene.wind.canopy_frequency_hz > 0.0),
+    ("sources of wind whose intensity varies and runs outwards (Bakay 2003, §3.2)", has_fronts),
     ("gusts of Perlin noise (Chen & Johan 2010, §4.2)", |scene| scene.natural_wind.strength_rad_per_s2 > 0.0),
     ("winds drawn as pictures (Chen & Johan 2010, §5.3)", |scene| !scene.drawn_winds.is_empty()),
     ("bend waves by Verlet's scheme (Chen & Johan 2010, §4.4)", |scene| scene.bend.scheme == Scheme::Verlet),
@@ -117,6 +120,10 @@ fn enters_or_leaves(scene: &Scene) -> bool {
     faces.contains(&WindBoundary::Inflow) || faces.contains(&WindBoundary::Outflow)
 }
 
+fn has_fronts(scene: &Scene) -> bool {
+    scene.wind.primitives.iter().any(|primitive| primitive.intensity != PrimitiveIntensity::Steady && primitive.front_m_per_s > 0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -136,7 +143,7 @@ mod tests {
         assert_eq!(of("storm").shows, ["underbrush", "flowers", "rain"]);
         assert_eq!(of("breeze").shows, ["flowers", "gusts of noise"]);
         assert_eq!(of("blades").shows, ["flowers", "self-driving monsters"]);
-        assert_eq!(of("shells").shows, ["grass drawn as shells"]);
+        assert_eq!(of("shells").shows, ["grass drawn as shells", "whirls and jets"]);
         assert_eq!(of("underbrush").shows, ["underbrush", "balls"]);
         assert_eq!(of("night").shows, ["underbrush", "flowers", "lamps"]);
         assert_eq!(of("race").shows, ["flowers", "a race"]);

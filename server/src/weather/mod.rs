@@ -121,7 +121,8 @@ impl Weather {
         let mut air = initial_air(method, &config, &terrain, &solids, height)?;
         let (ticks_per_step, step_secs) = step_interval(scene);
         let mut report = StepReport::default();
-        for _ in 0..steps {
+        for step in 0..steps {
+            air.set_intensity_secs(step_secs * (step as f64 - steps as f64));
             report = air.step(step_secs, &[])?;
         }
         let mut weather = Self {
@@ -167,6 +168,8 @@ impl Weather {
         self.bodies.truncate(self.solids.stones.len());
         self.bodies.extend(motions.iter().filter_map(|motion| self.vehicles.body(&in_box(motion), ground_m(motion))));
         self.air.set_bodies(&self.bodies).expect("bodies that may not be set are left out");
+        // The intensities follow the world's time, so that they neither run during the warm-up nor start again after a failed step.
+        self.air.set_intensity_secs(self.step_secs * ((tick / self.ticks_per_step) as f64 - 1.0));
         match self.air.step(self.step_secs, &jets) {
             Ok(report) => self.report = report,
             // The state is invalid: the air restarts from the mean wind.

@@ -1,9 +1,13 @@
 //! Solver settings from a scene's wind settings.
 
-use prairie_core::scene::{PrimitiveKind, Scene, Wind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTime};
+use prairie_core::scene::{
+    PrimitiveIntensity, PrimitiveKind, Scene, Wind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTime,
+};
+use prairie_wind::intensity::{Pulse, Spline};
 use prairie_wind::pressure::{Effort, IterativeMethod};
 use prairie_wind::{
-    Advection, Boundary, Canopy, CanopyMotion, Config, Diffusion, Dust, Gusts, Method, Pressure, Primitive, Profile, Shape, TimeScheme,
+    Advection, Boundary, Canopy, CanopyMotion, Config, Diffusion, Dust, Front, Gusts, Intensity, Method, Pressure, Primitive, Profile,
+    Shape, TimeScheme,
 };
 
 /// Roughness length of grass (m), for the logarithmic profile.
@@ -107,6 +111,20 @@ fn primitive(scene: &prairie_core::scene::Primitive) -> Primitive {
         speed_m_per_s: scene.speed_m_per_s,
         direction: [east, -north],
         dust: scene.dust,
+        intensity: intensity(scene),
+        front: Front { speed_m_per_s: scene.front_m_per_s, step_m: scene.step_m },
+    }
+}
+
+fn intensity(scene: &prairie_core::scene::Primitive) -> Intensity {
+    let &prairie_core::scene::Primitive { attack_secs, hold_secs, fall_secs, period_secs, .. } = scene;
+    let pulse = Pulse { attack_secs, hold_secs, fall_secs, period_secs };
+    match scene.intensity {
+        PrimitiveIntensity::Steady => Intensity::Steady,
+        PrimitiveIntensity::Gust => Intensity::Gust(pulse),
+        PrimitiveIntensity::Periodic => Intensity::Periodic { period_secs },
+        PrimitiveIntensity::Cubic => Intensity::Cubic(pulse),
+        PrimitiveIntensity::Spline => Intensity::Spline(Spline::new(period_secs, scene.intensity_points.clone())),
     }
 }
 

@@ -7,6 +7,7 @@ use prairie_core::scene::{Primitive, PrimitiveKind};
 use prairie_core::scene::{VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTime};
 use prairie_core::terrain::grey_png;
 
+mod intensity;
 mod solids;
 
 fn meadow() -> (Scene, Maps) {

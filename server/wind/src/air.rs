@@ -199,6 +199,11 @@ impl<R: Real> Air<R> {
         either!(self, air => air.set_sponge(sponge_m))
     }
 
+    /// Sets the time (s) since the start of the primitives' intensities at the present moment; see [`Solver::set_intensity_secs`].
+    pub fn set_intensity_secs(&mut self, secs: f64) {
+        either!(self, air => air.set_intensity_secs(secs))
+    }
+
     /// Velocity (m/s) at a position (m), interpolated trilinearly. Periodic axes repeat; beyond other faces the velocity is that on the face.
     pub fn velocity_at(&self, position_m: [R; 3]) -> [R; 3] {
         either!(self, air => air.velocity_at(position_m))

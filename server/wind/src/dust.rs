@@ -3,6 +3,7 @@
 use super::config::Config;
 use super::diffuse::{Portion, diffuse};
 use super::footprint::Footprint;
+use super::intensity::Moment;
 use super::profile::MeanWind;
 use super::state::{MAX_SUBSTEPS, StepError};
 use super::transport::{STAGES, Stage};
@@ -49,9 +50,9 @@ impl<R: Real> Solver<R> {
     }
 
     fn release_and_settle(&mut self, dt_secs: f64) {
+        let middle = self.moment(self.time_secs + 0.5 * dt_secs);
         let (grid, Some(dust)) = (&self.grid, &mut self.dust) else { return };
-        let middle_secs = self.time_secs + 0.5 * dt_secs;
-        release_and_settle(grid, &self.config, &self.mean, middle_secs, dt_secs, dust, &mut self.footprint);
+        release_and_settle(grid, &self.config, &self.mean, middle, dt_secs, dust, &mut self.footprint);
         self.boundaries.apply_to_concentration(dust);
     }
 
@@ -99,23 +100,23 @@ impl<R: Real> Solver<R> {
     }
 }
 
-/// Releases the dust of gusts and primitives at `middle_secs`, the middle of a step of `dt_secs` (s), and lets dust settle.
+/// Releases the dust of gusts and primitives at `middle`, the middle of a step of `dt_secs` (s), and lets dust settle.
 pub(super) fn release_and_settle<R: Real>(
     grid: &Grid<R>,
     config: &Config,
     mean: &MeanWind,
-    middle_secs: f64,
+    middle: Moment,
     dt_secs: f64,
     dust: &mut Field<R>,
     footprint: &mut Footprint<R>,
 ) {
     let Some(settings) = config.dust else { return };
     let release = f64::from(settings.release_per_s);
-    for source in sources::sources_at(config, grid, mean, middle_secs) {
+    for source in sources::sources_at(config, grid, mean, middle.secs) {
         sources::release(grid, &config.gusts, &source, release, dt_secs, dust, footprint);
     }
     for primitive in &config.primitives {
-        primitive.release(grid, middle_secs, release, dt_secs, dust, footprint);
+        primitive.release(grid, middle, release, dt_secs, dust, footprint);
     }
     let left = R::of(1.0 / (1.0 + f64::from(settings.settling_per_s) * dt_secs));
     dust.data.iter_mut().for_each(|density| *density = *density * left);

@@ -65,12 +65,12 @@ impl<R: Real> Footprint<R> {
         }
     }
 
-    /// Calls `f(index, weight)` for every value under the footprint.
-    pub fn for_each_index(&self, mut f: impl FnMut([usize; 3], R)) {
+    /// Calls `f(index, weight, offset from the centre in m)` for every value under the footprint.
+    pub fn for_each_index(&self, mut f: impl FnMut([usize; 3], R, [R; 3])) {
         let [along_x, along_y, along_z] = &self.along;
-        for &(k, z, _) in along_z {
-            for &(j, y, _) in along_y {
-                along_x.iter().for_each(|&(i, x, _)| f([i, j, k], x * y * z));
+        for &(k, z, dz) in along_z {
+            for &(j, y, dy) in along_y {
+                along_x.iter().for_each(|&(i, x, dx)| f([i, j, k], x * y * z, [dx, dy, dz]));
             }
         }
     }

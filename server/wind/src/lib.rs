@@ -16,7 +16,7 @@
 //! | [`diffuse`] | explicit and implicit diffusion |
 //! | [`pressure`], [`separable`] | projection by iteration (multigrid, conjugate gradients, relaxation) and by transforms |
 //! | [`solids`] | immersed walls, moving bodies, drag of bodies and crowns |
-//! | [`profile`], [`sources`], [`primitive`], [`forcing`], [`canopy`], [`footprint`] | mean wind, gusts, flow primitives, jets, grass drag, and the weights of local forces |
+//! | [`profile`], [`sources`], [`primitive`], [`intensity`], [`forcing`], [`canopy`], [`footprint`] | mean wind, gusts, flow primitives and their intensity over time, jets, grass drag, and the weights of local forces |
 //! | [`diagnostics`] | speed, divergence, kinetic energy, finiteness |
 //!
 //! Kernels run in `f32` or `f64` ([`Real`]). Results are bit-identical on any number of threads.
@@ -34,6 +34,7 @@ pub mod field;
 pub mod footprint;
 pub mod forcing;
 pub mod grid;
+pub mod intensity;
 mod limits;
 mod named;
 mod parallel;
@@ -62,6 +63,7 @@ pub use config::{Config, ConfigError, Diffusion, Dust, Gusts, Profile, TimeSchem
 pub use field::{Field, Velocity};
 pub use forcing::Jet;
 pub use grid::{GHOST, Grid, Location};
+pub use intensity::{Front, Intensity};
 pub use pressure::Pressure;
 pub use primitive::{Primitive, Shape};
 pub use real::Real;

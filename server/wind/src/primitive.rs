@@ -2,6 +2,7 @@
 
 use super::config::error::{ConfigError, above_zero, at_least_zero, check};
 use super::footprint::Footprint;
+use super::intensity::{Front, Intensity, Moment};
 use super::{Field, Grid, Real, Velocity};
 
 /// Rate (1/s) at which a primitive relaxes the air at its centre to its own velocity.
@@ -28,7 +29,7 @@ pub enum Shape {
 }
 
 /// A flow primitive.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Primitive {
     /// Kind of flow.
     pub shape: Shape,
@@ -44,6 +45,10 @@ pub struct Primitive {
     pub direction: [f32; 2],
     /// Dust that it releases, relative to a gust source; 0 to 1.
     pub dust: f32,
+    /// Factor of speed and dust over time. Below 1 it reduces the rate at which the air is driven as well, so that a primitive of intensity 0 leaves the air alone.
+    pub intensity: Intensity,
+    /// Motion of the intensity away from the centre. What the primitive does to the air is delayed with the distance; the pressure passes it on without a delay.
+    pub front: Front,
 }
 
 impl Primitive {
@@ -61,7 +66,9 @@ impl Primitive {
         let [x, z] = self.direction.map(f64::from);
         let unit = (x * x + z * z - 1.0).abs() < 1e-3 || self.shape != Shape::Uniform;
         check(unit, format!("{path}.direction"), format!("{:?}", self.direction), "a vector of length 1")?;
-        check((0.0..=1.0).contains(&self.dust), format!("{path}.dust"), self.dust, "0 to 1")
+        check((0.0..=1.0).contains(&self.dust), format!("{path}.dust"), self.dust, "0 to 1")?;
+        self.intensity.validate(&format!("{path}.intensity"))?;
+        self.front.validate(&format!("{path}.front"))
     }
 
     /// Whether it is a volume source or sink.
@@ -99,53 +106,80 @@ impl Primitive {
         f64::from(self.speed_m_per_s) / (SPEED_OF_SOURCE * f64::from(self.radius_m))
     }
 
-    /// Drives the air by a backward Euler step, which never overshoots, around the primitive's position at `time_secs`.
-    pub fn drive<R: Real>(&self, grid: &Grid<R>, time_secs: f64, dt_secs: f64, velocity: &mut Velocity<R>, footprint: &mut Footprint<R>) {
-        if self.shape == Shape::Source {
+    /// Intensity at a time (s), if it is the same everywhere.
+    fn even_level(&self, secs: f64) -> Option<f64> {
+        (self.intensity.is_steady() || self.front.speed_m_per_s == 0.0).then(|| self.intensity.level(secs))
+    }
+
+    /// Intensity at a time (s) and an offset (m) from the centre.
+    fn level_at<R: Real>(&self, secs: f64, offset_m: [R; 3]) -> f64 {
+        let [x, y, z] = offset_m.map(R::wide);
+        self.intensity.level(secs - self.front.delay_secs((x * x + y * y + z * z).sqrt()))
+    }
+
+    /// Drives the air by a backward Euler step, which never overshoots, around the primitive's position at `moment`.
+    pub fn drive<R: Real>(&self, grid: &Grid<R>, moment: Moment, dt_secs: f64, velocity: &mut Velocity<R>, footprint: &mut Footprint<R>) {
+        let even = self.even_level(moment.intensity_secs);
+        if self.shape == Shape::Source || even == Some(0.0) {
             return;
         }
-        let fraction = R::of(RATE_PER_S * dt_secs / (1.0 + RATE_PER_S * dt_secs));
-        let gone = R::of(self.divergence_per_s() * dt_secs);
+        let fraction_of = |level: f64| {
+            let reach = RATE_PER_S * level.min(1.0) * dt_secs;
+            (level, R::of(reach / (1.0 + reach)))
+        };
+        let even = even.map(fraction_of);
         for (axis, field) in velocity.0.iter_mut().enumerate() {
-            footprint.put(grid, field.location, self.centre_m(time_secs), [R::of(self.radius_m.into()); 3]);
+            footprint.put(grid, field.location, self.centre_m(moment.secs), [R::of(self.radius_m.into()); 3]);
             footprint.for_each(grid, field, |speed, weight, offset_m| {
+                let (level, fraction) = even.unwrap_or_else(|| fraction_of(self.level_at(moment.intensity_secs, offset_m)));
                 if self.shape == Shape::Sink {
                     // Removed air takes its momentum with it.
-                    *speed = *speed / (R::one() + weight * gone);
+                    *speed = *speed / (R::one() + weight * R::of(self.divergence_per_s() * level * dt_secs));
                     return;
                 }
-                let target = R::of(self.target(offset_m.map(R::wide))[axis]);
+                let target = R::of(self.target(offset_m.map(R::wide))[axis] * level);
                 *speed = *speed + weight * fraction * (target - *speed);
             });
         }
     }
 
     /// Adds the divergence (1/s) of a source or sink to each cell, x fastest.
-    pub fn add_volume_source<R: Real>(&self, grid: &Grid<R>, time_secs: f64, inflow: &mut [f64], footprint: &mut Footprint<R>) {
+    pub fn add_volume_source<R: Real>(&self, grid: &Grid<R>, moment: Moment, inflow: &mut [f64], footprint: &mut Footprint<R>) {
         let sign = match self.shape {
             Shape::Source => 1.0,
             Shape::Sink => -1.0,
             _ => return,
         };
         let divergence = sign * self.divergence_per_s();
-        footprint.put(grid, super::Location::Centre, self.centre_m(time_secs), [R::of(self.radius_m.into()); 3]);
-        footprint.for_each_index(|[i, j, k], weight| inflow[i + grid.cells[0] * (j + grid.cells[1] * k)] += weight.wide() * divergence);
+        let even = self.even_level(moment.intensity_secs);
+        footprint.put(grid, super::Location::Centre, self.centre_m(moment.secs), [R::of(self.radius_m.into()); 3]);
+        footprint.for_each_index(|[i, j, k], weight, offset_m| {
+            let level = even.unwrap_or_else(|| self.level_at(moment.intensity_secs, offset_m));
+            inflow[i + grid.cells[0] * (j + grid.cells[1] * k)] += weight.wide() * divergence * level;
+        });
     }
 
     /// Releases dust for a step, at `release_per_s` times [`Primitive::dust`] at the centre.
     pub fn release<R: Real>(
         &self,
         grid: &Grid<R>,
-        time_secs: f64,
+        moment: Moment,
         release_per_s: f64,
         dt_secs: f64,
         dust: &mut Field<R>,
         footprint: &mut Footprint<R>,
     ) {
-        let gain = R::of(f64::from(self.dust) * release_per_s * dt_secs);
-        if gain > R::zero() {
-            footprint.put(grid, dust.location, self.centre_m(time_secs), [R::of(self.radius_m.into()); 3]);
-            footprint.for_each(grid, dust, |density, weight, _| *density = *density + weight * gain);
+        let full = f64::from(self.dust) * release_per_s * dt_secs;
+        let even = self.even_level(moment.intensity_secs);
+        if R::of(full) > R::zero() && even != Some(0.0) {
+            footprint.put(grid, dust.location, self.centre_m(moment.secs), [R::of(self.radius_m.into()); 3]);
+            footprint.for_each(grid, dust, |density, weight, offset_m| {
+                let level = even.unwrap_or_else(|| self.level_at(moment.intensity_secs, offset_m));
+                *density = *density + weight * R::of(full * level);
+            });
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -8,6 +8,7 @@ use super::config::{Config, ConfigError};
 use super::diagnostics::{self, Diagnostics, PlaneSums};
 use super::diffuse::Implicit;
 use super::footprint::Footprint;
+use super::intensity::Moment;
 use super::pressure::{Pressure, Projection};
 use super::profile::{MeanWind, Relaxation};
 use super::solids::{Drag, Immersed};
@@ -54,6 +55,8 @@ pub struct Solver<R: Real> {
     pub(super) config: Config,
     pub(super) grid: Grid<R>,
     pub(super) time_secs: f64,
+    /// Time of the solver (s) at which the intensities of primitives start.
+    intensity_start_secs: f64,
     pub(super) velocity: Velocity<R>,
     /// Gradient of pressure over density (m/s²) of the last step, for [`TimeScheme::RungeKutta3`](super::TimeScheme::RungeKutta3).
     pub(super) pressure_gradient: Velocity<R>,
@@ -111,6 +114,7 @@ impl<R: Real> Solver<R> {
         }
         let mut solver = Self {
             time_secs: 0.0,
+            intensity_start_secs: 0.0,
             velocity: still.clone(),
             pressure_gradient: still.clone(),
             dust: config.dust.map(|_| dust.clone()),
@@ -223,6 +227,17 @@ impl<R: Real> Solver<R> {
     /// disturbances do not re-enter. `None` (initially) for no sponge.
     pub fn set_sponge(&mut self, sponge_m: Option<[f64; 2]>) {
         self.sponge_m = sponge_m.filter(|_| self.grid.wraps(0) && self.grid.wraps(2));
+    }
+
+    /// Sets the time (s) since the start of the primitives' [intensities](super::Intensity) at the present moment. Initially they start with the solver, at time 0. It is
+    /// not in a checkpoint: where intensities follow a clock of one's own, set it before each step.
+    pub fn set_intensity_secs(&mut self, secs: f64) {
+        self.intensity_start_secs = self.time_secs - secs;
+    }
+
+    /// The moment at a time of the solver (s).
+    pub(super) fn moment(&self, secs: f64) -> Moment {
+        Moment { secs, intensity_secs: secs - self.intensity_start_secs }
     }
 
     /// Updates the diagnostics.

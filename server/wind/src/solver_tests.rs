@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::super::pressure::{Effort, IterativeMethod};
-use super::super::{Advection, Boundary, Dust, Gusts, Jet, Primitive, Profile, Shape, StepError, TimeScheme};
+use super::super::{Advection, Boundary, Dust, Front, Gusts, Intensity, Jet, Primitive, Profile, Shape, StepError, TimeScheme};
 use super::*;
 
 const DT_SECS: f64 = 1.0 / 60.0;
@@ -271,6 +271,8 @@ fn round(shape: Shape) -> WindSolver {
         speed_m_per_s: 5.0,
         direction: [0.0, 1.0],
         dust: 0.0,
+        intensity: Intensity::Steady,
+        front: Front::default(),
     };
     let config = Config {
         cells: [32, 16, 32],

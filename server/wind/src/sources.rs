@@ -91,7 +91,7 @@ impl<R: Real> Pushes<R> {
                 let push = R::of(source.push_m_per_s2[*axis]);
                 if push != R::zero() {
                     footprint.put(grid, velocity.0[*axis].location, source.position_m.map(R::of), gusts.radius_m.map(|r| R::of(r.into())));
-                    footprint.for_each_index(|index, weight| on.push((grid.at(index), weight * push)));
+                    footprint.for_each_index(|index, weight, _| on.push((grid.at(index), weight * push)));
                 }
             }
         }

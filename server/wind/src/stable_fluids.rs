@@ -12,6 +12,7 @@ use super::config::error::{ConfigError, check};
 use super::diagnostics::Diagnostics;
 use super::dust::release_and_settle;
 use super::footprint::Footprint;
+use super::intensity::Moment;
 use super::profile::{self, MeanWind, Relaxation};
 use super::sources::{self, Pushes};
 use super::state::{StepError, StepReport};
@@ -38,6 +39,8 @@ pub struct StableFluids<R: Real> {
     config: Config,
     grid: Grid<R>,
     pub(super) time_secs: f64,
+    /// Time of the solver (s) at which the intensities of primitives start.
+    intensity_start_secs: f64,
     pub(super) velocity: Velocity<R>,
     /// The listings' `u0`, `v0`, `w0`; its first field also serves as the `x0` of dust.
     pub(super) before: Velocity<R>,
@@ -81,6 +84,7 @@ impl<R: Real> StableFluids<R> {
         let has_sources = config.primitives.iter().any(|primitive| primitive.is_source());
         let mut air = Self {
             time_secs: 0.0,
+            intensity_start_secs: 0.0,
             velocity: still.clone(),
             before: still,
             dust: config.dust.map(|_| zeros.clone()),
@@ -170,10 +174,10 @@ impl<R: Real> StableFluids<R> {
 
     /// Zhang's `dens_step`, with settling of dust added.
     fn dens_step(&mut self, dt_secs: f64) {
+        let middle = self.moment(self.time_secs + 0.5 * dt_secs);
         let (Some(settings), Some(dust)) = (self.config.dust, &mut self.dust) else { return };
         let grid = &self.grid;
-        let middle_secs = self.time_secs + 0.5 * dt_secs;
-        release_and_settle(grid, &self.config, &self.mean, middle_secs, dt_secs, dust, &mut self.footprint);
+        release_and_settle(grid, &self.config, &self.mean, middle, dt_secs, dust, &mut self.footprint);
         listing::set_bound(grid, Kind::Scalar, dust);
 
         let other = &mut self.before.0[0];
@@ -190,15 +194,15 @@ impl<R: Real> StableFluids<R> {
 
     /// Zhang's `add_source`: all forcing.
     fn add_sources(&mut self, dt_secs: f64, jets: &[Jet]) {
+        let middle = self.moment(self.time_secs + 0.5 * dt_secs);
         let (grid, velocity, footprint) = (&self.grid, &mut self.velocity, &mut self.footprint);
-        let middle_secs = self.time_secs + 0.5 * dt_secs;
-        let gusts = sources::sources_at(&self.config, grid, &self.mean, middle_secs);
+        let gusts = sources::sources_at(&self.config, grid, &self.mean, middle.secs);
         self.pushes.set(grid, &self.config.gusts, gusts, velocity, footprint);
         self.pushes.apply(dt_secs, velocity);
         self.volume_sources_per_s.fill(0.0);
         for primitive in &self.config.primitives {
-            primitive.drive(grid, middle_secs, dt_secs, velocity, footprint);
-            primitive.add_volume_source(grid, middle_secs, &mut self.volume_sources_per_s, footprint);
+            primitive.drive(grid, middle, dt_secs, velocity, footprint);
+            primitive.add_volume_source(grid, middle, &mut self.volume_sources_per_s, footprint);
         }
         for jet in jets {
             forcing::drive(grid, jet, dt_secs, velocity, footprint);
@@ -212,6 +216,16 @@ impl<R: Real> StableFluids<R> {
             field.data.iter_mut().for_each(|speed| *speed = *speed + gain);
             listing::set_bound(grid, Kind::Component(axis), field);
         }
+    }
+
+    /// Sets the time (s) since the start of the primitives' intensities at the present moment; see [`Solver::set_intensity_secs`](super::Solver::set_intensity_secs).
+    pub fn set_intensity_secs(&mut self, secs: f64) {
+        self.intensity_start_secs = self.time_secs - secs;
+    }
+
+    /// The moment at a time of the solver (s).
+    fn moment(&self, secs: f64) -> Moment {
+        Moment { secs, intensity_secs: secs - self.intensity_start_secs }
     }
 
     /// Places sponge layers at these positions (m); see [`Solver::set_sponge`](super::Solver::set_sponge).

@@ -146,6 +146,7 @@ impl<R: Real> Solver<R> {
 
     /// Forces: drag of canopy and bodies, gusts, primitives, jets, relaxation to the mean wind, sponge layer and body force.
     fn force(&mut self, dt_secs: f64, time_secs: f64, jets: &[Jet]) {
+        let moment = self.moment(time_secs);
         let grid = &self.grid;
         if let Some(stems) = &mut self.stems {
             stems.sway(grid, &self.canopy_fraction, dt_secs, &mut self.velocity, &mut self.stages[0]);
@@ -160,7 +161,7 @@ impl<R: Real> Solver<R> {
         }
         self.pushes.apply(dt_secs, &mut self.velocity);
         for primitive in &self.config.primitives {
-            primitive.drive(grid, time_secs, dt_secs, &mut self.velocity, &mut self.footprint);
+            primitive.drive(grid, moment, dt_secs, &mut self.velocity, &mut self.footprint);
         }
         for jet in jets {
             forcing::drive(grid, jet, dt_secs, &mut self.velocity, &mut self.footprint);
@@ -179,7 +180,7 @@ impl<R: Real> Solver<R> {
         self.volume_sources_per_s.fill(0.0);
         if !self.volume_sources_per_s.is_empty() {
             for primitive in &self.config.primitives {
-                primitive.add_volume_source(&self.grid, time_secs, &mut self.volume_sources_per_s, &mut self.footprint);
+                primitive.add_volume_source(&self.grid, moment, &mut self.volume_sources_per_s, &mut self.footprint);
             }
         }
     }

@@ -1,10 +1,11 @@
 //! No step allocates memory, save for work arrays that the first steps still enlarge.
 
 use glam::Vec3;
+use prairie_wind::intensity::Spline;
 use prairie_wind::pressure::{Effort, IterativeMethod};
 use prairie_wind::{
-    Advection, Body, Boundary, Canopy, CanopyMotion, Config, Diffusion, Dust, Gusts, Jet, Pressure, Primitive, Profile, Real, Shape,
-    Solver, StableFluids, TimeScheme,
+    Advection, Body, Boundary, Canopy, CanopyMotion, Config, Diffusion, Dust, Front, Gusts, Intensity, Jet, Pressure, Primitive, Profile,
+    Real, Shape, Solver, StableFluids, TimeScheme,
 };
 
 /// Steps before the count starts, in which work arrays may still grow to their final size.
@@ -37,6 +38,8 @@ fn everything() -> Config {
         speed_m_per_s: 3.0,
         direction: [1.0, 0.0],
         dust: 1.0,
+        intensity: Intensity::Spline(Spline::new(0.5, vec![[0.0, 0.0], [0.1, 1.0]])),
+        front: Front { speed_m_per_s: 30.0, step_m: 0.5 },
     };
     Config {
         cells: [9, 8, 10],

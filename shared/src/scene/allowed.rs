@@ -2,8 +2,9 @@
 
 use super::objects::OBJECT_FIELDS;
 use super::{
-    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, FlowerShape, GATES_LIMIT, LAMPS_LIMIT, LagWay, PlantCover, PrimitiveKind,
-    SPECIES_LIMIT, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, FlowerShape, GATES_LIMIT, LAMPS_LIMIT, LagWay, PlantCover,
+    PrimitiveIntensity, PrimitiveKind, SPECIES_LIMIT, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain,
+    WindTiling, WindTime,
 };
 use crate::bend::{Edges, GroundContact, Scheme, Seams};
 use crate::lod::shells::LAYERS_LIMIT;
@@ -25,9 +26,11 @@ pub enum Allowed {
     Sections(usize, usize),
     /// A list of points [x, z]: range of their number, then range of each coordinate.
     Places(usize, usize, f64, f64),
+    /// A list of points [secs, intensity] of a function of time: range of their number, then range of the times and range of the intensities.
+    Course(usize, usize, [f64; 2], [f64; 2]),
 }
 
-use Allowed::{Name, OneOf, Places, Range, Sections, Text};
+use Allowed::{Course, Name, OneOf, Places, Range, Sections, Text};
 
 /// Every field by its path, in the order of the structs; for a list of sections, the fields of one section. For `species` only its own fields are
 /// listed; the others are as in `grass` and `plants`, see [`Allowed::at`].
@@ -95,6 +98,14 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("wind.primitives.heading_rad", Range(-6.3, 6.3)),
     ("wind.primitives.drift_m_per_s", Range(-40.0, 40.0)),
     ("wind.primitives.dust", Range(0.0, 1.0)),
+    ("wind.primitives.intensity", OneOf(PrimitiveIntensity::WORDS)),
+    ("wind.primitives.attack_secs", Range(0.0, 3600.0)),
+    ("wind.primitives.hold_secs", Range(0.0, 3600.0)),
+    ("wind.primitives.fall_secs", Range(0.0, 3600.0)),
+    ("wind.primitives.period_secs", Range(0.0, 86_400.0)),
+    ("wind.primitives.intensity_points", Course(0, 32, [0.0, 86_400.0], [0.0, 2.0])),
+    ("wind.primitives.front_m_per_s", Range(0.0, 1000.0)),
+    ("wind.primitives.step_m", Range(0.0, 1000.0)),
     ("natural_wind.strength_rad_per_s2", Range(0.0, 20.0)),
     ("natural_wind.scale_m", Range(8.0, 1000.0)),
     ("natural_wind.drift_m_per_s", Range(-40.0, 40.0)),
@@ -271,10 +282,14 @@ impl Allowed {
         listed(path).or_else(shared).unwrap_or(Text)
     }
 
-    /// Allowed values of an element of a list.
-    pub(super) fn of_element(self) -> Self {
+    /// Allowed values of an element of a list, or of the coordinate `n` of a point.
+    pub(super) fn of_element(self, n: usize) -> Self {
         match self {
             Places(_, _, low, high) => Range(low, high),
+            Course(_, _, secs, intensity) => {
+                let [low, high] = if n == 0 { secs } else { intensity };
+                Range(low, high)
+            }
             other => other,
         }
     }
@@ -312,6 +327,9 @@ impl fmt::Display for Allowed {
             Sections(0, most) => write!(f, "at most {most}"),
             Sections(least, most) => write!(f, "{least} to {most}"),
             Places(least, most, low, high) => write!(f, "{least} to {most} points [x, z], each coordinate {low} to {high}"),
+            Course(least, most, [first, last], [low, high]) => {
+                write!(f, "{least} to {most} points [secs, intensity], seconds {first} to {last} and intensity {low} to {high}")
+            }
         }
     }
 }

@@ -57,8 +57,8 @@ pub use terrain::TerrainMaps;
 pub use underbrush::{Component, ComponentKind, Underbrush};
 pub(crate) use wind::words;
 pub use wind::{
-    Primitive, PrimitiveKind, Wind, WindAdvection, WindBoundary, WindDiffusion, WindDust, WindFaces, WindMethod, WindPressure, WindTerrain,
-    WindTiling, WindTime,
+    Primitive, PrimitiveIntensity, PrimitiveKind, Wind, WindAdvection, WindBoundary, WindDiffusion, WindDust, WindFaces, WindMethod,
+    WindPressure, WindTerrain, WindTiling, WindTime,
 };
 
 use serde::{Deserialize, Serialize};

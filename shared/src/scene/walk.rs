@@ -110,7 +110,7 @@ impl<'t> Walk<'t> {
 
     /// Reads a list of points.
     fn places(&mut self, places: &mut Vec<Value>, items: &DeArray<'_>, allowed: Allowed, span: Range<usize>, path: &str) {
-        let Allowed::Places(least, most, ..) = allowed else { return };
+        let (Allowed::Places(least, most, ..) | Allowed::Course(least, most, ..)) = allowed else { return };
         if !(least..=most).contains(&items.len()) {
             let why = if least == 3 && items.len() < 3 { ", since fewer enclose no area" } else { "" };
             return self.fault(span, path, format!("has {} points; allowed: {least} to {most}{why}", items.len()));
@@ -130,7 +130,7 @@ impl<'t> Walk<'t> {
             (Value::Array(places), DeValue::Array(items)) if matches!(allowed, Allowed::Sections(..)) => {
                 self.sections(places, items, allowed, span, path)
             }
-            (Value::Array(places), DeValue::Array(items)) if matches!(allowed, Allowed::Places(..)) => {
+            (Value::Array(places), DeValue::Array(items)) if matches!(allowed, Allowed::Places(..) | Allowed::Course(..)) => {
                 self.places(places, items, allowed, span, path)
             }
             (Value::Array(values), DeValue::Array(items)) if values.len() == items.len() => {
@@ -175,7 +175,10 @@ impl<'t> Walk<'t> {
 /// Allowed values of the field at `path`, or of its element if `path` ends with an index.
 fn allowed_of(path: &str) -> Allowed {
     let allowed = Allowed::at(&field_of(path));
-    if path.ends_with(']') { allowed.of_element() } else { allowed }
+    match path.strip_suffix(']').and_then(|path| path.rsplit_once('[')) {
+        Some((_, index)) => allowed.of_element(index.parse().unwrap_or(0)),
+        None => allowed,
+    }
 }
 
 /// The path of a field without indices: `wind.primitives.at_m` for `wind.primitives[2].at_m[0]`.
@@ -209,7 +212,8 @@ fn expectation(expected: &Value, path: &str) -> String {
     let (field, allowed) = (field_of(path), allowed_of(path));
     match expected {
         _ if matches!(allowed, Allowed::Sections(..)) => format!("{allowed} sections `[[{field}]]`"),
-        _ if matches!(allowed, Allowed::Places(..)) => format!("a list of {allowed}"),
+        _ if matches!(allowed, Allowed::Places(..) | Allowed::Course(..)) => format!("a list of {allowed}"),
+        Value::Array(_) if matches!(Allowed::at(&field), Allowed::Course(..)) => "a point [secs, intensity]".to_owned(),
         Value::Array(items) => format!("a list of {} numbers, each {allowed}", items.len()),
         Value::Integer(_) => format!("a whole number, {allowed}"),
         Value::Float(_) => format!("a number, {allowed}"),

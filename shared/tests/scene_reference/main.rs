@@ -110,6 +110,10 @@ fn doc_comments_give_the_checked_range_and_the_true_default() {
             let stated = numbers(after(&field.doc, "allowed ").unwrap());
             assert_eq!(stated[..4], [least as f64, most as f64, low, high], "{path}: {}", field.doc);
         }
+        if let Allowed::Course(least, most, [first, last], [low, high]) = allowed {
+            let stated = numbers(after(&field.doc, "allowed ").unwrap());
+            assert_eq!(stated[..6], [least as f64, most as f64, first, last, low, high], "{path}: {}", field.doc);
+        }
         if let Allowed::Sections(least, most) = allowed {
             let stated = after(&field.doc, "allowed ").unwrap().split(',').next().unwrap();
             let expected = if least == 0 { vec![most as f64] } else { vec![least as f64, most as f64] };
@@ -148,7 +152,8 @@ fn doc_comments_give_the_checked_range_and_the_true_default() {
 fn every_number_is_checked() {
     for Field { path, .. } in documented() {
         let path = path.as_str();
-        let (Allowed::Range(low, high) | Allowed::Places(.., low, high)) = Allowed::at(path) else { continue };
+        let allowed = Allowed::at(path);
+        let (Allowed::Range(low, high) | Allowed::Places(.., low, high) | Allowed::Course(.., [low, high], _)) = allowed else { continue };
         let mut absurd =
             vec![f64::NAN.into(), f64::INFINITY.into(), f64::NEG_INFINITY.into(), (high * 2.0 + 1e6).into(), (low - 1e6).into()];
         absurd.push(toml::Value::Integer(i64::MIN));
@@ -157,7 +162,10 @@ fn every_number_is_checked() {
         for number in absurd {
             let mut scene = complete();
             let value = value_at(&mut scene, path);
-            *value = with_number(value, &number);
+            *value = match allowed {
+                Allowed::Course(..) => vec![vec![number.clone(); 2]; 2].into(),
+                _ => with_number(value, &number),
+            };
             let faults = parse(&scene.to_string()).expect_err(&format!("{path} may be {number}"));
             assert!(faults.iter().all(|fault| field_of(&fault.path) == path), "{path} = {number}: {faults:?}");
             assert!(faults.iter().all(|fault| fault.line > 0 && fault.message.contains("allowed") || fault.message.contains("expected")));

@@ -30,7 +30,7 @@ fn single(value: &toml::Value, allowed: Allowed) -> Value {
         }
         Allowed::OneOf(words) => json!({ "enum": words }),
         Allowed::Name => json!({ "type": "string", "pattern": "\\S" }),
-        Allowed::Text | Allowed::Sections(..) => json!({ "type": "string" }),
+        Allowed::Text | Allowed::Sections(..) | Allowed::Course(..) => json!({ "type": "string" }),
     }
 }
 
@@ -58,6 +58,11 @@ fn described(value: &toml::Value, path: &str) -> Value {
         (toml::Value::Array(items), Allowed::Sections(least, most)) => array(least, most, section(items[0].as_table().unwrap(), path)),
         (toml::Value::Array(points), Allowed::Places(least, most, ..)) => {
             array(least, most, array(2, 2, single(&points[0].as_array().unwrap()[0], allowed)))
+        }
+        (toml::Value::Array(_), Allowed::Course(least, most, secs, intensity)) => {
+            let coordinates = [secs, intensity].map(|[low, high]| single(&toml::Value::Float(low), Allowed::Range(low, high)));
+            let point = json!({ "type": "array", "minItems": 2, "maxItems": 2, "prefixItems": coordinates });
+            array(least, most, point)
         }
         (toml::Value::Array(items), _) => array(items.len(), items.len(), single(&items[0], allowed)),
         _ => single(value, allowed),
@@ -179,12 +184,13 @@ fn the_schema_rejects_single_values_where_the_parser_does() {
         let faults = parse(&scene.to_string()).err().unwrap_or_default();
         let path = what.split(' ').next().unwrap();
         let allowed = match Allowed::at(path) {
-            Allowed::Places(.., low, high) => Allowed::Range(low, high),
-            other => other,
+            Allowed::Places(.., low, high) => vec![Allowed::Range(low, high)],
+            Allowed::Course(.., [first, last], [low, high]) => vec![Allowed::Range(first, last), Allowed::Range(low, high)],
+            other => vec![other],
         };
-        let ends = format!("allowed: {allowed}");
         let is_single = |message: &str| {
-            message.ends_with(&ends) || ["; expected ", " sections; ", " points; "].iter().any(|part| message.contains(part))
+            allowed.iter().any(|allowed| message.ends_with(&format!("allowed: {allowed}")))
+                || ["; expected ", " sections; ", " points; "].iter().any(|part| message.contains(part))
         };
         let rejected = faults.iter().any(|fault| is_single(&fault.message));
         assert_eq!(valid, !rejected, "{what}: {faults:?}");
@@ -202,6 +208,13 @@ fn the_schema_rejects_single_values_where_the_parser_does() {
             }
             Allowed::OneOf(words) => words.iter().copied().chain(["wel", ""]).map(toml::Value::from).collect(),
             Allowed::Name => ["a", " ", ""].map(toml::Value::from).into(),
+            Allowed::Course(_, most, [first, last], [low, high]) => {
+                let points =
+                    [[first, low], [last, high], [first - 0.01, low], [last + 0.01, low], [first, low - 0.01], [first, high + 0.01]];
+                let pairs = points.into_iter().chain([[f64::NAN, low], [first, f64::NAN]]).map(|point| vec![point.to_vec(); 2]);
+                let others = [vec![vec![first]; 2], vec![vec![first; 3]; 2], vec![vec![first; 2]; most], vec![vec![first; 2]; most + 1]];
+                pairs.chain(others).map(toml::Value::from).collect()
+            }
             Allowed::Text | Allowed::Sections(..) => vec![],
         };
         for value in values.into_iter().chain([true.into()]) {

@@ -6,7 +6,7 @@ use prairie_core::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
-const BROKEN: [&str; 37] = [
+const BROKEN: [&str; 38] = [
     "unknown-field",
     "syntax",
     "out-of-range",
@@ -25,6 +25,7 @@ const BROKEN: [&str; 37] = [
     "wind-stable-fluids",
     "wind-primitives",
     "wind-one-primitive",
+    "wind-intensity",
     "species",
     "species-hole",
     "underbrush",

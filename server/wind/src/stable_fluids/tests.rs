@@ -1,6 +1,6 @@
 use std::f64::consts::{PI, TAU};
 
-use super::super::{Dust, Gusts, Primitive, Profile, Shape, Solver};
+use super::super::{Dust, Front, Gusts, Intensity, Primitive, Profile, Shape, Solver};
 use super::*;
 
 /// A box of still air without forces.
@@ -253,6 +253,8 @@ fn stormy() -> (Config, Jet) {
         speed_m_per_s: 6.0,
         direction: [1.0, 0.0],
         dust: 0.5,
+        intensity: Intensity::Steady,
+        front: Front::default(),
     };
     let shapes = [Shape::Uniform, Shape::Source, Shape::Sink, Shape::Vortex, Shape::Cyclone];
     let config = Config {
@@ -309,7 +311,7 @@ fn forces_are_those_of_the_staggered_solver() {
 fn sources_blow_and_sinks_draw() {
     let (config, _) = stormy();
     for (shape, sign) in [(Shape::Source, 1.0), (Shape::Sink, -1.0)] {
-        let primitive = Primitive { shape, position_m: [8.0; 3], drift_m_per_s: [0.0; 2], radius_m: 6.0, ..config.primitives[0] };
+        let primitive = Primitive { shape, position_m: [8.0; 3], drift_m_per_s: [0.0; 2], radius_m: 6.0, ..config.primitives[0].clone() };
         let config = Config { primitives: vec![primitive], ..quiet([8; 3], [2.0; 3], Boundary::FreeSlip) };
         let mut air = StableFluids::<f32>::new(&config).unwrap();
         air.step(0.1, &[]).unwrap();

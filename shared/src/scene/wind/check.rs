@@ -1,6 +1,6 @@
 //! Consistency checks of a scene's wind.
 
-use super::{Wind, WindBoundary, WindDiffusion, WindFaces, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime};
+use super::{Wind, WindBoundary, WindDiffusion, WindFaces, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime, intensity};
 use crate::scene::Scene;
 use crate::scene::checks::conflict::Conflicts;
 use crate::scene::checks::limits::WIND_CELLS_LIMIT;
@@ -263,7 +263,7 @@ fn stable_fluids(wind: &Wind, conflicts: &mut Conflicts) {
     }
 }
 
-/// Primitives must be inside the world and the height of the box.
+/// Primitives must be inside the world and the height of the box, and have the fields of their intensity.
 fn primitives(scene: &Scene, conflicts: &mut Conflicts) {
     let [width_m, depth_m] = scene.extent_m();
     let (world, air) = (["patches.count", "patches.cells", "patches.cell_m"], ["wind.cells", "wind.spacing_m"]);
@@ -273,6 +273,7 @@ fn primitives(scene: &Scene, conflicts: &mut Conflicts) {
         (depth_m, "the world's extent along Z", &world[..]),
     ];
     for (i, primitive) in scene.wind.primitives.iter().enumerate() {
+        intensity::check(&format!("wind.primitives[{i}]"), primitive, conflicts);
         for (axis, (limit_m, what, set_by)) in limits.into_iter().enumerate() {
             let at_m = primitive.at_m[axis];
             if at_m > limit_m {

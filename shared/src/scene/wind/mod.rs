@@ -3,11 +3,13 @@
 pub(super) mod check;
 mod dust;
 mod faces;
+mod intensity;
 mod primitive;
 mod words;
 
 pub use dust::WindDust;
 pub use faces::{WindBoundary, WindFaces};
+pub use intensity::PrimitiveIntensity;
 pub use primitive::{Primitive, PrimitiveKind};
 pub(crate) use words::words;
 pub use words::{WindAdvection, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime};

@@ -163,7 +163,8 @@ fn pose() -> ObjectPose {
 fn filled_values() -> Table {
     let text = "summary = 'all'\nunderbrush_file = 'u.toml'\n\
         [terrain]\nheight_map = 'h.png'\ncovering_map = 'c.png'\npixel_m = [0.5, 0.5]\nlevel_m = 0.1\n\
-        [[wind.primitives]]\nkind = 'source'\nat_m = [1, 2, 3]\n[[species]]\nname = 'a'\ncover = 1\n\
+        [[wind.primitives]]\nkind = 'source'\nat_m = [1, 2, 3]\nintensity = 'spline'\nperiod_secs = 9\n\
+        intensity_points = [[1, 1], [2, 0.5]]\n[[species]]\nname = 'a'\ncover = 1\n\
         [[underbrush]]\nname = 'b'\n[[underbrush.components]]\nname = 'c'\nkind = 'branch'\n\
         [[underbrush.components]]\nname = 'd'\nkind = 'leaf'\non = 'c'\n\
         [[drawn_winds]]\nshape = 'swirl'\npath_m = [[1, 2]]\n[[lights]]\nat_m = [1, 2, 3]\n\
