@@ -71,6 +71,8 @@ pub(crate) struct Blades {
     /// Near plants in the newest frame, before culling.
     near_plants: u32,
     near_workgroups: u32,
+    /// Grids of the newest frame whose plants are simulated, and whether they may be in view.
+    near_grids: [([i32; 2], bool); NEAR_SLOTS],
     /// Whether a grid has moved into a slot in this batch.
     any_moves_in: bool,
     /// Number of the newest frame; counts frames in which time advances or a grid moves in.
@@ -136,6 +138,7 @@ impl Blades {
             places,
             near_plants: 0,
             near_workgroups: 0,
+            near_grids: [([i32::MIN; 2], false); NEAR_SLOTS],
             any_moves_in: false,
             frame: 0,
             capacities,
@@ -170,6 +173,23 @@ impl Blades {
         self.near_plants
     }
 
+    /// Grids whose plants are simulated, and whether they may be in view.
+    pub(crate) fn near_grids(&self) -> &[([i32; 2], bool)] {
+        &self.near_grids
+    }
+
+    /// Grids beyond whose plants the newest batch lists.
+    #[cfg(test)]
+    pub(crate) fn listed_grids(&self, gpu: &Gpu) -> std::collections::BTreeSet<[i32; 2]> {
+        self.grids.listed(gpu)
+    }
+
+    /// States of the grids beyond, as `GRID_SHOWN`, of a square of grids: its first one, and the number along its side.
+    pub(crate) fn far_grids(&self) -> (&wgpu::Buffer, [i32; 2], i32) {
+        let (first, side) = self.grids.square();
+        (self.grids.states(), first, side)
+    }
+
     pub(crate) fn prepare(&mut self, gpu: &Gpu, decoded: &DecodedScene, from: &Viewpoint<'_>) {
         let detail = from.detail;
         self.fades = from.options.far_plants != FarPlants::Land;
@@ -193,6 +213,7 @@ impl Blades {
             self.near_plants += stands;
             most = most.max(stands);
             slots[slot] = GridSlot { grid, moved_in: self.slots[slot].1, plants: stands };
+            self.near_grids[slot] = (grid, is_seen);
         }
         self.near_workgroups = most.div_ceil(CHUNK);
         let settings = &decoded.scene().plants;
