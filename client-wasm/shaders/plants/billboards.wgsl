@@ -77,8 +77,8 @@ fn plant_foot(clump: Clump, plant: u32) -> vec2<f32> {
 fn first_joint(number: u32, plant: u32) -> u32 {
     let segments = select(1u, list.several_segments, number < list.several);
     let before = select(list.several * CLUMP_PLANTS * list.several_segments, 0u, number < list.several);
-    let from = select(list.several, 0u, number < list.several);
-    return before + ((number - from) * CLUMP_PLANTS + plant) * segments;
+    let first = select(list.several, 0u, number < list.several);
+    return before + ((number - first) * CLUMP_PLANTS + plant) * segments;
 }
 
 // Wind over the ground on far plants (m/s). Its deviation from the mean wind grows in proportion to the distance beyond that at which clumps begin,

@@ -85,7 +85,7 @@ fn vs(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
 }
 
 // Displayed colour of a class.
-fn class_color(class: u32) -> vec3<f32> {
+fn class_color(number: u32) -> vec3<f32> {
     return array<vec3<f32>, GRID_CLASSES>(
         vec3<f32>(1.00, 0.93, 0.45),
         vec3<f32>(0.55, 0.86, 0.32),
@@ -95,7 +95,7 @@ fn class_color(class: u32) -> vec3<f32> {
         vec3<f32>(0.76, 0.42, 0.85),
         vec3<f32>(0.26, 0.26, 0.26),
         vec3<f32>(0.62, 0.32, 0.16),
-    )[class];
+    )[number];
 }
 
 const PAPER: vec3<f32> = vec3<f32>(0.10, 0.12, 0.09);
@@ -115,13 +115,13 @@ fn map_color(at: vec2<f32>, pixel: f32) -> vec3<f32> {
     let found = classes[u32(cell.y) * u32(map.side) + u32(cell.x)];
     // A grid of two representations is divided along its diagonal.
     let is_lower = within.x + within.y > 1.0;
-    var class = select(found.x, found.y, is_lower);
-    if class == NO_CLASS {
-        class = select(found.y, found.x, is_lower);
+    var shown = select(found.x, found.y, is_lower);
+    if shown == NO_CLASS {
+        shown = select(found.y, found.x, is_lower);
     }
     var color = PAPER;
-    if class != NO_CLASS {
-        color = class_color(class);
+    if shown != NO_CLASS {
+        color = class_color(shown);
     }
     let line = pixel * side;
     if line < 0.25 && any(within < vec2<f32>(line)) {
@@ -144,20 +144,20 @@ fn is_set(glyph: u32, at: vec2<u32>) -> bool {
 
 // Colour of the legend at a pixel of it.
 fn legend_color(at: vec2<u32>) -> vec3<f32> {
-    let class = at.y / LEGEND_LINE;
+    let number = at.y / LEGEND_LINE;
     let row = at.y % LEGEND_LINE;
-    if class >= GRID_CLASSES || row == 0u {
+    if number >= GRID_CLASSES || row == 0u {
         return PAPER;
     }
     let column = at.x / GLYPH_PITCH;
     let pixel = vec2<u32>(at.x % GLYPH_PITCH, row - 1u);
     if column == 0u {
-        return select(PAPER, class_color(class), row <= GLYPH_HEIGHT);
+        return select(PAPER, class_color(number), row <= GLYPH_HEIGHT);
     }
     var glyph = 0u;
     if column <= LEGEND_DIGITS {
         // Right-aligned decimal digits, without leading zeros.
-        var rest = counts[class];
+        var rest = counts[number];
         for (var i = column; i < LEGEND_DIGITS; i++) {
             rest /= 10u;
         }
@@ -165,7 +165,7 @@ fn legend_color(at: vec2<u32>) -> vec3<f32> {
             glyph = glyphs[rest % 10u];
         }
     } else if column < 2u + LEGEND_DIGITS + LEGEND_CHARACTERS && column > 1u + LEGEND_DIGITS {
-        glyph = glyphs[10u + class * LEGEND_CHARACTERS + column - 2u - LEGEND_DIGITS];
+        glyph = glyphs[10u + number * LEGEND_CHARACTERS + column - 2u - LEGEND_DIGITS];
     }
     return select(PAPER, INK, is_set(glyph, pixel));
 }

@@ -15,9 +15,9 @@ fn counts(gpu: &Gpu, mirror: &mut Mirror, options: RenderOptions) -> (OffscreenR
     (picture, counts)
 }
 
-/// A ridge of 12 m across the middle of the meadow.
+/// A plateau of 12 m across the middle of a meadow, wider than the cells in which `LowestLand` looks for the lowest land.
 fn ridge() -> Mirror {
-    let heights: Vec<u8> = (0..17 * 17).map(|at| if at / 17 == 8 { 255 } else { 0 }).collect();
+    let heights: Vec<u8> = (0..17 * 17).map(|at| if (6..=9).contains(&(at / 17)) { 255 } else { 0 }).collect();
     let mut mirror = Mirror::default();
     let maps =
         TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 12.0 / 255.0, base_m: 0.0 };
@@ -43,7 +43,7 @@ fn the_map_counts_the_grids_that_are_drawn_and_those_that_are_culled() {
     println!("{culled:?}; without culling {all:?}");
     assert_eq!([all[0], all[6], all[7]], [9, 0, 0], "without culling nothing is culled");
     assert_eq!(culled.iter().sum::<u32>(), all.iter().sum::<u32>(), "every grid within reach has one class");
-    assert!(culled[6] > 20 && culled[7] > 5, "neither the view nor the ridge culls: {culled:?}");
+    assert!(culled[6] > 20 && culled[7] > 2, "neither the view nor the ridge culls: {culled:?}");
     let blades = picture.renderer.scene.as_ref().and_then(|scene| scene.blades.as_ref()).expect("blades");
     let listed = blades.listed_grids(&gpu);
     assert_eq!(culled[1] as usize, listed.len(), "the map shows as many grids of single blades as are listed");
