@@ -107,13 +107,12 @@ impl Blades {
         let shapes = shapes.create_view(&Default::default());
         let lists = buffers.list_groups(factory, capacities, segments, &shapes);
         let are_textured = plants.blade_shape == BladeShape::Textured;
-        let [fine, others, _] = capacities;
         let listed = BladeDrawList {
             blades: buffers.drawn,
             counters: buffers.counters,
             shapes,
             are_textured,
-            capacities: [fine, others],
+            capacities: [capacities[0], capacities[1]],
             segments,
             grid_m,
         };
