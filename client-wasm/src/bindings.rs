@@ -88,7 +88,7 @@ mod tests {
     use crate::vehicle::VehicleProfile;
 
     /// Keys of the page (`panel.js`, `sound.js`, `time_bar.js`) and the key that gives a vehicle up.
-    const PAGE_KEYS: &str = "knopvxtr,.f";
+    const PAGE_KEYS: &str = "gknopvxtr,.f";
 
     #[test]
     fn letters_take_vehicles_whatever_the_case_and_digits_set_heights() {

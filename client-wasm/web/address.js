@@ -2,7 +2,7 @@
 // The client itself stores the view, #x,y,z,heading,pitch.
 
 // Parameters of a shared link, in this order.
-const SHARED = ["scene", "quality", "budget", "order", "far", "hour", "compare", "at"];
+const SHARED = ["scene", "quality", "budget", "order", "far", "wind", "show", "hour", "compare", "at"];
 
 const parameters = new URLSearchParams(location.search);
 

@@ -10,7 +10,7 @@ const NOTICE_MS = 5_000;
 
 const LABELS = {
   auto: "Automatic", land: "Ground only", cut: "Alpha test", coverage: "Alpha to coverage", precomputed: "Precomputed orders", weighted: "Weighted blended",
-  unculled: "No culling",
+  unculled: "No culling", raised: "Wind raised with distance", grids: "Map of the grids",
 };
 
 // Displayed name of a choice.
@@ -30,7 +30,7 @@ export class Panel {
     byId("name").value = name;
     this.fill(choices);
     byId("quality").value = JSON.parse(client.state()).chosen_quality;
-    byId("options").open = ["order", "far", "compare"].some((key) => parameter(key) !== null);
+    byId("options").open = ["order", "far", "wind", "show", "compare"].some((key) => parameter(key) !== null);
     this.listen();
     setInterval(() => this.update(JSON.parse(client.state())), UPDATE_MS);
   }
@@ -119,6 +119,22 @@ export class Panel {
     else if (byId("panel").contains(focused)) byId("view").focus();
   }
 
+  // Shows or hides the map of the grass grids.
+  toggleGrids() {
+    const shown = !JSON.parse(this.client.state()).grids;
+    this.client.show_grids(shown);
+    keep({ show: shown ? "grids" : null });
+    this.update(JSON.parse(this.client.state()));
+  }
+
+  // Raises the wind on far plants with distance, or not.
+  toggleRaised() {
+    const raised = !JSON.parse(this.client.state()).raised;
+    this.client.raise_far_wind(raised);
+    keep({ wind: raised ? "raised" : null });
+    this.update(JSON.parse(this.client.state()));
+  }
+
   // Enters or leaves full screen.
   fullScreen() {
     if (!document.fullscreenEnabled) return this.notify("This browser has no full screen for pages.");
@@ -151,6 +167,8 @@ export class Panel {
         keep({ [id]: target.value });
       });
     }
+    byId("grids").addEventListener("click", () => this.toggleGrids());
+    byId("raised").addEventListener("click", () => this.toggleRaised());
     byId("hour").addEventListener("input", ({ target }) => {
       this.client.set_hour(Number(target.value));
       this.showHour(Number(target.value), null);
@@ -214,6 +232,7 @@ export class Panel {
     const once = event.repeat ? "" : event.key.toLowerCase();
     if (event.key === "?" || event.key === "F1") this.help();
     else if (once === "p") this.toggle();
+    else if (once === "g") this.toggleGrids();
     else if (once === "k") this.capture.picture();
     else if (once === "v") this.capture.video();
     else if (once === "x") this.fullScreen();
@@ -229,6 +248,7 @@ export class Panel {
     write("count", state.peers.length > 1 ? String(state.peers.length) : "");
     if (state.eye && parameter("scene") !== state.scene_name) keep({ scene: state.scene_name });
     for (const id of ["order", "far"]) if (document.activeElement !== byId(id)) byId(id).value = state[id];
+    for (const id of ["grids", "raised"]) byId(id).setAttribute("aria-pressed", String(state[id]));
     // Without a device, such as between its loss and its replacement, there is no GPU time.
     write("work", state.cpu_ms === null || state.gpu_ms === null ? "–" : `CPU ${state.cpu_ms.toFixed(1)} · GPU ${state.gpu_ms.toFixed(1)} ms`);
     write("detail", state.automatic ? `${state.level.toFixed(1)} of ${state.highest_level} · target ${state.budget_ms.toFixed(0)} ms` : state.quality);

@@ -125,6 +125,8 @@ async function begin() {
   };
   client.start("view", JSON.stringify(options));
   client.set_options(parameter("order") ?? "", parameter("far") ?? "");
+  client.raise_far_wind(parameter("wind") === "raised");
+  client.show_grids(parameter("show") === "grids");
   if (parameter("hour")) client.set_hour(Number(parameter("hour")));
   const { state } = window.prairie;
   const capture = new Capture(client, byId("view"), {

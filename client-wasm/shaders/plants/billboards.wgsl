@@ -1,24 +1,24 @@
 // Clumps of far plants: six rectangles about a vertical axis (Zhang, section 4.1). One instance is 32 clumps.
 
-import package::constants::{CLUMP_FADE_SPREAD_M, CLUMP_SEGMENT_LIMIT, CLUMPS, TAU, WORKGROUP_SIZE};
+import package::constants::{CLUMP_FADE_SPREAD_M, CLUMP_PLANTS, CLUMPS, TAU, WORKGROUP_SIZE};
 import package::inputs::bend_atlas::{bend_at, far_lean, field_level, field_fraction, lean_of_bend, lean_of_field, trailing_lean};
 import package::inputs::frame::{frame, repeated};
 import package::inputs::grass_kinds::{kind_at, kinds};
 import package::inputs::lamps::lamps_on;
 import package::inputs::random::dither_at;
 import package::inputs::shadows::sun_visible;
-import package::inputs::wind::{gust_at, lean_of_wind};
+import package::inputs::wind::{gust_at, lean_of_wind, resolved_at};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
-import package::land_and_sky::ground::{fed, grass_fraction, ground_height, ground_normal};
+import package::land_and_sky::ground::{fed, grass_fraction, grass_fraction_over, ground_height, ground_normal};
 import package::land_and_sky::haze::hazed;
 import package::land_and_sky::sky_light::ambient;
 import package::land_and_sky::sward::{MEAN_STRAW, blade_color, contrast, sward_color};
-import package::plants::force_field::sheltered_at;
+import package::plants::force_field::{forces_at, sheltered};
 import package::plants::nearness::nearness;
 import package::plants::opacity::LEAST_OPACITY;
 import package::plants::weighted::{Weighted, weighted};
-import package::uniforms::{ClumpList, Kind};
+import package::uniforms::ClumpList;
 
 struct Clump {
     // Axis, X and Z (m).
@@ -29,7 +29,7 @@ struct Clump {
     random: f32,
 }
 
-// Pose of a clump, the same for all its vertices.
+// State of a clump, the same for all its vertices.
 struct ClumpPose {
     // Mean height of its blades (m).
     height_m: f32,
@@ -37,12 +37,16 @@ struct ClumpPose {
     segments: f32,
     // Opacity of the clump, 0..1.
     shown: f32,
-    // Tops of the segments, from the foot (m).
-    joints_m: array<vec3<f32>, CLUMP_SEGMENT_LIMIT>,
+    // Height relative to that of its plants: clumps sink into the ground where they end.
+    risen: f32,
     // Lit colour of the plants' roots.
     root_color: vec3<f32>,
+    // Index of the kind of its plants.
+    kind: u32,
     // Lit colour of their tips.
     tip_color: vec3<f32>,
+    // How far it bends as a whole, 0..1.
+    straight: f32,
     // Light on petals.
     petal_light: vec3<f32>,
 }
@@ -55,21 +59,59 @@ struct ClumpPose {
 // Keys and numbers of clumps far to near, those of one segment first: input and output of the sort.
 @group(1) @binding(5) var<storage, read_write> keyed: array<vec2<u32>>;
 @group(1) @binding(6) var<storage, read> in_order: array<vec2<u32>>;
+// Tops of the segments of the plants that each clump joins, relative to the foot of the plant (m), and the height of the land at the foot (m).
+@group(1) @binding(7) var<storage, read> joints: array<vec4<f32>>;
+@group(1) @binding(8) var<storage, read_write> joints_out: array<vec4<f32>>;
 
 // Width and height of the texture's pattern (m per m of mean blade height).
 const PATTERN_WIDTH: f32 = 4.0;
 const PATTERN_HEIGHT: f32 = 1.25;
 
-// Tops of the segments of a clump, relative to `ground` (m). Wind and bend field tilt the lowest segment; the upper ones follow its earlier
-// leans (Chen & Johan, section 4.5). With distance all straighten into one line. Tops stay above the ground.
-fn joints_of(ground: vec3<f32>, kind: Kind, segments: u32, height: f32, level: f32, wind_lean: vec2<f32>, straight: f32) -> array<vec3<f32>, CLUMP_SEGMENT_LIMIT> {
-    let p = ground.xz;
+// Foot of one of the plants that a clump joins: 0 is on its axis, 1 to 6 are at the outer ends of its rectangles.
+fn plant_foot(clump: Clump, plant: u32) -> vec2<f32> {
+    let angle = (f32(plant) - 1.0) / 6.0 * TAU + clump.random * TAU;
+    return clump.axis_m + vec2<f32>(cos(angle), sin(angle)) * select(clump.length_m, 0.0, plant == 0u);
+}
+
+// Index of the lowest joint of a plant. Clumps of several segments come first.
+fn first_joint(number: u32, plant: u32) -> u32 {
+    let segments = select(1u, list.several_segments, number < list.several);
+    let before = select(list.several * CLUMP_PLANTS * list.several_segments, 0u, number < list.several);
+    let first = select(list.several, 0u, number < list.several);
+    return before + ((number - first) * CLUMP_PLANTS + plant) * segments;
+}
+
+// Wind over the ground on far plants (m/s). Its deviation from the mean wind grows in proportion to the distance beyond that at which clumps begin,
+// so that they still move visibly (Zhang, section 4.2).
+fn far_wind(ground: vec3<f32>, distance_m: f32) -> vec2<f32> {
+    let beyond = max(distance_m / list.raised_from_m, 1.0) - 1.0;
+    let resolved = resolved_at(ground, 0.0).xz;
+    let moving = resolved + (resolved - list.mean_wind_m_per_s) * beyond;
+    return sheltered(moving, forces_at(ground.xz, 0.0).xy) + gust_at(ground.xz) * (1.0 + beyond);
+}
+
+// Bends the plants that a clump joins, each by the wind and the bend field at its own foot. They tilt the lowest segment; the upper ones follow its
+// earlier leans (Chen & Johan, section 4.5). With distance all straighten into one line. Tops stay above the ground.
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn bend_plants(@builtin(global_invocation_id) id: vec3<u32>) {
+    let number = id.x / CLUMP_PLANTS;
+    if number >= list.count || poses_out[number].shown <= 0.0 {
+        return;
+    }
+    let kind = kinds.list[poses_out[number].kind];
+    let straight = poses_out[number].straight;
+    let segments = u32(poses_out[number].segments);
+    let p = plant_foot(clumps[number], id.x % CLUMP_PLANTS);
+    let ground = vec3<f32>(p.x, ground_height(p), p.y);
+    let height = kind.height_m * PATTERN_HEIGHT * fed(p) * poses_out[number].risen;
+    let distance_m = distance(ground, frame.eye_m);
+    let level = field_level(distance_m);
     let fraction = field_fraction(p);
     let now = bend_at(p, level, 0);
-    let steady = wind_lean + far_lean(p, level, fraction);
+    let steady = lean_of_wind(far_wind(ground, distance_m), kind.wind_bend_rad) + far_lean(p, level, fraction);
     let lowest = steady + lean_of_bend(now) * fraction;
     let curl = (1.0 - straight) * (1.0 - smoothstep(0.5, 1.3, length(lowest)));
-    var joints: array<vec3<f32>, CLUMP_SEGMENT_LIMIT>;
+    let first = first_joint(number, id.x % CLUMP_PLANTS);
     var at = vec3<f32>(0.0);
     for (var i = 0u; i < segments; i++) {
         var lean = lowest;
@@ -84,9 +126,8 @@ fn joints_of(ground: vec3<f32>, kind: Kind, segments: u32, height: f32, level: f
         let aside = lean / max(length(lean), 1e-4) * sin(tilt);
         at += vec3<f32>(aside.x, cos(tilt), aside.y) * (height / f32(segments));
         at.y = max(at.y, ground_height(p + at.xz) - ground.y);
-        joints[i] = at;
+        joints_out[first + i] = vec4<f32>(at, ground.y);
     }
-    return joints;
 }
 
 @compute @workgroup_size(WORKGROUP_SIZE)
@@ -96,33 +137,31 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let clump = clumps[id.x];
     let root = clump.axis_m;
-    let fraction = grass_fraction(root);
     // Kinds mix where they meet.
-    let kind = kinds.list[kind_at(root + (vec2<f32>(clump.random, fract(clump.random * 7.3)) - 0.5) * 0.9)];
-    let height = kind.height_m * PATTERN_HEIGHT * fed(root) * sqrt(fraction);
+    let number = kind_at(root + (vec2<f32>(clump.random, fract(clump.random * 7.3)) - 0.5) * 0.9);
+    let kind = kinds.list[number];
     let ground = vec3<f32>(root.x, ground_height(root), root.y);
     let distance_m = distance(ground, frame.eye_m);
     let level = field_level(distance_m);
-    let wind_lean = lean_of_wind(sheltered_at(ground, 0.0) + gust_at(root), kind.wind_bend_rad);
-    let lean = lean_of_field(root, level) + wind_lean;
+    let lean = lean_of_field(root, level) + lean_of_wind(far_wind(ground, distance_m), kind.wind_bend_rad);
     // Clumps fade in as single plants fade out (Zhang, section 6.1).
     let fade_in = smoothstep(frame.blades_fade_from_m, frame.blades_end_m, distance_m + (clump.random - 0.5) * (2.0 * CLUMP_FADE_SPREAD_M));
     let fade_out = 1.0 - smoothstep(frame.far_fade_from_m, frame.far_end_m, distance_m);
-    var pose: ClumpPose;
-    let light = cloud_light(root) * sun_visible(ground + vec3<f32>(0.0, height * 0.6, 0.0));
     // Seen from above, sparse clumps would look like stars: the colour of the ground replaces them.
     let down = smoothstep(0.09, 0.22, dot(frame.eye_m - ground, ground_normal(root)) / max(distance_m, 1e-3));
     let flat_fraction = down * smoothstep(frame.blades_end_m * 0.9, frame.blades_end_m * 1.6, distance_m);
-    let risen = mix(0.35, 1.0, fade_out) * (1.0 - flat_fraction);
-    let segments = select(1u, u32(kind.segments), id.x / CLUMPS < list.several_instances);
-    let straight = smoothstep(list.straightens_m, list.straight_m, distance_m);
+    var pose: ClumpPose;
+    pose.kind = number;
+    pose.risen = mix(0.35, 1.0, fade_out) * (1.0 - flat_fraction);
+    pose.straight = smoothstep(list.straightens_m, list.straight_m, distance_m);
     pose.height_m = kind.height_m;
-    pose.segments = f32(segments);
-    pose.shown = fade_in * min(fade_out * 4.0, 1.0) * step(0.1, fraction) * step(0.05, risen);
-    if pose.shown > 0.0 {
-        pose.joints_m = joints_of(ground, kind, segments, height * risen, level, wind_lean, straight);
-    }
-    let p = ground + vec3<f32>(0.0, height * risen * 0.5, 0.0);
+    pose.segments = select(1.0, min(kind.segments, f32(list.several_segments)), id.x < list.several);
+    // Clumps that cross a gap are cut by `painted`; those that no grass reaches are left out.
+    let covered = grass_fraction_over(root, 2.0 * clump.length_m);
+    pose.shown = fade_in * min(fade_out * 4.0, 1.0) * select(0.0, 1.0, covered > 0.0) * step(0.05, pose.risen);
+    let height = kind.height_m * PATTERN_HEIGHT * fed(root);
+    let light = cloud_light(root) * sun_visible(ground + vec3<f32>(0.0, height * 0.6, 0.0));
+    let p = ground + vec3<f32>(0.0, height * pose.risen * 0.5, 0.0);
     let view = normalize(p - frame.eye_m);
     let normal = normalize(ground_normal(root) - view * 0.45 + vec3<f32>(lean.x, 0.0, lean.y) * 0.7);
     let tangent = normalize(vec3<f32>(lean.x, 1.0, lean.y));
@@ -156,6 +195,8 @@ struct Rectangle {
     @location(4) shown: f32,
     // From the eye (m).
     @location(5) distance_m: f32,
+    // Foot of the plants at a point of the rectangle (m).
+    @location(6) foot_m: vec2<f32>,
 }
 
 // Corner of one of the six rectangles of a clump: two per row, lowest row first.
@@ -170,12 +211,12 @@ fn corner_of(number: u32, side: u32, corner: u32) -> Rectangle {
     let outward = f32(corner & 1u);
     // Rows above the topmost segment collapse onto its top.
     let row = min(corner >> 1u, u32(segments));
-    let angle = (f32(side) / 6.0 + clump.random) * TAU;
-    let direction = vec2<f32>(cos(angle), sin(angle));
-    let root = clump.axis_m + direction * clump.length_m * outward;
-    var p = vec3<f32>(root.x, ground_height(root) - 0.03, root.y);
+    let plant = select(0u, side + 1u, (corner & 1u) == 1u);
+    let first = first_joint(number, plant);
+    let foot = plant_foot(clump, plant);
+    var p = vec3<f32>(foot.x, joints[first].w - 0.03, foot.y);
     if row > 0u {
-        p += poses[number].joints_m[row - 1u];
+        p += joints[first + row - 1u].xyz;
     }
     let upward = f32(row) / segments;
     out.root_color = poses[number].root_color;
@@ -188,6 +229,7 @@ fn corner_of(number: u32, side: u32, corner: u32) -> Rectangle {
     );
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
     out.distance_m = distance(p, frame.eye_m);
+    out.foot_m = foot;
     return out;
 }
 
@@ -233,7 +275,11 @@ fn vs_in_order(@builtin(vertex_index) index: u32, @builtin(instance_index) insta
 fn painted(r: Rectangle) -> vec4<f32> {
     // Texture: height along the plant, hue, fraction of petals, coverage.
     let texel = textureSample(tufts, repeated, vec2<f32>(r.uv.x, clamp(r.uv.y, 0.01, 0.99)));
-    let alpha = clamp((texel.a - 0.5) / max(fwidth(texel.a), 0.0001) + 0.5, 0.0, 1.0);
+    var alpha = clamp((texel.a - 0.5) / max(fwidth(texel.a), 0.0001) + 0.5, 0.0, 1.0);
+    // No plant stands where the covering map has none (Zhang, section 5.5.2).
+    if alpha > 0.0 {
+        alpha *= grass_fraction(r.foot_m);
+    }
     let up = 1.0 - r.uv.y;
     let t = texel.r * smoothstep(-0.15, 0.75, up);
     let color = mix(r.root_color, r.tip_color, t * t);

@@ -1,6 +1,6 @@
 // Culls grass grids around the camera and lists their plants in chunks, each one workgroup of the following passes.
 
-import package::constants::CHUNK;
+import package::constants::{CHUNK, GRID_BEYOND, GRID_HIDDEN, GRID_OUTSIDE, GRID_SHOWN};
 import package::inputs::frame::{frame, runtime_zero};
 import package::inputs::frustum::is_box_seen;
 import package::land_and_sky::ground::{ground_height, heights};
@@ -19,6 +19,8 @@ struct Workgroups {
 @group(1) @binding(2) var<storage, read_write> workgroups: Workgroups;
 
 @group(1) @binding(3) var lowest: texture_2d<f32>;
+// State of each grid of the square, for the map of the grids.
+@group(1) @binding(4) var<storage, read_write> states: array<u32>;
 
 // Samples of the horizon along a ray.
 const HORIZON_SAMPLES: u32 = 24u;
@@ -107,10 +109,19 @@ fn list_grids(@builtin(global_invocation_id) id: vec3<u32>) {
     let nearest = clamp(frame.eye_m, vec3<f32>(low.x, range.x, low.y), vec3<f32>(high.x, range.y, high.y));
     let distance_m = distance(nearest, frame.eye_m);
     if distance_m >= squares.reach_m {
+        states[id.x] = GRID_BEYOND;
         return;
     }
-    let is_unseen = !is_box_seen(box_low, box_high) || is_hidden(box_low, box_high);
-    if is_unseen & (squares.culls != 0) {
+    var state = GRID_SHOWN;
+    if squares.culls != 0 {
+        if !is_box_seen(box_low, box_high) {
+            state = GRID_OUTSIDE;
+        } else if is_hidden(box_low, box_high) {
+            state = GRID_HIDDEN;
+        }
+    }
+    states[id.x] = state;
+    if state != GRID_SHOWN {
         return;
     }
     let count = u32(ceil(f32(squares.grid_plants) * density(distance_m, squares.full_density_m)));

@@ -253,6 +253,18 @@ pub fn set_options(order: &str, far: &str) {
     with_app(|app| app.settings.set_options(order, far));
 }
 
+/// Raises the wind on far clumps with distance, or shows it as it is.
+#[wasm_bindgen]
+pub fn raise_far_wind(raises: bool) {
+    with_app(|app| app.settings.raise_far_wind(raises));
+}
+
+/// Shows or hides the map of the grass grids around the camera.
+#[wasm_bindgen]
+pub fn show_grids(shows: bool) {
+    with_app(|app| app.settings.show_grids(shows));
+}
+
 /// Sets the hour of the day, 0 to 24, that determines the sun; any other number restores the scene's own hour.
 #[wasm_bindgen]
 pub fn set_hour(hour: f32) {

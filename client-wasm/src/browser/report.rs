@@ -158,6 +158,8 @@ impl App {
             "highest_level": Quality::FINEST.level(),
             "order": self.settings.option_names()[0],
             "far": self.settings.option_names()[1],
+            "raised": self.settings.switches()[0],
+            "grids": self.settings.switches()[1],
             "hour": self.settings.hour(),
             "scene_hour": self.mirror.decoded_scene().map(|decoded| decoded.scene().light.hour_at(self.mirror.time_secs())),
             "compared": self.settings.compared().map(|(variants, _)| variants),

@@ -125,6 +125,21 @@ impl Settings {
         self.options.far_plants = FarPlants::from_name(far).unwrap_or(self.options.far_plants);
     }
 
+    /// Raises the wind on far clumps with distance, or shows it as it is.
+    pub(super) fn raise_far_wind(&mut self, raises: bool) {
+        self.options.raises_far_wind = raises;
+    }
+
+    /// Shows or hides the map of the grass grids.
+    pub(super) fn show_grids(&mut self, shows: bool) {
+        self.options.shows_grids = shows;
+    }
+
+    /// Whether the wind on far clumps is raised with distance, and whether the map of the grass grids is shown.
+    pub(super) fn switches(&self) -> [bool; 2] {
+        [self.options.raises_far_wind, self.options.shows_grids]
+    }
+
     /// Sets the hour of the day, 0 to 24, that determines the sun; any other number restores the scene's own hour.
     pub(super) fn set_hour(&mut self, hour: f32) {
         self.hour = Some(hour).filter(|hour| (0.0..=24.0).contains(hour));

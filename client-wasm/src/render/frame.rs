@@ -79,6 +79,7 @@ impl Renderer {
             let picture = batch.opaque();
             batch.blended(picture);
             batch.tone(target, region);
+            batch.overlay(target);
             batch.submit();
         }
         let stats = stats(&scene, &plan);

@@ -3,6 +3,7 @@
 use crate::camera::Camera;
 use crate::render::FrameStats;
 use crate::render::Renderer;
+use crate::render::gpu::constants::GRID_CLASSES;
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline_statistics::{PassStatistics, StatisticsQueries};
 use crate::render::gpu::readback::read;
@@ -118,6 +119,13 @@ impl OffscreenRenderer {
         let blades = scene.and_then(|scene| scene.blades.as_ref());
         let counts = blades.map(|blades| bytemuck::pod_collect_to_vec::<u8, u32>(&read(&self.gpu, blades.in_view())));
         counts.map_or(0, |counts| counts.iter().take(2).sum())
+    }
+
+    /// Numbers of grass grids by the classes of the map's legend: simulated blades, other single blades, clumps of 3, 5, 9 and at least 17 plants along a
+    /// side, culled by the view, culled by hills. `None` if no frame has [shown](RenderOptions::shows_grids) the map.
+    pub fn grid_counts(&self) -> Option<[u32; GRID_CLASSES as usize]> {
+        let map = self.renderer.scene.as_ref()?.grid_map.as_ref()?;
+        bytemuck::pod_collect_to_vec::<u8, u32>(&read(&self.gpu, map.counts())).try_into().ok()
     }
 
     /// Number of underbrush plants that the newest frame drew: those in view, thinned out with distance.

@@ -10,6 +10,7 @@ use crate::render::options::render_options::BlendOrder;
 use crate::render::plants::billboards::Billboards;
 use crate::render::plants::blades::Blades;
 use crate::render::plants::force_field::CameraForceField;
+use crate::render::plants::grid_map::GridMap;
 use crate::render::plants::shells::Shells;
 use crate::render::plants::underbrush::Underbrush;
 use crate::render::solids::objects::ObjectPasses;
@@ -32,6 +33,8 @@ pub(super) struct SceneResources {
     pub(super) billboards: Option<Billboards>,
     /// Created when first needed.
     pub(super) shells: Option<Shells>,
+    /// Created when first needed.
+    pub(super) grid_map: Option<GridMap>,
     pub(super) objects: Option<Box<ObjectPasses>>,
     pub(super) shadow_cache: ShadowCache,
     pub(super) force_field: Box<CameraForceField>,
@@ -56,6 +59,7 @@ impl SceneResources {
             blades: None,
             billboards: None,
             shells: None,
+            grid_map: None,
             objects: None,
             shadow_cache: ShadowCache::default(),
             force_field: Box::new(CameraForceField::new(&factory.gpu, decoded, &placed_models(decoded))),

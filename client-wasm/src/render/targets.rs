@@ -87,6 +87,16 @@ pub(super) fn tone_pass(
     encoder.begin_render_pass(&descriptor).forget_lifetime()
 }
 
+/// Begins the pass that draws over the finished output.
+pub(super) fn overlay_pass(encoder: &mut wgpu::CommandEncoder, output: &wgpu::TextureView) -> wgpu::RenderPass<'static> {
+    let descriptor = wgpu::RenderPassDescriptor {
+        label: Some("overlay"),
+        color_attachments: &[color_attachment(output, LoadOp::Load)],
+        ..Default::default()
+    };
+    encoder.begin_render_pass(&descriptor).forget_lifetime()
+}
+
 fn color_attachment(view: &wgpu::TextureView, load: LoadOp<wgpu::Color>) -> Option<wgpu::RenderPassColorAttachment<'_>> {
     let ops = wgpu::Operations { load, store: StoreOp::Store };
     Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })

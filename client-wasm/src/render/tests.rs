@@ -27,9 +27,11 @@ use wgpu::naga;
 
 mod bare;
 mod branches;
+mod clumps;
 mod constants;
 mod cracks;
 mod flowers;
+mod grid_map;
 mod lees;
 mod light;
 mod natural_wind;
@@ -67,7 +69,7 @@ fn storage_structs_have_the_sizes_that_rust_gives_them() {
         (&shells, "GroundTile", size_of::<GroundTile>() as u32),
         (&shells, "TileLayer", size_of::<TileLayer>() as u32),
         (&billboards, "Clump", 16),
-        (&billboards, "ClumpPose", 160),
+        (&billboards, "ClumpPose", 64),
         (&dust, "DustPlace", 32),
         (&dust, "Sprite", 48),
         (&objects, "Instance", 80),

@@ -42,6 +42,12 @@ pub(super) struct Shot {
     /// Representation of distant plants
     #[arg(long, default_value = "land", value_parser = far())]
     far: FarPlants,
+    /// Let far clumps move the more the farther they are, so that they still move visibly
+    #[arg(long)]
+    raise_far_wind: bool,
+    /// Draw a map of the grass grids over the picture: which are culled, and the level of detail of the others
+    #[arg(long)]
+    grids: bool,
     /// Draw two render options side by side: two qualities, transparencies or representations of distant plants, such as low,high or cut,sorted
     #[arg(long, value_name = "LEFT,RIGHT")]
     compare: Option<String>,
@@ -100,7 +106,13 @@ impl Shot {
             "--chase: the act `wind` has no vehicle; allowed with the other values of --act"
         );
         let side = SideOptions {
-            options: RenderOptions { blend_order: self.order, far_plants: self.far, ..RenderOptions::default() },
+            options: RenderOptions {
+                blend_order: self.order,
+                far_plants: self.far,
+                raises_far_wind: self.raise_far_wind,
+                shows_grids: self.grids,
+                ..RenderOptions::default()
+            },
             level: 0.0,
         };
         let side = SideOptions { level: self.quality.level(), ..side };

@@ -10,6 +10,7 @@
 //! | [`picture`] | render options: frame time against similarity, and figures of other kinds |
 //! | [`gallery`] | the gallery page |
 //! | [`gpu`] | the renderer on a graphics card, beside its aims |
+//! | [`heights`] | one view from four heights in one picture |
 //! | [`peers`] | frame rates of other programs and ours in a browser |
 //! | [`pictures`] | draws the pictures of a document again |
 //! | [`shells`] | cost of shell layers |
@@ -30,6 +31,7 @@ pub mod figure;
 pub mod files;
 pub mod gallery;
 pub mod gpu;
+pub mod heights;
 pub mod line;
 pub mod machine;
 pub mod peers;

@@ -7,7 +7,7 @@ use crate::render::gpu::timestamps::Pass;
 use crate::render::options::render_options::BlendOrder;
 use crate::render::renderer::Renderer;
 use crate::render::scene_resources::SceneResources;
-use crate::render::targets::{shadow_pass, tone_pass};
+use crate::render::targets::{overlay_pass, shadow_pass, tone_pass};
 
 type RenderPass = Counted<wgpu::RenderPass<'static>>;
 
@@ -154,6 +154,21 @@ impl<'a> Batch<'a> {
         pass.set_scissor_rect(region.columns.start, 0, region.columns.len() as u32, self.renderer.size_px[1]);
         pass.set_bind_group(0, &self.scene.textures.group, &[]);
         self.renderer.tone.draw(&mut pass);
+    }
+
+    /// Draws the map of the grids over the target, if it is shown.
+    pub(super) fn overlay(&mut self, target: &wgpu::TextureView) {
+        let Some(map) = self.plan.grid_map(self.scene).filter(|_| self.is_last) else { return };
+        let group = &self.scene.textures.group;
+        {
+            let mut pass =
+                self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("classes of grids"), ..Default::default() });
+            pass.set_bind_group(0, group, &[]);
+            map.class(&mut pass);
+        }
+        let mut pass = overlay_pass(&mut self.encoder, target);
+        pass.set_bind_group(0, group, &[]);
+        map.draw(&mut pass);
     }
 
     pub(super) fn submit(mut self) {

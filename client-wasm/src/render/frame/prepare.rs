@@ -9,6 +9,7 @@ use crate::render::inputs::view::View;
 use crate::render::inputs::viewpoint::Viewpoint;
 use crate::render::options::render_options::{BlendOrder, FarPlants};
 use crate::render::plants::billboards::{Billboards, ClumpRange};
+use crate::render::plants::grid_map::GridMap;
 use crate::render::plants::shells::{ShellExtent, ShellRequest, Shells};
 use crate::render::plants::weighted_oit::WeightedOit;
 use crate::render::renderer::Renderer;
@@ -30,6 +31,8 @@ pub(super) struct FramePlan {
     pub(super) order: BlendOrder,
     pub(super) has_clumps: bool,
     pub(super) shells: Option<ShellExtent>,
+    /// Whether the map of the grids is drawn over the picture.
+    pub(super) shows_grids: bool,
     pub(super) has_lamps: bool,
     pub(super) has_spheres: bool,
     /// Whether stars are visible, and whether rain clouds are.
@@ -45,6 +48,11 @@ impl FramePlan {
     /// The shells, if the frame shows any.
     pub(super) fn shells<'a>(&self, scene: &'a SceneResources) -> Option<&'a Shells> {
         scene.shells.as_ref().filter(|_| self.shells.is_some())
+    }
+
+    /// The map of the grids, if the frame shows it.
+    pub(super) fn grid_map<'a>(&self, scene: &'a SceneResources) -> Option<&'a GridMap> {
+        scene.grid_map.as_ref().filter(|_| self.shows_grids)
     }
 
     /// The clumps, if the frame shows any.
@@ -82,12 +90,23 @@ impl Renderer {
         scene.prepare_land(&self.gpu, &viewpoint);
         scene.prepare_forces(&self.gpu, decoded, &viewpoint, &poses);
         scene.prepare_grass(&self.gpu, decoded, &viewpoint, &frame, &mut plan);
+        if plan.shows_grids {
+            self.prepare_grid_map(scene, decoded, &viewpoint, plan.has_clumps);
+        }
         scene.prepare_underbrush(&self.gpu, mirror, &viewpoint);
         if let Some(objects) = &mut scene.objects {
             objects.show_race(mirror.next_gate(), mirror.ghost_pose());
             objects.prepare(&self.gpu, &poses, &viewpoint, cascades, time_secs as f32, frame.pixel_rad);
         }
         plan
+    }
+
+    /// Creates the map of the grids when it is first shown, and sets its contents.
+    fn prepare_grid_map(&self, scene: &mut SceneResources, decoded: &DecodedScene, from: &Viewpoint<'_>, has_clumps: bool) {
+        let SceneResources { factory, blades: Some(blades), billboards, grid_map, .. } = scene else { return };
+        let grid_m = decoded.scene().plants.grid_m;
+        let map = grid_map.get_or_insert_with(|| GridMap::new(factory, blades, &self.quality.detail(), grid_m, self.tone.target()));
+        map.prepare(&self.gpu, blades, billboards.as_ref().filter(|_| has_clumps), from.detail, grid_m, self.size_px);
     }
 
     fn frustum(&self, projection_from_world: &Mat4) -> Frustum {
@@ -106,6 +125,7 @@ impl Renderer {
             order: self.options.blend_order,
             has_clumps: far_plants == FarPlants::Clumps && scene.blades.is_some(),
             shells,
+            shows_grids: self.options.shows_grids && scene.blades.is_some(),
             has_lamps: frame.has_lamps(),
             has_spheres: frame.has_spheres(),
             sky_shows: frame.sky_shows(),
@@ -165,8 +185,9 @@ impl SceneResources {
             self.shells(decoded).prepare(gpu, decoded, from.eye_m, from.frustum, request);
         } else if plan.has_clumps {
             let several_m = SEVERAL_SEGMENTS_REACH * frame.blades_end_m;
-            let range = ClumpRange { from_m: frame.blades_fade_from_m, several_m, to_m: frame.far_end_m };
-            self.billboards().prepare(gpu, decoded, from.eye_m, from.frustum, range);
+            let raised_over_m_per_s = from.options.raises_far_wind.then(|| self.textures.wind.ground_mean_m_per_s());
+            let range = ClumpRange { from_m: frame.blades_fade_from_m, several_m, to_m: frame.far_end_m, raised_over_m_per_s };
+            self.billboards().prepare(gpu, decoded, from.eye_m, from.frustum, &range);
         }
     }
 

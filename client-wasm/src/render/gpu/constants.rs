@@ -102,12 +102,39 @@ pub(crate) const ORDER_CELLS: u32 = 64;
 
 /// Clumps in one instance.
 pub(crate) const CLUMPS: u32 = 32;
-/// Maximum number of segments of a clump.
-pub(crate) const CLUMP_SEGMENT_LIMIT: u32 = 6;
+/// Plants that a clump joins: one on its axis and one at the outer end of each of its six rectangles.
+pub(crate) const CLUMP_PLANTS: u32 = 7;
 /// Half the range of distances (m) over which clumps fade in.
 pub(crate) const CLUMP_FADE_SPREAD_M: f32 = 1.0;
 /// Mean radius of the blades on the texture of shells (px).
 pub(crate) const SHELL_BLADE_PX: f32 = 2.1;
+
+// --- map of the grids ---
+
+/// States of a grid beyond the near ones: beyond the reach of single plants, outside the view, behind hills, shown.
+pub(crate) const GRID_BEYOND: u32 = 0;
+pub(crate) const GRID_OUTSIDE: u32 = 1;
+pub(crate) const GRID_HIDDEN: u32 = 2;
+pub(crate) const GRID_SHOWN: u32 = 3;
+/// Codes of a near grid outside the view, and of one in it. Codes of other grids are the numbers of plants along a side of their clumps, at least
+/// `FEWEST_CLUMP_PLANTS`, or 0 without clumps.
+pub(crate) const NEAR_CULLED: u32 = 1;
+pub(crate) const NEAR_SHOWN: u32 = 2;
+/// Plants along a side of the nearest clumps.
+pub(crate) const FEWEST_CLUMP_PLANTS: u32 = 3;
+/// Added to the code of a grid of clumps outside the view; more than the plants along a side of any clump.
+pub(crate) const CLUMPS_CULLED: u32 = 1 << 16;
+/// Classes of the legend, and the code of a grid without one.
+pub(crate) const GRID_CLASSES: u32 = 8;
+pub(crate) const NO_CLASS: u32 = 0xff;
+/// Size of a glyph of the legend, distance between two of them, and between two lines (px).
+pub(crate) const GLYPH_WIDTH: u32 = 3;
+pub(crate) const GLYPH_HEIGHT: u32 = 5;
+pub(crate) const GLYPH_PITCH: u32 = 4;
+pub(crate) const LEGEND_LINE: u32 = 7;
+/// Digits of the numbers of grids, and characters of a line of the legend.
+pub(crate) const LEGEND_DIGITS: u32 = 6;
+pub(crate) const LEGEND_CHARACTERS: u32 = 17;
 
 // --- underbrush ---
 

@@ -89,6 +89,33 @@ impl PassFactory {
         })
     }
 
+    /// Pipeline that draws to a target without depth, in its format: a triangle of the entry point `vs`, shaded by `fragment`.
+    pub(crate) fn output_pipeline(
+        &self,
+        label: &str,
+        module: &wgpu::ShaderModule,
+        fragment: &str,
+        own: &wgpu::BindGroupLayout,
+        target: wgpu::TextureFormat,
+    ) -> wgpu::RenderPipeline {
+        self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(label),
+            layout: Some(&self.pipeline_layout(label, Some(own))),
+            vertex: wgpu::VertexState { module, entry_point: Some("vs"), compilation_options: Default::default(), buffers: &[] },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module,
+                entry_point: Some(fragment),
+                compilation_options: Default::default(),
+                targets: &[Some(target.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+
     pub(crate) fn draw(
         &self,
         module: &wgpu::ShaderModule,

@@ -349,6 +349,29 @@ uniform_block! {
 }
 
 uniform_block! {
+    /// Map of the grass grids.
+    GridMapFrame {
+        /// First grid of the map (x, z).
+        first_grid: [i32; 2],
+        /// First grid of the square of the pass that lists grids (x, z).
+        listed_first: [i32; 2],
+        /// Grids along a side of the map, and of that square.
+        side: i32,
+        listed_side: i32,
+        /// Side of a grid (m).
+        grid_m: f32,
+        /// Pixels of the target along a side of a pixel of the legend.
+        pixel_px: f32,
+        /// Top left corner of the map in the target (px).
+        corner_px: [f32; 2],
+        /// Side of the map (pixels of the legend).
+        map_px: f32,
+        /// 1 if the target encodes sRGB.
+        target_encodes: u32,
+    }
+}
+
+uniform_block! {
     /// A draw list of blades or flowers.
     StripList {
         /// Index of its first plant.
@@ -378,7 +401,11 @@ uniform_block! {
         straightens_m: f32,
         /// Distance beyond which all do (m).
         straight_m: f32,
-        _pad: [u8; 8],
+        /// Mean of the solver's wind over the ground (m/s, X and Z).
+        mean_wind_m_per_s: [f32; 2],
+        /// Distance from which the deviation of the wind from it grows in proportion to distance (m).
+        raised_from_m: f32,
+        _pad: [u8; 12],
     }
 }
 

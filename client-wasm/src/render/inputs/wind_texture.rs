@@ -96,6 +96,15 @@ impl WindTexture {
         decoded.tiles().blend([x, z], |[x, z]| grid.trilinear([x, above_m, z], at_cell))
     }
 
+    /// Mean of the displayed wind (m/s, X and Z) without its gusts over the ground: over all cells of the lowest layer.
+    pub(crate) fn ground_mean_m_per_s(&self) -> [f32; 2] {
+        let [nx, ny, nz] = self.cells.map(|n| n as usize);
+        [0, 2].map(|channel| {
+            let plane = &self.shown[channel * nx * ny * nz..][..nx * ny * nz];
+            plane.chunks_exact(nx * ny).flat_map(|slice| &slice[..nx]).sum::<f32>() / (nx * nz) as f32
+        })
+    }
+
     fn write(&self, gpu: &Gpu) {
         let [nx, ny, nz] = self.cells;
         let count = (nx * ny * nz) as usize;

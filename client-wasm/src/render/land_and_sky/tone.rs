@@ -41,39 +41,18 @@ impl ToneMapping {
     }
 
     fn create_pipeline(&self) -> wgpu::RenderPipeline {
-        let (factory, device) = (&self.factory, &self.factory.gpu.device);
-        let entry = match (factory.samples > 1, self.is_whole) {
+        let entry = match (self.factory.samples > 1, self.is_whole) {
             (false, true) => "fs",
             (false, false) => "fs_between",
             (true, true) => "fs_sampled",
             (true, false) => "fs_sampled_between",
         };
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("tone"),
-            bind_group_layouts: &[Some(&factory.frame_layout), Some(&self.layout)],
-            immediate_size: 0,
-        });
-        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("tone"),
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &self.module,
-                entry_point: Some("vs"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &self.module,
-                entry_point: Some(entry),
-                compilation_options: Default::default(),
-                targets: &[Some(self.target.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
+        self.factory.output_pipeline("tone", &self.module, entry, &self.layout, self.target)
+    }
+
+    /// Format of the targets.
+    pub(crate) fn target(&self) -> wgpu::TextureFormat {
+        self.target
     }
 
     pub(crate) fn set_picture(&mut self, picture: &wgpu::TextureView, scale: [f32; 2]) {

@@ -92,6 +92,12 @@ pub struct RenderOptions {
     pub blend_order: BlendOrder,
     /// Representation of far plants.
     pub far_plants: FarPlants,
+    /// Whether the motion of clumps grows in proportion to their distance, so that far ones still move visibly (Zhang, section 4.2): the deviation of the wind
+    /// from its mean over the ground is multiplied by the distance over that at which clumps begin. Off by default; it shows more wind than there is.
+    pub raises_far_wind: bool,
+    /// Whether a map of the grass grids around the camera is drawn over the picture (Zhang, Figs 12 to 14): which are culled, and the level of detail of the
+    /// others. Only in scenes of single blades.
+    pub shows_grids: bool,
     /// Whether things outside the view or behind hills are culled; the picture is the same without.
     pub culls: bool,
     /// Position of the sun; `None`: the scene's.
@@ -103,24 +109,42 @@ pub struct RenderOptions {
 impl RenderOptions {
     /// Name of the option that turns culling off.
     const UNCULLED: &str = "unculled";
+    /// Name of the option that raises the wind with distance.
+    const RAISED: &str = "raised";
+    /// Name of the option that shows the map of the grids.
+    const GRIDS: &str = "grids";
 
     /// Names of all options that [`with`](Self::with) accepts.
     pub fn names() -> impl Iterator<Item = &'static str> {
         let (far_plants, orders) = (FarPlants::ALL.into_iter().map(FarPlants::name), BlendOrder::ALL.into_iter().map(BlendOrder::name));
-        far_plants.chain(orders).chain([Self::UNCULLED])
+        far_plants.chain(orders).chain([Self::UNCULLED, Self::RAISED, Self::GRIDS])
     }
 
     /// A copy of the options with the named one set; `None` if the name is unknown.
     pub fn with(self, name: &str) -> Option<Self> {
         let far_plants = FarPlants::from_name(name).map(|far_plants| Self { far_plants, ..self });
         let order = BlendOrder::from_name(name).map(|blend_order| Self { blend_order, ..self });
-        far_plants.or(order).or((name == Self::UNCULLED).then_some(Self { culls: false, ..self }))
+        let switched = || match name {
+            Self::UNCULLED => Some(Self { culls: false, ..self }),
+            Self::RAISED => Some(Self { raises_far_wind: true, ..self }),
+            Self::GRIDS => Some(Self { shows_grids: true, ..self }),
+            _ => None,
+        };
+        far_plants.or(order).or_else(switched)
     }
 }
 
 impl Default for RenderOptions {
     fn default() -> Self {
-        Self { blend_order: BlendOrder::default(), far_plants: FarPlants::default(), culls: true, sun: None, shell_layers: None }
+        Self {
+            blend_order: BlendOrder::default(),
+            far_plants: FarPlants::default(),
+            raises_far_wind: false,
+            shows_grids: false,
+            culls: true,
+            sun: None,
+            shell_layers: None,
+        }
     }
 }
 
@@ -135,7 +159,13 @@ mod tests {
         for (at, name) in names.iter().enumerate() {
             assert!(!names[..at].contains(name), "{name}");
             let options = own.with(name).expect("a known option");
-            let changed = [options.blend_order != own.blend_order, options.far_plants != own.far_plants, options.culls != own.culls];
+            let changed = [
+                options.blend_order != own.blend_order,
+                options.far_plants != own.far_plants,
+                options.culls != own.culls,
+                options.raises_far_wind != own.raises_far_wind,
+                options.shows_grids != own.shows_grids,
+            ];
             let is_own = own.blend_order.name() == *name || own.far_plants.name() == *name;
             assert_eq!(changed.iter().filter(|&&changed| changed).count(), usize::from(!is_own), "{name}");
         }

@@ -24,6 +24,18 @@ pub(crate) struct Cell {
     pub(crate) at: [u32; 2],
 }
 
+/// Clumps of a frame on the GPU.
+pub(crate) struct ClumpBuffers {
+    /// `Clump` of each.
+    pub(crate) clumps: wgpu::Buffer,
+    /// Uniforms of the list.
+    pub(crate) list: wgpu::Buffer,
+    /// `ClumpPose` of each.
+    pub(crate) poses: wgpu::Buffer,
+    /// Joints of the plants that each joins.
+    pub(crate) joints: wgpu::Buffer,
+}
+
 /// Resources of one blend order.
 pub(crate) struct ClumpPipelines {
     pub(crate) pipeline: wgpu::RenderPipeline,
@@ -46,12 +58,12 @@ struct Sorted {
 }
 
 impl ClumpPipelines {
-    /// Creates pipelines for at most `limit` clumps with poses `poses`.
+    /// Creates pipelines for at most `limit` clumps.
     pub(crate) fn new(
         factory: &PassFactory,
         order: BlendOrder,
         limit: u32,
-        [clumps, list, poses]: [&wgpu::Buffer; 3],
+        ClumpBuffers { clumps, list, poses, joints }: &ClumpBuffers,
         tufts: &wgpu::TextureView,
     ) -> Self {
         let gpu = &factory.gpu;
@@ -70,8 +82,8 @@ impl ClumpPipelines {
             DrawSequence::Sorted(sorted) => Some(sorted.sort.sorted()),
             DrawSequence::Precomputed { pairs, .. } => Some(pairs),
         };
-        let mut layout = vec![storage(0), uniform(1), texture(2), storage(3)];
-        let mut entries = vec![(0, clumps), (1, list), (3, poses)];
+        let mut layout = vec![storage(0), uniform(1), texture(2), storage(3), storage(7)];
+        let mut entries = vec![(0, clumps), (1, list), (3, poses), (7, joints)];
         if let Some(pairs) = pairs {
             layout.push(storage(6));
             entries.push((6, pairs));

@@ -7,6 +7,8 @@ pub(crate) mod clump_pipelines;
 pub(crate) mod clump_texture;
 pub(crate) mod flower_kinds;
 pub(crate) mod force_field;
+pub(crate) mod grid_map;
+mod grid_map_legend;
 pub(crate) mod obstacles;
 pub(crate) mod per_blend_order;
 pub(crate) mod shell_texture;

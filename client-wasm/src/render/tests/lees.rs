@@ -1,6 +1,8 @@
 //! Grass in the lee of a boulder, near and far.
 
 use super::*;
+use crate::render::gpu::constants::CLUMP_PLANTS;
+use crate::render::gpu::uniforms::ClumpList;
 use crate::render::options::render_options::{FarPlants, RenderOptions};
 use crate::render::solids::trees_and_stones;
 use prairie_core::scene::PlantCover;
@@ -92,11 +94,18 @@ fn leaning_clumps(gpu: &Gpu, mirror: &mut Mirror) -> Leans {
         picture.draw(mirror, &camera, 0.0, 0.1);
     });
     let billboards = picture.renderer.scene.as_ref().and_then(|scene| scene.billboards.as_ref()).expect("clumps");
-    let clumps: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read(gpu, &billboards.clumps));
-    let poses: Vec<[f32; 40]> = bytemuck::pod_collect_to_vec(&read(gpu, &billboards.poses));
-    // The poses' fifth and sixth numbers are the displacement and the height of the top of the lowest segment.
-    let shown = clumps.iter().zip(&poses).take(billboards.count as usize).filter(|(_, pose)| pose[2] > 0.0);
-    shown.map(|([x, z, ..], pose)| ([x.to_bits(), z.to_bits()], ([*x, *z], pose[4].atan2(pose[5])))).collect()
+    let list: ClumpList = bytemuck::pod_read_unaligned(&read(gpu, &billboards.buffers.list));
+    let clumps: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read(gpu, &billboards.buffers.clumps));
+    let poses: Vec<[f32; 16]> = bytemuck::pod_collect_to_vec(&read(gpu, &billboards.buffers.poses));
+    let joints: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read(gpu, &billboards.buffers.joints));
+    // The top of the lowest segment of the plant on the axis: its displacement along the wind, and its height.
+    let lowest = |number: u32| {
+        let (segments, single) = (list.several_segments, number.saturating_sub(list.several));
+        joints[((number.min(list.several) * segments + single) * CLUMP_PLANTS) as usize]
+    };
+    let shown = (0..list.count).zip(clumps).zip(poses).filter(|(_, pose)| pose[2] > 0.0);
+    let lean = |number: u32| lowest(number)[0].atan2(lowest(number)[1]);
+    shown.map(|((number, [x, z, ..]), _)| ([x.to_bits(), z.to_bits()], ([x, z], lean(number)))).collect()
 }
 
 #[test]

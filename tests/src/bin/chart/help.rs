@@ -8,6 +8,7 @@ Examples:
   cargo run --release -p tests --bin chart -- bend --only cars
   cargo run --release -p tests --bin chart -- picture --quick --views ant-calm,hill-storm
   cargo run --release -p tests --bin chart -- gallery
+  cargo run --release -p tests --bin chart -- heights
   cargo run --release -p tests --bin chart -- gpu
   cargo run --release -p tests --bin chart -- peers --peer webgpu-grass=../webgpu-grass/dist
   cargo run --release -p tests --bin chart -- start

@@ -20,7 +20,7 @@ use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
 use tests::chart::tables::with_tables;
 use tests::chart::versions::{PAGE_VIEWS, PageView};
-use tests::chart::{Problem, bend, gpu, pictures, plants, shells, start, stream, versions, wind};
+use tests::chart::{Problem, bend, gpu, heights, pictures, plants, shells, start, stream, versions, wind};
 use tests::still::Still;
 use tests::views::{VIEWS, View};
 
@@ -86,6 +86,18 @@ enum Model {
         /// Only these views, separated by commas
         #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = View::find)]
         views: Vec<&'static View>,
+    },
+    /// One view from 1, 5, 10 and 20 m as one picture (Zhang, Fig. 23)
+    Heights {
+        /// File to write: .jpg or .png
+        #[arg(long, value_name = "FILE", default_value = "tests/results/heights.jpg")]
+        out: PathBuf,
+        /// Width and height of each of the four views (px)
+        #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "288x162", value_parser = size_px)]
+        size: [u32; 2],
+        /// Quality of the views
+        #[arg(long, default_value = "ultra", value_parser = quality())]
+        quality: Quality,
     },
     /// The renderer on this machine's graphics card: frames and passes beside their aims, in less than five minutes
     #[command(after_help = GPU_FILES)]
@@ -177,6 +189,7 @@ fn main() -> Result<()> {
         Model::Plants(options) => charts("plants", plants::problems(options.quick), &plants::FIGURES, &options),
         Model::Picture { options, size, views } => chart_picture(&options, size, &chosen(views)),
         Model::Gallery { out, cache, size, quality, views } => draw_gallery(&out, &cache, size, quality, &chosen(views)),
+        Model::Heights { out, size, quality } => heights::series(&Gpu::headless()?, size, quality)?.save(&out),
         Model::Gpu { out, quick } => report_gpu(&out, quick),
         Model::Peers { peers, seconds, out } => compare_peers(&peers, seconds, &out),
         Model::Start { pages, out } => time_starts(pages, &out),

@@ -26,6 +26,8 @@ pub(super) struct FarGrids {
     squares: wgpu::Buffer,
     chunks: wgpu::Buffer,
     workgroups: wgpu::Buffer,
+    /// State of each grid of the square.
+    states: wgpu::Buffer,
     grid_m: f32,
     /// Maximum distance of a part of a plant from its root (m).
     pub(super) beyond_m: f32,
@@ -51,21 +53,23 @@ impl FarGrids {
                 storage_rw(1),
                 storage_rw(2),
                 sampled(3, TextureSampleType::Float { filterable: false }, TextureViewDimension::D2),
+                storage_rw(4),
             ],
         );
         let squares = gpu.empty_buffer("squares", size_of::<Squares>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
-        let chunks = gpu.empty_buffer("chunks", u64::from(capacity) * 16, BufferUsages::STORAGE);
-        let usage = BufferUsages::STORAGE | BufferUsages::INDIRECT | BufferUsages::COPY_DST;
+        let chunks = gpu.empty_buffer("chunks", u64::from(capacity) * 16, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let states = gpu.empty_buffer("grid states", u64::from(side * side) * 4, BufferUsages::STORAGE);
+        let usage = BufferUsages::STORAGE | BufferUsages::INDIRECT | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
         let workgroups = gpu.buffer("workgroups", bytemuck::bytes_of(&[0_u32, 1, 1]), usage);
         let lowest = LowestLand::new(decoded, grid_m);
         let lowest_cell_m = lowest.cell_m;
         let lowest = lowest.texture(gpu);
-        let [own, listed, counted] = [&squares, &chunks, &workgroups].map(|buffer| buffer.as_entire_binding());
-        let group = bind(gpu, "grids", &layout, &[own, listed, counted, BindingResource::TextureView(&lowest)]);
+        let [own, listed, counted, found] = [&squares, &chunks, &workgroups, &states].map(|buffer| buffer.as_entire_binding());
+        let group = bind(gpu, "grids", &layout, &[own, listed, counted, BindingResource::TextureView(&lowest), found]);
         let list = factory.compute("list_grids", &factory.shader("grids", shaders::GRIDS, &[]), "list_grids", &layout);
         let beyond_m = beyond_m(decoded);
         let frame = Squares { lowest_cell_m, ..bytemuck::Zeroable::zeroed() };
-        Self { list, group, squares, chunks, workgroups, grid_m, beyond_m, capacity, grids_per_batch, frame }
+        Self { list, group, squares, chunks, workgroups, states, grid_m, beyond_m, capacity, grids_per_batch, frame }
     }
 
     /// Listed chunks.
@@ -76,6 +80,25 @@ impl FarGrids {
     /// Number of listed chunks, for an indirect dispatch.
     pub(super) fn workgroups(&self) -> &wgpu::Buffer {
         &self.workgroups
+    }
+
+    /// State of each grid of the square, as `GRID_SHOWN`; those of the near grids are undefined.
+    pub(super) fn states(&self) -> &wgpu::Buffer {
+        &self.states
+    }
+
+    /// Grids of the listed chunks.
+    #[cfg(test)]
+    pub(super) fn listed(&self, gpu: &Gpu) -> std::collections::BTreeSet<[i32; 2]> {
+        use crate::render::gpu::readback::read;
+        let count = bytemuck::pod_collect_to_vec::<u8, u32>(&read(gpu, &self.workgroups))[0];
+        let chunks: Vec<[i32; 4]> = bytemuck::pod_collect_to_vec(&read(gpu, &self.chunks));
+        chunks.iter().take(count as usize).map(|&[x, z, ..]| [x, z]).collect()
+    }
+
+    /// First grid of the square, and grids along its side.
+    pub(super) fn square(&self) -> ([i32; 2], i32) {
+        (self.frame.first_grid, self.frame.side)
     }
 
     pub(super) fn prepare(&mut self, from: &Viewpoint<'_>, home: [i32; 2], plants_of_grid: u32) {

@@ -72,6 +72,8 @@ pub(crate) struct Blades {
     /// Near plants in the newest frame, before culling.
     near_plants: u32,
     near_workgroups: u32,
+    /// Grids of the newest frame whose plants are simulated, and whether they may be in view.
+    near_grids: [([i32; 2], bool); NEAR_SLOTS],
     /// Whether a grid has moved into a slot in this batch.
     any_moves_in: bool,
     /// Number of the newest frame; counts frames in which time advances or a grid moves in.
@@ -107,13 +109,12 @@ impl Blades {
         let flowers = flower_squares(gpu, plants.flower_shape);
         let lists = buffers.list_groups(factory, capacities, segments, [&shapes, flowers.as_ref().unwrap_or(&shapes)]);
         let are_textured = plants.blade_shape == BladeShape::Textured;
-        let [fine, others, _] = capacities;
         let listed = BladeDrawList {
             blades: buffers.drawn,
             counters: buffers.counters,
             shapes,
             are_textured,
-            capacities: [fine, others],
+            capacities: [capacities[0], capacities[1]],
             segments,
             grid_m,
         };
@@ -138,6 +139,7 @@ impl Blades {
             places,
             near_plants: 0,
             near_workgroups: 0,
+            near_grids: [([i32::MIN; 2], false); NEAR_SLOTS],
             any_moves_in: false,
             frame: 0,
             capacities,
@@ -172,6 +174,23 @@ impl Blades {
         self.near_plants
     }
 
+    /// Grids whose plants are simulated, and whether they may be in view.
+    pub(crate) fn near_grids(&self) -> &[([i32; 2], bool)] {
+        &self.near_grids
+    }
+
+    /// Grids beyond whose plants the newest batch lists.
+    #[cfg(test)]
+    pub(crate) fn listed_grids(&self, gpu: &Gpu) -> std::collections::BTreeSet<[i32; 2]> {
+        self.grids.listed(gpu)
+    }
+
+    /// States of the grids beyond, as `GRID_SHOWN`, of a square of grids: its first one, and the number along its side.
+    pub(crate) fn far_grids(&self) -> (&wgpu::Buffer, [i32; 2], i32) {
+        let (first, side) = self.grids.square();
+        (self.grids.states(), first, side)
+    }
+
     pub(crate) fn prepare(&mut self, gpu: &Gpu, decoded: &DecodedScene, from: &Viewpoint<'_>) {
         let detail = from.detail;
         self.fades = from.options.far_plants != FarPlants::Land;
@@ -195,6 +214,7 @@ impl Blades {
             self.near_plants += stands;
             most = most.max(stands);
             slots[slot] = GridSlot { grid, moved_in: self.slots[slot].1, plants: stands };
+            self.near_grids[slot] = (grid, is_seen);
         }
         self.near_workgroups = most.div_ceil(CHUNK);
         let settings = &decoded.scene().plants;
