@@ -31,6 +31,7 @@ mod constants;
 mod cracks;
 mod lees;
 mod light;
+mod models;
 mod natural_wind;
 mod order;
 mod plain;
