@@ -1,11 +1,14 @@
-//! Line of sight to a vehicle: the chase camera stays above the land and out of the crowns of trees.
+//! Line of sight to a vehicle: the chase camera stays above the land, and out of the crowns of trees and the models of the scene's own.
 
-use crate::render::solids::trees_and_stones::{PlacedModel, crown, placed_models};
+use crate::render::solids::trees_and_stones::{PlacedKind, PlacedModel, crown, placed_models};
 use crate::state::DecodedScene;
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use std::collections::HashMap;
 
-/// Side of the squares by which crowns are found (m); no crown is wider.
+/// Half axes of the ellipsoid of a model, relative to those of its box: its corners reach out of it, and fade in the picture.
+const BOX_REACH: f32 = 1.2;
+
+/// Side of the squares by which crowns and models are found (m); none is wider from its centre.
 const SQUARE_M: f32 = 32.0;
 
 /// Reach of leaves beyond the shape of a crown, sideways and up and down, relative to the height of the tree.
@@ -23,33 +26,52 @@ const BESIDE_FRACTION: f32 = 0.3;
 /// Samples of the land along a line of sight.
 const LAND_SAMPLES: u32 = 12;
 
-/// Crown of a tree: an ellipsoid with vertical axis.
+/// Crown of a tree, or a model: an ellipsoid with vertical axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ellipsoid {
     centre_m: Vec3,
     half_m: Vec3,
+    /// Turn from its own axes to those of the world.
+    turn: Quat,
 }
 
 impl Ellipsoid {
-    fn of(tree: &PlacedModel) -> Self {
+    fn of(placed: &PlacedModel, decoded: &DecodedScene) -> Option<Self> {
+        match placed.kind {
+            PlacedKind::Tree => Some(Self::of_crown(placed)),
+            PlacedKind::Stone => None,
+            PlacedKind::Own => {
+                let (scale, turn, centre_m) = placed.world_from_model.to_scale_rotation_translation();
+                let half_m = 0.5 * BOX_REACH * scale * Vec3::from_array(decoded.scene().models[placed.shape as usize].size_m);
+                Some(Self { centre_m, half_m: half_m + CLEARANCE_M, turn })
+            }
+        }
+    }
+
+    fn of_crown(tree: &PlacedModel) -> Self {
         let crown = crown(tree.shape);
         let tall_m = tree.world_from_model.y_axis.length();
         let centre_m = tree.position_m + Vec3::Y * (0.5 * (crown.low + crown.high) * tall_m);
         let half = Vec3::new(crown.wide, 0.5 * (crown.high - crown.low), crown.wide);
         let [aside, upright] = LEAF_REACH;
         let half_m = (half + Vec3::new(aside, upright, aside)) * Vec3::new(tree.size_m, tall_m, tree.size_m);
-        Self { centre_m, half_m: half_m + CLEARANCE_M }
+        Self { centre_m, half_m: half_m + CLEARANCE_M, turn: Quat::IDENTITY }
     }
 
     /// Distance from the centre relative to that of the surface: below 1 inside.
     fn radius(&self, at_m: Vec3) -> f32 {
-        ((at_m - self.centre_m) / self.half_m).length()
+        self.relative(at_m).length()
+    }
+
+    /// A position (m) relative to the half axes.
+    fn relative(&self, at_m: Vec3) -> Vec3 {
+        (self.turn.conjugate() * (at_m - self.centre_m)) / self.half_m
     }
 
     /// Fraction of the way from `from_m` to `to_m` that is free. It changes smoothly as a crown approaches the line, and is whole where the way begins deep
     /// in a crown, or leads away from it.
     fn clear_fraction(&self, from_m: Vec3, to_m: Vec3) -> f32 {
-        let [from, to] = [from_m, to_m].map(|m| (m - self.centre_m) / self.half_m);
+        let [from, to] = [from_m, to_m].map(|m| self.relative(m));
         let way = to - from;
         let (length2, along) = (way.length_squared(), -from.dot(way));
         if length2 == 0.0 {
@@ -70,29 +92,31 @@ fn smoothstep(low: f32, high: f32, value: f32) -> f32 {
     fraction * fraction * (3.0 - 2.0 * fraction)
 }
 
-/// The crowns of a scene's trees.
+/// The crowns of a scene's trees, and its own models.
 #[derive(Clone, Debug, Default)]
 pub struct Sight {
-    /// Crowns by the square that contains their centre.
+    /// Ellipsoids by the square that contains their centre.
     squares: HashMap<[i32; 2], Vec<Ellipsoid>>,
 }
 
 impl Sight {
-    /// The crowns of all trees of a scene.
+    /// The crowns of all trees of a scene, and its own models.
     pub fn new(decoded: &DecodedScene) -> Self {
         let mut squares: HashMap<_, Vec<_>> = HashMap::new();
-        for tree in placed_models(decoded).iter().filter(|placed| placed.is_tree) {
-            squares.entry(square(tree.position_m)).or_default().push(Ellipsoid::of(tree));
+        for placed in placed_models(decoded) {
+            if let Some(ellipsoid) = Ellipsoid::of(&placed, decoded) {
+                squares.entry(square(placed.position_m)).or_default().push(ellipsoid);
+            }
         }
         Self { squares }
     }
 
-    /// Fraction of the way from `from_m` to `to_m` (m) up to the first crown, 0 to 1. A crown counts less the deeper `from_m` is inside it.
+    /// Fraction of the way from `from_m` to `to_m` (m) up to the first crown or model, 0 to 1. It counts less the deeper `from_m` is inside it.
     pub fn clear_fraction(&self, from_m: Vec3, to_m: Vec3) -> f32 {
         self.near(from_m, to_m).map(|crown| crown.clear_fraction(from_m, to_m)).fold(1.0, f32::min)
     }
 
-    /// Whether a position (m) is among leaves.
+    /// Whether a position (m) is among leaves or in a model.
     pub fn is_in_crown(&self, at_m: Vec3) -> bool {
         self.near(at_m, at_m).any(|crown| crown.radius(at_m) < 1.0)
     }
@@ -123,7 +147,7 @@ pub fn above_land(target_m: Vec3, eye_m: Vec3, clearance_m: f32, ground_m: impl 
 mod tests {
     use super::*;
 
-    const CROWN: Ellipsoid = Ellipsoid { centre_m: Vec3::new(10.0, 5.0, 0.0), half_m: Vec3::new(4.0, 3.0, 4.0) };
+    const CROWN: Ellipsoid = Ellipsoid { centre_m: Vec3::new(10.0, 5.0, 0.0), half_m: Vec3::new(4.0, 3.0, 4.0), turn: Quat::IDENTITY };
 
     #[test]
     fn a_way_ends_at_the_surface_of_a_crown() {

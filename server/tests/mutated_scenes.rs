@@ -67,6 +67,14 @@ fn read_model(bytes: &[u8]) {
         }
         Err(error) => assert!(error.reason.to_string().len() < MESSAGE_LIMIT, "{error}"),
     }
+    match gltf::read_stretched(&path, [0.0, 3.0, 0.0]) {
+        Ok((Model { mesh, .. }, size_m)) => {
+            assert!(mesh.positions_m.iter().chain(&mesh.normals).flatten().all(|v| v.is_finite()));
+            let reach = |axis: usize| mesh.positions_m.iter().map(|at| at[axis].abs()).fold(0.0, f32::max);
+            assert!((0..3).all(|axis| reach(axis) <= 0.501 * size_m[axis]), "{size_m:?}");
+        }
+        Err(error) => assert!(error.reason.to_string().len() < MESSAGE_LIMIT, "{error}"),
+    }
 }
 
 /// Every PNG is decoded as each kind of map.
@@ -115,7 +123,7 @@ fn small_scene() -> Scene {
 fn write_scene(folder: &Path, text: &[u8]) {
     std::fs::write(folder.join("scene.toml"), text).unwrap();
     std::fs::write(folder.join("height.png"), grey_png([20; 2], &[7; 400])).unwrap();
-    std::fs::write(folder.join("covering.png"), grey_png([8; 2], &[255, 0, 1, 2, 253, 254, 255, 255].repeat(8))).unwrap();
+    std::fs::write(folder.join("covering.png"), grey_png([8; 2], &[255, 0, 1, 2, 253, 254, 255, 3].repeat(8))).unwrap();
     std::fs::write(folder.join("wind.png"), colour_png(png::ColorType::Rgb, &[200; 192])).unwrap();
     std::fs::write(folder.join("model.gltf"), model().to_string()).unwrap();
 }
@@ -216,7 +224,7 @@ fn the_unchanged_files_are_valid() {
     let folder = tempfile::tempdir().unwrap();
     write_scene(folder.path(), SCENE.as_bytes());
     let loaded = scenes::load(folder.path().join("scene.toml")).unwrap_or_else(|error| panic!("{error}"));
-    assert!(is_small(&loaded) && loaded.models.len() == 1 && loaded.drawings.len() == 1);
+    assert!(is_small(&loaded) && loaded.models.len() == 2 && loaded.drawings.len() == 1);
     let path = folder.path().join("model.glb");
     for bytes in [model().to_string().into_bytes(), binary(model().to_string().as_bytes())] {
         std::fs::write(&path, bytes).unwrap();

@@ -5,7 +5,7 @@ use prairie_core::scene::{
     BladeIntegrator, BladeShape, ComponentKind, FlowerShape, LagWay, PlantCover, PrimitiveKind, VehicleKind, WindAdvection, WindBoundary,
     WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
-use prairie_core::wire::{ClientMessage, PROTOCOL, Refusal, ServerMessage};
+use prairie_core::wire::{ClientMessage, ModelUse, PROTOCOL, Refusal, ServerMessage};
 use serde_json::{Value, json};
 use serde_reflection::{Samples, Tracer, TracerConfig};
 use std::path::Path;
@@ -37,7 +37,7 @@ fn generated() -> Value {
         VehicleKind
     );
     trace!(WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime);
-    trace!(ClientMessage, ServerMessage);
+    trace!(ModelUse, ClientMessage, ServerMessage);
     let types = tracer.registry().expect("every enum inside a message is in the list above");
     json!({ "protocol": PROTOCOL, "types": types })
 }

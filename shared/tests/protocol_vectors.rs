@@ -9,8 +9,8 @@ use prairie_core::terrain::KindMap;
 use prairie_core::wind::WindField;
 use prairie_core::wire::quantise::{CODE_LIMIT, CodeSteps, heading_code, heading_rad};
 use prairie_core::wire::{
-    AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Ghost, Joined, Mesh, ObjectPose, PROTOCOL, PatchCheck, Peer, RareCauses,
-    Refusal, ServerMessage, Shape, Shapes, Standing, StepHead, TurbulenceState, codec, encode,
+    AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Ghost, Joined, Mesh, ModelUse, ObjectPose, PROTOCOL, PatchCheck, Peer,
+    RareCauses, Refusal, ServerMessage, Shape, Shapes, Standing, StepHead, TurbulenceState, codec, encode,
 };
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -87,7 +87,7 @@ fn server_messages() -> Vec<ServerMessage> {
             height_png: vec![1, 2],
             covering_png: vec![3],
             nutrient_png: vec![],
-            models: vec![(VehicleKind::Car, mesh())],
+            models: vec![(ModelUse::Vehicle(VehicleKind::Car), mesh()), (ModelUse::Cover(1), mesh())],
             shapes: shapes(),
         },
         ServerMessage::Poses { tick: 300, objects: vec![pose()] },
@@ -161,6 +161,7 @@ const FILLED: &str = "[[wind.primitives]]\nkind = 'source'\nat_m = [1, 2, 3]\nin
     intensity_points = [[1, 1], [2, 0.5]]\n[[species]]\nname = 'a'\ncover = 1\n\
     [[underbrush]]\nname = 'b'\n[[underbrush.components]]\nname = 'c'\nkind = 'branch'\n\
     [[underbrush.components]]\nname = 'd'\nkind = 'leaf'\non = 'c'\n\
+    [[models]]\nname = 'm'\ncover = 3\nmodel = 'm.glb'\n\
     [[drawn_winds]]\nshape = 'swirl'\npath_m = [[1, 2]]\n[[lights]]\nat_m = [1, 2, 3]\n\
     [[race.gates]]\nat_m = [1, 2]\nheading_rad = 0.5\n[[race.gates]]\nat_m = [8, 2]\nheading_rad = 3.5\n\
     [growth]\nnutrient_map = 'n.png'\n[objects]\ncar_model = 'car.glb'\nmonster_model = 'm.glb'\n";

@@ -34,6 +34,7 @@ mod flowers;
 mod grid_map;
 mod lees;
 mod light;
+mod models;
 mod natural_wind;
 mod order;
 mod plain;

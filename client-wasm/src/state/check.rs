@@ -3,7 +3,7 @@
 use super::check_underbrush::check_underbrush;
 use super::error::{MirrorError, range, within};
 use prairie_core::body::Body;
-use prairie_core::scene::{GATES_LIMIT, LAMPS_LIMIT, Scene, Stream, WIND_CELLS_LIMIT};
+use prairie_core::scene::{GATES_LIMIT, LAMPS_LIMIT, MODEL_SIDE_M, MODELS_LIMIT, Scene, Stream, WIND_CELLS_LIMIT};
 use prairie_core::wire::{Mesh, STANDINGS_LIMIT, Standing};
 
 /// Checks all settings that the client relies on.
@@ -14,6 +14,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), MirrorError> {
     check_grass(scene)?;
     check_winds(scene)?;
     check_race(scene)?;
+    check_models(scene)?;
     check_underbrush(scene)
 }
 
@@ -116,6 +117,24 @@ fn check_race(scene: &Scene) -> Result<(), MirrorError> {
     Ok(())
 }
 
+/// Checks the models of the covering map.
+fn check_models(scene: &Scene) -> Result<(), MirrorError> {
+    if scene.models.len() > MODELS_LIMIT {
+        return Err(range("number of models", scene.models.len(), format!("at most {MODELS_LIMIT}")));
+    }
+    let [shortest_m, longest_m] = MODEL_SIDE_M;
+    for model in &scene.models {
+        for side_m in model.size_m {
+            within("models.size_m", side_m, shortest_m, longest_m)?;
+        }
+        within("models.size_variation", model.size_variation, 0.0, 0.5)?;
+        within("models.heading_rad", model.heading_rad, -6.3, 6.3)?;
+        within("models.heading_variation_rad", model.heading_variation_rad, 0.0, 3.15)?;
+        within("models.apart_m", model.apart_m, 0.0, 1000.0)?;
+    }
+    Ok(())
+}
+
 /// Checks a received race in a scene with this number of gates: its size, its gates and its times.
 pub(super) fn check_standings(standings: &[Standing], gates: usize) -> Result<(), MirrorError> {
     if standings.len() > STANDINGS_LIMIT {
@@ -202,7 +221,7 @@ pub(super) fn check_bodies(bodies: &[Body]) -> Result<(), MirrorError> {
     Ok(())
 }
 
-/// Checks the sizes and indices of a vehicle model.
+/// Checks the sizes and indices of a model.
 pub(super) fn check_mesh(mesh: &Mesh) -> Result<(), MirrorError> {
     let vertices = mesh.positions_m.len();
     if vertices > Mesh::VERTEX_LIMIT || mesh.normals.len() != vertices || mesh.rgb.len() != vertices {

@@ -9,10 +9,10 @@ use prairie_core::grid::PatchLayout;
 use prairie_core::plant::flora::Flora;
 use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::{Scene, VehicleKind};
-use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
+use prairie_core::terrain::{CoverMap, HeightMap, KindMap, clear_under_models};
 use prairie_core::wind::{WindField, WindTiles};
 use prairie_core::wire::quantise::CodeSteps;
-use prairie_core::wire::{Drawing, Mesh, Shapes};
+use prairie_core::wire::{Drawing, Mesh, ModelUse, Shapes};
 use prairie_vehicles::{Environment, LoneVehicle};
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ pub struct DecodedScene {
     cover: Arc<CoverMap>,
     kinds: Arc<KindMap>,
     flora: Option<Flora>,
-    models: Vec<(VehicleKind, Mesh)>,
+    models: Vec<(ModelUse, Mesh)>,
     bodies: Vec<Body>,
     drawings: WindDrawings,
     tiles: WindTiles,
@@ -45,14 +45,15 @@ impl DecodedScene {
         height_png: &[u8],
         covering_png: &[u8],
         nutrient_png: &[u8],
-        models: Vec<(VehicleKind, Mesh)>,
+        models: Vec<(ModelUse, Mesh)>,
         shapes: Shapes,
     ) -> Result<Self, MirrorError> {
         check(&scene)?;
         check_bodies(&shapes.bodies)?;
         let heights = HeightMap::from_png(height_png, &scene.terrain);
         let heights = Arc::new(heights.map_err(|error| MirrorError::Map { map: "height map", error })?);
-        let cover = CoverMap::from_png(covering_png).map_err(|error| MirrorError::Map { map: "covering map", error })?;
+        let mut cover = CoverMap::from_png(covering_png).map_err(|error| MirrorError::Map { map: "covering map", error })?;
+        clear_under_models(&scene, &mut cover);
         let cover = Arc::new(cover);
         let nutrients = (!nutrient_png.is_empty()).then(|| NutrientMap::from_png(nutrient_png));
         let nutrients = nutrients.transpose().map_err(|error| MirrorError::Map { map: "nutrient map", error })?;
@@ -92,7 +93,7 @@ impl DecodedScene {
         &self.heights
     }
 
-    /// The covering map.
+    /// The covering map, cleared under the models.
     pub fn cover(&self) -> &CoverMap {
         &self.cover
     }
@@ -127,8 +128,8 @@ impl DecodedScene {
         self.flora.as_ref()
     }
 
-    /// Vehicle models that replace the built-in ones.
-    pub fn models(&self) -> &[(VehicleKind, Mesh)] {
+    /// Models of vehicles that replace the built-in ones, and those of the covering map.
+    pub fn models(&self) -> &[(ModelUse, Mesh)] {
         &self.models
     }
 }

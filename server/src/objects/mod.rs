@@ -3,6 +3,7 @@
 //! Rigid-body dynamics are rapier's, on one thread and in the order of the object numbers, so the same commands give the same bits.
 
 mod autopilot;
+pub mod built_in_models;
 mod checkpoint;
 mod driver;
 pub mod gltf;
@@ -41,7 +42,7 @@ pub struct Objects {
 impl Objects {
     /// The scene's self-driving vehicles and balls at their starting positions.
     pub fn new(scene: &Scene, environment: Environment) -> Self {
-        let terrain = TerrainColliders::new(&environment, &scene.plants);
+        let terrain = TerrainColliders::new(&environment, scene);
         let mut physics = PhysicsWorld::new();
         physics.integration_parameters.dt = scene.dt_secs();
         let mut objects = Self { environment, terrain, physics, vehicles: vec![], settings: scene.objects.clone(), next_id: 1 };

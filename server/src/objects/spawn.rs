@@ -20,7 +20,7 @@ pub(super) struct Disc {
     pub(super) radius_m: f32,
 }
 
-/// The first position along a spiral around `center_m` where a disc of `radius_m` overlaps no object, tree, stone or edge; on gentle terrain if there is
+/// The first position along a spiral around `center_m` where a disc of `radius_m` overlaps no object, tree, stone, model or edge; on gentle terrain if there is
 /// any. Turns and candidates of the spiral are about `spacing_m` apart.
 pub(super) fn find(
     center_m: [f32; 2],

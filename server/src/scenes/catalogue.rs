@@ -67,11 +67,12 @@ fn shown(scene: &Scene) -> Vec<String> {
     let Scene { wind, objects, rain, .. } = scene;
     let driven = format!("self-driving {}s", objects.self_driving_kind.name());
     let has_underbrush = !scene.underbrush.is_empty() || !scene.underbrush_file.is_empty();
-    let parts: [(bool, &str); 13] = [
+    let parts: [(bool, &str); 14] = [
         (!scene.species.is_empty(), "species of grass"),
         (scene.plants.cover == PlantCover::Shells, "grass drawn as shells"),
         (has_underbrush, "underbrush"),
         (scene.plants.flowers_per_m2 > 0.0, "flowers"),
+        (!scene.models.is_empty(), "models on the land"),
         (!wind.primitives.is_empty(), "whirls and jets"),
         (wind.dust.release_per_s > 0.0, "dust"),
         (scene.natural_wind.strength_rad_per_s2 > 0.0, "gusts of noise"),
@@ -147,6 +148,7 @@ mod tests {
         assert_eq!(of("underbrush").shows, ["underbrush", "balls"]);
         assert_eq!(of("night").shows, ["underbrush", "flowers", "lamps"]);
         assert_eq!(of("race").shows, ["flowers", "a race"]);
+        assert_eq!(of("homestead").shows, ["flowers", "models on the land", "balls"]);
     }
 
     /// Grass that acts back on the wind shows its waves only where some eight cells resolve its height, finer than any scene of the size of a meadow.

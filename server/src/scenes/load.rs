@@ -4,14 +4,15 @@ use super::builtin::BuiltIn;
 use super::error::{FaultyScene, SceneError};
 use crate::escaped::escaped;
 use crate::file;
+use crate::objects::built_in_models;
 use crate::objects::gltf::{self, Model};
 use crate::settings_error::SettingsError;
 use crate::world::{self, Maps};
 use prairie_core::grass::wind_drawing::{WindDrawing, WindDrawings};
 use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::{Positions, Scene, SceneFault, VehicleKind, WindShape, parse, parse_underbrush, parse_with};
-use prairie_core::terrain::{Cover, CoverMap, HeightMap, MapError};
-use prairie_core::wire::Mesh;
+use prairie_core::terrain::{Cover, CoverMap, HeightMap, MODEL_BOXES_LIMIT, MapError, clear_under_models, has_too_many_models};
+use prairie_core::wire::{Mesh, ModelUse};
 use std::cell::{LazyCell, RefCell};
 use std::collections::HashSet;
 use std::ffi::OsStr;
@@ -45,14 +46,14 @@ pub struct LoadedScene {
     pub nutrient_png: Vec<u8>,
     /// Decoded height map.
     pub height: HeightMap,
-    /// Decoded covering map.
+    /// Decoded covering map, cleared under the models.
     pub cover: CoverMap,
     /// Decoded nutrient map; `None` if the nutrients are generated.
     pub nutrients: Option<Arc<NutrientMap>>,
     /// Pictures of the drawn winds, by the numbers that replace their file names in the scene.
     pub drawings: WindDrawings,
-    /// Models from glTF files; other kinds use the built-in model.
-    pub models: Vec<(VehicleKind, Mesh)>,
+    /// Models of vehicles from glTF files, where other kinds use the built-in model, and those of the covering map.
+    pub models: Vec<(ModelUse, Mesh)>,
     /// Files that were read, the scene file first; empty for a built-in scene.
     pub files: Vec<PathBuf>,
 }
@@ -133,13 +134,31 @@ impl Source {
         }
     }
 
-    /// The mesh of a model; the files of its buffers are recorded, too.
+    /// The mesh of a vehicle's model.
     fn model(&self, name: &str, half_extents_m: [f32; 3]) -> Result<Mesh, String> {
-        let Model { mesh, buffer_files } = gltf::read(&self.path(name), half_extents_m).map_err(|error| error.reason.to_string())?;
+        let model = gltf::read(&self.path(name), half_extents_m).map_err(|error| error.reason.to_string())?;
+        Ok(self.recorded(model))
+    }
+
+    /// The mesh and the size (m) of a model of the covering map, built in or from a file.
+    fn cover_model(&self, name: &str, size_m: [f32; 3]) -> Result<(Mesh, [f32; 3]), String> {
+        if let Some(mesh) = built_in_models::find(name) {
+            return gltf::stretched(mesh, size_m).map_err(|fault| fault.to_string());
+        }
+        if Path::new(name).extension().is_none() {
+            let built_in = built_in_models::NAMES.map(|known| format!("`{known}`")).join(", ");
+            return Err(format!("is not a built-in model; allowed: {built_in}, or a glTF file (.glb or .gltf)"));
+        }
+        let (model, size_m) = gltf::read_stretched(&self.path(name), size_m).map_err(|error| error.reason.to_string())?;
+        Ok((self.recorded(model), size_m))
+    }
+
+    /// The mesh of a model; the files of its buffers count as read.
+    fn recorded(&self, Model { mesh, buffer_files }: Model) -> Mesh {
         if let Self::Folder { read, .. } = self {
             read.borrow_mut().extend(buffer_files);
         }
-        Ok(mesh)
+        mesh
     }
 
     /// Files that have been read, without duplicates.
@@ -190,15 +209,10 @@ fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, Scen
     let cover = covering_map(&scene, &source).map_err(|message| note("terrain.covering_map", message)).ok();
     let nutrients = nutrient_map(&scene, &source).map_err(|message| note("growth.nutrient_map", message)).ok();
     let mut loaded_models = Vec::new();
-    for kind in VehicleKind::ALL {
-        // Clients get the models as meshes, without the file names.
-        let field = scene.objects.model_file_mut(kind).map(std::mem::take).unwrap_or_default();
-        if field.is_empty() {
-            continue;
-        }
-        match source.model(&field, scene.objects.half_extents_m(kind)) {
-            Ok(mesh) => loaded_models.push((kind, mesh)),
-            Err(reason) => note(&format!("objects.{}_model", kind.name()), format!("names `{field}`, which {reason}")),
+    for (path, model) in vehicle_models(&mut scene, &source).into_iter().chain(cover_models(&mut scene, &source)) {
+        match model {
+            Ok(model) => loaded_models.push(model),
+            Err(reason) => note(&path, reason),
         }
     }
     let mut drawings = WindDrawings::new();
@@ -218,6 +232,8 @@ fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, Scen
     else {
         return Err(faulty(file, text, faults));
     };
+    let mut cover = cover;
+    clear_under_models(&scene, &mut cover);
     let Scene { terrain, growth, underbrush_file, .. } = &mut scene;
     for path in [&mut terrain.height_map, &mut terrain.covering_map, &mut growth.nutrient_map, underbrush_file] {
         path.clear();
@@ -235,6 +251,36 @@ fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, Scen
         models: loaded_models,
         files: source.into_files(),
     })
+}
+
+/// Fields that name a model, each with what it names. Clients get the models as meshes, without the file names.
+type NamedModels = Vec<(String, Result<(ModelUse, Mesh), String>)>;
+
+/// The models of vehicles.
+fn vehicle_models(scene: &mut Scene, source: &Source) -> NamedModels {
+    let mut models = Vec::new();
+    for kind in VehicleKind::ALL {
+        let name = scene.objects.model_file_mut(kind).map(std::mem::take).unwrap_or_default();
+        if !name.is_empty() {
+            let mesh = source.model(&name, scene.objects.half_extents_m(kind));
+            let model = mesh.map(|mesh| (ModelUse::Vehicle(kind), mesh)).map_err(|reason| format!("names `{name}`, which {reason}"));
+            models.push((format!("objects.{}_model", kind.name()), model));
+        }
+    }
+    models
+}
+
+/// The models of the covering map, whose sizes are set.
+fn cover_models(scene: &mut Scene, source: &Source) -> NamedModels {
+    let models = scene.models.iter_mut().enumerate().map(|(i, model)| {
+        let name = std::mem::take(&mut model.model);
+        let loaded = source.cover_model(&name, model.size_m).map(|(mesh, size_m)| {
+            model.size_m = size_m;
+            (ModelUse::Cover(i as u8), mesh)
+        });
+        (format!("models[{i}].model"), loaded.map_err(|reason| format!("names `{name}`, which {reason}")))
+    });
+    models.collect()
 }
 
 /// Every field of a scene that may name a picture of a wind, with its path.
@@ -281,14 +327,29 @@ fn height_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, HeightMap), St
 fn covering_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, CoverMap), String> {
     let name = &scene.terrain.covering_map;
     let (png, map) = map(name, source, CoverMap::from_png)?;
-    if let Some(([column, row], id)) = map.find(|id| !scene.species.is_empty() && is_unknown(scene, id)) {
+    let has_meanings = !(scene.species.is_empty() && scene.models.is_empty());
+    if let Some(([column, row], id)) = map.find(|id| has_meanings && is_unknown(scene, id)) {
         let grass = scene.species.iter().map(|species| (species.cover, &species.name));
         let underbrush = scene.underbrush.iter().filter(|species| species.cover > 0).map(|species| (species.cover, &species.name));
         let species: Vec<_> = grass.chain(underbrush).map(|(cover, name)| format!("{cover} ({name})")).collect();
+        if !scene.models.is_empty() {
+            let models = scene.models.iter().map(|model| format!("{} ({})", model.cover, model.name));
+            return Err(format!(
+                "names `{name}`, which has the ID {id} at column {column} of row {row}, and no species or model has this ID; allowed: 0 (gap), 253 (tree), \
+                 254 (stone), 255 (grass) or the ID of a species or model: {}",
+                species.into_iter().chain(models).collect::<Vec<_>>().join(", ")
+            ));
+        }
         return Err(format!(
             "names `{name}`, which has the ID {id} at column {column} of row {row}, and no species has this ID; allowed: 0 (gap), 253 (tree), 254 (stone), \
              255 (grass) or the ID of a species: {}",
             species.join(", ")
+        ));
+    }
+    if has_too_many_models(scene, &map) {
+        return Err(format!(
+            "names `{name}`, which places more than {MODEL_BOXES_LIMIT} models; allowed: at most {MODEL_BOXES_LIMIT}. Paint fewer pixels, or raise their \
+             `apart_m`"
         ));
     }
     Ok((png, map))
@@ -303,5 +364,5 @@ fn nutrient_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, Option<Nutri
 /// Whether an ID in the covering map has no meaning in the scene.
 fn is_unknown(scene: &Scene, id: u8) -> bool {
     let cover = Cover::from(id);
-    matches!(cover, Cover::Free(_)) && !scene.is_grass(cover)
+    matches!(cover, Cover::Free(_)) && !scene.is_grass(cover) && scene.models.iter().all(|model| model.cover != id)
 }

@@ -4,7 +4,8 @@ use super::error::SceneError;
 use super::load::{LoadedScene, load};
 use crate::escaped::escaped;
 use prairie_core::scene::VehicleKind;
-use prairie_core::terrain::Cover;
+use prairie_core::terrain::{Cover, model_boxes};
+use prairie_core::wire::ModelUse;
 use std::ffi::OsStr;
 use std::fmt;
 
@@ -53,7 +54,17 @@ impl fmt::Display for Report {
             writeln!(f, "  underbrush {}, on {columns} × {rows} sites of {soil} soil", species.join(", "))?;
         }
         let triangles = |count: usize| if count == 1 { "1 triangle".to_owned() } else { format!("{count} triangles") };
-        let models: Vec<_> = models.iter().map(|(kind, mesh)| format!("{} ({})", kind.name(), triangles(mesh.indices.len() / 3))).collect();
+        if !scene.models.is_empty() {
+            let boxes = model_boxes(scene, cover);
+            let count = |index: usize| boxes.iter().filter(|own| own.model == index).count();
+            let placed: Vec<_> = scene.models.iter().enumerate().map(|(i, model)| format!("{} {}", count(i), model.name)).collect();
+            writeln!(f, "  placed    {}", placed.join(", "))?;
+        }
+        let of_vehicles = models.iter().filter_map(|(used, mesh)| match used {
+            ModelUse::Vehicle(kind) => Some((kind, mesh)),
+            ModelUse::Cover(_) => None,
+        });
+        let models: Vec<_> = of_vehicles.map(|(kind, mesh)| format!("{} ({})", kind.name(), triangles(mesh.indices.len() / 3))).collect();
         let built_in: Vec<_> = VehicleKind::ALL.iter().map(|kind| kind.name()).collect();
         let models = if models.is_empty() { format!("built-in {}", built_in.join(", ")) } else { models.join(", ") };
         write!(f, "  models    {models}")

@@ -1,8 +1,8 @@
-//! What stands in the wind: land, stones and the crowns of trees.
+//! What stands in the wind: land, stones, the models of the covering map and the crowns of trees.
 
 use super::box_terrain::BoxTerrain;
 use prairie_core::scene::{Scene, WindTiling};
-use prairie_core::terrain::{Cover, CoverMap, HeightMap};
+use prairie_core::terrain::{Cover, CoverMap, HeightMap, ModelBox, model_boxes};
 use prairie_wind::solids::DragBody;
 use prairie_wind::{Air, Body, Config, Pressure, SolidError};
 use std::f32::consts::FRAC_PI_4;
@@ -15,19 +15,23 @@ const CROWN_DIAMETER: f32 = 0.35;
 const STONE_HEIGHT: f32 = 0.6;
 const STONE_DRAG: f64 = 0.5;
 
+/// Drag coefficient of a model's box, about that of a cube with a face to the wind (Hoerner 1965).
+const MODEL_DRAG: f64 = 1.05;
+
 /// Everything in the box of a scene's wind that does not move. What lies beyond a box smaller than the world is left out: the box repeats with its own.
 pub(super) struct FixedSolids {
-    /// Crowns, and stones that the cells do not resolve.
+    /// Crowns, and stones and models that the cells do not resolve.
     drag: Vec<DragBody>,
-    /// Stones that the cells resolve.
-    pub(super) stones: Vec<Body>,
+    /// Stones and models that the cells resolve.
+    pub(super) bodies: Vec<Body>,
 }
 
 impl FixedSolids {
     pub(super) fn new(scene: &Scene, height: &HeightMap, cover: &CoverMap, terrain: &BoxTerrain) -> Self {
         let place = Place { scene, height, cover, terrain };
-        let (stones, small): (Vec<_>, Vec<_>) = place.stones().partition(|stone| stone.is_resolved_by(scene.wind.spacing_m.map(f64::from)));
-        Self { drag: place.crowns().chain(small.iter().map(Body::drag)).collect(), stones }
+        let all = place.stones().chain(place.models());
+        let (bodies, small): (Vec<_>, Vec<_>) = all.partition(|body| body.is_resolved_by(scene.wind.spacing_m.map(f64::from)));
+        Self { drag: place.crowns().chain(small.iter().map(Body::drag)).collect(), bodies }
     }
 
     /// Puts the land and the drag into air at rest. Land that is an obstacle is immersed for the direct pressure solver, and solid cells for others.
@@ -52,12 +56,16 @@ struct Place<'a> {
 impl Place<'_> {
     /// Points on the ground (m, in the box) with one kind of cover.
     fn on_ground(&self, cover: Cover) -> impl Iterator<Item = [f32; 3]> {
-        let box_m = self.scene.wind.box_m();
-        let places = self.cover.places_m(cover, self.scene.extent_m()).filter(move |[x, z]| *x < box_m[0] && *z < box_m[2]);
+        let places = self.cover.places_m(cover, self.scene.extent_m()).filter(|at_m| self.is_in_box(*at_m));
         places.map(|[x, z]| {
             let ground_m = self.height.height_m(x, z);
             [x, ground_m - self.terrain.zero_m(ground_m), z]
         })
+    }
+
+    fn is_in_box(&self, [x, z]: [f32; 2]) -> bool {
+        let box_m = self.scene.wind.box_m();
+        x < box_m[0] && z < box_m[2]
     }
 
     /// Crowns of all trees; none without `wind.crown_drag_per_m`.
@@ -73,6 +81,25 @@ impl Place<'_> {
             drag_m2: [drag_m2.into(); 3],
         };
         self.on_ground(Cover::Tree).filter(move |_| per_m > 0.0).map(crown)
+    }
+
+    /// The boxes of all models; none in a box that is tiled by patch, as of stones.
+    fn models(&self) -> impl Iterator<Item = Body> {
+        let is_patch = self.scene.wind.tiling == WindTiling::Patch;
+        let boxes = model_boxes(self.scene, self.cover).into_iter().filter(move |own| !is_patch && self.is_in_box(own.at_m));
+        boxes.map(|own| self.body(&own)).filter(Body::is_valid)
+    }
+
+    fn body(&self, own: &ModelBox) -> Body {
+        let ([x, z], [c, s]) = (own.at_m, own.along.map(f64::from));
+        let floor_m = own.floor_m(|x, z| self.height.height_m(x, z)) - self.terrain.zero_m(self.height.height_m(x, z));
+        Body {
+            centre_m: [x, floor_m + own.half_m[1], z].map(f64::from),
+            half_extents_m: own.half_m.map(f64::from),
+            axes: [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]],
+            velocity_m_per_s: [0.0; 3],
+            drag_coefficient: MODEL_DRAG,
+        }
     }
 
     /// All stones; none in a box that is tiled by patch, where they would be in every patch.

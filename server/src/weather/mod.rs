@@ -52,7 +52,7 @@ pub struct Weather {
     terrain: BoxTerrain,
     solids: FixedSolids,
     vehicles: Vehicles,
-    /// Stones and vehicles that are walls or slow the air, set before each step.
+    /// Stones, models and vehicles that are walls or slow the air, set before each step.
     bodies: Vec<Body>,
     canopy: Option<CanopyCover>,
     carrier: Carrier,
@@ -142,7 +142,7 @@ impl Weather {
             report,
             terrain,
             vehicles: Vehicles::new(scene),
-            bodies: solids.stones.clone(),
+            bodies: solids.bodies.clone(),
             solids,
         };
         weather.release(0);
@@ -165,7 +165,7 @@ impl Weather {
         let ground_m = |motion: &Motion| self.terrain.zero_m(height.height_m(motion.to.position_m[0], motion.to.position_m[2]));
         let in_box = |motion: &Motion| Motion { velocity_m_per_s: self.terrain.velocity_in_box(motion, height), ..*motion };
         let jets: Vec<_> = motions.iter().filter_map(|motion| self.vehicles.jet(&in_box(motion), ground_m(motion))).collect();
-        self.bodies.truncate(self.solids.stones.len());
+        self.bodies.truncate(self.solids.bodies.len());
         self.bodies.extend(motions.iter().filter_map(|motion| self.vehicles.body(&in_box(motion), ground_m(motion))));
         self.air.set_bodies(&self.bodies).expect("bodies that may not be set are left out");
         // The intensities follow the world's time, so that they neither run during the warm-up nor start again after a failed step.
@@ -269,7 +269,7 @@ fn initial_air(
 ) -> Result<Air<f32>, WeatherError> {
     let mut air = Air::new(method, config)?;
     solids.immerse(&mut air, config, terrain, height)?;
-    air.set_bodies(&solids.stones)?;
+    air.set_bodies(&solids.bodies)?;
     Ok(air)
 }
 

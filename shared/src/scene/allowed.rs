@@ -2,9 +2,9 @@
 
 use super::objects::OBJECT_FIELDS;
 use super::{
-    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, FlowerShape, GATES_LIMIT, LAMPS_LIMIT, LagWay, PlantCover,
-    PrimitiveIntensity, PrimitiveKind, SPECIES_LIMIT, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain,
-    WindTiling, WindTime,
+    BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, FlowerShape, GATES_LIMIT, LAMPS_LIMIT, LagWay, MODEL_SIDE_M,
+    MODELS_LIMIT, PlantCover, PrimitiveIntensity, PrimitiveKind, SPECIES_LIMIT, WindAdvection, WindBoundary, WindDiffusion, WindMethod,
+    WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, GroundContact, Scheme, Seams};
 use crate::lod::shells::LAYERS_LIMIT;
@@ -44,6 +44,7 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("species", Sections(0, 16)),
     ("underbrush_file", Text),
     ("underbrush", Sections(0, SPECIES_LIMIT)),
+    ("models", Sections(0, MODELS_LIMIT)),
     ("drawn_winds", Sections(0, 16)),
     ("lights", Sections(0, LAMPS_LIMIT)),
     ("patches.count", Range(1.0, 2048.0)),
@@ -192,6 +193,14 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("growth.patch_m", Range(1.0, 1000.0)),
     ("growth.spacing_m", Range(0.05, 20.0)),
     ("growth.shade", Range(0.0, 1.0)),
+    ("models.name", Name),
+    ("models.cover", Range(1.0, 252.0)),
+    ("models.model", Name),
+    ("models.size_m", Range(0.0, MODEL_SIDE_M[1] as f64)),
+    ("models.size_variation", Range(0.0, 0.5)),
+    ("models.heading_rad", Range(-6.3, 6.3)),
+    ("models.heading_variation_rad", Range(0.0, 3.15)),
+    ("models.apart_m", Range(0.0, 1000.0)),
 ];
 
 const AFTER_OBJECTS: &[(&str, Allowed)] = &[
@@ -234,7 +243,7 @@ const AFTER_OBJECTS: &[(&str, Allowed)] = &[
 ];
 
 /// Fields that a scene file must contain; for a list of sections, each section of it.
-pub const REQUIRED: [&str; 19] = [
+pub const REQUIRED: [&str; 22] = [
     "summary",
     "terrain",
     "terrain.height_map",
@@ -249,6 +258,9 @@ pub const REQUIRED: [&str; 19] = [
     "underbrush.components",
     "underbrush.components.name",
     "underbrush.components.kind",
+    "models.name",
+    "models.cover",
+    "models.model",
     "drawn_winds.shape",
     "drawn_winds.path_m",
     "race.gates.at_m",

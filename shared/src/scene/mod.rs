@@ -7,6 +7,7 @@ mod allowed;
 mod bend;
 mod blade_step;
 mod checks;
+mod cover_model;
 mod drawn_wind;
 mod fault;
 mod flat;
@@ -36,6 +37,7 @@ pub use allowed::{Allowed, FIELDS, REQUIRED};
 pub use bend::BendField;
 pub use blade_step::{BLADE_STEPS_LIMIT, GROWTH_BY_COVER, GROWTH_BY_MEADOW, GROWTH_BY_SOIL, GROWTH_BY_TUFT};
 pub use checks::limits::{AWAKE_CELLS_LIMIT, COMPONENTS_LIMIT, EXTENT_LIMIT_M, PARTS_LIMIT, SITES_LIMIT, SPECIES_LIMIT, WIND_CELLS_LIMIT};
+pub use cover_model::{CoverModel, MODEL_SIDE_M, MODELS_LIMIT};
 pub use drawn_wind::{DrawnWind, WindShape};
 pub use fault::SceneFault;
 pub use grass::Grass;
@@ -106,7 +108,7 @@ pub struct Scene {
     #[serde(default)]
     pub shells: Shells,
     /// Species of grass besides that of `[grass]` and `[plants]`, each a section `[[species]]`. With any, every ID of the covering map must be that
-    /// of a species, of a species of underbrush, or 0, 253, 254 or 255. Default none, allowed at most 16.
+    /// of a species, of a species of underbrush, of a model, or 0, 253, 254 or 255. Default none, allowed at most 16.
     #[serde(default)]
     pub species: Vec<Species>,
     /// TOML file beside the scene file that contains only sections `[[underbrush]]`, for several scenes to share; they count as if they came before
@@ -120,6 +122,10 @@ pub struct Scene {
     /// Soil and sites of the underbrush.
     #[serde(default)]
     pub growth: Growth,
+    /// Models that the covering map places, each a section `[[models]]`. With any, every ID of the covering map must be known, as with `species`.
+    /// Default none, allowed at most 8.
+    #[serde(default)]
+    pub models: Vec<CoverModel>,
     /// Cars, monsters, helicopters, sleds and balls: number, models, and contact with the grass.
     #[serde(default)]
     pub objects: Objects,
@@ -172,6 +178,7 @@ impl Scene {
             underbrush_file: String::new(),
             underbrush: Vec::new(),
             growth: Growth::default(),
+            models: Vec::new(),
             objects: Objects::default(),
             drawn_winds: Vec::new(),
             race: Race::default(),

@@ -3,8 +3,8 @@
 use super::flat::{flatten, flatten_species, nest_grass};
 use super::walk::Walk;
 use super::{
-    Component, ComponentKind, DrawnWind, Grass, Lamp, Plants, Primitive, PrimitiveKind, RaceGate, Scene, Species, TerrainMaps, Underbrush,
-    Wind, WindMethod, WindShape,
+    Component, ComponentKind, CoverModel, DrawnWind, Grass, Lamp, Plants, Primitive, PrimitiveKind, RaceGate, Scene, Species, TerrainMaps,
+    Underbrush, Wind, WindMethod, WindShape,
 };
 use serde::{Deserialize, Serialize};
 use toml::de::DeTable;
@@ -31,6 +31,7 @@ pub(super) fn section(field: &str) -> Table {
         "wind.primitives" => table(Primitive::new(PrimitiveKind::Uniform, [0.0; 3])),
         "underbrush" => table(Underbrush::new("", Vec::new())),
         "underbrush.components" => table(Component::new("", ComponentKind::Leaf)),
+        "models" => table(CoverModel::new("", 1, "")),
         "drawn_winds" => table(DrawnWind::new(WindShape::Outward, vec![[0.0; 2]])),
         "race.gates" => table(RaceGate::new([0.0; 2], 0.0)),
         "lights" => table(Lamp::new([0.0; 3])),

@@ -1,4 +1,4 @@
-//! Covering map: gap, tree, stone, grass or species by position (Zhang §5.5.2, Table 2).
+//! Covering map: gap, tree, stone, grass, species or model by position (Zhang §5.5.2, Table 2).
 
 use super::{MapError, decode_grey};
 
@@ -13,7 +13,8 @@ pub enum Cover {
     Stone,
     /// Grass (ID 255).
     Grass,
-    /// Any other ID: a species of grass or of underbrush if the scene [names it](crate::scene::Scene::is_grass), else bare ground.
+    /// Any other ID: a species of grass or of underbrush if the scene [names it](crate::scene::Scene::is_grass), else bare ground; a
+    /// [model](crate::scene::CoverModel) may stand on it.
     Free(u8),
 }
 
@@ -73,6 +74,30 @@ impl CoverMap {
         let index = self.ids.iter().position(|&id| is_meant(id))?;
         let width = self.width_px as usize;
         Some(([(index % width) as u32, (index / width) as u32], self.ids[index]))
+    }
+
+    /// Makes gaps of the pixels between the lowest and the highest X and Z of `bounds_m` that `is_cleared`, given ID, north-western corner and sides (m).
+    pub(super) fn clear_where(
+        &mut self,
+        [low_m, high_m]: [[f32; 2]; 2],
+        extent_m: [f32; 2],
+        is_cleared: impl Fn(u8, [f32; 2], [f32; 2]) -> bool,
+    ) {
+        let size_px = self.size_px();
+        let side_m: [f32; 2] = std::array::from_fn(|axis| extent_m[axis] / size_px[axis] as f32);
+        // Casts saturate at 0; a pixel more on each side covers the rounding.
+        let [columns, rows] = [0, 1].map(|axis| {
+            let first = ((low_m[axis] / side_m[axis]) as u32).saturating_sub(1);
+            first..((high_m[axis] / side_m[axis]) as u32).saturating_add(2).min(size_px[axis])
+        });
+        for row in rows {
+            for column in columns.clone() {
+                let id = &mut self.ids[row as usize * self.width_px as usize + column as usize];
+                if is_cleared(*id, [column as f32 * side_m[0], row as f32 * side_m[1]], side_m) {
+                    *id = 0;
+                }
+            }
+        }
     }
 
     /// World coordinates of the centres of the pixels with this `cover` (m).

@@ -1,6 +1,6 @@
 //! Messages, and their encoding.
 
-use super::{PROTOCOL, StepHead, TurbulenceState};
+use super::{ModelUse, PROTOCOL, StepHead, TurbulenceState};
 use crate::body::{Body, PoseCode};
 use crate::grid::PatchIndex;
 use crate::scene::{Scene, VehicleKind};
@@ -129,8 +129,8 @@ pub enum ServerMessage {
         /// Nutrient map, the PNG file's bytes; empty if nutrients are generated from the seed.
         #[serde(with = "serde_bytes")]
         nutrient_png: Vec<u8>,
-        /// Models read from glTF files; all other kinds are drawn with the built-in model.
-        models: Vec<(VehicleKind, Mesh)>,
+        /// Models of vehicles read from glTF files, and those of the covering map; all other vehicles are drawn with the built-in models.
+        models: Vec<(ModelUse, Mesh)>,
         /// Shapes of objects and winds that press the grass, for a replica of it.
         shapes: Shapes,
     },
@@ -382,8 +382,13 @@ pub struct Mesh {
 impl Mesh {
     /// Largest number of vertices: indices fit 16 bits.
     pub const VERTEX_LIMIT: usize = 1 << 16;
-    /// Largest number of indices; two such meshes and three maps of 24 MiB fit into [`SERVER_MESSAGE_LIMIT`](super::SERVER_MESSAGE_LIMIT).
+    /// Largest number of indices; two such meshes, three maps of 24 MiB and all models of the covering map fit into
+    /// [`SERVER_MESSAGE_LIMIT`](super::SERVER_MESSAGE_LIMIT).
     pub const INDEX_LIMIT: usize = 1 << 20;
+    /// Largest number of vertices of a model of the covering map, which may stand in thousands of places.
+    pub const COVER_VERTEX_LIMIT: usize = 1 << 13;
+    /// Largest number of its indices.
+    pub const COVER_INDEX_LIMIT: usize = 49_152;
 }
 
 /// Reasons why bytes cannot be decoded.

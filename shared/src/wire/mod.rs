@@ -6,6 +6,7 @@
 mod close;
 pub mod codec;
 mod message;
+mod model_use;
 mod protocol;
 pub mod quantise;
 mod step;
@@ -17,6 +18,7 @@ pub use message::{
     AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Ghost, Mesh, ObjectId, ObjectPose, PROOF_BYTES, Peer, Refusal, ServerMessage,
     Shapes, Standing, WireError, decode, encode,
 };
+pub use model_use::ModelUse;
 pub use protocol::PROTOCOL;
 pub use step::{Joined, Move, PatchCheck, PoseChange, RareCauses, StepHead};
 pub use turbulence_state::TurbulenceState;
@@ -39,5 +41,5 @@ pub const GHOST_LIMIT: usize = 2048;
 /// Number of most recently received patches that a client keeps at least. A server sends deltas only to these.
 pub const PATCH_MEMORY: usize = 2048;
 
-/// Largest message a server may send (bytes): a scene with three maps and two models.
+/// Largest message a server may send (bytes): a scene with three maps, the models of two vehicles, and those of the covering map.
 pub const SERVER_MESSAGE_LIMIT: usize = 96 << 20;

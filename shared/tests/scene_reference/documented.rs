@@ -11,7 +11,7 @@ pub(crate) struct Field {
 }
 
 /// Source files and, for each struct in them, the section that it documents.
-const SOURCES: [(&str, &[(&str, &str)]); 22] = [
+const SOURCES: [(&str, &[(&str, &str)]); 23] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
     ("terrain.rs", &[("TerrainMaps", "terrain")]),
@@ -28,6 +28,7 @@ const SOURCES: [(&str, &[(&str, &str)]); 22] = [
     ("species.rs", &[("Species", "species")]),
     ("underbrush.rs", &[("Underbrush", "underbrush"), ("Component", "underbrush.components")]),
     ("growth.rs", &[("Growth", "growth")]),
+    ("cover_model.rs", &[("CoverModel", "models")]),
     ("objects.rs", &[("Objects", "objects")]),
     ("drawn_wind.rs", &[("DrawnWind", "drawn_winds")]),
     ("race.rs", &[("Race", "race"), ("RaceGate", "race.gates")]),

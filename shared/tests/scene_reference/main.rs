@@ -39,6 +39,7 @@ fn complete() -> toml::Table {
     let text = minimal().to_string()
         + "[[wind.primitives]]\nkind = 'source'\nat_m = [1.0, 2.0, 3.0]\n[[species]]\nname = 'a'\ncover = 1\n"
         + "[[underbrush]]\nname = 'a'\n[[underbrush.components]]\nname = 'a'\nkind = 'leaf'\n"
+        + "[[models]]\nname = 'a'\ncover = 2\nmodel = 'rock'\n"
         + "[[drawn_winds]]\nshape = 'swirl'\npath_m = [[1.0, 2.0]]\n[[lights]]\nat_m = [1.0, 2.0, 3.0]\n"
         + "[[race.gates]]\nat_m = [1.0, 2.0]\nheading_rad = 0.5\n[[race.gates]]\nat_m = [8.0, 2.0]\nheading_rad = 3.5\n";
     parse(&text).unwrap().to_toml().parse().unwrap()

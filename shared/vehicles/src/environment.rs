@@ -7,7 +7,7 @@ use std::sync::Arc;
 pub struct Environment {
     /// Terrain heights.
     pub height: Arc<HeightMap>,
-    /// Covering map, with trees and stones.
+    /// Covering map, with trees, stones and models.
     pub cover: Arc<CoverMap>,
     /// Extent along X and Z (m).
     pub extent_m: [f32; 2],

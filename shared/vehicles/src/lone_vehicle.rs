@@ -22,7 +22,7 @@ pub struct VehicleMotion {
     pub part_rad: f32,
 }
 
-/// A vehicle alone in the world: terrain, trunks and stones are there, other objects are not.
+/// A vehicle alone in the world: terrain, trunks, stones and models are there, other objects are not.
 ///
 /// Its step is that of the server: a state taken over exactly gives the server's next poses until the vehicle meets another. [`assume`](Self::assume) does not see the whole
 /// state, and in a browser sines differ in their last bits. Error bound: after 0.15 s at most 0.25 m in 95 of 100 cases on hilly terrain (`tests/tests/world/prediction.rs`).
@@ -37,7 +37,7 @@ pub struct LoneVehicle {
 impl LoneVehicle {
     /// A vehicle of this kind at the origin, in the environment of a scene.
     pub fn new(scene: &Scene, environment: Environment, kind: VehicleKind) -> Self {
-        let terrain = TerrainColliders::new(&environment, &scene.plants);
+        let terrain = TerrainColliders::new(&environment, scene);
         let mut physics = PhysicsWorld::new();
         physics.integration_parameters.dt = scene.dt_secs();
         let vehicle = Vehicle::insert(kind, &scene.objects, [0.0; 3], 0.0, &mut physics);

@@ -1,8 +1,8 @@
-//! Colliders of terrain, tree trunks and stones, which exist only near the objects.
+//! Colliders of terrain, tree trunks, stones and the models of the covering map, which exist only near the objects.
 
 use super::environment::Environment;
-use prairie_core::scene::Plants;
-use prairie_core::terrain::{Cover, HeightMap};
+use prairie_core::scene::Scene;
+use prairie_core::terrain::{Cover, HeightMap, ModelBox, model_boxes};
 use rapier3d::parry::utils::Array2;
 use rapier3d::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -15,10 +15,11 @@ pub(crate) const TERRAIN: Group = Group::GROUP_2;
 const TILE_M: f32 = 24.0;
 /// Finest and coarsest distance between the heights of a tile (m).
 const SPACING_M: [f32; 2] = [0.1, 2.0];
-/// A tile is created when an object is within this distance (m), and removed when no object is within [`KEEP_M`].
+/// A tile is created when an object is within this distance (m), and removed when no object is within [`KEEP_M`]; where models stand, both are farther by
+/// the reach of the largest.
 const CREATE_M: f32 = 12.0;
 const KEEP_M: f32 = 30.0;
-/// Largest number of trees and stones in a tile that are obstacles; any others can be driven through.
+/// Largest number of trees, stones and models in a tile that are obstacles; any others can be driven through.
 const OBSTACLES_PER_TILE: usize = 256;
 /// Radius of a trunk relative to the tree's height.
 const TRUNK_RADIUS: f32 = 0.03;
@@ -26,32 +27,74 @@ const TRUNK_RADIUS: f32 = 0.03;
 /// Index of a tile along X and Z.
 pub type TileIndex = [i32; 2];
 
-/// A tree or a stone.
+/// A tree, a stone or a model of the covering map.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Obstacle {
-    at_m: [f32; 2],
-    radius_m: f32,
-    half_height_m: Option<f32>,
+enum Obstacle {
+    Trunk { at_m: [f32; 2], radius_m: f32, half_height_m: f32 },
+    Stone { at_m: [f32; 2], radius_m: f32 },
+    Model(ModelBox),
 }
 
-/// Colliders of terrain, trunks and stones.
+impl Obstacle {
+    fn at_m(&self) -> [f32; 2] {
+        match self {
+            Self::Trunk { at_m, .. } | Self::Stone { at_m, .. } => *at_m,
+            Self::Model(own) => own.at_m,
+        }
+    }
+
+    /// Whether it is farther than `reach_m` from a point, seen from above.
+    fn is_beyond(&self, from_m: [f32; 2], reach_m: f32) -> bool {
+        match self {
+            Self::Trunk { at_m, radius_m, .. } | Self::Stone { at_m, radius_m } => {
+                let reach = reach_m + radius_m;
+                squared_distance(*at_m, from_m) > reach * reach
+            }
+            Self::Model(own) => own.squared_distance_m2(from_m) > reach_m * reach_m,
+        }
+    }
+
+    fn collider(&self, height: &HeightMap) -> ColliderBuilder {
+        let [x, z] = self.at_m();
+        let foot = height.height_m(x, z);
+        match self {
+            Self::Trunk { radius_m, half_height_m, .. } => {
+                ColliderBuilder::cylinder(*half_height_m, *radius_m).translation(Vector::new(x, foot + half_height_m, z))
+            }
+            Self::Stone { radius_m, .. } => ColliderBuilder::ball(*radius_m).translation(Vector::new(x, foot, z)),
+            Self::Model(own) => {
+                let [half_x, half_y, half_z] = own.half_m;
+                let center = Vector::new(x, own.floor_m(|x, z| height.height_m(x, z)) + half_y, z);
+                ColliderBuilder::cuboid(half_x, half_y, half_z).position(Pose::from_parts(center, Rotation::from_array(own.rotation())))
+            }
+        }
+    }
+}
+
+/// Colliders of terrain, trunks, stones and models.
 pub struct TerrainColliders {
     height: Arc<HeightMap>,
     spacing_m: [f32; 2],
     tile_m: [f32; 2],
+    /// Radius of the largest model (m); 0 without models.
+    model_reach_m: f32,
     obstacles: BTreeMap<TileIndex, Vec<Obstacle>>,
     created: BTreeMap<TileIndex, Vec<ColliderHandle>>,
 }
 
 impl TerrainColliders {
-    /// No colliders yet, on the terrain of `environment`, with the trees and stones of its cover.
-    pub fn new(environment: &Environment, plants: &Plants) -> Self {
+    /// No colliders yet, on the terrain of `environment`, with the trees, stones and models of its cover.
+    pub fn new(environment: &Environment, scene: &Scene) -> Self {
         let height = environment.height.clone();
         let spacing_m = height.pixel_m().map(spacing_m);
         let tile_m = spacing_m.map(|spacing| (TILE_M / spacing).ceil() * spacing);
-        let mut colliders = Self { height, spacing_m, tile_m, obstacles: BTreeMap::new(), created: BTreeMap::new() };
-        let tree = |at_m| Obstacle { at_m, radius_m: plants.tree_m * TRUNK_RADIUS, half_height_m: Some(0.5 * plants.tree_m) };
-        let stone = |at_m| Obstacle { at_m, radius_m: 0.5 * plants.stone_m, half_height_m: None };
+        let models = model_boxes(scene, &environment.cover);
+        let model_reach_m = models.iter().map(ModelBox::radius_m).fold(0.0, f32::max);
+        let mut colliders = Self { height, spacing_m, tile_m, model_reach_m, obstacles: BTreeMap::new(), created: BTreeMap::new() };
+        let plants = &scene.plants;
+        models.into_iter().for_each(|own| colliders.put(Obstacle::Model(own)));
+        let tree = |at_m| Obstacle::Trunk { at_m, radius_m: plants.tree_m * TRUNK_RADIUS, half_height_m: 0.5 * plants.tree_m };
+        let stone = |at_m| Obstacle::Stone { at_m, radius_m: 0.5 * plants.stone_m };
         environment.cover.places_m(Cover::Tree, environment.extent_m).for_each(|at_m| colliders.put(tree(at_m)));
         environment.cover.places_m(Cover::Stone, environment.extent_m).for_each(|at_m| colliders.put(stone(at_m)));
         colliders
@@ -67,15 +110,10 @@ impl TerrainColliders {
         self.height.slope(at_m[0], at_m[1])
     }
 
-    /// Whether there is no tree or stone within `radius_m`.
+    /// Whether there is no tree, stone or model within `radius_m`.
     pub fn is_free(&self, at_m: [f32; 2], radius_m: f32) -> bool {
-        self.tiles_around(at_m, radius_m + TILE_M).all(|tile| {
-            self.obstacles.get(&tile).is_none_or(|obstacles| {
-                obstacles.iter().all(|obstacle| {
-                    let reach = radius_m + obstacle.radius_m;
-                    squared_distance(obstacle.at_m, at_m) > reach * reach
-                })
-            })
+        self.tiles_around(at_m, radius_m + TILE_M.max(self.model_reach_m)).all(|tile| {
+            self.obstacles.get(&tile).is_none_or(|obstacles| obstacles.iter().all(|obstacle| obstacle.is_beyond(at_m, radius_m)))
         })
     }
 
@@ -87,7 +125,7 @@ impl TerrainColliders {
     /// Creates the tiles near `objects_m` and removes those far from all.
     pub fn follow(&mut self, objects_m: &[[f32; 2]], physics: &mut PhysicsWorld) {
         let around = |reach_m| objects_m.iter().flat_map(|&at_m| self.tiles_around(at_m, reach_m)).collect::<BTreeSet<_>>();
-        let (create, keep) = (around(CREATE_M), around(KEEP_M));
+        let (create, keep) = (around(CREATE_M + self.model_reach_m), around(KEEP_M + self.model_reach_m));
         self.created.retain(|tile, colliders| {
             let stays = keep.contains(tile);
             if !stays {
@@ -116,7 +154,7 @@ impl TerrainColliders {
     }
 
     fn put(&mut self, obstacle: Obstacle) {
-        let obstacles = self.obstacles.entry(self.tile_at(obstacle.at_m)).or_default();
+        let obstacles = self.obstacles.entry(self.tile_at(obstacle.at_m())).or_default();
         if obstacles.len() < OBSTACLES_PER_TILE {
             obstacles.push(obstacle);
         }
@@ -135,14 +173,7 @@ impl TerrainColliders {
     fn colliders(&self, tile: TileIndex) -> Vec<ColliderBuilder> {
         let groups = InteractionGroups::new(TERRAIN, Group::ALL, InteractionTestMode::And);
         let mut colliders = vec![self.terrain(tile).collision_groups(groups)];
-        for obstacle in self.obstacles.get(&tile).into_iter().flatten() {
-            let [x, z] = obstacle.at_m;
-            let foot = self.height_m(obstacle.at_m);
-            colliders.push(match obstacle.half_height_m {
-                Some(half) => ColliderBuilder::cylinder(half, obstacle.radius_m).translation(Vector::new(x, foot + half, z)),
-                None => ColliderBuilder::ball(obstacle.radius_m).translation(Vector::new(x, foot, z)),
-            });
-        }
+        colliders.extend(self.obstacles.get(&tile).into_iter().flatten().map(|obstacle| obstacle.collider(&self.height)));
         colliders
     }
 

@@ -13,6 +13,7 @@ mod functions;
 mod imports;
 mod licences;
 mod look_back;
+mod models;
 mod pictures;
 mod prediction;
 mod replica;

@@ -33,7 +33,7 @@ impl BoundingSphere {
         // As in `swayed` of `objects.wgsl`, for the top.
         let top = self.centre_m.y + self.radius_m;
         let swayed_m = tall_m * (sway_rad * top * top + 2.0 / 3.0 * sway_rad * sway_rad * top * top * top);
-        let flutter_m = if placed.is_tree { FLUTTER_LIMIT_M } else { 0.0 };
+        let flutter_m = if placed.is_tree() { FLUTTER_LIMIT_M } else { 0.0 };
         let radius_m = self.radius_m * wide_m.max(tall_m).max(deep_m) + swayed_m + flutter_m;
         Self { centre_m: matrix.transform_point3(self.centre_m), radius_m }
     }

@@ -1,15 +1,15 @@
-//! Meshes of all vehicles, gates, trees and stones in one vertex and one index buffer.
+//! Meshes of all vehicles, gates, trees, stones and models of the scene's own in one vertex and one index buffer.
 
 use crate::render::gpu::device::Gpu;
 use crate::render::solids::bounding_sphere::BoundingSphere;
 use crate::render::solids::gates::{self, GatePart};
 use crate::render::solids::mesh::{Paint, Solid};
-use crate::render::solids::trees_and_stones::{self, PlacedModel, STONE_SHAPES, TREE_SHAPES, TreeDetail};
+use crate::render::solids::trees_and_stones::{self, PlacedKind, PlacedModel, STONE_SHAPES, TREE_SHAPES, TreeDetail};
 use crate::render::solids::vehicles::vehicle_model;
 use crate::state::DecodedScene;
 use glam::{Vec2, Vec3};
 use prairie_core::scene::VehicleKind;
-use prairie_core::wire::Mesh;
+use prairie_core::wire::{Mesh, ModelUse};
 use std::ops::Range;
 use wgpu::BufferUsages;
 
@@ -19,7 +19,8 @@ struct MeshRange {
     base_vertex: i32,
 }
 
-/// The meshes: parts of vehicles by kind, then those of gates, then fine, coarse and distant trees, then stones.
+/// The meshes: parts of vehicles by kind, then those of gates, then fine, coarse and distant trees, then stones, then
+/// the models of the scene's own.
 pub(crate) struct ModelMeshes {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
@@ -28,7 +29,7 @@ pub(crate) struct ModelMeshes {
     first_part: [usize; VehicleKind::ALL.len()],
     first_gate_part: usize,
     first_tree: usize,
-    /// Bounding spheres of the tree shapes, then of the stone shapes.
+    /// Bounding spheres of the tree shapes, then of the stone shapes, then of the models.
     bounds: Vec<BoundingSphere>,
 }
 
@@ -46,6 +47,8 @@ impl ModelMeshes {
         let details = TreeDetail::ALL.into_iter();
         solids.extend(details.flat_map(|detail| (0..TREE_SHAPES).map(move |shape| trees_and_stones::tree(shape, detail))));
         solids.extend((0..STONE_SHAPES).map(trees_and_stones::stone));
+        let own_models = decoded.scene().models.len();
+        solids.extend((0..own_models).map(|model| custom_model(decoded, ModelUse::Cover(model as u8)).unwrap_or_default()));
         let (mut vertices, mut indices, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
         for solid in &solids {
             let first = indices.len() as u32;
@@ -65,13 +68,18 @@ impl ModelMeshes {
         let of_tree = |shape| TreeDetail::ALL.map(|detail| &solids[meshes.tree(shape, detail)]);
         let trees = (0..TREE_SHAPES).map(|shape| BoundingSphere::around_meshes(of_tree(shape).into_iter()));
         let stones = (0..STONE_SHAPES).map(|shape| BoundingSphere::around_meshes([&solids[meshes.stone(shape)]].into_iter()));
-        meshes.bounds = trees.chain(stones).collect();
+        let models = (0..own_models as u32).map(|model| BoundingSphere::around_meshes([&solids[meshes.own_model(model)]].into_iter()));
+        meshes.bounds = trees.chain(stones).chain(models).collect();
         meshes
     }
 
     /// Bounding sphere of a placed model, swaying included.
     pub(crate) fn bounds_of(&self, placed: &PlacedModel) -> BoundingSphere {
-        let first = if placed.is_tree { 0 } else { TREE_SHAPES };
+        let first = match placed.kind {
+            PlacedKind::Tree => 0,
+            PlacedKind::Stone => TREE_SHAPES,
+            PlacedKind::Own => TREE_SHAPES + STONE_SHAPES,
+        };
         self.bounds[(first + placed.shape) as usize].placed(placed)
     }
 
@@ -93,6 +101,11 @@ impl ModelMeshes {
     /// Mesh of a stone shape.
     pub(crate) fn stone(&self, shape: u32) -> usize {
         self.first_tree + TreeDetail::ALL.len() * TREE_SHAPES as usize + shape as usize
+    }
+
+    /// Mesh of a model of the scene's own, by its index there.
+    pub(crate) fn own_model(&self, model: u32) -> usize {
+        self.stone(STONE_SHAPES) + model as usize
     }
 
     /// Number of meshes.
@@ -119,14 +132,20 @@ impl ModelMeshes {
 /// The built-in parts of a vehicle. A custom model of the scene replaces the first; the others are then empty.
 fn vehicle_parts(decoded: &DecodedScene, kind: VehicleKind) -> Vec<Solid> {
     let mut parts = (vehicle_model(kind).parts)(&decoded.scene().objects);
-    if let Some((_, mesh)) = decoded.models().iter().find(|(own, _)| *own == kind) {
+    if let Some(model) = custom_model(decoded, ModelUse::Vehicle(kind)) {
         parts.fill(Solid::default());
-        parts[0] = custom_model(mesh);
+        parts[0] = model;
     }
     parts
 }
 
-fn custom_model(mesh: &Mesh) -> Solid {
+/// The model that came with the scene for this use.
+fn custom_model(decoded: &DecodedScene, used: ModelUse) -> Option<Solid> {
+    let (_, mesh) = decoded.models().iter().find(|(own, _)| *own == used)?;
+    Some(solid_of(mesh))
+}
+
+fn solid_of(mesh: &Mesh) -> Solid {
     let mut solid = Solid::default();
     for ((position, normal), rgb) in mesh.positions_m.iter().zip(&mesh.normals).zip(&mesh.rgb) {
         let [r, g, b] = rgb.map(|v| f32::from(v) / 255.0);

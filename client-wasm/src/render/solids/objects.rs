@@ -1,4 +1,4 @@
-//! Draws vehicles, trees, stones and gates, in the picture and in the shadow map.
+//! Draws vehicles, trees, stones, models of the scene's own and gates, in the picture and in the shadow map.
 
 use crate::render::gpu::constants::WORKGROUP_SIZE;
 use crate::render::gpu::device::Gpu;
@@ -14,7 +14,7 @@ use crate::render::solids::leaf_texture::{LEAF_PX, leaves};
 use crate::render::solids::mesh::{VERTEX_ATTRIBUTES, Vertex};
 use crate::render::solids::model_meshes::ModelMeshes;
 use crate::render::solids::spatial_index::SpatialIndex;
-use crate::render::solids::trees_and_stones::{PlacedModel, TreeDetail};
+use crate::render::solids::trees_and_stones::{PlacedKind, PlacedModel, TreeDetail};
 use crate::render::solids::vehicles::{Motion, vehicle_model};
 use crate::state::{DecodedScene, OBJECT_LIMIT};
 use bytemuck::{Pod, Zeroable};
@@ -140,7 +140,7 @@ impl ObjectPasses {
         self.list_ghost(&mut lists, time_secs);
         let taken = VEHICLE_INSTANCES * (OBJECT_LIMIT.min(poses.len()) + 1) + 3 * self.gates.len();
         let room = INSTANCE_LIMIT.saturating_sub(taken);
-        self.list_trees_and_stones(&mut lists, from, &cascades, room / 3, pixel_rad);
+        self.list_placed(&mut lists, from, &cascades, room / 3, pixel_rad);
         let mut all = Vec::new();
         self.picture_list = join(&lists.picture, &mut all);
         self.cascade_lists = lists.cascades.map(|list| join(&list, &mut all));
@@ -199,8 +199,8 @@ impl ObjectPasses {
         }
     }
 
-    /// Lists at most `limit` trees and stones.
-    fn list_trees_and_stones(
+    /// Lists at most `limit` of the trees, stones and models of the scene's own.
+    fn list_placed(
         &self,
         lists: &mut InstanceLists,
         from: &Viewpoint<'_>,
@@ -223,9 +223,10 @@ impl ObjectPasses {
                 DISTANT_TREE_PX.. => TreeDetail::Coarse,
                 _ => TreeDetail::Distant,
             };
-            let mesh = |detail| match placed.is_tree {
-                true => self.meshes.tree(placed.shape, detail),
-                false => self.meshes.stone(placed.shape),
+            let mesh = |detail| match placed.kind {
+                PlacedKind::Tree => self.meshes.tree(placed.shape, detail),
+                PlacedKind::Stone => self.meshes.stone(placed.shape),
+                PlacedKind::Own => self.meshes.own_model(placed.shape),
             };
             let instance = Instance { world_from_model: placed.world_from_model.to_cols_array(), tint: placed.tint };
             if is_seen(bounds) {

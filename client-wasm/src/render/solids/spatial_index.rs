@@ -1,13 +1,13 @@
-//! Spatial index of trees and stones: squares of the land with a bounding sphere each, so that a frame visits only those that may be visible.
+//! Spatial index of trees, stones and models of the scene's own: squares of the land with a bounding sphere each, so that a frame visits only those that may be visible.
 
 use crate::render::solids::bounding_sphere::BoundingSphere;
-use crate::render::solids::trees_and_stones::PlacedModel;
+use crate::render::solids::trees_and_stones::{PlacedKind, PlacedModel};
 use glam::Vec3;
 use std::ops::Range;
 
 /// Side of a square (m).
 const SQUARE_M: f32 = 32.0;
-/// Maximum distance of stones, relative to that of trees.
+/// Maximum distance of stones, relative to that of trees and models of the scene's own.
 const STONE_REACH: f32 = 0.4;
 
 /// The models on a square of the land.
@@ -55,7 +55,7 @@ impl SpatialIndex {
         let mut squares: Vec<(f32, &Square)> = with_distance.filter(|(nearest_m, _)| *nearest_m < reach_m).collect();
         let within_reach = |square: &Square| {
             let own = self.models[square.models.clone()].iter().map(|own| (own.0.position_m.distance(eye_m), own));
-            own.filter(|(distance_m, (placed, _))| *distance_m < reach_m * if placed.is_tree { 1.0 } else { STONE_REACH })
+            own.filter(|(distance_m, (placed, _))| *distance_m < reach_m * if placed.kind == PlacedKind::Stone { STONE_REACH } else { 1.0 })
         };
         let mut limit_m = f32::INFINITY;
         if squares.iter().map(|(_, square)| square.models.len()).sum::<usize>() > limit {
@@ -86,7 +86,8 @@ mod tests {
         let [x, z, random] = hash3([n, 2, 6]).map(unit);
         let position_m = Vec3::new(400.0 * x - 40.0, 3.0 * random, 300.0 * z - 40.0);
         let world_from_model = Mat4::from_translation(position_m);
-        let placed = PlacedModel { position_m, shape: 0, is_tree: random < 0.7, size_m: 5.0, world_from_model, tint: [0.0; 4] };
+        let kind = if random < 0.7 { PlacedKind::Tree } else { PlacedKind::Stone };
+        let placed = PlacedModel { position_m, shape: 0, kind, size_m: 5.0, world_from_model, tint: [0.0; 4] };
         (placed, BoundingSphere { centre_m: position_m + 3.0 * Vec3::Y, radius_m: 4.0 })
     }
 
@@ -104,7 +105,7 @@ mod tests {
         let may_show = |bounds: &BoundingSphere| bounds.centre_m.x - bounds.radius_m < 120.0;
         for (eye_m, reach_m) in [(Vec3::new(100.0, 2.0, 90.0), 110.0), (Vec3::new(-60.0, 40.0, 250.0), 200.0), (Vec3::ZERO, 1000.0)] {
             let distance_m = |own: &(PlacedModel, BoundingSphere)| own.0.position_m.distance(eye_m);
-            let is_near = |own: &&(PlacedModel, BoundingSphere)| distance_m(own) < reach_m * if own.0.is_tree { 1.0 } else { 0.4 };
+            let is_near = |own: &&(PlacedModel, BoundingSphere)| distance_m(own) < reach_m * if own.0.is_tree() { 1.0 } else { 0.4 };
             let wanted = sorted(all.iter().filter(is_near).filter(|own| may_show(&own.1)).map(distance_m));
             let near = index.near(eye_m, reach_m, all.len(), may_show);
             let found = sorted(near.iter().filter(|(_, own)| may_show(&own.1)).map(|(distance_m, _)| *distance_m));

@@ -1,10 +1,10 @@
-//! Trees and stones: their shapes, and their positions on the covering map (Zhang, section 5.5.2).
+//! Trees and stones: their shapes, and their positions on the covering map with those of its models (Zhang, section 5.5.2).
 
 use crate::render::inputs::random::{Random, random3};
 use crate::render::solids::mesh::{Paint, Solid};
 use crate::state::DecodedScene;
 use glam::{Mat4, Quat, Vec2, Vec3};
-use prairie_core::terrain::Cover;
+use prairie_core::terrain::{Cover, ModelBox, model_boxes};
 use std::f32::consts::TAU;
 
 /// Number of shapes of trees and of stones.
@@ -16,24 +16,58 @@ const MODEL_LIMIT: usize = 100_000;
 /// Sway of the top of a tree at 10 m/s and above, relative to its height.
 const TREE_SWAY_RAD: f32 = 0.07;
 
-/// A tree or a stone in the scene.
+/// Kind of a placed model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PlacedKind {
+    Tree,
+    Stone,
+    /// A model of the scene's own, in its box.
+    Own,
+}
+
+/// A tree, a stone or a model of the scene's own.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedModel {
+    /// Position of its foot; of its middle for a model of the scene's own.
     pub(crate) position_m: Vec3,
+    /// Number of its shape among those of its kind; the index in [`Scene::models`](prairie_core::scene::Scene::models).
     pub(crate) shape: u32,
-    pub(crate) is_tree: bool,
+    pub(crate) kind: PlacedKind,
+    /// Mean size of its kind, of this one; the height of a model of the scene's own.
     pub(crate) size_m: f32,
     pub(crate) world_from_model: Mat4,
     pub(crate) tint: [f32; 4],
 }
 
-/// All trees and stones, each with a random rotation, size and offset.
+impl PlacedModel {
+    pub(crate) fn is_tree(&self) -> bool {
+        self.kind == PlacedKind::Tree
+    }
+
+    /// A model of the scene's own in its box.
+    fn in_box(own: &ModelBox, decoded: &DecodedScene) -> Self {
+        let ([x, z], half_m) = (own.at_m, own.half_m);
+        let position_m = Vec3::new(x, own.floor_m(|x, z| decoded.heights().height_m(x, z)) + half_m[1], z);
+        let turn = Quat::from_array(own.rotation());
+        Self {
+            position_m,
+            shape: own.model as u32,
+            kind: PlacedKind::Own,
+            size_m: 2.0 * half_m[1],
+            world_from_model: Mat4::from_scale_rotation_translation(Vec3::splat(own.scale), turn, position_m),
+            tint: [1.0, 1.0, 1.0, 0.0],
+        }
+    }
+}
+
+/// All trees and stones, each with a random rotation, size and offset, and the models of the scene's own, where the server has them.
 pub(crate) fn placed_models(decoded: &DecodedScene) -> Vec<PlacedModel> {
     let extent_m = decoded.scene().extent_m();
     let [width, depth] = decoded.cover().size_px();
     let pixel_m = [extent_m[0] / width as f32, extent_m[1] / depth as f32];
     let plants = &decoded.scene().plants;
-    let mut all = Vec::new();
+    let boxes = model_boxes(decoded.scene(), decoded.cover());
+    let mut all: Vec<_> = boxes.iter().map(|own| PlacedModel::in_box(own, decoded)).collect();
     for (cover, is_tree, shapes, mean_m) in
         [(Cover::Tree, true, TREE_SHAPES, plants.tree_m), (Cover::Stone, false, STONE_SHAPES, plants.stone_m)]
     {
@@ -55,7 +89,7 @@ pub(crate) fn placed_models(decoded: &DecodedScene) -> Vec<PlacedModel> {
             all.push(PlacedModel {
                 position_m,
                 shape: (s[1] * 97.0) as u32 % shapes,
-                is_tree,
+                kind: if is_tree { PlacedKind::Tree } else { PlacedKind::Stone },
                 size_m,
                 world_from_model: Mat4::from_scale_rotation_translation(squat, turn, position_m),
                 tint: [bright * warm, bright, bright * (2.0 - warm) * 0.95, if is_tree { TREE_SWAY_RAD } else { 0.0 }],

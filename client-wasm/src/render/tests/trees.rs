@@ -3,7 +3,7 @@
 use super::*;
 use crate::render::solids::bounding_sphere::BoundingSphere;
 use crate::render::solids::objects::{DISTANT_TREE_PX, FINE_TREE_PX};
-use crate::render::solids::trees_and_stones::{PlacedModel, TREE_SHAPES, TreeDetail, placed_models, tree};
+use crate::render::solids::trees_and_stones::{PlacedKind, PlacedModel, TREE_SHAPES, TreeDetail, placed_models, tree};
 use glam::Mat4;
 use prairie_core::light::sun::Sun;
 use std::f32::consts::PI;
@@ -30,7 +30,7 @@ fn swaying_trees_stay_within_their_bounding_spheres() {
             let position_m = Vec3::new(x, 0.0, 32.0);
             let placing = Mat4::from_translation(position_m) * Mat4::from_scale(Vec3::new(size_m, tall_m, size_m));
             let tint = [1.0, 1.0, 1.0, sway_rad];
-            model.placed(&PlacedModel { position_m, shape, is_tree: true, size_m, world_from_model: placing, tint })
+            model.placed(&PlacedModel { position_m, shape, kind: PlacedKind::Tree, size_m, world_from_model: placing, tint })
         };
         let vertices = solids.iter().flat_map(|solid| &solid.vertices).enumerate();
         let places: Vec<[f32; 4]> = vertices

@@ -211,7 +211,7 @@ fn obstacles_near_the_mesh_are_included() {
     for model in placed.iter().filter(|model| is_inside(model.position_m.x, model.position_m.z)) {
         let own = near.iter().filter(|obstacle| [obstacle.at_m[0], obstacle.at_m[2]] == [model.position_m.x, model.position_m.z]);
         let own: Vec<_> = own.collect();
-        if model.is_tree {
+        if model.is_tree() {
             let [trunk, crown] = own[..] else { panic!("{} parts of a tree", own.len()) };
             let (trunk, crown) = if trunk.stops > crown.stops { (trunk, crown) } else { (crown, trunk) };
             assert!(trunk.stops == 1.0 && trunk.half_m[0] < 0.4 && crown.stops < 0.5 && crown.half_m[0] > 1.0);

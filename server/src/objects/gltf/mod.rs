@@ -1,13 +1,17 @@
-//! Vehicle models from glTF files.
+//! Models of vehicles and of the covering map from glTF files.
 //!
 //! Files are not trusted: sizes, counts and offsets are checked before use.
 
 mod assemble;
+mod fit;
 mod source;
 #[cfg(test)]
 mod tests;
 
-use glam::Vec3;
+pub use fit::stretched;
+
+use fit::fitted;
+use prairie_core::scene::MODEL_SIDE_M;
 use prairie_core::wire::Mesh;
 use source::Source;
 use std::path::{Path, PathBuf};
@@ -76,6 +80,12 @@ pub enum ModelFault {
     /// Positions that are NaN, infinite or too far apart.
     #[error("has positions that are not finite numbers, or too far apart to be measured")]
     NotFinite,
+    /// All positions are equal.
+    #[error("has no extent: all its positions are the same")]
+    NoExtent,
+    /// A side of the box is out of range.
+    #[error("is {:.2} m × {:.2} m × {:.2} m large at this `size_m`; allowed: {} to {} m each", .0[0], .0[1], .0[2], MODEL_SIDE_M[0], MODEL_SIDE_M[1])]
+    Size([f32; 3]),
     /// An index out of range.
     #[error("refers to vertex {index} of a mesh that has {vertices}")]
     Index {
@@ -86,7 +96,7 @@ pub enum ModelFault {
     },
 }
 
-/// A vehicle's model.
+/// A model.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Its mesh.
@@ -111,22 +121,14 @@ pub fn read(path: &Path, half_extents_m: [f32; 3]) -> Result<Model, ModelError> 
     Source::open(path).and_then(model).map_err(|reason| ModelError { path: path.to_owned(), reason })
 }
 
-/// The mesh turned to face −Z, scaled into a box and put on its floor.
-fn fitted(mut mesh: Mesh, half_extents_m: [f32; 3]) -> Result<Mesh, ModelFault> {
-    let turned = |[x, y, z]: [f32; 3]| Vec3::new(-x, y, -z);
-    let bounds = |(low, high): (Vec3, Vec3), &position: &[f32; 3]| (low.min(turned(position)), high.max(turned(position)));
-    let (low, high) = mesh.positions_m.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), bounds);
-    if !(mesh.positions_m.iter().flatten().all(|v| v.is_finite()) && (high - low).is_finite() && (high + low).is_finite()) {
-        return Err(ModelFault::NotFinite);
-    }
-    let half = Vec3::from_array(half_extents_m);
-    let scale = (2.0 * half / (high - low).max(Vec3::splat(1e-6))).min_element();
-    let foot = Vec3::new(0.5 * (low.x + high.x), low.y, 0.5 * (low.z + high.z));
-    for position in &mut mesh.positions_m {
-        *position = ((turned(*position) - foot) * scale - Vec3::Y * half.y).to_array();
-    }
-    for normal in &mut mesh.normals {
-        *normal = turned(*normal).to_array();
-    }
-    Ok(mesh)
+/// Reads a `.glb` or `.gltf` file as [`read`] does, but as a model of the covering map, [`stretched`] to a box; returns the box (m), too.
+///
+/// # Errors
+/// [`ModelError`] names the file and its problem.
+pub fn read_stretched(path: &Path, size_m: [f32; 3]) -> Result<(Model, [f32; 3]), ModelError> {
+    let model = |source: Source| {
+        let (mesh, size_m) = stretched(source.mesh()?, size_m)?;
+        Ok((Model { mesh, buffer_files: source.buffer_files }, size_m))
+    };
+    Source::open(path).and_then(model).map_err(|reason| ModelError { path: path.to_owned(), reason })
 }

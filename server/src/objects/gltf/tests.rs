@@ -1,5 +1,6 @@
 use super::*;
 use prairie_core::scene::{Objects, VehicleKind};
+use prairie_core::wire::ModelUse;
 use serde_json::{Value, json};
 
 /// One triangle of 2 × 1 m, red, with its buffer inside: positions in the first 36 bytes, then three indices.
@@ -189,6 +190,37 @@ fn positions_that_are_infinite_or_too_far_apart_are_rejected() {
     assert!(apart.starts_with("has positions that are not finite numbers, or too far apart"), "{apart}");
 }
 
+/// Sides of the box (m) that the triangle of 2 × 1 m is stretched to, and its highest position.
+fn stretched_to(size_m: [f32; 3]) -> Result<([f32; 3], [f32; 3]), String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.gltf");
+    std::fs::write(&path, triangle([0, 1, 2]).to_string()).unwrap();
+    let (Model { mesh, .. }, sides_m) = read_stretched(&path, size_m).map_err(|error| error.reason.to_string())?;
+    let highest = mesh.positions_m.iter().fold([f32::MIN; 3], |high, at| std::array::from_fn(|axis| high[axis].max(at[axis])));
+    Ok((sides_m, highest))
+}
+
+#[test]
+fn a_model_of_the_covering_map_is_stretched_to_its_size() {
+    assert_eq!(stretched_to([0.0; 3]), Ok(([2.0, 1.0, 0.05], [1.0, 0.5, 0.0])));
+    assert_eq!(stretched_to([0.0, 4.0, 0.0]), Ok(([8.0, 4.0, 0.05], [4.0, 2.0, 0.0])));
+    assert_eq!(stretched_to([3.0, 4.0, 0.0]), Ok(([3.0, 4.0, 0.05], [1.5, 2.0, 0.0])));
+    assert_eq!(stretched_to([0.0, 0.0, 1.0]), Ok(([2.0, 1.0, 1.0], [1.0, 0.5, 0.0])), "a flat model has no depth to scale");
+    assert_eq!(
+        stretched_to([0.0, 16.0, 0.0]),
+        Err("is 32.00 m × 16.00 m × 0.05 m large at this `size_m`; allowed: 0.05 to 30 m each".to_owned())
+    );
+    assert!(stretched_to([0.0, 0.01, 0.0]).unwrap_err().starts_with("is 0.02 m × 0.01 m × 0.05 m large"));
+    let equal = Mesh { positions_m: vec![[1.0; 3]; 3], normals: vec![[0.0, 1.0, 0.0]; 3], rgb: vec![[9; 3]; 3], indices: vec![0, 1, 2] };
+    let reason = |mesh: &Mesh| stretched(mesh.clone(), [0.0; 3]).expect_err("a spoilt mesh").to_string();
+    assert_eq!(reason(&equal), "has no extent: all its positions are the same");
+    let with_nan = Mesh { positions_m: vec![[0.0; 3], [1.0; 3], [0.0, f32::NAN, 0.0]], ..equal.clone() };
+    assert!(reason(&with_nan).starts_with("has positions that are not finite numbers"));
+    let many = Mesh::COVER_VERTEX_LIMIT + 1;
+    let many = Mesh { positions_m: vec![[1.0; 3]; many], normals: vec![[0.0; 3]; many], rgb: vec![[0; 3]; many], ..equal };
+    assert_eq!(reason(&many), "has more than 8192 vertices; at most 8192 are allowed");
+}
+
 #[test]
 fn models_that_are_too_large_are_rejected() {
     // Three bytes of indices and one position, drawn many times.
@@ -220,16 +252,20 @@ fn models_that_are_too_large_are_rejected() {
 }
 
 #[test]
-fn two_largest_models_and_three_maps_fit_into_a_message() {
-    let mesh = Mesh {
-        positions_m: vec![[f32::MAX; 3]; Mesh::VERTEX_LIMIT],
-        normals: vec![[f32::MAX; 3]; Mesh::VERTEX_LIMIT],
-        rgb: vec![[255; 3]; Mesh::VERTEX_LIMIT],
-        indices: vec![Mesh::VERTEX_LIMIT as u32 - 1; Mesh::INDEX_LIMIT],
+fn the_largest_models_and_three_maps_fit_into_a_message() {
+    let of = |vertices: usize, indices: usize| Mesh {
+        positions_m: vec![[f32::MAX; 3]; vertices],
+        normals: vec![[f32::MAX; 3]; vertices],
+        rgb: vec![[255; 3]; vertices],
+        indices: vec![vertices as u32 - 1; indices],
     };
+    let mesh = of(Mesh::VERTEX_LIMIT, Mesh::INDEX_LIMIT);
     let scene = crate::scenes::load("meadow").unwrap().scene;
     let map = vec![0; crate::scenes::MAP_LIMIT as usize];
-    let models = vec![(VehicleKind::Car, mesh.clone()), (VehicleKind::Monster, mesh)];
+    let placed =
+        (0..prairie_core::scene::MODELS_LIMIT as u8).map(|i| (ModelUse::Cover(i), of(Mesh::COVER_VERTEX_LIMIT, Mesh::COVER_INDEX_LIMIT)));
+    let vehicles = [(ModelUse::Vehicle(VehicleKind::Car), mesh.clone()), (ModelUse::Vehicle(VehicleKind::Monster), mesh)];
+    let models = vehicles.into_iter().chain(placed).collect();
     let message = prairie_core::wire::ServerMessage::Scene {
         scene: Box::new(scene),
         height_png: map.clone(),

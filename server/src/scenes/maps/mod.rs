@@ -5,6 +5,7 @@
 mod blades;
 mod continuum;
 mod grey_map;
+mod homestead;
 mod jacksboro;
 mod knolls;
 mod landforms;
@@ -23,6 +24,7 @@ pub fn generate() -> Vec<GreyMap> {
     maps.extend(continuum::maps());
     maps.extend(blades::maps());
     maps.extend(knolls::maps());
+    maps.push(homestead::covering());
     maps
 }
 

@@ -1,6 +1,7 @@
 //! Land, stones and vehicles in the wind, and grass that sways.
 
 use super::*;
+use prairie_core::scene::CoverModel;
 use prairie_core::terrain::grey_png;
 
 /// Wind (m/s) 5 m above the plain upwind of a ridge, its crest and its lee, 1 m above the ground in the lee, and the steps that failed.
@@ -63,6 +64,32 @@ fn stones_leave_a_lee_as_walls_and_as_drag() {
     assert!(large < 0.4 * large_beside, "behind a stone of six cells {large} m/s, beside it {large_beside} m/s");
     assert!(small < 0.98 * small_beside && small > large, "behind a stone of one cell {small} m/s, beside it {small_beside} m/s");
     assert!((open / open_beside - 1.0).abs() < 0.01, "without a stone {open} and {open_beside} m/s");
+}
+
+#[test]
+fn models_leave_a_lee_as_walls_and_as_drag() {
+    let house = |size_m: [f32; 3], heading_rad: f32| {
+        let change = |scene: &mut Scene| scene.models = vec![CoverModel { size_m, heading_rad, ..CoverModel::new("house", 9, "") }];
+        around(change, &grass_with(9), None)
+    };
+    let [[large, large_beside], [small, small_beside]] = [[12.0, 8.0, 12.0], [2.0, 1.5, 2.0]].map(|size_m| house(size_m, 0.0));
+    // A wall of three cells that faces the wind, and with its narrow side to it.
+    let [[facing, _], [along, along_beside]] = [0.0, std::f32::consts::FRAC_PI_2].map(|heading_rad| house([6.0, 6.0, 20.0], heading_rad));
+    println!(
+        "lee and beside: 12 m {large:.2} {large_beside:.2}, 2 m {small:.2} {small_beside:.2}; wall across {facing:.2}, along {along:.2} m/s"
+    );
+    assert!(large < 0.4 * large_beside, "behind a house of six cells {large} m/s, beside it {large_beside} m/s");
+    assert!(small < 0.98 * small_beside && small > large, "behind one of a cell {small} m/s, beside it {small_beside} m/s");
+    assert!(
+        facing < 0.4 * along_beside && along_beside > 3.0,
+        "a wall across the wind {facing} m/s, along it {along} and {along_beside} m/s"
+    );
+    let patch = |scene: &mut Scene| {
+        scene.wind.tiling = WindTiling::Patch;
+        scene.models = vec![CoverModel { size_m: [12.0, 8.0, 12.0], ..CoverModel::new("house", 9, "") }];
+    };
+    let [tiled, tiled_beside] = around(patch, &grass_with(9), None);
+    assert!((tiled / tiled_beside - 1.0).abs() < 0.01, "in a box tiled by patch it would be in every patch: {tiled}, {tiled_beside}");
 }
 
 /// A car at (33, 33) m that moves along X.

@@ -6,6 +6,7 @@ pub(super) mod conflict;
 mod drawn_winds;
 mod lights;
 pub(super) mod limits;
+mod models;
 mod objects;
 mod patches;
 mod race;
@@ -26,6 +27,7 @@ pub(super) fn cross_checks(scene: &Scene, from_file: usize) -> Conflicts {
     wind::check::check(scene, &mut conflicts);
     species::check(&scene.species, &mut conflicts);
     underbrush::check(scene, from_file, &mut conflicts);
+    models::check(scene, from_file, &mut conflicts);
     objects::check(&scene.objects, &mut conflicts);
     drawn_winds::check(scene, &mut conflicts);
     race::check(scene, &mut conflicts);

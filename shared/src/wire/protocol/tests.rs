@@ -4,8 +4,8 @@ use super::{PINS, PROTOCOL};
 use crate::body::{Body, PoseCode, Prism};
 use crate::scene::{Allowed, FIELDS, Scene, VehicleKind, parse};
 use crate::wire::{
-    AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Ghost, Joined, Mesh, ObjectPose, PROOF_BYTES, PatchCheck, Peer, RareCauses,
-    Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, Shapes, Standing, StepHead, TurbulenceState, WireError, decode, encode,
+    AppliedInput, BrokenPlant, ClientMessage, Drawing, Drive, Ghost, Joined, Mesh, ModelUse, ObjectPose, PROOF_BYTES, PatchCheck, Peer,
+    RareCauses, Refusal, SERVER_MESSAGE_LIMIT, ServerMessage, Shapes, Standing, StepHead, TurbulenceState, WireError, decode, encode,
 };
 use serde::{Deserialize, de::DeserializeOwned};
 use std::fmt::{Debug, Write};
@@ -42,7 +42,7 @@ fn server_messages() -> Vec<ServerMessage> {
             height_png: vec![1, 2],
             covering_png: vec![3],
             nutrient_png: vec![4, 5, 6],
-            models: vec![(VehicleKind::Car, mesh())],
+            models: vec![(ModelUse::Vehicle(VehicleKind::Car), mesh()), (ModelUse::Cover(1), mesh())],
             shapes: shapes(),
         },
         ServerMessage::Poses { tick: 300, objects: vec![pose()] },
@@ -167,6 +167,7 @@ fn filled_values() -> Table {
         intensity_points = [[1, 1], [2, 0.5]]\n[[species]]\nname = 'a'\ncover = 1\n\
         [[underbrush]]\nname = 'b'\n[[underbrush.components]]\nname = 'c'\nkind = 'branch'\n\
         [[underbrush.components]]\nname = 'd'\nkind = 'leaf'\non = 'c'\n\
+        [[models]]\nname = 'm'\ncover = 3\nmodel = 'm.glb'\n\
         [[drawn_winds]]\nshape = 'swirl'\npath_m = [[1, 2]]\n[[lights]]\nat_m = [1, 2, 3]\n\
         [[race.gates]]\nat_m = [1, 2]\nheading_rad = 0.5\n[[race.gates]]\nat_m = [8, 2]\nheading_rad = 3.5\n\
         [growth]\nnutrient_map = 'n.png'\n[objects]\ncar_model = 'car.glb'\nmonster_model = 'm.glb'\n";
