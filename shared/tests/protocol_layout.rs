@@ -2,8 +2,8 @@
 
 use prairie_core::bend::{Edges, GroundContact, Scheme, Seams};
 use prairie_core::scene::{
-    BladeIntegrator, BladeShape, ComponentKind, LagWay, PlantCover, PrimitiveKind, VehicleKind, WindAdvection, WindBoundary, WindDiffusion,
-    WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    BladeIntegrator, BladeShape, ComponentKind, LagWay, PlantCover, PrimitiveKind, ShellExtrusion, VehicleKind, WindAdvection,
+    WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use prairie_core::wire::{ClientMessage, PROTOCOL, Refusal, ServerMessage};
 use serde_json::{Value, json};
@@ -21,10 +21,8 @@ fn generated() -> Value {
             $(tracer.trace_type::<$name>(&samples).expect(concat!(stringify!($name), " describes itself"));)+
         };
     }
-    trace!(
-        BladeIntegrator,
-        BladeShape, ComponentKind, Edges, GroundContact, LagWay, PlantCover, PrimitiveKind, Refusal, Scheme, Seams, VehicleKind
-    );
+    trace!(BladeIntegrator, BladeShape, ComponentKind, Edges, GroundContact, LagWay, PlantCover, PrimitiveKind);
+    trace!(Refusal, Scheme, Seams, ShellExtrusion, VehicleKind);
     trace!(WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime);
     trace!(ClientMessage, ServerMessage);
     let types = tracer.registry().expect("every enum inside a message is in the list above");
