@@ -2,8 +2,8 @@
 
 use prairie_core::bend::{Edges, GroundContact, Scheme, Seams};
 use prairie_core::scene::{
-    BladeIntegrator, BladeShape, ComponentKind, FlowerShape, LagWay, PlantCover, PrimitiveKind, VehicleKind, WindAdvection, WindBoundary,
-    WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    BladeIntegrator, BladeShape, ComponentKind, FlowerShape, LagWay, PlantCover, PrimitiveIntensity, PrimitiveKind, ShellExtrusion,
+    VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use prairie_core::wire::{ClientMessage, ModelUse, PROTOCOL, Refusal, ServerMessage};
 use serde_json::{Value, json};
@@ -21,21 +21,8 @@ fn generated() -> Value {
             $(tracer.trace_type::<$name>(&samples).expect(concat!(stringify!($name), " describes itself"));)+
         };
     }
-    trace!(
-        BladeIntegrator,
-        BladeShape,
-        ComponentKind,
-        Edges,
-        FlowerShape,
-        GroundContact,
-        LagWay,
-        PlantCover,
-        PrimitiveKind,
-        Refusal,
-        Scheme,
-        Seams,
-        VehicleKind
-    );
+    trace!(BladeIntegrator, BladeShape, ComponentKind, Edges, FlowerShape, GroundContact, LagWay, PlantCover, PrimitiveIntensity);
+    trace!(PrimitiveKind, Refusal, Scheme, Seams, ShellExtrusion, VehicleKind);
     trace!(WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime);
     trace!(ModelUse, ClientMessage, ServerMessage);
     let types = tracer.registry().expect("every enum inside a message is in the list above");

@@ -37,7 +37,7 @@ struct Turf {
     normal: vec3<f32>,
     // Tilt of the root (rad).
     tilt_rad: f32,
-    // Unit vector of the wind along the ground.
+    // Unit vector of the wind, perpendicular to `axis`.
     wind_direction: vec3<f32>,
     // Wind intensity of `tilt_of`.
     wind_intensity: f32,
@@ -49,8 +49,10 @@ struct Turf {
     tip_rgb: vec3<f32>,
     // Fraction of its full height that grass has there.
     growth: f32,
+    // Unit vector along upright blades.
+    axis: vec3<f32>,
     // Progress of the morph to the next coarser tile, 0..1.
-    @size(16) morph: f32,
+    morph: f32,
 }
 
 // A layer of a tile to be drawn.
@@ -72,9 +74,23 @@ struct TileLayer {
 @group(1) @binding(4) var<storage, read> tile_layers: array<TileLayer>;
 @group(1) @binding(5) var<storage, read_write> settled: array<Turf>;
 
-// Position of layer `i` of a blade with a tilted root in the wind, along the normal and along the wind, in blade heights. Twin of
+// Sum of the segments above layer `low` up to layer `high` of a blade with a tilted root in the wind, along its axis and along the wind, in
+// blade heights. Twin of `Tilt::of_segment_rad` in shared/src/lod/shells.rs, summed.
+fn segments_between(root_rad: f32, intensity: f32, profile: f32, low: f32, high: f32, segments: f32) -> vec2<f32> {
+    var sum = vec2<f32>(0.0);
+    for (var j = low + 1.0; j <= high; j += 1.0) {
+        let tilt_rad = root_rad + pow(j / segments, 1.0 + profile) * RIGHT_ANGLE * intensity;
+        sum += vec2<f32>(cos(tilt_rad), sin(tilt_rad));
+    }
+    return sum / segments;
+}
+
+// Position of layer `i` of a blade with a tilted root in the wind, along its axis and along the wind, in blade heights. Twin of
 // `Tilt::layer` in shared/src/lod/shells.rs.
-fn layer_place(root_rad: f32, intensity: f32, i: f32, segments: f32) -> vec2<f32> {
+fn layer_place(root_rad: f32, intensity: f32, profile: f32, i: f32, segments: f32) -> vec2<f32> {
+    if profile != 0.0 {
+        return segments_between(root_rad, intensity, profile, 0.0, i, segments);
+    }
     let half = 0.5 * RIGHT_ANGLE * intensity / segments;
     let sum = select(i, sin(i * half) / sin(max(half, 1e-4)), half > 1e-4);
     let middle = root_rad + (i + 1.0) * half;
@@ -86,6 +102,18 @@ fn tilt_of(lean_rad: f32) -> vec2<f32> {
     let twice = 2.0 * clamp(lean_rad, 0.0, 1.5);
     let root_rad = max(twice - RIGHT_ANGLE, 0.0);
     return vec2<f32>(root_rad, (min(twice, RIGHT_ANGLE) - root_rad) / RIGHT_ANGLE);
+}
+
+// Unit vector along blades without wind: the normal of the ground, or straight up (Bakay, section 3.1).
+fn upright_axis(normal: vec3<f32>, is_upright: u32) -> vec3<f32> {
+    return select(normal, vec3<f32>(0.0, 1.0, 0.0), is_upright != 0u);
+}
+
+// Unit vector of the part of a lean (on the map) that is perpendicular to the axis of the blades (Bakay, section 3.2); zero for no lean.
+fn wind_across(axis: vec3<f32>, lean: vec2<f32>) -> vec3<f32> {
+    let across = vec3<f32>(lean.x, 0.0, lean.y) / max(length(lean), 1e-4);
+    let along = across - dot(across, axis) * axis;
+    return along / max(length(along), 1e-4);
 }
 
 // Wind over the ground (m/s), behind obstacles, as grass follows it: at once when it rises, slowly when it falls. The gusts of the last second are those that the wind has
@@ -117,8 +145,7 @@ fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
     let height = kind.height_m * (1.0 + frame.height_variation) * fed(p) * mix(0.86, 1.10, noise(p / 3.1).g);
     let lean = lean_in(ground, field_level(distance_m), wind_held(ground), kind.wind_bend_rad);
     let lean_rad = length(lean);
-    let across = vec3<f32>(lean.x, 0.0, lean.y) / max(lean_rad, 1e-4);
-    let along = across - dot(across, normal) * normal;
+    let axis = upright_axis(normal, shells.is_upright);
     let tilt = tilt_of(lean_rad);
 
     var growth = smoothstep(0.05, 0.75, grass_fraction(p)) * (1.0 - smoothstep(frame.far_fade_from_m, frame.far_end_m, distance_m));
@@ -126,18 +153,19 @@ fn settle_turf(@builtin(global_invocation_id) id: vec3<u32>) {
         growth *= smoothstep(frame.blades_fade_from_m, frame.blades_end_m, distance_m);
     }
     let tint = grass_tint(p) * (0.80 + 0.42 * smoothstep(0.08, 0.55, lean_rad));
-    let light = cloud_light(p) * sun_visible(ground + normal * height * 0.6);
+    let light = cloud_light(p) * sun_visible(ground + axis * height * 0.6);
     var turf: Turf;
     turf.root_m = ground;
     turf.height_m = height;
     turf.normal = normal;
     turf.tilt_rad = tilt.x;
-    turf.wind_direction = along / max(length(along), 1e-4);
+    turf.wind_direction = wind_across(axis, lean);
     turf.wind_intensity = tilt.y;
     turf.root_rgb = kind.root_rgb * tint;
     turf.sunlight = light;
     turf.tip_rgb = kind.tip_rgb * tint * trodden(lean_rad);
     turf.growth = growth;
+    turf.axis = axis;
     turf.morph = vertex.morph;
     settled[id.y * TILE_VERTICES + id.x] = turf;
 }
@@ -164,19 +192,24 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let layer = f32(drawn.tile_and_layer & 255u);
     let segments = f32(max(shells.segments, 1u));
     let below = f32(drawn.to_next);
-    let at = layer_place(turf.tilt_rad, turf.wind_intensity, layer, segments);
-    let under = layer_place(turf.tilt_rad, turf.wind_intensity, layer - below, segments);
-    let normal = turf.normal;
+    let profile = shells.stiffness_profile;
+    let under = layer_place(turf.tilt_rad, turf.wind_intensity, profile, layer - below, segments);
+    var at = under;
+    if profile == 0.0 {
+        at = layer_place(turf.tilt_rad, turf.wind_intensity, profile, layer, segments);
+    } else {
+        at += segments_between(turf.tilt_rad, turf.wind_intensity, profile, layer - below, layer, segments);
+    }
     let height = turf.height_m;
-    var p = turf.root_m + height * (at.x * normal + at.y * turf.wind_direction);
+    var p = turf.root_m + height * (at.x * turf.axis + at.y * turf.wind_direction);
     // The single layer of the lowest setting is just above the ground.
     p.y += select(0.0, 0.004, drawn.tile_and_layer % 256u == 0u);
     var out: Sheet;
     out.position = frame.projection_from_world * vec4<f32>(p, 1.0);
     out.p = vec4<f32>(p, turf.sunlight);
     out.root = vec4<f32>(turf.root_m.xz, height, turf.growth);
-    out.segment = vec4<f32>(height * ((at.x - under.x) * normal + (at.y - under.y) * turf.wind_direction), turf.morph);
-    out.normal = normal;
+    out.segment = vec4<f32>(height * ((at.x - under.x) * turf.axis + (at.y - under.y) * turf.wind_direction), turf.morph);
+    out.normal = turf.normal;
     out.low = turf.root_rgb;
     out.high = turf.tip_rgb;
     out.layer = vec4<f32>(layer / segments, below / segments, f32(drawn.to_second) / max(below, 1.0), f32(drawn.ends));

@@ -115,6 +115,7 @@ impl SceneResources {
     pub(super) fn create_next_variant(&self) -> bool {
         self.blades.as_ref().is_some_and(|blades| blades.create_next())
             || self.objects.as_ref().is_some_and(|objects| objects.create_next())
+            || self.shells.as_ref().is_some_and(|shells| shells.create_next())
             || self.underbrush.as_ref().is_some_and(|underbrush| underbrush.create_next())
             || self.terrain.create_next()
     }

@@ -3,8 +3,8 @@
 use super::objects::OBJECT_FIELDS;
 use super::{
     BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, FlowerShape, GATES_LIMIT, LAMPS_LIMIT, LagWay, MODEL_SIDE_M,
-    MODELS_LIMIT, PlantCover, PrimitiveIntensity, PrimitiveKind, SPECIES_LIMIT, WindAdvection, WindBoundary, WindDiffusion, WindMethod,
-    WindPressure, WindTerrain, WindTiling, WindTime,
+    MODELS_LIMIT, PlantCover, PrimitiveIntensity, PrimitiveKind, SPECIES_LIMIT, ShellExtrusion, WindAdvection, WindBoundary, WindDiffusion,
+    WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, GroundContact, Scheme, Seams};
 use crate::lod::shells::LAYERS_LIMIT;
@@ -153,6 +153,8 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("shells.slices", Range(1.0, 32.0)),
     ("shells.blades_per_m2", Range(100.0, 40_000.0)),
     ("shells.root_light", Range(0.0, 1.0)),
+    ("shells.extrusion", OneOf(ShellExtrusion::WORDS)),
+    ("shells.stiffness_profile", Range(-0.9, 4.0)),
     ("species.name", Name),
     ("species.cover", Range(1.0, 252.0)),
     ("underbrush.name", Name),

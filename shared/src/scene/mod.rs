@@ -52,7 +52,7 @@ pub use plants::{BladeIntegrator, BladeShape, FlowerShape, LagWay, PlantCover, P
 pub use positions::Positions;
 pub use race::{AMBER_SECS, GATES_LIMIT, GREEN_SECS, Race, RaceGate};
 pub use rain::Rain;
-pub use shells::Shells;
+pub use shells::{ShellExtrusion, Shells};
 pub use species::Species;
 pub use stream::Stream;
 pub use terrain::TerrainMaps;

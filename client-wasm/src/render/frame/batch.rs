@@ -106,7 +106,7 @@ impl<'a> Batch<'a> {
         }
         if self.is_last {
             if let Some(shells) = self.plan.shells(scene) {
-                shells.draw(&mut pass);
+                shells.draw(&mut pass, has_lamps);
             }
             if let Some(underbrush) = &scene.underbrush {
                 underbrush.draw(&mut pass);

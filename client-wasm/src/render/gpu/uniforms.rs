@@ -427,6 +427,11 @@ uniform_block! {
         last_level: f32,
         /// Minimum fraction of the light at the roots.
         root_light: f32,
+        /// Exponent of the tilt along a blade, less 1; 0 for a constant increment.
+        stiffness_profile: f32,
+        /// 1 if layers are grown straight up, 0 if along the normal of the ground.
+        is_upright: u32,
+        _pad: [u8; 8],
     }
 }
 

@@ -5,6 +5,7 @@ use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind_at, storage, storage_rw, texture, uniform};
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::ShellFrame;
+use crate::render::gpu::variants::LampVariants;
 use crate::render::inputs::frustum::Frustum;
 use crate::render::land_and_sky::terrain::tile_indices;
 use crate::render::land_and_sky::terrain_quadtree::{GroundTile, TerrainQuadtree};
@@ -16,6 +17,7 @@ use crate::state::DecodedScene;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use prairie_core::lod::shells::{LAYERS_LIMIT, drawn_layers};
+use prairie_core::scene::ShellExtrusion;
 use wgpu::BufferUsages;
 
 /// Side of the finest tiles (m). All layers share the wind at the corners of their 16 × 16 cells.
@@ -62,7 +64,7 @@ pub(crate) struct ShellRequest {
 }
 
 pub(crate) struct Shells {
-    pipeline: wgpu::RenderPipeline,
+    pipeline: LampVariants<wgpu::RenderPipeline>,
     settle: wgpu::ComputePipeline,
     group: wgpu::BindGroup,
     settle_group: wgpu::BindGroup,
@@ -82,8 +84,7 @@ impl Shells {
         let gpu = &factory.gpu;
         let layout = factory.layout("shells", &[uniform(1), storage(2), texture(3), storage(4)]);
         let settle_layout = factory.layout("turf", &[&[storage(0), uniform(1), storage_rw(5)][..], &CameraForceField::layout()].concat());
-        let module = factory.shader("shells", shaders::SHELLS, &[]);
-        let draw = DrawDescriptor { label: "shells", ..DrawDescriptor::default() };
+        let module = factory.shader("turf", shaders::SHELLS, &[]);
         let listed = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let tiles = gpu.empty_buffer("shell tiles", (TILE_LIMIT * size_of::<GroundTile>()) as u64, listed);
         let layers = gpu.empty_buffer("shell layers", (LAYER_LIMIT * size_of::<TileLayer>()) as u64, listed);
@@ -96,7 +97,7 @@ impl Shells {
         let turf = [(0, listed_tiles), (1, uniforms), (5, settled)];
         let indices = tile_indices();
         Self {
-            pipeline: factory.draw(&module, Some(&layout), &draw),
+            pipeline: pipelines(factory, &layout),
             settle: factory.compute("turf", &module, "settle_turf", &settle_layout),
             group: bind_at(gpu, "shells", &layout, drawn),
             settle_group: bind_at(gpu, "turf", &settle_layout, turf.into_iter().chain(forces.resources())),
@@ -139,6 +140,9 @@ impl Shells {
             texel_m: side_m / DOTS_PX as f32,
             last_level: (shell_texture::LEVELS - 1) as f32,
             root_light: settings.root_light,
+            stiffness_profile: settings.stiffness_profile,
+            is_upright: u32::from(settings.extrusion == ShellExtrusion::Up),
+            _pad: [0; 8],
         };
         gpu.queue.write_buffer(&self.tiles, 0, bytemuck::cast_slice(&tiles));
         gpu.queue.write_buffer(&self.layers, 0, bytemuck::cast_slice(&tile_layers));
@@ -152,6 +156,11 @@ impl Shells {
         self.layers_drawn
     }
 
+    /// Creates a variant of a pipeline that no frame has needed yet. Returns false if there is none.
+    pub(crate) fn create_next(&self) -> bool {
+        self.pipeline.create_next()
+    }
+
     /// Computes the posture of the grass at the vertices of the tiles.
     pub(crate) fn bend(&self, pass: &mut wgpu::ComputePass<'_>) {
         if self.tile_count > 0 {
@@ -161,12 +170,21 @@ impl Shells {
         }
     }
 
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.pipeline);
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
+        pass.set_pipeline(self.pipeline.of(has_lamps));
         pass.set_bind_group(1, &self.group, &[]);
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
         pass.draw_indexed(0..self.index_count, 0, 0..self.layers_drawn);
     }
+}
+
+/// Pipelines without and with lamps.
+fn pipelines(factory: &PassFactory, layout: &wgpu::BindGroupLayout) -> LampVariants<wgpu::RenderPipeline> {
+    let (factory, layout) = (factory.clone(), layout.clone());
+    LampVariants::new(move |[lamps]| {
+        let module = factory.shader("shells", shaders::SHELLS, &[lamps]);
+        factory.draw(&module, Some(&layout), &DrawDescriptor { label: "shells", ..DrawDescriptor::default() })
+    })
 }
 
 /// Layers of a tile with `segments` between them, of which every `stride`-th is drawn; with 0 segments, the ground alone.
