@@ -53,7 +53,7 @@ mod tests {
         let is_example = |line: &&str| line.starts_with("[[") || line.split_once(" = ").is_some_and(|(key, _)| !key.contains(' '));
         let shown = text.lines().map(|line| line.strip_prefix("# ").filter(is_example).unwrap_or(line));
         let scene = parse(&shown.collect::<Vec<_>>().join("\n")).unwrap_or_else(|faults| panic!("{faults:?}"));
-        let Scene { species, underbrush, models, drawn_winds, .. } = &scene;
+        let prairie_core::scene::Scene { species, underbrush, models, drawn_winds, .. } = &scene;
         assert_eq!([scene.wind.primitives.len(), species.len(), underbrush.len(), models.len(), drawn_winds.len()], [1; 5]);
         assert_eq!(scene.underbrush[0].components.len(), 1);
     }
