@@ -8,8 +8,8 @@ use std::collections::HashMap;
 /// Half axes of the ellipsoid of a model, relative to those of its box: its corners reach out of it, and fade in the picture.
 const BOX_REACH: f32 = 1.2;
 
-/// Side of the squares by which crowns and models are found (m); none is wider from its centre.
-const SQUARE_M: f32 = 32.0;
+/// Side of the squares by which crowns and models are found (m); none has an effect farther from its centre.
+const SQUARE_M: f32 = 40.0;
 
 /// Reach of leaves beyond the shape of a crown, sideways and up and down, relative to the height of the tree.
 const LEAF_REACH: [f32; 2] = [0.15, 0.06];

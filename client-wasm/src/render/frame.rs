@@ -71,7 +71,7 @@ impl Renderer {
 
     fn draw_region(&mut self, mirror: &mut Mirror, moment: &Moment<'_>, target: &wgpu::TextureView, region: &OutputRegion) -> FrameStats {
         let Some(mut scene) = self.take_scene(mirror) else { return FrameStats::default() };
-        let plan = self.prepare(&mut scene, mirror, moment);
+        let plan = self.prepare(&mut scene, mirror, moment, &region.columns);
         for number in 0..plan.batches {
             let mut batch = Batch::begin(self, &mut scene, &plan, number);
             batch.shadows();

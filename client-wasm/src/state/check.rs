@@ -3,6 +3,7 @@
 use super::check_underbrush::check_underbrush;
 use super::error::{MirrorError, range, within};
 use prairie_core::body::Body;
+use prairie_core::lod::shells::LAYERS_LIMIT;
 use prairie_core::scene::{GATES_LIMIT, LAMPS_LIMIT, MODEL_SIDE_M, MODELS_LIMIT, Scene, Stream, WIND_CELLS_LIMIT};
 use prairie_core::wire::{Mesh, STANDINGS_LIMIT, Standing};
 
@@ -68,6 +69,12 @@ fn check_world(scene: &Scene) -> Result<(), MirrorError> {
     within("plants.tree_m", plants.tree_m, 0.5, 60.0)?;
     within("plants.stone_m", plants.stone_m, 0.05, 20.0)?;
     within("plants.swing_damping", plants.swing_damping, 0.005, 5.0)?;
+    let shells = &scene.shells;
+    within("shells.layers", shells.layers as f32, 1.0, LAYERS_LIMIT as f32)?;
+    within("shells.slices", shells.slices as f32, 1.0, 32.0)?;
+    within("shells.blades_per_m2", shells.blades_per_m2, 100.0, 40_000.0)?;
+    within("shells.root_light", shells.root_light, 0.0, 1.0)?;
+    within("shells.stiffness_profile", shells.stiffness_profile, -0.9, 4.0)?;
     within("rain.rate_mm_per_h", scene.rain.rate_mm_per_h, 0.0, 200.0)?;
     within("objects.balls", scene.objects.balls as f32, 0.0, 64.0)?;
     within("objects.ball_radius_m", scene.objects.ball_radius_m, 0.1, 5.0)?;

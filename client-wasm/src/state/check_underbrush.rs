@@ -24,9 +24,8 @@ pub(super) fn check_underbrush(scene: &Scene) -> Result<(), MirrorError> {
 
 fn check_species(species: &Underbrush) -> Result<(), MirrorError> {
     within("underbrush.settle_secs", species.settle_secs, 0.0, 10.0)?;
-    for nodes in [species.posture_angles, species.posture_loads] {
-        within("posture_angles and posture_loads", nodes as f32, 2.0, 65.0)?;
-    }
+    within("underbrush.posture_angles", species.posture_angles as f32, 2.0, 65.0)?;
+    within("underbrush.posture_loads", species.posture_loads as f32, 2.0, 65.0)?;
     within("underbrush.size_variation", species.size_variation, 0.0, 0.9)?;
     within("underbrush.room_m", species.room_m, 0.05, 20.0)?;
     within("underbrush.reach_m", species.reach_m, 0.0, 50.0)?;

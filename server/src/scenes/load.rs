@@ -11,7 +11,9 @@ use crate::world::{self, Maps};
 use prairie_core::grass::wind_drawing::{WindDrawing, WindDrawings};
 use prairie_core::plant::growth::NutrientMap;
 use prairie_core::scene::{Positions, Scene, SceneFault, VehicleKind, WindShape, parse, parse_underbrush, parse_with};
-use prairie_core::terrain::{Cover, CoverMap, HeightMap, MODEL_BOXES_LIMIT, MapError, clear_under_models, has_too_many_models};
+use prairie_core::terrain::{
+    Cover, CoverMap, HeightMap, MODEL_BOXES_LIMIT, MODEL_PIXELS_LIMIT, MapError, clear_under_models, has_too_many_models,
+};
 use prairie_core::wire::{Mesh, ModelUse};
 use std::cell::{LazyCell, RefCell};
 use std::collections::HashSet;
@@ -348,7 +350,7 @@ fn covering_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, CoverMap), S
     }
     if has_too_many_models(scene, &map) {
         return Err(format!(
-            "names `{name}`, which places more than {MODEL_BOXES_LIMIT} models; allowed: at most {MODEL_BOXES_LIMIT}. Paint fewer pixels, or raise their \
+            "names `{name}`, which places more than {MODEL_BOXES_LIMIT} models, or has more than {MODEL_PIXELS_LIMIT} pixels around them; allowed: at most that. Paint fewer pixels, or raise their \
              `apart_m`"
         ));
     }

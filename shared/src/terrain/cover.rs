@@ -93,7 +93,7 @@ impl CoverMap {
         for row in rows {
             for column in columns.clone() {
                 let id = &mut self.ids[row as usize * self.width_px as usize + column as usize];
-                if is_cleared(*id, [column as f32 * side_m[0], row as f32 * side_m[1]], side_m) {
+                if *id != 0 && is_cleared(*id, [column as f32 * side_m[0], row as f32 * side_m[1]], side_m) {
                     *id = 0;
                 }
             }

@@ -8,7 +8,7 @@ mod model_boxes;
 pub use cover::{Cover, CoverMap};
 pub use height::HeightMap;
 pub use kinds::KindMap;
-pub use model_boxes::{MODEL_BOXES_LIMIT, ModelBox, clear_under_models, has_too_many_models, model_boxes};
+pub use model_boxes::{MODEL_BOXES_LIMIT, MODEL_PIXELS_LIMIT, ModelBox, clear_under_models, has_too_many_models, model_boxes};
 
 use thiserror::Error;
 

@@ -8,6 +8,9 @@ use std::collections::HashMap;
 /// Largest number of models in a world; [`model_boxes`] places no more.
 pub const MODEL_BOXES_LIMIT: usize = 4096;
 
+/// Largest number of pixels of the covering map in the rectangles around all models together, which bounds the time to clear the ground under them.
+pub const MODEL_PIXELS_LIMIT: u64 = 1 << 28;
+
 /// Upright box of one model in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelBox {
@@ -26,12 +29,17 @@ pub struct ModelBox {
 /// The boxes of all models of a scene, model by model, each row by row from the north-west. They depend on the pixels of the models' own IDs alone, so
 /// that [`clear_under_models`] changes nothing about them.
 pub fn model_boxes(scene: &Scene, cover: &CoverMap) -> Vec<ModelBox> {
-    placed(scene, cover).take(MODEL_BOXES_LIMIT).collect()
+    let mut left_px = MODEL_PIXELS_LIMIT;
+    let fits = |own: &ModelBox| {
+        let px = own.pixels(scene.extent_m(), cover.size_px());
+        left_px.checked_sub(px).inspect(|&left| left_px = left).is_some()
+    };
+    placed(scene, cover).take(MODEL_BOXES_LIMIT).take_while(fits).collect()
 }
 
-/// Whether the covering map of a scene places more models than [`MODEL_BOXES_LIMIT`].
+/// Whether the covering map of a scene places more models than [`MODEL_BOXES_LIMIT`], or over more pixels than [`MODEL_PIXELS_LIMIT`].
 pub fn has_too_many_models(scene: &Scene, cover: &CoverMap) -> bool {
-    placed(scene, cover).nth(MODEL_BOXES_LIMIT).is_some()
+    placed(scene, cover).nth(model_boxes(scene, cover).len()).is_some()
 }
 
 /// Makes a gap of each pixel that the box of a model touches, except for those that place a model themselves.
@@ -105,6 +113,12 @@ impl ModelBox {
         [-1.0, 1.0].map(|side: f32| std::array::from_fn(|axis| self.at_m[axis] + side * reach[axis]))
     }
 
+    /// Number of pixels of a map over a world of `extent_m` in the rectangle around it.
+    fn pixels(&self, extent_m: [f32; 2], size_px: [u32; 2]) -> u64 {
+        let [low_m, high_m] = self.bounds_m();
+        (0..2).map(|axis| ((high_m[axis] - low_m[axis]) / extent_m[axis] * size_px[axis] as f32) as u64 + 2).product()
+    }
+
     /// Whether it overlaps the rectangle with this north-western corner and these sides (m): no axis of either separates them.
     fn touches(&self, corner_m: [f32; 2], side_m: [f32; 2]) -> bool {
         let half: [f32; 2] = side_m.map(|side| 0.5 * side);
@@ -150,7 +164,7 @@ impl Apart {
             let [x, z] = [other[0] - at_m[0], other[1] - at_m[1]];
             x * x + z * z >= self.apart_m * self.apart_m
         };
-        let mut around = (-1..=1).flat_map(|z| (-1..=1).map(move |x| [column + x, row + z]));
+        let mut around = (-1..=1).flat_map(|z| (-1..=1).map(move |x| [column.saturating_add(x), row.saturating_add(z)]));
         let is_admitted = around.all(|square| self.squares.get(&square).is_none_or(|others| others.iter().all(is_far)));
         if is_admitted {
             self.squares.entry([column, row]).or_default().push(at_m);

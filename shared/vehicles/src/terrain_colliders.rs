@@ -19,7 +19,7 @@ const SPACING_M: [f32; 2] = [0.1, 2.0];
 /// the reach of the largest.
 const CREATE_M: f32 = 12.0;
 const KEEP_M: f32 = 30.0;
-/// Largest number of trees, stones and models in a tile that are obstacles; any others can be driven through.
+/// Largest number of trees and stones in a tile that are obstacles; any others can be driven through.
 const OBSTACLES_PER_TILE: usize = 256;
 /// Radius of a trunk relative to the tree's height.
 const TRUNK_RADIUS: f32 = 0.03;
@@ -92,11 +92,13 @@ impl TerrainColliders {
         let model_reach_m = models.iter().map(ModelBox::radius_m).fold(0.0, f32::max);
         let mut colliders = Self { height, spacing_m, tile_m, model_reach_m, obstacles: BTreeMap::new(), created: BTreeMap::new() };
         let plants = &scene.plants;
-        models.into_iter().for_each(|own| colliders.put(Obstacle::Model(own)));
         let tree = |at_m| Obstacle::Trunk { at_m, radius_m: plants.tree_m * TRUNK_RADIUS, half_height_m: 0.5 * plants.tree_m };
         let stone = |at_m| Obstacle::Stone { at_m, radius_m: 0.5 * plants.stone_m };
         environment.cover.places_m(Cover::Tree, environment.extent_m).for_each(|at_m| colliders.put(tree(at_m)));
         environment.cover.places_m(Cover::Stone, environment.extent_m).for_each(|at_m| colliders.put(stone(at_m)));
+        for own in models {
+            colliders.obstacles.entry(colliders.tile_at(own.at_m)).or_default().push(Obstacle::Model(own));
+        }
         colliders
     }
 

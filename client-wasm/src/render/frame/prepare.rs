@@ -21,6 +21,7 @@ use crate::state::{DecodedScene, Mirror};
 use glam::{Mat4, Vec3};
 use prairie_core::scene::PlantCover;
 use prairie_core::wire::ObjectPose;
+use std::ops::Range;
 
 /// Maximum distance of clumps with several segments, relative to that of the last single plants.
 const SEVERAL_SEGMENTS_REACH: f32 = 1.6;
@@ -62,7 +63,13 @@ impl FramePlan {
 }
 
 impl Renderer {
-    pub(super) fn prepare(&mut self, scene: &mut SceneResources, mirror: &mut Mirror, moment: &Moment<'_>) -> FramePlan {
+    pub(super) fn prepare(
+        &mut self,
+        scene: &mut SceneResources,
+        mirror: &mut Mirror,
+        moment: &Moment<'_>,
+        columns: &Range<u32>,
+    ) -> FramePlan {
         let &Moment { camera, time_secs, dt_secs } = moment;
         let poses: Vec<ObjectPose> = mirror.objects().collect();
         let eye_xz_m = [camera.eye_m.x, camera.eye_m.z];
@@ -91,7 +98,7 @@ impl Renderer {
         scene.prepare_forces(&self.gpu, decoded, &viewpoint, &poses);
         scene.prepare_grass(&self.gpu, decoded, &viewpoint, &frame, &mut plan);
         if plan.shows_grids {
-            self.prepare_grid_map(scene, decoded, &viewpoint, plan.has_clumps);
+            self.prepare_grid_map(scene, decoded, &viewpoint, plan.has_clumps, columns);
         }
         scene.prepare_underbrush(&self.gpu, mirror, &viewpoint);
         if let Some(objects) = &mut scene.objects {
@@ -102,11 +109,18 @@ impl Renderer {
     }
 
     /// Creates the map of the grids when it is first shown, and sets its contents.
-    fn prepare_grid_map(&self, scene: &mut SceneResources, decoded: &DecodedScene, from: &Viewpoint<'_>, has_clumps: bool) {
+    fn prepare_grid_map(
+        &self,
+        scene: &mut SceneResources,
+        decoded: &DecodedScene,
+        from: &Viewpoint<'_>,
+        has_clumps: bool,
+        columns: &Range<u32>,
+    ) {
         let SceneResources { factory, blades: Some(blades), billboards, grid_map, .. } = scene else { return };
         let grid_m = decoded.scene().plants.grid_m;
         let map = grid_map.get_or_insert_with(|| GridMap::new(factory, blades, &self.quality.detail(), grid_m, self.tone.target()));
-        map.prepare(&self.gpu, blades, billboards.as_ref().filter(|_| has_clumps), from.detail, grid_m, self.size_px);
+        map.prepare(&self.gpu, blades, billboards.as_ref().filter(|_| has_clumps), from.detail, grid_m, (columns, self.size_px));
     }
 
     fn frustum(&self, projection_from_world: &Mat4) -> Frustum {

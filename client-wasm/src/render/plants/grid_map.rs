@@ -12,6 +12,7 @@ use crate::render::options::detail::Detail;
 use crate::render::plants::billboards::Billboards;
 use crate::render::plants::blades::Blades;
 use crate::render::plants::grid_map_legend::glyphs;
+use std::ops::Range;
 use wgpu::BufferUsages;
 
 /// Side of the map, and width of the legend (pixels of the legend).
@@ -74,7 +75,7 @@ impl GridMap {
         }
     }
 
-    /// Sets the contents of the map of a frame, for a target of this size. Without clumps it shows the grids of single plants alone.
+    /// Sets the contents of the map of a frame, for these columns of a target of this size. Without clumps it shows the grids of single plants alone.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,
@@ -82,15 +83,16 @@ impl GridMap {
         clumps: Option<&Billboards>,
         detail: &Detail,
         grid_m: f32,
-        size_px: [u32; 2],
+        (columns, size_px): (&Range<u32>, [u32; 2]),
     ) {
         let reach_m = if clumps.is_some() { detail.blades_m.max(detail.far_m) } else { detail.blades_m };
         self.side = side(reach_m, grid_m).min(self.side_limit);
         let (_, listed_first, listed_side) = blades.far_grids();
         let first_grid = listed_first.map(|n| n + listed_side / 2 - self.side / 2);
         let pixel_px = (size_px[0].min(size_px[1]) / TARGET_PX).max(1);
-        let corner_px = [MARGIN_PX * pixel_px; 2];
-        let shown = |axis: usize, px: u32| (px * pixel_px).min(size_px[axis].saturating_sub(corner_px[axis]));
+        let corner_px = [columns.start + MARGIN_PX * pixel_px, MARGIN_PX * pixel_px];
+        let end_px = [columns.end, size_px[1]];
+        let shown = |axis: usize, px: u32| (px * pixel_px).min(end_px[axis].saturating_sub(corner_px[axis]));
         self.area_px = [corner_px[0], corner_px[1], shown(0, MAP_PX), shown(1, HEIGHT_PX)];
         let frame = GridMapFrame {
             first_grid,

@@ -27,6 +27,8 @@ const CELLS: u32 = 120;
 const CELL_M: f32 = 0.4572;
 /// Patches along a side of the simulated region, 225 in all.
 const SIDE: u32 = 15;
+/// Largest bend at the start (rad): beyond the ground, so that contact with it has work to do.
+const START_RAD: f32 = 2.0;
 /// Clusters that Orthmann et al. simulate.
 const ORTHMANN_CLUSTERS: f64 = 60_000.0;
 /// Reach of the natural wind, which pushes four patches about a camera over the corner where they meet (m).
@@ -45,7 +47,7 @@ fn moving(side: u32, ground_contact: GroundContact) -> Field {
     let rest = Rest { theta_rad: 0.0, omega_rad_per_s: 0.0 };
     let mut field = Field::new(layout(side), Kinds::one(Grass::default().waves)).with_rest(rest).with_ground_contact(ground_contact);
     field.start(DT_SECS, |[x, z]| {
-        let [theta, u, w] = [0.7, 1.3, 2.1].map(|pitch: f32| 0.3 * (pitch * x).sin() * (0.9 * pitch * z).cos());
+        let [theta, u, w] = [0.7, 1.3, 2.1].map(|pitch: f32| START_RAD * (pitch * x).sin() * (0.9 * pitch * z).cos());
         [Bend { theta, omega: [u, w] }; 2]
     });
     field
@@ -139,16 +141,17 @@ fn wind_ms(strength_rad_per_s2: f32, steps: u32) -> Result<f64> {
     least_ms(steps, step)
 }
 
-/// A Markdown table of the interactions, with the time of each (ms).
-fn table(waves_ms: f64, ground_ms: f64, contact_ms: f64, wind_ms: f64) -> String {
+/// A Markdown table of the interactions in a square of `side` patches, with the time of each (ms).
+fn table(side: u32, waves_ms: f64, ground_ms: f64, contact_ms: f64, wind_ms: f64) -> String {
     format!(
         "| interaction | here | a step takes |\n|---|---|---:|\n\
          | grass–grass | waves through all {0} patches, Verlet's scheme | {waves_ms:.2} ms |\n\
          | grass–terrain | the same, with bends of at most {1:.2} rad | {ground_ms:.2} ms |\n\
          | grass–object | one car at 20 m/s, in addition | {contact_ms:.4} ms |\n\
-         | grass–wind | gusts of noise in four patches about a camera, and their waves | {wind_ms:.2} ms |\n",
-        SIDE * SIDE,
-        FRAC_PI_2
+         | grass–wind | gusts of noise in four patches about a camera of {2} × {2}, and their waves | {wind_ms:.2} ms |\n",
+        side * side,
+        FRAC_PI_2,
+        SIDE - 1
     )
 }
 
@@ -183,8 +186,13 @@ pub(super) fn draw(quick: bool, caption: &str) -> Result<Drawn> {
     );
     let wind = wind_ms(2.0, steps)? - wind_ms(0.0, steps)?;
     let side = if quick { 4 } else { SIDE };
-    let tables =
-        table(waves_ms(side, GroundContact::None, steps)?, waves_ms(side, GroundContact::Inelastic, steps)?, contact_ms(steps)?, wind);
+    let tables = table(
+        side,
+        waves_ms(side, GroundContact::None, steps)?,
+        waves_ms(side, GroundContact::Inelastic, steps)?,
+        contact_ms(steps)?,
+        wind,
+    );
     let times = || [&all, &one, &single].into_iter().flat_map(|curve| &curve.points).map(|point| point[1]);
     let range = [times().fold(f64::INFINITY, f64::min) / 2.0, 2.0 * times().fold(0.0, f64::max).max(1e3 * f64::from(DT_SECS))];
     let line = |name: &str, points: [[f64; 2]; 2]| Curve { name: name.to_owned(), points: points.to_vec(), marked: false, joined: true };
@@ -222,8 +230,19 @@ mod tests {
     }
 
     #[test]
+    fn the_ground_stops_some_of_the_moving_grass() {
+        let largest_rad = |ground_contact| {
+            let mut field = moving(1, ground_contact);
+            field.step(Scheme::Verlet, DT_SECS, &Serial).unwrap();
+            let cells = (0..i64::from(CELLS)).flat_map(|z| (0..i64::from(CELLS)).map(move |x| [x, z]));
+            cells.map(|cell| field.cell(cell).theta.abs()).fold(0.0, f32::max)
+        };
+        assert!(largest_rad(GroundContact::Inelastic) <= FRAC_PI_2 && largest_rad(GroundContact::None) > FRAC_PI_2);
+    }
+
+    #[test]
     fn the_table_names_the_four_interactions() {
-        let table = table(1.0, 2.0, 0.0125, 4.0);
+        let table = table(SIDE, 1.0, 2.0, 0.0125, 4.0);
         for (row, ms) in
             [("grass–grass", "1.00 ms"), ("grass–terrain", "2.00 ms"), ("grass–object", "0.0125 ms"), ("grass–wind", "4.00 ms")]
         {
