@@ -13,7 +13,8 @@
 //! | [`heights`] | one view from four heights in one picture |
 //! | [`peers`] | frame rates of other programs and ours in a browser |
 //! | [`pictures`] | draws the pictures of a document again |
-//! | [`shells`] | cost of shell layers |
+//! | [`plates`] | figures of the literature, as tiled pictures |
+//! | [`shells`] | cost of shell layers and of lamps on them |
 //! | [`start`] | times of the first pictures of a page in a browser |
 //! | [`stream`] | bits on the wire against the error of the grass |
 //! | [`versions`] | the same views with two versions of Prairie in a browser |
@@ -38,6 +39,7 @@ pub mod peers;
 pub mod picture;
 pub mod pictures;
 pub mod plants;
+pub mod plates;
 pub mod plot;
 pub mod row;
 pub mod run;
