@@ -2,6 +2,7 @@
 
 mod scale;
 mod store;
+mod tile;
 
 use std::fs;
 use std::io::Cursor;

@@ -12,7 +12,8 @@
 //! | [`gpu`] | the renderer on a graphics card, beside its aims |
 //! | [`peers`] | frame rates of other programs and ours in a browser |
 //! | [`pictures`] | draws the pictures of a document again |
-//! | [`shells`] | cost of shell layers |
+//! | [`plates`] | figures of the literature, as tiled pictures |
+//! | [`shells`] | cost of shell layers and of lamps on them |
 //! | [`start`] | times of the first pictures of a page in a browser |
 //! | [`stream`] | bits on the wire against the error of the grass |
 //! | [`versions`] | the same views with two versions of Prairie in a browser |
@@ -36,6 +37,7 @@ pub mod peers;
 pub mod picture;
 pub mod pictures;
 pub mod plants;
+pub mod plates;
 pub mod plot;
 pub mod row;
 pub mod run;

@@ -19,8 +19,6 @@ const SIZE_PX: [u32; 2] = [640, 360];
 const SETTLE: Duration = Duration::from_secs(12);
 /// Frames before a screenshot.
 const FRAMES: u32 = 6;
-/// Pixels between two pictures, which are white.
-const GAP_PX: u32 = 6;
 /// Width of a stored pair (px).
 const STORED_PX: u32 = 800;
 
@@ -110,7 +108,7 @@ pub async fn compare(before: &Path, after: &Path, views: &[&PageView], folder: &
             say(&format!("{}, {}", view.name, program.display()));
             pair.push(view.draw(program).await.with_context(|| view.name)?);
         }
-        beside(&pair[0], &pair[1])?.shrunk_to_width(STORED_PX).save(&folder.join(format!("{}.jpg", view.name)))?;
+        Picture::tiled(&pair, 2)?.shrunk_to_width(STORED_PX).save(&folder.join(format!("{}.jpg", view.name)))?;
     }
     let path = folder.join("README.md");
     std::fs::write(&path, page(views)).with_context(|| format!("{} cannot be written", path.display()))
@@ -131,30 +129,9 @@ fn page(views: &[&PageView]) -> String {
     page
 }
 
-/// Two pictures of one size side by side.
-fn beside(left: &Picture, right: &Picture) -> Result<Picture> {
-    let size = |picture: &Picture| [picture.width, picture.height];
-    ensure!(size(left) == size(right), "pictures of {:?} and {:?} px", size(left), size(right));
-    let row_bytes = 4 * left.width as usize;
-    let gap = vec![255; 4 * GAP_PX as usize];
-    let rows = left.rgba.chunks_exact(row_bytes).zip(right.rgba.chunks_exact(row_bytes));
-    let rgba = rows.flat_map(|(left, right)| [left, &gap, right].concat()).collect();
-    Ok(Picture { width: 2 * left.width + GAP_PX, height: left.height, rgba })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn two_pictures_stand_side_by_side() {
-        let grey = |level: u8, width: u32| Picture { width, height: 2, rgba: vec![level; 8 * width as usize] };
-        let pair = beside(&grey(9, 3), &grey(70, 3)).unwrap();
-        assert_eq!([pair.width, pair.height], [12, 2]);
-        let levels: Vec<u8> = (0..12).map(|x| pair.pixel(x, 1)[0]).collect();
-        assert_eq!(levels, [9, 9, 9, 255, 255, 255, 255, 255, 255, 70, 70, 70]);
-        assert!(beside(&grey(9, 3), &grey(9, 4)).is_err());
-    }
 
     #[test]
     fn names_are_unique_and_scenes_exist() {

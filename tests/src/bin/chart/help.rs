@@ -8,6 +8,7 @@ Examples:
   cargo run --release -p tests --bin chart -- bend --only cars
   cargo run --release -p tests --bin chart -- picture --quick --views ant-calm,hill-storm
   cargo run --release -p tests --bin chart -- gallery
+  cargo run --release -p tests --bin chart -- plates --only gust
   cargo run --release -p tests --bin chart -- gpu
   cargo run --release -p tests --bin chart -- peers --peer webgpu-grass=../webgpu-grass/dist
   cargo run --release -p tests --bin chart -- start
@@ -40,7 +41,13 @@ An unknown name in --views lists them all. All together take a quarter of an hou
 
 pub(super) const SHELLS_FILES: &str = "\
 Files in DIR:
-  shells-layers.svg, .csv  frames per second against the number of layers, with and without slices between them, and Bakay's";
+  shells-layers.svg, .csv      frames per second against the number of layers, with and without slices between them, and Bakay's
+  shells-lamps.svg, .csv, .md  frames per second with no, one and three point lights, and Bakay's statement";
+
+pub(super) const PLATES_FILES: &str = "\
+Files in DIR:
+  PLATE.jpg  the tiles of a figure
+  README.md  a page of all";
 
 pub(super) const STREAM_FILES: &str = "\
 Files in DIR:

@@ -1,5 +1,6 @@
 //! Measures methods (wall time against error), writes charts and a summary, and updates the tables of the documents.
 
+mod drawings;
 mod help;
 
 use std::path::{Path, PathBuf};
@@ -11,22 +12,24 @@ use prairie_client::render::{Gpu, Quality};
 use tests::arguments::quality;
 use tests::chart::figure::Figure;
 use tests::chart::files::write_all;
-use tests::chart::gallery::{self, reference_path};
+use tests::chart::gallery::reference_path;
 use tests::chart::machine::machine;
 use tests::chart::peers::{self, Peer};
 use tests::chart::picture::{self, METHODS, Method, ViewShots};
+use tests::chart::plates::Plate;
 use tests::chart::row::cells_text;
 use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
 use tests::chart::tables::with_tables;
 use tests::chart::versions::{PAGE_VIEWS, PageView};
-use tests::chart::{Problem, bend, gpu, pictures, plants, shells, start, stream, versions, wind};
+use tests::chart::{Problem, bend, gpu, plants, shells, start, stream, versions, wind};
 use tests::still::Still;
 use tests::views::{VIEWS, View};
 
+use drawings::{draw_gallery, draw_pictures, draw_plates};
 use help::{
-    BEND_FILES, EXAMPLES, FILES, GPU_FILES, PEERS_FILES, PICTURE_FILES, PLANTS_FILES, SHELLS_FILES, START_FILES, STREAM_FILES,
-    VERSIONS_FILES,
+    BEND_FILES, EXAMPLES, FILES, GPU_FILES, PEERS_FILES, PICTURE_FILES, PLANTS_FILES, PLATES_FILES, SHELLS_FILES, START_FILES,
+    STREAM_FILES, VERSIONS_FILES,
 };
 
 /// Measures methods on problems with known solutions: wall time against error.
@@ -87,6 +90,16 @@ enum Model {
         #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = View::find)]
         views: Vec<&'static View>,
     },
+    /// Figures of the literature drawn again, as tiles that differ in a setting or in time
+    #[command(after_help = PLATES_FILES)]
+    Plates {
+        /// Folder of the page
+        #[arg(long, value_name = "DIR", default_value = "tests/results/plates")]
+        out: PathBuf,
+        /// Only these plates, separated by commas
+        #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = Plate::find)]
+        only: Vec<&'static Plate>,
+    },
     /// The renderer on this machine's graphics card: frames and passes beside their aims, in less than five minutes
     #[command(after_help = GPU_FILES)]
     Gpu {
@@ -145,7 +158,7 @@ enum Model {
         #[arg(long, value_name = "DIR", default_value = "tests/results/versions")]
         out: PathBuf,
     },
-    /// Shells: frames per second against the number of layers, beside Bakay 2003, table 4.1
+    /// Shells: frames per second against the number of layers and of point lights, beside Bakay 2003, table 4.1 and section 4.1
     #[command(after_help = SHELLS_FILES)]
     Shells(Options),
     /// Stream: bits per cell against error, by causes, in a closed loop, by the codec of patches, and by general compressors
@@ -177,6 +190,7 @@ fn main() -> Result<()> {
         Model::Plants(options) => charts("plants", plants::problems(options.quick), &plants::FIGURES, &options),
         Model::Picture { options, size, views } => chart_picture(&options, size, &chosen(views)),
         Model::Gallery { out, cache, size, quality, views } => draw_gallery(&out, &cache, size, quality, &chosen(views)),
+        Model::Plates { out, only } => draw_plates(&out, &only),
         Model::Gpu { out, quick } => report_gpu(&out, quick),
         Model::Peers { peers, seconds, out } => compare_peers(&peers, seconds, &out),
         Model::Start { pages, out } => time_starts(pages, &out),
@@ -236,24 +250,6 @@ fn chart_picture(options: &Options, size: Option<[u32; 2]>, views: &[&View]) -> 
     draw_figures("picture", &figures, options)
 }
 
-/// Draws the gallery.
-fn draw_gallery(out: &Path, cache: &Path, size_px: [u32; 2], quality: Quality, views: &[&View]) -> Result<()> {
-    let gpu = Gpu::headless()?;
-    let bar = progress(views.len());
-    let mut plates = Vec::new();
-    for view in views {
-        bar.set_message(view.name);
-        plates.push(gallery::plate(&gpu, view, size_px, quality, out, cache)?);
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    if views.len() == VIEWS.len() {
-        gallery::write(&plates, size_px, quality, &format!("{}; {}", gpu.adapter_name, machine()), out)?;
-    }
-    println!("{} pictures in {}", plates.len(), out.display());
-    Ok(())
-}
-
 /// A line that says what is being done, and since when.
 fn spinner() -> ProgressBar {
     let style = ProgressStyle::with_template("{spinner} {elapsed} {wide_msg}").expect("the template is well formed");
@@ -302,23 +298,6 @@ fn write_report(report: &str, out: &Path, name: &str) -> Result<()> {
     std::fs::create_dir_all(out).with_context(|| format!("{} cannot be made", out.display()))?;
     let path = out.join(name);
     std::fs::write(&path, report).with_context(|| format!("{} cannot be written", path.display()))
-}
-
-/// Draws the pictures of a document again.
-fn draw_pictures(of: &Path, only: Option<&str>) -> Result<()> {
-    let document = std::fs::read_to_string(of).with_context(|| format!("{} cannot be read", of.display()))?;
-    let mut commands = pictures::commands(&document);
-    commands.retain(|command| only.is_none_or(|word| pictures::file(command).contains(word)));
-    ensure!(!commands.is_empty(), "{} has no line `picture …` that draws a file with this word in its name", of.display());
-    let bar = progress(commands.len());
-    for command in &commands {
-        bar.set_message(pictures::file(command).to_owned());
-        pictures::draw(command)?;
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    println!("{} pictures drawn", commands.len());
-    Ok(())
 }
 
 /// Error against time as for the wind, then the other figures of the model.
