@@ -134,3 +134,29 @@ fn a_drawn_wind_from_a_scene_file_bends_the_grass() {
     let bare = World::new(&loaded.scene, prairie::world::Maps { drawings: Default::default(), ..loaded.maps() });
     assert_eq!(bare.err().unwrap().to_string(), "`drawn_winds` names the drawing `1.png`, which is not among the maps");
 }
+
+#[test]
+fn a_wind_painted_over_the_world_bends_the_grass_along_its_vectors() {
+    let loaded = scenes::load("scenes/painted.toml").unwrap();
+    let [wind] = &loaded.scene.drawn_winds[..] else { panic!("one painted wind") };
+    assert_eq!([wind.path_m[0], [wind.radius_m; 2]], [loaded.scene.extent_m().map(|side| 0.5 * side); 2], "it covers the world");
+    let painted = WindDrawing::from_png(&std::fs::read("scenes/painted.png").unwrap()).unwrap();
+    let mut world = World::new(&loaded.scene, loaded.maps()).unwrap();
+    (0..120).for_each(|_| world.step(&[]));
+    let field = world.bend().field();
+    let places: Vec<[f32; 2]> = (0..64).map(|n| [n % 8, n / 8].map(|at| 8.0 + 16.0 * at as f32)).collect();
+    // Along the painted vectors, and as a control along vectors turned by a right angle.
+    let mut along = [0.0, 0.0];
+    for [x, z] in &places {
+        let [east, south] = painted.at([x / 64.0 - 1.0, z / 64.0 - 1.0]);
+        let strength = east.hypot(south);
+        let Bend { theta, omega } = field.bend_at(*x, *z);
+        let direction = omega.map(|d| d / omega[0].hypot(omega[1]));
+        let expected_rad = wind.bend_rad * strength;
+        assert!((theta - expected_rad).abs() < 0.15 * wind.bend_rad, "{theta} instead of {expected_rad} rad at {x}, {z}");
+        let cosines = [[east, south], [-south, east]].map(|[x, z]| (direction[0] * x + direction[1] * z) / strength);
+        assert!(cosines[0] > 0.95, "along {direction:?} instead of {east}, {south} at {x}, {z}");
+        along = [0, 1].map(|n: usize| along[n] + cosines[n] / places.len() as f32);
+    }
+    assert!(along[0] > 0.98 && along[1].abs() < 0.2, "{along:?}");
+}
