@@ -127,7 +127,7 @@ pub const VIEWS: [View; 10] = [
         act: Act::Wind,
         eye: over([216.0, 60.0], 60.0, 225.0, -24.0),
         shows: "waves of wind over the valley from 60 m",
-        answers: "Bakay 2003, Figures 4.1 to 4.3",
+        answers: "Bakay 2003, Figure 4.1",
     },
 ];
 
