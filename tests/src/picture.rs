@@ -72,24 +72,6 @@ impl Picture {
         Self { width, height, rgba: positions.flat_map(|[x, y]| self.pixel(x, y)).collect() }
     }
 
-    /// Pictures of one size side by side, `columns` in a row.
-    ///
-    /// # Errors
-    /// When there are none, their number is no multiple of `columns`, or their sizes differ.
-    pub fn joined(pictures: &[Self], columns: u32) -> Result<Self> {
-        let [width, height] = pictures.first().map(|first| [first.width, first.height]).context("no picture to join")?;
-        ensure!(
-            pictures.iter().all(|picture| [picture.width, picture.height] == [width, height]),
-            "pictures of several sizes cannot be joined"
-        );
-        let count = pictures.len() as u32;
-        ensure!(columns > 0 && count.is_multiple_of(columns), "{count} pictures do not fill rows of {columns}");
-        let [wide, high] = [width * columns, height * (count / columns)];
-        let positions = (0..high).flat_map(|y| (0..wide).map(move |x| [x, y]));
-        let pixel = |[x, y]: [u32; 2]| pictures[(y / height * columns + x / width) as usize].pixel(x % width, y % height);
-        Ok(Self { width: wide, height: high, rgba: positions.flat_map(pixel).collect() })
-    }
-
     /// Difference from another picture of the same size.
     ///
     /// # Errors
@@ -161,19 +143,6 @@ mod tests {
         let part = gradient().cropped([1, 0, 2, 2]);
         assert_eq!((part.width, part.height), (2, 2));
         assert_eq!(part.rgba, [&gradient().rgba[4..12], &gradient().rgba[16..24]].concat());
-    }
-
-    #[test]
-    fn pictures_are_joined_in_rows() -> Result<()> {
-        let other = Picture { rgba: gradient().rgba.iter().map(|byte| byte + 1).collect(), ..gradient() };
-        let joined = Picture::joined(&[gradient(), other.clone(), other.clone(), gradient()], 2)?;
-        assert_eq!((joined.width, joined.height), (6, 4));
-        for ([left, top], part) in [([0, 0], &gradient()), ([3, 0], &other), ([0, 2], &other), ([3, 2], &gradient())] {
-            assert_eq!(joined.cropped([left, top, 3, 2]), *part);
-        }
-        assert!(Picture::joined(&[], 1).is_err() && Picture::joined(&[gradient(), gradient(), gradient()], 2).is_err());
-        assert!(Picture::joined(&[gradient(), joined], 2).is_err(), "two sizes");
-        Ok(())
     }
 
     #[test]

@@ -20,7 +20,7 @@ const LOWEST: View = View {
     answers: "Zhang, Figure 23",
 };
 /// Views beside each other.
-const COLUMNS: u32 = 2;
+const COLUMNS: usize = 2;
 
 /// Draws the meadow from each height, at one moment, at `size_px`, with single plants near the camera and clumps beyond as in the source, and joins them, the lowest
 /// at the top left.
@@ -40,5 +40,5 @@ pub fn series(gpu: &Gpu, size_px: [u32; 2], quality: Quality) -> Result<Picture>
             still.draw(&mut canvas).0
         })
         .collect();
-    Picture::joined(&pictures, COLUMNS)
+    Picture::tiled(&pictures, COLUMNS)
 }
