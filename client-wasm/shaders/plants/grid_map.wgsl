@@ -124,7 +124,7 @@ fn map_color(at: vec2<f32>, pixel: f32) -> vec3<f32> {
         color = class_color(shown);
     }
     let line = pixel * side;
-    if line < 0.25 && any(within < vec2<f32>(line)) {
+    if any(within < vec2<f32>(line)) && line < 0.25 {
         color *= 0.7;
     }
     let to_m = side * map.grid_m;

@@ -113,17 +113,16 @@ fn list_grids(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     var state = GRID_SHOWN;
-    if squares.culls != 0 {
-        if !is_box_seen(box_low, box_high) {
-            state = GRID_OUTSIDE;
-        } else if is_hidden(box_low, box_high) {
-            state = GRID_HIDDEN;
-        }
+    if !is_box_seen(box_low, box_high) {
+        state = GRID_OUTSIDE;
+    } else if is_hidden(box_low, box_high) {
+        state = GRID_HIDDEN;
     }
-    states[id.x] = state;
-    if state != GRID_SHOWN {
+    if (state != GRID_SHOWN) & (squares.culls != 0) {
+        states[id.x] = state;
         return;
     }
+    states[id.x] = GRID_SHOWN;
     let count = u32(ceil(f32(squares.grid_plants) * density(distance_m, squares.full_density_m)));
     let needed = (count + CHUNK - 1u) / CHUNK;
     let first = atomicAdd(&workgroups.count, needed);

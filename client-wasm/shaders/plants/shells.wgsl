@@ -74,6 +74,9 @@ struct TileLayer {
 @group(1) @binding(4) var<storage, read> tile_layers: array<TileLayer>;
 @group(1) @binding(5) var<storage, read_write> settled: array<Turf>;
 
+// Whether the scene has another stiffness profile than a constant increment of the tilt. Fixed when a pipeline is made.
+override has_profile: bool = true;
+
 // Sum of the segments above layer `low` up to layer `high` of a blade with a tilted root in the wind, along its axis and along the wind, in
 // blade heights. Twin of `Tilt::of_segment_rad` in shared/src/lod/shells.rs, summed.
 fn segments_between(root_rad: f32, intensity: f32, profile: f32, low: f32, high: f32, segments: f32) -> vec2<f32> {
@@ -88,7 +91,7 @@ fn segments_between(root_rad: f32, intensity: f32, profile: f32, low: f32, high:
 // Position of layer `i` of a blade with a tilted root in the wind, along its axis and along the wind, in blade heights. Twin of
 // `Tilt::layer` in shared/src/lod/shells.rs.
 fn layer_place(root_rad: f32, intensity: f32, profile: f32, i: f32, segments: f32) -> vec2<f32> {
-    if profile != 0.0 {
+    if has_profile {
         return segments_between(root_rad, intensity, profile, 0.0, i, segments);
     }
     let half = 0.5 * RIGHT_ANGLE * intensity / segments;
@@ -195,10 +198,10 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let profile = shells.stiffness_profile;
     let under = layer_place(turf.tilt_rad, turf.wind_intensity, profile, layer - below, segments);
     var at = under;
-    if profile == 0.0 {
-        at = layer_place(turf.tilt_rad, turf.wind_intensity, profile, layer, segments);
-    } else {
+    if has_profile {
         at += segments_between(turf.tilt_rad, turf.wind_intensity, profile, layer - below, layer, segments);
+    } else {
+        at = layer_place(turf.tilt_rad, turf.wind_intensity, profile, layer, segments);
     }
     let height = turf.height_m;
     var p = turf.root_m + height * (at.x * turf.axis + at.y * turf.wind_direction);

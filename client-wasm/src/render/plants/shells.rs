@@ -97,7 +97,7 @@ impl Shells {
         let turf = [(0, listed_tiles), (1, uniforms), (5, settled)];
         let indices = tile_indices();
         Self {
-            pipeline: pipelines(factory, &layout),
+            pipeline: pipelines(factory, &layout, decoded.scene().shells.stiffness_profile != 0.0),
             settle: factory.compute("turf", &module, "settle_turf", &settle_layout),
             group: bind_at(gpu, "shells", &layout, drawn),
             settle_group: bind_at(gpu, "turf", &settle_layout, turf.into_iter().chain(forces.resources())),
@@ -178,11 +178,11 @@ impl Shells {
     }
 }
 
-/// Pipelines without and with lamps.
-fn pipelines(factory: &PassFactory, layout: &wgpu::BindGroupLayout) -> LampVariants<wgpu::RenderPipeline> {
+/// Pipelines without and with lamps, for a constant increment of the tilt or another stiffness profile.
+fn pipelines(factory: &PassFactory, layout: &wgpu::BindGroupLayout, has_profile: bool) -> LampVariants<wgpu::RenderPipeline> {
     let (factory, layout) = (factory.clone(), layout.clone());
     LampVariants::new(move |[lamps]| {
-        let module = factory.shader("shells", shaders::SHELLS, &[lamps]);
+        let module = factory.shader("shells", shaders::SHELLS, &[lamps, ("has_profile", has_profile)]);
         factory.draw(&module, Some(&layout), &DrawDescriptor { label: "shells", ..DrawDescriptor::default() })
     })
 }

@@ -15,9 +15,9 @@ fn counts(gpu: &Gpu, mirror: &mut Mirror, options: RenderOptions) -> (OffscreenR
     (picture, counts)
 }
 
-/// A plateau of 12 m across the middle of a meadow, wider than the cells in which `LowestLand` looks for the lowest land.
+/// A plateau 12 m high and 24 m wide across a meadow: wide enough for a rectangle that all rays to a grid behind it cross.
 fn ridge() -> Mirror {
-    let heights: Vec<u8> = (0..17 * 17).map(|at| if (6..=9).contains(&(at / 17)) { 255 } else { 0 }).collect();
+    let heights: Vec<u8> = (0..17 * 17).map(|at| if (4..=10).contains(&(at / 17)) { 255 } else { 0 }).collect();
     let mut mirror = Mirror::default();
     let maps =
         TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 12.0 / 255.0, base_m: 0.0 };

@@ -40,7 +40,8 @@ fn differences_from_core(gpu: &Gpu, stiffness_profile: f32) -> [f32; 2] {
         })
         .collect();
     let body = "let tilt = tilt_of(at.x); return vec4<f32>(layer_place(tilt.x, tilt.y, at.w, at.y, at.z), tilt);";
-    let found = probe_in(gpu, &picture, "plants/shells", body, &cases);
+    let constants = [("has_profile", stiffness_profile != 0.0)];
+    let found = compute(gpu, &picture, &probing("plants/shells", body), &constants, &cases, cases.len() as u32);
     let wanted = |[lean_rad, layer, segments, _]: [f32; 4], stiffness_profile| {
         let tilt = Tilt { stiffness_profile, ..Tilt::of_lean(lean_rad) };
         let [along_axis, along_wind] = tilt.layer(layer as u32, segments as u32);
