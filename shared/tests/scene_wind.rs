@@ -158,7 +158,7 @@ fn primitive(fields: &str) -> String {
 #[test]
 fn intensities_are_read_and_sent() {
     let steady = Primitive::new(PrimitiveKind::Source, [1.0, 2.0, 3.0]);
-    assert_eq!(wind(&primitive("")).primitives, [steady.clone()]);
+    assert_eq!(wind(&primitive("")).primitives, std::slice::from_ref(&steady));
     let gust = Primitive {
         intensity: PrimitiveIntensity::Gust,
         attack_secs: 0.6,
@@ -170,7 +170,11 @@ fn intensities_are_read_and_sent() {
         ..steady.clone()
     };
     let of_gust = "attack_secs = 0.6\nhold_secs = 0.4\nfall_secs = 3\nperiod_secs = 4\nfront_m_per_s = 8\nstep_m = 2";
-    assert_eq!(wind(&primitive(&format!("intensity = 'gust'\n{of_gust}"))).primitives, [gust.clone()], "decimal fractions fill a period");
+    assert_eq!(
+        wind(&primitive(&format!("intensity = 'gust'\n{of_gust}"))).primitives,
+        std::slice::from_ref(&gust),
+        "decimal fractions fill a period"
+    );
     let cubic = Primitive { intensity: PrimitiveIntensity::Cubic, ..gust };
     assert_eq!(wind(&primitive(&format!("intensity = 'cubic'\n{of_gust}"))).primitives, [cubic]);
     assert_eq!(wind(&primitive("intensity = 'gust'\nfall_secs = 1")).primitives[0].period_secs, 0.0, "it happens once");

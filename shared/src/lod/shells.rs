@@ -141,7 +141,9 @@ mod tests {
     #[test]
     fn stiff_grass_bends_up_the_stalk_and_floppy_grass_at_its_foot() {
         let half = |stiffness_profile| Tilt { intensity: 1.0, stiffness_profile, ..Tilt::default() }.of_segment_rad(8, 16) / FRAC_PI_2;
-        for (stiffness_profile, share) in [(0.0, 0.5), (2.0, 0.125), (4.0, 0.031_25), (-0.5, 0.707_107), (-0.9, 0.933_033)] {
+        for (stiffness_profile, share) in
+            [(0.0, 0.5), (2.0, 0.125), (4.0, 0.031_25), (-0.5, std::f32::consts::FRAC_1_SQRT_2), (-0.9, 0.933_033)]
+        {
             assert!((half(stiffness_profile) - share).abs() < 1e-5, "{stiffness_profile}: {}", half(stiffness_profile));
         }
         // The stiffer, the higher the tip stands in the same wind.

@@ -105,7 +105,7 @@ pub struct Underbrush {
     /// rigidity, mass, length and load, limited to 0.01..=10. Default 0, allowed 0..=10.
     pub settle_secs: f32,
     /// Number of angles between its components and their load for which postures are precomputed (Endo et al. 2003, §4.2); memory and time to start
-    /// grow in proportion, the error falls as [`Nodes`](crate::plant::underbrush::posture::Nodes) says. Default 33, allowed 2..=65.
+    /// grow in proportion. With 33 the tip is off by 0.2 % of the length, with 17 by 0.3 % (root mean square). Default 33, allowed 2..=65.
     pub posture_angles: u32,
     /// Number of loads for which postures are precomputed, from none to one that aligns a component with it. Default 33, allowed 2..=65.
     pub posture_loads: u32,

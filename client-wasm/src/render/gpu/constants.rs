@@ -2,13 +2,13 @@
 
 use std::fmt;
 
-use crate::render::plants::flower_kinds;
+use super::flower_kinds;
 use glam::Vec3;
 use prairie_core::lod;
 use prairie_core::plant::blade::{self, Integrator, deflection};
 use prairie_core::plant::underbrush::{drops, posture};
 
-pub(crate) use crate::render::plants::flower_kinds::{
+pub(crate) use super::flower_kinds::{
     FLOWER_BASE_RGB, FLOWER_DISC_M, FLOWER_DISC_RGB, FLOWER_PETAL_M, FLOWER_PETAL_WIDTH, FLOWER_PETALS, FLOWER_RISE_RAD, FLOWER_SQUARE,
     FLOWER_TIP_RGB, PETAL_ACROSS, PETAL_ALONG, PETAL_FLATTENS,
 };
@@ -87,7 +87,7 @@ pub(crate) const FINE_SPREAD: f32 = 0.15;
 pub(crate) const BLADE_SHAPES: u32 = 5;
 /// Maximum number of petals of a flower head, and vertices of a petal.
 pub(crate) const PETALS: u32 = 12;
-pub(crate) const PETAL_VERTICES: u32 = 5;
+pub(crate) const PETAL_VERTICES: u32 = PETAL_ALONG.len() as u32;
 /// Vertices of the disc of a flower head: its centre, then its rim.
 pub(crate) const DISC_VERTICES: u32 = 7;
 /// Vertices of a flower head: petals, then the disc.

@@ -4,6 +4,7 @@ pub(crate) mod constants;
 pub(crate) mod device;
 pub(crate) mod error;
 pub(crate) mod f16;
+pub(crate) mod flower_kinds;
 pub(crate) mod limits;
 pub(crate) mod mipmaps;
 pub(crate) mod pipeline;

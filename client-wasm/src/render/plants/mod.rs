@@ -5,7 +5,6 @@ pub(crate) mod blades;
 pub(crate) mod blending;
 pub(crate) mod clump_pipelines;
 pub(crate) mod clump_texture;
-pub(crate) mod flower_kinds;
 pub(crate) mod force_field;
 pub(crate) mod grid_map;
 mod grid_map_legend;

@@ -108,12 +108,11 @@ impl Blades {
         let shapes = shapes.create_view(&Default::default());
         let flowers = flower_squares(gpu, plants.flower_shape);
         let lists = buffers.list_groups(factory, capacities, segments, [&shapes, flowers.as_ref().unwrap_or(&shapes)]);
-        let are_textured = plants.blade_shape == BladeShape::Textured;
         let listed = BladeDrawList {
             blades: buffers.drawn,
             counters: buffers.counters,
             shapes,
-            are_textured,
+            are_textured: plants.blade_shape == BladeShape::Textured,
             capacities: [capacities[0], capacities[1]],
             segments,
             grid_m,

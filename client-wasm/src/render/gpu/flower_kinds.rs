@@ -1,7 +1,5 @@
 //! The six kinds of flowers, for the shader that draws their petals and for the textures of flowers.
 
-use crate::render::gpu::constants::PETAL_VERTICES;
-
 /// Number of kinds.
 pub(crate) const FLOWER_KINDS: usize = 6;
 /// Number of petals of each kind.
@@ -25,9 +23,9 @@ pub(crate) const FLOWER_DISC_RGB: [[f32; 3]; FLOWER_KINDS] =
     [[0.85, 0.52, 0.03], [0.03, 0.02, 0.02], [0.18, 0.05, 0.30], [0.75, 0.55, 0.05], [0.66, 0.30, 0.50], [0.85, 0.70, 0.20]];
 
 /// Position along a petal of each of its vertices.
-pub(crate) const PETAL_ALONG: [f32; PETAL_VERTICES as usize] = [0.0, 0.55, 0.55, 1.0, 1.0];
+pub(crate) const PETAL_ALONG: [f32; 5] = [0.0, 0.55, 0.55, 1.0, 1.0];
 /// Position across it, relative to its width.
-pub(crate) const PETAL_ACROSS: [f32; PETAL_VERTICES as usize] = [0.0, -0.5, 0.5, -0.28, 0.28];
+pub(crate) const PETAL_ACROSS: [f32; 5] = [0.0, -0.5, 0.5, -0.28, 0.28];
 /// Fraction of its rise that a petal loses to its tip.
 pub(crate) const PETAL_FLATTENS: f32 = 0.45;
 
