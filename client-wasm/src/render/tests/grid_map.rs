@@ -18,20 +18,7 @@ fn counts(gpu: &Gpu, mirror: &mut Mirror, options: RenderOptions) -> (OffscreenR
 /// A plateau 12 m high and 24 m wide across a meadow: wide enough for a rectangle that all rays to a grid behind it cross.
 fn ridge() -> Mirror {
     let heights: Vec<u8> = (0..17 * 17).map(|at| if (4..=10).contains(&(at / 17)) { 255 } else { 0 }).collect();
-    let mut mirror = Mirror::default();
-    let maps =
-        TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: [4.0, 4.0], level_m: 12.0 / 255.0, base_m: 0.0 };
-    let scene = Scene { patches: Patches { count: [4, 4], ..Patches::default() }, ..Scene::new(maps) };
-    let scene = ServerMessage::Scene {
-        scene: Box::new(scene),
-        height_png: grey_png([17; 2], &heights),
-        covering_png: grey_png([16; 2], &[255; 16 * 16]),
-        nutrient_png: Vec::new(),
-        models: Vec::new(),
-        shapes: Default::default(),
-    };
-    mirror.apply(scene).expect("a sound scene");
-    mirror
+    meadow_over(&heights, |scene| scene.terrain.level_m = 12.0 / 255.0, &[255; 16 * 16])
 }
 
 #[test]
