@@ -350,8 +350,8 @@ fn covering_map(scene: &Scene, source: &Source) -> Result<(Vec<u8>, CoverMap), S
     }
     if has_too_many_models(scene, &map) {
         return Err(format!(
-            "names `{name}`, which places more than {MODEL_BOXES_LIMIT} models, or has more than {MODEL_PIXELS_LIMIT} pixels around them; allowed: at most that. Paint fewer pixels, or raise their \
-             `apart_m`"
+            "names `{name}`, which places too many models; allowed: at most {MODEL_BOXES_LIMIT}, with {MODEL_PIXELS_LIMIT} pixels in the rectangles around \
+             them. Paint fewer pixels, or raise their `apart_m`"
         ));
     }
     Ok((png, map))
