@@ -103,7 +103,7 @@ pub const VIEWS: [View; 10] = [
         act: Act::Wind,
         eye: over([124.0, 197.0], 10.0, 20.0, -12.0),
         shows: "the valley from 10 m",
-        answers: "Zhang, Figure 23 (b and c, heights 5 and 10); Bakay 2003, Figure 1.2",
+        answers: "Zhang, Figure 23 (c, height 10); Bakay 2003, Figure 1.2",
     },
     View {
         name: "hill-storm",
@@ -119,7 +119,7 @@ pub const VIEWS: [View; 10] = [
         act: Act::Track,
         eye: Eye::Chase([90.0, 60.0, 20.0]),
         shows: "cars and drifts of four grasses from 60 m",
-        answers: "Chen & Johan 2010, Figure 13; Zhang, Figure 23 (d, height 20)",
+        answers: "Chen & Johan 2010, Figure 13",
     },
     View {
         name: "aircraft-storm",
