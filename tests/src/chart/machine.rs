@@ -14,9 +14,19 @@ pub fn machine() -> String {
 }
 
 /// The processor's name; on systems without `/proc/cpuinfo` its architecture.
-fn processor() -> String {
+pub(super) fn processor() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     model_name(&info).unwrap_or(std::env::consts::ARCH).to_owned()
+}
+
+/// Memory of the machine (GiB); unknown on systems without `/proc/meminfo`.
+pub(super) fn memory_gib() -> Option<f64> {
+    total_gib(&std::fs::read_to_string("/proc/meminfo").ok()?)
+}
+
+fn total_gib(meminfo: &str) -> Option<f64> {
+    let kib = meminfo.lines().find_map(|line| line.strip_prefix("MemTotal:"))?.trim().strip_suffix(" kB")?;
+    Some(kib.parse::<f64>().ok()? / f64::from(1 << 20))
 }
 
 fn model_name(cpuinfo: &str) -> Option<&str> {
@@ -25,7 +35,7 @@ fn model_name(cpuinfo: &str) -> Option<&str> {
 }
 
 /// `rustc 1.95.0`, without commit and date.
-fn rustc_version() -> Option<String> {
+pub(super) fn rustc_version() -> Option<String> {
     let output = Command::new("rustc").arg("--version").output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;
     let words: Vec<&str> = text.split_whitespace().take(2).collect();
@@ -41,6 +51,12 @@ mod tests {
         let cpuinfo = "processor\t: 0\nvendor_id\t: Made\nmodel name\t: Made-up 9000 @ 1 GHz\nstepping\t: 1\n";
         assert_eq!(model_name(cpuinfo), Some("Made-up 9000 @ 1 GHz"));
         assert_eq!(model_name("processor\t: 0\n"), None);
+    }
+
+    #[test]
+    fn the_memory_is_that_of_the_machine() {
+        assert_eq!(total_gib("MemTotal:        2097152 kB\nMemFree:  1 kB\n"), Some(2.0));
+        assert_eq!(total_gib("MemFree:  1 kB\n"), None);
     }
 
     #[test]

@@ -18,6 +18,7 @@
 //! | [`start`] | times of the first pictures of a page in a browser |
 //! | [`stream`] | bits on the wire against the error of the grass |
 //! | [`versions`] | the same views with two versions of Prairie in a browser |
+//! | [`zhang`] | the platform and the scene of Zhang's thesis, measured |
 //! | [`figure`] | line charts and coloured fields as SVG |
 //! | [`line`](mod@line) | a line per method, with interpolation |
 //! | [`plot`], [`ticks`] | a log–log chart as SVG |
@@ -52,6 +53,7 @@ pub mod tables;
 pub mod ticks;
 pub mod versions;
 pub mod wind;
+pub mod zhang;
 
 pub use row::Row;
 pub use run::{Outcome, Problem, Run};

@@ -22,7 +22,7 @@ use tests::chart::run::{Repeats, measure};
 use tests::chart::summary::summary;
 use tests::chart::tables::with_tables;
 use tests::chart::versions::{PAGE_VIEWS, PageView};
-use tests::chart::{Problem, bend, gpu, heights, plants, shells, start, stream, versions, wind};
+use tests::chart::{Problem, bend, gpu, heights, plants, shells, start, stream, versions, wind, zhang};
 use tests::still::Still;
 use tests::views::{VIEWS, View};
 
@@ -176,6 +176,15 @@ enum Model {
     /// Stream: bits per cell against error, by causes, in a closed loop, by the codec of patches, and by general compressors
     #[command(after_help = STREAM_FILES)]
     Stream(Options),
+    /// Zhang's prairie on this machine, beside the platform of the thesis (Table 3)
+    Zhang {
+        /// Output folder
+        #[arg(long, value_name = "DIR", default_value = "tests/results")]
+        out: PathBuf,
+        /// Small pictures and few steps, for a quick look
+        #[arg(long)]
+        quick: bool,
+    },
 }
 
 /// Cache folder of references, within the folder of the charts.
@@ -210,6 +219,7 @@ fn main() -> Result<()> {
         Model::Versions { before, after, views, out } => compare_versions(&before, &after, views, &out),
         Model::Pictures { of, only } => draw_pictures(&of, only.as_deref()),
         Model::Shells(options) => charts("shells", Vec::new(), &shells::FIGURES, &options),
+        Model::Zhang { out, quick } => write_report(&zhang::report(quick)?, &out, "zhang.md"),
         Model::Stream(options) => charts("stream", Vec::new(), &stream::FIGURES, &options),
     }
 }

@@ -12,7 +12,7 @@ use crate::still::frame_secs;
 
 /// Size of the pictures (px), and of quick ones.
 const SIZE_PX: [u32; 2] = [960, 540];
-const QUICK_SIZE_PX: [u32; 2] = [320, 180];
+const QUICK_SIZE_PX: [u32; 2] = [160, 90];
 
 pub(super) fn qualities(quick: bool) -> &'static [Quality] {
     if quick { &[Quality::Low, Quality::Medium] } else { &[Quality::Low, Quality::Medium, Quality::High] }

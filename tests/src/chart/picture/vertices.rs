@@ -28,10 +28,10 @@ struct Wanted {
 const THOROUGH: Wanted =
     Wanted { sizes_px: [[960, 540], [480, 270], [240, 135]], qualities: &Quality::ALL, view_step: 1, rounds: 4, round_secs: 0.3 };
 const QUICK: Wanted = Wanted {
-    sizes_px: [[320, 180], [160, 90], [80, 45]],
+    sizes_px: [[160, 90], [80, 44], [40, 22]],
     qualities: &[Quality::Low, Quality::Medium],
-    view_step: 4,
-    rounds: 2,
+    view_step: 5,
+    rounds: 1,
     round_secs: 0.0,
 };
 /// Points of a line on the chart.
