@@ -2,7 +2,7 @@
 
 use prairie_wind::{Advection, TimeScheme};
 
-const README: &str = include_str!("../README.md");
+const README: &str = include_str!("../../README.md");
 
 /// The cells of the row that begins with a scheme.
 fn row(scheme: &str) -> Vec<&'static str> {

@@ -145,7 +145,7 @@ fn the_wake_of_a_cylinder_at_re_40_is_that_of_the_literature() {
 }
 
 #[test]
-#[ignore = "four minutes; cargo test --release -p prairie-wind --test solids -- --ignored --nocapture"]
+#[ignore = "four minutes; cargo test --release -p prairie-wind --test methods -- --ignored --nocapture"]
 fn a_cylinder_at_re_100_sheds_vortices_as_in_the_literature() {
     let (mut air, centre, dt_secs) = cylinder(100.0, 16.0, [31.0, 31.0]);
     air.set_velocity(|[x, y, _]| {
