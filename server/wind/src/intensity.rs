@@ -25,7 +25,7 @@ pub enum Intensity {
         /// Period T (s); above 0, at most 1e6.
         period_secs: f32,
     },
-    /// A curve through points of one's own.
+    /// A curve through points of one's own, the only one that may be below 0.
     Spline(Spline),
 }
 

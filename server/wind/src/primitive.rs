@@ -45,7 +45,8 @@ pub struct Primitive {
     pub direction: [f32; 2],
     /// Dust that it releases, relative to a gust source; 0 to 1.
     pub dust: f32,
-    /// Factor of speed and dust over time. Below 1 it reduces the rate at which the air is driven as well, so that a primitive of intensity 0 leaves the air alone.
+    /// Factor of speed and dust over time. Below 1 in magnitude it reduces the rate at which the air is driven as well, so that a primitive of intensity 0 leaves the air
+    /// alone. Below 0 the flow is reversed: a source takes air in. Dust is released above 0 only.
     pub intensity: Intensity,
     /// Motion of the intensity away from the centre. What the primitive does to the air is delayed with the distance; the pressure passes it on without a delay.
     pub front: Front,
@@ -120,11 +121,16 @@ impl Primitive {
     /// Drives the air by a backward Euler step, which never overshoots, around the primitive's position at `moment`.
     pub fn drive<R: Real>(&self, grid: &Grid<R>, moment: Moment, dt_secs: f64, velocity: &mut Velocity<R>, footprint: &mut Footprint<R>) {
         let even = self.even_level(moment.intensity_secs);
-        if self.shape == Shape::Source || even == Some(0.0) {
+        let gives_air = |level: f64| match self.shape {
+            Shape::Source => level >= 0.0,
+            Shape::Sink => level <= 0.0,
+            _ => false,
+        };
+        if even.is_some_and(|level| level == 0.0 || gives_air(level)) {
             return;
         }
         let fraction_of = |level: f64| {
-            let reach = RATE_PER_S * level.min(1.0) * dt_secs;
+            let reach = RATE_PER_S * level.abs().min(1.0) * dt_secs;
             (level, R::of(reach / (1.0 + reach)))
         };
         let even = even.map(fraction_of);
@@ -132,9 +138,11 @@ impl Primitive {
             footprint.put(grid, field.location, self.centre_m(moment.secs), [R::of(self.radius_m.into()); 3]);
             footprint.for_each(grid, field, |speed, weight, offset_m| {
                 let (level, fraction) = even.unwrap_or_else(|| fraction_of(self.level_at(moment.intensity_secs, offset_m)));
-                if self.shape == Shape::Sink {
-                    // Removed air takes its momentum with it.
-                    *speed = *speed / (R::one() + weight * R::of(self.divergence_per_s() * level * dt_secs));
+                if matches!(self.shape, Shape::Source | Shape::Sink) {
+                    // Removed air takes its momentum with it, and given air brings none.
+                    if !gives_air(level) {
+                        *speed = *speed / (R::one() + weight * R::of(self.divergence_per_s() * level.abs() * dt_secs));
+                    }
                     return;
                 }
                 let target = R::of(self.target(offset_m.map(R::wide))[axis] * level);
@@ -175,7 +183,7 @@ impl Primitive {
             footprint.put(grid, dust.location, self.centre_m(moment.secs), [R::of(self.radius_m.into()); 3]);
             footprint.for_each(grid, dust, |density, weight, offset_m| {
                 let level = even.unwrap_or_else(|| self.level_at(moment.intensity_secs, offset_m));
-                *density = *density + weight * R::of(full * level);
+                *density = *density + weight * R::of(full * level.max(0.0));
             });
         }
     }

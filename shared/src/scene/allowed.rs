@@ -104,7 +104,7 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("wind.primitives.hold_secs", Range(0.0, 3600.0)),
     ("wind.primitives.fall_secs", Range(0.0, 3600.0)),
     ("wind.primitives.period_secs", Range(0.0, 86_400.0)),
-    ("wind.primitives.intensity_points", Course(0, 32, [0.0, 86_400.0], [0.0, 2.0])),
+    ("wind.primitives.intensity_points", Course(0, 32, [0.0, 86_400.0], [-2.0, 2.0])),
     ("wind.primitives.front_m_per_s", Range(0.0, 1000.0)),
     ("wind.primitives.step_m", Range(0.0, 1000.0)),
     ("natural_wind.strength_rad_per_s2", Range(0.0, 20.0)),

@@ -16,11 +16,11 @@ pub struct Spline {
 
 /// Minimum and maximum number of points.
 const POINTS: std::ops::RangeInclusive<usize> = 2..=32;
-/// Maximum intensity at a point.
+/// Maximum magnitude of the intensity at a point.
 const MAX_LEVEL: f32 = 10.0;
 
 impl Spline {
-    /// The spline of a period (s), above 0, through 2 to 32 `points` of time (s) and intensity: times ascend from 0 to below the period, intensities are 0 to 10.
+    /// The spline of a period (s), above 0, through 2 to 32 `points` of time (s) and intensity: times ascend from 0 to below the period, intensities are -10 to 10.
     pub fn new(period_secs: f32, points: Vec<[f32; 2]>) -> Self {
         let mut spline = Self { period_secs, slopes_per_s: Vec::new(), points };
         spline.slopes_per_s = (0..spline.points.len()).map(|n| spline.slope_per_s(n)).collect();
@@ -60,8 +60,8 @@ impl Spline {
         let [slope, next_slope] = [n, (n + 1) % self.points.len()].map(|n| self.slopes_per_s[n] * piece_secs);
         let s = (phase_secs - from_secs) / piece_secs;
         let value = from + s * (slope + s * (3.0 * rise - 2.0 * slope - next_slope + s * (slope + next_slope - 2.0 * rise)));
-        // Only rounding takes it below 0.
-        value.max(0.0)
+        // Only rounding takes it out of the range of the two points.
+        value.clamp(from.min(from + rise), from.max(from + rise))
     }
 
     pub(super) fn validate(&self, path: &str) -> Result<(), ConfigError> {
@@ -72,7 +72,7 @@ impl Spline {
         for (n, &[secs, level]) in self.points.iter().enumerate() {
             let is_next = secs >= 0.0 && secs > before_secs && secs < self.period_secs;
             check(is_next, format!("{points}[{n}][0]"), secs, "0 to below the period, above the time of the point before")?;
-            check((0.0..=MAX_LEVEL).contains(&level), format!("{points}[{n}][1]"), level, "0 to 10")?;
+            check((-MAX_LEVEL..=MAX_LEVEL).contains(&level), format!("{points}[{n}][1]"), level, "-10 to 10")?;
             before_secs = secs;
         }
         Ok(())

@@ -66,6 +66,13 @@ fn a_periodic_intensity_is_the_square_of_a_sine() {
 }
 
 #[test]
+fn a_spline_goes_below_0_and_stays_within_the_range_of_its_points() {
+    let both_ways = Intensity::Spline(Spline::new(4.0, vec![[0.0, 1.0], [2.0, -1.0]]));
+    assert_eq!([0.0, 1.0, 2.0, 3.0, 4.0].map(|secs| both_ways.level(secs)), [1.0, 0.0, -1.0, 0.0, 1.0]);
+    assert!((0..=8000).map(|n| both_ways.level(f64::from(n) / 1000.0)).all(|level| (-1.0..=1.0).contains(&level)));
+}
+
+#[test]
 fn only_a_steady_intensity_acts_before_the_start() {
     for (intensity, level) in all().into_iter().zip([1.0, 0.0, 0.0, 0.0, 0.0]) {
         assert_eq!([-1e-9, -3.0, -1e9].map(|secs| intensity.level(secs)), [level; 3], "{intensity:?}");

@@ -43,7 +43,7 @@ pub struct Primitive {
     pub dust: f32,
     /// Factor of its speed and dust, as a function of the time since the start of the world (Bakay §3.2). `steady` is 1; `gust` rises linearly and falls as a
     /// parabola; `cubic` rises and falls by one cubic polynomial each, without a kink; `periodic` is the square of a sine; `spline` goes through
-    /// `intensity_points`. At 0 it leaves the air alone. Default `steady`.
+    /// `intensity_points`. At 0 it leaves the air alone, below 0 it blows the other way. Default `steady`.
     pub intensity: PrimitiveIntensity,
     /// Duration of the rise of `gust` and `cubic` from 0 to 1 (s). Default 0, at once; allowed 0..=3600.
     pub attack_secs: f32,
@@ -55,7 +55,7 @@ pub struct Primitive {
     /// not allow, for a `gust` or `cubic` that happens once, at the start of the world.
     pub period_secs: f32,
     /// Points [secs, intensity] of `spline`, 2 or more, ascending in time and before `period_secs`; it is monotone between them. Default none, allowed
-    /// 0..=32 points, seconds 0..=86400 and intensity 0..=2.
+    /// 0..=32 points, seconds 0..=86400 and intensity -2..=2.
     pub intensity_points: Vec<[f32; 2]>,
     /// Speed at which the intensity runs away from the centre (m/s): at a distance d it is that of the centre `d / front_m_per_s` ago. Default 0, no delay; allowed
     /// 0..=1000.
