@@ -10,7 +10,7 @@ const NOTICE_MS = 5_000;
 
 const LABELS = {
   auto: "Automatic", land: "Ground only", cut: "Alpha test", coverage: "Alpha to coverage", precomputed: "Precomputed orders", weighted: "Weighted blended",
-  unculled: "No culling", raised: "Wind raised with distance", grids: "Map of the grids",
+  unculled: "No culling", raised: "Wind raised with distance", grids: "Map of the grids", shadowed: "Shadows of grass", unshadowed: "No shadows of grass",
 };
 
 // Displayed name of a choice.
@@ -135,6 +135,14 @@ export class Panel {
     this.update(JSON.parse(this.client.state()));
   }
 
+  // Lets grass cast shadows, or not.
+  toggleShadows() {
+    const casts = !JSON.parse(this.client.state()).shadows;
+    this.client.cast_grass_shadows(casts);
+    keep({ shadows: casts ? "on" : "off" });
+    this.update(JSON.parse(this.client.state()));
+  }
+
   // Enters or leaves full screen.
   fullScreen() {
     if (!document.fullscreenEnabled) return this.notify("This browser has no full screen for pages.");
@@ -169,6 +177,7 @@ export class Panel {
     }
     byId("grids").addEventListener("click", () => this.toggleGrids());
     byId("raised").addEventListener("click", () => this.toggleRaised());
+    byId("shadows").addEventListener("click", () => this.toggleShadows());
     byId("hour").addEventListener("input", ({ target }) => {
       this.client.set_hour(Number(target.value));
       this.showHour(Number(target.value), null);
@@ -248,7 +257,7 @@ export class Panel {
     write("count", state.peers.length > 1 ? String(state.peers.length) : "");
     if (state.eye && parameter("scene") !== state.scene_name) keep({ scene: state.scene_name });
     for (const id of ["order", "far"]) if (document.activeElement !== byId(id)) byId(id).value = state[id];
-    for (const id of ["grids", "raised"]) byId(id).setAttribute("aria-pressed", String(state[id]));
+    for (const id of ["grids", "raised", "shadows"]) byId(id).setAttribute("aria-pressed", String(state[id]));
     // Without a device, such as between its loss and its replacement, there is no GPU time.
     write("work", state.cpu_ms === null || state.gpu_ms === null ? "–" : `CPU ${state.cpu_ms.toFixed(1)} · GPU ${state.gpu_ms.toFixed(1)} ms`);
     write("detail", state.automatic ? `${state.level.toFixed(1)} of ${state.highest_level} · target ${state.budget_ms.toFixed(0)} ms` : state.quality);

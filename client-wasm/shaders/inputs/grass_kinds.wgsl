@@ -73,6 +73,11 @@ fn kind_at(p: vec2<f32>) -> u32 {
     return found;
 }
 
+// Leaf area of a kind relative to the first kind, whose leaf area is in the frame's uniforms.
+fn leafiness(kind: Kind) -> f32 {
+    return kind.width * kind.height_m / (kinds.list[0].width * kinds.list[0].height_m);
+}
+
 // Weighted mean of the kinds at a position, as seen from afar.
 fn kinds_blended(p: vec2<f32>) -> Kind {
     if !has_kinds {

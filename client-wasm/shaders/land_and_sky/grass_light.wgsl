@@ -2,8 +2,11 @@
 
 import package::constants::{LEAF_EXTINCTION, LEAST_SUN_SINE};
 import package::inputs::frame::frame;
+import package::inputs::grass_kinds::leafiness;
 import package::inputs::lamps::{lamp_ray, lamps_about};
+import package::inputs::sward_shade::{leaf_area_above, mapped_depth, SwardShade};
 import package::land_and_sky::sky_light::ambient;
+import package::uniforms::Kind;
 
 // Cosine between a light (or half-way vector) and the nearest normal of a blade (Banks 1994; Kajiya & Kay 1989). Twin of `diffuse`.
 fn nearest_normal(along: f32) -> f32 {
@@ -25,10 +28,18 @@ const LEAF_AREA_INDEX: f32 = 1.25;
 // Fraction of light that leaves transmit to those below.
 const LEAF_TRANSMISSION: f32 = 0.10;
 
-// Fraction of sunlight at a relative height in grass of a given height, after its shadow on itself.
-fn sun_in_grass(height_fraction: f32, grass_m: f32) -> f32 {
-    let index = LEAF_AREA_INDEX * smoothstep(0.0, 0.6, grass_m);
+// Fraction of sunlight at a relative height in plants of a given height, after their shadow on themselves, by their height alone.
+fn sun_in_plants(height_fraction: f32, plants_m: f32) -> f32 {
+    let index = LEAF_AREA_INDEX * smoothstep(0.0, 0.6, plants_m);
     return mix(sun_through_leaves(index, 1.0 - height_fraction, frame.toward_sun.y), 1.0, LEAF_TRANSMISSION);
+}
+
+// Fraction of sunlight at a relative height in grass, after the shade of all grass: from the map at a height `above` relative to that of the blades as they lean; beyond the
+// map from an even sward; without shadows of grass, by height alone.
+fn sun_in_grass(height_fraction: f32, kind: Kind, shade: SwardShade, above: f32) -> f32 {
+    let even = frame.shade_extinction * leafiness(kind) * leaf_area_above(height_fraction);
+    let through = mix(exp(-mix(even, mapped_depth(shade, above), shade.fraction)), 1.0, LEAF_TRANSMISSION);
+    return mix(sun_in_plants(height_fraction, kind.height_m), through, frame.shade_strength);
 }
 
 // Reflectance of a blade: diffuse reflection from a partly rounded strip (its own normal, and Kajiya & Kay), transmission mostly straight

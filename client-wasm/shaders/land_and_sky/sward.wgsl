@@ -2,7 +2,8 @@
 
 import package::constants::{LEAF_EXTINCTION, LEAST_DENSITY_DISTANCE_M};
 import package::inputs::frame::frame;
-import package::inputs::grass_kinds::kinds;
+import package::inputs::grass_kinds::leafiness;
+import package::inputs::sward_shade::SwardShade;
 import package::land_and_sky::grass_color::{plant_color, trodden};
 import package::land_and_sky::grass_light::{grass_lamps, grass_light, sun_in_grass};
 import package::uniforms::Kind;
@@ -16,10 +17,11 @@ fn straw_of(hue: f32) -> f32 {
 const MEAN_STRAW: f32 = 0.05625;
 
 // Light from a blade to the eye, at fraction `t` of its length and at `height` relative to the mean height of its kind. `view` runs from the
-// eye to `p`, `light` is the fraction of unshadowed sunlight, `hue` runs from fresh to dry.
+// eye to `p`, `light` is the fraction of unshadowed sunlight, `hue` runs from fresh to dry; `above` is the height relative to that of the blades around it as they
+// lean, where the map of the shade is.
 fn blade_color(
     kind: Kind, tint: vec3<f32>, t: f32, height: f32, hue: f32, straw: f32, tilt: f32, normal: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>, p: vec3<f32>,
-    light: f32,
+    light: f32, shade: SwardShade, above: f32,
 ) -> vec3<f32> {
     var albedo = tint * plant_color(kind.root_rgb, kind.tip_rgb, t, hue);
     albedo = mix(albedo, vec3<f32>(0.38, 0.30, 0.13) * (0.35 + 0.65 * t), straw);
@@ -29,7 +31,7 @@ fn blade_color(
     // Short grass loses little light on the way down.
     let deep = smoothstep(0.0, 0.60, kind.height_m);
     let occlusion = mix(mix(0.60, 0.16, deep), 1.0, smoothstep(0.0, 0.85, max(height, t * 0.75)));
-    let lit = light * sun_in_grass(max(height, t * 0.7), kind.height_m);
+    let lit = light * sun_in_grass(max(height, t * 0.7), kind, shade, above);
     return grass_light(albedo, normal, tangent, view, lit, occlusion) + grass_lamps(albedo, normal, tangent, view, p, height);
 }
 
@@ -77,17 +79,14 @@ fn among(color: vec3<f32>, about: vec4<f32>, up: f32, distance_m: f32) -> vec3<f
     return mix(about.rgb, color, own);
 }
 
-// Leaf area of a kind relative to the first kind, whose leaf area is in the frame's uniforms.
-fn leafiness(kind: Kind) -> f32 {
-    return kind.width * kind.height_m / (kinds.list[0].width * kinds.list[0].height_m);
-}
-
 // Mean of the highlights along blades that lean in all directions, relative to sunlight: fitted to pictures of every blade without a far look, of meadow and
 // continuum with the sun behind and before the eye.
 const SWARD_SHEEN: f32 = 0.008;
 
 // Colour of a sward seen from afar: two layers of leaves, each with half of the visible leaf area; deeper leaves show less.
-fn sward_color(p: vec3<f32>, up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: vec2<f32>, view: vec3<f32>, light: f32) -> vec3<f32> {
+fn sward_color(
+    p: vec3<f32>, up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: vec2<f32>, view: vec3<f32>, light: f32, shade: SwardShade,
+) -> vec3<f32> {
     let leaf_area = frame.leaf_area * leafiness(kind);
     let free = clamp(-dot(view, up), 0.05, 1.0) / (VISIBLE_LEAF_EXTINCTION * max(leaf_area, 0.05));
     let tilt = length(lean);
@@ -98,7 +97,7 @@ fn sward_color(p: vec3<f32>, up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: v
     for (var i = 0; i < 2; i++) {
         let height = max(1.0 - CANOPY_TOP_DEPTH - free * select(1.39, 0.29, i == 0), 0.0);
         let t = mix(height, 1.0, 0.35);
-        color += blade_color(kind, tint, t, height, select(0.65, 0.35, i == 0), MEAN_STRAW, tilt, facing, tangent, view, p, light);
+        color += blade_color(kind, tint, t, height, select(0.65, 0.35, i == 0), MEAN_STRAW, tilt, facing, tangent, view, p, light, shade, height);
     }
     return 0.5 * color + frame.sun_rgb * (light * SWARD_SHEEN);
 }

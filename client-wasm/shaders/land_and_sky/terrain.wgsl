@@ -7,6 +7,7 @@ import package::inputs::grass_kinds::{kinds, kinds_blended};
 import package::inputs::lamps::lamps_on;
 import package::inputs::noise::{noise, noise_over};
 import package::inputs::shadows::sun_visible;
+import package::inputs::sward_shade::{shade_at, sun_over_grass};
 import package::inputs::wind::{ground_wind_at, lean_of_wind};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
@@ -151,11 +152,12 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let span_m = distance_m * frame.pixel_rad * inverseSqrt(max(-dot(view, normal), 0.05));
     let fraction = fraction_at(p, span_m, between, view, normal, kind);
     let sun_light = ground.air.z * sun_visible(ground.p + normal * 0.05);
+    let shade = shade_at(p);
     var color = vec3<f32>(0.0);
     if !is_plain && fraction < 1.0 {
         let soil = soil_at(p, span_m);
         let rough = normalize(normal + vec3<f32>(soil.slope.x, 0.0, soil.slope.y));
-        let direct = frame.sun_rgb * (sun_light * max(dot(rough, frame.toward_sun), 0.0));
+        let direct = frame.sun_rgb * (sun_light * sun_over_grass(shade, 0.0) * max(dot(rough, frame.toward_sun), 0.0));
         // Nearby grass hides part of the sky.
         let open = 1.0 - 0.5 * smoothstep(0.0, 0.5, soft_fraction(p));
         color = soil.albedo * (direct + ambient(rough) * open + lamps_on(ground.p, rough, 0.0)) * (1.0 - fraction);
@@ -163,9 +165,9 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     if fraction > 0.0 {
         // Far look of the grass, leaning like the blades, where no blades hide the ground; dark between blades.
         let lean = laid_at(p, distance_m) + ground.air.xy * kind.wind_bend_rad;
-        let afar = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light);
+        let afar = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light, shade);
         let mottle = mottle_at(p, span_m);
-        let reached = frame.sun_rgb * sun_light * sun_in_grass(0.0, kind.height_m);
+        let reached = frame.sun_rgb * sun_light * sun_in_grass(0.0, kind, shade, 0.0);
         let under = floor_at(p, distance_m, kind) * (reached + ambient(normal) * 0.55 + lamps_on(ground.p, normal, 0.0) * 0.35);
         let grass = afar * mix(mottle, 1.0, smoothstep(200.0, 900.0, distance_m));
         color += mix(under, grass, between) * fraction;

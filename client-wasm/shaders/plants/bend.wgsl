@@ -4,8 +4,8 @@
 // stiffness (Zhang, section 3.2; `blade.wgsl`). Those farther away follow the bend field and the current wind.
 
 import package::constants::{
-    BEND_SATURATES_M_PER_S, CHUNK, COARSE_LIST, DRAW_WORDS, FAR_HEAD_LIST, FINE_LIST, FINE_SPREAD, GROWTH_BY_TUFT, HEAD_LIST, LINKS, NEAR_SLOTS,
-    PLANT_LISTS, SINGLE_LIST, TAU, WIND_SHAPE,
+    BEND_SATURATES_M_PER_S, CHUNK, COARSE_LIST, DRAW_WORDS, FAR_HEAD_LIST, FINE_LIST, FINE_SPREAD, FLAT_RAD, GROWTH_BY_TUFT, HEAD_LIST, LINKS,
+    NEAR_SLOTS, PLANT_LISTS, SINGLE_LIST, TAU, WIND_SHAPE,
 };
 import package::inputs::bend_atlas::{bend_at, far_lean, field_fraction, lean_of_bend, trailing_lean};
 import package::inputs::frame::{frame, runtime_zero};
@@ -14,6 +14,7 @@ import package::inputs::grass_kinds::{kind_at, kinds};
 import package::inputs::noise::noise;
 import package::inputs::random::random3;
 import package::inputs::shadows::sun_visible;
+import package::inputs::sward_shade::{shade_at, sun_over_grass};
 import package::inputs::wind::{gust_at, lean_of_wind};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::{drift_at, tint_of};
@@ -134,7 +135,7 @@ fn leans_of(plant: Plant, leans_in: array<vec2<f32>, 3>) -> array<vec2<f32>, 3> 
         let fraction = (f32(i) + 1.0) / 3.0;
         let bend = select(mix(fractions[i], 1.0 + 0.06 * fraction, flat_fraction), 1.0, is_stiff);
         let v = pressed[i] * bend + plant.droop_rad * fraction * (1.6 - 1.1 * flat_fraction);
-        leans[i] = v * min(1.0, 1.55 / max(length(v), 1e-5));
+        leans[i] = v * min(1.0, FLAT_RAD / max(length(v), 1e-5));
     }
     return leans;
 }
@@ -221,7 +222,7 @@ fn about(plant: Plant, tint: vec3<f32>, lean: vec2<f32>, distance_m: f32, light:
     if between <= 0.02 && contrast(distance_m) >= 1.0 {
         return vec4<f32>(0.0);
     }
-    return vec4<f32>(sward_color(plant.root_m, plant.normal, kind, tint, lean, view, light), between);
+    return vec4<f32>(sward_color(plant.root_m, plant.normal, kind, tint, lean, view, light, shade_at(plant.root_m.xz)), between);
 }
 
 fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, kind: f32) {
@@ -261,6 +262,7 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
             var head = blade;
             head.width = small;
             head.kind_and_hue = kind;
+            head.sunlight *= sun_over_grass(shade_at(plant.root_m.xz + points[2].xz), points[2].y);
             let is_reference = plants.thinnest_px == 0.0;
             let is_far = HEAD_RADIUS_M * small < FAR_HEAD_PX * own * pixel_m;
             append(select(HEAD_LIST, FAR_HEAD_LIST, is_far & !is_reference), head);

@@ -7,6 +7,7 @@ import package::inputs::grass_kinds::{kind_at, kinds};
 import package::inputs::lamps::lamps_on;
 import package::inputs::random::dither_at;
 import package::inputs::shadows::sun_visible;
+import package::inputs::sward_shade::shade_at;
 import package::inputs::wind::{gust_at, lean_of_wind, resolved_at};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
@@ -167,10 +168,11 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let tangent = normalize(vec3<f32>(lean.x, 1.0, lean.y));
     let tilt = min(length(lean), 1.45);
     let tint = grass_tint(root);
+    let shade = shade_at(root);
     // Near its root a clump has the colour of the grass around it.
-    let afar = sward_color(ground, ground_normal(root), kind, tint, lean, view, light);
+    let afar = sward_color(ground, ground_normal(root), kind, tint, lean, view, light, shade);
     pose.root_color = hazed(afar, p);
-    let top = blade_color(kind, tint, 0.95, 0.9, 0.5, MEAN_STRAW, tilt, normal, tangent, view, p, light);
+    let top = blade_color(kind, tint, 0.95, 0.9, 0.5, MEAN_STRAW, tilt, normal, tangent, view, p, light, shade, 0.9);
     pose.tip_color = hazed(mix(afar, top, 0.35 + 0.65 * contrast(distance_m)), p);
     pose.petal_light = frame.sun_rgb * light * 0.6 + ambient(normal) + lamps_on(p, normal, 0.3);
     poses_out[id.x] = pose;

@@ -4,6 +4,7 @@ import package::constants::BLADE_SHAPES;
 import package::inputs::frame::{clamped, frame};
 import package::inputs::grass_kinds::kinds;
 import package::inputs::random::dither_at;
+import package::inputs::sward_shade::shade_at;
 import package::land_and_sky::grass_color::tint_of;
 import package::land_and_sky::sward::{among, blade_color, straw_of};
 import package::plants::backbone::{backbone_at, corner_of, covered, side_at, tangent_at, width_at, width_fraction};
@@ -93,8 +94,10 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
     let tilt = asin(min(length(lean) / max(length(tip), 1e-3), 1.0));
     let height = offset.y / kind.height_m;
     let hue = fract(blade.kind_and_hue);
+    let shade = shade_at(p.xz);
     let own = blade_color(
-        kind, tint_of(blade.drift), t, height, hue, straw_of(hue), tilt, soft, tangent, view, p, blade.sunlight,
+        kind, tint_of(blade.drift), t, height, hue, straw_of(hue), tilt, soft, tangent, view, p, blade.sunlight, shade,
+        offset.y / shade.height_m,
     );
     let color = among(own, blade.about, t, distance(blade.root_m, frame.eye_m));
     out.color = color * blade.air.a + blade.air.rgb;

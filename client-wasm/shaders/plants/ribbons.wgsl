@@ -8,7 +8,8 @@ import package::inputs::frame::frame;
 import package::inputs::grass_kinds::kinds;
 import package::inputs::lamps::lamps_on;
 import package::inputs::random::random3;
-import package::land_and_sky::grass_light::{grass_lamps, grass_light, sun_in_grass};
+import package::inputs::sward_shade::{shade_at, sun_over_grass};
+import package::land_and_sky::grass_light::{grass_lamps, grass_light, sun_in_plants};
 import package::land_and_sky::sky_light::ambient;
 import package::plants::blade::{aside_of, meets_spheres};
 import package::plants::visible_plant::{FREE_BLOCK, kind_around, lists, variant_of, VisiblePlant};
@@ -354,7 +355,7 @@ fn lit_border(plant: VisiblePlant, row: Lit, across: f32) -> Border {
     let up = clamp(above / max(plant.height_m, 0.05), 0.0, 1.0);
     let deep = smoothstep(0.0, 0.6, plant.height_m);
     let occlusion = mix(mix(0.62, 0.30, deep), 1.0, smoothstep(0.0, 0.8, up));
-    let light = plant.sunlight * sun_in_grass(0.2 + up, plant.height_m);
+    let light = plant.sunlight * sun_in_plants(0.2 + up, plant.height_m) * sun_over_grass(shade_at(p.xz), above);
     var color: vec3<f32>;
     if row.material == PETAL {
         let sun_facing = dot(normal, frame.toward_sun);

@@ -10,6 +10,7 @@ import package::inputs::frustum::is_seen;
 import package::inputs::grass_kinds::{kind_at, kinds};
 import package::inputs::random::random3;
 import package::inputs::shadows::sun_visible;
+import package::inputs::sward_shade::shade_at;
 import package::inputs::wind::{gust_at, near_ground_fraction, resolved_at};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
@@ -232,7 +233,7 @@ fn standing(plant: UnderbrushPlant, shown: DisplaySize, height: f32) -> VisibleP
     let variant = (plant.species_and_variant >> 8u) % VARIANTS;
     out.variant_and_kind = variant + 2u * VARIANTS * kind_number;
     let view = normalize(root - frame.eye_m);
-    out.grass_rgb = sward_color(root, out.normal, kind, out.tint, lean, view, out.sunlight);
+    out.grass_rgb = sward_color(root, out.normal, kind, out.tint, lean, view, out.sunlight, shade_at(plant.at_m));
     out.grass_fraction = bare_between(shown.distance_m, kind, view, out.normal) * grass_fraction(plant.at_m);
     out.air = air_before(root + vec3<f32>(0.0, 0.5 * height, 0.0));
     return out;

@@ -265,6 +265,12 @@ pub fn show_grids(shows: bool) {
     with_app(|app| app.settings.show_grids(shows));
 }
 
+/// Lets grass cast shadows on grass and ground or not; undefined: by quality.
+#[wasm_bindgen]
+pub fn cast_grass_shadows(casts: Option<bool>) {
+    with_app(|app| app.settings.cast_grass_shadows(casts));
+}
+
 /// Sets the hour of the day, 0 to 24, that determines the sun; any other number restores the scene's own hour.
 #[wasm_bindgen]
 pub fn set_hour(hour: f32) {

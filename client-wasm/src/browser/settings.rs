@@ -135,6 +135,16 @@ impl Settings {
         self.options.shows_grids = shows;
     }
 
+    /// Lets grass cast shadows or not; `None`: by quality.
+    pub(super) fn cast_grass_shadows(&mut self, casts: Option<bool>) {
+        self.options.grass_shadows = casts;
+    }
+
+    /// Whether grass casts shadows in pictures of this quality.
+    pub(super) fn grass_shadows(&self, quality: Quality) -> bool {
+        self.options.grass_shadows.unwrap_or(quality.grass_shadows())
+    }
+
     /// Whether the wind on far clumps is raised with distance, and whether the map of the grass grids is shown.
     pub(super) fn switches(&self) -> [bool; 2] {
         [self.options.raises_far_wind, self.options.shows_grids]

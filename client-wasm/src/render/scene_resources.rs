@@ -4,6 +4,7 @@ use crate::render::gpu::pipeline::PassFactory;
 use crate::render::inputs::frame_bindings::{FrameBindings, SceneTextures};
 use crate::render::land_and_sky::dust::Dust;
 use crate::render::land_and_sky::rain::Rain;
+use crate::render::land_and_sky::shade_map::ShadeMap;
 use crate::render::land_and_sky::terrain::Terrain;
 use crate::render::land_and_sky::terrain_quadtree::TerrainQuadtree;
 use crate::render::options::render_options::BlendOrder;
@@ -28,6 +29,8 @@ pub(super) struct SceneResources {
     pub(super) textures: SceneTextures,
     pub(super) quadtree: TerrainQuadtree,
     pub(super) terrain: Terrain,
+    /// Created when first needed.
+    pub(super) shade_map: Option<ShadeMap>,
     pub(super) blades: Option<Box<Blades>>,
     /// Created when first needed.
     pub(super) billboards: Option<Billboards>,
@@ -56,6 +59,7 @@ impl SceneResources {
             textures: SceneTextures::new(&factory.gpu, bindings, decoded),
             terrain: Terrain::new(&factory, decoded, &quadtree),
             quadtree,
+            shade_map: None,
             blades: None,
             billboards: None,
             shells: None,

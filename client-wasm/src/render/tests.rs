@@ -39,6 +39,7 @@ mod natural_wind;
 mod order;
 mod plain;
 mod resolution;
+mod shade;
 mod shells;
 mod small;
 mod stages;

@@ -1,12 +1,13 @@
 //! Light: position of the sun, atmosphere, lamps, and shading of grass.
 //!
 //! Light is photometric: illuminance in lux and luminance in cd/m², each as linear RGB, in which the sun above the atmosphere is white. Functions
-//! that are also needed on the GPU have twins in `land_and_sky/grass_light.wgsl`, `land_and_sky/sky_light.wgsl` and `inputs/lamps.wgsl`.
+//! that are also needed on the GPU have twins in `land_and_sky/grass_light.wgsl`, `land_and_sky/sky_light.wgsl`, `inputs/lamps.wgsl` and `inputs/sward_shade.wgsl`.
 
 pub mod air;
 pub mod exposure;
 pub mod grass;
 pub mod lamp;
+pub mod shade;
 pub mod sky;
 pub mod sun;
 

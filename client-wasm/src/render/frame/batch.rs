@@ -37,20 +37,23 @@ impl<'a> Batch<'a> {
         Self { renderer, scene, plan, is_first, is_last, encoder }
     }
 
-    /// Sways the trees and draws the shadow cascades that are due.
+    /// Sways the trees, draws the shadow cascades that are due, and casts the shade of the grass.
     pub(super) fn shadows(&mut self) {
         if !self.is_first {
             return;
         }
         let cascades = &self.plan.due_cascades;
         let group = &self.scene.textures.shadow_group;
+        let shade = self.scene.shade_map.as_ref().filter(|_| self.plan.grass_shades);
         {
             let timestamp_writes = self.renderer.timestamps.as_ref().map(|queries| queries.of_compute(Pass::Shadows, cascades.is_empty()));
             let descriptor = wgpu::ComputePassDescriptor { label: Some("sway"), timestamp_writes };
             let mut pass = self.encoder.begin_compute_pass(&descriptor);
             pass.set_bind_group(0, group, &[]);
             self.scene.objects.iter().for_each(|objects| objects.sway(&mut pass));
+            shade.iter().for_each(|shade| shade.cast(&mut pass));
         }
+        shade.iter().for_each(|shade| shade.show(&mut self.encoder, &self.scene.textures.shade));
         for &cascade in cascades {
             let is_last = cascades.last() == Some(&cascade);
             let clock = self.renderer.timestamps.as_ref().and_then(|queries| queries.of_render(Pass::Shadows, false, is_last));

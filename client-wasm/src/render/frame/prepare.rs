@@ -7,6 +7,7 @@ use crate::render::inputs::cascades::SHADOW_CASCADES;
 use crate::render::inputs::frustum::{CascadeVolume, Frustum};
 use crate::render::inputs::view::View;
 use crate::render::inputs::viewpoint::Viewpoint;
+use crate::render::land_and_sky::shade_map::ShadeMap;
 use crate::render::options::render_options::{BlendOrder, FarPlants};
 use crate::render::plants::billboards::{Billboards, ClumpRange};
 use crate::render::plants::grid_map::GridMap;
@@ -43,6 +44,8 @@ pub(super) struct FramePlan {
     /// Batches in which plants are listed and drawn, at least 1.
     pub(super) batches: u32,
     pub(super) patches_written: u32,
+    /// Whether grass casts shadows.
+    pub(super) grass_shades: bool,
 }
 
 impl FramePlan {
@@ -85,6 +88,10 @@ impl Renderer {
         let detail = if scene.stage == Stage::Land { detail.without_blades() } else { detail };
         let view = View::new(camera, self.targets.size_px, self.quality, detail, time_secs, sun);
         let mut frame = view.frame(decoded, &scene.textures, &self.daylight, &poses, &headlights(&poses));
+        if self.options.grass_shadows.unwrap_or(self.quality.grass_shadows()) {
+            frame.shade_strength = 1.0;
+            scene.shade_map.get_or_insert_with(|| ShadeMap::new(&scene.factory));
+        }
         let (eye_m, heading_rad) = (camera.eye_m, camera.heading_rad);
         let shadow_view = ShadowView { eye_m, heading_rad, sun, trees_m: detail.trees_m, culls: self.options.culls, time_secs };
         let cascades = update_cascades(scene, decoded, &mut frame, shadow_view, &poses, dt_secs);
@@ -146,6 +153,7 @@ impl Renderer {
             due_cascades: (0..).zip(cascades).filter_map(|(cascade, volume)| volume.map(|_| cascade)).collect(),
             batches: 1,
             patches_written,
+            grass_shades: frame.shade_strength > 0.0,
         }
     }
 

@@ -17,6 +17,9 @@ pub(crate) use prairie_core::hash::{HASH_INCREMENT, HASH_MULTIPLIER, UNIT_STEPS}
 pub(crate) use prairie_core::light::air::HAZE_FORWARD;
 pub(crate) use prairie_core::light::grass::{LEAF_EXTINCTION, LEAST_SUN_SINE};
 pub(crate) use prairie_core::light::lamp::LEAST_LAMP_DISTANCE_M;
+pub(crate) use prairie_core::light::shade::{
+    FLAT_RAD, LEAF_CLUMPING, LEAF_TOP, RESTING_RAD, SHADE_FIRST, SHADE_RATIO, SHADE_STEPS, THIRD_AREAS,
+};
 pub(crate) use prairie_core::plant::blade::backbone::{LACK_RANGE, LARGEST_BULGE, LEAST_GROWTH, RIGHT_ANGLE_LACK, SPARE};
 pub(crate) use prairie_core::plant::blade::contact::CLEARANCE_M;
 pub(crate) use prairie_core::plant::blade::deflection::{DRAG_LEANS, LAID_RAD4, LOST_PER_RAD2, WIND_SHAPE};
@@ -48,6 +51,14 @@ pub(crate) const FULL_PUFFS_DUST: f32 = 1.5;
 pub(crate) const BEND_ATLAS_LEVELS: u32 = 4;
 /// Earlier states of the bend field in the atlas.
 pub(crate) const PASTS: i32 = lod::PASTS as i32;
+
+// --- shade of the sward ---
+
+/// Cells along a side of the map of the shade, and in all.
+pub(crate) const SHADE_PX: u32 = 192;
+pub(crate) const SHADE_CELLS: u32 = SHADE_PX * SHADE_PX;
+/// Side of a cell (m): that of the bend field's cells.
+pub(crate) const SHADE_CELL_M: f32 = 0.25;
 
 // --- blades and flowers ---
 

@@ -91,6 +91,16 @@ uniform_block! {
         target_m: [f32; 3],
         /// Radius around the line from the eye to it within which trees fade (m); 0 if there is none.
         fade_m: f32,
+        /// Corner of the map of the shade that grass casts (m), and its side (m).
+        shade_corner_m: [f32; 2],
+        shade_extent_m: f32,
+        /// 1 if grass casts shadows, else 0.
+        shade_strength: f32,
+        /// Height above the ground that no grass exceeds (m).
+        shade_top_m: f32,
+        /// Optical depth of an even sward of the first kind towards the sun.
+        shade_extinction: f32,
+        _pad: [u8; 8],
         /// Interaction spheres; unused entries are zero.
         spheres: [Sphere; SPHERE_LIMIT],
         /// Waves of the gusts; unused entries are zero.

@@ -1,5 +1,6 @@
-//! Bind group 0, which all passes share: uniforms, heights, normals, cover, bend atlas, wind, noise, shadow map, sky, repeated patch.
+//! Bind group 0, which all passes share: uniforms, heights, normals, cover, bend atlas, wind, noise, shadow map, sky, repeated patch, shade of the grass.
 
+use crate::render::gpu::constants::SHADE_PX;
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::mipmaps::{all_mipmaps, box_mipmaps};
 use crate::render::gpu::pipeline::{DEPTH, bind, sampled, sampler, texture, uniform};
@@ -35,6 +36,8 @@ pub(crate) struct SceneTextures {
     pub(crate) atlas: BendAtlas,
     pub(crate) repeated: RepeatedTextures,
     pub(crate) wind: WindTexture,
+    /// Map of the shade that grass casts.
+    pub(crate) shade: wgpu::Texture,
     /// Bind group 0 of all passes but the shadow pass.
     pub(crate) group: wgpu::BindGroup,
     /// Bind group 0 without the shadow map, for the pass that draws it.
@@ -60,6 +63,7 @@ impl FrameBindings {
             texture(13),
             texture(14),
             texture(15),
+            texture(16),
         ];
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries: &entries });
         let linear = |mode, compare| {
@@ -117,6 +121,20 @@ fn depth_texture(gpu: &Gpu, side_px: u32, layers: u32) -> wgpu::Texture {
     })
 }
 
+/// Map of the shade that grass casts, without shade.
+fn shade_texture(gpu: &Gpu) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("shade of grass"),
+        size: wgpu::Extent3d { width: SHADE_PX, height: SHADE_PX, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
 fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&Default::default())
 }
@@ -134,11 +152,12 @@ impl SceneTextures {
         let atlas = BendAtlas::new(gpu, *decoded.layout(), decoded.scene());
         let repeated = RepeatedTextures::new(gpu, &atlas, RepeatedPatch::new(decoded.scene()).as_ref());
         let wind = WindTexture::new(gpu, decoded.scene());
+        let shade = shade_texture(gpu);
         let group = |label, shadows: &wgpu::Texture| {
             use wgpu::BindingResource::{Sampler, TextureView};
             let views = [&height_texture, &normal_texture, &cover_texture, &wind.texture, &kind_texture].map(view);
             let [heights, normals, cover, winds, kind_map] = &views;
-            let [leans, near] = &[&repeated.leans, &repeated.near].map(view);
+            let [leans, near, shade] = &[&repeated.leans, &repeated.near, &shade].map(view);
             let layers = wgpu::TextureViewDescriptor { dimension: Some(TextureViewDimension::D2Array), ..Default::default() };
             let bends = &atlas.texture.create_view(&layers);
             let shadows = &shadows.create_view(&layers);
@@ -159,11 +178,12 @@ impl SceneTextures {
                 TextureView(&frame.sky),
                 TextureView(leans),
                 TextureView(near),
+                TextureView(shade),
             ];
             bind(gpu, label, &frame.layout, &resources)
         };
         let (all, shadow) = (group("frame", &frame.shadows), group("frame without shadows", &frame.no_shadows));
-        Self { group: all, shadow_group: shadow, atlas, repeated, wind }
+        Self { group: all, shadow_group: shadow, atlas, repeated, wind, shade }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Fills the uniforms of a frame from camera, light and scene.
 
 use crate::camera::Camera;
+use crate::render::gpu::constants::{SHADE_CELL_M, SHADE_PX};
 use crate::render::gpu::uniforms::{Frame, GustWave, Lamp, Lights, SPHERE_LIMIT, Sphere};
 use crate::render::inputs::cascades;
 use crate::render::inputs::daylight::Daylight;
@@ -11,6 +12,7 @@ use crate::render::options::quality::Quality;
 use crate::state::DecodedScene;
 use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
+use prairie_core::light::shade;
 use prairie_core::light::sun::Sun;
 use prairie_core::scene::{Objects, Plants};
 use prairie_core::wind;
@@ -113,6 +115,12 @@ impl<'a> View<'a> {
             repeated_per_m: textures.repeated.per_m(),
             target_m: self.camera.target_m.unwrap_or_default().to_array(),
             fade_m: if self.camera.target_m.is_some() { FADE_M } else { 0.0 },
+            shade_corner_m: shade_corner_m([eye.x, eye.z]),
+            shade_extent_m: SHADE_PX as f32 * SHADE_CELL_M,
+            shade_strength: 0.0,
+            shade_top_m: scene.plants.most_grown() * scene.tallest_m(),
+            shade_extinction: even_depth(&scene.plants, self.sun),
+            _pad: [0; 8],
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_else(Sphere::zeroed)),
             gusts: std::array::from_fn(|i| gusts.waves().get(i).map_or_else(GustWave::zeroed, GustWave::from)),
             lights: self.lights(decoded, daylight, &lamps),
@@ -164,6 +172,17 @@ impl From<&wind::turbulence::GustWave> for GustWave {
     fn from(&wind::turbulence::GustWave { per_m, phase, strength }: &wind::turbulence::GustWave) -> Self {
         Self { per_m, phase, strength }
     }
+}
+
+/// Corner of the map of the shade around the eye (m): a multiple of its cells, so that it does not flicker as the eye moves.
+fn shade_corner_m(eye_m: [f32; 2]) -> [f32; 2] {
+    eye_m.map(|m| ((m / SHADE_CELL_M).floor() - 0.5 * SHADE_PX as f32) * SHADE_CELL_M)
+}
+
+/// Optical depth towards the sun of upright grass of the first kind.
+fn even_depth(plants: &Plants, sun: Sun) -> f32 {
+    let [_, depth] = shade::stance([0.0; 2], 1.0, sun.direction());
+    leaf_area(plants) * depth
 }
 
 /// Leaf area index of blades of mean height at full density.

@@ -21,7 +21,7 @@ pub(crate) struct BladeDrawList {
     pub(super) are_textured: bool,
     pub(crate) capacities: [u32; 2],
     /// Segments of fine blades, and of others.
-    pub(super) segments: [u32; 2],
+    pub(crate) segments: [u32; 2],
     pub(super) grid_m: f32,
 }
 
