@@ -40,6 +40,7 @@ mod order;
 mod plain;
 mod resolution;
 mod shells;
+mod slabs;
 mod small;
 mod stages;
 mod standing;
