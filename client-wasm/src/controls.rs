@@ -13,7 +13,7 @@ pub struct Controls {
     pub turn: f32,
     /// Step right (+) or left (−); the free camera only.
     pub side: f32,
-    /// Up (+) or down (−); both brake vehicles that cannot fly.
+    /// Up (+) or down (−); a walker jumps and runs, and all other vehicles that cannot fly brake.
     pub rise: f32,
 }
 
@@ -32,7 +32,7 @@ impl Controls {
     /// Driving commands for a vehicle.
     pub fn drive(self, vehicle: VehicleKind) -> Drive {
         let (lift, brake) = match profile(vehicle).vertical {
-            VerticalControl::Lift => (self.rise, 0.0),
+            VerticalControl::Lift | VerticalControl::Jump => (self.rise, 0.0),
             VerticalControl::Brake => (0.0, self.rise.abs()),
         };
         Drive { throttle: self.forward, steer: self.turn, lift, brake }
@@ -62,6 +62,7 @@ mod tests {
         let sink = Controls { rise: -1.0, ..Default::default() };
         assert_eq!((sink.drive(VehicleKind::Car).brake, sink.drive(VehicleKind::Car).lift), (1.0, 0.0));
         assert_eq!((sink.drive(VehicleKind::Helicopter).brake, sink.drive(VehicleKind::Helicopter).lift), (0.0, -1.0));
+        assert_eq!((sink.drive(VehicleKind::Walker).brake, sink.drive(VehicleKind::Walker).lift), (0.0, -1.0), "it runs");
     }
 
     #[test]

@@ -75,6 +75,8 @@ pub enum VerticalControl {
     Lift,
     /// Both act as a brake.
     Brake,
+    /// Jump and run.
+    Jump,
 }
 
 /// Source of a vehicle's heading.
@@ -128,6 +130,15 @@ pub fn profile(kind: VehicleKind) -> VehicleProfile {
             dpad: None,
             chase: ChaseOffset { distance_m: 7.0, height_m: 2.4 },
             heading: HeadingSource::PartAngle,
+            engine: None,
+            ..car
+        },
+        VehicleKind::Walker => VehicleProfile {
+            label: "Walker",
+            key: 'j',
+            dpad: None,
+            chase: ChaseOffset { distance_m: 3.2, height_m: 1.1 },
+            vertical: VerticalControl::Jump,
             engine: None,
             ..car
         },

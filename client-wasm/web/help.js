@@ -11,7 +11,8 @@ export function fillHelp({ vehicles, heights }) {
   const flying = vehicles.filter(({ flies }) => flies).map(({ label }) => label.toLowerCase());
   const arrows = vehicles.filter(({ arrow }) => arrow).map(({ arrow, label }) => `${arrow} ${label.toLowerCase()}`);
   row("help-vehicles", keys(vehicles.map(({ key }) => key.toUpperCase())), `take ${list(named)}`);
-  row("help-rise", null, flying.length ? `${list(flying)}: up, down; all others: brake` : "brake");
+  const jumping = vehicles.filter(({ jumps }) => jumps).map(({ label }) => label.toLowerCase());
+  row("help-rise", null, `${list(flying)}: up, down; ${list(jumping)}: jump, run; all others: brake`);
   row("help-heights", keys(heights.map((_, index) => index + 1)), `view from ${list(heights)} m`);
   row("help-dpad", null, `${list(arrows)}, ↓ get out`);
 }

@@ -81,6 +81,13 @@ pub fn check(corners_m: &[[f32; 2]]) -> Result<(), OutlineFault> {
     Ok(())
 }
 
+/// Whether a point is within an outline, corners in either order; only + − × ÷ are in it. Twin of `is_in_outline` in the client's `plants/blade.wgsl`.
+pub fn contains(corners_m: &[[f32; 2]], [x, z]: [f32; 2]) -> bool {
+    let next = corners_m.iter().cycle().skip(1);
+    let crosses = |(a, b): &(&[f32; 2], &[f32; 2])| (a[1] <= z) != (b[1] <= z) && a[0] + (b[0] - a[0]) * ((z - a[1]) / (b[1] - a[1])) > x;
+    corners_m.iter().zip(next).filter(crosses).count() % 2 == 1
+}
+
 /// Convex parts of a valid outline (see [`check`]), which cover it without overlap.
 pub fn convex_parts(corners_m: &[[f32; 2]]) -> Vec<ConvexPart> {
     let corners = without_straight_corners(corners_m);
@@ -192,17 +199,6 @@ mod tests {
     use proptest::prelude::*;
 
     const U: [[f32; 2]; 8] = [[-2.0, -2.5], [-1.0, -2.5], [-1.0, 1.5], [1.0, 1.5], [1.0, -2.5], [2.0, -2.5], [2.0, 2.5], [-2.0, 2.5]];
-
-    fn contains(corners: &[[f32; 2]], p: [f32; 2]) -> bool {
-        let next = corners.iter().cycle().skip(1);
-        corners
-            .iter()
-            .zip(next)
-            .filter(|(a, b)| (a[1] <= p[1]) != (b[1] <= p[1]) && { a[0] + (b[0] - a[0]) * ((p[1] - a[1]) / (b[1] - a[1])) > p[0] })
-            .count()
-            % 2
-            == 1
-    }
 
     fn assert_made_of(corners: &[[f32; 2]], parts: &[ConvexPart]) {
         let whole: f64 = parts.iter().map(|part| area_m2(&part.corners_m)).sum();

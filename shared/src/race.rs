@@ -52,6 +52,42 @@ impl GateLine {
     }
 }
 
+/// Half the side of a post (m).
+pub const POST_HALF_M: f32 = 0.09;
+/// Height of the posts' tops above the foot of the higher one (m).
+pub const POST_TOP_M: f32 = 4.2;
+/// Depth to which posts reach below the ground (m), so that none floats on a slope.
+pub const POST_DEPTH_M: f32 = 0.5;
+
+/// A post of a gate: a square beam, upright in the ground, that vehicles and balls run into.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GatePost {
+    /// X and Z of its axis (m).
+    pub at_m: [f32; 2],
+    /// Elevation of its ends (m): below the ground, and at the top.
+    pub span_m: [f32; 2],
+    /// Heading of its gate (rad), along which one side faces.
+    pub heading_rad: f32,
+}
+
+impl GatePost {
+    /// The left and the right post of a gate for one who passes it, given the elevation of the ground (m) at X and Z.
+    pub fn pair(gate: &RaceGate, ground_m: impl Fn(f32, f32) -> f32) -> [Self; 2] {
+        let line = GateLine::new(gate);
+        let places_m = [-1.0, 1.0].map(|side| line.place_m(side * line.half_width_m()));
+        let feet_m = places_m.map(|[x, z]| ground_m(x, z));
+        let top_m = feet_m[0].max(feet_m[1]) + POST_TOP_M;
+        let post = |n: usize| Self { at_m: places_m[n], span_m: [feet_m[n] - POST_DEPTH_M, top_m], heading_rad: gate.heading_rad };
+        [post(0), post(1)]
+    }
+
+    /// Unit quaternion (x, y, z, w) of its turn about Y.
+    pub fn rotation(&self) -> [f32; 4] {
+        let (sine, cosine) = libm::sincosf(-0.5 * self.heading_rad);
+        [0.0, sine, 0.0, cosine]
+    }
+}
+
 /// Color of the start light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightColor {
@@ -146,6 +182,19 @@ mod tests {
         // The middle of the way decides, not its ends.
         assert_eq!(north.passage([98.0, 51.0], [110.0, 49.0]), Some(0.5));
         assert_eq!(north.passage([102.0, 51.0], [110.0, 49.0]), None);
+    }
+
+    #[test]
+    fn posts_stand_at_the_ends_of_the_line_and_end_at_one_height() {
+        let east = RaceGate { width_m: 8.0, ..RaceGate::new([20.0, 30.0], FRAC_PI_2) };
+        let [left, right] = GatePost::pair(&east, |_, z| 0.1 * z);
+        // North is to the left of who drives east, and lower here.
+        for (post, z, foot_m) in [(left, 26.0, 2.6), (right, 34.0, 3.4)] {
+            let off_m = [post.at_m[0] - 20.0, post.at_m[1] - z, post.span_m[0] - (foot_m - POST_DEPTH_M), post.span_m[1] - (3.4 + POST_TOP_M)];
+            assert!(off_m.iter().all(|m| m.abs() < 1e-5), "{post:?}");
+            let [_, y, _, w] = post.rotation();
+            assert!((y + 0.5_f32.sqrt()).abs() < 1e-6 && (w - 0.5_f32.sqrt()).abs() < 1e-6, "a turn to the right about Y");
+        }
     }
 
     proptest! {

@@ -6,6 +6,7 @@ import package::constants::{
     LOST_LEANS, LOST_PER_RAD2, MEAN_LEAN, MODES, SINC, VERLET,
 };
 import package::inputs::frame::{frame, runtime_zero};
+import package::uniforms::Slab;
 
 // State of a link, as vectors on the ground.
 struct Link {
@@ -213,15 +214,50 @@ fn aside_of(along: vec3<f32>, below: vec3<f32>, link: f32, centre: vec3<f32>, ra
     return toward(out, to / distance_m, clamp(cosine, -1.0, 1.0));
 }
 
-// Whether there are interaction spheres. Fixed at pipeline creation, since software drivers execute one iteration even of an empty
+// Whether a point is within the outline of the slabs, in their own axes (m).
+fn is_in_outline(p: vec2<f32>) -> bool {
+    let corners = i32(frame.slabs.corner_count) + i32(runtime_zero(p.x));
+    var is_in = false;
+    var a = frame.slabs.outline[max(corners - 1, 0)].at_m;
+    for (var i = 0; i < corners; i++) {
+        let b = frame.slabs.outline[i].at_m;
+        let crosses = (a.y <= p.y) != (b.y <= p.y) && a.x + (b.x - a.x) * ((p.y - a.y) / (b.y - a.y)) > p.x;
+        is_in = is_in != crosses;
+        a = b;
+    }
+    return is_in;
+}
+
+// Direction of a link from `below` (from the root) that ends below the floor of a slab if it starts under the slab or ends within it, as
+// near to `along` as possible.
+fn beneath(along: vec3<f32>, below: vec3<f32>, link: f32, root: vec3<f32>, slab: Slab) -> vec3<f32> {
+    let start = below - (slab.centre_m - root);
+    let reach = slab.reach_m + link;
+    if dot(start, start) > reach * reach {
+        return along;
+    }
+    let end = start + along * link;
+    let up = cross(slab.back, slab.right);
+    let low = dot(start, up);
+    let high = dot(end, up);
+    let starts = is_in_outline(vec2<f32>(dot(start, slab.right), dot(start, slab.back)));
+    let ends = high < slab.half_height_m && is_in_outline(vec2<f32>(dot(end, slab.right), dot(end, slab.back)));
+    if high <= -slab.half_height_m || low >= slab.half_height_m || !(starts || ends) {
+        return along;
+    }
+    return toward(along, up, clamp((-slab.half_height_m - low) / link, -1.0, 1.0));
+}
+
+// Whether there are interaction spheres or slabs. Fixed at pipeline creation, since software drivers execute one iteration even of an empty
 // loop.
 override meets_spheres: bool = true;
 
-// Resolves contacts of a blade with the ground and the interaction spheres; links above the first that meets a sphere continue in its
-// direction.
+// Resolves contacts of a blade with the ground, the interaction spheres and the slabs; links above the first that meets a sphere or a slab
+// continue in its direction.
 fn settle(sway: Sway, length_m: f32, normal: vec3<f32>, root: vec3<f32>) -> Sway {
     let link = length_m / 3.0;
     let spheres = i32(frame.sphere_count) + i32(runtime_zero(root.x));
+    let slabs = i32(frame.slabs.count) + i32(runtime_zero(root.x));
     var settled = sway;
     var below = vec3<f32>(0.0);
     var tangent = vec3<f32>(0.0);
@@ -237,6 +273,11 @@ fn settle(sway: Sway, length_m: f32, normal: vec3<f32>, root: vec3<f32>) -> Sway
                     is_turned = is_turned || any(turned != along);
                     along = turned;
                 }
+            }
+            for (var s = 0; s < slabs; s++) {
+                let turned = beneath(along, below, link, root, frame.slabs.list[s]);
+                is_turned = is_turned || any(turned != along);
+                along = turned;
             }
         }
         if is_turned {

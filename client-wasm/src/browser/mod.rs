@@ -244,7 +244,7 @@ pub fn choices() -> String {
 
 fn vehicle(kind: VehicleKind) -> Value {
     let VehicleProfile { label, key, dpad, vertical, .. } = profile(kind);
-    json!({ "name": kind.name(), "label": label, "key": key, "arrow": dpad.map(Dpad::arrow), "flies": vertical == VerticalControl::Lift })
+    json!({ "name": kind.name(), "label": label, "key": key, "arrow": dpad.map(Dpad::arrow), "flies": vertical == VerticalControl::Lift, "jumps": vertical == VerticalControl::Jump })
 }
 
 /// Sets render options by name: the transparency order, and the representation of far plants. An unknown name changes nothing.

@@ -115,7 +115,8 @@ impl App {
             })
         });
         let standings: Vec<_> = standings.collect();
-        json!({ "race": { "laps": scene.race.laps, "gates": scene.race.gates.len(), "light": light, "standings": standings } })
+        let ghost = self.mirror.ghost_pose().map(|pose| pose.position_m);
+        json!({ "race": { "laps": scene.race.laps, "gates": scene.race.gates.len(), "light": light, "standings": standings, "ghost": ghost } })
     }
 
     fn time_report(&self) -> Value {

@@ -41,6 +41,7 @@ mod plain;
 mod resolution;
 mod shade;
 mod shells;
+mod slabs;
 mod small;
 mod stages;
 mod standing;

@@ -216,6 +216,7 @@ pub(super) fn check_bodies(bodies: &[Body]) -> Result<(), MirrorError> {
         if body.prisms.len() > prisms {
             return Err(range("prisms of a shape", body.prisms.len(), format!("at most {prisms}")));
         }
+        within("stride of a shape", body.stride_m, 0.0, 100.0)?;
         for prism in &body.prisms {
             if !(3..=corners).contains(&prism.outline_m.len()) || prism.seams.len() != prism.outline_m.len() {
                 return Err(range("corners of a prism", prism.outline_m.len(), format!("3..={corners}, each with a seam")));

@@ -160,6 +160,7 @@ impl Objects {
                 from: vehicle.previous,
                 to: pose(body),
                 velocity_m_per_s: body.linvel().to_array(),
+                part_rad: vehicle.controller.part_rad(),
                 is_at_rest: body.is_sleeping(),
             }
         };

@@ -26,6 +26,8 @@ pub enum Act {
     Drag,
     /// A ball rolls away through the grass.
     Roll,
+    /// A walker leaves footprints in the grass.
+    Hike,
 }
 
 const fn forward(throttle: f32, steer: f32) -> Drive {
@@ -42,6 +44,7 @@ impl Act {
             Self::Walk => Some(VehicleKind::Monster),
             Self::Drag => Some(VehicleKind::Sled),
             Self::Roll => Some(VehicleKind::Ball),
+            Self::Hike => Some(VehicleKind::Walker),
         }
     }
 
@@ -53,6 +56,7 @@ impl Act {
         const WALK: &[(f32, Drive)] = &[(4.0, forward(0.7, 0.1))];
         const DRAG: &[(f32, Drive)] = &[(1.8, forward(0.8, 0.0)), (2.4, forward(0.6, 0.7))];
         const ROLL: &[(f32, Drive)] = &[(2.6, forward(1.0, 0.15))];
+        const HIKE: &[(f32, Drive)] = &[(4.0, forward(1.0, 0.1))];
         match self {
             Self::Wind => &[],
             Self::Track => TRACK,
@@ -60,6 +64,7 @@ impl Act {
             Self::Walk => WALK,
             Self::Drag => DRAG,
             Self::Roll => ROLL,
+            Self::Hike => HIKE,
         }
     }
 

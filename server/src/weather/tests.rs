@@ -26,7 +26,7 @@ fn grass(scene: &Scene) -> Field {
 
 fn hovering(velocity_m_per_s: [f32; 3]) -> Motion {
     let pose = BodyPose { position_m: [64.0, 5.0, 64.0], rotation: [0.0, 0.0, 0.0, 1.0] };
-    Motion { kind: VehicleKind::Helicopter, from: pose, to: pose, velocity_m_per_s, is_at_rest: false }
+    Motion { kind: VehicleKind::Helicopter, from: pose, to: pose, velocity_m_per_s, part_rad: 0.0, is_at_rest: false }
 }
 
 /// A small wind with dust, after `ticks` ticks.

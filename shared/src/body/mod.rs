@@ -8,7 +8,7 @@ mod pose;
 mod prism;
 
 pub use motion::{Motion, MotionError};
-pub use pose::{BodyPose, POSITION_QUANTUM_M, PoseCode, ROTATION_FULL};
+pub use pose::{BodyPose, POSITION_QUANTUM_M, PoseCode, ROTATION_FULL, part_code, part_rad};
 pub use prism::Prism;
 
 use serde::{Deserialize, Serialize};
@@ -22,4 +22,7 @@ pub struct Body {
     pub is_round: bool,
     /// Whether a rotor blows air down on the grass.
     pub has_downwash: bool,
+    /// Distance (m) of a walk cycle, in which the prisms that bear weight are feet that stand in turn: those to the left in the first half of the turn of
+    /// the moving part, those to the right in the second. 0 for a body without feet.
+    pub stride_m: f32,
 }

@@ -1,6 +1,6 @@
 //! Motion of objects in a step, as input to grass and wind.
 
-use super::BodyPose;
+use super::{BodyPose, part_code, part_rad};
 use crate::scene::VehicleKind;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -16,6 +16,8 @@ pub struct Motion {
     pub to: BodyPose,
     /// Velocity after the step (m/s), which moves the air. Contact with the grass uses the two poses instead.
     pub velocity_m_per_s: [f32; 3],
+    /// Angle of the moving part (rad) after the step, as in [`ObjectPose`](crate::wire::ObjectPose): the phase of a walk, by which feet stand in turn.
+    pub part_rad: f32,
     /// Whether the physics has put the object to sleep.
     pub is_at_rest: bool,
 }
@@ -65,9 +67,9 @@ impl Motion {
         Self { from: level(self.from), to: level(self.to), ..*self }
     }
 
-    /// The same motion between [rounded](BodyPose::rounded) poses: that by which the grass is pressed.
+    /// The same motion between [rounded](BodyPose::rounded) poses, with the rounded angle of the moving part: that by which the grass is pressed.
     pub fn rounded(&self) -> Self {
-        Self { from: self.from.rounded(), to: self.to.rounded(), ..*self }
+        Self { from: self.from.rounded(), to: self.to.rounded(), part_rad: part_rad(part_code(self.part_rad)), ..*self }
     }
 
     /// Checks the motion.
@@ -75,13 +77,14 @@ impl Motion {
     /// # Errors
     /// [`MotionError`] when a value is NaN or infinite, a rotation is not a unit quaternion, or the displacement exceeds 100 m.
     pub fn check(&self) -> Result<(), MotionError> {
-        let Self { kind, from, to, velocity_m_per_s, .. } = *self;
-        let vectors: [(&str, &[f32]); 5] = [
+        let Self { kind, from, to, velocity_m_per_s, part_rad, .. } = *self;
+        let vectors: [(&str, &[f32]); 6] = [
             ("from.position_m", &from.position_m),
             ("from.rotation", &from.rotation),
             ("to.position_m", &to.position_m),
             ("to.rotation", &to.rotation),
             ("velocity_m_per_s", &velocity_m_per_s),
+            ("part_rad", &[part_rad]),
         ];
         if let Some((field, value)) = vectors.into_iter().find(|(_, value)| !value.iter().all(|v| v.is_finite())) {
             return Err(MotionError::NotFinite { kind, field, value: value.to_vec() });

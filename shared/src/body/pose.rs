@@ -1,11 +1,25 @@
 //! Pose of a body, and its code on the wire.
 
 use serde::{Deserialize, Serialize};
+use std::f32::consts::TAU;
 
 /// Quantum of a position on the wire (m).
 pub const POSITION_QUANTUM_M: f32 = 1.0 / 8192.0;
 /// Code of 1 for the components of a rotation.
 pub const ROTATION_FULL: f32 = i16::MAX as f32;
+
+/// Quanta of a moving part's angle in a turn.
+const PART_STEPS: f32 = 65_536.0;
+
+/// Code of the angle of a moving part (rad).
+pub fn part_code(part_rad: f32) -> i16 {
+    (part_rad / TAU * PART_STEPS).round() as i64 as i16
+}
+
+/// Angle (rad) of the code of a moving part, −π..π.
+pub fn part_rad(code: i16) -> f32 {
+    f32::from(code) / PART_STEPS * TAU
+}
 
 /// Position and orientation of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

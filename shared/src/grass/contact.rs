@@ -11,7 +11,7 @@ use crate::grid::PatchLayout;
 /// Speed below which an object counts as standing still (m/s).
 pub const STANDSTILL_M_PER_S: f32 = 0.05;
 /// Sinking speed of the grass below the weight of an object at rest (m/s).
-const SETTLING_M_PER_S: f32 = 0.3;
+pub(super) const SETTLING_M_PER_S: f32 = 0.3;
 
 /// One contact of an object with the grass in a step.
 pub struct Contact {
@@ -23,6 +23,8 @@ pub struct Contact {
     pub slip_bend_rad: f32,
     /// Whether grass bends sideways along the rims (Chen & Johan, Eq. 10).
     pub parts_grass: bool,
+    /// Speed at which the grass sinks below the object's weight, however slowly it moves (m/s).
+    pub settling_m_per_s: f32,
     /// Fraction of the bend that remains as flattened grass, 0..=1.
     pub flattened_fraction: f32,
     /// Whether the object is at rest. Its whole bend then counts as flattened grass, and its patches may sleep.
@@ -56,7 +58,7 @@ impl Contact {
                     unit(out).map_or([1.0, 0.0], |out| leg.to_world(out))
                 }),
             };
-            let along = (velocity[0] * direction[0] + velocity[1] * direction[1]).max(SETTLING_M_PER_S);
+            let along = (velocity[0] * direction[0] + velocity[1] * direction[1]).max(self.settling_m_per_s);
             let terrain_rad = cell.limit_rad(direction);
             let limit = terrain_rad.min(self.slip_bend_rad);
             let theta = if bend.theta >= limit {

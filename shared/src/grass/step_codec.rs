@@ -1,21 +1,18 @@
 //! Causes of steps as [differences](Move) from the step before, and back.
 
 use super::Causes;
-use crate::body::{BodyPose, Motion, MotionError, PoseCode};
+use crate::body::{BodyPose, Motion, MotionError, PoseCode, part_code, part_rad};
 use crate::grid::PatchIndex;
 use crate::scene::VehicleKind;
 use crate::wire::codec::moves::{MoveContext, MoveDecoder, MoveEncoder, MoveModel};
 use crate::wire::{Joined, Move, ObjectId, ObjectPose, PatchCheck, PoseChange, RareCauses, StepHead};
 use serde::{Deserialize, Serialize};
-use std::f32::consts::TAU;
 use thiserror::Error;
 
 /// Largest number of objects.
 pub const OBJECT_LIMIT: usize = 1024;
 /// Largest number of steps in a message.
 const STEPS_LIMIT: usize = 4096;
-/// Quanta of a moving part's angle in a turn.
-const PART_STEPS: f32 = 65_536.0;
 
 /// What is known of a step: its causes, the objects behind its motions, and checksums of patches after it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -63,7 +60,7 @@ impl Track {
     }
 
     fn part_rad(&self) -> f32 {
-        f32::from(self.part) / PART_STEPS * TAU
+        part_rad(self.part)
     }
 }
 
@@ -235,7 +232,14 @@ impl Track {
     /// The motion of the newest step, from the pose before it.
     fn motion(&self, from: PoseCode, dt_secs: f32) -> Motion {
         let velocity_m_per_s = self.velocity_m_per_s(dt_secs);
-        Motion { kind: self.kind, from: from.pose(), to: self.pose.pose(), velocity_m_per_s, is_at_rest: self.is_at_rest }
+        Motion {
+            kind: self.kind,
+            from: from.pose(),
+            to: self.pose.pose(),
+            velocity_m_per_s,
+            part_rad: self.part_rad(),
+            is_at_rest: self.is_at_rest,
+        }
     }
 
     fn velocity_m_per_s(&self, dt_secs: f32) -> [f32; 3] {
@@ -245,7 +249,7 @@ impl Track {
 
 fn encode_move(track: &mut Track, motion: &Motion, part_rad: f32) -> Move {
     let pose = PoseCode::of(&motion.to);
-    let part = (part_rad / TAU * PART_STEPS).round() as i64 as i16;
+    let part = part_code(part_rad);
     let change = PoseChange {
         position: [0, 1, 2].map(|n| pose.position[n].wrapping_sub(track.pose.position[n])),
         rotation: [0, 1, 2, 3].map(|n| pose.rotation[n].wrapping_sub(track.pose.rotation[n])),
@@ -297,7 +301,8 @@ mod tests {
     /// A step in which object `id` of each pair moves between two poses.
     fn record(tick: u64, objects: &[(ObjectId, [BodyPose; 2], bool)]) -> StepRecord {
         let motion = |(_, [from, to], is_at_rest): &(_, [BodyPose; 2], _)| {
-            Motion { kind: VehicleKind::Car, from: *from, to: *to, velocity_m_per_s: [0.0; 3], is_at_rest: *is_at_rest }.rounded()
+            let (kind, part_rad) = (VehicleKind::Car, to.position_m[0]);
+            Motion { kind, from: *from, to: *to, velocity_m_per_s: [0.0; 3], part_rad, is_at_rest: *is_at_rest }.rounded()
         };
         let causes = Causes { motions: objects.iter().map(motion).collect(), gusty: vec![tick as u32 / 10], ..Causes::default() };
         StepRecord {
@@ -346,8 +351,8 @@ mod tests {
                 assert_eq!(found.causes.motions.len(), record.causes.motions.len());
                 for (found, wanted) in found.causes.motions.iter().zip(&record.causes.motions) {
                     assert_eq!(
-                        (found.from, found.to, found.is_at_rest),
-                        (wanted.from, wanted.to, wanted.is_at_rest),
+                        (found.from, found.to, found.part_rad, found.is_at_rest),
+                        (wanted.from, wanted.to, wanted.part_rad, wanted.is_at_rest),
                         "step {}",
                         record.tick
                     );

@@ -126,7 +126,7 @@ pub struct Scene {
     /// Default none, allowed at most 8.
     #[serde(default)]
     pub models: Vec<CoverModel>,
-    /// Cars, monsters, helicopters, sleds and balls: number, models, and contact with the grass.
+    /// Cars, monsters, helicopters, sleds, balls and walkers: number, models, and contact with the grass.
     #[serde(default)]
     pub objects: Objects,
     /// Winds that press the grass as objects do, such as cyclones (Chen & Johan §5.3), each a section `[[drawn_winds]]`. Default none, allowed at

@@ -1,4 +1,4 @@
-//! Cars, monsters, helicopters, sleds and balls.
+//! Cars, monsters, helicopters, sleds, balls and walkers.
 
 use super::WindShape;
 use super::allowed::Allowed::{self, OneOf, Places, Range, Text};
@@ -18,14 +18,16 @@ pub enum VehicleKind {
     Sled,
     /// A light ball: bounces off whatever hits it, rolls, and presses the grass.
     Ball,
+    /// A visitor on foot: walks, runs and jumps, and presses the grass under each foot in turn.
+    Walker,
 }
 
 impl VehicleKind {
     /// All kinds, in the order of the client's buttons.
-    pub const ALL: [Self; 5] = [Self::Car, Self::Monster, Self::Helicopter, Self::Sled, Self::Ball];
+    pub const ALL: [Self; 6] = [Self::Car, Self::Monster, Self::Helicopter, Self::Sled, Self::Ball, Self::Walker];
 
     /// The names of all kinds, in the same order.
-    pub const WORDS: &'static [&'static str] = &["car", "monster", "helicopter", "sled", "ball"];
+    pub const WORDS: &'static [&'static str] = &["car", "monster", "helicopter", "sled", "ball", "walker"];
 
     /// Name as a scene file and the page write it.
     pub fn name(self) -> &'static str {
@@ -68,7 +70,7 @@ pub struct Objects {
     /// Approximate distance between their start positions (m): the n-th starts √n times as far from the centre of the world. Default 4, allowed
     /// 1..=1000.
     pub self_driving_apart_m: f32,
-    /// Their kind: `car`, `monster`, `helicopter`, `sled` or `ball`. Default `car`.
+    /// Their kind: `car`, `monster`, `helicopter`, `sled`, `ball` or `walker`. Default `car`.
     pub self_driving_kind: VehicleKind,
     /// Number of balls near the start position of the camera, for anyone to kick. Default 0, allowed 0..=64 and with `self_driving` at most `limit`.
     pub balls: u32,
@@ -88,6 +90,8 @@ pub struct Objects {
     pub sled: SledTread,
     /// Contact of a ball with the grass.
     pub ball: BallTread,
+    /// Contact of a walker with the grass.
+    pub walker: WalkerTread,
 }
 
 impl Default for Objects {
@@ -108,6 +112,7 @@ impl Default for Objects {
             helicopter: HelicopterTread::default(),
             sled: SledTread::default(),
             ball: BallTread::default(),
+            walker: WalkerTread::default(),
         }
     }
 }
@@ -121,6 +126,7 @@ impl Objects {
             VehicleKind::Helicopter => (self.helicopter.strike_height_m, self.helicopter.lays_share),
             VehicleKind::Sled => (self.sled.strike_height_m, self.sled.lays_share),
             VehicleKind::Ball => (self.ball.strike_height_m, self.ball.lays_share),
+            VehicleKind::Walker => (self.walker.strike_height_m, self.walker.lays_share),
         };
         Tread { strike_height_m, lays_share }
     }
@@ -130,7 +136,7 @@ impl Objects {
         match kind {
             VehicleKind::Car => Some(&mut self.car_model),
             VehicleKind::Monster => Some(&mut self.monster_model),
-            VehicleKind::Helicopter | VehicleKind::Sled | VehicleKind::Ball => None,
+            VehicleKind::Helicopter | VehicleKind::Sled | VehicleKind::Ball | VehicleKind::Walker => None,
         }
     }
 
@@ -142,6 +148,7 @@ impl Objects {
             VehicleKind::Helicopter => self.helicopter = HelicopterTread::default(),
             VehicleKind::Sled => self.sled = SledTread::default(),
             VehicleKind::Ball => self.ball = BallTread::default(),
+            VehicleKind::Walker => self.walker = WalkerTread::default(),
         }
     }
 
@@ -156,16 +163,23 @@ impl Objects {
                 [reach(0), SLED_HALF_HEIGHT_M, reach(1)]
             }
             VehicleKind::Ball => [self.ball_radius_m; 3],
+            VehicleKind::Walker => [0.25, 0.9, 0.25],
         }
     }
 
+    /// Outline seen from above (m) and half the height (m) of a `kind` with a flat underside, under which near blades lie.
+    pub fn underside_m(&self, kind: VehicleKind) -> Option<(&[[f32; 2]], f32)> {
+        (kind == VehicleKind::Sled).then_some((self.sled_outline_m.as_slice(), SLED_HALF_HEIGHT_M))
+    }
+
     /// Sphere of `kind` that pushes near blades aside (Zhang §6.2): the height of its centre above the body's, and its radius (m). For a ball it is the ball
-    /// itself, for the other kinds it is at the foot; none for a sled, which is not round.
+    /// itself, for the other kinds it is at the foot; none for a sled, whose underside is [flat](Self::underside_m).
     pub fn interaction_sphere_m(&self, kind: VehicleKind) -> Option<[f32; 2]> {
         let radius_m = match kind {
             VehicleKind::Car => 1.3,
             VehicleKind::Monster => 0.9,
             VehicleKind::Helicopter => 1.5,
+            VehicleKind::Walker => 0.3,
             VehicleKind::Sled => return None,
             VehicleKind::Ball => return Some([0.0, self.ball_radius_m]),
         };
@@ -197,6 +211,8 @@ pub(super) const OBJECT_FIELDS: &[(&str, Allowed)] = &[
     ("objects.sled.lays_share", Range(0.0, 1.0)),
     ("objects.ball.strike_height_m", Range(0.05, 5.0)),
     ("objects.ball.lays_share", Range(0.0, 1.0)),
+    ("objects.walker.strike_height_m", Range(0.05, 5.0)),
+    ("objects.walker.lays_share", Range(0.0, 1.0)),
 ];
 
 /// Contact of a car with the grass: its wheels, and its floor above them.
@@ -278,5 +294,21 @@ pub struct BallTread {
 impl Default for BallTread {
     fn default() -> Self {
         Self { strike_height_m: 0.3, lays_share: 0.1 }
+    }
+}
+
+/// Contact of a walker with the grass: its feet, each while it stands, and its legs above them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WalkerTread {
+    /// Height h above the ground of its contact with the grass (m), Chen & Johan Eq. (12). Default 0.3, allowed 0.05..=5.
+    pub strike_height_m: f32,
+    /// Fraction of the bend under its feet that stays, and rises with `grass.laid_recovery_secs`. Default 0.6, allowed 0..=1.
+    pub lays_share: f32,
+}
+
+impl Default for WalkerTread {
+    fn default() -> Self {
+        Self { strike_height_m: 0.3, lays_share: 0.6 }
     }
 }

@@ -20,6 +20,8 @@ pub struct VehicleDynamics {
     pub follows_terrain: bool,
     /// Whether its rotation has no effect on the grass.
     pub is_round: bool,
+    /// Distance of a walk cycle (m), as in [`Body`](prairie_core::body::Body); 0 for kinds without feet.
+    pub stride_m: f32,
     /// Colour of its trail in recordings.
     pub trail_rgb: [u8; 3],
 }

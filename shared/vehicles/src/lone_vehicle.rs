@@ -22,7 +22,7 @@ pub struct VehicleMotion {
     pub part_rad: f32,
 }
 
-/// A vehicle alone in the world: terrain, trunks, stones and models are there, other objects are not.
+/// A vehicle alone in the world: terrain, trunks, stones, models and posts of gates are there, other objects are not.
 ///
 /// Its step is that of the server: a state taken over exactly gives the server's next poses until the vehicle meets another. [`assume`](Self::assume) does not see the whole
 /// state, and in a browser sines differ in their last bits. Error bound: after 0.15 s at most 0.25 m in 95 of 100 cases on hilly terrain (`tests/tests/world/prediction.rs`).

@@ -1,6 +1,7 @@
-//! Colliders of terrain, tree trunks, stones and the models of the covering map, which exist only near the objects.
+//! Colliders of terrain, tree trunks, stones, the models of the covering map and the posts of gates, which exist only near the objects.
 
 use super::environment::Environment;
+use prairie_core::race::{GatePost, POST_HALF_M};
 use prairie_core::scene::Scene;
 use prairie_core::terrain::{Cover, HeightMap, ModelBox, model_boxes};
 use rapier3d::parry::utils::Array2;
@@ -27,12 +28,13 @@ const TRUNK_RADIUS: f32 = 0.03;
 /// Index of a tile along X and Z.
 pub type TileIndex = [i32; 2];
 
-/// A tree, a stone or a model of the covering map.
+/// A tree, a stone, a model of the covering map or a post of a gate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Obstacle {
     Trunk { at_m: [f32; 2], radius_m: f32, half_height_m: f32 },
     Stone { at_m: [f32; 2], radius_m: f32 },
     Model(ModelBox),
+    Post(GatePost),
 }
 
 impl Obstacle {
@@ -40,6 +42,7 @@ impl Obstacle {
         match self {
             Self::Trunk { at_m, .. } | Self::Stone { at_m, .. } => *at_m,
             Self::Model(own) => own.at_m,
+            Self::Post(post) => post.at_m,
         }
     }
 
@@ -51,6 +54,10 @@ impl Obstacle {
                 squared_distance(*at_m, from_m) > reach * reach
             }
             Self::Model(own) => own.squared_distance_m2(from_m) > reach_m * reach_m,
+            Self::Post(post) => {
+                let reach = reach_m + std::f32::consts::SQRT_2 * POST_HALF_M;
+                squared_distance(post.at_m, from_m) > reach * reach
+            }
         }
     }
 
@@ -67,11 +74,17 @@ impl Obstacle {
                 let center = Vector::new(x, own.floor_m(|x, z| height.height_m(x, z)) + half_y, z);
                 ColliderBuilder::cuboid(half_x, half_y, half_z).position(Pose::from_parts(center, Rotation::from_array(own.rotation())))
             }
+            Self::Post(post) => {
+                let [bottom_m, top_m] = post.span_m;
+                let center = Vector::new(x, 0.5 * (bottom_m + top_m), z);
+                ColliderBuilder::cuboid(POST_HALF_M, 0.5 * (top_m - bottom_m), POST_HALF_M)
+                    .position(Pose::from_parts(center, Rotation::from_array(post.rotation())))
+            }
         }
     }
 }
 
-/// Colliders of terrain, trunks, stones and models.
+/// Colliders of terrain, trunks, stones, models and posts of gates.
 pub struct TerrainColliders {
     height: Arc<HeightMap>,
     spacing_m: [f32; 2],
@@ -83,7 +96,7 @@ pub struct TerrainColliders {
 }
 
 impl TerrainColliders {
-    /// No colliders yet, on the terrain of `environment`, with the trees, stones and models of its cover.
+    /// No colliders yet, on the terrain of `environment`, with the trees, stones and models of its cover and the gates of the scene's race.
     pub fn new(environment: &Environment, scene: &Scene) -> Self {
         let height = environment.height.clone();
         let spacing_m = height.pixel_m().map(spacing_m);
@@ -96,8 +109,9 @@ impl TerrainColliders {
         let stone = |at_m| Obstacle::Stone { at_m, radius_m: 0.5 * plants.stone_m };
         environment.cover.places_m(Cover::Tree, environment.extent_m).for_each(|at_m| colliders.put(tree(at_m)));
         environment.cover.places_m(Cover::Stone, environment.extent_m).for_each(|at_m| colliders.put(stone(at_m)));
-        for own in models {
-            colliders.obstacles.entry(colliders.tile_at(own.at_m)).or_default().push(Obstacle::Model(own));
+        let posts = scene.race.gates.iter().flat_map(|gate| GatePost::pair(gate, |x, z| environment.height.height_m(x, z)));
+        for obstacle in models.into_iter().map(Obstacle::Model).chain(posts.map(Obstacle::Post)) {
+            colliders.obstacles.entry(colliders.tile_at(obstacle.at_m())).or_default().push(obstacle);
         }
         colliders
     }
@@ -112,7 +126,7 @@ impl TerrainColliders {
         self.height.slope(at_m[0], at_m[1])
     }
 
-    /// Whether there is no tree, stone or model within `radius_m`.
+    /// Whether there is no tree, stone, model or post within `radius_m`.
     pub fn is_free(&self, at_m: [f32; 2], radius_m: f32) -> bool {
         self.tiles_around(at_m, radius_m + TILE_M.max(self.model_reach_m)).all(|tile| {
             self.obstacles.get(&tile).is_none_or(|obstacles| obstacles.iter().all(|obstacle| obstacle.is_beyond(at_m, radius_m)))

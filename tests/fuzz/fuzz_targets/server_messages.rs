@@ -24,7 +24,7 @@ fn scene() -> ServerMessage {
     };
     let map = grey_png([4; 2], &[255; 16]);
     let prism = Prism::cuboid([0.0; 3], [0.5, 0.5, 1.0]);
-    let body = Body { prisms: vec![Prism { bears_weight: true, ..prism }], is_round: false, has_downwash: true };
+    let body = Body { prisms: vec![Prism { bears_weight: true, ..prism }], is_round: false, has_downwash: true, stride_m: 0.0 };
     ServerMessage::Scene {
         scene: Box::new(scene),
         height_png: map.clone(),

@@ -25,41 +25,34 @@ pub struct Plate {
     tile_px: [u32; 2],
     /// Tiles in a row.
     columns: usize,
-    tiles: &'static [Tile],
+    tiles: Tiles,
     /// Caption.
     pub shows: &'static str,
     /// The figure in the literature.
     pub answers: &'static str,
 }
 
-/// A tile of a plate.
+/// Change of a scene before its start.
+type Change = fn(&mut Scene);
+
+/// The tiles of a plate.
 #[derive(Clone, Copy)]
-struct Tile {
-    /// Change of the scene before its start.
-    change: fn(&mut Scene),
-    /// Time after the wind has built up (s).
-    after_secs: f32,
-}
-
-/// A tile of the scene as it is, after a time (s).
-const fn after(after_secs: f32) -> Tile {
-    Tile { change: |_| {}, after_secs }
-}
-
-/// A tile of a changed scene.
-const fn with(change: fn(&mut Scene)) -> Tile {
-    Tile { change, after_secs: 0.0 }
+enum Tiles {
+    /// One for each change of the scene, when the wind has built up.
+    Changes(&'static [Change]),
+    /// Moments of one run of the changed scene: times after the wind has built up (s), ascending.
+    Moments(Change, &'static [f32]),
 }
 
 /// All plates.
-pub const PLATES: [Plate; 3] = [
+pub const PLATES: [Plate; 4] = [
     Plate {
         name: "self-shadow",
         scene: "shells",
         eye: over([66.0, 60.0], 1.1, 340.0, -22.0),
         tile_px: [320, 180],
         columns: 2,
-        tiles: &[with(|scene| scene.shells.root_light = 1.0), with(|scene| scene.shells.root_light = 0.12)],
+        tiles: Tiles::Changes(&[|scene| scene.shells.root_light = 1.0, |scene| scene.shells.root_light = 0.12]),
         shows: "shells without self-shadow, and with the linear ramp from 0.12 of the light at the roots to all of it at the tips",
         answers: "Bakay 2003, Figure 4.2",
     },
@@ -69,7 +62,7 @@ pub const PLATES: [Plate; 3] = [
         eye: Eye::Start,
         tile_px: [400, 225],
         columns: 1,
-        tiles: &[after(0.0)],
+        tiles: Tiles::Changes(&[|_| {}]),
         shows: "three point lights on shells: two that fall off with the inverse square, and one, in front, with a linear term",
         answers: "Bakay 2003, Figure 4.3",
     },
@@ -79,11 +72,26 @@ pub const PLATES: [Plate; 3] = [
         eye: Eye::Start,
         tile_px: [240, 135],
         columns: 2,
-        tiles: &[after(0.0), after(1.0), after(2.0), after(3.0), after(4.0), after(5.0)],
+        tiles: Tiles::Moments(|_| {}, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]),
         shows: "a gust that crosses shells from left to right, a second from frame to frame, row by row",
         answers: "Bakay 2003, Figure A.1",
     },
+    Plate {
+        name: "many-cars",
+        scene: "continuum",
+        eye: over([2414.0, 2470.0], 28.0, 0.0, -26.0),
+        tile_px: [128, 72],
+        columns: 3,
+        tiles: Tiles::Moments(many_cars, &[0.0, 2.0, 4.0, 6.0, 8.0, 10.0]),
+        shows: "24 cars that draw their tracks through one field, two seconds from frame to frame, row by row",
+        answers: "Chen & Johan 2010, Figure 13",
+    },
 ];
+
+/// Cars in the middle of the land, near each other.
+fn many_cars(scene: &mut Scene) {
+    (scene.objects.self_driving, scene.objects.self_driving_apart_m) = (24, 9.0);
+}
 
 impl Plate {
     /// The plate of that name.
@@ -95,21 +103,32 @@ impl Plate {
         PLATES.iter().find(|plate| plate.name == name).with_context(|| format!("no plate is called `{name}`; allowed: {}", known()))
     }
 
-    /// Draws a tile at a size (px).
-    fn draw_tile(&self, gpu: &Gpu, tile: &Tile, size_px: [u32; 2], quality: Quality) -> Result<Picture> {
+    /// The changed scene at its start, with a camera that draws at a size (px).
+    fn still(&self, change: Change, size_px: [u32; 2]) -> Result<Still> {
         let scene =
             if self.scene.ends_with(".toml") { format!("{}/../{}", env!("CARGO_MANIFEST_DIR"), self.scene) } else { self.scene.to_owned() };
-        let mut stage = Stage::changed(&scene, tile.change)?;
+        let mut stage = Stage::changed(&scene, change)?;
         let camera = self.eye.watch(&mut stage, Act::Wind)?;
-        stage.run(tile.after_secs);
-        stage.show()?;
-        let mut still = Still { stage, camera, size_px };
-        let mut canvas = still.canvas(gpu, quality);
-        Ok(still.draw(&mut canvas).0)
+        Ok(Still { stage, camera, size_px })
     }
 
+    /// Draws the tiles at a size (px).
     fn draw_tiles(&self, gpu: &Gpu, size_px: [u32; 2], quality: Quality) -> Result<Vec<Picture>> {
-        self.tiles.iter().map(|tile| self.draw_tile(gpu, tile, size_px, quality)).collect::<Result<_>>().context(self.name)
+        let drawn = |still: &mut Still, secs: f32| -> Result<Picture> {
+            still.stage.run(secs);
+            still.stage.show()?;
+            let mut canvas = still.canvas(gpu, quality);
+            Ok(still.draw(&mut canvas).0)
+        };
+        let tiles: Result<Vec<_>> = match self.tiles {
+            Tiles::Changes(changes) => changes.iter().map(|change| drawn(&mut self.still(*change, size_px)?, 0.0)).collect(),
+            Tiles::Moments(change, moments_secs) => {
+                let (mut still, mut before_secs) = (self.still(change, size_px)?, 0.0);
+                let mut draw = |at_secs: &f32| drawn(&mut still, at_secs - std::mem::replace(&mut before_secs, *at_secs));
+                moments_secs.iter().map(&mut draw).collect()
+            }
+        };
+        tiles.context(self.name)
     }
 
     /// Draws the plate into a file of `folder`.
@@ -157,7 +176,7 @@ mod tests {
             assert!(page().contains(&picture) && page().contains(plate.answers), "{}", plate.name);
         }
         let error = Plate::find("moon").err().unwrap().to_string();
-        assert_eq!(error, "no plate is called `moon`; allowed: self-shadow, point-lights, gust");
+        assert_eq!(error, "no plate is called `moon`; allowed: self-shadow, point-lights, gust, many-cars");
         assert_eq!(page(), include_str!("../../results/plates/README.md"), "chart -- plates writes the page again");
     }
 
@@ -172,7 +191,8 @@ mod tests {
             }
         }
         // Control: the same moment drawn again.
-        let [once, again] = [(); 2].map(|()| PLATES[2].draw_tile(&gpu, &PLATES[2].tiles[0], SIZE_PX, Quality::Low).unwrap());
+        let once = Plate { tiles: Tiles::Moments(|_| {}, &[0.0]), ..PLATES[2] };
+        let [once, again] = [(); 2].map(|()| once.draw_tiles(&gpu, SIZE_PX, Quality::Low).unwrap());
         assert_eq!(once, again);
     }
 }

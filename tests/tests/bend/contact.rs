@@ -56,7 +56,7 @@ fn drive_for(kind: VehicleKind, from_m: [f32; 2], heading_rad: f32, speed_m_per_
     let moved = speed_m_per_s * dt_secs;
     let to_m = [from_m[0] + sin * moved, from_m[1] - cos * moved];
     let velocity_m_per_s = [sin * speed_m_per_s, 0.0, -cos * speed_m_per_s];
-    Motion { kind, from: stand(from_m), to: stand(to_m), velocity_m_per_s, is_at_rest: false }
+    Motion { kind, from: stand(from_m), to: stand(to_m), velocity_m_per_s, part_rad: 0.0, is_at_rest: false }
 }
 
 #[test]

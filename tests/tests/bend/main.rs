@@ -1,6 +1,7 @@
 //! The bend field: accuracy, order, limits, seams, and contact.
 
 mod contact;
+mod footsteps;
 mod ground;
 mod limits;
 mod random;

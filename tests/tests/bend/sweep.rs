@@ -40,7 +40,7 @@ impl Drive {
             let (heading, [x, z]) = self.stand(ticks as f32);
             BodyPose { position_m: [x, 1.0, z], rotation: Quat::from_rotation_y(-heading).to_array() }
         };
-        Motion { kind, from: stand(tick), to: stand(tick + 1), velocity_m_per_s: [0.0; 3], is_at_rest: false }
+        Motion { kind, from: stand(tick), to: stand(tick + 1), velocity_m_per_s: [0.0; 3], part_rad: 0.0, is_at_rest: false }
     }
 
     /// Allowed difference between reference and swept footprint (m): an eighth of a cell, plus the sagitta of the arc in a step.

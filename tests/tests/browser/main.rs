@@ -9,6 +9,7 @@ mod look_back;
 mod one_storm;
 mod page;
 mod prairie;
+mod race;
 mod replica;
 mod scenes;
 mod sharing;

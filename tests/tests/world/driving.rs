@@ -2,7 +2,7 @@
 
 use prairie::objects::{Environment, Objects};
 use prairie::world::{Camera, Command, World};
-use prairie_core::scene::VehicleKind::{Ball, Car, Helicopter, Monster, Sled};
+use prairie_core::scene::VehicleKind::{Ball, Car, Helicopter, Monster, Sled, Walker};
 use prairie_core::scene::{Scene, VehicleKind};
 use prairie_core::wire::{Drive, ObjectPose};
 use std::sync::Arc;
@@ -77,13 +77,13 @@ fn a_minute_of_wild_driving_stays_on_the_terrain_and_in_the_world() {
             random ^= random << 5;
             (random >> 8) as f32 / 8_388_608.0 - 1.0
         };
-        let kinds = [Car, Monster, Helicopter, Sled, Ball];
+        let kinds = [Car, Monster, Helicopter, Sled, Ball, Walker];
         for (client, kind) in (0..).zip(kinds) {
             spawn(&mut world, client, kind);
         }
         let land = worlds::hills_m;
         for tick in 0..3600 {
-            let commands: Vec<_> = (0..5)
+            let commands: Vec<_> = (0..6)
                 .filter(|_| tick % 45 == 0)
                 .map(|client| Command::Drive {
                     client,
@@ -134,6 +134,26 @@ fn a_monster_walks_on_the_terrain() {
         let [x, y, z] = pose.position_m;
         assert!((y - 0.9 - worlds::hills_m(x, z)).abs() < 0.3, "feet at {}, land at {}", y - 0.9, worlds::hills_m(x, z));
     }
+}
+
+#[test]
+fn a_walker_walks_runs_and_jumps() {
+    let mut world = worlds::hills(&worlds::scene(10));
+    spawn(&mut world, 1, Walker);
+    let feet_m = |pose: &ObjectPose| pose.position_m[1] - 0.9 - worlds::hills_m(pose.position_m[0], pose.position_m[2]);
+    let walks = drive(&mut world, 1, AHEAD, 60);
+    assert!((1.2..1.9).contains(&speed(&walks)) && feet_m(&walks).abs() < 0.1, "{walks:?}");
+    let runs = drive(&mut world, 1, Drive { lift: -1.0, ..AHEAD }, 60);
+    assert!((3.5..5.1).contains(&speed(&runs)) && feet_m(&runs).abs() < 0.2, "{runs:?}");
+    // One jump for each press, however long it is held.
+    let jump = Drive { lift: 1.0, ..AHEAD };
+    let highest_m = |world: &mut World, drive_: Drive| (0..60).map(|_| feet_m(&drive(world, 1, drive_, 1))).fold(0.0, f32::max);
+    let jumped_m = highest_m(&mut world, jump);
+    assert!((0.4..0.9).contains(&jumped_m), "{jumped_m} m high");
+    let [held_m, walked_m, again_m] = [jump, AHEAD, jump].map(|drive| highest_m(&mut world, drive));
+    assert!(held_m < 0.2 && walked_m < 0.2 && again_m > 0.4, "{held_m} m while it is held, {walked_m} m without, {again_m} m again");
+    let stands = drive(&mut world, 1, Drive::default(), 60);
+    assert!(speed(&stands) < 0.05 && feet_m(&stands).abs() < 0.05, "{stands:?}");
 }
 
 #[test]

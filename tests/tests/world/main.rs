@@ -15,6 +15,7 @@ mod licences;
 mod look_back;
 mod models;
 mod pictures;
+mod posts;
 mod prediction;
 mod replica;
 mod same_plants;

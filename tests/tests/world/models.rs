@@ -7,7 +7,7 @@ use prairie::scenes;
 use prairie::studio::Stage;
 use prairie::world::{Camera, Command, World};
 use prairie_core::body::BodyPose;
-use prairie_core::scene::VehicleKind::{self, Ball, Car, Helicopter, Monster, Sled};
+use prairie_core::scene::VehicleKind::{self, Ball, Car, Helicopter, Monster, Sled, Walker};
 use prairie_core::scene::{CoverModel, Scene};
 use prairie_core::terrain::{Cover, ModelBox, model_boxes};
 use prairie_core::wire::{Drive, ModelUse};
@@ -48,7 +48,13 @@ fn driven_at_the_house(kind: VehicleKind, has_house: bool) -> [f32; 2] {
     let mut vehicle = LoneVehicle::new(&scene, environment(&scene), kind);
     let half_m = scene.objects.half_extents_m(kind);
     vehicle.place([own.at_m[0], half_m[1] + 0.05, own.at_m[1] - 20.0], std::f32::consts::PI);
-    let drive = Drive { throttle: 0.6, lift: if kind == Helicopter { 0.02 } else { 0.0 }, ..Drive::default() };
+    let lift = match kind {
+        Helicopter => 0.02,
+        // It runs.
+        Walker => -1.0,
+        _ => 0.0,
+    };
+    let drive = Drive { throttle: if kind == Walker { 1.0 } else { 0.6 }, lift, ..Drive::default() };
     let (mut southernmost_m, mut deepest_m) = (f32::MIN, 0.0_f32);
     for _ in 0..360 {
         vehicle.step(drive, |_| [0.0; 3]);
@@ -65,7 +71,7 @@ fn driven_at_the_house(kind: VehicleKind, has_house: bool) -> [f32; 2] {
 
 #[test]
 fn every_vehicle_stops_at_the_wall_of_a_house() {
-    for kind in [Car, Monster, Helicopter, Sled, Ball] {
+    for kind in [Car, Monster, Helicopter, Sled, Ball, Walker] {
         let [stopped_m, deepest_m] = driven_at_the_house(kind, true);
         let [through_m, _] = driven_at_the_house(kind, false);
         println!("{}: {stopped_m:.2} m with the house, {deepest_m:.2} m deep; {through_m:.2} m without", kind.name());

@@ -7,6 +7,10 @@ use prairie_core::wind::turbulence::WAVES;
 
 /// Maximum number of interaction spheres in a frame; those nearest to the camera are kept.
 pub(crate) const SPHERE_LIMIT: usize = 16;
+/// Maximum number of slabs in a frame; those nearest to the camera are kept.
+pub(crate) const SLAB_LIMIT: usize = 8;
+/// Maximum number of corners of the slabs' outline.
+pub(crate) const CORNER_LIMIT: usize = 64;
 /// Maximum number of lamps in a frame; those nearest to the camera are kept.
 pub(crate) const LAMP_LIMIT: usize = 16;
 /// Maximum number of grass kinds: that of `[grass]` and 16 species.
@@ -103,6 +107,8 @@ uniform_block! {
         _pad: [u8; 8],
         /// Interaction spheres; unused entries are zero.
         spheres: [Sphere; SPHERE_LIMIT],
+        /// Slabs.
+        slabs: Slabs,
         /// Waves of the gusts; unused entries are zero.
         gusts: [GustWave; WAVES],
         /// Light of sky and lamps.
@@ -116,9 +122,9 @@ impl Frame {
         self.lamp_count > 0
     }
 
-    /// Whether there is any interaction sphere.
+    /// Whether there is any interaction sphere or slab.
     pub(crate) fn has_spheres(&self) -> bool {
-        self.sphere_count > 0
+        self.sphere_count + self.slabs.count > 0
     }
 
     /// Whether stars are visible, and whether rain clouds are.
@@ -146,6 +152,46 @@ uniform_block! {
         centre_m: [f32; 3],
         /// Radius (m).
         radius_m: f32,
+    }
+}
+
+uniform_block! {
+    /// Slabs, and the outline that all of them have; unused entries are zero.
+    Slabs {
+        /// Slabs.
+        list: [Slab; SLAB_LIMIT],
+        /// Corners of the outline, in order.
+        outline: [Corner; CORNER_LIMIT],
+        /// Slabs in the frame, and corners of their outline.
+        count: u32,
+        corner_count: u32,
+        _pad: [u8; 8],
+    }
+}
+
+uniform_block! {
+    /// Upright prism of the outline, under which blades lie.
+    Slab {
+        /// Centre (m).
+        centre_m: [f32; 3],
+        /// Half its height (m).
+        half_height_m: f32,
+        /// Unit vector to its right.
+        right: [f32; 3],
+        /// Distance of its farthest point from the centre (m).
+        reach_m: f32,
+        /// Unit vector to its back.
+        back: [f32; 3],
+        _pad: [u8; 4],
+    }
+}
+
+uniform_block! {
+    /// Corner of an outline seen from above.
+    Corner {
+        /// Distance to the right and to the back of the centre (m).
+        at_m: [f32; 2],
+        _pad: [u8; 8],
     }
 }
 

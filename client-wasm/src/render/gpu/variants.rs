@@ -11,7 +11,7 @@ type Make<const N: usize, P> = Box<dyn Fn([Constant; N]) -> P + Send + Sync>;
 /// Two variants of a pipeline, without and with lamps; override `has_lamps` in WGSL.
 pub(crate) type LampVariants<P> = Variants<1, P>;
 
-/// Variants without and with lamps, each without and with interaction spheres; overrides `has_lamps` and `meets_spheres` in WGSL.
+/// Variants without and with lamps, each without and with interaction spheres or slabs; overrides `has_lamps` and `meets_spheres` in WGSL.
 pub(crate) type SphereVariants<P> = Variants<2, P>;
 
 /// Variants of a pipeline by the values of `N` overrides.

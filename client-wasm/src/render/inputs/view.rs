@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::render::gpu::constants::{SHADE_CELL_M, SHADE_PX};
-use crate::render::gpu::uniforms::{Frame, GustWave, Lamp, Lights, SPHERE_LIMIT, Sphere};
+use crate::render::gpu::uniforms::{CORNER_LIMIT, Corner, Frame, GustWave, Lamp, Lights, SLAB_LIMIT, SPHERE_LIMIT, Slab, Slabs, Sphere};
 use crate::render::inputs::cascades;
 use crate::render::inputs::daylight::Daylight;
 use crate::render::inputs::frame_bindings::SceneTextures;
@@ -11,10 +11,10 @@ use crate::render::options::detail::{Detail, blades_per_grid};
 use crate::render::options::quality::Quality;
 use crate::state::DecodedScene;
 use bytemuck::Zeroable;
-use glam::{Mat4, Vec3};
+use glam::{Mat4, Quat, Vec3};
 use prairie_core::light::shade;
 use prairie_core::light::sun::Sun;
-use prairie_core::scene::{Objects, Plants};
+use prairie_core::scene::{Objects, Plants, VehicleKind};
 use prairie_core::wind;
 use prairie_core::wire::ObjectPose;
 
@@ -121,6 +121,7 @@ impl<'a> View<'a> {
             shade_top_m: scene.plants.most_grown() * scene.tallest_m(),
             shade_extinction: even_depth(&scene.plants, self.sun),
             _pad: [0; 8],
+            slabs: slabs(&scene.objects, poses, eye),
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_else(Sphere::zeroed)),
             gusts: std::array::from_fn(|i| gusts.waves().get(i).map_or_else(GustWave::zeroed, GustWave::from)),
             lights: self.lights(decoded, daylight, &lamps),
@@ -211,4 +212,32 @@ fn spheres(objects: &Objects, poses: &[ObjectPose], eye: Vec3) -> Vec<Sphere> {
     spheres.sort_by(|a, b| a.0.total_cmp(&b.0));
     spheres.truncate(SPHERE_LIMIT);
     spheres.into_iter().map(|(_, sphere)| sphere).collect()
+}
+
+/// Slabs of the objects with a flat underside, nearest first, and their outline.
+fn slabs(objects: &Objects, poses: &[ObjectPose], eye: Vec3) -> Slabs {
+    let slab = |pose: &ObjectPose| {
+        let (outline_m, half_height_m) = objects.underside_m(pose.kind)?;
+        let corner_m2 = outline_m.iter().map(|[x, z]| x * x + z * z).fold(0.0, f32::max);
+        let rotation = Quat::from_array(pose.rotation).normalize();
+        Some(Slab {
+            centre_m: pose.position_m,
+            half_height_m,
+            right: (rotation * Vec3::X).to_array(),
+            reach_m: (corner_m2 + half_height_m * half_height_m).sqrt(),
+            back: (rotation * Vec3::Z).to_array(),
+            _pad: [0; 4],
+        })
+    };
+    let mut slabs: Vec<Slab> = poses.iter().filter_map(slab).collect();
+    slabs.sort_by(|a, b| Vec3::from(a.centre_m).distance(eye).total_cmp(&Vec3::from(b.centre_m).distance(eye)));
+    slabs.truncate(SLAB_LIMIT);
+    let outline_m = objects.underside_m(VehicleKind::Sled).map_or(&[][..], |(outline_m, _)| outline_m);
+    Slabs {
+        list: std::array::from_fn(|i| slabs.get(i).copied().unwrap_or_else(Slab::zeroed)),
+        outline: std::array::from_fn(|i| Corner { at_m: outline_m.get(i).copied().unwrap_or_default(), _pad: [0; 8] }),
+        count: slabs.len() as u32,
+        corner_count: outline_m.len().min(CORNER_LIMIT) as u32,
+        _pad: [0; 8],
+    }
 }

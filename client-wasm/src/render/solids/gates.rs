@@ -3,18 +3,12 @@
 use super::mesh::{Paint, Solid};
 use crate::state::DecodedScene;
 use glam::{Mat4, Quat, Vec3};
-use prairie_core::race::GateLine;
+use prairie_core::race::{GatePost, POST_HALF_M};
 
-/// Height of a banner's upper edge above the higher post's foot (m).
-const TOP_M: f32 = 4.2;
 /// Height of a banner (m).
 const BANNER_M: f32 = 0.8;
 /// Half the thickness of a banner (m), so that its sides don't hide each other.
 const HALF_THICK_M: f32 = 0.03;
-/// Depth of a post's foot below the ground (m), so that none floats on a slope.
-const DEPTH_M: f32 = 0.5;
-/// Half the side of a post (m).
-const POST_M: f32 = 0.09;
 /// Checks of the banner over start and finish: along it, and from top to bottom.
 const CHECKS: [u32; 2] = [12, 2];
 
@@ -34,7 +28,7 @@ pub(crate) enum GatePart {
 /// The meshes of all parts: a post a metre tall, and banners a metre wide with their upper edge at the origin, seen from both sides.
 pub(crate) fn solids() -> [Solid; 3] {
     let mut post = Solid::default();
-    post.block(Vec3::new(0.0, 0.5, 0.0), Vec3::new(POST_M, 0.5, POST_M), 0.01, Paint::new(0.8, 0.8, 0.76, 0.2));
+    post.block(Vec3::new(0.0, 0.5, 0.0), Vec3::new(POST_HALF_M, 0.5, POST_HALF_M), 0.01, Paint::new(0.8, 0.8, 0.76, 0.2));
     [post, banner([1, 1]), banner(CHECKS)]
 }
 
@@ -78,27 +72,21 @@ impl PlacedPart {
 /// All parts of the scene's gates.
 pub(crate) fn placed(decoded: &DecodedScene) -> Vec<PlacedPart> {
     let parts = |(gate, settings)| {
-        let line = GateLine::new(settings);
-        let half_m = line.half_width_m();
-        let feet = [-half_m, half_m].map(|right_m| {
-            let [x, z] = line.place_m(right_m);
-            Vec3::new(x, decoded.heights().height_m(x, z), z)
-        });
-        let top_m = feet[0].y.max(feet[1].y) + TOP_M;
+        let posts = GatePost::pair(settings, |x, z| decoded.heights().height_m(x, z));
         let turn = Quat::from_rotation_y(-settings.heading_rad);
-        let post = |foot: Vec3| {
-            let tall = Vec3::new(1.0, top_m - foot.y + DEPTH_M, 1.0);
-            let world_from_part = Mat4::from_scale_rotation_translation(tall, turn, foot - DEPTH_M * Vec3::Y);
+        let post = |GatePost { at_m: [x, z], span_m: [bottom_m, top_m], .. }: GatePost| {
+            let tall = Vec3::new(1.0, top_m - bottom_m, 1.0);
+            let world_from_part = Mat4::from_scale_rotation_translation(tall, turn, Vec3::new(x, bottom_m, z));
             PlacedPart { part: GatePart::Post, world_from_part, gate }
         };
-        let [x, z] = settings.at_m;
+        let ([x, z], [_, top_m]) = (settings.at_m, posts[0].span_m);
         let wide = Vec3::new(settings.width_m, 1.0, 1.0);
         let banner = PlacedPart {
             part: if gate == 0 { GatePart::Checkered } else { GatePart::Banner },
             world_from_part: Mat4::from_scale_rotation_translation(wide, turn, Vec3::new(x, top_m, z)),
             gate,
         };
-        [post(feet[0]), post(feet[1]), banner]
+        [post(posts[0]), post(posts[1]), banner]
     };
     decoded.scene().race.gates.iter().enumerate().flat_map(parts).collect()
 }
@@ -107,6 +95,7 @@ pub(crate) fn placed(decoded: &DecodedScene) -> Vec<PlacedPart> {
 mod tests {
     use super::*;
     use crate::render::tests::meadow_of;
+    use prairie_core::race::{POST_DEPTH_M, POST_TOP_M};
     use prairie_core::scene::RaceGate;
 
     #[test]
@@ -119,11 +108,11 @@ mod tests {
         let kinds = [0, 1, 2, 5].map(|number| parts[number].part);
         assert_eq!(kinds, [GatePart::Post, GatePart::Post, GatePart::Checkered, GatePart::Banner]);
         let ground_m = decoded.heights().height_m(20.0, 30.0);
-        let top_m = ground_m + TOP_M;
+        let top_m = ground_m + POST_TOP_M;
         // North is to the left of who drives east.
         for (part, z) in parts.iter().zip([26.0, 34.0]) {
             let [foot, head] = [0.0, 1.0].map(|up| part.world_from_part.transform_point3(up * Vec3::Y));
-            assert!(foot.distance(Vec3::new(20.0, ground_m - DEPTH_M, z)) < 1e-4 && head.distance(Vec3::new(20.0, top_m, z)) < 1e-4);
+            assert!(foot.distance(Vec3::new(20.0, ground_m - POST_DEPTH_M, z)) < 1e-4 && head.distance(Vec3::new(20.0, top_m, z)) < 1e-4);
         }
         let ends = [-0.5, 0.5].map(|across| parts[2].world_from_part.transform_point3(across * Vec3::X));
         assert!(ends[0].distance(Vec3::new(20.0, top_m, 26.0)) < 1e-4 && ends[1].distance(Vec3::new(20.0, top_m, 34.0)) < 1e-4, "{ends:?}");

@@ -96,7 +96,8 @@ fn models_leave_a_lee_as_walls_and_as_drag() {
 fn car(speed_m_per_s: f32) -> Motion {
     let half = std::f32::consts::FRAC_1_SQRT_2;
     let pose = BodyPose { position_m: [33.0, 0.7, 33.0], rotation: [0.0, half, 0.0, half] };
-    Motion { kind: VehicleKind::Car, from: pose, to: pose, velocity_m_per_s: [speed_m_per_s, 0.0, 0.0], is_at_rest: speed_m_per_s == 0.0 }
+    let velocity_m_per_s = [speed_m_per_s, 0.0, 0.0];
+    Motion { kind: VehicleKind::Car, from: pose, to: pose, velocity_m_per_s, part_rad: 0.0, is_at_rest: speed_m_per_s == 0.0 }
 }
 
 #[test]

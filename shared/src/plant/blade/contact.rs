@@ -1,7 +1,9 @@
-//! Contact: a blade that would penetrate the ground or a sphere is laid along it, link by link from the root (Zhang §§3.2.4 and 6.2).
+//! Contact: a blade that would penetrate the ground or a sphere is laid along it, link by link from the root (Zhang §§3.2.4 and 6.2), and a blade under a
+//! flat object lies below its floor.
 
 use super::lean::{direction, lean_of};
 use super::{LINKS, Sway};
+use crate::outline;
 
 /// Smallest height of control points above the ground plane (m), if the blade is long enough for it.
 pub const CLEARANCE_M: f32 = 0.015;
@@ -15,6 +17,23 @@ pub struct Sphere {
     pub radius_m: f32,
 }
 
+/// Upright prism of any outline, such as a sled, under whose floor plants lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slab<'a> {
+    /// Centre relative to the blade's root (m): X, height, Z.
+    pub centre_m: [f32; 3],
+    /// Unit vectors to its right and to its back.
+    pub right: [f32; 3],
+    /// See `right`.
+    pub back: [f32; 3],
+    /// Half its height (m).
+    pub half_height_m: f32,
+    /// Distance of its farthest point from the centre (m).
+    pub reach_m: f32,
+    /// Corners seen from above in its own axes, to the right and to the back of the centre (m). It may be concave.
+    pub outline_m: &'a [[f32; 2]],
+}
+
 /// Resolves the contacts of a blade of `length_m` after a step: every link keeps its length, ends above the ground plane through the root with the
 /// unit normal `normal`, and passes outside of every sphere.
 ///
@@ -22,6 +41,11 @@ pub struct Sphere {
 /// in its direction, like a beam without other contacts (Zhang §6.2). A link that hangs over a sphere's centre turns away from that centre, any other
 /// in the shortest direction. Where ground and spheres leave no room, the ground wins. The component of a link's rate towards an obstacle is removed.
 pub fn settle(sway: &Sway, length_m: f32, normal: [f32; 3], spheres: &[Sphere]) -> Sway {
+    settle_under(sway, length_m, normal, spheres, &[])
+}
+
+/// [`settle`] among slabs as well: a link that would be within a slab, or above one that it starts under, ends below its floor.
+pub fn settle_under(sway: &Sway, length_m: f32, normal: [f32; 3], spheres: &[Sphere], slabs: &[Slab<'_>]) -> Sway {
     let link_m = length_m / LINKS as f32;
     let mut mended = *sway;
     let (mut below, mut tangent) = ([0.0_f32; 3], None);
@@ -33,6 +57,9 @@ pub fn settle(sway: &Sway, length_m: f32, normal: [f32; 3], spheres: &[Sphere]) 
             for sphere in spheres {
                 along = aside(along, below, link_m, sphere);
             }
+        }
+        for slab in slabs {
+            along = beneath(along, below, link_m, slab);
         }
         if along != free {
             tangent = Some(along);
@@ -80,6 +107,25 @@ fn aside(along: [f32; 3], below: [f32; 3], link_m: f32, sphere: &Sphere) -> [f32
     let hangs_over = to[0] * to[0] + to[2] * to[2] < radius2;
     let out = if hangs_over { [-to[0], 0.0, -to[2]] } else { along };
     toward(out, centre, cosine.clamp(-1.0, 1.0))
+}
+
+/// Direction of a link from `below` that ends below the floor of a slab if it starts under the slab or ends within it, as close to `along` as possible. A
+/// link that leans over the slab from beside it stays.
+fn beneath(along: [f32; 3], below: [f32; 3], link_m: f32, slab: &Slab<'_>) -> [f32; 3] {
+    let start = add(below, slab.centre_m, -1.0);
+    let reach_m = slab.reach_m + link_m;
+    if dot(start, start) > reach_m * reach_m {
+        return along;
+    }
+    let end = add(start, along, link_m);
+    let ([rx, ry, rz], [bx, by, bz]) = (slab.right, slab.back);
+    let up = [by * rz - bz * ry, bz * rx - bx * rz, bx * ry - by * rx];
+    let (low_m, high_m) = (dot(start, up), dot(end, up));
+    let is_under = |at: [f32; 3]| outline::contains(slab.outline_m, [dot(at, slab.right), dot(at, slab.back)]);
+    let meets = high_m > -slab.half_height_m
+        && low_m < slab.half_height_m
+        && (is_under(start) || (high_m < slab.half_height_m && is_under(end)));
+    if meets { toward(along, up, ((-slab.half_height_m - low_m) / link_m).clamp(-1.0, 1.0)) } else { along }
 }
 
 /// Unit vector with the component `fraction` along the unit vector `axis`, and its remainder in the direction of that of `from`.
@@ -178,6 +224,47 @@ mod tests {
         for sphere in &pair {
             assert!(depth_m(&sway, sphere) < 0.01, "{} m deep: {:?}", depth_m(&sway, sphere), sway.lean_rad);
         }
+    }
+
+    /// A U of planks 0.8 m wide, half a metre high, with its floor 0.1 m above the ground and its centre at `centre_m` on the ground.
+    fn sled(centre_m: [f32; 2], outline_m: &[[f32; 2]]) -> Slab<'_> {
+        let [x, z] = centre_m;
+        Slab { centre_m: [x, 0.35, z], right: [1.0, 0.0, 0.0], back: [0.0, 0.0, 1.0], half_height_m: 0.25, reach_m: 3.3, outline_m }
+    }
+
+    proptest! {
+        #[test]
+        fn blades_lie_under_a_slab_and_stand_in_its_gap(leans in [lean(), lean(), lean()], x in -3.0_f32..3.0, z in -3.0_f32..3.0) {
+            let outline_m = [[-2.0, -2.5], [-1.2, -2.5], [-1.2, 1.7], [1.2, 1.7], [1.2, -2.5], [2.0, -2.5], [2.0, 2.5], [-2.0, 2.5]];
+            let slab = sled([-x, -z], &outline_m);
+            let sway = settle_under(&Sway::at_rest(leans), 1.0, UP, &[], &[slab]);
+            let alone = settle(&Sway::at_rest(leans), 1.0, UP, &[]);
+            if outline::contains(&outline_m, [x, z]) {
+                let under: Vec<_> = sway.points_m(1.0).into_iter().take_while(|at| outline::contains(&outline_m, [x + at[0], z + at[2]])).collect();
+                prop_assert!(under.iter().all(|at| at[1] < 0.1 + 1e-4), "{under:?}");
+                prop_assert!(sway.points_m(1.0)[0][1] < 0.1 + 1e-4, "the first link ends below the floor, wherever that is");
+            }
+            // The control: without a slab near it the blade is as before.
+            let far = sled([-x, 20.0], &outline_m);
+            prop_assert_eq!(settle_under(&Sway::at_rest(leans), 1.0, UP, &[], &[far]), alone);
+            // Upright ones in the gap of the U, a link and more from its planks, do not move.
+            let gap = settle_under(&Sway::default(), 1.0, UP, &[], &[slab]);
+            prop_assert!(outline::contains(&outline_m, [x, z]) || gap == Sway::default());
+        }
+    }
+
+    #[test]
+    fn a_blade_that_leans_over_a_slab_lies_on_it() {
+        let square_m = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let slab = sled([1.05, 0.0], &square_m);
+        // The first link rises beside it, the others lean over its deck, 0.6 m above the ground.
+        let leans: Leans = [[0.0, 0.0], [0.05, 0.0], [0.7, 0.0]];
+        let sway = settle_under(&Sway::at_rest(leans), 2.4, UP, &[], &[slab]);
+        assert_eq!(sway, Sway::at_rest(leans));
+        // A link that ends within it goes under it.
+        let into: Leans = [[0.9, 0.0]; LINKS];
+        let points = settle_under(&Sway::at_rest(into), 0.9, UP, &[], &[slab]).points_m(0.9);
+        assert!(points[0][0] > 0.05 && points[0][1] < 0.1 + 1e-4, "{points:?}");
     }
 
     #[test]

@@ -99,7 +99,7 @@ fn step() -> StepHead {
 /// A shape and a drawing.
 fn shapes() -> Shapes {
     let prism = Prism { outline_m: vec![[0.0, 1.0]], seams: vec![true], span_m: [-1.0, 1.0], parts_grass: true, bears_weight: false };
-    let body = Body { prisms: vec![prism], is_round: false, has_downwash: true };
+    let body = Body { prisms: vec![prism], is_round: false, has_downwash: true, stride_m: 0.0 };
     Shapes { bodies: vec![body], drawings: vec![Drawing { name: "spiral".to_owned(), png: vec![1, 2] }] }
 }
 

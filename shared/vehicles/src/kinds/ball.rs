@@ -39,6 +39,7 @@ pub(super) const DYNAMICS: VehicleDynamics = VehicleDynamics {
     airflow: Airflow::Negligible,
     follows_terrain: false,
     is_round: true,
+    stride_m: 0.0,
     trail_rgb: [240, 240, 240],
 };
 

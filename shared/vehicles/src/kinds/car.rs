@@ -39,6 +39,7 @@ pub(super) const DYNAMICS: VehicleDynamics = VehicleDynamics {
     airflow: Airflow::Wake,
     follows_terrain: false,
     is_round: false,
+    stride_m: 0.0,
     trail_rgb: [255, 84, 66],
 };
 

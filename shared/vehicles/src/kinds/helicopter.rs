@@ -34,6 +34,7 @@ pub(super) const DYNAMICS: VehicleDynamics = VehicleDynamics {
     airflow: Airflow::Downwash,
     follows_terrain: false,
     is_round: false,
+    stride_m: 0.0,
     trail_rgb: [64, 196, 255],
 };
 

@@ -5,6 +5,7 @@ mod car;
 mod helicopter;
 mod monster;
 mod sled;
+mod walker;
 
 use crate::dynamics::{Airflow, VehicleDynamics};
 use prairie_core::body::{Body, Prism};
@@ -18,6 +19,7 @@ pub fn dynamics(kind: VehicleKind) -> &'static VehicleDynamics {
         VehicleKind::Helicopter => &helicopter::DYNAMICS,
         VehicleKind::Sled => &sled::DYNAMICS,
         VehicleKind::Ball => &ball::DYNAMICS,
+        VehicleKind::Walker => &walker::DYNAMICS,
     }
 }
 
@@ -34,8 +36,8 @@ pub fn airflow(kind: VehicleKind) -> Airflow {
 /// Shapes of all kinds in contact with the grass, in the order of [`VehicleKind::ALL`].
 pub fn bodies(objects: &Objects) -> Vec<Body> {
     let body = |kind| {
-        let VehicleDynamics { prisms, airflow, is_round, .. } = dynamics(kind);
-        Body { prisms: prisms(objects), is_round: *is_round, has_downwash: *airflow == Airflow::Downwash }
+        let VehicleDynamics { prisms, airflow, is_round, stride_m, .. } = *dynamics(kind);
+        Body { prisms: prisms(objects), is_round, has_downwash: airflow == Airflow::Downwash, stride_m }
     };
     VehicleKind::ALL.map(body).to_vec()
 }

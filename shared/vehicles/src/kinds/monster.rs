@@ -32,6 +32,7 @@ pub(super) const DYNAMICS: VehicleDynamics = VehicleDynamics {
     airflow: Airflow::Wake,
     follows_terrain: true,
     is_round: false,
+    stride_m: 0.0,
     trail_rgb: [186, 104, 255],
 };
 

@@ -35,6 +35,7 @@ pub(super) const DYNAMICS: VehicleDynamics = VehicleDynamics {
     airflow: Airflow::Wake,
     follows_terrain: true,
     is_round: false,
+    stride_m: 0.0,
     trail_rgb: [255, 202, 40],
 };
 

@@ -7,6 +7,7 @@ mod materials;
 mod model;
 mod monster;
 mod sled;
+mod walker;
 
 use crate::render::inputs::lamps::SpotLight;
 pub(crate) use model::{Motion, VehicleModel, WindBlocking};
@@ -21,6 +22,7 @@ pub(crate) const fn vehicle_model(kind: VehicleKind) -> &'static VehicleModel {
         VehicleKind::Helicopter => &helicopter::MODEL,
         VehicleKind::Sled => &sled::MODEL,
         VehicleKind::Ball => &ball::MODEL,
+        VehicleKind::Walker => &walker::MODEL,
     }
 }
 

@@ -1,0 +1,128 @@
+//! A race of two pages: both drive a car through the gates by the page's own keys, both panels list both, and the fastest lap drives beside as a ghost.
+
+use anyhow::{Context as _, Result, ensure};
+use prairie::runner::Simulation;
+use prairie::scenes::{self, LoadedScene};
+use prairie::snapshot::{PatchQuantiser, Snapshot};
+use prairie::world::{Command, World};
+use prairie_core::scene::{Race, RaceGate};
+use prairie_core::wire::ObjectId;
+use serde_json::{Value, json};
+use std::f32::consts::FRAC_PI_2;
+use tests::browser::Browser;
+use tests::prairie::Prairie;
+
+/// Middle of the circuit (m), and distance of its two gates from it (m).
+const MIDDLE_M: [f32; 2] = [34.0, 32.0];
+const RADIUS_M: f32 = 8.0;
+/// Steps of the world in a step of its server: a lap takes seconds.
+const HASTE: u32 = 3;
+
+/// A world that runs faster than its clock.
+struct Hasty(World);
+
+impl Simulation for Hasty {
+    fn step(&mut self, commands: &[Command]) {
+        self.0.step(commands);
+        (1..HASTE).for_each(|_| self.0.step(&[]));
+    }
+
+    fn publish(&self, quantiser: &mut PatchQuantiser) -> Snapshot {
+        self.0.publish(quantiser)
+    }
+
+    fn object_of(&self, client: u32) -> Option<ObjectId> {
+        self.0.object_of(client)
+    }
+}
+
+/// A lawn of 64 m with a circuit of two gates, driven to the east past the northern one and back past the southern one.
+fn circuit() -> Result<LoadedScene> {
+    let mut loaded = scenes::load("blades")?;
+    let [x, z] = MIDDLE_M;
+    let gate = |z: f32, heading_rad: f32| RaceGate { width_m: 9.0, ..RaceGate::new([x, z], heading_rad) };
+    let gates = vec![gate(z - RADIUS_M, FRAC_PI_2), gate(z + RADIUS_M, -FRAC_PI_2)];
+    loaded.scene.race = Race { laps: 2, light_period_secs: 0.0, gates };
+    (loaded.scene.objects.self_driving, loaded.scene.wind.sources, loaded.scene.wind.mean_m_per_s) = (0, 0, [0.0; 2]);
+    Ok(loaded)
+}
+
+/// Opens a page whose car starts 9 m to the east of `eye_m`, heading east.
+async fn driver(prairie: &Prairie, name: &str, [x, z]: [f32; 2]) -> Result<Browser> {
+    let browser = prairie.visitor_at(&format!("?quality=low&panel=1&name={name}#{x},2,{z},90,-5")).await?;
+    browser.evaluate("window.prairie.choose('car')").await?;
+    browser.until("(s => s.vehicle === 'car' && s.position)(window.prairie.state())").await?;
+    Ok(browser)
+}
+
+/// Holds the page's keys so that its car drives at the middle of the next gate, at this speed (m/s).
+async fn drive(browser: &Browser, speed_m_per_s: f32) -> Result<()> {
+    let [x, z] = MIDDLE_M;
+    let gates = json!([[x, z - RADIUS_M], [x, z + RADIUS_M]]);
+    let script = format!(
+        "(() => {{
+            const held = new Set(), gates = {gates};
+            const hold = (code, down) => {{
+                if (down === held.has(code)) return;
+                down ? held.add(code) : held.delete(code);
+                window.dispatchEvent(new KeyboardEvent(down ? 'keydown' : 'keyup', {{ code, key: code.slice(-1).toLowerCase() }}));
+            }};
+            setInterval(() => {{
+                const {{ position, rotation, velocity, race }} = window.prairie.state();
+                if (!position) return;
+                const next = race.standings.find(({{ me }}) => me)?.next_gate ?? 0;
+                const off = Math.atan2(gates[next][0] - position[0], position[2] - gates[next][1]) + 2 * Math.atan2(rotation[1], rotation[3]);
+                const turn = Math.atan2(Math.sin(off), Math.cos(off));
+                hold('KeyA', turn < -0.1);
+                hold('KeyD', turn > 0.1);
+                hold('KeyW', Math.hypot(velocity[0], velocity[2]) < {speed_m_per_s});
+            }}, 20);
+        }})()"
+    );
+    browser.evaluate(&script).await?;
+    Ok(())
+}
+
+/// Names in the panel's standings.
+async fn listed(browser: &Browser) -> Result<Vec<String>> {
+    let names = "Array.from(document.querySelectorAll('#standings li b'), (item) => item.textContent).sort()";
+    Ok(serde_json::from_value(browser.evaluate(names).await?)?)
+}
+
+/// Best lap (s) of a driver in a page's state.
+fn best_secs(state: &Value, name: &str) -> Option<f64> {
+    let standings = state["race"]["standings"].as_array()?;
+    standings.iter().find(|standing| standing["name"] == name)?["best_secs"].as_f64()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn two_pages_race_and_the_fastest_lap_drives_beside_as_a_ghost() -> Result<()> {
+    let loaded = circuit()?;
+    let world = Hasty(World::new(&loaded.scene, loaded.maps())?);
+    let prairie = Prairie::serve(loaded, world).await?;
+    let start_m = [MIDDLE_M[0] - 17.0, MIDDLE_M[1] - RADIUS_M];
+    let (ada, ben) = tokio::try_join!(driver(&prairie, "Ada", start_m), driver(&prairie, "Ben", [start_m[0] - 3.0, start_m[1]]))?;
+    let ghost = "window.prairie.state().race.ghost";
+    ensure!(ada.evaluate(ghost).await? == Value::Null, "nobody has completed a lap");
+    tokio::try_join!(drive(&ada, 6.0), drive(&ben, 4.5))?;
+
+    // Both begin a lap, and Ada completes one.
+    let begun = "window.prairie.state().race.standings.length === 2";
+    tokio::try_join!(ada.until(begun), ben.until(begun))?;
+    let lapped = "window.prairie.state().race.standings.some(({ name, best_secs }) => name === 'Ada' && best_secs !== null)";
+    tokio::try_join!(ada.until(lapped), ben.until(lapped))?;
+    ada.until(&format!("{ghost} !== null")).await?;
+    let at_m = ada.evaluate(ghost).await?;
+    let from_middle_m = |axis: usize, middle_m: f32| at_m[axis].as_f64().map(|m| m - f64::from(middle_m));
+    let (x_m, z_m) = (from_middle_m(0, MIDDLE_M[0]).context("a place")?, from_middle_m(2, MIDDLE_M[1]).context("a place")?);
+    ensure!(x_m.hypot(z_m) < 2.0 * f64::from(RADIUS_M), "the ghost is {x_m} m east and {z_m} m south of the middle");
+
+    let (one, other) = tokio::try_join!(ada.state(), ben.state())?;
+    let best = [best_secs(&one, "Ada"), best_secs(&other, "Ada")];
+    ensure!(best[0].is_some_and(|secs| (2.0..60.0).contains(&secs)) && best[0] == best[1], "the best laps are {best:?}");
+    for (browser, names) in [(&ada, ["Ada (you)", "Ben"]), (&ben, ["Ada", "Ben (you)"])] {
+        browser.until("document.querySelectorAll('#standings li').length === 2").await?;
+        ensure!(listed(browser).await? == names, "the panel lists {:?}", listed(browser).await?);
+    }
+    Ok(())
+}
