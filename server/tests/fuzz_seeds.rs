@@ -96,8 +96,14 @@ fn replica() -> Vec<ServerMessage> {
     let payload = ReplicaState { tick: 20, bend, codec: codec.clone() }.encode();
     let pose = |tick: u64| BodyPose { position_m: [0.1 * tick as f32, 25.6, 2.0], ..BodyPose::IDENTITY };
     let record = |tick: u64| {
-        let motion =
-            Motion { kind: VehicleKind::Ball, from: pose(tick), to: pose(tick + 1), velocity_m_per_s: [6.0, 0.0, 0.0], part_rad: 0.0, is_at_rest: false };
+        let motion = Motion {
+            kind: VehicleKind::Ball,
+            from: pose(tick),
+            to: pose(tick + 1),
+            velocity_m_per_s: [6.0, 0.0, 0.0],
+            part_rad: 0.0,
+            is_at_rest: false,
+        };
         let causes = Causes { motions: vec![motion.rounded()], ..Causes::default() };
         StepRecord { tick, causes, objects: vec![(1, 0.0)], ..StepRecord::default() }
     };

@@ -190,7 +190,8 @@ mod tests {
         let [left, right] = GatePost::pair(&east, |_, z| 0.1 * z);
         // North is to the left of who drives east, and lower here.
         for (post, z, foot_m) in [(left, 26.0, 2.6), (right, 34.0, 3.4)] {
-            let off_m = [post.at_m[0] - 20.0, post.at_m[1] - z, post.span_m[0] - (foot_m - POST_DEPTH_M), post.span_m[1] - (3.4 + POST_TOP_M)];
+            let off_m =
+                [post.at_m[0] - 20.0, post.at_m[1] - z, post.span_m[0] - (foot_m - POST_DEPTH_M), post.span_m[1] - (3.4 + POST_TOP_M)];
             assert!(off_m.iter().all(|m| m.abs() < 1e-5), "{post:?}");
             let [_, y, _, w] = post.rotation();
             assert!((y + 0.5_f32.sqrt()).abs() < 1e-6 && (w - 0.5_f32.sqrt()).abs() < 1e-6, "a turn to the right about Y");

@@ -127,7 +127,10 @@ fn a_collision_with_a_post_has_the_same_bits_each_time() -> Result<()> {
         let mut world = World::new(&scene, worlds::maps(&scene, |_, _| 0.0, |_, _| 255))?;
         let [x, z] = post().at_m;
         world.step(&[Command::Cameras(vec![Camera { client: 1, eye_m: [x - 17.0, 2.0, z] }])]);
-        world.step(&[Command::Spawn { client: 1, kind: VehicleKind::Car }, Command::Drive { client: 1, number: 0, drive: ahead(VehicleKind::Car) }]);
+        world.step(&[
+            Command::Spawn { client: 1, kind: VehicleKind::Car },
+            Command::Drive { client: 1, number: 0, drive: ahead(VehicleKind::Car) },
+        ]);
         (0..150).for_each(|_| world.step(&[]));
         // With the same poses the sums would be equal.
         Ok(world.checksum())

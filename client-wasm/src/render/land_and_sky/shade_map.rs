@@ -24,7 +24,11 @@ impl ShadeMap {
         let gpu = &factory.gpu;
         let cells = u64::from(SHADE_CELLS);
         let columns = gpu.empty_buffer("columns of grass", cells * COLUMN_BYTES, BufferUsages::STORAGE);
-        let texels = gpu.empty_buffer("texels of the shade", cells * u64::from(TEXEL_BYTES), BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST);
+        let texels = gpu.empty_buffer(
+            "texels of the shade",
+            cells * u64::from(TEXEL_BYTES),
+            BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
+        );
         let layout = factory.layout("shade of grass", &[storage_rw(0), storage_rw(1)]);
         let group = bind_as(gpu, "shade of grass", &layout, &[(0, &columns), (1, &texels)]);
         let module = factory.shader("shade of grass", shaders::SHADE_MAP, &[]);
@@ -53,8 +57,7 @@ impl ShadeMap {
 
     /// Copies the shade to the texture that the other passes sample.
     pub(crate) fn show(&self, encoder: &mut wgpu::CommandEncoder, map: &wgpu::Texture) {
-        let layout =
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SHADE_PX * TEXEL_BYTES), rows_per_image: Some(SHADE_PX) };
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SHADE_PX * TEXEL_BYTES), rows_per_image: Some(SHADE_PX) };
         encoder.copy_buffer_to_texture(wgpu::TexelCopyBufferInfo { buffer: &self.texels, layout }, map.as_image_copy(), map.size());
     }
 }

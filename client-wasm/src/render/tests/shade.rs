@@ -6,9 +6,9 @@ use super::*;
 use crate::render::gpu::constants::{SHADE_CELL_M, SHADE_CELLS, SHADE_PX};
 use half::f16;
 use prairie_core::light::grass::LEAST_SUN_SINE;
+use prairie_core::light::luminance;
 use prairie_core::light::shade::{Column, LEAF_TOP, depth_toward_sun, leaf_area_above, stance};
 use prairie_core::light::sun::Sun;
-use prairie_core::light::luminance;
 use rays::Strips;
 
 const SIZE_PX: [u32; 2] = [256, 144];
@@ -25,8 +25,7 @@ fn border() -> Mirror {
     mirror
 }
 
-const CAMERA: Camera =
-    Camera { eye_m: Vec3::new(35.0, 2.4, 34.2), heading_rad: 0.0, pitch_rad: -0.85, fov_rad: 0.8, target_m: None };
+const CAMERA: Camera = Camera { eye_m: Vec3::new(35.0, 2.4, 34.2), heading_rad: 0.0, pitch_rad: -0.85, fov_rad: 0.8, target_m: None };
 
 fn options(sun: Sun, grass_shadows: bool) -> RenderOptions {
     RenderOptions { sun: Some(sun), grass_shadows: Some(grass_shadows), culls: false, ..RenderOptions::default() }
@@ -91,7 +90,9 @@ fn shade_of_grass_is_that_of_rays_traced_through_the_drawn_blades() {
         let traced: Vec<_> = lit.iter().zip(&dark).zip(&visible).map(|((lit, dark), &sees)| if sees { *lit } else { *dark }).collect();
         let [shaded, by_height, lit] = [shaded, by_height, lit].map(|light| difference(&light, &traced));
         let sunny = visible.iter().filter(|&&sees| sees).count() as f64 / visible.len() as f64;
-        println!("sun at {elevation_rad} rad, {sunny:.3} of the picture in it: {shaded:.4} with shadows, {by_height:.4} by height alone, {lit:.4} without any");
+        println!(
+            "sun at {elevation_rad} rad, {sunny:.3} of the picture in it: {shaded:.4} with shadows, {by_height:.4} by height alone, {lit:.4} without any"
+        );
         assert!(shaded < BOUND, "{shaded} with the sun at {elevation_rad} rad");
         assert!(by_height > BOUND && lit > BOUND, "the bound tells nothing: {by_height} by height alone, {lit} without any shade");
     }
@@ -101,7 +102,8 @@ fn shade_of_grass_is_that_of_rays_traced_through_the_drawn_blades() {
 fn formulas_of_the_shade_equal_their_cpu_twins() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
-    let places: Vec<_> = (0..64u32).map(|n| hash3([n, 4, 2]).map(unit)).map(|[a, b, c]| [2.6 * a - 1.3, 2.6 * b - 1.3, 1.5 * c, 0.0]).collect();
+    let places: Vec<_> =
+        (0..64u32).map(|n| hash3([n, 4, 2]).map(unit)).map(|[a, b, c]| [2.6 * a - 1.3, 2.6 * b - 1.3, 1.5 * c, 0.0]).collect();
     let body = "return vec4<f32>(stance(at.xy, at.z), leaf_area_above(at.z), 0.0);";
     for elevation_rad in [-0.2, 0.3, 1.2] {
         let sun = Sun { heading_rad: 0.7, elevation_rad };
@@ -147,7 +149,8 @@ fn rays_through_the_sward_equal_their_cpu_twins() {
         let own = column(cell[0] as i32, cell[1] as i32);
         let away = |m: f32| [x + toward_x / level * (m / SHADE_CELL_M), z + toward_z / level * (m / SHADE_CELL_M)].map(|v| v as i32);
         let toward = |m: f32| column(away(m)[0], away(m)[1]);
-        let wanted = depth_toward_sun(toward, own.ground_m + height * own.height_m, columns[0][3], sun.elevation_rad.sin().max(LEAST_SUN_SINE));
+        let wanted =
+            depth_toward_sun(toward, own.ground_m + height * own.height_m, columns[0][3], sun.elevation_rad.sin().max(LEAST_SUN_SINE));
         assert!((found - wanted).abs() < 0.01 * wanted.max(1.0), "{found} instead of {wanted} at {cell:?}, {height}");
         deepest = deepest.max(wanted);
     }

@@ -122,9 +122,8 @@ fn beneath(along: [f32; 3], below: [f32; 3], link_m: f32, slab: &Slab<'_>) -> [f
     let up = [by * rz - bz * ry, bz * rx - bx * rz, bx * ry - by * rx];
     let (low_m, high_m) = (dot(start, up), dot(end, up));
     let is_under = |at: [f32; 3]| outline::contains(slab.outline_m, [dot(at, slab.right), dot(at, slab.back)]);
-    let meets = high_m > -slab.half_height_m
-        && low_m < slab.half_height_m
-        && (is_under(start) || (high_m < slab.half_height_m && is_under(end)));
+    let meets =
+        high_m > -slab.half_height_m && low_m < slab.half_height_m && (is_under(start) || (high_m < slab.half_height_m && is_under(end)));
     if meets { toward(along, up, ((-slab.half_height_m - low_m) / link_m).clamp(-1.0, 1.0)) } else { along }
 }
 
