@@ -77,6 +77,11 @@ fn among(color: vec3<f32>, about: vec4<f32>, up: f32, distance_m: f32) -> vec3<f
     return mix(about.rgb, color, own);
 }
 
+// Leaf area index of a kind of grass.
+fn leaf_area_of(kind: Kind) -> f32 {
+    return frame.leaf_area * leafiness(kind);
+}
+
 // Leaf area of a kind relative to the first kind, whose leaf area is in the frame's uniforms.
 fn leafiness(kind: Kind) -> f32 {
     return kind.width * kind.height_m / (kinds.list[0].width * kinds.list[0].height_m);
@@ -88,7 +93,7 @@ const SWARD_SHEEN: f32 = 0.008;
 
 // Colour of a sward seen from afar: two layers of leaves, each with half of the visible leaf area; deeper leaves show less.
 fn sward_color(p: vec3<f32>, up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: vec2<f32>, view: vec3<f32>, light: f32) -> vec3<f32> {
-    let leaf_area = frame.leaf_area * leafiness(kind);
+    let leaf_area = leaf_area_of(kind);
     let free = clamp(-dot(view, up), 0.05, 1.0) / (VISIBLE_LEAF_EXTINCTION * max(leaf_area, 0.05));
     let tilt = length(lean);
     let tangent = normalize(up + vec3<f32>(lean.x, 0.0, lean.y) * 1.4);

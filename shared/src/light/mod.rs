@@ -8,6 +8,7 @@ pub mod exposure;
 pub mod grass;
 pub mod lamp;
 pub mod sky;
+pub mod snow;
 pub mod sun;
 
 /// Linear red, green and blue.

@@ -19,3 +19,4 @@ mod prediction;
 mod replica;
 mod same_plants;
 mod shipped_species;
+mod snow;

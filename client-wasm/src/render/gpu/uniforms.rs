@@ -91,6 +91,11 @@ uniform_block! {
         target_m: [f32; 3],
         /// Radius around the line from the eye to it within which trees fade (m); 0 if there is none.
         fade_m: f32,
+        /// Depth of undisturbed snow (m).
+        snow_m: f32,
+        /// Mass of snow on leaves, relative to their own.
+        snow_load: f32,
+        _pad: [u8; 8],
         /// Interaction spheres; unused entries are zero.
         spheres: [Sphere; SPHERE_LIMIT],
         /// Waves of the gusts; unused entries are zero.
@@ -529,13 +534,17 @@ uniform_block! {
 uniform_block! {
     /// Rain around the camera.
     Shower {
-        /// Side of the square that contains the drops, and its height (m).
+        /// Side of the square that contains the drops or flakes, and its height (m).
         side_m: f32,
         height_m: f32,
-        /// Fall speed of the drops (m/s).
+        /// Fall speed of the drops or flakes (m/s).
         fall_m_per_s: f32,
         /// Opacity.
         opacity: f32,
+        /// Exposure time of their streaks (s), and half of the width of these (m).
+        streak_secs: f32,
+        half_width_m: f32,
+        _pad: [u8; 8],
     }
 }
 

@@ -12,6 +12,7 @@ use crate::state::DecodedScene;
 use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
 use prairie_core::light::sun::Sun;
+use prairie_core::plant::snow_load::relative_load;
 use prairie_core::scene::{Objects, Plants};
 use prairie_core::wind;
 use prairie_core::wire::ObjectPose;
@@ -113,6 +114,9 @@ impl<'a> View<'a> {
             repeated_per_m: textures.repeated.per_m(),
             target_m: self.camera.target_m.unwrap_or_default().to_array(),
             fade_m: if self.camera.target_m.is_some() { FADE_M } else { 0.0 },
+            snow_m: scene.snow.depth_m,
+            snow_load: relative_load(&scene.snow, leaf_area(&scene.plants)),
+            _pad: [0; 8],
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_else(Sphere::zeroed)),
             gusts: std::array::from_fn(|i| gusts.waves().get(i).map_or_else(GustWave::zeroed, GustWave::from)),
             lights: self.lights(decoded, daylight, &lamps),
