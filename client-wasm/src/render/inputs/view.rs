@@ -13,7 +13,7 @@ use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
 use prairie_core::light::sun::Sun;
 use prairie_core::plant::snow_load::relative_load;
-use prairie_core::scene::{Objects, Plants};
+use prairie_core::scene::{Objects, Plants, Wind};
 use prairie_core::wind;
 use prairie_core::wire::ObjectPose;
 
@@ -69,11 +69,9 @@ impl<'a> View<'a> {
         headlights: &[SpotLight],
     ) -> Frame {
         let (scene, eye, overcast) = (decoded.scene(), self.camera.eye_m, overcast(decoded));
-        let [wraps_x, _, wraps_z] = scene.wind.faces.wraps().map(u32::from);
         let (mean_wind, [past_ages_secs @ .., youngest_past]) = (MeanWind::of(scene.wind.mean_m_per_s), textures.atlas.past());
-        let gusts = textures.wind.gusts();
         let lamps = lamps(scene, decoded.heights(), headlights, self.sun.elevation_rad, daylight.brightness(), eye);
-        let spheres = spheres(&scene.objects, poses, eye);
+        let (gusts, spheres) = (textures.wind.gusts(), spheres(&scene.objects, poses, eye));
         Frame {
             projection_from_world: self.projection_from_world.to_cols_array(),
             shadow_from_world: self.shadow_from_world(0).to_cols_array(),
@@ -90,7 +88,7 @@ impl<'a> View<'a> {
             bend_reach_m: textures.atlas.reach_m(),
             wind_box_m: scene.wind.box_m(),
             wind_patch_m: if decoded.tiles().by_patch() { decoded.layout().patch_m() } else { 0.0 },
-            wind_repeats: [wraps_x, wraps_z],
+            wind_repeats: wind_repeats(&scene.wind),
             patch_seed: decoded.tiles().seed(),
             lamp_count: lamps.len() as u32,
             wind_direction: mean_wind.direction,
@@ -168,6 +166,12 @@ impl From<&wind::turbulence::GustWave> for GustWave {
     fn from(&wind::turbulence::GustWave { per_m, phase, strength }: &wind::turbulence::GustWave) -> Self {
         Self { per_m, phase, strength }
     }
+}
+
+/// 1 if the wind domain repeats along X, and along Z.
+fn wind_repeats(wind: &Wind) -> [u32; 2] {
+    let [x, _, z] = wind.faces.wraps().map(u32::from);
+    [x, z]
 }
 
 /// Leaf area index of blades of mean height at full density.
