@@ -1,4 +1,4 @@
-// Rain: streaks of drops around the camera that fall at their own speed and drift with the wind. Their positions are functions of their
+// Rain and snowfall: streaks of drops or flakes around the camera that fall at their own speed and drift with the wind. Their positions are functions of their
 // number and the time.
 
 import package::inputs::frame::frame;
@@ -8,10 +8,6 @@ import package::land_and_sky::sky_light::ambient;
 import package::uniforms::Shower;
 
 @group(1) @binding(0) var<uniform> shower: Shower;
-
-// Exposure time of the streak of a drop (s), and half of its width (m).
-const DROP_STREAK_SECS: f32 = 0.045;
-const HALF_WIDTH_M: f32 = 0.0020;
 
 struct Streak {
     @builtin(position) position: vec4<f32>,
@@ -38,15 +34,15 @@ fn vs(@builtin(vertex_index) index: u32) -> Streak {
     let to = centre - frame.eye_m;
     let distance_m = length(to);
     let across = normalize(cross(along, to));
-    let half_width = max(HALF_WIDTH_M, 0.6 * distance_m * frame.pixel_rad);
+    let half_width = max(shower.half_width_m, 0.6 * distance_m * frame.pixel_rad);
     let end = f32(corner >> 1u) - 0.5;
     let side_of = f32(corner & 1u) * 2.0 - 1.0;
-    let p = centre + velocity * (DROP_STREAK_SECS * end) + across * (half_width * side_of);
+    let p = centre + velocity * (shower.streak_secs * end) + across * (half_width * side_of);
     var out: Streak;
     out.across = side_of;
     // Streaks thinner than a pixel are fainter; there are none at the rim of the box or below the ground.
     let rim = 1.0 - smoothstep(0.35, 0.5, max(abs(to.x), abs(to.z)) / side);
-    let thin = HALF_WIDTH_M / half_width;
+    let thin = shower.half_width_m / half_width;
     let is_above = select(0.0, 1.0, centre.y > ground_height(centre.xz));
     out.opacity = shower.opacity * (0.25 + 0.75 * thin) * rim * is_above * smoothstep(0.5, 1.0, distance_m);
     out.position = select(vec4<f32>(0.0, 0.0, 0.0, 1.0), frame.projection_from_world * vec4<f32>(p, 1.0), out.opacity > 0.0);

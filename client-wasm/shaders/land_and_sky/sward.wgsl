@@ -79,6 +79,11 @@ fn among(color: vec3<f32>, about: vec4<f32>, up: f32, distance_m: f32) -> vec3<f
     return mix(about.rgb, color, own);
 }
 
+// Leaf area index of a kind of grass.
+fn leaf_area_of(kind: Kind) -> f32 {
+    return frame.leaf_area * leafiness(kind);
+}
+
 // Mean of the highlights along blades that lean in all directions, relative to sunlight: fitted to pictures of every blade without a far look, of meadow and
 // continuum with the sun behind and before the eye.
 const SWARD_SHEEN: f32 = 0.008;
@@ -87,7 +92,7 @@ const SWARD_SHEEN: f32 = 0.008;
 fn sward_color(
     p: vec3<f32>, up: vec3<f32>, kind: Kind, tint: vec3<f32>, lean: vec2<f32>, view: vec3<f32>, light: f32, shade: SwardShade,
 ) -> vec3<f32> {
-    let leaf_area = frame.leaf_area * leafiness(kind);
+    let leaf_area = leaf_area_of(kind);
     let free = clamp(-dot(view, up), 0.05, 1.0) / (VISIBLE_LEAF_EXTINCTION * max(leaf_area, 0.05));
     let tilt = length(lean);
     let tangent = normalize(up + vec3<f32>(lean.x, 0.0, lean.y) * 1.4);

@@ -16,6 +16,7 @@ import package::land_and_sky::ground::{grass_fraction_over, ground_height, groun
 import package::land_and_sky::ground_tile::{GroundTile, kind_of_plain, tile_vertex};
 import package::land_and_sky::haze::air_before;
 import package::land_and_sky::sky_light::ambient;
+import package::land_and_sky::snow::{depth_of_vertex, has_snow, hidden_by_grass, out_of_snow, snow_difference, snow_light, snow_normal};
 import package::land_and_sky::sward::{bare_between, sward_color};
 import package::uniforms::Kind;
 
@@ -44,7 +45,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
     let tile = tiles[instance];
     let p = tile_vertex(tile, index).p;
     var out: Ground;
-    out.p = vec3<f32>(p.x, ground_height(p), p.y);
+    out.p = vec3<f32>(p.x, ground_height(p) + depth_of_vertex(p), p.y);
     out.air = vec3<f32>(lean_of_wind(ground_wind_at(out.p), 1.0), cloud_light(p));
     out.tint = grass_tint(p);
     out.haze = air_before(out.p);
@@ -140,6 +141,21 @@ fn laid_at(p: vec2<f32>, distance_m: f32) -> vec2<f32> {
     return lean_of_field(p, field_level(distance_m));
 }
 
+// Light from snow and the grass that stands out of it, of which a fraction shows its far look.
+fn snowy(ground: Ground, normal: vec3<f32>, kind: Kind, grassy: f32, sun_light: f32) -> vec3<f32> {
+    let p = ground.p.xz;
+    let distance_m = distance(ground.p, frame.eye_m);
+    let view = (ground.p - frame.eye_m) / distance_m;
+    let level = field_level(distance_m);
+    let difference_m = snow_difference(p, level);
+    let depth_m = max(frame.snow_m + difference_m, 0.0);
+    let reached = mix(1.0, sun_in_grass(1.0 - out_of_snow(kind, depth_m), kind.height_m), grassy);
+    let snow = snow_light(ground.p, snow_normal(p, level, normal), difference_m, sun_light * reached);
+    let lean = laid_at(p, distance_m) + ground.air.xy * kind.wind_bend_rad;
+    let grass = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light);
+    return mix(snow, grass, grassy * hidden_by_grass(kind, depth_m, view, normal));
+}
+
 @fragment
 fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let p = ground.p.xz;
@@ -152,6 +168,10 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     let span_m = distance_m * frame.pixel_rad * inverseSqrt(max(-dot(view, normal), 0.05));
     let fraction = fraction_at(p, span_m, between, view, normal, kind);
     let sun_light = ground.air.z * sun_visible(ground.p + normal * 0.05);
+    if has_snow {
+        let color = snowy(ground, normal, kind, fraction * between, sun_light);
+        return vec4<f32>(color * ground.haze.a + ground.haze.rgb, 1.0);
+    }
     let shade = shade_at(p);
     var color = vec3<f32>(0.0);
     if !is_plain && fraction < 1.0 {

@@ -48,7 +48,7 @@ impl Renderer {
         let size_px = size_px.map(|side| side.max(1));
         let daylight = Daylight::new(gpu);
         let bindings = FrameBindings::new(gpu, quality, &daylight);
-        let factory = pass_factory(gpu, quality, &bindings, true);
+        let factory = pass_factory(gpu, quality, &bindings, [true, false]);
         let targets = Targets::new(gpu, size_px, quality, 1.0);
         Self {
             tone: ToneMapping::new(&factory, format, &targets.color, targets.scale),
@@ -181,8 +181,8 @@ impl Renderer {
     /// Loads the first stage of the mirror's scene.
     fn begin_scene(&mut self, mirror: &Mirror) {
         self.scene = mirror.decoded_scene().map(|decoded| {
-            let has_kinds = !decoded.scene().species.is_empty();
-            let factory = pass_factory(&self.gpu, self.quality, &self.bindings, has_kinds);
+            let scene = decoded.scene();
+            let factory = pass_factory(&self.gpu, self.quality, &self.bindings, [!scene.species.is_empty(), scene.snow.lies()]);
             Box::new(SceneResources::new(factory, &self.bindings, mirror.scene_number(), decoded))
         });
     }
@@ -195,9 +195,9 @@ impl Renderer {
     }
 }
 
-fn pass_factory(gpu: &Gpu, quality: Quality, bindings: &FrameBindings, has_kinds: bool) -> PassFactory {
+fn pass_factory(gpu: &Gpu, quality: Quality, bindings: &FrameBindings, [has_kinds, has_snow]: [bool; 2]) -> PassFactory {
     let (samples, soft_shadows) = (quality.samples(gpu.is_software), !quality.is_cheap(gpu.is_software));
-    PassFactory { gpu: gpu.clone(), frame_layout: bindings.layout.clone(), samples, has_kinds, soft_shadows }
+    PassFactory { gpu: gpu.clone(), frame_layout: bindings.layout.clone(), samples, has_kinds, soft_shadows, has_snow }
 }
 
 /// Resources of a stage that no frame shows yet.

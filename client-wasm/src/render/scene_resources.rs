@@ -1,5 +1,6 @@
 //! The passes and textures of one scene.
 
+use crate::render::gpu::constants::TILE_CELLS;
 use crate::render::gpu::pipeline::PassFactory;
 use crate::render::inputs::frame_bindings::{FrameBindings, SceneTextures};
 use crate::render::land_and_sky::dust::Dust;
@@ -58,7 +59,8 @@ impl SceneResources {
             stage: Stage::Land,
             textures: SceneTextures::new(&factory.gpu, bindings, decoded),
             terrain: Terrain::new(&factory, decoded, &quadtree),
-            quadtree,
+            // Ruts are as fine as the cells of the bend field.
+            quadtree: if scene.snow.lies() { quadtree.finer(TILE_CELLS as f32 * scene.patches.cell_m) } else { quadtree },
             shade_map: None,
             blades: None,
             billboards: None,

@@ -43,6 +43,7 @@ mod shade;
 mod shells;
 mod slabs;
 mod small;
+mod snow;
 mod stages;
 mod standing;
 mod trees;
@@ -259,8 +260,14 @@ fn compute(
     invocations: u32,
 ) -> Vec<[f32; 4]> {
     let renderer = &picture.renderer;
-    let factory =
-        PassFactory { gpu: gpu.clone(), frame_layout: renderer.bindings.layout.clone(), samples: 1, has_kinds: true, soft_shadows: true };
+    let factory = PassFactory {
+        gpu: gpu.clone(),
+        frame_layout: renderer.bindings.layout.clone(),
+        samples: 1,
+        has_kinds: true,
+        soft_shadows: true,
+        has_snow: false,
+    };
     let layout = factory.layout("probes", &[&[storage_rw(0)][..], &CameraForceField::layout()].concat());
     let scene = renderer.scene.as_ref().expect("a scene");
     let pipeline = factory.compute("probe", &gpu.shader("probe", source, constants), "probe", &layout);

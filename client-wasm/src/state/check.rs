@@ -4,7 +4,7 @@ use super::check_underbrush::check_underbrush;
 use super::error::{MirrorError, range, within};
 use prairie_core::body::Body;
 use prairie_core::lod::shells::LAYERS_LIMIT;
-use prairie_core::scene::{GATES_LIMIT, LAMPS_LIMIT, MODEL_SIDE_M, MODELS_LIMIT, Scene, Stream, WIND_CELLS_LIMIT};
+use prairie_core::scene::{GATES_LIMIT, LAMPS_LIMIT, MODEL_SIDE_M, MODELS_LIMIT, Scene, Snow, Stream, WIND_CELLS_LIMIT};
 use prairie_core::wire::{Mesh, STANDINGS_LIMIT, Standing};
 
 /// Checks all settings that the client relies on.
@@ -76,9 +76,21 @@ fn check_world(scene: &Scene) -> Result<(), MirrorError> {
     within("shells.root_light", shells.root_light, 0.0, 1.0)?;
     within("shells.stiffness_profile", shells.stiffness_profile, -0.9, 4.0)?;
     within("rain.rate_mm_per_h", scene.rain.rate_mm_per_h, 0.0, 200.0)?;
+    check_snow(scene)?;
     within("objects.balls", scene.objects.balls as f32, 0.0, 64.0)?;
     within("objects.ball_radius_m", scene.objects.ball_radius_m, 0.1, 5.0)?;
     Ok(())
+}
+
+fn check_snow(scene: &Scene) -> Result<(), MirrorError> {
+    let Snow { depth_m, density_kg_m3, pressed_density_kg_m3, pushed_share, repose_deg, fall_m_per_h, leaf_load_kg_m2 } = scene.snow;
+    within("snow.depth_m", depth_m, 0.0, 2.0)?;
+    within("snow.density_kg_m3", density_kg_m3, 30.0, 600.0)?;
+    within("snow.pressed_density_kg_m3", pressed_density_kg_m3, density_kg_m3, 900.0)?;
+    within("snow.pushed_share", pushed_share, 0.0, 1.0)?;
+    within("snow.repose_deg", repose_deg, 10.0, 80.0)?;
+    within("snow.fall_m_per_h", fall_m_per_h, 0.0, 0.5)?;
+    within("snow.leaf_load_kg_m2", leaf_load_kg_m2, 0.0, 5.0)
 }
 
 fn check_light(scene: &Scene) -> Result<(), MirrorError> {

@@ -2,7 +2,7 @@
 
 use super::error::{MirrorError, range};
 use prairie_core::grid::{PatchIndex, PatchLayout};
-use prairie_core::scene::Wind;
+use prairie_core::scene::{Scene, Wind};
 use prairie_core::wire::{PATCH_MEMORY, Shape, TurbulenceState, codec};
 use std::collections::{BTreeSet, HashMap, VecDeque};
 
@@ -10,7 +10,7 @@ use std::collections::{BTreeSet, HashMap, VecDeque};
 pub const PATCH_LIMIT: usize = 4096;
 const _: () = assert!(PATCH_LIMIT >= PATCH_MEMORY, "the server relies on the client remembering this many patches");
 
-/// Codes of one patch: three planes (θ, ωx, ωz) of `cells × cells`.
+/// Codes of one patch: three planes (θ, ωx, ωz) of `cells × cells` and, where snow lies, a fourth of the differences in its depth.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PatchCodes {
     planes: Vec<i16>,
@@ -19,8 +19,17 @@ pub struct PatchCodes {
 impl PatchCodes {
     /// Planes θ, ωx, ωz, each in rows from north to south.
     pub fn planes(&self) -> [&[i16]; 3] {
-        let plane = self.planes.len() / 3;
-        std::array::from_fn(|i| &self.planes[i * plane..(i + 1) * plane])
+        std::array::from_fn(|i| self.plane(i))
+    }
+
+    /// Differences in the depth of the snow, as [`planes`](Self::planes); `None` where no snow lies.
+    pub fn snow(&self) -> Option<&[i16]> {
+        (Shape::of_patch(self.planes.len()).planes > 3).then(|| self.plane(3))
+    }
+
+    fn plane(&self, plane: usize) -> &[i16] {
+        let cells = Shape::of_patch(self.planes.len()).width.pow(2);
+        &self.planes[plane * cells..(plane + 1) * cells]
     }
 }
 
@@ -40,16 +49,10 @@ pub(super) struct PatchFields {
 }
 
 impl PatchFields {
-    pub(super) fn apply(
-        &mut self,
-        layout: &PatchLayout,
-        patch: PatchIndex,
-        seq: u32,
-        key: bool,
-        payload: &[u8],
-    ) -> Result<(), MirrorError> {
-        if patch as usize >= layout.patches() {
-            return Err(range("patch index", patch, format!("0..{}", layout.patches())));
+    pub(super) fn apply(&mut self, scene: &Scene, patch: PatchIndex, seq: u32, key: bool, payload: &[u8]) -> Result<(), MirrorError> {
+        let patches = PatchLayout::from(&scene.patches).patches();
+        if patch as usize >= patches {
+            return Err(range("patch index", patch, format!("0..{patches}")));
         }
         let at_rest = payload.is_empty();
         let base = self.entries.get(&patch).filter(|entry| entry.seq.wrapping_add(1) == seq);
@@ -59,10 +62,10 @@ impl PatchFields {
         let codes = if at_rest {
             None
         } else {
-            let cells = layout.cells as usize;
+            let shape = Shape::patch_of(scene);
             let start = if key { None } else { base.and_then(|entry| entry.codes.as_ref()) };
-            let mut planes = start.map_or_else(|| vec![0; cells * cells * 3], |codes| codes.planes.clone());
-            codec::decode(Shape::patch(cells), payload, &mut planes).map_err(|error| MirrorError::Field { field: "patch", error })?;
+            let mut planes = start.map_or_else(|| vec![0; shape.planes * shape.width * shape.width], |codes| codes.planes.clone());
+            codec::decode(shape, payload, &mut planes).map_err(|error| MirrorError::Field { field: "patch", error })?;
             Some(PatchCodes { planes })
         };
         self.store(patch, Entry { seq, updated: 0, codes });

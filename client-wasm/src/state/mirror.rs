@@ -117,7 +117,7 @@ impl Mirror {
             }
             ServerMessage::Patch { patch, seq, key, payload } => {
                 let decoded = self.scene.as_ref().ok_or(MirrorError::BeforeScene("patch frame"))?;
-                self.patches.apply(decoded.layout(), patch, seq, key, &payload)?;
+                self.patches.apply(decoded.scene(), patch, seq, key, &payload)?;
                 None
             }
             ServerMessage::ReplicaState { tick, part, parts, payload } => {
@@ -338,11 +338,11 @@ impl Mirror {
         self.patches.has_dirty()
     }
 
-    /// Whether nothing moves by itself: no wind, natural wind, rain, dust or moving sun. True before the scene has arrived.
+    /// Whether nothing moves by itself: no wind, natural wind, rain, snowfall, dust or moving sun. True before the scene has arrived.
     pub fn is_calm(&self) -> bool {
         let scene_is_calm = self.scene.as_ref().is_none_or(|decoded| {
-            let Scene { wind, rain, light, .. } = decoded.scene();
-            wind.mean_m_per_s == [0.0; 2] && rain.rate_mm_per_h <= 0.0 && light.day_length_secs <= 0.0
+            let Scene { wind, rain, snow, light, .. } = decoded.scene();
+            wind.mean_m_per_s == [0.0; 2] && rain.rate_mm_per_h <= 0.0 && snow.fall_m_per_h <= 0.0 && light.day_length_secs <= 0.0
         });
         scene_is_calm && self.repeated.is_none() && self.wind().is_none_or(WindCodes::is_calm)
     }

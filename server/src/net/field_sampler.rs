@@ -6,7 +6,7 @@ use prairie_core::bend::{Bend, field_lean_at};
 use prairie_core::grid::PatchLayout;
 use prairie_core::terrain::{HeightMap, KindMap};
 use prairie_core::wind::WindField;
-use prairie_core::wire::quantise::CodeSteps;
+use prairie_core::wire::quantise::{CodeSteps, snow_m};
 use serde_json::{Value, json};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -19,6 +19,7 @@ pub(crate) struct FieldSampler {
     layout: PatchLayout,
     heights: HeightMap,
     steps: CodeSteps,
+    undisturbed_snow_m: f32,
     /// Tick of the wind, and the wind; `None` before the first request.
     wind: Mutex<(Option<u64>, WindField)>,
 }
@@ -41,6 +42,7 @@ impl FieldSampler {
             layout: PatchLayout::from(&scene.patches),
             heights: loaded.height.clone(),
             steps: CodeSteps::from(&scene.stream),
+            undisturbed_snow_m: scene.snow.depth_m,
             wind: Mutex::new((None, wind)),
         }
     }
@@ -60,7 +62,7 @@ impl FieldSampler {
         })
     }
 
-    /// Lean of the bend field at places, and with the lean in the wind.
+    /// Lean of the bend field at places, and with the lean in the wind; depth of the snow.
     pub(super) fn bend(&self, published: &Published, places: &[Place]) -> Value {
         let snapshot = &published.snapshot;
         let plane = (self.layout.cells * self.layout.cells) as usize;
@@ -81,7 +83,18 @@ impl FieldSampler {
             "time_secs": snapshot.time_secs,
             "bend_rad": bends,
             "lean_rad": leans,
+            "snow_m": places.iter().map(|place| self.snow_m(published, [place.x, place.z])).collect::<Vec<_>>(),
         })
+    }
+
+    /// Depth of the snow in the cell of a position on the ground.
+    fn snow_m(&self, published: &Published, [x_m, z_m]: [f32; 2]) -> f32 {
+        let (layout, cells) = (&self.layout, self.layout.cells as usize);
+        let code = layout.patch_at(x_m, z_m).and_then(|patch| {
+            let [i, j] = [x_m, z_m].map(|m| (m / layout.cell_m) as usize % cells);
+            published.snapshot.patches.get(&patch)?.codes.get((3 * cells + j) * cells + i)
+        });
+        (self.undisturbed_snow_m + code.copied().map_or(0.0, snow_m)).max(0.0)
     }
 
     fn above_ground_m(&self, Place { x, y, z }: Place) -> [f32; 3] {

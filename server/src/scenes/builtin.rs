@@ -26,7 +26,7 @@ macro_rules! scene {
 }
 
 /// All built-in scenes, the default first.
-pub(super) const BUILT_IN: [BuiltIn; 20] = [
+pub(super) const BUILT_IN: [BuiltIn; 21] = [
     scene!("meadow", "meadow-height.png", "meadow-reeds-covering.png", "species.toml"),
     scene!("jacksboro", "jacksboro-height.png", "jacksboro-covering.png"),
     scene!("devil", "meadow-height.png", "meadow-covering.png"),
@@ -45,6 +45,7 @@ pub(super) const BUILT_IN: [BuiltIn; 20] = [
     scene!("implicit", "blades-height.png", "blades-covering.png"),
     scene!("modal", "blades-height.png", "blades-covering.png"),
     scene!("history", "blades-height.png", "blades-covering.png"),
+    scene!("snow", "meadow-height.png", "meadow-reeds-covering.png", "species.toml"),
     scene!("race", "meadow-height.png", "meadow-covering.png"),
     scene!("homestead", "blades-height.png", "homestead-covering.png"),
 ];

@@ -65,10 +65,10 @@ impl SceneDescription {
 
 /// Words for the parts of a scene that not every scene has.
 fn shown(scene: &Scene) -> Vec<String> {
-    let Scene { wind, objects, rain, .. } = scene;
+    let Scene { wind, objects, rain, snow, .. } = scene;
     let driven = format!("self-driving {}s", objects.self_driving_kind.name());
     let has_underbrush = !scene.underbrush.is_empty() || !scene.underbrush_file.is_empty();
-    let parts: [(bool, &str); 14] = [
+    let parts: [(bool, &str); 15] = [
         (!scene.species.is_empty(), "species of grass"),
         (scene.plants.cover == PlantCover::Shells, "grass drawn as shells"),
         (has_underbrush, "underbrush"),
@@ -79,6 +79,7 @@ fn shown(scene: &Scene) -> Vec<String> {
         (scene.natural_wind.strength_rad_per_s2 > 0.0, "gusts of noise"),
         (!scene.drawn_winds.is_empty(), "drawn winds"),
         (rain.rate_mm_per_h > 0.0, "rain"),
+        (snow.lies(), "snow"),
         (!scene.lights.is_empty(), "lamps"),
         (objects.self_driving > 0, &driven),
         (objects.balls > 0, "balls"),
@@ -91,7 +92,7 @@ fn shown(scene: &Scene) -> Vec<String> {
 type Method = (&'static str, fn(&Scene) -> bool);
 
 /// Methods other than the default ones.
-const METHODS: [Method; 20] = [
+const METHODS: [Method; 21] = [
     ("wind by stable fluids (Stam 1999; Zhang §2.3)", |scene| scene.wind.method == WindMethod::StableFluids),
     ("one box of wind for all patches, at random offsets (Zhang §5.1)", |scene| scene.wind.tiling == WindTiling::Patch),
     ("one box of wind that follows the objects", |scene| scene.wind.tiling == WindTiling::Follow),
@@ -110,6 +111,7 @@ const METHODS: [Method; 20] = [
     ("blades from an alpha texture (Zhang, Fig. 5)", |scene| scene.plants.blade_shape == BladeShape::Textured),
     ("flowers as squares with six textures (Zhang §3.3)", |scene| scene.plants.flower_shape == FlowerShape::Textured),
     ("models that IDs of the covering map name (Zhang, Table 2)", |scene| !scene.models.is_empty()),
+    ("snow that wheels and feet press (Sumner et al. 1999)", |scene| scene.snow.lies()),
     ("shells (Bakay 2003)", |scene| scene.plants.cover == PlantCover::Shells),
     ("a race through gates, against a ghost (Chen & Johan 2010, §7)", |scene| !scene.race.gates.is_empty()),
 ];
@@ -145,6 +147,7 @@ mod tests {
         assert_eq!(continuum.shows, ["species of grass", "flowers", "self-driving cars"]);
         assert_eq!(of("devil").shows, ["flowers", "whirls and jets", "dust"]);
         assert_eq!(of("storm").shows, ["underbrush", "flowers", "rain"]);
+        assert_eq!(of("snow").shows, ["underbrush", "snow", "self-driving cars"]);
         assert_eq!(of("breeze").shows, ["flowers", "gusts of noise"]);
         assert_eq!(of("blades").shows, ["flowers", "self-driving monsters"]);
         assert_eq!(of("shells").shows, ["grass drawn as shells", "whirls and jets"]);

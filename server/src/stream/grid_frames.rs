@@ -33,7 +33,7 @@ impl Grid for WindFrame {
 
 impl Grid for PatchCodes {
     fn shape(&self) -> Shape {
-        Shape::patch((self.codes.len() / 3).isqrt())
+        Shape::of_patch(self.codes.len())
     }
     fn codes(&self) -> &[i16] {
         &self.codes

@@ -162,8 +162,7 @@ impl Stage {
             None if codes.is_none() => return Ok(()),
             None => 1,
         };
-        let payload =
-            codes.map_or_else(Vec::new, |codes| codec::encode(Shape::patch(self.scene.patches.cells as usize), &codes.codes, None));
+        let payload = codes.map_or_else(Vec::new, |codes| codec::encode(Shape::patch_of(&self.scene), &codes.codes, None));
         self.send(&ServerMessage::Patch { patch, seq, key: true, payload })?;
         match codes {
             Some(codes) => self.sent.insert(patch, (seq, Arc::clone(codes))),

@@ -343,6 +343,9 @@ fn hash_bend(bend: &BendSimulation, sum: &mut Checksum) {
         }
     }
     sum.add(bend.flattened().words());
+    if let Some(snow) = bend.snow() {
+        snow.patches().for_each(|patch| sum.add(snow.words_of(patch)));
+    }
 }
 
 /// Checks that `drawings` has all wind drawings that `scene` names; otherwise the error names the first that is missing.

@@ -12,6 +12,7 @@ pub struct Replica {
     pub patch_cells: usize,
     pub wind_cells: [u32; 3],
     pub has_dust: bool,
+    pub has_snow: bool,
     pub patches: BTreeMap<PatchIndex, (u32, Vec<i16>)>,
     /// The patches, least recently updated first.
     pub recent: Vec<PatchIndex>,
@@ -33,6 +34,10 @@ impl Replica {
         self.wind = (0, vec![0; self.wind_shape().planes * wind_cells.iter().product::<u32>() as usize]);
     }
 
+    fn patch_shape(&self) -> Shape {
+        if self.has_snow { Shape::snowy_patch(self.patch_cells) } else { Shape::patch(self.patch_cells) }
+    }
+
     fn wind_shape(&self) -> Shape {
         Shape::wind(self.wind_cells[0] as usize, self.has_dust)
     }
@@ -43,9 +48,10 @@ impl Replica {
         self.bytes += bytes.len();
         match &message {
             ServerMessage::Patch { patch, seq, key, payload } => {
-                let rest = || (0, vec![0; 3 * self.patch_cells.pow(2)]);
+                let shape = self.patch_shape();
+                let rest = || (0, vec![0; shape.planes * shape.width.pow(2)]);
                 let held = self.patches.entry(*patch).or_insert_with(rest);
-                update(held, Shape::patch(self.patch_cells), *seq, *key, payload);
+                update(held, shape, *seq, *key, payload);
                 self.recent.retain(|recent| recent != patch);
                 self.recent.push(*patch);
                 if self.recent.len() > PATCH_MEMORY {
@@ -56,7 +62,10 @@ impl Replica {
                 let shape = self.wind_shape();
                 update(&mut self.wind, shape, *seq, *key, payload);
             }
-            ServerMessage::Scene { scene, .. } => self.shape(scene.patches.cells as usize, scene.wind.cells, scene.wind.has_dust()),
+            ServerMessage::Scene { scene, .. } => {
+                self.shape(scene.patches.cells as usize, scene.wind.cells, scene.wind.has_dust());
+                self.has_snow = scene.snow.lies();
+            }
             ServerMessage::FrameEnd { frame, tick, .. } => {
                 assert_eq!(*frame, self.frame + 1, "frames are numbered without gaps");
                 assert!(*tick >= self.tick, "time never decreases");

@@ -39,6 +39,17 @@ pub enum StateError {
         /// Largest number.
         limit: usize,
     },
+    /// The snow of a patch is outside the world, has another size, does not follow the one before, or is out of range.
+    #[error("the snow of patch {0} does not fit the field")]
+    Snow(PatchIndex),
+    /// Snow has other tiles than its patches, or other cells than its tiles.
+    #[error("snow has {tiles} tiles of {cells} cells, which its patches do not have")]
+    SnowTiles {
+        /// Number of tiles.
+        tiles: usize,
+        /// Number of their cells.
+        cells: usize,
+    },
     /// There are more values than the patches have.
     #[error("{0} values belong to no patch")]
     Values(usize),

@@ -1,10 +1,12 @@
 //! Codes of the grass: 16 bits for each channel of a cell, encoded again where something changed.
 
+use super::snow::SnowField;
 use super::vector::length;
 use super::{Audience, BendSimulation, grass_state};
 use crate::bend::{Bend, Executor, Patch, TILE};
 use crate::grid::PatchIndex;
-use crate::wire::quantise::CodeSteps;
+use crate::wire::Shape;
+use crate::wire::quantise::{CodeSteps, snow_code};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -16,15 +18,17 @@ pub type BentPatches = BTreeMap<PatchIndex, Arc<PatchCodes>>;
 pub struct PatchCodes {
     /// Step at which the codes last changed.
     pub tick: u64,
-    /// Three planes (θ, ωx, ωz) of `cells × cells` codes, row by row from the north-west.
+    /// Three planes (θ, ωx, ωz) of `cells × cells` codes, row by row from the north-west. Where snow lies, a fourth plane holds the difference in its depth from
+    /// undisturbed snow.
     pub codes: Vec<i16>,
 }
 
 /// Sources of a patch's codes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Sources {
     is_awake: bool,
     is_flattened: bool,
+    is_trodden: bool,
 }
 
 /// State of the grass from which the codes of a patch were made.
@@ -34,6 +38,8 @@ struct Encoded {
     field: u64,
     /// Revision of the flattened grass.
     flattened: u64,
+    /// Revision of the snow.
+    snow: u64,
     /// Simulated time (s) at which flattened grass has recovered by the largest error of a code, so that all codes are due again.
     due_secs: f64,
 }
@@ -92,7 +98,13 @@ impl PatchQuantiser {
         let (patch, before) = (bend.field().patch(index), self.patches.get(&index));
         let is_current =
             |known: &&Encoded| bend.flattened().secs() < known.due_secs && !bend.flattened().changed_since(known.flattened, index);
-        let mut state = Encoded { field: bend.field().revision(), flattened: bend.flattened().revision(), due_secs: f64::INFINITY };
+        let is_current = |known: &&Encoded| is_current(known) && bend.snow().is_none_or(|snow| !snow.changed_since(known.snow, index));
+        let mut state = Encoded {
+            field: bend.field().revision(),
+            flattened: bend.flattened().revision(),
+            snow: bend.snow().map_or(0, SnowField::revision),
+            due_secs: f64::INFINITY,
+        };
         let codes = match (patch, known.filter(is_current)) {
             (None, Some(known)) => return (before.cloned(), Encoded { due_secs: known.due_secs, ..state }),
             (Some(patch), Some(known)) => {
@@ -119,14 +131,15 @@ impl PatchQuantiser {
 
 /// Patches that are not at rest, with the sources of their codes.
 fn sources(bend: &BendSimulation, in_sight: impl Fn(PatchIndex) -> bool) -> BTreeMap<PatchIndex, Sources> {
-    let awake = |patch: &Patch| (patch.index(), Sources { is_awake: true, is_flattened: false });
+    let awake = |patch: &Patch| (patch.index(), Sources { is_awake: true, ..Sources::default() });
     let mut sources: BTreeMap<_, _> = bend.field().awake().map(awake).collect();
-    for index in bend.flattened().patches() {
-        let is_awake = sources.contains_key(&index);
-        if is_awake || in_sight(index) {
-            sources.insert(index, Sources { is_awake, is_flattened: true });
+    let mut add = |index, add: fn(&mut Sources)| {
+        if sources.contains_key(&index) || in_sight(index) {
+            add(sources.entry(index).or_default());
         }
-    }
+    };
+    bend.flattened().patches().for_each(|index| add(index, |source| source.is_flattened = true));
+    bend.snow().into_iter().flat_map(SnowField::patches).for_each(|index| add(index, |source| source.is_trodden = true));
     sources
 }
 
@@ -135,21 +148,30 @@ fn are_zero(codes: &[i16]) -> bool {
     codes.chunks(256).all(|chunk| chunk.iter().fold(0, |any, code| any | code) == 0)
 }
 
+/// Codes of a patch at rest in undisturbed snow.
+fn at_rest(side: usize, bend: &BendSimulation) -> Vec<i16> {
+    let shape = if bend.snow().is_some() { Shape::snowy_patch(side) } else { Shape::patch(side) };
+    vec![0; shape.planes * side * side]
+}
+
 /// Codes of all tiles, and the largest lean (rad) of flattened grass in them.
 fn encode_all(index: PatchIndex, patch: Option<&Patch>, bend: &BendSimulation) -> (Vec<i16>, f32) {
     let side = bend.field().layout().cells as usize;
-    let mut codes = vec![0; 3 * side * side];
+    let mut codes = at_rest(side, bend);
     if let Some(patch) = patch {
         write_tiles(&mut codes, patch, bend.code_steps(), |_| true);
     }
     let largest_rad = add_flattened(&mut codes, side, index, patch, bend, |_| true);
+    for ([i, j], difference) in bend.snow().into_iter().flat_map(|snow| snow.differences(index)) {
+        codes[(3 * side + j) * side + i] = snow_code(difference);
+    }
     (codes, largest_rad)
 }
 
 /// The codes `before`, updated in the tiles that changed since a revision of the field.
 fn update(before: Option<&[i16]>, patch: &Patch, since: u64, bend: &BendSimulation) -> Vec<i16> {
     let side = patch.side();
-    let mut codes = before.map_or_else(|| vec![0; 3 * side * side], <[i16]>::to_vec);
+    let mut codes = before.map_or_else(|| at_rest(side, bend), <[i16]>::to_vec);
     let changed: Vec<bool> = patch.changed_since(since).collect();
     write_tiles(&mut codes, patch, bend.code_steps(), |tile| changed[tile]);
     add_flattened(&mut codes, side, patch.index(), Some(patch), bend, |tile| changed[tile]);

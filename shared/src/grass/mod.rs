@@ -22,6 +22,7 @@ mod regions;
 mod repeated_patch;
 mod replica;
 mod simulation;
+pub mod snow;
 mod step_codec;
 pub mod stroke;
 pub mod swept_footprint;

@@ -10,6 +10,7 @@ use super::grass_state::{self, GrassState};
 use super::gust_noise::GustNoise;
 use super::prescribed_wind::{PrescribedWind, PrescribedWinds};
 use super::regions::Regions;
+use super::snow::{SnowField, SnowState};
 use super::swept_footprint::SweptFootprint;
 use super::wind_drawing::WindDrawings;
 use crate::bend::{Executor, Field, FieldState, Kinds, Patch, Report, Scheme, Serial, StateError, StepError, TILE};
@@ -39,6 +40,8 @@ pub struct BendSimulation {
     bodies: Bodies,
     winds: PrescribedWinds,
     flattened: FlattenedGrass,
+    /// `None` where no snow lies.
+    snow: Option<SnowField>,
     /// Causes of the newest step.
     causes: Causes,
     rejected: Vec<MotionError>,
@@ -54,6 +57,8 @@ pub struct BendSimulation {
 pub struct BendState {
     field: FieldState,
     flattened: FlattenedState,
+    /// Empty where no snow lies.
+    snow: SnowState,
     gusts_secs: Option<f64>,
     winds_secs: f64,
     causes: Causes,
@@ -85,6 +90,7 @@ impl BendSimulation {
             bodies: Bodies::new(bodies, &scene.objects),
             winds: PrescribedWinds::new(scene, drawings),
             flattened: FlattenedGrass::new(layout, scene.grass.laid_recovery_secs, tile_limit),
+            snow: SnowField::new(layout, &scene.snow, tile_limit),
             causes: Causes::default(),
             rejected: vec![],
             rejected_count: 0,
@@ -123,6 +129,11 @@ impl BendSimulation {
     /// Grass that stays bent below the weight of objects.
     pub fn flattened(&self) -> &FlattenedGrass {
         &self.flattened
+    }
+
+    /// Snow on the land; `None` where none lies.
+    pub fn snow(&self) -> Option<&SnowField> {
+        self.snow.as_ref()
     }
 
     /// Steps of the codes.
@@ -194,15 +205,29 @@ impl BendSimulation {
             gusts.push(&mut self.field, &self.causes.gusty, dt_secs);
         }
         self.causes.dropped = self.flattened.step_within(dt_secs, limits);
+        self.press_snow(dt_secs);
         self.report = self.propagate(dt_secs, executor);
         self.reset_count = self.reset_count.wrapping_add(self.report.reset_patches.into());
     }
 
-    /// Checksum of a patch's grass, bend field and flattened, and of the number of awake patches.
+    /// Presses the snow by all objects, one after another, and lets more drift over it.
+    fn press_snow(&mut self, dt_secs: f32) {
+        let Some(snow) = &mut self.snow else { return };
+        let cell_m = self.field.layout().cell_m;
+        for motion in &self.causes.motions {
+            for (swept, clearance_m) in self.bodies.swept_below(motion, &self.height, snow.highest_m(), cell_m) {
+                snow.press(&swept, clearance_m);
+            }
+        }
+        snow.step(dt_secs);
+    }
+
+    /// Checksum of a patch's grass, bend field and flattened, of its snow, and of the number of awake patches.
     pub fn patch_checksum(&self, patch: PatchIndex) -> u16 {
         let bend = self.field.patch(patch).map_or(0, Patch::checksum) ^ self.field.awake_count() as u32;
         let stir = |sum: u32, word: u32| (sum ^ word).wrapping_mul(0x85EB_CA77).rotate_left(13);
         let sum = self.flattened.words_of(patch).fold(bend, stir);
+        let sum = self.snow.iter().flat_map(|snow| snow.words_of(patch)).fold(sum, stir);
         (sum ^ (sum >> 16)) as u16
     }
 
@@ -215,6 +240,7 @@ impl BendSimulation {
         }
         let round = tick / ticks_per_round % CHECK_ROUNDS;
         let mut patches: Vec<_> = self.field.awake().map(Patch::index).chain(self.flattened.patches()).collect();
+        patches.extend(self.snow.iter().flat_map(SnowField::patches));
         patches.retain(|patch| u64::from(*patch) % CHECK_ROUNDS == round);
         patches.sort_unstable();
         patches.dedup();
@@ -234,6 +260,10 @@ impl BendSimulation {
     pub fn save_into(&self, state: &mut BendState, executor: &impl Executor) {
         self.field.save_into(&mut state.field, executor);
         self.flattened.save_into(&mut state.flattened);
+        match &self.snow {
+            Some(snow) => snow.save_into(&mut state.snow),
+            None => state.snow = SnowState::default(),
+        }
         state.causes.clone_from(&self.causes);
         (state.gusts_secs, state.winds_secs) = (self.gusts.as_ref().map(GustNoise::time_secs), self.winds.time_secs());
         (state.rejected_count, state.reset_count) = (self.rejected_count, self.reset_count);
@@ -247,6 +277,9 @@ impl BendSimulation {
     pub fn restore(&mut self, state: BendState) -> Result<(), StateError> {
         self.field.restore(state.field)?;
         self.flattened.restore(&state.flattened)?;
+        if let Some(snow) = &mut self.snow {
+            snow.restore(&state.snow)?;
+        }
         if let (Some(gusts), Some(secs)) = (&mut self.gusts, state.gusts_secs) {
             gusts.set_time(secs);
         }

@@ -9,6 +9,7 @@ pub mod grass;
 pub mod lamp;
 pub mod shade;
 pub mod sky;
+pub mod snow;
 pub mod sun;
 
 /// Linear red, green and blue.

@@ -4,4 +4,5 @@ pub mod blade;
 pub mod flora;
 pub mod force_field;
 pub mod growth;
+pub mod snow_load;
 pub mod underbrush;

@@ -34,7 +34,7 @@ use Allowed::{Course, Name, OneOf, Places, Range, Sections, Text};
 
 /// Every field by its path, in the order of the structs; for a list of sections, the fields of one section. For `species` only its own fields are
 /// listed; the others are as in `grass` and `plants`, see [`Allowed::at`].
-pub const FIELDS: [(&str, Allowed); BEFORE_OBJECTS.len() + OBJECT_FIELDS.len() + AFTER_OBJECTS.len()] =
+pub static FIELDS: [(&str, Allowed); BEFORE_OBJECTS.len() + OBJECT_FIELDS.len() + AFTER_OBJECTS.len()] =
     joined(&[BEFORE_OBJECTS, OBJECT_FIELDS, AFTER_OBJECTS]);
 
 const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
@@ -112,6 +112,13 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("natural_wind.drift_m_per_s", Range(-40.0, 40.0)),
     ("natural_wind.reach_m", Range(0.0, 500.0)),
     ("rain.rate_mm_per_h", Range(0.0, 200.0)),
+    ("snow.depth_m", Range(0.0, 2.0)),
+    ("snow.density_kg_m3", Range(30.0, 600.0)),
+    ("snow.pressed_density_kg_m3", Range(30.0, 900.0)),
+    ("snow.pushed_share", Range(0.0, 1.0)),
+    ("snow.repose_deg", Range(10.0, 80.0)),
+    ("snow.fall_m_per_h", Range(0.0, 0.5)),
+    ("snow.leaf_load_kg_m2", Range(0.0, 5.0)),
     ("bend.scheme", OneOf(Scheme::WORDS)),
     ("bend.seams", OneOf(Seams::WORDS)),
     ("bend.edges", OneOf(Edges::WORDS)),

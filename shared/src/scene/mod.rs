@@ -25,6 +25,7 @@ mod positions;
 mod race;
 mod rain;
 mod shells;
+mod snow;
 mod species;
 mod stream;
 mod template;
@@ -53,6 +54,7 @@ pub use positions::Positions;
 pub use race::{AMBER_SECS, GATES_LIMIT, GREEN_SECS, Race, RaceGate};
 pub use rain::Rain;
 pub use shells::{ShellExtrusion, Shells};
+pub use snow::Snow;
 pub use species::Species;
 pub use stream::Stream;
 pub use terrain::TerrainMaps;
@@ -95,6 +97,9 @@ pub struct Scene {
     /// Rain on the plants.
     #[serde(default)]
     pub rain: Rain,
+    /// Snow on the land.
+    #[serde(default)]
+    pub snow: Snow,
     /// Numerical method of the bend field.
     #[serde(default)]
     pub bend: BendField,
@@ -170,6 +175,7 @@ impl Scene {
             wind: Wind::default(),
             natural_wind: NaturalWind::default(),
             rain: Rain::default(),
+            snow: Snow::default(),
             bend: BendField::default(),
             grass: Grass::default(),
             plants: Plants::default(),

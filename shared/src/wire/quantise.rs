@@ -12,6 +12,22 @@ use std::num::NonZeroU8;
 /// Largest code; the smallest is its negative.
 pub const CODE_LIMIT: i16 = i16::MAX;
 
+/// Step between neighbouring codes of a difference in the depth of snow (m). The error is at most half a step.
+pub const SNOW_STEP_M: f32 = 0.002;
+/// The step in micrometres, [quanta](crate::grass::snow::DEPTH_QUANTUM_M) of depth.
+const SNOW_STEP_UM: i64 = 2000;
+
+/// Code of a difference in the depth of snow, in micrometres.
+pub fn snow_code(difference_um: i64) -> i16 {
+    let rounded = (difference_um + difference_um.signum() * SNOW_STEP_UM / 2) / SNOW_STEP_UM;
+    rounded.clamp(-i64::from(CODE_LIMIT), CODE_LIMIT.into()) as i16
+}
+
+/// Difference in the depth of snow of a code (m).
+pub fn snow_m(code: i16) -> f32 {
+    f32::from(code) * SNOW_STEP_M
+}
+
 /// Steps between neighbouring codes: those of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CodeSteps {
@@ -203,6 +219,15 @@ mod tests {
             let code = NonZeroU8::new(code).expect("above 0");
             prop_assert_eq!(heading_code([heading_rad(code).cos(), heading_rad(code).sin()]), code);
         }
+    }
+
+    #[test]
+    fn depths_of_snow_stay_within_half_a_step_and_reach_it() {
+        let error_m = |um: i64| f64::from(snow_m(snow_code(um))) - um as f64 * 1e-6;
+        let errors_m = (-200_000..200_000).step_by(33).map(|um| error_m(um).abs());
+        assert!(errors_m.fold(0.0, f64::max) <= 0.5 * f64::from(SNOW_STEP_M) * 1.0001);
+        assert!(error_m(2999).abs() > 0.99 * 0.5 * f64::from(SNOW_STEP_M) && error_m(-999).abs() > 0.99 * 0.5 * f64::from(SNOW_STEP_M));
+        assert_eq!([i64::MAX / 2, i64::MIN / 2].map(snow_code), [CODE_LIMIT, -CODE_LIMIT]);
     }
 
     #[test]

@@ -11,7 +11,7 @@ pub(crate) struct Field {
 }
 
 /// Source files and, for each struct in them, the section that it documents.
-const SOURCES: [(&str, &[(&str, &str)]); 23] = [
+const SOURCES: [(&str, &[(&str, &str)]); 24] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
     ("terrain.rs", &[("TerrainMaps", "terrain")]),
@@ -21,6 +21,7 @@ const SOURCES: [(&str, &[(&str, &str)]); 23] = [
     ("wind/primitive.rs", &[("Primitive", "wind.primitives")]),
     ("natural_wind.rs", &[("NaturalWind", "natural_wind")]),
     ("rain.rs", &[("Rain", "rain")]),
+    ("snow.rs", &[("Snow", "snow")]),
     ("bend.rs", &[("BendField", "bend")]),
     ("grass.rs", &[("Grass", "grass")]),
     ("plants.rs", &[("Plants", "plants")]),
@@ -38,7 +39,7 @@ const SOURCES: [(&str, &[(&str, &str)]); 23] = [
 ];
 
 /// Sections that may occur once, without those of [`tread_sections`].
-const SECTIONS: [&str; 17] = [
+const SECTIONS: [&str; 18] = [
     "patches",
     "terrain",
     "wind",
@@ -46,6 +47,7 @@ const SECTIONS: [&str; 17] = [
     "wind.dust",
     "natural_wind",
     "rain",
+    "snow",
     "bend",
     "grass",
     "plants",

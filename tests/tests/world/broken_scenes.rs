@@ -6,7 +6,7 @@ use prairie_core::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
-const BROKEN: [&str; 43] = [
+const BROKEN: [&str; 45] = [
     "unknown-field",
     "syntax",
     "out-of-range",
@@ -50,6 +50,8 @@ const BROKEN: [&str; 43] = [
     "models-unreadable",
     "models-hole",
     "models-crowd",
+    "snow",
+    "snow-out-of-range",
 ];
 
 /// The message for a broken scene equals the stored text beside it; `PRAIRIE_UPDATE=1` rewrites the stored text.
@@ -70,11 +72,11 @@ fn missing_names_and_files_are_reported() {
     let told = |name: &str| load(name).unwrap_err().to_string();
     assert_eq!(
         told("medow"),
-        "there is no built-in scene and no file called `medow`; did you mean `meadow`? Built-in scenes: meadow, jacksboro, devil, storm, breeze, continuum, underbrush, blades, shells, night, lee, cyclones, follow, prairie-2000, verlet, implicit, modal, history, race, homestead"
+        "there is no built-in scene and no file called `medow`; did you mean `meadow`? Built-in scenes: meadow, jacksboro, devil, storm, breeze, continuum, underbrush, blades, shells, night, lee, cyclones, follow, prairie-2000, verlet, implicit, modal, history, snow, race, homestead"
     );
     assert_eq!(
         told("xyzzy"),
-        "there is no built-in scene and no file called `xyzzy`. Built-in scenes: meadow, jacksboro, devil, storm, breeze, continuum, underbrush, blades, shells, night, lee, cyclones, follow, prairie-2000, verlet, implicit, modal, history, race, homestead"
+        "there is no built-in scene and no file called `xyzzy`. Built-in scenes: meadow, jacksboro, devil, storm, breeze, continuum, underbrush, blades, shells, night, lee, cyclones, follow, prairie-2000, verlet, implicit, modal, history, snow, race, homestead"
     );
     assert!(told("scenes/none.toml").starts_with("scene file `scenes/none.toml` cannot be read: No such file"));
     assert_eq!(told("scenes/broken"), "scene file `scenes/broken` cannot be read: it is not a file");

@@ -20,3 +20,4 @@ mod prediction;
 mod replica;
 mod same_plants;
 mod shipped_species;
+mod snow;

@@ -8,6 +8,7 @@ use prairie::stream::{AreaOfInterest, Client, Clients, Frame, SendLimits, Stream
 use prairie::world::{Command, World};
 use prairie_client::state::{Event, Mirror};
 use prairie_core::bend::Scheme;
+use prairie_core::grass::snow::SnowField;
 use prairie_core::grid::PatchLayout;
 use prairie_core::random::SplitMix64;
 use prairie_core::scene::VehicleKind;
@@ -97,12 +98,14 @@ impl Viewer {
         ensure!(replica.tick() == world.tick(), "the replica is at step {}, the world at {}", replica.tick(), world.tick());
         ensure!(grass.field() == bend.field(), "the bend field differs after step {}", world.tick());
         ensure!(grass.flattened().state() == bend.flattened().state(), "the flattened grass differs after step {}", world.tick());
+        ensure!(grass.snow().map(SnowField::state) == bend.snow().map(SnowField::state), "the snow differs after step {}", world.tick());
         let codes = world.snapshot().patches;
         let mut shown: Vec<_> = self.mirror.bent_patches().collect();
         shown.sort_unstable();
         ensure!(shown == codes.keys().copied().collect::<Vec<_>>(), "other patches are bent after step {}", world.tick());
         for (index, wanted) in codes.iter() {
-            let found = self.mirror.patch(*index).context("the patch is shown")?.planes().concat();
+            let patch = self.mirror.patch(*index).context("the patch is shown")?;
+            let found = [patch.planes().concat(), patch.snow().unwrap_or_default().to_vec()].concat();
             // Codes of flattened grass are renewed at times that depend on when the client began.
             let is_flattened = bend.flattened().patches().any(|patch| patch == *index);
             ensure!(is_flattened || found == wanted.codes, "the codes of patch {index} differ after step {}", world.tick());

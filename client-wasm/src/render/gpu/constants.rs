@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::flower_kinds;
 use glam::Vec3;
+use prairie_core::light::snow;
 use prairie_core::lod;
 use prairie_core::plant::blade::{self, Integrator, deflection};
 use prairie_core::plant::underbrush::{drops, posture};
@@ -34,6 +35,10 @@ pub(crate) use std::f32::consts::{FRAC_PI_2 as RIGHT_ANGLE, TAU};
 pub(crate) const GRAVITY_M_PER_S2: f32 = prairie_core::GRAVITY_M_PER_S2 as f32;
 /// Weights of linear red, green and blue in luminance.
 pub(crate) const LUMINANCE: Vec3 = Vec3::from_array(prairie_core::light::LUMINANCE);
+
+/// Albedo of fresh snow, and of packed snow.
+pub(crate) const SNOW_ALBEDO: Vec3 = Vec3::from_array(snow::SNOW_ALBEDO);
+pub(crate) const PACKED_SNOW_ALBEDO: Vec3 = Vec3::from_array(snow::PACKED_SNOW_ALBEDO);
 
 /// Invocations per workgroup of the compute passes.
 pub(crate) const WORKGROUP_SIZE: u32 = 64;
@@ -189,6 +194,8 @@ pub(crate) const TILE_CELLS: u32 = 16;
 pub(crate) const TILE_VERTICES: u32 = (TILE_CELLS + 1).pow(2);
 /// Distance at which coarser tiles take over, relative to the side of a tile: at least 2√2, so that neighbours differ by at most one level.
 pub(crate) const RANGE_SIDES: f32 = 2.84;
+/// Least distance of a tile, in spacings of its vertices.
+pub(crate) const TILE_SPACINGS: f32 = 0.5 * RANGE_SIDES * TILE_CELLS as f32;
 /// Headings and rings of the dome of the sky.
 pub(crate) const SKY_HEADINGS: u32 = 64;
 pub(crate) const SKY_RINGS: u32 = 26;

@@ -19,6 +19,8 @@ pub(crate) struct PassFactory {
     pub(crate) has_kinds: bool,
     /// Whether shadows have penumbras; override `soft_shadows` in WGSL.
     pub(crate) soft_shadows: bool,
+    /// Whether snow lies on the land; override `has_snow` in WGSL.
+    pub(crate) has_snow: bool,
 }
 
 /// Settings of a render pipeline.
@@ -61,7 +63,8 @@ impl PassFactory {
 
     /// A pass's module with values of its overrides.
     pub(crate) fn shader(&self, label: &str, source: impl Display, constants: &[Constant]) -> wgpu::ShaderModule {
-        self.gpu.shader(label, source, &[constants, &[("has_kinds", self.has_kinds), ("soft_shadows", self.soft_shadows)]].concat())
+        let of_scene = [("has_kinds", self.has_kinds), ("soft_shadows", self.soft_shadows), ("has_snow", self.has_snow)];
+        self.gpu.shader(label, source, &[constants, &of_scene].concat())
     }
 
     fn pipeline_layout(&self, label: &str, own: Option<&wgpu::BindGroupLayout>) -> wgpu::PipelineLayout {

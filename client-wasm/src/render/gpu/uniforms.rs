@@ -104,7 +104,10 @@ uniform_block! {
         shade_top_m: f32,
         /// Optical depth of an even sward of the first kind towards the sun.
         shade_extinction: f32,
-        _pad: [u8; 8],
+        /// Depth of undisturbed snow (m).
+        snow_m: f32,
+        /// Mass of snow on leaves, relative to their own.
+        snow_load: f32,
         /// Interaction spheres; unused entries are zero.
         spheres: [Sphere; SPHERE_LIMIT],
         /// Slabs.
@@ -585,13 +588,17 @@ uniform_block! {
 uniform_block! {
     /// Rain around the camera.
     Shower {
-        /// Side of the square that contains the drops, and its height (m).
+        /// Side of the square that contains the drops or flakes, and its height (m).
         side_m: f32,
         height_m: f32,
-        /// Fall speed of the drops (m/s).
+        /// Fall speed of the drops or flakes (m/s).
         fall_m_per_s: f32,
         /// Opacity.
         opacity: f32,
+        /// Exposure time of their streaks (s), and half of the width of these (m).
+        streak_secs: f32,
+        half_width_m: f32,
+        _pad: [u8; 8],
     }
 }
 

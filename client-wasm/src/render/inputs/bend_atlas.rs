@@ -1,5 +1,6 @@
 //! Bend atlas: the bend field around the camera in one texture. Patch `(x, z)` is stored in slot `(x mod n, z mod n)`, so that a moving camera changes only
-//! the patches that enter the window. Texels: θ (rad), ωx and ωz (roots of rad/s, with their signs). If the scene uses the history of the field, further layers store past states of the window.
+//! the patches that enter the window. Texels: θ (rad), ωx and ωz (roots of rad/s, with their signs), difference in
+//! the depth of snow (m). If the scene uses the history of the field, further layers store past states of the window.
 
 use crate::render::gpu::constants::BEND_ATLAS_LEVELS;
 use crate::render::gpu::device::Gpu;
@@ -9,7 +10,7 @@ use half::slice::HalfFloatSliceExt;
 use prairie_core::grid::{PatchIndex, PatchLayout};
 use prairie_core::lod::PASTS;
 use prairie_core::scene::{LagWay, Scene};
-use prairie_core::wire::quantise::CodeSteps;
+use prairie_core::wire::quantise::{CodeSteps, snow_m};
 use std::collections::HashSet;
 
 /// Largest side of the atlas (texels).
@@ -169,6 +170,9 @@ impl BendAtlas {
                     texels[i * 4 + channel] = f32::from(code) * step;
                 }
             }
+        }
+        for (i, &code) in codes.and_then(PatchCodes::snow).into_iter().flatten().enumerate() {
+            texels[i * 4 + 3] = snow_m(code);
         }
         let mut rounded = vec![f16::ZERO; texels.len()];
         for level in 0..BEND_ATLAS_LEVELS {

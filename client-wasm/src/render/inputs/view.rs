@@ -14,7 +14,8 @@ use bytemuck::Zeroable;
 use glam::{Mat4, Quat, Vec3};
 use prairie_core::light::shade;
 use prairie_core::light::sun::Sun;
-use prairie_core::scene::{Objects, Plants, VehicleKind};
+use prairie_core::plant::snow_load::relative_load;
+use prairie_core::scene::{Objects, Plants, VehicleKind, Wind};
 use prairie_core::wind;
 use prairie_core::wire::ObjectPose;
 
@@ -70,11 +71,9 @@ impl<'a> View<'a> {
         headlights: &[SpotLight],
     ) -> Frame {
         let (scene, eye, overcast) = (decoded.scene(), self.camera.eye_m, overcast(decoded));
-        let [wraps_x, _, wraps_z] = scene.wind.faces.wraps().map(u32::from);
         let (mean_wind, [past_ages_secs @ .., youngest_past]) = (MeanWind::of(scene.wind.mean_m_per_s), textures.atlas.past());
-        let gusts = textures.wind.gusts();
         let lamps = lamps(scene, decoded.heights(), headlights, self.sun.elevation_rad, daylight.brightness(), eye);
-        let spheres = spheres(&scene.objects, poses, eye);
+        let (gusts, spheres) = (textures.wind.gusts(), spheres(&scene.objects, poses, eye));
         Frame {
             projection_from_world: self.projection_from_world.to_cols_array(),
             shadow_from_world: self.shadow_from_world(0).to_cols_array(),
@@ -91,7 +90,7 @@ impl<'a> View<'a> {
             bend_reach_m: textures.atlas.reach_m(),
             wind_box_m: scene.wind.box_m(),
             wind_patch_m: if decoded.tiles().by_patch() { decoded.layout().patch_m() } else { 0.0 },
-            wind_repeats: [wraps_x, wraps_z],
+            wind_repeats: wind_repeats(&scene.wind),
             patch_seed: decoded.tiles().seed(),
             lamp_count: lamps.len() as u32,
             wind_direction: mean_wind.direction,
@@ -120,7 +119,8 @@ impl<'a> View<'a> {
             shade_strength: 0.0,
             shade_top_m: scene.plants.most_grown() * scene.tallest_m(),
             shade_extinction: even_depth(&scene.plants, self.sun),
-            _pad: [0; 8],
+            snow_m: scene.snow.depth_m,
+            snow_load: relative_load(&scene.snow, leaf_area(&scene.plants)),
             slabs: slabs(&scene.objects, poses, eye),
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_else(Sphere::zeroed)),
             gusts: std::array::from_fn(|i| gusts.waves().get(i).map_or_else(GustWave::zeroed, GustWave::from)),
@@ -184,6 +184,12 @@ fn shade_corner_m(eye_m: [f32; 2]) -> [f32; 2] {
 fn even_depth(plants: &Plants, sun: Sun) -> f32 {
     let [_, depth] = shade::stance([0.0; 2], 1.0, sun.direction());
     leaf_area(plants) * depth
+}
+
+/// 1 if the wind domain repeats along X, and along Z.
+fn wind_repeats(wind: &Wind) -> [u32; 2] {
+    let [x, _, z] = wind.faces.wraps().map(u32::from);
+    [x, z]
 }
 
 /// Leaf area index of blades of mean height at full density.

@@ -10,6 +10,7 @@ mod models;
 mod objects;
 mod patches;
 mod race;
+mod snow;
 mod species;
 mod underbrush;
 
@@ -25,6 +26,7 @@ pub(super) fn cross_checks(scene: &Scene, from_file: usize) -> Conflicts {
     bend::check(scene, &mut conflicts);
     blade_step::check(scene, &mut conflicts);
     wind::check::check(scene, &mut conflicts);
+    snow::check(&scene.snow, &mut conflicts);
     species::check(&scene.species, &mut conflicts);
     underbrush::check(scene, from_file, &mut conflicts);
     models::check(scene, from_file, &mut conflicts);

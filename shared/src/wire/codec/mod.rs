@@ -17,6 +17,7 @@ pub mod moves;
 mod tile;
 
 use super::quantise::CODE_LIMIT;
+use crate::scene::Scene;
 use arithmetic::Coder;
 use model::Model;
 use thiserror::Error;
@@ -35,6 +36,23 @@ impl Shape {
     /// Planes θ, ωx, ωz of a patch of `cells × cells`.
     pub const fn patch(cells: usize) -> Self {
         Self { width: cells, planes: 3 }
+    }
+
+    /// Those of a patch in snow, with a fourth plane: differences in the depth of the snow.
+    pub const fn snowy_patch(cells: usize) -> Self {
+        Self { width: cells, planes: 4 }
+    }
+
+    /// Shape of a patch of a scene.
+    pub fn patch_of(scene: &Scene) -> Self {
+        let cells = scene.patches.cells as usize;
+        if scene.snow.lies() { Self::snowy_patch(cells) } else { Self::patch(cells) }
+    }
+
+    /// Shape of a patch with this number of codes. The number tells the planes: three equal squares are never four.
+    pub fn of_patch(codes: usize) -> Self {
+        let side = (codes / 4).isqrt();
+        if 4 * side * side == codes { Self::snowy_patch(side) } else { Self::patch((codes / 3).isqrt()) }
     }
 
     /// Planes u, v, w and, with `has_dust`, dust, of a wind of `width` cells along X.
@@ -183,6 +201,15 @@ mod tests {
             let mut payload = whole.clone();
             payload.resize(length, 0);
             assert!(decode(PATCH, &payload, &mut vec![0; codes.len()]).is_err(), "{length} of {} bytes", whole.len());
+        }
+    }
+
+    #[test]
+    fn the_number_of_codes_tells_the_shape_of_a_patch() {
+        for cells in (8..=256).step_by(8) {
+            for shape in [Shape::patch(cells), Shape::snowy_patch(cells)] {
+                assert_eq!(Shape::of_patch(shape.planes * cells * cells), shape);
+            }
         }
     }
 

@@ -171,6 +171,7 @@ impl Bender {
             samples: 1,
             has_kinds: true,
             soft_shadows: true,
+            has_snow: false,
         };
         let layout = factory.layout("bender", &[storage(10), storage(13), storage(14), uniform(15), storage(16), storage_rw(30)]);
         let module = factory.shader("bender", linked("plants/ribbons", SOURCE), &[]);
