@@ -156,10 +156,15 @@ fn tips(gpu: &Gpu, wind_m_per_s: f32, streamed_rad: Option<f32>) -> Vec<Vec3> {
 
 /// Sways of the near blades, one second after they stood upright.
 fn sways(gpu: &Gpu, mirror: &mut Mirror, streamed_rad: Option<f32>) -> Vec<Sway> {
+    sways_after(gpu, mirror, streamed_rad, 30)
+}
+
+/// [`sways`] after this number of frames, 1/30 s each.
+fn sways_after(gpu: &Gpu, mirror: &mut Mirror, streamed_rad: Option<f32>, frames: u32) -> Vec<Sway> {
     let mut picture = OffscreenRenderer::new(gpu, [16, 16], Quality::Low);
     picture.set_options(RenderOptions { culls: false, ..RenderOptions::default() });
     let camera = Camera { eye_m: Vec3::new(32.0, 2.2, 40.0), pitch_rad: -0.15, ..Camera::default() };
-    for frame in 0..30 {
+    for frame in 0..frames {
         if let Some(theta_rad) = streamed_rad.filter(|_| frame == 0) {
             stream_lean(mirror, theta_rad);
         }

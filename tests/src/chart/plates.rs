@@ -79,18 +79,18 @@ pub const PLATES: [Plate; 4] = [
     Plate {
         name: "many-cars",
         scene: "continuum",
-        eye: over([2414.0, 2470.0], 28.0, 0.0, -26.0),
+        eye: over([2414.0, 2480.0], 26.0, 0.0, -28.0),
         tile_px: [128, 72],
         columns: 3,
         tiles: Tiles::Moments(many_cars, &[0.0, 2.0, 4.0, 6.0, 8.0, 10.0]),
-        shows: "24 cars that draw their tracks through one field, two seconds from frame to frame, row by row",
+        shows: "32 cars that draw their tracks through one field, two seconds from frame to frame, row by row",
         answers: "Chen & Johan 2010, Figure 13",
     },
 ];
 
 /// Cars in the middle of the land, near each other.
 fn many_cars(scene: &mut Scene) {
-    (scene.objects.self_driving, scene.objects.self_driving_apart_m) = (24, 9.0);
+    (scene.objects.self_driving, scene.objects.self_driving_apart_m, scene.objects.self_driving_m_per_s) = (32, 10.0, 8.0);
 }
 
 impl Plate {
