@@ -18,7 +18,8 @@ fn field(snow: &Snow, tile_limit: usize) -> SnowField {
 fn sweep(from_m: [f32; 2], to_m: [f32; 2]) -> SweptFootprint {
     let prism = Prism::cuboid([0.0, 0.2, 0.0], [0.25, 0.2, 0.375]);
     let pose = |[x, z]: [f32; 2]| BodyPose { position_m: [x, 0.0, z], rotation: [0.0, 0.0, 0.0, 1.0] };
-    let motion = Motion { kind: VehicleKind::Car, from: pose(from_m), to: pose(to_m), velocity_m_per_s: [0.0; 3], is_at_rest: false };
+    let motion =
+        Motion { kind: VehicleKind::Car, from: pose(from_m), to: pose(to_m), velocity_m_per_s: [0.0; 3], part_rad: 0.0, is_at_rest: false };
     SweptFootprint::new(&prism, &motion, LAYOUT.cell_m)
 }
 
