@@ -3,7 +3,7 @@
 use prairie_core::bend::{Edges, GroundContact, Scheme, Seams};
 use prairie_core::scene::{
     BladeIntegrator, BladeShape, ComponentKind, FlowerShape, LagWay, PlantCover, PrimitiveIntensity, PrimitiveKind, ShellExtrusion,
-    VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    TreeShape, VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use prairie_core::wire::{ClientMessage, ModelUse, PROTOCOL, Refusal, ServerMessage};
 use serde_json::{Value, json};
@@ -22,7 +22,7 @@ fn generated() -> Value {
         };
     }
     trace!(BladeIntegrator, BladeShape, ComponentKind, Edges, FlowerShape, GroundContact, LagWay, PlantCover, PrimitiveIntensity);
-    trace!(PrimitiveKind, Refusal, Scheme, Seams, ShellExtrusion, VehicleKind);
+    trace!(PrimitiveKind, Refusal, Scheme, Seams, ShellExtrusion, TreeShape, VehicleKind);
     trace!(WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime);
     trace!(ModelUse, ClientMessage, ServerMessage);
     let types = tracer.registry().expect("every enum inside a message is in the list above");

@@ -2,8 +2,9 @@
 // widened and lit. One invocation computes both borders of a row, which are then drawn.
 
 import package::constants::{
-    ARC_COSINE, BLOCK_ROWS, DROP_M_PER_S, GRAVITY_M_PER_S2, MIDDLE_LOAD, PETAL, STALK, TAU, UNIT_STEPS, VARIANTS, WIDTH_UNIT_M, WORKGROUP_SIZE,
+    BLOCK_ROWS, DROP_M_PER_S, GRAVITY_M_PER_S2, MIDDLE_LOAD, PETAL, STALK, TAU, UNIT_STEPS, VARIANTS, WIDTH_UNIT_M, WORKGROUP_SIZE,
 };
+import package::gpu::vectors::{arc_cosine, square, unit_or};
 import package::inputs::frame::frame;
 import package::inputs::grass_kinds::kinds;
 import package::inputs::lamps::lamps_on;
@@ -107,23 +108,6 @@ struct Bent {
     at: vec3<f32>,
     along: vec3<f32>,
     side: vec3<f32>,
-}
-
-// Component of a vector perpendicular to a unit vector.
-fn square(v: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
-    return v - direction * dot(v, direction);
-}
-
-fn unit_or(v: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
-    let size = length(v);
-    return select(other, v / max(size, 1e-30), size > 1e-30);
-}
-
-// Angle (rad) of a cosine, to 7e-5: Abramowitz & Stegun 4.4.45. Twin of `acos` in shared/src/plant/underbrush/posture.rs.
-fn arc_cosine(cosine: f32) -> f32 {
-    let size = abs(cosine);
-    let angle = sqrt(max(1.0 - size, 0.0)) * (ARC_COSINE[0] + size * (ARC_COSINE[1] + size * (ARC_COSINE[2] + size * ARC_COSINE[3])));
-    return select(angle, 0.5 * TAU - angle, cosine < 0.0);
 }
 
 // Axes of an upright plant, turned by its heading and tipped by the lean of the bend field.

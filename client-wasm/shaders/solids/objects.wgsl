@@ -1,6 +1,6 @@
 // Triangle meshes: vehicles, trees and stones, in the picture and in the shadow map.
 
-import package::constants::{FLUTTER_M, WORKGROUP_SIZE};
+import package::constants::{AIR_KG_PER_M3, FLUTTER_M, NO_LIMBS, WORKGROUP_SIZE};
 import package::inputs::frame::{clamped, frame};
 import package::inputs::lamps::{lamps_about, lamps_on};
 import package::inputs::shadows::sun_visible;
@@ -9,9 +9,13 @@ import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_light::{grass_lamps, grass_light};
 import package::land_and_sky::haze::{air_before, hazed};
 import package::land_and_sky::sky_light::{ambient, sky_color};
+import package::solids::limbs::{bent_in_tree, BentLimb, of_limb};
 
 // Whether the mesh may be glossy, as vehicles are. Fixed at pipeline creation.
 override is_glossy: bool = true;
+
+// Whether trees consist of components that bend. Fixed at pipeline creation.
+override is_grown: bool = false;
 
 // Distance from a lamp to its glass (m).
 const GLASS_M: f32 = 0.17;
@@ -22,11 +26,17 @@ struct Instance {
     tint: vec3<f32>,
     // Sway of a tree in a wind of 10 m/s and above (rad), 0 for rigid objects.
     sway_rad: f32,
+    // First of its bent components, or `NO_LIMBS`.
+    first_bent: u32,
+    // First component of its shape, and the number of those that bend.
+    first_limb: u32,
+    limbs: u32,
+    unused: u32,
 }
 
 // Response of a tree to the wind.
 struct TreeSway {
-    // Sway of its top, X and Z (rad).
+    // Sway of its top, X and Z (rad); of a tree of components the pressure of the wind (Pa).
     top_rad: vec2<f32>,
     // Flutter of its leaves (m).
     flutter_m: f32,
@@ -38,6 +48,9 @@ struct TreeSway {
 // Response of each instance, from `sway_of`.
 @group(1) @binding(2) var<storage, read> sways: array<TreeSway>;
 @group(1) @binding(3) var<storage, read_write> sways_out: array<TreeSway>;
+@group(1) @binding(5) var<storage, read_write> bent_limbs_out: array<BentLimb>;
+// Instance and component of each invocation of `bow`; `NO_LIMBS` where there is none.
+@group(1) @binding(8) var<storage, read> listed_limbs: array<vec2<u32>>;
 
 struct Vertex {
     @location(0) position: vec3<f32>,
@@ -75,19 +88,63 @@ fn sway_of(instance: Instance) -> TreeSway {
     return TreeSway(held * (0.7 + 0.3 * sin(phase)), FLUTTER_M * min(6.0 * blown, 0.4 + 1.5 * blown), 0.0);
 }
 
+// Pressure of the wind on a tree of components (Pa, X and Z).
+fn pressure_on(instance: Instance) -> vec2<f32> {
+    let wind = wind_at(instance.world_from_model[3].xyz, 0.6 * length(instance.world_from_model[1].xyz)).xz;
+    return wind * (0.5 * AIR_KG_PER_M3 * length(wind));
+}
+
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn blow(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x < arrayLength(&sways_out) {
-        sways_out[id.x] = sway_of(instances[id.x]);
+        let instance = instances[id.x];
+        var sway = sway_of(instance);
+        if is_grown && instance.first_bent != NO_LIMBS {
+            sway.top_rad = pressure_on(instance);
+        }
+        sways_out[id.x] = sway;
     }
 }
 
+// Axes X and Z of a tree, along X and Z of the world.
+fn turn_of(instance: Instance) -> mat2x2<f32> {
+    return mat2x2<f32>(normalize(instance.world_from_model[0].xz), normalize(instance.world_from_model[2].xz));
+}
+
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn bow(@builtin(global_invocation_id) id: vec3<u32>) {
+    let listed = listed_limbs[id.x];
+    if listed.x == NO_LIMBS {
+        return;
+    }
+    let instance = instances[listed.x];
+    let foot = instance.world_from_model[3].xyz;
+    let tall_m = length(instance.world_from_model[1].xyz);
+    let phase = foot.x * 0.7 + foot.z * 1.3;
+    let bent = bent_in_tree(instance.first_limb, listed.y, sways[listed.x].top_rad, turn_of(instance), tall_m, phase);
+    bent_limbs_out[instance.first_bent + listed.y] = bent;
+}
+
+// A vertex where the components of its tree, if it has any, have moved it in its model.
+fn moved(vertex: Vertex, instance: Instance, sway: TreeSway) -> Vertex {
+    if !is_grown || instance.first_bent == NO_LIMBS {
+        return vertex;
+    }
+    let row = instance.first_bent + u32(round(vertex.normal.w * 127.0));
+    let pressure = sway.top_rad * turn_of(instance);
+    let own = of_limb(row, vertex.position, vertex.normal.xyz, vertex.leaf.x > 0.0, vec3<f32>(pressure.x, 0.0, pressure.y));
+    return Vertex(own.position, vec4<f32>(own.normal, 0.0), vertex.color, vertex.leaf);
+}
+
+// Position of a moved vertex in the world.
 fn placed(vertex: Vertex, instance: Instance, sway: TreeSway) -> vec3<f32> {
     var p = (instance.world_from_model * vec4<f32>(vertex.position, 1.0)).xyz;
     if instance.sway_rad > 0.0 {
-        let foot = instance.world_from_model[3].xyz;
-        let height = length(instance.world_from_model[1].xyz);
-        p += swayed(max(p.y - foot.y, 0.0), height, sway.top_rad);
+        if !is_grown || instance.first_bent == NO_LIMBS {
+            let foot = instance.world_from_model[3].xyz;
+            let height = length(instance.world_from_model[1].xyz);
+            p += swayed(max(p.y - foot.y, 0.0), height, sway.top_rad);
+        }
         if vertex.leaf.x > 0.0 {
             let flutter = sin(frame.time_secs * 5.3 + dot(vertex.position, vec3<f32>(5.1, 7.7, 3.9))) * sway.flutter_m;
             p += vec3<f32>(flutter, flutter * 0.6, -flutter);
@@ -96,8 +153,9 @@ fn placed(vertex: Vertex, instance: Instance, sway: TreeSway) -> vec3<f32> {
     return p;
 }
 
-fn surface_of(vertex: Vertex, index: u32) -> Surface {
+fn surface_of(modelled: Vertex, index: u32) -> Surface {
     let instance = instances[index];
+    let vertex = moved(modelled, instance, sways[index]);
     var out: Surface;
     out.p = placed(vertex, instance, sways[index]);
     out.normal = (instance.world_from_model * vec4<f32>(vertex.normal.xyz, 0.0)).xyz;
@@ -234,7 +292,8 @@ struct Shade {
 @vertex
 fn vs_shadow(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
     var out: Shade;
-    out.position = frame.shadow_from_world * vec4<f32>(placed(vertex, instances[index], sways[index]), 1.0);
+    let own = moved(vertex, instances[index], sways[index]);
+    out.position = frame.shadow_from_world * vec4<f32>(placed(own, instances[index], sways[index]), 1.0);
     out.leaf = vertex.leaf;
     return out;
 }
@@ -242,7 +301,8 @@ fn vs_shadow(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
 @vertex
 fn vs_shadow_far(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
     var out: Shade;
-    out.position = frame.lights.far_shadow_from_world * vec4<f32>(placed(vertex, instances[index], sways[index]), 1.0);
+    let own = moved(vertex, instances[index], sways[index]);
+    out.position = frame.lights.far_shadow_from_world * vec4<f32>(placed(own, instances[index], sways[index]), 1.0);
     out.leaf = vertex.leaf;
     return out;
 }

@@ -12,6 +12,7 @@ use crate::render::plants::blades;
 use crate::render::plants::force_field::CameraForceField;
 use crate::render::plants::shells::TileLayer;
 use crate::render::plants::underbrush::UnderbrushPlant;
+use crate::render::solids::limb_passes::BENT_LIMB_BYTES;
 use crate::state::Mirror;
 use glam::Vec3;
 use prairie_core::hash::{hash3, unit};
@@ -32,6 +33,7 @@ mod constants;
 mod cracks;
 mod flowers;
 mod grid_map;
+mod grown_trees;
 mod lees;
 mod light;
 mod models;
@@ -76,7 +78,9 @@ fn storage_structs_have_the_sizes_that_rust_gives_them() {
         (&billboards, "ClumpPose", 64),
         (&dust, "DustPlace", 32),
         (&dust, "Sprite", 48),
-        (&objects, "Instance", 80),
+        (&objects, "Instance", 96),
+        (&objects, "TreeLimb", 48),
+        (&objects, "BentLimb", BENT_LIMB_BYTES as u32),
         (&objects, "TreeSway", 16),
         (&underbrush, "Row", 32),
         (&underbrush, "Limb", 64),

@@ -3,8 +3,8 @@
 use super::objects::OBJECT_FIELDS;
 use super::{
     BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, FlowerShape, GATES_LIMIT, LAMPS_LIMIT, LagWay, MODEL_SIDE_M,
-    MODELS_LIMIT, PlantCover, PrimitiveIntensity, PrimitiveKind, SPECIES_LIMIT, ShellExtrusion, WindAdvection, WindBoundary, WindDiffusion,
-    WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    MODELS_LIMIT, PlantCover, PrimitiveIntensity, PrimitiveKind, SPECIES_LIMIT, ShellExtrusion, TreeShape, WindAdvection, WindBoundary,
+    WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, GroundContact, Scheme, Seams};
 use crate::lod::shells::LAYERS_LIMIT;
@@ -153,6 +153,7 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("plants.lag", OneOf(LagWay::WORDS)),
     ("plants.blade_shape", OneOf(BladeShape::WORDS)),
     ("plants.flower_shape", OneOf(FlowerShape::WORDS)),
+    ("plants.tree_shape", OneOf(TreeShape::WORDS)),
     ("plants.swing_hz", Range(0.05, 50.0)),
     ("plants.swing_damping", Range(0.005, 5.0)),
     ("plants.integrator", OneOf(BladeIntegrator::WORDS)),

@@ -49,7 +49,7 @@ pub use objects::*;
 pub use parse::{parse, parse_underbrush, parse_with};
 pub use patches::Patches;
 pub use picture::{CameraStart, Light};
-pub use plants::{BladeIntegrator, BladeShape, FlowerShape, LagWay, PlantCover, Plants};
+pub use plants::{BladeIntegrator, BladeShape, FlowerShape, LagWay, PlantCover, Plants, TreeShape};
 pub use positions::Positions;
 pub use race::{AMBER_SECS, GATES_LIMIT, GREEN_SECS, Race, RaceGate};
 pub use rain::Rain;

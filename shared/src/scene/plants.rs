@@ -44,6 +44,16 @@ words! {
 }
 
 words! {
+    /// Shape of trees.
+    TreeShape {
+        /// Meshes that sway as a whole.
+        Modelled = "modelled",
+        /// Trunk, limbs and twigs that bend by themselves, as the components of underbrush do (Endo et al. 2003, §7).
+        Grown = "grown",
+    }
+}
+
+words! {
     /// Time integration of a blade's swing.
     BladeIntegrator {
         /// Explicit Euler; first order, and gains energy where damping is weak.
@@ -96,6 +106,9 @@ pub struct Plants {
     /// Shape of flower heads near the camera: `modelled`, petals around a disc; `textured`, a tilted square with one of six textures (Zhang §3.3).
     /// Default `modelled`.
     pub flower_shape: FlowerShape,
+    /// Shape of trees: `modelled`, meshes that sway as a whole; `grown`, trunk, limbs and twigs that grow by space colonisation (Runions et al. 2007) and
+    /// bend by themselves under weight and wind (Endo et al. 2003). Obstacles are the same. Default `modelled`.
+    pub tree_shape: TreeShape,
     /// Natural frequency of a blade of mean height (Hz); inversely proportional to the height. Default 1.55, allowed 0.05..=50.
     pub swing_hz: f32,
     /// Damping ratio of its swing (1 is critical damping). Default 0.1, allowed 0.005..=5.
@@ -124,6 +137,7 @@ impl Default for Plants {
             lag: LagWay::Upwind,
             blade_shape: BladeShape::Simple,
             flower_shape: FlowerShape::Modelled,
+            tree_shape: TreeShape::Modelled,
             swing_hz: 1.55,
             swing_damping: 0.1,
             integrator: BladeIntegrator::Exact,

@@ -7,6 +7,7 @@ use glam::Vec3;
 use prairie_core::light::snow;
 use prairie_core::lod;
 use prairie_core::plant::blade::{self, Integrator, deflection};
+use prairie_core::plant::tree::statics;
 use prairie_core::plant::underbrush::{drops, posture};
 
 pub(crate) use super::flower_kinds::{
@@ -208,6 +209,14 @@ pub(crate) const RAGGED: [f32; 2] = [1.7, 0.8];
 pub(crate) const RAGGED_PX_M: [f32; 2] = [1.0, 5.0];
 /// Distance up to which litter on the ground is resolved (m).
 pub(crate) const LITTER_END_M: f32 = 2.5;
+/// Straight sections of a component of a tree, and angles and loads of its table of postures.
+pub(crate) const TREE_SECTIONS: u32 = statics::SECTIONS as u32;
+pub(crate) const TREE_ANGLES: u32 = statics::NODES.angles as u32;
+pub(crate) const TREE_LOADS: u32 = statics::NODES.loads as u32;
+/// First bent component of an instance that has none.
+pub(crate) const NO_LIMBS: u32 = u32::MAX;
+/// Pressure that turns the leaves of a tree of components by an eighth of a turn, if it blows across them (Pa): that of a wind of 20 m/s.
+pub(crate) const LEAF_STIFFNESS_PA: f32 = 240.0;
 /// Maximum flutter of tree leaves (m along X).
 pub(crate) const FLUTTER_M: f32 = 0.035;
 /// Pairs per tile of a sort.

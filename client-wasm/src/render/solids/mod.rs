@@ -2,7 +2,9 @@
 
 pub(crate) mod bounding_sphere;
 pub(crate) mod gates;
+pub(crate) mod grown_trees;
 pub(crate) mod leaf_texture;
+pub(crate) mod limb_passes;
 pub(crate) mod mesh;
 pub(crate) mod model_meshes;
 pub(crate) mod objects;

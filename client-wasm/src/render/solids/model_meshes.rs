@@ -3,6 +3,7 @@
 use crate::render::gpu::device::Gpu;
 use crate::render::solids::bounding_sphere::BoundingSphere;
 use crate::render::solids::gates::{self, GatePart};
+use crate::render::solids::grown_trees::GrownTree;
 use crate::render::solids::mesh::{Paint, Solid};
 use crate::render::solids::trees_and_stones::{self, PlacedKind, PlacedModel, STONE_SHAPES, TREE_SHAPES, TreeDetail};
 use crate::render::solids::vehicles::vehicle_model;
@@ -34,7 +35,8 @@ pub(crate) struct ModelMeshes {
 }
 
 impl ModelMeshes {
-    pub(crate) fn new(gpu: &Gpu, decoded: &DecodedScene) -> Self {
+    /// The meshes of a scene, whose trees have the shapes of `trees`, or are modelled if there are none.
+    pub(crate) fn new(gpu: &Gpu, decoded: &DecodedScene, trees: &[GrownTree]) -> Self {
         let mut solids: Vec<Solid> = Vec::new();
         let first_part = VehicleKind::ALL.map(|kind| {
             let first = solids.len();
@@ -45,7 +47,9 @@ impl ModelMeshes {
         solids.extend(gates::solids());
         let first_tree = solids.len();
         let details = TreeDetail::ALL.into_iter();
-        solids.extend(details.flat_map(|detail| (0..TREE_SHAPES).map(move |shape| trees_and_stones::tree(shape, detail))));
+        let tree =
+            |shape: u32, detail| trees.get(shape as usize).map_or_else(|| trees_and_stones::tree(shape, detail), |tree| tree.mesh(detail));
+        solids.extend(details.flat_map(|detail| (0..TREE_SHAPES).map(move |shape| tree(shape, detail))));
         solids.extend((0..STONE_SHAPES).map(trees_and_stones::stone));
         let own_models = decoded.scene().models.len();
         solids.extend((0..own_models).map(|model| custom_model(decoded, ModelUse::Cover(model as u8)).unwrap_or_default()));
@@ -66,7 +70,8 @@ impl ModelMeshes {
             bounds: Vec::new(),
         };
         let of_tree = |shape| TreeDetail::ALL.map(|detail| &solids[meshes.tree(shape, detail)]);
-        let trees = (0..TREE_SHAPES).map(|shape| BoundingSphere::around_meshes(of_tree(shape).into_iter()));
+        let modelled = |shape| BoundingSphere::around_meshes(of_tree(shape).into_iter());
+        let trees = (0..TREE_SHAPES).map(|shape| trees.get(shape as usize).map_or_else(|| modelled(shape), GrownTree::bounds));
         let stones = (0..STONE_SHAPES).map(|shape| BoundingSphere::around_meshes([&solids[meshes.stone(shape)]].into_iter()));
         let models = (0..own_models as u32).map(|model| BoundingSphere::around_meshes([&solids[meshes.own_model(model)]].into_iter()));
         meshes.bounds = trees.chain(stones).chain(models).collect();

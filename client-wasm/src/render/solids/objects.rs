@@ -1,8 +1,8 @@
 //! Draws vehicles, trees, stones, models of the scene's own and gates, in the picture and in the shadow map.
 
-use crate::render::gpu::constants::WORKGROUP_SIZE;
+use crate::render::gpu::constants::{NO_LIMBS, WORKGROUP_SIZE};
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind, bind_as, storage, storage_rw, texture};
+use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind_as, bind_at, storage, storage_rw, texture};
 use crate::render::gpu::shaders;
 use crate::render::gpu::variants::LampVariants;
 use crate::render::inputs::frustum::CascadeVolume;
@@ -10,7 +10,9 @@ use crate::render::inputs::viewpoint::Viewpoint;
 use crate::render::options::quality::Quality;
 use crate::render::solids::bounding_sphere::BoundingSphere;
 use crate::render::solids::gates::{self, PlacedPart};
+use crate::render::solids::grown_trees::GrownTree;
 use crate::render::solids::leaf_texture::{LEAF_PX, leaves};
+use crate::render::solids::limb_passes::LimbPasses;
 use crate::render::solids::mesh::{VERTEX_ATTRIBUTES, Vertex};
 use crate::render::solids::model_meshes::ModelMeshes;
 use crate::render::solids::spatial_index::SpatialIndex;
@@ -40,9 +42,27 @@ const SHADOW_DETAIL: [TreeDetail; 2] = [TreeDetail::Coarse, TreeDetail::Distant]
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Instance {
+pub(crate) struct Instance {
     world_from_model: [f32; 16],
     tint: [f32; 4],
+    /// First of its bent components, or `NO_LIMBS`; allocated once all instances are listed.
+    pub(super) first_bent: u32,
+    /// First component of its shape, and the number of those that bend.
+    first_limb: u32,
+    pub(super) limbs: u32,
+    unused: u32,
+}
+
+impl Instance {
+    /// An instance without components.
+    fn new(world_from_model: &Mat4, tint: [f32; 4]) -> Self {
+        Self { world_from_model: world_from_model.to_cols_array(), tint, first_bent: NO_LIMBS, first_limb: 0, limbs: 0, unused: 0 }
+    }
+
+    /// The instance with `limbs` components from `first_limb` on.
+    fn with_limbs(self, [first_limb, limbs]: [u32; 2]) -> Self {
+        Self { first_limb, limbs, ..self }
+    }
 }
 
 /// Instances by mesh: in the picture, and in each cascade.
@@ -57,6 +77,7 @@ type DrawList = Vec<(usize, Range<u32>)>;
 struct Pipelines {
     /// Pipeline for vehicles and gates, which may be glossy.
     glossy: wgpu::RenderPipeline,
+    fine_trees: wgpu::RenderPipeline,
     matte: wgpu::RenderPipeline,
     /// Pipeline for coarse and distant trees; lights them per vertex where the quality is [cheap](Quality::is_cheap).
     coarse_trees: wgpu::RenderPipeline,
@@ -72,6 +93,8 @@ pub(crate) struct ObjectPasses {
     /// Instances of the newest frame.
     count: u32,
     meshes: ModelMeshes,
+    /// Bends the components of trees that have any.
+    limbs: Option<LimbPasses>,
     index: SpatialIndex,
     /// Parts of the gates of the scene's race.
     gates: Vec<PlacedPart>,
@@ -88,24 +111,29 @@ pub(crate) struct ObjectPasses {
 impl ObjectPasses {
     pub(crate) fn new(factory: &PassFactory, quality: Quality, decoded: &DecodedScene, placed: Vec<PlacedModel>) -> Self {
         let gpu = &factory.gpu;
-        let meshes = ModelMeshes::new(gpu, decoded);
+        let trees = GrownTree::of_scene(decoded.scene());
+        let is_grown = !trees.is_empty();
+        let meshes = ModelMeshes::new(gpu, decoded, &trees);
         let index = SpatialIndex::new(placed.into_iter().map(|placed| (placed, meshes.bounds_of(&placed))).collect());
-        let module = factory.shader("objects", shaders::OBJECTS, &[]);
-        let layout = factory.layout("objects", &[storage(0), texture(1), storage(2)]);
+        let module = factory.shader("objects", shaders::OBJECTS, &[("is_grown", is_grown)]);
+        let layout = factory.layout("objects", &[storage(0), texture(1), storage(2), storage(4)]);
         let size = (INSTANCE_LIMIT * size_of::<Instance>()) as u64;
         let instances = gpu.empty_buffer("instances", size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
         let leaves = gpu.texture("leaves", wgpu::TextureFormat::Rgba8Unorm, [LEAF_PX; 2], &leaves());
         let leaves = leaves.create_view(&Default::default());
         let sways = gpu.empty_buffer("sways of objects", (INSTANCE_LIMIT * SWAY_BYTES) as u64, BufferUsages::STORAGE);
-        let resources = [instances.as_entire_binding(), wgpu::BindingResource::TextureView(&leaves), sways.as_entire_binding()];
+        let bent = LimbPasses::bent(gpu, is_grown);
+        let texture = wgpu::BindingResource::TextureView(&leaves);
+        let resources = [(0, instances.as_entire_binding()), (1, texture), (2, sways.as_entire_binding()), (4, bent.as_entire_binding())];
         let sway_layout = factory.layout("blow", &[storage(0), storage_rw(3)]);
         Self {
-            pipelines: pipelines(factory.clone(), quality, layout.clone()),
+            pipelines: pipelines(factory.clone(), quality, layout.clone(), is_grown),
             shadow_pipelines: shadow_pipelines(factory, &module, &layout),
-            group: bind(gpu, "objects", &layout, &resources),
+            group: bind_at(gpu, "objects", &layout, resources),
             sway: factory.compute("blow", &module, "blow", &sway_layout),
             sway_group: bind_as(gpu, "blow", &sway_layout, &[(0, &instances), (3, &sways)]),
             count: 0,
+            limbs: is_grown.then(|| LimbPasses::new(factory, &module, &trees, [&instances, &sways, &bent])),
             instances,
             meshes,
             index,
@@ -144,6 +172,9 @@ impl ObjectPasses {
         let mut all = Vec::new();
         self.picture_list = join(&lists.picture, &mut all);
         self.cascade_lists = lists.cascades.map(|list| join(&list, &mut all));
+        if let Some(limbs) = &mut self.limbs {
+            limbs.assign(gpu, &mut all);
+        }
         self.count = all.len() as u32;
         gpu.queue.write_buffer(&self.instances, 0, bytemuck::cast_slice(&all));
     }
@@ -166,8 +197,7 @@ impl ObjectPasses {
             let motion = Motion { rolled_m: *rolled_m, time_secs };
             for (part, body_from_part) in (vehicle_model(pose.kind).place)(pose, motion) {
                 let mesh = self.meshes.part(pose.kind, part);
-                let world_from_model = Mat4::from(body * body_from_part).to_cols_array();
-                let instance = Instance { world_from_model, tint: [1.0, 1.0, 1.0, 0.0] };
+                let instance = Instance::new(&Mat4::from(body * body_from_part), [1.0, 1.0, 1.0, 0.0]);
                 lists.picture[mesh].push(instance);
                 for (list, _) in lists.cascades.iter_mut().zip(cascades).filter(|(_, cascade)| cascade.is_some()) {
                     list[mesh].push(instance);
@@ -181,8 +211,7 @@ impl ObjectPasses {
         let Some(pose) = &self.ghost else { return };
         let body = Affine3A::from_rotation_translation(Quat::from_array(pose.rotation), Vec3::from(pose.position_m));
         for (part, body_from_part) in (vehicle_model(pose.kind).place)(pose, Motion { rolled_m: 0.0, time_secs }) {
-            let world_from_model = Mat4::from(body * body_from_part).to_cols_array();
-            lists.picture[self.meshes.part(pose.kind, part)].push(Instance { world_from_model, tint: GHOST_TINT });
+            lists.picture[self.meshes.part(pose.kind, part)].push(Instance::new(&Mat4::from(body * body_from_part), GHOST_TINT));
         }
     }
 
@@ -190,7 +219,7 @@ impl ObjectPasses {
     fn list_gates(&self, lists: &mut InstanceLists, cascades: &[Option<CascadeVolume>; 2]) {
         for placed in &self.gates {
             let [r, g, b] = placed.tint(self.next_gate);
-            let instance = Instance { world_from_model: placed.world_from_part.to_cols_array(), tint: [r, g, b, 0.0] };
+            let instance = Instance::new(&placed.world_from_part, [r, g, b, 0.0]);
             let mesh = self.meshes.gate_part(placed.part);
             lists.picture[mesh].push(instance);
             for (list, _) in lists.cascades.iter_mut().zip(cascades).filter(|(_, cascade)| cascade.is_some()) {
@@ -216,6 +245,7 @@ impl ObjectPasses {
             cascade.as_ref().is_some_and(|cascade| !from.options.culls || cascade.meets_sphere(bounds.centre_m, bounds.radius_m))
         };
         let may_show = |bounds: &BoundingSphere| is_seen(bounds) || cascades.iter().any(|cascade| casts(cascade, bounds));
+        let mut spare = LimbPasses::spare(INSTANCE_LIMIT) as u32;
         for (distance_m, (placed, bounds)) in self.index.near(from.eye_m, from.detail.trees_m, limit, may_show) {
             let tall_px = placed.size_m / (distance_m * pixel_rad * from.detail.coarser);
             let detail = match tall_px {
@@ -223,19 +253,32 @@ impl ObjectPasses {
                 DISTANT_TREE_PX.. => TreeDetail::Coarse,
                 _ => TreeDetail::Distant,
             };
-            let mesh = |detail| match placed.kind {
-                PlacedKind::Tree => self.meshes.tree(placed.shape, detail),
-                PlacedKind::Stone => self.meshes.stone(placed.shape),
-                PlacedKind::Own => self.meshes.own_model(placed.shape),
-            };
-            let instance = Instance { world_from_model: placed.world_from_model.to_cols_array(), tint: placed.tint };
             if is_seen(bounds) {
-                lists.picture[mesh(detail)].push(instance);
+                let (mesh, instance) = self.instance(placed, detail, &mut spare);
+                lists.picture[mesh].push(instance);
             }
             for ((list, cascade), detail) in lists.cascades.iter_mut().zip(cascades).zip(SHADOW_DETAIL) {
                 if casts(cascade, bounds) {
-                    list[mesh(detail)].push(instance);
+                    let (mesh, instance) = self.instance(placed, detail, &mut spare);
+                    list[mesh].push(instance);
                 }
+            }
+        }
+    }
+
+    /// Mesh and instance of a placed model at a level of detail: a tree of components is distant if no `spare` ones are left to bend.
+    fn instance(&self, placed: &PlacedModel, detail: TreeDetail, spare: &mut u32) -> (usize, Instance) {
+        let instance = Instance::new(&placed.world_from_model, placed.tint);
+        match (placed.kind, &self.limbs) {
+            (PlacedKind::Stone, _) => (self.meshes.stone(placed.shape), instance),
+            (PlacedKind::Own, _) => (self.meshes.own_model(placed.shape), instance),
+            (PlacedKind::Tree, None) => (self.meshes.tree(placed.shape, detail), instance),
+            (PlacedKind::Tree, Some(limbs)) => {
+                let more = limbs.range(placed.shape, detail)[1] - 1;
+                let detail = if more <= *spare { detail } else { TreeDetail::Distant };
+                let range = limbs.range(placed.shape, detail);
+                *spare -= range[1] - 1;
+                (self.meshes.tree(placed.shape, detail), instance.with_limbs(range))
             }
         }
     }
@@ -250,18 +293,19 @@ impl ObjectPasses {
         self.picture_list.iter().map(|(mesh, instances)| self.meshes.triangles(*mesh) * instances.len() as u64).sum()
     }
 
-    /// Computes the sway of each instance of this frame.
+    /// Computes the sway of each instance of this frame, and bends the components of trees.
     pub(crate) fn sway(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_pipeline(&self.sway);
         pass.set_bind_group(1, &self.sway_group, &[]);
         pass.dispatch_workgroups(self.count.div_ceil(WORKGROUP_SIZE), 1, 1);
+        self.limbs.iter().for_each(|limbs| limbs.bend(pass));
     }
 
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
-        let Pipelines { glossy, matte, coarse_trees } = self.pipelines.of(has_lamps);
+        let Pipelines { glossy, fine_trees, matte, coarse_trees } = self.pipelines.of(has_lamps);
         let ends = [self.meshes.tree(0, TreeDetail::Fine), self.meshes.tree(0, TreeDetail::Coarse), self.meshes.stone(0), usize::MAX];
         let mut rest = self.picture_list.as_slice();
-        for (pipeline, end) in [glossy, matte, coarse_trees, matte].into_iter().zip(ends) {
+        for (pipeline, end) in [glossy, fine_trees, coarse_trees, matte].into_iter().zip(ends) {
             let (list, others) = rest.split_at(rest.partition_point(|&(mesh, _)| mesh < end));
             rest = others;
             pass.set_pipeline(pipeline);
@@ -295,16 +339,19 @@ const VERTEX_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 1] = [Some(wgp
     attributes: &VERTEX_ATTRIBUTES,
 })];
 
-fn pipelines(factory: PassFactory, quality: Quality, layout: wgpu::BindGroupLayout) -> LampVariants<Pipelines> {
+fn pipelines(factory: PassFactory, quality: Quality, layout: wgpu::BindGroupLayout, is_grown: bool) -> LampVariants<Pipelines> {
     let draw = DrawDescriptor { label: "objects", buffers: &VERTEX_BUFFERS, ..DrawDescriptor::default() };
     LampVariants::new(move |[lamps]| {
         let [glossy_module, matte_module] =
-            [true, false].map(|gloss| factory.shader("objects", shaders::OBJECTS, &[lamps, ("is_glossy", gloss)]));
+            [true, false].map(|gloss| factory.shader("objects", shaders::OBJECTS, &[lamps, ("is_glossy", gloss), ("is_grown", false)]));
         let [glossy, matte] = [&glossy_module, &matte_module].map(|module| factory.draw(module, Some(&layout), &draw));
         let per_vertex = DrawDescriptor { vertex: "vs_afar", fragment: Some("fs_afar"), ..draw };
         let is_per_vertex = quality.is_cheap(factory.gpu.is_software);
-        let coarse_trees = if is_per_vertex { factory.draw(&matte_module, Some(&layout), &per_vertex) } else { matte.clone() };
-        Pipelines { glossy, matte, coarse_trees }
+        let trees = [lamps, ("is_glossy", false), ("is_grown", true)];
+        let trees_module = if is_grown { factory.shader("objects", shaders::OBJECTS, &trees) } else { matte_module };
+        let fine_trees = if is_grown { factory.draw(&trees_module, Some(&layout), &draw) } else { matte.clone() };
+        let coarse_trees = if is_per_vertex { factory.draw(&trees_module, Some(&layout), &per_vertex) } else { fine_trees.clone() };
+        Pipelines { glossy, fine_trees, matte, coarse_trees }
     })
 }
 

@@ -135,7 +135,7 @@ impl TreeDetail {
     pub(crate) const ALL: [Self; 3] = [Self::Fine, Self::Coarse, Self::Distant];
 
     /// Sides and rings of the trunk, and sprays per clump of leaves.
-    fn counts(self) -> [usize; 3] {
+    pub(super) fn counts(self) -> [usize; 3] {
         match self {
             Self::Fine => [9, 5, FINE_SPRAYS],
             Self::Coarse => [5, 5, 3],
@@ -144,7 +144,7 @@ impl TreeDetail {
     }
 
     /// Size of a spray of leaves relative to that of a fine tree, which keeps the light of the crown.
-    fn spray_scale(self) -> f32 {
+    pub(super) fn spray_scale(self) -> f32 {
         match self {
             Self::Fine => 1.0,
             Self::Coarse => 1.6,
@@ -183,15 +183,15 @@ pub(crate) fn tree(shape: u32, detail: TreeDetail) -> Solid {
     tree
 }
 
-const BARK: Paint = Paint::new(0.105, 0.075, 0.050, 0.0);
+pub(super) const BARK: Paint = Paint::new(0.105, 0.075, 0.050, 0.0);
 
 /// A square of leaves in a tree one metre tall.
-struct Spray {
+pub(super) struct Spray {
     /// Centre of the clump it belongs to.
     clump: Vec3,
     centre: Vec3,
     /// Half its side (m).
-    size: f32,
+    pub(super) size: f32,
     /// How its face differs from the direction out of the crown.
     tilt: Vec3,
     spin_rad: f32,
@@ -199,13 +199,13 @@ struct Spray {
 }
 
 /// Shape of a tree one metre tall.
-struct TreeForm {
+pub(super) struct TreeForm {
     shape: u32,
-    is_cone: bool,
-    crown: Crown,
+    pub(super) is_cone: bool,
+    pub(super) crown: Crown,
     /// Bend of the trunk (m).
     bow: Vec3,
-    trunk_top: f32,
+    pub(super) trunk_top: f32,
     /// Centre and half extents of the crown.
     middle: Vec3,
     half: Vec3,
@@ -213,7 +213,7 @@ struct TreeForm {
 }
 
 impl TreeForm {
-    fn new(shape: u32, random: &mut Random) -> Self {
+    pub(super) fn new(shape: u32, random: &mut Random) -> Self {
         let crown = crown(shape);
         let Crown { low, high, wide } = crown;
         let is_cone = shape == 3;
@@ -261,7 +261,7 @@ impl TreeForm {
     }
 
     /// A random spray of leaves of a fine tree; `along` is the position of its clump from the first (0) to the last (1).
-    fn spray(&self, clump: Vec3, along: f32, random: &mut Random) -> Spray {
+    pub(super) fn spray(&self, clump: Vec3, along: f32, random: &mut Random) -> Spray {
         let offset = Vec3::new(random.between(-1.0, 1.0), random.between(-0.8, 0.8), random.between(-1.0, 1.0));
         let size = self.clump_size * if self.is_cone { 1.0 - 0.55 * along } else { 1.0 };
         Spray {
@@ -275,7 +275,7 @@ impl TreeForm {
     }
 
     /// Adds the two triangles of a spray to a tree.
-    fn add_spray(&self, tree: &mut Solid, &Spray { clump, centre, size, tilt, spin_rad, hue }: &Spray) {
+    pub(super) fn add_spray(&self, tree: &mut Solid, &Spray { clump, centre, size, tilt, spin_rad, hue }: &Spray) {
         let leaf = match self.shape {
             0 => [0.100, 0.170, 0.030],
             1 => [0.130, 0.200, 0.040],

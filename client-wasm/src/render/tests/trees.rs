@@ -20,7 +20,7 @@ fn swaying_trees_stay_within_their_bounding_spheres() {
         let scale = vec2<f32>({size_m:?}, {tall_m:?});
         let placing = mat4x4<f32>(vec4<f32>(scale.x, 0.0, 0.0, 0.0), vec4<f32>(0.0, scale.y, 0.0, 0.0), vec4<f32>(0.0, 0.0, scale.x, 0.0), foot);
         let vertex = Vertex(at.xyz, vec4<f32>(0.0), vec4<f32>(0.0), vec2<f32>(0.5));
-        let tree = Instance(placing, vec3<f32>(1.0), {sway_rad:?});
+        let tree = Instance(placing, vec3<f32>(1.0), {sway_rad:?}, NO_LIMBS, 0u, 0u, 0u);
         return vec4<f32>(placed(vertex, tree, sway_of(tree)), 0.0);"
     );
     for shape in 0..TREE_SHAPES {

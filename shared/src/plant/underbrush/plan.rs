@@ -26,7 +26,7 @@ const BRANCH_MEAN_WIDTH: f32 = 0.75;
 /// Drag coefficients on the largest silhouette. A stalk is a cylinder across the wind (1.1, at the Reynolds numbers 1e3 to 1e5 of stalks). Leaves and
 /// petals turn their edge to the wind and stream in it (reconfiguration; Vogel 1989), which lowers the coefficient the more they bend; 0.25 is an
 /// average.
-const LEAF_DRAG: f32 = 0.25;
+pub(in crate::plant) const LEAF_DRAG: f32 = 0.25;
 const STALK_DRAG: f32 = 1.1;
 
 /// A kind of component of a species, with the constants of its bending.

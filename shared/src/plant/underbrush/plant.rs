@@ -111,7 +111,7 @@ pub fn posed(plan: &Plan, placed: &[Placed], stand: Stand, forces: Forces, look_
 }
 
 /// Frame at the plant's root: the vertical, tilted by the lean of the grass, and the side at which rotations start.
-fn ground_frame(stand: Stand) -> Section {
+pub(in crate::plant) fn ground_frame(stand: Stand) -> Section {
     let [lean_x, lean_z] = stand.lean_rad;
     let lean = Quat::from_scaled_axis(Vec3::new(lean_z, 0.0, -lean_x));
     let (sine, cosine) = stand.heading_rad.sin_cos();
@@ -119,15 +119,16 @@ fn ground_frame(stand: Stand) -> Section {
 }
 
 /// A component before it bends.
-struct Unbent {
-    foot_m: Vec3,
-    axis: Vec3,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::plant) struct Unbent {
+    pub(in crate::plant) foot_m: Vec3,
+    pub(in crate::plant) axis: Vec3,
     /// To its right.
-    side: Vec3,
+    pub(in crate::plant) side: Vec3,
 }
 
 /// A component on a carrier with the direction `frame`. Leaves face up: their width is level, or, if the axis is vertical, across the rotation.
-fn unbent(foot_m: Vec3, frame: Section, one: &Placed) -> Unbent {
+pub(in crate::plant) fn unbent(foot_m: Vec3, frame: Section, one: &Placed) -> Unbent {
     let other = frame.direction.cross(frame.side);
     let (turn_sine, turn_cosine) = one.turn_rad.sin_cos();
     let (sine, cosine) = one.angle_rad.sin_cos();
