@@ -105,13 +105,21 @@ impl GrownTree {
     pub(crate) fn bounds(&self) -> BoundingSphere {
         let parts = TreeDetail::ALL.map(|detail| self.unbent(detail));
         let unbent = BoundingSphere::around_meshes(parts.iter().flatten());
+        // Largest distance of the vertices of each component from the centre.
+        let mut reach_m = vec![0.0_f32; self.limbs(TreeDetail::Fine)];
+        for part in &parts {
+            for (reach_m, solid) in reach_m.iter_mut().zip(part) {
+                let distances = solid.vertices.iter().map(|vertex| Vec3::from(vertex.position).distance(unbent.centre_m));
+                *reach_m = distances.fold(*reach_m, f32::max);
+            }
+        }
         let blown = (0..8).flat_map(|n| [0.0, 0.1, 0.3, 1.0].map(|part| (TAU * n as f32 / 8.0, part * LIMIT_PA)));
-        let moves = blown.flat_map(|(heading_rad, pascals)| {
+        let radius_m = blown.fold(unbent.radius_m, |radius_m, (heading_rad, pascals)| {
             let all = self.posed(Vec3::new(heading_rad.cos(), 0.0, heading_rad.sin()) * pascals);
-            let ends = all.into_iter().zip(&self.statics.frames).map(|(posed, frame)| moved_m(&posed, frame, self.statics.tree_m));
-            ends.collect::<Vec<f32>>()
+            let moved = all.iter().zip(&self.statics.frames).map(|(posed, frame)| moved_m(posed, frame, self.statics.tree_m));
+            moved.zip(&reach_m).map(|(moved_m, reach_m)| moved_m + reach_m).fold(radius_m, f32::max)
         });
-        BoundingSphere { radius_m: unbent.radius_m + moves.fold(0.0, f32::max), ..unbent }
+        BoundingSphere { radius_m, ..unbent }
     }
 
     /// Its components at a size of 1 under their weight and a pressure (Pa).

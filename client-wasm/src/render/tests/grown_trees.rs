@@ -67,7 +67,7 @@ fn followed(gpu: &Gpu, picture: &OffscreenRenderer, tree: &GrownTree, vertices: 
 /// Runs `probe` of a WGSL source for each case, `count` times, with buffers: binding, and whether it is written.
 fn run(gpu: &Gpu, picture: &OffscreenRenderer, source: &str, buffers: &[(u32, &wgpu::Buffer, bool)], count: usize) {
     let frame_layout = picture.renderer.bindings.layout.clone();
-    let factory = PassFactory { gpu: gpu.clone(), frame_layout, samples: 1, has_kinds: true, soft_shadows: true };
+    let factory = PassFactory { gpu: gpu.clone(), frame_layout, samples: 1, has_kinds: true, soft_shadows: true, has_snow: false };
     let entries: Vec<_> =
         buffers.iter().map(|&(binding, _, is_written)| if is_written { storage_rw(binding) } else { storage(binding) }).collect();
     let layout = factory.layout("limbs", &entries);
