@@ -169,10 +169,16 @@ pub const METRICS: &[Metric] = &[
     world("courant", Gauge, Unit::Ratio, "largest Courant number of a sub-step of the bend field, as a fraction of its limit", |s| {
         s.diagnostics.courant.into()
     }),
-    world("laid_tiles", Gauge, Unit::Count, "tiles of 8 × 8 cells with flattened grass", |s| s.diagnostics.laid_tiles.into()),
-    world("dropped_tracks", Counter, Unit::Count, "patches whose flattened grass was discarded because there was too much", |s| {
-        s.diagnostics.dropped_tracks.into()
+    world("laid_tiles", Gauge, Unit::Count, "tiles of 8 × 8 cells with flattened grass or pressed snow", |s| {
+        s.diagnostics.laid_tiles.into()
     }),
+    world(
+        "dropped_tracks",
+        Counter,
+        Unit::Count,
+        "patches whose flattened grass or snow tracks were discarded because there was too much",
+        |s| s.diagnostics.dropped_tracks.into(),
+    ),
     world("rejected_motions", Counter, Unit::Count, "object motions rejected as invalid (NaN, infinite or out of range)", |s| {
         s.diagnostics.rejected_motions.into()
     }),

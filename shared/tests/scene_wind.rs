@@ -127,7 +127,7 @@ fn primitives_have_a_limit_and_are_sections() {
     let text = fault("[wind]\nprimitives = 'vortex'\n");
     assert_eq!(text, "`wind.primitives` is text; expected at most 64 sections `[[wind.primitives]]`");
     let outside = fault("[[wind.primitives]]\nkind = 'sink'\nat_m = [1, 2, 256.5]\n");
-    assert_eq!(outside, "`wind.primitives[0].at_m[2]` is 256.5; allowed: 0 to 256, the world's extent along Z");
+    assert_eq!(outside, "`wind.primitives[0].at_m[2]` is 256.5; allowed: -2 to 256, the world's extent along Z");
 }
 
 #[test]
@@ -236,8 +236,8 @@ fn fields_that_do_not_fit_an_intensity_are_rejected() {
 fn single_points_are_checked() {
     let spline = |points: &str| fault(&primitive(&format!("intensity = 'spline'\nperiod_secs = 99\nintensity_points = {points}")));
     for (points, message) in [
-        ("[[0, nan], [1, 1]]", "intensity_points[0][1]` is nan; allowed: 0 to 2"),
-        ("[[0, 0], [1, 2.5]]", "intensity_points[1][1]` is 2.5; allowed: 0 to 2"),
+        ("[[0, nan], [1, 1]]", "intensity_points[0][1]` is nan; allowed: -2 to 2"),
+        ("[[0, 0], [1, 2.5]]", "intensity_points[1][1]` is 2.5; allowed: -2 to 2"),
         ("[[0, 0], [-1, 1]]", "intensity_points[1][0]` is -1; allowed: 0 to 86400"),
         ("[[0, 0], [3]]", "intensity_points[1]` is a list of 1; expected a point [secs, intensity]"),
         ("[[0, 0], 3]", "intensity_points[1]` is the number 3; expected a point [secs, intensity]"),

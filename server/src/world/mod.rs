@@ -21,6 +21,7 @@ use crate::weather::Weather;
 use departed::Departed;
 use prairie_core::bend::Scheme;
 use prairie_core::body::Motion;
+use prairie_core::grass::snow::SnowField;
 use prairie_core::grass::wind_drawing::WindDrawings;
 use prairie_core::grass::{BendSimulation, BendState, StepRecord, prescribed_wind};
 use prairie_core::grid::PatchIndex;
@@ -316,8 +317,8 @@ impl World {
             awake_patches: self.bend.field().awake_count() as u32,
             evicted_patches: self.bend.evicted(),
             reset_patches: self.bend.reset_count(),
-            laid_tiles: self.bend.flattened().tiles() as u32,
-            dropped_tracks: self.bend.flattened().dropped(),
+            laid_tiles: (self.bend.flattened().tiles() + self.bend.snow().map_or(0, SnowField::tiles)) as u32,
+            dropped_tracks: self.bend.flattened().dropped() + self.bend.snow().map_or(0, SnowField::dropped),
             rejected_motions: self.bend.rejected_count(),
             wind_resets: self.weather.resets(),
             substeps: bend.substeps,

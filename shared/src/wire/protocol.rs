@@ -21,7 +21,7 @@ const PINS: &[(&str, &str)] = &[
     ("client Replicate", "0801"),
     ("client Differs", "09ac028201"),
     ("server Welcome", "47 bytes, e24a32964020568d"),
-    ("server Scene", "1248 bytes, 13e9e37af6db1661"),
+    ("server Scene", "1288 bytes, 7f452c58be8b978a"),
     ("server Poses", "51 bytes, e962de2ed87d03d6"),
     ("server Wind", "03ac020201000000000000f03f00000000000000c000000000000008400000003f020908"),
     ("server Patch", "04820103000107"),
@@ -36,6 +36,6 @@ const PINS: &[(&str, &str)] = &[
     ("server Race", "0d01c801020101000000000000144001010000803f010000003f010000004001000000bf"),
     ("server Ghost", "0e01c801030000a0410000803d0000003e0180800100ff7f000000feff03"),
     ("refusals", "0001020304"),
-    ("vehicle kinds", "050001020304"),
-    ("scenes with every word", "126560 bytes, 8c8557efdd2ccb80"),
+    ("vehicle kinds", "06000102030405"),
+    ("scenes with every word", "134090 bytes, afb61f569f864bd8"),
 ];

@@ -20,6 +20,11 @@ pub struct SnowState {
 }
 
 impl SnowState {
+    #[cfg(test)]
+    pub(super) fn fill(&mut self, difference: Column) {
+        self.cells.fill(difference);
+    }
+
     /// Differences from undisturbed snow of the cells of each tile.
     pub fn cells(&self) -> &[Column] {
         &self.cells
@@ -84,7 +89,7 @@ impl SnowField {
         Ok(())
     }
 
-    /// Whether a difference is that of a column that can exist, far from the limits of the arithmetic.
+    /// Whether a difference is that of a column that can exist. The sum of all in a world is far from the limits of the arithmetic.
     fn is_possible(&self, difference: Column) -> bool {
         const LIMIT: i64 = 1 << 36;
         let in_range = |least: i64, value: i64| (least..LIMIT).contains(&value);

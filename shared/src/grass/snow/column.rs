@@ -14,6 +14,11 @@ const QUANTA_PER_DENSITY: f64 = DEPTH_QUANTUM_M / MASS_QUANTUM_KG_M2;
 /// Fixed-point unit of fractions.
 const UNIT: i64 = 1 << 24;
 
+/// `value · numerator / denominator`, rounded towards 0, whose product may exceed 64 bits.
+pub(super) fn scaled(value: i64, numerator: i64, denominator: i64) -> i64 {
+    (i128::from(value) * i128::from(numerator) / i128::from(denominator)) as i64
+}
+
 /// Snow on a cell, or a difference from it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Column {
@@ -51,7 +56,7 @@ impl Column {
     /// The upper part of this depth.
     pub(super) fn top(self, depth: i64) -> Self {
         let depth = depth.clamp(0, self.depth);
-        Self { mass: if self.depth > 0 { self.mass * depth / self.depth } else { 0 }, depth }
+        Self { mass: if self.depth > 0 { scaled(self.mass, depth, self.depth) } else { 0 }, depth }
     }
 }
 
@@ -72,7 +77,7 @@ impl Yielding {
 
     /// Depth of a mass at the limit of density.
     fn packed_depth(self, mass: i64) -> i64 {
-        mass * self.packed_depth_per_mass / UNIT
+        scaled(mass, self.packed_depth_per_mass, UNIT)
     }
 
     /// Whether a column is at the limit of density, at which it bears any load.
@@ -92,9 +97,9 @@ impl Yielding {
         }
         let displaced = column.top(column.depth - floor);
         // As much as the room below the object holds stays in any case.
-        let room = clearance * UNIT / self.packed_depth_per_mass;
-        let mass = (displaced.mass * self.pushed / UNIT).min(column.mass - room).max(0);
-        let aside = Column { mass, depth: if column.mass > 0 { column.depth * mass / column.mass } else { 0 } };
+        let room = scaled(clearance, UNIT, self.packed_depth_per_mass);
+        let mass = scaled(displaced.mass, self.pushed, UNIT).min(column.mass - room).max(0);
+        let aside = Column { mass, depth: if column.mass > 0 { scaled(column.depth, mass, column.mass) } else { 0 } };
         let mass = column.mass - mass;
         (Column { mass, depth: self.packed_depth(mass).max(clearance) }, aside)
     }

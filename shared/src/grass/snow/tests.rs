@@ -64,6 +64,42 @@ fn a_track_is_packed_and_has_rims() {
     assert!(field.column([24, 16]).density_kg_m3() <= 450.5);
 }
 
+/// Largest step between neighbours beside the way of [`drive`], in all four directions (m).
+fn steepest_m(field: &SnowField) -> f32 {
+    let is_beside = |[x, z]: [i64; 2]| !(22..26).contains(&x) || !(6..34).contains(&z);
+    let cells = (8..40).flat_map(|x| (0..40).map(move |z| [x, z])).filter(|cell| is_beside(*cell));
+    let pairs = cells.flat_map(|[x, z]| [[x, z], [x + 1, z]].into_iter().zip([[x + 1, z], [x + 1, z + 1]]));
+    let steps = pairs.filter(|(a, b)| is_beside(*a) && is_beside(*b)).map(|(a, b)| field.column(a).depth_m() - field.column(b).depth_m());
+    steps.map(f32::abs).fold(0.0, f32::max)
+}
+
+#[test]
+fn rims_of_ten_passes_are_no_steeper_than_the_angle_of_repose() {
+    let [rests, stays] = [40.0, 80.0].map(|repose_deg| {
+        let mut field = field(&Snow { repose_deg, pushed_share: 1.0, depth_m: 0.6, ..snow() }, 1000);
+        (0..10).for_each(|_| drive(&mut field));
+        steepest_m(&field)
+    });
+    let limit_m = LAYOUT.cell_m * 40.0_f32.to_radians().tan();
+    assert!(rests < limit_m + 2e-3, "{rests} m between neighbours, {limit_m} m is the limit");
+    assert!(stays > 1.2 * limit_m, "control: {stays} m where snow hardly slumps");
+}
+
+#[test]
+fn a_state_at_its_limits_is_pressed_and_decays() {
+    let mut field = field(&Snow { fall_m_per_h: 7.2, ..snow() }, 1000);
+    field.press(&sweep([6.0, 6.0], [6.0, 6.0]), 0.0);
+    let mut state = field.state();
+    state.fill(Column { mass: (1 << 36) - 1, depth: (1 << 36) - 1 });
+    field.restore(&state).unwrap();
+    let before = field.column([24, 24]);
+    drive(&mut field);
+    (0..200).for_each(|_| field.step(DT_SECS));
+    assert!(field.column([24, 24]).depth < before.depth && field.column([24, 24]).mass > 0);
+    state.fill(Column { mass: 1 << 36, depth: 0 });
+    assert!(field.restore(&state).is_err(), "control: beyond the limit");
+}
+
 #[test]
 fn a_second_pass_pushes_almost_nothing() {
     let mut once = field(&snow(), 1000);
