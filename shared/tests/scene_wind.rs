@@ -127,7 +127,7 @@ fn primitives_have_a_limit_and_are_sections() {
     let text = fault("[wind]\nprimitives = 'vortex'\n");
     assert_eq!(text, "`wind.primitives` is text; expected at most 64 sections `[[wind.primitives]]`");
     let outside = fault("[[wind.primitives]]\nkind = 'sink'\nat_m = [1, 2, 256.5]\n");
-    assert_eq!(outside, "`wind.primitives[0].at_m[2]` is 256.5; allowed: -2 to 256, the world's extent along Z");
+    assert_eq!(outside, "`wind.primitives[0].at_m[2]` is 256.5; allowed: 0 to 256, the world's extent along Z");
 }
 
 #[test]
@@ -243,7 +243,7 @@ fn single_points_are_checked() {
         ("[[0, 0], 3]", "intensity_points[1]` is the number 3; expected a point [secs, intensity]"),
         (
             "3",
-            "intensity_points` is the number 3; expected a list of 0 to 32 points [secs, intensity], seconds 0 to 86400 and intensity 0 to 2",
+            "intensity_points` is the number 3; expected a list of 0 to 32 points [secs, intensity], seconds 0 to 86400 and intensity -2 to 2",
         ),
     ] {
         assert_eq!(spline(points), format!("`wind.primitives[0].{message}"), "{points}");

@@ -11,6 +11,7 @@ import package::inputs::sward_shade::{above_horizon, leaf_area_above, stance};
 import package::inputs::wind::ground_wind_at;
 import package::land_and_sky::ground::{fed, grass_fraction, ground_height};
 import package::land_and_sky::sky_light::sun_heading;
+import package::land_and_sky::snow::laden_mass_at;
 
 // Sward at a cell of the map. Twin of `Column`.
 struct Column {
@@ -34,7 +35,7 @@ fn column_at(p: vec2<f32>) -> Column {
     let kind = kinds_blended(p);
     let grown = fed(p) * 0.5 * (GROWTH_BY_TUFT[0] + GROWTH_BY_TUFT[1]);
     let lean = lean_in(ground, 0.0, ground_wind_at(ground), kind.wind_bend_rad);
-    let stands = stance(lean, kind.droop);
+    let stands = stance(lean, kind.droop * laden_mass_at(p));
     let leaf_area = frame.leaf_area * leafiness(kind) * grown * grass_fraction(p);
     let height_m = kind.height_m * grown * max(stands.x, LEAST_HEIGHT);
     return Column(ground.y, height_m, leaf_area * stands.y);

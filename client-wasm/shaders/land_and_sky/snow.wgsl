@@ -4,6 +4,8 @@ import package::constants::{PACKED_SNOW_ALBEDO, SNOW_ALBEDO, TILE_SPACINGS};
 import package::inputs::bend_atlas::{bends, field_fraction};
 import package::inputs::frame::{frame, repeated};
 import package::inputs::lamps::lamps_on;
+import package::inputs::sward_shade::SwardShade;
+import package::land_and_sky::grass_light::sun_in_grass;
 import package::land_and_sky::sky_light::ambient;
 import package::land_and_sky::sward::{leaf_area_of, VISIBLE_LEAF_EXTINCTION};
 import package::uniforms::Kind;
@@ -73,4 +75,20 @@ fn out_of_snow(kind: Kind, depth_m: f32) -> f32 {
 fn hidden_by_grass(kind: Kind, depth_m: f32, view: vec3<f32>, up: vec3<f32>) -> f32 {
     let leaf_area = leaf_area_of(kind) * out_of_snow(kind, depth_m);
     return 1.0 - exp(-VISIBLE_LEAF_EXTINCTION * leaf_area / clamp(-dot(view, up), 0.05, 1.0));
+}
+
+// Fraction of sunlight that the grass leaves to the surface of snow of this depth.
+fn sun_on_snow(kind: Kind, depth_m: f32, shade: SwardShade) -> f32 {
+    return sun_in_grass(1.0 - out_of_snow(kind, depth_m), kind, shade, depth_m / shade.height_m);
+}
+
+// Colour around a plant: the far look of the grass there, and the snow that it does not hide. `light` is the fraction of unshadowed sunlight.
+fn with_snow(grass: vec3<f32>, at: vec3<f32>, normal: vec3<f32>, kind: Kind, view: vec3<f32>, light: f32, shade: SwardShade) -> vec3<f32> {
+    if !has_snow {
+        return grass;
+    }
+    let difference_m = snow_difference(at.xz, 0.0);
+    let depth_m = max(frame.snow_m + difference_m, 0.0);
+    let snow = snow_light(at, normal, difference_m, light * sun_on_snow(kind, depth_m, shade));
+    return mix(snow, grass, hidden_by_grass(kind, depth_m, view, normal));
 }

@@ -16,7 +16,7 @@ import package::land_and_sky::ground::{grass_fraction_over, ground_height, groun
 import package::land_and_sky::ground_tile::{GroundTile, kind_of_plain, tile_vertex};
 import package::land_and_sky::haze::air_before;
 import package::land_and_sky::sky_light::ambient;
-import package::land_and_sky::snow::{depth_of_vertex, has_snow, hidden_by_grass, out_of_snow, snow_difference, snow_light, snow_normal};
+import package::land_and_sky::snow::{depth_of_vertex, has_snow, hidden_by_grass, snow_difference, snow_light, snow_normal, sun_on_snow};
 import package::land_and_sky::sward::{bare_between, sward_color};
 import package::uniforms::Kind;
 
@@ -149,10 +149,11 @@ fn snowy(ground: Ground, normal: vec3<f32>, kind: Kind, grassy: f32, sun_light: 
     let level = field_level(distance_m);
     let difference_m = snow_difference(p, level);
     let depth_m = max(frame.snow_m + difference_m, 0.0);
-    let reached = mix(1.0, sun_in_grass(1.0 - out_of_snow(kind, depth_m), kind.height_m), grassy);
+    let shade = shade_at(p);
+    let reached = mix(1.0, sun_on_snow(kind, depth_m, shade), grassy);
     let snow = snow_light(ground.p, snow_normal(p, level, normal), difference_m, sun_light * reached);
     let lean = laid_at(p, distance_m) + ground.air.xy * kind.wind_bend_rad;
-    let grass = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light);
+    let grass = sward_color(ground.p, normal, kind, ground.tint, lean, view, sun_light, shade);
     return mix(snow, grass, grassy * hidden_by_grass(kind, depth_m, view, normal));
 }
 

@@ -20,7 +20,7 @@ import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::{drift_at, tint_of};
 import package::land_and_sky::ground::{fed, ground_height, ground_normal};
 import package::land_and_sky::haze::air_before;
-import package::land_and_sky::snow::{has_snow, hidden_by_grass, laden_mass_at, snow_difference, snow_light};
+import package::land_and_sky::snow::{laden_mass_at, with_snow};
 import package::land_and_sky::sward::{density, bare_between, contrast, sward_color};
 import package::plants::backbone::{drawn_out, WIDER};
 import package::plants::blade::{advance, BladeNature, Link, points_of, settle, Sway};
@@ -226,13 +226,9 @@ fn about(plant: Plant, tint: vec3<f32>, lean: vec2<f32>, distance_m: f32, light:
     if between <= 0.02 && contrast(distance_m) >= 1.0 {
         return vec4<f32>(0.0);
     }
-    let grass = sward_color(plant.root_m, plant.normal, kind, tint, lean, view, light, shade_at(plant.root_m.xz));
-    if !has_snow {
-        return vec4<f32>(grass, between);
-    }
-    let difference_m = snow_difference(plant.root_m.xz, 0.0);
-    let hidden = hidden_by_grass(kind, max(frame.snow_m + difference_m, 0.0), view, plant.normal);
-    return vec4<f32>(mix(snow_light(plant.root_m, plant.normal, difference_m, light), grass, hidden), between);
+    let shade = shade_at(plant.root_m.xz);
+    let grass = sward_color(plant.root_m, plant.normal, kind, tint, lean, view, light, shade);
+    return vec4<f32>(with_snow(grass, plant.root_m, plant.normal, kind, view, light, shade), between);
 }
 
 fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, kind: f32) {

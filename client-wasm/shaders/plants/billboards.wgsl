@@ -14,6 +14,7 @@ import package::land_and_sky::grass_color::grass_tint;
 import package::land_and_sky::ground::{fed, grass_fraction, grass_fraction_over, ground_height, ground_normal};
 import package::land_and_sky::haze::hazed;
 import package::land_and_sky::sky_light::ambient;
+import package::land_and_sky::snow::with_snow;
 import package::land_and_sky::sward::{MEAN_STRAW, blade_color, contrast, sward_color};
 import package::plants::force_field::{forces_at, sheltered};
 import package::plants::nearness::nearness;
@@ -171,7 +172,7 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let shade = shade_at(root);
     // Near its root a clump has the colour of the grass around it.
     let afar = sward_color(ground, ground_normal(root), kind, tint, lean, view, light, shade);
-    pose.root_color = hazed(afar, p);
+    pose.root_color = hazed(with_snow(afar, ground, ground_normal(root), kind, view, light, shade), p);
     let top = blade_color(kind, tint, 0.95, 0.9, 0.5, MEAN_STRAW, tilt, normal, tangent, view, p, light, shade, 0.9);
     pose.tip_color = hazed(mix(afar, top, 0.35 + 0.65 * contrast(distance_m)), p);
     pose.petal_light = frame.sun_rgb * light * 0.6 + ambient(normal) + lamps_on(p, normal, 0.3);

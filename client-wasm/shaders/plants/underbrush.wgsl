@@ -16,6 +16,7 @@ import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
 import package::land_and_sky::ground::{grass_fraction, ground_height, ground_normal};
 import package::land_and_sky::haze::air_before;
+import package::land_and_sky::snow::with_snow;
 import package::land_and_sky::sward::{bare_between, sward_color};
 import package::plants::force_field::{forces_at, sheltered};
 import package::plants::ribbons::{fs, ribbons, vs};
@@ -233,7 +234,9 @@ fn standing(plant: UnderbrushPlant, shown: DisplaySize, height: f32) -> VisibleP
     let variant = (plant.species_and_variant >> 8u) % VARIANTS;
     out.variant_and_kind = variant + 2u * VARIANTS * kind_number;
     let view = normalize(root - frame.eye_m);
-    out.grass_rgb = sward_color(root, out.normal, kind, out.tint, lean, view, out.sunlight, shade_at(plant.at_m));
+    let shade = shade_at(plant.at_m);
+    let grass = sward_color(root, out.normal, kind, out.tint, lean, view, out.sunlight, shade);
+    out.grass_rgb = with_snow(grass, root, out.normal, kind, view, out.sunlight, shade);
     out.grass_fraction = bare_between(shown.distance_m, kind, view, out.normal) * grass_fraction(plant.at_m);
     out.air = air_before(root + vec3<f32>(0.0, 0.5 * height, 0.0));
     return out;

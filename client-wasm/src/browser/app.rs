@@ -259,7 +259,7 @@ impl App {
         rig.look(right_rad, up_rad);
         rig.zoom(self.input.take_zoom());
         let mirror = self.past.as_mut().and_then(Past::mirror_mut).unwrap_or(&mut self.mirror);
-        rig.advance(self.input.controls(), vehicle.as_ref(), &self.sight.1, |x_m, z_m| mirror.ground_m(x_m, z_m), camera_secs);
+        rig.advance(self.input.controls(), vehicle.as_ref(), &self.sight.1, |x_m, z_m| mirror.surface_m(x_m, z_m), camera_secs);
         let camera = rig.camera();
         if !self.redraw.needs_frame(mirror, &camera, view, dt_secs) && !forced && !self.draws_every_frame {
             self.meter.record_skipped();
@@ -330,8 +330,8 @@ impl App {
 
     /// Moves the free camera.
     pub(super) fn set_camera(&mut self, camera: Camera) {
-        let ground_m = self.mirror.ground_m(camera.eye_m.x, camera.eye_m.z);
-        self.rig = Some(Rig::new(camera, ground_m));
+        let surface_m = self.mirror.surface_m(camera.eye_m.x, camera.eye_m.z);
+        self.rig = Some(Rig::new(camera, surface_m));
     }
 
     /// Message for the user, while it is to be shown.

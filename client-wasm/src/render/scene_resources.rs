@@ -21,6 +21,9 @@ use crate::render::solids::trees_and_stones::placed_models;
 use crate::render::stage::{Stage, StageResources};
 use crate::state::DecodedScene;
 
+/// Height that rims of ruts have above undisturbed snow at most (m).
+const RIM_M: f32 = 2.0;
+
 /// Resources that are created for each scene, [stage](Stage) by stage. Those of a stage that is not loaded yet are `None`.
 pub(super) struct SceneResources {
     pub(super) factory: PassFactory,
@@ -53,7 +56,8 @@ impl SceneResources {
     pub(super) fn new(factory: PassFactory, bindings: &FrameBindings, number: u32, decoded: &DecodedScene) -> Self {
         let (scene, heights) = (decoded.scene(), decoded.heights());
         let grass_m = scene.plants.most_grown() * scene.tallest_m();
-        let quadtree = TerrainQuadtree::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), grass_m, scene.light.haze_m);
+        let cover_m = if scene.snow.lies() { grass_m.max(scene.snow.depth_m + RIM_M) } else { grass_m };
+        let quadtree = TerrainQuadtree::new(scene.extent_m(), heights.pixel_m(), heights.range_m(), cover_m, scene.light.haze_m);
         Self {
             number,
             stage: Stage::Land,

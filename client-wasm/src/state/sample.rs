@@ -5,6 +5,11 @@ use glam::Vec3;
 use prairie_core::bend::{Bend, field_lean_at};
 
 impl Mirror {
+    /// Elevation (m) of the surface that cameras stay above at `(x_m, z_m)`: undisturbed snow, or the ground; 0 before the scene has arrived.
+    pub fn surface_m(&self, x_m: f32, z_m: f32) -> f32 {
+        self.ground_m(x_m, z_m) + self.decoded_scene().map_or(0.0, |decoded| decoded.scene().snow.depth_m)
+    }
+
     /// Elevation of the ground at `(x_m, z_m)` (m); 0 before the scene has arrived.
     pub fn ground_m(&self, x_m: f32, z_m: f32) -> f32 {
         self.decoded_scene().map_or(0.0, |decoded| decoded.heights().height_m(x_m, z_m))

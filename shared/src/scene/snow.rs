@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Snow {
-    /// Depth of undisturbed snow (m). Default 0, no snow; allowed 0..=2.
+    /// Depth of undisturbed snow (m). Vehicles go on the land below it, so that deep snow hides them. Default 0, no snow; allowed 0..=2.
     pub depth_m: f32,
     /// Density of undisturbed snow (kg/m³): 50 to 70 where it has just fallen in calm, 200 to 300 settled, 350 to 400 packed by wind (Cuffey and
     /// Paterson 2010). Default 120, allowed 30..=600.

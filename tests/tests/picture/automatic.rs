@@ -86,6 +86,17 @@ fn turned_views_differ_from_the_reference_at_every_level_of_detail() -> Result<(
     Ok(())
 }
 
+/// Negative control of [`BOUNDS`]: in a storm the wind has moved grass and shadows for three seconds.
+#[test]
+fn later_views_differ_from_the_reference_at_every_level_of_detail() -> Result<()> {
+    let gpu = gpu()?;
+    let bounds = &BOUNDS[1];
+    let (mut still, reference) = view(&gpu, bounds.view, SIZE_PX)?;
+    still.stage.run(3.0);
+    still.stage.show()?;
+    check_levels(&gpu, bounds, &mut still, &reference).into_iter().try_for_each(|checked| ensure_refused(checked, "is allowed"))
+}
+
 /// Negative control of the bounds at the highest level: on foot, the lowest level does not meet them.
 #[test]
 fn the_lowest_level_of_detail_is_no_high_one() -> Result<()> {

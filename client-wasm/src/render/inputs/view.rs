@@ -74,6 +74,7 @@ impl<'a> View<'a> {
         let (mean_wind, [past_ages_secs @ .., youngest_past]) = (MeanWind::of(scene.wind.mean_m_per_s), textures.atlas.past());
         let lamps = lamps(scene, decoded.heights(), headlights, self.sun.elevation_rad, daylight.brightness(), eye);
         let (gusts, spheres) = (textures.wind.gusts(), spheres(&scene.objects, poses, eye));
+        let snow_load = relative_load(&scene.snow, leaf_area(&scene.plants));
         Frame {
             projection_from_world: self.projection_from_world.to_cols_array(),
             shadow_from_world: self.shadow_from_world(0).to_cols_array(),
@@ -118,9 +119,9 @@ impl<'a> View<'a> {
             shade_extent_m: SHADE_PX as f32 * SHADE_CELL_M,
             shade_strength: 0.0,
             shade_top_m: scene.plants.most_grown() * scene.tallest_m(),
-            shade_extinction: even_depth(&scene.plants, self.sun),
+            shade_extinction: even_depth(&scene.plants, 1.0 + snow_load, self.sun),
             snow_m: scene.snow.depth_m,
-            snow_load: relative_load(&scene.snow, leaf_area(&scene.plants)),
+            snow_load,
             slabs: slabs(&scene.objects, poses, eye),
             spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_else(Sphere::zeroed)),
             gusts: std::array::from_fn(|i| gusts.waves().get(i).map_or_else(GustWave::zeroed, GustWave::from)),
@@ -180,9 +181,9 @@ fn shade_corner_m(eye_m: [f32; 2]) -> [f32; 2] {
     eye_m.map(|m| ((m / SHADE_CELL_M).floor() - 0.5 * SHADE_PX as f32) * SHADE_CELL_M)
 }
 
-/// Optical depth towards the sun of upright grass of the first kind.
-fn even_depth(plants: &Plants, sun: Sun) -> f32 {
-    let [_, depth] = shade::stance([0.0; 2], 1.0, sun.direction());
+/// Optical depth towards the sun of upright grass of the first kind, of a mass relative to its own.
+fn even_depth(plants: &Plants, laden_mass: f32, sun: Sun) -> f32 {
+    let [_, depth] = shade::stance([0.0; 2], laden_mass, sun.direction());
     leaf_area(plants) * depth
 }
 

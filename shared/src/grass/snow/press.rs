@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 const SIDES: [[i64; 2]; 4] = [[-1, 0], [1, 0], [0, -1], [0, 1]];
 
 /// Visits per cell around an object after which what is left of its pile stays until it is pressed again.
-const VISITS: usize = 8;
+const VISITS: usize = 64;
 /// Excess above the angle of repose that slides: 1 mm.
 const LEAST_EXCESS: i64 = 1000;
 
@@ -119,7 +119,9 @@ impl SnowField {
         while let Some(cell) = unsettled.pop_front().filter(|_| visits > 0) {
             visits -= 1;
             if let Some(lower) = self.slide(below, cell) {
+                // Both have changed, and those beside a lower column may slide now.
                 unsettled.extend([lower, cell]);
+                unsettled.extend(SIDES.map(|[x, z]| [cell[0] + x, cell[1] + z]));
             }
         }
     }
