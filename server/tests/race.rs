@@ -50,7 +50,7 @@ impl Drive {
         };
         let first = 200;
         let turned_rad = |tick: usize| (heading_rad(tick) - heading_rad(first)).rem_euclid(TAU);
-        let gate = |tick: usize| RaceGate { width_m: 4.0, ..RaceGate::new(self.places[tick].map(|m| m as f32), heading_rad(tick) as f32) };
+        let gate = |tick: usize| RaceGate { width_m: 6.0, ..RaceGate::new(self.places[tick].map(|m| m as f32), heading_rad(tick) as f32) };
         let after = |least_rad: f64| (first + 1..).find(|tick| (least_rad..least_rad + 1.0).contains(&turned_rad(*tick))).unwrap();
         self.scene.scene.race = Race { laps: 2, light_period_secs: 0.0, gates: vec![gate(first), gate(after(2.0)), gate(after(4.0))] };
         self

@@ -131,7 +131,7 @@ fn check_race(scene: &Scene) -> Result<(), MirrorError> {
             within("race.gates.at_m", coordinate, 0.0, 100_000.0)?;
         }
         within("race.gates.heading_rad", gate.heading_rad, -6.3, 6.3)?;
-        within("race.gates.width_m", gate.width_m, 2.0, 100.0)?;
+        within("race.gates.width_m", gate.width_m, 6.0, 100.0)?;
     }
     Ok(())
 }

@@ -228,7 +228,7 @@ const AFTER_OBJECTS: &[(&str, Allowed)] = &[
     ("race.gates", Sections(0, GATES_LIMIT)),
     ("race.gates.at_m", Range(0.0, 100_000.0)),
     ("race.gates.heading_rad", Range(-6.3, 6.3)),
-    ("race.gates.width_m", Range(2.0, 100.0)),
+    ("race.gates.width_m", Range(6.0, 100.0)),
     ("camera.at", Range(0.0, 1.0)),
     ("camera.height_m", Range(0.02, 2000.0)),
     ("camera.heading_rad", Range(-6.3, 6.3)),

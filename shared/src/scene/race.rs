@@ -37,7 +37,7 @@ pub struct RaceGate {
     pub at_m: [f32; 2],
     /// Heading (rad), from north towards east, in which it is passed. Required, allowed −6.3..=6.3.
     pub heading_rad: f32,
-    /// Distance between its posts (m). Default 10, allowed 2..=100.
+    /// Distance between its posts (m), which stand at its ends and which vehicles run into. Default 10, allowed 6..=100.
     pub width_m: f32,
 }
 

@@ -25,9 +25,15 @@ const ACCELERATION_M_PER_S2: f32 = 10.0;
 const STEP_M: f32 = 0.3;
 /// Rate at which the feet approach the terrain (1/s).
 const FOOTING_PER_S: f32 = 12.0;
-/// Rising speed above which one has left the ground (m/s), faster than any path over the terrain.
-const RISING_M_PER_S: f32 = 2.0;
-/// Steepest slope that is climbed at full speed, as rise over run.
+/// Fastest ascent on foot (m/s). Steeper ground stops one as a wall does.
+const CLIMB_M_PER_S: f32 = 2.5;
+/// Twice the energy per mass (m²/s²) above which one who rises has jumped: no ascent on foot reaches it within a step of the ground, and every jump exceeds it
+/// until it is higher.
+const JUMP_M2_PER_S2: f32 = 12.5;
+const _: () = assert!(CLIMB_M_PER_S * CLIMB_M_PER_S + 2.0 * GRAVITY_M_PER_S2 * STEP_M < JUMP_M2_PER_S2);
+const _: () = assert!(JUMP_M2_PER_S2 < JUMP_M_PER_S * JUMP_M_PER_S);
+const GRAVITY_M_PER_S2: f32 = 9.81;
+/// Steepest slope that is climbed at full walking speed, as rise over run.
 const CLIMB: f32 = 0.7;
 const RADIUS_M: f32 = 0.25;
 const HALF_HEIGHT_M: f32 = 0.9;
@@ -73,6 +79,23 @@ fn prisms(_: &Objects) -> Vec<Prism> {
     vec![trunk, foot(-FOOT_ASIDE_M), foot(FOOT_ASIDE_M)]
 }
 
+/// Whether one who rises at `rising_m_per_s` at a clearance (m) has left the ground by a jump.
+fn has_jumped(rising_m_per_s: f32, clearance_m: f32) -> bool {
+    rising_m_per_s > 0.0 && rising_m_per_s * rising_m_per_s + 2.0 * GRAVITY_M_PER_S2 * clearance_m > JUMP_M2_PER_S2
+}
+
+/// Takes from a velocity as much of its way uphill as rises faster than `limit_m_per_s`, and gives its rise along the ground (m/s).
+fn keep_climbable(velocity: &mut Vector, slope: [f32; 2], limit_m_per_s: f32) -> f32 {
+    let along_ground = slope[0] * velocity.x + slope[1] * velocity.z;
+    if along_ground <= limit_m_per_s {
+        return along_ground;
+    }
+    let excess = (along_ground - limit_m_per_s) / (slope[0] * slope[0] + slope[1] * slope[1]);
+    velocity.x -= excess * slope[0];
+    velocity.z -= excess * slope[1];
+    limit_m_per_s
+}
+
 impl Controller for Walker {
     fn control(&mut self, drive: Drive, step: &mut ControlStep<'_>) {
         let ControlStep { dt_secs, physics, terrain, .. } = step;
@@ -85,8 +108,7 @@ impl Controller for Walker {
         let (below, slope) = (terrain.height_m([at.x, at.z]), terrain.slope([at.x, at.z]));
         let clearance = at.y - HALF_HEIGHT_M - below;
         let mut velocity = body.linvel();
-        let along_ground = slope[0] * velocity.x + slope[1] * velocity.z;
-        let walks = clearance < STEP_M && velocity.y - along_ground < RISING_M_PER_S;
+        let walks = clearance < STEP_M && !has_jumped(velocity.y, clearance);
         if walks {
             let forward = if drive.lift < -PRESSED { RUN_M_PER_S } else { WALK_M_PER_S };
             let walk = if drive.throttle < 0.0 { BACKWARD_M_PER_S } else { forward } * drive.throttle * (1.0 - drive.brake);
@@ -94,10 +116,12 @@ impl Controller for Walker {
             let rise = (slope[0] * wanted.x + slope[1] * wanted.z) / walk.abs().max(0.01);
             let change = wanted / (rise / CLIMB).max(1.0) - Vector::new(velocity.x, 0.0, velocity.z);
             velocity += change.clamp_length_max(ACCELERATION_M_PER_S2 * dt_secs);
-            let along_ground = slope[0] * velocity.x + slope[1] * velocity.z;
-            // One jump for each press.
+            let footing = -clearance * FOOTING_PER_S.min(1.0 / dt_secs);
+            let along_ground = keep_climbable(&mut velocity, slope, CLIMB_M_PER_S - footing.clamp(0.0, CLIMB_M_PER_S));
+            // One jump for each press. Downhill it starts from the level, so that it rises by itself.
             let jumps = drive.lift > PRESSED && !self.is_jumping;
-            velocity.y = along_ground + if jumps { JUMP_M_PER_S } else { -clearance * FOOTING_PER_S.min(1.0 / dt_secs) };
+            let rise = along_ground + footing;
+            velocity.y = if jumps { JUMP_M_PER_S + rise.clamp(0.0, CLIMB_M_PER_S) } else { rise.min(CLIMB_M_PER_S) };
             let covered = velocity.x.hypot(velocity.z) * dt_secs * if drive.throttle < 0.0 { -1.0 } else { 1.0 };
             self.phase_rad = (self.phase_rad + covered * TAU / STRIDE_M) % TAU;
             self.is_jumping = drive.lift > PRESSED;
@@ -122,5 +146,66 @@ impl Controller for Walker {
     fn restore(&mut self, state: &[u8]) -> postcard::Result<()> {
         *self = postcard::from_bytes(state)?;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::environment::Environment;
+    use crate::lone_vehicle::LoneVehicle;
+    use prairie_core::scene::{Scene, TerrainMaps};
+    use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
+    use std::sync::Arc;
+
+    /// Pixels of the terrain (m) and its side (m).
+    const PIXEL_M: [f32; 2] = [0.5, 8.0];
+    const SIDE_M: f32 = 48.0;
+    /// Where the ground begins to rise (m).
+    const FOOT_M: f32 = 16.0;
+
+    /// Highest clearance (m) of a run to the east over a rise by `slope` up to `top_m` further east, then on at `slope_beyond`, and the place it reaches (m).
+    /// Beyond `jumps_at_m` the jump is pressed.
+    fn run(slope: f32, top_m: f32, slope_beyond: f32, jumps_at_m: f32) -> (f32, f32) {
+        let [width_px, depth_px] = PIXEL_M.map(|pixel| (SIDE_M / pixel) as u32 + 1);
+        let height_m = |x: f32| slope * (x - FOOT_M).clamp(0.0, top_m) + slope_beyond * (x - FOOT_M - top_m).max(0.0);
+        let heights_m = (0..width_px * depth_px).map(|i| height_m((i % width_px) as f32 * PIXEL_M[0])).collect();
+        let height = Arc::new(HeightMap::from_heights(width_px, depth_px, PIXEL_M, heights_m));
+        let cover = Arc::new(CoverMap::from_png(&grey_png([2; 2], &[255; 4])).unwrap());
+        let maps = TerrainMaps { height_map: String::new(), covering_map: String::new(), pixel_m: PIXEL_M, level_m: 0.1, base_m: 0.0 };
+        let environment = Environment { height: height.clone(), cover, extent_m: [SIDE_M; 2] };
+        let mut walker = LoneVehicle::new(&Scene::new(maps), environment, VehicleKind::Walker);
+        walker.place([8.0, HALF_HEIGHT_M, 20.0], TAU / 4.0);
+        let (mut highest_m, mut x) = (0.0_f32, 8.0);
+        for _ in 0..1200 {
+            let lift = if x > jumps_at_m { 1.0 } else { -1.0 };
+            walker.step(Drive { throttle: 1.0, lift, ..Drive::default() }, |_| [0.0; 3]);
+            let at_m = walker.motion().pose.position_m;
+            x = at_m[0];
+            highest_m = highest_m.max(at_m[1] - HALF_HEIGHT_M - height.height_m(x, at_m[2]));
+            if x > SIDE_M - 6.0 {
+                break;
+            }
+        }
+        (highest_m, x)
+    }
+
+    #[test]
+    fn steep_ground_throws_no_walker_up() {
+        for (slope, top_m, slope_beyond) in
+            [(0.7, 6.0, 0.0), (0.7, 6.0, -0.7), (3.0, 3.0, 0.0), (4.0, 3.0, 0.0), (5.0, 3.0, 0.0), (-0.7, 6.0, 0.7)]
+        {
+            let (highest_m, x) = run(slope, top_m, slope_beyond, f32::MAX);
+            assert!(highest_m < STEP_M, "slopes {slope} and {slope_beyond}: {highest_m} m above the ground");
+            assert!(x > SIDE_M - 6.0, "slopes {slope} and {slope_beyond}: stops at {x} m");
+        }
+    }
+
+    #[test]
+    fn a_jump_rises_above_a_step_on_any_slope() {
+        for (slope, slope_beyond) in [(0.0, 0.0), (0.7, 0.0), (-0.7, 0.0), (0.5, 0.5)] {
+            let (highest_m, _) = run(slope, 6.0, slope_beyond, FOOT_M + 2.0);
+            assert!((0.5..3.0).contains(&highest_m), "slopes {slope} and {slope_beyond}: {highest_m} m above the ground");
+        }
     }
 }

@@ -30,13 +30,14 @@ const TROUSERS: Paint = Paint::new(0.20, 0.15, 0.09, 0.1);
 const SKIN: Paint = Paint::new(0.52, 0.33, 0.22, 0.3);
 const STRAW: Paint = Paint::new(0.62, 0.47, 0.20, 0.1);
 
-/// Angle of a leg ahead of upright and bend of its knee (rad), at a fraction of the walk since its foot was set down.
+/// Angle of a leg ahead of upright and bend of its knee (rad), at a fraction of the walk since its foot was set down. While it stands
+/// it is straight.
 fn leg_rad(since: f32) -> [f32; 2] {
     let since = since.rem_euclid(1.0);
     if since < 0.5 {
-        [SWING_RAD * (1.0 - 4.0 * since), 0.05]
+        [SWING_RAD * (1.0 - 4.0 * since), 0.0]
     } else {
-        [SWING_RAD * (TAU * since).cos(), 0.05 + KNEE_RAD * (TAU * (since - 0.5)).sin()]
+        [SWING_RAD * (TAU * since).cos(), KNEE_RAD * (TAU * (since - 0.5)).sin()]
     }
 }
 
@@ -44,8 +45,9 @@ fn place(pose: &ObjectPose, _motion: Motion) -> Vec<(usize, Affine3A)> {
     let walk = pose.part_rad / TAU;
     let [left, right] = [walk, walk - 0.5].map(leg_rad);
     let swing_rad = left[0];
-    // The hips sink where the legs are apart.
-    let sunk_m = (LEG_M[0] + LEG_M[1]) * (1.0 - swing_rad.cos());
+    // The hips sink where the leg that stands is oblique, so that its foot stays on the ground.
+    let [standing_rad, _] = if walk.rem_euclid(1.0) < 0.5 { left } else { right };
+    let sunk_m = (LEG_M[0] + LEG_M[1]) * (1.0 - standing_rad.cos());
     let mut placed = vec![part(0, Vec3::Y * -sunk_m, Quat::IDENTITY)];
     for ([ahead_rad, knee_rad], x) in [(left, -0.1), (right, 0.1)] {
         let hip = Vec3::new(x, HIPS_M - sunk_m, 0.0);
@@ -96,4 +98,36 @@ fn arm() -> Solid {
     arm.tube(&[(Vec3::ZERO, 0.06), (elbow, 0.05), (hand, 0.04)], 10, COAT);
     arm.ellipsoid(hand, Vec3::new(0.04, 0.06, 0.045), SKIN);
     arm
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use prairie_core::scene::VehicleKind;
+
+    /// Heights of the left and the right ankle (m) at a fraction of the walk.
+    fn ankles_m(walk: f32) -> [f32; 2] {
+        let pose = ObjectPose {
+            id: 1,
+            kind: VehicleKind::Walker,
+            position_m: [0.0; 3],
+            rotation: [0.0, 0.0, 0.0, 1.0],
+            velocity_m_per_s: [0.0; 3],
+            part_rad: walk * TAU,
+        };
+        let shins: Vec<_> = place(&pose, Motion { rolled_m: 0.0, time_secs: 0.0 }).into_iter().filter(|(part, _)| *part == 2).collect();
+        [0, 1].map(|leg: usize| shins[leg].1.transform_point3(-LEG_M[1] * Vec3::Y).y)
+    }
+
+    #[test]
+    fn the_foot_that_stands_stays_on_the_ground() {
+        for n in 0..64 {
+            let walk = (n as f32 + 0.5) / 64.0;
+            let [left_m, right_m] = ankles_m(walk).map(|y| y + LEG_M[0] + LEG_M[1]);
+            let [standing_m, swung_m] = if walk < 0.5 { [left_m, right_m] } else { [right_m, left_m] };
+            assert!(standing_m.abs() < 1e-3, "{walk} of the walk: {standing_m} m above the ground");
+            let is_midway = (0.15..0.35).contains(&(walk % 0.5));
+            assert!(!is_midway || swung_m > 0.05, "{walk} of the walk: the other foot is {swung_m} m above the ground");
+        }
+    }
 }
