@@ -5,13 +5,13 @@ use super::column::{Column, quanta_of};
 use crate::grass::footprint::Run;
 use crate::grass::swept_footprint::{Leg, SweptFootprint};
 use crate::grid::PatchLayout;
-use std::collections::VecDeque;
+use std::collections::BTreeSet;
 
 /// Neighbours of a cell that share a side.
 const SIDES: [[i64; 2]; 4] = [[-1, 0], [1, 0], [0, -1], [0, 1]];
 
 /// Visits per cell around an object after which what is left of its pile stays until it is pressed again.
-const VISITS: usize = 64;
+const VISITS: usize = 128;
 /// Excess above the angle of repose that slides: 1 mm.
 const LEAST_EXCESS: i64 = 1000;
 
@@ -115,8 +115,8 @@ impl SnowField {
     /// [`VISITS`] times on average.
     fn slump(&mut self, below: &Below, cells: Vec<[i64; 2]>) {
         let mut visits = VISITS * cells.len();
-        let mut unsettled = VecDeque::from(cells);
-        while let Some(cell) = unsettled.pop_front().filter(|_| visits > 0) {
+        let mut unsettled = BTreeSet::from_iter(cells);
+        while let Some(cell) = unsettled.pop_first().filter(|_| visits > 0) {
             visits -= 1;
             if let Some(lower) = self.slide(below, cell) {
                 // Both have changed, and those beside a lower column may slide now.
