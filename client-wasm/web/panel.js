@@ -10,7 +10,7 @@ const NOTICE_MS = 5_000;
 
 const LABELS = {
   auto: "Automatic", land: "Ground only", cut: "Alpha test", coverage: "Alpha to coverage", precomputed: "Precomputed orders", weighted: "Weighted blended",
-  unculled: "No culling", raised: "Wind raised with distance", grids: "Map of the grids", shadowed: "Shadows of grass", unshadowed: "No shadows of grass",
+  unculled: "No culling", raised: "Wind raised with distance", grids: "Map of the grids", shadowed: "Shadows of grass",
 };
 
 // Displayed name of a choice.
@@ -139,7 +139,7 @@ export class Panel {
   toggleShadows() {
     const casts = !JSON.parse(this.client.state()).shadows;
     this.client.cast_grass_shadows(casts);
-    keep({ shadows: casts ? "on" : "off" });
+    keep({ shadows: casts ? "on" : null });
     this.update(JSON.parse(this.client.state()));
   }
 

@@ -265,9 +265,9 @@ pub fn show_grids(shows: bool) {
     with_app(|app| app.settings.show_grids(shows));
 }
 
-/// Lets grass cast shadows on grass and ground or not; undefined: by quality.
+/// Lets grass cast shadows on grass and ground or not.
 #[wasm_bindgen]
-pub fn cast_grass_shadows(casts: Option<bool>) {
+pub fn cast_grass_shadows(casts: bool) {
     with_app(|app| app.settings.cast_grass_shadows(casts));
 }
 

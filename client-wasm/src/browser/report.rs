@@ -161,7 +161,7 @@ impl App {
             "far": self.settings.option_names()[1],
             "raised": self.settings.switches()[0],
             "grids": self.settings.switches()[1],
-            "shadows": self.settings.grass_shadows(self.supported_quality()),
+            "shadows": self.settings.grass_shadows(),
             "hour": self.settings.hour(),
             "scene_hour": self.mirror.decoded_scene().map(|decoded| decoded.scene().light.hour_at(self.mirror.time_secs())),
             "compared": self.settings.compared().map(|(variants, _)| variants),

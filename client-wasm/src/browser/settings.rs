@@ -135,14 +135,14 @@ impl Settings {
         self.options.shows_grids = shows;
     }
 
-    /// Lets grass cast shadows or not; `None`: by quality.
-    pub(super) fn cast_grass_shadows(&mut self, casts: Option<bool>) {
+    /// Lets grass cast shadows or not.
+    pub(super) fn cast_grass_shadows(&mut self, casts: bool) {
         self.options.grass_shadows = casts;
     }
 
-    /// Whether grass casts shadows in pictures of this quality.
-    pub(super) fn grass_shadows(&self, quality: Quality) -> bool {
-        self.options.grass_shadows.unwrap_or(quality.grass_shadows())
+    /// Whether grass casts shadows.
+    pub(super) fn grass_shadows(&self) -> bool {
+        self.options.grass_shadows
     }
 
     /// Whether the wind on far clumps is raised with distance, and whether the map of the grass grids is shown.

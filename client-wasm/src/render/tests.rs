@@ -485,7 +485,7 @@ fn trees_sway_by_their_height_and_keep_their_length() {
     let body = "let height = at.x;
         let foot = vec4<f32>(32.0, 0.0, 32.0, 1.0);
         let scaled = mat4x4<f32>(vec4<f32>(height, 0.0, 0.0, 0.0), vec4<f32>(0.0, height, 0.0, 0.0), vec4<f32>(0.0, 0.0, height, 0.0), foot);
-        let tree = Instance(scaled, vec3<f32>(0.0), at.z);
+        let tree = Instance(scaled, vec3<f32>(0.0), at.z, NO_LIMBS, 0u, 0u, 0u);
         let vertex = Vertex(vec3<f32>(0.0, at.y, 0.0), vec4<f32>(0.0), vec4<f32>(0.0), vec2<f32>(0.0));
         return vec4<f32>((placed(vertex, tree, sway_of(tree)) - foot.xyz) / height, 0.0);";
     let sway_rad = 0.07;

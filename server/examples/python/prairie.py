@@ -74,7 +74,7 @@ class Prairie:  # the newest fields at places in metres: X, height above the gro
     def __init__(self, scene):
         self.wind, self.patches, self.seed = scene["wind"], scene["patches"], (scene["seed"] ^ scene["seed"] >> 32) & 0xffffffff
         (nx, ny, nz), cells, planes = self.wind["cells"], self.patches["cells"], 4 if self.wind["dust"]["release_per_s"] > 0 else 3
-        self.rest, self.grids = np.zeros((3 + (scene["snow"]["depth_m"] > 0), cells, cells), np.int16), {"wind": (0, np.zeros((planes, nz * ny, nx), np.int16))}
+        self.rest, self.grids = np.zeros((3 + (scene.get("snow", {}).get("depth_m", 0) > 0), cells, cells), np.int16), {"wind": (0, np.zeros((planes, nz * ny, nx), np.int16))}
         self.steps, self.state, self.waves = scene["stream"], dict(travel_m=[0, 0], path_m=0, friction_m_per_s=0), self.make_waves()
     def update(self, body):  # takes in a Patch or a Wind
         index, self.state = body.get("patch", "wind"), body.get("turbulence", self.state)

@@ -48,9 +48,9 @@ pub(super) struct Shot {
     /// Draw a map of the grass grids over the picture: which are culled, and the level of detail of the others
     #[arg(long)]
     grids: bool,
-    /// Whether grass casts shadows on grass and ground, `on` or `off` [default: by quality, from medium on]
-    #[arg(long, value_name = "ON_OR_OFF", value_parser = on_or_off)]
-    shadows: Option<bool>,
+    /// Let grass cast shadows on grass and ground
+    #[arg(long)]
+    grass_shadows: bool,
     /// Draw two render options side by side: two qualities, transparencies or representations of distant plants, such as low,high or cut,sorted
     #[arg(long, value_name = "LEFT,RIGHT")]
     compare: Option<String>,
@@ -114,7 +114,7 @@ impl Shot {
                 far_plants: self.far,
                 raises_far_wind: self.raise_far_wind,
                 shows_grids: self.grids,
-                grass_shadows: self.shadows,
+                grass_shadows: self.grass_shadows,
                 ..RenderOptions::default()
             },
             level: 0.0,
@@ -225,14 +225,6 @@ fn size(text: &str) -> Result<Size, String> {
 fn resolution(text: &str) -> Result<f32, String> {
     let allowed = LEAST_RESOLUTION..=1.0;
     text.parse().ok().filter(|part| allowed.contains(part)).ok_or_else(|| format!("allowed: {LEAST_RESOLUTION} to 1"))
-}
-
-fn on_or_off(text: &str) -> Result<bool, &'static str> {
-    match text {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err("allowed: on, off"),
-    }
 }
 
 fn hour(text: &str) -> Result<f32, &'static str> {

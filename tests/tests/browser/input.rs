@@ -95,7 +95,7 @@ async fn a_gamepad_enters_drives_and_leaves_a_car() -> Result<()> {
     goes_far(&browser).await?;
     browser.evaluate("window.pad.buttons[7].value = 0").await?;
     // The upper shoulder buttons go through all vehicles.
-    for (button, vehicle) in [(5, "monster"), (4, "car"), (4, "ball"), (4, "sled")] {
+    for (button, vehicle) in [(5, "monster"), (4, "car"), (4, "walker"), (4, "ball")] {
         browser.evaluate(&format!("window.pad.buttons[{button}].value = 1")).await?;
         browser.until(&format!("window.prairie.state().vehicle === '{vehicle}'")).await?;
         browser.evaluate(&format!("window.pad.buttons[{button}].value = 0")).await?;

@@ -12,9 +12,9 @@ use std::f32::consts::FRAC_PI_2;
 use tests::browser::Browser;
 use tests::prairie::Prairie;
 
-/// Middle of the circuit (m), and distance of its two gates from it (m).
-const MIDDLE_M: [f32; 2] = [34.0, 32.0];
-const RADIUS_M: f32 = 8.0;
+/// Middle of the circuit, where no stone is in the way (m), and distance of its two gates from it (m).
+const MIDDLE_M: [f32; 2] = [27.0, 30.0];
+const RADIUS_M: f32 = 6.0;
 /// Steps of the world in a step of its server: a lap takes seconds.
 const HASTE: u32 = 3;
 

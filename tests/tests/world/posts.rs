@@ -67,8 +67,8 @@ fn every_vehicle_runs_into_a_post() {
         let front_m = match kind {
             // Its front is open; its crossbar begins 1.7 m behind its middle.
             VehicleKind::Sled => -1.7,
-            // It tilts by up to 30°.
-            VehicleKind::Helicopter => half_m[2] * 0.866,
+            // The lower corner of its nose, which is nearest to it where it tilts by 30°, as it does at most.
+            VehicleKind::Helicopter => half_m[2] * 0.866 - half_m[1] * 0.5,
             _ => half_m[2],
         };
         println!("{}: {stopped_m:.2} m beyond a post, {through_m:.2} m without; {step_m:.2} m in a step", kind.name());

@@ -88,7 +88,7 @@ impl Renderer {
         let detail = if scene.stage == Stage::Land { detail.without_blades() } else { detail };
         let view = View::new(camera, self.targets.size_px, self.quality, detail, time_secs, sun);
         let mut frame = view.frame(decoded, &scene.textures, &self.daylight, &poses, &headlights(&poses));
-        if self.options.grass_shadows.unwrap_or(self.quality.grass_shadows()) {
+        if self.options.grass_shadows {
             frame.shade_strength = 1.0;
             scene.shade_map.get_or_insert_with(|| ShadeMap::new(&scene.factory));
         }

@@ -15,7 +15,7 @@ use glam::{Mat4, Quat, Vec3};
 use prairie_core::light::shade;
 use prairie_core::light::sun::Sun;
 use prairie_core::plant::snow_load::relative_load;
-use prairie_core::scene::{Objects, Plants, VehicleKind, Wind};
+use prairie_core::scene::{Objects, Plants, Scene, VehicleKind, Wind};
 use prairie_core::wind;
 use prairie_core::wire::ObjectPose;
 
@@ -74,7 +74,6 @@ impl<'a> View<'a> {
         let (mean_wind, [past_ages_secs @ .., youngest_past]) = (MeanWind::of(scene.wind.mean_m_per_s), textures.atlas.past());
         let lamps = lamps(scene, decoded.heights(), headlights, self.sun.elevation_rad, daylight.brightness(), eye);
         let (gusts, spheres) = (textures.wind.gusts(), spheres(&scene.objects, poses, eye));
-        let snow_load = relative_load(&scene.snow, leaf_area(&scene.plants));
         Frame {
             projection_from_world: self.projection_from_world.to_cols_array(),
             shadow_from_world: self.shadow_from_world(0).to_cols_array(),
@@ -115,6 +114,18 @@ impl<'a> View<'a> {
             repeated_per_m: textures.repeated.per_m(),
             target_m: self.camera.target_m.unwrap_or_default().to_array(),
             fade_m: if self.camera.target_m.is_some() { FADE_M } else { 0.0 },
+            slabs: slabs(&scene.objects, poses, eye),
+            spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_else(Sphere::zeroed)),
+            gusts: std::array::from_fn(|i| gusts.waves().get(i).map_or_else(GustWave::zeroed, GustWave::from)),
+            lights: self.lights(decoded, daylight, &lamps),
+            ..self.shade_and_snow(scene)
+        }
+    }
+
+    /// Uniforms of the shade of grass, which casts none yet, and of snow.
+    fn shade_and_snow(&self, scene: &Scene) -> Frame {
+        let (eye, snow_load) = (self.camera.eye_m, relative_load(&scene.snow, leaf_area(&scene.plants)));
+        Frame {
             shade_corner_m: shade_corner_m([eye.x, eye.z]),
             shade_extent_m: SHADE_PX as f32 * SHADE_CELL_M,
             shade_strength: 0.0,
@@ -122,10 +133,7 @@ impl<'a> View<'a> {
             shade_extinction: even_depth(&scene.plants, 1.0 + snow_load, self.sun),
             snow_m: scene.snow.depth_m,
             snow_load,
-            slabs: slabs(&scene.objects, poses, eye),
-            spheres: std::array::from_fn(|i| spheres.get(i).copied().unwrap_or_else(Sphere::zeroed)),
-            gusts: std::array::from_fn(|i| gusts.waves().get(i).map_or_else(GustWave::zeroed, GustWave::from)),
-            lights: self.lights(decoded, daylight, &lamps),
+            ..Frame::zeroed()
         }
     }
 

@@ -55,8 +55,6 @@ struct Preset {
     is_cheap_in_software: bool,
     /// Side of the shadow map (px).
     shadow_px: u32,
-    /// Whether grass casts shadows, unless a render option says otherwise.
-    grass_shadows: bool,
     /// Streaks of heavy rain.
     drops: u32,
     /// Dust motes around the camera.
@@ -93,7 +91,6 @@ const PRESETS: [Preset; 5] = [
         max_device_pixel_ratio: 1.0,
         is_cheap_in_software: true,
         shadow_px: 512,
-        grass_shadows: false,
         drops: 4000,
         motes: 3000,
         puffs: (1024, 130.0),
@@ -121,7 +118,6 @@ const PRESETS: [Preset; 5] = [
         max_device_pixel_ratio: 1.25,
         is_cheap_in_software: true,
         shadow_px: 1024,
-        grass_shadows: true,
         drops: 9000,
         motes: 6000,
         puffs: (3072, 200.0),
@@ -149,7 +145,6 @@ const PRESETS: [Preset; 5] = [
         max_device_pixel_ratio: 2.0,
         is_cheap_in_software: false,
         shadow_px: 2048,
-        grass_shadows: true,
         drops: 18_000,
         motes: 14_000,
         puffs: (4096, 220.0),
@@ -196,7 +191,6 @@ const ULTRA: Preset = Preset {
     max_device_pixel_ratio: 3.0,
     is_cheap_in_software: false,
     shadow_px: 2048,
-    grass_shadows: true,
     drops: 30_000,
     motes: 28_000,
     puffs: (8192, 280.0),
@@ -316,11 +310,6 @@ impl Quality {
     /// Side of the shadow map (px).
     pub(crate) fn shadow_px(self) -> u32 {
         self.preset().shadow_px
-    }
-
-    /// Whether grass casts shadows by default.
-    pub(crate) fn grass_shadows(self) -> bool {
-        self.preset().grass_shadows
     }
 
     /// Streaks of heavy rain.

@@ -100,8 +100,8 @@ pub struct RenderOptions {
     pub shows_grids: bool,
     /// Whether things outside the view or behind hills are culled; the picture is the same without.
     pub culls: bool,
-    /// Whether grass casts shadows on grass and ground; `None`: by quality, from medium on.
-    pub grass_shadows: Option<bool>,
+    /// Whether grass casts shadows on grass and ground.
+    pub grass_shadows: bool,
     /// Position of the sun; `None`: the scene's.
     pub sun: Option<Sun>,
     /// Shell layers near the camera, including the ground, 1..=65; `None`: the scene's.
@@ -115,13 +115,13 @@ impl RenderOptions {
     const RAISED: &str = "raised";
     /// Name of the option that shows the map of the grids.
     const GRIDS: &str = "grids";
-    /// Names of the options that let grass cast shadows, or not.
-    const SHADOWS: [&str; 2] = ["shadowed", "unshadowed"];
+    /// Name of the option that lets grass cast shadows.
+    const SHADOWED: &str = "shadowed";
 
     /// Names of all options that [`with`](Self::with) accepts.
     pub fn names() -> impl Iterator<Item = &'static str> {
         let (far_plants, orders) = (FarPlants::ALL.into_iter().map(FarPlants::name), BlendOrder::ALL.into_iter().map(BlendOrder::name));
-        far_plants.chain(orders).chain([Self::UNCULLED, Self::RAISED, Self::GRIDS]).chain(Self::SHADOWS)
+        far_plants.chain(orders).chain([Self::UNCULLED, Self::RAISED, Self::GRIDS, Self::SHADOWED])
     }
 
     /// A copy of the options with the named one set; `None` if the name is unknown.
@@ -132,7 +132,8 @@ impl RenderOptions {
             Self::UNCULLED => Some(Self { culls: false, ..self }),
             Self::RAISED => Some(Self { raises_far_wind: true, ..self }),
             Self::GRIDS => Some(Self { shows_grids: true, ..self }),
-            _ => Self::SHADOWS.contains(&name).then(|| Self { grass_shadows: Some(name == Self::SHADOWS[0]), ..self }),
+            Self::SHADOWED => Some(Self { grass_shadows: true, ..self }),
+            _ => None,
         };
         far_plants.or(order).or_else(switched)
     }
@@ -146,7 +147,7 @@ impl Default for RenderOptions {
             raises_far_wind: false,
             shows_grids: false,
             culls: true,
-            grass_shadows: None,
+            grass_shadows: false,
             sun: None,
             shell_layers: None,
         }

@@ -194,7 +194,8 @@ mod tests {
             assert!(fine.indices.len() > 2 * coarse.indices.len() && coarse.indices.len() > distant.indices.len());
             println!("shape {shape}: {} limbs, {} triangles", tree.limbs(TreeDetail::Fine), fine.indices.len() / 3);
             let bounds = tree.bounds();
-            assert!((0.4..1.3).contains(&bounds.radius_m), "{bounds:?}");
+            // In a storm twigs reach out; twice the crown would cull nothing.
+            assert!((0.4..1.5).contains(&bounds.radius_m), "{bounds:?}");
         }
     }
 }

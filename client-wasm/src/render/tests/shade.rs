@@ -28,7 +28,7 @@ fn border() -> Mirror {
 const CAMERA: Camera = Camera { eye_m: Vec3::new(35.0, 2.4, 34.2), heading_rad: 0.0, pitch_rad: -0.85, fov_rad: 0.8, target_m: None };
 
 fn options(sun: Sun, grass_shadows: bool) -> RenderOptions {
-    RenderOptions { sun: Some(sun), grass_shadows: Some(grass_shadows), culls: false, ..RenderOptions::default() }
+    RenderOptions { sun: Some(sun), grass_shadows, culls: false, ..RenderOptions::default() }
 }
 
 /// Luminance of the pixels before tone mapping.
@@ -168,7 +168,7 @@ fn shadows_of_grass_take_at_most_fifteen_percent_of_a_frame() {
     let mut secs = [Vec::new(), Vec::new()];
     for frame in 0..32 {
         let shadows = frame % 2 == 1;
-        picture.set_options(RenderOptions { grass_shadows: Some(shadows), ..RenderOptions::default() });
+        picture.set_options(RenderOptions { grass_shadows: shadows, ..RenderOptions::default() });
         let start = std::time::Instant::now();
         picture.draw(&mut mirror, &camera, f64::from(frame / 2) / 30.0, 1.0 / 60.0);
         secs[usize::from(shadows)].push(start.elapsed().as_secs_f64());

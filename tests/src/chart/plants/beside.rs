@@ -26,7 +26,7 @@ const COVER: u8 = 20;
 const EXTENT_M: f32 = 64.0;
 const PLOT_M: f32 = 16.0;
 const SIZE_PX: u32 = 500;
-const QUICK_SIZE_PX: u32 = 100;
+const QUICK_SIZE_PX: u32 = 320;
 const DT_SECS: f32 = 1.0 / 30.0;
 /// Frames per second that Endo et al. give for both of their scenes.
 const THEIRS_PER_S: [f64; 2] = [10.0, 20.0];
